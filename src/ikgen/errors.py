@@ -1,0 +1,81 @@
+"""The one family of errors that ikgen raises on bad input or an unsolved chain.
+
+Every error has a message (what, and where in the file), a hint (a way out) and the exit code of the
+command line (`docs/reference/cli.md`).
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+__all__ = [
+    "BadDescriptionError",
+    "IkgenError",
+    "MissingToolError",
+    "UnknownNameError",
+    "UnsolvedChainError",
+    "UnsupportedJointError",
+    "UsageError",
+    "VerificationError",
+]
+
+
+class IkgenError(Exception):
+    """Base of all errors meant for the user: message, hint, exit code."""
+
+    exit_code = 2
+
+    def __init__(self, message: str, *, hint: str = "") -> None:
+        super().__init__(message)
+        self.message = message
+        self.hint = hint
+
+
+class UsageError(IkgenError):
+    """Options that do not fit together or lack a value."""
+
+
+class BadDescriptionError(IkgenError):
+    """A robot description, DH table or config that cannot be read; carries the file and the line."""
+
+    def __init__(
+        self, message: str, *, file: str = "", line: int | None = None, hint: str = ""
+    ) -> None:
+        place = "" if not file else f"{file}:{line}: " if line else f"{file}: "
+        super().__init__(f"{place}{message}", hint=hint)
+        self.file = file
+        self.line = line
+
+
+class UnknownNameError(IkgenError):
+    """A link, joint, task or emitter that does not exist; lists what does, the closest match first."""
+
+    def __init__(self, kind: str, name: str, known: Iterable[str], *, hint: str = "") -> None:
+        names = list(known)
+        close = difflib.get_close_matches(name, names, n=3, cutoff=0.5)
+        rest = [n for n in names if n not in close]
+        listing = ", ".join([*close, *rest]) or "none"
+        super().__init__(f"no {kind} named '{name}'", hint=hint or f"there is: {listing}")
+        self.name = name
+        self.known = tuple(names)
+
+
+class UnsupportedJointError(BadDescriptionError):
+    """A joint inside the chain of a type that has no single axis (floating, planar, spherical)."""
+
+
+class UnsolvedChainError(IkgenError):
+    """No closed form found: the message says what was solved, what is left and what would help."""
+
+    exit_code = 3
+
+
+class MissingToolError(IkgenError):
+    """An optional tool (compiler, Eigen, LaTeX) is needed and absent; the hint says how to get it."""
+
+
+class VerificationError(IkgenError):
+    """Emitted code failed its verification; the message has the worst case's numbers."""
+
+    exit_code = 1

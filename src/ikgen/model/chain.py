@@ -1,0 +1,62 @@
+"""A serial chain from base link to tip link, before any convention is imposed on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ikgen.model.joint_tree import Limits, Matrix
+
+__all__ = ["ActuatedJoint", "Chain", "ChainAxis", "REVOLUTE", "PRISMATIC"]
+
+REVOLUTE = "revolute"
+PRISMATIC = "prismatic"
+
+
+@dataclass(frozen=True, slots=True)
+class ActuatedJoint:
+    """One independent joint variable. `kind` is "revolute" or "prismatic"; `limits` in rad or m."""
+
+    name: str
+    kind: str
+    limits: Limits
+    continuous: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class ChainAxis:
+    """One moving axis of the chain.
+
+    `T_prev_axis` (4, 4) is this axis' joint frame in the previous axis' joint frame (in the base link's
+    for the first) at value 0, with the joint moving about or along the unit vector `axis` (3,) of its
+    own frame. Its value is `multiplier * q[driver] + offset`: driver indexes `Chain.joints`; multiplier
+    and offset are 1 and 0 but for mimic joints.
+    """
+
+    name: str
+    kind: str
+    T_prev_axis: Matrix
+    axis: Matrix
+    driver: int
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """`T_base_tip(q) = prod_i(T_prev_axis_i * Motion_i) * T_last_tip`, joints listed base to tip.
+
+    Joints that were locked are constants inside the transforms and not listed; `locked` names them.
+    """
+
+    robot: str
+    base_link: str
+    tip_link: str
+    joints: tuple[ActuatedJoint, ...]
+    axes: tuple[ChainAxis, ...]
+    T_last_tip: Matrix
+    locked: tuple[tuple[str, float], ...] = ()
+
+    @property
+    def dof(self) -> int:
+        """Number of independent joint variables."""
+        return len(self.joints)

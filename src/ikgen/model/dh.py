@@ -1,0 +1,100 @@
+"""The chain in modified Denavit-Hartenberg form (Craig, Introduction to Robotics, ch. 3).
+
+`A_i = Rx(alpha) Tx(a) Rz(theta) Tz(d)` with alpha and a the link's twist and length before joint i
+(alpha_{i-1}, a_{i-1} in Craig's notation), and `T_base_tip = X_base * A_1 ... A_n * X_tip`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from ikgen.model.chain import REVOLUTE, ActuatedJoint
+from ikgen.model.joint_tree import Matrix
+
+__all__ = ["Angle", "DHChain", "DHRow", "Length", "Snap"]
+
+
+@dataclass(frozen=True, slots=True)
+class Angle:
+    """A constant angle in rad. `exact` is its multiple of pi where it is a multiple of pi/12, in
+    (-1, 1]; otherwise `name` is its symbol (`alpha_2`)."""
+
+    value: float
+    exact: Fraction | None
+    name: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Length:
+    """A constant length in m: `sign * symbol` with the symbol's value attached; exact zero has no name.
+
+    `value` is the signed value; two lengths equal up to sign share one `name`. Without numbers (a
+    symbolic table) `symbolic` is true and `value` is a random generic number to probe with.
+    """
+
+    value: float
+    name: str | None
+    sign: int = 1
+    symbolic: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class DHRow:
+    """One row. The variable (theta of a revolute row, d of a prismatic one) is
+    `scale * q[driver] + offset` with scale = ±1 but for mimic joints, and offset an `Angle` for
+    revolute rows, a `Length` for prismatic ones. `d` is the constant d of a revolute row, `theta` the
+    constant theta of a prismatic row; the other of the two is exact zero."""
+
+    name: str
+    kind: str
+    alpha: Angle
+    a: Length
+    d: Length
+    theta: Angle
+    driver: int
+    scale: float
+    offset: Angle | Length
+
+    @property
+    def revolute(self) -> bool:
+        """Whether the row's variable is an angle."""
+        return self.kind == REVOLUTE
+
+
+@dataclass(frozen=True, slots=True)
+class Snap:
+    """One constant of the chain that was replaced by an exact one: what, from, to (rad or m)."""
+
+    what: str
+    before: float
+    after: float
+
+
+@dataclass(frozen=True, slots=True)
+class DHChain:
+    """A chain in modified DH form with exact geometry, and the file's own geometry beside it.
+
+    `X_base`, `X_tip` (4, 4): constant transforms at the ends. `file_frames`: n + 1 constant transforms
+    (4, 4), the file's own chain to round-off: `T = F_0 M_1(v_1) F_1 ... M_n(v_n) F_n` with `v_i` the DH
+    variable of row i (offset included) and `M` = Rz or Tz. `deviation` is the largest difference
+    between the two over random configurations: (m, rad).
+    """
+
+    robot: str
+    base_link: str
+    tip_link: str
+    joints: tuple[ActuatedJoint, ...]
+    rows: tuple[DHRow, ...]
+    X_base: Matrix
+    X_tip: Matrix
+    file_frames: tuple[Matrix, ...]
+    snaps: tuple[Snap, ...] = ()
+    deviation: tuple[float, float] = (0.0, 0.0)
+    free: tuple[str, ...] = ()
+    locked: tuple[tuple[str, float], ...] = ()
+
+    @property
+    def dof(self) -> int:
+        """Number of independent joint variables."""
+        return len(self.joints)

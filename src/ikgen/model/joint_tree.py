@@ -1,0 +1,92 @@
+"""The robot description as read: links, joints, and where it came from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Joint", "JointTree", "JointType", "Limits", "Mimic", "Source"]
+
+Matrix = NDArray[np.float64]
+
+
+class JointType(Enum):
+    """URDF joint types."""
+
+    REVOLUTE = "revolute"
+    CONTINUOUS = "continuous"
+    PRISMATIC = "prismatic"
+    FIXED = "fixed"
+    FLOATING = "floating"
+    PLANAR = "planar"
+
+    @property
+    def moves_on_one_axis(self) -> bool:
+        """Whether the joint has one axis and one value."""
+        return self in (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Range of a joint value, rad or m; infinite where the file sets none."""
+
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True, slots=True)
+class Mimic:
+    """`value = multiplier * value(joint) + offset` (URDF `<mimic>`)."""
+
+    joint: str
+    multiplier: float
+    offset: float
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """One joint. `T_parent_child` (4, 4) is the child link's frame in the parent's at value 0;
+    `axis` (3,) is a unit vector in the child's frame; `line` is its line in the (expanded) file."""
+
+    name: str
+    type: JointType
+    parent: str
+    child: str
+    T_parent_child: Matrix
+    axis: Matrix
+    limits: Limits
+    mimic: Mimic | None = None
+    line: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Where a description came from.
+
+    `path` is the file the user named, `dependencies` every file read (itself included, absolute),
+    `text` the description after expansion (URDF XML, or the TOML of a DH table), `sha256` the digest
+    of `text`, and `warnings` what was odd in it but could be read.
+    """
+
+    path: Path
+    kind: str
+    text: str
+    sha256: str
+    dependencies: tuple[Path, ...] = ()
+    arguments: tuple[tuple[str, str], ...] = ()
+    warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class JointTree:
+    """All links and joints of a robot description, in file order. `root_link` is the base of the tree."""
+
+    name: str
+    links: tuple[str, ...]
+    joints: tuple[Joint, ...]
+    root_link: str
+    source: Source
