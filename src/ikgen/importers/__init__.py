@@ -1,0 +1,93 @@
+"""Readers of robot descriptions: one row of the registry a format, imported only when it reads.
+
+The only packages that know file formats. `load_tree` picks the importer by the file's suffix; a
+chain is then chosen out of the tree by `ikgen.importers.chain`. Other packages add formats through
+the entry-point group `ikgen.importers`, each entry an `Importer`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Protocol, cast
+
+from ikgen.errors import UsageError
+
+if TYPE_CHECKING:
+    from ikgen.model.joint_tree import JointTree
+
+__all__ = ["IMPORTERS", "Importer", "importer_of", "load_tree"]
+
+_NOTHING: Mapping[str, str] = MappingProxyType({})
+
+
+class _Reader(Protocol):
+    """What an importer's module offers."""
+
+    def read(
+        self, path: Path, *, arguments: Mapping[str, str], package_paths: Sequence[Path]
+    ) -> JointTree: ...
+
+
+@dataclass(frozen=True, slots=True)
+class Importer:
+    """One format: its name, the lower-case suffixes of its files and the module with its `read`."""
+
+    kind: str
+    suffixes: tuple[str, ...]
+    module: str
+
+    def accepts(self, path: Path) -> bool:
+        """Whether the file's name ends in one of the suffixes."""
+        return path.name.lower().endswith(self.suffixes)
+
+
+IMPORTERS: tuple[Importer, ...] = (
+    Importer("xacro", (".xacro",), "ikgen.importers.xacro"),
+    Importer("urdf", (".urdf", ".xml"), "ikgen.importers.urdf"),
+)
+
+
+def importer_of(path: Path) -> Importer:
+    """The importer for a file, by its suffix; raises `UsageError` where no format has it."""
+    for importer in IMPORTERS:
+        if importer.accepts(path):
+            return importer
+    others = tuple(_third_party())
+    for importer in others:
+        if importer.accepts(path):
+            return importer
+    known = ", ".join(suffix for row in (*IMPORTERS, *others) for suffix in row.suffixes)
+    raise UsageError(
+        f"{path}: cannot tell the format of a robot description by the suffix '{path.suffix}'",
+        hint=f"name the file with one of: {known}",
+    )
+
+
+def load_tree(
+    path: str | Path,
+    *,
+    arguments: Mapping[str, str] = _NOTHING,
+    package_paths: Sequence[Path] = (),
+) -> JointTree:
+    """Read a robot description into a `JointTree`.
+
+    `arguments` are xacro's NAME:=VALUE; `package_paths` are directories that are or contain the
+    packages which `$(find pkg)` and `package://pkg` name. Raises `BadDescriptionError` with file
+    and line for anything in the file that cannot be read, `UsageError` for an unknown suffix.
+    """
+    file = Path(path)
+    module = cast(_Reader, import_module(importer_of(file).module))
+    return module.read(file, arguments=arguments, package_paths=package_paths)
+
+
+def _third_party() -> Iterator[Importer]:
+    from importlib.metadata import entry_points
+
+    for entry in sorted(entry_points(group="ikgen.importers"), key=lambda e: e.name):
+        row = entry.load()
+        if isinstance(row, Importer):
+            yield row

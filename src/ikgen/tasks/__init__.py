@@ -1,0 +1,1 @@
+"""What of a pose counts: one row a task, found by name."""

@@ -1,0 +1,1 @@
+"""Transforms make equations with fewer unknowns out of pairs of equations (IKBT, section 3.1)."""

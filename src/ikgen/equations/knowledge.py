@@ -1,0 +1,300 @@
+"""What is known so far, and equations as polynomials in what is not.
+
+An angle key is known when it is an integer combination of solved ones: the lattice of the known keys of
+its group. Unknown keys are written modulo that lattice on one representative each, so that
+`cos(theta_23)` with theta_3 known is linear in the cosine and sine of theta_2.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+
+from ikgen.equations import polynomial as poly
+from ikgen.equations.build import Equation, EquationSet
+from ikgen.equations.expression import Expr
+from ikgen.equations.polynomial import Key, Monomial, Polynomial, canonical
+
+__all__ = ["Knowledge", "PolynomialEquation", "Variable"]
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Variable:
+    """An unknown: the angle of a key, or the prismatic variable of a joint (kind "dist")."""
+
+    kind: str
+    key: Key
+
+    @property
+    def joint(self) -> int | None:
+        """The joint whose own variable this is, if it is one."""
+        ones = [j for j, k in enumerate(self.key) if k]
+        return ones[0] if len(ones) == 1 and self.key[ones[0]] == 1 else None
+
+    @property
+    def text(self) -> str:
+        """Name such as theta_23 or d_4."""
+        letter = "theta" if self.kind == "angle" else "d"
+        if all(k in (0, 1) for k in self.key):
+            return f"{letter}_" + "".join(str(j + 1) for j, k in enumerate(self.key) if k)
+        parts = [f"{k:+d}*{letter}_{j + 1}" for j, k in enumerate(self.key) if k]
+        return "(" + "".join(parts) + ")"
+
+
+@dataclass(frozen=True, slots=True)
+class PolynomialEquation:
+    """`polynomial = 0` in the unknowns, made from the named matrix equations."""
+
+    polynomial: Polynomial
+    unknowns: tuple[Variable, ...]
+    sources: tuple[Equation, ...]
+    rank: int
+
+    @property
+    def squared(self) -> bool:
+        """Whether a sum of squares went into it."""
+        return any(e.squared for e in self.sources)
+
+
+class Knowledge:
+    """Known atoms and their definitions; grows as variables are solved."""
+
+    def __init__(self, equations: EquationSet) -> None:
+        self.equations = equations
+        self.graph = equations.graph
+        self.variables = equations.variables
+        self.known_mask = 0
+        self.binding: dict[int, Expr] = {}
+        self._keys: dict[Key, tuple[Expr, Expr]] = {}
+        self._combinations: dict[Key, tuple[tuple[int, Key], ...]] = {}
+        self._representatives: list[Key] = self._contiguous_keys()
+        self._converted: dict[int, Polynomial] = {}
+        self._represented: dict[Key, tuple[int, Key, Key] | None] = {}
+
+    def _contiguous_keys(self) -> list[Key]:
+        n = self.variables.count
+        units = [self.variables.unit(j) for j in range(n)]
+        keys: list[Key] = list(units)
+        for length in range(2, n + 1):
+            for start in range(n - length + 1):
+                members = range(start, start + length)
+                if len({self.variables.group[j] for j in members}) == 1:
+                    keys.append(tuple(int(start <= j < start + length) for j in range(n)))
+        return keys
+
+    # -- learning -------------------------------------------------------------------------------
+
+    def learn_angle(self, key: Key) -> None:
+        """Mark a key's cosine and sine as known."""
+        pair = self.variables.pair(key)
+        self._keys[key] = pair
+        self._refresh()
+
+    def learn_distance(self, joint: int) -> None:
+        """Mark a prismatic variable as known."""
+        self.known_mask |= self.variables.distance(joint).support
+        self._refresh()
+
+    def _refresh(self) -> None:
+        self._converted.clear()
+        self._represented.clear()
+        zero = tuple([0] * self.variables.count)
+        found: dict[Key, tuple[tuple[int, Key], ...]] = {zero: ()}
+        by_group: dict[int, list[Key]] = {}
+        for key in self._keys:
+            by_group.setdefault(self.variables.group_of(key), []).append(key)
+        for keys in by_group.values():
+            choices = sorted(
+                itertools.product((0, 1, -1, 2, -2), repeat=len(keys)),
+                key=lambda c: (sum(map(abs, c)), c),
+            )
+            for coefs in choices:
+                total = tuple(
+                    sum(c * k[j] for c, k in zip(coefs, keys, strict=True))
+                    for j in range(self.variables.count)
+                )
+                terms = tuple((c, k) for c, k in zip(coefs, keys, strict=True) if c)
+                found.setdefault(total, terms)
+        self._combinations = found
+        self._mark_atoms()
+
+    def _mark_atoms(self) -> None:
+        """Every atom whose key has become known gets its definition, once."""
+        for key in list(self._combinations):
+            c = self.graph.find_atom("cos", key)
+            s = self.graph.find_atom("sin", key)
+            for node in (c, s):
+                if node is not None and not node.support & self.known_mask:
+                    self.known_mask |= node.support
+                    if key not in self._keys:
+                        pair = self.known_pair(key)
+                        assert pair is not None
+                        self.binding[node.id] = pair[0] if node is c else pair[1]
+
+    def known_pair(self, key: Key) -> tuple[Expr, Expr] | None:
+        """Cosine and sine of a known key's angle, composed from solved ones; None if unknown."""
+        terms = self._combinations.get(key)
+        if terms is None:
+            return None
+        g = self.graph
+        c, s = g.one, g.zero
+        for factor, base in terms:
+            bc, bs = self._keys[base]
+            if factor < 0:
+                bs = g.neg(bs)
+            for _ in range(abs(factor)):
+                c, s = (
+                    g.sub(g.mul(c, bc), g.mul(s, bs)),
+                    g.add(g.mul(s, bc), g.mul(c, bs)),
+                )
+        return c, s
+
+    def is_known(self, variable: Variable) -> bool:
+        """Whether the variable is solved or follows from solved ones."""
+        if variable.kind == "angle":
+            return variable.key in self._combinations
+        joint = variable.joint
+        assert joint is not None
+        return bool(self.variables.distance(joint).support & self.known_mask)
+
+    def known_expr(self, node: Expr) -> bool:
+        """Whether an expression has known atoms only."""
+        return not node.support & ~self.known_mask
+
+    # -- representatives ------------------------------------------------------------------------
+
+    def represent(self, key: Key) -> tuple[int, Key, Key]:
+        """`key = factor * representative + shift` with a known shift."""
+        if key in self._represented:
+            found = self._represented[key]
+            assert found is not None
+            return found
+        group = self.variables.group_of(key)
+        zero = tuple([0] * self.variables.count)
+        result = (1, key, zero)
+        for factor in (1, -1, 2, -2):
+            for rep in self._representatives:
+                if self.variables.group_of(rep) != group:
+                    continue
+                shift = tuple(k - factor * r for k, r in zip(key, rep, strict=True))
+                if shift in self._combinations and rep not in self._combinations:
+                    self._represented[key] = (factor, rep, shift)
+                    return factor, rep, shift
+        self._represented[key] = result
+        return result
+
+    # -- conversion -----------------------------------------------------------------------------
+
+    def convert(self, node: Expr) -> Polynomial:
+        """The node as a polynomial in the unknown atoms (keys not yet reduced)."""
+        if not node.support & ~self.known_mask:
+            return {} if node.vanishes else {poly.ONE: node}
+        found = self._converted.get(node.id)
+        if found is None:
+            found = self._convert(node)
+            self._converted[node.id] = found
+        return found
+
+    def _convert(self, node: Expr) -> Polynomial:
+        g = self.graph
+        if node.atom is not None:
+            return self._convert_atom(node)
+        parts = [self.convert(a) for a in node.args]
+        if node.op == "add":
+            return poly.add(g, parts[0], parts[1])
+        if node.op == "sub":
+            return poly.subtract(g, parts[0], parts[1])
+        if node.op == "neg":
+            return poly.scale(g, parts[0], g.minus_one)
+        if node.op == "mul":
+            return poly.multiply(g, self.variables.group_of, parts[0], parts[1])
+        raise AssertionError(f"operation {node.op} in an equation")
+
+    def _convert_atom(self, node: Expr) -> Polynomial:
+        g, atom = self.graph, node.atom
+        assert atom is not None
+        if atom.kind == "dist":
+            assert not isinstance(atom.key, str)
+            joint = atom.key.index(1)
+            return {((), ((joint, 1),)): g.one}
+        assert not isinstance(atom.key, str)
+        return {(((atom.key, atom.kind[0]),), ()): g.one}
+
+    def reduce(self, polynomial: Polynomial) -> Polynomial:
+        """Rewrite every key on its representative modulo the known lattice."""
+        g = self.graph
+        out: Polynomial = {}
+        for (trigs, dist), value in polynomial.items():
+            term: Polynomial = {((), dist): value}
+            for key, kind in trigs:
+                term = poly.multiply(g, self.variables.group_of, term, self._reduced(key, kind))
+            out = poly.add(g, out, term)
+        return out
+
+    def _reduced(self, key: Key, kind: str) -> Polynomial:
+        g = self.graph
+        if key in self._combinations:
+            pair = self.known_pair(key)
+            assert pair is not None
+            return {poly.ONE: pair[0] if kind == "c" else pair[1]}
+        factor, rep, shift = self.represent(key)
+        target, sign = canonical(tuple(factor * r for r in rep))
+        pair = self.known_pair(shift)
+        assert pair is not None
+        kc, ks = pair
+        c: Monomial = (((target, "c"),), ())
+        s: Monomial = (((target, "s"),), ())
+        sine = g.const(float(sign))
+        if kind == "c":
+            raw = {c: kc, s: g.neg(g.mul(sine, ks))}
+        else:
+            raw = {c: ks, s: g.mul(sine, kc)}
+        return {m: v for m, v in raw.items() if v is not g.zero and not v.vanishes}
+
+    # -- equations ------------------------------------------------------------------------------
+
+    def unknown_rank(self, support: int) -> int:
+        """Number of independent unknowns among the atoms of a support mask (99: unreadable pose)."""
+        mask = support & ~self.known_mask
+        keys: list[Key] = []
+        distances: set[Key] = set()
+        for node in self.graph.atoms_in(mask):
+            assert node.atom is not None
+            if node.atom.kind == "pose":
+                return 99
+            assert not isinstance(node.atom.key, str)
+            if node.atom.kind == "dist":
+                distances.add(node.atom.key)
+            else:
+                keys.append(node.atom.key)
+        return self._rank(keys) + len(distances)
+
+    def _rank(self, keys: list[Key]) -> int:
+        if not keys:
+            return 0
+        known = [list(k) for k in self._keys]
+        base = np.linalg.matrix_rank(np.array(known)) if known else 0
+        both = np.linalg.matrix_rank(np.array(known + [list(k) for k in keys]))
+        return int(both - base)
+
+    def unknowns_of(self, polynomial: Polynomial) -> tuple[tuple[Variable, ...], int]:
+        """Representatives in a reduced polynomial, and their rank."""
+        angles: set[Variable] = set()
+        distances: set[Variable] = set()
+        for trigs, dist in polynomial:
+            for key, _ in trigs:
+                divisor = int(np.gcd.reduce([abs(k) for k in key]))
+                angles.add(Variable("angle", tuple(k // divisor for k in key)))
+            for joint, _ in dist:
+                distances.add(Variable("dist", self.variables.unit(joint)))
+        rank = self._rank([v.key for v in angles]) + len(distances)
+        return tuple(sorted(angles | distances)), rank
+
+    def polynomial_equation(self, equation: Equation) -> PolynomialEquation:
+        """`right - left` of a matrix equation as a polynomial in the unknowns."""
+        raw = poly.subtract(self.graph, self.convert(equation.right), self.convert(equation.left))
+        reduced = self.reduce(raw)
+        unknowns, rank = self.unknowns_of(reduced)
+        return PolynomialEquation(reduced, unknowns, (equation,), rank)

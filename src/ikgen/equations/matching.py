@@ -1,0 +1,94 @@
+"""Matching a polynomial equation against the shapes that leaves look for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ikgen.equations.expression import Expr, ExpressionGraph
+from ikgen.equations.knowledge import PolynomialEquation, Variable
+from ikgen.equations.polynomial import ONE, Key, Monomial, Polynomial
+
+__all__ = ["AngleSplit", "constant_ratio", "harmonics", "powers", "split_angle"]
+
+
+@dataclass(frozen=True, slots=True)
+class AngleSplit:
+    """`cosine * cos(u) + sine * sin(u) + rest = 0`, u in none of the three polynomials."""
+
+    cosine: Polynomial
+    sine: Polynomial
+    rest: Polynomial
+
+
+def split_angle(equation: PolynomialEquation, unknown: Variable) -> AngleSplit | None:
+    """Take an equation apart by the cosine and sine of an unknown angle; None where a harmonic or
+    another combination with the unknown occurs."""
+    cosine: Polynomial = {}
+    sine: Polynomial = {}
+    rest: Polynomial = {}
+    for (trigs, dist), value in equation.polynomial.items():
+        hits = [t for t in trigs if _parallel(t[0], unknown.key)]
+        if not hits:
+            rest[trigs, dist] = value
+            continue
+        key, kind = hits[0]
+        if key != unknown.key:
+            return None
+        others = tuple(t for t in trigs if t is not hits[0])
+        (cosine if kind == "c" else sine)[others, dist] = value
+    return AngleSplit(cosine, sine, rest)
+
+
+def _parallel(key: Key, unit: Key) -> bool:
+    factor = max(map(abs, key))
+    unit_factor = max(map(abs, unit))
+    return all(k * unit_factor == u * factor for k, u in zip(key, unit, strict=True))
+
+
+def harmonics(equation: PolynomialEquation, unknown: Variable) -> dict[tuple[int, str], Expr] | None:
+    """Coefficients by (harmonic, "c" or "s"), (0, "c") the constant; None where others occur."""
+    out: dict[tuple[int, str], Expr] = {}
+    for (trigs, dist), value in equation.polynomial.items():
+        if dist or len(trigs) > 1:
+            return None
+        if not trigs:
+            out[0, "c"] = value
+            continue
+        key, kind = trigs[0]
+        if not _parallel(key, unknown.key):
+            return None
+        out[max(map(abs, key)) // max(map(abs, unknown.key)), kind] = value
+    return out
+
+
+def powers(equation: PolynomialEquation, unknown: Variable) -> dict[int, Expr] | None:
+    """Coefficients by power of a prismatic unknown; None where other unknowns occur."""
+    joint = unknown.joint
+    out: dict[int, Expr] = {}
+    for (trigs, dist), value in equation.polynomial.items():
+        if trigs or len(dist) > 1 or (dist and dist[0][0] != joint):
+            return None
+        out[dist[0][1] if dist else 0] = value
+    return out
+
+
+def constant_ratio(graph: ExpressionGraph, a: Polynomial, b: Polynomial) -> Expr | None:
+    """The factor f with `a = f * b`, where f is known; None if there is none. Tried on the probes."""
+    if set(a) != set(b) or not a:
+        return None
+    first: Monomial = max(b, key=lambda m: (abs(b[m].probe).min(), m))
+    for mono in a:
+        cross = a[mono].probe * b[first].probe - a[first].probe * b[mono].probe
+        size = a[mono].scale * b[first].scale + a[first].scale * b[mono].scale
+        if abs(cross).max() > 1e-9 * size:
+            return None
+    return graph.div(a[first], b[first])
+
+
+def only_known(polynomial: Polynomial) -> Expr | None:
+    """The coefficient of a polynomial that is one known number; None otherwise."""
+    if not polynomial:
+        return None
+    if set(polynomial) == {ONE}:
+        return polynomial[ONE]
+    return None

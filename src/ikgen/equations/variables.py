@@ -1,0 +1,162 @@
+"""Joint variables of a DH chain as atoms of the expression graph.
+
+A revolute variable is the DH angle of the row that its joint drives first; a key is an integer
+combination of such angles, one entry a variable. Angles of parallel consecutive axes share a group:
+their sums ("sum of angles") appear as keys of their own when the matrices are built.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.equations.expression import Expr, ExpressionGraph
+from ikgen.equations.polynomial import Key, canonical
+from ikgen.errors import UnsupportedJointError
+from ikgen.model.dh import Angle, DHChain, DHRow, Length
+
+__all__ = ["JointVariables", "exact_cos_sin", "runs_of"]
+
+
+def exact_cos_sin(angle: float) -> tuple[float, float]:
+    """Cosine and sine, exact where the angle is a multiple of 30 or 90 degrees to round-off."""
+    c, s = math.cos(angle), math.sin(angle)
+
+    def clean(x: float) -> float:
+        for exact in (0.0, 0.5, -0.5, 1.0, -1.0):
+            if abs(x - exact) < 4e-16:
+                return exact
+        return x
+
+    return clean(c), clean(s)
+
+
+def runs_of(dh: DHChain) -> list[int]:
+    """Index of the run of parallel axes (twist exactly zero between them) each row belongs to."""
+    runs: list[int] = []
+    for i, row in enumerate(dh.rows):
+        parallel = i > 0 and row.alpha.exact == Fraction(0)
+        runs.append(runs[-1] if parallel else (runs[-1] + 1 if runs else 0))
+    return runs
+
+
+@dataclass(frozen=True, slots=True)
+class _RowVariable:
+    driver: int
+    ratio: int
+    shift: float
+
+
+class JointVariables:
+    """Atoms for the variables of `dh`, with their values `theta` (probes, dof) at the probes."""
+
+    def __init__(self, graph: ExpressionGraph, dh: DHChain, values: NDArray[np.float64]) -> None:
+        self.graph = graph
+        self.dh = dh
+        self.values = values
+        self.count = dh.dof
+        self.primary: list[DHRow] = []
+        for j in range(dh.dof):
+            self.primary.append(next(row for row in dh.rows if row.driver == j))
+        self._rows = [self._row_variable(row) for row in dh.rows]
+        self.group = self._groups()
+
+    def _row_variable(self, row: DHRow) -> _RowVariable:
+        first = self.primary[row.driver]
+        ratio = row.scale / first.scale
+        if row.revolute and abs(ratio - round(ratio)) > 1e-12:
+            raise UnsupportedJointError(
+                f"joint '{row.name}' follows '{first.name}' with the ratio {ratio:g}",
+                hint="closed forms need whole-number mimic ratios; lock one of the two joints",
+            )
+        return _RowVariable(
+            row.driver, round(ratio) if row.revolute else 1, row.offset.value - ratio * first.offset.value
+        )
+
+    def _groups(self) -> list[int]:
+        group = list(range(self.count))
+        runs = runs_of(self.dh)
+        seen: dict[int, int] = {}
+        for row, run in zip(self.dh.rows, runs, strict=True):
+            if not row.revolute:
+                continue
+            if run in seen:
+                old, new = group[row.driver], group[seen[run]]
+                group = [new if g == old else g for g in group]
+            else:
+                seen[run] = row.driver
+        return group
+
+    def group_of(self, key: Key) -> int:
+        """The group of parallel axes that the key's angles belong to."""
+        for j, k in enumerate(key):
+            if k:
+                return self.group[j]
+        return -1
+
+    def unit(self, joint: int) -> Key:
+        """The key of one joint's own angle."""
+        return tuple(int(j == joint) for j in range(self.count))
+
+    def pair(self, key: Key) -> tuple[Expr, Expr]:
+        """Cosine and sine atoms of a key's angle."""
+        g = self.graph
+        key, sign = canonical(key)
+        if sign == 0:
+            return g.one, g.zero
+        angle = self.values @ np.array(key, dtype=float)
+        c = g.atom("cos", key, np.cos(angle), unknown=True)
+        s = g.atom("sin", key, np.sin(angle), unknown=True)
+        return c, (s if sign > 0 else g.neg(s))
+
+    def rotated(self, key: Key, shift: float) -> tuple[Expr, Expr]:
+        """Cosine and sine of a key's angle plus a constant."""
+        g = self.graph
+        c, s = self.pair(key)
+        kc, ks = (g.const(x) for x in exact_cos_sin(shift))
+        return (
+            g.sub(g.mul(kc, c), g.mul(ks, s)),
+            g.add(g.mul(ks, c), g.mul(kc, s)),
+        )
+
+    def row_angle(self, i: int) -> tuple[Key, float]:
+        """Key and constant of the rotation about z in row i (0-based)."""
+        row, var = self.dh.rows[i], self._rows[i]
+        if not row.revolute:
+            return tuple([0] * self.count), row.theta.value
+        return tuple(var.ratio * (j == var.driver) for j in range(self.count)), var.shift
+
+    def distance(self, joint: int) -> Expr:
+        """The atom of a prismatic variable."""
+        key = self.unit(joint)
+        return self.graph.atom("dist", key, self.values[:, joint], unknown=True)
+
+    def row_distance(self, i: int) -> Expr:
+        """The translation along z in row i: the constant d, or the prismatic variable."""
+        row, var = self.dh.rows[i], self._rows[i]
+        if row.revolute:
+            return self.length(row.d)
+        g = self.graph
+        ratio = row.scale / self.primary[row.driver].scale
+        return g.add(g.mul(g.const(ratio), self.distance(var.driver)), g.const(var.shift))
+
+    def length(self, length: Length) -> Expr:
+        """A constant length as a named parameter."""
+        g = self.graph
+        if length.name is None:
+            return g.const(length.value)
+        node = g.param(length.name, abs(length.value) if not length.symbolic else length.value)
+        sign = length.sign if length.symbolic else (1 if length.value >= 0 else -1)
+        return node if sign > 0 else g.neg(node)
+
+    def angle(self, angle: Angle) -> tuple[Expr, Expr]:
+        """Cosine and sine of a constant angle; named parameters where the angle is not exact."""
+        g = self.graph
+        c, s = exact_cos_sin(angle.value)
+        if angle.name is None:
+            return g.const(c), g.const(s)
+        return g.param(f"cos_{angle.name}", c), g.param(f"sin_{angle.name}", s)

@@ -1,0 +1,133 @@
+"""A file's text and its XML, with every failure turned into an error that has a file and a line."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from lxml import etree
+
+from ikgen.errors import BadDescriptionError
+from ikgen.model.joint_tree import Source
+
+__all__ = ["Element", "Place", "children", "local_name", "parse_xml", "read_text", "shown_file"]
+
+Element = Any
+"""An lxml element; lxml has no type stubs."""
+
+_BYTE_ORDER_MARKS = (
+    (b"\xef\xbb\xbf", "utf-8-sig"),
+    (b"\xff\xfe", "utf-16"),
+    (b"\xfe\xff", "utf-16"),
+)
+_DECLARED_ENCODING = re.compile(rb"""^\s*<\?xml[^>]*?encoding\s*=\s*["']([\w.\-]+)["']""")
+_MERGE_CONFLICT = re.compile(r"^(<{7}|>{7}) ", re.MULTILINE)
+_SYNTAX_HINTS = (
+    ("Extra content", "the file holds two documents: keep one <robot> element"),
+    ("declaration", "something stands before the XML declaration: remove it"),
+    ("Start tag expected", "the file is not XML, or has text before its first tag"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where messages about a document point: its file, and the warnings collected so far."""
+
+    file: str
+    warnings: list[str] = field(default_factory=list)
+
+    def error(self, element: Element, message: str, hint: str = "") -> BadDescriptionError:
+        """The error to raise about an element, with the file and the element's line."""
+        line = None if element is None else element.sourceline
+        return BadDescriptionError(message, file=self.file, line=line, hint=hint)
+
+    def warn(self, element: Element, message: str) -> None:
+        """Record an oddity that could be read anyway."""
+        line = None if element is None else element.sourceline
+        self.warnings.append(f"line {line}: {message}" if line else message)
+
+
+def shown_file(source: Source) -> str:
+    """The name of a source in messages; lines of a xacro file are those of its expansion."""
+    return f"{source.path} (expanded)" if source.kind == "xacro" else str(source.path)
+
+
+def read_text(path: Path) -> str:
+    """The decoded text of a file; line ends are as in Unix, whatever git made of them."""
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        raise BadDescriptionError(
+            "no such file", file=str(path), hint="check the path of the robot description"
+        ) from None
+    except IsADirectoryError:
+        raise BadDescriptionError(
+            "is a directory, not a robot description",
+            file=str(path),
+            hint="name the .urdf or .xacro file inside it",
+        ) from None
+    except OSError as error:
+        raise BadDescriptionError(error.strerror or str(error), file=str(path)) from None
+    text = _decode(data, path).replace("\r\n", "\n").replace("\r", "\n")
+    if not text.strip():
+        raise BadDescriptionError("the file is empty", file=str(path))
+    return text
+
+
+def _decode(data: bytes, path: Path) -> str:
+    declared = _DECLARED_ENCODING.match(data)
+    encoding = declared.group(1).decode("ascii") if declared else "utf-8"
+    for mark, name in _BYTE_ORDER_MARKS:
+        if data.startswith(mark):
+            encoding = name
+    try:
+        return data.decode(encoding)
+    except (UnicodeDecodeError, LookupError) as error:
+        raise BadDescriptionError(
+            f"cannot decode the file as {encoding}: {error}",
+            file=str(path),
+            hint="save it as UTF-8, or declare its encoding in <?xml ... encoding=...?>",
+        ) from None
+
+
+def parse_xml(text: str, file: str) -> Element:
+    """The root element of an XML text; entities stay unresolved and nothing is fetched."""
+    # The text is decoded already, so its own encoding declaration must not be applied again.
+    parser = etree.XMLParser(
+        resolve_entities=False, no_network=True, huge_tree=False, encoding="utf-8"
+    )
+    try:
+        return etree.fromstring(text.encode("utf-8", "replace"), parser)
+    except etree.XMLSyntaxError as error:
+        message = error.msg or "not XML"
+        raise BadDescriptionError(
+            f"not well-formed XML: {message.partition(', line')[0]}",
+            file=file,
+            line=error.lineno or None,
+            hint=_syntax_hint(text, message),
+        ) from None
+
+
+def _syntax_hint(text: str, message: str) -> str:
+    if text.startswith("version https://git-lfs"):
+        return "this is a Git LFS pointer: run 'git lfs pull'"
+    if _MERGE_CONFLICT.search(text):
+        return "the file holds the markers of an unresolved merge conflict (<<<<<<<, >>>>>>>)"
+    for key, hint in _SYNTAX_HINTS:
+        if key in message:
+            return hint
+    return "correct the XML at this line"
+
+
+def local_name(element: Element) -> str:
+    """An element's tag without its namespace; empty for comments and processing instructions."""
+    tag = element.tag
+    return tag.rpartition("}")[2] if isinstance(tag, str) else ""
+
+
+def children(element: Element, name: str) -> Iterator[Element]:
+    """The direct children of an element with this local name, in file order."""
+    return (child for child in element if local_name(child) == name)

@@ -1,0 +1,65 @@
+"""What the names of links and joints say about them, by the habits of published descriptions."""
+
+from __future__ import annotations
+
+import re
+
+__all__ = ["NO_RANK", "base_rank", "is_finger", "is_head", "is_sensor", "tip_rank"]
+
+_FINGER_JOINT = re.compile(
+    r"finger|gripper|grip_|jaw|knuckle|claw|(^|_)grasp(_joint)?$|^[lr]_?hand$"
+    r"|(^|_)(thumb|index|middle|ring|little|pinky)(_|\d|$)",
+    re.IGNORECASE,
+)
+_FINGER_LINK = re.compile(r"finger|knuckle|moving[-_](part|jaw)", re.IGNORECASE)
+_HEAD = re.compile(r"head|neck|(^|[/_])eyes?(_|$)", re.IGNORECASE)
+_SENSOR = re.compile(
+    r"camera|optical|realsense|imu|sensor|touch|marker|contact|collision|inertia|balancing",
+    re.IGNORECASE,
+)
+
+# A mount of an arm on a bigger robot (arm_base_link) is not that robot's base.
+_BASES = (
+    re.compile(r"(^|[/_])(?<!arm_)base_link$"),
+    re.compile(r"(^|[/_])link_base$"),
+    re.compile(r"[/_]link0$", re.IGNORECASE),
+)
+_TIPS = (
+    re.compile(r"(^|[/_])tool_?\d$"),
+    re.compile(r"(^|[/_])tcp$", re.IGNORECASE),
+    re.compile(r"(^|[/_])(tool_frame|gripper_center|ee_gripper_link)$", re.IGNORECASE),
+    re.compile(r"(^|[/_])flange$", re.IGNORECASE),
+    re.compile(r"(^|[/_])(ee_link|link_eef?|ee|end_link)$|end_effector", re.IGNORECASE),
+    re.compile(r"^(arm_(left_|right_)?)?tool_link$", re.IGNORECASE),
+)
+NO_RANK = max(len(_BASES), len(_TIPS))
+"""The rank of a name that follows no convention."""
+
+
+def is_finger(joint: str, child: str) -> bool:
+    """Whether the names of a joint and the link it holds tell of a gripper's finger."""
+    return _FINGER_JOINT.search(joint) is not None or _FINGER_LINK.search(child) is not None
+
+
+def is_head(joint: str) -> bool:
+    """Whether a joint's name tells that it turns a head."""
+    return _HEAD.search(joint) is not None
+
+
+def is_sensor(link: str) -> bool:
+    """Whether a link's name tells that it marks a sensor or a simulator's aid, not a tool."""
+    return _SENSOR.search(link) is not None
+
+
+def base_rank(link: str) -> int:
+    """How conventional a name is for the base of an arm: 0 best, `NO_RANK` for no such name."""
+    return _rank(link, _BASES)
+
+
+def tip_rank(link: str) -> int:
+    """How conventional a name is for the tip of an arm: tool0, tcp, tool, flange, end effector."""
+    return _rank(link, _TIPS)
+
+
+def _rank(link: str, patterns: tuple[re.Pattern[str], ...]) -> int:
+    return next((i for i, pattern in enumerate(patterns) if pattern.search(link)), NO_RANK)

@@ -1,0 +1,102 @@
+"""Where a ROS package lies, found without ROS: `$(find pkg)` and `package://pkg`.
+
+Looked for in this order: the package that holds the file, the directories that the user gave, the
+directories above the file and the siblings of its package, the ament index of a sourced workspace.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from lxml import etree
+
+__all__ = ["PackageFinder", "PackageNotFoundError"]
+
+# workspace / src / repository / group / package
+_SEARCH_DEPTH = 4
+
+
+class PackageNotFoundError(LookupError):
+    """A package that no search path holds; says where it was looked for."""
+
+    def __init__(self, name: str, searched: Sequence[str]) -> None:
+        super().__init__(f"package '{name}' not found")
+        self.name = name
+        self.searched = tuple(searched)
+
+
+@dataclass(frozen=True, slots=True)
+class PackageFinder:
+    """Finds packages for the file `start`; `found` remembers the answers."""
+
+    start: Path
+    package_paths: tuple[Path, ...] = ()
+    environment: Mapping[str, str] = field(default_factory=lambda: os.environ)
+    found: dict[str, Path] = field(default_factory=dict)
+
+    def find(self, name: str) -> Path:
+        """The absolute directory of a package (that of its package.xml, or its share directory)."""
+        if name not in self.found:
+            self.found[name] = self._search(name)
+        return self.found[name]
+
+    def _search(self, name: str) -> Path:
+        for directory in self._candidates(name):
+            return directory.resolve()
+        searched = [str(path) for path in self.package_paths]
+        searched.append(f"the directories above {self.start} and beside its package")
+        searched.append("AMENT_PREFIX_PATH")
+        raise PackageNotFoundError(name, searched)
+
+    def _candidates(self, name: str) -> Iterator[Path]:
+        above = list(self.start.resolve().parents)
+        home = next((path for path in above if (path / "package.xml").is_file()), None)
+        if home is not None and _is_package(home, name):
+            yield home
+        for path in self.package_paths:
+            yield from _inside(path, name, _SEARCH_DEPTH)
+        nearby = [*above, *(_subdirectories(home.parent) if home is not None else ())]
+        yield from (directory for directory in nearby if _is_package(directory, name))
+        for prefix in self.environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
+            index = Path(prefix, "share/ament_index/resource_index/packages", name)
+            if prefix and index.is_file():
+                yield Path(prefix, "share", name)
+
+
+def _inside(directory: Path, name: str, depth: int) -> Iterator[Path]:
+    """The package in a directory, which is the package itself or holds it some levels down."""
+    if _is_package(directory, name):
+        yield directory
+    if depth == 0 or (directory / "package.xml").is_file():
+        return  # packages do not nest
+    for child in _subdirectories(directory):
+        yield from _inside(child, name, depth - 1)
+
+
+def _is_package(directory: Path, name: str) -> bool:
+    manifest = directory / "package.xml"
+    if manifest.is_file():
+        return _manifest_name(manifest) == name
+    # Copies of a package's urdf/ folder often lack the manifest but keep the directory's name.
+    return directory.name == name and directory.is_dir()
+
+
+def _manifest_name(manifest: Path) -> str | None:
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=False)
+    try:
+        root = etree.fromstring(manifest.read_bytes(), parser)
+    except (OSError, etree.XMLSyntaxError):
+        return None
+    name = root.findtext("name")
+    return None if name is None else str(name).strip()
+
+
+def _subdirectories(directory: Path) -> list[Path]:
+    try:
+        entries = sorted(directory.iterdir())  # sorted: the same package on every machine
+    except OSError:
+        return []
+    return [entry for entry in entries if not entry.name.startswith(".") and entry.is_dir()]

@@ -1,0 +1,143 @@
+"""What xacro's exceptions mean to the person who wrote the file."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from xml.parsers.expat import ExpatError
+
+from ikgen.errors import BadDescriptionError
+from ikgen.importers.packages import PackageNotFoundError
+
+__all__ = ["explain"]
+
+
+def explain(
+    error: Exception, files: Sequence[Path], shown: Path, arguments: Mapping[str, str]
+) -> BadDescriptionError:
+    """The error to show for an exception out of an expansion.
+
+    `files` is xacro's stack of files (absolute, innermost last), `shown` the top file as the user
+    named it, `arguments` those that had a value.
+    """
+    file = files[-1] if files else shown
+    name = str(shown) if len(files) < 2 else str(file)
+    for cause in _causes(error):
+        found = _explain_one(cause, file, name, arguments)
+        if found is not None:
+            return found
+    # xacro writes "<class 'NameError'>: text text" around what an expression raised.
+    inner = getattr(error, "exc", None)
+    outer = str(error).strip()
+    message = str(inner) if inner is not None and outer.startswith("<class") else outer
+    message = message or type(error).__name__
+    macros = [macro.body.getAttribute("name") for macro in getattr(error, "macros", ())]
+    within = f" (in macro '{macros[0]}')" if macros else ""
+    return BadDescriptionError(
+        f"xacro cannot expand the file: {message}{within}",
+        file=name,
+        hint="check the expression or macro that the message names",
+    )
+
+
+def _causes(error: BaseException) -> Iterator[BaseException]:
+    """The exceptions that led to one, it first; xacro keeps them in `exc`."""
+    seen: list[BaseException] = []
+    waiting: list[BaseException | None] = [error]
+    while waiting:
+        cause = waiting.pop(0)
+        if isinstance(cause, BaseException) and cause not in seen:
+            seen.append(cause)
+            yield cause
+            waiting += [getattr(cause, "exc", None), cause.__cause__, cause.__context__]
+
+
+def _explain_one(
+    cause: BaseException, file: Path, name: str, arguments: Mapping[str, str]
+) -> BadDescriptionError | None:
+    if isinstance(cause, PackageNotFoundError):
+        line = _line_of(file, rf"(find\W+|package://){re.escape(cause.name)}\b")
+        hint = f"give --package-path DIR; looked in: {'; '.join(cause.searched)}"
+        return BadDescriptionError(str(cause), file=name, line=line, hint=hint)
+    if type(cause).__name__ == "ArgException":
+        return _missing_argument(str(cause), file, name, arguments)
+    if isinstance(cause, RuntimeError) and "missing attribute 'default'" in str(cause):
+        return _no_default(file, name)
+    if isinstance(cause, ExpatError):
+        reason = str(cause).partition(":")[0]
+        return BadDescriptionError(
+            f"not well-formed XML: {reason}",
+            file=name,
+            line=cause.lineno,
+            hint="correct the XML at this line",
+        )
+    if isinstance(cause, RecursionError):
+        return BadDescriptionError(
+            "the macros or includes never end", file=name, hint="look for one that uses itself"
+        )
+    if isinstance(cause, OSError) and cause.filename is not None:
+        return _unreadable(cause, file, name)
+    return _bad_yaml(cause)
+
+
+def _missing_argument(
+    argument: str, file: Path, name: str, arguments: Mapping[str, str]
+) -> BadDescriptionError:
+    given = ", ".join(sorted(dict(arguments))) or "none"
+    return BadDescriptionError(
+        f"the xacro argument '{argument}' has no value",
+        file=name,
+        line=_line_of(file, rf"arg\W+{re.escape(argument)}\b"),
+        hint=f"give it: --arg {argument}:=VALUE (arguments with a value so far: {given})",
+    )
+
+
+def _no_default(file: Path, name: str) -> BadDescriptionError:
+    line = _line_of(file, r"<xacro:arg\b(?![^>]*\bdefault\s*=)")
+    text = _text(file).splitlines()[line - 1] if line else ""
+    found = re.search(r"""name\s*=\s*["']([^"']*)""", text)
+    argument = found.group(1) if found else "?"
+    return BadDescriptionError(
+        f'<xacro:arg name="{argument}"> has no default, which xacro requires',
+        file=name,
+        line=line,
+        hint='write default="..." there; --arg still overrides it',
+    )
+
+
+def _unreadable(cause: OSError, file: Path, name: str) -> BadDescriptionError:
+    missing = str(cause.filename)
+    return BadDescriptionError(
+        f"cannot read '{missing}': {cause.strerror}",
+        file=name,
+        line=_line_of(file, re.escape(Path(missing).name)),
+        hint="check the path, or the arguments that it is made of",
+    )
+
+
+def _bad_yaml(cause: BaseException) -> BadDescriptionError | None:
+    mark = getattr(cause, "problem_mark", None)
+    if mark is None:
+        return None
+    problem = getattr(cause, "problem", None) or "not valid YAML"
+    return BadDescriptionError(
+        f"not valid YAML: {problem}",
+        file=str(mark.name),
+        line=mark.line + 1,
+        hint="correct the YAML at this line",
+    )
+
+
+def _text(file: Path) -> str:
+    try:
+        return file.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return ""
+
+
+def _line_of(file: Path, pattern: str) -> int | None:
+    """The first line that matches: xacro's exceptions carry none."""
+    text = _text(file)
+    found = re.search(pattern, text)
+    return text.count("\n", 0, found.start()) + 1 if found else None

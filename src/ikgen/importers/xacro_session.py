@@ -1,0 +1,106 @@
+"""One run of the xacro package, which keeps its state in module globals: set, used and put back."""
+
+from __future__ import annotations
+
+import io
+import sys
+from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from ikgen.importers.packages import PackageFinder
+
+__all__ = ["Arguments", "Session"]
+
+_PACKAGE_URL = "package://"
+_MARK = "warning: "
+
+
+class Arguments(dict[str, str]):
+    """xacro's arguments; `used` names those that the file asked for, `<xacro:arg>` included."""
+
+    def __init__(self, values: dict[str, str]) -> None:
+        super().__init__(values)
+        self.used: set[str] = set()
+
+    def __contains__(self, name: object) -> bool:
+        self.used.add(str(name))
+        return super().__contains__(name)
+
+    def __getitem__(self, name: str) -> str:
+        self.used.add(name)
+        return super().__getitem__(name)
+
+
+class Session:
+    """Context in which xacro resolves packages through a `PackageFinder`.
+
+    `files` is xacro's stack of files being read (the innermost last, also after a failure),
+    `includes` every file that it opened beside the first, `warnings` what it printed.
+    """
+
+    def __init__(self, finder: PackageFinder) -> None:
+        self._finder = finder
+        self._saved: list[tuple[Any, str, Any]] = []
+        self._output = io.StringIO()
+        self.files: list[Path] = []
+        self.includes: list[Path] = []
+        self.warnings: tuple[str, ...] = ()
+
+    def __enter__(self) -> Session:
+        import xacro
+        from xacro import substitution_args
+
+        def find(package: str) -> str:
+            return str(self._finder.find(package))
+
+        resolve = xacro.abs_filename_spec
+
+        def resolve_file(spec: str) -> str:
+            if spec.startswith(_PACKAGE_URL):
+                package, _, rest = spec.removeprefix(_PACKAGE_URL).partition("/")
+                return str(self._finder.find(package) / rest)
+            return str(resolve(spec))
+
+        self._set(substitution_args, "_eval_find", find)
+        self._set(xacro, "abs_filename_spec", resolve_file)
+        self._set(xacro, "all_includes", [])
+        self._set(xacro, "filestack", None)
+        self._set(xacro, "macrostack", None)
+        self._set(xacro, "verbosity", 1)
+        self._set(xacro, "substitution_args_context", {})
+        return self
+
+    def _set(self, owner: Any, name: str, value: Any) -> None:
+        self._saved.append((owner, name, getattr(owner, name)))
+        setattr(owner, name, value)
+
+    def process(self, top: Path, arguments: Arguments) -> str:
+        """The expanded XML text of the file `top` (absolute).
+
+        Not `xacro.process_file`: that adds a banner with the absolute path of the file.
+        """
+        import xacro
+
+        xacro.init_stacks(str(top))
+        context: dict[str, Any] = xacro.substitution_args_context
+        context["filename"] = str(top)
+        with redirect_stderr(self._output), redirect_stdout(self._output):
+            document = xacro.parse(None, str(top))
+            xacro.process_doc(document, mappings=arguments)
+        return str(document.toprettyxml(indent="  "))
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        xacro = sys.modules["xacro"]
+        self.files[:] = [Path(name) for name in xacro.filestack or () if name]
+        self.includes[:] = [Path(name) for name in xacro.all_includes]
+        printed = [line for line in self._output.getvalue().splitlines() if line.startswith(_MARK)]
+        self.warnings = tuple(f"xacro: {line[len(_MARK) :]}" for line in dict.fromkeys(printed))
+        for owner, name, value in reversed(self._saved):
+            setattr(owner, name, value)

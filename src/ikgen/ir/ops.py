@@ -1,0 +1,46 @@
+"""The closed set of operations of a Program, and what each means.
+
+| op | meaning |
+|---|---|
+| add, sub, mul, div, neg, abs, max, min | IEEE double arithmetic, in the order written |
+| sqrt | sqrt(max(x, 0)): never NaN for finite x |
+| gt | 1 if a > b else 0 |
+| and, or, not | on results of gt |
+| select | (condition, then, otherwise): both sides are finite, neither traps |
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Union
+
+__all__ = ["ARITY", "BOOLEAN", "Op", "Operand"]
+
+ARITY = {
+    "add": 2,
+    "sub": 2,
+    "mul": 2,
+    "div": 2,
+    "max": 2,
+    "min": 2,
+    "gt": 2,
+    "and": 2,
+    "or": 2,
+    "neg": 1,
+    "abs": 1,
+    "sqrt": 1,
+    "not": 1,
+    "select": 3,
+}
+BOOLEAN = frozenset({"gt", "and", "or", "not"})
+
+
+@dataclass(frozen=True, slots=True)
+class Op:
+    """An operation on operands: names, numbers or nested operations."""
+
+    op: str
+    args: tuple[Operand, ...]
+
+
+Operand = Union[str, float, Op]

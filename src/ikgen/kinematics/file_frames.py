@@ -1,0 +1,116 @@
+"""The file's own chain, written with the DH variables, and how far the exact rows are from it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ikgen.kinematics.forward import dh_forward, file_forward, pose_difference, row_constant
+from ikgen.model.chain import Chain
+from ikgen.model.dh import DHChain, DHRow
+from ikgen.model.joint_tree import Matrix
+
+__all__ = ["file_frames", "largest_deviation", "random_configurations"]
+
+_SAMPLES = 64
+_SEED = 20180513
+_SAME = 1e-14
+_CLEAN = 1e-15
+
+
+def file_frames(
+    chain: Chain,
+    rows: tuple[DHRow, ...],
+    signs: tuple[int, ...],
+    offsets: tuple[float, ...],
+    ends: tuple[Matrix, Matrix],
+) -> tuple[Matrix, ...]:
+    """The n + 1 constants F_i (4, 4) of `T = F_0 M_1(v_1) F_1 ... M_n(v_n) F_n`, as in the file.
+
+    With every axis at 0, B_i is the frame on the file's axis i nearest to DH frame i (`offsets`
+    (n,) are the DH variables there, `signs` the directions). `T = prod(B_i M_i(v_i - offset_i)
+    B_i^-1) T(0)`, the product of exponentials (Lynch and Park, Modern Robotics, section 4.1), is
+    then regrouped.
+    """
+    X_base, X_tip = ends
+    nominal = [X_base, *(row_constant(row) for row in rows[1:]), X_tip]
+    F: list[Matrix] = []
+    pending, T_axis, T_dh = np.eye(4), np.eye(4), X_base
+    for i, axis in enumerate(chain.axes):
+        T_axis = T_axis @ axis.T_prev_axis
+        if i:
+            T_dh = T_dh @ row_constant(rows[i])
+        home = _motion(rows[i].revolute, offsets[i])
+        T_dh = T_dh @ home
+        B = _nearest_frame(T_dh, T_axis, signs[i] * axis.axis, rows[i].revolute)
+        F.append(pending @ B @ _inverse(home))
+        pending = _inverse(B)
+    F.append(pending @ T_axis @ chain.T_last_tip)
+    return tuple(_read_only(_clean(f, exact)) for f, exact in zip(F, nominal, strict=True))
+
+
+def _nearest_frame(T_dh: Matrix, T_axis: Matrix, axis: Matrix, revolute: bool) -> Matrix:
+    """The frame with z exactly along the file's axis, otherwise as near to `T_dh` as it can be."""
+    z = T_axis[:3, :3] @ axis
+    z = z / np.linalg.norm(z)
+    x = T_dh[:3, 0] - z * float(z @ T_dh[:3, 0])
+    x = x / np.linalg.norm(x)
+    B = np.eye(4)
+    B[:3, 0], B[:3, 1], B[:3, 2] = x, np.cross(z, x), z
+    origin = T_dh[:3, 3]
+    if revolute:
+        origin = T_axis[:3, 3] + z * float(z @ (origin - T_axis[:3, 3]))
+    B[:3, 3] = origin
+    return B
+
+
+def largest_deviation(dh: DHChain) -> tuple[float, float]:
+    """Largest distance (m) and angle (rad) between the exact rows and the file's chain."""
+    q = random_configurations(dh)
+    return pose_difference(dh_forward(dh, q), file_forward(dh, q))
+
+
+def random_configurations(dh: DHChain, count: int = _SAMPLES, seed: int = _SEED) -> Matrix:
+    """Joint values (count, dof): revolute over a full turn, prismatic within limits or ±1 m."""
+    rng = np.random.default_rng(seed)
+    low = np.full(dh.dof, -np.pi)
+    high = np.full(dh.dof, np.pi)
+    for k, joint in enumerate(dh.joints):
+        if joint.kind != "revolute":
+            low[k], high[k] = max(joint.limits.lower, -1.0), min(joint.limits.upper, 1.0)
+            if not low[k] < high[k]:
+                low[k], high[k] = -1.0, 1.0
+    return rng.uniform(low, high, (count, dh.dof))
+
+
+def _motion(revolute: bool, value: float) -> Matrix:
+    T = np.eye(4)
+    if revolute:
+        T[0, 0] = T[1, 1] = np.cos(value)
+        T[1, 0] = np.sin(value)
+        T[0, 1] = -T[1, 0]
+    else:
+        T[2, 3] = value
+    return T
+
+
+def _inverse(T: Matrix) -> Matrix:
+    inverse = np.eye(4)
+    inverse[:3, :3] = T[:3, :3].T
+    inverse[:3, 3] = -T[:3, :3].T @ T[:3, 3]
+    return inverse
+
+
+def _clean(F: Matrix, nominal: Matrix) -> Matrix:
+    """The exact constant where `F` is that to round-off, else `F` without noise around 0 and ±1."""
+    if float(np.max(np.abs(F - nominal))) < _SAME:
+        return np.array(nominal)
+    cleaned = F.copy()
+    whole = np.round(F)
+    near = (np.abs(F - whole) < _CLEAN) & (np.abs(whole) <= 1.0)
+    cleaned[near] = whole[near]
+    return np.asarray(cleaned + 0.0)
+
+
+def _read_only(matrix: Matrix) -> Matrix:
+    matrix.setflags(write=False)
+    return matrix

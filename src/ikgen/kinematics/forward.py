@@ -1,0 +1,166 @@
+"""Forward kinematics of the chain in each of its forms, for one configuration or many.
+
+`q` is (dof,) or (..., dof), in rad and m, in the order of `joints`; poses are (4, 4) or
+(..., 4, 4).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ikgen.kinematics.snapping import exact_cos_sin
+from ikgen.model.chain import REVOLUTE, Chain
+from ikgen.model.dh import DHChain, DHRow
+from ikgen.model.joint_tree import Matrix
+
+__all__ = [
+    "DHNumbers",
+    "chain_forward",
+    "dh_forward",
+    "dh_numeric",
+    "file_forward",
+    "file_jacobian",
+    "pose_difference",
+    "row_constant",
+    "row_values",
+]
+
+
+def chain_forward(chain: Chain, q: ArrayLike) -> Matrix:
+    """`T_base_tip` of the file's chain as `Chain` defines it."""
+    values = np.asarray(q, dtype=np.float64)
+    T = np.eye(4)
+    for axis in chain.axes:
+        value = axis.multiplier * values[..., axis.driver] + axis.offset
+        T = T @ axis.T_prev_axis @ _axis_motion(axis.kind == REVOLUTE, axis.axis, value)
+    return np.asarray(T @ chain.T_last_tip)
+
+
+def dh_forward(dh: DHChain, q: ArrayLike) -> Matrix:
+    """`X_base A_1 ... A_n X_tip` of the exact DH rows."""
+    values = row_values(dh, q)
+    T = dh.X_base
+    for i, row in enumerate(dh.rows):
+        T = T @ row_constant(row) @ _z_motion(row.revolute, values[..., i])
+    return np.asarray(T @ dh.X_tip)
+
+
+def file_forward(dh: DHChain, q: ArrayLike) -> Matrix:
+    """`F_0 M_1 F_1 ... M_n F_n`: the file's own pose, from the DH variables."""
+    values = row_values(dh, q)
+    T = dh.file_frames[0]
+    for i, row in enumerate(dh.rows):
+        T = T @ _z_motion(row.revolute, values[..., i]) @ dh.file_frames[i + 1]
+    return np.asarray(T)
+
+
+def file_jacobian(dh: DHChain, q: ArrayLike) -> Matrix:
+    """Geometric Jacobian (..., 6, dof) of the file's chain at the tip's origin, in the base frame.
+
+    Rows are linear (m/rad or m/m), then angular velocity (rad/rad), the order of Pinocchio.
+    """
+    values = row_values(dh, q)
+    T = dh.file_frames[0]
+    lines = []
+    for i, row in enumerate(dh.rows):
+        lines.append((T[..., :3, 2], T[..., :3, 3]))
+        T = T @ _z_motion(row.revolute, values[..., i]) @ dh.file_frames[i + 1]
+    J = np.zeros((*values.shape[:-1], 6, dh.dof))
+    for row, (z, origin) in zip(dh.rows, lines, strict=True):
+        if row.revolute:
+            J[..., :3, row.driver] += row.scale * np.cross(z, T[..., :3, 3] - origin)
+            J[..., 3:, row.driver] += row.scale * z
+        else:
+            J[..., :3, row.driver] += row.scale * z
+    return J
+
+
+def row_values(dh: DHChain, q: ArrayLike) -> Matrix:
+    """The DH variables (..., n), offsets included, at joint values `q` (..., dof)."""
+    values = np.asarray(q, dtype=np.float64)
+    scale = np.array([row.scale for row in dh.rows])
+    offset = np.array([row.offset.value for row in dh.rows])
+    return np.asarray(scale * values[..., [row.driver for row in dh.rows]] + offset)
+
+
+def row_constant(row: DHRow) -> Matrix:
+    """`Rx(alpha) Tx(a) Rz(theta) Tz(d)` (4, 4) with the row's variable at 0."""
+    ca, sa = exact_cos_sin(row.alpha.value)
+    ct, st = exact_cos_sin(row.theta.value)
+    a, d = row.a.value, row.d.value
+    return np.array(
+        [
+            [ct, -st, 0.0, a],
+            [st * ca, ct * ca, -sa, -d * sa],
+            [st * sa, ct * sa, ca, d * ca],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class DHNumbers:
+    """The rows as arrays (n,): constants in rad and m, variable = scale * q[driver] + offset."""
+
+    alpha: Matrix
+    a: Matrix
+    d: Matrix
+    theta: Matrix
+    scale: Matrix
+    offset: Matrix
+    revolute: tuple[bool, ...]
+    driver: tuple[int, ...]
+
+
+def dh_numeric(dh: DHChain) -> DHNumbers:
+    """The numbers of `dh` as arrays, the variable's own column (theta or d) zero."""
+    rows = dh.rows
+    return DHNumbers(
+        alpha=np.array([row.alpha.value for row in rows]),
+        a=np.array([row.a.value for row in rows]),
+        d=np.array([row.d.value for row in rows]),
+        theta=np.array([row.theta.value for row in rows]),
+        scale=np.array([row.scale for row in rows]),
+        offset=np.array([row.offset.value for row in rows]),
+        revolute=tuple(row.revolute for row in rows),
+        driver=tuple(row.driver for row in rows),
+    )
+
+
+def pose_difference(T_one: Matrix, T_other: Matrix) -> tuple[float, float]:
+    """Largest distance (m) and angle (rad) between poses (..., 4, 4); small angles stay exact."""
+    distance = np.linalg.norm(T_one[..., :3, 3] - T_other[..., :3, 3], axis=-1)
+    chord = np.linalg.norm(T_one[..., :3, :3] - T_other[..., :3, :3], axis=(-2, -1))
+    angle = 2 * np.arcsin(np.minimum(1.0, chord / (2 * math.sqrt(2))))
+    return float(np.max(distance)), float(np.max(angle))
+
+
+def _z_motion(revolute: bool, value: Matrix) -> Matrix:
+    T = np.zeros((*np.shape(value), 4, 4))
+    T[..., range(4), range(4)] = 1.0
+    if revolute:
+        T[..., 0, 0] = T[..., 1, 1] = np.cos(value)
+        T[..., 1, 0] = np.sin(value)
+        T[..., 0, 1] = -T[..., 1, 0]
+    else:
+        T[..., 2, 3] = value
+    return T
+
+
+def _axis_motion(revolute: bool, axis: Matrix, value: Matrix) -> Matrix:
+    """Rotation (Rodrigues) about or translation along the unit vector `axis` (3,)."""
+    T = np.zeros((*np.shape(value), 4, 4))
+    T[..., range(4), range(4)] = 1.0
+    value = np.asarray(value)[..., None]
+    if not revolute:
+        T[..., :3, 3] = value * axis
+        return T
+    x, y, z = axis
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    sine, versine = np.sin(value)[..., None], (1.0 - np.cos(value))[..., None]
+    T[..., :3, :3] += sine * K + versine * (K @ K)
+    return T

@@ -1,0 +1,103 @@
+"""Where to put the line of a prismatic joint, of which only the direction matters.
+
+Moving the line of prismatic axis k by c changes link k - 1 by +c and link k by -c and nothing else,
+since translations commute. Each line is tried through a few points that make lengths vanish and
+stays where the fewest are left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from ikgen.kinematics.links import Link, Tolerance, orient
+from ikgen.kinematics.offsets import distribute
+from ikgen.model.joint_tree import Matrix
+
+__all__ = ["place_prismatic"]
+
+_SWEEPS = 2
+_ACROSS = np.array([1.0, 1.0, 0.0])
+
+
+def place_prismatic(
+    links: tuple[Link, ...], prismatic: tuple[bool, ...], tolerance: Tolerance
+) -> tuple[tuple[Link, ...], tuple[Matrix, ...]]:
+    """The links with prismatic lines moved, and each axis' shift (3,) in m in its own frame."""
+    shifts = [np.zeros(3) for _ in prismatic]
+    movable = [k for k, slides in enumerate(prismatic) if slides]
+    for _ in range(_SWEEPS if len(prismatic) > 1 else 0):
+        for k in movable:
+            points = [c * _ACROSS for c in _candidates(links, k)]
+            tried = [(c, _shifted(links, k, c)) for c in points]
+            costs = [_cost(moved, prismatic, tolerance) for _, moved in tried]
+            best = min(range(len(tried)), key=costs.__getitem__)
+            shifts[k] = shifts[k] + tried[best][0]
+            links = tried[best][1]
+    return links, tuple(shifts)
+
+
+def _cost(
+    links: tuple[Link, ...], prismatic: tuple[bool, ...], tolerance: Tolerance
+) -> tuple[int, int, int]:
+    shapes, _ = orient(links, False, tolerance)
+    offsets = distribute(shapes, prismatic)
+    lengths = sum(shape.a != 0.0 for shape in shapes)
+    shifts = turns = 0
+    for k, slides in enumerate(prismatic):
+        nonzero = abs(offsets.d[k]) > tolerance.length + offsets.slack[k]
+        lengths += nonzero and not slides
+        shifts += nonzero and slides
+        turns += slides and 0 < k < len(prismatic) - 1 and abs(offsets.theta[k]) > tolerance.angle
+    return lengths, shifts, turns
+
+
+def _shifted(links: tuple[Link, ...], k: int, c: Matrix) -> tuple[Link, ...]:
+    """`links` with the line of axis k moved by c (3,), given in the frame of axis k."""
+    moved = list(links)
+    around = [link.slack for link in links[max(0, k - 1) : k + 1]]
+    slack = max(around)
+    if k > 0:
+        link = links[k - 1]
+        moved[k - 1] = replace(link, p=link.p + link.R @ c, slack=slack)
+    if k < len(links):
+        link = links[k]
+        moved[k] = replace(link, p=link.p - c, slack=slack)
+    return tuple(moved)
+
+
+def _candidates(links: tuple[Link, ...], k: int) -> Iterator[Matrix]:
+    """Shifts of axis k in its frame: through the next or previous origin, both axes, or none."""
+    frames = [(np.eye(3), np.zeros(3))]
+    for link in links:
+        R, o = frames[-1]
+        frames.append((R @ link.R, o + R @ link.p))
+    R, o = frames[k]
+    if k + 1 < len(frames):
+        yield R.T @ (_origin(frames, k + 1, +1) - o)
+    if k > 0:
+        yield R.T @ (_origin(frames, k - 1, -1) - o)
+    if 0 < k < len(links):
+        (R_prev, o_prev), (R_next, o_next) = frames[k - 1], frames[k + 1]
+        columns = np.column_stack([R_prev[:, 2], R[:, 2], -R_next[:, 2]])
+        along = np.linalg.lstsq(columns, o_next - o_prev, rcond=1e-9)[0]
+        yield R.T @ (o_prev + along[0] * R_prev[:, 2] - o)
+    yield np.zeros(3)
+
+
+def _origin(frames: list[tuple[Matrix, Matrix]], k: int, step: int) -> Matrix:
+    """Point of axis k level with the common normal at the `step` end of its run of parallels."""
+    z, o = frames[k][0][:, 2], frames[k][1]
+    j = k
+    while 0 <= j + step < len(frames):
+        z_next, o_next = frames[j + step][0][:, 2], frames[j + step][1]
+        normal = np.cross(z, z_next)
+        square = float(normal @ normal)
+        if square > 1e-18:
+            along = float(np.cross(o_next - frames[j][1], z_next) @ normal) / square
+            foot = frames[j][1] + z * along
+            return np.asarray(o + z * float(z @ (foot - o)))
+        j += step
+    return o

@@ -1,0 +1,81 @@
+"""The solution graph: solved unknowns, their direct parents, and how joints follow from them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ikgen.equations.expression import Expr
+from ikgen.equations.knowledge import Knowledge, Variable
+from ikgen.solver.session import Session, Step, Tick
+
+__all__ = ["SolutionGraph", "graph_of"]
+
+
+@dataclass(frozen=True, slots=True)
+class SolutionGraph:
+    """Steps in the order solved; `parents` (variable -> direct parents, redundant ones pruned) over
+    solved unknowns and joints; the session's knowledge holds definitions of derived angles."""
+
+    steps: tuple[Step, ...]
+    parents: tuple[tuple[Variable, tuple[Variable, ...]], ...]
+    ticks: tuple[Tick, ...]
+    session: Session
+
+    @property
+    def knowledge(self) -> Knowledge:
+        """What was known at the end."""
+        return self.session.knowledge
+
+
+def _variables_in(roots: tuple[Expr, ...], knowledge: Knowledge) -> set[Variable]:
+    """Solved variables that expressions depend on, derived angles replaced by what they come from."""
+    found: set[Variable] = set()
+    seen: set[int] = set()
+    stack = list(roots)
+    while stack:
+        node = stack.pop()
+        if node.id in seen:
+            continue
+        seen.add(node.id)
+        if node.id in knowledge.binding:
+            stack.append(knowledge.binding[node.id])
+        elif node.atom is not None and node.atom.kind in ("cos", "sin"):
+            assert not isinstance(node.atom.key, str)
+            found.add(Variable("angle", node.atom.key))
+        elif node.atom is not None and node.atom.kind == "dist":
+            assert not isinstance(node.atom.key, str)
+            found.add(Variable("dist", node.atom.key))
+        stack.extend(node.args)
+    return found
+
+
+def _prune(direct: dict[Variable, set[Variable]]) -> dict[Variable, tuple[Variable, ...]]:
+    """Drop a parent that another parent depends on already (IKBT, redundancy detection)."""
+    ancestors: dict[Variable, set[Variable]] = {}
+    for child, parents in direct.items():
+        found: set[Variable] = set()
+        for p in parents:
+            found |= {p} | ancestors.get(p, set())
+        ancestors[child] = found
+    out: dict[Variable, tuple[Variable, ...]] = {}
+    for child, parents in direct.items():
+        above = set().union(*(ancestors.get(p, set()) for p in parents)) if parents else set()
+        out[child] = tuple(sorted(parents - above))
+    return out
+
+
+def graph_of(session: Session) -> SolutionGraph:
+    """The graph of a finished session."""
+    k = session.knowledge
+    direct: dict[Variable, set[Variable]] = {}
+    for step in session.steps:
+        roots = tuple(e for c in (step.candidate, *step.fallbacks) for e in c.coefficients)
+        direct[step.candidate.unknown] = _variables_in(roots, k)
+    for joint in range(session.system.dh.dof):
+        variable = session.joint_variable(joint)
+        if variable.kind == "angle" and variable not in direct:
+            pair = k.known_pair(variable.key)
+            if pair is not None:
+                direct[variable] = _variables_in(pair, k) - {variable}
+    parents = tuple(_prune(direct).items())
+    return SolutionGraph(tuple(session.steps), parents, tuple(session.ticks), session)

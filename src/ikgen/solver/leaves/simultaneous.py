@@ -1,0 +1,51 @@
+"""Simultaneous-equations leaf: two equations linear in the cosine and sine of the unknown
+(IKBT, rule-based solver 5, there for orthogonal coefficients; here for any)."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+
+import numpy as np
+
+from ikgen.equations.expression import Expr
+from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
+from ikgen.equations.matching import harmonics
+from ikgen.solver.candidate import Candidate
+
+__all__ = ["find"]
+
+MOST_EQUATIONS = 16
+"""Pairs are sought among this many equations, those with the simplest coefficients first."""
+
+
+def _weight(coefficients: tuple[Expr, Expr, Expr]) -> tuple[int, int]:
+    fixed = sum(not e.is_fixed for e in coefficients[:2])
+    return fixed, sum(e.id for e in coefficients)
+
+
+def find(
+    equations: Sequence[PolynomialEquation], unknown: Variable, knowledge: Knowledge
+) -> list[Candidate]:
+    """Pairs of linear equations in the unknown alone with a determinant that does not vanish."""
+    if unknown.kind != "angle":
+        return []
+    g = knowledge.graph
+    linear: list[tuple[tuple[Expr, Expr, Expr], PolynomialEquation]] = []
+    for e in equations:
+        if e.unknowns != (unknown,):
+            continue
+        h = harmonics(e, unknown)
+        if h is None or max(k for k, _ in h) > 1:
+            continue
+        row = (h.get((1, "c"), g.zero), h.get((1, "s"), g.zero), g.neg(h.get((0, "c"), g.zero)))
+        linear.append((row, e))
+    linear.sort(key=lambda item: _weight(item[0]))
+    out: list[Candidate] = []
+    for (one, e1), (two, e2) in itertools.combinations(linear[:MOST_EQUATIONS], 2):
+        det = one[0].probe * two[1].probe - one[1].probe * two[0].probe
+        size = one[0].scale * two[1].scale + one[1].scale * two[0].scale
+        if np.max(np.abs(det)) > 1e-9 * size:
+            sources = (*e1.sources, *e2.sources)
+            out.append(Candidate(unknown, "simultaneous", "pair", (*one, *two), sources))
+    return out

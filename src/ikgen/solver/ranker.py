@@ -1,0 +1,95 @@
+"""The ranker: which of several candidates to take (IKBT's "Ranker" node).
+
+A candidate is judged at the probes. It must reproduce the generating configurations; one whose divisor
+vanishes at a regular configuration comes last; then fewer branches, the better form, the cheaper.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.equations.expression import Expr
+from ikgen.equations.probes import Probes
+from ikgen.solver.candidate import Candidate, Judgement
+
+__all__ = ["PREFERENCE", "judge", "rank_key"]
+
+PREFERENCE = (
+    "algebraic",
+    "simultaneous",
+    "tangent",
+    "sine or cosine",
+    "sine and cosine",
+    "x2y2",
+    "quadratic",
+    "quartic",
+)
+MATCH = 1e-5
+WEAK_MARGIN = 1e-6
+"""Relative size of a divisor below which a probe counts as one where it vanishes."""
+
+
+def judge(
+    candidate: Candidate,
+    truth: tuple[NDArray[np.float64], ...],
+    probes: Probes,
+    used: set[int],
+    weight: Mapping[int, float],
+) -> Candidate | None:
+    """The candidate with its judgement, or None if it is not a solution.
+
+    `truth` is the unknown at the probes, (c, s) or (x,).
+    """
+    generic, regular = probes.generic, probes.regular
+    divisor, size = candidate.divisor()
+    relative = np.abs(divisor) / size
+    if np.median(relative[:generic]) < 1e-9:
+        return None
+    matches = np.zeros(len(divisor), dtype=bool)
+    for branch in candidate.values():
+        with np.errstate(all="ignore"):
+            error = sum(np.abs(b - t) for b, t in zip(branch, truth, strict=True))
+        matches |= error < MATCH * (1 + sum(np.abs(t) for t in truth))
+    if not matches[:generic].all():
+        return None
+    margin = float(relative[:regular].min())
+    weak = bool((~matches[:regular]).any() or margin < WEAK_MARGIN)
+    singular = relative[regular:]
+    fragile = float((singular < WEAK_MARGIN).mean()) if singular.size else 0.0
+    cost = _cost(candidate.coefficients, used, weight)
+    return replace(candidate, judgement=Judgement(weak, margin, fragile, cost))
+
+
+def _cost(roots: tuple[Expr, ...], used: set[int], weight: Mapping[int, float]) -> float:
+    """Operations not yet computed, each times the number of branches it is computed for."""
+    seen: set[int] = set()
+    total = 0.0
+    stack = list(roots)
+    while stack:
+        node = stack.pop()
+        if node.id in seen or node.id in used or not node.args or node.is_fixed:
+            continue
+        seen.add(node.id)
+        total += weight.get(node.support, 1.0) if node.op != "neg" else 0.25
+        stack.extend(node.args)
+    return total
+
+
+def rank_key(candidate: Candidate) -> tuple[object, ...]:
+    """Sort key: smaller is better."""
+    j = candidate.judgement
+    assert j is not None
+    return (
+        j.weak,
+        candidate.branches,
+        PREFERENCE.index(candidate.leaf),
+        round(j.fragile, 1),
+        candidate.branches == 1 and sum(e.squared for e in candidate.sources),
+        j.cost,
+        tuple(-k for k in candidate.unknown.key),
+        tuple(e.id for e in candidate.coefficients),
+    )

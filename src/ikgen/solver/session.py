@@ -1,0 +1,208 @@
+"""One solving session: what the tree's nodes read and write. No node knows another."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.equations.build import Equation, EquationSet
+from ikgen.equations.expression import Expr
+from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
+from ikgen.equations.probes import Probes
+from ikgen.solver.candidate import Candidate
+from ikgen.solver.leaves import Leaf
+from ikgen.solver.ranker import judge, rank_key
+
+__all__ = ["Session", "Step", "Tick"]
+
+MOST_UNKNOWNS = 2
+SAFE_MARGIN = 1e-3
+
+
+@dataclass(frozen=True, slots=True)
+class Tick:
+    """What one node did in one round: for the report, `-v` and bug reports."""
+
+    round: int
+    node: str
+    outcome: str
+    detail: str
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One solved unknown: the chosen candidate, fallbacks where its divisor vanishes at regular
+    configurations, and the candidates that the ranker rejected."""
+
+    candidate: Candidate
+    fallbacks: tuple[Candidate, ...]
+    rejected: tuple[Candidate, ...]
+
+    @property
+    def branches(self) -> int:
+        """Number of alternatives, over all its forms."""
+        return max(c.branches for c in (self.candidate, *self.fallbacks))
+
+
+@dataclass
+class Session:
+    """State of a session. `equations` are those of the current round with few unknowns."""
+
+    system: EquationSet
+    probes: Probes
+    knowledge: Knowledge
+    round: int = 0
+    equations: list[PolynomialEquation] = field(default_factory=list)
+    candidates: list[Candidate] = field(default_factory=list)
+    steps: list[Step] = field(default_factory=list)
+    ticks: list[Tick] = field(default_factory=list)
+    _used: set[int] = field(default_factory=set)
+    _weight: dict[int, float] = field(default_factory=dict)
+    _forks: list[tuple[int, float]] = field(default_factory=list)
+
+    def record(self, node: str, outcome: str, detail: str, started: float) -> None:
+        """Add a tick to the trace."""
+        spent = time.perf_counter() - started
+        self.ticks.append(Tick(self.round, node, outcome, detail, spent))
+
+    # -- targets --------------------------------------------------------------------------------
+
+    def joint_variable(self, joint: int) -> Variable:
+        """The variable of a joint."""
+        unit = self.knowledge.variables.unit(joint)
+        revolute = self.knowledge.variables.primary[joint].revolute
+        return Variable("angle" if revolute else "dist", unit)
+
+    @property
+    def open_joints(self) -> list[int]:
+        """Joints not solved yet."""
+        return [
+            j
+            for j in range(self.system.dh.dof)
+            if not self.knowledge.is_known(self.joint_variable(j))
+        ]
+
+    def truth(self, variable: Variable) -> tuple[NDArray[np.float64], ...]:
+        """The variable's generating values at the probes."""
+        value = self.probes.values @ np.array(variable.key, dtype=float)
+        return (np.cos(value), np.sin(value)) if variable.kind == "angle" else (value,)
+
+    # -- a round --------------------------------------------------------------------------------
+
+    def collect(self) -> None:
+        """The scalar equations with one or two unknowns (IKBT sorts its equations so)."""
+        self.round += 1
+        self.candidates = []
+        self._weight = {}
+        k = self.knowledge
+        out: list[PolynomialEquation] = []
+        for e in self.system.equations:
+            if not 1 <= k.unknown_rank(e.left.support | e.right.support) <= MOST_UNKNOWNS:
+                continue
+            p = k.polynomial_equation(e)
+            if p.unknowns:
+                out.append(p)
+        self.equations = out
+
+    @property
+    def unknowns(self) -> list[Variable]:
+        """Unknowns that occur in the round's equations."""
+        return sorted({v for e in self.equations for v in e.unknowns})
+
+    def try_leaf(self, leaf: Leaf) -> int:
+        """Let a leaf look at every unknown; keep what reproduces the probes. Returns how many."""
+        kept = 0
+        for unknown in self.unknowns:
+            truth = self.truth(unknown)
+            for c in leaf.find(self.equations, unknown, self.knowledge):
+                judged = judge(c, truth, self.probes, self._used, _Weights(self))
+                if judged is not None:
+                    self.candidates.append(judged)
+                    kept += 1
+        return kept
+
+    def choose(self) -> Step | None:
+        """Take the best candidate, with fallbacks where it is weak."""
+        if not self.candidates:
+            return None
+        ranked = sorted(self.candidates, key=rank_key)
+        best = ranked[0]
+        same = [c for c in ranked[1:] if c.unknown == best.unknown]
+        step = Step(best, self._fallbacks(best, same), tuple(same[:8]))
+        self._accept(step)
+        return step
+
+    def _fallbacks(self, best: Candidate, others: list[Candidate]) -> tuple[Candidate, ...]:
+        divisor, size = best.divisor()
+        uncovered = np.abs(divisor) < SAFE_MARGIN * size
+        uncovered[self.probes.regular :] = False
+        out: list[Candidate] = []
+        assert best.judgement is not None
+        while best.judgement.weak and uncovered.any() and len(out) < 3:
+            scored = []
+            for c in others:
+                d, s = c.divisor()
+                gain = int((uncovered & (np.abs(d) >= SAFE_MARGIN * s)).sum())
+                scored.append((-gain, rank_key(c), c))
+            scored.sort(key=lambda x: x[:2])
+            if not scored or scored[0][0] == 0:
+                break
+            chosen = scored[0][2]
+            d, s = chosen.divisor()
+            uncovered &= np.abs(d) < SAFE_MARGIN * s
+            out.append(chosen)
+        return tuple(out)
+
+    def _accept(self, step: Step) -> None:
+        k = self.knowledge
+        variable = step.candidate.unknown
+        self.steps.append(step)
+        for c in (step.candidate, *step.fallbacks):
+            self._mark_used(c.coefficients)
+        mask = k.known_mask
+        if variable.kind == "angle":
+            k.learn_angle(variable.key)
+        else:
+            joint = variable.joint
+            assert joint is not None
+            k.learn_distance(joint)
+        level = self._forks[-1][1] if self._forks else 1.0
+        if step.branches > 1 or not self._forks:
+            level *= step.branches
+        self._forks.append((k.known_mask & ~mask, level))
+
+    def _mark_used(self, roots: tuple[Expr, ...]) -> None:
+        stack = list(roots)
+        while stack:
+            node = stack.pop()
+            if node.id not in self._used:
+                self._used.add(node.id)
+                stack.extend(node.args)
+
+    def weight_of(self, support: int) -> float:
+        """For how many branches an expression with this support is computed."""
+        for mask, level in reversed(self._forks):
+            if support & mask:
+                return level
+        return 1.0
+
+    def describe(self, e: Equation) -> str:
+        """An equation's place, for the trace."""
+        return e.label
+
+
+class _Weights(dict[int, float]):
+    """Lazy mapping from support mask to number of branches."""
+
+    def __init__(self, session: Session) -> None:
+        super().__init__()
+        self.session = session
+
+    def get(self, support: int, default: float = 1.0) -> float:  # type: ignore[override]
+        if support not in self:
+            self[support] = self.session.weight_of(support)
+        return self[support]

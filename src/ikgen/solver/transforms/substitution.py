@@ -1,0 +1,60 @@
+"""Substitution transform: where one equation contains a multiple of another's part in an unknown, take
+it away (IKBT, transformation 2)."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+
+from ikgen.equations import polynomial as poly
+from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
+from ikgen.equations.matching import constant_ratio
+from ikgen.equations.polynomial import Polynomial
+
+__all__ = ["apply"]
+
+
+def _part(equation: PolynomialEquation, unknown: Variable) -> Polynomial:
+    out: Polynomial = {}
+    for (trigs, dist), value in equation.polynomial.items():
+        if unknown.kind == "angle":
+            inside = any(_multiple(key, unknown.key) for key, _ in trigs)
+        else:
+            inside = any(joint == unknown.joint for joint, _ in dist)
+        if inside:
+            out[trigs, dist] = value
+    return out
+
+
+def _multiple(key: tuple[int, ...], unit: tuple[int, ...]) -> bool:
+    k, u = max(map(abs, key)), max(map(abs, unit))
+    return all(a * u == b * k for a, b in zip(key, unit, strict=True))
+
+
+def apply(
+    equations: Sequence[PolynomialEquation], knowledge: Knowledge
+) -> list[PolynomialEquation]:
+    """Differences of pairs of equations from which an unknown has dropped out."""
+    g = knowledge.graph
+    out: list[PolynomialEquation] = []
+    unknowns = sorted({v for e in equations for v in e.unknowns})
+    for unknown in unknowns:
+        groups: dict[frozenset[object], list[tuple[PolynomialEquation, Polynomial]]] = {}
+        for e in equations:
+            if unknown in e.unknowns:
+                part = _part(e, unknown)
+                groups.setdefault(frozenset(part), []).append((e, part))
+        for members in groups.values():
+            for (e1, p1), (e2, p2) in itertools.combinations(members, 2):
+                ratio = constant_ratio(g, p1, p2)
+                if ratio is None or not ratio.is_fixed:
+                    continue
+                difference = poly.subtract(
+                    g, e1.polynomial, poly.scale(g, e2.polynomial, ratio)
+                )
+                left, rank = knowledge.unknowns_of(difference)
+                if left and rank < min(e1.rank, e2.rank):
+                    out.append(
+                        PolynomialEquation(difference, left, (*e1.sources, *e2.sources), rank)
+                    )
+    return out

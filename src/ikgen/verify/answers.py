@@ -1,0 +1,106 @@
+"""Puts all sampled poses to emitted code once; the checks then share the answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.verify.arm import ArmUnderTest
+from ikgen.verify.reach import unreachable_poses
+from ikgen.verify.runners.runner import Rows, Runner
+from ikgen.verify.sampling import SampleSet, generator, sample_sets
+from ikgen.verify.trials import Trial, run_trial
+
+__all__ = ["Answers", "collect_answers"]
+
+Array = NDArray[np.float64]
+
+_SINGULAR_SETS = ("singular", "near singular", "boundary", "special")
+_ORDERED = 100  # poses solved again with a random seed
+_SEARCHED = 16  # poses that are searched numerically
+_UNREACHABLE = 12  # poses of each kind out of reach
+
+
+@dataclass(frozen=True, slots=True)
+class Answers:
+    """`limited`, `unlimited`: the random poses with and without limits, unseeded; `inside`: further
+    sets with configurations inside the limits, unseeded; `outside`: a (with, without) limits pair
+    of configurations outside; `seeded`: singular sets, seeded with the generating configuration;
+    `ordered`: random poses with random `seeds`; `searched`: a slice of `unlimited`; `unreachable`:
+    poses without solution; `repeated`: some of `limited` again."""
+
+    limited: Trial
+    unlimited: Trial
+    inside: tuple[Trial, ...]
+    outside: tuple[Trial, Trial]
+    seeded: tuple[Trial, ...]
+    ordered: Trial
+    seeds: Array
+    searched: Trial
+    unreachable: tuple[Trial, ...]
+    repeated: Trial
+
+    @property
+    def reachable(self) -> tuple[Trial, ...]:
+        """All trials whose poses come from a configuration that is the sample's."""
+        return (
+            self.limited, self.unlimited, *self.inside, *self.outside, *self.seeded, self.ordered,
+        )  # fmt: skip
+
+
+def _first(sample: SampleSet, n: int) -> SampleSet:
+    return SampleSet(sample.label, sample.q[:n], sample.poses[:n], sample.regular[:n])
+
+
+def _slice(trial: Trial, n: int) -> Trial:
+    rows = trial.rows
+    some = Rows(rows.q[:n], rows.count[:n], rows.status[:n], rows.singular[:n])
+    return Trial(_first(trial.sample, n), some, trial.limits, trial.seeded)
+
+
+def _with_seeds(runner: Runner, arm: ArmUnderTest, sample: SampleSet, seeds: Array) -> Trial:
+    free = sample.q[:, list(arm.free)] if arm.free else None
+    rows = runner.solve_many(sample.poses, free=free, seeds=seeds, limits=True)
+    return Trial(sample, rows, True, True)
+
+
+def _unreachable(runner: Runner, arm: ArmUnderTest, seed: int) -> tuple[Trial, ...]:
+    rng = generator(seed, "unreachable")
+    trials = []
+    for label, poses in unreachable_poses(arm, _UNREACHABLE, rng).items():
+        held = arm.uniform(rng, len(poses))
+        sample = SampleSet(label, held, poses, np.zeros(len(poses), dtype=bool))
+        trials.append(run_trial(runner, arm, sample, limits=True))
+    return tuple(trials)
+
+
+def collect_answers(runner: Runner, arm: ArmUnderTest, samples: int, seed: int) -> Answers:
+    """Draw all sets and solve them; whatever the emitted code raises passes through."""
+    sets = sample_sets(arm, samples, seed)
+    limited = run_trial(runner, arm, sets["random"], limits=True)
+    unlimited = run_trial(runner, arm, sets["random"], limits=False)
+    some = _first(sets["random"], _ORDERED)
+    seeds = arm.uniform(generator(seed, "seeds"), len(some))
+    outside = sets["outside limits"]
+    return Answers(
+        limited=limited,
+        unlimited=unlimited,
+        inside=tuple(
+            run_trial(runner, arm, sets[label], limits=True) for label in ("at limits", "special")
+        ),
+        outside=(
+            run_trial(runner, arm, outside, limits=True),
+            run_trial(runner, arm, outside, limits=False),
+        ),
+        seeded=tuple(
+            run_trial(runner, arm, sets[label], limits=True, seeded=True)
+            for label in _SINGULAR_SETS
+        ),
+        ordered=_with_seeds(runner, arm, some, seeds),
+        seeds=seeds,
+        searched=_slice(unlimited, _SEARCHED),
+        unreachable=_unreachable(runner, arm, seed),
+        repeated=run_trial(runner, arm, _first(sets["random"], 20), limits=True),
+    )

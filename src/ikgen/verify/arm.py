@@ -1,0 +1,110 @@
+"""The arm under test as the checks see it: the oracle's kinematics, one task, limits and free
+joints."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.verify.oracle import Oracle
+from ikgen.verify.screws import ScrewChain
+from ikgen.verify.task_space import TaskSpace
+
+__all__ = ["REGULAR_SIGMA", "ArmUnderTest", "arm_under_test"]
+
+Array = NDArray[np.float64]
+
+REGULAR_SIGMA = 1e-3
+"""Smallest singular value of the length-scaled task Jacobian above which a configuration is
+regular."""
+
+_UNBOUNDED_SLIDE = 1.0  # m: range sampled of a prismatic joint without limits
+
+
+@dataclass(frozen=True, slots=True)
+class ArmUnderTest:
+    """`lower`, `upper` (dof,): limits in rad or m; `low`, `high`: the part of them that is sampled
+    (at most one turn); `free`: indices of held joints; `active`: the others; `length` (m) scales
+    metres against radians: the largest distance of the tip from the base that a random sample
+    reached."""
+
+    oracle: Oracle
+    task: TaskSpace
+    lower: Array
+    upper: Array
+    low: Array
+    high: Array
+    free: tuple[int, ...]
+    active: tuple[int, ...]
+    revolute: NDArray[np.bool_]
+    screws: ScrewChain
+    length: float
+
+    @property
+    def dof(self) -> int:
+        """Number of actuated joints."""
+        return len(self.lower)
+
+    def scaled_jacobian(self, q: Array) -> tuple[Array, Array]:
+        """Tip poses (N, 4, 4) and the dimensionless task Jacobian (N, m, active joints)."""
+        T, J = self.screws.forward_and_jacobian(q)
+        J[:, :3] /= self.length
+        J *= np.where(self.revolute, 1.0, self.length)
+        return T, self.task.jacobian(T, J)[:, :, list(self.active)]
+
+    def sigma(self, q: Array) -> Array:
+        """Smallest singular value (N,) of the scaled task Jacobian: 0 where the arm is singular."""
+        if not len(q) or not self.active:
+            return np.ones(len(q))
+        values = np.linalg.svd(self.scaled_jacobian(q)[1], compute_uv=False)
+        return np.asarray(values[:, min(self.task.rank, len(self.active)) - 1])
+
+    def difference(self, a: Array, b: Array) -> Array:
+        """Joint-wise a - b, revolute joints modulo whole turns."""
+        d = a - b
+        turned = np.remainder(d + np.pi, 2 * np.pi) - np.pi
+        return np.asarray(np.where(self.revolute, turned, d))
+
+    def distance(self, a: Array, b: Array) -> Array:
+        """Largest joint-wise difference (rad or m) over the last axis, modulo whole turns."""
+        return np.asarray(np.max(np.abs(self.difference(a, b)), axis=-1, initial=0.0))
+
+    def within(self, q: Array, tolerance: float = 0.0) -> NDArray[np.bool_]:
+        """Which configurations (N,) lie inside the limits."""
+        inside = (q >= self.lower - tolerance) & (q <= self.upper + tolerance)
+        return np.asarray(np.all(inside, axis=-1))
+
+    def uniform(self, rng: np.random.Generator, n: int, *, limits: bool = True) -> Array:
+        """Random configurations (n, dof); without limits revolute joints take the whole turn."""
+        whole = self.revolute & (not limits)
+        low, high = np.where(whole, -np.pi, self.low), np.where(whole, np.pi, self.high)
+        return np.asarray(rng.uniform(low, high, size=(n, self.dof)))
+
+
+def _sampled_range(lower: Array, upper: Array, revolute: NDArray[np.bool_]) -> tuple[Array, Array]:
+    """The part of the limits to sample: one turn about the value nearest to 0, or 1 m to each
+    side."""
+    half = np.where(revolute, np.pi, _UNBOUNDED_SLIDE)
+    unbounded = np.isinf(lower) | np.isinf(upper)
+    wide = unbounded | (revolute & (upper - lower > 2 * np.pi))
+    centre = np.clip(0.0, lower + half, np.maximum(upper - half, lower + half))
+    return np.where(wide, centre - half, lower), np.where(wide, centre + half, upper)
+
+
+def arm_under_test(
+    oracle: Oracle, task: TaskSpace, limits: tuple[Array, Array], free_joints: tuple[str, ...]
+) -> ArmUnderTest:
+    """Gather what the checks need; `limits` are (lower, upper), each (dof,), in rad or m."""
+    lower, upper = (np.asarray(bound, dtype=float) for bound in limits)
+    screws, revolute = oracle.screws, oracle.revolute
+    low, high = _sampled_range(lower, upper, revolute)
+    free = tuple(oracle.joint_names.index(name) for name in free_joints)
+    active = tuple(i for i in range(oracle.dof) if i not in free)
+    probe = np.random.default_rng(0).uniform(low, high, size=(64, oracle.dof))
+    tips = screws.forward(probe)[:, :3, 3]
+    length = max(float(np.max(np.linalg.norm(tips, axis=1))), 1e-3)
+    return ArmUnderTest(
+        oracle, task, lower, upper, low, high, free, active, revolute, screws, length
+    )

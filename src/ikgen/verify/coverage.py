@@ -1,0 +1,154 @@
+"""Checks on what must be among the answers: nothing missing, nothing dropped, the right status."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.verify.arm import REGULAR_SIGMA, ArmUnderTest
+from ikgen.verify.checks import LIMIT_TOLERANCE
+from ikgen.verify.report import CheckResult
+from ikgen.verify.search import find_solutions
+from ikgen.verify.trials import Trial, nearest, result, spell
+
+__all__ = [
+    "check_completeness", "check_exhaustive", "check_limit_choice", "check_singular_answers",
+    "check_status", "check_unreachable",
+]  # fmt: skip
+
+Array = NDArray[np.float64]
+
+FOUND_TOLERANCE = 1e-6  # rad or m: how close a row must come to a known solution
+
+
+def check_completeness(arm: ArmUnderTest, trials: Sequence[Trial]) -> CheckResult:
+    """At regular poses the generating configuration is among the rows, modulo whole turns."""
+    count = failures = 0
+    worst, case = 0.0, ""
+    for trial in trials:
+        regular = np.flatnonzero(trial.sample.regular)
+        if not len(regular):
+            continue
+        q = trial.sample.q[regular]
+        off = nearest(arm, q[:, None], trial.rows.q[regular])[:, 0]
+        count, failures = count + len(q), failures + int(np.sum(off > FOUND_TOLERANCE))
+        if off.max() > worst:
+            k = int(np.argmax(off))
+            worst, i = float(off[k]), regular[k]
+            rows = trial.rows.q[i, : trial.rows.count[i]]
+            case = spell(trial.sample.label, i, q=q[k], rows=rows)
+    if not count:
+        return result("completeness", 0, 1, detail="no sampled configuration is regular")
+    return result("completeness", count, failures, (("off rad or m", worst),), worst_case=case)
+
+
+def check_exhaustive(
+    arm: ArmUnderTest, trial: Trial, starts: int, rng: np.random.Generator
+) -> CheckResult:
+    """Every regular solution that a numerical search finds is among the rows (`limits=False`)."""
+    sample = trial.sample
+    found = find_solutions(arm, sample.poses, sample.q, starts, rng)
+    count = failures = 0
+    case = ""
+    for i, q in enumerate(found):
+        known: list[Array] = []
+        for candidate in q[arm.sigma(q) > REGULAR_SIGMA]:
+            if all(arm.distance(candidate, other) > FOUND_TOLERANCE for other in known):
+                known.append(candidate)
+        if not known:
+            continue
+        solutions = np.array(known)
+        off = nearest(arm, solutions[None], trial.rows.q[i : i + 1])[0]
+        missed = off > FOUND_TOLERANCE
+        count, failures = count + len(solutions), failures + int(missed.sum())
+        if missed.any() and not case:
+            case = spell(sample.label, i, missed=solutions[missed], pose=sample.poses[i])
+    detail = f"{len(found)} poses, {starts} starts each"
+    return result("exhaustive search", count, failures, detail=detail, worst_case=case)
+
+
+def check_singular_answers(arm: ArmUnderTest, trials: Sequence[Trial]) -> CheckResult:
+    """At and near singular poses, seeded with the generating configuration, at least one row
+    comes."""
+    count = failures = 0
+    case, off = "", [np.inf]
+    for trial in trials:
+        empty = trial.rows.count == 0
+        count, failures = count + len(trial.rows), failures + int(empty.sum())
+        gap = nearest(arm, trial.sample.q[:, None], trial.rows.q)[:, 0]
+        off = [*off, *gap[~empty]]
+        if empty.any() and not case:
+            i = int(np.argmax(empty))
+            case = spell(trial.sample.label, i, q=trial.sample.q[i], pose=trial.sample.poses[i])
+    near = int(np.sum(np.array(off) < 1e-3))
+    detail = f"seed itself among the rows (to 1e-3) in {near} of {count}"
+    return result("singular poses", count, failures, detail=detail, worst_case=case)
+
+
+def _bring_inside(arm: ArmUnderTest, q: Array, margin: float) -> NDArray[np.bool_]:
+    """Which rows (…, dof) some whole turns bring inside the limits by more than `margin`."""
+    low, high = arm.lower + margin, arm.upper - margin
+    turns = np.ceil((np.where(np.isfinite(low), low, q) - q) / (2 * np.pi))
+    turned = np.where(arm.revolute, q + 2 * np.pi * turns, q)
+    return np.asarray(np.all((turned >= low) & (turned <= high), axis=-1))
+
+
+def check_limit_choice(arm: ArmUnderTest, limited: Trial, unlimited: Trial) -> CheckResult:
+    """Rows with limits are those without that whole turns bring inside; the same poses, two
+    answers.
+
+    Poses with rows on a continuum are left out: the free value there may be chosen differently.
+    """
+    plain = ~(np.any(limited.rows.singular, axis=1) | np.any(unlimited.rows.singular, axis=1))
+    a, b = limited.rows.q[plain], unlimited.rows.q[plain]
+    extra = limited.rows.mask[plain] & (nearest(arm, a, b) > FOUND_TOLERANCE)
+    expected = unlimited.rows.mask[plain] & _bring_inside(arm, b, LIMIT_TOLERANCE)
+    dropped = expected & (nearest(arm, b, a) > FOUND_TOLERANCE)
+    count = int(limited.rows.mask[plain].sum() + expected.sum())
+    case = ""
+    for name, wrong, rows in (("dropped", dropped, b), ("not without limits", extra, a)):
+        if wrong.any():
+            k = int(np.argmax(wrong.any(axis=1)))
+            case = spell(f"{limited.sample.label}, {name}", k, rows=rows[k][wrong[k]])
+    return result("choice by limits", count, int(extra.sum() + dropped.sum()), worst_case=case)
+
+
+def check_status(arm: ArmUnderTest, pairs: Sequence[tuple[Trial, Trial]]) -> CheckResult:
+    """OK goes with rows, LIMITS with rows that only `limits=False` returns; pairs are (with,
+    without).
+
+    All poses are reachable, so no other status is right where `limits=False` returns rows.
+    """
+    count = failures = 0
+    case = ""
+    for limited, unlimited in pairs:
+        for i, status in enumerate(limited.rows.status):
+            other = bool(unlimited.rows.count[i])
+            expected = "OK" if limited.rows.count[i] else "LIMITS" if other else "UNREACHABLE"
+            fits = status == expected and unlimited.rows.status[i] == (
+                "OK" if other else "UNREACHABLE"
+            )
+            failures += not fits
+            if not fits and not case:
+                case = spell(f"{limited.sample.label}, {status}", i, pose=limited.sample.poses[i])
+        count += len(limited.rows)
+    return result("status", count, failures, worst_case=case)
+
+
+def check_unreachable(arm: ArmUnderTest, trials: Sequence[Trial]) -> CheckResult:
+    """Poses out of reach get no row and say so; LIMITS is right too where a slide might go
+    further."""
+    allowed = {"UNREACHABLE"} if np.all(arm.revolute) else {"UNREACHABLE", "LIMITS"}
+    count = failures = 0
+    case = ""
+    for trial in trials:
+        for i, status in enumerate(trial.rows.status):
+            wrong = bool(trial.rows.count[i]) or status not in allowed
+            failures += wrong
+            if wrong and not case:
+                case = spell(f"{trial.sample.label}, {status}", i, pose=trial.sample.poses[i])
+        count += len(trial.rows)
+    detail = "" if count else "not applicable: this task has no pose that is surely out of reach"
+    return result("unreachable poses", count, failures, detail=detail, worst_case=case)

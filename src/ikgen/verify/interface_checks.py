@@ -1,0 +1,144 @@
+"""Checks on the functions around `solve`: constants, kinematics, batch, repeatability, bad
+input."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.verify.arm import ArmUnderTest
+from ikgen.verify.reach import invalid_poses
+from ikgen.verify.report import CheckResult
+from ikgen.verify.runners.runner import Rows, Runner
+from ikgen.verify.sampling import SampleSet
+from ikgen.verify.trials import Trial, nearest, result, spell
+
+__all__ = [
+    "check_batch", "check_constants", "check_determinism", "check_forward", "check_invalid",
+    "check_jacobian", "check_shapes",
+]  # fmt: skip
+
+Array = NDArray[np.float64]
+
+SAME_TOLERANCE = 1e-9  # m, rad: two functions that compute the same
+
+
+def _same_bounds(a: Array, b: Array) -> bool:
+    """Whether two bounds agree to 1e-9 where the file states one (NaN: it does not)."""
+    known = ~np.isnan(b)
+    return bool(np.all(np.isclose(a[known], b[known], rtol=1e-9, atol=1e-9)))
+
+
+def check_constants(arm: ArmUnderTest, runner: Runner, rows: Rows) -> CheckResult:
+    """The module's constants are the description's, and MAX_SOLUTIONS holds for the `rows` seen."""
+    constants, oracle = runner.constants, arm.oracle
+    right = {
+        "joint names": constants.joint_names == oracle.joint_names,
+        "links": (constants.base_link, constants.tip_link) == (oracle.base_link, oracle.tip_link),
+        "task": constants.task == arm.task.name,
+        "free joints": constants.free_indices == list(arm.free),
+        "shape of limits": constants.lower.shape == constants.upper.shape == (oracle.dof,),
+        "most solutions": int(np.max(rows.count, initial=0)) <= constants.max_solutions,
+    }
+    if right["shape of limits"]:
+        for name, ours, files in (
+            ("lower limits", constants.lower, oracle.lower),
+            ("upper limits", constants.upper, oracle.upper),
+        ):
+            right[name] = _same_bounds(ours, files) and _same_bounds(
+                ours, arm.lower if name == "lower limits" else arm.upper
+            )
+    wrong = [name for name, fits in right.items() if not fits]
+    return result("constants", len(right), len(wrong), detail=", ".join(wrong))
+
+
+def _compare(name: str, ours: Array, true: Array, sample: SampleSet) -> CheckResult:
+    if ours.shape != true.shape:
+        detail = f"shape {ours.shape} instead of {true.shape}"
+        return result(name, len(true), len(true), detail=detail)
+    error = np.abs(ours - true).reshape(len(true), -1).max(axis=1, initial=0.0)
+    error = np.where(np.isnan(error), np.inf, error)
+    k = int(np.argmax(error))
+    case = spell(sample.label, k, q=sample.q[k])
+    worst = (("largest entry", float(error[k])),)
+    return result(name, len(true), int(np.sum(error > SAME_TOLERANCE)), worst, worst_case=case)
+
+
+def check_forward(arm: ArmUnderTest, runner: Runner, sample: SampleSet) -> CheckResult:
+    """`forward` equals the oracle, entry by entry (m and 1)."""
+    return _compare("forward", runner.forward(sample.q), sample.poses, sample)
+
+
+def check_jacobian(arm: ArmUnderTest, runner: Runner, sample: SampleSet) -> CheckResult:
+    """`jacobian` equals the oracle's, entry by entry (m/s and rad/s per unit joint speed)."""
+    return _compare("jacobian", runner.jacobian(sample.q), arm.oracle.jacobian(sample.q), sample)
+
+
+def check_batch(arm: ArmUnderTest, runner: Runner, sample: SampleSet) -> CheckResult:
+    """`solve_batch` returns the same rows and status as `solve`, free joints at their defaults."""
+    name, batch = "solve_batch", runner.solve_batch(sample.poses)
+    if batch is None:
+        return result(name, 0, 0, detail=f"{runner.label} has none")
+    single = runner.solve_many(sample.poses)
+    if batch.q.ndim != 3 or batch.q.shape[::2] != single.q.shape[::2]:
+        return result(name, len(single), len(single), detail=f"shape of q {batch.q.shape}")
+    beyond = np.isnan(batch.q).any(axis=2) != ~batch.mask
+    there = np.where(batch.mask, nearest(arm, batch.q, single.q), 0.0).max(axis=1, initial=0.0)
+    back = np.where(single.mask, nearest(arm, single.q, batch.q), 0.0).max(axis=1, initial=0.0)
+    wrong = (np.maximum(there, back) > SAME_TOLERANCE) | (batch.count != single.count)
+    wrong |= beyond.any(axis=1)
+    wrong |= np.array([a != b for a, b in zip(batch.status, single.status, strict=True)])
+    case = ""
+    if wrong.any():
+        i = int(np.argmax(wrong))
+        case = spell(sample.label, i, batch=batch.q[i], single=single.q[i])
+    return result(name, len(single), int(wrong.sum()), worst_case=case)
+
+
+def check_determinism(first: Trial, second: Trial) -> CheckResult:
+    """The same poses twice give the same bits (`second` may cover the first poses only)."""
+    n = len(second.rows)
+    same = [
+        np.array_equal(a, b) for a, b in zip(list(first.rows)[:n], list(second.rows), strict=True)
+    ]
+    return result("determinism", n, n - sum(same))
+
+
+def check_invalid(arm: ArmUnderTest, runner: Runner, pose: Array) -> CheckResult:
+    """NaN, infinities and what is no rotation are INVALID, without rows and without an
+    exception."""
+    wrong = []
+    cases = invalid_poses(arm.task, pose)
+    for label, bad in cases.items():
+        try:
+            q, status, _ = runner.solve(bad)
+        except Exception as error:
+            wrong.append(f"{label}: raises {type(error).__name__}")
+            continue
+        if len(q) or status != "INVALID":
+            wrong.append(f"{label}: {status}, {len(q)} rows")
+    return result("invalid poses", len(cases), len(wrong), detail="; ".join(wrong))
+
+
+def check_shapes(runner: Runner, pose: Array) -> CheckResult:
+    """Inputs of a wrong shape raise `ValueError`, where the language lets them through at all."""
+    if not runner.dynamic_shapes:
+        return result("bad shapes", 0, 0, detail=f"the types of {runner.label} exclude them")
+    dof, wrong = runner.constants.dof, []
+    attempts: dict[str, Callable[[], object]] = {
+        "pose (3, 3)": lambda: runner.solve(np.eye(3)),
+        "pose (16,)": lambda: runner.solve(pose.reshape(16)),
+        "seed too long": lambda: runner.solve(pose, seed=np.zeros(dof + 1)),
+        "forward of q too long": lambda: runner.forward(np.zeros((1, dof + 1))),
+    }
+    for label, attempt in attempts.items():
+        try:
+            attempt()
+            wrong.append(f"{label}: no error")
+        except ValueError:
+            pass
+        except Exception as error:
+            wrong.append(f"{label}: {type(error).__name__}")
+    return result("bad shapes", len(attempts), len(wrong), detail="; ".join(wrong))

@@ -1,0 +1,133 @@
+"""Runs an emitted Python module, loaded from its file."""
+
+from __future__ import annotations
+
+import importlib.util
+import itertools
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.errors import BadDescriptionError
+from ikgen.verify.runners.runner import ArmConstants, Rows
+
+__all__ = ["PythonModule"]
+
+Array = NDArray[np.float64]
+
+_NAMES = (
+    "JOINT_NAMES", "LOWER", "UPPER", "BASE_LINK", "TIP_LINK", "DOF", "MAX_SOLUTIONS", "TASK",
+    "FREE_JOINTS", "SOURCE_SHA256", "GENERATOR_VERSION", "Status", "Solutions", "forward",
+    "jacobian", "solve", "solve_batch",
+)  # fmt: skip
+_serial = itertools.count()
+
+
+def _load(path: Path) -> ModuleType:
+    """Execute the file as a module of a name of its own; errors name the file."""
+    name = f"_ikgen_verified_{next(_serial)}_{path.stem}"
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None or not path.is_file():
+        raise BadDescriptionError("no such Python module", file=str(path))
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module  # dataclasses look their module up here
+    writes, sys.dont_write_bytecode = sys.dont_write_bytecode, True
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        what = f"{type(error).__name__}: {error}"
+        raise BadDescriptionError(f"cannot be imported: {what}", file=str(path)) from error
+    finally:
+        sys.dont_write_bytecode = writes
+        sys.modules.pop(name, None)
+    return module
+
+
+class PythonModule:
+    """A `Runner` over an emitted `<name>_ik.py`.
+
+    Raises `BadDescriptionError` where the file cannot be imported or lacks a name of the contract.
+    """
+
+    label = "python"
+    dynamic_shapes = True
+
+    def __init__(self, path: Path | str) -> None:
+        self.path = Path(path)
+        self.module = _load(self.path)
+        missing = [name for name in _NAMES if not hasattr(self.module, name)]
+        if missing:
+            raise BadDescriptionError(
+                f"not an emitted module: lacks {', '.join(missing)}",
+                file=str(path),
+                hint="generate it again with ikgen from-urdf or ikgen build",
+            )
+        m = self.module
+        self._constants = ArmConstants(
+            tuple(m.JOINT_NAMES), np.asarray(m.LOWER, float), np.asarray(m.UPPER, float),
+            m.BASE_LINK, m.TIP_LINK, int(m.MAX_SOLUTIONS), m.TASK, tuple(m.FREE_JOINTS),
+        )  # fmt: skip
+
+    @property
+    def constants(self) -> ArmConstants:
+        """The module's constants."""
+        return self._constants
+
+    def solve(
+        self,
+        pose: Array,
+        free: Array | None = None,
+        seed: Array | None = None,
+        limits: bool = True,
+    ) -> tuple[Array, str, NDArray[np.bool_]]:
+        """Rows (k, dof), status and singular flags (k,) for one pose (4, 4)."""
+        found = self.module.solve(pose, free=free, seed=seed, limits=limits)
+        q = np.asarray(found.q, dtype=float).reshape(-1, self._constants.dof)
+        return q, found.status.name, np.asarray(found.singular, dtype=bool).reshape(len(q))
+
+    def solve_many(
+        self,
+        poses: Array,
+        *,
+        free: Array | None = None,
+        seeds: Array | None = None,
+        limits: bool = True,
+    ) -> Rows:
+        """`solve` for each of the poses (N, 4, 4) with free values (N, f) and seeds (N, dof)."""
+        answers = [
+            self.solve(
+                pose,
+                None if free is None else free[i],
+                None if seeds is None else seeds[i],
+                limits,
+            )
+            for i, pose in enumerate(poses)
+        ]
+        return self._rows(answers)
+
+    def _rows(self, answers: list[tuple[Array, str, NDArray[np.bool_]]]) -> Rows:
+        width = max([self._constants.max_solutions, *(len(q) for q, _, _ in answers)])
+        q = np.full((len(answers), width, self._constants.dof), np.nan)
+        singular = np.zeros((len(answers), width), dtype=bool)
+        for i, (rows, _, flags) in enumerate(answers):
+            q[i, : len(rows)], singular[i, : len(rows)] = rows, flags
+        count = np.array([len(rows) for rows, _, _ in answers], dtype=np.int64)
+        return Rows(q, count, tuple(status for _, status, _ in answers), singular)
+
+    def solve_batch(self, poses: Array, limits: bool = True) -> Rows | None:
+        """The module's `solve_batch`, with its defaults for free joints; flags are all false."""
+        q, count, status = self.module.solve_batch(poses, limits=limits)
+        q = np.asarray(q, dtype=float)
+        names = tuple(getattr(s, "name", None) or self.module.Status(s).name for s in status)
+        return Rows(q, np.asarray(count, dtype=np.int64), names, np.zeros(q.shape[:2], dtype=bool))
+
+    def forward(self, q: Array) -> Array:
+        """Poses (N, 4, 4) for q (N, dof)."""
+        return np.asarray(self.module.forward(q), dtype=float)
+
+    def jacobian(self, q: Array) -> Array:
+        """Jacobians (N, 6, dof) for q (N, dof), one call each."""
+        return np.array([self.module.jacobian(row) for row in q], dtype=float)

@@ -1,0 +1,105 @@
+"""What the checks need of emitted code, whatever its language."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["ArmConstants", "Rows", "Runner"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class ArmConstants:
+    """The constants of an emitted module (`docs`: JOINT_NAMES, LOWER, ...); limits in rad or m."""
+
+    joint_names: tuple[str, ...]
+    lower: Array
+    upper: Array
+    base_link: str
+    tip_link: str
+    max_solutions: int
+    task: str = "pose"
+    free_joints: tuple[str, ...] = ()
+
+    @property
+    def dof(self) -> int:
+        """Number of actuated joints."""
+        return len(self.joint_names)
+
+    @property
+    def free_indices(self) -> list[int]:
+        """Where the free joints stand among the actuated ones."""
+        return [self.joint_names.index(name) for name in self.free_joints]
+
+
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """Answers for N poses. `q` (N, M, dof) in rad or m, NaN beyond `count` (N,); `status`: N names
+    (OK, UNREACHABLE, LIMITS, INVALID); `singular` (N, M)."""
+
+    q: Array
+    count: NDArray[np.int64]
+    status: tuple[str, ...]
+    singular: NDArray[np.bool_]
+
+    def __len__(self) -> int:
+        return len(self.count)
+
+    def __iter__(self) -> Iterator[Array]:
+        return (rows[:count] for rows, count in zip(self.q, self.count, strict=True))
+
+    @property
+    def mask(self) -> NDArray[np.bool_]:
+        """(N, M): which entries are rows."""
+        return np.asarray(np.arange(self.q.shape[1]) < self.count[:, None])
+
+    def flat(self) -> tuple[NDArray[np.int64], Array, NDArray[np.bool_]]:
+        """All rows in a line: index of the pose (K,), q (K, dof), singular (K,)."""
+        mask = self.mask
+        return np.nonzero(mask)[0], self.q[mask], self.singular[mask]
+
+
+class Runner(Protocol):
+    """Emitted code that can be run. `label` is its language; `dynamic_shapes` says whether a
+    wrongly shaped pose can be handed over at all (and must raise `ValueError`)."""
+
+    label: str
+    dynamic_shapes: bool
+
+    @property
+    def constants(self) -> ArmConstants:
+        """The module's constants."""
+
+    def solve(
+        self,
+        pose: Array,
+        free: Array | None = None,
+        seed: Array | None = None,
+        limits: bool = True,
+    ) -> tuple[Array, str, NDArray[np.bool_]]:
+        """Rows (k, dof), status and singular flags (k,) for one pose (4, 4)."""
+
+    def solve_many(
+        self,
+        poses: Array,
+        *,
+        free: Array | None = None,
+        seeds: Array | None = None,
+        limits: bool = True,
+    ) -> Rows:
+        """`solve` for each of the poses (N, 4, 4) with free values (N, f) and seeds (N, dof)."""
+
+    def solve_batch(self, poses: Array, limits: bool = True) -> Rows | None:
+        """The module's own batch function, flags all false; None where the language has none."""
+
+    def forward(self, q: Array) -> Array:
+        """Poses (N, 4, 4) for q (N, dof)."""
+
+    def jacobian(self, q: Array) -> Array:
+        """Jacobians (N, 6, dof) for q (N, dof)."""

@@ -1,0 +1,58 @@
+"""Reports: what passes, what is rendered, and their JUnit XML."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+from junitparser import JUnitXml
+
+from ikgen.verify.junit import write_junit_xml
+from ikgen.verify.report import CheckResult, VerificationReport
+
+GOOD = CheckResult("closure", True, 800, worst=(("position m", 1e-15), ("rotation rad", 2e-15)))
+IDLE = CheckResult("free joints", True, 0, detail="no joint is held free")
+BAD = CheckResult(
+    "completeness", False, 100, 3, (("off rad or m", math.inf),), "so & <so>\x1b",
+    "random #7: q = [0]",
+)  # fmt: skip
+
+
+def report(*checks: CheckResult, label: str = "python") -> VerificationReport:
+    """A report with these checks."""
+    return VerificationReport(label, "b", "t", "pose", 100, 0, checks, ((4, 25), (8, 75)))
+
+
+def test_verdict() -> None:
+    assert report(GOOD, IDLE).passed
+    assert not report(GOOD, BAD).passed
+    assert not report().passed
+    assert report(GOOD, BAD).failed == (BAD,)
+    with pytest.raises(KeyError):
+        report(GOOD).check("determinism")
+
+
+def test_numbers_and_text() -> None:
+    both = report(GOOD, BAD)
+    assert both.worst_closure == (1e-15, 2e-15)
+    assert both.solutions == (4, 7.0, 8)
+    assert "3 of 100 wrong" in both.worst_case and "random #7" in both.worst_case
+    assert both.table()[1][:3] == ("completeness", "FAILED", "100")
+    data = both.to_dict()
+    assert data["checks"][1]["worst"] == {"off rad or m": None}
+    assert data["passed"] is False and "seconds" not in data
+
+
+def test_junit(tmp_path: Path) -> None:
+    path = tmp_path / "out.xml"
+    write_junit_xml(path, [("ur5e", report(GOOD, IDLE, BAD)), ("ur5e", report(GOOD, label="cpp"))])
+    suites = JUnitXml.fromfile(str(path))
+    assert [suite.name for suite in suites] == ["ur5e.python", "ur5e.cpp"]
+    assert (suites.tests, suites.failures, suites.skipped) == (4, 1, 1)
+    first, *_ = suites
+    cases = {case.name: case for case in first}
+    assert cases["closure"].is_passed and cases["free joints"].is_skipped
+    assert cases["completeness"].is_failure
+    assert "3 of 100" in cases["completeness"].result[0].message
+    assert "random #7" in cases["completeness"].result[0].text
