@@ -142,6 +142,14 @@ def test_errors_in_an_included_file_name_that_file(file):
         load_tree(file)
 
 
+def test_errors_in_an_included_macro_name_the_line_of_its_expression(file):
+    write(file, '<xacro:include filename="part.xacro"/>', "<xacro:m/>")
+    body = '<xacro:macro name="m" params="">\n<link name="${width + 1}"/>\n</xacro:macro>'
+    (file.parent / "part.xacro").write_text(OPEN + body + "</robot>")
+    with pytest.raises(BadDescriptionError, match=r"part\.xacro:3: .*'width' is not defined"):
+        load_tree(file)
+
+
 def test_bad_yaml_names_its_line(file):
     write(file, "<link name=\"${xacro.load_yaml('bad.yaml')}\"/>")
     (file.parent / "bad.yaml").write_text("a: 1\nb: [1,\n")

@@ -229,7 +229,10 @@ DEFECTS: dict[str, tuple[str, tuple[tuple[str, str], ...]]] = {
     ),
     "singular pose without answer": (
         "singular poses",
-        (("                q4 = math", "                if flat: continue\n                q4 = math"),),
+        (
+            ("                flat = s5 < 1e-10\n", "                if s5 < 1e-10: continue\n"),
+            ("flat", "0"),
+        ),
     ),
     "singular row not flagged": (
         "singular flags",

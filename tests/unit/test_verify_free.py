@@ -15,7 +15,7 @@ _LINK = """<joint name="j{i}" type="continuous"><parent link="l{before}"/><child
 <origin xyz="{x} 0 0"/><axis xyz="0 0 1"/></joint><link name="l{i}"/>"""
 URDF = (
     '<robot name="p"><link name="l0"/>'
-    + "".join(_LINK.format(i=i, before=i - 1, x=x) for i, x in ((1, 0), (2, 0.5), (3, 0.3)))
+    + "".join(_LINK.format(i=i, before=i - 1, x=x) for i, x in ((1, 0), (2, 0.6), (3, 0.3)))
     + '<joint name="end" type="fixed"><parent link="l3"/><child link="tip"/>'
     '<origin xyz="0.2 0 0"/></joint><link name="tip"/></robot>'
 )
@@ -47,14 +47,14 @@ def forward(q):
     T[..., 0, 0] = T[..., 1, 1] = c[..., 2]
     T[..., 1, 0], T[..., 0, 1] = s[..., 2], -s[..., 2]
     T[..., 2, 2] = T[..., 3, 3] = 1
-    T[..., 0, 3], T[..., 1, 3] = c @ [0.5, 0.3, 0.2], s @ [0.5, 0.3, 0.2]
+    T[..., 0, 3], T[..., 1, 3] = c @ [0.6, 0.3, 0.2], s @ [0.6, 0.3, 0.2]
     return T
 
 def jacobian(q):
     a, J = np.cumsum(q), np.zeros((6, 3))
     for k in range(3):
-        J[0, k] = -np.dot(np.sin(a), [0.5, 0.3, 0.2]) + np.dot(np.sin(a)[:k], [0.5, 0.3, 0.2][:k])
-        J[1, k] = np.dot(np.cos(a), [0.5, 0.3, 0.2]) - np.dot(np.cos(a)[:k], [0.5, 0.3, 0.2][:k])
+        J[0, k] = -np.dot(np.sin(a), [0.6, 0.3, 0.2]) + np.dot(np.sin(a)[:k], [0.6, 0.3, 0.2][:k])
+        J[1, k] = np.dot(np.cos(a), [0.6, 0.3, 0.2]) - np.dot(np.cos(a)[:k], [0.6, 0.3, 0.2][:k])
     J[5] = 1
     return J
 
@@ -69,7 +69,7 @@ def solve(pose, *, free=None, seed=None, limits=True):
     fx, fy = 0.3 + 0.2 * math.cos(q3), 0.2 * math.sin(q3)
     L, phi = math.hypot(fx, fy), math.atan2(fy, fx)
     x, y, z = T[:3, 3]
-    c = (x * x + y * y - 0.25 - L * L) / L
+    c = (x * x + y * y - 0.36 - L * L) / (1.2 * L)
     if abs(c) > 1 + 1e-9 or abs(z) > 1e-9:
         return Solutions(none, Status.UNREACHABLE, [])
     rows = []
@@ -77,7 +77,7 @@ def solve(pose, *, free=None, seed=None, limits=True):
         t = sign * math.acos(max(-1.0, min(1.0, c)))
         if sign < 0 and min(-t, math.pi + t) < 1e-6:
             continue
-        q1 = math.atan2(y, x) - math.atan2(L * math.sin(t), 0.5 + L * math.cos(t))
+        q1 = math.atan2(y, x) - math.atan2(L * math.sin(t), 0.6 + L * math.cos(t))
         rows.append([math.remainder(v, 2 * math.pi) for v in (q1, t - phi, q3)])
     rows = np.array(rows)
     if seed is not None:

@@ -111,8 +111,8 @@ def dh_chain(symbolic: bool = False) -> DHChain:
     quarter = Angle(math.pi / 2, Fraction(1, 2))
     rows = (
         DHRow("j1", REVOLUTE, zero, none, Length(0.2, "d_1"), zero, 0, -1.0, quarter),
-        DHRow("j2", PRISMATIC, quarter, Length(0.3, "a_1", symbolic=symbolic), none, quarter, 1, 1.0,
-              Length(0.05, "o_2")),
+        DHRow("j2", PRISMATIC, quarter, Length(0.3, "a_1", symbolic=symbolic), none, quarter, 1,
+              1.0, Length(0.05, "o_2")),
     )  # fmt: skip
     joints = (
         ActuatedJoint("j1", REVOLUTE, Limits(-1, 2)),

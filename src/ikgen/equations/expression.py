@@ -32,7 +32,9 @@ class Atom:
 class Expr:
     """A node: operation, arguments, probe values. Compare by identity; made by `ExpressionGraph` only."""
 
-    __slots__ = ("args", "atom", "id", "name", "op", "probe", "scale", "support", "value")
+    __slots__ = (
+        "args", "atom", "id", "is_fixed", "name", "op", "probe", "scale", "support", "value",
+    )  # fmt: skip
 
     def __init__(
         self, op: str, args: tuple[Expr, ...], probe: Probe, scale: float, support: int
@@ -46,6 +48,8 @@ class Expr:
         self.name = ""
         self.atom: Atom | None = None
         self.id = -1
+        self.is_fixed = op != "atom" and all(a.is_fixed for a in args)
+        """Whether the node depends on parameters and numbers only."""
 
     @property
     def is_const(self) -> bool:
@@ -56,11 +60,6 @@ class Expr:
     def vanishes(self) -> bool:
         """Whether the node is zero at every probe configuration."""
         return bool(np.max(np.abs(self.probe)) <= ZERO_TOLERANCE * self.scale)
-
-    @property
-    def is_fixed(self) -> bool:
-        """Whether the node depends on parameters and numbers only."""
-        return self.support == 0 and self.op != "sigma"
 
     def __repr__(self) -> str:
         return f"<{self.op} {self.name or self.value or [a.id for a in self.args]}>"
@@ -284,6 +283,8 @@ class ExpressionGraph:
 
     def unary(self, op: str, a: Expr) -> Expr:
         """abs, not"""
+        if op == "not" and a.op == "not":
+            return a.args[0]
         return self._apply(op, (a,))
 
     def binary(self, op: str, a: Expr, b: Expr) -> Expr:

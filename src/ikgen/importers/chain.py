@@ -104,11 +104,7 @@ def _build(
     couplings: Mapping[str, Coupling],
     locked: Mapping[str, float],
 ) -> Chain:
-    drivers: list[Joint] = []
-    for name in _listed(path, couplings):
-        driver = couplings[name].driver
-        if couplings[name].value(locked) is None and driver not in drivers:
-            drivers.append(driver)
+    drivers = _drivers(path, couplings, locked)
     axes: list[ChainAxis] = []
     T = np.eye(4)  # from the previous axis' joint frame
     for joint in path:
@@ -143,14 +139,22 @@ def _build(
     )
 
 
-def _listed(path: Sequence[Joint], couplings: Mapping[str, Coupling]) -> list[str]:
-    """The joints that bring in their driver, in the chain's order.
+def _drivers(
+    path: Sequence[Joint], couplings: Mapping[str, Coupling], locked: Mapping[str, float]
+) -> list[Joint]:
+    """The independent joints in the chain's order.
 
-    A driver in the chain stands at its own place even where a joint before it mimics it.
+    A driver in the chain stands at its own place even where a joint before it mimics it; one
+    outside the chain stands at the place of the first joint that mimics it.
     """
-    names = {joint.name for joint in path}
-    drivers = {name: coupling.driver for name, coupling in couplings.items()}
-    return [n for n, driver in drivers.items() if driver.name == n or driver.name not in names]
+    between = {joint.name for joint in path}
+    drivers: list[Joint] = []
+    for name, coupling in couplings.items():
+        driver = coupling.driver
+        in_place = driver.name == name or driver.name not in between
+        if in_place and coupling.value(locked) is None and driver not in drivers:
+            drivers.append(driver)
+    return drivers
 
 
 def _kind(joint: Joint) -> str:

@@ -27,6 +27,7 @@ _DECLARED_ENCODING = re.compile(rb"""^\s*<\?xml[^>]*?encoding\s*=\s*["']([\w.\-]
 _MERGE_CONFLICT = re.compile(r"^(<{7}|>{7}) ", re.MULTILINE)
 _SYNTAX_HINTS = (
     ("Extra content", "the file holds two documents: keep one <robot> element"),
+    ("prefix xacro", 'add xmlns:xacro="http://www.ros.org/wiki/xacro" to <robot>'),
     ("declaration", "something stands before the XML declaration: remove it"),
     ("Start tag expected", "the file is not XML, or has text before its first tag"),
 )

@@ -61,7 +61,7 @@ def expand(
         with session:
             text = session.process(top, known)
     except Exception as error:  # the file's own expressions can raise anything
-        raise explain(error, session.files, path, known) from error
+        raise explain(error, session.files, session.includes, path, known) from error
     warnings = list(session.warnings)
     for name in sorted(set(arguments) - known.used):
         declared = ", ".join(sorted(known.used)) or "none"

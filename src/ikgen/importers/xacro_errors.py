@@ -12,14 +12,20 @@ from ikgen.importers.packages import PackageNotFoundError
 
 __all__ = ["explain"]
 
+_EXPRESSION = re.compile(r"when evaluating expression '(.*)'")
+
 
 def explain(
-    error: Exception, files: Sequence[Path], shown: Path, arguments: Mapping[str, str]
+    error: Exception,
+    files: Sequence[Path],
+    includes: Sequence[Path],
+    shown: Path,
+    arguments: Mapping[str, str],
 ) -> BadDescriptionError:
     """The error to show for an exception out of an expansion.
 
-    `files` is xacro's stack of files (absolute, innermost last), `shown` the top file as the user
-    named it, `arguments` those that had a value.
+    `files` is xacro's stack of files (absolute, innermost last), `includes` all that it opened
+    beside the first, `shown` the top file as the user named it, `arguments` those with a value.
     """
     file = files[-1] if files else shown
     name = str(shown) if len(files) < 2 else str(file)
@@ -27,16 +33,29 @@ def explain(
         found = _explain_one(cause, file, name, arguments)
         if found is not None:
             return found
+    return _unexplained(error, [file, *includes], name)
+
+
+def _unexplained(error: Exception, files: Sequence[Path], name: str) -> BadDescriptionError:
     # xacro writes "<class 'NameError'>: text text" around what an expression raised.
     inner = getattr(error, "exc", None)
     outer = str(error).strip()
     message = str(inner) if inner is not None and outer.startswith("<class") else outer
-    message = message or type(error).__name__
     macros = [macro.body.getAttribute("name") for macro in getattr(error, "macros", ())]
     within = f" (in macro '{macros[0]}')" if macros else ""
+    line = None
+    expression = _EXPRESSION.search(message)
+    if expression is not None:
+        # The stack names the file that calls a macro, not the one with the macro's text.
+        pattern = r"\$\{\s*" + re.escape(expression.group(1).strip())
+        lines = [(file, _line_of(file, pattern)) for file in files]
+        found = next(((file, at) for file, at in lines if at is not None), None)
+        if found is not None:
+            name, line = (name if found[0] == files[0] else str(found[0])), found[1]
     return BadDescriptionError(
-        f"xacro cannot expand the file: {message}{within}",
+        f"xacro cannot expand the file: {message or type(error).__name__}{within}",
         file=name,
+        line=line,
         hint="check the expression or macro that the message names",
     )
 

@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from typing import Union
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ikgen.equations.expression import Expr, ExpressionGraph
 from ikgen.equations.knowledge import Variable
 from ikgen.equations.probes import arm_size
 from ikgen.equations.rigid import Rigid, constant, inverse, multiply
 from ikgen.ir.forms import Realized, realize
-from ikgen.ir.ops import BOOLEAN, Op, Operand
-from ikgen.ir.program import (
-    Call,
-    Comment,
-    JointOutput,
-    Let,
-    Level,
-    Program,
-    Require,
-    Statement,
-)
+from ikgen.ir.program import Comment, Program
+from ikgen.ir.serialize import LoweredLevel, Requirement, serialize
 from ikgen.solver.graph import SolutionGraph
 from ikgen.solver.session import Step
 
@@ -31,15 +23,7 @@ CHECK_TOLERANCE = 5e-10
 """Largest error (m over the arm's size, rad) of a row that counts as a solution."""
 
 
-@dataclass
-class _Level:
-    branches: int
-    sigma: Expr | None
-    call: tuple[str, tuple[Expr, ...], tuple[Expr, ...]] | None
-    items: list[Expr | Comment | tuple[str, Expr]] = field(default_factory=list)
-
-
-class _Lowering:
+class Lowering:
     """Places every needed expression at the outermost level that its dependencies allow."""
 
     def __init__(self, graph: SolutionGraph, slack: float) -> None:
@@ -50,7 +34,7 @@ class _Lowering:
         self.g: ExpressionGraph = self.system.graph
         self.knowledge = graph.knowledge
         self.slack = slack
-        self.levels = [_Level(1, None, None)]
+        self.levels = [LoweredLevel(1)]
         self.definition: dict[int, Expr] = dict(self.knowledge.binding)
         self.level_of: dict[int, int] = {}
         self.placed: set[int] = set()
@@ -60,7 +44,7 @@ class _Lowering:
 
     # -- inputs ---------------------------------------------------------------------------------
 
-    def _input(self, name: str, probe: np.ndarray | None = None) -> Expr:
+    def _input(self, name: str, probe: NDArray[np.float64] | None = None) -> Expr:
         values = np.zeros(self.g.probes) if probe is None else probe
         node = self.g.atom("input", name, values, unknown=False)
         self.names[node.id] = name
@@ -138,9 +122,15 @@ class _Lowering:
         self.level_of[node.id] = found
         return found
 
-    def resolve(self, node: Expr) -> Expr:
-        """The node, or what an atom stands for."""
+    def canonical(self, node: Expr) -> Expr:
+        """The node, or what an atom without a name of its own stands for."""
         while node.id in self.definition and node.id not in self.names:
+            node = self.definition[node.id]
+        return node
+
+    def defined(self, node: Expr) -> Expr:
+        """The node, or the definition of a solved atom."""
+        while node.id in self.definition:
             node = self.definition[node.id]
         return node
 
@@ -156,13 +146,13 @@ class _Lowering:
             self.place(self.definition[item.id])
         for a in item.args:
             self.place(a)
-        if item.args or item.id in self.names:
+        if item.args or item.id in self.definition:
             self.levels[self.level(item)].items.append(item)
 
     def require(self, condition: Expr) -> None:
         """Schedule a guard."""
         self.place(condition)
-        self.levels[self.level(condition)].items.append(("require", condition))
+        self.levels[self.level(condition)].items.append(Requirement(condition))
 
     # -- steps ----------------------------------------------------------------------------------
 
@@ -176,7 +166,7 @@ class _Lowering:
             return
         if step.branches > 1:
             sigma = g.atom("sigma", str(index), np.ones(g.probes), unknown=False)
-            self.levels.append(_Level(2, sigma, None))
+            self.levels.append(LoweredLevel(2, sigma))
             self.level_of[sigma.id] = len(self.levels) - 1
             self.names[sigma.id] = f"sigma_{v.text.split('_', 1)[-1]}"
         else:
@@ -188,30 +178,28 @@ class _Lowering:
     def _select(self, v: Variable, forms: list[Realized], sigma: Expr) -> tuple[Expr, ...]:
         """The first form whose divisor does not vanish; the seed's value if there is none."""
         g = self.g
-        for i, form in enumerate(forms[:-1]):
-            forms[i] = self._well_conditioned(form)
-        values: tuple[Expr, ...] | None = None
-        if forms[-1].regular is not None:
-            values = self.seed_values(v)
-        single: Expr | None = None
-        guard: Expr | None = None
-        free: Expr | None = None
+        forms = [*map(self._well_conditioned, forms[:-1]), forms[-1]]
+        values = self.seed_values(v) if forms[-1].regular is not None else forms[-1].values
+        guard: Flag = True
+        single: Flag = True
+        free: Flag = True
         for form in reversed(forms):
             here = form.regular
-            values = form.values if here is None or values is None else tuple(
-                g.select(here, a, b) for a, b in zip(form.values, values, strict=True)
-            )
-            guard = _choose(g, here, form.guard, guard)
-            single = _choose_flag(g, here, form.branches == 1, single)
-            free = _choose_flag(g, here, False, free, last=True)
-        if guard is not None:
+            guard = pick(g, here, True if form.guard is None else form.guard, guard)
+            single = pick(g, here, form.branches == 1, single)
+            free = pick(g, here, False, free)
+            if here is not None:
+                both = zip(form.values, values, strict=True)
+                values = tuple(g.select(here, mine, other) for mine, other in both)
+            else:
+                values = form.values
+        if isinstance(guard, Expr):
             self.require(guard)
-        if sigma is not g.one and single is not None:
+        if isinstance(single, Expr) and sigma is not g.one:
             self.require(g.binary("or", g.unary("not", single), g.binary("gt", sigma, g.zero)))
-        if free is not None:
+        if isinstance(free, Expr):
             self.place(free)
             self.singular.append(free)
-        assert values is not None
         return values
 
     def _well_conditioned(self, form: Realized) -> Realized:
@@ -244,7 +232,7 @@ class _Lowering:
             self.place(e)
         atoms = self.knowledge.variables.pair(v.key)
         arguments = step.candidate.coefficients
-        self.levels.append(_Level(4, None, ("trig_quartic", arguments, atoms)))
+        self.levels.append(LoweredLevel(4, None, ("trig_quartic", arguments, atoms)))
         self.place(Comment(text))
         suffix = v.text.split("_", 1)[1]
         for atom, x in zip(atoms, "cs", strict=True):
@@ -272,37 +260,37 @@ class _Lowering:
 
     def check(self) -> None:
         """A row is returned only if it reproduces the pose: the cheapest split is compared."""
-        g = self.g
-        best: tuple[float, list[tuple[Expr, Expr]]] | None = None
         n = self.system.n
-        for k in range(n):
-            for m in range(k + 1, n + 1):
-                pairs = self._residuals(k, m)
-                cost = self._price([g.sub(a, b) for a, b in pairs])
-                if best is None or cost < best[0]:
-                    best = (cost, pairs)
-        assert best is not None
-        size = max(arm_size(self.dh), 1e-9)
-        rotation = g.zero
-        position = g.zero
-        for i, (a, b) in enumerate(best[1]):
-            d = g.square(g.sub(a, b))
-            if i < 3:
-                position = g.add(position, d)
-            else:
-                rotation = g.add(rotation, d)
-        limit = max(CHECK_TOLERANCE, 30 * self.slack)
+        splits = [(k, m) for k in range(n) for m in range(k + 1, n + 1)]
+        residuals = min((self._residuals(k, m) for k, m in splits), key=self._cost)
         self.place(Comment("does the row reproduce the pose?"))
-        self.require(g.binary("gt", g.const((limit * max(size, 1.0)) ** 2), position))
-        if rotation is not g.zero:
-            self.require(g.binary("gt", g.const(limit**2), rotation))
+        limit = max(CHECK_TOLERANCE, 30 * self.slack)
+        size = max(arm_size(self.dh), 1.0)
+        for parts, tolerance in zip(residuals, (limit * size, limit), strict=True):
+            if parts:
+                total = self.g.dot(parts, parts)
+                self.require(self.g.binary("gt", self.g.const(tolerance**2), total))
 
-    def _residuals(self, k: int, m: int) -> list[tuple[Expr, Expr]]:
+    def _residuals(self, k: int, m: int) -> tuple[list[Expr], list[Expr]]:
+        """Differences of position and of rotation of one split, those that vanish by construction
+        and those that the task does not read left out."""
         left, right = self.system.left(k, m), self.system.right(k, m)
-        readable = self.knowledge.known_expr
-        pairs = [(left.p[i], right.p[i]) for i in range(3)]
-        pairs += [(left.R[i][j], right.R[i][j]) for i in range(3) for j in range(3)]
-        return [(a, b) for a, b in pairs if readable(a)]
+        position = list(zip(left.p, right.p, strict=True))
+        rotation = [(left.R[i][j], right.R[i][j]) for i in range(3) for j in range(3)]
+        return self._differences(position), self._differences(rotation)
+
+    def _differences(self, pairs: list[tuple[Expr, Expr]]) -> list[Expr]:
+        g = self.g
+        out: list[Expr] = []
+        for a, b in pairs:
+            if not self.knowledge.known_expr(a) or not self.knowledge.known_expr(b):
+                continue
+            if g.sub(self.defined(a), self.defined(b)) is not g.zero:
+                out.append(g.sub(a, b))
+        return out
+
+    def _cost(self, residuals: tuple[list[Expr], list[Expr]]) -> float:
+        return self._price([*residuals[0], *residuals[1]])
 
     def _price(self, roots: list[Expr]) -> float:
         counts = [1.0]
@@ -332,29 +320,41 @@ def _identifier(name: str) -> str:
     return "".join(ch if ch.isalnum() else "_" for ch in name)
 
 
-def _choose(
-    g: ExpressionGraph, here: Expr | None, mine: Expr | None, other: Expr | None
-) -> Expr | None:
-    """Guard of alternatives: mine where `here` holds, else the other's."""
-    if here is None:
+Flag = Union[bool, Expr]
+
+
+def pick(g: ExpressionGraph, here: Expr | None, mine: Flag, other: Flag) -> Flag:
+    """`mine` where the condition `here` holds (None: always), `other` elsewhere."""
+    if here is None or mine is other:
         return mine
-    mine_ok = mine if mine is not None else None
-    first = g.binary("or", g.unary("not", here), mine_ok) if mine_ok is not None else None
-    second = g.binary("or", here, other) if other is not None else None
-    if first is None or second is None:
-        return first if second is None else second
-    return g.binary("and", first, second)
-
-
-def _choose_flag(
-    g: ExpressionGraph, here: Expr | None, mine: bool, other: Expr | None, *, last: bool = False
-) -> Expr | None:
-    """A flag that is `mine` where `here` holds, else the other's (true at the very end)."""
-    del last
-    if here is None:
-        return g.one if mine else None
     missing = g.unary("not", here)
-    rest = missing if other is None else (missing if other is g.one else g.binary("and", missing, other))
-    if mine:
-        return g.one if rest is None else g.binary("or", here, rest)
-    return rest
+    if mine is True:
+        return here if other is False else g.binary("or", here, _expr(other))
+    if mine is False:
+        return missing if other is True else g.binary("and", missing, _expr(other))
+    if other is True:
+        return g.binary("or", missing, mine)
+    if other is False:
+        return g.binary("and", here, mine)
+    return g.binary("or", g.binary("and", here, mine), g.binary("and", missing, _expr(other)))
+
+
+def _expr(flag: Flag) -> Expr:
+    assert isinstance(flag, Expr)
+    return flag
+
+
+def lower(graph: SolutionGraph, *, slack: float = 0.0) -> Program:
+    """The Program of a solution graph.
+
+    `slack` is how far (m or rad) the file's geometry is off the exact one that was solved: square roots
+    and the final check give way by that much, and Newton steps on the file's chain follow.
+    """
+    work = Lowering(graph, slack)
+    work.bind_pose()
+    work.bind_seeds()
+    for index, step in enumerate(graph.steps):
+        work.step(index, step)
+    outputs = work.outputs()
+    work.check()
+    return serialize(work, outputs)

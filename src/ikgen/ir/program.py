@@ -74,13 +74,14 @@ class JointOutput:
 class Program:
     """Closed-form solver of one chain.
 
-    `inputs` are the raw pose entries `t00` ... `t23`, then per joint the seed values that a singular
+    `parameters` are the arm's constants, `constants` what follows from them alone. `inputs` are the raw pose entries `t00` ... `t23`, then per joint the seed values that a singular
     pose takes (`seed_c1`, `seed_s1` or `seed_d1`) and the held joints' values (`c7`, `s7` or `d7`).
     `singular` are the conditions under which a solution is one of a continuum.
     """
 
     name: str
     parameters: tuple[tuple[str, float], ...]
+    constants: tuple[Let, ...]
     inputs: tuple[str, ...]
     levels: tuple[Level, ...]
     outputs: tuple[JointOutput, ...]

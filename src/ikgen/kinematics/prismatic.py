@@ -18,7 +18,11 @@ from ikgen.model.joint_tree import Matrix
 
 __all__ = ["place_prismatic"]
 
-_SWEEPS = 2
+_Placement = tuple[tuple[Link, ...], tuple[Matrix, ...]]
+
+_WIDTH = 12
+"""Placements kept at each step of the search; lines of neighbours depend on each other."""
+
 _ACROSS = np.array([1.0, 1.0, 0.0])
 
 
@@ -26,17 +30,30 @@ def place_prismatic(
     links: tuple[Link, ...], prismatic: tuple[bool, ...], tolerance: Tolerance
 ) -> tuple[tuple[Link, ...], tuple[Matrix, ...]]:
     """The links with prismatic lines moved, and each axis' shift (3,) in m in its own frame."""
-    shifts = [np.zeros(3) for _ in prismatic]
-    movable = [k for k, slides in enumerate(prismatic) if slides]
-    for _ in range(_SWEEPS if len(prismatic) > 1 else 0):
-        for k in movable:
-            points = [c * _ACROSS for c in _candidates(links, k)]
-            tried = [(c, _shifted(links, k, c)) for c in points]
-            costs = [_cost(moved, prismatic, tolerance) for _, moved in tried]
-            best = min(range(len(tried)), key=costs.__getitem__)
-            shifts[k] = shifts[k] + tried[best][0]
-            links = tried[best][1]
-    return links, tuple(shifts)
+    still = tuple(np.zeros(3) for _ in prismatic)
+    sliding = [k for k, slides in enumerate(prismatic) if slides]
+    if not links or not sliding:
+        return links, still
+    order = sliding if len(sliding) == 1 else [*sliding, *reversed(sliding), *sliding]
+    kept = [(links, still)]
+    for k in order:
+        tried = [
+            (_shifted(links, k, c), (*shifts[:k], shifts[k] + c, *shifts[k + 1 :]))
+            for links, shifts in kept
+            for c in _candidates(links, k)
+        ]
+        tried.sort(key=lambda placed: _cost(placed[0], prismatic, tolerance))
+        kept = _distinct(tried)[:_WIDTH]
+    return kept[0]
+
+
+def _distinct(placements: list[_Placement]) -> list[_Placement]:
+    """`placements` without those whose shifts (m) repeat an earlier one's."""
+    seen: dict[tuple[float, ...], _Placement] = {}
+    for links, shifts in placements:
+        key = tuple(round(float(v), 9) for v in np.concatenate(shifts))
+        seen.setdefault(key, (links, shifts))
+    return list(seen.values())
 
 
 def _cost(
@@ -76,14 +93,14 @@ def _candidates(links: tuple[Link, ...], k: int) -> Iterator[Matrix]:
         frames.append((R @ link.R, o + R @ link.p))
     R, o = frames[k]
     if k + 1 < len(frames):
-        yield R.T @ (_origin(frames, k + 1, +1) - o)
+        yield _ACROSS * (R.T @ (_origin(frames, k + 1, +1) - o))
     if k > 0:
-        yield R.T @ (_origin(frames, k - 1, -1) - o)
+        yield _ACROSS * (R.T @ (_origin(frames, k - 1, -1) - o))
     if 0 < k < len(links):
         (R_prev, o_prev), (R_next, o_next) = frames[k - 1], frames[k + 1]
         columns = np.column_stack([R_prev[:, 2], R[:, 2], -R_next[:, 2]])
         along = np.linalg.lstsq(columns, o_next - o_prev, rcond=1e-9)[0]
-        yield R.T @ (o_prev + along[0] * R_prev[:, 2] - o)
+        yield _ACROSS * (R.T @ (o_prev + along[0] * R_prev[:, 2] - o))
     yield np.zeros(3)
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.equations.build import Equation, EquationSet
+from ikgen.equations.build import EquationSet
 from ikgen.equations.expression import Expr
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
 from ikgen.equations.probes import Probes
@@ -55,6 +55,7 @@ class Session:
     system: EquationSet
     probes: Probes
     knowledge: Knowledge
+    held: tuple[int, ...] = ()
     round: int = 0
     equations: list[PolynomialEquation] = field(default_factory=list)
     candidates: list[Candidate] = field(default_factory=list)
@@ -189,10 +190,6 @@ class Session:
             if support & mask:
                 return level
         return 1.0
-
-    def describe(self, e: Equation) -> str:
-        """An equation's place, for the trace."""
-        return e.label
 
 
 class _Weights(dict[int, float]):
