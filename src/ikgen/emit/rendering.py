@@ -1,0 +1,49 @@
+"""Where the templates are, and how they are filled in."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ikgen.errors import IkgenError
+
+if TYPE_CHECKING:
+    import jinja2
+
+__all__ = ["environment", "render"]
+
+
+@cache
+def environment(language: str) -> jinja2.Environment:
+    """The templates of one output language (`python`, `cpp`, ...); undefined names are errors.
+
+    Raises IkgenError where the installation has no templates for the language.
+    """
+    import jinja2
+
+    return jinja2.Environment(
+        loader=jinja2.FileSystemLoader(_folder(language)),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=False,
+    )
+
+
+def render(language: str, template: str, **values: object) -> str:
+    """One template of a language, filled in."""
+    return environment(language).get_template(template).render(**values)
+
+
+def _folder(language: str) -> Path:
+    """A wheel carries the templates inside the package; a checkout has them beside `src`."""
+    package = Path(__file__).resolve().parent.parent
+    for folder in (package / "templates", package.parent.parent / "templates"):
+        if (folder / language).is_dir():
+            return folder / language
+    raise IkgenError(
+        f"no templates for '{language}' in this installation",
+        hint="reinstall ikgen: its wheel carries them as ikgen/templates",
+    )
