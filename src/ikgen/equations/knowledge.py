@@ -90,14 +90,15 @@ class Knowledge:
         """Mark a key's cosine and sine as known."""
         pair = self.variables.pair(key)
         self._keys[key] = pair
-        self._refresh()
+        self.refresh()
 
     def learn_distance(self, joint: int) -> None:
         """Mark a prismatic variable as known."""
         self.known_mask |= self.variables.distance(joint).support
-        self._refresh()
+        self.refresh()
 
-    def _refresh(self) -> None:
+    def refresh(self) -> None:
+        """Rebuild the lattice of known keys and mark the atoms in it."""
         self._converted.clear()
         self._represented.clear()
         zero = tuple([0] * self.variables.count)

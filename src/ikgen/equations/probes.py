@@ -80,8 +80,11 @@ def arm_size(dh: DHChain) -> float:
     return max([*lengths, 1e-3]) if any(lengths) else 1.0
 
 
-def make_probes(dh: DHChain, *, seed: int = 0) -> Probes:
-    """Probe configurations of a chain, the same for the same chain."""
+def make_probes(dh: DHChain, *, seed: int = 0, tool: bool = False) -> Probes:
+    """Probe configurations of a chain, the same for the same chain.
+
+    With `tool` the poses include the tool transform.
+    """
     rng = np.random.default_rng(seed)
     size = arm_size(dh)
     revolute = np.array([dh.rows[_first_row(dh, j)].revolute for j in range(dh.dof)])
@@ -100,4 +103,7 @@ def make_probes(dh: DHChain, *, seed: int = 0) -> Probes:
     regular = special[smallest > 1e-2][:SPECIAL]
     singular = special[smallest < 1e-8][:SINGULAR]
     values = np.concatenate([generic, regular, singular])
-    return Probes(values, dh_pose(dh, values), GENERIC, GENERIC + len(regular))
+    pose = dh_pose(dh, values)
+    if tool:
+        pose = pose @ dh.X_tip
+    return Probes(values, pose, GENERIC, GENERIC + len(regular))

@@ -22,6 +22,11 @@ class SolutionGraph:
     session: Session
 
     @property
+    def open_joints(self) -> list[int]:
+        """Joints without a closed form."""
+        return self.session.open_joints
+
+    @property
     def knowledge(self) -> Knowledge:
         """What was known at the end."""
         return self.session.knowledge

@@ -1,13 +1,49 @@
-"""Solve a chain: rounds of transforms, leaves and ranking until every joint is known."""
+"""Solve a chain: tick the tree until every joint is known."""
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Callable, Sequence
 
-from ikgen.equations.build import EquationSet
-from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
-from ikgen.solver.candidate import Candidate
-from ikgen.solver.leaves import LEAVES
-from ikgen.solver.ranker import judge, rank_key
-from ikgen.solver.transforms import square_and_add, substitution
+from ikgen.equations.build import ENTRY_NAMES, EquationSet
+from ikgen.equations.expression import ExpressionGraph
+from ikgen.equations.knowledge import Knowledge
+from ikgen.equations.probes import make_probes
+from ikgen.model.dh import DHChain
+from ikgen.solver.graph import SolutionGraph, graph_of
+from ikgen.solver.leaves import LEAVES, Leaf
+from ikgen.solver.session import Session
+from ikgen.solver.tree import build_tree, tick
+
+__all__ = ["solve_chain"]
+
+
+def solve_chain(
+    dh: DHChain,
+    *,
+    readable: frozenset[str] = frozenset(ENTRY_NAMES),
+    tool_on_right: bool = False,
+    leaves: Sequence[Leaf] = LEAVES,
+    progress: Callable[[str], None] | None = None,
+) -> SolutionGraph:
+    """Closed forms for every joint variable of `dh`; `graph.open_joints` lists what is left.
+
+    `readable` names the pose entries that the task reads; with `tool_on_right` the tool transform is
+    part of the chain (tasks that do not read the whole pose).
+    """
+    probes = make_probes(dh, tool=tool_on_right)
+    graph = ExpressionGraph(len(probes.values))
+    system = EquationSet(
+        graph, dh, probes.values, probes.pose, readable=readable, tool_on_right=tool_on_right
+    )
+    knowledge = Knowledge(system)
+    _ = system.equations
+    held = tuple(i for i, joint in enumerate(dh.joints) if joint.name in dh.free)
+    session = Session(system, probes, knowledge, held=held)
+    session.start()
+    tree = build_tree(session, leaves)
+    while session.open_joints:
+        if not tick(tree):
+            break
+        if progress is not None:
+            progress(session.steps[-1].candidate.unknown.text)
+    return graph_of(session)

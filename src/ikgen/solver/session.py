@@ -92,6 +92,16 @@ class Session:
         value = self.probes.values @ np.array(variable.key, dtype=float)
         return (np.cos(value), np.sin(value)) if variable.kind == "angle" else (value,)
 
+    def start(self) -> None:
+        """Held joints are known from the start."""
+        self.knowledge.refresh()
+        for j in self.held:
+            v = self.joint_variable(j)
+            if v.kind == "angle":
+                self.knowledge.learn_angle(v.key)
+            else:
+                self.knowledge.learn_distance(j)
+
     # -- a round --------------------------------------------------------------------------------
 
     def collect(self) -> None:
@@ -108,6 +118,18 @@ class Session:
             if p.unknowns:
                 out.append(p)
         self.equations = out
+
+    def new_equations(self, made: list[PolynomialEquation], *, keep: bool) -> None:
+        """Equations that a transform made, beside the round's own or in their place."""
+        self.equations = [*self.equations, *made] if keep else made
+
+    @property
+    def has_good_candidate(self) -> bool:
+        """Whether some candidate is sound at regular configurations and has at most two branches."""
+        return any(
+            c.branches <= 2 and c.judgement is not None and not c.judgement.weak
+            for c in self.candidates
+        )
 
     @property
     def unknowns(self) -> list[Variable]:

@@ -1,0 +1,135 @@
+"""The behavior tree, as in the figure of the IKBT paper.
+
+    solve one unknown: Sequence
+    ├── collect equations          sorts the scalar equations by number of unknowns
+    └── Selector
+        ├── Sequence: rules        OR over the leaves, then the ranker if a good candidate was found
+        ├── Sequence: substitution the transform, then the same
+        ├── Sequence: square and add
+        └── take what there is     the ranker, whatever the candidates
+
+Nodes read and write a `Session`; this module is the only one that knows py_trees. Its `Parallel` fails
+as soon as one child fails, so the paper's "OR" (tick all, succeed if any did) is a composite of our own.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+
+import py_trees
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from ikgen.equations.knowledge import Knowledge, PolynomialEquation
+from ikgen.solver.leaves import Leaf
+from ikgen.solver.session import Session
+from ikgen.solver.transforms import square_and_add, substitution
+
+__all__ = ["build_tree", "tick"]
+
+Transform = Callable[[Sequence[PolynomialEquation], Knowledge], list[PolynomialEquation]]
+
+
+class Action(Behaviour):  # type: ignore[misc]
+    """A node that runs a function of the session and records what came of it."""
+
+    def __init__(
+        self, name: str, session: Session, act: Callable[[Session], tuple[bool, str]]
+    ) -> None:
+        super().__init__(name)
+        self.session = session
+        self.act = act
+
+    def update(self) -> Status:
+        """Run the function; success or failure is its answer."""
+        started = time.perf_counter()
+        done, detail = self.act(self.session)
+        self.feedback_message = detail
+        self.session.record(self.name, "success" if done else "failure", detail, started)
+        return Status.SUCCESS if done else Status.FAILURE
+
+
+class Or(py_trees.composites.Composite):  # type: ignore[misc]
+    """Ticks every child, whatever the others answer; succeeds if any did (the paper's "OR")."""
+
+    def tick(self) -> Iterator[Behaviour]:
+        """One pass over all children."""
+        succeeded = False
+        for child in self.children:
+            yield from child.tick()
+            succeeded = succeeded or child.status == Status.SUCCESS
+        self.status = Status.SUCCESS if succeeded else Status.FAILURE
+        self.current_child = self.children[-1] if self.children else None
+        yield self
+
+
+def _collect(session: Session) -> tuple[bool, str]:
+    session.collect()
+    count = len(session.equations)
+    return count > 0, f"{count} equations with one or two unknowns"
+
+
+def _leaf(leaf: Leaf) -> Callable[[Session], tuple[bool, str]]:
+    def act(session: Session) -> tuple[bool, str]:
+        found = session.try_leaf(leaf)
+        return found > 0, f"{found} candidates" if found else "nothing that fits"
+
+    return act
+
+
+def _transform(transform: Transform, *, keep: bool) -> Callable[[Session], tuple[bool, str]]:
+    def act(session: Session) -> tuple[bool, str]:
+        made = transform(session.equations, session.knowledge)
+        session.new_equations(made, keep=keep)
+        return bool(made), f"{len(made)} new equations"
+
+    return act
+
+
+def _choose_good(session: Session) -> tuple[bool, str]:
+    return _choose(session) if session.has_good_candidate else (False, "no sound candidate yet")
+
+
+def _choose(session: Session) -> tuple[bool, str]:
+    step = session.choose()
+    if step is None:
+        return False, "no candidate"
+    c = step.candidate
+    places = " and ".join(dict.fromkeys(e.label for e in c.sources))
+    return True, f"{c.unknown.text} by {c.leaf} from {places}"
+
+
+def _attempt(
+    name: str, session: Session, leaves: Sequence[Leaf], first: list[Behaviour]
+) -> Behaviour:
+    sequence = py_trees.composites.Sequence(name, memory=False)
+    rules = Or(f"{name}: leaves")
+    rules.add_children([Action(leaf.name, session, _leaf(leaf)) for leaf in leaves])
+    sequence.add_children([*first, rules, Action("ranker", session, _choose_good)])
+    return sequence
+
+
+def build_tree(session: Session, leaves: Sequence[Leaf]) -> Behaviour:
+    """The tree that solves one unknown a tick."""
+    root = py_trees.composites.Sequence("solve one unknown", memory=False)
+    ways = py_trees.composites.Selector("ways", memory=False)
+    replace = Action("substitution", session, _transform(substitution.apply, keep=True))
+    square = Action("square and add", session, _transform(square_and_add.apply, keep=False))
+    ways.add_children(
+        [
+            _attempt("rules", session, leaves, []),
+            _attempt("after substitution", session, leaves, [replace]),
+            _attempt("after square and add", session, leaves, [square]),
+            Action("take what there is", session, _choose),
+        ]
+    )
+    root.add_children([Action("collect equations", session, _collect), ways])
+    return root
+
+
+def tick(tree: Behaviour) -> bool:
+    """One tick of the tree; whether an unknown was solved."""
+    for _ in tree.tick():
+        pass
+    return bool(tree.status == Status.SUCCESS)
