@@ -96,11 +96,11 @@ def _unsolved(dh: DHChain, graph: SolutionGraph) -> tuple[str]:
 def _module(
     request: Request, tree: JointTree, dh: DHChain, geometry: str, graph: SolutionGraph
 ) -> SolverModule:
-    from ikgen.emit.module import SolverModule
+    from ikgen.emit.module import EXACT, SolverModule
     from ikgen.ir.lower import lower
 
     deviation = max(dh.deviation)
-    slack = 2.0 * deviation if deviation > 2e-11 else 0.0
+    slack = 2.0 * deviation if deviation > EXACT else 0.0
     values = dict(request.free)
     free = tuple(j for j, joint in enumerate(dh.joints) if joint.name in dh.free)
     return SolverModule(

@@ -7,10 +7,13 @@ from dataclasses import dataclass
 from ikgen.ir.program import Program
 from ikgen.model.dh import DHChain
 
-__all__ = ["POLISH_THRESHOLD", "SolverModule"]
+__all__ = ["CLOSE", "EXACT", "SolverModule"]
 
-POLISH_THRESHOLD = 2e-11
-"""Deviation (m or rad) of the solved geometry from the file's above which Newton steps follow."""
+EXACT = 2e-11
+"""Deviation (m or rad) of the solved geometry from the file's that counts as round-off."""
+
+CLOSE = 8e-10
+"""Deviation up to which a row that is exact for the solved geometry is right for the file (1e-9)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,9 +38,13 @@ class SolverModule:
     order: tuple[str, ...] = ()
 
     @property
-    def polish(self) -> bool:
-        """Whether the closed form is followed by Newton steps on the file's own chain."""
-        return max(self.dh.deviation) > POLISH_THRESHOLD
+    def polish(self) -> str:
+        """Which rows take Newton steps on the file's own chain: "never", "some" (those of a continuum
+        or on the boundary, where the closed form gave way) or "all"."""
+        deviation = max(self.dh.deviation)
+        if deviation <= EXACT:
+            return "never"
+        return "some" if deviation <= CLOSE else "all"
 
     @property
     def max_solutions(self) -> int:

@@ -83,8 +83,8 @@ def emit_module(module: SolverModule) -> str:
         upper=[_number(j.limits.upper) for j in module.dh.joints],
         parameters=[(n, _number(v)) for n, v in program.parameters],
         constants=[(c.name, expression(SCALAR, c.value)) for c in program.constants],
-        scalar=_scalar(program, joints),
-        batch=_batch(program, joints),
+        scalar=_scalar(module, joints),
+        batch=_batch(module, joints),
         routines=sorted({lv.call.routine for lv in program.levels if lv.call is not None}),
         used=_used_inputs(program),
         seeds=_seed_rows(module),
@@ -217,8 +217,9 @@ def _level_of(output: JointOutput, home: dict[str, int]) -> int:
     return max((home.get(n, 0) for n in names), default=0)
 
 
-def _scalar(program: Program, joints: list[_JointText]) -> list[str]:
+def _scalar(module: SolverModule, joints: list[_JointText]) -> list[str]:
     """Lines of the nested loops, indented from the function's body on."""
+    program = module.program
     home = _home_levels(program)
     lines: list[str] = []
     for index, level in enumerate(program.levels):
@@ -242,7 +243,11 @@ def _scalar(program: Program, joints: list[_JointText]) -> list[str]:
     pad = "    " * (len(program.levels) - 1)
     row = ", ".join(f"q{j.joint + 1}" for j in joints) + ("," if len(joints) == 1 else "")
     flag = " or ".join(program.singular) or "False"
-    lines.append(f"{pad}rows.append((({row}), {flag}))")
+    if module.polish == "some":
+        rough = " or ".join([*program.singular, *(f"{r} > _ROUGH" for r in program.residuals)])
+        lines.append(f"{pad}rows.append((({row}), {flag}, {rough}))")
+    else:
+        lines.append(f"{pad}rows.append((({row}), {flag}))")
     return lines
 
 
@@ -253,8 +258,9 @@ def _loop(level: Level) -> str:
     return f"for {level.sigma} in (1.0, -1.0):"
 
 
-def _batch(program: Program, joints: list[_JointText]) -> list[str]:
+def _batch(module: SolverModule, joints: list[_JointText]) -> list[str]:
     """Lines of the array program: the axes before the last are the branches of the levels."""
+    program = module.program
     lines: list[str] = []
     depth = len(program.levels) - 1
     for index, level in enumerate(program.levels):
@@ -278,5 +284,8 @@ def _batch(program: Program, joints: list[_JointText]) -> list[str]:
     lines += [f"    {joint.text(BATCH, 'np.arctan2')}," for joint in joints]
     lines.append(")")
     flag = " | ".join(program.singular)
+    if module.polish == "some":
+        rough = " | ".join([*program.singular, *(f"({r} > _ROUGH)" for r in program.residuals)])
+        lines.append(f"rough = {rough}")
     lines.append(f"singular = {flag}" if flag else "singular = np.zeros(1, dtype=bool)")
     return lines

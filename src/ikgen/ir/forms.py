@@ -9,14 +9,23 @@ import numpy as np
 from ikgen.equations.expression import Expr, ExpressionGraph
 from ikgen.solver.candidate import Candidate
 
-__all__ = ["SINGULAR_TOLERANCE", "Realized", "realize"]
+__all__ = ["Realized", "Tolerances", "realize"]
 
-SINGULAR_TOLERANCE = 1e-11
-"""A divisor below this, relative to its natural size, makes its joint free."""
 
-CLAMP_TOLERANCE = 1e-11
-"""How far outside its domain a square root's argument may be, relative to its natural size: poses on
-the boundary of the workspace are reachable."""
+@dataclass(frozen=True, slots=True)
+class Tolerances:
+    """Relative to natural sizes: a divisor below `singular` makes its joint free; a square root's
+    argument may be `clamp` outside its domain, as poses on the boundary of the workspace are reachable.
+    """
+
+    singular: float = 1e-11
+    clamp: float = 1e-11
+
+    @staticmethod
+    def for_slack(slack: float) -> Tolerances:
+        """Tolerances where the solved geometry is `slack` (m or rad) off the file's."""
+        return Tolerances(min(max(1e-11, 5.0 * slack), 1e-7), max(1e-11, slack))
+
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,9 +39,9 @@ class Realized:
     branches: int
 
 
-def realize(g: ExpressionGraph, c: Candidate, sigma: Expr, clamp: float) -> Realized:
-    """The candidate's form over the graph. `clamp` widens the domain of square roots."""
-    return _FORMS[c.form](g, c, sigma, max(clamp, CLAMP_TOLERANCE))
+def realize(g: ExpressionGraph, c: Candidate, sigma: Expr, tolerances: Tolerances) -> Realized:
+    """The candidate's form over the graph."""
+    return _FORMS[c.form](g, c, sigma, tolerances)
 
 
 def _size(e: Expr) -> float:
@@ -41,35 +50,37 @@ def _size(e: Expr) -> float:
     return float(np.max(np.abs(finite))) if finite.size else 1.0
 
 
-def _safe_divisor(g: ExpressionGraph, divisor: Expr, power: int = 1) -> tuple[Expr, Expr | None]:
+def _safe_divisor(
+    g: ExpressionGraph, divisor: Expr, tol: Tolerances, power: int = 1
+) -> tuple[Expr, Expr | None]:
     """The divisor with 1 in its place where it vanishes, and the condition that it does not."""
     if divisor.is_fixed:
         return divisor, None
-    limit = g.const(SINGULAR_TOLERANCE**power * _size(divisor))
+    limit = g.const(tol.singular**power * _size(divisor))
     regular = g.binary("gt", g.unary("abs", divisor) if power == 1 else divisor, limit)
     return g.select(regular, divisor, g.one), regular
 
 
-def _linear(g: ExpressionGraph, c: Candidate, sigma: Expr, clamp: float) -> Realized:
+def _linear(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> Realized:
     a, b = c.coefficients
-    divisor, regular = _safe_divisor(g, a)
+    divisor, regular = _safe_divisor(g, a, tol)
     return Realized((g.div(g.neg(b), divisor),), regular, None, 1)
 
 
-def _root(g: ExpressionGraph, c: Candidate, sigma: Expr, clamp: float) -> Realized:
+def _root(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> Realized:
     a, b, k = c.coefficients
-    divisor, regular = _safe_divisor(g, a)
+    divisor, regular = _safe_divisor(g, a, tol)
     half = g.mul(g.const(0.5), b)
     disc = g.sub(g.square(half), g.mul(a, k))
-    guard = g.binary("gt", disc, g.const(-clamp * _size(disc)))
+    guard = g.binary("gt", disc, g.const(-tol.clamp * _size(disc)))
     w = g.mul(sigma, g.sqrt(disc))
     return Realized((g.div(g.sub(w, half), divisor),), regular, guard, 2)
 
 
-def _pair(g: ExpressionGraph, c: Candidate, sigma: Expr, clamp: float) -> Realized:
+def _pair(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> Realized:
     a1, b1, c1, a2, b2, c2 = c.coefficients
     det = g.sub(g.mul(a1, b2), g.mul(b1, a2))
-    divisor, regular = _safe_divisor(g, det)
+    divisor, regular = _safe_divisor(g, det, tol)
     x = g.sub(g.mul(c1, b2), g.mul(c2, b1))
     y = g.sub(g.mul(a1, c2), g.mul(a2, c1))
     if divisor.is_fixed:
@@ -78,14 +89,14 @@ def _pair(g: ExpressionGraph, c: Candidate, sigma: Expr, clamp: float) -> Realiz
     return Realized((g.mul(x, inverse), g.mul(y, inverse)), regular, None, 1)
 
 
-def _sincos(g: ExpressionGraph, c: Candidate, sigma: Expr, clamp: float) -> Realized:
+def _sincos(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> Realized:
     a, b, r = c.coefficients
     if a.is_fixed and b.is_fixed and (a.vanishes or b.vanishes):
-        return _single(g, c, sigma, clamp)
+        return _single(g, c, sigma, tol)
     h = g.add(g.square(a), g.square(b))
-    divisor, regular = _safe_divisor(g, h, 2)
+    divisor, regular = _safe_divisor(g, h, tol, 2)
     disc = g.sub(h, g.square(r))
-    guard = g.binary("gt", disc, g.const(-clamp * _size(h)))
+    guard = g.binary("gt", disc, g.const(-tol.clamp * _size(h)))
     w = g.mul(sigma, g.sqrt(disc))
     inverse = g.div(g.one, divisor)
     cosine = g.mul(g.sub(g.mul(a, r), g.mul(b, w)), inverse)
@@ -93,21 +104,21 @@ def _sincos(g: ExpressionGraph, c: Candidate, sigma: Expr, clamp: float) -> Real
     return Realized((cosine, sine), regular, guard, 2)
 
 
-def _single(g: ExpressionGraph, c: Candidate, sigma: Expr, clamp: float) -> Realized:
+def _single(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> Realized:
     """`A cos = C` or `B sin = C` with a fixed coefficient; the other of the pair takes sigma."""
     a, b, r = c.coefficients
     ratio = g.div(r, b if a.vanishes else a)
     disc = g.sub(g.one, g.square(ratio))
-    guard = g.binary("gt", disc, g.const(-clamp))
+    guard = g.binary("gt", disc, g.const(-tol.clamp))
     bounded = g.binary("max", g.minus_one, g.binary("min", g.one, ratio))
     other = g.mul(sigma, g.sqrt(disc))
     return Realized((other, bounded) if a.vanishes else (bounded, other), None, guard, 2)
 
 
-def _tangent(g: ExpressionGraph, c: Candidate, sigma: Expr, clamp: float) -> Realized:
+def _tangent(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> Realized:
     x, y = c.coefficients
     h = g.add(g.square(x), g.square(y))
-    divisor, regular = _safe_divisor(g, h, 2)
+    divisor, regular = _safe_divisor(g, h, tol, 2)
     inverse = g.div(sigma, g.sqrt(divisor))
     return Realized((g.mul(x, inverse), g.mul(y, inverse)), regular, None, 2)
 

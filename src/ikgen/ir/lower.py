@@ -11,13 +11,16 @@ from ikgen.equations.expression import Expr, ExpressionGraph
 from ikgen.equations.knowledge import Variable
 from ikgen.equations.probes import arm_size
 from ikgen.equations.rigid import Rigid, constant, inverse, multiply
-from ikgen.ir.forms import Realized, realize
+from ikgen.ir.forms import Realized, Tolerances, realize
 from ikgen.ir.program import Comment, Program
 from ikgen.ir.serialize import LoweredLevel, Requirement, serialize
 from ikgen.solver.graph import SolutionGraph
 from ikgen.solver.session import Step
 
 __all__ = ["lower"]
+
+WELL_CONDITIONED = 1e-3
+"""Relative size of a divisor below which a fallback is taken in its form's place."""
 
 CHECK_TOLERANCE = 5e-10
 """Largest error (m over the arm's size, rad) of a row that counts as a solution."""
@@ -34,6 +37,8 @@ class Lowering:
         self.g: ExpressionGraph = self.system.graph
         self.knowledge = graph.knowledge
         self.slack = slack
+        self.tolerances = Tolerances.for_slack(slack)
+        self.residuals: list[Expr] = []
         self.levels = [LoweredLevel(1)]
         self.definition: dict[int, Expr] = dict(self.knowledge.binding)
         self.level_of: dict[int, int] = {}
@@ -172,7 +177,7 @@ class Lowering:
         else:
             sigma = g.one
         self.place(Comment(text))
-        forms = [realize(g, c, sigma, self.slack) for c in (step.candidate, *step.fallbacks)]
+        forms = [realize(g, c, sigma, self.tolerances) for c in (step.candidate, *step.fallbacks)]
         self._define(v, self._select(v, forms, sigma))
 
     def _select(self, v: Variable, forms: list[Realized], sigma: Expr) -> tuple[Expr, ...]:
@@ -207,7 +212,9 @@ class Lowering:
         regular = form.regular
         if regular is None:
             return form
-        limit = self.g.const(regular.args[1].value / 1e-11 * 1e-3)
+        power = 2 if form.branches == 2 else 1
+        natural = regular.args[1].value / self.tolerances.singular**power
+        limit = self.g.const(natural * WELL_CONDITIONED**power)
         return Realized(
             form.values, self.g.binary("gt", regular.args[0], limit), form.guard, form.branches
         )
@@ -270,6 +277,7 @@ class Lowering:
             if parts:
                 total = self.g.dot(parts, parts)
                 self.require(self.g.binary("gt", self.g.const(tolerance**2), total))
+                self.residuals.append(total)
 
     def _residuals(self, k: int, m: int) -> tuple[list[Expr], list[Expr]]:
         """Differences of position and of rotation of one split, those that vanish by construction

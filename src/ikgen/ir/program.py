@@ -76,7 +76,8 @@ class Program:
 
     `parameters` are the arm's constants, `constants` what follows from them alone. `inputs` are the raw pose entries `t00` ... `t23`, then per joint the seed values that a singular
     pose takes (`seed_c1`, `seed_s1` or `seed_d1`) and the held joints' values (`c7`, `s7` or `d7`).
-    `singular` are the conditions under which a solution is one of a continuum.
+    `singular` are the conditions under which a solution is one of a continuum; `residuals`
+    the squared errors (m^2, rad^2) with which a row reproduces the pose.
     """
 
     name: str
@@ -86,6 +87,7 @@ class Program:
     levels: tuple[Level, ...]
     outputs: tuple[JointOutput, ...]
     singular: tuple[str, ...]
+    residuals: tuple[str, ...] = ()
 
     @property
     def max_solutions(self) -> int:

@@ -74,7 +74,7 @@ class _Serializer:
         for _, values in outputs:
             for e in values:
                 self._need(e, last, keep=True)
-        for e in self.work.singular:
+        for e in (*self.work.singular, *self.work.residuals):
             self._need(e, last, keep=True)
 
     def _need(self, node: Expr, level: int, *, keep: bool = False) -> None:
@@ -198,4 +198,5 @@ def serialize(work: Lowering, outputs: list[tuple[int, tuple[Expr, ...]]]) -> Pr
         levels,
         tuple(joints),
         singular,
+        tuple(str(s.operand(e)) for e in work.residuals),
     )
