@@ -24,7 +24,7 @@ class Tolerances:
     @staticmethod
     def for_slack(slack: float) -> Tolerances:
         """Tolerances where the solved geometry is `slack` (m or rad) off the file's."""
-        return Tolerances(min(max(1e-11, 5.0 * slack), 1e-7), max(1e-11, slack))
+        return Tolerances(min(max(1e-11, 5.0 * slack), 1e-7), max(1e-11, 5.0 * slack))
 
 
 

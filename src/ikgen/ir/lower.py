@@ -39,6 +39,7 @@ class Lowering:
         self.slack = slack
         self.tolerances = Tolerances.for_slack(slack)
         self.residuals: list[Expr] = []
+        self.norms: list[Expr] = []
         self.levels = [LoweredLevel(1)]
         self.definition: dict[int, Expr] = dict(self.knowledge.binding)
         self.level_of: dict[int, int] = {}
@@ -179,6 +180,8 @@ class Lowering:
         self.place(Comment(text))
         forms = [realize(g, c, sigma, self.tolerances) for c in (step.candidate, *step.fallbacks)]
         self._define(v, self._select(v, forms, sigma))
+        if step.candidate.form == "pair":
+            self._unit_norm(v)
 
     def _select(self, v: Variable, forms: list[Realized], sigma: Expr) -> tuple[Expr, ...]:
         """The first form whose divisor does not vanish; the seed's value if there is none."""
@@ -233,6 +236,14 @@ class Lowering:
             self.names[atom.id] = _identifier(name)
             self.place(atom)
 
+    def _unit_norm(self, v: Variable) -> None:
+        """Two linear equations give a cosine and sine on the unit circle only if they agree with the
+        rest: a branch whose squares do not add up to one is none."""
+        g = self.g
+        c, s = self.knowledge.variables.pair(v.key)
+        excess = g.sub(g.add(g.square(c), g.square(s)), g.one)
+        self.norms.append(excess)
+
     def _quartic(self, index: int, step: Step, text: str) -> None:
         v = step.candidate.unknown
         for e in step.candidate.coefficients:
@@ -273,11 +284,17 @@ class Lowering:
         self.place(Comment("does the row reproduce the pose?"))
         limit = max(CHECK_TOLERANCE, 30 * self.slack)
         size = max(arm_size(self.dh), 1.0)
+        for level in range(len(self.levels)):
+            norms = [e for e in self.norms if self.level(e) == level]
+            self._bounded(norms, limit)
         for parts, tolerance in zip(residuals, (limit * size, limit), strict=True):
-            if parts:
-                total = self.g.dot(parts, parts)
-                self.require(self.g.binary("gt", self.g.const(tolerance**2), total))
-                self.residuals.append(total)
+            self._bounded(parts, tolerance)
+
+    def _bounded(self, parts: list[Expr], tolerance: float) -> None:
+        if parts:
+            total = self.g.dot(parts, parts)
+            self.require(self.g.binary("gt", self.g.const(tolerance**2), total))
+            self.residuals.append(total)
 
     def _residuals(self, k: int, m: int) -> tuple[list[Expr], list[Expr]]:
         """Differences of position and of rotation of one split, those that vanish by construction
