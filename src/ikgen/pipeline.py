@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,17 +15,18 @@ if TYPE_CHECKING:
     from ikgen.kinematics.classify import GeometryClass
     from ikgen.model.chain import Chain
     from ikgen.model.dh import DHChain
-    from ikgen.model.joint_tree import JointTree
+    from ikgen.model.joint_tree import JointTree, Source
     from ikgen.solver.graph import SolutionGraph
+    from ikgen.tasks import Task
 
-__all__ = ["Derivation", "Request", "derive", "read_robot"]
+__all__ = ["Derivation", "Progress", "Reading", "Request", "derive", "identifier", "read"]
 
 Progress = Callable[[str, str], None]
 
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What the user asked for: one robot, one chain, one task."""
+    """What the user asked for: one robot file or DH table, one chain, one task."""
 
     robot: Path
     base: str | None = None
@@ -39,19 +40,38 @@ class Request:
 
 
 @dataclass(frozen=True, slots=True)
+class Reading:
+    """A description as read: its tree and chain (none for a DH table) and the chain in DH form."""
+
+    source: Source
+    tree: JointTree | None
+    chain: Chain | None
+    dh: DHChain
+
+
+@dataclass(frozen=True, slots=True)
 class Derivation:
     """Everything between the file and the emitted text."""
 
-    tree: JointTree
-    chain: Chain
-    dh: DHChain
+    reading: Reading
     geometry: GeometryClass
+    task: Task
     graph: SolutionGraph
     module: SolverModule
 
 
-def read_robot(request: Request) -> tuple[JointTree, Chain, DHChain]:
+def _quiet(stage: str, detail: str) -> None:
+    """No progress."""
+
+
+def read(request: Request) -> Reading:
     """Read the file, choose the chain and convert it to modified DH form."""
+    free = tuple(name for name, _ in request.free)
+    if request.robot.suffix == ".toml":
+        from ikgen.importers.dh_table import read_dh_table
+
+        source, dh = read_dh_table(request.robot, free=free, locked=request.locked)
+        return Reading(source, None, None, dh)
     from ikgen.importers import load_tree
     from ikgen.importers.chain import select_chain
     from ikgen.kinematics.modified_dh import to_dh
@@ -60,58 +80,80 @@ def read_robot(request: Request) -> tuple[JointTree, Chain, DHChain]:
         request.robot, arguments=request.arguments, package_paths=request.package_paths
     )
     chain = select_chain(tree, request.base, request.tip, dict(request.locked))
-    dh = to_dh(chain, free=tuple(name for name, _ in request.free))
-    return tree, chain, dh
+    return Reading(tree.source, tree, chain, to_dh(chain, free=free))
 
 
-def derive(request: Request, progress: Progress | None = None) -> Derivation:
+def derive(request: Request, progress: Progress = _quiet) -> Derivation:
     """From the file to a solver module, not yet written or verified."""
     from ikgen.kinematics.classify import classify
 
-    note = progress or (lambda stage, detail: None)
-    note("read", str(request.robot.name))
-    tree, chain, dh = read_robot(request)
-    geometry = classify(dh)
-    note("derive", geometry.name)
-    graph = _solve(dh, note)
-    module = _module(request, tree, dh, geometry.words, graph)
-    return Derivation(tree, chain, dh, geometry, graph, module)
+    progress("read", request.robot.name)
+    reading = read(request)
+    geometry = classify(reading.dh)
+    progress("derive", geometry.name)
+    task, graph = _solve(reading.dh, request.task, progress)
+    return Derivation(
+        reading, geometry, task, graph, _module(request, reading, task, geometry.words, graph)
+    )
 
 
-def _solve(dh: DHChain, note: Progress) -> SolutionGraph:
+def _solve(dh: DHChain, asked: str | None, progress: Progress) -> tuple[Task, SolutionGraph]:
+    """The asked task; without one the task that fits the arm, the whole pose first."""
     from ikgen.solver.run import solve_chain
+    from ikgen.tasks import find_task
 
-    graph = solve_chain(dh, progress=lambda text: note("derive", text))
+    task = find_task(asked or "pose")
+    graph = solve_chain(
+        dh,
+        readable=task.readable,
+        tool_on_right=not task.whole_pose,
+        progress=lambda text: progress("derive", text),
+    )
     if graph.open_joints:
-        raise UnsolvedChainError(*_unsolved(dh, graph))
-    return graph
+        raise unsolved(dh, task, graph)
+    return task, graph
 
 
-def _unsolved(dh: DHChain, graph: SolutionGraph) -> tuple[str]:
+def unsolved(dh: DHChain, task: Task, graph: SolutionGraph) -> UnsolvedChainError:
+    """The error of a chain without a closed form: what was solved, what is left, what would help."""
+    solved = ", ".join(f"{s.candidate.unknown.text} ({s.candidate.leaf})" for s in graph.steps)
     left = ", ".join(dh.joints[j].name for j in graph.open_joints)
-    solved = ", ".join(s.candidate.unknown.text for s in graph.steps) or "nothing"
-    return (f"no closed form found: solved {solved}; left are the joints {left}",)
+    moving = dh.dof - len(dh.free)
+    hint = "hold a joint free (--free JOINT) or lock one (--lock JOINT=VALUE)"
+    if moving > task.freedoms:
+        hint = (
+            f"{moving} joints move but the task '{task.name}' fixes {task.freedoms}: hold "
+            f"{moving - task.freedoms} of them free (--free JOINT) or lock them "
+            "(--lock JOINT=VALUE); `ikgen inspect` proposes which"
+        )
+    elif moving < task.freedoms:
+        hint = f"{moving} joints move: try a smaller task (--task)"
+    return UnsolvedChainError(
+        f"no closed form found for the task '{task.name}': solved {solved or 'nothing'}; "
+        f"left are the joints {left}",
+        hint=hint,
+    )
 
 
 def _module(
-    request: Request, tree: JointTree, dh: DHChain, geometry: str, graph: SolutionGraph
+    request: Request, reading: Reading, task: Task, geometry: str, graph: SolutionGraph
 ) -> SolverModule:
     from ikgen.emit.module import EXACT, SolverModule
     from ikgen.ir.lower import lower
 
+    dh = reading.dh
     deviation = max(dh.deviation)
-    slack = 2.0 * deviation if deviation > EXACT else 0.0
     values = dict(request.free)
     free = tuple(j for j, joint in enumerate(dh.joints) if joint.name in dh.free)
     return SolverModule(
-        name=request.name or identifier(tree.name),
-        program=lower(graph, slack=slack),
+        name=request.name or identifier(dh.robot),
+        program=lower(graph, slack=2.0 * deviation if deviation > EXACT else 0.0),
         dh=dh,
-        task=request.task or "pose",
+        task=task.name,
         free=free,
         free_defaults=tuple(_inside(dh, j, values.get(dh.joints[j].name)) for j in free),
         source_name=request.robot.name,
-        source_sha256=tree.source.sha256,
+        source_sha256=reading.source.sha256,
         generator_version=__version__,
         geometry=geometry,
         order=tuple(f"{s.candidate.unknown.text} ({s.candidate.leaf})" for s in graph.steps),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from ikgen.emit.rendering import render
 from ikgen.ir.ops import Op, Operand
 from ikgen.ir.program import Comment, JointOutput, Let, Level, Program, Require
 
-__all__ = ["emit", "emit_module"]
+__all__ = ["emit_derivation", "emit_module"]
 
 _INFIX = {
     "or": ("or", 1),
@@ -65,8 +66,14 @@ BATCH = Language(
 )
 
 
-def emit(module: SolverModule) -> dict[str, str]:
+class _Derived(Protocol):
+    @property
+    def module(self) -> SolverModule: ...
+
+
+def emit_derivation(derivation: _Derived) -> dict[str, str]:
     """File name -> text of the Python output."""
+    module = derivation.module
     return {f"{module.name}_ik.py": emit_module(module)}
 
 

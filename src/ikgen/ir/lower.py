@@ -7,6 +7,7 @@ from typing import Union
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.equations.build import ENTRY_NAMES
 from ikgen.equations.expression import Expr, ExpressionGraph
 from ikgen.equations.knowledge import Variable
 from ikgen.equations.probes import arm_size
@@ -48,6 +49,11 @@ class Lowering:
         self.singular: list[Expr] = []
         self.inputs: list[str] = []
 
+    @property
+    def whole_pose(self) -> bool:
+        """Whether every entry of the pose is read; then any split compares it."""
+        return self.system.readable == frozenset(ENTRY_NAMES)
+
     # -- inputs ---------------------------------------------------------------------------------
 
     def _input(self, name: str, probe: NDArray[np.float64] | None = None) -> Expr:
@@ -63,13 +69,15 @@ class Lowering:
         g = self.g
         base, tip = constant(g, self.dh.X_base), constant(g, self.dh.X_tip)
         pose = self.session.probes.pose
-        raw = self.dh.X_base @ pose @ self.dh.X_tip
+        raw = self.dh.X_base @ pose
+        if self.whole_pose:
+            raw = raw @ self.dh.X_tip
         rows = tuple(
             tuple(self._input(f"t{i}{j}", raw[:, i, j]) for j in range(3)) for i in range(3)
         )
         p = tuple(self._input(f"t{i}3", raw[:, i, 3]) for i in range(3))
         T: Rigid = multiply(g, inverse(g, base), Rigid(rows, p))
-        if self.system.tool.p == (g.zero,) * 3:
+        if self.whole_pose:
             T = multiply(g, T, inverse(g, tip))
         target = self.system.pose
         self.place(Comment("the pose in DH frames"))
@@ -279,7 +287,9 @@ class Lowering:
     def check(self) -> None:
         """A row is returned only if it reproduces the pose: the cheapest split is compared."""
         n = self.system.n
-        splits = [(k, m) for k in range(n) for m in range(k + 1, n + 1)]
+        splits = [(0, n)]
+        if self.whole_pose:
+            splits = [(k, m) for k in range(n) for m in range(k + 1, n + 1)]
         residuals = min((self._residuals(k, m) for k, m in splits), key=self._cost)
         self.place(Comment("does the row reproduce the pose?"))
         limit = max(CHECK_TOLERANCE, 30 * self.slack)

@@ -1,0 +1,41 @@
+"""Runners of emitted files for verification, made from the solver module they came from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from ikgen.emit.module import SolverModule
+    from ikgen.verify.runners.cpp_header import CppHeader
+    from ikgen.verify.runners.python_module import PythonModule
+
+__all__ = ["cpp_runner", "python_runner"]
+
+
+def python_runner(module: SolverModule, folder: Path) -> PythonModule:
+    """The emitted Python module, imported."""
+    from ikgen.verify.runners.python_module import PythonModule
+
+    return PythonModule(folder / f"{module.name}_ik.py")
+
+
+def cpp_runner(module: SolverModule, folder: Path) -> CppHeader:
+    """The emitted header, compiled into a program that solves poses in bulk."""
+    from ikgen.verify.runners.cpp_header import CppHeader
+    from ikgen.verify.runners.runner import ArmConstants
+
+    dh = module.dh
+    constants = ArmConstants(
+        tuple(j.name for j in dh.joints),
+        np.array([j.limits.lower for j in dh.joints]),
+        np.array([j.limits.upper for j in dh.joints]),
+        dh.base_link,
+        dh.tip_link,
+        module.max_solutions,
+        module.task,
+        tuple(dh.joints[j].name for j in module.free),
+    )
+    return CppHeader(folder / f"{module.name}_ik.hpp", constants)
