@@ -1,0 +1,171 @@
+"""Generate and verify every arm of the corpus; print a table by class.
+
+    python -m benchmarks.corpus [--family TEXT] [--arm NAME] [--samples N] [--jobs N]
+
+The corpus (`../shared/robots/arms.json`) is not part of the package; without it the command says so.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+CORPUS = Path(__file__).resolve().parents[2] / "shared" / "robots"
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What came of one arm."""
+
+    name: str
+    family: str
+    task: str
+    state: str
+    seconds: float
+    solutions: str
+    closure: str
+    message: str
+
+
+def urdf_of(arm: dict[str, Any]) -> str:
+    """A URDF with the digits of the arm's chain, for arms whose file is not distributable."""
+    lines = [f'<robot name="{arm["name"]}">', f'<link name="{arm["base_link"]}"/>']
+    for j in arm["chain"]:
+        kind = j.get("base_type", j["type"])
+        xyz, rpy = (" ".join(repr(float(x)) for x in j[k]) for k in ("xyz", "rpy"))
+        lines.append(f'<link name="{j["child"]}"/>')
+        lines.append(f'<joint name="{j["joint"]}" type="{kind}"><origin xyz="{xyz}" rpy="{rpy}"/>')
+        lines.append(f'<parent link="{j["parent"]}"/><child link="{j["child"]}"/>')
+        if kind != "fixed":
+            lines.append(f'<axis xyz="{" ".join(repr(float(x)) for x in j["axis"])}"/>')
+        if kind in ("revolute", "prismatic"):
+            low, high = j.get("lower"), j.get("upper")
+            span = f'lower="{low!r}" upper="{high!r}"' if low is not None else ""
+            lines.append(f'<limit {span} effort="1" velocity="1"/>')
+        if "mimic" in j:
+            m = j["mimic"]
+            lines.append(
+                f'<mimic joint="{m["joint"]}" multiplier="{m.get("multiplier", 1)}" '
+                f'offset="{m.get("offset", 0)}"/>'
+            )
+        lines.append("</joint>")
+    return "\n".join([*lines, "</robot>"])
+
+
+def options_for(arm: dict[str, Any]) -> list[list[str]]:
+    """Option sets to try in turn: the arm as it is; a smaller task; one joint held free."""
+    joints = [j["joint"] for j in arm["chain"] if j["type"] not in ("fixed", "mimic")]
+    if arm["dof"] <= 6:
+        return [[]]
+    spare = arm["dof"] - 6
+    if spare > 1:
+        return [[]]
+    order = [6, 2, 3, 1, 0, 4, 5]
+    return [["--free", joints[i]] for i in order if i < len(joints)]
+
+
+def run_arm(arm: dict[str, Any], samples: int) -> Outcome:
+    """Run the command line on one arm in a folder of its own."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = CORPUS / arm["file"] if arm.get("file") else Path(folder) / f"{arm['name']}.urdf"
+        if not arm.get("file"):
+            path.write_text(urdf_of(arm))
+        result: dict[str, Any] = {}
+        started = time.perf_counter()
+        for extra in options_for(arm):
+            command = [
+                sys.executable, "-m", "ikgen", "from-urdf", str(path), "--json", "-q",
+                "--base", arm["base_link"], "--tip", arm["tip_link"], "-o", folder,
+                "--samples", str(samples), *extra,
+            ]  # fmt: skip
+            started = time.perf_counter()
+            done = subprocess.run(command, capture_output=True, text=True)
+            seconds = time.perf_counter() - started
+            result = _parse(done)
+            result["code"] = done.returncode
+            result["extra"] = " ".join(extra)
+            if done.returncode != 3:
+                break
+        return _outcome(arm, result, seconds)
+
+
+def _parse(done: subprocess.CompletedProcess[str]) -> dict[str, Any]:
+    try:
+        parsed: dict[str, Any] = json.loads(done.stdout)
+    except json.JSONDecodeError:
+        lines = done.stderr.strip().splitlines()
+        parsed = {"error": lines[-1] if lines else ""}
+        if len(lines) > 1:
+            parsed["error"] = " ".join(lines)
+    return parsed
+
+
+def _outcome(arm: dict[str, Any], result: dict[str, Any], seconds: float) -> Outcome:
+    state = {0: "solved", 1: "WRONG", 2: "ERROR", 3: "unsolved"}.get(result["code"], "CRASH")
+    report = (result.get("verification") or {}).get("python") or {}
+    counts = report.get("solutions") or {}
+    text = f"{counts['min']}..{counts['max']}" if counts else ""
+    closure = next((c for c in report.get("checks", []) if c["name"] == "closure"), {})
+    worst = closure.get("worst") or {}
+    numbers = " ".join(f"{v:.0e}" for v in worst.values() if v is not None)
+    message = str(result.get("error") or result["extra"] or "")
+    task = str(result.get("task") or "")
+    return Outcome(
+        arm["name"], arm["family"], task, state, seconds, text, numbers, message[:300]
+    )
+
+
+def _table(outcomes: Sequence[Outcome]) -> Iterator[str]:
+    yield f"{'class':58} {'arms':>4} {'solved':>6} {'unsolved':>8} {'failed':>6} {'median s':>8} {'max s':>6}"
+    for family in sorted({o.family for o in outcomes}):
+        rows = [o for o in outcomes if o.family == family]
+        solved = [o for o in rows if o.state == "solved"]
+        unsolved = sum(o.state == "unsolved" for o in rows)
+        times = [o.seconds for o in solved] or [math.nan]
+        yield (
+            f"{family:58} {len(rows):4} {len(solved):6} {unsolved:8} "
+            f"{len(rows) - len(solved) - unsolved:6} {statistics.median(times):8.1f} {max(times):6.1f}"
+        )
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the corpus; 1 if an arm that was solved is wrong, 0 otherwise."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--family", default="", help="only classes whose name contains this")
+    parser.add_argument("--arm", action="append", default=[], help="only this arm (repeatable)")
+    parser.add_argument("--samples", type=int, default=1000)
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--json", type=Path, help="write the outcomes here")
+    options = parser.parse_args(arguments)
+    if not (CORPUS / "arms.json").is_file():
+        print(f"no corpus: {CORPUS.name}/arms.json is not beside the checkout")
+        return 0
+    arms = json.loads((CORPUS / "arms.json").read_text())
+    arms = [a for a in arms if options.family in a["family"]]
+    arms = [a for a in arms if not options.arm or a["name"] in options.arm]
+    with ThreadPoolExecutor(options.jobs) as pool:
+        outcomes = []
+        for o in pool.map(lambda a: run_arm(a, options.samples), arms):
+            outcomes.append(o)
+            print(f"{o.name:30} {o.state:9} {o.seconds:6.1f} s  {o.task:10} {o.solutions:6} {o.closure:12} {o.message}", flush=True)
+    print()
+    for line in _table(outcomes):
+        print(line)
+    if options.json:
+        options.json.write_text(json.dumps([o.__dict__ if hasattr(o, "__dict__") else [getattr(o, f) for f in o.__slots__] for o in outcomes], indent=1))
+    return int(any(o.state in ("WRONG", "CRASH", "ERROR") for o in outcomes))
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,69 @@
+// Time of solve and solve_batch of one emitted header, on reachable random poses.
+//
+// Compile with -DIKGEN_HEADER='"x_ik.hpp"' -DIKGEN_NAMESPACE=x_ik. Prints: ns per solve, ns per pose of
+// solve_batch, mean number of solutions.
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <random>
+#include <vector>
+
+#include IKGEN_HEADER
+
+namespace ik = IKGEN_NAMESPACE;
+
+namespace {
+
+constexpr std::size_t kPoses = 1000;
+constexpr int kRounds = 60;
+
+std::vector<Eigen::Isometry3d> reachable_poses() {
+  std::mt19937_64 random(7);
+  std::vector<Eigen::Isometry3d> poses;
+  for (std::size_t n = 0; n < kPoses; ++n) {
+    ik::Joints q;
+    for (int j = 0; j < ik::kDof; ++j) {
+      const auto i = static_cast<std::size_t>(j);
+      const double low = std::max(ik::kLower[i], -3.1), high = std::min(ik::kUpper[i], 3.1);
+      q[j] = std::uniform_real_distribution<double>(low, high)(random);
+    }
+    for (int k = 0; k < ik::kFree; ++k) {
+#ifdef IKGEN_FREE
+      q[ik::kFreeJoints[static_cast<std::size_t>(k)]] = ik::Options().free[static_cast<std::size_t>(k)];
+#endif
+    }
+    poses.push_back(ik::forward(q));
+  }
+  return poses;
+}
+
+// Best of the rounds, in ns per pose.
+template <class F> double time_of(const F& run) {
+  double best = 1e300;
+  for (int round = 0; round < kRounds; ++round) {
+    const auto start = std::chrono::steady_clock::now();
+    run();
+    const std::chrono::duration<double, std::nano> spent = std::chrono::steady_clock::now() - start;
+    best = std::min(best, spent.count() / static_cast<double>(kPoses));
+  }
+  return best;
+}
+
+}  // namespace
+
+int main() {
+  const std::vector<Eigen::Isometry3d> poses = reachable_poses();
+  std::vector<ik::Solutions> out(kPoses);
+  ik::Options options;
+  options.limits = IKGEN_LIMITS;
+  const double single = time_of([&] {
+    for (std::size_t n = 0; n < kPoses; ++n) out[n] = ik::solve(poses[n], options);
+  });
+  double rows = 0.0;
+  for (const ik::Solutions& s : out) rows += s.count;
+  const double batch =
+      time_of([&] { ik::solve_batch(poses.data(), static_cast<std::ptrdiff_t>(kPoses), out.data(), options); });
+  std::printf("%.1f %.1f %.2f\n", single, batch, rows / static_cast<double>(kPoses));
+  return 0;
+}

@@ -1,0 +1,5 @@
+"""`python -m ikgen`."""
+
+from ikgen.cli.main import main
+
+main()
