@@ -7,7 +7,12 @@ command line (`docs/reference/cli.md`).
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ikgen.verify.report import VerificationReport
 
 __all__ = [
     "BadDescriptionError",
@@ -76,6 +81,17 @@ class MissingToolError(IkgenError):
 
 
 class VerificationError(IkgenError):
-    """Emitted code failed its verification; the message has the worst case's numbers."""
+    """Emitted code failed its verification; the message has the worst case's numbers, `reports` the
+    whole of each language's verification."""
 
     exit_code = 1
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        reports: Mapping[str, VerificationReport] = MappingProxyType({}),
+        hint: str = "",
+    ) -> None:
+        super().__init__(message, hint=hint)
+        self.reports = reports

@@ -119,6 +119,7 @@ def verify_files(
         if not report.passed:
             raise VerificationError(
                 f"the emitted {name} code failed its verification: {report.worst_case}",
+                reports=reports,
                 hint="nothing was written; run with -v for the whole table, and please report it",
             )
     return reports

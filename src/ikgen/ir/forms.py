@@ -9,34 +9,54 @@ import numpy as np
 from ikgen.equations.expression import Expr, ExpressionGraph
 from ikgen.solver.candidate import Candidate
 
-__all__ = ["Realized", "Tolerances", "realize"]
+__all__ = ["Divisor", "Realized", "Tolerances", "realize"]
 
 
 @dataclass(frozen=True, slots=True)
 class Tolerances:
-    """Relative to natural sizes: a divisor below `singular` makes its joint free; a square root's
-    argument may be `clamp` outside its domain, as poses on the boundary of the workspace are reachable.
+    """Relative to natural sizes: a divisor below `singular` makes its joint free, one below `flag` marks
+    the solution as one of a continuum; a square root's argument may be `clamp` outside its domain, as
+    poses on the boundary of the workspace are reachable.
     """
 
     singular: float = 1e-11
+    flag: float = 1e-7
     clamp: float = 1e-11
 
     @staticmethod
     def for_slack(slack: float) -> Tolerances:
         """Tolerances where the solved geometry is `slack` (m or rad) off the file's."""
-        return Tolerances(min(max(1e-11, 5.0 * slack), 1e-7), max(1e-11, 5.0 * slack))
+        return Tolerances(
+            flag=min(max(1e-7, 5.0 * slack), 1e-2), clamp=max(1e-11, 5.0 * slack)
+        )
 
 
 
 @dataclass(frozen=True, slots=True)
+class Divisor:
+    """A divisor with 1 in its place where it vanishes; `regular`: it does not vanish; `clear`: it is
+    well away from that. Both None where it is a nonzero constant."""
+
+    value: Expr
+    regular: Expr | None = None
+    clear: Expr | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Realized:
-    """`values`: (cosine, sine) or (distance,), defined where `regular` (None: always) holds; `guard`:
-    condition for a real solution (None: always); `branches`: how many signs of sigma differ."""
+    """`values`: (cosine, sine) or (distance,), defined where `regular` (None: always) holds, and well
+    away from a continuum where `clear` does; `guard`: condition for a real solution (None: always);
+    `branches`: how many signs of sigma differ."""
 
     values: tuple[Expr, ...]
-    regular: Expr | None
+    divisor: Divisor
     guard: Expr | None
     branches: int
+
+    @property
+    def regular(self) -> Expr | None:
+        """Condition that the divisor does not vanish."""
+        return self.divisor.regular
 
 
 def realize(g: ExpressionGraph, c: Candidate, sigma: Expr, tolerances: Tolerances) -> Realized:
@@ -50,43 +70,42 @@ def _size(e: Expr) -> float:
     return float(np.max(np.abs(finite))) if finite.size else 1.0
 
 
-def _safe_divisor(
-    g: ExpressionGraph, divisor: Expr, tol: Tolerances, power: int = 1
-) -> tuple[Expr, Expr | None]:
-    """The divisor with 1 in its place where it vanishes, and the condition that it does not."""
-    if divisor.is_fixed:
-        return divisor, None
-    limit = g.const(tol.singular**power * _size(divisor))
-    regular = g.binary("gt", g.unary("abs", divisor) if power == 1 else divisor, limit)
-    return g.select(regular, divisor, g.one), regular
+def _divisor(g: ExpressionGraph, value: Expr, tol: Tolerances, power: int = 1) -> Divisor:
+    if value.is_fixed:
+        return Divisor(value)
+    size = _size(value)
+    magnitude = g.unary("abs", value) if power == 1 else value
+    regular = g.binary("gt", magnitude, g.const(tol.singular**power * size))
+    clear = g.binary("gt", magnitude, g.const(tol.flag**power * size))
+    return Divisor(g.select(regular, value, g.one), regular, clear)
 
 
 def _linear(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> Realized:
     a, b = c.coefficients
-    divisor, regular = _safe_divisor(g, a, tol)
-    return Realized((g.div(g.neg(b), divisor),), regular, None, 1)
+    divisor = _divisor(g, a, tol)
+    return Realized((g.div(g.neg(b), divisor.value),), divisor, None, 1)
 
 
 def _root(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> Realized:
     a, b, k = c.coefficients
-    divisor, regular = _safe_divisor(g, a, tol)
+    divisor = _divisor(g, a, tol)
     half = g.mul(g.const(0.5), b)
     disc = g.sub(g.square(half), g.mul(a, k))
     guard = g.binary("gt", disc, g.const(-tol.clamp * _size(disc)))
     w = g.mul(sigma, g.sqrt(disc))
-    return Realized((g.div(g.sub(w, half), divisor),), regular, guard, 2)
+    return Realized((g.div(g.sub(w, half), divisor.value),), divisor, guard, 2)
 
 
 def _pair(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> Realized:
     a1, b1, c1, a2, b2, c2 = c.coefficients
     det = g.sub(g.mul(a1, b2), g.mul(b1, a2))
-    divisor, regular = _safe_divisor(g, det, tol)
+    divisor = _divisor(g, det, tol)
     x = g.sub(g.mul(c1, b2), g.mul(c2, b1))
     y = g.sub(g.mul(a1, c2), g.mul(a2, c1))
-    if divisor.is_fixed:
-        return Realized((g.div(x, divisor), g.div(y, divisor)), None, None, 1)
-    inverse = g.div(g.one, divisor)
-    return Realized((g.mul(x, inverse), g.mul(y, inverse)), regular, None, 1)
+    if det.is_fixed:
+        return Realized((g.div(x, det), g.div(y, det)), divisor, None, 1)
+    inverse = g.div(g.one, divisor.value)
+    return Realized((g.mul(x, inverse), g.mul(y, inverse)), divisor, None, 1)
 
 
 def _sincos(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> Realized:
@@ -94,14 +113,14 @@ def _sincos(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> R
     if a.is_fixed and b.is_fixed and (a.vanishes or b.vanishes):
         return _single(g, c, sigma, tol)
     h = g.add(g.square(a), g.square(b))
-    divisor, regular = _safe_divisor(g, h, tol, 2)
+    divisor = _divisor(g, h, tol, 2)
     disc = g.sub(h, g.square(r))
     guard = g.binary("gt", disc, g.const(-tol.clamp * _size(h)))
     w = g.mul(sigma, g.sqrt(disc))
-    inverse = g.div(g.one, divisor)
+    inverse = g.div(g.one, divisor.value)
     cosine = g.mul(g.sub(g.mul(a, r), g.mul(b, w)), inverse)
     sine = g.mul(g.add(g.mul(b, r), g.mul(a, w)), inverse)
-    return Realized((cosine, sine), regular, guard, 2)
+    return Realized((cosine, sine), divisor, guard, 2)
 
 
 def _single(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> Realized:
@@ -112,15 +131,15 @@ def _single(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> R
     guard = g.binary("gt", disc, g.const(-tol.clamp))
     bounded = g.binary("max", g.minus_one, g.binary("min", g.one, ratio))
     other = g.mul(sigma, g.sqrt(disc))
-    return Realized((other, bounded) if a.vanishes else (bounded, other), None, guard, 2)
+    return Realized((other, bounded) if a.vanishes else (bounded, other), Divisor(g.one), guard, 2)
 
 
 def _tangent(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> Realized:
     x, y = c.coefficients
     h = g.add(g.square(x), g.square(y))
-    divisor, regular = _safe_divisor(g, h, tol, 2)
-    inverse = g.div(sigma, g.sqrt(divisor))
-    return Realized((g.mul(x, inverse), g.mul(y, inverse)), regular, None, 2)
+    divisor = _divisor(g, h, tol, 2)
+    inverse = g.div(sigma, g.sqrt(divisor.value))
+    return Realized((g.mul(x, inverse), g.mul(y, inverse)), divisor, None, 2)
 
 
 _FORMS = {

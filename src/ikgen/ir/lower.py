@@ -12,7 +12,7 @@ from ikgen.equations.expression import Expr, ExpressionGraph
 from ikgen.equations.knowledge import Variable
 from ikgen.equations.probes import arm_size
 from ikgen.equations.rigid import Rigid, constant, inverse, multiply
-from ikgen.ir.forms import Realized, Tolerances, realize
+from ikgen.ir.forms import Divisor, Realized, Tolerances, realize
 from ikgen.ir.program import Comment, Program
 from ikgen.ir.serialize import LoweredLevel, Requirement, serialize
 from ikgen.solver.graph import SolutionGraph
@@ -203,7 +203,8 @@ class Lowering:
             here = form.regular
             guard = pick(g, here, True if form.guard is None else form.guard, guard)
             single = pick(g, here, form.branches == 1, single)
-            free = pick(g, here, False, free)
+            clear = form.divisor.clear
+            free = pick(g, here, False if clear is None else g.unary("not", clear), free)
             if here is not None:
                 both = zip(form.values, values, strict=True)
                 values = tuple(g.select(here, mine, other) for mine, other in both)
@@ -226,9 +227,9 @@ class Lowering:
         power = 2 if form.branches == 2 else 1
         natural = regular.args[1].value / self.tolerances.singular**power
         limit = self.g.const(natural * WELL_CONDITIONED**power)
-        return Realized(
-            form.values, self.g.binary("gt", regular.args[0], limit), form.guard, form.branches
-        )
+        better = self.g.binary("gt", regular.args[0], limit)
+        divisor = Divisor(form.divisor.value, better, better)
+        return Realized(form.values, divisor, form.guard, form.branches)
 
     def _define(self, v: Variable, values: tuple[Expr, ...]) -> None:
         variables = self.knowledge.variables

@@ -15,6 +15,9 @@ Array = NDArray[np.float64]
 SINGULAR_SIGMA = 1e-9
 """Smallest singular value below which a configuration counts as exactly singular."""
 
+CONTINUUM_SIGMA = 1e-8
+"""Smallest singular value below which a row is looked at for lying on a continuum."""
+
 _PROBE = 1e-6  # rad or m: step of the forward difference
 
 
@@ -57,7 +60,7 @@ def on_continuum(arm: ArmUnderTest, q: Array, targets: Array) -> NDArray[np.bool
     stretched elbow) falls back to where it was, one of a continuum (aligned wrist axes) does not.
     """
     flags = np.zeros(len(q), dtype=bool)
-    candidates = np.flatnonzero(arm.sigma(q) < 1e-6)
+    candidates = np.flatnonzero(arm.sigma(q) < CONTINUUM_SIGMA)
     if not len(candidates) or not arm.active:
         return flags
     active = list(arm.active)

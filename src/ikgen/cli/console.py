@@ -1,0 +1,69 @@
+"""What the user sees while a job runs: a status line on a terminal, plain lines elsewhere."""
+
+from __future__ import annotations
+
+import os
+import sys
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from rich.status import Status
+
+__all__ = ["Console"]
+
+_WORDS = {"read": "reading", "derive": "deriving", "emit": "writing", "verify": "verifying"}
+
+
+class Console:
+    """Progress on stderr, as a context manager; call it with a stage and a detail.
+
+    On a terminal a status line; plain lines, one a stage, where stderr is no terminal or CI is set;
+    nothing with `quiet`. `verbose` prints every detail as a line.
+    """
+
+    def __init__(self, *, quiet: bool = False, verbose: bool = False) -> None:
+        self.quiet = quiet
+        self.verbose = verbose and not quiet
+        self._stage = ""
+        self._status: Status | None = None
+        ci = os.environ.get("CI", "").lower() in ("1", "true", "yes")
+        self._live = sys.stderr.isatty() and not (quiet or verbose or ci)
+
+    def __enter__(self) -> Console:
+        if self._live:
+            from rich.console import Console as RichConsole
+
+            self._status = RichConsole(stderr=True).status("starting")
+            self._status.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._status is not None:
+            self._status.stop()
+            self._status = None
+
+    def __call__(self, stage: str, detail: str) -> None:
+        """Say what happens now."""
+        if self.quiet:
+            return
+        text = f"{_WORDS.get(stage, stage)} {detail}".rstrip()
+        if self._status is not None:
+            from rich.markup import escape
+
+            self._status.update(escape(text))
+        elif self.verbose or stage != self._stage:
+            click.echo(text if stage != "verify" or self.verbose else _WORDS["verify"], err=True)
+        self._stage = stage
+
+    def warn(self, text: str) -> None:
+        """A warning, shown unless quiet."""
+        if not self.quiet:
+            click.echo(f"warning: {text}", err=True)

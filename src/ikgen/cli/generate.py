@@ -1,0 +1,106 @@
+"""`ikgen from-urdf` and `ikgen from-dh`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ikgen.cli.console import Console
+from ikgen.cli.options import (
+    chain_options,
+    console_options,
+    make_request,
+    parse_emit,
+    sampling_options,
+)
+from ikgen.errors import UsageError, VerificationError
+from ikgen.generate import Outputs, generate
+from ikgen.pipeline import Request
+
+__all__ = ["from_dh", "from_urdf"]
+
+_output = click.option(
+    "-o", "--output", "out", metavar="DIR", type=click.Path(path_type=Path), default=Path(),
+    help="Where the outputs go (default: here).",
+)  # fmt: skip
+_emit = click.option(
+    "--emit", multiple=True, metavar="NAME,...", help="Outputs, for example python,cpp."
+)
+_verify = click.option(
+    "--no-verify", is_flag=True, help="Leave the verification out (and Pinocchio with it)."
+)
+
+
+@click.command("from-urdf")
+@click.argument("robot", type=click.Path(path_type=Path))
+@chain_options
+@_emit
+@_output
+@sampling_options
+@_verify
+@console_options
+def from_urdf(robot: Path, **options: Any) -> int:
+    """Generate inverse kinematics from the URDF or xacro file ROBOT, and verify it."""
+    if robot.suffix.lower() == ".toml":
+        raise UsageError(f"{robot} is a TOML file", hint=f"a DH table? ikgen from-dh {robot}")
+    return _run(robot, **options)
+
+
+@click.command("from-dh")
+@click.argument("table", type=click.Path(path_type=Path))
+@chain_options
+@_emit
+@_output
+@sampling_options
+@_verify
+@console_options
+def from_dh(table: Path, **options: Any) -> int:
+    """Generate inverse kinematics from the DH table TABLE (TOML), and verify it."""
+    if table.suffix.lower() != ".toml":
+        raise UsageError(f"{table} is not a TOML file", hint=f"a robot? ikgen from-urdf {table}")
+    for option in ("base", "tip", "arguments", "package_paths"):
+        if options[option]:
+            raise UsageError(f"a DH table is one chain without arguments: leave --{option} out")
+    return _run(table, **options)
+
+
+def _run(
+    robot: Path,
+    *,
+    emit: tuple[str, ...],
+    out: Path,
+    samples: int,
+    seed: int,
+    no_verify: bool,
+    as_json: bool,
+    quiet: bool,
+    verbose: bool,
+    **chain: Any,
+) -> int:
+    """The job of both commands; the exit code."""
+    request: Request = make_request(robot, **chain)
+    outputs = Outputs(parse_emit(emit), out, samples, seed, not no_verify)
+    try:
+        with Console(quiet=quiet, verbose=verbose) as console:
+            generation = generate(request, outputs, console)
+    except VerificationError as error:
+        if verbose:
+            from ikgen.cli.tables import verification_tables
+
+            click.echo(verification_tables(error.reports), err=True)
+        raise
+    from ikgen.cli.summary import as_dict, summary, trace
+
+    for warning in generation.derivation.reading.source.warnings:
+        console.warn(warning)
+    if verbose and not quiet:
+        click.echo(trace(generation), err=True)
+    if as_json:
+        import json
+
+        click.echo(json.dumps(as_dict(generation), indent=2, allow_nan=False))
+    elif not quiet:
+        click.echo(summary(generation))
+    return 0

@@ -1,0 +1,183 @@
+"""Options that the commands share, and the `Request` they make."""
+
+from __future__ import annotations
+
+import keyword
+import math
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from ikgen.errors import UsageError
+from ikgen.pipeline import Request, identifier
+
+__all__ = [
+    "chain_options",
+    "console_options",
+    "make_request",
+    "parse_emit",
+    "parse_free",
+    "parse_locked",
+    "sampling_options",
+]
+
+F = TypeVar("F", bound=Callable[..., Any])
+_FOLDER = click.Path(path_type=Path)
+
+
+def _apply(options: Sequence[Callable[[Any], Any]], function: F) -> F:
+    """The decorators on a function, listed in help in the order given."""
+    for option in reversed(options):
+        function = option(function)
+    return function
+
+
+def chain_options(function: F) -> F:
+    """Which chain of the robot, which task, and how to read the file."""
+    return _apply(
+        [
+            click.option("--base", metavar="LINK", help="Link that poses are given in."),
+            click.option("--tip", metavar="LINK", help="Link to be placed."),
+            click.option("--task", metavar="TASK", help="pose (default), position, position-direction, position-yaw, rotation or direction."),  # fmt: skip
+            click.option("--free", multiple=True, metavar="JOINT[=VALUE]", help="Hold a joint: its value becomes an input, by default VALUE."),  # fmt: skip
+            click.option("--lock", multiple=True, metavar="JOINT=VALUE", help="Fix a joint for good (rad or m)."),  # fmt: skip
+            click.option("--arg", "arguments", multiple=True, metavar="NAME:=VALUE", help="A xacro argument."),  # fmt: skip
+            click.option("--package-path", "package_paths", multiple=True, metavar="DIR", type=_FOLDER, help="Where $(find pkg) and package:// look."),  # fmt: skip
+            click.option("--name", metavar="NAME", help="Prefix of the output files (default: the robot's name)."),  # fmt: skip
+        ],
+        function,
+    )
+
+
+def sampling_options(function: F) -> F:
+    """How much is verified."""
+    return _apply(
+        [
+            click.option("--samples", metavar="N", type=click.IntRange(min=1), default=1000, show_default=True, help="Random poses in the verification."),  # fmt: skip
+            click.option("--seed", metavar="N", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the random poses."),  # fmt: skip
+        ],
+        function,
+    )
+
+
+def console_options(function: F) -> F:
+    """What is printed."""
+    return _apply(
+        [
+            click.option("--json", "as_json", is_flag=True, help="Machine-readable result on stdout."),  # fmt: skip
+            click.option("-q", "--quiet", is_flag=True, help="Print errors only."),
+            click.option("-v", "--verbose", is_flag=True, help="Print every step and check."),
+        ],
+        function,
+    )
+
+
+def make_request(
+    robot: Path,
+    *,
+    base: str | None = None,
+    tip: str | None = None,
+    task: str | None = None,
+    free: Sequence[str] = (),
+    lock: Sequence[str] = (),
+    arguments: Sequence[str] = (),
+    package_paths: Sequence[Path] = (),
+    name: str | None = None,
+) -> Request:
+    """The request that the options make; raises `UsageError` for text that does not parse."""
+    from ikgen.tasks import find_task
+
+    if task is not None:
+        task = find_task(task).name
+    for folder in package_paths:
+        if not folder.is_dir():
+            raise UsageError(f"--package-path {folder}: no such directory")
+    held, locked = parse_free(free), parse_locked(lock)
+    for joint, _ in held:
+        if joint in locked:
+            raise UsageError(f"joint '{joint}' is given to both --free and --lock")
+    return Request(
+        robot=robot,
+        base=base,
+        tip=tip,
+        task=task,
+        free=held,
+        locked=locked,
+        arguments=_arguments(arguments),
+        package_paths=tuple(package_paths),
+        name=_module_name(name),
+    )
+
+
+def parse_free(texts: Sequence[str]) -> tuple[tuple[str, float | None], ...]:
+    """(joint, default value or None) of each --free JOINT[=VALUE]."""
+    found: dict[str, float | None] = {}
+    for text in texts:
+        joint, equals, value = text.rpartition("=")
+        if not equals:
+            joint = value
+        if not joint or joint in found:
+            raise UsageError(f"--free {text}: " + ("given twice" if joint else "no joint named"))
+        found[joint] = _number("--free", text, value) if equals else None
+    return tuple(found.items())
+
+
+def parse_locked(texts: Sequence[str]) -> dict[str, float]:
+    """Joint -> value of each --lock JOINT=VALUE."""
+    found: dict[str, float] = {}
+    for text in texts:
+        joint, _, value = text.rpartition("=")
+        if not joint:
+            raise UsageError(f"--lock {text}: no value", hint="write --lock JOINT=VALUE (rad or m)")
+        if joint in found:
+            raise UsageError(f"--lock {text}: joint '{joint}' is given twice")
+        found[joint] = _number("--lock", text, value)
+    return found
+
+
+def parse_emit(texts: Sequence[str], default: tuple[str, ...] = ("python",)) -> tuple[str, ...]:
+    """Names of outputs from --emit a,b (repeatable), each once; raises for one that does not exist."""
+    from ikgen.emit.registry import find_emitter
+
+    names = [name.strip() for text in texts for name in text.split(",")]
+    chosen = tuple(dict.fromkeys(name for name in names if name)) or default
+    for name in chosen:
+        find_emitter(name)
+    return chosen
+
+
+def _number(option: str, text: str, value: str) -> float:
+    try:
+        number = float(value)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise UsageError(
+            f"{option} {text}: '{value}' is not a finite number",
+            hint="give the value in rad (revolute) or m (prismatic)",
+        )
+    return number
+
+
+def _arguments(texts: Sequence[str]) -> dict[str, str]:
+    """NAME:=VALUE pairs."""
+    found: dict[str, str] = {}
+    for text in texts:
+        name, sign, value = text.partition(":=")
+        if not sign or not name:
+            raise UsageError(f"--arg {text}: not an argument", hint="write --arg NAME:=VALUE")
+        found[name] = value
+    return found
+
+
+def _module_name(name: str | None) -> str | None:
+    """The name if it can be a module and a namespace."""
+    if name is None:
+        return None
+    if not name.isascii() or not name.isidentifier() or keyword.iskeyword(name):
+        raise UsageError(
+            f"--name {name}: not an identifier", hint=f"for example --name {identifier(name)}"
+        )
+    return name

@@ -1,0 +1,128 @@
+"""What a finished generation says: a few lines for people, a dictionary for machines."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from ikgen.cli.tables import table, verification_tables
+
+if TYPE_CHECKING:
+    from ikgen.generate import Generation
+    from ikgen.solver.graph import SolutionGraph
+    from ikgen.verify.report import VerificationReport
+
+__all__ = ["as_dict", "order", "summary", "trace"]
+
+
+def order(graph: SolutionGraph) -> list[str]:
+    """The unknowns in the order solved, each with its leaf."""
+    return [f"{s.candidate.unknown.text} ({s.candidate.leaf})" for s in graph.steps]
+
+
+def summary(generation: Generation) -> str:
+    """The result in a few lines."""
+    derivation = generation.derivation
+    module, dh = derivation.module, derivation.reading.dh
+    held = [dh.joints[j].name for j in module.free]
+    lines = [
+        ("robot", f"{dh.robot}, {dh.base_link} -> {dh.tip_link}, {dh.dof} joints"),
+        ("task", derivation.task.words + (f", held: {', '.join(held)}" if held else "")),
+        ("geometry", derivation.geometry.words),
+        ("solved", "; ".join(order(derivation.graph))),
+        ("solutions", _solutions(generation)),
+    ]
+    lines += [("verified", _verified(name, r)) for name, r in generation.reports.items()]
+    if not generation.reports:
+        lines.append(("verified", "no"))
+    lines += [("wrote", str(path)) for path in generation.files]
+    lines.append(("time", f"{generation.seconds:.1f} s"))
+    return table([(f"{name}:", text) for name, text in lines], indent="")
+
+
+def _solutions(generation: Generation) -> str:
+    """How many solutions there are at most, and over the random poses."""
+    most = f"at most {generation.derivation.module.max_solutions}"
+    for report in generation.reports.values():
+        least, mean, greatest = report.solutions
+        return f"{most}; {least} / {mean:.1f} / {greatest} (min / mean / max of random poses)"
+    return most
+
+
+def _verified(name: str, report: VerificationReport) -> str:
+    metres, radians = report.worst_closure
+    return (
+        f"{name}: {report.samples} poses, worst closure {metres:.1e} m {radians:.1e} rad, "
+        f"{_missed(report)} missed, {report.seconds:.1f} s"
+    )
+
+
+def _missed(report: VerificationReport) -> int:
+    """Generating configurations and searched ones that no row gives."""
+    names = ("completeness", "exhaustive search")
+    return sum(check.failures for check in report.checks if check.name in names)
+
+
+def as_dict(generation: Generation) -> dict[str, Any]:
+    """For --json."""
+    derivation = generation.derivation
+    module, dh = derivation.module, derivation.reading.dh
+    return {
+        "name": module.name,
+        "robot": dh.robot,
+        "base": dh.base_link,
+        "tip": dh.tip_link,
+        "task": module.task,
+        "joints": [joint.name for joint in dh.joints],
+        "free": [dh.joints[j].name for j in module.free],
+        "locked": dict(dh.locked),
+        "geometry": {"name": derivation.geometry.name, "words": derivation.geometry.words},
+        "solved": [
+            {"unknown": s.candidate.unknown.text, "leaf": s.candidate.leaf, "branches": s.branches}
+            for s in derivation.graph.steps
+        ],
+        "max_solutions": module.max_solutions,
+        "deviation": {"m": dh.deviation[0], "rad": dh.deviation[1]},
+        "warnings": list(derivation.reading.source.warnings),
+        "files": [str(path) for path in generation.files],
+        "verification": {name: _report(r) for name, r in generation.reports.items()},
+        "seconds": round(generation.seconds, 3),
+    }
+
+
+def _report(report: VerificationReport) -> dict[str, Any]:
+    closure = [x if math.isfinite(x) else None for x in report.worst_closure]
+    return {
+        **report.to_dict(),
+        "worst_closure": {"m": closure[0], "rad": closure[1]},
+        "missed": _missed(report),
+        "seconds": round(report.seconds, 3),
+    }
+
+
+def trace(generation: Generation) -> str:
+    """For -v: every tick, the ranker's choices, every check."""
+    graph = generation.derivation.graph
+    parts = ["behaviour tree:"]
+    ticks = [
+        (str(t.round), t.node, t.outcome, f"{1e3 * t.seconds:.1f} ms", t.detail)
+        for t in graph.ticks
+    ]
+    parts.append(table([("round", "node", "outcome", "time", ""), *ticks]))
+    parts.append("choices:")
+    for step in graph.steps:
+        chosen = step.candidate
+        parts.append(f"  {chosen.unknown.text}: {chosen.leaf}, {chosen.form}{_judged(chosen)}")
+        parts += [f"    fallback: {c.leaf}, {c.form}{_judged(c)}" for c in step.fallbacks]
+        parts += [f"    rejected: {c.leaf}, {c.form}{_judged(c)}" for c in step.rejected]
+    if generation.reports:
+        parts.append(verification_tables(generation.reports))
+    return "\n".join(parts)
+
+
+def _judged(candidate: Any) -> str:
+    judgement = candidate.judgement
+    if judgement is None:
+        return ""
+    weak = ", weak" if judgement.weak else ""
+    return f" (margin {judgement.margin:.1e}, cost {judgement.cost:g}{weak})"
