@@ -9,10 +9,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from ikgen.verify.report import VerificationReport
+from typing import Any
 
 __all__ = [
     "BadDescriptionError",
@@ -90,7 +87,7 @@ class VerificationError(IkgenError):
         self,
         message: str,
         *,
-        reports: Mapping[str, VerificationReport] = MappingProxyType({}),
+        reports: Mapping[str, Any] = MappingProxyType({}),
         hint: str = "",
     ) -> None:
         super().__init__(message, hint=hint)

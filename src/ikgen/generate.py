@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
-import shutil
 import tempfile
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,10 +17,11 @@ from ikgen.pipeline import Derivation, Progress, Reading, Request, derive
 
 if TYPE_CHECKING:
     from ikgen.emit.module import SolverModule
+    from ikgen.model.joint_tree import Source
     from ikgen.verify.oracle import Oracle
     from ikgen.verify.report import VerificationReport
 
-__all__ = ["Generation", "Outputs", "generate", "oracle_for", "verify_files"]
+__all__ = ["Generation", "Outputs", "generate", "oracle_for", "publish", "verify_files", "verify_one"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,33 +62,49 @@ def generate(request: Request, outputs: Outputs, progress: Progress = _silent) -
         texts |= emitter.emit(derivation)
     manifest = _manifest(request, outputs, derivation, texts)
     texts[f"{derivation.module.name}_ik.json"] = manifest
-    outputs.out.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(prefix=".ikgen-", dir=outputs.out) as folder:
-        staging = Path(folder)
-        for name, text in texts.items():
-            path = staging / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding="utf-8", newline="\n")
-        reports: dict[str, VerificationReport] = {}
-        if outputs.verify:
-            reports = verify_files(derivation, staging, outputs, progress)
-        files = _publish(staging, outputs.out, texts)
+    reports: dict[str, VerificationReport] = {}
+
+    def check(staging: Path) -> None:
+        reports.update(verify_files(derivation, staging, outputs, progress))
+
+    files = publish(outputs.out, texts, check if outputs.verify else None)
     return Generation(derivation, files, reports, time.perf_counter() - started)
 
 
-def _publish(staging: Path, out: Path, texts: Mapping[str, str]) -> tuple[Path, ...]:
-    """Move finished files into place, each in one step; unchanged ones keep their time."""
-    files: list[Path] = []
-    for name, text in texts.items():
-        target = out / name
-        files.append(target)
-        if target.is_file() and target.read_text(encoding="utf-8") == text:
-            continue
-        target.parent.mkdir(parents=True, exist_ok=True)
-        os.replace(staging / name, target)
-    shutil.rmtree(staging, ignore_errors=True)
-    staging.mkdir(exist_ok=True)
-    return tuple(files)
+def publish(
+    out: Path, texts: Mapping[str, str], check: Callable[[Path], None] | None = None
+) -> tuple[Path, ...]:
+    """Write texts (name -> text) into a folder: all of them, once `check` has passed on a copy.
+
+    What `check` raises leaves earlier files untouched; unchanged files keep their time.
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=".ikgen-", dir=out, ignore_cleanup_errors=True) as name:
+        staging = Path(name)
+        for file, text in texts.items():
+            path = staging / file
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8", newline="\n")
+        if check is not None:
+            check(staging)
+        return _move(staging, out, texts)
+
+
+def _move(staging: Path, out: Path, texts: Mapping[str, str]) -> tuple[Path, ...]:
+    """Move finished files into place, each in one step."""
+    changed = [name for name, text in texts.items() if not _holds(out / name, text)]
+    for name in changed:
+        (out / name).parent.mkdir(parents=True, exist_ok=True)
+        if (out / name).is_dir():
+            raise IsADirectoryError(errno.EISDIR, "is a directory", str(out / name))
+    for name in changed:
+        os.replace(staging / name, out / name)
+    return tuple(out / name for name in texts)
+
+
+def _holds(path: Path, text: str) -> bool:
+    """Whether a file has exactly this text."""
+    return path.is_file() and path.read_bytes() == text.encode()
 
 
 def oracle_for(reading: Reading) -> Oracle:
@@ -114,7 +131,7 @@ def verify_files(
     for name in outputs.emit:
         runner = find_emitter(name).runner(derivation.module, folder)
         if runner is not None:
-            reports[name] = _verify_one(runner, oracle, derivation.module, outputs, progress)
+            reports[name] = verify_one(runner, oracle, derivation.module, outputs, progress)
     for name, report in reports.items():
         if not report.passed:
             raise VerificationError(
@@ -125,9 +142,10 @@ def verify_files(
     return reports
 
 
-def _verify_one(
+def verify_one(
     runner: Any, oracle: Oracle, module: SolverModule, outputs: Outputs, progress: Progress
 ) -> VerificationReport:
+    """The verification of one language: what `runner` runs against the oracle."""
     import numpy as np
 
     from ikgen.verify.run import verify
@@ -172,8 +190,23 @@ def _manifest(
             os.path.relpath(p.resolve(), outputs.out.resolve()) for p in request.package_paths
         ],
         "emit": list(outputs.emit),
+        "joints": [joint.name for joint in module.dh.joints],
+        "max_solutions": module.max_solutions,
+        "inputs": _inputs(derivation.reading.source, outputs.out),
         "files": {
             name: hashlib.sha256(text.encode()).hexdigest() for name, text in sorted(texts.items())
         },
     }
     return json.dumps(record, indent=2) + "\n"
+
+
+def _inputs(source: Source, out: Path) -> dict[str, str]:
+    """Digest of each file that was read, by its path relative to the outputs."""
+    import hashlib
+
+    files = source.dependencies or (source.path,)
+    found = {
+        os.path.relpath(p.resolve(), out.resolve()): hashlib.sha256(p.read_bytes()).hexdigest()
+        for p in files
+    }
+    return {Path(name).as_posix(): digest for name, digest in sorted(found.items())}

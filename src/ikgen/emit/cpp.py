@@ -18,6 +18,9 @@ from ikgen.model.dh import DHRow
 
 __all__ = ["emit", "emit_header", "emit_package"]
 
+ROUGH = 1e-20
+"""Squared error of a row above which it takes Newton steps."""
+
 _INLINE = "[[gnu::always_inline]] inline"
 
 _ORIENTATION = {
@@ -76,7 +79,8 @@ def emit_header(module: SolverModule) -> str:
         entries=[name for name in inputs if name.startswith("t")],
         seeds=[_Seed.of(module, name) for name in inputs if name.startswith("seed_")],
         held=[name for name in inputs if name[0] in "csd" and name[1:].isdigit()],
-        values=[_joint_value(module, text, output) for output in text.outputs()],
+        values=[_JointValue.of(module, text, output) for output in text.outputs()],
+        rough=_rough(module),
         order=_depth_first(branches),
         routines=sorted({lv.call.routine for lv in program.levels if lv.call is not None}),
         frames=[[[number(float(x)) for x in row] for row in F[:3]] for F in module.dh.file_frames],
@@ -119,6 +123,33 @@ class _Seed:
         function = {"c": "std::cos", "s": "std::sin", "d": ""}[name[5]]
         home = {"c": math.cos, "s": math.sin, "d": float}[name[5]](offset)
         return _Seed(name, joint, function, number(home))
+
+
+def _rough(module: SolverModule) -> str:
+    """Condition under which a row takes Newton steps, where not all or none do."""
+    program = module.program
+    return " | ".join([*program.singular, *(f"({r} > {ROUGH})" for r in program.residuals)])
+
+
+@dataclass(frozen=True, slots=True)
+class _JointValue:
+    """One joint's value: its text, and the function that puts it inside the limits ("": none can be
+    outside, since they span a whole turn)."""
+
+    name: str
+    text: str
+    placing: str
+
+    @staticmethod
+    def of(module: SolverModule, text: ProgramText, output: JointOutput) -> _JointValue:
+        j = output.joint
+        limits = module.dh.joints[j].limits
+        placing = "place" if output.revolute and j not in module.free else "clamp"
+        if placing == "place" and limits.lower <= -math.pi and limits.upper >= math.pi:
+            placing = ""
+        if math.isinf(limits.lower) and math.isinf(limits.upper):
+            placing = ""
+        return _JointValue(f"q{j + 1}", _joint_value(module, text, output), placing)
 
 
 def _joint_value(module: SolverModule, text: ProgramText, output: JointOutput) -> str:

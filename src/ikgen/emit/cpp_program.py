@@ -29,7 +29,7 @@ def number(value: float) -> str:
 
 
 def _flag(text: str) -> str:
-    return text if text.isidentifier() or text.startswith(("!", "(")) else f"({text})"
+    return text if text.isidentifier() or text.startswith("(") else f"({text})"
 
 
 CPP = Language(
@@ -73,7 +73,7 @@ def _live_names(program: Program) -> set[str]:
     value = {
         s.name: s.value for level in program.levels for s in level.body if isinstance(s, Let)
     } | {let.name: let.value for let in program.constants}
-    roots: list[Operand] = [*program.singular]
+    roots: list[Operand] = [*program.singular, *program.residuals]
     for level in program.levels:
         roots += _reads(level)
     for output in program.outputs:
@@ -138,7 +138,7 @@ class ProgramText:
                 self._fork(index, level, width)
             width *= level.branches
             self._body(index, level)
-            self._alike(level)
+            self._alike(level, width)
 
     def _fork(self, index: int, level: Level, width: int) -> None:
         if level.call is not None:
@@ -178,14 +178,14 @@ class ProgramText:
         self._let(name, f"{self.real} & {condition}" if self.real else condition)
         self.real = name
 
-    def _alike(self, level: Level) -> None:
+    def _alike(self, level: Level, width: int) -> None:
         """Whether the two branches of a level meet, which makes equal rows."""
         if level.sigma is None:
             return
         suffix = level.sigma.split("_", 1)[-1]
         names = [n for n in (f"c{suffix}", f"s{suffix}", f"d{suffix}") if n in self.live]
         if names:
-            self.flags["alike"].append(f"meeting({', '.join(names)})")
+            self.flags["alike"].append(f"meeting<{width} * P>({', '.join(names)})")
 
     def _let(self, name: str, text: str) -> None:
         self._statement(f"const auto {name} = {text};")

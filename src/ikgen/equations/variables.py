@@ -149,9 +149,8 @@ class JointVariables:
         g = self.graph
         if length.name is None:
             return g.const(length.value)
-        node = g.param(length.name, abs(length.value) if not length.symbolic else length.value)
-        sign = length.sign if length.symbolic else (1 if length.value >= 0 else -1)
-        return node if sign > 0 else g.neg(node)
+        node = g.param(length.name, length.sign * length.value)
+        return node if length.sign > 0 else g.neg(node)
 
     def angle(self, angle: Angle) -> tuple[Expr, Expr]:
         """Cosine and sine of a constant angle; named parameters where the angle is not exact."""

@@ -18,18 +18,19 @@ __all__ = ["Angle", "DHChain", "DHRow", "Length", "Snap"]
 @dataclass(frozen=True, slots=True)
 class Angle:
     """A constant angle in rad. `exact` is its multiple of pi where it is a multiple of pi/12, in
-    (-1, 1]; otherwise `name` is its symbol (`alpha_2`)."""
+    (-1, 1]; otherwise `name` is its symbol (`alpha_2`). `symbolic` as in `Length`."""
 
     value: float
     exact: Fraction | None
     name: str | None = None
+    symbolic: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Length:
     """A constant length in m: `sign * symbol` with the symbol's value attached; exact zero has no name.
 
-    `value` is the signed value; two lengths equal up to sign share one `name`. Without numbers (a
+    `value` is the signed value (`sign` times the symbol's); two lengths equal up to sign share one `name`. Without numbers (a
     symbolic table) `symbolic` is true and `value` is a random generic number to probe with.
     """
 
@@ -98,3 +99,10 @@ class DHChain:
     def dof(self) -> int:
         """Number of independent joint variables."""
         return len(self.joints)
+
+    @property
+    def symbols(self) -> tuple[str, ...]:
+        """Names of lengths and angles without numbers; such a chain can be derived, not emitted."""
+        parts = [x for r in self.rows for x in (r.alpha, r.a, r.d, r.theta, r.offset)]
+        names = {x.name: None for x in parts if x.symbolic and x.name is not None}
+        return tuple(names)

@@ -1,0 +1,87 @@
+"""What `ikgen inspect` advises: quick derivations that tell which task or held joint would do."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from ikgen.pipeline import Progress
+
+if TYPE_CHECKING:
+    from ikgen.model.dh import DHChain
+    from ikgen.tasks import Task
+
+__all__ = ["Attempt", "attempts"]
+
+_POSE_FREEDOMS = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Attempt:
+    """One derivation that was tried: which task, which joint held, and what came of it."""
+
+    task: str
+    free: tuple[str, ...]
+    closed: bool
+    max_solutions: int
+    order: tuple[str, ...]
+    left: tuple[str, ...]
+
+    @property
+    def rank(self) -> tuple[bool, bool, int]:
+        """Closed forms first, those without a quartic before others, then fewer solutions."""
+        return not self.closed, any("quartic" in step for step in self.order), self.max_solutions
+
+    @property
+    def options(self) -> str:
+        """The options to type; empty where none is needed."""
+        words = [f"--free {name}" for name in self.free]
+        if self.task != "pose":
+            words.append(f"--task {self.task}")
+        return " ".join(words)
+
+
+def attempts(dh: DHChain, asked: str | None, progress: Progress) -> list[Attempt]:
+    """The derivations worth trying for a chain, best first; the asked task alone where one is.
+
+    A chain with more joints than the task fixes is tried with each one held (two too many: none is
+    tried); one with fewer is tried with the smaller tasks.
+    """
+    from ikgen.tasks import TASKS, find_task
+
+    moving = dh.dof - len(dh.free)
+    if asked is not None:
+        tasks = [find_task(asked)]
+    elif moving >= _POSE_FREEDOMS:
+        tasks = [find_task("pose")]
+    else:
+        tasks = [task for task in TASKS if task.freedoms <= moving][:2]
+    found: list[Attempt] = []
+    for task in tasks:
+        spare = moving - task.freedoms
+        held = [j.name for j in dh.joints if j.name not in dh.free] if spare == 1 else [""]
+        for name in held if spare in (0, 1) else []:
+            free = (*dh.free, name) if name else dh.free
+            progress("derive", f"{task.name}, {'hold ' + name if name else 'no joint held'}")
+            found.append(_attempt(replace(dh, free=free), task))
+    return sorted(found, key=lambda attempt: attempt.rank)
+
+
+def _attempt(dh: DHChain, task: Task) -> Attempt:
+    from ikgen.solver.run import solve_chain
+
+    graph = solve_chain(dh, readable=task.readable, tool_on_right=not task.whole_pose)
+    closed = not graph.open_joints
+    most = 0
+    if closed:
+        from ikgen.ir.lower import lower
+
+        most = lower(graph, slack=0.0).max_solutions
+    return Attempt(
+        task.name,
+        dh.free,
+        closed,
+        most,
+        tuple(f"{s.candidate.unknown.text} ({s.candidate.leaf})" for s in graph.steps),
+        tuple(dh.joints[j].name for j in graph.open_joints),
+    )

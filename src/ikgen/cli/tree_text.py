@@ -1,0 +1,101 @@
+"""A robot's joint tree and its DH rows as text."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from ikgen.cli.tables import table
+
+if TYPE_CHECKING:
+    from ikgen.model.dh import Angle, DHChain, DHRow, Length
+    from ikgen.model.joint_tree import Joint, JointTree, Limits
+
+__all__ = ["angle_text", "dh_table", "joint_tree", "length_text"]
+
+
+def joint_tree(tree: JointTree) -> str:
+    """Links and joints, one a line, below their parents."""
+    below: dict[str, list[Joint]] = {}
+    for joint in tree.joints:
+        below.setdefault(joint.parent, []).append(joint)
+
+    def lines(link: str, indent: str) -> Iterator[str]:
+        joints = below.get(link, [])
+        for i, joint in enumerate(joints):
+            last = i == len(joints) - 1
+            yield f"{indent}{'└─ ' if last else '├─ '}{joint.child}  {_joint(joint)}"
+            yield from lines(joint.child, indent + ("   " if last else "│  "))
+
+    return "\n".join([tree.root_link, *lines(tree.root_link, "")])
+
+
+def _joint(joint: Joint) -> str:
+    """A joint in a few words."""
+    words = f"[{joint.name}: {joint.type.value}"
+    if joint.type.moves_on_one_axis:
+        words += f" {_range(joint.limits)}"
+    if joint.mimic is not None:
+        words += f", mimics {joint.mimic.joint}"
+    return words + "]"
+
+
+def _range(limits: Limits) -> str:
+    if math.isinf(limits.lower) and math.isinf(limits.upper):
+        return "unlimited"
+    return f"{limits.lower:.4g}..{limits.upper:.4g}"
+
+
+def dh_table(dh: DHChain) -> str:
+    """The modified DH rows, then the values of their constants."""
+    rows = [("i", "joint", "alpha", "a", "theta", "d")]
+    for i, row in enumerate(dh.rows, start=1):
+        theta, d = _variable(row, dh), length_text(row.d)
+        if not row.revolute:
+            theta, d = angle_text(row.theta), theta
+        rows.append((str(i), row.name, angle_text(row.alpha), length_text(row.a), theta, d))
+    values = ", ".join(f"{name} = {value:.10g}" for name, value in constants(dh).items())
+    return table(rows) + (f"\n  {values}" if values else "")
+
+
+def constants(dh: DHChain) -> dict[str, float]:
+    """Named constants (rad or m) in the order of the rows; None of them is exact."""
+    found: dict[str, float] = {}
+    for row in dh.rows:
+        for constant in (row.alpha, row.a, row.d, row.theta, row.offset):
+            if constant.name is not None:
+                sign = getattr(constant, "sign", 1)
+                found.setdefault(constant.name, sign * constant.value)
+    return found
+
+
+def _variable(row: DHRow, dh: DHChain) -> str:
+    """The row's variable: `scale * q + offset` with the joint's name for q."""
+    name = dh.joints[row.driver].name
+    text = name if row.scale == 1 else f"-{name}" if row.scale == -1 else f"{row.scale:g} {name}"
+    offset = angle_text(row.offset) if row.revolute else length_text(row.offset)  # type: ignore[arg-type]
+    if offset == "0":
+        return text
+    return f"{text} - {offset[1:]}" if offset.startswith("-") else f"{text} + {offset}"
+
+
+def angle_text(angle: Angle) -> str:
+    """An exact angle as a multiple of pi, another one by its name or value."""
+    exact = angle.exact
+    if exact is None:
+        return angle.name or f"{angle.value:.10g}"
+    if exact == 0:
+        return "0"
+    sign = "-" if exact < 0 else ""
+    size = Fraction(abs(exact))
+    top = "pi" if size.numerator == 1 else f"{size.numerator} pi"
+    return f"{sign}{top}" if size.denominator == 1 else f"{sign}{top}/{size.denominator}"
+
+
+def length_text(length: Length) -> str:
+    """A length by its signed name; exact zero is 0."""
+    if length.name is None:
+        return "0"
+    return f"-{length.name}" if length.sign < 0 else length.name

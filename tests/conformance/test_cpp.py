@@ -1,0 +1,192 @@
+"""The emitted C++ header against the interpreter of its Program: same rows in the same order."""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from ikgen.emit.cpp import emit, emit_header
+from ikgen.emit.module import SolverModule
+from ikgen.errors import MissingToolError
+from ikgen.ir.interpret import run
+from ikgen.kinematics.forward import file_forward, file_jacobian
+from ikgen.verify.runners.cpp_header import CppHeader
+from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
+from ikgen.verify.runners.runner import ArmConstants
+
+from cpp_modules import ROBOTS, solver_module
+
+Array = NDArray[np.float64]
+
+try:
+    find_compiler(), find_eigen()
+    MISSING = ""
+except MissingToolError as error:
+    MISSING = error.message
+pytestmark = pytest.mark.skipif(bool(MISSING), reason=MISSING)
+
+SAMPLES = 60
+
+
+@dataclass(frozen=True)
+class Arm:
+    """One compiled header and what it was made from."""
+
+    module: SolverModule
+    header: CppHeader
+    q: Array
+    """Configurations (N, dof), some of them singular."""
+    poses: Array
+
+
+@functools.cache
+def module_of(name: str) -> SolverModule:
+    return solver_module(name)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("cpp")
+
+
+@functools.cache
+def compiled(name: str, folder: Path) -> Arm:
+    module = module_of(name)
+    for file, text in emit(module).items():
+        (folder / file).write_text(text)
+    dh = module.dh
+    constants = ArmConstants(
+        joint_names=tuple(j.name for j in dh.joints),
+        lower=np.array([j.limits.lower for j in dh.joints]),
+        upper=np.array([j.limits.upper for j in dh.joints]),
+        base_link=dh.base_link,
+        tip_link=dh.tip_link,
+        task=module.task,
+        free_joints=tuple(dh.joints[j].name for j in module.free),
+        max_solutions=module.max_solutions,
+    )
+    header = CppHeader(folder / f"{module.name}_ik.hpp", constants)
+    q = configurations(module)
+    return Arm(module, header, q, file_forward(dh, q))
+
+
+def configurations(module: SolverModule) -> Array:
+    """Random ones inside the limits, then some with joints at multiples of a right angle."""
+    random = np.random.default_rng(1)
+    joints = module.dh.joints
+    low = np.array([max(j.limits.lower, -3.0 if j.kind == "revolute" else 0.1) for j in joints])
+    high = np.array([min(j.limits.upper, 3.0 if j.kind == "revolute" else 0.9) for j in joints])
+    q = random.uniform(low, high, (SAMPLES, len(joints)))
+    for row in q[SAMPLES // 2 :]:
+        for j in random.permutation(len(joints))[:2]:
+            if joints[j].kind == "revolute":
+                row[j] = np.clip(random.integers(-1, 2) * math.pi / 2, low[j], high[j])
+    return np.asarray(q)
+
+
+def first_rows(module: SolverModule) -> list:
+    return [next(r for r in module.dh.rows if r.driver == j) for j in range(module.dh.dof)]
+
+
+def interpreted(module: SolverModule, pose: Array) -> tuple[Array, NDArray[np.bool_], bool]:
+    """Joint values of the interpreter's rows, repeated ones left out, and their flags."""
+    inputs = {f"t{i}{j}": float(pose[i, j]) for i in range(3) for j in range(4)}
+    rows = first_rows(module)
+    for j, row in enumerate(rows):
+        v = row.offset.value
+        inputs |= {f"seed_c{j + 1}": math.cos(v), f"seed_s{j + 1}": math.sin(v), f"seed_d{j + 1}": v}
+    out: list[Array] = []
+    flags = []
+    for answer in run(module.program, inputs):
+        q = np.array(
+            [
+                ((math.atan2(s, c) if row.revolute else c) - row.offset.value) / row.scale
+                for row, (c, s) in zip(rows, answer.values, strict=True)
+            ]
+        )
+        if not any(gap(module, q, other).max() < 1e-6 for other in out):
+            out.append(q)
+            flags.append(answer.singular)
+    return np.array(out).reshape(-1, len(rows)), np.array(flags, dtype=bool), bool(out)
+
+
+def gap(module: SolverModule, a: Array, b: Array) -> Array:
+    """Absolute differences of joint values, whole turns aside."""
+    turns = np.array([r.revolute for r in first_rows(module)])
+    wrapped = np.abs((a - b + math.pi) % (2 * math.pi) - math.pi)
+    return np.where(turns, wrapped, np.abs(a - b))
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_rows_are_the_interpreters(name: str, folder: Path) -> None:
+    arm = compiled(name, folder)
+    found = arm.header.solve_many(arm.poses, limits=False)
+    compared = 0
+    for i, pose in enumerate(arm.poses):
+        rows, flags, any_row = interpreted(arm.module, pose)
+        if not any_row:
+            continue  # other free values are tried then
+        mine = found.q[i, : found.count[i]]
+        assert len(mine) == len(rows), (i, mine, rows)
+        tolerance = 1e-7 if arm.module.polish != "never" else 1e-12
+        assert gap(arm.module, mine, rows).max() < tolerance, (i, mine, rows)
+        if arm.module.polish != "all":
+            assert (found.singular[i, : found.count[i]] == flags).all()
+        compared += 1
+    assert compared > SAMPLES // 2
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_rows_reach_the_pose_and_include_the_one_it_was_made_from(name: str, folder: Path) -> None:
+    arm = compiled(name, folder)
+    for limits in (False, True):
+        found = arm.header.solve_many(arm.poses, limits=limits, seeds=arm.q)
+        for i, pose in enumerate(arm.poses):
+            assert found.status[i] == "OK", (i, arm.q[i])
+            rows = found.q[i, : found.count[i]]
+            error = np.abs(file_forward(arm.module.dh, rows) - pose).max()
+            assert error < 2e-9, (i, error)
+            fold = 2e-6 if arm.module.polish == "never" else 1e-4  # two rows meet: sqrt of the slack
+            assert gap(arm.module, rows[0], arm.q[i]).max() < fold, (i, rows[0], arm.q[i])
+            distance = np.linalg.norm(rows - arm.q[i], axis=1)
+            assert (np.diff(distance) > -1e-9).all()
+            if limits:
+                assert (rows >= arm.header.constants.lower).all()
+                assert (rows <= arm.header.constants.upper).all()
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_kinematics_are_the_files(name: str, folder: Path) -> None:
+    arm = compiled(name, folder)
+    assert np.abs(arm.header.forward(arm.q) - arm.poses).max() < 1e-12
+    assert np.abs(arm.header.jacobian(arm.q) - file_jacobian(arm.module.dh, arm.q)).max() < 1e-12
+
+
+@pytest.mark.parametrize("name", ROBOTS[:2])
+def test_what_is_no_pose_is_invalid(name: str, folder: Path) -> None:
+    arm = compiled(name, folder)
+    pose = arm.poses[0]
+    bad = np.stack([pose] * 4)
+    bad[0, 0, 3] = np.nan
+    bad[1, :3, :3] *= 1.5
+    bad[2, :3, 0] *= -1.0
+    bad[3, :3, 3] = np.inf
+    assert set(arm.header.solve_many(bad).status) == {"INVALID"}
+    far = pose.copy()
+    far[:3, 3] = 50.0
+    q, status, _ = arm.header.solve(far)
+    assert status == "UNREACHABLE" and len(q) == 0
+
+
+def test_header_is_reproducible_and_has_no_paths() -> None:
+    module = module_of(ROBOTS[0])
+    text = emit_header(module)
+    assert text == emit_header(module)
+    assert str(Path(__file__).parents[2]) not in text
+    assert max(map(len, text.splitlines())) <= 160
