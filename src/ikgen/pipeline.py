@@ -138,16 +138,15 @@ def unsolved(dh: DHChain, task: Task, graph: SolutionGraph) -> UnsolvedChainErro
 def _module(
     request: Request, reading: Reading, task: Task, geometry: str, graph: SolutionGraph
 ) -> SolverModule:
-    from ikgen.emit.module import EXACT, SolverModule
+    from ikgen.emit.module import SolverModule
     from ikgen.ir.lower import lower
 
     dh = reading.dh
-    deviation = max(dh.deviation)
     values = dict(request.free)
     free = tuple(j for j, joint in enumerate(dh.joints) if joint.name in dh.free)
     return SolverModule(
         name=request.name or identifier(dh.robot),
-        program=lower(graph, slack=2.0 * deviation if deviation > EXACT else 0.0),
+        program=lower(graph, slack=2.0 * max(dh.deviation)),
         dh=dh,
         task=task.name,
         free=free,

@@ -1,0 +1,1 @@
+"""Generation as a build step: records of what was made, configs, incremental builds, CMake."""

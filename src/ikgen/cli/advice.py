@@ -28,9 +28,10 @@ class Attempt:
     left: tuple[str, ...]
 
     @property
-    def rank(self) -> tuple[bool, bool, int]:
-        """Closed forms first, those without a quartic before others, then fewer solutions."""
-        return not self.closed, any("quartic" in step for step in self.order), self.max_solutions
+    def rank(self) -> tuple[bool, int, bool, int]:
+        """Closed forms first, with fewer joints held, without a quartic, with fewer solutions."""
+        quartic = any("quartic" in step for step in self.order)
+        return not self.closed, len(self.free), quartic, self.max_solutions
 
     @property
     def options(self) -> str:

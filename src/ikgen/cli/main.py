@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import warnings
 from collections.abc import Sequence
 from importlib import import_module
 from typing import NoReturn
@@ -60,6 +61,7 @@ def ikgen() -> None:
 
 def main() -> NoReturn:
     """Run the command line and exit."""
+    warnings.simplefilter("ignore")  # NumPy's, of divisions whose results are then discarded
     code = run(sys.argv[1:])
     try:
         sys.stdout.flush()

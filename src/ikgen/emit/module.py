@@ -7,10 +7,7 @@ from dataclasses import dataclass
 from ikgen.ir.program import Program
 from ikgen.model.dh import DHChain
 
-__all__ = ["CLOSE", "EXACT", "SolverModule"]
-
-EXACT = 2e-11
-"""Deviation (m or rad) of the solved geometry from the file's that counts as round-off."""
+__all__ = ["CLOSE", "SolverModule"]
 
 CLOSE = 8e-10
 """Deviation up to which a row that is exact for the solved geometry is right for the file (1e-9)."""
@@ -39,12 +36,9 @@ class SolverModule:
 
     @property
     def polish(self) -> str:
-        """Which rows take Newton steps on the file's own chain: "never", "some" (those of a continuum
-        or on the boundary, where the closed form gave way) or "all"."""
-        deviation = max(self.dh.deviation)
-        if deviation <= EXACT:
-            return "never"
-        return "some" if deviation <= CLOSE else "all"
+        """Which rows take Newton steps on the file's own chain: "some" (those of a continuum or on the
+        boundary, where the closed form lost digits) or "all" (the file rounds its geometry)."""
+        return "some" if max(self.dh.deviation) <= CLOSE else "all"
 
     @property
     def max_solutions(self) -> int:

@@ -9,6 +9,7 @@ x^2 y^2).
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -79,9 +80,10 @@ class EquationSet:
         self.variables = JointVariables(graph, dh, values)
         self.runs = runs_of(dh)
         self.readable = readable
+        self.tool_on_right = tool_on_right
         self.tool = constant(graph, dh.X_tip) if tool_on_right else identity(graph)
         self._left: dict[int, Rigid] = {}
-        self._rear: dict[int, Rigid] = {}
+        self._targets: dict[tuple[int, int], Rigid] = {}
         self.pose = self._pose(pose)
 
     def _pose(self, values: NDArray[np.float64]) -> Rigid:
@@ -183,6 +185,34 @@ class EquationSet:
             tail = multiply(g, inverse(g, link(v, m - 1)), self.right_inverse(k, m - 1))
         return tail.p[0], tail.p[1], g.sub(tail.p[2], v.row_distance(m - 1))
 
+    def _between(self, j: int, k: int) -> Rigid:
+        """`A_{j+1} ... A_k C_{k+1}`; j is the start of a run."""
+        g, v = self.graph, self.variables
+        product = identity(g)
+        i = j
+        while i < k:
+            end = min(self._run_end(i), k - 1)
+            product = multiply(g, product, multiply(g, link(v, i), run(v, i, end)))
+            i = end + 1
+        return multiply(g, product, link(v, k))
+
+    def _target(self, j: int, m: int) -> Rigid:
+        """`(A_1 ... A_j)^-1 T (A_{m+1} ... A_n)^-1`."""
+        if (j, m) not in self._targets:
+            self._targets[j, m] = self._after(self.before(j), m)
+        return self._targets[j, m]
+
+    def _offsets(self, k: int, m: int) -> Iterator[tuple[Rigid, list[Expr]]]:
+        """Positions of frame m from frame k, unrotated: seen from every earlier run's first frame.
+
+        Their norms do not depend on joints that turn the offset as a whole.
+        """
+        for j in range(k + 1):
+            if j == self._run_start(j) or j == 0:
+                target, start = self._target(j, m), self._between(j, k)
+                pairs = zip(target.p, start.p, strict=True)
+                yield target, [self.graph.sub(p, q) for p, q in pairs]
+
     def _norms(self, k: int, m: int, left: Rigid, q: list[Expr]) -> list[Equation]:
         g = self.graph
 
@@ -190,10 +220,9 @@ class EquationSet:
             return g.dot(parts, parts)
 
         w = self._stripped(k, m)
-        out = [
-            Equation(squares(list(left.p)), squares(list(w)), k, m, "p.p"),
-            Equation(squares(list(left.p[:2])), squares(list(w[:2])), k, m, "px2+py2"),
-        ]
+        norm = squares(list(w))
+        out = [Equation(squares(d), norm, k, m, "p.p") for _, d in self._offsets(k, m)]
+        out.append(Equation(squares(list(left.p[:2])), squares(list(w[:2])), k, m, "px2+py2"))
         if m < self.n or self.tool.p == identity(g).p:
             u = self._stripped_inverse(k, m)
             out.append(Equation(squares(q[:2]), squares(list(u[:2])), k, m, "qx2+qy2"))
@@ -210,9 +239,12 @@ class EquationSet:
         ]
         out += [Equation(left.p[i], right.p[i], k, m, f"p{'xyz'[i]}") for i in range(3)]
         back = self.right_inverse(k, m)
-        q = [g.neg(g.dot(left.column(i), list(left.p))) for i in range(3)]
-        out += [Equation(q[i], back.p[i], k, m, f"q{'xyz'[i]}") for i in range(3)]
-        return out + self._norms(k, m, left, q)
+        first: list[Expr] = []
+        for target, offset in self._offsets(k, m):
+            q = [g.neg(g.dot(target.column(i), offset)) for i in range(3)]
+            first = first or q
+            out += [Equation(q[i], back.p[i], k, m, f"q{'xyz'[i]}") for i in range(3)]
+        return out + self._norms(k, m, left, first)
 
     @cached_property
     def equations(self) -> tuple[Equation, ...]:

@@ -8,12 +8,13 @@ node, so sharing in the emitted code costs nothing to find.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Atom", "Expr", "ExpressionGraph"]
+__all__ = ["BINARY", "UNARY", "Atom", "Expr", "ExpressionGraph"]
 
 Probe = NDArray[np.float64]
 ZERO_TOLERANCE = 1e-10
@@ -65,7 +66,7 @@ class Expr:
         return f"<{self.op} {self.name or self.value or [a.id for a in self.args]}>"
 
 
-_BINARY = {
+BINARY: dict[str, Callable[..., Probe]] = {
     "add": np.add,
     "sub": np.subtract,
     "mul": np.multiply,
@@ -76,7 +77,7 @@ _BINARY = {
     "and": np.multiply,
     "or": np.maximum,
 }
-_UNARY = {
+UNARY: dict[str, Callable[..., Probe]] = {
     "neg": np.negative,
     "abs": np.abs,
     "sqrt": lambda a: np.sqrt(np.maximum(a, 0.0)),
@@ -161,10 +162,10 @@ class ExpressionGraph:
         with np.errstate(all="ignore"):
             if op == "select":
                 probe = np.where(values[0] > 0.5, values[1], values[2])
-            elif op in _BINARY:
-                probe = _BINARY[op](*values)
+            elif op in BINARY:
+                probe = BINARY[op](*values)
             else:
-                probe = _UNARY[op](values[0])
+                probe = UNARY[op](values[0])
         scales = [a.scale for a in args]
         if op in ("add", "sub", "max", "min"):
             scale = max(scales)

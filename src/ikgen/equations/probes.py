@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ikgen.model.dh import DHChain
 
-__all__ = ["Probes", "arm_size", "dh_pose", "make_probes"]
+__all__ = ["Probes", "arm_size", "dh_pose", "make_probes", "smallest_singular"]
 
 GENERIC = 12
 SPECIAL = 36
@@ -55,7 +55,7 @@ def dh_pose(dh: DHChain, values: NDArray[np.float64]) -> NDArray[np.float64]:
     return T
 
 
-def _smallest_singular(dh: DHChain, values: NDArray[np.float64], size: float) -> NDArray[np.float64]:
+def smallest_singular(dh: DHChain, values: NDArray[np.float64], size: float) -> NDArray[np.float64]:
     """Smallest singular value of the pose's derivative, lengths in units of the arm's size."""
     h = 1e-6
     columns = []
@@ -99,7 +99,7 @@ def make_probes(dh: DHChain, *, seed: int = 0, tool: bool = False) -> Probes:
     quarter = rng.integers(-1, 3, special.shape) * (np.pi / 2)
     chosen = (rng.random(special.shape) < rng.uniform(0.15, 1.0, (len(special), 1))) & revolute
     special = np.where(chosen, quarter, special)
-    smallest = _smallest_singular(dh, special, size)
+    smallest = smallest_singular(dh, special, size)
     regular = special[smallest > 1e-2][:SPECIAL]
     singular = special[smallest < 1e-8][:SINGULAR]
     values = np.concatenate([generic, regular, singular])

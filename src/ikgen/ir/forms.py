@@ -20,14 +20,14 @@ class Tolerances:
     """
 
     singular: float = 1e-11
-    flag: float = 1e-7
+    flag: float = 3e-6
     clamp: float = 1e-11
 
     @staticmethod
     def for_slack(slack: float) -> Tolerances:
         """Tolerances where the solved geometry is `slack` (m or rad) off the file's."""
         return Tolerances(
-            flag=min(max(1e-7, 5.0 * slack), 1e-2), clamp=max(1e-11, 5.0 * slack)
+            flag=min(max(3e-6, 5.0 * slack), 1e-2), clamp=max(1e-11, 5.0 * slack)
         )
 
 
@@ -52,6 +52,8 @@ class Realized:
     divisor: Divisor
     guard: Expr | None
     branches: int
+    under: tuple[Expr, Expr] | None = None
+    """What is under the square root, and its natural size."""
 
     @property
     def regular(self) -> Expr | None:
@@ -120,7 +122,7 @@ def _sincos(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> R
     inverse = g.div(g.one, divisor.value)
     cosine = g.mul(g.sub(g.mul(a, r), g.mul(b, w)), inverse)
     sine = g.mul(g.add(g.mul(b, r), g.mul(a, w)), inverse)
-    return Realized((cosine, sine), divisor, guard, 2)
+    return Realized((cosine, sine), divisor, guard, 2, (disc, h))
 
 
 def _single(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> Realized:
@@ -131,7 +133,7 @@ def _single(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> R
     guard = g.binary("gt", disc, g.const(-tol.clamp))
     bounded = g.binary("max", g.minus_one, g.binary("min", g.one, ratio))
     other = g.mul(sigma, g.sqrt(disc))
-    return Realized((other, bounded) if a.vanishes else (bounded, other), Divisor(g.one), guard, 2)
+    return Realized((other, bounded) if a.vanishes else (bounded, other), Divisor(g.one), guard, 2, (disc, g.one))
 
 
 def _tangent(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> Realized:

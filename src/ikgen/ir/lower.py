@@ -23,8 +23,9 @@ __all__ = ["lower"]
 WELL_CONDITIONED = 1e-3
 """Relative size of a divisor below which a fallback is taken in its form's place."""
 
-CHECK_TOLERANCE = 5e-10
-"""Largest error (m over the arm's size, rad) of a row that counts as a solution."""
+CHECK_TOLERANCE = 1e-6
+"""Largest error (m over the arm's size, rad) of a row that may become a solution: near singularities
+the closed form loses digits, which Newton steps win back."""
 
 
 class Lowering:
@@ -220,15 +221,22 @@ class Lowering:
         return values
 
     def _well_conditioned(self, form: Realized) -> Realized:
-        """With a fallback behind it a form is left well before its divisor vanishes."""
-        regular = form.regular
-        if regular is None:
+        """With a fallback behind it a form is left well before its divisor vanishes or its branches
+        meet."""
+        g, regular = self.g, form.regular
+        good: Flag = True
+        if regular is not None:
+            power = 2 if form.branches == 2 else 1
+            natural = regular.args[1].value / self.tolerances.singular**power
+            limit = g.const(natural * WELL_CONDITIONED**power)
+            good = g.binary("gt", regular.args[0], limit)
+        if form.under is not None:
+            limit = g.mul(g.const(WELL_CONDITIONED**2), form.under[1])
+            apart = g.binary("gt", form.under[0], limit)
+            good = apart if good is True else g.binary("and", _expr(good), apart)
+        if good is True:
             return form
-        power = 2 if form.branches == 2 else 1
-        natural = regular.args[1].value / self.tolerances.singular**power
-        limit = self.g.const(natural * WELL_CONDITIONED**power)
-        better = self.g.binary("gt", regular.args[0], limit)
-        divisor = Divisor(form.divisor.value, better, better)
+        divisor = Divisor(form.divisor.value, _expr(good), _expr(good))
         return Realized(form.values, divisor, form.guard, form.branches)
 
     def _define(self, v: Variable, values: tuple[Expr, ...]) -> None:

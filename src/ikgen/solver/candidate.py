@@ -66,6 +66,18 @@ class Candidate:
         size = np.sqrt(sum(x * x for x in c[:4]))
         return size, max(z[:4])
 
+    def discriminant(self) -> NDArray[np.float64] | None:
+        """What is under the square root at the probes, relative to its natural size: two branches meet
+        where it vanishes. None for forms without one."""
+        c = [e.probe for e in self.coefficients]
+        with np.errstate(all="ignore"):
+            if self.form == "sincos":
+                return np.asarray(1.0 - c[2] ** 2 / (c[0] ** 2 + c[1] ** 2))
+            if self.form == "root":
+                size = c[1] ** 2 + np.abs(4 * c[0] * c[2])
+                return np.asarray((c[1] ** 2 - 4 * c[0] * c[2]) / size)
+        return None
+
     def values(self) -> list[tuple[NDArray[np.float64], ...]]:
         """Per branch, the unknown at the probes: (c, s) or (x,). NaN where the divisor vanishes."""
         c = [e.probe for e in self.coefficients]

@@ -29,6 +29,9 @@ PREFERENCE = (
     "quartic",
 )
 MATCH = 1e-5
+FOLD_MARGIN = 1e-9
+"""Relative size of a discriminant below which two branches count as one."""
+
 WEAK_MARGIN = 1e-6
 """Relative size of a divisor below which a probe counts as one where it vanishes."""
 
@@ -57,11 +60,18 @@ def judge(
     if not matches[:generic].all():
         return None
     margin = float(relative[:regular].min())
-    weak = bool((~matches[:regular]).any() or margin < WEAK_MARGIN)
+    weak = bool((~matches[:regular]).any() or margin < WEAK_MARGIN or _folds(candidate, regular))
     singular = relative[regular:]
     fragile = float((singular < WEAK_MARGIN).mean()) if singular.size else 0.0
     cost = _cost(candidate.coefficients, used, weight)
     return replace(candidate, judgement=Judgement(weak, margin, fragile, cost))
+
+
+def _folds(candidate: Candidate, regular: int) -> bool:
+    """Whether the candidate's branches meet at a regular configuration: its square root loses half the
+    digits where the arm itself is well-behaved, so one of the branches must be spurious."""
+    under = candidate.discriminant()
+    return under is not None and bool(np.min(under[:regular]) < FOLD_MARGIN)
 
 
 def _cost(roots: tuple[Expr, ...], used: set[int], weight: Mapping[int, float]) -> float:

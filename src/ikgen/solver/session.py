@@ -15,10 +15,13 @@ from ikgen.equations.probes import Probes
 from ikgen.solver.candidate import Candidate
 from ikgen.solver.leaves import Leaf
 from ikgen.solver.ranker import judge, rank_key
+from ikgen.solver.soundness import conditions, weak_configurations
 
 __all__ = ["Session", "Step", "Tick"]
 
 MOST_UNKNOWNS = 2
+MOST_TRIED = 6
+MOST_FALLBACKS = 40
 SAFE_MARGIN = 1e-3
 
 
@@ -61,6 +64,7 @@ class Session:
     candidates: list[Candidate] = field(default_factory=list)
     steps: list[Step] = field(default_factory=list)
     ticks: list[Tick] = field(default_factory=list)
+    _weak: dict[tuple[object, ...], NDArray[np.float64]] = field(default_factory=dict)
     _used: set[int] = field(default_factory=set)
     _weight: dict[int, float] = field(default_factory=dict)
     _forks: list[tuple[int, float]] = field(default_factory=list)
@@ -124,14 +128,6 @@ class Session:
         self.equations = [*self.equations, *made] if keep else made
 
     @property
-    def has_good_candidate(self) -> bool:
-        """Whether some candidate is sound at regular configurations and has at most two branches."""
-        return any(
-            c.branches <= 2 and c.judgement is not None and not c.judgement.weak
-            for c in self.candidates
-        )
-
-    @property
     def unknowns(self) -> list[Variable]:
         """Unknowns that occur in the round's equations."""
         return sorted({v for e in self.equations for v in e.unknowns})
@@ -148,37 +144,81 @@ class Session:
                     kept += 1
         return kept
 
-    def choose(self) -> Step | None:
-        """Take the best candidate, with fallbacks where it is weak."""
-        if not self.candidates:
-            return None
+    def choose(self, *, anything: bool = False) -> Step | None:
+        """Take the best candidate that holds at every regular configuration, alone or with fallbacks
+        where its divisor vanishes; failing that, with `anything`, the best there is."""
         ranked = sorted(self.candidates, key=rank_key)
-        best = ranked[0]
-        same = [c for c in ranked[1:] if c.unknown == best.unknown]
-        step = Step(best, self._fallbacks(best, same), tuple(same[:8]))
-        self._accept(step)
+        step = self._sound(ranked) or self._covered(ranked)
+        if step is None and anything and ranked:
+            simple = [c for c in ranked if c.branches <= 2 and not _is_weak(c)]
+            quartic = [c for c in ranked if c.branches > 2 and not _is_weak(c)]
+            best = (simple or quartic or ranked)[0]
+            step = self._step(best, (), ranked)
+        if step is not None:
+            self._accept(step)
         return step
 
-    def _fallbacks(self, best: Candidate, others: list[Candidate]) -> tuple[Candidate, ...]:
-        divisor, size = best.divisor()
-        uncovered = np.abs(divisor) < SAFE_MARGIN * size
-        uncovered[self.probes.regular :] = False
-        out: list[Candidate] = []
-        assert best.judgement is not None
-        while best.judgement.weak and uncovered.any() and len(out) < 3:
-            scored = []
-            for c in others:
-                d, s = c.divisor()
-                gain = int((uncovered & (np.abs(d) >= SAFE_MARGIN * s)).sum())
-                scored.append((-gain, rank_key(c), c))
-            scored.sort(key=lambda x: x[:2])
-            if not scored or scored[0][0] == 0:
+    def _step(
+        self, best: Candidate, fallbacks: tuple[Candidate, ...], ranked: list[Candidate]
+    ) -> Step:
+        rejected = [c for c in ranked if c is not best and c.unknown == best.unknown]
+        return Step(best, fallbacks, tuple(rejected[:8]))
+
+    def _weak_at(self, candidate: Candidate) -> NDArray[np.float64]:
+        """Regular configurations where a candidate fails, sought once."""
+        key = (candidate.form, *(e.id for e in candidate.coefficients))
+        if key not in self._weak:
+            found = weak_configurations(candidate, self.system, self.probes)
+            special = self.probes.values[: self.probes.regular]
+            holds = self._holds(candidate, special)
+            self._weak[key] = np.concatenate([found, special[~holds]])
+        return self._weak[key]
+
+    def _holds(self, candidate: Candidate, values: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """At which configurations (N, dof) a candidate is well-conditioned."""
+        parts = conditions(candidate, self.system, values)
+        sizes = [np.abs(p).max(axis=0) for p in parts]
+        return np.asarray(np.all([s > SAFE_MARGIN for s in sizes], axis=0))
+
+    def _sound(self, ranked: list[Candidate]) -> Step | None:
+        tried = 0
+        for c in ranked:
+            if c.branches > 2 or _is_weak(c):
+                continue
+            tried += 1
+            found = weak_configurations(c, self.system, self.probes)
+            if not len(found):
+                return self._step(c, (), ranked)
+            if tried >= MOST_TRIED:
                 break
-            chosen = scored[0][2]
-            d, s = chosen.divisor()
-            uncovered &= np.abs(d) < SAFE_MARGIN * s
+        return None
+
+    def _covered(self, ranked: list[Candidate]) -> Step | None:
+        """A weak candidate and others of the same unknown that hold where it does not."""
+        tried: dict[Variable, int] = {}
+        for best in ranked:
+            tried[best.unknown] = tried.get(best.unknown, 0) + 1
+            if best.branches > 2 or tried[best.unknown] > 2:
+                continue
+            same = [c for c in ranked if c.unknown == best.unknown and c.branches <= best.branches]
+            fallbacks = self._fallbacks(best, same[:MOST_FALLBACKS])
+            if fallbacks is not None:
+                return self._step(best, fallbacks, ranked)
+        return None
+
+    def _fallbacks(self, best: Candidate, others: list[Candidate]) -> tuple[Candidate, ...] | None:
+        """Candidates that cover all regular configurations where `best` fails; None if none do."""
+        uncovered = self._weak_at(best)
+        out: list[Candidate] = []
+        while len(uncovered) and len(out) < 2:
+            gains = [(int(self._holds(c, uncovered).sum()), -i) for i, c in enumerate(others)]
+            gain, index = max(gains, default=(0, 0))
+            if gain == 0:
+                return None
+            chosen = others[-index]
             out.append(chosen)
-        return tuple(out)
+            uncovered = uncovered[~self._holds(chosen, uncovered)]
+        return None if len(uncovered) else tuple(out)
 
     def _accept(self, step: Step) -> None:
         k = self.knowledge
@@ -212,6 +252,11 @@ class Session:
             if support & mask:
                 return level
         return 1.0
+
+
+def _is_weak(candidate: Candidate) -> bool:
+    assert candidate.judgement is not None
+    return candidate.judgement.weak
 
 
 class _Weights(dict[int, float]):

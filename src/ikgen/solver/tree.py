@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 
 import py_trees
 from py_trees.behaviour import Behaviour
@@ -87,14 +88,10 @@ def _transform(transform: Transform, *, keep: bool) -> Callable[[Session], tuple
     return act
 
 
-def _choose_good(session: Session) -> tuple[bool, str]:
-    return _choose(session) if session.has_good_candidate else (False, "no sound candidate yet")
-
-
-def _choose(session: Session) -> tuple[bool, str]:
-    step = session.choose()
+def _choose(session: Session, *, anything: bool = False) -> tuple[bool, str]:
+    step = session.choose(anything=anything)
     if step is None:
-        return False, "no candidate"
+        return False, "no sound candidate"
     c = step.candidate
     places = " and ".join(dict.fromkeys(e.label for e in c.sources))
     return True, f"{c.unknown.text} by {c.leaf} from {places}"
@@ -106,7 +103,7 @@ def _attempt(
     sequence = py_trees.composites.Sequence(name, memory=False)
     rules = Or(f"{name}: leaves")
     rules.add_children([Action(leaf.name, session, _leaf(leaf)) for leaf in leaves])
-    sequence.add_children([*first, rules, Action("ranker", session, _choose_good)])
+    sequence.add_children([*first, rules, Action("ranker", session, _choose)])
     return sequence
 
 
@@ -121,7 +118,7 @@ def build_tree(session: Session, leaves: Sequence[Leaf]) -> Behaviour:
             _attempt("rules", session, leaves, []),
             _attempt("after substitution", session, leaves, [replace]),
             _attempt("after square and add", session, leaves, [square]),
-            Action("take what there is", session, _choose),
+            Action("take what there is", session, partial(_choose, anything=True)),
         ]
     )
     root.add_children([Action("collect equations", session, _collect), ways])

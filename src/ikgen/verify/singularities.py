@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 SINGULAR_SIGMA = 1e-9
 """Smallest singular value below which a configuration counts as exactly singular."""
 
-CONTINUUM_SIGMA = 1e-8
+CONTINUUM_SIGMA = 1e-9
 """Smallest singular value below which a row is looked at for lying on a continuum."""
 
 _PROBE = 1e-6  # rad or m: step of the forward difference

@@ -1,0 +1,208 @@
+"""The robots of the IKBT paper and its repository: derive, emit, and count solutions.
+
+    python -m benchmarks.suite [--robot TEXT] [--poses N] [--searched N] [--starts N] [--json]
+
+Prints one row a robot: how it was solved, how many solutions each pose has by the emitted Python
+module and by an independent numerical search, how many rows were wrong and how many missed. A row is
+wrong if forward kinematics does not give the pose back; a generating configuration or a solution of the
+search is missed if no row equals it. Exits with 1 if any row was wrong or missed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import statistics
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.emit.python import emit_module
+from ikgen.errors import IkgenError
+from ikgen.generate import oracle_for
+from ikgen.pipeline import Derivation, Request, derive
+from ikgen.verify.arm import REGULAR_SIGMA, ArmUnderTest, arm_under_test
+from ikgen.verify.runners.python_module import PythonModule
+from ikgen.verify.search import find_solutions
+from ikgen.verify.task_space import TASK_SPACES
+
+TABLES = Path(__file__).resolve().parents[1] / "tests" / "robots" / "tables"
+Array = NDArray[np.float64]
+SAME = 1e-5  # rad, or lengths of the arm
+WRONG = 1e-8
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """What came of one robot. `found` and `true` count solutions a pose; `true` is the search's."""
+
+    robot: str
+    dof: int
+    kinds: str
+    state: str
+    seconds: float
+    leaves: str
+    found: str
+    true: str
+    wrong: int
+    missed: int
+    note: str
+
+
+def tables(part: str = "") -> list[Path]:
+    """The DH tables whose name contains `part`."""
+    return sorted(p for p in TABLES.glob("*.toml") if part.lower() in p.stem.lower())
+
+
+def try_robot(path: Path, poses: int, searched: int, starts: int) -> Trial:
+    """Derive, emit and check one robot."""
+    started = time.perf_counter()
+    try:
+        derivation = derive(Request(path))
+        text = emit_module(derivation.module)
+    except IkgenError as error:
+        from ikgen.importers.dh_table import read_dh_table
+
+        seconds = time.perf_counter() - started
+        source, dh = read_dh_table(path)
+        note = "; ".join(n for n in source.warnings if "infinitely" in n) or error.message
+        state = "redundant" if "infinitely" in note else "unsolved"
+        kinds = "".join("R" if row.revolute else "P" for row in dh.rows)
+        return Trial(path.stem, dh.dof, kinds, state, seconds, "", "", "", 0, 0, note)
+    seconds = time.perf_counter() - started
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / f"{derivation.module.name}_ik.py"
+        file.write_text(text, encoding="utf-8")
+        module = PythonModule(file).module
+        try:
+            return _check(path.stem, derivation, module, seconds, (poses, searched, starts))
+        except Exception as error:  # a robot whose module raises must not end the run
+            kinds = derivation.geometry.kinds
+            note = f"{type(error).__name__}: {error}"
+            return Trial(path.stem, len(kinds), kinds, "broken", seconds, "", "", "", 1, 0, note)
+
+
+def _check(
+    robot: str, derivation: Derivation, module: Any, seconds: float, sizes: tuple[int, int, int]
+) -> Trial:
+    poses, searched, starts = sizes
+    arm = _arm(derivation)
+    rng = np.random.default_rng(20180513)
+    q = _regular(arm, rng, poses)
+    T = arm.oracle.forward(q)
+    rows, count, _ = module.solve_batch(T, limits=False)
+    wrong, missed = _compare(arm, rows, count, T, q)
+    true: Counter[int] = Counter()
+    held = q[:searched]
+    for i, found in enumerate(find_solutions(arm, T[:searched], held, starts, rng)):
+        distinct = _distinct(arm, found)
+        true[len(distinct)] += 1
+        missed += sum(not _present(arm, rows[i, : count[i]], one) for one in distinct)
+    graph = derivation.graph
+    leaves = Counter(step.candidate.leaf for step in graph.steps)
+    return Trial(
+        robot=robot,
+        dof=arm.dof,
+        kinds="".join("R" if row.revolute else "P" for row in derivation.reading.dh.rows),
+        state="solved",
+        seconds=seconds,
+        leaves=", ".join(f"{n} {name}" for name, n in leaves.items()),
+        found=_histogram(Counter(int(c) for c in count)),
+        true=_histogram(true),
+        wrong=wrong,
+        missed=missed,
+        note=derivation.geometry.name,
+    )
+
+
+def _arm(derivation: Derivation) -> ArmUnderTest:
+    dh = derivation.reading.dh
+    bounds = np.full(dh.dof, -np.inf), np.full(dh.dof, np.inf)
+    return arm_under_test(
+        oracle_for(derivation.reading), TASK_SPACES[derivation.module.task], bounds, dh.free
+    )
+
+
+def _regular(arm: ArmUnderTest, rng: np.random.Generator, poses: int) -> Array:
+    """Random configurations (poses, dof) away from singularities."""
+    q = arm.uniform(rng, 4 * poses)
+    return q[arm.sigma(q) > REGULAR_SIGMA][:poses]
+
+
+def _compare(arm: ArmUnderTest, rows: Array, count: Array, T: Array, q: Array) -> tuple[int, int]:
+    """How many rows do not give their pose back, and how many poses lack their own configuration."""
+    wrong = missed = 0
+    for i, k in enumerate(count):
+        back = arm.oracle.forward(rows[i, :k]) if k else np.zeros((0, 4, 4))
+        error = arm.task.residual(back, np.broadcast_to(T[i], back.shape))
+        wrong += int(np.sum(np.max(np.abs(error), axis=-1, initial=0.0) > WRONG * max(1.0, arm.length)))
+        missed += not _present(arm, rows[i, :k], q[i])
+    return wrong, missed
+
+
+def _scaled(arm: ArmUnderTest, a: Array, b: Array) -> Array:
+    d = np.abs(arm.difference(a, b))
+    return np.asarray(np.max(np.where(arm.revolute, d, d / arm.length), axis=-1, initial=0.0))
+
+
+def _present(arm: ArmUnderTest, rows: Array, q: Array) -> bool:
+    return bool(len(rows) and np.min(_scaled(arm, rows, q)) < SAME)
+
+
+def _distinct(arm: ArmUnderTest, found: Array) -> list[Array]:
+    """Regular solutions, each once."""
+    out: list[Array] = []
+    for one in found[arm.sigma(found) > REGULAR_SIGMA / 10] if len(found) else found:
+        if not out or np.min(_scaled(arm, np.array(out), one)) > 10 * SAME:
+            out.append(one)
+    return out
+
+
+def _histogram(counts: Counter[int]) -> str:
+    return " ".join(f"{n}x{k}" if k > 1 else f"{n}" for n, k in sorted(counts.items()))
+
+
+def _print(trials: Sequence[Trial]) -> None:
+    print(f"{'robot':16} {'joints':7} {'state':9} {'s':>5}  {'found':24} {'true':14} wrong missed  leaves")
+    for t in trials:
+        print(
+            f"{t.robot:16} {t.kinds:7} {t.state:9} {t.seconds:5.1f}  {t.found:24} {t.true:14} "
+            f"{t.wrong:5} {t.missed:6}  {t.leaves or t.note}"
+        )
+    solved = [t for t in trials if t.state == "solved"]
+    states = Counter(t.state for t in trials)
+    print(
+        f"\n{len(trials)} robots: {', '.join(f'{n} {s}' for s, n in states.items())}; "
+        f"{sum(t.wrong for t in trials)} rows wrong, {sum(t.missed for t in trials)} missed; "
+        f"median {statistics.median(t.seconds for t in solved or trials):.2f} s"
+    )
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """The command line."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("--robot", default="", help="only robots whose name contains this")
+    parser.add_argument("--poses", type=int, default=200, help="random poses a robot (1000: full)")
+    parser.add_argument("--searched", type=int, default=3, help="poses searched numerically")
+    parser.add_argument("--starts", type=int, default=300, help="starts of the search, per pose")
+    parser.add_argument("--json", action="store_true", help="machine-readable rows")
+    options = parser.parse_args(arguments)
+    sizes = options.poses, min(options.searched, options.poses), options.starts
+    trials = [try_robot(path, *sizes) for path in tables(options.robot)]
+    if options.json:
+        print(json.dumps([asdict(t) for t in trials], indent=2))
+    else:
+        _print(trials)
+    return int(any(t.wrong or t.missed for t in trials))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,140 @@
+"""`ikgen verify`: the check of outputs against their robot, for people and for CI."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ikgen.cli.console import Console
+from ikgen.cli.options import console_options, sampling_options
+from ikgen.errors import UsageError
+
+if TYPE_CHECKING:
+    from ikgen.build.recheck import Recheck
+    from ikgen.build.record import Record
+
+__all__ = ["verify"]
+
+
+@click.command()
+@click.argument(
+    "target", type=click.Path(path_type=Path), metavar="[CONFIG|DIR]", required=False
+)
+@click.option("--robot", metavar="FILE", type=click.Path(path_type=Path), help="Check against this description instead of the recorded one.")  # fmt: skip
+@click.option("--junit-xml", metavar="FILE", type=click.Path(path_type=Path), help="Also write the results as JUnit XML.")  # fmt: skip
+@sampling_options
+@console_options
+def verify(
+    target: Path | None,
+    *,
+    robot: Path | None,
+    junit_xml: Path | None,
+    samples: int,
+    seed: int,
+    as_json: bool,
+    quiet: bool,
+    verbose: bool,
+) -> int:
+    """Check emitted modules against their robot's description as it is now.
+
+    CONFIG is an ikgen.toml or pyproject.toml, DIR a folder with outputs (default: the config here,
+    else this folder). Exit code 0: all right; 1: wrong, edited or made from another geometry.
+    """
+    from ikgen.build.recheck import recheck
+
+    results: list[Recheck] = []
+    with Console(quiet=quiet, verbose=verbose) as console:
+        for record, command in _records(target, robot):
+            results.append(
+                recheck(
+                    record, robot=robot, command=command, samples=samples, seed=seed,
+                    progress=console,
+                )
+            )  # fmt: skip
+    if junit_xml is not None:
+        _write_junit(junit_xml, results)
+    _print(results, as_json=as_json, quiet=quiet, verbose=verbose)
+    return 0 if all(result.passed for result in results) else 1
+
+
+def _records(target: Path | None, robot: Path | None) -> list[tuple[Record, str | None]]:
+    """The records meant, each with the command that makes its outputs again, if not its own."""
+    from ikgen.build.config import default_config, load_config
+    from ikgen.build.record import find_records, read_record
+
+    target = target or default_config(Path()) or Path()
+    if target.is_dir():
+        return [(read_record(path), None) for path in find_records(target)]
+    if target.suffix == ".json":
+        return [(read_record(target), None)]
+    if not target.is_file():
+        raise UsageError(f"{target}: no such file or directory")
+    command = f"ikgen build {target}" if robot is None else None
+    return [(read_record(arm.record_path), command) for arm in load_config(target)]
+
+
+def _print(results: Sequence[Recheck], *, as_json: bool, quiet: bool, verbose: bool) -> None:
+    from ikgen.cli import annotations
+    from ikgen.cli.tables import verification_tables
+
+    annotations.write(results)
+    if as_json:
+        click.echo(json.dumps({"passed": all(r.passed for r in results), "outputs": [_as_dict(r) for r in results]}, indent=2, allow_nan=False))  # fmt: skip
+    for result in results:
+        if verbose and result.reports:
+            click.echo(verification_tables(result.reports), err=True)
+        for finding in result.findings:
+            click.echo(f"error: {finding.file}: {finding.message}", err=True)
+        for command in dict.fromkeys(finding.command for finding in result.findings):
+            click.echo(f"hint: {command}", err=True)
+        if not quiet and not as_json:
+            click.echo(_line(result))
+
+
+def _line(result: Recheck) -> str:
+    """One line about one record."""
+    notes = "".join(f"; {note}" for note in result.notes)
+    if not result.passed:
+        return f"{result.record.name}: WRONG{notes}"
+    parts = []
+    for name, report in result.reports.items():
+        metres, radians = report.worst_closure
+        parts.append(f"{name} {report.samples} poses, closure {metres:.1e} m {radians:.1e} rad")
+    return f"{result.record.name}: right ({'; '.join(parts) or 'nothing to run'}){notes}"
+
+
+def _as_dict(result: Recheck) -> dict[str, Any]:
+    return {
+        "name": result.record.name,
+        "record": result.record.path.as_posix(),
+        "robot": result.record.robot.as_posix(),
+        "passed": result.passed,
+        "findings": [
+            {"file": f.file.as_posix(), "message": f.message, "command": f.command}
+            for f in result.findings
+        ],
+        "notes": list(result.notes),
+        "verification": {name: report.to_dict() for name, report in result.reports.items()},
+    }
+
+
+def _write_junit(path: Path, results: Sequence[Recheck]) -> None:
+    """One suite an output; findings that no verification holds become a suite of their own."""
+    from ikgen.verify.junit import write_junit_xml
+    from ikgen.verify.report import CheckResult, VerificationReport
+
+    suites = []
+    for result in results:
+        record = result.record
+        checks = tuple(
+            CheckResult("up to date", False, 1, 1, detail=f.message, worst_case=f.command)
+            for f in result.findings
+        ) or (CheckResult("up to date", True, len(record.files)),)
+        own = VerificationReport("outputs", record.base, record.tip, record.task, 0, 0, checks)
+        suites += [(record.name, report) for report in (own, *result.reports.values())]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_junit_xml(path, suites)
