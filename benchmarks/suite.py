@@ -143,7 +143,9 @@ def _compare(arm: ArmUnderTest, rows: Array, count: Array, T: Array, q: Array) -
     for i, k in enumerate(count):
         back = arm.oracle.forward(rows[i, :k]) if k else np.zeros((0, 4, 4))
         error = arm.task.residual(back, np.broadcast_to(T[i], back.shape))
-        wrong += int(np.sum(np.max(np.abs(error), axis=-1, initial=0.0) > WRONG * max(1.0, arm.length)))
+        wrong += int(
+            np.sum(np.max(np.abs(error), axis=-1, initial=0.0) > WRONG * max(1.0, arm.length))
+        )
         missed += not _present(arm, rows[i, :k], q[i])
     return wrong, missed
 
@@ -171,7 +173,9 @@ def _histogram(counts: Counter[int]) -> str:
 
 
 def _print(trials: Sequence[Trial]) -> None:
-    print(f"{'robot':16} {'joints':7} {'state':9} {'s':>5}  {'found':24} {'true':14} wrong missed  leaves")
+    print(
+        f"{'robot':16} {'joints':7} {'state':9} {'s':>5}  {'found':24} {'true':14} wrong missed  leaves"
+    )
     for t in trials:
         print(
             f"{t.robot:16} {t.kinds:7} {t.state:9} {t.seconds:5.1f}  {t.found:24} {t.true:14} "

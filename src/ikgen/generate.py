@@ -189,6 +189,7 @@ def _manifest(
         "package_paths": [
             os.path.relpath(p.resolve(), outputs.out.resolve()) for p in request.package_paths
         ],
+        "asked": {"base": request.base, "tip": request.tip, "task": request.task},
         "emit": list(outputs.emit),
         "joints": [joint.name for joint in module.dh.joints],
         "max_solutions": module.max_solutions,

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ikgen.emit.module import EXACT, SolverModule
+from ikgen.emit.module import SolverModule
 from ikgen.ir.lower import lower
 from ikgen.kinematics.forward import row_constant
 from ikgen.kinematics.modified_dh import to_dh
@@ -39,10 +39,9 @@ def solver_module(name: str) -> SolverModule:
     dh = to_dh(arm_chain(arms[name])) if name in arms else _suite_chain(name)
     graph = solve_chain(dh)
     assert not graph.open_joints
-    deviation = max(dh.deviation)
     return SolverModule(
         name=name.lower().replace("-", "_"),
-        program=lower(graph, slack=2.0 * deviation if deviation > EXACT else 0.0),
+        program=lower(graph, slack=2.0 * max(dh.deviation)),
         dh=dh,
         task="pose",
         free=(),

@@ -20,7 +20,8 @@ SUFFIX = "_ik.json"
 @dataclass(frozen=True, slots=True)
 class Record:
     """One record. `path` is its file; `robot`, `package_paths` and `inputs` (file -> SHA-256) are as
-    seen from the current directory, `files` (name -> SHA-256) relative to the record's folder."""
+    seen from the current directory, `files` (name -> SHA-256) relative to the record's folder; `asked`
+    are base, tip and task as the user gave them (or did not)."""
 
     path: Path
     version: str
@@ -34,6 +35,7 @@ class Record:
     lock: Mapping[str, float]
     args: Mapping[str, str]
     package_paths: tuple[Path, ...]
+    asked: Mapping[str, str | None]
     emit: tuple[str, ...]
     joints: tuple[str, ...]
     max_solutions: int
@@ -126,6 +128,7 @@ def _record(path: Path, data: Mapping[str, Any]) -> Record:
         lock={name: float(value) for name, value in data["lock"].items()},
         args=dict(data["args"]),
         package_paths=tuple(seen(folder / p) for p in data["package_paths"]),
+        asked=dict(data["asked"]),
         emit=tuple(data["emit"]),
         joints=tuple(data["joints"]),
         max_solutions=int(data["max_solutions"]),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from ikgen.ir.ops import Op, Operand
 from ikgen.ir.program import JointOutput
 from ikgen.model.dh import DHRow
 
-__all__ = ["emit", "emit_header", "emit_package"]
+__all__ = ["emit", "emit_derivation", "emit_header", "emit_package"]
 
 ROUGH = 1e-20
 """Squared error of a row above which it takes Newton steps."""
@@ -32,6 +33,16 @@ _ORIENTATION = {
     "direction": "direction",
 }
 """What a task reads of the rotation."""
+
+
+class _Derived(Protocol):
+    @property
+    def module(self) -> SolverModule: ...
+
+
+def emit_derivation(derivation: _Derived) -> dict[str, str]:
+    """File name -> text of the C++ output."""
+    return emit(derivation.module)
 
 
 def emit(module: SolverModule) -> dict[str, str]:
@@ -126,8 +137,10 @@ class _Seed:
 
 
 def _rough(module: SolverModule) -> str:
-    """Condition under which a row takes Newton steps, where not all or none do."""
+    """Condition under which a row takes Newton steps."""
     program = module.program
+    if module.polish == "all":
+        return "(spread<1>(1.0) > 0.0)"
     return " | ".join([*program.singular, *(f"({r} > {ROUGH})" for r in program.residuals)])
 
 

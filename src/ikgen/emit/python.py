@@ -261,7 +261,7 @@ def _scalar(module: SolverModule, joints: list[_JointText]) -> list[str]:
 def _loop(level: Level) -> str:
     if level.call is not None:
         arguments = ", ".join(expression(SCALAR, a) for a in level.call.arguments)
-        return f"for {', '.join(level.call.names)} in {level.call.routine}({arguments}):"
+        return f"for {', '.join(level.call.names)} in _{level.call.routine}_branches({arguments}):"
     return f"for {level.sigma} in (1.0, -1.0):"
 
 
@@ -276,9 +276,8 @@ def _batch(module: SolverModule, joints: list[_JointText]) -> list[str]:
         if level.call is not None:
             arguments = ", ".join(expression(BATCH, a) for a in level.call.arguments)
             names = ", ".join(level.call.names)
-            lines.append(
-                f"{names}, found = {level.call.routine}_batch({arguments}, axis={index - 1}, depth={depth})"
-            )
+            call = f"_{level.call.routine}_lanes(({arguments}), {index - 1})"
+            lines.append(f"{names}, found = {call}")
             lines.append("valid = valid & found")
         for statement in level.body:
             if isinstance(statement, Comment):

@@ -8,7 +8,7 @@ from ikgen.equations.expression import Expr, ExpressionGraph
 from ikgen.equations.knowledge import PolynomialEquation, Variable
 from ikgen.equations.polynomial import ONE, Key, Monomial, Polynomial
 
-__all__ = ["AngleSplit", "constant_ratio", "harmonics", "powers", "split_angle"]
+__all__ = ["AngleSplit", "constant_ratio", "harmonics", "only_known", "powers", "proportional", "split_angle"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,17 +72,27 @@ def powers(equation: PolynomialEquation, unknown: Variable) -> dict[int, Expr] |
     return out
 
 
-def constant_ratio(graph: ExpressionGraph, a: Polynomial, b: Polynomial) -> Expr | None:
-    """The factor f with `a = f * b`, where f is known; None if there is none. Tried on the probes."""
+def proportional(a: Polynomial, b: Polynomial) -> tuple[Expr, Expr] | None:
+    """Known x and y with `y * a = x * b`, y a coefficient of b chosen by b alone; None if there are
+    none. Tried on the probes."""
     if set(a) != set(b) or not a:
         return None
     first: Monomial = max(b, key=lambda m: (abs(b[m].probe).min(), m))
     for mono in a:
         cross = a[mono].probe * b[first].probe - a[first].probe * b[mono].probe
         size = a[mono].scale * b[first].scale + a[first].scale * b[mono].scale
-        if abs(cross).max() > 1e-9 * size:
+        if not abs(cross).max() <= 1e-9 * size:
             return None
-    return graph.div(a[first], b[first])
+    return a[first], b[first]
+
+
+def constant_ratio(graph: ExpressionGraph, a: Polynomial, b: Polynomial) -> Expr | None:
+    """The factor f with `a = f * b`, f of parameters and numbers only; None if there is none."""
+    found = proportional(a, b)
+    if found is None:
+        return None
+    ratio = graph.div(*found)
+    return ratio if ratio.is_fixed else None
 
 
 def only_known(polynomial: Polynomial) -> Expr | None:

@@ -43,8 +43,9 @@ def exact_chain(
     book = NameBook(log)
     for row in merged.rows:
         for q in (row.alpha, row.a, row.theta, row.d):
-            if q.single is not None:
-                book.names.setdefault(symbol_of(q.single[0]), ("user", q.single[0]))
+            for name, _ in q.terms:
+                if symbol_of(name) == name:
+                    book.names.setdefault(name, ("user", name))
     rows = tuple(_row(i, row, book) for i, row in enumerate(merged.rows))
     dh = DHChain(
         robot=ends.robot,

@@ -109,7 +109,9 @@ def _text(path: Path) -> str:
         ) from None
 
 
-def _unknown(document: TableDocument, keys: Iterable[str], known: tuple[str, ...], **place: Any) -> None:
+def _unknown(
+    document: TableDocument, keys: Iterable[str], known: tuple[str, ...], **place: Any
+) -> None:
     for key in keys:
         if key not in known:
             close = difflib.get_close_matches(key, known, n=1, cutoff=0.5)
@@ -123,7 +125,9 @@ def _check_top(document: TableDocument) -> None:
     data = document.data
     _unknown(document, data, _TOP_KEYS)
     if data.get("convention") not in CONVENTIONS:
-        given = "no convention" if "convention" not in data else f"convention {data['convention']!r}"
+        given = (
+            "no convention" if "convention" not in data else f"convention {data['convention']!r}"
+        )
         raise document.error(
             given,
             'write convention = "modified" (Craig: alpha and a before the joint) or "standard" '
@@ -136,7 +140,9 @@ def _check_top(document: TableDocument) -> None:
     for name in ("base", "tool"):
         end = data.get(name, {})
         if not isinstance(end, dict):
-            raise document.error(f"'{name}' is no table", f"write [{name}] with xyz and rpy", key=name)
+            raise document.error(
+                f"'{name}' is no table", f"write [{name}] with xyz and rpy", key=name
+            )
         _unknown(document, end, _END_KEYS, table=name)
     if not isinstance(data.get("name", ""), str):
         raise document.error("the name is no text", 'write name = "robot"', key="name")
@@ -182,4 +188,6 @@ def _check_joint(document: TableDocument, number: int, joint: Mapping[str, Any])
                 joint=number, key=key,
             )  # fmt: skip
     if not isinstance(joint.get("name", ""), str) or joint.get("name") == "":
-        raise document.error("the name is no text", 'write name = "elbow"', joint=number, key="name")
+        raise document.error(
+            "the name is no text", 'write name = "elbow"', joint=number, key="name"
+        )

@@ -42,7 +42,9 @@ def read_parameters(document: TableDocument) -> dict[str, float | None]:
             raise document.error(f"parameter '{name}': {error}", error.hint, **place) from None
         if found.symbolic or not math.isfinite(found.value):
             raise document.error(
-                f"parameter '{name}' has no number", "give a finite number, or leave it out", **place
+                f"parameter '{name}' has no number",
+                "give a finite number, or leave it out",
+                **place,
             )
         known[name] = found.value
     return known
@@ -58,7 +60,9 @@ def read_entries(document: TableDocument) -> tuple[Entry, ...]:
         moving += kind != "fixed"
         default = "" if kind == "fixed" else f"{'theta' if kind == 'revolute' else 'd'}_{moving}"
         name = joint.get("name", default)
-        parts = {key: _entry(document, i, joint, key, parameters, (name, default)) for key in ENTRIES}
+        parts = {
+            key: _entry(document, i, joint, key, parameters, (name, default)) for key in ENTRIES
+        }
         limits = _limits(document, i, joint, parameters)
         entries.append(Entry(kind, name, **parts, limits=limits))
     _check_names(document, entries)
@@ -77,7 +81,9 @@ def _entry(
     value = joint.get(key, 0)
     if not isinstance(value, str):
         if not math.isfinite(value):
-            raise document.error(f"'{key}' is not finite", "write a finite number", joint=i, key=key)
+            raise document.error(
+                f"'{key}' is not finite", "write a finite number", joint=i, key=key
+            )
         return number(value)
     try:
         found = evaluate(value, parameters, angle=key in ("alpha", "theta"))
@@ -97,7 +103,14 @@ def _offset(
 ) -> Quantity:
     """The variable's own entry: many tables write the variable itself there, which is left out."""
     number_of = variable[1].rpartition("_")[2]
-    usual = {*variable, f"th_{number_of}", f"th{number_of}", f"q_{number_of}", f"q{number_of}", f"{key}{number_of}"}
+    usual = {
+        *variable,
+        f"th_{number_of}",
+        f"th{number_of}",
+        f"q_{number_of}",
+        f"q{number_of}",
+        f"{key}{number_of}",
+    }
     for name, factor in found.terms:
         if name in usual and name not in parameters and factor == 1.0:
             terms = tuple(t for t in found.terms if t[0] != name)
@@ -115,7 +128,10 @@ def _offset(
 
 
 def _limits(
-    document: TableDocument, i: int, joint: Mapping[str, Any], parameters: Mapping[str, float | None]
+    document: TableDocument,
+    i: int,
+    joint: Mapping[str, Any],
+    parameters: Mapping[str, float | None],
 ) -> Limits:
     given = joint.get("limits")
     if given is None:
@@ -205,7 +221,5 @@ def locked_entries(
         turned = entry.kind == "revolute"
         theta = entry.theta + value if turned else entry.theta
         d = entry.d if turned else entry.d + value
-        out.append(
-            Entry("fixed", entry.name, entry.alpha, entry.a, d, theta, entry.limits)
-        )
+        out.append(Entry("fixed", entry.name, entry.alpha, entry.a, d, theta, entry.limits))
     return tuple(out)

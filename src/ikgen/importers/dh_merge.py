@@ -109,9 +109,7 @@ def _absorb(
     if fixed.theta.is_near(math.pi) or fixed.theta.is_near(-math.pi):
         # Rz(pi) Rx(alpha) Tx(a) = Rx(-alpha) Tx(-a) Rz(pi)
         fixed = replace(fixed, theta=ZERO)
-        after = replace(
-            after, alpha=-after.alpha, a=-after.a, theta=after.theta + number(math.pi)
-        )
+        after = replace(after, alpha=-after.alpha, a=-after.a, theta=after.theta + number(math.pi))
     if not fixed.d.is_near(0.0, 0.0) and fixed.alpha.is_near(0.0) and fixed.theta.is_near(0.0):
         before, fixed = replace(before, d=before.d + fixed.d), replace(fixed, d=ZERO)
     if fixed.theta.is_near(0.0) and fixed.d.is_near(0.0, 0.0):

@@ -50,13 +50,19 @@ def read_dh_table(
     )
     given = tuple(sorted((locked or {}).items()))
     if not merged.complete:
-        symbols = [row.name for row in merged.rows if any(q.symbolic for q in (row.alpha, row.a, row.d, row.theta))]
+        symbols = [
+            row.name
+            for row in merged.rows
+            if any(q.symbolic for q in (row.alpha, row.a, row.d, row.theta))
+        ]
         if symbols:
             raise document.error(
                 "a fixed row between joints cannot be merged with symbolic ones",
                 "give the lengths and angles numbers under [parameters]",
             )
-        document.warnings.append("a fixed row between joints: the rows were made anew from the axes")
+        document.warnings.append(
+            "a fixed row between joints: the rows were made anew from the axes"
+        )
     make = exact_chain if merged.complete else chain_of_rows
     dh = make(merged, ends, free=tuple(free), locked=given)
     document.warnings.extend(_redundant(dh))

@@ -11,7 +11,7 @@ import numpy as np
 
 from ikgen.equations.expression import Expr
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
-from ikgen.equations.matching import constant_ratio, only_known, split_angle
+from ikgen.equations.matching import AngleSplit, only_known, proportional, split_angle
 from ikgen.equations.polynomial import Polynomial
 from ikgen.solver.candidate import Candidate
 
@@ -62,16 +62,33 @@ def _collect(
         return
     value = g.neg(known)
     for factor, rows in families:
-        a = constant_ratio(g, split.cosine, factor) if split.cosine else g.zero
-        b = constant_ratio(g, split.sine, factor) if split.sine else g.zero
-        if a is not None and b is not None:
-            rows.append(_Row(a, b, value, e))
+        row = _row(split, factor, value, e, knowledge)
+        if row is not None:
+            rows.append(row)
             return
     factor = split.cosine or split.sine
-    a = constant_ratio(g, split.cosine, factor) if split.cosine else g.zero
-    b = constant_ratio(g, split.sine, factor) if split.sine else g.zero
-    if a is not None and b is not None:
-        families.append((factor, [_Row(a, b, value, e)]))
+    row = _row(split, factor, value, e, knowledge)
+    if row is not None:
+        families.append((factor, [row]))
+
+
+def _row(
+    split: AngleSplit,
+    factor: Polynomial,
+    value: Expr,
+    e: PolynomialEquation,
+    knowledge: Knowledge,
+) -> _Row | None:
+    """The equation over the family's factor, scaled so that one of its coefficients is one: no
+    division, hence nothing that could vanish."""
+    g = knowledge.graph
+    parts: list[Expr] = []
+    for side in (split.cosine, split.sine):
+        found = proportional(side, factor) if side else (g.zero, g.zero)
+        if found is None:
+            return None
+        parts.append(found[0])
+    return _Row(parts[0], parts[1], value, e)
 
 
 def _solve(one: _Row, two: _Row, unknown: Variable, knowledge: Knowledge) -> Candidate | None:

@@ -88,7 +88,7 @@ def _rotated(s1: AngleSplit, s2: AngleSplit, knowledge: Knowledge) -> Polynomial
         f = constant_ratio(g, s2.cosine, s1.sine)
     else:
         return None
-    if f is None or not f.is_fixed:
+    if f is None:
         return None
     norm = poly.add(g, _square(s1.cosine, knowledge), _square(s1.sine, knowledge))
     inverse = g.div(g.one, g.square(f))

@@ -47,7 +47,7 @@ def apply(
         for members in groups.values():
             for (e1, p1), (e2, p2) in itertools.combinations(members, 2):
                 ratio = constant_ratio(g, p1, p2)
-                if ratio is None or not ratio.is_fixed:
+                if ratio is None:
                     continue
                 difference = poly.subtract(
                     g, e1.polynomial, poly.scale(g, e2.polynomial, ratio)

@@ -1,0 +1,122 @@
+"""Generate the arms of a config that are stale, several at a time in processes of their own."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ikgen.build.config import ArmConfig
+from ikgen.build.record import read_record
+from ikgen.build.stale import why_stale
+from ikgen.errors import IkgenError
+from ikgen.generate import Outputs
+from ikgen.pipeline import Request
+
+__all__ = ["Outcome", "build_arms", "depfile_text", "outputs_of", "request_of_arm"]
+
+INTERNAL_ERROR = 70
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What happened to one arm: `reason` it was stale (empty: fresh, left alone), its files, and
+    the error if it failed (`exit_code` then is not 0)."""
+
+    name: str
+    reason: str
+    files: tuple[Path, ...] = ()
+    seconds: float = 0.0
+    message: str = ""
+    hint: str = ""
+    exit_code: int = 0
+
+
+def request_of_arm(arm: ArmConfig) -> Request:
+    """What an arm of a config asks for."""
+    return Request(
+        robot=arm.robot,
+        base=arm.base,
+        tip=arm.tip,
+        task=arm.task,
+        free=tuple(arm.free.items()),
+        locked=arm.lock,
+        arguments=arm.args,
+        package_paths=arm.package_paths,
+        name=arm.name,
+    )
+
+
+def outputs_of(arm: ArmConfig, *, verify: bool) -> Outputs:
+    """What an arm of a config writes."""
+    return Outputs(emit=arm.emit, out=arm.out, samples=arm.samples, verify=verify)
+
+
+def build_arms(
+    arms: Sequence[ArmConfig],
+    *,
+    force: bool = False,
+    verify: bool = True,
+    jobs: int | None = None,
+    progress: Callable[[str, str], None] = lambda stage, detail: None,
+) -> Iterator[Outcome]:
+    """Bring every arm up to date; outcomes in the order of the config."""
+    reasons = [why_stale(arm) or ("asked for" if force else "") for arm in arms]
+    work = [(arm, reason, verify) for arm, reason in zip(arms, reasons, strict=True) if reason]
+    for arm, reason in zip(arms, reasons, strict=True):
+        progress("build", f"{arm.name}: {reason or 'up to date'}")
+    made = _run(work, jobs)
+    for arm, reason in zip(arms, reasons, strict=True):
+        yield next(made) if reason else Outcome(arm.name, "", _files(arm))
+
+
+def _run(work: Sequence[tuple[ArmConfig, str, bool]], jobs: int | None) -> Iterator[Outcome]:
+    """The outcomes in the order of the work."""
+    workers = min(len(work), jobs or os.cpu_count() or 1)
+    if workers <= 1:
+        yield from map(_build_one, work)
+        return
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor
+
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(workers, mp_context=context) as pool:
+        yield from pool.map(_build_one, work)
+
+
+def _build_one(job: tuple[ArmConfig, str, bool]) -> Outcome:
+    """Generate one arm; errors become part of the outcome, since they must cross processes."""
+    from ikgen.generate import generate
+
+    arm, reason, verify = job
+    try:
+        made = generate(request_of_arm(arm), outputs_of(arm, verify=verify))
+    except IkgenError as error:
+        code = error.exit_code
+        return Outcome(arm.name, reason, (), 0.0, error.message, error.hint, code)
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        return Outcome(arm.name, reason, message=f"{where}{error.strerror or error}", exit_code=2)
+    except Exception as error:
+        text = f"internal error: {type(error).__name__}: {error}"
+        return Outcome(arm.name, reason, message=text, exit_code=INTERNAL_ERROR)
+    return Outcome(arm.name, reason, made.files, made.seconds)
+
+
+def _files(arm: ArmConfig) -> tuple[Path, ...]:
+    """The files of a fresh arm, from its record."""
+    record = read_record(arm.record_path)
+    return (*(record.folder / name for name in record.files), arm.record_path)
+
+
+def depfile_text(targets: Sequence[Path], inputs: Sequence[Path]) -> str:
+    """A Makefile rule (paths absolute, spaces and `#` escaped): targets depend on inputs."""
+    left, right = (" ".join(_escaped(p) for p in dict.fromkeys(ps)) for ps in (targets, inputs))
+    return f"{left}: {right}\n"
+
+
+def _escaped(path: Path) -> str:
+    text = path.resolve().as_posix().replace("$", "$$")
+    return text.replace("\\", "\\\\").replace(" ", "\\ ").replace("#", "\\#")
+

@@ -1,0 +1,125 @@
+"""`ikgen build`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from ikgen.build.config import ArmConfig, default_config, load_config
+from ikgen.cli.console import Console
+from ikgen.cli.options import console_options
+from ikgen.errors import UsageError
+
+if TYPE_CHECKING:
+    from ikgen.build.run import Outcome
+
+__all__ = ["build"]
+
+
+@click.command()
+@click.argument("config", type=click.Path(path_type=Path), metavar="[CONFIG]", required=False)
+@click.option("--check", is_flag=True, help="Only say what is stale and why; exit code 1 if anything is.")  # fmt: skip
+@click.option("--force", is_flag=True, help="Generate fresh arms too.")
+@click.option("--depfile", metavar="FILE", type=click.Path(path_type=Path), help="Also write which files the outputs depend on, as a Makefile rule.")  # fmt: skip
+@click.option("--jobs", "-j", metavar="N", type=click.IntRange(min=1), help="Arms at a time (default: one a processor).")  # fmt: skip
+@click.option("--no-verify", is_flag=True, help="Leave the verification out (and Pinocchio with it).")  # fmt: skip
+@console_options
+def build(
+    config: Path | None,
+    *,
+    check: bool,
+    force: bool,
+    depfile: Path | None,
+    jobs: int | None,
+    no_verify: bool,
+    as_json: bool,
+    quiet: bool,
+    verbose: bool,
+) -> int:
+    """Generate every arm that CONFIG lists and that is not up to date.
+
+    CONFIG is an ikgen.toml, or a pyproject.toml with [tool.ikgen]; by default the one here.
+    """
+    arms = load_config(_config(config))
+    if check:
+        return _check(arms, as_json=as_json, quiet=quiet)
+    from ikgen.build.run import build_arms
+
+    with Console(quiet=quiet, verbose=verbose) as console:
+        outcomes = list(
+            build_arms(arms, force=force, verify=not no_verify, jobs=jobs, progress=console)
+        )
+    _print(outcomes, as_json=as_json, quiet=quiet)
+    if depfile is not None:
+        _write_depfile(depfile, arms)
+    return max(outcome.exit_code for outcome in outcomes)
+
+
+def _config(path: Path | None) -> Path:
+    found = path or default_config(Path())
+    if found is None:
+        raise UsageError("no ikgen.toml here", hint="name the config: ikgen build CONFIG")
+    if found.is_dir():
+        inside = default_config(found)
+        if inside is None:
+            raise UsageError(f"no ikgen.toml in {found}", hint="name the config: ikgen build CONFIG")
+        return inside
+    return found
+
+
+def _check(arms: Sequence[ArmConfig], *, as_json: bool, quiet: bool) -> int:
+    """Say what is stale; writes nothing and imports nothing heavy."""
+    from ikgen.build.stale import why_stale
+
+    reasons = {arm.record_path.as_posix(): (arm.name, why_stale(arm)) for arm in arms}
+    stale = any(reason for _, reason in reasons.values())
+    if as_json:
+        rows = [
+            {"name": name, "record": path, "stale": bool(reason), "reason": reason}
+            for path, (name, reason) in reasons.items()
+        ]
+        click.echo(json.dumps({"stale": stale, "arms": rows}, indent=2))
+    elif not quiet:
+        for name, reason in reasons.values():
+            click.echo(f"{name}: {'stale: ' + reason if reason else 'up to date'}")
+    return 1 if stale else 0
+
+
+def _print(outcomes: Sequence[Outcome], *, as_json: bool, quiet: bool) -> None:
+    if as_json:
+        rows = [
+            {
+                "name": o.name,
+                "generated": bool(o.reason) and not o.exit_code,
+                "reason": o.reason,
+                "files": [path.as_posix() for path in o.files],
+                "error": o.message or None,
+                "seconds": round(o.seconds, 3),
+            }
+            for o in outcomes
+        ]
+        click.echo(json.dumps({"arms": rows}, indent=2))
+    for o in outcomes:
+        if o.exit_code:
+            click.echo(f"error: {o.name}: {o.message}", err=True)
+            if o.hint:
+                click.echo(f"hint: {o.hint}", err=True)
+        elif not quiet and not as_json:
+            state = f"generated in {o.seconds:.1f} s ({o.reason})" if o.reason else "up to date"
+            click.echo(f"{o.name}: {state}")
+
+
+def _write_depfile(path: Path, arms: Sequence[ArmConfig]) -> None:
+    """What the recorded arms were read from; nothing where one could not be generated."""
+    from ikgen.build.record import read_record
+    from ikgen.build.run import depfile_text
+
+    records = [read_record(arm.record_path) for arm in arms if arm.record_path.is_file()]
+    targets = [record.folder / name for record in records for name in record.files]
+    inputs = [file for record in records for file in record.inputs]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(depfile_text(targets, inputs), encoding="utf-8")
