@@ -55,11 +55,16 @@ def dh_pose(dh: DHChain, values: NDArray[np.float64]) -> NDArray[np.float64]:
     return T
 
 
-def smallest_singular(dh: DHChain, values: NDArray[np.float64], size: float) -> NDArray[np.float64]:
-    """Smallest singular value of the pose's derivative, lengths in units of the arm's size."""
+def smallest_singular(
+    dh: DHChain, values: NDArray[np.float64], size: float
+) -> NDArray[np.float64]:
+    """Smallest singular value (N,) of the pose's derivative by the joints that are not held, at DH
+    variables `values` (N, dof), lengths in units of the arm's size."""
     h = 1e-6
     columns = []
     for j in range(dh.dof):
+        if dh.joints[j].name in dh.free:
+            continue
         step = np.zeros(dh.dof)
         step[j] = h * (1.0 if dh.rows[_first_row(dh, j)].revolute else size)
         dT = (dh_pose(dh, values + step) - dh_pose(dh, values - step)) / (2 * h)

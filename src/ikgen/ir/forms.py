@@ -20,14 +20,14 @@ class Tolerances:
     """
 
     singular: float = 1e-11
-    flag: float = 3e-6
+    flag: float = 2e-5
     clamp: float = 1e-11
 
     @staticmethod
     def for_slack(slack: float) -> Tolerances:
         """Tolerances where the solved geometry is `slack` (m or rad) off the file's."""
         return Tolerances(
-            flag=min(max(3e-6, 5.0 * slack), 1e-2), clamp=max(1e-11, 5.0 * slack)
+            flag=min(max(2e-5, 5.0 * slack), 1e-2), clamp=max(1e-11, 5.0 * slack)
         )
 
 
