@@ -1,6 +1,6 @@
 """Times emitted C++ headers: ns per solve, with plain -O3 and for this machine, single and batch.
 
-    python benchmarks/cpp_speed.py generated/ur5e_ik.hpp ...
+python benchmarks/cpp_speed.py generated/ur5e_ik.hpp ...
 """
 
 from __future__ import annotations
@@ -44,9 +44,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("headers", type=Path, nargs="+")
     parser.add_argument("--flags", choices=FLAGS, nargs="+", default=["plain", "native"])
-    parser.add_argument("--no-limits", action="store_true", help="count rows outside the limits too")
+    parser.add_argument(
+        "--no-limits", action="store_true", help="count rows outside the limits too"
+    )
     options = parser.parse_args()
-    print(f"{'header':32} {'flags':8} {'solve ns':>9} {'batch ns':>9} {'rows':>6} {'compile s':>10}")
+    print(
+        f"{'header':32} {'flags':8} {'solve ns':>9} {'batch ns':>9} {'rows':>6} {'compile s':>10}"
+    )
     for header in options.headers:
         for name in options.flags:
             seconds, (single, batch, rows) = measure(

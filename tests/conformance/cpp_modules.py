@@ -22,7 +22,7 @@ from ikgen.model.joint_tree import Limits
 from ikgen.solver.run import solve_chain
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "unit"))
-from arms import ARMS_FILE, arm_chain, load_arms  # noqa: E402
+from arms import ARMS_FILE, arm_chain, load_arms
 
 __all__ = ["ROBOTS", "solver_module"]
 
@@ -83,7 +83,11 @@ def _suite_chain(name: str) -> DHChain:
 
 def _angle(value: float, name: str) -> Angle:
     turns = Fraction(round(value * 12 / math.pi), 12)
-    return Angle(value, turns) if abs(float(turns) * math.pi - value) < 1e-9 else Angle(value, None, name)
+    return (
+        Angle(value, turns)
+        if abs(float(turns) * math.pi - value) < 1e-9
+        else Angle(value, None, name)
+    )
 
 
 def _length(value: float, name: str) -> Length:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cpp_modules import ROBOTS, solver_module
 from numpy.typing import NDArray
 
 from ikgen.emit.cpp import emit, emit_header
@@ -19,8 +20,6 @@ from ikgen.kinematics.forward import file_forward, file_jacobian
 from ikgen.verify.runners.cpp_header import CppHeader
 from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
 from ikgen.verify.runners.runner import ArmConstants
-
-from cpp_modules import ROBOTS, solver_module
 
 Array = NDArray[np.float64]
 
@@ -100,7 +99,11 @@ def interpreted(module: SolverModule, pose: Array) -> tuple[Array, NDArray[np.bo
     rows = first_rows(module)
     for j, row in enumerate(rows):
         v = row.offset.value
-        inputs |= {f"seed_c{j + 1}": math.cos(v), f"seed_s{j + 1}": math.sin(v), f"seed_d{j + 1}": v}
+        inputs |= {
+            f"seed_c{j + 1}": math.cos(v),
+            f"seed_s{j + 1}": math.sin(v),
+            f"seed_d{j + 1}": v,
+        }
     out: list[Array] = []
     flags = []
     for answer in run(module.program, inputs):

@@ -8,9 +8,8 @@ from typing import Protocol
 
 import numpy as np
 
-from ikgen.emit.cpp_program import CPP, ProgramText, number, used_inputs
+from ikgen.emit.cpp_program import ProgramText, number, used_inputs
 from ikgen.emit.module import SolverModule
-from ikgen.emit.printer import expression
 from ikgen.emit.rendering import render
 from ikgen.errors import UsageError
 from ikgen.ir.ops import Op, Operand
@@ -110,7 +109,7 @@ def _first_row(module: SolverModule, joint: int) -> DHRow:
 
 
 def _depth_first(branches: list[int]) -> list[int]:
-    """Per row in depth-first order, its lane: branch i of level k adds i times the width before it."""
+    """Lane of each row, depth first: branch i of a level adds i times the width before it."""
     lanes, width = [0], 1
     for n in branches:
         lanes = [lane + i * width for lane in lanes for i in range(n)]

@@ -151,7 +151,7 @@ class ProgramText:
         roots = f"roots_{index}"
         self._statement(
             f"const auto {roots} = roots_of<{branches}, {len(call.names)}, {width} * P>"
-            f"([](auto&&... x) {{ return {call.routine}(x...); }}, {arguments});"
+            f"([](auto&&... x) {{ return {call.routine}_branches(x...); }}, {arguments});"
         )
         for k, name in enumerate(call.names):
             if name in self.live:
