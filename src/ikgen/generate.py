@@ -21,7 +21,15 @@ if TYPE_CHECKING:
     from ikgen.verify.oracle import Oracle
     from ikgen.verify.report import VerificationReport
 
-__all__ = ["Generation", "Outputs", "generate", "oracle_for", "publish", "verify_files", "verify_one"]
+__all__ = [
+    "Generation",
+    "Outputs",
+    "generate",
+    "oracle_for",
+    "publish",
+    "verify_files",
+    "verify_one",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +106,7 @@ def _move(staging: Path, out: Path, texts: Mapping[str, str]) -> tuple[Path, ...
         if (out / name).is_dir():
             raise IsADirectoryError(errno.EISDIR, "is a directory", str(out / name))
     for name in changed:
-        os.replace(staging / name, out / name)
+        (staging / name).replace(out / name)
     return tuple(out / name for name in texts)
 
 
@@ -183,7 +191,7 @@ def _manifest(
         "base": module.dh.base_link,
         "tip": module.dh.tip_link,
         "task": module.task,
-        "free": {n: v for n, v in request.free},
+        "free": dict(request.free),
         "lock": dict(request.locked),
         "args": dict(request.arguments),
         "package_paths": [

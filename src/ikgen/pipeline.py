@@ -97,21 +97,32 @@ def derive(request: Request, progress: Progress = _quiet) -> Derivation:
     )
 
 
-def _solve(dh: DHChain, asked: str | None, progress: Progress) -> tuple[Task, SolutionGraph]:
-    """The asked task; without one the task that fits the arm, the whole pose first."""
-    from ikgen.solver.run import solve_chain
-    from ikgen.tasks import find_task
+def _solve(
+    dh: DHChain, asked: str | None, progress: Progress
+) -> tuple[Task, SolutionGraph]:
+    """The asked task; without one the task that fits the arm best and has a closed form."""
+    from ikgen.tasks import find_task, fitting_tasks
 
-    task = find_task(asked or "pose")
-    graph = solve_chain(
+    tasks = (find_task(asked),) if asked else fitting_tasks(dh)
+    first: tuple[Task, SolutionGraph] | None = None
+    for task in tasks:
+        graph = _attempt(dh, task, progress)
+        if not graph.open_joints:
+            return task, graph
+        first = first or (task, graph)
+    assert first is not None
+    raise unsolved(dh, *first)
+
+
+def _attempt(dh: DHChain, task: Task, progress: Progress) -> SolutionGraph:
+    from ikgen.solver.run import solve_chain
+
+    return solve_chain(
         dh,
         readable=task.readable,
         tool_on_right=not task.whole_pose,
         progress=lambda text: progress("derive", text),
     )
-    if graph.open_joints:
-        raise unsolved(dh, task, graph)
-    return task, graph
 
 
 def unsolved(dh: DHChain, task: Task, graph: SolutionGraph) -> UnsolvedChainError:

@@ -539,7 +539,7 @@ inline void branches(const Pose<P>& pose, const Seed& seed, const std::array<dou
   static_cast<void>(seed);
   static_cast<void>(held);
 
-  // the radius gives the cosine
+  // the radius
   const auto c1 = t03 / a_2;
 
   const auto sigma_1 = signs<2 * P>();

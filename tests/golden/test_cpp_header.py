@@ -41,7 +41,7 @@ def pan_lift() -> SolverModule:
         constants=(),
         inputs=("t03", "t13", "t23"),
         levels=(
-            Level(1, None, None, (Comment("the radius gives the cosine"), Let("c1", Op("div", ("t03", "a_2"))))),
+            Level(1, None, None, (Comment("the radius"), Let("c1", Op("div", ("t03", "a_2"))))),
             Level(
                 2,
                 "sigma_1",

@@ -77,7 +77,7 @@ def load_config(path: Path) -> tuple[ArmConfig, ...]:
 def _read(path: Path) -> dict[str, Any]:
     """The `ikgen` part of the file."""
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        data: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise _error(path, "no such file", "write one: `name`, `robot` under [[arm]]") from None
     except (OSError, UnicodeDecodeError) as error:

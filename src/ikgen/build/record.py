@@ -105,7 +105,9 @@ def read_record(path: Path) -> Record:
         data = json.loads(path.read_text(encoding="utf-8"))
         return _record(path, data)
     except OSError as error:
-        raise BadDescriptionError(error.strerror or str(error), file=str(path)) from None
+        raise BadDescriptionError(
+            error.strerror or str(error), file=str(path), hint="generate it first (ikgen build)"
+        ) from None
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         what = f"lacks {error}" if isinstance(error, KeyError) else str(error)
         raise BadDescriptionError(

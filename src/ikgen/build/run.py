@@ -14,7 +14,7 @@ from ikgen.errors import IkgenError
 from ikgen.generate import Outputs
 from ikgen.pipeline import Request
 
-__all__ = ["Outcome", "build_arms", "depfile_text", "outputs_of", "request_of_arm"]
+__all__ = ["Outcome", "build_arms", "outputs_of", "request_of_arm"]
 
 INTERNAL_ERROR = 70
 
@@ -108,15 +108,3 @@ def _files(arm: ArmConfig) -> tuple[Path, ...]:
     """The files of a fresh arm, from its record."""
     record = read_record(arm.record_path)
     return (*(record.folder / name for name in record.files), arm.record_path)
-
-
-def depfile_text(targets: Sequence[Path], inputs: Sequence[Path]) -> str:
-    """A Makefile rule (paths absolute, spaces and `#` escaped): targets depend on inputs."""
-    left, right = (" ".join(_escaped(p) for p in dict.fromkeys(ps)) for ps in (targets, inputs))
-    return f"{left}: {right}\n"
-
-
-def _escaped(path: Path) -> str:
-    text = path.resolve().as_posix().replace("$", "$$")
-    return text.replace("\\", "\\\\").replace(" ", "\\ ").replace("#", "\\#")
-

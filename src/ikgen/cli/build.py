@@ -115,11 +115,10 @@ def _print(outcomes: Sequence[Outcome], *, as_json: bool, quiet: bool) -> None:
 
 def _write_depfile(path: Path, arms: Sequence[ArmConfig]) -> None:
     """What the recorded arms were read from; nothing where one could not be generated."""
+    from ikgen.build.depfile import write_depfile
     from ikgen.build.record import read_record
-    from ikgen.build.run import depfile_text
 
     records = [read_record(arm.record_path) for arm in arms if arm.record_path.is_file()]
     targets = [record.folder / name for record in records for name in record.files]
     inputs = [file for record in records for file in record.inputs]
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(depfile_text(targets, inputs), encoding="utf-8")
+    write_depfile(path, targets, inputs)

@@ -16,7 +16,7 @@ from ikgen.cli.options import (
     sampling_options,
 )
 from ikgen.errors import UsageError, VerificationError
-from ikgen.generate import Outputs, generate
+from ikgen.generate import Generation, Outputs, generate
 from ikgen.pipeline import Request
 
 __all__ = ["from_dh", "from_urdf"]
@@ -28,6 +28,13 @@ _output = click.option(
 _emit = click.option(
     "--emit", multiple=True, metavar="NAME,...", help="Outputs, for example python,cpp."
 )
+_depfile = click.option(
+    "--depfile", metavar="FILE", type=click.Path(path_type=Path),
+    help="Also write which files the outputs depend on, as a Makefile rule.",
+)  # fmt: skip
+_depfile_target = click.option(
+    "--depfile-target", metavar="FILE", help="The rule's target, verbatim (default: the outputs)."
+)
 _verify = click.option(
     "--no-verify", is_flag=True, help="Leave the verification out (and Pinocchio with it)."
 )
@@ -38,6 +45,8 @@ _verify = click.option(
 @chain_options
 @_emit
 @_output
+@_depfile
+@_depfile_target
 @sampling_options
 @_verify
 @console_options
@@ -53,6 +62,8 @@ def from_urdf(robot: Path, **options: Any) -> int:
 @chain_options
 @_emit
 @_output
+@_depfile
+@_depfile_target
 @sampling_options
 @_verify
 @console_options
@@ -71,6 +82,8 @@ def _run(
     *,
     emit: tuple[str, ...],
     out: Path,
+    depfile: Path | None,
+    depfile_target: str | None,
     samples: int,
     seed: int,
     no_verify: bool,
@@ -91,10 +104,22 @@ def _run(
 
             click.echo(verification_tables(error.reports), err=True)
         raise
-    from ikgen.cli.summary import as_dict, summary, trace
-
     for warning in generation.derivation.reading.source.warnings:
         console.warn(warning)
+    if depfile is not None:
+        from ikgen.build.depfile import write_depfile
+
+        source = generation.derivation.reading.source
+        targets = depfile_target or generation.files
+        write_depfile(depfile, targets, source.dependencies or (source.path,))
+    _report(generation, as_json=as_json, quiet=quiet, verbose=verbose)
+    return 0
+
+
+def _report(generation: Generation, *, as_json: bool, quiet: bool, verbose: bool) -> None:
+    """The end of the job, in words or as JSON."""
+    from ikgen.cli.summary import as_dict, summary, trace
+
     if verbose and not quiet:
         click.echo(trace(generation), err=True)
     if as_json:
@@ -103,4 +128,3 @@ def _run(
         click.echo(json.dumps(as_dict(generation), indent=2, allow_nan=False))
     elif not quiet:
         click.echo(summary(generation))
-    return 0

@@ -47,8 +47,9 @@ def _find(request: Request, console: Console, *, advice: bool) -> Findings:
 
     console("read", request.robot.name)
     if request.robot.suffix.lower() == ".toml":
-        reading = read(request)
-        return Findings(reading, None, (), attempts(reading.dh, request.task, console))
+        table = read(request)
+        tried = attempts(table.dh, request.task, console) if advice else []
+        return Findings(table, None, (), tried)
     from ikgen.importers import load_tree
     from ikgen.importers.candidates import candidate_chains
 

@@ -13,6 +13,7 @@ from ikgen.emit.printer import Language, expression
 from ikgen.emit.rendering import render
 from ikgen.ir.ops import Op, Operand
 from ikgen.ir.program import Comment, JointOutput, Let, Level, Program, Require
+from ikgen.tasks import find_task
 
 __all__ = ["emit_derivation", "emit_module"]
 
@@ -99,8 +100,17 @@ def emit_module(module: SolverModule) -> str:
         frames=[_matrix(F) for F in module.dh.file_frames],
         rows=[(row.driver, row.revolute, row.scale, row.offset.value) for row in module.dh.rows],
         number=_number,
+        entries=_task_entries(module),
         size=_arm_size(module),
     )
+
+
+def _task_entries(module: SolverModule) -> list[tuple[int, int]]:
+    """Row and column (from 0) of the pose entries that the task reads."""
+    names = sorted(find_task(module.task).readable)
+    return [
+        ("xyz".index(n[1]), 3) if n[0] == "p" else (int(n[1]) - 1, int(n[2]) - 1) for n in names
+    ]
 
 
 def _arm_size(module: SolverModule) -> float:

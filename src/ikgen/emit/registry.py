@@ -51,6 +51,17 @@ EMITTERS: tuple[Emitter, ...] = (
         "ikgen.emit.python:emit_derivation",
         "ikgen.generate_runners:python_runner",
     ),
+    Emitter(
+        "cpp",
+        "a C++17 header, Eigen only, with a CMake package around it",
+        "ikgen.emit.cpp:emit_derivation",
+        "ikgen.generate_runners:cpp_runner",
+    ),
+    Emitter(
+        "report",
+        "how it was derived, as LaTeX and HTML, with the solution graph",
+        "ikgen.emit.report:emit_derivation",
+    ),
 )
 
 

@@ -152,6 +152,10 @@ class Knowledge:
                 )
         return c, s
 
+    def composition(self, key: Key) -> tuple[tuple[int, Key], ...]:
+        """A known key's angle as integer combination of solved ones: (factor, solved key) pairs."""
+        return self._combinations[key]
+
     def is_known(self, variable: Variable) -> bool:
         """Whether the variable is solved or follows from solved ones."""
         if variable.kind == "angle":

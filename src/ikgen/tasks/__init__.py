@@ -4,9 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from typing import TYPE_CHECKING
+
 from ikgen.errors import UnknownNameError
 
-__all__ = ["TASKS", "Task", "find_task"]
+if TYPE_CHECKING:
+    from ikgen.model.dh import DHChain
+
+__all__ = ["TASKS", "Task", "find_task", "fitting_tasks"]
 
 _POSITION = ("px", "py", "pz")
 _ROTATION = tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
@@ -59,3 +64,40 @@ def find_task(name: str) -> Task:
         if name == task.name or name.lower() in (a.lower() for a in task.aliases):
             return task
     raise UnknownNameError("task", name, [task.name for task in TASKS])
+
+
+def fitting_tasks(dh: DHChain) -> tuple[Task, ...]:
+    """Tasks for an arm when none was asked for, the best first and the whole pose last.
+
+    An arm with fewer than six moving joints gets the task that fixes as many freedoms as it has, if
+    its joints do move all of them; the whole pose then only counts on the poses that it can take.
+    """
+    moving = dh.dof - len(dh.free)
+    smaller = [t for t in TASKS if t.freedoms == moving and t.name != "rotation" and _spans(dh, t)]
+    whole = TASKS[0]
+    return (whole,) if moving >= whole.freedoms else (*smaller, whole)
+
+
+def _spans(dh: DHChain, task: Task) -> bool:
+    """Whether the arm's joints move the task's freedoms independently of each other."""
+    import numpy as np
+
+    from ikgen.kinematics.forward import file_forward
+
+    rng = np.random.default_rng(0)
+    q = rng.uniform(-1.5, 1.5, (8, dh.dof))
+    entries = [
+        ("xyz".index(name[1]), 3) if name[0] == "p" else (int(name[1]) - 1, int(name[2]) - 1)
+        for name in sorted(task.readable)
+    ]
+    rows, columns = zip(*entries, strict=True)
+    steps = []
+    for j in range(dh.dof):
+        if dh.joints[j].name not in dh.free:
+            h = 1e-6 * np.eye(dh.dof)[j]
+            change = (file_forward(dh, q + h) - file_forward(dh, q - h)) / 2e-6
+            steps.append(change[:, rows, columns])
+    if task.name == "position-yaw" and np.abs(file_forward(dh, q)[:, 2, 0]).max() > 1e-6:
+        return False  # a heading is well-defined where the tool's x axis stays horizontal
+    singular = np.linalg.svd(np.stack(steps, axis=-1), compute_uv=False)
+    return bool(np.median(singular[:, -1] / singular[:, 0]) > 1e-4)

@@ -66,6 +66,8 @@ def _mark(latex: str, mathml: str, role: str = "ord") -> Math:
 def _word(word: str) -> tuple[str, str]:
     if word in GREEK:
         return f"\\{_COMMAND.get(word, word)} ", f"<mi>{GREEK[word]}</mi>"
+    if word.isdigit():
+        return word, f"<mn>{word}</mn>"
     if len(word) == 1:
         return word, f"<mi>{escape(word)}</mi>"
     return f"\\mathit{{{_safe(word)}}}", f'<mi mathvariant="italic">{escape(word)}</mi>'

@@ -1,0 +1,1 @@
+"""What the entry point `cmake.root` names: `find_package(ikgen)` finds `cmake/` below it."""

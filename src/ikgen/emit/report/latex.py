@@ -1,0 +1,83 @@
+"""The document as LaTeX for pdflatex: only packages of a basic installation."""
+
+from __future__ import annotations
+
+from ikgen.emit.rendering import render
+from ikgen.emit.report.document import (
+    Block,
+    Formulas,
+    Heading,
+    Matrix,
+    Paragraph,
+    Picture,
+    Rows,
+    Text,
+)
+
+__all__ = ["to_latex"]
+
+_ESCAPES = {
+    "\\": "\\textbackslash{}", "&": "\\&", "%": "\\%", "$": "\\$", "#": "\\#", "_": "\\_",
+    "{": "\\{", "}": "\\}", "~": "\\textasciitilde{}", "^": "\\textasciicircum{}", "–": "--",
+    "°": "\\ensuremath{^\\circ}", "±": "\\ensuremath{\\pm}",
+}  # fmt: skip
+
+
+def to_latex(title: str, subtitle: str, blocks: list[Block]) -> str:
+    """The text of the .tex file."""
+    body = "\n\n".join(_block(b) for b in blocks)
+    return render("report", "report.tex.jinja", title=_words(title), subtitle=_words(subtitle), body=body)
+
+
+def _words(text: str) -> str:
+    out = "".join(_ESCAPES.get(ch, ch) for ch in text)
+    return "".join(ch if ord(ch) < 0x250 else "?" for ch in out)
+
+
+def _text(text: Text) -> str:
+    return "".join(_words(part) if isinstance(part, str) else f"${part.latex}$" for part in text)
+
+
+def _block(block: Block) -> str:
+    match block:
+        case Heading(title, level):
+            plain = "".join(_words(p) if isinstance(p, str) else f"${p.latex}$" for p in title)
+            return f"\\{'section' if level == 1 else 'subsection'}*{{{plain}}}"
+        case Paragraph(text, note):
+            return f"{{\\small\\itshape {_text(text)}\\par}}" if note else f"{_text(text)}\\par"
+        case Formulas(lines):
+            inside = "\n".join(f"\\formula{{{line.latex}}}" for line in lines)
+            return f"\\begin{{formulas}}\n{inside}\n\\end{{formulas}}"
+        case Matrix(name, rows):
+            inside = " \\\\\n".join(" & ".join(x.latex for x in row) for row in rows)
+            columns = "c" * len(rows[0])
+            return (
+                f"\\[ {name.latex} = \\left[\\begin{{array}}{{{columns}}}\n{inside}\n\\end{{array}}\\right] \\]"
+            )
+        case Rows():
+            return _rows(block)
+        case Picture(_, latex, caption):
+            return f"\\begin{{center}}\n{latex}\n\n\\smallskip{{\\small {_words(caption)}}}\n\\end{{center}}"
+
+
+def _rows(block: Rows) -> str:
+    wide = [max((_width(row[i]) for row in block.rows), default=0) for i in range(len(block.header))]
+    columns = "".join("L" if w > 24 else "c" for w in wide)
+    count = columns.count("L")
+    size = f"\\setlength{{\\wide}}{{{0.62 / count if count else 0.2:.2f}\\linewidth}}"
+    head = " & ".join(f"\\textbf{{{_text(h)}}}" for h in block.header)
+    lines = [" & ".join(_text(cell) for cell in row) + " \\\\" for row in block.rows]
+    tall = len(lines) > 30
+    name = "longtable" if tall else "tabular"
+    font = "\\footnotesize" if block.small else ""
+    caption = f"{{\\small {_words(block.caption)}\\par}}\\smallskip\n" if block.caption else ""
+    inside = "\n".join([f"\\toprule {head} \\\\ \\midrule", *lines, "\\bottomrule"])
+    table = f"\\begin{{{name}}}{{{columns}}}\n{inside}\n\\end{{{name}}}"
+    if not tall and not count:
+        table = f"\\fitted{{{table}}}"
+    begin, end = ("", "") if tall else ("\\begin{center}", "\\end{center}")
+    return f"{{{size}{font}{begin}\n{caption}{table}\n{end}}}"
+
+
+def _width(text: Text) -> int:
+    return sum(len(part) if isinstance(part, str) else 2 * len(part.tokens) for part in text)

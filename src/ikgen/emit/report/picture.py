@@ -1,0 +1,147 @@
+"""The solution graph as a drawing: layers from the pose down, laid out and drawn without help."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ikgen.emit.report.notation import variable
+from ikgen.emit.report.poses import Versions
+from ikgen.equations.knowledge import Variable
+from ikgen.solver.graph import SolutionGraph
+
+__all__ = ["Drawing", "draw", "layout"]
+
+_STEP_X, _STEP_Y, _WIDTH, _HEIGHT, _MARGIN = 118, 84, 92, 42, 14
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """The graph in both languages; places are centres in points, y downwards."""
+
+    svg: str
+    latex: str
+
+
+def layout(graph: SolutionGraph) -> dict[Variable, tuple[float, float]]:
+    """Column and row of every unknown: below all its parents, in the order of their mean column."""
+    parents = dict(graph.parents)
+    depth: dict[Variable, int] = {}
+    for v, above in graph.parents:
+        depth[v] = 1 + max((depth.get(p, -1) for p in above), default=-1)
+    layers: dict[int, list[Variable]] = {}
+    for v, row in depth.items():
+        layers.setdefault(row, []).append(v)
+    widest = max(len(layer) for layer in layers.values())
+    place: dict[Variable, tuple[float, float]] = {}
+    for row in sorted(layers):
+        layer = layers[row]
+
+        def wish(v: Variable) -> float:
+            xs = [place[p][0] for p in parents[v] if p in place]
+            return sum(xs) / len(xs) if xs else 0.0
+
+        if row:
+            layer.sort(key=wish)
+        start = (widest - len(layer)) / 2
+        for i, v in enumerate(layer):
+            place[v] = (start + i, float(row))
+    return place
+
+
+def draw(graph: SolutionGraph, versions: Versions, title: str) -> Drawing:
+    """The drawing: a box an unknown with its number of versions, an arrow a direct parent."""
+    place = {
+        v: (_MARGIN + _WIDTH / 2 + x * _STEP_X, _MARGIN + _HEIGHT / 2 + y * _STEP_Y)
+        for v, (x, y) in layout(graph).items()
+    }
+    width = max(x for x, _ in place.values()) + _WIDTH / 2 + _MARGIN
+    height = max(y for _, y in place.values()) + _HEIGHT / 2 + _MARGIN
+    leaves = {s.candidate.unknown: s.candidate.leaf for s in graph.steps}
+    edges = [
+        (place[p], place[v]) for v, above in graph.parents for p in above if p in place
+    ]
+    return Drawing(
+        _svg(place, edges, versions, leaves, (width, height), title),
+        _latex(place, edges, versions, leaves, (width, height)),
+    )
+
+
+Point = tuple[float, float]
+
+
+def _ends(edge: tuple[Point, Point]) -> tuple[Point, Point]:
+    (x1, y1), (x2, y2) = edge
+    return (x1, y1 + _HEIGHT / 2), (x2, y2 - _HEIGHT / 2)
+
+
+def _count(versions: Versions, v: Variable) -> str:
+    n = versions.count(v)
+    return f"{n} version{'s' if n > 1 else ''}"
+
+
+def _svg(
+    place: dict[Variable, Point],
+    edges: list[tuple[Point, Point]],
+    versions: Versions,
+    leaves: dict[Variable, str],
+    size: Point,
+    title: str,
+) -> str:
+    parts = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {size[0]:g} {size[1]:g}" '
+        f'width="{size[0]:g}" height="{size[1]:g}" role="img" font-family="serif">',
+        f"<title>{title}</title>",
+        '<defs><marker id="arrow" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" '
+        'markerHeight="7" orient="auto"><path d="M0 1 L7 4 L0 7 z" fill="#345"/></marker></defs>',
+    ]
+    for edge in edges:
+        (x1, y1), (x2, y2) = _ends(edge)
+        bend = (y2 - y1) / 2
+        parts.append(
+            f'<path d="M{x1:g} {y1:g} C{x1:g} {y1 + bend:g} {x2:g} {y2 - bend:g} {x2:g} {y2 - 1:g}" '
+            'fill="none" stroke="#345" stroke-width="1.2" marker-end="url(#arrow)"/>'
+        )
+    for v, (x, y) in place.items():
+        letter = "θ" if v.kind == "angle" else "d"
+        index = v.text.partition("_")[2]
+        plain = not v.text.startswith("(")
+        shown = (
+            f'{letter}<tspan dy="4" font-size="11">{index}</tspan>' if plain else v.text.replace("theta", "θ")
+        )
+        fill = "#eef4fb" if v in leaves else "#f6f6f2"
+        parts.append(
+            f'<rect x="{x - _WIDTH / 2:g}" y="{y - _HEIGHT / 2:g}" width="{_WIDTH}" '
+            f'height="{_HEIGHT}" rx="7" fill="{fill}" stroke="#345"/>'
+            f'<text x="{x:g}" y="{y - 3:g}" text-anchor="middle" font-style="italic" '
+            f'font-size="16" fill="#123">{shown}</text>'
+            f'<text x="{x:g}" y="{y + 14:g}" text-anchor="middle" font-size="10" fill="#456" '
+            f'font-family="sans-serif">{_count(versions, v)}</text>'
+        )
+    return "\n".join([*parts, "</svg>"]) + "\n"
+
+
+def _latex(
+    place: dict[Variable, Point],
+    edges: list[tuple[Point, Point]],
+    versions: Versions,
+    leaves: dict[Variable, str],
+    size: Point,
+) -> str:
+    """The `picture` environment of LaTeX itself; a point is a unit, y upwards."""
+    high = size[1]
+    unit = min(0.8, 430.0 / size[0])
+    lines = [f"\\setlength{{\\unitlength}}{{{unit:.3f}pt}}", f"\\begin{{picture}}({size[0]:.0f},{high:.0f})"]
+    for edge in edges:
+        (x1, y1), (x2, y2) = _ends(edge)
+        middle = (x1 + x2) / 2, (y1 + y2) / 2
+        bend = ((x1, (y1 + middle[1]) / 2), (x2, (y2 + middle[1]) / 2))
+        for a, b, c in (((x1, y1), bend[0], middle), (middle, bend[1], (x2, y2))):
+            points = "".join(f"({x:.1f},{high - y:.1f})" for x, y in (a, b, c))
+            lines.append(f"\\qbezier[120]{points}")
+        lines.append(f"\\put({x2:.1f},{high - y2:.1f}){{\\vector(0,-1){{0}}}}")
+    for v, (x, y) in place.items():
+        corner = f"{x - _WIDTH / 2:.1f},{high - y - _HEIGHT / 2:.1f}"
+        words = f"\\shortstack{{${variable(v).latex}$\\\\[1pt]\\tiny {_count(versions, v)}}}"
+        lines.append(f"\\put({corner}){{\\framebox({_WIDTH},{_HEIGHT}){{{words}}}}}")
+    del leaves
+    return "\n".join([*lines, "\\end{picture}"])

@@ -1,0 +1,17 @@
+"""The universal solver's generation-time half: which elimination to use for a given 6R arm.
+
+The run-time half is the routine `general_6r` in the templates of each language.
+"""
+
+from ikgen.universal.frames import hold_joint, revolute_frames
+from ikgen.universal.plan import UniversalPlan, choose_plan
+from ikgen.universal.routine import general_6r, general_6r_batch
+
+__all__ = [
+    "UniversalPlan",
+    "choose_plan",
+    "general_6r",
+    "general_6r_batch",
+    "hold_joint",
+    "revolute_frames",
+]

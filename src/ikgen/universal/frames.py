@@ -1,0 +1,57 @@
+"""A 6R chain as seven constant transforms: `T = F_0 Rz(v_1) F_1 ... Rz(v_6) F_6`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ikgen.model.dh import DHChain
+from ikgen.model.joint_tree import Matrix
+
+__all__ = ["forward", "hold_joint", "jacobian", "revolute_frames", "rotation_z", "typical_length"]
+
+
+def revolute_frames(dh: DHChain) -> Matrix:
+    """The file's own chain (n + 1, 4, 4) between its DH variables, all of them angles (rad).
+
+    Raises ValueError where a row is prismatic.
+    """
+    if not all(row.revolute for row in dh.rows):
+        raise ValueError("the universal solver is for revolute joints")
+    return np.array(dh.file_frames, dtype=np.float64)
+
+
+def hold_joint(frames: Matrix, joint: int, value: float) -> Matrix:
+    """The chain (n, 4, 4) that is left of (n + 1, 4, 4) with joint `joint` (0-based) held at `value` rad."""
+    merged = frames[joint] @ rotation_z(value) @ frames[joint + 1]
+    return np.concatenate([frames[:joint], merged[None], frames[joint + 2 :]])
+
+
+def typical_length(frames: Matrix) -> float:
+    """Sum of the distances between the axes' frames (m), at least 1e-9: the scale of the arm."""
+    return max(float(np.linalg.norm(frames[1:-1, :3, 3], axis=1).sum()), 1e-9)
+
+
+def rotation_z(angle: float) -> Matrix:
+    """(4, 4) rotation about z by `angle` (rad)."""
+    T = np.eye(4)
+    T[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
+    return T
+
+
+def forward(frames: Matrix, angles: Matrix) -> Matrix:
+    """Pose (4, 4) at the joint angles (n,) in rad."""
+    T = frames[0]
+    for frame, angle in zip(frames[1:], angles, strict=True):
+        T = T @ rotation_z(angle) @ frame
+    return np.asarray(T)
+
+
+def jacobian(frames: Matrix, angles: Matrix) -> Matrix:
+    """Geometric Jacobian (6, n) at the angles (n,): linear rows over the typical length, then angular."""
+    axes, T = [], frames[0]
+    for frame, angle in zip(frames[1:], angles, strict=True):
+        axes.append((T[:3, 2], T[:3, 3]))
+        T = T @ rotation_z(angle) @ frame
+    scale = typical_length(frames)
+    columns = [np.r_[np.cross(z, T[:3, 3] - p) / scale, z] for z, p in axes]
+    return np.asarray(np.array(columns).T)

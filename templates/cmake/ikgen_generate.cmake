@@ -1,0 +1,116 @@
+include_guard(GLOBAL)
+
+# Eigen as a target, if the project has found it or it can be found: linking it spares users a line.
+function(_ikgen_link_eigen target)
+  if(NOT TARGET Eigen3::Eigen)
+    find_package(Eigen3 QUIET NO_MODULE)
+  endif()
+  if(TARGET Eigen3::Eigen)
+    target_link_libraries(${target} INTERFACE Eigen3::Eigen)
+  endif()
+endfunction()
+
+function(ikgen_generate target)
+  set(one_value ROBOT NAME BASE TIP TASK SAMPLES)
+  set(multi_value ARGS PACKAGE_PATH FREE LOCK EMIT DEPENDS)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "VERIFY" "${one_value}" "${multi_value}")
+  if(arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "ikgen_generate(${target}): unknown arguments: ${arg_UNPARSED_ARGUMENTS}")
+  endif()
+  if(arg_KEYWORDS_MISSING_VALUES)
+    message(FATAL_ERROR "ikgen_generate(${target}): no value for: ${arg_KEYWORDS_MISSING_VALUES}")
+  endif()
+  if(NOT arg_ROBOT)
+    message(FATAL_ERROR "ikgen_generate(${target}): ROBOT <urdf-or-xacro> is missing")
+  endif()
+  get_filename_component(robot "${arg_ROBOT}" ABSOLUTE BASE_DIR "${CMAKE_CURRENT_SOURCE_DIR}")
+  if(NOT EXISTS "${robot}" AND NOT arg_DEPENDS)
+    message(FATAL_ERROR "ikgen_generate(${target}): no such file: ${robot}")
+  endif()
+  if(NOT arg_NAME)
+    string(MAKE_C_IDENTIFIER "${target}" arg_NAME)
+  endif()
+  if(NOT arg_EMIT)
+    set(arg_EMIT cpp)
+  endif()
+
+  set(folder "${CMAKE_CURRENT_BINARY_DIR}/ikgen/${target}")
+  set(stamp "${folder}/${arg_NAME}.stamp")
+  set(outputs "${folder}/${arg_NAME}_ik.json")
+  if("cpp" IN_LIST arg_EMIT)
+    list(APPEND outputs "${folder}/${arg_NAME}_ik.hpp")
+  endif()
+  if("python" IN_LIST arg_EMIT)
+    list(APPEND outputs "${folder}/${arg_NAME}_ik.py")
+  endif()
+
+  set(command from-urdf)
+  if(robot MATCHES "\\.toml$")
+    set(command from-dh)
+  endif()
+  string(REPLACE ";" "," emit "${arg_EMIT}")
+  set(options --name "${arg_NAME}" --emit "${emit}")
+  foreach(keyword BASE TIP TASK SAMPLES)
+    if(arg_${keyword})
+      string(TOLOWER "--${keyword}" option)
+      list(APPEND options "${option}" "${arg_${keyword}}")
+    endif()
+  endforeach()
+  foreach(keyword FREE LOCK)
+    string(TOLOWER "--${keyword}" option)
+    foreach(value IN LISTS arg_${keyword})
+      list(APPEND options "${option}" "${value}")
+    endforeach()
+  endforeach()
+  foreach(value IN LISTS arg_ARGS)
+    list(APPEND options --arg "${value}")
+  endforeach()
+  foreach(value IN LISTS arg_PACKAGE_PATH)
+    get_filename_component(value "${value}" ABSOLUTE BASE_DIR "${CMAKE_CURRENT_SOURCE_DIR}")
+    list(APPEND options --package-path "${value}")
+  endforeach()
+
+  # A depfile tells the files that xacro included; its target must be spelled as the build tool
+  # spells it, which policy CMP0116 changes for Ninja.
+  set(depfile)
+  if(CMAKE_GENERATOR MATCHES "Ninja" OR CMAKE_VERSION VERSION_GREATER_EQUAL 3.20)
+    set(depfile DEPFILE "${folder}/${arg_NAME}.d")
+    if(POLICY CMP0116)
+      cmake_policy(SET CMP0116 NEW)
+    endif()
+  endif()
+  set(depfile_target "${stamp}")
+  if(CMAKE_VERSION VERSION_LESS 3.20)
+    file(RELATIVE_PATH depfile_target "${CMAKE_BINARY_DIR}" "${stamp}")
+  endif()
+
+  file(MAKE_DIRECTORY "${folder}")
+  add_custom_command(
+    OUTPUT "${stamp}"
+    BYPRODUCTS ${outputs}
+    COMMAND "${IKGEN_EXECUTABLE}" ${command} "${robot}" ${options} -q -o "${folder}"
+      --depfile "${folder}/${arg_NAME}.d" --depfile-target "${depfile_target}"
+    COMMAND "${CMAKE_COMMAND}" -E touch "${stamp}"
+    DEPENDS "${robot}" ${arg_DEPENDS}
+    ${depfile}
+    COMMENT "Generating inverse kinematics ${arg_NAME}_ik from ${arg_ROBOT}"
+    VERBATIM)
+  add_custom_target(${target}_generate DEPENDS "${stamp}")
+
+  add_library(${target} INTERFACE)
+  add_library(ikgen::${target} ALIAS ${target})
+  add_dependencies(${target} ${target}_generate)
+  target_compile_features(${target} INTERFACE cxx_std_17)
+  target_include_directories(${target} INTERFACE
+    "$<BUILD_INTERFACE:${folder}>" "$<INSTALL_INTERFACE:include>")
+  set_property(TARGET ${target} PROPERTY INTERFACE_IKGEN_OUTPUT_DIR "${folder}")
+  if("cpp" IN_LIST arg_EMIT)
+    _ikgen_link_eigen(${target})
+  endif()
+
+  if(arg_VERIFY)
+    add_test(NAME ${target}_verify
+      COMMAND "${IKGEN_EXECUTABLE}" verify "${folder}"
+        --junit-xml "${folder}/${target}_verify.xunit.xml")
+  endif()
+endfunction()
