@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from ikgen.model.joint_tree import JointTree, Source
     from ikgen.solver.graph import SolutionGraph
     from ikgen.tasks import Task
+    from ikgen.universal import UniversalPlan
 
 __all__ = ["Derivation", "Progress", "Reading", "Request", "derive", "identifier", "read"]
 
@@ -92,8 +93,11 @@ def derive(request: Request, progress: Progress = _quiet) -> Derivation:
     geometry = classify(reading.dh)
     progress("derive", geometry.name)
     task, graph = _solve(reading.dh, request.task, progress)
+    plan = _elimination(reading.dh, task, progress) if graph.open_joints else None
+    if graph.open_joints and plan is None:
+        raise unsolved(reading.dh, task, graph)
     return Derivation(
-        reading, geometry, task, graph, _module(request, reading, task, geometry.words, graph)
+        reading, geometry, task, graph, _module(request, reading, task, geometry.words, graph, plan)
     )
 
 
@@ -107,11 +111,33 @@ def _solve(
     first: tuple[Task, SolutionGraph] | None = None
     for task in tasks:
         graph = _attempt(dh, task, progress)
-        if not graph.open_joints:
+        if not graph.open_joints and (graph.sound or task is tasks[-1]):
             return task, graph
         first = first or (task, graph)
     assert first is not None
-    raise unsolved(dh, *first)
+    return first
+
+
+def _elimination(dh: DHChain, task: Task, progress: Progress) -> UniversalPlan | None:
+    """The general 6R elimination's plan where it applies: six moving revolute joints, whole pose."""
+    import numpy as np
+
+    moving = dh.dof - len(dh.free)
+    plain = len(dh.rows) == dh.dof and all(row.revolute for row in dh.rows)
+    if not (task.whole_pose and moving == 6 and plain):
+        return None
+    from ikgen.universal import choose_plan, hold_joint, revolute_frames
+
+    progress("derive", "6R elimination")
+    family = []
+    for value in (0.4, -1.1, 2.2) if dh.free else (0.0,):
+        frames = revolute_frames(dh)
+        for j in reversed(range(dh.dof)):
+            if dh.joints[j].name in dh.free:
+                frames = hold_joint(frames, j, value)
+        family.append(frames)
+    plan = choose_plan(np.array(family))
+    return plan if plan.usable else None
 
 
 def _attempt(dh: DHChain, task: Task, progress: Progress) -> SolutionGraph:
@@ -147,9 +173,15 @@ def unsolved(dh: DHChain, task: Task, graph: SolutionGraph) -> UnsolvedChainErro
 
 
 def _module(
-    request: Request, reading: Reading, task: Task, geometry: str, graph: SolutionGraph
+    request: Request,
+    reading: Reading,
+    task: Task,
+    geometry: str,
+    graph: SolutionGraph,
+    plan: UniversalPlan | None,
 ) -> SolverModule:
     from ikgen.emit.module import SolverModule
+    from ikgen.ir.elimination import elimination_program
     from ikgen.ir.lower import lower
 
     dh = reading.dh
@@ -157,7 +189,7 @@ def _module(
     free = tuple(j for j, joint in enumerate(dh.joints) if joint.name in dh.free)
     return SolverModule(
         name=request.name or identifier(dh.robot),
-        program=lower(graph, slack=2.0 * max(dh.deviation)),
+        program=elimination_program(dh) if plan else lower(graph, slack=2.0 * max(dh.deviation)),
         dh=dh,
         task=task.name,
         free=free,
@@ -166,8 +198,13 @@ def _module(
         source_sha256=reading.source.sha256,
         generator_version=__version__,
         geometry=geometry,
-        order=tuple(f"{s.candidate.unknown.text} ({s.candidate.leaf})" for s in graph.steps),
+        order=("all joints (6R elimination)",) if plan else _order(graph),
+        plan=plan,
     )
+
+
+def _order(graph: SolutionGraph) -> tuple[str, ...]:
+    return tuple(f"{s.candidate.unknown.text} ({s.candidate.leaf})" for s in graph.steps)
 
 
 def _inside(dh: DHChain, joint: int, value: float | None) -> float:

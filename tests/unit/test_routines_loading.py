@@ -37,7 +37,8 @@ def python_routine(name: str) -> SimpleNamespace:
 
 
 def compiled_routine(name: str, main: str, folder: Path, eigen: bool = False) -> Path:
-    """An executable of `templates/cpp/routines/<name>.hpp.jinja` and `main`; skips without a compiler."""
+    """An executable of `templates/cpp/routines/<name>.hpp.jinja` and `main`; skips without a
+    compiler."""
     compiler = shutil.which("g++") or shutil.which("clang++")
     if compiler is None:
         pytest.skip("no C++ compiler on this machine")

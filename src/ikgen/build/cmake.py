@@ -10,7 +10,7 @@ __all__ = ["cmake_directory"]
 
 
 def cmake_directory() -> Path:
-    """The directory of ikgenConfig.cmake: inside an installed package, beside `src` in a checkout."""
+    """The directory of ikgenConfig.cmake: in an installed package, beside `src` in a checkout."""
     package = Path(__file__).resolve().parent.parent
     for folder in (package / "templates", package.parent.parent / "templates"):
         if (folder / "cmake" / "ikgenConfig.cmake").is_file():

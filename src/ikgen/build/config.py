@@ -60,7 +60,7 @@ def default_config(folder: Path) -> Path | None:
 
 
 def load_config(path: Path) -> tuple[ArmConfig, ...]:
-    """The arms of a config, in its order. Raises `BadDescriptionError` naming the file and entry."""
+    """The arms of a config, in its order; raises `BadDescriptionError` naming the entry."""
     data = _read(path)
     tables = data.get("arm", [])
     if not isinstance(tables, list) or not tables:
@@ -118,6 +118,8 @@ _TYPES: dict[str, tuple[type, ...]] = {
     "samples": (int,),
 }
 
+_WORDS: dict[type, str] = {str: "string", dict: "table", list: "list", int: "number"}
+
 
 def _arm(path: Path, index: int, table: Any) -> ArmConfig:
     """One table, checked."""
@@ -127,7 +129,7 @@ def _arm(path: Path, index: int, table: Any) -> ArmConfig:
     _check_keys(path, where, table, set(_TYPES))
     for key, value in table.items():
         if not isinstance(value, _TYPES[key]):
-            wanted = " or ".join({"str": "string", "dict": "table", "list": "list", "int": "number"}[t.__name__] for t in _TYPES[key])  # fmt: skip
+            wanted = " or ".join(_WORDS[kind] for kind in _TYPES[key])
             raise _error(path, f"{where}: '{key}' is not a {wanted}")
     for key in ("name", "robot"):
         if key not in table:

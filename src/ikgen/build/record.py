@@ -19,9 +19,9 @@ SUFFIX = "_ik.json"
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """One record. `path` is its file; `robot`, `package_paths` and `inputs` (file -> SHA-256) are as
-    seen from the current directory, `files` (name -> SHA-256) relative to the record's folder; `asked`
-    are base, tip and task as the user gave them (or did not)."""
+    """One record. `path` is its file; `robot`, `package_paths` and `inputs` (file -> SHA-256) are
+    as seen from the current directory, `files` (name -> SHA-256) relative to the record's folder;
+    `asked` are base, tip and task as the user gave them (or did not)."""
 
     path: Path
     version: str
@@ -91,7 +91,7 @@ def find_records(folder: Path) -> list[Path]:
 
 
 def is_record(path: Path) -> bool:
-    """Whether a JSON file is a record; a broken file of the right name counts, so that it is told."""
+    """Whether a JSON file is a record; a broken one counts, so that it is told."""
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):

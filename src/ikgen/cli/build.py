@@ -22,11 +22,26 @@ __all__ = ["build"]
 
 @click.command()
 @click.argument("config", type=click.Path(path_type=Path), metavar="[CONFIG]", required=False)
-@click.option("--check", is_flag=True, help="Only say what is stale and why; exit code 1 if anything is.")  # fmt: skip
+@click.option(
+    "--check", is_flag=True, help="Only say what is stale and why; exit code 1 if anything is."
+)
 @click.option("--force", is_flag=True, help="Generate fresh arms too.")
-@click.option("--depfile", metavar="FILE", type=click.Path(path_type=Path), help="Also write which files the outputs depend on, as a Makefile rule.")  # fmt: skip
-@click.option("--jobs", "-j", metavar="N", type=click.IntRange(min=1), help="Arms at a time (default: one a processor).")  # fmt: skip
-@click.option("--no-verify", is_flag=True, help="Leave the verification out (and Pinocchio with it).")  # fmt: skip
+@click.option(
+    "--depfile",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Also write which files the outputs depend on, as a Makefile rule.",
+)
+@click.option(
+    "--jobs",
+    "-j",
+    metavar="N",
+    type=click.IntRange(min=1),
+    help="Arms at a time (default: one a processor).",
+)
+@click.option(
+    "--no-verify", is_flag=True, help="Leave the verification out (and Pinocchio with it)."
+)
 @console_options
 def build(
     config: Path | None,
@@ -66,7 +81,7 @@ def _config(path: Path | None) -> Path:
     if found.is_dir():
         inside = default_config(found)
         if inside is None:
-            raise UsageError(f"no ikgen.toml in {found}", hint="name the config: ikgen build CONFIG")
+            raise UsageError(f"no ikgen.toml in {found}", hint="name the config itself")
         return inside
     return found
 

@@ -57,7 +57,7 @@ def doctor(as_json: bool) -> int:
     packages = {name: _package(name) for name, _ in _PACKAGES}
     tools = {name: shutil.which(name) for name, _ in _TOOLS}
     tools["Eigen"] = _eigen()
-    words = {**dict(_TOOLS), "Eigen": "compiles the C++ header: libeigen3-dev, or pip's cmeel-eigen"}
+    words = {**dict(_TOOLS), "Eigen": "for the C++ header: libeigen3-dev or pip's cmeel-eigen"}
     missing = [name for name, found in packages.items() if found is None]
     if as_json:
         record = {"ikgen": __version__, "python": sys.version.split()[0]}

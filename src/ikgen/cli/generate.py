@@ -22,16 +22,23 @@ from ikgen.pipeline import Request
 __all__ = ["from_dh", "from_urdf"]
 
 _output = click.option(
-    "-o", "--output", "out", metavar="DIR", type=click.Path(path_type=Path), default=Path(),
+    "-o",
+    "--output",
+    "out",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    default=Path(),
     help="Where the outputs go (default: here).",
-)  # fmt: skip
+)
 _emit = click.option(
     "--emit", multiple=True, metavar="NAME,...", help="Outputs, for example python,cpp."
 )
 _depfile = click.option(
-    "--depfile", metavar="FILE", type=click.Path(path_type=Path),
+    "--depfile",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
     help="Also write which files the outputs depend on, as a Makefile rule.",
-)  # fmt: skip
+)
 _depfile_target = click.option(
     "--depfile-target", metavar="FILE", help="The rule's target, verbatim (default: the outputs)."
 )

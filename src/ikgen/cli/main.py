@@ -84,7 +84,8 @@ def run(arguments: Sequence[str]) -> int:
         click.echo(error.format_message(), err=True)
         return 2
     except click.ClickException as error:
-        command = error.ctx.command_path if isinstance(error, click.UsageError) and error.ctx else "ikgen"
+        context = error.ctx if isinstance(error, click.UsageError) else None
+        command = context.command_path if context is not None else "ikgen"
         _say(error.format_message(), f"see {command} --help")
         return 2
     except (click.Abort, KeyboardInterrupt):

@@ -40,12 +40,40 @@ def chain_options(function: F) -> F:
         [
             click.option("--base", metavar="LINK", help="Link that poses are given in."),
             click.option("--tip", metavar="LINK", help="Link to be placed."),
-            click.option("--task", metavar="TASK", help="pose (default), position, position-direction, position-yaw, rotation or direction."),  # fmt: skip
-            click.option("--free", multiple=True, metavar="JOINT[=VALUE]", help="Hold a joint: its value becomes an input, by default VALUE."),  # fmt: skip
-            click.option("--lock", multiple=True, metavar="JOINT=VALUE", help="Fix a joint for good (rad or m)."),  # fmt: skip
-            click.option("--arg", "arguments", multiple=True, metavar="NAME:=VALUE", help="A xacro argument."),  # fmt: skip
-            click.option("--package-path", "package_paths", multiple=True, metavar="DIR", type=_FOLDER, help="Where $(find pkg) and package:// look."),  # fmt: skip
-            click.option("--name", metavar="NAME", help="Prefix of the output files (default: the robot's name)."),  # fmt: skip
+            click.option(
+                "--task",
+                metavar="TASK",
+                help="pose (default), position-direction, position-yaw, position, rotation, "
+                "direction.",
+            ),
+            click.option(
+                "--free",
+                multiple=True,
+                metavar="JOINT[=VALUE]",
+                help="Hold a joint: its value becomes an input, by default VALUE.",
+            ),
+            click.option(
+                "--lock",
+                multiple=True,
+                metavar="JOINT=VALUE",
+                help="Fix a joint for good (rad or m).",
+            ),
+            click.option(
+                "--arg", "arguments", multiple=True, metavar="NAME:=VALUE", help="A xacro argument."
+            ),
+            click.option(
+                "--package-path",
+                "package_paths",
+                multiple=True,
+                metavar="DIR",
+                type=_FOLDER,
+                help="Where $(find pkg) and package:// look.",
+            ),
+            click.option(
+                "--name",
+                metavar="NAME",
+                help="Prefix of the output files (default: the robot's name).",
+            ),
         ],
         function,
     )
@@ -55,8 +83,22 @@ def sampling_options(function: F) -> F:
     """How much is verified."""
     return _apply(
         [
-            click.option("--samples", metavar="N", type=click.IntRange(min=1), default=1000, show_default=True, help="Random poses in the verification."),  # fmt: skip
-            click.option("--seed", metavar="N", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the random poses."),  # fmt: skip
+            click.option(
+                "--samples",
+                metavar="N",
+                type=click.IntRange(min=1),
+                default=1000,
+                show_default=True,
+                help="Random poses in the verification.",
+            ),
+            click.option(
+                "--seed",
+                metavar="N",
+                type=click.IntRange(min=0),
+                default=0,
+                show_default=True,
+                help="Seed of the random poses.",
+            ),
         ],
         function,
     )
@@ -66,7 +108,9 @@ def console_options(function: F) -> F:
     """What is printed."""
     return _apply(
         [
-            click.option("--json", "as_json", is_flag=True, help="Machine-readable result on stdout."),  # fmt: skip
+            click.option(
+                "--json", "as_json", is_flag=True, help="Machine-readable result on stdout."
+            ),
             click.option("-q", "--quiet", is_flag=True, help="Print errors only."),
             click.option("-v", "--verbose", is_flag=True, help="Print every step and check."),
         ],
@@ -138,7 +182,7 @@ def parse_locked(texts: Sequence[str]) -> dict[str, float]:
 
 
 def parse_emit(texts: Sequence[str], default: tuple[str, ...] = ("python",)) -> tuple[str, ...]:
-    """Names of outputs from --emit a,b (repeatable), each once; raises for one that does not exist."""
+    """Names of outputs from --emit a,b (repeatable), each once; raises for an unknown one."""
     from ikgen.emit.registry import find_emitter
 
     names = [name.strip() for text in texts for name in text.split(",")]

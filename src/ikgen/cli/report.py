@@ -21,7 +21,15 @@ __all__ = ["report"]
 @click.command()
 @click.argument("robot", type=click.Path(path_type=Path), metavar="ROBOT|TABLE")
 @chain_options
-@click.option("-o", "--output", "out", metavar="DIR", type=click.Path(path_type=Path), default=Path(), help="Where the report goes (default: here).")  # fmt: skip
+@click.option(
+    "-o",
+    "--output",
+    "out",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    default=Path(),
+    help="Where the report goes (default: here).",
+)
 @console_options
 def report(
     robot: Path, *, out: Path, as_json: bool, quiet: bool, verbose: bool, **chain: Any

@@ -21,11 +21,19 @@ __all__ = ["verify"]
 
 
 @click.command()
-@click.argument(
-    "target", type=click.Path(path_type=Path), metavar="[CONFIG|DIR]", required=False
+@click.argument("target", type=click.Path(path_type=Path), metavar="[CONFIG|DIR]", required=False)
+@click.option(
+    "--robot",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Check against this description instead of the recorded one.",
 )
-@click.option("--robot", metavar="FILE", type=click.Path(path_type=Path), help="Check against this description instead of the recorded one.")  # fmt: skip
-@click.option("--junit-xml", metavar="FILE", type=click.Path(path_type=Path), help="Also write the results as JUnit XML.")  # fmt: skip
+@click.option(
+    "--junit-xml",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Also write the results as JUnit XML.",
+)
 @sampling_options
 @console_options
 def verify(
@@ -51,10 +59,14 @@ def verify(
         for record, command in _records(target, robot):
             results.append(
                 recheck(
-                    record, robot=robot, command=command, samples=samples, seed=seed,
+                    record,
+                    robot=robot,
+                    command=command,
+                    samples=samples,
+                    seed=seed,
                     progress=console,
                 )
-            )  # fmt: skip
+            )
     if junit_xml is not None:
         _write_junit(junit_xml, results)
     _print(results, as_json=as_json, quiet=quiet, verbose=verbose)
@@ -83,7 +95,16 @@ def _print(results: Sequence[Recheck], *, as_json: bool, quiet: bool, verbose: b
 
     annotations.write(results)
     if as_json:
-        click.echo(json.dumps({"passed": all(r.passed for r in results), "outputs": [_as_dict(r) for r in results]}, indent=2, allow_nan=False))  # fmt: skip
+        click.echo(
+            json.dumps(
+                {
+                    "passed": all(r.passed for r in results),
+                    "outputs": [_as_dict(r) for r in results],
+                },
+                indent=2,
+                allow_nan=False,
+            )
+        )
     for result in results:
         if verbose and result.reports:
             click.echo(verification_tables(result.reports), err=True)

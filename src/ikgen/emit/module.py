@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from ikgen.ir.program import Program
 from ikgen.model.dh import DHChain
+from ikgen.universal.plan import UniversalPlan
 
 __all__ = ["CLOSE", "SolverModule"]
 
@@ -19,7 +20,8 @@ class SolverModule:
 
     `name` is the prefix of the emitted files (`<name>_ik.py`), `free` the indices of joints held free,
     `free_defaults` their default values inside the limits (rad or m). `source_name` and
-    `source_sha256` tell what it was made from, `geometry` is the geometry class in words.
+    `source_sha256` tell what it was made from, `geometry` is the geometry class in words,
+    `plan` what the general 6R elimination needs where the rules did not solve the arm.
     """
 
     name: str
@@ -33,11 +35,14 @@ class SolverModule:
     generator_version: str
     geometry: str = ""
     order: tuple[str, ...] = ()
+    plan: UniversalPlan | None = None
 
     @property
     def polish(self) -> str:
         """Which rows take Newton steps on the file's own chain: "some" (those of a continuum or on the
         boundary, where the closed form lost digits) or "all" (the file rounds its geometry)."""
+        if self.plan is not None:
+            return "some"
         return "some" if max(self.dh.deviation) <= CLOSE else "all"
 
     @property

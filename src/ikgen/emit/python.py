@@ -262,6 +262,7 @@ def _scalar(module: SolverModule, joints: list[_JointText]) -> list[str]:
     flag = " or ".join(program.singular) or "False"
     if module.polish == "some":
         rough = " or ".join([*program.singular, *(f"{r} > _ROUGH" for r in program.residuals)])
+        rough = rough or "False"
         lines.append(f"{pad}rows.append((({row}), {flag}, {rough}))")
     else:
         lines.append(f"{pad}rows.append((({row}), {flag}))")
@@ -302,6 +303,6 @@ def _batch(module: SolverModule, joints: list[_JointText]) -> list[str]:
     flag = " | ".join(program.singular)
     if module.polish == "some":
         rough = " | ".join([*program.singular, *(f"({r} > _ROUGH)" for r in program.residuals)])
-        lines.append(f"rough = {rough}")
+        lines.append(f"rough = {rough or 'np.zeros(1, dtype=bool)'}")
     lines.append(f"singular = {flag}" if flag else "singular = np.zeros(1, dtype=bool)")
     return lines

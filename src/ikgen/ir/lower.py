@@ -40,6 +40,7 @@ class Lowering:
         self.knowledge = graph.knowledge
         self.slack = slack
         self.tolerances = Tolerances.for_slack(slack)
+        self.well = min(max(WELL_CONDITIONED, 10.0 * slack**0.5), 0.1)
         self.residuals: list[Expr] = []
         self.norms: list[Expr] = []
         self.levels = [LoweredLevel(1)]
@@ -228,10 +229,10 @@ class Lowering:
         if regular is not None:
             power = 2 if form.branches == 2 else 1
             natural = regular.args[1].value / self.tolerances.singular**power
-            limit = g.const(natural * WELL_CONDITIONED**power)
+            limit = g.const(natural * self.well**power)
             good = g.binary("gt", regular.args[0], limit)
         if form.under is not None:
-            limit = g.mul(g.const(WELL_CONDITIONED**2), form.under[1])
+            limit = g.mul(g.const(self.well**2), form.under[1])
             apart = g.binary("gt", form.under[0], limit)
             good = apart if good is True else g.binary("and", _expr(good), apart)
         if good is True:
@@ -301,7 +302,7 @@ class Lowering:
             splits = [(k, m) for k in range(n) for m in range(k + 1, n + 1)]
         residuals = min((self._residuals(k, m) for k, m in splits), key=self._cost)
         self.place(Comment("does the row reproduce the pose?"))
-        limit = max(CHECK_TOLERANCE, 30 * self.slack)
+        limit = max(CHECK_TOLERANCE, min(300 * self.slack, 0.02))
         size = max(arm_size(self.dh), 1.0)
         for level in range(len(self.levels)):
             norms = [e for e in self.norms if self.level(e) == level]

@@ -49,6 +49,11 @@ class Candidate:
     judgement: Judgement | None = field(default=None, compare=False)
 
     @property
+    def is_weak(self) -> bool:
+        """Whether it was judged to fail at some regular configuration."""
+        return self.judgement is not None and self.judgement.weak
+
+    @property
     def branches(self) -> int:
         """Number of alternatives the form gives."""
         return {"linear": 1, "pair": 1, "root": 2, "sincos": 2, "tangent": 2, "quartic": 4}[self.form]

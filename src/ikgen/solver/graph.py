@@ -27,6 +27,11 @@ class SolutionGraph:
         return self.session.open_joints
 
     @property
+    def sound(self) -> bool:
+        """Whether every step holds at all regular configurations that were looked at."""
+        return all(not s.candidate.is_weak or s.fallbacks for s in self.steps)
+
+    @property
     def knowledge(self) -> Knowledge:
         """What was known at the end."""
         return self.session.knowledge

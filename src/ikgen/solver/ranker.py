@@ -50,7 +50,7 @@ def judge(
     generic, regular = probes.generic, probes.regular
     divisor, size = candidate.divisor()
     relative = np.abs(divisor) / size
-    if np.median(relative[:generic]) < 1e-9:
+    if np.median(relative[:generic]) < 1e-6:
         return None
     matches = np.zeros(len(divisor), dtype=bool)
     for branch in candidate.values():

@@ -150,8 +150,8 @@ class Session:
         ranked = sorted(self.candidates, key=rank_key)
         step = self._sound(ranked) or self._covered(ranked)
         if step is None and anything and ranked:
-            simple = [c for c in ranked if c.branches <= 2 and not _is_weak(c)]
-            quartic = [c for c in ranked if c.branches > 2 and not _is_weak(c)]
+            simple = [c for c in ranked if c.branches <= 2 and not c.is_weak]
+            quartic = [c for c in ranked if c.branches > 2 and not c.is_weak]
             best = (simple or quartic or ranked)[0]
             step = self._step(best, (), ranked)
         if step is not None:
@@ -183,7 +183,7 @@ class Session:
     def _sound(self, ranked: list[Candidate]) -> Step | None:
         tried = 0
         for c in ranked:
-            if c.branches > 2 or _is_weak(c):
+            if c.branches > 2 or c.is_weak:
                 continue
             tried += 1
             found = weak_configurations(c, self.system, self.probes)
@@ -252,11 +252,6 @@ class Session:
             if support & mask:
                 return level
         return 1.0
-
-
-def _is_weak(candidate: Candidate) -> bool:
-    assert candidate.judgement is not None
-    return candidate.judgement.weak
 
 
 class _Weights(dict[int, float]):

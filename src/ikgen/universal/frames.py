@@ -21,7 +21,8 @@ def revolute_frames(dh: DHChain) -> Matrix:
 
 
 def hold_joint(frames: Matrix, joint: int, value: float) -> Matrix:
-    """The chain (n, 4, 4) that is left of (n + 1, 4, 4) with joint `joint` (0-based) held at `value` rad."""
+    """The chain (n, 4, 4) that is left of (n + 1, 4, 4) with joint `joint` (0-based) held at
+    `value` rad."""
     merged = frames[joint] @ rotation_z(value) @ frames[joint + 1]
     return np.concatenate([frames[:joint], merged[None], frames[joint + 2 :]])
 
@@ -47,7 +48,8 @@ def forward(frames: Matrix, angles: Matrix) -> Matrix:
 
 
 def jacobian(frames: Matrix, angles: Matrix) -> Matrix:
-    """Geometric Jacobian (6, n) at the angles (n,): linear rows over the typical length, then angular."""
+    """Geometric Jacobian (6, n) at the angles (n,): linear rows over the typical length, then
+    angular."""
     axes, T = [], frames[0]
     for frame, angle in zip(frames[1:], angles, strict=True):
         axes.append((T[:3, 2], T[:3, 3]))

@@ -1,9 +1,11 @@
-"""Which elimination suits an arm: probing all of them at random and at nearly singular configurations.
+"""Which elimination suits an arm: probing all of them at random and at nearly singular
+configurations.
 
-The closed loop `R_1 C_1 ... R_6 C_6 = 1` may be begun at any joint and run backwards, and either of the two
-angles next to the hidden one be raised to the second degree in Raghavan and Roth's elimination (1990): 24
-eliminations. Parallel or intersecting axes make some of them rank-deficient, others leave solutions that
-share the hidden angle; which ones is a property of the arm, hence found at generation time.
+The closed loop `R_1 C_1 ... R_6 C_6 = 1` may be begun at any joint and run backwards, and either of
+the two angles next to the hidden one be raised to the second degree in Raghavan and Roth's
+elimination (1990): 24 eliminations. Parallel or intersecting axes make some of them rank-deficient,
+others leave solutions that share the hidden angle; which ones is a property of the arm, hence found
+at generation time.
 """
 
 from __future__ import annotations
@@ -32,9 +34,9 @@ class UniversalPlan:
     """What `general_6r` embeds for one arm.
 
     frames: (7, 4, 4) read-only, `T = F_0 Rz(v_1) F_1 ... Rz(v_6) F_6`. length: the arm's scale (m).
-    eliminations: (start, reverse, swap) in order of preference. recall: fraction of all solutions met in
-    probing that the first of them finds alone. conditioning: 90th percentile of log10 of its candidates'
-    pose errors before Newton's method.
+    eliminations: (start, reverse, swap) in order of preference. recall: fraction of all solutions
+    met in probing that the first of them finds alone. conditioning: 90th percentile of log10 of its
+    candidates' pose errors before Newton's method.
     """
 
     frames: Matrix
@@ -45,13 +47,14 @@ class UniversalPlan:
 
     @property
     def usable(self) -> bool:
-        """Whether the arm has a finite number of solutions and the plan finds nearly all of them."""
+        """Whether the arm has a finite number of solutions and the plan finds nearly all of
+        them."""
         return self.recall > 0.98
 
 
 def choose_plan(frames: Matrix, *, probes: int = 24, seed: int = 0) -> UniversalPlan:
-    """The best eliminations for a 6R chain, frames (7, 4, 4), or for all of a family (m, 7, 4, 4) that
-    differs by a held joint's value (the plan then carries the first one's frames).
+    """The best eliminations for a 6R chain, frames (7, 4, 4), or for all of a family (m, 7, 4, 4)
+    that differs by a held joint's value (the plan then carries the first one's frames).
 
     Raises ValueError for other shapes.
     """
@@ -77,8 +80,8 @@ def choose_plan(frames: Matrix, *, probes: int = 24, seed: int = 0) -> Universal
 
 
 def _ranking(hits: Matrix, rough: Matrix) -> list[int]:
-    """The eliminations to keep: most solutions together with those before, then best conditioned. A badly
-    conditioned one counts as if it had lost one solution in a hundred per two digits."""
+    """The eliminations to keep: most solutions together with those before, then best conditioned. A
+    badly conditioned one counts as if it had lost one solution in a hundred per two digits."""
     order: list[int] = []
     covered = np.zeros(hits.shape[1], dtype=bool)
     for _ in range(_KEPT):
@@ -91,7 +94,8 @@ def _ranking(hits: Matrix, rough: Matrix) -> list[int]:
 
 
 def _probe(frames: Matrix, count: int, rng: np.random.Generator) -> tuple[Matrix, Matrix]:
-    """Which elimination finds which solution (24, n) bool, and how rough its candidates are (24,)."""
+    """Which elimination finds which solution (24, n) bool, and how rough its candidates are
+    (24,)."""
     length = typical_length(frames)
     poses = np.array([forward(frames, q) for q in _configurations(frames, count, rng)])
     runs = [initial_residuals(frames, length, plan, poses) for plan in _ELIMINATIONS]
@@ -111,7 +115,8 @@ def _among(q: Matrix, rows: Matrix) -> bool:
 
 
 def _configurations(frames: Matrix, count: int, rng: np.random.Generator) -> list[Matrix]:
-    """Regular configurations (count, 6): half at random, half the nearest to singular ones of many."""
+    """Regular configurations (count, 6): half at random, half the nearest to singular ones of
+    many."""
     drawn = rng.uniform(-np.pi, np.pi, (12 * count, 6))
     size = np.array([np.linalg.svd(jacobian(frames, q), compute_uv=False)[-1] for q in drawn])
     regular = np.nonzero(size > _REGULAR)[0]

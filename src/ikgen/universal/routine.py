@@ -15,7 +15,10 @@ from ikgen.model.joint_tree import Matrix
 __all__ = ["Elimination", "general_6r", "general_6r_batch", "initial_residuals"]
 
 Elimination = tuple[int, int, int]
-_HEAD = "from __future__ import annotations\nimport math\nimport numpy as np\nfrom numpy.typing import NDArray\n"
+_HEAD = (
+    "from __future__ import annotations\n"
+    "import math\nimport numpy as np\nfrom numpy.typing import NDArray\n"
+)
 _NAME = "general_6r.py.jinja"
 
 
@@ -36,7 +39,8 @@ def general_6r_batch(
 ) -> list[Matrix]:
     """All joint angles (k, 6) in (-pi, pi] that reach each of the poses (N, 4, 4).
 
-    frames (7, 4, 4): the chain as in `frames.py`; length (m): its scale; plans in order of preference.
+    frames (7, 4, 4): the chain as in `frames.py`; length (m): its scale; plans in order of
+    preference.
     """
     found = _namespace()["general_6r_batch"](frames, length, tuple(plans), poses)
     return cast("list[Matrix]", found)
@@ -50,8 +54,8 @@ def general_6r(frames: Matrix, length: float, plans: Sequence[Elimination], pose
 def initial_residuals(
     frames: Matrix, length: float, plan: Elimination, poses: Matrix
 ) -> tuple[list[Matrix], Matrix]:
-    """One plan's solutions for poses (N, 4, 4), and the pose errors (m,) of those candidates that became
-    solutions, before Newton's method: how well conditioned the elimination is."""
+    """One plan's solutions for poses (N, 4, 4), and the pose errors (m,) of those candidates that
+    became solutions, before Newton's method: how well conditioned the elimination is."""
     space = _namespace()
     F, T = frames.copy(), poses.copy()
     F[:, :3, 3] /= length

@@ -46,7 +46,7 @@ def emit_report(
     for number, step in enumerate(graph.steps, start=1):
         blocks += step_section(writer, number, step)
     blocks += derived_section(writer)
-    blocks += graph_section(graph, drawing)
+    blocks += graph_section(versions, drawing)
     blocks += poses_section(derivation, versions)
     blocks += trace_section(graph)
     blocks += verification_section(reports or {})

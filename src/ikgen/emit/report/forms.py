@@ -17,8 +17,6 @@ from ikgen.solver.candidate import Candidate
 
 __all__ = ["Solved", "solve_form"]
 
-_POWER = {"linear": 1, "root": 2}
-
 
 @dataclass(frozen=True, slots=True)
 class Solved:
@@ -41,7 +39,16 @@ class _Work:
         self.e = c.coefficients
 
     def sum(self, node: Expr) -> Sum:
+        """An expression with names in it."""
         return self.names.short(self.normal(node))
+
+    def coefficients(self) -> list[Sum]:
+        """The coefficients, those named that the solution will repeat."""
+        return [self.names.force(self.normal(e)) for e in self.e]
+
+    def divisor(self, node: Expr) -> Math | None:
+        """What must not vanish; None for what depends on the arm's constants alone."""
+        return None if node.is_fixed else show(self.sum(node))
 
     def minor(self, i: int, j: int, k: int, n: int) -> Expr:
         """`e_i e_j - e_k e_n`"""
@@ -89,17 +96,13 @@ def _equals(left: Math, right: Math) -> Math:
     return left + m.relation() + right
 
 
-def _not_zero(s: Sum) -> Math | None:
-    return None if s.value is not None else show(s)
-
-
 def _linear(w: _Work) -> Solved:
     a, b = (w.sum(e) for e in w.e)
     x = m.name("d", str(w.c.unknown.key.index(1) + 1))
     if w.c.unknown.kind == "angle":
         x = angle(w.c.unknown.key)
     equation = _equals(_linear_form([(a, x)]), show(-b))
-    return Solved((equation,), (quotient(-b, a),), None, _not_zero(a))
+    return Solved(() if a.value == 1.0 else (equation,), (quotient(-b, a),), None, w.divisor(w.e[0]))
 
 
 def _root(w: _Work) -> Solved:
@@ -113,7 +116,7 @@ def _root(w: _Work) -> Solved:
     if b.is_zero:
         over = quotient(-c, a)
         both = (m.radical(over), m.minus(sign=True) + m.radical(over))
-        return Solved((equation,), both, over, _not_zero(a))
+        return Solved((equation,), both, over, w.divisor(w.e[0]))
     if a.value is not None:
         half = w.sum(g.mul(g.const(-0.5 / a.value), w.e[1]))
         quarter = w.sum(g.mul(g.const(0.25 / a.value**2), under))
@@ -126,18 +129,19 @@ def _root(w: _Work) -> Solved:
     signs = (m.plus(), m.minus())
     tops = [m.minus(sign=True) + grouped(b) + s + m.radical(show(inside)) for s in signs]
     both = tuple(m.fraction(top, m.number(2.0) + m.space() + grouped(a)) for top in tops)  # type: ignore[assignment]
-    return Solved((equation,), both, show(inside), _not_zero(a))
+    return Solved((equation,), both, show(inside), w.divisor(w.e[0]))
 
 
 def _pair(w: _Work) -> Solved:
     v = w.c.unknown
     cosine, sine = _cosine(v), _cosine(v, "sin")
-    a1, b1, c1, a2, b2, c2 = (w.sum(e) for e in w.e)
+    det = w.minor(0, 4, 3, 1)
+    plain = det.is_const
+    a1, b1, c1, a2, b2, c2 = (w.sum(e) for e in w.e) if plain else w.coefficients()
     equations = tuple(
         _equals(_linear_form([(a, cosine), (b, sine)]), show(c))
         for a, b, c in ((a1, b1, c1), (a2, b2, c2))
     )
-    det = w.minor(0, 4, 3, 1)
     up, across = w.minor(0, 5, 3, 2), w.minor(2, 4, 5, 1)
     if np.all(det.probe <= 1e-12 * det.scale):
         det, up, across = w.g.neg(det), w.g.neg(up), w.g.neg(across)
@@ -148,26 +152,26 @@ def _pair(w: _Work) -> Solved:
         arguments = (show(y), show(x))
     else:
         arguments = (quotient(y, below), quotient(x, below))
-    return Solved(equations, (m.function("atan2", *arguments),), None, _not_zero(below))
+    return Solved(equations, (m.function("atan2", *arguments),), None, w.divisor(det))
 
 
 def _sincos(w: _Work) -> Solved:
     v, g = w.c.unknown, w.g
-    a, b, c = (w.sum(e) for e in w.e)
+    a, b, c = w.coefficients()
     equation = _equals(_linear_form([(a, _cosine(v)), (b, _cosine(v, "sin"))]), show(c))
     if a.is_zero:
         ratio = m.function("asin", quotient(c, b))
-        return Solved((equation,), (ratio, m.name("pi") + m.minus() + ratio), _bound(c, b), _not_zero(b))
+        return Solved((equation,), (ratio, m.name("pi") + m.minus() + ratio), _bound(c, b), w.divisor(w.e[1]))
     if b.is_zero:
         ratio = m.function("acos", quotient(c, a))
-        return Solved((equation,), (ratio, m.minus(sign=True) + ratio), _bound(c, a), _not_zero(a))
+        return Solved((equation,), (ratio, m.minus(sign=True) + ratio), _bound(c, a), w.divisor(w.e[0]))
     inside = w.sum(g.sub(g.add(g.square(w.e[0]), g.square(w.e[1])), g.square(w.e[2])))
     swing = m.function("atan2", m.radical(show(inside)), show(c))
     middle = m.function("atan2", show(b), show(a))
     both = (middle + m.plus() + swing, middle + m.minus() + swing)
-    squares = w.sum(g.add(g.square(w.e[0]), g.square(w.e[1])))
+    squares = g.add(g.square(w.e[0]), g.square(w.e[1]))
     reach = show(inside) + m.relation("\\ge ", "≥") + m.name("0")
-    return Solved((equation,), both, reach, _not_zero(squares))
+    return Solved((equation,), both, reach, w.divisor(squares))
 
 
 def _bound(above: Sum, below: Sum) -> Math:
@@ -181,8 +185,8 @@ def _tangent(w: _Work) -> Solved:
     k = m.name("K") + m.space()
     equations = (_equals(k + _cosine(v), show(x)), _equals(k + _cosine(v, "sin"), show(y)))
     both = (m.function("atan2", show(y), show(x)), m.function("atan2", show(-y), show(-x)))
-    either = w.sum(w.g.add(w.g.square(w.e[0]), w.g.square(w.e[1])))
-    return Solved(equations, both, None, _not_zero(either))
+    either = w.g.add(w.g.square(w.e[0]), w.g.square(w.e[1]))
+    return Solved(equations, both, None, w.divisor(either))
 
 
 def _quartic(w: _Work) -> Solved:

@@ -44,7 +44,10 @@ def _block(block: Block) -> str:
             plain = "".join(_words(p) if isinstance(p, str) else f"${p.latex}$" for p in title)
             return f"\\{'section' if level == 1 else 'subsection'}*{{{plain}}}"
         case Paragraph(text, note):
-            return f"{{\\small\\itshape {_text(text)}\\par}}" if note else f"{_text(text)}\\par"
+            if note:
+                return f"{{\\small\\itshape {_text(text)}\\par}}"
+            keep = "\\nopagebreak" if str(text[-1]).endswith(":") else ""
+            return f"{_text(text)}\\par{keep}"
         case Formulas(lines):
             inside = "\n".join(f"\\formula{{{line.latex}}}" for line in lines)
             return f"\\begin{{formulas}}\n{inside}\n\\end{{formulas}}"
@@ -64,7 +67,7 @@ def _rows(block: Rows) -> str:
     wide = [max((_width(row[i]) for row in block.rows), default=0) for i in range(len(block.header))]
     columns = "".join("L" if w > 24 else "c" for w in wide)
     count = columns.count("L")
-    size = f"\\setlength{{\\wide}}{{{0.62 / count if count else 0.2:.2f}\\linewidth}}"
+    size = f"\\setlength{{\\wide}}{{{0.5 / count if count else 0.2:.2f}\\linewidth}}"
     head = " & ".join(f"\\textbf{{{_text(h)}}}" for h in block.header)
     lines = [" & ".join(_text(cell) for cell in row) + " \\\\" for row in block.rows]
     tall = len(lines) > 30
@@ -73,7 +76,7 @@ def _rows(block: Rows) -> str:
     caption = f"{{\\small {_words(block.caption)}\\par}}\\smallskip\n" if block.caption else ""
     inside = "\n".join([f"\\toprule {head} \\\\ \\midrule", *lines, "\\bottomrule"])
     table = f"\\begin{{{name}}}{{{columns}}}\n{inside}\n\\end{{{name}}}"
-    if not tall and not count:
+    if not tall:
         table = f"\\fitted{{{table}}}"
     begin, end = ("", "") if tall else ("\\begin{center}", "\\end{center}")
     return f"{{{size}{font}{begin}\n{caption}{table}\n{end}}}"

@@ -142,7 +142,7 @@ def relation(latex: str = "=", mark: str = "=") -> Math:
 
 def comma() -> Math:
     """, in a list of arguments"""
-    return _mark(",\\allowbreak\\,", "<mo>,</mo>", "comma")
+    return _mark(",\\penalty150\\,", "<mo>,</mo>", "comma")
 
 
 def close(mark: str = ")") -> Math:
@@ -163,7 +163,7 @@ def space() -> Math:
 
 def text(words: str) -> Math:
     """Upright words."""
-    return _mark(f"\\text{{{_safe(words)}}}", f"<mtext>{escape(words)}</mtext>")
+    return _mark(f"\\text{{{_safe(words)}}}", f"<mtext>{escape(words.replace(' ', chr(160)))}</mtext>")
 
 
 def function(word: str, *arguments: Math) -> Math:
@@ -193,6 +193,12 @@ def power(base: Math, exponent: int) -> Math:
     """A whole power."""
     if exponent == 1:
         return base
+    only = base.tokens[0] if len(base.tokens) == 1 else None
+    if only is not None and only.mathml.startswith("<msub>"):
+        inside = only.mathml.removeprefix("<msub>").removesuffix("</msub>")
+        return _mark(
+            f"{only.latex}^{{{exponent}}}", f"<msubsup>{inside}<mn>{exponent}</mn></msubsup>"
+        )
     return _mark(
         f"{{{base.latex}}}^{{{exponent}}}",
         f"<msup><mrow>{base.mathml}</mrow><mn>{exponent}</mn></msup>",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator
 
-from ikgen.emit.report.normal import Factor, Named, Radical, Sum, Term
+from ikgen.emit.report.normal import Factor, Named, Radical, Sum, Term, factor_of
 
 __all__ = ["Abbreviations"]
 
@@ -47,6 +47,13 @@ class Abbreviations:
             if len(s.terms) > 1 and self._wanted(form):
                 return Sum((Term(sign, ((self._name(form), 1),)),))
         return self.inside(s)
+
+    def force(self, s: Sum) -> Sum:
+        """A name for a formula that will be used several times, unless it is short."""
+        if len(s.terms) > 1 and s.weight >= _AGAIN + 2:
+            if s not in self._index and -s not in self._index:
+                self._name(factor_of(s))
+        return self.short(s)
 
     def inside(self, s: Sum) -> Sum:
         """The formula with names inside its terms, but not for the whole."""

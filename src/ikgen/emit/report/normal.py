@@ -10,7 +10,7 @@ from typing import Union
 
 from ikgen.equations.expression import Expr
 
-__all__ = ["Factor", "Named", "Normalizer", "Radical", "Sum", "Symbol", "Term", "constant"]
+__all__ = ["Factor", "Named", "Normalizer", "Radical", "Sum", "Symbol", "Term", "constant", "factor_of"]
 
 _NOTHING = 1e-14
 
@@ -64,7 +64,7 @@ class Sum:
         return sum(max(1, sum(weight_of(f) for f, _ in t.factors)) for t in self.terms)
 
     def __neg__(self) -> Sum:
-        return Sum(tuple(Term(-t.coefficient, t.factors) for t in self.terms))
+        return Sum(_positive_first([Term(-t.coefficient, t.factors) for t in self.terms]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,20 +149,33 @@ def _add(a: Sum, b: Sum) -> Sum:
     total: dict[tuple[tuple[Factor, int], ...], float] = {}
     for term in (*a.terms, *b.terms):
         total[term.factors] = total.get(term.factors, 0.0) + term.coefficient
-    terms = [Term(c, f) for f, c in total.items() if abs(c) > _NOTHING]
+    return Sum(_positive_first([Term(c, f) for f, c in total.items() if abs(c) > _NOTHING]))
+
+
+def _positive_first(terms: list[Term]) -> tuple[Term, ...]:
+    """The terms, the first positive one in front."""
     for i, term in enumerate(terms):
         if term.coefficient > 0:
             terms.insert(0, terms.pop(i))
             break
-    return Sum(tuple(terms))
+    return tuple(terms)
 
 
 def _as_term(s: Sum) -> Term:
-    """A sum as one factor of a product, its sign pulled out."""
+    """A sum as one factor of a product, its sign pulled out, so that a - b and b - a are one."""
     if len(s.terms) == 1:
         return s.terms[0]
-    sign = 1.0 if s.terms[0].coefficient > 0 else -1.0
+    decides = min(s.terms, key=lambda t: repr(t.factors))
+    all_negative = all(t.coefficient < 0 for t in s.terms)
+    mixed = any(t.coefficient < 0 for t in s.terms) and not all_negative
+    sign = -1.0 if all_negative or (mixed and decides.coefficient < 0) else 1.0
     return Term(sign, ((s if sign > 0 else -s, 1),))
+
+
+def factor_of(s: Sum) -> Sum:
+    """The sum or its negative, whichever stands in products."""
+    factor = _as_term(s).factors[0][0]
+    return factor if len(s.terms) > 1 and isinstance(factor, Sum) else s
 
 
 def _multiply(a: Sum, b: Sum) -> Sum:

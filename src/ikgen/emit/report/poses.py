@@ -62,7 +62,7 @@ class Versions:
 
 def versions_of(graph: SolutionGraph) -> Versions:
     """The versions of the solved unknowns and of the joints that follow from them."""
-    parents = dict(graph.parents)
+    parents = {v: tuple(sorted(above, key=_place)) for v, above in graph.parents}
     forks = tuple((s.candidate.unknown, s.branches) for s in graph.steps if s.branches > 1)
     place = {v: f for f, (v, _) in enumerate(forks)}
     within: dict[Variable, tuple[int, ...]] = {}
@@ -72,3 +72,8 @@ def versions_of(graph: SolutionGraph) -> Versions:
             found.add(place[v])
         within[v] = tuple(sorted(found))
     return Versions(forks, within, parents)
+
+
+def _place(v: Variable) -> tuple[int, ...]:
+    """Base to tip."""
+    return tuple(j for j, k in enumerate(v.key) if k)

@@ -57,7 +57,8 @@ def step_section(w: Writer, number: int, step: Step) -> list[Block]:
     shown = [_equation(w, e) for e in dict.fromkeys(c.sources) if _short(w, e)]
     if shown:
         blocks.append(Formulas(tuple(shown)))
-    blocks += [Paragraph(("In the unknown:",)), Formulas(solved.equations)]
+    if solved.equations:
+        blocks += [Paragraph(("In the unknown:",)), Formulas(solved.equations)]
     news = w.names.news()
     solution = _solution(w, c, solved)
     news += w.names.news()
@@ -109,7 +110,7 @@ def _solution(w: Writer, c: Candidate, solved: Solved) -> tuple[Math, ...]:
         version = f"s{i}" if several and alone else ""
         left = variable(c.unknown, version)
         if several and not alone:
-            left = variable(c.unknown) + m.space() + m.text(f"(branch {i})")
+            left = variable(c.unknown) + m.text(f" (branch {i})")
         lines.append(left + m.relation() + branch)
     return tuple(lines)
 
@@ -135,7 +136,7 @@ def _versions(w: Writer, v: Variable, branches: int) -> list[Block]:
         if own:
             cells.append((str(chosen[own[0]] + 1),))
         rows.append(tuple(cells))
-    header: list[Text] = [("version",), *((m.text("from ") + variable(p),) for p in parents)]
+    header: list[Text] = [("version",), *(("from ", variable(p)) for p in parents)]
     header += [("branch",)] if own else []
     return [Paragraph((*lead, ":")), Rows(tuple(header), tuple(rows), small=True)]
 
@@ -168,7 +169,7 @@ def _fallback(w: Writer, c: Candidate) -> list[Block]:
 
 
 _REASONS = (
-    "its divisor vanishes at regular configurations",
+    "its divisor vanishes, or its branches meet, at regular configurations",
     "more branches",
     "a less direct form",
     "degenerate at more singular configurations",

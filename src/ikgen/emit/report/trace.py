@@ -19,12 +19,12 @@ _MOST_SETS = 64
 _WIDE = 9
 
 
-def graph_section(graph: SolutionGraph, drawing: Drawing) -> list[Block]:
+def graph_section(versions: Versions, drawing: Drawing) -> list[Block]:
     """The drawing, and the direct parents in words."""
     text: list[Inline] = [
         "An arrow leads from an unknown to those that are computed from it directly. "
     ]
-    several = [(v, above) for v, above in graph.parents if len(above) > 1]
+    several = [(v, above) for v, above in versions.parents.items() if len(above) > 1]
     for v, above in several:
         text += [variable(v), " has the parents "]
         for i, p in enumerate(above):

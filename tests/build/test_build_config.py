@@ -1,0 +1,133 @@
+"""Configs, incremental builds and what counts as stale."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import time
+from pathlib import Path
+
+import pytest
+
+from ikgen.build.config import default_config, load_config
+from ikgen.build.depfile import depfile_text
+from ikgen.build.stale import why_stale
+from ikgen.cli.main import run
+from ikgen.errors import BadDescriptionError
+
+FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
+EXAMPLE = Path(__file__).resolve().parents[2] / "examples/cmake_only/urdf"
+CONFIG = """
+[[arm]]
+name = "kuka"
+robot = "kuka_kr6r900sixx.urdf"
+base = "base_link"
+tip = "tool0"
+out = "generated"
+samples = 20
+
+[[arm]]
+name = "small"
+robot = "arm.urdf.xacro"
+args = { upper_arm = 0.42 }
+out = "generated"
+samples = 20
+"""
+
+
+@pytest.fixture
+def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    shutil.copy(FIXTURES / "kuka_kr6r900sixx.urdf", tmp_path)
+    for name in ("arm.urdf.xacro", "wrist.xacro"):
+        shutil.copy(EXAMPLE / name, tmp_path)
+    (tmp_path / "ikgen.toml").write_text(CONFIG)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def stale(package: Path) -> dict[str, str]:
+    return {arm.name: why_stale(arm) for arm in load_config(package / "ikgen.toml")}
+
+
+def test_builds_only_what_is_stale(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["build", "--check"]) == 1
+    assert not (package / "generated").exists()
+    assert run(["build", "--no-verify", "--depfile", "d"]) == 0
+    assert {p.name for p in (package / "generated").iterdir()} == {
+        "kuka_ik.py", "kuka_ik.json", "small_ik.py", "small_ik.json"
+    }  # fmt: skip
+    assert "wrist.xacro" in (package / "d").read_text()
+    started = time.perf_counter()
+    assert run(["build", "--check"]) == 0
+    assert time.perf_counter() - started < 0.5
+    before = (package / "generated/kuka_ik.py").stat().st_mtime_ns
+    wrist = package / "wrist.xacro"
+    wrist.write_text(wrist.read_text().replace("0.38", "0.39"))
+    assert stale(package) == {"kuka": "", "small": "wrist.xacro has changed"}
+    capsys.readouterr()
+    assert run(["build", "--no-verify", "--json"]) == 0
+    made = {row["name"]: row["generated"] for row in json.loads(capsys.readouterr().out)["arms"]}
+    assert made == {"kuka": False, "small": True}
+    assert (package / "generated/kuka_ik.py").stat().st_mtime_ns == before
+    assert run(["verify", "--samples", "20"]) == 0
+
+
+def test_reasons(package: Path) -> None:
+    assert run(["build", "--no-verify", "-q"]) == 0
+    config = package / "ikgen.toml"
+    config.write_text(CONFIG.replace("0.42", "0.43"))
+    assert "args" in stale(package)["small"]
+    config.write_text(CONFIG.replace('tip = "tool0"', ""))
+    assert stale(package)["kuka"] == "'tip' was tool0, is not given"
+    config.write_text(CONFIG)
+    with (package / "generated/kuka_ik.py").open("a") as stream:
+        stream.write("#")
+    assert "was edited" in stale(package)["kuka"]
+    record = package / "generated/small_ik.json"
+    record.write_text(record.read_text().replace('"version": "', '"version": "0.'))
+    assert "made by ikgen" in stale(package)["small"]
+
+
+def test_one_bad_arm_leaves_the_others(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (package / "ikgen.toml").write_text(CONFIG.replace('"tool0"', '"tol0"'))
+    assert run(["build", "--no-verify"]) == 2
+    assert "error: kuka: no link named 'tol0'" in capsys.readouterr().err
+    assert (package / "generated/small_ik.py").is_file()
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "lists no arm"),
+        ("x = ", "not TOML"),
+        ("[[arm]]\nname = 'a'", "no 'robot'"),
+        ("[[arm]]\nrobot = 'a'", "no 'name'"),
+        ("[[arm]]\nname = 'a-b'\nrobot = 'r'", "not an identifier"),
+        ("[[arm]]\nname = 'a'\nrobot = 'r'\nemmit = []", "unknown entry 'emmit'"),
+        ("[[arm]]\nname = 'a'\nrobot = 'r'\nemit = 'cpp'", "not a list"),
+        ("[[arm]]\nname = 'a'\nrobot = 'r'\nlock = { j = 'x' }", "not a number"),
+        ("[[arm]]\nname = 'a'\nrobot = 'r'\n[[arm]]\nname = 'a'\nrobot = 'r'", "two arms"),
+        ("arm = 3", "lists no arm"),
+        ("other = 3\n[[arm]]\nname = 'a'\nrobot = 'r'", "unknown entry 'other'"),
+    ],
+)
+def test_bad_configs(tmp_path: Path, text: str, said: str) -> None:
+    path = tmp_path / "ikgen.toml"
+    path.write_text(text)
+    with pytest.raises(BadDescriptionError, match=said):
+        load_config(path)
+
+
+def test_pyproject(tmp_path: Path) -> None:
+    path = tmp_path / "pyproject.toml"
+    path.write_text("[project]\nname = 'x'\n")
+    assert default_config(tmp_path) is None
+    path.write_text("[[tool.ikgen.arm]]\nname = 'a'\nrobot = 'r.urdf'\nfree = ['j']\n")
+    assert default_config(tmp_path) == path
+    (arm,) = load_config(path)
+    assert arm.robot == tmp_path / "r.urdf" and arm.free == {"j": None}
+
+
+def test_depfile_escapes() -> None:
+    text = depfile_text("build/a.stamp", [Path("/a b/c#d$.urdf"), Path("/x")])
+    assert text == "build/a.stamp: /a\\ b/c\\#d$$.urdf /x\n"

@@ -1,0 +1,166 @@
+"""The command line from outside: exit codes, streams, files."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
+KUKA = FIXTURES / "kuka_kr6r900sixx.urdf"
+AR4 = FIXTURES / "ar4_ros_driver/annin_ar4_description/urdf/ar.urdf.xacro"
+
+
+def ikgen(
+    *arguments: object, cwd: Path | None = None, **environment: str
+) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "ikgen", *map(str, arguments)]
+    return subprocess.run(
+        command, cwd=cwd, text=True, capture_output=True, env={**os.environ, **environment}
+    )
+
+
+def refused(result: subprocess.CompletedProcess[str], code: int = 2) -> str:
+    """The message of a command that ended with an error; never a traceback."""
+    assert result.returncode == code, result.stderr
+    assert "Traceback" not in result.stderr
+    assert "\nerror: " in "\n" + result.stderr
+    return result.stderr
+
+
+def test_generates_and_verifies(tmp_path: Path) -> None:
+    done = ikgen("from-urdf", KUKA, "-o", tmp_path, "--samples", 50)
+    assert done.returncode == 0, done.stderr
+    assert "verifying" in done.stderr
+    for part in ("base_link -> tool0", "spherical wrist", "theta_1", "at most 8", "0 missed"):
+        assert part in done.stdout
+    names = sorted(path.name for path in tmp_path.iterdir())
+    assert names == ["kuka_kr6r900sixx_ik.json", "kuka_kr6r900sixx_ik.py"]
+    again = ikgen("verify", tmp_path, "--samples", 50)
+    assert again.returncode == 0, again.stderr
+    assert "right" in again.stdout
+
+
+def test_json_alone_is_on_stdout(tmp_path: Path) -> None:
+    done = ikgen("from-urdf", KUKA, "-o", tmp_path, "--samples", 20, "--json", "--name", "arm", "-v")
+    record = json.loads(done.stdout)
+    assert record["joints"][0] == "joint_a1" and record["max_solutions"] == 8
+    assert record["verification"]["python"]["passed"] and record["name"] == "arm"
+    assert "behaviour tree:" in done.stderr
+
+
+def test_quiet_says_nothing(tmp_path: Path) -> None:
+    done = ikgen("from-urdf", KUKA, "-o", tmp_path, "--no-verify", "-q")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_same_input_gives_the_same_bytes(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        ikgen("from-urdf", KUKA, "-o", tmp_path / name, "--no-verify", "-q", PYTHONHASHSEED=name[:0])
+    for path in (tmp_path / "a").iterdir():
+        assert path.read_bytes() == (tmp_path / "b" / path.name).read_bytes()
+        assert str(FIXTURES) not in path.read_text()
+
+
+def test_a_xacro_file_and_its_arguments(tmp_path: Path) -> None:
+    arguments = ("--arg", "ar_model:=mk3", "--arg", "include_gripper:=false")
+    done = ikgen(
+        "from-urdf", AR4, *arguments, "--samples", 20, "-o", tmp_path, "--depfile", tmp_path / "d"
+    )
+    assert done.returncode == 0, done.stderr
+    assert "mk3.yaml" in (tmp_path / "d").read_text()
+    assert "ar_model" in refused(ikgen("from-urdf", AR4, "-o", tmp_path / "none"))
+    assert not (tmp_path / "none").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["from-urdf"], "Missing argument"),
+        (["from-urdf", "nothing.urdf"], "no such file"),
+        (["from-urdf", KUKA, "--tip", "tol0"], "tool0"),
+        (["from-urdf", KUKA, "--task", "pse"], "pose"),
+        (["from-urdf", KUKA, "--emit", "pythn"], "python"),
+        (["from-urdf", KUKA, "--lock", "joint_a1"], "JOINT=VALUE"),
+        (["from-urdf", KUKA, "--lock", "joint_a1=nan"], "finite"),
+        (["from-urdf", KUKA, "--free", "joint_a9"], "joint_a1"),
+        (["from-urdf", KUKA, "--free", "joint_a1=x"], "number"),
+        (["from-urdf", KUKA, "--arg", "a=b"], "NAME:=VALUE"),
+        (["from-urdf", KUKA, "--name", "my-arm"], "my_arm"),
+        (["from-urdf", KUKA, "--samples", "0"], "samples"),
+        (["from-urdf", KUKA, "--package-path", "nowhere"], "nowhere"),
+        (["from-urdf", FIXTURES / "abb_yumi.urdf"], "gripper_l_base"),
+        (["from-urdf", FIXTURES], "suffix"),
+        (["from-dh", KUKA], "from-urdf"),
+        (["inspect", "nothing.urdf"], "no such file"),
+        (["verify", "nowhere"], "no such file or directory"),
+        (["build", "nothing.toml"], "no such file"),
+        (["build"], "ikgen.toml"),
+        (["verify"], "no outputs"),
+        (["frm-urdf"], "frm-urdf"),
+    ],
+    ids=lambda value: " ".join(map(str, value))[-40:] if isinstance(value, list) else "",
+)
+def test_bad_input_is_explained(tmp_path: Path, arguments: list[object], said: str) -> None:
+    assert said in refused(ikgen(*arguments, cwd=tmp_path))
+    assert not any(tmp_path.iterdir())
+
+
+def test_too_many_joints_have_no_closed_form(tmp_path: Path) -> None:
+    done = ikgen("from-urdf", FIXTURES / "franka_fr3.urdf", "-o", tmp_path / "out")
+    message = refused(done, 3)
+    assert "--free" in message and "left" in message
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    refused(ikgen("from-urdf", KUKA, "-o", tmp_path / "file", "--no-verify"))
+
+
+def test_inspect_writes_nothing(tmp_path: Path) -> None:
+    done = ikgen("inspect", FIXTURES / "doosan_m1013.urdf", "--json", cwd=tmp_path)
+    record = json.loads(done.stdout)
+    assert record["chain"]["dof"] == 6 and record["chain"]["snaps"]
+    assert record["chain"]["deviation"]["m"] > 0
+    text = ikgen("inspect", FIXTURES / "abb_yumi.urdf", cwd=tmp_path)
+    assert text.returncode == 0 and text.stdout.count("--base yumi_base_link --tip") == 2
+    assert not any(tmp_path.iterdir())
+
+
+def test_help_and_version_import_nothing_heavy() -> None:
+    code = (
+        "import sys; from ikgen.cli.main import run; run({!r}); "
+        "print([m for m in ('numpy','sympy','pinocchio','yourdfpy','xacro','jinja2','rich',"
+        "'py_trees','lxml') if m in sys.modules])"
+    )
+    for arguments in (["--help"], ["--version"], ["from-urdf", "--help"], ["build", "--check"]):
+        done = subprocess.run(
+            [sys.executable, "-c", code.format(arguments)], text=True, capture_output=True
+        )
+        assert done.stdout.splitlines()[-1] == "[]", (arguments, done.stdout, done.stderr)
+
+
+def test_an_internal_error_is_one_line(monkeypatch: pytest.MonkeyPatch, capsys) -> None:  # type: ignore[no-untyped-def]
+    from ikgen.cli import main
+
+    def fail(**_: object) -> None:
+        raise RuntimeError("broken\nin two")
+
+    monkeypatch.setattr(main.ikgen, "main", fail)
+    assert main.run(["inspect", "x"]) == 70
+    message = capsys.readouterr().err
+    assert "internal error: RuntimeError: broken in two" in message
+    assert "Traceback" not in message
+    main.run(["inspect", "x", "-v"])
+    assert "Traceback" in capsys.readouterr().err
+
+
+def test_doctor_and_cmake_dir() -> None:
+    assert json.loads(ikgen("doctor", "--json").stdout)["packages"]["numpy"]
+    folder = Path(ikgen("cmake-dir").stdout.strip())
+    assert (folder / "ikgenConfig.cmake").is_file()
