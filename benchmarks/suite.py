@@ -3,9 +3,9 @@
     python -m benchmarks.suite [--robot TEXT] [--poses N] [--searched N] [--starts N] [--json]
 
 Prints one row a robot: how it was solved, how many solutions each pose has by the emitted Python
-module and by an independent numerical search, how many rows were wrong and how many missed. A row is
-wrong if forward kinematics does not give the pose back; a generating configuration or a solution of the
-search is missed if no row equals it. Exits with 1 if any row was wrong or missed.
+module and by an independent numerical search, how many rows were wrong and how many missed. A row
+is wrong if forward kinematics does not give the pose back; a generating configuration or a solution
+of the search is missed if no row equals it. Exits with 1 if any row was wrong or missed.
 """
 
 from __future__ import annotations
@@ -138,7 +138,7 @@ def _regular(arm: ArmUnderTest, rng: np.random.Generator, poses: int) -> Array:
 
 
 def _compare(arm: ArmUnderTest, rows: Array, count: Array, T: Array, q: Array) -> tuple[int, int]:
-    """How many rows do not give their pose back, and how many poses lack their own configuration."""
+    """How many rows do not give their pose back; how many poses lack their configuration."""
     wrong = missed = 0
     for i, k in enumerate(count):
         back = arm.oracle.forward(rows[i, :k]) if k else np.zeros((0, 4, 4))
@@ -173,9 +173,8 @@ def _histogram(counts: Counter[int]) -> str:
 
 
 def _print(trials: Sequence[Trial]) -> None:
-    print(
-        f"{'robot':16} {'joints':7} {'state':9} {'s':>5}  {'found':24} {'true':14} wrong missed  leaves"
-    )
+    head = f"{'robot':16} {'joints':7} {'state':9} {'s':>5}  {'found':24} {'true':14}"
+    print(f"{head} wrong missed  leaves")
     for t in trials:
         print(
             f"{t.robot:16} {t.kinds:7} {t.state:9} {t.seconds:5.1f}  {t.found:24} {t.true:14} "

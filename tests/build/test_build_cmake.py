@@ -14,7 +14,8 @@ import pytest
 from ikgen import __version__
 from ikgen.build.cmake import cmake_directory
 from ikgen.emit.registry import EMITTERS
-from ikgen.verify.runners.cpp_toolchain import eigen_include
+from ikgen.errors import MissingToolError
+from ikgen.verify.runners.cpp_toolchain import find_eigen
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLE = ROOT / "examples/cmake_only"
@@ -52,7 +53,7 @@ def test_regenerates_when_an_included_file_changes(tmp_path: Path, generator: st
     out = tmp_path / "p" / "b"
     build(
         "cmake", "-S", ".", "-B", out, "-G", generator, f"-Dikgen_DIR={cmake_directory()}",
-        *_eigen(tmp_path), cwd=tmp_path / "p",
+        *_eigen(), cwd=tmp_path / "p",
     )  # fmt: skip
     made = "Generating inverse kinematics"
     assert made in build("cmake", "--build", out, cwd=tmp_path)
@@ -65,16 +66,15 @@ def test_regenerates_when_an_included_file_changes(tmp_path: Path, generator: st
     build("ctest", "--output-on-failure", cwd=out)
 
 
-def _eigen(folder: Path) -> list[str]:
+def _eigen() -> list[str]:
     """Where CMake finds Eigen if the system has none of its own."""
     config = [*Path("/usr/share").glob("eigen3/cmake/Eigen3Config.cmake")]
     if config:
         return []
-    include = eigen_include()
-    if include is None:
+    try:
+        return [f"-DCMAKE_PREFIX_PATH={find_eigen().parent.parent}"]
+    except MissingToolError:
         pytest.skip("needs Eigen")
-    prefix = Path(include).parent.parent
-    return [f"-DCMAKE_PREFIX_PATH={prefix}"]
 
 
 @needs_cmake

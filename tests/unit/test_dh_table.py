@@ -69,7 +69,9 @@ def product(
 R, P, F = "revolute", "prismatic", "fixed"
 CASES = {
     "plain": [(R, 0, 0, 0.3, 0), (R, -1.5, 0.2, 0, 0.4), (P, 0.7, 0.1, 0.2, 0.3)],
-    "ends fixed": [(F, 0.3, 0.1, 0.2, 0.5), (R, 0, 0, 0.3, 0), (R, 1.0, 0.2, 0, 0), (F, 0.1, 1, 2, 3)],
+    "ends fixed": [
+        (F, 0.3, 0.1, 0.2, 0.5), (R, 0, 0, 0.3, 0), (R, 1.0, 0.2, 0, 0), (F, 0.1, 1, 2, 3),
+    ],
     "fixed link": [(R, 0, 0, 0.3, 0), (F, 0.5, 0.1, 0, 0), (R, 1.0, 0.2, 0, 0)],
     "fixed screw": [(R, 0, 0, 0.3, 0), (F, 0, 0, 0.4, 0.6), (R, 1.0, 0.2, 0, 0)],
     "fixed shift": [(R, 0, 0, 0.3, 0), (F, 0, 0.3, 0.4, 0), (R, 1.0, 0.2, 0, 0)],
@@ -78,7 +80,8 @@ CASES = {
     "fixed, not exact": [(R, 0, 0, 0.3, 0), (F, 0.3, 0.3, 0.4, 0.8), (R, 0.5, 0.2, 0.1, 0.2)],
     "two fixed": [(R, 0, 0, 0, 0), (F, 0.3, 0.3, 0, 0), (F, 0.2, 0.1, 0, 0), (R, 1, 0, 0, 0)],
     "antiparallel": [
-        (R, 0, 0, 0.3, 0), (R, math.pi, 0.2, 0.1, 0.4), (P, 0.6, 0.1, 0.2, 0.3), (R, math.pi, 1, 2, 0.1),
+        (R, 0, 0, 0.3, 0), (R, math.pi, 0.2, 0.1, 0.4), (P, 0.6, 0.1, 0.2, 0.3),
+        (R, math.pi, 1, 2, 0.1),
     ],
 }  # fmt: skip
 
@@ -209,22 +212,32 @@ BAD = {
     "convention unknown": (table(GOOD, 'convention = "craig"'), "craig", "convention"),
     "no joints": ('convention = "modified"', "no joints", None),
     "unknown key": (table(GOOD, tail="lenght = 1"), "joint 2: unknown key 'lenght'", "lenght"),
-    "unknown top key": (table(GOOD, 'convention = "modified"\nparam = 1'), "unknown key 'param'", "param"),
+    "unknown top key": (
+        table(GOOD, 'convention = "modified"\nparam = 1'), "unknown key 'param'", "param",
+    ),
     "no type": ('convention = "modified"\n[[joints]]\na = 1', "joint 1: no type", "joints"),
-    "missing": ('convention = "modified"\n[[joints]]\ntype = "revolute"\na = 1\nd = 0', "without 'alpha'", "joints"),
-    "expression": (table([*GOOD, (R, "pi/", 0, 0, 0)]), "joint 3: alpha: 'pi/' is not an expression", "pi/"),
+    "missing": (
+        'convention = "modified"\n[[joints]]\ntype = "revolute"\na = 1\nd = 0',
+        "without 'alpha'", "joints",
+    ),
+    "expression": (
+        table([*GOOD, (R, "pi/", 0, 0, 0)]), "joint 3: alpha: 'pi/' is not an expression", "pi/",
+    ),
     "function": (table([*GOOD, (R, "sin(1)", 0, 0, 0)]), "'sin' is no function", "sin"),
     "attribute": (table([*GOOD, (R, "pi.real", 0, 0, 0)]), "not allowed", "real"),
     "call": (table([*GOOD, (R, 0, "__import__('os')", 0, 0)]), "no function", "import"),
     "zero": (table([*GOOD, (R, 0, "1/0", 0, 0)]), "divides by zero", "1/0"),
-    "wrong type": (table([*GOOD, (R, 0, True, 0, 0)]).replace("True", "true"), "neither a number", "true"),
+    "wrong type": (
+        table([*GOOD, (R, 0, True, 0, 0)]).replace("True", "true"), "neither a number", "true",
+    ),
     "misspelt": (
         table([*GOOD, (R, 0, "a2", 0, 0)], 'convention = "modified"\n[parameters]\na_2 = 1'),
         "no parameter named 'a2'", "a2",
     ),
     "offset symbol": (table([(R, 0, 0, 0, "x_1")]), "has no number", "x_1"),
     "parameter text": (
-        table(GOOD, 'convention = "modified"\n[parameters]\nb = "c + 1"'), "'b' has no number", "c + 1",
+        table(GOOD, 'convention = "modified"\n[parameters]\nb = "c + 1"'),
+        "'b' has no number", "c + 1",
     ),
     "limits order": (table(GOOD, tail="limits = [2, 1]"), "above", "limits"),
     "limits count": (table(GOOD, tail="limits = [2]"), "not two numbers", "limits"),

@@ -70,7 +70,7 @@ def chain_of_rows(
     free: tuple[str, ...],
     locked: tuple[tuple[str, float], ...],
 ) -> DHChain:
-    """The rows through their axes in space, where a fixed row cannot be merged exactly: new rows."""
+    """New rows from the axes in space, where a fixed row cannot be merged exactly."""
     axes: list[ChainAxis] = []
     pending = merged.X_base
     for row in merged.rows:

@@ -23,7 +23,8 @@ ENTRIES = ("alpha", "a", "d", "theta")
 KINDS = ("revolute", "prismatic", "fixed")
 CONVENTIONS = ("modified", "standard")
 _TOP_KEYS = (
-    "name", "convention", "description", "source", "licence", "parameters", "joints", "base", "tool",
+    "name", "convention", "description", "source", "licence", "parameters", "joints", "base",
+    "tool",
 )  # fmt: skip
 _JOINT_KEYS = ("type", *ENTRIES, "limits", "name")
 _END_KEYS = ("xyz", "rpy", "name")

@@ -11,11 +11,10 @@ from typing import Any
 from ikgen.errors import UnknownNameError, UsageError
 from ikgen.importers.dh_document import ENTRIES, TableDocument
 from ikgen.importers.dh_expression import BadEntryError, Quantity, evaluate, number
+from ikgen.importers.dh_limits import read_limits
 from ikgen.model.joint_tree import Limits
 
 __all__ = ["Entry", "locked_entries", "read_entries", "read_parameters"]
-
-UNLIMITED = Limits(-math.inf, math.inf)
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +50,7 @@ def read_parameters(document: TableDocument) -> dict[str, float | None]:
 
 
 def read_entries(document: TableDocument) -> tuple[Entry, ...]:
-    """Every row's quantities; raises `BadDescriptionError`, and warns about names without a number."""
+    """Every row's quantities; raises `BadDescriptionError`; warns of names without number."""
     parameters = read_parameters(document)
     entries: list[Entry] = []
     moving = 0
@@ -63,7 +62,7 @@ def read_entries(document: TableDocument) -> tuple[Entry, ...]:
         parts = {
             key: _entry(document, i, joint, key, parameters, (name, default)) for key in ENTRIES
         }
-        limits = _limits(document, i, joint, parameters)
+        limits = read_limits(document, i, joint, parameters)
         entries.append(Entry(kind, name, **parts, limits=limits))
     _check_names(document, entries)
     _check_parameters(document, entries, parameters)
@@ -125,42 +124,6 @@ def _offset(
             key=key,
         )
     return found
-
-
-def _limits(
-    document: TableDocument,
-    i: int,
-    joint: Mapping[str, Any],
-    parameters: Mapping[str, float | None],
-) -> Limits:
-    given = joint.get("limits")
-    if given is None:
-        return UNLIMITED
-    hint = "write limits = [lower, upper] in rad or m, or leave them out"
-    if joint["type"] == "fixed":
-        raise document.error("a fixed joint has no limits", "remove them", joint=i, key="limits")
-    if not isinstance(given, list) or len(given) != 2:
-        raise document.error("limits are not two numbers", hint, joint=i, key="limits")
-    values = []
-    for one in given:
-        if isinstance(one, bool) or not isinstance(one, int | float | str):
-            raise document.error(f"limit {one!r} is no number", hint, joint=i, key="limits")
-        try:
-            found = evaluate(one, parameters, angle=True) if isinstance(one, str) else None
-        except BadEntryError as error:
-            raise document.error(f"limits: {error}", error.hint, joint=i, key="limits") from None
-        value = float(one) if found is None else found.value
-        if math.isnan(value) or (found is not None and found.symbolic):
-            raise document.error(f"limit {one!r} has no number", hint, joint=i, key="limits")
-        values.append(value)
-    if values[0] > values[1]:
-        raise document.error(
-            f"the lower limit {values[0]:g} is above the upper limit {values[1]:g}", hint,
-            joint=i, key="limits",
-        )  # fmt: skip
-    if joint["type"] == "revolute" and 13.0 < max(map(abs, values)) < 1e3:
-        document.warnings.append(f"joint {i}: limits look like degrees: kept as they are")
-    return Limits(values[0], values[1])
 
 
 def _check_names(document: TableDocument, entries: list[Entry]) -> None:

@@ -131,7 +131,7 @@ def _absorb(
 
 
 def _forward(rows: list[ModifiedRow]) -> tuple[list[ModifiedRow], Matrix]:
-    """Antiparallel axes made parallel: `Rx(pi) Rz(v) Tz(d) = Rz(-v) Tz(-d) Rx(pi)`, which then joins
+    """Antiparallel axes made parallel: `Rx(pi) Rz(v) Tz(d) = Rz(-v) Tz(-d) Rx(pi)`, which joins
     the next row's twist, and at last the tip's constant."""
     out: list[ModifiedRow] = []
     pending = ZERO

@@ -15,7 +15,7 @@ from ikgen.importers.dh_chain import TableEnds, chain_of_rows, exact_chain
 from ikgen.importers.dh_document import TableDocument, read_document
 from ikgen.importers.dh_entries import Entry, locked_entries, read_entries, read_parameters
 from ikgen.importers.dh_expression import BadEntryError, evaluate
-from ikgen.importers.dh_merge import merge, modified_rows
+from ikgen.importers.dh_merge import Merged, merge, modified_rows
 from ikgen.kinematics.classify import parallel_to_previous, same_line_as_previous
 from ikgen.kinematics.snapping import exact_cos_sin
 from ikgen.model.dh import DHChain
@@ -50,23 +50,22 @@ def read_dh_table(
     )
     given = tuple(sorted((locked or {}).items()))
     if not merged.complete:
-        symbols = [
-            row.name
-            for row in merged.rows
-            if any(q.symbolic for q in (row.alpha, row.a, row.d, row.theta))
-        ]
-        if symbols:
-            raise document.error(
-                "a fixed row between joints cannot be merged with symbolic ones",
-                "give the lengths and angles numbers under [parameters]",
-            )
-        document.warnings.append(
-            "a fixed row between joints: the rows were made anew from the axes"
-        )
+        _note_new_rows(document, merged)
     make = exact_chain if merged.complete else chain_of_rows
     dh = make(merged, ends, free=tuple(free), locked=given)
     document.warnings.extend(_redundant(dh))
     return _source(document), dh
+
+
+def _note_new_rows(document: TableDocument, merged: Merged) -> None:
+    """A fixed row is left between joints: possible with numbers only, and the rows will be others."""
+    parts = [q for row in merged.rows for q in (row.alpha, row.a, row.d, row.theta)]
+    if any(q.symbolic for q in parts):
+        raise document.error(
+            "a fixed row between joints cannot be merged with symbolic ones",
+            "give the lengths and angles numbers under [parameters]",
+        )
+    document.warnings.append("a fixed row between joints: the rows were made anew from the axes")
 
 
 def _source(document: TableDocument) -> Source:
@@ -89,11 +88,11 @@ def _check_convention(document: TableDocument, entries: tuple[Entry, ...]) -> No
     convention = document.data["convention"]
     if convention == "modified" and first and not last:
         document.warnings.append(
-            "row 1 has alpha or a and the last row has none: this looks like the standard convention"
+            "row 1 has alpha or a, the last row has none: this looks like the standard convention"
         )
     if convention == "standard" and last and not first:
         document.warnings.append(
-            "the last row has alpha or a and row 1 has none: this looks like the modified convention"
+            "the last row has alpha or a, row 1 has none: this looks like the modified convention"
         )
 
 

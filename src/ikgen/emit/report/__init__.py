@@ -51,7 +51,8 @@ def emit_report(
     blocks += trace_section(graph)
     blocks += verification_section(reports or {})
     title = f"Inverse kinematics of {derivation.reading.dh.robot}"
-    subtitle = f"derived by ikgen {derivation.module.generator_version} from {derivation.module.source_name}"
+    module = derivation.module
+    subtitle = f"derived by ikgen {module.generator_version} from {module.source_name}"
     return {
         f"{name}_report.tex": to_latex(title, subtitle, blocks),
         f"{name}_report.html": to_html(title, subtitle, blocks),

@@ -3,13 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Union
 
 from ikgen.emit.report.mathtext import Math
 
-__all__ = ["Block", "Formulas", "Heading", "Inline", "Matrix", "Paragraph", "Picture", "Rows", "Text"]
+__all__ = [
+    "Block",
+    "Formulas",
+    "Heading",
+    "Inline",
+    "Matrix",
+    "Paragraph",
+    "Picture",
+    "Rows",
+    "Text",
+]
 
-Inline = Union[str, Math]
+Inline = str | Math
 Text = tuple[Inline, ...]
 
 
@@ -63,4 +72,4 @@ class Picture:
     caption: str = ""
 
 
-Block = Union[Heading, Paragraph, Formulas, Matrix, Rows, Picture]
+Block = Heading | Paragraph | Formulas | Matrix | Rows | Picture

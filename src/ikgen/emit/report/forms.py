@@ -102,7 +102,9 @@ def _linear(w: _Work) -> Solved:
     if w.c.unknown.kind == "angle":
         x = angle(w.c.unknown.key)
     equation = _equals(_linear_form([(a, x)]), show(-b))
-    return Solved(() if a.value == 1.0 else (equation,), (quotient(-b, a),), None, w.divisor(w.e[0]))
+    return Solved(
+        () if a.value == 1.0 else (equation,), (quotient(-b, a),), None, w.divisor(w.e[0])
+    )
 
 
 def _root(w: _Work) -> Solved:
@@ -161,10 +163,14 @@ def _sincos(w: _Work) -> Solved:
     equation = _equals(_linear_form([(a, _cosine(v)), (b, _cosine(v, "sin"))]), show(c))
     if a.is_zero:
         ratio = m.function("asin", quotient(c, b))
-        return Solved((equation,), (ratio, m.name("pi") + m.minus() + ratio), _bound(c, b), w.divisor(w.e[1]))
+        return Solved(
+            (equation,), (ratio, m.name("pi") + m.minus() + ratio), _bound(c, b), w.divisor(w.e[1])
+        )
     if b.is_zero:
         ratio = m.function("acos", quotient(c, a))
-        return Solved((equation,), (ratio, m.minus(sign=True) + ratio), _bound(c, a), w.divisor(w.e[0]))
+        return Solved(
+            (equation,), (ratio, m.minus(sign=True) + ratio), _bound(c, a), w.divisor(w.e[0])
+        )
     inside = w.sum(g.sub(g.add(g.square(w.e[0]), g.square(w.e[1])), g.square(w.e[2])))
     swing = m.function("atan2", m.radical(show(inside)), show(c))
     middle = m.function("atan2", show(b), show(a))
@@ -191,7 +197,13 @@ def _tangent(w: _Work) -> Solved:
 
 def _quartic(w: _Work) -> Solved:
     theta = angle(w.c.unknown.key)
-    letters = [m.name("a", "2"), m.name("b", "2"), m.name("a", "1"), m.name("b", "1"), m.name("a", "0")]
+    letters = [
+        m.name("a", "2"),
+        m.name("b", "2"),
+        m.name("a", "1"),
+        m.name("b", "1"),
+        m.name("a", "0"),
+    ]
     twice = m.number(2.0) + m.space() + theta
     marks = [
         m.function("cos", twice), m.function("sin", twice), m.function("cos", theta),
@@ -222,8 +234,6 @@ def _self_inversive(letters: list[Math]) -> Math:
 
 def _unknown(w: _Work) -> Solved:
     """A form of another package: its coefficients only."""
-    lines = tuple(
-        _equals(m.name("A", str(i)), show(w.sum(e))) for i, e in enumerate(w.e, start=1)
-    )
+    lines = tuple(_equals(m.name("A", str(i)), show(w.sum(e))) for i, e in enumerate(w.e, start=1))
     branches = tuple(m.text(f"branch {i + 1} of {w.c.form}") for i in range(w.c.branches))
     return Solved(lines, branches, None, None)

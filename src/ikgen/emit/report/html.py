@@ -23,7 +23,9 @@ __all__ = ["to_html"]
 def to_html(title: str, subtitle: str, blocks: list[Block]) -> str:
     """The text of the .html file."""
     body = "\n".join(_block(b) for b in blocks)
-    return render("report", "report.html.jinja", title=escape(title), subtitle=escape(subtitle), body=body)
+    return render(
+        "report", "report.html.jinja", title=escape(title), subtitle=escape(subtitle), body=body
+    )
 
 
 def _math(formula: Math) -> str:

@@ -26,7 +26,9 @@ _ESCAPES = {
 def to_latex(title: str, subtitle: str, blocks: list[Block]) -> str:
     """The text of the .tex file."""
     body = "\n\n".join(_block(b) for b in blocks)
-    return render("report", "report.tex.jinja", title=_words(title), subtitle=_words(subtitle), body=body)
+    return render(
+        "report", "report.tex.jinja", title=_words(title), subtitle=_words(subtitle), body=body
+    )
 
 
 def _words(text: str) -> str:
@@ -54,17 +56,19 @@ def _block(block: Block) -> str:
         case Matrix(name, rows):
             inside = " \\\\\n".join(" & ".join(x.latex for x in row) for row in rows)
             columns = "c" * len(rows[0])
-            return (
-                f"\\[ {name.latex} = \\left[\\begin{{array}}{{{columns}}}\n{inside}\n\\end{{array}}\\right] \\]"
-            )
+            array = f"\\begin{{array}}{{{columns}}}\n{inside}\n\\end{{array}}"
+            return f"\\[ {name.latex} = \\left[{array}\\right] \\]"
         case Rows():
             return _rows(block)
         case Picture(_, latex, caption):
-            return f"\\begin{{center}}\n{latex}\n\n\\smallskip{{\\small {_words(caption)}}}\n\\end{{center}}"
+            below = f"\\smallskip{{\\small {_words(caption)}}}"
+            return f"\\begin{{center}}\n{latex}\n\n{below}\n\\end{{center}}"
 
 
 def _rows(block: Rows) -> str:
-    wide = [max((_width(row[i]) for row in block.rows), default=0) for i in range(len(block.header))]
+    wide = [
+        max((_width(row[i]) for row in block.rows), default=0) for i in range(len(block.header))
+    ]
     columns = "".join("L" if w > 24 else "c" for w in wide)
     count = columns.count("L")
     size = f"\\setlength{{\\wide}}{{{0.5 / count if count else 0.2:.2f}\\linewidth}}"

@@ -20,7 +20,7 @@ _COMMAND = {"al": "alpha", "th": "theta"}
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """One mark. `role` is "ord", "bin" or "rel" (a line may break before it), "comma" (after it)."""
+    """One mark. `role` is "ord", "bin" or "rel" (a line may break before it), "comma" (after)."""
 
     latex: str
     mathml: str
@@ -163,7 +163,9 @@ def space() -> Math:
 
 def text(words: str) -> Math:
     """Upright words."""
-    return _mark(f"\\text{{{_safe(words)}}}", f"<mtext>{escape(words.replace(' ', chr(160)))}</mtext>")
+    return _mark(
+        f"\\text{{{_safe(words)}}}", f"<mtext>{escape(words.replace(' ', chr(160)))}</mtext>"
+    )
 
 
 def function(word: str, *arguments: Math) -> Math:

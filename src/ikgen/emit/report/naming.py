@@ -17,7 +17,7 @@ _LONG = 14
 
 
 class Abbreviations:
-    """Names for the sums inside the given formulas, numbered in the order in which they are used."""
+    """Names for the sums inside the given formulas, numbered in the order of their use."""
 
     def __init__(self, formulas: Iterable[Sum]) -> None:
         self._count: Counter[Sum] = Counter()
@@ -50,9 +50,9 @@ class Abbreviations:
 
     def force(self, s: Sum) -> Sum:
         """A name for a formula that will be used several times, unless it is short."""
-        if len(s.terms) > 1 and s.weight >= _AGAIN + 2:
-            if s not in self._index and -s not in self._index:
-                self._name(factor_of(s))
+        worth = len(s.terms) > 1 and s.weight >= _AGAIN + 2
+        if worth and s not in self._index and -s not in self._index:
+            self._name(factor_of(s))
         return self.short(s)
 
     def inside(self, s: Sum) -> Sum:

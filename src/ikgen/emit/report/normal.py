@@ -6,11 +6,20 @@ Only what the leaves' coefficients are made of is covered: + - * / and square ro
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Union
 
 from ikgen.equations.expression import Expr
 
-__all__ = ["Factor", "Named", "Normalizer", "Radical", "Sum", "Symbol", "Term", "constant", "factor_of"]
+__all__ = [
+    "Factor",
+    "Named",
+    "Normalizer",
+    "Radical",
+    "Sum",
+    "Symbol",
+    "Term",
+    "constant",
+    "factor_of",
+]
 
 _NOTHING = 1e-14
 
@@ -74,7 +83,7 @@ class Radical:
     inside: Sum
 
 
-Factor = Union[Symbol, Named, Sum, Radical]
+Factor = Symbol | Named | Sum | Radical
 
 _KINDS = {"param": 0, "pose": 1, "dist": 2, "cos": 3, "sin": 3, "sigma": 4}
 
@@ -96,7 +105,9 @@ def _order(factor: Factor) -> tuple[object, ...]:
     if isinstance(factor, Symbol):
         first = factor.key if isinstance(factor.key, str) else ""
         places = (
-            tuple(j for j, k in enumerate(factor.key) if k) if not isinstance(factor.key, str) else ()
+            tuple(j for j, k in enumerate(factor.key) if k)
+            if not isinstance(factor.key, str)
+            else ()
         )
         return (_KINDS.get(factor.kind, 5), first, places, factor.kind, str(factor.key))
     if isinstance(factor, Named):

@@ -31,7 +31,9 @@ def angle(key: tuple[int, ...], version: str = "") -> Math:
             continue
         sign = m.plus() if k > 0 else m.minus(sign=not parts.tokens)
         parts = parts + (sign if parts.tokens or k < 0 else Math(()))
-        parts = parts + (m.number(abs(k)) if abs(k) != 1 else Math(())) + m.name("theta", str(j + 1))
+        parts = (
+            parts + (m.number(abs(k)) if abs(k) != 1 else Math(())) + m.name("theta", str(j + 1))
+        )
     return m.group(parts)
 
 

@@ -56,13 +56,11 @@ def draw(graph: SolutionGraph, versions: Versions, title: str) -> Drawing:
     }
     width = max(x for x, _ in place.values()) + _WIDTH / 2 + _MARGIN
     height = max(y for _, y in place.values()) + _HEIGHT / 2 + _MARGIN
-    leaves = {s.candidate.unknown: s.candidate.leaf for s in graph.steps}
-    edges = [
-        (place[p], place[v]) for v, above in graph.parents for p in above if p in place
-    ]
+    leaves = frozenset(s.candidate.unknown for s in graph.steps)
+    edges = [(place[p], place[v]) for v, above in graph.parents for p in above if p in place]
     return Drawing(
         _svg(place, edges, versions, leaves, (width, height), title),
-        _latex(place, edges, versions, leaves, (width, height)),
+        _latex(place, edges, versions, (width, height)),
     )
 
 
@@ -83,7 +81,7 @@ def _svg(
     place: dict[Variable, Point],
     edges: list[tuple[Point, Point]],
     versions: Versions,
-    leaves: dict[Variable, str],
+    leaves: frozenset[Variable],
     size: Point,
     title: str,
 ) -> str:
@@ -98,25 +96,11 @@ def _svg(
         (x1, y1), (x2, y2) = _ends(edge)
         bend = (y2 - y1) / 2
         parts.append(
-            f'<path d="M{x1:g} {y1:g} C{x1:g} {y1 + bend:g} {x2:g} {y2 - bend:g} {x2:g} {y2 - 1:g}" '
+            f'<path d="M{x1:g} {y1:g} C{x1:g} {y1 + bend:g} '
+            f'{x2:g} {y2 - bend:g} {x2:g} {y2 - 1:g}" '
             'fill="none" stroke="#345" stroke-width="1.2" marker-end="url(#arrow)"/>'
         )
-    for v, (x, y) in place.items():
-        letter = "θ" if v.kind == "angle" else "d"
-        index = v.text.partition("_")[2]
-        plain = not v.text.startswith("(")
-        shown = (
-            f'{letter}<tspan dy="4" font-size="11">{index}</tspan>' if plain else v.text.replace("theta", "θ")
-        )
-        fill = "#eef4fb" if v in leaves else "#f6f6f2"
-        parts.append(
-            f'<rect x="{x - _WIDTH / 2:g}" y="{y - _HEIGHT / 2:g}" width="{_WIDTH}" '
-            f'height="{_HEIGHT}" rx="7" fill="{fill}" stroke="#345"/>'
-            f'<text x="{x:g}" y="{y - 3:g}" text-anchor="middle" font-style="italic" '
-            f'font-size="16" fill="#123">{shown}</text>'
-            f'<text x="{x:g}" y="{y + 14:g}" text-anchor="middle" font-size="10" fill="#456" '
-            f'font-family="sans-serif">{_count(versions, v)}</text>'
-        )
+    parts += [_box(v, at, versions, v in leaves) for v, at in place.items()]
     return "\n".join([*parts, "</svg>"]) + "\n"
 
 
@@ -124,13 +108,15 @@ def _latex(
     place: dict[Variable, Point],
     edges: list[tuple[Point, Point]],
     versions: Versions,
-    leaves: dict[Variable, str],
     size: Point,
 ) -> str:
     """The `picture` environment of LaTeX itself; a point is a unit, y upwards."""
     high = size[1]
     unit = min(0.8, 430.0 / size[0])
-    lines = [f"\\setlength{{\\unitlength}}{{{unit:.3f}pt}}", f"\\begin{{picture}}({size[0]:.0f},{high:.0f})"]
+    lines = [
+        f"\\setlength{{\\unitlength}}{{{unit:.3f}pt}}",
+        f"\\begin{{picture}}({size[0]:.0f},{high:.0f})",
+    ]
     for edge in edges:
         (x1, y1), (x2, y2) = _ends(edge)
         middle = (x1 + x2) / 2, (y1 + y2) / 2
@@ -143,5 +129,24 @@ def _latex(
         corner = f"{x - _WIDTH / 2:.1f},{high - y - _HEIGHT / 2:.1f}"
         words = f"\\shortstack{{${variable(v).latex}$\\\\[1pt]\\tiny {_count(versions, v)}}}"
         lines.append(f"\\put({corner}){{\\framebox({_WIDTH},{_HEIGHT}){{{words}}}}}")
-    del leaves
     return "\n".join([*lines, "\\end{picture}"])
+
+
+def _box(v: Variable, at: Point, versions: Versions, solved: bool) -> str:
+    """One unknown: its name, and how many versions it has."""
+    x, y = at
+    index = v.text.partition("_")[2]
+    if v.text.startswith("("):
+        shown = v.text.replace("theta", "θ")
+    else:
+        letter = "θ" if v.kind == "angle" else "d"
+        shown = f'{letter}<tspan dy="4" font-size="11">{index}</tspan>'
+    fill = "#eef4fb" if solved else "#f6f6f2"
+    return (
+        f'<rect x="{x - _WIDTH / 2:g}" y="{y - _HEIGHT / 2:g}" width="{_WIDTH}" '
+        f'height="{_HEIGHT}" rx="7" fill="{fill}" stroke="#345"/>'
+        f'<text x="{x:g}" y="{y - 3:g}" text-anchor="middle" font-style="italic" '
+        f'font-size="16" fill="#123">{shown}</text>'
+        f'<text x="{x:g}" y="{y + 14:g}" text-anchor="middle" font-size="10" fill="#456" '
+        f'font-family="sans-serif">{_count(versions, v)}</text>'
+    )

@@ -42,7 +42,14 @@ def robot_section(derivation: Derivation) -> list[Block]:
 
 
 def _table(dh: DHChain) -> Rows:
-    header = ("joint", "name", m.name("alpha", "i-1"), m.name("a", "i-1"), m.name("d", "i"), m.name("theta", "i"))
+    header = (
+        "joint",
+        "name",
+        m.name("alpha", "i-1"),
+        m.name("a", "i-1"),
+        m.name("d", "i"),
+        m.name("theta", "i"),
+    )
     rows = tuple(
         (
             (str(i),), (row.name,), (_angle(row.alpha),), (_length(row.a),),
@@ -50,7 +57,11 @@ def _table(dh: DHChain) -> Rows:
         )
         for i, row in enumerate(dh.rows, start=1)
     )  # fmt: skip
-    return Rows(tuple((h,) for h in header), rows, "Denavit-Hartenberg parameters, modified convention (Craig)")
+    return Rows(
+        tuple((h,) for h in header),
+        rows,
+        "Denavit-Hartenberg parameters, modified convention (Craig)",
+    )
 
 
 def _angle(a: Angle) -> Math:
@@ -117,14 +128,17 @@ def _ends(dh: DHChain) -> list[Block]:
             del words
     if out:
         text = (
-            "The pose in what follows is that of the last frame of the table in frame 0: the constant "
-            "transforms of base and tool (B, E) are taken off the given pose first."
+            "The pose in what follows is that of the table's last frame in frame 0: the "
+            "constant transforms of base and tool (B, E) are taken off the given pose first."
         )
         out.insert(0, Paragraph((text,)))
     shifted = [row for row in dh.rows if row.scale != 1.0 or row.offset.value]
     if shifted:
         lines = [_conversion(row, dh) for row in shifted]
-        out += [Paragraph(("The variables of the table from the joint values q:",)), Formulas(tuple(lines))]
+        out += [
+            Paragraph(("The variables of the table from the joint values q:",)),
+            Formulas(tuple(lines)),
+        ]
     return out
 
 
@@ -161,9 +175,9 @@ def _snaps(dh: DHChain) -> list[Block]:
         ((s.what,), (f"{s.before:.9g}",), (f"{s.after:.9g}",)) for s in dh.snaps
     )
     text = (
-        f"The file's numbers were taken for exact ones: its forward kinematics differs from that of "
-        f"the table by at most {dh.deviation[0]:.1e} m and {dh.deviation[1]:.1e} rad. The emitted code "
-        "ends with Newton steps on the file's own chain, so that its answers are the file's."
+        f"The file's numbers were taken for exact ones: its forward kinematics differs from "
+        f"that of the table by at most {dh.deviation[0]:.1e} m and {dh.deviation[1]:.1e} rad. The "
+        "emitted code ends with Newton steps on the file's own chain, so that its answers are the file's."
     )
     header: tuple[Text, ...] = (("constant",), ("in the file",), ("taken as",))
     return [Rows(header, rows, "Constants made exact"), Paragraph((text,))]
@@ -175,7 +189,7 @@ def forward_section(derivation: Derivation, normal: Normalizer) -> list[Block]:
     g, n = system.graph, system.n
     T = multiply(g, link(system.variables, 0), system.right(0, n))
     pose = [[m.name("r", f"{i}{j}") for j in (1, 2, 3)] for i in (1, 2, 3)]
-    rows = [tuple([*pose[i], m.name("p", "xyz"[i])]) for i in range(3)]
+    rows = [(*pose[i], m.name("p", "xyz"[i])) for i in range(3)]
     rows.append(tuple(m.name(x) for x in "0001"))
     left = m.name("T", "d")
     lines = []
@@ -186,8 +200,14 @@ def forward_section(derivation: Derivation, normal: Normalizer) -> list[Block]:
         lines.append(rows[i][3] + m.relation() + show(normal(T.p[i])))
     words = (
         "The desired pose, and its entries by the table. ",
-        m.name("c", "i"), " and ", m.name("s", "i"), " are cosine and sine of ", m.name("theta", "i"),
+        m.name("c", "i"), " and ", m.name("s", "i"), " are cosine and sine of ",
+        m.name("theta", "i"),
         "; angles of parallel axes come as sums: ", m.name("theta", "23"), m.relation(),
         m.name("theta", "2") + m.plus() + m.name("theta", "3"), ".",
     )  # fmt: skip
-    return [Heading(("Forward kinematics",)), Paragraph(words), Matrix(left, tuple(rows)), Formulas(tuple(lines))]
+    return [
+        Heading(("Forward kinematics",)),
+        Paragraph(words),
+        Matrix(left, tuple(rows)),
+        Formulas(tuple(lines)),
+    ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ikgen.emit.report import mathtext as m
+from ikgen.emit.report.candidates import candidates_table
 from ikgen.emit.report.document import Block, Formulas, Heading, Inline, Paragraph, Rows, Text
 from ikgen.emit.report.forms import Solved, solve_form
 from ikgen.emit.report.mathtext import Math
@@ -16,7 +17,6 @@ from ikgen.equations.build import Equation
 from ikgen.equations.knowledge import Variable
 from ikgen.solver.candidate import Candidate
 from ikgen.solver.graph import SolutionGraph
-from ikgen.solver.ranker import rank_key
 from ikgen.solver.session import Step
 
 __all__ = ["Writer", "abbreviations", "derived_section", "place", "step_section"]
@@ -70,7 +70,7 @@ def step_section(w: Writer, number: int, step: Step) -> list[Block]:
     blocks += _guards(step, solved)
     for fallback in step.fallbacks:
         blocks += _fallback(w, fallback)
-    return blocks + _rejected(step)
+    return blocks + candidates_table(step)
 
 
 def place(e: Equation) -> str:
@@ -148,14 +148,31 @@ def _guards(step: Step, solved: Solved) -> list[Block]:
         condition = solved.reach
         if not relation:
             condition = condition + m.relation("\\ge ", "≥") + m.name("0")
-        out.append(Paragraph(("Reachable only where ", condition, "; on the boundary the branches meet.")))
+        out.append(
+            Paragraph(("Reachable only where ", condition, "; on the boundary the branches meet."))
+        )
     if solved.divisor is not None:
         v = variable(step.candidate.unknown)
-        end = "another form is taken there (below)." if step.fallbacks else (
-            "every value of the joint gives the pose, the seed's is taken (0 without one), and the "
-            "row is flagged singular."
+        end = (
+            "another form is taken there (below)."
+            if step.fallbacks
+            else (
+                "every value of the joint gives the pose, the seed's is taken (0 without one), and "
+                "the row is flagged singular."
+            )
         )
-        out.append(Paragraph(("Degenerate where ", solved.divisor + m.relation() + m.name("0"), ": ", v, " does not follow; ", end)))
+        out.append(
+            Paragraph(
+                (
+                    "Degenerate where ",
+                    solved.divisor + m.relation() + m.name("0"),
+                    ": ",
+                    v,
+                    " does not follow; ",
+                    end,
+                )
+            )
+        )
     return out
 
 
@@ -166,41 +183,6 @@ def _fallback(w: Writer, c: Candidate) -> list[Block]:
     places = ", and ".join(dict.fromkeys(place(e) for e in c.sources))
     lead = Paragraph((f"Where that divisor vanishes: {c.leaf}, from {places}:",))
     return [lead, Formulas((*solved.equations, *lines, *_solution(w, c, solved)))]
-
-
-_REASONS = (
-    "its divisor vanishes, or its branches meet, at regular configurations",
-    "more branches",
-    "a less direct form",
-    "degenerate at more singular configurations",
-    "squared equations, which add spurious solutions",
-    "more to compute",
-)
-
-
-def _rejected(step: Step) -> list[Block]:
-    """The other candidates for the same unknown, and why each lost."""
-    best = rank_key(step.candidate)
-    rows: list[tuple[Text, ...]] = []
-    for c in step.rejected:
-        j = c.judgement
-        if j is None or c in step.fallbacks:
-            continue
-        reason = "equal, later in order"
-        for words, mine, other in zip(_REASONS, best, rank_key(c), strict=False):
-            if mine != other:
-                reason = words
-                break
-        labels = ", ".join(dict.fromkeys(e.label for e in c.sources))
-        rows.append(((c.leaf,), (labels,), (str(c.branches),), (f"{j.margin:.1e}",), (f"{j.cost:g}",), (reason,)))
-    if not rows:
-        return []
-    chosen = step.candidate.judgement
-    if chosen is not None:
-        labels = ", ".join(dict.fromkeys(e.label for e in step.candidate.sources))
-        rows.insert(0, ((step.candidate.leaf,), (labels,), (str(step.candidate.branches),), (f"{chosen.margin:.1e}",), (f"{chosen.cost:g}",), ("chosen",)))
-    header: tuple[Text, ...] = (("leaf",), ("equations",), ("branches",), ("least divisor",), ("cost",), ("judgement",))
-    return [Rows(header, tuple(rows), "Candidates", small=True)]
 
 
 def derived_section(w: Writer) -> list[Block]:
@@ -219,4 +201,8 @@ def derived_section(w: Writer) -> list[Block]:
         lines.append(variable(v) + m.relation() + right)
     if not lines:
         return []
-    return [Heading(("Sums of angles",), 2), Paragraph(("Linear relations give the other joints:",)), Formulas(tuple(lines))]
+    return [
+        Heading(("Sums of angles",), 2),
+        Paragraph(("Linear relations give the other joints:",)),
+        Formulas(tuple(lines)),
+    ]

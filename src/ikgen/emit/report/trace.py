@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ikgen.emit.report import mathtext as m
-from ikgen.emit.report.document import Block, Formulas, Heading, Inline, Paragraph, Picture, Rows, Text
+from ikgen.emit.report.document import (
+    Block,
+    Formulas,
+    Heading,
+    Inline,
+    Paragraph,
+    Picture,
+    Rows,
+    Text,
+)
 from ikgen.emit.report.notation import variable
 from ikgen.emit.report.picture import Drawing
 from ikgen.emit.report.poses import Versions
@@ -30,7 +39,11 @@ def graph_section(versions: Versions, drawing: Drawing) -> list[Block]:
         for i, p in enumerate(above):
             text += [" and " if i else "", variable(p)]
         text.append(". ")
-    return [Heading(("Solution graph",)), Paragraph(tuple(text)), Picture(drawing.svg, drawing.latex, "Solution graph")]
+    return [
+        Heading(("Solution graph",)),
+        Paragraph(tuple(text)),
+        Picture(drawing.svg, drawing.latex, "Solution graph"),
+    ]
 
 
 def poses_section(derivation: Derivation, versions: Versions) -> list[Block]:
@@ -38,7 +51,10 @@ def poses_section(derivation: Derivation, versions: Versions) -> list[Block]:
     session = derivation.graph.session
     joints = [session.joint_variable(j) for j in range(session.system.dh.dof)]
     known = [v for v in joints if v in versions.within]
-    lead = f"{versions.poses} sets of versions, one a choice of branches; a branch whose guard fails drops out."
+    lead = (
+        f"{versions.poses} sets of versions, one a choice of branches; "
+        "a branch whose guard fails drops out."
+    )
     blocks: list[Block] = [Heading(("Sets of joint solutions",)), Paragraph((lead,))]
     if versions.poses <= _MOST_SETS:
         lines = []
@@ -57,17 +73,21 @@ def trace_section(graph: SolutionGraph) -> list[Block]:
     solved: dict[int, str] = {}
     for t in graph.ticks:
         first = t.detail.split(" ", 1)[0]
-        mark = first if t.outcome == "success" and first.isdigit() else ("yes" if t.outcome == "success" else "–")
+        mark = (
+            first
+            if t.outcome == "success" and first.isdigit()
+            else ("yes" if t.outcome == "success" else "–")
+        )
         cells.setdefault((t.node, t.round), []).append(mark)
         if t.outcome == "success" and " by " in t.detail:
             solved[t.round] = t.detail
     blocks: list[Block] = [
         Heading(("Behaviour tree",)),
         Paragraph((
-            "One round solves one unknown: equations with one or two unknowns are collected, every leaf "
-            "looks at them, the ranker takes the best candidate; transforms run where no leaf found a "
-            "sound one. Cells: how many equations or candidates a node gave; – for failure; two marks "
-            "where it ran twice in the round.",
+            "One round solves one unknown: equations with one or two unknowns are collected, every "
+            "leaf looks at them, the ranker takes the best candidate; transforms run where no leaf "
+            "found a sound one. Cells: how many equations or candidates a node gave; – for failure; "
+            "two marks where it ran twice in the round.",
         )),
     ]  # fmt: skip
     for start in range(0, len(rounds), _WIDE):
@@ -77,7 +97,9 @@ def trace_section(graph: SolutionGraph) -> list[Block]:
             ((node,), *((" ".join(cells.get((node, r), [])),) for r in part)) for node in nodes
         )
         blocks.append(Rows(header, rows, small=True))
-    outcome: tuple[tuple[Text, ...], ...] = tuple(((str(r),), (solved[r],)) for r in rounds if r in solved)
+    outcome: tuple[tuple[Text, ...], ...] = tuple(
+        ((str(r),), (solved[r],)) for r in rounds if r in solved
+    )
     return [*blocks, Rows((("round",), ("solved",)), outcome, small=True)]
 
 
@@ -86,6 +108,19 @@ def verification_section(reports: Mapping[str, VerificationReport]) -> list[Bloc
     blocks: list[Block] = []
     for name, report in reports.items():
         rows = tuple(tuple((cell,) for cell in row) for row in report.table())
-        header: tuple[Text, ...] = (("check",), ("result",), ("checked",), ("largest deviations",), ("detail",))
-        blocks += [Rows(header, rows, f"{name}: {report.samples} random poses, seed {report.seed}", small=True)]
+        header: tuple[Text, ...] = (
+            ("check",),
+            ("result",),
+            ("checked",),
+            ("largest deviations",),
+            ("detail",),
+        )
+        blocks += [
+            Rows(
+                header,
+                rows,
+                f"{name}: {report.samples} random poses, seed {report.seed}",
+                small=True,
+            )
+        ]
     return [Heading(("Verification",)), *blocks] if blocks else []
