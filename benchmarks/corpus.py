@@ -17,7 +17,7 @@ import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -64,15 +64,21 @@ def urdf_of(arm: dict[str, Any]) -> str:
 
 
 def options_for(arm: dict[str, Any]) -> list[list[str]]:
-    """Option sets to try in turn: the arm as it is; a smaller task; one joint held free."""
-    joints = [j["joint"] for j in arm["chain"] if j["type"] not in ("fixed", "mimic")]
-    if arm["dof"] <= 6:
+    """Option sets to try in turn: none up to six joints; else joints held free until six are left,
+    sliding ones first, then each choice of one more."""
+    moving = [j for j in arm["chain"] if j["type"] not in ("fixed", "mimic")]
+    spare = len(moving) - 6
+    if spare <= 0:
         return [[]]
-    spare = arm["dof"] - 6
-    if spare > 1:
-        return [[]]
-    order = [6, 2, 3, 1, 0, 4, 5]
-    return [["--free", joints[i]] for i in order if i < len(joints)]
+    sliding = [j["joint"] for j in moving if j["type"] == "prismatic"][:spare]
+    turning = [j["joint"] for j in moving if j["type"] != "prismatic"]
+    spare -= len(sliding)
+    first, last = turning[: max(spare - 1, 0)], turning[max(spare - 1, 0) :]
+    choices = [[last[i]] for i in (6, 2, 3, 1, 0, 4, 5) if i < len(last)] if spare else [[]]
+    return [
+        [text for name in (*sliding, *first, *choice) for text in ("--free", name)]
+        for choice in choices
+    ]
 
 
 def run_arm(arm: dict[str, Any], samples: int) -> Outcome:
@@ -158,12 +164,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
         outcomes = []
         for o in pool.map(lambda a: run_arm(a, options.samples), arms):
             outcomes.append(o)
-            print(f"{o.name:30} {o.state:9} {o.seconds:6.1f} s  {o.task:10} {o.solutions:6} {o.closure:12} {o.message}", flush=True)
+            print(
+                f"{o.name:30} {o.state:9} {o.seconds:6.1f} s  {o.task:18} {o.solutions:6} "
+                f"{o.closure:12} {o.message}",
+                flush=True,
+            )
     print()
     for line in _table(outcomes):
         print(line)
     if options.json:
-        options.json.write_text(json.dumps([o.__dict__ if hasattr(o, "__dict__") else [getattr(o, f) for f in o.__slots__] for o in outcomes], indent=1))
+        options.json.write_text(json.dumps([asdict(o) for o in outcomes], indent=1))
     return int(any(o.state in ("WRONG", "CRASH", "ERROR") for o in outcomes))
 
 

@@ -109,8 +109,12 @@ function(ikgen_generate target)
   endif()
 
   if(arg_VERIFY)
+    set(samples)
+    if(arg_SAMPLES)
+      set(samples --samples "${arg_SAMPLES}")
+    endif()
     add_test(NAME ${target}_verify
-      COMMAND "${IKGEN_EXECUTABLE}" verify "${folder}"
+      COMMAND "${IKGEN_EXECUTABLE}" verify "${folder}" ${samples}
         --junit-xml "${folder}/${target}_verify.xunit.xml")
   endif()
 endfunction()

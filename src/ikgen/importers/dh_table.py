@@ -58,7 +58,7 @@ def read_dh_table(
 
 
 def _note_new_rows(document: TableDocument, merged: Merged) -> None:
-    """A fixed row is left between joints: possible with numbers only, and the rows will be others."""
+    """A fixed row is left between joints: possible with numbers only."""
     parts = [q for row in merged.rows for q in (row.alpha, row.a, row.d, row.theta)]
     if any(q.symbolic for q in parts):
         raise document.error(

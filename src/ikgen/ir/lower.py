@@ -302,7 +302,7 @@ class Lowering:
             splits = [(k, m) for k in range(n) for m in range(k + 1, n + 1)]
         residuals = min((self._residuals(k, m) for k, m in splits), key=self._cost)
         self.place(Comment("does the row reproduce the pose?"))
-        limit = max(CHECK_TOLERANCE, min(100 * self.slack, 0.02))
+        limit = max(CHECK_TOLERANCE, min(1000 * self.slack, 0.02))
         size = max(arm_size(self.dh), 1.0)
         for level in range(len(self.levels)):
             norms = [e for e in self.norms if self.level(e) == level]

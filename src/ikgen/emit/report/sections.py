@@ -177,7 +177,7 @@ def _snaps(dh: DHChain) -> list[Block]:
     text = (
         f"The file's numbers were taken for exact ones: its forward kinematics differs from "
         f"that of the table by at most {dh.deviation[0]:.1e} m and {dh.deviation[1]:.1e} rad. The "
-        "emitted code ends with Newton steps on the file's own chain, so that its answers are the file's."
+        "emitted code ends with Newton steps on the file's own chain: its answers are the file's."
     )
     header: tuple[Text, ...] = (("constant",), ("in the file",), ("taken as",))
     return [Rows(header, rows, "Constants made exact"), Paragraph((text,))]

@@ -86,8 +86,8 @@ def trace_section(graph: SolutionGraph) -> list[Block]:
         Paragraph((
             "One round solves one unknown: equations with one or two unknowns are collected, every "
             "leaf looks at them, the ranker takes the best candidate; transforms run where no leaf "
-            "found a sound one. Cells: how many equations or candidates a node gave; – for failure; "
-            "two marks where it ran twice in the round.",
+            "found a sound one. Cells: how many equations or candidates a node gave; – for "
+            "failure; two marks where it ran twice in the round.",
         )),
     ]  # fmt: skip
     for start in range(0, len(rounds), _WIDE):
