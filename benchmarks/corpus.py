@@ -21,6 +21,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+WIDTHS = (4, 6, 8, 6, 8, 6)
 CORPUS = Path(__file__).resolve().parents[2] / "shared" / "robots"
 
 
@@ -127,13 +128,12 @@ def _outcome(arm: dict[str, Any], result: dict[str, Any], seconds: float) -> Out
     numbers = " ".join(f"{v:.0e}" for v in worst.values() if v is not None)
     message = str(result.get("error") or result["extra"] or "")
     task = str(result.get("task") or "")
-    return Outcome(
-        arm["name"], arm["family"], task, state, seconds, text, numbers, message[:300]
-    )
+    return Outcome(arm["name"], arm["family"], task, state, seconds, text, numbers, message[:300])
 
 
 def _table(outcomes: Sequence[Outcome]) -> Iterator[str]:
-    yield f"{'class':58} {'arms':>4} {'solved':>6} {'unsolved':>8} {'failed':>6} {'median s':>8} {'max s':>6}"
+    head = ("arms", "solved", "unsolved", "failed", "median s", "max s")
+    yield f"{'class':58} " + " ".join(f"{h:>{w}}" for h, w in zip(head, WIDTHS, strict=True))
     for family in sorted({o.family for o in outcomes}):
         rows = [o for o in outcomes if o.family == family]
         solved = [o for o in rows if o.state == "solved"]

@@ -24,9 +24,7 @@ def solver_module(dh: DHChain, *, name: str = "arm") -> SolverModule:
     assert not graph.open_joints
     free = tuple(j for j, joint in enumerate(dh.joints) if joint.name in dh.free)
     program = lower(graph, slack=2.0 * max(dh.deviation))
-    return SolverModule(
-        name, program, dh, "pose", free, (0.0,) * len(free), "test", "0" * 64, "0"
-    )
+    return SolverModule(name, program, dh, "pose", free, (0.0,) * len(free), "test", "0" * 64, "0")
 
 
 def import_text(text: str, folder: Path) -> ModuleType:

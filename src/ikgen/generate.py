@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ikgen.errors import VerificationError
+from ikgen.errors import UsageError, VerificationError
 from ikgen.pipeline import Derivation, Progress, Reading, Request, derive
 
 if TYPE_CHECKING:
@@ -64,6 +64,12 @@ def generate(request: Request, outputs: Outputs, progress: Progress = _silent) -
     started = time.perf_counter()
     emitters = [find_emitter(name) for name in outputs.emit]
     derivation = derive(request, progress)
+    symbols = derivation.reading.dh.symbols
+    if symbols and any(emitter.runner_target for emitter in emitters):
+        raise UsageError(
+            f"{request.robot}: no numbers for {', '.join(symbols)}",
+            hint="give them under [parameters]; without numbers only a report can be written",
+        )
     texts: dict[str, str] = {}
     for emitter in emitters:
         progress("emit", emitter.name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -121,9 +122,7 @@ def _nearby(reading: Reading) -> Reading:
     return replace(reading, dh=dh)
 
 
-def _solve(
-    dh: DHChain, asked: str | None, progress: Progress
-) -> tuple[Task, SolutionGraph]:
+def _solve(dh: DHChain, asked: str | None, progress: Progress) -> tuple[Task, SolutionGraph]:
     """The asked task; without one the task that fits the arm best and has a closed form."""
     from ikgen.tasks import find_task, fitting_tasks
 
@@ -185,11 +184,31 @@ def unsolved(dh: DHChain, task: Task, graph: SolutionGraph) -> UnsolvedChainErro
         )
     elif moving < task.freedoms:
         hint = f"{moving} joints move: try a smaller task (--task)"
+    hint = redundancy(dh) or hint
     return UnsolvedChainError(
         f"no closed form found for the task '{task.name}': solved {solved or 'nothing'}; "
         f"left are the joints {left}",
         hint=hint,
     )
+
+
+def redundancy(dh: DHChain) -> str:
+    """What to do about two moving revolute axes on one line; "" where there are none."""
+    from ikgen.kinematics.classify import same_line_as_previous
+
+    for one, two in itertools.pairwise(dh.rows):
+        names = [dh.joints[row.driver].name for row in (one, two)]
+        if (
+            one.revolute
+            and two.revolute
+            and same_line_as_previous(two)
+            and not set(names) & set(dh.free)
+        ):
+            return (
+                f"the joints '{names[0]}' and '{names[1]}' turn about one line: every pose has infinitely "
+                f"many solutions; hold one of them free (--free {names[1]}) or lock it"
+            )
+    return ""
 
 
 def _module(

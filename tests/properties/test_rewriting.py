@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from chains import rewritten
 from numpy.typing import NDArray
-from solving import FIXTURES, emitted
 
 from ikgen.importers import load_tree
 from ikgen.importers.chain import select_chain
 from ikgen.kinematics.forward import chain_forward
 from ikgen.kinematics.modified_dh import to_dh
 from ikgen.model.chain import Chain
+from solving import FIXTURES, emitted
 
 ROBOTS = ("kuka_kr6r900sixx", "abb_irb2400", "ur5e", "open_manipulator_x")
 

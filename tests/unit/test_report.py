@@ -28,6 +28,7 @@ TABLES = {
     "olson": ROOT / "urdf_fixtures" / "olson13.toml",
     "quartic": ROOT / "tests" / "robots" / "tables" / "Parkman13.toml",
     "general twists": ROOT / "tests" / "robots" / "tables" / "Raven-II.toml",
+    "elimination": ROOT / "tests" / "robots" / "tables" / "Issue4.toml",
     "sums": ROOT / "tests" / "robots" / "tables" / "UR5.toml",
 }
 

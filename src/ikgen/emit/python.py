@@ -38,9 +38,9 @@ SCALAR = Language(
     infix=_INFIX,
     prefix={"neg": ("-", 7), "not": ("not ", 3)},
     calls={
-        "sqrt": lambda x: f"sqrt({x} if {x} > 0.0 else 0.0)"
-        if x.isidentifier()
-        else f"sqrt(max({x}, 0.0))",
+        "sqrt": lambda x: (
+            f"sqrt({x} if {x} > 0.0 else 0.0)" if x.isidentifier() else f"sqrt(max({x}, 0.0))"
+        ),
         "abs": lambda x: f"abs({x})",
         "max": lambda a, b: f"max({a}, {b})",
         "min": lambda a, b: f"min({a}, {b})",

@@ -32,7 +32,12 @@ from ikgen.model.dh import DHChain
 
 __all__ = ["Equation", "EquationSet"]
 
-ENTRY_NAMES = tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)) + ("px", "py", "pz")
+ENTRY_NAMES = (
+    *(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)),
+    "px",
+    "py",
+    "pz",
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -49,7 +49,7 @@ class Expr:
         self.name = ""
         self.atom: Atom | None = None
         self.id = -1
-        self.is_fixed = op != "atom" and all(a.is_fixed for a in args)
+        self.is_fixed: bool = op != "atom" and all(a.is_fixed for a in args)
         """Whether the node depends on parameters and numbers only."""
 
     @property

@@ -252,10 +252,11 @@ class Knowledge:
         c: Monomial = (((target, "c"),), ())
         s: Monomial = (((target, "s"),), ())
         sine = g.const(float(sign))
-        if kind == "c":
-            raw = {c: kc, s: g.neg(g.mul(sine, ks))}
-        else:
-            raw = {c: ks, s: g.mul(sine, kc)}
+        by_kind = {
+            "c": {c: kc, s: g.neg(g.mul(sine, ks))},
+            "s": {c: ks, s: g.mul(sine, kc)},
+        }
+        raw = by_kind[kind]
         return {m: v for m, v in raw.items() if v is not g.zero and not v.vanishes}
 
     # -- equations ------------------------------------------------------------------------------

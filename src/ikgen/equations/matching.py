@@ -8,7 +8,15 @@ from ikgen.equations.expression import Expr, ExpressionGraph
 from ikgen.equations.knowledge import PolynomialEquation, Variable
 from ikgen.equations.polynomial import ONE, Key, Monomial, Polynomial
 
-__all__ = ["AngleSplit", "constant_ratio", "harmonics", "only_known", "powers", "proportional", "split_angle"]
+__all__ = [
+    "AngleSplit",
+    "constant_ratio",
+    "harmonics",
+    "only_known",
+    "powers",
+    "proportional",
+    "split_angle",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +53,9 @@ def _parallel(key: Key, unit: Key) -> bool:
     return all(k * unit_factor == u * factor for k, u in zip(key, unit, strict=True))
 
 
-def harmonics(equation: PolynomialEquation, unknown: Variable) -> dict[tuple[int, str], Expr] | None:
+def harmonics(
+    equation: PolynomialEquation, unknown: Variable
+) -> dict[tuple[int, str], Expr] | None:
     """Coefficients by (harmonic, "c" or "s"), (0, "c") the constant; None where others occur."""
     out: dict[tuple[int, str], Expr] = {}
     for (trigs, dist), value in equation.polynomial.items():

@@ -108,9 +108,7 @@ def _multiply_monomials(
     return [(c, (trigs, dist)) for c, trigs in terms]
 
 
-def multiply(
-    graph: ExpressionGraph, group_of: GroupOf, a: Polynomial, b: Polynomial
-) -> Polynomial:
+def multiply(graph: ExpressionGraph, group_of: GroupOf, a: Polynomial, b: Polynomial) -> Polynomial:
     """a * b in normal form."""
     out: Polynomial = {}
     for mono_a, value_a in a.items():

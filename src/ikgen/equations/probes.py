@@ -28,7 +28,9 @@ class Probes:
     regular: int
 
 
-def _transform(alpha: float, a: float, theta: NDArray[np.float64], d: NDArray[np.float64]) -> NDArray[np.float64]:
+def _transform(
+    alpha: float, a: float, theta: NDArray[np.float64], d: NDArray[np.float64]
+) -> NDArray[np.float64]:
     ca, sa, ct, st = np.cos(alpha), np.sin(alpha), np.cos(theta), np.sin(theta)
     zero, one = np.zeros_like(ct), np.ones_like(ct)
     rows = [
@@ -55,9 +57,7 @@ def dh_pose(dh: DHChain, values: NDArray[np.float64]) -> NDArray[np.float64]:
     return T
 
 
-def smallest_singular(
-    dh: DHChain, values: NDArray[np.float64], size: float
-) -> NDArray[np.float64]:
+def smallest_singular(dh: DHChain, values: NDArray[np.float64], size: float) -> NDArray[np.float64]:
     """Smallest singular value (N,) of the pose's derivative by the joints that are not held, at DH
     variables `values` (N, dof), lengths in units of the arm's size."""
     h = 1e-6

@@ -44,9 +44,7 @@ def constant(g: ExpressionGraph, T: NDArray[np.float64]) -> Rigid:
 
 def multiply(g: ExpressionGraph, a: Rigid, b: Rigid) -> Rigid:
     """a * b"""
-    rows = tuple(
-        tuple(g.dot(list(a.R[i]), b.column(j)) for j in range(3)) for i in range(3)
-    )
+    rows = tuple(tuple(g.dot(list(a.R[i]), b.column(j)) for j in range(3)) for i in range(3))
     p = tuple(g.add(g.dot(list(a.R[i]), list(b.p)), a.p[i]) for i in range(3))
     return Rigid(rows, p)
 

@@ -74,7 +74,9 @@ class JointVariables:
                 hint="closed forms need whole-number mimic ratios; lock one of the two joints",
             )
         return _RowVariable(
-            row.driver, round(ratio) if row.revolute else 1, row.offset.value - ratio * first.offset.value
+            row.driver,
+            round(ratio) if row.revolute else 1,
+            row.offset.value - ratio * first.offset.value,
         )
 
     def _groups(self) -> list[int]:

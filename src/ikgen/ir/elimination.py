@@ -23,8 +23,6 @@ def elimination_program(dh: DHChain) -> Program:
     pose = tuple(f"t{i}{j}" for i in range(3) for j in range(4))
     arguments = (*pose, *held)
     comment = Comment("all joints at once: the general 6R elimination")
-    level = Level(
-        MOST_SOLUTIONS, None, Call(ROUTINE, arguments, tuple(names)), (comment,)
-    )
+    level = Level(MOST_SOLUTIONS, None, Call(ROUTINE, arguments, tuple(names)), (comment,))
     root = Level(1, None, None, ())
     return Program(dh.robot, (), (), arguments, (root, level), tuple(outputs), ())

@@ -26,10 +26,7 @@ class Tolerances:
     @staticmethod
     def for_slack(slack: float) -> Tolerances:
         """Tolerances where the solved geometry is `slack` (m or rad) off the file's."""
-        return Tolerances(
-            flag=min(max(2e-5, 5.0 * slack), 1e-2), clamp=max(1e-11, 5.0 * slack)
-        )
-
+        return Tolerances(flag=min(max(2e-5, 5.0 * slack), 1e-2), clamp=max(1e-11, 5.0 * slack))
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +130,13 @@ def _single(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> R
     guard = g.binary("gt", disc, g.const(-tol.clamp))
     bounded = g.binary("max", g.minus_one, g.binary("min", g.one, ratio))
     other = g.mul(sigma, g.sqrt(disc))
-    return Realized((other, bounded) if a.vanishes else (bounded, other), Divisor(g.one), guard, 2, (disc, g.one))
+    return Realized(
+        (other, bounded) if a.vanishes else (bounded, other),
+        Divisor(g.one),
+        guard,
+        2,
+        (disc, g.one),
+    )
 
 
 def _tangent(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> Realized:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Union
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -365,7 +363,7 @@ def _identifier(name: str) -> str:
     return "".join(ch if ch.isalnum() else "_" for ch in name)
 
 
-Flag = Union[bool, Expr]
+Flag = bool | Expr
 
 
 def pick(g: ExpressionGraph, here: Expr | None, mine: Flag, other: Flag) -> Flag:

@@ -12,7 +12,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Union
 
 __all__ = ["ARITY", "BOOLEAN", "Op", "Operand"]
 
@@ -43,4 +42,4 @@ class Op:
     args: tuple[Operand, ...]
 
 
-Operand = Union[str, float, Op]
+Operand = str | float | Op

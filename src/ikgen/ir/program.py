@@ -8,7 +8,6 @@ branches at each level. Both give the same solutions in the same order.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Union
 
 from ikgen.ir.ops import Operand
 
@@ -38,7 +37,7 @@ class Comment:
     text: str
 
 
-Statement = Union[Let, Require, Comment]
+Statement = Let | Require | Comment
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,8 +73,9 @@ class JointOutput:
 class Program:
     """Closed-form solver of one chain.
 
-    `parameters` are the arm's constants, `constants` what follows from them alone. `inputs` are the raw pose entries `t00` ... `t23`, then per joint the seed values that a singular
-    pose takes (`seed_c1`, `seed_s1` or `seed_d1`) and the held joints' values (`c7`, `s7` or `d7`).
+    `parameters` are the arm's constants, `constants` what follows from them alone. `inputs` are the
+    raw pose entries `t00` ... `t23`, then per joint the seed values that a singular pose takes
+    (`seed_c1`, `seed_s1` or `seed_d1`) and the held joints' values (`c7`, `s7` or `d7`).
     `singular` are the conditions under which a solution is one of a continuum; `residuals`
     the squared errors (m^2, rad^2) with which a row reproduces the pose.
     """

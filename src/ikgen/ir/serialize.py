@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Union
+from typing import TYPE_CHECKING
 
 from ikgen.equations.expression import Expr
 from ikgen.ir.ops import BOOLEAN, Op, Operand
@@ -42,7 +42,7 @@ class LoweredLevel:
     branches: int
     sigma: Expr | None = None
     call: tuple[str, tuple[Expr, ...], tuple[Expr, ...]] | None = None
-    items: list[Union[Expr, Comment, Requirement]] = field(default_factory=list)
+    items: list[Expr | Comment | Requirement] = field(default_factory=list)
 
 
 class _Serializer:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from ikgen.model.joint_tree import Limits, Matrix
 
-__all__ = ["ActuatedJoint", "Chain", "ChainAxis", "REVOLUTE", "PRISMATIC"]
+__all__ = ["PRISMATIC", "REVOLUTE", "ActuatedJoint", "Chain", "ChainAxis"]
 
 REVOLUTE = "revolute"
 PRISMATIC = "prismatic"

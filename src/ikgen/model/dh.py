@@ -30,8 +30,9 @@ class Angle:
 class Length:
     """A constant length in m: `sign * symbol` with the symbol's value attached; exact zero has no name.
 
-    `value` is the signed value (`sign` times the symbol's); two lengths equal up to sign share one `name`. Without numbers (a
-    symbolic table) `symbolic` is true and `value` is a random generic number to probe with.
+    `value` is the signed value (`sign` times the symbol's); two lengths equal up to sign share one
+    `name`. Without numbers (a symbolic table) `symbolic` is true and `value` is a random generic number
+    to probe with.
     """
 
     value: float

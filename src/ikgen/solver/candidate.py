@@ -56,7 +56,9 @@ class Candidate:
     @property
     def branches(self) -> int:
         """Number of alternatives the form gives."""
-        return {"linear": 1, "pair": 1, "root": 2, "sincos": 2, "tangent": 2, "quartic": 4}[self.form]
+        return {"linear": 1, "pair": 1, "root": 2, "sincos": 2, "tangent": 2, "quartic": 4}[
+            self.form
+        ]
 
     def divisor(self) -> tuple[NDArray[np.float64], float]:
         """The divisor at the probes, and its natural size."""
@@ -124,7 +126,15 @@ def _quartic(c: Arrays) -> list[tuple[NDArray[np.float64], ...]]:
     a2, b2, a1, b1, a0 = c
     out = np.full((4, 2, len(a2)), np.nan)
     for n in range(len(a2)):
-        p = np.array([a2[n] - 1j * b2[n], a1[n] - 1j * b1[n], 2 * a0[n], a1[n] + 1j * b1[n], a2[n] + 1j * b2[n]])
+        p = np.array(
+            [
+                a2[n] - 1j * b2[n],
+                a1[n] - 1j * b1[n],
+                2 * a0[n],
+                a1[n] + 1j * b1[n],
+                a2[n] + 1j * b2[n],
+            ]
+        )
         if not np.all(np.isfinite(p)) or np.abs(p[0]) < 1e-13 * np.abs(p).max():
             p = p[1:4]
             if abs(p[0]) == 0:

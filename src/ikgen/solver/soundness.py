@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ikgen.equations.build import EquationSet
 from ikgen.equations.evaluate import evaluate
+from ikgen.equations.expression import Expr
 from ikgen.equations.probes import Probes, arm_size, smallest_singular
 from ikgen.solver.candidate import Candidate
 
@@ -62,7 +63,7 @@ def weak_configurations(candidate: Candidate, system: EquationSet, probes: Probe
     return np.concatenate(found) if found else np.empty((0, system.dh.dof))
 
 
-def _divisor_parts(candidate: Candidate) -> Sequence[object]:
+def _divisor_parts(candidate: Candidate) -> Sequence[Expr]:
     c = candidate.coefficients
     if candidate.form == "pair":
         return (c[0], c[1], c[3], c[4])

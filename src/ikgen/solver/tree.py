@@ -32,7 +32,7 @@ __all__ = ["build_tree", "tick"]
 Transform = Callable[[Sequence[PolynomialEquation], Knowledge], list[PolynomialEquation]]
 
 
-class Action(Behaviour):  # type: ignore[misc]
+class Action(Behaviour):
     """A node that runs a function of the session and records what came of it."""
 
     def __init__(
@@ -51,7 +51,7 @@ class Action(Behaviour):  # type: ignore[misc]
         return Status.SUCCESS if done else Status.FAILURE
 
 
-class Or(py_trees.composites.Composite):  # type: ignore[misc]
+class Or(py_trees.composites.Composite):
     """Ticks every child, whatever the others answer; succeeds if any did (the paper's "OR")."""
 
     def tick(self) -> Iterator[Behaviour]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ikgen.emit.report.document import Block, Heading
+from ikgen.emit.report.elimination import elimination_section
 from ikgen.emit.report.html import to_html
 from ikgen.emit.report.latex import to_latex
 from ikgen.emit.report.normal import Normalizer
@@ -43,11 +44,14 @@ def emit_report(
     writer = Writer(graph, versions, normal, abbreviations(graph, normal))
     blocks: list[Block] = [*robot_section(derivation), *forward_section(derivation, normal)]
     blocks.append(Heading(("Inverse kinematics",)))
-    for number, step in enumerate(graph.steps, start=1):
-        blocks += step_section(writer, number, step)
-    blocks += derived_section(writer)
-    blocks += graph_section(versions, drawing)
-    blocks += poses_section(derivation, versions)
+    if graph.open_joints:
+        blocks += elimination_section()
+    else:
+        for number, step in enumerate(graph.steps, start=1):
+            blocks += step_section(writer, number, step)
+        blocks += derived_section(writer)
+        blocks += graph_section(versions, drawing)
+        blocks += poses_section(derivation, versions)
     blocks += trace_section(graph)
     blocks += verification_section(reports or {})
     title = f"Inverse kinematics of {derivation.reading.dh.robot}"

@@ -20,6 +20,7 @@ _ESCAPES = {
     "\\": "\\textbackslash{}", "&": "\\&", "%": "\\%", "$": "\\$", "#": "\\#", "_": "\\_",
     "{": "\\{", "}": "\\}", "~": "\\textasciitilde{}", "^": "\\textasciicircum{}", "–": "--",
     "°": "\\ensuremath{^\\circ}", "±": "\\ensuremath{\\pm}",
+    "·": "\\ensuremath{\\cdot}", "×": "\\ensuremath{\\times}", "−": "\\ensuremath{-}",
 }  # fmt: skip
 
 

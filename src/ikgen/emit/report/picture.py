@@ -31,7 +31,7 @@ def layout(graph: SolutionGraph) -> dict[Variable, tuple[float, float]]:
     layers: dict[int, list[Variable]] = {}
     for v, row in depth.items():
         layers.setdefault(row, []).append(v)
-    widest = max(len(layer) for layer in layers.values())
+    widest = max((len(layer) for layer in layers.values()), default=0)
     place: dict[Variable, tuple[float, float]] = {}
     for row in sorted(layers):
         layer = layers[row]
@@ -54,8 +54,8 @@ def draw(graph: SolutionGraph, versions: Versions, title: str) -> Drawing:
         v: (_MARGIN + _WIDTH / 2 + x * _STEP_X, _MARGIN + _HEIGHT / 2 + y * _STEP_Y)
         for v, (x, y) in layout(graph).items()
     }
-    width = max(x for x, _ in place.values()) + _WIDTH / 2 + _MARGIN
-    height = max(y for _, y in place.values()) + _HEIGHT / 2 + _MARGIN
+    width = max((x for x, _ in place.values()), default=0.0) + _WIDTH / 2 + _MARGIN
+    height = max((y for _, y in place.values()), default=0.0) + _HEIGHT / 2 + _MARGIN
     leaves = frozenset(s.candidate.unknown for s in graph.steps)
     edges = [(place[p], place[v]) for v, above in graph.parents for p in above if p in place]
     return Drawing(

@@ -100,6 +100,8 @@ def trace_section(graph: SolutionGraph) -> list[Block]:
     outcome: tuple[tuple[Text, ...], ...] = tuple(
         ((str(r),), (solved[r],)) for r in rounds if r in solved
     )
+    if not outcome:
+        return blocks
     return [*blocks, Rows((("round",), ("solved",)), outcome, small=True)]
 
 

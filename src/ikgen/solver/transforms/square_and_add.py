@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ikgen.equations import polynomial as poly
-from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
+from ikgen.equations.knowledge import Knowledge, PolynomialEquation
 from ikgen.equations.matching import AngleSplit, constant_ratio, only_known, split_angle
 from ikgen.equations.polynomial import Polynomial
 

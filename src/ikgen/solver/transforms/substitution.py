@@ -49,9 +49,7 @@ def apply(
                 ratio = constant_ratio(g, p1, p2)
                 if ratio is None:
                     continue
-                difference = poly.subtract(
-                    g, e1.polynomial, poly.scale(g, e2.polynomial, ratio)
-                )
+                difference = poly.subtract(g, e1.polynomial, poly.scale(g, e2.polynomial, ratio))
                 left, rank = knowledge.unknowns_of(difference)
                 if left and rank < min(e1.rank, e2.rank):
                     out.append(
