@@ -46,7 +46,9 @@ def test_generates_and_verifies(tmp_path: Path) -> None:
 
 
 def test_json_alone_is_on_stdout(tmp_path: Path) -> None:
-    done = ikgen("from-urdf", KUKA, "-o", tmp_path, "--samples", 20, "--json", "--name", "arm", "-v")
+    done = ikgen(
+        "from-urdf", KUKA, "-o", tmp_path, "--samples", 20, "--json", "--name", "arm", "-v"
+    )
     record = json.loads(done.stdout)
     assert record["joints"][0] == "joint_a1" and record["max_solutions"] == 8
     assert record["verification"]["python"]["passed"] and record["name"] == "arm"
