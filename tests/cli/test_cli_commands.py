@@ -167,3 +167,23 @@ def test_doctor_and_cmake_dir() -> None:
     assert json.loads(ikgen("doctor", "--json").stdout)["packages"]["numpy"]
     folder = Path(ikgen("cmake-dir").stdout.strip())
     assert (folder / "ikgenConfig.cmake").is_file()
+
+
+def test_report(tmp_path: Path) -> None:
+    done = ikgen("report", KUKA, "-o", tmp_path, "--json")
+    files = [Path(name) for name in json.loads(done.stdout)["files"]]
+    assert {".tex", ".html"} <= {path.suffix for path in files}
+    assert all(path.is_file() and path.stat().st_size for path in files)
+
+
+def test_from_dh(tmp_path: Path) -> None:
+    row = '[[joints]]\ntype = "revolute"\nalpha = {}\na = {}\nd = {}\ntheta = 0\n'
+    rows = [(0, 0, 0), ('"-pi/2"', 0, 0), (0, 0.43, 0.15), ('"-pi/2"', 0.02, 0.43)]
+    rows += [('"pi/2"', 0, 0), ('"-pi/2"', 0, 0)]
+    text = 'name = "puma"\nconvention = "modified"\n' + "".join(row.format(*r) for r in rows)
+    (tmp_path / "puma.toml").write_text(text)
+    done = ikgen("from-dh", "puma.toml", "-o", "out", "--samples", 20, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert ikgen("verify", "out", "--samples", 20, cwd=tmp_path).returncode == 0
+    (tmp_path / "puma.toml").write_text(text.replace("0.43", "0.44"))
+    assert "mm and" in refused(ikgen("verify", "out", "--samples", 20, cwd=tmp_path), 1)

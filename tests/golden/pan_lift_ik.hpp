@@ -29,8 +29,10 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#if defined(__SSE2__)
+#if defined(__AVX__)
 #include <immintrin.h>
+#elif defined(__SSE2__)
+#include <emmintrin.h>
 #endif
 
 namespace pan_lift_ik {
@@ -94,7 +96,9 @@ namespace detail {
 
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kTurn = 2.0 * kPi;
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr double kLimitTolerance = 1e-9;
+inline constexpr double kTolerance = 1e-9;  // of a row's pose: rad, or m over the arm's size
 inline constexpr double kSame = 1e-6;  // rows closer than this are one
 
 // --- lanes: the branches of the solution side by side ---------------------------------------------
@@ -356,6 +360,7 @@ template <class Y, class X, int N = kCommon<Y, X>>
 
 // --- the file's own chain -------------------------------------------------------------------------
 // T = F_0 M(v_1) F_1 ... M(v_n) F_n: M turns about or moves along z, v = scale * q[joint] + offset.
+// Plain loops over arrays: Eigen's expressions would multiply the compile time.
 
 struct Motion {
   int joint;
@@ -381,54 +386,60 @@ inline constexpr double kFrames[kRows + 1][3][4] = {
 inline constexpr double kSize = 1.0;  // m, of the arm
 
 struct Frame {
-  Eigen::Matrix3d R;
-  Eigen::Vector3d p;
+  double R[3][3], p[3];
 };
 
-inline Frame constant(int i) noexcept {
-  const auto& F = kFrames[i];
-  Frame out;
-  out.R << F[0][0], F[0][1], F[0][2], F[1][0], F[1][1], F[1][2], F[2][0], F[2][1], F[2][2];
-  out.p << F[0][3], F[1][3], F[2][3];
-  return out;
+// Moves along row i by its joint, then by the constant behind it.
+inline void advance(Frame& T, int i, const double* q) noexcept {
+  const Motion& motion = kMotions[i];
+  const auto& F = kFrames[i + 1];
+  const double v = motion.scale * q[motion.joint] + motion.offset;
+  const double c = motion.revolute ? std::cos(v) : 1.0, s = motion.revolute ? std::sin(v) : 0.0;
+  const double d = motion.revolute ? 0.0 : v;
+  for (int r = 0; r < 3; ++r) {
+    const double x = c * T.R[r][0] + s * T.R[r][1], y = c * T.R[r][1] - s * T.R[r][0], z = T.R[r][2];
+    T.p[r] += d * z + (x * F[0][3] + y * F[1][3] + z * F[2][3]);
+    for (int k = 0; k < 3; ++k) T.R[r][k] = x * F[0][k] + y * F[1][k] + z * F[2][k];
+  }
 }
 
-// Moves along row i by its joint, then by the constant behind it.
-inline void advance(Frame& T, int i, const Joints& q) noexcept {
-  const Motion& motion = kMotions[i];
-  const double v = motion.scale * q[motion.joint] + motion.offset;
-  if (motion.revolute) {
-    const double c = std::cos(v), s = std::sin(v);
-    const Eigen::Vector3d x = T.R.col(0), y = T.R.col(1);
-    T.R.col(0) = c * x + s * y;
-    T.R.col(1) = c * y - s * x;
-  } else {
-    T.p += v * T.R.col(2);
+inline Frame first_frame() noexcept {
+  Frame T;
+  for (int r = 0; r < 3; ++r) {
+    for (int k = 0; k < 3; ++k) T.R[r][k] = kFrames[0][r][k];
+    T.p[r] = kFrames[0][r][3];
   }
-  const Frame F = constant(i + 1);
-  T.p += T.R * F.p;
-  T.R = (T.R * F.R).eval();
+  return T;
+}
+
+inline void cross(const double* a, const double* b, double* out) noexcept {
+  out[0] = a[1] * b[2] - a[2] * b[1];
+  out[1] = a[2] * b[0] - a[0] * b[2];
+  out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
 // Tip frame and geometric Jacobian, linear rows first.
-inline Frame chain(const Joints& q, Eigen::Matrix<double, 6, kDof>& J) noexcept {
-  Eigen::Matrix<double, 3, kRows> axes, origins;
-  Frame T = constant(0);
+inline Frame chain(const double* q, double (&J)[6][kDof]) noexcept {
+  double axes[kRows][3], origins[kRows][3];
+  Frame T = first_frame();
   for (int i = 0; i < kRows; ++i) {
-    axes.col(i) = T.R.col(2);
-    origins.col(i) = T.p;
+    for (int r = 0; r < 3; ++r) {
+      axes[i][r] = kMotions[i].scale * T.R[r][2];
+      origins[i][r] = T.p[r];
+    }
     advance(T, i, q);
   }
-  J.setZero();
+  for (auto& row : J)
+    for (double& x : row) x = 0.0;
   for (int i = 0; i < kRows; ++i) {
-    const Eigen::Vector3d z = kMotions[i].scale * axes.col(i);
-    auto column = J.col(kMotions[i].joint);
+    const int j = kMotions[i].joint;
+    double linear[3] = {axes[i][0], axes[i][1], axes[i][2]};
     if (kMotions[i].revolute) {
-      column.template head<3>() += z.cross(T.p - origins.col(i));
-      column.template tail<3>() += z;
-    } else {
-      column.template head<3>() += z;
+      const double arm[3] = {T.p[0] - origins[i][0], T.p[1] - origins[i][1], T.p[2] - origins[i][2]};
+      cross(axes[i], arm, linear);
+      for (int r = 0; r < 3; ++r) J[3 + r][j] += axes[i][r];
     }
+    for (int r = 0; r < 3; ++r) J[r][j] += linear[r];
   }
   return T;
 }
@@ -449,7 +460,7 @@ template <int P> struct Pose {
 
 struct Seed {
   Seed() = default;
-  explicit Seed(const Joints&) noexcept {}
+  explicit Seed(const double*) noexcept {}
 };
 
 // Where joint values must lie.
@@ -477,29 +488,9 @@ template <int N, bool H>
   return clamp(j, q + (up - down), range);
 }
 
-template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> nearest(const LanesOf<N, H>& x) noexcept {
-  constexpr double shift = 6755399441055744.0;  // 1.5 * 2^52 leaves no room for a fraction
-  return (x + shift) - shift;
-}
-template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> ceiling(const LanesOf<N, H>& x) noexcept {
-  const auto r = nearest(x);
-  return r + select(x > r, 1.0, 0.0);
-}
-
-// The same for any number of turns: those nearest to `near` if the range allows.
-template <int N, bool H>
-[[gnu::always_inline]] inline Placed<N> place_near(int j, LanesOf<N, H> q, double near, const Range& range) noexcept {
-  if (kRevolute[j]) {
-    q = q + kTurn * nearest((near - q) * (1.0 / kTurn));
-    q = q + kTurn * ceiling(max((range.lower[j] - kLimitTolerance - q) * (1.0 / kTurn), 0.0));
-    q = q - kTurn * ceiling(max((q - range.upper[j] - kLimitTolerance) * (1.0 / kTurn), 0.0));
-  }
-  return clamp(j, q, range);
-}
-
-// What is known of a row: found inside the range, one of a continuum, real, a joint was left free on the
-// way to it, it may equal another, it wants Newton steps. Kept as sums of these in doubles.
-enum Bit { kFound = 1, kSingular = 2, kReal = 4, kHit = 8, kAlike = 16, kRough = 32 };
+// What is known of a row: found inside the range, real, one of a continuum, in want of Newton steps, perhaps
+// equal to another; a joint was left free on the way to it. Kept as sums of these in doubles.
+enum Bit { kFound = 1, kReal = 2, kSingular = 4, kRough = 8, kAlike = 16, kHit = 32 };
 
 template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> bit(const MaskOf<N, H>& mask, Bit value) noexcept {
   return select(mask, static_cast<double>(value), 0.0);
@@ -507,8 +498,8 @@ template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> bit(const MaskOf
 
 template <int P> struct Rows {
   static constexpr int kLanes = kMaxSolutions * P;
-  alignas(64) double q[kDof][kLanes];
-  alignas(64) double flags[kLanes];
+  alignas(64) double q[kDof][std::size_t{kLanes}];
+  alignas(64) double flags[std::size_t{kLanes}];
 };
 
 // Distance between the two halves of a level's lanes, which are its branches.
@@ -563,214 +554,235 @@ inline void branches(const Pose<P>& pose, const Seed& seed, const std::array<dou
   store(spread<n>(found + ((degenerate + alike) + rough)), rows.flags);
 }
 
-// --- from lanes to rows ---------------------------------------------------------------------------
+// --- Newton steps on the file's own chain ---------------------------------------------------------
 
+inline constexpr int kMoving = kDof - kFree;
 inline constexpr int kEquations = 3;
-using Error = Eigen::Matrix<double, kEquations, 1>;
-using Slope = Eigen::Matrix<double, kEquations, kDof>;
+// The entries of the pose that the task reads: row, column.
+inline constexpr int kRead[kEquations][2] = {{0, 3}, {1, 3}, {2, 3}};
 
-// Error towards the pose and its slope, lengths over the arm's size.
-inline Error error_at(const Joints& q, const Eigen::Isometry3d& pose, Slope& slope) noexcept {
-  Eigen::Matrix<double, 6, kDof> J;
-  const Frame T = chain(q, J);
-  Error error;
-  error.template head<3>() = (pose.translation() - T.p) / kSize;
-  slope.template topRows<3>() = J.template topRows<3>() / kSize;
-  return error;
-}
-
-// Cholesky factor of A^T A + damping, in plain loops: a fraction of the compile time of Eigen's.
-template <int N> struct Cholesky {
-  double L[N][N];
-  double smallest = std::numeric_limits<double>::infinity();  // pivot
-
-  template <class Matrix> Cholesky(const Matrix& A, double damping) noexcept {
-    for (int i = 0; i < N; ++i) {
-      for (int j = 0; j <= i; ++j) {
-        double sum = A.col(i).dot(A.col(j)) + (i == j ? damping : 0.0);
-        for (int k = 0; k < j; ++k) sum -= L[i][k] * L[j][k];
-        if (i == j) smallest = std::min(smallest, sum);
-        L[i][j] = i == j ? std::sqrt(std::max(sum, 1e-300)) : sum / L[j][j];
-      }
-    }
-  }
-
-  void solve(double (&x)[N]) const noexcept {
-    for (int i = 0; i < N; ++i) {
-      for (int k = 0; k < i; ++k) x[i] -= L[i][k] * x[k];
-      x[i] /= L[i][i];
-    }
-    for (int i = N - 1; i >= 0; --i) {
-      for (int k = i + 1; k < N; ++k) x[i] -= L[k][i] * x[k];
-      x[i] /= L[i][i];
-    }
-  }
+// Error of a configuration, lengths over the arm's size, and its slope by the joints that move.
+struct Offset {
+  double error[kEquations], slope[kEquations][kDof];
 };
 
-// Newton steps on the file's own chain, by damped least squares: at a fold of the solution set they halve
-// the error. Whether they arrived.
-inline bool polish(Joints& q, const Eigen::Isometry3d& pose) noexcept {
-  Joints trial = q;
-  double best = std::numeric_limits<double>::infinity();
-  for (int step = 0; step < 40; ++step) {
-    Slope slope;
-    const Error error = error_at(trial, pose, slope);
-    const double worst = error.cwiseAbs().maxCoeff();
+inline void offset_from(const double* q, const Eigen::Isometry3d& pose, Offset& out) noexcept {
+  const double* t = pose.matrix().data();  // columns first
+  double J[6][kDof];
+  const Frame T = chain(q, J);
+  for (int i = 0; i < kEquations; ++i) {
+    const int r = kRead[i][0], c = kRead[i][1], u = (r + 1) % 3, v = (r + 2) % 3;
+    const bool length = c == 3;
+    out.error[i] = length ? (t[12 + r] - T.p[r]) / kSize : t[4 * c + r] - T.R[r][c];
+    for (int j = 0; j < kDof; ++j)
+      out.slope[i][j] = length ? J[r][j] / kSize : J[3 + u][j] * T.R[v][c] - J[3 + v][j] * T.R[u][c];
+  }
+}
+
+// x = A^-1 x by Cholesky's factor, which takes A's place.
+inline void solve_symmetric(double (&A)[kDof][kDof], double (&x)[kDof]) noexcept {
+  for (int i = 0; i < kDof; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      double sum = A[i][j];
+      for (int k = 0; k < j; ++k) sum -= A[i][k] * A[j][k];
+      A[i][j] = i == j ? std::sqrt(std::max(sum, 1e-300)) : sum / A[j][j];
+    }
+    for (int k = 0; k < i; ++k) x[i] -= A[i][k] * x[k];
+    x[i] /= A[i][i];
+  }
+  for (int i = kDof - 1; i >= 0; --i) {
+    for (int k = i + 1; k < kDof; ++k) x[i] -= A[k][i] * x[k];
+    x[i] /= A[i][i];
+  }
+}
+
+// Damped least squares: at a fold of the solution set the steps halve the error.
+inline void step(const Offset& at, double worst, double (&q)[kDof]) noexcept {
+  const double bounded = std::min(worst, 1.0);
+  double A[kDof][kDof], x[kDof];
+  for (int i = 0; i < kDof; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      A[i][j] = 0.0;
+      for (int e = 0; e < kEquations; ++e) A[i][j] += at.slope[e][i] * at.slope[e][j];
+    }
+    A[i][i] += std::max(1e-12, 1e-3 * bounded * bounded);
+    x[i] = 0.0;
+    for (int e = 0; e < kEquations; ++e) x[i] += at.slope[e][i] * at.error[e];
+  }
+  solve_symmetric(A, x);
+  for (int j = 0; j < kDof; ++j) q[j] += std::min(std::max(x[j], -0.3), 0.3);
+}
+
+inline constexpr int kPatience = 5;  // steps without progress
+
+// At most `steps` Newton steps; the error that is left.
+inline double newton(double* q, const Eigen::Isometry3d& pose, int steps) noexcept {
+  double trial[kDof], best = kInfinity;
+  std::copy_n(q, kDof, trial);
+  for (int i = 0, stalled = 0;; ++i) {
+    Offset at;
+    offset_from(trial, pose, at);
+    double worst = 0.0;
+    for (const double x : at.error) worst = std::abs(x) <= worst ? worst : std::abs(x);
+    stalled = worst < 0.8 * best && worst > 1e-13 ? 0 : stalled + 1;
     if (worst < best) {
       best = worst;
-      q = trial;
+      std::copy_n(trial, kDof, q);
     }
-    if (!(best > 1e-13)) break;
-    const double bounded = std::min(worst, 1.0);
-    double right[kDof];
-    for (int j = 0; j < kDof; ++j) right[j] = slope.col(j).dot(error);
-    Cholesky<kDof>(slope, std::max(1e-12, 1e-3 * bounded * bounded)).solve(right);
-    for (int j = 0; j < kDof; ++j) trial[j] += std::min(std::max(right[j], -0.3), 0.3);
+    if (i == steps || stalled == kPatience || !(best > 1e-13)) return best;
+    step(at, worst, trial);
   }
-  return best < 0.5e-9;
 }
 
-// Whether two rows are the same, whole turns aside.
-inline bool same(const Joints& a, const Joints& b) noexcept {
-  for (int j = 0; j < kDof; ++j) {
-    double gap = a[j] - b[j];
-    if (kRevolute[j]) gap -= kTurn * std::nearbyint(gap / kTurn);
-    if (!(std::abs(gap) <= kSame)) return false;
-  }
-  return true;
+// Whether Newton steps lead from q to the pose: only what is promising takes many.
+inline bool polish(double* q, const Eigen::Isometry3d& pose) noexcept {
+  double error = newton(q, pose, 3);
+  if (error >= 0.5 * kTolerance && error < 0.1) error = newton(q, pose, 6);
+  if (error >= 0.5 * kTolerance && error < 1e-3) error = newton(q, pose, 30);
+  return error < 0.5 * kTolerance;
 }
 
-inline void move_row(Solutions& out, int from, int to) noexcept {
-  const auto f = static_cast<std::size_t>(from), t = static_cast<std::size_t>(to);
-  out.q[t] = out.q[f];
-  out.singular[t] = out.singular[f];
+inline double dot(const double* a, const double* b, int n) noexcept {
+  double sum = 0.0;
+  for (int i = 0; i < n; ++i) sum += a[i] * b[i];
+  return sum;
 }
 
-inline void drop_repeated(Solutions& out) noexcept {
-  int kept = 0;
-  for (int k = 0; k < out.count; ++k) {
-    const Joints& q = out.q[static_cast<std::size_t>(k)];
-    bool is_new = true;
-    for (int i = 0; i < kept; ++i) is_new = is_new && !same(q, out.q[static_cast<std::size_t>(i)]);
-    if (!is_new) continue;
-    move_row(out, k, kept);
-    ++kept;
-  }
-  out.count = kept;
-}
+// The smaller and the larger side of the slope's matrix.
+inline constexpr int kRank = kMoving;
+inline constexpr int kLong = kEquations;
 
-inline void sort_by_distance(Solutions& out, const Joints& seed) noexcept {
-  std::array<double, kMaxSolutions> distance;
-  for (int k = 0; k < out.count; ++k) {
-    const Joints q = out.q[static_cast<std::size_t>(k)];
-    const bool flag = out.singular[static_cast<std::size_t>(k)];
-    const double mine = (q - seed).squaredNorm();
-    int at = k;
-    for (; at > 0 && distance[static_cast<std::size_t>(at - 1)] > mine; --at) {
-      move_row(out, at - 1, at);
-      distance[static_cast<std::size_t>(at)] = distance[static_cast<std::size_t>(at - 1)];
+// Whether the smallest singular value is above `bound` for sure: it is at least the root of the determinant
+// over what the others can be at most, by the inequality of the means.
+inline bool clearly_regular(const double (&V)[kRank][kLong], double bound) noexcept {
+  double L[kRank][kRank], determinant = 1.0, trace = 0.0;
+  for (int i = 0; i < kRank; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      double sum = dot(V[i], V[j], kLong);
+      if (i == j) trace += sum;
+      for (int k = 0; k < j; ++k) sum -= L[i][k] * L[j][k];
+      if (i == j && !(sum > 1e-12)) return false;
+      if (i == j) determinant *= sum;
+      L[i][j] = i == j ? std::sqrt(sum) : sum / L[j][j];
     }
-    out.q[static_cast<std::size_t>(at)] = q;
-    out.singular[static_cast<std::size_t>(at)] = flag;
-    distance[static_cast<std::size_t>(at)] = mine;
   }
+  for (int i = 1; i < kRank; ++i) determinant *= (kRank - 1) / trace;
+  return determinant > 4.0 * bound * bound;
 }
 
-// Newton steps for the rows that want them; those that do not arrive are none. Returns the bits left.
-inline int polish_rows(const Eigen::Isometry3d& pose, const int (&bits)[kMaxSolutions], int seen, Solutions& out) noexcept {
-  int kept = 0, left = seen & ~(kFound | kReal);
-  for (int k = 0; k < out.count; ++k) {
-    Joints& q = out.q[static_cast<std::size_t>(k)];
-    if ((bits[k] & kRough) != 0 && !polish(q, pose)) continue;
-    move_row(out, k, kept);
-    ++kept;
-    left |= kFound | kReal | kAlike;
+// Whether the slope at q has a singular value below `bound`: one-sided Jacobi rotations.
+inline bool loses_rank(const double* q, double bound) noexcept {
+  double V[kRank][kLong], smallest = kInfinity;
+  Offset at;
+  offset_from(q, Eigen::Isometry3d::Identity(), at);
+  for (int e = 0; e < kEquations; ++e)
+    for (int j = 0, k = 0; j < kDof; ++j) {
+      V[k][e] = at.slope[e][j];
+      ++k;
+    }
+  if (clearly_regular(V, bound)) return false;
+  for (int sweep = 0, turned = 1; sweep < 30 && turned; ++sweep) {
+    turned = 0;
+    for (int a = 0; a < kRank; ++a)
+      for (int b = a + 1; b < kRank; ++b) {
+        const double aa = dot(V[a], V[a], kLong), bb = dot(V[b], V[b], kLong), ab = dot(V[a], V[b], kLong);
+        if (!(ab * ab > 1e-30 * aa * bb)) continue;
+        turned = 1;
+        const double z = (bb - aa) / (2.0 * ab);
+        const double t = std::copysign(1.0, z) / (std::abs(z) + std::sqrt(1.0 + z * z));
+        const double c = 1.0 / std::sqrt(1.0 + t * t), s = c * t;
+        for (int i = 0; i < kLong; ++i) {
+          const double x = V[a][i], y = V[b][i];
+          V[a][i] = c * x - s * y;
+          V[b][i] = s * x + c * y;
+        }
+      }
   }
-  out.count = kept;
-  return left;
+  for (const auto& v : V) smallest = std::min(smallest, dot(v, v, kLong));
+  return smallest < bound * bound;
 }
 
-// Copies the found rows of pose p, and returns all bits seen.
-template <int P>
-inline int collect(const Rows<P>& rows, int p, const Eigen::Isometry3d& pose, Solutions& out) noexcept {
-  int count = 0, seen = 0, found = 0;
-  int bits_of[kMaxSolutions];
-  for (const int row : kLaneOfRow) {
-    const int lane = row * P + p;
-    const int bits = static_cast<int>(rows.flags[lane]);
-    auto& q = out.q[static_cast<std::size_t>(count)];
-    for (int j = 0; j < kDof; ++j) q[j] = rows.q[j][lane];
-    out.singular[static_cast<std::size_t>(count)] = (bits & kSingular) != 0;
-    bits_of[count] = bits;
-    count += bits & kFound;
-    seen |= bits;
-    found |= (bits & kFound) != 0 ? bits : 0;
-  }
-  out.count = count;
-  return (found & kRough) != 0 ? polish_rows(pose, bits_of, seen, out) : seen;
-}
+// --- from lanes to rows ---------------------------------------------------------------------------
 
-inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Joints whose values are the same a whole turn further.
+inline constexpr bool kTurning[kDof] = {true, false};
 inline constexpr double kUnboundedLower[kDof] = {-kInfinity, -kInfinity};
 inline constexpr double kUnboundedUpper[kDof] = {kInfinity, kInfinity};
 inline constexpr Range kUnbounded = {kUnboundedLower, kUnboundedUpper};
 
-inline Range range_of(const Options& options) noexcept {
-  return options.limits ? Range{kLower.data(), kUpper.data()} : kUnbounded;
+// Whether two rows are the same, whole turns aside.
+inline bool same(const double* a, const double* b) noexcept {
+  for (int j = 0; j < kDof; ++j) {
+    double gap = std::abs(a[j] - b[j]);
+    if (kRevolute[j] && gap > kSame) gap = std::abs(gap - kTurn * std::nearbyint(gap / kTurn));
+    if (!(gap <= kSame)) return false;
+  }
+  return true;
 }
 
-// Whether rows are placed one by one once they are found, not in the lanes.
-inline bool place_later([[maybe_unused]] const Options& options) noexcept {
-  return options.seed != nullptr;
+inline double* row_of(Solutions& out, int k) noexcept { return out.q.data()[k].data(); }
+inline bool& flag_of(Solutions& out, int k) noexcept { return out.singular.data()[k]; }
+inline void move_row(Solutions& out, int from, int to) noexcept {
+  std::copy_n(row_of(out, from), kDof, row_of(out, to));
+  flag_of(out, to) = flag_of(out, from);
 }
 
-// Puts the rows on the turns that the seed or the limits ask for, and drops those outside.
+// Puts a row on the turns that the seed or the limits ask for; false where it is outside.
+inline bool place_row(double* q, const Options& options) noexcept {
+  const double* seed = options.seed ? options.seed->data() : nullptr;
+  for (int j = 0; j < kDof; ++j) {
+    const double low = kLower.data()[j], high = kUpper.data()[j];
+    if (kTurning[j]) {
+      q[j] += q[j] <= -kPi ? kTurn : q[j] > kPi ? -kTurn : 0.0;
+      if (seed) q[j] += kTurn * std::nearbyint((seed[j] - q[j]) / kTurn);
+      if (options.limits && q[j] < low - kLimitTolerance)
+        q[j] += kTurn * std::ceil((low - kLimitTolerance - q[j]) / kTurn);
+      if (options.limits && q[j] > high + kLimitTolerance)
+        q[j] -= kTurn * std::ceil((q[j] - high - kLimitTolerance) / kTurn);
+    }
+    if (!options.limits) continue;
+    if (!(low - kLimitTolerance <= q[j] && q[j] <= high + kLimitTolerance)) return false;
+    q[j] = std::min(std::max(q[j], low), high);
+  }
+  return true;
+}
+
+// The rows that place_row keeps.
 inline void place_rows(const Options& options, Solutions& out) noexcept {
-  const Range range = range_of(options);
   int kept = 0;
   for (int k = 0; k < out.count; ++k) {
-    const auto from = static_cast<std::size_t>(k), to = static_cast<std::size_t>(kept);
-    const Joints row = out.q[from];
-    bool inside = true;
-    for (int j = 0; j < kDof; ++j) {
-      const auto placed = place_near(j, Lanes<1>{row[j]}, options.seed ? (*options.seed)[j] : 0.0, range);
-      out.q[to][j] = placed.q.v;
-      inside = inside && placed.inside.v;
-    }
-    out.singular[to] = out.singular[from];
-    kept += inside ? 1 : 0;
+    if (kept < k) move_row(out, k, kept);
+    kept += place_row(row_of(out, kept), options) ? 1 : 0;
   }
   out.count = kept;
 }
 
-// What is left once the rows of a pose are collected: repeated rows, turns, order, status.
-inline void finish(const Options& options, int seen, Solutions& out) noexcept {
-  if ((seen & kAlike) != 0) drop_repeated(out);
-  if (place_later(options)) place_rows(options, out);
-  if (options.seed) sort_by_distance(out, *options.seed);
-  out.status = out.count > 0 ? Status::Ok : (seen & kReal) != 0 ? Status::Limits : Status::Unreachable;
+// Adds a row unless it is there already.
+inline void add(Solutions& out, const double* q, bool singular) noexcept {
+  if (out.count == kMaxSolutions) return;
+  for (int k = 0; k < out.count; ++k)
+    if (same(q, row_of(out, k))) return;
+  std::copy_n(q, kDof, row_of(out, out.count));
+  flag_of(out, out.count) = singular;
+  ++out.count;
 }
 
-// Whether what the task reads of T is a rigid transform to 1e-6.
-inline bool is_pose(const Eigen::Isometry3d& T) noexcept {
-  const auto& M = T.matrix();
-  const double sum = M(0, 3) + M(1, 3) + M(2, 3);
-  if (!(sum - sum == 0.0)) return false;
-  return true;
-}
-
-// Solves P poses at once and gives each its rows and status; returns all bits seen of each.
-template <int P>
-inline std::array<int, P> find(const Pose<P>& pose, const Eigen::Isometry3d* poses, const Options& options,
-                               const Seed& start, Solutions* out) noexcept {
-  Rows<P> rows;
-  branches(pose, start, options.free, place_later(options) ? kUnbounded : range_of(options), rows);
-  std::array<int, P> seen;
-  for (std::size_t p = 0; p < P; ++p) {
-    seen[p] = collect(rows, static_cast<int>(p), poses[p], out[p]);
-    finish(options, seen[p], out[p]);
+inline void sort_by_distance(Solutions& out, const double* seed) noexcept {
+  double distance[kMaxSolutions];
+  for (int k = 0; k < out.count; ++k) {
+    double row[kDof], mine = 0.0;
+    std::copy_n(row_of(out, k), kDof, row);
+    for (int j = 0; j < kDof; ++j) mine += (row[j] - seed[j]) * (row[j] - seed[j]);
+    const bool flag = flag_of(out, k);
+    int at = k;
+    for (; at > 0 && distance[at - 1] > mine; --at) {
+      move_row(out, at - 1, at);
+      distance[at] = distance[at - 1];
+    }
+    std::copy_n(row, kDof, row_of(out, at));
+    flag_of(out, at) = flag;
+    distance[at] = mine;
   }
-  return seen;
 }
 
 // P poses, entry by entry.
@@ -778,61 +790,164 @@ template <int P> [[gnu::always_inline]] inline Pose<P> gather(const Eigen::Isome
   Pose<P> out;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 4; ++j) {
-      double entries[P];
-      for (int p = 0; p < P; ++p) entries[p] = poses[p].matrix()(i, j);
+      double entries[std::size_t{P}];
+      for (int p = 0; p < P; ++p) entries[p] = poses[p].matrix().data()[4 * j + i];
       out.t[i][j] = load<P>(entries);
     }
   return out;
 }
 
-// What find() leaves to do: a pose that is none, or one that leaves a joint free.
-inline void settle(const Eigen::Isometry3d& pose, [[maybe_unused]] const Options& options,
-                   [[maybe_unused]] int seen, Solutions& out) noexcept {
-  if (!is_pose(pose)) {
-    out.status = Status::Invalid;
-    out.count = 0;
+// --- rows that need care: on singularities, near them, and those of a seed alone --------------------
+
+// The distinct solutions of a pose, polished where the closed form lost digits; q0 gives the values of joints
+// that the pose leaves free. Whether it left one.
+[[gnu::cold, gnu::noinline]] inline bool find_rows(const Eigen::Isometry3d& pose, const double* q0, const Options& options, Solutions& out) noexcept {
+  Rows<1> rows;
+  branches(gather<1>(&pose), Seed(q0), options.free, kUnbounded, rows);
+  out.count = 0;
+  double q[kDof];
+  bool hit = false;
+  for (const double flags : rows.flags) hit = hit || (static_cast<int>(flags) & kHit) != 0;
+  if (hit) {
+    std::copy_n(q0, kDof, q);
+    if (polish(q, pose)) add(out, q, loses_rank(q, 1e-3));
   }
+  for (const int wanted : {int{kReal | kRough}, int{kReal}}) {
+    for (const int lane : kLaneOfRow) {
+      const int bits = static_cast<int>(rows.flags[lane]);
+      if ((bits & (kReal | kRough)) != wanted) continue;
+      for (int j = 0; j < kDof; ++j) q[j] = rows.q[j][lane];
+      const bool rough = (bits & kRough) != 0;
+      if (!rough || polish(q, pose)) add(out, q, rough && loses_rank(q, (bits & kSingular) != 0 ? 1e-3 : 1e-7));
+    }
+  }
+  return hit;
+}
+
+// All solutions, with care. Where the pose leaves a joint free and the seed's value of it leads nowhere,
+// fifteen others are tried; where no row fits, the seed is taken as a Newton start.
+[[gnu::cold, gnu::noinline]] inline void solve_carefully(const Eigen::Isometry3d& pose, const Options& options, Solutions& out) noexcept {
+  bool real = false;
+  for (int turn = 0; turn < 16; ++turn) {
+    double start[kDof];
+    for (int j = 0; j < kDof; ++j)
+      start[j] = (options.seed ? options.seed->data()[j] : 0.0) + (kRevolute[j] ? turn * kPi / 8.0 : 0.0);
+    const bool hit = find_rows(pose, start, options, out);
+    real = real || out.count > 0;
+    place_rows(options, out);
+    if (out.count == 0 && options.seed && polish(start, pose)) {
+      add(out, start, loses_rank(start, 1e-3));
+      place_rows(options, out);
+    }
+    if (out.count > 0 || !hit) break;
+  }
+  if (options.seed) sort_by_distance(out, options.seed->data());
+  out.status = out.count > 0 ? Status::Ok : real ? Status::Limits : Status::Unreachable;
+}
+
+// --- poses ----------------------------------------------------------------------------------------
+
+// Whether what the task reads of the pose is that of a rigid transform, to 1e-6.
+inline bool is_pose(const Eigen::Isometry3d& pose) noexcept {
+  const double* t = pose.matrix().data();  // columns first
+  const auto near = [](double x, double y) { return std::abs(x - y) < 1e-6; };
+  const double sum = t[12] + t[13] + t[14];
+  if (!(sum - sum == 0.0)) return false;
+  static_cast<void>(near);
+  return true;
 }
 
 // Options without a seed that is no number.
 inline Options checked(const Options& options) noexcept {
   Options out = options;
-  if (out.seed && !out.seed->allFinite()) out.seed = nullptr;
+  for (int j = 0; j < kDof && out.seed; ++j)
+    if (!(std::abs(out.seed->data()[j]) < kInfinity)) out.seed = nullptr;
   return out;
 }
 
-inline void solve_one(const Eigen::Isometry3d& pose, const Options& given, Solutions& out) noexcept {
+// Whether rows are placed one by one once they are found, not in the lanes.
+inline bool place_later([[maybe_unused]] const Options& options) noexcept {
+  return options.seed != nullptr;
+}
+
+// Copies the found rows of pose p. Whether that is all there is to it: every row is a regular one.
+template <int P>
+inline bool collect(const Rows<P>& rows, int p, const Options& options, Solutions& out) noexcept {
+  int count = 0, seen = 0;
+  for (const int row : kLaneOfRow) {
+    const int lane = row * P + p;
+    const int bits = static_cast<int>(rows.flags[lane]);
+    double* q = row_of(out, count);
+    for (int j = 0; j < kDof; ++j) q[j] = rows.q[j][lane];
+    flag_of(out, count) = false;
+    count += bits & kFound;
+    seen |= bits;
+  }
+  if ((seen & (kRough | kHit)) != 0) return false;
+  out.count = count;
+  if ((seen & kAlike) != 0) {
+    out.count = 0;
+    for (int k = 0; k < count; ++k) {
+      double q[kDof];
+      std::copy_n(row_of(out, k), kDof, q);
+      add(out, q, false);
+    }
+  }
+  if (place_later(options)) place_rows(options, out);
+  if (options.seed) sort_by_distance(out, options.seed->data());
+  out.status = out.count > 0 ? Status::Ok : (seen & kReal) != 0 ? Status::Limits : Status::Unreachable;
+  return out.count > 0 || !options.seed;
+}
+
+// Solves P poses at once.
+template <int P>
+inline void solve_several(const Eigen::Isometry3d* poses, const Options& given, Solutions* out) noexcept {
   const Options options = checked(given);
-  const int seen = find(gather<1>(&pose), &pose, options, Seed(), &out)[0];
-  settle(pose, options, seen, out);
+  const bool bounded = options.limits && !place_later(options);
+  Rows<P> rows;
+  branches(gather<P>(poses), Seed(), options.free, bounded ? Range{kLower.data(), kUpper.data()} : kUnbounded, rows);
+  for (int p = 0; p < P; ++p) {
+    if (!is_pose(poses[p])) {
+      out[p].count = 0;
+      out[p].status = Status::Invalid;
+    } else if (!collect(rows, p, options, out[p])) {
+      solve_carefully(poses[p], options, out[p]);
+    }
+  }
+}
+
+inline void solve_one(const Eigen::Isometry3d& pose, const Options& options, Solutions& out) noexcept {
+  solve_several<1>(&pose, options, &out);
 }
 
 // Poses of a batch that are solved at once.
 inline constexpr int kBatch = kNative > 2 ? kNative / 2 : 1;
 
-inline void solve_several(const Eigen::Isometry3d* poses, const Options& given, Solutions* out) noexcept {
-  const Options options = checked(given);
-  const std::array<int, kBatch> seen = find(gather<kBatch>(poses), poses, options, Seed(), out);
-  for (std::size_t p = 0; p < kBatch; ++p) settle(poses[p], options, seen[p], out[p]);
-}
-
 }  // namespace detail
 
 // Pose of kTipLink in kBaseLink.
 inline Eigen::Isometry3d forward(const Joints& q) noexcept {
-  detail::Frame T = detail::constant(0);
-  for (int i = 0; i < detail::kRows; ++i) detail::advance(T, i, q);
-  Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
-  out.linear() = T.R;
-  out.translation() = T.p;
+  detail::Frame T = detail::first_frame();
+  for (int i = 0; i < detail::kRows; ++i) detail::advance(T, i, q.data());
+  Eigen::Isometry3d out;
+  double* t = out.matrix().data();  // columns first
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) t[4 * c + r] = T.R[r][c];
+    t[12 + r] = T.p[r];
+    t[4 * r + 3] = 0.0;
+  }
+  t[15] = 1.0;
   return out;
 }
 
 // Geometric Jacobian of the tip in kBaseLink: linear rows (m/s), then angular (rad/s).
 inline Eigen::Matrix<double, 6, kDof> jacobian(const Joints& q) noexcept {
-  Eigen::Matrix<double, 6, kDof> J;
-  detail::chain(q, J);
-  return J;
+  double J[6][kDof];
+  detail::chain(q.data(), J);
+  Eigen::Matrix<double, 6, kDof> out;
+  for (int j = 0; j < kDof; ++j)
+    for (int r = 0; r < 6; ++r) out.data()[6 * j + r] = J[r][j];
+  return out;
 }
 
 // All joint values that bring kTipLink to the pose in kBaseLink.
@@ -846,7 +961,7 @@ inline Solutions solve(const Eigen::Isometry3d& pose, const Options& options) no
 inline void solve_batch(const Eigen::Isometry3d* poses, std::ptrdiff_t count, Solutions* solutions,
                         const Options& options) noexcept {
   constexpr int P = detail::kBatch;
-  for (; count >= P; count -= P, poses += P, solutions += P) detail::solve_several(poses, options, solutions);
+  for (; count >= P; count -= P, poses += P, solutions += P) detail::solve_several<P>(poses, options, solutions);
   for (; count > 0; --count, ++poses, ++solutions) detail::solve_one(*poses, options, *solutions);
 }
 

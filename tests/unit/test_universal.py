@@ -167,11 +167,13 @@ def test_unreachable_pose_has_no_solution() -> None:
     T = forward(frames, np.zeros(6))
     T[:3, 3] += 100.0
     assert general_6r(plan.frames, plan.length, plan.eliminations, T).shape == (0, 6)
+    for nonsense in (np.full((4, 4), np.nan), np.zeros((4, 4)), np.full((4, 4), 1e200)):
+        assert len(general_6r(plan.frames, plan.length, plan.eliminations, nonsense)) == 0
 
 
 def test_seven_joints_with_one_held() -> None:
     """One plan for all values of the held joint, the frames merged for each."""
-    frames = np.concatenate([arm_frames("random 1"), arm_frames("random 2")[5:6]])
+    frames = np.concatenate([arm_frames("random 1")[:6], arm_frames("random 2")[5:]])
     values = np.linspace(-2.0, 2.0, 6)
     plan = choose_plan(np.array([hold_joint(frames, 2, v) for v in values]))
     for value in (-1.3, 0.4, 2.5):
@@ -181,6 +183,12 @@ def test_seven_joints_with_one_held() -> None:
         assert missing(general_6r_batch(held, plan.length, plan.eliminations, poses), q) == 0
     full = np.insert(q[0], 2, value)
     assert np.allclose(forward(frames, full), poses[0])
+
+
+def test_an_arm_that_is_singular_everywhere_has_no_usable_plan() -> None:
+    frames = arm_frames("random 1").copy()
+    frames[3] = np.eye(4)  # joints 3 and 4 on one line
+    assert not choose_plan(frames).usable
 
 
 def test_wrong_shapes() -> None:

@@ -92,7 +92,7 @@ def _advice(findings: Findings, dh: DHChain) -> str:
         lines.append(f"  {moving} joints move: hold {moving - 6} of them (--free or --lock)")
     closed = [attempt for attempt in findings.attempts if attempt.closed]
     for attempt in closed[:_PROPOSED]:
-        options = attempt.options or "no further option"
+        options = attempt.options or "as it is"
         lines.append(f"  {options}: closed form, at most {attempt.max_solutions} solutions")
         lines.append(f"      {'; '.join(attempt.order)}")
     if findings.attempts and not closed:

@@ -27,6 +27,45 @@ F = TypeVar("F", bound=Callable[..., Any])
 _FOLDER = click.Path(path_type=Path)
 
 
+_CHAIN_OPTIONS = (
+    click.option("--base", metavar="LINK", help="Link that poses are given in."),
+    click.option("--tip", metavar="LINK", help="Link to be placed."),
+    click.option(
+        "--task",
+        metavar="TASK",
+        help="pose (default), position-direction, position-yaw, position, rotation, direction.",
+    ),
+    click.option(
+        "--free",
+        multiple=True,
+        metavar="JOINT[=VALUE]",
+        help="Hold a joint: its value becomes an input, by default VALUE.",
+    ),
+    click.option(
+        "--lock",
+        multiple=True,
+        metavar="JOINT=VALUE",
+        help="Fix a joint for good (rad or m).",
+    ),
+    click.option(
+        "--arg", "arguments", multiple=True, metavar="NAME:=VALUE", help="A xacro argument."
+    ),
+    click.option(
+        "--package-path",
+        "package_paths",
+        multiple=True,
+        metavar="DIR",
+        type=_FOLDER,
+        help="Where $(find pkg) and package:// look.",
+    ),
+    click.option(
+        "--name",
+        metavar="NAME",
+        help="Prefix of the output files (default: the robot's name).",
+    ),
+)
+
+
 def _apply(options: Sequence[Callable[[Any], Any]], function: F) -> F:
     """The decorators on a function, listed in help in the order given."""
     for option in reversed(options):
@@ -36,47 +75,7 @@ def _apply(options: Sequence[Callable[[Any], Any]], function: F) -> F:
 
 def chain_options(function: F) -> F:
     """Which chain of the robot, which task, and how to read the file."""
-    return _apply(
-        [
-            click.option("--base", metavar="LINK", help="Link that poses are given in."),
-            click.option("--tip", metavar="LINK", help="Link to be placed."),
-            click.option(
-                "--task",
-                metavar="TASK",
-                help="pose (default), position-direction, position-yaw, position, rotation, "
-                "direction.",
-            ),
-            click.option(
-                "--free",
-                multiple=True,
-                metavar="JOINT[=VALUE]",
-                help="Hold a joint: its value becomes an input, by default VALUE.",
-            ),
-            click.option(
-                "--lock",
-                multiple=True,
-                metavar="JOINT=VALUE",
-                help="Fix a joint for good (rad or m).",
-            ),
-            click.option(
-                "--arg", "arguments", multiple=True, metavar="NAME:=VALUE", help="A xacro argument."
-            ),
-            click.option(
-                "--package-path",
-                "package_paths",
-                multiple=True,
-                metavar="DIR",
-                type=_FOLDER,
-                help="Where $(find pkg) and package:// look.",
-            ),
-            click.option(
-                "--name",
-                metavar="NAME",
-                help="Prefix of the output files (default: the robot's name).",
-            ),
-        ],
-        function,
-    )
+    return _apply(_CHAIN_OPTIONS, function)
 
 
 def sampling_options(function: F) -> F:

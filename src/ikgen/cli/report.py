@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -39,12 +40,24 @@ def report(
         derivation = derive(make_request(robot, **chain), console)
         console("emit", "report")
         texts = _texts(derivation)
-        files = publish(out, texts)
+        files = [*publish(out, texts), *_pdfs(out, texts, console)]
     if as_json:
         click.echo(json.dumps({"files": [str(path) for path in files]}, indent=2))
     elif not quiet:
         for path in files:
             click.echo(f"wrote: {path}")
+
+
+def _pdfs(out: Path, texts: Mapping[str, str], console: Console) -> list[Path]:
+    """The PDFs of the LaTeX texts, where LaTeX is installed."""
+    from ikgen.build.pdf import compile_latex
+
+    made = []
+    for name in texts:
+        if name.endswith(".tex"):
+            console("typeset", name)
+            made.append(compile_latex(out / name))
+    return [path for path in made if path is not None]
 
 
 def _texts(derivation: Derivation) -> dict[str, str]:

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
-from ikgen.emit.cpp_program import ProgramText, number, used_inputs
+from ikgen.emit.cpp_joints import JointValue, Seed, first_row
+from ikgen.emit.cpp_language import comment, literal, number
+from ikgen.emit.cpp_program import ProgramText, used_inputs
 from ikgen.emit.module import SolverModule
 from ikgen.emit.rendering import render
 from ikgen.errors import UsageError
-from ikgen.ir.ops import Op, Operand
-from ikgen.ir.program import JointOutput
-from ikgen.model.dh import DHRow
+from ikgen.tasks import find_task
 
 __all__ = ["emit", "emit_derivation", "emit_header", "emit_package"]
 
@@ -23,15 +22,8 @@ ROUGH = 1e-20
 
 _INLINE = "[[gnu::always_inline]] inline"
 
-_ORIENTATION = {
-    "pose": "rotation",
-    "position": "",
-    "position-direction": "direction",
-    "position-yaw": "yaw",
-    "rotation": "rotation",
-    "direction": "direction",
-}
-"""What a task reads of the rotation."""
+_COLD = "[[gnu::cold, gnu::noinline]] inline"
+"""Of functions that few poses need: small code, quickly compiled."""
 
 
 class _Derived(Protocol):
@@ -78,18 +70,22 @@ def emit_header(module: SolverModule) -> str:
         m=module,
         namespace=f"{module.name}_ik",
         inline=_INLINE,
-        orientation=_ORIENTATION[module.task],
+        cold="[[gnu::noinline]] inline" if _careful(module) else _COLD,
+        careful=_careful(module),
+        entries_read=_entries_read(module),
+        equations=_equations(module),
+        tall=module.dh.dof - len(module.free) < _equations(module),
         reads_position="position" in module.task or module.task == "pose",
         joints=module.dh.joints,
         lower=[number(j.limits.lower) for j in module.dh.joints],
         upper=[number(j.limits.upper) for j in module.dh.joints],
         far=any(j.limits.lower > math.pi or j.limits.upper < -math.pi for j in module.dh.joints),
-        first_rows=[_first_row(module, j) for j in range(module.dh.dof)],
+        first_rows=[first_row(module, j) for j in range(module.dh.dof)],
         text=text,
         entries=[name for name in inputs if name.startswith("t")],
-        seeds=[_Seed.of(module, name) for name in inputs if name.startswith("seed_")],
+        seeds=[Seed.of(module, name) for name in inputs if name.startswith("seed_")],
         held=[name for name in inputs if name[0] in "csd" and name[1:].isdigit()],
-        values=[_JointValue.of(module, text, output) for output in text.outputs()],
+        values=[JointValue.of(module, text, output) for output in text.outputs()],
         rough=_rough(module),
         order=_depth_first(branches),
         routines=sorted({lv.call.routine for lv in program.levels if lv.call is not None}),
@@ -97,15 +93,31 @@ def emit_header(module: SolverModule) -> str:
         size=number(_arm_size(module)),
         free_defaults=[number(x) for x in module.free_defaults],
         number=number,
+        literal=literal,
+        comment=comment,
     )
+
+
+def _careful(module: SolverModule) -> bool:
+    """Whether every pose's rows are polished or judged one by one."""
+    return module.polish == "all" or module.plan is not None
+
+
+def _entries_read(module: SolverModule) -> list[tuple[int, int]]:
+    """Row and column (from 0) of the pose entries that the task reads."""
+    names = sorted(find_task(module.task).readable)
+    return [
+        ("xyz".index(n[1]), 3) if n[0] == "p" else (int(n[1]) - 1, int(n[2]) - 1) for n in names
+    ]
+
+
+def _equations(module: SolverModule) -> int:
+    """Components of the error that Newton steps take to zero."""
+    return 6 if module.task == "pose" else len(_entries_read(module))
 
 
 def _arm_size(module: SolverModule) -> float:
     return max(1.0, *(float(np.abs(F[:3, 3]).max()) for F in module.dh.file_frames))
-
-
-def _first_row(module: SolverModule, joint: int) -> DHRow:
-    return next(row for row in module.dh.rows if row.driver == joint)
 
 
 def _depth_first(branches: list[int]) -> list[int]:
@@ -117,96 +129,9 @@ def _depth_first(branches: list[int]) -> list[int]:
     return lanes
 
 
-@dataclass(frozen=True, slots=True)
-class _Seed:
-    """One input that a singular pose takes from the seed: `home` is its value at q = 0."""
-
-    name: str
-    joint: int
-    function: str
-    home: str
-
-    @staticmethod
-    def of(module: SolverModule, name: str) -> _Seed:
-        joint = int(name[6:]) - 1
-        offset = _first_row(module, joint).offset.value
-        function = {"c": "std::cos", "s": "std::sin", "d": ""}[name[5]]
-        home = {"c": math.cos, "s": math.sin, "d": float}[name[5]](offset)
-        return _Seed(name, joint, function, number(home))
-
-
 def _rough(module: SolverModule) -> str:
     """Condition under which a row takes Newton steps."""
     program = module.program
     if module.polish == "all":
         return "(spread<1>(1.0) > 0.0)"
     return " | ".join([*program.singular, *(f"({r} > {ROUGH})" for r in program.residuals)])
-
-
-@dataclass(frozen=True, slots=True)
-class _JointValue:
-    """One joint's value: its text, and the function that puts it inside the limits ("": none can be
-    outside, since they span a whole turn)."""
-
-    name: str
-    text: str
-    placing: str
-
-    @staticmethod
-    def of(module: SolverModule, text: ProgramText, output: JointOutput) -> _JointValue:
-        j = output.joint
-        limits = module.dh.joints[j].limits
-        placing = "place" if output.revolute and j not in module.free else "clamp"
-        if placing == "place" and limits.lower <= -math.pi and limits.upper >= math.pi:
-            placing = ""
-        if math.isinf(limits.lower) and math.isinf(limits.upper):
-            placing = ""
-        return _JointValue(f"q{j + 1}", _joint_value(module, text, output), placing)
-
-
-def _joint_value(module: SolverModule, text: ProgramText, output: JointOutput) -> str:
-    """The joint's value `(v - offset) / scale` from its output.
-
-    For angles the pair is turned by the offset and mirrored instead, so that the value of the one
-    arctangent is already in (-pi, pi].
-    """
-    if output.joint in module.free:
-        return f"spread<1>(held[{module.free.index(output.joint)}])"
-    row = _first_row(module, output.joint)
-    offset, scale = row.offset.value, row.scale
-    if not output.revolute:
-        value = _plus(output.cosine, -offset)
-        return text.pack(value if scale == 1.0 else _times(1.0 / scale, value))
-    c, s = output.cosine, output.sine
-    co, so = _exact(math.cos(offset)), _exact(math.sin(offset))
-    cosine = _sum(_times(co, c), _times(so, s))
-    sine = _sum(_times(co, s), _times(-so, c))
-    if scale == -1.0:
-        sine = _sum(_times(so, c), _times(-co, s))
-    angle = f"angle({text.pack(sine)}, {text.pack(cosine)})"
-    return angle if abs(scale) == 1.0 else f"{angle} * {number(1.0 / scale)}"
-
-
-def _exact(x: float) -> float:
-    """0 and ±1 without the round-off of pi."""
-    return float(round(x)) if abs(x - round(x)) < 1e-15 else x
-
-
-def _times(k: float, x: Operand) -> Operand:
-    if k == 0.0:
-        return 0.0
-    if k == 1.0:
-        return x
-    if k == -1.0:
-        return x.args[0] if isinstance(x, Op) and x.op == "neg" else Op("neg", (x,))
-    return Op("mul", (k, x))
-
-
-def _sum(a: Operand, b: Operand) -> Operand:
-    if a == 0.0:
-        return b
-    return a if b == 0.0 else Op("add", (a, b))
-
-
-def _plus(a: Operand, k: float) -> Operand:
-    return a if k == 0.0 else Op("add", (a, k))

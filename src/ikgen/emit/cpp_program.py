@@ -9,49 +9,14 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterator
 
+from ikgen.emit.cpp_language import CPP, LINE, comment, number
 from ikgen.emit.module import SolverModule
-from ikgen.emit.printer import Language, expression
+from ikgen.emit.printer import expression
 from ikgen.ir.interpret import _evaluate as evaluate
 from ikgen.ir.ops import Op, Operand
 from ikgen.ir.program import Call, Comment, JointOutput, Let, Level, Program, Require
 
-__all__ = ["CPP", "LINE", "ProgramText", "number", "operand_names", "used_inputs"]
-
-LINE = 110
-"""Longest line of the emitted text."""
-
-
-def number(value: float) -> str:
-    """A C++ literal that reads back to the same double."""
-    if value in (float("inf"), float("-inf")):
-        return f"{'-' if value < 0 else ''}std::numeric_limits<double>::infinity()"
-    return repr(float(value))
-
-
-def _flag(text: str) -> str:
-    return text if text.isidentifier() or text.startswith("(") else f"({text})"
-
-
-CPP = Language(
-    infix={
-        "gt": (">", 1),
-        "and": ("&", 2),
-        "add": ("+", 5),
-        "sub": ("-", 5),
-        "mul": ("*", 6),
-        "div": ("/", 6),
-    },
-    prefix={"neg": ("-", 7), "not": ("!", 7)},
-    calls={
-        "or": lambda a, b: f"({_flag(a)} | {_flag(b)})",
-        "sqrt": lambda x: f"sqrt({x})",
-        "abs": lambda x: f"abs({x})",
-        "max": lambda a, b: f"max({a}, {b})",
-        "min": lambda a, b: f"min({a}, {b})",
-        "select": lambda c, a, b: f"select({c}, {a}, {b})",
-    },
-    number=number,
-)
+__all__ = ["ProgramText", "operand_names", "used_inputs"]
 
 
 def operand_names(operand: Operand) -> set[str]:
@@ -151,18 +116,19 @@ class ProgramText:
         roots = f"roots_{index}"
         self._statement(
             f"const auto {roots} = roots_of<{branches}, {len(call.names)}, {width} * P>"
-            f"([](auto&&... x) {{ return {call.routine}_branches(x...); }}, {arguments});"
+            f"({call.routine}_branches, {arguments});"
         )
         for k, name in enumerate(call.names):
             if name in self.live:
                 self._let(name, f"{roots}.value[{k}]")
         self._require(index, f"{roots}.found")
+        self.flags["alike"].append(f"{roots}.found")
 
     def _body(self, index: int, level: Level) -> None:
         for s in level.body:
             if isinstance(s, Comment):
                 self.lines += textwrap.wrap(
-                    s.text, LINE - 2, initial_indent="// ", subsequent_indent="// "
+                    comment(s.text), LINE - 2, initial_indent="// ", subsequent_indent="// "
                 )
             elif isinstance(s, Require):
                 self._require(index, expression(CPP, s.condition, 3))

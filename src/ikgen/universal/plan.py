@@ -98,6 +98,8 @@ def _probe(frames: Matrix, count: int, rng: np.random.Generator) -> tuple[Matrix
     (24,)."""
     length = typical_length(frames)
     poses = np.array([forward(frames, q) for q in _configurations(frames, count, rng)])
+    if not len(poses):  # singular everywhere: two axes on one line, or four that keep parallel
+        return np.zeros((len(_ELIMINATIONS), 0), dtype=bool), np.zeros(len(_ELIMINATIONS))
     runs = [initial_residuals(frames, length, plan, poses) for plan in _ELIMINATIONS]
     rough = [np.quantile(np.log10(e + 1e-16), 0.9) if len(e) else 0.0 for _, e in runs]
     hits = []
@@ -122,4 +124,4 @@ def _configurations(frames: Matrix, count: int, rng: np.random.Generator) -> lis
     regular = np.nonzero(size > _REGULAR)[0]
     hard = regular[np.argsort(size[regular])][: count // 2]
     plain = [k for k in regular if k not in set(hard.tolist())][: count - len(hard)]
-    return [drawn[k] for k in (*plain, *hard)] or [drawn[0]]
+    return [drawn[k] for k in (*plain, *hard)]
