@@ -65,7 +65,17 @@ def _draw(rng: np.random.Generator) -> DHChain:
         alpha = Angle(float(twist) * np.pi, twist)
         offset: Angle | Length = straight if kind == REVOLUTE else zero
         rows.append(
-            DHRow(f"q{i + 1}", kind, alpha, a, d if kind == REVOLUTE else zero, straight, i, 1.0, offset)
+            DHRow(
+                f"q{i + 1}",
+                kind,
+                alpha,
+                a,
+                d if kind == REVOLUTE else zero,
+                straight,
+                i,
+                1.0,
+                offset,
+            )
         )
         joints.append(ActuatedJoint(f"q{i + 1}", kind, Limits(-np.inf, np.inf)))
     frames = _frames(rows)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.errors import BadDescriptionError, VerificationError
+from ikgen.verify.runners.cpp_driver import BATCH, FORWARD, INFO, JACOBIAN, SOLVE, driver
 from ikgen.verify.runners.cpp_toolchain import compile_program
 from ikgen.verify.runners.runner import ArmConstants, Rows
 
@@ -19,83 +20,6 @@ __all__ = ["CppHeader"]
 Array = NDArray[np.float64]
 
 _STATUS = ("OK", "UNREACHABLE", "LIMITS", "INVALID")
-
-# Everything is doubles: a head of (mode, N, has free, has seeds, limits), then N items.
-_DRIVER = r"""
-#include <cstdio>
-#include <vector>
-#include "@header@"
-namespace ik = @namespace@;
-using Numbers = std::vector<double>;
-
-static void put(Numbers& out, const double* values, int n) {
-  out.insert(out.end(), values, values + n);
-}
-
-static void solve(const double*& in, bool has_free, bool has_seed, bool limits, Numbers& out) {
-  Eigen::Isometry3d pose;
-  pose.matrix() = Eigen::Map<const Eigen::Matrix4d>(in);
-  in += 16;
-  ik::Options options;
-  options.limits = limits;
-  if (has_free) for (int i = 0; i < ik::kFree; ++i) options.free[i] = *in++;
-  ik::Joints seed;
-  if (has_seed) {
-    seed = Eigen::Map<const ik::Joints>(in);
-    in += ik::kDof;
-    options.seed = &seed;
-  }
-  const ik::Solutions found = ik::solve(pose, options);
-  double status = -1;
-  switch (found.status) {
-    case ik::Status::Ok: status = 0; break;
-    case ik::Status::Unreachable: status = 1; break;
-    case ik::Status::Limits: status = 2; break;
-    case ik::Status::Invalid: status = 3; break;
-  }
-  out.push_back(status);
-  out.push_back(found.count);
-  for (int k = 0; k < ik::kMaxSolutions; ++k) {
-    const bool row = k < found.count;
-    for (int i = 0; i < ik::kDof; ++i) out.push_back(row ? found.q[k][i] : 0.0);
-    out.push_back(row && found.singular[k] ? 1.0 : 0.0);
-  }
-}
-
-int main(int argc, char** argv) {
-  if (argc != 3) return 2;
-  Numbers input, out;
-  std::FILE* file = std::fopen(argv[1], "rb");
-  if (!file) return 2;
-  std::fseek(file, 0, SEEK_END);
-  input.resize(std::ftell(file) / sizeof(double));
-  std::rewind(file);
-  if (std::fread(input.data(), sizeof(double), input.size(), file) != input.size()) return 2;
-  std::fclose(file);
-  const int mode = input[0], n = input[1];
-  const double* in = input.data() + 5;
-  if (mode == 0) out = {double(ik::kDof), double(ik::kFree), double(ik::kMaxSolutions)};
-  for (int i = 0; mode > 0 && i < n; ++i) {
-    if (mode == 1) {
-      solve(in, input[2] != 0, input[3] != 0, input[4] != 0, out);
-      continue;
-    }
-    const ik::Joints q = Eigen::Map<const ik::Joints>(in);
-    in += ik::kDof;
-    if (mode == 2) {
-      const Eigen::Matrix4d T = ik::forward(q).matrix();
-      put(out, T.data(), 16);
-    } else {
-      const Eigen::Matrix<double, 6, ik::kDof> J = ik::jacobian(q);
-      put(out, J.data(), 6 * ik::kDof);
-    }
-  }
-  file = std::fopen(argv[2], "wb");
-  if (!file || std::fwrite(out.data(), sizeof(double), out.size(), file) != out.size()) return 2;
-  return std::fclose(file) == 0 ? 0 : 2;
-}
-"""
-_INFO, _SOLVE, _FORWARD, _JACOBIAN = range(4)
 
 
 class CppHeader:
@@ -116,10 +40,11 @@ class CppHeader:
         self._directory = tempfile.TemporaryDirectory(prefix="ikgen-verify-")
         work = Path(self._directory.name)
         source, self._program = work / "driver.cpp", work / "driver"
-        text = _DRIVER.replace("@header@", self.path.name)
-        source.write_text(text.replace("@namespace@", self.path.stem), encoding="utf-8")
+        self._has_batch = "solve_batch(" in self.path.read_text(encoding="utf-8")
+        text = driver(self.path.name, self.path.stem, batch=self._has_batch)
+        source.write_text(text, encoding="utf-8")
         compile_program(source, self._program, [self.path.parent])
-        dof, free, most = (int(x) for x in self._run(_INFO, 0, []))
+        dof, free, most = (int(x) for x in self._run(INFO, 0, []))
         if (dof, free) != (constants.dof, len(constants.free_joints)):
             raise BadDescriptionError(
                 f"has {dof} joints, {free} of them free, instead of {constants.dof} and "
@@ -170,11 +95,15 @@ class CppHeader:
         limits: bool = True,
     ) -> Rows:
         """`solve` for each of the poses (N, 4, 4) with free values (N, f) and seeds (N, dof)."""
-        n, dof, most = len(poses), self._constants.dof, self._constants.max_solutions
-        columns = [poses.transpose(0, 2, 1).reshape(n, 16)]  # Eigen stores columns first
+        n = len(poses)
+        columns = [_by_columns(poses)]
         columns += [extra for extra in (free, seeds) if extra is not None]
         flags = (free is not None, seeds is not None, limits)
-        out = self._run(_SOLVE, n, columns, flags).reshape(n, 2 + most * (dof + 1))
+        return self._rows(self._run(SOLVE, n, columns, flags), n)
+
+    def _rows(self, answer: Array, n: int) -> Rows:
+        dof, most = self._constants.dof, self._constants.max_solutions
+        out = answer.reshape(n, 2 + most * (dof + 1))
         table = out[:, 2:].reshape(n, most, dof + 1)
         count = np.clip(out[:, 1].astype(np.int64), 0, most)
         q = np.where((np.arange(most) < count[:, None])[:, :, None], table[:, :, :dof], np.nan)
@@ -182,14 +111,22 @@ class CppHeader:
         return Rows(q, count, status, table[:, :, dof] != 0)
 
     def solve_batch(self, poses: Array, limits: bool = True) -> Rows | None:
-        """None: the header has no batch function."""
-        return None
+        """The header's `solve_batch`; None where it has none."""
+        if not self._has_batch:
+            return None
+        n = len(poses)
+        return self._rows(self._run(BATCH, n, [_by_columns(poses)], (False, False, limits)), n)
 
     def forward(self, q: Array) -> Array:
         """Poses (N, 4, 4) for q (N, dof)."""
-        return np.asarray(self._run(_FORWARD, len(q), [q]).reshape(-1, 4, 4).transpose(0, 2, 1))
+        return np.asarray(self._run(FORWARD, len(q), [q]).reshape(-1, 4, 4).transpose(0, 2, 1))
 
     def jacobian(self, q: Array) -> Array:
         """Jacobians (N, 6, dof) for q (N, dof)."""
         dof = self._constants.dof
-        return np.asarray(self._run(_JACOBIAN, len(q), [q]).reshape(-1, dof, 6).transpose(0, 2, 1))
+        return np.asarray(self._run(JACOBIAN, len(q), [q]).reshape(-1, dof, 6).transpose(0, 2, 1))
+
+
+def _by_columns(poses: Array) -> Array:
+    """Poses (N, 4, 4) as Eigen stores them: (N, 16)."""
+    return poses.transpose(0, 2, 1).reshape(len(poses), 16)

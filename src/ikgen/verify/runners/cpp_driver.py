@@ -1,0 +1,114 @@
+"""The program that runs an emitted header: it reads poses or joint values, and writes answers."""
+
+from __future__ import annotations
+
+__all__ = ["BATCH", "FORWARD", "INFO", "JACOBIAN", "SOLVE", "driver"]
+
+INFO, SOLVE, FORWARD, JACOBIAN, BATCH = range(5)
+"""What the first number of a request asks for."""
+
+# Everything is doubles: a head of (mode, N, has free, has seeds, limits), then N items.
+_DRIVER = r"""
+#include <algorithm>
+#include <cstdio>
+#include <vector>
+#include "@header@"
+namespace ik = @namespace@;
+using Numbers = std::vector<double>;
+
+static void put(Numbers& out, const double* values, int n) {
+  out.insert(out.end(), values, values + n);
+}
+
+static Eigen::Isometry3d take_pose(const double*& in) {
+  Eigen::Isometry3d pose;
+  std::copy(in, in + 16, pose.matrix().data());
+  in += 16;
+  return pose;
+}
+
+static void put(Numbers& out, const ik::Solutions& found) {
+  double status = -1;
+  switch (found.status) {
+    case ik::Status::Ok: status = 0; break;
+    case ik::Status::Unreachable: status = 1; break;
+    case ik::Status::Limits: status = 2; break;
+    case ik::Status::Invalid: status = 3; break;
+  }
+  out.push_back(status);
+  out.push_back(found.count);
+  for (int k = 0; k < ik::kMaxSolutions; ++k) {
+    const bool row = k < found.count;
+    for (int i = 0; i < ik::kDof; ++i) out.push_back(row ? found.q[k][i] : 0.0);
+    out.push_back(row && found.singular[k] ? 1.0 : 0.0);
+  }
+}
+
+static void solve(const double*& in, bool has_free, bool has_seed, bool limits, Numbers& out) {
+  const Eigen::Isometry3d pose = take_pose(in);
+  ik::Options options;
+  options.limits = limits;
+  if (has_free) for (int i = 0; i < ik::kFree; ++i) options.free[i] = *in++;
+  ik::Joints seed;
+  if (has_seed) {
+    seed = Eigen::Map<const ik::Joints>(in);
+    in += ik::kDof;
+    options.seed = &seed;
+  }
+  put(out, ik::solve(pose, options));
+}
+
+@batch@
+int main(int argc, char** argv) {
+  if (argc != 3) return 2;
+  Numbers input, out;
+  std::FILE* file = std::fopen(argv[1], "rb");
+  if (!file) return 2;
+  std::fseek(file, 0, SEEK_END);
+  input.resize(std::ftell(file) / sizeof(double));
+  std::rewind(file);
+  if (std::fread(input.data(), sizeof(double), input.size(), file) != input.size()) return 2;
+  std::fclose(file);
+  const int mode = input[0], n = input[1];
+  const double* in = input.data() + 5;
+  if (mode == 0) out = {double(ik::kDof), double(ik::kFree), double(ik::kMaxSolutions)};
+  if (mode == 4) solve_batch(in, n, input[4] != 0, out);
+  for (int i = 0; mode > 0 && mode < 4 && i < n; ++i) {
+    if (mode == 1) {
+      solve(in, input[2] != 0, input[3] != 0, input[4] != 0, out);
+      continue;
+    }
+    const ik::Joints q = Eigen::Map<const ik::Joints>(in);
+    in += ik::kDof;
+    if (mode == 2) {
+      const Eigen::Matrix4d T = ik::forward(q).matrix();
+      put(out, T.data(), 16);
+    } else {
+      const Eigen::Matrix<double, 6, ik::kDof> J = ik::jacobian(q);
+      put(out, J.data(), 6 * ik::kDof);
+    }
+  }
+  file = std::fopen(argv[2], "wb");
+  if (!file || std::fwrite(out.data(), sizeof(double), out.size(), file) != out.size()) return 2;
+  return std::fclose(file) == 0 ? 0 : 2;
+}
+"""
+
+_BATCH = r"""
+static void solve_batch(const double* in, int n, bool limits, Numbers& out) {
+  std::vector<Eigen::Isometry3d, Eigen::aligned_allocator<Eigen::Isometry3d>> poses;
+  for (int i = 0; i < n; ++i) poses.push_back(take_pose(in));
+  std::vector<ik::Solutions, Eigen::aligned_allocator<ik::Solutions>> found(poses.size());
+  ik::Options options;
+  options.limits = limits;
+  ik::solve_batch(poses.data(), n, found.data(), options);
+  for (const ik::Solutions& one : found) put(out, one);
+}
+"""
+_NO_BATCH = "static void solve_batch(const double*, int, bool, Numbers&) {}"
+
+
+def driver(header: str, namespace: str, *, batch: bool) -> str:
+    """Text of the program for a header (file name), with or without its `solve_batch`."""
+    text = _DRIVER.replace("@header@", header).replace("@namespace@", namespace)
+    return text.replace("@batch@", _BATCH.strip() if batch else _NO_BATCH)
