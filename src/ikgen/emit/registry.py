@@ -58,6 +58,12 @@ EMITTERS: tuple[Emitter, ...] = (
         "ikgen.generate_runners:cpp_runner",
     ),
     Emitter(
+        "nanobind",
+        "the C++ header as a Python package to compile, with the Python module's interface",
+        "ikgen.emit.nanobind:emit_derivation",
+        "ikgen.emit.nanobind:header_runner",
+    ),
+    Emitter(
         "report",
         "how it was derived, as LaTeX and HTML, with the solution graph",
         "ikgen.emit.report:emit_derivation",

@@ -188,7 +188,7 @@ class Lowering:
         self.place(Comment(text))
         forms = [realize(g, c, sigma, self.tolerances) for c in (step.candidate, *step.fallbacks)]
         self._define(v, self._select(v, forms, sigma))
-        if step.candidate.form == "pair":
+        if any(c.form == "pair" for c in (step.candidate, *step.fallbacks)):
             self._unit_norm(v)
 
     def _select(self, v: Variable, forms: list[Realized], sigma: Expr) -> tuple[Expr, ...]:

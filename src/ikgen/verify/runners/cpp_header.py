@@ -129,4 +129,4 @@ class CppHeader:
 
 def _by_columns(poses: Array) -> Array:
     """Poses (N, 4, 4) as Eigen stores them: (N, 16)."""
-    return poses.transpose(0, 2, 1).reshape(len(poses), 16)
+    return np.asarray(poses.transpose(0, 2, 1).reshape(len(poses), 16))

@@ -1,0 +1,57 @@
+"""Emitter of a compiled Python package: the C++ header behind the interface of the Python module."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+from ikgen.emit.cpp import emit_header
+from ikgen.emit.module import SolverModule
+from ikgen.emit.rendering import render
+
+if TYPE_CHECKING:
+    from ikgen.verify.runners.cpp_header import CppHeader
+
+__all__ = ["emit", "emit_derivation", "header_runner"]
+
+_FILES = ("pyproject.toml", "CMakeLists.txt", "README.md", "native.cpp")
+_PACKAGE = ("__init__.py", "_status.py", "_native.pyi", "py.typed")
+
+
+class _Derived(Protocol):
+    @property
+    def module(self) -> SolverModule: ...
+
+
+def emit_derivation(derivation: _Derived) -> dict[str, str]:
+    """Relative path -> text of the package's folder, `<name>_ik_ext/`."""
+    return emit(derivation.module)
+
+
+def emit(module: SolverModule) -> dict[str, str]:
+    """Relative path -> text: what `pip install ./<name>_ik_ext` needs, the header included."""
+    package = f"{module.name}_ik_ext"
+    paths = {f"{package}/{file}": file for file in _FILES}
+    paths |= {f"{package}/{package}/{file}": file for file in _PACKAGE}
+    values = {
+        "m": module,
+        "package": package,
+        "namespace": f"{module.name}_ik",
+        "joint_names": tuple(joint.name for joint in module.dh.joints),
+        "free_joints": tuple(module.dh.joints[j].name for j in module.free),
+        "lower": [_number(joint.limits.lower) for joint in module.dh.joints],
+        "upper": [_number(joint.limits.upper) for joint in module.dh.joints],
+    }
+    out = {path: render("nanobind", f"{file}.jinja", **values) for path, file in paths.items()}
+    return out | {f"{package}/{module.name}_ik.hpp": emit_header(module)}
+
+
+def _number(value: float) -> str:
+    return repr(float(value)) if abs(value) < float("inf") else f'float("{value}")'
+
+
+def header_runner(module: SolverModule, folder: Path) -> CppHeader:
+    """The package's header, compiled into a program that solves poses in bulk."""
+    from ikgen.generate_runners import cpp_runner
+
+    return cpp_runner(module, folder / f"{module.name}_ik_ext")

@@ -1,0 +1,93 @@
+"""The compiled package, built and installed by pip: the Python module's interface and numbers."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import subprocess
+import sys
+import venv
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from cpp_modules import ROBOTS, solver_module
+
+from ikgen.emit.nanobind import emit
+from ikgen.emit.python import emit_module
+
+
+def test_the_folder_stands_alone() -> None:
+    module = solver_module(ROBOTS[0])
+    name = f"{module.name}_ik_ext"
+    files = emit(module)
+    assert all(path.startswith(f"{name}/") for path in files)
+    assert {f"{name}/pyproject.toml", f"{name}/CMakeLists.txt", f"{name}/{name}/py.typed"} <= {
+        *files
+    }
+    assert f'#include "{module.name}_ik.hpp"' in files[f"{name}/native.cpp"]
+
+
+@pytest.fixture(scope="module")
+def both(tmp_path_factory: pytest.TempPathFactory) -> tuple[ModuleType, ModuleType]:
+    """The installed package, and the Python module of the same arm."""
+    folder = tmp_path_factory.mktemp("nanobind")
+    module = solver_module("ur5e")
+    for path, text in emit(module).items():
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / path).write_text(text)
+    target = folder / "site"
+    venv.create(folder / "venv", with_pip=True)
+    pip = [folder / "venv" / "bin" / "python", "-m", "pip", "install", "--no-deps"]
+    subprocess.run([*pip, "--target", target, folder / "ur5e_ik_ext"], check=True)
+    sys.path.insert(0, str(target))
+    native = importlib.import_module("ur5e_ik_ext")
+    path = folder / "ur5e_ik.py"
+    path.write_text(emit_module(module))
+    spec = importlib.util.spec_from_file_location("ur5e_plain_ik", path)
+    assert spec is not None and spec.loader is not None
+    python = importlib.util.module_from_spec(spec)
+    sys.modules["ur5e_plain_ik"] = python
+    spec.loader.exec_module(python)
+    return native, python
+
+
+@pytest.mark.slow
+def test_answers_are_the_python_modules(both: tuple[ModuleType, ModuleType]) -> None:
+    native, python = both
+    q = np.random.default_rng(0).uniform(-2.0, 2.0, (100, 6))
+    poses = python.forward(q)
+    assert np.allclose(native.forward(q), poses, atol=1e-12)
+    assert np.allclose(native.jacobian(q[0]), python.jacobian(q[0]), atol=1e-12)
+    for i, pose in enumerate(poses):
+        for options in ({}, {"seed": q[i]}, {"limits": False}):
+            mine, its = native.solve(pose, **options), python.solve(pose, **options)
+            assert mine.status.value == its.status.value and len(mine) == len(its)
+            assert np.allclose(mine.q, its.q, atol=1e-9)
+            assert (mine.singular == its.singular).all() and len(list(mine)) == len(mine)
+    for options in ({}, {"seed": q}, {"seed": q[0]}, {"limits": False}):
+        one, other = (m.solve_batch(poses, **options) for m in both)
+        assert np.allclose(one[0], other[0], atol=1e-9, equal_nan=True)
+        assert (one[1] == other[1]).all() and (one[2] == other[2]).all()
+
+
+@pytest.mark.slow
+def test_constants_and_errors_are_the_python_modules(both: tuple[ModuleType, ModuleType]) -> None:
+    native, python = both
+    for name in python.__all__:
+        mine, its = getattr(native, name), getattr(python, name)
+        assert callable(its) or np.array_equal(mine, its), name
+    pose = python.forward(np.zeros(6))
+    for call in (
+        lambda m: m.solve(np.eye(3)),
+        lambda m: m.solve(pose, seed=[1.0]),
+        lambda m: m.solve(pose, free={"none": 1.0}),
+        lambda m: m.solve_batch(pose),
+        lambda m: m.forward([1.0, 2.0]),
+    ):
+        for m in both:
+            with pytest.raises(ValueError):
+                call(m)
+    pose[0, 3] = np.nan
+    assert native.solve(pose.tolist()).status is native.Status.INVALID
