@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
@@ -40,10 +41,17 @@ def emit(module: SolverModule) -> dict[str, str]:
         "joint_names": tuple(joint.name for joint in module.dh.joints),
         "free_joints": tuple(module.dh.joints[j].name for j in module.free),
         "lower": [_number(joint.limits.lower) for joint in module.dh.joints],
+        "version": _version(module.generator_version),
         "upper": [_number(joint.limits.upper) for joint in module.dh.joints],
     }
     out = {path: render("nanobind", f"{file}.jinja", **values) for path, file in paths.items()}
     return out | {f"{package}/{module.name}_ik.hpp": emit_header(module)}
+
+
+def _version(generator: str) -> str:
+    """The generator's version where packages can have it (PEP 440)."""
+    plain = re.fullmatch(r"\d+(\.\d+)*((a|b|rc|\.post|\.dev)\d+)*", generator)
+    return generator if plain else "0"
 
 
 def _number(value: float) -> str:

@@ -1,0 +1,55 @@
+"""Times of solvers as bars on a logarithmic scale: SVG, written out."""
+
+from __future__ import annotations
+
+import math
+from html import escape
+
+__all__ = ["picture"]
+
+_ROW, _LEFT, _WIDTH, _TOP = 20, 170, 420, 34
+
+
+def picture(bars: list[tuple[str, str, float]]) -> str:
+    """The SVG text; bars are (arm, solver, microseconds a pose), those of an arm fastest first."""
+    low = math.floor(math.log10(min(b[2] for b in bars)))
+    high = math.ceil(math.log10(max(b[2] for b in bars)))
+    arms = list(dict.fromkeys(b[0] for b in bars))
+    parts: list[str] = []
+    y = _TOP
+
+    def place(value: float) -> float:
+        return _LEFT + _WIDTH * (math.log10(value) - low) / (high - low)
+
+    for arm in arms:
+        parts.append(f'<text x="8" y="{y + 14}" font-weight="bold">{escape(arm)}</text>')
+        y += _ROW
+        for _, solver, value in sorted((b for b in bars if b[0] == arm), key=lambda b: b[2]):
+            fill = "#2a6f97" if solver.startswith("ikgen") else "#b9c4cc"
+            end = place(value)
+            parts.append(
+                f'<text x="{_LEFT - 8}" y="{y + 14}" text-anchor="end">{escape(solver)}</text>'
+            )
+            parts.append(
+                f'<rect x="{_LEFT}" y="{y + 3}" width="{max(end - _LEFT, 1):.1f}" height="14" '
+                f'fill="{fill}"/>'
+            )
+            parts.append(f'<text x="{end + 5:.1f}" y="{y + 14}" fill="#456">{value:.3g}</text>')
+            y += _ROW
+        y += 8
+    grid = []
+    for k in range(low, high + 1):
+        x = place(10.0**k)
+        grid.append(f'<path d="M{x:.1f} {_TOP} V{y}" stroke="#dde3e7"/>')
+        grid.append(
+            f'<text x="{x:.1f}" y="{y + 16}" text-anchor="middle" fill="#456">{10.0**k:g}</text>'
+        )
+    width, height = _LEFT + _WIDTH + 70, y + 26
+    head = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
+        f'viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="12">\n'
+        f'<rect width="{width}" height="{height}" fill="#fff"/>\n'
+        '<text x="8" y="18" font-size="14">All solutions of one pose, microseconds (one core, '
+        "logarithmic scale)</text>"
+    )
+    return "\n".join([head, *grid, *parts, "</svg>"]) + "\n"

@@ -1,0 +1,217 @@
+"""ikgen's emitted code against other packages, on the same reachable poses and in one process.
+
+    python -m benchmarks.peers ROBOTS_FOLDER [--poses N] [--svg FILE]
+
+ROBOTS_FOLDER holds abb_irb2400.urdf, kuka_kr6r900sixx.urdf, ur5e.urdf and franka_panda_erd.urdf.
+Peers are optional: pip install EAIK py-opw-kinematics ssik ikdh pin, of which missing ones are named;
+the compiled package needs pip, a C++ compiler and network access for its build tools.
+Times are medians over rounds in which the solvers take turns. Recall: the configuration that a pose
+was made from is among the rows, whole turns aside. ssik lists whole turns as rows of their own, and
+chooses the values of a redundant joint itself, so that its recall on such an arm says nothing.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks.cpp_speed import FLAGS, measure
+from benchmarks.peer_picture import picture
+from benchmarks.peer_solvers import PEERS, Absent, Arm, Array, Solver
+from ikgen.generate import Outputs, generate
+from ikgen.pipeline import Request
+
+OPW_IRB2400 = {
+    "a1": 0.1, "a2": -0.135, "b": 0.0, "c1": 0.615, "c2": 0.705, "c3": 0.755, "c4": 0.085,
+    "offsets": (0.0, 0.0, -np.pi / 2, 0.0, 0.0, 0.0),
+}  # fmt: skip
+OPW_KR6 = {
+    "a1": 0.025, "a2": -0.035, "b": 0.0, "c1": 0.4, "c2": 0.455, "c3": 0.42, "c4": 0.08,
+    "offsets": (0.0, -np.pi / 2, 0.0, 0.0, 0.0, 0.0),
+    "flip_axes": (True, False, False, True, False, True),
+}  # fmt: skip
+ARMS: dict[str, tuple[str, tuple[tuple[str, float], ...], dict[str, Any], str]] = {
+    "IRB 2400": ("abb_irb2400", (), OPW_IRB2400, "abb_irb_2400_10.yaml"),
+    "KR 6 R900": ("kuka_kr6r900sixx", (), OPW_KR6, "kuka_kr_6_r900_sixx.yaml"),
+    "UR5e": ("ur5e", (), {}, "ur5e.yaml"),
+    "Panda": ("franka_panda_erd", (("panda_joint7", 0.4),), {}, ""),
+}
+
+
+@dataclass(frozen=True)
+class Result:
+    """One solver on one arm; `microseconds` a pose, None where there is nothing to tell."""
+
+    arm: str
+    solver: str
+    microseconds: float
+    rows: float | None = None
+    recall: float | None = None
+    error: float | None = None
+    singular: str = ""
+    unreachable: str = ""
+
+
+def make_arm(name: str, robots: Path, out: Path) -> tuple[Arm, Path]:
+    """The arm's modules, freshly generated; the path of its header."""
+    file, free, opw, table = ARMS[name]
+    request = Request(robots / f"{file}.urdf", free=free, name=file)
+    generate(request, Outputs(emit=("python", "cpp", "nanobind"), out=out, verify=False))
+    sys.path.insert(0, str(out))
+    module = importlib.import_module(f"{file}_ik")
+    values = tuple(value for _, value in free)
+    return Arm(name, request.robot, module, values, opw, table), out / f"{file}_ik.hpp"
+
+
+def compiled(arm: Arm, out: Path) -> Any:
+    """The installed compiled package; raises Absent where it cannot be built."""
+    name = arm.module.__name__.removesuffix("_ik") + "_ik_ext"
+    target = out / "site"
+    command = [sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--target", str(target)]
+    done = subprocess.run([*command, str(out / name)], capture_output=True, check=False)
+    if done.returncode:
+        raise Absent("its build tools are not at hand")
+    sys.path.insert(0, str(target))
+    return importlib.import_module(name)
+
+
+def solvers(arm: Arm, out: Path) -> dict[str, Solver]:
+    """What there is to compare; says what is missing."""
+    free = list(arm.free) or None
+
+    def native(arm: Arm) -> Solver:
+        package = compiled(arm, out)
+        return lambda pose: np.asarray(package.solve(pose, free=free, limits=False).q)
+
+    makers: dict[str, Callable[[Arm], Solver]] = {
+        "ikgen, Python": lambda arm: lambda pose: arm.module.solve(pose, free=free, limits=False).q,
+        "ikgen, nanobind": native,
+    } | PEERS
+    found = {}
+    for name, make in makers.items():
+        try:
+            found[name] = make(arm)
+        except Absent as reason:
+            print(f"  {name}: left out, {reason}")
+    return found
+
+
+def configurations(arm: Arm, count: int, rng: np.random.Generator) -> Array:
+    """Random joint values inside the limits (count, dof), held joints at their values."""
+    low, high = np.maximum(arm.module.LOWER, -np.pi), np.minimum(arm.module.UPPER, np.pi)
+    q = rng.uniform(low, high, (count, arm.module.DOF))
+    for j, value in arm.held:
+        q[:, j] = value
+    return q
+
+
+def run(arm: Arm, named: dict[str, Solver], q: Array) -> list[Result]:
+    """All solvers on the poses of q, in turns."""
+    poses = arm.module.forward(q)
+    times: dict[str, list[float]] = {name: [] for name in named}
+    answers: dict[str, list[Array]] = {}
+    for _ in range(5):
+        for name, solve in named.items():
+            few = poses[: 20 if name in ("ssik", "Pinocchio CLIK") else None]
+            start = time.perf_counter()
+            answers[name] = [solve(pose) for pose in few]
+            times[name].append((time.perf_counter() - start) / len(few) * 1e6)
+    out = []
+    for name, rows in answers.items():
+        recall = np.mean([contains(a, b) for a, b in zip(rows, q, strict=False)])
+        error = max(closure(arm, a, T) for a, T in zip(rows, poses, strict=False))
+        counts = float(np.mean([len(a) for a in rows]))
+        special = behaviour(arm, named[name])
+        median = float(np.median(times[name]))
+        out.append(Result(arm.name, name, median, counts, float(recall), error, *special))
+    return out
+
+
+def contains(rows: Array, q: Array) -> bool:
+    """Whether q is among the rows to 1e-4, whole turns aside."""
+    apart = np.abs((rows - q + np.pi) % (2 * np.pi) - np.pi)
+    return bool(len(rows)) and bool((apart.max(axis=1) < 1e-4).any())
+
+
+def closure(arm: Arm, rows: Array, pose: Array) -> float:
+    """Largest error of the rows' poses (m, or entries of the rotation)."""
+    return float(np.abs(arm.module.forward(rows) - pose).max()) if len(rows) else 0.0
+
+
+def behaviour(arm: Arm, solve: Solver) -> tuple[str, str]:
+    """What a solver says of a pose with two axes on one line, and of one far outside."""
+    q = np.full(arm.module.DOF, 0.3)
+    q[1], q[2], q[4] = -0.9, 0.8, 0.0
+    for j, value in arm.held:
+        q[j] = value
+    singular = arm.module.forward(q)
+    far = singular.copy()
+    far[:3, 3] = 9.0
+    words = []
+    for pose in (singular, far):
+        try:
+            rows = solve(pose)
+            wrong = sum(closure(arm, row[None], pose) > 1e-6 for row in rows)
+            words.append(f"{len(rows)} rows" + (f", {wrong} wrong" if wrong else ""))
+        except Exception as error:
+            words.append(type(error).__name__)
+    return words[0], words[1]
+
+
+def batched(arm: Arm, q: Array) -> Result:
+    """NumPy's arrays, 1000 poses at once."""
+    poses = arm.module.forward(np.resize(q, (1000, arm.module.DOF)))
+    spans = []
+    for _ in range(3):
+        start = time.perf_counter()
+        arm.module.solve_batch(poses, free=list(arm.free) or None, limits=False)
+        spans.append((time.perf_counter() - start) / len(poses) * 1e6)
+    return Result(arm.name, "ikgen, NumPy batch", float(np.median(spans)))
+
+
+def show(results: list[Result]) -> None:
+    """The table."""
+    head = f"{'arm':10} {'solver':20} {'us/pose':>9} {'rows':>6} {'recall':>6} {'error':>8}"
+    print(f"{head}  singular; unreachable")
+    for r in results:
+        numbers = "" if r.rows is None else f"{r.rows:6.2f} {r.recall:6.3f} {r.error:8.1e}"
+        end = f"  {r.singular}; {r.unreachable}" if r.singular else ""
+        print(f"{r.arm:10} {r.solver:20} {r.microseconds:9.2f} {numbers}{end}")
+
+
+def main() -> None:
+    """Measure, print, draw."""
+    layout = argparse.RawTextHelpFormatter
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=layout)
+    parser.add_argument("robots", type=Path)
+    parser.add_argument("--poses", type=int, default=200)
+    parser.add_argument("--svg", type=Path, default=Path(__file__).with_name("peers.svg"))
+    parser.add_argument("--arms", nargs="+", choices=ARMS, default=list(ARMS))
+    options = parser.parse_args()
+    results: list[Result] = []
+    with tempfile.TemporaryDirectory() as folder:
+        for name in options.arms:
+            print(name)
+            arm, header = make_arm(name, options.robots, Path(folder))
+            q = configurations(arm, options.poses, np.random.default_rng(2))
+            results += run(arm, solvers(arm, Path(folder)), q)
+            results.append(batched(arm, q))
+            _, (single, _, _) = measure(header, FLAGS["plain"], limits=False)
+            results.append(Result(name, "ikgen, C++ header", single / 1000.0))
+    show(results)
+    bars = [(r.arm, r.solver, r.microseconds) for r in results]
+    options.svg.write_text(picture(bars), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
