@@ -1,6 +1,6 @@
 """Other packages' solvers behind one signature: pose (4, 4) of the arm's tip in its base -> rows (k, dof).
 
-Each factory takes an `Arm` and raises `Absent` with the reason where a package cannot be compared.
+Each factory takes an `Arm` and raises `AbsentError` with the reason where a package cannot be compared.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["PEERS", "Absent", "Arm", "Solver"]
+__all__ = ["PEERS", "AbsentError", "Arm", "Solver"]
 
 Array = NDArray[np.float64]
 Solver = Callable[[Array], Array]
 
 
-class Absent(Exception):
+class AbsentError(Exception):
     """A package is not installed, or does not cover the arm."""
 
 
@@ -50,12 +50,12 @@ def _import(name: str) -> Any:
     try:
         return importlib.import_module(name)
     except ImportError as error:
-        raise Absent("not installed") from error
+        raise AbsentError("not installed") from error
 
 
 def _calibrated(arm: Arm, forward: Callable[[Array], Array]) -> tuple[Array, Array]:
     """Constant transforms B, X with `arm's forward = B @ forward @ X`; B is a turn about z by a
-    right angle. Raises Absent where the peer's geometry is another one."""
+    right angle. Raises AbsentError where the peer's geometry is another one."""
     rng = np.random.default_rng(5)
     q = rng.uniform(-1.0, 1.0, (4, arm.module.DOF))
     mine = arm.module.forward(q)
@@ -67,7 +67,7 @@ def _calibrated(arm: Arm, forward: Callable[[Array], Array]) -> tuple[Array, Arr
         X = np.linalg.inv(B @ its[0]) @ mine[0]
         if np.abs(B @ its @ X - mine).max() < 1e-6:
             return B, X
-    raise Absent("its geometry of the arm differs")
+    raise AbsentError("its geometry of the arm differs")
 
 
 def eaik(arm: Arm) -> Solver:
@@ -80,7 +80,7 @@ def eaik(arm: Arm) -> Solver:
     steps = np.diff(np.vstack([np.zeros(3), points, tip[:3, 3]]), axis=0)
     robot = core.Robot(axes.T, steps.T, tip[:3, :3], arm.held, True)
     if not robot.has_known_decomposition():
-        raise Absent("knows no decomposition of the arm")
+        raise AbsentError("knows no decomposition of the arm")
 
     def solve(pose: Array) -> Array:
         found = robot.calculate_IK(pose)
@@ -95,7 +95,7 @@ def opw(arm: Arm) -> Solver:
     """py-opw-kinematics (ortho-parallel base and spherical wrist, Rust)."""
     package = _import("py_opw_kinematics")
     if not arm.opw:
-        raise Absent("not an OPW arm, or no parameters at hand")
+        raise AbsentError("not an OPW arm, or no parameters at hand")
     robot = package.Robot(package.KinematicModel(**arm.opw), degrees=False)
     _, X = _calibrated(arm, lambda q: np.asarray(robot.forward(tuple(q)).as_matrix()))
     back = np.linalg.inv(X)
@@ -115,7 +115,7 @@ def ssik(arm: Arm) -> Solver:
             arm.urdf, base=arm.module.BASE_LINK, ee=arm.module.TIP_LINK
         )
     except Exception as error:
-        raise Absent(f"does not load the URDF: {str(error)[:60]}") from error
+        raise AbsentError(f"does not load the URDF: {str(error)[:60]}") from error
 
     def solve(pose: Array) -> Array:
         return np.array([s.q for s in robot.solve(pose)]).reshape(-1, arm.module.DOF)
@@ -127,7 +127,7 @@ def ikdh(arm: Arm) -> Solver:
     """ikdh (C++), from its own table of the arm."""
     package = _import("ikdh")
     if not arm.ikdh:
-        raise Absent("has no table of the arm")
+        raise AbsentError("has no table of the arm")
     robot = package.load_robot(arm.ikdh)
     B, X = _calibrated(arm, lambda q: np.asarray(package.forward_kin(robot.dh, np.degrees(q))))
     solver = package.Solver(robot.dh, robot.limits)

@@ -5,47 +5,27 @@
 ROBOTS_FOLDER holds abb_irb2400.urdf, kuka_kr6r900sixx.urdf, ur5e.urdf and franka_panda_erd.urdf.
 Peers are optional: pip install EAIK py-opw-kinematics ssik ikdh pin, of which missing ones are named;
 the compiled package needs pip, a C++ compiler and network access for its build tools.
-Times are medians over rounds in which the solvers take turns. Recall: the configuration that a pose
-was made from is among the rows, whole turns aside. ssik lists whole turns as rows of their own, and
-chooses the values of a redundant joint itself, so that its recall on such an arm says nothing.
+Times are medians over rounds in which the solvers take turns; the slow ones take twenty of the poses.
+Recall: the configuration that a pose was made from is among the rows, whole turns aside. ssik lists
+whole turns as rows of their own, and chooses the values of a redundant joint itself, so that its
+recall on such an arm says nothing.
 """
 
 from __future__ import annotations
 
 import argparse
-import importlib
-import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from benchmarks.cpp_speed import FLAGS, measure
+from benchmarks.peer_arms import ARMS, compiled, make_arm
 from benchmarks.peer_picture import picture
-from benchmarks.peer_solvers import PEERS, Absent, Arm, Array, Solver
-from ikgen.generate import Outputs, generate
-from ikgen.pipeline import Request
-
-OPW_IRB2400 = {
-    "a1": 0.1, "a2": -0.135, "b": 0.0, "c1": 0.615, "c2": 0.705, "c3": 0.755, "c4": 0.085,
-    "offsets": (0.0, 0.0, -np.pi / 2, 0.0, 0.0, 0.0),
-}  # fmt: skip
-OPW_KR6 = {
-    "a1": 0.025, "a2": -0.035, "b": 0.0, "c1": 0.4, "c2": 0.455, "c3": 0.42, "c4": 0.08,
-    "offsets": (0.0, -np.pi / 2, 0.0, 0.0, 0.0, 0.0),
-    "flip_axes": (True, False, False, True, False, True),
-}  # fmt: skip
-ARMS: dict[str, tuple[str, tuple[tuple[str, float], ...], dict[str, Any], str]] = {
-    "IRB 2400": ("abb_irb2400", (), OPW_IRB2400, "abb_irb_2400_10.yaml"),
-    "KR 6 R900": ("kuka_kr6r900sixx", (), OPW_KR6, "kuka_kr_6_r900_sixx.yaml"),
-    "UR5e": ("ur5e", (), {}, "ur5e.yaml"),
-    "Panda": ("franka_panda_erd", (("panda_joint7", 0.4),), {}, ""),
-}
+from benchmarks.peer_solvers import PEERS, AbsentError, Arm, Array, Solver
 
 
 @dataclass(frozen=True)
@@ -60,29 +40,6 @@ class Result:
     error: float | None = None
     singular: str = ""
     unreachable: str = ""
-
-
-def make_arm(name: str, robots: Path, out: Path) -> tuple[Arm, Path]:
-    """The arm's modules, freshly generated; the path of its header."""
-    file, free, opw, table = ARMS[name]
-    request = Request(robots / f"{file}.urdf", free=free, name=file)
-    generate(request, Outputs(emit=("python", "cpp", "nanobind"), out=out, verify=False))
-    sys.path.insert(0, str(out))
-    module = importlib.import_module(f"{file}_ik")
-    values = tuple(value for _, value in free)
-    return Arm(name, request.robot, module, values, opw, table), out / f"{file}_ik.hpp"
-
-
-def compiled(arm: Arm, out: Path) -> Any:
-    """The installed compiled package; raises Absent where it cannot be built."""
-    name = arm.module.__name__.removesuffix("_ik") + "_ik_ext"
-    target = out / "site"
-    command = [sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--target", str(target)]
-    done = subprocess.run([*command, str(out / name)], capture_output=True, check=False)
-    if done.returncode:
-        raise Absent("its build tools are not at hand")
-    sys.path.insert(0, str(target))
-    return importlib.import_module(name)
 
 
 def solvers(arm: Arm, out: Path) -> dict[str, Solver]:
@@ -101,7 +58,7 @@ def solvers(arm: Arm, out: Path) -> dict[str, Solver]:
     for name, make in makers.items():
         try:
             found[name] = make(arm)
-        except Absent as reason:
+        except AbsentError as reason:
             print(f"  {name}: left out, {reason}")
     return found
 
@@ -123,6 +80,8 @@ def run(arm: Arm, named: dict[str, Solver], q: Array) -> list[Result]:
     for _ in range(5):
         for name, solve in named.items():
             few = poses[: 20 if name in ("ssik", "Pinocchio CLIK") else None]
+            for pose in few[:10]:
+                solve(pose)  # the caches were another's
             start = time.perf_counter()
             answers[name] = [solve(pose) for pose in few]
             times[name].append((time.perf_counter() - start) / len(few) * 1e6)

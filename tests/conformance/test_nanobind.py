@@ -7,7 +7,6 @@ import importlib.util
 import subprocess
 import sys
 import venv
-from pathlib import Path
 from types import ModuleType
 
 import numpy as np
