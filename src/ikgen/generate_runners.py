@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from ikgen.verify.runners.cpp_header import CppHeader
     from ikgen.verify.runners.python_module import PythonModule
 
-__all__ = ["cpp_runner", "python_runner"]
+__all__ = ["cpp_runner", "nanobind_runner", "python_runner"]
 
 
 def python_runner(module: SolverModule, folder: Path) -> PythonModule:
@@ -39,3 +39,8 @@ def cpp_runner(module: SolverModule, folder: Path) -> CppHeader:
         tuple(dh.joints[j].name for j in module.free),
     )
     return CppHeader(folder / f"{module.name}_ik.hpp", constants)
+
+
+def nanobind_runner(module: SolverModule, folder: Path) -> CppHeader:
+    """The header in the package to compile, as for `cpp_runner`."""
+    return cpp_runner(module, folder / f"{module.name}_ik_ext")

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from ikgen.emit.cpp import emit_header
 from ikgen.emit.module import SolverModule
 from ikgen.emit.rendering import render
 
-if TYPE_CHECKING:
-    from ikgen.verify.runners.cpp_header import CppHeader
-
-__all__ = ["emit", "emit_derivation", "header_runner"]
+__all__ = ["emit", "emit_derivation"]
 
 _FILES = ("pyproject.toml", "CMakeLists.txt", "README.md", "native.cpp")
 _PACKAGE = ("__init__.py", "_status.py", "_native.pyi", "py.typed")
@@ -56,10 +52,3 @@ def _version(generator: str) -> str:
 
 def _number(value: float) -> str:
     return repr(float(value)) if abs(value) < float("inf") else f'float("{value}")'
-
-
-def header_runner(module: SolverModule, folder: Path) -> CppHeader:
-    """The package's header, compiled into a program that solves poses in bulk."""
-    from ikgen.generate_runners import cpp_runner
-
-    return cpp_runner(module, folder / f"{module.name}_ik_ext")

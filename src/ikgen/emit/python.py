@@ -174,7 +174,7 @@ class _JointText:
         """`scale * (v - offset)` with offsets of whole right angles folded into the pair."""
         o = self.output
         if self.held:
-            return self.held if language is SCALAR else "0.0"
+            return self.held if language is SCALAR else "np.zeros(1)"
         if not o.revolute:
             value: Operand = o.cosine
             if self.offset:

@@ -61,7 +61,7 @@ EMITTERS: tuple[Emitter, ...] = (
         "nanobind",
         "the C++ header as a Python package to compile, with the Python module's interface",
         "ikgen.emit.nanobind:emit_derivation",
-        "ikgen.emit.nanobind:header_runner",
+        "ikgen.generate_runners:nanobind_runner",
     ),
     Emitter(
         "report",
