@@ -96,7 +96,7 @@ def rank_key(candidate: Candidate) -> tuple[object, ...]:
     return (
         j.weak,
         candidate.branches,
-        PREFERENCE.index(candidate.leaf),
+        PREFERENCE.index(candidate.leaf) if candidate.leaf in PREFERENCE else len(PREFERENCE),
         round(j.fragile, 1),
         candidate.branches == 1 and sum(e.squared for e in candidate.sources),
         j.cost,

@@ -10,7 +10,7 @@ from ikgen.equations.knowledge import Knowledge
 from ikgen.equations.probes import make_probes
 from ikgen.model.dh import DHChain
 from ikgen.solver.graph import SolutionGraph, graph_of
-from ikgen.solver.leaves import LEAVES, Leaf
+from ikgen.solver.leaves import Leaf, all_leaves
 from ikgen.solver.session import Session
 from ikgen.solver.tree import build_tree, tick
 
@@ -22,13 +22,14 @@ def solve_chain(
     *,
     readable: frozenset[str] = frozenset(ENTRY_NAMES),
     tool_on_right: bool = False,
-    leaves: Sequence[Leaf] = LEAVES,
+    leaves: Sequence[Leaf] | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> SolutionGraph:
     """Closed forms for every joint variable of `dh`; `graph.open_joints` lists what is left.
 
     `readable` names the pose entries that the task reads; with `tool_on_right` the tool transform is
-    part of the chain (tasks that do not read the whole pose).
+    part of the chain (tasks that do not read the whole pose). `leaves` are by default ikgen's own and
+    those of other packages.
     """
     probes = make_probes(dh, tool=tool_on_right)
     graph = ExpressionGraph(len(probes.values))
@@ -40,7 +41,7 @@ def solve_chain(
     held = tuple(i for i, joint in enumerate(dh.joints) if joint.name in dh.free)
     session = Session(system, probes, knowledge, held=held)
     session.start()
-    tree = build_tree(session, leaves)
+    tree = build_tree(session, all_leaves() if leaves is None else leaves)
     while session.open_joints:
         if not tick(tree):
             break

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from importlib.metadata import entry_points
 
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
 from ikgen.solver.candidate import Candidate
@@ -20,7 +21,7 @@ from ikgen.solver.leaves import (
     trig_quartic,
 )
 
-__all__ = ["LEAVES", "Leaf"]
+__all__ = ["LEAVES", "Leaf", "all_leaves"]
 
 Find = Callable[[Sequence[PolynomialEquation], Variable, Knowledge], list[Candidate]]
 
@@ -41,3 +42,10 @@ LEAVES: tuple[Leaf, ...] = (
     Leaf("quadratic", root.find),
     Leaf("quartic", trig_quartic.find),
 )
+
+
+def all_leaves() -> tuple[Leaf, ...]:
+    """The leaves above and those of other packages: entry points of the group `ikgen.leaves`, each a
+    `Leaf`. Theirs are ranked behind ours of the same soundness and number of branches."""
+    others = sorted(entry_points(group="ikgen.leaves"), key=lambda entry: entry.name)
+    return (*LEAVES, *(entry.load() for entry in others))
