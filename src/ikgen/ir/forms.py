@@ -12,21 +12,29 @@ from ikgen.solver.candidate import Candidate
 __all__ = ["Divisor", "Realized", "Tolerances", "realize"]
 
 
+ROUNDED = 2e-9
+"""Slack (m or rad) above which every row takes Newton steps."""
+
+
 @dataclass(frozen=True, slots=True)
 class Tolerances:
     """Relative to natural sizes: a divisor below `singular` makes its joint free, one below `flag` marks
     the solution as one of a continuum; a square root's argument may be `clamp` outside its domain, as
-    poses on the boundary of the workspace are reachable.
+    poses on the boundary of the workspace are reachable, and where Newton steps follow it is kept
+    above `fold`, so that two branches start apart.
     """
 
     singular: float = 1e-11
-    flag: float = 2e-5
+    flag: float = 1e-4
     clamp: float = 1e-11
+    fold: float = 0.0
 
     @staticmethod
     def for_slack(slack: float) -> Tolerances:
         """Tolerances where the solved geometry is `slack` (m or rad) off the file's."""
-        return Tolerances(flag=min(max(2e-5, 5.0 * slack), 1e-2), clamp=max(1e-11, 5.0 * slack))
+        clamp = max(1e-11, 5.0 * slack)
+        fold = 0.02 * slack if slack > ROUNDED else 0.0
+        return Tolerances(flag=min(max(1e-4, 5.0 * slack), 1e-2), clamp=clamp, fold=fold)
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +115,10 @@ def _pair(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> Rea
     return Realized((g.mul(x, inverse), g.mul(y, inverse)), divisor, None, 1)
 
 
+def _above(g: ExpressionGraph, value: Expr, least: Expr) -> Expr:
+    return value if least is g.zero else g.binary("max", value, least)
+
+
 def _sincos(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> Realized:
     a, b, r = c.coefficients
     if a.is_fixed and b.is_fixed and (a.vanishes or b.vanishes):
@@ -115,7 +127,7 @@ def _sincos(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> R
     divisor = _divisor(g, h, tol, 2)
     disc = g.sub(h, g.square(r))
     guard = g.binary("gt", disc, g.const(-tol.clamp * _size(h)))
-    w = g.mul(sigma, g.sqrt(disc))
+    w = g.mul(sigma, g.sqrt(_above(g, disc, g.mul(g.const(tol.fold), h))))
     inverse = g.div(g.one, divisor.value)
     cosine = g.mul(g.sub(g.mul(a, r), g.mul(b, w)), inverse)
     sine = g.mul(g.add(g.mul(b, r), g.mul(a, w)), inverse)
@@ -129,7 +141,7 @@ def _single(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> R
     disc = g.sub(g.one, g.square(ratio))
     guard = g.binary("gt", disc, g.const(-tol.clamp))
     bounded = g.binary("max", g.minus_one, g.binary("min", g.one, ratio))
-    other = g.mul(sigma, g.sqrt(disc))
+    other = g.mul(sigma, g.sqrt(_above(g, disc, g.const(tol.fold))))
     return Realized(
         (other, bounded) if a.vanishes else (bounded, other),
         Divisor(g.one),
