@@ -142,20 +142,15 @@ def _elimination(dh: DHChain, task: Task, progress: Progress) -> UniversalPlan |
     import numpy as np
 
     moving = dh.dof - len(dh.free)
-    plain = len(dh.rows) == dh.dof and all(row.revolute for row in dh.rows)
+    turning = all(row.revolute or dh.joints[row.driver].name in dh.free for row in dh.rows)
+    plain = len(dh.rows) == dh.dof and turning
     if not (task.whole_pose and moving == 6 and plain):
         return None
-    from ikgen.universal import choose_plan, hold_joint, revolute_frames
+    from ikgen.universal import choose_plan, held_frames
 
     progress("derive", "6R elimination")
-    family = []
-    for value in (0.4, -1.1, 2.2) if dh.free else (0.0,):
-        frames = revolute_frames(dh)
-        for j in reversed(range(dh.dof)):
-            if dh.joints[j].name in dh.free:
-                frames = hold_joint(frames, j, value)
-        family.append(frames)
-    plan = choose_plan(np.array(family))
+    values = (0.4, -1.1, 2.2) if dh.free else (0.0,)
+    plan = choose_plan(np.array([held_frames(dh, value) for value in values]))
     return plan if plan.usable else None
 
 

@@ -17,8 +17,8 @@ from ikgen.universal import (
     choose_plan,
     general_6r,
     general_6r_batch,
+    held_frames,
     hold_joint,
-    revolute_frames,
 )
 from ikgen.universal.frames import forward, jacobian
 
@@ -80,7 +80,7 @@ def arm_frames(name: str) -> Array:
         return dh_frames(alpha.tolist(), a.tolist(), d.tolist())
     if not ARMS:
         pytest.skip("the collection of arms is not on this machine")
-    return revolute_frames(to_dh(arm_chain(ARMS[name])))
+    return held_frames(to_dh(arm_chain(ARMS[name])))
 
 
 def configurations(frames: Array, n: int, seed: int = 5) -> Array:

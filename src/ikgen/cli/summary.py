@@ -29,7 +29,7 @@ def summary(generation: Generation) -> str:
         ("robot", f"{dh.robot}, {dh.base_link} -> {dh.tip_link}, {dh.dof} joints"),
         ("task", derivation.task.words + (f", held: {', '.join(held)}" if held else "")),
         ("geometry", derivation.geometry.words),
-        ("solved", "; ".join(order(derivation.graph))),
+        ("solved", "; ".join(module.order)),
         ("solutions", _solutions(generation)),
     ]
     lines += [("verified", _verified(name, r)) for name, r in generation.reports.items()]

@@ -17,6 +17,10 @@ def elimination_program(dh: DHChain) -> Program:
     held: list[str] = []
     outputs: list[JointOutput] = []
     for j, joint in enumerate(dh.joints):
+        if not dh.rows[j].revolute:  # a slide is held: the elimination moves revolute joints alone
+            held.append(f"d{j + 1}")
+            outputs.append(JointOutput(j, False, held[-1], 0.0))
+            continue
         pair = (f"c{j + 1}", f"s{j + 1}")
         (held if joint.name in dh.free else names).extend(pair)
         outputs.append(JointOutput(j, True, *pair))

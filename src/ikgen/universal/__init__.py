@@ -3,7 +3,7 @@
 The run-time half is the routine `general_6r` in the templates of each language.
 """
 
-from ikgen.universal.frames import hold_joint, revolute_frames
+from ikgen.universal.frames import held_frames, hold_joint
 from ikgen.universal.plan import UniversalPlan, choose_plan
 from ikgen.universal.routine import general_6r, general_6r_batch
 
@@ -12,6 +12,6 @@ __all__ = [
     "choose_plan",
     "general_6r",
     "general_6r_batch",
+    "held_frames",
     "hold_joint",
-    "revolute_frames",
 ]

@@ -7,23 +7,33 @@ import numpy as np
 from ikgen.model.dh import DHChain
 from ikgen.model.joint_tree import Matrix
 
-__all__ = ["forward", "hold_joint", "jacobian", "revolute_frames", "rotation_z", "typical_length"]
+__all__ = ["forward", "held_frames", "hold_joint", "jacobian", "rotation_z", "typical_length"]
 
 
-def revolute_frames(dh: DHChain) -> Matrix:
-    """The file's own chain (n + 1, 4, 4) between its DH variables, all of them angles (rad).
+def held_frames(dh: DHChain, value: float = 0.0) -> Matrix:
+    """The file's own chain (n + 1, 4, 4) between the DH variables (rad) of its n moving joints, the
+    free ones held at `value` (rad or m).
 
-    Raises ValueError where a row is prismatic.
+    Raises ValueError where a moving joint is prismatic or drives several rows.
     """
-    if not all(row.revolute for row in dh.rows):
+    held = [dh.joints[row.driver].name in dh.free for row in dh.rows]
+    moving = [row for row, still in zip(dh.rows, held, strict=True) if not still]
+    if not all(row.revolute for row in moving) or len(dh.rows) != dh.dof:
         raise ValueError("the universal solver is for revolute joints")
-    return np.array(dh.file_frames, dtype=np.float64)
+    frames = np.array(dh.file_frames, dtype=np.float64)
+    for j in reversed([j for j, still in enumerate(held) if still]):
+        frames = hold_joint(frames, j, value, revolute=dh.rows[j].revolute)
+    return frames
 
 
-def hold_joint(frames: Matrix, joint: int, value: float) -> Matrix:
+def hold_joint(frames: Matrix, joint: int, value: float, *, revolute: bool = True) -> Matrix:
     """The chain (n, 4, 4) that is left of (n + 1, 4, 4) with joint `joint` (0-based) held at
-    `value` rad."""
-    merged = frames[joint] @ rotation_z(value) @ frames[joint + 1]
+    `value` rad or m."""
+    motion = rotation_z(value)
+    if not revolute:
+        motion = np.eye(4)
+        motion[2, 3] = value
+    merged = frames[joint] @ motion @ frames[joint + 1]
     return np.concatenate([frames[:joint], merged[None], frames[joint + 2 :]])
 
 

@@ -60,7 +60,7 @@ def initial_residuals(
     F, T = frames.copy(), poses.copy()
     F[:, :3, 3] /= length
     T[:, :3, 3] /= length
-    index, q, _ = space["_g6_candidates"](F, T, plan)
+    index, q, *_ = space["_g6_candidates"](F, T, plan)
     if not len(q):
         return [np.zeros((0, 6)) for _ in poses], np.zeros(0)
     before = space["_g6_residual"](F, T[index], q)[2]

@@ -12,13 +12,17 @@ from ikgen.verify.oracle import Oracle
 from ikgen.verify.screws import ScrewChain
 from ikgen.verify.task_space import TaskSpace
 
-__all__ = ["REGULAR_SIGMA", "ArmUnderTest", "arm_under_test"]
+__all__ = ["FAR_LIMIT", "REGULAR_SIGMA", "ArmUnderTest", "arm_under_test"]
 
 Array = NDArray[np.float64]
 
 REGULAR_SIGMA = 1e-3
 """Smallest singular value of the length-scaled task Jacobian above which a configuration is
 regular."""
+
+FAR_LIMIT = 1e3
+"""Limits (rad or m) beyond this mean "none": files write 999999, where rounding alone moves the
+tip."""
 
 _UNBOUNDED_SLIDE = 1.0  # m: range sampled of a prismatic joint without limits
 
@@ -87,7 +91,7 @@ def _sampled_range(lower: Array, upper: Array, revolute: NDArray[np.bool_]) -> t
     """The part of the limits to sample: one turn about the value nearest to 0, or 1 m to each
     side."""
     half = np.where(revolute, np.pi, _UNBOUNDED_SLIDE)
-    unbounded = np.isinf(lower) | np.isinf(upper)
+    unbounded = (np.abs(lower) > FAR_LIMIT) | (np.abs(upper) > FAR_LIMIT)
     wide = unbounded | (revolute & (upper - lower > 2 * np.pi))
     centre = np.clip(0.0, lower + half, np.maximum(upper - half, lower + half))
     return np.where(wide, centre - half, lower), np.where(wide, centre + half, upper)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.verify.arm import REGULAR_SIGMA, ArmUnderTest
+from ikgen.verify.arm import FAR_LIMIT, REGULAR_SIGMA, ArmUnderTest
 from ikgen.verify.reach import farthest_configuration
 from ikgen.verify.singularities import SINGULAR_SIGMA, singular_configurations
 
@@ -46,7 +46,7 @@ def _at_limits(arm: ArmUnderTest, n: int, rng: np.random.Generator) -> Array:
     """One or more joints exactly at a bound of the file."""
     q = arm.uniform(rng, n)
     bounds = np.stack([arm.lower, arm.upper])
-    bounded = np.flatnonzero(np.all(np.isfinite(bounds), axis=0))
+    bounded = np.flatnonzero(np.all(np.abs(bounds) <= FAR_LIMIT, axis=0))
     if not len(bounded):
         return q[:0]
     chosen = rng.random((n, len(bounded))) < 0.25
