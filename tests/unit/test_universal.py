@@ -156,7 +156,7 @@ def test_no_more_solutions_than_a_multi_start_search_finds(name: str) -> None:
         found = general_6r(plan.frames, plan.length, plan.eliminations, T)
         T[:3, 3] /= plan.length
         starts = rng.uniform(-np.pi, np.pi, (600, 6))
-        q, r = routine._g6_polish(scaled, np.broadcast_to(T, (600, 4, 4)), starts)
+        q, r, _ = routine._g6_polish(scaled, np.broadcast_to(T, (600, 4, 4)), starts)
         for candidate in routine._g6_distinct(q[r < 1e-9]):
             assert apart(found, candidate).min() < 1e-5
 

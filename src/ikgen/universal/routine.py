@@ -63,8 +63,7 @@ def initial_residuals(
     index, q, *_ = space["_g6_candidates"](F, T, plan)
     if not len(q):
         return [np.zeros((0, 6)) for _ in poses], np.zeros(0)
-    before = space["_g6_residual"](F, T[index], q)[2]
-    q, after = space["_g6_polish"](F, T[index], q)
+    q, after, before = space["_g6_polish"](F, T[index], q)
     good = after < 1e-9
     rows = [space["_g6_distinct"](q[good & (index == i)]) for i in range(len(poses))]
     return rows, np.asarray(before[good], dtype=np.float64)
