@@ -1,31 +1,21 @@
 include_guard(GLOBAL)
 
-# Eigen as a target, if the project has found it or it can be found: linking it spares users a line.
-function(_ikgen_link_eigen target)
-  if(NOT TARGET Eigen3::Eigen)
-    find_package(Eigen3 QUIET NO_MODULE)
-  endif()
-  if(TARGET Eigen3::Eigen)
-    target_link_libraries(${target} INTERFACE Eigen3::Eigen)
-  endif()
-endfunction()
-
 function(ikgen_generate target)
   set(one_value ROBOT NAME BASE TIP TASK SAMPLES)
   set(multi_value ARGS PACKAGE_PATH FREE LOCK EMIT DEPENDS)
   cmake_parse_arguments(PARSE_ARGV 1 arg "VERIFY" "${one_value}" "${multi_value}")
-  if(arg_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "ikgen_generate(${target}): unknown arguments: ${arg_UNPARSED_ARGUMENTS}")
-  endif()
-  if(arg_KEYWORDS_MISSING_VALUES)
-    message(FATAL_ERROR "ikgen_generate(${target}): no value for: ${arg_KEYWORDS_MISSING_VALUES}")
-  endif()
+  _ikgen_check_arguments("ikgen_generate(${target})" "VERIFY;${one_value};${multi_value}")
   if(NOT arg_ROBOT)
-    message(FATAL_ERROR "ikgen_generate(${target}): ROBOT <urdf-or-xacro> is missing")
+    message(FATAL_ERROR
+      "ikgen_generate(${target}): ROBOT <urdf-or-xacro> is missing\n"
+      "hint: ikgen_generate(${target} ROBOT urdf/my_robot.urdf.xacro BASE base_link TIP tool0)")
   endif()
   get_filename_component(robot "${arg_ROBOT}" ABSOLUTE BASE_DIR "${CMAKE_CURRENT_SOURCE_DIR}")
   if(NOT EXISTS "${robot}" AND NOT arg_DEPENDS)
-    message(FATAL_ERROR "ikgen_generate(${target}): no such file: ${robot}")
+    message(FATAL_ERROR
+      "ikgen_generate(${target}): no such file: ${robot}\n"
+      "hint: ROBOT is relative to ${CMAKE_CURRENT_SOURCE_DIR}; name a file that the build makes in "
+      "DEPENDS too")
   endif()
   if(NOT arg_NAME)
     string(MAKE_C_IDENTIFIER "${target}" arg_NAME)
@@ -37,7 +27,9 @@ function(ikgen_generate target)
   set(folder "${CMAKE_CURRENT_BINARY_DIR}/ikgen/${target}")
   set(stamp "${folder}/${arg_NAME}.stamp")
   set(outputs "${folder}/${arg_NAME}_ik.json")
+  set(has_header FALSE)
   if("cpp" IN_LIST arg_EMIT)
+    set(has_header TRUE)
     list(APPEND outputs "${folder}/${arg_NAME}_ik.hpp")
   endif()
   if("python" IN_LIST arg_EMIT)
@@ -67,6 +59,11 @@ function(ikgen_generate target)
   endforeach()
   foreach(value IN LISTS arg_PACKAGE_PATH)
     get_filename_component(value "${value}" ABSOLUTE BASE_DIR "${CMAKE_CURRENT_SOURCE_DIR}")
+    if(NOT IS_DIRECTORY "${value}")
+      message(FATAL_ERROR
+        "ikgen_generate(${target}): no such directory: ${value}\n"
+        "hint: PACKAGE_PATH names directories that hold packages of $(find ...) and package://")
+    endif()
     list(APPEND options --package-path "${value}")
   endforeach()
 
@@ -97,24 +94,10 @@ function(ikgen_generate target)
     VERBATIM)
   add_custom_target(${target}_generate DEPENDS "${stamp}")
 
-  add_library(${target} INTERFACE)
-  add_library(ikgen::${target} ALIAS ${target})
+  _ikgen_add_library(${target} "${arg_NAME}" "${folder}" ${has_header})
   add_dependencies(${target} ${target}_generate)
-  target_compile_features(${target} INTERFACE cxx_std_17)
-  target_include_directories(${target} INTERFACE
-    "$<BUILD_INTERFACE:${folder}>" "$<INSTALL_INTERFACE:include>")
-  set_property(TARGET ${target} PROPERTY INTERFACE_IKGEN_OUTPUT_DIR "${folder}")
-  if("cpp" IN_LIST arg_EMIT)
-    _ikgen_link_eigen(${target})
-  endif()
 
   if(arg_VERIFY)
-    set(samples)
-    if(arg_SAMPLES)
-      set(samples --samples "${arg_SAMPLES}")
-    endif()
-    add_test(NAME ${target}_verify
-      COMMAND "${IKGEN_EXECUTABLE}" verify "${folder}" ${samples}
-        --junit-xml "${folder}/${target}_verify.xunit.xml")
+    _ikgen_add_verification(${target} "${folder}" "${arg_SAMPLES}")
   endif()
 endfunction()

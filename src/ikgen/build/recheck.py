@@ -190,6 +190,7 @@ def _difference(runner: Any, oracle: Oracle, reading: Reading) -> str:
     radians = float(2.0 * np.arcsin(min(1.0, turn / np.sqrt(8.0))))
     if max(metres, radians) <= _SAME:
         return ""
+    metres, radians = (value if value > _SAME else 0.0 for value in (metres, radians))
     return (
         "made from another geometry: its forward kinematics differ from the description's by up to "
         f"{1e3 * metres:.6g} mm and {radians:.6g} rad"

@@ -2,6 +2,7 @@
 # installed beside it.
 find_program(IKGEN_EXECUTABLE ikgen
   HINTS "${CMAKE_CURRENT_LIST_DIR}/../../../bin" "${CMAKE_CURRENT_LIST_DIR}/../../../Scripts"
+  NO_CMAKE_FIND_ROOT_PATH
   DOC "The ikgen command")
 set(_ikgen_directory)
 if(IKGEN_EXECUTABLE)

@@ -1,0 +1,1 @@
+"""A robot description: `ament_description.arm_ik` solves its inverse kinematics."""
