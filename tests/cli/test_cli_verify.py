@@ -123,7 +123,7 @@ def test_junit_and_annotations(
     monkeypatch.setenv("GITHUB_ACTIONS", "true")
     monkeypatch.setenv("GITHUB_STEP_SUMMARY", str(project / "summary.md"))
     assert check("out", "--junit-xml", "results/j.xml") == 1
-    assert "::error file=out/arm_ik.py::" in capsys.readouterr().err
+    assert "::error file=out/arm_ik.py,line=1::" in capsys.readouterr().err
     assert "WRONG" in (project / "summary.md").read_text()
     assert junitparser.JUnitXml.fromfile("results/j.xml").failures == 1
 

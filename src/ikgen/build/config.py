@@ -11,14 +11,14 @@ from pathlib import Path
 from typing import Any
 
 from ikgen.build.record import SUFFIX
-from ikgen.errors import BadDescriptionError
+from ikgen.errors import BadDescriptionError, UsageError
 
 if sys.version_info >= (3, 11):
     import tomllib
 else:
     import tomli as tomllib
 
-__all__ = ["ArmConfig", "default_config", "load_config"]
+__all__ = ["ArmConfig", "default_config", "load_config", "named_config"]
 
 CONFIG = "ikgen.toml"
 _PYPROJECT = "pyproject.toml"
@@ -57,6 +57,17 @@ def default_config(folder: Path) -> Path | None:
     if project.is_file() and re.search(r"^\[+\s*tool\.ikgen", project.read_text("utf-8"), re.M):
         return project
     return None
+
+
+def named_config(path: Path | None) -> Path:
+    """The config that a command means: a file, that of a folder, or the one here."""
+    if path is not None and not path.is_dir():
+        return path
+    found = default_config(path or Path())
+    if found is None:
+        where = f"in {path}" if path is not None else "here"
+        raise UsageError(f"no ikgen.toml {where}", hint="name the config: ikgen build CONFIG")
+    return found
 
 
 def load_config(path: Path) -> tuple[ArmConfig, ...]:

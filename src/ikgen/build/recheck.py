@@ -24,11 +24,13 @@ _SAMPLES = 200
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One thing that is wrong: about which file, what, and the command that puts it right."""
+    """One thing that is wrong: about which file, what, and the command that puts it right;
+    `deviation` (m, rad) of the forward kinematics where those are another geometry's."""
 
     file: Path
     message: str
     command: str
+    deviation: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,9 +154,9 @@ def _check_outputs(
             continue
         if runner is None:
             continue
-        difference = _difference(runner, oracle, reading)
-        if difference:
-            findings.append(Finding(file, difference, fix))
+        message, deviation = _difference(runner, oracle, reading)
+        if message:
+            findings.append(Finding(file, message, fix, deviation))
             continue
         reports[name] = verify_one(runner, oracle, module, outputs, progress)
         if not reports[name].passed:
@@ -169,8 +171,11 @@ def _file_of(record: Record, emitter: str) -> Path:
     return record.folder / names[0] if names else record.path
 
 
-def _difference(runner: Any, oracle: Oracle, reading: Reading) -> str:
-    """How far the output's forward kinematics are from the description's; empty if they agree."""
+def _difference(
+    runner: Any, oracle: Oracle, reading: Reading
+) -> tuple[str, tuple[float, float] | None]:
+    """How far the output's forward kinematics are from the description's, in words and in m and
+    rad; empty if they agree."""
     import numpy as np
 
     rng = np.random.default_rng(0)
@@ -181,17 +186,17 @@ def _difference(runner: Any, oracle: Oracle, reading: Reading) -> str:
     try:
         ours = runner.forward(q)
     except Exception as error:
-        return f"forward raises {type(error).__name__}: {error}"
+        return f"forward raises {type(error).__name__}: {error}", None
     theirs = oracle.forward(q)
     if ours.shape != theirs.shape or not np.isfinite(ours).all():
-        return "forward gives no poses"
+        return "forward gives no poses", None
     metres = float(np.linalg.norm(ours[:, :3, 3] - theirs[:, :3, 3], axis=1).max())
     turn = np.linalg.norm(ours[:, :3, :3] - theirs[:, :3, :3], axis=(1, 2)).max()
     radians = float(2.0 * np.arcsin(min(1.0, turn / np.sqrt(8.0))))
     if max(metres, radians) <= _SAME:
-        return ""
+        return "", None
     metres, radians = (value if value > _SAME else 0.0 for value in (metres, radians))
     return (
         "made from another geometry: its forward kinematics differ from the description's by up to "
         f"{1e3 * metres:.6g} mm and {radians:.6g} rad"
-    )
+    ), (metres, radians)

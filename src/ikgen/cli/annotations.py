@@ -9,23 +9,51 @@ from typing import TYPE_CHECKING
 
 import click
 
+from ikgen.errors import BadDescriptionError, IkgenError
+
 if TYPE_CHECKING:
     from ikgen.build.recheck import Recheck
 
-__all__ = ["write"]
+__all__ = ["annotate", "annotate_error"]
 
 
-def write(results: Sequence[Recheck]) -> None:
+def annotate(results: Sequence[Recheck]) -> None:
     """Annotations on stderr and the table of the step summary; nothing outside a workflow."""
+    for result in results:
+        for finding in result.findings:
+            _annotate(f"{finding.message}. Run: {finding.command}", finding.file)
+    _summarise(_table(results))
+
+
+def annotate_error(error: IkgenError) -> None:
+    """The error that ends the command, as an annotation and in the step summary."""
+    text = f"{error.message}. {error.hint}".strip()
+    if isinstance(error, BadDescriptionError) and error.file:
+        _annotate(text, Path(error.file), error.line or 1)
+    else:
+        _annotate(text)
+    _summarise(f"ikgen verify could not check anything: {error.message}\n\n")
+
+
+def _annotate(text: str, file: Path | None = None, line: int = 1) -> None:
     if os.environ.get("GITHUB_ACTIONS") == "true":
-        for result in results:
-            for finding in result.findings:
-                text = _escape(f"{finding.message}. Run: {finding.command}")
-                click.echo(f"::error file={_property(finding.file.as_posix())}::{text}", err=True)
+        place = f" file={_property(_in_workspace(file))},line={line}" if file is not None else ""
+        click.echo(f"::error{place}::{_escape(text)}", err=True)
+
+
+def _in_workspace(file: Path) -> str:
+    """A path as annotations want it: relative to the checkout, wherever the command runs."""
+    workspace = Path(os.environ.get("GITHUB_WORKSPACE") or Path.cwd()).resolve()
+    whole = file.resolve()
+    inside = whole.is_relative_to(workspace)
+    return (whole.relative_to(workspace) if inside else file).as_posix()
+
+
+def _summarise(text: str) -> None:
     summary = os.environ.get("GITHUB_STEP_SUMMARY")
     if summary:
         with Path(summary).open("a", encoding="utf-8") as stream:
-            stream.write(_table(results))
+            stream.write(text)
 
 
 def _table(results: Sequence[Recheck]) -> str:
@@ -40,7 +68,9 @@ def _table(results: Sequence[Recheck]) -> str:
             verdict = "right" if report.passed else "WRONG"
             closure = f"{metres:.1e} m, {radians:.1e} rad"
             lines.append(f"| {name} | {label} | {report.samples} | {closure} | {verdict} |")
-    return "\n".join(lines) + "\n\n"
+    commands = dict.fromkeys(f.command for result in results for f in result.findings)
+    fixes = "".join(f"\nRun `{command}` and commit what it writes.\n" for command in commands)
+    return "\n".join(lines) + f"\n{fixes}\n"
 
 
 def _escape(text: str) -> str:

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ikgen.build.config import ArmConfig, default_config, load_config
+from ikgen.build.config import ArmConfig, load_config, named_config
 from ikgen.cli.console import Console
 from ikgen.cli.options import console_options
-from ikgen.errors import UsageError
 
 if TYPE_CHECKING:
     from ikgen.build.run import Outcome
@@ -59,7 +58,7 @@ def build(
 
     CONFIG is an ikgen.toml, or a pyproject.toml with [tool.ikgen]; by default the one here.
     """
-    arms = load_config(_config(config))
+    arms = load_config(named_config(config))
     if check:
         return _check(arms, as_json=as_json, quiet=quiet)
     from ikgen.build.run import build_arms
@@ -74,20 +73,9 @@ def build(
     return max(outcome.exit_code for outcome in outcomes)
 
 
-def _config(path: Path | None) -> Path:
-    found = path or default_config(Path())
-    if found is None:
-        raise UsageError("no ikgen.toml here", hint="name the config: ikgen build CONFIG")
-    if found.is_dir():
-        inside = default_config(found)
-        if inside is None:
-            raise UsageError(f"no ikgen.toml in {found}", hint="name the config itself")
-        return inside
-    return found
-
-
 def _check(arms: Sequence[ArmConfig], *, as_json: bool, quiet: bool) -> int:
     """Say what is stale; writes nothing and imports nothing heavy."""
+    from ikgen.build.check import stale_lines
     from ikgen.build.stale import why_stale
 
     reasons = {arm.record_path.as_posix(): (arm.name, why_stale(arm)) for arm in arms}
@@ -99,8 +87,7 @@ def _check(arms: Sequence[ArmConfig], *, as_json: bool, quiet: bool) -> int:
         ]
         click.echo(json.dumps({"stale": stale, "arms": rows}, indent=2))
     elif not quiet:
-        for name, reason in reasons.values():
-            click.echo(f"{name}: {'stale: ' + reason if reason else 'up to date'}")
+        click.echo("\n".join(stale_lines(list(reasons.values()))))
     return 1 if stale else 0
 
 

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ikgen.cli.annotations import annotate, annotate_error
 from ikgen.cli.console import Console
 from ikgen.cli.options import console_options, sampling_options
-from ikgen.errors import UsageError
+from ikgen.errors import IkgenError, UsageError
 
 if TYPE_CHECKING:
-    from ikgen.build.recheck import Recheck
+    from ikgen.build.recheck import Finding, Recheck
     from ikgen.build.record import Record
 
 __all__ = ["verify"]
@@ -52,25 +53,29 @@ def verify(
     CONFIG is an ikgen.toml or pyproject.toml, DIR a folder with outputs (default: the config here,
     else this folder). Exit code 0: all right; 1: wrong, edited or made from another geometry.
     """
-    from ikgen.build.recheck import recheck
-
-    results: list[Recheck] = []
     with Console(quiet=quiet, verbose=verbose) as console:
-        for record, command in _records(target, robot):
-            results.append(
-                recheck(
-                    record,
-                    robot=robot,
-                    command=command,
-                    samples=samples,
-                    seed=seed,
-                    progress=console,
-                )
-            )
+        try:
+            results = _recheck_all(target, robot, (samples, seed), console)
+        except IkgenError as error:
+            annotate_error(error)
+            raise
     if junit_xml is not None:
         _write_junit(junit_xml, results)
     _print(results, as_json=as_json, quiet=quiet, verbose=verbose)
     return 0 if all(result.passed for result in results) else 1
+
+
+def _recheck_all(
+    target: Path | None, robot: Path | None, sampling: tuple[int, int], console: Console
+) -> list[Recheck]:
+    """Check everything that is meant, in order."""
+    from ikgen.build.recheck import recheck
+
+    samples, seed = sampling
+    return [
+        recheck(record, robot=robot, command=command, samples=samples, seed=seed, progress=console)
+        for record, command in _records(target, robot)
+    ]
 
 
 def _records(target: Path | None, robot: Path | None) -> list[tuple[Record, str | None]]:
@@ -90,10 +95,9 @@ def _records(target: Path | None, robot: Path | None) -> list[tuple[Record, str 
 
 
 def _print(results: Sequence[Recheck], *, as_json: bool, quiet: bool, verbose: bool) -> None:
-    from ikgen.cli import annotations
     from ikgen.cli.tables import verification_tables
 
-    annotations.write(results)
+    annotate(results)
     if as_json:
         click.echo(
             json.dumps(
@@ -134,12 +138,19 @@ def _as_dict(result: Recheck) -> dict[str, Any]:
         "record": result.record.path.as_posix(),
         "robot": result.record.robot.as_posix(),
         "passed": result.passed,
-        "findings": [
-            {"file": f.file.as_posix(), "message": f.message, "command": f.command}
-            for f in result.findings
-        ],
+        "findings": [_finding(finding) for finding in result.findings],
         "notes": list(result.notes),
         "verification": {name: report.to_dict() for name, report in result.reports.items()},
+    }
+
+
+def _finding(finding: Finding) -> dict[str, Any]:
+    metres, radians = finding.deviation or (None, None)
+    return {
+        "file": finding.file.as_posix(),
+        "message": finding.message,
+        "command": finding.command,
+        "deviation": None if metres is None else {"m": metres, "rad": radians},
     }
 
 
