@@ -11,7 +11,6 @@ COLCON, and wants an environment of its own:
 
 from __future__ import annotations
 
-import os
 import shutil
 import subprocess
 import sys
@@ -20,18 +19,11 @@ from pathlib import Path
 import junitparser
 import pytest
 from markdown_steps import blocks
+from tools import environment, needs_colcon
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs/how-to/ros-package.md"
 EXAMPLE = ROOT / "examples/ament_description"
-COLCON = os.environ.get("COLCON") or shutil.which("colcon")
-TOOLS = ("cmake", "g++", "bash")
-needs_colcon = pytest.mark.skipif(
-    COLCON is None
-    or not (Path("/usr/share/ament_cmake").is_dir() or "AMENT_PREFIX_PATH" in os.environ)
-    or any(shutil.which(tool) is None for tool in TOOLS),
-    reason="needs colcon (PATH or COLCON), ament_cmake, cmake and g++",
-)
 
 
 class Workspace:
@@ -43,14 +35,10 @@ class Workspace:
 
     def sh(self, commands: str) -> subprocess.CompletedProcess[str]:
         """Run shell commands, with the python3 of ament first on PATH and ours last."""
-        last = [str(Path(str(COLCON)).parent), str(Path(sys.executable).parent)]
-        others = [p for p in os.environ["PATH"].split(os.pathsep) if p not in last]
-        path = os.pathsep.join(["/usr/bin", *others, *last])
-        environment = {k: v for k, v in os.environ.items() if k != "VIRTUAL_ENV"} | {"PATH": path}
         return subprocess.run(
             ["bash", "-euc", commands],
             cwd=self.folder,
-            env=environment,
+            env=environment(ament=True),
             text=True,
             capture_output=True,
         )

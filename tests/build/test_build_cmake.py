@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from tools import environment, needs_cmake
 
 from ikgen import __version__
 from ikgen.build.cmake import ament_directory, cmake_directory
@@ -19,9 +18,6 @@ from ikgen.verify.runners.cpp_toolchain import find_eigen
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLE = ROOT / "examples/cmake_only"
-needs_cmake = pytest.mark.skipif(
-    shutil.which("cmake") is None or shutil.which("g++") is None, reason="needs cmake and g++"
-)
 
 
 def test_the_package_files_agree_on_the_version() -> None:
@@ -34,10 +30,8 @@ def test_the_package_files_agree_on_the_version() -> None:
 
 def call(*command: object, cwd: Path) -> subprocess.CompletedProcess[str]:
     """Run a command with the tools of this environment first on PATH."""
-    tools = str(Path(sys.executable).parent)
-    environment = {**os.environ, "PATH": tools + os.pathsep + os.environ["PATH"]}
     return subprocess.run(
-        [str(word) for word in command], cwd=cwd, env=environment, text=True, capture_output=True
+        [str(word) for word in command], cwd=cwd, env=environment(), text=True, capture_output=True
     )
 
 
