@@ -15,6 +15,7 @@ __all__ = [
     "BadDescriptionError",
     "IkgenError",
     "MissingToolError",
+    "PlugInError",
     "UnknownNameError",
     "UnsolvedChainError",
     "UnsupportedJointError",
@@ -75,6 +76,10 @@ class UnsolvedChainError(IkgenError):
 
 class MissingToolError(IkgenError):
     """An optional tool (compiler, Eigen, LaTeX) is needed and absent; the hint says how to get it."""
+
+
+class PlugInError(IkgenError):
+    """A part of another package that cannot be used; names the package and the entry point."""
 
 
 class VerificationError(IkgenError):

@@ -7,56 +7,16 @@ level before, so branch i of a level and lane p of the level before meet in lane
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator
 
 from ikgen.emit.cpp_language import CPP, LINE, comment, number
 from ikgen.emit.module import SolverModule
 from ikgen.emit.printer import expression
-from ikgen.ir.interpret import _evaluate as evaluate
-from ikgen.ir.ops import Op, Operand
-from ikgen.ir.program import Call, Comment, JointOutput, Let, Level, Program, Require
+from ikgen.ir.interpret import evaluate
+from ikgen.ir.liveness import live_names
+from ikgen.ir.ops import Op, Operand, operand_names
+from ikgen.ir.program import Call, Comment, JointOutput, Let, Level, Require
 
-__all__ = ["ProgramText", "operand_names", "used_inputs"]
-
-
-def operand_names(operand: Operand) -> set[str]:
-    """The names that an operand reads."""
-    if isinstance(operand, Op):
-        return set().union(*(operand_names(a) for a in operand.args))
-    return {operand} if isinstance(operand, str) else set()
-
-
-def _reads(level: Level) -> Iterator[Operand]:
-    """Operands of a level that count whether or not anything else reads them."""
-    if level.call is not None:
-        yield from level.call.arguments
-    yield from (s.condition for s in level.body if isinstance(s, Require))
-
-
-def _live_names(program: Program) -> set[str]:
-    """Names that a result, a guard or a flag depends on."""
-    value = {
-        s.name: s.value for level in program.levels for s in level.body if isinstance(s, Let)
-    } | {let.name: let.value for let in program.constants}
-    roots: list[Operand] = [*program.singular, *program.residuals]
-    for level in program.levels:
-        roots += _reads(level)
-    for output in program.outputs:
-        roots += [output.cosine, output.sine]
-    live: set[str] = set()
-    stack = [name for root in roots for name in operand_names(root)]
-    while stack:
-        name = stack.pop()
-        if name not in live:
-            live.add(name)
-            stack += operand_names(value[name]) if name in value else ()
-    return live
-
-
-def used_inputs(program: Program) -> list[str]:
-    """Inputs that the Program reads, in its order."""
-    live = _live_names(program)
-    return [name for name in program.inputs if name in live]
+__all__ = ["ProgramText"]
 
 
 class ProgramText:
@@ -64,7 +24,7 @@ class ProgramText:
 
     def __init__(self, module: SolverModule) -> None:
         self.program = module.program
-        self.live = _live_names(self.program)
+        self.live = live_names(self.program)
         self.fixed: dict[str, float] = dict(self.program.parameters)
         for let in self.program.constants:
             self.fixed[let.name] = evaluate(let.value, self.fixed)

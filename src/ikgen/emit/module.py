@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from ikgen.ir.program import Program
-from ikgen.model.dh import DHChain
+from ikgen.model.dh import DHChain, DHRow
+from ikgen.tasks import Task, find_task
 from ikgen.universal.plan import UniversalPlan
 
 __all__ = ["CLOSE", "SolverModule"]
@@ -49,3 +52,17 @@ class SolverModule:
     def max_solutions(self) -> int:
         """Rows of the solution at most (two whole turns of a joint count once)."""
         return self.program.max_solutions
+
+    @property
+    def reads(self) -> Task:
+        """What of the pose counts."""
+        return find_task(self.task)
+
+    @property
+    def size(self) -> float:
+        """Length (m) that errors of position are taken relative to: the arm's largest, at least 1."""
+        return max(1.0, *(float(np.abs(F[:3, 3]).max()) for F in self.dh.file_frames))
+
+    def first_row(self, joint: int) -> DHRow:
+        """The first row of the chain that a joint drives: its scale and offset."""
+        return next(row for row in self.dh.rows if row.driver == joint)

@@ -11,9 +11,8 @@ import numpy as np
 from ikgen.emit.module import SolverModule
 from ikgen.emit.printer import Language, expression
 from ikgen.emit.rendering import render
-from ikgen.ir.ops import Op, Operand
+from ikgen.ir.ops import Op, Operand, operand_names
 from ikgen.ir.program import Comment, JointOutput, Let, Level, Program, Require
-from ikgen.tasks import find_task
 
 __all__ = ["emit_derivation", "emit_module"]
 
@@ -100,33 +99,14 @@ def emit_module(module: SolverModule) -> str:
         frames=[_matrix(F) for F in module.dh.file_frames],
         rows=[(row.driver, row.revolute, row.scale, row.offset.value) for row in module.dh.rows],
         number=_number,
-        entries=_task_entries(module),
-        size=_arm_size(module),
+        orientation=module.reads.orientation,
+        entries=module.reads.entries,
+        size=module.size,
     )
-
-
-def _task_entries(module: SolverModule) -> list[tuple[int, int]]:
-    """Row and column (from 0) of the pose entries that the task reads."""
-    names = sorted(find_task(module.task).readable)
-    return [
-        ("xyz".index(n[1]), 3) if n[0] == "p" else (int(n[1]) - 1, int(n[2]) - 1) for n in names
-    ]
-
-
-def _arm_size(module: SolverModule) -> float:
-    return max(1.0, *(float(np.abs(F[:3, 3]).max()) for F in module.dh.file_frames))
 
 
 def _matrix(F: np.ndarray) -> list[list[str]]:
     return [[_number(float(x)) for x in row] for row in F[:3]]
-
-
-def _names(operand: Operand) -> set[str]:
-    if isinstance(operand, str):
-        return {operand}
-    if isinstance(operand, Op):
-        return set().union(*(_names(a) for a in operand.args))
-    return set()
 
 
 def _used_inputs(program: Program) -> list[str]:
@@ -134,14 +114,14 @@ def _used_inputs(program: Program) -> list[str]:
     for level in program.levels:
         if level.call is not None:
             for a in level.call.arguments:
-                used |= _names(a)
+                used |= operand_names(a)
         for statement in level.body:
             if isinstance(statement, Let):
-                used |= _names(statement.value)
+                used |= operand_names(statement.value)
             elif isinstance(statement, Require):
-                used |= _names(statement.condition)
+                used |= operand_names(statement.condition)
     for output in program.outputs:
-        used |= _names(output.cosine) | _names(output.sine)
+        used |= operand_names(output.cosine) | operand_names(output.sine)
     return [name for name in program.inputs if name in used]
 
 
@@ -149,7 +129,7 @@ def _seed_rows(module: SolverModule) -> list[tuple[int, bool, float, float]]:
     """Per joint: index, revolute, scale and offset of its first row."""
     out = []
     for j in range(module.dh.dof):
-        row = next(r for r in module.dh.rows if r.driver == j)
+        row = module.first_row(j)
         out.append((j, row.revolute, row.scale, row.offset.value))
     return out
 
@@ -166,7 +146,7 @@ class _JointText:
 
     @staticmethod
     def of(module: SolverModule, output: JointOutput) -> _JointText:
-        row = next(r for r in module.dh.rows if r.driver == output.joint)
+        row = module.first_row(output.joint)
         held = f"held[{module.free.index(output.joint)}]" if output.joint in module.free else ""
         return _JointText(output.joint, output, row.scale, row.offset.value, held)
 
@@ -230,7 +210,7 @@ def _home_levels(program: Program) -> dict[str, int]:
 
 
 def _level_of(output: JointOutput, home: dict[str, int]) -> int:
-    names = _names(output.cosine) | _names(output.sine)
+    names = operand_names(output.cosine) | operand_names(output.sine)
     return max((home.get(n, 0) for n in names), default=0)
 
 

@@ -1,4 +1,4 @@
-"""What of a pose counts: one row a task."""
+"""What of a pose counts: one row a task; other packages add theirs by the group `ikgen.tasks`."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ikgen.errors import UnknownNameError
+from ikgen.plugins import find_plug_in, plug_ins
 
 if TYPE_CHECKING:
     from ikgen.model.dh import DHChain
@@ -16,6 +17,12 @@ _POSITION = ("px", "py", "pz")
 _ROTATION = tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
 _DIRECTION = ("r13", "r23", "r33")
 _HEADING = ("r11", "r21")
+_ORIENTATIONS = {
+    frozenset(): "",
+    frozenset(_ROTATION): "rotation",
+    frozenset(_DIRECTION): "direction",
+    frozenset(_HEADING): "yaw",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +40,26 @@ class Task:
     def whole_pose(self) -> bool:
         """Whether every entry is read, so that the tool transform can be taken off the pose."""
         return self.name == "pose"
+
+    @property
+    def entries(self) -> tuple[tuple[int, int], ...]:
+        """Row and column (from 0) of each entry that is read, in the order of their names."""
+        names = sorted(self.readable)
+        return tuple(
+            ("xyz".index(n[1]), 3) if n[0] == "p" else (int(n[1]) - 1, int(n[2]) - 1) for n in names
+        )
+
+    @property
+    def position(self) -> bool:
+        """Whether the whole position is read."""
+        return self.readable.issuperset(_POSITION)
+
+    @property
+    def orientation(self) -> str:
+        """What is read of the rotation: "", rotation, direction or yaw; "entries" where the task reads
+        other entries of the pose, or a part of the position, each compared for itself."""
+        rest = self.readable - set(_POSITION) if self.position else self.readable
+        return _ORIENTATIONS.get(rest, "entries")
 
 
 TASKS: tuple[Task, ...] = (
@@ -58,11 +85,16 @@ TASKS: tuple[Task, ...] = (
 
 
 def find_task(name: str) -> Task:
-    """The task of a name or alias; raises `UnknownNameError` with what there is."""
+    """The task of a name or alias, ikgen's own or another package's; raises `UnknownNameError` with
+    what there is."""
     for task in TASKS:
         if name == task.name or name.lower() in (a.lower() for a in task.aliases):
             return task
-    raise UnknownNameError("task", name, [task.name for task in TASKS])
+    plug_in = find_plug_in("ikgen.tasks", name)
+    if plug_in is not None:
+        return plug_in.load(Task)
+    others = (one.name for one in plug_ins("ikgen.tasks"))
+    raise UnknownNameError("task", name, [*(task.name for task in TASKS), *others])
 
 
 def fitting_tasks(dh: DHChain) -> tuple[Task, ...]:
@@ -85,11 +117,7 @@ def _spans(dh: DHChain, task: Task) -> bool:
 
     rng = np.random.default_rng(0)
     q = rng.uniform(-1.5, 1.5, (8, dh.dof))
-    entries = [
-        ("xyz".index(name[1]), 3) if name[0] == "p" else (int(name[1]) - 1, int(name[2]) - 1)
-        for name in sorted(task.readable)
-    ]
-    rows, columns = zip(*entries, strict=True)
+    rows, columns = zip(*task.entries, strict=True)
     steps = []
     for j in range(dh.dof):
         if dh.joints[j].name not in dh.free:
