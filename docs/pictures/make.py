@@ -124,11 +124,9 @@ def tree() -> str:
 
     place(root, 0)
     height = (rows[0] + 1) * 25.0 + 16
-    legend = (
-        "→ all in turn, until one fails    ? the first that succeeds    ∨ all; one must succeed"
-    )
+    legend = "→ all in turn, until one fails;  ? the first that succeeds;  ∨ all, one must succeed"
     parts.append(text(14, height - 8, legend, 11, text_anchor="start", fill=SOFT))
-    return svg(14 + 4 * 165 + 150, height, "The behavior tree", parts)
+    return svg(14 + 4 * 165 + 164, height, "The behavior tree", parts)
 
 
 def puma_graph() -> str:
