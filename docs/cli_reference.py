@@ -1,4 +1,4 @@
-"""Writes the tables of commands and options in reference/cli.md: `python docs/cli_reference.py`."""
+"""Writes the tables of reference/cli.md after its mark: `python docs/cli_reference.py`."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from ikgen.cli.main import COMMANDS, ikgen
+from ikgen.emit.registry import EMITTERS
 
 __all__ = ["PAGE", "filled_in"]
 
@@ -19,7 +20,12 @@ def filled_in(text: str) -> str:
     """The page's text with what follows the mark written anew."""
     head, mark, _ = text.partition(_MARK)
     assert mark, "the page has lost its mark"
-    return "\n\n".join([head + _MARK, *(_command(name) for name in COMMANDS)]) + "\n"
+    return "\n\n".join([head + _MARK, _outputs(), *(_command(name) for name in COMMANDS)]) + "\n"
+
+
+def _outputs() -> str:
+    rows = [f"| `{emitter.name}` | {emitter.words} |" for emitter in EMITTERS]
+    return "\n".join(["| output | what it is |", "|---|---|", *rows])
 
 
 def _command(name: str) -> str:
