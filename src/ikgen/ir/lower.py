@@ -203,8 +203,8 @@ class Lowering:
         first = [*map(self._well_conditioned, forms[:-1])]
         last = forms[-1].divisor
         if first and last.clear is not None and self.slack > ROUNDED:
-            clear = Divisor(last.value, last.clear, last.clear)
-            forms = [*first, replace(forms[-1], divisor=clear), *forms]
+            wide = Divisor(last.value, last.clear, last.clear)
+            forms = [*first, replace(forms[-1], divisor=wide), *forms]
         else:
             forms = [*first, forms[-1]]
         values = self.seed_values(v) if forms[-1].regular is not None else forms[-1].values
