@@ -15,7 +15,7 @@ from ikgen.emit.registry import find_emitter
 from ikgen.emit.report import emit_report
 from ikgen.emit.report.normal import Normalizer, Sum
 from ikgen.emit.report.notation import show
-from ikgen.emit.report.picture import layout
+from ikgen.emit.report.layout import layout
 from ikgen.emit.report.poses import versions_of
 from ikgen.equations.expression import ExpressionGraph
 from ikgen.pipeline import Derivation, Request, derive
@@ -60,11 +60,14 @@ def test_puma_is_solved_in_the_papers_order() -> None:
 
 
 def test_olson13_needs_a_graph() -> None:
+    """IKBT: "d_1, d_2, and theta_5 all share two independently solved parent variables"."""
     above = parents("olson")
-    assert above["d_1"] == above["d_2"] == {"theta_3", "theta_4"}
-    fifth = above["theta_5"]
-    assert {p for v in fifth for p in (above[v] if v == "theta_45" else {v})} >= {"theta_3"}
-    assert "theta_4" in fifth
+    assert above["d_1"] == above["d_2"] == above["theta_5"] == {"theta_3", "theta_4"}
+    assert above["theta_3"] == above["theta_4"] == set()
+    assert above["theta_6"] == {"theta_3"}
+    branches = {s.candidate.unknown.text: s.branches for s in derivation("olson").graph.steps}
+    assert branches["theta_3"] == branches["theta_4"] == 2
+    assert {n for v, n in branches.items() if v not in ("theta_3", "theta_4")} == {1}
 
 
 def test_pose_sets_pair_every_choice_once() -> None:
@@ -79,11 +82,22 @@ def test_pose_sets_pair_every_choice_once() -> None:
 
 
 def test_layout_has_children_below_their_parents() -> None:
-    for name in ("puma", "olson", "sums"):
+    for name in ("puma", "olson", "sums", "general twists"):
         graph = derivation(name).graph
-        place = layout(graph)
-        assert len(set(place.values())) == len(place)
-        assert all(place[p][1] < place[v][1] for v, above in graph.parents for p in above)
+        plan = layout(graph)
+        place = plan.place
+        assert set(place) == {v for v, _ in graph.parents} - set(graph.passed)
+        assert all(place[p][1] < place[v][1] for p, v in plan.routes)
+        assert set(plan.routes) == {(p, v) for v in place for p in dict(graph.parents)[v]}
+
+
+def test_arrows_go_around_the_boxes() -> None:
+    for name in TABLES:
+        plan = layout(derivation(name).graph)
+        between = [at for route in plan.routes.values() for at in route[1:-1]]
+        assert len({*between, *plan.place.values()}) == len(between) + len(plan.place)
+        for route in plan.routes.values():
+            assert [row for _, row in route] == list(range(int(route[0][1]), int(route[-1][1]) + 1))
 
 
 def test_puma_report_reads_like_the_paper() -> None:
