@@ -7,7 +7,7 @@ import json
 import os
 import tempfile
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -29,6 +29,7 @@ __all__ = [
     "publish",
     "verify_files",
     "verify_one",
+    "verify_texts",
 ]
 
 
@@ -72,36 +73,34 @@ def generate(request: Request, outputs: Outputs, progress: Progress = _silent) -
         )
     texts: dict[str, str] = {}
     for emitter in emitters:
-        progress("emit", emitter.name)
-        texts |= emitter.emit(derivation)
+        if not emitter.tells_verification:
+            progress("emit", emitter.name)
+            texts |= emitter.emit(derivation)
+    reports = verify_texts(derivation, texts, outputs, progress) if outputs.verify else {}
+    for emitter in emitters:
+        if emitter.tells_verification:
+            progress("emit", emitter.name)
+            texts |= emitter.emit(derivation, reports)
     manifest = _manifest(request, outputs, derivation, texts)
     texts[f"{derivation.module.name}_ik.json"] = manifest
-    reports: dict[str, VerificationReport] = {}
-
-    def check(staging: Path) -> None:
-        reports.update(verify_files(derivation, staging, outputs, progress))
-
-    files = publish(outputs.out, texts, check if outputs.verify else None)
+    files = publish(outputs.out, texts)
     return Generation(derivation, files, reports, time.perf_counter() - started)
 
 
-def publish(
-    out: Path, texts: Mapping[str, str], check: Callable[[Path], None] | None = None
-) -> tuple[Path, ...]:
-    """Write texts (name -> text) into a folder: all of them, once `check` has passed on a copy.
-
-    What `check` raises leaves earlier files untouched; unchanged files keep their time.
-    """
+def publish(out: Path, texts: Mapping[str, str]) -> tuple[Path, ...]:
+    """Write texts (name -> text) into a folder, all of them or none; unchanged files keep their
+    time."""
     out.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=".ikgen-", dir=out, ignore_cleanup_errors=True) as name:
-        staging = Path(name)
-        for file, text in texts.items():
-            path = staging / file
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding="utf-8", newline="\n")
-        if check is not None:
-            check(staging)
-        return _move(staging, out, texts)
+        _write(Path(name), texts)
+        return _move(Path(name), out, texts)
+
+
+def _write(folder: Path, texts: Mapping[str, str]) -> None:
+    for file, text in texts.items():
+        path = folder / file
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8", newline="\n")
 
 
 def _move(staging: Path, out: Path, texts: Mapping[str, str]) -> tuple[Path, ...]:
@@ -132,6 +131,15 @@ def oracle_for(reading: Reading) -> Oracle:
     return PinocchioOracle(
         reading.tree, dh.base_link, dh.tip_link, names, locked=dict(dh.locked) or None
     )
+
+
+def verify_texts(
+    derivation: Derivation, texts: Mapping[str, str], outputs: Outputs, progress: Progress = _silent
+) -> dict[str, VerificationReport]:
+    """Verify emitted texts (name -> text) before they are written; raises `VerificationError`."""
+    with tempfile.TemporaryDirectory(prefix="ikgen-", ignore_cleanup_errors=True) as name:
+        _write(Path(name), texts)
+        return verify_files(derivation, Path(name), outputs, progress)
 
 
 def verify_files(

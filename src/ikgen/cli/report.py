@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import click
 
 from ikgen.cli.console import Console
-from ikgen.cli.options import chain_options, console_options, make_request
-from ikgen.errors import IkgenError
-from ikgen.generate import publish
+from ikgen.cli.options import chain_options, console_options, make_request, sampling_options
+from ikgen.generate import Outputs, publish, verify_texts
 from ikgen.pipeline import Derivation, derive
 
 __all__ = ["report"]
@@ -31,21 +29,49 @@ __all__ = ["report"]
     default=Path(),
     help="Where the report goes (default: here).",
 )
+@sampling_options
+@click.option("--no-verify", is_flag=True, help="Leave the table of verification out.")
 @console_options
 def report(
-    robot: Path, *, out: Path, as_json: bool, quiet: bool, verbose: bool, **chain: Any
+    robot: Path,
+    *,
+    out: Path,
+    samples: int,
+    seed: int,
+    no_verify: bool,
+    as_json: bool,
+    quiet: bool,
+    verbose: bool,
+    **chain: Any,
 ) -> None:
     """Write how the inverse kinematics of ROBOT was derived: LaTeX, HTML, graph and trace."""
+    outputs = Outputs(out=out, samples=samples, seed=seed, verify=not no_verify)
     with Console(quiet=quiet, verbose=verbose) as console:
         derivation = derive(make_request(robot, **chain), console)
-        console("emit", "report")
-        texts = _texts(derivation)
+        texts = _texts(derivation, outputs, console)
         files = [*publish(out, texts), *_pdfs(out, texts, console)]
+    _say(files, as_json=as_json, quiet=quiet)
+
+
+def _say(files: list[Path], *, as_json: bool, quiet: bool) -> None:
+    """What was written."""
     if as_json:
         click.echo(json.dumps({"files": [str(path) for path in files]}, indent=2))
     elif not quiet:
         for path in files:
             click.echo(f"wrote: {path}")
+
+
+def _texts(derivation: Derivation, outputs: Outputs, console: Console) -> dict[str, str]:
+    """File name -> text of the report, with the verification of the Python module."""
+    from ikgen.emit.registry import find_emitter
+
+    reports = {}
+    if outputs.verify:
+        made = find_emitter("python").emit(derivation)
+        reports = verify_texts(derivation, made, outputs, console)
+    console("emit", "report")
+    return find_emitter("report").emit(derivation, reports)
 
 
 def _pdfs(out: Path, texts: Mapping[str, str], console: Console) -> list[Path]:
@@ -58,13 +84,3 @@ def _pdfs(out: Path, texts: Mapping[str, str], console: Console) -> list[Path]:
             console("typeset", name)
             made.append(compile_latex(out / name))
     return [path for path in made if path is not None]
-
-
-def _texts(derivation: Derivation) -> dict[str, str]:
-    """File name -> text of the report."""
-    try:
-        module = import_module("ikgen.emit.report")
-    except ModuleNotFoundError as error:
-        raise IkgenError("this installation cannot write reports", hint=str(error)) from None
-    texts: dict[str, str] = module.emit_report(derivation)
-    return texts

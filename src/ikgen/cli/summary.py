@@ -104,11 +104,8 @@ def trace(generation: Generation) -> str:
     """For -v: every tick, the ranker's choices, every check."""
     graph = generation.derivation.graph
     parts = ["behaviour tree:"]
-    ticks = [
-        (str(t.round), t.node, t.outcome, f"{1e3 * t.seconds:.1f} ms", t.detail)
-        for t in graph.ticks
-    ]
-    parts.append(table([("round", "node", "outcome", "time", ""), *ticks]))
+    for number in sorted({t.round for t in graph.ticks}):
+        parts += [f"round {number}", table(_round(graph, number))]
     parts.append("choices:")
     for step in graph.steps:
         chosen = step.candidate
@@ -118,6 +115,19 @@ def trace(generation: Generation) -> str:
     if generation.reports:
         parts.append(verification_tables(generation.reports))
     return "\n".join(parts)
+
+
+def _round(graph: SolutionGraph, number: int) -> list[tuple[str, ...]]:
+    """The nodes that were ticked in one round, indented as in the tree."""
+    ticks = {t.path: t for t in graph.ticks if t.round == number}
+    rows: list[tuple[str, ...]] = []
+    for path in graph.outline:
+        if path in ticks:
+            t = ticks[path]
+            name = "  " * (len(path) - 1) + t.node.rpartition(": ")[2]
+            spent = f"{1e3 * t.seconds:.1f} ms" if t.kind == "leaf" else f"({t.kind})"
+            rows.append((name, t.outcome, spent, t.detail))
+    return rows
 
 
 def _judged(candidate: Any) -> str:

@@ -15,14 +15,16 @@ __all__ = ["SolutionGraph", "graph_of"]
 class SolutionGraph:
     """Steps in the order solved; `parents` (variable -> direct parents, redundant ones pruned) over
     solved unknowns and joints; `passed` are sums of angles that no unknown has as a parent: they bring
-    no branch of their own, so what is computed from them has their parents instead. The session's
-    knowledge holds definitions of derived angles."""
+    no branch of their own, so what is computed from them has their parents instead. `outline`
+    are the paths of the behavior tree's nodes, in its order. The session's knowledge holds definitions
+    of derived angles."""
 
     steps: tuple[Step, ...]
     parents: tuple[tuple[Variable, tuple[Variable, ...]], ...]
     ticks: tuple[Tick, ...]
     session: Session
     passed: tuple[Variable, ...] = ()
+    outline: tuple[tuple[str, ...], ...] = ()
 
     @property
     def open_joints(self) -> list[int]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from ikgen.emit.report.behavior import behavior_section
 from ikgen.emit.report.document import Block, Heading
 from ikgen.emit.report.elimination import elimination_section
 from ikgen.emit.report.html import to_html
@@ -11,23 +12,14 @@ from ikgen.emit.report.latex import to_latex
 from ikgen.emit.report.normal import Normalizer
 from ikgen.emit.report.picture import draw
 from ikgen.emit.report.poses import versions_of
+from ikgen.emit.report.results import graph_section, poses_section, verification_section
 from ikgen.emit.report.sections import forward_section, robot_section
+from ikgen.emit.report.splits import splits_section
 from ikgen.emit.report.steps import Writer, abbreviations, derived_section, step_section
-from ikgen.emit.report.trace import (
-    graph_section,
-    poses_section,
-    trace_section,
-    verification_section,
-)
 from ikgen.pipeline import Derivation
 from ikgen.verify.report import VerificationReport
 
-__all__ = ["emit_derivation", "emit_report"]
-
-
-def emit_derivation(derivation: Derivation) -> dict[str, str]:
-    """File name -> text, as an emitter."""
-    return emit_report(derivation)
+__all__ = ["emit_report"]
 
 
 def emit_report(
@@ -47,12 +39,13 @@ def emit_report(
     if graph.open_joints:
         blocks += elimination_section()
     else:
+        blocks += splits_section(graph.session.system)
         for number, step in enumerate(graph.steps, start=1):
             blocks += step_section(writer, number, step)
         blocks += derived_section(writer)
-        blocks += graph_section(versions, drawing)
+        blocks += graph_section(versions, drawing, graph.passed)
         blocks += poses_section(derivation, versions)
-    blocks += trace_section(graph)
+    blocks += behavior_section(graph)
     blocks += verification_section(reports or {})
     title = f"Inverse kinematics of {derivation.reading.dh.robot}"
     module = derivation.module

@@ -181,8 +181,10 @@ def _sincos(w: _Work) -> Solved:
 
 
 def _bound(above: Sum, below: Sum) -> Math:
-    one = m.relation("\\le ", "≤") + m.name("1")
-    return m.group(quotient(above, below), "||") + one
+    """`|C| <= |A|`, where a sine or cosine is C / A."""
+    value = below.value
+    one = m.number(abs(value)) if value is not None else m.group(show(below), "||")
+    return m.group(show(above), "||") + m.relation("\\le ", "≤") + one
 
 
 def _tangent(w: _Work) -> Solved:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 from ikgen.equations.knowledge import Variable
 from ikgen.solver.graph import SolutionGraph
@@ -32,7 +33,7 @@ def layout(graph: SolutionGraph) -> Layout:
     row: dict[Variable, int] = {}
     for v, above in parents.items():
         row[v] = 1 + max((row.get(p, -1) for p in above), default=-1)
-    chains = {
+    chains: dict[tuple[Variable, Variable], tuple[_Node, ...]] = {
         (p, v): (p, *((p, v, r) for r in range(row[p] + 1, row[v])), v)
         for v, above in parents.items()
         for p in above
@@ -68,7 +69,7 @@ def _columns(
     """Order each layer by the mean column of what a node is connected with, down and up in turn."""
     linked: dict[_Node, list[_Node]] = {node: [] for layer in layers for node in layer}
     for chain in chains.values():
-        for one, two in zip(chain, chain[1:], strict=False):
+        for one, two in pairwise(chain):
             linked[one].append(two)
             linked[two].append(one)
     widest = max((len(layer) for layer in layers), default=0)

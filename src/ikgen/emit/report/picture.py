@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 from ikgen.emit.report.layout import layout
 from ikgen.emit.report.notation import variable
@@ -50,8 +51,7 @@ def _point(at: Point) -> Point:
 def _strokes(route: list[Point]) -> list[Stroke]:
     """From below each place to above the next; straight down through those in between."""
     return [
-        ((x1, y1 + _HEIGHT / 2), (x2, y2 - _HEIGHT / 2))
-        for (x1, y1), (x2, y2) in zip(route, route[1:], strict=False)
+        ((x1, y1 + _HEIGHT / 2), (x2, y2 - _HEIGHT / 2)) for (x1, y1), (x2, y2) in pairwise(route)
     ]
 
 
