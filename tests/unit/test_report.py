@@ -13,9 +13,9 @@ import pytest
 
 from ikgen.emit.registry import find_emitter
 from ikgen.emit.report import emit_report
+from ikgen.emit.report.layout import layout
 from ikgen.emit.report.normal import Normalizer, Sum
 from ikgen.emit.report.notation import show
-from ikgen.emit.report.layout import layout
 from ikgen.emit.report.poses import versions_of
 from ikgen.equations.expression import ExpressionGraph
 from ikgen.pipeline import Derivation, Request, derive

@@ -11,6 +11,7 @@ import click
 
 from ikgen.cli.console import Console
 from ikgen.cli.options import chain_options, console_options, make_request, sampling_options
+from ikgen.errors import UnsolvedChainError
 from ikgen.generate import Outputs, publish, verify_texts
 from ikgen.pipeline import Derivation, derive
 
@@ -44,13 +45,25 @@ def report(
     verbose: bool,
     **chain: Any,
 ) -> None:
-    """Write how the inverse kinematics of ROBOT was derived: LaTeX, HTML, graph and trace."""
+    """Write how the inverse kinematics of ROBOT was derived: LaTeX, HTML, graph and trace.
+
+    Without a closed form the report says how far the solver came, and the exit code is 3.
+    """
     outputs = Outputs(out=out, samples=samples, seed=seed, verify=not no_verify)
     with Console(quiet=quiet, verbose=verbose) as console:
-        derivation = derive(make_request(robot, **chain), console)
-        texts = _texts(derivation, outputs, console)
+        stuck: UnsolvedChainError | None = None
+        try:
+            texts = _texts(derive(make_request(robot, **chain), console), outputs, console)
+        except UnsolvedChainError as error:
+            from ikgen.cli.remedies import helped
+            from ikgen.emit.report import emit_unsolved
+
+            stuck = helped(error, console)
+            texts = emit_unsolved(stuck.unsolved, stuck.hint)
         files = [*publish(out, texts), *_pdfs(out, texts, console)]
     _say(files, as_json=as_json, quiet=quiet)
+    if stuck is not None:
+        raise stuck
 
 
 def _say(files: list[Path], *, as_json: bool, quiet: bool) -> None:

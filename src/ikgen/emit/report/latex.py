@@ -21,7 +21,7 @@ _ESCAPES = {
     "{": "\\{", "}": "\\}", "~": "\\textasciitilde{}", "^": "\\textasciicircum{}", "–": "--",
     "°": "\\ensuremath{^\\circ}", "±": "\\ensuremath{\\pm}",
     "·": "\\ensuremath{\\cdot}", "×": "\\ensuremath{\\times}", "−": "\\ensuremath{-}",
-    "\u2003": "\\quad{}",
+    "\u2003": "\\quad{}", "-": "-{}",
 }  # fmt: skip
 
 

@@ -19,7 +19,7 @@ from ikgen.emit.report.notation import variable
 from ikgen.emit.report.picture import Drawing
 from ikgen.emit.report.poses import Versions
 from ikgen.equations.knowledge import Variable
-from ikgen.pipeline import Derivation
+from ikgen.solver.graph import SolutionGraph
 from ikgen.verify.report import VerificationReport
 
 __all__ = ["graph_section", "poses_section", "verification_section"]
@@ -51,9 +51,9 @@ def graph_section(
     ]
 
 
-def poses_section(derivation: Derivation, versions: Versions) -> list[Block]:
+def poses_section(graph: SolutionGraph, versions: Versions) -> list[Block]:
     """The sets of versions that make whole solutions."""
-    session = derivation.graph.session
+    session = graph.session
     joints = [session.joint_variable(j) for j in range(session.system.dh.dof)]
     known = [v for v in joints if v in versions.within]
     lead = (

@@ -12,21 +12,26 @@ from ikgen.emit.report.mathtext import Math
 from ikgen.emit.report.normal import Normalizer, Symbol
 from ikgen.emit.report.notation import show, symbol
 from ikgen.equations.rigid import link, multiply
+from ikgen.kinematics.classify import GeometryClass
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
 from ikgen.model.joint_tree import Matrix as Array
-from ikgen.pipeline import Derivation
+from ikgen.pipeline import Reading
+from ikgen.solver.graph import SolutionGraph
+from ikgen.tasks import Task
 
 __all__ = ["forward_section", "robot_section"]
 
+_MOST_WRITTEN = 900
+"""Symbols in all entries of the pose together, above which they are not written out."""
 
-def robot_section(derivation: Derivation) -> list[Block]:
-    """What robot this is, and its table."""
-    dh, module = derivation.reading.dh, derivation.module
+
+def robot_section(reading: Reading, geometry: GeometryClass, task: Task, most: str) -> list[Block]:
+    """What robot this is, and its table; `most` says how many solutions there are."""
+    dh = reading.dh
     moving = "".join("R" if row.revolute else "P" for row in dh.rows)
     lead = (
         f"{dh.dof} joints ({moving}), from {dh.base_link} to {dh.tip_link}. "
-        f"Geometry: {derivation.geometry.words}. Task: {derivation.task.name} "
-        f"({derivation.task.words}). At most {module.max_solutions} solutions a pose."
+        f"Geometry: {geometry.words}. Task: {task.name} ({task.words}). {most}"
     )
     blocks: list[Block] = [Heading(("Robot",)), Paragraph((lead,)), _table(dh)]
     if dh.free or dh.locked:
@@ -36,7 +41,7 @@ def robot_section(derivation: Derivation) -> list[Block]:
     values = _parameters(dh)
     if values:
         blocks.append(values)
-    blocks += [Paragraph((f"Note: {w}.",), note=True) for w in derivation.reading.source.warnings]
+    blocks += [Paragraph((f"Note: {w}.",), note=True) for w in reading.source.warnings]
     blocks += _ends(dh)
     return blocks + _snaps(dh)
 
@@ -183,21 +188,20 @@ def _snaps(dh: DHChain) -> list[Block]:
     return [Rows(header, rows, "Constants made exact"), Paragraph((text,))]
 
 
-def forward_section(derivation: Derivation, normal: Normalizer) -> list[Block]:
+def forward_section(graph: SolutionGraph, normal: Normalizer) -> list[Block]:
     """The pose, and what the table makes of it."""
-    system = derivation.graph.session.system
+    system = graph.session.system
     g, n = system.graph, system.n
     T = multiply(g, link(system.variables, 0), system.right(0, n))
     pose = [[m.name("r", f"{i}{j}") for j in (1, 2, 3)] for i in (1, 2, 3)]
     rows = [(*pose[i], m.name("p", "xyz"[i])) for i in range(3)]
     rows.append(tuple(m.name(x) for x in "0001"))
     left = m.name("T", "d")
-    lines = []
-    for j in range(3):
-        for i in range(3):
-            lines.append(pose[i][j] + m.relation() + show(normal(T.R[i][j])))
-    for i in range(3):
-        lines.append(rows[i][3] + m.relation() + show(normal(T.p[i])))
+    sums = [*(normal(T.R[i][j]) for j in range(3) for i in range(3)), *map(normal, T.p)]
+    if sum(s.weight for s in sums) > _MOST_WRITTEN:
+        return _unwritten(Matrix(left, tuple(rows)), n)
+    entries = [*(pose[i][j] for j in range(3) for i in range(3)), *(row[3] for row in rows[:3])]
+    lines = [a + m.relation() + show(s) for a, s in zip(entries, sums, strict=True)]
     words = (
         "The desired pose, and its entries by the table. ",
         m.name("c", "i"), " and ", m.name("s", "i"), " are cosine and sine of ",
@@ -211,3 +215,17 @@ def forward_section(derivation: Derivation, normal: Normalizer) -> list[Block]:
         Matrix(left, tuple(rows)),
         Formulas(tuple(lines)),
     ]
+
+
+def _unwritten(pose: Matrix, n: int) -> list[Block]:
+    """Forward kinematics whose entries are too long to be read: the product alone."""
+    factors = [m.name("A", str(i)) for i in range(1, n + 1)]
+    return [
+        Heading(("Forward kinematics",)),
+        Paragraph((
+            "The desired pose is the product of the matrices of the table's rows (below); without "
+            "parallel axes and right angles its entries are too long to be written out.",
+        )),
+        pose,
+        Formulas((pose.name + m.relation() + m.join(factors, m.space()),)),
+    ]  # fmt: skip
