@@ -7,16 +7,17 @@ import json
 import os
 import tempfile
 import time
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ikgen.errors import UsageError, VerificationError
+from ikgen.errors import VerificationError
 from ikgen.pipeline import Derivation, Progress, Reading, Request, derive
 
 if TYPE_CHECKING:
     from ikgen.emit.module import SolverModule
+    from ikgen.emit.registry import Emitter
     from ikgen.model.joint_tree import Source
     from ikgen.verify.oracle import Oracle
     from ikgen.verify.report import VerificationReport
@@ -30,6 +31,7 @@ __all__ = [
     "verify_files",
     "verify_one",
     "verify_texts",
+    "with_samples",
 ]
 
 
@@ -65,18 +67,12 @@ def generate(request: Request, outputs: Outputs, progress: Progress = _silent) -
     started = time.perf_counter()
     emitters = [find_emitter(name) for name in outputs.emit]
     derivation = derive(request, progress)
-    symbols = derivation.reading.dh.symbols
-    if symbols and any(emitter.runner_target for emitter in emitters):
-        raise UsageError(
-            f"{request.robot}: no numbers for {', '.join(symbols)}",
-            hint="give them under [parameters]; without numbers only a report can be written",
-        )
     texts: dict[str, str] = {}
     for emitter in emitters:
         if not emitter.tells_verification:
             progress("emit", emitter.name)
             texts |= emitter.emit(derivation)
-    reports = verify_texts(derivation, texts, outputs, progress) if outputs.verify else {}
+    reports = _verified(derivation, texts, emitters, outputs, progress) if outputs.verify else {}
     for emitter in emitters:
         if emitter.tells_verification:
             progress("emit", emitter.name)
@@ -85,6 +81,30 @@ def generate(request: Request, outputs: Outputs, progress: Progress = _silent) -
     texts[f"{derivation.module.name}_ik.json"] = manifest
     files = publish(outputs.out, texts)
     return Generation(derivation, files, reports, time.perf_counter() - started)
+
+
+def _verified(
+    derivation: Derivation,
+    texts: Mapping[str, str],
+    emitters: Sequence[Emitter],
+    outputs: Outputs,
+    progress: Progress,
+) -> dict[str, VerificationReport]:
+    """The verification of what was emitted: of a table without numbers that with samples."""
+    sampled = with_samples(derivation)
+    if sampled is not derivation:
+        texts = {}
+        for emitter in emitters:
+            if emitter.runner_target is not None:
+                texts |= emitter.emit(sampled)
+    return verify_texts(sampled, texts, outputs, progress)
+
+
+def with_samples(derivation: Derivation) -> Derivation:
+    """The derivation whose outputs can run: numbers in place of the constants to be filled in."""
+    if not derivation.reading.dh.symbols:
+        return derivation
+    return replace(derivation, module=replace(derivation.module, sample=True))
 
 
 def publish(out: Path, texts: Mapping[str, str]) -> tuple[Path, ...]:

@@ -12,7 +12,7 @@ import click
 from ikgen.cli.console import Console
 from ikgen.cli.options import chain_options, console_options, make_request, sampling_options
 from ikgen.errors import UnsolvedChainError
-from ikgen.generate import Outputs, publish, verify_texts
+from ikgen.generate import Outputs, publish, verify_texts, with_samples
 from ikgen.pipeline import Derivation, derive
 
 __all__ = ["report"]
@@ -81,8 +81,9 @@ def _texts(derivation: Derivation, outputs: Outputs, console: Console) -> dict[s
 
     reports = {}
     if outputs.verify:
-        made = find_emitter("python").emit(derivation)
-        reports = verify_texts(derivation, made, outputs, console)
+        sampled = with_samples(derivation)
+        made = find_emitter("python").emit(sampled)
+        reports = verify_texts(sampled, made, outputs, console)
     console("emit", "report")
     return find_emitter("report").emit(derivation, reports)
 
