@@ -35,6 +35,8 @@ def summary(generation: Generation) -> str:
     lines += [("verified", _verified(name, r)) for name, r in generation.reports.items()]
     if not generation.reports:
         lines.append(("verified", "no"))
+    if dh.symbols:
+        lines.append(("fill in", f"{', '.join(dh.symbols)}; verified with sample numbers"))
     lines += [("wrote", str(path)) for path in generation.files]
     lines.append(("time", f"{generation.seconds:.1f} s"))
     return table([(f"{name}:", text) for name, text in lines], indent="")
@@ -76,6 +78,7 @@ def as_dict(generation: Generation) -> dict[str, Any]:
         "joints": [joint.name for joint in dh.joints],
         "free": [dh.joints[j].name for j in module.free],
         "locked": dict(dh.locked),
+        "symbols": list(dh.symbols),
         "geometry": {"name": derivation.geometry.name, "words": derivation.geometry.words},
         "solved": [
             {"unknown": s.candidate.unknown.text, "leaf": s.candidate.leaf, "branches": s.branches}

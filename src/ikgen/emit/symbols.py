@@ -34,12 +34,12 @@ def blanks(module: SolverModule) -> tuple[Blank, ...]:
     names = module.dh.symbols
     if not names:
         return ()
-    hint = "give it a number under [parameters]; the report can be written without"
     if module.plan is not None:
-        raise UsageError("the 6R elimination needs a number for every constant", hint=hint)
-    for row in module.dh.rows:
-        if row.offset.symbolic:
-            raise UsageError(f"'{row.name}': an offset without number cannot be emitted", hint=hint)
+        raise UsageError(
+            f"no numbers for {', '.join(names)}: only the 6R elimination solves this arm, and it "
+            "works with numbers",
+            hint="give them under [parameters]; without numbers only a report can be written",
+        )
     samples = _samples(module.dh)
     return tuple(Blank(n, samples[n] if module.sample else math.nan, samples[n]) for n in names)
 
