@@ -148,7 +148,7 @@ def test_latex_compiles(name: str, tmp_path: Path) -> None:
     log = done.stdout.decode("latin-1")
     assert done.returncode == 0, log[-2000:]
     wide = [float(w) for w in re.findall(r"Overfull \\hbox \(([\d.]+)pt", log)]
-    assert max(wide, default=0.0) < 10.0
+    assert max(wide, default=0.0) < 2.0
 
 
 def test_same_input_gives_the_same_text() -> None:

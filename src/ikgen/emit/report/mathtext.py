@@ -206,15 +206,14 @@ def power(base: Math, exponent: int) -> Math:
     """A whole power."""
     if exponent == 1:
         return base
+    shown = str(exponent).replace("-", "−")
     only = base.tokens[0] if len(base.tokens) == 1 else None
     if only is not None and only.mathml.startswith("<msub>"):
         inside = only.mathml.removeprefix("<msub>").removesuffix("</msub>")
-        return _mark(
-            f"{only.latex}^{{{exponent}}}", f"<msubsup>{inside}<mn>{exponent}</mn></msubsup>"
-        )
+        return _mark(f"{only.latex}^{{{exponent}}}", f"<msubsup>{inside}<mn>{shown}</mn></msubsup>")
     return _mark(
         f"{{{base.latex}}}^{{{exponent}}}",
-        f"<msup><mrow>{base.mathml}</mrow><mn>{exponent}</mn></msup>",
+        f"<msup><mrow>{base.mathml}</mrow><mn>{shown}</mn></msup>",
     )
 
 

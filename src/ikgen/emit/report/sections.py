@@ -206,8 +206,9 @@ def forward_section(graph: SolutionGraph, normal: Normalizer) -> list[Block]:
         "The desired pose, and its entries by the table. ",
         m.name("c", "i"), " and ", m.name("s", "i"), " are cosine and sine of ",
         m.name("theta", "i"),
-        "; angles of parallel axes come as sums: ", m.name("theta", "23"), m.relation(),
-        m.name("theta", "2") + m.plus() + m.name("theta", "3"), ".",
+        "; angles of parallel axes come as sums: ",
+        m.name("theta", "23") + m.relation() + m.name("theta", "2") + m.plus()
+        + m.name("theta", "3"), ".",
     )  # fmt: skip
     return [
         Heading(("Forward kinematics",)),

@@ -27,7 +27,7 @@ def splits_section(system: EquationSet) -> list[Block]:
     link = twist + m.space() + m.function("Trans", m.name("x"), m.name("a", "i-1"))
     move = turn + m.space() + m.function("Trans", m.name("z"), m.name("d", "i"))
     words: list[Inline] = [
-        "Row ", m.name("i"), " of the table is the matrix ", a, m.relation(), c, m.space(), v, " with ",
+        "Row ", m.name("i"), " of the table is the matrix ", a + m.relation() + c + m.space() + v, " with ",
         c + m.relation() + link, " and ", v + m.relation() + move, ". Known joints are moved to the "
         "side of the pose: the split (k, m) moves the first k to its left and those after m to its "
         "right, for example:",

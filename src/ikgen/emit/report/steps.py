@@ -25,7 +25,7 @@ __all__ = ["Writer", "abbreviations", "derived_section", "step_section"]
 _MANY = 16
 _QUARTIC: Text = (
     "No leaf with two branches holds for this unknown: it is a root of a polynomial of degree four. The "
-    "polynomial in ", m.name("z"), m.relation(), m.function("exp", m.name("i") + m.name("theta")),
+    "polynomial in ", m.name("z") + m.relation() + m.function("exp", m.name("i") + m.name("theta")),
     " is written above; its roots on the unit circle are the real solutions. The emitted code finds "
     "them in closed form by Ferrari's resolvent, as the points where the lines of a degenerate conic "
     "meet the circle.",
