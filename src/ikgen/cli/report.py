@@ -5,15 +5,18 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ikgen.cli.console import Console
 from ikgen.cli.options import chain_options, console_options, make_request, sampling_options
-from ikgen.errors import UnsolvedChainError
+from ikgen.errors import IkgenError, UnsolvedChainError, VerificationError
 from ikgen.generate import Outputs, publish, verify_texts, with_samples
-from ikgen.pipeline import Derivation, derive
+from ikgen.pipeline import Derivation, Request, derive
+
+if TYPE_CHECKING:
+    from ikgen.verify.report import VerificationReport
 
 __all__ = ["report"]
 
@@ -47,23 +50,40 @@ def report(
 ) -> None:
     """Write how the inverse kinematics of ROBOT was derived: LaTeX, HTML, graph and trace.
 
-    Without a closed form the report says how far the solver came, and the exit code is 3.
+    Without a closed form the report says how far the solver came, and the exit code is 3; with a
+    failed verification it has the failed checks, and the exit code is 1.
     """
     outputs = Outputs(out=out, samples=samples, seed=seed, verify=not no_verify)
     with Console(quiet=quiet, verbose=verbose) as console:
-        stuck: UnsolvedChainError | None = None
-        try:
-            texts = _texts(derive(make_request(robot, **chain), console), outputs, console)
-        except UnsolvedChainError as error:
-            from ikgen.cli.remedies import helped
-            from ikgen.emit.report import emit_unsolved
-
-            stuck = helped(error, console)
-            texts = emit_unsolved(stuck.unsolved, stuck.hint)
+        texts, wrong = _written(make_request(robot, **chain), outputs, console)
         files = [*publish(out, texts), *_pdfs(out, texts, console)]
     _say(files, as_json=as_json, quiet=quiet)
-    if stuck is not None:
-        raise stuck
+    if wrong is not None:
+        raise wrong
+
+
+def _written(
+    request: Request, outputs: Outputs, console: Console
+) -> tuple[dict[str, str], IkgenError | None]:
+    """File name -> text of the report, and the error to end with: of an arm without a closed form, or
+    of a verification that failed. Either is in the report."""
+    from ikgen.emit.report import emit_report, emit_unsolved
+
+    try:
+        derivation = derive(request, console)
+    except UnsolvedChainError as error:
+        from ikgen.cli.remedies import helped
+
+        stuck = helped(error, console)
+        return emit_unsolved(stuck.unsolved, stuck.hint), stuck
+    wrong = None
+    try:
+        reports = _reports(derivation, outputs, console)
+    except VerificationError as error:
+        reports = error.reports
+        wrong = VerificationError(error.message, reports=reports, hint="the report has all checks")
+    console("emit", "report")
+    return emit_report(derivation, reports), wrong
 
 
 def _say(files: list[Path], *, as_json: bool, quiet: bool) -> None:
@@ -75,17 +95,17 @@ def _say(files: list[Path], *, as_json: bool, quiet: bool) -> None:
             click.echo(f"wrote: {path}")
 
 
-def _texts(derivation: Derivation, outputs: Outputs, console: Console) -> dict[str, str]:
-    """File name -> text of the report, with the verification of the Python module."""
+def _reports(
+    derivation: Derivation, outputs: Outputs, console: Console
+) -> Mapping[str, VerificationReport]:
+    """The verification of the Python module."""
     from ikgen.emit.registry import find_emitter
 
-    reports = {}
-    if outputs.verify:
-        sampled = with_samples(derivation)
-        made = find_emitter("python").emit(sampled)
-        reports = verify_texts(sampled, made, outputs, console)
-    console("emit", "report")
-    return find_emitter("report").emit(derivation, reports)
+    if not outputs.verify:
+        return {}
+    sampled = with_samples(derivation)
+    made = find_emitter("python").emit(sampled)
+    return verify_texts(sampled, made, outputs, console)
 
 
 def _pdfs(out: Path, texts: Mapping[str, str], console: Console) -> list[Path]:
