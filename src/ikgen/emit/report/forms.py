@@ -184,6 +184,8 @@ def _bound(above: Sum, below: Sum) -> Math:
     """`|C| <= |A|`, where a sine or cosine is C / A."""
     value = below.value
     one = m.number(abs(value)) if value is not None else m.group(show(below), "||")
+    if all(t.coefficient < 0 for t in above.terms):
+        above = -above
     return m.group(show(above), "||") + m.relation("\\le ", "≤") + one
 
 

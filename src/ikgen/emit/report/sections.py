@@ -35,14 +35,14 @@ def robot_section(reading: Reading, geometry: GeometryClass, task: Task, most: s
     )
     blocks: list[Block] = [Heading(("Robot",)), Paragraph((lead,)), _table(dh)]
     if dh.free or dh.locked:
-        held = [f"{name} is held free" for name in dh.free]
+        held = [f"{name} is held free: its value is given with the pose" for name in dh.free]
         held += [f"{name} is locked at {value:g}" for name, value in dh.locked]
         blocks.append(Paragraph(("; ".join(held) + ".",)))
     values = _parameters(dh)
     if values:
         blocks.append(values)
     blocks += [Paragraph((f"Note: {w}.",), note=True) for w in reading.source.warnings]
-    blocks += _ends(dh)
+    blocks += _ends(dh, task)
     return blocks + _snaps(dh)
 
 
@@ -124,19 +124,22 @@ def _parameters(dh: DHChain) -> Rows | None:
     return Rows((("constant",), ("value (m, rad)",)), cells, "Constants of the arm")
 
 
-def _ends(dh: DHChain) -> list[Block]:
+def _ends(dh: DHChain, task: Task) -> list[Block]:
     """Base and tool transforms, and the joints whose values are not the table's variables."""
     out: list[Block] = []
-    for letters, T, words in (("B", dh.X_base, "base"), ("E", dh.X_tip, "tool")):
+    for letter, T in (("B", dh.X_base), ("E", dh.X_tip)):
         if not np.array_equal(T, np.eye(4)):
-            out.append(Matrix(m.name("T", letters), _numbers(T)))
-            del words
+            out.append(Matrix(m.name(letter), _numbers(T)))
     if out:
-        text = (
-            "The pose in what follows is that of the table's last frame in frame 0: the "
-            "constant transforms of base and tool (B, E) are taken off the given pose first."
+        pose = (
+            "that of the table's last frame in frame 0: the constant transforms of base and tool "
+            "(B, E) are taken off the given pose first."
+            if task.whole_pose
+            else "that of the tool in frame 0: the constant transform of the base (B) is taken off the "
+            "given pose first, that of the tool (E) ends the chain, since the task does not read "
+            "the whole pose."
         )
-        out.insert(0, Paragraph((text,)))
+        out.insert(0, Paragraph((f"The pose in what follows is {pose}",)))
     shifted = [row for row in dh.rows if row.scale != 1.0 or row.offset.value]
     if shifted:
         lines = [_conversion(row, dh) for row in shifted]

@@ -182,10 +182,11 @@ def derived_section(w: Writer) -> list[Block]:
     solved = {step.candidate.unknown for step in w.graph.steps}
     lines = []
     for v, _ in w.graph.parents:
-        if v in solved or v.kind != "angle":
+        composed = v.kind == "angle" and w.graph.knowledge.composition(v.key)
+        if v in solved or not composed or composed == ((1, v.key),):
             continue
         right = Math(())
-        for factor, key in w.graph.knowledge.composition(v.key):
+        for factor, key in composed:
             sign = m.minus(sign=not right.tokens) if factor < 0 else m.plus()
             right = right + (sign if right.tokens or factor < 0 else Math(()))
             right = right + (m.number(abs(factor)) if abs(factor) != 1 else Math(()))
