@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from importlib.metadata import entry_points
@@ -13,24 +13,30 @@ from ikgen.errors import UnknownNameError
 
 if TYPE_CHECKING:
     from ikgen.emit.module import SolverModule
+    from ikgen.verify.report import VerificationReport
 
 __all__ = ["EMITTERS", "Emitter", "find_emitter"]
 
 
 @dataclass(frozen=True, slots=True)
 class Emitter:
-    """An output by name. `target` is "module:function", which takes the derivation and gives file
-    name -> text; `runner_target` "module:function" takes the solver module and the folder of the
+    """An output by name. `target` is "module:function", which takes the derivation (and, where it
+    `tells_verification`, the reports of the other outputs by name) and gives file name -> text;
+    `runner_target` "module:function" takes the solver module and the folder of the
     finished files and gives a verification runner (none: the output is not run)."""
 
     name: str
     words: str
     target: str
     runner_target: str | None = None
+    tells_verification: bool = False
 
-    def emit(self, derivation: Any) -> dict[str, str]:
+    def emit(
+        self, derivation: Any, reports: Mapping[str, VerificationReport] | None = None
+    ) -> dict[str, str]:
         """File name (relative) -> text."""
-        texts: dict[str, str] = _load(self.target)(derivation)
+        more = (reports or {},) if self.tells_verification else ()
+        texts: dict[str, str] = _load(self.target)(derivation, *more)
         return texts
 
     def runner(self, module: SolverModule, folder: Path) -> Any | None:
@@ -66,7 +72,8 @@ EMITTERS: tuple[Emitter, ...] = (
     Emitter(
         "report",
         "how it was derived, as LaTeX and HTML, with the solution graph",
-        "ikgen.emit.report:emit_derivation",
+        "ikgen.emit.report:emit_report",
+        tells_verification=True,
     ),
 )
 
