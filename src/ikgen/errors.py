@@ -69,9 +69,14 @@ class UnsupportedJointError(BadDescriptionError):
 
 
 class UnsolvedChainError(IkgenError):
-    """No closed form found: the message says what was solved, what is left and what would help."""
+    """No closed form found: the message says what was solved, what is left and what would help;
+    `unsolved` is how far the derivation came (`ikgen.pipeline.Unsolved`)."""
 
     exit_code = 3
+
+    def __init__(self, message: str, *, unsolved: Any = None, hint: str = "") -> None:
+        super().__init__(message, hint=hint)
+        self.unsolved = unsolved
 
 
 class MissingToolError(IkgenError):

@@ -6,12 +6,15 @@ import math
 from typing import Protocol
 
 from ikgen.emit.cpp_joints import JointValue, Seed
-from ikgen.emit.cpp_language import comment, literal, number
+from ikgen.emit.cpp_language import CONSTANT, comment, literal, number
 from ikgen.emit.cpp_program import ProgramText
 from ikgen.emit.module import SolverModule
+from ikgen.emit.printer import expression
 from ikgen.emit.rendering import render
+from ikgen.emit.symbols import blanks, frame_entries, pairs
 from ikgen.errors import UsageError
 from ikgen.ir.liveness import used_inputs
+from ikgen.ir.ops import Op
 
 __all__ = ["emit", "emit_derivation", "emit_header", "emit_package"]
 
@@ -88,8 +91,12 @@ def emit_header(module: SolverModule) -> str:
         rough=_rough(module),
         order=_depth_first(branches),
         routines=sorted({lv.call.routine for lv in program.levels if lv.call is not None}),
-        frames=[[[number(float(x)) for x in row] for row in F[:3]] for F in module.dh.file_frames],
-        size=number(module.size),
+        frames=[
+            [[expression(CONSTANT, x) for x in row] for row in F] for F in frame_entries(module.dh)
+        ],
+        size=_size_text(module),
+        blanks=blanks(module),
+        angles=[(f, n) for n in pairs(module) for f in ("cos", "sin")],
         free_defaults=[number(x) for x in module.free_defaults],
         number=number,
         literal=literal,
@@ -105,6 +112,15 @@ def _careful(module: SolverModule) -> bool:
 def _equations(module: SolverModule) -> int:
     """Components of the error that Newton steps take to zero."""
     return 6 if module.task == "pose" else len(module.reads.entries)
+
+
+def _size_text(module: SolverModule) -> str:
+    """The arm's size as a number, or as an expression in constants to be filled in."""
+    if not module.dh.symbols:
+        return number(module.size)
+    lengths = [F[i][3] for F in frame_entries(module.dh) for i in range(3)]
+    texts = [expression(CONSTANT, Op("abs", (x,))) for x in lengths if x != 0.0]
+    return f"std::max({{{', '.join(['1.0', *texts])}}})"
 
 
 def _depth_first(branches: list[int]) -> list[int]:

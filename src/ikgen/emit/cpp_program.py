@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import textwrap
 
-from ikgen.emit.cpp_language import CPP, LINE, comment, number
+from ikgen.emit.cpp_language import CONSTANT, CPP, LINE, comment, number
 from ikgen.emit.module import SolverModule
 from ikgen.emit.printer import expression
+from ikgen.emit.symbols import pairs
 from ikgen.ir.interpret import evaluate
 from ikgen.ir.liveness import live_names
 from ikgen.ir.ops import Op, Operand, operand_names
@@ -23,6 +24,7 @@ class ProgramText:
     """Statements of the solver's body, for a number `P` of poses that the template fixes."""
 
     def __init__(self, module: SolverModule) -> None:
+        self.module = module
         self.program = module.program
         self.live = live_names(self.program)
         self.fixed: dict[str, float] = dict(self.program.parameters)
@@ -46,12 +48,25 @@ class ProgramText:
 
     @property
     def constants(self) -> list[tuple[str, str]]:
-        """Name and text of every constant in use, parameters first."""
+        """Name and text of every constant in use, parameters first; of a table without numbers those
+        that follow from the constants to be filled in."""
+        if self.module.dh.symbols:
+            return self._written_constants()
         text = dict.fromkeys(self.fixed, "")
         for let in self.program.constants:
             if not _calls(let.value):
                 text[let.name] = expression(CPP, let.value)
         return [(n, text[n] or number(v)) for n, v in self.fixed.items() if n in self.live]
+
+    def _written_constants(self) -> list[tuple[str, str]]:
+        angles = {f"{f}_{n}" for n in pairs(self.module) for f in ("cos", "sin")}
+        text = {n: number(v) for n, v in self.program.parameters if n in self.live}
+        lets = [s for lv in self.program.levels for s in lv.body if isinstance(s, Let)]
+        for let in (*self.program.constants, *lets):
+            if let.name in self.fixed and let.name in self.live:
+                text[let.name] = expression(CONSTANT, let.value)
+        above = {*self.module.dh.symbols, *angles}
+        return [(n, t) for n, t in text.items() if n not in above]
 
     # -- statements -----------------------------------------------------------------------------
 

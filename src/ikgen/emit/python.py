@@ -6,11 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import Protocol
 
-import numpy as np
-
 from ikgen.emit.module import SolverModule
 from ikgen.emit.printer import Language, expression
 from ikgen.emit.rendering import render
+from ikgen.emit.symbols import blanks, frame_entries, pairs
 from ikgen.ir.ops import Op, Operand, operand_names
 from ikgen.ir.program import Comment, JointOutput, Let, Level, Program, Require
 
@@ -30,6 +29,8 @@ _INFIX = {
 def _number(value: float) -> str:
     if math.isinf(value):
         return "inf" if value > 0 else "-inf"
+    if math.isnan(value):
+        return "nan"
     return repr(float(value))
 
 
@@ -88,7 +89,8 @@ def emit_module(module: SolverModule) -> str:
         joints=module.dh.joints,
         lower=[_number(j.limits.lower) for j in module.dh.joints],
         upper=[_number(j.limits.upper) for j in module.dh.joints],
-        parameters=[(n, _number(v)) for n, v in program.parameters],
+        parameters=_parameters(module),
+        blanks=blanks(module),
         constants=[(c.name, expression(SCALAR, c.value)) for c in program.constants],
         scalar=_scalar(module, joints),
         batch=_batch(module, joints),
@@ -96,7 +98,9 @@ def emit_module(module: SolverModule) -> str:
         used=_used_inputs(program),
         seeds=_seed_rows(module),
         shape=[level.branches for level in program.levels[1:]],
-        frames=[_matrix(F) for F in module.dh.file_frames],
+        frames=[
+            [[expression(SCALAR, x) for x in row] for row in F] for F in frame_entries(module.dh)
+        ],
         rows=[(row.driver, row.revolute, row.scale, row.offset.value) for row in module.dh.rows],
         number=_number,
         orientation=module.reads.orientation,
@@ -105,8 +109,12 @@ def emit_module(module: SolverModule) -> str:
     )
 
 
-def _matrix(F: np.ndarray) -> list[list[str]]:
-    return [[_number(float(x)) for x in row] for row in F[:3]]
+def _parameters(module: SolverModule) -> list[tuple[str, str]]:
+    """Name and text of the arm's constants but those to be filled in."""
+    angles = {f"{f}_{n}": f"{f}({n})" for n in pairs(module) for f in ("cos", "sin")}
+    given = [(n, v) for n, v in module.program.parameters if n not in module.dh.symbols]
+    plain = [(n, _number(v)) for n, v in given if n not in angles]
+    return [*angles.items(), *plain]
 
 
 def _used_inputs(program: Program) -> list[str]:

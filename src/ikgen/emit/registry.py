@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from importlib import import_module
@@ -14,6 +14,7 @@ from ikgen.plugins import PlugIn, find_plug_in, plug_ins
 
 if TYPE_CHECKING:
     from ikgen.emit.module import SolverModule
+    from ikgen.verify.report import VerificationReport
 
 __all__ = ["EMITTERS", "Emitter", "find_emitter"]
 
@@ -22,21 +23,26 @@ GROUP = "ikgen.emitters"
 
 @dataclass(frozen=True, slots=True)
 class Emitter:
-    """An output by name. `target` is "module:function", which takes the derivation and gives file
-    name -> text; `runner_target` "module:function" takes the solver module and the folder of the
-    finished files and gives a verification runner (none: the output is not run). `plug_in` is set
-    for an emitter of another package, which its failures then name."""
+    """An output by name. `target` is "module:function", which takes the derivation (and, where it
+    `tells_verification`, the reports of the other outputs by name) and gives file name -> text;
+    `runner_target` "module:function" takes the solver module and the folder of the finished files
+    and gives a verification runner (none: the output is not run). `plug_in` is set for an emitter
+    of another package, which its failures then name."""
 
     name: str
     words: str
     target: str
     runner_target: str | None = None
+    tells_verification: bool = False
     plug_in: PlugIn | None = None
 
-    def emit(self, derivation: Any) -> dict[str, str]:
+    def emit(
+        self, derivation: Any, reports: Mapping[str, VerificationReport] | None = None
+    ) -> dict[str, str]:
         """File name (relative) -> text."""
+        more = (reports or {},) if self.tells_verification else ()
         with self._blamed():
-            texts: dict[str, str] = _load(self.target)(derivation)
+            texts: dict[str, str] = _load(self.target)(derivation, *more)
         return texts
 
     def runner(self, module: SolverModule, folder: Path) -> Any | None:
@@ -78,7 +84,8 @@ EMITTERS: tuple[Emitter, ...] = (
     Emitter(
         "report",
         "how it was derived, as LaTeX and HTML, with the solution graph",
-        "ikgen.emit.report:emit_derivation",
+        "ikgen.emit.report:emit_report",
+        tells_verification=True,
     ),
 )
 

@@ -11,7 +11,7 @@ from ikgen.plugins import find_plug_in, plug_ins
 if TYPE_CHECKING:
     from ikgen.model.dh import DHChain
 
-__all__ = ["TASKS", "Task", "find_task", "fitting_tasks"]
+__all__ = ["TASKS", "Task", "find_task", "fitting_tasks", "freedoms_moved"]
 
 _POSITION = ("px", "py", "pz")
 _ROTATION = tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
@@ -23,6 +23,7 @@ _ORIENTATIONS = {
     frozenset(_DIRECTION): "direction",
     frozenset(_HEADING): "yaw",
 }
+_CONFIGURATIONS = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,8 +116,21 @@ def _spans(dh: DHChain, task: Task) -> bool:
 
     from ikgen.kinematics.forward import file_forward
 
+    q = np.random.default_rng(0).uniform(-1.5, 1.5, (_CONFIGURATIONS, dh.dof))
+    if task.name == "position-yaw" and np.abs(file_forward(dh, q)[:, 2, 0]).max() > 1e-6:
+        return False  # a heading is well-defined where the tool's x axis stays horizontal
+    return freedoms_moved(dh, task) == dh.dof - len(dh.free)
+
+
+def freedoms_moved(dh: DHChain, task: Task) -> int:
+    """How many freedoms of the task the joints that are not held move, nearly everywhere: the rank of
+    the task's entries by the joints."""
+    import numpy as np
+
+    from ikgen.kinematics.forward import file_forward
+
     rng = np.random.default_rng(0)
-    q = rng.uniform(-1.5, 1.5, (8, dh.dof))
+    q = rng.uniform(-1.5, 1.5, (_CONFIGURATIONS, dh.dof))
     rows, columns = zip(*task.entries, strict=True)
     steps = []
     for j in range(dh.dof):
@@ -124,7 +138,8 @@ def _spans(dh: DHChain, task: Task) -> bool:
             h = 1e-6 * np.eye(dh.dof)[j]
             change = (file_forward(dh, q + h) - file_forward(dh, q - h)) / 2e-6
             steps.append(change[:, rows, columns])
-    if task.name == "position-yaw" and np.abs(file_forward(dh, q)[:, 2, 0]).max() > 1e-6:
-        return False  # a heading is well-defined where the tool's x axis stays horizontal
+    if not steps:
+        return 0
     singular = np.linalg.svd(np.stack(steps, axis=-1), compute_uv=False)
-    return bool(np.median(singular[:, -1] / singular[:, 0]) > 1e-4)
+    largest = np.maximum(singular[:, :1], 1e-12)
+    return int((np.median(singular / largest, axis=0) > 1e-4).sum())
