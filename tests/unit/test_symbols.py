@@ -14,7 +14,7 @@ from ikgen.emit.python import emit_module
 from ikgen.emit.symbols import blanks, frame_entries
 from ikgen.errors import IkgenError, UsageError
 from ikgen.generate import with_samples
-from ikgen.ir.interpret import _evaluate as evaluate
+from ikgen.ir.interpret import evaluate
 from ikgen.pipeline import Derivation, Request, derive
 from ikgen.verify.runners.cpp_toolchain import find_compiler
 from ikgen.verify.runners.python_module import PythonModule
