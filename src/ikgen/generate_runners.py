@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from ikgen.verify.runners.cpp_header import CppHeader
     from ikgen.verify.runners.python_module import PythonModule
 
-__all__ = ["cpp_runner", "nanobind_runner", "python_runner"]
+__all__ = ["cpp_runner", "moveit_runner", "nanobind_runner", "python_runner"]
 
 
 def python_runner(module: SolverModule, folder: Path) -> PythonModule:
@@ -44,3 +44,11 @@ def cpp_runner(module: SolverModule, folder: Path) -> CppHeader:
 def nanobind_runner(module: SolverModule, folder: Path) -> CppHeader:
     """The header in the package to compile, as for `cpp_runner`."""
     return cpp_runner(module, folder / f"{module.name}_ik_ext")
+
+
+def moveit_runner(module: SolverModule, folder: Path) -> CppHeader:
+    """The header in the ROS 2 package, as for `cpp_runner`."""
+    from ikgen.emit.moveit import package_name
+
+    package = package_name(module.name)
+    return cpp_runner(module, folder / package / "include" / package)
