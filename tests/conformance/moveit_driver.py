@@ -20,7 +20,7 @@ __all__ = ["Answer", "Plugin", "Search", "compile_driver", "warnings_of"]
 Array = NDArray[np.float64]
 
 STUBS = Path(__file__).parent / "moveit_stubs"
-_STRICT = "-std=c++17 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror".split()
+_STRICT = ["-std=c++17", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
 
 SUCCESS, TIMED_OUT, GOAL_IN_COLLISION, NO_IK_SOLUTION = 1, -6, -12, -31
 NO_DISCRETIZATION, ALL_DISCRETIZED, ALL_RANDOM_SAMPLED = 1, 2, 4

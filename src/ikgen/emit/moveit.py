@@ -24,7 +24,14 @@ _FILES = {
     "src/kinematics_plugin.cpp": "kinematics_plugin.cpp",
     "src/robot_model.cpp": "robot_model.cpp",
 }
-_HEADERS = ("candidates", "search", "messages", "moveit_headers", "robot_model", "kinematics_plugin")
+_HEADERS = (
+    "candidates",
+    "search",
+    "messages",
+    "moveit_headers",
+    "robot_model",
+    "kinematics_plugin",
+)
 
 
 class _Derived(Protocol):

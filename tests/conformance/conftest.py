@@ -1,0 +1,32 @@
+"""Compiled MoveIt plugins, once a run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from moveit_arms import Arm, compiled_arm, missing_tools
+from moveit_driver import Plugin
+
+
+@pytest.fixture(scope="session")
+def moveit_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("moveit")
+
+
+@pytest.fixture
+def arm(request: pytest.FixtureRequest, moveit_folder: Path) -> Arm:
+    if missing := missing_tools("g++"):
+        pytest.skip(missing)
+    return compiled_arm(request.param, moveit_folder)
+
+
+@pytest.fixture
+def plugin(arm: Arm) -> Iterator[Plugin]:
+    """The plugin over the arm's own tree; not yet initialized."""
+    running = Plugin(arm.program, len(arm.joints))
+    running.load(arm.tree)
+    running.group("arm", arm.joints)
+    yield running
+    running.close()
