@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,7 +13,11 @@ from moveit_driver import Plugin
 
 @pytest.fixture(scope="session")
 def moveit_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("moveit")
+    """One folder a run, whichever worker of pytest-xdist asks."""
+    own = tmp_path_factory.getbasetemp()
+    folder = (own.parent if "PYTEST_XDIST_WORKER" in os.environ else own) / "moveit"
+    folder.mkdir(exist_ok=True)
+    return folder
 
 
 @pytest.fixture

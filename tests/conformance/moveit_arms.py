@@ -120,10 +120,17 @@ class Arm:
 
 @functools.cache
 def compiled_arm(name: str, folder: Path) -> Arm:
-    """An arm with its compiled driver."""
-    package = write_package(module_of(name), folder / name)
-    compile_driver(package, CASES[name].style, folder / name / "driver")
-    return Arm(module_of(name), load_tree(FIXTURES / f"{name}.urdf"), folder / name / "driver")
+    """An arm with its driver, compiled by the first process that asks for it."""
+    import fcntl
+
+    program = folder / name / "driver"
+    program.parent.mkdir(parents=True, exist_ok=True)
+    with (folder / f"{name}.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not program.exists():
+            package = write_package(module_of(name), program.parent)
+            compile_driver(package, CASES[name].style, program)
+    return Arm(module_of(name), load_tree(FIXTURES / f"{name}.urdf"), program)
 
 
 def fixed(name: str, parent: str, T: Array) -> Joint:

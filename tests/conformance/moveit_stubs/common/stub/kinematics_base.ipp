@@ -41,7 +41,9 @@ void KinematicsBase::storeValues(const moveit::core::RobotModel& robot_model, co
                                  const std::string& base_frame, const std::vector<std::string>& tip_frames,
                                  double search_discretization) {
   robot_model_ = moveit::core::RobotModelConstPtr(&robot_model, [](const moveit::core::RobotModel*) {});
-  const auto no_slash = [](const std::string& name) { return name.substr(std::min(name.find_first_not_of('/'), name.size())); };
+  const auto no_slash = [](const std::string& name) {
+    return name.substr(std::min(name.find_first_not_of('/'), name.size()));
+  };
   group_name_ = group_name;
   base_frame_ = no_slash(base_frame);
   tip_frames_.clear();

@@ -4,7 +4,13 @@
 namespace kinematics {
 
 namespace DiscretizationMethods {
-enum DiscretizationMethod { NO_DISCRETIZATION = 1, ALL_DISCRETIZED, SOME_DISCRETIZED, ALL_RANDOM_SAMPLED, SOME_RANDOM_SAMPLED };
+enum DiscretizationMethod {
+  NO_DISCRETIZATION = 1,
+  ALL_DISCRETIZED,
+  SOME_DISCRETIZED,
+  ALL_RANDOM_SAMPLED,
+  SOME_RANDOM_SAMPLED
+};
 }  // namespace DiscretizationMethods
 using DiscretizationMethod = DiscretizationMethods::DiscretizationMethod;
 
