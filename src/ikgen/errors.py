@@ -15,6 +15,7 @@ __all__ = [
     "BadDescriptionError",
     "IkgenError",
     "MissingToolError",
+    "PlugInError",
     "UnknownNameError",
     "UnsolvedChainError",
     "UnsupportedJointError",
@@ -68,13 +69,22 @@ class UnsupportedJointError(BadDescriptionError):
 
 
 class UnsolvedChainError(IkgenError):
-    """No closed form found: the message says what was solved, what is left and what would help."""
+    """No closed form found: the message says what was solved, what is left and what would help;
+    `unsolved` is how far the derivation came (`ikgen.pipeline.Unsolved`)."""
 
     exit_code = 3
+
+    def __init__(self, message: str, *, unsolved: Any = None, hint: str = "") -> None:
+        super().__init__(message, hint=hint)
+        self.unsolved = unsolved
 
 
 class MissingToolError(IkgenError):
     """An optional tool (compiler, Eigen, LaTeX) is needed and absent; the hint says how to get it."""
+
+
+class PlugInError(IkgenError):
+    """A part of another package that cannot be used; names the package and the entry point."""
 
 
 class VerificationError(IkgenError):

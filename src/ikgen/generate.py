@@ -7,16 +7,17 @@ import json
 import os
 import tempfile
 import time
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ikgen.errors import UsageError, VerificationError
+from ikgen.errors import VerificationError
 from ikgen.pipeline import Derivation, Progress, Reading, Request, derive
 
 if TYPE_CHECKING:
     from ikgen.emit.module import SolverModule
+    from ikgen.emit.registry import Emitter
     from ikgen.model.joint_tree import Source
     from ikgen.verify.oracle import Oracle
     from ikgen.verify.report import VerificationReport
@@ -29,6 +30,8 @@ __all__ = [
     "publish",
     "verify_files",
     "verify_one",
+    "verify_texts",
+    "with_samples",
 ]
 
 
@@ -64,44 +67,60 @@ def generate(request: Request, outputs: Outputs, progress: Progress = _silent) -
     started = time.perf_counter()
     emitters = [find_emitter(name) for name in outputs.emit]
     derivation = derive(request, progress)
-    symbols = derivation.reading.dh.symbols
-    if symbols and any(emitter.runner_target for emitter in emitters):
-        raise UsageError(
-            f"{request.robot}: no numbers for {', '.join(symbols)}",
-            hint="give them under [parameters]; without numbers only a report can be written",
-        )
     texts: dict[str, str] = {}
     for emitter in emitters:
-        progress("emit", emitter.name)
-        texts |= emitter.emit(derivation)
+        if not emitter.tells_verification:
+            progress("emit", emitter.name)
+            texts |= emitter.emit(derivation)
+    reports = _verified(derivation, texts, emitters, outputs, progress) if outputs.verify else {}
+    for emitter in emitters:
+        if emitter.tells_verification:
+            progress("emit", emitter.name)
+            texts |= emitter.emit(derivation, reports)
     manifest = _manifest(request, outputs, derivation, texts)
     texts[f"{derivation.module.name}_ik.json"] = manifest
-    reports: dict[str, VerificationReport] = {}
-
-    def check(staging: Path) -> None:
-        reports.update(verify_files(derivation, staging, outputs, progress))
-
-    files = publish(outputs.out, texts, check if outputs.verify else None)
+    files = publish(outputs.out, texts)
     return Generation(derivation, files, reports, time.perf_counter() - started)
 
 
-def publish(
-    out: Path, texts: Mapping[str, str], check: Callable[[Path], None] | None = None
-) -> tuple[Path, ...]:
-    """Write texts (name -> text) into a folder: all of them, once `check` has passed on a copy.
+def _verified(
+    derivation: Derivation,
+    texts: Mapping[str, str],
+    emitters: Sequence[Emitter],
+    outputs: Outputs,
+    progress: Progress,
+) -> dict[str, VerificationReport]:
+    """The verification of what was emitted: of a table without numbers that with samples."""
+    sampled = with_samples(derivation)
+    if sampled is not derivation:
+        texts = {}
+        for emitter in emitters:
+            if emitter.runner_target is not None:
+                texts |= emitter.emit(sampled)
+    return verify_texts(sampled, texts, outputs, progress)
 
-    What `check` raises leaves earlier files untouched; unchanged files keep their time.
-    """
+
+def with_samples(derivation: Derivation) -> Derivation:
+    """The derivation whose outputs can run: numbers in place of the constants to be filled in."""
+    if not derivation.reading.dh.symbols:
+        return derivation
+    return replace(derivation, module=replace(derivation.module, sample=True))
+
+
+def publish(out: Path, texts: Mapping[str, str]) -> tuple[Path, ...]:
+    """Write texts (name -> text) into a folder, all of them or none; unchanged files keep their
+    time."""
     out.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=".ikgen-", dir=out, ignore_cleanup_errors=True) as name:
-        staging = Path(name)
-        for file, text in texts.items():
-            path = staging / file
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding="utf-8", newline="\n")
-        if check is not None:
-            check(staging)
-        return _move(staging, out, texts)
+        _write(Path(name), texts)
+        return _move(Path(name), out, texts)
+
+
+def _write(folder: Path, texts: Mapping[str, str]) -> None:
+    for file, text in texts.items():
+        path = folder / file
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8", newline="\n")
 
 
 def _move(staging: Path, out: Path, texts: Mapping[str, str]) -> tuple[Path, ...]:
@@ -132,6 +151,15 @@ def oracle_for(reading: Reading) -> Oracle:
     return PinocchioOracle(
         reading.tree, dh.base_link, dh.tip_link, names, locked=dict(dh.locked) or None
     )
+
+
+def verify_texts(
+    derivation: Derivation, texts: Mapping[str, str], outputs: Outputs, progress: Progress = _silent
+) -> dict[str, VerificationReport]:
+    """Verify emitted texts (name -> text) before they are written; raises `VerificationError`."""
+    with tempfile.TemporaryDirectory(prefix="ikgen-", ignore_cleanup_errors=True) as name:
+        _write(Path(name), texts)
+        return verify_files(derivation, Path(name), outputs, progress)
 
 
 def verify_files(

@@ -11,8 +11,26 @@ if TYPE_CHECKING:
     from ikgen.emit.module import SolverModule
     from ikgen.verify.runners.cpp_header import CppHeader
     from ikgen.verify.runners.python_module import PythonModule
+    from ikgen.verify.runners.runner import ArmConstants
 
-__all__ = ["cpp_runner", "moveit_runner", "nanobind_runner", "python_runner"]
+__all__ = ["arm_constants", "cpp_runner", "moveit_runner", "nanobind_runner", "python_runner"]
+
+
+def arm_constants(module: SolverModule) -> ArmConstants:
+    """What verification has to know of the arm where the emitted code does not tell it."""
+    from ikgen.verify.runners.runner import ArmConstants
+
+    dh = module.dh
+    return ArmConstants(
+        tuple(j.name for j in dh.joints),
+        np.array([j.limits.lower for j in dh.joints]),
+        np.array([j.limits.upper for j in dh.joints]),
+        dh.base_link,
+        dh.tip_link,
+        module.max_solutions,
+        module.task,
+        tuple(dh.joints[j].name for j in module.free),
+    )
 
 
 def python_runner(module: SolverModule, folder: Path) -> PythonModule:
@@ -25,20 +43,8 @@ def python_runner(module: SolverModule, folder: Path) -> PythonModule:
 def cpp_runner(module: SolverModule, folder: Path) -> CppHeader:
     """The emitted header, compiled into a program that solves poses in bulk."""
     from ikgen.verify.runners.cpp_header import CppHeader
-    from ikgen.verify.runners.runner import ArmConstants
 
-    dh = module.dh
-    constants = ArmConstants(
-        tuple(j.name for j in dh.joints),
-        np.array([j.limits.lower for j in dh.joints]),
-        np.array([j.limits.upper for j in dh.joints]),
-        dh.base_link,
-        dh.tip_link,
-        module.max_solutions,
-        module.task,
-        tuple(dh.joints[j].name for j in module.free),
-    )
-    return CppHeader(folder / f"{module.name}_ik.hpp", constants)
+    return CppHeader(folder / f"{module.name}_ik.hpp", arm_constants(module))
 
 
 def nanobind_runner(module: SolverModule, folder: Path) -> CppHeader:

@@ -21,7 +21,16 @@ if TYPE_CHECKING:
     from ikgen.tasks import Task
     from ikgen.universal import UniversalPlan
 
-__all__ = ["Derivation", "Progress", "Reading", "Request", "derive", "identifier", "read"]
+__all__ = [
+    "Derivation",
+    "Progress",
+    "Reading",
+    "Request",
+    "Unsolved",
+    "derive",
+    "identifier",
+    "read",
+]
 
 Progress = Callable[[str, str], None]
 
@@ -60,6 +69,18 @@ class Derivation:
     task: Task
     graph: SolutionGraph
     module: SolverModule
+
+
+@dataclass(frozen=True, slots=True)
+class Unsolved:
+    """How far a derivation came that found no closed form; `name` is its module's."""
+
+    reading: Reading
+    geometry: GeometryClass
+    task: Task
+    graph: SolutionGraph
+    name: str
+    source_name: str
 
 
 def _quiet(stage: str, detail: str) -> None:
@@ -102,7 +123,8 @@ def derive(request: Request, progress: Progress = _quiet) -> Derivation:
             geometry = classify(reading.dh)
     plan = _elimination(reading.dh, task, progress) if graph.open_joints else None
     if graph.open_joints and plan is None:
-        raise unsolved(reading.dh, task, graph)
+        name = request.name or identifier(reading.dh.robot)
+        raise unsolved(Unsolved(reading, geometry, task, graph, name, request.robot.name))
     return Derivation(
         reading, geometry, task, graph, _module(request, reading, task, geometry.words, graph, plan)
     )
@@ -165,25 +187,35 @@ def _attempt(dh: DHChain, task: Task, progress: Progress) -> SolutionGraph:
     )
 
 
-def unsolved(dh: DHChain, task: Task, graph: SolutionGraph) -> UnsolvedChainError:
+def unsolved(found: Unsolved) -> UnsolvedChainError:
     """The error of a chain without a closed form: what was solved, what is left, what would help."""
+    from ikgen.emit.report.leftover import leftover_text
+
+    dh, task, graph = found.reading.dh, found.task, found.graph
     solved = ", ".join(f"{s.candidate.unknown.text} ({s.candidate.leaf})" for s in graph.steps)
     left = ", ".join(dh.joints[j].name for j in graph.open_joints)
-    moving = dh.dof - len(dh.free)
-    hint = "hold a joint free (--free JOINT) or lock one (--lock JOINT=VALUE)"
-    if moving > task.freedoms:
-        hint = (
-            f"{moving} joints move but the task '{task.name}' fixes {task.freedoms}: hold "
-            f"{moving - task.freedoms} of them free (--free JOINT) or lock them "
-            "(--lock JOINT=VALUE); `ikgen inspect` proposes which"
-        )
-    elif moving < task.freedoms:
-        hint = f"{moving} joints move: try a smaller task (--task)"
-    hint = redundancy(dh) or hint
-    return UnsolvedChainError(
+    lines = [
         f"no closed form found for the task '{task.name}': solved {solved or 'nothing'}; "
         f"left are the joints {left}",
-        hint=hint,
+        *leftover_text(graph),
+    ]
+    hint = redundancy(dh) or _count_hint(dh, task)
+    return UnsolvedChainError("\n".join(lines), unsolved=found, hint=hint)
+
+
+def _count_hint(dh: DHChain, task: Task) -> str:
+    """What the numbers of joints and of freedoms tell."""
+    moving = dh.dof - len(dh.free)
+    if moving > task.freedoms:
+        return (
+            f"{moving} joints move but the task '{task.name}' fixes {task.freedoms}: hold "
+            f"{moving - task.freedoms} of them free (--free JOINT) or lock them "
+            "(--lock JOINT=VALUE)"
+        )
+    if moving < task.freedoms:
+        return f"{moving} joints move: try a smaller task (--task)"
+    return (
+        "hold a joint free (--free JOINT), lock one (--lock JOINT=VALUE), or ask for less (--task)"
     )
 
 

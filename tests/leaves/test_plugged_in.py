@@ -8,6 +8,7 @@ from importlib.metadata import EntryPoint
 import pytest
 from test_leaves import CASES, table
 
+from ikgen import plugins
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
 from ikgen.equations.matching import powers
 from ikgen.solver import leaves
@@ -45,6 +46,6 @@ def test_given_leaves_take_the_place_of_the_own_ones() -> None:
 
 def test_entry_points_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
     entry = EntryPoint("slide", "test_plugged_in:SLIDE", "ikgen.leaves")
-    monkeypatch.setattr(leaves, "entry_points", lambda group: [entry])
+    monkeypatch.setattr(plugins, "entry_points", lambda group: [entry])
     names = [leaf.name for leaf in leaves.all_leaves()]
     assert names == [*(leaf.name for leaf in LEAVES), "slide"]

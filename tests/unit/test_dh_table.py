@@ -270,13 +270,3 @@ def test_unknown_joints_are_listed(tmp_path: Path) -> None:
         read(tmp_path, table(GOOD), free=("theta_1",), locked={"theta_1": 0.0})
     with pytest.raises(BadDescriptionError, match="no such file"):
         read_dh_table(tmp_path / "none.toml")
-
-
-def test_symbolic_table_is_refused_where_code_is_asked_for(tmp_path: Path) -> None:
-    from ikgen.generate import Outputs, generate
-    from ikgen.pipeline import Request
-
-    request = Request(FIXTURES / "puma560_symbolic.toml")
-    with pytest.raises(IkgenError, match="no numbers for a_2"):
-        generate(request, Outputs(out=tmp_path))
-    assert list(tmp_path.iterdir()) == []

@@ -98,6 +98,11 @@ def recheck(
             raise
         message = f"made from another description: {error.message}"
         return Recheck(record, (*findings, Finding(record.path, message, fix)))
+    if reading.dh.symbols:
+        raise UsageError(
+            f"{robot or record.robot}: no numbers for {', '.join(reading.dh.symbols)}",
+            hint="give them under [parameters] and generate again: then the code can be checked",
+        )
     notes = []
     if reading.source.sha256 != record.source_sha256:
         notes.append("the text of the description has changed since")

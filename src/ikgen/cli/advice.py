@@ -11,14 +11,15 @@ if TYPE_CHECKING:
     from ikgen.model.dh import DHChain
     from ikgen.tasks import Task
 
-__all__ = ["Attempt", "attempts"]
+__all__ = ["Attempt", "attempt", "attempts"]
 
 _POSE_FREEDOMS = 6
 
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """One derivation that was tried: which task, which joint held, and what came of it."""
+    """One derivation that was tried: which task, which joints held (`held`: beyond those that were
+    asked for), and what came of it."""
 
     task: str
     free: tuple[str, ...]
@@ -26,6 +27,7 @@ class Attempt:
     max_solutions: int
     order: tuple[str, ...]
     left: tuple[str, ...]
+    held: tuple[str, ...] = ()
 
     @property
     def rank(self) -> tuple[bool, int, bool, int]:
@@ -64,11 +66,12 @@ def attempts(dh: DHChain, asked: str | None, progress: Progress) -> list[Attempt
         for name in held if spare in (0, 1) else []:
             free = (*dh.free, name) if name else dh.free
             progress("derive", f"{task.name}, {'hold ' + name if name else 'no joint held'}")
-            found.append(_attempt(replace(dh, free=free), task))
-    return sorted(found, key=lambda attempt: attempt.rank)
+            found.append(attempt(replace(dh, free=free), task))
+    return sorted(found, key=lambda a: a.rank)
 
 
-def _attempt(dh: DHChain, task: Task) -> Attempt:
+def attempt(dh: DHChain, task: Task) -> Attempt:
+    """Try one derivation by the rules."""
     from ikgen.solver.run import solve_chain
 
     graph = solve_chain(dh, readable=task.readable, tool_on_right=not task.whole_pose)

@@ -15,7 +15,7 @@ from ikgen.cli.options import (
     parse_emit,
     sampling_options,
 )
-from ikgen.errors import UsageError, VerificationError
+from ikgen.errors import UnsolvedChainError, UsageError, VerificationError
 from ikgen.generate import Generation, Outputs, generate
 from ikgen.pipeline import Request
 
@@ -104,7 +104,12 @@ def _run(
     outputs = Outputs(parse_emit(emit), out, samples, seed, not no_verify)
     try:
         with Console(quiet=quiet, verbose=verbose) as console:
-            generation = generate(request, outputs, console)
+            try:
+                generation = generate(request, outputs, console)
+            except UnsolvedChainError as error:
+                from ikgen.cli.remedies import helped
+
+                raise helped(error, console) from None
     except VerificationError as error:
         if verbose:
             from ikgen.cli.tables import verification_tables

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ikgen.cli.console import Console
-from ikgen.cli.options import chain_options, console_options, make_request
-from ikgen.errors import IkgenError
-from ikgen.generate import publish
-from ikgen.pipeline import Derivation, derive
+from ikgen.cli.options import chain_options, console_options, make_request, sampling_options
+from ikgen.errors import IkgenError, UnsolvedChainError, VerificationError
+from ikgen.generate import Outputs, publish, verify_texts, with_samples
+from ikgen.pipeline import Derivation, Request, derive
+
+if TYPE_CHECKING:
+    from ikgen.verify.report import VerificationReport
 
 __all__ = ["report"]
 
@@ -31,21 +33,79 @@ __all__ = ["report"]
     default=Path(),
     help="Where the report goes (default: here).",
 )
+@sampling_options
+@click.option("--no-verify", is_flag=True, help="Leave the table of verification out.")
 @console_options
 def report(
-    robot: Path, *, out: Path, as_json: bool, quiet: bool, verbose: bool, **chain: Any
+    robot: Path,
+    *,
+    out: Path,
+    samples: int,
+    seed: int,
+    no_verify: bool,
+    as_json: bool,
+    quiet: bool,
+    verbose: bool,
+    **chain: Any,
 ) -> None:
-    """Write how the inverse kinematics of ROBOT was derived: LaTeX, HTML, graph and trace."""
+    """Write how the inverse kinematics of ROBOT was derived: LaTeX, HTML, graph and trace.
+
+    Without a closed form the report says how far the solver came, and the exit code is 3; with a
+    failed verification it has the failed checks, and the exit code is 1.
+    """
+    outputs = Outputs(out=out, samples=samples, seed=seed, verify=not no_verify)
     with Console(quiet=quiet, verbose=verbose) as console:
-        derivation = derive(make_request(robot, **chain), console)
-        console("emit", "report")
-        texts = _texts(derivation)
+        texts, wrong = _written(make_request(robot, **chain), outputs, console)
         files = [*publish(out, texts), *_pdfs(out, texts, console)]
+    _say(files, as_json=as_json, quiet=quiet)
+    if wrong is not None:
+        raise wrong
+
+
+def _written(
+    request: Request, outputs: Outputs, console: Console
+) -> tuple[dict[str, str], IkgenError | None]:
+    """File name -> text of the report, and the error to end with: of an arm without a closed form, or
+    of a verification that failed. Either is in the report."""
+    from ikgen.emit.report import emit_report, emit_unsolved
+
+    try:
+        derivation = derive(request, console)
+    except UnsolvedChainError as error:
+        from ikgen.cli.remedies import helped
+
+        stuck = helped(error, console)
+        return emit_unsolved(stuck.unsolved, stuck.hint), stuck
+    wrong = None
+    try:
+        reports = _reports(derivation, outputs, console)
+    except VerificationError as error:
+        reports = error.reports
+        wrong = VerificationError(error.message, reports=reports, hint="the report has all checks")
+    console("emit", "report")
+    return emit_report(derivation, reports), wrong
+
+
+def _say(files: list[Path], *, as_json: bool, quiet: bool) -> None:
+    """What was written."""
     if as_json:
         click.echo(json.dumps({"files": [str(path) for path in files]}, indent=2))
     elif not quiet:
         for path in files:
             click.echo(f"wrote: {path}")
+
+
+def _reports(
+    derivation: Derivation, outputs: Outputs, console: Console
+) -> Mapping[str, VerificationReport]:
+    """The verification of the Python module."""
+    from ikgen.emit.registry import find_emitter
+
+    if not outputs.verify:
+        return {}
+    sampled = with_samples(derivation)
+    made = find_emitter("python").emit(sampled)
+    return verify_texts(sampled, made, outputs, console)
 
 
 def _pdfs(out: Path, texts: Mapping[str, str], console: Console) -> list[Path]:
@@ -58,13 +118,3 @@ def _pdfs(out: Path, texts: Mapping[str, str], console: Console) -> list[Path]:
             console("typeset", name)
             made.append(compile_latex(out / name))
     return [path for path in made if path is not None]
-
-
-def _texts(derivation: Derivation) -> dict[str, str]:
-    """File name -> text of the report."""
-    try:
-        module = import_module("ikgen.emit.report")
-    except ModuleNotFoundError as error:
-        raise IkgenError("this installation cannot write reports", hint=str(error)) from None
-    texts: dict[str, str] = module.emit_report(derivation)
-    return texts

@@ -35,6 +35,8 @@ def summary(generation: Generation) -> str:
     lines += [("verified", _verified(name, r)) for name, r in generation.reports.items()]
     if not generation.reports:
         lines.append(("verified", "no"))
+    if dh.symbols:
+        lines.append(("fill in", f"{', '.join(dh.symbols)}; verified with sample numbers"))
     lines += [("wrote", str(path)) for path in generation.files]
     lines.append(("time", f"{generation.seconds:.1f} s"))
     return table([(f"{name}:", text) for name, text in lines], indent="")
@@ -76,6 +78,7 @@ def as_dict(generation: Generation) -> dict[str, Any]:
         "joints": [joint.name for joint in dh.joints],
         "free": [dh.joints[j].name for j in module.free],
         "locked": dict(dh.locked),
+        "symbols": list(dh.symbols),
         "geometry": {"name": derivation.geometry.name, "words": derivation.geometry.words},
         "solved": [
             {"unknown": s.candidate.unknown.text, "leaf": s.candidate.leaf, "branches": s.branches}
@@ -104,11 +107,8 @@ def trace(generation: Generation) -> str:
     """For -v: every tick, the ranker's choices, every check."""
     graph = generation.derivation.graph
     parts = ["behaviour tree:"]
-    ticks = [
-        (str(t.round), t.node, t.outcome, f"{1e3 * t.seconds:.1f} ms", t.detail)
-        for t in graph.ticks
-    ]
-    parts.append(table([("round", "node", "outcome", "time", ""), *ticks]))
+    for number in sorted({t.round for t in graph.ticks}):
+        parts += [f"round {number}", table(_round(graph, number))]
     parts.append("choices:")
     for step in graph.steps:
         chosen = step.candidate
@@ -118,6 +118,19 @@ def trace(generation: Generation) -> str:
     if generation.reports:
         parts.append(verification_tables(generation.reports))
     return "\n".join(parts)
+
+
+def _round(graph: SolutionGraph, number: int) -> list[tuple[str, ...]]:
+    """The nodes that were ticked in one round, indented as in the tree."""
+    ticks = {t.path: t for t in graph.ticks if t.round == number}
+    rows: list[tuple[str, ...]] = []
+    for path in graph.outline:
+        if path in ticks:
+            t = ticks[path]
+            name = "  " * (len(path) - 1) + t.node.rpartition(": ")[2]
+            spent = f"{1e3 * t.seconds:.1f} ms" if t.kind == "leaf" else f"({t.kind})"
+            rows.append((name, t.outcome, spent, t.detail))
+    return rows
 
 
 def _judged(candidate: Any) -> str:

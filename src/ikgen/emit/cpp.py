@@ -5,15 +5,16 @@ from __future__ import annotations
 import math
 from typing import Protocol
 
-import numpy as np
-
-from ikgen.emit.cpp_joints import JointValue, Seed, first_row
-from ikgen.emit.cpp_language import comment, literal, number
-from ikgen.emit.cpp_program import ProgramText, used_inputs
+from ikgen.emit.cpp_joints import JointValue, Seed
+from ikgen.emit.cpp_language import CONSTANT, comment, literal, number
+from ikgen.emit.cpp_program import ProgramText
 from ikgen.emit.module import SolverModule
+from ikgen.emit.printer import expression
 from ikgen.emit.rendering import render
+from ikgen.emit.symbols import blanks, frame_entries, pairs
 from ikgen.errors import UsageError
-from ikgen.tasks import find_task
+from ikgen.ir.liveness import used_inputs
+from ikgen.ir.ops import Op
 
 __all__ = ["emit", "emit_derivation", "emit_header", "emit_package"]
 
@@ -72,15 +73,16 @@ def emit_header(module: SolverModule) -> str:
         inline=_INLINE,
         cold="[[gnu::noinline]] inline" if _careful(module) else _COLD,
         careful=_careful(module),
-        entries_read=_entries_read(module),
+        entries_read=module.reads.entries,
         equations=_equations(module),
         tall=module.dh.dof - len(module.free) < _equations(module),
-        reads_position="position" in module.task or module.task == "pose",
+        orientation=module.reads.orientation,
+        reads_position=module.reads.position,
         joints=module.dh.joints,
         lower=[number(j.limits.lower) for j in module.dh.joints],
         upper=[number(j.limits.upper) for j in module.dh.joints],
         far=any(j.limits.lower > math.pi or j.limits.upper < -math.pi for j in module.dh.joints),
-        first_rows=[first_row(module, j) for j in range(module.dh.dof)],
+        first_rows=[module.first_row(j) for j in range(module.dh.dof)],
         text=text,
         entries=[name for name in inputs if name.startswith("t")],
         seeds=[Seed.of(module, name) for name in inputs if name.startswith("seed_")],
@@ -89,8 +91,12 @@ def emit_header(module: SolverModule) -> str:
         rough=_rough(module),
         order=_depth_first(branches),
         routines=sorted({lv.call.routine for lv in program.levels if lv.call is not None}),
-        frames=[[[number(float(x)) for x in row] for row in F[:3]] for F in module.dh.file_frames],
-        size=number(_arm_size(module)),
+        frames=[
+            [[expression(CONSTANT, x) for x in row] for row in F] for F in frame_entries(module.dh)
+        ],
+        size=_size_text(module),
+        blanks=blanks(module),
+        angles=[(f, n) for n in pairs(module) for f in ("cos", "sin")],
         free_defaults=[number(x) for x in module.free_defaults],
         number=number,
         literal=literal,
@@ -103,21 +109,18 @@ def _careful(module: SolverModule) -> bool:
     return module.polish == "all" or module.plan is not None
 
 
-def _entries_read(module: SolverModule) -> list[tuple[int, int]]:
-    """Row and column (from 0) of the pose entries that the task reads."""
-    names = sorted(find_task(module.task).readable)
-    return [
-        ("xyz".index(n[1]), 3) if n[0] == "p" else (int(n[1]) - 1, int(n[2]) - 1) for n in names
-    ]
-
-
 def _equations(module: SolverModule) -> int:
     """Components of the error that Newton steps take to zero."""
-    return 6 if module.task == "pose" else len(_entries_read(module))
+    return 6 if module.task == "pose" else len(module.reads.entries)
 
 
-def _arm_size(module: SolverModule) -> float:
-    return max(1.0, *(float(np.abs(F[:3, 3]).max()) for F in module.dh.file_frames))
+def _size_text(module: SolverModule) -> str:
+    """The arm's size as a number, or as an expression in constants to be filled in."""
+    if not module.dh.symbols:
+        return number(module.size)
+    lengths = [F[i][3] for F in frame_entries(module.dh) for i in range(3)]
+    texts = [expression(CONSTANT, Op("abs", (x,))) for x in lengths if x != 0.0]
+    return f"std::max({{{', '.join(['1.0', *texts])}}})"
 
 
 def _depth_first(branches: list[int]) -> list[int]:

@@ -10,14 +10,8 @@ from ikgen.emit.cpp_program import ProgramText
 from ikgen.emit.module import SolverModule
 from ikgen.ir.ops import Op, Operand
 from ikgen.ir.program import JointOutput
-from ikgen.model.dh import DHRow
 
-__all__ = ["JointValue", "Seed", "first_row"]
-
-
-def first_row(module: SolverModule, joint: int) -> DHRow:
-    """The first row of the chain that the joint drives."""
-    return next(row for row in module.dh.rows if row.driver == joint)
+__all__ = ["JointValue", "Seed"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +26,7 @@ class Seed:
     @staticmethod
     def of(module: SolverModule, name: str) -> Seed:
         joint = int(name[6:]) - 1
-        offset = first_row(module, joint).offset.value
+        offset = module.first_row(joint).offset.value
         function = {"c": "std::cos", "s": "std::sin", "d": ""}[name[5]]
         home = {"c": math.cos, "s": math.sin, "d": float}[name[5]](offset)
         return Seed(name, joint, function, number(home))
@@ -67,7 +61,7 @@ def _joint_value(module: SolverModule, text: ProgramText, output: JointOutput) -
     """
     if output.joint in module.free:
         return f"spread<1>(held[{module.free.index(output.joint)}])"
-    row = first_row(module, output.joint)
+    row = module.first_row(output.joint)
     offset, scale = row.offset.value, row.scale
     if not output.revolute:
         value = _plus(output.cosine, -offset)

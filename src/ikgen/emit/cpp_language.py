@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ikgen.emit.printer import Language
 
-__all__ = ["CPP", "LINE", "comment", "literal", "number"]
+__all__ = ["CONSTANT", "CPP", "LINE", "comment", "literal", "number"]
 
 LINE = 110
 """Longest line of the emitted text."""
@@ -24,6 +24,8 @@ def comment(text: str) -> str:
 
 def number(value: float) -> str:
     """A C++ literal that reads back to the same double."""
+    if value != value:
+        return "std::numeric_limits<double>::quiet_NaN()"
     if value in (float("inf"), float("-inf")):
         return f"{'-' if value < 0 else ''}std::numeric_limits<double>::infinity()"
     return repr(float(value))
@@ -53,3 +55,18 @@ CPP = Language(
     },
     number=number,
 )
+
+CONSTANT = Language(
+    infix={**CPP.infix, "and": ("&&", 2)},
+    prefix=CPP.prefix,
+    calls={
+        "or": lambda a, b: f"({a} || {b})",
+        "sqrt": lambda x: f"std::sqrt(std::max({x}, 0.0))",
+        "abs": lambda x: f"std::abs({x})",
+        "max": lambda a, b: f"std::max<double>({a}, {b})",
+        "min": lambda a, b: f"std::min<double>({a}, {b})",
+        "select": lambda c, a, b: f"({c} ? {a} : {b})",
+    },
+    number=number,
+)
+"""Plain numbers in place of packs: values that depend on constants to be filled in alone."""

@@ -7,64 +7,26 @@ level before, so branch i of a level and lane p of the level before meet in lane
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator
 
-from ikgen.emit.cpp_language import CPP, LINE, comment, number
+from ikgen.emit.cpp_language import CONSTANT, CPP, LINE, comment, number
 from ikgen.emit.module import SolverModule
 from ikgen.emit.printer import expression
-from ikgen.ir.interpret import _evaluate as evaluate
-from ikgen.ir.ops import Op, Operand
-from ikgen.ir.program import Call, Comment, JointOutput, Let, Level, Program, Require
+from ikgen.emit.symbols import pairs
+from ikgen.ir.interpret import evaluate
+from ikgen.ir.liveness import live_names
+from ikgen.ir.ops import Op, Operand, operand_names
+from ikgen.ir.program import Call, Comment, JointOutput, Let, Level, Require
 
-__all__ = ["ProgramText", "operand_names", "used_inputs"]
-
-
-def operand_names(operand: Operand) -> set[str]:
-    """The names that an operand reads."""
-    if isinstance(operand, Op):
-        return set().union(*(operand_names(a) for a in operand.args))
-    return {operand} if isinstance(operand, str) else set()
-
-
-def _reads(level: Level) -> Iterator[Operand]:
-    """Operands of a level that count whether or not anything else reads them."""
-    if level.call is not None:
-        yield from level.call.arguments
-    yield from (s.condition for s in level.body if isinstance(s, Require))
-
-
-def _live_names(program: Program) -> set[str]:
-    """Names that a result, a guard or a flag depends on."""
-    value = {
-        s.name: s.value for level in program.levels for s in level.body if isinstance(s, Let)
-    } | {let.name: let.value for let in program.constants}
-    roots: list[Operand] = [*program.singular, *program.residuals]
-    for level in program.levels:
-        roots += _reads(level)
-    for output in program.outputs:
-        roots += [output.cosine, output.sine]
-    live: set[str] = set()
-    stack = [name for root in roots for name in operand_names(root)]
-    while stack:
-        name = stack.pop()
-        if name not in live:
-            live.add(name)
-            stack += operand_names(value[name]) if name in value else ()
-    return live
-
-
-def used_inputs(program: Program) -> list[str]:
-    """Inputs that the Program reads, in its order."""
-    live = _live_names(program)
-    return [name for name in program.inputs if name in live]
+__all__ = ["ProgramText"]
 
 
 class ProgramText:
     """Statements of the solver's body, for a number `P` of poses that the template fixes."""
 
     def __init__(self, module: SolverModule) -> None:
+        self.module = module
         self.program = module.program
-        self.live = _live_names(self.program)
+        self.live = live_names(self.program)
         self.fixed: dict[str, float] = dict(self.program.parameters)
         for let in self.program.constants:
             self.fixed[let.name] = evaluate(let.value, self.fixed)
@@ -86,12 +48,25 @@ class ProgramText:
 
     @property
     def constants(self) -> list[tuple[str, str]]:
-        """Name and text of every constant in use, parameters first."""
+        """Name and text of every constant in use, parameters first; of a table without numbers those
+        that follow from the constants to be filled in."""
+        if self.module.dh.symbols:
+            return self._written_constants()
         text = dict.fromkeys(self.fixed, "")
         for let in self.program.constants:
             if not _calls(let.value):
                 text[let.name] = expression(CPP, let.value)
         return [(n, text[n] or number(v)) for n, v in self.fixed.items() if n in self.live]
+
+    def _written_constants(self) -> list[tuple[str, str]]:
+        angles = {f"{f}_{n}" for n in pairs(self.module) for f in ("cos", "sin")}
+        text = {n: number(v) for n, v in self.program.parameters if n in self.live}
+        lets = [s for lv in self.program.levels for s in lv.body if isinstance(s, Let)]
+        for let in (*self.program.constants, *lets):
+            if let.name in self.fixed and let.name in self.live:
+                text[let.name] = expression(CONSTANT, let.value)
+        above = {*self.module.dh.symbols, *angles}
+        return [(n, t) for n, t in text.items() if n not in above]
 
     # -- statements -----------------------------------------------------------------------------
 

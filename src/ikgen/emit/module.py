@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from ikgen.ir.program import Program
-from ikgen.model.dh import DHChain
+from ikgen.model.dh import DHChain, DHRow
+from ikgen.tasks import Task, find_task
 from ikgen.universal.plan import UniversalPlan
 
 __all__ = ["CLOSE", "SolverModule"]
@@ -21,7 +24,9 @@ class SolverModule:
     `name` is the prefix of the emitted files (`<name>_ik.py`), `free` the indices of joints held free,
     `free_defaults` their default values inside the limits (rad or m). `source_name` and
     `source_sha256` tell what it was made from, `geometry` is the geometry class in words,
-    `plan` what the general 6R elimination needs where the rules did not solve the arm.
+    `plan` what the general 6R elimination needs where the rules did not solve the arm. Of a table
+    without numbers the constants are left to be filled in, or with `sample` those that its derivation
+    was checked with.
     """
 
     name: str
@@ -36,6 +41,7 @@ class SolverModule:
     geometry: str = ""
     order: tuple[str, ...] = ()
     plan: UniversalPlan | None = None
+    sample: bool = False
 
     @property
     def polish(self) -> str:
@@ -49,3 +55,17 @@ class SolverModule:
     def max_solutions(self) -> int:
         """Rows of the solution at most (two whole turns of a joint count once)."""
         return self.program.max_solutions
+
+    @property
+    def reads(self) -> Task:
+        """What of the pose counts."""
+        return find_task(self.task)
+
+    @property
+    def size(self) -> float:
+        """Length (m) that errors of position are taken relative to: the arm's largest, at least 1."""
+        return max(1.0, *(float(np.abs(F[:3, 3]).max()) for F in self.dh.file_frames))
+
+    def first_row(self, joint: int) -> DHRow:
+        """The first row of the chain that a joint drives: its scale and offset."""
+        return next(row for row in self.dh.rows if row.driver == joint)

@@ -6,14 +6,12 @@ import math
 from dataclasses import dataclass
 from typing import Protocol
 
-import numpy as np
-
 from ikgen.emit.module import SolverModule
 from ikgen.emit.printer import Language, expression
 from ikgen.emit.rendering import render
-from ikgen.ir.ops import Op, Operand
+from ikgen.emit.symbols import blanks, frame_entries, pairs
+from ikgen.ir.ops import Op, Operand, operand_names
 from ikgen.ir.program import Comment, JointOutput, Let, Level, Program, Require
-from ikgen.tasks import find_task
 
 __all__ = ["emit_derivation", "emit_module"]
 
@@ -31,6 +29,8 @@ _INFIX = {
 def _number(value: float) -> str:
     if math.isinf(value):
         return "inf" if value > 0 else "-inf"
+    if math.isnan(value):
+        return "nan"
     return repr(float(value))
 
 
@@ -89,7 +89,8 @@ def emit_module(module: SolverModule) -> str:
         joints=module.dh.joints,
         lower=[_number(j.limits.lower) for j in module.dh.joints],
         upper=[_number(j.limits.upper) for j in module.dh.joints],
-        parameters=[(n, _number(v)) for n, v in program.parameters],
+        parameters=_parameters(module),
+        blanks=blanks(module),
         constants=[(c.name, expression(SCALAR, c.value)) for c in program.constants],
         scalar=_scalar(module, joints),
         batch=_batch(module, joints),
@@ -97,36 +98,23 @@ def emit_module(module: SolverModule) -> str:
         used=_used_inputs(program),
         seeds=_seed_rows(module),
         shape=[level.branches for level in program.levels[1:]],
-        frames=[_matrix(F) for F in module.dh.file_frames],
+        frames=[
+            [[expression(SCALAR, x) for x in row] for row in F] for F in frame_entries(module.dh)
+        ],
         rows=[(row.driver, row.revolute, row.scale, row.offset.value) for row in module.dh.rows],
         number=_number,
-        entries=_task_entries(module),
-        size=_arm_size(module),
+        orientation=module.reads.orientation,
+        entries=module.reads.entries,
+        size=module.size,
     )
 
 
-def _task_entries(module: SolverModule) -> list[tuple[int, int]]:
-    """Row and column (from 0) of the pose entries that the task reads."""
-    names = sorted(find_task(module.task).readable)
-    return [
-        ("xyz".index(n[1]), 3) if n[0] == "p" else (int(n[1]) - 1, int(n[2]) - 1) for n in names
-    ]
-
-
-def _arm_size(module: SolverModule) -> float:
-    return max(1.0, *(float(np.abs(F[:3, 3]).max()) for F in module.dh.file_frames))
-
-
-def _matrix(F: np.ndarray) -> list[list[str]]:
-    return [[_number(float(x)) for x in row] for row in F[:3]]
-
-
-def _names(operand: Operand) -> set[str]:
-    if isinstance(operand, str):
-        return {operand}
-    if isinstance(operand, Op):
-        return set().union(*(_names(a) for a in operand.args))
-    return set()
+def _parameters(module: SolverModule) -> list[tuple[str, str]]:
+    """Name and text of the arm's constants but those to be filled in."""
+    angles = {f"{f}_{n}": f"{f}({n})" for n in pairs(module) for f in ("cos", "sin")}
+    given = [(n, v) for n, v in module.program.parameters if n not in module.dh.symbols]
+    plain = [(n, _number(v)) for n, v in given if n not in angles]
+    return [*angles.items(), *plain]
 
 
 def _used_inputs(program: Program) -> list[str]:
@@ -134,14 +122,14 @@ def _used_inputs(program: Program) -> list[str]:
     for level in program.levels:
         if level.call is not None:
             for a in level.call.arguments:
-                used |= _names(a)
+                used |= operand_names(a)
         for statement in level.body:
             if isinstance(statement, Let):
-                used |= _names(statement.value)
+                used |= operand_names(statement.value)
             elif isinstance(statement, Require):
-                used |= _names(statement.condition)
+                used |= operand_names(statement.condition)
     for output in program.outputs:
-        used |= _names(output.cosine) | _names(output.sine)
+        used |= operand_names(output.cosine) | operand_names(output.sine)
     return [name for name in program.inputs if name in used]
 
 
@@ -149,7 +137,7 @@ def _seed_rows(module: SolverModule) -> list[tuple[int, bool, float, float]]:
     """Per joint: index, revolute, scale and offset of its first row."""
     out = []
     for j in range(module.dh.dof):
-        row = next(r for r in module.dh.rows if r.driver == j)
+        row = module.first_row(j)
         out.append((j, row.revolute, row.scale, row.offset.value))
     return out
 
@@ -166,7 +154,7 @@ class _JointText:
 
     @staticmethod
     def of(module: SolverModule, output: JointOutput) -> _JointText:
-        row = next(r for r in module.dh.rows if r.driver == output.joint)
+        row = module.first_row(output.joint)
         held = f"held[{module.free.index(output.joint)}]" if output.joint in module.free else ""
         return _JointText(output.joint, output, row.scale, row.offset.value, held)
 
@@ -230,7 +218,7 @@ def _home_levels(program: Program) -> dict[str, int]:
 
 
 def _level_of(output: JointOutput, home: dict[str, int]) -> int:
-    names = _names(output.cosine) | _names(output.sine)
+    names = operand_names(output.cosine) | operand_names(output.sine)
     return max((home.get(n, 0) for n in names), default=0)
 
 

@@ -2,40 +2,58 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, replace
 from importlib import import_module
-from importlib.metadata import entry_points
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ikgen.errors import UnknownNameError
+from ikgen.plugins import PlugIn, find_plug_in, plug_ins
 
 if TYPE_CHECKING:
     from ikgen.emit.module import SolverModule
+    from ikgen.verify.report import VerificationReport
 
 __all__ = ["EMITTERS", "Emitter", "find_emitter"]
+
+GROUP = "ikgen.emitters"
 
 
 @dataclass(frozen=True, slots=True)
 class Emitter:
-    """An output by name. `target` is "module:function", which takes the derivation and gives file
-    name -> text; `runner_target` "module:function" takes the solver module and the folder of the
-    finished files and gives a verification runner (none: the output is not run)."""
+    """An output by name. `target` is "module:function", which takes the derivation (and, where it
+    `tells_verification`, the reports of the other outputs by name) and gives file name -> text;
+    `runner_target` "module:function" takes the solver module and the folder of the finished files
+    and gives a verification runner (none: the output is not run). `plug_in` is set for an emitter
+    of another package, which its failures then name."""
 
     name: str
     words: str
     target: str
     runner_target: str | None = None
+    tells_verification: bool = False
+    plug_in: PlugIn | None = None
 
-    def emit(self, derivation: Any) -> dict[str, str]:
+    def emit(
+        self, derivation: Any, reports: Mapping[str, VerificationReport] | None = None
+    ) -> dict[str, str]:
         """File name (relative) -> text."""
-        texts: dict[str, str] = _load(self.target)(derivation)
+        more = (reports or {},) if self.tells_verification else ()
+        with self._blamed():
+            texts: dict[str, str] = _load(self.target)(derivation, *more)
         return texts
 
     def runner(self, module: SolverModule, folder: Path) -> Any | None:
         """What verification calls, or None."""
-        return None if self.runner_target is None else _load(self.runner_target)(module, folder)
+        if self.runner_target is None:
+            return None
+        with self._blamed():
+            return _load(self.runner_target)(module, folder)
+
+    def _blamed(self) -> AbstractContextManager[None]:
+        return nullcontext() if self.plug_in is None else self.plug_in.blamed()
 
 
 def _load(target: str) -> Callable[..., Any]:
@@ -72,7 +90,8 @@ EMITTERS: tuple[Emitter, ...] = (
     Emitter(
         "report",
         "how it was derived, as LaTeX and HTML, with the solution graph",
-        "ikgen.emit.report:emit_derivation",
+        "ikgen.emit.report:emit_report",
+        tells_verification=True,
     ),
 )
 
@@ -82,8 +101,8 @@ def find_emitter(name: str) -> Emitter:
     for emitter in EMITTERS:
         if emitter.name == name:
             return emitter
-    others = {entry.name: entry for entry in entry_points(group="ikgen.emitters")}
-    if name in others:
-        found = others[name].load()
-        return found if isinstance(found, Emitter) else found()
+    plug_in = find_plug_in(GROUP, name)
+    if plug_in is not None:
+        return replace(plug_in.load(Emitter), plug_in=plug_in)
+    others = (one.name for one in plug_ins(GROUP))
     raise UnknownNameError("emitter", name, [*(e.name for e in EMITTERS), *others])

@@ -11,19 +11,24 @@ from ikgen.errors import IkgenError
 if TYPE_CHECKING:
     import jinja2
 
-__all__ = ["environment", "render"]
+__all__ = ["environment", "folder_environment", "render"]
 
 
-@cache
 def environment(language: str) -> jinja2.Environment:
     """The templates of one output language (`python`, `cpp`, ...); undefined names are errors.
 
     Raises IkgenError where the installation has no templates for the language.
     """
+    return folder_environment(_folder(language))
+
+
+@cache
+def folder_environment(folder: Path) -> jinja2.Environment:
+    """The templates of a folder, for a language of another package; undefined names are errors."""
     import jinja2
 
     return jinja2.Environment(
-        loader=jinja2.FileSystemLoader(_folder(language)),
+        loader=jinja2.FileSystemLoader(folder),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

@@ -7,14 +7,16 @@ the entry-point group `ikgen.importers`, each entry an `Importer`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Protocol, cast
 
-from ikgen.errors import UsageError
+from ikgen.errors import PlugInError, UsageError
+from ikgen.plugins import PlugIn, plug_ins
 
 if TYPE_CHECKING:
     from ikgen.model.joint_tree import JointTree
@@ -34,15 +36,28 @@ class _Reader(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Importer:
-    """One format: its name, the lower-case suffixes of its files and the module with its `read`."""
+    """One format: its name, the lower-case suffixes of its files and the module with its `read`.
+    `plug_in` is set for a format of another package, which its failures then name."""
 
     kind: str
     suffixes: tuple[str, ...]
     module: str
+    plug_in: PlugIn | None = None
 
     def accepts(self, path: Path) -> bool:
         """Whether the file's name ends in one of the suffixes."""
         return path.name.lower().endswith(self.suffixes)
+
+    def read(
+        self, path: Path, *, arguments: Mapping[str, str], package_paths: Sequence[Path]
+    ) -> JointTree:
+        """What the module's `read` gives; see `load_tree`."""
+        blamed: AbstractContextManager[None] = (
+            nullcontext() if self.plug_in is None else self.plug_in.blamed()
+        )
+        with blamed:
+            module = cast(_Reader, import_module(self.module))
+            return module.read(path, arguments=arguments, package_paths=package_paths)
 
 
 IMPORTERS: tuple[Importer, ...] = (
@@ -52,18 +67,28 @@ IMPORTERS: tuple[Importer, ...] = (
 
 
 def importer_of(path: Path) -> Importer:
-    """The importer for a file, by its suffix; raises `UsageError` where no format has it."""
+    """The importer for a file, by its suffix; raises `UsageError` where no format has it.
+
+    Formats of other packages are looked at only for suffixes that ikgen does not read itself; one that
+    cannot be loaded is passed over, and named where no other reads the file.
+    """
     for importer in IMPORTERS:
         if importer.accepts(path):
             return importer
-    others = tuple(_third_party())
-    for importer in others:
-        if importer.accepts(path):
-            return importer
+    others: list[Importer] = []
+    broken: PlugInError | None = None
+    for plug_in in plug_ins("ikgen.importers"):
+        try:
+            others.append(replace(plug_in.load(Importer), plug_in=plug_in))
+        except PlugInError as error:
+            broken = broken or error
+            continue
+        if others[-1].accepts(path):
+            return others[-1]
     known = ", ".join(suffix for row in (*IMPORTERS, *others) for suffix in row.suffixes)
     raise UsageError(
         f"{path}: cannot tell the format of a robot description by the suffix '{path.suffix}'",
-        hint=f"name the file with one of: {known}",
+        hint=f"name the file with one of: {known}" + (f"; {broken.message}" if broken else ""),
     )
 
 
@@ -80,14 +105,4 @@ def load_tree(
     and line for anything in the file that cannot be read, `UsageError` for an unknown suffix.
     """
     file = Path(path)
-    module = cast(_Reader, import_module(importer_of(file).module))
-    return module.read(file, arguments=arguments, package_paths=package_paths)
-
-
-def _third_party() -> Iterator[Importer]:
-    from importlib.metadata import entry_points
-
-    for entry in sorted(entry_points(group="ikgen.importers"), key=lambda e: e.name):
-        row = entry.load()
-        if isinstance(row, Importer):
-            yield row
+    return importer_of(file).read(file, arguments=arguments, package_paths=package_paths)

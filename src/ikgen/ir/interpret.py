@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from ikgen.ir.ops import Op, Operand
 from ikgen.ir.program import Let, Level, Program, Require
 
-__all__ = ["Row", "run"]
+__all__ = ["Row", "evaluate", "run"]
 
 Routine = Callable[..., list[tuple[float, ...]]]
 
@@ -40,11 +40,12 @@ class Row:
     singular: bool
 
 
-def _evaluate(operand: Operand, names: Mapping[str, float]) -> float:
+def evaluate(operand: Operand, names: Mapping[str, float]) -> float:
+    """The operand's number (conditions: 1 or 0) where `names` gives the names that it reads."""
     if isinstance(operand, str):
         return names[operand]
     if isinstance(operand, Op):
-        args = [_evaluate(a, names) for a in operand.args]
+        args = [evaluate(a, names) for a in operand.args]
         if operand.op == "select":
             return args[1] if args[0] else args[2]
         if operand.op in _UNARY:
@@ -56,8 +57,8 @@ def _evaluate(operand: Operand, names: Mapping[str, float]) -> float:
 def _body(level: Level, names: dict[str, float]) -> bool:
     for statement in level.body:
         if isinstance(statement, Let):
-            names[statement.name] = _evaluate(statement.value, names)
-        elif isinstance(statement, Require) and not _evaluate(statement.condition, names):
+            names[statement.name] = evaluate(statement.value, names)
+        elif isinstance(statement, Require) and not evaluate(statement.condition, names):
             return False
     return True
 
@@ -66,7 +67,7 @@ def _branches(
     level: Level, names: dict[str, float], routines: Mapping[str, Routine]
 ) -> Iterator[dict[str, float]]:
     if level.call is not None:
-        arguments = [_evaluate(a, names) for a in level.call.arguments]
+        arguments = [evaluate(a, names) for a in level.call.arguments]
         for root in routines[level.call.routine](*arguments):
             yield {**names, **dict(zip(level.call.names, root, strict=True))}
     elif level.sigma is not None:
@@ -84,13 +85,13 @@ def run(
     """All rows of a program at given inputs, in the order of its branches."""
     names = dict(inputs) | dict(program.parameters)
     for let in program.constants:
-        names[let.name] = _evaluate(let.value, names)
+        names[let.name] = evaluate(let.value, names)
     rows: list[Row] = []
 
     def descend(index: int, names: dict[str, float]) -> None:
         if index == len(program.levels):
             values = tuple(
-                (_evaluate(o.cosine, names), _evaluate(o.sine, names)) for o in program.outputs
+                (evaluate(o.cosine, names), evaluate(o.sine, names)) for o in program.outputs
             )
             rows.append(Row(values, any(names[s] for s in program.singular)))
             return

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,7 +12,7 @@ from ikgen.equations.expression import Expr, ExpressionGraph
 from ikgen.equations.knowledge import Variable
 from ikgen.equations.probes import arm_size
 from ikgen.equations.rigid import Rigid, constant, inverse, multiply
-from ikgen.ir.forms import Divisor, Realized, Tolerances, realize
+from ikgen.ir.forms import ROUNDED, Divisor, Realized, Tolerances, realize
 from ikgen.ir.program import Comment, Program
 from ikgen.ir.serialize import LoweredLevel, Requirement, serialize
 from ikgen.solver.graph import SolutionGraph
@@ -192,9 +194,19 @@ class Lowering:
             self._unit_norm(v)
 
     def _select(self, v: Variable, forms: list[Realized], sigma: Expr) -> tuple[Expr, ...]:
-        """The first form whose divisor does not vanish; the seed's value if there is none."""
+        """The first form whose divisor does not vanish; the seed's value if there is none.
+
+        Where Newton steps follow, a small divisor gives but a rough value: all are tried for a large
+        one first.
+        """
         g = self.g
-        forms = [*map(self._well_conditioned, forms[:-1]), forms[-1]]
+        first = [*map(self._well_conditioned, forms[:-1])]
+        last = forms[-1].divisor
+        if first and last.clear is not None and self.slack > ROUNDED:
+            wide = Divisor(last.value, last.clear, last.clear)
+            forms = [*first, replace(forms[-1], divisor=wide), *forms]
+        else:
+            forms = [*first, forms[-1]]
         values = self.seed_values(v) if forms[-1].regular is not None else forms[-1].values
         guard: Flag = True
         single: Flag = True
@@ -300,7 +312,7 @@ class Lowering:
             splits = [(k, m) for k in range(n) for m in range(k + 1, n + 1)]
         residuals = min((self._residuals(k, m) for k, m in splits), key=self._cost)
         self.place(Comment("does the row reproduce the pose?"))
-        limit = max(CHECK_TOLERANCE, min(1000 * self.slack, 0.02))
+        limit = max(CHECK_TOLERANCE, min(1000 * self.slack, 0.2))
         size = max(arm_size(self.dh), 1.0)
         for level in range(len(self.levels)):
             norms = [e for e in self.norms if self.level(e) == level]

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["ARITY", "BOOLEAN", "Op", "Operand"]
+__all__ = ["ARITY", "BOOLEAN", "Op", "Operand", "operand_names"]
 
 ARITY = {
     "add": 2,
@@ -43,3 +43,10 @@ class Op:
 
 
 Operand = str | float | Op
+
+
+def operand_names(operand: Operand) -> set[str]:
+    """The names that an operand reads."""
+    if isinstance(operand, Op):
+        return set().union(*(operand_names(a) for a in operand.args))
+    return {operand} if isinstance(operand, str) else set()

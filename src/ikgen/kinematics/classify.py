@@ -69,7 +69,7 @@ def classify(dh: DHChain) -> GeometryClass:
         kinds=kinds,
         parallel_pairs=tuple(k for k in pairs if parallel_to_previous(rows[k])),
         intersecting_pairs=tuple(k for k in pairs if meets_previous(rows[k])),
-        perpendicular_pairs=tuple(k for k in pairs if rows[k].alpha.exact == _HALF),
+        perpendicular_pairs=tuple(k for k in pairs if abs(rows[k].alpha.exact or 0) == _HALF),
         same_line_pairs=tuple(k for k in pairs if same_line_as_previous(rows[k])),
         spherical_triples=tuple(k for k in turning if _spherical(rows[k : k + 2])),
         parallel_triples=tuple(

@@ -14,12 +14,17 @@ __all__ = ["SolutionGraph", "graph_of"]
 @dataclass(frozen=True, slots=True)
 class SolutionGraph:
     """Steps in the order solved; `parents` (variable -> direct parents, redundant ones pruned) over
-    solved unknowns and joints; the session's knowledge holds definitions of derived angles."""
+    solved unknowns and joints; `passed` are sums of angles that no unknown has as a parent: they bring
+    no branch of their own, so what is computed from them has their parents instead. `outline`
+    are the paths of the behavior tree's nodes, in its order. The session's knowledge holds definitions
+    of derived angles."""
 
     steps: tuple[Step, ...]
     parents: tuple[tuple[Variable, tuple[Variable, ...]], ...]
     ticks: tuple[Tick, ...]
     session: Session
+    passed: tuple[Variable, ...] = ()
+    outline: tuple[tuple[str, ...], ...] = ()
 
     @property
     def open_joints(self) -> list[int]:
@@ -74,6 +79,16 @@ def _prune(direct: dict[Variable, set[Variable]]) -> dict[Variable, tuple[Variab
     return out
 
 
+def _through(
+    direct: dict[Variable, set[Variable]], passed: frozenset[Variable]
+) -> dict[Variable, set[Variable]]:
+    """Put the parents of `passed` unknowns in their place."""
+    out: dict[Variable, set[Variable]] = {}
+    for child, parents in direct.items():
+        out[child] = set().union(*(out[p] if p in passed else {p} for p in parents))
+    return out
+
+
 def graph_of(session: Session) -> SolutionGraph:
     """The graph of a finished session."""
     k = session.knowledge
@@ -87,5 +102,12 @@ def graph_of(session: Session) -> SolutionGraph:
             pair = k.known_pair(variable.key)
             if pair is not None:
                 direct[variable] = _variables_in(pair, k) - {variable}
-    parents = tuple(_prune(direct).items())
-    return SolutionGraph(tuple(session.steps), parents, tuple(session.ticks), session)
+    passed = frozenset(
+        step.candidate.unknown
+        for step in session.steps
+        if step.candidate.unknown.joint is None and step.branches == 1
+    )
+    parents = tuple(_prune(_through(direct, passed)).items())
+    return SolutionGraph(
+        tuple(session.steps), parents, tuple(session.ticks), session, tuple(sorted(passed))
+    )

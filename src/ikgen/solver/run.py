@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from ikgen.equations.build import ENTRY_NAMES, EquationSet
 from ikgen.equations.expression import ExpressionGraph
@@ -12,7 +13,7 @@ from ikgen.model.dh import DHChain
 from ikgen.solver.graph import SolutionGraph, graph_of
 from ikgen.solver.leaves import Leaf, all_leaves
 from ikgen.solver.session import Session
-from ikgen.solver.tree import build_tree, tick
+from ikgen.solver.tree import build_tree, outline, tick
 
 __all__ = ["solve_chain"]
 
@@ -43,8 +44,8 @@ def solve_chain(
     session.start()
     tree = build_tree(session, all_leaves() if leaves is None else leaves)
     while session.open_joints:
-        if not tick(tree):
+        if not tick(tree, session):
             break
         if progress is not None:
             progress(session.steps[-1].candidate.unknown.text)
-    return graph_of(session)
+    return replace(graph_of(session), outline=outline(tree))

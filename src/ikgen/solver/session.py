@@ -27,13 +27,20 @@ SAFE_MARGIN = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class Tick:
-    """What one node did in one round: for the report, `-v` and bug reports."""
+    """What one node did in one round: for the report, `-v` and bug reports. `path` are the names from
+    the tree's root to the node; `kind` is "leaf" or the composite's ("sequence", "selector", "or")."""
 
     round: int
-    node: str
+    path: tuple[str, ...]
+    kind: str
     outcome: str
     detail: str
     seconds: float
+
+    @property
+    def node(self) -> str:
+        """The node's name."""
+        return self.path[-1]
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,10 +76,12 @@ class Session:
     _weight: dict[int, float] = field(default_factory=dict)
     _forks: list[tuple[int, float]] = field(default_factory=list)
 
-    def record(self, node: str, outcome: str, detail: str, started: float) -> None:
+    def record(
+        self, path: tuple[str, ...], kind: str, outcome: str, detail: str, started: float
+    ) -> None:
         """Add a tick to the trace."""
         spent = time.perf_counter() - started
-        self.ticks.append(Tick(self.round, node, outcome, detail, spent))
+        self.ticks.append(Tick(self.round, path, kind, outcome, detail, spent))
 
     # -- targets --------------------------------------------------------------------------------
 

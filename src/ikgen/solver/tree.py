@@ -27,9 +27,15 @@ from ikgen.solver.leaves import Leaf
 from ikgen.solver.session import Session
 from ikgen.solver.transforms import square_and_add, substitution
 
-__all__ = ["build_tree", "tick"]
+__all__ = ["build_tree", "outline", "tick"]
 
 Transform = Callable[[Sequence[PolynomialEquation], Knowledge], list[PolynomialEquation]]
+
+
+def _path(node: Behaviour) -> tuple[str, ...]:
+    """The names from the root to a node."""
+    above = _path(node.parent) if node.parent is not None else ()
+    return (*above, str(node.name))
 
 
 class Action(Behaviour):
@@ -47,7 +53,8 @@ class Action(Behaviour):
         started = time.perf_counter()
         done, detail = self.act(self.session)
         self.feedback_message = detail
-        self.session.record(self.name, "success" if done else "failure", detail, started)
+        outcome = "success" if done else "failure"
+        self.session.record(_path(self), "leaf", outcome, detail, started)
         return Status.SUCCESS if done else Status.FAILURE
 
 
@@ -125,8 +132,18 @@ def build_tree(session: Session, leaves: Sequence[Leaf]) -> Behaviour:
     return root
 
 
-def tick(tree: Behaviour) -> bool:
-    """One tick of the tree; whether an unknown was solved."""
-    for _ in tree.tick():
-        pass
+def tick(tree: Behaviour, session: Session) -> bool:
+    """One tick of the tree; whether an unknown was solved. Composites go into the trace as they end."""
+    started = time.perf_counter()
+    for node in tree.tick():
+        if node.children:
+            outcome = "success" if node.status == Status.SUCCESS else "failure"
+            kind = type(node).__name__.lower()
+            session.record(_path(node), kind, outcome, "", started)
     return bool(tree.status == Status.SUCCESS)
+
+
+def outline(tree: Behaviour) -> tuple[tuple[str, ...], ...]:
+    """The paths of all nodes, parents before their children."""
+    below = (path for child in tree.children for path in outline(child))
+    return (_path(tree), *below)

@@ -1,4 +1,4 @@
-"""What of a pose counts: one row a task."""
+"""What of a pose counts: one row a task; other packages add theirs by the group `ikgen.tasks`."""
 
 from __future__ import annotations
 
@@ -6,16 +6,24 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ikgen.errors import UnknownNameError
+from ikgen.plugins import find_plug_in, plug_ins
 
 if TYPE_CHECKING:
     from ikgen.model.dh import DHChain
 
-__all__ = ["TASKS", "Task", "find_task", "fitting_tasks"]
+__all__ = ["TASKS", "Task", "find_task", "fitting_tasks", "freedoms_moved"]
 
 _POSITION = ("px", "py", "pz")
 _ROTATION = tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
 _DIRECTION = ("r13", "r23", "r33")
 _HEADING = ("r11", "r21")
+_ORIENTATIONS = {
+    frozenset(): "",
+    frozenset(_ROTATION): "rotation",
+    frozenset(_DIRECTION): "direction",
+    frozenset(_HEADING): "yaw",
+}
+_CONFIGURATIONS = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +41,26 @@ class Task:
     def whole_pose(self) -> bool:
         """Whether every entry is read, so that the tool transform can be taken off the pose."""
         return self.name == "pose"
+
+    @property
+    def entries(self) -> tuple[tuple[int, int], ...]:
+        """Row and column (from 0) of each entry that is read, in the order of their names."""
+        names = sorted(self.readable)
+        return tuple(
+            ("xyz".index(n[1]), 3) if n[0] == "p" else (int(n[1]) - 1, int(n[2]) - 1) for n in names
+        )
+
+    @property
+    def position(self) -> bool:
+        """Whether the whole position is read."""
+        return self.readable.issuperset(_POSITION)
+
+    @property
+    def orientation(self) -> str:
+        """What is read of the rotation: "", rotation, direction or yaw; "entries" where the task reads
+        other entries of the pose, or a part of the position, each compared for itself."""
+        rest = self.readable - set(_POSITION) if self.position else self.readable
+        return _ORIENTATIONS.get(rest, "entries")
 
 
 TASKS: tuple[Task, ...] = (
@@ -58,11 +86,16 @@ TASKS: tuple[Task, ...] = (
 
 
 def find_task(name: str) -> Task:
-    """The task of a name or alias; raises `UnknownNameError` with what there is."""
+    """The task of a name or alias, ikgen's own or another package's; raises `UnknownNameError` with
+    what there is."""
     for task in TASKS:
         if name == task.name or name.lower() in (a.lower() for a in task.aliases):
             return task
-    raise UnknownNameError("task", name, [task.name for task in TASKS])
+    plug_in = find_plug_in("ikgen.tasks", name)
+    if plug_in is not None:
+        return plug_in.load(Task)
+    others = (one.name for one in plug_ins("ikgen.tasks"))
+    raise UnknownNameError("task", name, [*(task.name for task in TASKS), *others])
 
 
 def fitting_tasks(dh: DHChain) -> tuple[Task, ...]:
@@ -83,20 +116,30 @@ def _spans(dh: DHChain, task: Task) -> bool:
 
     from ikgen.kinematics.forward import file_forward
 
+    q = np.random.default_rng(0).uniform(-1.5, 1.5, (_CONFIGURATIONS, dh.dof))
+    if task.name == "position-yaw" and np.abs(file_forward(dh, q)[:, 2, 0]).max() > 1e-6:
+        return False  # a heading is well-defined where the tool's x axis stays horizontal
+    return freedoms_moved(dh, task) == dh.dof - len(dh.free)
+
+
+def freedoms_moved(dh: DHChain, task: Task) -> int:
+    """How many freedoms of the task the joints that are not held move, nearly everywhere: the rank of
+    the task's entries by the joints."""
+    import numpy as np
+
+    from ikgen.kinematics.forward import file_forward
+
     rng = np.random.default_rng(0)
-    q = rng.uniform(-1.5, 1.5, (8, dh.dof))
-    entries = [
-        ("xyz".index(name[1]), 3) if name[0] == "p" else (int(name[1]) - 1, int(name[2]) - 1)
-        for name in sorted(task.readable)
-    ]
-    rows, columns = zip(*entries, strict=True)
+    q = rng.uniform(-1.5, 1.5, (_CONFIGURATIONS, dh.dof))
+    rows, columns = zip(*task.entries, strict=True)
     steps = []
     for j in range(dh.dof):
         if dh.joints[j].name not in dh.free:
             h = 1e-6 * np.eye(dh.dof)[j]
             change = (file_forward(dh, q + h) - file_forward(dh, q - h)) / 2e-6
             steps.append(change[:, rows, columns])
-    if task.name == "position-yaw" and np.abs(file_forward(dh, q)[:, 2, 0]).max() > 1e-6:
-        return False  # a heading is well-defined where the tool's x axis stays horizontal
+    if not steps:
+        return 0
     singular = np.linalg.svd(np.stack(steps, axis=-1), compute_uv=False)
-    return bool(np.median(singular[:, -1] / singular[:, 0]) > 1e-4)
+    largest = np.maximum(singular[:, :1], 1e-12)
+    return int((np.median(singular / largest, axis=0) > 1e-4).sum())

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.errors import UnknownNameError
+from ikgen.tasks import find_task
 from ikgen.verify import checks, coverage, interface_checks
 from ikgen.verify.answers import Answers, collect_answers
 from ikgen.verify.arm import ArmUnderTest, arm_under_test
@@ -16,7 +16,7 @@ from ikgen.verify.oracle import Oracle
 from ikgen.verify.report import CheckResult, VerificationReport
 from ikgen.verify.runners.runner import Runner
 from ikgen.verify.sampling import generator
-from ikgen.verify.task_space import TASK_SPACES
+from ikgen.verify.task_space import TaskSpace, task_space
 
 __all__ = ["Progress", "verify"]
 
@@ -112,12 +112,11 @@ def verify(
     """
     start = time.perf_counter()
     name = runner.constants.task if task is None else task
-    if name not in TASK_SPACES:
-        raise UnknownNameError("task", name, TASK_SPACES)
+    space = task_space(find_task(name))
     results = _mismatch(runner, oracle)
     histogram: tuple[tuple[int, int], ...] = ()
     if not results:
-        arm = _arm(runner, oracle, name, free_joints, limits)
+        arm = _arm(runner, oracle, space, free_joints, limits)
         results, histogram = _run_checks(runner, arm, samples, seed, progress)
     links, held = (oracle.base_link, oracle.tip_link), tuple((locked or {}).items())
     seconds = time.perf_counter() - start
@@ -129,7 +128,7 @@ def verify(
 def _arm(
     runner: Runner,
     oracle: Oracle,
-    task: str,
+    task: TaskSpace,
     free_joints: Sequence[str] | None,
     limits: tuple[Array, Array] | None,
 ) -> ArmUnderTest:
@@ -137,7 +136,7 @@ def _arm(
     constants = runner.constants
     held = constants.free_joints if free_joints is None else tuple(free_joints)
     bounds = (constants.lower, constants.upper) if limits is None else limits
-    return arm_under_test(oracle, TASK_SPACES[task], bounds, held)
+    return arm_under_test(oracle, task, bounds, held)
 
 
 def _mismatch(runner: Runner, oracle: Oracle) -> tuple[CheckResult, ...]:

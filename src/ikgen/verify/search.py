@@ -26,8 +26,7 @@ def _step(arm: ArmUnderTest, q: Array, targets: Array) -> tuple[Array, Array]:
     """Scaled residual norms (N,) at q, and the next q (N, dof)."""
     T, J = arm.scaled_jacobian(q)
     e = arm.task.residual(T, targets)
-    if arm.task.position:
-        e[:, :3] /= arm.length
+    e[:, arm.task.lengths] /= arm.length
     squared = np.einsum("ni,ni->n", e, e)
     Jt = J.transpose(0, 2, 1)
     H = Jt @ J + (0.02 * squared + 1e-14)[:, None, None] * np.eye(J.shape[2])

@@ -41,6 +41,10 @@ def _descend(arm: ArmUnderTest, q: Array) -> Array:
     return out
 
 
+STEPS_ALONG = (0.2, 0.05)
+"""Steps (rad, or lengths of the arm) along the null direction that leave an isolated solution."""
+
+
 def singular_configurations(arm: ArmUnderTest, count: int, rng: np.random.Generator) -> Array:
     """At most `count` exactly singular configurations (k, dof) inside the limits."""
     if not arm.active:
@@ -58,6 +62,7 @@ def on_continuum(arm: ArmUnderTest, q: Array, targets: Array) -> NDArray[np.bool
 
     Step along the null direction and return to the target: an isolated singular solution (a
     stretched elbow) falls back to where it was, one of a continuum (aligned wrist axes) does not.
+    A long step alone may end at another isolated solution, a short one is little off its noise.
     """
     flags = np.zeros(len(q), dtype=bool)
     candidates = np.flatnonzero(arm.sigma(q) < CONTINUUM_SIGMA)
@@ -67,8 +72,10 @@ def on_continuum(arm: ArmUnderTest, q: Array, targets: Array) -> NDArray[np.bool
     J = arm.scaled_jacobian(q[candidates])[1]
     null = np.linalg.svd(J, full_matrices=True)[2][:, -1]
     step = np.zeros((len(candidates), arm.dof))
-    step[:, active] = 0.2 * null * np.where(arm.revolute[active], 1.0, arm.length)
-    ends, reached = converge(arm, q[candidates] + step, targets[candidates])
-    moved = np.max(np.abs(ends - q[candidates]), axis=1, initial=0.0) > 0.05
-    flags[candidates] = reached & moved & (arm.sigma(ends) < 1e-5)
+    step[:, active] = null * np.where(arm.revolute[active], 1.0, arm.length)
+    flags[candidates] = True
+    for size in STEPS_ALONG:
+        ends, reached = converge(arm, q[candidates] + size * step, targets[candidates])
+        moved = np.max(np.abs(ends - q[candidates]), axis=1, initial=0.0) > size / 4
+        flags[candidates] &= reached & moved & (arm.sigma(ends) < 1e-5)
     return flags

@@ -12,7 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["TASK_SPACES", "TaskSpace"]
+from ikgen.tasks import TASKS, Task
+
+__all__ = ["TASK_SPACES", "TaskSpace", "task_space"]
 
 Array = NDArray[np.float64]
 
@@ -66,6 +68,15 @@ def _yaw_rows(T: Array, J: Array) -> Array:
     return np.asarray(rate[:, None, :])
 
 
+def _entry_rows(T: Array, J: Array, entries: tuple[tuple[int, int], ...]) -> Array:
+    """Derivatives of single entries of the pose."""
+    rows = []
+    for r, c in entries:
+        turn = np.cross(J[:, 3:], T[:, :3, min(c, 2), None], axis=1)
+        rows.append(J[:, r] if c == 3 else turn[:, r])
+    return np.stack(rows, axis=1)
+
+
 _Residual = Callable[[Array, Array], Array]
 
 
@@ -73,18 +84,29 @@ _Residual = Callable[[Array, Array], Array]
 class TaskSpace:
     """One task. `rank` is its number of independent equations; `position` says whether it reads the
     tip's position; `orientation` names what it reads of the rotation ("", rotation, direction,
-    yaw)."""
+    yaw); `entries` are entries of the pose (row, column) that count each for itself."""
 
     name: str
     rank: int
     position: bool
     orientation: str
+    entries: tuple[tuple[int, int], ...] = ()
+
+    @property
+    def lengths(self) -> list[int]:
+        """Which components of the residual are in m."""
+        before = 3 * self.position + (_ROWS[self.orientation] if self.orientation else 0)
+        own = [before + i for i, (_, column) in enumerate(self.entries) if column == 3]
+        return [*range(3 * self.position), *own]
 
     def residual(self, T: Array, target: Array) -> Array:
         """Target minus tip, (N, m): position in m, then orientation as a rotation vector in rad."""
         parts = [target[:, :3, 3] - T[:, :3, 3]] if self.position else []
         if self.orientation:
             parts.append(_ORIENTATIONS[self.orientation][0](T, target))
+        if self.entries:
+            rows, columns = zip(*self.entries, strict=True)
+            parts.append(target[:, rows, columns] - T[:, rows, columns])
         return np.concatenate(parts, axis=1)
 
     def jacobian(self, T: Array, J: Array) -> Array:
@@ -92,12 +114,21 @@ class TaskSpace:
         parts = [J[:, :3]] if self.position else []
         if self.orientation:
             parts.append(_ORIENTATIONS[self.orientation][1](T, J))
+        if self.entries:
+            parts.append(_entry_rows(T, J, self.entries))
         return np.concatenate(parts, axis=1)
 
     def errors(self, T: Array, target: Array) -> tuple[Array, Array]:
         """Distance (N,) in m and angle (N,) in rad between T and target, zero for what is not
         read."""
         zero = np.zeros(len(T))
+        if self.entries:
+            difference = self.residual(T, target)
+            lengths = np.isin(np.arange(difference.shape[1]), self.lengths)
+            return (
+                np.asarray(np.linalg.norm(difference[:, lengths], axis=1)),
+                np.asarray(np.linalg.norm(difference[:, ~lengths], axis=1)),
+            )
         position = np.linalg.norm(T[:, :3, 3] - target[:, :3, 3], axis=1) if self.position else zero
         if not self.orientation:
             return np.asarray(position), zero
@@ -111,14 +142,15 @@ _ORIENTATIONS: dict[str, tuple[_Residual, _Residual]] = {
     "yaw": (_yaw, _yaw_rows),
 }
 
-TASK_SPACES = {
-    space.name: space
-    for space in (
-        TaskSpace("pose", 6, True, "rotation"),
-        TaskSpace("position", 3, True, ""),
-        TaskSpace("position-direction", 5, True, "direction"),
-        TaskSpace("position-yaw", 4, True, "yaw"),
-        TaskSpace("rotation", 3, False, "rotation"),
-        TaskSpace("direction", 2, False, "direction"),
-    )
-}
+_ROWS = {"rotation": 3, "direction": 3, "yaw": 1}
+"""Components of each residual."""
+
+
+def task_space(task: Task) -> TaskSpace:
+    """How a task is verified."""
+    if task.orientation == "entries":
+        return TaskSpace(task.name, task.freedoms, False, "", task.entries)
+    return TaskSpace(task.name, task.freedoms, task.position, task.orientation)
+
+
+TASK_SPACES = {task.name: task_space(task) for task in TASKS}

@@ -10,7 +10,7 @@ from ikgen.solver.session import Step
 __all__ = ["candidates_table"]
 
 _REASONS = (
-    "its divisor vanishes, or its branches meet, at regular configurations",
+    "fails at some regular configurations",
     "more branches",
     "a less direct form",
     "degenerate at more singular configurations",

@@ -55,12 +55,14 @@ class Matrix:
 
 @dataclass(frozen=True, slots=True)
 class Rows:
-    """A table. `caption` says what it shows; `small` for one with many columns."""
+    """A table. `caption` says what it shows; `small` for one with many columns; `left` how many
+    of its first columns are aligned left."""
 
     header: tuple[Text, ...]
     rows: tuple[tuple[Text, ...], ...]
     caption: str = ""
     small: bool = False
+    left: int = 0
 
 
 @dataclass(frozen=True, slots=True)

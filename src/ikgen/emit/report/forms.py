@@ -181,8 +181,12 @@ def _sincos(w: _Work) -> Solved:
 
 
 def _bound(above: Sum, below: Sum) -> Math:
-    one = m.relation("\\le ", "≤") + m.name("1")
-    return m.group(quotient(above, below), "||") + one
+    """`|C| <= |A|`, where a sine or cosine is C / A."""
+    value = below.value
+    one = m.number(abs(value)) if value is not None else m.group(show(below), "||")
+    if all(t.coefficient < 0 for t in above.terms):
+        above = -above
+    return m.group(show(above), "||") + m.relation("\\le ", "≤") + one
 
 
 def _tangent(w: _Work) -> Solved:

@@ -67,5 +67,6 @@ def _rows(block: Rows) -> str:
         "<tr>" + "".join(f"<td>{_text(cell)}</td>" for cell in row) + "</tr>" for row in block.rows
     )
     caption = f"<caption>{escape(block.caption)}</caption>" if block.caption else ""
-    kind = ' class="small"' if block.small else ""
+    classes = [name for name, on in (("small", block.small), ("left", block.left)) if on]
+    kind = f' class="{" ".join(classes)}"' if classes else ""
     return f"<table{kind}>{caption}<thead><tr>{head}</tr></thead>\n<tbody>{lines}</tbody></table>"

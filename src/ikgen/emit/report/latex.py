@@ -21,7 +21,12 @@ _ESCAPES = {
     "{": "\\{", "}": "\\}", "~": "\\textasciitilde{}", "^": "\\textasciicircum{}", "–": "--",
     "°": "\\ensuremath{^\\circ}", "±": "\\ensuremath{\\pm}",
     "·": "\\ensuremath{\\cdot}", "×": "\\ensuremath{\\times}", "−": "\\ensuremath{-}",
+    "\u2003": "\\quad{}", "-": "-{}",
 }  # fmt: skip
+
+
+_CENTRED, _WRAPPED = 24, 60
+"""Characters up to which a column is centred, and from which on its text wraps."""
 
 
 def to_latex(title: str, subtitle: str, blocks: list[Block]) -> str:
@@ -70,7 +75,10 @@ def _rows(block: Rows) -> str:
     wide = [
         max((_width(row[i]) for row in block.rows), default=0) for i in range(len(block.header))
     ]
-    columns = "".join("L" if w > 24 else "c" for w in wide)
+    columns = "".join(
+        "L" if w > _WRAPPED else "l" if w > _CENTRED or i < block.left else "c"
+        for i, w in enumerate(wide)
+    )
     count = columns.count("L")
     size = f"\\setlength{{\\wide}}{{{0.5 / count if count else 0.2:.2f}\\linewidth}}"
     head = " & ".join(f"\\textbf{{{_text(h)}}}" for h in block.header)
@@ -78,7 +86,11 @@ def _rows(block: Rows) -> str:
     tall = len(lines) > 30
     name = "longtable" if tall else "tabular"
     font = "\\footnotesize" if block.small else ""
-    caption = f"{{\\small {_words(block.caption)}\\par}}\\smallskip\n" if block.caption else ""
+    caption = (
+        f"{{\\small {_words(block.caption)}\\par}}\\nopagebreak\\smallskip\n"
+        if block.caption
+        else ""
+    )
     inside = "\n".join([f"\\toprule {head} \\\\ \\midrule", *lines, "\\bottomrule"])
     table = f"\\begin{{{name}}}{{{columns}}}\n{inside}\n\\end{{{name}}}"
     if not tall:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from html import escape
 
 __all__ = [
-    "Math", "Token", "close", "comma", "fraction", "function", "group", "join", "minus", "name",
+    "Math", "Token", "close", "comma", "dots", "fraction", "function", "group", "join", "minus", "name",
     "number", "operator", "plus", "power", "radical", "relation", "space", "text",
 ]  # fmt: skip
 
@@ -145,15 +145,26 @@ def comma() -> Math:
     return _mark(",\\penalty150\\,", "<mo>,</mo>", "comma")
 
 
-def close(mark: str = ")") -> Math:
+def dots() -> Math:
+    """What is left out of a product."""
+    return _mark("\\cdots ", "<mo>⋯</mo>")
+
+
+def close(mark: str = ")", *, tall: bool = False) -> Math:
     """A closing parenthesis."""
-    return _mark(mark, f'<mo stretchy="false" form="postfix">{mark}</mo>')
+    return _mark(f"\\Bigr{mark}" if tall else mark, _fence(mark, "postfix", tall=tall))
+
+
+def _fence(mark: str, form: str, *, tall: bool) -> str:
+    size = ' stretchy="true" symmetric="true" minsize="2.1em"' if tall else ' stretchy="false"'
+    return f'<mo{size} form="{form}">{mark}</mo>'
 
 
 def group(inside: Math, marks: str = "()") -> Math:
-    """Parentheses or brackets around a formula."""
-    first = _mark(marks[0], f'<mo stretchy="false" form="prefix">{marks[0]}</mo>')
-    return first + inside + close(marks[1])
+    """Parentheses or brackets around a formula, larger ones around fractions."""
+    tall = any("\\frac" in token.latex for token in inside.tokens)
+    first = _mark(f"\\Bigl{marks[0]}" if tall else marks[0], _fence(marks[0], "prefix", tall=tall))
+    return first + inside + close(marks[1], tall=tall)
 
 
 def space() -> Math:
@@ -195,15 +206,14 @@ def power(base: Math, exponent: int) -> Math:
     """A whole power."""
     if exponent == 1:
         return base
+    shown = str(exponent).replace("-", "−")
     only = base.tokens[0] if len(base.tokens) == 1 else None
     if only is not None and only.mathml.startswith("<msub>"):
         inside = only.mathml.removeprefix("<msub>").removesuffix("</msub>")
-        return _mark(
-            f"{only.latex}^{{{exponent}}}", f"<msubsup>{inside}<mn>{exponent}</mn></msubsup>"
-        )
+        return _mark(f"{only.latex}^{{{exponent}}}", f"<msubsup>{inside}<mn>{shown}</mn></msubsup>")
     return _mark(
         f"{{{base.latex}}}^{{{exponent}}}",
-        f"<msup><mrow>{base.mathml}</mrow><mn>{exponent}</mn></msup>",
+        f"<msup><mrow>{base.mathml}</mrow><mn>{shown}</mn></msup>",
     )
 
 

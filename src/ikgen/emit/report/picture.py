@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
+from ikgen.emit.report.layout import layout
 from ikgen.emit.report.notation import variable
 from ikgen.emit.report.poses import Versions
 from ikgen.equations.knowledge import Variable
 from ikgen.solver.graph import SolutionGraph
 
-__all__ = ["Drawing", "draw", "layout"]
+__all__ = ["Drawing", "draw"]
 
 _STEP_X, _STEP_Y, _WIDTH, _HEIGHT, _MARGIN = 118, 84, 92, 42, 14
 
@@ -22,54 +24,35 @@ class Drawing:
     latex: str
 
 
-def layout(graph: SolutionGraph) -> dict[Variable, tuple[float, float]]:
-    """Column and row of every unknown: below all its parents, in the order of their mean column."""
-    parents = dict(graph.parents)
-    depth: dict[Variable, int] = {}
-    for v, above in graph.parents:
-        depth[v] = 1 + max((depth.get(p, -1) for p in above), default=-1)
-    layers: dict[int, list[Variable]] = {}
-    for v, row in depth.items():
-        layers.setdefault(row, []).append(v)
-    widest = max((len(layer) for layer in layers.values()), default=0)
-    place: dict[Variable, tuple[float, float]] = {}
-    for row in sorted(layers):
-        layer = layers[row]
-
-        def wish(v: Variable) -> float:
-            xs = [place[p][0] for p in parents[v] if p in place]
-            return sum(xs) / len(xs) if xs else 0.0
-
-        if row:
-            layer.sort(key=wish)
-        start = (widest - len(layer)) / 2
-        for i, v in enumerate(layer):
-            place[v] = (start + i, float(row))
-    return place
-
-
 def draw(graph: SolutionGraph, versions: Versions, title: str) -> Drawing:
     """The drawing: a box an unknown with its number of versions, an arrow a direct parent."""
-    place = {
-        v: (_MARGIN + _WIDTH / 2 + x * _STEP_X, _MARGIN + _HEIGHT / 2 + y * _STEP_Y)
-        for v, (x, y) in layout(graph).items()
-    }
-    width = max((x for x, _ in place.values()), default=0.0) + _WIDTH / 2 + _MARGIN
-    height = max((y for _, y in place.values()), default=0.0) + _HEIGHT / 2 + _MARGIN
+    plan = layout(graph)
+    place = {v: _point(at) for v, at in plan.place.items()}
+    every = [*place.values(), *(_point(at) for route in plan.routes.values() for at in route)]
+    width = max((x for x, _ in every), default=0.0) + _WIDTH / 2 + _MARGIN
+    height = max((y for _, y in every), default=0.0) + _HEIGHT / 2 + _MARGIN
     leaves = frozenset(s.candidate.unknown for s in graph.steps)
-    edges = [(place[p], place[v]) for v, above in graph.parents for p in above if p in place]
+    routes = [_strokes([_point(at) for at in route]) for route in plan.routes.values()]
     return Drawing(
-        _svg(place, edges, versions, leaves, (width, height), title),
-        _latex(place, edges, versions, (width, height)),
+        _svg(place, routes, versions, leaves, (width, height), title),
+        _latex(place, routes, versions, (width, height)),
     )
 
 
 Point = tuple[float, float]
+Stroke = tuple[Point, Point]
 
 
-def _ends(edge: tuple[Point, Point]) -> tuple[Point, Point]:
-    (x1, y1), (x2, y2) = edge
-    return (x1, y1 + _HEIGHT / 2), (x2, y2 - _HEIGHT / 2)
+def _point(at: Point) -> Point:
+    """The centre of a place."""
+    return _MARGIN + _WIDTH / 2 + at[0] * _STEP_X, _MARGIN + _HEIGHT / 2 + at[1] * _STEP_Y
+
+
+def _strokes(route: list[Point]) -> list[Stroke]:
+    """From below each place to above the next; straight down through those in between."""
+    return [
+        ((x1, y1 + _HEIGHT / 2), (x2, y2 - _HEIGHT / 2)) for (x1, y1), (x2, y2) in pairwise(route)
+    ]
 
 
 def _count(versions: Versions, v: Variable) -> str:
@@ -79,7 +62,7 @@ def _count(versions: Versions, v: Variable) -> str:
 
 def _svg(
     place: dict[Variable, Point],
-    edges: list[tuple[Point, Point]],
+    routes: list[list[Stroke]],
     versions: Versions,
     leaves: frozenset[Variable],
     size: Point,
@@ -92,21 +75,31 @@ def _svg(
         '<defs><marker id="arrow" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" '
         'markerHeight="7" orient="auto"><path d="M0 1 L7 4 L0 7 z" fill="#345"/></marker></defs>',
     ]
-    for edge in edges:
-        (x1, y1), (x2, y2) = _ends(edge)
-        bend = (y2 - y1) / 2
+    for strokes in routes:
         parts.append(
-            f'<path d="M{x1:g} {y1:g} C{x1:g} {y1 + bend:g} '
-            f'{x2:g} {y2 - bend:g} {x2:g} {y2 - 1:g}" '
-            'fill="none" stroke="#345" stroke-width="1.2" marker-end="url(#arrow)"/>'
+            f'<path d="{_path(strokes)}" fill="none" stroke="#345" stroke-width="1.2" '
+            'marker-end="url(#arrow)"/>'
         )
     parts += [_box(v, at, versions, v in leaves) for v, at in place.items()]
     return "\n".join([*parts, "</svg>"]) + "\n"
 
 
+def _path(strokes: list[Stroke]) -> str:
+    """One arrow as the path of an SVG: a curve that leaves and arrives upright, stroke by stroke."""
+    (x, y), _ = strokes[0]
+    parts = [f"M{x:g} {y:g}"]
+    for i, ((x1, y1), (x2, y2)) in enumerate(strokes):
+        bend = (y2 - y1) / 2
+        if i:
+            parts.append(f"L{x1:g} {y1:g}")
+        end = y2 - 1 if i == len(strokes) - 1 else y2
+        parts.append(f"C{x1:g} {y1 + bend:g} {x2:g} {y2 - bend:g} {x2:g} {end:g}")
+    return " ".join(parts)
+
+
 def _latex(
     place: dict[Variable, Point],
-    edges: list[tuple[Point, Point]],
+    routes: list[list[Stroke]],
     versions: Versions,
     size: Point,
 ) -> str:
@@ -115,15 +108,22 @@ def _latex(
     unit = min(0.8, 430.0 / size[0])
     lines = [
         f"\\setlength{{\\unitlength}}{{{unit:.3f}pt}}",
+        "\\renewcommand{\\qbeziermax}{2000}",
         f"\\begin{{picture}}({size[0]:.0f},{high:.0f})",
     ]
-    for edge in edges:
-        (x1, y1), (x2, y2) = _ends(edge)
-        middle = (x1 + x2) / 2, (y1 + y2) / 2
-        bend = ((x1, (y1 + middle[1]) / 2), (x2, (y2 + middle[1]) / 2))
-        for a, b, c in (((x1, y1), bend[0], middle), (middle, bend[1], (x2, y2))):
-            points = "".join(f"({x:.1f},{high - y:.1f})" for x, y in (a, b, c))
-            lines.append(f"\\qbezier[120]{points}")
+    for strokes in routes:
+        below = None
+        for (x1, y1), (x2, y2) in strokes:
+            middle = (x1 + x2) / 2, (y1 + y2) / 2
+            bend = ((x1, (y1 + middle[1]) / 2), (x2, (y2 + middle[1]) / 2))
+            curves = [((x1, y1), bend[0], middle), (middle, bend[1], (x2, y2))]
+            if below is not None:
+                curves.insert(0, (below, (x1, (below[1] + y1) / 2), (x1, y1)))
+            for three in curves:
+                points = "".join(f"({x:.1f},{high - y:.1f})" for x, y in three)
+                lines.append(f"\\qbezier{points}")
+            below = (x2, y2)
+        x2, y2 = strokes[-1][1]
         lines.append(f"\\put({x2:.1f},{high - y2:.1f}){{\\vector(0,-1){{0}}}}")
     for v, (x, y) in place.items():
         corner = f"{x - _WIDTH / 2:.1f},{high - y - _HEIGHT / 2:.1f}"

@@ -12,32 +12,37 @@ from ikgen.emit.report.mathtext import Math
 from ikgen.emit.report.normal import Normalizer, Symbol
 from ikgen.emit.report.notation import show, symbol
 from ikgen.equations.rigid import link, multiply
+from ikgen.kinematics.classify import GeometryClass
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
 from ikgen.model.joint_tree import Matrix as Array
-from ikgen.pipeline import Derivation
+from ikgen.pipeline import Reading
+from ikgen.solver.graph import SolutionGraph
+from ikgen.tasks import Task
 
 __all__ = ["forward_section", "robot_section"]
 
+_MOST_WRITTEN = 900
+"""Symbols in all entries of the pose together, above which they are not written out."""
 
-def robot_section(derivation: Derivation) -> list[Block]:
-    """What robot this is, and its table."""
-    dh, module = derivation.reading.dh, derivation.module
+
+def robot_section(reading: Reading, geometry: GeometryClass, task: Task, most: str) -> list[Block]:
+    """What robot this is, and its table; `most` says how many solutions there are."""
+    dh = reading.dh
     moving = "".join("R" if row.revolute else "P" for row in dh.rows)
     lead = (
         f"{dh.dof} joints ({moving}), from {dh.base_link} to {dh.tip_link}. "
-        f"Geometry: {derivation.geometry.words}. Task: {derivation.task.name} "
-        f"({derivation.task.words}). At most {module.max_solutions} solutions a pose."
+        f"Geometry: {geometry.words}. Task: {task.name} ({task.words}). {most}"
     )
     blocks: list[Block] = [Heading(("Robot",)), Paragraph((lead,)), _table(dh)]
     if dh.free or dh.locked:
-        held = [f"{name} is held free" for name in dh.free]
+        held = [f"{name} is held free: its value is given with the pose" for name in dh.free]
         held += [f"{name} is locked at {value:g}" for name, value in dh.locked]
         blocks.append(Paragraph(("; ".join(held) + ".",)))
     values = _parameters(dh)
     if values:
         blocks.append(values)
-    blocks += [Paragraph((f"Note: {w}.",), note=True) for w in derivation.reading.source.warnings]
-    blocks += _ends(dh)
+    blocks += [Paragraph((f"Note: {w}.",), note=True) for w in reading.source.warnings]
+    blocks += _ends(dh, task)
     return blocks + _snaps(dh)
 
 
@@ -119,19 +124,22 @@ def _parameters(dh: DHChain) -> Rows | None:
     return Rows((("constant",), ("value (m, rad)",)), cells, "Constants of the arm")
 
 
-def _ends(dh: DHChain) -> list[Block]:
+def _ends(dh: DHChain, task: Task) -> list[Block]:
     """Base and tool transforms, and the joints whose values are not the table's variables."""
     out: list[Block] = []
-    for letters, T, words in (("B", dh.X_base, "base"), ("E", dh.X_tip, "tool")):
+    for letter, T in (("B", dh.X_base), ("E", dh.X_tip)):
         if not np.array_equal(T, np.eye(4)):
-            out.append(Matrix(m.name("T", letters), _numbers(T)))
-            del words
+            out.append(Matrix(m.name(letter), _numbers(T)))
     if out:
-        text = (
-            "The pose in what follows is that of the table's last frame in frame 0: the "
-            "constant transforms of base and tool (B, E) are taken off the given pose first."
+        pose = (
+            "that of the table's last frame in frame 0: the constant transforms of base and tool "
+            "(B, E) are taken off the given pose first."
+            if task.whole_pose
+            else "that of the tool in frame 0: the constant transform of the base (B) is taken off the "
+            "given pose first, that of the tool (E) ends the chain, since the task does not read "
+            "the whole pose."
         )
-        out.insert(0, Paragraph((text,)))
+        out.insert(0, Paragraph((f"The pose in what follows is {pose}",)))
     shifted = [row for row in dh.rows if row.scale != 1.0 or row.offset.value]
     if shifted:
         lines = [_conversion(row, dh) for row in shifted]
@@ -183,27 +191,27 @@ def _snaps(dh: DHChain) -> list[Block]:
     return [Rows(header, rows, "Constants made exact"), Paragraph((text,))]
 
 
-def forward_section(derivation: Derivation, normal: Normalizer) -> list[Block]:
+def forward_section(graph: SolutionGraph, normal: Normalizer) -> list[Block]:
     """The pose, and what the table makes of it."""
-    system = derivation.graph.session.system
+    system = graph.session.system
     g, n = system.graph, system.n
     T = multiply(g, link(system.variables, 0), system.right(0, n))
     pose = [[m.name("r", f"{i}{j}") for j in (1, 2, 3)] for i in (1, 2, 3)]
     rows = [(*pose[i], m.name("p", "xyz"[i])) for i in range(3)]
     rows.append(tuple(m.name(x) for x in "0001"))
     left = m.name("T", "d")
-    lines = []
-    for j in range(3):
-        for i in range(3):
-            lines.append(pose[i][j] + m.relation() + show(normal(T.R[i][j])))
-    for i in range(3):
-        lines.append(rows[i][3] + m.relation() + show(normal(T.p[i])))
+    sums = [*(normal(T.R[i][j]) for j in range(3) for i in range(3)), *map(normal, T.p)]
+    if sum(s.weight for s in sums) > _MOST_WRITTEN:
+        return _unwritten(Matrix(left, tuple(rows)), n)
+    entries = [*(pose[i][j] for j in range(3) for i in range(3)), *(row[3] for row in rows[:3])]
+    lines = [a + m.relation() + show(s) for a, s in zip(entries, sums, strict=True)]
     words = (
         "The desired pose, and its entries by the table. ",
         m.name("c", "i"), " and ", m.name("s", "i"), " are cosine and sine of ",
         m.name("theta", "i"),
-        "; angles of parallel axes come as sums: ", m.name("theta", "23"), m.relation(),
-        m.name("theta", "2") + m.plus() + m.name("theta", "3"), ".",
+        "; angles of parallel axes come as sums: ",
+        m.name("theta", "23") + m.relation() + m.name("theta", "2") + m.plus()
+        + m.name("theta", "3"), ".",
     )  # fmt: skip
     return [
         Heading(("Forward kinematics",)),
@@ -211,3 +219,17 @@ def forward_section(derivation: Derivation, normal: Normalizer) -> list[Block]:
         Matrix(left, tuple(rows)),
         Formulas(tuple(lines)),
     ]
+
+
+def _unwritten(pose: Matrix, n: int) -> list[Block]:
+    """Forward kinematics whose entries are too long to be read: the product alone."""
+    factors = [m.name("A", str(i)) for i in range(1, n + 1)]
+    return [
+        Heading(("Forward kinematics",)),
+        Paragraph((
+            "The desired pose is the product of the matrices of the table's rows (below); without "
+            "parallel axes and right angles its entries are too long to be written out.",
+        )),
+        pose,
+        Formulas((pose.name + m.relation() + m.join(factors, m.space()),)),
+    ]  # fmt: skip

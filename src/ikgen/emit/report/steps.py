@@ -13,19 +13,23 @@ from ikgen.emit.report.naming import Abbreviations
 from ikgen.emit.report.normal import Normalizer, Sum
 from ikgen.emit.report.notation import show, variable
 from ikgen.emit.report.poses import Versions
+from ikgen.emit.report.splits import origin, place
 from ikgen.equations.build import Equation
 from ikgen.equations.knowledge import Variable
 from ikgen.solver.candidate import Candidate
 from ikgen.solver.graph import SolutionGraph
 from ikgen.solver.session import Step
 
-__all__ = ["Writer", "abbreviations", "derived_section", "place", "step_section"]
+__all__ = ["Writer", "abbreviations", "derived_section", "step_section"]
 
 _MANY = 16
-_WORDS = {
-    "p.p": "squared distance of the origins", "px2+py2": "squared distance from the left axis",
-    "qx2+qy2": "squared distance from the right axis",
-}  # fmt: skip
+_QUARTIC: Text = (
+    "No leaf with two branches holds for this unknown: it is a root of a polynomial of degree four. The "
+    "polynomial in ", m.name("z") + m.relation() + m.function("exp", m.name("i") + m.name("theta")),
+    " is written above; its roots on the unit circle are the real solutions. The emitted code finds "
+    "them in closed form by Ferrari's resolvent, as the points where the lines of a degenerate conic "
+    "meet the circle.",
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,10 +57,10 @@ def step_section(w: Writer, number: int, step: Step) -> list[Block]:
     v = variable(c.unknown)
     title: Text = (f"{number}. ", v, f": {c.leaf}")
     solved = solve_form(c, w.graph.session.system.graph, w.normal, w.names)
-    blocks: list[Block] = [Heading(title, 2), Paragraph(_origin(c))]
+    blocks: list[Block] = [Heading(title, 2), *_origin(w, c)]
     shown = [_equation(w, e) for e in dict.fromkeys(c.sources) if _short(w, e)]
     if shown:
-        blocks.append(Formulas(tuple(shown)))
+        blocks += [Paragraph(("that is:",)), Formulas(tuple(shown))]
     if solved.equations:
         blocks += [Paragraph(("In the unknown:",)), Formulas(solved.equations)]
     news = w.names.news()
@@ -66,6 +70,8 @@ def step_section(w: Writer, number: int, step: Step) -> list[Block]:
         lines = [m.name("u", str(n.index)) + m.relation() + show(s) for n, s in news]
         blocks += [Paragraph(("with",)), Formulas(tuple(lines))]
     blocks += [Paragraph(("Solution:",)), Formulas(solution)]
+    if c.form == "quartic":
+        blocks.append(Paragraph(_QUARTIC))
     blocks += _versions(w, c.unknown, step.branches)
     blocks += _guards(step, solved)
     for fallback in step.fallbacks:
@@ -73,24 +79,10 @@ def step_section(w: Writer, number: int, step: Step) -> list[Block]:
     return blocks + candidates_table(step)
 
 
-def place(e: Equation) -> str:
-    """Which matrix equation and which entry of it, in words."""
-    entry = e.entry
-    if entry in _WORDS:
-        where = _WORDS[entry]
-    elif entry[0] == "r":
-        where = f"row {entry[1]}, column {entry[2]}"
-    elif entry[0] == "q":
-        where = f"row {'xyz'.index(entry[1]) + 1}, column 4 of the inverse"
-    else:
-        where = f"row {'xyz'.index(entry[1]) + 1}, column 4"
-    return f"split ({e.k},{e.m}): {where}"
-
-
-def _origin(c: Candidate) -> Text:
-    places = list(dict.fromkeys(place(e) for e in c.sources))
-    note = f" ({c.note})" if c.note else ""
-    return (f"From {', and '.join(places)}{note}:" if places else f"By {c.leaf}{note}:",)
+def _origin(w: Writer, c: Candidate) -> list[Block]:
+    made = origin(w.graph.session.system, c.sources)
+    note = [Paragraph((f"By {c.note or c.leaf}:",))] if c.note or not made else []
+    return [*made, *note]
 
 
 def _equation(w: Writer, e: Equation) -> Math:
@@ -190,10 +182,11 @@ def derived_section(w: Writer) -> list[Block]:
     solved = {step.candidate.unknown for step in w.graph.steps}
     lines = []
     for v, _ in w.graph.parents:
-        if v in solved or v.kind != "angle":
+        composed = v.kind == "angle" and w.graph.knowledge.composition(v.key)
+        if v in solved or not composed or composed == ((1, v.key),):
             continue
         right = Math(())
-        for factor, key in w.graph.knowledge.composition(v.key):
+        for factor, key in composed:
             sign = m.minus(sign=not right.tokens) if factor < 0 else m.plus()
             right = right + (sign if right.tokens or factor < 0 else Math(()))
             right = right + (m.number(abs(factor)) if abs(factor) != 1 else Math(()))

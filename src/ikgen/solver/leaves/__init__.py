@@ -1,16 +1,15 @@
 """The leaves: rule-based solvers, each a pure function `find(equations, unknown, knowledge)`.
 
-One row a leaf. `preference` breaks ties between candidates for the same unknown: IKBT's ranker prefers
-forms with one solution and with atan2.
+One row a leaf; `ikgen.solver.ranker` chooses among the candidates that they find.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from importlib.metadata import entry_points
+from dataclasses import dataclass, replace
 
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
+from ikgen.plugins import PlugIn, plug_ins
 from ikgen.solver.candidate import Candidate
 from ikgen.solver.leaves import (
     algebraic,
@@ -28,7 +27,7 @@ Find = Callable[[Sequence[PolynomialEquation], Variable, Knowledge], list[Candid
 
 @dataclass(frozen=True, slots=True)
 class Leaf:
-    """A leaf by name, with its function and the paper's name for it."""
+    """A leaf: its name and its function."""
 
     name: str
     find: Find
@@ -46,6 +45,21 @@ LEAVES: tuple[Leaf, ...] = (
 
 def all_leaves() -> tuple[Leaf, ...]:
     """The leaves above and those of other packages: entry points of the group `ikgen.leaves`, each a
-    `Leaf`. Theirs are ranked behind ours of the same soundness and number of branches."""
-    others = sorted(entry_points(group="ikgen.leaves"), key=lambda entry: entry.name)
-    return (*LEAVES, *(entry.load() for entry in others))
+    `Leaf`. Theirs are ranked behind ours of the same soundness and number of branches.
+
+    Raises `PlugInError` for one that cannot be loaded: without it the result would be another one.
+    """
+    return (*LEAVES, *(_plugged_in(one) for one in plug_ins("ikgen.leaves")))
+
+
+def _plugged_in(plug_in: PlugIn) -> Leaf:
+    """A leaf of another package, whose failures name it."""
+    leaf = plug_in.load(Leaf)
+
+    def find(
+        equations: Sequence[PolynomialEquation], unknown: Variable, knowledge: Knowledge
+    ) -> list[Candidate]:
+        with plug_in.blamed():
+            return leaf.find(equations, unknown, knowledge)
+
+    return replace(leaf, find=find)

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-__all__ = ["BATCH", "FORWARD", "INFO", "JACOBIAN", "SOLVE", "driver"]
+__all__ = ["driver"]
 
-INFO, SOLVE, FORWARD, JACOBIAN, BATCH = range(5)
-"""What the first number of a request asks for."""
-
-# Everything is doubles: a head of (mode, N, has free, has seeds, limits), then N items.
+# Requests and answers are those of `ikgen.verify.runners.program`.
 _DRIVER = r"""
 #include <algorithm>
 #include <cstdio>

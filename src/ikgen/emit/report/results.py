@@ -1,4 +1,4 @@
-"""The report's end: pose sets, the behaviour tree's rounds, and verification."""
+"""The report's end: solution graph, pose sets and verification."""
 
 from __future__ import annotations
 
@@ -18,27 +18,32 @@ from ikgen.emit.report.document import (
 from ikgen.emit.report.notation import variable
 from ikgen.emit.report.picture import Drawing
 from ikgen.emit.report.poses import Versions
-from ikgen.pipeline import Derivation
+from ikgen.equations.knowledge import Variable
 from ikgen.solver.graph import SolutionGraph
 from ikgen.verify.report import VerificationReport
 
-__all__ = ["graph_section", "poses_section", "trace_section", "verification_section"]
+__all__ = ["graph_section", "poses_section", "verification_section"]
 
 _MOST_SETS = 64
-_WIDE = 9
 
 
-def graph_section(versions: Versions, drawing: Drawing) -> list[Block]:
+def graph_section(
+    versions: Versions, drawing: Drawing, passed: tuple[Variable, ...]
+) -> list[Block]:
     """The drawing, and the direct parents in words."""
     text: list[Inline] = [
         "An arrow leads from an unknown to those that are computed from it directly. "
     ]
-    several = [(v, above) for v, above in versions.parents.items() if len(above) > 1]
+    several = [
+        (v, above) for v, above in versions.parents.items() if len(above) > 1 and v not in passed
+    ]
     for v, above in several:
         text += [variable(v), " has the parents "]
         for i, p in enumerate(above):
             text += [" and " if i else "", variable(p)]
         text.append(". ")
+    for v in passed:
+        text += [variable(v), " is computed on the way and brings no branch of its own. "]
     return [
         Heading(("Solution graph",)),
         Paragraph(tuple(text)),
@@ -46,9 +51,9 @@ def graph_section(versions: Versions, drawing: Drawing) -> list[Block]:
     ]
 
 
-def poses_section(derivation: Derivation, versions: Versions) -> list[Block]:
+def poses_section(graph: SolutionGraph, versions: Versions) -> list[Block]:
     """The sets of versions that make whole solutions."""
-    session = derivation.graph.session
+    session = graph.session
     joints = [session.joint_variable(j) for j in range(session.system.dh.dof)]
     known = [v for v in joints if v in versions.within]
     lead = (
@@ -63,46 +68,6 @@ def poses_section(derivation: Derivation, versions: Versions) -> list[Block]:
             lines.append(m.text(f"Pose {i}: ") + m.space() + m.group(inside, "[]"))
         blocks.append(Formulas(tuple(lines)))
     return blocks
-
-
-def trace_section(graph: SolutionGraph) -> list[Block]:
-    """What every node of the tree did in every round."""
-    rounds = sorted({t.round for t in graph.ticks})
-    nodes = list(dict.fromkeys(t.node for t in graph.ticks))
-    cells: dict[tuple[str, int], list[str]] = {}
-    solved: dict[int, str] = {}
-    for t in graph.ticks:
-        first = t.detail.split(" ", 1)[0]
-        mark = (
-            first
-            if t.outcome == "success" and first.isdigit()
-            else ("yes" if t.outcome == "success" else "–")
-        )
-        cells.setdefault((t.node, t.round), []).append(mark)
-        if t.outcome == "success" and " by " in t.detail:
-            solved[t.round] = t.detail
-    blocks: list[Block] = [
-        Heading(("Behaviour tree",)),
-        Paragraph((
-            "One round solves one unknown: equations with one or two unknowns are collected, every "
-            "leaf looks at them, the ranker takes the best candidate; transforms run where no leaf "
-            "found a sound one. Cells: how many equations or candidates a node gave; – for "
-            "failure; two marks where it ran twice in the round.",
-        )),
-    ]  # fmt: skip
-    for start in range(0, len(rounds), _WIDE):
-        part = rounds[start : start + _WIDE]
-        header: tuple[Text, ...] = (("node",), *((f"round {r}",) for r in part))
-        rows = tuple(
-            ((node,), *((" ".join(cells.get((node, r), [])),) for r in part)) for node in nodes
-        )
-        blocks.append(Rows(header, rows, small=True))
-    outcome: tuple[tuple[Text, ...], ...] = tuple(
-        ((str(r),), (solved[r],)) for r in rounds if r in solved
-    )
-    if not outcome:
-        return blocks
-    return [*blocks, Rows((("round",), ("solved",)), outcome, small=True)]
 
 
 def verification_section(reports: Mapping[str, VerificationReport]) -> list[Block]:

@@ -1,0 +1,14 @@
+"""Rust as an output language of ikgen."""
+
+from __future__ import annotations
+
+from ikgen.emit.registry import Emitter
+
+__all__ = ["RUST"]
+
+RUST = Emitter(
+    "rust",
+    "a Rust crate without dependencies",
+    "ikgen_rust.emit:emit_derivation",
+    "ikgen_rust.runner:rust_runner",
+)

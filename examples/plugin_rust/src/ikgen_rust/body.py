@@ -1,0 +1,78 @@
+"""The Program as nested loops in Rust: one loop a level, guards as `continue`."""
+
+from __future__ import annotations
+
+from ikgen.emit.module import SolverModule
+from ikgen.emit.printer import expression
+from ikgen.errors import UsageError
+from ikgen.ir.ops import Operand
+from ikgen.ir.program import Comment, JointOutput, Let, Statement
+from ikgen_rust.language import RUST_LANGUAGE, number
+
+__all__ = ["body_lines"]
+
+
+def body_lines(module: SolverModule) -> list[str]:
+    """Lines of `branches`, without the indentation of its body.
+
+    Raises `UsageError` for a Program that calls a bigger routine, of which this package has none.
+    """
+    program = module.program
+    lines: list[str] = []
+    for index, level in enumerate(program.levels):
+        if level.call is not None:
+            raise UsageError(
+                f"the Rust emitter has no routine '{level.call.routine}', which this arm needs",
+                hint="emit python or cpp",
+            )
+        if index:
+            lines.append("    " * (index - 1) + f"for {level.sigma} in [1.0, -1.0] {{")
+        pad = "    " * index
+        leave = "continue" if index else "return hit"
+        for statement in level.body:
+            lines += [pad + line for line in _statement(module, statement, leave)]
+    depth = len(program.levels) - 1
+    lines += ["    " * depth + line for line in _row(module)]
+    lines += ["    " * index + "}" for index in reversed(range(depth))]
+    return lines
+
+
+def _text(operand: Operand) -> str:
+    return expression(RUST_LANGUAGE, operand)
+
+
+def _statement(module: SolverModule, statement: Statement, leave: str) -> list[str]:
+    if isinstance(statement, Comment):
+        return [f"// {statement.text}"]
+    if isinstance(statement, Let):
+        line = f"let {statement.name} = {_text(statement.value)};"
+        hit = f"hit |= {statement.name};"
+        return [line, hit] if statement.name in module.program.singular else [line]
+    return [f"if !({_text(statement.condition)}) {{", f"    {leave};", "}"]
+
+
+def _row(module: SolverModule) -> list[str]:
+    """The innermost statements: joint values, and what is known of the row."""
+    program = module.program
+    outputs = sorted(program.outputs, key=lambda output: output.joint)
+    lines = [f"let q{o.joint + 1} = {_joint_value(module, o)};" for o in outputs]
+    singular = " || ".join(program.singular) or "false"
+    rough = " || ".join([*program.singular, *(f"{r} > ROUGH" for r in program.residuals)])
+    if module.polish == "all":
+        rough = "true"
+    row = ", ".join(f"q{o.joint + 1}" for o in outputs)
+    lines.append(
+        f"rows.push(Candidate {{ q: [{row}], singular: {singular}, rough: {rough or 'false'} }});"
+    )
+    return lines
+
+
+def _joint_value(module: SolverModule, output: JointOutput) -> str:
+    """The joint's value from its DH variable v = scale * q + offset."""
+    if output.joint in module.free:
+        return f"held[{module.free.index(output.joint)}]"
+    row = module.first_row(output.joint)
+    value = _text(output.cosine)
+    if output.revolute:
+        value = f"f64::atan2({_text(output.sine)}, {value})"
+    return f"({value} - {number(row.offset.value)}) / {number(row.scale)}".replace("- -", "+ ")

@@ -1,0 +1,138 @@
+"""What `ikgen doctor` looks for: packages, tools and the parts of other packages."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+from ikgen.errors import IkgenError, MissingToolError
+from ikgen.plugins import GROUPS, PlugIn, plug_ins
+
+__all__ = ["Offer", "Thing", "offers", "packages", "tools"]
+
+_PACKAGES = {
+    "numpy": "arrays",
+    "sympy": "polynomials",
+    "jinja2": "templates of the outputs",
+    "click": "command line",
+    "rich": "progress",
+    "py_trees": "behavior tree",
+    "yourdfpy": "reads URDF",
+    "xacro": "expands xacro files",
+    "pin": "Pinocchio: verifies",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Thing:
+    """A package or tool: its version or path (None: missing), what it is for, how to get it."""
+
+    name: str
+    found: str | None
+    purpose: str
+    remedy: str
+
+
+@dataclass(frozen=True, slots=True)
+class Offer:
+    """A part of another package; `problem` says why it cannot be used ("": it can)."""
+
+    plug_in: PlugIn
+    problem: str
+
+
+def packages() -> list[Thing]:
+    """The Python packages that ikgen needs."""
+    return [
+        Thing(name, _version(name), purpose, f"pip install {name}")
+        for name, purpose in _PACKAGES.items()
+    ]
+
+
+def _version(name: str) -> str | None:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return None
+
+
+def tools() -> list[Thing]:
+    """Programs and headers that some outputs and commands use."""
+    from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
+
+    return [
+        _sought("C++ compiler", lambda: shlex.join(find_compiler()), "verifies the C++ header"),
+        _sought("Eigen", lambda: str(find_eigen()), "the C++ header includes it"),
+        _program("cmake", "ikgen_generate()", "apt-get install cmake, or pip install cmake"),
+        _program("pdflatex", "the report as PDF", "apt-get install texlive-latex-base"),
+        Thing(
+            "ament_cmake",
+            _ament(),
+            "ROS 2 packages",
+            "source /opt/ros/DISTRO/setup.sh, or apt-get install ament-cmake",
+        ),
+    ]
+
+
+def _sought(name: str, find: Callable[[], str], purpose: str) -> Thing:
+    """What verification would find, with its own words where it finds nothing."""
+    try:
+        return Thing(name, find(), purpose, "")
+    except MissingToolError as error:
+        return Thing(name, None, purpose, f"{error.message}: {error.hint}")
+
+
+def _program(name: str, purpose: str, remedy: str) -> Thing:
+    return Thing(name, shutil.which(name), purpose, remedy)
+
+
+def _ament() -> str | None:
+    """Where CMake's `find_package(ament_cmake)` would find it: the sourced prefixes, then /usr."""
+    sourced = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
+    places = [
+        Path(prefix) / "share/ament_cmake/cmake" for prefix in (*filter(None, sourced), "/usr")
+    ]
+    found = next((p for p in places if (p / "ament_cmakeConfig.cmake").is_file()), None)
+    return None if found is None else str(found)
+
+
+def offers() -> list[Offer]:
+    """The parts of other packages, each loaded once to see that it works."""
+    return [Offer(one, _problem(one)) for group in GROUPS for one in plug_ins(group)]
+
+
+def _problem(plug_in: PlugIn) -> str:
+    kind, own = _registry(plug_in.group)
+    if plug_in.name in own:
+        return "not used: ikgen has one of that name"
+    try:
+        plug_in.load(kind)
+    except IkgenError as error:
+        return error.message.removeprefix(plug_in.words).strip()
+    if sum(other.name == plug_in.name for other in plug_ins(plug_in.group)) > 1:
+        return "offered by several packages: keep one of them"
+    return ""
+
+
+def _registry(group: str) -> tuple[type, set[str]]:
+    """What an entry of a group must be, and the names that ikgen has itself."""
+    if group == "ikgen.importers":
+        from ikgen.importers import Importer
+
+        return Importer, set()  # chosen by suffix, not by name
+    if group == "ikgen.emitters":
+        from ikgen.emit.registry import EMITTERS, Emitter
+
+        return Emitter, {row.name for row in EMITTERS}
+    if group == "ikgen.leaves":
+        from ikgen.solver.leaves import Leaf
+
+        return Leaf, set()
+    from ikgen.tasks import TASKS, Task
+
+    return Task, {row.name for row in TASKS}

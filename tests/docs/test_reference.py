@@ -1,0 +1,104 @@
+"""The reference names everything that there is, and its tables of options are those of the commands."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+from snippets import blocks
+
+from ikgen.build.config import load_config
+from ikgen.tasks import TASKS
+
+ROOT = Path(__file__).resolve().parents[2]
+REFERENCE = ROOT / "docs/reference"
+
+
+def script(path: Path) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def words(page: str) -> set[str]:
+    """Names in code on a page."""
+    text = (REFERENCE / page).read_text(encoding="utf-8")
+    fences = re.findall(r"^```\w+\n(.*?)^```", text, re.M | re.S)
+    inline = re.findall(r"`([^`\n]+)`", re.sub(r"^```.*?^```", "", text, flags=re.M | re.S))
+    return {word for part in (*fences, *inline) for word in re.findall(r"\w+", part)}
+
+
+def test_commands_and_options_are_those_of_the_program() -> None:
+    reference = script(ROOT / "docs/cli_reference.py")
+    text = reference.PAGE.read_text(encoding="utf-8")
+    assert reference.filled_in(text) == text, "run python docs/cli_reference.py"
+
+
+def test_tasks_and_their_aliases_are_listed() -> None:
+    page = (REFERENCE / "cli.md").read_text(encoding="utf-8")
+    for task in TASKS:
+        row = next(line for line in page.splitlines() if line.startswith(f"| `{task.name}` |"))
+        assert all(f"`{alias}`" in row for alias in task.aliases)
+
+
+def test_emitted_names_are_listed() -> None:
+    module = (ROOT / "templates/python/module.py.jinja").read_text(encoding="utf-8")
+    exported = re.search(r"__all__ = (\[.*?\])", module, re.S)
+    assert exported is not None
+    assert set(ast.literal_eval(exported.group(1))) <= words("python-api.md")
+    header = (ROOT / "templates/cpp/header.hpp.jinja").read_text(encoding="utf-8")
+    public = header[: header.index("namespace detail")]
+    constants = set(re.findall(r"constexpr [\w:<>, *]+? (k\w+) =", public))
+    functions = set(re.findall(r"^[\w:<>, ]+ (\w+)\(const", public, re.M))
+    assert len(constants) > 8 and "solve_batch" in functions
+    assert constants | functions <= words("cpp-api.md")
+
+
+def test_config_example_is_one_and_all_entries_are_listed(tmp_path: Path) -> None:
+    example = next(blocks(REFERENCE / "config.md"))
+    (tmp_path / "ikgen.toml").write_text(example.text)
+    assert load_config(tmp_path / "ikgen.toml")[0].name == "ur5e"
+    (tmp_path / "ikgen.toml").write_text("[[arm]]\nnonsense = 1\n")
+    with pytest.raises(Exception, match="unknown entry") as caught:
+        load_config(tmp_path / "ikgen.toml")
+    known = caught.value.hint.removeprefix("there is: ").split(", ")
+    assert len(known) > 8 and set(known) <= words("config.md")
+
+
+def test_dh_example_is_one(tmp_path: Path) -> None:
+    table = tmp_path / "table.toml"
+    table.write_text(next(blocks(REFERENCE / "dh-table.md")).text)
+    assert output("inspect", str(table), "--no-advice")["chain"]["dof"] == 1
+
+
+def output(*arguments: str) -> Any:
+    command = [sys.executable, "-m", "ikgen", *arguments, "--json"]
+    return json.loads(subprocess.run(command, capture_output=True, text=True).stdout)
+
+
+def test_json_fields_are_listed(tmp_path: Path) -> None:
+    robot = str(ROOT / "urdf_fixtures/scara_standard.toml")
+    made = output("from-dh", robot, "-o", str(tmp_path), "--samples", "20")
+    report = next(iter(made["verification"].values()))
+    checked = output("verify", str(tmp_path), "--samples", "20")
+    found = set(made) | set(report) | set(checked) | set(checked["outputs"][0])
+    found |= set(output("inspect", robot, "--no-advice")) | set(output("doctor"))
+    assert len(found) > 30
+    assert found <= words("json.md")
+
+
+def test_pictures_are_those_that_the_script_draws() -> None:
+    pictures = script(ROOT / "docs/pictures/make.py")
+    for name, draw in pictures.PICTURES.items():
+        committed = (ROOT / "docs/pictures" / name).read_text(encoding="utf-8")
+        assert draw() == committed, f"{name}: run python docs/pictures/make.py"
