@@ -7,7 +7,6 @@ from typing import Protocol
 from xml.sax.saxutils import escape
 
 from ikgen.emit.cpp import emit_header
-from ikgen.emit.cpp_joints import first_row
 from ikgen.emit.cpp_language import comment
 from ikgen.emit.module import SolverModule
 from ikgen.emit.rendering import render
@@ -71,7 +70,7 @@ def package_name(name: str) -> str:
 
 def _values(module: SolverModule, package: str) -> dict[str, object]:
     """What the templates name."""
-    rows = [first_row(module, j) for j in range(module.dh.dof)]
+    rows = [module.first_row(j) for j in range(module.dh.dof)]
     turning = [row.revolute and j not in module.free for j, row in enumerate(rows)]
     return {
         "m": module,
