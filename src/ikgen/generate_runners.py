@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ikgen.verify.runners.python_module import PythonModule
     from ikgen.verify.runners.runner import ArmConstants
 
-__all__ = ["arm_constants", "cpp_runner", "nanobind_runner", "python_runner"]
+__all__ = ["arm_constants", "cpp_runner", "moveit_runner", "nanobind_runner", "python_runner"]
 
 
 def arm_constants(module: SolverModule) -> ArmConstants:
@@ -50,3 +50,11 @@ def cpp_runner(module: SolverModule, folder: Path) -> CppHeader:
 def nanobind_runner(module: SolverModule, folder: Path) -> CppHeader:
     """The header in the package to compile, as for `cpp_runner`."""
     return cpp_runner(module, folder / f"{module.name}_ik_ext")
+
+
+def moveit_runner(module: SolverModule, folder: Path) -> CppHeader:
+    """The header in the ROS 2 package, as for `cpp_runner`."""
+    from ikgen.emit.moveit import package_name
+
+    package = package_name(module.name)
+    return cpp_runner(module, folder / package / "include" / package)

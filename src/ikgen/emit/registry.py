@@ -82,6 +82,12 @@ EMITTERS: tuple[Emitter, ...] = (
         "ikgen.generate_runners:nanobind_runner",
     ),
     Emitter(
+        "moveit",
+        "a ROS 2 package with a MoveIt kinematics plugin over the C++ header",
+        "ikgen.emit.moveit:emit_derivation",
+        "ikgen.generate_runners:moveit_runner",
+    ),
+    Emitter(
         "report",
         "how it was derived, as LaTeX and HTML, with the solution graph",
         "ikgen.emit.report:emit_report",

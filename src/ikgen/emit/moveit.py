@@ -1,0 +1,91 @@
+"""Emitter of a ROS 2 package: a MoveIt kinematics plugin over the C++ header."""
+
+from __future__ import annotations
+
+import re
+from typing import Protocol
+from xml.sax.saxutils import escape
+
+from ikgen.emit.cpp import emit_header
+from ikgen.emit.cpp_language import comment
+from ikgen.emit.module import SolverModule
+from ikgen.emit.rendering import render
+from ikgen.errors import UsageError
+
+__all__ = ["emit", "emit_derivation", "package_name"]
+
+_FILES = {
+    "package.xml": "package.xml",
+    "CMakeLists.txt": "CMakeLists.txt",
+    "README.md": "README.md",
+    "plugin.xml": "plugin.xml",
+    "config/kinematics.yaml": "kinematics.yaml",
+    "src/kinematics_plugin.cpp": "kinematics_plugin.cpp",
+    "src/robot_model.cpp": "robot_model.cpp",
+}
+_HEADERS = (
+    "candidates",
+    "search",
+    "messages",
+    "moveit_headers",
+    "robot_model",
+    "kinematics_plugin",
+)
+
+
+class _Derived(Protocol):
+    @property
+    def module(self) -> SolverModule: ...
+
+
+def emit_derivation(derivation: _Derived) -> dict[str, str]:
+    """Relative path -> text of the package's folder, `<name>_ik_moveit/`."""
+    return emit(derivation.module)
+
+
+def emit(module: SolverModule) -> dict[str, str]:
+    """Relative path -> text: a whole ament package, the solver's header included.
+
+    Raises UsageError for a chain with mimic joints, whose values MoveIt wants as well.
+    """
+    if len(module.dh.rows) > module.dh.dof:
+        raise UsageError(
+            f"{module.dh.robot}: the chain has mimic joints, and the MoveIt plugin does not serve these",
+            hint="use the Python or C++ output",
+        )
+    package = package_name(module.name)
+    include = f"{package}/include/{package}"
+    headers = (*_HEADERS, "free_joints") if module.free else _HEADERS
+    paths = {f"{package}/{path}": file for path, file in _FILES.items()}
+    paths |= {f"{include}/{header}.hpp": f"{header}.hpp" for header in headers}
+    values = _values(module, package)
+    out = {path: render("moveit", f"{file}.jinja", **values) for path, file in paths.items()}
+    return out | {f"{include}/{module.name}_ik.hpp": emit_header(module)}
+
+
+def package_name(name: str) -> str:
+    """Name of the ROS package of a solver: lower case, no two underscores in a row (REP 144)."""
+    return re.sub("_+", "_", f"{name.lower()}_ik_moveit")
+
+
+def _values(module: SolverModule, package: str) -> dict[str, object]:
+    """What the templates name."""
+    rows = [module.first_row(j) for j in range(module.dh.dof)]
+    turning = [row.revolute and j not in module.free for j, row in enumerate(rows)]
+    return {
+        "m": module,
+        "package": package,
+        "namespace": f"{module.name}_ik",
+        "joint_names": tuple(joint.name for joint in module.dh.joints),
+        "free_names": tuple(module.dh.joints[j].name for j in module.free),
+        "turning": ["true" if turns else "false" for turns in turning],
+        "version": _version(module.generator_version),
+        "comment": comment,
+        "xml": escape,
+    }
+
+
+def _version(generator: str) -> str:
+    """The generator's version where ROS packages can have it: three numbers."""
+    plain = re.match(r"\d+\.\d+\.\d+", generator)
+    return plain.group() if plain else "0.0.0"

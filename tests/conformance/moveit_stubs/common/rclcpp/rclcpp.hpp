@@ -1,0 +1,4 @@
+#pragma once
+
+#include <rclcpp/logging.hpp>
+#include <rclcpp/node.hpp>

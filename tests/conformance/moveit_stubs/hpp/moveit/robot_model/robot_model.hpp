@@ -1,0 +1,3 @@
+#pragma once
+
+#include <stub/robot_model.hpp>
