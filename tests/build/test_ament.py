@@ -4,8 +4,7 @@ Debian: `apt install ament-cmake ament-cmake-python`. colcon is taken from PATH 
 COLCON, and wants an environment of its own:
 
     python3 -m venv /tmp/colcon
-    /tmp/colcon/bin/pip install 'setuptools<80' colcon-core colcon-ros colcon-cmake \\
-        colcon-test-result colcon-recursive-crawl
+    /tmp/colcon/bin/pip install 'setuptools<80' colcon-common-extensions
     COLCON=/tmp/colcon/bin/colcon python -m pytest tests/build/test_ament.py
 """
 
