@@ -17,6 +17,7 @@ GROUPS: dict[str, str] = {
     "ikgen.emitters": "emitter",
     "ikgen.leaves": "leaf",
     "ikgen.tasks": "task",
+    "ikgen.trees": "behavior tree",
 }
 """Entry-point group -> what its entries are."""
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from importlib.metadata import EntryPoint
+from pathlib import Path
 
 import pytest
 from test_leaves import CASES, table
@@ -11,10 +13,12 @@ from test_leaves import CASES, table
 from ikgen import plugins
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
 from ikgen.equations.matching import powers
+from ikgen.errors import PlugInError
 from ikgen.solver import leaves
 from ikgen.solver.candidate import Candidate
 from ikgen.solver.leaves import LEAVES, Leaf
 from ikgen.solver.run import solve_chain
+from ikgen.solver.tree import Tree, the_tree
 
 
 def find_slide(
@@ -49,3 +53,40 @@ def test_entry_points_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(plugins, "entry_points", lambda group: [entry])
     names = [leaf.name for leaf in leaves.all_leaves()]
     assert names == [*(leaf.name for leaf in LEAVES), "slide"]
+
+
+TREE_PAGE = Path(__file__).resolve().parents[2] / "docs/how-to/add-a-tree.md"
+
+
+def documented_tree() -> Tree:
+    """The tree of the page on trees, as a package of its own would have it."""
+    code = re.search(r"^```python[^\n]*\n(.*?)^```", TREE_PAGE.read_text(), re.M | re.S)
+    assert code is not None
+    names: dict[str, object] = {}
+    exec(code.group(1), names)
+    tree = names["TREE"]
+    assert isinstance(tree, Tree)
+    return tree
+
+
+@pytest.mark.parametrize("case", ["two sliding joints"])
+def test_another_tree_solves_and_is_told(case: str) -> None:
+    graph = solve_chain(table(*CASES[case][1]), tree=documented_tree())
+    assert not graph.open_joints
+    assert any("ways" in path for path in graph.outline)
+    assert {tick.node for tick in graph.ticks} > {"collect equations", "ways"}
+
+
+def test_the_tree_of_another_package_takes_the_place_of_the_own(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    entry = EntryPoint("mine", "test_plugged_in:documented_tree", "ikgen.trees")
+    monkeypatch.setattr(plugins, "entry_points", lambda group: [entry])
+    assert the_tree().name == "one leaf at a time"
+
+
+def test_two_trees_are_one_too_many(monkeypatch: pytest.MonkeyPatch) -> None:
+    entries = [EntryPoint(n, "test_plugged_in:documented_tree", "ikgen.trees") for n in "ab"]
+    monkeypatch.setattr(plugins, "entry_points", lambda group: entries)
+    with pytest.raises(PlugInError, match="several"):
+        the_tree()

@@ -133,6 +133,10 @@ def _registry(group: str) -> tuple[type, set[str]]:
         from ikgen.solver.leaves import Leaf
 
         return Leaf, set()
+    if group == "ikgen.trees":
+        from ikgen.solver.tree import Tree
+
+        return Tree, set()  # takes the place of ikgen's own, whatever its name
     from ikgen.tasks import TASKS, Task
 
     return Task, {row.name for row in TASKS}

@@ -13,7 +13,7 @@ from ikgen.model.dh import DHChain
 from ikgen.solver.graph import SolutionGraph, graph_of
 from ikgen.solver.leaves import Leaf, all_leaves
 from ikgen.solver.session import Session
-from ikgen.solver.tree import build_tree, outline, tick
+from ikgen.solver.tree import Tree, outline, the_tree, tick
 
 __all__ = ["solve_chain"]
 
@@ -24,13 +24,14 @@ def solve_chain(
     readable: frozenset[str] = frozenset(ENTRY_NAMES),
     tool_on_right: bool = False,
     leaves: Sequence[Leaf] | None = None,
+    tree: Tree | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> SolutionGraph:
     """Closed forms for every joint variable of `dh`; `graph.open_joints` lists what is left.
 
     `readable` names the pose entries that the task reads; with `tool_on_right` the tool transform is
     part of the chain (tasks that do not read the whole pose). `leaves` are by default ikgen's own and
-    those of other packages.
+    those of other packages, `tree` ikgen's own or that of another package.
     """
     probes = make_probes(dh, tool=tool_on_right)
     graph = ExpressionGraph(len(probes.values))
@@ -42,10 +43,10 @@ def solve_chain(
     held = tuple(i for i, joint in enumerate(dh.joints) if joint.name in dh.free)
     session = Session(system, probes, knowledge, held=held)
     session.start()
-    tree = build_tree(session, all_leaves() if leaves is None else leaves)
+    root = (tree or the_tree()).build(session, all_leaves() if leaves is None else leaves)
     while session.open_joints:
-        if not tick(tree, session):
+        if not tick(root, session):
             break
         if progress is not None:
             progress(session.steps[-1].candidate.unknown.text)
-    return replace(graph_of(session), outline=outline(tree))
+    return replace(graph_of(session), outline=outline(root))

@@ -10,12 +10,14 @@
 
 Nodes read and write a `Session`; this module is the only one that knows py_trees. Its `Parallel` fails
 as soon as one child fails, so the paper's "OR" (tick all, succeed if any did) is a composite of our own.
+Another package may offer a tree of its own, built from the same nodes, by the group `ikgen.trees`.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 
 import py_trees
@@ -23,11 +25,25 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation
+from ikgen.errors import PlugInError
+from ikgen.plugins import plug_ins
 from ikgen.solver.leaves import Leaf
 from ikgen.solver.session import Session
 from ikgen.solver.transforms import square_and_add, substitution
 
-__all__ = ["build_tree", "outline", "tick"]
+__all__ = [
+    "TREE",
+    "Action",
+    "Or",
+    "Tree",
+    "build_tree",
+    "choose",
+    "collect",
+    "leaf_node",
+    "outline",
+    "the_tree",
+    "tick",
+]
 
 Transform = Callable[[Sequence[PolynomialEquation], Knowledge], list[PolynomialEquation]]
 
@@ -72,18 +88,21 @@ class Or(py_trees.composites.Composite):
         yield self
 
 
-def _collect(session: Session) -> tuple[bool, str]:
+def collect(session: Session) -> tuple[bool, str]:
+    """Sort the scalar equations by number of unknowns."""
     session.collect()
     count = len(session.equations)
     return count > 0, f"{count} equations with one or two unknowns"
 
 
-def _leaf(leaf: Leaf) -> Callable[[Session], tuple[bool, str]]:
+def leaf_node(leaf: Leaf, session: Session) -> Action:
+    """A node that collects what a leaf proposes."""
+
     def act(session: Session) -> tuple[bool, str]:
         found = session.try_leaf(leaf)
         return found > 0, f"{found} candidates" if found else "nothing that fits"
 
-    return act
+    return Action(leaf.name, session, act)
 
 
 def _transform(transform: Transform, *, keep: bool) -> Callable[[Session], tuple[bool, str]]:
@@ -95,7 +114,8 @@ def _transform(transform: Transform, *, keep: bool) -> Callable[[Session], tuple
     return act
 
 
-def _choose(session: Session, *, anything: bool = False) -> tuple[bool, str]:
+def choose(session: Session, *, anything: bool = False) -> tuple[bool, str]:
+    """Take the best sound candidate as the next step; with `anything` the best whatever it is."""
     step = session.choose(anything=anything)
     if step is None:
         return False, "no sound candidate"
@@ -109,8 +129,8 @@ def _attempt(
 ) -> Behaviour:
     sequence = py_trees.composites.Sequence(name, memory=False)
     rules = Or(f"{name}: leaves")
-    rules.add_children([Action(leaf.name, session, _leaf(leaf)) for leaf in leaves])
-    sequence.add_children([*first, rules, Action("ranker", session, _choose)])
+    rules.add_children([leaf_node(leaf, session) for leaf in leaves])
+    sequence.add_children([*first, rules, Action("ranker", session, choose)])
     return sequence
 
 
@@ -125,11 +145,34 @@ def build_tree(session: Session, leaves: Sequence[Leaf]) -> Behaviour:
             _attempt("rules", session, leaves, []),
             _attempt("after substitution", session, leaves, [replace]),
             _attempt("after square and add", session, leaves, [square]),
-            Action("take what there is", session, partial(_choose, anything=True)),
+            Action("take what there is", session, partial(choose, anything=True)),
         ]
     )
-    root.add_children([Action("collect equations", session, _collect), ways])
+    root.add_children([Action("collect equations", session, collect), ways])
     return root
+
+
+@dataclass(frozen=True, slots=True)
+class Tree:
+    """A way to solve one unknown a tick: `build` takes the session and the leaves to use."""
+
+    name: str
+    build: Callable[[Session, Sequence[Leaf]], Behaviour]
+
+
+TREE = Tree("ikgen", build_tree)
+
+
+def the_tree() -> Tree:
+    """The tree of another package where one is installed, else ikgen's own.
+
+    Raises `PlugInError` where several packages offer one.
+    """
+    found = plug_ins("ikgen.trees")
+    if len(found) > 1:
+        words = " and ".join(f"'{one.name}' of {one.package}" for one in found)
+        raise PlugInError(f"several behavior trees are installed: {words}", hint="keep one of them")
+    return found[0].load(Tree) if found else TREE
 
 
 def tick(tree: Behaviour, session: Session) -> bool:
