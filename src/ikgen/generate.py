@@ -170,10 +170,13 @@ def verify_files(
 
     oracle = oracle_for(derivation.reading)
     reports: dict[str, VerificationReport] = {}
+    first = None
     for name in outputs.emit:
         runner = find_emitter(name).runner(derivation.module, folder)
         if runner is not None:
-            reports[name] = verify_one(runner, oracle, derivation.module, outputs, progress)
+            module = derivation.module
+            reports[name] = verify_one(runner, oracle, module, outputs, progress, peer=first)
+            first = first or runner
     for name, report in reports.items():
         if not report.passed:
             raise VerificationError(
@@ -185,9 +188,16 @@ def verify_files(
 
 
 def verify_one(
-    runner: Any, oracle: Oracle, module: SolverModule, outputs: Outputs, progress: Progress
+    runner: Any,
+    oracle: Oracle,
+    module: SolverModule,
+    outputs: Outputs,
+    progress: Progress,
+    *,
+    peer: Any | None = None,
 ) -> VerificationReport:
-    """The verification of one language: what `runner` runs against the oracle."""
+    """The verification of one language: what `runner` runs against the oracle, and against the same
+    solver in another language."""
     import numpy as np
 
     from ikgen.verify.run import verify
@@ -205,6 +215,7 @@ def verify_one(
             np.array([j.limits.lower for j in dh.joints]),
             np.array([j.limits.upper for j in dh.joints]),
         ),
+        peer=peer,
         progress=lambda stage, done, total: progress("verify", stage),
     )
 

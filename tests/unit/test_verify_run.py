@@ -84,3 +84,19 @@ def test_bad_module_files(tmp_path: Path) -> None:
     path.write_text("DOF = 6")
     with pytest.raises(BadDescriptionError, match="JOINT_NAMES"):
         PythonModule(path)
+
+
+def test_languages_that_agree(tmp_path: Path) -> None:
+    runner, oracle = six_axis_module(tmp_path), six_axis_oracle()
+    report = verify(runner, oracle, samples=60, peer=runner)
+    assert report.passed and report.checks[-1].name == "agreement with python"
+    assert report.checks[-1].count > 50
+
+
+@pytest.mark.parametrize("defect", ["missing branch", "duplicate row", "swapped joints"])
+def test_languages_that_do_not_agree(tmp_path: Path, defect: str) -> None:
+    (tmp_path / "other").mkdir()
+    runner, other = six_axis_module(tmp_path), six_axis_module(tmp_path / "other", defect)
+    report = verify(runner, six_axis_oracle(), samples=60, peer=other)
+    assert [check.name for check in report.failed] == ["agreement with python"]
+    assert report.worst_case

@@ -150,6 +150,7 @@ def _check_outputs(
     )
     outputs = Outputs(record.emit, record.folder, *sampling)
     reports: dict[str, VerificationReport] = {}
+    first = None
     for name in record.emit:
         file = _file_of(record, name)
         try:
@@ -163,7 +164,8 @@ def _check_outputs(
         if message:
             findings.append(Finding(file, message, fix, deviation))
             continue
-        reports[name] = verify_one(runner, oracle, module, outputs, progress)
+        reports[name] = verify_one(runner, oracle, module, outputs, progress, peer=first)
+        first = first or runner
         if not reports[name].passed:
             findings.append(Finding(file, f"is wrong: {reports[name].worst_case}", fix))
     return reports

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ikgen.tasks import find_task
 from ikgen.verify import checks, coverage, interface_checks
+from ikgen.verify.agreement import check_agreement
 from ikgen.verify.answers import Answers, collect_answers
 from ikgen.verify.arm import ArmUnderTest, arm_under_test
 from ikgen.verify.oracle import Oracle
@@ -29,12 +30,15 @@ _STARTS = 200  # of the numerical search, per pose
 
 
 def _plan(
-    runner: Runner, arm: ArmUnderTest, answers: Answers, seed: int
+    runner: Runner, arm: ArmUnderTest, answers: Answers, seed: int, peer: Runner | None
 ) -> dict[str, Callable[[], CheckResult]]:
     """The checks by name, in the order of the report."""
     a, random = answers, answers.limited.sample
     complete = [a.limited, a.unlimited, *a.inside, a.outside[1]]
     rng = generator(seed, "search")
+    agreement: dict[str, Callable[[], CheckResult]] = {}
+    if peer is not None:
+        agreement["agreement"] = lambda: check_agreement(arm, a.unlimited, peer)
     return {
         "constants": lambda: interface_checks.check_constants(arm, runner, a.unlimited.rows),
         "forward": lambda: interface_checks.check_forward(arm, runner, random),
@@ -55,6 +59,7 @@ def _plan(
         "bad shapes": lambda: interface_checks.check_shapes(runner, random.poses[0]),
         "solve_batch": lambda: interface_checks.check_batch(arm, runner, a.ordered.sample),
         "determinism": lambda: interface_checks.check_determinism(a.limited, a.repeated),
+        **agreement,
     }
 
 
@@ -72,7 +77,12 @@ def _histogram(answers: Answers) -> tuple[tuple[int, int], ...]:
 
 
 def _run_checks(
-    runner: Runner, arm: ArmUnderTest, samples: int, seed: int, progress: Progress | None
+    runner: Runner,
+    arm: ArmUnderTest,
+    samples: int,
+    seed: int,
+    peer: Runner | None,
+    progress: Progress | None,
 ) -> tuple[tuple[CheckResult, ...], tuple[tuple[int, int], ...]]:
     """All results and the histogram of solution counts; one failed result if solving raises."""
     if progress:
@@ -82,7 +92,7 @@ def _run_checks(
     except Exception as error:
         what = f"solve raises {type(error).__name__}: {error}"
         return (CheckResult("runs", False, 1, 1, detail=what),), ()
-    plan = _plan(runner, arm, answers, seed)
+    plan = _plan(runner, arm, answers, seed, peer)
     results = []
     for done, (name, check) in enumerate(plan.items(), start=1):
         if progress:
@@ -101,13 +111,15 @@ def verify(
     locked: Mapping[str, float] | None = None,
     free_joints: Sequence[str] | None = None,
     limits: tuple[Array, Array] | None = None,
+    peer: Runner | None = None,
     progress: Progress | None = None,
 ) -> VerificationReport:
     """Check the emitted code behind `runner` against `oracle`.
 
     `samples` random poses (and smaller special sets in proportion) drawn from `seed`. `task`,
     `free_joints` and `limits` (lower, upper; rad or m) are what the arm was generated for: by
-    default what the module itself says. `locked` (already in the oracle) is recorded. Raises
+    default what the module itself says. `peer` is the same solver in another language, which must
+    answer alike. `locked` (already in the oracle) is recorded. Raises
     `UnknownNameError` for an unknown task; whatever the emitted code does wrong is in the report.
     """
     start = time.perf_counter()
@@ -117,7 +129,7 @@ def verify(
     histogram: tuple[tuple[int, int], ...] = ()
     if not results:
         arm = _arm(runner, oracle, space, free_joints, limits)
-        results, histogram = _run_checks(runner, arm, samples, seed, progress)
+        results, histogram = _run_checks(runner, arm, samples, seed, peer, progress)
     links, held = (oracle.base_link, oracle.tip_link), tuple((locked or {}).items())
     seconds = time.perf_counter() - start
     return VerificationReport(
