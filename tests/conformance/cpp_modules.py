@@ -24,13 +24,16 @@ from ikgen.solver.run import solve_chain
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "unit"))
 from arms import ARMS_FILE, arm_chain, load_arms
 
-__all__ = ["ROBOTS", "solver_module"]
+__all__ = ["EXACT", "ROBOTS", "solver_module"]
 
 SUITE = ARMS_FILE.with_name("ikbt_robots.json")
 _SUITE_ROBOTS = ["Puma", "UR5", "Olson13", "Raven-II", "Stanford"]
 _REAL_ARMS = ["kuka_kr6r900sixx", "mitsubishi_rh6crh6020_scara", "ur5e"]
 
-ROBOTS = [*_SUITE_ROBOTS, *_REAL_ARMS] if ARMS_FILE.is_file() and SUITE.is_file() else []
+_FAR_FROM_EXACT = ["mycobot_pro630"]  # its Program is of another geometry than its file
+
+EXACT = [*_SUITE_ROBOTS, *_REAL_ARMS] if ARMS_FILE.is_file() and SUITE.is_file() else []
+ROBOTS = [*EXACT, *_FAR_FROM_EXACT] if EXACT else []
 
 
 def solver_module(name: str) -> SolverModule:

@@ -634,10 +634,11 @@ inline double newton(double* q, const Eigen::Isometry3d& pose, int steps) noexce
   }
 }
 
-// Whether Newton steps lead from q to the pose: only what is promising takes many.
+// Whether Newton steps lead from q to the pose: only what is promising takes many. All digits are wanted where
+// they come easily, as rows may lie on a limit.
 inline bool polish(double* q, const Eigen::Isometry3d& pose) noexcept {
   double error = newton(q, pose, 3);
-  if (error >= 0.5 * kTolerance && error < 0.1) error = newton(q, pose, 6);
+  if (error >= 1e-12 && error < 0.1) error = newton(q, pose, 6);
   if (error >= 0.5 * kTolerance && error < 1e-3) error = newton(q, pose, 30);
   return error < 0.5 * kTolerance;
 }

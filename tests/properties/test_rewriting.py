@@ -71,3 +71,27 @@ def test_rounded_angles(exact: str, rounded: str, size: float, tmp_path: Path) -
         gap = np.abs((rows[:, None] - near[None] + np.pi) % (2 * np.pi) - np.pi).max(axis=2)
         compared += int((gap.min(axis=1) < size * 20).all())
     assert compared > 20
+
+
+def test_a_file_far_from_exact_keeps_solutions_near_folds(tmp_path: Path) -> None:
+    """The elbow nearly stretched: by less than the file's angles are off."""
+    text = (FIXTURES / "ur5e.urdf").read_text().replace("1.570796327", "1.57125")
+    path = tmp_path / "robot.urdf"
+    path.write_text(text)
+    chain = select_chain(load_tree(path))
+    dh = to_dh(chain)
+    assert max(dh.deviation) > 1e-4
+    module = emitted(dh, tmp_path)
+    rng = np.random.default_rng(5)
+    q = rng.uniform(-2.0, 2.0, (150, 6))
+    q[:, 2] = rng.uniform(0.003, 0.06, 150) * rng.choice((-1.0, 1.0), 150)
+    poses = np.array([chain_forward(chain, row) for row in q])
+    batch, count, _ = module.solve_batch(poses, limits=False)
+    for i in range(len(q)):
+        single = module.solve(poses[i], limits=False).q
+        assert (
+            np.abs(np.array([chain_forward(chain, row) for row in single]) - poses[i]).max() < 2e-9
+        )
+        for rows in (single, batch[i, : count[i]]):
+            gap = np.abs((rows - q[i] + np.pi) % (2 * np.pi) - np.pi).max(axis=1)
+            assert gap.min(initial=np.inf) < 1e-5, q[i]

@@ -94,6 +94,7 @@ def emit_header(module: SolverModule) -> str:
         frames=[
             [[expression(CONSTANT, x) for x in row] for row in F] for F in frame_entries(module.dh)
         ],
+        beside=[[number(float(x)) for x in D.T[:, :3].ravel()] for D in module.beside],
         size=_size_text(module),
         blanks=blanks(module),
         angles=[(f, n) for n in pairs(module) for f in ("cos", "sin")],

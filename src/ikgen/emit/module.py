@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ikgen.ir.program import Program
+from ikgen.kinematics.displacement import displacements
 from ikgen.model.dh import DHChain, DHRow
 from ikgen.tasks import Task, find_task
 from ikgen.universal.plan import UniversalPlan
@@ -15,6 +17,10 @@ __all__ = ["CLOSE", "SolverModule"]
 
 CLOSE = 8e-10
 """Deviation up to which a row that is exact for the solved geometry is right for the file (1e-9)."""
+
+FAR = 5e-5
+"""Deviation (rad or m) above which a closed-form row may be too far from the file's solution for Newton
+steps near folds, at regular configurations too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +56,17 @@ class SolverModule:
         if self.plan is not None:
             return "some"
         return "some" if max(self.dh.deviation) <= CLOSE else "all"
+
+    @property
+    def beside(self) -> tuple[NDArray[np.float64], ...]:
+        """Small motions (4, 4) of the tool: the poses that they lead to are solved as well as the asked
+        one, and all rows take Newton steps to the asked one. Near a fold two solutions of the file's
+        geometry may start from one of the solved geometry or from none, but not at all these poses.
+        Empty where the file is close to what was solved."""
+        deviation = max(self.dh.deviation)
+        if self.polish == "some" or deviation <= FAR:
+            return ()
+        return displacements(4.0 * deviation)
 
     @property
     def max_solutions(self) -> int:

@@ -103,6 +103,7 @@ def emit_module(module: SolverModule) -> str:
         ],
         rows=[(row.driver, row.revolute, row.scale, row.offset.value) for row in module.dh.rows],
         number=_number,
+        beside=[[[_number(float(x)) for x in row] for row in D] for D in module.beside],
         orientation=module.reads.orientation,
         entries=module.reads.entries,
         size=module.size,

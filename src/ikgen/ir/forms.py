@@ -33,7 +33,7 @@ class Tolerances:
     def for_slack(slack: float) -> Tolerances:
         """Tolerances where the solved geometry is `slack` (m or rad) off the file's."""
         clamp = max(1e-11, 25.0 * slack)
-        fold = 0.1 * slack if slack > ROUNDED else 0.0
+        fold = 0.05 * slack if slack > ROUNDED else 0.0
         return Tolerances(flag=min(max(1e-4, 5.0 * slack), 1e-2), clamp=clamp, fold=fold)
 
 

@@ -3,7 +3,7 @@
 use crate::arm::{DOF, FRAMES, MOTIONS};
 use crate::{Joints, Pose};
 
-fn product(a: &Pose, b: &Pose) -> Pose {
+pub(crate) fn product(a: &Pose, b: &Pose) -> Pose {
     let mut out = [[0.0; 4]; 4];
     for i in 0..4 {
         for j in 0..4 {

@@ -85,11 +85,12 @@ fn newton(q: &mut Joints, target: &Pose, steps: usize) -> f64 {
     best
 }
 
-/// Whether Newton steps lead from q to the pose: only what is promising takes many.
+/// Whether Newton steps lead from q to the pose: only what is promising takes many. All digits
+/// are wanted where they come easily, as rows may lie on a limit.
 pub(crate) fn polish(q: &mut Joints, target: &Pose) -> bool {
     let mut error = newton(q, target, 3);
-    for (steps, promising) in [(6, 0.1), (30, 1e-3)] {
-        if error >= 0.5 * TOLERANCE && error < promising {
+    for (steps, fine, promising) in [(6, 1e-12, 0.1), (30, 0.5 * TOLERANCE, 1e-3)] {
+        if error >= fine && error < promising {
             error = newton(q, target, steps);
         }
     }

@@ -2,7 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::arm::{branches, DOF, FREE_JOINTS, LOWER, MAX_SOLUTIONS, ORIENTATION, READ, REVOLUTE, UPPER, WHOLE_POSE};
+use crate::arm::{branches, BESIDE, DOF, FREE_JOINTS, LOWER, MAX_SOLUTIONS, ORIENTATION, READ, REVOLUTE, UPPER, WHOLE_POSE};
+use crate::chain::product;
 use crate::newton::{loses_rank, polish};
 use crate::{Joints, Options, Pose, Row, Solutions, Status};
 
@@ -58,6 +59,9 @@ fn fitting(pose: &Pose, seed: Option<Joints>, options: &Options) -> (Vec<Row>, b
 fn find_rows(pose: &Pose, start: &Joints, options: &Options) -> (Vec<Row>, bool) {
     let mut candidates = Vec::new();
     let hit = branches(pose, start, &options.free, &mut candidates);
+    for motion in &BESIDE {
+        branches(&product(pose, motion), start, &options.free, &mut candidates);
+    }
     let mut rows: Vec<Row> = Vec::new();
     let mut add = |q: Joints, singular: bool| {
         if rows.len() < MAX_SOLUTIONS && !rows.iter().any(|row| same(&row.q, &q)) {
