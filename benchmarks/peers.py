@@ -1,9 +1,11 @@
 """ikgen's emitted code against other packages, on the same reachable poses and in one process.
 
     python -m benchmarks.peers ROBOTS_FOLDER [--poses N] [--svg FILE]
+        [--opw-kinematics INCLUDE] [--ikfast ARM=FILE.cpp]
 
 ROBOTS_FOLDER holds abb_irb2400.urdf, kuka_kr6r900sixx.urdf, ur5e.urdf and franka_panda_erd.urdf.
 Peers are optional: pip install EAIK py-opw-kinematics ssik ikdh pin, of which missing ones are named;
+with the sources of opw_kinematics (C++) and of IKFast at hand, their paths add them to the table;
 the compiled package needs pip, a C++ compiler and network access for its build tools.
 Times are medians over rounds in which the solvers take turns; the slow ones take twenty of the poses.
 Recall: the configuration that a pose was made from is among the rows, whole turns aside. ssik lists
@@ -22,6 +24,7 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.cpp_peers import against_ikfast, against_opw
 from benchmarks.cpp_speed import FLAGS, measure
 from benchmarks.peer_arms import ARMS, compiled, make_arm
 from benchmarks.peer_picture import picture
@@ -138,6 +141,26 @@ def batched(arm: Arm, q: Array) -> Result:
     return Result(arm.name, "ikgen, NumPy batch", float(np.median(spans)))
 
 
+def compared(arm: Arm, header: Path, opw: Path | None, ikfast: str | None) -> list[Result]:
+    """C++ peers whose sources are given, each in one process with the header."""
+    out = []
+    for flags in (FLAGS["plain"], FLAGS["native"]):
+        pairs = []
+        if opw is not None and arm.opw:
+            pairs.append(("opw_kinematics, C++", against_opw(header, opw, arm.opw, flags)))
+        if ikfast is not None:
+            pairs.append(("IKFast", against_ikfast(header, Path(ikfast), flags)))
+        for name, c in pairs:
+            words = " ".join(flags)
+            print(
+                f"  {words}: {c.ours:.0f} ns, {name} {c.theirs:.0f} ns, ratio {c.ratio:.2f}; "
+                f"rows {c.our_rows:.2f} and {c.their_rows:.2f}"
+            )
+            if flags == FLAGS["plain"]:
+                out.append(Result(arm.name, name, c.theirs / 1000.0))
+    return out
+
+
 def show(results: list[Result]) -> None:
     """The table."""
     head = f"{'arm':10} {'solver':20} {'us/pose':>9} {'rows':>6} {'recall':>6} {'error':>8}"
@@ -155,6 +178,8 @@ def main() -> None:
     parser.add_argument("robots", type=Path)
     parser.add_argument("--poses", type=int, default=200)
     parser.add_argument("--svg", type=Path, default=Path(__file__).with_name("peers.svg"))
+    parser.add_argument("--opw-kinematics", type=Path, help="its include folder")
+    parser.add_argument("--ikfast", action="append", default=[], metavar="ARM=FILE")
     parser.add_argument("--arms", nargs="+", choices=ARMS, default=list(ARMS))
     options = parser.parse_args()
     results: list[Result] = []
@@ -167,6 +192,8 @@ def main() -> None:
             results.append(batched(arm, q))
             _, (single, _, _) = measure(header, FLAGS["plain"], limits=False)
             results.append(Result(name, "ikgen, C++ header", single / 1000.0))
+            files = dict(text.split("=", 1) for text in options.ikfast)
+            results += compared(arm, header, options.opw_kinematics, files.get(name))
     show(results)
     bars = [(r.arm, r.solver, r.microseconds) for r in results]
     options.svg.write_text(picture(bars), encoding="utf-8")
