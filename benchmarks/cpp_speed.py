@@ -1,4 +1,4 @@
-"""Times emitted C++ headers: ns per solve, with plain -O3 and for this machine, single and batch.
+"""Times emitted C++ headers: ns per solve, with plain -O3 and for this machine; single, batch, in threads.
 
 python benchmarks/cpp_speed.py generated/ur5e_ik.hpp ...
 """
@@ -22,7 +22,8 @@ FLAGS = {
 
 
 def measure(header: Path, flags: list[str], limits: bool) -> tuple[float, list[float]]:
-    """Seconds to compile, then ns per solve, ns per pose of a batch, mean number of solutions."""
+    """Seconds to compile, then what the program prints: ns per solve, ns per pose of a batch, mean number
+    of solutions, ns per pose of a long span in one thread and split among all, number of threads."""
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "bench"
         defines = [
@@ -32,7 +33,7 @@ def measure(header: Path, flags: list[str], limits: bool) -> tuple[float, list[f
         ]
         includes = [f"-I{header.parent}", "-isystem", str(find_eigen())]
         start = time.perf_counter()
-        command = [*find_compiler(), "-std=c++17", *flags, *defines, *includes]
+        command = [*find_compiler(), "-std=c++17", "-pthread", *flags, *defines, *includes]
         subprocess.run([*command, str(SOURCE), "-o", str(program)], check=True)
         seconds = time.perf_counter() - start
         output = subprocess.run([str(program)], check=True, capture_output=True, text=True).stdout
@@ -49,15 +50,17 @@ def main() -> None:
     )
     options = parser.parse_args()
     print(
-        f"{'header':32} {'flags':8} {'solve ns':>9} {'batch ns':>9} {'rows':>6} {'compile s':>10}"
+        f"{'header':32} {'flags':8} {'solve ns':>9} {'batch ns':>9} {'rows':>6} "
+        f"{'compile s':>10} {'scaling':>16}"
     )
     for header in options.headers:
         for name in options.flags:
-            seconds, (single, batch, rows) = measure(
-                header.resolve(), FLAGS[name], not options.no_limits
-            )
+            seconds, numbers = measure(header.resolve(), FLAGS[name], not options.no_limits)
+            single, batch, rows, one, split, threads = numbers
+            scaling = f"{one / split:.2f} on {threads:.0f} cores"
             print(
-                f"{header.stem:32} {name:8} {single:9.1f} {batch:9.1f} {rows:6.2f} {seconds:10.1f}"
+                f"{header.stem:32} {name:8} {single:9.1f} {batch:9.1f} {rows:6.2f} "
+                f"{seconds:10.1f} {scaling:>16}"
             )
 
 

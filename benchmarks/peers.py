@@ -190,7 +190,7 @@ def main() -> None:
             q = configurations(arm, options.poses, np.random.default_rng(2))
             results += run(arm, solvers(arm, Path(folder)), q)
             results.append(batched(arm, q))
-            _, (single, _, _) = measure(header, FLAGS["plain"], limits=False)
+            _, (single, *_) = measure(header, FLAGS["plain"], limits=False)
             results.append(Result(name, "ikgen, C++ header", single / 1000.0))
             files = dict(text.split("=", 1) for text in options.ikfast)
             results += compared(arm, header, options.opw_kinematics, files.get(name))

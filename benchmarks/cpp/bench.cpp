@@ -1,12 +1,14 @@
 // Time of solve and solve_batch of one emitted header, on reachable random poses.
 //
 // Compile with -DIKGEN_HEADER='"x_ik.hpp"' -DIKGEN_NAMESPACE=x_ik. Prints: ns per solve, ns per pose of
-// solve_batch, mean number of solutions.
+// solve_batch, mean number of solutions, ns per pose of a long span in one thread and split among all, how many those
+// are.
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <random>
+#include <thread>
 #include <vector>
 
 #include IKGEN_HEADER
@@ -50,6 +52,27 @@ template <class F> double time_of(const F& run) {
   return best;
 }
 
+// ns a pose of a long span that the caller splits among threads.
+double time_in_threads(const std::vector<Eigen::Isometry3d>& poses, const ik::Options& options, std::size_t threads) {
+  constexpr std::size_t part = 20 * kPoses;  // starting a thread costs some 10 us
+  std::vector<Eigen::Isometry3d> many;
+  for (std::size_t n = 0; n < threads * part; ++n) many.push_back(poses[n % kPoses]);
+  std::vector<ik::Solutions> answers(many.size());
+  const auto solve_part = [&](std::size_t t) {
+    ik::solve_batch(&many[t * part], static_cast<std::ptrdiff_t>(part), &answers[t * part], options);
+  };
+  double best = 1e300;
+  for (int round = 0; round < kRounds; ++round) {
+    const auto start = std::chrono::steady_clock::now();
+    std::vector<std::thread> workers;
+    for (std::size_t t = 0; t < threads; ++t) workers.emplace_back(solve_part, t);
+    for (std::thread& worker : workers) worker.join();
+    const std::chrono::duration<double, std::nano> spent = std::chrono::steady_clock::now() - start;
+    best = std::min(best, spent.count() / static_cast<double>(many.size()));
+  }
+  return best;
+}
+
 }  // namespace
 
 int main() {
@@ -68,6 +91,8 @@ int main() {
   });
   const double batch =
       time_of([&] { ik::solve_batch(poses.data(), static_cast<std::ptrdiff_t>(kPoses), out.data(), options); });
-  std::printf("%.1f %.1f %.2f\n", single, batch, rows / static_cast<double>(kPoses));
+  const std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
+  std::printf("%.1f %.1f %.2f %.1f %.1f %zu\n", single, batch, rows / static_cast<double>(kPoses),
+              time_in_threads(poses, options, 1), time_in_threads(poses, options, threads), threads);
   return 0;
 }
