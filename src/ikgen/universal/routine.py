@@ -17,7 +17,7 @@ __all__ = ["Elimination", "general_6r", "general_6r_batch", "initial_residuals"]
 Elimination = tuple[int, int, int]
 _HEAD = (
     "from __future__ import annotations\n"
-    "import math\nimport numpy as np\nfrom numpy.typing import NDArray\n"
+    "import math\nfrom functools import cmp_to_key\nimport numpy as np\nfrom numpy.typing import NDArray\n"
 )
 _NAME = "general_6r.py.jinja"
 
