@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 from ikgen.emit.python import emit_module
-from ikgen.errors import UnsolvedChainError
-from ikgen.generate import oracle_for
+from ikgen.errors import MissingToolError, UnsolvedChainError
+from ikgen.generate import Outputs, generate, oracle_for
 from ikgen.pipeline import Request, derive, read
+from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
 from ikgen.verify.runners.python_module import PythonModule
 
 if sys.version_info >= (3, 11):
@@ -86,6 +87,23 @@ def test_robot_is_solved(name: str, tmp_path: Path) -> None:
         assert gap.max(axis=1).min() < 1e-5, f"{q[i]} is missing"
     assert count.max() <= module.MAX_SOLUTIONS
     assert count.max() >= max(EXPECTED[name]["solutions"])
+
+
+def test_elimination_passes_every_check_in_both_languages(tmp_path: Path) -> None:
+    try:
+        find_compiler(), find_eigen()
+        languages: tuple[str, ...] = ("python", "cpp")
+    except MissingToolError:
+        languages = ("python",)
+    made = generate(
+        Request(HERE / "tables" / "KawasakiRS05L.toml"),
+        Outputs(emit=languages, out=tmp_path, samples=40),
+    )
+    assert made.derivation.module.plan is not None
+    assert set(made.reports) == set(languages)
+    for report in made.reports.values():
+        assert report.passed and report.solutions[2] >= 4
+        assert report.check("singular flags").count > 20
 
 
 @pytest.mark.parametrize("name", REDUNDANT)

@@ -19,7 +19,9 @@ __all__ = [
 
 Array = NDArray[np.float64]
 
-CLOSURE_TOLERANCE = 1e-9  # m and rad: what "right" means
+CLOSURE_TOLERANCE = (
+    1e-9  # m and rad: what "right" means; lengths of the arm where it is over 1 m long
+)
 DISTINCT_TOLERANCE = 1e-6  # rad or m: rows closer than this are one solution
 LIMIT_TOLERANCE = 1e-6  # rad or m: at a bound, a double root is known to about 1e-8 only
 CLEARLY_REGULAR = 1e-2  # smallest singular value above which a singular flag is wrong
@@ -38,7 +40,7 @@ def check_closure(arm: ArmUnderTest, trials: Sequence[Trial]) -> CheckResult:
         poses = trial.sample.poses[index]
         position, rotation = arm.task.errors(arm.oracle.forward(q), poses)
         position, rotation = (np.where(np.isnan(e), np.inf, e) for e in (position, rotation))
-        error = np.maximum(position, rotation)
+        error = np.maximum(position / max(1.0, arm.length), rotation)
         count += len(q)
         failures += int(np.sum(error > CLOSURE_TOLERANCE))
         worst_p, worst_r = max(worst_p, position.max()), max(worst_r, rotation.max())
