@@ -61,7 +61,7 @@ BATCH = Language(
         "gt": lambda a, b: f"({a} > {b})",
         "or": lambda a, b: f"({a} | {b})",
         "and": lambda a, b: f"({a} & {b})",
-        "not": lambda a: f"~({a})" if not a.isidentifier() else f"~{a}",
+        "not": lambda a: f"~{a}",
     },
     number=_number,
 )
@@ -292,6 +292,6 @@ def _batch(module: SolverModule, joints: list[_JointText]) -> list[str]:
     flag = " | ".join(program.singular)
     if module.polish == "some":
         rough = " | ".join([*program.singular, *(f"({r} > _ROUGH)" for r in program.residuals)])
-        lines.append(f"rough = {rough or 'np.zeros(1, dtype=bool)'}")
-    lines.append(f"singular = {flag}" if flag else "singular = np.zeros(1, dtype=bool)")
+        lines.append(f"rough: NDArray[np.bool_] = {rough or 'np.zeros(1, dtype=bool)'}")
+    lines.append(f"singular: NDArray[np.bool_] = {flag or 'np.zeros(1, dtype=bool)'}")
     return lines

@@ -1,0 +1,33 @@
+"""Emitted Python modules hold strict type checking, so that packages that do can use them."""
+
+from __future__ import annotations
+
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from ikgen.emit.python import emit_module
+from ikgen.pipeline import Request, derive
+
+ROOT = Path(__file__).resolve().parents[2]
+ARMS = {
+    "exact": Request(ROOT / "urdf_fixtures/kuka_kr6r900sixx.urdf"),
+    "held": Request(ROOT / "urdf_fixtures/franka_fr3.urdf", free=(("fr3_joint7", None),)),
+    "rounded": Request(ROOT / "urdf_fixtures/doosan_m1013.urdf"),
+    "eliminated": Request(ROOT / "tests/robots/tables/KawasakiRS05L.toml"),
+    "smaller task": Request(ROOT / "urdf_fixtures/scara_standard.toml"),
+}
+
+
+@pytest.mark.skipif(importlib.util.find_spec("mypy") is None, reason="needs mypy")
+def test_modules_are_typed(tmp_path: Path) -> None:
+    for name, request in ARMS.items():
+        text = emit_module(derive(request).module)
+        (tmp_path / f"{name.replace(' ', '_')}_ik.py").write_text(text, encoding="utf-8")
+    command = [sys.executable, "-m", "mypy", "--strict", "--config-file=", "."]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert f"checked {len(ARMS)} source files" in done.stdout
