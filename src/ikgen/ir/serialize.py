@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from ikgen.equations.expression import Expr
 from ikgen.ir.ops import BOOLEAN, Op, Operand
+from ikgen.ir.placement import Placement, Requirement
 from ikgen.ir.program import (
     Call,
     Comment,
@@ -19,34 +18,14 @@ from ikgen.ir.program import (
     Statement,
 )
 
-if TYPE_CHECKING:
-    from ikgen.ir.lower import Lowering
-
-__all__ = ["LoweredLevel", "Requirement", "serialize"]
+__all__ = ["serialize"]
 
 LONGEST_INLINE = 9
 """An expression of more operations gets a name of its own."""
 
 
-@dataclass(frozen=True, slots=True)
-class Requirement:
-    """A condition without which the branch has no solution."""
-
-    condition: Expr
-
-
-@dataclass
-class LoweredLevel:
-    """Expressions, guards and comments of one level, in order."""
-
-    branches: int
-    sigma: Expr | None = None
-    call: tuple[str, tuple[Expr, ...], tuple[Expr, ...]] | None = None
-    items: list[Expr | Comment | Requirement] = field(default_factory=list)
-
-
 class _Serializer:
-    def __init__(self, work: Lowering, outputs: list[tuple[int, tuple[Expr, ...]]]) -> None:
+    def __init__(self, work: Placement, outputs: list[tuple[int, tuple[Expr, ...]]]) -> None:
         self.work = work
         self.uses: Counter[int] = Counter()
         self.names: dict[int, str] = dict(work.names)
@@ -180,7 +159,7 @@ def _without_idle_comments(body: list[Statement]) -> list[Statement]:
     return out
 
 
-def serialize(work: Lowering, outputs: list[tuple[int, tuple[Expr, ...]]]) -> Program:
+def serialize(work: Placement, outputs: list[tuple[int, tuple[Expr, ...]]]) -> Program:
     """The Program of a finished lowering."""
     s = _Serializer(work, outputs)
     levels = tuple(s.level(i) for i in range(len(work.levels)))
