@@ -13,7 +13,14 @@ if TYPE_CHECKING:
     from ikgen.verify.runners.python_module import PythonModule
     from ikgen.verify.runners.runner import ArmConstants
 
-__all__ = ["arm_constants", "cpp_runner", "moveit_runner", "nanobind_runner", "python_runner"]
+__all__ = [
+    "arm_constants",
+    "cpp_package_runner",
+    "cpp_runner",
+    "moveit_runner",
+    "nanobind_runner",
+    "python_runner",
+]
 
 
 def arm_constants(module: SolverModule) -> ArmConstants:
@@ -45,6 +52,13 @@ def cpp_runner(module: SolverModule, folder: Path) -> CppHeader:
     from ikgen.verify.runners.cpp_header import CppHeader
 
     return CppHeader(folder / f"{module.name}_ik.hpp", arm_constants(module))
+
+
+def cpp_package_runner(module: SolverModule, folder: Path) -> CppHeader:
+    """The header in the CMake package, as for `cpp_runner`."""
+    from ikgen.emit.cpp_package import folder_name
+
+    return cpp_runner(module, folder / folder_name(module.name) / "include")
 
 
 def nanobind_runner(module: SolverModule, folder: Path) -> CppHeader:

@@ -16,7 +16,7 @@ from ikgen.errors import UsageError
 from ikgen.ir.liveness import used_inputs
 from ikgen.ir.ops import Op
 
-__all__ = ["emit", "emit_derivation", "emit_header", "emit_package"]
+__all__ = ["emit", "emit_derivation", "emit_header"]
 
 ROUGH = 1e-20
 """Squared error of a row above which it takes Newton steps."""
@@ -40,18 +40,6 @@ def emit_derivation(derivation: _Derived) -> dict[str, str]:
 def emit(module: SolverModule) -> dict[str, str]:
     """File name -> text of the C++ output."""
     return {f"{module.name}_ik.hpp": emit_header(module)}
-
-
-def emit_package(module: SolverModule) -> dict[str, str]:
-    """Relative path -> text: the header as a CMake package with an example and a README."""
-    header = f"include/{module.name}_ik.hpp"
-    files = ("CMakeLists.txt", "example.cpp", "README.md", "config.cmake.in")
-    rename = {"config.cmake.in": f"cmake/{module.name}_ikConfig.cmake.in"}
-    out = {header: emit_header(module)}
-    for file in files:
-        text = render("cpp", f"package/{file}.jinja", m=module, name=f"{module.name}_ik")
-        out[rename.get(file, file)] = text
-    return out
 
 
 def emit_header(module: SolverModule) -> str:

@@ -71,9 +71,15 @@ EMITTERS: tuple[Emitter, ...] = (
     ),
     Emitter(
         "cpp",
-        "a C++17 header, Eigen only, with a CMake package around it",
+        "a C++17 header, Eigen only",
         "ikgen.emit.cpp:emit_derivation",
         "ikgen.generate_runners:cpp_runner",
+    ),
+    Emitter(
+        "cpp-package",
+        "the C++ header as a CMake package of its own, with an example program",
+        "ikgen.emit.cpp_package:emit_derivation",
+        "ikgen.generate_runners:cpp_package_runner",
     ),
     Emitter(
         "nanobind",
