@@ -61,18 +61,23 @@ def _silent(stage: str, detail: str) -> None:
 
 
 def generate(request: Request, outputs: Outputs, progress: Progress = _silent) -> Generation:
-    """The main job. Raises `VerificationError` (and writes nothing) if a check fails."""
+    """The main job. Raises `VerificationError` (and writes nothing) if a check fails.
+
+    Where the task was chosen to fit the arm, and its closed form has a weak step and fails, the next one
+    is taken: the whole pose.
+    """
     from ikgen.emit.registry import find_emitter
 
     started = time.perf_counter()
     emitters = [find_emitter(name) for name in outputs.emit]
     derivation = derive(request, progress)
-    texts: dict[str, str] = {}
-    for emitter in emitters:
-        if not emitter.tells_verification:
-            progress("emit", emitter.name)
-            texts |= emitter.emit(derivation)
-    reports = _verified(derivation, texts, emitters, outputs, progress) if outputs.verify else {}
+    try:
+        texts, reports = _made(derivation, emitters, outputs, progress)
+    except VerificationError:
+        if not derivation.chosen or derivation.graph.sound or derivation.task.whole_pose:
+            raise
+        derivation = derive(request, progress, passed_over={derivation.task.name})
+        texts, reports = _made(derivation, emitters, outputs, progress)
     for emitter in emitters:
         if emitter.tells_verification:
             progress("emit", emitter.name)
@@ -81,6 +86,20 @@ def generate(request: Request, outputs: Outputs, progress: Progress = _silent) -
     texts[f"{derivation.module.name}_ik.json"] = manifest
     files = publish(outputs.out, texts)
     return Generation(derivation, files, reports, time.perf_counter() - started)
+
+
+def _made(
+    derivation: Derivation, emitters: Sequence[Emitter], outputs: Outputs, progress: Progress
+) -> tuple[dict[str, str], dict[str, VerificationReport]]:
+    """The texts of all outputs but those that tell the verification, and the verification."""
+    texts: dict[str, str] = {}
+    for emitter in emitters:
+        if not emitter.tells_verification:
+            progress("emit", emitter.name)
+            texts |= emitter.emit(derivation)
+    if not outputs.verify:
+        return texts, {}
+    return texts, _verified(derivation, texts, emitters, outputs, progress)
 
 
 def _verified(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -69,6 +69,8 @@ class Derivation:
     task: Task
     graph: SolutionGraph
     module: SolverModule
+    chosen: bool = False
+    """Whether the task was chosen to fit the arm, not asked for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,18 +108,23 @@ def read(request: Request) -> Reading:
     return Reading(tree.source, tree, chain, to_dh(chain, free=free))
 
 
-def derive(request: Request, progress: Progress = _quiet) -> Derivation:
-    """From the file to a solver module, not yet written or verified."""
+def derive(
+    request: Request, progress: Progress = _quiet, passed_over: Collection[str] = ()
+) -> Derivation:
+    """From the file to a solver module, not yet written or verified.
+
+    `passed_over` names tasks that are not to be chosen for the arm.
+    """
     from ikgen.kinematics.classify import classify
 
     progress("read", request.robot.name)
     reading = read(request)
     geometry = classify(reading.dh)
     progress("derive", geometry.name)
-    task, graph = _solve(reading.dh, request.task, progress)
+    task, graph = _solve(reading.dh, request.task, progress, passed_over)
     if graph.open_joints and reading.chain is not None:
         nearby = _nearby(reading)
-        other_task, other = _solve(nearby.dh, request.task, progress)
+        other_task, other = _solve(nearby.dh, request.task, progress, passed_over)
         if not other.open_joints:
             reading, task, graph = nearby, other_task, other
             geometry = classify(reading.dh)
@@ -125,9 +132,8 @@ def derive(request: Request, progress: Progress = _quiet) -> Derivation:
     if graph.open_joints and plan is None:
         name = request.name or identifier(reading.dh.robot)
         raise unsolved(Unsolved(reading, geometry, task, graph, name, request.robot.name))
-    return Derivation(
-        reading, geometry, task, graph, _module(request, reading, task, geometry.words, graph, plan)
-    )
+    module = _module(request, reading, task, geometry.words, graph, plan)
+    return Derivation(reading, geometry, task, graph, module, request.task is None)
 
 
 NEARBY = 5e-4
@@ -144,15 +150,18 @@ def _nearby(reading: Reading) -> Reading:
     return replace(reading, dh=dh)
 
 
-def _solve(dh: DHChain, asked: str | None, progress: Progress) -> tuple[Task, SolutionGraph]:
+def _solve(
+    dh: DHChain, asked: str | None, progress: Progress, passed_over: Collection[str]
+) -> tuple[Task, SolutionGraph]:
     """The asked task; without one the task that fits the arm best and has a closed form."""
     from ikgen.tasks import find_task, fitting_tasks
 
-    tasks = (find_task(asked),) if asked else fitting_tasks(dh)
+    fitting = [task for task in fitting_tasks(dh) if task.name not in passed_over]
+    tasks = [find_task(asked)] if asked else fitting
     first: tuple[Task, SolutionGraph] | None = None
     for task in tasks:
         graph = _attempt(dh, task, progress)
-        if not graph.open_joints and (graph.sound or task is tasks[-1]):
+        if not graph.open_joints:
             return task, graph
         first = first or (task, graph)
     assert first is not None

@@ -9,6 +9,7 @@ from ikgen.cli.tables import table, verification_tables
 
 if TYPE_CHECKING:
     from ikgen.generate import Generation
+    from ikgen.pipeline import Derivation
     from ikgen.solver.graph import SolutionGraph
     from ikgen.verify.report import VerificationReport
 
@@ -27,7 +28,7 @@ def summary(generation: Generation) -> str:
     held = [dh.joints[j].name for j in module.free]
     lines = [
         ("robot", f"{dh.robot}, {dh.base_link} -> {dh.tip_link}, {dh.dof} joints"),
-        ("task", derivation.task.words + (f", held: {', '.join(held)}" if held else "")),
+        ("task", _task(derivation) + (f", held: {', '.join(held)}" if held else "")),
         ("geometry", derivation.geometry.words),
         ("solved", "; ".join(module.order)),
         ("solutions", _solutions(generation)),
@@ -40,6 +41,14 @@ def summary(generation: Generation) -> str:
     lines += [("wrote", str(path)) for path in generation.files]
     lines.append(("time", f"{generation.seconds:.1f} s"))
     return table([(f"{name}:", text) for name, text in lines], indent="")
+
+
+def _task(derivation: Derivation) -> str:
+    """The task, and that it was chosen where another might be expected."""
+    task = derivation.task
+    if not derivation.chosen or task.whole_pose:
+        return task.words
+    return f"{task.words} (--task {task.name}: what fits {derivation.reading.dh.dof} joints)"
 
 
 def _solutions(generation: Generation) -> str:
