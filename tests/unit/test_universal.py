@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from arms import arm_chain, load_arms
+from arms import arm_chain
+from benchmarks.collection import load_arms
 from numpy.typing import NDArray
 from test_routines_loading import compiled_routine, feed, python_routine
 
