@@ -192,7 +192,7 @@ def unsolved(found: Unsolved) -> UnsolvedChainError:
     from ikgen.emit.report.leftover import leftover_text
 
     dh, task, graph = found.reading.dh, found.task, found.graph
-    solved = ", ".join(f"{s.candidate.unknown.text} ({s.candidate.leaf})" for s in graph.steps)
+    solved = ", ".join(graph.order)
     left = ", ".join(dh.joints[j].name for j in graph.open_joints)
     lines = [
         f"no closed form found for the task '{task.name}': solved {solved or 'nothing'}; "
@@ -264,13 +264,9 @@ def _module(
         source_sha256=reading.source.sha256,
         generator_version=__version__,
         geometry=geometry,
-        order=("all joints (6R elimination)",) if plan else _order(graph),
+        order=("all joints (6R elimination)",) if plan else graph.order,
         plan=plan,
     )
-
-
-def _order(graph: SolutionGraph) -> tuple[str, ...]:
-    return tuple(f"{s.candidate.unknown.text} ({s.candidate.leaf})" for s in graph.steps)
 
 
 def _inside(dh: DHChain, joint: int, value: float | None) -> float:

@@ -27,6 +27,11 @@ class SolutionGraph:
     outline: tuple[tuple[str, ...], ...] = ()
 
     @property
+    def order(self) -> tuple[str, ...]:
+        """The unknowns in the order solved, each with its leaf."""
+        return tuple(f"{s.candidate.unknown.text} ({s.candidate.leaf})" for s in self.steps)
+
+    @property
     def open_joints(self) -> list[int]:
         """Joints without a closed form."""
         return self.session.open_joints
