@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from ikgen import __version__
 from ikgen.errors import UnsolvedChainError
+from ikgen.module_name import identifier
 
 if TYPE_CHECKING:
     from ikgen.emit.module import SolverModule
@@ -28,7 +29,6 @@ __all__ = [
     "Request",
     "Unsolved",
     "derive",
-    "identifier",
     "read",
 ]
 
@@ -277,9 +277,3 @@ def _inside(dh: DHChain, joint: int, value: float | None) -> float:
     if limits.lower <= 0.0 <= limits.upper:
         return 0.0
     return 0.5 * (limits.lower + limits.upper)
-
-
-def identifier(name: str) -> str:
-    """A robot's name as a module name: lower case, letters, digits and underscores."""
-    text = "".join(ch if ch.isascii() and ch.isalnum() else "_" for ch in name).strip("_").lower()
-    return text if text and not text[0].isdigit() else f"robot_{text}".rstrip("_")
