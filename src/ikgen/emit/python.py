@@ -10,8 +10,9 @@ from ikgen.emit.module import SolverModule
 from ikgen.emit.printer import Language, expression
 from ikgen.emit.rendering import render
 from ikgen.emit.symbols import blanks, frame_entries, pairs
+from ikgen.ir.liveness import used_inputs
 from ikgen.ir.ops import Op, Operand, operand_names
-from ikgen.ir.program import Comment, JointOutput, Let, Level, Program, Require
+from ikgen.ir.program import Comment, JointOutput, Let, Level, Program
 
 __all__ = ["emit_derivation", "emit_module"]
 
@@ -95,7 +96,7 @@ def emit_module(module: SolverModule) -> str:
         scalar=_scalar(module, joints),
         batch=_batch(module, joints),
         routines=sorted({lv.call.routine for lv in program.levels if lv.call is not None}),
-        used=_used_inputs(program),
+        used=used_inputs(program),
         seeds=_seed_rows(module),
         shape=[level.branches for level in program.levels[1:]],
         frames=[
@@ -116,22 +117,6 @@ def _parameters(module: SolverModule) -> list[tuple[str, str]]:
     given = [(n, v) for n, v in module.program.parameters if n not in module.dh.symbols]
     plain = [(n, _number(v)) for n, v in given if n not in angles]
     return [*angles.items(), *plain]
-
-
-def _used_inputs(program: Program) -> list[str]:
-    used: set[str] = set()
-    for level in program.levels:
-        if level.call is not None:
-            for a in level.call.arguments:
-                used |= operand_names(a)
-        for statement in level.body:
-            if isinstance(statement, Let):
-                used |= operand_names(statement.value)
-            elif isinstance(statement, Require):
-                used |= operand_names(statement.condition)
-    for output in program.outputs:
-        used |= operand_names(output.cosine) | operand_names(output.sine)
-    return [name for name in program.inputs if name in used]
 
 
 def _seed_rows(module: SolverModule) -> list[tuple[int, bool, float, float]]:
