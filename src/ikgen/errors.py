@@ -70,7 +70,7 @@ class UnsupportedJointError(BadDescriptionError):
 
 class UnsolvedChainError(IkgenError):
     """No closed form found: the message says what was solved, what is left and what would help;
-    `unsolved` is how far the derivation came (`ikgen.pipeline.Unsolved`)."""
+    `unsolved` is how far the derivation came (`ikgen.derivation.Unsolved`)."""
 
     exit_code = 3
 
