@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from ikgen.equations.expression import Expr
 from ikgen.equations.knowledge import Knowledge, Variable
-from ikgen.solver.session import Session, Step, Tick
+from ikgen.solver.choice import Step
+from ikgen.solver.session import Session, Tick
 
 __all__ = ["SolutionGraph", "graph_of"]
 
