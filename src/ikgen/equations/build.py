@@ -16,7 +16,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.equations.expression import Expr, ExpressionGraph
+from ikgen.equations.expression import Expr
+from ikgen.equations.expression_graph import ExpressionGraph
 from ikgen.equations.rigid import (
     Rigid,
     constant,

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.equations.build import ENTRY_NAMES
-from ikgen.equations.expression import Expr, ExpressionGraph
+from ikgen.equations.expression import Expr
+from ikgen.equations.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import Variable
 from ikgen.ir.forms import Tolerances
 from ikgen.ir.program import Comment

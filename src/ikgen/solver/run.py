@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from ikgen.equations.build import ENTRY_NAMES, EquationSet
-from ikgen.equations.expression import ExpressionGraph
+from ikgen.equations.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import Knowledge
 from ikgen.equations.probes import make_probes
 from ikgen.model.dh import DHChain
