@@ -11,7 +11,6 @@ last digits. Without the corpus the command says so.
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 import tempfile
 from collections.abc import Sequence
@@ -22,7 +21,8 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.corpus import CORPUS, options_for, urdf_of
+from benchmarks.collection import ABSENT, CORPUS, load_arms
+from benchmarks.corpus import options_for, urdf_of
 from ikgen.emit.registry import find_emitter
 from ikgen.errors import IkgenError, UnsolvedChainError
 from ikgen.generate import oracle_for
@@ -128,10 +128,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--eliminated", type=int, default=2000)
     parser.add_argument("--jobs", type=int, default=2)
     options = parser.parse_args(arguments)
-    if not (CORPUS / "arms.json").is_file():
-        print(f"no corpus: {CORPUS.name}/arms.json is not beside the checkout")
+    arms = load_arms()
+    if not arms:
+        print(ABSENT)
         return 0
-    arms = json.loads((CORPUS / "arms.json").read_text())
     wanted = [
         a
         for a in arms

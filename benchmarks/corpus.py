@@ -2,7 +2,7 @@
 
     python -m benchmarks.corpus [--family TEXT] [--arm NAME] [--samples N] [--jobs N]
 
-The corpus (`../shared/robots/arms.json`) is not part of the package; without it the command says so.
+The corpus is not part of the package (see benchmarks/README.md); without it the command says so.
 """
 
 from __future__ import annotations
@@ -21,8 +21,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from benchmarks.collection import ABSENT, CORPUS, load_arms
+
 WIDTHS = (4, 6, 8, 6, 8, 6)
-CORPUS = Path(__file__).resolve().parents[2] / "shared" / "robots"
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,10 +155,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--json", type=Path, help="write the outcomes here")
     options = parser.parse_args(arguments)
-    if not (CORPUS / "arms.json").is_file():
-        print(f"no corpus: {CORPUS.name}/arms.json is not beside the checkout")
+    arms = load_arms()
+    if not arms:
+        print(ABSENT)
         return 0
-    arms = json.loads((CORPUS / "arms.json").read_text())
     arms = [a for a in arms if options.family in a["family"]]
     arms = [a for a in arms if not options.arm or a["name"] in options.arm]
     with ThreadPoolExecutor(options.jobs) as pool:

@@ -17,33 +17,13 @@ def picture(bars: list[tuple[str, str, float]]) -> str:
     arms = list(dict.fromkeys(b[0] for b in bars))
     parts: list[str] = []
     y = _TOP
-
-    def place(value: float) -> float:
-        return _LEFT + _WIDTH * (math.log10(value) - low) / (high - low)
-
     for arm in arms:
         parts.append(f'<text x="8" y="{y + 14}" font-weight="bold">{escape(arm)}</text>')
         y += _ROW
         for _, solver, value in sorted((b for b in bars if b[0] == arm), key=lambda b: b[2]):
-            fill = "#2a6f97" if solver.startswith("ikgen") else "#b9c4cc"
-            end = place(value)
-            parts.append(
-                f'<text x="{_LEFT - 8}" y="{y + 14}" text-anchor="end">{escape(solver)}</text>'
-            )
-            parts.append(
-                f'<rect x="{_LEFT}" y="{y + 3}" width="{max(end - _LEFT, 1):.1f}" height="14" '
-                f'fill="{fill}"/>'
-            )
-            parts.append(f'<text x="{end + 5:.1f}" y="{y + 14}" fill="#456">{value:.3g}</text>')
+            parts += _bar(solver, value, _place(value, low, high), y)
             y += _ROW
         y += 8
-    grid = []
-    for k in range(low, high + 1):
-        x = place(10.0**k)
-        grid.append(f'<path d="M{x:.1f} {_TOP} V{y}" stroke="#dde3e7"/>')
-        grid.append(
-            f'<text x="{x:.1f}" y="{y + 16}" text-anchor="middle" fill="#456">{10.0**k:g}</text>'
-        )
     width, height = _LEFT + _WIDTH + 70, y + 26
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
@@ -52,4 +32,31 @@ def picture(bars: list[tuple[str, str, float]]) -> str:
         '<text x="8" y="18" font-size="14">All solutions of one pose, microseconds (one core, '
         "logarithmic scale)</text>"
     )
-    return "\n".join([head, *grid, *parts, "</svg>"]) + "\n"
+    return "\n".join([head, *_grid(low, high, y), *parts, "</svg>"]) + "\n"
+
+
+def _place(value: float, low: int, high: int) -> float:
+    """Where a value lies between the powers of ten `low` and `high`."""
+    return _LEFT + _WIDTH * (math.log10(value) - low) / (high - low)
+
+
+def _bar(solver: str, value: float, end: float, y: int) -> list[str]:
+    fill = "#2a6f97" if solver.startswith("ikgen") else "#b9c4cc"
+    return [
+        f'<text x="{_LEFT - 8}" y="{y + 14}" text-anchor="end">{escape(solver)}</text>',
+        f'<rect x="{_LEFT}" y="{y + 3}" width="{max(end - _LEFT, 1):.1f}" height="14" '
+        f'fill="{fill}"/>',
+        f'<text x="{end + 5:.1f}" y="{y + 14}" fill="#456">{value:.3g}</text>',
+    ]
+
+
+def _grid(low: int, high: int, bottom: int) -> list[str]:
+    """A line and its number at each power of ten."""
+    lines = []
+    for k in range(low, high + 1):
+        x = _place(10.0**k, low, high)
+        lines.append(f'<path d="M{x:.1f} {_TOP} V{bottom}" stroke="#dde3e7"/>')
+        lines.append(
+            f'<text x="{x:.1f}" y="{bottom + 16}" text-anchor="middle" fill="#456">{10.0**k:g}</text>'
+        )
+    return lines

@@ -142,14 +142,7 @@ def ikdh(arm: Arm) -> Solver:
 def clik(arm: Arm) -> Solver:
     """Pinocchio's forward kinematics and Jacobians in a damped Newton loop: one row, 20 starts."""
     pin = _import("pinocchio")
-    model = pin.buildModelFromUrdf(str(arm.urdf))
-    keep = [model.getJointId(n) for n in arm.module.JOINT_NAMES]
-    held = {model.getJointId(n): v for n, v in zip(arm.module.FREE_JOINTS, arm.free, strict=True)}
-    start = pin.neutral(model)
-    for joint, value in held.items():
-        start[model.joints[joint].idx_q] = value
-    lock = [j for j in range(1, model.njoints) if j not in keep or j in held]
-    model = pin.buildReducedModel(model, lock, start)
+    model = _reduced_model(pin, arm)
     data = model.createData()
     tip, base = model.getFrameId(arm.module.TIP_LINK), model.getFrameId(arm.module.BASE_LINK)
     pin.framesForwardKinematics(model, data, pin.neutral(model))
@@ -159,21 +152,11 @@ def clik(arm: Arm) -> Solver:
     places = [arm.module.JOINT_NAMES.index(n) for n in names]
     rng = np.random.default_rng(1)
 
-    def descend(q: Array, target: Any) -> Array | None:
-        for _ in range(60):
-            pin.framesForwardKinematics(model, data, q)
-            error = pin.log6(data.oMf[tip].actInv(target)).vector
-            if np.linalg.norm(error) < 1e-9:
-                return q
-            J = pin.computeFrameJacobian(model, data, q, tip)
-            damping = 1e-3 * min(1.0, float(error @ error)) + 1e-12
-            q = q + J.T @ np.linalg.solve(J @ J.T + damping * np.eye(6), error)
-        return None
-
     def solve(pose: Array) -> Array:
         target = root * pin.SE3(pose[:3, :3], pose[:3, 3])
         for _ in range(20):
-            q = descend(rng.uniform(-2.0, 2.0, model.nq), target)
+            start = rng.uniform(-2.0, 2.0, model.nq)
+            q = _descend(pin, model, data, tip, start, target)
             if q is not None:
                 row = np.empty(arm.module.DOF)
                 row[places] = q[order]
@@ -183,6 +166,31 @@ def clik(arm: Arm) -> Solver:
         return np.empty((0, arm.module.DOF))
 
     return solve
+
+
+def _reduced_model(pin: Any, arm: Arm) -> Any:
+    """Pinocchio's model of the arm's moving joints."""
+    model = pin.buildModelFromUrdf(str(arm.urdf))
+    keep = [model.getJointId(n) for n in arm.module.JOINT_NAMES]
+    held = {model.getJointId(n): v for n, v in zip(arm.module.FREE_JOINTS, arm.free, strict=True)}
+    start = pin.neutral(model)
+    for joint, value in held.items():
+        start[model.joints[joint].idx_q] = value
+    lock = [j for j in range(1, model.njoints) if j not in keep or j in held]
+    return pin.buildReducedModel(model, lock, start)
+
+
+def _descend(pin: Any, model: Any, data: Any, tip: int, q: Array, target: Any) -> Array | None:
+    """Damped Newton steps from q (nq,) until frame `tip` is at `target`; None if they fail."""
+    for _ in range(60):
+        pin.framesForwardKinematics(model, data, q)
+        error = pin.log6(data.oMf[tip].actInv(target)).vector
+        if np.linalg.norm(error) < 1e-9:
+            return q
+        J = pin.computeFrameJacobian(model, data, q, tip)
+        damping = 1e-3 * min(1.0, float(error @ error)) + 1e-12
+        q = q + J.T @ np.linalg.solve(J @ J.T + damping * np.eye(6), error)
+    return None
 
 
 PEERS: dict[str, Callable[[Arm], Solver]] = {

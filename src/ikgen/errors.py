@@ -1,7 +1,7 @@
 """The one family of errors that ikgen raises on bad input or an unsolved chain.
 
 Every error has a message (what, and where in the file), a hint (a way out) and the exit code of the
-command line (`docs/reference/cli.md`).
+command line (`docs/reference/exit-codes.md`).
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class UnsupportedJointError(BadDescriptionError):
 
 class UnsolvedChainError(IkgenError):
     """No closed form found: the message says what was solved, what is left and what would help;
-    `unsolved` is how far the derivation came (`ikgen.pipeline.Unsolved`)."""
+    `unsolved` is how far the derivation came (`ikgen.derivation.Unsolved`)."""
 
     exit_code = 3
 

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ikgen import __version__
-from ikgen.errors import UnsolvedChainError
+from ikgen.derivation import Derivation, Reading, Unsolved
+from ikgen.module_name import identifier
 
 if TYPE_CHECKING:
     from ikgen.emit.module import SolverModule
-    from ikgen.kinematics.classify import GeometryClass
-    from ikgen.model.chain import Chain
     from ikgen.model.dh import DHChain
-    from ikgen.model.joint_tree import JointTree, Source
     from ikgen.solver.graph import SolutionGraph
     from ikgen.tasks import Task
     from ikgen.universal import UniversalPlan
@@ -28,7 +25,6 @@ __all__ = [
     "Request",
     "Unsolved",
     "derive",
-    "identifier",
     "read",
 ]
 
@@ -48,41 +44,6 @@ class Request:
     arguments: Mapping[str, str] = field(default_factory=dict)
     package_paths: tuple[Path, ...] = ()
     name: str | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Reading:
-    """A description as read: its tree and chain (none for a DH table) and the chain in DH form."""
-
-    source: Source
-    tree: JointTree | None
-    chain: Chain | None
-    dh: DHChain
-
-
-@dataclass(frozen=True, slots=True)
-class Derivation:
-    """Everything between the file and the emitted text."""
-
-    reading: Reading
-    geometry: GeometryClass
-    task: Task
-    graph: SolutionGraph
-    module: SolverModule
-    chosen: bool = False
-    """Whether the task was chosen to fit the arm, not asked for."""
-
-
-@dataclass(frozen=True, slots=True)
-class Unsolved:
-    """How far a derivation came that found no closed form; `name` is its module's."""
-
-    reading: Reading
-    geometry: GeometryClass
-    task: Task
-    graph: SolutionGraph
-    name: str
-    source_name: str
 
 
 def _quiet(stage: str, detail: str) -> None:
@@ -130,8 +91,10 @@ def derive(
             geometry = classify(reading.dh)
     plan = _elimination(reading.dh, task, progress) if graph.open_joints else None
     if graph.open_joints and plan is None:
+        from ikgen.unsolved import unsolved_error
+
         name = request.name or identifier(reading.dh.robot)
-        raise unsolved(Unsolved(reading, geometry, task, graph, name, request.robot.name))
+        raise unsolved_error(Unsolved(reading, geometry, task, graph, name, request.robot.name))
     module = _module(request, reading, task, geometry.words, graph, plan)
     return Derivation(reading, geometry, task, graph, module, request.task is None)
 
@@ -196,57 +159,6 @@ def _attempt(dh: DHChain, task: Task, progress: Progress) -> SolutionGraph:
     )
 
 
-def unsolved(found: Unsolved) -> UnsolvedChainError:
-    """The error of a chain without a closed form: what was solved, what is left, what would help."""
-    from ikgen.emit.report.leftover import leftover_text
-
-    dh, task, graph = found.reading.dh, found.task, found.graph
-    solved = ", ".join(f"{s.candidate.unknown.text} ({s.candidate.leaf})" for s in graph.steps)
-    left = ", ".join(dh.joints[j].name for j in graph.open_joints)
-    lines = [
-        f"no closed form found for the task '{task.name}': solved {solved or 'nothing'}; "
-        f"left are the joints {left}",
-        *leftover_text(graph),
-    ]
-    hint = redundancy(dh) or _count_hint(dh, task)
-    return UnsolvedChainError("\n".join(lines), unsolved=found, hint=hint)
-
-
-def _count_hint(dh: DHChain, task: Task) -> str:
-    """What the numbers of joints and of freedoms tell."""
-    moving = dh.dof - len(dh.free)
-    if moving > task.freedoms:
-        return (
-            f"{moving} joints move but the task '{task.name}' fixes {task.freedoms}: hold "
-            f"{moving - task.freedoms} of them free (--free JOINT) or lock them "
-            "(--lock JOINT=VALUE)"
-        )
-    if moving < task.freedoms:
-        return f"{moving} joints move: try a smaller task (--task)"
-    return (
-        "hold a joint free (--free JOINT), lock one (--lock JOINT=VALUE), or ask for less (--task)"
-    )
-
-
-def redundancy(dh: DHChain) -> str:
-    """What to do about two moving revolute axes on one line; "" where there are none."""
-    from ikgen.kinematics.classify import same_line_as_previous
-
-    for one, two in itertools.pairwise(dh.rows):
-        names = [dh.joints[row.driver].name for row in (one, two)]
-        if (
-            one.revolute
-            and two.revolute
-            and same_line_as_previous(two)
-            and not set(names) & set(dh.free)
-        ):
-            return (
-                f"the joints '{names[0]}' and '{names[1]}' turn about one line: every pose has infinitely "
-                f"many solutions; hold one of them free (--free {names[1]}) or lock it"
-            )
-    return ""
-
-
 def _module(
     request: Request,
     reading: Reading,
@@ -273,13 +185,9 @@ def _module(
         source_sha256=reading.source.sha256,
         generator_version=__version__,
         geometry=geometry,
-        order=("all joints (6R elimination)",) if plan else _order(graph),
+        order=("all joints (6R elimination)",) if plan else graph.order,
         plan=plan,
     )
-
-
-def _order(graph: SolutionGraph) -> tuple[str, ...]:
-    return tuple(f"{s.candidate.unknown.text} ({s.candidate.leaf})" for s in graph.steps)
 
 
 def _inside(dh: DHChain, joint: int, value: float | None) -> float:
@@ -290,9 +198,3 @@ def _inside(dh: DHChain, joint: int, value: float | None) -> float:
     if limits.lower <= 0.0 <= limits.upper:
         return 0.0
     return 0.5 * (limits.lower + limits.upper)
-
-
-def identifier(name: str) -> str:
-    """A robot's name as a module name: lower case, letters, digits and underscores."""
-    text = "".join(ch if ch.isascii() and ch.isalnum() else "_" for ch in name).strip("_").lower()
-    return text if text and not text[0].isdigit() else f"robot_{text}".rstrip("_")

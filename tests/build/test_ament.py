@@ -3,9 +3,9 @@
 Debian: `apt install ament-cmake ament-cmake-python`. colcon is taken from PATH or the variable
 COLCON, and wants an environment of its own:
 
-    python3 -m venv /tmp/colcon
-    /tmp/colcon/bin/pip install 'setuptools<80' colcon-common-extensions
-    COLCON=/tmp/colcon/bin/colcon python -m pytest tests/build/test_ament.py
+    python3 -m venv build/colcon
+    build/colcon/bin/pip install 'setuptools<80' colcon-common-extensions
+    COLCON=$PWD/build/colcon/bin/colcon python -m pytest tests/build/test_ament.py
 """
 
 from __future__ import annotations

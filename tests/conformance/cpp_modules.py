@@ -22,7 +22,8 @@ from ikgen.model.joint_tree import Limits
 from ikgen.solver.run import solve_chain
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "unit"))
-from arms import ARMS_FILE, arm_chain, load_arms
+from arms import arm_chain
+from benchmarks.collection import ARMS_FILE, load_arms
 
 __all__ = ["EXACT", "ROBOTS", "solver_module"]
 

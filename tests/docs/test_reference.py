@@ -81,20 +81,41 @@ def test_dh_example_is_one(tmp_path: Path) -> None:
     assert output("inspect", str(table), "--no-advice")["chain"]["dof"] == 1
 
 
+NAMED_BY_DATA = {"verification", "histogram", "locked", "worst", "constants", "packages", "tools"}
+"""Fields whose keys are names or numbers of the case at hand."""
+
+
+def fields(value: Any) -> set[str]:
+    """Keys of an output at all depths, but those that the data name."""
+    if isinstance(value, list):
+        return set().union(*map(fields, value))
+    if not isinstance(value, dict):
+        return set()
+    found = set(value)
+    for key, inner in value.items():
+        parts = inner.values() if key in NAMED_BY_DATA and isinstance(inner, dict) else [inner]
+        found |= set().union(*map(fields, parts))
+    return found
+
+
 def output(*arguments: str) -> Any:
     command = [sys.executable, "-m", "ikgen", *arguments, "--json"]
     return json.loads(subprocess.run(command, capture_output=True, text=True).stdout)
 
 
 def test_json_fields_are_listed(tmp_path: Path) -> None:
-    robot = str(ROOT / "urdf_fixtures/scara_standard.toml")
-    made = output("from-dh", robot, "-o", str(tmp_path), "--samples", "20")
-    report = next(iter(made["verification"].values()))
-    checked = output("verify", str(tmp_path), "--samples", "20")
-    found = set(made) | set(report) | set(checked) | set(checked["outputs"][0])
-    found |= set(output("inspect", robot, "--no-advice")) | set(output("doctor"))
-    assert len(found) > 30
-    assert found <= words("json.md")
+    fixtures = ROOT / "urdf_fixtures"
+    table = tmp_path / "table.toml"
+    table.write_text((fixtures / "scara_standard.toml").read_text())
+    found = fields(output("from-dh", str(table), "-o", str(tmp_path), "--samples", "20"))
+    found |= fields(output("verify", str(tmp_path), "--samples", "20"))
+    table.write_text(re.sub(r"(?m)^(l_1 = ).*", r"\g<1>0.9", table.read_text()))
+    wrong = output("verify", str(tmp_path), "--samples", "20")
+    assert wrong["outputs"][0]["findings"][0]["deviation"]["m"] > 0.1
+    found |= fields(wrong) | fields(output("inspect", str(table))) | fields(output("doctor"))
+    found |= fields(output("inspect", str(fixtures / "doosan_m1013.urdf"), "--no-advice"))
+    assert {"branches", "worst_case", "deviation", "before", "max_solutions", "mimic"} <= found
+    assert found <= words("json.md"), found - words("json.md")
 
 
 def test_pictures_are_those_that_the_script_draws() -> None:

@@ -1,23 +1,14 @@
-"""Chains straight out of `arms.json`, the collection of real arms beside the repository."""
+"""Chains straight out of `arms.json`, the collection of real arms that benchmarks use too."""
 
 from __future__ import annotations
 
-import json
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ikgen.model.chain import ActuatedJoint, Chain, ChainAxis
 from ikgen.model.joint_tree import Limits, Matrix
-
-ARMS_FILE = Path(__file__).resolve().parents[2].parent / "shared" / "robots" / "arms.json"
-
-
-def load_arms() -> list[dict[str, Any]]:
-    """All arms, or none where the collection is absent."""
-    return json.loads(ARMS_FILE.read_text()) if ARMS_FILE.is_file() else []
 
 
 def origin(xyz: list[float], rpy: list[float]) -> Matrix:

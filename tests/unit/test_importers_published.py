@@ -1,6 +1,6 @@
 """Importers on published robots, traps and xacro packages, and against Pinocchio.
 
-The collection lies beside the repository; without it only the fixtures are compared.
+The collection lies where `benchmarks/collection.py` says; without it only the fixtures are compared.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from benchmarks.collection import ABSENT, ARMS_FILE, CORPUS, load_arms
 from test_importers_chain import forward
 
 from ikgen.errors import BadDescriptionError, IkgenError, UsageError
@@ -19,16 +20,15 @@ from ikgen.importers.chain import candidate_chains, select_chain
 
 ROOT = Path(__file__).parents[2]
 FIXTURES = sorted((ROOT / "urdf_fixtures").glob("*.urdf"))
-ROBOTS = ROOT.parent / "shared" / "robots"
-collection = pytest.mark.skipif(not ROBOTS.is_dir(), reason="needs ../shared/robots")
+collection = pytest.mark.skipif(not ARMS_FILE.is_file(), reason=ABSENT)
 
 
 def table(name):
-    file = ROBOTS / name
+    file = CORPUS / name
     return json.loads(file.read_text()) if file.is_file() else []
 
 
-ARMS = [arm for arm in table("arms.json") if "file" in arm]
+ARMS = [arm for arm in load_arms() if "file" in arm]
 ARMS_BY_NAME = {arm["name"]: arm for arm in ARMS}
 TRAPS = table("traps/manifest.json")
 XACROS = table("xacro/manifest.json")
@@ -55,7 +55,7 @@ def tree_of(file):
 @pytest.mark.parametrize("name", ARMS_BY_NAME)
 def test_forward_kinematics_of_published_arms(name):
     arm = ARMS_BY_NAME[name]
-    chain = select_chain(tree_of(ROBOTS / arm["file"]), arm["base_link"], arm["tip_link"])
+    chain = select_chain(tree_of(CORPUS / arm["file"]), arm["base_link"], arm["tip_link"])
     assert chain.dof == arm["dof"]
     independent = [j for j in arm["chain"] if j["type"] != "fixed" and "mimic" not in j]
     assert [joint.name for joint in chain.joints] == [joint["joint"] for joint in independent]
@@ -67,7 +67,7 @@ def test_forward_kinematics_of_published_arms(name):
 @pytest.mark.parametrize("name", ARMS_BY_NAME)
 def test_default_chain_of_published_arms(name):
     arm = ARMS_BY_NAME[name]
-    tree = tree_of(ROBOTS / arm["file"])
+    tree = tree_of(CORPUS / arm["file"])
     moving = tuple(joint["joint"] for joint in arm["chain"] if joint["type"] != "fixed")
     try:
         chain = select_chain(tree)
@@ -86,7 +86,7 @@ def test_default_chain_of_published_arms(name):
 @collection
 @pytest.mark.parametrize("trap", TRAPS, ids=lambda trap: trap["file"])
 def test_traps_are_read_or_refused_in_words(trap):
-    file = ROBOTS / "traps" / trap["file"]
+    file = CORPUS / "traps" / trap["file"]
     try:
         tree = load_tree(file)
     except BadDescriptionError as error:
@@ -100,15 +100,15 @@ def test_traps_are_read_or_refused_in_words(trap):
 @collection
 @pytest.mark.parametrize("row", XACROS, ids=lambda row: row["name"])
 def test_published_xacro_packages(row):
-    folder = ROBOTS / "xacro"
+    folder = CORPUS / "xacro"
     tree = load_tree(
         folder / row["tree"] / row["top"],
         arguments=row["args"],
         package_paths=[folder / path for path in row["find"].values()],
     )
-    expected = tree_of(ROBOTS / row["expected"])
+    expected = tree_of(CORPUS / row["expected"])
     assert (set(tree.links), tree.root_link) == (set(expected.links), expected.root_link)
-    assert str(ROBOTS) not in tree.source.text
+    assert str(CORPUS) not in tree.source.text
     joints = {joint.name: joint for joint in tree.joints}
     assert set(joints) == {joint.name for joint in expected.joints}
     for other in expected.joints:

@@ -6,14 +6,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from arms import arm_chain, load_arms
+from arms import arm_chain
+from benchmarks.collection import ABSENT, load_arms
 
 from ikgen.kinematics.classify import classify
 from ikgen.kinematics.forward import chain_forward, dh_forward, file_forward, pose_difference
 from ikgen.kinematics.modified_dh import to_dh
 
 ARMS = load_arms()
-pytestmark = pytest.mark.skipif(not ARMS, reason="the collection of arms is not on this machine")
+pytestmark = pytest.mark.skipif(not ARMS, reason=ABSENT)
 
 FAMILIES = {
     "3 DOF": "3-DOF RRR",

@@ -17,7 +17,7 @@ from ikgen.emit.report.layout import layout
 from ikgen.emit.report.normal import Normalizer, Sum
 from ikgen.emit.report.notation import show
 from ikgen.emit.report.poses import versions_of
-from ikgen.equations.expression import ExpressionGraph
+from ikgen.equations.expression_graph import ExpressionGraph
 from ikgen.pipeline import Derivation, Request, derive
 from ikgen.verify.report import CheckResult, VerificationReport
 

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from arms import arm_chain, load_arms
+from arms import arm_chain
+from benchmarks.collection import load_arms
 from numpy.typing import NDArray
 from test_routines_loading import compiled_routine, feed, python_routine
 
@@ -157,7 +158,9 @@ def test_no_more_solutions_than_a_multi_start_search_finds(name: str) -> None:
         T[:3, 3] /= plan.length
         starts = rng.uniform(-np.pi, np.pi, (600, 6))
         q, r, _ = routine._g6_polish(scaled, np.broadcast_to(T, (600, 4, 4)), starts)
-        for candidate in routine._g6_distinct(q[r < 1e-9]):
+        candidates = routine._g6_distinct(q[r < 1e-9])
+        assert len(candidates), "the search found nothing to compare"
+        for candidate in candidates:
             assert apart(found, candidate).min() < 1e-5
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import keyword
 import re
 import sys
 from collections.abc import Mapping
@@ -12,6 +11,7 @@ from typing import Any
 
 from ikgen.build.record import SUFFIX
 from ikgen.errors import BadDescriptionError, UsageError
+from ikgen.module_name import is_module_name
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -146,7 +146,7 @@ def _arm(path: Path, index: int, table: Any) -> ArmConfig:
         if key not in table:
             raise _error(path, f"{where} has no '{key}'")
     name = table["name"]
-    if not name.isascii() or not name.isidentifier() or keyword.iskeyword(name):
+    if not is_module_name(name):
         raise _error(path, f"{where}: the name '{name}' is not an identifier")
     folder = path.parent
     return ArmConfig(

@@ -86,6 +86,6 @@ def attempt(dh: DHChain, task: Task) -> Attempt:
         dh.free,
         closed,
         most,
-        tuple(f"{s.candidate.unknown.text} ({s.candidate.leaf})" for s in graph.steps),
+        graph.order,
         tuple(dh.joints[j].name for j in graph.open_joints),
     )

@@ -23,6 +23,7 @@ _PACKAGES = {
     "rich": "progress",
     "py_trees": "behavior tree",
     "yourdfpy": "reads URDF",
+    "lxml": "reads XML, with line numbers",
     "xacro": "expands xacro files",
     "pin": "Pinocchio: verifies",
 }

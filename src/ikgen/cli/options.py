@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import keyword
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -11,7 +10,8 @@ from typing import Any, TypeVar
 import click
 
 from ikgen.errors import UsageError
-from ikgen.pipeline import Request, identifier
+from ikgen.module_name import identifier, is_module_name
+from ikgen.pipeline import Request
 
 __all__ = [
     "chain_options",
@@ -217,9 +217,7 @@ def _arguments(texts: Sequence[str]) -> dict[str, str]:
 
 def _module_name(name: str | None) -> str | None:
     """The name if it can be a module and a namespace."""
-    if name is None:
-        return None
-    if not name.isascii() or not name.isidentifier() or keyword.iskeyword(name):
+    if name is not None and not is_module_name(name):
         raise UsageError(
             f"--name {name}: not an identifier", hint=f"for example --name {identifier(name)}"
         )

@@ -13,12 +13,7 @@ if TYPE_CHECKING:
     from ikgen.solver.graph import SolutionGraph
     from ikgen.verify.report import VerificationReport
 
-__all__ = ["as_dict", "order", "summary", "trace"]
-
-
-def order(graph: SolutionGraph) -> list[str]:
-    """The unknowns in the order solved, each with its leaf."""
-    return [f"{s.candidate.unknown.text} ({s.candidate.leaf})" for s in graph.steps]
+__all__ = ["as_dict", "summary", "trace"]
 
 
 def summary(generation: Generation) -> str:

@@ -23,10 +23,6 @@ class Language:
     number: Callable[[float], str]
 
 
-ATOM = 100
-NOT_ASSOCIATIVE = {"sub", "div", "gt"}
-
-
 def expression(language: Language, operand: Operand, around: int = 0) -> str:
     """The operand's text, in parentheses where the surrounding precedence needs them.
 

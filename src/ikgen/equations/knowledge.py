@@ -7,7 +7,6 @@ its group. Unknown keys are written modulo that lattice on one representative ea
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +14,7 @@ import numpy as np
 from ikgen.equations import polynomial as poly
 from ikgen.equations.build import Equation, EquationSet
 from ikgen.equations.expression import Expr
+from ikgen.equations.key_lattice import KeyLattice
 from ikgen.equations.polynomial import Key, Monomial, Polynomial, canonical
 
 __all__ = ["Knowledge", "PolynomialEquation", "Variable"]
@@ -67,29 +67,14 @@ class Knowledge:
         self.variables = equations.variables
         self.known_mask = 0
         self.binding: dict[int, Expr] = {}
-        self._keys: dict[Key, tuple[Expr, Expr]] = {}
-        self._combinations: dict[Key, tuple[tuple[int, Key], ...]] = {}
-        self._representatives: list[Key] = self._contiguous_keys()
+        self._lattice = KeyLattice(equations.graph, equations.variables)
         self._converted: dict[int, Polynomial] = {}
-        self._represented: dict[Key, tuple[int, Key, Key] | None] = {}
-
-    def _contiguous_keys(self) -> list[Key]:
-        n = self.variables.count
-        units = [self.variables.unit(j) for j in range(n)]
-        keys: list[Key] = list(units)
-        for length in range(2, n + 1):
-            for start in range(n - length + 1):
-                members = range(start, start + length)
-                if len({self.variables.group[j] for j in members}) == 1:
-                    keys.append(tuple(int(start <= j < start + length) for j in range(n)))
-        return keys
 
     # -- learning -------------------------------------------------------------------------------
 
     def learn_angle(self, key: Key) -> None:
         """Mark a key's cosine and sine as known."""
-        pair = self.variables.pair(key)
-        self._keys[key] = pair
+        self._lattice.add(key)
         self.refresh()
 
     def learn_distance(self, joint: int) -> None:
@@ -100,66 +85,34 @@ class Knowledge:
     def refresh(self) -> None:
         """Rebuild the lattice of known keys and mark the atoms in it."""
         self._converted.clear()
-        self._represented.clear()
-        zero = tuple([0] * self.variables.count)
-        found: dict[Key, tuple[tuple[int, Key], ...]] = {zero: ()}
-        by_group: dict[int, list[Key]] = {}
-        for key in self._keys:
-            by_group.setdefault(self.variables.group_of(key), []).append(key)
-        for keys in by_group.values():
-            choices = sorted(
-                itertools.product((0, 1, -1, 2, -2), repeat=len(keys)),
-                key=lambda c: (sum(map(abs, c)), c),
-            )
-            for coefs in choices:
-                total = tuple(
-                    sum(c * k[j] for c, k in zip(coefs, keys, strict=True))
-                    for j in range(self.variables.count)
-                )
-                terms = tuple((c, k) for c, k in zip(coefs, keys, strict=True) if c)
-                found.setdefault(total, terms)
-        self._combinations = found
+        self._lattice.rebuild()
         self._mark_atoms()
 
     def _mark_atoms(self) -> None:
         """Every atom whose key has become known gets its definition, once."""
-        for key in list(self._combinations):
+        for key in self._lattice.known:
             c = self.graph.find_atom("cos", key)
             s = self.graph.find_atom("sin", key)
             for node in (c, s):
                 if node is not None and not node.support & self.known_mask:
                     self.known_mask |= node.support
-                    if key not in self._keys:
+                    if key not in self._lattice.solved:
                         pair = self.known_pair(key)
                         assert pair is not None
                         self.binding[node.id] = pair[0] if node is c else pair[1]
 
     def known_pair(self, key: Key) -> tuple[Expr, Expr] | None:
         """Cosine and sine of a known key's angle, composed from solved ones; None if unknown."""
-        terms = self._combinations.get(key)
-        if terms is None:
-            return None
-        g = self.graph
-        c, s = g.one, g.zero
-        for factor, base in terms:
-            bc, bs = self._keys[base]
-            if factor < 0:
-                bs = g.neg(bs)
-            for _ in range(abs(factor)):
-                c, s = (
-                    g.sub(g.mul(c, bc), g.mul(s, bs)),
-                    g.add(g.mul(s, bc), g.mul(c, bs)),
-                )
-        return c, s
+        return self._lattice.pair(key)
 
     def composition(self, key: Key) -> tuple[tuple[int, Key], ...]:
         """A known key's angle as integer combination of solved ones: (factor, solved key) pairs."""
-        return self._combinations[key]
+        return self._lattice.known[key]
 
     def is_known(self, variable: Variable) -> bool:
         """Whether the variable is solved or follows from solved ones."""
         if variable.kind == "angle":
-            return variable.key in self._combinations
+            return variable.key in self._lattice.known
         joint = variable.joint
         assert joint is not None
         return bool(self.variables.distance(joint).support & self.known_mask)
@@ -167,28 +120,6 @@ class Knowledge:
     def known_expr(self, node: Expr) -> bool:
         """Whether an expression has known atoms only."""
         return not node.support & ~self.known_mask
-
-    # -- representatives ------------------------------------------------------------------------
-
-    def represent(self, key: Key) -> tuple[int, Key, Key]:
-        """`key = factor * representative + shift` with a known shift."""
-        if key in self._represented:
-            found = self._represented[key]
-            assert found is not None
-            return found
-        group = self.variables.group_of(key)
-        zero = tuple([0] * self.variables.count)
-        result = (1, key, zero)
-        for factor in (1, -1, 2, -2):
-            for rep in self._representatives:
-                if self.variables.group_of(rep) != group:
-                    continue
-                shift = tuple(k - factor * r for k, r in zip(key, rep, strict=True))
-                if shift in self._combinations and rep not in self._combinations:
-                    self._represented[key] = (factor, rep, shift)
-                    return factor, rep, shift
-        self._represented[key] = result
-        return result
 
     # -- conversion -----------------------------------------------------------------------------
 
@@ -240,11 +171,11 @@ class Knowledge:
 
     def _reduced(self, key: Key, kind: str) -> Polynomial:
         g = self.graph
-        if key in self._combinations:
+        if key in self._lattice.known:
             pair = self.known_pair(key)
             assert pair is not None
             return {poly.ONE: pair[0] if kind == "c" else pair[1]}
-        factor, rep, shift = self.represent(key)
+        factor, rep, shift = self._lattice.represent(key)
         target, sign = canonical(tuple(factor * r for r in rep))
         pair = self.known_pair(shift)
         assert pair is not None
@@ -275,15 +206,7 @@ class Knowledge:
                 distances.add(node.atom.key)
             else:
                 keys.append(node.atom.key)
-        return self._rank(keys) + len(distances)
-
-    def _rank(self, keys: list[Key]) -> int:
-        if not keys:
-            return 0
-        known = [list(k) for k in self._keys]
-        base = np.linalg.matrix_rank(np.array(known)) if known else 0
-        both = np.linalg.matrix_rank(np.array(known + [list(k) for k in keys]))
-        return int(both - base)
+        return self._lattice.rank(keys) + len(distances)
 
     def unknowns_of(self, polynomial: Polynomial) -> tuple[tuple[Variable, ...], int]:
         """Representatives in a reduced polynomial, and their rank."""
@@ -295,7 +218,7 @@ class Knowledge:
                 angles.add(Variable("angle", tuple(k // divisor for k in key)))
             for joint, _ in dist:
                 distances.add(Variable("dist", self.variables.unit(joint)))
-        rank = self._rank([v.key for v in angles]) + len(distances)
+        rank = self._lattice.rank([v.key for v in angles]) + len(distances)
         return tuple(sorted(angles | distances)), rank
 
     def polynomial_equation(self, equation: Equation) -> PolynomialEquation:

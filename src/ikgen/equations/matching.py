@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ikgen.equations.expression import Expr, ExpressionGraph
+from ikgen.equations.expression import Expr
+from ikgen.equations.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import PolynomialEquation, Variable
 from ikgen.equations.polynomial import ONE, Key, Monomial, Polynomial
 

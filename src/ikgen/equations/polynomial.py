@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ikgen.equations.expression import Expr, ExpressionGraph
+from ikgen.equations.expression import Expr
+from ikgen.equations.expression_graph import ExpressionGraph
 
 __all__ = ["Key", "Monomial", "Polynomial", "add", "canonical", "multiply", "scale", "subtract"]
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.equations.expression import Expr, ExpressionGraph
+from ikgen.equations.expression import Expr
+from ikgen.equations.expression_graph import ExpressionGraph
 from ikgen.equations.variables import JointVariables
 
 __all__ = ["Rigid", "constant", "identity", "inverse", "link", "multiply", "run", "run_inverse"]

@@ -14,7 +14,8 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.equations.expression import Expr, ExpressionGraph
+from ikgen.equations.expression import Expr
+from ikgen.equations.expression_graph import ExpressionGraph
 from ikgen.equations.polynomial import Key, canonical
 from ikgen.errors import UnsupportedJointError
 from ikgen.model.dh import Angle, DHChain, DHRow, Length

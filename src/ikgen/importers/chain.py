@@ -105,6 +105,25 @@ def _build(
     locked: Mapping[str, float],
 ) -> Chain:
     drivers = _drivers(path, couplings, locked)
+    axes, T_last_tip = _axes(path, couplings, drivers, locked)
+    return Chain(
+        robot=tree.name,
+        base_link=base,
+        tip_link=tip,
+        joints=tuple(_actuated(driver) for driver in drivers),
+        axes=axes,
+        T_last_tip=T_last_tip,
+        locked=tuple(sorted((name, float(value)) for name, value in locked.items())),
+    )
+
+
+def _axes(
+    path: Sequence[Joint],
+    couplings: Mapping[str, Coupling],
+    drivers: Sequence[Joint],
+    locked: Mapping[str, float],
+) -> tuple[tuple[ChainAxis, ...], Matrix]:
+    """The moving axes, and the transform (4, 4) from the last one's joint frame to the tip."""
     axes: list[ChainAxis] = []
     T = np.eye(4)  # from the previous axis' joint frame
     for joint in path:
@@ -128,15 +147,7 @@ def _build(
             )
         )
         T = np.eye(4)
-    return Chain(
-        robot=tree.name,
-        base_link=base,
-        tip_link=tip,
-        joints=tuple(_actuated(driver) for driver in drivers),
-        axes=tuple(axes),
-        T_last_tip=_read_only(T),
-        locked=tuple(sorted((name, float(value)) for name, value in locked.items())),
-    )
+    return tuple(axes), _read_only(T)
 
 
 def _drivers(

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ikgen.equations.expression import Expr, ExpressionGraph
+from ikgen.equations.expression import Expr
+from ikgen.equations.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import Variable
 from ikgen.ir.forms import ROUNDED, Divisor, Realized
 from ikgen.ir.inputs import seed_values

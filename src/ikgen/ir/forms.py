@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ikgen.equations.expression import Expr, ExpressionGraph
+from ikgen.equations.expression import Expr
+from ikgen.equations.expression_graph import ExpressionGraph
 from ikgen.solver.candidate import Candidate
 
 __all__ = ["Divisor", "Realized", "Tolerances", "realize"]

@@ -13,8 +13,8 @@ from ikgen.ir.inputs import bind_pose, bind_seeds
 from ikgen.ir.placement import LoweredLevel, Placement, identifier
 from ikgen.ir.program import Comment, Program
 from ikgen.ir.serialize import serialize
+from ikgen.solver.choice import Step
 from ikgen.solver.graph import SolutionGraph
-from ikgen.solver.session import Step
 
 __all__ = ["lower"]
 

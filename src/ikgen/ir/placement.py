@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.equations.build import ENTRY_NAMES
-from ikgen.equations.expression import Expr, ExpressionGraph
+from ikgen.equations.expression import Expr
+from ikgen.equations.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import Variable
+from ikgen.equations.products import ENTRY_NAMES
 from ikgen.ir.forms import Tolerances
 from ikgen.ir.program import Comment
 from ikgen.solver.graph import SolutionGraph

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from ikgen.equations.expression import Expr
 from ikgen.equations.knowledge import Knowledge, Variable
-from ikgen.solver.session import Session, Step, Tick
+from ikgen.solver.choice import Step
+from ikgen.solver.session import Session, Tick
 
 __all__ = ["SolutionGraph", "graph_of"]
 
@@ -25,6 +26,11 @@ class SolutionGraph:
     session: Session
     passed: tuple[Variable, ...] = ()
     outline: tuple[tuple[str, ...], ...] = ()
+
+    @property
+    def order(self) -> tuple[str, ...]:
+        """The unknowns in the order solved, each with its leaf."""
+        return tuple(f"{s.candidate.unknown.text} ({s.candidate.leaf})" for s in self.steps)
 
     @property
     def open_joints(self) -> list[int]:

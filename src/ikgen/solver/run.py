@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from ikgen.equations.build import ENTRY_NAMES, EquationSet
-from ikgen.equations.expression import ExpressionGraph
+from ikgen.equations.build import EquationSet
+from ikgen.equations.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import Knowledge
 from ikgen.equations.probes import make_probes
+from ikgen.equations.products import ENTRY_NAMES
 from ikgen.model.dh import DHChain
 from ikgen.solver.graph import SolutionGraph, graph_of
 from ikgen.solver.leaves import Leaf, all_leaves

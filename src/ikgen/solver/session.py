@@ -13,16 +13,13 @@ from ikgen.equations.expression import Expr
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
 from ikgen.equations.probes import Probes
 from ikgen.solver.candidate import Candidate
+from ikgen.solver.choice import Chooser, Step
 from ikgen.solver.leaves import Leaf
 from ikgen.solver.ranker import judge, rank_key
-from ikgen.solver.soundness import conditions, weak_configurations
 
-__all__ = ["Session", "Step", "Tick"]
+__all__ = ["Session", "Tick"]
 
 MOST_UNKNOWNS = 2
-MOST_TRIED = 6
-MOST_FALLBACKS = 40
-SAFE_MARGIN = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,21 +40,6 @@ class Tick:
         return self.path[-1]
 
 
-@dataclass(frozen=True, slots=True)
-class Step:
-    """One solved unknown: the chosen candidate, fallbacks where its divisor vanishes at regular
-    configurations, and the candidates that the ranker rejected."""
-
-    candidate: Candidate
-    fallbacks: tuple[Candidate, ...]
-    rejected: tuple[Candidate, ...]
-
-    @property
-    def branches(self) -> int:
-        """Number of alternatives, over all its forms."""
-        return max(c.branches for c in (self.candidate, *self.fallbacks))
-
-
 @dataclass
 class Session:
     """State of a session. `equations` are those of the current round with few unknowns."""
@@ -71,10 +53,13 @@ class Session:
     candidates: list[Candidate] = field(default_factory=list)
     steps: list[Step] = field(default_factory=list)
     ticks: list[Tick] = field(default_factory=list)
-    _weak: dict[tuple[object, ...], NDArray[np.float64]] = field(default_factory=dict)
+    _chooser: Chooser = field(init=False)
     _used: set[int] = field(default_factory=set)
     _weight: dict[int, float] = field(default_factory=dict)
     _forks: list[tuple[int, float]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self._chooser = Chooser(self.system, self.probes)
 
     def record(
         self, path: tuple[str, ...], kind: str, outcome: str, detail: str, started: float
@@ -157,77 +142,10 @@ class Session:
         """Take the best candidate that holds at every regular configuration, alone or with fallbacks
         where its divisor vanishes; failing that, with `anything`, the best there is."""
         ranked = sorted(self.candidates, key=rank_key)
-        step = self._sound(ranked) or self._covered(ranked)
-        if step is None and anything and ranked:
-            simple = [c for c in ranked if c.branches <= 2 and not c.is_weak]
-            quartic = [c for c in ranked if c.branches > 2 and not c.is_weak]
-            best = (simple or quartic or ranked)[0]
-            step = self._step(best, (), ranked)
+        step = self._chooser.choose(ranked, anything=anything)
         if step is not None:
             self._accept(step)
         return step
-
-    def _step(
-        self, best: Candidate, fallbacks: tuple[Candidate, ...], ranked: list[Candidate]
-    ) -> Step:
-        rejected = [c for c in ranked if c is not best and c.unknown == best.unknown]
-        return Step(best, fallbacks, tuple(rejected[:8]))
-
-    def _weak_at(self, candidate: Candidate) -> NDArray[np.float64]:
-        """Regular configurations where a candidate fails, sought once."""
-        key = (candidate.form, *(e.id for e in candidate.coefficients))
-        if key not in self._weak:
-            found = weak_configurations(candidate, self.system, self.probes)
-            special = self.probes.values[: self.probes.regular]
-            holds = self._holds(candidate, special)
-            self._weak[key] = np.concatenate([found, special[~holds]])
-        return self._weak[key]
-
-    def _holds(self, candidate: Candidate, values: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """At which configurations (N, dof) a candidate is well-conditioned."""
-        parts = conditions(candidate, self.system, values)
-        sizes = [np.abs(p).max(axis=0) for p in parts]
-        return np.asarray(np.all([s > SAFE_MARGIN for s in sizes], axis=0))
-
-    def _sound(self, ranked: list[Candidate]) -> Step | None:
-        tried = 0
-        for c in ranked:
-            if c.branches > 2 or c.is_weak:
-                continue
-            tried += 1
-            found = weak_configurations(c, self.system, self.probes)
-            if not len(found):
-                return self._step(c, (), ranked)
-            if tried >= MOST_TRIED:
-                break
-        return None
-
-    def _covered(self, ranked: list[Candidate]) -> Step | None:
-        """A weak candidate and others of the same unknown that hold where it does not."""
-        tried: dict[Variable, int] = {}
-        for best in ranked:
-            tried[best.unknown] = tried.get(best.unknown, 0) + 1
-            if best.branches > 2 or tried[best.unknown] > 2:
-                continue
-            same = [c for c in ranked if c.unknown == best.unknown and c.branches <= best.branches]
-            fallbacks = self._fallbacks(best, same[:MOST_FALLBACKS])
-            if fallbacks is not None:
-                return self._step(best, fallbacks, ranked)
-        return None
-
-    def _fallbacks(self, best: Candidate, others: list[Candidate]) -> tuple[Candidate, ...] | None:
-        """Candidates that cover all regular configurations where `best` fails; None if none do."""
-        uncovered = self._weak_at(best)
-        out: list[Candidate] = []
-        while len(uncovered) and len(out) < 2:
-            gains = [(int(self._holds(c, uncovered).sum()), -i) for i, c in enumerate(others)]
-            gain, index = max(gains, default=(0, 0))
-            if gain == 0:
-                return None
-            chosen = others[-index]
-            out.append(chosen)
-            uncovered = uncovered[~self._holds(chosen, uncovered)]
-        return None if len(uncovered) else tuple(out)
 
     def _accept(self, step: Step) -> None:
         k = self.knowledge

@@ -35,15 +35,13 @@ class UniversalPlan:
 
     frames: (7, 4, 4) read-only, `T = F_0 Rz(v_1) F_1 ... Rz(v_6) F_6`. length: the arm's scale (m).
     eliminations: (start, reverse, swap) in order of preference. recall: fraction of all solutions
-    met in probing that the first of them finds alone. conditioning: 90th percentile of log10 of its
-    candidates' pose errors before Newton's method.
+    met in probing that the first of them finds alone.
     """
 
     frames: Matrix
     length: float
     eliminations: tuple[Elimination, ...]
     recall: float
-    conditioning: float
 
     @property
     def usable(self) -> bool:
@@ -75,7 +73,6 @@ def choose_plan(frames: Matrix, *, probes: int = 24, seed: int = 0) -> Universal
         length=typical_length(first),
         eliminations=tuple(_ELIMINATIONS[k] for k in order),
         recall=float(hits[order[0]].mean()) if hits.size else 0.0,
-        conditioning=float(rough[order[0]]),
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ikgen import __version__
+from ikgen.derivation import Derivation, Reading, Unsolved
 from ikgen.emit.report.behavior import behavior_section
 from ikgen.emit.report.document import Block, Heading, Paragraph
 from ikgen.emit.report.elimination import elimination_section
@@ -19,7 +20,6 @@ from ikgen.emit.report.sections import forward_section, robot_section
 from ikgen.emit.report.splits import splits_section
 from ikgen.emit.report.steps import Writer, abbreviations, derived_section, step_section
 from ikgen.kinematics.classify import GeometryClass
-from ikgen.pipeline import Derivation, Reading, Unsolved
 from ikgen.solver.graph import SolutionGraph
 from ikgen.tasks import Task
 from ikgen.verify.report import VerificationReport

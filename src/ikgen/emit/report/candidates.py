@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from ikgen.emit.report.document import Block, Rows, Text
 from ikgen.solver.candidate import Candidate
+from ikgen.solver.choice import Step
 from ikgen.solver.ranker import rank_key
-from ikgen.solver.session import Step
 
 __all__ = ["candidates_table"]
 

@@ -11,7 +11,8 @@ from ikgen.emit.report.mathtext import Math
 from ikgen.emit.report.naming import Abbreviations
 from ikgen.emit.report.normal import Normalizer, Sum
 from ikgen.emit.report.notation import angle, grouped, quotient, show
-from ikgen.equations.expression import Expr, ExpressionGraph
+from ikgen.equations.expression import Expr
+from ikgen.equations.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import Variable
 from ikgen.solver.candidate import Candidate
 

@@ -6,6 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from ikgen.derivation import Reading
 from ikgen.emit.report import mathtext as m
 from ikgen.emit.report.document import Block, Formulas, Heading, Matrix, Paragraph, Rows, Text
 from ikgen.emit.report.mathtext import Math
@@ -15,7 +16,6 @@ from ikgen.equations.rigid import link, multiply
 from ikgen.kinematics.classify import GeometryClass
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
 from ikgen.model.joint_tree import Matrix as Array
-from ikgen.pipeline import Reading
 from ikgen.solver.graph import SolutionGraph
 from ikgen.tasks import Task
 

@@ -17,8 +17,8 @@ from ikgen.emit.report.splits import origin, place
 from ikgen.equations.build import Equation
 from ikgen.equations.knowledge import Variable
 from ikgen.solver.candidate import Candidate
+from ikgen.solver.choice import Step
 from ikgen.solver.graph import SolutionGraph
-from ikgen.solver.session import Step
 
 __all__ = ["Writer", "abbreviations", "derived_section", "step_section"]
 

@@ -1,0 +1,18 @@
+"""Names of emitted modules: which ones can be, and one made from a robot's name."""
+
+from __future__ import annotations
+
+import keyword
+
+__all__ = ["identifier", "is_module_name"]
+
+
+def is_module_name(name: str) -> bool:
+    """Whether a Python module and a C++ namespace can have that name."""
+    return name.isascii() and name.isidentifier() and not keyword.iskeyword(name)
+
+
+def identifier(name: str) -> str:
+    """A robot's name as a module name: lower case, letters, digits and underscores."""
+    text = "".join(ch if ch.isascii() and ch.isalnum() else "_" for ch in name).strip("_").lower()
+    return text if text and not text[0].isdigit() else f"robot_{text}".rstrip("_")
