@@ -12,6 +12,7 @@ import pytest
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 KUKA = FIXTURES / "kuka_kr6r900sixx.urdf"
+SCARA = FIXTURES / "scara_standard.toml"
 AR4 = FIXTURES / "ar4_ros_driver/annin_ar4_description/urdf/ar.urdf.xacro"
 
 
@@ -99,6 +100,9 @@ def test_a_xacro_file_and_its_arguments(tmp_path: Path) -> None:
         (["from-urdf", FIXTURES / "abb_yumi.urdf"], "gripper_l_base"),
         (["from-urdf", FIXTURES], "suffix"),
         (["from-dh", KUKA], "from-urdf"),
+        (["from-dh", SCARA, "--base", "base"], "leave --base out"),
+        (["from-dh", SCARA, "--arg", "a:=b"], "leave --arg out"),
+        (["from-dh", SCARA, "--package-path", FIXTURES], "leave --package-path out"),
         (["inspect", "nothing.urdf"], "no such file"),
         (["verify", "nowhere"], "no such file or directory"),
         (["build", "nothing.toml"], "no such file"),
