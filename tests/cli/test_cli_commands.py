@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -44,6 +45,21 @@ def test_generates_and_verifies(tmp_path: Path) -> None:
     again = ikgen("verify", tmp_path, "--samples", 50)
     assert again.returncode == 0, again.stderr
     assert "right" in again.stdout
+
+
+def test_text_that_cannot_be_imported_is_not_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from ikgen.cli.main import run
+    from ikgen.emit import python
+
+    broken = {"kuka_kr6r900sixx_ik.py": 'NAME = "open\n'}
+    monkeypatch.setattr(python, "emit_derivation", lambda derivation: broken)
+    assert run(["from-urdf", str(KUKA), "-o", str(tmp_path / "out"), "-q"]) == 1
+    message = capsys.readouterr().err
+    assert "the emitted python code cannot be imported: SyntaxError" in message
+    assert tempfile.gettempdir() not in message
+    assert not (tmp_path / "out").exists()
 
 
 def test_json_alone_is_on_stdout(tmp_path: Path) -> None:
