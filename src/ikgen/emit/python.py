@@ -8,7 +8,7 @@ from typing import Protocol
 
 from ikgen.emit.module import SolverModule
 from ikgen.emit.printer import Language, expression
-from ikgen.emit.python_text import words
+from ikgen.emit.python_text import literal, words
 from ikgen.emit.rendering import render
 from ikgen.emit.symbols import blanks, frame_entries, pairs
 from ikgen.ir.ops import Op, Operand, operand_names
@@ -104,6 +104,7 @@ def emit_module(module: SolverModule) -> str:
         ],
         rows=[(row.driver, row.revolute, row.scale, row.offset.value) for row in module.dh.rows],
         number=_number,
+        literal=literal,
         words=words,
         beside=[[[_number(float(x)) for x in row] for row in D] for D in module.beside],
         orientation=module.reads.orientation,
