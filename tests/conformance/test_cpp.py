@@ -193,6 +193,22 @@ def test_a_batch_has_the_rows_of_single_poses(name: str, folder: Path) -> None:
         assert np.array_equal(batch.q, single.q, equal_nan=True)
 
 
+def test_odd_seeds(folder: Path) -> None:
+    arm = compiled("kuka_kr6r900sixx", folder)
+    python = python_module(arm, folder)
+    poses, plain = arm.poses[:10], arm.header.solve_many(arm.poses[:10])
+    for far in (1e6, -1e16):
+        seed = np.full((10, 6), far)
+        found = arm.header.solve_many(poses, seeds=seed)
+        assert (found.count == plain.count).all() and found.count.max() > 1
+        for i, pose in enumerate(poses):
+            other = python.solve(pose, seed=seed[i])
+            if not other.singular.any():
+                assert np.abs(found.q[i, : found.count[i]] - other.q).max() < 1e-9
+    nothing = arm.header.solve_many(poses, seeds=seed * np.nan)
+    assert np.array_equal(nothing.q, plain.q, equal_nan=True)
+
+
 def test_odd_names_are_escaped(folder: Path) -> None:
     module = module_of(ROBOTS[0])
     odd = 'tool "0" \\ \n é ??/'

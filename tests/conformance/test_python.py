@@ -8,6 +8,7 @@ import functools
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from ikgen.cli.main import run
@@ -86,6 +87,53 @@ def test_odd_names_in_the_compiled_package(odd: str) -> None:
 def test_constants_are_written_plainly() -> None:
     text = emit_module(named("é \U0001f9be <b> it's"))
     assert 'BASE_LINK: str = "é \U0001f9be <b> it\'s"\n' in text
+
+
+@pytest.fixture(scope="module")
+def arm(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """The module of an arm with limits on all joints, imported."""
+    return imported(emit_module(kuka()), tmp_path_factory.mktemp("arm"))
+
+
+def test_a_seed_many_turns_away(arm: Any) -> None:
+    pose = arm.forward([0.2, -0.9, 1.1, 0.3, 0.6, -0.4])
+    for far in (1e6, 1e16, 1e300):
+        for seed in (np.full(6, far), np.full(6, -far)):
+            found = arm.solve(pose, seed=seed)
+            q, (count,), _ = arm.solve_batch([pose], seed=seed)
+            assert count == len(found) == len(arm.solve(pose)) > 1
+            assert np.abs(arm.forward(found.q) - pose).max() < 1e-9
+            assert np.abs(q[0, :count] - found.q).max() < 1e-9
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+def test_a_seed_that_is_no_number(arm: Any, bad: float) -> None:
+    pose, seed = np.asarray(arm.forward(np.full(6, 0.5))), np.zeros(6)
+    seed[3] = bad
+    with pytest.raises(ValueError, match=r"seed .* not finite"):
+        arm.solve(pose, seed=seed)
+    for seeds in (seed, np.stack([np.zeros(6), seed])):
+        with pytest.raises(ValueError, match=r"seed .* not finite"):
+            arm.solve_batch([pose, pose], seed=seeds)
+
+
+def test_a_free_value_that_is_no_number(tmp_path: Path) -> None:
+    held = derive(Request(FIXTURES / "franka_fr3.urdf", free=(("fr3_joint7", None),))).module
+    arm = imported(emit_module(held), tmp_path)
+    pose = np.asarray(arm.forward(np.full(7, -0.5)))
+    for free in ([np.nan], {"fr3_joint7": np.inf}):
+        with pytest.raises(ValueError, match=r"free .* not finite"):
+            arm.solve(pose, free=free)
+        with pytest.raises(ValueError, match=r"free .* not finite"):
+            arm.solve_batch([pose], free=free)
+    with pytest.raises(ValueError, match=r"free .* not finite"):
+        arm.solve_batch([pose, pose], free=[[0.0], [np.nan]])
+
+
+@pytest.mark.parametrize("seed", [0.5, [[0.0] * 6], [0.0] * 5])
+def test_a_seed_of_another_shape(arm: Any, seed: Any) -> None:
+    with pytest.raises(ValueError, match="shape"):
+        arm.solve(arm.forward(np.full(6, 0.5)), seed=seed)
 
 
 def test_odd_names_in_a_file(tmp_path: Path) -> None:
