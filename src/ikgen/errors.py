@@ -40,13 +40,15 @@ class UsageError(IkgenError):
 
 
 class BadDescriptionError(IkgenError):
-    """A robot description, DH table or config that cannot be read; carries the file and the line."""
+    """A robot description, DH table or config that cannot be read; carries the file, the line and the
+    problem without them."""
 
     def __init__(
         self, message: str, *, file: str = "", line: int | None = None, hint: str = ""
     ) -> None:
         place = "" if not file else f"{file}:{line}: " if line else f"{file}: "
         super().__init__(f"{place}{message}", hint=hint)
+        self.problem = message
         self.file = file
         self.line = line
 

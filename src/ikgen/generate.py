@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ikgen.errors import VerificationError
+from ikgen.errors import BadDescriptionError, VerificationError
 from ikgen.pipeline import Derivation, Progress, Reading, Request, derive
 
 if TYPE_CHECKING:
@@ -191,7 +191,7 @@ def verify_files(
     reports: dict[str, VerificationReport] = {}
     first = None
     for name in outputs.emit:
-        runner = find_emitter(name).runner(derivation.module, folder)
+        runner = _runner(find_emitter(name), derivation.module, folder)
         if runner is not None:
             module = derivation.module
             reports[name] = verify_one(runner, oracle, module, outputs, progress, peer=first)
@@ -204,6 +204,18 @@ def verify_files(
                 hint="nothing was written; run with -v for the whole table, and please report it",
             )
     return reports
+
+
+def _runner(emitter: Emitter, module: SolverModule, folder: Path) -> Any | None:
+    """What runs an output that was just emitted: if it cannot be run, ikgen's text is wrong, not the
+    user's."""
+    try:
+        return emitter.runner(module, folder)
+    except BadDescriptionError as error:
+        raise VerificationError(
+            f"the emitted {emitter.name} code {error.problem}",
+            hint="nothing was written; please report it",
+        ) from error
 
 
 def verify_one(

@@ -77,9 +77,11 @@ def derive(
     `passed_over` names tasks that are not to be chosen for the arm.
     """
     from ikgen.kinematics.classify import classify
+    from ikgen.kinematics.free_joints import free_defaults
 
     progress("read", request.robot.name)
     reading = read(request)
+    free_defaults(reading.dh, request.free)  # before the search: some values are refused
     geometry = classify(reading.dh)
     progress("derive", geometry.name)
     task, graph = _solve(reading.dh, request.task, progress, passed_over)
@@ -170,17 +172,16 @@ def _module(
     from ikgen.emit.module import SolverModule
     from ikgen.ir.elimination import elimination_program
     from ikgen.ir.lower import lower
+    from ikgen.kinematics.free_joints import free_defaults
 
     dh = reading.dh
-    values = dict(request.free)
-    free = tuple(j for j, joint in enumerate(dh.joints) if joint.name in dh.free)
     return SolverModule(
         name=request.name or identifier(dh.robot),
         program=elimination_program(dh) if plan else lower(graph, slack=2.0 * max(dh.deviation)),
         dh=dh,
         task=task.name,
-        free=free,
-        free_defaults=tuple(_inside(dh, j, values.get(dh.joints[j].name)) for j in free),
+        free=tuple(j for j, joint in enumerate(dh.joints) if joint.name in dh.free),
+        free_defaults=free_defaults(dh, request.free),
         source_name=request.robot.name,
         source_sha256=reading.source.sha256,
         generator_version=__version__,
@@ -188,13 +189,3 @@ def _module(
         order=("all joints (6R elimination)",) if plan else graph.order,
         plan=plan,
     )
-
-
-def _inside(dh: DHChain, joint: int, value: float | None) -> float:
-    """The default of a held joint: the given value, or 0 brought inside its limits."""
-    limits = dh.joints[joint].limits
-    if value is not None:
-        return value
-    if limits.lower <= 0.0 <= limits.upper:
-        return 0.0
-    return 0.5 * (limits.lower + limits.upper)

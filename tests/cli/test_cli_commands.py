@@ -6,12 +6,14 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 KUKA = FIXTURES / "kuka_kr6r900sixx.urdf"
+SCARA = FIXTURES / "scara_standard.toml"
 AR4 = FIXTURES / "ar4_ros_driver/annin_ar4_description/urdf/ar.urdf.xacro"
 
 
@@ -43,6 +45,21 @@ def test_generates_and_verifies(tmp_path: Path) -> None:
     again = ikgen("verify", tmp_path, "--samples", 50)
     assert again.returncode == 0, again.stderr
     assert "right" in again.stdout
+
+
+def test_text_that_cannot_be_imported_is_not_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from ikgen.cli.main import run
+    from ikgen.emit import python
+
+    broken = {"kuka_kr6r900sixx_ik.py": 'NAME = "open\n'}
+    monkeypatch.setattr(python, "emit_derivation", lambda derivation: broken)
+    assert run(["from-urdf", str(KUKA), "-o", str(tmp_path / "out"), "-q"]) == 1
+    message = capsys.readouterr().err
+    assert "the emitted python code cannot be imported: SyntaxError" in message
+    assert tempfile.gettempdir() not in message
+    assert not (tmp_path / "out").exists()
 
 
 def test_json_alone_is_on_stdout(tmp_path: Path) -> None:
@@ -99,6 +116,9 @@ def test_a_xacro_file_and_its_arguments(tmp_path: Path) -> None:
         (["from-urdf", FIXTURES / "abb_yumi.urdf"], "gripper_l_base"),
         (["from-urdf", FIXTURES], "suffix"),
         (["from-dh", KUKA], "from-urdf"),
+        (["from-dh", SCARA, "--base", "base"], "leave --base out"),
+        (["from-dh", SCARA, "--arg", "a:=b"], "leave --arg out"),
+        (["from-dh", SCARA, "--package-path", FIXTURES], "leave --package-path out"),
         (["inspect", "nothing.urdf"], "no such file"),
         (["verify", "nowhere"], "no such file or directory"),
         (["build", "nothing.toml"], "no such file"),

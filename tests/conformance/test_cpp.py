@@ -181,6 +181,53 @@ def test_rows_are_the_python_modules(name: str, seeded: bool, folder: Path) -> N
             assert np.diag(apart).max() < limit, (i, mine, other.q)
 
 
+def at_limits(module: SolverModule) -> Array:
+    """Configurations (N, dof) with one or more joints at a limit, or 1e-13 to 1e-9 beside it."""
+    random = np.random.default_rng(2)
+    joints = module.dh.joints
+    low = np.array([max(j.limits.lower, -3.0) for j in joints])
+    high = np.array([min(j.limits.upper, 3.0) for j in joints])
+    q = random.uniform(low, high, (80, len(joints)))
+    for i, row in enumerate(q):
+        for j in random.permutation(len(joints))[: 1 + i % 3]:
+            beside = random.choice([0.0, 1e-13, 8e-10]) * random.choice([-1.0, 1.0])
+            row[j] = random.choice([low[j], high[j]]) + beside
+    return np.asarray(q)
+
+
+LIMITED = [
+    name
+    for name in ("kuka_kr6r900sixx", "mitsubishi_rh6crh6020_scara", "mycobot_pro630")
+    if name in ROBOTS
+]
+
+
+@pytest.mark.parametrize("seeded", [False, True])
+@pytest.mark.parametrize("name", LIMITED)
+def test_rows_at_limits_are_the_python_modules(name: str, seeded: bool, folder: Path) -> None:
+    arm = compiled(name, folder)
+    python = python_module(arm, folder)
+    q = at_limits(arm.module)
+    poses = file_forward(arm.module.dh, q)
+    found = arm.header.solve_many(poses, seeds=q if seeded else None)
+    batch, count, _ = python.solve_batch(poses, seed=q if seeded else None)
+    compared = touching = 0
+    for i, pose in enumerate(poses):
+        if np.linalg.svd(python.jacobian(q[i]), compute_uv=False)[-1] < 0.05:
+            continue
+        other = python.solve(pose, seed=q[i] if seeded else None)
+        mine = found.q[i, : found.count[i]]
+        assert found.count[i] == count[i] == len(other)
+        assert (other.q >= python.LOWER).all() and (other.q <= python.UPPER).all()
+        for rows in (mine, batch[i, : count[i]]):
+            # half a turn from the seed, the last digit decides to which side
+            apart = gap(arm.module, rows, other.q) if seeded else np.abs(rows - other.q)
+            assert apart.max(initial=0.0) < 1e-12, (i, rows, other.q)
+        compared += 1
+        touching += int((other.q == python.LOWER).sum() + (other.q == python.UPPER).sum())
+    assert compared > 20 and touching > 10
+
+
 @pytest.mark.parametrize("name", ROBOTS)
 def test_a_batch_has_the_rows_of_single_poses(name: str, folder: Path) -> None:
     arm = compiled(name, folder)
@@ -191,6 +238,22 @@ def test_a_batch_has_the_rows_of_single_poses(name: str, folder: Path) -> None:
         assert batch is not None and batch.status == single.status
         assert (batch.count == single.count).all() and (batch.singular == single.singular).all()
         assert np.array_equal(batch.q, single.q, equal_nan=True)
+
+
+def test_odd_seeds(folder: Path) -> None:
+    arm = compiled("kuka_kr6r900sixx", folder)
+    python = python_module(arm, folder)
+    poses, plain = arm.poses[:10], arm.header.solve_many(arm.poses[:10])
+    for far in (1e6, -1e16):
+        seed = np.full((10, 6), far)
+        found = arm.header.solve_many(poses, seeds=seed)
+        assert (found.count == plain.count).all() and found.count.max() > 1
+        for i, pose in enumerate(poses):
+            other = python.solve(pose, seed=seed[i])
+            if not other.singular.any():
+                assert np.abs(found.q[i, : found.count[i]] - other.q).max() < 1e-9
+    nothing = arm.header.solve_many(poses, seeds=seed * np.nan)
+    assert np.array_equal(nothing.q, plain.q, equal_nan=True)
 
 
 def test_odd_names_are_escaped(folder: Path) -> None:

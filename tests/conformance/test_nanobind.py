@@ -81,6 +81,8 @@ def test_constants_and_errors_are_the_python_modules(both: tuple[ModuleType, Mod
     for call in (
         lambda m: m.solve(np.eye(3)),
         lambda m: m.solve(pose, seed=[1.0]),
+        lambda m: m.solve(pose, seed=[np.nan] * 6),
+        lambda m: m.solve_batch([pose, pose], seed=[[0.0] * 6, [np.inf] * 6]),
         lambda m: m.solve(pose, free={"none": 1.0}),
         lambda m: m.solve_batch(pose),
         lambda m: m.forward([1.0, 2.0]),

@@ -735,11 +735,12 @@ inline bool place_row(double* q, const Options& options) noexcept {
     const double low = kLower.data()[j], high = kUpper.data()[j];
     if (kTurning[j]) {
       q[j] += q[j] <= -kPi ? kTurn : q[j] > kPi ? -kTurn : 0.0;
-      if (seed) q[j] += kTurn * std::nearbyint((seed[j] - q[j]) / kTurn);
-      if (options.limits && q[j] < low - kLimitTolerance)
-        q[j] += kTurn * std::ceil((low - kLimitTolerance - q[j]) / kTurn);
-      if (options.limits && q[j] > high + kLimitTolerance)
-        q[j] -= kTurn * std::ceil((q[j] - high - kLimitTolerance) / kTurn);
+      double shift = seed ? kTurn * std::nearbyint((seed[j] - q[j]) / kTurn) : 0.0;
+      if (options.limits && q[j] + shift < low - kLimitTolerance)
+        shift = kTurn * std::ceil((low - kLimitTolerance - q[j]) / kTurn);
+      if (options.limits && q[j] + shift > high + kLimitTolerance)
+        shift = kTurn * std::floor((high + kLimitTolerance - q[j]) / kTurn);
+      q[j] += shift;
     }
     if (!options.limits) continue;
     if (!(low - kLimitTolerance <= q[j] && q[j] <= high + kLimitTolerance)) return false;

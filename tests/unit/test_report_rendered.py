@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 
 from ikgen.emit.report import emit_report, emit_unsolved
+from ikgen.emit.report.document import Paragraph
+from ikgen.emit.report.latex import to_latex
 from ikgen.errors import UnsolvedChainError
 from ikgen.pipeline import Request, derive
 
@@ -98,6 +100,24 @@ def typeset(text: str, folder: Path) -> str:
     log = done.stdout.decode("latin-1")
     assert done.returncode == 0, log[-2000:]
     return log
+
+
+ODD = "a<b>c|d 'e' --f ?`g !`h ''i \\j {k} ~l ^m °±·×"
+LETTERS = "".join(ch for ch in map(chr, range(0xA1, 0x250)) if ch.isprintable())
+
+
+def test_names_on_paper(tmp_path: Path) -> None:
+    """Names come out as they are in the file, or as question marks: never as something else."""
+    if shutil.which("pdftotext") is None:
+        pytest.skip("no pdftotext here")
+    page = to_latex(f"{ODD} {LETTERS}", "subtitle", [Paragraph((f"{ODD} end",), False)])
+    log = typeset(page, tmp_path)
+    assert "Missing character" not in log and "pk>" not in log
+    done = subprocess.run(["pdftotext", "report.pdf", "-"], cwd=tmp_path, capture_output=True)
+    text = done.stdout.decode("utf-8")
+    for part in ("a<b>c|d", "?‘g", "!‘h", "’’i", "\\j", "{k}"):
+        assert text.count(part) == 2, (part, text)
+    assert "--f" in text or "-‐f" in text, text
 
 
 @pytest.mark.slow

@@ -119,6 +119,17 @@ def test_right_header_passes(tmp_path: Path) -> None:
     assert report.check("solve_batch").count == 0
 
 
+def test_header_tells_its_defaults(tmp_path: Path) -> None:
+    assert header(tmp_path).constants.free_defaults is None
+    text = HEADER.replace("kFree = 0", "kFree = 1").replace("free{};", "free = {2.75};")
+    (tmp_path / "planar_ik.hpp").write_text(text)
+    held = dataclasses.replace(constants(), free_joints=("j2",))
+    runner = CppHeader(tmp_path / "planar_ik.hpp", held)
+    assert runner.constants.free_defaults == (2.75,)
+    report = verify(runner, oracle(), samples=20)  # the limit is 2.5
+    assert "defaults of free joints" in report.check("constants").detail
+
+
 def test_wrong_header_is_caught(tmp_path: Path) -> None:
     text = HEADER.replace("for (double sign : {1.0, -1.0})", "for (double sign : {1.0})")
     failed = {check.name for check in verify(header(tmp_path, text), oracle(), samples=60).failed}

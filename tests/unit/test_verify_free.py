@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from test_verify_fakes import tree_of
 
+from ikgen.tasks import find_task
+from ikgen.verify.arm import arm_under_test
+from ikgen.verify.interface_checks import check_constants
 from ikgen.verify.oracle import PinocchioOracle
 from ikgen.verify.run import verify
 from ikgen.verify.runners.python_module import PythonModule
+from ikgen.verify.task_space import task_space
 
 _LINK = """<joint name="j{i}" type="continuous"><parent link="l{before}"/><child link="l{i}"/>
 <origin xyz="{x} 0 0"/><axis xyz="0 0 1"/></joint><link name="l{i}"/>"""
@@ -103,3 +108,20 @@ def test_free_joint(tmp_path: Path, defect: str) -> None:
     assert report.check("free joints").count > 0
     assert report.check("free joints").passed == (not defect)
     assert report.passed == (not defect), report.worst_case
+
+
+@pytest.mark.parametrize(
+    ("told", "right"),
+    [("(0.0,)", True), ("(2.0,)", False), ("(float('inf'),)", False), ("()", False)],
+)
+def test_defaults_lie_inside_the_limits(tmp_path: Path, told: str, right: bool) -> None:
+    path = tmp_path / "planar_ik.py"
+    path.write_text(f"{MODULE}\n_FREE_DEFAULTS = {told}\n")
+    oracle = PinocchioOracle(tree_of(URDF), "l0", "tip", ["j1", "j2", "j3"])
+    bound = np.array([np.inf, np.inf, np.inf if "inf" in told else 1.0])
+    limits = (-bound, bound)
+    arm = arm_under_test(oracle, task_space(find_task("position")), limits, ("j3",))
+    runner = PythonModule(path)
+    none = runner.solve_many(np.empty((0, 4, 4)))
+    detail = check_constants(arm, runner, none).detail
+    assert ("defaults of free joints" in detail) == (not right)

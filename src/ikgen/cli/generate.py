@@ -46,6 +46,14 @@ _verify = click.option(
     "--no-verify", is_flag=True, help="Leave the verification out (and Pinocchio with it)."
 )
 
+_NOT_OF_TABLES = {
+    "base": "--base",
+    "tip": "--tip",
+    "arguments": "--arg",
+    "package_paths": "--package-path",
+}
+"""Parameters of `from_dh` that a table has no use for, and the options that set them."""
+
 
 @click.command("from-urdf")
 @click.argument("robot", type=click.Path(path_type=Path))
@@ -78,9 +86,9 @@ def from_dh(table: Path, **options: Any) -> int:
     """Generate inverse kinematics from the DH table TABLE (TOML), and verify it."""
     if table.suffix.lower() != ".toml":
         raise UsageError(f"{table} is not a TOML file", hint=f"a robot? ikgen from-urdf {table}")
-    for option in ("base", "tip", "arguments", "package_paths"):
-        if options[option]:
-            raise UsageError(f"a DH table is one chain without arguments: leave --{option} out")
+    for parameter, option in _NOT_OF_TABLES.items():
+        if options[parameter]:
+            raise UsageError(f"a DH table is one chain without arguments: leave {option} out")
     return _run(table, **options)
 
 

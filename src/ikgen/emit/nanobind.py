@@ -7,6 +7,7 @@ from typing import Protocol
 
 from ikgen.emit.cpp import emit_header
 from ikgen.emit.module import SolverModule
+from ikgen.emit.python_text import literal
 from ikgen.emit.rendering import render
 
 __all__ = ["emit", "emit_derivation"]
@@ -36,6 +37,7 @@ def emit(module: SolverModule) -> dict[str, str]:
         "namespace": f"{module.name}_ik",
         "joint_names": tuple(joint.name for joint in module.dh.joints),
         "free_joints": tuple(module.dh.joints[j].name for j in module.free),
+        "literal": literal,
         "lower": [_number(joint.limits.lower) for joint in module.dh.joints],
         "version": _version(module.generator_version),
         "upper": [_number(joint.limits.upper) for joint in module.dh.joints],

@@ -9,6 +9,7 @@ from ikgen.emit.printer import expression
 from ikgen.emit.python_joints import JointText
 from ikgen.emit.python_language import SCALAR, number
 from ikgen.emit.python_program import batch_lines, scalar_lines
+from ikgen.emit.python_text import literal, words
 from ikgen.emit.rendering import render
 from ikgen.emit.symbols import blanks, frame_entries, pairs
 from ikgen.ir.liveness import used_inputs
@@ -52,6 +53,8 @@ def emit_module(module: SolverModule) -> str:
         ],
         rows=[(row.driver, row.revolute, row.scale, row.offset.value) for row in module.dh.rows],
         number=number,
+        literal=literal,
+        words=words,
         beside=[[[number(float(x)) for x in row] for row in D] for D in module.beside],
         orientation=module.reads.orientation,
         entries=module.reads.entries,

@@ -31,6 +31,17 @@ def _same_bounds(a: Array, b: Array) -> bool:
     return bool(np.all(np.isclose(a[known], b[known], rtol=1e-9, atol=1e-9)))
 
 
+def _allowed(arm: ArmUnderTest, defaults: tuple[float, ...] | None) -> bool:
+    """Whether the defaults of the free joints, where they are known, lie inside the limits."""
+    if defaults is None:
+        return True
+    values, held = np.array(defaults, dtype=float), list(arm.free)
+    if values.shape != (len(held),):
+        return False
+    inside = (arm.lower[held] <= values) & (values <= arm.upper[held])
+    return bool(np.all(inside & np.isfinite(values)))
+
+
 def check_constants(arm: ArmUnderTest, runner: Runner, rows: Rows) -> CheckResult:
     """The module's constants are the description's, and MAX_SOLUTIONS holds for the `rows` seen."""
     constants, oracle = runner.constants, arm.oracle
@@ -39,6 +50,7 @@ def check_constants(arm: ArmUnderTest, runner: Runner, rows: Rows) -> CheckResul
         "links": (constants.base_link, constants.tip_link) == (oracle.base_link, oracle.tip_link),
         "task": constants.task == arm.task.name,
         "free joints": constants.free_indices == list(arm.free),
+        "defaults of free joints": _allowed(arm, constants.free_defaults),
         "shape of limits": constants.lower.shape == constants.upper.shape == (oracle.dof,),
         "most solutions": int(np.max(rows.count, initial=0)) <= constants.max_solutions,
     }

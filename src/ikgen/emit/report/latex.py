@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+import unicodedata
+
 from ikgen.emit.rendering import render
 from ikgen.emit.report.document import (
     Block,
@@ -21,8 +24,14 @@ _ESCAPES = {
     "{": "\\{", "}": "\\}", "~": "\\textasciitilde{}", "^": "\\textasciicircum{}", "–": "--",
     "°": "\\ensuremath{^\\circ}", "±": "\\ensuremath{\\pm}",
     "·": "\\ensuremath{\\cdot}", "×": "\\ensuremath{\\times}", "−": "\\ensuremath{-}",
+    "<": "\\textless{}", ">": "\\textgreater{}", "|": "\\textbar{}", "`": "{}`",
     "\u2003": "\\quad{}", "-": "-{}",
 }  # fmt: skip
+"""What the font of a basic installation (OT1) shows as another character, alone or next to its like."""
+
+_LETTERS = "ßæÆœŒøØåÅłŁı"
+_ACCENTS = "\u0300\u0301\u0302\u0303\u0304\u0306\u0307\u0308\u030a\u030b\u030c\u0327"
+"""Beyond ASCII the font has these letters, and can put these accents on others."""
 
 
 _CENTRED, _WRAPPED = 24, 60
@@ -38,8 +47,16 @@ def to_latex(title: str, subtitle: str, blocks: list[Block]) -> str:
 
 
 def _words(text: str) -> str:
-    out = "".join(_ESCAPES.get(ch, ch) for ch in text)
-    return "".join(ch if ord(ch) < 0x250 else "?" for ch in out)
+    out = "".join(_ESCAPES.get(ch) or (ch if _in_font(ch) else "?") for ch in text)
+    return re.sub("'(?=')", "'{}", out)  # two of them would join to one quotation mark
+
+
+def _in_font(ch: str) -> bool:
+    if ch.isascii():
+        return ch.isprintable() or ch.isspace()
+    parts = unicodedata.normalize("NFD", ch)
+    accented = ch < "\u0180" and len(parts) == 2 and parts[0].isascii() and parts[1] in _ACCENTS
+    return ch in _LETTERS or accented
 
 
 def _text(text: Text) -> str:

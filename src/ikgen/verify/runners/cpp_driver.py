@@ -68,7 +68,10 @@ int main(int argc, char** argv) {
   std::fclose(file);
   const int mode = input[0], n = input[1];
   const double* in = input.data() + 5;
-  if (mode == 0) out = {double(ik::kDof), double(ik::kFree), double(ik::kMaxSolutions)};
+  if (mode == 0) {
+    out = {double(ik::kDof), double(ik::kFree), double(ik::kMaxSolutions)};
+    put(out, ik::Options().free.data(), ik::kFree);
+  }
   if (mode == 4) solve_batch(in, n, input[4] != 0, out);
   for (int i = 0; mode > 0 && mode < 4 && i < n; ++i) {
     if (mode == 1) {

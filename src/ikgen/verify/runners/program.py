@@ -5,7 +5,7 @@ of five (mode, N, has free values, has seeds, limits), then N items. The answers
 
 | mode | item | answer |
 |---|---|---|
-| 0 | none | joints, free joints, most solutions |
+| 0 | none | joints, free joints, most solutions; then, if it likes, the defaults of the free joints |
 | 1 solve | pose (16, columns first), free values, seed | status, count, then all rows |
 | 2 forward | joints | pose (16, columns first) |
 | 3 jacobian | joints | 6 by joints, columns first |
@@ -52,14 +52,16 @@ class ProgramRunner:
         self.label = label
         self._program = program
         self._has_batch = batch
-        dof, free, most = (int(x) for x in self._run(INFO, 0, []))
+        told = self._run(INFO, 0, [])
+        dof, free, most = (int(x) for x in told[:3])
         if (dof, free) != (constants.dof, len(constants.free_joints)):
             raise BadDescriptionError(
                 f"has {dof} joints, {free} of them free, instead of {constants.dof} and "
                 f"{len(constants.free_joints)}",
                 file=source,
             )
-        self._constants = dataclasses.replace(constants, max_solutions=most)
+        defaults = tuple(told[3:].tolist()) if len(told) > 3 else None
+        self._constants = dataclasses.replace(constants, max_solutions=most, free_defaults=defaults)
 
     @property
     def constants(self) -> ArmConstants:

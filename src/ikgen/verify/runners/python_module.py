@@ -69,6 +69,7 @@ class PythonModule:
         self._constants = ArmConstants(
             tuple(m.JOINT_NAMES), np.asarray(m.LOWER, float), np.asarray(m.UPPER, float),
             m.BASE_LINK, m.TIP_LINK, int(m.MAX_SOLUTIONS), m.TASK, tuple(m.FREE_JOINTS),
+            getattr(m, "_FREE_DEFAULTS", None),
         )  # fmt: skip
 
     @property

@@ -16,7 +16,9 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class ArmConstants:
-    """The constants of an emitted module (`docs`: JOINT_NAMES, LOWER, ...); limits in rad or m."""
+    """The constants of an emitted module (`docs`: JOINT_NAMES, LOWER, ...); limits in rad or m.
+    `free_defaults` are the values that free joints take where none are given; None where the code
+    does not tell."""
 
     joint_names: tuple[str, ...]
     lower: Array
@@ -26,6 +28,7 @@ class ArmConstants:
     max_solutions: int
     task: str = "pose"
     free_joints: tuple[str, ...] = ()
+    free_defaults: tuple[float, ...] | None = None
 
     @property
     def dof(self) -> int:
