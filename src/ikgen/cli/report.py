@@ -12,8 +12,9 @@ import click
 from ikgen.cli.console import Console
 from ikgen.cli.options import chain_options, console_options, make_request, sampling_options
 from ikgen.errors import IkgenError, UnsolvedChainError, VerificationError
-from ikgen.generate import Outputs, publish, verify_texts, with_samples
+from ikgen.generate import Outputs, verify_texts, with_samples
 from ikgen.pipeline import Derivation, Request, derive
+from ikgen.publish import publish
 
 if TYPE_CHECKING:
     from ikgen.verify.report import VerificationReport
