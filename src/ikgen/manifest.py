@@ -26,7 +26,7 @@ def manifest(
         "generator": "ikgen",
         "version": module.generator_version,
         "name": module.name,
-        "robot": os.path.relpath(request.robot.resolve(), outputs.out.resolve()),
+        "robot": _place(request.robot, outputs.out),
         "source_sha256": module.source_sha256,
         "base": module.dh.base_link,
         "tip": module.dh.tip_link,
@@ -34,9 +34,7 @@ def manifest(
         "free": dict(request.free),
         "lock": dict(request.locked),
         "args": dict(request.arguments),
-        "package_paths": [
-            os.path.relpath(p.resolve(), outputs.out.resolve()) for p in request.package_paths
-        ],
+        "package_paths": [_place(path, outputs.out) for path in request.package_paths],
         "asked": {"base": request.base, "tip": request.tip, "task": request.task},
         "emit": list(outputs.emit),
         "joints": [joint.name for joint in module.dh.joints],
@@ -50,10 +48,16 @@ def manifest(
 
 
 def _inputs(source: Source, out: Path) -> dict[str, str]:
-    """Digest of each file that was read, by its path relative to the outputs."""
+    """Digest of each file that was read, by its path relative to the outputs; by its URL where
+    another package holds it, since where packages lie is not the project's to say."""
+    urls = dict(source.package_urls)
     files = source.dependencies or (source.path,)
     found = {
-        os.path.relpath(p.resolve(), out.resolve()): hashlib.sha256(p.read_bytes()).hexdigest()
-        for p in files
+        urls.get(p) or _place(p, out): hashlib.sha256(p.read_bytes()).hexdigest() for p in files
     }
-    return {Path(name).as_posix(): digest for name, digest in sorted(found.items())}
+    return dict(sorted(found.items()))
+
+
+def _place(path: Path, out: Path) -> str:
+    """A path relative to the outputs, with slashes on every system."""
+    return Path(os.path.relpath(path.resolve(), out.resolve())).as_posix()

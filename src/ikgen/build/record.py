@@ -12,16 +12,17 @@ from typing import Any
 
 from ikgen.errors import BadDescriptionError, UsageError
 
-__all__ = ["SUFFIX", "Record", "digest", "find_records", "read_record"]
+__all__ = ["SUFFIX", "Record", "digest", "find_records", "read_record", "seen"]
 
 SUFFIX = "_ik.json"
 
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """One record. `path` is its file; `robot`, `package_paths` and `inputs` (file -> SHA-256) are
-    as seen from the current directory, `files` (name -> SHA-256) relative to the record's folder;
-    `asked` are base, tip and task as the user gave them (or did not)."""
+    """One record. `path` is its file; `robot` and `package_paths` are as seen from the current
+    directory. `inputs` (path relative to the record's folder or `package://` URL -> SHA-256) is read
+    by `ikgen.build.inputs`; `files` (name -> SHA-256) are relative to the record's folder; `asked`
+    are base, tip and task as the user gave them (or did not)."""
 
     path: Path
     version: str
@@ -39,7 +40,7 @@ class Record:
     emit: tuple[str, ...]
     joints: tuple[str, ...]
     max_solutions: int
-    inputs: Mapping[Path, str]
+    inputs: Mapping[str, str]
     files: Mapping[str, str]
 
     @property
@@ -134,7 +135,7 @@ def _record(path: Path, data: Mapping[str, Any]) -> Record:
         emit=tuple(data["emit"]),
         joints=tuple(data["joints"]),
         max_solutions=int(data["max_solutions"]),
-        inputs={seen(folder / name): str(value) for name, value in data["inputs"].items()},
+        inputs={name: str(value) for name, value in data["inputs"].items()},
         files=dict(data["files"]),
     )
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ikgen.build.config import ArmConfig
 from ikgen.build.record import read_record
-from ikgen.build.stale import why_stale
+from ikgen.build.stale import stale_reasons
 from ikgen.errors import IkgenError
 from ikgen.generate import Outputs
 from ikgen.pipeline import Request
@@ -62,7 +62,7 @@ def build_arms(
     progress: Callable[[str, str], None] = lambda stage, detail: None,
 ) -> Iterator[Outcome]:
     """Bring every arm up to date; outcomes in the order of the config."""
-    reasons = [why_stale(arm) or ("asked for" if force else "") for arm in arms]
+    reasons = [reason or ("asked for" if force else "") for reason in stale_reasons(arms)]
     work = [(arm, reason, verify) for arm, reason in zip(arms, reasons, strict=True) if reason]
     for arm, reason in zip(arms, reasons, strict=True):
         progress("build", f"{arm.name}: {reason or 'up to date'}")

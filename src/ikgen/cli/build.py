@@ -76,9 +76,12 @@ def build(
 def _check(arms: Sequence[ArmConfig], *, as_json: bool, quiet: bool) -> int:
     """Say what is stale; writes nothing and imports nothing heavy."""
     from ikgen.build.check import stale_lines
-    from ikgen.build.stale import why_stale
+    from ikgen.build.stale import stale_reasons
 
-    reasons = {arm.record_path.as_posix(): (arm.name, why_stale(arm)) for arm in arms}
+    reasons = {
+        arm.record_path.as_posix(): (arm.name, reason)
+        for arm, reason in zip(arms, stale_reasons(arms), strict=True)
+    }
     stale = any(reason for _, reason in reasons.values())
     if as_json:
         rows = [
@@ -118,9 +121,11 @@ def _print(outcomes: Sequence[Outcome], *, as_json: bool, quiet: bool) -> None:
 def _write_depfile(path: Path, arms: Sequence[ArmConfig]) -> None:
     """What the recorded arms were read from; nothing where one could not be generated."""
     from ikgen.build.depfile import write_depfile
+    from ikgen.build.inputs import Packages
     from ikgen.build.record import read_record
 
+    packages = Packages()
     records = [read_record(arm.record_path) for arm in arms if arm.record_path.is_file()]
     targets = [record.folder / name for record in records for name in record.files]
-    inputs = [file for record in records for file in record.inputs]
+    inputs = [file.path for record in records for file in packages.inputs(record)]
     write_depfile(path, targets, inputs)
