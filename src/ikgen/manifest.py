@@ -37,6 +37,7 @@ def manifest(
         "package_paths": [_place(path, outputs.out) for path in request.package_paths],
         "asked": {"base": request.base, "tip": request.tip, "task": request.task},
         "emit": list(outputs.emit),
+        "verified": outputs.verify,
         "joints": [joint.name for joint in module.dh.joints],
         "max_solutions": module.max_solutions,
         "inputs": _inputs(derivation.reading.source, outputs.out),

@@ -22,7 +22,8 @@ class Record:
     """One record. `path` is its file; `robot` and `package_paths` are as seen from the current
     directory. `inputs` (path relative to the record's folder or `package://` URL -> SHA-256) is read
     by `ikgen.build.inputs`; `files` (name -> SHA-256) are relative to the record's folder; `asked`
-    are base, tip and task as the user gave them (or did not)."""
+    are base, tip and task as the user gave them (or did not); `verified` is false after `--no-verify`.
+    """
 
     path: Path
     version: str
@@ -38,6 +39,7 @@ class Record:
     package_paths: tuple[Path, ...]
     asked: Mapping[str, str | None]
     emit: tuple[str, ...]
+    verified: bool
     joints: tuple[str, ...]
     max_solutions: int
     inputs: Mapping[str, str]
@@ -133,6 +135,7 @@ def _record(path: Path, data: Mapping[str, Any]) -> Record:
         package_paths=tuple(seen(folder / p) for p in data["package_paths"]),
         asked=dict(data["asked"]),
         emit=tuple(data["emit"]),
+        verified=bool(data["verified"]),
         joints=tuple(data["joints"]),
         max_solutions=int(data["max_solutions"]),
         inputs={name: str(value) for name, value in data["inputs"].items()},

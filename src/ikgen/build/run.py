@@ -62,7 +62,9 @@ def build_arms(
     progress: Callable[[str, str], None] = lambda stage, detail: None,
 ) -> Iterator[Outcome]:
     """Bring every arm up to date; outcomes in the order of the config."""
-    reasons = [reason or ("asked for" if force else "") for reason in stale_reasons(arms)]
+    reasons = [
+        reason or ("asked for" if force else "") for reason in stale_reasons(arms, verify=verify)
+    ]
     work = [(arm, reason, verify) for arm, reason in zip(arms, reasons, strict=True) if reason]
     for arm, reason in zip(arms, reasons, strict=True):
         progress("build", f"{arm.name}: {reason or 'up to date'}")

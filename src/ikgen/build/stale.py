@@ -18,14 +18,15 @@ from ikgen.errors import BadDescriptionError
 __all__ = ["stale_reasons", "why_stale"]
 
 
-def stale_reasons(arms: Sequence[ArmConfig]) -> list[str]:
+def stale_reasons(arms: Sequence[ArmConfig], *, verify: bool = True) -> list[str]:
     """`why_stale` of each arm."""
     packages = Packages()
-    return [why_stale(arm, packages) for arm in arms]
+    return [why_stale(arm, packages, verify=verify) for arm in arms]
 
 
-def why_stale(arm: ArmConfig, packages: Packages | None = None) -> str:
-    """The reason to generate the arm again; empty where its outputs are fresh."""
+def why_stale(arm: ArmConfig, packages: Packages | None = None, *, verify: bool = True) -> str:
+    """The reason to generate the arm again; empty where its outputs are fresh. With `verify` outputs
+    that were never verified are not."""
     if not arm.record_path.is_file():
         return "not generated yet"
     try:
@@ -34,7 +35,8 @@ def why_stale(arm: ArmConfig, packages: Packages | None = None) -> str:
         return error.message
     if record.version != __version__:
         return f"made by ikgen {record.version}; this is {__version__}"
-    return _changed_options(arm, record) or _changed_files(record, packages or Packages())
+    changed = _changed_options(arm, record) or _changed_files(record, packages or Packages())
+    return changed or ("not verified yet" if verify and not record.verified else "")
 
 
 def _changed_options(arm: ArmConfig, record: Record) -> str:

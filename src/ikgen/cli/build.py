@@ -39,7 +39,9 @@ __all__ = ["build"]
     help="Arms at a time (default: one a processor).",
 )
 @click.option(
-    "--no-verify", is_flag=True, help="Leave the verification out (and Pinocchio with it)."
+    "--no-verify",
+    is_flag=True,
+    help="Leave the verification out (and Pinocchio with it); unverified outputs count as fresh.",
 )
 @console_options
 def build(
@@ -60,7 +62,7 @@ def build(
     """
     arms = load_config(named_config(config))
     if check:
-        return _check(arms, as_json=as_json, quiet=quiet)
+        return _check(arms, verify=not no_verify, as_json=as_json, quiet=quiet)
     from ikgen.build.run import build_arms
 
     with Console(quiet=quiet, verbose=verbose) as console:
@@ -73,14 +75,14 @@ def build(
     return max(outcome.exit_code for outcome in outcomes)
 
 
-def _check(arms: Sequence[ArmConfig], *, as_json: bool, quiet: bool) -> int:
+def _check(arms: Sequence[ArmConfig], *, verify: bool, as_json: bool, quiet: bool) -> int:
     """Say what is stale; writes nothing and imports nothing heavy."""
     from ikgen.build.check import stale_lines
     from ikgen.build.stale import stale_reasons
 
     reasons = {
         arm.record_path.as_posix(): (arm.name, reason)
-        for arm, reason in zip(arms, stale_reasons(arms), strict=True)
+        for arm, reason in zip(arms, stale_reasons(arms, verify=verify), strict=True)
     }
     stale = any(reason for _, reason in reasons.values())
     if as_json:
