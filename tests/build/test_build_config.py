@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import shutil
-import time
 from pathlib import Path
 
 import pytest
@@ -58,9 +57,7 @@ def test_builds_only_what_is_stale(package: Path, capsys: pytest.CaptureFixture[
         "kuka_ik.py", "kuka_ik.json", "small_ik.py", "small_ik.json"
     }  # fmt: skip
     assert "wrist.xacro" in (package / "d").read_text()
-    started = time.perf_counter()
     assert run(["build", "--check", "--no-verify"]) == 0
-    assert time.perf_counter() - started < 0.5
     before = (package / "generated/kuka_ik.py").stat().st_mtime_ns
     wrist = package / "wrist.xacro"
     wrist.write_text(wrist.read_text().replace("0.38", "0.39"))
