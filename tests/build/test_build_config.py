@@ -108,6 +108,21 @@ def test_one_bad_arm_leaves_the_others(package: Path, capsys: pytest.CaptureFixt
     assert (package / "generated/small_ik.py").is_file()
 
 
+def test_the_traceback_of_an_internal_error(
+    package: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fail(*_: object) -> None:
+        raise RuntimeError("broken\nin two")
+
+    monkeypatch.setattr("ikgen.generate.generate", fail)
+    assert run(["build", "--jobs", "1"]) == 70
+    said = capsys.readouterr().err
+    assert "error: kuka: internal error: RuntimeError: broken in two" in said
+    assert "-v shows the traceback" in said and "Traceback" not in said
+    assert run(["build", "--jobs", "1", "-v"]) == 70
+    assert 'raise RuntimeError("broken\\nin two")' in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import traceback
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,7 +23,7 @@ INTERNAL_ERROR = 70
 @dataclass(frozen=True, slots=True)
 class Outcome:
     """What happened to one arm: `reason` it was stale (empty: fresh, left alone), its files, and
-    the error if it failed (`exit_code` then is not 0)."""
+    the error if it failed (`exit_code` then is not 0); `trace` is that of an internal error."""
 
     name: str
     reason: str
@@ -31,6 +32,7 @@ class Outcome:
     message: str = ""
     hint: str = ""
     exit_code: int = 0
+    trace: str = ""
 
 
 def request_of_arm(arm: ArmConfig) -> Request:
@@ -101,9 +103,21 @@ def _build_one(job: tuple[ArmConfig, str, bool]) -> Outcome:
         where = f"{error.filename}: " if error.filename else ""
         return Outcome(arm.name, reason, message=f"{where}{error.strerror or error}", exit_code=2)
     except Exception as error:
-        text = f"internal error: {type(error).__name__}: {error}"
-        return Outcome(arm.name, reason, message=text, exit_code=INTERNAL_ERROR)
+        return _internal(arm.name, reason, error)
     return Outcome(arm.name, reason, made.files, made.seconds)
+
+
+def _internal(name: str, reason: str, error: Exception) -> Outcome:
+    """The outcome of a failure that is ikgen's own."""
+    text = " ".join(str(error).split()) or "no message"
+    return Outcome(
+        name,
+        reason,
+        message=f"internal error: {type(error).__name__}: {text}",
+        hint="please report it with the robot description and the config; -v shows the traceback",
+        exit_code=INTERNAL_ERROR,
+        trace="".join(traceback.format_exception(error)),
+    )
 
 
 def _files(arm: ArmConfig) -> tuple[Path, ...]:

@@ -69,7 +69,7 @@ def build(
         outcomes = list(
             build_arms(arms, force=force, verify=not no_verify, jobs=jobs, progress=console)
         )
-    _print(outcomes, as_json=as_json, quiet=quiet)
+    _print(outcomes, as_json=as_json, quiet=quiet, verbose=verbose)
     if depfile is not None:
         _write_depfile(depfile, arms)
     return max(outcome.exit_code for outcome in outcomes)
@@ -96,7 +96,7 @@ def _check(arms: Sequence[ArmConfig], *, verify: bool, as_json: bool, quiet: boo
     return 1 if stale else 0
 
 
-def _print(outcomes: Sequence[Outcome], *, as_json: bool, quiet: bool) -> None:
+def _print(outcomes: Sequence[Outcome], *, as_json: bool, quiet: bool, verbose: bool) -> None:
     if as_json:
         rows = [
             {
@@ -112,6 +112,8 @@ def _print(outcomes: Sequence[Outcome], *, as_json: bool, quiet: bool) -> None:
         click.echo(json.dumps({"arms": rows}, indent=2))
     for o in outcomes:
         if o.exit_code:
+            if o.trace and verbose:
+                click.echo(o.trace, err=True)
             click.echo(f"error: {o.name}: {o.message}", err=True)
             if o.hint:
                 click.echo(f"hint: {o.hint}", err=True)
