@@ -7,6 +7,7 @@ import traceback
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ikgen.build.config import ArmConfig
 from ikgen.build.record import read_record
@@ -14,6 +15,9 @@ from ikgen.build.stale import stale_reasons
 from ikgen.errors import IkgenError
 from ikgen.generate import Outputs
 from ikgen.pipeline import Request
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor, Future
 
 __all__ = ["Outcome", "build_arms", "outputs_of", "request_of_arm"]
 
@@ -82,11 +86,43 @@ def _run(work: Sequence[tuple[ArmConfig, str, bool]], jobs: int | None) -> Itera
         yield from map(_build_one, work)
         return
     import multiprocessing
-    from concurrent.futures import ProcessPoolExecutor
+    from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(workers, mp_context=context) as pool:
-        yield from pool.map(_build_one, work)
+        waiting = [(job, _submit(pool, job)) for job in work]
+        try:
+            for (arm, reason, _), answer in waiting:
+                try:
+                    yield answer.result()
+                except BrokenExecutor:
+                    yield _killed(arm.name, reason)
+        finally:  # whoever stops asking does not wait for the rest
+            for _, answer in waiting:
+                answer.cancel()
+
+
+def _submit(pool: Executor, job: tuple[ArmConfig, str, bool]) -> Future[Outcome]:
+    """The answer to come; a pool whose worker was killed refuses further jobs."""
+    from concurrent.futures import BrokenExecutor, Future
+
+    try:
+        return pool.submit(_build_one, job)
+    except BrokenExecutor as error:
+        refused: Future[Outcome] = Future()
+        refused.set_exception(error)
+        return refused
+
+
+def _killed(name: str, reason: str) -> Outcome:
+    """The outcome of an arm that got no answer."""
+    return Outcome(
+        name,
+        reason,
+        message="not generated: a worker process was killed or could not start",
+        hint="too little memory? --jobs 1 generates one arm at a time",
+        exit_code=INTERNAL_ERROR,
+    )
 
 
 def _build_one(job: tuple[ArmConfig, str, bool]) -> Outcome:
