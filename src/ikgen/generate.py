@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import errno
-import json
-import os
 import tempfile
 import time
 from collections.abc import Mapping, Sequence
@@ -13,12 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ikgen.errors import BadDescriptionError, VerificationError
+from ikgen.manifest import manifest
 from ikgen.pipeline import Derivation, Progress, Reading, Request, derive
+from ikgen.publish import publish, write_texts
 
 if TYPE_CHECKING:
     from ikgen.emit.module import SolverModule
     from ikgen.emit.registry import Emitter
-    from ikgen.model.joint_tree import Source
     from ikgen.verify.oracle import Oracle
     from ikgen.verify.report import VerificationReport
 
@@ -27,7 +25,6 @@ __all__ = [
     "Outputs",
     "generate",
     "oracle_for",
-    "publish",
     "verify_files",
     "verify_one",
     "verify_texts",
@@ -82,8 +79,8 @@ def generate(request: Request, outputs: Outputs, progress: Progress = _silent) -
         if emitter.tells_verification:
             progress("emit", emitter.name)
             texts |= emitter.emit(derivation, reports)
-    manifest = _manifest(request, outputs, derivation, texts)
-    texts[f"{derivation.module.name}_ik.json"] = manifest
+    record = manifest(request, outputs, derivation, texts)
+    texts[f"{derivation.module.name}_ik.json"] = record
     files = publish(outputs.out, texts)
     return Generation(derivation, files, reports, time.perf_counter() - started)
 
@@ -126,39 +123,6 @@ def with_samples(derivation: Derivation) -> Derivation:
     return replace(derivation, module=replace(derivation.module, sample=True))
 
 
-def publish(out: Path, texts: Mapping[str, str]) -> tuple[Path, ...]:
-    """Write texts (name -> text) into a folder, all of them or none; unchanged files keep their
-    time."""
-    out.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(prefix=".ikgen-", dir=out, ignore_cleanup_errors=True) as name:
-        _write(Path(name), texts)
-        return _move(Path(name), out, texts)
-
-
-def _write(folder: Path, texts: Mapping[str, str]) -> None:
-    for file, text in texts.items():
-        path = folder / file
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8", newline="\n")
-
-
-def _move(staging: Path, out: Path, texts: Mapping[str, str]) -> tuple[Path, ...]:
-    """Move finished files into place, each in one step."""
-    changed = [name for name, text in texts.items() if not _holds(out / name, text)]
-    for name in changed:
-        (out / name).parent.mkdir(parents=True, exist_ok=True)
-        if (out / name).is_dir():
-            raise IsADirectoryError(errno.EISDIR, "is a directory", str(out / name))
-    for name in changed:
-        (staging / name).replace(out / name)
-    return tuple(out / name for name in texts)
-
-
-def _holds(path: Path, text: str) -> bool:
-    """Whether a file has exactly this text."""
-    return path.is_file() and path.read_bytes() == text.encode()
-
-
 def oracle_for(reading: Reading) -> Oracle:
     """Pinocchio's forward kinematics of what was read."""
     from ikgen.verify.oracle import PinocchioOracle, oracle_from_dh
@@ -177,7 +141,7 @@ def verify_texts(
 ) -> dict[str, VerificationReport]:
     """Verify emitted texts (name -> text) before they are written; raises `VerificationError`."""
     with tempfile.TemporaryDirectory(prefix="ikgen-", ignore_cleanup_errors=True) as name:
-        _write(Path(name), texts)
+        write_texts(Path(name), texts)
         return verify_files(derivation, Path(name), outputs, progress)
 
 
@@ -249,49 +213,3 @@ def verify_one(
         peer=peer,
         progress=lambda stage, done, total: progress("verify", stage),
     )
-
-
-def _manifest(
-    request: Request, outputs: Outputs, derivation: Derivation, texts: Mapping[str, str]
-) -> str:
-    """What the outputs were made from: enough to make and to verify them again."""
-    import hashlib
-
-    module = derivation.module
-    record = {
-        "generator": "ikgen",
-        "version": module.generator_version,
-        "name": module.name,
-        "robot": os.path.relpath(request.robot.resolve(), outputs.out.resolve()),
-        "source_sha256": module.source_sha256,
-        "base": module.dh.base_link,
-        "tip": module.dh.tip_link,
-        "task": module.task,
-        "free": dict(request.free),
-        "lock": dict(request.locked),
-        "args": dict(request.arguments),
-        "package_paths": [
-            os.path.relpath(p.resolve(), outputs.out.resolve()) for p in request.package_paths
-        ],
-        "asked": {"base": request.base, "tip": request.tip, "task": request.task},
-        "emit": list(outputs.emit),
-        "joints": [joint.name for joint in module.dh.joints],
-        "max_solutions": module.max_solutions,
-        "inputs": _inputs(derivation.reading.source, outputs.out),
-        "files": {
-            name: hashlib.sha256(text.encode()).hexdigest() for name, text in sorted(texts.items())
-        },
-    }
-    return json.dumps(record, indent=2) + "\n"
-
-
-def _inputs(source: Source, out: Path) -> dict[str, str]:
-    """Digest of each file that was read, by its path relative to the outputs."""
-    import hashlib
-
-    files = source.dependencies or (source.path,)
-    found = {
-        os.path.relpath(p.resolve(), out.resolve()): hashlib.sha256(p.read_bytes()).hexdigest()
-        for p in files
-    }
-    return {Path(name).as_posix(): digest for name, digest in sorted(found.items())}

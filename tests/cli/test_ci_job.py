@@ -32,7 +32,7 @@ samples = 20
 
 @pytest.fixture
 def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A repository with a config, a robot and its outputs, as the current directory."""
+    """A repository with a config, a robot and its outputs (unverified), as the current directory."""
     shutil.copy(ROOT / "examples/setuptools_robot/urdf/elbow.urdf", tmp_path)
     (tmp_path / "ikgen.toml").write_text(CONFIG)
     monkeypatch.chdir(tmp_path)
@@ -127,6 +127,7 @@ def test_the_gitlab_job(package: Path) -> None:
     (text,) = re.findall(r'^```yaml title="\.gitlab-ci\.yml"\n(.*?)^```', PAGE, re.M | re.S)
     job = yaml.safe_load(text)["inverse-kinematics"]
     script = "\n".join(line for line in job["script"] if not line.startswith("pip"))
+    assert run(["build", "-q"]) == 0
     done = shell(script, package)
     assert done.returncode == 0, done.stderr
     assert (package / job["artifacts"]["reports"]["junit"]).is_file()
@@ -168,6 +169,7 @@ def test_the_check_hook_needs_the_standard_library_alone(package: Path) -> None:
 
     if sys.version_info < (3, 11):
         pytest.skip("tomllib is in the standard library from Python 3.11 on")
+    assert run(["build", "-q"]) == 0
     assert check().stdout == "arm: up to date\n"
     lengthen(package)
     done = check("ikgen.toml")
@@ -199,6 +201,7 @@ def test_the_verify_hook_runs(package: Path) -> None:
     reason="needs pre-commit, git and a checkout",
 )
 def test_pre_commit_runs_the_check_hook(package: Path) -> None:
+    assert run(["build", "-q"]) == 0
     for command in ("git init -q", "git add ."):
         assert shell(command, package).returncode == 0
     tried = f"pre-commit try-repo '{ROOT}' ikgen-check --all-files"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import shlex
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from ikgen.cli.main import run
+from ikgen.cli.remedies import remedies
 from ikgen.errors import UnsolvedChainError
 from ikgen.pipeline import Request, derive
 from ikgen.solver.remainder import near_misses, open_equations
@@ -65,6 +67,19 @@ def test_unsolved_with_a_prismatic_joint_says_what_was_tried(
     assert run(["from-dh", str(general), "-o", str(tmp_path / "out")]) == 3
     said = capsys.readouterr().err
     assert "tried without success: --task position-direction with d_6, or" in said
+
+
+def test_how_much_is_tried_does_not_depend_on_the_time(
+    general: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with pytest.raises(UnsolvedChainError) as caught:
+        derive(Request(general, task="pose"))
+    clock = itertools.count(step=1000.0)  # a machine on which everything takes ages
+    monkeypatch.setattr("time.monotonic", lambda: next(clock))
+    tried = remedies(caught.value.unsolved, lambda *_: None)
+    assert len([a for a in tried if a.closed]) == 3
+    monkeypatch.setattr("ikgen.cli.remedies.ATTEMPTS", 2)
+    assert remedies(caught.value.unsolved, lambda *_: None) == tried[:2]
 
 
 def test_seven_joints_are_told_which_to_hold(capsys: pytest.CaptureFixture[str]) -> None:

@@ -11,7 +11,18 @@ from pathlib import Path
 import pytest
 
 from ikgen.cli.main import run
+from ikgen.errors import MissingToolError
+from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
 
+
+def has_compiler() -> bool:
+    try:
+        return bool(find_compiler() and find_eigen())
+    except MissingToolError:
+        return False
+
+
+needs_compiler = pytest.mark.skipif(not has_compiler(), reason="needs a C++ compiler and Eigen")
 KUKA = Path(__file__).resolve().parents[2] / "urdf_fixtures" / "kuka_kr6r900sixx.urdf"
 
 
@@ -106,6 +117,69 @@ def test_description_that_cannot_be_read(project: Path) -> None:
     assert check("out") == 2
     (project / "out/arm_ik.json").write_text("{")
     assert check("out") == 2
+
+
+def test_one_bad_record_leaves_the_others(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    import junitparser
+
+    shutil.copytree("out", "broken")
+    (project / "broken/arm_ik.json").write_text("{")
+    shutil.copytree("out", "orphan")
+    edit(project / "orphan/arm_ik.json", "../arm.urdf", "../gone.urdf")
+    assert check(".", "--json", "--junit-xml", "j.xml") == 2
+    said = capsys.readouterr()
+    assert "error: broken/arm_ik.json: not a record of ikgen" in said.err
+    assert "error: gone.urdf: no such file" in said.err
+    broken, orphan, right = json.loads(said.out)["outputs"]
+    assert broken["robot"] is None and not broken["passed"] and not orphan["passed"]
+    assert right["passed"] and right["verification"]["python"]["passed"]
+    assert junitparser.JUnitXml.fromfile("j.xml").failures == 2
+
+
+def test_a_table_without_numbers_is_not_run(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = KUKA.parent / "puma560_symbolic.toml"
+    shutil.copy(table, project / "puma.toml")
+    assert run(["from-dh", "puma.toml", "-o", "table", "--no-verify", "-q"]) == 0
+    assert check(".") == 0
+    said = capsys.readouterr().out
+    assert "arm: right (python 20 poses" in said
+    assert "as recorded (nothing to run); not run: no numbers for a_2, " in said
+    with (project / "puma.toml").open("a") as stream:
+        stream.write("# a remark\n")
+    assert check("table") == 1
+    assert "made from an earlier description" in capsys.readouterr().err
+
+
+@needs_compiler
+def test_a_header_that_does_not_compile(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    import junitparser
+
+    options = ("--emit", "cpp", "--name", "arm", "--no-verify", "-q")
+    assert run(["from-urdf", "arm.urdf", "-o", "header", *options]) == 0
+    with (project / "header/arm_ik.hpp").open("a") as stream:
+        stream.write("#error broken on purpose\n")
+    assert check(".", "--junit-xml", "j.xml") == 1
+    said = capsys.readouterr()
+    assert "error: header/arm_ik.hpp: the emitted header does not compile" in said.err
+    assert "arm: WRONG" in said.out and "arm: right (python" in said.out
+    assert junitparser.JUnitXml.fromfile("j.xml").failures == 2  # edited, and does not compile
+
+
+def test_no_compiler_is_not_the_header_s_fault(
+    project: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    options = ("--emit", "python,cpp", "--name", "arm", "--no-verify", "-q")
+    assert run(["from-urdf", "arm.urdf", "-o", "out", *options]) == 0
+    monkeypatch.setenv("CXX", "no-such-compiler")
+    assert check("out", "--json") == 2
+    said = capsys.readouterr()
+    (output,) = json.loads(said.out)["outputs"]
+    assert output["verification"]["python"]["passed"]
+    assert "no-such-compiler is not a program" in output["findings"][0]["message"]
 
 
 def test_another_robot(project: Path) -> None:

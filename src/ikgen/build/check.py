@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ikgen.build.config import load_config, named_config
-from ikgen.build.stale import why_stale
+from ikgen.build.stale import stale_reasons
 from ikgen.errors import IkgenError
 
 __all__ = ["main", "stale_lines"]
@@ -25,7 +25,10 @@ def main(configs: Sequence[str]) -> int:
     for config in named or [None]:
         try:
             path = named_config(config)
-            reasons = [(arm.name, why_stale(arm)) for arm in load_config(path)]
+            arms = load_config(path)
+            reasons = [
+                (arm.name, reason) for arm, reason in zip(arms, stale_reasons(arms), strict=True)
+            ]
         except IkgenError as error:
             print(f"error: {error.message}", f"hint: {error.hint}", sep="\n", file=sys.stderr)
             return error.exit_code

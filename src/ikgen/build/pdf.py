@@ -3,37 +3,55 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 
-__all__ = ["compile_latex"]
+__all__ = ["Typeset", "typeset"]
 
 _SECONDS = 120
 _RUNS = 2  # the second resolves references
 
 
-def compile_latex(source: Path) -> Path | None:
-    """Make the PDF beside a .tex file; None where there is no LaTeX or it fails.
+@dataclass(frozen=True, slots=True)
+class Typeset:
+    """The PDF's bytes, or in words why there is none; neither where no LaTeX is installed."""
+
+    pdf: bytes | None = None
+    failure: str = ""
+
+
+def typeset(name: str, text: str) -> Typeset:
+    """Typeset the text of a .tex file of this name in a folder that is then removed.
 
     The same text gives the same bytes: LaTeX is told a fixed date, and shell escapes are off.
     """
     latex = shutil.which("pdflatex")
     if latex is None:
-        return None
+        return Typeset()
     environment = {**os.environ, "SOURCE_DATE_EPOCH": "0", "FORCE_SOURCE_DATE": "1"}
-    with tempfile.TemporaryDirectory(prefix="ikgen-") as folder:
-        shutil.copy(source, folder)
+    with tempfile.TemporaryDirectory(prefix="ikgen-", ignore_cleanup_errors=True) as folder:
+        source = Path(folder, Path(name).name)
+        source.write_text(text, encoding="utf-8", newline="\n")
         command = [latex, "-no-shell-escape", "-interaction=batchmode", source.name]
         for _ in range(_RUNS):
             try:
-                subprocess.run(
+                done = subprocess.run(
                     command, cwd=folder, env=environment, capture_output=True, timeout=_SECONDS
                 )
             except subprocess.TimeoutExpired:
-                return None
-        made = Path(folder, source.stem + ".pdf")
-        if not made.is_file():
-            return None
-        return Path(shutil.copy(made, source.with_suffix(".pdf")))
+                return Typeset(failure=f"pdflatex takes more than {_SECONDS} s")
+        made = source.with_suffix(".pdf")
+        if done.returncode == 0 and made.is_file():
+            return Typeset(made.read_bytes())
+        return Typeset(failure=f"pdflatex fails: {_first_error(source.with_suffix('.log'))}")
+
+
+def _first_error(log: Path) -> str:
+    """The first error of LaTeX's log; its lines start with an exclamation mark."""
+    text = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
+    found = re.search(r"^! (.*)$", text, re.M)
+    return found.group(1) if found else "its log names no error"

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+from ikgen.build.findings import Finding, Recheck
 from ikgen.build.record import Record, digest
-from ikgen.errors import BadDescriptionError, UnknownNameError, UsageError
+from ikgen.errors import (
+    BadDescriptionError,
+    IkgenError,
+    UnknownNameError,
+    UsageError,
+    VerificationError,
+)
 from ikgen.pipeline import Reading, Request, read
 
 if TYPE_CHECKING:
@@ -16,36 +23,10 @@ if TYPE_CHECKING:
     from ikgen.verify.oracle import Oracle
     from ikgen.verify.report import VerificationReport
 
-__all__ = ["Finding", "Recheck", "recheck", "request_of"]
+__all__ = ["recheck", "request_of"]
 
 _SAME = 1e-9
 _SAMPLES = 200
-
-
-@dataclass(frozen=True, slots=True)
-class Finding:
-    """One thing that is wrong: about which file, what, and the command that puts it right;
-    `deviation` (m, rad) of the forward kinematics where those are another geometry's."""
-
-    file: Path
-    message: str
-    command: str
-    deviation: tuple[float, float] | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Recheck:
-    """What came of one record: findings (none: all is right), notes and the verifications."""
-
-    record: Record
-    findings: tuple[Finding, ...] = ()
-    notes: tuple[str, ...] = ()
-    reports: Mapping[str, VerificationReport] = field(default_factory=dict)
-
-    @property
-    def passed(self) -> bool:
-        """Whether nothing is wrong."""
-        return not self.findings
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,22 +80,23 @@ def recheck(
         if not (robot or record.robot).is_file():
             raise
         message = f"made from another description: {error.message}"
-        return Recheck(record, (*findings, Finding(record.path, message, fix)))
-    if reading.dh.symbols:
-        raise UsageError(
-            f"{robot or record.robot}: no numbers for {', '.join(reading.dh.symbols)}",
-            hint="give them under [parameters] and generate again: then the code can be checked",
-        )
-    notes = []
-    if reading.source.sha256 != record.source_sha256:
-        notes.append("the text of the description has changed since")
+        return Recheck(record.path, record, (*findings, Finding(record.path, message, fix)))
+    changed = reading.source.sha256 != record.source_sha256
+    notes = ["the text of the description has changed since"] if changed else []
     joints = tuple(joint.name for joint in reading.dh.joints)
     if joints != record.joints:
         was, now = ", ".join(record.joints), ", ".join(joints)
         message = f"made for other joints: {was}; the description has {now}"
-        return Recheck(record, (*findings, Finding(record.path, message, fix)), tuple(notes))
+        findings.append(Finding(record.path, message, fix))
+        return Recheck(record.path, record, tuple(findings), tuple(notes))
+    if reading.dh.symbols:
+        if changed:  # what cannot run cannot show that only a remark changed
+            findings.append(Finding(record.path, "made from an earlier description", fix))
+        blanks = ", ".join(reading.dh.symbols)
+        notes.append(f"not run: no numbers for {blanks} (give them under [parameters])")
+        return Recheck(record.path, record, tuple(findings), tuple(notes))
     reports = _check_outputs(record, reading, fix, findings, (samples, seed), progress)
-    return Recheck(record, tuple(findings), tuple(notes), reports)
+    return Recheck(record.path, record, tuple(findings), tuple(notes), reports)
 
 
 def _edited(record: Record, fix: str) -> list[Finding]:
@@ -155,16 +137,19 @@ def _check_outputs(
         file = _file_of(record, name)
         try:
             runner = find_emitter(name).runner(module, record.folder)
-        except BadDescriptionError as error:
+            if runner is None:
+                continue
+            message, deviation = _difference(runner, oracle, reading)
+            if message:
+                findings.append(Finding(file, message, fix, deviation))
+                continue
+            reports[name] = verify_one(runner, oracle, module, outputs, progress, peer=first)
+        except (BadDescriptionError, VerificationError) as error:
             findings.append(Finding(file, error.message, fix))
             continue
-        if runner is None:
+        except IkgenError as error:  # no compiler, a plug-in that fails: not the output's fault
+            findings.append(Finding(file, error.message, error.hint, None, error.exit_code))
             continue
-        message, deviation = _difference(runner, oracle, reading)
-        if message:
-            findings.append(Finding(file, message, fix, deviation))
-            continue
-        reports[name] = verify_one(runner, oracle, module, outputs, progress, peer=first)
         first = first or runner
         if not reports[name].passed:
             findings.append(Finding(file, f"is wrong: {reports[name].worst_case}", fix))

@@ -12,16 +12,18 @@ from typing import Any
 
 from ikgen.errors import BadDescriptionError, UsageError
 
-__all__ = ["SUFFIX", "Record", "digest", "find_records", "read_record"]
+__all__ = ["SUFFIX", "Record", "digest", "find_records", "read_record", "seen"]
 
 SUFFIX = "_ik.json"
 
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """One record. `path` is its file; `robot`, `package_paths` and `inputs` (file -> SHA-256) are
-    as seen from the current directory, `files` (name -> SHA-256) relative to the record's folder;
-    `asked` are base, tip and task as the user gave them (or did not)."""
+    """One record. `path` is its file; `robot` and `package_paths` are as seen from the current
+    directory. `inputs` (path relative to the record's folder or `package://` URL -> SHA-256) is read
+    by `ikgen.build.inputs`; `files` (name -> SHA-256) are relative to the record's folder; `asked`
+    are base, tip and task as the user gave them (or did not); `verified` is false after `--no-verify`.
+    """
 
     path: Path
     version: str
@@ -37,9 +39,10 @@ class Record:
     package_paths: tuple[Path, ...]
     asked: Mapping[str, str | None]
     emit: tuple[str, ...]
+    verified: bool
     joints: tuple[str, ...]
     max_solutions: int
-    inputs: Mapping[Path, str]
+    inputs: Mapping[str, str]
     files: Mapping[str, str]
 
     @property
@@ -132,9 +135,10 @@ def _record(path: Path, data: Mapping[str, Any]) -> Record:
         package_paths=tuple(seen(folder / p) for p in data["package_paths"]),
         asked=dict(data["asked"]),
         emit=tuple(data["emit"]),
+        verified=bool(data["verified"]),
         joints=tuple(data["joints"]),
         max_solutions=int(data["max_solutions"]),
-        inputs={seen(folder / name): str(value) for name, value in data["inputs"].items()},
+        inputs={name: str(value) for name, value in data["inputs"].items()},
         files=dict(data["files"]),
     )
 

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import os
+import traceback
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ikgen.build.config import ArmConfig
 from ikgen.build.record import read_record
-from ikgen.build.stale import why_stale
+from ikgen.build.stale import stale_reasons
 from ikgen.errors import IkgenError
 from ikgen.generate import Outputs
 from ikgen.pipeline import Request
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor, Future
 
 __all__ = ["Outcome", "build_arms", "outputs_of", "request_of_arm"]
 
@@ -22,7 +27,7 @@ INTERNAL_ERROR = 70
 @dataclass(frozen=True, slots=True)
 class Outcome:
     """What happened to one arm: `reason` it was stale (empty: fresh, left alone), its files, and
-    the error if it failed (`exit_code` then is not 0)."""
+    the error if it failed (`exit_code` then is not 0); `trace` is that of an internal error."""
 
     name: str
     reason: str
@@ -31,6 +36,7 @@ class Outcome:
     message: str = ""
     hint: str = ""
     exit_code: int = 0
+    trace: str = ""
 
 
 def request_of_arm(arm: ArmConfig) -> Request:
@@ -62,7 +68,9 @@ def build_arms(
     progress: Callable[[str, str], None] = lambda stage, detail: None,
 ) -> Iterator[Outcome]:
     """Bring every arm up to date; outcomes in the order of the config."""
-    reasons = [why_stale(arm) or ("asked for" if force else "") for arm in arms]
+    reasons = [
+        reason or ("asked for" if force else "") for reason in stale_reasons(arms, verify=verify)
+    ]
     work = [(arm, reason, verify) for arm, reason in zip(arms, reasons, strict=True) if reason]
     for arm, reason in zip(arms, reasons, strict=True):
         progress("build", f"{arm.name}: {reason or 'up to date'}")
@@ -78,11 +86,43 @@ def _run(work: Sequence[tuple[ArmConfig, str, bool]], jobs: int | None) -> Itera
         yield from map(_build_one, work)
         return
     import multiprocessing
-    from concurrent.futures import ProcessPoolExecutor
+    from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(workers, mp_context=context) as pool:
-        yield from pool.map(_build_one, work)
+        waiting = [(job, _submit(pool, job)) for job in work]
+        try:
+            for (arm, reason, _), answer in waiting:
+                try:
+                    yield answer.result()
+                except BrokenExecutor:
+                    yield _killed(arm.name, reason)
+        finally:  # whoever stops asking does not wait for the rest
+            for _, answer in waiting:
+                answer.cancel()
+
+
+def _submit(pool: Executor, job: tuple[ArmConfig, str, bool]) -> Future[Outcome]:
+    """The answer to come; a pool whose worker was killed refuses further jobs."""
+    from concurrent.futures import BrokenExecutor, Future
+
+    try:
+        return pool.submit(_build_one, job)
+    except BrokenExecutor as error:
+        refused: Future[Outcome] = Future()
+        refused.set_exception(error)
+        return refused
+
+
+def _killed(name: str, reason: str) -> Outcome:
+    """The outcome of an arm that got no answer."""
+    return Outcome(
+        name,
+        reason,
+        message="not generated: a worker process was killed or could not start",
+        hint="too little memory? --jobs 1 generates one arm at a time",
+        exit_code=INTERNAL_ERROR,
+    )
 
 
 def _build_one(job: tuple[ArmConfig, str, bool]) -> Outcome:
@@ -99,9 +139,21 @@ def _build_one(job: tuple[ArmConfig, str, bool]) -> Outcome:
         where = f"{error.filename}: " if error.filename else ""
         return Outcome(arm.name, reason, message=f"{where}{error.strerror or error}", exit_code=2)
     except Exception as error:
-        text = f"internal error: {type(error).__name__}: {error}"
-        return Outcome(arm.name, reason, message=text, exit_code=INTERNAL_ERROR)
+        return _internal(arm.name, reason, error)
     return Outcome(arm.name, reason, made.files, made.seconds)
+
+
+def _internal(name: str, reason: str, error: Exception) -> Outcome:
+    """The outcome of a failure that is ikgen's own."""
+    text = " ".join(str(error).split()) or "no message"
+    return Outcome(
+        name,
+        reason,
+        message=f"internal error: {type(error).__name__}: {text}",
+        hint="please report it with the robot description and the config; -v shows the traceback",
+        exit_code=INTERNAL_ERROR,
+        trace="".join(traceback.format_exception(error)),
+    )
 
 
 def _files(arm: ArmConfig) -> tuple[Path, ...]:

@@ -45,7 +45,8 @@ def generate_arms(root: Path) -> None:
     if config is None:
         raise ExecError("the ikgen build hook finds no ikgen.toml and no [tool.ikgen]")
     try:
-        outcomes = list(build_arms(load_config(config)))
+        # One job: a worker process would run a setup.py without a main guard once more.
+        outcomes = list(build_arms(load_config(config), jobs=1))
     except IkgenError as error:
         raise ExecError(f"ikgen: {error.message}; {error.hint}") from None
     for outcome in outcomes:

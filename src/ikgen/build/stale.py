@@ -6,18 +6,27 @@ Nothing is expanded or derived, so the answer takes milliseconds and needs none 
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 
 from ikgen import __version__
 from ikgen.build.config import ArmConfig
+from ikgen.build.inputs import Packages
 from ikgen.build.record import Record, digest, read_record, seen
 from ikgen.errors import BadDescriptionError
 
-__all__ = ["why_stale"]
+__all__ = ["stale_reasons", "why_stale"]
 
 
-def why_stale(arm: ArmConfig) -> str:
-    """The reason to generate the arm again; empty where its outputs are fresh."""
+def stale_reasons(arms: Sequence[ArmConfig], *, verify: bool = True) -> list[str]:
+    """`why_stale` of each arm."""
+    packages = Packages()
+    return [why_stale(arm, packages, verify=verify) for arm in arms]
+
+
+def why_stale(arm: ArmConfig, packages: Packages | None = None, *, verify: bool = True) -> str:
+    """The reason to generate the arm again; empty where its outputs are fresh. With `verify` outputs
+    that were never verified are not."""
     if not arm.record_path.is_file():
         return "not generated yet"
     try:
@@ -26,7 +35,8 @@ def why_stale(arm: ArmConfig) -> str:
         return error.message
     if record.version != __version__:
         return f"made by ikgen {record.version}; this is {__version__}"
-    return _changed_options(arm, record) or _changed_files(record)
+    changed = _changed_options(arm, record) or _changed_files(record, packages or Packages())
+    return changed or ("not verified yet" if verify and not record.verified else "")
 
 
 def _changed_options(arm: ArmConfig, record: Record) -> str:
@@ -49,14 +59,14 @@ def _changed_options(arm: ArmConfig, record: Record) -> str:
     return ""
 
 
-def _changed_files(record: Record) -> str:
+def _changed_files(record: Record, packages: Packages) -> str:
     """The first file, read or written, whose content differs from the one recorded."""
-    for path, expected in record.inputs.items():
-        actual = digest(path)
+    for file in packages.inputs(record):
+        actual = digest(file.path)
         if actual is None:
-            return f"{path} is not there"
-        if actual != expected:
-            return f"{path} has changed"
+            return f"{file.name} is not there"
+        if actual != file.sha256:
+            return f"{file.name} has changed"
     for name, expected in record.files.items():
         path = seen(record.folder / name)
         actual = digest(path)

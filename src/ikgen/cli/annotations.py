@@ -12,7 +12,7 @@ import click
 from ikgen.errors import BadDescriptionError, IkgenError
 
 if TYPE_CHECKING:
-    from ikgen.build.recheck import Recheck
+    from ikgen.build.findings import Finding, Recheck
 
 __all__ = ["annotate", "annotate_error"]
 
@@ -21,7 +21,7 @@ def annotate(results: Sequence[Recheck]) -> None:
     """Annotations on stderr and the table of the step summary; nothing outside a workflow."""
     for result in results:
         for finding in result.findings:
-            _annotate(f"{finding.message}. Run: {finding.command}", finding.file)
+            _annotate(_told(finding), finding.file, finding.line)
     _summarise(_table(results))
 
 
@@ -39,6 +39,13 @@ def _annotate(text: str, file: Path | None = None, line: int = 1) -> None:
     if os.environ.get("GITHUB_ACTIONS") == "true":
         place = f" file={_property(_in_workspace(file))},line={line}" if file is not None else ""
         click.echo(f"::error{place}::{_escape(text)}", err=True)
+
+
+def _told(finding: Finding) -> str:
+    """A finding and the way out in one line."""
+    if finding.exit_code == 1:
+        return f"{finding.message}. Run: {finding.command}"
+    return f"{finding.message}. {finding.command}".strip()
 
 
 def _in_workspace(file: Path) -> str:
@@ -59,16 +66,18 @@ def _summarise(text: str) -> None:
 def _table(results: Sequence[Recheck]) -> str:
     lines = ["| module | output | poses | worst closure | result |", "|---|---|---|---|---|"]
     for result in results:
-        name = result.record.name
+        name = result.name
         for finding in result.findings:
             message = finding.message.replace("|", "\\|")
-            lines.append(f"| {name} | {finding.file.name} | | | WRONG: {message} |")
+            verdict = "WRONG" if finding.exit_code == 1 else "could not check"
+            lines.append(f"| {name} | {finding.file.name} | | | {verdict}: {message} |")
         for label, report in result.reports.items():
             metres, radians = report.worst_closure
             verdict = "right" if report.passed else "WRONG"
             closure = f"{metres:.1e} m, {radians:.1e} rad"
             lines.append(f"| {name} | {label} | {report.samples} | {closure} | {verdict} |")
-    commands = dict.fromkeys(f.command for result in results for f in result.findings)
+    findings = [finding for result in results for finding in result.findings]
+    commands = dict.fromkeys(f.command for f in findings if f.exit_code == 1)
     fixes = "".join(f"\nRun `{command}` and commit what it writes.\n" for command in commands)
     return "\n".join(lines) + f"\n{fixes}\n"
 

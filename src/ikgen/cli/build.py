@@ -39,7 +39,9 @@ __all__ = ["build"]
     help="Arms at a time (default: one a processor).",
 )
 @click.option(
-    "--no-verify", is_flag=True, help="Leave the verification out (and Pinocchio with it)."
+    "--no-verify",
+    is_flag=True,
+    help="Leave the verification out (and Pinocchio with it); unverified outputs count as fresh.",
 )
 @console_options
 def build(
@@ -60,25 +62,28 @@ def build(
     """
     arms = load_config(named_config(config))
     if check:
-        return _check(arms, as_json=as_json, quiet=quiet)
+        return _check(arms, verify=not no_verify, as_json=as_json, quiet=quiet)
     from ikgen.build.run import build_arms
 
     with Console(quiet=quiet, verbose=verbose) as console:
         outcomes = list(
             build_arms(arms, force=force, verify=not no_verify, jobs=jobs, progress=console)
         )
-    _print(outcomes, as_json=as_json, quiet=quiet)
+    _print(outcomes, as_json=as_json, quiet=quiet, verbose=verbose)
     if depfile is not None:
         _write_depfile(depfile, arms)
     return max(outcome.exit_code for outcome in outcomes)
 
 
-def _check(arms: Sequence[ArmConfig], *, as_json: bool, quiet: bool) -> int:
+def _check(arms: Sequence[ArmConfig], *, verify: bool, as_json: bool, quiet: bool) -> int:
     """Say what is stale; writes nothing and imports nothing heavy."""
     from ikgen.build.check import stale_lines
-    from ikgen.build.stale import why_stale
+    from ikgen.build.stale import stale_reasons
 
-    reasons = {arm.record_path.as_posix(): (arm.name, why_stale(arm)) for arm in arms}
+    reasons = {
+        arm.record_path.as_posix(): (arm.name, reason)
+        for arm, reason in zip(arms, stale_reasons(arms, verify=verify), strict=True)
+    }
     stale = any(reason for _, reason in reasons.values())
     if as_json:
         rows = [
@@ -91,7 +96,7 @@ def _check(arms: Sequence[ArmConfig], *, as_json: bool, quiet: bool) -> int:
     return 1 if stale else 0
 
 
-def _print(outcomes: Sequence[Outcome], *, as_json: bool, quiet: bool) -> None:
+def _print(outcomes: Sequence[Outcome], *, as_json: bool, quiet: bool, verbose: bool) -> None:
     if as_json:
         rows = [
             {
@@ -107,6 +112,8 @@ def _print(outcomes: Sequence[Outcome], *, as_json: bool, quiet: bool) -> None:
         click.echo(json.dumps({"arms": rows}, indent=2))
     for o in outcomes:
         if o.exit_code:
+            if o.trace and verbose:
+                click.echo(o.trace, err=True)
             click.echo(f"error: {o.name}: {o.message}", err=True)
             if o.hint:
                 click.echo(f"hint: {o.hint}", err=True)
@@ -118,9 +125,11 @@ def _print(outcomes: Sequence[Outcome], *, as_json: bool, quiet: bool) -> None:
 def _write_depfile(path: Path, arms: Sequence[ArmConfig]) -> None:
     """What the recorded arms were read from; nothing where one could not be generated."""
     from ikgen.build.depfile import write_depfile
+    from ikgen.build.inputs import Packages
     from ikgen.build.record import read_record
 
+    packages = Packages()
     records = [read_record(arm.record_path) for arm in arms if arm.record_path.is_file()]
     targets = [record.folder / name for record in records for name in record.files]
-    inputs = [file for record in records for file in record.inputs]
+    inputs = [file.path for record in records for file in packages.inputs(record)]
     write_depfile(path, targets, inputs)

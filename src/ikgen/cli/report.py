@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,8 +12,9 @@ import click
 from ikgen.cli.console import Console
 from ikgen.cli.options import chain_options, console_options, make_request, sampling_options
 from ikgen.errors import IkgenError, UnsolvedChainError, VerificationError
-from ikgen.generate import Outputs, publish, verify_texts, with_samples
+from ikgen.generate import Outputs, verify_texts, with_samples
 from ikgen.pipeline import Derivation, Request, derive
+from ikgen.publish import Content, publish
 
 if TYPE_CHECKING:
     from ikgen.verify.report import VerificationReport
@@ -56,7 +57,12 @@ def report(
     outputs = Outputs(out=out, samples=samples, seed=seed, verify=not no_verify)
     with Console(quiet=quiet, verbose=verbose) as console:
         texts, wrong = _written(make_request(robot, **chain), outputs, console)
-        files = [*publish(out, texts), *_pdfs(out, texts, console)]
+        made: dict[str, Content] = {**texts, **_pdfs(texts, console)}
+        stale = _stale_pdfs(out, made)
+        files = publish(out, made)
+        for pdf in stale:
+            pdf.unlink()
+            console.warn(f"removed {pdf}: it was made from an earlier report")
     _say(files, as_json=as_json, quiet=quiet)
     if wrong is not None:
         raise wrong
@@ -86,7 +92,7 @@ def _written(
     return emit_report(derivation, reports), wrong
 
 
-def _say(files: list[Path], *, as_json: bool, quiet: bool) -> None:
+def _say(files: Sequence[Path], *, as_json: bool, quiet: bool) -> None:
     """What was written."""
     if as_json:
         click.echo(json.dumps({"files": [str(path) for path in files]}, indent=2))
@@ -108,13 +114,29 @@ def _reports(
     return verify_texts(sampled, made, outputs, console)
 
 
-def _pdfs(out: Path, texts: Mapping[str, str], console: Console) -> list[Path]:
-    """The PDFs of the LaTeX texts, where LaTeX is installed."""
-    from ikgen.build.pdf import compile_latex
+def _pdfs(texts: Mapping[str, str], console: Console) -> dict[str, bytes]:
+    """File name -> PDF of the LaTeX texts, where LaTeX is installed; warns where it fails."""
+    from ikgen.build.pdf import typeset
 
-    made = []
-    for name in texts:
+    made = {}
+    for name, text in texts.items():
         if name.endswith(".tex"):
             console("typeset", name)
-            made.append(compile_latex(out / name))
-    return [path for path in made if path is not None]
+            result = typeset(name, text)
+            if result.pdf is not None:
+                made[str(Path(name).with_suffix(".pdf"))] = result.pdf
+            elif result.failure:
+                console.warn(f"no PDF of {name}: {result.failure}")
+    return made
+
+
+def _stale_pdfs(out: Path, made: Mapping[str, Content]) -> list[Path]:
+    """PDFs that are there, are not made anew, and whose LaTeX text is about to change."""
+    found = []
+    for name, content in made.items():
+        tex, pdf = out / name, (out / name).with_suffix(".pdf")
+        lacks = name.endswith(".tex") and str(Path(name).with_suffix(".pdf")) not in made
+        if lacks and pdf.is_file():
+            earlier = tex.read_text(encoding="utf-8") if tex.is_file() else None
+            found += [pdf] if earlier != content else []
+    return found

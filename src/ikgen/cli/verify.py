@@ -15,8 +15,7 @@ from ikgen.cli.options import console_options, sampling_options
 from ikgen.errors import IkgenError, UsageError
 
 if TYPE_CHECKING:
-    from ikgen.build.recheck import Finding, Recheck
-    from ikgen.build.record import Record
+    from ikgen.build.findings import Finding, Recheck
 
 __all__ = ["verify"]
 
@@ -51,7 +50,8 @@ def verify(
     """Check emitted modules against their robot's description as it is now.
 
     CONFIG is an ikgen.toml or pyproject.toml, DIR a folder with outputs (default: the config here,
-    else this folder). Exit code 0: all right; 1: wrong, edited or made from another geometry.
+    else this folder). Exit code 0: all right; 1: wrong, edited or made from another geometry; 2:
+    something could not be checked.
     """
     with Console(quiet=quiet, verbose=verbose) as console:
         try:
@@ -62,36 +62,56 @@ def verify(
     if junit_xml is not None:
         _write_junit(junit_xml, results)
     _print(results, as_json=as_json, quiet=quiet, verbose=verbose)
-    return 0 if all(result.passed for result in results) else 1
+    return max((result.exit_code for result in results), default=0)
 
 
 def _recheck_all(
     target: Path | None, robot: Path | None, sampling: tuple[int, int], console: Console
 ) -> list[Recheck]:
     """Check everything that is meant, in order."""
-    from ikgen.build.recheck import recheck
-
-    samples, seed = sampling
     return [
-        recheck(record, robot=robot, command=command, samples=samples, seed=seed, progress=console)
-        for record, command in _records(target, robot)
+        _recheck(path, robot, command, sampling, console)
+        for path, command in _records(target, robot)
     ]
 
 
-def _records(target: Path | None, robot: Path | None) -> list[tuple[Record, str | None]]:
+def _recheck(
+    path: Path,
+    robot: Path | None,
+    command: str | None,
+    sampling: tuple[int, int],
+    console: Console,
+) -> Recheck:
+    """Check one record; an error becomes its finding, so that the others are checked too."""
+    from ikgen.build.findings import unchecked
+    from ikgen.build.recheck import recheck
+    from ikgen.build.record import read_record
+
+    samples, seed = sampling
+    record = None
+    try:
+        record = read_record(path)
+        return recheck(
+            record, robot=robot, command=command, samples=samples, seed=seed, progress=console
+        )
+    except IkgenError as error:
+        return unchecked(path, record, error)
+
+
+def _records(target: Path | None, robot: Path | None) -> list[tuple[Path, str | None]]:
     """The records meant, each with the command that makes its outputs again, if not its own."""
     from ikgen.build.config import default_config, load_config
-    from ikgen.build.record import find_records, read_record
+    from ikgen.build.record import find_records
 
     target = target or default_config(Path()) or Path()
     if target.is_dir():
-        return [(read_record(path), None) for path in find_records(target)]
+        return [(path, None) for path in find_records(target)]
     if target.suffix == ".json":
-        return [(read_record(target), None)]
+        return [(target, None)]
     if not target.is_file():
         raise UsageError(f"{target}: no such file or directory")
     command = f"ikgen build {target}" if robot is None else None
-    return [(read_record(arm.record_path), command) for arm in load_config(target)]
+    return [(arm.record_path, command) for arm in load_config(target)]
 
 
 def _print(results: Sequence[Recheck], *, as_json: bool, quiet: bool, verbose: bool) -> None:
@@ -113,30 +133,39 @@ def _print(results: Sequence[Recheck], *, as_json: bool, quiet: bool, verbose: b
         if verbose and result.reports:
             click.echo(verification_tables(result.reports), err=True)
         for finding in result.findings:
-            click.echo(f"error: {finding.file}: {finding.message}", err=True)
-        for command in dict.fromkeys(finding.command for finding in result.findings):
+            click.echo(f"error: {_placed(finding)}", err=True)
+        for command in dict.fromkeys(f.command for f in result.findings if f.command):
             click.echo(f"hint: {command}", err=True)
         if not quiet and not as_json:
             click.echo(_line(result))
+
+
+def _placed(finding: Finding) -> str:
+    """The message with its file; those of descriptions begin with file and line themselves."""
+    file = f"{finding.file}:"
+    return finding.message if finding.message.startswith(file) else f"{file} {finding.message}"
 
 
 def _line(result: Recheck) -> str:
     """One line about one record."""
     notes = "".join(f"; {note}" for note in result.notes)
     if not result.passed:
-        return f"{result.record.name}: WRONG{notes}"
+        verdict = "WRONG" if result.exit_code == 1 else "NOT CHECKED"
+        return f"{result.name}: {verdict}{notes}"
+    if not result.reports:
+        return f"{result.name}: as recorded (nothing to run){notes}"
     parts = []
     for name, report in result.reports.items():
         metres, radians = report.worst_closure
         parts.append(f"{name} {report.samples} poses, closure {metres:.1e} m {radians:.1e} rad")
-    return f"{result.record.name}: right ({'; '.join(parts) or 'nothing to run'}){notes}"
+    return f"{result.name}: right ({'; '.join(parts)}){notes}"
 
 
 def _as_dict(result: Recheck) -> dict[str, Any]:
     return {
-        "name": result.record.name,
-        "record": result.record.path.as_posix(),
-        "robot": result.record.robot.as_posix(),
+        "name": result.name,
+        "record": result.path.as_posix(),
+        "robot": result.record.robot.as_posix() if result.record else None,
         "passed": result.passed,
         "findings": [_finding(finding) for finding in result.findings],
         "notes": list(result.notes),
@@ -165,8 +194,9 @@ def _write_junit(path: Path, results: Sequence[Recheck]) -> None:
         checks = tuple(
             CheckResult("up to date", False, 1, 1, detail=f.message, worst_case=f.command)
             for f in result.findings
-        ) or (CheckResult("up to date", True, len(record.files)),)
-        own = VerificationReport("outputs", record.base, record.tip, record.task, 0, 0, checks)
-        suites += [(record.name, report) for report in (own, *result.reports.values())]
+        ) or (CheckResult("up to date", True, len(record.files) if record else 0),)
+        chain = (record.base, record.tip, record.task) if record else ("", "", "")
+        own = VerificationReport("outputs", *chain, 0, 0, checks)
+        suites += [(result.name, report) for report in (own, *result.reports.values())]
     path.parent.mkdir(parents=True, exist_ok=True)
     write_junit_xml(path, suites)

@@ -11,9 +11,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from lxml import etree
+__all__ = ["PACKAGE_URL", "PackageFinder", "PackageNotFoundError"]
 
-__all__ = ["PackageFinder", "PackageNotFoundError"]
+PACKAGE_URL = "package://"
 
 # workspace / src / repository / group / package
 _SEARCH_DEPTH = 4
@@ -42,6 +42,19 @@ class PackageFinder:
         if name not in self.found:
             self.found[name] = self._search(name)
         return self.found[name]
+
+    def resolve(self, url: str) -> Path:
+        """The file that `package://pkg/path` names, there or not."""
+        package, _, rest = url.removeprefix(PACKAGE_URL).partition("/")
+        return self.find(package) / rest
+
+    def url(self, file: Path) -> str | None:
+        """`package://pkg/path` of a file in a package found so far that does not hold `start`."""
+        start = self.start.resolve()
+        for name, directory in sorted(self.found.items()):
+            if file.is_relative_to(directory) and not start.is_relative_to(directory):
+                return f"{PACKAGE_URL}{name}/{file.relative_to(directory).as_posix()}"
+        return None
 
     def _search(self, name: str) -> Path:
         for directory in self._candidates(name):
@@ -85,13 +98,14 @@ def _is_package(directory: Path, name: str) -> bool:
 
 
 def _manifest_name(manifest: Path) -> str | None:
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=False)
+    # not lxml: `ikgen build --check` finds packages too and has to start in no time
+    from xml.etree import ElementTree
+
     try:
-        root = etree.fromstring(manifest.read_bytes(), parser)
-    except (OSError, etree.XMLSyntaxError):
+        name = ElementTree.fromstring(manifest.read_bytes()).findtext("name")
+    except (OSError, ElementTree.ParseError):
         return None
-    name = root.findtext("name")
-    return None if name is None else str(name).strip()
+    return None if name is None else name.strip()
 
 
 def _subdirectories(directory: Path) -> list[Path]:

@@ -54,6 +54,7 @@ def parse_urdf(
     path: Path,
     kind: str = "urdf",
     dependencies: tuple[Path, ...] = (),
+    package_urls: tuple[tuple[Path, str], ...] = (),
     arguments: Mapping[str, str] | None = None,
     warnings: Sequence[str] = (),
 ) -> JointTree:
@@ -68,6 +69,7 @@ def parse_urdf(
         text=text,
         sha256=hashlib.sha256(text.encode("utf-8", "replace")).hexdigest(),
         dependencies=dependencies or (path.resolve(),),
+        package_urls=package_urls,
         arguments=tuple(sorted((arguments or {}).items())),
     )
     place = Place(shown_file(source), list(warnings))

@@ -21,10 +21,12 @@ _ARGUMENT = re.compile(r"\$\(arg\s+([^)\s]+)\s*\)")
 
 @dataclass(frozen=True, slots=True)
 class Expansion:
-    """A xacro file's URDF text, the files read for it (absolute, itself first), and warnings."""
+    """A xacro file's URDF text, the files read for it (absolute, itself first), the URLs of those
+    that another package holds, and warnings."""
 
     text: str
     dependencies: tuple[Path, ...]
+    package_urls: tuple[tuple[Path, str], ...] = ()
     warnings: tuple[str, ...] = ()
 
 
@@ -39,6 +41,7 @@ def read(path: Path, *, arguments: Mapping[str, str], package_paths: Sequence[Pa
         path=path,
         kind="xacro",
         dependencies=expansion.dependencies,
+        package_urls=expansion.package_urls,
         arguments=arguments,
         warnings=expansion.warnings,
     )
@@ -67,7 +70,13 @@ def expand(
         declared = ", ".join(sorted(known.used)) or "none"
         warnings.append(f"argument '{name}' is not used by the file; it takes: {declared}")
     dependencies = dict.fromkeys((top, *(included.resolve() for included in session.includes)))
-    return Expansion(_without_paths(text, finder, top), tuple(dependencies), tuple(warnings))
+    urls = {i.resolve(): url for i in session.includes if (url := finder.url(i)) is not None}
+    return Expansion(
+        _without_paths(text, finder, top),
+        tuple(dependencies),
+        tuple(urls.items()),
+        tuple(warnings),
+    )
 
 
 def _name_defaults(root: Element) -> dict[str, str]:

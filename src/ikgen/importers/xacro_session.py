@@ -9,11 +9,10 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from ikgen.importers.packages import PackageFinder
+from ikgen.importers.packages import PACKAGE_URL, PackageFinder
 
 __all__ = ["Arguments", "Session"]
 
-_PACKAGE_URL = "package://"
 _MARK = "warning: "
 
 
@@ -58,9 +57,8 @@ class Session:
         resolve = xacro.abs_filename_spec
 
         def resolve_file(spec: str) -> str:
-            if spec.startswith(_PACKAGE_URL):
-                package, _, rest = spec.removeprefix(_PACKAGE_URL).partition("/")
-                return str(self._finder.find(package) / rest)
+            if spec.startswith(PACKAGE_URL):
+                return str(self._finder.resolve(spec))
             return str(resolve(spec))
 
         self._set(substitution_args, "_eval_find", find)

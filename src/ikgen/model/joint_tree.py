@@ -68,6 +68,7 @@ class Source:
     """Where a description came from.
 
     `path` is the file the user named, `dependencies` every file read (itself included, absolute),
+    `package_urls` names those of them that another package holds (file, `package://pkg/path`),
     `text` the description after expansion (URDF XML, or the TOML of a DH table), `sha256` the digest
     of `text`, and `warnings` what was odd in it but could be read.
     """
@@ -77,6 +78,7 @@ class Source:
     text: str
     sha256: str
     dependencies: tuple[Path, ...] = ()
+    package_urls: tuple[tuple[Path, str], ...] = ()
     arguments: tuple[tuple[str, str], ...] = ()
     warnings: tuple[str, ...] = ()
 

@@ -1,0 +1,63 @@
+"""Arms generated in processes of their own: killed workers, and programs that cannot be run twice."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from ikgen.build.config import ArmConfig
+from ikgen.build.run import Outcome
+from ikgen.cli.main import run
+
+ROBOT = Path(__file__).resolve().parents[2] / "examples/setuptools_robot/urdf/elbow.urdf"
+ARM = '[[arm]]\nname = "{}"\nrobot = "elbow.urdf"\ntask = "position"\nsamples = 20\n'
+
+
+@pytest.fixture
+def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Two arms, as the current directory."""
+    shutil.copy(ROBOT, tmp_path)
+    (tmp_path / "ikgen.toml").write_text(ARM.format("first") + ARM.format("second"))
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def killed(job: tuple[ArmConfig, str, bool]) -> Outcome:
+    """Stands for a generation that the system kills; workers import it from here."""
+    os.kill(os.getpid(), signal.SIGKILL)
+    raise AssertionError
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs signals")
+@pytest.mark.usefixtures("project")
+def test_a_killed_worker_is_told_for_each_arm(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("ikgen.build.run._build_one", killed)
+    assert run(["build", "--jobs", "2"]) == 70
+    said = capsys.readouterr().err
+    for name in ("first", "second"):
+        assert f"error: {name}: not generated: a worker process was killed" in said
+    assert "--jobs 1" in said and "Traceback" not in said
+
+
+def test_a_setup_file_without_a_main_guard(project: Path) -> None:
+    pytest.importorskip("setuptools")
+    (project / "setup.py").write_text(
+        "from setuptools import setup\n"
+        "from ikgen.build.setuptools import BuildPy\n"
+        "print('run once')\n"
+        "setup(name='x', version='1', py_modules=[], cmdclass={'build_py': BuildPy})\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "setup.py", "-q", "build_py"], cwd=project, text=True, capture_output=True
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("run once") == 1
+    assert (project / "first_ik.py").is_file() and (project / "second_ik.py").is_file()
