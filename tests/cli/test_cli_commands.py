@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -14,6 +15,11 @@ import pytest
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 KUKA = FIXTURES / "kuka_kr6r900sixx.urdf"
 SCARA = FIXTURES / "scara_standard.toml"
+ELBOW = FIXTURES.parent / "examples/setuptools_robot/urdf/elbow.urdf"
+INCLUDING = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:include filename="parts/elbow.urdf"/>
+</robot>
+"""
 AR4 = FIXTURES / "ar4_ros_driver/annin_ar4_description/urdf/ar.urdf.xacro"
 
 
@@ -78,12 +84,28 @@ def test_quiet_says_nothing(tmp_path: Path) -> None:
 
 
 def test_same_input_gives_the_same_bytes(tmp_path: Path) -> None:
-    for name, seed in (("a", "1"), ("b", "2")):
-        options = ("-o", tmp_path / name, "--no-verify", "-q")
-        ikgen("from-urdf", KUKA, *options, PYTHONHASHSEED=seed)
-    for path in (tmp_path / "a").iterdir():
-        assert path.read_bytes() == (tmp_path / "b" / path.name).read_bytes()
-        assert path.suffix == ".json" or str(FIXTURES) not in path.read_text()
+    """All kinds of outputs, from checkouts at two depths and with two orders of sets."""
+    made = []
+    for name, seed in (("near", "1"), ("one/two/deep", "2")):
+        (tmp_path / name / "urdf/parts").mkdir(parents=True)
+        shutil.copy(ELBOW, tmp_path / name / "urdf/parts")
+        (tmp_path / name / "urdf/arm.urdf.xacro").write_text(INCLUDING)
+        done = ikgen(
+            *("from-urdf", "urdf/arm.urdf.xacro", "--task", "position", "-o", "out", "-q"),
+            *("--emit", "python,cpp,nanobind,moveit,report", "--no-verify"),
+            cwd=tmp_path / name,
+            PYTHONHASHSEED=seed,
+        )
+        assert done.returncode == 0, done.stderr
+        out = tmp_path / name / "out"
+        made.append({p.relative_to(out): p.read_bytes() for p in out.rglob("*") if p.is_file()})
+    near, deep = made
+    assert near.keys() == deep.keys()
+    assert [str(path) for path in near if near[path] != deep[path]] == []
+    suffixes = {path.suffix for path in near}
+    assert {".py", ".hpp", ".json", ".cpp", ".toml", ".xml", ".tex", ".html"} <= suffixes
+    assert [str(path) for path in near if str(tmp_path).encode() in near[path]] == []
+    assert b"parts/elbow.urdf" in near[Path("arm_ik.json")]
 
 
 def test_a_xacro_file_and_its_arguments(tmp_path: Path) -> None:
