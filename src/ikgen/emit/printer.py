@@ -37,7 +37,8 @@ def expression(language: Language, operand: Operand, around: int = 0) -> str:
         return language.calls[operand.op](*(expression(language, a) for a in operand.args))
     if operand.op in language.prefix:
         symbol, own = language.prefix[operand.op]
-        text = symbol + expression(language, operand.args[0], own)
+        inner = expression(language, operand.args[0], own)
+        text = symbol + (f"({inner})" if inner.startswith(symbol) else inner)  # C has an operator --
     else:
         symbol, own = language.infix[operand.op]
         left = expression(language, operand.args[0], own)

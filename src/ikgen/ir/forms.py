@@ -10,7 +10,7 @@ from ikgen.equations.expression import Expr
 from ikgen.equations.expression_graph import ExpressionGraph
 from ikgen.solver.candidate import Candidate
 
-__all__ = ["Divisor", "Realized", "Tolerances", "realize"]
+__all__ = ["ROUNDED", "Divisor", "Realized", "Tolerances", "leading", "realize"]
 
 
 ROUNDED = 2e-9
@@ -86,6 +86,11 @@ def _divisor(g: ExpressionGraph, value: Expr, tol: Tolerances, power: int = 1) -
     regular = g.binary("gt", magnitude, g.const(tol.singular**power * size))
     clear = g.binary("gt", magnitude, g.const(tol.flag**power * size))
     return Divisor(g.select(regular, value, g.one), regular, clear)
+
+
+def leading(g: ExpressionGraph, coefficients: tuple[Expr, ...], tolerances: Tolerances) -> Divisor:
+    """The sum of the squares of coefficients, as a divisor: where it vanishes the unknown is free."""
+    return _divisor(g, g.dot([*coefficients], [*coefficients]), tolerances, 2)
 
 
 def _linear(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> Realized:

@@ -8,8 +8,8 @@ from ikgen.equations.expression import Expr
 from ikgen.equations.knowledge import Variable
 from ikgen.ir.choice import choose_form
 from ikgen.ir.closure import require_closure
-from ikgen.ir.forms import realize
-from ikgen.ir.inputs import bind_pose, bind_seeds
+from ikgen.ir.forms import leading, realize
+from ikgen.ir.inputs import bind_pose, bind_seeds, seed_values
 from ikgen.ir.placement import LoweredLevel, Placement, identifier
 from ikgen.ir.program import Comment, Program
 from ikgen.ir.serialize import serialize
@@ -67,10 +67,10 @@ def _excess(work: Placement, v: Variable) -> Expr:
 
 def _quartic(work: Placement, step: Step, text: str) -> None:
     v = step.candidate.unknown
-    for e in step.candidate.coefficients:
+    arguments = _or_seed(work, v, step.candidate.coefficients)
+    for e in arguments:
         work.place(e)
     atoms = work.knowledge.variables.pair(v.key)
-    arguments = step.candidate.coefficients
     work.levels.append(LoweredLevel(4, None, ("trig_quartic", arguments, atoms)))
     work.place(Comment(text))
     suffix = v.text.split("_", 1)[1]
@@ -78,6 +78,21 @@ def _quartic(work: Placement, step: Step, text: str) -> None:
         work.names[atom.id] = identifier(f"{x}{suffix}")
         work.level_of[atom.id] = len(work.levels) - 1
         work.placed.add(atom.id)
+
+
+def _or_seed(work: Placement, v: Variable, coefficients: tuple[Expr, ...]) -> tuple[Expr, ...]:
+    """The quartic's coefficients, and where all but the constant vanish those of `sin(v - seed) = 0`."""
+    g = work.g
+    divisor = leading(g, coefficients[:4], work.tolerances)
+    if divisor.regular is None or divisor.clear is None:
+        return coefficients
+    missing = g.unary("not", divisor.clear)
+    work.place(missing)
+    work.singular.append(missing)
+    c, s = seed_values(work, v)
+    instead = (g.zero, g.zero, g.neg(s), c, g.zero)
+    both = zip(coefficients, instead, strict=True)
+    return tuple(g.select(divisor.regular, mine, other) for mine, other in both)
 
 
 def _outputs(work: Placement) -> list[tuple[int, tuple[Expr, ...]]]:
