@@ -134,20 +134,13 @@ def _solve(
 
 
 def _elimination(dh: DHChain, task: Task, progress: Progress) -> UniversalPlan | None:
-    """The general 6R elimination's plan where it applies: six moving revolute joints, whole pose."""
-    import numpy as np
-
-    moving = dh.dof - len(dh.free)
-    turning = all(row.revolute or dh.joints[row.driver].name in dh.free for row in dh.rows)
-    plain = len(dh.rows) == dh.dof and turning
-    if not (task.whole_pose and moving == 6 and plain):
+    """The general 6R elimination's plan where it applies."""
+    if not task.whole_pose:
         return None
-    from ikgen.universal import choose_plan, held_frames
+    from ikgen.universal import elimination_plan
 
     progress("derive", "6R elimination")
-    values = (0.4, -1.1, 2.2) if dh.free else (0.0,)
-    plan = choose_plan(np.array([held_frames(dh, value) for value in values]))
-    return plan if plan.usable else None
+    return elimination_plan(dh)
 
 
 def _attempt(dh: DHChain, task: Task, progress: Progress) -> SolutionGraph:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from ikgen.model.dh import DHChain
     from ikgen.tasks import Task
 
-__all__ = ["Attempt", "attempt", "attempts"]
+__all__ = ["Attempt", "attempt", "attempts", "eliminations"]
 
 _POSE_FREEDOMS = 6
 
@@ -48,9 +48,10 @@ def attempts(dh: DHChain, asked: str | None, progress: Progress) -> list[Attempt
     """The derivations worth trying for a chain, best first; the asked task alone where one is.
 
     A chain with more joints than the task fixes is tried with each one held (two too many: none is
-    tried); one with fewer is tried with the smaller tasks.
+    tried), by the elimination if the rules solve none; one with fewer is tried with the tasks that fit,
+    the whole pose among them, and with smaller ones.
     """
-    from ikgen.tasks import TASKS, find_task
+    from ikgen.tasks import TASKS, find_task, fits, fitting_tasks
 
     moving = dh.dof - len(dh.free)
     if asked is not None:
@@ -58,16 +59,36 @@ def attempts(dh: DHChain, asked: str | None, progress: Progress) -> list[Attempt
     elif moving >= _POSE_FREEDOMS:
         tasks = [find_task("pose")]
     else:
-        tasks = [task for task in TASKS if task.freedoms <= moving][:2]
+        less = [t for t in TASKS if t.freedoms == moving - 1 and t.name != "rotation"]
+        tasks = [*fitting_tasks(dh), *less]
     found: list[Attempt] = []
     for task in tasks:
-        spare = moving - task.freedoms
+        spare = max(moving - task.freedoms, 0)
         held = [j.name for j in dh.joints if j.name not in dh.free] if spare == 1 else [""]
         for name in held if spare in (0, 1) else []:
-            free = (*dh.free, name) if name else dh.free
+            held_dh = replace(dh, free=(*dh.free, name)) if name else dh
+            if name and not task.whole_pose and not fits(held_dh, task):
+                continue
             progress("derive", f"{task.name}, {'hold ' + name if name else 'no joint held'}")
-            found.append(attempt(replace(dh, free=free), task))
+            found.append(attempt(held_dh, task))
+    if not any(a.closed for a in found):
+        found += eliminations([a for a in found if a.task == "pose"], dh, progress)
     return sorted(found, key=lambda a: a.rank)
+
+
+def eliminations(failed: list[Attempt], dh: DHChain, progress: Progress) -> list[Attempt]:
+    """The first of the failed attempts, joints near the tip held before others, that the general 6R
+    elimination solves; empty if it solves none."""
+    from ikgen.ir.elimination import MOST_SOLUTIONS
+    from ikgen.universal import elimination_plan
+
+    names = [joint.name for joint in dh.joints]
+    for one in sorted(failed, key=lambda a: [-names.index(n) for n in a.free]):
+        progress("derive", " ".join(["6R elimination", *one.free]))
+        if elimination_plan(replace(dh, free=one.free)) is not None:
+            order = ("all joints at once (general 6R elimination)",)
+            return [replace(one, closed=True, max_solutions=MOST_SOLUTIONS, order=order, left=())]
+    return []
 
 
 def attempt(dh: DHChain, task: Task) -> Attempt:

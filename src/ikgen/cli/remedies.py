@@ -55,7 +55,7 @@ def _listed(tried: list[Attempt]) -> str:
 
 def remedies(unsolved: Unsolved, progress: Progress) -> list[Attempt]:
     """Derivations that were tried, up to three closed ones or the most attempts, in their order."""
-    from ikgen.cli.advice import attempt
+    from ikgen.cli.advice import attempt, eliminations
 
     found: list[Attempt] = []
     dh = unsolved.reading.dh
@@ -66,6 +66,8 @@ def remedies(unsolved: Unsolved, progress: Progress) -> list[Attempt]:
         free = (*dh.free, *held)
         progress("try", " ".join([task.name, *(f"--free {name}" for name in held)]))
         found.append(replace(attempt(replace(dh, free=free), task), held=held))
+    if not any(a.closed for a in found):
+        found += eliminations([a for a in found if a.task == "pose"], dh, progress)
     return found
 
 

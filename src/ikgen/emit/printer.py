@@ -38,7 +38,9 @@ def expression(language: Language, operand: Operand, around: int = 0) -> str:
     if operand.op in language.prefix:
         symbol, own = language.prefix[operand.op]
         inner = expression(language, operand.args[0], own)
-        text = symbol + (f"({inner})" if inner.startswith(symbol) else inner)  # C has an operator --
+        text = symbol + (
+            f"({inner})" if inner.startswith(symbol) else inner
+        )  # C has an operator --
     else:
         symbol, own = language.infix[operand.op]
         left = expression(language, operand.args[0], own)

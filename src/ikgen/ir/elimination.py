@@ -5,7 +5,7 @@ from __future__ import annotations
 from ikgen.ir.program import Call, Comment, JointOutput, Level, Program
 from ikgen.model.dh import DHChain
 
-__all__ = ["ROUTINE", "elimination_program"]
+__all__ = ["MOST_SOLUTIONS", "ROUTINE", "elimination_program"]
 
 ROUTINE = "general_6r"
 MOST_SOLUTIONS = 16

@@ -105,13 +105,13 @@ def fitting_tasks(dh: DHChain) -> tuple[Task, ...]:
     its joints do move all of them; the whole pose then only counts on the poses that it can take.
     """
     moving = dh.dof - len(dh.free)
-    smaller = [t for t in TASKS if t.freedoms == moving and t.name != "rotation" and _spans(dh, t)]
+    smaller = [t for t in TASKS if t.freedoms == moving and t.name != "rotation" and fits(dh, t)]
     whole = TASKS[0]
     return (whole,) if moving >= whole.freedoms else (*smaller, whole)
 
 
-def _spans(dh: DHChain, task: Task) -> bool:
-    """Whether the arm's joints move the task's freedoms independently of each other."""
+def fits(dh: DHChain, task: Task) -> bool:
+    """Whether the joints that are not held move the task's freedoms independently of each other."""
     import numpy as np
 
     from ikgen.kinematics.forward import file_forward

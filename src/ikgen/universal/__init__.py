@@ -3,6 +3,7 @@
 The run-time half is the routine `general_6r` in the templates of each language.
 """
 
+from ikgen.universal.applies import elimination_plan
 from ikgen.universal.frames import held_frames, hold_joint
 from ikgen.universal.plan import UniversalPlan, choose_plan
 from ikgen.universal.routine import general_6r, general_6r_batch
@@ -10,6 +11,7 @@ from ikgen.universal.routine import general_6r, general_6r_batch
 __all__ = [
     "UniversalPlan",
     "choose_plan",
+    "elimination_plan",
     "general_6r",
     "general_6r_batch",
     "held_frames",
