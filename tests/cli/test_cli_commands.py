@@ -92,7 +92,7 @@ def test_same_input_gives_the_same_bytes(tmp_path: Path) -> None:
         (tmp_path / name / "urdf/arm.urdf.xacro").write_text(INCLUDING)
         done = ikgen(
             *("from-urdf", "urdf/arm.urdf.xacro", "--task", "position", "-o", "out", "-q"),
-            *("--emit", "python,cpp,nanobind,moveit,report", "--no-verify"),
+            *("--emit", "python,cpp,cpp-package,nanobind,moveit,report", "--no-verify"),
             cwd=tmp_path / name,
             PYTHONHASHSEED=seed,
         )
