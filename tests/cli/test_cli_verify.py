@@ -205,3 +205,17 @@ def test_junit_and_annotations(
 def test_module_entry() -> None:
     done = subprocess.run([sys.executable, "-m", "ikgen", "--version"], capture_output=True)
     assert done.returncode == 0
+
+
+@needs_compiler
+def test_outputs_of_an_earlier_run_are_not_passed_over(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    again = ["from-urdf", "arm.urdf", "-o", "out", "--name", "arm", "--no-verify", "--emit", "cpp"]
+    assert run(again) == 0
+    assert "arm_ik.py is of an earlier run" in capsys.readouterr().err
+    assert check("out", "--json") == 1
+    findings = json.loads(capsys.readouterr().out)["outputs"][0]["findings"]
+    assert [Path(f["file"]).name for f in findings] == ["arm_ik.py"]
+    (project / "out/arm_ik.py").write_text("# somebody's own")
+    assert check("out") == 0

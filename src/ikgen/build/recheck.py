@@ -17,6 +17,7 @@ from ikgen.errors import (
     VerificationError,
 )
 from ikgen.pipeline import Reading, Request, read
+from ikgen.publish import left_over
 
 if TYPE_CHECKING:
     from ikgen.emit.module import SolverModule
@@ -72,7 +73,7 @@ def recheck(
     Raises `IkgenError` where the description cannot be read.
     """
     fix = command or record.command(robot)
-    findings = [*_edited(record, fix)]
+    findings = [*_edited(record, fix), *_left_over(record)]
     progress("read", str(robot or record.robot))
     try:
         reading = read(request_of(record, robot))
@@ -110,6 +111,14 @@ def _edited(record: Record, fix: str) -> list[Finding]:
         elif actual != expected:
             found.append(Finding(path, "was edited after it was generated", fix))
     return found
+
+
+def _left_over(record: Record) -> list[Finding]:
+    """Outputs of an earlier run beside those of the record, which nobody keeps up to date."""
+    message = "is of an earlier run and not in the record, so that nothing keeps it right"
+    fix = f"remove it, or generate again with --emit {','.join(record.emit)},..."
+    found = left_over(record.folder, record.name, record.files)
+    return [Finding(path, message, fix) for path in found]
 
 
 def _check_outputs(

@@ -18,6 +18,7 @@ from ikgen.cli.options import (
 from ikgen.errors import UnsolvedChainError, UsageError, VerificationError
 from ikgen.generate import Generation, Outputs, generate
 from ikgen.pipeline import Request
+from ikgen.publish import left_over
 
 __all__ = ["from_dh", "from_urdf"]
 
@@ -126,6 +127,9 @@ def _run(
         raise
     for warning in generation.derivation.reading.source.warnings:
         console.warn(warning)
+    module, names = generation.derivation.module, [path.name for path in generation.files]
+    for path in left_over(out, module.name, names):
+        console.warn(f"{path} is of an earlier run: remove it, or name its output in --emit too")
     if depfile is not None:
         from ikgen.build.depfile import write_depfile
 

@@ -24,7 +24,7 @@ def summary(generation: Generation) -> str:
     lines = [
         ("robot", f"{dh.robot}, {dh.base_link} -> {dh.tip_link}, {dh.dof} joints"),
         ("task", _task(derivation) + (f", held: {', '.join(held)}" if held else "")),
-        ("geometry", derivation.geometry.words),
+        ("geometry", derivation.geometry.words + _rounding(derivation)),
         ("solved", "; ".join(module.order)),
         ("solutions", _solutions(generation)),
     ]
@@ -32,7 +32,8 @@ def summary(generation: Generation) -> str:
     if not generation.reports:
         lines.append(("verified", "no"))
     if dh.symbols:
-        lines.append(("fill in", f"{', '.join(dh.symbols)}; verified with sample numbers"))
+        words = "; verified with sample numbers" if generation.reports else ""
+        lines.append(("fill in", f"{', '.join(dh.symbols)}{words}"))
     lines += [("wrote", str(path)) for path in generation.files]
     lines.append(("time", f"{generation.seconds:.1f} s"))
     return table([(f"{name}:", text) for name, text in lines], indent="")
@@ -44,6 +45,16 @@ def _task(derivation: Derivation) -> str:
     if not derivation.chosen or task.whole_pose:
         return task.words
     return f"{task.words} (--task {task.name}: what fits {derivation.reading.dh.dof} joints)"
+
+
+def _rounding(derivation: Derivation) -> str:
+    """How far the file is off what was solved, where Newton steps take the rows to it."""
+    metres, radians = derivation.reading.dh.deviation
+    if derivation.module.polish == "some":
+        return ""
+    return (
+        f"; the file's is up to {1e3 * metres:.2g} mm and {radians:.1g} rad off, its rows are exact"
+    )
 
 
 def _solutions(generation: Generation) -> str:

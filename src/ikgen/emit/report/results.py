@@ -32,7 +32,8 @@ def graph_section(
 ) -> list[Block]:
     """The drawing, and the direct parents in words."""
     text: list[Inline] = [
-        "An arrow leads from an unknown to those that are computed from it directly. "
+        "An arrow leads from an unknown to those that are computed from it; what it leads to by way "
+        "of another unknown has no arrow of its own. "
     ]
     several = [
         (v, above) for v, above in versions.parents.items() if len(above) > 1 and v not in passed
