@@ -197,7 +197,7 @@ def at_limits(module: SolverModule) -> Array:
 
 LIMITED = [
     name
-    for name in ("kuka_kr6r900sixx", "mitsubishi_rh6crh6020_scara", "mycobot_pro630")
+    for name in ("kuka_kr6r900sixx", "scara_standard", "doosan_m1013")
     if name in ROBOTS
 ]
 
