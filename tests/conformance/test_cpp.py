@@ -195,11 +195,7 @@ def at_limits(module: SolverModule) -> Array:
     return np.asarray(q)
 
 
-LIMITED = [
-    name
-    for name in ("kuka_kr6r900sixx", "scara_standard", "doosan_m1013")
-    if name in ROBOTS
-]
+LIMITED = ("kuka_kr6r900sixx", "scara_standard", "doosan_m1013")
 
 
 @pytest.mark.parametrize("seeded", [False, True])
