@@ -97,7 +97,7 @@ namespace detail {
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kTurn = 2.0 * kPi;
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
-inline constexpr double kLimitTolerance = 5e-10;
+inline constexpr double kLimitTolerance = 1e-9;
 inline constexpr double kTolerance = 1e-9;  // of a row's pose: rad, or m over the arm's size
 inline constexpr double kSame = 1e-6;  // rows closer than this are one
 

@@ -7,7 +7,7 @@ use crate::chain::product;
 use crate::newton::{loses_rank, polish};
 use crate::{Joints, Options, Pose, Row, Solutions, Status};
 
-const LIMIT_TOLERANCE: f64 = 5e-10;
+const LIMIT_TOLERANCE: f64 = 1e-9;
 /// Rows closer than this are one.
 const SAME: f64 = 1e-6;
 
