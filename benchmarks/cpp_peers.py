@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import subprocess
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
+from benchmarks.cpp_speed import run_program
 
 __all__ = ["Comparison", "against_ikfast", "against_opw"]
 
@@ -39,18 +37,12 @@ def against_opw(
 
 def against_ikfast(header: Path, source: Path, flags: list[str]) -> Comparison:
     """A file that IKFast wrote; ikfast.h has to lie beside it."""
-    return _run(header, [f'-DPEER_IKFAST="{source.name}"', f"-I{source.resolve().parent}"], flags)
+    options = [f'-DPEER_IKFAST="{source.name}"', f"-I{source.resolve().parent}"]
+    return _run(header, options, flags, ("-llapack",))
 
 
-def _run(header: Path, options: list[str], flags: list[str]) -> Comparison:
-    with tempfile.TemporaryDirectory() as folder:
-        program = Path(folder) / "against"
-        defines = [f'-DIKGEN_HEADER="{header.name}"', f"-DIKGEN_NAMESPACE={header.stem}"]
-        if "kFreeJoints" in header.read_text():
-            defines.append("-DIKGEN_FREE")
-        includes = [f"-I{header.parent}", "-isystem", str(find_eigen())]
-        command = [*find_compiler(), "-std=c++17", *flags, *defines, *options, *includes]
-        libraries = ["-llapack"] if any("IKFAST" in x for x in options) else []
-        subprocess.run([*command, str(SOURCE), "-o", str(program), *libraries], check=True)
-        output = subprocess.run([str(program)], check=True, capture_output=True, text=True).stdout
-        return Comparison(*map(float, output.split()))
+def _run(
+    header: Path, options: list[str], flags: list[str], libraries: tuple[str, ...] = ()
+) -> Comparison:
+    _, numbers = run_program(SOURCE, header, [*flags, *options], libraries)
+    return Comparison(*numbers)

@@ -21,23 +21,29 @@ FLAGS = {
 }
 
 
-def measure(header: Path, flags: list[str], limits: bool) -> tuple[float, list[float]]:
-    """Seconds to compile, then what the program prints: ns per solve, ns per pose of a batch, mean number
-    of solutions, ns per pose of a long span in one thread and split among all, number of threads."""
+def run_program(
+    source: Path, header: Path, flags: list[str], libraries: tuple[str, ...] = ()
+) -> tuple[float, list[float]]:
+    """Compile a program of this folder with an emitted header: seconds that takes, and the numbers that
+    the program prints."""
     with tempfile.TemporaryDirectory() as folder:
-        program = Path(folder) / "bench"
-        defines = [
-            f'-DIKGEN_HEADER="{header.name}"',
-            f"-DIKGEN_NAMESPACE={header.stem}",
-            f"-DIKGEN_LIMITS={str(limits).lower()}",
-        ]
+        program = Path(folder) / "program"
+        defines = [f'-DIKGEN_HEADER="{header.name}"', f"-DIKGEN_NAMESPACE={header.stem}"]
+        if "kFreeJoints" in header.read_text(encoding="utf-8"):
+            defines.append("-DIKGEN_FREE")
         includes = [f"-I{header.parent}", "-isystem", str(find_eigen())]
         start = time.perf_counter()
         command = [*find_compiler(), "-std=c++17", "-pthread", *flags, *defines, *includes]
-        subprocess.run([*command, str(SOURCE), "-o", str(program)], check=True)
+        subprocess.run([*command, str(source), "-o", str(program), *libraries], check=True)
         seconds = time.perf_counter() - start
         output = subprocess.run([str(program)], check=True, capture_output=True, text=True).stdout
         return seconds, [float(x) for x in output.split()]
+
+
+def measure(header: Path, flags: list[str], limits: bool) -> tuple[float, list[float]]:
+    """Seconds to compile, then what the program prints: ns per solve, ns per pose of a batch, mean number
+    of solutions, ns per pose of a long span in one thread and split among all, number of threads."""
+    return run_program(SOURCE, header, [*flags, f"-DIKGEN_LIMITS={str(limits).lower()}"])
 
 
 def main() -> None:

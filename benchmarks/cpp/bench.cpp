@@ -1,44 +1,18 @@
 // Time of solve and solve_batch of one emitted header, on reachable random poses.
 //
-// Compile with -DIKGEN_HEADER='"x_ik.hpp"' -DIKGEN_NAMESPACE=x_ik. Prints: ns per solve, ns per pose of
-// solve_batch, mean number of solutions, ns per pose of a long span in one thread and split among all, how many those
-// are.
+// Compile with -DIKGEN_HEADER='"x_ik.hpp"' -DIKGEN_NAMESPACE=x_ik -DIKGEN_LIMITS=true, and -DIKGEN_FREE for a
+// header with held joints. Prints: ns per solve, ns per pose of solve_batch, mean number of solutions, ns per
+// pose of a long span in one thread and split among all, how many those are.
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <random>
 #include <thread>
 #include <vector>
 
-#include IKGEN_HEADER
-
-namespace ik = IKGEN_NAMESPACE;
+#include "reachable.hpp"
 
 namespace {
-
-constexpr std::size_t kPoses = 1000;
-constexpr int kRounds = 60;
-
-std::vector<Eigen::Isometry3d> reachable_poses() {
-  std::mt19937_64 random(7);
-  std::vector<Eigen::Isometry3d> poses;
-  for (std::size_t n = 0; n < kPoses; ++n) {
-    ik::Joints q;
-    for (int j = 0; j < ik::kDof; ++j) {
-      const auto i = static_cast<std::size_t>(j);
-      const double low = std::max(ik::kLower[i], -3.1), high = std::min(ik::kUpper[i], 3.1);
-      q[j] = std::uniform_real_distribution<double>(low, high)(random);
-    }
-    for (int k = 0; k < ik::kFree; ++k) {
-#ifdef IKGEN_FREE
-      q[ik::kFreeJoints[static_cast<std::size_t>(k)]] = ik::Options().free[static_cast<std::size_t>(k)];
-#endif
-    }
-    poses.push_back(ik::forward(q));
-  }
-  return poses;
-}
 
 // Best of the rounds, in ns per pose.
 template <class F> double time_of(const F& run) {
