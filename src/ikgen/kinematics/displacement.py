@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.kinematics.rigid import inverse
+
 __all__ = ["displacements"]
 
 Array = NDArray[np.float64]
@@ -20,7 +22,7 @@ _DIRECTIONS = (
 def displacements(size: float) -> tuple[Array, ...]:
     """Six rigid motions (4, 4) of about `size` (rad and m together), each with its inverse."""
     moves = [_motion(size * np.array(direction)) for direction in _DIRECTIONS]
-    return tuple(D for move in moves for D in (move, _inverse(move)))
+    return tuple(D for move in moves for D in (move, inverse(move)))
 
 
 def _motion(twist: Array) -> Array:
@@ -32,10 +34,3 @@ def _motion(twist: Array) -> Array:
     T[:3, :3] += np.sin(angle) * K + (1.0 - np.cos(angle)) * K @ K
     T[:3, 3] = twist[3:]
     return T
-
-
-def _inverse(T: Array) -> Array:
-    out = np.eye(4)
-    out[:3, :3] = T[:3, :3].T
-    out[:3, 3] = -T[:3, :3].T @ T[:3, 3]
-    return out

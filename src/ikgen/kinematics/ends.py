@@ -13,6 +13,7 @@ import numpy as np
 
 from ikgen.kinematics.links import FLIP, Tolerance, align_z
 from ikgen.kinematics.offsets import Offsets
+from ikgen.kinematics.rigid import inverse
 from ikgen.kinematics.snapping import rotation_z, snap_angle, wrap_angle
 from ikgen.model.chain import Chain
 from ikgen.model.joint_tree import Matrix
@@ -35,7 +36,7 @@ def end_transforms(
 ) -> tuple[Matrix, Matrix, tuple[float, ...]]:
     """`X_base`, `X_tip` (4, 4) and the rows' thetas (rad) with the ends' turns settled."""
     base = chain.axes[0].T_prev_axis @ _axis_frame(chain, 0, signs, shifts)
-    tip = _inverse(_axis_frame(chain, -1, signs, shifts)) @ chain.T_last_tip
+    tip = inverse(_axis_frame(chain, -1, signs, shifts)) @ chain.T_last_tip
     theta = list(offsets.theta)
     prismatic = chain.axes[0].kind != "revolute", chain.axes[-1].kind != "revolute"
 
@@ -81,13 +82,6 @@ def _screw(angle: float, lift: float) -> Matrix:
     T[:3, :3] = rotation_z(angle)
     T[2, 3] = lift
     return T
-
-
-def _inverse(T: Matrix) -> Matrix:
-    inverse = np.eye(4)
-    inverse[:3, :3] = T[:3, :3].T
-    inverse[:3, 3] = -T[:3, :3].T @ T[:3, 3]
-    return inverse
 
 
 def _tidy_pose(T: Matrix) -> Matrix:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ikgen.kinematics.forward import dh_forward, file_forward, pose_difference, row_constant
+from ikgen.kinematics.rigid import inverse
 from ikgen.model.chain import Chain
 from ikgen.model.dh import DHChain, DHRow
 from ikgen.model.joint_tree import Matrix
@@ -42,8 +43,8 @@ def file_frames(
         home = _motion(rows[i].revolute, offsets[i])
         T_dh = T_dh @ home
         B = _nearest_frame(T_dh, T_axis, signs[i] * axis.axis, rows[i].revolute)
-        F.append(pending @ B @ _inverse(home))
-        pending = _inverse(B)
+        F.append(pending @ B @ inverse(home))
+        pending = inverse(B)
     F.append(pending @ T_axis @ chain.T_last_tip)
     return tuple(_read_only(_clean(f, exact)) for f, exact in zip(F, nominal, strict=True))
 
@@ -91,13 +92,6 @@ def _motion(revolute: bool, value: float) -> Matrix:
     else:
         T[2, 3] = value
     return T
-
-
-def _inverse(T: Matrix) -> Matrix:
-    inverse = np.eye(4)
-    inverse[:3, :3] = T[:3, :3].T
-    inverse[:3, 3] = -T[:3, :3].T @ T[:3, 3]
-    return inverse
 
 
 def _clean(F: Matrix, nominal: Matrix) -> Matrix:
