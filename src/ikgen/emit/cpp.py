@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 from ikgen.emit.cpp_joints import JointValue, Seed
 from ikgen.emit.cpp_language import CONSTANT, comment, literal, number
@@ -16,6 +16,9 @@ from ikgen.errors import UsageError
 from ikgen.ir.liveness import used_inputs
 from ikgen.ir.ops import Op
 
+if TYPE_CHECKING:
+    from ikgen.derivation import Derivation
+
 __all__ = ["emit", "emit_derivation", "emit_header"]
 
 ROUGH = 1e-20
@@ -27,12 +30,7 @@ _COLD = "[[gnu::cold, gnu::noinline]] inline"
 """Of functions that few poses need: small code, quickly compiled."""
 
 
-class _Derived(Protocol):
-    @property
-    def module(self) -> SolverModule: ...
-
-
-def emit_derivation(derivation: _Derived) -> dict[str, str]:
+def emit_derivation(derivation: Derivation) -> dict[str, str]:
     """File name -> text of the C++ output."""
     return emit(derivation.module)
 

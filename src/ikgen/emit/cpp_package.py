@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 from ikgen.emit.cpp import emit_header
 from ikgen.emit.cpp_language import comment
 from ikgen.emit.module import SolverModule
 from ikgen.emit.rendering import render
 
+if TYPE_CHECKING:
+    from ikgen.derivation import Derivation
+
 __all__ = ["emit", "emit_derivation", "folder_name"]
 
 _FILES = ("CMakeLists.txt", "example.cpp", "README.md")
-
-
-class _Derived(Protocol):
-    @property
-    def module(self) -> SolverModule: ...
 
 
 def folder_name(name: str) -> str:
@@ -24,7 +22,7 @@ def folder_name(name: str) -> str:
     return f"{name}_ik_cpp"
 
 
-def emit_derivation(derivation: _Derived) -> dict[str, str]:
+def emit_derivation(derivation: Derivation) -> dict[str, str]:
     """Relative path -> text of the package's folder, `<name>_ik_cpp/`."""
     return emit(derivation.module)
 

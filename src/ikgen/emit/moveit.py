@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import Protocol
+from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape
 
 from ikgen.emit.cpp import emit_header
@@ -11,6 +11,9 @@ from ikgen.emit.cpp_language import comment
 from ikgen.emit.module import SolverModule
 from ikgen.emit.rendering import render
 from ikgen.errors import UsageError
+
+if TYPE_CHECKING:
+    from ikgen.derivation import Derivation
 
 __all__ = ["emit", "emit_derivation", "package_name"]
 
@@ -33,12 +36,7 @@ _HEADERS = (
 )
 
 
-class _Derived(Protocol):
-    @property
-    def module(self) -> SolverModule: ...
-
-
-def emit_derivation(derivation: _Derived) -> dict[str, str]:
+def emit_derivation(derivation: Derivation) -> dict[str, str]:
     """Relative path -> text of the package's folder, `<name>_ik_moveit/`."""
     return emit(derivation.module)
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import re
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 from ikgen.emit.cpp import emit_header
 from ikgen.emit.module import SolverModule
 from ikgen.emit.python_text import literal
 from ikgen.emit.rendering import render
+
+if TYPE_CHECKING:
+    from ikgen.derivation import Derivation
 
 __all__ = ["emit", "emit_derivation"]
 
@@ -16,12 +19,7 @@ _FILES = ("pyproject.toml", "CMakeLists.txt", "README.md", "native.cpp")
 _PACKAGE = ("__init__.py", "_status.py", "_native.pyi", "py.typed")
 
 
-class _Derived(Protocol):
-    @property
-    def module(self) -> SolverModule: ...
-
-
-def emit_derivation(derivation: _Derived) -> dict[str, str]:
+def emit_derivation(derivation: Derivation) -> dict[str, str]:
     """Relative path -> text of the package's folder, `<name>_ik_ext/`."""
     return emit(derivation.module)
 

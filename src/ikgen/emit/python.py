@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 from ikgen.emit.module import SolverModule
 from ikgen.emit.printer import expression
@@ -14,15 +14,13 @@ from ikgen.emit.rendering import render
 from ikgen.emit.symbols import blanks, frame_entries, pairs
 from ikgen.ir.liveness import used_inputs
 
+if TYPE_CHECKING:
+    from ikgen.derivation import Derivation
+
 __all__ = ["emit_derivation", "emit_module"]
 
 
-class _Derived(Protocol):
-    @property
-    def module(self) -> SolverModule: ...
-
-
-def emit_derivation(derivation: _Derived) -> dict[str, str]:
+def emit_derivation(derivation: Derivation) -> dict[str, str]:
     """File name -> text of the Python output."""
     module = derivation.module
     return {f"{module.name}_ik.py": emit_module(module)}

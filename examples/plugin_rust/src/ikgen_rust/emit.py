@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 from ikgen.emit.module import SolverModule
 from ikgen.emit.rendering import folder_environment
@@ -15,18 +15,16 @@ from ikgen.ir.program import Program
 from ikgen_rust.body import body_lines
 from ikgen_rust.language import number, text_literal
 
+if TYPE_CHECKING:
+    from ikgen.derivation import Derivation
+
 __all__ = ["CRATE", "emit_derivation"]
 
 CRATE = Path(__file__).parent / "crate"
 _SAME_FOR_ALL = ("lib.rs", "chain.rs", "newton.rs", "rows.rs")
 
 
-class _Derived(Protocol):
-    @property
-    def module(self) -> SolverModule: ...
-
-
-def emit_derivation(derivation: _Derived) -> dict[str, str]:
+def emit_derivation(derivation: Derivation) -> dict[str, str]:
     """Relative path -> text of `<name>_ik_rs/`."""
     module = derivation.module
     folder = f"{module.name}_ik_rs"
