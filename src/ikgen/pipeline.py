@@ -81,7 +81,7 @@ def derive(
 
     progress("read", request.robot.name)
     reading = read(request)
-    free_defaults(reading.dh, request.free)  # before the search: some values are refused
+    held = free_defaults(reading.dh, request.free)  # before the search: some values are refused
     geometry = classify(reading.dh)
     progress("derive", geometry.name)
     task, graph = _solve(reading.dh, request.task, progress, passed_over)
@@ -97,7 +97,7 @@ def derive(
 
         name = request.name or identifier(reading.dh.robot)
         raise unsolved_error(Unsolved(reading, geometry, task, graph, name, request.robot.name))
-    module = _module(request, reading, task, geometry.words, graph, plan)
+    module = _module(request, reading, task, geometry.words, graph, plan, held)
     return Derivation(reading, geometry, task, graph, module, request.task is None)
 
 
@@ -161,11 +161,11 @@ def _module(
     geometry: str,
     graph: SolutionGraph,
     plan: UniversalPlan | None,
+    held: tuple[float, ...],
 ) -> SolverModule:
     from ikgen.emit.module import SolverModule
     from ikgen.ir.elimination import elimination_program
     from ikgen.ir.lower import lower
-    from ikgen.kinematics.free_joints import free_defaults
 
     dh = reading.dh
     return SolverModule(
@@ -174,7 +174,7 @@ def _module(
         dh=dh,
         task=task.name,
         free=tuple(j for j, joint in enumerate(dh.joints) if joint.name in dh.free),
-        free_defaults=free_defaults(dh, request.free),
+        free_defaults=held,
         source_name=request.robot.name,
         source_sha256=reading.source.sha256,
         generator_version=__version__,

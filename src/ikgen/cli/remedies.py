@@ -73,21 +73,14 @@ def remedies(unsolved: Unsolved, progress: Progress) -> list[Attempt]:
 
 def _choices(dh: DHChain, task: Task) -> Iterator[tuple[Task, tuple[str, ...]]]:
     """The task with as many joints held as move in vain, then smaller tasks."""
-    from ikgen.tasks import TASKS
+    from ikgen.tasks import TASKS, freedoms_moved
 
     moving = [j.name for j in dh.joints if j.name not in dh.free]
     smaller = [t for t in TASKS if t.freedoms < task.freedoms and t.name != "rotation"]
     for one in (task, *smaller):
-        spare = len(moving) - _reach(dh, one)
+        spare = len(moving) - freedoms_moved(dh, one)
         if spare < 0 or spare > _MOST_HELD or (one is task and spare == 0):
             continue
         for held in itertools.combinations(reversed(moving), spare):
-            if _reach(replace(dh, free=(*dh.free, *held)), one) == len(moving) - spare:
+            if freedoms_moved(replace(dh, free=(*dh.free, *held)), one) == len(moving) - spare:
                 yield one, held
-
-
-def _reach(dh: DHChain, task: Task) -> int:
-    """How many of the task's freedoms the joints that are not held move."""
-    from ikgen.tasks import freedoms_moved
-
-    return freedoms_moved(dh, task)

@@ -10,8 +10,9 @@ from ikgen.plugins import find_plug_in, plug_ins
 
 if TYPE_CHECKING:
     from ikgen.model.dh import DHChain
+    from ikgen.model.joint_tree import Matrix
 
-__all__ = ["TASKS", "Task", "find_task", "fitting_tasks", "freedoms_moved"]
+__all__ = ["TASKS", "Task", "find_task", "fits", "fitting_tasks", "freedoms_moved"]
 
 _POSITION = ("px", "py", "pz")
 _ROTATION = tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
@@ -23,7 +24,6 @@ _ORIENTATIONS = {
     frozenset(_DIRECTION): "direction",
     frozenset(_HEADING): "yaw",
 }
-_CONFIGURATIONS = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +116,7 @@ def fits(dh: DHChain, task: Task) -> bool:
 
     from ikgen.kinematics.forward import file_forward
 
-    q = np.random.default_rng(0).uniform(-1.5, 1.5, (_CONFIGURATIONS, dh.dof))
+    q = _configurations(dh)
     if task.name == "position-yaw" and np.abs(file_forward(dh, q)[:, 2, 0]).max() > 1e-6:
         return False  # a heading is well-defined where the tool's x axis stays horizontal
     return freedoms_moved(dh, task) == dh.dof - len(dh.free)
@@ -129,8 +129,7 @@ def freedoms_moved(dh: DHChain, task: Task) -> int:
 
     from ikgen.kinematics.forward import file_forward
 
-    rng = np.random.default_rng(0)
-    q = rng.uniform(-1.5, 1.5, (_CONFIGURATIONS, dh.dof))
+    q = _configurations(dh)
     rows, columns = zip(*task.entries, strict=True)
     steps = []
     for j in range(dh.dof):
@@ -143,3 +142,10 @@ def freedoms_moved(dh: DHChain, task: Task) -> int:
     singular = np.linalg.svd(np.stack(steps, axis=-1), compute_uv=False)
     largest = np.maximum(singular[:, :1], 1e-12)
     return int((np.median(singular / largest, axis=0) > 1e-4).sum())
+
+
+def _configurations(dh: DHChain) -> Matrix:
+    """A few configurations (8, dof) in rad and m, the same each time."""
+    import numpy as np
+
+    return np.random.default_rng(0).uniform(-1.5, 1.5, (8, dh.dof))
