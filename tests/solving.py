@@ -10,9 +10,18 @@ from types import ModuleType
 
 from ikgen.emit.module import SolverModule
 from ikgen.emit.python import emit_module
+from ikgen.errors import MissingToolError
 from ikgen.ir.lower import lower
 from ikgen.model.dh import DHChain
 from ikgen.solver.run import solve_chain
+from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
+
+try:
+    find_compiler(), find_eigen()
+    NO_COMPILER = ""
+except MissingToolError as error:
+    NO_COMPILER = error.message
+"""What is missing to compile the C++ header; empty where nothing is."""
 
 FIXTURES = Path(__file__).resolve().parents[1] / "urdf_fixtures"
 _count = itertools.count()

@@ -11,18 +11,9 @@ from pathlib import Path
 import pytest
 
 from ikgen.cli.main import run
-from ikgen.errors import MissingToolError
-from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
+from solving import NO_COMPILER
 
-
-def has_compiler() -> bool:
-    try:
-        return bool(find_compiler() and find_eigen())
-    except MissingToolError:
-        return False
-
-
-needs_compiler = pytest.mark.skipif(not has_compiler(), reason="needs a C++ compiler and Eigen")
+needs_compiler = pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
 KUKA = Path(__file__).resolve().parents[2] / "urdf_fixtures" / "kuka_kr6r900sixx.urdf"
 
 

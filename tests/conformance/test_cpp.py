@@ -19,21 +19,15 @@ from numpy.typing import NDArray
 from ikgen.emit.cpp import emit, emit_header
 from ikgen.emit.module import SolverModule
 from ikgen.emit.python import emit_module
-from ikgen.errors import MissingToolError
 from ikgen.ir.interpret import run
 from ikgen.kinematics.forward import file_forward, file_jacobian
 from ikgen.verify.runners.cpp_header import CppHeader
-from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
 from ikgen.verify.runners.runner import ArmConstants
+from solving import NO_COMPILER
 
 Array = NDArray[np.float64]
 
-try:
-    find_compiler(), find_eigen()
-    MISSING = ""
-except MissingToolError as error:
-    MISSING = error.message
-pytestmark = pytest.mark.skipif(bool(MISSING), reason=MISSING)
+pytestmark = pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
 
 SAMPLES = 60
 
