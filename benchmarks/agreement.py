@@ -23,10 +23,10 @@ import numpy as np
 
 from benchmarks.collection import ABSENT, CORPUS, load_arms
 from benchmarks.corpus import options_for, urdf_of
-from ikgen.emit.registry import find_emitter
 from ikgen.errors import IkgenError, UnsolvedChainError
-from ikgen.generate import oracle_for
-from ikgen.pipeline import Derivation, Request, derive
+from ikgen.generation.emitters import find_emitter
+from ikgen.generation.generation import oracle_for
+from ikgen.generation.pipeline import Derivation, Request, derive
 from ikgen.tasks import find_task
 from ikgen.verify.agreement import disagreements
 from ikgen.verify.arm import ArmUnderTest, arm_under_test

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from benchmarks.peer_solvers import AbsentError, Arm
-from ikgen.generate import Outputs, generate
-from ikgen.pipeline import Request
+from ikgen.generation.generation import Outputs, generate
+from ikgen.generation.pipeline import Request
 
 __all__ = ["ARMS", "compiled", "make_arm"]
 

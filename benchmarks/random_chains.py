@@ -23,14 +23,14 @@ from types import ModuleType
 
 import numpy as np
 
-from ikgen.emit.module import SolverModule
-from ikgen.emit.python import emit_module
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.emit.solver_module import SolverModule
 from ikgen.equations.probes import arm_size, dh_pose, smallest_singular
-from ikgen.ir.lower import lower
+from ikgen.lowering.lower import lower
 from ikgen.model.chain import PRISMATIC, REVOLUTE, ActuatedJoint
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
 from ikgen.model.joint_tree import Limits
-from ikgen.solver.run import solve_chain
+from ikgen.solver.solve import solve_chain
 
 QUARTERS = (Fraction(0), Fraction(1, 2), Fraction(-1, 2))
 _count = itertools.count()

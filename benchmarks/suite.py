@@ -25,10 +25,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.emit.python import emit_module
+from ikgen.emit.python.python_emitter import emit_module
 from ikgen.errors import IkgenError
-from ikgen.generate import oracle_for
-from ikgen.pipeline import Derivation, Request, derive
+from ikgen.generation.generation import oracle_for
+from ikgen.generation.pipeline import Derivation, Request, derive
 from ikgen.verify.arm import REGULAR_SIGMA, ArmUnderTest, arm_under_test
 from ikgen.verify.runners.python_module import PythonModule
 from ikgen.verify.search import find_solutions
@@ -69,7 +69,7 @@ def try_robot(path: Path, poses: int, searched: int, starts: int) -> Trial:
         derivation = derive(Request(path))
         text = emit_module(derivation.module)
     except IkgenError as error:
-        from ikgen.importers.dh_table import read_dh_table
+        from ikgen.importers.dh.dh_table import read_dh_table
 
         seconds = time.perf_counter() - started
         source, dh = read_dh_table(path)

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from ikgen.cli.main import COMMANDS, ikgen
-from ikgen.emit.registry import EMITTERS
+from ikgen.generation.emitters import EMITTERS
 
 __all__ = ["PAGE", "filled_in"]
 

@@ -8,12 +8,12 @@ import sys
 from pathlib import Path
 from types import ModuleType
 
-from ikgen.emit.module import SolverModule
-from ikgen.emit.python import emit_module
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.emit.solver_module import SolverModule
 from ikgen.errors import MissingToolError
-from ikgen.ir.lower import lower
+from ikgen.lowering.lower import lower
 from ikgen.model.dh import DHChain
-from ikgen.solver.run import solve_chain
+from ikgen.solver.solve import solve_chain
 from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
 
 try:

@@ -10,12 +10,12 @@ from typing import Any, cast
 
 import numpy as np
 
-from ikgen.emit.report.picture import draw
-from ikgen.emit.report.poses import versions_of
-from ikgen.pipeline import Request, derive
+from ikgen.generation.pipeline import Request, derive
+from ikgen.report.graph_picture import draw
+from ikgen.report.solution_sets import versions_of
+from ikgen.solver.behavior_tree import build_tree
 from ikgen.solver.leaves import LEAVES
 from ikgen.solver.session import Session
-from ikgen.solver.tree import build_tree
 
 __all__ = ["PICTURES"]
 

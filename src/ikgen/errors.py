@@ -72,7 +72,7 @@ class UnsupportedJointError(BadDescriptionError):
 
 class UnsolvedChainError(IkgenError):
     """No closed form found: the message says what was solved, what is left and what would help;
-    `unsolved` is how far the derivation came (`ikgen.derivation.Unsolved`)."""
+    `unsolved` is how far the derivation came (`ikgen.emit.derivation.Unsolved`)."""
 
     exit_code = 3
 

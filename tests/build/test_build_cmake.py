@@ -11,9 +11,9 @@ import pytest
 from tools import environment, needs_cmake
 
 from ikgen import __version__
-from ikgen.build.cmake import ament_directory, cmake_directory
-from ikgen.emit.registry import EMITTERS
 from ikgen.errors import MissingToolError
+from ikgen.generation.emitters import EMITTERS
+from ikgen.projects.cmake import ament_directory, cmake_directory
 from ikgen.verify.runners.cpp_toolchain import find_eigen
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from ikgen.build.config import default_config, load_config
-from ikgen.build.depfile import depfile_text
-from ikgen.build.stale import why_stale
 from ikgen.cli.main import run
 from ikgen.errors import BadDescriptionError
+from ikgen.projects.config import default_config, load_config
+from ikgen.projects.depfile import depfile_text
+from ikgen.projects.stale import why_stale
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples/cmake_only/urdf"
@@ -114,7 +114,7 @@ def test_the_traceback_of_an_internal_error(
     def fail(*_: object) -> None:
         raise RuntimeError("broken\nin two")
 
-    monkeypatch.setattr("ikgen.generate.generate", fail)
+    monkeypatch.setattr("ikgen.generation.generation.generate", fail)
     assert run(["build", "--jobs", "1"]) == 70
     said = capsys.readouterr().err
     assert "error: kuka: internal error: RuntimeError: broken in two" in said

@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from ikgen.build.config import ArmConfig
-from ikgen.build.run import Outcome
 from ikgen.cli.main import run
+from ikgen.projects.config import ArmConfig
+from ikgen.projects.project_build import Outcome
 
 ROBOT = Path(__file__).resolve().parents[2] / "examples/setuptools_robot/urdf/elbow.urdf"
 ARM = '[[arm]]\nname = "{}"\nrobot = "elbow.urdf"\ntask = "position"\nsamples = 20\n'
@@ -39,7 +39,7 @@ def killed(job: tuple[ArmConfig, str, bool]) -> Outcome:
 def test_a_killed_worker_is_told_for_each_arm(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("ikgen.build.run._build_one", killed)
+    monkeypatch.setattr("ikgen.projects.project_build._build_one", killed)
     assert run(["build", "--jobs", "2"]) == 70
     said = capsys.readouterr().err
     for name in ("first", "second"):
@@ -51,7 +51,7 @@ def test_a_setup_file_without_a_main_guard(project: Path) -> None:
     pytest.importorskip("setuptools")
     (project / "setup.py").write_text(
         "from setuptools import setup\n"
-        "from ikgen.build.setuptools import BuildPy\n"
+        "from ikgen.projects.setuptools import BuildPy\n"
         "print('run once')\n"
         "setup(name='x', version='1', py_modules=[], cmdclass={'build_py': BuildPy})\n"
     )

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from ikgen.emit.moveit import emit
-from ikgen.pipeline import Request, derive
+from ikgen.generation.pipeline import Request, derive
 from solving import FIXTURES
 
 STUBS = Path(__file__).resolve().parents[1] / "conformance" / "moveit_stubs"

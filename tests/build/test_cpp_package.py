@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from tools import needs_cmake
 
-from ikgen.generate import Outputs, generate
-from ikgen.pipeline import Request
+from ikgen.generation.generation import Outputs, generate
+from ikgen.generation.pipeline import Request
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 STRICT = "-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror"

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from ikgen.build.config import load_config
-from ikgen.build.stale import why_stale
 from ikgen.cli.main import run
+from ikgen.projects.config import load_config
+from ikgen.projects.stale import why_stale
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples/cmake_only/urdf"
 CONFIG = """

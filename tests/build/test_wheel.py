@@ -39,7 +39,7 @@ def test_everything_is_in_the_wheel(built: dict[str, Path]) -> None:
         "ikgen/templates/cpp/header.hpp.jinja",
         "ikgen/templates/cmake/ikgenConfig.cmake",
         "ikgen/templates/ament/ikgen_ament/package.xml",
-        "ikgen/build/cmake_root/cmake/ikgenConfig.cmake",
+        "ikgen/projects/cmake_root/cmake/ikgenConfig.cmake",
     ):
         assert part in names, part
     assert any(n.endswith(".data/data/share/cmake/ikgen/ikgenConfig.cmake") for n in names)

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from ikgen.cli.main import run
-from ikgen.cli.remedies import remedies
 from ikgen.errors import UnsolvedChainError
-from ikgen.pipeline import Request, derive
+from ikgen.generation.pipeline import Request, derive
+from ikgen.generation.remedies import remedies
 from ikgen.solver.remainder import near_misses, open_equations
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -78,7 +78,7 @@ def test_how_much_is_tried_does_not_depend_on_the_time(
     monkeypatch.setattr("time.monotonic", lambda: next(clock))
     tried = remedies(caught.value.unsolved, lambda *_: None)
     assert len([a for a in tried if a.closed]) == 3
-    monkeypatch.setattr("ikgen.cli.remedies.ATTEMPTS", 2)
+    monkeypatch.setattr("ikgen.generation.remedies.ATTEMPTS", 2)
     assert remedies(caught.value.unsolved, lambda *_: None) == tried[:2]
 
 

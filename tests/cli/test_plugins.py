@@ -110,7 +110,7 @@ def test_a_leaf_that_fails_is_named(tmp_path: Path, planar: Path) -> None:
 
 
 EMITTER = """
-from ikgen.emit.registry import Emitter
+from ikgen.generation.emitters import Emitter
 LIST = Emitter("list", "joint names", "other:emit", None)
 def emit(derivation):
     return {f"{derivation.module.name}.txt": "\\n".join(derivation.reading.no_such)}

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from ikgen.build.pdf import typeset
 from ikgen.cli.main import run
+from ikgen.report.pdf import typeset
 
 ROBOT = Path(__file__).resolve().parents[2] / "examples/setuptools_robot/urdf/elbow.urdf"
 PAGE = "\\documentclass{article}\\begin{document}\\today, $\\theta_1$\\end{document}\n"

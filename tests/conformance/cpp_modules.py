@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ikgen.emit.module import SolverModule
-from ikgen.ir.lower import lower
-from ikgen.pipeline import Request, read
-from ikgen.solver.run import solve_chain
+from ikgen.emit.solver_module import SolverModule
+from ikgen.generation.pipeline import Request, read
+from ikgen.lowering.lower import lower
+from ikgen.solver.solve import solve_chain
 
 __all__ = ["EXACT", "ROBOTS", "solver_module"]
 

@@ -14,13 +14,13 @@ import pytest
 from moveit_driver import compile_driver
 from numpy.typing import NDArray
 
-from ikgen.emit.module import SolverModule
 from ikgen.emit.moveit import emit, package_name
+from ikgen.emit.solver_module import SolverModule
 from ikgen.errors import MissingToolError
+from ikgen.generation.pipeline import Request, derive
 from ikgen.importers import load_tree
 from ikgen.kinematics.forward import file_forward
 from ikgen.model.joint_tree import Joint, JointTree, JointType, Limits
-from ikgen.pipeline import Request, derive
 from ikgen.verify.runners.cpp_toolchain import find_eigen
 from solving import FIXTURES
 

@@ -16,11 +16,11 @@ import pytest
 from cpp_modules import EXACT, ROBOTS, solver_module
 from numpy.typing import NDArray
 
-from ikgen.emit.cpp import emit, emit_header
-from ikgen.emit.module import SolverModule
-from ikgen.emit.python import emit_module
-from ikgen.ir.interpret import run
+from ikgen.emit.cpp.cpp_emitter import emit, emit_header
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.emit.solver_module import SolverModule
 from ikgen.kinematics.forward import file_forward, file_jacobian
+from ikgen.program.interpret import run
 from ikgen.verify.runners.cpp_header import CppHeader
 from ikgen.verify.runners.runner import ArmConstants
 from solving import NO_COMPILER

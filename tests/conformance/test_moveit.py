@@ -11,7 +11,7 @@ from moveit_arms import FRANKA, KUKA, Arm, needs, with_joint
 from moveit_driver import Plugin
 from numpy.typing import NDArray
 
-from ikgen.emit.python import emit_module
+from ikgen.emit.python.python_emitter import emit_module
 from ikgen.model.joint_tree import Limits
 from solving import import_text
 

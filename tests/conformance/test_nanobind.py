@@ -14,7 +14,7 @@ import pytest
 from cpp_modules import ROBOTS, solver_module
 
 from ikgen.emit.nanobind import emit
-from ikgen.emit.python import emit_module
+from ikgen.emit.python.python_emitter import emit_module
 
 
 def test_the_folder_stands_alone() -> None:

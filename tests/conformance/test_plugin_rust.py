@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ikgen.emit.registry import find_emitter
 from ikgen.errors import UsageError
-from ikgen.generate import Outputs, generate
-from ikgen.pipeline import Request
+from ikgen.generation.emitters import find_emitter
+from ikgen.generation.generation import Outputs, generate
+from ikgen.generation.pipeline import Request
 from ikgen.verify.runners.python_module import PythonModule
 
 pytest.importorskip("hatchling")

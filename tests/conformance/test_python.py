@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from ikgen.cli.main import run
-from ikgen.emit.module import SolverModule
 from ikgen.emit.nanobind import emit
-from ikgen.emit.python import emit_module
-from ikgen.pipeline import Request, derive
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.emit.solver_module import SolverModule
+from ikgen.generation.pipeline import Request, derive
 from ikgen.verify.runners.python_module import PythonModule
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"

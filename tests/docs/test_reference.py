@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 from snippets import blocks
 
-from ikgen.build.config import load_config
+from ikgen.projects.config import load_config
 from ikgen.tasks import TASKS
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ikgen.emit.cpp import emit_header
-from ikgen.emit.module import SolverModule
-from ikgen.ir.ops import Op
-from ikgen.ir.program import Comment, JointOutput, Let, Level, Program, Require
+from ikgen.emit.cpp.cpp_emitter import emit_header
+from ikgen.emit.solver_module import SolverModule
+from ikgen.program.ops import Op
+from ikgen.program.statements import Comment, JointOutput, Let, Level, Program, Require
 from ikgen.kinematics.forward import row_constant
 from ikgen.model.chain import ActuatedJoint
 from ikgen.model.dh import Angle, DHChain, DHRow, Length

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from ikgen.emit.python import emit_module
-from ikgen.pipeline import Request, derive
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.generation.pipeline import Request, derive
 
 ROOT = Path(__file__).resolve().parents[2]
 ARMS = {

@@ -13,7 +13,7 @@ from ikgen.model.dh import Angle, DHChain, DHRow, Length
 from ikgen.model.joint_tree import Limits
 from ikgen.solver.leaves import LEAVES
 from ikgen.solver.ranker import PREFERENCE
-from ikgen.solver.run import solve_chain
+from ikgen.solver.solve import solve_chain
 from solving import emitted
 
 Row = tuple[str, str, float, float]

@@ -15,10 +15,10 @@ from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
 from ikgen.equations.matching import powers
 from ikgen.errors import PlugInError
 from ikgen.solver import leaves
+from ikgen.solver.behavior_tree import Tree, the_tree
 from ikgen.solver.candidate import Candidate
 from ikgen.solver.leaves import LEAVES, Leaf
-from ikgen.solver.run import solve_chain
-from ikgen.solver.tree import Tree, the_tree
+from ikgen.solver.solve import solve_chain
 
 
 def find_slide(

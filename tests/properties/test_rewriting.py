@@ -9,8 +9,8 @@ import pytest
 from chains import rewritten
 from numpy.typing import NDArray
 
+from ikgen.chains.selection import select_chain
 from ikgen.importers import load_tree
-from ikgen.importers.chain import select_chain
 from ikgen.kinematics.forward import chain_forward
 from ikgen.kinematics.modified_dh import to_dh
 from ikgen.model.chain import Chain

@@ -9,8 +9,8 @@ from types import ModuleType
 import numpy as np
 import pytest
 
+from ikgen.chains.selection import select_chain
 from ikgen.importers import load_tree
-from ikgen.importers.chain import select_chain
 from ikgen.kinematics.modified_dh import to_dh
 from solving import FIXTURES, emitted
 

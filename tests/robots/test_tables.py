@@ -10,10 +10,10 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from ikgen.emit.python import emit_module
+from ikgen.emit.python.python_emitter import emit_module
 from ikgen.errors import UnsolvedChainError
-from ikgen.generate import Outputs, generate, oracle_for
-from ikgen.pipeline import Request, derive, read
+from ikgen.generation.generation import Outputs, generate, oracle_for
+from ikgen.generation.pipeline import Request, derive, read
 from ikgen.verify.runners.python_module import PythonModule
 from solving import NO_COMPILER
 

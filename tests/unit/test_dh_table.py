@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from ikgen.errors import BadDescriptionError, IkgenError, UnknownNameError
-from ikgen.importers.dh_table import read_dh_table
+from ikgen.importers.dh.dh_table import read_dh_table
 from ikgen.kinematics.forward import dh_forward, file_forward
 from ikgen.model.dh import DHChain
 

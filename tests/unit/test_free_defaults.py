@@ -10,9 +10,9 @@ import pytest
 
 from ikgen.cli.main import run
 from ikgen.errors import UsageError
+from ikgen.generation.pipeline import Request, read
 from ikgen.kinematics.free_joints import free_defaults
 from ikgen.model.joint_tree import Limits
-from ikgen.pipeline import Request, read
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 FR3 = FIXTURES / "franka_fr3.urdf"

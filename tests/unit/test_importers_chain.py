@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ikgen.chains.selection import candidate_chains, select_chain
 from ikgen.errors import (
     BadDescriptionError,
     UnknownNameError,
@@ -15,8 +16,7 @@ from ikgen.errors import (
     UsageError,
 )
 from ikgen.importers import load_tree
-from ikgen.importers.chain import candidate_chains, select_chain
-from ikgen.importers.urdf import parse_urdf
+from ikgen.importers.urdf.urdf_tree import parse_urdf
 
 FIXTURES = Path(__file__).parents[2] / "urdf_fixtures"
 

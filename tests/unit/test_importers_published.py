@@ -14,9 +14,9 @@ import pytest
 from benchmarks.collection import ABSENT, ARMS_FILE, CORPUS, load_arms
 from test_importers_chain import forward
 
+from ikgen.chains.selection import candidate_chains, select_chain
 from ikgen.errors import BadDescriptionError, IkgenError, UsageError
 from ikgen.importers import load_tree
-from ikgen.importers.chain import candidate_chains, select_chain
 
 ROOT = Path(__file__).parents[2]
 FIXTURES = sorted((ROOT / "urdf_fixtures").glob("*.urdf"))

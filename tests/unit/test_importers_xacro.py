@@ -12,7 +12,7 @@ import pytest
 from ikgen.errors import BadDescriptionError
 from ikgen.importers import load_tree
 from ikgen.importers.packages import PackageFinder, PackageNotFoundError
-from ikgen.importers.xacro import expand
+from ikgen.importers.xacro.expansion import expand
 
 FIXTURES = Path(__file__).parents[2] / "urdf_fixtures"
 AR4 = FIXTURES / "ar4_ros_driver/annin_ar4_description"

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from ikgen.publish import publish
+from ikgen.generation.publish import publish
 
 HOUR = 3600.0
 

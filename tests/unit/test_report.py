@@ -11,15 +11,15 @@ from pathlib import Path
 
 import pytest
 
-from ikgen.emit.registry import find_emitter
-from ikgen.emit.report import emit_report
-from ikgen.emit.report.layout import layout
-from ikgen.emit.report.normal import Normalizer, Sum
-from ikgen.emit.report.notation import show
-from ikgen.emit.report.poses import versions_of
-from ikgen.equations.expression_graph import ExpressionGraph
-from ikgen.pipeline import Derivation, Request, derive
-from ikgen.verify.report import CheckResult, VerificationReport
+from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.generation.emitters import find_emitter
+from ikgen.generation.pipeline import Derivation, Request, derive
+from ikgen.report import emit_report
+from ikgen.report.layout import layout
+from ikgen.report.normal_form import Normalizer, Sum
+from ikgen.report.notation import show
+from ikgen.report.solution_sets import versions_of
+from ikgen.verify.verification_report import CheckResult, VerificationReport
 
 ROOT = Path(__file__).resolve().parents[2]
 TABLES = {

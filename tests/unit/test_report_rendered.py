@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from ikgen.emit.report import emit_report, emit_unsolved
-from ikgen.emit.report.document import Paragraph
-from ikgen.emit.report.latex import to_latex
 from ikgen.errors import UnsolvedChainError
-from ikgen.pipeline import Request, derive
+from ikgen.generation.pipeline import Request, derive
+from ikgen.report import emit_report, emit_unsolved
+from ikgen.report.document import Paragraph
+from ikgen.report.latex import to_latex
 
 ROOT = Path(__file__).resolve().parents[2]
 TABLES = ROOT / "tests" / "robots" / "tables"

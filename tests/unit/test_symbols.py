@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from ikgen.cli.main import run
-from ikgen.emit.cpp import emit_header
-from ikgen.emit.python import emit_module
-from ikgen.emit.symbols import blanks, frame_entries
+from ikgen.emit.cpp.cpp_emitter import emit_header
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.emit.symbolic_frames import blanks, frame_entries
 from ikgen.errors import IkgenError, UsageError
-from ikgen.generate import with_samples
-from ikgen.ir.interpret import evaluate
-from ikgen.pipeline import Derivation, Request, derive
+from ikgen.generation.generation import with_samples
+from ikgen.generation.pipeline import Derivation, Request, derive
+from ikgen.program.interpret import evaluate
 from ikgen.verify.runners.cpp_toolchain import find_compiler
 from ikgen.verify.runners.python_module import PythonModule
 

@@ -12,8 +12,7 @@ from benchmarks.collection import load_arms
 from numpy.typing import NDArray
 from test_routines_loading import compiled_routine, feed, python_routine
 
-from ikgen.kinematics.modified_dh import to_dh
-from ikgen.universal import (
+from ikgen.elimination import (
     UniversalPlan,
     choose_plan,
     general_6r,
@@ -21,7 +20,8 @@ from ikgen.universal import (
     held_frames,
     hold_joint,
 )
-from ikgen.universal.frames import forward, jacobian
+from ikgen.elimination.loop_frames import forward, jacobian
+from ikgen.kinematics.modified_dh import to_dh
 
 Array = NDArray[np.float64]
 ARMS = {a["name"]: a for a in load_arms()}

@@ -11,10 +11,10 @@ from test_verify_fakes import tree_of
 
 from ikgen.errors import BadDescriptionError, MissingToolError, VerificationError
 from ikgen.verify.oracle import PinocchioOracle
-from ikgen.verify.run import verify
 from ikgen.verify.runners import cpp_toolchain
 from ikgen.verify.runners.cpp_header import CppHeader
 from ikgen.verify.runners.runner import ArmConstants
+from ikgen.verify.verification import verify
 
 URDF = """<robot name="p"><link name="b"/><link name="l1"/><link name="l2"/><link name="tip"/>
 <joint name="j1" type="continuous"><parent link="b"/><child link="l1"/><axis xyz="0 0 1"/></joint>

@@ -12,9 +12,9 @@ from ikgen.tasks import find_task
 from ikgen.verify.arm import arm_under_test
 from ikgen.verify.interface_checks import check_constants
 from ikgen.verify.oracle import PinocchioOracle
-from ikgen.verify.run import verify
 from ikgen.verify.runners.python_module import PythonModule
 from ikgen.verify.task_space import task_space
+from ikgen.verify.verification import verify
 
 _LINK = """<joint name="j{i}" type="continuous"><parent link="l{before}"/><child link="l{i}"/>
 <origin xyz="{x} 0 0"/><axis xyz="0 0 1"/></joint><link name="l{i}"/>"""

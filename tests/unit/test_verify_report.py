@@ -9,7 +9,7 @@ import pytest
 from junitparser import JUnitXml
 
 from ikgen.verify.junit import write_junit_xml
-from ikgen.verify.report import CheckResult, VerificationReport
+from ikgen.verify.verification_report import CheckResult, VerificationReport
 
 GOOD = CheckResult("closure", True, 800, worst=(("position m", 1e-15), ("rotation rad", 2e-15)))
 IDLE = CheckResult("free joints", True, 0, detail="no joint is held free")

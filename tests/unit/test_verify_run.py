@@ -11,8 +11,8 @@ import pytest
 from test_verify_fakes import DEFECTS, JOINTS, six_axis_module, six_axis_oracle
 
 from ikgen.errors import BadDescriptionError, UnknownNameError
-from ikgen.verify.run import verify
 from ikgen.verify.runners.python_module import PythonModule
+from ikgen.verify.verification import verify
 
 
 def test_right_module_passes(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ import click
 from ikgen.errors import BadDescriptionError, IkgenError
 
 if TYPE_CHECKING:
-    from ikgen.build.findings import Finding, Recheck
+    from ikgen.projects.check_findings import Finding, Recheck
 
 __all__ = ["annotate", "annotate_error"]
 

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ikgen.build.config import ArmConfig, load_config, named_config
 from ikgen.cli.console import Console
 from ikgen.cli.options import console_options
+from ikgen.projects.config import ArmConfig, load_config, named_config
 
 if TYPE_CHECKING:
-    from ikgen.build.run import Outcome
+    from ikgen.projects.project_build import Outcome
 
 __all__ = ["build"]
 
@@ -63,7 +63,7 @@ def build(
     arms = load_config(named_config(config))
     if check:
         return _check(arms, verify=not no_verify, as_json=as_json, quiet=quiet)
-    from ikgen.build.run import build_arms
+    from ikgen.projects.project_build import build_arms
 
     with Console(quiet=quiet, verbose=verbose) as console:
         outcomes = list(
@@ -77,8 +77,8 @@ def build(
 
 def _check(arms: Sequence[ArmConfig], *, verify: bool, as_json: bool, quiet: bool) -> int:
     """Say what is stale; writes nothing and imports nothing heavy."""
-    from ikgen.build.check import stale_lines
-    from ikgen.build.stale import stale_reasons
+    from ikgen.projects.check import stale_lines
+    from ikgen.projects.stale import stale_reasons
 
     reasons = {
         arm.record_path.as_posix(): (arm.name, reason)
@@ -124,9 +124,9 @@ def _print(outcomes: Sequence[Outcome], *, as_json: bool, quiet: bool, verbose: 
 
 def _write_depfile(path: Path, arms: Sequence[ArmConfig]) -> None:
     """What the recorded arms were read from; nothing where one could not be generated."""
-    from ikgen.build.depfile import write_depfile
-    from ikgen.build.inputs import Packages
-    from ikgen.build.record import read_record
+    from ikgen.generation.record import read_record
+    from ikgen.projects.depfile import write_depfile
+    from ikgen.projects.recorded_inputs import Packages
 
     packages = Packages()
     records = [read_record(arm.record_path) for arm in arms if arm.record_path.is_file()]

@@ -127,7 +127,7 @@ def _registry(group: str) -> tuple[type, set[str]]:
 
         return Importer, set()  # chosen by suffix, not by name
     if group == "ikgen.emitters":
-        from ikgen.emit.registry import EMITTERS, Emitter
+        from ikgen.generation.emitters import EMITTERS, Emitter
 
         return Emitter, {row.name for row in EMITTERS}
     if group == "ikgen.leaves":
@@ -135,7 +135,7 @@ def _registry(group: str) -> tuple[type, set[str]]:
 
         return Leaf, set()
     if group == "ikgen.trees":
-        from ikgen.solver.tree import Tree
+        from ikgen.solver.behavior_tree import Tree
 
         return Tree, set()  # takes the place of ikgen's own, whatever its name
     from ikgen.tasks import TASKS, Task

@@ -16,9 +16,9 @@ from ikgen.cli.options import (
     sampling_options,
 )
 from ikgen.errors import UnsolvedChainError, UsageError, VerificationError
-from ikgen.generate import Generation, Outputs, generate
-from ikgen.pipeline import Request
-from ikgen.publish import left_over
+from ikgen.generation.generation import Generation, Outputs, generate
+from ikgen.generation.pipeline import Request
+from ikgen.generation.publish import left_over
 
 __all__ = ["from_dh", "from_urdf"]
 
@@ -116,7 +116,7 @@ def _run(
             try:
                 generation = generate(request, outputs, console)
             except UnsolvedChainError as error:
-                from ikgen.cli.remedies import helped
+                from ikgen.generation.remedies import helped
 
                 raise helped(error, console) from None
     except VerificationError as error:
@@ -131,7 +131,7 @@ def _run(
     for path in left_over(out, module.name, names):
         console.warn(f"{path} is of an earlier run: remove it, or name its output in --emit too")
     if depfile is not None:
-        from ikgen.build.depfile import write_depfile
+        from ikgen.projects.depfile import write_depfile
 
         source = generation.derivation.reading.source
         targets = depfile_target or generation.files

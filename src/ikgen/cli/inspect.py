@@ -10,10 +10,10 @@ import click
 
 from ikgen.cli.console import Console
 from ikgen.cli.options import chain_options, console_options, make_request
-from ikgen.pipeline import Reading, Request, read
+from ikgen.generation.pipeline import Reading, Request, read
 
 if TYPE_CHECKING:
-    from ikgen.cli.findings import Findings
+    from ikgen.cli.inspection import Findings
 
 __all__ = ["inspect"]
 
@@ -27,7 +27,7 @@ def inspect(
     robot: Path, *, no_advice: bool, as_json: bool, quiet: bool, verbose: bool, **chain: Any
 ) -> None:
     """Show the joint tree, the chains, the DH table, the geometry and advice; write nothing."""
-    from ikgen.cli.findings import as_dict, as_text
+    from ikgen.cli.inspection import as_dict, as_text
 
     request = make_request(robot, **chain)
     with Console(quiet=quiet, verbose=verbose) as console:
@@ -42,16 +42,16 @@ def inspect(
 
 def _find(request: Request, console: Console, *, advice: bool) -> Findings:
     """Read the file; the chain and what follows from it where it is clear which one."""
-    from ikgen.cli.advice import attempts
-    from ikgen.cli.findings import Findings
+    from ikgen.cli.inspection import Findings
+    from ikgen.generation.advice import attempts
 
     console("read", request.robot.name)
     if request.robot.suffix.lower() == ".toml":
         table = read(request)
         tried = attempts(table.dh, request.task, console) if advice else []
         return Findings(table, None, (), tried)
+    from ikgen.chains.arms import candidate_chains
     from ikgen.importers import load_tree
-    from ikgen.importers.candidates import candidate_chains
 
     tree = load_tree(
         request.robot, arguments=request.arguments, package_paths=request.package_paths

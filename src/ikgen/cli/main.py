@@ -26,7 +26,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "verify": ("ikgen.cli.verify:verify", "Check emitted modules against their robot."),
     "build": ("ikgen.cli.build:build", "Generate every arm that a config lists."),
     "report": ("ikgen.cli.report:report", "Write the derivation as LaTeX and HTML."),
-    "cmake-dir": ("ikgen.cli.places:cmake_dir", "Print where the CMake package files lie."),
+    "cmake-dir": ("ikgen.cli.cmake_dir:cmake_dir", "Print where the CMake package files lie."),
     "doctor": ("ikgen.cli.doctor:doctor", "Say which tools and plug-ins there are."),
 }
 """Command -> (where its function is, one line of help)."""

@@ -10,8 +10,8 @@ from typing import Any, TypeVar
 import click
 
 from ikgen.errors import UsageError
-from ikgen.module_name import identifier, is_module_name
-from ikgen.pipeline import Request
+from ikgen.generation.pipeline import Request
+from ikgen.model.module_name import identifier, is_module_name
 
 __all__ = [
     "chain_options",
@@ -182,7 +182,7 @@ def parse_locked(texts: Sequence[str]) -> dict[str, float]:
 
 def parse_emit(texts: Sequence[str], default: tuple[str, ...] = ("python",)) -> tuple[str, ...]:
     """Names of outputs from --emit a,b (repeatable), each once; raises for an unknown one."""
-    from ikgen.emit.registry import find_emitter
+    from ikgen.generation.emitters import find_emitter
 
     names = [name.strip() for text in texts for name in text.split(",")]
     chosen = tuple(dict.fromkeys(name for name in names if name)) or default

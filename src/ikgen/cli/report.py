@@ -12,12 +12,12 @@ import click
 from ikgen.cli.console import Console
 from ikgen.cli.options import chain_options, console_options, make_request, sampling_options
 from ikgen.errors import IkgenError, UnsolvedChainError, VerificationError
-from ikgen.generate import Outputs, verify_texts, with_samples
-from ikgen.pipeline import Derivation, Request, derive
-from ikgen.publish import Content, publish
+from ikgen.generation.generation import Outputs, verify_texts, with_samples
+from ikgen.generation.pipeline import Derivation, Request, derive
+from ikgen.generation.publish import Content, publish
 
 if TYPE_CHECKING:
-    from ikgen.verify.report import VerificationReport
+    from ikgen.verify.verification_report import VerificationReport
 
 __all__ = ["report"]
 
@@ -73,12 +73,12 @@ def _written(
 ) -> tuple[dict[str, str], IkgenError | None]:
     """File name -> text of the report, and the error to end with: of an arm without a closed form, or
     of a verification that failed. Either is in the report."""
-    from ikgen.emit.report import emit_report, emit_unsolved
+    from ikgen.report import emit_report, emit_unsolved
 
     try:
         derivation = derive(request, console)
     except UnsolvedChainError as error:
-        from ikgen.cli.remedies import helped
+        from ikgen.generation.remedies import helped
 
         stuck = helped(error, console)
         return emit_unsolved(stuck.unsolved, stuck.hint), stuck
@@ -105,7 +105,7 @@ def _reports(
     derivation: Derivation, outputs: Outputs, console: Console
 ) -> Mapping[str, VerificationReport]:
     """The verification of the Python module."""
-    from ikgen.emit.registry import find_emitter
+    from ikgen.generation.emitters import find_emitter
 
     if not outputs.verify:
         return {}
@@ -116,7 +116,7 @@ def _reports(
 
 def _pdfs(texts: Mapping[str, str], console: Console) -> dict[str, bytes]:
     """File name -> PDF of the LaTeX texts, where LaTeX is installed; warns where it fails."""
-    from ikgen.build.pdf import typeset
+    from ikgen.report.pdf import typeset
 
     made = {}
     for name, text in texts.items():

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 from ikgen.cli.tables import table, verification_tables
 
 if TYPE_CHECKING:
-    from ikgen.generate import Generation
-    from ikgen.pipeline import Derivation
-    from ikgen.solver.graph import SolutionGraph
-    from ikgen.verify.report import VerificationReport
+    from ikgen.generation.generation import Generation
+    from ikgen.generation.pipeline import Derivation
+    from ikgen.solver.solution_graph import SolutionGraph
+    from ikgen.verify.verification_report import VerificationReport
 
 __all__ = ["as_dict", "summary", "trace"]
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ikgen.verify.report import VerificationReport
+    from ikgen.verify.verification_report import VerificationReport
 
 __all__ = ["table", "verification_tables"]
 

@@ -15,7 +15,7 @@ from ikgen.cli.options import console_options, sampling_options
 from ikgen.errors import IkgenError, UsageError
 
 if TYPE_CHECKING:
-    from ikgen.build.findings import Finding, Recheck
+    from ikgen.projects.check_findings import Finding, Recheck
 
 __all__ = ["verify"]
 
@@ -83,9 +83,9 @@ def _recheck(
     console: Console,
 ) -> Recheck:
     """Check one record; an error becomes its finding, so that the others are checked too."""
-    from ikgen.build.findings import unchecked
-    from ikgen.build.recheck import recheck
-    from ikgen.build.record import read_record
+    from ikgen.generation.record import read_record
+    from ikgen.projects.check_findings import unchecked
+    from ikgen.projects.recheck import recheck
 
     samples, seed = sampling
     record = None
@@ -100,8 +100,8 @@ def _recheck(
 
 def _records(target: Path | None, robot: Path | None) -> list[tuple[Path, str | None]]:
     """The records meant, each with the command that makes its outputs again, if not its own."""
-    from ikgen.build.config import default_config, load_config
-    from ikgen.build.record import find_records
+    from ikgen.generation.record import find_records
+    from ikgen.projects.config import default_config, load_config
 
     target = target or default_config(Path()) or Path()
     if target.is_dir():
@@ -186,7 +186,7 @@ def _finding(finding: Finding) -> dict[str, Any]:
 def _write_junit(path: Path, results: Sequence[Recheck]) -> None:
     """One suite an output; findings that no verification holds become a suite of their own."""
     from ikgen.verify.junit import write_junit_xml
-    from ikgen.verify.report import CheckResult, VerificationReport
+    from ikgen.verify.verification_report import CheckResult, VerificationReport
 
     suites = []
     for result in results:

@@ -1,0 +1,1 @@
+"""A Program and the facts of its arm as text of a language."""

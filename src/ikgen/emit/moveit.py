@@ -6,14 +6,14 @@ import re
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape
 
-from ikgen.emit.cpp import emit_header
-from ikgen.emit.cpp_language import comment
-from ikgen.emit.module import SolverModule
+from ikgen.emit.cpp.cpp_emitter import emit_header
+from ikgen.emit.cpp.cpp_language import comment
 from ikgen.emit.rendering import render
+from ikgen.emit.solver_module import SolverModule
 from ikgen.errors import UsageError
 
 if TYPE_CHECKING:
-    from ikgen.derivation import Derivation
+    from ikgen.emit.derivation import Derivation
 
 __all__ = ["emit", "emit_derivation", "package_name"]
 

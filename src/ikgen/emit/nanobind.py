@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from ikgen.emit.cpp import emit_header
-from ikgen.emit.module import SolverModule
-from ikgen.emit.python_text import literal
+from ikgen.emit.cpp.cpp_emitter import emit_header
+from ikgen.emit.python.python_text import literal
 from ikgen.emit.rendering import render
+from ikgen.emit.solver_module import SolverModule
 
 if TYPE_CHECKING:
-    from ikgen.derivation import Derivation
+    from ikgen.emit.derivation import Derivation
 
 __all__ = ["emit", "emit_derivation"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from ikgen.ir.ops import Op, Operand
+from ikgen.program.ops import Op, Operand
 
 __all__ = ["Language", "Style", "expression"]
 

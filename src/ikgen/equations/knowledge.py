@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ikgen.equations import polynomial as poly
-from ikgen.equations.build import Equation, EquationSet
-from ikgen.equations.expression import Expr
-from ikgen.equations.key_lattice import KeyLattice
-from ikgen.equations.polynomial import Key, Monomial, Polynomial, canonical
+from ikgen.algebra import polynomial as poly
+from ikgen.algebra.expression import Expr
+from ikgen.algebra.polynomial import Key, Monomial, Polynomial, canonical
+from ikgen.equations.angle_lattice import KeyLattice
+from ikgen.equations.equation_set import Equation, EquationSet
 
 __all__ = ["Knowledge", "PolynomialEquation", "Variable"]
 

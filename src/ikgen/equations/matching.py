@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ikgen.equations.expression import Expr
-from ikgen.equations.expression_graph import ExpressionGraph
+from ikgen.algebra.expression import Expr
+from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.algebra.polynomial import ONE, Key, Monomial, Polynomial
 from ikgen.equations.knowledge import PolynomialEquation, Variable
-from ikgen.equations.polynomial import ONE, Key, Monomial, Polynomial
 
 __all__ = [
     "AngleSplit",

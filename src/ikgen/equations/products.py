@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.equations.expression import Expr
-from ikgen.equations.expression_graph import ExpressionGraph
-from ikgen.equations.rigid import (
+from ikgen.algebra.expression import Expr
+from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.equations.symbolic_transforms import (
     Rigid,
     constant,
     identity,

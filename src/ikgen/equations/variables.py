@@ -14,9 +14,9 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.equations.expression import Expr
-from ikgen.equations.expression_graph import ExpressionGraph
-from ikgen.equations.polynomial import Key, canonical
+from ikgen.algebra.expression import Expr
+from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.algebra.polynomial import Key, canonical
 from ikgen.errors import UnsupportedJointError
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
 

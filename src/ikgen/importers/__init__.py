@@ -1,7 +1,7 @@
 """Readers of robot descriptions: one row of the registry a format, imported only when it reads.
 
 The only packages that know file formats. `load_tree` picks the importer by the file's suffix; a
-chain is then chosen out of the tree by `ikgen.importers.chain`. Other packages add formats through
+chain is then chosen out of the tree by `ikgen.chains.selection`. Other packages add formats through
 the entry-point group `ikgen.importers`, each entry an `Importer`.
 """
 
@@ -61,8 +61,8 @@ class Importer:
 
 
 IMPORTERS: tuple[Importer, ...] = (
-    Importer("xacro", (".xacro",), "ikgen.importers.xacro"),
-    Importer("urdf", (".urdf", ".xml"), "ikgen.importers.urdf"),
+    Importer("xacro", (".xacro",), "ikgen.importers.xacro.expansion"),
+    Importer("urdf", (".urdf", ".xml"), "ikgen.importers.urdf.urdf_tree"),
 )
 
 

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ikgen.errors import UnknownNameError, UsageError
-from ikgen.kinematics.ends import base_points_down, end_transforms
 from ikgen.kinematics.file_frames import file_frames, largest_deviation
 from ikgen.kinematics.links import Tolerance, orient, snapped_links
 from ikgen.kinematics.offsets import distribute
 from ikgen.kinematics.prismatic import place_prismatic
+from ikgen.kinematics.row_ends import base_points_down, end_transforms
 from ikgen.kinematics.rows import build_rows, drive_row
 from ikgen.kinematics.snapping import ROUND_OFF, WRITTEN_IN_FULL, SnapLog
 from ikgen.model.chain import PRISMATIC, Chain

@@ -1,0 +1,1 @@
+"""The behavior tree over rule-based leaves."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.equations.build import Equation
-from ikgen.equations.expression import Expr
+from ikgen.algebra.expression import Expr
+from ikgen.equations.equation_set import Equation
 from ikgen.equations.knowledge import Variable
 
 __all__ = ["Candidate", "Judgement"]

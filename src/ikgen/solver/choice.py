@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.equations.build import EquationSet
+from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.knowledge import Variable
 from ikgen.equations.probes import Probes
 from ikgen.solver.candidate import Candidate

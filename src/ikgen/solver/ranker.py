@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.equations.expression import Expr
+from ikgen.algebra.expression import Expr
 from ikgen.equations.probes import Probes
 from ikgen.solver.candidate import Candidate, Judgement
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from ikgen.equations.build import Equation
-from ikgen.equations.expression import Expr
+from ikgen.algebra.expression import Expr
+from ikgen.equations.equation_set import Equation
 from ikgen.equations.knowledge import PolynomialEquation, Variable
-from ikgen.solver.graph import SolutionGraph
+from ikgen.solver.solution_graph import SolutionGraph
 
 __all__ = ["NearMiss", "OpenEquation", "count_open", "near_misses", "open_equations"]
 

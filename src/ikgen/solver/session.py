@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.equations.build import EquationSet
-from ikgen.equations.expression import Expr
+from ikgen.algebra.expression import Expr
+from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
 from ikgen.equations.probes import Probes
 from ikgen.solver.candidate import Candidate

@@ -12,9 +12,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.equations.build import EquationSet
-from ikgen.equations.evaluate import evaluate
-from ikgen.equations.expression import Expr
+from ikgen.algebra.expression import Expr
+from ikgen.equations.equation_set import EquationSet
+from ikgen.equations.evaluation import evaluate
 from ikgen.equations.probes import Probes, arm_size, smallest_singular
 from ikgen.solver.candidate import Candidate
 

@@ -1,0 +1,1 @@
+"""Emitted code against forward kinematics of the original description."""

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.verify.arm import ArmUnderTest
-from ikgen.verify.report import CheckResult
 from ikgen.verify.runners.runner import Rows, Runner
 from ikgen.verify.trials import Trial, result, run_trial, spell
+from ikgen.verify.verification_report import CheckResult
 
 __all__ = ["TOLERANCE", "check_agreement", "disagreements"]
 

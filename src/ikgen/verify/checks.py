@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.verify.arm import ArmUnderTest
-from ikgen.verify.report import CheckResult
 from ikgen.verify.singularities import on_continuum
 from ikgen.verify.trials import Trial, nearest, result, spell
+from ikgen.verify.verification_report import CheckResult
 
 __all__ = [
     "check_closure", "check_distinct", "check_free_joints", "check_inside_limits",

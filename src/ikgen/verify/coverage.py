@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from ikgen.verify.arm import REGULAR_SIGMA, ArmUnderTest
 from ikgen.verify.checks import LIMIT_TOLERANCE
-from ikgen.verify.report import CheckResult
 from ikgen.verify.search import find_solutions
 from ikgen.verify.trials import Trial, nearest, result, spell
+from ikgen.verify.verification_report import CheckResult
 
 __all__ = [
     "check_completeness", "check_exhaustive", "check_limit_choice", "check_singular_answers",

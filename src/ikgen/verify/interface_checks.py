@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from ikgen.verify.arm import ArmUnderTest
 from ikgen.verify.reach import invalid_poses
-from ikgen.verify.report import CheckResult
 from ikgen.verify.runners.runner import Rows, Runner
 from ikgen.verify.sampling import SampleSet
 from ikgen.verify.trials import Trial, nearest, result, spell
+from ikgen.verify.verification_report import CheckResult
 
 __all__ = [
     "check_batch", "check_constants", "check_determinism", "check_forward", "check_invalid",

@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterable
 from pathlib import Path
 
-from ikgen.verify.report import CheckResult, VerificationReport
+from ikgen.verify.verification_report import CheckResult, VerificationReport
 
 __all__ = ["junit_xml", "write_junit_xml"]
 

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.verify.arm import ArmUnderTest
-from ikgen.verify.report import CheckResult
 from ikgen.verify.runners.runner import Rows, Runner
 from ikgen.verify.sampling import SampleSet
+from ikgen.verify.verification_report import CheckResult
 
 __all__ = ["Trial", "nearest", "result", "run_trial", "spell"]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ikgen.emit.registry import Emitter
+from ikgen.generation.emitters import Emitter
 
 __all__ = ["RUST"]
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from ikgen.emit.module import SolverModule
 from ikgen.emit.printer import expression
+from ikgen.emit.solver_module import SolverModule
 from ikgen.errors import UsageError
-from ikgen.ir.ops import Operand
-from ikgen.ir.program import Comment, JointOutput, Let, Statement
+from ikgen.program.ops import Operand
+from ikgen.program.statements import Comment, JointOutput, Let, Statement
 from ikgen_rust.language import RUST_LANGUAGE, number
 
 __all__ = ["body_lines"]

@@ -1,4 +1,4 @@
-// Answers requests of ikgen's verification; the format is that of ikgen.verify.runners.program.
+// Answers requests of ikgen's verification; the format is that of ikgen.verify.runners.program_runner.
 use solver::{forward, jacobian, solve, Joints, Options, Pose, Solutions, Status, DOF, FREE, MAX_SOLUTIONS};
 
 fn take<const N: usize>(items: &mut impl Iterator<Item = f64>) -> [f64; N] {

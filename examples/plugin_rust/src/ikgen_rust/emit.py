@@ -7,16 +7,16 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ikgen.emit.module import SolverModule
 from ikgen.emit.rendering import folder_environment
-from ikgen.ir.interpret import evaluate
-from ikgen.ir.liveness import used_inputs
-from ikgen.ir.program import Program
+from ikgen.emit.solver_module import SolverModule
+from ikgen.program.interpret import evaluate
+from ikgen.program.liveness import used_inputs
+from ikgen.program.statements import Program
 from ikgen_rust.body import body_lines
 from ikgen_rust.language import number, text_literal
 
 if TYPE_CHECKING:
-    from ikgen.derivation import Derivation
+    from ikgen.emit.derivation import Derivation
 
 __all__ = ["CRATE", "emit_derivation"]
 

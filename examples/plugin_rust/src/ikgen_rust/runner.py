@@ -7,10 +7,10 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from ikgen.emit.module import SolverModule
+from ikgen.emit.solver_module import SolverModule
 from ikgen.errors import MissingToolError, VerificationError
-from ikgen.generate_runners import arm_constants
-from ikgen.verify.runners.program import ProgramRunner
+from ikgen.generation.emitted_runners import arm_constants
+from ikgen.verify.runners.program_runner import ProgramRunner
 
 __all__ = ["RustCrate", "rust_runner"]
 

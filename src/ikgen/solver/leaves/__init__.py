@@ -13,7 +13,7 @@ from ikgen.plugins import PlugIn, plug_ins
 from ikgen.solver.candidate import Candidate
 from ikgen.solver.leaves import (
     algebraic,
-    root,
+    quadratic,
     simultaneous,
     sine_and_cosine,
     tangent,
@@ -38,7 +38,7 @@ LEAVES: tuple[Leaf, ...] = (
     Leaf("simultaneous", simultaneous.find),
     Leaf("tangent", tangent.find),
     Leaf("sine and cosine", sine_and_cosine.find),
-    Leaf("quadratic", root.find),
+    Leaf("quadratic", quadratic.find),
     Leaf("quartic", trig_quartic.find),
 )
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ikgen.equations.expression import Expr
+from ikgen.algebra.expression import Expr
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
 from ikgen.equations.matching import harmonics
 from ikgen.solver.candidate import Candidate

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ikgen.equations.expression import Expr
+from ikgen.algebra.expression import Expr
+from ikgen.algebra.polynomial import Polynomial
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
 from ikgen.equations.matching import AngleSplit, only_known, proportional, split_angle
-from ikgen.equations.polynomial import Polynomial
 from ikgen.solver.candidate import Candidate
 
 __all__ = ["find"]

@@ -11,10 +11,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ikgen.equations import polynomial as poly
+from ikgen.algebra import polynomial as poly
+from ikgen.algebra.polynomial import Polynomial
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation
 from ikgen.equations.matching import AngleSplit, constant_ratio, only_known, split_angle
-from ikgen.equations.polynomial import Polynomial
 
 __all__ = ["apply"]
 

@@ -6,10 +6,10 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 
-from ikgen.equations import polynomial as poly
+from ikgen.algebra import polynomial as poly
+from ikgen.algebra.polynomial import Polynomial
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
 from ikgen.equations.matching import constant_ratio
-from ikgen.equations.polynomial import Polynomial
 
 __all__ = ["apply"]
 

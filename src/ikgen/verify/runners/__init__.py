@@ -1,0 +1,1 @@
+"""What runs emitted code, one module a language."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 __all__ = ["driver"]
 
-# Requests and answers are those of `ikgen.verify.runners.program`.
+# Requests and answers are those of `ikgen.verify.runners.program_runner`.
 _DRIVER = r"""
 #include <algorithm>
 #include <cstdio>

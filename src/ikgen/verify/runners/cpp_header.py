@@ -8,7 +8,7 @@ from pathlib import Path
 from ikgen.errors import BadDescriptionError
 from ikgen.verify.runners.cpp_driver import driver
 from ikgen.verify.runners.cpp_toolchain import compile_program
-from ikgen.verify.runners.program import ProgramRunner
+from ikgen.verify.runners.program_runner import ProgramRunner
 from ikgen.verify.runners.runner import ArmConstants
 
 __all__ = ["CppHeader"]

@@ -1,0 +1,1 @@
+"""Expressions as a graph with values at probes, and polynomials over it."""

@@ -1,0 +1,1 @@
+"""From a joint tree to the serial chain that someone wants solved."""

@@ -1,0 +1,51 @@
+"""The two ends of a chain: chosen where they are not given, explained where they do not fit."""
+
+from __future__ import annotations
+
+import shlex
+
+from ikgen.chains.arms import ChainCandidate, candidate_chains, conventional_base
+from ikgen.errors import UsageError
+from ikgen.importers.urdf.topology import TreeIndex
+from ikgen.model.joint_tree import JointTree
+
+__all__ = ["choose_ends", "not_below"]
+
+
+def choose_ends(
+    tree: JointTree, index: TreeIndex, base: str | None, tip: str | None
+) -> tuple[str, str]:
+    """Base and tip, the missing ones by convention.
+
+    Raises `UsageError` with the options to type where the tree has several arms, or none.
+    """
+    if tip is not None:
+        return base or conventional_base(index, index.root_of(tip), tip), tip
+    candidates = candidate_chains(tree, base)
+    if len(candidates) == 1:
+        return candidates[0].base, candidates[0].tip
+    if not candidates:
+        where = f"below '{base}'" if base is not None else f"in robot '{tree.name}'"
+        raise UsageError(f"no joint moves {where}", hint="choose other links by --base and --tip")
+    options = "\n".join(f"  {_options(candidate)}" for candidate in candidates)
+    raise UsageError(
+        f"robot '{tree.name}' has several chains; choose one", hint=f"give one of:\n{options}"
+    )
+
+
+def _options(chain: ChainCandidate) -> str:
+    ends = f"--base {shlex.quote(chain.base)} --tip {shlex.quote(chain.tip)}"
+    return f"{ends}   ({chain.dof} joints: {', '.join(chain.joints)})"
+
+
+def not_below(tree: JointTree, index: TreeIndex, base: str, tip: str) -> UsageError:
+    """The error for a tip that does not hang on the base, with the links that would do."""
+    if index.path(tip, base) is not None:
+        hint = f"'{base}' hangs on '{tip}': exchange --base and --tip"
+    else:
+        link = base
+        while index.path(link, tip) is None and link in index.above:
+            link = index.above[link].parent
+        above = index.path(link, tip) is not None
+        hint = f"'{link}' is above both: --base {link}" if above else "they are in separate trees"
+    return UsageError(f"link '{tip}' is not below link '{base}' in robot '{tree.name}'", hint=hint)

@@ -1,0 +1,127 @@
+"""Emitter of the C++ header, and of the small CMake package around it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from ikgen.emit.cpp.cpp_joints import JointValue, Seed
+from ikgen.emit.cpp.cpp_language import CONSTANT, comment, literal, number
+from ikgen.emit.cpp.cpp_statements import ProgramText
+from ikgen.emit.printer import expression
+from ikgen.emit.rendering import render
+from ikgen.emit.solver_module import SolverModule
+from ikgen.emit.symbolic_frames import blanks, frame_entries, pairs
+from ikgen.errors import UsageError
+from ikgen.program.liveness import used_inputs
+from ikgen.program.ops import Op
+
+if TYPE_CHECKING:
+    from ikgen.emit.derivation import Derivation
+
+__all__ = ["emit", "emit_derivation", "emit_header"]
+
+ROUGH = 1e-20
+"""Squared error of a row above which it takes Newton steps."""
+
+_INLINE = "[[gnu::always_inline]] inline"
+
+_COLD = "[[gnu::cold, gnu::noinline]] inline"
+"""Of functions that few poses need: small code, quickly compiled."""
+
+
+def emit_derivation(derivation: Derivation) -> dict[str, str]:
+    """File name -> text of the C++ output."""
+    return emit(derivation.module)
+
+
+def emit(module: SolverModule) -> dict[str, str]:
+    """File name -> text of the C++ output."""
+    return {f"{module.name}_ik.hpp": emit_header(module)}
+
+
+def emit_header(module: SolverModule) -> str:
+    """The text of `<name>_ik.hpp`.
+
+    Raises UsageError for a Program whose levels have a number of branches that is no power of two.
+    """
+    program = module.program
+    branches = [level.branches for level in program.levels[1:]]
+    if any(n & (n - 1) for n in branches):
+        raise UsageError(f"the C++ emitter needs levels of 2, 4, ... branches, not {branches}")
+    text = ProgramText(module)
+    inputs = used_inputs(program)
+    return render(
+        "cpp",
+        "header.hpp.jinja",
+        m=module,
+        namespace=f"{module.name}_ik",
+        inline=_INLINE,
+        cold="[[gnu::noinline]] inline" if _careful(module) else _COLD,
+        careful=_careful(module),
+        entries_read=module.reads.entries,
+        equations=_equations(module),
+        tall=module.dh.dof - len(module.free) < _equations(module),
+        orientation=module.reads.orientation,
+        reads_position=module.reads.position,
+        joints=module.dh.joints,
+        lower=[number(j.limits.lower) for j in module.dh.joints],
+        upper=[number(j.limits.upper) for j in module.dh.joints],
+        far=any(j.limits.lower > math.pi or j.limits.upper < -math.pi for j in module.dh.joints),
+        first_rows=[module.first_row(j) for j in range(module.dh.dof)],
+        text=text,
+        entries=[name for name in inputs if name.startswith("t")],
+        seeds=[Seed.of(module, name) for name in inputs if name.startswith("seed_")],
+        held=[name for name in inputs if name[0] in "csd" and name[1:].isdigit()],
+        values=[JointValue.of(module, text, output) for output in text.outputs()],
+        rough=_rough(module),
+        order=_depth_first(branches),
+        routines=sorted({lv.call.routine for lv in program.levels if lv.call is not None}),
+        frames=[
+            [[expression(CONSTANT, x) for x in row] for row in F] for F in frame_entries(module.dh)
+        ],
+        beside=[[number(float(x)) for x in D.T[:, :3].ravel()] for D in module.beside],
+        size=_size_text(module),
+        blanks=blanks(module),
+        angles=[(f, n) for n in pairs(module) for f in ("cos", "sin")],
+        free_defaults=[number(x) for x in module.free_defaults],
+        number=number,
+        literal=literal,
+        comment=comment,
+    )
+
+
+def _careful(module: SolverModule) -> bool:
+    """Whether every pose's rows are polished or judged one by one."""
+    return module.polish == "all" or module.plan is not None
+
+
+def _equations(module: SolverModule) -> int:
+    """Components of the error that Newton steps take to zero."""
+    return 6 if module.task == "pose" else len(module.reads.entries)
+
+
+def _size_text(module: SolverModule) -> str:
+    """The arm's size as a number, or as an expression in constants to be filled in."""
+    if not module.dh.symbols:
+        return number(module.size)
+    lengths = [F[i][3] for F in frame_entries(module.dh) for i in range(3)]
+    texts = [expression(CONSTANT, Op("abs", (x,))) for x in lengths if x != 0.0]
+    return f"std::max({{{', '.join(['1.0', *texts])}}})"
+
+
+def _depth_first(branches: list[int]) -> list[int]:
+    """Lane of each row, depth first: branch i of a level adds i times the width before it."""
+    lanes, width = [0], 1
+    for n in branches:
+        lanes = [lane + i * width for lane in lanes for i in range(n)]
+        width *= n
+    return lanes
+
+
+def _rough(module: SolverModule) -> str:
+    """Condition under which a row takes Newton steps."""
+    program = module.program
+    if module.polish == "all":
+        return "(spread<1>(1.0) > 0.0)"
+    return " | ".join([*program.singular, *(f"({r} > {ROUGH})" for r in program.residuals)])

@@ -1,0 +1,52 @@
+"""What the pipeline hands on: a description as read, and what was derived from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ikgen.emit.solver_module import SolverModule
+    from ikgen.kinematics.classify import GeometryClass
+    from ikgen.model.chain import Chain
+    from ikgen.model.dh import DHChain
+    from ikgen.model.joint_tree import JointTree, Source
+    from ikgen.solver.solution_graph import SolutionGraph
+    from ikgen.tasks import Task
+
+__all__ = ["Derivation", "Reading", "Unsolved"]
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """A description as read: its tree and chain (none for a DH table) and the chain in DH form."""
+
+    source: Source
+    tree: JointTree | None
+    chain: Chain | None
+    dh: DHChain
+
+
+@dataclass(frozen=True, slots=True)
+class Derivation:
+    """Everything between the file and the emitted text."""
+
+    reading: Reading
+    geometry: GeometryClass
+    task: Task
+    graph: SolutionGraph
+    module: SolverModule
+    chosen: bool = False
+    """Whether the task was chosen to fit the arm, not asked for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Unsolved:
+    """How far a derivation came that found no closed form; `name` is its module's."""
+
+    reading: Reading
+    geometry: GeometryClass
+    task: Task
+    graph: SolutionGraph
+    name: str
+    source_name: str

@@ -1,0 +1,77 @@
+"""Emitter of the Python module: the Program as nested loops (scalar) and as arrays (batch)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ikgen.emit.printer import expression
+from ikgen.emit.python.python_joints import JointText
+from ikgen.emit.python.python_language import SCALAR, number
+from ikgen.emit.python.python_statements import batch_lines, scalar_lines
+from ikgen.emit.python.python_text import literal, words
+from ikgen.emit.rendering import render
+from ikgen.emit.solver_module import SolverModule
+from ikgen.emit.symbolic_frames import blanks, frame_entries, pairs
+from ikgen.program.liveness import used_inputs
+
+if TYPE_CHECKING:
+    from ikgen.emit.derivation import Derivation
+
+__all__ = ["emit_derivation", "emit_module"]
+
+
+def emit_derivation(derivation: Derivation) -> dict[str, str]:
+    """File name -> text of the Python output."""
+    module = derivation.module
+    return {f"{module.name}_ik.py": emit_module(module)}
+
+
+def emit_module(module: SolverModule) -> str:
+    """The text of `<name>_ik.py`."""
+    program = module.program
+    joints = [JointText.of(module, output) for output in program.outputs]
+    return render(
+        "python",
+        "module.py.jinja",
+        m=module,
+        joints=module.dh.joints,
+        lower=[number(j.limits.lower) for j in module.dh.joints],
+        upper=[number(j.limits.upper) for j in module.dh.joints],
+        parameters=_parameters(module),
+        blanks=blanks(module),
+        constants=[(c.name, expression(SCALAR, c.value)) for c in program.constants],
+        scalar=scalar_lines(module, joints),
+        batch=batch_lines(module, joints),
+        routines=sorted({lv.call.routine for lv in program.levels if lv.call is not None}),
+        used=used_inputs(program),
+        seeds=_seed_rows(module),
+        shape=[level.branches for level in program.levels[1:]],
+        frames=[
+            [[expression(SCALAR, x) for x in row] for row in F] for F in frame_entries(module.dh)
+        ],
+        rows=[(row.driver, row.revolute, row.scale, row.offset.value) for row in module.dh.rows],
+        number=number,
+        literal=literal,
+        words=words,
+        beside=[[[number(float(x)) for x in row] for row in D] for D in module.beside],
+        orientation=module.reads.orientation,
+        entries=module.reads.entries,
+        size=module.size,
+    )
+
+
+def _parameters(module: SolverModule) -> list[tuple[str, str]]:
+    """Name and text of the arm's constants but those to be filled in."""
+    angles = {f"{f}_{n}": f"{f}({n})" for n in pairs(module) for f in ("cos", "sin")}
+    given = [(n, v) for n, v in module.program.parameters if n not in module.dh.symbols]
+    plain = [(n, number(v)) for n, v in given if n not in angles]
+    return [*angles.items(), *plain]
+
+
+def _seed_rows(module: SolverModule) -> list[tuple[int, bool, float, float]]:
+    """Per joint: index, revolute, scale and offset of its first row."""
+    out = []
+    for j in range(module.dh.dof):
+        row = module.first_row(j)
+        out.append((j, row.revolute, row.scale, row.offset.value))
+    return out

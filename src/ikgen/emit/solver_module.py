@@ -1,0 +1,88 @@
+"""What an emitter gets: the Program and the facts of the arm around it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.elimination.plan import UniversalPlan
+from ikgen.kinematics.displacement import displacements
+from ikgen.model.dh import DHChain, DHRow
+from ikgen.program.statements import Program
+from ikgen.tasks import Task, find_task
+
+__all__ = ["CLOSE", "SolverModule"]
+
+CLOSE = 8e-10
+"""Deviation up to which a row that is exact for the solved geometry is right for the file (1e-9)."""
+
+FAR = 5e-5
+"""Deviation (rad or m) above which a closed-form row may be too far from the file's solution for Newton
+steps near folds, at regular configurations too."""
+
+
+@dataclass(frozen=True, slots=True)
+class SolverModule:
+    """One solver to emit.
+
+    `name` is the prefix of the emitted files (`<name>_ik.py`), `free` the indices of joints held free,
+    `free_defaults` their default values inside the limits (rad or m). `source_name` and
+    `source_sha256` tell what it was made from, `geometry` is the geometry class in words,
+    `plan` what the general 6R elimination needs where the rules did not solve the arm. Of a table
+    without numbers the constants are left to be filled in, or with `sample` those that its derivation
+    was checked with.
+    """
+
+    name: str
+    program: Program
+    dh: DHChain
+    task: str
+    free: tuple[int, ...]
+    free_defaults: tuple[float, ...]
+    source_name: str
+    source_sha256: str
+    generator_version: str
+    geometry: str = ""
+    order: tuple[str, ...] = ()
+    plan: UniversalPlan | None = None
+    sample: bool = False
+
+    @property
+    def polish(self) -> str:
+        """Which rows take Newton steps on the file's own chain: "some" (those of a continuum or on the
+        boundary, where the closed form lost digits) or "all" (the file rounds its geometry)."""
+        if self.plan is not None:
+            return "some"
+        return "some" if max(self.dh.deviation) <= CLOSE else "all"
+
+    @property
+    def beside(self) -> tuple[NDArray[np.float64], ...]:
+        """Small motions (4, 4) of the tool: the poses that they lead to are solved as well as the asked
+        one, and all rows take Newton steps to the asked one. Near a fold two solutions of the file's
+        geometry may start from one of the solved geometry or from none, but not at all these poses.
+        Empty where the file is close to what was solved."""
+        deviation = max(self.dh.deviation)
+        if self.polish == "some" or deviation <= FAR:
+            return ()
+        return displacements(4.0 * deviation)
+
+    @property
+    def max_solutions(self) -> int:
+        """Rows of the solution at most (two whole turns of a joint count once)."""
+        return self.program.max_solutions
+
+    @property
+    def reads(self) -> Task:
+        """What of the pose counts."""
+        return find_task(self.task)
+
+    @property
+    def size(self) -> float:
+        """Length (m) that errors of position are taken relative to: the arm's largest, at least 1."""
+        return max(1.0, *(float(np.abs(F[:3, 3]).max()) for F in self.dh.file_frames))
+
+    def first_row(self, joint: int) -> DHRow:
+        """The first row of the chain that a joint drives: its scale and offset."""
+        return next(row for row in self.dh.rows if row.driver == joint)

@@ -1,0 +1,127 @@
+"""All scalar equations of a chain: two-sided splits and their invariants.
+
+For every 0 <= k < m <= n the matrix equation
+`(A_1 ... A_k C_{k+1})^-1 T (C_{m+1} A_{m+1} ... A_n)^-1 = V_{k+1} C_{k+2} ... V_m`, where `A_i = C_i V_i`
+with `C_i = Rx(alpha) Tx(a)` and `V_i = Rz(theta) Tz(d)` (IKBT eqs. 2-5 use m = n only). Added for each
+split are the position of the inverse and the squared norms in which whole rotations drop out (IKBT's
+x^2 y^2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from ikgen.algebra.expression import Expr
+from ikgen.equations.products import ChainProducts
+from ikgen.equations.symbolic_transforms import (
+    Rigid,
+    identity,
+    inverse,
+    link,
+    multiply,
+)
+
+__all__ = ["Equation", "EquationSet"]
+
+
+@dataclass(frozen=True, slots=True)
+class Equation:
+    """`left = right`: entry `entry` of the matrix equation that moves k joints to the left and keeps
+    joints k+1..m on the right. Norms carry the entry names "p.p", "px2+py2", "qx2+qy2"."""
+
+    left: Expr
+    right: Expr
+    k: int
+    m: int
+    entry: str
+
+    @property
+    def label(self) -> str:
+        """Where the equation comes from, as the report prints it."""
+        return f"({self.k},{self.m}) {self.entry}"
+
+    @property
+    def squared(self) -> bool:
+        """Whether the equation is a sum of squares."""
+        return "+" in self.entry or "." in self.entry
+
+
+class EquationSet(ChainProducts):
+    """The scalar equations of a chain."""
+
+    def _stripped(self, k: int, m: int) -> tuple[Expr, ...]:
+        """Position of `Tz(d_{k+1}) C_{k+2} ... V_m`: the right side without its first rotation."""
+        g, v = self.graph, self.variables
+        tail = identity(g)
+        if k + 1 < m:
+            tail = multiply(g, link(v, k + 1), self.right(k + 1, m))
+        elif m == self.n:
+            tail = self.tool
+        return tail.p[0], tail.p[1], g.add(tail.p[2], v.row_distance(k))
+
+    def _stripped_inverse(self, k: int, m: int) -> tuple[Expr, ...]:
+        g, v = self.graph, self.variables
+        tail = identity(g)
+        if k + 1 < m:
+            tail = multiply(g, inverse(g, link(v, m - 1)), self.right_inverse(k, m - 1))
+        return tail.p[0], tail.p[1], g.sub(tail.p[2], v.row_distance(m - 1))
+
+    def _offsets(self, k: int, m: int) -> Iterator[tuple[Rigid, list[Expr]]]:
+        """Positions of frame m from frame k, unrotated: seen from every earlier run's first frame.
+
+        Their norms do not depend on joints that turn the offset as a whole.
+        """
+        for j in range(k + 1):
+            if j == self._run_start(j) or j == 0:
+                target, start = self._target(j, m), self._between(j, k)
+                pairs = zip(target.p, start.p, strict=True)
+                yield target, [self.graph.sub(p, q) for p, q in pairs]
+
+    def _norms(self, k: int, m: int, left: Rigid, q: list[Expr]) -> list[Equation]:
+        g = self.graph
+
+        def squares(parts: list[Expr]) -> Expr:
+            return g.dot(parts, parts)
+
+        w = self._stripped(k, m)
+        norm = squares(list(w))
+        out = [Equation(squares(d), norm, k, m, "p.p") for _, d in self._offsets(k, m)]
+        out.append(Equation(squares(list(left.p[:2])), squares(list(w[:2])), k, m, "px2+py2"))
+        if m < self.n or self.tool.p == identity(g).p:
+            u = self._stripped_inverse(k, m)
+            out.append(Equation(squares(q[:2]), squares(list(u[:2])), k, m, "qx2+qy2"))
+        return out
+
+    def split(self, k: int, m: int) -> list[Equation]:
+        """The scalar equations of one split."""
+        g = self.graph
+        left, right = self.left(k, m), self.right(k, m)
+        out = [
+            Equation(left.R[i][j], right.R[i][j], k, m, f"r{i + 1}{j + 1}")
+            for i in range(3)
+            for j in range(3)
+        ]
+        out += [Equation(left.p[i], right.p[i], k, m, f"p{'xyz'[i]}") for i in range(3)]
+        back = self.right_inverse(k, m)
+        first: list[Expr] = []
+        for target, offset in self._offsets(k, m):
+            q = [g.neg(g.dot(target.column(i), offset)) for i in range(3)]
+            first = first or q
+            out += [Equation(q[i], back.p[i], k, m, f"q{'xyz'[i]}") for i in range(3)]
+        return out + self._norms(k, m, left, first)
+
+    @cached_property
+    def equations(self) -> tuple[Equation, ...]:
+        """Every equation whose sides differ as expressions, each pair of sides once."""
+        seen: set[tuple[int, int]] = set()
+        out: list[Equation] = []
+        for k in range(self.n):
+            for m in range(k + 1, self.n + 1):
+                for e in self.split(k, m):
+                    sides = (e.left.id, e.right.id)
+                    if e.left is not e.right and sides not in seen:
+                        seen.add(sides)
+                        out.append(e)
+        return tuple(out)

@@ -1,0 +1,1 @@
+"""From a request to verified files: read, derive, emit, verify, publish."""

@@ -1,0 +1,114 @@
+"""Emitters by name: one row each; other packages add theirs by the entry-point group `ikgen.emitters`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, replace
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ikgen.errors import UnknownNameError
+from ikgen.plugins import PlugIn, find_plug_in, plug_ins
+
+if TYPE_CHECKING:
+    from ikgen.emit.solver_module import SolverModule
+    from ikgen.verify.verification_report import VerificationReport
+
+__all__ = ["EMITTERS", "Emitter", "find_emitter"]
+
+GROUP = "ikgen.emitters"
+
+
+@dataclass(frozen=True, slots=True)
+class Emitter:
+    """An output by name. `target` is "module:function", which takes the derivation (and, where it
+    `tells_verification`, the reports of the other outputs by name) and gives file name -> text;
+    `runner_target` "module:function" takes the solver module and the folder of the finished files
+    and gives a verification runner (none: the output is not run). `plug_in` is set for an emitter
+    of another package, which its failures then name."""
+
+    name: str
+    words: str
+    target: str
+    runner_target: str | None = None
+    tells_verification: bool = False
+    plug_in: PlugIn | None = None
+
+    def emit(
+        self, derivation: Any, reports: Mapping[str, VerificationReport] | None = None
+    ) -> dict[str, str]:
+        """File name (relative) -> text."""
+        more = (reports or {},) if self.tells_verification else ()
+        with self._blamed():
+            texts: dict[str, str] = _load(self.target)(derivation, *more)
+        return texts
+
+    def runner(self, module: SolverModule, folder: Path) -> Any | None:
+        """What verification calls, or None."""
+        if self.runner_target is None:
+            return None
+        with self._blamed():
+            return _load(self.runner_target)(module, folder)
+
+    def _blamed(self) -> AbstractContextManager[None]:
+        return nullcontext() if self.plug_in is None else self.plug_in.blamed()
+
+
+def _load(target: str) -> Callable[..., Any]:
+    module, function = target.split(":")
+    loaded: Callable[..., Any] = getattr(import_module(module), function)
+    return loaded
+
+
+EMITTERS: tuple[Emitter, ...] = (
+    Emitter(
+        "python",
+        "a self-contained Python module, NumPy only",
+        "ikgen.emit.python.python_emitter:emit_derivation",
+        "ikgen.generation.emitted_runners:python_runner",
+    ),
+    Emitter(
+        "cpp",
+        "a C++17 header, Eigen only",
+        "ikgen.emit.cpp.cpp_emitter:emit_derivation",
+        "ikgen.generation.emitted_runners:cpp_runner",
+    ),
+    Emitter(
+        "cpp-package",
+        "the C++ header as a CMake package of its own, with an example program",
+        "ikgen.emit.cpp.cpp_package:emit_derivation",
+        "ikgen.generation.emitted_runners:cpp_package_runner",
+    ),
+    Emitter(
+        "nanobind",
+        "the C++ header as a Python package to compile, with the Python module's interface",
+        "ikgen.emit.nanobind:emit_derivation",
+        "ikgen.generation.emitted_runners:nanobind_runner",
+    ),
+    Emitter(
+        "moveit",
+        "a ROS 2 package with a MoveIt kinematics plugin over the C++ header",
+        "ikgen.emit.moveit:emit_derivation",
+        "ikgen.generation.emitted_runners:moveit_runner",
+    ),
+    Emitter(
+        "report",
+        "how it was derived, as LaTeX and HTML, with the solution graph",
+        "ikgen.report:emit_report",
+        tells_verification=True,
+    ),
+)
+
+
+def find_emitter(name: str) -> Emitter:
+    """The emitter of a name, ikgen's own or another package's."""
+    for emitter in EMITTERS:
+        if emitter.name == name:
+            return emitter
+    plug_in = find_plug_in(GROUP, name)
+    if plug_in is not None:
+        return replace(plug_in.load(Emitter), plug_in=plug_in)
+    others = (one.name for one in plug_ins(GROUP))
+    raise UnknownNameError("emitter", name, [*(e.name for e in EMITTERS), *others])

@@ -1,0 +1,86 @@
+"""What would help an unsolved chain: joints held free and smaller tasks, tried one after the other."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from ikgen.errors import UnsolvedChainError
+from ikgen.generation.pipeline import Progress
+
+if TYPE_CHECKING:
+    from ikgen.generation.advice import Attempt
+    from ikgen.generation.pipeline import Unsolved
+    from ikgen.model.dh import DHChain
+    from ikgen.tasks import Task
+
+__all__ = ["helped", "remedies"]
+
+ATTEMPTS = 20
+"""No more derivations than these are tried. Their number counts, not the time they take: the hint is part
+of the report, which is the same on every machine."""
+
+_ENOUGH = 3
+_MOST_HELD = 2
+
+
+def helped(error: UnsolvedChainError, progress: Progress) -> UnsolvedChainError:
+    """The error with a hint that was tried; as it is where it does not say how far it came."""
+    if error.unsolved is None:
+        return error
+    tried = remedies(error.unsolved, progress)
+    found = [a for a in tried if a.closed]
+    if found:
+        words = "; ".join(f"{a.options} (at most {a.max_solutions} solutions)" for a in found)
+        hint = f"closed forms were found with: {words}"
+        if any(a.free for a in found):
+            hint += "; --lock JOINT=VALUE instead of --free makes the joint a constant"
+    elif tried:
+        hint = f"{error.hint}; tried without success: {_listed(tried)}"
+    else:
+        return error
+    return UnsolvedChainError(error.message, unsolved=error.unsolved, hint=hint)
+
+
+def _listed(tried: list[Attempt]) -> str:
+    """The attempts, those of a task together."""
+    words = []
+    for task in dict.fromkeys(a.task for a in tried):
+        held = [" and ".join(a.held) for a in tried if a.task == task and a.held]
+        words.append(f"--task {task}" + (f" with {', or '.join(held)} held" if held else ""))
+    return "; ".join(words)
+
+
+def remedies(unsolved: Unsolved, progress: Progress) -> list[Attempt]:
+    """Derivations that were tried, up to three closed ones or the most attempts, in their order."""
+    from ikgen.generation.advice import attempt, eliminations
+
+    found: list[Attempt] = []
+    dh = unsolved.reading.dh
+    for task, held in itertools.islice(_choices(dh, unsolved.task), ATTEMPTS):
+        closed = [a for a in found if a.closed]
+        if len(closed) == _ENOUGH or any(a.task != task.name for a in closed):
+            break
+        free = (*dh.free, *held)
+        progress("try", " ".join([task.name, *(f"--free {name}" for name in held)]))
+        found.append(replace(attempt(replace(dh, free=free), task), held=held))
+    if not any(a.closed for a in found):
+        found += eliminations([a for a in found if a.task == "pose"], dh, progress)
+    return found
+
+
+def _choices(dh: DHChain, task: Task) -> Iterator[tuple[Task, tuple[str, ...]]]:
+    """The task with as many joints held as move in vain, then smaller tasks."""
+    from ikgen.tasks import TASKS, freedoms_moved
+
+    moving = [j.name for j in dh.joints if j.name not in dh.free]
+    smaller = [t for t in TASKS if t.freedoms < task.freedoms and t.name != "rotation"]
+    for one in (task, *smaller):
+        spare = len(moving) - freedoms_moved(dh, one)
+        if spare < 0 or spare > _MOST_HELD or (one is task and spare == 0):
+            continue
+        for held in itertools.combinations(reversed(moving), spare):
+            if freedoms_moved(replace(dh, free=(*dh.free, *held)), one) == len(moving) - spare:
+                yield one, held

@@ -1,0 +1,74 @@
+"""Quantities of a table's rows as constants of the chain: exact, or with the user's own names."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+from ikgen.importers.dh.entry_expression import Quantity
+from ikgen.kinematics.snapping import SnapLog, exact_angle, tidy, wrap_angle
+from ikgen.model.dh import Angle, Length
+
+__all__ = ["NameBook", "symbol_of"]
+
+_ZERO = 1e-12
+_TEXTBOOK = re.compile(r"[A-Za-z]{1,5}_[A-Za-z0-9]+")
+_TAKEN = re.compile(r"(seed|sigma|cos|sin)_.*")
+
+
+def symbol_of(name: str) -> str:
+    """The user's name as a symbol that no variable of emitted code can have: a_2 stays, a2 becomes
+    a_2, and plain words such as h get an underscore."""
+    split = re.fullmatch(r"([A-Za-z]{1,5})(\d+)", name)
+    if split:
+        name = f"{split.group(1)}_{split.group(2)}"
+    taken = _TAKEN.fullmatch(name) or not _TEXTBOOK.fullmatch(name)
+    return f"{name}_" if taken and not name.endswith("_") else name
+
+
+@dataclass
+class NameBook:
+    """Gives out names: the user's where a quantity is one parameter or its negative, else new ones
+    from the place in the table (a_2: before joint 3). Equal quantities share a name."""
+
+    log: SnapLog
+    names: dict[str, object] = field(default_factory=dict)
+    """Symbol -> what it stands for."""
+
+    def length(self, q: Quantity, place: str) -> Length:
+        """A quantity in m."""
+        if not q.symbolic and abs(q.value) <= _ZERO:
+            return Length(0.0, None)
+        if q.single is not None:
+            name, sign = q.single
+            symbol = self._claim(symbol_of(name), ("user", name))
+            return Length(q.value, symbol, int(sign), q.symbolic)
+        first = q.terms[0][1] if q.terms else q.value
+        sign = 1 if first > 0 else -1
+        key = (
+            tuple((n, f * sign) for n, f in q.terms), round(q.constant * sign, 12)
+        )  # fmt: skip
+        symbol = next((s for s, k in self.names.items() if k == key), "")
+        symbol = symbol or self._claim(place, key)
+        value = q.value if q.terms else sign * tidy(abs(q.value))
+        return Length(value, symbol, sign, q.symbolic)
+
+    def angle(self, q: Quantity, place: str, tolerance: float) -> Angle:
+        """A quantity in rad; a number within `tolerance` of a multiple of pi/12 becomes that."""
+        if not q.symbolic:
+            found = exact_angle(q.value, tolerance, place)
+            if found.exact is not None:
+                near = found.value + wrap_angle(q.value - found.value)
+                self.log.add(place, near, found.value)
+                return found
+        key: object = (q.terms, round(q.constant, 12))
+        if q.single is not None and q.single[1] > 0:
+            place, key = symbol_of(q.single[0]), ("user", q.single[0])
+        symbol = next((s for s, k in self.names.items() if k == key), "")
+        return Angle(wrap_angle(q.value), None, symbol or self._claim(place, key), q.symbolic)
+
+    def _claim(self, symbol: str, key: object) -> str:
+        """The symbol, with underscores where another quantity has it."""
+        while self.names.setdefault(symbol, key) != key:
+            symbol += "_"
+        return symbol

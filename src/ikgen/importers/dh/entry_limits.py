@@ -1,0 +1,52 @@
+"""The limits of a DH table's joints: optional, numbers or expressions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from ikgen.importers.dh.entry_expression import BadEntryError, evaluate
+from ikgen.importers.dh.table_document import TableDocument
+from ikgen.importers.urdf.joint_limits import UNLIMITED
+from ikgen.model.joint_tree import Limits
+
+__all__ = ["read_limits"]
+
+_HINT = "write limits = [lower, upper] in rad or m, or leave them out"
+
+
+def read_limits(
+    document: TableDocument,
+    i: int,
+    joint: Mapping[str, Any],
+    parameters: Mapping[str, float | None],
+) -> Limits:
+    """The range of joint number `i` (rad or m), infinite without limits."""
+    given = joint.get("limits")
+    if given is None:
+        return UNLIMITED
+    if joint["type"] == "fixed":
+        raise document.error("a fixed joint has no limits", "remove them", joint=i, key="limits")
+    if not isinstance(given, list) or len(given) != 2:
+        raise document.error("limits are not two numbers", _HINT, joint=i, key="limits")
+    values = []
+    for one in given:
+        if isinstance(one, bool) or not isinstance(one, int | float | str):
+            raise document.error(f"limit {one!r} is no number", _HINT, joint=i, key="limits")
+        try:
+            found = evaluate(one, parameters, angle=True) if isinstance(one, str) else None
+        except BadEntryError as error:
+            raise document.error(f"limits: {error}", error.hint, joint=i, key="limits") from None
+        value = float(one) if found is None else found.value
+        if math.isnan(value) or (found is not None and found.symbolic):
+            raise document.error(f"limit {one!r} has no number", _HINT, joint=i, key="limits")
+        values.append(value)
+    if values[0] > values[1]:
+        raise document.error(
+            f"the lower limit {values[0]:g} is above the upper limit {values[1]:g}", _HINT,
+            joint=i, key="limits",
+        )  # fmt: skip
+    if joint["type"] == "revolute" and 13.0 < max(map(abs, values)) < 1e3:
+        document.warnings.append(f"joint {i}: limits look like degrees: kept as they are")
+    return Limits(values[0], values[1])

@@ -1,0 +1,1 @@
+"""From a solution graph to a Program: one lowering for every language."""

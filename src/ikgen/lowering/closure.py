@@ -1,0 +1,62 @@
+"""The last guard of a Program: a row is returned only if it reproduces the pose."""
+
+from __future__ import annotations
+
+from ikgen.algebra.expression import Expr
+from ikgen.equations.probes import arm_size
+from ikgen.lowering.placement import Placement
+from ikgen.program.statements import Comment
+
+__all__ = ["require_closure"]
+
+CHECK_TOLERANCE = 1e-6
+"""Largest error (m over the arm's size, rad) of a row that may become a solution: near singularities
+the closed form loses digits, which Newton steps win back."""
+
+
+def require_closure(work: Placement) -> None:
+    """A row is returned only if it reproduces the pose: the cheapest split is compared."""
+
+    def cost(parts: tuple[list[Expr], list[Expr]]) -> float:
+        return work.price([*parts[0], *parts[1]])
+
+    n = work.system.n
+    splits = [(0, n)]
+    if work.whole_pose:
+        splits = [(k, m) for k in range(n) for m in range(k + 1, n + 1)]
+    residuals = min((_residuals(work, k, m) for k, m in splits), key=cost)
+    work.place(Comment("does the row reproduce the pose?"))
+    limit = max(CHECK_TOLERANCE, min(1000 * work.slack, 0.2))
+    size = max(arm_size(work.dh), 1.0)
+    for level in range(len(work.levels)):
+        norms = [e for e in work.norms if work.level(e) == level]
+        _bounded(work, norms, limit)
+    for parts, tolerance in zip(residuals, (limit * size, limit), strict=True):
+        _bounded(work, parts, tolerance)
+
+
+def _bounded(work: Placement, parts: list[Expr], tolerance: float) -> None:
+    if parts:
+        total = work.g.dot(parts, parts)
+        work.require(work.g.binary("gt", work.g.const(tolerance**2), total))
+        work.residuals.append(total)
+
+
+def _residuals(work: Placement, k: int, m: int) -> tuple[list[Expr], list[Expr]]:
+    """Differences of position and of rotation of one split, those that vanish by construction
+    and those that the task does not read left out."""
+    left, right = work.system.left(k, m), work.system.right(k, m)
+    position = list(zip(left.p, right.p, strict=True))
+    rotation = [(left.R[i][j], right.R[i][j]) for i in range(3) for j in range(3)]
+    return _differences(work, position), _differences(work, rotation)
+
+
+def _differences(work: Placement, pairs: list[tuple[Expr, Expr]]) -> list[Expr]:
+    g = work.g
+    out: list[Expr] = []
+    for a, b in pairs:
+        if not work.knowledge.known_expr(a) or not work.knowledge.known_expr(b):
+            continue
+        if g.sub(work.defined(a), work.defined(b)) is not g.zero:
+            out.append(g.sub(a, b))
+    return out

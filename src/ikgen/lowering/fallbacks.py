@@ -1,0 +1,102 @@
+"""Which of several forms gives an unknown's value at run time: by the size of their divisors."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ikgen.algebra.expression import Expr
+from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.equations.knowledge import Variable
+from ikgen.lowering.form_lowering import ROUNDED, Divisor, Realized
+from ikgen.lowering.placement import Placement
+from ikgen.lowering.program_inputs import seed_values
+
+__all__ = ["choose_form"]
+
+WELL_CONDITIONED = 1e-3
+"""Relative size of a divisor below which a fallback is taken in its form's place."""
+
+Flag = bool | Expr
+
+
+def _pick(g: ExpressionGraph, here: Expr | None, mine: Flag, other: Flag) -> Flag:
+    """`mine` where the condition `here` holds (None: always), `other` elsewhere."""
+    if here is None or mine is other:
+        return mine
+    missing = g.unary("not", here)
+    if mine is True:
+        return here if other is False else g.binary("or", here, _expr(other))
+    if mine is False:
+        return missing if other is True else g.binary("and", missing, _expr(other))
+    if other is True:
+        return g.binary("or", missing, mine)
+    if other is False:
+        return g.binary("and", here, mine)
+    return g.binary("or", g.binary("and", here, mine), g.binary("and", missing, _expr(other)))
+
+
+def _expr(flag: Flag) -> Expr:
+    assert isinstance(flag, Expr)
+    return flag
+
+
+def choose_form(
+    work: Placement, v: Variable, forms: list[Realized], sigma: Expr
+) -> tuple[Expr, ...]:
+    """The first form whose divisor does not vanish; the seed's value if there is none.
+
+    Where Newton steps follow, a small divisor gives but a rough value: all are tried for a large
+    one first.
+    """
+    g = work.g
+    first = [_well_conditioned(work, form) for form in forms[:-1]]
+    last = forms[-1].divisor
+    if first and last.clear is not None and work.slack > ROUNDED:
+        wide = Divisor(last.value, last.clear, last.clear)
+        forms = [*first, replace(forms[-1], divisor=wide), *forms]
+    else:
+        forms = [*first, forms[-1]]
+    values = seed_values(work, v) if forms[-1].regular is not None else forms[-1].values
+    guard: Flag = True
+    single: Flag = True
+    free: Flag = True
+    for form in reversed(forms):
+        here = form.regular
+        guard = _pick(g, here, True if form.guard is None else form.guard, guard)
+        single = _pick(g, here, form.branches == 1, single)
+        clear = form.divisor.clear
+        free = _pick(g, here, False if clear is None else g.unary("not", clear), free)
+        if here is not None:
+            both = zip(form.values, values, strict=True)
+            values = tuple(g.select(here, mine, other) for mine, other in both)
+        else:
+            values = form.values
+    if isinstance(guard, Expr):
+        work.require(guard)
+    if isinstance(single, Expr) and sigma is not g.one:
+        work.require(g.binary("or", g.unary("not", single), g.binary("gt", sigma, g.zero)))
+    if isinstance(free, Expr):
+        work.place(free)
+        work.singular.append(free)
+    return values
+
+
+def _well_conditioned(work: Placement, form: Realized) -> Realized:
+    """With a fallback behind it a form is left well before its divisor vanishes or its branches
+    meet."""
+    g, regular = work.g, form.regular
+    well = min(max(WELL_CONDITIONED, 10.0 * work.slack**0.5), 0.1)
+    good: Flag = True
+    if regular is not None:
+        power = 2 if form.branches == 2 else 1
+        natural = regular.args[1].value / work.tolerances.singular**power
+        limit = g.const(natural * well**power)
+        good = g.binary("gt", regular.args[0], limit)
+    if form.under is not None:
+        limit = g.mul(g.const(well**2), form.under[1])
+        apart = g.binary("gt", form.under[0], limit)
+        good = apart if good is True else g.binary("and", _expr(good), apart)
+    if good is True:
+        return form
+    divisor = Divisor(form.divisor.value, _expr(good), _expr(good))
+    return Realized(form.values, divisor, form.guard, form.branches)

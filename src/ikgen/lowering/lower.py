@@ -1,0 +1,116 @@
+"""Lower a solution graph to a Program: one lowering for every language."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ikgen.algebra.expression import Expr
+from ikgen.equations.knowledge import Variable
+from ikgen.lowering.closure import require_closure
+from ikgen.lowering.fallbacks import choose_form
+from ikgen.lowering.form_lowering import leading, realize
+from ikgen.lowering.placement import LoweredLevel, Placement, identifier
+from ikgen.lowering.program_inputs import bind_pose, bind_seeds, seed_values
+from ikgen.lowering.serialize import serialize
+from ikgen.program.statements import Comment, Program
+from ikgen.solver.choice import Step
+from ikgen.solver.solution_graph import SolutionGraph
+
+__all__ = ["lower"]
+
+
+def lower(graph: SolutionGraph, *, slack: float = 0.0) -> Program:
+    """The Program of a solution graph.
+
+    `slack` is how far (m or rad) the file's geometry is off the exact one that was solved: square roots
+    and the final check give way by that much, and Newton steps on the file's chain follow.
+    """
+    work = Placement(graph, slack)
+    bind_pose(work)
+    bind_seeds(work)
+    for index, step in enumerate(graph.steps):
+        _step(work, index, step)
+    outputs = _outputs(work)
+    require_closure(work)
+    return serialize(work, outputs)
+
+
+def _step(work: Placement, index: int, step: Step) -> None:
+    """One solved unknown."""
+    g = work.g
+    v = step.candidate.unknown
+    text = f"{v.text}: {step.candidate.leaf}, from {_labels(step)}"
+    if step.candidate.form == "quartic":
+        _quartic(work, step, text)
+        return
+    if step.branches > 1:
+        sigma = g.atom("sigma", str(index), np.ones(g.probes), unknown=False)
+        work.levels.append(LoweredLevel(2, sigma))
+        work.level_of[sigma.id] = len(work.levels) - 1
+        work.names[sigma.id] = f"sigma_{v.text.split('_', 1)[-1]}"
+    else:
+        sigma = g.one
+    work.place(Comment(text))
+    forms = [realize(g, c, sigma, work.tolerances) for c in (step.candidate, *step.fallbacks)]
+    work.define(v, choose_form(work, v, forms, sigma))
+    if any(c.form == "pair" for c in (step.candidate, *step.fallbacks)):
+        work.norms.append(_excess(work, v))
+
+
+def _excess(work: Placement, v: Variable) -> Expr:
+    """Two linear equations give a cosine and sine on the unit circle only if they agree with the
+    rest: a branch whose squares do not add up to one is none."""
+    g = work.g
+    c, s = work.knowledge.variables.pair(v.key)
+    return g.sub(g.add(g.square(c), g.square(s)), g.one)
+
+
+def _quartic(work: Placement, step: Step, text: str) -> None:
+    v = step.candidate.unknown
+    arguments = _or_seed(work, v, step.candidate.coefficients)
+    for e in arguments:
+        work.place(e)
+    atoms = work.knowledge.variables.pair(v.key)
+    work.levels.append(LoweredLevel(4, None, ("trig_quartic", arguments, atoms)))
+    work.place(Comment(text))
+    suffix = v.text.split("_", 1)[1]
+    for atom, x in zip(atoms, "cs", strict=True):
+        work.names[atom.id] = identifier(f"{x}{suffix}")
+        work.level_of[atom.id] = len(work.levels) - 1
+        work.placed.add(atom.id)
+
+
+def _or_seed(work: Placement, v: Variable, coefficients: tuple[Expr, ...]) -> tuple[Expr, ...]:
+    """The quartic's coefficients, and where all but the constant vanish those of `sin(v - seed) = 0`."""
+    g = work.g
+    divisor = leading(g, coefficients[:4], work.tolerances)
+    if divisor.regular is None or divisor.clear is None:
+        return coefficients
+    missing = g.unary("not", divisor.clear)
+    work.place(missing)
+    work.singular.append(missing)
+    c, s = seed_values(work, v)
+    instead = (g.zero, g.zero, g.neg(s), c, g.zero)
+    both = zip(coefficients, instead, strict=True)
+    return tuple(g.select(divisor.regular, mine, other) for mine, other in both)
+
+
+def _outputs(work: Placement) -> list[tuple[int, tuple[Expr, ...]]]:
+    """Every joint's pair or distance."""
+    out: list[tuple[int, tuple[Expr, ...]]] = []
+    work.place(Comment("joint variables"))
+    for j in range(work.dh.dof):
+        v = work.session.joint_variable(j)
+        if v.kind == "angle":
+            values: tuple[Expr, ...] | None = work.knowledge.known_pair(v.key)
+            assert values is not None
+        else:
+            values = (work.knowledge.variables.distance(j),)
+        for e in values:
+            work.place(e)
+        out.append((j, values))
+    return out
+
+
+def _labels(step: Step) -> str:
+    return " and ".join(dict.fromkeys(e.label for e in step.candidate.sources))

@@ -1,0 +1,159 @@
+"""Where expressions are computed: each at the outermost level that its dependencies allow."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.algebra.expression import Expr
+from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.equations.knowledge import Variable
+from ikgen.equations.products import ENTRY_NAMES
+from ikgen.lowering.form_lowering import Tolerances
+from ikgen.program.statements import Comment
+from ikgen.solver.solution_graph import SolutionGraph
+
+__all__ = ["LoweredLevel", "Placement", "Requirement", "identifier"]
+
+
+@dataclass(frozen=True, slots=True)
+class Requirement:
+    """A condition without which the branch has no solution."""
+
+    condition: Expr
+
+
+@dataclass
+class LoweredLevel:
+    """Expressions, guards and comments of one level, in order."""
+
+    branches: int
+    sigma: Expr | None = None
+    call: tuple[str, tuple[Expr, ...], tuple[Expr, ...]] | None = None
+    items: list[Expr | Comment | Requirement] = field(default_factory=list)
+
+
+class Placement:
+    """The levels of a Program under construction, and what is known of every expression in them.
+
+    `slack` (m or rad) is how far the file's geometry is off the solved one; `norms` are excesses that
+    vanish on a solution, `residuals` squared errors of a row, `singular` flags of continua.
+    """
+
+    def __init__(self, graph: SolutionGraph, slack: float) -> None:
+        self.session = graph.session
+        self.system = graph.session.system
+        self.dh = self.system.dh
+        self.g: ExpressionGraph = self.system.graph
+        self.knowledge = graph.knowledge
+        self.slack = slack
+        self.tolerances = Tolerances.for_slack(slack)
+        self.residuals: list[Expr] = []
+        self.norms: list[Expr] = []
+        self.levels = [LoweredLevel(1)]
+        self.definition: dict[int, Expr] = dict(self.knowledge.binding)
+        self.level_of: dict[int, int] = {}
+        self.placed: set[int] = set()
+        self.names: dict[int, str] = {}
+        self.singular: list[Expr] = []
+        self.inputs: list[str] = []
+
+    @property
+    def whole_pose(self) -> bool:
+        """Whether every entry of the pose is read; then any split compares it."""
+        return self.system.readable == frozenset(ENTRY_NAMES)
+
+    def input(self, name: str, probe: NDArray[np.float64] | None = None) -> Expr:
+        """An atom that the caller hands over; `probe` are its values at the probes."""
+        values = np.zeros(self.g.probes) if probe is None else probe
+        node = self.g.atom("input", name, values, unknown=False)
+        self.names[node.id] = name
+        if name not in self.inputs:
+            self.inputs.append(name)
+        return node
+
+    def level(self, node: Expr) -> int:
+        """Innermost level that the expression depends on."""
+        found = self.level_of.get(node.id)
+        if found is not None:
+            return found
+        if node.id in self.definition:
+            found = self.level(self.definition[node.id])
+        else:
+            found = max((self.level(a) for a in node.args), default=0)
+        self.level_of[node.id] = found
+        return found
+
+    def canonical(self, node: Expr) -> Expr:
+        """The node, or what an atom without a name of its own stands for."""
+        while node.id in self.definition and node.id not in self.names:
+            node = self.definition[node.id]
+        return node
+
+    def defined(self, node: Expr) -> Expr:
+        """The node, or the definition of a solved atom."""
+        while node.id in self.definition:
+            node = self.definition[node.id]
+        return node
+
+    def place(self, item: Expr | Comment) -> None:
+        """Schedule an expression and what it needs."""
+        if isinstance(item, Comment):
+            self.levels[-1].items.append(item)
+            return
+        if item.id in self.placed:
+            return
+        self.placed.add(item.id)
+        if item.id in self.definition:
+            self.place(self.definition[item.id])
+        for a in item.args:
+            self.place(a)
+        if item.args or item.id in self.definition:
+            self.levels[self.level(item)].items.append(item)
+
+    def require(self, condition: Expr) -> None:
+        """Schedule a guard."""
+        self.place(condition)
+        self.levels[self.level(condition)].items.append(Requirement(condition))
+
+    def define(self, v: Variable, values: tuple[Expr, ...]) -> None:
+        """Give a solved variable its cosine and sine, or its distance."""
+        variables = self.knowledge.variables
+        if v.kind == "angle":
+            atoms: tuple[Expr, ...] = variables.pair(v.key)
+            names = tuple(f"{x}{v.text.split('_', 1)[1]}" for x in "cs")
+        else:
+            assert v.joint is not None
+            atoms = (variables.distance(v.joint),)
+            names = (f"d{v.joint + 1}",)
+        for atom, name, value in zip(atoms, names, values, strict=True):
+            self.definition[atom.id] = value
+            self.names[atom.id] = identifier(name)
+            self.place(atom)
+
+    def price(self, roots: list[Expr]) -> float:
+        """Operations that the roots need beyond what is placed, each as often as it has branches."""
+        counts = [1.0]
+        for level in self.levels[1:]:
+            counts.append(counts[-1] * level.branches)
+        seen: set[int] = set()
+        total = 0.0
+        stack = list(roots)
+        while stack:
+            node = stack.pop()
+            if node.id in seen or node.id in self.placed:
+                continue
+            seen.add(node.id)
+            if node.id in self.definition:
+                stack.append(self.definition[node.id])
+            elif node.args and not node.is_fixed:
+                total += counts[self.level(node)]
+            stack.extend(node.args)
+        return total
+
+
+def identifier(name: str) -> str:
+    """The name with what no language takes replaced by underscores."""
+    return "".join(ch if ch.isalnum() else "_" for ch in name)

@@ -1,0 +1,1 @@
+"""The Program: typed statements that every language is written from."""

@@ -1,0 +1,39 @@
+"""Say which arms of a config are stale; with the standard library alone, as a commit hook needs it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from ikgen.errors import IkgenError
+from ikgen.projects.config import load_config, named_config
+from ikgen.projects.stale import stale_reasons
+
+__all__ = ["main", "stale_lines"]
+
+
+def stale_lines(reasons: Sequence[tuple[str, str]]) -> list[str]:
+    """One line an arm, from its name and the reason it is stale (empty: it is not)."""
+    return [f"{name}: {'stale: ' + reason if reason else 'up to date'}" for name, reason in reasons]
+
+
+def main(configs: Sequence[str]) -> int:
+    """Check configs (default: the one here); what `ikgen build --check` exits with."""
+    code = 0
+    named: list[Path | None] = [Path(config) for config in configs]
+    for config in named or [None]:
+        try:
+            path = named_config(config)
+            arms = load_config(path)
+            reasons = [
+                (arm.name, reason) for arm, reason in zip(arms, stale_reasons(arms), strict=True)
+            ]
+        except IkgenError as error:
+            print(f"error: {error.message}", f"hint: {error.hint}", sep="\n", file=sys.stderr)
+            return error.exit_code
+        print(*stale_lines(reasons), sep="\n")
+        if any(reason for _, reason in reasons):
+            print(f"hint: ikgen build {path}", file=sys.stderr)
+            code = 1
+    return code

@@ -1,0 +1,66 @@
+"""What came of checking outputs: what is wrong, and what could not be checked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ikgen.errors import BadDescriptionError, IkgenError
+from ikgen.generation.record import SUFFIX, Record
+
+if TYPE_CHECKING:
+    from ikgen.verify.verification_report import VerificationReport
+
+__all__ = ["Finding", "Recheck", "unchecked"]
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One thing that is wrong: about which file, what, and what puts it right (a command, or words);
+    `deviation` (m, rad) of the forward kinematics where those are another geometry's. `exit_code` is 1
+    for wrong outputs, else that of the error that kept them from being checked."""
+
+    file: Path
+    message: str
+    command: str
+    deviation: tuple[float, float] | None = None
+    exit_code: int = 1
+    line: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Recheck:
+    """What came of one record: findings (none: all is right), notes and the verifications; `record` is
+    None where its file `path` could not be read."""
+
+    path: Path
+    record: Record | None
+    findings: tuple[Finding, ...] = ()
+    notes: tuple[str, ...] = ()
+    reports: Mapping[str, VerificationReport] = field(default_factory=dict)
+
+    @property
+    def passed(self) -> bool:
+        """Whether nothing is wrong."""
+        return not self.findings
+
+    @property
+    def exit_code(self) -> int:
+        """The worst of the findings'."""
+        return max((finding.exit_code for finding in self.findings), default=0)
+
+    @property
+    def name(self) -> str:
+        """The arm's name; by the record's file name where the record cannot be read."""
+        return self.record.name if self.record else self.path.name.removesuffix(SUFFIX)
+
+
+def unchecked(path: Path, record: Record | None, error: IkgenError) -> Recheck:
+    """The outcome of a record that an error kept from being checked."""
+    named = error.file if isinstance(error, BadDescriptionError) else ""
+    line = (error.line if isinstance(error, BadDescriptionError) else None) or 1
+    file = Path(named) if named else path
+    finding = Finding(file, error.message, error.hint, None, error.exit_code, line)
+    return Recheck(path, record, (finding,))

@@ -1,0 +1,162 @@
+"""Generate the arms of a config that are stale, several at a time in processes of their own."""
+
+from __future__ import annotations
+
+import os
+import traceback
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ikgen.errors import IkgenError
+from ikgen.generation.generation import Outputs
+from ikgen.generation.pipeline import Request
+from ikgen.generation.record import read_record
+from ikgen.projects.config import ArmConfig
+from ikgen.projects.stale import stale_reasons
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor, Future
+
+__all__ = ["Outcome", "build_arms", "outputs_of", "request_of_arm"]
+
+INTERNAL_ERROR = 70
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What happened to one arm: `reason` it was stale (empty: fresh, left alone), its files, and
+    the error if it failed (`exit_code` then is not 0); `trace` is that of an internal error."""
+
+    name: str
+    reason: str
+    files: tuple[Path, ...] = ()
+    seconds: float = 0.0
+    message: str = ""
+    hint: str = ""
+    exit_code: int = 0
+    trace: str = ""
+
+
+def request_of_arm(arm: ArmConfig) -> Request:
+    """What an arm of a config asks for."""
+    return Request(
+        robot=arm.robot,
+        base=arm.base,
+        tip=arm.tip,
+        task=arm.task,
+        free=tuple(arm.free.items()),
+        locked=arm.lock,
+        arguments=arm.args,
+        package_paths=arm.package_paths,
+        name=arm.name,
+    )
+
+
+def outputs_of(arm: ArmConfig, *, verify: bool) -> Outputs:
+    """What an arm of a config writes."""
+    return Outputs(emit=arm.emit, out=arm.out, samples=arm.samples, verify=verify)
+
+
+def build_arms(
+    arms: Sequence[ArmConfig],
+    *,
+    force: bool = False,
+    verify: bool = True,
+    jobs: int | None = None,
+    progress: Callable[[str, str], None] = lambda stage, detail: None,
+) -> Iterator[Outcome]:
+    """Bring every arm up to date; outcomes in the order of the config."""
+    reasons = [
+        reason or ("asked for" if force else "") for reason in stale_reasons(arms, verify=verify)
+    ]
+    work = [(arm, reason, verify) for arm, reason in zip(arms, reasons, strict=True) if reason]
+    for arm, reason in zip(arms, reasons, strict=True):
+        progress("build", f"{arm.name}: {reason or 'up to date'}")
+    made = _run(work, jobs)
+    for arm, reason in zip(arms, reasons, strict=True):
+        yield next(made) if reason else Outcome(arm.name, "", _files(arm))
+
+
+def _run(work: Sequence[tuple[ArmConfig, str, bool]], jobs: int | None) -> Iterator[Outcome]:
+    """The outcomes in the order of the work."""
+    workers = min(len(work), jobs or os.cpu_count() or 1)
+    if workers <= 1:
+        yield from map(_build_one, work)
+        return
+    import multiprocessing
+    from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
+
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(workers, mp_context=context) as pool:
+        waiting = [(job, _submit(pool, job)) for job in work]
+        try:
+            for (arm, reason, _), answer in waiting:
+                try:
+                    yield answer.result()
+                except BrokenExecutor:
+                    yield _killed(arm.name, reason)
+        finally:  # whoever stops asking does not wait for the rest
+            for _, answer in waiting:
+                answer.cancel()
+
+
+def _submit(pool: Executor, job: tuple[ArmConfig, str, bool]) -> Future[Outcome]:
+    """The answer to come; a pool whose worker was killed refuses further jobs."""
+    from concurrent.futures import BrokenExecutor, Future
+
+    try:
+        return pool.submit(_build_one, job)
+    except BrokenExecutor as error:
+        refused: Future[Outcome] = Future()
+        refused.set_exception(error)
+        return refused
+
+
+def _killed(name: str, reason: str) -> Outcome:
+    """The outcome of an arm that got no answer."""
+    return Outcome(
+        name,
+        reason,
+        message="not generated: a worker process was killed or could not start",
+        hint="too little memory? --jobs 1 generates one arm at a time",
+        exit_code=INTERNAL_ERROR,
+    )
+
+
+def _build_one(job: tuple[ArmConfig, str, bool]) -> Outcome:
+    """Generate one arm; errors become part of the outcome, since they must cross processes."""
+    from ikgen.generation.generation import generate
+
+    arm, reason, verify = job
+    try:
+        made = generate(request_of_arm(arm), outputs_of(arm, verify=verify))
+    except IkgenError as error:
+        code = error.exit_code
+        return Outcome(arm.name, reason, (), 0.0, error.message, error.hint, code)
+    except OSError as error:
+        where = f"{error.filename}: " if error.filename else ""
+        return Outcome(arm.name, reason, message=f"{where}{error.strerror or error}", exit_code=2)
+    except Exception as error:
+        return _internal(arm.name, reason, error)
+    return Outcome(arm.name, reason, made.files, made.seconds)
+
+
+def _internal(name: str, reason: str, error: Exception) -> Outcome:
+    """The outcome of a failure that is ikgen's own."""
+    text = " ".join(str(error).split()) or "no message"
+    return Outcome(
+        name,
+        reason,
+        message=f"internal error: {type(error).__name__}: {text}",
+        hint="please report it with the robot description and the config; -v shows the traceback",
+        exit_code=INTERNAL_ERROR,
+        trace="".join(traceback.format_exception(error)),
+    )
+
+
+def _files(arm: ArmConfig) -> tuple[Path, ...]:
+    """The files of a fresh arm, from its record."""
+    record = read_record(arm.record_path)
+    return (*(record.folder / name for name in record.files), arm.record_path)

@@ -1,0 +1,54 @@
+"""The candidates for an unknown: the one chosen, and why each of the others lost."""
+
+from __future__ import annotations
+
+from ikgen.report.document import Block, Rows, Text
+from ikgen.solver.candidate import Candidate
+from ikgen.solver.choice import Step
+from ikgen.solver.ranker import rank_key
+
+__all__ = ["candidates_table"]
+
+_REASONS = (
+    "fails at some regular configurations",
+    "more branches",
+    "a less direct form",
+    "degenerate at more singular configurations",
+    "squared equations, which add spurious solutions",
+    "more to compute",
+)
+"""What each place of the ranker's key means."""
+
+_HEADER: tuple[Text, ...] = (
+    ("leaf",),
+    ("equations",),
+    ("branches",),
+    ("least divisor",),
+    ("cost",),
+    ("judgement",),
+)
+
+
+def candidates_table(step: Step) -> list[Block]:
+    """A table, where there was a choice."""
+    others = [c for c in step.rejected if c.judgement is not None and c not in step.fallbacks]
+    if not others or step.candidate.judgement is None:
+        return []
+    rows = [_row(step.candidate, "chosen")]
+    rows += [_row(c, _reason(step.candidate, c)) for c in others]
+    return [Rows(_HEADER, tuple(rows), "Candidates", small=True)]
+
+
+def _reason(best: Candidate, other: Candidate) -> str:
+    """The first place where the ranker's keys differ, in words."""
+    for words, mine, its in zip(_REASONS, rank_key(best), rank_key(other), strict=False):
+        if mine != its:
+            return words
+    return "equal, later in order"
+
+
+def _row(c: Candidate, verdict: str) -> tuple[Text, ...]:
+    assert c.judgement is not None
+    labels = ", ".join(dict.fromkeys(e.label for e in c.sources))
+    margin, cost = f"{c.judgement.margin:.1e}", f"{c.judgement.cost:g}"
+    return (c.leaf,), (labels,), (str(c.branches),), (margin,), (cost,), (verdict,)

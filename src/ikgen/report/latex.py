@@ -1,0 +1,120 @@
+"""The document as LaTeX for pdflatex: only packages of a basic installation."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+
+from ikgen.emit.rendering import render
+from ikgen.report.document import (
+    Block,
+    Formulas,
+    Heading,
+    Matrix,
+    Paragraph,
+    Picture,
+    Rows,
+    Text,
+)
+
+__all__ = ["to_latex"]
+
+_ESCAPES = {
+    "\\": "\\textbackslash{}", "&": "\\&", "%": "\\%", "$": "\\$", "#": "\\#", "_": "\\_",
+    "{": "\\{", "}": "\\}", "~": "\\textasciitilde{}", "^": "\\textasciicircum{}", "–": "--",
+    "°": "\\ensuremath{^\\circ}", "±": "\\ensuremath{\\pm}",
+    "·": "\\ensuremath{\\cdot}", "×": "\\ensuremath{\\times}", "−": "\\ensuremath{-}",
+    "<": "\\textless{}", ">": "\\textgreater{}", "|": "\\textbar{}", "`": "{}`",
+    "\u2003": "\\quad{}", "-": "-{}",
+}  # fmt: skip
+"""What the font of a basic installation (OT1) shows as another character, alone or next to its like."""
+
+_LETTERS = "ßæÆœŒøØåÅłŁı"
+_ACCENTS = "\u0300\u0301\u0302\u0303\u0304\u0306\u0307\u0308\u030a\u030b\u030c\u0327"
+"""Beyond ASCII the font has these letters, and can put these accents on others."""
+
+
+_CENTRED, _WRAPPED = 24, 60
+"""Characters up to which a column is centred, and from which on its text wraps."""
+
+
+def to_latex(title: str, subtitle: str, blocks: list[Block]) -> str:
+    """The text of the .tex file."""
+    body = "\n\n".join(_block(b) for b in blocks)
+    return render(
+        "report", "report.tex.jinja", title=_words(title), subtitle=_words(subtitle), body=body
+    )
+
+
+def _words(text: str) -> str:
+    out = "".join(_ESCAPES.get(ch) or (ch if _in_font(ch) else "?") for ch in text)
+    return re.sub("'(?=')", "'{}", out)  # two of them would join to one quotation mark
+
+
+def _in_font(ch: str) -> bool:
+    if ch.isascii():
+        return ch.isprintable() or ch.isspace()
+    parts = unicodedata.normalize("NFD", ch)
+    accented = ch < "\u0180" and len(parts) == 2 and parts[0].isascii() and parts[1] in _ACCENTS
+    return ch in _LETTERS or accented
+
+
+def _text(text: Text) -> str:
+    return "".join(_words(part) if isinstance(part, str) else f"${part.latex}$" for part in text)
+
+
+def _block(block: Block) -> str:
+    match block:
+        case Heading(title, level):
+            plain = "".join(_words(p) if isinstance(p, str) else f"${p.latex}$" for p in title)
+            return f"\\{'section' if level == 1 else 'subsection'}*{{{plain}}}"
+        case Paragraph(text, note):
+            if note:
+                return f"{{\\small\\itshape {_text(text)}\\par}}"
+            keep = "\\nopagebreak" if str(text[-1]).endswith(":") else ""
+            return f"{_text(text)}\\par{keep}"
+        case Formulas(lines):
+            inside = "\n".join(f"\\formula{{{line.latex}}}" for line in lines)
+            return f"\\begin{{formulas}}\n{inside}\n\\end{{formulas}}"
+        case Matrix(name, rows):
+            inside = " \\\\\n".join(" & ".join(x.latex for x in row) for row in rows)
+            columns = "c" * len(rows[0])
+            array = f"\\begin{{array}}{{{columns}}}\n{inside}\n\\end{{array}}"
+            return f"\\[ {name.latex} = \\left[{array}\\right] \\]"
+        case Rows():
+            return _rows(block)
+        case Picture(_, latex, caption):
+            below = f"\\smallskip{{\\small {_words(caption)}}}"
+            return f"\\begin{{center}}\n{latex}\n\n{below}\n\\end{{center}}"
+
+
+def _rows(block: Rows) -> str:
+    wide = [
+        max((_width(row[i]) for row in block.rows), default=0) for i in range(len(block.header))
+    ]
+    columns = "".join(
+        "L" if w > _WRAPPED else "l" if w > _CENTRED or i < block.left else "c"
+        for i, w in enumerate(wide)
+    )
+    count = columns.count("L")
+    size = f"\\setlength{{\\wide}}{{{0.5 / count if count else 0.2:.2f}\\linewidth}}"
+    head = " & ".join(f"\\textbf{{{_text(h)}}}" for h in block.header)
+    lines = [" & ".join(_text(cell) for cell in row) + " \\\\" for row in block.rows]
+    tall = len(lines) > 30
+    name = "longtable" if tall else "tabular"
+    font = "\\footnotesize" if block.small else ""
+    caption = (
+        f"{{\\small {_words(block.caption)}\\par}}\\nopagebreak\\smallskip\n"
+        if block.caption
+        else ""
+    )
+    inside = "\n".join([f"\\toprule {head} \\\\ \\midrule", *lines, "\\bottomrule"])
+    table = f"\\begin{{{name}}}{{{columns}}}\n{inside}\n\\end{{{name}}}"
+    if not tall:
+        table = f"\\fitted{{{table}}}"
+    begin, end = ("", "") if tall else ("\\begin{center}", "\\end{center}")
+    return f"{{{size}{font}{begin}\n{caption}{table}\n{end}}}"
+
+
+def _width(text: Text) -> int:
+    return sum(len(part) if isinstance(part, str) else 2 * len(part.tokens) for part in text)

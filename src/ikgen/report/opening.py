@@ -1,0 +1,235 @@
+"""The report's opening: the robot, its DH table and its forward kinematics."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+
+from ikgen.emit.derivation import Reading
+from ikgen.equations.symbolic_transforms import link, multiply
+from ikgen.kinematics.classify import GeometryClass
+from ikgen.model.dh import Angle, DHChain, DHRow, Length
+from ikgen.model.joint_tree import Matrix as Array
+from ikgen.report import mathtext as m
+from ikgen.report.document import Block, Formulas, Heading, Matrix, Paragraph, Rows, Text
+from ikgen.report.mathtext import Math
+from ikgen.report.normal_form import Normalizer, Symbol
+from ikgen.report.notation import show, symbol
+from ikgen.solver.solution_graph import SolutionGraph
+from ikgen.tasks import Task
+
+__all__ = ["forward_section", "robot_section"]
+
+_MOST_WRITTEN = 900
+"""Symbols in all entries of the pose together, above which they are not written out."""
+
+
+def robot_section(reading: Reading, geometry: GeometryClass, task: Task, most: str) -> list[Block]:
+    """What robot this is, and its table; `most` says how many solutions there are."""
+    dh = reading.dh
+    moving = "".join("R" if row.revolute else "P" for row in dh.rows)
+    lead = (
+        f"{dh.dof} joints ({moving}), from {dh.base_link} to {dh.tip_link}. "
+        f"Geometry: {geometry.words}. Task: {task.name} ({task.words}). {most}"
+    )
+    blocks: list[Block] = [Heading(("Robot",)), Paragraph((lead,)), _table(dh)]
+    if dh.free or dh.locked:
+        held = [f"{name} is held free: its value is given with the pose" for name in dh.free]
+        held += [f"{name} is locked at {value:g}" for name, value in dh.locked]
+        blocks.append(Paragraph(("; ".join(held) + ".",)))
+    values = _parameters(dh)
+    if values:
+        blocks.append(values)
+    blocks += [Paragraph((f"Note: {w}.",), note=True) for w in reading.source.warnings]
+    blocks += _ends(dh, task)
+    return blocks + _snaps(dh)
+
+
+def _table(dh: DHChain) -> Rows:
+    header = (
+        "joint",
+        "name",
+        m.name("alpha", "i-1"),
+        m.name("a", "i-1"),
+        m.name("d", "i"),
+        m.name("theta", "i"),
+    )
+    rows = tuple(
+        (
+            (str(i),), (row.name,), (_angle(row.alpha),), (_length(row.a),),
+            (_d(row),), (_theta(row),),
+        )
+        for i, row in enumerate(dh.rows, start=1)
+    )  # fmt: skip
+    return Rows(
+        tuple((h,) for h in header),
+        rows,
+        "Denavit-Hartenberg parameters, modified convention (Craig)",
+    )
+
+
+def _angle(a: Angle) -> Math:
+    if a.exact is None:
+        return symbol(Symbol("param", a.name or "alpha"))
+    return _turns(a.exact)
+
+
+def _turns(x: Fraction) -> Math:
+    """A multiple of pi."""
+    if not x:
+        return m.name("0")
+    top = m.name("pi") if abs(x.numerator) == 1 else m.number(abs(x.numerator)) + m.name("pi")
+    size = top if x.denominator == 1 else m.fraction(top, m.number(x.denominator), small=True)
+    return m.minus(sign=True) + size if x < 0 else size
+
+
+def _length(a: Length) -> Math:
+    if a.name is None:
+        return m.name("0")
+    s = symbol(Symbol("param", a.name))
+    return m.minus(sign=True) + s if a.sign < 0 else s
+
+
+def _driven(row: DHRow, letter: str) -> Math:
+    """The variable of the row's joint, with its factor where the row follows another joint."""
+    v = m.name(letter, str(row.driver + 1))
+    if abs(row.scale) not in (0.0, 1.0):
+        return m.number(abs(row.scale)) + m.space() + v
+    return v
+
+
+def _d(row: DHRow) -> Math:
+    return _length(row.d) if row.revolute else _driven(row, "d")
+
+
+def _theta(row: DHRow) -> Math:
+    return _driven(row, "theta") if row.revolute else _angle(row.theta)
+
+
+def _parameters(dh: DHChain) -> Rows | None:
+    """The numbers of the named constants, and how joint values become variables of the table."""
+    values: dict[str, float | None] = {}
+    for row in dh.rows:
+        for x in (row.alpha, row.a, row.d, row.theta):
+            if x.name is not None:
+                value = x.sign * x.value if isinstance(x, Length) else x.value
+                values.setdefault(x.name, None if x.symbolic else value)
+    if not values:
+        return None
+    cells = tuple(
+        ((symbol(Symbol("param", n)),), ("symbolic" if v is None else f"{v:.6g}",))
+        for n, v in values.items()
+    )
+    return Rows((("constant",), ("value (m, rad)",)), cells, "Constants of the arm")
+
+
+def _ends(dh: DHChain, task: Task) -> list[Block]:
+    """Base and tool transforms, and the joints whose values are not the table's variables."""
+    out: list[Block] = []
+    for letter, T in (("B", dh.X_base), ("E", dh.X_tip)):
+        if not np.array_equal(T, np.eye(4)):
+            out.append(Matrix(m.name(letter), _numbers(T)))
+    if out:
+        pose = (
+            "that of the table's last frame in frame 0: the constant transforms of base and tool "
+            "(B, E) are taken off the given pose first."
+            if task.whole_pose
+            else "that of the tool in frame 0: the constant transform of the base (B) is taken off the "
+            "given pose first, that of the tool (E) ends the chain, since the task does not read "
+            "the whole pose."
+        )
+        out.insert(0, Paragraph((f"The pose in what follows is {pose}",)))
+    shifted = [row for row in dh.rows if row.scale != 1.0 or row.offset.value]
+    if shifted:
+        lines = [_conversion(row, dh) for row in shifted]
+        out += [
+            Paragraph(("The variables of the table from the joint values q:",)),
+            Formulas(tuple(lines)),
+        ]
+    return out
+
+
+def _conversion(row: DHRow, dh: DHChain) -> Math:
+    letter = "theta" if row.revolute else "d"
+    right = Math(())
+    sign = m.minus(sign=True) if row.scale < 0 else Math(())
+    size = m.number(abs(row.scale)) if abs(row.scale) != 1.0 else Math(())
+    right = right + sign + size + m.name("q", str(row.driver + 1))
+    offset = row.offset
+    if offset.value:
+        right = right + (m.plus() if offset.value > 0 else m.minus())
+        if isinstance(offset, Angle) and offset.exact is not None:
+            right = right + _turns(abs(offset.exact))
+        else:
+            right = right + m.number(abs(offset.value))
+    place = dh.rows.index(row) + 1
+    return m.name(letter, str(place)) + m.relation() + right
+
+
+def _numbers(T: Array) -> tuple[tuple[Math, ...], ...]:
+    def one(x: float) -> Math:
+        if abs(x) < 1e-15:
+            return m.name("0")
+        return m.minus(sign=True) + m.number(-x) if x < 0 else m.number(x)
+
+    return tuple(tuple(one(float(x)) for x in row) for row in T)
+
+
+def _snaps(dh: DHChain) -> list[Block]:
+    if not dh.snaps:
+        return []
+    rows: tuple[tuple[Text, ...], ...] = tuple(
+        ((s.what,), (f"{s.before:.9g}",), (f"{s.after:.9g}",)) for s in dh.snaps
+    )
+    text = (
+        f"The file's numbers were taken for exact ones: its forward kinematics differs from "
+        f"that of the table by at most {dh.deviation[0]:.1e} m and {dh.deviation[1]:.1e} rad. The "
+        "emitted code ends with Newton steps on the file's own chain: its answers are the file's."
+    )
+    header: tuple[Text, ...] = (("constant",), ("in the file",), ("taken as",))
+    return [Rows(header, rows, "Constants made exact"), Paragraph((text,))]
+
+
+def forward_section(graph: SolutionGraph, normal: Normalizer) -> list[Block]:
+    """The pose, and what the table makes of it."""
+    system = graph.session.system
+    g, n = system.graph, system.n
+    T = multiply(g, link(system.variables, 0), system.right(0, n))
+    pose = [[m.name("r", f"{i}{j}") for j in (1, 2, 3)] for i in (1, 2, 3)]
+    rows = [(*pose[i], m.name("p", "xyz"[i])) for i in range(3)]
+    rows.append(tuple(m.name(x) for x in "0001"))
+    left = m.name("T", "d")
+    sums = [*(normal(T.R[i][j]) for j in range(3) for i in range(3)), *map(normal, T.p)]
+    if sum(s.weight for s in sums) > _MOST_WRITTEN:
+        return _unwritten(Matrix(left, tuple(rows)), n)
+    entries = [*(pose[i][j] for j in range(3) for i in range(3)), *(row[3] for row in rows[:3])]
+    lines = [a + m.relation() + show(s) for a, s in zip(entries, sums, strict=True)]
+    words = (
+        "The desired pose, and its entries by the table. ",
+        m.name("c", "i"), " and ", m.name("s", "i"), " are cosine and sine of ",
+        m.name("theta", "i"),
+        "; angles of parallel axes come as sums: ",
+        m.name("theta", "23") + m.relation() + m.name("theta", "2") + m.plus()
+        + m.name("theta", "3"), ".",
+    )  # fmt: skip
+    return [
+        Heading(("Forward kinematics",)),
+        Paragraph(words),
+        Matrix(left, tuple(rows)),
+        Formulas(tuple(lines)),
+    ]
+
+
+def _unwritten(pose: Matrix, n: int) -> list[Block]:
+    """Forward kinematics whose entries are too long to be read: the product alone."""
+    factors = [m.name("A", str(i)) for i in range(1, n + 1)]
+    return [
+        Heading(("Forward kinematics",)),
+        Paragraph((
+            "The desired pose is the product of the matrices of the table's rows (below); without "
+            "parallel axes and right angles its entries are too long to be written out.",
+        )),
+        pose,
+        Formulas((pose.name + m.relation() + m.join(factors, m.space()),)),
+    ]  # fmt: skip

@@ -1,0 +1,201 @@
+"""One section an unknown: the equations chosen, the solution, its branches, what was rejected."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ikgen.equations.equation_set import Equation
+from ikgen.equations.knowledge import Variable
+from ikgen.report import mathtext as m
+from ikgen.report.candidate_table import candidates_table
+from ikgen.report.document import Block, Formulas, Heading, Inline, Paragraph, Rows, Text
+from ikgen.report.form_formulas import Solved, solve_form
+from ikgen.report.mathtext import Math
+from ikgen.report.naming import Abbreviations
+from ikgen.report.normal_form import Normalizer, Sum
+from ikgen.report.notation import show, variable
+from ikgen.report.solution_sets import Versions
+from ikgen.report.splits import origin, place
+from ikgen.solver.candidate import Candidate
+from ikgen.solver.choice import Step
+from ikgen.solver.solution_graph import SolutionGraph
+
+__all__ = ["Writer", "abbreviations", "derived_section", "step_section"]
+
+_MANY = 16
+_QUARTIC: Text = (
+    "No leaf with two branches holds for this unknown: it is a root of a polynomial of degree four. The "
+    "polynomial in ", m.name("z") + m.relation() + m.function("exp", m.name("i") + m.name("theta")),
+    " is written above; its roots on the unit circle are the real solutions. The emitted code finds "
+    "them in closed form by Ferrari's resolvent, as the points where the lines of a degenerate conic "
+    "meet the circle.",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Writer:
+    """What all step sections share."""
+
+    graph: SolutionGraph
+    versions: Versions
+    normal: Normalizer
+    names: Abbreviations
+
+
+def abbreviations(graph: SolutionGraph, normal: Normalizer) -> Abbreviations:
+    """Names for what comes again in the solutions of all unknowns."""
+    formulas: list[Sum] = []
+    for step in graph.steps:
+        for c in (step.candidate, *step.fallbacks):
+            formulas += [normal(e) for e in c.coefficients]
+    return Abbreviations(formulas)
+
+
+def step_section(w: Writer, number: int, step: Step) -> list[Block]:
+    """One solved unknown."""
+    c = step.candidate
+    v = variable(c.unknown)
+    title: Text = (f"{number}. ", v, f": {c.leaf}")
+    solved = solve_form(c, w.graph.session.system.graph, w.normal, w.names)
+    blocks: list[Block] = [Heading(title, 2), *_origin(w, c)]
+    shown = [_equation(w, e) for e in dict.fromkeys(c.sources) if _short(w, e)]
+    if shown:
+        blocks += [Paragraph(("that is:",)), Formulas(tuple(shown))]
+    if solved.equations:
+        blocks += [Paragraph(("In the unknown:",)), Formulas(solved.equations)]
+    news = w.names.news()
+    solution = _solution(w, c, solved)
+    news += w.names.news()
+    if news:
+        lines = [m.name("u", str(n.index)) + m.relation() + show(s) for n, s in news]
+        blocks += [Paragraph(("with",)), Formulas(tuple(lines))]
+    blocks += [Paragraph(("Solution:",)), Formulas(solution)]
+    if c.form == "quartic":
+        blocks.append(Paragraph(_QUARTIC))
+    blocks += _versions(w, c.unknown, step.branches)
+    blocks += _guards(step, solved)
+    for fallback in step.fallbacks:
+        blocks += _fallback(w, fallback)
+    return blocks + candidates_table(step)
+
+
+def _origin(w: Writer, c: Candidate) -> list[Block]:
+    made = origin(w.graph.session.system, c.sources)
+    note = [Paragraph((f"By {c.note or c.leaf}:",))] if c.note or not made else []
+    return [*made, *note]
+
+
+def _equation(w: Writer, e: Equation) -> Math:
+    left, right = (w.names.inside(w.normal(side)) for side in (e.left, e.right))
+    return show(left) + m.relation() + show(right)
+
+
+def _short(w: Writer, e: Equation) -> bool:
+    return w.normal(e.left).weight + w.normal(e.right).weight < 120
+
+
+def _solution(w: Writer, c: Candidate, solved: Solved) -> tuple[Math, ...]:
+    several = len(solved.branches) > 1
+    alone = w.versions.count(c.unknown) == len(solved.branches)
+    lines = []
+    for i, branch in enumerate(solved.branches, start=1):
+        version = f"s{i}" if several and alone else ""
+        left = variable(c.unknown, version)
+        if several and not alone:
+            left = variable(c.unknown) + m.text(f" (branch {i})")
+        lines.append(left + m.relation() + branch)
+    return tuple(lines)
+
+
+def _versions(w: Writer, v: Variable, branches: int) -> list[Block]:
+    """Which version of an unknown comes from which versions of its parents."""
+    count = w.versions.count(v)
+    parents = [p for p in w.versions.parents[v] if p in w.versions.within]
+    if count == branches or not parents:
+        return []
+    forks = w.versions.within[v]
+    lead: list[Inline] = [f"{count} versions, from those of "]
+    for i, p in enumerate(parents):
+        lead += [", " if i else "", variable(p)]
+    own = [f for f in forks if w.versions.forks[f][0] == v]
+    if count > _MANY:
+        return [Paragraph((*lead, "."))]
+    rows = []
+    for choice in w.versions.choices(v):
+        chosen = dict(zip(forks, choice, strict=True))
+        cells: list[Text] = [(variable(v, w.versions.label(v, chosen)),)]
+        cells += [(variable(p, w.versions.label(p, chosen)),) for p in parents]
+        if own:
+            cells.append((str(chosen[own[0]] + 1),))
+        rows.append(tuple(cells))
+    header: list[Text] = [("version",), *(("from ", variable(p)) for p in parents)]
+    header += [("branch",)] if own else []
+    return [Paragraph((*lead, ":")), Rows(tuple(header), tuple(rows), small=True)]
+
+
+def _guards(step: Step, solved: Solved) -> list[Block]:
+    out: list[Block] = []
+    if solved.reach is not None:
+        relation = any(t.role == "rel" for t in solved.reach.tokens)
+        condition = solved.reach
+        if not relation:
+            condition = condition + m.relation("\\ge ", "≥") + m.name("0")
+        out.append(
+            Paragraph(("Reachable only where ", condition, "; on the boundary the branches meet."))
+        )
+    if solved.divisor is not None:
+        v = variable(step.candidate.unknown)
+        end = (
+            "another form is taken there (below)."
+            if step.fallbacks
+            else (
+                "every value of the joint gives the pose, the seed's is taken (0 without one), and "
+                "the row is flagged singular."
+            )
+        )
+        out.append(
+            Paragraph(
+                (
+                    "Degenerate where ",
+                    solved.divisor + m.relation() + m.name("0"),
+                    ": ",
+                    v,
+                    " does not follow; ",
+                    end,
+                )
+            )
+        )
+    return out
+
+
+def _fallback(w: Writer, c: Candidate) -> list[Block]:
+    solved = solve_form(c, w.graph.session.system.graph, w.normal, w.names)
+    news = w.names.news()
+    lines = [m.name("u", str(n.index)) + m.relation() + show(s) for n, s in news]
+    places = ", and ".join(dict.fromkeys(place(e) for e in c.sources))
+    lead = Paragraph((f"Where that divisor vanishes: {c.leaf}, from {places}:",))
+    return [lead, Formulas((*solved.equations, *lines, *_solution(w, c, solved)))]
+
+
+def derived_section(w: Writer) -> list[Block]:
+    """Joints that follow from sums of solved angles."""
+    solved = {step.candidate.unknown for step in w.graph.steps}
+    lines = []
+    for v, _ in w.graph.parents:
+        composed = v.kind == "angle" and w.graph.knowledge.composition(v.key)
+        if v in solved or not composed or composed == ((1, v.key),):
+            continue
+        right = Math(())
+        for factor, key in composed:
+            sign = m.minus(sign=not right.tokens) if factor < 0 else m.plus()
+            right = right + (sign if right.tokens or factor < 0 else Math(()))
+            right = right + (m.number(abs(factor)) if abs(factor) != 1 else Math(()))
+            right = right + variable(Variable("angle", key))
+        lines.append(variable(v) + m.relation() + right)
+    if not lines:
+        return []
+    return [
+        Heading(("Sums of angles",), 2),
+        Paragraph(("Linear relations give the other joints:",)),
+        Formulas(tuple(lines)),
+    ]

@@ -1,0 +1,165 @@
+"""The verification of one emitted module against the oracle: all checks, in one report."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.tasks import find_task
+from ikgen.verify import checks, coverage, interface_checks
+from ikgen.verify.agreement import check_agreement
+from ikgen.verify.answers import Answers, collect_answers
+from ikgen.verify.arm import ArmUnderTest, arm_under_test
+from ikgen.verify.oracle import Oracle
+from ikgen.verify.runners.runner import Runner
+from ikgen.verify.sampling import generator
+from ikgen.verify.task_space import TaskSpace, task_space
+from ikgen.verify.verification_report import CheckResult, VerificationReport
+
+__all__ = ["Progress", "verify"]
+
+Array = NDArray[np.float64]
+
+Progress = Callable[[str, int, int], None]
+"""Called with what comes next, how many steps are done, and how many there are."""
+
+_STARTS = 200  # of the numerical search, per pose
+
+
+def _plan(
+    runner: Runner, arm: ArmUnderTest, answers: Answers, seed: int, peer: Runner | None
+) -> dict[str, Callable[[], CheckResult]]:
+    """The checks by name, in the order of the report."""
+    a, random = answers, answers.limited.sample
+    complete = [a.limited, a.unlimited, *a.inside, a.outside[1]]
+    rng = generator(seed, "search")
+    agreement: dict[str, Callable[[], CheckResult]] = {}
+    if peer is not None:
+        agreement["agreement"] = lambda: check_agreement(arm, a.unlimited, peer)
+    return {
+        "constants": lambda: interface_checks.check_constants(arm, runner, a.unlimited.rows),
+        "forward": lambda: interface_checks.check_forward(arm, runner, random),
+        "jacobian": lambda: interface_checks.check_jacobian(arm, runner, a.ordered.sample),
+        "closure": lambda: checks.check_closure(arm, a.reachable),
+        "completeness": lambda: coverage.check_completeness(arm, complete),
+        "exhaustive search": lambda: coverage.check_exhaustive(arm, a.searched, _STARTS, rng),
+        "distinct rows": lambda: checks.check_distinct(arm, a.reachable),
+        "status": lambda: coverage.check_status(arm, [(a.limited, a.unlimited), a.outside]),
+        "inside limits": lambda: checks.check_inside_limits(arm, a.reachable),
+        "choice by limits": lambda: coverage.check_limit_choice(arm, a.limited, a.unlimited),
+        "singular poses": lambda: coverage.check_singular_answers(arm, a.seeded),
+        "singular flags": lambda: checks.check_singular_flags(arm, [a.limited, *a.seeded]),
+        "seed order": lambda: checks.check_seed_order(arm, a.ordered, a.seeds),
+        "free joints": lambda: checks.check_free_joints(arm, a.reachable),
+        "unreachable poses": lambda: coverage.check_unreachable(arm, a.unreachable),
+        "invalid poses": lambda: interface_checks.check_invalid(arm, runner, random.poses[0]),
+        "bad shapes": lambda: interface_checks.check_shapes(runner, random.poses[0]),
+        "solve_batch": lambda: interface_checks.check_batch(arm, runner, a.ordered.sample),
+        "determinism": lambda: interface_checks.check_determinism(a.limited, a.repeated),
+        **agreement,
+    }
+
+
+def _guarded(name: str, check: Callable[[], CheckResult]) -> CheckResult:
+    """The check's result; what the emitted code raises is a failure of the check, not of ikgen."""
+    try:
+        return check()
+    except Exception as error:
+        return CheckResult(name, False, 1, 1, detail=f"{type(error).__name__}: {error}")
+
+
+def _histogram(answers: Answers) -> tuple[tuple[int, int], ...]:
+    counts, poses = np.unique(answers.unlimited.rows.count, return_counts=True)
+    return tuple((int(c), int(n)) for c, n in zip(counts, poses, strict=True))
+
+
+def _run_checks(
+    runner: Runner,
+    arm: ArmUnderTest,
+    samples: int,
+    seed: int,
+    peer: Runner | None,
+    progress: Progress | None,
+) -> tuple[tuple[CheckResult, ...], tuple[tuple[int, int], ...]]:
+    """All results and the histogram of solution counts; one failed result if solving raises."""
+    if progress:
+        progress("solving", 0, 1)
+    try:
+        answers = collect_answers(runner, arm, samples, seed)
+    except Exception as error:
+        what = f"solve raises {type(error).__name__}: {error}"
+        return (CheckResult("runs", False, 1, 1, detail=what),), ()
+    plan = _plan(runner, arm, answers, seed, peer)
+    results = []
+    for done, (name, check) in enumerate(plan.items(), start=1):
+        if progress:
+            progress(name, done, len(plan) + 1)
+        results.append(_guarded(name, check))
+    return tuple(results), _histogram(answers)
+
+
+def verify(
+    runner: Runner,
+    oracle: Oracle,
+    *,
+    task: str | None = None,
+    samples: int = 1000,
+    seed: int = 0,
+    locked: Mapping[str, float] | None = None,
+    free_joints: Sequence[str] | None = None,
+    limits: tuple[Array, Array] | None = None,
+    peer: Runner | None = None,
+    progress: Progress | None = None,
+) -> VerificationReport:
+    """Check the emitted code behind `runner` against `oracle`.
+
+    `samples` random poses (and smaller special sets in proportion) drawn from `seed`. `task`,
+    `free_joints` and `limits` (lower, upper; rad or m) are what the arm was generated for: by
+    default what the module itself says. `peer` is the same solver in another language, which must
+    answer alike. `locked` (already in the oracle) is recorded. Raises
+    `UnknownNameError` for an unknown task; whatever the emitted code does wrong is in the report.
+    """
+    start = time.perf_counter()
+    name = runner.constants.task if task is None else task
+    space = task_space(find_task(name))
+    results = _mismatch(runner, oracle)
+    histogram: tuple[tuple[int, int], ...] = ()
+    if not results:
+        arm = _arm(runner, oracle, space, free_joints, limits)
+        results, histogram = _run_checks(runner, arm, samples, seed, peer, progress)
+    links, held = (oracle.base_link, oracle.tip_link), tuple((locked or {}).items())
+    seconds = time.perf_counter() - start
+    return VerificationReport(
+        runner.label, *links, name, samples, seed, results, histogram, oracle.notes, held, seconds
+    )
+
+
+def _arm(
+    runner: Runner,
+    oracle: Oracle,
+    task: TaskSpace,
+    free_joints: Sequence[str] | None,
+    limits: tuple[Array, Array] | None,
+) -> ArmUnderTest:
+    """The arm as asked for, and where nothing was, as the module itself says."""
+    constants = runner.constants
+    held = constants.free_joints if free_joints is None else tuple(free_joints)
+    bounds = (constants.lower, constants.upper) if limits is None else limits
+    return arm_under_test(oracle, task, bounds, held)
+
+
+def _mismatch(runner: Runner, oracle: Oracle) -> tuple[CheckResult, ...]:
+    """A failed check of the constants where the module is of another chain, so nothing can be
+    run."""
+    ours, theirs = runner.constants.joint_names, oracle.joint_names
+    bounds = runner.constants.lower.shape == runner.constants.upper.shape == (len(ours),)
+    known = set(runner.constants.free_joints) <= set(ours)
+    if len(ours) == len(theirs) and bounds and known:
+        return ()
+    detail = f"joints {', '.join(ours)} instead of {', '.join(theirs)}"
+    if len(ours) == len(theirs):
+        detail = "limits of a wrong shape, or free joints that are no joints"
+    return (CheckResult("constants", False, 1, 1, detail=detail),)
