@@ -1,0 +1,60 @@
+"""What every emitted `solve` does with the rows of a Program: the numbers that all languages share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["REFINEMENT", "RefineStage", "SolvePolicy"]
+
+
+@dataclass(frozen=True, slots=True)
+class RefineStage:
+    """At most `steps` damped Newton steps for rows whose error (rad, or m over the arm's size) is at
+    least `fine` and below `promising` once they are taken another stage follows."""
+
+    steps: int
+    fine: float
+    promising: float
+
+
+REFINEMENT: tuple[RefineStage, ...] = (
+    RefineStage(3, 1e-12, 0.1),
+    RefineStage(6, 0.5e-9, 1e-3),
+    RefineStage(30, 0.0, 0.0),
+)
+"""Only what is promising takes many steps; elsewhere all digits are wanted, as rows may lie on a limit."""
+
+
+@dataclass(frozen=True, slots=True)
+class SolvePolicy:
+    """Tolerances and counts of `solve`, the same in every language.
+
+    `tolerance`: error (rad, or m over the arm's size) that a returned row may have; `arrived`: error below
+    which refined rows count as solutions; `rough_square`: squared error above which a row of the Program
+    is refined. `pose_tolerance`: how far a rotation's entries may be off before the pose is none (nearer ones
+    are replaced by the nearest rotation). `coincident`: rows closer than that (rad or m) are one.
+    `limit_tolerance`: how far (rad or m) outside a limit a row is put back on it. `tries`: values of a joint
+    that a pose leaves free that are tried, `try_step` rad apart. `rank_loss`: smallest singular value below
+    which a refined row is singular, `continuum_rank_loss` where the Program marked it already.
+    `least_damping`, `damping`: a Newton step is damped by max(least, damping * error^2); `largest_step`
+    (rad or m) bounds each joint's; `converged`: error at which steps end; `patience` steps may pass without
+    the error falling to `progress` of what it was.
+    """
+
+    tolerance: float = 1e-9
+    arrived: float = 0.5e-9
+    rough_square: float = 1e-20
+    pose_tolerance: float = 1e-6
+    coincident: float = 1e-6
+    limit_tolerance: float = 1e-9
+    tries: int = 16
+    try_step: float = 0.39269908169872414
+    rank_loss: float = 1e-7
+    continuum_rank_loss: float = 1e-3
+    least_damping: float = 1e-12
+    damping: float = 1e-3
+    largest_step: float = 0.3
+    converged: float = 1e-13
+    patience: int = 5
+    progress: float = 0.8
+    refinement: tuple[RefineStage, ...] = REFINEMENT
