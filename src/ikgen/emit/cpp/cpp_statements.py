@@ -126,7 +126,7 @@ class ProgramText:
         suffix = level.sigma.split("_", 1)[-1]
         names = [n for n in (f"c{suffix}", f"s{suffix}", f"d{suffix}") if n in self.live]
         if names:
-            self.flags["alike"].append(f"meeting<{width} * P>({', '.join(names)})")
+            self.flags["alike"].append(f"meeting<Policy, {width} * P>({', '.join(names)})")
 
     def _let(self, name: str, text: str) -> None:
         self._statement(f"const auto {name} = {text};")
