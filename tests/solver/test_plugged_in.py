@@ -49,7 +49,7 @@ def test_given_leaves_take_the_place_of_the_own_ones() -> None:
 
 
 def test_entry_points_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    entry = EntryPoint("slide", "test_plugged_in:SLIDE", "ikgen.leaves")
+    entry = EntryPoint("slide", "tests.solver.test_plugged_in:SLIDE", "ikgen.leaves")
     monkeypatch.setattr(plugins, "entry_points", lambda group: [entry])
     names = [leaf.name for leaf in leaves.all_leaves()]
     assert names == [*(leaf.name for leaf in LEAVES), "slide"]
@@ -80,13 +80,13 @@ def test_another_tree_solves_and_is_told(case: str) -> None:
 def test_the_tree_of_another_package_takes_the_place_of_the_own(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    entry = EntryPoint("mine", "test_plugged_in:documented_tree", "ikgen.trees")
+    entry = EntryPoint("mine", "tests.solver.test_plugged_in:documented_tree", "ikgen.trees")
     monkeypatch.setattr(plugins, "entry_points", lambda group: [entry])
     assert the_tree().name == "one leaf at a time"
 
 
 def test_two_trees_are_one_too_many(monkeypatch: pytest.MonkeyPatch) -> None:
-    entries = [EntryPoint(n, "test_plugged_in:documented_tree", "ikgen.trees") for n in "ab"]
+    entries = [EntryPoint(n, "tests.solver.test_plugged_in:documented_tree", "ikgen.trees") for n in "ab"]
     monkeypatch.setattr(plugins, "entry_points", lambda group: entries)
     with pytest.raises(PlugInError, match="several"):
         the_tree()
