@@ -114,7 +114,7 @@ def test_the_traceback_of_an_internal_error(
     def fail(*_: object) -> None:
         raise RuntimeError("broken\nin two")
 
-    monkeypatch.setattr("ikgen.generation.generation.generate", fail)
+    monkeypatch.setattr("ikgen.generation.generate.generate", fail)
     assert run(["build", "--jobs", "1"]) == 70
     said = capsys.readouterr().err
     assert "error: kuka: internal error: RuntimeError: broken in two" in said
@@ -153,7 +153,7 @@ def test_pyproject(tmp_path: Path) -> None:
     path.write_text("[[tool.ikgen.arm]]\nname = 'a'\nrobot = 'r.urdf'\nfree = ['j']\n")
     assert default_config(tmp_path) == path
     (arm,) = load_config(path)
-    assert arm.robot == tmp_path / "r.urdf" and arm.free == {"j": None}
+    assert arm.request.robot == tmp_path / "r.urdf" and arm.request.free == {"j": None}
 
 
 def test_depfile_escapes() -> None:

@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 
 from ikgen.emit.moveit import emit
-from ikgen.generation.pipeline import Request, derive
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
 from solving import FIXTURES
 
 STUBS = Path(__file__).resolve().parents[1] / "conformance" / "moveit_stubs"
