@@ -26,8 +26,8 @@ from benchmarks.corpus import options_for, urdf_of
 from ikgen.emit.derivation import Derivation
 from ikgen.errors import IkgenError, UnsolvedChainError
 from ikgen.generation.derive import derive
-from ikgen.generation.emitted_checks import oracle_for
 from ikgen.generation.emitted_arm import EmittedArm
+from ikgen.generation.emitted_checks import oracle_for
 from ikgen.generation.emitters import find_emitter
 from ikgen.generation.request import Request
 from ikgen.tasks import find_task

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ikgen.emit.derivation import Reading
-from ikgen.errors import UsageError
+from ikgen.errors import BadDescriptionError, UsageError
 from ikgen.model.module_name import identifier
 
 if TYPE_CHECKING:
@@ -37,7 +37,21 @@ def read_tree(request: Request) -> JointTree:
     """All links and joints of the request's file."""
     from ikgen.importers import load_tree
 
-    return load_tree(request.robot, arguments=request.args, package_paths=request.package_paths)
+    try:
+        return load_tree(request.robot, arguments=request.args, package_paths=request.package_paths)
+    except BadDescriptionError as error:
+        if request.robot.suffix.lower() == ".xacro":
+            error.hint = "\n".join(filter(None, [error.hint, _taken_arguments(request)]))
+        raise
+
+
+def _taken_arguments(request: Request) -> str:
+    """The arguments that a xacro file takes, in words; "" where there are none."""
+    from ikgen.importers.xacro.declared_arguments import declared_arguments
+
+    found = declared_arguments(request.robot, request.package_paths)
+    words = (f"{n}:={x}" if x is not None else f"{n} (no default)" for n, x in found.items())
+    return f"arguments that the file takes (--arg): {', '.join(words)}" if found else ""
 
 
 def _read_table(request: Request, free: tuple[str, ...]) -> Reading:
