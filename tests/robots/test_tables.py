@@ -9,6 +9,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from tests.support.solving import NO_COMPILER
 
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.errors import UnsolvedChainError
@@ -18,7 +19,6 @@ from ikgen.generation.generate import generate
 from ikgen.generation.read import read
 from ikgen.generation.request import Outputs, Request
 from ikgen.verify.runners.python_module import PythonModule
-from solving import NO_COMPILER
 
 if sys.version_info >= (3, 11):
     import tomllib

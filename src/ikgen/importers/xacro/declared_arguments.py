@@ -18,8 +18,8 @@ _FIND = re.compile(r"\$\(find\s+([^)\s]+)\s*\)")
 
 
 def declared_arguments(path: Path, package_paths: Sequence[Path] = ()) -> dict[str, str | None]:
-    """Argument -> its default (None: it has none), declared or used in a file and in those that it includes by
-    a name without expressions; empty where nothing can be read."""
+    """Argument -> its default (None: it has none), declared or used in a file and in those that it includes
+    by a name without expressions; empty where nothing can be read."""
     finder = PackageFinder(path.resolve(), tuple(package_paths))
     named = list(_arguments(path, finder, set()))
     found: dict[str, str | None] = {}
