@@ -77,7 +77,8 @@ def earlier_outputs(out: Path, name: str) -> Earlier:
 
 
 def _difference(record: Record, request: Request, reading: Reading, task: str | None) -> str:
-    """Whose the recorded outputs are, if not this request's."""
+    """Whose the recorded outputs are, if not this request's. A task that was left to ikgen both times may
+    have become another one with the description."""
     was, dh = record.request, reading.dh
     if record.source_sha256 != reading.source.sha256:
         if was.robot.resolve() != request.robot.resolve():
@@ -87,6 +88,6 @@ def _difference(record: Record, request: Request, reading: Reading, task: str | 
             return f"another robot, {was.robot} with {given or 'no arguments'}"
     if (was.base, was.tip) != (dh.base_link, dh.tip_link):
         return f"another chain, {was.base} -> {was.tip}"
-    if task is not None and was.task != task:
+    if task is not None and was.task != task and record.asked.task != request.task:
         return f"another task, {was.task}"
     return ""

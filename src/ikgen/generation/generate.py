@@ -17,6 +17,7 @@ from ikgen.generation.new_records import record_texts
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.publish import check_folder, left_over, publish, remove
 from ikgen.generation.read import default_name, read
+from ikgen.tasks import find_task
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation, Reading
@@ -51,7 +52,7 @@ def generate(request: Request, outputs: Outputs, progress: Progress = silent) ->
     reading = read(request)
     earlier = earlier_outputs(outputs.out, request.name or default_name(reading))
     if not outputs.force:
-        earlier.check(request, reading, None)
+        earlier.check(request, reading, find_task(request.task).name if request.task else None)
     kept = () if outputs.only else tuple(n for n in earlier.emit if n not in outputs.emit)
     emitters = [*_again(kept), *asked]
     made, derivation, reports = _made(request, reading, emitters, outputs, progress)

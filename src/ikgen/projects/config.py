@@ -126,7 +126,7 @@ def _tables(path: Path, text: str) -> dict[str, Any]:
         data: dict[str, Any] = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         place = re.search(r"line (\d+)", str(error))
-        line = int(place.group(1)) if place else None
+        line = int(place.group(1)) if place else text.count("\n") + 1  # at the end
         raise _error(path, f"not TOML: {error}", line=line) from None
     if path.name != _PYPROJECT:
         return data

@@ -56,7 +56,10 @@ def _records(target: Path | None, robot: Path | None) -> list[tuple[Path, str | 
     if target.suffix.lower() == ".json":
         return [(target, None)]
     if not target.is_file():
-        raise UsageError(f"{target}: no such file or directory")
+        raise UsageError(
+            f"{target}: no such file or directory",
+            hint="name a config (ikgen.toml), a record, or the folder that was given to -o",
+        )
     command = f"ikgen build {target}" if robot is None else None
     return [(path, command) for arm in load_config(target) for path in arm.records]
 
