@@ -8,9 +8,10 @@ from __future__ import annotations
 import importlib.util
 import itertools
 import json
+import os
 import subprocess
 import sys
-import time
+import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -44,8 +45,8 @@ class Source:
 
 @dataclass(frozen=True, slots=True)
 class Emitted:
-    """What came of it: the exit `code`, the seconds of the run that gave it, the options it took, what
-    the command printed, and the module and header where there are any."""
+    """What came of it: the exit `code`, the processor time (s) of the run that gave it, the options it
+    took, what the command printed, and the module and header where there are any."""
 
     source: Source
     code: int
@@ -96,9 +97,8 @@ def emit(source: Source, folder: Path, languages: str = "python,cpp") -> Emitted
             sys.executable, "-m", "ikgen", verb, str(file), *source.links, *options,
             "--no-verify", "--emit", languages, "--name", "arm", "--json", "-q", "-o", str(folder),
         ]  # fmt: skip
-        started = time.perf_counter()
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        seconds, code, answer = time.perf_counter() - started, done.returncode, _answer(done)
+        code, seconds, said = _run(command)
+        answer = _answer(*said)
         if code != UNSOLVED:
             break
     paths = (folder / "arm_ik.py", folder / "arm_ik.hpp")
@@ -106,11 +106,22 @@ def emit(source: Source, folder: Path, languages: str = "python,cpp") -> Emitted
     return Emitted(source, code, seconds, options, answer, *made)
 
 
-def _answer(done: subprocess.CompletedProcess[str]) -> dict[str, Any]:
+def _run(command: Sequence[str]) -> tuple[int, float, tuple[str, str]]:
+    """Exit code, seconds of processor time (the machine may be shared), stdout and stderr."""
+    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
+        process = subprocess.Popen(command, stdout=out, stderr=err, text=True)
+        _, state, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(state)
+        for file in (out, err):
+            file.seek(0)
+        return process.returncode, usage.ru_utime + usage.ru_stime, (out.read(), err.read())
+
+
+def _answer(out: str, err: str) -> dict[str, Any]:
     try:
-        return dict(json.loads(done.stdout))
+        return dict(json.loads(out))
     except ValueError:
-        return {"error": " ".join(done.stderr.split())[:300]}
+        return {"error": " ".join(err.split())[:300]}
 
 
 def load_module(path: Path) -> ModuleType:

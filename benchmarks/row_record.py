@@ -69,7 +69,7 @@ def record_arm(
         facts["solve"], facts["batch"] = _times(module, data["poses"])
         facts["closure"] = _closure(module, data)
         if compiled and made.header is not None:
-            facts["cpp"] = measure(made.header, FLAGS["native"], limits=False)[1][0]
+            facts["cpp"] = measure(made.header.resolve(), FLAGS["native"], limits=False)[1][0]
         return ArmRecord(source.key, source.family, facts, data)
 
 
@@ -113,17 +113,17 @@ def _answers(module: ModuleType, q: Array, poses: Array) -> dict[str, NDArray[An
 
 
 def _times(module: ModuleType, poses: Array) -> tuple[float, float]:
-    """Milliseconds a pose of `solve` and of `solve_batch` on the random poses: the least of rounds."""
+    """Milliseconds of processor time a pose of `solve` and of `solve_batch` on the random poses."""
     some = poses[: max(len(poses) // 2, 1)]
     single, batch = [], []
     for _ in range(3):
-        started = time.perf_counter()
+        started = time.process_time()
         for pose in some:
             module.solve(pose, limits=False)
-        single.append(time.perf_counter() - started)
-        started = time.perf_counter()
+        single.append(time.process_time() - started)
+        started = time.process_time()
         module.solve_batch(some, limits=False)
-        batch.append(time.perf_counter() - started)
+        batch.append(time.process_time() - started)
     return 1e3 * min(single) / len(some), 1e3 * min(batch) / len(some)
 
 
