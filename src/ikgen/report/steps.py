@@ -24,8 +24,9 @@ __all__ = ["Writer", "abbreviations", "derived_section", "step_section"]
 
 _MANY = 16
 _QUARTIC: Text = (
-    "No leaf with two branches holds for this unknown: it is a root of a polynomial of degree four. The "
-    "polynomial in ", m.name("z") + m.relation() + m.function("exp", m.name("i") + m.name("theta")),
+    "No form with two branches was found that holds for this unknown at every regular configuration: it "
+    "is a root of a polynomial of degree four, which may have factors of lower degree. The polynomial in ",
+    m.name("z") + m.relation() + m.function("exp", m.name("i") + m.name("theta")),
     " is written above; its roots on the unit circle are the real solutions. The emitted code finds "
     "them in closed form by Ferrari's resolvent, as the points where the lines of a degenerate conic "
     "meet the circle.",
@@ -149,8 +150,8 @@ def _guards(step: Step, solved: Solved) -> list[Block]:
             "another form is taken there (below)."
             if step.fallbacks
             else (
-                "every value of the joint gives the pose, the seed's is taken (0 without one), and "
-                "the row is flagged singular."
+                "the seed's value is tried there (0 without one); only rows that give the pose are "
+                "returned, flagged singular where the arm itself is."
             )
         )
         out.append(
