@@ -42,7 +42,7 @@ def solver_module(name: str) -> SolverModule:
     assert not graph.open_joints
     return SolverModule(
         name=name.lower().replace("-", "_"),
-        program=lower(graph, slack=2.0 * max(dh.deviation)),
+        program=lower(graph, model_error=2.0 * max(dh.deviation)),
         dh=dh,
         task="pose",
         free=(),

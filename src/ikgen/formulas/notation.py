@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from ikgen.equations.knowledge import Variable
-from ikgen.report import mathtext as m
-from ikgen.report.mathtext import Math
-from ikgen.report.normal_form import Factor, Named, Radical, Sum, Symbol, Term
+from ikgen.formulas import mathtext as m
+from ikgen.formulas.mathtext import Math
+from ikgen.formulas.normal_form import Factor, Named, Radical, Sum, Symbol, Term
 
 __all__ = ["angle", "quotient", "show", "symbol", "variable"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator
 
-from ikgen.report.normal_form import Factor, Named, Radical, Sum, Term, factor_of
+from ikgen.formulas.normal_form import Factor, Named, Radical, Sum, Term, factor_of
 
 __all__ = ["Abbreviations"]
 
