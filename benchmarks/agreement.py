@@ -21,8 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.collection import ABSENT, CORPUS, load_arms
-from benchmarks.corpus import options_for, urdf_of
+from benchmarks.collection import ABSENT, CORPUS, load_arms, options_for, urdf_of
 from ikgen.emit.derivation import Derivation
 from ikgen.errors import IkgenError, UnsolvedChainError
 from ikgen.generation.derive import derive

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ikgen.cli.tables import table
-from ikgen.generation.result import missed, rounding
+from ikgen.generation.result import rounding
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -69,5 +69,5 @@ def _verified(name: str, report: VerificationReport) -> str:
     metres, radians = report.worst_closure
     return (
         f"{name}: {report.samples} poses, worst closure {metres:.1e} m {radians:.1e} rad, "
-        f"{missed(report)} missed, {report.seconds:.1f} s"
+        f"{report.missed_words}, {report.seconds:.1f} s"
     )

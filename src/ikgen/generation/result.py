@@ -10,19 +10,13 @@ if TYPE_CHECKING:
     from ikgen.generation.generate import Generation
     from ikgen.verify.verification_report import VerificationReport
 
-__all__ = ["as_dict", "missed", "rounding"]
+__all__ = ["as_dict", "rounding"]
 
 
 def rounding(derivation: Derivation) -> tuple[float, float] | None:
     """How far (m, rad) the file is off what was solved, where Newton steps take the rows to it; else
     None."""
     return None if derivation.module.polish == "some" else derivation.reading.dh.deviation
-
-
-def missed(report: VerificationReport) -> int:
-    """Generating configurations and searched ones that no row gives."""
-    names = ("completeness", "exhaustive search")
-    return sum(check.failures for check in report.checks if check.name in names)
 
 
 def as_dict(generation: Generation) -> dict[str, Any]:
@@ -58,6 +52,5 @@ def _report(report: VerificationReport) -> dict[str, Any]:
     return {
         **report.to_dict(),
         "worst_closure": {"m": closure[0], "rad": closure[1]},
-        "missed": missed(report),
         "seconds": round(report.seconds, 3),
     }
