@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from typing import TYPE_CHECKING
 
 from ikgen.emit.printer import expression
+from ikgen.emit.python.bundle import bundle
 from ikgen.emit.python.python_joints import JointText
 from ikgen.emit.python.python_language import SCALAR, number
 from ikgen.emit.python.python_statements import batch_lines, scalar_lines
@@ -13,6 +15,8 @@ from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
 from ikgen.emit.symbolic_frames import blanks, frame_entries, pairs
 from ikgen.program.liveness import used_inputs
+from ikgen.program.policy import SolvePolicy
+from ikgen.runtime.python.solve_policy import Policy
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -28,9 +32,9 @@ def emit_derivation(derivation: Derivation) -> dict[str, str]:
 
 def emit_module(module: SolverModule) -> str:
     """The text of `<name>_ik.py`."""
-    program = module.program
+    program, policy = module.program, SolvePolicy()
     joints = [JointText.of(module, output) for output in program.outputs]
-    return render(
+    shell = render(
         "python",
         "module.py.jinja",
         m=module,
@@ -57,7 +61,29 @@ def emit_module(module: SolverModule) -> str:
         orientation=module.reads.orientation,
         entries=module.reads.entries,
         size=module.size,
+        task_class="PoseTask" if module.reads.whole_pose else "EntriesTask",
+        reader_columns=_UNIT_COLUMNS.get(module.reads.orientation, ()),
+        policy=policy,
+        policy_values=_policy_values(policy),
     )
+    return bundle(shell)
+
+
+_UNIT_COLUMNS = {"rotation": (0, 1, 2), "direction": (2,), "yaw": (0,)}
+"""Columns of the rotation that a task's entries make up."""
+
+
+def _policy_values(policy: SolvePolicy) -> list[tuple[str, str]]:
+    """The numbers that the runtime's `Policy` takes, by name."""
+    out = []
+    for field in fields(Policy):
+        value = getattr(policy, field.name)
+        if field.name == "refinement":
+            stages = (f"({s.steps}, {number(s.fine)}, {number(s.promising)})" for s in value)
+            out.append((field.name, f"({', '.join(stages)})"))
+        else:
+            out.append((field.name, repr(value) if isinstance(value, int) else number(value)))
+    return out
 
 
 def _parameters(module: SolverModule) -> list[tuple[str, str]]:

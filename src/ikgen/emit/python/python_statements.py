@@ -57,12 +57,10 @@ def scalar_lines(module: SolverModule, joints: list[JointText]) -> list[str]:
     pad = "    " * (len(program.levels) - 1)
     row = ", ".join(f"q{j.joint + 1}" for j in joints) + ("," if len(joints) == 1 else "")
     flag = " or ".join(program.singular) or "False"
-    if module.polish == "some":
+    rough = "True"
+    if module.polish == "some" and module.plan is None:
         rough = " or ".join([*program.singular, *(f"{r} > _ROUGH" for r in program.residuals)])
-        rough = rough or "False"
-        lines.append(f"{pad}rows.append((({row}), {flag}, {rough}))")
-    else:
-        lines.append(f"{pad}rows.append((({row}), {flag}))")
+    lines.append(f"{pad}rows.append((({row}), {flag}, {rough or 'False'}))")
     return lines
 
 
@@ -98,8 +96,9 @@ def batch_lines(module: SolverModule, joints: list[JointText]) -> list[str]:
     lines += [f"    {joint.text(BATCH, 'np.arctan2')}," for joint in joints]
     lines.append(")")
     flag = " | ".join(program.singular)
+    rough = "np.ones(1, dtype=bool)"
     if module.polish == "some":
         rough = " | ".join([*program.singular, *(f"({r} > _ROUGH)" for r in program.residuals)])
-        lines.append(f"rough: NDArray[np.bool_] = {rough or 'np.zeros(1, dtype=bool)'}")
+    lines.append(f"rough: NDArray[np.bool_] = {rough or 'np.zeros(1, dtype=bool)'}")
     lines.append(f"singular: NDArray[np.bool_] = {flag or 'np.zeros(1, dtype=bool)'}")
     return lines
