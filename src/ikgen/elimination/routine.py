@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import fields
 
 import numpy as np
 
@@ -12,14 +13,13 @@ from ikgen.runtime.python import general_6r as runtime
 from ikgen.runtime.python.general_6r import Elimination
 from ikgen.runtime.python.solve_policy import Policy
 
-__all__ = ["Elimination", "general_6r", "general_6r_batch", "initial_residuals"]
+__all__ = ["Elimination", "general_6r", "general_6r_batch", "initial_residuals", "runtime_policy"]
 
 
-def _policy() -> Policy:
-    """The emitted code's tolerances."""
-    given = SolvePolicy()
+def runtime_policy(given: SolvePolicy) -> Policy:
+    """The tolerances as the emitted code takes them."""
     stages = tuple((s.steps, s.fine, s.promising) for s in given.refinement)
-    names = [name for name in Policy.__dataclass_fields__ if name != "refinement"]
+    names = [field.name for field in fields(Policy) if field.name != "refinement"]
     return Policy(**{name: getattr(given, name) for name in names}, refinement=stages)
 
 
@@ -31,7 +31,7 @@ def general_6r_batch(
     frames (7, 4, 4): the chain as in `frames.py`; length (m): its scale; plans in order of
     preference.
     """
-    return runtime.general_6r(frames, length, tuple(plans), poses, _policy())
+    return runtime.general_6r(frames, length, tuple(plans), poses, runtime_policy(SolvePolicy()))
 
 
 def general_6r(frames: Matrix, length: float, plans: Sequence[Elimination], pose: Matrix) -> Matrix:
@@ -44,7 +44,7 @@ def initial_residuals(
 ) -> tuple[list[Matrix], Matrix]:
     """One plan's solutions for poses (N, 4, 4), and the pose errors (m,) of those candidates that
     became solutions, before Newton's method: how well conditioned the elimination is."""
-    policy = _policy()
+    policy = runtime_policy(SolvePolicy())
     F, T = frames.copy(), poses.copy()
     F[:, :3, 3] /= length
     T[:, :3, 3] /= length

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import TYPE_CHECKING
 
+from ikgen.elimination.routine import runtime_policy
 from ikgen.emit.printer import expression
 from ikgen.emit.python.bundle import bundle
 from ikgen.emit.python.python_joints import JointText
@@ -64,7 +65,7 @@ def emit_module(module: SolverModule) -> str:
         task_class="PoseTask" if module.reads.whole_pose else "EntriesTask",
         reader_columns=_UNIT_COLUMNS.get(module.reads.orientation, ()),
         policy=policy,
-        policy_values=_policy_values(policy),
+        policy_values=_policy_values(runtime_policy(policy)),
     )
     return bundle(shell)
 
@@ -73,13 +74,13 @@ _UNIT_COLUMNS = {"rotation": (0, 1, 2), "direction": (2,), "yaw": (0,)}
 """Columns of the rotation that a task's entries make up."""
 
 
-def _policy_values(policy: SolvePolicy) -> list[tuple[str, str]]:
-    """The numbers that the runtime's `Policy` takes, by name."""
+def _policy_values(policy: Policy) -> list[tuple[str, str]]:
+    """The fields of the runtime's `Policy` as text."""
     out = []
-    for field in fields(Policy):
+    for field in fields(policy):
         value = getattr(policy, field.name)
         if field.name == "refinement":
-            stages = (f"({s.steps}, {number(s.fine)}, {number(s.promising)})" for s in value)
+            stages = (f"({steps}, {number(a)}, {number(b)})" for steps, a, b in value)
             out.append((field.name, f"({', '.join(stages)})"))
         else:
             out.append((field.name, repr(value) if isinstance(value, int) else number(value)))

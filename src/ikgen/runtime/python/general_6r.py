@@ -17,7 +17,14 @@ from ikgen.runtime.python.rigid_motion import inverses, rotations_z
 from ikgen.runtime.python.solve_policy import Policy
 from ikgen.runtime.python.task_errors import PoseTask
 
-__all__ = ["Elimination", "candidates", "distinct_angles", "general_6r", "refined_angles"]
+__all__ = [
+    "Elimination",
+    "candidates",
+    "distinct_angles",
+    "general_6r",
+    "refined_angles",
+    "six_joints",
+]
 
 Elimination = tuple[int, int, int]  # joint that the loop begins at, whether reversed or swapped
 _SIX = range(6)
@@ -54,13 +61,14 @@ def _of(rows: Array, pose: NDArray[np.intp]) -> Array:
 
 def refined_angles(F: Array, T: Array, q: Array, policy: Policy) -> tuple[Array, Flags, Array]:
     """Newton steps from q (k, 6) to T (k, 4, 4): q, which arrived, and the errors before (k,)."""
-    chain, task = _six(F), PoseTask(1.0)
+    chain, task = six_joints(F), PoseTask(1.0)
     before = np.abs(task.error(forward(chain, q), T)).max(axis=1)
     q, arrived = refine(chain, task, _SIX, q, T, policy)
     return q, arrived, before
 
 
-def _six(F: Array) -> Chain:
+def six_joints(F: Array) -> Chain:
+    """The chain of frames F (7, 4, 4)."""
     return chain_of(F, tuple((i, True, 1.0, 0.0) for i in _SIX), 6)
 
 
