@@ -26,7 +26,7 @@ from ikgen.kinematics.modified_dh import to_dh
 from ikgen.program.policy import SolvePolicy
 from ikgen.runtime.python.general_6r import distinct_angles, six_joints
 from ikgen.runtime.python.refinement import newton
-from ikgen.runtime.python.task_errors import PoseTask
+from ikgen.runtime.python.whole_pose import PoseTask
 
 Array = NDArray[np.float64]
 POLICY = runtime_policy(SolvePolicy())

@@ -62,8 +62,7 @@ def emit_module(module: SolverModule) -> str:
         orientation=module.reads.orientation,
         entries=module.reads.entries,
         size=module.size,
-        task_class="PoseTask" if module.reads.whole_pose else "EntriesTask",
-        reader_columns=_UNIT_COLUMNS.get(module.reads.orientation, ()),
+        unit_columns=_UNIT_COLUMNS.get(module.reads.orientation, ()),
         policy=policy,
         policy_values=_policy_values(runtime_policy(policy)),
     )

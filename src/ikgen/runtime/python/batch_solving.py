@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.joint_arguments import held_rows, seed_rows
-from ikgen.runtime.python.pose_reading import read_poses
 from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.refinement import refine
 from ikgen.runtime.python.row_placement import distinct, place_rows_batch
@@ -52,7 +51,7 @@ def solve_poses(
     q = np.full((count, arm.most, dof), np.nan)
     number = np.zeros(count, dtype=np.int64)
     status = np.full(count, Status.INVALID.value, dtype="<U11")
-    T, good = read_poses(arm.reader, T, arm.policy)
+    T, good = arm.task.read_batch(T, arm.policy)
     usable, size = np.flatnonzero(good), _CHUNK // (1 + len(arm.beside))
     for start in range(0, len(usable), size):
         part = usable[start : start + size]

@@ -15,7 +15,7 @@ from ikgen.runtime.python.loop_equations import loop_constants, loop_equations
 from ikgen.runtime.python.refinement import refine
 from ikgen.runtime.python.rigid_motion import inverses, rotations_z
 from ikgen.runtime.python.solve_policy import Policy
-from ikgen.runtime.python.task_errors import PoseTask
+from ikgen.runtime.python.whole_pose import PoseTask
 
 __all__ = [
     "Elimination",

@@ -9,7 +9,6 @@ from numpy.typing import ArrayLike
 
 from ikgen.runtime.python.array_types import Row
 from ikgen.runtime.python.joint_arguments import held_values, seed_rows
-from ikgen.runtime.python.pose_reading import read_pose
 from ikgen.runtime.python.refinement import rank_loss, refine
 from ikgen.runtime.python.row_placement import is_new, place_rows
 from ikgen.runtime.python.solutions import Solutions, Status
@@ -31,7 +30,7 @@ def solve_pose(
         raise ValueError(f"pose has shape {matrix.shape}, expected (4, 4)")
     near = None if seed is None else tuple(seed_rows(arm, seed, (dof,)).tolist())
     held = held_values(arm, free)
-    T = read_pose(arm.reader, matrix.tolist(), arm.policy)
+    T = arm.task.read(matrix.tolist(), arm.policy)
     found, real = ([], False) if T is None else _fitting(arm, T, near, held, limits)
     if not found:
         status = Status.INVALID if T is None else Status.LIMITS if real else Status.UNREACHABLE

@@ -10,7 +10,7 @@ import numpy as np
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.chain_kinematics import Chain, tip_and_jacobian
 from ikgen.runtime.python.solve_policy import Policy
-from ikgen.runtime.python.task_errors import Task
+from ikgen.runtime.python.task_interface import Task
 
 __all__ = ["newton", "rank_loss", "refine"]
 

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 from ikgen.runtime.python.array_types import Array, Flags, Row
 from ikgen.runtime.python.chain_kinematics import Chain
-from ikgen.runtime.python.pose_reading import PoseReader
 from ikgen.runtime.python.solve_policy import Policy
-from ikgen.runtime.python.task_errors import Task
+from ikgen.runtime.python.task_interface import Task
 
 __all__ = ["Arm", "Branches", "BranchesBatch", "Candidate", "Found"]
 
@@ -21,19 +20,14 @@ BranchesBatch = Callable[[Array, Array, Array], tuple[Array, Flags, Flags, Flags
 
 @dataclass(frozen=True)
 class Arm:
-    """An arm and its closed form.
-
-    `lower`, `upper`: limits (rad or m); `free`, `free_joints`, `free_defaults`: indices, names and
-    values of held joints. `most`: rows of a solution at most. `branches(T, q0, held)` gives the
-    closed form's rows for a pose, values of joints that it leaves free, values of held joints, and
-    whether it left one free; `branches_batch` the same in arrays. `beside` (n, 4, 4): motions of the
-    tool to poses that are solved as well. `turning`: which joints are revolute and not held;
-    `moving`: indices of those that are not held.
-    """
+    """`free`, `free_joints`, `free_defaults`: indices, names and values of held joints. `most`: rows at
+    most. `branches(T, q0, held)`: the closed form's rows for a pose, values of joints that it leaves
+    free, values of held joints, and whether it left one free; `branches_batch`: in arrays. `beside`
+    (n, 4, 4): motions of the tool to poses that are solved as well. `turning`: which joints are
+    revolute and not held; `moving`: indices of those not held."""
 
     chain: Chain
     task: Task
-    reader: PoseReader
     policy: Policy
     lower: Row
     upper: Row
