@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from typing import TYPE_CHECKING
 
+from ikgen.elimination.routine import runtime_policy
 from ikgen.emit.blanks import blanks, pairs
 from ikgen.emit.printer import expression
+from ikgen.emit.python.bundle import bundle
 from ikgen.emit.python.python_language import SCALAR, number
 from ikgen.emit.python.python_statements import batch_lines, scalar_lines
 from ikgen.emit.python.python_text import literal, words
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
+from ikgen.program.policy import SolvePolicy
+from ikgen.runtime.python.solve_policy import Policy
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -26,8 +31,8 @@ def emit_derivation(derivation: Derivation) -> dict[str, str]:
 
 def emit_module(module: SolverModule) -> str:
     """The text of `<name>_ik.py`."""
-    program = module.program
-    return render(
+    program, policy = module.program, SolvePolicy()
+    shell = render(
         "python",
         "module.py.jinja",
         m=module,
@@ -51,7 +56,28 @@ def emit_module(module: SolverModule) -> str:
         orientation=module.reads.orientation,
         entries=module.reads.entries,
         size=module.size,
+        unit_columns=_UNIT_COLUMNS.get(module.reads.orientation, ()),
+        policy=policy,
+        policy_values=_policy_values(runtime_policy(policy)),
     )
+    return bundle(shell)
+
+
+_UNIT_COLUMNS = {"rotation": (0, 1, 2), "direction": (2,), "yaw": (0,)}
+"""Columns of the rotation that a task's entries make up."""
+
+
+def _policy_values(policy: Policy) -> list[tuple[str, str]]:
+    """The fields of the runtime's `Policy` as text."""
+    out = []
+    for field in fields(policy):
+        value = getattr(policy, field.name)
+        if field.name == "refinement":
+            stages = (f"({steps}, {number(a)}, {number(b)})" for steps, a, b in value)
+            out.append((field.name, f"({', '.join(stages)})"))
+        else:
+            out.append((field.name, repr(value) if isinstance(value, int) else number(value)))
+    return out
 
 
 def _parameters(module: SolverModule) -> list[tuple[str, str]]:

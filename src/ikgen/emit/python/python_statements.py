@@ -49,9 +49,9 @@ def _scalar_row(module: SolverModule) -> str:
     values = [expression(SCALAR, one.value) for one in program.outputs]
     row = ", ".join(values) + ("," if len(values) == 1 else "")
     flag = " or ".join(program.singular) or "False"
-    if module.polish == "all":
-        return f"rows.append((({row}), {flag}))"
-    rough = " or ".join([*program.singular, *(f"{r} > _ROUGH" for r in program.residuals)])
+    rough = "True"
+    if module.polish == "some" and module.plan is None:
+        rough = " or ".join([*program.singular, *(f"{r} > _ROUGH" for r in program.residuals)])
     return f"rows.append((({row}), {flag}, {rough or 'False'}))"
 
 
@@ -100,14 +100,14 @@ def _batch_inputs(module: SolverModule) -> list[str]:
     for one in program.inputs_of(HeldValue):
         lines.append(f"{one.name} = held[:, {module.free.index(one.joint)}].reshape(lane)")
     lines += [f"{let.name} = {expression(BATCH, let.value)}" for let in program.prelude]
-    return [*lines, "valid = np.ones(lane, dtype=bool)"]
+    return [*lines, "valid: _Flags = np.ones(lane, dtype=bool)"]
 
 
 def _batch_flags(module: SolverModule) -> list[str]:
     program = module.program
     flag = " | ".join(program.singular)
-    lines = [f"singular: NDArray[np.bool_] = {flag or 'np.zeros(1, dtype=bool)'}"]
+    lines = [f"singular: _Flags = {flag or 'np.zeros(1, dtype=bool)'}"]
+    rough = "np.ones(1, dtype=bool)"
     if module.polish == "some":
         rough = " | ".join([*program.singular, *(f"({r} > _ROUGH)" for r in program.residuals)])
-        lines.append(f"rough: NDArray[np.bool_] = {rough or 'np.zeros(1, dtype=bool)'}")
-    return lines
+    return [*lines, f"rough: _Flags = {rough or 'np.zeros(1, dtype=bool)'}"]
