@@ -91,6 +91,11 @@ def derive(
         if not other.open_joints:
             reading, task, graph = nearby, other_task, other
             geometry = classify(reading.dh)
+    if not graph.open_joints:
+        from ikgen.generation.as_written import solve_as_written
+
+        dh, graph = solve_as_written(reading.dh, graph, lambda dh: _attempt(dh, task, progress))
+        reading = replace(reading, dh=dh)
     plan = _elimination(reading.dh, task, progress) if graph.open_joints else None
     if graph.open_joints and plan is None:
         from ikgen.generation.unsolved import unsolved_error

@@ -10,7 +10,15 @@ from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.solver.candidate import Candidate
 
-__all__ = ["ROUNDED", "Divisor", "Realized", "Tolerances", "leading", "realize"]
+__all__ = [
+    "ROUNDED",
+    "Divisor",
+    "Realized",
+    "Tolerances",
+    "leading",
+    "natural_size",
+    "realize",
+]
 
 
 ROUNDED = 2e-9
@@ -22,20 +30,36 @@ class Tolerances:
     """Relative to natural sizes: a divisor below `singular` makes its joint free, one below `flag` marks
     the solution as one of a continuum; a square root's argument may be `clamp` outside its domain, as
     poses on the boundary of the workspace are reachable, and where Newton steps follow it is kept
-    above `fold`, so that two branches start apart.
+    above `fold`, so that two branches start apart. Where the condition `rough` holds, what a square
+    root is taken of has lost digits: it may be `wide` outside.
     """
 
     singular: float = 1e-11
     flag: float = 1e-4
     clamp: float = 1e-11
     fold: float = 0.0
+    rough: Expr | None = None
+    wide: float = 1e-3
 
     @staticmethod
     def for_slack(slack: float) -> Tolerances:
-        """Tolerances where the solved geometry is `slack` (m or rad) off the file's."""
+        """Tolerances where the solved geometry is `slack` (m or rad) off the file's.
+
+        Where no Newton steps follow, a divisor that is no larger than what the two differ by is as good
+        as zero: the file's direction of it is lost.
+        """
         clamp = max(1e-11, 25.0 * slack)
         fold = 0.05 * slack if slack > ROUNDED else 0.0
-        return Tolerances(flag=min(max(1e-4, 5.0 * slack), 1e-2), clamp=clamp, fold=fold)
+        singular = 1e-11 if slack > ROUNDED else max(1e-11, 4.0 * slack)
+        flag = min(max(1e-4, 5.0 * slack), 1e-2)
+        return Tolerances(singular, flag, clamp, fold)
+
+    def guard(self, g: ExpressionGraph, value: Expr, size: float) -> Expr:
+        """Condition that a square root of `value`, of natural size `size`, may be taken."""
+        least = g.const(-self.clamp * size)
+        if self.rough is not None:
+            least = g.select(self.rough, g.const(-self.wide * size), least)
+        return g.binary("gt", value, least)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +96,7 @@ def realize(g: ExpressionGraph, c: Candidate, sigma: Expr, tolerances: Tolerance
     return _FORMS[c.form](g, c, sigma, tolerances)
 
 
-def _size(e: Expr) -> float:
+def natural_size(e: Expr) -> float:
     """Natural size of an expression: its largest value at the probes."""
     finite = e.probe[np.isfinite(e.probe)]
     return float(np.max(np.abs(finite))) if finite.size else 1.0
@@ -81,7 +105,7 @@ def _size(e: Expr) -> float:
 def _divisor(g: ExpressionGraph, value: Expr, tol: Tolerances, power: int = 1) -> Divisor:
     if value.is_fixed:
         return Divisor(value)
-    size = _size(value)
+    size = natural_size(value)
     magnitude = g.unary("abs", value) if power == 1 else value
     regular = g.binary("gt", magnitude, g.const(tol.singular**power * size))
     clear = g.binary("gt", magnitude, g.const(tol.flag**power * size))
@@ -104,7 +128,7 @@ def _root(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> Rea
     divisor = _divisor(g, a, tol)
     half = g.mul(g.const(0.5), b)
     disc = g.sub(g.square(half), g.mul(a, k))
-    guard = g.binary("gt", disc, g.const(-tol.clamp * _size(disc)))
+    guard = tol.guard(g, disc, natural_size(disc))
     w = g.mul(sigma, g.sqrt(disc))
     return Realized((g.div(g.sub(w, half), divisor.value),), divisor, guard, 2)
 
@@ -132,7 +156,7 @@ def _sincos(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> R
     h = g.add(g.square(a), g.square(b))
     divisor = _divisor(g, h, tol, 2)
     disc = g.sub(h, g.square(r))
-    guard = g.binary("gt", disc, g.const(-tol.clamp * _size(h)))
+    guard = tol.guard(g, disc, natural_size(h))
     w = g.mul(sigma, g.sqrt(_above(g, disc, g.mul(g.const(tol.fold), h))))
     inverse = g.div(g.one, divisor.value)
     cosine = g.mul(g.sub(g.mul(a, r), g.mul(b, w)), inverse)
@@ -145,7 +169,7 @@ def _single(g: ExpressionGraph, c: Candidate, sigma: Expr, tol: Tolerances) -> R
     a, b, r = c.coefficients
     ratio = g.div(r, b if a.vanishes else a)
     disc = g.sub(g.one, g.square(ratio))
-    guard = g.binary("gt", disc, g.const(-tol.clamp))
+    guard = tol.guard(g, disc, 1.0)
     bounded = g.binary("max", g.minus_one, g.binary("min", g.one, ratio))
     other = g.mul(sigma, g.sqrt(_above(g, disc, g.const(tol.fold))))
     return Realized(
