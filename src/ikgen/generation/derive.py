@@ -61,14 +61,20 @@ def derive(
 def _solved(
     reading: Reading, asked: str | None, progress: Progress, passed_over: Collection[str]
 ) -> tuple[Reading, Task, SolutionGraph]:
-    """The chain's best closed form; that of a nearby geometry where its own has none."""
+    """The chain's best closed form, of the file's own constants where they do; that of a nearby geometry
+    where its own has none."""
+    from ikgen.generation.as_written import solve_as_written
+
     task, graph = _best_task(reading.dh, asked, progress, passed_over)
     if graph.open_joints and reading.chain is not None:
         nearby = _nearby(reading)
         other_task, other = _best_task(nearby.dh, asked, progress, passed_over)
         if not other.open_joints:
-            return nearby, other_task, other
-    return reading, task, graph
+            reading, task, graph = nearby, other_task, other
+    if graph.open_joints:
+        return reading, task, graph
+    dh, graph = solve_as_written(reading.dh, graph, lambda dh: _by_rules(dh, task, progress))
+    return replace(reading, dh=dh), task, graph
 
 
 def _nearby(reading: Reading) -> Reading:

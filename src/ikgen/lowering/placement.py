@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,10 @@ from ikgen.program.statements import Comment, Let
 from ikgen.solver.solution_graph import SolutionGraph
 
 __all__ = ["LoweredLevel", "Placement", "Requirement", "identifier"]
+
+
+FOLDED = 1e-6
+"""Relative size of what is under a square root below which its root has lost too many digits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,9 +55,10 @@ class Placement:
         self.g: ExpressionGraph = self.system.graph
         self.knowledge = graph.knowledge
         self.model_error = model_error
-        self.tolerances = Tolerances.for_model_error(model_error)
+        self._tolerances = Tolerances.for_model_error(model_error)
         self.residuals: list[Expr] = []
         self.norms: list[Expr] = []
+        self.folds: list[Expr] = []
         self.levels = [LoweredLevel(1)]
         self.definition: dict[int, Expr] = dict(self.knowledge.binding)
         self.level_of: dict[int, int] = {}
@@ -62,6 +67,28 @@ class Placement:
         self.singular: list[Expr] = []
         self.inputs: list[Input] = []
         self.prelude: list[Let] = []
+
+    @property
+    def rough(self) -> Expr | None:
+        """Condition that an unknown solved so far has lost digits. With constants as the file rounds them
+        a continuum's place is taken by solutions that few digits tell apart, and two of them meet where
+        it would be. None for exact constants."""
+        if not self.session.probes.kept:
+            return None
+        total: Expr | None = None
+        for flag in (*self.singular, *self.folds):
+            total = flag if total is None else self.g.binary("or", total, flag)
+        return total
+
+    def note_fold(self, under: Expr, size: float) -> None:
+        """A square root was taken of `under`: of few digits where that is small beside `size`."""
+        if self.session.probes.kept:
+            self.folds.append(self.g.binary("gt", self.g.const(FOLDED * size), under))
+
+    @property
+    def tolerances(self) -> Tolerances:
+        """Those of the next unknown."""
+        return replace(self._tolerances, rough=self.rough)
 
     @property
     def whole_pose(self) -> bool:
