@@ -48,51 +48,36 @@ inline Pair unit(const Wide& c, const Wide& s) noexcept {
   return {c * over, s * over};
 }
 
-// Null vector of the matrix of half angles: inverse iteration with A^T A by the triangle of A = L Q.
-inline void null_vector(Wide (&A)[6][6], Wide (&x)[6]) noexcept {
-  Wide rows[6][6], beta[6], squares = spread<kWide>(1.0), over[6];
+// Null vector x of the matrix of half angles, of any length: inverse iteration with A^T A = L L^T, A^T = L Q. One
+// pass is as good as the ratio of the two smallest singular values squared.
+inline void null_vector(const Wide (&A)[6][6], Wide (&x)[6]) noexcept {
+  Wide transposed[1][6][6], over[6];
   for (int i = 0; i < 6; ++i)
-    for (int j = 0; j < 6; ++j) rows[i][j] = A[j][i];  // A^T = L Q, so A^T A = L L^T
-  Wide alpha[6];
-  const auto step = [&](auto k) {
-    constexpr int K = decltype(k)::value;
-    const Reflected h = reflector<K>(rows[K]);
-    beta[K] = h.beta;
-    alpha[K] = h.alpha;
-    for (int i = K + 1; i < 6; ++i) reflect<K>(rows[K], h.beta, rows[i]);
-  };
-  step(std::integral_constant<int, 0>());
-  step(std::integral_constant<int, 1>());
-  step(std::integral_constant<int, 2>());
-  step(std::integral_constant<int, 3>());
-  step(std::integral_constant<int, 4>());
-  static_cast<void>(squares);
-  alpha[5] = rows[5][5];
+    for (int j = 0; j < 6; ++j) transposed[0][i][j] = A[j][i];
+  Reflected h[1][6];
+  triangulate<0, 1>(1, transposed, h);
+  const auto& rows = transposed[0];
   for (int i = 0; i < 6; ++i) {
-    const Wide size = max(abs(alpha[i]), 1e-40);
-    over[i] = 1.0 / select(alpha[i] > 0.0, size, -size);
+    over[i] = i < 5 ? h[0][i].alpha : rows[5][5];
+    const Wide size = max(abs(over[i]), 1e-20);
+    over[i] = 1.0 / select(over[i] > 0.0, size, -size);
     x[i] = spread<kWide>(i % 2 == 0 ? 1.0 + 0.37 * i : 1.0 - 0.37 * i);
   }
-  for (int pass = 0; pass < 2; ++pass) {
-    for (int i = 0; i < 6; ++i) {
-      for (int j = 0; j < i; ++j) x[i] = x[i] - rows[i][j] * x[j];
-      x[i] = x[i] * over[i];
-    }
-    for (int i = 5; i >= 0; --i) {
-      for (int j = i + 1; j < 6; ++j) x[i] = x[i] - rows[j][i] * x[j];
-      x[i] = x[i] * over[i];
-    }
-    Wide large = spread<kWide>(1e-300);
-    for (const Wide& e : x) large = max(large, abs(e));
-    const Wide scale = 1.0 / large;
-    for (Wide& e : x) e = e * scale;
+  for (int i = 0; i < 6; ++i) {
+    x[i] = x[i] * over[i];
+    for (int j = i + 1; j < 6; ++j) x[j] = x[j] - rows[j][i] * x[i];
+  }
+  for (int i = 5; i >= 0; --i) {
+    x[i] = x[i] * over[i];
+    for (int j = 0; j < i; ++j) x[j] = x[j] - rows[i][j] * x[i];
   }
 }
 
 // theta_4 and theta_5 from the null vector.
 inline void inner_angles(const Pencil& pencil, const Pair& three, Pair& four, Pair& five) noexcept {
-  Wide basis[3][9], K[6][6], x[6];
-  null_basis(pencil, three.c, three.s, basis);
+  Wide bases[1][3][9], unused[1], K[6][6], x[6];
+  null_bases<1>(1, pencil, {three.c}, {three.s}, bases, unused);
+  const auto& basis = bases[0];
   half_angles(basis, K);
   null_vector(K, x);
   const Wide first = x[0] * x[0] + x[1] * x[1] + x[2] * x[2], second = x[3] * x[3] + x[4] * x[4] + x[5] * x[5];

@@ -11,7 +11,6 @@ namespace g6 {
 
 inline constexpr int kDegree = 8;
 inline constexpr int kNodes = 24;
-inline constexpr int kArcs = 32;
 
 // Cosines of the multiples of a 384th of a turn, which all angles below are.
 inline constexpr int kTurnParts = 384;
@@ -88,48 +87,6 @@ inline Polynomial interpolate(const double (&f)[kNodes]) noexcept {
   out.noise = kNoise * std::sqrt(noise) + kRounding * size;
   return out;
 }
-
-// Bernstein's coefficients of cos(m t) and sin(m t) on an arc of a 32nd of a turn about 0, degree 16 in
-// (sin((w/2 - t)/2), sin((t + w/2)/2)) / sin(w/2): exp(i m t) is a product of (e, conj e)(exp(i t/2)). The other
-// half follows by symmetry.
-struct Bernstein {
-  double even[kDegree + 1][kDegree + 1], odd[kDegree + 1][kDegree + 1];
-};
-constexpr double binomial(int n, int r) noexcept {
-  double out = 1.0;
-  for (int i = 0; i < r; ++i) out = out * (n - i) / (i + 1);
-  return out;
-}
-constexpr Bernstein make_bernstein() noexcept {
-  Bernstein out{};
-  constexpr int quarter = kTurnParts / kArcs / 4;
-  for (int m = 0; m <= kDegree; ++m)
-    for (int q = 0; q <= kDegree; ++q)
-      for (int j = 0; j <= kDegree + m && j <= q; ++j) {
-        const int l = q - j;
-        if (l > kDegree - m) continue;
-        const int phase = (-(kDegree + m - j) + j + (kDegree - m - l) - l) * quarter;
-        const double w = binomial(kDegree + m, j) * binomial(kDegree - m, l) / binomial(2 * kDegree, q);
-        out.even[m][q] += w * cosine(phase);
-        out.odd[m][q] += w * sine(phase);
-      }
-  return out;
-}
-inline constexpr Bernstein kBernstein = make_bernstein();
-
-struct Centres {
-  alignas(64) double c[kDegree + 1][kArcs], s[kDegree + 1][kArcs];  // cos, sin of m times the middle of each arc
-};
-constexpr Centres make_centres() noexcept {
-  Centres out{};
-  for (int m = 0; m <= kDegree; ++m)
-    for (int a = 0; a < kArcs; ++a) {
-      out.c[m][a] = cosine(m * (2 * a + 1) * (kTurnParts / kArcs / 2));
-      out.s[m][a] = sine(m * (2 * a + 1) * (kTurnParts / kArcs / 2));
-    }
-  return out;
-}
-inline constexpr Centres kCentre = make_centres();
 
 }  // namespace g6
 }  // namespace ikgen_runtime

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "general_6r_circle.hpp"
+#include "general_6r_arcs.hpp"
 #include "general_6r_resultant.hpp"
 
 namespace ikgen_runtime {
 
 // --- general_6r: isolation of the roots on the circle -----------------------------------------------
-// By Descartes' rule on Bernstein's coefficients: no change of sign on an arc is no root, one is one root, and more
-// halves the arc. A coefficient within the noise has no sign: such an arc is halved as well, and where that does
+// By Descartes' rule on Bernstein's coefficients: no change of sign on an arc is no root, one is one root, and with
+// more the arc is cut. A coefficient within the noise has no sign: such an arc is cut as well, and where that does
 // not help it is handed on as a zone in which nothing is known.
 
 namespace g6 {
@@ -48,140 +48,120 @@ inline void add_zone(Brackets& out, double low, double high) noexcept {
 }
 
 // What Bernstein's coefficients in the lanes say: changes of sign, whether one is within the noise, whether all
-// are nearly so.
+// are nearly so; for an arc with one change, where the polygon of coefficients has it, as a fraction of the arc.
 struct Verdict {
-  double changes[kWide], unsure[kWide], lost[kWide];
+  Wide changes, root;
+  WideMask unsure, lost;
 };
 
-inline void judge(const Wide (&b)[kBits], double noise, Verdict& out) noexcept {
-  Wide changes = spread<kWide>(0.0), small = abs(b[0]), large = small;
+inline constexpr double kHopeless = 100.0;  // times the noise: smaller arcs do not make it clearer
+
+inline Verdict judge(const Wide (&b)[kBits], double noise) noexcept {
+  const Wide none = spread<kWide>(0.0);
+  Wide changes = none, before = none, over = spread<kWide>(1.0), place = none;
+  Wide small = abs(b[0]), large = small;
   for (int i = 1; i < kBits; ++i) {
     const Wide size = abs(b[i]);
-    changes = changes + select((b[i] > 0.0) & (0.0 > b[i - 1]), 1.0, 0.0) + select((0.0 > b[i]) & (b[i - 1] > 0.0), 1.0, 0.0);
     small = min(small, size);
     large = max(large, size);
+    const auto change = 0.0 > b[i] * b[i - 1];
+    changes = changes + select(change, 1.0, none);
+    before = select(change, b[i - 1], before);
+    over = select(change, b[i - 1] - b[i], over);
+    place = select(change, spread<kWide>(i - 1.0), place);
   }
-  constexpr double kHopeless = 100.0;  // times the noise: halving does not make it clearer
-  store(changes, out.changes);
-  store(noise > small, out.unsure);
-  store(kHopeless * noise > large, out.lost);
+  return {changes, (place + before / over) * (1.0 / (kBits - 1)), noise > small, kHopeless * noise > large};
 }
 
 struct Arc {
-  double b[kBits], low;
+  double even[kDegree + 1], odd[kDegree + 1];  // of cos(m t), sin(m t), t from its middle
+  double low;
   int level;
 };
 
-inline constexpr double kArcWidth = 2.0 * kPi / kArcs;
-inline constexpr int kLevels = 12;  // 5e-5 rad
-
 struct Stack {
-  static constexpr int kRoom = 128;
+  static constexpr int kSize = 96;
   int top = 0;
-  Arc arcs[kRoom];
+  Arc arcs[kSize];
 };
 
-inline double width_of(int level) noexcept { return std::ldexp(kArcWidth, -level); }
+struct Local {  // the polynomial about the middles of arcs side by side
+  Wide even[kDegree + 1], odd[kDegree + 1];
+};
 
-// Where the polygon of coefficients changes its sign, as a fraction of the arc.
-inline double polygon_root(const double (&b)[kBits]) noexcept {
-  for (int q = 1; q < kBits; ++q)
-    if ((b[q] < 0.0) != (b[0] < 0.0)) return (q - 1 + b[q - 1] / (b[q - 1] - b[q])) / (kBits - 1);
-  return 0.5;
-}
-
-// Files lane l of the coefficients b as a bracket, a zone or an arc to be halved.
-inline void file(const Wide (&b)[kBits], const Verdict& verdict, int l, double low, int level, Stack& stack,
-                 Brackets& out) noexcept {
-  const bool unsure = verdict.unsure[l] > 0.0;
-  if (verdict.changes[l] < 0.5 && !unsure) return;
-  const double width = width_of(level);
-  if (unsure && (verdict.lost[l] > 0.0 || level == kLevels)) {
-    add_zone(out, low, low + width);
-    return;
-  }
-  const bool one = verdict.changes[l] < 1.5 && !unsure;
-  if (level == kLevels && !one) {
-    add_zone(out, low, low + width);
-    return;
-  }
-  if (stack.top == Stack::kRoom || (one && out.count == kRoots)) {
-    out.doubt = true;
-    return;
-  }
-  Arc& to = stack.arcs[stack.top];
+inline void push(const Local& f, int lane, double low, int level, Stack& stack) noexcept {
+  Arc& to = stack.arcs[stack.top++];
   double lanes[kWide];
-  for (int q = 0; q < kBits; ++q) {
-    store(b[q], lanes);
-    to.b[q] = lanes[l];
-  }
-  if (one) {
-    out.low[out.count] = low;
-    out.high[out.count] = low + width;
-    out.guess[out.count] = low + width * polygon_root(to.b);
-    out.negative[out.count++] = to.b[0] < 0.0;
-    return;
+  for (int m = 0; m <= kDegree; ++m) {
+    store(f.even[m], lanes);
+    to.even[m] = lanes[lane];
+    store(f.odd[m], lanes);
+    to.odd[m] = lanes[lane];
   }
   to.low = low;
   to.level = level;
-  ++stack.top;
 }
 
-// The 32 arcs of the circle.
-inline void cover(const Polynomial& f, Stack& stack, Brackets& out) noexcept {
-  for (int arc = 0; arc < kArcs; arc += kWide) {
-    Wide even[kDegree + 1], odd[kDegree + 1], b[kBits];
-    even[0] = spread<kWide>(f.c[0]);
-    for (int m = 1; m <= kDegree; ++m) {
-      const Wide c = load<kWide>(kCentre.c[m] + arc), s = load<kWide>(kCentre.s[m] + arc);
-      even[m] = f.c[m] * c + f.c[kDegree + m] * s;
-      odd[m] = f.c[kDegree + m] * c - f.c[m] * s;
-    }
-    for (int q = 0; q <= kDegree; ++q) {
-      Wide e = kBernstein.even[0][q] * even[0], d = spread<kWide>(0.0);
-      for (int m = 1; m <= kDegree; ++m) {
-        e = e + kBernstein.even[m][q] * even[m];
-        d = d + kBernstein.odd[m][q] * odd[m];
+// Files each of the arcs side by side as a bracket, as a zone, or to be cut.
+inline void file(const Local& f, const Verdict& verdict, bool negative_at[kWide], double low, int level, Stack& stack,
+                 Brackets& out) noexcept {
+  const unsigned unsure = bits(verdict.unsure), lost = bits(verdict.lost);
+  const unsigned some = bits(verdict.changes > 0.5) | unsure, one = some & ~bits(verdict.changes > 1.5) & ~unsure;
+  if (some == 0) return;
+  const double width = kWidths[level];
+  double root[kWide];
+  store(verdict.root, root);
+  for (int l = 0; l < kWide; ++l, low += width) {
+    const unsigned bit = 1U << l;
+    if ((some & bit) == 0) continue;
+    if ((one & bit) != 0) {
+      if (out.count == kRoots) {
+        out.doubt = true;
+        return;
       }
-      b[q] = e + d;
-      b[2 * kDegree - q] = e - d;
+      out.low[out.count] = low;
+      out.high[out.count] = low + width;
+      out.guess[out.count] = low + width * root[l];
+      out.negative[out.count++] = negative_at[l];
+    } else if (level == kLevels || (unsure & lost & bit) != 0) {
+      add_zone(out, low, low + width);
+    } else if (stack.top == Stack::kSize) {
+      out.doubt = true;
+      return;
+    } else {
+      push(f, l, low, level, stack);
     }
-    Verdict verdict;
-    judge(b, f.noise, verdict);
-    for (int l = 0; l < kWide; ++l) file(b, verdict, l, kArcWidth * (arc + l), 0, stack, out);
   }
 }
 
-// Halves up to as many arcs as there are lanes, by de Casteljau's scheme on the circle: an arc of width w is cut by
-// 1 / (2 cos(w/4)) of the sum of neighbours.
-inline void halve(double noise, Stack& stack, Brackets& out) noexcept {
-  const int n = std::min(stack.top, kWide);
-  stack.top -= n;
-  double lanes[kBits][kWide], low[kWide], weight[kWide];
-  int level[kWide];
-  for (int l = 0; l < kWide; ++l) {
-    const Arc& a = stack.arcs[stack.top + (l < n ? l : 0)];
-    for (int q = 0; q < kBits; ++q) lanes[q][l] = a.b[q];
-    low[l] = a.low;
-    level[l] = a.level + 1;
-    const double w = width_of(a.level), u = w * w / 16.0;
-    weight[l] = 0.5 * (1.0 + u * (0.5 + u * (5.0 / 24.0 + u * (61.0 / 720.0))));
+// The arcs in the lanes, whose middles are at the multiples c, s of the polynomial's angle.
+template <int N>
+inline void examine(const double* even, const double* odd, const Cut<N>& cut, int first, double low, int level,
+                    double noise, Stack& stack, Brackets& out) noexcept {
+  Local f;
+  f.even[0] = spread<kWide>(even[0]);
+  f.odd[0] = spread<kWide>(0.0);
+  for (int m = 1; m <= kDegree; ++m) {
+    const Wide c = load<kWide>(cut.c[m] + first), s = load<kWide>(cut.s[m] + first);
+    f.even[m] = even[m] * c + odd[m] * s;
+    f.odd[m] = odd[m] * c - even[m] * s;
   }
-  Wide right[kBits], left[kBits];
-  for (int q = 0; q < kBits; ++q) right[q] = load<kWide>(lanes[q]);
-  const Wide k = load<kWide>(weight);
-  left[0] = right[0];
-  for (int s = 1; s < kBits; ++s) {
-    for (int q = 0; q < kBits - s; ++q) right[q] = k * (right[q] + right[q + 1]);
-    left[s] = right[0];
+  const Bernstein& table = kBernstein[level];
+  Wide b[kBits];
+  for (int q = 0; q <= kDegree; ++q) {
+    Wide e = table.even[0][q] * f.even[0], d = table.odd[1][q] * f.odd[1];
+    for (int m = 1; m <= kDegree; ++m) {
+      e = e + table.even[m][q] * f.even[m];
+      if (m > 1) d = d + table.odd[m][q] * f.odd[m];
+    }
+    b[q] = e + d;
+    b[2 * kDegree - q] = e - d;
   }
-  Verdict first, second;
-  judge(left, noise, first);
-  judge(right, noise, second);
-  for (int l = 0; l < n; ++l) {
-    file(left, first, l, low[l], level[l], stack, out);
-    file(right, second, l, low[l] + width_of(level[l]), level[l], stack, out);
-  }
+  double ends[kWide];
+  store(b[0], ends);
+  bool negative[kWide];
+  for (int l = 0; l < kWide; ++l) negative[l] = ends[l] < 0.0;
+  file(f, judge(b, noise), negative, low, level, stack, out);
 }
 
 inline void widen_zones(Brackets& out) noexcept {
@@ -206,10 +186,15 @@ inline void widen_zones(Brackets& out) noexcept {
 inline Brackets isolate(const Polynomial& f) noexcept {
   Brackets out;
   Stack stack;
-  cover(f, stack, out);
-  constexpr int kMostSteps = 60;
+  const double* even = f.c;
+  double odd[kDegree + 1] = {};
+  for (int m = 1; m <= kDegree; ++m) odd[m] = f.c[kDegree + m];
+  for (int arc = 0; arc < kArcs; arc += kWide)
+    examine(even, odd, kFirstCut, arc, kArcWidth * arc, 0, f.noise, stack, out);
+  constexpr int kMostSteps = 64;
   for (int step = 0; stack.top > 0 && !out.doubt; ++step) {
-    halve(f.noise, stack, out);
+    const Arc arc = stack.arcs[--stack.top];
+    examine(arc.even, arc.odd, kCuts[arc.level], 0, arc.low, arc.level + 1, f.noise, stack, out);
     if (step == kMostSteps) out.doubt = true;
   }
   widen_zones(out);

@@ -14,17 +14,36 @@ namespace ikgen_runtime {
 
 namespace g6 {
 
-inline constexpr int kWide = kNative > 1 ? kNative : 2;
+inline constexpr int kWide = 8;  // lanes, on narrower machines as several vectors, which do not wait for each other
 using Wide = Lanes<kWide>;
 using WideMask = Mask<kWide>;
 
-inline bool any(const WideMask& mask) noexcept {
-  double flags[kWide];
-  store(mask, flags);
-  double sum = 0.0;
-  for (const double x : flags) sum += x;
-  return sum > 0.0;
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+inline unsigned bits(const Mask<8>& m) noexcept { return _mm512_movepi64_mask(reinterpret_cast<__m512i>(m.v)); }
+#elif defined(__AVX__)
+inline unsigned bits(const Mask<4>& m) noexcept {
+  return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(m.v)));
 }
+#elif defined(__SSE2__)
+inline unsigned bits(const Mask<2>& m) noexcept {
+  return static_cast<unsigned>(_mm_movemask_pd(reinterpret_cast<__m128d>(m.v)));
+}
+#endif
+// One bit a lane.
+template <int N, bool H>
+inline unsigned bits(const MaskOf<N, H>& m) noexcept {
+  if constexpr (H) {
+    return bits(m.lo) | bits(m.hi) << (N / 2);
+  } else {
+    double flags[N];
+    store(m, flags);
+    unsigned out = 0;
+    for (int l = 0; l < N; ++l) out |= flags[l] > 0.5 ? 1U << l : 0U;
+    return out;
+  }
+}
+
+inline bool any(const WideMask& mask) noexcept { return bits(mask) != 0; }
 
 struct Reflected {  // a row x -> (alpha, 0, ...): x - beta (x . v) v
   Wide beta, alpha, square;
@@ -60,22 +79,30 @@ inline void reflect(const Wide (&v)[N], const Wide& beta, Wide (&row)[N]) noexce
   for (int j = K; j < N; ++j) row[j] = row[j] - dot * v[j];
 }
 
-// Rows K.. of A to lower triangular form; det(A A^T) is the product of the squares.
-template <int K, int R, int N>
-inline void triangulate(Wide (&A)[R][N], Wide (&beta)[R], Wide& squares) noexcept {
-  if constexpr (K < R) {
-    const Reflected h = reflector<K>(A[K]);
-    beta[K] = h.beta;
-    squares = squares * h.square;
-    for (int i = K + 1; i < R; ++i) reflect<K>(A[K], h.beta, A[i]);
-    triangulate<K + 1>(A, beta, squares);
-  }
+// R rows of N entries, in G groups of lanes. All groups take each step before any takes the next, and a row is
+// reflected as soon as the next step needs it: nothing waits long for square roots.
+template <int K, int G, int R, int N>
+inline void reflectors(int groups, Wide (&A)[G][R][N], Reflected (&h)[G][R]) noexcept {
+  for (int g = 0; g < groups; ++g) h[g][K] = reflector<K>(A[g][K]);
 }
 
-template <int K>
-inline void carry_back(const Wide (&A)[6][9], const Wide (&beta)[6], Wide (&basis)[3][9]) noexcept {
-  for (auto& n : basis) reflect<K>(A[K], beta[K], n);
-  if constexpr (K > 0) carry_back<K - 1>(A, beta, basis);
+// Rows K.. of A to lower triangular form, but for the last L rows.
+template <int K, int L, int G, int R, int N>
+inline void triangulate(int groups, Wide (&A)[G][R][N], Reflected (&h)[G][R]) noexcept {
+  if constexpr (K == 0) reflectors<0>(groups, A, h);
+  if constexpr (K + 1 < R)
+    for (int g = 0; g < groups; ++g) reflect<K>(A[g][K], h[g][K].beta, A[g][K + 1]);
+  if constexpr (K + 1 < R - L) reflectors<K + 1>(groups, A, h);
+  for (int g = 0; g < groups; ++g)
+    for (int i = K + 2; i < R; ++i) reflect<K>(A[g][K], h[g][K].beta, A[g][i]);
+  if constexpr (K + 1 < R - L) triangulate<K + 1, L>(groups, A, h);
+}
+
+template <int K, int G>
+inline void carry_back(int groups, const Wide (&A)[G][6][9], const Reflected (&h)[G][6], Wide (&basis)[G][3][9]) noexcept {
+  for (int g = 0; g < groups; ++g)
+    for (auto& n : basis[g]) reflect<K>(A[g][K], h[g][K].beta, n);
+  if constexpr (K > 0) carry_back<K - 1>(groups, A, h, basis);
 }
 
 inline void fill(const Pencil& p, const Wide& c, const Wide& s, Wide (&A)[6][9]) noexcept {
@@ -84,14 +111,19 @@ inline void fill(const Pencil& p, const Wide& c, const Wide& s, Wide (&A)[6][9])
 }
 
 // Orthonormal null vectors, and det(A A^T).
-inline Wide null_basis(const Pencil& p, const Wide& c, const Wide& s, Wide (&basis)[3][9]) noexcept {
-  Wide A[6][9], beta[6], squares = spread<kWide>(1.0);
-  fill(p, c, s, A);
-  triangulate<0>(A, beta, squares);
-  for (int k = 0; k < 3; ++k)
-    for (int j = 0; j < 9; ++j) basis[k][j] = spread<kWide>(j == 6 + k ? 1.0 : 0.0);
-  carry_back<5>(A, beta, basis);
-  return squares;
+template <int G>
+inline void null_bases(int groups, const Pencil& p, const Wide (&c)[G], const Wide (&s)[G], Wide (&basis)[G][3][9],
+                       Wide (&squares)[G]) noexcept {
+  Wide A[G][6][9];
+  Reflected h[G][6];
+  for (int g = 0; g < groups; ++g) fill(p, c[g], s[g], A[g]);
+  triangulate<0, 0>(groups, A, h);
+  for (int g = 0; g < groups; ++g)
+    squares[g] = ((h[g][0].square * h[g][1].square) * (h[g][2].square * h[g][3].square)) * (h[g][4].square * h[g][5].square);
+  for (int g = 0; g < groups; ++g)
+    for (int k = 0; k < 3; ++k)
+      for (int j = 0; j < 9; ++j) basis[g][k][j] = spread<kWide>(j == 6 + k ? 1.0 : 0.0);
+  carry_back<5>(groups, A, h, basis);
 }
 
 // The 6x6 matrix of half angles, by rows.
@@ -105,26 +137,38 @@ inline void half_angles(const Wide (&basis)[3][9], Wide (&K)[6][N]) noexcept {
     }
 }
 
-template <int K>
-inline Wide determinant(Wide (&A)[6][6]) noexcept {
-  if constexpr (K == 4) {
-    return A[4][4] * A[5][5] - A[4][5] * A[5][4];
-  } else {
-    const Reflected h = reflector<K>(A[K]);
-    for (int i = K + 1; i < 6; ++i) reflect<K>(A[K], h.beta, A[i]);
-    return h.alpha * determinant<K + 1>(A);
+template <int G>
+inline void determinants(int groups, Wide (&A)[G][6][6], Wide (&out)[G]) noexcept {
+  Reflected h[G][6];
+  triangulate<0, 2>(groups, A, h);
+  for (int g = 0; g < groups; ++g) {
+    const Wide corner = A[g][4][4] * A[g][5][5] - A[g][4][5] * A[g][5][4];
+    out[g] = ((h[g][0].alpha * h[g][1].alpha) * (h[g][2].alpha * h[g][3].alpha)) * corner;
   }
 }
 
-// f at N angles, N a multiple of the lanes.
+// As many groups of nodes are worked on at once as do not wait for each other's registers.
+inline constexpr int kGroups = kNative >= 8 ? 3 : 1;
+
+// f at `groups` groups of angles. Their number is an argument lest loops over it are written out: the code is to stay
+// in the cache.
+[[gnu::noinline]] inline void resultants_of(int groups, const Pencil& p, const double* c, const double* s,
+                                            double* f) noexcept {
+  Wide cosine[kGroups], sine[kGroups], basis[kGroups][3][9], K[kGroups][6][6], squares[kGroups], value[kGroups];
+  for (int g = 0; g < groups; ++g) {
+    cosine[g] = load<kWide>(c + g * kWide);
+    sine[g] = load<kWide>(s + g * kWide);
+  }
+  null_bases(groups, p, cosine, sine, basis, squares);
+  for (int g = 0; g < groups; ++g) half_angles(basis[g], K[g]);
+  determinants(groups, K, value);
+  for (int g = 0; g < groups; ++g) store(squares[g] * value[g], f + g * kWide);
+}
+
 template <int N>
 inline void resultants(const Pencil& p, const double (&c)[N], const double (&s)[N], double (&f)[N]) noexcept {
-  for (int n = 0; n < N; n += kWide) {
-    Wide basis[3][9], K[6][6];
-    const Wide squares = null_basis(p, load<kWide>(c + n), load<kWide>(s + n), basis);
-    half_angles(basis, K);
-    store(squares * determinant<0>(K), f + n);
-  }
+  static_assert(N % (kGroups * kWide) == 0);
+  for (int n = 0; n < N; n += kGroups * kWide) resultants_of(kGroups, p, c + n, s + n, f + n);
 }
 
 }  // namespace g6

@@ -59,8 +59,8 @@ inline Pair refine(const Polynomial& f, const Brackets& in, int first) noexcept 
     high[l] = in.high[i] - centre;
     guess[l] = in.guess[i] - centre;
     rising[l] = in.negative[i] ? 1.0 : -1.0;
-    c[l] = kCentre.c[1][arc];
-    s[l] = kCentre.s[1][arc];
+    c[l] = kFirstCut.c[1][arc];
+    s[l] = kFirstCut.s[1][arc];
   }
   const Pair centre = {load<kWide>(c), load<kWide>(s)};
   const Wide up = load<kWide>(rising);
