@@ -26,7 +26,7 @@ inline Solution solution_of(const Vector& q) noexcept {
 }
 
 // Adds one plan's solutions for the pose T, with the roots of the pose `aim` next to it.
-inline Spectrum run_eigenproblem(const Chain& F, const Frame& T, const Frame& aim, const int (&plan)[3],
+inline Spectrum run_eigenproblem(const Chain& F, const Frame& T, const Frame& aim, const std::array<int, 3>& plan,
                                  Solutions& out) noexcept {
   const bool reverse = plan[1] != 0, swap = plan[2] != 0;
   const Loop loop = make_loop(F, aim, static_cast<Index>(plan[0]), reverse);
@@ -57,11 +57,12 @@ inline Spectrum run_eigenproblem(const Chain& F, const Frame& T, const Frame& ai
 // real, apart and each a solution to many digits. Otherwise more runs follow, with the pose displaced to either side
 // and by the next elimination, until one finds all that is known and no more.
 template <std::size_t N>
-inline void solve_eigenproblem(const Chain& F, const Frame& T, const int (&plans)[N][3], Solutions& out) noexcept {
+inline void solve_eigenproblem(const Chain& F, const Frame& T, const std::array<std::array<int, 3>, N>& plans,
+                               Solutions& out) noexcept {
   const Frame there = displacement(), back = inverse(there);
   const int given = out.count;
   int least = 0, number = 0;
-  for (const int(&plan)[3] : plans)
+  for (const std::array<int, 3>& plan : plans)
     for (const Frame* shift : {static_cast<const Frame*>(nullptr), &there, &back}) {
       Solutions mine;
       const Frame aim = shift ? compose(T, *shift) : T;

@@ -130,7 +130,7 @@ inline bool add_rows(const Chain& F, const Frame& T, const Six& start, const dou
 
 // Adds the solutions for the pose T from the roots of the pose `aim`, which is T or close to it. True where they
 // are all: every root is single, and leads to a solution of its own.
-inline bool run_resultant(const Chain& F, const Frame& T, const Frame& aim, const int (&plan)[2],
+inline bool run_resultant(const Chain& F, const Frame& T, const Frame& aim, const std::array<int, 2>& plan,
                           Solutions& out) noexcept {
   const Loop loop = make_loop(F, aim, static_cast<Index>(plan[0]), plan[1] != 0);
   const Equations eq = eliminate(loop);
@@ -151,20 +151,23 @@ inline bool run_resultant(const Chain& F, const Frame& T, const Frame& aim, cons
 }
 
 // All solutions, or false and those that were found. Where the first run leaves doubts, two in a row must find
-// all that is known and no more: at poses displaced to either side, and with the next hidden angle.
+// all that is known and no more: with the next hidden angle, and at poses displaced to either side.
 template <std::size_t N>
-inline bool solve_resultant(const Chain& F, const Frame& T, const int (&plans)[N][2], Solutions& out) noexcept {
+inline bool solve_resultant(const Chain& F, const Frame& T, const std::array<std::array<int, 2>, N>& plans,
+                            Solutions& out) noexcept {
+  if constexpr (N == 0) return false;
   if (run_resultant(F, T, T, plans[0], out)) return true;
-  const Frame there = compose(T, displacement()), back = compose(T, inverse(displacement()));
+  const Frame aims[3] = {T, compose(T, displacement()), compose(T, inverse(displacement()))};
   int confirmed = 0;
-  for (const int(&plan)[2] : plans)
-    for (const Frame* aim : {&there, &back}) {
+  for (const Frame& aim : aims)
+    for (const std::array<int, 2>& plan : plans) {
+      if (&aim == aims && &plan == plans.data()) continue;
       Solutions mine;
-      const bool all = run_resultant(F, T, *aim, plan, mine);
+      const bool all = run_resultant(F, T, aim, plan, mine);
       bool fresh = false;
       for (int k = 0; k < mine.count; ++k) fresh = keep(mine.rows[static_cast<Index>(k)], out) || fresh;
-      confirmed = all && !fresh && mine.count == out.count && out.count % 2 == 0 ? confirmed + 1 : 0;
-      if (confirmed == 2) return true;
+      confirmed = all && !fresh && mine.count == out.count ? confirmed + 1 : 0;
+      if (confirmed == 2 && out.count % 2 == 0) return true;
     }
   return false;
 }
