@@ -57,7 +57,7 @@ def test_text_that_cannot_be_imported_is_not_written(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     from ikgen.cli.main import run
-    from ikgen.emit.python.python_emitter import python_emitter as python
+    from ikgen.emit.python import python_emitter as python
 
     broken = {"kuka_kr6r900sixx_ik.py": 'NAME = "open\n'}
     monkeypatch.setattr(python, "emit_derivation", lambda derivation: broken)

@@ -9,9 +9,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from tests.support.solving import NO_COMPILER
 
 from ikgen.cli.main import run
-from solving import NO_COMPILER
 
 needs_compiler = pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
 KUKA = Path(__file__).resolve().parents[2] / "urdf_fixtures" / "kuka_kr6r900sixx.urdf"

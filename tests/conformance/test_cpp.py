@@ -13,8 +13,9 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from cpp_modules import EXACT, ROBOTS, solver_module
 from numpy.typing import NDArray
+from tests.support.cpp_modules import EXACT, ROBOTS, solver_module
+from tests.support.solving import NO_COMPILER
 
 from ikgen.emit.cpp.cpp_emitter import emit, emit_header
 from ikgen.emit.python.python_emitter import emit_module
@@ -23,7 +24,6 @@ from ikgen.kinematics.forward import file_forward, file_jacobian
 from ikgen.program.interpret import run
 from ikgen.verify.runners.cpp_header import CppHeader
 from ikgen.verify.runners.runner import ArmConstants
-from solving import NO_COMPILER
 
 Array = NDArray[np.float64]
 

@@ -89,7 +89,7 @@ def test_the_crate_compiles_without_warnings_and_is_verified(
 
 
 def test_an_arm_that_needs_a_routine_is_refused(installed: Path, tmp_path: Path) -> None:
-    request = Request(FIXTURES / "igus_robolink_rl_dp_5.urdf", task="position-direction")
+    request = Request(ROOT / "tests/robots/tables/ArmRobo.toml")
     with pytest.raises(UsageError, match="no routine 'trig_quartic'"):
         generate(request, Outputs(("rust",), tmp_path))
     assert not list(tmp_path.iterdir())

@@ -9,13 +9,13 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from tests.support.solving import NO_COMPILER
 
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.errors import UnsolvedChainError
 from ikgen.generation.generation import Outputs, generate, oracle_for
 from ikgen.generation.pipeline import Request, derive, read
 from ikgen.verify.runners.python_module import PythonModule
-from solving import NO_COMPILER
 
 if sys.version_info >= (3, 11):
     import tomllib

@@ -127,9 +127,9 @@ def trace(generation: Generation) -> str:
     parts.append("choices:")
     for step in graph.steps:
         chosen = step.candidate
-        parts.append(f"  {chosen.unknown.text}: {chosen.leaf}, {chosen.form}{_judged(chosen)}")
-        parts += [f"    fallback: {c.leaf}, {c.form}{_judged(c)}" for c in step.fallbacks]
-        parts += [f"    rejected: {c.leaf}, {c.form}{_judged(c)}" for c in step.rejected]
+        parts.append(f"  {chosen.unknown.text}: {chosen.leaf}, {chosen.form.name}{_judged(chosen)}")
+        parts += [f"    fallback: {c.leaf}, {c.form.name}{_judged(c)}" for c in step.fallbacks]
+        parts += [f"    rejected: {c.leaf}, {c.form.name}{_judged(c)}" for c in step.rejected]
     if generation.reports:
         parts.append(verification_tables(generation.reports))
     return "\n".join(parts)

@@ -101,7 +101,7 @@ def attempt(dh: DHChain, task: Task) -> Attempt:
     if closed:
         from ikgen.lowering.lower import lower
 
-        most = lower(graph, slack=0.0).max_solutions
+        most = lower(graph, model_error=0.0).max_solutions
     return Attempt(
         task.name,
         dh.free,

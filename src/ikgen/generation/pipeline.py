@@ -170,7 +170,9 @@ def _module(
     dh = reading.dh
     return SolverModule(
         name=request.name or identifier(dh.robot),
-        program=elimination_program(dh) if plan else lower(graph, slack=2.0 * max(dh.deviation)),
+        program=elimination_program(dh)
+        if plan
+        else lower(graph, model_error=2.0 * max(dh.deviation)),
         dh=dh,
         task=task.name,
         free=tuple(j for j, joint in enumerate(dh.joints) if joint.name in dh.free),

@@ -6,9 +6,10 @@ import numpy as np
 
 from ikgen.algebra.expression import Expr
 from ikgen.equations.knowledge import Variable
+from ikgen.forms.form import Form
+from ikgen.forms.lowered_form import LoweredForm, LoweredRoutine
 from ikgen.lowering.closure import require_closure
 from ikgen.lowering.fallbacks import choose_form
-from ikgen.lowering.form_lowering import leading, realize
 from ikgen.lowering.placement import LoweredLevel, Placement, identifier
 from ikgen.lowering.program_inputs import bind_pose, bind_seeds, seed_values
 from ikgen.lowering.serialize import serialize
@@ -19,13 +20,13 @@ from ikgen.solver.solution_graph import SolutionGraph
 __all__ = ["lower"]
 
 
-def lower(graph: SolutionGraph, *, slack: float = 0.0) -> Program:
+def lower(graph: SolutionGraph, *, model_error: float = 0.0) -> Program:
     """The Program of a solution graph.
 
-    `slack` is how far (m or rad) the file's geometry is off the exact one that was solved: square roots
-    and the final check give way by that much, and Newton steps on the file's chain follow.
+    `model_error` is how far (m or rad) the file's geometry is off the exact one that was solved: square
+    roots and the final check give way by that much, and rows are refined on the file's chain.
     """
-    work = Placement(graph, slack)
+    work = Placement(graph, model_error)
     bind_pose(work)
     bind_seeds(work)
     for index, step in enumerate(graph.steps):
@@ -36,24 +37,26 @@ def lower(graph: SolutionGraph, *, slack: float = 0.0) -> Program:
 
 
 def _step(work: Placement, index: int, step: Step) -> None:
-    """One solved unknown."""
+    """One solved unknown: by a form whose branches sigma tells apart, or by a routine."""
     g = work.g
     v = step.candidate.unknown
     text = f"{v.text}: {step.candidate.leaf}, from {_labels(step)}"
-    if step.candidate.form == "quartic":
-        _quartic(work, step, text)
-        return
-    if step.branches > 1:
+    sigma = g.one
+    if step.branches == 2:
         sigma = g.atom("sigma", str(index), np.ones(g.probes), unknown=False)
+    forms = [c.form for c in (step.candidate, *step.fallbacks)]
+    lowered = [form.lower(g, sigma, work.tolerances) for form in forms]
+    if isinstance(lowered[0], LoweredRoutine):
+        _routine(work, v, forms[0], lowered[0], text)
+        return
+    if sigma is not g.one:
         work.levels.append(LoweredLevel(2, sigma))
         work.level_of[sigma.id] = len(work.levels) - 1
         work.names[sigma.id] = f"sigma_{v.text.split('_', 1)[-1]}"
-    else:
-        sigma = g.one
     work.place(Comment(text))
-    forms = [realize(g, c, sigma, work.tolerances) for c in (step.candidate, *step.fallbacks)]
-    work.define(v, choose_form(work, v, forms, sigma))
-    if any(c.form == "pair" for c in (step.candidate, *step.fallbacks)):
+    alternatives = [one for one in lowered if isinstance(one, LoweredForm)]
+    work.define(v, choose_form(work, v, alternatives, sigma))
+    if not all(form.on_circle for form in forms):
         work.norms.append(_excess(work, v))
 
 
@@ -65,13 +68,13 @@ def _excess(work: Placement, v: Variable) -> Expr:
     return g.sub(g.add(g.square(c), g.square(s)), g.one)
 
 
-def _quartic(work: Placement, step: Step, text: str) -> None:
-    v = step.candidate.unknown
-    arguments = _or_seed(work, v, step.candidate.coefficients)
+def _routine(work: Placement, v: Variable, form: Form, lowered: LoweredRoutine, text: str) -> None:
+    """A level whose branches are the roots that a routine of the runtime finds."""
+    arguments = _or_seed(work, v, form, lowered)
     for e in arguments:
         work.place(e)
     atoms = work.knowledge.variables.pair(v.key)
-    work.levels.append(LoweredLevel(4, None, ("trig_quartic", arguments, atoms)))
+    work.levels.append(LoweredLevel(form.branches, None, (lowered.routine, arguments, atoms)))
     work.place(Comment(text))
     suffix = v.text.split("_", 1)[1]
     for atom, x in zip(atoms, "cs", strict=True):
@@ -80,18 +83,16 @@ def _quartic(work: Placement, step: Step, text: str) -> None:
         work.placed.add(atom.id)
 
 
-def _or_seed(work: Placement, v: Variable, coefficients: tuple[Expr, ...]) -> tuple[Expr, ...]:
-    """The quartic's coefficients, and where all but the constant vanish those of `sin(v - seed) = 0`."""
-    g = work.g
-    divisor = leading(g, coefficients[:4], work.tolerances)
+def _or_seed(work: Placement, v: Variable, form: Form, lowered: LoweredRoutine) -> tuple[Expr, ...]:
+    """The routine's arguments, and where its divisor vanishes those whose solution is the seed's value."""
+    g, divisor = work.g, lowered.divisor
     if divisor.regular is None or divisor.clear is None:
-        return coefficients
+        return lowered.arguments
     missing = g.unary("not", divisor.clear)
     work.place(missing)
     work.singular.append(missing)
-    c, s = seed_values(work, v)
-    instead = (g.zero, g.zero, g.neg(s), c, g.zero)
-    both = zip(coefficients, instead, strict=True)
+    instead = form.instead(g, seed_values(work, v))
+    both = zip(lowered.arguments, instead, strict=True)
     return tuple(g.select(divisor.regular, mine, other) for mine, other in both)
 
 

@@ -11,7 +11,7 @@ from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import Variable
 from ikgen.equations.products import ENTRY_NAMES
-from ikgen.lowering.form_lowering import Tolerances
+from ikgen.forms.lowered_form import Tolerances
 from ikgen.program.statements import Comment
 from ikgen.solver.solution_graph import SolutionGraph
 
@@ -38,18 +38,18 @@ class LoweredLevel:
 class Placement:
     """The levels of a Program under construction, and what is known of every expression in them.
 
-    `slack` (m or rad) is how far the file's geometry is off the solved one; `norms` are excesses that
+    `model_error` (m or rad) is how far the file's geometry is off the solved one; `norms` are excesses that
     vanish on a solution, `residuals` squared errors of a row, `singular` flags of continua.
     """
 
-    def __init__(self, graph: SolutionGraph, slack: float) -> None:
+    def __init__(self, graph: SolutionGraph, model_error: float) -> None:
         self.session = graph.session
         self.system = graph.session.system
         self.dh = self.system.dh
         self.g: ExpressionGraph = self.system.graph
         self.knowledge = graph.knowledge
-        self.slack = slack
-        self.tolerances = Tolerances.for_slack(slack)
+        self.model_error = model_error
+        self.tolerances = Tolerances.for_model_error(model_error)
         self.residuals: list[Expr] = []
         self.norms: list[Expr] = []
         self.levels = [LoweredLevel(1)]

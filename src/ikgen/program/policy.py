@@ -9,8 +9,8 @@ __all__ = ["REFINEMENT", "RefineStage", "SolvePolicy"]
 
 @dataclass(frozen=True, slots=True)
 class RefineStage:
-    """At most `steps` damped Newton steps for rows whose error (rad, or m over the arm's size) is at
-    least `fine` and below `promising` once they are taken another stage follows."""
+    """At most `steps` damped Newton steps; rows whose error (rad, m over the arm's size) is then at least
+    `fine` and below `promising` go on to the next stage."""
 
     steps: int
     fine: float
@@ -29,16 +29,18 @@ REFINEMENT: tuple[RefineStage, ...] = (
 class SolvePolicy:
     """Tolerances and counts of `solve`, the same in every language.
 
-    `tolerance`: error (rad, or m over the arm's size) that a returned row may have; `arrived`: error below
-    which refined rows count as solutions; `rough_square`: squared error above which a row of the Program
-    is refined. `pose_tolerance`: how far a rotation's entries may be off before the pose is none (nearer ones
-    are replaced by the nearest rotation). `coincident`: rows closer than that (rad or m) are one.
-    `limit_tolerance`: how far (rad or m) outside a limit a row is put back on it. `tries`: values of a joint
-    that a pose leaves free that are tried, `try_step` rad apart. `rank_loss`: smallest singular value below
-    which a refined row is singular, `continuum_rank_loss` where the Program marked it already.
-    `least_damping`, `damping`: a Newton step is damped by max(least, damping * error^2); `largest_step`
-    (rad or m) bounds each joint's; `converged`: error at which steps end; `patience` steps may pass without
-    the error falling to `progress` of what it was.
+    - `tolerance`: error (rad, or m over the arm's size) that a returned row may have; `arrived`: error
+      below which refined rows are solutions; `rough_square`: squared error above which a row is refined.
+    - `pose_tolerance`: how far a rotation's entries may be off; nearer ones are replaced by the nearest
+      rotation.
+    - `coincident`: rows closer than that (rad or m) are one. `limit_tolerance`: a row that far (rad or m)
+      outside a limit is put back on it.
+    - `tries`: how many values of a joint that a pose leaves free are tried, `try_step` (rad) apart.
+    - `rank_loss`: smallest singular value below which a refined row is singular; `continuum_rank_loss`
+      where the Program marked it already.
+    - `least_damping`, `damping`: a Newton step is damped by max(least, damping * error^2); `largest_step`
+      (rad or m) bounds each joint's; `converged`: error at which steps end; `patience` steps may pass
+      without the error falling to `progress` of what it was.
     """
 
     tolerance: float = 1e-9
