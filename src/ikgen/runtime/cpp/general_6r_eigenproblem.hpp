@@ -31,7 +31,7 @@ inline Spectrum run_eigenproblem(const Chain& F, const Frame& T, const Frame& ai
   const bool reverse = plan[1] != 0, swap = plan[2] != 0;
   const Loop loop = make_loop(F, aim, static_cast<Index>(plan[0]), reverse);
   const Equations eq = eliminate(loop);
-  Mat<14, 9> left = eq.left;
+  Mat<14, 12> left = eq.left;
   if (swap)
     for (Index r = 0; r < 14; ++r)
       for (Index k = 0; k < 9; ++k) left(r, k) = eq.left(r, 3 * (k % 3) + k / 3);

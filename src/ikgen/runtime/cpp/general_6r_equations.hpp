@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "general_6r_frames.hpp"
+#include "lanes.hpp"
 
 namespace ikgen_runtime {
 
@@ -35,11 +36,11 @@ inline std::array<double, 14> invariants(const Frame& X) noexcept {
   return v;
 }
 
-// G with invariants(C X) = G (invariants(X), 1).
-inline Mat<14, 15> action(const Frame& C) noexcept {
+// G with invariants(C X) = G (invariants(X), 1); a column of zeros for the machine's sake.
+inline Mat<14, 16> action(const Frame& C) noexcept {
   const auto& t = C.p;
   const double tt = t[0] * t[0] + t[1] * t[1] + t[2] * t[2];
-  Mat<14, 15> G{};
+  Mat<14, 16> G{};
   for (Index j = 0; j < 3; ++j) {
     const double tR = t[0] * C.R(0, j) + t[1] * C.R(1, j) + t[2] * C.R(2, j);
     G(12, 4 * j + 1) = 2.0 * tR;
@@ -65,64 +66,96 @@ inline Mat<14, 15> action(const Frame& C) noexcept {
 constexpr double kC3[3] = {1.0, -0.5, -0.5};
 constexpr double kS3[3] = {0.0, 0.86602540378443864676, -0.86602540378443864676};
 
-// values at three equidistant angles -> coefficients of (1, c, s)
-inline void to_trig(std::array<double, 14>& a, std::array<double, 14>& b, std::array<double, 14>& c) noexcept {
-  for (Index i = 0; i < 14; ++i) {
-    const double x = a[i], y = b[i], z = c[i];
-    a[i] = (x + y + z) / 3.0;
-    b[i] = (2.0 * x - y - z) / 3.0;
-    c[i] = (y - z) * (2.0 * kS3[1] / 3.0);
-  }
+// Invariants of X(theta) from those at three equidistant angles: coefficients of (1, c, s), and a column of zeros
+// for the machine's sake.
+inline Mat<14, 4> to_trig(const std::array<double, 14>& x, const std::array<double, 14>& y,
+                          const std::array<double, 14>& z) noexcept {
+  constexpr double third = 1.0 / 3.0, half = 2.0 / 3.0 * kS3[1];
+  constexpr double weights[3][4] = {{third, 2.0 * third, 0.0, 0.0}, {third, -third, half, 0.0}, {third, -third, -half, 0.0}};
+  const Lanes<4> a = load<4>(weights[0]), b = load<4>(weights[1]), c = load<4>(weights[2]);
+  Mat<14, 4> out;
+  for (Index i = 0; i < 14; ++i) store(x[i] * a + y[i] * b + z[i] * c, &out(i, 0));
+  return out;
+}
+
+// A turn about z before invariants B in some monomials, then rows A of 15: f + cos c + sin s in the same monomials,
+// the first of which is 1.
+template <Index R, Index C>
+struct alignas(64) Turned {
+  Mat<R, C> f, c, s;
+};
+
+template <Index R, Index C>
+inline Turned<R, C> turn_through(const Mat<R, 16>& A, const Mat<14, C>& B) noexcept {
+  static_assert(C % 4 == 0);
+  Turned<R, C> out;
+  for (Index i = 0; i < R; ++i)
+    for (Index j = 0; j < C; j += 4) {
+      Lanes<4> f = spread<4>(0.0), c = f, s = f;
+      for (Index k = 8; k < 14; ++k) f = f + A(i, k) * load<4>(&B(k, j));
+      for (Index k = 0; k < 4; ++k) {
+        const Lanes<4> x = load<4>(&B(k, j)), y = load<4>(&B(4 + k, j));
+        c = c + A(i, k) * x + A(i, 4 + k) * y;
+        s = s + A(i, 4 + k) * x - A(i, k) * y;
+      }
+      store(f, &out.f(i, j));
+      store(c, &out.c(i, j));
+      store(s, &out.s(i, j));
+    }
+  for (Index i = 0; i < R; ++i) out.f(i, 0) += A(i, 14);
+  return out;
 }
 
 struct Equations {
-  Mat<6, 15> E;      // times (invariants of R3 C3 R4 C4 R5 C5, 1)
-  Mat<14, 9> left;   // invariants of C3 R4 C4 R5 C5 in (1, c4, s4) x (1, c5, s5)
+  Mat<6, 16> E;      // times (invariants of R3 C3 R4 C4 R5 C5, 1, 0)
+  Mat<14, 12> left;  // invariants of C3 R4 C4 R5 C5 in (1, c4, s4) x (1, c5, s5), and three columns of zeros
   Mat<14, 3> right;  // invariants of C1^-1 R1^-1 C6^-1 in (1, c1, s1)
-  Mat<14, 15> G;     // action of C2
+  Mat<14, 16> G;     // action of C2
   std::array<std::array<double, 6>, 2> reflector;  // Householder vectors of right(8..13, 1..2)
   double r00, r01, r11;                            // and the triangle left over
 };
 
-inline void reflect(const std::array<double, 6>& h, double* x, Index stride) noexcept {
+inline void reflect(const std::array<double, 6>& h, double* x) noexcept {
   double dot = 0.0;
-  for (Index i = 0; i < 6; ++i) dot += h[i] * x[i * stride];
-  for (Index i = 0; i < 6; ++i) x[i * stride] -= 2.0 * dot * h[i];
+  for (Index i = 0; i < 6; ++i) dot += h[i] * x[i];
+  for (Index i = 0; i < 6; ++i) x[i] -= 2.0 * dot * h[i];
 }
 
 inline std::array<double, 6> householder(const double* x, Index from) noexcept {
   std::array<double, 6> h{};
   double square = 0.0;
-  for (Index i = from; i < 6; ++i) square += x[i] * x[i];
-  for (Index i = from; i < 6; ++i) h[i] = x[i];
-  h[from] += std::copysign(std::sqrt(square), x[from]);
-  double norm = 0.0;
-  for (Index i = from; i < 6; ++i) norm += h[i] * h[i];
-  norm = std::sqrt(norm);
-  if (norm > 0.0)
-    for (double& a : h) a /= norm;
+  for (Index i = from; i < 6; ++i) {
+    square += x[i] * x[i];
+    h[i] = x[i];
+  }
+  const double norm = std::sqrt(square), size = 2.0 * (square + std::abs(x[from]) * norm);
+  h[from] += std::copysign(norm, x[from]);
+  const double over = size > 0.0 ? 1.0 / std::sqrt(size) : 0.0;
+  for (double& a : h) a *= over;
   return h;
 }
 
-inline void sample_left(const Loop& loop, Mat<14, 9>& left) noexcept {
-  std::array<std::array<std::array<double, 14>, 3>, 3> v;
-  for (Index j = 0; j < 3; ++j) {
-    const Frame D = compose(turn(loop.C[3], kC3[j], kS3[j]), loop.C[4]);
-    for (Index i = 0; i < 3; ++i) v[i][j] = invariants(compose(turn(loop.C[2], kC3[i], kS3[i]), D));
+inline void sample_left(const Loop& loop, Mat<14, 12>& left) noexcept {
+  std::array<std::array<double, 14>, 3> v;
+  for (Index j = 0; j < 3; ++j) v[j] = invariants(compose(turn(loop.C[3], kC3[j], kS3[j]), loop.C[4]));
+  const Turned<14, 4> four = turn_through(action(loop.C[2]), to_trig(v[0], v[1], v[2]));
+  const Lanes<4> none = spread<4>(0.0);
+  for (Index r = 0; r < 14; ++r) {  // three of each four
+    store(load<4>(&four.f(r, 0)), &left(r, 0));
+    store(load<4>(&four.c(r, 0)), &left(r, 3));
+    store(load<4>(&four.s(r, 0)), &left(r, 6));
+    if (r < 13) store(none, &left(r, 9));
   }
-  for (auto& row : v) to_trig(row[0], row[1], row[2]);
-  for (Index j = 0; j < 3; ++j) to_trig(v[0][j], v[1][j], v[2][j]);
-  for (Index r = 0; r < 14; ++r)
-    for (Index k = 0; k < 9; ++k) left(r, k) = v[k / 3][k % 3][r];
+  for (Index k = 9; k < 12; ++k) left(13, k) = 0.0;
 }
 
 inline void sample_right(const Loop& loop, Mat<14, 3>& right) noexcept {
   const Frame a = inverse(loop.C[0]), b = inverse(loop.C[5]);
-  std::array<std::array<double, 14>, 3> u;
-  for (Index i = 0; i < 3; ++i) u[i] = invariants(compose(turn(a, kC3[i], -kS3[i]), b));
-  to_trig(u[0], u[1], u[2]);
+  std::array<std::array<double, 14>, 3> v;
+  for (Index i = 0; i < 3; ++i) v[i] = invariants(compose(turn(a, kC3[i], -kS3[i]), b));
+  const Mat<14, 4> u = to_trig(v[0], v[1], v[2]);
   for (Index r = 0; r < 14; ++r)
-    for (Index k = 0; k < 3; ++k) right(r, k) = u[k][r];
+    for (Index k = 0; k < 3; ++k) right(r, k) = u(r, k);
 }
 
 inline std::array<Complex, 4> null_of_pairs(const Mat<14, 3>& right) noexcept {  // by minors
@@ -149,78 +182,65 @@ inline std::array<Complex, 4> null_of_pairs(const Mat<14, 3>& right) noexcept { 
   return n;
 }
 
+// Rows 4 and 5 of E.
 inline void eliminate_pairs(Equations& out) noexcept {
   const std::array<Complex, 4> n = null_of_pairs(out.right);
-  for (Index k = 0; k < 15; ++k) {
-    double re = 0.0, im = 0.0;
+  for (Index k = 0; k < 16; k += 8) {
+    Lanes<8> re = spread<8>(0.0), im = re;
     for (Index i = 0; i < 4; ++i) {
-      re += n[i].real() * out.G(i, k) - n[i].imag() * out.G(4 + i, k);
-      im += n[i].real() * out.G(4 + i, k) + n[i].imag() * out.G(i, k);
+      const Lanes<8> x = load<8>(&out.G(i, k)), y = load<8>(&out.G(4 + i, k));
+      re = re + n[i].real() * x - n[i].imag() * y;
+      im = im + n[i].real() * y + n[i].imag() * x;
     }
-    out.E(4, k) = re;
-    out.E(5, k) = im;
+    store(re, &out.E(4, k));
+    store(im, &out.E(5, k));
+  }
+}
+
+// Rows 0 to 3 of E: what the reflections leave behind the first two.
+inline void eliminate_turns(Equations& out) noexcept {
+  for (Index k = 0; k < 16; k += 8) {
+    Lanes<8> g[6];
+    for (Index i = 0; i < 6; ++i) g[i] = load<8>(&out.G(8 + i, k));
+    constexpr double constant[8] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0};
+    for (Index i = 0; i < 6 && k == 8; ++i) g[i] = g[i] - out.right(8 + i, 0) * load<8>(constant);
+    for (const auto& h : out.reflector) {
+      Lanes<8> dot = h[0] * g[0];
+      for (Index i = 1; i < 6; ++i) dot = dot + h[i] * g[i];
+      dot = 2.0 * dot;
+      for (Index i = 0; i < 6; ++i) g[i] = g[i] - h[i] * dot;
+    }
+    for (Index i = 0; i < 4; ++i) store(g[i + 2], &out.E(i, k));
   }
 }
 
 inline Equations eliminate(const Loop& loop) noexcept {
   Equations out;
+  out.G = action(loop.C[1]);  // first, as what reads it as lanes waits for it to be in memory
   sample_left(loop, out.left);
   sample_right(loop, out.right);
-  out.G = action(loop.C[1]);
   std::array<double, 6> c1, c2;
-  Mat<6, 15> g;
   for (Index i = 0; i < 6; ++i) {
     c1[i] = out.right(8 + i, 1);
     c2[i] = out.right(8 + i, 2);
-    for (Index k = 0; k < 15; ++k) g(i, k) = out.G(8 + i, k);
-    g(i, 14) -= out.right(8 + i, 0);
   }
   out.reflector[0] = householder(c1.data(), 0);
-  reflect(out.reflector[0], c1.data(), 1);
-  reflect(out.reflector[0], c2.data(), 1);
+  reflect(out.reflector[0], c1.data());
+  reflect(out.reflector[0], c2.data());
   out.reflector[1] = householder(c2.data(), 1);
   out.r00 = c1[0];
   out.r01 = c2[0];
-  reflect(out.reflector[1], c2.data(), 1);
+  reflect(out.reflector[1], c2.data());
   out.r11 = c2[1];
-  for (const auto& h : out.reflector) {
-    double dot[15] = {};
-    for (Index i = 0; i < 6; ++i)
-      for (Index k = 0; k < 15; ++k) dot[k] += 2.0 * h[i] * g(i, k);
-    for (Index i = 0; i < 6; ++i)
-      for (Index k = 0; k < 15; ++k) g(i, k) -= h[i] * dot[k];
-  }
-  for (Index k = 0; k < 15; ++k)
-    for (Index i = 0; i < 4; ++i) out.E(i, k) = g(i + 2, k);
+  eliminate_turns(out);
   eliminate_pairs(out);
   return out;
 }
 
-// c += factor * A[rows from ra] * B[rows from rb], inner dimension K taken at columns ca of A
-template <Index K, Index R, Index C, Index AR, Index AC, Index BR>
-inline void add_product(double factor, const Mat<AR, AC>& A, Index ra, Index ca, const Mat<BR, C>& B, Index rb,
-                        Mat<R, C>& c) noexcept {
-  for (Index i = 0; i < R; ++i)
-    for (Index k = 0; k < K; ++k) {
-      const double x = factor * A(ra + i, ca + k);
-      for (Index j = 0; j < C; ++j) c(i, j) += x * B(rb + k, j);
-    }
-}
+// The six equations in the nine monomials (1, c4, s4) x (1, c5, s5), and three columns of zeros.
+using Pencil = Turned<6, 12>;
 
-// The six equations in the nine monomials (1, c4, s4) x (1, c5, s5): f + cos(theta_3) c + sin(theta_3) s.
-struct Pencil {
-  Mat<6, 9> f, c, s;
-};
-
-inline Pencil make_pencil(const Mat<6, 15>& E, const Mat<14, 9>& left) noexcept {
-  Pencil out{};
-  for (Index i = 0; i < 6; ++i) out.f(i, 0) = E(i, 14);
-  add_product<6>(1.0, E, 0, 8, left, 8, out.f);
-  add_product<8>(1.0, E, 0, 0, left, 0, out.c);
-  add_product<4>(1.0, E, 0, 4, left, 0, out.s);
-  add_product<4>(-1.0, E, 0, 0, left, 4, out.s);
-  return out;
-}
+inline Pencil make_pencil(const Mat<6, 16>& E, const Mat<14, 12>& left) noexcept { return turn_through(E, left); }
 
 }  // namespace g6
 }  // namespace ikgen_runtime

@@ -155,13 +155,16 @@ inline bool run_resultant(const Chain& F, const Frame& T, const Frame& aim, cons
 template <std::size_t N>
 inline bool solve_resultant(const Chain& F, const Frame& T, const std::array<std::array<int, 2>, N>& plans,
                             Solutions& out) noexcept {
-  if constexpr (N == 0) return false;
-  if (run_resultant(F, T, T, plans[0], out)) return true;
-  const Frame aims[3] = {T, compose(T, displacement()), compose(T, inverse(displacement()))};
-  int confirmed = 0;
+  Frame aims[3] = {T, T, T};
+  int number = 0, confirmed = 0;
   for (const Frame& aim : aims)
     for (const std::array<int, 2>& plan : plans) {
-      if (&aim == aims && &plan == plans.data()) continue;
+      if (number++ == 0) {
+        if (run_resultant(F, T, aim, plan, out)) return true;
+        aims[1] = compose(T, displacement());
+        aims[2] = compose(T, inverse(displacement()));
+        continue;
+      }
       Solutions mine;
       const bool all = run_resultant(F, T, aim, plan, mine);
       bool fresh = false;

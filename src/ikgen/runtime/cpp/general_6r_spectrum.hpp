@@ -18,8 +18,8 @@ namespace ikgen_runtime {
 namespace g6 {
 
 // Rows in (1, c, s) x (1, c', s') times cos h and sin h, h half the first angle.
-template <Index R>
-inline Mat<2 * R, 12> lift(const Mat<R, 9>& A) noexcept {
+template <Index R, Index C>
+inline Mat<2 * R, 12> lift(const Mat<R, C>& A) noexcept {
   Mat<2 * R, 12> out;
   for (Index i = 0; i < R; ++i)
     for (Index k = 0; k < 3; ++k) {
@@ -83,6 +83,17 @@ inline void solve(const Square& A, const std::array<Index, 12>& pivot, Mat<12, 1
 }
 
 
+// c += factor * A[rows from ra] * B[rows from rb], inner dimension K taken at columns ca of A
+template <Index K, Index R, Index C, Index AR, Index AC, Index BR>
+inline void add_product(double factor, const Mat<AR, AC>& A, Index ra, Index ca, const Mat<BR, C>& B, Index rb,
+                        Mat<R, C>& c) noexcept {
+  for (Index i = 0; i < R; ++i)
+    for (Index k = 0; k < K; ++k) {
+      const double x = factor * A(ra + i, ca + k);
+      for (Index j = 0; j < C; ++j) c(i, j) += x * B(rb + k, j);
+    }
+}
+
 struct Spectrum {
   int count = 0;  // roots theta_3 with imaginary parts below `accept`
   int real = 0;   // those that are clearly real; 16 where the eigenvalues failed
@@ -124,20 +135,20 @@ inline void add_angles(const std::array<Complex, 16>& t, double node, double acc
 
 // With M(theta) = M0 + N Rot(theta) W, Rot = c + s J on R^16, about a node where M_pi = M0 - N W is far from
 // singular: tan(theta/2) are the eigenvalues of -J (1 + 2 W M_pi^-1 N).
-inline Spectrum find_roots(const Mat<6, 15>& E, const Mat<14, 9>& left, const Resultant& M, double accept) noexcept {
+inline Spectrum find_roots(const Mat<6, 16>& E, const Mat<14, 12>& left, const Resultant& M, double accept) noexcept {
   Node node;
   Spectrum out;
   best_node(M, node);
   if (!(node.determinant > 0.0)) return out;
   Mat<12, 16> N{};
-  Mat<4, 9> x, y;
+  Mat<4, 12> x, y;
   for (Index i = 0; i < 6; ++i)
     for (Index k = 0; k < 4; ++k) {
       N(i, k) = N(6 + i, 4 + k) = node.c * E(i, k) + node.s * E(i, 4 + k);
       N(i, 8 + k) = N(6 + i, 12 + k) = node.c * E(i, 4 + k) - node.s * E(i, k);
     }
-  std::copy_n(left.v.begin(), 36, x.v.begin());
-  std::copy_n(left.v.begin() + 36, 36, y.v.begin());
+  std::copy_n(left.v.begin(), 48, x.v.begin());
+  std::copy_n(left.v.begin() + 48, 48, y.v.begin());
   solve(node.lu, node.pivot, N);
   Mat<8, 16> top{}, bottom{};
   add_product<12>(2.0, lift(x), 0, 0, N, 0, top);
