@@ -36,7 +36,8 @@ constexpr double cosine(int parts) noexcept {
 constexpr double sine(int parts) noexcept { return cosine(parts - kTurnParts / 4); }
 
 // The nodes begin at an angle that no right angle shares, lest roots lie on the ends of arcs.
-inline constexpr double kStart[2] = {0.99500416527802576610, 0.09983341664682815230};  // of 0.1 rad
+inline constexpr double kStartAngle = 0.1;
+inline constexpr double kStart[2] = {0.99500416527802576610, 0.09983341664682815230};  // its cosine and sine
 
 struct Nodes {
   alignas(64) double c[kNodes], s[kNodes];        // without that angle

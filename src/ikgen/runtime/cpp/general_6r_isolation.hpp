@@ -16,7 +16,8 @@ namespace ikgen_runtime {
 namespace g6 {
 
 inline constexpr int kRoots = 16;      // of degree 8
-inline constexpr int kMostZones = 6;
+inline constexpr int kMostZones = 8;
+inline constexpr double kTogether = 0.015;  // rad; zones closer than this are looked at together
 inline constexpr int kBits = 2 * kDegree + 1;
 
 struct Zone {
@@ -36,7 +37,7 @@ struct Brackets {
 inline void add_zone(Brackets& out, double low, double high) noexcept {
   for (int i = 0; i < out.zones; ++i) {
     Zone& z = out.zone[i];
-    if (low > z.high + kMargin || high < z.low - kMargin) continue;
+    if (low > z.high + kTogether || high < z.low - kTogether) continue;
     z = {std::min(z.low, low), std::max(z.high, high)};
     return;
   }

@@ -41,19 +41,38 @@ struct Lens {
   }
 };
 
-// Whether an interval of phi meets the zone, half as wide as `half` (rad) either side.
-inline bool meets(const Lens& lens, const Zone& phi, double half) noexcept {
-  const double edge = 2.0 * std::atan2(std::tan(0.5 * half), lens.scale);
-  const double middle = wrap(0.5 * (phi.low + phi.high)), reach = 0.5 * (phi.high - phi.low);
-  return std::abs(middle) <= edge + reach;
+// The roots of a polynomial that lie in none of the zones, as pairs at the nodes' angle.
+inline void clear_roots(const Polynomial& f, const Brackets& brackets, Roots& out) noexcept {
+  refine_all(f, brackets, out);
+  int kept = 0;
+  for (int i = 0; i < out.count && brackets.zones > 0; ++i) {
+    const double angle = std::atan2(out.s[i], out.c[i]);
+    bool skip = false;
+    for (int z = 0; z < brackets.zones; ++z) skip = skip || inside(brackets.zone[z], angle);
+    out.c[kept] = out.c[i];
+    out.s[kept] = out.s[i];
+    kept += skip ? 0 : 1;
+  }
+  if (brackets.zones > 0) out.count = kept;
 }
 
-// The roots inside a zone, from nodes crowded there. False where that leaves it open.
-inline bool look_closer(const Pencil& pencil, const Zone& zone, Roots& out) noexcept {
+// Where zones of phi lie in theta, cut off at the zone's ends; empty (high < low) where they do not meet it.
+inline Zone seen_through(const Lens& lens, const Zone& phi, const Zone& zone) noexcept {
+  const double middle = wrap(0.5 * (phi.low + phi.high)), reach = 0.5 * (phi.high - phi.low);
+  const double centre = 0.5 * (zone.low + zone.high);
+  const auto angle = [&](double x) {
+    const double inner = std::min(std::max(x, -3.1415), 3.1415);  // the other end is far outside
+    return centre + 2.0 * std::atan(lens.scale * std::tan(0.5 * inner));
+  };
+  return {std::max(angle(middle - reach), zone.low), std::min(angle(middle + reach), zone.high)};
+}
+
+inline constexpr double kScales[] = {0.03, 5e-4};  // of the first look and of the second
+
+// The roots inside a zone, from nodes crowded there, as pairs of theta. False where that leaves it open.
+inline bool look_closer(const Pencil& pencil, const Zone& zone, int look, Roots& out) noexcept {
   const double middle = 0.5 * (zone.low + zone.high), half = 0.5 * (zone.high - zone.low);
-  const double cz = std::cos(middle), sz = std::sin(middle);
-  const Lens lens = {cz * kStart[0] - sz * kStart[1], sz * kStart[0] + cz * kStart[1],
-                     std::max(0.03, std::tan(0.5 * half))};
+  const Lens lens = {std::cos(middle), std::sin(middle), std::max(kScales[look], std::tan(0.5 * half))};
   alignas(64) double c[kNodes], s[kNodes], f[kNodes];
   double weight[kNodes];
   for (int n = 0; n < kNodes; ++n) {
@@ -67,7 +86,7 @@ inline bool look_closer(const Pencil& pencil, const Zone& zone, Roots& out) noex
   const Polynomial g = interpolate(f);
   const Brackets brackets = isolate(g);
   Roots near;
-  refine_all(g, brackets, near);
+  clear_roots(g, brackets, near);
   for (int i = 0; i < near.count; ++i) {
     lens.apply(near.c[i], near.s[i]);
     const double off = std::atan2(near.s[i] * lens.c - near.c[i] * lens.s, near.c[i] * lens.c + near.s[i] * lens.s);
@@ -75,9 +94,12 @@ inline bool look_closer(const Pencil& pencil, const Zone& zone, Roots& out) noex
     if (out.count == 2 * kRoots) return false;
     add_root(out, near.c[i], near.s[i]);
   }
-  bool open = brackets.doubt;
-  for (int i = 0; i < brackets.zones; ++i) open = open || meets(lens, brackets.zone[i], half);
-  return !open;
+  bool all = !brackets.doubt;
+  for (int i = 0; i < brackets.zones && all; ++i) {
+    const Zone open = seen_through(lens, brackets.zone[i], zone);
+    if (open.high >= open.low) all = look == 0 && look_closer(pencil, open, 1, out);
+  }
+  return all;
 }
 
 // All roots; false where some may be missing.
@@ -85,21 +107,19 @@ inline bool find_roots(const Pencil& pencil, Roots& out) noexcept {
   alignas(64) double f[kNodes];
   resultants(pencil, kRotated.c, kRotated.s, f);
   const Polynomial polynomial = interpolate(f);
-  const Brackets brackets = isolate(polynomial);
+  Brackets brackets = isolate(polynomial);
   if (brackets.doubt) return false;
-  Roots found;
-  refine_all(polynomial, brackets, found);
-  for (int i = 0; i < found.count; ++i) {
-    const double c = found.c[i], s = found.s[i];
-    bool skip = false;
-    if (brackets.zones > 0) {
-      const double angle = std::atan2(s, c);
-      for (int z = 0; z < brackets.zones; ++z) skip = skip || inside(brackets.zone[z], angle);
-    }
-    if (!skip) add_root(out, c * kStart[0] - s * kStart[1], s * kStart[0] + c * kStart[1]);
+  clear_roots(polynomial, brackets, out);
+  for (int i = 0; i < out.count; ++i) {
+    const double c = out.c[i], s = out.s[i];
+    out.c[i] = c * kStart[0] - s * kStart[1];
+    out.s[i] = s * kStart[0] + c * kStart[1];
   }
   bool all = true;
-  for (int z = 0; z < brackets.zones; ++z) all = look_closer(pencil, brackets.zone[z], out) && all;
+  for (int z = 0; z < brackets.zones && all; ++z) {
+    const Zone zone = {brackets.zone[z].low + kStartAngle, brackets.zone[z].high + kStartAngle};
+    all = look_closer(pencil, zone, 0, out);
+  }
   return all && out.count <= kRoots && out.count % 2 == 0;
 }
 
