@@ -84,8 +84,9 @@ def test_turns_nearest_to_the_seed_inside_the_limits() -> None:
 
 def test_repetitions() -> None:
     base = np.array([0.1, 3.0, -1.0, 0.5, 0.0])
-    turned = base + [2.0 * pi, 0.0, 5e-7, 0.0, 0.0]
-    other, slid = base + [0.0, 2e-6, 0.0, 0.0, 0.0], base + [0.0, 0.0, 0.0, 2.0 * pi, 0.0]
+    unit = np.eye(5)
+    turned = base + 2.0 * pi * unit[0] + 5e-7 * unit[2]
+    other, slid = base + 2e-6 * unit[1], base + 2.0 * pi * unit[3]
     q = np.array([[base, turned, other, slid, base]])
     valid = np.array([[True, True, True, True, False]])
     assert distinct(arm(), q, valid).tolist() == [[True, False, True, True, False]]
