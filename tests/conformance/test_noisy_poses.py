@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from tests.support.solving import import_text
 
 from ikgen.emit.python.python_emitter import emit_module
-from ikgen.generation.pipeline import Request, derive
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
 
 Array = NDArray[np.float64]
 ROOT = Path(__file__).resolve().parents[2]
@@ -21,7 +22,7 @@ ARMS = {
     "parallel axes": Request(FIXTURES / "ur5e.urdf"),
     "rounded": Request(FIXTURES / "doosan_m1013.urdf"),
     "eliminated": Request(TABLES / "KawasakiRS05L.toml"),
-    "held": Request(FIXTURES / "franka_fr3.urdf", free=(("fr3_joint7", 0.3),)),
+    "held": Request(FIXTURES / "franka_fr3.urdf", free={"fr3_joint7": 0.3}),
     "direction": Request(FIXTURES / "igus_robolink_rl_dp_5.urdf", task="position-direction"),
     "yaw": Request(FIXTURES / "scara_standard.toml", task="position-yaw"),
     "rotation": Request(TABLES / "Wrist.toml", task="rotation"),

@@ -17,7 +17,8 @@ from ikgen.emit.python.bundle import MARK, bundle
 from ikgen.emit.python.import_lines import External, import_lines
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.python.runtime_source import PACKAGE, read_source, taken_apart
-from ikgen.generation.pipeline import Request, derive
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
 
 SHELL = f"""\"\"\"Turns.\"\"\"
 

@@ -147,14 +147,12 @@ def _branches(T: Sequence[Sequence[float]], q0: Row, held: Row) -> tuple[list[_C
     (t00, t01, t02, t03), (t10, t11, t12, t13), (t20, t21, t22, t23), _ = T
     # the radius
     c1 = t03 / a_2
-    q2 = t23
     for sigma_1 in (1.0, -1.0):
         s1 = sigma_1 * sqrt(max(1.0 - c1 * c1, 0.0))
         error = a_2 * s1 - t13
         if not (1e-09 > abs(error)):
             continue
-        q1 = atan2(s1, c1)
-        rows.append(((q1, q2), False, False))
+        rows.append(((atan2(s1, c1), t23), False, False))
     return rows, hit
 
 
@@ -181,8 +179,8 @@ def _branches_batch(T: Array, q0: Array, held: Array) -> tuple[Array, _Flags, _F
         np.arctan2(s1, c1),
         t23,
     )
-    rough: NDArray[np.bool_] = np.zeros(1, dtype=bool)
-    singular: NDArray[np.bool_] = np.zeros(1, dtype=bool)
+    singular: _Flags = np.zeros(1, dtype=bool)
+    rough: _Flags = np.zeros(1, dtype=bool)
     rows = np.empty((DOF, *full))
     for j, value in enumerate(q):
         rows[j] = value

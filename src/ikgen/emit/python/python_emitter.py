@@ -6,16 +6,14 @@ from dataclasses import fields
 from typing import TYPE_CHECKING
 
 from ikgen.elimination.routine import runtime_policy
+from ikgen.emit.blanks import blanks, pairs
 from ikgen.emit.printer import expression
 from ikgen.emit.python.bundle import bundle
-from ikgen.emit.python.python_joints import JointText
 from ikgen.emit.python.python_language import SCALAR, number
 from ikgen.emit.python.python_statements import batch_lines, scalar_lines
 from ikgen.emit.python.python_text import literal, words
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
-from ikgen.emit.symbolic_frames import blanks, frame_entries, pairs
-from ikgen.program.liveness import used_inputs
 from ikgen.program.policy import SolvePolicy
 from ikgen.runtime.python.solve_policy import Policy
 
@@ -34,7 +32,6 @@ def emit_derivation(derivation: Derivation) -> dict[str, str]:
 def emit_module(module: SolverModule) -> str:
     """The text of `<name>_ik.py`."""
     program, policy = module.program, SolvePolicy()
-    joints = [JointText.of(module, output) for output in program.outputs]
     shell = render(
         "python",
         "module.py.jinja",
@@ -45,15 +42,12 @@ def emit_module(module: SolverModule) -> str:
         parameters=_parameters(module),
         blanks=blanks(module),
         constants=[(c.name, expression(SCALAR, c.value)) for c in program.constants],
-        scalar=scalar_lines(module, joints),
-        batch=batch_lines(module, joints),
+        scalar=scalar_lines(module),
+        batch=batch_lines(module),
         routines=sorted({lv.call.routine for lv in program.levels if lv.call is not None}),
-        used=used_inputs(program),
         seeds=_seed_rows(module),
         shape=[level.branches for level in program.levels[1:]],
-        frames=[
-            [[expression(SCALAR, x) for x in row] for row in F] for F in frame_entries(module.dh)
-        ],
+        frames=[[[expression(SCALAR, x) for x in row] for row in F] for F in program.frames],
         rows=[(row.driver, row.revolute, row.scale, row.offset.value) for row in module.dh.rows],
         number=number,
         literal=literal,
@@ -89,7 +83,9 @@ def _policy_values(policy: Policy) -> list[tuple[str, str]]:
 def _parameters(module: SolverModule) -> list[tuple[str, str]]:
     """Name and text of the arm's constants but those to be filled in."""
     angles = {f"{f}_{n}": f"{f}({n})" for n in pairs(module) for f in ("cos", "sin")}
-    given = [(n, v) for n, v in module.program.parameters if n not in module.dh.symbols]
+    given = [
+        (p.name, p.value) for p in module.program.parameters if p.name not in module.dh.symbols
+    ]
     plain = [(n, number(v)) for n, v in given if n not in angles]
     return [*angles.items(), *plain]
 

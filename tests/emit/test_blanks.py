@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 
 from ikgen.cli.main import run
+from ikgen.emit.blanks import blanks
 from ikgen.emit.cpp.cpp_emitter import emit_header
+from ikgen.emit.derivation import Derivation
 from ikgen.emit.python.python_emitter import emit_module
-from ikgen.emit.symbolic_frames import blanks, frame_entries
 from ikgen.errors import IkgenError, UsageError
-from ikgen.generation.generation import with_samples
-from ikgen.generation.pipeline import Derivation, Request, derive
+from ikgen.generation.derive import derive
+from ikgen.generation.emitted_checks import with_samples
+from ikgen.generation.request import Request
 from ikgen.program.interpret import evaluate
 from ikgen.verify.runners.cpp_toolchain import find_compiler
 from ikgen.verify.runners.python_module import PythonModule
@@ -98,10 +100,10 @@ def test_generated_and_verified_with_samples(
 def test_frames_are_those_of_the_samples(twisted: Derivation) -> None:
     dh = twisted.reading.dh
     assert dh.symbols == ("h_1", "beta_", "l_1", "l_2")
-    names = dict(twisted.module.program.parameters)
+    names = {one.name: one.value for one in twisted.module.program.parameters}
     names |= {b.name: b.sample for b in blanks(twisted.module)}
     names |= {"cos_beta_": np.cos(names["beta_"]), "sin_beta_": np.sin(names["beta_"])}
-    for written, given in zip(frame_entries(dh), dh.file_frames, strict=True):
+    for written, given in zip(twisted.module.program.frames, dh.file_frames, strict=True):
         values = [[evaluate(x, names) for x in row] for row in written]
         np.testing.assert_allclose(values, given[:3], atol=1e-14)
 

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ikgen.cli.console import Console
-from ikgen.cli.options import (
-    chain_options,
-    console_options,
-    make_request,
-    parse_emit,
-    sampling_options,
-)
-from ikgen.errors import UnsolvedChainError, UsageError, VerificationError
-from ikgen.generation.generation import Generation, Outputs, generate
-from ikgen.generation.pipeline import Request
-from ikgen.generation.publish import left_over
+from ikgen.cli.options import chain_options, console_options, emit_option, sampling_options
+from ikgen.cli.request_options import make_request, parse_emit
+from ikgen.errors import UsageError
+from ikgen.generation.request import Outputs, is_table
+
+if TYPE_CHECKING:
+    from ikgen.generation.generate import Generation
 
 __all__ = ["from_dh", "from_urdf"]
 
@@ -30,9 +27,6 @@ _output = click.option(
     type=click.Path(path_type=Path),
     default=Path(),
     help="Where the outputs go (default: here).",
-)
-_emit = click.option(
-    "--emit", multiple=True, metavar="NAME,...", help="Outputs, for example python,cpp."
 )
 _depfile = click.option(
     "--depfile",
@@ -46,11 +40,17 @@ _depfile_target = click.option(
 _verify = click.option(
     "--no-verify", is_flag=True, help="Leave the verification out (and Pinocchio with it)."
 )
+_only = click.option(
+    "--only", is_flag=True, help="Make the outputs of --emit alone, not those made here before too."
+)
+_force = click.option(
+    "--force", is_flag=True, help="Replace outputs of another robot, chain or task."
+)
 
 _NOT_OF_TABLES = {
     "base": "--base",
     "tip": "--tip",
-    "arguments": "--arg",
+    "args": "--arg",
     "package_paths": "--package-path",
 }
 """Parameters of `from_dh` that a table has no use for, and the options that set them."""
@@ -59,8 +59,10 @@ _NOT_OF_TABLES = {
 @click.command("from-urdf")
 @click.argument("robot", type=click.Path(path_type=Path))
 @chain_options
-@_emit
+@emit_option
+@_only
 @_output
+@_force
 @_depfile
 @_depfile_target
 @sampling_options
@@ -68,7 +70,7 @@ _NOT_OF_TABLES = {
 @console_options
 def from_urdf(robot: Path, **options: Any) -> int:
     """Generate inverse kinematics from the URDF or xacro file ROBOT, and verify it."""
-    if robot.suffix.lower() == ".toml":
+    if is_table(robot):
         raise UsageError(f"{robot} is a TOML file", hint=f"a DH table? ikgen from-dh {robot}")
     return _run(robot, **options)
 
@@ -76,8 +78,10 @@ def from_urdf(robot: Path, **options: Any) -> int:
 @click.command("from-dh")
 @click.argument("table", type=click.Path(path_type=Path))
 @chain_options
-@_emit
+@emit_option
+@_only
 @_output
+@_force
 @_depfile
 @_depfile_target
 @sampling_options
@@ -85,7 +89,7 @@ def from_urdf(robot: Path, **options: Any) -> int:
 @console_options
 def from_dh(table: Path, **options: Any) -> int:
     """Generate inverse kinematics from the DH table TABLE (TOML), and verify it."""
-    if table.suffix.lower() != ".toml":
+    if not is_table(table):
         raise UsageError(f"{table} is not a TOML file", hint=f"a robot? ikgen from-urdf {table}")
     for parameter, option in _NOT_OF_TABLES.items():
         if options[parameter]:
@@ -97,7 +101,9 @@ def _run(
     robot: Path,
     *,
     emit: tuple[str, ...],
+    only: bool,
     out: Path,
+    force: bool,
     depfile: Path | None,
     depfile_target: str | None,
     samples: int,
@@ -109,27 +115,15 @@ def _run(
     **chain: Any,
 ) -> int:
     """The job of both commands; the exit code."""
-    request: Request = make_request(robot, **chain)
-    outputs = Outputs(parse_emit(emit), out, samples, seed, not no_verify)
-    try:
-        with Console(quiet=quiet, verbose=verbose) as console:
-            try:
-                generation = generate(request, outputs, console)
-            except UnsolvedChainError as error:
-                from ikgen.generation.remedies import helped
+    from ikgen.generation.generate import generate
+    from ikgen.generation.remedies import advised
 
-                raise helped(error, console) from None
-    except VerificationError as error:
-        if verbose:
-            from ikgen.cli.tables import verification_tables
-
-            click.echo(verification_tables(error.reports), err=True)
-        raise
-    for warning in generation.derivation.reading.source.warnings:
-        console.warn(warning)
-    module, names = generation.derivation.module, [path.name for path in generation.files]
-    for path in left_over(out, module.name, names):
-        console.warn(f"{path} is of an earlier run: remove it, or name its output in --emit too")
+    request = make_request(robot, **chain)
+    outputs = Outputs(parse_emit(emit), out, samples, seed, not no_verify, only, force)
+    with Console(quiet=quiet, verbose=verbose) as console, advised(request, console):
+        generation = generate(request, outputs, console)
+    for text in _warnings(generation):
+        console.warn(text)
     if depfile is not None:
         from ikgen.projects.depfile import write_depfile
 
@@ -140,15 +134,29 @@ def _run(
     return 0
 
 
+def _warnings(generation: Generation) -> list[str]:
+    """What was odd in the file, and what became of outputs of earlier runs."""
+    return [
+        *generation.derivation.reading.source.warnings,
+        *(f"removed {path}: an earlier run made it" for path in generation.removed),
+        *(
+            f"{path} is of an earlier run: remove it, or name its output in --emit too"
+            for path in generation.left
+        ),
+    ]
+
+
 def _report(generation: Generation, *, as_json: bool, quiet: bool, verbose: bool) -> None:
     """The end of the job, in words or as JSON."""
-    from ikgen.cli.summary import as_dict, summary, trace
+    from ikgen.cli.summary_text import summary
+    from ikgen.cli.tables import verification_tables
+    from ikgen.cli.trace_text import derivation_trace
+    from ikgen.generation.result import as_dict
 
     if verbose and not quiet:
-        click.echo(trace(generation), err=True)
+        click.echo(derivation_trace(generation.derivation.graph), err=True)
+        click.echo(verification_tables(generation.reports), err=True)
     if as_json:
-        import json
-
         click.echo(json.dumps(as_dict(generation), indent=2, allow_nan=False))
     elif not quiet:
         click.echo(summary(generation))
