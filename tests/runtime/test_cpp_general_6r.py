@@ -75,7 +75,7 @@ int main() {
     double f[g6::kNodes];
     for (double& x : f)
       if (std::scanf("%lf", &x) != 1) return 0;
-    const g6::Polynomial polynomial = g6::interpolate(f);
+    const g6::Polynomial polynomial = g6::interpolate(f, 0.0);
     const g6::Brackets found = g6::isolate(polynomial);
     g6::Roots roots;
     g6::refine_all(polynomial, found, roots);
