@@ -147,8 +147,8 @@ def _guards(step: Step, solved: Formula) -> list[Block]:
             "another form is taken there (below)."
             if step.fallbacks
             else (
-                "every value of the joint gives the pose, the seed's is taken (0 without one), and "
-                "the row is flagged singular."
+                "the seed's value is tried there (0 without one); only rows that give the pose are "
+                "returned, flagged singular where the arm itself is."
             )
         )
         out.append(
