@@ -86,7 +86,9 @@ def test_the_tree_of_another_package_takes_the_place_of_the_own(
 
 
 def test_two_trees_are_one_too_many(monkeypatch: pytest.MonkeyPatch) -> None:
-    entries = [EntryPoint(n, "tests.solver.test_plugged_in:documented_tree", "ikgen.trees") for n in "ab"]
+    entries = [
+        EntryPoint(n, "tests.solver.test_plugged_in:documented_tree", "ikgen.trees") for n in "ab"
+    ]
     monkeypatch.setattr(plugins, "entry_points", lambda group: entries)
     with pytest.raises(PlugInError, match="several"):
         the_tree()
