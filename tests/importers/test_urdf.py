@@ -344,7 +344,9 @@ def test_a_cycle_of_ten_thousand_joints_is_named_in_short(read):
         joint(LIMIT, name=f"j{i}", parent=f"l{i}", child=f"l{(i + 1) % count}")
         for i in range(count)
     ]
-    with pytest.raises(BadDescriptionError, match=r"cycle: j1 -> j2 .* 9988 more .* -> j0") as caught:
+    with pytest.raises(
+        BadDescriptionError, match=r"cycle: j1 -> j2 .* 9988 more .* -> j0"
+    ) as caught:
         read(robot(*joints, links=[f"l{i}" for i in range(count)]))
     assert len(caught.value.message) < 500
 

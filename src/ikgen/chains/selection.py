@@ -13,14 +13,12 @@ from ikgen.chains.mimic import Coupling, couple
 from ikgen.errors import UnknownNameError, UnsupportedJointError, UsageError
 from ikgen.importers.urdf.topology import TreeIndex
 from ikgen.importers.xml_document import shown_file
-from ikgen.model.chain import Chain
+from ikgen.model.chain import MOST_AXES, Chain
 from ikgen.model.joint_tree import Joint, JointTree, JointType
 
 __all__ = ["ChainCandidate", "candidate_chains", "select_chain"]
 
 _NONE: Mapping[str, float] = MappingProxyType({})
-_MOST_AXES = 16
-"""The most moving axes of a chain; each more takes a derivation half as long again."""
 
 
 def select_chain(
@@ -73,10 +71,10 @@ def _check_types(tree: JointTree, path: Sequence[Joint]) -> None:
 
 def _check_length(path: Sequence[Joint], locked: Mapping[str, float]) -> None:
     moving = [j for j in path if j.type.moves_on_one_axis and j.name not in locked]
-    if len(moving) > _MOST_AXES:
+    if len(moving) > MOST_AXES:
         raise UsageError(
             f"{len(moving)} joints move between '{path[0].parent}' and '{path[-1].child}', more than "
-            f"{_MOST_AXES}",
+            f"{MOST_AXES}",
             hint="choose nearer links by --base and --tip, or fix joints by --lock JOINT=VALUE",
         )
 

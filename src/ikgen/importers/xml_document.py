@@ -72,7 +72,7 @@ def shown_file(source: Source) -> str:
     return f"{source.path} (expanded)" if source.kind == "xacro" else str(source.path)
 
 
-def read_text(path: Path, largest: int = LARGEST_FILE) -> str:
+def read_text(path: Path, largest: int = LARGEST_FILE, *, may_be_empty: bool = False) -> str:
     """The decoded text of a file of at most `largest` bytes; line ends are as in Unix, whatever git
     made of them. Raises `BadDescriptionError`, also for pipes and devices, which may never end."""
     try:
@@ -89,7 +89,7 @@ def read_text(path: Path, largest: int = LARGEST_FILE) -> str:
         reason = getattr(error, "strerror", None) or str(error)
         raise BadDescriptionError(reason, file=str(path)) from None
     text = _decode(data, path).replace("\r\n", "\n").replace("\r", "\n")
-    if not text.strip():
+    if not text.strip() and not may_be_empty:
         raise BadDescriptionError("the file is empty", file=str(path))
     return text
 

@@ -24,9 +24,9 @@ class BadValueError(ValueError):
         self.hint = hint
 
 
-def shortened(text: str) -> str:
-    """A text as messages show it: its beginning, where it is long."""
-    return text if len(text) <= _LONGEST_SHOWN else f"{text[:_LONGEST_SHOWN]}..."
+def shortened(text: str, longest: int = _LONGEST_SHOWN) -> str:
+    """A text as messages show it: its beginning, where it is longer than `longest`."""
+    return text if len(text) <= longest else f"{text[:longest]}..."
 
 
 def parse_numbers(

@@ -7,15 +7,15 @@ import math
 from ikgen.importers.urdf.attribute_values import BadValueError
 from ikgen.model.joint_tree import JointType, Limits
 
-__all__ = ["UNLIMITED", "joint_limits"]
+__all__ = ["FARTHEST", "UNLIMITED", "joint_limits"]
 
 UNLIMITED = Limits(-math.inf, math.inf)
 
 # Two turns either way; robots that state more than that mean degrees (or no limit at all).
 _DEGREES_ABOVE = 4.0 * math.pi + 1e-6
 _NO_LIMIT_FROM = 1e3
-# Neighbouring doubles are 1e-10 apart here: no joint value beyond this is exact.
-_FARTHEST = 1e6
+FARTHEST = 1e6
+"""Neighbouring doubles are 1e-10 apart here: no joint value beyond this (rad or m) is exact."""
 
 
 def joint_limits(
@@ -41,7 +41,7 @@ def joint_limits(
     if low > high:
         notes.append(f"lower limit {low:g} is above the upper limit {high:g}: swapped")
         low, high = high, low
-    if low > _FARTHEST or high < -_FARTHEST:
+    if low > FARTHEST or high < -FARTHEST:
         raise BadValueError(
             f"limits {low:g} to {high:g} hold no value that can be told from its neighbours",
             "write limits in rad or m",
