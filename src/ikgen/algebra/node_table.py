@@ -36,12 +36,14 @@ class NodeTable:
         node.value = value
         return self._register(key, node)
 
-    def param(self, name: str, value: float) -> Expr:
-        """A named constant of the arm, such as `a_2`, with its value attached."""
+    def param(self, name: str, value: float, probe: Probe | None = None) -> Expr:
+        """A named constant of the arm, such as `a_2`, with its value attached. `probe` are its values at
+        the probes where they are others: any that the structure allows, then the one that was meant."""
         key = ("param", name)
         if key in self._nodes:
             return self._nodes[key]
-        node = Expr("param", (), np.full(self.probes, value), abs(value), 0)
+        at = np.full(self.probes, value) if probe is None else np.array(probe, dtype=float)
+        node = Expr("param", (), at, float(np.max(np.abs(at))) if len(at) else abs(value), 0)
         node.name = name
         node.value = value
         return self._register(key, node)

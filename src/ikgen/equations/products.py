@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -34,7 +37,7 @@ class ChainProducts:
     """Products of `dh` over the graph's atoms, those of the pose included.
 
     `pose` (probes, 4, 4) are the probes' poses in DH frames; `readable` names the entries of the pose
-    that the task reads: the others are unknowns that nothing solves.
+    that the task reads: the others are unknowns that nothing solves; `kept` as in `Probes`.
     """
 
     def __init__(
@@ -46,11 +49,12 @@ class ChainProducts:
         *,
         readable: frozenset[str] = frozenset(ENTRY_NAMES),
         tool_on_right: bool = False,
+        kept: Mapping[str, NDArray[np.float64]] = MappingProxyType({}),
     ) -> None:
         self.graph = graph
         self.dh = dh
         self.n = len(dh.rows)
-        self.variables = JointVariables(graph, dh, values)
+        self.variables = JointVariables(graph, dh, values, kept)
         self.runs = runs_of(dh)
         self.readable = readable
         self.tool_on_right = tool_on_right

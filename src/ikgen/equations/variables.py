@@ -8,8 +8,10 @@ their sums ("sum of angles") appear as keys of their own when the matrices are b
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,10 +57,17 @@ class _RowVariable:
 class JointVariables:
     """Atoms for the variables of `dh`, with their values `theta` (probes, dof) at the probes."""
 
-    def __init__(self, graph: ExpressionGraph, dh: DHChain, values: NDArray[np.float64]) -> None:
+    def __init__(
+        self,
+        graph: ExpressionGraph,
+        dh: DHChain,
+        values: NDArray[np.float64],
+        kept: Mapping[str, NDArray[np.float64]] = MappingProxyType({}),
+    ) -> None:
         self.graph = graph
         self.dh = dh
         self.values = values
+        self.kept = kept
         self.count = dh.dof
         self.primary: list[DHRow] = []
         for j in range(dh.dof):
@@ -152,7 +161,7 @@ class JointVariables:
         g = self.graph
         if length.name is None:
             return g.const(length.value)
-        node = g.param(length.name, length.sign * length.value)
+        node = g.param(length.name, length.sign * length.value, self.kept.get(length.name))
         return node if length.sign > 0 else g.neg(node)
 
     def angle(self, angle: Angle) -> tuple[Expr, Expr]:
@@ -161,4 +170,9 @@ class JointVariables:
         c, s = exact_cos_sin(angle.value)
         if angle.name is None:
             return g.const(c), g.const(s)
-        return g.param(f"cos_{angle.name}", c), g.param(f"sin_{angle.name}", s)
+        cosine, sine = f"cos_{angle.name}", f"sin_{angle.name}"
+        probe = self.kept.get(angle.name)
+        if probe is None:
+            return g.param(cosine, c), g.param(sine, s)
+        pairs = np.array([exact_cos_sin(x) for x in probe]).T
+        return g.param(cosine, c, pairs[0]), g.param(sine, s, pairs[1])

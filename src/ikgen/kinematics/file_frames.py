@@ -10,7 +10,7 @@ from ikgen.model.chain import Chain
 from ikgen.model.dh import DHChain, DHRow
 from ikgen.model.joint_tree import Matrix
 
-__all__ = ["file_frames", "largest_deviation", "random_configurations"]
+__all__ = ["file_frames", "frames_beside", "largest_deviation", "random_configurations"]
 
 _SAMPLES = 64
 _SEED = 20180513
@@ -32,20 +32,47 @@ def file_frames(
     B_i^-1) T(0)`, the product of exponentials (Lynch and Park, Modern Robotics, section 4.1), is
     then regrouped.
     """
+    axes, T = [], np.eye(4)
+    for axis, sign in zip(chain.axes, signs, strict=True):
+        T = T @ axis.T_prev_axis
+        axes.append((T, sign * axis.axis))
+    return _frames(axes, T @ chain.T_last_tip, rows, offsets, ends)
+
+
+def frames_beside(
+    dh: DHChain, rows: tuple[DHRow, ...], ends: tuple[Matrix, Matrix]
+) -> tuple[Matrix, ...]:
+    """The constants of the file's chain of `dh`, written with the variables of other `rows`."""
+    axes, T, z = [], np.eye(4), np.array([0.0, 0.0, 1.0])
+    for F, row in zip(dh.file_frames, dh.rows, strict=False):
+        T = T @ F
+        axes.append((T, z))
+        T = T @ _motion(row.revolute, row.offset.value)
+    offsets = tuple(row.offset.value for row in rows)
+    return _frames(axes, T @ dh.file_frames[-1], rows, offsets, ends)
+
+
+def _frames(
+    axes: list[tuple[Matrix, Matrix]],
+    T_home: Matrix,
+    rows: tuple[DHRow, ...],
+    offsets: tuple[float, ...],
+    ends: tuple[Matrix, Matrix],
+) -> tuple[Matrix, ...]:
+    """The constants between the `axes` (frame and direction in it), the tip being at `T_home`."""
     X_base, X_tip = ends
     nominal = [X_base, *(row_constant(row) for row in rows[1:]), X_tip]
     F: list[Matrix] = []
-    pending, T_axis, T_dh = np.eye(4), np.eye(4), X_base
-    for i, axis in enumerate(chain.axes):
-        T_axis = T_axis @ axis.T_prev_axis
+    pending, T_dh = np.eye(4), X_base
+    for i, ((T_axis, axis), row) in enumerate(zip(axes, rows, strict=True)):
         if i:
-            T_dh = T_dh @ row_constant(rows[i])
-        home = _motion(rows[i].revolute, offsets[i])
+            T_dh = T_dh @ row_constant(row)
+        home = _motion(row.revolute, offsets[i])
         T_dh = T_dh @ home
-        B = _nearest_frame(T_dh, T_axis, signs[i] * axis.axis, rows[i].revolute)
+        B = _nearest_frame(T_dh, T_axis, axis, row.revolute)
         F.append(pending @ B @ inverse(home))
         pending = inverse(B)
-    F.append(pending @ T_axis @ chain.T_last_tip)
+    F.append(pending @ T_home)
     return tuple(_read_only(_clean(f, exact)) for f, exact in zip(F, nominal, strict=True))
 
 

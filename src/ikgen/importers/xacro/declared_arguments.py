@@ -4,65 +4,35 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
-from ikgen.errors import BadDescriptionError, IkgenError
+from ikgen.errors import IkgenError
 from ikgen.importers.packages import PACKAGE_URL, PackageFinder, PackageNotFoundError
 from ikgen.importers.xacro.package_fence import PackageFence
 from ikgen.importers.xacro.refusals import RefusedFileError
 from ikgen.importers.xml_document import local_name, parse_xml, read_text
 
-__all__ = ["DeclaredArgument", "declared_arguments", "with_arguments"]
+__all__ = ["declared_arguments"]
 
 _USE = re.compile(r"\$\(arg\s+([^)\s$]+)\s*\)")
 _FIND = re.compile(r"\$\(find\s+([^)\s]+)\s*\)")
 _MOST_FILES = 50
-_MOST_SHOWN = 12
 
 
-@dataclass(frozen=True, slots=True)
-class DeclaredArgument:
-    """One `<xacro:arg>`: its name and the text of its default, None where a value must be given."""
+def declared_arguments(path: Path, package_paths: Sequence[Path] = ()) -> dict[str, str | None]:
+    """Argument -> the text of its default (None: it has none), of a xacro file and of what it includes
+    by plain names, in the files' order.
 
-    name: str
-    default: str | None
-
-
-def declared_arguments(
-    path: Path, package_paths: Sequence[Path] = ()
-) -> tuple[DeclaredArgument, ...]:
-    """The arguments of a xacro file and of what it includes by plain names, in the files' order.
-
-    Nothing is evaluated: includes whose names hang on arguments are passed over, and so is what
-    cannot be read.
+    Nothing is evaluated: includes whose names hang on arguments are passed over, and so is what cannot
+    be read.
     """
     top = path.resolve()
-    return _declared(top, PackageFinder(top, tuple(package_paths)))
-
-
-def with_arguments(
-    error: BadDescriptionError, path: Path, finder: PackageFinder
-) -> BadDescriptionError:
-    """An error of an expansion, its hint with the arguments that the file takes."""
-    taken = _declared(path.resolve(), finder)
-    if not taken:
-        return error
-    words = [
-        one.name if one.default is None else f"{one.name} ({one.default or 'empty'})"
-        for one in taken[:_MOST_SHOWN]
-    ]
-    more = [f"and {len(taken) - _MOST_SHOWN} more"] if len(taken) > _MOST_SHOWN else []
-    hint = f"{error.hint}; the file takes the arguments: {', '.join([*words, *more])}"
-    return BadDescriptionError(error.problem, file=error.file, line=error.line, hint=hint)
-
-
-def _declared(top: Path, finder: PackageFinder) -> tuple[DeclaredArgument, ...]:
+    finder = PackageFinder(top, tuple(package_paths))
     found: dict[str, str | None] = {}
     for name, default in _arguments(top, finder, PackageFence(top, finder), set()):
         if found.get(name) is None:
             found[name] = default
-    return tuple(DeclaredArgument(name, default) for name, default in found.items())
+    return found
 
 
 def _arguments(

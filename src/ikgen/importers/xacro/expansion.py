@@ -10,7 +10,6 @@ from pathlib import Path
 from ikgen.errors import IkgenError
 from ikgen.importers.packages import PackageFinder
 from ikgen.importers.urdf.urdf_tree import parse_urdf
-from ikgen.importers.xacro.declared_arguments import with_arguments
 from ikgen.importers.xacro.expansion_errors import explain
 from ikgen.importers.xacro.expansion_session import Arguments, Session
 from ikgen.importers.xml_document import Element, children, parse_xml, read_text
@@ -82,8 +81,7 @@ def expand(
     except IkgenError:
         raise
     except Exception as error:  # the file's own expressions can raise anything
-        explained = explain(error, session.files, session.includes, path, known)
-        raise with_arguments(explained, path, finder) from error
+        raise explain(error, session.files, session.includes, path, known) from error
     warnings = list(session.warnings)
     for name in sorted(set(arguments) - known.used):
         declared = ", ".join(sorted(known.used)) or "none"
