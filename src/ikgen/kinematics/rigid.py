@@ -6,6 +6,7 @@ Functions of joint values take one value or an array (...,) of them and give (..
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +15,7 @@ from ikgen.model.joint_tree import Matrix
 
 __all__ = [
     "axis_motion",
+    "coordinate_motion",
     "cross_matrix",
     "dh_link",
     "exact_cos_sin",
@@ -80,7 +82,7 @@ def rotation_about(axis: Matrix, angle: ArrayLike) -> Matrix:
     formula; Lynch and Park, Modern Robotics, section 3.2.3)."""
     K = cross_matrix(axis)
     angles = np.asarray(angle, dtype=np.float64)[..., None, None]
-    return np.asarray(np.eye(3) + np.sin(angles) * K + (1.0 - np.cos(angles)) * (K @ K))
+    return np.asarray(np.eye(3) + (np.sin(angles) * K + (1.0 - np.cos(angles)) * (K @ K)))
 
 
 def axis_motion(revolute: bool, axis: Matrix, value: ArrayLike) -> Matrix:
@@ -93,30 +95,44 @@ def axis_motion(revolute: bool, axis: Matrix, value: ArrayLike) -> Matrix:
     return T
 
 
-def z_motion(revolute: bool, value: ArrayLike) -> Matrix:
-    """Rotation about or translation along z, (..., 4, 4)."""
+def coordinate_motion(revolute: bool, axis: int, value: ArrayLike) -> Matrix:
+    """Rotation about or translation along x, y or z (`axis` 0, 1, 2), (..., 4, 4)."""
     T = _identities(np.shape(value))
-    if revolute:
-        T[..., 0, 0] = T[..., 1, 1] = np.cos(value)
-        T[..., 1, 0] = np.sin(value)
-        T[..., 0, 1] = -T[..., 1, 0]
-    else:
-        T[..., 2, 3] = value
+    if not revolute:
+        T[..., axis, 3] = value
+        return T
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    T[..., i, i] = T[..., j, j] = np.cos(value)
+    T[..., j, i] = np.sin(value)
+    T[..., i, j] = -T[..., j, i]
     return T
 
 
-def dh_link(alpha: float, a: float, theta: float, d: float) -> Matrix:
-    """`Rx(alpha) Tx(a) Rz(theta) Tz(d)` (4, 4): a row of modified Denavit-Hartenberg parameters
-    (Craig, Introduction to Robotics, section 3.4)."""
-    (ca, sa), (ct, st) = exact_cos_sin(alpha), exact_cos_sin(theta)
-    return np.array(
-        [
-            [ct, -st, 0.0, a],
-            [st * ca, ct * ca, -sa, -d * sa],
-            [st * sa, ct * sa, ca, d * ca],
-            [0.0, 0.0, 0.0, 1.0],
-        ]
+def z_motion(revolute: bool, value: ArrayLike) -> Matrix:
+    """Rotation about or translation along z, (..., 4, 4)."""
+    return coordinate_motion(revolute, 2, value)
+
+
+def dh_link(alpha: ArrayLike, a: ArrayLike, theta: ArrayLike, d: ArrayLike) -> Matrix:
+    """`Rx(alpha) Tx(a) Rz(theta) Tz(d)` (..., 4, 4): a row of modified Denavit-Hartenberg parameters
+    (Craig, Introduction to Robotics, section 3.4), each a number or an array (...,)."""
+    (ca, sa), (ct, st) = _cos_sin(alpha), _cos_sin(theta)
+    rows = (
+        (ct, -st, 0.0, a),
+        (st * ca, ct * ca, -sa, -np.asarray(d) * sa),
+        (st * sa, ct * sa, ca, d * ca),
     )
+    T = _identities(np.broadcast_shapes(*map(np.shape, (alpha, a, theta, d))))
+    for i, row in enumerate(rows):
+        for j, entry in enumerate(row):
+            T[..., i, j] = entry
+    return T
+
+
+def _cos_sin(angle: ArrayLike) -> tuple[Any, Any]:
+    if np.ndim(angle):
+        return np.cos(angle), np.sin(angle)
+    return exact_cos_sin(float(np.asarray(angle)))
 
 
 def read_only(matrix: ArrayLike) -> Matrix:

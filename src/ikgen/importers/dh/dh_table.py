@@ -16,7 +16,7 @@ from ikgen.importers.dh.table_chain import TableEnds, chain_of_rows, exact_chain
 from ikgen.importers.dh.table_document import TableDocument, read_document
 from ikgen.importers.dh.table_entries import Entry, locked_entries, read_entries, read_parameters
 from ikgen.kinematics.classify import parallel_to_previous, same_line_as_previous
-from ikgen.kinematics.snapping import exact_cos_sin
+from ikgen.kinematics.rigid import rotation_rpy
 from ikgen.model.chain import MOST_AXES
 from ikgen.model.dh import DHChain
 from ikgen.model.joint_tree import Matrix, Source
@@ -119,14 +119,8 @@ def _transform(document: TableDocument, table: str) -> Matrix:
     """The transform (4, 4) of [base] or [tool]: xyz in m, rpy in rad as in URDF."""
     end = document.data.get(table, {})
     x = _triple(document, table, "xyz", end)
-    roll, pitch, yaw = _triple(document, table, "rpy", end)
-    (cr, sr), (cp, sp), (cy, sy) = map(exact_cos_sin, (roll, pitch, yaw))
     T = np.eye(4)
-    T[:3, :3] = [
-        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-        [-sp, cp * sr, cp * cr],
-    ]
+    T[:3, :3] = rotation_rpy(*_triple(document, table, "rpy", end))
     T[:3, 3] = x
     return T
 
