@@ -13,8 +13,8 @@ from itertools import product
 
 import numpy as np
 
-from ikgen.elimination.routine import _namespace
 from ikgen.model.joint_tree import Matrix
+from ikgen.runtime.python.loop_equations import loop_constants, loop_equations
 
 __all__ = ["RESULTANTS", "Resultant", "root_shifts"]
 
@@ -56,9 +56,8 @@ def _shifts(frames: Matrix, poses: Matrix, q: Matrix, plan: Resultant) -> Matrix
 def _pencil(frames: Matrix, poses: Matrix, plan: Resultant) -> tuple[list[int], Matrix]:
     """The order of the loop's joints, and the equations (3, N, 6, 9) in (1, c4, s4) x (1, c5, s5),
     their terms in 1, cos and sin of the hidden angle."""
-    space = _namespace()
-    order, C = space["_g6_loop"](frames, poses, *plan)
-    E, left, _ = space["_g6_equations"](C)
+    order, C = loop_constants(frames, poses, *plan)
+    E, left, _ = loop_equations(C)
     z, xs, ys = slice(8, 14), slice(0, 4), slice(4, 8)
     plain = E[..., z] @ left[:, z]
     plain[..., 0] += E[..., 14]

@@ -8,6 +8,7 @@ their sums ("sum of angles") appear as keys of their own when the matrices are b
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass
 from fractions import Fraction
 from types import MappingProxyType
@@ -61,6 +62,12 @@ class JointVariables:
             self.primary.append(next(row for row in dh.rows if row.driver == j))
         self._rows = [self._row_variable(row) for row in dh.rows]
         self.group = self._groups()
+
+    def over(self, graph: ExpressionGraph) -> JointVariables:
+        """The same variables as atoms of a graph that has all nodes of this one's."""
+        other = copy(self)
+        other.graph = graph
+        return other
 
     def _row_variable(self, row: DHRow) -> _RowVariable:
         first = self.primary[row.driver]
