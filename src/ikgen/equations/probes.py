@@ -14,6 +14,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.kinematics.rigid import dh_link
 from ikgen.model.dh import Angle, DHChain, Length
 
 __all__ = ["Probes", "arm_size", "dh_pose", "make_probes", "smallest_singular"]
@@ -39,23 +40,6 @@ class Probes:
     kept: Kept = field(default_factory=lambda: _NONE)
 
 
-def _transform(
-    alpha: float | NDArray[np.float64],
-    a: float | NDArray[np.float64],
-    theta: NDArray[np.float64],
-    d: NDArray[np.float64],
-) -> NDArray[np.float64]:
-    ca, sa, ct, st = np.cos(alpha), np.sin(alpha), np.cos(theta), np.sin(theta)
-    zero, one = np.zeros_like(ct), np.ones_like(ct)
-    rows = [
-        [ct, -st, zero, a * one],
-        [st * ca, ct * ca, -sa * one, -sa * d],
-        [st * sa, ct * sa, ca * one, ca * d],
-        [zero, zero, zero, one],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
-
-
 def _constant(x: Angle | Length, kept: Kept) -> float | NDArray[np.float64]:
     """The constant's signed value: the one at each probe, or the one that was meant."""
     if x.name is None or x.name not in kept:
@@ -75,7 +59,7 @@ def dh_pose(dh: DHChain, values: NDArray[np.float64], kept: Kept = _NONE) -> NDA
         v = ratio * (values[:, row.driver] - lead.offset.value) + row.offset.value
         theta = v if row.revolute else np.full(count, row.theta.value)
         d = np.zeros(count) + _constant(row.d, kept) if row.revolute else v
-        T = T @ _transform(_constant(row.alpha, kept), _constant(row.a, kept), theta, d)
+        T = T @ dh_link(_constant(row.alpha, kept), _constant(row.a, kept), theta, d)
     return T
 
 
