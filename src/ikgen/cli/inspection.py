@@ -77,9 +77,22 @@ def _chain(dh: DHChain) -> list[str]:
         rows = [(s.what, f"{s.before:.12g}", "->", f"{s.after:.12g}") for s in dh.snaps]
         cost = f"moves the tip by at most {1e3 * metres:.2g} mm and {radians:.2g} rad"
         parts.append(f"taken as exact ({cost}):\n{table(rows)}")
+        parts += _kept(dh)
     else:
         parts.append("taken as exact: nothing")
     return parts
+
+
+def _kept(dh: DHChain) -> list[str]:
+    """Constants that a closed form may leave as they are."""
+    from ikgen.kinematics.kept import keep_constants, kept_constants, stray_lengths
+
+    nearest = keep_constants(dh, stray_lengths(dh))
+    rows = [(s.what, f"{s.before:.12g}", "for", f"{s.after:.12g}") for s in kept_constants(nearest)]
+    metres, radians = nearest.deviation
+    cost = f"then the tip is within {1e3 * metres:.2g} mm and {radians:.2g} rad"
+    lead = f"kept as in the file where the closed form can do with them ({cost})"
+    return [f"{lead}:\n{table(rows)}"] if rows else []
 
 
 def _advice(findings: Findings, dh: DHChain) -> str:
@@ -143,8 +156,10 @@ def as_dict(findings: Findings) -> dict[str, Any]:
 
 def _chain_dict(dh: DHChain) -> dict[str, Any]:
     from ikgen.kinematics.classify import classify
+    from ikgen.kinematics.kept import keep_constants, kept_constants, stray_lengths
 
     geometry = classify(dh)
+    kept = kept_constants(keep_constants(dh, stray_lengths(dh))) if dh.snaps else ()
     return {
         "base": dh.base_link,
         "tip": dh.tip_link,
@@ -154,6 +169,7 @@ def _chain_dict(dh: DHChain) -> dict[str, Any]:
         "dh": [_row_dict(row) for row in dh.rows],
         "constants": constants(dh),
         "snaps": [{"what": s.what, "before": s.before, "after": s.after} for s in dh.snaps],
+        "kept": [{"what": s.what, "value": s.before, "meant": s.after} for s in kept],
         "deviation": {"m": dh.deviation[0], "rad": dh.deviation[1]},
     }
 
