@@ -458,9 +458,12 @@ template <int P> struct Pose {
   Lanes<P> t[3][4];
 };
 
+// What DH variables take that a pose leaves free.
 struct Seed {
+
   Seed() = default;
-  explicit Seed(const double*) noexcept {}
+  explicit Seed([[maybe_unused]] const double* q) noexcept {
+  }
 };
 
 // Where joint values must lie.
@@ -522,13 +525,12 @@ template <int N, class X, class Y> [[gnu::always_inline]] inline auto meeting(co
 }
 
 template <int P>
-inline void branches(const Pose<P>& pose, const Seed& seed, const std::array<double, kFree>& held,
-                     const Range& range, Rows<P>& rows) noexcept {
+inline void branches(const Pose<P>& pose, [[maybe_unused]] const Seed& seed,
+                     [[maybe_unused]] const std::array<double, kFree>& held, [[maybe_unused]] const Range& range,
+                     Rows<P>& rows) noexcept {
   const auto t03 = pose.t[0][3];
   const auto t13 = pose.t[1][3];
   const auto t23 = pose.t[2][3];
-  static_cast<void>(seed);
-  static_cast<void>(held);
 
   // the radius
   const auto c1 = t03 / a_2;
@@ -539,14 +541,14 @@ inline void branches(const Pose<P>& pose, const Seed& seed, const std::array<dou
   const auto real_1 = (1e-09 > abs(error));
 
   // joint values, each on the turn inside its limits
-  const auto q1 = place(0, angle(s1, c1), range);
-  const auto q2 = clamp(1, t23, range);
+  const auto placed_1 = place(0, angle(s1, c1), range);
+  const auto placed_2 = clamp(1, t23, range);
 
   constexpr int n = Rows<P>::kLanes;
-  store(spread<n>(q1.q), rows.q[0]);
-  store(spread<n>(q2.q), rows.q[1]);
+  store(spread<n>(placed_1.q), rows.q[0]);
+  store(spread<n>(placed_2.q), rows.q[1]);
 
-  const auto inside = q1.inside & q2.inside;
+  const auto inside = placed_1.inside & placed_2.inside;
   const auto found = bit(real_1, kReal) + bit(real_1 & inside, kFound);
   constexpr double degenerate = 0.0;
   const auto alike = bit(real_1 & (meeting<2 * P>(c1, s1)), kAlike);

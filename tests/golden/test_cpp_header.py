@@ -10,8 +10,10 @@ import numpy as np
 
 from ikgen.emit.cpp.cpp_emitter import emit_header
 from ikgen.emit.solver_module import SolverModule
+from ikgen.lowering.frames import file_frames
 from ikgen.program.ops import Op
-from ikgen.program.statements import Comment, JointOutput, Let, Level, Program, Require
+from ikgen.program.inputs import PoseEntry
+from ikgen.program.statements import Comment, Constant, JointOutput, Let, Level, Program, Require
 from ikgen.kinematics.forward import row_constant
 from ikgen.model.chain import ActuatedJoint
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
@@ -37,9 +39,10 @@ def pan_lift() -> SolverModule:
     root = Op("sqrt", (Op("sub", (1.0, Op("mul", ("c1", "c1")))),))
     program = Program(
         name="pan_lift",
-        parameters=(("a_2", 0.3),),
+        parameters=(Constant("a_2", 0.3),),
         constants=(),
-        inputs=("t03", "t13", "t23"),
+        inputs=(PoseEntry(0, 3), PoseEntry(1, 3), PoseEntry(2, 3)),
+        prelude=(),
         levels=(
             Level(1, None, None, (Comment("the radius"), Let("c1", Op("div", ("t03", "a_2"))))),
             Level(
@@ -51,10 +54,12 @@ def pan_lift() -> SolverModule:
                     Let("error", Op("sub", (Op("mul", ("a_2", "s1")), "t13"))),
                     Require(Op("gt", (1e-9, Op("abs", ("error",))))),
                 ),
+                ("c1", "s1"),
             ),
         ),
-        outputs=(JointOutput(0, True, "c1", "s1"), JointOutput(1, False, "t23", 0.0)),
+        outputs=(JointOutput(0, Op("atan2", ("s1", "c1"))), JointOutput(1, "t23")),
         singular=(),
+        frames=file_frames(dh),
     )  # fmt: skip
     return SolverModule(
         "pan_lift", program, dh, "position", (), (), "pan_lift.urdf", "0" * 64, "0", "pan and lift"

@@ -12,12 +12,14 @@ from pathlib import Path
 import pytest
 
 from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.emit.derivation import Derivation
+from ikgen.formulas.normal_form import Normalizer, Sum
+from ikgen.formulas.notation import show
+from ikgen.generation.derive import derive
 from ikgen.generation.emitters import find_emitter
-from ikgen.generation.pipeline import Derivation, Request, derive
+from ikgen.generation.request import Request
 from ikgen.report import emit_report
 from ikgen.report.layout import layout
-from ikgen.report.normal_form import Normalizer, Sum
-from ikgen.report.notation import show
 from ikgen.report.solution_sets import versions_of
 from ikgen.verify.verification_report import CheckResult, VerificationReport
 
@@ -26,7 +28,7 @@ TABLES = {
     "puma": ROOT / "urdf_fixtures" / "puma560_paper.toml",
     "symbolic": ROOT / "urdf_fixtures" / "puma560_symbolic.toml",
     "olson": ROOT / "urdf_fixtures" / "olson13.toml",
-    "quartic": ROOT / "tests" / "robots" / "tables" / "Parkman13.toml",
+    "quartic": ROOT / "tests" / "robots" / "tables" / "ArmRobo.toml",
     "general twists": ROOT / "tests" / "robots" / "tables" / "Raven-II.toml",
     "elimination": ROOT / "tests" / "robots" / "tables" / "Issue4.toml",
     "sums": ROOT / "tests" / "robots" / "tables" / "UR5.toml",

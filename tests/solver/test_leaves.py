@@ -9,6 +9,7 @@ import pytest
 from tests.support.solving import emitted
 
 from ikgen.equations.probes import dh_pose
+from ikgen.importers.dh.dh_table import read_dh_table
 from ikgen.model.chain import PRISMATIC, REVOLUTE, ActuatedJoint
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
 from ikgen.model.joint_tree import Limits
@@ -16,6 +17,7 @@ from ikgen.solver.leaves import LEAVES
 from ikgen.solver.ranker import PREFERENCE
 from ikgen.solver.solve import solve_chain
 
+TABLES = Path(__file__).resolve().parents[1] / "robots/tables"
 Row = tuple[str, str, float, float]
 
 
@@ -50,11 +52,11 @@ def table(*rows: Row) -> DHChain:
 SPHERICAL = (("R", "-1", 0.0, 0.4), ("R", "1", 0.0, 0.0), ("R", "-1", 0.0, 0.0))
 CASES: dict[str, tuple[set[str], tuple[Row, ...]]] = {
     "two sliding joints": (
-        {"algebraic"},
+        {"algebraic", "simultaneous"},
         (("P", "0", 0.0, 0.0), ("P", "1", 0.0, 0.0), ("R", "1", 0.2, 0.0)),
     ),
     "planar arm": (
-        {"simultaneous", "sine or cosine", "x2y2"},
+        {"simultaneous", "x2y2"},
         (("R", "0", 0.0, 0.0), ("R", "0", 0.5, 0.0), ("R", "0", 0.4, 0.0)),
     ),
     "spherical wrist": (
@@ -62,7 +64,7 @@ CASES: dict[str, tuple[set[str], tuple[Row, ...]]] = {
         (("R", "0", 0.0, 0.0), ("R", "-1", 0.1, 0.0), ("R", "0", 0.5, 0.1), *SPHERICAL),
     ),
     "elbow not parallel to the shoulder": (
-        {"quartic", "tangent"},
+        {"quartic", "simultaneous", "tangent"},
         (("R", "0", 0.0, 0.0), ("R", "-1", 0.3, 0.1), ("R", "1", 0.5, 0.2), *SPHERICAL),
     ),
 }
@@ -74,7 +76,7 @@ def test_leaves_solve_what_they_are_for(name: str, tmp_path: Path) -> None:
     dh = table(*rows)
     graph = solve_chain(dh)
     assert not graph.open_joints
-    assert {s.candidate.leaf for s in graph.steps} & leaves
+    assert {s.candidate.leaf for s in graph.steps} == leaves
     module = emitted(dh, tmp_path)
     q = np.random.default_rng(0).uniform(-2.0, 2.0, (60, dh.dof))
     for at, pose in zip(q, dh_pose(dh, q), strict=True):
@@ -85,10 +87,21 @@ def test_leaves_solve_what_they_are_for(name: str, tmp_path: Path) -> None:
         assert gap.max(axis=1).min() < 1e-6
 
 
-def test_no_unknown_is_solved_twice() -> None:
-    for _, rows in CASES.values():
-        steps = solve_chain(table(*rows)).steps
-        assert len({s.candidate.unknown for s in steps}) == len(steps)
+@pytest.mark.parametrize(
+    ("leaf", "case"),
+    [("sine and cosine", "planar arm"), ("quartic", "elbow not parallel to the shoulder")],
+)
+def test_without_its_leaf_an_arm_stays_open(leaf: str, case: str) -> None:
+    others = [one for one in LEAVES if one.name != leaf]
+    assert solve_chain(table(*CASES[case][1]), leaves=others).open_joints
+
+
+def test_every_leaf_solves_some_arm() -> None:
+    chains = [table(*rows) for _, rows in CASES.values()]
+    chains.append(read_dh_table(TABLES / "Wachtveitl.toml", free=(), locked={})[1])
+    assert {leaf.name for leaf in LEAVES} <= {
+        step.candidate.leaf for dh in chains for step in solve_chain(dh).steps
+    }
 
 
 def test_a_divisor_that_vanishes_at_right_angles_is_never_taken_alone() -> None:

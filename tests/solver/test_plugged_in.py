@@ -3,39 +3,39 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from importlib.metadata import EntryPoint
 from pathlib import Path
 
+import numpy as np
 import pytest
 from tests.solver.test_leaves import CASES, table
+from tests.support.solving import import_text, module_of
 
 from ikgen import plugins
-from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
-from ikgen.equations.matching import powers
+from ikgen.emit.python.python_emitter import emit_module
 from ikgen.errors import PlugInError
+from ikgen.importers.dh.dh_table import read_dh_table
 from ikgen.solver import leaves
 from ikgen.solver.behavior_tree import Tree, the_tree
-from ikgen.solver.candidate import Candidate
 from ikgen.solver.leaves import LEAVES, Leaf
 from ikgen.solver.solve import solve_chain
 
-
-def find_slide(
-    equations: Sequence[PolynomialEquation], unknown: Variable, knowledge: Knowledge
-) -> list[Candidate]:
-    """`A x + B = 0` in a sliding joint, as a package of its own would write it."""
-    out: list[Candidate] = []
-    for e in equations:
-        if unknown.kind == "dist" and e.unknowns == (unknown,):
-            p = powers(e, unknown)
-            if p is not None and max(p) == 1:
-                coefficients = (p[1], p.get(0, knowledge.graph.zero))
-                out.append(Candidate(unknown, "slide", "linear", coefficients, e.sources))
-    return out
+TABLES = Path(__file__).resolve().parents[1] / "robots/tables"
+PAGES = Path(__file__).resolve().parents[2] / "docs/how-to"
 
 
-SLIDE = Leaf("slide", find_slide)
+def documented(page: str, title: str, name: str) -> object:
+    """What the code of that title on a page defines by a name."""
+    text = (PAGES / page).read_text()
+    code = re.search(rf'^```python title="{title}"\n(.*?)^```', text, re.M | re.S)
+    assert code is not None
+    names: dict[str, object] = {}
+    exec(compile(code.group(1), page, "exec", dont_inherit=True), names)
+    return names[name]
+
+
+SLIDE = documented("add-a-leaf.md", "leaf", "SLIDE")
+assert isinstance(SLIDE, Leaf)
 
 
 def test_given_leaves_take_the_place_of_the_own_ones() -> None:
@@ -48,6 +48,24 @@ def test_given_leaves_take_the_place_of_the_own_ones() -> None:
     assert "slide" in {tick.node for tick in graph.ticks}
 
 
+def test_a_leaf_brings_a_form_of_its_own(tmp_path: Path) -> None:
+    square = documented("add-a-leaf.md", "form", "SQUARE")
+    assert isinstance(square, Leaf)
+    _, dh = read_dh_table(TABLES / "Wachtveitl.toml", free=(), locked={})
+    others = [leaf for leaf in LEAVES if leaf.name == "simultaneous"]
+    assert solve_chain(dh, leaves=others).open_joints
+    graph = solve_chain(dh, leaves=[*others, square])
+    assert not graph.open_joints
+    assert "completed square" in {s.candidate.form.name for s in graph.steps}
+    module = import_text(emit_module(module_of(dh, graph)), tmp_path)
+    rng = np.random.default_rng(3)
+    for q in rng.uniform(0.2, 1.4, (40, dh.dof)):
+        pose = module.forward(q)
+        found = module.solve(pose, limits=False).q
+        assert np.abs(module.forward(found) - pose).max() < 1e-9
+        assert np.abs(found - q).max(axis=1).min() < 1e-6
+
+
 def test_entry_points_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
     entry = EntryPoint("slide", "tests.solver.test_plugged_in:SLIDE", "ikgen.leaves")
     monkeypatch.setattr(plugins, "entry_points", lambda group: [entry])
@@ -55,15 +73,13 @@ def test_entry_points_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
     assert names == [*(leaf.name for leaf in LEAVES), "slide"]
 
 
-TREE_PAGE = Path(__file__).resolve().parents[2] / "docs/how-to/add-a-tree.md"
-
-
 def documented_tree() -> Tree:
     """The tree of the page on trees, as a package of its own would have it."""
-    code = re.search(r"^```python[^\n]*\n(.*?)^```", TREE_PAGE.read_text(), re.M | re.S)
+    text = (PAGES / "add-a-tree.md").read_text()
+    code = re.search(r"^```python[^\n]*\n(.*?)^```", text, re.M | re.S)
     assert code is not None
     names: dict[str, object] = {}
-    exec(code.group(1), names)
+    exec(compile(code.group(1), "add-a-tree.md", "exec", dont_inherit=True), names)
     tree = names["TREE"]
     assert isinstance(tree, Tree)
     return tree
@@ -86,7 +102,9 @@ def test_the_tree_of_another_package_takes_the_place_of_the_own(
 
 
 def test_two_trees_are_one_too_many(monkeypatch: pytest.MonkeyPatch) -> None:
-    entries = [EntryPoint(n, "tests.solver.test_plugged_in:documented_tree", "ikgen.trees") for n in "ab"]
+    entries = [
+        EntryPoint(n, "tests.solver.test_plugged_in:documented_tree", "ikgen.trees") for n in "ab"
+    ]
     monkeypatch.setattr(plugins, "entry_points", lambda group: entries)
     with pytest.raises(PlugInError, match="several"):
         the_tree()

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from ikgen.emit.solver_module import SolverModule
-from ikgen.generation.pipeline import Request, read
+from ikgen.generation.read import read
+from ikgen.generation.request import Request
 from ikgen.lowering.lower import lower
 from ikgen.solver.solve import solve_chain
 
@@ -42,7 +43,7 @@ def solver_module(name: str) -> SolverModule:
     assert not graph.open_joints
     return SolverModule(
         name=name.lower().replace("-", "_"),
-        program=lower(graph, slack=2.0 * max(dh.deviation)),
+        program=lower(graph, model_error=2.0 * max(dh.deviation)),
         dh=dh,
         task="pose",
         free=(),

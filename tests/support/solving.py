@@ -13,6 +13,7 @@ from ikgen.emit.solver_module import SolverModule
 from ikgen.errors import MissingToolError
 from ikgen.lowering.lower import lower
 from ikgen.model.dh import DHChain
+from ikgen.solver.solution_graph import SolutionGraph
 from ikgen.solver.solve import solve_chain
 from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
 
@@ -29,10 +30,14 @@ _count = itertools.count()
 
 def solver_module(dh: DHChain, *, name: str = "arm") -> SolverModule:
     """A solver module of a chain, free joints at 0."""
-    graph = solve_chain(dh)
+    return module_of(dh, solve_chain(dh), name=name)
+
+
+def module_of(dh: DHChain, graph: SolutionGraph, *, name: str = "arm") -> SolverModule:
+    """The solver module of a solution graph, free joints at 0."""
     assert not graph.open_joints
     free = tuple(j for j, joint in enumerate(dh.joints) if joint.name in dh.free)
-    program = lower(graph, slack=2.0 * max(dh.deviation))
+    program = lower(graph, model_error=2.0 * max(dh.deviation))
     return SolverModule(name, program, dh, "pose", free, (0.0,) * len(free), "test", "0" * 64, "0")
 
 

@@ -67,11 +67,12 @@ def test_progress_and_unknown_task(tmp_path: Path) -> None:
 
 def test_checks_take_little_time(tmp_path: Path) -> None:
     runner, oracle = six_axis_module(tmp_path), six_axis_oracle()
-    start = time.perf_counter()
+    start = time.process_time()
     runner.solve_many(oracle.forward(np.zeros((100, 6))))
-    per_pose = (time.perf_counter() - start) / 100
-    report = verify(runner, oracle, samples=1000)
-    assert report.seconds - 6000 * per_pose < 4.0
+    per_pose = (time.process_time() - start) / 100
+    start = time.process_time()
+    verify(runner, oracle, samples=1000)
+    assert time.process_time() - start - 6000 * per_pose < 4.0
 
 
 def test_bad_module_files(tmp_path: Path) -> None:

@@ -29,7 +29,7 @@ def require_closure(work: Placement) -> None:
         splits = [(k, m) for k in range(n) for m in range(k + 1, n + 1)]
     residuals = min((_residuals(work, k, m) for k, m in splits), key=cost)
     work.place(Comment("does the row reproduce the pose?"))
-    limit = max(CHECK_TOLERANCE, min(1000 * work.slack, 0.2))
+    limit = max(CHECK_TOLERANCE, min(1000 * work.model_error, 0.2))
     size = max(arm_size(work.dh), 1.0)
     for level in range(len(work.levels)):
         norms = [e for e in work.norms if work.level(e) == level]

@@ -8,15 +8,15 @@ import numpy as np
 
 from ikgen.emit.derivation import Reading
 from ikgen.equations.symbolic_transforms import link, multiply
+from ikgen.formulas import mathtext as m
+from ikgen.formulas.mathtext import Math
+from ikgen.formulas.normal_form import Normalizer, Symbol
+from ikgen.formulas.notation import show, symbol
 from ikgen.kinematics.classify import GeometryClass
 from ikgen.kinematics.kept import kept_constants
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
 from ikgen.model.joint_tree import Matrix as Array
-from ikgen.report import mathtext as m
 from ikgen.report.document import Block, Formulas, Heading, Matrix, Paragraph, Rows, Text
-from ikgen.report.mathtext import Math
-from ikgen.report.normal_form import Normalizer, Symbol
-from ikgen.report.notation import show, symbol
 from ikgen.solver.solution_graph import SolutionGraph
 from ikgen.tasks import Task
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ikgen.equations.knowledge import Variable
-from ikgen.report import mathtext as m
+from ikgen.formulas import mathtext as m
+from ikgen.formulas.notation import variable
 from ikgen.report.document import (
     Block,
     Formulas,
@@ -17,7 +18,6 @@ from ikgen.report.document import (
     Text,
 )
 from ikgen.report.graph_picture import Drawing
-from ikgen.report.notation import variable
 from ikgen.report.solution_sets import Versions
 from ikgen.solver.solution_graph import SolutionGraph
 from ikgen.verify.verification_report import VerificationReport

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 
 from ikgen.equations.equation_set import Equation
 from ikgen.equations.knowledge import Variable
-from ikgen.report import mathtext as m
+from ikgen.forms.formula import Formula, FormulaWriter
+from ikgen.formulas import mathtext as m
+from ikgen.formulas.mathtext import Math
+from ikgen.formulas.naming import Abbreviations
+from ikgen.formulas.normal_form import Normalizer, Sum
+from ikgen.formulas.notation import show, variable
 from ikgen.report.candidate_table import candidates_table
 from ikgen.report.document import Block, Formulas, Heading, Inline, Paragraph, Rows, Text
-from ikgen.report.form_formulas import Solved, solve_form
-from ikgen.report.mathtext import Math
-from ikgen.report.naming import Abbreviations
-from ikgen.report.normal_form import Normalizer, Sum
-from ikgen.report.notation import show, variable
 from ikgen.report.solution_sets import Versions
 from ikgen.report.splits import origin, place
 from ikgen.solver.candidate import Candidate
@@ -23,13 +23,6 @@ from ikgen.solver.solution_graph import SolutionGraph
 __all__ = ["Writer", "abbreviations", "derived_section", "step_section"]
 
 _MANY = 16
-_QUARTIC: Text = (
-    "No leaf with two branches holds for this unknown: it is a root of a polynomial of degree four. The "
-    "polynomial in ", m.name("z") + m.relation() + m.function("exp", m.name("i") + m.name("theta")),
-    " is written above; its roots on the unit circle are the real solutions. The emitted code finds "
-    "them in closed form by Ferrari's resolvent, as the points where the lines of a degenerate conic "
-    "meet the circle.",
-)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +49,7 @@ def step_section(w: Writer, number: int, step: Step) -> list[Block]:
     c = step.candidate
     v = variable(c.unknown)
     title: Text = (f"{number}. ", v, f": {c.leaf}")
-    solved = solve_form(c, w.graph.session.system.graph, w.normal, w.names)
+    solved = _formula(w, c)
     blocks: list[Block] = [Heading(title, 2), *_origin(w, c)]
     shown = [_equation(w, e) for e in dict.fromkeys(c.sources) if _short(w, e)]
     if shown:
@@ -70,13 +63,18 @@ def step_section(w: Writer, number: int, step: Step) -> list[Block]:
         lines = [m.name("u", str(n.index)) + m.relation() + show(s) for n, s in news]
         blocks += [Paragraph(("with",)), Formulas(tuple(lines))]
     blocks += [Paragraph(("Solution:",)), Formulas(solution)]
-    if c.form == "quartic":
-        blocks.append(Paragraph(_QUARTIC))
+    if c.form.remark:
+        blocks.append(Paragraph(c.form.remark))
     blocks += _versions(w, c.unknown, step.branches)
     blocks += _guards(step, solved)
     for fallback in step.fallbacks:
         blocks += _fallback(w, fallback)
     return blocks + candidates_table(step)
+
+
+def _formula(w: Writer, c: Candidate) -> Formula:
+    graph = w.graph.session.system.graph
+    return c.form.formula(FormulaWriter(c.unknown, c.coefficients, graph, w.normal, w.names))
 
 
 def _origin(w: Writer, c: Candidate) -> list[Block]:
@@ -94,7 +92,7 @@ def _short(w: Writer, e: Equation) -> bool:
     return w.normal(e.left).weight + w.normal(e.right).weight < 120
 
 
-def _solution(w: Writer, c: Candidate, solved: Solved) -> tuple[Math, ...]:
+def _solution(w: Writer, c: Candidate, solved: Formula) -> tuple[Math, ...]:
     several = len(solved.branches) > 1
     alone = w.versions.count(c.unknown) == len(solved.branches)
     lines = []
@@ -133,7 +131,7 @@ def _versions(w: Writer, v: Variable, branches: int) -> list[Block]:
     return [Paragraph((*lead, ":")), Rows(tuple(header), tuple(rows), small=True)]
 
 
-def _guards(step: Step, solved: Solved) -> list[Block]:
+def _guards(step: Step, solved: Formula) -> list[Block]:
     out: list[Block] = []
     if solved.reach is not None:
         relation = any(t.role == "rel" for t in solved.reach.tokens)
@@ -149,8 +147,8 @@ def _guards(step: Step, solved: Solved) -> list[Block]:
             "another form is taken there (below)."
             if step.fallbacks
             else (
-                "every value of the joint gives the pose, the seed's is taken (0 without one), and "
-                "the row is flagged singular."
+                "the seed's value is tried there (0 without one); only rows that give the pose are "
+                "returned, flagged singular where the arm itself is."
             )
         )
         out.append(
@@ -169,7 +167,7 @@ def _guards(step: Step, solved: Solved) -> list[Block]:
 
 
 def _fallback(w: Writer, c: Candidate) -> list[Block]:
-    solved = solve_form(c, w.graph.session.system.graph, w.normal, w.names)
+    solved = _formula(w, c)
     news = w.names.news()
     lines = [m.name("u", str(n.index)) + m.relation() + show(s) for n, s in news]
     places = ", and ".join(dict.fromkeys(place(e) for e in c.sources))

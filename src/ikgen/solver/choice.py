@@ -48,15 +48,16 @@ class Chooser:
         its divisor vanishes; failing that, with `anything`, the best there is."""
         step = self._sound(ranked) or self._covered(ranked)
         if step is None and anything and ranked:
-            simple = [c for c in ranked if c.branches <= 2 and not c.is_weak]
-            quartic = [c for c in ranked if c.branches > 2 and not c.is_weak]
-            best = (simple or quartic or ranked)[0]
+            holds = [
+                c for c in ranked if not c.is_weak
+            ]  # folds are no reason to take more branches
+            best = min(holds or ranked, key=lambda c: (c.branches > 2, not c.is_sound))
             step = _step(best, (), ranked)
         return step
 
     def _weak_at(self, candidate: Candidate) -> NDArray[np.float64]:
         """Regular configurations where a candidate fails, sought once."""
-        key = (candidate.form, *(e.id for e in candidate.coefficients))
+        key = (candidate.form.name, *(e.id for e in candidate.coefficients))
         if key not in self._weak:
             found = weak_configurations(candidate, self._system, self._probes)
             special = self._probes.values[: self._probes.regular]
@@ -73,7 +74,7 @@ class Chooser:
     def _sound(self, ranked: list[Candidate]) -> Step | None:
         tried = 0
         for c in ranked:
-            if c.branches > 2 or c.is_weak:
+            if c.branches > 2 or not c.is_sound:
                 continue
             tried += 1
             found = weak_configurations(c, self._system, self._probes)

@@ -48,11 +48,10 @@ def judge(
     `truth` is the unknown at the probes, (c, s) or (x,).
     """
     generic, regular = probes.generic, probes.regular
-    divisor, size = candidate.divisor()
-    relative = np.abs(divisor) / size
+    relative = candidate.relative_divisor()
     if np.median(relative[:generic]) < 1e-6:
         return None
-    matches = np.zeros(len(divisor), dtype=bool)
+    matches = np.zeros(len(relative), dtype=bool)
     for branch in candidate.values():
         with np.errstate(all="ignore"):
             error = sum(np.abs(b - t) for b, t in zip(branch, truth, strict=True))
@@ -60,26 +59,27 @@ def judge(
     if not matches[:generic].all():
         return None
     margin = float(relative[:regular].min())
-    weak = bool((~matches[:regular]).any() or margin < WEAK_MARGIN or _folds(candidate, regular))
+    weak = bool((~matches[:regular]).any() or margin < WEAK_MARGIN)
     singular = relative[regular:]
     fragile = float((singular < WEAK_MARGIN).mean()) if singular.size else 0.0
     cost = _cost(candidate.coefficients, used, weight)
     almost = bool(probes.kept) and _almost_tangent(candidate, generic)
-    return replace(candidate, judgement=Judgement(weak, margin, fragile, cost, almost))
+    judgement = Judgement(weak, _folds(candidate, regular), margin, fragile, cost, almost)
+    return replace(candidate, judgement=judgement)
 
 
 def _almost_tangent(candidate: Candidate, generic: int) -> bool:
-    """Whether `A cos + B sin = C` has C = 0 where rounded constants have the values that were meant."""
-    if candidate.form != "sincos":
+    """Whether the form's constant side is zero where rounded constants have the values that were meant."""
+    constant = candidate.form.tangent_without
+    if constant is None:
         return False
-    constant = candidate.coefficients[2]
     return bool(np.abs(constant.probe[generic:]).max() <= FOLD_MARGIN * constant.scale)
 
 
 def _folds(candidate: Candidate, regular: int) -> bool:
     """Whether the candidate's branches meet at a regular configuration: its square root loses half the
     digits where the arm itself is well-behaved, so one of the branches must be spurious."""
-    under = candidate.discriminant()
+    under = candidate.form.discriminant()
     return under is not None and bool(np.min(under[:regular]) < FOLD_MARGIN)
 
 
@@ -107,7 +107,7 @@ def rank_key(candidate: Candidate) -> tuple[object, ...]:
     j = candidate.judgement
     assert j is not None
     return (
-        j.weak,
+        not candidate.is_sound,
         candidate.branches,
         _preference("tangent" if j.almost_tangent else candidate.leaf),
         round(j.fragile, 1),
