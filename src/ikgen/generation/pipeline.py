@@ -91,7 +91,8 @@ def derive(
         if not other.open_joints:
             reading, task, graph = nearby, other_task, other
             geometry = classify(reading.dh)
-    plan = _elimination(reading.dh, task, progress) if graph.open_joints else None
+    closed = not graph.open_joints and graph.sound  # else solutions may be missing at regular poses
+    plan = None if closed else _elimination(reading.dh, task, progress)
     if graph.open_joints and plan is None:
         from ikgen.generation.unsolved import unsolved_error
 

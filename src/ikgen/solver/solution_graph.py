@@ -40,7 +40,7 @@ class SolutionGraph:
     @property
     def sound(self) -> bool:
         """Whether every step holds at all regular configurations that were looked at."""
-        return all(not s.candidate.is_weak or s.fallbacks for s in self.steps)
+        return all(step.sound for step in self.steps)
 
     @property
     def knowledge(self) -> Knowledge:
