@@ -1,6 +1,6 @@
 """Generate and verify every arm of the corpus; print a table by class.
 
-    python -m benchmarks.corpus [--family TEXT] [--arm NAME] [--samples N] [--jobs N]
+    python -m benchmarks.corpus [--family TEXT] [--arm NAME] [--samples N] [--jobs N] [--record]
 
 The corpus is not part of the package (see benchmarks/README.md); without it the command says so.
 """
@@ -21,7 +21,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmarks.collection import ABSENT, CORPUS, load_arms
+from benchmarks.collection import ABSENT, CORPUS, load_arms, options_for, urdf_of
+from benchmarks.results import write_result
 
 WIDTHS = (4, 6, 8, 6, 8, 6)
 
@@ -38,49 +39,6 @@ class Outcome:
     solutions: str
     closure: str
     message: str
-
-
-def urdf_of(arm: dict[str, Any]) -> str:
-    """A URDF with the digits of the arm's chain, for arms whose file is not distributable."""
-    lines = [f'<robot name="{arm["name"]}">', f'<link name="{arm["base_link"]}"/>']
-    for j in arm["chain"]:
-        kind = j.get("base_type", j["type"])
-        xyz, rpy = (" ".join(repr(float(x)) for x in j[k]) for k in ("xyz", "rpy"))
-        lines.append(f'<link name="{j["child"]}"/>')
-        lines.append(f'<joint name="{j["joint"]}" type="{kind}"><origin xyz="{xyz}" rpy="{rpy}"/>')
-        lines.append(f'<parent link="{j["parent"]}"/><child link="{j["child"]}"/>')
-        if kind != "fixed":
-            lines.append(f'<axis xyz="{" ".join(repr(float(x)) for x in j["axis"])}"/>')
-        if kind in ("revolute", "prismatic"):
-            low, high = j.get("lower"), j.get("upper")
-            span = f'lower="{low!r}" upper="{high!r}"' if low is not None else ""
-            lines.append(f'<limit {span} effort="1" velocity="1"/>')
-        if "mimic" in j:
-            m = j["mimic"]
-            lines.append(
-                f'<mimic joint="{m["joint"]}" multiplier="{m.get("multiplier", 1)}" '
-                f'offset="{m.get("offset", 0)}"/>'
-            )
-        lines.append("</joint>")
-    return "\n".join([*lines, "</robot>"])
-
-
-def options_for(arm: dict[str, Any]) -> list[list[str]]:
-    """Option sets to try in turn: none up to six joints; else joints held free until six are left,
-    sliding ones first, then each choice of one more."""
-    moving = [j for j in arm["chain"] if j["type"] not in ("fixed", "mimic")]
-    spare = len(moving) - 6
-    if spare <= 0:
-        return [[]]
-    sliding = [j["joint"] for j in moving if j["type"] == "prismatic"][:spare]
-    turning = [j["joint"] for j in moving if j["type"] != "prismatic"]
-    spare -= len(sliding)
-    first, last = turning[: max(spare - 1, 0)], turning[max(spare - 1, 0) :]
-    choices = [[last[i]] for i in (6, 2, 3, 1, 0, 4, 5) if i < len(last)] if spare else [[]]
-    return [
-        [text for name in (*sliding, *first, *choice) for text in ("--free", name)]
-        for choice in choices
-    ]
 
 
 def run_arm(arm: dict[str, Any], samples: int) -> Outcome:
@@ -146,6 +104,20 @@ def _table(outcomes: Sequence[Outcome]) -> Iterator[str]:
         )
 
 
+def _recorded(outcomes: Sequence[Outcome], samples: int) -> dict[str, Any]:
+    """What the README shows: counts and times by class, and the arms without a closed form."""
+    classes = []
+    for family in sorted({o.family for o in outcomes}):
+        rows = [o for o in outcomes if o.family == family]
+        times = [round(o.seconds, 2) for o in rows if o.state == "solved"] or [0.0]
+        counts = {name: sum(o.state == name for o in rows) for name in ("solved", "unsolved")}
+        failed = len(rows) - sum(counts.values())
+        longest = {"median": round(statistics.median(times), 2), "longest": max(times)}
+        classes.append({"family": family, "arms": len(rows), **counts, "failed": failed, **longest})
+    left = [o.name for o in outcomes if o.state != "solved"]
+    return {"samples": samples, "classes": classes, "left": left}
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the corpus; 1 if an arm that was solved is wrong, 0 otherwise."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
@@ -154,7 +126,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--samples", type=int, default=1000)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--json", type=Path, help="write the outcomes here")
+    parser.add_argument("--record", action="store_true", help="write results/corpus.json")
     options = parser.parse_args(arguments)
+    if options.record and (options.family or options.arm):
+        parser.error("--record is for the whole collection")
     arms = load_arms()
     if not arms:
         print(ABSENT)
@@ -175,6 +150,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(line)
     if options.json:
         options.json.write_text(json.dumps([asdict(o) for o in outcomes], indent=1))
+    if options.record:
+        write_result("corpus", "python -m benchmarks.corpus", _recorded(outcomes, options.samples))
     return int(any(o.state in ("WRONG", "CRASH", "ERROR") for o in outcomes))
 
 

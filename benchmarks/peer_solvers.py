@@ -194,9 +194,9 @@ def _descend(pin: Any, model: Any, data: Any, tip: int, q: Array, target: Any) -
 
 
 PEERS: dict[str, Callable[[Arm], Solver]] = {
-    "EAIK": eaik,
-    "py-opw-kinematics": opw,
+    "EAIK (compiled)": eaik,
+    "py-opw-kinematics (compiled)": opw,
     "ikdh": ikdh,
     "ssik": ssik,
-    "Pinocchio CLIK": clik,
+    "Pinocchio CLIK (one row)": clik,
 }

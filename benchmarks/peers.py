@@ -1,6 +1,6 @@
 """ikgen's emitted code against other packages, on the same reachable poses and in one process.
 
-    python -m benchmarks.peers ROBOTS_FOLDER [--poses N] [--svg FILE]
+    python -m benchmarks.peers ROBOTS_FOLDER [--poses N] [--record]
         [--opw-kinematics INCLUDE] [--ikfast ARM=FILE.cpp]
 
 ROBOTS_FOLDER holds abb_irb2400.urdf, kuka_kr6r900sixx.urdf, ur5e.urdf and franka_panda_erd.urdf.
@@ -27,8 +27,8 @@ import numpy as np
 from benchmarks.cpp_peers import against_ikfast, against_opw
 from benchmarks.cpp_speed import FLAGS, measure
 from benchmarks.peer_arms import ARMS, compiled, make_arm
-from benchmarks.peer_picture import picture
 from benchmarks.peer_solvers import PEERS, AbsentError, Arm, Array, Solver
+from benchmarks.results import write_result
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ def run(arm: Arm, named: dict[str, Solver], q: Array) -> list[Result]:
     answers: dict[str, list[Array]] = {}
     for _ in range(5):
         for name, solve in named.items():
-            few = poses[: 20 if name in ("ssik", "Pinocchio CLIK") else None]
+            few = poses[: 20 if name in ("ssik", "Pinocchio CLIK (one row)") else None]
             for pose in few[:10]:
                 solve(pose)  # the caches were another's
             start = time.perf_counter()
@@ -147,7 +147,7 @@ def compared(arm: Arm, header: Path, opw: Path | None, ikfast: str | None) -> li
     for flags in (FLAGS["plain"], FLAGS["native"]):
         pairs = []
         if opw is not None and arm.opw:
-            pairs.append(("opw_kinematics, C++", against_opw(header, opw, arm.opw, flags)))
+            pairs.append(("opw_kinematics, C++ (-O3)", against_opw(header, opw, arm.opw, flags)))
         if ikfast is not None:
             pairs.append(("IKFast", against_ikfast(header, Path(ikfast), flags)))
         for name, c in pairs:
@@ -159,6 +159,15 @@ def compared(arm: Arm, header: Path, opw: Path | None, ikfast: str | None) -> li
             if flags == FLAGS["plain"]:
                 out.append(Result(arm.name, name, c.theirs / 1000.0))
     return out
+
+
+def headers(arm: str, header: Path) -> list[Result]:
+    """The C++ header with plain -O3, for this machine, and that in batches."""
+    _, (single, *_) = measure(header, FLAGS["plain"], limits=False)
+    _, (native, batch, *_) = measure(header, FLAGS["native"], limits=False)
+    words = " ".join(FLAGS["native"])
+    times = {"C++ (-O3)": single, f"C++ ({words})": native, f"C++ batch ({words})": batch}
+    return [Result(arm, f"ikgen, {name}", ns / 1000.0) for name, ns in times.items()]
 
 
 def show(results: list[Result]) -> None:
@@ -177,7 +186,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=layout)
     parser.add_argument("robots", type=Path)
     parser.add_argument("--poses", type=int, default=200)
-    parser.add_argument("--svg", type=Path, default=Path(__file__).with_name("peers.svg"))
+    parser.add_argument("--record", action="store_true", help="write results/peers.json")
     parser.add_argument("--opw-kinematics", type=Path, help="its include folder")
     parser.add_argument("--ikfast", action="append", default=[], metavar="ARM=FILE")
     parser.add_argument("--arms", nargs="+", choices=ARMS, default=list(ARMS))
@@ -190,13 +199,16 @@ def main() -> None:
             q = configurations(arm, options.poses, np.random.default_rng(2))
             results += run(arm, solvers(arm, Path(folder)), q)
             results.append(batched(arm, q))
-            _, (single, *_) = measure(header, FLAGS["plain"], limits=False)
-            results.append(Result(name, "ikgen, C++ header", single / 1000.0))
+            results += headers(name, header)
             files = dict(text.split("=", 1) for text in options.ikfast)
             results += compared(arm, header, options.opw_kinematics, files.get(name))
     show(results)
-    bars = [(r.arm, r.solver, r.microseconds) for r in results]
-    options.svg.write_text(picture(bars), encoding="utf-8")
+    if options.record:
+        times = [
+            {"arm": r.arm, "solver": r.solver, "microseconds": float(f"{r.microseconds:.3g}")}
+            for r in results
+        ]
+        write_result("peers", "python -m benchmarks.peers", {"times": times})
 
 
 if __name__ == "__main__":

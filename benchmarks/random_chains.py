@@ -1,6 +1,6 @@
 """Random chains by the rules: the share solved, and whether what was solved is right and complete.
 
-    python -m benchmarks.random_chains [--count N] [--poses N] [--seed N]
+    python -m benchmarks.random_chains [--count N] [--poses N] [--seed N] [--record]
 
 Modified DH tables of 3 to 6 joints, revolute and prismatic mixed, twists of 0 and ±90 degrees, about
 half of the lengths zero. Arms whose joints are not independent (a smaller rank than joints) are drawn
@@ -23,6 +23,7 @@ from types import ModuleType
 
 import numpy as np
 
+from benchmarks.results import write_result
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.solver_module import SolverModule
 from ikgen.equations.probes import arm_size, dh_pose, smallest_singular
@@ -146,6 +147,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--poses", type=int, default=100)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--record", action="store_true", help="write results/random_chains.json")
     options = parser.parse_args(arguments)
     rng = np.random.default_rng(options.seed)
     solved: Counter[int] = Counter()
@@ -178,6 +180,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     print(f"seconds: median {np.median(times):.2f}, max {max(times):.2f}")
     for text, number in sorted(Counter(unsolved).items()):
         print(f"not solved: {text} ({number})")
+    if options.record:
+        found = {
+            "tables": options.count, "by_rules": sum(solved.values()), "by_elimination": 0,
+            "wrong": wrong, "missed": missed, "median": round(float(np.median(times)), 2),
+            "by_joints": {dof: [solved[dof], total[dof]] for dof in sorted(total)},
+        }  # fmt: skip
+        write_result("random_chains", "python -m benchmarks.random_chains", found)
     return int(wrong + missed > 0)
 
 

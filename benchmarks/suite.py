@@ -1,6 +1,6 @@
 """The robots of the IKBT paper and its repository: derive, emit, and count solutions.
 
-    python -m benchmarks.suite [--robot TEXT] [--poses N] [--searched N] [--starts N] [--json]
+    python -m benchmarks.suite [--robot TEXT] [--poses N] [--searched N] [--starts N] [--json] [--record]
 
 Prints one row a robot: how it was solved, how many solutions each pose has by the emitted Python
 module and by an independent numerical search, how many rows were wrong and how many missed. A row
@@ -25,10 +25,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.results import write_result
+from ikgen.emit.derivation import Derivation
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.errors import IkgenError
-from ikgen.generation.generation import oracle_for
-from ikgen.generation.pipeline import Derivation, Request, derive
+from ikgen.generation.derive import derive
+from ikgen.generation.emitted_checks import oracle_for
+from ikgen.generation.request import Request
 from ikgen.verify.arm import REGULAR_SIGMA, ArmUnderTest, arm_under_test
 from ikgen.verify.runners.python_module import PythonModule
 from ikgen.verify.search import find_solutions
@@ -114,7 +117,9 @@ def _check(
         kinds="".join("R" if row.revolute else "P" for row in derivation.reading.dh.rows),
         state="solved",
         seconds=seconds,
-        leaves=", ".join(f"{n} {name}" for name, n in leaves.items()),
+        leaves=""
+        if derivation.module.plan
+        else ", ".join(f"{n} {name}" for name, n in leaves.items()),
         found=_histogram(Counter(int(c) for c in count)),
         true=_histogram(true),
         wrong=wrong,
@@ -189,6 +194,21 @@ def _print(trials: Sequence[Trial]) -> None:
     )
 
 
+def _recorded(trials: Sequence[Trial]) -> dict[str, Any]:
+    """What the README shows; what the elimination solves has no leaves."""
+    solved = [t for t in trials if t.state == "solved"]
+    seconds = [round(t.seconds, 2) for t in solved] or [0.0]
+    return {
+        "tables": len(trials),
+        "by_rules": sum(bool(t.leaves) for t in solved),
+        "by_elimination": sum(not t.leaves for t in solved),
+        "wrong": sum(t.wrong for t in trials),
+        "missed": sum(t.missed for t in trials),
+        "median": statistics.median(seconds),
+        "longest": max(seconds),
+    }
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
@@ -197,13 +217,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--searched", type=int, default=3, help="poses searched numerically")
     parser.add_argument("--starts", type=int, default=300, help="starts of the search, per pose")
     parser.add_argument("--json", action="store_true", help="machine-readable rows")
+    parser.add_argument("--record", action="store_true", help="write results/suite.json")
     options = parser.parse_args(arguments)
+    if options.record and options.robot:
+        parser.error("--record is for all tables")
     sizes = options.poses, min(options.searched, options.poses), options.starts
     trials = [try_robot(path, *sizes) for path in tables(options.robot)]
     if options.json:
         print(json.dumps([asdict(t) for t in trials], indent=2))
     else:
         _print(trials)
+    if options.record:
+        command = f"python -m benchmarks.suite --poses {options.poses}"
+        write_result("suite", command, _recorded(trials))
     return int(any(t.wrong or t.missed for t in trials))
 
 

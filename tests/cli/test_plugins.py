@@ -10,8 +10,7 @@ import textwrap
 from pathlib import Path
 
 import pytest
-
-from solving import NO_COMPILER
+from tests.support.solving import NO_COMPILER
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 PLANAR = """

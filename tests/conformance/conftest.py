@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from moveit_arms import Arm, compiled_arm, missing_tools
-from moveit_driver import Plugin
+from tests.support.moveit_arms import Arm, compiled_arm, missing_tools
+from tests.support.moveit_driver import Plugin
 
 
 @pytest.fixture(scope="session")

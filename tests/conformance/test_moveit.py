@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import moveit_driver as driver
 import numpy as np
 import pytest
-from moveit_arms import FRANKA, KUKA, Arm, needs, with_joint
-from moveit_driver import Plugin
+import tests.support.moveit_driver as driver
 from numpy.typing import NDArray
+from tests.support.moveit_arms import FRANKA, KUKA, Arm, needs, with_joint
+from tests.support.moveit_driver import Plugin
+from tests.support.solving import import_text
 
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.model.joint_tree import Limits
-from solving import import_text
 
 Array = NDArray[np.float64]
 

@@ -4,11 +4,20 @@ from __future__ import annotations
 
 import dataclasses
 
-import moveit_driver as driver
 import numpy as np
 import pytest
-from moveit_arms import FRANKA, KUKA, MANIPULATOR, Arm, fixed, needs, offset, with_joint
-from moveit_driver import Plugin
+import tests.support.moveit_driver as driver
+from tests.support.moveit_arms import (
+    FRANKA,
+    KUKA,
+    MANIPULATOR,
+    Arm,
+    fixed,
+    needs,
+    offset,
+    with_joint,
+)
+from tests.support.moveit_driver import Plugin
 
 
 @needs(KUKA)

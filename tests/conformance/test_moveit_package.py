@@ -8,8 +8,8 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from moveit_arms import FRANKA, KUKA, missing_tools, module_of, write_package
-from moveit_driver import warnings_of
+from tests.support.moveit_arms import FRANKA, KUKA, missing_tools, module_of, write_package
+from tests.support.moveit_driver import warnings_of
 
 from ikgen.emit.moveit import emit, package_name
 from ikgen.errors import UsageError

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import time
 
-import moveit_driver as driver
 import numpy as np
-from moveit_arms import FRANKA, KUKA, Arm, needs
-from moveit_driver import Plugin
+import tests.support.moveit_driver as driver
 from numpy.typing import NDArray
+from tests.support.moveit_arms import FRANKA, KUKA, Arm, needs
+from tests.support.moveit_driver import Plugin
 
 Array = NDArray[np.float64]
 

@@ -11,7 +11,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from cpp_modules import ROBOTS, solver_module
+from tests.support.cpp_modules import ROBOTS, solver_module
 
 from ikgen.emit.nanobind import emit
 from ikgen.emit.python.python_emitter import emit_module

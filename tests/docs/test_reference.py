@@ -13,7 +13,7 @@ from types import ModuleType
 from typing import Any
 
 import pytest
-from snippets import blocks
+from tests.support.snippets import blocks
 
 from ikgen.projects.config import load_config
 from ikgen.tasks import TASKS

@@ -7,7 +7,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from snippets import follow
+from tests.support.snippets import follow
 
 TUTORIAL = Path(__file__).resolve().parents[2] / "docs/tutorial"
 

@@ -892,28 +892,39 @@ template <class Arm> struct LaneSolve {
 };
 
 // --- pose reading --------------------------------------------------------------------------------
+template <class Policy, int N>
+inline constexpr double kMostDefect =
+    4.0 * N * Policy::kPoseTolerance * Policy::kPoseTolerance * (1.0 + 2.0 * N * Policy::kPoseTolerance);
+
 template <class Arm> struct PoseReading {
   using Policy = typename Arm::Policy;
   using Reading = typename Arm::Reading;
 
   static bool exact(const Eigen::Isometry3d& pose) noexcept {
-    const double* t = pose.matrix().data();
-    double error = Reading::error(t);
-    for (const Entry& entry : Arm::kRead) error += 0.0 * t[4 * entry.column + entry.row];
-    if (Arm::kWholePose && !(t[3] == 0.0 && t[7] == 0.0 && t[11] == 0.0 && t[15] == 1.0)) return false;
-    return error <= Policy::kRoundOff;
+    return good(pose.matrix().data(), Policy::kOrthonormal * Policy::kOrthonormal);
   }
 
   static bool clean(Eigen::Isometry3d& pose) noexcept {
-    constexpr double most = Reading::kEntries * Policy::kPoseTolerance * Policy::kPoseTolerance;
-    return Reading::clean(pose.matrix().data()) <= most && exact(pose);
+    double* t = pose.matrix().data();
+    if (!good(t, Reading::kMost)) return false;
+    Reading::clean(t);
+    return true;
+  }
+
+ private:
+  static bool good(const double* t, double most) noexcept {
+    double defect = Reading::defect(t);
+    for (const Entry& entry : Arm::kRead) defect += 0.0 * t[4 * entry.column + entry.row];
+    if (Arm::kWholePose && !(t[3] == 0.0 && t[7] == 0.0 && t[11] == 0.0 && t[15] == 1.0)) return false;
+    return defect <= most && Reading::proper(t);
   }
 };
 
 struct EntriesReading {
-  static constexpr int kEntries = 1;
-  static double error(const double*) noexcept { return 0.0; }
-  static double clean(double*) noexcept { return 0.0; }
+  static constexpr double kMost = 0.0;
+  static double defect(const double*) noexcept { return 0.0; }
+  static bool proper(const double*) noexcept { return true; }
+  static void clean(double*) noexcept {}
 };
 
 // --- pose solver ---------------------------------------------------------------------------------
@@ -956,7 +967,7 @@ template <class Arm, template <class> class Way> struct PoseSolver {
                                                            Solutions& out) noexcept {
     Eigen::Isometry3d clean = pose;
     if (PoseReading<Arm>::exact(pose) || PoseReading<Arm>::clean(clean)) {
-      some<1>(&clean, options, &out);
+      Way<Arm>::template solve<1>(&clean, options, &out);
     } else {
       out.count = 0;
       out.status = Arm::Status::Invalid;
@@ -969,7 +980,7 @@ template <class Arm, template <class> class Way> struct PoseSolver {
 struct Policy {
   static constexpr double kArrived = 5e-10;
   static constexpr double kPoseTolerance = 1e-06;
-  static constexpr double kRoundOff = 1e-14;
+  static constexpr double kOrthonormal = 1e-14;
   static constexpr double kCoincident = 1e-06;
   static constexpr double kMeeting = 2e-05;
   static constexpr double kLimitTolerance = 1e-09;
@@ -1042,19 +1053,21 @@ struct Arm {
 
 inline constexpr double a_2 = 0.3;
 
+// What DH variables take that a pose leaves free.
 struct Seed {
+
   Seed() = default;
-  explicit Seed(const double*) noexcept {}
+  explicit Seed([[maybe_unused]] const double* q) noexcept {
+  }
 };
 
 template <int P>
-inline void Arm::branches(const Pose<P>& pose, const Seed& seed, const std::array<double, kFree>& held,
-                          const Range& range, Rows<P>& rows) noexcept {
+inline void Arm::branches(const Pose<P>& pose, [[maybe_unused]] const Seed& seed,
+                          [[maybe_unused]] const std::array<double, kFree>& held,
+                          [[maybe_unused]] const Range& range, Rows<P>& rows) noexcept {
   const auto t03 = pose.t[0][3];
   const auto t13 = pose.t[1][3];
   const auto t23 = pose.t[2][3];
-  static_cast<void>(seed);
-  static_cast<void>(held);
 
   // the radius
   const auto c1 = t03 / a_2;
@@ -1065,14 +1078,14 @@ inline void Arm::branches(const Pose<P>& pose, const Seed& seed, const std::arra
   const auto real_1 = (1e-09 > abs(error));
 
   // joint values, each on the turn inside its limits
-  const auto q1 = place<Policy>(0, angle(s1, c1), range);
-  const auto q2 = clamp<Policy>(1, t23, range);
+  const auto placed_1 = place<Policy>(0, angle(s1, c1), range);
+  const auto placed_2 = clamp<Policy>(1, t23, range);
 
   constexpr int n = Rows<P>::kLanes;
-  store(spread<n>(q1.q), rows.q[0]);
-  store(spread<n>(q2.q), rows.q[1]);
+  store(spread<n>(placed_1.q), rows.q[0]);
+  store(spread<n>(placed_2.q), rows.q[1]);
 
-  const auto inside = q1.inside & q2.inside;
+  const auto inside = placed_1.inside & placed_2.inside;
   const auto found = bit(real_1, kReal) + bit(real_1 & inside, kFound);
   constexpr double degenerate = 0.0;
   const auto meets = bit(real_1 & (meeting<Policy, 2 * P>(c1, s1)), kMeeting);

@@ -8,11 +8,11 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from tests.support.solving import FIXTURES, emitted
 
 from ikgen.chains.selection import select_chain
 from ikgen.importers import load_tree
 from ikgen.kinematics.modified_dh import to_dh
-from solving import FIXTURES, emitted
 
 QUARTERS = (0.0, np.pi / 2, -np.pi / 2, np.pi)
 

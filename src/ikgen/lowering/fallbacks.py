@@ -7,7 +7,7 @@ from dataclasses import replace
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import Variable
-from ikgen.lowering.form_lowering import ROUNDED, Divisor, Realized
+from ikgen.forms.lowered_form import ROUNDED, Divisor, LoweredForm, natural_size
 from ikgen.lowering.placement import Placement
 from ikgen.lowering.program_inputs import seed_values
 
@@ -41,17 +41,17 @@ def _expr(flag: Flag) -> Expr:
 
 
 def choose_form(
-    work: Placement, v: Variable, forms: list[Realized], sigma: Expr
+    work: Placement, v: Variable, forms: list[LoweredForm], sigma: Expr
 ) -> tuple[Expr, ...]:
     """The first form whose divisor does not vanish; the seed's value if there is none.
 
-    Where Newton steps follow, a small divisor gives but a rough value: all are tried for a large
-    one first.
+    Where rows are refined, a small divisor gives but a rough value: all are tried for a large one
+    first.
     """
     g = work.g
     first = [_well_conditioned(work, form) for form in forms[:-1]]
     last = forms[-1].divisor
-    if first and last.clear is not None and work.slack > ROUNDED:
+    if first and last.clear is not None and work.model_error > ROUNDED:
         wide = Divisor(last.value, last.clear, last.clear)
         forms = [*first, replace(forms[-1], divisor=wide), *forms]
     else:
@@ -78,20 +78,19 @@ def choose_form(
     if isinstance(free, Expr):
         work.place(free)
         work.singular.append(free)
+    for form in forms:
+        if form.under is not None:
+            work.note_fold(form.under[0], natural_size(form.under[1]))
     return values
 
 
-def _well_conditioned(work: Placement, form: Realized) -> Realized:
+def _well_conditioned(work: Placement, form: LoweredForm) -> LoweredForm:
     """With a fallback behind it a form is left well before its divisor vanishes or its branches
     meet."""
-    g, regular = work.g, form.regular
-    well = min(max(WELL_CONDITIONED, 10.0 * work.slack**0.5), 0.1)
-    good: Flag = True
-    if regular is not None:
-        power = 2 if form.branches == 2 else 1
-        natural = regular.args[1].value / work.tolerances.singular**power
-        limit = g.const(natural * well**power)
-        good = g.binary("gt", regular.args[0], limit)
+    g = work.g
+    well = min(max(WELL_CONDITIONED, 10.0 * work.model_error**0.5), 0.1)
+    large = form.divisor.above(g, well)
+    good: Flag = True if large is None else large
     if form.under is not None:
         limit = g.mul(g.const(well**2), form.under[1])
         apart = g.binary("gt", form.under[0], limit)
@@ -99,4 +98,4 @@ def _well_conditioned(work: Placement, form: Realized) -> Realized:
     if good is True:
         return form
     divisor = Divisor(form.divisor.value, _expr(good), _expr(good))
-    return Realized(form.values, divisor, form.guard, form.branches)
+    return LoweredForm(form.values, divisor, form.guard, form.branches)

@@ -6,12 +6,16 @@ import numpy as np
 
 from ikgen.algebra.expression import Expr
 from ikgen.equations.knowledge import Variable
+from ikgen.forms.form import Form
+from ikgen.forms.lowered_form import LoweredForm, LoweredRoutine
 from ikgen.lowering.closure import require_closure
 from ikgen.lowering.fallbacks import choose_form
-from ikgen.lowering.form_lowering import leading, realize
+from ikgen.lowering.joint_values import first_row, joint_value
 from ikgen.lowering.placement import LoweredLevel, Placement, identifier
-from ikgen.lowering.program_inputs import bind_pose, bind_seeds, seed_values
+from ikgen.lowering.program_inputs import bind_joints, bind_pose, seed_values
 from ikgen.lowering.serialize import serialize
+from ikgen.program.inputs import HeldValue
+from ikgen.program.liveness import trimmed
 from ikgen.program.statements import Comment, Program
 from ikgen.solver.choice import Step
 from ikgen.solver.solution_graph import SolutionGraph
@@ -19,41 +23,46 @@ from ikgen.solver.solution_graph import SolutionGraph
 __all__ = ["lower"]
 
 
-def lower(graph: SolutionGraph, *, slack: float = 0.0) -> Program:
+def lower(graph: SolutionGraph, *, model_error: float = 0.0) -> Program:
     """The Program of a solution graph.
 
-    `slack` is how far (m or rad) the file's geometry is off the exact one that was solved: square roots
-    and the final check give way by that much, and Newton steps on the file's chain follow.
+    `model_error` is how far (m or rad) the file's geometry is off the exact one that was solved: square
+    roots and the final check give way by that much, and rows are refined on the file's chain.
     """
-    work = Placement(graph, slack)
+    work = Placement(graph, model_error)
     bind_pose(work)
-    bind_seeds(work)
+    bind_joints(work)
     for index, step in enumerate(graph.steps):
         _step(work, index, step)
-    outputs = _outputs(work)
+    values = _joint_values(work)
     require_closure(work)
-    return serialize(work, outputs)
+    _place_values(work, values)
+    return trimmed(serialize(work, values))
 
 
 def _step(work: Placement, index: int, step: Step) -> None:
-    """One solved unknown."""
+    """One solved unknown: by a form whose branches sigma tells apart, or by a routine."""
     g = work.g
     v = step.candidate.unknown
     text = f"{v.text}: {step.candidate.leaf}, from {_labels(step)}"
-    if step.candidate.form == "quartic":
-        _quartic(work, step, text)
-        return
-    if step.branches > 1:
+    sigma = g.one
+    if step.branches == 2:
         sigma = g.atom("sigma", str(index), np.ones(g.probes), unknown=False)
+    forms = [c.form for c in (step.candidate, *step.fallbacks)]
+    lowered = [form.lower(g, sigma, work.tolerances) for form in forms]
+    if isinstance(lowered[0], LoweredRoutine):
+        _routine(work, v, forms[0], lowered[0], text)
+        return
+    if sigma is not g.one:
         work.levels.append(LoweredLevel(2, sigma))
         work.level_of[sigma.id] = len(work.levels) - 1
         work.names[sigma.id] = f"sigma_{v.text.split('_', 1)[-1]}"
-    else:
-        sigma = g.one
     work.place(Comment(text))
-    forms = [realize(g, c, sigma, work.tolerances) for c in (step.candidate, *step.fallbacks)]
-    work.define(v, choose_form(work, v, forms, sigma))
-    if any(c.form == "pair" for c in (step.candidate, *step.fallbacks)):
+    alternatives = [one for one in lowered if isinstance(one, LoweredForm)]
+    work.define(v, choose_form(work, v, alternatives, sigma))
+    if sigma is not g.one:
+        work.levels[-1].solved = work.atoms_of(v)
+    if not all(form.on_circle for form in forms):
         work.norms.append(_excess(work, v))
 
 
@@ -65,13 +74,13 @@ def _excess(work: Placement, v: Variable) -> Expr:
     return g.sub(g.add(g.square(c), g.square(s)), g.one)
 
 
-def _quartic(work: Placement, step: Step, text: str) -> None:
-    v = step.candidate.unknown
-    arguments = _or_seed(work, v, step.candidate.coefficients)
+def _routine(work: Placement, v: Variable, form: Form, lowered: LoweredRoutine, text: str) -> None:
+    """A level whose branches are the roots that a routine of the runtime finds."""
+    arguments = _or_seed(work, v, form, lowered)
     for e in arguments:
         work.place(e)
     atoms = work.knowledge.variables.pair(v.key)
-    work.levels.append(LoweredLevel(4, None, ("trig_quartic", arguments, atoms)))
+    work.levels.append(LoweredLevel(form.branches, None, (lowered.routine, arguments, atoms)))
     work.place(Comment(text))
     suffix = v.text.split("_", 1)[1]
     for atom, x in zip(atoms, "cs", strict=True):
@@ -80,36 +89,46 @@ def _quartic(work: Placement, step: Step, text: str) -> None:
         work.placed.add(atom.id)
 
 
-def _or_seed(work: Placement, v: Variable, coefficients: tuple[Expr, ...]) -> tuple[Expr, ...]:
-    """The quartic's coefficients, and where all but the constant vanish those of `sin(v - seed) = 0`."""
-    g = work.g
-    divisor = leading(g, coefficients[:4], work.tolerances)
+def _or_seed(work: Placement, v: Variable, form: Form, lowered: LoweredRoutine) -> tuple[Expr, ...]:
+    """The routine's arguments, and where its divisor vanishes those whose solution is the seed's value."""
+    g, divisor = work.g, lowered.divisor
     if divisor.regular is None or divisor.clear is None:
-        return coefficients
+        return lowered.arguments
     missing = g.unary("not", divisor.clear)
     work.place(missing)
     work.singular.append(missing)
-    c, s = seed_values(work, v)
-    instead = (g.zero, g.zero, g.neg(s), c, g.zero)
-    both = zip(coefficients, instead, strict=True)
+    instead = form.instead(g, seed_values(work, v))
+    both = zip(lowered.arguments, instead, strict=True)
     return tuple(g.select(divisor.regular, mine, other) for mine, other in both)
 
 
-def _outputs(work: Placement) -> list[tuple[int, tuple[Expr, ...]]]:
-    """Every joint's pair or distance."""
-    out: list[tuple[int, tuple[Expr, ...]]] = []
+def _joint_values(work: Placement) -> list[tuple[int, Expr]]:
+    """Every joint's value, base to tip; what they are made of is placed."""
+    out: list[tuple[int, Expr]] = []
     work.place(Comment("joint variables"))
     for j in range(work.dh.dof):
-        v = work.session.joint_variable(j)
+        if j in work.held:
+            out.append((j, work.atom(HeldValue(j).name)))
+            continue
+        v = work.knowledge.joint_variable(j)
         if v.kind == "angle":
-            values: tuple[Expr, ...] | None = work.knowledge.known_pair(v.key)
-            assert values is not None
+            variable: tuple[Expr, ...] | None = work.knowledge.known_pair(v.key)
+            assert variable is not None
         else:
-            values = (work.knowledge.variables.distance(j),)
-        for e in values:
+            variable = (work.knowledge.variables.distance(j),)
+        for e in variable:
             work.place(e)
-        out.append((j, values))
+        out.append((j, joint_value(work.g, first_row(work.dh, j), variable)))
     return out
+
+
+def _place_values(work: Placement, values: list[tuple[int, Expr]]) -> None:
+    """After the guards: a branch without a solution needs none of them."""
+    work.place(Comment("joint values"))
+    for j, e in values:
+        if j not in work.held:
+            work.names.setdefault(e.id, f"q{j + 1}")
+            work.place(e)
 
 
 def _labels(step: Step) -> str:

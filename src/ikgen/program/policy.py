@@ -31,8 +31,8 @@ class SolvePolicy:
 
     - `tolerance`: error (rad, or m over the arm's size) that a returned row may have; `arrived`: error
       below which refined rows are solutions; `rough_square`: squared error above which a row is refined.
-    - `pose_tolerance`: how far a rotation's entries may be off; the nearest rotation counts then.
-      `round_off`: up to which sum of errors of its rows' products a rotation is taken as it is.
+    - `pose_tolerance`: how far a rotation's entries may be off; nearer ones are replaced by the nearest
+      rotation; `orthonormal`: what is round-off of them.
     - `coincident`: rows closer than that (rad or m) are one; `meeting`: how close branches are where their
       rows are compared. `limit_tolerance`: a row that far (rad or m) outside a limit is put back on it.
     - `tries`: how many values of a joint that a pose leaves free are tried, `try_step` (rad) apart.
@@ -47,7 +47,7 @@ class SolvePolicy:
     arrived: float = 0.5e-9
     rough_square: float = 1e-20
     pose_tolerance: float = 1e-6
-    round_off: float = 1e-14
+    orthonormal: float = 1e-14
     coincident: float = 1e-6
     meeting: float = 2e-5
     limit_tolerance: float = 1e-9

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from ikgen import __version__
 from ikgen.emit.derivation import Derivation, Reading, Unsolved
+from ikgen.formulas.normal_form import Normalizer
 from ikgen.kinematics.classify import GeometryClass
 from ikgen.report.behavior import behavior_section
 from ikgen.report.document import Block, Heading, Paragraph
@@ -14,7 +15,6 @@ from ikgen.report.graph_picture import draw
 from ikgen.report.html import to_html
 from ikgen.report.latex import to_latex
 from ikgen.report.leftover import leftover_section
-from ikgen.report.normal_form import Normalizer
 from ikgen.report.opening import forward_section, robot_section
 from ikgen.report.results import graph_section, poses_section, verification_section
 from ikgen.report.solution_sets import versions_of
@@ -83,8 +83,9 @@ class _Page:
     def steps(self) -> list[Block]:
         """One section a solved unknown."""
         graph = self.graph
-        writer = Writer(graph, self.versions, self.normal, abbreviations(graph, self.normal))
-        blocks = splits_section(graph.session.system)
+        names = abbreviations(graph, self.normal)
+        writer = Writer(graph, graph.workspace(), self.versions, self.normal, names)
+        blocks = splits_section(writer.known.equations)
         for number, step in enumerate(graph.steps, start=1):
             blocks += step_section(writer, number, step)
         return blocks + derived_section(writer)

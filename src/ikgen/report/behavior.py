@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from ikgen.formulas.notation import variable
 from ikgen.report.document import Block, Heading, Inline, Paragraph, Rows, Text
-from ikgen.report.notation import variable
 from ikgen.solver.session import Tick
 from ikgen.solver.solution_graph import SolutionGraph
 

@@ -10,7 +10,7 @@ from ikgen.solver.ranker import rank_key
 __all__ = ["candidates_table"]
 
 _REASONS = (
-    "fails at some regular configurations",
+    "fails or folds at some regular configurations",
     "more branches",
     "a less direct form",
     "degenerate at more singular configurations",

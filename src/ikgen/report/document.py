@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ikgen.report.mathtext import Math
+from ikgen.formulas.mathtext import Math
 
 __all__ = [
     "Block",

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from ikgen.report import mathtext as m
+from ikgen.formulas import mathtext as m
+from ikgen.formulas.mathtext import Math
 from ikgen.report.document import Block, Formulas, Paragraph
-from ikgen.report.mathtext import Math
 
 __all__ = ["elimination_section"]
 

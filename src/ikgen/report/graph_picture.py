@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from ikgen.equations.knowledge import Variable
+from ikgen.formulas.notation import variable
 from ikgen.report.layout import layout
-from ikgen.report.notation import variable
 from ikgen.report.solution_sets import Versions
 from ikgen.solver.solution_graph import SolutionGraph
 

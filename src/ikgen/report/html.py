@@ -5,6 +5,7 @@ from __future__ import annotations
 from html import escape
 
 from ikgen.emit.rendering import render
+from ikgen.formulas.mathtext import Math
 from ikgen.report.document import (
     Block,
     Formulas,
@@ -15,7 +16,6 @@ from ikgen.report.document import (
     Rows,
     Text,
 )
-from ikgen.report.mathtext import Math
 
 __all__ = ["to_html"]
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from ikgen.equations.knowledge import Variable
+from ikgen.formulas.mathtext import relation
+from ikgen.formulas.normal_form import Normalizer
+from ikgen.formulas.notation import show, variable
 from ikgen.report.document import Block, Formulas, Heading, Inline, Paragraph, Rows, Text
-from ikgen.report.mathtext import relation
-from ikgen.report.normal_form import Normalizer
-from ikgen.report.notation import show, variable
 from ikgen.report.plain import plain
 from ikgen.report.splits import place
 from ikgen.solver.remainder import NearMiss, OpenEquation, count_open, near_misses, open_equations
@@ -58,7 +58,7 @@ def leftover_section(graph: SolutionGraph) -> list[Block]:
     """The section of an unsolved arm."""
     normal = Normalizer()
     left = _left(graph, normal)
-    names = [graph.session.joint_variable(j) for j in graph.open_joints]
+    names = [graph.known.joint_variable(j) for j in graph.open_joints]
     lead: list[Inline] = ["No closed form was found for ", *_listed(names), ". "]
     blocks: list[Block] = [Heading(("What is left",))]
     if not left:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ikgen.equations.knowledge import Variable
-from ikgen.report.normal_form import Factor, Named, Radical, Sum, Symbol, Term
+from ikgen.formulas.normal_form import Factor, Named, Radical, Sum, Symbol, Term
 
 __all__ = ["plain"]
 

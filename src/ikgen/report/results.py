@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ikgen.equations.knowledge import Variable
-from ikgen.report import mathtext as m
+from ikgen.formulas import mathtext as m
+from ikgen.formulas.notation import variable
 from ikgen.report.document import (
     Block,
     Formulas,
@@ -17,7 +18,6 @@ from ikgen.report.document import (
     Text,
 )
 from ikgen.report.graph_picture import Drawing
-from ikgen.report.notation import variable
 from ikgen.report.solution_sets import Versions
 from ikgen.solver.solution_graph import SolutionGraph
 from ikgen.verify.verification_report import VerificationReport
@@ -54,8 +54,7 @@ def graph_section(
 
 def poses_section(graph: SolutionGraph, versions: Versions) -> list[Block]:
     """The sets of versions that make whole solutions."""
-    session = graph.session
-    joints = [session.joint_variable(j) for j in range(session.system.dh.dof)]
+    joints = [graph.known.joint_variable(j) for j in range(graph.dh.dof)]
     known = [v for v in joints if v in versions.within]
     lead = (
         f"{versions.poses} sets of versions, one a choice of branches; "

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ikgen.equations.equation_set import Equation, EquationSet
-from ikgen.report import mathtext as m
+from ikgen.formulas import mathtext as m
+from ikgen.formulas.mathtext import Math
 from ikgen.report.document import Block, Formulas, Inline, Paragraph
-from ikgen.report.mathtext import Math
 
 __all__ = ["origin", "place", "splits_section"]
 

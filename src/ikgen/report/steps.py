@@ -5,15 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ikgen.equations.equation_set import Equation
-from ikgen.equations.knowledge import Variable
-from ikgen.report import mathtext as m
+from ikgen.equations.knowledge import Knowledge, Variable
+from ikgen.forms.formula import Formula, FormulaWriter
+from ikgen.formulas import mathtext as m
+from ikgen.formulas.mathtext import Math
+from ikgen.formulas.naming import Abbreviations
+from ikgen.formulas.normal_form import Normalizer, Sum
+from ikgen.formulas.notation import show, variable
 from ikgen.report.candidate_table import candidates_table
 from ikgen.report.document import Block, Formulas, Heading, Inline, Paragraph, Rows, Text
-from ikgen.report.form_formulas import Solved, solve_form
-from ikgen.report.mathtext import Math
-from ikgen.report.naming import Abbreviations
-from ikgen.report.normal_form import Normalizer, Sum
-from ikgen.report.notation import show, variable
 from ikgen.report.solution_sets import Versions
 from ikgen.report.splits import origin, place
 from ikgen.solver.candidate import Candidate
@@ -23,13 +23,6 @@ from ikgen.solver.solution_graph import SolutionGraph
 __all__ = ["Writer", "abbreviations", "derived_section", "step_section"]
 
 _MANY = 16
-_QUARTIC: Text = (
-    "No leaf with two branches holds for this unknown: it is a root of a polynomial of degree four. The "
-    "polynomial in ", m.name("z") + m.relation() + m.function("exp", m.name("i") + m.name("theta")),
-    " is written above; its roots on the unit circle are the real solutions. The emitted code finds "
-    "them in closed form by Ferrari's resolvent, as the points where the lines of a degenerate conic "
-    "meet the circle.",
-)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +30,7 @@ class Writer:
     """What all step sections share."""
 
     graph: SolutionGraph
+    known: Knowledge
     versions: Versions
     normal: Normalizer
     names: Abbreviations
@@ -56,7 +50,7 @@ def step_section(w: Writer, number: int, step: Step) -> list[Block]:
     c = step.candidate
     v = variable(c.unknown)
     title: Text = (f"{number}. ", v, f": {c.leaf}")
-    solved = solve_form(c, w.graph.session.system.graph, w.normal, w.names)
+    solved = _formula(w, c)
     blocks: list[Block] = [Heading(title, 2), *_origin(w, c)]
     shown = [_equation(w, e) for e in dict.fromkeys(c.sources) if _short(w, e)]
     if shown:
@@ -70,8 +64,8 @@ def step_section(w: Writer, number: int, step: Step) -> list[Block]:
         lines = [m.name("u", str(n.index)) + m.relation() + show(s) for n, s in news]
         blocks += [Paragraph(("with",)), Formulas(tuple(lines))]
     blocks += [Paragraph(("Solution:",)), Formulas(solution)]
-    if c.form == "quartic":
-        blocks.append(Paragraph(_QUARTIC))
+    if c.form.remark:
+        blocks.append(Paragraph(c.form.remark))
     blocks += _versions(w, c.unknown, step.branches)
     blocks += _guards(step, solved)
     for fallback in step.fallbacks:
@@ -79,8 +73,13 @@ def step_section(w: Writer, number: int, step: Step) -> list[Block]:
     return blocks + candidates_table(step)
 
 
+def _formula(w: Writer, c: Candidate) -> Formula:
+    writer = FormulaWriter(c.unknown, c.coefficients, w.known.graph, w.normal, w.names)
+    return c.form.formula(writer)
+
+
 def _origin(w: Writer, c: Candidate) -> list[Block]:
-    made = origin(w.graph.session.system, c.sources)
+    made = origin(w.known.equations, c.sources)
     note = [Paragraph((f"By {c.note or c.leaf}:",))] if c.note or not made else []
     return [*made, *note]
 
@@ -94,7 +93,7 @@ def _short(w: Writer, e: Equation) -> bool:
     return w.normal(e.left).weight + w.normal(e.right).weight < 120
 
 
-def _solution(w: Writer, c: Candidate, solved: Solved) -> tuple[Math, ...]:
+def _solution(w: Writer, c: Candidate, solved: Formula) -> tuple[Math, ...]:
     several = len(solved.branches) > 1
     alone = w.versions.count(c.unknown) == len(solved.branches)
     lines = []
@@ -133,7 +132,7 @@ def _versions(w: Writer, v: Variable, branches: int) -> list[Block]:
     return [Paragraph((*lead, ":")), Rows(tuple(header), tuple(rows), small=True)]
 
 
-def _guards(step: Step, solved: Solved) -> list[Block]:
+def _guards(step: Step, solved: Formula) -> list[Block]:
     out: list[Block] = []
     if solved.reach is not None:
         relation = any(t.role == "rel" for t in solved.reach.tokens)
@@ -149,8 +148,8 @@ def _guards(step: Step, solved: Solved) -> list[Block]:
             "another form is taken there (below)."
             if step.fallbacks
             else (
-                "every value of the joint gives the pose, the seed's is taken (0 without one), and "
-                "the row is flagged singular."
+                "the seed's value is tried there (0 without one); only rows that give the pose are "
+                "returned, flagged singular where the arm itself is."
             )
         )
         out.append(
@@ -169,7 +168,7 @@ def _guards(step: Step, solved: Solved) -> list[Block]:
 
 
 def _fallback(w: Writer, c: Candidate) -> list[Block]:
-    solved = solve_form(c, w.graph.session.system.graph, w.normal, w.names)
+    solved = _formula(w, c)
     news = w.names.news()
     lines = [m.name("u", str(n.index)) + m.relation() + show(s) for n, s in news]
     places = ", and ".join(dict.fromkeys(place(e) for e in c.sources))
@@ -182,7 +181,7 @@ def derived_section(w: Writer) -> list[Block]:
     solved = {step.candidate.unknown for step in w.graph.steps}
     lines = []
     for v, _ in w.graph.parents:
-        composed = v.kind == "angle" and w.graph.knowledge.composition(v.key)
+        composed = v.kind == "angle" and w.known.composition(v.key)
         if v in solved or not composed or composed == ((1, v.key),):
             continue
         right = Math(())

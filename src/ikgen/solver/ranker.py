@@ -16,7 +16,7 @@ from ikgen.algebra.expression import Expr
 from ikgen.equations.probes import Probes
 from ikgen.solver.candidate import Candidate, Judgement
 
-__all__ = ["PREFERENCE", "judge", "rank_key"]
+__all__ = ["PREFERENCE", "WEAK_MARGIN", "judge", "rank_key"]
 
 PREFERENCE = (
     "algebraic",
@@ -48,11 +48,10 @@ def judge(
     `truth` is the unknown at the probes, (c, s) or (x,).
     """
     generic, regular = probes.generic, probes.regular
-    divisor, size = candidate.divisor()
-    relative = np.abs(divisor) / size
+    relative = candidate.relative_divisor()
     if np.median(relative[:generic]) < 1e-6:
         return None
-    matches = np.zeros(len(divisor), dtype=bool)
+    matches = np.zeros(len(relative), dtype=bool)
     for branch in candidate.values():
         with np.errstate(all="ignore"):
             error = sum(np.abs(b - t) for b, t in zip(branch, truth, strict=True))
@@ -60,17 +59,27 @@ def judge(
     if not matches[:generic].all():
         return None
     margin = float(relative[:regular].min())
-    weak = bool((~matches[:regular]).any() or margin < WEAK_MARGIN or _folds(candidate, regular))
+    weak = bool((~matches[:regular]).any() or margin < WEAK_MARGIN)
     singular = relative[regular:]
     fragile = float((singular < WEAK_MARGIN).mean()) if singular.size else 0.0
     cost = _cost(candidate.coefficients, used, weight)
-    return replace(candidate, judgement=Judgement(weak, margin, fragile, cost))
+    almost = bool(probes.kept) and _almost_tangent(candidate, generic)
+    judgement = Judgement(weak, _folds(candidate, regular), margin, fragile, cost, almost)
+    return replace(candidate, judgement=judgement)
+
+
+def _almost_tangent(candidate: Candidate, generic: int) -> bool:
+    """Whether the form's constant side is zero where rounded constants have the values that were meant."""
+    constant = candidate.form.tangent_without
+    if constant is None:
+        return False
+    return bool(np.abs(constant.probe[generic:]).max() <= FOLD_MARGIN * constant.scale)
 
 
 def _folds(candidate: Candidate, regular: int) -> bool:
     """Whether the candidate's branches meet at a regular configuration: its square root loses half the
     digits where the arm itself is well-behaved, so one of the branches must be spurious."""
-    under = candidate.discriminant()
+    under = candidate.form.discriminant()
     return under is not None and bool(np.min(under[:regular]) < FOLD_MARGIN)
 
 
@@ -89,14 +98,18 @@ def _cost(roots: tuple[Expr, ...], used: set[int], weight: Mapping[int, float]) 
     return total
 
 
+def _preference(leaf: str) -> int:
+    return PREFERENCE.index(leaf) if leaf in PREFERENCE else len(PREFERENCE)
+
+
 def rank_key(candidate: Candidate) -> tuple[object, ...]:
     """Sort key: smaller is better."""
     j = candidate.judgement
     assert j is not None
     return (
-        j.weak,
+        not candidate.is_sound,
         candidate.branches,
-        PREFERENCE.index(candidate.leaf) if candidate.leaf in PREFERENCE else len(PREFERENCE),
+        _preference("tangent" if j.almost_tangent else candidate.leaf),
         round(j.fragile, 1),
         candidate.branches == 1 and sum(e.squared for e in candidate.sources),
         j.cost,

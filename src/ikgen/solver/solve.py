@@ -34,10 +34,16 @@ def solve_chain(
     part of the chain (tasks that do not read the whole pose). `leaves` are by default ikgen's own and
     those of other packages, `tree` ikgen's own or that of another package.
     """
-    probes = make_probes(dh, tool=tool_on_right)
+    probes = make_probes(dh, tool=tool_on_right, readable=readable)
     graph = ExpressionGraph(len(probes.values))
     system = EquationSet(
-        graph, dh, probes.values, probes.pose, readable=readable, tool_on_right=tool_on_right
+        graph,
+        dh,
+        probes.values,
+        probes.pose,
+        readable=readable,
+        tool_on_right=tool_on_right,
+        kept=probes.kept,
     )
     knowledge = Knowledge(system)
     _ = system.equations

@@ -7,15 +7,13 @@ the candidate weak.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.algebra.expression import Expr
 from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.evaluation import evaluate
 from ikgen.equations.probes import Probes, arm_size, smallest_singular
+from ikgen.forms.form import scales
 from ikgen.solver.candidate import Candidate
 
 __all__ = ["conditions", "weak_configurations"]
@@ -24,50 +22,35 @@ Array = NDArray[np.float64]
 STARTS = 24
 STEPS = 12
 REGULAR = 2e-2
-"""Smallest singular value of the pose's derivative above which a configuration counts as regular."""
+"""Smallest singular value of what the task reads above which a configuration counts as regular."""
 
 
 def conditions(candidate: Candidate, system: EquationSet, values: Array) -> list[Array]:
     """What must not vanish, each (m, N) at configurations `values` (N, dof), in natural units."""
-    c = evaluate(system, candidate.coefficients, values)
-    z = [max(e.scale, 1e-300) for e in candidate.coefficients]
-    out: list[Array] = []
-    if candidate.form in ("linear", "root"):
-        out.append(c[:1] / z[0])
-    elif candidate.form == "pair":
-        size = z[0] * z[4] + z[1] * z[3]
-        out.append((c[0] * c[4] - c[1] * c[3])[None] / size)
-    else:
-        out.append(c[: 2 if candidate.form != "quartic" else 4] / max(z[:2]))
-    if candidate.form == "sincos":
-        u = values @ np.array(candidate.unknown.key, dtype=float)
-        out.append((c[0] * np.sin(u) - c[1] * np.cos(u))[None] / max(z[:2]))
-    return out
+    form = candidate.form
+    c, z = list(evaluate(system, form.coefficients, values)), scales(form.coefficients)
+    fold = form.fold(c, z, values @ np.array(candidate.unknown.key, dtype=float))
+    return [form.divisor(c, z)] if fold is None else [form.divisor(c, z), fold]
 
 
 def weak_configurations(candidate: Candidate, system: EquationSet, probes: Probes) -> Array:
     """Regular configurations (k, dof) at which the candidate fails."""
     found: list[Array] = []
-    if all(e.is_fixed for e in _divisor_parts(candidate)) and candidate.form != "sincos":
-        return np.empty((0, system.dh.dof))
     size = arm_size(system.dh)
     start = probes.values[: probes.regular]
     count = len(conditions(candidate, system, start[:1]))
-    for which in range(count):
+    constant = all(e.is_fixed for e in candidate.form.divisor_parts)
+    for which in range(1 if constant else 0, count):
         q = _descend(candidate, system, start[:STARTS], which, size)
         rest = np.abs(conditions(candidate, system, q)[which]).max(axis=0)
         zero = np.isfinite(rest) & (rest < 1e-9)
         if zero.any():
             at = q[zero]
-            found.append(at[smallest_singular(system.dh, at, size) > REGULAR])
+            smallest = smallest_singular(
+                system.dh, at, size, readable=system.readable, tool=system.tool_on_right
+            )
+            found.append(at[smallest > REGULAR])
     return np.concatenate(found) if found else np.empty((0, system.dh.dof))
-
-
-def _divisor_parts(candidate: Candidate) -> Sequence[Expr]:
-    c = candidate.coefficients
-    if candidate.form == "pair":
-        return (c[0], c[1], c[3], c[4])
-    return c[:1] if candidate.form in ("linear", "root") else c[:2]
 
 
 def _descend(

@@ -49,9 +49,15 @@ class Answers:
             self.limited, self.unlimited, *self.inside, *self.outside, *self.seeded, self.ordered,
         )  # fmt: skip
 
+    @property
+    def standing(self) -> tuple[Trial, ...]:
+        """The trials at whose poses the arm stands: each generating configuration must be among the
+        rows."""
+        return (self.limited, self.unlimited, *self.inside, self.outside[1], *self.seeded)
+
 
 def _first(sample: SampleSet, n: int) -> SampleSet:
-    return SampleSet(sample.label, sample.q[:n], sample.poses[:n], sample.regular[:n])
+    return SampleSet(sample.label, sample.q[:n], sample.poses[:n], sample.sigma[:n])
 
 
 def _slice(trial: Trial, n: int) -> Trial:
@@ -71,7 +77,7 @@ def _unreachable(runner: Runner, arm: ArmUnderTest, seed: int) -> tuple[Trial, .
     trials = []
     for label, poses in unreachable_poses(arm, _UNREACHABLE, rng).items():
         held = arm.uniform(rng, len(poses))
-        sample = SampleSet(label, held, poses, np.zeros(len(poses), dtype=bool))
+        sample = SampleSet(label, held, poses, arm.sigma(held))
         trials.append(run_trial(runner, arm, sample, limits=True))
     return tuple(trials)
 

@@ -71,9 +71,22 @@ class ArmUnderTest:
         turned = np.remainder(d + np.pi, 2 * np.pi) - np.pi
         return np.asarray(np.where(self.revolute, turned, d))
 
+    def unit_of(self, q: Array) -> Array:
+        """What a tolerance on each value of q (…, dof) is relative to: a slide's size (m) where that
+        is over 1 m, else 1."""
+        return np.asarray(np.where(self.revolute, 1.0, np.maximum(1.0, np.abs(q))))
+
+    def size_of(self, q: Array) -> Array:
+        """What an error of the tip's position is relative to (m), for rows q (N, dof): the arm's length
+        or the row's longest slide, at least 1."""
+        longest = np.max(self.unit_of(q), axis=-1, initial=1.0)
+        return np.asarray(np.maximum(longest, self.length))
+
     def distance(self, a: Array, b: Array) -> Array:
-        """Largest joint-wise difference (rad or m) over the last axis, modulo whole turns."""
-        return np.asarray(np.max(np.abs(self.difference(a, b)), axis=-1, initial=0.0))
+        """Largest joint-wise difference (rad, or m relative to `unit_of`) over the last axis, modulo
+        whole turns."""
+        apart = np.abs(self.difference(a, b)) / self.unit_of(b)
+        return np.asarray(np.max(apart, axis=-1, initial=0.0))
 
     def within(self, q: Array, tolerance: float = 0.0) -> NDArray[np.bool_]:
         """Which configurations (N,) lie inside the limits."""

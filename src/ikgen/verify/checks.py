@@ -19,9 +19,10 @@ __all__ = [
 
 Array = NDArray[np.float64]
 
-CLOSURE_TOLERANCE = (
-    1e-9  # m and rad: what "right" means; lengths of the arm where it is over 1 m long
-)
+CLOSURE_TOLERANCE = 1e-9
+"""m and rad: what "right" means. Of an arm over 1 m long, or of a row with a longer slide, in units of
+that length."""
+
 PUT_ON_LIMIT = (
     1e-9  # rad or m: a row that is off a limit by no more is put on it, which moves its pose
 )
@@ -43,7 +44,7 @@ def check_closure(arm: ArmUnderTest, trials: Sequence[Trial]) -> CheckResult:
         poses = trial.sample.poses[index]
         position, rotation = arm.task.errors(arm.oracle.forward(q), poses)
         position, rotation = (np.where(np.isnan(e), np.inf, e) for e in (position, rotation))
-        error = np.maximum(position / max(1.0, arm.length), rotation)
+        error = np.maximum(position / arm.size_of(np.nan_to_num(q)), rotation)
         on_limit = ((q == arm.lower) | (q == arm.upper)).any(axis=1)
         excess = error - np.where(on_limit, CLOSURE_TOLERANCE + PUT_ON_LIMIT, CLOSURE_TOLERANCE)
         count += len(q)
@@ -78,7 +79,8 @@ def check_inside_limits(arm: ArmUnderTest, trials: Sequence[Trial]) -> CheckResu
     worst, case = 0.0, ""
     for trial in (t for t in trials if t.limits):
         index, q, _ = trial.rows.flat()
-        beyond = np.max(np.maximum(arm.lower - q, q - arm.upper), axis=1, initial=0.0)
+        excess = np.maximum(arm.lower - q, q - arm.upper) / arm.unit_of(q)
+        beyond = np.max(excess, axis=1, initial=0.0)
         wrong = ~(beyond <= LIMIT_TOLERANCE)
         count, failures = count + len(q), failures + int(wrong.sum())
         if len(q) and np.max(beyond) > worst:

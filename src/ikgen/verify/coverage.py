@@ -9,39 +9,17 @@ from numpy.typing import NDArray
 
 from ikgen.verify.arm import REGULAR_SIGMA, ArmUnderTest
 from ikgen.verify.checks import LIMIT_TOLERANCE
+from ikgen.verify.completeness import FOUND_TOLERANCE
 from ikgen.verify.search import find_solutions
 from ikgen.verify.trials import Trial, nearest, result, spell
 from ikgen.verify.verification_report import CheckResult
 
 __all__ = [
-    "check_completeness", "check_exhaustive", "check_limit_choice", "check_singular_answers",
-    "check_status", "check_unreachable",
+    "check_exhaustive", "check_limit_choice", "check_singular_answers", "check_status",
+    "check_unreachable",
 ]  # fmt: skip
 
 Array = NDArray[np.float64]
-
-FOUND_TOLERANCE = 1e-6  # rad or m: how close a row must come to a known solution
-
-
-def check_completeness(arm: ArmUnderTest, trials: Sequence[Trial]) -> CheckResult:
-    """At regular poses the generating configuration is among the rows, modulo whole turns."""
-    count = failures = 0
-    worst, case = 0.0, ""
-    for trial in trials:
-        regular = np.flatnonzero(trial.sample.regular)
-        if not len(regular):
-            continue
-        q = trial.sample.q[regular]
-        off = nearest(arm, q[:, None], trial.rows.q[regular])[:, 0]
-        count, failures = count + len(q), failures + int(np.sum(off > FOUND_TOLERANCE))
-        if off.max() > worst:
-            k = int(np.argmax(off))
-            worst, i = float(off[k]), regular[k]
-            rows = trial.rows.q[i, : trial.rows.count[i]]
-            case = spell(trial.sample.label, i, q=q[k], rows=rows)
-    if not count:
-        return result("completeness", 0, 1, detail="no sampled configuration is regular")
-    return result("completeness", count, failures, (("off rad or m", worst),), worst_case=case)
 
 
 def check_exhaustive(
@@ -87,8 +65,9 @@ def check_singular_answers(arm: ArmUnderTest, trials: Sequence[Trial]) -> CheckR
     return result("singular poses", count, failures, detail=detail, worst_case=case)
 
 
-def _bring_inside(arm: ArmUnderTest, q: Array, margin: float) -> NDArray[np.bool_]:
+def _bring_inside(arm: ArmUnderTest, q: Array, margin: float | Array) -> NDArray[np.bool_]:
     """Which rows (…, dof) some whole turns bring inside the limits by more than `margin`."""
+    margin = margin * arm.unit_of(q)
     low, high = arm.lower + margin, arm.upper - margin
     turns = np.ceil((np.where(np.isfinite(low), low, q) - q) / (2 * np.pi))
     turned = np.where(arm.revolute, q + 2 * np.pi * turns, q)

@@ -51,6 +51,10 @@ def _suite(root: ET.Element, name: str, report: VerificationReport) -> None:
         "samples": str(report.samples),
         "seed": str(report.seed),
     }
+    for band in report.bands:
+        name_of = f"sigma {band.low:.0e} and more" if band.low else "sigma below the least edge"
+        counts = f"{band.poses} poses, {band.missed} missed, {band.loose} loose"
+        facts[name_of] = f"{counts}, {band.unanswered} without any row"
     properties = ET.SubElement(suite, "properties")
     for key, value in facts.items():
         ET.SubElement(properties, "property", name=key, value=_text(value))

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.verify.arm import FAR_LIMIT, REGULAR_SIGMA, ArmUnderTest
+from ikgen.verify.arm import FAR_LIMIT, ArmUnderTest
 from ikgen.verify.reach import farthest_configuration
 from ikgen.verify.singularities import SINGULAR_SIGMA, singular_configurations
 
@@ -25,13 +25,13 @@ _NEAR = (1e-2, 1e-4, 1e-6, 1e-8)  # rad: how far from a singular configuration
 
 @dataclass(frozen=True, slots=True)
 class SampleSet:
-    """Configurations `q` (N, dof) with their poses (N, 4, 4) by the oracle. `regular` (N,): far
-    enough from singular that the generating configuration must be found again to full accuracy."""
+    """Configurations `q` (N, dof) with their poses (N, 4, 4) by the oracle, and their smallest singular
+    values `sigma` (N,)."""
 
     label: str
     q: Array
     poses: Array
-    regular: NDArray[np.bool_]
+    sigma: Array
 
     def __len__(self) -> int:
         return len(self.q)
@@ -117,4 +117,4 @@ def sample_sets(arm: ArmUnderTest, samples: int, seed: int) -> dict[str, SampleS
 
 def _sample_set(arm: ArmUnderTest, label: str, q: Array) -> SampleSet:
     poses = arm.oracle.forward(q).reshape(-1, 4, 4)
-    return SampleSet(label, q, poses, arm.sigma(q) > REGULAR_SIGMA)
+    return SampleSet(label, q, poses, arm.sigma(q))

@@ -18,6 +18,10 @@ SINGULAR_SIGMA = 1e-9
 CONTINUUM_SIGMA = 1e-9
 """Smallest singular value below which a row is looked at for lying on a continuum."""
 
+STEPS_ALONG = (0.2, 0.05, 0.01)
+"""Steps (rad, or lengths of the arm) along the null direction, longest first. A long step may end at
+another isolated solution; a short one is little off the noise of where an isolated one is."""
+
 _PROBE = 1e-6  # rad or m: step of the forward difference
 
 
@@ -41,10 +45,6 @@ def _descend(arm: ArmUnderTest, q: Array) -> Array:
     return out
 
 
-STEPS_ALONG = (0.2, 0.05)
-"""Steps (rad, or lengths of the arm) along the null direction that leave an isolated solution."""
-
-
 def singular_configurations(arm: ArmUnderTest, count: int, rng: np.random.Generator) -> Array:
     """At most `count` exactly singular configurations (k, dof) inside the limits."""
     if not arm.active:
@@ -62,7 +62,8 @@ def on_continuum(arm: ArmUnderTest, q: Array, targets: Array) -> NDArray[np.bool
 
     Step along the null direction and return to the target: an isolated singular solution (a
     stretched elbow) falls back to where it was, one of a continuum (aligned wrist axes) does not.
-    A long step alone may end at another isolated solution, a short one is little off its noise.
+    Steps of several lengths may all end at one other isolated solution, so the ends of a continuum
+    must differ from each other too, and the shortest step must leave as well.
     """
     flags = np.zeros(len(q), dtype=bool)
     candidates = np.flatnonzero(arm.sigma(q) < CONTINUUM_SIGMA)
@@ -74,8 +75,10 @@ def on_continuum(arm: ArmUnderTest, q: Array, targets: Array) -> NDArray[np.bool
     step = np.zeros((len(candidates), arm.dof))
     step[:, active] = null * np.where(arm.revolute[active], 1.0, arm.length)
     flags[candidates] = True
+    passed = [q[candidates]]  # where the steps before came from and went
     for size in STEPS_ALONG:
         ends, reached = converge(arm, q[candidates] + size * step, targets[candidates])
-        moved = np.max(np.abs(ends - q[candidates]), axis=1, initial=0.0) > size / 4
-        flags[candidates] &= reached & moved & (arm.sigma(ends) < 1e-5)
+        away = [np.max(np.abs(ends - one), axis=1, initial=0.0) > size / 4 for one in passed]
+        flags[candidates] &= reached & np.all(away, axis=0) & (arm.sigma(ends) < 1e-5)
+        passed.append(ends)
     return flags

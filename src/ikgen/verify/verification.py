@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.tasks import find_task
-from ikgen.verify import checks, coverage, interface_checks
+from ikgen.verify import checks, completeness, coverage, interface_checks
 from ikgen.verify.agreement import check_agreement
 from ikgen.verify.answers import Answers, collect_answers
 from ikgen.verify.arm import ArmUnderTest, arm_under_test
@@ -17,7 +18,7 @@ from ikgen.verify.oracle import Oracle
 from ikgen.verify.runners.runner import Runner
 from ikgen.verify.sampling import generator
 from ikgen.verify.task_space import TaskSpace, task_space
-from ikgen.verify.verification_report import CheckResult, VerificationReport
+from ikgen.verify.verification_report import CheckResult, SigmaBand, VerificationReport
 
 __all__ = ["Progress", "verify"]
 
@@ -30,11 +31,15 @@ _STARTS = 200  # of the numerical search, per pose
 
 
 def _plan(
-    runner: Runner, arm: ArmUnderTest, answers: Answers, seed: int, peer: Runner | None
+    runner: Runner,
+    arm: ArmUnderTest,
+    answers: Answers,
+    survey: completeness.Survey,
+    seed: int,
+    peer: Runner | None,
 ) -> dict[str, Callable[[], CheckResult]]:
     """The checks by name, in the order of the report."""
     a, random = answers, answers.limited.sample
-    complete = [a.limited, a.unlimited, *a.inside, a.outside[1]]
     rng = generator(seed, "search")
     agreement: dict[str, Callable[[], CheckResult]] = {}
     if peer is not None:
@@ -44,7 +49,8 @@ def _plan(
         "forward": lambda: interface_checks.check_forward(arm, runner, random),
         "jacobian": lambda: interface_checks.check_jacobian(arm, runner, a.ordered.sample),
         "closure": lambda: checks.check_closure(arm, a.reachable),
-        "completeness": lambda: coverage.check_completeness(arm, complete),
+        "completeness": lambda: completeness.check_completeness(survey),
+        "poses answered": lambda: completeness.check_answered(survey),
         "exhaustive search": lambda: coverage.check_exhaustive(arm, a.searched, _STARTS, rng),
         "distinct rows": lambda: checks.check_distinct(arm, a.reachable),
         "status": lambda: coverage.check_status(arm, [(a.limited, a.unlimited), a.outside]),
@@ -76,6 +82,15 @@ def _histogram(answers: Answers) -> tuple[tuple[int, int], ...]:
     return tuple((int(c), int(n)) for c, n in zip(counts, poses, strict=True))
 
 
+@dataclass(frozen=True, slots=True)
+class _Findings:
+    """What the checks found."""
+
+    results: tuple[CheckResult, ...]
+    histogram: tuple[tuple[int, int], ...] = ()
+    bands: tuple[SigmaBand, ...] = ()
+
+
 def _run_checks(
     runner: Runner,
     arm: ArmUnderTest,
@@ -83,22 +98,23 @@ def _run_checks(
     seed: int,
     peer: Runner | None,
     progress: Progress | None,
-) -> tuple[tuple[CheckResult, ...], tuple[tuple[int, int], ...]]:
-    """All results and the histogram of solution counts; one failed result if solving raises."""
+) -> _Findings:
+    """All results; one failed result if solving raises."""
     if progress:
         progress("solving", 0, 1)
     try:
         answers = collect_answers(runner, arm, samples, seed)
+        survey = completeness.survey(arm, runner, answers.standing)
     except Exception as error:
         what = f"solve raises {type(error).__name__}: {error}"
-        return (CheckResult("runs", False, 1, 1, detail=what),), ()
-    plan = _plan(runner, arm, answers, seed, peer)
+        return _Findings((CheckResult("runs", False, 1, 1, detail=what),))
+    plan = _plan(runner, arm, answers, survey, seed, peer)
     results = []
     for done, (name, check) in enumerate(plan.items(), start=1):
         if progress:
             progress(name, done, len(plan) + 1)
         results.append(_guarded(name, check))
-    return tuple(results), _histogram(answers)
+    return _Findings(tuple(results), _histogram(answers), survey.bands)
 
 
 def verify(
@@ -125,16 +141,16 @@ def verify(
     start = time.perf_counter()
     name = runner.constants.task if task is None else task
     space = task_space(find_task(name))
-    results = _mismatch(runner, oracle)
-    histogram: tuple[tuple[int, int], ...] = ()
-    if not results:
+    found = _Findings(_mismatch(runner, oracle))
+    if not found.results:
         arm = _arm(runner, oracle, space, free_joints, limits)
-        results, histogram = _run_checks(runner, arm, samples, seed, peer, progress)
+        found = _run_checks(runner, arm, samples, seed, peer, progress)
     links, held = (oracle.base_link, oracle.tip_link), tuple((locked or {}).items())
     seconds = time.perf_counter() - start
     return VerificationReport(
-        runner.label, *links, name, samples, seed, results, histogram, oracle.notes, held, seconds
-    )
+        runner.label, *links, name, samples, seed, found.results, found.histogram, oracle.notes, held,
+        seconds, found.bands,
+    )  # fmt: skip
 
 
 def _arm(

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-__all__ = ["CheckResult", "VerificationReport"]
+__all__ = ["CheckResult", "SigmaBand", "VerificationReport"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,10 +43,39 @@ class CheckResult:
 
 
 @dataclass(frozen=True, slots=True)
+class SigmaBand:
+    """Poses whose generating configurations have smallest singular values of at least `low` and below
+    `high`: how many, at how many of them that configuration is `missed` among the rows, at how many a
+    row is it only as far as its own closure error goes (`loose`), how many are `unanswered`, without
+    any row; `case` spells out one miss."""
+
+    low: float
+    high: float
+    poses: int
+    missed: int = 0
+    loose: int = 0
+    unanswered: int = 0
+    case: str = ""
+
+    def to_dict(self) -> dict[str, Any]:
+        """For JSON; an infinite edge becomes None."""
+        return {
+            "low": self.low,
+            "high": self.high if math.isfinite(self.high) else None,
+            "poses": self.poses,
+            "missed": self.missed,
+            "loose": self.loose,
+            "unanswered": self.unanswered,
+            "case": self.case,
+        }
+
+
+@dataclass(frozen=True, slots=True)
 class VerificationReport:
     """All checks of one emitted module. `label` is its language; `histogram` pairs a number of
-    solutions with how many of the random poses have it (limits disregarded); `seconds` is the time
-    taken, which stays out of `to_dict` so that equal runs give equal text."""
+    solutions with how many of the random poses have it (limits disregarded); `bands` counts what was
+    found by how singular the configurations are; `seconds` is the time taken, which stays out of
+    `to_dict` so that equal runs give equal text."""
 
     label: str
     base_link: str
@@ -59,6 +88,7 @@ class VerificationReport:
     notes: tuple[str, ...] = ()
     locked: tuple[tuple[str, float], ...] = ()
     seconds: float = 0.0
+    bands: tuple[SigmaBand, ...] = ()
 
     @property
     def passed(self) -> bool:
@@ -82,6 +112,19 @@ class VerificationReport:
         """Largest position (m) and rotation (rad) error over all returned rows; NaN if none ran."""
         worst = dict(next((c.worst for c in self.checks if c.name == "closure"), ()))
         return worst.get("position m", math.nan), worst.get("rotation rad", math.nan)
+
+    @property
+    def missed(self) -> int:
+        """Generating configurations, at whatever singular value, and solutions of the numerical search
+        that no row gives."""
+        searched = sum(c.failures for c in self.checks if c.name == "exhaustive search")
+        return searched + sum(band.missed for band in self.bands)
+
+    @property
+    def missed_words(self) -> str:
+        """How many are missed, and whether all of them are singular enough not to fail."""
+        singular = self.missed and all(check.passed for check in self.checks)
+        return f"{self.missed} missed" + (", all of them near singularities" if singular else "")
 
     @property
     def solutions(self) -> tuple[int, float, int]:
@@ -123,6 +166,8 @@ class VerificationReport:
             "passed": self.passed,
             "solutions": {"min": least, "mean": mean, "max": greatest},
             "histogram": {str(count): poses for count, poses in self.histogram},
+            "by_sigma": [band.to_dict() for band in self.bands],
+            "missed": self.missed,
             "notes": list(self.notes),
             "locked": dict(self.locked),
             "checks": [check.to_dict() for check in self.checks],

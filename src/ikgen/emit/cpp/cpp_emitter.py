@@ -5,17 +5,15 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from ikgen.emit.cpp.bundle import bundle
-from ikgen.emit.cpp.cpp_joints import JointValue, Seed
+from ikgen.emit.blanks import blanks, pairs
 from ikgen.emit.cpp.cpp_language import CONSTANT, comment, literal, number
 from ikgen.emit.cpp.cpp_policy import policy_lines
 from ikgen.emit.cpp.cpp_statements import ProgramText
+from ikgen.emit.cpp.header_bundle import bundle
 from ikgen.emit.printer import expression
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
-from ikgen.emit.symbolic_frames import blanks, frame_entries, pairs
 from ikgen.errors import UsageError
-from ikgen.program.liveness import used_inputs
 from ikgen.program.ops import Op
 from ikgen.program.policy import SolvePolicy
 
@@ -28,9 +26,9 @@ _SYSTEM = ("array", "cstddef", "Eigen/Core", "Eigen/Geometry")
 """Headers that the shell itself needs."""
 
 _READING = {
-    "rotation": ("RotationReading", "rotation_reading.hpp"),
-    "direction": ("VectorReading<8, 3>", "vector_reading.hpp"),
-    "yaw": ("VectorReading<0, 2>", "vector_reading.hpp"),
+    "rotation": ("RotationReading<Policy>", "rotation_reading.hpp"),
+    "direction": ("VectorReading<Policy, 8, 3>", "vector_reading.hpp"),
+    "yaw": ("VectorReading<Policy, 0, 2>", "vector_reading.hpp"),
 }
 """What a task reads of a rotation: its type in the runtime, and that type's header."""
 
@@ -56,7 +54,6 @@ def emit_header(module: SolverModule) -> str:
         raise UsageError(f"the C++ emitter needs levels of 2, 4, ... branches, not {branches}")
     text = ProgramText(module)
     policy, runtime = SolvePolicy(), bundle(_headers(module), _SYSTEM)
-    inputs = used_inputs(program)
     return render(
         "cpp",
         "header.hpp.jinja",
@@ -74,15 +71,10 @@ def emit_header(module: SolverModule) -> str:
         far=any(j.limits.lower > math.pi or j.limits.upper < -math.pi for j in module.dh.joints),
         first_rows=[module.first_row(j) for j in range(module.dh.dof)],
         text=text,
-        entries=[name for name in inputs if name.startswith("t")],
-        seeds=[Seed.of(module, name) for name in inputs if name.startswith("seed_")],
-        held=[name for name in inputs if name[0] in "csd" and name[1:].isdigit()],
-        values=[JointValue.of(module, text, output) for output in text.outputs()],
+        values=text.joint_values(),
         rough=_rough(module, policy),
         order=_depth_first(branches),
-        frames=[
-            [[expression(CONSTANT, x) for x in row] for row in F] for F in frame_entries(module.dh)
-        ],
+        frames=[[[expression(CONSTANT, x) for x in row] for row in F] for F in program.frames],
         beside=[[number(float(x)) for x in D.T[:, :3].ravel()] for D in module.beside],
         size=_size_text(module),
         blanks=blanks(module),
@@ -117,7 +109,7 @@ def _size_text(module: SolverModule) -> str:
     """The arm's size as a number, or as an expression in constants to be filled in."""
     if not module.dh.symbols:
         return number(module.size)
-    lengths = [F[i][3] for F in frame_entries(module.dh) for i in range(3)]
+    lengths = [F[i][3] for F in module.program.frames for i in range(3)]
     texts = [expression(CONSTANT, Op("abs", (x,))) for x in lengths if x != 0.0]
     return f"std::max({{{', '.join(['1.0', *texts])}}})"
 

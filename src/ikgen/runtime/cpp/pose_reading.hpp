@@ -1,7 +1,7 @@
-// What a task reads of a pose. Noise of its rotation is taken off first: the nearest rotation (Frobenius) counts, the
-// unit vector of a direction or a heading. A Reading has kEntries, how many of its entries may be off by the
-// tolerance; error(t), 0 where there is nothing to take off; clean(t), which takes it off and returns the square of how
-// far entries were moved. t: the pose's matrix, columns first.
+// What a task reads of a pose. Noise of its rotation is taken off first: the nearest orthonormal columns (Frobenius)
+// count. A Reading has kMost, the largest defect of a pose; defect(t), the squared Frobenius norm of V^T V - 1 of the
+// columns V that are read; proper(t), whether they can be a rotation's; clean(t), which puts the nearest in their
+// place. t: the pose's matrix, columns first.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -10,6 +10,11 @@
 
 namespace ikgen_runtime {
 
+// Of columns with N entries, each off by the tolerance: |V^T V - 1| <= 2 |E| + |E|^2, E what they are off by.
+template <class Policy, int N>
+inline constexpr double kMostDefect =
+    4.0 * N * Policy::kPoseTolerance * Policy::kPoseTolerance * (1.0 + 2.0 * N * Policy::kPoseTolerance);
+
 // Arm: Reading; kRead, the entries that count; kWholePose; Policy.
 template <class Arm> struct PoseReading {
   using Policy = typename Arm::Policy;
@@ -17,25 +22,32 @@ template <class Arm> struct PoseReading {
 
   // Whether all that is read is finite and free of noise, but for round-off.
   static bool exact(const Eigen::Isometry3d& pose) noexcept {
-    const double* t = pose.matrix().data();
-    double error = Reading::error(t);
-    for (const Entry& entry : Arm::kRead) error += 0.0 * t[4 * entry.column + entry.row];
-    if (Arm::kWholePose && !(t[3] == 0.0 && t[7] == 0.0 && t[11] == 0.0 && t[15] == 1.0)) return false;
-    return error <= Policy::kRoundOff;
+    return good(pose.matrix().data(), Policy::kOrthonormal * Policy::kOrthonormal);
   }
 
-  // Takes the noise off; false where that does not make a pose of it.
+  // Takes the noise off; false where there is more than noise.
   static bool clean(Eigen::Isometry3d& pose) noexcept {
-    constexpr double most = Reading::kEntries * Policy::kPoseTolerance * Policy::kPoseTolerance;
-    return Reading::clean(pose.matrix().data()) <= most && exact(pose);
+    double* t = pose.matrix().data();
+    if (!good(t, Reading::kMost)) return false;
+    Reading::clean(t);
+    return true;
+  }
+
+ private:
+  static bool good(const double* t, double most) noexcept {
+    double defect = Reading::defect(t);
+    for (const Entry& entry : Arm::kRead) defect += 0.0 * t[4 * entry.column + entry.row];
+    if (Arm::kWholePose && !(t[3] == 0.0 && t[7] == 0.0 && t[11] == 0.0 && t[15] == 1.0)) return false;
+    return defect <= most && Reading::proper(t);
   }
 };
 
 // Entries that each count for themselves.
 struct EntriesReading {
-  static constexpr int kEntries = 1;
-  static double error(const double*) noexcept { return 0.0; }
-  static double clean(double*) noexcept { return 0.0; }
+  static constexpr double kMost = 0.0;
+  static double defect(const double*) noexcept { return 0.0; }
+  static bool proper(const double*) noexcept { return true; }
+  static void clean(double*) noexcept {}
 };
 
 }  // namespace ikgen_runtime

@@ -49,7 +49,7 @@ template <class Arm, template <class> class Way> struct PoseSolver {
                                                            Solutions& out) noexcept {
     Eigen::Isometry3d clean = pose;
     if (PoseReading<Arm>::exact(pose) || PoseReading<Arm>::clean(clean)) {
-      some<1>(&clean, options, &out);
+      Way<Arm>::template solve<1>(&clean, options, &out);
     } else {
       out.count = 0;
       out.status = Arm::Status::Invalid;

@@ -1,22 +1,25 @@
 // A direction or a heading: see pose_reading.hpp.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
+
+#include "pose_reading.hpp"
 
 namespace ikgen_runtime {
 
-// The unit vector of N entries from `First` on. Only a direction's own length says that it is none: that of a
-// heading (N = 2) is the cosine of the axis' elevation.
-template <int First, int N> struct VectorReading {
-  static constexpr int kEntries = N;
+// A unit vector: N entries from `First` on. A heading (N = 2) may be shorter, as that of a tilted tool, which
+// nothing reaches.
+template <class Policy, int First, int N> struct VectorReading {
+  static constexpr double kMost = kMostDefect<Policy, N>;
 
-  static double error(const double* t) noexcept { return std::abs(square(t) - 1.0); }
-
-  static double clean(double* t) noexcept {
-    const double length = std::sqrt(square(t)), off = N == 2 ? std::max(length - 1.0, 0.0) : length - 1.0;
+  static double defect(const double* t) noexcept {
+    const double gap = square(t) - 1.0;
+    return N == 2 && gap < 0.0 && gap * gap > kMost ? 0.0 : gap * gap;
+  }
+  static bool proper(const double* t) noexcept { return square(t) > 0.0; }
+  static void clean(double* t) noexcept {
+    const double length = std::sqrt(square(t));
     for (int i = First; i < First + N; ++i) t[i] /= length;
-    return off * off;
   }
 
  private:

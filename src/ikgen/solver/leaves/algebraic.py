@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
 from ikgen.equations.matching import powers
+from ikgen.forms.linear_form import Linear
 from ikgen.solver.candidate import Candidate
 
 __all__ = ["find"]
@@ -24,6 +25,6 @@ def find(
             continue
         p = powers(e, unknown)
         if p is not None and max(p) == 1:
-            coefs = (p[1], p.get(0, zero))
-            out.append(Candidate(unknown, "algebraic", "linear", coefs, e.sources))
+            form = Linear(p[1], p.get(0, zero))
+            out.append(Candidate(unknown, "algebraic", form, e.sources))
     return out

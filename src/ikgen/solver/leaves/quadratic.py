@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
 from ikgen.equations.matching import powers
+from ikgen.forms.quadratic_form import Quadratic
 from ikgen.solver.candidate import Candidate
 
 __all__ = ["find"]
@@ -24,6 +25,6 @@ def find(
             continue
         p = powers(e, unknown)
         if p is not None and max(p) == 2:
-            coefs = (p[2], p.get(1, zero), p.get(0, zero))
-            out.append(Candidate(unknown, "quadratic", "root", coefs, e.sources))
+            form = Quadratic(p[2], p.get(1, zero), p.get(0, zero))
+            out.append(Candidate(unknown, "quadratic", form, e.sources))
     return out

@@ -11,6 +11,7 @@ import numpy as np
 from ikgen.algebra.expression import Expr
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
 from ikgen.equations.matching import harmonics
+from ikgen.forms.pair_form import LinearPair
 from ikgen.solver.candidate import Candidate
 
 __all__ = ["find"]
@@ -47,5 +48,5 @@ def find(
         size = one[0].scale * two[1].scale + one[1].scale * two[0].scale
         if np.max(np.abs(det)) > 1e-9 * size:
             sources = (*e1.sources, *e2.sources)
-            out.append(Candidate(unknown, "simultaneous", "pair", (*one, *two), sources))
+            out.append(Candidate(unknown, "simultaneous", LinearPair(*one, *two), sources))
     return out

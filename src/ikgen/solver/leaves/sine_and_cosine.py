@@ -8,6 +8,8 @@ from collections.abc import Sequence
 
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
 from ikgen.equations.matching import harmonics
+from ikgen.forms.sine_cosine_form import SineCosine
+from ikgen.forms.tangent_form import Tangent
 from ikgen.solver.candidate import Candidate
 
 __all__ = ["find"]
@@ -29,10 +31,10 @@ def find(
             continue
         a, b, c = h.get((1, "c"), g.zero), h.get((1, "s"), g.zero), g.neg(h.get((0, "c"), g.zero))
         if c is g.zero:
-            out.append(Candidate(unknown, "sine and cosine", "tangent", (b, g.neg(a)), e.sources))
+            out.append(Candidate(unknown, "sine and cosine", Tangent(b, g.neg(a)), e.sources))
             continue
         single = a is g.zero or b is g.zero
         leaf = "sine or cosine" if single else "sine and cosine"
         name = "x2y2" if e.squared else leaf
-        out.append(Candidate(unknown, name, "sincos", (a, b, c), e.sources))
+        out.append(Candidate(unknown, name, SineCosine(a, b, c), e.sources))
     return out

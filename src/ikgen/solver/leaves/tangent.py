@@ -13,6 +13,7 @@ from ikgen.algebra.expression import Expr
 from ikgen.algebra.polynomial import Polynomial
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
 from ikgen.equations.matching import AngleSplit, only_known, proportional, split_angle
+from ikgen.forms.tangent_form import Tangent
 from ikgen.solver.candidate import Candidate
 
 __all__ = ["find"]
@@ -103,4 +104,4 @@ def _solve(one: _Row, two: _Row, unknown: Variable, knowledge: Knowledge) -> Can
     if x.vanishes and y.vanishes:
         return None
     sources = (*one.equation.sources, *two.equation.sources)
-    return Candidate(unknown, "tangent", "tangent", (x, y), sources)
+    return Candidate(unknown, "tangent", Tangent(x, y), sources)

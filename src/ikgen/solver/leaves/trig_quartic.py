@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
 from ikgen.equations.matching import harmonics
+from ikgen.forms.quartic_form import TrigQuartic
 from ikgen.solver.candidate import Candidate
 
 __all__ = ["find"]
@@ -30,6 +31,6 @@ def find(
         h = harmonics(e, unknown)
         if h is None or max(k for k, _ in h) != 2:
             continue
-        coefs = tuple(h.get(term, g.zero) for term in TERMS)
-        out.append(Candidate(unknown, "quartic", "quartic", coefs, e.sources))
+        form = TrigQuartic(*(h.get(term, g.zero) for term in TERMS))
+        out.append(Candidate(unknown, "quartic", form, e.sources))
     return out

@@ -1,0 +1,170 @@
+"""Fills the figures of README.md, between their marks, from the recorded results.
+
+    python -m benchmarks.readme [--check]
+
+A block starts with `<!-- figures: NAME -->` and ends with `<!-- end of figures -->`. What lies between is
+made here, from `benchmarks/results/`; nothing else of the page is touched. The picture of the comparison is
+drawn from there too. The commands write their results with `--record`. `--check` writes nothing and exits
+with 1 where a block or the picture is not what was recorded.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from benchmarks.peer_picture import picture
+from benchmarks.results import Measured, read_result
+
+__all__ = ["BLOCKS", "PAGE", "PICTURE", "MarkError", "drawn", "filled_in"]
+
+PAGE = Path(__file__).resolve().parents[1] / "README.md"
+PICTURE = Path(__file__).with_name("peers.svg")
+_START = re.compile(r"<!-- figures: (\w+) -->\n")
+_END = "<!-- end of figures -->\n"
+CLASSES = {
+    "3 DOF": "3 joints",
+    "4 DOF other": "4 joints, other",
+    "4 SCARA (RRPR)": "SCARA",
+    "6R general (no triple)": "6R, general",
+    "6R offset wrist, 2||3 (CRX/Jaco/xArm)": "6R, offset wrist, axes 2 and 3 parallel",
+    "6R spherical shoulder (legs)": "6R, spherical shoulder",
+    "6R spherical wrist + ortho-parallel base (OPW)": "6R, spherical wrist and ortho-parallel base",
+    "6R three parallel 2-4, offset wrist": "6R, axes 2-4 parallel, offset wrist",
+    "6R three parallel 2-4, orthogonal wrist (UR)": "6R, axes 2-4 parallel, orthogonal wrist",
+    "coupled: mimic joints inside the chain": "coupled by mimic joints",
+    "gantry (P P ..)": "gantry",
+    "redundant >7R": "more than 7R",
+    "redundant with prismatic": "redundant, with slides",
+}
+"""What the collection calls a class -> what the README calls it, where that is not the same with a comma
+after the kinds of joints."""
+ARMS = {"IRB 2400": "ABB IRB 2400", "UR5e": "UR5e", "Panda": "Panda, joint 7 held"}
+"""The arms of the comparison that the README shows, with its names for them."""
+
+
+class MarkError(Exception):
+    """A block without an end, an end without a block, a block twice, missing or not known."""
+
+
+def filled_in(text: str, read: Callable[[str], Measured] = read_result) -> str:
+    """The page's text with every block made anew; raises `MarkError` where the marks are not in order."""
+    names = _START.findall(text)
+    if sorted(names) != sorted(BLOCKS) or text.count(_END) != len(names):
+        raise MarkError(f"blocks {names}, {text.count(_END)} ends; there must be {list(BLOCKS)}")
+    parts = _START.split(text)
+    out = [parts[0]]
+    for name, rest in zip(parts[1::2], parts[2::2], strict=True):
+        old, mark, after = rest.partition(_END)
+        if not mark or _END in after or _START.search(old):
+            raise MarkError(f"the block {name} does not end before the next")
+        out += [f"<!-- figures: {name} -->\n", BLOCKS[name](read), _END, after]
+    return "".join(out)
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = [head, ["---"] * len(head), *rows]
+    text = "\n".join("| " + " | ".join(line) + " |" for line in lines)
+    return text.replace("| --- ", "|---").replace("--- |", "---|") + "\n"
+
+
+def _source(*measured: Measured) -> str:
+    """Where figures come from."""
+    said = dict.fromkeys(f"`{m.commit}` on {m.date}" for m in measured)
+    return f"\nMeasured at {', '.join(said)}.\n"
+
+
+def _class(family: str) -> str:
+    name = CLASSES.get(family, family)
+    return re.sub(r"^(\dR) (?!,)", r"\1, ", name)
+
+
+def _corpus(read: Callable[[str], Measured]) -> str:
+    measured = read("corpus")
+    rows = [
+        [_class(c["family"]), str(c["arms"]), str(c["solved"]), f"{c['median']:.1f} s",
+         f"{c['longest']:.1f} s"]
+        for c in measured.found["classes"]
+    ]  # fmt: skip
+    head = ("class", "arms", "solved and verified", "median", "longest")
+    left = measured.found["left"]
+    words = f"\nWithout a closed form: {', '.join(left)}.\n" if left else ""
+    return _table(head, rows) + words + _source(measured)
+
+
+def _tables(read: Callable[[str], Measured]) -> str:
+    measured = [read(name) for name in ("random_chains", "suite")]
+    rows = [_counts(m) for m in measured]
+    head = (
+        "command",
+        "tables",
+        "solved by rules",
+        "by elimination",
+        "wrong rows",
+        "missed",
+        "median",
+    )
+    return _table(head, rows) + _source(*measured)
+
+
+def _counts(measured: Measured) -> list[str]:
+    found = measured.found
+    names = ("tables", "by_rules", "by_elimination", "wrong", "missed")
+    return [f"`{measured.command}`", *(str(found[n]) for n in names), f"{found['median']:.1f} s"]
+
+
+def _peers(read: Callable[[str], Measured]) -> str:
+    measured = read("peers")
+    times: dict[str, dict[str, float]] = {}
+    for row in measured.found["times"]:
+        times.setdefault(row["solver"], {})[row["arm"]] = row["microseconds"]
+    own_first = sorted(
+        times, key=lambda solver: (not solver.startswith("ikgen"), min(times[solver].values()))
+    )
+    rows = [[solver, *(_short(times[solver].get(arm)) for arm in ARMS)] for solver in own_first]
+    return _table(("solver", *ARMS.values()), rows) + _source(measured)
+
+
+def drawn(read: Callable[[str], Measured] = read_result) -> str:
+    """The picture of the comparison with other solvers."""
+    times = read("peers").found["times"]
+    return picture([(row["arm"], row["solver"], row["microseconds"]) for row in times])
+
+
+def _short(value: Any) -> str:
+    """Two digits of a time in microseconds; a dash where there is none."""
+    if value is None:
+        return "–"
+    if value < 100:
+        return f"{value:.2f}" if value < 1 else f"{value:.1f}" if value < 10 else f"{value:.0f}"
+    return f"{10 * round(value / 10):,}" if value < 1000 else f"{100 * round(value / 100):,}"
+
+
+BLOCKS: dict[str, Callable[[Callable[[str], Measured]], str]] = {
+    "corpus": _corpus,
+    "tables": _tables,
+    "peers": _peers,
+}
+"""Block -> its text."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write the page, or say whether it is what was recorded."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--check", action="store_true")
+    options = parser.parse_args(arguments)
+    made = {PAGE: filled_in(PAGE.read_text(encoding="utf-8")), PICTURE: drawn()}
+    old = {path for path, text in made.items() if path.read_text(encoding="utf-8") != text}
+    for path in old:
+        print(f"{path.name} is not what was recorded")
+        if not options.check:
+            path.write_text(made[path], encoding="utf-8")
+    return int(bool(old) and options.check)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""Solution forms, one file each: pattern, branches, conditions, values, lowering and formula."""

@@ -1,0 +1,141 @@
+"""A solution form over the expression graph: values, divisors and guards as expressions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ikgen.algebra.expression import Expr
+from ikgen.algebra.expression_graph import ExpressionGraph
+
+__all__ = [
+    "ROUNDED",
+    "Divisor",
+    "LoweredForm",
+    "LoweredRoutine",
+    "Tolerances",
+    "at_least",
+    "divisor_of",
+    "leading",
+    "natural_size",
+]
+
+
+ROUNDED = 2e-9
+"""Model error (m or rad) above which every row is refined."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tolerances:
+    """Relative to natural sizes: a divisor below `singular` makes its joint free, one below `flag` marks
+    the solution as one of a continuum; a square root's argument may be `clamp` outside its domain, as
+    poses on the boundary of the workspace are reachable, and where rows are refined it is kept above
+    `fold`, so that two branches start apart. Where the condition `rough` holds, what a square root is
+    taken of has lost digits: it may be `wide` outside.
+    """
+
+    singular: float = 1e-11
+    flag: float = 1e-4
+    clamp: float = 1e-11
+    fold: float = 0.0
+    rough: Expr | None = None
+    wide: float = 1e-3
+
+    @staticmethod
+    def for_model_error(error: float) -> Tolerances:
+        """Tolerances where the solved geometry is `error` (m or rad) off the file's.
+
+        Where rows are not refined, a divisor that is no larger than what the two differ by is as good as
+        zero: the file's direction of it is lost.
+        """
+        clamp = max(1e-11, 25.0 * error)
+        fold = 0.05 * error if error > ROUNDED else 0.0
+        singular = 1e-11 if error > ROUNDED else max(1e-11, 4.0 * error)
+        return Tolerances(singular, min(max(1e-4, 5.0 * error), 1e-2), clamp, fold)
+
+    def guard(self, g: ExpressionGraph, value: Expr, size: float) -> Expr:
+        """Condition that a square root of `value`, of natural size `size`, may be taken."""
+        least = g.const(-self.clamp * size)
+        if self.rough is not None:
+            least = g.select(self.rough, g.const(-self.wide * size), least)
+        return g.binary("gt", value, least)
+
+
+@dataclass(frozen=True, slots=True)
+class Divisor:
+    """A divisor with 1 in its place where it vanishes; `regular`: it does not vanish; `clear`: it is well
+    away from that. Both None where it is a nonzero constant. `magnitude` is what both compare, with the
+    natural size `size` of the divisor to the power `power`."""
+
+    value: Expr
+    regular: Expr | None = None
+    clear: Expr | None = None
+    magnitude: Expr | None = None
+    size: float = 1.0
+    power: int = 1
+
+    def above(self, g: ExpressionGraph, share: float) -> Expr | None:
+        """Condition that the divisor exceeds a share of its natural size; None: it is constant."""
+        if self.magnitude is None:
+            return None
+        limit = self.size * share if self.power == 1 else self.size * share**self.power
+        return g.binary("gt", self.magnitude, g.const(limit))
+
+
+@dataclass(frozen=True, slots=True)
+class LoweredForm:
+    """`values`: (cosine, sine) or (distance,), defined where `regular` (None: always) holds, and well
+    away from a continuum where `clear` does; `guard`: condition for a real solution (None: always);
+    `branches`: how many signs of sigma differ; `under`: what is under the square root, and its natural
+    size."""
+
+    values: tuple[Expr, ...]
+    divisor: Divisor
+    guard: Expr | None
+    branches: int
+    under: tuple[Expr, Expr] | None = None
+
+    @property
+    def regular(self) -> Expr | None:
+        """Condition that the divisor does not vanish."""
+        return self.divisor.regular
+
+
+@dataclass(frozen=True, slots=True)
+class LoweredRoutine:
+    """A form that a routine of the runtime solves: its name, its arguments, and the divisor where they
+    do not determine the unknown."""
+
+    routine: str
+    arguments: tuple[Expr, ...]
+    divisor: Divisor
+
+
+def natural_size(e: Expr) -> float:
+    """Natural size of an expression: its largest value at the probes."""
+    finite = e.probe[np.isfinite(e.probe)]
+    return float(np.max(np.abs(finite))) if finite.size else 1.0
+
+
+def divisor_of(g: ExpressionGraph, value: Expr, tol: Tolerances, power: int = 1) -> Divisor:
+    """An expression as a divisor; `power` 2 where it is a sum of squares."""
+    if value.is_fixed:
+        return Divisor(value)
+    size = natural_size(value)
+    magnitude = g.unary("abs", value) if power == 1 else value
+    found = Divisor(value, None, None, magnitude, size, power)
+    regular = found.above(g, tol.singular)
+    clear = found.above(g, tol.flag)
+    assert regular is not None
+    return Divisor(g.select(regular, value, g.one), regular, clear, magnitude, size, power)
+
+
+def leading(g: ExpressionGraph, coefficients: tuple[Expr, ...], tol: Tolerances) -> Divisor:
+    """The sum of the squares of coefficients, as a divisor: where it vanishes the unknown is free."""
+    return divisor_of(g, g.dot([*coefficients], [*coefficients]), tol, 2)
+
+
+def at_least(g: ExpressionGraph, value: Expr, least: Expr) -> Expr:
+    """max(value, least), for least >= 0."""
+    return value if least is g.zero else g.binary("max", value, least)

@@ -1,0 +1,80 @@
+"""Two equations `A_i cos(u) + B_i sin(u) = C_i`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from ikgen.algebra.expression import Expr
+from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.forms.form import Array, Form
+from ikgen.forms.formula import Formula, FormulaWriter, equals, linear_combination
+from ikgen.forms.lowered_form import LoweredForm, Tolerances, divisor_of
+from ikgen.formulas import mathtext as m
+from ikgen.formulas.notation import quotient, show
+
+__all__ = ["LinearPair"]
+
+
+@dataclass(frozen=True, slots=True)
+class LinearPair(Form):
+    """`a1 cos + b1 sin = c1`, `a2 cos + b2 sin = c2` (IKBT, rule-based solver 5)."""
+
+    name: ClassVar[str] = "pair"
+    branches: ClassVar[int] = 1
+    on_circle: ClassVar[bool] = False
+    a1: Expr
+    b1: Expr
+    c1: Expr
+    a2: Expr
+    b2: Expr
+    c2: Expr
+
+    @property
+    def divisor_parts(self) -> tuple[Expr, ...]:
+        """The matrix."""
+        return self.a1, self.b1, self.a2, self.b2
+
+    def divisor(self, c: Sequence[Array], z: Sequence[float]) -> Array:
+        """The determinant."""
+        size = z[0] * z[4] + z[1] * z[3]
+        return (c[0] * c[4] - c[1] * c[3])[None] / size
+
+    def values(self, c: Sequence[Array]) -> list[tuple[Array, ...]]:
+        """Cramer's rule."""
+        det = c[0] * c[4] - c[1] * c[3]
+        return [((c[2] * c[4] - c[5] * c[1]) / det, (c[0] * c[5] - c[3] * c[2]) / det)]
+
+    def lower(self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances) -> LoweredForm:
+        """Cramer's rule with one division."""
+        det = g.sub(g.mul(self.a1, self.b2), g.mul(self.b1, self.a2))
+        divisor = divisor_of(g, det, tolerances)
+        x = g.sub(g.mul(self.c1, self.b2), g.mul(self.c2, self.b1))
+        y = g.sub(g.mul(self.a1, self.c2), g.mul(self.a2, self.c1))
+        if det.is_fixed:
+            return LoweredForm((g.div(x, det), g.div(y, det)), divisor, None, 1)
+        inverse = g.div(g.one, divisor.value)
+        return LoweredForm((g.mul(x, inverse), g.mul(y, inverse)), divisor, None, 1)
+
+    def formula(self, w: FormulaWriter) -> Formula:
+        """One arctangent; the determinant is left out where its sign is known."""
+        det = w.minor(0, 4, 3, 1)
+        sums = [w.sum(e) for e in w.e] if det.is_const else w.coefficients()
+        a1, b1, c1, a2, b2, c2 = sums
+        both = (w.cosine(), w.cosine("sin"))
+        equations = tuple(
+            equals(linear_combination([(a, both[0]), (b, both[1])]), show(c))
+            for a, b, c in ((a1, b1, c1), (a2, b2, c2))
+        )
+        up, across = w.minor(0, 5, 3, 2), w.minor(2, 4, 5, 1)
+        if np.all(det.probe <= 1e-12 * det.scale):
+            det, up, across = w.g.neg(det), w.g.neg(up), w.g.neg(across)
+        below, y, x = w.sum(det), w.sum(up), w.sum(across)
+        if bool(np.all(det.probe >= -1e-12 * det.scale)) or below.value is not None:
+            arguments = (show(y), show(x))
+        else:
+            arguments = (quotient(y, below), quotient(x, below))
+        return Formula(equations, (m.function("atan2", *arguments),), None, w.divisor(det))

@@ -1,0 +1,110 @@
+"""`a2 cos(2u) + b2 sin(2u) + a1 cos(u) + b1 sin(u) + a0 = 0`: at most four roots."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from ikgen.algebra.expression import Expr
+from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.forms.form import Array, Form
+from ikgen.forms.formula import Formula, FormulaWriter, equals
+from ikgen.forms.lowered_form import LoweredRoutine, Tolerances, leading
+from ikgen.formulas import mathtext as m
+from ikgen.formulas.mathtext import Math
+from ikgen.formulas.notation import angle, show
+
+__all__ = ["TrigQuartic"]
+
+
+@dataclass(frozen=True, slots=True)
+class TrigQuartic(Form):
+    """A trigonometric polynomial of degree two (Pieper 1968)."""
+
+    name: ClassVar[str] = "quartic"
+    branches: ClassVar[int] = 4
+    remark: ClassVar[tuple[str | Math, ...]] = (
+        "The unknown is a root of a polynomial of degree four. The polynomial in ",
+        m.name("z") + m.relation() + m.function("exp", m.name("i") + m.name("theta")),
+        " is written above; its roots on the unit circle are the real solutions. The emitted code finds "
+        "them in closed form by Ferrari's resolvent, as the points where the lines of a degenerate conic "
+        "meet the circle.",
+    )
+    a2: Expr
+    b2: Expr
+    a1: Expr
+    b1: Expr
+    a0: Expr
+
+    @property
+    def divisor_parts(self) -> tuple[Expr, ...]:
+        """All coefficients but the constant."""
+        return self.coefficients[:4]
+
+    def divisor(self, c: Sequence[Array], z: Sequence[float]) -> Array:
+        """All coefficients but the constant."""
+        return np.stack(c[:4]) / max(z[:4])
+
+    def values(self, c: Sequence[Array]) -> list[tuple[Array, ...]]:
+        """Roots from the companion matrix of the self-inversive polynomial in exp(i u)."""
+        a2, b2, a1, b1, a0 = c
+        low = np.stack([a2 - 1j * b2, a1 - 1j * b1, 2 * a0 + 0j, a1 + 1j * b1, a2 + 1j * b2])
+        out = np.full((4, 2, len(a2)), np.nan)
+        for n, p in enumerate(low.T):
+            for k, root in enumerate(_unit_roots(p)):
+                if root is not None:
+                    out[k, :, n] = root.real, root.imag
+        return [(out[k, 0], out[k, 1]) for k in range(4)]
+
+    def lower(self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances) -> LoweredRoutine:
+        """A call of the routine `trig_quartic`."""
+        divisor = leading(g, self.divisor_parts, tolerances)
+        return LoweredRoutine("trig_quartic", self.coefficients, divisor)
+
+    def instead(self, g: ExpressionGraph, seed: tuple[Expr, ...]) -> tuple[Expr, ...]:
+        """`sin(u - seed) = 0`"""
+        c, s = seed
+        return g.zero, g.zero, g.neg(s), c, g.zero
+
+    def formula(self, w: FormulaWriter) -> Formula:
+        """The polynomial in cosines and sines, and in z = exp(i u)."""
+        theta = angle(w.unknown.key)
+        letters = [m.name(x, i) for x, i in ("a2", "b2", "a1", "b1", "a0")]
+        twice = m.number(2.0) + m.space() + theta
+        marks = [
+            m.function("cos", twice), m.function("sin", twice), m.function("cos", theta),
+            m.function("sin", theta), Math(()),
+        ]  # fmt: skip
+        terms = [a + m.space() + t for a, t in zip(letters, marks, strict=True)]
+        equation = equals(m.join(terms, m.plus()), m.name("0"))
+        values = [equals(a, show(w.sum(e))) for a, e in zip(letters, w.e, strict=True)]
+        roots = tuple(m.function("arg", m.name("z", str(i + 1))) for i in range(4))
+        return Formula((equation, *values, _self_inversive(letters)), roots)
+
+
+def _unit_roots(p: Array) -> list[complex | None]:
+    """The roots of a polynomial (5,), highest power first; None for those off the unit circle."""
+    if not np.all(np.isfinite(p)) or np.abs(p[0]) < 1e-13 * np.abs(p).max():
+        p = p[1:4]
+        if abs(p[0]) == 0:
+            return []
+    return [z / abs(z) if abs(abs(z) - 1) < 1e-4 else None for z in np.roots(p)]
+
+
+def _self_inversive(letters: list[Math]) -> Math:
+    """The polynomial in z = exp(i theta) whose roots on the unit circle are the solutions."""
+    a2, b2, a1, b1, a0 = letters
+    i = m.name("i")
+    z = m.name("z")
+    low, high = m.minus(), m.plus()
+    parts = [
+        m.group(a2 + low + i + m.space() + b2) + m.power(z, 4),
+        m.group(a1 + low + i + m.space() + b1) + m.power(z, 3),
+        m.number(2.0) + m.space() + a0 + m.space() + m.power(z, 2),
+        m.group(a1 + high + i + m.space() + b1) + z,
+        m.group(a2 + high + i + m.space() + b2),
+    ]
+    return equals(m.join(parts, m.plus()), m.name("0"))

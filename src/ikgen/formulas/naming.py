@@ -1,0 +1,94 @@
+"""Abbreviations u_1, u_2, ... for sums that are long or come again."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+
+from ikgen.formulas.normal_form import Factor, Named, Radical, Sum, Term, factor_of
+
+__all__ = ["Abbreviations"]
+
+_AGAIN = 4
+"""Symbols from which on a sum that comes again gets a name."""
+
+_LONG = 14
+"""Symbols from which on a sum in parentheses gets a name even if it comes once."""
+
+
+class Abbreviations:
+    """Names for the sums inside the given formulas, numbered in the order of their use."""
+
+    def __init__(self, formulas: Iterable[Sum]) -> None:
+        self._count: Counter[Sum] = Counter()
+        self._index: dict[Sum, int] = {}
+        self._told: set[int] = set()
+        self._definition: dict[int, Sum] = {}
+        tops = []
+        for formula in dict.fromkeys(formulas):
+            tops.append(formula)
+            for inner in _inner(formula):
+                self._count[inner] += 1
+        for top in tops:
+            for form in (top, -top):
+                if form in self._count:
+                    self._count[form] += 1
+
+    def _wanted(self, s: Sum) -> bool:
+        if s in self._index:
+            return True
+        return (self._count[s] > 1 and s.weight >= _AGAIN) or (
+            s in self._count and s.weight >= _LONG
+        )
+
+    def short(self, s: Sum) -> Sum:
+        """The formula with names in it."""
+        for form, sign in ((s, 1.0), (-s, -1.0)):
+            if len(s.terms) > 1 and self._wanted(form):
+                return Sum((Term(sign, ((self._name(form), 1),)),))
+        return self.inside(s)
+
+    def force(self, s: Sum) -> Sum:
+        """A name for a formula that will be used several times, unless it is short."""
+        worth = len(s.terms) > 1 and s.weight >= _AGAIN + 2
+        if worth and s not in self._index and -s not in self._index:
+            self._name(factor_of(s))
+        return self.short(s)
+
+    def inside(self, s: Sum) -> Sum:
+        """The formula with names inside its terms, but not for the whole."""
+        return Sum(
+            tuple(
+                Term(t.coefficient, tuple((self._factor(f), p) for f, p in t.factors))
+                for t in s.terms
+            )
+        )
+
+    def _factor(self, factor: Factor) -> Factor:
+        if isinstance(factor, Radical):
+            return Radical(self.short(factor.inside))
+        if not isinstance(factor, Sum):
+            return factor
+        return self._name(factor) if self._wanted(factor) else self.inside(factor)
+
+    def _name(self, s: Sum) -> Named:
+        if s not in self._index:
+            definition = self.inside(s)
+            self._index[s] = len(self._index) + 1
+            self._definition[self._index[s]] = definition
+        return Named(self._index[s])
+
+    def news(self) -> list[tuple[Named, Sum]]:
+        """Names used since the last call, with what they stand for."""
+        fresh = [i for i in self._definition if i not in self._told]
+        self._told.update(fresh)
+        return [(Named(i), self._definition[i]) for i in sorted(fresh)]
+
+
+def _inner(s: Sum) -> Iterator[Sum]:
+    for term in s.terms:
+        for factor, _ in term.factors:
+            inside = factor.inside if isinstance(factor, Radical) else factor
+            if isinstance(inside, Sum):
+                yield inside
+                yield from _inner(inside)

@@ -1,0 +1,358 @@
+"""Reading URDF: what is refused, and with which words; what is bent, and with which warning."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import os
+import time
+
+import numpy as np
+import pytest
+
+from ikgen.errors import BadDescriptionError, UsageError
+from ikgen.importers import load_tree
+from ikgen.importers.xml_document import LARGEST_FILE
+from ikgen.model.joint_tree import JointType, Mimic
+
+INF = math.inf
+
+
+def joint(inner="", *, name="j", type_="revolute", parent="a", child="b"):
+    return (
+        f'<joint name="{name}" type="{type_}"><parent link="{parent}"/><child link="{child}"/>'
+        f"{inner}</joint>"
+    )
+
+
+LIMIT = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
+
+
+def robot(*parts, links="ab", attributes='name="r"'):
+    body = "\n".join([*(f'<link name="{link}"/>' for link in links), *parts])
+    return f"<robot {attributes}>\n{body}\n</robot>"
+
+
+@pytest.fixture
+def read(tmp_path):
+    def read(text, name="bot.urdf"):
+        file = tmp_path / name
+        file.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return load_tree(file)
+
+    return read
+
+
+def test_a_joint_as_written(read):
+    text = robot(
+        joint(
+            '<origin xyz="+1 .5 -2e-1" rpy="0 0 1.5708"/><axis xyz="0 0 -1"/>'
+            '<limit lower="-2" upper="3"/>'
+        )
+    )
+    tree = read(text)
+    (only,) = tree.joints
+    assert (tree.name, tree.root_link, tree.links) == ("r", "a", ("a", "b"))
+    assert (only.name, only.type, only.parent, only.child) == ("j", JointType.REVOLUTE, "a", "b")
+    assert only.T_parent_child[:3, 3].tolist() == [1.0, 0.5, -0.2]
+    assert only.axis.tolist() == [0.0, 0.0, -1.0]
+    assert (only.limits.lower, only.limits.upper, only.line) == (-2.0, 3.0, 4)
+    assert tree.source.text == text and tree.source.warnings == ()
+    assert tree.source.sha256 == hashlib.sha256(text.encode()).hexdigest()
+
+
+def test_roll_pitch_yaw_turn_about_fixed_axes(read):
+    roll, pitch, yaw = 0.3, -1.1, 2.7
+    tree = read(robot(joint(f'<origin rpy="{roll} {pitch} {yaw}"/>' + LIMIT)))
+
+    def turn(angle, i, j):
+        R = np.eye(3)
+        R[i, i] = R[j, j] = math.cos(angle)
+        R[j, i] = math.sin(angle)
+        R[i, j] = -R[j, i]
+        return R
+
+    expected = turn(yaw, 0, 1) @ turn(pitch, 2, 0) @ turn(roll, 1, 2)
+    np.testing.assert_allclose(tree.joints[0].T_parent_child[:3, :3], expected, atol=4e-16)
+
+
+REFUSED = {
+    "trailing point": (robot(joint('<origin rpy="0 -1.57. 0"/>')), "-1.57.", "decimal point", 4),
+    "comma": (robot(joint('<origin xyz="0.07, 0, 0"/>')), "0.07,", "comma", 4),
+    "four numbers": (robot(joint('<origin rpy="0 0 0 1"/>')), "4 numbers where 3", "write 3", 4),
+    "no number": (robot(joint('<origin xyz=""/>')), "0 numbers where 3", "write 3", 4),
+    "nan": (robot(joint('<origin xyz="nan 0 0"/>')), "not a number", "decimal", 4),
+    "underscore": (robot(joint('<origin xyz="1_0 0 0"/>')), "not a number", "decimal", 4),
+    "infinite": (robot(joint('<origin xyz="inf 0 0"/>')), "not finite", "finite", 4),
+    "huge": (robot(joint('<origin xyz="1e999 0 0"/>')), "not finite", "finite", 4),
+    "xacro left": (robot(joint('<origin xyz="$(optenv X 0 0 0)"/>')), "xacro", ".urdf.xacro", 4),
+    "limit": (robot(joint('<limit lower="-pi" upper="1"/>')), "lower: '-pi'", "decimal", 4),
+    "zero axis": (robot(joint('<axis xyz="0 0 0"/>')), "zero axis", "direction", 4),
+    "endless axis": (robot(joint('<axis xyz="1e300 1e300 0"/>')), "axis of length", "unit", 4),
+    "spherical": (robot(joint(type_="spherical")), "unknown type 'spherical'", "three", 4),
+    "no type": (robot(joint(type_="")), "without type", "type=", 4),
+    "no parent": (
+        robot('<joint name="j" type="fixed"><child link="b"/></joint>'),
+        "no <parent>",
+        "<parent",
+        4,
+    ),
+    "undefined link": (robot(joint(child="c")), "'c', which is not defined", "there is: a", 4),
+    "duplicate link": (robot(links="aab"), "duplicate link 'a', first at line 2", "rename", 3),
+    "duplicate joint": (
+        robot(joint(), joint(parent="b", child="c"), links="abc"),
+        "duplicate joint 'j', first at line 5",
+        "rename",
+        6,
+    ),
+    "two parents": (
+        robot(joint(), joint(name="k", parent="c"), links="abc"),
+        "'b' has two parents: joint 'j' (line 5) and joint 'k'",
+        "remove one",
+        6,
+    ),
+    "cycle": (robot(joint(), joint(name="k", parent="b", child="a")), "cycle: ", "closes", 4),
+    "cycle beside a root": (
+        robot(joint(parent="a", child="b"), joint(name="k", parent="b", child="a"), links="abc"),
+        "cycle: ",
+        "closes",
+        5,
+    ),
+    "own parent": (robot(joint(child="a")), "cycle: j", "closes", 4),
+    "no links": (robot(links=""), "no links", "complete", 1),
+    "empty": ("", "empty", "", None),
+    "blank": (" \n ", "empty", "", None),
+    "text": ("hello", "not well-formed", "not XML", 1),
+    "junk before": ("x <?xml version='1.0'?>" + robot(), "not well-formed", "before", 1),
+    "two documents": (robot() + "\n" + robot(), "not well-formed", "two documents", 5),
+    "cut off": ('<robot name="r">\n<link name="a"', "not well-formed", "correct", 2),
+    "merge conflict": (robot("<<<<<<< HEAD"), "not well-formed", "merge conflict", 4),
+    "lfs pointer": ("version https://git-lfs.github.com/spec/v1", "not well-formed", "lfs pull", 1),
+    "sdf": ("<sdf><model/></sdf>", "<sdf>, not <robot>", "SDF", 1),
+    "xacro element": (
+        robot("<xacro:include filename='x'/>", attributes='name="r" xmlns:xacro="http://x/xacro"'),
+        "<xacro:include>",
+        ".urdf.xacro",
+        4,
+    ),
+    "bytes": (b'<robot name="\xff\xfe"/>', "cannot decode", "UTF-8", None),
+    "encoding": (b'<?xml version="1.0" encoding="nonesuch"?><robot/>', "decode", "UTF-8", None),
+    "nul": (b"<robot>\0</robot>", "not well-formed", "correct", 1),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_refused_with_place_and_hint(read, case):
+    text, message, hint, line = REFUSED[case]
+    with pytest.raises(BadDescriptionError) as caught:
+        read(text)
+    assert message in caught.value.message
+    assert hint in caught.value.hint
+    assert caught.value.file.endswith("bot.urdf")
+    assert caught.value.line == line
+    assert caught.value.exit_code == 2
+
+
+BENT = {
+    "no name": (robot(joint(LIMIT), attributes=""), "took 'bot' from the file's name"),
+    "swapped": (robot(joint('<limit lower="2" upper="-1"/>')), "swapped"),
+    "effort": (robot(joint('<limit lower="-1" upper="1" effort="-1"/>')), "negative effort"),
+    "no limit": (robot(joint()), "no lower and upper limit"),
+    "no range": (robot(joint('<limit effort="1" velocity="1"/>')), "no lower and upper limit"),
+    "zero range": (robot(joint('<limit lower="0" upper="0"/>')), "lower = upper = 0"),
+    "one value": (robot(joint('<limit lower="1" upper="1"/>')), "cannot move"),
+    "half": (robot(joint('<limit upper="1"/>')), "no lower limit: taken as 0"),
+    "degrees": (robot(joint('<limit lower="-170" upper="170"/>')), "look like degrees"),
+    "axis": (robot(joint('<axis xyz="1 0 0.5"/>' + LIMIT)), "axis of length 1.11803 normalised"),
+    "axis rpy": (robot(joint('<axis rpy="0 0 0"/>' + LIMIT)), "has an rpy"),
+    "roots": (robot(joint(LIMIT), links="cab"), "several root links: took 'a'"),
+}
+
+
+@pytest.mark.parametrize("case", BENT)
+def test_tolerated_with_a_warning(read, case):
+    text, warning = BENT[case]
+    warnings = read(text).source.warnings
+    assert len(warnings) == 1 and warning in warnings[0]
+
+
+@pytest.mark.parametrize(
+    ("type_", "inner", "lower", "upper"),
+    [
+        ("revolute", '<limit lower="-1" upper="2"/>', -1.0, 2.0),
+        ("revolute", '<limit lower="2" upper="-1"/>', -1.0, 2.0),
+        ("revolute", '<limit upper="2"/>', 0.0, 2.0),
+        ("revolute", "", -INF, INF),
+        ("revolute", '<limit lower="0" upper="0"/>', -INF, INF),
+        ("revolute", '<limit lower="1" upper="1"/>', 1.0, 1.0),
+        ("revolute", '<limit lower="-inf" upper="inf"/>', -INF, INF),
+        ("prismatic", "", -INF, INF),
+        ("continuous", "", -INF, INF),
+        ("continuous", '<limit lower="0" upper="0"/>', -INF, INF),
+        ("continuous", '<limit lower="-4" upper="4"/>', -INF, INF),
+        ("continuous", '<limit lower="1e300" upper="2e300"/>', -INF, INF),
+        ("revolute", '<limit lower="-1e16" upper="1e16"/>', -1e16, 1e16),
+        ("fixed", '<limit lower="x" upper="4"/>', -INF, INF),
+    ],
+)
+def test_limits(read, type_, inner, lower, upper):
+    limits = read(robot(joint(inner, type_=type_))).joints[0].limits
+    assert (limits.lower, limits.upper) == (lower, upper)
+
+
+@pytest.mark.parametrize("type_", ["revolute", "continuous", "prismatic"])
+def test_axes_are_unit_vectors(read, type_):
+    tree = read(robot(joint('<axis xyz="0 3 -4"/>' + LIMIT, type_=type_)))
+    np.testing.assert_allclose(tree.joints[0].axis, [0.0, 0.6, -0.8], atol=1e-16)
+
+
+def test_an_absent_axis_is_x(read):
+    assert read(robot(joint(LIMIT))).joints[0].axis.tolist() == [1.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize("type_", ["fixed", "floating", "planar"])
+def test_axis_of_joints_without_one_value_is_not_read(read, type_):
+    tree = read(robot(joint('<axis xyz="0 0 0"/>', type_=type_)))
+    assert tree.joints[0].type.value == type_
+
+
+def test_mimic_is_kept_whatever_it_names(read):
+    tree = read(robot(joint('<mimic joint="absent" multiplier="-2" offset="0.5"/>' + LIMIT)))
+    assert tree.joints[0].mimic == Mimic("absent", -2.0, 0.5)
+
+
+def test_a_link_and_a_joint_may_share_a_name_with_slashes_and_spaces(read):
+    text = robot(
+        joint(LIMIT, name="my /b", parent="my /a", child="my /b"), links=["my /a", "my /b"]
+    )
+    tree = read(text)
+    assert tree.joints[0].name == tree.joints[0].child == "my /b"
+
+
+@pytest.mark.parametrize("declared", ["utf-8", "iso-8859-1", "utf-16"])
+def test_encodings(read, declared):
+    text = f'<?xml version="1.0" encoding="{declared}"?>\n' + robot(attributes='name="café"')
+    assert read(text.encode(declared)).name == "café"
+
+
+def test_digest_does_not_depend_on_line_ends(read):
+    text = robot(joint(LIMIT))
+    assert read(text).source.sha256 == read(text.replace("\n", "\r\n")).source.sha256
+
+
+def test_faults_beside_the_kinematics_are_none(read):
+    visual = '<link name="c"><visual><geometry><mesh filename="package://no"/></geometry></visual>'
+    text = robot(joint(LIMIT), visual + '<inertial><mass value="x"/></inertial></link>')
+    assert read(text).links == ("a", "b", "c")
+
+
+def test_limits_of_continuous_joints_are_one_warning(read):
+    limit = '<limit lower="-6.28" upper="6.28"/>'
+    joints = [
+        joint(limit, name=f"j{i}", type_="continuous", parent="abcd"[i], child="abcd"[i + 1])
+        for i in range(3)
+    ]
+    (warning,) = read(robot(*joints, links="abcd")).source.warnings
+    assert warning.startswith("line 6: limits of the continuous joint 'j0' and of 2 more ignored")
+
+
+DOCTYPES = {
+    "a bomb": '[<!ENTITY a "x"><!ENTITY b "&a;&a;"><!ENTITY c "&b;&b;">]',
+    "a parameter": '[<!ENTITY % p "x">]',
+    "a file": '[<!ENTITY e SYSTEM "/etc/hostname">]',
+    "an address": '[<!ENTITY e SYSTEM "http://127.0.0.1:9/e">]',
+    "a DTD": 'SYSTEM "http://127.0.0.1:9/robot.dtd"',
+}
+
+
+@pytest.mark.parametrize("case", DOCTYPES)
+def test_document_types_that_declare_something_are_refused(read, case):
+    with pytest.raises(BadDescriptionError, match=r"bot\.urdf:2: <!DOCTYPE> declares") as caught:
+        read(f"<?xml version='1.0'?>\n<!DOCTYPE robot {DOCTYPES[case]}>\n" + robot())
+    assert "remove it" in caught.value.hint
+
+
+def test_a_bare_document_type_is_harmless(read):
+    assert read("<!DOCTYPE robot>" + robot()).links == ("a", "b")
+
+
+def test_a_bomb_of_entities_in_an_attribute_ends_at_once(read):
+    layers = "".join(f'<!ENTITY e{i} "{f"&e{i - 1};" * 20}">' for i in range(1, 12))
+    text = (
+        f'<!DOCTYPE robot [<!ENTITY e0 "x">{layers}]><robot name="&e11;"><link name="a"/></robot>'
+    )
+    with pytest.raises(BadDescriptionError):
+        read(text)
+
+
+def test_deep_nesting_is_refused_with_its_line(read):
+    with pytest.raises(BadDescriptionError, match=r"bot\.urdf:\d+: not well-formed") as caught:
+        read("<robot>\n" + "<a>" * 100_000 + "</a>" * 100_000 + "</robot>")
+    assert "nest" in caught.value.hint
+
+
+def test_a_file_too_big_is_refused_before_it_is_read(tmp_path):
+    file = tmp_path / "bot.urdf"
+    with file.open("wb") as stream:
+        stream.truncate(LARGEST_FILE + 1)  # sparse: takes no room
+    with pytest.raises(BadDescriptionError, match="MB, more than 32 MB"):
+        load_tree(file)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes on this system")
+def test_pipes_and_devices_are_refused(tmp_path):
+    os.mkfifo(tmp_path / "bot.urdf")
+    (tmp_path / "zero.urdf").symlink_to("/dev/zero")
+    for name in ("bot.urdf", "zero.urdf"):
+        with pytest.raises(BadDescriptionError, match="no regular file"):
+            load_tree(tmp_path / name)
+
+
+LARGE = {
+    "length": (joint('<origin xyz="1e308 0 0"/>'), "is beyond 10000"),
+    "many digits": (joint(f'<origin xyz="{"1" * 5_000_000}x 0 0"/>'), "5000005 characters"),
+    "digits in a word": (joint(f'<origin xyz="{"1" * 2000} 0 0"/>'), "is not finite"),
+    "multiplier": (joint('<mimic joint="k" multiplier="1e308"/>' + LIMIT), "beyond 1e+06"),
+    "offset": (joint('<mimic joint="k" offset="-1e17"/>' + LIMIT), "beyond 1e+06"),
+    "limits far out": (joint('<limit lower="1e15" upper="1e16"/>'), "hold no value"),
+    "limits at infinity": (joint('<limit lower="inf" upper="inf"/>'), "hold no value"),
+    "axis": (joint('<axis xyz="0 0 1e308"/>' + LIMIT), "axis of length 1e+308"),
+    "denormal axis": (joint('<axis xyz="0 0 5e-324"/>' + LIMIT), "zero axis"),
+    "name": (joint(LIMIT, name="j" * 1_000_000), "has 1000000 characters"),
+}
+
+
+@pytest.mark.parametrize("case", LARGE)
+def test_numbers_without_a_meaning_are_refused_with_their_line(read, case):
+    text, message = LARGE[case]
+    started = time.process_time()
+    with pytest.raises(BadDescriptionError) as caught:
+        read(robot(text))
+    assert time.process_time() - started < 2.0
+    assert message in caught.value.message and caught.value.line == 4 and caught.value.hint
+    assert len(caught.value.message) < 500
+
+
+def test_denormal_lengths_and_angles_are_read(read):
+    tree = read(robot(joint('<origin xyz="5e-324 1e-310 0" rpy="5e-324 0 0"/>' + LIMIT)))
+    assert np.abs(tree.joints[0].T_parent_child - np.eye(4)).max() < 1e-300
+
+
+def test_a_cycle_of_ten_thousand_joints_is_named_in_short(read):
+    count = 10_000
+    joints = [
+        joint(LIMIT, name=f"j{i}", parent=f"l{i}", child=f"l{(i + 1) % count}")
+        for i in range(count)
+    ]
+    with pytest.raises(
+        BadDescriptionError, match=r"cycle: j1 -> j2 .* 9988 more .* -> j0"
+    ) as caught:
+        read(robot(*joints, links=[f"l{i}" for i in range(count)]))
+    assert len(caught.value.message) < 500
+
+
+def test_urdf_takes_no_arguments(tmp_path):
+    file = tmp_path / "bot.urdf"
+    file.write_text(robot())
+    with pytest.raises(UsageError, match="takes no arguments"):
+        load_tree(file, arguments={"x": "1"})

@@ -1,0 +1,188 @@
+"""The CMake package, with the real CMake where there is one."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from tests.support.tools import environment, needs_cmake
+
+from ikgen import __version__
+from ikgen.errors import MissingToolError
+from ikgen.generation.emitters import EMITTERS
+from ikgen.projects.cmake import ament_directory, cmake_directory
+from ikgen.verify.runners.cpp_toolchain import find_eigen
+
+ROOT = Path(__file__).resolve().parents[2]
+EXAMPLE = ROOT / "examples/cmake_only"
+
+
+def test_the_package_files_agree_on_the_version() -> None:
+    files = list(ROOT.glob("**/ikgenConfigVersion.cmake"))
+    files = [path for path in files if ".venv" not in path.parts]
+    assert len(files) == 3
+    assert {re.search(r'"(.+)"', path.read_text()).group(1) for path in files} == {__version__}  # type: ignore[union-attr]
+    assert f"<version>{__version__}</version>" in (ament_directory() / "package.xml").read_text()
+
+
+def call(*command: object, cwd: Path) -> subprocess.CompletedProcess[str]:
+    """Run a command with the tools of this environment first on PATH."""
+    return subprocess.run(
+        [str(word) for word in command], cwd=cwd, env=environment(), text=True, capture_output=True
+    )
+
+
+def build(*command: object, cwd: Path) -> str:
+    done = call(*command, cwd=cwd)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout + done.stderr
+
+
+@needs_cmake
+@pytest.mark.skipif(
+    "cpp" not in [emitter.name for emitter in EMITTERS], reason="needs the emitter of C++"
+)
+@pytest.mark.parametrize("generator", ["Ninja", "Unix Makefiles"])
+def test_regenerates_when_an_included_file_changes(tmp_path: Path, generator: str) -> None:
+    if generator == "Ninja" and shutil.which("ninja") is None:
+        pytest.skip("needs ninja")
+    shutil.copytree(EXAMPLE, tmp_path / "p")
+    listing = tmp_path / "p/CMakeLists.txt"
+    listing.write_text(listing.read_text().replace("VERIFY)", "SAMPLES 50 VERIFY)"))
+    out = tmp_path / "p" / "b"
+    build(
+        "cmake", "-S", ".", "-B", out, "-G", generator, f"-Dikgen_DIR={cmake_directory()}",
+        *_eigen(), cwd=tmp_path / "p",
+    )  # fmt: skip
+    made = "Generating inverse kinematics"
+    assert made in build("cmake", "--build", out, cwd=tmp_path)
+    assert made not in build("cmake", "--build", out, cwd=tmp_path)
+    wrist = tmp_path / "p/urdf/wrist.xacro"
+    wrist.write_text(wrist.read_text().replace("0.38", "0.39"))
+    text = build("cmake", "--build", out, cwd=tmp_path)
+    assert made in text and "reach" in text
+    assert made not in build("cmake", "--build", out, cwd=tmp_path)
+    if generator == "Ninja":
+        build("ctest", "--output-on-failure", cwd=out)
+
+
+def _eigen() -> list[str]:
+    """Where CMake finds Eigen if the system has none of its own."""
+    config = [*Path("/usr/share").glob("eigen3/cmake/Eigen3Config.cmake")]
+    if config:
+        return []
+    try:
+        return [f"-DCMAKE_PREFIX_PATH={find_eigen().parent.parent}"]
+    except MissingToolError:
+        pytest.skip("needs Eigen")
+
+
+_TWO_ARMS = """
+cmake_minimum_required(VERSION 3.16)
+project(two NONE)
+find_package(ikgen REQUIRED)
+enable_testing()
+ikgen_generate(left ROBOT arm.urdf.xacro ARGS upper_arm:=0.42 EMIT python SAMPLES 20)
+ikgen_generate(right ROBOT scara.urdf TASK position-yaw EMIT python SAMPLES 20)
+ikgen_committed(third DIRECTORY committed NAME arm CONFIG ikgen.toml SAMPLES 20 VERIFY)
+add_custom_target(both ALL)
+add_dependencies(both left_generate right_generate)
+"""
+_CONFIG = """
+[[arm]]
+name = "arm"
+robot = "arm.urdf.xacro"
+out = "committed"
+samples = 20
+"""
+_TOOLCHAIN = """
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR aarch64)
+set(CMAKE_FIND_ROOT_PATH "${CMAKE_CURRENT_LIST_DIR}/sysroot")
+foreach(kind PROGRAM LIBRARY INCLUDE PACKAGE)
+  set(CMAKE_FIND_ROOT_PATH_MODE_${kind} ONLY)
+endforeach()
+"""
+
+
+@pytest.fixture
+def two_arms(tmp_path: Path) -> Path:
+    """A project with two generated arms and a committed one."""
+    shutil.copytree(EXAMPLE / "urdf", tmp_path, dirs_exist_ok=True)
+    shutil.copy(ROOT / "examples/hatch_robot/urdf/scara.urdf", tmp_path)
+    (tmp_path / "CMakeLists.txt").write_text(_TWO_ARMS)
+    (tmp_path / "ikgen.toml").write_text(_CONFIG)
+    build("ikgen", "build", "--no-verify", "-q", cwd=tmp_path)
+    return tmp_path
+
+
+@needs_cmake
+@pytest.mark.parametrize("generator", ["Ninja", "Unix Makefiles"])
+def test_only_the_affected_arm_is_generated_again(two_arms: Path, generator: str) -> None:
+    if generator == "Ninja" and shutil.which("ninja") is None:
+        pytest.skip("needs ninja")
+    directory = f"-Dikgen_DIR={cmake_directory()}"
+    build("cmake", "-S", ".", "-B", "b", "-G", generator, directory, cwd=two_arms)
+    left, right = "inverse kinematics left_ik", "inverse kinematics right_ik"
+    first = build("cmake", "--build", "b", cwd=two_arms)
+    assert left in first and right in first
+    (two_arms / "wrist.xacro").touch()
+    again = build("cmake", "--build", "b", cwd=two_arms)
+    assert left in again and right not in again
+    (two_arms / "scara.urdf").touch()
+    again = build("cmake", "--build", "b", cwd=two_arms)
+    assert right in again and left not in again
+    nothing = build("cmake", "--build", "b", cwd=two_arms)
+    assert left not in nothing and right not in nothing
+
+
+@needs_cmake
+def test_committed_outputs_fail_when_the_description_changes(two_arms: Path) -> None:
+    build("cmake", "-S", ".", "-B", "b", f"-Dikgen_DIR={cmake_directory()}", cwd=two_arms)
+    build("ctest", "--output-on-failure", cwd=two_arms / "b")
+    wrist = two_arms / "wrist.xacro"
+    wrist.write_text(wrist.read_text().replace("0.38", "0.379"))
+    done = call("ctest", "--output-on-failure", cwd=two_arms / "b")
+    assert done.returncode != 0
+    assert "by up to 1 mm and 0 rad" in done.stdout and "ikgen build ikgen.toml" in done.stdout
+    assert list((two_arms / "b/ikgen/third").glob("*.xunit.xml"))
+
+
+@needs_cmake
+def test_a_toolchain_file_does_not_hide_the_command(two_arms: Path) -> None:
+    (two_arms / "cross.cmake").write_text(_TOOLCHAIN)
+    build(
+        "cmake", "-S", ".", "-B", "b", "-G", "Unix Makefiles",
+        "-DCMAKE_TOOLCHAIN_FILE=cross.cmake", f"-DCMAKE_MAKE_PROGRAM={shutil.which('make')}",
+        f"-Dikgen_DIR={cmake_directory()}", cwd=two_arms,
+    )  # fmt: skip
+    assert "left_ik" in build("cmake", "--build", "b", cwd=two_arms)
+    cache = (two_arms / "b/CMakeCache.txt").read_text()
+    program = re.search(r"IKGEN_EXECUTABLE:FILEPATH=(.+)", cache)
+    assert program is not None and Path(program.group(1)).is_file()
+
+
+@needs_cmake
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("ikgen_generate(arm)", "ROBOT <urdf-or-xacro> is missing"),
+        ("ikgen_generate(arm ROBOT nothing.urdf)", "no such file"),
+        ("ikgen_generate(arm ROBOT CMakeLists.txt COLOUR red)", "unknown arguments: COLOUR"),
+        ("ikgen_generate(arm ROBOT CMakeLists.txt BASE)", "no value for: BASE"),
+        ("ikgen_generate(arm ROBOT CMakeLists.txt PACKAGE_PATH no)", "no such directory"),
+        ("ikgen_committed(arm)", "DIRECTORY <dir> is missing"),
+        ("ikgen_committed(arm DIRECTORY generated)", "no outputs of ikgen"),
+        ("ikgen_committed(arm DIRECTORY generated ROBOT a.urdf)", "unknown arguments: ROBOT"),
+    ],
+)
+def test_wrong_calls(tmp_path: Path, line: str, said: str) -> None:
+    text = "cmake_minimum_required(VERSION 3.16)\nproject(p NONE)\nfind_package(ikgen REQUIRED)\n"
+    (tmp_path / "CMakeLists.txt").write_text(text + line + "\n")
+    directory = f"-Dikgen_DIR={cmake_directory()}"
+    done = call("cmake", "-S", ".", "-B", "b", directory, cwd=tmp_path)
+    said_there = " ".join(done.stderr.split())
+    assert done.returncode != 0 and said in said_there and "hint: " in said_there

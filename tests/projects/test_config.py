@@ -1,0 +1,187 @@
+"""Configs, incremental builds and what counts as stale."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from ikgen.cli.main import run
+from ikgen.errors import BadDescriptionError
+from ikgen.projects.config import default_config, load_config
+from ikgen.projects.depfile import depfile_text
+from ikgen.projects.stale import why_stale
+
+FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
+EXAMPLE = Path(__file__).resolve().parents[2] / "examples/cmake_only/urdf"
+CONFIG = """
+[[arm]]
+name = "kuka"
+robot = "kuka_kr6r900sixx.urdf"
+base = "base_link"
+tip = "tool0"
+out = "generated"
+samples = 20
+
+[[arm]]
+name = "small"
+robot = "arm.urdf.xacro"
+args = { upper_arm = 0.42 }
+out = "generated"
+samples = 20
+"""
+
+
+@pytest.fixture
+def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    shutil.copy(FIXTURES / "kuka_kr6r900sixx.urdf", tmp_path)
+    for name in ("arm.urdf.xacro", "wrist.xacro"):
+        shutil.copy(EXAMPLE / name, tmp_path)
+    (tmp_path / "ikgen.toml").write_text(CONFIG)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def stale(package: Path) -> dict[str, str]:
+    arms = load_config(package / "ikgen.toml")
+    return {arm.name: why_stale(arm, verify=False) for arm in arms}
+
+
+def test_builds_only_what_is_stale(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["build", "--check"]) == 1
+    assert not (package / "generated").exists()
+    assert run(["build", "--no-verify", "--depfile", "d"]) == 0
+    assert {p.name for p in (package / "generated").iterdir()} == {
+        "kuka_ik.py", "kuka_ik.json", "small_ik.py", "small_ik.json"
+    }  # fmt: skip
+    assert "wrist.xacro" in (package / "d").read_text()
+    assert run(["build", "--check", "--no-verify"]) == 0
+    before = (package / "generated/kuka_ik.py").stat().st_mtime_ns
+    wrist = package / "wrist.xacro"
+    wrist.write_text(wrist.read_text().replace("0.38", "0.39"))
+    assert stale(package) == {"kuka": "", "small": "wrist.xacro has changed"}
+    capsys.readouterr()
+    assert run(["build", "--no-verify", "--json"]) == 0
+    made = {row["name"]: row["generated"] for row in json.loads(capsys.readouterr().out)["arms"]}
+    assert made == {"kuka": False, "small": True}
+    assert (package / "generated/kuka_ik.py").stat().st_mtime_ns == before
+    assert run(["verify", "--samples", "20"]) == 0
+
+
+def test_reasons(package: Path) -> None:
+    assert run(["build", "--no-verify", "-q"]) == 0
+    config = package / "ikgen.toml"
+    config.write_text(CONFIG.replace("0.42", "0.43"))
+    assert "args" in stale(package)["small"]
+    config.write_text(CONFIG.replace('tip = "tool0"', ""))
+    assert stale(package)["kuka"] == "'tip' was tool0, is not given"
+    config.write_text(CONFIG)
+    with (package / "generated/kuka_ik.py").open("a") as stream:
+        stream.write("#")
+    assert "was edited" in stale(package)["kuka"]
+    record = package / "generated/small_ik.json"
+    record.write_text(record.read_text().replace('"version": "', '"version": "0.'))
+    assert "made by ikgen" in stale(package)["small"]
+
+
+def test_what_was_never_verified_is_stale(
+    package: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (package / "ikgen.toml").write_text(CONFIG[CONFIG.rindex("[[arm]]") :])
+    assert run(["build", "--no-verify", "-q"]) == 0
+    assert run(["build", "--check"]) == 1
+    assert capsys.readouterr().out == "small: stale: not verified yet\n"
+    assert run(["build", "--check", "--no-verify"]) == 0
+    assert run(["build"]) == 0
+    assert "(not verified yet)" in capsys.readouterr().out
+    made = (package / "generated/small_ik.json").read_text()
+    assert run(["build", "--check"]) == run(["build", "--no-verify"]) == 0
+    assert (package / "generated/small_ik.json").read_text() == made
+
+
+def test_one_bad_arm_leaves_the_others(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (package / "ikgen.toml").write_text(CONFIG.replace('"tool0"', '"tol0"'))
+    assert run(["build", "--no-verify"]) == 2
+    assert "error: kuka: no link named 'tol0'" in capsys.readouterr().err
+    assert (package / "generated/small_ik.py").is_file()
+
+
+def test_the_traceback_of_an_internal_error(
+    package: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fail(*_: object) -> None:
+        raise RuntimeError("broken\nin two")
+
+    monkeypatch.setattr("ikgen.generation.generate.generate", fail)
+    assert run(["build", "--jobs", "1"]) == 70
+    said = capsys.readouterr().err
+    assert "error: kuka: internal error: RuntimeError: broken in two" in said
+    assert "-v shows the traceback" in said and "Traceback" not in said
+    assert run(["build", "--jobs", "1", "-v"]) == 70
+    assert 'raise RuntimeError("broken\\nin two")' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "lists no arm"),
+        ("x = ", "not TOML"),
+        ("[[arm]]\nname = 'a'", "no 'robot'"),
+        ("[[arm]]\nrobot = 'a'", "no 'name'"),
+        ("[[arm]]\nname = 'a-b'\nrobot = 'r'", "not an identifier"),
+        ("[[arm]]\nname = 'a'\nrobot = 'r'\nemmit = []", "unknown entry 'emmit'"),
+        ("[[arm]]\nname = 'a'\nrobot = 'r'\nemit = 'cpp'", "not a list"),
+        ("[[arm]]\nname = 'a'\nrobot = 'r'\nlock = { j = 'x' }", "not a number"),
+        ("[[arm]]\nname = 'a'\nrobot = 'r'\n[[arm]]\nname = 'a'\nrobot = 'r'", "two arms"),
+        ("arm = 3", "lists no arm"),
+        ("other = 3\n[[arm]]\nname = 'a'\nrobot = 'r'", "unknown entry 'other'"),
+    ],
+)
+def test_bad_configs(tmp_path: Path, text: str, said: str) -> None:
+    path = tmp_path / "ikgen.toml"
+    path.write_text(text)
+    with pytest.raises(BadDescriptionError, match=said):
+        load_config(path)
+
+
+def test_pyproject(tmp_path: Path) -> None:
+    path = tmp_path / "pyproject.toml"
+    path.write_text("[project]\nname = 'x'\n")
+    assert default_config(tmp_path) is None
+    path.write_text("[[tool.ikgen.arm]]\nname = 'a'\nrobot = 'r.urdf'\nfree = ['j']\n")
+    assert default_config(tmp_path) == path
+    (arm,) = load_config(path)
+    assert arm.request.robot == tmp_path / "r.urdf" and arm.request.free == {"j": None}
+
+
+def test_depfile_escapes() -> None:
+    text = depfile_text("build/a.stamp", [Path("/a b/c#d$.urdf"), Path("/x")])
+    assert text == "build/a.stamp: /a\\ b/c\\#d$$.urdf /x\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("[[arm]]\nname = 'a'\nrobot = 'r'\nemmit = []", ":4: arm[0].emmit: unknown entry"),
+        ("[[arm]]\nname = 'a'\nrobot = 'r'\n\n[[arm]]\nname = 'b-c'\nrobot = 'r'",
+         ":6: arm[1].name: the name 'b-c' is not an identifier"),
+        ("[[arm]]\nname = 'a'\nrobot = 'r'\nlock = { j = 'x' }", ":4: arm[0].lock.j: 'x' is not a"),
+        ("[[arm]]\nname = 'a'\nrobot = 'r'\n[arm.lock]\nj = 'x'", ":5: arm[0].lock.j: 'x'"),
+        ("[[arm]]\nname = 'a'", ":1: arm[0] has no 'robot'"),
+        ("arm = [{ name = 'a' }]", ": arm[0] has no 'robot'"),
+        ("x = ", ":1: not TOML"),
+    ],
+)  # fmt: skip
+def test_bad_entries_are_named_with_their_line(tmp_path: Path, text: str, place: str) -> None:
+    path = tmp_path / "ikgen.toml"
+    path.write_text(text)
+    with pytest.raises(BadDescriptionError) as caught:
+        load_config(path)
+    assert f"{path}{place}" in caught.value.message
+
+
+def test_check_says_how_to_mend(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["build", "--check"]) == 1
+    assert capsys.readouterr().err == "hint: ikgen build ikgen.toml\n"

@@ -1,0 +1,89 @@
+"""A wheel carries the templates; wheel, sdist and editable install pass the same smoke test."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tarfile
+import zipfile
+from pathlib import Path
+
+import pytest
+from tests.support.environments import Environment, without_ikgen
+
+pytest.importorskip("hatchling")
+ROOT = Path(__file__).resolve().parents[2]
+KINDS = ("wheel", "sdist", "editable")
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """The wheel and the sdist of this checkout."""
+    out = tmp_path_factory.mktemp("dist")
+    done = subprocess.run(
+        [sys.executable, "-m", "hatchling", "build", "-d", str(out)],
+        cwd=ROOT,
+        text=True,
+        capture_output=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return {"wheel": next(out.glob("*.whl")), "sdist": next(out.glob("*.tar.gz"))}
+
+
+def test_everything_is_in_the_wheel(built: dict[str, Path]) -> None:
+    with zipfile.ZipFile(built["wheel"]) as archive:
+        names = archive.namelist()
+    for part in (
+        "ikgen/py.typed",
+        "ikgen/templates/python/module.py.jinja",
+        "ikgen/templates/cpp/header.hpp.jinja",
+        "ikgen/templates/cmake/ikgenConfig.cmake",
+        "ikgen/templates/ament/ikgen_ament/package.xml",
+        "ikgen/projects/cmake_root/cmake/ikgenConfig.cmake",
+    ):
+        assert part in names, part
+    assert any(n.endswith(".data/data/share/cmake/ikgen/ikgenConfig.cmake") for n in names)
+
+
+def test_what_the_tests_need_is_in_the_sdist(built: dict[str, Path]) -> None:
+    with tarfile.open(built["sdist"]) as archive:
+        names = {name.split("/", 1)[1] for name in archive.getnames() if "/" in name}
+    for part in ("action.yml", "examples/ament_description/ikgen.toml", "tests/conftest.py"):
+        assert part in names, part
+    assert not any(name.endswith("_ik.py") and "examples" in name for name in names)
+
+
+@pytest.fixture(scope="module", params=KINDS)
+def installed(
+    request: pytest.FixtureRequest, built: dict[str, Path], tmp_path_factory: pytest.TempPathFactory
+) -> Environment:
+    """An environment with ikgen installed one way, and what it depends on."""
+    environment = without_ikgen(tmp_path_factory.mktemp(request.param) / "env")
+    what = ("-e", ROOT) if request.param == "editable" else (built[request.param],)
+    environment.install(*what)
+    return environment
+
+
+def test_smoke(installed: Environment, tmp_path: Path) -> None:
+    robot = ROOT / "examples/setuptools_robot/urdf/elbow.urdf"
+    ikgen = installed.folder / "bin/ikgen"
+    assert ikgen.is_file()
+    code = "import ikgen; print(ikgen.__file__)"
+    found = Path(installed.call("python", "-c", code, cwd=tmp_path).strip())
+    assert found.is_relative_to(installed.folder) or found.is_relative_to(ROOT / "src")
+    for option, file in (((), "ikgenConfig.cmake"), (("--ament",), "package.xml")):
+        printed = installed.call("ikgen", "cmake-dir", *option, cwd=tmp_path)
+        assert (Path(printed.strip()) / file).is_file()
+    assert (installed.folder / "share/cmake/ikgen/ikgenConfig.cmake").is_file()
+    installed.call(
+        "ikgen", "from-urdf", robot, "--task", "position", "--samples", 50, "-q",
+        "-o", "out", cwd=tmp_path,
+    )  # fmt: skip
+    assert "right" in installed.call("ikgen", "verify", "out", "--samples", 50, cwd=tmp_path)
+    installed.call(
+        "ikgen", "from-urdf", robot, "--task", "position", "--no-verify", "-q", "--emit", "cpp",
+        "-o", "header", cwd=tmp_path,
+    )  # fmt: skip
+    assert (tmp_path / "header/elbow_ik.hpp").is_file()
+    use = "import elbow_ik as a; print(len(a.solve(a.forward([0.1, 0.4, 0.5]))))"
+    assert int(installed.call("python", "-c", use, cwd=tmp_path / "out")) >= 1

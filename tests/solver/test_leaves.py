@@ -1,0 +1,130 @@
+"""Each leaf on the smallest arm that wants it, and the rules around them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.support.solving import emitted
+
+from ikgen.equations.probes import dh_pose
+from ikgen.importers.dh.dh_table import read_dh_table
+from ikgen.model.chain import PRISMATIC, REVOLUTE, ActuatedJoint
+from ikgen.model.dh import Angle, DHChain, DHRow, Length
+from ikgen.model.joint_tree import Limits
+from ikgen.solver.leaves import LEAVES
+from ikgen.solver.ranker import PREFERENCE
+from ikgen.solver.solve import solve_chain
+
+TABLES = Path(__file__).resolve().parents[1] / "robots/tables"
+Row = tuple[str, str, float, float]
+
+
+def table(*rows: Row) -> DHChain:
+    """A chain from (kind, twist in right angles, a, d)."""
+    from fractions import Fraction
+
+    made: list[DHRow] = []
+    joints: list[ActuatedJoint] = []
+    frames = [np.eye(4)]
+    straight = Angle(0.0, Fraction(0))
+    for i, (kind, twist, a, d) in enumerate(rows):
+        exact = Fraction(twist) / 2
+        alpha = Angle(float(exact) * np.pi, exact)
+        lengths = [Length(x, f"{n}_{i}" if x else None) for x, n in ((a, "a"), (d, "d"))]
+        kind_name = REVOLUTE if kind == "R" else PRISMATIC
+        offset: Angle | Length = straight if kind == "R" else Length(0.0, None)
+        made.append(DHRow(f"q{i}", kind_name, alpha, *lengths, straight, i, 1.0, offset))
+        joints.append(ActuatedJoint(f"q{i}", kind_name, Limits(-np.inf, np.inf)))
+        link = np.eye(4)
+        c, s = round(np.cos(alpha.value)), round(np.sin(alpha.value))
+        link[1:3, 1:3] = [[c, -s], [s, c]]
+        link[0, 3] = a
+        frames[-1] = frames[-1] @ link
+        after = np.eye(4)
+        after[2, 3] = d
+        frames.append(after)
+    eye = np.eye(4)
+    return DHChain("arm", "base", "tip", tuple(joints), tuple(made), eye, eye, tuple(frames))
+
+
+SPHERICAL = (("R", "-1", 0.0, 0.4), ("R", "1", 0.0, 0.0), ("R", "-1", 0.0, 0.0))
+CASES: dict[str, tuple[set[str], tuple[Row, ...]]] = {
+    "two sliding joints": (
+        {"algebraic", "simultaneous"},
+        (("P", "0", 0.0, 0.0), ("P", "1", 0.0, 0.0), ("R", "1", 0.2, 0.0)),
+    ),
+    "planar arm": (
+        {"simultaneous", "x2y2"},
+        (("R", "0", 0.0, 0.0), ("R", "0", 0.5, 0.0), ("R", "0", 0.4, 0.0)),
+    ),
+    "spherical wrist": (
+        {"sine and cosine", "x2y2", "tangent", "simultaneous"},
+        (("R", "0", 0.0, 0.0), ("R", "-1", 0.1, 0.0), ("R", "0", 0.5, 0.1), *SPHERICAL),
+    ),
+    "elbow not parallel to the shoulder": (
+        {"quartic", "simultaneous", "tangent"},
+        (("R", "0", 0.0, 0.0), ("R", "-1", 0.3, 0.1), ("R", "1", 0.5, 0.2), *SPHERICAL),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_leaves_solve_what_they_are_for(name: str, tmp_path: Path) -> None:
+    leaves, rows = CASES[name]
+    dh = table(*rows)
+    graph = solve_chain(dh)
+    assert not graph.open_joints
+    assert {s.candidate.leaf for s in graph.steps} == leaves
+    module = emitted(dh, tmp_path)
+    q = np.random.default_rng(0).uniform(-2.0, 2.0, (60, dh.dof))
+    for at, pose in zip(q, dh_pose(dh, q), strict=True):
+        found = module.solve(pose, limits=False).q
+        assert np.abs(module.forward(found) - pose).max() < 1e-9
+        turn = np.array([row.revolute for row in dh.rows])
+        gap = np.where(turn, np.abs((found - at + np.pi) % (2 * np.pi) - np.pi), np.abs(found - at))
+        assert gap.max(axis=1).min() < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("leaf", "case"),
+    [("sine and cosine", "planar arm"), ("quartic", "elbow not parallel to the shoulder")],
+)
+def test_without_its_leaf_an_arm_stays_open(leaf: str, case: str) -> None:
+    others = [one for one in LEAVES if one.name != leaf]
+    assert solve_chain(table(*CASES[case][1]), leaves=others).open_joints
+
+
+def test_every_leaf_solves_some_arm() -> None:
+    chains = [table(*rows) for _, rows in CASES.values()]
+    chains.append(read_dh_table(TABLES / "Wachtveitl.toml", free=(), locked={})[1])
+    assert {leaf.name for leaf in LEAVES} <= {
+        step.candidate.leaf for dh in chains for step in solve_chain(dh).steps
+    }
+
+
+def test_a_divisor_that_vanishes_at_right_angles_is_never_taken_alone() -> None:
+    for _, rows in CASES.values():
+        for step in solve_chain(table(*rows)).steps:
+            assert not step.candidate.is_weak or step.fallbacks
+
+
+def test_every_leaf_is_ranked() -> None:
+    assert {leaf.name for leaf in LEAVES} <= set(PREFERENCE)
+
+
+def test_every_tick_is_recorded() -> None:
+    graph = solve_chain(table(*CASES["spherical wrist"][1]))
+    rounds = {tick.round for tick in graph.ticks}
+    assert rounds == set(range(1, len(graph.steps) + 1))
+    assert {tick.outcome for tick in graph.ticks} == {"success", "failure"}
+
+
+def test_two_axes_on_one_line_stay_open() -> None:
+    graph = solve_chain(
+        table(
+            ("R", "0", 0.0, 0.0), ("R", "1", 0.3, 0.0), ("R", "1", 0.2, 0.0), ("R", "0", 0.0, 0.1)
+        )
+    )
+    assert graph.open_joints

@@ -1,0 +1,54 @@
+"""Solver modules to emit: robots of the IKBT suite and real arms, of the files in this repository."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ikgen.emit.solver_module import SolverModule
+from ikgen.generation.read import read
+from ikgen.generation.request import Request
+from ikgen.lowering.lower import lower
+from ikgen.solver.solve import solve_chain
+
+__all__ = ["EXACT", "ROBOTS", "solver_module"]
+
+TESTS = Path(__file__).resolve().parents[1]
+FIXTURES = TESTS.parent / "urdf_fixtures"
+
+EXACT = [
+    "Puma",
+    "UR5",
+    "Olson13",
+    "Raven-II",
+    "Stanford",
+    "kuka_kr6r900sixx",
+    "scara_standard",
+    "ur5e",
+]
+"""Robots whose Program is of their file's own geometry, but for rounding."""
+
+ROBOTS = [*EXACT, "doosan_m1013"]
+
+
+def robot_file(name: str) -> Path:
+    """The table or URDF of a robot by its name."""
+    places = (TESTS / "robots/tables" / f"{name}.toml", FIXTURES / f"{name}.toml")
+    return next((p for p in places if p.is_file()), FIXTURES / f"{name}.urdf")
+
+
+def solver_module(name: str) -> SolverModule:
+    """The module of a robot by its name, for the whole pose."""
+    dh = read(Request(robot_file(name))).dh
+    graph = solve_chain(dh)
+    assert not graph.open_joints
+    return SolverModule(
+        name=name.lower().replace("-", "_"),
+        program=lower(graph, model_error=2.0 * max(dh.deviation)),
+        dh=dh,
+        task="pose",
+        free=(),
+        free_defaults=(),
+        source_name=f"{name}.urdf",
+        source_sha256="0" * 64,
+        generator_version="test",
+    )

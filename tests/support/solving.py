@@ -1,0 +1,59 @@
+"""Helpers of tests that need an emitted module in memory."""
+
+from __future__ import annotations
+
+import importlib.util
+import itertools
+import sys
+from pathlib import Path
+from types import ModuleType
+
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.emit.solver_module import SolverModule
+from ikgen.errors import MissingToolError
+from ikgen.lowering.lower import lower
+from ikgen.model.dh import DHChain
+from ikgen.solver.solution_graph import SolutionGraph
+from ikgen.solver.solve import solve_chain
+from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
+
+try:
+    find_compiler(), find_eigen()
+    NO_COMPILER = ""
+except MissingToolError as error:
+    NO_COMPILER = error.message
+"""What is missing to compile the C++ header; empty where nothing is."""
+
+FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
+_count = itertools.count()
+
+
+def solver_module(dh: DHChain, *, name: str = "arm") -> SolverModule:
+    """A solver module of a chain, free joints at 0."""
+    return module_of(dh, solve_chain(dh), name=name)
+
+
+def module_of(dh: DHChain, graph: SolutionGraph, *, name: str = "arm") -> SolverModule:
+    """The solver module of a solution graph, free joints at 0."""
+    assert not graph.open_joints
+    free = tuple(j for j, joint in enumerate(dh.joints) if joint.name in dh.free)
+    program = lower(graph, model_error=2.0 * max(dh.deviation))
+    return SolverModule(name, program, dh, "pose", free, (0.0,) * len(free), "test", "0" * 64, "0")
+
+
+def import_text(text: str, folder: Path) -> ModuleType:
+    """A module from its text."""
+    name = f"emitted_{next(_count)}_ik"
+    path = folder / f"{name}.py"
+    path.write_text(text)
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def emitted(dh: DHChain, folder: Path) -> ModuleType:
+    """The emitted Python module of a chain, imported."""
+    return import_text(emit_module(solver_module(dh)), folder)

@@ -1,0 +1,168 @@
+"""The C++ runner, with a hand-written planar arm that obeys the header's contract."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.support.fake_arms import tree_of
+
+from ikgen.errors import BadDescriptionError, MissingToolError, VerificationError
+from ikgen.verify.oracle import PinocchioOracle
+from ikgen.verify.runners import cpp_toolchain
+from ikgen.verify.runners.cpp_header import CppHeader
+from ikgen.verify.runners.runner import ArmConstants
+from ikgen.verify.verification import verify
+
+URDF = """<robot name="p"><link name="b"/><link name="l1"/><link name="l2"/><link name="tip"/>
+<joint name="j1" type="continuous"><parent link="b"/><child link="l1"/><axis xyz="0 0 1"/></joint>
+<joint name="j2" type="revolute"><parent link="l1"/><child link="l2"/><origin xyz="0.5 0 0"/>
+  <axis xyz="0 0 1"/><limit lower="-1.5" upper="2.5" effort="1" velocity="1"/></joint>
+<joint name="end" type="fixed"><parent link="l2"/><child link="tip"/><origin xyz="0.3 0 0"/></joint>
+</robot>"""
+
+HEADER = r"""
+#pragma once
+#include <Eigen/Dense>
+#include <array>
+#include <cmath>
+#include <utility>
+namespace planar_ik {
+inline constexpr int kDof = 2, kFree = 0, kMaxSolutions = 2;
+using Joints = Eigen::Matrix<double, kDof, 1>;
+enum class Status { Ok, Unreachable, Limits, Invalid };
+struct Solutions {
+  Status status = Status::Ok;
+  int count = 0;
+  std::array<Joints, kMaxSolutions> q;
+  std::array<bool, kMaxSolutions> singular{};
+};
+struct Options {
+  bool limits = true;
+  const Joints* seed = nullptr;
+  std::array<double, kFree> free{};
+};
+inline Eigen::Isometry3d forward(const Joints& q) noexcept {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.rotate(Eigen::AngleAxisd(q[0], Eigen::Vector3d::UnitZ()));
+  T.translate(Eigen::Vector3d(0.5, 0, 0));
+  T.rotate(Eigen::AngleAxisd(q[1], Eigen::Vector3d::UnitZ()));
+  T.translate(Eigen::Vector3d(0.3, 0, 0));
+  return T;
+}
+inline Eigen::Matrix<double, 6, kDof> jacobian(const Joints& q) noexcept {
+  Eigen::Matrix<double, 6, kDof> J = Eigen::Matrix<double, 6, kDof>::Zero();
+  const double c1 = std::cos(q[0]), s1 = std::sin(q[0]);
+  const double c = 0.3 * std::cos(q[0] + q[1]), s = 0.3 * std::sin(q[0] + q[1]);
+  J.col(0) << -0.5 * s1 - s, 0.5 * c1 + c, 0, 0, 0, 1;
+  J.col(1) << -s, c, 0, 0, 0, 1;
+  return J;
+}
+inline Solutions solve(const Eigen::Isometry3d& pose, const Options& options = {}) noexcept {
+  Solutions out;
+  const Eigen::Vector3d p = pose.translation();
+  if (!p.allFinite()) { out.status = Status::Invalid; return out; }
+  double c = (p.x() * p.x() + p.y() * p.y() - 0.34) / 0.3;
+  if (std::abs(p.z()) > 1e-9 || std::abs(c) > 1 + 1e-9) {
+    out.status = Status::Unreachable;
+    return out;
+  }
+  c = std::fmin(1.0, std::fmax(-1.0, c));
+  for (double sign : {1.0, -1.0}) {
+    const double q2 = sign * std::acos(c);
+    const double q1 = std::remainder(std::atan2(p.y(), p.x()) -
+        std::atan2(0.3 * std::sin(q2), 0.5 + 0.3 * std::cos(q2)), 2 * 3.14159265358979323846);
+    if (sign < 0 && std::abs(q2) < 1e-6) continue;
+    if (options.limits && (q2 < -1.5 - 1e-9 || q2 > 2.5 + 1e-9)) continue;
+    out.q[out.count++] = Joints(q1, q2);
+  }
+  if (!out.count) out.status = Status::Limits;
+  if (options.seed && out.count == 2 &&
+      (out.q[1] - *options.seed).norm() < (out.q[0] - *options.seed).norm())
+    std::swap(out.q[0], out.q[1]);
+  return out;
+}
+}
+"""
+
+
+def oracle() -> PinocchioOracle:
+    """The planar arm's oracle."""
+    return PinocchioOracle(tree_of(URDF), "b", "tip", ["j1", "j2"])
+
+
+def constants() -> ArmConstants:
+    """The planar arm's constants, task position."""
+    lower, upper = np.array([-np.inf, -1.5]), np.array([np.inf, 2.5])
+    return ArmConstants(("j1", "j2"), lower, upper, "b", "tip", 0, "position")
+
+
+def header(folder: Path, text: str = HEADER) -> CppHeader:
+    """The header compiled."""
+    path = folder / "planar_ik.hpp"
+    path.write_text(text)
+    try:
+        return CppHeader(path, constants())
+    except MissingToolError as error:
+        pytest.skip(f"{error.message}; {error.hint}")
+
+
+def test_right_header_passes(tmp_path: Path) -> None:
+    runner = header(tmp_path)
+    assert runner.constants.max_solutions == 2
+    report = verify(runner, oracle(), samples=500)
+    assert report.passed, report.worst_case
+    assert report.label == "cpp"
+    assert report.check("unreachable poses").count == 36
+    assert report.check("solve_batch").count == 0
+
+
+def test_header_tells_its_defaults(tmp_path: Path) -> None:
+    assert header(tmp_path).constants.free_defaults is None
+    text = HEADER.replace("kFree = 0", "kFree = 1").replace("free{};", "free = {2.75};")
+    (tmp_path / "planar_ik.hpp").write_text(text)
+    held = dataclasses.replace(constants(), free_joints=("j2",))
+    runner = CppHeader(tmp_path / "planar_ik.hpp", held)
+    assert runner.constants.free_defaults == (2.75,)
+    report = verify(runner, oracle(), samples=20)  # the limit is 2.5
+    assert "defaults of free joints" in report.check("constants").detail
+
+
+def test_wrong_header_is_caught(tmp_path: Path) -> None:
+    text = HEADER.replace("for (double sign : {1.0, -1.0})", "for (double sign : {1.0})")
+    failed = {check.name for check in verify(header(tmp_path, text), oracle(), samples=60).failed}
+    assert {"completeness", "exhaustive search"} <= failed
+
+
+def test_header_that_cannot_be_used(tmp_path: Path) -> None:
+    runner = header(tmp_path)
+    others = dataclasses.replace(constants(), joint_names=("j1", "j2", "j3"))
+    with pytest.raises(BadDescriptionError, match="2 joints"):
+        CppHeader(runner.path, others)
+    with pytest.raises(BadDescriptionError, match="no such"):
+        CppHeader(tmp_path / "absent_ik.hpp", constants())
+    with pytest.raises(VerificationError, match="does not compile"):
+        header(tmp_path, HEADER.replace("int count = 0;", "int count = zero;"))
+
+
+def test_missing_tools_say_how_to_get_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CXX", "no-such-compiler -m64")
+    with pytest.raises(MissingToolError) as caught:
+        cpp_toolchain.find_compiler()
+    assert "apt-get install g++" in caught.value.hint
+    monkeypatch.setattr(cpp_toolchain, "_eigen_candidates", lambda: [tmp_path])
+    with pytest.raises(MissingToolError) as caught:
+        cpp_toolchain.find_eigen()
+    assert "cmeel-eigen" in caught.value.hint
+
+
+def test_eigen_directory_from_the_environment(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    headers = tmp_path / "include" / "eigen3"
+    (headers / "Eigen").mkdir(parents=True)
+    (headers / "Eigen" / "Dense").touch()
+    monkeypatch.setenv("Eigen3_DIR", str(tmp_path / "share" / "eigen3" / "cmake"))
+    assert cpp_toolchain.find_eigen() == headers

@@ -1,0 +1,103 @@
+"""A right module passes every check; each wrong one is caught by the check made for it."""
+
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.support.fake_arms import DEFECTS, JOINTS, six_axis_module, six_axis_oracle
+
+from ikgen.errors import BadDescriptionError, UnknownNameError
+from ikgen.verify.runners.python_module import PythonModule
+from ikgen.verify.verification import verify
+
+
+def test_right_module_passes(tmp_path: Path) -> None:
+    runner, oracle = six_axis_module(tmp_path), six_axis_oracle()
+    report = verify(runner, oracle, samples=300)
+    assert report.passed, report.worst_case
+    assert max(report.worst_closure) < 1e-9
+    assert report.solutions[2] == 8
+    idle = {check.name for check in report.checks if check.count == 0}
+    assert idle == {"free joints"}
+    assert report.check("exhaustive search").count >= 16 * 4
+    json.dumps(report.to_dict(), allow_nan=False)
+
+
+def test_equal_runs_give_equal_reports(tmp_path: Path) -> None:
+    runner, oracle = six_axis_module(tmp_path), six_axis_oracle()
+    first, second = (verify(runner, oracle, samples=60, seed=5).to_dict() for _ in range(2))
+    assert first == second
+    assert verify(runner, oracle, samples=60, seed=6).to_dict() != first
+
+
+@pytest.mark.parametrize("defect", DEFECTS)
+def test_defect_is_caught_by_its_check(tmp_path: Path, defect: str) -> None:
+    report = verify(six_axis_module(tmp_path, defect), six_axis_oracle(), samples=60)
+    assert not report.passed
+    assert not report.check(DEFECTS[defect][0]).passed, [c.name for c in report.failed]
+    assert report.worst_case
+
+
+def test_other_geometry_says_by_how_much(tmp_path: Path) -> None:
+    report = verify(six_axis_module(tmp_path, "forward off"), six_axis_oracle(), samples=50)
+    assert report.worst_closure[0] == pytest.approx(1e-4, rel=0.01)
+
+
+def test_module_of_another_chain(tmp_path: Path) -> None:
+    oracle = six_axis_oracle()
+    oracle.joint_names = JOINTS[:5]
+    report = verify(six_axis_module(tmp_path), oracle)
+    assert [check.name for check in report.failed] == ["constants"]
+
+
+def test_progress_and_unknown_task(tmp_path: Path) -> None:
+    seen: list[tuple[str, int, int]] = []
+    runner, oracle = six_axis_module(tmp_path), six_axis_oracle()
+    verify(runner, oracle, samples=20, progress=lambda *step: seen.append(step))
+    assert seen[0][0] == "solving"
+    assert [done for _, done, _ in seen] == list(range(len(seen)))
+    assert {total for _, _, total in seen[1:]} == {len(seen)}
+    with pytest.raises(UnknownNameError):
+        verify(runner, oracle, task="posture")
+
+
+def test_checks_take_little_time(tmp_path: Path) -> None:
+    runner, oracle = six_axis_module(tmp_path), six_axis_oracle()
+    start = time.process_time()
+    runner.solve_many(oracle.forward(np.zeros((100, 6))))
+    per_pose = (time.process_time() - start) / 100
+    start = time.process_time()
+    verify(runner, oracle, samples=1000)
+    assert time.process_time() - start - 6000 * per_pose < 4.0
+
+
+def test_bad_module_files(tmp_path: Path) -> None:
+    with pytest.raises(BadDescriptionError, match="no such"):
+        PythonModule(tmp_path / "absent_ik.py")
+    path = tmp_path / "broken_ik.py"
+    path.write_text("x = 1 / 0")
+    with pytest.raises(BadDescriptionError, match="ZeroDivisionError"):
+        PythonModule(path)
+    path.write_text("DOF = 6")
+    with pytest.raises(BadDescriptionError, match="JOINT_NAMES"):
+        PythonModule(path)
+
+
+def test_languages_that_agree(tmp_path: Path) -> None:
+    runner, oracle = six_axis_module(tmp_path), six_axis_oracle()
+    report = verify(runner, oracle, samples=60, peer=runner)
+    assert report.passed and report.checks[-1].name == "agreement with python"
+    assert report.checks[-1].count > 50
+
+
+@pytest.mark.parametrize("defect", ["missing branch", "duplicate row", "swapped joints"])
+def test_languages_that_do_not_agree(tmp_path: Path, defect: str) -> None:
+    (tmp_path / "other").mkdir()
+    runner, other = six_axis_module(tmp_path), six_axis_module(tmp_path / "other", defect)
+    report = verify(runner, six_axis_oracle(), samples=60, peer=other)
+    assert [check.name for check in report.failed] == ["agreement with python"]
+    assert report.worst_case
