@@ -88,7 +88,7 @@ def emit_header(module: SolverModule) -> str:
 
 def _careful(module: SolverModule) -> bool:
     """Whether every pose's rows are polished or judged one by one."""
-    return module.polish == "all" or module.plan is not None
+    return module.refine == "all" or module.plan is not None
 
 
 def _headers(module: SolverModule) -> list[str]:
@@ -126,7 +126,7 @@ def _depth_first(branches: list[int]) -> list[int]:
 def _rough(module: SolverModule, policy: SolvePolicy) -> str:
     """Condition under which a row takes Newton steps."""
     program = module.program
-    if module.polish == "all":
+    if module.refine == "all":
         return "(spread<1>(1.0) > 0.0)"
     return " | ".join(
         [*program.singular, *(f"({r} > {policy.rough_square})" for r in program.residuals)]
