@@ -107,10 +107,10 @@ def _joint_values(work: Placement) -> list[tuple[int, Expr]]:
     out: list[tuple[int, Expr]] = []
     work.place(Comment("joint variables"))
     for j in range(work.dh.dof):
-        if j in work.session.held:
+        if j in work.held:
             out.append((j, work.atom(HeldValue(j).name)))
             continue
-        v = work.session.joint_variable(j)
+        v = work.knowledge.joint_variable(j)
         if v.kind == "angle":
             variable: tuple[Expr, ...] | None = work.knowledge.known_pair(v.key)
             assert variable is not None
@@ -126,7 +126,7 @@ def _place_values(work: Placement, values: list[tuple[int, Expr]]) -> None:
     """After the guards: a branch without a solution needs none of them."""
     work.place(Comment("joint values"))
     for j, e in values:
-        if j not in work.session.held:
+        if j not in work.held:
             work.names.setdefault(e.id, f"q{j + 1}")
             work.place(e)
 

@@ -20,7 +20,7 @@ def bind_pose(work: Placement) -> None:
     """The pose in DH frames out of the given one: `X_base^-1 T X_tip^-1`."""
     g = work.g
     base, tip = constant(g, work.dh.X_base), constant(g, work.dh.X_tip)
-    pose = work.session.probes.pose
+    pose = work.probes.pose
     raw = work.dh.X_base @ pose
     if work.whole_pose:
         raw = raw @ work.dh.X_tip
@@ -53,8 +53,8 @@ def bind_joints(work: Placement) -> None:
             work.atom(name)
         work.inputs.append(seed)
         work.prelude += variable_lets(row, seed.name, names)
-    for j in work.session.held:
-        v = work.session.joint_variable(j)
+    for j in work.held:
+        v = work.knowledge.joint_variable(j)
         held = HeldValue(j)
         if v.kind == "angle":
             atoms: tuple[Expr, ...] = work.knowledge.variables.pair(v.key)
