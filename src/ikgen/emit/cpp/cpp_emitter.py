@@ -96,9 +96,13 @@ def _headers(module: SolverModule) -> list[str]:
     routines = sorted({lv.call.routine for lv in module.program.levels if lv.call is not None})
     needed = ["lane_angle.hpp", "single_solve.hpp" if _careful(module) else "lane_solve.hpp"]
     needed += ["routine_roots.hpp"] * bool(routines)
-    needed += [f"{name}.hpp" for name in routines if module.plan is None]
+    needed += [_ROUTINES.get(name, f"{name}.hpp") for name in routines]
     needed += ["poses_beside.hpp"] * bool(module.beside)
     return [*needed, _reading(module)[1], "pose_solver.hpp"]
+
+
+_ROUTINES = {"general_6r": "general_6r_arm.hpp"}
+"""Headers of routines that work on the whole arm."""
 
 
 def _reading(module: SolverModule) -> tuple[str, str]:
