@@ -19,7 +19,8 @@ constexpr std::array<double, kTurnParts> cosine_table() noexcept {
   for (int k = 0; k < kTurnParts; ++k) {
     const int folded = k <= kTurnParts / 2 ? k : kTurnParts - k;  // to [0, pi]
     const bool far = folded > kTurnParts / 4;
-    const long double x = 6.283185307179586476925286766559005768L / kTurnParts * (far ? kTurnParts / 2 - folded : folded);
+    constexpr long double part = 6.283185307179586476925286766559005768L / kTurnParts;
+    const long double x = part * (far ? kTurnParts / 2 - folded : folded);
     long double term = 1.0L, sum = 0.0L;
     for (int n = 1; n < 30; n += 2) {
       sum += term;
@@ -71,7 +72,7 @@ struct Polynomial {
 // Student's distribution with 7 degrees of freedom: beyond 10 once in 50,000, and that at a point where f itself
 // comes as close to 0. Were one node's error all, it would be 4.7 times the norm. Rounding in the sums here and
 // where the polynomial is evaluated comes on top.
-inline Polynomial interpolate(const double (&f)[kNodes]) noexcept {
+inline Polynomial interpolate(const double (&f)[kNodes], double blur) noexcept {
   Polynomial out;
   double sum[kNodes] = {};
   for (int n = 0; n < kNodes; ++n)
@@ -85,7 +86,7 @@ inline Polynomial interpolate(const double (&f)[kNodes]) noexcept {
       noise += sum[j] * sum[j];
   }
   constexpr double kNoise = 11.0, kRounding = 1e-15;
-  out.noise = kNoise * std::sqrt(noise) + kRounding * size;
+  out.noise = kNoise * std::sqrt(noise) + kRounding * size + blur;
   return out;
 }
 
