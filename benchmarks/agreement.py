@@ -22,10 +22,13 @@ from typing import Any
 import numpy as np
 
 from benchmarks.collection import ABSENT, CORPUS, load_arms, options_for, urdf_of
+from ikgen.emit.derivation import Derivation
 from ikgen.errors import IkgenError, UnsolvedChainError
+from ikgen.generation.derive import derive
+from ikgen.generation.emitted_arm import EmittedArm
+from ikgen.generation.emitted_checks import oracle_for
 from ikgen.generation.emitters import find_emitter
-from ikgen.generation.generation import oracle_for
-from ikgen.generation.pipeline import Derivation, Request, derive
+from ikgen.generation.request import Request
 from ikgen.tasks import find_task
 from ikgen.verify.agreement import disagreements
 from ikgen.verify.arm import ArmUnderTest, arm_under_test
@@ -53,7 +56,7 @@ def derivation_of(arm: dict[str, Any], folder: Path) -> Derivation:
     if not arm.get("file"):
         path.write_text(urdf_of(arm))
     for extra in options_for(arm):
-        free = tuple((name, None) for name in extra[1::2])
+        free = dict.fromkeys(extra[1::2])
         request = Request(path, base=arm["base_link"], tip=arm["tip_link"], free=free, name="arm")
         try:
             return derive(request)
@@ -81,7 +84,7 @@ def runner_of(derivation: Derivation, language: str, folder: Path) -> Runner:
     emitter = find_emitter(language)
     for file, text in emitter.emit(derivation).items():
         (folder / file).write_text(text, encoding="utf-8")
-    runner: Runner | None = emitter.runner(derivation.module, folder)
+    runner: Runner | None = emitter.runner(EmittedArm.of(derivation.module), folder)
     assert runner is not None
     return runner
 

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from benchmarks.peer_solvers import AbsentError, Arm
-from ikgen.generation.generation import Outputs, generate
-from ikgen.generation.pipeline import Request
+from ikgen.generation.generate import generate
+from ikgen.generation.request import Outputs, Request
 
 __all__ = ["ARMS", "compiled", "make_arm"]
 
@@ -36,7 +36,7 @@ ARMS: dict[str, tuple[str, tuple[tuple[str, float], ...], dict[str, Any], str]] 
 def make_arm(name: str, robots: Path, out: Path) -> tuple[Arm, Path]:
     """The arm's modules, freshly generated; the path of its header."""
     file, free, opw, table = ARMS[name]
-    request = Request(robots / f"{file}.urdf", free=free, name=file)
+    request = Request(robots / f"{file}.urdf", free=dict(free), name=file)
     generate(request, Outputs(emit=("python", "cpp", "nanobind"), out=out, verify=False))
     sys.path.insert(0, str(out))
     module = importlib.import_module(f"{file}_ik")

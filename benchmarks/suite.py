@@ -26,10 +26,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.results import write_result
+from ikgen.emit.derivation import Derivation
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.errors import IkgenError
-from ikgen.generation.generation import oracle_for
-from ikgen.generation.pipeline import Derivation, Request, derive
+from ikgen.generation.derive import derive
+from ikgen.generation.emitted_checks import oracle_for
+from ikgen.generation.request import Request
 from ikgen.verify.arm import REGULAR_SIGMA, ArmUnderTest, arm_under_test
 from ikgen.verify.runners.python_module import PythonModule
 from ikgen.verify.search import find_solutions

@@ -10,7 +10,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from ikgen.generation.pipeline import Request, derive
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
 from ikgen.report.graph_picture import draw
 from ikgen.report.solution_sets import versions_of
 from ikgen.solver.behavior_tree import build_tree

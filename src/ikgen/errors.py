@@ -23,6 +23,8 @@ __all__ = [
     "VerificationError",
 ]
 
+_MOST_LISTED = 100
+
 
 class IkgenError(Exception):
     """Base of all errors meant for the user: message, hint, exit code."""
@@ -60,6 +62,8 @@ class UnknownNameError(IkgenError):
         names = list(known)
         close = difflib.get_close_matches(name, names, n=3, cutoff=0.5)
         rest = [n for n in names if n not in close]
+        if len(names) > _MOST_LISTED:
+            rest = [*rest[: _MOST_LISTED - len(close)], f"and {len(names) - _MOST_LISTED} more"]
         listing = ", ".join([*close, *rest]) or "none"
         super().__init__(f"no {kind} named '{name}'", hint=hint or f"there is: {listing}")
         self.name = name
@@ -71,14 +75,22 @@ class UnsupportedJointError(BadDescriptionError):
 
 
 class UnsolvedChainError(IkgenError):
-    """No closed form found: the message says what was solved, what is left and what would help;
-    `unsolved` is how far the derivation came (`ikgen.emit.derivation.Unsolved`)."""
+    """No closed form found: the message says why, the hint what would help; `unsolved` is how far the
+    derivation came (`ikgen.emit.derivation.Unsolved`), `details` say it in lines."""
 
     exit_code = 3
 
-    def __init__(self, message: str, *, unsolved: Any = None, hint: str = "") -> None:
+    def __init__(
+        self,
+        message: str,
+        *,
+        unsolved: Any = None,
+        details: tuple[str, ...] = (),
+        hint: str = "",
+    ) -> None:
         super().__init__(message, hint=hint)
         self.unsolved = unsolved
+        self.details = details
 
 
 class MissingToolError(IkgenError):
@@ -91,7 +103,8 @@ class PlugInError(IkgenError):
 
 class VerificationError(IkgenError):
     """Emitted code failed its verification; the message has the worst case's numbers, `reports` the
-    whole of each language's verification."""
+    whole of each language's verification, `derivation` is what was verified
+    (`ikgen.emit.derivation.Derivation`)."""
 
     exit_code = 1
 
@@ -100,7 +113,9 @@ class VerificationError(IkgenError):
         message: str,
         *,
         reports: Mapping[str, Any] = MappingProxyType({}),
+        derivation: Any = None,
         hint: str = "",
     ) -> None:
         super().__init__(message, hint=hint)
         self.reports = reports
+        self.derivation = derivation

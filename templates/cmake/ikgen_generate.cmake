@@ -26,7 +26,8 @@ function(ikgen_generate target)
 
   set(folder "${CMAKE_CURRENT_BINARY_DIR}/ikgen/${target}")
   set(stamp "${folder}/${arg_NAME}.stamp")
-  set(outputs "${folder}/${arg_NAME}_ik.json")
+  set(outputs)
+  set(byproducts)
   set(has_header FALSE)
   if("cpp" IN_LIST arg_EMIT)
     set(has_header TRUE)
@@ -35,11 +36,16 @@ function(ikgen_generate target)
   if("python" IN_LIST arg_EMIT)
     list(APPEND outputs "${folder}/${arg_NAME}_ik.py")
   endif()
+  if(outputs)  # packages have their records inside
+    list(APPEND outputs "${folder}/${arg_NAME}_ik.json")
+    set(byproducts BYPRODUCTS ${outputs})
+  endif()
 
   set(command from-urdf)
-  if(robot MATCHES "\\.toml$")
+  if(robot MATCHES "\\.[Tt][Oo][Mm][Ll]$")
     set(command from-dh)
   endif()
+  # The folder is the target's own: what earlier options made there goes (--only, --force).
   string(REPLACE ";" "," emit "${arg_EMIT}")
   set(options --name "${arg_NAME}" --emit "${emit}")
   foreach(keyword BASE TIP TASK SAMPLES)
@@ -84,8 +90,8 @@ function(ikgen_generate target)
   file(MAKE_DIRECTORY "${folder}")
   add_custom_command(
     OUTPUT "${stamp}"
-    BYPRODUCTS ${outputs}
-    COMMAND "${IKGEN_EXECUTABLE}" ${command} "${robot}" ${options} -q -o "${folder}"
+    ${byproducts}
+    COMMAND "${IKGEN_EXECUTABLE}" ${command} "${robot}" ${options} -q -o "${folder}" --only --force
       --depfile "${folder}/${arg_NAME}.d" --depfile-target "${depfile_target}"
     COMMAND "${CMAKE_COMMAND}" -E touch "${stamp}"
     DEPENDS "${robot}" ${arg_DEPENDS}

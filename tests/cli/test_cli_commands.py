@@ -158,7 +158,8 @@ def test_bad_input_is_explained(tmp_path: Path, arguments: list[object], said: s
 def test_too_many_joints_have_no_closed_form(tmp_path: Path) -> None:
     done = ikgen("from-urdf", FIXTURES / "franka_fr3.urdf", "-o", tmp_path / "out")
     message = refused(done, 3)
-    assert "--free" in message and "left" in message
+    assert "7 joints move and the task fixes 6 freedoms: one of them has to be held" in message
+    assert "--free" in message and "equations" not in message
     assert not (tmp_path / "out").exists()
 
 

@@ -11,8 +11,9 @@ import pytest
 
 from ikgen.cli.main import run
 from ikgen.errors import UnsolvedChainError
-from ikgen.generation.pipeline import Request, derive
+from ikgen.generation.derive import derive
 from ikgen.generation.remedies import remedies
+from ikgen.generation.request import Request
 from ikgen.solver.remainder import near_misses, open_equations
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -52,10 +53,15 @@ def test_general_five_joints(
     assert run(["from-dh", str(general), "--task", "pose", "-o", str(out)]) == 3
     assert not out.exists()
     said = capsys.readouterr().err
-    assert "error: no closed form found for the task 'pose': solved nothing; left are" in said
-    assert re.search(r"\d+ equations are left; the shortest", said)
-    assert re.search(r"\n  \(\d,\d\) r33: .* = .*\n", said)
-    assert re.search(r"nearest: sine and cosine for theta_\d from .* which lacks theta_\d", said)
+    cause = "5 joints move and the task fixes 6 freedoms: more than the arm can do"
+    assert f"error: no closed form found for the task 'pose': {cause}\nhint: ikgen from-dh " in said
+    assert "equations" not in said
+    assert run(["from-dh", str(general), "--task", "pose", "-o", str(out), "-v"]) == 3
+    told = capsys.readouterr().err
+    assert "behaviour tree:" in told and "solved nothing; left are" in told
+    assert re.search(r"\d+ equations are left; the shortest", told)
+    assert re.search(r"\n  \(\d,\d\) r33: .* = .*\n", told)
+    assert re.search(r"nearest: sine and cosine for theta_\d from .* which lacks theta_\d", told)
     options = hinted(said)[0]
     assert run(["from-dh", str(general), *options, "-o", str(out), "--no-verify", "-q"]) == 0
 
@@ -89,9 +95,11 @@ def test_seven_joints_are_told_which_to_hold(capsys: pytest.CaptureFixture[str])
 
 
 def test_axes_on_one_line_are_told_which_to_hold(capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["from-dh", str(TWO_ON_A_LINE)]) == 3
+    assert run(["from-dh", str(TWO_ON_A_LINE), "-v"]) == 3
     said = capsys.readouterr().err
-    assert hinted(said) == [["--free", "theta_6"], ["--free", "theta_5"]]
+    held = [["--free", name, "--task", "pose"] for name in ("theta_6", "theta_5")]
+    assert hinted(said) == held
+    assert "the joints 'theta_5' and 'theta_6' turn about one line" in said
     assert "solved d_1 (algebraic)" in said and "r_31*c_6 - r_32*s_6" in said
     assert "which lacks theta_5" in said
 

@@ -95,27 +95,15 @@ def first_rows(module: SolverModule) -> list:
 def interpreted(module: SolverModule, pose: Array) -> tuple[Array, NDArray[np.bool_], bool]:
     """Joint values of the interpreter's rows, repeated ones left out, and their flags."""
     inputs = {f"t{i}{j}": float(pose[i, j]) for i in range(3) for j in range(4)}
-    rows = first_rows(module)
-    for j, row in enumerate(rows):
-        v = row.offset.value
-        inputs |= {
-            f"seed_c{j + 1}": math.cos(v),
-            f"seed_s{j + 1}": math.sin(v),
-            f"seed_d{j + 1}": v,
-        }
+    inputs |= {f"seed_q{j + 1}": 0.0 for j in range(module.dh.dof)}
     out: list[Array] = []
     flags = []
     for answer in run(module.program, inputs):
-        q = np.array(
-            [
-                ((math.atan2(s, c) if row.revolute else c) - row.offset.value) / row.scale
-                for row, (c, s) in zip(rows, answer.values, strict=True)
-            ]
-        )
+        q = np.array(answer.q)
         if not any(gap(module, q, other).max() < 1e-6 for other in out):
             out.append(q)
             flags.append(answer.singular)
-    return np.array(out).reshape(-1, len(rows)), np.array(flags, dtype=bool), bool(out)
+    return np.array(out).reshape(-1, module.dh.dof), np.array(flags, dtype=bool), bool(out)
 
 
 def gap(module: SolverModule, a: Array, b: Array) -> Array:

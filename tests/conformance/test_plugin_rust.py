@@ -14,9 +14,10 @@ import numpy as np
 import pytest
 
 from ikgen.errors import UsageError
+from ikgen.generation.emitted_arm import EmittedArm
 from ikgen.generation.emitters import find_emitter
-from ikgen.generation.generation import Outputs, generate
-from ikgen.generation.pipeline import Request
+from ikgen.generation.generate import generate
+from ikgen.generation.request import Outputs, Request
 from ikgen.verify.runners.python_module import PythonModule
 
 pytest.importorskip("hatchling")
@@ -26,7 +27,7 @@ ROOT = Path(__file__).resolve().parents[2]
 FIXTURES = ROOT / "urdf_fixtures"
 ARMS = {
     "kuka_kr6r900sixx": Request(FIXTURES / "kuka_kr6r900sixx.urdf"),
-    "a joint held": Request(FIXTURES / "franka_fr3.urdf", free=(("fr3_joint7", 0.3),)),
+    "a joint held": Request(FIXTURES / "franka_fr3.urdf", free={"fr3_joint7": 0.3}),
     "a smaller task": Request(FIXTURES / "open_manipulator_x.urdf"),
     "rounded geometry": Request(FIXTURES / "ur5e.urdf"),
 }
@@ -53,7 +54,7 @@ def test_rows_are_those_of_the_python_module(arm: str, installed: Path, tmp_path
     made = generate(ARMS[arm], Outputs(("python", "rust"), tmp_path, verify=False))
     module = made.derivation.module
     python = PythonModule(tmp_path / f"{module.name}_ik.py")
-    rust = find_emitter("rust").runner(module, tmp_path)
+    rust = find_emitter("rust").runner(EmittedArm.of(module), tmp_path)
     rng = np.random.default_rng(1)
     q = rng.uniform(-2.0, 2.0, (60, python.constants.dof))
     q[40:50, rng.integers(python.constants.dof)] = 0.0  # many arms are singular there

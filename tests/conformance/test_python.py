@@ -15,7 +15,8 @@ from ikgen.cli.main import run
 from ikgen.emit.nanobind import emit
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.solver_module import SolverModule
-from ikgen.generation.pipeline import Request, derive
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
 from ikgen.verify.runners.python_module import PythonModule
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
@@ -118,7 +119,7 @@ def test_a_seed_that_is_no_number(arm: Any, bad: float) -> None:
 
 
 def test_a_free_value_that_is_no_number(tmp_path: Path) -> None:
-    held = derive(Request(FIXTURES / "franka_fr3.urdf", free=(("fr3_joint7", None),))).module
+    held = derive(Request(FIXTURES / "franka_fr3.urdf", free={"fr3_joint7": None})).module
     arm = imported(emit_module(held), tmp_path)
     pose = np.asarray(arm.forward(np.full(7, -0.5)))
     for free in ([np.nan], {"fr3_joint7": np.inf}):

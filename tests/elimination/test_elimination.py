@@ -10,7 +10,7 @@ import pytest
 from benchmarks.collection import load_arms
 from numpy.typing import NDArray
 from tests.support.arms import arm_chain
-from tests.support.routines import compiled_routine, feed, python_routine
+from tests.support.routines import compiled_routine, feed
 
 from ikgen.elimination import (
     UniversalPlan,
@@ -21,9 +21,15 @@ from ikgen.elimination import (
     hold_joint,
 )
 from ikgen.elimination.loop_frames import forward, jacobian
+from ikgen.elimination.routine import runtime_policy
 from ikgen.kinematics.modified_dh import to_dh
+from ikgen.program.policy import SolvePolicy
+from ikgen.runtime.python.general_6r import distinct_angles, six_joints
+from ikgen.runtime.python.refinement import newton
+from ikgen.runtime.python.whole_pose import PoseTask
 
 Array = NDArray[np.float64]
+POLICY = runtime_policy(SolvePolicy())
 ARMS = {a["name"]: a for a in load_arms()}
 NAMES = [
     *("bravo7", "icub_left_leg", "fanuc_crx10ia", "kinova_j2n6s300", "xarm6", "niryo_ned2"),
@@ -148,7 +154,6 @@ def test_no_more_solutions_than_a_multi_start_search_finds(name: str) -> None:
     """An independent search: Newton's method from 600 random starts for each pose."""
     frames = arm_frames(name)
     plan = choose_plan(frames)
-    routine = python_routine("general_6r")
     scaled = frames.copy()
     scaled[:, :3, 3] /= plan.length
     rng = np.random.default_rng(6)
@@ -157,8 +162,9 @@ def test_no_more_solutions_than_a_multi_start_search_finds(name: str) -> None:
         found = general_6r(plan.frames, plan.length, plan.eliminations, T)
         T[:3, 3] /= plan.length
         starts = rng.uniform(-np.pi, np.pi, (600, 6))
-        q, r, _ = routine._g6_polish(scaled, np.broadcast_to(T, (600, 4, 4)), starts)
-        candidates = routine._g6_distinct(q[r < 1e-9])
+        poses = np.broadcast_to(T, (600, 4, 4))
+        q, error = newton(six_joints(scaled), PoseTask(1.0), range(6), starts, poses, 40, POLICY)
+        candidates = distinct_angles(q[error < POLICY.arrived], POLICY.coincident)
         assert len(candidates), "the search found nothing to compare"
         for candidate in candidates:
             assert apart(found, candidate).min() < 1e-5

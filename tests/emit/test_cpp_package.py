@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from tests.support.tools import needs_cmake
 
-from ikgen.generation.generation import Outputs, generate
-from ikgen.generation.pipeline import Request
+from ikgen.generation.generate import generate
+from ikgen.generation.request import Outputs, Request
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 STRICT = "-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror"
@@ -36,10 +36,10 @@ def sh(*command: object) -> str:
 
 @needs_cmake
 @pytest.mark.parametrize(
-    ("robot", "free"), [("kuka_kr6r900sixx", ()), ("franka_fr3", (("fr3_joint7", 0.3),))]
+    ("robot", "free"), [("kuka_kr6r900sixx", {}), ("franka_fr3", {"fr3_joint7": 0.3})]
 )
 def test_package_builds_installs_and_is_found(
-    robot: str, free: tuple[tuple[str, float], ...], tmp_path: Path
+    robot: str, free: dict[str, float], tmp_path: Path
 ) -> None:
     request = Request(FIXTURES / f"{robot}.urdf", free=free, name="arm")
     made = generate(request, Outputs(emit=("cpp-package",), out=tmp_path, samples=60))

@@ -13,7 +13,8 @@ import pytest
 from tests.support.solving import FIXTURES
 
 from ikgen.emit.moveit import emit
-from ikgen.generation.pipeline import Request, derive
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
 
 STUBS = Path(__file__).resolve().parents[1] / "conformance" / "moveit_stubs"
 PACKAGE = "kuka_kr6r900sixx_ik_moveit"

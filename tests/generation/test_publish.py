@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from ikgen.generation.publish import publish
+from ikgen.errors import UsageError
+from ikgen.generation.publish import check_folder, publish, remove
 
 HOUR = 3600.0
 
@@ -61,3 +62,26 @@ def test_what_killed_runs_left_is_removed(tmp_path: Path) -> None:
         os.utime(folder, (time.time() - age,) * 2)
     publish(tmp_path, {"a.py": "one\n"})
     assert sorted(p.name for p in tmp_path.iterdir()) == [".ikgen-running", "a.py"]
+
+
+def test_a_folder_that_cannot_be_written_is_refused_at_once(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    check_folder(tmp_path / "not" / "there" / "yet")
+    assert not (tmp_path / "not").exists()
+    for out in (tmp_path / "file", tmp_path / "file" / "below"):
+        with pytest.raises(UsageError, match="is no directory"):
+            check_folder(out)
+
+
+@pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="needs a user without all rights")
+def test_a_folder_without_permission(tmp_path: Path) -> None:
+    (tmp_path / "locked").mkdir(mode=0o500)
+    with pytest.raises(UsageError, match="no permission"):
+        check_folder(tmp_path / "locked" / "out")
+
+
+def test_removed_files_leave_no_empty_folders(tmp_path: Path) -> None:
+    publish(tmp_path, {"package/src/a.py": "", "package/b.py": "", "other/c.py": ""})
+    (tmp_path / "other/own.txt").write_text("")
+    remove([tmp_path / n for n in ("package/src/a.py", "package/b.py", "other/c.py")], tmp_path)
+    assert sorted(p.name for p in tmp_path.rglob("*")) == ["other", "own.txt"]

@@ -10,7 +10,8 @@ import pytest
 
 from ikgen.cli.main import run
 from ikgen.errors import UsageError
-from ikgen.generation.pipeline import Request, read
+from ikgen.generation.read import read
+from ikgen.generation.request import Request
 from ikgen.kinematics.free_joints import free_defaults
 from ikgen.model.joint_tree import Limits
 
@@ -21,7 +22,7 @@ HELD = "fr3_joint7"
 
 def default(lower: float, upper: float, value: float | None = None) -> float:
     """Of one held joint with these limits."""
-    dh = read(Request(FR3, free=((HELD, None),))).dh
+    dh = read(Request(FR3, free={HELD: None})).dh
     last = dataclasses.replace(dh.joints[-1], limits=Limits(lower, upper))
     dh = dataclasses.replace(dh, joints=(*dh.joints[:-1], last))
     (found,) = free_defaults(dh, [(HELD, value)])

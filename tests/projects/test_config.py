@@ -114,7 +114,7 @@ def test_the_traceback_of_an_internal_error(
     def fail(*_: object) -> None:
         raise RuntimeError("broken\nin two")
 
-    monkeypatch.setattr("ikgen.generation.generation.generate", fail)
+    monkeypatch.setattr("ikgen.generation.generate.generate", fail)
     assert run(["build", "--jobs", "1"]) == 70
     said = capsys.readouterr().err
     assert "error: kuka: internal error: RuntimeError: broken in two" in said
@@ -153,9 +153,35 @@ def test_pyproject(tmp_path: Path) -> None:
     path.write_text("[[tool.ikgen.arm]]\nname = 'a'\nrobot = 'r.urdf'\nfree = ['j']\n")
     assert default_config(tmp_path) == path
     (arm,) = load_config(path)
-    assert arm.robot == tmp_path / "r.urdf" and arm.free == {"j": None}
+    assert arm.request.robot == tmp_path / "r.urdf" and arm.request.free == {"j": None}
 
 
 def test_depfile_escapes() -> None:
     text = depfile_text("build/a.stamp", [Path("/a b/c#d$.urdf"), Path("/x")])
     assert text == "build/a.stamp: /a\\ b/c\\#d$$.urdf /x\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("[[arm]]\nname = 'a'\nrobot = 'r'\nemmit = []", ":4: arm[0].emmit: unknown entry"),
+        ("[[arm]]\nname = 'a'\nrobot = 'r'\n\n[[arm]]\nname = 'b-c'\nrobot = 'r'",
+         ":6: arm[1].name: the name 'b-c' is not an identifier"),
+        ("[[arm]]\nname = 'a'\nrobot = 'r'\nlock = { j = 'x' }", ":4: arm[0].lock.j: 'x' is not a"),
+        ("[[arm]]\nname = 'a'\nrobot = 'r'\n[arm.lock]\nj = 'x'", ":5: arm[0].lock.j: 'x'"),
+        ("[[arm]]\nname = 'a'", ":1: arm[0] has no 'robot'"),
+        ("arm = [{ name = 'a' }]", ": arm[0] has no 'robot'"),
+        ("x = ", ":1: not TOML"),
+    ],
+)  # fmt: skip
+def test_bad_entries_are_named_with_their_line(tmp_path: Path, text: str, place: str) -> None:
+    path = tmp_path / "ikgen.toml"
+    path.write_text(text)
+    with pytest.raises(BadDescriptionError) as caught:
+        load_config(path)
+    assert f"{path}{place}" in caught.value.message
+
+
+def test_check_says_how_to_mend(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["build", "--check"]) == 1
+    assert capsys.readouterr().err == "hint: ikgen build ikgen.toml\n"

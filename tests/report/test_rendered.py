@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 from ikgen.errors import UnsolvedChainError
-from ikgen.generation.pipeline import Request, derive
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
 from ikgen.report import emit_report, emit_unsolved
 from ikgen.report.document import Paragraph
 from ikgen.report.latex import to_latex

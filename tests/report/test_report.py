@@ -12,10 +12,12 @@ from pathlib import Path
 import pytest
 
 from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.emit.derivation import Derivation
 from ikgen.formulas.normal_form import Normalizer, Sum
 from ikgen.formulas.notation import show
+from ikgen.generation.derive import derive
 from ikgen.generation.emitters import find_emitter
-from ikgen.generation.pipeline import Derivation, Request, derive
+from ikgen.generation.request import Request
 from ikgen.report import emit_report
 from ikgen.report.layout import layout
 from ikgen.report.solution_sets import versions_of

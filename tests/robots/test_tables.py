@@ -13,8 +13,11 @@ from tests.support.solving import NO_COMPILER
 
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.errors import UnsolvedChainError
-from ikgen.generation.generation import Outputs, generate, oracle_for
-from ikgen.generation.pipeline import Request, derive, read
+from ikgen.generation.derive import derive
+from ikgen.generation.emitted_checks import oracle_for
+from ikgen.generation.generate import generate
+from ikgen.generation.read import read
+from ikgen.generation.request import Outputs, Request
 from ikgen.verify.runners.python_module import PythonModule
 
 if sys.version_info >= (3, 11):
@@ -114,7 +117,7 @@ def test_redundant_robot_is_pointed_out(name: str) -> None:
 
 @pytest.mark.parametrize("name", REDUNDANT)
 def test_redundant_robot_is_solved_with_a_joint_held(name: str) -> None:
-    request = Request(HERE / "tables" / f"{name}.toml", free=(("theta_6", 0.3),))
+    request = Request(HERE / "tables" / f"{name}.toml", free={"theta_6": 0.3})
     assert derive(request).module.max_solutions >= 2
 
 

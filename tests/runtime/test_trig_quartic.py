@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tests.support.routines import compiled_routine, feed, python_routine
+from tests.support.routines import compiled_routine, feed
+
+from ikgen.runtime.python.trig_quartic_roots import trig_quartic, trig_quartic_batch
 
 Array = NDArray[np.float64]
-ROUTINE = python_routine("trig_quartic")
 KINDS = ("simple", "double", "two doubles", "shared", "pi", "zero", "two real", "nearly linear")
 MAIN = r"""
 int main() {
@@ -72,7 +73,7 @@ def nearest(roots: Array, c: Array, s: Array) -> Array:
 @pytest.mark.parametrize("kind", KINDS)
 def test_complete(kind: str) -> None:
     k, roots = planted(kind, 25_000)
-    count, c, s = ROUTINE.trig_quartic_batch(*k.T)
+    count, c, s = trig_quartic_batch(*k.T)
     near = nearest(roots, c, s)
     clustered = spread(roots) < 0.05  # three roots in one place: ill-conditioned as such
     assert (near[~clustered] < 2e-6).all()
@@ -85,26 +86,27 @@ def test_complete(kind: str) -> None:
 
 
 def test_degenerate() -> None:
-    quartic = ROUTINE.trig_quartic
-    assert quartic(0.0, 0.0, 0.0, 0.0, 0.0) == (-1, [])
-    assert quartic(1e-15, 0.0, 1e-16, 0.0, 0.0)[0] == -1
-    assert quartic(0.0, 0.0, 0.0, 0.0, 1.0) == (0, [])
-    assert sorted(c for c, _ in quartic(0.0, 0.0, 2.0, 0.0, 1.0)[1]) == pytest.approx([-0.5, -0.5])
-    assert quartic(0.0, 0.0, 1.0, 0.0, 1.0)[1] == [pytest.approx((-1.0, 0.0))]
-    assert quartic(1.0, 0.0, 0.0, 0.0, 0.0)[0] == 4
-    assert quartic(1.0, 0.0, 0.0, 0.0, 1.0 + 1e-15)[0] == 2
-    assert quartic(1.0, 0.0, 0.0, 0.0, 1.5)[0] == 0
+    assert trig_quartic(0.0, 0.0, 0.0, 0.0, 0.0) == (-1, [])
+    assert trig_quartic(1e-15, 0.0, 1e-16, 0.0, 0.0)[0] == -1
+    assert trig_quartic(0.0, 0.0, 0.0, 0.0, 1.0) == (0, [])
+    assert sorted(c for c, _ in trig_quartic(0.0, 0.0, 2.0, 0.0, 1.0)[1]) == pytest.approx(
+        [-0.5, -0.5]
+    )
+    assert trig_quartic(0.0, 0.0, 1.0, 0.0, 1.0)[1] == [pytest.approx((-1.0, 0.0))]
+    assert trig_quartic(1.0, 0.0, 0.0, 0.0, 0.0)[0] == 4
+    assert trig_quartic(1.0, 0.0, 0.0, 0.0, 1.0 + 1e-15)[0] == 2
+    assert trig_quartic(1.0, 0.0, 0.0, 0.0, 1.5)[0] == 0
 
 
 def test_pair_just_off_the_circle_counts_once_within_tolerance() -> None:
     a0 = -np.cos(1.0) * 0.0 + 1.0 + 1e-9
-    assert ROUTINE.trig_quartic(0.0, 0.0, 1.0, 0.0, a0, tol=1e-4)[0] == 1
-    assert ROUTINE.trig_quartic(0.0, 0.0, 1.0, 0.0, a0, tol=1e-6)[0] == 0
+    assert trig_quartic(0.0, 0.0, 1.0, 0.0, a0, tol=1e-4)[0] == 1
+    assert trig_quartic(0.0, 0.0, 1.0, 0.0, a0, tol=1e-6)[0] == 0
 
 
 def test_batch_rows_that_are_no_numbers() -> None:
     k = np.array([[np.nan, 0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0, 0.0], [0.0] * 5])
-    count, c, _ = ROUTINE.trig_quartic_batch(*k.T)
+    count, c, _ = trig_quartic_batch(*k.T)
     assert count.tolist() == [-1, 2, -1]
     assert np.isnan(c[0]).all() and np.isnan(c[2]).all()
 
@@ -112,7 +114,7 @@ def test_batch_rows_that_are_no_numbers() -> None:
 def test_scalar_and_batch_agree() -> None:
     for kind in KINDS:
         k, roots = planted(kind, 1000, seed=2)
-        _compare(k, roots, [ROUTINE.trig_quartic(*row) for row in k.tolist()])
+        _compare(k, roots, [trig_quartic(*row) for row in k.tolist()])
 
 
 def test_cpp_agrees(tmp_path: Path) -> None:
@@ -126,7 +128,7 @@ def test_cpp_agrees(tmp_path: Path) -> None:
 
 def _compare(k: Array, roots: Array, other: list[tuple[int, list[tuple[float, float]]]]) -> None:
     """The same to round-off over the slope at the root: 1e-12 but where roots come together."""
-    count, c, s = ROUTINE.trig_quartic_batch(*k.T)
+    count, c, s = trig_quartic_batch(*k.T)
     unit = k / np.abs(k).max(axis=1, keepdims=True)
     apart = np.abs(2.0 * np.sin(0.5 * (roots[:, :, None] - roots[:, None])))
     apart = (apart + 9.0 * np.eye(roots.shape[1])).min(axis=(1, 2))

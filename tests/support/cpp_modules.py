@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from ikgen.emit.solver_module import SolverModule
-from ikgen.generation.pipeline import Request, read
+from ikgen.generation.read import read
+from ikgen.generation.request import Request
 from ikgen.lowering.lower import lower
 from ikgen.solver.solve import solve_chain
 

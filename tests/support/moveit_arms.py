@@ -18,7 +18,8 @@ from tests.support.solving import FIXTURES
 from ikgen.emit.moveit import emit, package_name
 from ikgen.emit.solver_module import SolverModule
 from ikgen.errors import MissingToolError
-from ikgen.generation.pipeline import Request, derive
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
 from ikgen.importers import load_tree
 from ikgen.kinematics.forward import file_forward
 from ikgen.model.joint_tree import Joint, JointTree, JointType, Limits
@@ -45,8 +46,8 @@ FRANKA = "franka_fr3"
 MANIPULATOR = "open_manipulator_x"
 CASES = {
     KUKA: Case("hpp"),
-    FRANKA: Case("h", {"free": (("fr3_joint7", None),)}),
-    MANIPULATOR: Case("hpp", {"task": "position", "free": (("joint2", None),)}),
+    FRANKA: Case("h", {"free": {"fr3_joint7": None}}),
+    MANIPULATOR: Case("hpp", {"task": "position", "free": {"joint2": None}}),
 }
 
 

@@ -1,4 +1,4 @@
-"""The routines of the templates, loaded as Python or compiled as C++ programs that read numbers."""
+"""The routines of the C++ templates, compiled as programs that read numbers."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import os
 import shutil
 import subprocess
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
@@ -22,18 +21,6 @@ FLAGS = [
     "-Werror",
 ]
 EIGEN = Path(os.environ.get("EIGEN3_INCLUDE_DIR", "/usr/include/eigen3"))
-
-
-def python_routine(name: str) -> SimpleNamespace:
-    """The names that `templates/python/routines/<name>.py.jinja` defines."""
-    path = TEMPLATES / "python" / "routines" / f"{name}.py.jinja"
-    head = "from __future__ import annotations\nimport math\nimport numpy as np\n"
-    space: dict[str, object] = {"__name__": name}
-    exec(
-        compile(head + "from numpy.typing import NDArray\n" + path.read_text(), str(path), "exec"),
-        space,
-    )
-    return SimpleNamespace(**{k: v for k, v in space.items() if not k.startswith("__")})
 
 
 def compiled_routine(name: str, main: str, folder: Path, eigen: bool = False) -> Path:

@@ -73,6 +73,7 @@ BINARY: dict[str, Callable[..., Probe]] = {
     "div": np.divide,
     "max": np.maximum,
     "min": np.minimum,
+    "atan2": np.arctan2,
     "gt": lambda a, b: (a > b).astype(float),
     "and": np.multiply,
     "or": np.maximum,

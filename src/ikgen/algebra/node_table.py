@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from copy import copy
+from typing import TypeVar
+
 import numpy as np
 
 from ikgen.algebra.expression import BINARY, UNARY, Atom, Expr, Probe
 
 __all__ = ["NodeTable"]
+
+Table = TypeVar("Table", bound="NodeTable")
 
 
 class NodeTable:
@@ -20,6 +25,14 @@ class NodeTable:
         self.zero = self.const(0.0)
         self.one = self.const(1.0)
         self.minus_one = self.const(-1.0)
+
+    def extended(self: Table) -> Table:
+        """Another table with the same nodes, which grows by itself."""
+        other = copy(self)
+        other._nodes = dict(self._nodes)
+        other._atoms = dict(self._atoms)
+        other._by_bit = list(self._by_bit)
+        return other
 
     def _register(self, key: tuple[object, ...], node: Expr) -> Expr:
         node.id = len(self._nodes)
@@ -36,12 +49,14 @@ class NodeTable:
         node.value = value
         return self._register(key, node)
 
-    def param(self, name: str, value: float) -> Expr:
-        """A named constant of the arm, such as `a_2`, with its value attached."""
+    def param(self, name: str, value: float, probe: Probe | None = None) -> Expr:
+        """A named constant of the arm, such as `a_2`, with its value attached. `probe` are its values at
+        the probes where they are others: any that the structure allows, then the one that was meant."""
         key = ("param", name)
         if key in self._nodes:
             return self._nodes[key]
-        node = Expr("param", (), np.full(self.probes, value), abs(value), 0)
+        at = np.full(self.probes, value) if probe is None else np.array(probe, dtype=float)
+        node = Expr("param", (), at, float(np.max(np.abs(at))) if len(at) else abs(value), 0)
         node.name = name
         node.value = value
         return self._register(key, node)

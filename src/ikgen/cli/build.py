@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ikgen.cli.console import Console
-from ikgen.cli.options import console_options
+from ikgen.cli.error_output import as_object, say
+from ikgen.cli.options import console_options, trust_option
 from ikgen.projects.config import ArmConfig, load_config, named_config
 
 if TYPE_CHECKING:
@@ -43,6 +45,7 @@ __all__ = ["build"]
     is_flag=True,
     help="Leave the verification out (and Pinocchio with it); unverified outputs count as fresh.",
 )
+@trust_option
 @console_options
 def build(
     config: Path | None,
@@ -52,6 +55,7 @@ def build(
     depfile: Path | None,
     jobs: int | None,
     no_verify: bool,
+    trust: bool,
     as_json: bool,
     quiet: bool,
     verbose: bool,
@@ -60,66 +64,87 @@ def build(
 
     CONFIG is an ikgen.toml, or a pyproject.toml with [tool.ikgen]; by default the one here.
     """
-    arms = load_config(named_config(config))
+    path = named_config(config)
+    arms = load_config(path)
     if check:
-        return _check(arms, verify=not no_verify, as_json=as_json, quiet=quiet)
+        return _check(path, arms, verify=not no_verify, as_json=as_json, quiet=quiet)
     from ikgen.projects.project_build import build_arms
 
+    arms = tuple(replace(arm, request=replace(arm.request, trust=trust)) for arm in arms)
     with Console(quiet=quiet, verbose=verbose) as console:
         outcomes = list(
             build_arms(arms, force=force, verify=not no_verify, jobs=jobs, progress=console)
         )
-    _print(outcomes, as_json=as_json, quiet=quiet, verbose=verbose)
+    code = max(outcome.exit_code for outcome in outcomes)
+    _print(outcomes, code, as_json=as_json, quiet=quiet, verbose=verbose)
     if depfile is not None:
         _write_depfile(depfile, arms)
-    return max(outcome.exit_code for outcome in outcomes)
+    return code
 
 
-def _check(arms: Sequence[ArmConfig], *, verify: bool, as_json: bool, quiet: bool) -> int:
+def _check(
+    path: Path, arms: Sequence[ArmConfig], *, verify: bool, as_json: bool, quiet: bool
+) -> int:
     """Say what is stale; writes nothing and imports nothing heavy."""
-    from ikgen.projects.check import stale_lines
+    from ikgen.projects.check import mending, stale_lines
     from ikgen.projects.stale import stale_reasons
 
-    reasons = {
-        arm.record_path.as_posix(): (arm.name, reason)
-        for arm, reason in zip(arms, stale_reasons(arms, verify=verify), strict=True)
-    }
-    stale = any(reason for _, reason in reasons.values())
-    if as_json:
-        rows = [
-            {"name": name, "record": path, "stale": bool(reason), "reason": reason}
-            for path, (name, reason) in reasons.items()
-        ]
-        click.echo(json.dumps({"stale": stale, "arms": rows}, indent=2))
-    elif not quiet:
-        click.echo("\n".join(stale_lines(list(reasons.values()))))
-    return 1 if stale else 0
-
-
-def _print(outcomes: Sequence[Outcome], *, as_json: bool, quiet: bool, verbose: bool) -> None:
+    reasons = stale_reasons(arms, verify=verify)
+    code = 1 if any(reasons) else 0
     if as_json:
         rows = [
             {
-                "name": o.name,
-                "generated": bool(o.reason) and not o.exit_code,
-                "reason": o.reason,
-                "files": [path.as_posix() for path in o.files],
-                "error": o.message or None,
-                "seconds": round(o.seconds, 3),
+                "name": arm.name,
+                "record": arm.records[0].as_posix(),
+                "stale": bool(reason),
+                "reason": reason,
             }
-            for o in outcomes
+            for arm, reason in zip(arms, reasons, strict=True)
         ]
-        click.echo(json.dumps({"arms": rows}, indent=2))
+        result: dict[str, Any] = {"stale": bool(code), "arms": rows}
+        _echo(result, code, f"{sum(map(bool, reasons))} arms are stale", mending(path))
+    elif not quiet:
+        names = [arm.name for arm in arms]
+        click.echo("\n".join(stale_lines(list(zip(names, reasons, strict=True)))))
+    if code and not quiet:
+        click.echo(f"hint: {mending(path)}", err=True)
+    return code
+
+
+def _print(
+    outcomes: Sequence[Outcome], code: int, *, as_json: bool, quiet: bool, verbose: bool
+) -> None:
+    if as_json:
+        bad = [o for o in outcomes if o.exit_code]
+        message = "; ".join(f"{o.name}: {o.message}" for o in bad)
+        hint = "\n".join(dict.fromkeys(o.hint for o in bad if o.hint))
+        _echo({"arms": [_row(o) for o in outcomes]}, code, message, hint)
     for o in outcomes:
         if o.exit_code:
             if o.trace and verbose:
                 click.echo(o.trace, err=True)
-            click.echo(f"error: {o.name}: {o.message}", err=True)
-            if o.hint:
-                click.echo(f"hint: {o.hint}", err=True)
+            say(f"{o.name}: {o.message}", o.hint)
         elif not quiet and not as_json:
             state = f"generated in {o.seconds:.1f} s ({o.reason})" if o.reason else "up to date"
             click.echo(f"{o.name}: {state}")
+
+
+def _row(outcome: Outcome) -> dict[str, Any]:
+    return {
+        "name": outcome.name,
+        "generated": bool(outcome.reason) and not outcome.exit_code,
+        "reason": outcome.reason,
+        "files": [path.as_posix() for path in outcome.files],
+        "error": outcome.message or None,
+        "seconds": round(outcome.seconds, 3),
+    }
+
+
+def _echo(result: dict[str, Any], code: int, message: str, hint: str) -> None:
+    """The result on stdout, with an error object where the command ends with one."""
+    if code:
+        result = {**result, "error": as_object(message, hint, code)}
+    click.echo(json.dumps(result, indent=2))
 
 
 def _write_depfile(path: Path, arms: Sequence[ArmConfig]) -> None:
@@ -129,7 +154,8 @@ def _write_depfile(path: Path, arms: Sequence[ArmConfig]) -> None:
     from ikgen.projects.recorded_inputs import Packages
 
     packages = Packages()
-    records = [read_record(arm.record_path) for arm in arms if arm.record_path.is_file()]
+    paths = [path for arm in arms for path in arm.records if path.is_file()]
+    records = [read_record(path) for path in paths]
     targets = [record.folder / name for record in records for name in record.files]
     inputs = [file.path for record in records for file in packages.inputs(record)]
     write_depfile(path, targets, inputs)

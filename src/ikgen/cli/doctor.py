@@ -8,8 +8,9 @@ import sys
 import click
 
 from ikgen import __version__
-from ikgen.cli.checkup import Offer, Thing, offers, packages, tools
+from ikgen.cli.error_output import as_object
 from ikgen.cli.tables import table
+from ikgen.generation.checkup import Offer, Thing, offers, packages, tools
 from ikgen.plugins import GROUPS
 
 __all__ = ["doctor"]
@@ -21,12 +22,15 @@ def doctor(as_json: bool) -> int:
     """Say which packages, tools and plug-ins there are; exit code 1 if a needed package is missing
     or a plug-in is broken."""
     needed, optional, others = packages(), tools(), offers()
-    click.echo(
-        json.dumps(_record(needed, optional, others), indent=2)
-        if as_json
-        else _text(needed, optional, others)
-    )
-    return 1 if any(t.found is None for t in needed) or any(o.problem for o in others) else 0
+    bad = [f"{t.name} is missing" for t in needed if t.found is None]
+    bad += [f"{o.plug_in.words} {o.problem}" for o in others if o.problem]
+    if as_json:
+        hint = "\n".join(t.remedy for t in needed if t.found is None)
+        error = {"error": as_object("; ".join(bad), hint, 1)} if bad else {}
+        click.echo(json.dumps({**_record(needed, optional, others), **error}, indent=2))
+    else:
+        click.echo(_text(needed, optional, others))
+    return 1 if bad else 0
 
 
 def _record(needed: list[Thing], optional: list[Thing], others: list[Offer]) -> dict[str, object]:

@@ -6,12 +6,14 @@ import os
 import sys
 import warnings
 from collections.abc import Sequence
+from dataclasses import dataclass
 from importlib import import_module
 from typing import NoReturn
 
 import click
 
 from ikgen import __version__
+from ikgen.cli.error_output import ResultError, as_object, say, say_error, say_object
 from ikgen.errors import IkgenError
 
 __all__ = ["COMMANDS", "ikgen", "main", "run"]
@@ -20,8 +22,8 @@ INTERNAL_ERROR = 70
 """Exit code of a failure that is ikgen's own (EX_SOFTWARE of sysexits.h)."""
 
 COMMANDS: dict[str, tuple[str, str]] = {
-    "from-urdf": ("ikgen.cli.generate:from_urdf", "Generate from a URDF or xacro file."),
-    "from-dh": ("ikgen.cli.generate:from_dh", "Generate from a DH table (TOML)."),
+    "from-urdf": ("ikgen.cli.from_robot:from_urdf", "Generate from a URDF or xacro file."),
+    "from-dh": ("ikgen.cli.from_robot:from_dh", "Generate from a DH table (TOML)."),
     "inspect": ("ikgen.cli.inspect:inspect", "Show joint tree, chains, DH table and advice."),
     "verify": ("ikgen.cli.verify:verify", "Check emitted modules against their robot."),
     "build": ("ikgen.cli.build:build", "Generate every arm that a config lists."),
@@ -72,53 +74,68 @@ def main() -> NoReturn:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the command line; the exit code. No exception leaves it."""
-    verbose = "--verbose" in arguments or any(
-        a.startswith("-") and not a.startswith("--") and "v" in a for a in arguments
-    )
     try:
         code = ikgen.main(args=list(arguments), prog_name="ikgen", standalone_mode=False)
-    except IkgenError as error:
-        _say(error.message, error.hint)
-        return error.exit_code
-    except click.exceptions.NoArgsIsHelpError as error:
-        click.echo(error.format_message(), err=True)
-        return 2
-    except click.ClickException as error:
-        context = error.ctx if isinstance(error, click.UsageError) else None
-        command = context.command_path if context is not None else "ikgen"
-        _say(error.format_message(), f"see {command} --help")
-        return 2
-    except (click.Abort, KeyboardInterrupt):
-        _say("interrupted", "")
-        return 130
     except BrokenPipeError:
         return 0
-    except OSError as error:
-        where = f"{error.filename}: " if error.filename else ""
-        _say(f"{where}{error.strerror or error}", "check the path and its permissions")
-        return 2
-    except Exception as error:
-        return _internal(error, verbose)
+    except (Exception, KeyboardInterrupt) as error:
+        return _failed(error, _Wanted.of(arguments))
     return code if isinstance(code, int) else 0
 
 
-def _say(message: str, hint: str) -> None:
-    """An error on stderr: what, and what to do."""
-    click.echo(f"error: {message}", err=True)
-    if hint:
-        click.echo(f"hint: {hint}", err=True)
+@dataclass(frozen=True, slots=True)
+class _Wanted:
+    """How errors are to be told; read from the words, since they may not even parse."""
+
+    as_json: bool
+    verbose: bool
+
+    @classmethod
+    def of(cls, arguments: Sequence[str]) -> _Wanted:
+        short = [a for a in arguments if a.startswith("-") and not a.startswith("--")]
+        verbose = "--verbose" in arguments or any("v" in a for a in short)
+        return cls("--json" in arguments, verbose)
 
 
-def _internal(error: Exception, verbose: bool) -> int:
+def _failed(error: BaseException, wanted: _Wanted) -> int:
+    """Say what ended the command: on stderr, and as an object where JSON is wanted; the exit code."""
+    result = error.result if isinstance(error, ResultError) else None
+    error = error.error if isinstance(error, ResultError) else error
+    if isinstance(error, IkgenError):
+        say_error(error, verbose=wanted.verbose)
+        message, hint, code = error.message, error.hint, error.exit_code
+    elif isinstance(error, click.exceptions.NoArgsIsHelpError):
+        message, hint, code = error.format_message(), "", 2
+        click.echo(message, err=True)
+    else:
+        message, hint, code = _explained(error, wanted.verbose)
+        say(message, hint)
+    if wanted.as_json:
+        say_object(as_object(message, hint, code, error), result)
+    return code
+
+
+def _explained(error: BaseException, verbose: bool) -> tuple[str, str, int]:
+    """Message, hint and exit code of an error that is not ikgen's."""
+    if isinstance(error, click.ClickException):
+        context = error.ctx if isinstance(error, click.UsageError) else None
+        command = context.command_path if context is not None else "ikgen"
+        return error.format_message(), f"see {command} --help", 2
+    if isinstance(error, click.Abort | KeyboardInterrupt):
+        return "interrupted", "", 130
+    if isinstance(error, OSError):
+        where = f"{error.filename}: " if error.filename else ""
+        return f"{where}{error.strerror or error}", "check the path and its permissions", 2
+    return _internal(error, verbose)
+
+
+def _internal(error: BaseException, verbose: bool) -> tuple[str, str, int]:
     """A failure that is ikgen's own."""
     if verbose:
         import traceback
 
         click.echo("".join(traceback.format_exception(error)), err=True)
     text = " ".join(str(error).split()) or "no message"
-    _say(
-        f"internal error: {type(error).__name__}: {text}",
-        "please report it with the robot description and the command line"
-        + ("" if verbose else "; -v shows the traceback"),
-    )
-    return INTERNAL_ERROR
+    hint = "please report it with the robot description and the command line"
+    hint += "" if verbose else "; -v shows the traceback"
+    return f"internal error: {type(error).__name__}: {text}", hint, INTERNAL_ERROR

@@ -1,26 +1,21 @@
-"""Options that the commands share, and the `Request` they make."""
+"""Options that the commands share."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
-from ikgen.errors import UsageError
-from ikgen.generation.pipeline import Request
-from ikgen.model.module_name import identifier, is_module_name
+from ikgen.generation.emitters import EMITTERS
 
 __all__ = [
     "chain_options",
     "console_options",
-    "make_request",
-    "parse_emit",
-    "parse_free",
-    "parse_locked",
+    "emit_option",
     "sampling_options",
+    "trust_option",
 ]
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -47,9 +42,7 @@ _CHAIN_OPTIONS = (
         metavar="JOINT=VALUE",
         help="Fix a joint for good (rad or m).",
     ),
-    click.option(
-        "--arg", "arguments", multiple=True, metavar="NAME:=VALUE", help="A xacro argument."
-    ),
+    click.option("--arg", "args", multiple=True, metavar="NAME:=VALUE", help="A xacro argument."),
     click.option(
         "--package-path",
         "package_paths",
@@ -65,6 +58,21 @@ _CHAIN_OPTIONS = (
     ),
 )
 
+trust_option = click.option(
+    "--trust",
+    is_flag=True,
+    help="Let xacro files run any code and read any file: for files of your own.",
+)
+
+
+emit_option = click.option(
+    "--emit",
+    multiple=True,
+    metavar="NAME,...",
+    help=f"Outputs (default: python): {', '.join(row.name for row in EMITTERS)}, and those of other "
+    "packages (ikgen doctor). Those that were made here before are made again.",
+)
+
 
 def _apply(options: Sequence[Callable[[Any], Any]], function: F) -> F:
     """The decorators on a function, listed in help in the order given."""
@@ -75,7 +83,7 @@ def _apply(options: Sequence[Callable[[Any], Any]], function: F) -> F:
 
 def chain_options(function: F) -> F:
     """Which chain of the robot, which task, and how to read the file."""
-    return _apply(_CHAIN_OPTIONS, function)
+    return _apply([*_CHAIN_OPTIONS, trust_option], function)
 
 
 def sampling_options(function: F) -> F:
@@ -115,110 +123,3 @@ def console_options(function: F) -> F:
         ],
         function,
     )
-
-
-def make_request(
-    robot: Path,
-    *,
-    base: str | None = None,
-    tip: str | None = None,
-    task: str | None = None,
-    free: Sequence[str] = (),
-    lock: Sequence[str] = (),
-    arguments: Sequence[str] = (),
-    package_paths: Sequence[Path] = (),
-    name: str | None = None,
-) -> Request:
-    """The request that the options make; raises `UsageError` for text that does not parse."""
-    from ikgen.tasks import find_task
-
-    if task is not None:
-        task = find_task(task).name
-    for folder in package_paths:
-        if not folder.is_dir():
-            raise UsageError(f"--package-path {folder}: no such directory")
-    held, locked = parse_free(free), parse_locked(lock)
-    for joint, _ in held:
-        if joint in locked:
-            raise UsageError(f"joint '{joint}' is given to both --free and --lock")
-    return Request(
-        robot=robot,
-        base=base,
-        tip=tip,
-        task=task,
-        free=held,
-        locked=locked,
-        arguments=_arguments(arguments),
-        package_paths=tuple(package_paths),
-        name=_module_name(name),
-    )
-
-
-def parse_free(texts: Sequence[str]) -> tuple[tuple[str, float | None], ...]:
-    """(joint, default value or None) of each --free JOINT[=VALUE]."""
-    found: dict[str, float | None] = {}
-    for text in texts:
-        joint, equals, value = text.rpartition("=")
-        if not equals:
-            joint = value
-        if not joint or joint in found:
-            raise UsageError(f"--free {text}: " + ("given twice" if joint else "no joint named"))
-        found[joint] = _number("--free", text, value) if equals else None
-    return tuple(found.items())
-
-
-def parse_locked(texts: Sequence[str]) -> dict[str, float]:
-    """Joint -> value of each --lock JOINT=VALUE."""
-    found: dict[str, float] = {}
-    for text in texts:
-        joint, _, value = text.rpartition("=")
-        if not joint:
-            raise UsageError(f"--lock {text}: no value", hint="write --lock JOINT=VALUE (rad or m)")
-        if joint in found:
-            raise UsageError(f"--lock {text}: joint '{joint}' is given twice")
-        found[joint] = _number("--lock", text, value)
-    return found
-
-
-def parse_emit(texts: Sequence[str], default: tuple[str, ...] = ("python",)) -> tuple[str, ...]:
-    """Names of outputs from --emit a,b (repeatable), each once; raises for an unknown one."""
-    from ikgen.generation.emitters import find_emitter
-
-    names = [name.strip() for text in texts for name in text.split(",")]
-    chosen = tuple(dict.fromkeys(name for name in names if name)) or default
-    for name in chosen:
-        find_emitter(name)
-    return chosen
-
-
-def _number(option: str, text: str, value: str) -> float:
-    try:
-        number = float(value)
-    except ValueError:
-        number = math.nan
-    if not math.isfinite(number):
-        raise UsageError(
-            f"{option} {text}: '{value}' is not a finite number",
-            hint="give the value in rad (revolute) or m (prismatic)",
-        )
-    return number
-
-
-def _arguments(texts: Sequence[str]) -> dict[str, str]:
-    """NAME:=VALUE pairs."""
-    found: dict[str, str] = {}
-    for text in texts:
-        name, sign, value = text.partition(":=")
-        if not sign or not name:
-            raise UsageError(f"--arg {text}: not an argument", hint="write --arg NAME:=VALUE")
-        found[name] = value
-    return found
-
-
-def _module_name(name: str | None) -> str | None:
-    """The name if it can be a module and a namespace."""
-    if name is not None and not is_module_name(name):
-        raise UsageError(
-            f"--name {name}: not an identifier", hint=f"for example --name {identifier(name)}"
-        )
-    return name

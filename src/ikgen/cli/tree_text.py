@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -11,9 +11,12 @@ from ikgen.cli.tables import table
 
 if TYPE_CHECKING:
     from ikgen.model.dh import Angle, DHChain, DHRow, Length
-    from ikgen.model.joint_tree import Joint, JointTree, Limits
+    from ikgen.model.joint_tree import Joint, JointTree, Limits, Matrix
 
-__all__ = ["angle_text", "dh_table", "joint_tree", "length_text"]
+__all__ = ["angle_text", "constants", "dh_table", "joint_tree", "length_text", "transform_text"]
+
+_WIDEST = 120
+"""Characters of indent; what lies deeper is not indented further."""
 
 
 def joint_tree(tree: JointTree) -> str:
@@ -22,14 +25,22 @@ def joint_tree(tree: JointTree) -> str:
     for joint in tree.joints:
         below.setdefault(joint.parent, []).append(joint)
 
-    def lines(link: str, indent: str) -> Iterator[str]:
-        joints = below.get(link, [])
-        for i, joint in enumerate(joints):
-            last = i == len(joints) - 1
-            yield f"{indent}{'└─ ' if last else '├─ '}{joint.child}  {_joint(joint)}"
-            yield from lines(joint.child, indent + ("   " if last else "│  "))
+    lines = [tree.root_link]
+    waiting = _hanging(below, tree.root_link, "")
+    while waiting:
+        joint, indent, last = waiting.pop()
+        lines.append(f"{indent}{'└─ ' if last else '├─ '}{joint.child}  {_joint(joint)}")
+        deeper = indent + ("   " if last else "│  ")
+        waiting += _hanging(below, joint.child, deeper if len(indent) < _WIDEST else indent)
+    return "\n".join(lines)
 
-    return "\n".join([tree.root_link, *lines(tree.root_link, "")])
+
+def _hanging(
+    below: Mapping[str, Sequence[Joint]], link: str, indent: str
+) -> list[tuple[Joint, str, bool]]:
+    """The joints below a link, last to first, each with its indent and whether it is the last."""
+    joints = below.get(link, ())
+    return [(joint, indent, joint is joints[-1]) for joint in reversed(joints)]
 
 
 def _joint(joint: Joint) -> str:
@@ -99,3 +110,23 @@ def length_text(length: Length) -> str:
     if length.name is None:
         return "0"
     return f"-{length.name}" if length.sign < 0 else length.name
+
+
+def transform_text(T: Matrix) -> tuple[str, str]:
+    """A rigid transform (4, 4) as URDF writes it: `xyz` (m) and `rpy` (rad: turns about the fixed x, y and
+    z axes, one after the other)."""
+    level = math.hypot(T[0, 0], T[1, 0])
+    pitch = math.atan2(-T[2, 0], level)
+    if level > 1e-9:
+        roll = math.atan2(T[2, 1], T[2, 2])
+        yaw = math.atan2(T[1, 0], T[0, 0])
+    else:  # roll and yaw turn about one axis: all of it is roll
+        roll = math.atan2(-T[2, 0] * T[0, 1], T[1, 1])
+        yaw = 0.0
+    xyz = " ".join(_short(float(x)) for x in T[:3, 3])
+    return f"xyz {xyz}", f"rpy {' '.join(_short(x) for x in (roll, pitch, yaw))}"
+
+
+def _short(value: float) -> str:
+    """Nine digits; round-off of zero is 0."""
+    return f"{value:.9g}" if abs(value) > 1e-12 else "0"

@@ -5,14 +5,15 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from ikgen.cli.annotations import annotate, annotate_error
 from ikgen.cli.console import Console
-from ikgen.cli.options import console_options, sampling_options
-from ikgen.errors import IkgenError, UsageError
+from ikgen.cli.options import console_options, sampling_options, trust_option
+from ikgen.cli.recheck_json import as_dict
+from ikgen.errors import IkgenError
 
 if TYPE_CHECKING:
     from ikgen.projects.check_findings import Finding, Recheck
@@ -35,6 +36,7 @@ __all__ = ["verify"]
     help="Also write the results as JUnit XML.",
 )
 @sampling_options
+@trust_option
 @console_options
 def verify(
     target: Path | None,
@@ -43,6 +45,7 @@ def verify(
     junit_xml: Path | None,
     samples: int,
     seed: int,
+    trust: bool,
     as_json: bool,
     quiet: bool,
     verbose: bool,
@@ -53,82 +56,29 @@ def verify(
     else this folder). Exit code 0: all right; 1: wrong, edited or made from another geometry; 2:
     something could not be checked.
     """
+    from ikgen.projects.recheck_all import recheck_all, write_junit
+
     with Console(quiet=quiet, verbose=verbose) as console:
         try:
-            results = _recheck_all(target, robot, (samples, seed), console)
+            results = recheck_all(
+                target, robot=robot, samples=samples, seed=seed, trust=trust, progress=console
+            )
         except IkgenError as error:
             annotate_error(error)
             raise
     if junit_xml is not None:
-        _write_junit(junit_xml, results)
+        write_junit(junit_xml, results)
+    code = max((result.exit_code for result in results), default=0)
+    if as_json:
+        click.echo(json.dumps(as_dict(results, code), indent=2, allow_nan=False))
     _print(results, as_json=as_json, quiet=quiet, verbose=verbose)
-    return max((result.exit_code for result in results), default=0)
-
-
-def _recheck_all(
-    target: Path | None, robot: Path | None, sampling: tuple[int, int], console: Console
-) -> list[Recheck]:
-    """Check everything that is meant, in order."""
-    return [
-        _recheck(path, robot, command, sampling, console)
-        for path, command in _records(target, robot)
-    ]
-
-
-def _recheck(
-    path: Path,
-    robot: Path | None,
-    command: str | None,
-    sampling: tuple[int, int],
-    console: Console,
-) -> Recheck:
-    """Check one record; an error becomes its finding, so that the others are checked too."""
-    from ikgen.generation.record import read_record
-    from ikgen.projects.check_findings import unchecked
-    from ikgen.projects.recheck import recheck
-
-    samples, seed = sampling
-    record = None
-    try:
-        record = read_record(path)
-        return recheck(
-            record, robot=robot, command=command, samples=samples, seed=seed, progress=console
-        )
-    except IkgenError as error:
-        return unchecked(path, record, error)
-
-
-def _records(target: Path | None, robot: Path | None) -> list[tuple[Path, str | None]]:
-    """The records meant, each with the command that makes its outputs again, if not its own."""
-    from ikgen.generation.record import find_records
-    from ikgen.projects.config import default_config, load_config
-
-    target = target or default_config(Path()) or Path()
-    if target.is_dir():
-        return [(path, None) for path in find_records(target)]
-    if target.suffix == ".json":
-        return [(target, None)]
-    if not target.is_file():
-        raise UsageError(f"{target}: no such file or directory")
-    command = f"ikgen build {target}" if robot is None else None
-    return [(arm.record_path, command) for arm in load_config(target)]
+    return code
 
 
 def _print(results: Sequence[Recheck], *, as_json: bool, quiet: bool, verbose: bool) -> None:
     from ikgen.cli.tables import verification_tables
 
     annotate(results)
-    if as_json:
-        click.echo(
-            json.dumps(
-                {
-                    "passed": all(r.passed for r in results),
-                    "outputs": [_as_dict(r) for r in results],
-                },
-                indent=2,
-                allow_nan=False,
-            )
-        )
     for result in results:
         if verbose and result.reports:
             click.echo(verification_tables(result.reports), err=True)
@@ -159,44 +109,3 @@ def _line(result: Recheck) -> str:
         metres, radians = report.worst_closure
         parts.append(f"{name} {report.samples} poses, closure {metres:.1e} m {radians:.1e} rad")
     return f"{result.name}: right ({'; '.join(parts)}){notes}"
-
-
-def _as_dict(result: Recheck) -> dict[str, Any]:
-    return {
-        "name": result.name,
-        "record": result.path.as_posix(),
-        "robot": result.record.robot.as_posix() if result.record else None,
-        "passed": result.passed,
-        "findings": [_finding(finding) for finding in result.findings],
-        "notes": list(result.notes),
-        "verification": {name: report.to_dict() for name, report in result.reports.items()},
-    }
-
-
-def _finding(finding: Finding) -> dict[str, Any]:
-    metres, radians = finding.deviation or (None, None)
-    return {
-        "file": finding.file.as_posix(),
-        "message": finding.message,
-        "command": finding.command,
-        "deviation": None if metres is None else {"m": metres, "rad": radians},
-    }
-
-
-def _write_junit(path: Path, results: Sequence[Recheck]) -> None:
-    """One suite an output; findings that no verification holds become a suite of their own."""
-    from ikgen.verify.junit import write_junit_xml
-    from ikgen.verify.verification_report import CheckResult, VerificationReport
-
-    suites = []
-    for result in results:
-        record = result.record
-        checks = tuple(
-            CheckResult("up to date", False, 1, 1, detail=f.message, worst_case=f.command)
-            for f in result.findings
-        ) or (CheckResult("up to date", True, len(record.files) if record else 0),)
-        chain = (record.base, record.tip, record.task) if record else ("", "", "")
-        own = VerificationReport("outputs", *chain, 0, 0, checks)
-        suites += [(result.name, report) for report in (own, *result.reports.values())]
-    path.parent.mkdir(parents=True, exist_ok=True)
-    write_junit_xml(path, suites)

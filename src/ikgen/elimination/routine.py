@@ -1,37 +1,28 @@
-"""The emitted routine itself, for probing: the same text that goes into generated modules."""
+"""The emitted routine itself, for probing: the same code that goes into generated modules."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache
-from pathlib import Path
-from typing import Any, cast
+from dataclasses import fields
 
 import numpy as np
 
-from ikgen.errors import IkgenError
 from ikgen.model.joint_tree import Matrix
+from ikgen.program.policy import SolvePolicy
+from ikgen.runtime.python import general_6r as runtime
+from ikgen.runtime.python.chain_kinematics import forward
+from ikgen.runtime.python.general_6r import Elimination
+from ikgen.runtime.python.solve_policy import Policy
+from ikgen.runtime.python.whole_pose import PoseTask
 
-__all__ = ["Elimination", "general_6r", "general_6r_batch", "initial_residuals"]
-
-Elimination = tuple[int, int, int]
-_HEAD = (
-    "from __future__ import annotations\n"
-    "import math\nfrom functools import cmp_to_key\nimport numpy as np\nfrom numpy.typing import NDArray\n"
-)
-_NAME = "general_6r.py.jinja"
+__all__ = ["Elimination", "general_6r", "general_6r_batch", "initial_residuals", "runtime_policy"]
 
 
-@cache
-def _namespace() -> dict[str, Any]:
-    package = Path(__file__).resolve().parent.parent
-    for root in (package, package.parent.parent):
-        path = root / "templates" / "python" / "routines" / _NAME
-        if path.is_file():
-            namespace: dict[str, Any] = {"__name__": "general_6r"}
-            exec(compile(_HEAD + path.read_text(encoding="utf-8"), str(path), "exec"), namespace)
-            return namespace
-    raise IkgenError(f"no template '{_NAME}' in this installation", hint="reinstall ikgen")
+def runtime_policy(given: SolvePolicy) -> Policy:
+    """The tolerances as the emitted code takes them."""
+    stages = tuple((s.steps, s.fine, s.promising) for s in given.refinement)
+    names = [field.name for field in fields(Policy) if field.name != "refinement"]
+    return Policy(**{name: getattr(given, name) for name in names}, refinement=stages)
 
 
 def general_6r_batch(
@@ -42,8 +33,7 @@ def general_6r_batch(
     frames (7, 4, 4): the chain as in `frames.py`; length (m): its scale; plans in order of
     preference.
     """
-    found = _namespace()["general_6r_batch"](frames, length, tuple(plans), poses)
-    return cast("list[Matrix]", found)
+    return runtime.general_6r(frames, length, tuple(plans), poses, runtime_policy(SolvePolicy()))
 
 
 def general_6r(frames: Matrix, length: float, plans: Sequence[Elimination], pose: Matrix) -> Matrix:
@@ -56,14 +46,16 @@ def initial_residuals(
 ) -> tuple[list[Matrix], Matrix]:
     """One plan's solutions for poses (N, 4, 4), and the pose errors (m,) of those candidates that
     became solutions, before Newton's method: how well conditioned the elimination is."""
-    space = _namespace()
+    policy = runtime_policy(SolvePolicy())
     F, T = frames.copy(), poses.copy()
     F[:, :3, 3] /= length
     T[:, :3, 3] /= length
-    index, q, *_ = space["_g6_candidates"](F, T, plan)
+    index, q, *_ = runtime.candidates(F, T, plan)
     if not len(q):
         return [np.zeros((0, 6)) for _ in poses], np.zeros(0)
-    q, after, before = space["_g6_polish"](F, T[index], q)
-    good = after < 1e-9
-    rows = [space["_g6_distinct"](q[good & (index == i)]) for i in range(len(poses))]
-    return rows, np.asarray(before[good], dtype=np.float64)
+    error = PoseTask(1.0).error(forward(runtime.six_joints(F), q), T[index])
+    before = np.abs(error).max(axis=1)
+    q, good = runtime.refined_angles(F, T[index], q, policy)
+    near = policy.coincident
+    rows = [runtime.distinct_angles(q[good & (index == i)], near) for i in range(len(poses))]
+    return rows, before[good]

@@ -1,4 +1,4 @@
-"""What the pipeline hands on: a description as read, and what was derived from it."""
+"""What stages hand on: a description as read, and what was derived from it."""
 
 from __future__ import annotations
 

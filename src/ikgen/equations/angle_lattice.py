@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from copy import copy
 
 import numpy as np
 
@@ -11,10 +12,10 @@ from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.algebra.polynomial import Key
 from ikgen.equations.variables import JointVariables
 
-__all__ = ["KeyLattice"]
+__all__ = ["AngleLattice"]
 
 
-class KeyLattice:
+class AngleLattice:
     """`solved` maps the keys that were solved to cosine and sine, `known` every key that follows from
     them to its (factor, solved key) pairs."""
 
@@ -25,6 +26,14 @@ class KeyLattice:
         self.known: dict[Key, tuple[tuple[int, Key], ...]] = {}
         self._representatives = self._contiguous_keys()
         self._represented: dict[Key, tuple[int, Key, Key]] = {}
+
+    def over(self, graph: ExpressionGraph, variables: JointVariables) -> AngleLattice:
+        """The same lattice over a graph that has all nodes of this one's."""
+        other = copy(self)
+        other._graph, other._variables = graph, variables
+        other.solved, other.known = dict(self.solved), dict(self.known)
+        other._represented = dict(self._represented)
+        return other
 
     def add(self, key: Key) -> None:
         """Take a key as solved; `rebuild` then finds what follows."""

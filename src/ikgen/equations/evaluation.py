@@ -40,7 +40,7 @@ def evaluate(
             if node.atom is not None:
                 found = atom(node)
             elif not node.args:
-                found = np.full(len(values), node.value)
+                found = np.full(len(values), _meant(node))
             else:
                 args = [visit(a) for a in node.args]
                 if node.op == "select":
@@ -52,3 +52,8 @@ def evaluate(
 
     with np.errstate(all="ignore"):
         return np.stack([visit(r) for r in roots])
+
+
+def _meant(node: Expr) -> float:
+    """A constant's value, of a rounded one that which was meant: the value at the last probe."""
+    return float(node.probe[-1]) if node.op == "param" else node.value

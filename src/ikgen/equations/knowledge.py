@@ -7,6 +7,7 @@ its group. Unknown keys are written modulo that lattice on one representative ea
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,7 @@ import numpy as np
 from ikgen.algebra import polynomial as poly
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.polynomial import Key, Monomial, Polynomial, canonical
-from ikgen.equations.angle_lattice import KeyLattice
+from ikgen.equations.angle_lattice import AngleLattice
 from ikgen.equations.equation_set import Equation, EquationSet
 
 __all__ = ["Knowledge", "PolynomialEquation", "Variable"]
@@ -67,8 +68,23 @@ class Knowledge:
         self.variables = equations.variables
         self.known_mask = 0
         self.binding: dict[int, Expr] = {}
-        self._lattice = KeyLattice(equations.graph, equations.variables)
+        self._lattice = AngleLattice(equations.graph, equations.variables)
         self._converted: dict[int, Polynomial] = {}
+
+    def workspace(self) -> Knowledge:
+        """What is known, over an expression graph of its own: what is added there is not seen here."""
+        other = copy(self)
+        other.graph = self.graph.extended()
+        other.equations = self.equations.over(other.graph)
+        other.variables = other.equations.variables
+        other.binding, other._converted = dict(self.binding), {}
+        other._lattice = self._lattice.over(other.graph, other.variables)
+        return other
+
+    def joint_variable(self, joint: int) -> Variable:
+        """The variable of a joint."""
+        revolute = self.variables.primary[joint].revolute
+        return Variable("angle" if revolute else "dist", self.variables.unit(joint))
 
     # -- learning -------------------------------------------------------------------------------
 

@@ -1,16 +1,26 @@
-"""Probe configurations: random ones, and regular ones with joints at multiples of 90 degrees."""
+"""Probe configurations: random ones, and regular ones with joints at multiples of 90 degrees.
+
+A constant that a file rounds and that is kept so has any value at the random ones: what is zero there
+is so for every arm of the structure, not for cos(1.5708) being small. At the others it has the value
+that was meant, so that a divisor which only rounding keeps from zero is seen to vanish.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.model.dh import DHChain
+from ikgen.kinematics.rigid import dh_link
+from ikgen.model.dh import Angle, DHChain, Length
 
 __all__ = ["Probes", "arm_size", "dh_pose", "make_probes", "smallest_singular"]
+
+Kept = Mapping[str, NDArray[np.float64]]
+_NONE: Kept = MappingProxyType({})
 
 GENERIC = 12
 SPECIAL = 36
@@ -21,30 +31,25 @@ SINGULAR = 16
 class Probes:
     """`values` (N, dof) DH variables (of each joint's first row), `pose` (N, 4, 4) of the last DH frame
     in frame 0. The first `generic` are random, up to `regular` they have joints at multiples of 90
-    degrees but are regular, the rest are singular."""
+    degrees but are regular, the rest are singular. `kept` are the values (N,) of rounded constants."""
 
     values: NDArray[np.float64]
     pose: NDArray[np.float64]
     generic: int
     regular: int
+    kept: Kept = field(default_factory=lambda: _NONE)
 
 
-def _transform(
-    alpha: float, a: float, theta: NDArray[np.float64], d: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    ca, sa, ct, st = np.cos(alpha), np.sin(alpha), np.cos(theta), np.sin(theta)
-    zero, one = np.zeros_like(ct), np.ones_like(ct)
-    rows = [
-        [ct, -st, zero, a * one],
-        [st * ca, ct * ca, -sa * one, -sa * d],
-        [st * sa, ct * sa, ca * one, ca * d],
-        [zero, zero, zero, one],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+def _constant(x: Angle | Length, kept: Kept) -> float | NDArray[np.float64]:
+    """The constant's signed value: the one at each probe, or the one that was meant."""
+    if x.name is None or x.name not in kept:
+        return x.nominal
+    return x.sign * kept[x.name] if isinstance(x, Length) else kept[x.name]
 
 
-def dh_pose(dh: DHChain, values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """`A_1 ... A_n` (N, 4, 4) at DH variables `values` (N, dof)."""
+def dh_pose(dh: DHChain, values: NDArray[np.float64], kept: Kept = _NONE) -> NDArray[np.float64]:
+    """`A_1 ... A_n` (N, 4, 4) at DH variables `values` (N, dof); rounded constants have the values
+    `kept` (N,) by name, else those that were meant."""
     count = len(values)
     T = np.broadcast_to(np.eye(4), (count, 4, 4))
     first: dict[int, int] = {}
@@ -53,8 +58,8 @@ def dh_pose(dh: DHChain, values: NDArray[np.float64]) -> NDArray[np.float64]:
         ratio = row.scale / lead.scale
         v = ratio * (values[:, row.driver] - lead.offset.value) + row.offset.value
         theta = v if row.revolute else np.full(count, row.theta.value)
-        d = np.full(count, row.d.value) if row.revolute else v
-        T = T @ _transform(row.alpha.value, row.a.value, theta, d)
+        d = np.zeros(count) + _constant(row.d, kept) if row.revolute else v
+        T = T @ dh_link(_constant(row.alpha, kept), _constant(row.a, kept), theta, d)
     return T
 
 
@@ -103,7 +108,7 @@ def _first_row(dh: DHChain, joint: int) -> int:
 
 def arm_size(dh: DHChain) -> float:
     """A length typical of the arm in m."""
-    lengths = [abs(x.value) for row in dh.rows for x in (row.a, row.d)]
+    lengths = [abs(x.nominal) for row in dh.rows for x in (row.a, row.d)]
     return max([*lengths, 1e-3]) if any(lengths) else 1.0
 
 
@@ -137,7 +142,23 @@ def make_probes(
     regular = special[smallest > 1e-2][:SPECIAL]
     singular = special[smallest < 1e-8][:SINGULAR]
     values = np.concatenate([generic, regular, singular])
-    pose = dh_pose(dh, values)
+    kept = _kept_values(dh, len(values), size)
+    pose = dh_pose(dh, values, kept)
     if tool:
         pose = pose @ dh.X_tip
-    return Probes(values, pose, GENERIC, GENERIC + len(regular))
+    return Probes(values, pose, GENERIC, GENERIC + len(regular), kept)
+
+
+def _kept_values(dh: DHChain, count: int, size: float) -> Kept:
+    """Values (count,) of the rounded constants: random ones at the generic probes."""
+    rng = np.random.default_rng(len(dh.rows))
+    kept: dict[str, NDArray[np.float64]] = {}
+    for row in dh.rows:
+        for x in (row.alpha, row.a, row.d):
+            if x.name is None or x.name in kept or not x.rounded:
+                continue
+            kept[x.name] = np.full(count, x.nominal)
+            off = rng.uniform(0.15, 0.45, GENERIC) * rng.choice((-1.0, 1.0), GENERIC)
+            if count > GENERIC:  # else nothing would show the value that was meant
+                kept[x.name][:GENERIC] += off if isinstance(x, Angle) else size * off
+    return MappingProxyType(kept)

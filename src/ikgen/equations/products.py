@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from copy import copy
+from types import MappingProxyType
+from typing import TypeVar
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,12 +34,14 @@ ENTRY_NAMES = (
     "pz",
 )
 
+Products = TypeVar("Products", bound="ChainProducts")
+
 
 class ChainProducts:
     """Products of `dh` over the graph's atoms, those of the pose included.
 
     `pose` (probes, 4, 4) are the probes' poses in DH frames; `readable` names the entries of the pose
-    that the task reads: the others are unknowns that nothing solves.
+    that the task reads: the others are unknowns that nothing solves; `kept` as in `Probes`.
     """
 
     def __init__(
@@ -46,11 +53,12 @@ class ChainProducts:
         *,
         readable: frozenset[str] = frozenset(ENTRY_NAMES),
         tool_on_right: bool = False,
+        kept: Mapping[str, NDArray[np.float64]] = MappingProxyType({}),
     ) -> None:
         self.graph = graph
         self.dh = dh
         self.n = len(dh.rows)
-        self.variables = JointVariables(graph, dh, values)
+        self.variables = JointVariables(graph, dh, values, kept)
         self.runs = runs_of(dh)
         self.readable = readable
         self.tool_on_right = tool_on_right
@@ -58,6 +66,14 @@ class ChainProducts:
         self._left: dict[int, Rigid] = {}
         self._targets: dict[tuple[int, int], Rigid] = {}
         self.pose = self._pose(pose)
+
+    def over(self: Products, graph: ExpressionGraph) -> Products:
+        """The same products over a graph that has all nodes of this one's."""
+        other = copy(self)
+        other.graph = graph
+        other.variables = self.variables.over(graph)
+        other._left, other._targets = dict(self._left), dict(self._targets)
+        return other
 
     def _pose(self, values: NDArray[np.float64]) -> Rigid:
         g = self.graph

@@ -7,9 +7,11 @@ their sums ("sum of angles") appear as keys of their own when the matrices are b
 
 from __future__ import annotations
 
-import math
+from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass
 from fractions import Fraction
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,22 +20,10 @@ from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.algebra.polynomial import Key, canonical
 from ikgen.errors import UnsupportedJointError
+from ikgen.kinematics.rigid import exact_cos_sin
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
 
-__all__ = ["JointVariables", "exact_cos_sin", "runs_of"]
-
-
-def exact_cos_sin(angle: float) -> tuple[float, float]:
-    """Cosine and sine, exact where the angle is a multiple of 30 or 90 degrees to round-off."""
-    c, s = math.cos(angle), math.sin(angle)
-
-    def clean(x: float) -> float:
-        for exact in (0.0, 0.5, -0.5, 1.0, -1.0):
-            if abs(x - exact) < 4e-16:
-                return exact
-        return x
-
-    return clean(c), clean(s)
+__all__ = ["JointVariables", "runs_of"]
 
 
 def runs_of(dh: DHChain) -> list[int]:
@@ -55,16 +45,29 @@ class _RowVariable:
 class JointVariables:
     """Atoms for the variables of `dh`, with their values `theta` (probes, dof) at the probes."""
 
-    def __init__(self, graph: ExpressionGraph, dh: DHChain, values: NDArray[np.float64]) -> None:
+    def __init__(
+        self,
+        graph: ExpressionGraph,
+        dh: DHChain,
+        values: NDArray[np.float64],
+        kept: Mapping[str, NDArray[np.float64]] = MappingProxyType({}),
+    ) -> None:
         self.graph = graph
         self.dh = dh
         self.values = values
+        self.kept = kept
         self.count = dh.dof
         self.primary: list[DHRow] = []
         for j in range(dh.dof):
             self.primary.append(next(row for row in dh.rows if row.driver == j))
         self._rows = [self._row_variable(row) for row in dh.rows]
         self.group = self._groups()
+
+    def over(self, graph: ExpressionGraph) -> JointVariables:
+        """The same variables as atoms of a graph that has all nodes of this one's."""
+        other = copy(self)
+        other.graph = graph
+        return other
 
     def _row_variable(self, row: DHRow) -> _RowVariable:
         first = self.primary[row.driver]
@@ -152,7 +155,7 @@ class JointVariables:
         g = self.graph
         if length.name is None:
             return g.const(length.value)
-        node = g.param(length.name, length.sign * length.value)
+        node = g.param(length.name, length.sign * length.value, self.kept.get(length.name))
         return node if length.sign > 0 else g.neg(node)
 
     def angle(self, angle: Angle) -> tuple[Expr, Expr]:
@@ -161,4 +164,9 @@ class JointVariables:
         c, s = exact_cos_sin(angle.value)
         if angle.name is None:
             return g.const(c), g.const(s)
-        return g.param(f"cos_{angle.name}", c), g.param(f"sin_{angle.name}", s)
+        cosine, sine = f"cos_{angle.name}", f"sin_{angle.name}"
+        probe = self.kept.get(angle.name)
+        if probe is None:
+            return g.param(cosine, c), g.param(sine, s)
+        pairs = np.array([exact_cos_sin(x) for x in probe]).T
+        return g.param(cosine, c, pairs[0]), g.param(sine, s, pairs[1])

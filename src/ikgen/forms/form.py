@@ -59,6 +59,11 @@ class Form(ABC):
         """The coefficients that the divisor is made of."""
         return self.coefficients[:1]
 
+    @property
+    def tangent_without(self) -> Expr | None:
+        """The coefficient without which the branches lie half a turn apart; None where there is none."""
+        return None
+
     @abstractmethod
     def divisor(self, c: Sequence[Array], z: Sequence[float]) -> Array:
         """What must not vanish all at once, (m, N), in natural units; c: the coefficients (N,) each at

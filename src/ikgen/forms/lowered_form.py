@@ -31,20 +31,35 @@ class Tolerances:
     """Relative to natural sizes: a divisor below `singular` makes its joint free, one below `flag` marks
     the solution as one of a continuum; a square root's argument may be `clamp` outside its domain, as
     poses on the boundary of the workspace are reachable, and where rows are refined it is kept above
-    `fold`, so that two branches start apart.
+    `fold`, so that two branches start apart. Where the condition `rough` holds, what a square root is
+    taken of has lost digits: it may be `wide` outside.
     """
 
     singular: float = 1e-11
     flag: float = 1e-4
     clamp: float = 1e-11
     fold: float = 0.0
+    rough: Expr | None = None
+    wide: float = 1e-3
 
     @staticmethod
     def for_model_error(error: float) -> Tolerances:
-        """Tolerances where the solved geometry is `error` (m or rad) off the file's."""
+        """Tolerances where the solved geometry is `error` (m or rad) off the file's.
+
+        Where rows are not refined, a divisor that is no larger than what the two differ by is as good as
+        zero: the file's direction of it is lost.
+        """
         clamp = max(1e-11, 25.0 * error)
         fold = 0.05 * error if error > ROUNDED else 0.0
-        return Tolerances(flag=min(max(1e-4, 5.0 * error), 1e-2), clamp=clamp, fold=fold)
+        singular = 1e-11 if error > ROUNDED else max(1e-11, 4.0 * error)
+        return Tolerances(singular, min(max(1e-4, 5.0 * error), 1e-2), clamp, fold)
+
+    def guard(self, g: ExpressionGraph, value: Expr, size: float) -> Expr:
+        """Condition that a square root of `value`, of natural size `size`, may be taken."""
+        least = g.const(-self.clamp * size)
+        if self.rough is not None:
+            least = g.select(self.rough, g.const(-self.wide * size), least)
+        return g.binary("gt", value, least)
 
 
 @dataclass(frozen=True, slots=True)

@@ -51,7 +51,7 @@ class Quadratic(Form):
         half = g.mul(g.const(0.5), self.b)
         disc = g.sub(g.square(half), g.mul(self.a, self.c))
         size = natural_size(disc)
-        guard = g.binary("gt", disc, g.const(-tolerances.clamp * size))
+        guard = tolerances.guard(g, disc, size)
         w = g.mul(sigma, g.sqrt(disc))
         value = g.div(g.sub(w, half), divisor.value)
         return LoweredForm((value,), divisor, guard, 2, (disc, g.const(size)))

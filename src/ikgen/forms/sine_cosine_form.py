@@ -43,6 +43,11 @@ class SineCosine(Form):
         """The amplitude."""
         return self.a, self.b
 
+    @property
+    def tangent_without(self) -> Expr:
+        """The constant side."""
+        return self.c
+
     def divisor(self, c: Sequence[Array], z: Sequence[float]) -> Array:
         """The amplitude."""
         return np.stack(c[:2]) / max(z[:2])
@@ -72,7 +77,7 @@ class SineCosine(Form):
         h = g.add(g.square(a), g.square(b))
         divisor = divisor_of(g, h, tolerances, 2)
         disc = g.sub(h, g.square(r))
-        guard = g.binary("gt", disc, g.const(-tolerances.clamp * natural_size(h)))
+        guard = tolerances.guard(g, disc, natural_size(h))
         w = g.mul(sigma, g.sqrt(at_least(g, disc, g.mul(g.const(tolerances.fold), h))))
         inverse = g.div(g.one, divisor.value)
         cosine = g.mul(g.sub(g.mul(a, r), g.mul(b, w)), inverse)
@@ -83,7 +88,7 @@ class SineCosine(Form):
         """`a cos = c` or `b sin = c` with a fixed coefficient; the other of the pair takes sigma."""
         ratio = g.div(self.c, self.b if self.a.vanishes else self.a)
         disc = g.sub(g.one, g.square(ratio))
-        guard = g.binary("gt", disc, g.const(-tolerances.clamp))
+        guard = tolerances.guard(g, disc, 1.0)
         bounded = g.binary("max", g.minus_one, g.binary("min", g.one, ratio))
         other = g.mul(sigma, g.sqrt(at_least(g, disc, g.const(tolerances.fold))))
         pair = (other, bounded) if self.a.vanishes else (bounded, other)

@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ikgen.generation.pipeline import Progress
+from ikgen.generation.progress import Progress
 
 if TYPE_CHECKING:
+    from ikgen.generation.request import Request
     from ikgen.model.dh import DHChain
+    from ikgen.solver.solution_graph import SolutionGraph
     from ikgen.tasks import Task
 
 __all__ = ["Attempt", "attempt", "attempts", "eliminations"]
@@ -19,7 +21,9 @@ _POSE_FREEDOMS = 6
 @dataclass(frozen=True, slots=True)
 class Attempt:
     """One derivation that was tried: which task, which joints held (`held`: beyond those that were
-    asked for), and what came of it."""
+    asked for), and what came of it. `weak` says of each step that fails at some regular configurations
+    which it is: such a closed form is verified before it is written, and may be refused then. `implied`
+    says whether the task is the one that is taken where none is asked for."""
 
     task: str
     free: tuple[str, ...]
@@ -28,20 +32,29 @@ class Attempt:
     order: tuple[str, ...]
     left: tuple[str, ...]
     held: tuple[str, ...] = ()
+    weak: tuple[str, ...] = ()
+    implied: bool = True
 
     @property
-    def rank(self) -> tuple[bool, int, bool, int]:
-        """Closed forms first, with fewer joints held, without a quartic, with fewer solutions."""
+    def rank(self) -> tuple[bool, bool, int, bool, int]:
+        """Closed forms first, those without a weak step, with fewer joints held, without a quartic, with
+        fewer solutions."""
         quartic = any("quartic" in step for step in self.order)
-        return not self.closed, len(self.free), quartic, self.max_solutions
+        return not self.closed, bool(self.weak), len(self.free), quartic, self.max_solutions
 
     @property
     def options(self) -> str:
         """The options to type; empty where none is needed."""
         words = [f"--free {name}" for name in self.free]
-        if self.task != "pose":
+        if not self.implied:
             words.append(f"--task {self.task}")
         return " ".join(words)
+
+    def asked(self, request: Request) -> Request:
+        """The request that this attempt is."""
+        task = None if self.implied and request.task is None else self.task
+        free = {name: request.free.get(name) for name in self.free}
+        return replace(request, task=task, free=free)
 
 
 def attempts(dh: DHChain, asked: str | None, progress: Progress) -> list[Attempt]:
@@ -109,4 +122,14 @@ def attempt(dh: DHChain, task: Task) -> Attempt:
         most,
         graph.order,
         tuple(dh.joints[j].name for j in graph.open_joints),
+        weak=_weak_steps(graph) if closed else (),
+        implied=task.whole_pose and dh.dof - len(dh.free) >= _POSE_FREEDOMS,
     )
+
+
+def _weak_steps(graph: SolutionGraph) -> tuple[str, ...]:
+    """The steps that make a solution graph unsound, in words."""
+    if graph.sound:
+        return ()
+    steps = [s.candidate for s in graph.steps if s.candidate.is_weak and not s.fallbacks]
+    return tuple(f"{c.unknown.text} ({c.leaf})" for c in steps) or ("a step",)

@@ -13,7 +13,7 @@ from ikgen.errors import UnknownNameError
 from ikgen.plugins import PlugIn, find_plug_in, plug_ins
 
 if TYPE_CHECKING:
-    from ikgen.emit.solver_module import SolverModule
+    from ikgen.generation.emitted_arm import EmittedArm
     from ikgen.verify.verification_report import VerificationReport
 
 __all__ = ["EMITTERS", "Emitter", "find_emitter"]
@@ -25,7 +25,7 @@ GROUP = "ikgen.emitters"
 class Emitter:
     """An output by name. `target` is "module:function", which takes the derivation (and, where it
     `tells_verification`, the reports of the other outputs by name) and gives file name -> text;
-    `runner_target` "module:function" takes the solver module and the folder of the finished files
+    `runner_target` "module:function" takes the `EmittedArm` and the folder of the finished files
     and gives a verification runner (none: the output is not run). `plug_in` is set for an emitter
     of another package, which its failures then name."""
 
@@ -45,12 +45,12 @@ class Emitter:
             texts: dict[str, str] = _load(self.target)(derivation, *more)
         return texts
 
-    def runner(self, module: SolverModule, folder: Path) -> Any | None:
+    def runner(self, arm: EmittedArm, folder: Path) -> Any | None:
         """What verification calls, or None."""
         if self.runner_target is None:
             return None
         with self._blamed():
-            return _load(self.runner_target)(module, folder)
+            return _load(self.runner_target)(arm, folder)
 
     def _blamed(self) -> AbstractContextManager[None]:
         return nullcontext() if self.plug_in is None else self.plug_in.blamed()

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import errno
+import os
 import shutil
 import tempfile
 import time
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 
-__all__ = ["Content", "left_over", "publish", "write_texts"]
+from ikgen.errors import UsageError
+
+__all__ = ["Content", "check_folder", "left_over", "publish", "remove", "write_texts"]
 
 Content = str | bytes
 """What a file holds: text (written as UTF-8, lines ended by a line feed) or bytes as they are."""
@@ -17,6 +20,17 @@ Content = str | bytes
 _PREFIX = ".ikgen-"
 _LEFT_OVER = 3600.0
 """Age (s) from which a staging folder is one that a killed run left, not one of a run beside this."""
+
+
+def check_folder(out: Path) -> None:
+    """Raises `UsageError` where nothing can be written to a folder, which may not be there yet."""
+    there = next(path for path in (out, *out.absolute().parents) if os.path.lexists(path))
+    if not there.is_dir():
+        raise UsageError(f"-o {out}: '{there}' is no directory", hint="name another folder")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise UsageError(
+            f"-o {out}: no permission to write to '{there}'", hint="name another folder"
+        )
 
 
 def publish(out: Path, files: Mapping[str, Content]) -> tuple[Path, ...]:
@@ -88,10 +102,20 @@ def _bytes(content: Content) -> bytes:
     return content if isinstance(content, bytes) else content.encode()
 
 
-def left_over(folder: Path, name: str, files: Collection[str]) -> list[Path]:
+def remove(files: Iterable[Path], out: Path) -> None:
+    """Remove files below a folder, and the folders that this leaves empty."""
+    for path in files:
+        path.unlink(missing_ok=True)
+        folder = path.parent
+        while folder != out and folder.is_dir() and not any(folder.iterdir()):
+            folder.rmdir()
+            folder = folder.parent
+
+
+def left_over(folder: Path, name: str, files: Collection[Path]) -> tuple[Path, ...]:
     """Solvers of the name `name` in a folder that an earlier run generated and that are not of `files`."""
     paths = [folder / f"{name}_ik{suffix}" for suffix in (".py", ".hpp")]
-    return [path for path in paths if path.name not in files and _is_generated(path)]
+    return tuple(path for path in paths if path not in files and _is_generated(path))
 
 
 def _is_generated(path: Path) -> bool:

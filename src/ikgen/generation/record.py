@@ -1,72 +1,117 @@
-"""The record beside the outputs (`<name>_ik.json`): what they were made from, and how."""
+"""Records (`<name>_ik.json`): beside outputs, or inside their package, what they were made from, and how.
+
+Here alone is said what a record holds: `Record` is the format, `ikgen.generation.codec` reads and writes
+it.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import json
-import shlex
+import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 from ikgen.errors import BadDescriptionError, UsageError
+from ikgen.generation.codec import CodecError, Decoder, coded, encode, inlined, read_free, uncoded
+from ikgen.generation.request import Request
 
-__all__ = ["SUFFIX", "Record", "digest", "find_records", "read_record", "seen"]
+__all__ = [
+    "GENERATOR",
+    "SUFFIX",
+    "Asked",
+    "Record",
+    "digest",
+    "find_records",
+    "read_record",
+    "record_name",
+    "record_text",
+    "records_of",
+    "seen",
+]
 
+GENERATOR = "ikgen"
 SUFFIX = "_ik.json"
 
 
 @dataclass(frozen=True, slots=True)
+class Asked:
+    """What of a request was left to ikgen (None), as the user gave it."""
+
+    base: str | None = None
+    tip: str | None = None
+    task: str | None = None
+    free: Mapping[str, float | None] | None = field(default=None, metadata=coded(read_free))
+
+
+@dataclass(frozen=True, slots=True)
 class Record:
-    """One record. `path` is its file; `robot` and `package_paths` are as seen from the current
-    directory. `inputs` (path relative to the record's folder or `package://` URL -> SHA-256) is read
-    by `recorded_inputs`; `files` (name -> SHA-256) are relative to the record's folder; `asked`
-    are base, tip and task as the user gave them (or did not); `verified` is false after `--no-verify`.
+    """One record: a request with every choice said, and what came of it.
+
+    Its paths are relative to the record's folder in the file, and as seen from the current directory here.
+    `out` is the folder that was given for the outputs: the record's own, or the one around it for a
+    package. `inputs` (relative path or `package://` URL -> SHA-256) are read by `recorded_inputs`; `files`
+    (path relative to the record's folder -> SHA-256) are the outputs; `verified` is false after
+    `--no-verify`. `path` is the record's file.
     """
 
-    path: Path
+    generator: str
     version: str
-    name: str
-    robot: Path
+    request: Request = field(metadata=inlined())
     source_sha256: str
-    base: str
-    tip: str
-    task: str
-    free: Mapping[str, float | None]
-    lock: Mapping[str, float]
-    args: Mapping[str, str]
-    package_paths: tuple[Path, ...]
-    asked: Mapping[str, str | None]
+    asked: Asked
     emit: tuple[str, ...]
     verified: bool
     joints: tuple[str, ...]
     max_solutions: int
     inputs: Mapping[str, str]
     files: Mapping[str, str]
+    out: Path | None = None
+    path: Path = field(default=Path(), metadata=uncoded())
 
     @property
     def folder(self) -> Path:
-        """Where the outputs lie."""
+        """Where the record lies."""
         return self.path.parent
+
+    @property
+    def name(self) -> str:
+        """The prefix of the outputs."""
+        assert self.request.name is not None
+        return self.request.name
+
+    @property
+    def given(self) -> Request:
+        """The request as the user gave it."""
+        free = self.request.free if self.asked.free is None else self.asked.free
+        asked = self.asked
+        return replace(self.request, base=asked.base, tip=asked.tip, task=asked.task, free=free)
+
+    def again(self, robot: Path | None = None) -> Request:
+        """The request that makes the outputs again, for its own or another description."""
+        request = self.request if robot is None else replace(self.request, robot=robot)
+        return replace(request, base=None, tip=None) if request.table else request
 
     def command(self, robot: Path | None = None) -> str:
         """The command that makes the outputs again."""
-        source = robot or self.robot
-        words = ["ikgen", "from-dh" if source.suffix == ".toml" else "from-urdf", str(source)]
-        if source.suffix != ".toml":
-            words += ["--base", self.base, "--tip", self.tip]
-        words += ["--task", self.task, "--name", self.name]
-        for joint, value in self.free.items():
-            words += ["--free", joint if value is None else f"{joint}={value!r}"]
-        for joint, value in self.lock.items():
-            words += ["--lock", f"{joint}={value!r}"]
-        for name, text in self.args.items():
-            words += ["--arg", f"{name}:={text}"]
-        for folder in self.package_paths:
-            words += ["--package-path", str(folder)]
-        words += ["--emit", ",".join(self.emit), "-o", str(self.folder)]
-        return shlex.join(words)
+        out = str(self.out or self.folder)
+        return self.again(robot).command("--emit", ",".join(self.emit), "-o", out)
+
+
+def record_name(name: str) -> str:
+    """The file name of an arm's records."""
+    return f"{name}{SUFFIX}"
+
+
+def record_text(record: Record) -> str:
+    """The text of a record; paths relative to its folder, with slashes on every system."""
+    folder = record.folder.resolve()
+
+    def place(path: Path) -> str:
+        return Path(os.path.relpath(path.resolve(), folder)).as_posix()
+
+    return json.dumps(encode(record, place), indent=2) + "\n"
 
 
 def digest(path: Path) -> str | None:
@@ -83,7 +128,7 @@ def find_records(folder: Path) -> list[Path]:
         path
         for path in sorted(folder.rglob(f"*{SUFFIX}"))
         if not any(part.startswith(".") for part in path.relative_to(folder).parts[:-1])
-        and is_record(path)
+        and _is_record(path)
     ]
     if not found:
         raise UsageError(
@@ -93,54 +138,49 @@ def find_records(folder: Path) -> list[Path]:
     return found
 
 
-def is_record(path: Path) -> bool:
+def records_of(out: Path, name: str) -> list[Path]:
+    """The records of the outputs `name` that were written to a folder: beside them, and in their
+    packages."""
+    beside = out / record_name(name)
+    inside = [path for path in sorted(out.glob(f"*/{record_name(name)}")) if _is_of(path, out)]
+    return [*([beside] if beside.is_file() else []), *inside]
+
+
+def _is_of(path: Path, out: Path) -> bool:
+    """Whether a record in a folder of `out` is that of a package written there."""
+    try:
+        record = read_record(path)
+    except BadDescriptionError:
+        return False
+    return record.out is not None and record.out.resolve() == out.resolve()
+
+
+def _is_record(path: Path) -> bool:
     """Whether a JSON file is a record; a broken one counts, so that it is told."""
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return True
-    return isinstance(data, dict) and data.get("generator") == "ikgen"
+    return isinstance(data, dict) and data.get("generator") == GENERATOR
 
 
 def read_record(path: Path) -> Record:
     """The record in a file; raises `BadDescriptionError` for a file that is none."""
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
-        return _record(path, data)
+        decoder = Decoder(lambda text: seen(path.parent / text))
+        record = decoder.table(Record, data, "the record")
+        if record.request.name is None:
+            raise CodecError("the record", " has no 'name'")
     except OSError as error:
         raise BadDescriptionError(
             error.strerror or str(error), file=str(path), hint="generate it first (ikgen build)"
         ) from None
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        what = f"lacks {error}" if isinstance(error, KeyError) else str(error)
+    except (ValueError, CodecError) as error:
         raise BadDescriptionError(
-            f"not a record of ikgen: {what}", file=str(path), hint="generate the outputs again"
+            f"not a record of ikgen: {error}", file=str(path), hint="generate the outputs again"
         ) from None
-
-
-def _record(path: Path, data: Mapping[str, Any]) -> Record:
-    folder = path.parent
-    return Record(
-        path=path,
-        version=str(data["version"]),
-        name=str(data["name"]),
-        robot=seen(folder / data["robot"]),
-        source_sha256=str(data["source_sha256"]),
-        base=str(data["base"]),
-        tip=str(data["tip"]),
-        task=str(data["task"]),
-        free=dict(data["free"]),
-        lock={name: float(value) for name, value in data["lock"].items()},
-        args=dict(data["args"]),
-        package_paths=tuple(seen(folder / p) for p in data["package_paths"]),
-        asked=dict(data["asked"]),
-        emit=tuple(data["emit"]),
-        verified=bool(data["verified"]),
-        joints=tuple(data["joints"]),
-        max_solutions=int(data["max_solutions"]),
-        inputs={name: str(value) for name, value in data["inputs"].items()},
-        files=dict(data["files"]),
-    )
+    return replace(record, path=path)
 
 
 def seen(path: Path) -> Path:

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ikgen.errors import UnsolvedChainError
-from ikgen.generation.pipeline import Progress
+from ikgen.generation.progress import Progress
 
 if TYPE_CHECKING:
+    from ikgen.emit.derivation import Unsolved
     from ikgen.generation.advice import Attempt
-    from ikgen.generation.pipeline import Unsolved
+    from ikgen.generation.request import Request
     from ikgen.model.dh import DHChain
     from ikgen.tasks import Task
 
-__all__ = ["helped", "remedies"]
+__all__ = ["advised", "helped", "remedies"]
 
 ATTEMPTS = 20
 """No more derivations than these are tried. Their number counts, not the time they take: the hint is part
@@ -26,22 +28,34 @@ _ENOUGH = 3
 _MOST_HELD = 2
 
 
-def helped(error: UnsolvedChainError, progress: Progress) -> UnsolvedChainError:
-    """The error with a hint that was tried; as it is where it does not say how far it came."""
+@contextmanager
+def advised(request: Request, progress: Progress) -> Iterator[None]:
+    """Give the error of an arm without a closed form a hint that was tried."""
+    try:
+        yield
+    except UnsolvedChainError as error:
+        raise helped(error, request, progress) from None
+
+
+def helped(error: UnsolvedChainError, request: Request, progress: Progress) -> UnsolvedChainError:
+    """The error with a hint that was tried, the command to type first; as it is where it does not say how
+    far it came."""
     if error.unsolved is None:
         return error
     tried = remedies(error.unsolved, progress)
     found = [a for a in tried if a.closed]
     if found:
         words = "; ".join(f"{a.options} (at most {a.max_solutions} solutions)" for a in found)
-        hint = f"closed forms were found with: {words}"
+        hint = f"{found[0].asked(request).command()}\nclosed forms were found with: {words}"
         if any(a.free for a in found):
             hint += "; --lock JOINT=VALUE instead of --free makes the joint a constant"
     elif tried:
-        hint = f"{error.hint}; tried without success: {_listed(tried)}"
+        hint = f"{error.hint}\ntried without success: {_listed(tried)}"
     else:
         return error
-    return UnsolvedChainError(error.message, unsolved=error.unsolved, hint=hint)
+    return UnsolvedChainError(
+        error.message, unsolved=error.unsolved, details=error.details, hint=hint
+    )
 
 
 def _listed(tried: list[Attempt]) -> str:

@@ -1,4 +1,4 @@
-"""The kinematic family of a chain, from its exact DH rows.
+"""The kinematic family of a chain, from its DH rows; rounded constants count as what was meant.
 
 Axes are numbered from 1 and compared with their neighbours. The families are those whose closed
 forms differ: three axes that meet in a point (Pieper, The Kinematics of Manipulators under Computer
@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from ikgen.model.dh import DHChain, DHRow
+from ikgen.model.dh import DHChain, DHRow, Length
 
 __all__ = [
     "GeometryClass",
@@ -47,14 +47,19 @@ def parallel_to_previous(row: DHRow) -> bool:
     return row.alpha.exact == 0
 
 
+def _vanishes(length: Length) -> bool:
+    """Whether a length is zero, or was meant to be."""
+    return length.name is None or length.stray
+
+
 def same_line_as_previous(row: DHRow) -> bool:
     """Whether the row's axis is the previous row's line (alpha = a = 0)."""
-    return parallel_to_previous(row) and row.a.name is None
+    return parallel_to_previous(row) and _vanishes(row.a)
 
 
 def meets_previous(row: DHRow) -> bool:
     """Whether the row's axis meets the previous row's in one point (a = 0, alpha not 0)."""
-    return not parallel_to_previous(row) and row.a.name is None
+    return not parallel_to_previous(row) and _vanishes(row.a)
 
 
 def classify(dh: DHChain) -> GeometryClass:
@@ -69,7 +74,7 @@ def classify(dh: DHChain) -> GeometryClass:
         kinds=kinds,
         parallel_pairs=tuple(k for k in pairs if parallel_to_previous(rows[k])),
         intersecting_pairs=tuple(k for k in pairs if meets_previous(rows[k])),
-        perpendicular_pairs=tuple(k for k in pairs if abs(rows[k].alpha.exact or 0) == _HALF),
+        perpendicular_pairs=tuple(k for k in pairs if _perpendicular(rows[k])),
         same_line_pairs=tuple(k for k in pairs if same_line_as_previous(rows[k])),
         spherical_triples=tuple(k for k in turning if _spherical(rows[k : k + 2])),
         parallel_triples=tuple(
@@ -80,9 +85,15 @@ def classify(dh: DHChain) -> GeometryClass:
     return replace(facts, name=name, words=_words(name, facts))
 
 
+def _perpendicular(row: DHRow) -> bool:
+    """Whether the row's axis is at a right angle to the previous row's, or was meant to be."""
+    alpha = row.alpha.exact if row.alpha.exact is not None else row.alpha.near
+    return alpha is not None and abs(alpha) == _HALF
+
+
 def _spherical(rows: tuple[DHRow, ...]) -> bool:
     """Whether the axes of two rows and the one before meet in one point."""
-    return all(meets_previous(row) for row in rows) and rows[0].d.name is None
+    return all(meets_previous(row) for row in rows) and _vanishes(rows[0].d)
 
 
 def _family(facts: GeometryClass) -> str:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from ikgen.kinematics.forward import dh_forward, file_forward, pose_difference, row_constant
-from ikgen.kinematics.rigid import inverse
+from ikgen.kinematics.rigid import inverse, read_only, z_motion
 from ikgen.model.chain import Chain
 from ikgen.model.dh import DHChain, DHRow
 from ikgen.model.joint_tree import Matrix
 
-__all__ = ["file_frames", "largest_deviation", "random_configurations"]
+__all__ = ["file_frames", "frames_beside", "largest_deviation", "random_configurations"]
 
 _SAMPLES = 64
 _SEED = 20180513
@@ -32,21 +32,48 @@ def file_frames(
     B_i^-1) T(0)`, the product of exponentials (Lynch and Park, Modern Robotics, section 4.1), is
     then regrouped.
     """
+    axes, T = [], np.eye(4)
+    for axis, sign in zip(chain.axes, signs, strict=True):
+        T = T @ axis.T_prev_axis
+        axes.append((T, sign * axis.axis))
+    return _frames(axes, T @ chain.T_last_tip, rows, offsets, ends)
+
+
+def frames_beside(
+    dh: DHChain, rows: tuple[DHRow, ...], ends: tuple[Matrix, Matrix]
+) -> tuple[Matrix, ...]:
+    """The constants of the file's chain of `dh`, written with the variables of other `rows`."""
+    axes, T, z = [], np.eye(4), np.array([0.0, 0.0, 1.0])
+    for F, row in zip(dh.file_frames, dh.rows, strict=False):
+        T = T @ F
+        axes.append((T, z))
+        T = T @ z_motion(row.revolute, row.offset.value)
+    offsets = tuple(row.offset.value for row in rows)
+    return _frames(axes, T @ dh.file_frames[-1], rows, offsets, ends)
+
+
+def _frames(
+    axes: list[tuple[Matrix, Matrix]],
+    T_home: Matrix,
+    rows: tuple[DHRow, ...],
+    offsets: tuple[float, ...],
+    ends: tuple[Matrix, Matrix],
+) -> tuple[Matrix, ...]:
+    """The constants between the `axes` (frame and direction in it), the tip being at `T_home`."""
     X_base, X_tip = ends
     nominal = [X_base, *(row_constant(row) for row in rows[1:]), X_tip]
     F: list[Matrix] = []
-    pending, T_axis, T_dh = np.eye(4), np.eye(4), X_base
-    for i, axis in enumerate(chain.axes):
-        T_axis = T_axis @ axis.T_prev_axis
+    pending, T_dh = np.eye(4), X_base
+    for i, ((T_axis, axis), row) in enumerate(zip(axes, rows, strict=True)):
         if i:
-            T_dh = T_dh @ row_constant(rows[i])
-        home = _motion(rows[i].revolute, offsets[i])
+            T_dh = T_dh @ row_constant(row)
+        home = z_motion(row.revolute, offsets[i])
         T_dh = T_dh @ home
-        B = _nearest_frame(T_dh, T_axis, signs[i] * axis.axis, rows[i].revolute)
+        B = _nearest_frame(T_dh, T_axis, axis, row.revolute)
         F.append(pending @ B @ inverse(home))
         pending = inverse(B)
-    F.append(pending @ T_axis @ chain.T_last_tip)
-    return tuple(_read_only(_clean(f, exact)) for f, exact in zip(F, nominal, strict=True))
+    F.append(pending @ T_home)
+    return tuple(read_only(_clean(f, exact)) for f, exact in zip(F, nominal, strict=True))
 
 
 def _nearest_frame(T_dh: Matrix, T_axis: Matrix, axis: Matrix, revolute: bool) -> Matrix:
@@ -83,17 +110,6 @@ def random_configurations(dh: DHChain, count: int = _SAMPLES, seed: int = _SEED)
     return rng.uniform(low, high, (count, dh.dof))
 
 
-def _motion(revolute: bool, value: float) -> Matrix:
-    T = np.eye(4)
-    if revolute:
-        T[0, 0] = T[1, 1] = np.cos(value)
-        T[1, 0] = np.sin(value)
-        T[0, 1] = -T[1, 0]
-    else:
-        T[2, 3] = value
-    return T
-
-
 def _clean(F: Matrix, nominal: Matrix) -> Matrix:
     """The exact constant where `F` is that to round-off, else `F` without noise around 0 and ±1."""
     if float(np.max(np.abs(F - nominal))) < _SAME:
@@ -103,8 +119,3 @@ def _clean(F: Matrix, nominal: Matrix) -> Matrix:
     near = (np.abs(F - whole) < _CLEAN) & (np.abs(whole) <= 1.0)
     cleaned[near] = whole[near]
     return np.asarray(cleaned + 0.0)
-
-
-def _read_only(matrix: Matrix) -> Matrix:
-    matrix.setflags(write=False)
-    return matrix

@@ -13,12 +13,12 @@ import numpy as np
 
 from ikgen.kinematics.links import FLIP, Tolerance, align_z
 from ikgen.kinematics.offsets import Offsets
-from ikgen.kinematics.rigid import inverse
-from ikgen.kinematics.snapping import rotation_z, snap_angle, wrap_angle
+from ikgen.kinematics.rigid import inverse, rotation_z
+from ikgen.kinematics.snapping import snap_angle, wrap_angle
 from ikgen.model.chain import Chain
 from ikgen.model.joint_tree import Matrix
 
-__all__ = ["base_points_down", "end_transforms"]
+__all__ = ["base_points_down", "end_transforms", "tidy_pose"]
 
 
 def base_points_down(chain: Chain, tolerance: Tolerance) -> bool:
@@ -47,7 +47,7 @@ def end_transforms(
     turn = _turn(tip[:3, :3].T, theta[-1], prismatic[1], tolerance)
     X_tip = _screw(turn, offsets.tip_lift) @ tip
     theta[-1] = wrap_angle(theta[-1] - turn)
-    return _tidy_pose(X_base), _tidy_pose(X_tip), tuple(theta)
+    return tidy_pose(X_base), tidy_pose(X_tip), tuple(theta)
 
 
 def _turn(R: Matrix, theta: float, prismatic: bool, tolerance: Tolerance) -> float:
@@ -84,7 +84,7 @@ def _screw(angle: float, lift: float) -> Matrix:
     return T
 
 
-def _tidy_pose(T: Matrix) -> Matrix:
+def tidy_pose(T: Matrix) -> Matrix:
     """`T` without round-off around 0 and ±1."""
     whole = np.round(T)
     near = (np.abs(T - whole) < 2e-15) & (np.abs(whole) <= 1.0)

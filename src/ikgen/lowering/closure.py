@@ -13,6 +13,9 @@ CHECK_TOLERANCE = 1e-6
 """Largest error (m over the arm's size, rad) of a row that may become a solution: near singularities
 the closed form loses digits, which Newton steps win back."""
 
+_WIDER = 1000.0
+"""The same factor times as large where rounded constants keep a continuum from being one."""
+
 
 def require_closure(work: Placement) -> None:
     """A row is returned only if it reproduces the pose: the cheapest split is compared."""
@@ -37,8 +40,11 @@ def require_closure(work: Placement) -> None:
 
 def _bounded(work: Placement, parts: list[Expr], tolerance: float) -> None:
     if parts:
-        total = work.g.dot(parts, parts)
-        work.require(work.g.binary("gt", work.g.const(tolerance**2), total))
+        g, rough = work.g, work.rough
+        total, most = g.dot(parts, parts), g.const(tolerance**2)
+        if rough is not None:
+            most = g.select(rough, g.const((_WIDER * tolerance) ** 2), most)
+        work.require(g.binary("gt", most, total))
         work.residuals.append(total)
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import Variable
-from ikgen.forms.lowered_form import ROUNDED, Divisor, LoweredForm
+from ikgen.forms.lowered_form import ROUNDED, Divisor, LoweredForm, natural_size
 from ikgen.lowering.placement import Placement
 from ikgen.lowering.program_inputs import seed_values
 
@@ -78,6 +78,9 @@ def choose_form(
     if isinstance(free, Expr):
         work.place(free)
         work.singular.append(free)
+    for form in forms:
+        if form.under is not None:
+            work.note_fold(form.under[0], natural_size(form.under[1]))
     return values
 
 

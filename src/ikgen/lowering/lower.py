@@ -10,9 +10,12 @@ from ikgen.forms.form import Form
 from ikgen.forms.lowered_form import LoweredForm, LoweredRoutine
 from ikgen.lowering.closure import require_closure
 from ikgen.lowering.fallbacks import choose_form
+from ikgen.lowering.joint_values import first_row, joint_value
 from ikgen.lowering.placement import LoweredLevel, Placement, identifier
-from ikgen.lowering.program_inputs import bind_pose, bind_seeds, seed_values
+from ikgen.lowering.program_inputs import bind_joints, bind_pose, seed_values
 from ikgen.lowering.serialize import serialize
+from ikgen.program.inputs import HeldValue
+from ikgen.program.liveness import trimmed
 from ikgen.program.statements import Comment, Program
 from ikgen.solver.choice import Step
 from ikgen.solver.solution_graph import SolutionGraph
@@ -28,12 +31,13 @@ def lower(graph: SolutionGraph, *, model_error: float = 0.0) -> Program:
     """
     work = Placement(graph, model_error)
     bind_pose(work)
-    bind_seeds(work)
+    bind_joints(work)
     for index, step in enumerate(graph.steps):
         _step(work, index, step)
-    outputs = _outputs(work)
+    values = _joint_values(work)
     require_closure(work)
-    return serialize(work, outputs)
+    _place_values(work, values)
+    return trimmed(serialize(work, values))
 
 
 def _step(work: Placement, index: int, step: Step) -> None:
@@ -56,6 +60,8 @@ def _step(work: Placement, index: int, step: Step) -> None:
     work.place(Comment(text))
     alternatives = [one for one in lowered if isinstance(one, LoweredForm)]
     work.define(v, choose_form(work, v, alternatives, sigma))
+    if sigma is not g.one:
+        work.levels[-1].solved = work.atoms_of(v)
     if not all(form.on_circle for form in forms):
         work.norms.append(_excess(work, v))
 
@@ -96,21 +102,33 @@ def _or_seed(work: Placement, v: Variable, form: Form, lowered: LoweredRoutine) 
     return tuple(g.select(divisor.regular, mine, other) for mine, other in both)
 
 
-def _outputs(work: Placement) -> list[tuple[int, tuple[Expr, ...]]]:
-    """Every joint's pair or distance."""
-    out: list[tuple[int, tuple[Expr, ...]]] = []
+def _joint_values(work: Placement) -> list[tuple[int, Expr]]:
+    """Every joint's value, base to tip; what they are made of is placed."""
+    out: list[tuple[int, Expr]] = []
     work.place(Comment("joint variables"))
     for j in range(work.dh.dof):
-        v = work.session.joint_variable(j)
+        if j in work.held:
+            out.append((j, work.atom(HeldValue(j).name)))
+            continue
+        v = work.knowledge.joint_variable(j)
         if v.kind == "angle":
-            values: tuple[Expr, ...] | None = work.knowledge.known_pair(v.key)
-            assert values is not None
+            variable: tuple[Expr, ...] | None = work.knowledge.known_pair(v.key)
+            assert variable is not None
         else:
-            values = (work.knowledge.variables.distance(j),)
-        for e in values:
+            variable = (work.knowledge.variables.distance(j),)
+        for e in variable:
             work.place(e)
-        out.append((j, values))
+        out.append((j, joint_value(work.g, first_row(work.dh, j), variable)))
     return out
+
+
+def _place_values(work: Placement, values: list[tuple[int, Expr]]) -> None:
+    """After the guards: a branch without a solution needs none of them."""
+    work.place(Comment("joint values"))
+    for j, e in values:
+        if j not in work.held:
+            work.names.setdefault(e.id, f"q{j + 1}")
+            work.place(e)
 
 
 def _labels(step: Step) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,10 +12,15 @@ from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import Variable
 from ikgen.equations.products import ENTRY_NAMES
 from ikgen.forms.lowered_form import Tolerances
-from ikgen.program.statements import Comment
+from ikgen.program.inputs import Input
+from ikgen.program.statements import Comment, Let
 from ikgen.solver.solution_graph import SolutionGraph
 
 __all__ = ["LoweredLevel", "Placement", "Requirement", "identifier"]
+
+
+FOLDED = 1e-6
+"""Relative size of what is under a square root below which its root has lost too many digits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +37,7 @@ class LoweredLevel:
     branches: int
     sigma: Expr | None = None
     call: tuple[str, tuple[Expr, ...], tuple[Expr, ...]] | None = None
+    solved: tuple[Expr, ...] = ()
     items: list[Expr | Comment | Requirement] = field(default_factory=list)
 
 
@@ -43,35 +49,56 @@ class Placement:
     """
 
     def __init__(self, graph: SolutionGraph, model_error: float) -> None:
-        self.session = graph.session
-        self.system = graph.session.system
-        self.dh = self.system.dh
-        self.g: ExpressionGraph = self.system.graph
-        self.knowledge = graph.knowledge
+        self.dh, self.held, self.probes = graph.dh, graph.held, graph.probes
+        self.knowledge = graph.workspace()
+        self.system = self.knowledge.equations
+        self.g: ExpressionGraph = self.knowledge.graph
         self.model_error = model_error
-        self.tolerances = Tolerances.for_model_error(model_error)
+        self._tolerances = Tolerances.for_model_error(model_error)
         self.residuals: list[Expr] = []
         self.norms: list[Expr] = []
+        self.folds: list[Expr] = []
         self.levels = [LoweredLevel(1)]
         self.definition: dict[int, Expr] = dict(self.knowledge.binding)
         self.level_of: dict[int, int] = {}
         self.placed: set[int] = set()
         self.names: dict[int, str] = {}
         self.singular: list[Expr] = []
-        self.inputs: list[str] = []
+        self.inputs: list[Input] = []
+        self.prelude: list[Let] = []
+
+    @property
+    def rough(self) -> Expr | None:
+        """Condition that an unknown solved so far has lost digits. With constants as the file rounds them
+        a continuum's place is taken by solutions that few digits tell apart, and two of them meet where
+        it would be. None for exact constants."""
+        if not self.probes.kept:
+            return None
+        total: Expr | None = None
+        for flag in (*self.singular, *self.folds):
+            total = flag if total is None else self.g.binary("or", total, flag)
+        return total
+
+    def note_fold(self, under: Expr, size: float) -> None:
+        """A square root was taken of `under`: of few digits where that is small beside `size`."""
+        if self.probes.kept:
+            self.folds.append(self.g.binary("gt", self.g.const(FOLDED * size), under))
+
+    @property
+    def tolerances(self) -> Tolerances:
+        """Those of the next unknown."""
+        return replace(self._tolerances, rough=self.rough)
 
     @property
     def whole_pose(self) -> bool:
         """Whether every entry of the pose is read; then any split compares it."""
         return self.system.readable == frozenset(ENTRY_NAMES)
 
-    def input(self, name: str, probe: NDArray[np.float64] | None = None) -> Expr:
-        """An atom that the caller hands over; `probe` are its values at the probes."""
+    def atom(self, name: str, probe: NDArray[np.float64] | None = None) -> Expr:
+        """An atom of a name that is given; `probe` are its values at the probes."""
         values = np.zeros(self.g.probes) if probe is None else probe
         node = self.g.atom("input", name, values, unknown=False)
         self.names[node.id] = name
-        if name not in self.inputs:
-            self.inputs.append(name)
         return node
 
     def level(self, node: Expr) -> int:
@@ -120,18 +147,20 @@ class Placement:
 
     def define(self, v: Variable, values: tuple[Expr, ...]) -> None:
         """Give a solved variable its cosine and sine, or its distance."""
-        variables = self.knowledge.variables
-        if v.kind == "angle":
-            atoms: tuple[Expr, ...] = variables.pair(v.key)
-            names = tuple(f"{x}{v.text.split('_', 1)[1]}" for x in "cs")
-        else:
-            assert v.joint is not None
-            atoms = (variables.distance(v.joint),)
-            names = (f"d{v.joint + 1}",)
+        atoms = self.atoms_of(v)
+        letters = "cs" if v.kind == "angle" else "d"
+        names = [f"{x}{v.text.split('_', 1)[1]}" for x in letters]
         for atom, name, value in zip(atoms, names, values, strict=True):
             self.definition[atom.id] = value
             self.names[atom.id] = identifier(name)
             self.place(atom)
+
+    def atoms_of(self, v: Variable) -> tuple[Expr, ...]:
+        """The atoms of a variable: its cosine and sine, or its distance."""
+        if v.kind == "angle":
+            return self.knowledge.variables.pair(v.key)
+        assert v.joint is not None
+        return (self.knowledge.variables.distance(v.joint),)
 
     def price(self, roots: list[Expr]) -> float:
         """Operations that the roots need beyond what is placed, each as often as it has branches."""

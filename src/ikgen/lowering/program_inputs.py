@@ -2,25 +2,30 @@
 
 from __future__ import annotations
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ikgen.algebra.expression import Expr
 from ikgen.equations.knowledge import Variable
 from ikgen.equations.symbolic_transforms import Rigid, constant, inverse, multiply
+from ikgen.lowering.joint_values import first_row, variable_lets
 from ikgen.lowering.placement import Placement
+from ikgen.program.inputs import HeldValue, PoseEntry, SeedValue
 from ikgen.program.statements import Comment
 
-__all__ = ["bind_pose", "bind_seeds", "seed_values"]
+__all__ = ["bind_joints", "bind_pose", "seed_values"]
 
 
 def bind_pose(work: Placement) -> None:
     """The pose in DH frames out of the given one: `X_base^-1 T X_tip^-1`."""
     g = work.g
     base, tip = constant(g, work.dh.X_base), constant(g, work.dh.X_tip)
-    pose = work.session.probes.pose
+    pose = work.probes.pose
     raw = work.dh.X_base @ pose
     if work.whole_pose:
         raw = raw @ work.dh.X_tip
-    rows = tuple(tuple(work.input(f"t{i}{j}", raw[:, i, j]) for j in range(3)) for i in range(3))
-    p = tuple(work.input(f"t{i}3", raw[:, i, 3]) for i in range(3))
+    rows = tuple(tuple(_entry(work, i, j, raw) for j in range(3)) for i in range(3))
+    p = tuple(_entry(work, i, 3, raw) for i in range(3))
     T: Rigid = multiply(g, inverse(g, base), Rigid(rows, p))
     if work.whole_pose:
         T = multiply(g, T, inverse(g, tip))
@@ -32,24 +37,34 @@ def bind_pose(work: Placement) -> None:
         work.definition[target.p[i].id] = T.p[i]
 
 
-def bind_seeds(work: Placement) -> None:
+def _entry(work: Placement, i: int, j: int, raw: NDArray[np.float64]) -> Expr:
+    entry = PoseEntry(i, j)
+    work.inputs.append(entry)
+    return work.atom(entry.name, raw[:, i, j])
+
+
+def bind_joints(work: Placement) -> None:
     """Values that joints take where a pose leaves them free, and those of held joints."""
     for j in range(work.dh.dof):
-        if work.session.joint_variable(j).kind == "angle":
-            work.input(f"seed_c{j + 1}")
-            work.input(f"seed_s{j + 1}")
-        else:
-            work.input(f"seed_d{j + 1}")
-    for j in work.session.held:
-        v = work.session.joint_variable(j)
+        row = first_row(work.dh, j)
+        seed = SeedValue(j)
+        names = (f"seed_c{j + 1}", f"seed_s{j + 1}") if row.revolute else (f"seed_d{j + 1}",)
+        for name in names:
+            work.atom(name)
+        work.inputs.append(seed)
+        work.prelude += variable_lets(row, seed.name, names)
+    for j in work.held:
+        v = work.knowledge.joint_variable(j)
+        held = HeldValue(j)
         if v.kind == "angle":
-            c, s = work.knowledge.variables.pair(v.key)
-            work.names[c.id], work.names[s.id] = f"c{j + 1}", f"s{j + 1}"
-            work.inputs += [f"c{j + 1}", f"s{j + 1}"]
+            atoms: tuple[Expr, ...] = work.knowledge.variables.pair(v.key)
+            names = (f"c{j + 1}", f"s{j + 1}")
         else:
-            d = work.knowledge.variables.distance(j)
-            work.names[d.id] = f"d{j + 1}"
-            work.inputs.append(f"d{j + 1}")
+            atoms, names = (work.knowledge.variables.distance(j),), (f"d{j + 1}",)
+        for atom, name in zip(atoms, names, strict=True):
+            work.names[atom.id] = name
+        work.inputs.append(held)
+        work.prelude += variable_lets(first_row(work.dh, j), held.name, names)
 
 
 def seed_values(work: Placement, variable: Variable) -> tuple[Expr, ...]:
@@ -57,10 +72,10 @@ def seed_values(work: Placement, variable: Variable) -> tuple[Expr, ...]:
     g = work.g
     if variable.kind == "dist":
         assert variable.joint is not None
-        return (work.input(f"seed_d{variable.joint + 1}"),)
+        return (work.atom(f"seed_d{variable.joint + 1}"),)
     c, s = g.one, g.zero
     for j, k in enumerate(variable.key):
-        cj, sj = (work.input(f"seed_{x}{j + 1}") for x in "cs") if k else (g.one, g.zero)
+        cj, sj = (work.atom(f"seed_{x}{j + 1}") for x in "cs") if k else (g.one, g.zero)
         for _ in range(abs(k)):
             sj_signed = sj if k > 0 else g.neg(sj)
             c, s = (

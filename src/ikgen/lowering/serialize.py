@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections import Counter
 
 from ikgen.algebra.expression import Expr
+from ikgen.lowering.frames import file_frames
 from ikgen.lowering.placement import Placement, Requirement
 from ikgen.program.ops import BOOLEAN, Op, Operand
 from ikgen.program.statements import (
     Call,
     Comment,
+    Constant,
     JointOutput,
     Let,
     Level,
@@ -25,7 +27,7 @@ LONGEST_INLINE = 9
 
 
 class _Serializer:
-    def __init__(self, work: Placement, outputs: list[tuple[int, tuple[Expr, ...]]]) -> None:
+    def __init__(self, work: Placement, values: list[tuple[int, Expr]]) -> None:
         self.work = work
         self.uses: Counter[int] = Counter()
         self.names: dict[int, str] = dict(work.names)
@@ -37,11 +39,11 @@ class _Serializer:
         self._temporaries = 0
         self._live: set[int] = set()
         self._written: set[int] = set()
-        self._mark(outputs)
+        self._mark(values)
 
     # -- which nodes are needed, and how often ---------------------------------------------------
 
-    def _mark(self, outputs: list[tuple[int, tuple[Expr, ...]]]) -> None:
+    def _mark(self, values: list[tuple[int, Expr]]) -> None:
         for index, level in enumerate(self.work.levels):
             if level.call is not None:
                 for e in level.call[1]:
@@ -50,9 +52,8 @@ class _Serializer:
                 if isinstance(item, Requirement):
                     self._need(item.condition, index)
         last = len(self.work.levels) - 1
-        for _, values in outputs:
-            for e in values:
-                self._need(e, last, keep=True)
+        for _, e in values:
+            self._need(e, last, keep=True)
         for e in (*self.work.singular, *self.work.residuals):
             self._need(e, last, keep=True)
 
@@ -145,7 +146,8 @@ class _Serializer:
                 tuple(self.name(a) for a in atoms),
             )
         sigma = None if level.sigma is None else self.name(level.sigma)
-        return Level(level.branches, sigma, call, tuple(_without_idle_comments(body)))
+        solved = tuple(self.name(atom) for atom in level.solved)
+        return Level(level.branches, sigma, call, tuple(_without_idle_comments(body)), solved)
 
 
 def _without_idle_comments(body: list[Statement]) -> list[Statement]:
@@ -159,23 +161,22 @@ def _without_idle_comments(body: list[Statement]) -> list[Statement]:
     return out
 
 
-def serialize(work: Placement, outputs: list[tuple[int, tuple[Expr, ...]]]) -> Program:
+def serialize(work: Placement, values: list[tuple[int, Expr]]) -> Program:
     """The Program of a finished lowering."""
-    s = _Serializer(work, outputs)
+    s = _Serializer(work, values)
     levels = tuple(s.level(i) for i in range(len(work.levels)))
-    joints = []
-    for joint, values in outputs:
-        first = s.operand(values[0])
-        second = s.operand(values[1]) if len(values) > 1 else 0.0
-        joints.append(JointOutput(joint, len(values) > 1, first, second))
+    outputs = tuple(JointOutput(j, s.operand(e)) for j, e in values)
     singular = tuple(str(s.operand(e)) for e in work.singular)
+    residuals = tuple(str(s.operand(e)) for e in work.residuals)
     return Program(
         work.dh.robot,
-        tuple(s.parameters.items()),
+        tuple(Constant(name, value) for name, value in s.parameters.items()),
         tuple(s.constants),
         tuple(work.inputs),
+        tuple(work.prelude),
         levels,
-        tuple(joints),
+        outputs,
         singular,
-        tuple(str(s.operand(e)) for e in work.residuals),
+        residuals,
+        file_frames(work.dh),
     )

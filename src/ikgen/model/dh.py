@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -18,12 +19,24 @@ __all__ = ["Angle", "DHChain", "DHRow", "Length", "Snap"]
 @dataclass(frozen=True, slots=True)
 class Angle:
     """A constant angle in rad. `exact` is its multiple of pi where it is a multiple of pi/12, in
-    (-1, 1]; otherwise `name` is its symbol (`alpha_2`). `symbolic` as in `Length`."""
+    (-1, 1]; otherwise `name` is its symbol (`alpha_2`). `symbolic` as in `Length`. `near` is the
+    multiple of pi that an angle with a symbol is the rounded value of, if it is one."""
 
     value: float
     exact: Fraction | None
     name: str | None = None
     symbolic: bool = False
+    near: Fraction | None = None
+
+    @property
+    def rounded(self) -> bool:
+        """Whether it is kept as the file has it although another value was meant."""
+        return self.near is not None
+
+    @property
+    def nominal(self) -> float:
+        """The angle (rad) that was meant: of a rounded one the multiple of pi/12."""
+        return self.value if self.near is None else float(self.near) * math.pi
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,13 +45,24 @@ class Length:
 
     `value` is the signed value (`sign` times the symbol's); two lengths equal up to sign share one
     `name`. Without numbers (a symbolic table) `symbolic` is true and `value` is a random generic number
-    to probe with.
+    to probe with. `stray`: a length that was meant to be zero and is kept as the file has it.
     """
 
     value: float
     name: str | None
     sign: int = 1
     symbolic: bool = False
+    stray: bool = False
+
+    @property
+    def rounded(self) -> bool:
+        """Whether it is kept as the file has it although zero was meant."""
+        return self.stray
+
+    @property
+    def nominal(self) -> float:
+        """The length (m) that was meant: of a stray one zero."""
+        return 0.0 if self.stray else self.value
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,6 +20,7 @@ _BINARY: dict[str, Callable[[float, float], float]] = {
     "div": lambda a, b: a / b,
     "max": max,
     "min": min,
+    "atan2": math.atan2,
     "gt": lambda a, b: float(a > b),
     "and": lambda a, b: float(bool(a) and bool(b)),
     "or": lambda a, b: float(bool(a) or bool(b)),
@@ -28,15 +29,17 @@ _UNARY: dict[str, Callable[[float], float]] = {
     "neg": lambda a: -a,
     "abs": abs,
     "sqrt": lambda a: math.sqrt(max(a, 0.0)),
+    "cos": math.cos,
+    "sin": math.sin,
     "not": lambda a: float(not a),
 }
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One solution: per joint (cosine, sine) or (distance, 0), and whether it is one of a continuum."""
+    """One solution: the joint values (rad or m), and whether it is one of a continuum."""
 
-    values: tuple[tuple[float, float], ...]
+    q: tuple[float, ...]
     singular: bool
 
 
@@ -83,17 +86,15 @@ def run(
     routines: Mapping[str, Routine] | None = None,
 ) -> list[Row]:
     """All rows of a program at given inputs, in the order of its branches."""
-    names = dict(inputs) | dict(program.parameters)
-    for let in program.constants:
+    names = dict(inputs) | {one.name: one.value for one in program.parameters}
+    for let in (*program.constants, *program.prelude):
         names[let.name] = evaluate(let.value, names)
     rows: list[Row] = []
 
     def descend(index: int, names: dict[str, float]) -> None:
         if index == len(program.levels):
-            values = tuple(
-                (evaluate(o.cosine, names), evaluate(o.sine, names)) for o in program.outputs
-            )
-            rows.append(Row(values, any(names[s] for s in program.singular)))
+            q = tuple(evaluate(o.value, names) for o in program.outputs)
+            rows.append(Row(q, any(names[s] for s in program.singular)))
             return
         for branch in _branches(program.levels[index], names, routines or {}):
             if _body(program.levels[index], branch):

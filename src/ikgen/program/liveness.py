@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from ikgen.program.ops import Operand, operand_names
 from ikgen.program.statements import Let, Level, Program, Require
 
-__all__ = ["live_names", "used_inputs"]
+__all__ = ["live_names", "trimmed"]
 
 
 def _reads(level: Level) -> Iterator[Operand]:
@@ -19,14 +20,12 @@ def _reads(level: Level) -> Iterator[Operand]:
 
 def live_names(program: Program) -> set[str]:
     """Names that a result, a guard or a flag depends on."""
-    value = {
-        s.name: s.value for level in program.levels for s in level.body if isinstance(s, Let)
-    } | {let.name: let.value for let in program.constants}
+    lets = [s for level in program.levels for s in level.body if isinstance(s, Let)]
+    value = {let.name: let.value for let in (*program.constants, *program.prelude, *lets)}
     roots: list[Operand] = [*program.singular, *program.residuals]
     for level in program.levels:
         roots += _reads(level)
-    for output in program.outputs:
-        roots += [output.cosine, output.sine]
+    roots += [output.value for output in program.outputs]
     live: set[str] = set()
     stack = [name for root in roots for name in operand_names(root)]
     while stack:
@@ -37,7 +36,11 @@ def live_names(program: Program) -> set[str]:
     return live
 
 
-def used_inputs(program: Program) -> list[str]:
-    """Inputs that the Program reads, in its order."""
+def trimmed(program: Program) -> Program:
+    """The Program without inputs and values of joints that nothing reads."""
     live = live_names(program)
-    return [name for name in program.inputs if name in live]
+    return replace(
+        program,
+        inputs=tuple(one for one in program.inputs if one.name in live),
+        prelude=tuple(let for let in program.prelude if let.name in live),
+    )

@@ -6,14 +6,17 @@
 | sqrt | sqrt(max(x, 0)): never NaN for finite x |
 | gt | 1 if a > b else 0 |
 | and, or, not | on results of gt |
+| cos, sin | of radians |
+| atan2 | (y, x): the angle of the pair in (-pi, pi], which need not be normalized |
 | select | (condition, then, otherwise): both sides are finite, neither traps |
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-__all__ = ["ARITY", "BOOLEAN", "Op", "Operand", "operand_names"]
+__all__ = ["ARITY", "BOOLEAN", "Op", "Operand", "operand_names", "renamed"]
 
 ARITY = {
     "add": 2,
@@ -23,11 +26,14 @@ ARITY = {
     "max": 2,
     "min": 2,
     "gt": 2,
+    "atan2": 2,
     "and": 2,
     "or": 2,
     "neg": 1,
     "abs": 1,
     "sqrt": 1,
+    "cos": 1,
+    "sin": 1,
     "not": 1,
     "select": 3,
 }
@@ -50,3 +56,10 @@ def operand_names(operand: Operand) -> set[str]:
     if isinstance(operand, Op):
         return set().union(*(operand_names(a) for a in operand.args))
     return {operand} if isinstance(operand, str) else set()
+
+
+def renamed(operand: Operand, names: Mapping[str, str]) -> Operand:
+    """The operand with other names where `names` has them."""
+    if isinstance(operand, Op):
+        return Op(operand.op, tuple(renamed(a, names) for a in operand.args))
+    return names.get(operand, operand) if isinstance(operand, str) else operand

@@ -8,10 +8,17 @@ branches at each level. Both give the same solutions in the same order.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeVar
 
+from ikgen.program.inputs import Input
 from ikgen.program.ops import Operand
 
-__all__ = ["Call", "Comment", "JointOutput", "Let", "Level", "Program", "Require", "Statement"]
+__all__ = [
+    "Call", "Comment", "Constant", "Entries", "JointOutput", "Let", "Level", "Program", "Require",
+    "Statement",
+]  # fmt: skip
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,43 +58,57 @@ class Call:
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """One nesting level: `branches` alternatives, told apart by `sigma` = +1, -1 or by a `call`."""
+    """One nesting level: `branches` alternatives, told apart by `sigma` = +1, -1 or by a `call`; `solved`
+    are the names of what sigma decides (a cosine and sine, or a distance): equal where branches meet."""
 
     branches: int
     sigma: str | None
     call: Call | None
     body: tuple[Statement, ...]
+    solved: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """A named number of the arm: a length (m), or the cosine or sine of an angle."""
+
+    name: str
+    value: float
 
 
 @dataclass(frozen=True, slots=True)
 class JointOutput:
-    """A joint's DH variable: its cosine and sine, or its distance (`sine` is 0 then)."""
+    """A joint's value (rad or m, as the file counts it); revolute ones in (-pi, pi]."""
 
     joint: int
-    revolute: bool
-    cosine: Operand
-    sine: Operand
+    value: Operand
+
+
+Entries = tuple[tuple[Operand, ...], ...]
+"""Rotation and position of a frame: three rows of four operands, constants of the arm."""
 
 
 @dataclass(frozen=True, slots=True)
 class Program:
     """Closed-form solver of one chain.
 
-    `parameters` are the arm's constants, `constants` what follows from them alone. `inputs` are the
-    raw pose entries `t00` ... `t23`, then per joint the seed values that a singular pose takes
-    (`seed_c1`, `seed_s1` or `seed_d1`) and the held joints' values (`c7`, `s7` or `d7`).
-    `singular` are the conditions under which a solution is one of a continuum; `residuals`
-    the squared errors (m^2, rad^2) with which a row reproduces the pose.
+    `parameters` are the arm's constants, `constants` what follows from them alone. `inputs` are what a
+    caller hands over and the Program reads; `prelude` is what follows from the inputs of joints
+    alone: it runs once a solve. `singular` are the conditions under which a solution is one of a continuum;
+    `residuals` the squared errors (m^2, rad^2) with which a row reproduces the pose. `frames` are the
+    constant transforms of the file's own chain, `T = F_0 M_1 F_1 ... M_n F_n` with M_i the motion of row i.
     """
 
     name: str
-    parameters: tuple[tuple[str, float], ...]
+    parameters: tuple[Constant, ...]
     constants: tuple[Let, ...]
-    inputs: tuple[str, ...]
+    inputs: tuple[Input, ...]
+    prelude: tuple[Let, ...]
     levels: tuple[Level, ...]
     outputs: tuple[JointOutput, ...]
     singular: tuple[str, ...]
     residuals: tuple[str, ...] = ()
+    frames: tuple[Entries, ...] = ()
 
     @property
     def max_solutions(self) -> int:
@@ -96,3 +117,7 @@ class Program:
         for level in self.levels:
             count *= level.branches
         return count
+
+    def inputs_of(self, kind: type[T]) -> tuple[T, ...]:
+        """The inputs of a kind, in order."""
+        return tuple(one for one in self.inputs if isinstance(one, kind))

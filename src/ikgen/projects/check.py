@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,12 +11,17 @@ from ikgen.errors import IkgenError
 from ikgen.projects.config import load_config, named_config
 from ikgen.projects.stale import stale_reasons
 
-__all__ = ["main", "stale_lines"]
+__all__ = ["main", "mending", "stale_lines"]
 
 
 def stale_lines(reasons: Sequence[tuple[str, str]]) -> list[str]:
     """One line an arm, from its name and the reason it is stale (empty: it is not)."""
     return [f"{name}: {'stale: ' + reason if reason else 'up to date'}" for name, reason in reasons]
+
+
+def mending(config: Path) -> str:
+    """The command that brings the arms of a config up to date."""
+    return f"ikgen build {shlex.quote(config.as_posix())}"
 
 
 def main(configs: Sequence[str]) -> int:
@@ -30,10 +36,11 @@ def main(configs: Sequence[str]) -> int:
                 (arm.name, reason) for arm, reason in zip(arms, stale_reasons(arms), strict=True)
             ]
         except IkgenError as error:
-            print(f"error: {error.message}", f"hint: {error.hint}", sep="\n", file=sys.stderr)
+            hint = [f"hint: {error.hint}"] if error.hint else []
+            print(f"error: {error.message}", *hint, sep="\n", file=sys.stderr)
             return error.exit_code
         print(*stale_lines(reasons), sep="\n")
         if any(reason for _, reason in reasons):
-            print(f"hint: ikgen build {path}", file=sys.stderr)
+            print(f"hint: {mending(path)}", file=sys.stderr)
             code = 1
     return code

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import os
 import traceback
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ikgen.errors import IkgenError
-from ikgen.generation.generation import Outputs
-from ikgen.generation.pipeline import Request
+from ikgen.generation.progress import Progress, silent
 from ikgen.generation.record import read_record
 from ikgen.projects.config import ArmConfig
 from ikgen.projects.stale import stale_reasons
@@ -19,7 +18,7 @@ from ikgen.projects.stale import stale_reasons
 if TYPE_CHECKING:
     from concurrent.futures import Executor, Future
 
-__all__ = ["Outcome", "build_arms", "outputs_of", "request_of_arm"]
+__all__ = ["Outcome", "build_arms"]
 
 INTERNAL_ERROR = 70
 
@@ -39,33 +38,13 @@ class Outcome:
     trace: str = ""
 
 
-def request_of_arm(arm: ArmConfig) -> Request:
-    """What an arm of a config asks for."""
-    return Request(
-        robot=arm.robot,
-        base=arm.base,
-        tip=arm.tip,
-        task=arm.task,
-        free=tuple(arm.free.items()),
-        locked=arm.lock,
-        arguments=arm.args,
-        package_paths=arm.package_paths,
-        name=arm.name,
-    )
-
-
-def outputs_of(arm: ArmConfig, *, verify: bool) -> Outputs:
-    """What an arm of a config writes."""
-    return Outputs(emit=arm.emit, out=arm.out, samples=arm.samples, verify=verify)
-
-
 def build_arms(
     arms: Sequence[ArmConfig],
     *,
     force: bool = False,
     verify: bool = True,
     jobs: int | None = None,
-    progress: Callable[[str, str], None] = lambda stage, detail: None,
+    progress: Progress = silent,
 ) -> Iterator[Outcome]:
     """Bring every arm up to date; outcomes in the order of the config."""
     reasons = [
@@ -127,11 +106,12 @@ def _killed(name: str, reason: str) -> Outcome:
 
 def _build_one(job: tuple[ArmConfig, str, bool]) -> Outcome:
     """Generate one arm; errors become part of the outcome, since they must cross processes."""
-    from ikgen.generation.generation import generate
+    from ikgen.generation.generate import generate
 
     arm, reason, verify = job
+    outputs = replace(arm.outputs, verify=verify, only=True, force=True)  # the config's alone
     try:
-        made = generate(request_of_arm(arm), outputs_of(arm, verify=verify))
+        made = generate(arm.request, outputs)
     except IkgenError as error:
         code = error.exit_code
         return Outcome(arm.name, reason, (), 0.0, error.message, error.hint, code)
@@ -157,6 +137,7 @@ def _internal(name: str, reason: str, error: Exception) -> Outcome:
 
 
 def _files(arm: ArmConfig) -> tuple[Path, ...]:
-    """The files of a fresh arm, from its record."""
-    record = read_record(arm.record_path)
-    return (*(record.folder / name for name in record.files), arm.record_path)
+    """The files of a fresh arm, from its records."""
+    records = [read_record(path) for path in arm.records]
+    outputs = (record.folder / name for record in records for name in record.files)
+    return (*outputs, *arm.records)

@@ -41,6 +41,6 @@ class Packages:
 
     def _finder(self, record: Record) -> PackageFinder:
         """The finder that the description was read with, by all that its answers depend on."""
-        robot = record.robot.resolve()
-        paths = tuple(path.resolve() for path in record.package_paths)
+        robot = record.request.robot.resolve()
+        paths = tuple(path.resolve() for path in record.request.package_paths)
         return self.finders.setdefault((robot.parent, *paths), PackageFinder(robot, paths))

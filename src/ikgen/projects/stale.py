@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from pathlib import Path
+from typing import Any
 
 from ikgen import __version__
 from ikgen.errors import BadDescriptionError
+from ikgen.generation.codec import encode, entries_of
 from ikgen.generation.record import Record, digest, read_record, seen
+from ikgen.generation.request import Request
 from ikgen.projects.config import ArmConfig
 from ikgen.projects.recorded_inputs import Packages
 
@@ -27,36 +29,41 @@ def stale_reasons(arms: Sequence[ArmConfig], *, verify: bool = True) -> list[str
 def why_stale(arm: ArmConfig, packages: Packages | None = None, *, verify: bool = True) -> str:
     """The reason to generate the arm again; empty where its outputs are fresh. With `verify` outputs
     that were never verified are not."""
-    if not arm.record_path.is_file():
+    paths = arm.records
+    if not paths[0].is_file():
         return "not generated yet"
     try:
-        record = read_record(arm.record_path)
+        records = [read_record(path) for path in paths]
     except BadDescriptionError as error:
         return error.message
+    reasons = (_outdated(arm, record, packages or Packages()) for record in records)
+    found = next(filter(None, reasons), "") or _changed_outputs(arm, records)
+    if not found and verify and not all(record.verified for record in records):
+        return "not verified yet"
+    return found
+
+
+def _outdated(arm: ArmConfig, record: Record, packages: Packages) -> str:
+    """What differs of a record from what it would be."""
     if record.version != __version__:
         return f"made by ikgen {record.version}; this is {__version__}"
-    changed = _changed_options(arm, record) or _changed_files(record, packages or Packages())
-    return changed or ("not verified yet" if verify and not record.verified else "")
+    return _changed_options(arm.request, record.given) or _changed_files(record, packages)
 
 
-def _changed_options(arm: ArmConfig, record: Record) -> str:
+def _changed_options(now: Request, was: Request) -> str:
     """The first option that differs from the one recorded."""
-    paths = [_resolved(path) for path in arm.package_paths]
-    pairs = {
-        "robot": (_resolved(record.robot), _resolved(arm.robot)),
-        "base": (record.asked.get("base"), arm.base),
-        "tip": (record.asked.get("tip"), arm.tip),
-        "task": (record.asked.get("task"), arm.task),
-        "args": (dict(record.args), dict(arm.args)),
-        "free": (dict(record.free), dict(arm.free)),
-        "lock": (dict(record.lock), dict(arm.lock)),
-        "package_paths": ([_resolved(path) for path in record.package_paths], paths),
-        "emit": (list(record.emit), list(arm.emit)),
-    }
-    for name, (was, now) in pairs.items():
-        if was != now:
-            return f"'{name}' was {_shown(was)}, is {_shown(now)}"
+    for name in entries_of(Request):
+        pair = [encode(getattr(request, name), os.path.realpath) for request in (was, now)]
+        if pair[0] != pair[1]:
+            return f"'{name}' was {_shown(pair[0])}, is {_shown(pair[1])}"
     return ""
+
+
+def _changed_outputs(arm: ArmConfig, records: Sequence[Record]) -> str:
+    """Whether other outputs are asked for than the records have."""
+    was = [name for record in records for name in record.emit]
+    now = list(arm.outputs.emit)
+    return "" if set(was) == set(now) else f"'emit' was {_shown(was)}, is {_shown(now)}"
 
 
 def _changed_files(record: Record, packages: Packages) -> str:
@@ -77,9 +84,5 @@ def _changed_files(record: Record, packages: Packages) -> str:
     return ""
 
 
-def _resolved(path: Path) -> str:
-    return os.path.realpath(path)
-
-
-def _shown(value: object) -> str:
+def _shown(value: Any) -> str:
     return "not given" if value in (None, {}, []) else f"{value}"

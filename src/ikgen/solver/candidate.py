@@ -18,13 +18,16 @@ __all__ = ["Candidate", "Judgement"]
 class Judgement:
     """How a candidate did at the probes: `weak` if its divisor vanishes at regular configurations,
     `folds` if its branches meet at one, `margin` the smallest relative divisor there, `fragile` the share
-    of singular configurations where it vanishes, `cost` of what has to be computed newly."""
+    of singular configurations where it vanishes, `cost` of what has to be computed newly.
+    `almost_tangent`: the constant side is there for rounded constants alone, so the branches lie half a
+    turn apart but for rounding."""
 
     weak: bool
     folds: bool
     margin: float
     fragile: float
     cost: float
+    almost_tangent: bool = False
 
 
 @dataclass(frozen=True, slots=True)

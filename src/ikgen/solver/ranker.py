@@ -63,9 +63,17 @@ def judge(
     singular = relative[regular:]
     fragile = float((singular < WEAK_MARGIN).mean()) if singular.size else 0.0
     cost = _cost(candidate.coefficients, used, weight)
-    return replace(
-        candidate, judgement=Judgement(weak, _folds(candidate, regular), margin, fragile, cost)
-    )
+    almost = bool(probes.kept) and _almost_tangent(candidate, generic)
+    judgement = Judgement(weak, _folds(candidate, regular), margin, fragile, cost, almost)
+    return replace(candidate, judgement=judgement)
+
+
+def _almost_tangent(candidate: Candidate, generic: int) -> bool:
+    """Whether the form's constant side is zero where rounded constants have the values that were meant."""
+    constant = candidate.form.tangent_without
+    if constant is None:
+        return False
+    return bool(np.abs(constant.probe[generic:]).max() <= FOLD_MARGIN * constant.scale)
 
 
 def _folds(candidate: Candidate, regular: int) -> bool:
@@ -90,6 +98,10 @@ def _cost(roots: tuple[Expr, ...], used: set[int], weight: Mapping[int, float]) 
     return total
 
 
+def _preference(leaf: str) -> int:
+    return PREFERENCE.index(leaf) if leaf in PREFERENCE else len(PREFERENCE)
+
+
 def rank_key(candidate: Candidate) -> tuple[object, ...]:
     """Sort key: smaller is better."""
     j = candidate.judgement
@@ -97,7 +109,7 @@ def rank_key(candidate: Candidate) -> tuple[object, ...]:
     return (
         not candidate.is_sound,
         candidate.branches,
-        PREFERENCE.index(candidate.leaf) if candidate.leaf in PREFERENCE else len(PREFERENCE),
+        _preference("tangent" if j.almost_tangent else candidate.leaf),
         round(j.fragile, 1),
         candidate.branches == 1 and sum(e.squared for e in candidate.sources),
         j.cost,

@@ -47,11 +47,11 @@ class NearMiss:
 def _open(graph: SolutionGraph) -> Iterator[tuple[int, Equation]]:
     """The equations with unknowns, each once, and how many are independent; without those that hold
     entries that the task does not read."""
-    session = graph.session
+    k = graph.known
     told: set[tuple[int, int]] = set()
-    for e in session.system.equations:
+    for e in k.equations.equations:
         sides = (e.left.id, e.right.id)
-        rank = session.knowledge.unknown_rank(e.left.support | e.right.support)
+        rank = k.unknown_rank(e.left.support | e.right.support)
         if sides not in told and rank not in (0, _UNREADABLE):
             told.add(sides)
             yield rank, e
@@ -67,7 +67,7 @@ def open_equations(
 ) -> list[OpenEquation]:
     """Up to `most` equations with unknowns, those with the fewest first and of these the shortest
     (`size` of both sides)."""
-    k = graph.session.knowledge
+    k = graph.workspace()
     ranked = [(rank, size(e.left) + size(e.right), e.label, e) for rank, e in _open(graph)]
     found: list[OpenEquation] = []
     for _, length, _, e in sorted(ranked, key=lambda x: x[:3]):

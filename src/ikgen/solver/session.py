@@ -72,9 +72,7 @@ class Session:
 
     def joint_variable(self, joint: int) -> Variable:
         """The variable of a joint."""
-        unit = self.knowledge.variables.unit(joint)
-        revolute = self.knowledge.variables.primary[joint].revolute
-        return Variable("angle" if revolute else "dist", unit)
+        return self.knowledge.joint_variable(joint)
 
     @property
     def open_joints(self) -> list[int]:

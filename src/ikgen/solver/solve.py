@@ -37,7 +37,13 @@ def solve_chain(
     probes = make_probes(dh, tool=tool_on_right, readable=readable)
     graph = ExpressionGraph(len(probes.values))
     system = EquationSet(
-        graph, dh, probes.values, probes.pose, readable=readable, tool_on_right=tool_on_right
+        graph,
+        dh,
+        probes.values,
+        probes.pose,
+        readable=readable,
+        tool_on_right=tool_on_right,
+        kept=probes.kept,
     )
     knowledge = Knowledge(system)
     _ = system.equations

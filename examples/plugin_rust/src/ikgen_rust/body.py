@@ -5,9 +5,10 @@ from __future__ import annotations
 from ikgen.emit.printer import expression
 from ikgen.emit.solver_module import SolverModule
 from ikgen.errors import UsageError
+from ikgen.program.inputs import HeldValue, PoseEntry, SeedValue
 from ikgen.program.ops import Operand
-from ikgen.program.statements import Comment, JointOutput, Let, Statement
-from ikgen_rust.language import RUST_LANGUAGE, number
+from ikgen.program.statements import Comment, Let, Statement
+from ikgen_rust.language import RUST_LANGUAGE
 
 __all__ = ["body_lines"]
 
@@ -18,7 +19,7 @@ def body_lines(module: SolverModule) -> list[str]:
     Raises `UsageError` for a Program that calls a bigger routine, of which this package has none.
     """
     program = module.program
-    lines: list[str] = []
+    lines = _inputs(module)
     for index, level in enumerate(program.levels):
         if level.call is not None:
             raise UsageError(
@@ -35,6 +36,18 @@ def body_lines(module: SolverModule) -> list[str]:
     lines += ["    " * depth + line for line in _row(module)]
     lines += ["    " * index + "}" for index in reversed(range(depth))]
     return lines
+
+
+def _inputs(module: SolverModule) -> list[str]:
+    """The inputs by name: entries of the pose, values of the seed and of held joints."""
+    program = module.program
+    lines = [
+        f"let {one.name} = t[{one.row}][{one.column}];" for one in program.inputs_of(PoseEntry)
+    ]
+    lines += [f"let {one.name} = q0[{one.joint}];" for one in program.inputs_of(SeedValue)]
+    for one in program.inputs_of(HeldValue):
+        lines.append(f"let {one.name} = held[{module.free.index(one.joint)}];")
+    return lines + [f"let {let.name} = {_text(let.value)};" for let in program.prelude]
 
 
 def _text(operand: Operand) -> str:
@@ -54,25 +67,10 @@ def _statement(module: SolverModule, statement: Statement, leave: str) -> list[s
 def _row(module: SolverModule) -> list[str]:
     """The innermost statements: joint values, and what is known of the row."""
     program = module.program
-    outputs = sorted(program.outputs, key=lambda output: output.joint)
-    lines = [f"let q{o.joint + 1} = {_joint_value(module, o)};" for o in outputs]
     singular = " || ".join(program.singular) or "false"
     rough = " || ".join([*program.singular, *(f"{r} > ROUGH" for r in program.residuals)])
     if module.polish == "all":
         rough = "true"
-    row = ", ".join(f"q{o.joint + 1}" for o in outputs)
-    lines.append(
-        f"rows.push(Candidate {{ q: [{row}], singular: {singular}, rough: {rough or 'false'} }});"
-    )
-    return lines
-
-
-def _joint_value(module: SolverModule, output: JointOutput) -> str:
-    """The joint's value from its DH variable v = scale * q + offset."""
-    if output.joint in module.free:
-        return f"held[{module.free.index(output.joint)}]"
-    row = module.first_row(output.joint)
-    value = _text(output.cosine)
-    if output.revolute:
-        value = f"f64::atan2({_text(output.sine)}, {value})"
-    return f"({value} - {number(row.offset.value)}) / {number(row.scale)}".replace("- -", "+ ")
+    row = ", ".join(_text(output.value) for output in program.outputs)
+    flags = f"singular: {singular}, rough: {rough or 'false'}"
+    return [f"rows.push(Candidate {{ q: [{row}], {flags} }});"]

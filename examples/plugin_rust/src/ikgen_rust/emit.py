@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 from ikgen.emit.rendering import folder_environment
 from ikgen.emit.solver_module import SolverModule
 from ikgen.program.interpret import evaluate
-from ikgen.program.liveness import used_inputs
 from ikgen.program.statements import Program
 from ikgen_rust.body import body_lines
 from ikgen_rust.language import number, text_literal
@@ -34,7 +33,6 @@ def emit_derivation(derivation: Derivation) -> dict[str, str]:
         "body": body,
         "constants": _constants(module.program, body),
         "entries": _weighted_entries(module),
-        "inputs": used_inputs(module.program),
         "first_rows": [module.first_row(j) for j in range(module.dh.dof)],
         "number": number,
         "text": text_literal,
@@ -49,7 +47,7 @@ def emit_derivation(derivation: Derivation) -> dict[str, str]:
 
 def _constants(program: Program, body: list[str]) -> list[tuple[str, str]]:
     """Name and value of the constants that the body reads, as numbers: Rust's sqrt is not const."""
-    values = dict(program.parameters)
+    values = {one.name: one.value for one in program.parameters}
     for let in program.constants:
         values[let.name] = evaluate(let.value, values)
     read = set(re.findall(r"\w+", "\n".join(body)))

@@ -35,6 +35,9 @@ RUST_LANGUAGE = Language(
     prefix={"neg": ("-", 7), "not": ("!", 7)},
     calls={
         "sqrt": lambda x: f"f64::max({x}, 0.0).sqrt()",
+        "cos": lambda x: f"f64::cos({x})",
+        "sin": lambda x: f"f64::sin({x})",
+        "atan2": lambda y, x: f"f64::atan2({y}, {x})",
         "abs": lambda x: f"f64::abs({x})",
         "max": lambda a, b: f"f64::max({a}, {b})",
         "min": lambda a, b: f"f64::min({a}, {b})",

@@ -5,29 +5,32 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from ikgen.emit.cpp.cpp_joints import JointValue, Seed
+from ikgen.emit.blanks import blanks, pairs
 from ikgen.emit.cpp.cpp_language import CONSTANT, comment, literal, number
+from ikgen.emit.cpp.cpp_policy import policy_lines
 from ikgen.emit.cpp.cpp_statements import ProgramText
+from ikgen.emit.cpp.header_bundle import bundle
 from ikgen.emit.printer import expression
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
-from ikgen.emit.symbolic_frames import blanks, frame_entries, pairs
 from ikgen.errors import UsageError
-from ikgen.program.liveness import used_inputs
 from ikgen.program.ops import Op
+from ikgen.program.policy import SolvePolicy
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
 
 __all__ = ["emit", "emit_derivation", "emit_header"]
 
-ROUGH = 1e-20
-"""Squared error of a row above which it takes Newton steps."""
+_SYSTEM = ("array", "cstddef", "Eigen/Core", "Eigen/Geometry")
+"""Headers that the shell itself needs."""
 
-_INLINE = "[[gnu::always_inline]] inline"
-
-_COLD = "[[gnu::cold, gnu::noinline]] inline"
-"""Of functions that few poses need: small code, quickly compiled."""
+_READING = {
+    "rotation": ("RotationReading<Policy>", "rotation_reading.hpp"),
+    "direction": ("VectorReading<Policy, 8, 3>", "vector_reading.hpp"),
+    "yaw": ("VectorReading<Policy, 0, 2>", "vector_reading.hpp"),
+}
+"""What a task reads of a rotation: its type in the runtime, and that type's header."""
 
 
 def emit_derivation(derivation: Derivation) -> dict[str, str]:
@@ -50,36 +53,28 @@ def emit_header(module: SolverModule) -> str:
     if any(n & (n - 1) for n in branches):
         raise UsageError(f"the C++ emitter needs levels of 2, 4, ... branches, not {branches}")
     text = ProgramText(module)
-    inputs = used_inputs(program)
+    policy, runtime = SolvePolicy(), bundle(_headers(module), _SYSTEM)
     return render(
         "cpp",
         "header.hpp.jinja",
         m=module,
         namespace=f"{module.name}_ik",
-        inline=_INLINE,
-        cold="[[gnu::noinline]] inline" if _careful(module) else _COLD,
+        runtime=runtime,
+        policy=policy_lines(policy, runtime.body),
         careful=_careful(module),
+        way="SingleSolve" if _careful(module) else "LaneSolve",
         entries_read=module.reads.entries,
-        equations=_equations(module),
-        tall=module.dh.dof - len(module.free) < _equations(module),
-        orientation=module.reads.orientation,
-        reads_position=module.reads.position,
+        reading=_reading(module)[0],
         joints=module.dh.joints,
         lower=[number(j.limits.lower) for j in module.dh.joints],
         upper=[number(j.limits.upper) for j in module.dh.joints],
         far=any(j.limits.lower > math.pi or j.limits.upper < -math.pi for j in module.dh.joints),
         first_rows=[module.first_row(j) for j in range(module.dh.dof)],
         text=text,
-        entries=[name for name in inputs if name.startswith("t")],
-        seeds=[Seed.of(module, name) for name in inputs if name.startswith("seed_")],
-        held=[name for name in inputs if name[0] in "csd" and name[1:].isdigit()],
-        values=[JointValue.of(module, text, output) for output in text.outputs()],
-        rough=_rough(module),
+        values=text.joint_values(),
+        rough=_rough(module, policy),
         order=_depth_first(branches),
-        routines=sorted({lv.call.routine for lv in program.levels if lv.call is not None}),
-        frames=[
-            [[expression(CONSTANT, x) for x in row] for row in F] for F in frame_entries(module.dh)
-        ],
+        frames=[[[expression(CONSTANT, x) for x in row] for row in F] for F in program.frames],
         beside=[[number(float(x)) for x in D.T[:, :3].ravel()] for D in module.beside],
         size=_size_text(module),
         blanks=blanks(module),
@@ -96,16 +91,25 @@ def _careful(module: SolverModule) -> bool:
     return module.polish == "all" or module.plan is not None
 
 
-def _equations(module: SolverModule) -> int:
-    """Components of the error that Newton steps take to zero."""
-    return 6 if module.task == "pose" else len(module.reads.entries)
+def _headers(module: SolverModule) -> list[str]:
+    """The runtime's headers that the module needs, without those that they include."""
+    routines = sorted({lv.call.routine for lv in module.program.levels if lv.call is not None})
+    needed = ["lane_angle.hpp", "single_solve.hpp" if _careful(module) else "lane_solve.hpp"]
+    needed += ["routine_roots.hpp"] * bool(routines)
+    needed += [f"{name}.hpp" for name in routines if module.plan is None]
+    needed += ["poses_beside.hpp"] * bool(module.beside)
+    return [*needed, _reading(module)[1], "pose_solver.hpp"]
+
+
+def _reading(module: SolverModule) -> tuple[str, str]:
+    return _READING.get(module.reads.orientation, ("EntriesReading", "pose_reading.hpp"))
 
 
 def _size_text(module: SolverModule) -> str:
     """The arm's size as a number, or as an expression in constants to be filled in."""
     if not module.dh.symbols:
         return number(module.size)
-    lengths = [F[i][3] for F in frame_entries(module.dh) for i in range(3)]
+    lengths = [F[i][3] for F in module.program.frames for i in range(3)]
     texts = [expression(CONSTANT, Op("abs", (x,))) for x in lengths if x != 0.0]
     return f"std::max({{{', '.join(['1.0', *texts])}}})"
 
@@ -119,9 +123,11 @@ def _depth_first(branches: list[int]) -> list[int]:
     return lanes
 
 
-def _rough(module: SolverModule) -> str:
+def _rough(module: SolverModule, policy: SolvePolicy) -> str:
     """Condition under which a row takes Newton steps."""
     program = module.program
     if module.polish == "all":
         return "(spread<1>(1.0) > 0.0)"
-    return " | ".join([*program.singular, *(f"({r} > {ROUGH})" for r in program.residuals)])
+    return " | ".join(
+        [*program.singular, *(f"({r} > {policy.rough_square})" for r in program.residuals)]
+    )

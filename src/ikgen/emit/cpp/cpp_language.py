@@ -52,6 +52,8 @@ CPP = Language(
         "max": lambda a, b: f"max({a}, {b})",
         "min": lambda a, b: f"min({a}, {b})",
         "select": lambda c, a, b: f"select({c}, {a}, {b})",
+        "atan2": lambda y, x: f"angle({y}, {x})",
+        "spread": lambda x: f"spread<1>({x})",
     },
     number=number,
 )
@@ -62,6 +64,8 @@ CONSTANT = Language(
     calls={
         "or": lambda a, b: f"({a} || {b})",
         "sqrt": lambda x: f"std::sqrt(std::max({x}, 0.0))",
+        "cos": lambda x: f"std::cos({x})",
+        "sin": lambda x: f"std::sin({x})",
         "abs": lambda x: f"std::abs({x})",
         "max": lambda a, b: f"std::max<double>({a}, {b})",
         "min": lambda a, b: f"std::min<double>({a}, {b})",

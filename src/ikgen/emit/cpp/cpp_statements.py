@@ -6,16 +6,18 @@ level before, so branch i of a level and lane p of the level before meet in lane
 
 from __future__ import annotations
 
+import math
 import textwrap
 
+from ikgen.emit.blanks import pairs
 from ikgen.emit.cpp.cpp_language import CONSTANT, CPP, LINE, comment, number
 from ikgen.emit.printer import expression
 from ikgen.emit.solver_module import SolverModule
-from ikgen.emit.symbolic_frames import pairs
+from ikgen.program.inputs import HeldValue, PoseEntry, SeedValue
 from ikgen.program.interpret import evaluate
 from ikgen.program.liveness import live_names
-from ikgen.program.ops import Op, Operand, operand_names
-from ikgen.program.statements import Call, Comment, JointOutput, Let, Level, Require
+from ikgen.program.ops import Op, Operand, operand_names, renamed
+from ikgen.program.statements import Call, Comment, Let, Level, Require
 
 __all__ = ["ProgramText"]
 
@@ -27,7 +29,7 @@ class ProgramText:
         self.module = module
         self.program = module.program
         self.live = live_names(self.program)
-        self.fixed: dict[str, float] = dict(self.program.parameters)
+        self.fixed = {one.name: one.value for one in self.program.parameters}
         for let in self.program.constants:
             self.fixed[let.name] = evaluate(let.value, self.fixed)
         self._fold_fixed_lets()
@@ -60,7 +62,7 @@ class ProgramText:
 
     def _written_constants(self) -> list[tuple[str, str]]:
         angles = {f"{f}_{n}" for n in pairs(self.module) for f in ("cos", "sin")}
-        text = {n: number(v) for n, v in self.program.parameters if n in self.live}
+        text = {p.name: number(p.value) for p in self.program.parameters if p.name in self.live}
         lets = [s for lv in self.program.levels for s in lv.body if isinstance(s, Let)]
         for let in (*self.program.constants, *lets):
             if let.name in self.fixed and let.name in self.live:
@@ -108,9 +110,20 @@ class ProgramText:
             elif isinstance(s, Require):
                 self._require(index, expression(CPP, s.condition, 3))
             elif s.name in self.live and s.name not in self.fixed:
-                self._let(s.name, expression(CPP, s.value))
+                self._let(s.name, expression(CPP, self._in_lanes(s.value)))
                 if s.name in self.program.singular:
                     self.flags["hit"].append(f"({self.real} & {s.name})" if self.real else s.name)
+
+    def _in_lanes(self, operand: Operand) -> Operand:
+        """The operand with constants under an arctangent as packs."""
+        if not isinstance(operand, Op):
+            return operand
+        args = tuple(self._in_lanes(a) for a in operand.args)
+        if operand.op == "atan2":
+            args = tuple(
+                Op("spread", (a,)) if operand_names(a) <= self.fixed.keys() else a for a in args
+            )
+        return Op(operand.op, args)
 
     def _require(self, index: int, condition: str) -> None:
         """The lanes in which all guards so far hold."""
@@ -121,12 +134,9 @@ class ProgramText:
 
     def _alike(self, level: Level, width: int) -> None:
         """Whether the two branches of a level meet, which makes equal rows."""
-        if level.sigma is None:
-            return
-        suffix = level.sigma.split("_", 1)[-1]
-        names = [n for n in (f"c{suffix}", f"s{suffix}", f"d{suffix}") if n in self.live]
+        names = [n for n in level.solved if n in self.live]
         if names:
-            self.flags["alike"].append(f"meeting<{width} * P>({', '.join(names)})")
+            self.flags["alike"].append(f"meeting<Policy, {width} * P>({', '.join(names)})")
 
     def _let(self, name: str, text: str) -> None:
         self._statement(f"const auto {name} = {text};")
@@ -136,17 +146,83 @@ class ProgramText:
             text, LINE - 2, subsequent_indent="    ", break_long_words=False, break_on_hyphens=False
         )
 
+    # -- inputs ---------------------------------------------------------------------------------
+
+    def bindings(self) -> list[str]:
+        """Lines that name the inputs: the pose's entries, the seed's and the held joints' variables."""
+        program = self.program
+        lines = [
+            f"const auto {one.name} = pose.t[{one.row}][{one.column}];"
+            for one in program.inputs_of(PoseEntry)
+        ]
+        for let in self.seed_lets():
+            if let.name in self.lane_names:
+                lines.append(f"const auto {let.name} = spread<1>(seed.{let.name});")
+        for one in program.inputs_of(HeldValue):
+            index = self.module.free.index(one.joint)
+            lines.append(f"const double {one.name} = held[{index}];")
+        for let in program.prelude:
+            if let not in self.seed_lets():
+                text = expression(CONSTANT, let.value)
+                shown = f"spread<1>({text})" if let.name in self.lane_names else text
+                lines.append(f"const auto {let.name} = {shown};")
+        return lines
+
+    @property
+    def lane_names(self) -> set[str]:
+        """Names that statements over lanes read."""
+        found: set[str] = set()
+        for level in self.program.levels:
+            arguments = level.call.arguments if level.call is not None else ()
+            values = (s.value for s in level.body if isinstance(s, Let))
+            conditions = (s.condition for s in level.body if isinstance(s, Require))
+            for operand in (*arguments, *values, *conditions):
+                found |= operand_names(operand)
+        return found
+
+    def seed_lets(self) -> list[Let]:
+        """What of the prelude follows from the seed."""
+        names = {one.name for one in self.program.inputs_of(SeedValue)}
+        out = []
+        for let in self.program.prelude:
+            if operand_names(let.value) & names:
+                names.add(let.name)
+                out.append(let)
+        return out
+
+    def seed_members(self) -> list[tuple[str, str, str]]:
+        """Name, value at q = 0 and text of what follows from a seed `q`, in order."""
+        values = {one.name: 0.0 for one in self.program.inputs_of(SeedValue)}
+        given = {one.name: f"q[{one.joint}]" for one in self.program.inputs_of(SeedValue)}
+        members = []
+        for let in self.seed_lets():
+            values[let.name] = evaluate(let.value, values)
+            text = expression(CONSTANT, renamed(let.value, given))
+            members.append((let.name, number(values[let.name]), text))
+        return members
+
     # -- results --------------------------------------------------------------------------------
 
-    def pack(self, operand: Operand) -> str:
-        """An output operand as a pack, also where it is a constant."""
-        text = expression(CPP, operand)
-        fixed = operand_names(operand) <= self.fixed.keys()
-        return f"spread<1>({text})" if fixed else text
+    def joint_values(self) -> list[tuple[str, str]]:
+        """Per joint, base to tip, the text of its value, and the function that puts it inside the limits
+        ("": none can be outside, since they span a whole turn)."""
+        held = {one.name for one in self.program.inputs_of(HeldValue)}
+        out = []
+        for one in sorted(self.program.outputs, key=lambda output: output.joint):
+            text = expression(CPP, one.value)
+            if operand_names(one.value) <= held | self.fixed.keys():
+                text = f"spread<1>({text})"
+            out.append((text, self._placing(one.joint)))
+        return out
 
-    def outputs(self) -> tuple[JointOutput, ...]:
-        """The joints' outputs, base to tip."""
-        return tuple(sorted(self.program.outputs, key=lambda o: o.joint))
+    def _placing(self, joint: int) -> str:
+        limits, row = self.module.dh.joints[joint].limits, self.module.first_row(joint)
+        turning = row.revolute and joint not in self.module.free
+        if math.isinf(limits.lower) and math.isinf(limits.upper):
+            return ""
+        if turning and limits.lower <= -math.pi and limits.upper >= math.pi:
+            return ""
+        return "place" if turning else "clamp"
 
 
 def _calls(operand: Operand) -> bool:

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from typing import TYPE_CHECKING
 
+from ikgen.elimination.routine import runtime_policy
+from ikgen.emit.blanks import blanks, pairs
 from ikgen.emit.printer import expression
-from ikgen.emit.python.python_joints import JointText
+from ikgen.emit.python.bundle import bundle
 from ikgen.emit.python.python_language import SCALAR, number
 from ikgen.emit.python.python_statements import batch_lines, scalar_lines
 from ikgen.emit.python.python_text import literal, words
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
-from ikgen.emit.symbolic_frames import blanks, frame_entries, pairs
-from ikgen.program.liveness import used_inputs
+from ikgen.program.policy import SolvePolicy
+from ikgen.runtime.python.solve_policy import Policy
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -28,9 +31,8 @@ def emit_derivation(derivation: Derivation) -> dict[str, str]:
 
 def emit_module(module: SolverModule) -> str:
     """The text of `<name>_ik.py`."""
-    program = module.program
-    joints = [JointText.of(module, output) for output in program.outputs]
-    return render(
+    program, policy = module.program, SolvePolicy()
+    shell = render(
         "python",
         "module.py.jinja",
         m=module,
@@ -40,15 +42,12 @@ def emit_module(module: SolverModule) -> str:
         parameters=_parameters(module),
         blanks=blanks(module),
         constants=[(c.name, expression(SCALAR, c.value)) for c in program.constants],
-        scalar=scalar_lines(module, joints),
-        batch=batch_lines(module, joints),
+        scalar=scalar_lines(module),
+        batch=batch_lines(module),
         routines=sorted({lv.call.routine for lv in program.levels if lv.call is not None}),
-        used=used_inputs(program),
         seeds=_seed_rows(module),
         shape=[level.branches for level in program.levels[1:]],
-        frames=[
-            [[expression(SCALAR, x) for x in row] for row in F] for F in frame_entries(module.dh)
-        ],
+        frames=[[[expression(SCALAR, x) for x in row] for row in F] for F in program.frames],
         rows=[(row.driver, row.revolute, row.scale, row.offset.value) for row in module.dh.rows],
         number=number,
         literal=literal,
@@ -57,13 +56,36 @@ def emit_module(module: SolverModule) -> str:
         orientation=module.reads.orientation,
         entries=module.reads.entries,
         size=module.size,
+        unit_columns=_UNIT_COLUMNS.get(module.reads.orientation, ()),
+        policy=policy,
+        policy_values=_policy_values(runtime_policy(policy)),
     )
+    return bundle(shell)
+
+
+_UNIT_COLUMNS = {"rotation": (0, 1, 2), "direction": (2,), "yaw": (0,)}
+"""Columns of the rotation that a task's entries make up."""
+
+
+def _policy_values(policy: Policy) -> list[tuple[str, str]]:
+    """The fields of the runtime's `Policy` as text."""
+    out = []
+    for field in fields(policy):
+        value = getattr(policy, field.name)
+        if field.name == "refinement":
+            stages = (f"({steps}, {number(a)}, {number(b)})" for steps, a, b in value)
+            out.append((field.name, f"({', '.join(stages)})"))
+        else:
+            out.append((field.name, repr(value) if isinstance(value, int) else number(value)))
+    return out
 
 
 def _parameters(module: SolverModule) -> list[tuple[str, str]]:
     """Name and text of the arm's constants but those to be filled in."""
     angles = {f"{f}_{n}": f"{f}({n})" for n in pairs(module) for f in ("cos", "sin")}
-    given = [(n, v) for n, v in module.program.parameters if n not in module.dh.symbols]
+    given = [
+        (p.name, p.value) for p in module.program.parameters if p.name not in module.dh.symbols
+    ]
     plain = [(n, number(v)) for n, v in given if n not in angles]
     return [*angles.items(), *plain]
 

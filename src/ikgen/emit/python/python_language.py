@@ -35,6 +35,9 @@ SCALAR = Language(
         "sqrt": lambda x: (
             f"sqrt({x} if {x} > 0.0 else 0.0)" if x.isidentifier() else f"sqrt(max({x}, 0.0))"
         ),
+        "cos": lambda x: f"cos({x})",
+        "sin": lambda x: f"sin({x})",
+        "atan2": lambda y, x: f"atan2({y}, {x})",
         "abs": lambda x: f"abs({x})",
         "max": lambda a, b: f"max({a}, {b})",
         "min": lambda a, b: f"min({a}, {b})",
@@ -48,6 +51,9 @@ BATCH = Language(
     prefix={"neg": ("-", 7), "not": ("~", 7)},
     calls={
         "sqrt": lambda x: f"np.sqrt(np.maximum({x}, 0.0))",
+        "cos": lambda x: f"np.cos({x})",
+        "sin": lambda x: f"np.sin({x})",
+        "atan2": lambda y, x: f"np.arctan2({y}, {x})",
         "abs": lambda x: f"np.abs({x})",
         "max": lambda a, b: f"np.maximum({a}, {b})",
         "min": lambda a, b: f"np.minimum({a}, {b})",

@@ -3,67 +3,56 @@
 from __future__ import annotations
 
 from ikgen.emit.printer import expression
-from ikgen.emit.python.python_joints import JointText
 from ikgen.emit.python.python_language import BATCH, SCALAR
 from ikgen.emit.solver_module import SolverModule
-from ikgen.program.ops import operand_names
-from ikgen.program.statements import Comment, JointOutput, Let, Level, Program
+from ikgen.program.inputs import HeldValue, PoseEntry, SeedValue
+from ikgen.program.ops import renamed
+from ikgen.program.statements import Comment, Let, Level, Program, Require, Statement
 
 __all__ = ["batch_lines", "scalar_lines"]
 
 
-def _home_levels(program: Program) -> dict[str, int]:
-    """The level that defines each name."""
-    home: dict[str, int] = {}
-    for index, level in enumerate(program.levels):
-        if level.sigma is not None:
-            home[level.sigma] = index
-        if level.call is not None:
-            home |= dict.fromkeys(level.call.names, index)
-        for statement in level.body:
-            if isinstance(statement, Let):
-                home[statement.name] = index
-    return home
-
-
-def _level_of(output: JointOutput, home: dict[str, int]) -> int:
-    names = operand_names(output.cosine) | operand_names(output.sine)
-    return max((home.get(n, 0) for n in names), default=0)
-
-
-def scalar_lines(module: SolverModule, joints: list[JointText]) -> list[str]:
-    """Lines of the nested loops, indented from the function's body on."""
+def scalar_lines(module: SolverModule) -> list[str]:
+    """Lines of the nested loops, indented from the function's body on. They read `q0` (the seed's joint
+    values), `held` (those of held joints) and the pose's entries, and append to `rows`."""
     program = module.program
-    home = _home_levels(program)
-    lines: list[str] = []
+    given = {one.name: f"q0[{one.joint}]" for one in program.inputs_of(SeedValue)}
+    lines = []
+    for one in program.inputs_of(HeldValue):
+        lines.append(f"{one.name} = held[{module.free.index(one.joint)}]")
+    for let in program.prelude:
+        lines.append(f"{let.name} = {expression(SCALAR, renamed(let.value, given))}")
     for index, level in enumerate(program.levels):
         pad = "    " * index
         if index:
             lines.append("    " * (index - 1) + _loop(level))
         leave = "continue" if index else "return rows, hit"
         for statement in level.body:
-            if isinstance(statement, Comment):
-                lines.append(f"{pad}# {statement.text}")
-            elif isinstance(statement, Let):
-                lines.append(f"{pad}{statement.name} = {expression(SCALAR, statement.value)}")
-                if statement.name in program.singular:
-                    lines.append(f"{pad}hit = hit or {statement.name}")
-            else:
-                lines.append(f"{pad}if not ({expression(SCALAR, statement.condition)}):")
-                lines.append(f"{pad}    {leave}")
-        for joint in joints:
-            if _level_of(joint.output, home) == index:
-                lines.append(f"{pad}q{joint.joint + 1} = {joint.text(SCALAR, 'atan2')}")
-    pad = "    " * (len(program.levels) - 1)
-    row = ", ".join(f"q{j.joint + 1}" for j in joints) + ("," if len(joints) == 1 else "")
-    flag = " or ".join(program.singular) or "False"
-    if module.polish == "some":
-        rough = " or ".join([*program.singular, *(f"{r} > _ROUGH" for r in program.residuals)])
-        rough = rough or "False"
-        lines.append(f"{pad}rows.append((({row}), {flag}, {rough}))")
-    else:
-        lines.append(f"{pad}rows.append((({row}), {flag}))")
+            lines += [pad + line for line in _scalar_statement(program, statement, leave)]
+    return [*lines, "    " * (len(program.levels) - 1) + _scalar_row(module)]
+
+
+def _scalar_statement(program: Program, statement: Statement, leave: str) -> list[str]:
+    if isinstance(statement, Comment):
+        return [f"# {statement.text}"]
+    if isinstance(statement, Require):
+        return [f"if not ({expression(SCALAR, statement.condition)}):", f"    {leave}"]
+    lines = [f"{statement.name} = {expression(SCALAR, statement.value)}"]
+    if statement.name in program.singular:
+        lines.append(f"hit = hit or {statement.name}")
     return lines
+
+
+def _scalar_row(module: SolverModule) -> str:
+    """The innermost statement: joint values, and what is known of the row."""
+    program = module.program
+    values = [expression(SCALAR, one.value) for one in program.outputs]
+    row = ", ".join(values) + ("," if len(values) == 1 else "")
+    flag = " or ".join(program.singular) or "False"
+    rough = "True"
+    if module.polish == "some" and module.plan is None:
+        rough = " or ".join([*program.singular, *(f"{r} > _ROUGH" for r in program.residuals)])
+    return f"rows.append((({row}), {flag}, {rough or 'False'}))"
 
 
 def _loop(level: Level) -> str:
@@ -73,10 +62,11 @@ def _loop(level: Level) -> str:
     return f"for {level.sigma} in (1.0, -1.0):"
 
 
-def batch_lines(module: SolverModule, joints: list[JointText]) -> list[str]:
-    """Lines of the array program: the axes before the last are the branches of the levels."""
+def batch_lines(module: SolverModule) -> list[str]:
+    """Lines of the array program: the axes before the last are the branches of the levels. They read `T`
+    (N, 4, 4), `q0` and `held` (N, k) in lanes of the shape `lane`, and set `q`, `singular` and `rough`."""
     program = module.program
-    lines: list[str] = []
+    lines = _batch_inputs(module)
     depth = len(program.levels) - 1
     for index, level in enumerate(program.levels):
         if level.sigma is not None:
@@ -95,11 +85,29 @@ def batch_lines(module: SolverModule, joints: list[JointText]) -> list[str]:
             else:
                 lines.append(f"valid = valid & {expression(BATCH, statement.condition, 9)}")
     lines.append("q = (")
-    lines += [f"    {joint.text(BATCH, 'np.arctan2')}," for joint in joints]
+    lines += [f"    {expression(BATCH, one.value)}," for one in program.outputs]
     lines.append(")")
+    return lines + _batch_flags(module)
+
+
+def _batch_inputs(module: SolverModule) -> list[str]:
+    program = module.program
+    lines = []
+    for entry in program.inputs_of(PoseEntry):
+        lines.append(f"{entry.name} = T[:, {entry.row}, {entry.column}].reshape(lane)")
+    for seed in program.inputs_of(SeedValue):
+        lines.append(f"{seed.name} = q0[:, {seed.joint}].reshape(lane)")
+    for one in program.inputs_of(HeldValue):
+        lines.append(f"{one.name} = held[:, {module.free.index(one.joint)}].reshape(lane)")
+    lines += [f"{let.name} = {expression(BATCH, let.value)}" for let in program.prelude]
+    return [*lines, "valid: _Flags = np.ones(lane, dtype=bool)"]
+
+
+def _batch_flags(module: SolverModule) -> list[str]:
+    program = module.program
     flag = " | ".join(program.singular)
+    lines = [f"singular: _Flags = {flag or 'np.zeros(1, dtype=bool)'}"]
+    rough = "np.ones(1, dtype=bool)"
     if module.polish == "some":
         rough = " | ".join([*program.singular, *(f"({r} > _ROUGH)" for r in program.residuals)])
-        lines.append(f"rough: NDArray[np.bool_] = {rough or 'np.zeros(1, dtype=bool)'}")
-    lines.append(f"singular: NDArray[np.bool_] = {flag or 'np.zeros(1, dtype=bool)'}")
-    return lines
+    return [*lines, f"rough: _Flags = {rough or 'np.zeros(1, dtype=bool)'}"]

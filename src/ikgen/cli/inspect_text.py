@@ -1,0 +1,110 @@
+"""What `ikgen inspect` found, as text."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ikgen.cli.tables import table
+from ikgen.cli.tree_text import dh_table, joint_tree, transform_text
+
+if TYPE_CHECKING:
+    from ikgen.generation.advice import Attempt
+    from ikgen.generation.inspection import Inspection
+    from ikgen.kinematics.classify import GeometryClass
+    from ikgen.model.dh import DHChain
+
+__all__ = ["as_text"]
+
+_PROPOSED = 4
+
+
+def as_text(found: Inspection) -> str:
+    """For people."""
+    parts = []
+    if found.tree is not None:
+        parts.append(f"robot '{found.tree.name}'\n{joint_tree(found.tree)}")
+        parts.append(_chains(found))
+    if found.reading is not None and found.geometry is not None:
+        parts += _chain(found.reading.dh, found.geometry)
+        parts.append(_advice(found))
+    return "\n\n".join(part for part in parts if part)
+
+
+def _chains(found: Inspection) -> str:
+    if not found.candidates:
+        return "chains: none found; choose the ends by --base and --tip"
+    lines = ["chains:"]
+    for c in found.candidates:
+        lines.append(f"  --base {c.base} --tip {c.tip}   {c.dof} joints; {c.why}")
+        lines.append(f"      {', '.join(c.joints)}")
+    if found.reading is None:
+        lines.append("several chains: choose one by --base and --tip to see more")
+    return "\n".join(lines)
+
+
+def _chain(dh: DHChain, geometry: GeometryClass) -> list[str]:
+    """The DH table with the transforms around it, the geometry and what was snapped."""
+    held = f", locked: {', '.join(n for n, _ in dh.locked)}" if dh.locked else ""
+    head = f"chain {dh.base_link} -> {dh.tip_link}, {dh.dof} joints{held}"
+    ends = table(
+        [("base:", *transform_text(dh.X_base)), ("tool:", *transform_text(dh.X_tip))],
+    )
+    parts = [
+        f"{head}\nmodified DH rows (rad, m):\n{dh_table(dh)}",
+        f"before the first row and after the last (m, rad):\n{ends}",
+        f"geometry: {geometry.words}",
+    ]
+    metres, radians = dh.deviation
+    if dh.snaps:
+        rows = [(s.what, f"{s.before:.12g}", "->", f"{s.after:.12g}") for s in dh.snaps]
+        cost = f"moves the tip by at most {1e3 * metres:.2g} mm and {radians:.2g} rad"
+        parts.append(f"taken as exact ({cost}):\n{table(rows)}")
+        parts += _kept(dh)
+    else:
+        parts.append("taken as exact: nothing")
+    return parts
+
+
+def _kept(dh: DHChain) -> list[str]:
+    """Constants that a closed form may leave as they are."""
+    from ikgen.kinematics.kept import keep_constants, kept_constants, stray_lengths
+
+    nearest = keep_constants(dh, stray_lengths(dh))
+    rows = [(s.what, f"{s.before:.12g}", "for", f"{s.after:.12g}") for s in kept_constants(nearest)]
+    metres, radians = nearest.deviation
+    cost = f"then the tip is within {1e3 * metres:.2g} mm and {radians:.2g} rad"
+    lead = f"kept as in the file where the closed form can do with them ({cost})"
+    return [f"{lead}:\n{table(rows)}"] if rows else []
+
+
+def _advice(found: Inspection) -> str:
+    """What to do next."""
+    lines = ["advice:"]
+    if found.moving < 6:
+        lines.append(f"  {found.moving} joints move, so a pose cannot be chosen freely: see --task")
+    if found.moving > 7 and not found.attempts:
+        lines.append(
+            f"  {found.moving} joints move: hold {found.moving - 6} of them (--free or --lock)"
+        )
+    for attempt in found.closed[:_PROPOSED]:
+        lines += _proposal(attempt)
+    if found.attempts and not found.closed:
+        best = max(found.attempts, key=lambda attempt: len(attempt.order))
+        lines.append(
+            f"  no closed form found for the task '{best.task}': left are {', '.join(best.left)}"
+        )
+    return "\n".join(lines) if len(lines) > 1 else ""
+
+
+def _proposal(attempt: Attempt) -> list[str]:
+    """A closed form: the options to type, how many solutions, in which order, and what is weak in it."""
+    options = attempt.options or "as it is"
+    closed = "closed form" if not attempt.weak else "closed form with a weak step"
+    lines = [f"  {options}: {closed}, at most {attempt.max_solutions} solutions"]
+    lines.append(f"      {'; '.join(attempt.order)}")
+    if attempt.weak:
+        lines.append(
+            f"      weak: {', '.join(attempt.weak)} fails at some regular configurations, with no other "
+            "form to fall back on; the verification may refuse it"
+        )
+    return lines

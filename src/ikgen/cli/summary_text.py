@@ -1,0 +1,73 @@
+"""What a finished generation says to people."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ikgen.cli.tables import table
+from ikgen.generation.result import rounding
+
+if TYPE_CHECKING:
+    from ikgen.emit.derivation import Derivation
+    from ikgen.generation.generate import Generation
+    from ikgen.verify.verification_report import VerificationReport
+
+__all__ = ["summary"]
+
+
+def summary(generation: Generation) -> str:
+    """The result in a few lines."""
+    derivation = generation.derivation
+    module, dh = derivation.module, derivation.reading.dh
+    held = [dh.joints[j].name for j in module.free]
+    lines = [
+        ("robot", f"{dh.robot}, {dh.base_link} -> {dh.tip_link}, {dh.dof} joints"),
+        ("task", _task(derivation) + (f", held: {', '.join(held)}" if held else "")),
+        ("geometry", derivation.geometry.words + _rounding(derivation)),
+        ("solved", "; ".join(module.order)),
+        ("solutions", _solutions(generation)),
+    ]
+    lines += [("verified", _verified(name, r)) for name, r in generation.reports.items()]
+    if not generation.reports:
+        lines.append(("verified", "no"))
+    if dh.symbols:
+        words = "; verified with sample numbers" if generation.reports else ""
+        lines.append(("fill in", f"{', '.join(dh.symbols)}{words}"))
+    lines += [("wrote", str(path)) for path in generation.files]
+    lines.append(("time", f"{generation.seconds:.1f} s"))
+    return table([(f"{name}:", text) for name, text in lines], indent="")
+
+
+def _task(derivation: Derivation) -> str:
+    """The task, and that it was chosen where another might be expected."""
+    task = derivation.task
+    if not derivation.chosen or task.whole_pose:
+        return task.words
+    return f"{task.words} (--task {task.name}: what fits {derivation.reading.dh.dof} joints)"
+
+
+def _rounding(derivation: Derivation) -> str:
+    """How far the file is off what was solved, where Newton steps take the rows to it."""
+    off = rounding(derivation)
+    if off is None:
+        return ""
+    return (
+        f"; the file's is up to {1e3 * off[0]:.2g} mm and {off[1]:.1g} rad off, its rows are exact"
+    )
+
+
+def _solutions(generation: Generation) -> str:
+    """How many solutions there are at most, and over the random poses."""
+    most = f"at most {generation.derivation.module.max_solutions}"
+    for report in generation.reports.values():
+        least, mean, greatest = report.solutions
+        return f"{most}; {least} / {mean:.1f} / {greatest} (min / mean / max of random poses)"
+    return most
+
+
+def _verified(name: str, report: VerificationReport) -> str:
+    metres, radians = report.worst_closure
+    return (
+        f"{name}: {report.samples} poses, worst closure {metres:.1e} m {radians:.1e} rad, "
+        f"{report.missed_words}, {report.seconds:.1f} s"
+    )

@@ -1,0 +1,55 @@
+"""Tables without numbers: the constants to fill in."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ikgen.emit.solver_module import SolverModule
+from ikgen.errors import UsageError
+from ikgen.model.dh import DHChain, Length
+
+__all__ = ["Blank", "blanks", "pairs"]
+
+
+@dataclass(frozen=True, slots=True)
+class Blank:
+    """A constant without a number: `value` is what the emitted text gives it (NaN: to be filled in),
+    `sample` what it was checked with (m or rad)."""
+
+    name: str
+    value: float
+    sample: float
+
+
+def blanks(module: SolverModule) -> tuple[Blank, ...]:
+    """The constants to fill in; none where the table has numbers.
+
+    Raises `UsageError` where the solver cannot be written in symbols.
+    """
+    names = module.dh.symbols
+    if not names:
+        return ()
+    if module.plan is not None:
+        raise UsageError(
+            f"no numbers for {', '.join(names)}: only the 6R elimination solves this arm, and it "
+            "works with numbers",
+            hint="give them under [parameters]; without numbers only a report can be written",
+        )
+    samples = _samples(module.dh)
+    return tuple(Blank(n, samples[n] if module.sample else math.nan, samples[n]) for n in names)
+
+
+def _samples(dh: DHChain) -> dict[str, float]:
+    parts = [x for row in dh.rows for x in (row.alpha, row.a, row.d, row.theta)]
+    return {
+        x.name: x.sign * x.value if isinstance(x, Length) else x.value
+        for x in parts
+        if x.symbolic and x.name is not None
+    }
+
+
+def pairs(module: SolverModule) -> tuple[str, ...]:
+    """Names of the angles to fill in: their cosines and sines are constants of the program."""
+    parts = [x for row in module.dh.rows for x in (row.alpha, row.theta)]
+    return tuple(dict.fromkeys(x.name for x in parts if x.symbolic and x.name is not None))

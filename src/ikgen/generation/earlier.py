@@ -1,0 +1,93 @@
+"""Outputs of the same name that are in the folder already: whose they are, and which languages they
+hold."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ikgen.errors import BadDescriptionError, UsageError
+from ikgen.generation.record import Record, digest, read_record, records_of
+from ikgen.model.module_name import identifier
+
+if TYPE_CHECKING:
+    from ikgen.emit.derivation import Reading
+    from ikgen.generation.request import Request
+
+__all__ = ["Earlier", "earlier_outputs"]
+
+
+@dataclass(frozen=True, slots=True)
+class Earlier:
+    """What was generated before by the name that outputs are to have; `broken` are records that cannot be
+    read."""
+
+    name: str
+    records: tuple[Record, ...] = ()
+    broken: tuple[Path, ...] = ()
+
+    @property
+    def emit(self) -> tuple[str, ...]:
+        """Names of the outputs, each once."""
+        return tuple(dict.fromkeys(name for record in self.records for name in record.emit))
+
+    def check(self, request: Request, reading: Reading, task: str | None) -> None:
+        """Raises `UsageError` where the outputs are of another robot, chain or task (None: not known
+        yet)."""
+        for path in self.broken:
+            raise self._refused(path, "is no record of ikgen, or a broken one", reading)
+        for record in self.records:
+            difference = _difference(record, request, reading, task)
+            if difference:
+                raise self._refused(record.path, f"has outputs of {difference}", reading)
+
+    def _refused(self, path: Path, what: str, reading: Reading) -> UsageError:
+        tip = identifier(reading.dh.tip_link)
+        other = self.name if self.name.endswith(tip) else f"{self.name}_{tip}"
+        new = f"--name {other}" if other != self.name else "--name NAME"
+        return UsageError(
+            f"{path} {what}",
+            hint=f"write beside it with {new}, elsewhere with -o DIR, or replace it with --force",
+        )
+
+    def outdated(self, files: Collection[Path]) -> list[Path]:
+        """Recorded files that are as they were written and not among the new ones (records included)."""
+        kept = {path.resolve() for path in files}
+        known = [
+            path
+            for record in self.records
+            for name, expected in record.files.items()
+            if digest(path := record.folder / name) == expected
+        ]
+        known += [record.path for record in self.records]
+        return [path for path in known if path.resolve() not in kept]
+
+
+def earlier_outputs(out: Path, name: str) -> Earlier:
+    """What is in a folder by that name."""
+    records, broken = [], []
+    for path in records_of(out, name):
+        try:
+            records.append(read_record(path))
+        except BadDescriptionError:
+            broken.append(path)
+    return Earlier(name, tuple(records), tuple(broken))
+
+
+def _difference(record: Record, request: Request, reading: Reading, task: str | None) -> str:
+    """Whose the recorded outputs are, if not this request's. A task that was left to ikgen both times may
+    have become another one with the description."""
+    was, dh = record.request, reading.dh
+    if record.source_sha256 != reading.source.sha256:
+        if was.robot.resolve() != request.robot.resolve():
+            return f"another robot, {was.robot}"
+        if dict(was.args) != dict(request.args):
+            given = " ".join(f"{name}:={text}" for name, text in was.args.items())
+            return f"another robot, {was.robot} with {given or 'no arguments'}"
+    if (was.base, was.tip) != (dh.base_link, dh.tip_link):
+        return f"another chain, {was.base} -> {was.tip}"
+    if task is not None and was.task != task and record.asked.task != request.task:
+        return f"another task, {was.task}"
+    return ""

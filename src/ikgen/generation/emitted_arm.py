@@ -1,0 +1,29 @@
+"""What running emitted code has to know of its arm; a derivation tells it, and so does a record."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ikgen.emit.solver_module import SolverModule
+    from ikgen.model.dh import DHChain
+
+__all__ = ["EmittedArm"]
+
+
+@dataclass(frozen=True, slots=True)
+class EmittedArm:
+    """An arm whose solver was emitted: `name` is the prefix of the files, `free` are the indices of its
+    held joints."""
+
+    name: str
+    dh: DHChain
+    task: str
+    free: tuple[int, ...]
+    max_solutions: int
+
+    @classmethod
+    def of(cls, module: SolverModule) -> EmittedArm:
+        """That of a module that is about to be emitted."""
+        return cls(module.name, module.dh, module.task, module.free, module.max_solutions)

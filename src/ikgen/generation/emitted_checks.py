@@ -1,0 +1,146 @@
+"""Verify what was emitted, before it is written and later."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ikgen.errors import BadDescriptionError, VerificationError
+from ikgen.generation.emitted_arm import EmittedArm
+from ikgen.generation.progress import Progress, silent
+from ikgen.generation.publish import write_texts
+
+if TYPE_CHECKING:
+    from ikgen.emit.derivation import Derivation, Reading
+    from ikgen.generation.emitters import Emitter
+    from ikgen.generation.request import Outputs
+    from ikgen.verify.oracle import Oracle
+    from ikgen.verify.verification_report import VerificationReport
+
+__all__ = ["oracle_for", "verify_emitted", "verify_one", "verify_texts", "with_samples"]
+
+
+def with_samples(derivation: Derivation) -> Derivation:
+    """The derivation whose outputs can run: numbers in place of the constants to be filled in."""
+    if not derivation.reading.dh.symbols:
+        return derivation
+    return replace(derivation, module=replace(derivation.module, sample=True))
+
+
+def verify_emitted(
+    derivation: Derivation,
+    texts: Mapping[str, str],
+    emitters: Sequence[Emitter],
+    outputs: Outputs,
+    progress: Progress,
+) -> dict[str, VerificationReport]:
+    """The verification of what was emitted: of a table without numbers that with samples."""
+    sampled = with_samples(derivation)
+    if sampled is not derivation:
+        texts = {}
+        for emitter in emitters:
+            if emitter.runner_target is not None:
+                texts |= emitter.emit(sampled)
+    return verify_texts(sampled, texts, emitters, outputs, progress)
+
+
+def verify_texts(
+    derivation: Derivation,
+    texts: Mapping[str, str],
+    emitters: Sequence[Emitter],
+    outputs: Outputs,
+    progress: Progress = silent,
+) -> dict[str, VerificationReport]:
+    """Verify emitted texts (name -> text) before they are written, each language that can run; raises
+    `VerificationError` if one fails."""
+    with tempfile.TemporaryDirectory(prefix="ikgen-", ignore_cleanup_errors=True) as name:
+        write_texts(Path(name), texts)
+        reports = _reports(derivation, Path(name), emitters, outputs, progress)
+    for name, report in reports.items():
+        if not report.passed:
+            raise VerificationError(
+                f"the emitted {name} code failed its verification: {report.worst_case}",
+                reports=reports,
+                derivation=derivation,
+                hint="nothing was written; run with -v for the whole table, and please report it",
+            )
+    return reports
+
+
+def _reports(
+    derivation: Derivation,
+    folder: Path,
+    emitters: Sequence[Emitter],
+    outputs: Outputs,
+    progress: Progress,
+) -> dict[str, VerificationReport]:
+    arm, oracle = EmittedArm.of(derivation.module), oracle_for(derivation.reading)
+    reports: dict[str, VerificationReport] = {}
+    first = None
+    for emitter in emitters:
+        runner = _runner(emitter, arm, folder)
+        if runner is not None:
+            reports[emitter.name] = verify_one(runner, oracle, arm, outputs, progress, peer=first)
+            first = first or runner
+    return reports
+
+
+def _runner(emitter: Emitter, arm: EmittedArm, folder: Path) -> Any | None:
+    """What runs an output that was just emitted: if it cannot be run, ikgen's text is wrong, not the
+    user's."""
+    try:
+        return emitter.runner(arm, folder)
+    except BadDescriptionError as error:
+        raise VerificationError(
+            f"the emitted {emitter.name} code {error.problem}",
+            hint="nothing was written; please report it",
+        ) from error
+
+
+def oracle_for(reading: Reading) -> Oracle:
+    """Pinocchio's forward kinematics of what was read."""
+    from ikgen.verify.oracle import PinocchioOracle, oracle_from_dh
+
+    dh = reading.dh
+    if reading.tree is None:
+        return oracle_from_dh(dh)
+    names = [joint.name for joint in dh.joints]
+    return PinocchioOracle(
+        reading.tree, dh.base_link, dh.tip_link, names, locked=dict(dh.locked) or None
+    )
+
+
+def verify_one(
+    runner: Any,
+    oracle: Oracle,
+    arm: EmittedArm,
+    outputs: Outputs,
+    progress: Progress,
+    *,
+    peer: Any | None = None,
+) -> VerificationReport:
+    """The verification of one language: what `runner` runs against the oracle, and against the same
+    solver in another language."""
+    import numpy as np
+
+    from ikgen.verify.verification import verify
+
+    dh = arm.dh
+    return verify(
+        runner,
+        oracle,
+        task=arm.task,
+        samples=outputs.samples,
+        seed=outputs.seed,
+        locked=dict(dh.locked) or None,
+        free_joints=[dh.joints[j].name for j in arm.free],
+        limits=(
+            np.array([j.limits.lower for j in dh.joints]),
+            np.array([j.limits.upper for j in dh.joints]),
+        ),
+        peer=peer,
+        progress=lambda stage, done, total: progress("verify", stage),
+    )

@@ -1,0 +1,123 @@
+"""Generate: derive, emit, verify, and write all outputs or none."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ikgen.errors import IkgenError, VerificationError
+from ikgen.generation.derive import derive
+from ikgen.generation.earlier import earlier_outputs
+from ikgen.generation.emitted_checks import verify_emitted
+from ikgen.generation.emitters import Emitter, find_emitter
+from ikgen.generation.new_records import record_texts
+from ikgen.generation.progress import Progress, silent
+from ikgen.generation.publish import check_folder, left_over, publish, remove
+from ikgen.generation.read import default_name, read
+from ikgen.tasks import find_task
+
+if TYPE_CHECKING:
+    from ikgen.emit.derivation import Derivation, Reading
+    from ikgen.generation.request import Outputs, Request
+    from ikgen.verify.verification_report import VerificationReport
+
+__all__ = ["Generation", "generate"]
+
+
+@dataclass(frozen=True, slots=True)
+class Generation:
+    """What was made: the derivation, the files and the verification of each language. `kept` are outputs
+    that an earlier run had made and that were made again, `removed` its files that no output is any more,
+    `left` solvers of that name that no record knows."""
+
+    derivation: Derivation
+    files: tuple[Path, ...]
+    reports: Mapping[str, VerificationReport] = field(default_factory=dict)
+    seconds: float = 0.0
+    kept: tuple[str, ...] = ()
+    removed: tuple[Path, ...] = ()
+    left: tuple[Path, ...] = ()
+
+
+def generate(request: Request, outputs: Outputs, progress: Progress = silent) -> Generation:
+    """The main job. Raises `VerificationError` (and writes nothing) if a check fails, `UsageError` where
+    outputs of another robot, chain or task would be replaced."""
+    started = time.perf_counter()
+    check_folder(outputs.out)
+    asked = [find_emitter(name) for name in outputs.emit]
+    progress("read", request.robot.name)
+    reading = read(request)
+    earlier = earlier_outputs(outputs.out, request.name or default_name(reading))
+    if not outputs.force:
+        earlier.check(request, reading, find_task(request.task).name if request.task else None)
+    kept = () if outputs.only else tuple(n for n in earlier.emit if n not in outputs.emit)
+    emitters = [*_again(kept), *asked]
+    made, derivation, reports = _made(request, reading, emitters, outputs, progress)
+    if not outputs.force:
+        earlier.check(request, reading, derivation.task.name)
+    texts = {name: text for one in made.values() for name, text in one.items()}
+    texts |= record_texts(request, outputs, derivation, made)
+    files = publish(outputs.out, texts)
+    removed = tuple(earlier.outdated(files))
+    remove(removed, outputs.out)
+    seconds = time.perf_counter() - started
+    left = left_over(outputs.out, derivation.module.name, files)
+    return Generation(derivation, files, reports, seconds, kept, removed, left)
+
+
+def _again(kept: Sequence[str]) -> list[Emitter]:
+    """The emitters of an earlier run's outputs."""
+    try:
+        return [find_emitter(name) for name in kept]
+    except IkgenError as error:
+        error.hint = f"an earlier run made it here; --only leaves it out. {error.hint}".strip()
+        raise
+
+
+_Made = tuple[dict[str, dict[str, str]], "Derivation", dict[str, "VerificationReport"]]
+
+
+def _made(
+    request: Request,
+    reading: Reading,
+    emitters: Sequence[Emitter],
+    outputs: Outputs,
+    progress: Progress,
+) -> _Made:
+    """The texts of each output, the derivation, and the verification.
+
+    Where the task was chosen to fit the arm, and its closed form has a weak step and fails, the next one
+    is taken: the whole pose.
+    """
+    derivation = derive(request, progress, reading=reading)
+    try:
+        made, reports = _emitted(derivation, emitters, outputs, progress)
+    except VerificationError:
+        if not derivation.chosen or derivation.graph.sound or derivation.task.whole_pose:
+            raise
+        passed_over = {derivation.task.name}
+        derivation = derive(request, progress, passed_over=passed_over, reading=reading)
+        made, reports = _emitted(derivation, emitters, outputs, progress)
+    for emitter in emitters:
+        if emitter.tells_verification:
+            progress("emit", emitter.name)
+            made[emitter.name] = emitter.emit(derivation, reports)
+    return made, derivation, reports
+
+
+def _emitted(
+    derivation: Derivation, emitters: Sequence[Emitter], outputs: Outputs, progress: Progress
+) -> tuple[dict[str, dict[str, str]], dict[str, VerificationReport]]:
+    """The texts of all outputs but those that tell the verification, and the verification."""
+    made: dict[str, dict[str, str]] = {}
+    for emitter in emitters:
+        if not emitter.tells_verification:
+            progress("emit", emitter.name)
+            made[emitter.name] = emitter.emit(derivation)
+    if not outputs.verify:
+        return made, {}
+    texts = {name: text for one in made.values() for name, text in one.items()}
+    return made, verify_emitted(derivation, texts, emitters, outputs, progress)

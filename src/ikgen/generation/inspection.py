@@ -1,0 +1,72 @@
+"""What a description holds and what can be done with it: what `ikgen inspect` shows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ikgen.generation.advice import attempts
+from ikgen.generation.progress import Progress, silent
+from ikgen.generation.read import read, read_tree
+
+if TYPE_CHECKING:
+    from ikgen.chains.arms import ChainCandidate
+    from ikgen.emit.derivation import Reading
+    from ikgen.generation.advice import Attempt
+    from ikgen.generation.request import Request
+    from ikgen.kinematics.classify import GeometryClass
+    from ikgen.model.joint_tree import JointTree
+
+__all__ = ["Inspection", "inspect_robot"]
+
+
+@dataclass(frozen=True, slots=True)
+class Inspection:
+    """`reading` and its `geometry` are None where it is not clear which chain is meant, `tree` for a DH
+    table; `attempts` are derivations that were tried, best first."""
+
+    reading: Reading | None
+    geometry: GeometryClass | None
+    tree: JointTree | None
+    candidates: tuple[ChainCandidate, ...]
+    attempts: tuple[Attempt, ...]
+
+    @property
+    def closed(self) -> tuple[Attempt, ...]:
+        """The attempts that found a closed form."""
+        return tuple(attempt for attempt in self.attempts if attempt.closed)
+
+    @property
+    def moving(self) -> int:
+        """How many joints of the chain are not held."""
+        return self.reading.dh.dof - len(self.reading.dh.free) if self.reading else 0
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What was odd in the file."""
+        if self.tree is not None:
+            return self.tree.source.warnings
+        return self.reading.source.warnings if self.reading is not None else ()
+
+
+def inspect_robot(
+    request: Request, progress: Progress = silent, *, advice: bool = True
+) -> Inspection:
+    """Read the file; the chain and what follows from it where it is clear which one."""
+    from ikgen.chains.arms import candidate_chains
+    from ikgen.kinematics.classify import classify
+
+    progress("read", request.robot.name)
+    tree: JointTree | None = None
+    candidates: tuple[ChainCandidate, ...] = ()
+    reading: Reading | None = None
+    if request.table:
+        reading = read(request)
+    else:
+        tree = read_tree(request)
+        candidates = candidate_chains(tree, request.base)
+        if request.tip is not None or len(candidates) == 1:
+            reading = read(request, tree)
+    tried = attempts(reading.dh, request.task, progress) if advice and reading else []
+    geometry = classify(reading.dh) if reading else None
+    return Inspection(reading, geometry, tree, candidates, tuple(tried))

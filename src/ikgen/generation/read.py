@@ -1,0 +1,94 @@
+"""Read a description: the file, the chain that is meant, and the chain in DH form."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ikgen.emit.derivation import Reading
+from ikgen.errors import BadDescriptionError, UsageError
+from ikgen.model.module_name import identifier
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from ikgen.generation.request import Request
+    from ikgen.model.chain import ActuatedJoint
+    from ikgen.model.joint_tree import Joint, JointTree
+
+__all__ = ["default_name", "read", "read_tree"]
+
+
+def read(request: Request, tree: JointTree | None = None) -> Reading:
+    """Read the file, choose the chain and convert it to modified DH form. `tree` is the file's where it was
+    read before."""
+    free = tuple(request.free)
+    if request.table:
+        return _read_table(request, free)
+    from ikgen.chains.selection import select_chain
+    from ikgen.kinematics.modified_dh import to_dh
+
+    tree = tree or read_tree(request)
+    _check_locks(request, tree.joints)
+    chain = select_chain(tree, request.base, request.tip, dict(request.lock))
+    return Reading(tree.source, tree, chain, to_dh(chain, free=free))
+
+
+def read_tree(request: Request) -> JointTree:
+    """All links and joints of the request's file."""
+    from ikgen.importers import load_tree
+
+    try:
+        return load_tree(
+            request.robot,
+            arguments=request.args,
+            package_paths=request.package_paths,
+            trust=request.trust,
+        )
+    except BadDescriptionError as error:
+        if request.robot.suffix.lower() == ".xacro":
+            error.hint = "\n".join(filter(None, [error.hint, _taken_arguments(request)]))
+        raise
+
+
+def _taken_arguments(request: Request) -> str:
+    """The arguments that a xacro file takes, in words; "" where there are none."""
+    from ikgen.importers.xacro.declared_arguments import declared_arguments
+
+    found = declared_arguments(request.robot, request.package_paths)
+    words = (f"{n}:={x}" if x is not None else f"{n} (no default)" for n, x in found.items())
+    return f"arguments that the file takes (--arg): {', '.join(words)}" if found else ""
+
+
+def _read_table(request: Request, free: tuple[str, ...]) -> Reading:
+    from ikgen.importers.dh.dh_table import read_dh_table
+
+    source, dh = read_dh_table(request.robot, free=free, locked=request.lock)
+    if request.lock:
+        _check_locks(request, read_dh_table(request.robot)[1].joints)
+    return Reading(source, None, None, dh)
+
+
+def _check_locks(request: Request, joints: Iterable[Joint | ActuatedJoint]) -> None:
+    """Raises `UsageError` for a joint that is locked outside its limits."""
+    for joint in joints:
+        value, limits = request.lock.get(joint.name), joint.limits
+        if value is not None and not limits.lower <= value <= limits.upper:
+            raise UsageError(
+                f"--lock {joint.name}={value:.9g}: outside the joint's limits, "
+                f"{limits.lower:.9g} to {limits.upper:.9g}",
+                hint="give a value inside them (rad or m)",
+            )
+
+
+def default_name(reading: Reading) -> str:
+    """The prefix of an arm's files where none is asked for: the robot's name, with the tip's where the
+    robot has several chains, so that their outputs do not meet."""
+    name = identifier(reading.dh.robot)
+    if reading.tree is None:
+        return name
+    from ikgen.chains.arms import candidate_chains
+
+    if len(candidate_chains(reading.tree)) < 2:
+        return name
+    tip = identifier(reading.dh.tip_link)
+    return tip if tip.startswith(f"{name}_") else f"{name}_{tip}"

@@ -1,0 +1,103 @@
+"""What the user asks for: one robot, one chain, one task; and what is written of it.
+
+The same fields are the options of the command line, the entries of an `[[arm]]` in a config, and those of a
+record (`ikgen.generation.record`): one spelling, read and written by `ikgen.generation.codec`.
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ikgen.generation.codec import CodecError, coded, read_free, uncoded
+from ikgen.model.module_name import is_module_name
+
+__all__ = ["Outputs", "Request", "is_table"]
+
+
+def is_table(robot: Path) -> bool:
+    """Whether a file is a DH table, by its suffix."""
+    return robot.suffix.lower() == ".toml"
+
+
+def _name(value: Any, where: str) -> Any:
+    if isinstance(value, str) and not is_module_name(value):
+        raise CodecError(where, f"the name '{value}' is not an identifier")
+    return value
+
+
+def _arguments(value: Any, where: str) -> Any:
+    """Arguments of xacro as texts; booleans as xacro writes them."""
+    if not isinstance(value, Mapping):
+        return value
+    return {n: str(x).lower() if isinstance(x, bool) else str(x) for n, x in value.items()}
+
+
+def _positive(value: Any, where: str) -> Any:
+    if isinstance(value, int) and value < 1:
+        raise CodecError(where, f"{value} is less than 1")
+    return value
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """One robot file or DH table, one chain, one task. `free` maps held joints to their default value
+    (None: chosen), `lock` fixed joints to their value (rad or m), `args` are xacro's; `name` is the prefix
+    of the files (None: made from the robot's); `trust` lets the file do whatever xacro can."""
+
+    robot: Path
+    base: str | None = None
+    tip: str | None = None
+    task: str | None = None
+    free: Mapping[str, float | None] = field(default_factory=dict, metadata=coded(read_free))
+    lock: Mapping[str, float] = field(default_factory=dict)
+    args: Mapping[str, str] = field(default_factory=dict, metadata=coded(_arguments))
+    package_paths: tuple[Path, ...] = ()
+    name: str | None = field(default=None, metadata=coded(_name))
+    # Only who runs ikgen may trust a file: neither a config nor a record says so.
+    trust: bool = field(default=False, metadata=uncoded())
+
+    @property
+    def table(self) -> bool:
+        """Whether the robot is a DH table."""
+        return is_table(self.robot)
+
+    def command(self, *more: str) -> str:
+        """The command that generates what is asked for, with `more` options."""
+        words = ["ikgen", "from-dh" if self.table else "from-urdf", str(self.robot)]
+        for option in ("base", "tip", "task", "name"):
+            value = getattr(self, option)
+            if value is not None:
+                words += [f"--{option}", value]
+        for joint, held in self.free.items():
+            words += ["--free", joint if held is None else f"{joint}={held!r}"]
+        for joint, locked in self.lock.items():
+            words += ["--lock", f"{joint}={locked!r}"]
+        for name, text in self.args.items():
+            words += ["--arg", f"{name}:={text}"]
+        for folder in self.package_paths:
+            words += ["--package-path", str(folder)]
+        if self.trust:
+            words.append("--trust")
+        return shlex.join([*words, *more])
+
+
+@dataclass(frozen=True, slots=True)
+class Outputs:
+    """What to write and how to check it.
+
+    `emit` names outputs, `out` is the folder that they go to, `samples` random poses are drawn from `seed`.
+    `only`: those made earlier by the same name are not kept; `force`: they may be of another robot, chain
+    or task.
+    """
+
+    emit: tuple[str, ...] = ("python",)
+    out: Path = Path()
+    samples: int = field(default=1000, metadata=coded(_positive))
+    seed: int = field(default=0, metadata=uncoded())
+    verify: bool = field(default=True, metadata=uncoded())
+    only: bool = field(default=False, metadata=uncoded())
+    force: bool = field(default=False, metadata=uncoded())

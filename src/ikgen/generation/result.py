@@ -1,0 +1,56 @@
+"""A finished generation as numbers and names."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ikgen.emit.derivation import Derivation
+    from ikgen.generation.generate import Generation
+    from ikgen.verify.verification_report import VerificationReport
+
+__all__ = ["as_dict", "rounding"]
+
+
+def rounding(derivation: Derivation) -> tuple[float, float] | None:
+    """How far (m, rad) the file is off what was solved, where Newton steps take the rows to it; else
+    None."""
+    return None if derivation.module.polish == "some" else derivation.reading.dh.deviation
+
+
+def as_dict(generation: Generation) -> dict[str, Any]:
+    """The result as a plain table, for --json."""
+    derivation = generation.derivation
+    module, dh = derivation.module, derivation.reading.dh
+    return {
+        "name": module.name,
+        "robot": dh.robot,
+        "base": dh.base_link,
+        "tip": dh.tip_link,
+        "task": module.task,
+        "joints": [joint.name for joint in dh.joints],
+        "free": [dh.joints[j].name for j in module.free],
+        "locked": dict(dh.locked),
+        "symbols": list(dh.symbols),
+        "geometry": {"name": derivation.geometry.name, "words": derivation.geometry.words},
+        "solved": [
+            {"unknown": s.candidate.unknown.text, "leaf": s.candidate.leaf, "branches": s.branches}
+            for s in derivation.graph.steps
+        ],
+        "max_solutions": module.max_solutions,
+        "deviation": {"m": dh.deviation[0], "rad": dh.deviation[1]},
+        "warnings": list(derivation.reading.source.warnings),
+        "files": [str(path) for path in generation.files],
+        "verification": {name: _report(r) for name, r in generation.reports.items()},
+        "seconds": round(generation.seconds, 3),
+    }
+
+
+def _report(report: VerificationReport) -> dict[str, Any]:
+    closure = [x if math.isfinite(x) else None for x in report.worst_closure]
+    return {
+        **report.to_dict(),
+        "worst_closure": {"m": closure[0], "rad": closure[1]},
+        "seconds": round(report.seconds, 3),
+    }

@@ -1,0 +1,111 @@
+"""Run recorded outputs against the description that was read now."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ikgen.errors import BadDescriptionError, IkgenError, VerificationError
+from ikgen.generation.emitted_arm import EmittedArm
+from ikgen.projects.check_findings import Finding
+from ikgen.projects.forward_difference import forward_difference
+
+if TYPE_CHECKING:
+    from ikgen.emit.derivation import Reading
+    from ikgen.generation.progress import Progress
+    from ikgen.generation.record import Record
+    from ikgen.generation.request import Outputs
+    from ikgen.verify.oracle import Oracle
+    from ikgen.verify.verification_report import VerificationReport
+
+__all__ = ["Checked", "OutputChecks"]
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """What came of running outputs: findings, and the verification of each that could run."""
+
+    findings: tuple[Finding, ...] = ()
+    reports: Mapping[str, VerificationReport] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class OutputChecks:
+    """The outputs of a record; `fix` is the command that makes them anew."""
+
+    record: Record
+    reading: Reading
+    fix: str
+    outputs: Outputs
+    progress: Progress
+
+    def run(self) -> Checked:
+        """Run every output that can be run; the first is the one that others are compared with."""
+        from ikgen.generation.emitted_checks import oracle_for
+
+        oracle = oracle_for(self.reading)
+        findings: list[Finding] = []
+        reports: dict[str, VerificationReport] = {}
+        first = None
+        for name in self.record.emit:
+            runner, found = self._runner(name, oracle)
+            if runner is not None:
+                report, found = self._report(name, runner, oracle, first)
+                if report is not None:
+                    reports[name] = report
+                    first = first or runner
+            findings += [found] if found else []
+        return Checked(tuple(findings), reports)
+
+    def _runner(self, name: str, oracle: Oracle) -> tuple[Any | None, Finding | None]:
+        """What runs an output of the same geometry; None with what is wrong where there is none."""
+        from ikgen.generation.emitters import find_emitter
+
+        folder = self.record.out or self.record.folder
+        try:
+            runner = find_emitter(name).runner(self._arm(), folder)
+            difference = None
+            if runner is not None:
+                difference = forward_difference(runner, oracle, self.reading.dh)
+        except IkgenError as error:
+            return None, self._failed(name, error)
+        if difference is not None:
+            return None, self._wrong(name, difference.words, difference.deviation)
+        return runner, None
+
+    def _report(
+        self, name: str, runner: Any, oracle: Oracle, peer: Any | None
+    ) -> tuple[VerificationReport | None, Finding | None]:
+        from ikgen.generation.emitted_checks import verify_one
+
+        try:
+            report = verify_one(runner, oracle, self._arm(), self.outputs, self.progress, peer=peer)
+        except IkgenError as error:
+            return None, self._failed(name, error)
+        wrong = None if report.passed else self._wrong(name, f"is wrong: {report.worst_case}")
+        return report, wrong
+
+    def _arm(self) -> EmittedArm:
+        dh, request = self.reading.dh, self.record.request
+        free = tuple(i for i, joint in enumerate(dh.joints) if joint.name in dh.free)
+        task = request.task or "pose"
+        return EmittedArm(self.record.name, dh, task, free, self.record.max_solutions)
+
+    def _failed(self, name: str, error: IkgenError) -> Finding:
+        if isinstance(error, BadDescriptionError | VerificationError):
+            return self._wrong(name, error.message)
+        # no compiler, a plug-in that fails: not the output's fault
+        return Finding(self._file(name), error.message, error.hint, None, error.exit_code)
+
+    def _wrong(
+        self, name: str, message: str, deviation: tuple[float, float] | None = None
+    ) -> Finding:
+        return Finding(self._file(name), message, self.fix, deviation)
+
+    def _file(self, emitter: str) -> Path:
+        """The file to name in messages about an output."""
+        suffix = {"python": ".py", "cpp": ".hpp"}.get(emitter, "")
+        names = [n for n in self.record.files if suffix and n.endswith(suffix)]
+        return self.record.folder / names[0] if names else self.record.path

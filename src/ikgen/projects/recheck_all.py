@@ -1,0 +1,86 @@
+"""Check all the outputs that a config lists or that lie in a folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ikgen.errors import IkgenError, UsageError
+from ikgen.generation.progress import Progress, silent
+from ikgen.generation.record import find_records, read_record
+from ikgen.projects.check_findings import Recheck, unchecked
+from ikgen.projects.config import default_config, load_config
+from ikgen.projects.recheck import recheck
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = ["recheck_all", "write_junit"]
+
+
+def recheck_all(
+    target: Path | None,
+    *,
+    robot: Path | None = None,
+    samples: int = 1000,
+    seed: int = 0,
+    trust: bool = False,
+    progress: Progress = silent,
+) -> list[Recheck]:
+    """Check everything that is meant, in order: the outputs of a config, those below a folder, or those of
+    one record. What keeps one from being checked is its finding, so that the others are checked too."""
+    results = []
+    for path, command in _records(target, robot):
+        record = None
+        try:
+            record = read_record(path)
+            results.append(
+                recheck(
+                    record,
+                    robot=robot,
+                    command=command,
+                    samples=samples,
+                    seed=seed,
+                    trust=trust,
+                    progress=progress,
+                )
+            )
+        except IkgenError as error:
+            results.append(unchecked(path, record, error))
+    return results
+
+
+def _records(target: Path | None, robot: Path | None) -> list[tuple[Path, str | None]]:
+    """The records meant, each with the command that makes its outputs again, if not its own."""
+    target = target or default_config(Path()) or Path()
+    if target.is_dir():
+        return [(path, None) for path in find_records(target)]
+    if target.suffix.lower() == ".json":
+        return [(target, None)]
+    if not target.is_file():
+        raise UsageError(
+            f"{target}: no such file or directory",
+            hint="name a config (ikgen.toml), a record, or the folder that was given to -o",
+        )
+    command = f"ikgen build {target}" if robot is None else None
+    return [(path, command) for arm in load_config(target) for path in arm.records]
+
+
+def write_junit(path: Path, results: Sequence[Recheck]) -> None:
+    """JUnit XML: one suite an output; findings that no verification holds become a suite of their own."""
+    from ikgen.verify.junit import write_junit_xml
+    from ikgen.verify.verification_report import CheckResult, VerificationReport
+
+    suites = []
+    for result in results:
+        record = result.record
+        checks = tuple(
+            CheckResult("up to date", False, 1, 1, detail=f.message, worst_case=f.command)
+            for f in result.findings
+        ) or (CheckResult("up to date", True, len(record.files) if record else 0),)
+        request = record.request if record else None
+        base, tip, task = (request.base, request.tip, request.task) if request else ("", "", "")
+        own = VerificationReport("outputs", base or "", tip or "", task or "", 0, 0, checks)
+        suites += [(result.name, report) for report in (own, *result.reports.values())]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_junit_xml(path, suites)

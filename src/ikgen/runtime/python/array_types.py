@@ -1,0 +1,12 @@
+"""Names of the types that all of the runtime speaks of."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Array", "Flags", "Row"]
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Row = tuple[float, ...]

@@ -1,0 +1,72 @@
+"""The other five angles of a loop from theta_3."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.runtime.python.array_types import Array
+from ikgen.runtime.python.loop_equations import XS, YS, ZS, loop_action
+from ikgen.runtime.python.rigid_motion import rotations_z
+
+__all__ = ["complete_angles", "null_angles"]
+
+
+def _split(N: Array) -> Array:
+    """The solutions (n, 12, 2) within null spaces of two dimensions N (n, 12, 2). Where theta_4
+    differs the shift `u3 = exp(i theta_4) u1` splits them, else the cone `w_0^2 = w_1^2 +
+    w_2^2`."""
+    u1, u3 = N[:, 0:3] + 1j * N[:, 3:6], N[:, 6:9] + 1j * N[:, 9:12]
+    A = np.linalg.pinv(np.concatenate([u1, np.conj(u1)], axis=1))
+    A = A @ np.concatenate([u3, u1], axis=1)
+    (a, b), (c, d) = (A[:, 0, 0], A[:, 0, 1]), (A[:, 1, 0], A[:, 1, 1])
+    root = np.sqrt(0.25 * (a - d) ** 2 + b * c)
+    vectors = []
+    H = (np.conj(np.swapaxes(u1, 1, 2)) @ (np.array([1.0, -1.0, -1.0])[:, None] * u1)).real
+    disc = np.sqrt(np.maximum(H[:, 0, 1] ** 2 - H[:, 0, 0] * H[:, 1, 1], 0.0))
+    for sign in (1.0, -1.0):
+        x = sign * root - 0.5 * (a - d)  # eigenvector (b, x) or (x + a - d, c)
+        first = np.abs(b) >= np.abs(c)
+        shift = np.stack([np.where(first, b, x + a - d), np.where(first, x, c)], axis=-1)
+        big = np.take_along_axis(shift, np.abs(shift).argmax(axis=1)[:, None], axis=1)
+        cone = np.stack([-H[:, 0, 1] - sign * disc, H[:, 0, 0]], axis=-1)
+        other = np.stack([H[:, 1, 1], -H[:, 0, 1] + sign * disc], axis=-1)
+        cone = np.where((np.abs(H[:, 0, 0]) >= np.abs(H[:, 1, 1]))[:, None], cone, other)
+        apart = np.abs(root) > 0.01
+        vectors.append(np.where(apart[:, None], (shift * np.conj(big)).real, cone))
+    return np.asarray(N @ np.stack(vectors, axis=-1), dtype=float)
+
+
+def null_angles(M: Array) -> tuple[NDArray[np.intp], Array]:
+    """theta_4, theta_5 from the null vectors (cos h w, sin h w, cos 3h w, sin 3h w), with w = (1,
+    c5, s5) and h half of theta_4, of M (k, 12, 12): indices into k, pairs of angles (m, 2)."""
+    ev, U = np.linalg.eigh(np.swapaxes(M, 1, 2) @ M)
+    two = np.nonzero(ev[:, 1] < 1e-8 * ev[:, -1])[0]
+    index = np.concatenate([np.arange(len(M)), np.repeat(two, 2)])
+    v = np.concatenate([U[:, :, 0], np.swapaxes(_split(U[two, :, :2]), 1, 2).reshape(-1, 12)])
+    u1, u3 = v[:, 0:3] + 1j * v[:, 3:6], v[:, 6:9] + 1j * v[:, 9:12]
+    t4 = np.angle((u3 * np.conj(u1)).sum(axis=1))
+    w = (u1 * np.exp(-0.5j * t4)[:, None]).real
+    w = np.where(w[:, :1] < 0.0, -w, w)
+    return index, np.stack([t4, np.arctan2(w[:, 2], w[:, 1])], axis=-1)
+
+
+def complete_angles(C: list[Array], left: Array, right: Array, t: Array) -> Array:
+    """The six loop angles (k, 6) from theta_3, theta_4, theta_5 in t (k, 3), one row of C, left and
+    right each: theta_1 and theta_2 linearly, theta_6 from the rotation left over."""
+    one = np.ones(len(t))
+    b3, b4, b5 = (np.stack([one, np.cos(x), np.sin(x)], axis=-1) for x in t.T)
+    v = (left @ (b4[:, :, None] * b5[:, None]).reshape(-1, 9, 1))[..., 0]
+    w = (v[:, XS] + 1j * v[:, YS]) * (b3[:, 1:2] + 1j * b3[:, 2:])
+    v = np.concatenate([w.real, w.imag, v[:, ZS], one[:, None]], axis=1)
+    u = (loop_action(C[1]) @ v[..., None])[..., 0]
+    cs = np.linalg.pinv(right[:, ZS, 1:]) @ (u[:, ZS] - right[:, ZS, 0])[..., None]
+    t1 = np.arctan2(cs[:, 1, 0], cs[:, 0, 0])
+    z = (right @ np.stack([one, np.cos(t1), np.sin(t1)], axis=-1)[..., None])[..., 0]
+    w = (z[:, XS] + 1j * z[:, YS]) * (u[:, XS] - 1j * u[:, YS])
+    angles = np.concatenate([np.stack([t1, np.angle(w.sum(axis=1))], axis=-1), t], axis=1)
+    X = C[5]
+    for i in range(5):
+        X = X @ rotations_z(angles[:, i]) @ C[i]
+    t6 = np.arctan2(X[:, 0, 1] - X[:, 1, 0], X[:, 0, 0] + X[:, 1, 1])
+    return np.concatenate([angles, t6[:, None]], axis=1)

@@ -1,0 +1,101 @@
+"""The general 6R elimination as the closed form of an arm, held joints merged into the chain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan2, cos, sin
+
+import numpy as np
+
+from ikgen.runtime.python.array_types import Array, Row
+from ikgen.runtime.python.general_6r import Elimination, general_6r
+from ikgen.runtime.python.refinement import rank_loss
+from ikgen.runtime.python.solved_arm import Arm
+
+__all__ = ["Plan", "elimination_branches", "elimination_lanes"]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The arm's typical `length` (m) and the `eliminations` that suit it, in order of preference."""
+
+    length: float
+    eliminations: tuple[Elimination, ...]
+
+
+def _frames(arm: Arm, held: Array) -> Array:
+    """The chain of the six moving joints (7, 4, 4), the held ones' values merged into it.
+
+    held: cosine and sine of a held angle, or a held distance, base to tip.
+    """
+    frames = [arm.chain.frames[0]]
+    values = iter(held.tolist())
+    for (joint, revolute, _, _), frame in zip(arm.chain.motions, arm.chain.frames[1:]):
+        if joint not in arm.free:
+            frames.append(frame)
+            continue
+        motion = np.eye(4)
+        if revolute:
+            c, s = next(values), next(values)
+            motion[0, 0] = motion[1, 1] = c
+            motion[1, 0], motion[0, 1] = s, -s
+        else:
+            motion[2, 3] = next(values)
+        frames[-1] = frames[-1] @ motion @ frame
+    return np.array(frames)
+
+
+def _regular_first(arm: Arm, angles: Array, held: Array) -> Array:
+    """At most `arm.most` rows of DH angles (k, 6): where a continuum gives more, its samples go."""
+    if len(angles) <= arm.most:
+        return angles
+    v = np.empty((len(angles), len(arm.chain.motions)))
+    values, columns = iter(held.tolist()), iter(angles.T)
+    for i, (joint, revolute, _, _) in enumerate(arm.chain.motions):
+        if joint not in arm.free:
+            v[:, i] = next(columns)
+        elif revolute:
+            c, s = next(values), next(values)
+            v[:, i] = atan2(s, c)
+        else:
+            v[:, i] = next(values)
+    q = np.empty((len(angles), len(arm.lower)))
+    q[:, arm.chain.joint] = (v - arm.chain.offset) / arm.chain.scale
+    loss = rank_loss(arm.chain, arm.task, arm.moving, q)
+    order = np.argsort(loss < arm.policy.continuum_rank_loss, kind="stable")
+    return np.asarray(angles[order][: arm.most])
+
+
+def elimination_branches(arm: Arm, plan: Plan, entries: Row) -> list[Row]:
+    """Per solution the cosine and sine of every moving joint's angle.
+
+    entries: the pose's first three rows, then cosines, sines and distances of held joints.
+    """
+    T = np.vstack([np.array(entries[:12]).reshape(3, 4), [0.0, 0.0, 0.0, 1.0]])
+    held = np.array(entries[12:])
+    found = general_6r(_frames(arm, held), plan.length, plan.eliminations, T[None], arm.policy)
+    angles = _regular_first(arm, found[0], held)
+    return [tuple(x for a in row for x in (cos(a), sin(a))) for row in angles.tolist()]
+
+
+def elimination_lanes(arm: Arm, plan: Plan, entries: tuple[Array, ...]) -> tuple[Array, ...]:
+    """`elimination_branches` for many poses: cosines and sines (16, N), and which there are."""
+    columns = np.array([e.reshape(-1) for e in np.broadcast_arrays(*entries)])
+    count = columns.shape[1]
+    lanes = np.ones((12, arm.most, count))
+    found = np.zeros((arm.most, count), dtype=bool)
+    distinct: Array
+    distinct, group = np.unique(columns[12:], axis=1, return_inverse=True)
+    for k in range(max(distinct.shape[1], 1)):
+        members = np.flatnonzero(group.reshape(-1) == k) if len(columns) > 12 else np.arange(count)
+        T = np.tile(np.eye(4), (len(members), 1, 1))
+        T[:, :3] = columns[:12, members].T.reshape(-1, 3, 4)
+        held: Array = distinct[:, k] if len(columns) > 12 else np.empty(0)
+        frames = _frames(arm, held)
+        solved = general_6r(frames, plan.length, plan.eliminations, T, arm.policy)
+        for i, angles in zip(members, solved):
+            rows = _regular_first(arm, angles, held)
+            lanes[0::2, : len(rows), i] = np.cos(rows).T
+            lanes[1::2, : len(rows), i] = np.sin(rows).T
+            found[: len(rows), i] = True
+    return (*lanes, found)

@@ -1,0 +1,146 @@
+"""All real solutions of any 6R chain."""
+
+from __future__ import annotations
+
+from functools import cmp_to_key
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.back_substitution import complete_angles, null_angles
+from ikgen.runtime.python.chain_kinematics import Chain, chain_of
+from ikgen.runtime.python.hidden_angle import hidden_angles, loop_resultant
+from ikgen.runtime.python.loop_equations import loop_constants, loop_equations
+from ikgen.runtime.python.refinement import refine
+from ikgen.runtime.python.rigid_motion import inverses, rotations_z
+from ikgen.runtime.python.solve_policy import Policy
+from ikgen.runtime.python.whole_pose import PoseTask
+
+__all__ = [
+    "Elimination",
+    "candidates",
+    "distinct_angles",
+    "general_6r",
+    "refined_angles",
+    "six_joints",
+]
+
+Elimination = tuple[int, int, int]  # joint that the loop begins at, whether reversed or swapped
+_SIX = range(6)
+
+
+def candidates(
+    F: Array, T: Array, plan: Elimination
+) -> tuple[NDArray[np.intp], Array, NDArray[np.intp], Flags]:
+    """Approximate solutions for the poses T (N, 4, 4) by one plan: pose index (k,), joint angles
+    (k, 6); how many solutions each pose has at least, and whether its roots are simple (N,)."""
+    start, reverse, swap = plan
+    order, C = loop_constants(F, T, start, reverse)
+    E, left, right = loop_equations(C)
+    mono = left.reshape(-1, 14, 3, 3).swapaxes(2, 3).reshape(-1, 14, 9) if swap else left
+    M = loop_resultant(E, mono)
+    pose, t3, least, simple = hidden_angles(E, mono, M, 0.03)
+    if not len(pose):
+        return pose, np.zeros((0, 6)), least, simple
+    c, s = np.cos(t3)[:, None, None], np.sin(t3)[:, None, None]
+    M0, M1, M2 = (_of(m, pose) for m in M)
+    k, t45 = null_angles(M0 + c * M1 + s * M2)
+    t = np.concatenate([t3[k, None], t45[:, ::-1] if swap else t45], axis=1)
+    pose = pose[k]
+    angles = complete_angles([_of(c, pose) for c in C], _of(left, pose), _of(right, pose), t)
+    q = np.empty_like(angles)
+    q[:, order] = -angles if reverse else angles
+    return pose, q, least, simple
+
+
+def _of(rows: Array, pose: NDArray[np.intp]) -> Array:
+    """Rows of poses, where they are not the same for all."""
+    return rows[pose] if len(rows) > 1 else rows
+
+
+def refined_angles(F: Array, T: Array, q: Array, policy: Policy) -> tuple[Array, Flags]:
+    """Newton steps from q (k, 6) to T (k, 4, 4): q, and which arrived."""
+    return refine(six_joints(F), PoseTask(1.0), _SIX, q, T, policy)
+
+
+def six_joints(F: Array) -> Chain:
+    """The chain of frames F (7, 4, 4)."""
+    return chain_of(F, tuple((i, True, 1.0, 0.0) for i in _SIX), 6)
+
+
+def distinct_angles(q: Array, coincident: float) -> Array:
+    """The rows of q (k, 6), reduced to (-pi, pi], without repetitions."""
+    q = np.pi - np.mod(np.pi - q, 2.0 * np.pi)
+    apart = np.abs(np.pi - np.abs(np.pi - np.abs(q[:, None] - q))).max(axis=2)
+    return np.asarray(q[~np.tril(apart < coincident, -1).any(axis=1)], dtype=float)
+
+
+def _displaced() -> Array:
+    """A rotation of about 1e-3 rad, and as much of a translation (in arm lengths)."""
+    X = np.eye(4)
+    X[:3, :3] = (
+        rotations_z(np.array(9e-4)) @ rotations_z(np.array(1.1e-3))[[2, 0, 1, 3]][:, [2, 0, 1, 3]]
+    )[:3, :3]
+    X[:3, 3] = 8e-4, -1.1e-3, 6e-4
+    return X
+
+
+def _compare(a: list[float], b: list[float]) -> int:
+    """Sign of the first difference of two rows; the turn is cut at -1 rad, where no right angle lies."""
+    for x, y in zip(a, b):
+        gap = (x + 1.0) % (2.0 * np.pi) - (y + 1.0) % (2.0 * np.pi)
+        if abs(gap) > 1e-7:
+            return 1 if gap > 0.0 else -1
+    return 0
+
+
+def _sorted(rows: Array) -> Array:
+    """Rows (k, 6) in an order that does not hang on how they were found."""
+    return np.array(sorted(rows.tolist(), key=cmp_to_key(_compare))).reshape(-1, 6)
+
+
+def general_6r(
+    F: Array, length: float, plans: tuple[Elimination, ...], T: Array, policy: Policy
+) -> list[Array]:
+    """All real solutions of `F_0 Rz(q_1) F_1 ... Rz(q_6) F_6 = T` for poses T (N, 4, 4).
+
+    F (7, 4, 4) constant rigid transforms, length (m) a typical size of the arm, plans the
+    eliminations in order of preference. One run of the first is enough where its roots are real, apart and
+    each a solution to many digits. Otherwise more runs follow, with the pose displaced to either side
+    (where right angles make roots coincide they come apart, and Newton's method takes them back) and by
+    the next elimination, until one finds all that is known and no more. Returns for every pose its joint
+    angles (k, 6) in (-pi, pi], sorted.
+    """
+    F, T = F.copy(), T.copy()
+    F[:, :3, 3] /= length
+    T[:, :3, 3] /= length
+    found = [np.zeros((0, 6)) for _ in T]
+    near = np.abs(T[:, :3]).max(axis=(1, 2), initial=0.0) < 1e6  # false for NaN
+    todo = np.nonzero(near)[0]
+    least = np.zeros(len(T), dtype=int)
+    aside = _displaced()
+    runs = [(plan, X) for plan in plans for X in (None, aside, inverses(aside))]
+    for number, (plan, X) in enumerate(runs):
+        if not len(todo):
+            break
+        exact = T[todo]
+        pose, q, real, simple = candidates(F, exact if X is None else exact @ X, plan)
+        if X is None:
+            least[todo] = np.maximum(least[todo], real)
+        if len(q):
+            start = q
+            q, arrived = refined_angles(F, exact[pose], start, policy)
+            simple[pose[np.abs(q - start).max(axis=1) > 1e-5]] = False
+            pose, q = pose[arrived], q[arrived]
+        settled = np.zeros(len(todo), dtype=bool)
+        for i, n in enumerate(todo):
+            mine, known = distinct_angles(q[pose == i], policy.coincident), len(found[n])
+            both = np.concatenate([found[n], mine])
+            found[n] = distinct_angles(both, policy.coincident) if known else mine
+            count = len(found[n])
+            enough = count % 2 == 0 and count >= least[n]
+            alone = number == 0 and bool(simple[i]) and count == real[i] > 0
+            settled[i] = enough and (alone or (number > 0 and len(mine) == known == count))
+        todo = todo[~settled]
+    return [_sorted(rows) for rows in found]

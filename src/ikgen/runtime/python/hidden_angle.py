@@ -1,0 +1,78 @@
+"""The angle theta_3 of a loop: roots of a resultant, as eigenvalues.
+
+The resultant M(theta_3) is kept real by half angles and, because theta_3 turns four vectors of the left
+side, its sixteen roots are the eigenvalues of a real 16x16 matrix with nothing extraneous, where Manocha
+and Canny (1994) have 24x24 and (1 + x^2)^4.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.loop_equations import XS, YS, ZS
+
+__all__ = ["Resultant", "hidden_angles", "loop_resultant"]
+
+Resultant = tuple[Array, Array, Array]
+_NODES = 2.0 * np.pi / 7.0 * np.arange(7)
+_JITTER = np.cos(np.outer(np.arange(1, 13), np.arange(1, 13)))
+
+
+def _lift(A: Array) -> Array:
+    """Rows (..., r, 9) in (1, c, s) x (1, c', s') times cos h and sin h, h half the first angle:
+    (..., 2r, 12) in (cos h, sin h, cos 3h, sin 3h) x (1, c', s')."""
+    A0, A1, A2 = A[..., 0:3], 0.5 * A[..., 3:6], 0.5 * A[..., 6:9]
+    top = np.concatenate([A0 + A1, A2, A1, A2], axis=-1)
+    return np.concatenate([top, np.concatenate([A2, A0 - A1, -A2, A1], axis=-1)], axis=-2)
+
+
+def loop_resultant(E: Array, left: Array) -> Resultant:
+    """M0 (N, 12, 12), Mc, Ms with `M(theta_3) = M0 + Mc cos + Ms sin` singular at solutions."""
+    F0 = E[..., ZS] @ left[:, ZS]
+    F0[..., 0] += E[..., 14]
+    x, y = E[..., XS], E[..., YS]
+    X, Y = left[:, XS], left[:, YS]
+    return _lift(F0), _lift(x @ X + y @ Y), _lift(y @ X - x @ Y)
+
+
+def hidden_angles(
+    E: Array, left: Array, M: Resultant, accept: float
+) -> tuple[NDArray[np.intp], Array, NDArray[np.intp], Flags]:
+    """The roots theta_3 with an imaginary part below `accept`: rows (k,) and real parts (k,); per
+    row the number of those that are clearly real, and whether all are and lie apart.
+
+    With `M(theta) = M0 + N Rot(theta) W`, Rot = c + s J on R^16, about a node where `M_pi = M0 - N
+    W` is far from singular: tan(theta/2) are the eigenvalues of `-J (1 + 2 W M_pi^-1 N)`.
+    """
+    c, s = np.cos(_NODES)[:, None, None], np.sin(_NODES)[:, None, None]
+    at_node = M[0][:, None] - c * M[1][:, None] - s * M[2][:, None]
+    k = np.abs(np.linalg.det(at_node)).argmax(axis=1)
+    row = np.arange(len(at_node))
+    c, s = c[k], s[k]
+    x, y = E[..., XS], E[..., YS]
+    N = np.zeros((len(row), 12, 16))
+    N[:, :6, 0:4] = N[:, 6:, 4:8] = c * x + s * y
+    N[:, :6, 8:12] = N[:, 6:, 12:16] = c * y - s * x
+    W = np.concatenate([_lift(left[:, XS]), _lift(left[:, YS])], axis=1)
+    K = np.eye(16) + 2.0 * W @ _solved(at_node[row, k], N)
+    t = np.linalg.eigvals(np.concatenate([K[:, 8:], -K[:, :8]], axis=1))
+    # angle and modulus of (1 + i t) / (1 - i t)
+    z = (1.0 + 1j * t) / np.where(t == -1j, 1e-300, 1.0 - 1j * t)
+    off = np.abs(np.log(np.maximum(np.abs(z), 1e-300)))
+    real = (off < 1e-8).sum(axis=1)
+    angle = np.where(off < accept, np.angle(z), np.nan)
+    gap = np.abs(np.remainder(angle[:, :, None] - angle[:, None] + np.pi, 2.0 * np.pi) - np.pi)
+    close = (gap + 4.0 * np.eye(16) < 1e-3).any(axis=(1, 2))
+    row, i = np.nonzero(off < accept)
+    return row, _NODES[k[row]] + angle[row, i], real, ~close & ((off < accept).sum(axis=1) == real)
+
+
+def _solved(pivot: Array, N: Array) -> Array:
+    """`pivot^-1 N`; a pivot is singular where M is for every angle: it is put off a little then."""
+    try:
+        return np.asarray(np.linalg.solve(pivot, N))
+    except np.linalg.LinAlgError:
+        size = np.abs(pivot).max(axis=(1, 2))[:, None, None] + 1e-30
+        return np.asarray(np.linalg.solve(pivot + 1e-10 * size * _JITTER, N))

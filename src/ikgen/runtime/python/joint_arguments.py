@@ -1,0 +1,60 @@
+"""The arguments `free` and `seed` as joint values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import isfinite
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ikgen.runtime.python.array_types import Array, Row
+from ikgen.runtime.python.solved_arm import Arm
+
+__all__ = ["held_rows", "held_values", "seed_rows"]
+
+
+def held_values(arm: Arm, free: Sequence[float] | Mapping[str, float] | None) -> Row:
+    """Values of the held joints, base to tip; raises ValueError where they are no such values."""
+    if free is None:
+        return arm.free_defaults
+    names = arm.free_joints
+    if isinstance(free, Mapping):
+        unknown = set(free) - set(names)
+        if unknown:
+            raise ValueError(f"no free joint named {sorted(unknown)}; there is {list(names)}")
+        values = tuple(float(free.get(n, x)) for n, x in zip(names, arm.free_defaults))
+    else:
+        values = tuple(float(x) for x in free)
+    if len(values) != len(names):
+        raise ValueError(f"free has {len(values)} values, expected {len(names)}")
+    if not all(map(isfinite, values)):
+        raise ValueError(f"free {list(values)} has values that are not finite")
+    return values
+
+
+def held_rows(arm: Arm, free: ArrayLike | Mapping[str, float] | None, count: int) -> Array:
+    """`held_values` for many poses: one row for all of them, or one each; (count, held joints)."""
+    shape = (count, len(arm.free_joints))
+    if free is None or isinstance(free, Mapping):
+        return np.broadcast_to(held_values(arm, free), shape)
+    if np.ndim(free) < 2:
+        one: list[float] = np.asarray(free, dtype=float).tolist()
+        return np.broadcast_to(held_values(arm, one), shape)
+    held = np.asarray(free, dtype=float)
+    if held.shape != shape:
+        raise ValueError(f"free has shape {held.shape}, expected {shape}")
+    if not np.isfinite(held).all():
+        raise ValueError("free has values that are not finite")
+    return held
+
+
+def seed_rows(arm: Arm, seed: ArrayLike, *shapes: tuple[int, ...]) -> Array:
+    """The seed as an array of one of the shapes; raises ValueError for others."""
+    values = np.asarray(seed, dtype=float)
+    if values.shape not in shapes:
+        expected = " or ".join(map(str, shapes))
+        raise ValueError(f"seed has shape {values.shape}, expected {expected}")
+    if not np.isfinite(values).all():
+        raise ValueError(f"seed {values.tolist()} has values that are not finite")
+    return values

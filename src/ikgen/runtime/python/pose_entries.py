@@ -1,0 +1,81 @@
+"""Tasks that read some entries of the pose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.chain_kinematics import cross
+from ikgen.runtime.python.orthonormal_columns import (
+    columns_defect,
+    determinant,
+    most_defect,
+    nearest_columns,
+)
+from ikgen.runtime.python.solve_policy import Policy
+
+__all__ = ["EntriesTask"]
+
+
+@dataclass(frozen=True)
+class EntriesTask:
+    """The entries of `row` and `column`; positions count over `size` (m).
+
+    `unit`: columns of the rotation that are read, unit vectors at right angles; one that lies `flat` in the
+    x-y plane is a heading: it may be shorter than 1, as that of a tilted tool, which nothing reaches.
+    """
+
+    size: float
+    row: tuple[int, ...]
+    column: tuple[int, ...]
+    unit: tuple[int, ...]
+    flat: bool
+
+    def read(self, T: list[list[float]], policy: Policy) -> list[list[float]] | None:
+        """Implements `Task`."""
+        poses, (good,) = self.read_batch(np.array([T]), policy)
+        lines: list[list[float]] = poses[0].tolist()
+        return lines if good else None
+
+    def read_batch(self, T: Array, policy: Policy) -> tuple[Array, Flags]:
+        """Implements `Task`."""
+        good: Flags = np.asarray(np.isfinite(T[:, self.row, self.column]).all(axis=1))
+        if not self.unit:
+            return T, good
+        height = 2 if self.flat else 3
+        V = np.zeros((3, len(self.unit), len(T)))
+        V[:height] = T[:, :height, self.unit].transpose(1, 2, 0)
+        columns = tuple((v[0], v[1], v[2]) for v in V.swapaxes(0, 1))
+        with np.errstate(all="ignore"):
+            defect = columns_defect(columns)
+            most = most_defect(height * len(self.unit), policy.pose_tolerance)
+            near = good & (defect <= most)
+            if len(columns) == 3:
+                near &= determinant(columns) > 0.0
+            square = (V * V).sum(axis=(0, 1))
+            good &= near | ((square > 0.0) & (square < 1.0)) if self.flat else near
+            near &= defect > policy.orthonormal**2
+            if near.any():
+                R = np.moveaxis(np.array(nearest_columns(columns)), -1, 0).swapaxes(1, 2)
+                T = T.copy()
+                T[np.ix_(near, range(height), self.unit)] = R[near, :height]
+        return T, good
+
+    def error(self, pose: Array, T: Array) -> Array:
+        """The entries' differences."""
+        return (T[:, self.row, self.column] - pose[:, self.row, self.column]) * self._weight()
+
+    def rows(self, pose: Array, J: Array) -> Array:
+        """The entries' derivatives."""
+        out = np.empty((len(pose), len(self.row), J.shape[2]))
+        for i, (r, c) in enumerate(zip(self.row, self.column)):
+            if c == 3:
+                out[:, i] = J[:, r]
+            else:
+                out[:, i] = cross(J[:, 3:].transpose(0, 2, 1), pose[:, None, :3, c])[:, :, r]
+        return out * self._weight()[:, None]
+
+    def _weight(self) -> Array:
+        return np.array([1.0 / self.size if c == 3 else 1.0 for c in self.column])

@@ -1,0 +1,117 @@
+"""All solutions of one pose, the closed form's inner loop on floats."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ikgen.runtime.python.array_types import Row
+from ikgen.runtime.python.joint_arguments import held_values, seed_rows
+from ikgen.runtime.python.refinement import rank_loss, refine
+from ikgen.runtime.python.row_placement import is_new, place_rows
+from ikgen.runtime.python.solutions import Solutions, Status
+from ikgen.runtime.python.solved_arm import Arm, Found
+
+__all__ = ["solve_pose"]
+
+
+def solve_pose(
+    arm: Arm,
+    pose: ArrayLike,
+    free: Sequence[float] | Mapping[str, float] | None,
+    seed: ArrayLike | None,
+    limits: bool,
+) -> Solutions:
+    """All joint values that bring the tip to `pose` (4, 4); raises ValueError for bad arguments."""
+    matrix, dof = np.asarray(pose, dtype=float), len(arm.lower)
+    if matrix.shape != (4, 4):
+        raise ValueError(f"pose has shape {matrix.shape}, expected (4, 4)")
+    near = None if seed is None else tuple(seed_rows(arm, seed, (dof,)).tolist())
+    held = held_values(arm, free)
+    T = arm.task.read(matrix.tolist(), arm.policy)
+    found, real = ([], False) if T is None else _fitting(arm, T, near, held, limits)
+    if not found:
+        status = Status.INVALID if T is None else Status.LIMITS if real else Status.UNREACHABLE
+        return Solutions(np.empty((0, dof)), status, np.empty(0, dtype=bool))
+    if near is not None:
+        origin = near
+        found.sort(key=lambda item: sum((a - b) * (a - b) for a, b in zip(item[0], origin)))
+    q = np.array([row for row, _ in found]) + 0.0
+    return Solutions(q, Status.OK, np.array([flag for _, flag in found], dtype=bool))
+
+
+def _fitting(
+    arm: Arm, T: list[list[float]], near: Row | None, held: Row, limits: bool
+) -> tuple[list[Found], bool]:
+    """Solutions on the right turns, and whether there were any before limits.
+
+    Where the pose leaves a joint free and its given value leads nowhere, other values are tried.
+    """
+    real = False
+    for tries in (range(1), range(1, arm.policy.tries)):
+        starts = [_start(arm, near, held, n * arm.policy.try_step) for n in tries]
+        for start, (kept, hit) in zip(starts, _rows(arm, T, starts, held)):
+            real = real or bool(kept)
+            out = place_rows(arm, kept, near, limits)
+            if not out and near is not None:
+                steps = _refined(arm, [(start, True)], T)
+                out = place_rows(arm, [item for item in steps if item], near, limits)
+            if out or not hit:
+                return out, real
+    return [], real
+
+
+def _start(arm: Arm, near: Row | None, held: Row, turn: float) -> Row:
+    """Values for joints that the pose leaves free, those of revolute ones turned; held ones as they are."""
+    q = list(near) if near is not None else [0.0] * len(arm.lower)
+    if turn:
+        q = [x + turn if revolute else x for x, revolute in zip(q, arm.chain.revolute)]
+    for j, value in zip(arm.free, held):
+        q[j] = value
+    return tuple(q)
+
+
+def _rows(
+    arm: Arm, T: list[list[float]], starts: list[Row], held: Row
+) -> list[tuple[list[Found], bool]]:
+    """For each start, the distinct solutions (radians between -pi and pi) and whether it was read.
+
+    Newton steps are taken by all rough rows together: their price is that of the calls.
+    """
+    kept: list[list[Found]] = [[] for _ in starts]
+    fine: list[tuple[int, Found]] = []
+    rough: list[tuple[int, Found]] = []
+    hits: list[bool] = []
+    for i, q0 in enumerate(starts):
+        answers, hit = arm.branches(T, q0, held)
+        hits.append(hit)
+        if hit:
+            rough.append((i, (q0, True)))
+        if len(starts) == 1 and len(arm.beside):
+            poses: list[list[list[float]]] = (np.array(T) @ arm.beside).tolist()
+            answers += [row for pose in poses for row in arm.branches(pose, q0, held)[0]]
+        for row, flag, bent in answers:
+            (rough if bent else fine).append((i, (row, flag)))
+    steps = _refined(arm, [row for _, row in rough], T)
+    arrived = [(i, row) for (i, _), row in zip(rough, steps) if row is not None]
+    for i, item in arrived + fine:
+        if len(kept[i]) < arm.most and is_new(arm, item[0], kept[i]):
+            kept[i].append(item)
+    return list(zip(kept, hits))
+
+
+def _refined(arm: Arm, rows: list[Found], T: list[list[float]]) -> list[Found | None]:
+    """The rows that Newton steps bring to the pose; None for those that they don't."""
+    if not rows:
+        return []
+    target = np.broadcast_to(np.array(T), (len(rows), 4, 4))
+    start = np.array([row for row, _ in rows])
+    q, arrived = refine(arm.chain, arm.task, arm.moving, start, target, arm.policy)
+    loss = rank_loss(arm.chain, arm.task, arm.moving, q)
+    flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
+    return [
+        (tuple(row), (flag and x < continuum) or x < flat) if ok else None
+        for row, (_, flag), ok, x in zip(q.tolist(), rows, arrived.tolist(), loss.tolist())
+    ]

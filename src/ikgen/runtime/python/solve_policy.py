@@ -1,0 +1,29 @@
+"""Tolerances and counts of `solve`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["Policy"]
+
+
+@dataclass(frozen=True)
+class Policy:
+    """Errors are in rad, or m over the arm's size."""
+
+    arrived: float  # error below which a refined row is a solution
+    pose_tolerance: float  # how far a rotation's entries may be off
+    orthonormal: float  # and what is round-off of them
+    coincident: float  # rows closer than that (rad or m) are one
+    limit_tolerance: float  # how far outside a limit a row is put back on it
+    tries: int  # values tried for a joint that a pose leaves free
+    try_step: float  # rad from one to the next
+    rank_loss: float  # smallest singular value below which a refined row is singular
+    continuum_rank_loss: float  # the same where the closed form says that it is
+    least_damping: float
+    damping: float  # of a Newton step, times the squared error
+    largest_step: float  # of a joint
+    converged: float  # error at which steps end
+    patience: int  # steps without progress after which they end
+    progress: float  # of a step: the factor by which the error falls
+    refinement: tuple[tuple[int, float, float], ...]  # steps; errors between which more follow

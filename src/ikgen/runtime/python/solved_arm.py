@@ -1,0 +1,42 @@
+"""Everything that the runtime is told about one arm."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from ikgen.runtime.python.array_types import Array, Flags, Row
+from ikgen.runtime.python.chain_kinematics import Chain
+from ikgen.runtime.python.solve_policy import Policy
+from ikgen.runtime.python.task_interface import Task
+
+__all__ = ["Arm", "Branches", "BranchesBatch", "Candidate", "Found"]
+
+Found = tuple[Row, bool]  # a solution, and whether it is one of a continuum
+Candidate = tuple[Row, bool, bool]  # a closed-form row, whether it is one of a continuum, or rough
+Branches = Callable[[Sequence[Sequence[float]], Row, Row], tuple[list[Candidate], bool]]
+BranchesBatch = Callable[[Array, Array, Array], tuple[Array, Flags, Flags, Flags]]
+
+
+@dataclass(frozen=True)
+class Arm:
+    """`free`, `free_joints`, `free_defaults`: indices, names and values of held joints. `most`: rows at
+    most. `branches(T, q0, held)`: the closed form's rows for a pose, values of joints that it leaves
+    free, values of held joints, and whether it left one free; `branches_batch`: in arrays. `beside`
+    (n, 4, 4): motions of the tool to poses that are solved as well. `turning`: which joints are
+    revolute and not held; `moving`: indices of those not held."""
+
+    chain: Chain
+    task: Task
+    policy: Policy
+    lower: Row
+    upper: Row
+    free: tuple[int, ...]
+    free_joints: tuple[str, ...]
+    free_defaults: Row
+    most: int
+    branches: Branches
+    branches_batch: BranchesBatch
+    beside: Array
+    turning: tuple[bool, ...]
+    moving: tuple[int, ...]

@@ -1,0 +1,82 @@
+"""What `ikgen inspect` shows of a chain."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.support.small_robots import write_robot
+from tests.support.solving import FIXTURES
+
+from ikgen.cli.inspect_text import as_text
+from ikgen.cli.main import run
+from ikgen.cli.tree_text import transform_text
+from ikgen.generation.inspection import inspect_robot
+from ikgen.generation.request import Request
+from ikgen.kinematics.forward import file_forward
+from ikgen.solver.solution_graph import SolutionGraph
+
+ELBOW = FIXTURES.parent / "examples/setuptools_robot/urdf/elbow.urdf"
+
+
+def rotation(roll: float, pitch: float, yaw: float) -> np.ndarray:
+    """URDF's rotation (3, 3): fixed axes x, y, z."""
+    (cr, sr), (cp, sp), (cy, sy) = ((np.cos(x), np.sin(x)) for x in (roll, pitch, yaw))
+    Rx = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
+    Ry = np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
+    return np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]]) @ Ry @ Rx
+
+
+@pytest.mark.parametrize(
+    "rpy",
+    [
+        (0.3, -0.4, 2.0),
+        (0.0, 0.0, 0.0),
+        (1.0, np.pi / 2, 0.4),
+        (-2.0, -np.pi / 2, 0.7),
+        (3.1, 2.0, 1),
+    ],
+)
+def test_transforms_as_urdf_writes_them(rpy: tuple[float, float, float]) -> None:
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = rotation(*rpy), (0.1, -0.2, 0.0)
+    xyz, text = transform_text(T)
+    assert xyz == "xyz 0.1 -0.2 0"
+    again = rotation(*(float(x) for x in text.removeprefix("rpy ").split()))
+    assert np.abs(again - T[:3, :3]).max() < 1e-8
+
+
+def test_base_and_tool_are_shown(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    robot = write_robot(tmp_path / "elbow.urdf")
+    assert run(["inspect", str(robot), "--no-advice"]) == 0
+    said = capsys.readouterr().out
+    assert "  base:  xyz " in said and "  tool:  xyz " in said
+    assert run(["inspect", str(robot), "--no-advice", "--json"]) == 0
+    chain = json.loads(capsys.readouterr().out)["chain"]
+    dh = inspect_robot(Request(robot), advice=False).reading
+    assert dh is not None
+    assert np.allclose(chain["base_transform"], dh.dh.X_base)
+    T = np.array(chain["base_transform"])
+    for row in chain["dh"]:
+        a, alpha = row["a"]["value"], row["alpha"]["value"]
+        theta, d = row["offset"], row["d"]["value"]
+        step = np.eye(4)
+        step[:3, :3], step[0, 3] = rotation(alpha, 0, 0), a
+        turn = np.eye(4)
+        turn[:3, :3], turn[2, 3] = rotation(0, 0, theta), d
+        T = T @ step @ turn
+    T = T @ np.array(chain["tool_transform"])
+    assert np.allclose(T, file_forward(dh.dh, np.zeros((1, 3)))[0])
+
+
+def test_what_is_weak_is_not_called_closed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    request = Request(ELBOW, task="position")
+    assert "as it is" not in as_text(inspect_robot(request))  # --task position
+    assert "closed form, at most 4" in as_text(inspect_robot(request))
+    monkeypatch.setattr(SolutionGraph, "sound", property(lambda graph: False))
+    said = as_text(inspect_robot(request))
+    assert "closed form with a weak step, at most 4" in said and "weak: a step fails" in said

@@ -1,0 +1,61 @@
+"""What a request may ask of a description."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from tests.support.small_robots import elbow_robot, write_robot
+from tests.support.solving import FIXTURES
+
+from ikgen.errors import BadDescriptionError, UsageError
+from ikgen.generation.read import default_name, read, read_tree
+from ikgen.generation.request import Request
+
+
+def test_locked_joints_keep_inside_their_limits(tmp_path: Path) -> None:
+    robot = write_robot(tmp_path / "elbow.urdf")
+    assert read(Request(robot, lock={"elbow": 2.5})).dh.dof == 2
+    for value in (2.6, -1e9):
+        with pytest.raises(UsageError, match=r"outside the joint's limits, -2\.5 to 2\.5"):
+            read(Request(robot, lock={"elbow": value}))
+
+
+def test_locked_joints_of_a_table(tmp_path: Path) -> None:
+    table = tmp_path / "TABLE.TOML"  # whatever the case of the suffix
+    text = (FIXTURES / "scara_standard.toml").read_text()
+    table.write_text(text)
+    dh = read(Request(table)).dh
+    joint = next(j for j in dh.joints if abs(j.limits.upper) < 100)
+    assert read(Request(table, lock={joint.name: joint.limits.upper})).dh.dof == dh.dof - 1
+    with pytest.raises(UsageError, match=f"--lock {joint.name}=.*outside the joint's limits"):
+        read(Request(table, lock={joint.name: joint.limits.upper + 0.1}))
+
+
+def test_names_tell_chains_apart(tmp_path: Path) -> None:
+    pair = write_robot(tmp_path / "pair.urdf", sides=("a_", "b_"))
+    assert default_name(read(Request(pair, tip="a_tool0"))) == "pair_a_tool0"
+    own = tmp_path / "own.urdf"  # a tip that has the robot's name already
+    own.write_text(elbow_robot("pair", sides=("pair_a_", "pair_b_")))
+    assert default_name(read(Request(own, tip="pair_a_tool0"))) == "pair_a_tool0"
+    assert default_name(read(Request(write_robot(tmp_path / "elbow.urdf")))) == "elbow"
+
+
+def test_arguments_are_listed_where_a_file_cannot_be_expanded(tmp_path: Path) -> None:
+    (tmp_path / "parts.xacro").write_text(
+        '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="hand" default="none"/>'
+        "</robot>"
+    )
+    file = tmp_path / "arm.urdf.xacro"
+    file.write_text(
+        '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="arm">\n'
+        "<!-- <xacro:arg name='old' default='1'/> -->\n"
+        "<xacro:arg default='ur5' name='model'/><xacro:include filename='parts.xacro'/>\n"
+        '<link name="$(arg prefix)base"/></robot>'
+    )
+    with pytest.raises(BadDescriptionError, match="'prefix' has no value") as caught:
+        read_tree(Request(file))
+    listed = caught.value.hint.splitlines()[-1]
+    assert listed == (
+        "arguments that the file takes (--arg): model:=ur5, hand:=none, prefix (no default)"
+    )
