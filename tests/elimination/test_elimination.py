@@ -13,7 +13,7 @@ from tests.support.arms import arm_chain
 from tests.support.routines import compiled_routine, feed
 
 from ikgen.elimination import (
-    UniversalPlan,
+    EliminationPlan,
     choose_plan,
     general_6r,
     general_6r_batch,
@@ -112,7 +112,7 @@ def missing(found: list[Array], wanted: Array) -> int:
 
 
 @pytest.fixture(scope="module", params=NAMES)
-def arm(request: pytest.FixtureRequest) -> tuple[UniversalPlan, Array, Array]:
+def arm(request: pytest.FixtureRequest) -> tuple[EliminationPlan, Array, Array]:
     """A plan, regular configurations, and their poses."""
     frames = arm_frames(request.param)
     q = configurations(frames, 150)
@@ -125,7 +125,7 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return compiled_routine("general_6r", MAIN, tmp_path_factory.mktemp("cpp"), eigen=True)
 
 
-def test_every_generating_configuration_is_found(arm: tuple[UniversalPlan, Array, Array]) -> None:
+def test_every_generating_configuration_is_found(arm: tuple[EliminationPlan, Array, Array]) -> None:
     plan, q, poses = arm
     found = general_6r_batch(plan.frames, plan.length, plan.eliminations, poses)
     assert plan.usable
@@ -138,7 +138,7 @@ def test_every_generating_configuration_is_found(arm: tuple[UniversalPlan, Array
             assert np.abs(error[:3, 3]).max() < 1e-9 * plan.length
 
 
-def test_cpp_finds_the_same(arm: tuple[UniversalPlan, Array, Array], program: Path) -> None:
+def test_cpp_finds_the_same(arm: tuple[EliminationPlan, Array, Array], program: Path) -> None:
     plan, _, poses = arm
     numbers = [*plan.frames.ravel(), plan.length, *np.ravel(plan.eliminations), len(poses)]
     lines = feed(program, [float(x) for x in (*numbers, *poses.ravel())])

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from copy import copy
+from typing import TypeVar
+
 import numpy as np
 
 from ikgen.algebra.expression import BINARY, UNARY, Atom, Expr, Probe
 
 __all__ = ["NodeTable"]
+
+Table = TypeVar("Table", bound="NodeTable")
 
 
 class NodeTable:
@@ -20,6 +25,14 @@ class NodeTable:
         self.zero = self.const(0.0)
         self.one = self.const(1.0)
         self.minus_one = self.const(-1.0)
+
+    def extended(self: Table) -> Table:
+        """Another table with the same nodes, which grows by itself."""
+        other = copy(self)
+        other._nodes = dict(self._nodes)
+        other._atoms = dict(self._atoms)
+        other._by_bit = list(self._by_bit)
+        return other
 
     def _register(self, key: tuple[object, ...], node: Expr) -> Expr:
         node.id = len(self._nodes)

@@ -16,32 +16,36 @@ from itertools import product
 import numpy as np
 
 from ikgen.elimination.loop_frames import forward, jacobian, typical_length
+from ikgen.elimination.resultant import RESULTANTS, Resultant, root_shifts
 from ikgen.elimination.routine import Elimination, initial_residuals
 from ikgen.model.joint_tree import Matrix
 
-__all__ = ["UniversalPlan", "choose_plan"]
+__all__ = ["EliminationPlan", "choose_plan"]
 
 _ELIMINATIONS: tuple[Elimination, ...] = tuple(
     (start, reverse, swap) for swap, reverse, start in product((0, 1), (0, 1), range(6))
 )
 _REGULAR = 1e-3
+_BLURRED = 1e-4  # rad; roots that move further are not worth a resultant
 _SAME = 1e-5
 _KEPT = 2
 
 
 @dataclass(frozen=True, slots=True)
-class UniversalPlan:
+class EliminationPlan:
     """What `general_6r` embeds for one arm.
 
     frames: (7, 4, 4) read-only, `T = F_0 Rz(v_1) F_1 ... Rz(v_6) F_6`. length: the arm's scale (m).
     eliminations: (start, reverse, swap) in order of preference. recall: fraction of all solutions
-    met in probing that the first of them finds alone.
+    met in probing that the first of them finds alone. resultants: (start, reverse) of hidden angles
+    whose polynomial has separate roots, in order of preference; may be none.
     """
 
     frames: Matrix
     length: float
     eliminations: tuple[Elimination, ...]
     recall: float
+    resultants: tuple[Resultant, ...] = ()
 
     @property
     def usable(self) -> bool:
@@ -50,7 +54,7 @@ class UniversalPlan:
         return self.recall > 0.98
 
 
-def choose_plan(frames: Matrix, *, probes: int = 24, seed: int = 0) -> UniversalPlan:
+def choose_plan(frames: Matrix, *, probes: int = 24, seed: int = 0) -> EliminationPlan:
     """The best eliminations for a 6R chain, frames (7, 4, 4), or for all of a family (m, 7, 4, 4)
     that differs by a held joint's value (the plan then carries the first one's frames).
 
@@ -63,16 +67,18 @@ def choose_plan(frames: Matrix, *, probes: int = 24, seed: int = 0) -> Universal
     rng = np.random.default_rng(seed)
     each = max(probes // len(family), 2)
     parts = [_probe(member, each, rng) for member in family]
-    hits = np.concatenate([hit for hit, _ in parts], axis=1)
-    rough = np.max([worst for _, worst in parts], axis=0)
+    hits = np.concatenate([probe.hits for probe in parts], axis=1)
+    rough = np.max([probe.rough for probe in parts], axis=0)
+    shifts = np.max([probe.shifts for probe in parts], axis=0)
     order = _ranking(hits, rough)
     first = family[0].copy()
     first.setflags(write=False)
-    return UniversalPlan(
+    return EliminationPlan(
         frames=first,
         length=typical_length(first),
         eliminations=tuple(_ELIMINATIONS[k] for k in order),
         recall=float(hits[order[0]].mean()) if hits.size else 0.0,
+        resultants=tuple(RESULTANTS[k] for k in np.argsort(shifts)[:_KEPT] if shifts[k] < _BLURRED),
     )
 
 
@@ -90,21 +96,43 @@ def _ranking(hits: Matrix, rough: Matrix) -> list[int]:
     return order
 
 
-def _probe(frames: Matrix, count: int, rng: np.random.Generator) -> tuple[Matrix, Matrix]:
-    """Which elimination finds which solution (24, n) bool, and how rough its candidates are
-    (24,)."""
+@dataclass(frozen=True, slots=True)
+class _Probe:
+    """hits (24, n) bool: which elimination finds which solution. rough (24,): the logarithm of its
+    candidates' errors. shifts (12,) in rad: how far rounding moves the roots of the resultants."""
+
+    hits: Matrix
+    rough: Matrix
+    shifts: Matrix
+
+
+def _probe(frames: Matrix, count: int, rng: np.random.Generator) -> _Probe:
     length = typical_length(frames)
-    poses = np.array([forward(frames, q) for q in _configurations(frames, count, rng)])
+    q = _configurations(frames, count, rng)
+    poses = np.array([forward(frames, row) for row in q])
     if not len(poses):  # singular everywhere: two axes on one line, or four that keep parallel
-        return np.zeros((len(_ELIMINATIONS), 0), dtype=bool), np.zeros(len(_ELIMINATIONS))
+        hits = np.zeros((len(_ELIMINATIONS), 0), dtype=bool)
+        return _Probe(hits, np.zeros(len(_ELIMINATIONS)), np.ones(len(RESULTANTS)))
     runs = [initial_residuals(frames, length, plan, poses) for plan in _ELIMINATIONS]
     rough = [np.quantile(np.log10(e + 1e-16), 0.9) if len(e) else 0.0 for _, e in runs]
-    hits = []
-    for i in range(len(poses)):
-        union = np.concatenate([rows[i] for rows, _ in runs])
-        fresh = [k for k in range(len(union)) if not _among(union[k], union[:k])]
-        hits.append([[_among(union[k], rows[i]) for k in fresh] for rows, _ in runs])
-    return np.concatenate([np.array(h, dtype=bool) for h in hits], axis=1), np.array(rough)
+    hits = np.concatenate(
+        [_found([rows[i] for rows, _ in runs]) for i in range(len(poses))], axis=1
+    )
+    shifts = root_shifts(_over(frames, length), _over(poses, length), np.array(q))
+    return _Probe(hits, np.array(rough), np.quantile(shifts, 0.75, axis=1))
+
+
+def _over(frames: Matrix, length: float) -> Matrix:
+    scaled: Matrix = frames.copy()
+    scaled[:, :3, 3] /= length
+    return scaled
+
+
+def _found(runs: list[Matrix]) -> Matrix:
+    """Which of the runs' rows (k, 6) has which of all distinct rows: (24, n) bool."""
+    union = np.concatenate(runs)
+    fresh = [k for k in range(len(union)) if not _among(union[k], union[:k])]
+    return np.array([[_among(union[k], rows) for k in fresh] for rows in runs], dtype=bool)
 
 
 def _among(q: Matrix, rows: Matrix) -> bool:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy
 from types import MappingProxyType
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +33,8 @@ ENTRY_NAMES = (
     "py",
     "pz",
 )
+
+Products = TypeVar("Products", bound="ChainProducts")
 
 
 class ChainProducts:
@@ -62,6 +66,14 @@ class ChainProducts:
         self._left: dict[int, Rigid] = {}
         self._targets: dict[tuple[int, int], Rigid] = {}
         self.pose = self._pose(pose)
+
+    def over(self: Products, graph: ExpressionGraph) -> Products:
+        """The same products over a graph that has all nodes of this one's."""
+        other = copy(self)
+        other.graph = graph
+        other.variables = self.variables.over(graph)
+        other._left, other._targets = dict(self._left), dict(self._targets)
+        return other
 
     def _pose(self, values: NDArray[np.float64]) -> Rigid:
         g = self.graph

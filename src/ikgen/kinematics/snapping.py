@@ -12,6 +12,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from ikgen.kinematics.rigid import rotation_x, rotation_z
 from ikgen.model.dh import Angle, Length, Snap
 from ikgen.model.joint_tree import Matrix
 
@@ -22,9 +23,6 @@ __all__ = [
     "LengthBook",
     "SnapLog",
     "exact_angle",
-    "exact_cos_sin",
-    "rotation_x",
-    "rotation_z",
     "snap_angle",
     "snap_axis",
     "snap_rotation",
@@ -103,25 +101,6 @@ def snap_rotation(R: Matrix, tolerance: float, turn_tolerance: float) -> Matrix:
     return rotation_z(phi) @ rotation_x(snap_angle(alpha, tolerance)) @ rotation_z(psi)
 
 
-def rotation_z(angle: float) -> Matrix:
-    """Rotation (3, 3) about z by `angle` (rad)."""
-    c, s = exact_cos_sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-
-
-def rotation_x(angle: float) -> Matrix:
-    """Rotation (3, 3) about x by `angle` (rad)."""
-    c, s = exact_cos_sin(angle)
-    return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
-
-
-def exact_cos_sin(angle: float) -> tuple[float, float]:
-    """Cosine and sine of `angle` (rad), with 0, ±1/2 and ±1 exact at multiples of pi/12."""
-    c, s = math.cos(angle), math.sin(angle)
-    half_c, half_s = round(2 * c) / 2, round(2 * s) / 2
-    return (half_c if abs(c - half_c) < 5e-16 else c, half_s if abs(s - half_s) < 5e-16 else s)
-
-
 class SnapLog:
     """Collects the constants that were replaced by exact ones, noise left out."""
 
@@ -147,9 +126,9 @@ class LengthBook:
         self._log = log
         self._known: list[tuple[str, float]] = []
 
-    def enter(self, value: float, name: str, slack: float = 0.0) -> Length:
-        """`value` (m) as constant `name` or as one known already; zero within tolerance + slack."""
-        if abs(value) <= self.tolerance + slack:
+    def enter(self, value: float, name: str, length_error: float = 0.0) -> Length:
+        """`value` (m) as constant `name` or as one known already; zero within tolerance + length_error."""
+        if abs(value) <= self.tolerance + length_error:
             self._log.add(name, value, 0.0)
             return Length(0.0, None)
         sign = 1 if value > 0 else -1

@@ -70,7 +70,7 @@ def _excess(work: Placement, v: Variable) -> Expr:
     """Two linear equations give a cosine and sine on the unit circle only if they agree with the
     rest: a branch whose squares do not add up to one is none."""
     g = work.g
-    c, s = work.knowledge.variables.pair(v.key)
+    c, s = work.knowledge.variables.pair(v.combination)
     return g.sub(g.add(g.square(c), g.square(s)), g.one)
 
 
@@ -79,7 +79,7 @@ def _routine(work: Placement, v: Variable, form: Form, lowered: LoweredRoutine, 
     arguments = _or_seed(work, v, form, lowered)
     for e in arguments:
         work.place(e)
-    atoms = work.knowledge.variables.pair(v.key)
+    atoms = work.knowledge.variables.pair(v.combination)
     work.levels.append(LoweredLevel(form.branches, None, (lowered.routine, arguments, atoms)))
     work.place(Comment(text))
     suffix = v.text.split("_", 1)[1]
@@ -107,12 +107,12 @@ def _joint_values(work: Placement) -> list[tuple[int, Expr]]:
     out: list[tuple[int, Expr]] = []
     work.place(Comment("joint variables"))
     for j in range(work.dh.dof):
-        if j in work.session.held:
+        if j in work.held:
             out.append((j, work.atom(HeldValue(j).name)))
             continue
-        v = work.session.joint_variable(j)
+        v = work.knowledge.joint_variable(j)
         if v.kind == "angle":
-            variable: tuple[Expr, ...] | None = work.knowledge.known_pair(v.key)
+            variable: tuple[Expr, ...] | None = work.knowledge.known_pair(v.combination)
             assert variable is not None
         else:
             variable = (work.knowledge.variables.distance(j),)
@@ -126,7 +126,7 @@ def _place_values(work: Placement, values: list[tuple[int, Expr]]) -> None:
     """After the guards: a branch without a solution needs none of them."""
     work.place(Comment("joint values"))
     for j, e in values:
-        if j not in work.session.held:
+        if j not in work.held:
             work.names.setdefault(e.id, f"q{j + 1}")
             work.place(e)
 

@@ -49,11 +49,10 @@ class Placement:
     """
 
     def __init__(self, graph: SolutionGraph, model_error: float) -> None:
-        self.session = graph.session
-        self.system = graph.session.system
-        self.dh = self.system.dh
-        self.g: ExpressionGraph = self.system.graph
-        self.knowledge = graph.knowledge
+        self.dh, self.held, self.probes = graph.dh, graph.held, graph.probes
+        self.knowledge = graph.workspace()
+        self.system = self.knowledge.equations
+        self.g: ExpressionGraph = self.knowledge.graph
         self.model_error = model_error
         self._tolerances = Tolerances.for_model_error(model_error)
         self.residuals: list[Expr] = []
@@ -73,7 +72,7 @@ class Placement:
         """Condition that an unknown solved so far has lost digits. With constants as the file rounds them
         a continuum's place is taken by solutions that few digits tell apart, and two of them meet where
         it would be. None for exact constants."""
-        if not self.session.probes.kept:
+        if not self.probes.kept:
             return None
         total: Expr | None = None
         for flag in (*self.singular, *self.folds):
@@ -82,7 +81,7 @@ class Placement:
 
     def note_fold(self, under: Expr, size: float) -> None:
         """A square root was taken of `under`: of few digits where that is small beside `size`."""
-        if self.session.probes.kept:
+        if self.probes.kept:
             self.folds.append(self.g.binary("gt", self.g.const(FOLDED * size), under))
 
     @property
@@ -159,7 +158,7 @@ class Placement:
     def atoms_of(self, v: Variable) -> tuple[Expr, ...]:
         """The atoms of a variable: its cosine and sine, or its distance."""
         if v.kind == "angle":
-            return self.knowledge.variables.pair(v.key)
+            return self.knowledge.variables.pair(v.combination)
         assert v.joint is not None
         return (self.knowledge.variables.distance(v.joint),)
 

@@ -20,7 +20,7 @@ def bind_pose(work: Placement) -> None:
     """The pose in DH frames out of the given one: `X_base^-1 T X_tip^-1`."""
     g = work.g
     base, tip = constant(g, work.dh.X_base), constant(g, work.dh.X_tip)
-    pose = work.session.probes.pose
+    pose = work.probes.pose
     raw = work.dh.X_base @ pose
     if work.whole_pose:
         raw = raw @ work.dh.X_tip
@@ -53,11 +53,11 @@ def bind_joints(work: Placement) -> None:
             work.atom(name)
         work.inputs.append(seed)
         work.prelude += variable_lets(row, seed.name, names)
-    for j in work.session.held:
-        v = work.session.joint_variable(j)
+    for j in work.held:
+        v = work.knowledge.joint_variable(j)
         held = HeldValue(j)
         if v.kind == "angle":
-            atoms: tuple[Expr, ...] = work.knowledge.variables.pair(v.key)
+            atoms: tuple[Expr, ...] = work.knowledge.variables.pair(v.combination)
             names = (f"c{j + 1}", f"s{j + 1}")
         else:
             atoms, names = (work.knowledge.variables.distance(j),), (f"d{j + 1}",)
@@ -70,11 +70,11 @@ def bind_joints(work: Placement) -> None:
 def seed_values(work: Placement, variable: Variable) -> tuple[Expr, ...]:
     """The seed's value of a variable: sums of joint angles are composed."""
     g = work.g
-    if variable.kind == "dist":
+    if variable.kind == "prismatic":
         assert variable.joint is not None
         return (work.atom(f"seed_d{variable.joint + 1}"),)
     c, s = g.one, g.zero
-    for j, k in enumerate(variable.key):
+    for j, k in enumerate(variable.combination):
         cj, sj = (work.atom(f"seed_{x}{j + 1}") for x in "cs") if k else (g.one, g.zero)
         for _ in range(abs(k)):
             sj_signed = sj if k > 0 else g.neg(sj)

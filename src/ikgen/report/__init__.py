@@ -83,8 +83,9 @@ class _Page:
     def steps(self) -> list[Block]:
         """One section a solved unknown."""
         graph = self.graph
-        writer = Writer(graph, self.versions, self.normal, abbreviations(graph, self.normal))
-        blocks = splits_section(graph.session.system)
+        names = abbreviations(graph, self.normal)
+        writer = Writer(graph, graph.workspace(), self.versions, self.normal, names)
+        blocks = splits_section(writer.known.equations)
         for number, step in enumerate(graph.steps, start=1):
             blocks += step_section(writer, number, step)
         return blocks + derived_section(writer)

@@ -211,7 +211,7 @@ def _snaps(dh: DHChain) -> list[Block]:
 
 def forward_section(graph: SolutionGraph, normal: Normalizer) -> list[Block]:
     """The pose, and what the table makes of it."""
-    system = graph.session.system
+    system = graph.workspace().equations
     g, n = system.graph, system.n
     T = multiply(g, link(system.variables, 0), system.right(0, n))
     pose = [[m.name("r", f"{i}{j}") for j in (1, 2, 3)] for i in (1, 2, 3)]

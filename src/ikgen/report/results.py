@@ -54,8 +54,7 @@ def graph_section(
 
 def poses_section(graph: SolutionGraph, versions: Versions) -> list[Block]:
     """The sets of versions that make whole solutions."""
-    session = graph.session
-    joints = [session.joint_variable(j) for j in range(session.system.dh.dof)]
+    joints = [graph.known.joint_variable(j) for j in range(graph.dh.dof)]
     known = [v for v in joints if v in versions.within]
     lead = (
         f"{versions.poses} sets of versions, one a choice of branches; "

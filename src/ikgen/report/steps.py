@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ikgen.equations.equation_set import Equation
-from ikgen.equations.knowledge import Variable
+from ikgen.equations.knowledge import Knowledge, Variable
 from ikgen.forms.formula import Formula, FormulaWriter
 from ikgen.formulas import mathtext as m
 from ikgen.formulas.mathtext import Math
@@ -30,6 +30,7 @@ class Writer:
     """What all step sections share."""
 
     graph: SolutionGraph
+    known: Knowledge
     versions: Versions
     normal: Normalizer
     names: Abbreviations
@@ -73,12 +74,12 @@ def step_section(w: Writer, number: int, step: Step) -> list[Block]:
 
 
 def _formula(w: Writer, c: Candidate) -> Formula:
-    graph = w.graph.session.system.graph
-    return c.form.formula(FormulaWriter(c.unknown, c.coefficients, graph, w.normal, w.names))
+    writer = FormulaWriter(c.unknown, c.coefficients, w.known.graph, w.normal, w.names)
+    return c.form.formula(writer)
 
 
 def _origin(w: Writer, c: Candidate) -> list[Block]:
-    made = origin(w.graph.session.system, c.sources)
+    made = origin(w.known.equations, c.sources)
     note = [Paragraph((f"By {c.note or c.leaf}:",))] if c.note or not made else []
     return [*made, *note]
 
@@ -180,15 +181,15 @@ def derived_section(w: Writer) -> list[Block]:
     solved = {step.candidate.unknown for step in w.graph.steps}
     lines = []
     for v, _ in w.graph.parents:
-        composed = v.kind == "angle" and w.graph.knowledge.composition(v.key)
-        if v in solved or not composed or composed == ((1, v.key),):
+        composed = v.kind == "angle" and w.known.composition(v.combination)
+        if v in solved or not composed or composed == ((1, v.combination),):
             continue
         right = Math(())
-        for factor, key in composed:
+        for factor, combination in composed:
             sign = m.minus(sign=not right.tokens) if factor < 0 else m.plus()
             right = right + (sign if right.tokens or factor < 0 else Math(()))
             right = right + (m.number(abs(factor)) if abs(factor) != 1 else Math(()))
-            right = right + variable(Variable("angle", key))
+            right = right + variable(Variable("angle", combination))
         lines.append(variable(v) + m.relation() + right)
     if not lines:
         return []

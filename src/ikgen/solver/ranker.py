@@ -16,7 +16,7 @@ from ikgen.algebra.expression import Expr
 from ikgen.equations.probes import Probes
 from ikgen.solver.candidate import Candidate, Judgement
 
-__all__ = ["PREFERENCE", "judge", "rank_key"]
+__all__ = ["PREFERENCE", "WEAK_MARGIN", "judge", "rank_key"]
 
 PREFERENCE = (
     "algebraic",
@@ -113,6 +113,6 @@ def rank_key(candidate: Candidate) -> tuple[object, ...]:
         round(j.fragile, 1),
         candidate.branches == 1 and sum(e.squared for e in candidate.sources),
         j.cost,
-        tuple(-k for k in candidate.unknown.key),
+        tuple(-k for k in candidate.unknown.combination),
         tuple(e.id for e in candidate.coefficients),
     )

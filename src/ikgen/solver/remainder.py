@@ -47,11 +47,11 @@ class NearMiss:
 def _open(graph: SolutionGraph) -> Iterator[tuple[int, Equation]]:
     """The equations with unknowns, each once, and how many are independent; without those that hold
     entries that the task does not read."""
-    session = graph.session
+    k = graph.known
     told: set[tuple[int, int]] = set()
-    for e in session.system.equations:
+    for e in k.equations.equations:
         sides = (e.left.id, e.right.id)
-        rank = session.knowledge.unknown_rank(e.left.support | e.right.support)
+        rank = k.unknown_rank(e.left.support | e.right.support)
         if sides not in told and rank not in (0, _UNREADABLE):
             told.add(sides)
             yield rank, e
@@ -67,7 +67,7 @@ def open_equations(
 ) -> list[OpenEquation]:
     """Up to `most` equations with unknowns, those with the fewest first and of these the shortest
     (`size` of both sides)."""
-    k = graph.session.knowledge
+    k = graph.workspace()
     ranked = [(rank, size(e.left) + size(e.right), e.label, e) for rank, e in _open(graph)]
     found: list[OpenEquation] = []
     for _, length, _, e in sorted(ranked, key=lambda x: x[:3]):
@@ -97,13 +97,19 @@ def near_misses(equations: list[OpenEquation]) -> list[NearMiss]:
 
 def _degree(p: PolynomialEquation, v: Variable) -> int:
     """Degree of the equation in an unknown: in its cosine and sine, or in the length."""
-    if v.kind == "dist":
-        joint = v.key.index(1)
-        return max((n for _, dist in p.polynomial for j, n in dist if j == joint), default=0)
-    return max((sum(key == v.key for key, _ in trigs) for trigs, _ in p.polynomial), default=0)
+    if v.kind == "prismatic":
+        joint = v.combination.index(1)
+        return max((n for _, slides in p.polynomial for j, n in slides if j == joint), default=0)
+    return max(
+        (
+            sum(combination == v.combination for combination, _ in trigs)
+            for trigs, _ in p.polynomial
+        ),
+        default=0,
+    )
 
 
 def _leaf(v: Variable, degree: int) -> str:
-    if v.kind == "dist":
+    if v.kind == "prismatic":
         return "algebraic" if degree <= 1 else "quadratic"
     return "sine and cosine" if degree <= 1 else "quartic"

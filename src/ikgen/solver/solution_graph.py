@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from ikgen.algebra.expression import Expr
 from ikgen.equations.knowledge import Knowledge, Variable
+from ikgen.equations.probes import Probes
+from ikgen.model.dh import DHChain
 from ikgen.solver.choice import Step
 from ikgen.solver.session import Session, Tick
 
@@ -14,18 +16,29 @@ __all__ = ["SolutionGraph", "graph_of"]
 
 @dataclass(frozen=True, slots=True)
 class SolutionGraph:
-    """Steps in the order solved; `parents` (variable -> direct parents, redundant ones pruned) over
-    solved unknowns and joints; `passed` are sums of angles that no unknown has as a parent: they bring
-    no branch of their own, so what is computed from them has their parents instead. `outline`
-    are the paths of the behavior tree's nodes, in its order. The session's knowledge holds definitions
-    of derived angles."""
+    """A finished derivation; nothing that uses it changes it.
 
+    `steps` are in the order solved; `parents` (variable -> direct parents, redundant ones pruned) over
+    solved unknowns and joints; `passed` are sums of angles that no unknown has as a parent: they bring
+    no branch of their own, so what is computed from them has their parents instead. `open_joints` have
+    no closed form, `held` have their values given. `probes` are the configurations that the derivation
+    looked at, `ticks` what each node of the behavior tree did, `outline` the paths of its nodes.
+    """
+
+    dh: DHChain
     steps: tuple[Step, ...]
     parents: tuple[tuple[Variable, tuple[Variable, ...]], ...]
+    passed: tuple[Variable, ...]
+    open_joints: tuple[int, ...]
+    held: tuple[int, ...]
+    probes: Probes
     ticks: tuple[Tick, ...]
-    session: Session
-    passed: tuple[Variable, ...] = ()
+    known: Knowledge = field(repr=False, compare=False)
     outline: tuple[tuple[str, ...], ...] = ()
+
+    def workspace(self) -> Knowledge:
+        """What was known at the end, over an expression graph of its own that may grow."""
+        return self.known.workspace()
 
     @property
     def order(self) -> tuple[str, ...]:
@@ -33,19 +46,9 @@ class SolutionGraph:
         return tuple(f"{s.candidate.unknown.text} ({s.candidate.leaf})" for s in self.steps)
 
     @property
-    def open_joints(self) -> list[int]:
-        """Joints without a closed form."""
-        return self.session.open_joints
-
-    @property
     def sound(self) -> bool:
         """Whether every step holds at all regular configurations that were looked at."""
-        return all(not s.candidate.is_weak or s.fallbacks for s in self.steps)
-
-    @property
-    def knowledge(self) -> Knowledge:
-        """What was known at the end."""
-        return self.session.knowledge
+        return all(step.sound for step in self.steps)
 
 
 def _variables_in(roots: tuple[Expr, ...], knowledge: Knowledge) -> set[Variable]:
@@ -63,9 +66,9 @@ def _variables_in(roots: tuple[Expr, ...], knowledge: Knowledge) -> set[Variable
         elif node.atom is not None and node.atom.kind in ("cos", "sin"):
             assert not isinstance(node.atom.key, str)
             found.add(Variable("angle", node.atom.key))
-        elif node.atom is not None and node.atom.kind == "dist":
+        elif node.atom is not None and node.atom.kind == "prismatic":
             assert not isinstance(node.atom.key, str)
-            found.add(Variable("dist", node.atom.key))
+            found.add(Variable("prismatic", node.atom.key))
         stack.extend(node.args)
     return found
 
@@ -105,7 +108,7 @@ def graph_of(session: Session) -> SolutionGraph:
     for joint in range(session.system.dh.dof):
         variable = session.joint_variable(joint)
         if variable.kind == "angle" and variable not in direct:
-            pair = k.known_pair(variable.key)
+            pair = k.known_pair(variable.combination)
             if pair is not None:
                 direct[variable] = _variables_in(pair, k) - {variable}
     passed = frozenset(
@@ -115,5 +118,13 @@ def graph_of(session: Session) -> SolutionGraph:
     )
     parents = tuple(_prune(_through(direct, passed)).items())
     return SolutionGraph(
-        tuple(session.steps), parents, tuple(session.ticks), session, tuple(sorted(passed))
+        dh=session.system.dh,
+        steps=tuple(session.steps),
+        parents=parents,
+        passed=tuple(sorted(passed)),
+        open_joints=tuple(session.open_joints),
+        held=session.held,
+        probes=session.probes,
+        ticks=tuple(session.ticks),
+        known=k.workspace(),
     )

@@ -38,7 +38,7 @@ def bundle(shell: str) -> str:
     of other packages are merged into the shell's, those that nothing uses are left out.
     Raises ValueError where two definitions would get the same name.
     """
-    source = taken_apart("shell", shell)
+    source = taken_apart("shell", shell, moved=False)
     used = _used(source)
     body = "\n\n\n".join(_section(module, used) for module in used.modules)
     lines = shell.splitlines()

@@ -63,10 +63,10 @@ def read_source(name: str) -> RuntimeSource:
     return taken_apart(name, (files(PACKAGE) / f"{name}.py").read_text(encoding="utf-8"))
 
 
-def taken_apart(name: str, text: str) -> RuntimeSource:
+def taken_apart(name: str, text: str, *, moved: bool = True) -> RuntimeSource:
     """A module from its text.
 
-    Raises ValueError for what cannot be moved into another module: statements that define nothing, and
+    Raises ValueError for what cannot be `moved` into another module: statements that define nothing, and
     local names that are the module's too.
     """
     tree, lines = ast.parse(text), text.splitlines()
@@ -84,10 +84,12 @@ def taken_apart(name: str, text: str) -> RuntimeSource:
                 else:
                     external.append(one)
         elif not _is_about_the_module(node):
-            definitions.append(_definition(name, node, lines, above))
+            definitions.append(_definition(node, lines, above))
+            if moved and not definitions[-1].defines:
+                raise ValueError(f"{name}, line {node.lineno}: only definitions can be bundled")
         above = node.end_lineno or node.lineno
     own = {n for d in definitions for n in d.defines} | set(internal)
-    for node in tree.body:
+    for node in tree.body if moved else ():
         shadows = sorted(set(_locals(node)) & own)
         if shadows:
             raise ValueError(f"{name}, line {node.lineno}: local names of the module: {shadows}")
@@ -102,7 +104,7 @@ def _is_about_the_module(node: ast.stmt) -> bool:
     return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
 
 
-def _definition(module: str, node: ast.stmt, lines: list[str], above: int) -> Definition:
+def _definition(node: ast.stmt, lines: list[str], above: int) -> Definition:
     block = isinstance(node, ast.FunctionDef | ast.ClassDef)
     start = node.lineno
     if isinstance(node, ast.FunctionDef | ast.ClassDef):
@@ -111,10 +113,11 @@ def _definition(module: str, node: ast.stmt, lines: list[str], above: int) -> De
         start -= 1
     places = tuple((line - start, column, name) for line, column, name in _places(node))
     part = tuple(lines[start - 1 : node.end_lineno])
-    return Definition(_defined(module, node), part, start, places, block)
+    return Definition(_defined(node), part, start, places, block)
 
 
-def _defined(module: str, node: ast.stmt) -> tuple[str, ...]:
+def _defined(node: ast.stmt) -> tuple[str, ...]:
+    """The names that a statement defines; none where it does something else as well."""
     if isinstance(node, ast.FunctionDef | ast.ClassDef):
         return (node.name,)
     targets: list[ast.expr] = []
@@ -124,9 +127,7 @@ def _defined(module: str, node: ast.stmt) -> tuple[str, ...]:
         targets = [node.target]
     parts = [e for t in targets for e in (t.elts if isinstance(t, ast.Tuple) else [t])]
     names = [part.id for part in parts if isinstance(part, ast.Name)]
-    if not names or len(names) < len(parts):
-        raise ValueError(f"{module}, line {node.lineno}: only definitions can be bundled")
-    return tuple(names)
+    return tuple(names) if len(names) == len(parts) else ()
 
 
 def _places(node: ast.stmt) -> Iterator[tuple[int, int, str]]:

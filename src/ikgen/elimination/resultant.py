@@ -1,0 +1,79 @@
+"""Which hidden angles suit an arm in the elimination's resultant, a trigonometric polynomial of degree 8.
+
+The closed loop may be begun at any joint and run backwards: twelve polynomials f, each in another
+angle or with other equations. On special geometry some have double roots for every pose, and some
+are small on part of the circle, where rounding moves their roots: a property of the arm, hence
+found at generation time. Which of the two angles next to the hidden one has the second degree
+changes f by a constant only.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+
+from ikgen.model.joint_tree import Matrix
+from ikgen.runtime.python.loop_equations import XS, YS, ZS, loop_constants, loop_equations
+
+__all__ = ["RESULTANTS", "Resultant", "root_shifts"]
+
+Resultant = tuple[int, int]
+"""The joint that the loop begins at (0-based), and whether it is reversed."""
+
+RESULTANTS: tuple[Resultant, ...] = tuple(
+    (start, reverse) for reverse, start in product((0, 1), range(6))
+)
+_NODES = 24
+_FIRST = 0.1  # rad, an angle that no right angle shares
+_DEGREE = 8
+_NOISE = 11.0  # times the norm of what a polynomial of degree 8 has not: as in the emitted code
+_ROUNDING = 1e-15
+
+
+def root_shifts(frames: Matrix, poses: Matrix, q: Matrix) -> Matrix:
+    """How far rounding may move the hidden angle of a known solution, (12, N) in rad, at most 1.
+
+    frames (7, 4, 4) and poses (N, 4, 4) with lengths over the arm's; q (N, 6) in rad reaches them.
+    A double root counts as moved by 1 rad.
+    """
+    return np.array([_shifts(frames, poses, q, plan) for plan in RESULTANTS])
+
+
+def _shifts(frames: Matrix, poses: Matrix, q: Matrix, plan: Resultant) -> Matrix:
+    order, pencil = _pencil(frames, poses, plan)
+    nodes = np.linspace(_FIRST, _FIRST + 2.0 * np.pi, _NODES, endpoint=False)
+    spectrum = np.fft.fft(_resultant(pencil, nodes), axis=1) / _NODES
+    above = np.linalg.norm(spectrum[:, _DEGREE + 1 : _NODES - _DEGREE], axis=1)
+    k = np.r_[0 : _DEGREE + 1, -_DEGREE:0]
+    c = spectrum[:, k]
+    noise = _NOISE * above + _ROUNDING * np.abs(c).sum(axis=1)
+    hidden = -q[:, order[2]] if plan[1] else q[:, order[2]]
+    slope = (c * np.exp(1j * np.outer(hidden - _FIRST, k)) * (1j * k)).sum(axis=1).real
+    return np.asarray(np.minimum(noise / np.maximum(np.abs(slope), 1e-300), 1.0), dtype=np.float64)
+
+
+def _pencil(frames: Matrix, poses: Matrix, plan: Resultant) -> tuple[list[int], Matrix]:
+    """The order of the loop's joints, and the equations (3, N, 6, 9) in (1, c4, s4) x (1, c5, s5),
+    their terms in 1, cos and sin of the hidden angle."""
+    order, C = loop_constants(frames, poses, *plan)
+    E, left, _ = loop_equations(C)
+    plain = E[..., ZS] @ left[:, ZS]
+    plain[..., 0] += E[..., 14]
+    x, y, X, Y = E[..., XS], E[..., YS], left[:, XS], left[:, YS]
+    return order, np.array([plain, x @ X + y @ Y, y @ X - x @ Y])
+
+
+def _resultant(pencil: Matrix, angles: Matrix) -> Matrix:
+    """f (N, n) of the pencil (3, N, 6, 9) at the angles (n,): det(A A^T) times the determinant of
+    half angles of an orthonormal basis of A's null space."""
+    terms = np.array([np.ones_like(angles), np.cos(angles), np.sin(angles)])
+    A = np.einsum("tk,tnij->nkij", terms, pencil)
+    Q, R = np.linalg.qr(np.swapaxes(A, -1, -2), mode="complete")
+    basis = Q[..., 6:]
+    one, c, s = basis[..., 0:3, :], basis[..., 3:6, :], basis[..., 6:9, :]
+    half = np.concatenate(
+        [np.concatenate([c - one, s], axis=-1), np.concatenate([s, -(c + one)], axis=-1)], axis=-2
+    )
+    size = np.prod(np.diagonal(R[..., :6, :], axis1=-2, axis2=-1), axis=-1) ** 2
+    return np.asarray(size * np.linalg.det(half))

@@ -1,0 +1,195 @@
+#pragma once
+
+#include "general_6r_newton.hpp"
+#include "general_6r_solutions.hpp"
+#include "lane_angle.hpp"
+
+namespace ikgen_runtime {
+
+// --- general_6r: by the trigonometric resultant -----------------------------------------------------
+
+namespace g6 {
+
+struct Rotated {  // the nodes at the angle where they begin
+  alignas(64) double c[kNodes], s[kNodes];
+};
+constexpr Rotated rotate_nodes() noexcept {
+  Rotated out{};
+  for (int n = 0; n < kNodes; ++n) {
+    out.c[n] = kNode.c[n] * kStart[0] - kNode.s[n] * kStart[1];
+    out.s[n] = kNode.s[n] * kStart[0] + kNode.c[n] * kStart[1];
+  }
+  return out;
+}
+inline constexpr Rotated kRotated = rotate_nodes();
+
+inline bool inside(const Zone& zone, double angle) noexcept {
+  const double middle = 0.5 * (zone.low + zone.high);
+  return std::abs(wrap(angle - middle)) <= 0.5 * (zone.high - zone.low);
+}
+
+// Angles around a zone's middle, seen closer: tan((theta - middle)/2) = scale tan(phi/2).
+struct Lens {
+  double c, s, scale;  // of the middle
+
+  // The pair of theta from that of phi; returns what a polynomial's terms are to be multiplied with per degree.
+  double apply(double& cosine, double& sine) const noexcept {
+    const double a = 0.5 * (1.0 + cosine), b = 0.5 * (1.0 - cosine) * scale * scale, r = a + b;
+    const double x = (a - b) / r, y = scale * sine / r;
+    cosine = c * x - s * y;
+    sine = s * x + c * y;
+    return r;
+  }
+};
+
+// The roots of a polynomial that lie in none of the zones, as pairs at the nodes' angle.
+inline void clear_roots(const Polynomial& f, const Brackets& brackets, Roots& out) noexcept {
+  refine_all(f, brackets, out);
+  int kept = 0;
+  for (int i = 0; i < out.count && brackets.zones > 0; ++i) {
+    const double angle = std::atan2(out.s[i], out.c[i]);
+    bool skip = false;
+    for (int z = 0; z < brackets.zones; ++z) skip = skip || inside(brackets.zone[z], angle);
+    out.c[kept] = out.c[i];
+    out.s[kept] = out.s[i];
+    kept += skip ? 0 : 1;
+  }
+  if (brackets.zones > 0) out.count = kept;
+}
+
+// Where zones of phi lie in theta, cut off at the zone's ends; empty (high < low) where they do not meet it.
+inline Zone seen_through(const Lens& lens, const Zone& phi, const Zone& zone) noexcept {
+  const double middle = wrap(0.5 * (phi.low + phi.high)), reach = 0.5 * (phi.high - phi.low);
+  const double centre = 0.5 * (zone.low + zone.high);
+  const auto angle = [&](double x) {
+    const double inner = std::min(std::max(x, -3.1415), 3.1415);  // the other end is far outside
+    return centre + 2.0 * std::atan(lens.scale * std::tan(0.5 * inner));
+  };
+  return {std::max(angle(middle - reach), zone.low), std::min(angle(middle + reach), zone.high)};
+}
+
+inline constexpr double kScales[] = {0.03, 5e-4};  // of the first look and of the second
+
+// The roots inside a zone, from nodes crowded there, as pairs of theta. False where that leaves it open.
+inline bool look_closer(const Pencil& pencil, const Zone& zone, int look, Roots& out) noexcept {
+  const double middle = 0.5 * (zone.low + zone.high), half = 0.5 * (zone.high - zone.low);
+  const Lens lens = {std::cos(middle), std::sin(middle), std::max(kScales[look], std::tan(0.5 * half))};
+  alignas(64) double c[kNodes], s[kNodes], f[kNodes], blur[kNodes];
+  double weight[kNodes], worst = 0.0;
+  for (int n = 0; n < kNodes; ++n) {
+    c[n] = kNode.c[n];
+    s[n] = kNode.s[n];
+    const double r = lens.apply(c[n], s[n]), r2 = r * r, r4 = r2 * r2;
+    weight[n] = r4 * r4;
+  }
+  resultants(pencil, true, c, s, f, blur);
+  for (int n = 0; n < kNodes; ++n) {
+    f[n] *= weight[n];
+    worst = std::max(worst, weight[n] * blur[n]);
+  }
+  const Polynomial g = interpolate(f, worst);
+  const Brackets brackets = isolate(g);
+  Roots near;
+  clear_roots(g, brackets, near);
+  for (int i = 0; i < near.count; ++i) {
+    lens.apply(near.c[i], near.s[i]);
+    const double off = std::atan2(near.s[i] * lens.c - near.c[i] * lens.s, near.c[i] * lens.c + near.s[i] * lens.s);
+    if (std::abs(off) > half) continue;
+    if (out.count == 2 * kRoots) return false;
+    add_root(out, near.c[i], near.s[i]);
+  }
+  bool all = !brackets.doubt;
+  for (int i = 0; i < brackets.zones && all; ++i) {
+    const Zone open = seen_through(lens, brackets.zone[i], zone);
+    if (open.high >= open.low) all = look == 0 && look_closer(pencil, open, 1, out);
+  }
+  return all;
+}
+
+// All roots; false where some may be missing.
+inline bool find_roots(const Pencil& pencil, Roots& out) noexcept {
+  alignas(64) double f[kNodes], blur[kNodes];
+  resultants(pencil, false, kRotated.c, kRotated.s, f, blur);
+  const Polynomial polynomial = interpolate(f, *std::max_element(blur, blur + kNodes));
+  const Brackets brackets = isolate(polynomial);
+  if (brackets.doubt) return false;
+  clear_roots(polynomial, brackets, out);
+  for (int i = 0; i < out.count; ++i) {
+    const double c = out.c[i], s = out.s[i];
+    out.c[i] = c * kStart[0] - s * kStart[1];
+    out.s[i] = s * kStart[0] + c * kStart[1];
+  }
+  bool all = true;
+  for (int z = 0; z < brackets.zones && all; ++z) {
+    const Zone zone = {brackets.zone[z].low + kStartAngle, brackets.zone[z].high + kStartAngle};
+    all = look_closer(pencil, zone, 0, out);
+  }
+  return all && out.count <= kRoots && out.count % 2 == 0;
+}
+
+// Adds the solutions of the roots from `first` on; whether each became one of its own.
+inline bool add_rows(const Chain& F, const Frame& T, const Six& start, const double (&live)[kWide],
+                     Solutions& out) noexcept {
+  Six q = start;
+  const Errors errors = newton(F, T, load<kWide>(live) > 0.5, q);
+  double angles[6][kWide], c[6][kWide], s[6][kWide], error[kWide];
+  store(errors.after, error);
+  for (int i = 0; i < 6; ++i) {
+    store(angle(q.s[i], q.c[i]), angles[i]);
+    store(q.c[i], c[i]);
+    store(q.s[i], s[i]);
+  }
+  bool all = true;
+  for (int l = 0; l < kWide && live[l] > 0.5; ++l) {
+    Solution row;
+    for (int i = 0; i < 6; ++i) {
+      row.q[i] = angles[i][l];
+      row.c[i] = c[i][l];
+      row.s[i] = s[i][l];
+    }
+    all = error[l] < kVerified && keep(row, out) && all;
+  }
+  return all;
+}
+
+// Adds the solutions for the pose T. True where they are all: every root is single, and leads to a solution of
+// its own.
+inline bool run_resultant(const Chain& F, const Frame& T, const std::array<int, 2>& plan, Solutions& out) noexcept {
+  const Loop loop = make_loop(F, T, static_cast<Index>(plan[0]), plan[1] != 0);
+  const Equations eq = eliminate(loop);
+  const Pencil pencil = make_pencil(eq.E, eq.left);
+  Roots roots;
+  bool all = find_roots(pencil, roots);
+  for (int i = roots.count; i < roots.count + kWide; ++i) {
+    roots.c[i] = roots.count > 0 ? roots.c[0] : 1.0;
+    roots.s[i] = roots.count > 0 ? roots.s[0] : 0.0;
+  }
+  for (int i = 0; i < roots.count; i += kWide) {
+    const Pair three = {load<kWide>(roots.c + i), load<kWide>(roots.s + i)};
+    double live[kWide];
+    for (int l = 0; l < kWide; ++l) live[l] = i + l < roots.count ? 1.0 : 0.0;
+    all = add_rows(F, T, complete(loop, eq, pencil, three), live, out) && all;
+  }
+  return all;
+}
+
+// All solutions, or false and those that were found, where every hidden angle leaves doubts. Poses displaced a
+// little are no help: next to a singularity all of them may lack solutions that the pose itself has.
+template <std::size_t N>
+inline bool solve_resultant(const Chain& F, const Frame& T, const std::array<std::array<int, 2>, N>& plans,
+                            Solutions& out) noexcept {
+  for (const std::array<int, 2>& plan : plans) {
+    if (out.count == 0) {
+      if (run_resultant(F, T, plan, out)) return true;
+      continue;
+    }
+    Solutions mine;
+    const bool all = run_resultant(F, T, plan, mine);
+    for (int k = 0; k < mine.count; ++k) keep(mine.rows[static_cast<Index>(k)], out);
+    if (all && mine.count == out.count) return true;
+  }
+  return false;
+}
+
+}  // namespace g6
+}  // namespace ikgen_runtime

@@ -1,0 +1,108 @@
+"""Poses that are right to 1e-6 (float32 ones are): every row of the exact pose, on the nearest pose."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from tests.support.solving import import_text
+
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
+
+Array = NDArray[np.float64]
+ROOT = Path(__file__).resolve().parents[2]
+FIXTURES, TABLES = ROOT / "urdf_fixtures", ROOT / "tests/robots/tables"
+ARMS = {
+    "spherical wrist": Request(FIXTURES / "kuka_kr6r900sixx.urdf"),
+    "parallel axes": Request(FIXTURES / "ur5e.urdf"),
+    "rounded": Request(FIXTURES / "doosan_m1013.urdf"),
+    "eliminated": Request(TABLES / "KawasakiRS05L.toml"),
+    "held": Request(FIXTURES / "franka_fr3.urdf", free={"fr3_joint7": 0.3}),
+    "direction": Request(FIXTURES / "igus_robolink_rl_dp_5.urdf", task="position-direction"),
+    "yaw": Request(FIXTURES / "scara_standard.toml", task="position-yaw"),
+    "rotation": Request(TABLES / "Wrist.toml", task="rotation"),
+}
+NOISES = ("float32", "1e-6")
+
+
+@pytest.fixture(scope="module", params=ARMS)
+def arm(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """The emitted module of an arm."""
+    text = emit_module(derive(ARMS[request.param]).module)
+    return import_text(text, tmp_path_factory.mktemp("arm"))
+
+
+def configurations(arm: Any, n: int) -> Array:
+    """Random ones inside the limits, held joints at their defaults."""
+    low, high = (np.clip(limit, -3.0, 3.0) for limit in (arm.LOWER, arm.UPPER))
+    q = np.random.default_rng(4).uniform(low, high, (n, arm.DOF))
+    for name, value in zip(arm.FREE_JOINTS, arm._FREE_DEFAULTS, strict=True):
+        q[:, arm.JOINT_NAMES.index(name)] = value
+    return q
+
+
+def noisy(poses: Array, kind: str) -> Array:
+    if kind == "float32":
+        return poses.astype(np.float32).astype(float)
+    out = poses.copy()
+    out[:, :3, :3] += np.random.default_rng(5).uniform(-1e-6, 1e-6, (len(poses), 3, 3))
+    return out
+
+
+def nearest(T: Array, task: str) -> Array:
+    """The pose (4, 4) that a noisy one stands for."""
+    out = T.copy()
+    if task == "position-direction":
+        out[:3, 2] /= np.linalg.norm(T[:3, 2])
+    elif task == "position-yaw":
+        out[:2, 0] /= np.linalg.norm(T[:2, 0])
+    else:
+        U, _, V = np.linalg.svd(T[:3, :3])
+        out[:3, :3] = U @ V
+    return out
+
+
+def read(T: Array, task: str) -> Array:
+    """The entries (..., m) that the task reads."""
+    if task == "position-direction":
+        return T[..., :3, 2:].reshape(*T.shape[:-2], 6)
+    if task == "position-yaw":
+        return np.concatenate([T[..., :3, 3], T[..., :2, 0]], axis=-1)
+    return T[..., :3, : 3 if task == "rotation" else 4].reshape(*T.shape[:-2], -1)
+
+
+@pytest.mark.parametrize("kind", NOISES)
+def test_all_rows_on_the_nearest_pose(arm: Any, kind: str) -> None:
+    poses = arm.forward(configurations(arm, 25))
+    for exact, T in zip(poses, noisy(poses, kind), strict=True):
+        found = arm.solve(T, limits=False)
+        assert len(found) == len(arm.solve(exact, limits=False)) > 0
+        error = read(arm.forward(found.q), arm.TASK) - read(nearest(T, arm.TASK), arm.TASK)
+        assert np.abs(error).max() < 1e-9
+
+
+def test_batch_agrees(arm: Any) -> None:
+    poses = noisy(arm.forward(configurations(arm, 25)), "1e-6")
+    q, count, status = arm.solve_batch(poses, limits=False)
+    for T, rows, n, said in zip(poses, q, count, status, strict=True):
+        found = arm.solve(T, limits=False)
+        assert (len(found), found.status) == (n, said)
+        order = [int(np.abs(rows[:n] - row).max(axis=1).argmin()) for row in found.q]
+        assert sorted(order) == list(range(n))
+        assert np.abs(rows[order] - found.q).max() < 1e-9
+
+
+def test_rotations_that_are_far_off_are_none(arm: Any) -> None:
+    pose = arm.forward(configurations(arm, 1)[0])
+    pose[:3, :3] *= 1.0 + 1e-5
+    bad = [pose]
+    if arm.TASK in ("pose", "rotation"):
+        bad.append(np.diag([1.0, 1.0, -1.0, 1.0]))
+    for T in bad:
+        assert arm.solve(T).status == "INVALID"
+        assert arm.solve_batch([T])[2].tolist() == ["INVALID"]

@@ -1,0 +1,129 @@
+"""One file out of a shell and the runtime: what is used, once, under names of its own."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import pkgutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.support.pan_lift import pan_lift
+from tests.support.solving import import_text
+
+import ikgen.runtime.python
+from ikgen.emit.python.bundle import MARK, bundle
+from ikgen.emit.python.import_lines import External, import_lines
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.emit.python.runtime_source import PACKAGE, read_source, taken_apart
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
+
+SHELL = f"""\"\"\"Turns.\"\"\"
+
+from __future__ import annotations
+
+from math import cos, pi
+
+import numpy as np
+
+from {PACKAGE}.rigid_motion import rotations_z as _turns
+
+HALF = pi
+
+
+{MARK}
+
+
+def half_turn() -> object:
+    return _turns(np.array(HALF))
+"""
+MODULES = [info.name for info in pkgutil.iter_modules(ikgen.runtime.python.__path__)]
+
+
+def test_what_is_used_comes_along(tmp_path: Path) -> None:
+    text = bundle(SHELL)
+    turns = import_text(text, tmp_path)
+    assert np.allclose(turns.half_turn(), np.diag([-1.0, -1.0, 1.0, 1.0]))
+    assert "def _turns(t: _Array)" in text and "inverses" not in text
+    assert "_Array = NDArray[np.float64]" in text and "Row" not in text
+    assert PACKAGE not in text and "import cos" not in text and MARK not in text
+    assert '"""Rotations about z by t (...): (..., 4, 4)."""' in text
+    assert text.startswith(
+        '"""Turns."""\n\nfrom __future__ import annotations\n\nfrom math import pi\n'
+    )
+
+
+def test_the_same_text_each_time() -> None:
+    assert bundle(SHELL) == bundle(SHELL)
+
+
+def test_two_definitions_of_one_name() -> None:
+    with pytest.raises(ValueError, match="two definitions would get: _turns"):
+        bundle(SHELL + "\n\ndef _turns() -> None:\n    return None\n")
+
+
+def test_a_name_that_the_runtime_lacks() -> None:
+    with pytest.raises(ValueError, match="rigid_motion does not define rotations_w"):
+        bundle(SHELL.replace("rotations_z", "rotations_w"))
+
+
+def test_names_are_replaced_where_they_are_read() -> None:
+    source = taken_apart(
+        "it",
+        'A = 1\n\n\n# of A\ndef f(x: int = A) -> int:\n    """`A`, not A."""\n    return A + x\n',
+    )
+    text = source.definitions[1].text({"A": "_B", "f": "_f"})
+    assert text == '# of A\ndef _f(x: int = _B) -> int:\n    """`_B`, not A."""\n    return _B + x'
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        ("x = [1]\nx[0] = 2\n", "line 2: only definitions"),
+        ("def f() -> None:\n    f = 1\n", "line 1: local names"),
+        (
+            "def f() -> None:\n    pass\n\n\ndef g(f: int) -> None:\n    pass\n",
+            "line 5: local names",
+        ),
+    ],
+)
+def test_what_cannot_be_moved(text: str, complaint: str) -> None:
+    with pytest.raises(ValueError, match=complaint):
+        taken_apart("it", text)
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_modules_of_the_runtime_can_be_taken_apart(name: str) -> None:
+    source = read_source(name)
+    assert source.docstring
+    module = importlib.import_module(f"{PACKAGE}.{name}")
+    defined = {n for one in source.definitions for n in one.defines}
+    assert set(module.__all__) <= defined
+
+
+def test_imports_are_merged_and_sorted() -> None:
+    given = "import numpy as np; from math import tau, pi; import os; from math import pi"
+    nodes = [n for n in ast.parse(given).body if isinstance(n, ast.Import | ast.ImportFrom)]
+    lines = import_lines([one for node in nodes for one in External.of(node)])
+    assert lines == ["import os", "from math import pi, tau", "", "import numpy as np"]
+
+
+def test_public_names_of_a_module_are_those_of_the_contract(tmp_path: Path) -> None:
+    module = import_text(emit_module(pan_lift()), tmp_path)
+    own = [
+        n for n, v in vars(module).items() if getattr(v, "__module__", "") in ("", module.__name__)
+    ]
+    public = {name for name in own if not name.startswith("_")}
+    assert public - {"a_2", "annotations", "np", "nan", "inf", "pi"} == set(module.__all__)
+
+
+def test_an_emitted_module_needs_no_ikgen(tmp_path: Path) -> None:
+    root = Path(__file__).resolve().parents[2]
+    text = emit_module(derive(Request(root / "urdf_fixtures/ur5e.urdf")).module)
+    imported = {n.module for n in ast.walk(ast.parse(text)) if isinstance(n, ast.ImportFrom)}
+    assert not any((name or "").startswith("ikgen") for name in imported)
+    arm = import_text(text, tmp_path)
+    pose = arm.forward([0.3, -1.1, 1.4, 0.2, 0.9, -0.5])
+    assert len(arm.solve(pose, limits=False)) == 8

@@ -1,0 +1,100 @@
+"""Rows on the right turns and without repetitions: floats and arrays follow the same rule."""
+
+from __future__ import annotations
+
+from math import inf, pi
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from ikgen.elimination.routine import runtime_policy
+from ikgen.program.policy import SolvePolicy
+from ikgen.runtime.python.chain_kinematics import chain_of
+from ikgen.runtime.python.row_placement import distinct, is_new, place_rows, place_rows_batch
+from ikgen.runtime.python.solved_arm import Arm
+from ikgen.runtime.python.whole_pose import PoseTask
+
+Array = NDArray[np.float64]
+
+
+def arm() -> Arm:
+    """Three turning joints, a slide, and a held joint that turns."""
+    frames = np.tile(np.eye(4), (6, 1, 1))
+    motions = tuple((j, j != 3, 1.0, 0.0) for j in range(5))
+    return Arm(
+        chain=chain_of(frames, motions, 5),
+        task=PoseTask(1.0),
+        policy=runtime_policy(SolvePolicy()),
+        lower=(-pi, -4.0, -inf, 0.0, -inf),
+        upper=(pi, 7.0, inf, 1.0, inf),
+        free=(4,),
+        free_joints=("held",),
+        free_defaults=(0.0,),
+        most=8,
+        branches=lambda T, q0, held: ([], False),
+        branches_batch=lambda T, q0, held: (T, T > 0.0, T > 0.0, T > 0.0),
+        beside=np.empty((0, 4, 4)),
+        turning=(True, True, True, False, False),
+        moving=(0, 1, 2, 3),
+    )
+
+
+def rows(n: int) -> Array:
+    """Rows (n, 1, 5) about, on and beyond the limits."""
+    rng = np.random.default_rng(11)
+    q = rng.uniform(-4.0, 4.0, (n, 1, 5))
+    q[:, 0, 3] = rng.uniform(-0.5, 1.5, n)
+    edges = np.array([-pi, pi, pi + 5e-10, 7.0 - 2.0 * pi, -4.0 - 5e-10, 1.0 + 5e-10])
+    q[::3, 0, 0], q[::3, 0, 1] = (
+        rng.choice(edges[:3], len(q[::3])),
+        rng.choice(edges[3:5], len(q[::3])),
+    )
+    q[::7, 0, 3] = edges[5]
+    return q
+
+
+@pytest.mark.parametrize("limits", [True, False])
+@pytest.mark.parametrize("seed", [None, (2.0, 6.5, -20.0, 0.5, 9.0)])
+def test_floats_and_arrays_agree(limits: bool, seed: tuple[float, ...] | None) -> None:
+    q = rows(400)
+    near = None if seed is None else np.tile(np.array(seed), (len(q), 1))
+    together, inside = place_rows_batch(arm(), q.copy(), near, limits)
+    kept = 0
+    for row, placed, fits in zip(q[:, 0].tolist(), together[:, 0], inside[:, 0], strict=True):
+        found = place_rows(arm(), [(tuple(row), True)], seed, limits)
+        assert bool(found) == fits
+        if found:
+            kept += 1
+            assert np.abs(np.array(found[0][0]) - placed).max() < 1e-14
+    assert kept == 400 if not limits else 100 < kept < 400
+
+
+def test_rows_lie_on_the_limits_that_they_barely_miss() -> None:
+    ((row, flag),) = place_rows(arm(), [((0.0, 0.0, 0.0, 1.0 + 5e-10, 0.0), True)], None, True)
+    assert row[3] == 1.0 and flag
+    assert not place_rows(arm(), [((0.0, 0.0, 0.0, 1.0 + 5e-9, 0.0), True)], None, True)
+
+
+def test_turns_nearest_to_the_seed_inside_the_limits() -> None:
+    row = ((0.0, 0.5, 0.5, 0.5, 0.5), False)
+    ((placed, _),) = place_rows(arm(), [row], (0.0, 30.0, 30.0, 0.0, 30.0), True)
+    assert placed == pytest.approx((0.0, 0.5 + 2.0 * pi, 0.5 + 10.0 * pi, 0.5, 0.5))
+
+
+def test_repetitions() -> None:
+    base = np.array([0.1, 3.0, -1.0, 0.5, 0.0])
+    unit = np.eye(5)
+    turned = base + 2.0 * pi * unit[0] + 5e-7 * unit[2]
+    other, slid = base + 2e-6 * unit[1], base + 2.0 * pi * unit[3]
+    q = np.array([[base, turned, other, slid, base]])
+    valid = np.array([[True, True, True, True, False]])
+    assert distinct(arm(), q, valid).tolist() == [[True, False, True, True, False]]
+    kept = [(tuple(base.tolist()), False)]
+    new = [is_new(arm(), tuple(row.tolist()), kept) for row in (turned, other, slid)]
+    assert new == [False, True, True]
+
+
+def test_a_repetition_of_what_is_none_is_kept() -> None:
+    q = np.zeros((1, 2, 5))
+    assert distinct(arm(), q, np.array([[False, True]])).tolist() == [[False, True]]
