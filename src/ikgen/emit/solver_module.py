@@ -18,7 +18,7 @@ __all__ = ["CLOSE", "SolverModule"]
 CLOSE = 8e-10
 """Deviation up to which a row that is exact for the solved geometry is right for the file (1e-9)."""
 
-FAR = 5e-5
+FAR = 1.5e-5
 """Deviation (rad or m) above which a closed-form row may be too far from the file's solution for Newton
 steps near folds, at regular configurations too."""
 
