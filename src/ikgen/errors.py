@@ -23,6 +23,8 @@ __all__ = [
     "VerificationError",
 ]
 
+_MOST_LISTED = 100
+
 
 class IkgenError(Exception):
     """Base of all errors meant for the user: message, hint, exit code."""
@@ -60,6 +62,8 @@ class UnknownNameError(IkgenError):
         names = list(known)
         close = difflib.get_close_matches(name, names, n=3, cutoff=0.5)
         rest = [n for n in names if n not in close]
+        if len(names) > _MOST_LISTED:
+            rest = [*rest[: _MOST_LISTED - len(close)], f"and {len(names) - _MOST_LISTED} more"]
         listing = ", ".join([*close, *rest]) or "none"
         super().__init__(f"no {kind} named '{name}'", hint=hint or f"there is: {listing}")
         self.name = name

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.support.trees import tree_of
 
 from ikgen.chains.selection import candidate_chains, select_chain
 from ikgen.errors import (
@@ -16,7 +17,6 @@ from ikgen.errors import (
     UsageError,
 )
 from ikgen.importers import load_tree
-from ikgen.importers.urdf.urdf_tree import parse_urdf
 
 FIXTURES = Path(__file__).parents[2] / "urdf_fixtures"
 
@@ -34,17 +34,6 @@ def forward(chain, q):
             motion[:3, :3] += math.sin(value) * K + (1.0 - math.cos(value)) * K @ K
         T = T @ axis.T_prev_axis @ motion
     return T @ chain.T_last_tip
-
-
-def tree_of(*joints):
-    """A tree out of `(name, type, parent, child[, inner])`."""
-    links = dict.fromkeys(link for joint in joints for link in joint[2:4])
-    text = "".join(f'<link name="{link}"/>' for link in links) + "\n"
-    for name, type_, parent, child, *inner in joints:
-        text += f'<joint name="{name}" type="{type_}"><parent link="{parent}"/>'
-        text += f'<child link="{child}"/><origin xyz="0.1 0.2 0.3" rpy="0.3 0.2 0.1"/>'
-        text += f'<axis xyz="0 0.6 0.8"/><limit lower="-1" upper="1"/>{"".join(inner)}</joint>\n'
-    return parse_urdf(f'<robot name="r">{text}</robot>', path=Path("r.urdf"))
 
 
 def serial(*types, **inner):
@@ -263,3 +252,13 @@ def test_joints_without_one_axis(type_):
 def test_a_tree_without_moving_joints():
     with pytest.raises(UsageError, match="no joint moves"):
         select_chain(serial("fixed"))
+
+
+def test_a_long_row_of_mimic_joints_that_grows_is_refused():
+    inner = {f"j{i}": mimic(f"j{i - 1}", 1e3) for i in range(2, 5)}
+    tree = serial("revolute", "revolute", "revolute", "revolute", **inner)
+    with pytest.raises(
+        BadDescriptionError, match=r"'j4' follows 'j1' as 1e\+09 \* value"
+    ) as caught:
+        select_chain(tree)
+    assert caught.value.line is not None and "<mimic>" in caught.value.hint

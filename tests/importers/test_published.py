@@ -35,7 +35,6 @@ XACROS = table("xacro/manifest.json")
 
 # Where the default differs from the table's, on purpose.
 OTHER_DEFAULT = {
-    "pxpincher": "the fingers' mount is as rigid as the servo before it",
     "lekiwi_arm": "no name on the last body is a convention",
     "xarm6_bullet": "link_base is preferred to world",
     "panthera": "the deepest link of the last body",

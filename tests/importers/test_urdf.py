@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import hashlib
 import math
+import os
+import time
 
 import numpy as np
 import pytest
 
-from ikgen.errors import BadDescriptionError, IkgenError, UsageError
+from ikgen.errors import BadDescriptionError, UsageError
 from ikgen.importers import load_tree
+from ikgen.importers.xml_document import LARGEST_FILE
 from ikgen.model.joint_tree import JointType, Mimic
 
 INF = math.inf
@@ -186,7 +189,9 @@ def test_tolerated_with_a_warning(read, case):
         ("prismatic", "", -INF, INF),
         ("continuous", "", -INF, INF),
         ("continuous", '<limit lower="0" upper="0"/>', -INF, INF),
-        ("continuous", '<limit lower="-4" upper="4"/>', -4.0, 4.0),
+        ("continuous", '<limit lower="-4" upper="4"/>', -INF, INF),
+        ("continuous", '<limit lower="1e300" upper="2e300"/>', -INF, INF),
+        ("revolute", '<limit lower="-1e16" upper="1e16"/>', -1e16, 1e16),
         ("fixed", '<limit lower="x" upper="4"/>', -INF, INF),
     ],
 )
@@ -241,20 +246,109 @@ def test_faults_beside_the_kinematics_are_none(read):
     assert read(text).links == ("a", "b", "c")
 
 
-def test_external_entities_are_not_fetched(read, tmp_path):
-    (tmp_path / "secret").write_text("secret")
-    text = f'<!DOCTYPE robot [<!ENTITY e SYSTEM "{tmp_path}/secret">]>'
-    tree = read(text + '<robot name="r"><link name="a"/>&e;</robot>')
-    assert tree.links == ("a",)
+def test_limits_of_continuous_joints_are_one_warning(read):
+    limit = '<limit lower="-6.28" upper="6.28"/>'
+    joints = [
+        joint(limit, name=f"j{i}", type_="continuous", parent="abcd"[i], child="abcd"[i + 1])
+        for i in range(3)
+    ]
+    (warning,) = read(robot(*joints, links="abcd")).source.warnings
+    assert warning.startswith("line 6: limits of the continuous joint 'j0' and of 2 more ignored")
 
 
-def test_a_bomb_of_entities_is_refused(read):
+DOCTYPES = {
+    "a bomb": '[<!ENTITY a "x"><!ENTITY b "&a;&a;"><!ENTITY c "&b;&b;">]',
+    "a parameter": '[<!ENTITY % p "x">]',
+    "a file": '[<!ENTITY e SYSTEM "/etc/hostname">]',
+    "an address": '[<!ENTITY e SYSTEM "http://127.0.0.1:9/e">]',
+    "a DTD": 'SYSTEM "http://127.0.0.1:9/robot.dtd"',
+}
+
+
+@pytest.mark.parametrize("case", DOCTYPES)
+def test_document_types_that_declare_something_are_refused(read, case):
+    with pytest.raises(BadDescriptionError, match=r"bot\.urdf:2: <!DOCTYPE> declares") as caught:
+        read(f"<?xml version='1.0'?>\n<!DOCTYPE robot {DOCTYPES[case]}>\n" + robot())
+    assert "remove it" in caught.value.hint
+
+
+def test_a_bare_document_type_is_harmless(read):
+    assert read("<!DOCTYPE robot>" + robot()).links == ("a", "b")
+
+
+def test_a_bomb_of_entities_in_an_attribute_ends_at_once(read):
     layers = "".join(f'<!ENTITY e{i} "{f"&e{i - 1};" * 20}">' for i in range(1, 12))
     text = (
         f'<!DOCTYPE robot [<!ENTITY e0 "x">{layers}]><robot name="&e11;"><link name="a"/></robot>'
     )
-    with pytest.raises(IkgenError):
+    with pytest.raises(BadDescriptionError):
         read(text)
+
+
+def test_deep_nesting_is_refused_with_its_line(read):
+    with pytest.raises(BadDescriptionError, match=r"bot\.urdf:\d+: not well-formed") as caught:
+        read("<robot>\n" + "<a>" * 100_000 + "</a>" * 100_000 + "</robot>")
+    assert "nest" in caught.value.hint
+
+
+def test_a_file_too_big_is_refused_before_it_is_read(tmp_path):
+    file = tmp_path / "bot.urdf"
+    with file.open("wb") as stream:
+        stream.truncate(LARGEST_FILE + 1)  # sparse: takes no room
+    with pytest.raises(BadDescriptionError, match="MB, more than 32 MB"):
+        load_tree(file)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes on this system")
+def test_pipes_and_devices_are_refused(tmp_path):
+    os.mkfifo(tmp_path / "bot.urdf")
+    (tmp_path / "zero.urdf").symlink_to("/dev/zero")
+    for name in ("bot.urdf", "zero.urdf"):
+        with pytest.raises(BadDescriptionError, match="no regular file"):
+            load_tree(tmp_path / name)
+
+
+LARGE = {
+    "length": (joint('<origin xyz="1e308 0 0"/>'), "is beyond 10000"),
+    "many digits": (joint(f'<origin xyz="{"1" * 5_000_000}x 0 0"/>'), "5000005 characters"),
+    "digits in a word": (joint(f'<origin xyz="{"1" * 2000} 0 0"/>'), "is not finite"),
+    "multiplier": (joint('<mimic joint="k" multiplier="1e308"/>' + LIMIT), "beyond 1e+06"),
+    "offset": (joint('<mimic joint="k" offset="-1e17"/>' + LIMIT), "beyond 1e+06"),
+    "limits far out": (joint('<limit lower="1e15" upper="1e16"/>'), "hold no value"),
+    "limits at infinity": (joint('<limit lower="inf" upper="inf"/>'), "hold no value"),
+    "axis": (joint('<axis xyz="0 0 1e308"/>' + LIMIT), "axis of length 1e+308"),
+    "denormal axis": (joint('<axis xyz="0 0 5e-324"/>' + LIMIT), "zero axis"),
+    "name": (joint(LIMIT, name="j" * 1_000_000), "has 1000000 characters"),
+}
+
+
+@pytest.mark.parametrize("case", LARGE)
+def test_numbers_without_a_meaning_are_refused_with_their_line(read, case):
+    text, message = LARGE[case]
+    started = time.process_time()
+    with pytest.raises(BadDescriptionError) as caught:
+        read(robot(text))
+    assert time.process_time() - started < 2.0
+    assert message in caught.value.message and caught.value.line == 4 and caught.value.hint
+    assert len(caught.value.message) < 500
+
+
+def test_denormal_lengths_and_angles_are_read(read):
+    tree = read(robot(joint('<origin xyz="5e-324 1e-310 0" rpy="5e-324 0 0"/>' + LIMIT)))
+    assert np.abs(tree.joints[0].T_parent_child - np.eye(4)).max() < 1e-300
+
+
+def test_a_cycle_of_ten_thousand_joints_is_named_in_short(read):
+    count = 10_000
+    joints = [
+        joint(LIMIT, name=f"j{i}", parent=f"l{i}", child=f"l{(i + 1) % count}")
+        for i in range(count)
+    ]
+    with pytest.raises(
+        BadDescriptionError, match=r"cycle: j1 -> j2 .* 9988 more .* -> j0"
+    ) as caught:
+        read(robot(*joints, links=[f"l{i}" for i in range(count)]))
+    assert len(caught.value.message) < 500
 
 
 def test_urdf_takes_no_arguments(tmp_path):

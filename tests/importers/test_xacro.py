@@ -126,6 +126,13 @@ REFUSED = {
 }
 
 
+def test_an_argument_without_default_is_named_where_all_stands_on_one_line(file):
+    arguments = '<xacro:arg name="first" default="1"/><xacro:arg name="side"/>'
+    file.write_text(OPEN.strip() + arguments + "</robot>")
+    with pytest.raises(BadDescriptionError, match=r':1: <xacro:arg name="side"> has no default'):
+        load_tree(file)
+
+
 @pytest.mark.parametrize("case", REFUSED)
 def test_refused_with_place_and_hint(file, case):
     text, message, hint = REFUSED[case]
@@ -219,6 +226,19 @@ class TestPackages:
         marker.touch()
         environment = {"AMENT_PREFIX_PATH": f"/nowhere:{tmp_path}"}
         assert self.find(file, "wanted", environment=environment) == tmp_path / "share/wanted"
+
+    @pytest.mark.parametrize("name", ["../../marker", "/etc/hostname", "..", "", "a/b", ".hidden"])
+    def test_a_path_is_no_name(self, file, tmp_path, name):
+        (tmp_path / "share/ament_index/resource_index/packages").mkdir(parents=True)
+        (tmp_path / "share/ament_index/marker").touch()
+        with pytest.raises(PackageNotFoundError):
+            self.find(file, name, environment={"AMENT_PREFIX_PATH": str(tmp_path)})
+
+    def test_home_is_no_package_whatever_its_name(self, file, monkeypatch):
+        assert self.find(file, "pkg") == file.parents[1]
+        monkeypatch.setenv("HOME", str(file.parents[1]))
+        with pytest.raises(PackageNotFoundError):
+            self.find(file, "pkg")
 
     def test_not_found_says_where_it_looked(self, file, tmp_path):
         with pytest.raises(PackageNotFoundError, match="'wanted'") as caught:

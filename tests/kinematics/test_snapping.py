@@ -8,13 +8,11 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from ikgen.kinematics.rigid import exact_cos_sin, rotation_x, rotation_z
 from ikgen.kinematics.snapping import (
     LengthBook,
     SnapLog,
     exact_angle,
-    exact_cos_sin,
-    rotation_x,
-    rotation_z,
     snap_angle,
     snap_axis,
     snap_rotation,

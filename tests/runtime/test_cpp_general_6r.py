@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tests.elimination.test_elimination import apart, arm_frames, configurations, missing
 from tests.support.routines import FLAGS, feed
 
-from ikgen.elimination import UniversalPlan, choose_plan
+from ikgen.elimination import UniversalPlan, choose_plan, hold_joint
 from ikgen.elimination.loop_frames import forward
 from ikgen.elimination.resultant import RESULTANTS, root_shifts
 
@@ -66,6 +66,45 @@ int main() {
   }
 }
 """
+HELD = r"""
+#include <cstdio>
+#include "general_6r_arm.hpp"
+using namespace ikgen_runtime;
+struct Motion {
+  int joint;
+  bool revolute;
+};
+struct Arm {
+  static constexpr Motion kMotions[] = {{0, true}, {1, true}, {2, true}, {3, true},
+                                        {4, true}, {5, true}, {6, true}, {7, false}};
+  static constexpr bool kHeld[] = {false, false, true, false, false, false, false, true};
+  static inline double kFrames[9][3][4];
+  static constexpr int kMaxSolutions = 16;
+  struct Plan {
+    static constexpr double kLength = 1.0;
+    static inline std::array<std::array<int, 2>, 1> kResultants;
+    static inline std::array<std::array<int, 3>, 1> kEigenproblems;
+  };
+};
+int main() {
+  static double x[15], roots[16][12];
+  for (int& i : Arm::Plan::kResultants[0])
+    if (std::scanf("%d", &i) != 1) return 1;
+  for (int& i : Arm::Plan::kEigenproblems[0])
+    if (std::scanf("%d", &i) != 1) return 1;
+  for (int i = 0; i < 108; ++i)
+    if (std::scanf("%lf", &Arm::kFrames[i / 12][i / 4 % 3][i % 4]) != 1) return 1;
+  for (;;) {
+    for (double& e : x)
+      if (std::scanf("%lf", &e) != 1) return 0;
+    const int count = General6r<Arm>::branches(x, roots);
+    for (int k = 0; k < count; ++k)
+      for (int i = 0; i < 6; ++i)
+        std::printf("%.17g ", std::atan2(roots[k][2 * i + 1], roots[k][2 * i]));
+    std::printf("\n");
+  }
+}
+"""
 ISOLATE = r"""
 #include <cstdio>
 #include "general_6r_roots.hpp"
@@ -75,7 +114,7 @@ int main() {
     double f[g6::kNodes];
     for (double& x : f)
       if (std::scanf("%lf", &x) != 1) return 0;
-    const g6::Polynomial polynomial = g6::interpolate(f);
+    const g6::Polynomial polynomial = g6::interpolate(f, 0.0);
     const g6::Brackets found = g6::isolate(polynomial);
     g6::Roots roots;
     g6::refine_all(polynomial, found, roots);
@@ -162,6 +201,28 @@ def test_rows_are_in_the_same_order_however_they_are_found(solver: Path) -> None
             np.abs(np.remainder(rows[:, :6] - others[:, :6] + np.pi, 2 * np.pi) - np.pi).max()
             < 1e-7
         )
+
+
+def test_held_joints_take_their_values(tmp_path: Path) -> None:
+    """A turning joint and a slide held in an arm of eight joints, at other values for every pose."""
+    rng = np.random.default_rng(9)
+    frames = np.concatenate([arm_frames("random 1")[:5], arm_frames("random 2")[3:]])
+    program = compiled("held", HELD, [], tmp_path)
+    for _ in range(5):
+        turn, slide = rng.uniform(-2.0, 2.0), rng.uniform(-0.5, 0.5)
+        six = hold_joint(hold_joint(frames, 7, slide, revolute=False), 2, turn)
+        plan, q = choose_plan(six, probes=6), configurations(six, 20)
+        poses = np.array([forward(six, row) for row in q])
+        held = np.broadcast_to([np.cos(turn), np.sin(turn), slide], (len(q), 3))
+        inputs = np.concatenate([poses[:, :3].reshape(-1, 12), held], axis=1)
+        numbers = [
+            *plan.resultants[0],
+            *plan.eliminations[0],
+            *frames[:, :3].ravel(),
+            *inputs.ravel(),
+        ]
+        lines = feed(program, [float(x) for x in numbers])
+        assert missing([np.array(line).reshape(-1, 6) for line in lines], q) == 0
 
 
 def planted(roots: Array) -> Array:

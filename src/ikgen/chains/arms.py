@@ -1,18 +1,21 @@
 """The chains of a tree that someone may want solved: its arms, without their grippers.
 
-A tree does not say where its arms begin and end. With the fingers taken off (`fingers`), its long
-branches are the arms; short side branches (the parallel rods of a palletiser, wheels) and heads
-are none. The ends are chosen by conventional names among the links rigidly attached there.
+A tree does not say where its arms begin and end. With fingers, wheels and rotors taken off
+(`grippers`), its long branches are the arms; short side branches (the parallel rods of a palletiser,
+a camera that pans) and heads are none. The ends are chosen by conventional names among the links
+rigidly attached there.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import takewhile
 
-from ikgen.chains.grippers import ARM_JOINTS, arm_links, hub_of, rigid_body
+from ikgen.chains.grippers import ARM_JOINTS, ArmLinks, arm_links
 from ikgen.chains.link_names import NO_RANK, base_rank, is_head, is_sensor, tip_rank
+from ikgen.chains.rigid_bodies import RigidBodies
 from ikgen.importers.urdf.topology import TreeIndex
 from ikgen.model.joint_tree import Joint, JointTree, JointType
 
@@ -43,7 +46,8 @@ def candidate_chains(tree: JointTree, base: str | None = None) -> tuple[ChainCan
     index.require_link(root)
     arms = _without_side_branches(list(_branches(index, root, base)))
     if base is None:
-        arms += [split for arm in arms if (split := _without_trunk(index, arm, arms)) is not None]
+        through = Counter(joint for arm in arms for joint in arm.joints)
+        arms += [part for arm in arms if (part := _without_trunk(index, arm, through)) is not None]
     return tuple(sorted(arms, key=lambda arm: -arm.dof))
 
 
@@ -64,25 +68,23 @@ def conventional_base(index: TreeIndex, root: str, tip: str) -> str:
 
 
 def _branches(index: TreeIndex, root: str, base: str | None) -> Iterator[ChainCandidate]:
-    """A candidate for each rigid body behind which nothing but fingers moves."""
-    links = arm_links(index, root)
-    for hub in index.subtree(root):
-        if hub not in links or hub_of(index, hub, root) != hub:
+    """A candidate for each rigid body behind which nothing but fingers and wheels moves."""
+    bodies = RigidBodies.of(index, root)
+    arms = arm_links(index, bodies)
+    for hub, body in bodies.links.items():
+        if hub not in arms.links or any(j.child in arms.links for j in bodies.exits[hub]):
             continue
-        body = rigid_body(index, hub, links)
-        onward = [j for link in body for j in index.below[link] if j.type is not JointType.FIXED]
-        if any(joint.child in links for joint in onward):
-            continue
-        tip, why = _best_tip(index, hub, body)
+        tip, why = _best_tip(bodies, body, arms)
         start = conventional_base(index, root, tip) if base is None else base
         joints = _moving(index.path(start, tip) or ())
         if joints:
             yield ChainCandidate(start, tip, _names(joints), _dof(joints), why)
 
 
-def _best_tip(index: TreeIndex, hub: str, body: Sequence[str]) -> tuple[str, str]:
+def _best_tip(bodies: RigidBodies, body: Sequence[str], arms: ArmLinks) -> tuple[str, str]:
     def preference(link: str) -> tuple[int, bool, int]:
-        return tip_rank(link), is_sensor(link), -len(index.path(hub, link) or ())
+        aside = is_sensor(link) or link in arms.held_fingers
+        return tip_rank(link), aside, -bodies.depth[link]
 
     tip = min(body, key=preference)
     if tip_rank(tip) < NO_RANK:
@@ -108,29 +110,28 @@ def _dof(joints: Sequence[Joint]) -> int:
     return len({joint.name if joint.mimic is None else joint.mimic.joint for joint in joints})
 
 
-def _shared(a: ChainCandidate, b: ChainCandidate) -> int:
-    """How many joints two chains have in common at their beginning."""
-    pairs = zip(a.joints, b.joints, strict=False)
-    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
-
-
 def _without_side_branches(chains: list[ChainCandidate]) -> list[ChainCandidate]:
     """Drop the branches too short to be an arm beside a longer one, and heads."""
+    longest: dict[str, int] = {}  # of the chains through a joint; "" stands for where all begin
+    for chain in chains:
+        for joint in ("", *chain.joints):
+            longest[joint] = max(longest.get(joint, 0), len(chain.joints))
     arms = []
     for chain in chains:
-        longer = [other for other in chains if len(other.joints) > len(chain.joints)]
-        if any(len(chain.joints) - _shared(chain, other) < ARM_JOINTS for other in longer):
-            continue
-        arms.append(chain)
+        # The last joint before the part that would be an arm of its own.
+        fork = ("", *chain.joints)[max(len(chain.joints) - ARM_JOINTS + 1, 0)]
+        if longest[fork] <= len(chain.joints):
+            arms.append(chain)
     bodies = [arm for arm in arms if not any(is_head(joint) for joint in arm.joints)]
     return bodies or arms
 
 
 def _without_trunk(
-    index: TreeIndex, arm: ChainCandidate, arms: Sequence[ChainCandidate]
+    index: TreeIndex, arm: ChainCandidate, through: Counter[str]
 ) -> ChainCandidate | None:
-    """The part of an arm behind the joints that it shares with another one."""
-    shared = max((_shared(arm, other) for other in arms if other is not arm), default=0)
+    """The part of an arm behind the joints that it shares with another one; `through` counts the
+    arms of each joint."""
+    shared = sum(1 for _ in takewhile(lambda joint: through[joint] > 1, arm.joints))
     if not shared:
         return None
     joints = _moving(index.path(arm.base, arm.tip) or ())

@@ -11,6 +11,8 @@ from ikgen.model.joint_tree import JointTree
 
 __all__ = ["choose_ends", "not_below"]
 
+_MOST_SHOWN = 20
+
 
 def choose_ends(
     tree: JointTree, index: TreeIndex, base: str | None, tip: str | None
@@ -25,11 +27,25 @@ def choose_ends(
     if len(candidates) == 1:
         return candidates[0].base, candidates[0].tip
     if not candidates:
-        where = f"below '{base}'" if base is not None else f"in robot '{tree.name}'"
-        raise UsageError(f"no joint moves {where}", hint="choose other links by --base and --tip")
-    options = "\n".join(f"  {_options(candidate)}" for candidate in candidates)
+        raise _no_arm(tree, index, base)
+    options = "\n".join(f"  {_options(candidate)}" for candidate in candidates[:_MOST_SHOWN])
+    if len(candidates) > _MOST_SHOWN:
+        options += f"\n  ... and {len(candidates) - _MOST_SHOWN} more"
     raise UsageError(
         f"robot '{tree.name}' has several chains; choose one", hint=f"give one of:\n{options}"
+    )
+
+
+def _no_arm(tree: JointTree, index: TreeIndex, base: str | None) -> UsageError:
+    root = tree.root_link if base is None else base
+    below = (joint for link in index.subtree(root) for joint in index.below[link])
+    moving = [joint.name for joint in below if joint.type.moves_on_one_axis]
+    where = f"below '{base}'" if base is not None else f"in robot '{tree.name}'"
+    if not moving:
+        return UsageError(f"no joint moves {where}", hint="choose other links by --base and --tip")
+    return UsageError(
+        f"no arm {where}: only fingers, wheels or rotors move there ({moving[0]}, ...)",
+        hint="choose the links of a chain by --base and --tip",
     )
 
 

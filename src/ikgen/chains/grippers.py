@@ -1,105 +1,133 @@
-"""Which links of a tree belong to its arms, and which only to their grippers.
+"""Which links of a tree belong to its arms, and which only to their grippers, wheels and rotors.
 
 Fingers are told by what they do (several short moving branches side by side at the end of an arm,
-joints that mimic a neighbour) and by their names.
+joints that mimic a neighbour) and by their names, wheels and rotors by their names and by what hangs
+on them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
+from dataclasses import dataclass
 
-from ikgen.chains.link_names import is_finger
+from ikgen.chains.link_names import is_finger, is_finger_link, is_wheel
+from ikgen.chains.rigid_bodies import RigidBodies
 from ikgen.importers.urdf.topology import TreeIndex
 from ikgen.model.joint_tree import Joint, JointType
 
-__all__ = ["ARM_JOINTS", "arm_links", "hub_of", "rigid_body"]
+__all__ = ["ARM_JOINTS", "ArmLinks", "arm_links"]
 
 ARM_JOINTS = 3
 """A branch of fewer moving joints than this is no arm beside one that has as many."""
 
 _FINGER_JOINTS = 4
+_LONGEST_FINGER = 5
+"""Thumbs have up to five joints; what moves more under a finger's name is something else."""
 
-# For each link: moving joints above it (from the root), and at most in a row below it.
-_Depths = Mapping[str, tuple[int, int]]
+
+@dataclass(frozen=True, slots=True)
+class ArmLinks:
+    """The links that no joint of a gripper, wheel or rotor separates from the root, and among them
+    the parts of a gripper that a file holds fast beside its moving fingers."""
+
+    links: frozenset[str]
+    held_fingers: frozenset[str]
 
 
-def arm_links(index: TreeIndex, root: str) -> frozenset[str]:
-    """The links below root, itself included, that no joint of a gripper separates from it."""
-    depths = _depths(index, root)
+def arm_links(index: TreeIndex, bodies: RigidBodies) -> ArmLinks:
+    """The links of arms, the root included."""
+    wheels = _wheel_joints(index, bodies)
     kept: set[str] = set()
-    waiting = [root]
+    palms: list[str] = []
+    waiting = [bodies.root]
+    grippers: dict[str, bool] = {}
     while waiting:
         link = waiting.pop()
         kept.add(link)
-        fingers = _finger_joints(index, link, depths)
-        waiting.extend(j.child for j in index.below[link] if j.name not in fingers)
-    return frozenset(kept)
+        fingers = _finger_joints(index, link, bodies, grippers)
+        if fingers:
+            palms.append(link)
+        without = fingers | wheels
+        waiting.extend(j.child for j in index.below[link] if j.name not in without)
+    return ArmLinks(frozenset(kept), _held_fingers(index, palms))
 
 
-def hub_of(index: TreeIndex, link: str, root: str) -> str:
-    """The link nearest to root of the rigid body that a link belongs to."""
-    while link != root and index.above[link].type is JointType.FIXED:
-        link = index.above[link].parent
-    return link
+def _held_fingers(index: TreeIndex, palms: Sequence[str]) -> frozenset[str]:
+    """The links held fast below a link with moving fingers, where one of them is a finger's, and
+    that do not lead to such a link themselves."""
+    held: set[str] = set()
+    seen: set[str] = set()
+    for palm in palms:
+        found: list[str] = []
+        if palm in seen:
+            continue
+        waiting = [palm]
+        while waiting:
+            fixed = [j.child for j in index.below[waiting.pop()] if j.type is JointType.FIXED]
+            found += fixed
+            waiting += fixed
+        seen.update(found)
+        if any(is_finger_link(link) for link in found):
+            held.update(found)
+    for palm in palms:
+        link = palm
+        while link in held:
+            held.remove(link)
+            link = index.above[link].parent
+    return frozenset(held)
 
 
-def rigid_body(index: TreeIndex, hub: str, links: frozenset[str] | None = None) -> list[str]:
-    """The links rigidly attached to `hub` and below it, parents first; those in `links` only."""
-    body: list[str] = []
-    waiting = [hub]
-    while waiting:
-        link = waiting.pop()
-        body.append(link)
-        waiting.extend(
-            joint.child
-            for joint in reversed(index.below[link])
-            if joint.type is JointType.FIXED and (links is None or joint.child in links)
-        )
-    return body
-
-
-def _depths(index: TreeIndex, root: str) -> _Depths:
-    order = list(index.subtree(root))
-    above = {root: 0}
-    for link in order:
+def _wheel_joints(index: TreeIndex, bodies: RigidBodies) -> frozenset[str]:
+    """The joints that turn a wheel, caster or rotor: named so, with nothing else moving below."""
+    wheels: set[str] = set()
+    rolls: dict[str, bool] = {}
+    for link in reversed(tuple(bodies.hub)):
+        rolls[link] = True
         for joint in index.below[link]:
-            above[joint.child] = above[link] + joint.type.moves_on_one_axis
-    below: dict[str, int] = {}
-    for link in reversed(order):
-        runs = [below[j.child] + j.type.moves_on_one_axis for j in index.below[link]]
-        below[link] = max(runs, default=0)
-    return {link: (above[link], below[link]) for link in order}
+            if joint.type is JointType.FIXED:
+                rolls[link] &= rolls[joint.child]
+            elif rolls[joint.child] and _turns(joint) and is_wheel(joint.name, joint.child):
+                wheels.add(joint.name)
+            else:
+                rolls[link] = False
+    return frozenset(wheels)
 
 
-def _finger_joints(index: TreeIndex, link: str, depths: _Depths) -> frozenset[str]:
-    """The names of the joints right below a link that lead into fingers."""
-    arm_above = depths[link][0]
-    root = next(iter(depths))
-    fingers = {j.name for j in index.below[link] if _is_finger_joint(index, j, arm_above)}
-    if arm_above >= ARM_JOINTS:
-        body = rigid_body(index, hub_of(index, link, root))
-        exits = [j for b in body for j in index.below[b] if j.type is not JointType.FIXED]
-        longest = min(_FINGER_JOINTS, arm_above - 1)
-        short = all(depths[j.child][1] < longest for j in exits)
-        sure = sum(_is_finger_joint(index, j, arm_above) for j in exits)
-        # What moves beside two fingers belongs to the same hand.
-        if sure > 1 or (short and len(exits) > 1):
-            fingers.update(j.name for j in index.below[link] if j in exits)
+def _turns(joint: Joint) -> bool:
+    return joint.type in (JointType.CONTINUOUS, JointType.REVOLUTE)
+
+
+def _finger_joints(
+    index: TreeIndex, link: str, bodies: RigidBodies, grippers: dict[str, bool]
+) -> frozenset[str]:
+    """The names of the joints right below a link that lead into fingers; `grippers` remembers which
+    bodies are a gripper's."""
+    fingers = {j.name for j in index.below[link] if _is_finger_joint(j, bodies)}
+    if bodies.moving_above[link] >= ARM_JOINTS:
+        hub = bodies.hub[link]
+        if hub not in grippers:
+            grippers[hub] = _is_gripper(hub, bodies)
+        if grippers[hub]:
+            fingers.update(j.name for j in index.below[link] if j.type is not JointType.FIXED)
     return frozenset(fingers)
 
 
-def _is_finger_joint(index: TreeIndex, joint: Joint, arm_above: int) -> bool:
+def _is_gripper(hub: str, bodies: RigidBodies) -> bool:
+    """Whether all that moves on a body is fingers: what moves beside two of them is of one hand."""
+    exits = bodies.exits[hub]
+    longest = min(_FINGER_JOINTS, bodies.moving_above[hub] - 1)
+    short = all(bodies.moving_below[j.child] < longest for j in exits)
+    sure = sum(_is_finger_joint(j, bodies) for j in exits)
+    return sure > 1 or (short and len(exits) > 1)
+
+
+def _is_finger_joint(joint: Joint, bodies: RigidBodies) -> bool:
     if not joint.type.moves_on_one_axis:
         return False
     # The depth keeps robots whose every joint is named after a finger or a claw.
-    if arm_above >= ARM_JOINTS and is_finger(joint.name, joint.child):
+    deep = bodies.moving_above[joint.parent] >= ARM_JOINTS
+    short = bodies.moving_below[joint.child] < _LONGEST_FINGER
+    if deep and short and is_finger(joint.name, joint.child):
         return True
-    if joint.mimic is None:
-        return False
     # A mimic joint of an arm follows a joint of the same arm; a finger's follows the one beside it.
-    link = joint.parent
-    while link in index.above:
-        if index.above[link].name == joint.mimic.joint:
-            return False
-        link = index.above[link].parent
-    return True
+    return joint.mimic is not None and not bodies.hangs_on(joint.parent, joint.mimic.joint)

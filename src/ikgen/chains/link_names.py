@@ -4,7 +4,16 @@ from __future__ import annotations
 
 import re
 
-__all__ = ["NO_RANK", "base_rank", "is_finger", "is_head", "is_sensor", "tip_rank"]
+__all__ = [
+    "NO_RANK",
+    "base_rank",
+    "is_finger",
+    "is_finger_link",
+    "is_head",
+    "is_sensor",
+    "is_wheel",
+    "tip_rank",
+]
 
 _FINGER_JOINT = re.compile(
     r"finger|gripper|grip_|jaw|knuckle|claw|(^|_)grasp(_joint)?$|^[lr]_?hand$"
@@ -12,7 +21,8 @@ _FINGER_JOINT = re.compile(
     re.IGNORECASE,
 )
 _FINGER_LINK = re.compile(r"finger|knuckle|moving[-_](part|jaw)", re.IGNORECASE)
-_HEAD = re.compile(r"head|neck|(^|[/_])eyes?(_|$)", re.IGNORECASE)
+_WHEEL = re.compile(r"wheel|caster|castor|rotor|propeller", re.IGNORECASE)
+_HEAD = re.compile(r"head|neck|cervical|(^|[/_])eyes?(_|$)", re.IGNORECASE)
 _SENSOR = re.compile(
     r"camera|optical|realsense|imu|sensor|touch|marker|contact|collision|inertia|balancing",
     re.IGNORECASE,
@@ -38,7 +48,17 @@ NO_RANK = max(len(_BASES), len(_TIPS))
 
 def is_finger(joint: str, child: str) -> bool:
     """Whether the names of a joint and the link it holds tell of a gripper's finger."""
-    return _FINGER_JOINT.search(joint) is not None or _FINGER_LINK.search(child) is not None
+    return _FINGER_JOINT.search(joint) is not None or is_finger_link(child)
+
+
+def is_finger_link(link: str) -> bool:
+    """Whether a link's name tells of a part of a finger."""
+    return _FINGER_LINK.search(link) is not None
+
+
+def is_wheel(joint: str, child: str) -> bool:
+    """Whether the names of a joint and the link it holds tell of a wheel, caster or rotor."""
+    return _WHEEL.search(joint) is not None or _WHEEL.search(child) is not None
 
 
 def is_head(joint: str) -> bool:

@@ -11,6 +11,9 @@ from ikgen.model.joint_tree import Joint, JointTree
 
 __all__ = ["Coupling", "couple"]
 
+_LARGEST = 1e6
+"""The greatest multiplier and offset (rad or m) that a chain of mimic joints may come to."""
+
 
 @dataclass(frozen=True, slots=True)
 class Coupling:
@@ -70,5 +73,12 @@ def _resolve(tree: JointTree, joints: Mapping[str, Joint], joint: Joint) -> Coup
             file=shown_file(tree.source),
             line=joint.line,
             hint="a mimic joint follows a revolute, continuous or prismatic joint",
+        )
+    if max(abs(multiplier), abs(offset)) > _LARGEST:
+        raise BadDescriptionError(
+            f"joint '{joint.name}' follows '{current.name}' as {multiplier:g} * value + {offset:g}",
+            file=shown_file(tree.source),
+            line=joint.line,
+            hint=f"no digit of an angle is left beyond {_LARGEST:g}: correct <mimic>",
         )
     return Coupling(current, multiplier, offset)

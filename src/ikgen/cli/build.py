@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +12,7 @@ import click
 
 from ikgen.cli.console import Console
 from ikgen.cli.error_output import as_object, say
-from ikgen.cli.options import console_options
+from ikgen.cli.options import console_options, trust_option
 from ikgen.projects.config import ArmConfig, load_config, named_config
 
 if TYPE_CHECKING:
@@ -44,6 +45,7 @@ __all__ = ["build"]
     is_flag=True,
     help="Leave the verification out (and Pinocchio with it); unverified outputs count as fresh.",
 )
+@trust_option
 @console_options
 def build(
     config: Path | None,
@@ -53,6 +55,7 @@ def build(
     depfile: Path | None,
     jobs: int | None,
     no_verify: bool,
+    trust: bool,
     as_json: bool,
     quiet: bool,
     verbose: bool,
@@ -67,6 +70,7 @@ def build(
         return _check(path, arms, verify=not no_verify, as_json=as_json, quiet=quiet)
     from ikgen.projects.project_build import build_arms
 
+    arms = tuple(replace(arm, request=replace(arm.request, trust=trust)) for arm in arms)
     with Console(quiet=quiet, verbose=verbose) as console:
         outcomes = list(
             build_arms(arms, force=force, verify=not no_verify, jobs=jobs, progress=console)

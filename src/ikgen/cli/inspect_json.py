@@ -61,6 +61,9 @@ def _attempt(attempt: Attempt) -> dict[str, Any]:
 
 
 def _chain(dh: DHChain, geometry: GeometryClass) -> dict[str, Any]:
+    from ikgen.kinematics.kept import keep_constants, kept_constants, stray_lengths
+
+    kept = kept_constants(keep_constants(dh, stray_lengths(dh))) if dh.snaps else ()
     return {
         "base": dh.base_link,
         "tip": dh.tip_link,
@@ -72,6 +75,7 @@ def _chain(dh: DHChain, geometry: GeometryClass) -> dict[str, Any]:
         "dh": [_row(row) for row in dh.rows],
         "constants": constants(dh),
         "snaps": [{"what": s.what, "before": s.before, "after": s.after} for s in dh.snaps],
+        "kept": [{"what": s.what, "value": s.before, "meant": s.after} for s in kept],
         "deviation": {"m": dh.deviation[0], "rad": dh.deviation[1]},
     }
 

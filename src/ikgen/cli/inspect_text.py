@@ -59,9 +59,22 @@ def _chain(dh: DHChain, geometry: GeometryClass) -> list[str]:
         rows = [(s.what, f"{s.before:.12g}", "->", f"{s.after:.12g}") for s in dh.snaps]
         cost = f"moves the tip by at most {1e3 * metres:.2g} mm and {radians:.2g} rad"
         parts.append(f"taken as exact ({cost}):\n{table(rows)}")
+        parts += _kept(dh)
     else:
         parts.append("taken as exact: nothing")
     return parts
+
+
+def _kept(dh: DHChain) -> list[str]:
+    """Constants that a closed form may leave as they are."""
+    from ikgen.kinematics.kept import keep_constants, kept_constants, stray_lengths
+
+    nearest = keep_constants(dh, stray_lengths(dh))
+    rows = [(s.what, f"{s.before:.12g}", "for", f"{s.after:.12g}") for s in kept_constants(nearest)]
+    metres, radians = nearest.deviation
+    cost = f"then the tip is within {1e3 * metres:.2g} mm and {radians:.2g} rad"
+    lead = f"kept as in the file where the closed form can do with them ({cost})"
+    return [f"{lead}:\n{table(rows)}"] if rows else []
 
 
 def _advice(found: Inspection) -> str:

@@ -15,6 +15,7 @@ __all__ = [
     "console_options",
     "emit_option",
     "sampling_options",
+    "trust_option",
 ]
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -57,6 +58,12 @@ _CHAIN_OPTIONS = (
     ),
 )
 
+trust_option = click.option(
+    "--trust",
+    is_flag=True,
+    help="Let xacro files run any code and read any file: for files of your own.",
+)
+
 
 emit_option = click.option(
     "--emit",
@@ -76,7 +83,7 @@ def _apply(options: Sequence[Callable[[Any], Any]], function: F) -> F:
 
 def chain_options(function: F) -> F:
     """Which chain of the robot, which task, and how to read the file."""
-    return _apply(_CHAIN_OPTIONS, function)
+    return _apply([*_CHAIN_OPTIONS, trust_option], function)
 
 
 def sampling_options(function: F) -> F:

@@ -24,6 +24,7 @@ def make_request(
     args: Sequence[str] = (),
     package_paths: Sequence[Path] = (),
     name: str | None = None,
+    trust: bool = False,
 ) -> Request:
     """The request that the options make; raises `UsageError` for text that does not parse."""
     from ikgen.tasks import find_task
@@ -47,6 +48,7 @@ def make_request(
         args=_arguments(args),
         package_paths=tuple(package_paths),
         name=_module_name(name),
+        trust=trust,
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
 __all__ = ["angle_text", "constants", "dh_table", "joint_tree", "length_text", "transform_text"]
 
+_WIDEST = 120
+"""Characters of indent; what lies deeper is not indented further."""
+
 
 def joint_tree(tree: JointTree) -> str:
     """Links and joints, one a line, below their parents."""
@@ -22,14 +25,22 @@ def joint_tree(tree: JointTree) -> str:
     for joint in tree.joints:
         below.setdefault(joint.parent, []).append(joint)
 
-    def lines(link: str, indent: str) -> Iterator[str]:
-        joints = below.get(link, [])
-        for i, joint in enumerate(joints):
-            last = i == len(joints) - 1
-            yield f"{indent}{'└─ ' if last else '├─ '}{joint.child}  {_joint(joint)}"
-            yield from lines(joint.child, indent + ("   " if last else "│  "))
+    lines = [tree.root_link]
+    waiting = _hanging(below, tree.root_link, "")
+    while waiting:
+        joint, indent, last = waiting.pop()
+        lines.append(f"{indent}{'└─ ' if last else '├─ '}{joint.child}  {_joint(joint)}")
+        deeper = indent + ("   " if last else "│  ")
+        waiting += _hanging(below, joint.child, deeper if len(indent) < _WIDEST else indent)
+    return "\n".join(lines)
 
-    return "\n".join([tree.root_link, *lines(tree.root_link, "")])
+
+def _hanging(
+    below: Mapping[str, Sequence[Joint]], link: str, indent: str
+) -> list[tuple[Joint, str, bool]]:
+    """The joints below a link, last to first, each with its indent and whether it is the last."""
+    joints = below.get(link, ())
+    return [(joint, indent, joint is joints[-1]) for joint in reversed(joints)]
 
 
 def _joint(joint: Joint) -> str:

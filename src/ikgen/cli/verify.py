@@ -11,7 +11,7 @@ import click
 
 from ikgen.cli.annotations import annotate, annotate_error
 from ikgen.cli.console import Console
-from ikgen.cli.options import console_options, sampling_options
+from ikgen.cli.options import console_options, sampling_options, trust_option
 from ikgen.cli.recheck_json import as_dict
 from ikgen.errors import IkgenError
 
@@ -36,6 +36,7 @@ __all__ = ["verify"]
     help="Also write the results as JUnit XML.",
 )
 @sampling_options
+@trust_option
 @console_options
 def verify(
     target: Path | None,
@@ -44,6 +45,7 @@ def verify(
     junit_xml: Path | None,
     samples: int,
     seed: int,
+    trust: bool,
     as_json: bool,
     quiet: bool,
     verbose: bool,
@@ -58,7 +60,9 @@ def verify(
 
     with Console(quiet=quiet, verbose=verbose) as console:
         try:
-            results = recheck_all(target, robot=robot, samples=samples, seed=seed, progress=console)
+            results = recheck_all(
+                target, robot=robot, samples=samples, seed=seed, trust=trust, progress=console
+            )
         except IkgenError as error:
             annotate_error(error)
             raise

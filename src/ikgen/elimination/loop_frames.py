@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from ikgen.kinematics.rigid import z_motion
 from ikgen.model.dh import DHChain
 from ikgen.model.joint_tree import Matrix
 
-__all__ = ["forward", "held_frames", "hold_joint", "jacobian", "rotation_z", "typical_length"]
+__all__ = ["forward", "held_frames", "hold_joint", "jacobian", "typical_length"]
 
 
 def held_frames(dh: DHChain, value: float = 0.0) -> Matrix:
@@ -29,11 +30,7 @@ def held_frames(dh: DHChain, value: float = 0.0) -> Matrix:
 def hold_joint(frames: Matrix, joint: int, value: float, *, revolute: bool = True) -> Matrix:
     """The chain (n, 4, 4) that is left of (n + 1, 4, 4) with joint `joint` (0-based) held at
     `value` rad or m."""
-    motion = rotation_z(value)
-    if not revolute:
-        motion = np.eye(4)
-        motion[2, 3] = value
-    merged = frames[joint] @ motion @ frames[joint + 1]
+    merged = frames[joint] @ z_motion(revolute, value) @ frames[joint + 1]
     return np.concatenate([frames[:joint], merged[None], frames[joint + 2 :]])
 
 
@@ -42,18 +39,11 @@ def typical_length(frames: Matrix) -> float:
     return max(float(np.linalg.norm(frames[1:-1, :3, 3], axis=1).sum()), 1e-9)
 
 
-def rotation_z(angle: float) -> Matrix:
-    """(4, 4) rotation about z by `angle` (rad)."""
-    T = np.eye(4)
-    T[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
-    return T
-
-
 def forward(frames: Matrix, angles: Matrix) -> Matrix:
     """Pose (4, 4) at the joint angles (n,) in rad."""
     T = frames[0]
     for frame, angle in zip(frames[1:], angles, strict=True):
-        T = T @ rotation_z(angle) @ frame
+        T = T @ z_motion(True, angle) @ frame
     return np.asarray(T)
 
 
@@ -63,7 +53,7 @@ def jacobian(frames: Matrix, angles: Matrix) -> Matrix:
     axes, T = [], frames[0]
     for frame, angle in zip(frames[1:], angles, strict=True):
         axes.append((T[:3, 2], T[:3, 3]))
-        T = T @ rotation_z(angle) @ frame
+        T = T @ z_motion(True, angle) @ frame
     scale = typical_length(frames)
     columns = [np.r_[np.cross(z, T[:3, 3] - p) / scale, z] for z, p in axes]
     return np.asarray(np.array(columns).T)

@@ -14,7 +14,7 @@ from itertools import product
 import numpy as np
 
 from ikgen.model.joint_tree import Matrix
-from ikgen.runtime.python.loop_equations import loop_constants, loop_equations
+from ikgen.runtime.python.loop_equations import XS, YS, ZS, loop_constants, loop_equations
 
 __all__ = ["RESULTANTS", "Resultant", "root_shifts"]
 
@@ -58,11 +58,9 @@ def _pencil(frames: Matrix, poses: Matrix, plan: Resultant) -> tuple[list[int], 
     their terms in 1, cos and sin of the hidden angle."""
     order, C = loop_constants(frames, poses, *plan)
     E, left, _ = loop_equations(C)
-    z, xs, ys = slice(8, 14), slice(0, 4), slice(4, 8)
-    plain = E[..., z] @ left[:, z]
+    plain = E[..., ZS] @ left[:, ZS]
     plain[..., 0] += E[..., 14]
-    x, y = E[..., xs], E[..., ys]
-    X, Y = left[:, xs], left[:, ys]
+    x, y, X, Y = E[..., XS], E[..., YS], left[:, XS], left[:, YS]
     return order, np.array([plain, x @ X + y @ Y, y @ X - x @ Y])
 
 

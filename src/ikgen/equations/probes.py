@@ -7,13 +7,14 @@ that was meant, so that a divisor which only rounding keeps from zero is seen to
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.kinematics.rigid import dh_link
 from ikgen.model.dh import Angle, DHChain, Length
 
 __all__ = ["Probes", "arm_size", "dh_pose", "make_probes", "smallest_singular"]
@@ -39,23 +40,6 @@ class Probes:
     kept: Kept = field(default_factory=lambda: _NONE)
 
 
-def _transform(
-    alpha: float | NDArray[np.float64],
-    a: float | NDArray[np.float64],
-    theta: NDArray[np.float64],
-    d: NDArray[np.float64],
-) -> NDArray[np.float64]:
-    ca, sa, ct, st = np.cos(alpha), np.sin(alpha), np.cos(theta), np.sin(theta)
-    zero, one = np.zeros_like(ct), np.ones_like(ct)
-    rows = [
-        [ct, -st, zero, a * one],
-        [st * ca, ct * ca, -sa * one, -sa * d],
-        [st * sa, ct * sa, ca * one, ca * d],
-        [zero, zero, zero, one],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
-
-
 def _constant(x: Angle | Length, kept: Kept) -> float | NDArray[np.float64]:
     """The constant's signed value: the one at each probe, or the one that was meant."""
     if x.name is None or x.name not in kept:
@@ -75,26 +59,47 @@ def dh_pose(dh: DHChain, values: NDArray[np.float64], kept: Kept = _NONE) -> NDA
         v = ratio * (values[:, row.driver] - lead.offset.value) + row.offset.value
         theta = v if row.revolute else np.full(count, row.theta.value)
         d = np.zeros(count) + _constant(row.d, kept) if row.revolute else v
-        T = T @ _transform(_constant(row.alpha, kept), _constant(row.a, kept), theta, d)
+        T = T @ dh_link(_constant(row.alpha, kept), _constant(row.a, kept), theta, d)
     return T
 
 
-def smallest_singular(dh: DHChain, values: NDArray[np.float64], size: float) -> NDArray[np.float64]:
+def smallest_singular(
+    dh: DHChain,
+    values: NDArray[np.float64],
+    size: float,
+    *,
+    readable: Collection[str] | None = None,
+    tool: bool = False,
+) -> NDArray[np.float64]:
     """Smallest singular value (N,) of the pose's derivative by the joints that are not held, at DH
-    variables `values` (N, dof), lengths in units of the arm's size."""
+    variables `values` (N, dof), lengths in units of the arm's size.
+
+    `readable` names the entries of the pose that the task reads, by default all; with `tool` the pose
+    is that of the tip.
+    """
     h = 1e-6
+    read = _read(readable)
+    end = dh.X_tip if tool else np.eye(4)
     columns = []
     for j in range(dh.dof):
         if dh.joints[j].name in dh.free:
             continue
         step = np.zeros(dh.dof)
         step[j] = h * (1.0 if dh.rows[_first_row(dh, j)].revolute else size)
-        dT = (dh_pose(dh, values + step) - dh_pose(dh, values - step)) / (2 * h)
-        dT = dT[:, :3, :].copy()
+        dT = (dh_pose(dh, values + step) - dh_pose(dh, values - step)) @ end / (2 * h)
+        dT = dT[:, :3, :] * read
         dT[:, :, 3] /= size
         columns.append(dT.reshape(len(values), 12))
     J = np.stack(columns, axis=-1)
     return np.asarray(np.linalg.svd(J, compute_uv=False)[:, -1])
+
+
+def _read(readable: Collection[str] | None) -> NDArray[np.float64]:
+    """1 where an entry (3, 4) of the pose is read, else 0."""
+    names = [[*(f"r{i}{j}" for j in (1, 2, 3)), f"p{axis}"] for i, axis in enumerate("xyz", 1)]
+    return np.array(
+        [[readable is None or name in readable for name in row] for row in names], float
+    )
 
 
 def _first_row(dh: DHChain, joint: int) -> int:
@@ -107,10 +112,17 @@ def arm_size(dh: DHChain) -> float:
     return max([*lengths, 1e-3]) if any(lengths) else 1.0
 
 
-def make_probes(dh: DHChain, *, seed: int = 0, tool: bool = False) -> Probes:
+def make_probes(
+    dh: DHChain,
+    *,
+    seed: int = 0,
+    tool: bool = False,
+    readable: Collection[str] | None = None,
+) -> Probes:
     """Probe configurations of a chain, the same for the same chain.
 
-    With `tool` the poses include the tool transform.
+    With `tool` the poses include the tool transform. What is regular is so for a task that reads the
+    entries `readable` of the pose, by default all.
     """
     rng = np.random.default_rng(seed)
     size = arm_size(dh)
@@ -126,7 +138,7 @@ def make_probes(dh: DHChain, *, seed: int = 0, tool: bool = False) -> Probes:
     quarter = rng.integers(-1, 3, special.shape) * (np.pi / 2)
     chosen = (rng.random(special.shape) < rng.uniform(0.15, 1.0, (len(special), 1))) & revolute
     special = np.where(chosen, quarter, special)
-    smallest = smallest_singular(dh, special, size)
+    smallest = smallest_singular(dh, special, size, readable=readable, tool=tool)
     regular = special[smallest > 1e-2][:SPECIAL]
     singular = special[smallest < 1e-8][:SINGULAR]
     values = np.concatenate([generic, regular, singular])

@@ -7,7 +7,6 @@ their sums ("sum of angles") appear as keys of their own when the matrices are b
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from copy import copy
 from dataclasses import dataclass
@@ -21,22 +20,10 @@ from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.algebra.polynomial import Key, canonical
 from ikgen.errors import UnsupportedJointError
+from ikgen.kinematics.rigid import exact_cos_sin
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
 
-__all__ = ["JointVariables", "exact_cos_sin", "runs_of"]
-
-
-def exact_cos_sin(angle: float) -> tuple[float, float]:
-    """Cosine and sine, exact where the angle is a multiple of 30 or 90 degrees to round-off."""
-    c, s = math.cos(angle), math.sin(angle)
-
-    def clean(x: float) -> float:
-        for exact in (0.0, 0.5, -0.5, 1.0, -1.0):
-            if abs(x - exact) < 4e-16:
-                return exact
-        return x
-
-    return clean(c), clean(s)
+__all__ = ["JointVariables", "runs_of"]
 
 
 def runs_of(dh: DHChain) -> list[int]:

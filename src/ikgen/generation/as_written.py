@@ -61,4 +61,4 @@ def _as_good(one: SolutionGraph, other: SolutionGraph) -> bool:
 
 def _weak(graph: SolutionGraph) -> int:
     """Steps that fail at some regular configuration."""
-    return sum(step.candidate.is_weak and not step.fallbacks for step in graph.steps)
+    return sum(not step.sound for step in graph.steps)

@@ -19,7 +19,16 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
-__all__ = ["CodecError", "Decoder", "coded", "encode", "inlined", "read_free", "uncoded"]
+__all__ = [
+    "CodecError",
+    "Decoder",
+    "coded",
+    "encode",
+    "entries_of",
+    "inlined",
+    "read_free",
+    "uncoded",
+]
 
 T = TypeVar("T")
 _WORDS: dict[type, str] = {str: "string", bool: "boolean", int: "number", float: "number"}
@@ -63,6 +72,11 @@ def _entries(kind: Any) -> tuple[tuple[dataclasses.Field[Any], Any], ...]:
     hints = typing.get_type_hints(kind)
     fields = dataclasses.fields(kind)
     return tuple((f, hints[f.name]) for f in fields if not f.metadata.get(_UNCODED))
+
+
+def entries_of(kind: type) -> tuple[str, ...]:
+    """The names of the fields of a dataclass that are entries of its table."""
+    return tuple(entry.name for entry, _ in _entries(kind))
 
 
 def _names(kind: type) -> Iterator[str]:

@@ -47,7 +47,8 @@ def derive(
     progress("derive", classify(reading.dh).name)
     reading, task, graph = _solved(reading, request.task, progress, passed_over)
     geometry = classify(reading.dh)
-    plan = _elimination(reading.dh, task, progress) if graph.open_joints else None
+    closed = not graph.open_joints and graph.sound  # else solutions may be missing at regular poses
+    plan = None if closed else _elimination(reading.dh, task, progress)
     name = request.name or default_name(reading)
     if graph.open_joints and plan is None:
         from ikgen.generation.unsolved import unsolved_error

@@ -38,7 +38,12 @@ def read_tree(request: Request) -> JointTree:
     from ikgen.importers import load_tree
 
     try:
-        return load_tree(request.robot, arguments=request.args, package_paths=request.package_paths)
+        return load_tree(
+            request.robot,
+            arguments=request.args,
+            package_paths=request.package_paths,
+            trust=request.trust,
+        )
     except BadDescriptionError as error:
         if request.robot.suffix.lower() == ".xacro":
             error.hint = "\n".join(filter(None, [error.hint, _taken_arguments(request)]))

@@ -46,7 +46,7 @@ def _positive(value: Any, where: str) -> Any:
 class Request:
     """One robot file or DH table, one chain, one task. `free` maps held joints to their default value
     (None: chosen), `lock` fixed joints to their value (rad or m), `args` are xacro's; `name` is the prefix
-    of the files (None: made from the robot's)."""
+    of the files (None: made from the robot's); `trust` lets the file do whatever xacro can."""
 
     robot: Path
     base: str | None = None
@@ -57,6 +57,8 @@ class Request:
     args: Mapping[str, str] = field(default_factory=dict, metadata=coded(_arguments))
     package_paths: tuple[Path, ...] = ()
     name: str | None = field(default=None, metadata=coded(_name))
+    # Only who runs ikgen may trust a file: neither a config nor a record says so.
+    trust: bool = field(default=False, metadata=uncoded())
 
     @property
     def table(self) -> bool:
@@ -78,6 +80,8 @@ class Request:
             words += ["--arg", f"{name}:={text}"]
         for folder in self.package_paths:
             words += ["--package-path", str(folder)]
+        if self.trust:
+            words.append("--trust")
         return shlex.join([*words, *more])
 
 

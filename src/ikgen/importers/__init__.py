@@ -34,34 +34,60 @@ class _Reader(Protocol):
     ) -> JointTree: ...
 
 
+class _CarefulReader(Protocol):
+    """The same of an importer whose files can compute, and are held back from it."""
+
+    def read(
+        self,
+        path: Path,
+        *,
+        arguments: Mapping[str, str],
+        package_paths: Sequence[Path],
+        trust: bool,
+    ) -> JointTree: ...
+
+
 @dataclass(frozen=True, slots=True)
 class Importer:
     """One format: its name, the lower-case suffixes of its files and the module with its `read`.
-    `plug_in` is set for a format of another package, which its failures then name."""
+    `plug_in` is set for a format of another package, which its failures then name. `computes` says
+    that files of the format compute: its `read` takes `trust`."""
 
     kind: str
     suffixes: tuple[str, ...]
     module: str
     plug_in: PlugIn | None = None
+    computes: bool = False
 
     def accepts(self, path: Path) -> bool:
         """Whether the file's name ends in one of the suffixes."""
         return path.name.lower().endswith(self.suffixes)
 
     def read(
-        self, path: Path, *, arguments: Mapping[str, str], package_paths: Sequence[Path]
+        self,
+        path: Path,
+        *,
+        arguments: Mapping[str, str],
+        package_paths: Sequence[Path],
+        trust: bool = False,
     ) -> JointTree:
         """What the module's `read` gives; see `load_tree`."""
         blamed: AbstractContextManager[None] = (
             nullcontext() if self.plug_in is None else self.plug_in.blamed()
         )
         with blamed:
-            module = cast(_Reader, import_module(self.module))
-            return module.read(path, arguments=arguments, package_paths=package_paths)
+            module = import_module(self.module)
+            if self.computes:
+                careful = cast(_CarefulReader, module)
+                return careful.read(
+                    path, arguments=arguments, package_paths=package_paths, trust=trust
+                )
+            reader = cast(_Reader, module)
+            return reader.read(path, arguments=arguments, package_paths=package_paths)
 
 
 IMPORTERS: tuple[Importer, ...] = (
-    Importer("xacro", (".xacro",), "ikgen.importers.xacro.expansion"),
+    Importer("xacro", (".xacro",), "ikgen.importers.xacro.expansion", computes=True),
     Importer("urdf", (".urdf", ".xml"), "ikgen.importers.urdf.urdf_tree"),
 )
 
@@ -97,12 +123,16 @@ def load_tree(
     *,
     arguments: Mapping[str, str] = _NOTHING,
     package_paths: Sequence[Path] = (),
+    trust: bool = False,
 ) -> JointTree:
     """Read a robot description into a `JointTree`.
 
     `arguments` are xacro's NAME:=VALUE; `package_paths` are directories that are or contain the
-    packages which `$(find pkg)` and `package://pkg` name. Raises `BadDescriptionError` with file
+    packages which `$(find pkg)` and `package://pkg` name. `trust` lets a xacro file run any code and
+    read any file, without bounds: only for files of one's own. Raises `BadDescriptionError` with file
     and line for anything in the file that cannot be read, `UsageError` for an unknown suffix.
     """
     file = Path(path)
-    return importer_of(file).read(file, arguments=arguments, package_paths=package_paths)
+    return importer_of(file).read(
+        file, arguments=arguments, package_paths=package_paths, trust=trust
+    )

@@ -7,16 +7,20 @@ directories above the file and the siblings of its package, the ament index of a
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-__all__ = ["PACKAGE_URL", "PackageFinder", "PackageNotFoundError"]
+__all__ = ["PACKAGE_URL", "PackageFinder", "PackageNotFoundError", "holds_home", "manifest_name"]
 
 PACKAGE_URL = "package://"
 
 # workspace / src / repository / group / package
 _SEARCH_DEPTH = 4
+_MANIFEST = "package.xml"
+_NAME = re.compile(r"\w[\w.+-]*")
+_LARGEST_MANIFEST = 2**20
 
 
 class PackageNotFoundError(LookupError):
@@ -57,7 +61,8 @@ class PackageFinder:
         return None
 
     def _search(self, name: str) -> Path:
-        for directory in self._candidates(name):
+        # A name, not a path: it becomes part of one.
+        for directory in self._candidates(name) if _NAME.fullmatch(name) else ():
             return directory.resolve()
         searched = [str(path) for path in self.package_paths]
         searched.append(f"the directories above {self.start} and beside its package")
@@ -66,13 +71,15 @@ class PackageFinder:
 
     def _candidates(self, name: str) -> Iterator[Path]:
         above = list(self.start.resolve().parents)
-        home = next((path for path in above if (path / "package.xml").is_file()), None)
+        home = next((path for path in above if (path / _MANIFEST).is_file()), None)
         if home is not None and _is_package(home, name):
             yield home
         for path in self.package_paths:
             yield from _inside(path, name, _SEARCH_DEPTH)
-        nearby = [*above, *(_subdirectories(home.parent) if home is not None else ())]
+        beside = _subdirectories(home.parent) if home is not None else []
+        nearby = [*above[:_SEARCH_DEPTH], *beside]
         yield from (directory for directory in nearby if _is_package(directory, name))
+        yield from (directory for directory in above if manifest_name(directory) == name)
         for prefix in self.environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
             index = Path(prefix, "share/ament_index/resource_index/packages", name)
             if prefix and index.is_file():
@@ -83,25 +90,36 @@ def _inside(directory: Path, name: str, depth: int) -> Iterator[Path]:
     """The package in a directory, which is the package itself or holds it some levels down."""
     if _is_package(directory, name):
         yield directory
-    if depth == 0 or (directory / "package.xml").is_file():
+    if depth == 0 or (directory / _MANIFEST).is_file():
         return  # packages do not nest
     for child in _subdirectories(directory):
         yield from _inside(child, name, depth - 1)
 
 
 def _is_package(directory: Path, name: str) -> bool:
-    manifest = directory / "package.xml"
-    if manifest.is_file():
-        return _manifest_name(manifest) == name
+    if (directory / _MANIFEST).is_file():
+        return manifest_name(directory) == name
     # Copies of a package's urdf/ folder often lack the manifest but keep the directory's name.
-    return directory.name == name and directory.is_dir()
+    return directory.name == name and directory.is_dir() and not holds_home(directory)
 
 
-def _manifest_name(manifest: Path) -> str | None:
+def holds_home(directory: Path) -> bool:
+    """Whether the user's home is or lies in a directory: then it is no package, whatever its name."""
+    try:
+        return Path.home().is_relative_to(directory)
+    except RuntimeError:  # nobody has a home here
+        return directory == directory.parent
+
+
+def manifest_name(directory: Path) -> str | None:
+    """The name in a directory's package.xml; None where there is none that can be read."""
     # not lxml: `ikgen build --check` finds packages too and has to start in no time
     from xml.etree import ElementTree
 
+    manifest = directory / _MANIFEST
     try:
+        if not manifest.is_file() or manifest.stat().st_size > _LARGEST_MANIFEST:
+            return None
         name = ElementTree.fromstring(manifest.read_bytes()).findtext("name")
     except (OSError, ElementTree.ParseError):
         return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import stat
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,10 +14,23 @@ from lxml import etree
 from ikgen.errors import BadDescriptionError
 from ikgen.model.joint_tree import Source
 
-__all__ = ["Element", "Place", "children", "local_name", "parse_xml", "read_text", "shown_file"]
+__all__ = [
+    "LARGEST_FILE",
+    "Element",
+    "Place",
+    "children",
+    "line_at",
+    "local_name",
+    "parse_xml",
+    "read_text",
+    "shown_file",
+]
 
 Element = Any
 """An lxml element; lxml has no type stubs."""
+
+LARGEST_FILE = 32 * 2**20
+"""The most bytes that a description may have; the largest published ones have some 2 MB."""
 
 _BYTE_ORDER_MARKS = (
     (b"\xef\xbb\xbf", "utf-8-sig"),
@@ -30,6 +44,8 @@ _SYNTAX_HINTS = (
     ("prefix xacro", 'add xmlns:xacro="http://www.ros.org/wiki/xacro" to <robot>'),
     ("declaration", "something stands before the XML declaration: remove it"),
     ("Start tag expected", "the file is not XML, or has text before its first tag"),
+    ("Excessive depth", "elements of a description do not nest that deep"),
+    ("entity", "write entities out: a description needs no document type"),
 )
 
 
@@ -56,26 +72,46 @@ def shown_file(source: Source) -> str:
     return f"{source.path} (expanded)" if source.kind == "xacro" else str(source.path)
 
 
-def read_text(path: Path) -> str:
-    """The decoded text of a file; line ends are as in Unix, whatever git made of them."""
+def read_text(path: Path, largest: int = LARGEST_FILE, *, may_be_empty: bool = False) -> str:
+    """The decoded text of a file of at most `largest` bytes; line ends are as in Unix, whatever git
+    made of them. Raises `BadDescriptionError`, also for pipes and devices, which may never end."""
     try:
-        data = path.read_bytes()
+        status = path.stat()
+        if stat.S_ISREG(status.st_mode) and status.st_size <= largest:
+            data = path.read_bytes()
+        else:
+            raise _not_readable(path, status.st_mode, status.st_size, largest)
     except FileNotFoundError:
         raise BadDescriptionError(
             "no such file", file=str(path), hint="check the path of the robot description"
         ) from None
-    except IsADirectoryError:
-        raise BadDescriptionError(
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise BadDescriptionError(reason, file=str(path)) from None
+    text = _decode(data, path).replace("\r\n", "\n").replace("\r", "\n")
+    if not text.strip() and not may_be_empty:
+        raise BadDescriptionError("the file is empty", file=str(path))
+    return text
+
+
+def _not_readable(path: Path, mode: int, size: int, largest: int) -> BadDescriptionError:
+    if stat.S_ISDIR(mode):
+        return BadDescriptionError(
             "is a directory, not a robot description",
             file=str(path),
             hint="name the .urdf or .xacro file inside it",
-        ) from None
-    except OSError as error:
-        raise BadDescriptionError(error.strerror or str(error), file=str(path)) from None
-    text = _decode(data, path).replace("\r\n", "\n").replace("\r", "\n")
-    if not text.strip():
-        raise BadDescriptionError("the file is empty", file=str(path))
-    return text
+        )
+    if not stat.S_ISREG(mode):
+        return BadDescriptionError(
+            "is no regular file but a pipe or a device",
+            file=str(path),
+            hint="save the description as a file",
+        )
+    return BadDescriptionError(
+        f"the file has {size / 2**20:.0f} MB, more than {largest / 2**20:.3g} MB",
+        file=str(path),
+        hint="a description names its meshes by file: move what is inlined out of it",
+    )
 
 
 def _decode(data: bytes, path: Path) -> str:
@@ -95,13 +131,14 @@ def _decode(data: bytes, path: Path) -> str:
 
 
 def parse_xml(text: str, file: str) -> Element:
-    """The root element of an XML text; entities stay unresolved and nothing is fetched."""
+    """The root element of an XML text. Nothing is fetched; a document type that declares or names
+    something is refused, as entities are declared there."""
     # The text is decoded already, so its own encoding declaration must not be applied again.
     parser = etree.XMLParser(
         resolve_entities=False, no_network=True, huge_tree=False, encoding="utf-8"
     )
     try:
-        return etree.fromstring(text.encode("utf-8", "replace"), parser)
+        root = etree.fromstring(text.encode("utf-8", "replace"), parser)
     except etree.XMLSyntaxError as error:
         message = error.msg or "not XML"
         raise BadDescriptionError(
@@ -110,6 +147,27 @@ def parse_xml(text: str, file: str) -> Element:
             line=error.lineno or None,
             hint=_syntax_hint(text, message),
         ) from None
+    _check_document_type(root, text, file)
+    return root
+
+
+def _check_document_type(root: Element, text: str, file: str) -> None:
+    about = root.getroottree().docinfo
+    declared = about.internalDTD
+    if declared is None:
+        return
+    if about.system_url or about.public_id or any(declared.iterentities()):
+        raise BadDescriptionError(
+            "<!DOCTYPE> declares entities or names a DTD",
+            file=file,
+            line=line_at(text, text.find("<!DOCTYPE")),
+            hint="a description needs no document type: remove it and write entities out",
+        )
+
+
+def line_at(text: str, position: int) -> int:
+    """The line, counted from 1, of a position in a text."""
+    return text.count("\n", 0, position) + 1
 
 
 def _syntax_hint(text: str, message: str) -> str:
@@ -131,4 +189,4 @@ def local_name(element: Element) -> str:
 
 def children(element: Element, name: str) -> Iterator[Element]:
     """The direct children of an element with this local name, in file order."""
-    return (child for child in element if local_name(child) == name)
+    return (child for child in element if child.tag == name or local_name(child) == name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.kinematics.rigid import inverse
+from ikgen.kinematics.rigid import inverse, rotation_about
 
 __all__ = ["displacements"]
 
@@ -26,11 +26,9 @@ def displacements(size: float) -> tuple[Array, ...]:
 
 
 def _motion(twist: Array) -> Array:
-    """The motion with a rotation vector and a translation (Rodrigues' formula)."""
-    x, y, z = twist[:3]
+    """The motion with a rotation vector and a translation."""
     angle = float(np.linalg.norm(twist[:3]))
-    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]) / angle
     T = np.eye(4)
-    T[:3, :3] += np.sin(angle) * K + (1.0 - np.cos(angle)) * K @ K
+    T[:3, :3] = rotation_about(twist[:3] / angle, angle)
     T[:3, 3] = twist[3:]
     return T

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ikgen.kinematics.forward import dh_forward, file_forward, pose_difference, row_constant
-from ikgen.kinematics.rigid import inverse
+from ikgen.kinematics.rigid import inverse, read_only, z_motion
 from ikgen.model.chain import Chain
 from ikgen.model.dh import DHChain, DHRow
 from ikgen.model.joint_tree import Matrix
@@ -47,7 +47,7 @@ def frames_beside(
     for F, row in zip(dh.file_frames, dh.rows, strict=False):
         T = T @ F
         axes.append((T, z))
-        T = T @ _motion(row.revolute, row.offset.value)
+        T = T @ z_motion(row.revolute, row.offset.value)
     offsets = tuple(row.offset.value for row in rows)
     return _frames(axes, T @ dh.file_frames[-1], rows, offsets, ends)
 
@@ -67,13 +67,13 @@ def _frames(
     for i, ((T_axis, axis), row) in enumerate(zip(axes, rows, strict=True)):
         if i:
             T_dh = T_dh @ row_constant(row)
-        home = _motion(row.revolute, offsets[i])
+        home = z_motion(row.revolute, offsets[i])
         T_dh = T_dh @ home
         B = _nearest_frame(T_dh, T_axis, axis, row.revolute)
         F.append(pending @ B @ inverse(home))
         pending = inverse(B)
     F.append(pending @ T_home)
-    return tuple(_read_only(_clean(f, exact)) for f, exact in zip(F, nominal, strict=True))
+    return tuple(read_only(_clean(f, exact)) for f, exact in zip(F, nominal, strict=True))
 
 
 def _nearest_frame(T_dh: Matrix, T_axis: Matrix, axis: Matrix, revolute: bool) -> Matrix:
@@ -110,17 +110,6 @@ def random_configurations(dh: DHChain, count: int = _SAMPLES, seed: int = _SEED)
     return rng.uniform(low, high, (count, dh.dof))
 
 
-def _motion(revolute: bool, value: float) -> Matrix:
-    T = np.eye(4)
-    if revolute:
-        T[0, 0] = T[1, 1] = np.cos(value)
-        T[1, 0] = np.sin(value)
-        T[0, 1] = -T[1, 0]
-    else:
-        T[2, 3] = value
-    return T
-
-
 def _clean(F: Matrix, nominal: Matrix) -> Matrix:
     """The exact constant where `F` is that to round-off, else `F` without noise around 0 and ±1."""
     if float(np.max(np.abs(F - nominal))) < _SAME:
@@ -130,8 +119,3 @@ def _clean(F: Matrix, nominal: Matrix) -> Matrix:
     near = (np.abs(F - whole) < _CLEAN) & (np.abs(whole) <= 1.0)
     cleaned[near] = whole[near]
     return np.asarray(cleaned + 0.0)
-
-
-def _read_only(matrix: Matrix) -> Matrix:
-    matrix.setflags(write=False)
-    return matrix

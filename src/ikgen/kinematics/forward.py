@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ikgen.kinematics.snapping import exact_cos_sin
+from ikgen.kinematics.rigid import axis_motion, dh_link, z_motion
 from ikgen.model.chain import REVOLUTE, Chain
 from ikgen.model.dh import DHChain, DHRow
 from ikgen.model.joint_tree import Matrix
@@ -36,7 +36,7 @@ def chain_forward(chain: Chain, q: ArrayLike) -> Matrix:
     T = np.eye(4)
     for axis in chain.axes:
         value = axis.multiplier * values[..., axis.driver] + axis.offset
-        T = T @ axis.T_prev_axis @ _axis_motion(axis.kind == REVOLUTE, axis.axis, value)
+        T = T @ axis.T_prev_axis @ axis_motion(axis.kind == REVOLUTE, axis.axis, value)
     return np.asarray(T @ chain.T_last_tip)
 
 
@@ -45,7 +45,7 @@ def dh_forward(dh: DHChain, q: ArrayLike) -> Matrix:
     values = row_values(dh, q)
     T = dh.X_base
     for i, row in enumerate(dh.rows):
-        T = T @ row_constant(row) @ _z_motion(row.revolute, values[..., i])
+        T = T @ row_constant(row) @ z_motion(row.revolute, values[..., i])
     return np.asarray(T @ dh.X_tip)
 
 
@@ -54,7 +54,7 @@ def file_forward(dh: DHChain, q: ArrayLike) -> Matrix:
     values = row_values(dh, q)
     T = dh.file_frames[0]
     for i, row in enumerate(dh.rows):
-        T = T @ _z_motion(row.revolute, values[..., i]) @ dh.file_frames[i + 1]
+        T = T @ z_motion(row.revolute, values[..., i]) @ dh.file_frames[i + 1]
     return np.asarray(T)
 
 
@@ -68,7 +68,7 @@ def file_jacobian(dh: DHChain, q: ArrayLike) -> Matrix:
     lines = []
     for i, row in enumerate(dh.rows):
         lines.append((T[..., :3, 2], T[..., :3, 3]))
-        T = T @ _z_motion(row.revolute, values[..., i]) @ dh.file_frames[i + 1]
+        T = T @ z_motion(row.revolute, values[..., i]) @ dh.file_frames[i + 1]
     J = np.zeros((*values.shape[:-1], 6, dh.dof))
     for row, (z, origin) in zip(dh.rows, lines, strict=True):
         if row.revolute:
@@ -89,17 +89,7 @@ def row_values(dh: DHChain, q: ArrayLike) -> Matrix:
 
 def row_constant(row: DHRow) -> Matrix:
     """`Rx(alpha) Tx(a) Rz(theta) Tz(d)` (4, 4) with the row's variable at 0."""
-    ca, sa = exact_cos_sin(row.alpha.value)
-    ct, st = exact_cos_sin(row.theta.value)
-    a, d = row.a.value, row.d.value
-    return np.array(
-        [
-            [ct, -st, 0.0, a],
-            [st * ca, ct * ca, -sa, -d * sa],
-            [st * sa, ct * sa, ca, d * ca],
-            [0.0, 0.0, 0.0, 1.0],
-        ]
-    )
+    return dh_link(row.alpha.value, row.a.value, row.theta.value, row.d.value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,30 +127,3 @@ def pose_difference(T_one: Matrix, T_other: Matrix) -> tuple[float, float]:
     chord = np.linalg.norm(T_one[..., :3, :3] - T_other[..., :3, :3], axis=(-2, -1))
     angle = 2 * np.arcsin(np.minimum(1.0, chord / (2 * math.sqrt(2))))
     return float(np.max(distance)), float(np.max(angle))
-
-
-def _z_motion(revolute: bool, value: Matrix) -> Matrix:
-    T = np.zeros((*np.shape(value), 4, 4))
-    T[..., range(4), range(4)] = 1.0
-    if revolute:
-        T[..., 0, 0] = T[..., 1, 1] = np.cos(value)
-        T[..., 1, 0] = np.sin(value)
-        T[..., 0, 1] = -T[..., 1, 0]
-    else:
-        T[..., 2, 3] = value
-    return T
-
-
-def _axis_motion(revolute: bool, axis: Matrix, value: Matrix) -> Matrix:
-    """Rotation (Rodrigues) about or translation along the unit vector `axis` (3,)."""
-    T = np.zeros((*np.shape(value), 4, 4))
-    T[..., range(4), range(4)] = 1.0
-    value = np.asarray(value)[..., None]
-    if not revolute:
-        T[..., :3, 3] = value * axis
-        return T
-    x, y, z = axis
-    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    sine, versine = np.sin(value)[..., None], (1.0 - np.cos(value))[..., None]
-    T[..., :3, :3] += sine * K + versine * (K @ K)
-    return T

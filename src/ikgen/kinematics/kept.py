@@ -17,9 +17,9 @@ from ikgen.kinematics.file_frames import frames_beside, largest_deviation
 from ikgen.kinematics.nearest import FIELDS, Constant, end_motions, fit_rows
 from ikgen.kinematics.rigid import inverse
 from ikgen.kinematics.snapping import WRITTEN_IN_FULL, exact_angle, tidy, wrap_angle
-from ikgen.model.dh import Angle, DHChain, DHRow, Length
+from ikgen.model.dh import Angle, DHChain, DHRow, Length, Snap
 
-__all__ = ["keep_constants", "stray_lengths"]
+__all__ = ["keep_constants", "kept_constants", "stray_lengths"]
 
 _NOISE = 1e-11
 """Changes (rad or m) up to this leave a constant exact that costs operations: pi/2 in twelve digits."""
@@ -53,6 +53,18 @@ def keep_constants(dh: DHChain, strays: frozenset[Constant] = frozenset()) -> DH
     exact = max(kept.deviation) <= WRITTEN_IN_FULL
     left = () if exact else tuple(s for s in dh.snaps if s.after == 0.0)
     return replace(kept, snaps=left)
+
+
+def kept_constants(dh: DHChain) -> tuple[Snap, ...]:
+    """The constants that `dh` has as the file rounds them, each once: name, value, and the value that
+    was meant (rad or m)."""
+    found: dict[str, Snap] = {}
+    for row in dh.rows:
+        for x in (row.alpha, row.a, row.d):
+            if x.name is not None and x.rounded:
+                sign = x.sign if isinstance(x, Length) else 1
+                found.setdefault(x.name, Snap(x.name, sign * x.value, x.nominal))
+    return tuple(found.values())
 
 
 def _least(dh: DHChain, constant: Constant) -> float:

@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ikgen.kinematics.rigid import cross_matrix, exact_cos_sin
 from ikgen.kinematics.snapping import (
-    exact_cos_sin,
     snap_angle,
     snap_axis,
     snap_rotation,
@@ -103,7 +103,7 @@ def align_z(axis: Matrix) -> Matrix:
     v, c = np.cross(nearest, axis), float(nearest @ axis)
     if not v.any():
         return near
-    K = np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
+    K = cross_matrix(v)
     return np.asarray((np.eye(3) + K + K @ K / (1.0 + c)) @ near)
 
 

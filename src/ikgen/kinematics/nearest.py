@@ -10,9 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ikgen.kinematics.file_frames import random_configurations
 from ikgen.kinematics.forward import file_forward, row_values
+from ikgen.kinematics.rigid import coordinate_motion
 from ikgen.kinematics.row_ends import tidy_pose
 from ikgen.model.dh import DHChain
 from ikgen.model.joint_tree import Matrix
@@ -63,6 +65,8 @@ def fit_rows(dh: DHChain, constants: tuple[Constant, ...]) -> Fitted:
 
     Of constants that can stand in for each other the first ones change.
     """
+    if not constants:
+        return Fitted({}, dh.X_base, dh.X_tip)
     q = random_configurations(dh, _SAMPLES, _SEED)
     target, values = file_forward(dh, q), row_values(dh, q)
     change = dict.fromkeys(constants, 0.0)
@@ -137,22 +141,13 @@ def _independent(J: Matrix) -> list[int]:
 def _end_motion(step: dict[Constant, float], end: int) -> Matrix:
     T = np.eye(4)
     for m in _ENDS:
-        T = T @ _motion(m, np.array([step.get((end, m), 0.0)]))[0]
+        T = T @ _motion(m, step.get((end, m), 0.0))
     return T
 
 
-def _motion(motion: str, value: Matrix) -> Matrix:
-    """The motions (N, 4, 4) by values (N,)."""
-    kind, axis = motion[0], "xyz".index(motion[1])
-    T = np.tile(np.eye(4), (len(value), 1, 1))
-    if kind == "T":
-        T[:, axis, 3] = value
-        return T
-    i, j = (axis + 1) % 3, (axis + 2) % 3
-    T[:, i, i] = T[:, j, j] = np.cos(value)
-    T[:, j, i] = np.sin(value)
-    T[:, i, j] = -T[:, j, i]
-    return T
+def _motion(motion: str, value: ArrayLike) -> Matrix:
+    """The motions (..., 4, 4) by values (...,) of "Rx" to "Tz"."""
+    return coordinate_motion(motion[0] == "R", "xyz".index(motion[1]), value)
 
 
 def _generator(motion: str) -> Matrix:

@@ -13,8 +13,8 @@ import numpy as np
 
 from ikgen.kinematics.links import FLIP, Tolerance, align_z
 from ikgen.kinematics.offsets import Offsets
-from ikgen.kinematics.rigid import inverse
-from ikgen.kinematics.snapping import rotation_z, snap_angle, wrap_angle
+from ikgen.kinematics.rigid import inverse, rotation_z
+from ikgen.kinematics.snapping import snap_angle, wrap_angle
 from ikgen.model.chain import Chain
 from ikgen.model.joint_tree import Matrix
 

@@ -12,6 +12,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from ikgen.kinematics.rigid import rotation_x, rotation_z
 from ikgen.model.dh import Angle, Length, Snap
 from ikgen.model.joint_tree import Matrix
 
@@ -22,9 +23,6 @@ __all__ = [
     "LengthBook",
     "SnapLog",
     "exact_angle",
-    "exact_cos_sin",
-    "rotation_x",
-    "rotation_z",
     "snap_angle",
     "snap_axis",
     "snap_rotation",
@@ -101,25 +99,6 @@ def snap_rotation(R: Matrix, tolerance: float, turn_tolerance: float) -> Matrix:
     phi = snap_angle(math.atan2(R[0, 2], -R[1, 2]), turn_tolerance)
     psi = snap_angle(math.atan2(R[2, 0], R[2, 1]), turn_tolerance)
     return rotation_z(phi) @ rotation_x(snap_angle(alpha, tolerance)) @ rotation_z(psi)
-
-
-def rotation_z(angle: float) -> Matrix:
-    """Rotation (3, 3) about z by `angle` (rad)."""
-    c, s = exact_cos_sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-
-
-def rotation_x(angle: float) -> Matrix:
-    """Rotation (3, 3) about x by `angle` (rad)."""
-    c, s = exact_cos_sin(angle)
-    return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
-
-
-def exact_cos_sin(angle: float) -> tuple[float, float]:
-    """Cosine and sine of `angle` (rad), with 0, ±1/2 and ±1 exact at multiples of pi/12."""
-    c, s = math.cos(angle), math.sin(angle)
-    half_c, half_s = round(2 * c) / 2, round(2 * s) / 2
-    return (half_c if abs(c - half_c) < 5e-16 else c, half_s if abs(s - half_s) < 5e-16 else s)
 
 
 class SnapLog:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
-from ikgen.equations.variables import exact_cos_sin
+from ikgen.kinematics.rigid import exact_cos_sin
 from ikgen.model.dh import DHChain, DHRow
 from ikgen.program.ops import Op, Operand
 from ikgen.program.statements import Let

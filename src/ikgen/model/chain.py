@@ -6,7 +6,10 @@ from dataclasses import dataclass
 
 from ikgen.model.joint_tree import Limits, Matrix
 
-__all__ = ["PRISMATIC", "REVOLUTE", "ActuatedJoint", "Chain", "ChainAxis"]
+__all__ = ["MOST_AXES", "PRISMATIC", "REVOLUTE", "ActuatedJoint", "Chain", "ChainAxis"]
+
+MOST_AXES = 16
+"""The most moving axes of a chain; each more takes a derivation half as long again."""
 
 REVOLUTE = "revolute"
 PRISMATIC = "prismatic"

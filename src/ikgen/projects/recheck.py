@@ -28,6 +28,7 @@ def recheck(
     command: str | None = None,
     samples: int = 1000,
     seed: int = 0,
+    trust: bool = False,
     progress: Progress = silent,
 ) -> Recheck:
     """Expand the description again and check every output against it.
@@ -36,7 +37,7 @@ def recheck(
     Raises `IkgenError` where the description cannot be read.
     """
     fix = command or record.command(robot)
-    request = record.again(robot)
+    request = replace(record.again(robot), trust=trust)
     findings = [*_edited(record, fix), *_left_over(record)]
     progress("read", str(request.robot))
     try:

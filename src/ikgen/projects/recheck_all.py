@@ -24,6 +24,7 @@ def recheck_all(
     robot: Path | None = None,
     samples: int = 1000,
     seed: int = 0,
+    trust: bool = False,
     progress: Progress = silent,
 ) -> list[Recheck]:
     """Check everything that is meant, in order: the outputs of a config, those below a folder, or those of
@@ -40,6 +41,7 @@ def recheck_all(
                     command=command,
                     samples=samples,
                     seed=seed,
+                    trust=trust,
                     progress=progress,
                 )
             )

@@ -7,12 +7,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import fields
 from typing import Any
 
 from ikgen import __version__
 from ikgen.errors import BadDescriptionError
-from ikgen.generation.codec import encode
+from ikgen.generation.codec import encode, entries_of
 from ikgen.generation.record import Record, digest, read_record, seen
 from ikgen.generation.request import Request
 from ikgen.projects.config import ArmConfig
@@ -53,10 +52,10 @@ def _outdated(arm: ArmConfig, record: Record, packages: Packages) -> str:
 
 def _changed_options(now: Request, was: Request) -> str:
     """The first option that differs from the one recorded."""
-    for entry in fields(Request):
-        pair = [encode(getattr(request, entry.name), os.path.realpath) for request in (was, now)]
+    for name in entries_of(Request):
+        pair = [encode(getattr(request, name), os.path.realpath) for request in (was, now)]
         if pair[0] != pair[1]:
-            return f"'{entry.name}' was {_shown(pair[0])}, is {_shown(pair[1])}"
+            return f"'{name}' was {_shown(pair[0])}, is {_shown(pair[1])}"
     return ""
 
 

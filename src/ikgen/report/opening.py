@@ -13,6 +13,7 @@ from ikgen.formulas.mathtext import Math
 from ikgen.formulas.normal_form import Normalizer, Symbol
 from ikgen.formulas.notation import show, symbol
 from ikgen.kinematics.classify import GeometryClass
+from ikgen.kinematics.kept import kept_constants
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
 from ikgen.model.joint_tree import Matrix as Array
 from ikgen.report.document import Block, Formulas, Heading, Matrix, Paragraph, Rows, Text
@@ -43,7 +44,7 @@ def robot_section(reading: Reading, geometry: GeometryClass, task: Task, most: s
         blocks.append(values)
     blocks += [Paragraph((f"Note: {w}.",), note=True) for w in reading.source.warnings]
     blocks += _ends(dh, task)
-    return blocks + _snaps(dh)
+    return blocks + _kept(dh) + _snaps(dh)
 
 
 def _table(dh: DHChain) -> Rows:
@@ -174,6 +175,23 @@ def _numbers(T: Array) -> tuple[tuple[Math, ...], ...]:
         return m.minus(sign=True) + m.number(-x) if x < 0 else m.number(x)
 
     return tuple(tuple(one(float(x)) for x in row) for row in T)
+
+
+def _kept(dh: DHChain) -> list[Block]:
+    """Constants that the closed form takes as the file rounds them."""
+    kept = kept_constants(dh)
+    if not kept:
+        return []
+    rows: tuple[tuple[Text, ...], ...] = tuple(
+        ((symbol(Symbol("param", s.what)),), (f"{s.before:.12g}",), (f"{s.after:.12g}",))
+        for s in kept
+    )
+    text = (
+        "The closed form does not need the exact value of these: cosine and sine of such an angle are "
+        "constants like others."
+    )
+    header: tuple[Text, ...] = (("constant",), ("in the file",), ("meant",))
+    return [Rows(header, rows, "Constants kept as in the file"), Paragraph((text,))]
 
 
 def _snaps(dh: DHChain) -> list[Block]:

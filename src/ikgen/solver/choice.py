@@ -11,6 +11,7 @@ from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.knowledge import Variable
 from ikgen.equations.probes import Probes
 from ikgen.solver.candidate import Candidate
+from ikgen.solver.ranker import WEAK_MARGIN
 from ikgen.solver.soundness import conditions, weak_configurations
 
 __all__ = ["Chooser", "Step"]
@@ -18,16 +19,19 @@ __all__ = ["Chooser", "Step"]
 MOST_TRIED = 6
 MOST_FALLBACKS = 40
 SAFE_MARGIN = 1e-3
+"""Relative size of a divisor from which a candidate counts as well-conditioned at a configuration."""
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
     """One solved unknown: the chosen candidate, fallbacks where its divisor vanishes at regular
-    configurations, and the candidates that the ranker rejected."""
+    configurations, and the candidates that the ranker rejected. `sound`: no regular configuration was
+    found at which all of them fail."""
 
     candidate: Candidate
     fallbacks: tuple[Candidate, ...]
     rejected: tuple[Candidate, ...]
+    sound: bool = True
 
     @property
     def branches(self) -> int:
@@ -52,8 +56,16 @@ class Chooser:
                 c for c in ranked if not c.is_weak
             ]  # folds are no reason to take more branches
             best = min(holds or ranked, key=lambda c: (c.branches > 2, not c.is_sound))
-            step = _step(best, (), ranked)
+            step = _step(best, (), ranked, sound=self._divides(best))
         return step
+
+    def _divides(self, candidate: Candidate) -> bool:
+        """Whether its divisor was not found to vanish at a regular configuration. Branches that meet at
+        one are no failure: they lose digits, which Newton steps win back."""
+        values = self._probes.values[: self._probes.regular]
+        looked_at = np.concatenate([values, self._weak_at(candidate)])
+        divisor = conditions(candidate, self._system, looked_at)[0]
+        return bool(np.all(np.abs(divisor).max(axis=0) > WEAK_MARGIN)) and not candidate.is_weak
 
     def _weak_at(self, candidate: Candidate) -> NDArray[np.float64]:
         """Regular configurations where a candidate fails, sought once."""
@@ -112,6 +124,12 @@ class Chooser:
         return None if len(uncovered) else tuple(out)
 
 
-def _step(best: Candidate, fallbacks: tuple[Candidate, ...], ranked: list[Candidate]) -> Step:
+def _step(
+    best: Candidate,
+    fallbacks: tuple[Candidate, ...],
+    ranked: list[Candidate],
+    *,
+    sound: bool = True,
+) -> Step:
     rejected = [c for c in ranked if c is not best and c.unknown == best.unknown]
-    return Step(best, fallbacks, tuple(rejected[:8]))
+    return Step(best, fallbacks, tuple(rejected[:8]), sound)

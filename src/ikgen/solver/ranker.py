@@ -16,7 +16,7 @@ from ikgen.algebra.expression import Expr
 from ikgen.equations.probes import Probes
 from ikgen.solver.candidate import Candidate, Judgement
 
-__all__ = ["PREFERENCE", "judge", "rank_key"]
+__all__ = ["PREFERENCE", "WEAK_MARGIN", "judge", "rank_key"]
 
 PREFERENCE = (
     "algebraic",

@@ -48,7 +48,7 @@ class SolutionGraph:
     @property
     def sound(self) -> bool:
         """Whether every step holds at all regular configurations that were looked at."""
-        return all(not s.candidate.is_weak or s.fallbacks for s in self.steps)
+        return all(step.sound for step in self.steps)
 
 
 def _variables_in(roots: tuple[Expr, ...], knowledge: Knowledge) -> set[Variable]:

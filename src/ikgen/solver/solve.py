@@ -34,7 +34,7 @@ def solve_chain(
     part of the chain (tasks that do not read the whole pose). `leaves` are by default ikgen's own and
     those of other packages, `tree` ikgen's own or that of another package.
     """
-    probes = make_probes(dh, tool=tool_on_right)
+    probes = make_probes(dh, tool=tool_on_right, readable=readable)
     graph = ExpressionGraph(len(probes.values))
     system = EquationSet(
         graph,

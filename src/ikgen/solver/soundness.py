@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 STARTS = 24
 STEPS = 12
 REGULAR = 2e-2
-"""Smallest singular value of the pose's derivative above which a configuration counts as regular."""
+"""Smallest singular value of what the task reads above which a configuration counts as regular."""
 
 
 def conditions(candidate: Candidate, system: EquationSet, values: Array) -> list[Array]:
@@ -46,7 +46,10 @@ def weak_configurations(candidate: Candidate, system: EquationSet, probes: Probe
         zero = np.isfinite(rest) & (rest < 1e-9)
         if zero.any():
             at = q[zero]
-            found.append(at[smallest_singular(system.dh, at, size) > REGULAR])
+            smallest = smallest_singular(
+                system.dh, at, size, readable=system.readable, tool=system.tool_on_right
+            )
+            found.append(at[smallest > REGULAR])
     return np.concatenate(found) if found else np.empty((0, system.dh.dof))
 
 

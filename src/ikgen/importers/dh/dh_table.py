@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -11,13 +10,14 @@ from typing import Any
 import numpy as np
 
 from ikgen.errors import BadDescriptionError
-from ikgen.importers.dh.entry_expression import BadEntryError, evaluate
+from ikgen.importers.dh.entry_expression import BadEntryError, evaluate, finite
 from ikgen.importers.dh.row_merge import Merged, merge, modified_rows
 from ikgen.importers.dh.table_chain import TableEnds, chain_of_rows, exact_chain
 from ikgen.importers.dh.table_document import TableDocument, read_document
 from ikgen.importers.dh.table_entries import Entry, locked_entries, read_entries, read_parameters
 from ikgen.kinematics.classify import parallel_to_previous, same_line_as_previous
-from ikgen.kinematics.snapping import exact_cos_sin
+from ikgen.kinematics.rigid import rotation_rpy
+from ikgen.model.chain import MOST_AXES
 from ikgen.model.dh import DHChain
 from ikgen.model.joint_tree import Matrix, Source
 
@@ -37,6 +37,11 @@ def read_dh_table(
     rows = locked_entries(entries, dict(locked or {}), tuple(free))
     if all(entry.kind == "fixed" for entry in rows):
         raise document.error("no joint moves", "the table needs a revolute or prismatic joint")
+    moving = sum(entry.kind != "fixed" for entry in rows)
+    if moving > MOST_AXES:
+        raise document.error(
+            f"{moving} joints move, more than {MOST_AXES}", "fix joints by --lock JOINT=VALUE"
+        )
     _check_convention(document, entries)
     ends = TableEnds(
         str(document.data.get("name") or path.stem),
@@ -114,14 +119,8 @@ def _transform(document: TableDocument, table: str) -> Matrix:
     """The transform (4, 4) of [base] or [tool]: xyz in m, rpy in rad as in URDF."""
     end = document.data.get(table, {})
     x = _triple(document, table, "xyz", end)
-    roll, pitch, yaw = _triple(document, table, "rpy", end)
-    (cr, sr), (cp, sp), (cy, sy) = map(exact_cos_sin, (roll, pitch, yaw))
     T = np.eye(4)
-    T[:3, :3] = [
-        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-        [-sp, cp * sr, cp * cr],
-    ]
+    T[:3, :3] = rotation_rpy(*_triple(document, table, "rpy", end))
     T[:3, 3] = x
     return T
 
@@ -142,12 +141,13 @@ def _triple(
             raise place
         try:
             found = evaluate(str(one), read_parameters(document), angle=key == "rpy")
+            finite(found.value)
         except BadEntryError as error:
             raise problem(
                 f"[{table}] {key}: {error}", file=str(document.path),
                 line=document.line(key=key, table=table), hint=error.hint,
             ) from None  # fmt: skip
-        if found.symbolic or not math.isfinite(found.value):
+        if found.symbolic:
             raise place
         values.append(found.value)
     return values[0], values[1], values[2]

@@ -8,9 +8,13 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-__all__ = ["BadEntryError", "Quantity", "evaluate", "number", "quantity_of"]
+__all__ = ["BadEntryError", "Quantity", "evaluate", "finite", "number", "quantity_of"]
 
 Terms = tuple[tuple[str, float], ...]
+
+_LONGEST = 1000
+_LARGEST = 1e4
+"""Lengths in mm come to thousands; beyond this doubles leave no room for 1e-9 m."""
 
 
 class BadEntryError(ValueError):
@@ -73,6 +77,19 @@ def number(value: float) -> Quantity:
     return Quantity(float(value) + 0.0, float(value) + 0.0)
 
 
+def finite(value: float) -> float:
+    """A number of a table as a float; raises `BadEntryError` where it is too large for the table."""
+    try:
+        found = float(value)
+    except OverflowError:
+        found = math.inf
+    if not abs(found) <= _LARGEST:
+        raise BadEntryError(
+            f"{found:g} is beyond {_LARGEST:g}", "write lengths in m, angles in rad"
+        )
+    return found
+
+
 def quantity_of(name: str, value: float | None, *, angle: bool) -> Quantity:
     """A parameter; without a value it takes a generic one that depends on its name alone."""
     if value is not None:
@@ -89,6 +106,8 @@ def evaluate(text: str, names: Mapping[str, float | None], *, angle: bool) -> Qu
     `BadEntryError`.
     """
     hint = "write a number or an expression with + - * / sqrt() pi and parameter names"
+    if len(text) > _LONGEST:
+        raise BadEntryError(f"an expression of {len(text)} characters", hint)
     try:
         tree = ast.parse(text.strip(), mode="eval")
     except (SyntaxError, ValueError, RecursionError, MemoryError):

@@ -8,7 +8,7 @@ from typing import Any
 
 from ikgen.importers.dh.entry_expression import BadEntryError, evaluate
 from ikgen.importers.dh.table_document import TableDocument
-from ikgen.importers.urdf.joint_limits import UNLIMITED
+from ikgen.importers.urdf.joint_limits import FARTHEST, UNLIMITED
 from ikgen.model.joint_tree import Limits
 
 __all__ = ["read_limits"]
@@ -38,7 +38,7 @@ def read_limits(
             found = evaluate(one, parameters, angle=True) if isinstance(one, str) else None
         except BadEntryError as error:
             raise document.error(f"limits: {error}", error.hint, joint=i, key="limits") from None
-        value = float(one) if found is None else found.value
+        value = _as_float(one) if found is None else found.value
         if math.isnan(value) or (found is not None and found.symbolic):
             raise document.error(f"limit {one!r} has no number", _HINT, joint=i, key="limits")
         values.append(value)
@@ -47,6 +47,16 @@ def read_limits(
             f"the lower limit {values[0]:g} is above the upper limit {values[1]:g}", _HINT,
             joint=i, key="limits",
         )  # fmt: skip
+    if values[0] > FARTHEST or values[1] < -FARTHEST:
+        message = f"limits {values[0]:g} to {values[1]:g} hold no value that can be told apart"
+        raise document.error(message, _HINT, joint=i, key="limits")
     if joint["type"] == "revolute" and 13.0 < max(map(abs, values)) < 1e3:
         document.warnings.append(f"joint {i}: limits look like degrees: kept as they are")
     return Limits(values[0], values[1])
+
+
+def _as_float(value: Any) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        return math.copysign(math.inf, value)

@@ -15,7 +15,7 @@ import numpy as np
 
 from ikgen.importers.dh.entry_expression import Quantity, number
 from ikgen.importers.dh.table_entries import Entry
-from ikgen.kinematics.snapping import exact_cos_sin
+from ikgen.kinematics.rigid import dh_link
 from ikgen.model.joint_tree import Limits, Matrix
 
 __all__ = ["Merged", "ModifiedRow", "merge", "modified_rows", "row_matrix"]
@@ -64,17 +64,7 @@ def modified_rows(entries: Sequence[Entry], convention: str) -> list[ModifiedRow
 
 def row_matrix(row: ModifiedRow) -> Matrix:
     """`Rx(alpha) Tx(a) Rz(theta) Tz(d)` (4, 4) with the variable at 0."""
-    ca, sa = exact_cos_sin(row.alpha.value)
-    ct, st = exact_cos_sin(row.theta.value)
-    a, d = row.a.value, row.d.value
-    return np.array(
-        [
-            [ct, -st, 0.0, a],
-            [st * ca, ct * ca, -sa, -d * sa],
-            [st * sa, ct * sa, ca, d * ca],
-            [0.0, 0.0, 0.0, 1.0],
-        ]
-    )
+    return dh_link(row.alpha.value, row.a.value, row.theta.value, row.d.value)
 
 
 def merge(rows: Sequence[ModifiedRow], X_base: Matrix, X_tip: Matrix) -> Merged:

@@ -10,6 +10,7 @@ from ikgen.importers.dh.constant_names import NameBook, symbol_of
 from ikgen.importers.dh.row_merge import Merged, ModifiedRow, row_matrix
 from ikgen.kinematics.file_frames import largest_deviation
 from ikgen.kinematics.modified_dh import to_dh
+from ikgen.kinematics.rigid import read_only
 from ikgen.kinematics.snapping import SnapLog
 from ikgen.model.chain import PRISMATIC, REVOLUTE, ActuatedJoint, Chain, ChainAxis
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
@@ -53,8 +54,8 @@ def exact_chain(
         tip_link=ends.tip_link,
         joints=_joints(merged.rows),
         rows=rows,
-        X_base=_read_only(merged.X_base),
-        X_tip=_read_only(merged.X_tip),
+        X_base=read_only(merged.X_base + 0.0),
+        X_tip=read_only(merged.X_tip + 0.0),
         file_frames=_file_frames(merged, rows),
         snaps=log.snaps,
         free=free,
@@ -132,9 +133,9 @@ def _file_frames(merged: Merged, rows: tuple[DHRow, ...]) -> tuple[Matrix, ...]:
             constant = _constant(own, 0.0 if abs(theta) < 1e-15 else theta, own.d.value)
         else:
             constant = _constant(own, own.theta.value, own.d.value - row.offset.value)
-        out.append(_read_only(pending @ constant))
+        out.append(read_only(pending @ constant + 0.0))
         pending = np.eye(4)
-    out.append(_read_only(pending @ merged.X_tip))
+    out.append(read_only(pending @ merged.X_tip + 0.0))
     return tuple(out)
 
 
@@ -145,9 +146,3 @@ def _constant(row: ModifiedRow, theta: float, d: float) -> Matrix:
         d=replace(row.d, value=d),
     )
     return row_matrix(shown)
-
-
-def _read_only(matrix: Matrix) -> Matrix:
-    matrix = np.array(matrix) + 0.0
-    matrix.setflags(write=False)
-    return matrix

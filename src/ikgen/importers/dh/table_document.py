@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ikgen.errors import BadDescriptionError
+from ikgen.importers.xml_document import read_text
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -29,6 +30,8 @@ _TOP_KEYS = (
 _JOINT_KEYS = ("type", *ENTRIES, "limits", "name")
 _END_KEYS = ("xyz", "rpy", "name")
 _SYMBOL = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_LARGEST = 2**20
+_MOST_ROWS = 100
 _AT_LINE = re.compile(r"\s*\(at line (\d+), column \d+\)")
 
 
@@ -78,10 +81,13 @@ class TableDocument:
 
 def read_document(path: Path) -> TableDocument:
     """Read and check a DH table; raises `BadDescriptionError`."""
-    text = _text(path)
+    text = read_text(path, _LARGEST, may_be_empty=True)
     try:
         data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (
+        ValueError,
+        RecursionError,
+    ) as error:  # integers of thousands of digits are no TOML error
         place = _AT_LINE.search(str(error))
         raise BadDescriptionError(
             f"not valid TOML: {_AT_LINE.sub('', str(error))}",
@@ -95,19 +101,6 @@ def read_document(path: Path) -> TableDocument:
     for number, joint in enumerate(document.joints, start=1):
         _check_joint(document, number, joint)
     return document
-
-
-def _text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8-sig").replace("\r\n", "\n")
-    except FileNotFoundError:
-        raise BadDescriptionError(
-            "no such file", file=str(path), hint="give the path of a DH table (.toml)"
-        ) from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise BadDescriptionError(
-            f"cannot be read: {error}", file=str(path), hint="a DH table is a UTF-8 text file"
-        ) from None
 
 
 def _unknown(
@@ -138,6 +131,10 @@ def _check_top(document: TableDocument) -> None:
     joints = data.get("joints")
     if not isinstance(joints, list) or not joints or not all(isinstance(j, dict) for j in joints):
         raise document.error("no joints", "write one [[joints]] table a row", key="joints")
+    if len(joints) > _MOST_ROWS:
+        raise document.error(
+            f"{len(joints)} rows, more than {_MOST_ROWS}", "describe one arm a table", key="joints"
+        )
     for name in ("base", "tool"):
         end = data.get(name, {})
         if not isinstance(end, dict):

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ikgen.errors import UnknownNameError, UsageError
-from ikgen.importers.dh.entry_expression import BadEntryError, Quantity, evaluate, number
+from ikgen.importers.dh.entry_expression import BadEntryError, Quantity, evaluate, finite, number
 from ikgen.importers.dh.entry_limits import read_limits
 from ikgen.importers.dh.table_document import ENTRIES, TableDocument
 from ikgen.model.joint_tree import Limits
@@ -37,6 +37,10 @@ def read_parameters(document: TableDocument) -> dict[str, float | None]:
         place: dict[str, Any] = {"key": name, "table": "parameters"}
         try:
             found = evaluate(value, known, angle=False) if isinstance(value, str) else number(value)
+        except OverflowError:
+            raise document.error(
+                f"parameter '{name}' is too large", "write it in m", **place
+            ) from None
         except BadEntryError as error:
             raise document.error(f"parameter '{name}': {error}", error.hint, **place) from None
         if found.symbolic or not math.isfinite(found.value):
@@ -78,14 +82,11 @@ def _entry(
     variable: tuple[str, str],
 ) -> Quantity:
     value = joint.get(key, 0)
-    if not isinstance(value, str):
-        if not math.isfinite(value):
-            raise document.error(
-                f"'{key}' is not finite", "write a finite number", joint=i, key=key
-            )
-        return number(value)
     try:
+        if not isinstance(value, str):
+            return number(finite(value))
         found = evaluate(value, parameters, angle=key in ("alpha", "theta"))
+        finite(found.value)
     except BadEntryError as error:
         raise document.error(f"{key}: {error}", error.hint, joint=i, key=key) from None
     own = {"revolute": "theta", "prismatic": "d"}.get(joint["type"]) == key

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import math
 import re
 
-__all__ = ["BadValueError", "parse_number", "parse_numbers"]
+__all__ = ["BadValueError", "parse_number", "parse_numbers", "shortened"]
 
 # Stricter than float(), which also takes 1_000 and nan; inf occurs in limits.
-_NUMBER = re.compile(r"[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf(?:inity)?)", re.IGNORECASE)
+_NUMBER = re.compile(
+    r"[+-]?(?:(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?|inf(?:inity)?)", re.IGNORECASE
+)
+# Three numbers with all 767 digits that a double can have, and room for spaces.
+_LONGEST_TEXT = 4000
+_LONGEST_SHOWN = 60
 
 
 class BadValueError(ValueError):
@@ -18,38 +24,54 @@ class BadValueError(ValueError):
         self.hint = hint
 
 
-def parse_numbers(text: str, count: int, *, finite: bool = True) -> tuple[float, ...]:
-    """`count` numbers separated by white space; raises `BadValueError`."""
+def shortened(text: str, longest: int = _LONGEST_SHOWN) -> str:
+    """A text as messages show it: its beginning, where it is longer than `longest`."""
+    return text if len(text) <= longest else f"{text[:longest]}..."
+
+
+def parse_numbers(
+    text: str, count: int, *, finite: bool = True, largest: float = math.inf
+) -> tuple[float, ...]:
+    """`count` numbers separated by white space; raises `BadValueError`.
+
+    `largest` is the greatest magnitude that a finite number may have.
+    """
+    shown = shortened(text)
+    if len(text) > _LONGEST_TEXT:
+        raise BadValueError(
+            f"'{shown}' has {len(text)} characters", f"write {count} numbers in a few digits"
+        )
     if "$(" in text or "${" in text:
         raise BadValueError(
-            f"'{text}' is a xacro expression",
+            f"'{shown}' is a xacro expression",
             "this is a xacro file: rename it to .urdf.xacro, or expand it with xacro first",
         )
-    words = text.split()
-    numbers = tuple(_number(word, text, finite) for word in words)
+    numbers = tuple(_number(word, shown, finite) for word in text.split())
     if len(numbers) != count:
         raise BadValueError(
-            f"'{text}' has {len(numbers)} numbers where {count} belong",
+            f"'{shown}' has {len(numbers)} numbers where {count} belong",
             f"write {count} numbers separated by spaces",
         )
+    if any(largest < abs(number) < math.inf for number in numbers):
+        raise BadValueError(f"'{shown}' is beyond {largest:g}", "write lengths in m, angles in rad")
     return numbers
 
 
-def parse_number(text: str, *, finite: bool = True) -> float:
+def parse_number(text: str, *, finite: bool = True, largest: float = math.inf) -> float:
     """One number; raises `BadValueError`."""
-    return parse_numbers(text, 1, finite=finite)[0]
+    return parse_numbers(text, 1, finite=finite, largest=largest)[0]
 
 
-def _number(word: str, text: str, finite: bool) -> float:
+def _number(word: str, shown: str, finite: bool) -> float:
     if _NUMBER.fullmatch(word):
         value = float(word)
         if not finite or abs(value) != float("inf"):
             return value
-        raise BadValueError(f"'{text}' is not finite", "write a finite number")
+        raise BadValueError(f"'{shown}' is not finite", "write a finite number")
     if "," in word:
         hint = "separate numbers by spaces, without commas"
     elif word.count(".") > 1:
-        hint = f"'{word}' has more than one decimal point"
+        hint = f"'{shortened(word)}' has more than one decimal point"
     else:
         hint = "write plain decimal numbers separated by spaces"
-    raise BadValueError(f"'{word}' in '{text}' is not a number", hint)
+    raise BadValueError(f"'{shortened(word)}' in '{shown}' is not a number", hint)

@@ -8,7 +8,12 @@ from collections.abc import Sequence
 from lxml import etree
 
 from ikgen.errors import BadDescriptionError
-from ikgen.importers.urdf.attribute_values import BadValueError, parse_number, parse_numbers
+from ikgen.importers.urdf.attribute_values import (
+    BadValueError,
+    parse_number,
+    parse_numbers,
+    shortened,
+)
 from ikgen.importers.xml_document import Element, Place, children
 from ikgen.model.joint_tree import JointType
 
@@ -19,13 +24,21 @@ _AXIS_ROUNDING = 1e-4
 # Beyond these a direction is noise, or its normalisation under- or overflows.
 _AXIS_SHORTEST = 1e-12
 _AXIS_LONGEST = 1e12
+_LONGEST_NAME = 1000
+# Files in mm have lengths of thousands; beyond this doubles leave no room for 1e-9 m.
+_LONGEST = 1e4
+# Couplings beyond these (a lead screw has some 1e3 rad/m) leave no digit of the angle.
+_LARGEST_COUPLING = 1e6
 
 
 def required_attribute(element: Element, attribute: str, what: str, place: Place) -> str:
-    """An attribute that must be there and not be empty."""
+    """An attribute that must be there, not be empty, and no longer than a name can be."""
     value: str | None = element.get(attribute)
     if value is None or not value.strip():
         raise place.error(element, f"{what} without {attribute}", f'write {attribute}="..."')
+    if len(value) > _LONGEST_NAME:
+        message = f"{what}: {attribute} '{shortened(value)}' has {len(value)} characters"
+        raise place.error(element, message, f"write at most {_LONGEST_NAME}")
     return value
 
 
@@ -76,13 +89,18 @@ def _bad(element: Element, name: str, what: str, bad: BadValueError, place: Plac
 
 
 def _vector(
-    element: Element, attribute: str, default: Sequence[float], name: str, place: Place
+    element: Element,
+    attribute: str,
+    default: Sequence[float],
+    name: str,
+    place: Place,
+    largest: float = math.inf,
 ) -> tuple[float, ...]:
     text = element.get(attribute)
     if text is None:
         return tuple(default)
     try:
-        return parse_numbers(text, 3)
+        return parse_numbers(text, 3, largest=largest)
     except BadValueError as bad:
         raise _bad(element, name, attribute, bad, place) from None
 
@@ -95,7 +113,7 @@ def _copy_origin(joint: Element, plain: Element, name: str, place: Place) -> Non
     origin = _only_child(joint, "origin", name, place)
     if origin is None:
         return
-    xyz = _vector(origin, "xyz", (0.0, 0.0, 0.0), name, place)
+    xyz = _vector(origin, "xyz", (0.0, 0.0, 0.0), name, place, _LONGEST)
     rpy = _vector(origin, "rpy", (0.0, 0.0, 0.0), name, place)
     etree.SubElement(plain, "origin", xyz=_write(xyz), rpy=_write(rpy))
 
@@ -143,14 +161,22 @@ def _copy_mimic(joint: Element, plain: Element, name: str, place: Place) -> None
     for attribute in ("multiplier", "offset"):
         text = mimic.get(attribute)
         if text is not None:
-            copied[attribute] = repr(_scalar(mimic, attribute, text, name, place))
+            value = _scalar(mimic, attribute, text, name, place, largest=_LARGEST_COUPLING)
+            copied[attribute] = repr(value)
     etree.SubElement(plain, "mimic", copied)
 
 
 def _scalar(
-    element: Element, attribute: str, text: str, name: str, place: Place, *, finite: bool = True
+    element: Element,
+    attribute: str,
+    text: str,
+    name: str,
+    place: Place,
+    *,
+    finite: bool = True,
+    largest: float = math.inf,
 ) -> float:
     try:
-        return parse_number(text, finite=finite)
+        return parse_number(text, finite=finite, largest=largest)
     except BadValueError as bad:
         raise _bad(element, name, attribute, bad, place) from None

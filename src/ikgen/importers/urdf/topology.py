@@ -10,6 +10,9 @@ from ikgen.model.joint_tree import Joint, JointTree
 
 __all__ = ["TreeIndex", "check_joints", "find_roots"]
 
+_LONGEST_SHOWN = 12
+"""How many joints of a cycle a message names."""
+
 
 @dataclass(frozen=True, slots=True)
 class TreeIndex:
@@ -98,7 +101,7 @@ def _check_acyclic(joints: Sequence[Joint], above: Mapping[str, Joint], file: st
         while link in above and link not in grounded:
             if link in seen:
                 loop = trail[next(i for i, joint in enumerate(trail) if joint.child == link) :]
-                names = " -> ".join(joint.name for joint in reversed(loop))
+                names = _shown([joint.name for joint in reversed(loop)])
                 raise BadDescriptionError(
                     f"the joints form a cycle: {names}",
                     file=file,
@@ -111,13 +114,23 @@ def _check_acyclic(joints: Sequence[Joint], above: Mapping[str, Joint], file: st
         grounded.update(seen)
 
 
+def _shown(names: Sequence[str]) -> str:
+    if len(names) <= _LONGEST_SHOWN:
+        return " -> ".join(names)
+    left_out = len(names) - _LONGEST_SHOWN
+    return " -> ".join([*names[: _LONGEST_SHOWN - 1], f"... {left_out} more ...", names[-1]])
+
+
 def find_roots(links: Sequence[str], joints: Sequence[Joint]) -> tuple[tuple[str, int], ...]:
     """The links without a parent and how many links hang on each, the largest first."""
     parent = {joint.child: joint.parent for joint in joints}
-    sizes = {link: 0 for link in links if link not in parent}
+    top = {link: link for link in links if link not in parent}
+    sizes = dict.fromkeys(top, 0)
     for link in links:
-        top = link
-        while top in parent:
-            top = parent[top]
-        sizes[top] += 1
+        trail = []
+        while link not in top:
+            trail.append(link)
+            link = parent[link]
+        top.update(dict.fromkeys(trail, top[link]))
+        sizes[top[link]] += 1
     return tuple(sorted(sizes.items(), key=lambda item: -item[1]))

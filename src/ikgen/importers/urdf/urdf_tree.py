@@ -1,24 +1,14 @@
-"""URDF files into a `JointTree`.
-
-yourdfpy computes the joints. It meets a copy of the document that was checked first, because on a
-faulty file it raises bare Python exceptions that name neither the file nor the line.
-"""
+"""URDF files into a `JointTree`."""
 
 from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from io import BytesIO
 from pathlib import Path
-from typing import Any
-
-import numpy as np
-from lxml import etree
 
 from ikgen.errors import UsageError
-from ikgen.importers.urdf.joint_element import clean_joint, required_attribute
-from ikgen.importers.urdf.joint_limits import joint_limits
+from ikgen.importers.urdf.joint_list import read_joints, unique_names
 from ikgen.importers.urdf.topology import check_joints, find_roots
 from ikgen.importers.xml_document import (
     Element,
@@ -29,7 +19,7 @@ from ikgen.importers.xml_document import (
     read_text,
     shown_file,
 )
-from ikgen.model.joint_tree import Joint, JointTree, JointType, Matrix, Mimic, Source
+from ikgen.model.joint_tree import JointTree, Source
 
 __all__ = ["parse_urdf", "read"]
 
@@ -76,7 +66,7 @@ def parse_urdf(
     root = parse_xml(text, place.file)
     _check_root(root, place)
     links = _link_names(root, place)
-    joints = _joints(root, place)
+    joints = read_joints(root, place)
     check_joints(links, joints, place.file)
     roots = find_roots(links, joints)
     if len(roots) > 1:
@@ -111,70 +101,8 @@ def _robot_name(root: Element, path: Path, place: Place) -> str:
     return name
 
 
-def _unique(elements: Sequence[Element], kind: str, place: Place) -> tuple[str, ...]:
-    lines: dict[str, int] = {}
-    for element in elements:
-        name = required_attribute(element, "name", f"<{kind}>", place)
-        if name in lines:
-            raise place.error(
-                element,
-                f"duplicate {kind} '{name}', first at line {lines[name]}",
-                f"rename or remove one of the two {kind}s",
-            )
-        lines[name] = element.sourceline
-    return tuple(lines)
-
-
 def _link_names(root: Element, place: Place) -> tuple[str, ...]:
-    links = _unique(list(children(root, "link")), "link", place)
+    links = unique_names(list(children(root, "link")), "link", place)
     if not links:
         raise place.error(root, "the robot has no links", "check that the file is complete")
     return links
-
-
-def _joints(root: Element, place: Place) -> tuple[Joint, ...]:
-    elements = list(children(root, "joint"))
-    _unique(elements, "joint", place)
-    # Only the joints: meshes, materials and inertias are none of the kinematics' business, and
-    # their faults need not stop it.
-    plain = etree.Element("robot", name="robot")
-    plain.extend([clean_joint(element, place) for element in elements])
-    parsed = _load_with_yourdfpy(plain)
-    return tuple(_joint(joint, el, place) for joint, el in zip(parsed, elements, strict=True))
-
-
-def _load_with_yourdfpy(plain: Element) -> Sequence[Any]:
-    import yourdfpy  # costs over a second, mostly for its mesh loaders
-
-    document = BytesIO(etree.tostring(plain))
-    model = yourdfpy.URDF.load(document, build_scene_graph=False, load_meshes=False)
-    joints: Sequence[Any] = model.robot.joints
-    return joints
-
-
-def _joint(parsed: Any, element: Element, place: Place) -> Joint:
-    type_ = JointType(parsed.type)
-    limit = parsed.limit
-    limits, notes = joint_limits(
-        type_, None if limit is None else limit.lower, None if limit is None else limit.upper
-    )
-    for note in notes:
-        place.warn(element, f"joint '{parsed.name}': {note}")
-    mimic = parsed.mimic
-    return Joint(
-        name=parsed.name,
-        type=type_,
-        parent=parsed.parent,
-        child=parsed.child,
-        T_parent_child=_read_only(np.eye(4) if parsed.origin is None else parsed.origin),
-        axis=_read_only(parsed.axis / np.linalg.norm(parsed.axis)),
-        limits=limits,
-        mimic=None if mimic is None else Mimic(mimic.joint, mimic.multiplier, mimic.offset),
-        line=element.sourceline,
-    )
-
-
-def _read_only(values: Any) -> Matrix:
-    array: Matrix = np.array(values, dtype=np.float64)
-    array.setflags(write=False)
-    return array

@@ -1,4 +1,4 @@
-"""The arguments that a xacro file takes, by its text: for messages where it cannot be expanded."""
+"""The arguments that a xacro file takes, read from its text: known also where expanding it fails."""
 
 from __future__ import annotations
 
@@ -6,52 +6,63 @@ import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from ikgen.importers.packages import PackageFinder, PackageNotFoundError
+from ikgen.errors import IkgenError
+from ikgen.importers.packages import PACKAGE_URL, PackageFinder, PackageNotFoundError
+from ikgen.importers.xacro.package_fence import PackageFence
+from ikgen.importers.xacro.refusals import RefusedFileError
+from ikgen.importers.xml_document import local_name, parse_xml, read_text
 
 __all__ = ["declared_arguments"]
 
-_COMMENT = re.compile(r"<!--.*?-->", re.S)
-_ELEMENT = re.compile(r"<xacro:(arg|include)\b([^>]*?)/?>", re.S)
-_ATTRIBUTE = re.compile(r"""([\w:]+)\s*=\s*("[^"]*"|'[^']*')""")
-_USE = re.compile(r"\$\(arg\s+([^)\s]+)\s*\)")
+_USE = re.compile(r"\$\(arg\s+([^)\s$]+)\s*\)")
 _FIND = re.compile(r"\$\(find\s+([^)\s]+)\s*\)")
+_MOST_FILES = 50
 
 
 def declared_arguments(path: Path, package_paths: Sequence[Path] = ()) -> dict[str, str | None]:
-    """Argument -> its default (None: it has none), declared or used in a file and in those that it includes
-    by a name without expressions; empty where nothing can be read."""
-    finder = PackageFinder(path.resolve(), tuple(package_paths))
-    named = list(_arguments(path, finder, set()))
+    """Argument -> the text of its default (None: it has none), of a xacro file and of what it includes
+    by plain names, in the files' order.
+
+    Nothing is evaluated: includes whose names hang on arguments are passed over, and so is what cannot
+    be read.
+    """
+    top = path.resolve()
+    finder = PackageFinder(top, tuple(package_paths))
     found: dict[str, str | None] = {}
-    for name, default in named:
-        found[name] = default if found.get(name) is None else found[name]
+    for name, default in _arguments(top, finder, PackageFence(top, finder), set()):
+        if found.get(name) is None:
+            found[name] = default
     return found
 
 
 def _arguments(
-    path: Path, finder: PackageFinder, seen: set[Path]
+    file: Path, finder: PackageFinder, fence: PackageFence, seen: set[Path]
 ) -> Iterator[tuple[str, str | None]]:
-    try:
-        text = path.read_text(encoding="utf-8", errors="replace")
-    except OSError:
+    if file in seen or len(seen) >= _MOST_FILES:
         return
-    seen.add(path)
-    text = _COMMENT.sub("", text)
-    for element, attributes in _ELEMENT.findall(text):
-        given = {name: value[1:-1] for name, value in _ATTRIBUTE.findall(attributes)}
-        if element == "arg" and "name" in given:
-            yield given["name"], given.get("default")
-        elif element == "include":
-            included = _included(given.get("filename", "$"), path, finder)
-            if included is not None and included not in seen:
-                yield from _arguments(included, finder, seen)
-    yield from ((name, None) for name in _USE.findall(text))
-
-
-def _included(name: str, path: Path, finder: PackageFinder) -> Path | None:
-    """The file that an include names; None where its name holds other expressions."""
+    seen.add(file)
     try:
-        name = _FIND.sub(lambda found: str(finder.find(found.group(1))), name)
+        root = parse_xml(read_text(fence.require(file)), str(file))
+    except (OSError, IkgenError, RefusedFileError):
+        return
+    for element in root.iter():
+        tag = local_name(element)
+        if tag == "arg" and element.get("name"):
+            yield element.get("name"), element.get("default")
+        elif tag == "include":
+            included = _plain_file(element.get("filename") or "", file, finder)
+            if included is not None:
+                yield from _arguments(included, finder, fence, seen)
+        for value in (element.text or "", *element.attrib.values()):
+            yield from ((name, None) for name in _USE.findall(value))
+
+
+def _plain_file(spec: str, file: Path, finder: PackageFinder) -> Path | None:
+    """The file that an include names, where it does so without arguments or expressions."""
+    try:
+        spec = _FIND.sub(lambda match: str(finder.find(match[1])), spec)
+        if spec.startswith(PACKAGE_URL):
+            spec = str(finder.resolve(spec))
     except PackageNotFoundError:
         return None
-    return None if "$" in name else path.parent / name
+    return None if "$" in spec or not spec else (file.parent / spec)

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from ikgen.errors import IkgenError
 from ikgen.importers.packages import PackageFinder
 from ikgen.importers.urdf.urdf_tree import parse_urdf
 from ikgen.importers.xacro.expansion_errors import explain
@@ -30,12 +31,18 @@ class Expansion:
     warnings: tuple[str, ...] = ()
 
 
-def read(path: Path, *, arguments: Mapping[str, str], package_paths: Sequence[Path]) -> JointTree:
-    """Expand a xacro file and build the tree of the resulting URDF.
+def read(
+    path: Path,
+    *,
+    arguments: Mapping[str, str],
+    package_paths: Sequence[Path],
+    trust: bool = False,
+) -> JointTree:
+    """Expand a xacro file and build the tree of the resulting URDF; `trust` as in `expand`.
 
     Raises `BadDescriptionError` naming the missing argument, package or include, with its place.
     """
-    expansion = expand(path, arguments=arguments, package_paths=package_paths)
+    expansion = expand(path, arguments=arguments, package_paths=package_paths, trust=trust)
     return parse_urdf(
         expansion.text,
         path=path,
@@ -48,9 +55,17 @@ def read(path: Path, *, arguments: Mapping[str, str], package_paths: Sequence[Pa
 
 
 def expand(
-    path: Path, *, arguments: Mapping[str, str], package_paths: Sequence[Path] = ()
+    path: Path,
+    *,
+    arguments: Mapping[str, str],
+    package_paths: Sequence[Path] = (),
+    trust: bool = False,
 ) -> Expansion:
     """Expand a xacro file with arguments NAME: VALUE.
+
+    Unless `trust`, its expressions may only compute, its files lie in its package or one that was
+    found, and time and size are bounded. With it, xacro evaluates the file, which then can do
+    whatever Python can.
 
     The text has no absolute paths: what lies in a package becomes `package://`, so that the same
     sources give the same digest wherever they are checked out.
@@ -59,10 +74,12 @@ def expand(
     top = path.resolve()
     finder = PackageFinder(top, tuple(package_paths))
     known = Arguments({**_name_defaults(root), **arguments})
-    session = Session(finder)
+    session = Session(top, finder, trust=trust)
     try:
         with session:
-            text = session.process(top, known)
+            text = session.process(known)
+    except IkgenError:
+        raise
     except Exception as error:  # the file's own expressions can raise anything
         raise explain(error, session.files, session.includes, path, known) from error
     warnings = list(session.warnings)

@@ -9,10 +9,18 @@ from xml.parsers.expat import ExpatError
 
 from ikgen.errors import BadDescriptionError
 from ikgen.importers.packages import PackageNotFoundError
+from ikgen.importers.urdf.attribute_values import shortened
+from ikgen.importers.xacro.error_places import line_of, place_of, text_of
+from ikgen.importers.xacro.refusal_errors import refused
+from ikgen.importers.xml_document import line_at
 
 __all__ = ["explain"]
 
+_LONGEST_MESSAGE = 400
+
 _EXPRESSION = re.compile(r"when evaluating expression '(.*)'")
+_ARGUMENT_TAG = re.compile(r"<xacro:arg\b[^>]*>")
+_NAME = re.compile(r"""\bname\s*=\s*["']([^"']*)""")
 
 
 def explain(
@@ -30,7 +38,8 @@ def explain(
     file = files[-1] if files else shown
     name = str(shown) if len(files) < 2 else str(file)
     for cause in _causes(error):
-        found = _explain_one(cause, file, name, arguments)
+        found = refused(cause, [file, *includes], name)
+        found = found or _explain_one(cause, file, name, arguments)
         if found is not None:
             return found
     return _unexplained(error, [file, *includes], name)
@@ -48,10 +57,8 @@ def _unexplained(error: Exception, files: Sequence[Path], name: str) -> BadDescr
     if expression is not None:
         # The stack names the file that calls a macro, not the one with the macro's text.
         pattern = r"\$\{\s*" + re.escape(expression.group(1).strip())
-        lines = [(file, _line_of(file, pattern)) for file in files]
-        found = next(((file, at) for file, at in lines if at is not None), None)
-        if found is not None:
-            name, line = (name if found[0] == files[0] else str(found[0])), found[1]
+        name, line = place_of(pattern, files, name)
+    message = shortened(" ".join(message.split()), _LONGEST_MESSAGE)
     return BadDescriptionError(
         f"xacro cannot expand the file: {message or type(error).__name__}{within}",
         file=name,
@@ -76,7 +83,7 @@ def _explain_one(
     cause: BaseException, file: Path, name: str, arguments: Mapping[str, str]
 ) -> BadDescriptionError | None:
     if isinstance(cause, PackageNotFoundError):
-        line = _line_of(file, rf"(find\W+|package://){re.escape(cause.name)}\b")
+        line = line_of(file, rf"(find\W+|package://){re.escape(cause.name)}\b")
         hint = f"give --package-path DIR; looked in: {'; '.join(cause.searched)}"
         return BadDescriptionError(str(cause), file=name, line=line, hint=hint)
     if type(cause).__name__ == "ArgException":
@@ -107,20 +114,19 @@ def _missing_argument(
     return BadDescriptionError(
         f"the xacro argument '{argument}' has no value",
         file=name,
-        line=_line_of(file, rf"arg\W+{re.escape(argument)}\b"),
+        line=line_of(file, rf"arg\W+{re.escape(argument)}\b"),
         hint=f"give it: --arg {argument}:=VALUE (arguments with a value so far: {given})",
     )
 
 
 def _no_default(file: Path, name: str) -> BadDescriptionError:
-    line = _line_of(file, r"<xacro:arg\b(?![^>]*\bdefault\s*=)")
-    text = _text(file).splitlines()[line - 1] if line else ""
-    found = re.search(r"""name\s*=\s*["']([^"']*)""", text)
-    argument = found.group(1) if found else "?"
+    text = text_of(file)
+    tags = [tag for tag in _ARGUMENT_TAG.finditer(text) if not re.search(r"\bdefault\s*=", tag[0])]
+    found = _NAME.search(tags[0][0]) if tags else None
     return BadDescriptionError(
-        f'<xacro:arg name="{argument}"> has no default, which xacro requires',
+        f'<xacro:arg name="{found[1] if found else "?"}"> has no default, which xacro requires',
         file=name,
-        line=line,
+        line=line_at(text, tags[0].start()) if tags else None,
         hint='write default="..." there; --arg still overrides it',
     )
 
@@ -130,7 +136,7 @@ def _unreadable(cause: OSError, file: Path, name: str) -> BadDescriptionError:
     return BadDescriptionError(
         f"cannot read '{missing}': {cause.strerror}",
         file=name,
-        line=_line_of(file, re.escape(Path(missing).name)),
+        line=line_of(file, re.escape(Path(missing).name)),
         hint="check the path, or the arguments that it is made of",
     )
 
@@ -146,17 +152,3 @@ def _bad_yaml(cause: BaseException) -> BadDescriptionError | None:
         line=mark.line + 1,
         hint="correct the YAML at this line",
     )
-
-
-def _text(file: Path) -> str:
-    try:
-        return file.read_text(encoding="utf-8", errors="replace")
-    except OSError:
-        return ""
-
-
-def _line_of(file: Path, pattern: str) -> int | None:
-    """The first line that matches: xacro's exceptions carry none."""
-    text = _text(file)
-    found = re.search(pattern, text)
-    return text.count("\n", 0, found.start()) + 1 if found else None

@@ -9,7 +9,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from ikgen.errors import MissingToolError
 from ikgen.importers.packages import PACKAGE_URL, PackageFinder
+from ikgen.importers.xacro.guarded_xacro import GuardedXacro
 
 __all__ = ["Arguments", "Session"]
 
@@ -33,14 +35,17 @@ class Arguments(dict[str, str]):
 
 
 class Session:
-    """Context in which xacro resolves packages through a `PackageFinder`.
+    """Context in which xacro resolves packages through a `PackageFinder`, with its readers and
+    evaluators replaced by guarded ones unless the files are trusted.
 
     `files` is xacro's stack of files being read (the innermost last, also after a failure),
     `includes` every file that it opened beside the first, `warnings` what it printed.
     """
 
-    def __init__(self, finder: PackageFinder) -> None:
+    def __init__(self, top: Path, finder: PackageFinder, *, trust: bool = False) -> None:
+        self._top = top
         self._finder = finder
+        self._trust = trust
         self._saved: list[tuple[Any, str, Any]] = []
         self._output = io.StringIO()
         self.files: list[Path] = []
@@ -51,6 +56,14 @@ class Session:
         import xacro
         from xacro import substitution_args
 
+        try:
+            self._replace(xacro, substitution_args)
+        except BaseException:
+            self._put_back()
+            raise
+        return self
+
+    def _replace(self, xacro: Any, substitution_args: Any) -> None:
         def find(package: str) -> str:
             return str(self._finder.find(package))
 
@@ -68,24 +81,33 @@ class Session:
         self._set(xacro, "macrostack", None)
         self._set(xacro, "verbosity", 1)
         self._set(xacro, "substitution_args_context", {})
-        return self
+        if not self._trust:
+            guarded = GuardedXacro(self._top, self._finder)
+            for owner, name, value in guarded.replacements(xacro, substitution_args):
+                self._set(owner, name, value)
 
     def _set(self, owner: Any, name: str, value: Any) -> None:
+        if not hasattr(owner, name):  # never run unguarded because a name has changed
+            raise MissingToolError(
+                f"the package xacro has no '{owner.__name__}.{name}'",
+                hint="install a version that ikgen knows: pip install 'xacro>=2.1,<3'",
+            )
         self._saved.append((owner, name, getattr(owner, name)))
         setattr(owner, name, value)
 
-    def process(self, top: Path, arguments: Arguments) -> str:
-        """The expanded XML text of the file `top` (absolute).
+    def process(self, arguments: Arguments) -> str:
+        """The expanded XML text of the file.
 
         Not `xacro.process_file`: that adds a banner with the absolute path of the file.
         """
         import xacro
 
-        xacro.init_stacks(str(top))
+        top = str(self._top)
+        xacro.init_stacks(top)
         context: dict[str, Any] = xacro.substitution_args_context
-        context["filename"] = str(top)
+        context["filename"] = top
         with redirect_stderr(self._output), redirect_stdout(self._output):
-            document = xacro.parse(None, str(top))
+            document = xacro.parse(None, top)
             xacro.process_doc(document, mappings=arguments)
         return str(document.toprettyxml(indent="  "))
 
@@ -100,5 +122,8 @@ class Session:
         self.includes[:] = [Path(name) for name in xacro.all_includes]
         printed = [line for line in self._output.getvalue().splitlines() if line.startswith(_MARK)]
         self.warnings = tuple(f"xacro: {line[len(_MARK) :]}" for line in dict.fromkeys(printed))
+        self._put_back()
+
+    def _put_back(self) -> None:
         for owner, name, value in reversed(self._saved):
             setattr(owner, name, value)

@@ -75,7 +75,8 @@ inline void null_vector(const Wide (&A)[6][6], Wide (&x)[6]) noexcept {
 
 // theta_4 and theta_5 from the null vector.
 inline void inner_angles(const Pencil& pencil, const Pair& three, Pair& four, Pair& five) noexcept {
-  Wide bases[1][3][9], unused[1], K[6][6], x[6];
+  Wide bases[1][3][9], K[6][6], x[6];
+  Reflected unused[1][6];
   null_bases<1>(1, pencil, {three.c}, {three.s}, bases, unused);
   const auto& basis = bases[0];
   half_angles(basis, K);

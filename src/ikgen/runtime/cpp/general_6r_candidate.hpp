@@ -92,15 +92,12 @@ inline State residual(const Chain& F, const Frame& T, const Vector& q) noexcept 
   return out;
 }
 
-// (J^T J + mu) x = J^T e by Cholesky.
-inline Vector damped_step(const State& at, double mu) noexcept {
+// (J^T J + mu)^-1 x by Cholesky.
+inline Vector inverse_normal(const State& at, Vector x, double mu) noexcept {
   Mat<6, 6> H{};
-  Vector x{};
   for (Index k = 0; k < 6; ++k)
-    for (Index i = 0; i < 6; ++i) {
-      x[i] += at.J(k, i) * at.e[k];
+    for (Index i = 0; i < 6; ++i)
       for (Index j = 0; j <= i; ++j) H(i, j) += at.J(k, i) * at.J(k, j);
-    }
   for (Index i = 0; i < 6; ++i) {
     H(i, i) += mu;
     for (Index j = 0; j <= i; ++j) {
@@ -116,6 +113,13 @@ inline Vector damped_step(const State& at, double mu) noexcept {
     x[i] /= H(i, i);
   }
   return x;
+}
+
+inline Vector damped_step(const State& at, double mu) noexcept {
+  Vector x{};
+  for (Index k = 0; k < 6; ++k)
+    for (Index i = 0; i < 6; ++i) x[i] += at.J(k, i) * at.e[k];
+  return inverse_normal(at, x, mu);
 }
 
 // Damped Newton (Levenberg-Marquardt) on the chain; returns the residual, and in `before` that of the start.

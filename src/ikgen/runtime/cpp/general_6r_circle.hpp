@@ -71,7 +71,7 @@ struct Polynomial {
 // Student's distribution with 7 degrees of freedom: beyond 10 once in 50,000, and that at a point where f itself
 // comes as close to 0. Were one node's error all, it would be 4.7 times the norm. Rounding in the sums here and
 // where the polynomial is evaluated comes on top.
-inline Polynomial interpolate(const double (&f)[kNodes]) noexcept {
+inline Polynomial interpolate(const double (&f)[kNodes], double blur) noexcept {
   Polynomial out;
   double sum[kNodes] = {};
   for (int n = 0; n < kNodes; ++n)
@@ -85,7 +85,7 @@ inline Polynomial interpolate(const double (&f)[kNodes]) noexcept {
       noise += sum[j] * sum[j];
   }
   constexpr double kNoise = 11.0, kRounding = 1e-15;
-  out.noise = kNoise * std::sqrt(noise) + kRounding * size;
+  out.noise = kNoise * std::sqrt(noise) + kRounding * size + blur;
   return out;
 }
 

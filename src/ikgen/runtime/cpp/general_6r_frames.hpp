@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "constants.hpp"
 #include "lanes.hpp"
 
 namespace ikgen_runtime {

@@ -1,174 +1,115 @@
 #pragma once
 
-#include "general_6r_equations.hpp"
-#include "lanes.hpp"
+#include <cmath>
+
+#include "general_6r_null_space.hpp"
 
 namespace ikgen_runtime {
 
-// --- general_6r: the resultant at many angles side by side ------------------------------------------
-// A(theta_3) is the 6x9 matrix of the equations. Its null space has an orthonormal basis (N0; Nc; Ns), 3x3 each;
-// a solution is a vector y with Nc y = c4 N0 y and Ns y = s4 N0 y, which by half angles is
-//   [[Nc - N0, Ns], [Ns, -(Nc + N0)]] (cos(theta_4/2) y; sin(theta_4/2) y) = 0.
-// f = det(A A^T) det [...] depends on the basis not even in sign: a trigonometric polynomial of degree 8 whose
-// roots are all solutions' theta_3. Householder's reflections instead of pivoting: no lane waits for another.
+// --- general_6r: values of the resultant, and how far off they may be --------------------------------
 
 namespace g6 {
 
-inline constexpr int kWide = 8;  // lanes, on narrower machines as several vectors, which do not wait for each other
-using Wide = Lanes<kWide>;
-using WideMask = Mask<kWide>;
-
-#if defined(__AVX512F__) && defined(__AVX512DQ__)
-inline unsigned bits(const Mask<8>& m) noexcept { return _mm512_movepi64_mask(reinterpret_cast<__m512i>(m.v)); }
-#elif defined(__AVX__)
-inline unsigned bits(const Mask<4>& m) noexcept {
-  return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(m.v)));
-}
-#elif defined(__SSE2__)
-inline unsigned bits(const Mask<2>& m) noexcept {
-  return static_cast<unsigned>(_mm_movemask_pd(reinterpret_cast<__m128d>(m.v)));
-}
-#endif
-// One bit a lane.
-template <int N, bool H>
-inline unsigned bits(const MaskOf<N, H>& m) noexcept {
-  if constexpr (H) {
-    return bits(m.lo) | bits(m.hi) << (N / 2);
-  } else {
-    double flags[N];
-    store(m, flags);
-    unsigned out = 0;
-    for (int l = 0; l < N; ++l) out |= flags[l] > 0.5 ? 1U << l : 0U;
-    return out;
-  }
-}
-
-inline bool any(const WideMask& mask) noexcept { return bits(mask) != 0; }
-
-struct Reflected {  // a row x -> (alpha, 0, ...): x - beta (x . v) v
-  Wide beta, alpha, square;
+// One over the largest that the rows of A can be, squared.
+struct RowSizes {
+  double over[6];
 };
 
-// Makes v of entries K.. of the row, in place.
-template <int K, int N>
-inline Reflected reflector(Wide (&row)[N]) noexcept {
-  Wide square = row[K] * row[K], other = spread<kWide>(1e-300);
-  for (int j = K + 1; j < N; ++j) {
-    if (j % 2 == 0)
-      square = square + row[j] * row[j];
-    else
-      other = other + row[j] * row[j];
-  }
-  square = square + other;
-  const Wide norm = sqrt(square);
-  const Wide alpha = select(row[K] > 0.0, -norm, norm);
-  row[K] = row[K] - alpha;
-  return {-1.0 / (alpha * row[K]), alpha, square};
-}
-
-template <int K, int N>
-inline void reflect(const Wide (&v)[N], const Wide& beta, Wide (&row)[N]) noexcept {
-  Wide even = row[K] * v[K], odd = spread<kWide>(0.0);
-  for (int j = K + 1; j < N; ++j) {
-    if (j % 2 == 0)
-      even = even + row[j] * v[j];
-    else
-      odd = odd + row[j] * v[j];
-  }
-  const Wide dot = beta * (even + odd);
-  for (int j = K; j < N; ++j) row[j] = row[j] - dot * v[j];
-}
-
-// R rows of N entries, in G groups of lanes. All groups take each step before any takes the next, and a row is
-// reflected as soon as the next step needs it: nothing waits long for square roots.
-template <int K, int G, int R, int N>
-inline void reflectors(int groups, Wide (&A)[G][R][N], Reflected (&h)[G][R]) noexcept {
-  for (int g = 0; g < groups; ++g) h[g][K] = reflector<K>(A[g][K]);
-}
-
-// Rows K.. of A to lower triangular form, but for the last L rows.
-template <int K, int L, int G, int R, int N>
-inline void triangulate(int groups, Wide (&A)[G][R][N], Reflected (&h)[G][R]) noexcept {
-  if constexpr (K == 0) reflectors<0>(groups, A, h);
-  if constexpr (K + 1 < R)
-    for (int g = 0; g < groups; ++g) reflect<K>(A[g][K], h[g][K].beta, A[g][K + 1]);
-  if constexpr (K + 1 < R - L) reflectors<K + 1>(groups, A, h);
-  for (int g = 0; g < groups; ++g)
-    for (int i = K + 2; i < R; ++i) reflect<K>(A[g][K], h[g][K].beta, A[g][i]);
-  if constexpr (K + 1 < R - L) triangulate<K + 1, L>(groups, A, h);
-}
-
-template <int K, int G>
-inline void carry_back(int groups, const Wide (&A)[G][6][9], const Reflected (&h)[G][6], Wide (&basis)[G][3][9]) noexcept {
-  for (int g = 0; g < groups; ++g)
-    for (auto& n : basis[g]) reflect<K>(A[g][K], h[g][K].beta, n);
-  if constexpr (K > 0) carry_back<K - 1>(groups, A, h, basis);
-}
-
-inline void fill(const Pencil& p, const Wide& c, const Wide& s, Wide (&A)[6][9]) noexcept {
-  for (Index i = 0; i < 6; ++i)
-    for (Index j = 0; j < 9; ++j) A[i][j] = p.f(i, j) + c * p.c(i, j) + s * p.s(i, j);
-}
-
-// Orthonormal null vectors, and det(A A^T).
-template <int G>
-inline void null_bases(int groups, const Pencil& p, const Wide (&c)[G], const Wide (&s)[G], Wide (&basis)[G][3][9],
-                       Wide (&squares)[G]) noexcept {
-  Wide A[G][6][9];
-  Reflected h[G][6];
-  for (int g = 0; g < groups; ++g) fill(p, c[g], s[g], A[g]);
-  triangulate<0, 0>(groups, A, h);
-  for (int g = 0; g < groups; ++g)
-    squares[g] = ((h[g][0].square * h[g][1].square) * (h[g][2].square * h[g][3].square)) * (h[g][4].square * h[g][5].square);
-  for (int g = 0; g < groups; ++g)
-    for (int k = 0; k < 3; ++k)
-      for (int j = 0; j < 9; ++j) basis[g][k][j] = spread<kWide>(j == 6 + k ? 1.0 : 0.0);
-  carry_back<5>(groups, A, h, basis);
-}
-
-// The 6x6 matrix of half angles, by rows.
-template <int N>
-inline void half_angles(const Wide (&basis)[3][9], Wide (&K)[6][N]) noexcept {
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      K[i][j] = basis[j][3 + i] - basis[j][i];
-      K[i][3 + j] = K[3 + i][j] = basis[j][6 + i];
-      K[3 + i][3 + j] = -(basis[j][3 + i] + basis[j][i]);
+inline RowSizes row_sizes(const Pencil& p) noexcept {
+  RowSizes out;
+  for (Index i = 0; i < 6; ++i) {
+    double square = 1e-300;
+    for (Index j = 0; j < 9; ++j) {
+      const double size = std::abs(p.f(i, j)) + std::abs(p.c(i, j)) + std::abs(p.s(i, j));
+      square += size * size;
     }
+    out.over[i] = 1.0 / square;
+  }
+  return out;
 }
 
-template <int G>
-inline void determinants(int groups, Wide (&A)[G][6][6], Wide (&out)[G]) noexcept {
-  Reflected h[G][6];
-  triangulate<0, 2>(groups, A, h);
-  for (int g = 0; g < groups; ++g) {
-    const Wide corner = A[g][4][4] * A[g][5][5] - A[g][4][5] * A[g][5][4];
-    out[g] = ((h[g][0].alpha * h[g][1].alpha) * (h[g][2].alpha * h[g][3].alpha)) * corner;
+// Relative error of the pencil's rows. An error of a row moves A's null space by at most the largest ratio of a row
+// to what its reflection leaves of it, and the determinant of half angles by the adjugate's norm times that. The
+// squares of that matrix's entries sum to 6, so its adjugate's norm is at most (6/5)^(5/2) a direction; it is far
+// smaller where two solutions share the angle. At 68,000 known solutions of 34 arms f was off by at most 0.03 times
+// the largest of the nodes' bounds, and 0.8 times the bound at its own angle.
+inline constexpr double kBlur = 8e-15, kMostAdjugate = 1.6;
+
+struct Spread {
+  Wide squares, ratio;  // det(A A^T); largest ratio of a row to what is left of it
+};
+
+inline Spread spread_of(const Reflected (&h)[6], const RowSizes& sizes) noexcept {
+  Wide least = sizes.over[0] * h[0].square;
+  for (int k = 1; k < 6; ++k) least = min(least, sizes.over[k] * h[k].square);
+  const Wide squares = ((h[0].square * h[1].square) * (h[2].square * h[3].square)) * (h[4].square * h[5].square);
+  return {squares, 1.0 / sqrt(least + 1e-300)};
+}
+
+// Frobenius norm of the adjugate of a matrix [[L, 0], [M, C]] Q, L 4x4 with the product of its diagonal, C 2x2 with
+// its determinant: det L (det C L^-1; -adj C M L^-1, adj C).
+inline Wide adjugate_size(const Wide (&A)[6][6], const Reflected (&h)[6], const Wide& product,
+                          const Wide& corner) noexcept {
+  Wide X[4][4], inner = spread<kWide>(0.0), outer = inner;
+  for (int i = 0; i < 4; ++i) {
+    X[i][i] = 1.0 / select(abs(h[i].alpha) > 1e-150, h[i].alpha, spread<kWide>(1e-150));
+    for (int j = 0; j < i; ++j) {
+      Wide sum = A[i][j] * X[j][j];
+      for (int k = j + 1; k < i; ++k) sum = sum + A[i][k] * X[k][j];
+      X[i][j] = -X[i][i] * sum;
+    }
+    for (int j = 0; j <= i; ++j) inner = inner + X[i][j] * X[i][j];
   }
+  for (int j = 0; j < 4; ++j) {
+    Wide u = A[4][j] * X[j][j], v = A[5][j] * X[j][j];
+    for (int k = j + 1; k < 4; ++k) {
+      u = u + A[4][k] * X[k][j];
+      v = v + A[5][k] * X[k][j];
+    }
+    const Wide x = A[5][5] * u - A[4][5] * v, y = A[4][4] * v - A[5][4] * u;
+    outer = outer + x * x + y * y;
+  }
+  for (int i = 4; i < 6; ++i)
+    for (int j = 4; j < 6; ++j) outer = outer + A[i][j] * A[i][j];
+  return abs(product) * sqrt(corner * corner * inner + outer);
 }
 
 // As many groups of nodes are worked on at once as do not wait for each other's registers.
 inline constexpr int kGroups = kNative >= 8 ? 3 : 1;
 
-// f at `groups` groups of angles. Their number is an argument lest loops over it are written out: the code is to stay
+// `groups` groups of angles. Their number is an argument lest loops over it are written out: the code is to stay
 // in the cache.
-[[gnu::noinline]] inline void resultants_of(int groups, const Pencil& p, const double* c, const double* s,
-                                            double* f) noexcept {
-  Wide cosine[kGroups], sine[kGroups], basis[kGroups][3][9], K[kGroups][6][6], squares[kGroups], value[kGroups];
+[[gnu::noinline]] inline void resultants_of(int groups, const Pencil& p, const RowSizes& sizes, bool close,
+                                            const double* c, const double* s, double* f, double* blur) noexcept {
+  Wide cosine[kGroups], sine[kGroups], basis[kGroups][3][9], K[kGroups][6][6];
+  Reflected h[kGroups][6], k[kGroups][6];
   for (int g = 0; g < groups; ++g) {
     cosine[g] = load<kWide>(c + g * kWide);
     sine[g] = load<kWide>(s + g * kWide);
   }
-  null_bases(groups, p, cosine, sine, basis, squares);
+  null_bases(groups, p, cosine, sine, basis, h);
   for (int g = 0; g < groups; ++g) half_angles(basis[g], K[g]);
-  determinants(groups, K, value);
-  for (int g = 0; g < groups; ++g) store(squares[g] * value[g], f + g * kWide);
+  triangulate<0, 2>(groups, K, k);
+  for (int g = 0; g < groups; ++g) {
+    const Wide corner = K[g][4][4] * K[g][5][5] - K[g][4][5] * K[g][5][4];
+    const Wide product = (k[g][0].alpha * k[g][1].alpha) * (k[g][2].alpha * k[g][3].alpha);
+    const Spread A = spread_of(h[g], sizes);
+    store(A.squares * (product * corner), f + g * kWide);
+    const Wide adjugate = close ? adjugate_size(K[g], k[g], product, corner) : spread<kWide>(kMostAdjugate);
+    store(A.squares * A.ratio * (adjugate + kBlur * A.ratio), blur + g * kWide);
+  }
 }
 
+// f at N angles, and the most that it may be off by the rounding in the pencil; close: tight where f is small.
 template <int N>
-inline void resultants(const Pencil& p, const double (&c)[N], const double (&s)[N], double (&f)[N]) noexcept {
+inline void resultants(const Pencil& p, bool close, const double (&c)[N], const double (&s)[N], double (&f)[N],
+                       double (&blur)[N]) noexcept {
   static_assert(N % (kGroups * kWide) == 0);
-  for (int n = 0; n < N; n += kGroups * kWide) resultants_of(kGroups, p, c + n, s + n, f + n);
+  const RowSizes sizes = row_sizes(p);
+  for (int n = 0; n < N; n += kGroups * kWide) {
+    resultants_of(kGroups, p, sizes, close, c + n, s + n, f + n, blur + n);
+    for (int i = n; i < n + kGroups * kWide; ++i) blur[i] *= kBlur;
+  }
 }
 
 }  // namespace g6

@@ -2,6 +2,7 @@
 
 #include "general_6r_newton.hpp"
 #include "general_6r_solutions.hpp"
+#include "lane_angle.hpp"
 
 namespace ikgen_runtime {
 
@@ -73,17 +74,20 @@ inline constexpr double kScales[] = {0.03, 5e-4};  // of the first look and of t
 inline bool look_closer(const Pencil& pencil, const Zone& zone, int look, Roots& out) noexcept {
   const double middle = 0.5 * (zone.low + zone.high), half = 0.5 * (zone.high - zone.low);
   const Lens lens = {std::cos(middle), std::sin(middle), std::max(kScales[look], std::tan(0.5 * half))};
-  alignas(64) double c[kNodes], s[kNodes], f[kNodes];
-  double weight[kNodes];
+  alignas(64) double c[kNodes], s[kNodes], f[kNodes], blur[kNodes];
+  double weight[kNodes], worst = 0.0;
   for (int n = 0; n < kNodes; ++n) {
     c[n] = kNode.c[n];
     s[n] = kNode.s[n];
     const double r = lens.apply(c[n], s[n]), r2 = r * r, r4 = r2 * r2;
     weight[n] = r4 * r4;
   }
-  resultants(pencil, c, s, f);
-  for (int n = 0; n < kNodes; ++n) f[n] *= weight[n];
-  const Polynomial g = interpolate(f);
+  resultants(pencil, true, c, s, f, blur);
+  for (int n = 0; n < kNodes; ++n) {
+    f[n] *= weight[n];
+    worst = std::max(worst, weight[n] * blur[n]);
+  }
+  const Polynomial g = interpolate(f, worst);
   const Brackets brackets = isolate(g);
   Roots near;
   clear_roots(g, brackets, near);
@@ -104,10 +108,10 @@ inline bool look_closer(const Pencil& pencil, const Zone& zone, int look, Roots&
 
 // All roots; false where some may be missing.
 inline bool find_roots(const Pencil& pencil, Roots& out) noexcept {
-  alignas(64) double f[kNodes];
-  resultants(pencil, kRotated.c, kRotated.s, f);
-  const Polynomial polynomial = interpolate(f);
-  Brackets brackets = isolate(polynomial);
+  alignas(64) double f[kNodes], blur[kNodes];
+  resultants(pencil, false, kRotated.c, kRotated.s, f, blur);
+  const Polynomial polynomial = interpolate(f, *std::max_element(blur, blur + kNodes));
+  const Brackets brackets = isolate(polynomial);
   if (brackets.doubt) return false;
   clear_roots(polynomial, brackets, out);
   for (int i = 0; i < out.count; ++i) {
@@ -170,28 +174,28 @@ inline bool run_resultant(const Chain& F, const Frame& T, const Frame& aim, cons
   return all;
 }
 
-// All solutions, or false and those that were found. Where the first run leaves doubts, two in a row must find
-// all that is known and no more: with the next hidden angle, and at poses displaced to either side.
+// Adds what a run finds; whether it is sure, and found all that is known.
+inline bool confirm(const Chain& F, const Frame& T, const Frame& aim, const std::array<int, 2>& plan,
+                    Solutions& out) noexcept {
+  Solutions mine;
+  const bool all = run_resultant(F, T, aim, plan, mine);
+  for (int k = 0; k < mine.count; ++k) keep(mine.rows[static_cast<Index>(k)], out);
+  return all && mine.count == out.count && out.count % 2 == 0;
+}
+
+// All solutions, or false and those that were found. Where the first run leaves doubts, the next hidden angle may
+// not; else poses displaced to either side must agree: where solutions end there, it is on one side.
 template <std::size_t N>
 inline bool solve_resultant(const Chain& F, const Frame& T, const std::array<std::array<int, 2>, N>& plans,
                             Solutions& out) noexcept {
-  Frame aims[3] = {T, T, T};
-  int number = 0, confirmed = 0;
-  for (const Frame& aim : aims)
-    for (const std::array<int, 2>& plan : plans) {
-      if (number++ == 0) {
-        if (run_resultant(F, T, aim, plan, out)) return true;
-        aims[1] = compose(T, displacement());
-        aims[2] = compose(T, inverse(displacement()));
-        continue;
-      }
-      Solutions mine;
-      const bool all = run_resultant(F, T, aim, plan, mine);
-      bool fresh = false;
-      for (int k = 0; k < mine.count; ++k) fresh = keep(mine.rows[static_cast<Index>(k)], out) || fresh;
-      confirmed = all && !fresh && mine.count == out.count ? confirmed + 1 : 0;
-      if (confirmed == 2 && out.count % 2 == 0) return true;
-    }
+  for (const std::array<int, 2>& plan : plans)
+    if (confirm(F, T, T, plan, out)) return true;
+  const Frame there = compose(T, displacement()), back = compose(T, inverse(displacement()));
+  for (const std::array<int, 2>& plan : plans) {
+    if (!confirm(F, T, there, plan, out)) continue;
+    const int known = out.count;
+    if (confirm(F, T, back, plan, out) && out.count == known) return true;
+  }
   return false;
 }
 

@@ -1,0 +1,39 @@
+"""Where in its files something stands that an expansion failed over: xacro's exceptions carry no
+line."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from ikgen.importers.xml_document import LARGEST_FILE, line_at
+
+__all__ = ["line_of", "place_of", "text_of"]
+
+
+def text_of(file: Path) -> str:
+    """The text of a file; empty where it cannot be read."""
+    try:
+        if not file.is_file() or file.stat().st_size > LARGEST_FILE:
+            return ""
+        return file.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return ""
+
+
+def line_of(file: Path, pattern: str) -> int | None:
+    """The first line that matches."""
+    text = text_of(file)
+    found = re.search(pattern, text)
+    return line_at(text, found.start()) if found else None
+
+
+def place_of(pattern: str, files: Sequence[Path], name: str) -> tuple[str, int | None]:
+    """The first of the files that matches, with its line; `name` is what the first one is called in
+    messages, and the answer where none does."""
+    for file in files:
+        line = line_of(file, pattern)
+        if line is not None:
+            return (name if file == files[0] else str(file)), line
+    return name, None

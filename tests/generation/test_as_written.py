@@ -1,0 +1,78 @@
+"""Closed forms of the file's own chain in place of those of its exact geometry."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.support.rounded_arms import EXACT, spherical_wrist, three_parallel
+from tests.support.solving import emitted, solver_module
+
+from ikgen.emit.solver_module import CLOSE
+from ikgen.generation.as_written import solve_as_written
+from ikgen.kinematics.modified_dh import to_dh
+from ikgen.model.chain import Chain
+from ikgen.model.dh import DHChain
+from ikgen.solver.solution_graph import SolutionGraph
+from ikgen.solver.solve import solve_chain
+
+
+def written(chain: Chain) -> tuple[DHChain, SolutionGraph, SolutionGraph]:
+    """The rows chosen, their solution, and that of the exact geometry."""
+    dh = to_dh(chain)
+    graph = solve_chain(dh)
+    chosen, other = solve_as_written(dh, graph, solve_chain)
+    return chosen, other, graph
+
+
+def branches(graph: SolutionGraph) -> int:
+    return math.prod(step.branches for step in graph.steps)
+
+
+@pytest.mark.parametrize("chain", [three_parallel(), spherical_wrist(1.571)])
+def test_files_own_chain_has_a_closed_form(chain: Chain, tmp_path: Path) -> None:
+    dh, graph, exact = written(chain)
+    assert max(dh.deviation) < 1e-14
+    assert branches(graph) == branches(exact) == 8
+    assert solver_module(dh).polish == "some"
+    module = emitted(dh, tmp_path)
+    for q in np.random.default_rng(5).uniform(-3, 3, (60, 6)):
+        T = module.forward(q)
+        rows = np.array(list(module.solve(T, limits=False)))
+        assert max(np.abs(module.forward(row) - T).max() for row in rows) < 1e-12
+        assert np.abs(np.remainder(rows - q + np.pi, 2 * np.pi) - np.pi).max(axis=1).min() < 1e-8
+
+
+def test_branches_lie_half_a_turn_apart_but_for_rounding() -> None:
+    _, graph, _ = written(three_parallel())
+    wrist = next(
+        step.candidate for step in graph.steps if step.candidate.unknown.text == "theta_234"
+    )
+    assert wrist.judgement is not None and wrist.judgement.almost_tangent
+
+
+def test_exact_geometry_is_solved_once() -> None:
+    dh = to_dh(three_parallel(EXACT))
+    graph = solve_chain(dh)
+    assert solve_as_written(dh, graph, lambda _: pytest.fail("solved again")) == (dh, graph)
+
+
+def test_length_that_two_branches_need_is_made_exact() -> None:
+    dh, graph, exact = written(three_parallel(1.571, skew=4e-6))
+    assert dh.rows[5].a.name is None
+    assert dh.rows[1].alpha.near is not None
+    assert CLOSE < max(dh.deviation) < 0.5 * max(to_dh(three_parallel(1.571, skew=4e-6)).deviation)
+    assert branches(graph) == branches(exact) == 8
+
+
+@pytest.mark.parametrize("wrist", [0.0, math.pi])
+def test_stretched_arm_with_singular_wrist_is_reached(wrist: float, tmp_path: Path) -> None:
+    dh, _, _ = written(three_parallel())
+    module = emitted(dh, tmp_path)
+    for q1, q2, q4 in np.random.default_rng(7).integers(-4, 4, (12, 3)) * np.pi / 4:
+        T = module.forward([q1, q2, 0.0, q4, wrist, 0.5])
+        rows = list(module.solve(T, limits=False))
+        assert rows
+        assert max(np.abs(module.forward(row) - T).max() for row in rows) < 1e-9

@@ -1,0 +1,48 @@
+"""Arms as files write them: right angles in five digits."""
+
+from __future__ import annotations
+
+import math
+
+from tests.support.chains import make_chain, rotation, translation
+
+from ikgen.model.chain import Chain
+
+X, Z = [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]
+
+
+def three_parallel(right: float = 1.5708, *, skew: float = 0.0) -> Chain:
+    """Axes 2 to 4 parallel, 4 and 5 and 5 and 6 meet; `skew` (m) parts the last two."""
+    return make_chain(
+        "RRRRRR",
+        [
+            translation(0, 0, 0.15),
+            rotation(X, right),
+            translation(-0.42, 0, 0),
+            translation(-0.39, 0, 0.13),
+            translation(0, -0.1, 0) @ rotation(X, right),
+            translation(skew, 0.09, 0) @ rotation(X, -right),
+        ],
+        [Z] * 6,
+        translation(0, 0, 0.08),
+    )
+
+
+def spherical_wrist(right: float = 1.5708, *, offset: float = 0.0) -> Chain:
+    """Axes 2 and 3 parallel, 4 to 6 meet but for `offset` (m) along axis 5."""
+    return make_chain(
+        "RRRRRR",
+        [
+            translation(0, 0, 0.3),
+            translation(0.05, 0, 0) @ rotation(X, right),
+            translation(0.4, 0, 0),
+            rotation(X, right) @ translation(0, 0, 0.35),
+            rotation(X, -right) @ translation(0, 0, offset),
+            rotation(X, right),
+        ],
+        [Z] * 6,
+        translation(0, 0, 0.1),
+    )
+
+
+EXACT = math.pi / 2
