@@ -120,7 +120,8 @@ def test_no_more_solutions_than_a_multi_start_search_finds(name: str) -> None:
         T[:3, 3] /= plan.length
         starts = rng.uniform(-np.pi, np.pi, (600, 6))
         poses = np.broadcast_to(T, (600, 4, 4))
-        q, error = newton(six_joints(scaled), PoseTask(1.0), range(6), starts, poses, 40, POLICY)
+        chain, task = six_joints(scaled), PoseTask(1.0)
+        q, error, _ = newton(chain, task, range(6), starts, poses, 40, POLICY)
         candidates = distinct_angles(q[error < POLICY.arrived], POLICY.coincident)
         assert len(candidates), "the search found nothing to compare"
         for candidate in candidates:
