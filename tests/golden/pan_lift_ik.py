@@ -163,8 +163,8 @@ def _branches_batch(T: Array, q0: Array, held: Array) -> tuple[Array, _Flags, _F
     q0 (N, DOF) are the values of joints that a pose leaves free, held (N, len(FREE_JOINTS)).
     """
     count = len(T)
-    full = (2, count)
-    lane = (1, count)
+    full = (2, count,)
+    lane = (1, count,)
     t03 = T[:, 0, 3].reshape(lane)
     t13 = T[:, 1, 3].reshape(lane)
     t23 = T[:, 2, 3].reshape(lane)
