@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ikgen.solver.solution_graph import SolutionGraph
     from ikgen.tasks import Task
 
-__all__ = ["Derivation", "Reading", "Unsolved"]
+__all__ = ["Derivation", "Held", "Reading", "Unsolved"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +28,23 @@ class Reading:
 
 
 @dataclass(frozen=True, slots=True)
+class Held:
+    """Joints that were chosen to be held, base to tip, why, and the choices that came next."""
+
+    joints: tuple[str, ...]
+    why: str
+    others: tuple[tuple[str, ...], ...] = ()
+
+    @property
+    def words(self) -> str:
+        """One line."""
+        it = "it" if len(self.joints) == 1 else "them"
+        line = f"holding {' and '.join(self.joints)}: {self.why} with {it} held"
+        others = ", ".join(" and ".join(names) for names in self.others)
+        return f"{line}; others: {others}" if others else line
+
+
+@dataclass(frozen=True, slots=True)
 class Derivation:
     """Everything between the file and the emitted text."""
 
@@ -38,6 +55,8 @@ class Derivation:
     module: SolverModule
     chosen: bool = False
     """Whether the task was chosen to fit the arm, not asked for."""
+    held: Held | None = None
+    """The joints that were chosen to be held; None where none was."""
 
 
 @dataclass(frozen=True, slots=True)
