@@ -78,7 +78,7 @@ def test_unsolved_with_a_prismatic_joint_says_what_was_tried(
     general.write_text(general.read_text() + PRISMATIC)
     assert run(["from-dh", str(general), "-o", str(tmp_path / "out")]) == 3
     said = capsys.readouterr().err
-    assert "tried without success: --task position-direction with d_6, or" in said
+    assert re.search(r"tried without success: --task position-direction with \w+, or", said)
 
 
 def test_how_much_is_tried_does_not_depend_on_the_time(

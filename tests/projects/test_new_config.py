@@ -11,8 +11,7 @@ from ikgen.generation.request import Request
 from ikgen.projects.config import load_config
 from ikgen.projects.new_config import config_path, robot_arms, write_config
 
-ROOT = Path(__file__).resolve().parents[2]
-FIXTURES = ROOT / "urdf_fixtures"
+FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 AR4 = FIXTURES / "ar4_ros_driver/annin_ar4_description/urdf/ar.urdf.xacro"
 
 
@@ -23,13 +22,25 @@ def written(request: Request, path: Path) -> Path:
 
 def test_arguments_and_paths_are_recorded(tmp_path: Path) -> None:
     packages = FIXTURES / "ar4_ros_driver"
-    arguments = {"ar_model": "mk3", "tf_prefix": 'a "b"\\'}
+    arguments = {"ar_model": "mk3", "include_gripper": "false", "tf_prefix": "a_"}
     request = Request(AR4, args=arguments, package_paths=(packages,))
     (arm,) = load_config(written(request, tmp_path / "ikgen.toml"))
     assert arm.request.robot.resolve() == AR4 and arm.request.args == arguments
     assert [p.resolve() for p in arm.request.package_paths] == [packages]
     assert arm.outputs.out == tmp_path / "generated"
-    assert str(ROOT) not in (tmp_path / "ikgen.toml").read_text()
+    assert not Path(robot_entry(tmp_path / "ikgen.toml")).is_absolute()
+
+
+def robot_entry(path: Path) -> str:
+    """The robot's path as the config has it."""
+    return path.read_text().partition('robot = "')[2].partition('"')[0]
+
+
+def test_texts_are_quoted(tmp_path: Path) -> None:
+    request = Request(FIXTURES / "scara_standard.toml", args={'odd "name"': 'a \\ "b"\t\x7f'})
+    arms = robot_arms(request)
+    write_config(tmp_path / "ikgen.toml", request, arms, ["python"], force=False)
+    assert load_config(tmp_path / "ikgen.toml")[0].request.args == request.args
 
 
 def test_table_is_one_arm(tmp_path: Path) -> None:
