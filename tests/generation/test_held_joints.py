@@ -5,14 +5,18 @@ from __future__ import annotations
 import dataclasses
 from pathlib import Path
 
+import pytest
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, TORSO, Joint, serial_urdf
 
+from ikgen.emit.derivation import Derivation
+from ikgen.errors import VerificationError
 from ikgen.generation.advice import attempts
 from ikgen.generation.derive import derive
+from ikgen.generation.generate import generate
 from ikgen.generation.held_joints import held_choices
 from ikgen.generation.progress import silent
 from ikgen.generation.read import read
-from ikgen.generation.request import Request
+from ikgen.generation.request import Outputs, Request
 from ikgen.tasks import find_task, freedoms_moved
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -98,3 +102,45 @@ def test_as_many_joints_are_held_as_a_smaller_task_leaves_over(tmp_path: Path) -
     derivation = derive(request)
     assert derivation.held is not None and len(derivation.held.joints) == 1
     assert derivation.task.name == "position"
+
+
+def test_choice_that_fails_the_verification_is_passed_over(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen: list[tuple[str, ...]] = []
+
+    def emitted(
+        derivation: Derivation, *_: object
+    ) -> tuple[dict[str, dict[str, str]], dict[str, object]]:
+        assert derivation.held is not None
+        seen.append(derivation.held.joints)
+        if len(seen) == 1:
+            raise VerificationError("wrong")
+        return {}, {}
+
+    monkeypatch.setattr("ikgen.generation.generate._emitted", emitted)
+    request = arm(tmp_path, *SHOULDER_ELBOW_WRIST)
+    held = generate(request, Outputs(out=tmp_path / "out")).derivation.held
+    assert held is not None and held.joints == seen[1] != seen[0]
+    assert held.refused == (seen[0],)
+    assert held.words.endswith(f"; failed verification: {seen[0][0]}")
+    named = dataclasses.replace(request, free={"shoulder_roll": None})
+    seen.clear()
+    monkeypatch.setattr("ikgen.generation.generate._emitted", refuse)
+    with pytest.raises(VerificationError):
+        generate(named, Outputs(out=tmp_path / "out"))
+
+
+def refuse(*_: object) -> None:
+    raise VerificationError("wrong")
+
+
+def test_slide_is_held_where_no_axes_are_special(tmp_path: Path) -> None:
+    """What moves then is six revolute joints, which the elimination solves."""
+    skew = [
+        (f"joint_{k}", "revolute", axis, f"0.{k + 1} 0.0{9 - k} 0.1{k}", (-2.5, 2.5))
+        for k, axis in enumerate(("0 0 1", "1 2 0", "0 1 3", "2 0 1", "1 1 1", "0 3 1", "1 0 2"))
+    ]
+    choices = held_choices(read(arm(tmp_path, TORSO, *skew)), POSE)
+    assert all("torso" in choice.held for choice in choices[:7])
+    assert all("torso" not in choice.held for choice in choices[7:])

@@ -29,19 +29,23 @@ class Reading:
 
 @dataclass(frozen=True, slots=True)
 class Held:
-    """Joints that were chosen to be held, base to tip, why, and the choices that came next."""
+    """Joints that were chosen to be held, base to tip, why, the choices that came next, and those before
+    that the verification refused."""
 
     joints: tuple[str, ...]
     why: str
     others: tuple[tuple[str, ...], ...] = ()
+    refused: tuple[tuple[str, ...], ...] = ()
 
     @property
     def words(self) -> str:
         """One line."""
         it = "it" if len(self.joints) == 1 else "them"
         line = f"holding {' and '.join(self.joints)}: {self.why} with {it} held"
-        others = ", ".join(" and ".join(names) for names in self.others)
-        return f"{line}; others: {others}" if others else line
+        for kind, names in (("others", self.others), ("failed verification", self.refused)):
+            if names:
+                line += f"; {kind}: {', '.join(' and '.join(together) for together in names)}"
+        return line
 
 
 @dataclass(frozen=True, slots=True)

@@ -35,11 +35,12 @@ _OTHERS = 3
 @dataclass(frozen=True, slots=True)
 class Demand:
     """What a closed form is sought for: the task asked for (None: what fits), tasks that are not to be
-    chosen, and where to tell the progress."""
+    chosen, where to tell the progress, and choices of joints to hold that the verification refused."""
 
     task: str | None
     passed_over: Collection[str]
     progress: Progress
+    refused: tuple[tuple[str, ...], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +76,7 @@ def closed_form(reading: Reading, demand: Demand) -> ClosedForm:
     from ikgen.tasks import find_task
 
     choices = held_choices(reading, find_task(demand.task or "pose"))
+    choices = tuple(choice for choice in choices if choice.held not in demand.refused)
     if choices:
         return _with_joints_held(reading, choices, demand)
     found = _by_rules_somewhere(reading, demand)
@@ -106,13 +108,13 @@ def _with_joints_held(
     tried.sort(key=lambda pair: preference(*pair))
     choice, form = tried[0]
     if form.sound:
-        return _explained(_as_written(form, demand), choice, choices)
+        return _explained(_as_written(form, demand), choice, choices, demand.refused)
     for other, open_form in tried:
         solved = _by_elimination(open_form, demand)
         if solved.plan is not None:
-            return _explained(solved, other, choices)
+            return _explained(solved, other, choices, demand.refused)
     if form.closed:
-        return _explained(_as_written(form, demand), choice, choices)
+        return _explained(_as_written(form, demand), choice, choices, demand.refused)
     return replace(form, reading=reading)
 
 
@@ -141,7 +143,12 @@ def _hoped(choice: HeldChoice) -> tuple[bool, bool, bool]:
     return False, False, not is_two_branch(choice.form)
 
 
-def _explained(form: ClosedForm, taken: HeldChoice, choices: Sequence[HeldChoice]) -> ClosedForm:
+def _explained(
+    form: ClosedForm,
+    taken: HeldChoice,
+    choices: Sequence[HeldChoice],
+    refused: tuple[tuple[str, ...], ...],
+) -> ClosedForm:
     """The form with the joints that it holds, why, and the runners-up."""
     from ikgen.kinematics.form_class import FORM_WORDS
 
@@ -152,7 +159,7 @@ def _explained(form: ClosedForm, taken: HeldChoice, choices: Sequence[HeldChoice
     else:
         why = "closed form by rules, with a weak step,"
     others = dict.fromkeys(choice.held for choice in choices if choice.held != taken.held)
-    return replace(form, held=Held(taken.held, why, tuple(others)[:_OTHERS]))
+    return replace(form, held=Held(taken.held, why, tuple(others)[:_OTHERS], refused))
 
 
 def _as_written(form: ClosedForm, demand: Demand) -> ClosedForm:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
 from ikgen import __version__
@@ -24,11 +24,13 @@ def derive(
     progress: Progress = silent,
     passed_over: Collection[str] = (),
     reading: Reading | None = None,
+    refused: Sequence[tuple[str, ...]] = (),
 ) -> Derivation:
     """From the file to a solver module, not yet written or verified.
 
-    `passed_over` names tasks that are not to be chosen for the arm, `reading` is the request's where it was
-    read before. Raises `UnsolvedChainError` where there is no closed form.
+    `passed_over` names tasks that are not to be chosen for the arm, `refused` joints that are not to be
+    held together; `reading` is the request's where it was read before. Raises `UnsolvedChainError` where
+    there is no closed form.
     """
     from ikgen.kinematics.classify import classify
     from ikgen.kinematics.free_joints import free_defaults
@@ -39,7 +41,7 @@ def derive(
     defaults = request.free.items()
     free_defaults(reading.dh, defaults)  # first: some values are refused
     progress("derive", classify(reading.dh).name)
-    found = closed_form(reading, Demand(request.task, passed_over, progress))
+    found = closed_form(reading, Demand(request.task, passed_over, progress, tuple(refused)))
     name = request.name or default_name(found.reading)
     geometry = classify(found.reading.dh)
     if not found.closed and found.plan is None:

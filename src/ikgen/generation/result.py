@@ -55,8 +55,9 @@ def _chosen(derivation: Derivation) -> dict[str, Any]:
         chosen["task"] = derivation.task.name
     held = derivation.held
     if held is not None:
-        others = [list(names) for names in held.others]
-        chosen |= {"held": list(held.joints), "why": held.why, "others": others}
+        chosen |= {"held": list(held.joints), "why": held.why}
+        chosen["others"] = [list(names) for names in held.others]
+        chosen["refused"] = [list(names) for names in held.refused]
     return chosen
 
 

@@ -22,10 +22,11 @@ FORM_WORDS = (
     "position apart from rotation, a quartic",
     "pairs of axes that are parallel or meet",
     "no special axes",
+    "no special axes, with slides",
 )
 """What each class is, the best closed form first."""
 
-_APART, _PARALLEL, _MIDDLE, _QUARTIC, _PAIRS, _NONE = range(len(FORM_WORDS))
+_APART, _PARALLEL, _MIDDLE, _QUARTIC, _PAIRS, _NONE, _SLIDES = range(len(FORM_WORDS))
 
 
 def is_two_branch(form: int) -> bool:
@@ -49,7 +50,9 @@ def form_class(rows: Sequence[DHRow], moving: Sequence[int], relations: AxisRela
     if relations.concurrent.intersection(triples):
         return _QUARTIC if apart else _MIDDLE
     pairs = set(itertools.pairwise(moving))
-    return _PAIRS if pairs & relations.parallel and pairs & relations.meeting else _NONE
+    if pairs & relations.parallel and pairs & relations.meeting:
+        return _PAIRS
+    return _NONE if all(rows[i].revolute for i in moving) else _SLIDES
 
 
 def _turn(rows: Sequence[DHRow], indices: Sequence[int]) -> bool:
