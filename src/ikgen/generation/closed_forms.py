@@ -11,7 +11,7 @@ from ikgen.generation.held_joints import HeldChoice, held_choices, nearby
 from ikgen.generation.progress import Progress
 
 if TYPE_CHECKING:
-    from ikgen.elimination import UniversalPlan
+    from ikgen.elimination import EliminationPlan
     from ikgen.model.dh import DHChain
     from ikgen.solver.solution_graph import SolutionGraph
     from ikgen.tasks import Task
@@ -51,7 +51,7 @@ class ClosedForm:
     reading: Reading
     task: Task
     graph: SolutionGraph
-    plan: UniversalPlan | None = None
+    plan: EliminationPlan | None = None
     held: Held | None = None
 
     @property
