@@ -10,10 +10,8 @@ import numpy as np
 from ikgen.model.joint_tree import Matrix
 from ikgen.program.policy import SolvePolicy
 from ikgen.runtime.python import general_6r as runtime
-from ikgen.runtime.python.chain_kinematics import forward
 from ikgen.runtime.python.general_6r import Elimination
 from ikgen.runtime.python.solve_policy import Policy
-from ikgen.runtime.python.whole_pose import PoseTask
 
 __all__ = ["Elimination", "general_6r", "general_6r_batch", "initial_residuals", "runtime_policy"]
 
@@ -53,9 +51,7 @@ def initial_residuals(
     index, q, *_ = runtime.candidates(F, T, plan)
     if not len(q):
         return [np.zeros((0, 6)) for _ in poses], np.zeros(0)
-    error = PoseTask(1.0).error(forward(runtime.six_joints(F), q), T[index])
-    before = np.abs(error).max(axis=1)
-    q, good = runtime.refined_angles(F, T[index], q, policy)
+    q, good, before = runtime.refined_angles(F, T[index], q, policy)
     near = policy.coincident
     rows = [runtime.distinct_angles(q[good & (index == i)], near) for i in range(len(poses))]
     return rows, before[good]

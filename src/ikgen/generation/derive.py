@@ -12,7 +12,7 @@ from ikgen.generation.progress import Progress, silent
 from ikgen.generation.read import default_name, read
 
 if TYPE_CHECKING:
-    from ikgen.elimination import UniversalPlan
+    from ikgen.elimination import EliminationPlan
     from ikgen.emit.solver_module import SolverModule
     from ikgen.generation.request import Request
     from ikgen.model.dh import DHChain
@@ -116,7 +116,7 @@ def _by_rules(dh: DHChain, task: Task, progress: Progress) -> SolutionGraph:
     )
 
 
-def _elimination(dh: DHChain, task: Task, progress: Progress) -> UniversalPlan | None:
+def _elimination(dh: DHChain, task: Task, progress: Progress) -> EliminationPlan | None:
     """The general 6R elimination's plan where it applies."""
     if not task.whole_pose:
         return None
@@ -132,7 +132,7 @@ def _module(
     reading: Reading,
     task: Task,
     graph: SolutionGraph,
-    plan: UniversalPlan | None,
+    plan: EliminationPlan | None,
     held: tuple[float, ...],
 ) -> SolverModule:
     from ikgen.emit.solver_module import SolverModule

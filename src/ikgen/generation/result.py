@@ -16,7 +16,7 @@ __all__ = ["as_dict", "rounding"]
 def rounding(derivation: Derivation) -> tuple[float, float] | None:
     """How far (m, rad) the file is off what was solved, where Newton steps take the rows to it; else
     None."""
-    return None if derivation.module.polish == "some" else derivation.reading.dh.deviation
+    return None if derivation.module.refine == "some" else derivation.reading.dh.deviation
 
 
 def as_dict(generation: Generation) -> dict[str, Any]:

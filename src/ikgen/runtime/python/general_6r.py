@@ -59,8 +59,8 @@ def _of(rows: Array, pose: NDArray[np.intp]) -> Array:
     return rows[pose] if len(rows) > 1 else rows
 
 
-def refined_angles(F: Array, T: Array, q: Array, policy: Policy) -> tuple[Array, Flags]:
-    """Newton steps from q (k, 6) to T (k, 4, 4): q, and which arrived."""
+def refined_angles(F: Array, T: Array, q: Array, policy: Policy) -> tuple[Array, Flags, Array]:
+    """Newton steps from q (k, 6) to T (k, 4, 4): q, which arrived, and the errors before (k,)."""
     return refine(six_joints(F), PoseTask(1.0), _SIX, q, T, policy)
 
 
@@ -129,9 +129,8 @@ def general_6r(
         if X is None:
             least[todo] = np.maximum(least[todo], real)
         if len(q):
-            start = q
-            q, arrived = refined_angles(F, exact[pose], start, policy)
-            simple[pose[np.abs(q - start).max(axis=1) > 1e-5]] = False
+            q, arrived, before = refined_angles(F, exact[pose], q, policy)
+            simple[pose[before > 1e-5]] = False
             pose, q = pose[arrived], q[arrived]
         settled = np.zeros(len(todo), dtype=bool)
         for i, n in enumerate(todo):
