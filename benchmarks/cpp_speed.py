@@ -6,6 +6,7 @@ python benchmarks/cpp_speed.py generated/ur5e_ik.hpp ...
 from __future__ import annotations
 
 import argparse
+import re
 import subprocess
 import tempfile
 import time
@@ -28,7 +29,8 @@ def compiled_program(
     source: Path, header: Path, flags: Sequence[str], libraries: Sequence[str] = ()
 ) -> Iterator[Path]:
     """A program of this folder compiled with an emitted header, for as long as the context lasts."""
-    held = int("kFreeJoints" in header.read_text(encoding="utf-8"))
+    text = header.read_text(encoding="utf-8")
+    held = int(re.search(r"constexpr int kFree = [1-9]", text) is not None)
     defines = [
         f'-DIKGEN_HEADER="{header.name}"', f"-DIKGEN_NAMESPACE={header.stem}", f"-DIKGEN_FREE={held}"
     ]  # fmt: skip
