@@ -1,4 +1,4 @@
-"""What keeps the source readable: short modules, short functions, names that stand once, types everywhere."""
+"""What keeps the source readable: short modules and functions, names that stand once, types."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from ikgen.emit.blanks import blanks, pairs
-from ikgen.emit.cpp.cpp_language import CONSTANT, comment, literal, number
+from ikgen.emit.cpp.cpp_language import CONSTANT, comment, declared, literal, number
 from ikgen.emit.cpp.cpp_policy import policy_lines
 from ikgen.emit.cpp.cpp_statements import ProgramText
 from ikgen.emit.cpp.header_bundle import bundle
@@ -25,12 +25,8 @@ __all__ = ["emit", "emit_derivation", "emit_header"]
 _SYSTEM = ("array", "cstddef", "Eigen/Core", "Eigen/Geometry")
 """Headers that the shell itself needs."""
 
-_READING = {
-    "rotation": ("RotationReading<Policy>", "rotation_reading.hpp"),
-    "direction": ("VectorReading<Policy, 8, 3>", "vector_reading.hpp"),
-    "yaw": ("VectorReading<Policy, 0, 2>", "vector_reading.hpp"),
-}
-"""What a task reads of a rotation: its type in the runtime, and that type's header."""
+_COLUMNS = {"rotation": "0, 3, 3", "direction": "2, 1, 3", "yaw": "0, 1, 2"}
+"""First column of the rotation that a task reads, how many, and how many rows of them."""
 
 
 def emit_derivation(derivation: Derivation) -> dict[str, str]:
@@ -64,7 +60,7 @@ def emit_header(module: SolverModule) -> str:
         careful=_careful(module),
         way="SingleSolve" if _careful(module) else "LaneSolve",
         entries_read=module.reads.entries,
-        reading=_reading(module)[0],
+        columns=_COLUMNS.get(module.reads.orientation, "0, 0, 3"),
         joints=module.dh.joints,
         lower=[number(j.limits.lower) for j in module.dh.joints],
         upper=[number(j.limits.upper) for j in module.dh.joints],
@@ -81,6 +77,7 @@ def emit_header(module: SolverModule) -> str:
         angles=[(f, n) for n in pairs(module) for f in ("cos", "sin")],
         free_defaults=[number(x) for x in module.free_defaults],
         number=number,
+        declared=declared,
         literal=literal,
         comment=comment,
     )
@@ -98,15 +95,12 @@ def _headers(module: SolverModule) -> list[str]:
     needed += ["routine_roots.hpp"] * bool(routines)
     needed += [_ROUTINES.get(name, f"{name}.hpp") for name in routines]
     needed += ["poses_beside.hpp"] * bool(module.beside)
-    return [*needed, _reading(module)[1], "pose_solver.hpp"]
+    task = "whole_pose.hpp" if module.task == "pose" else "pose_entries.hpp"
+    return [*needed, task, "pose_solver.hpp"]
 
 
 _ROUTINES = {"general_6r": "general_6r_arm.hpp"}
 """Headers of routines that work on the whole arm."""
-
-
-def _reading(module: SolverModule) -> tuple[str, str]:
-    return _READING.get(module.reads.orientation, ("EntriesReading", "pose_reading.hpp"))
 
 
 def _size_text(module: SolverModule) -> str:

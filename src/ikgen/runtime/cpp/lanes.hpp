@@ -97,34 +97,21 @@ template <int N> [[gnu::always_inline]] inline Lanes<N> signs() noexcept {
   }
 }
 
-template <class A, class B, int N = kCommon<A, B>>
-[[gnu::always_inline]] inline Lanes<N> operator+(const A& a, const B& b) noexcept {
-  return each<Lanes<N>>([](auto x, auto y) { return x + y; }, spread<N>(a), spread<N>(b));
-}
-template <class A, class B, int N = kCommon<A, B>>
-[[gnu::always_inline]] inline Lanes<N> operator-(const A& a, const B& b) noexcept {
-  return each<Lanes<N>>([](auto x, auto y) { return x - y; }, spread<N>(a), spread<N>(b));
-}
-template <class A, class B, int N = kCommon<A, B>>
-[[gnu::always_inline]] inline Lanes<N> operator*(const A& a, const B& b) noexcept {
-  return each<Lanes<N>>([](auto x, auto y) { return x * y; }, spread<N>(a), spread<N>(b));
-}
-template <class A, class B, int N = kCommon<A, B>>
-[[gnu::always_inline]] inline Lanes<N> operator/(const A& a, const B& b) noexcept {
-  return each<Lanes<N>>([](auto x, auto y) { return x / y; }, spread<N>(a), spread<N>(b));
-}
-template <class A, class B, int N = kCommon<A, B>>
-[[gnu::always_inline]] inline Mask<N> operator>(const A& a, const B& b) noexcept {
-  return each<Mask<N>>([](auto x, auto y) { return above(x, y); }, spread<N>(a), spread<N>(b));
-}
-template <class A, class B, int N = kCommon<A, B>>
-[[gnu::always_inline]] inline Mask<N> operator&(const A& a, const B& b) noexcept {
-  return each<Mask<N>>([](auto x, auto y) -> decltype(x) { return x & y; }, spread<N>(a), spread<N>(b));
-}
-template <class A, class B, int N = kCommon<A, B>>
-[[gnu::always_inline]] inline Mask<N> operator|(const A& a, const B& b) noexcept {
-  return each<Mask<N>>([](auto x, auto y) -> decltype(x) { return x | y; }, spread<N>(a), spread<N>(b));
-}
+#define IKGEN_LANES_OPERATION(Pack, name, value) \
+  template <class A, class B, int N = kCommon<A, B>> \
+  [[gnu::always_inline]] inline Pack<N> name(const A& a, const B& b) noexcept { \
+    return each<Pack<N>>([](auto x, auto y) { return value; }, spread<N>(a), spread<N>(b)); \
+  }
+IKGEN_LANES_OPERATION(Lanes, operator+, x + y)
+IKGEN_LANES_OPERATION(Lanes, operator-, x - y)
+IKGEN_LANES_OPERATION(Lanes, operator*, x * y)
+IKGEN_LANES_OPERATION(Lanes, operator/, x / y)
+IKGEN_LANES_OPERATION(Lanes, max, larger(x, y))
+IKGEN_LANES_OPERATION(Lanes, min, smaller(x, y))
+IKGEN_LANES_OPERATION(Mask, operator>, above(x, y))
+IKGEN_LANES_OPERATION(Mask, operator&, static_cast<decltype(x)>(x & y))
+IKGEN_LANES_OPERATION(Mask, operator|, static_cast<decltype(x)>(x | y))
+#undef IKGEN_LANES_OPERATION
 template <int N, bool H> [[gnu::always_inline]] inline Mask<N> operator!(const MaskOf<N, H>& a) noexcept {
   return each<Mask<N>>([](auto x) { return inverted(x); }, a);
 }
@@ -138,14 +125,6 @@ template <int M, bool H, class A, class B>
   constexpr int N = M > K ? M : K;
   const auto choose = [](auto flags, auto x, auto y) { return chosen(flags, x, y); };
   return each<Lanes<N>>(choose, spread<N>(m), spread<N>(a), spread<N>(b));
-}
-template <class A, class B, int N = kCommon<A, B>>
-[[gnu::always_inline]] inline Lanes<N> max(const A& a, const B& b) noexcept {
-  return each<Lanes<N>>([](auto x, auto y) { return larger(x, y); }, spread<N>(a), spread<N>(b));
-}
-template <class A, class B, int N = kCommon<A, B>>
-[[gnu::always_inline]] inline Lanes<N> min(const A& a, const B& b) noexcept {
-  return each<Lanes<N>>([](auto x, auto y) { return smaller(x, y); }, spread<N>(a), spread<N>(b));
 }
 template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> abs(const LanesOf<N, H>& a) noexcept {
   return max(a, -a);

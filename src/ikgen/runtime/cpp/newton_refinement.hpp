@@ -31,7 +31,8 @@ template <class Arm> struct NewtonRefinement {
       x[i] = 0.0;
       for (int e = 0; e < at.kCount; ++e) x[i] += at.slope[e][i] * at.error[e];
     }
-    solve_symmetric(A, x);
+    factor(A);
+    substitute(A, x);
     for (int j = 0; j < Arm::kDof; ++j) q[j] += std::min(std::max(x[j], -Policy::kLargestStep), Policy::kLargestStep);
   }
 
