@@ -47,6 +47,10 @@ class FormulaWriter:
         """An expression with abbreviations in it."""
         return self.names.short(self.normal(node))
 
+    def radicand(self, node: Expr) -> Sum:
+        """What is under a root, where no line can break: a name unless it is short."""
+        return self.names.unbroken(self.normal(node))
+
     def coefficients(self) -> list[Sum]:
         """The coefficients, those named that the solution will repeat."""
         return [self.names.force(self.normal(e)) for e in self.e]

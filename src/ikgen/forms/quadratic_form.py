@@ -69,7 +69,7 @@ class Quadratic(Form):
         under = g.sub(g.square(self.b), g.mul(g.const(4.0), g.mul(self.a, self.c)))
         if a.value is not None:
             return self._monic(w, equation, under, a.value)
-        inside = show(w.sum(under))
+        inside = show(w.radicand(under))
         below = m.number(2.0) + m.space() + grouped(a)
         tops = (m.minus(sign=True) + grouped(b) + s + m.radical(inside) for s in _signs())
         return Formula(
@@ -80,7 +80,7 @@ class Quadratic(Form):
         """For a number as leading coefficient."""
         g = w.g
         half = w.sum(g.mul(g.const(-0.5 / a), self.b))
-        quarter = show(w.sum(g.mul(g.const(0.25 / a**2), under)))
+        quarter = show(w.radicand(g.mul(g.const(0.25 / a**2), under)))
         start = Math(()) if half.is_zero else show(half)
         both = tuple(start + sign + m.radical(quarter) for sign in _signs())
         return Formula((equation,), both, quarter)

@@ -108,7 +108,7 @@ class SineCosine(Form):
             both = (ratio, m.minus(sign=True) + ratio)
             return Formula((equation,), both, _bound(c, a), w.divisor(self.a))
         squares = g.add(g.square(self.a), g.square(self.b))
-        inside = show(w.sum(g.sub(squares, g.square(self.c))))
+        inside = show(w.radicand(g.sub(squares, g.square(self.c))))
         swing = m.function("atan2", m.radical(inside), show(c))
         middle = m.function("atan2", show(b), show(a))
         reach = inside + m.relation("\\ge ", "≥") + m.name("0")

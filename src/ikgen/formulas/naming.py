@@ -55,6 +55,14 @@ class Abbreviations:
             self._name(factor_of(s))
         return self.short(s)
 
+    def unbroken(self, s: Sum) -> Sum:
+        """A formula where no line can break: it and the sums in its products have names unless short."""
+        for term in s.terms if len(s.terms) == 1 else ():
+            for factor, _ in term.factors:
+                if isinstance(factor, Sum):
+                    self.force(factor)
+        return self.force(s)
+
     def inside(self, s: Sum) -> Sum:
         """The formula with names inside its terms, but not for the whole."""
         return Sum(
