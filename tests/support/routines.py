@@ -1,4 +1,4 @@
-"""The routines of the C++ templates, compiled as programs that read numbers."""
+"""Routines in C++, compiled as programs that read numbers."""
 
 from __future__ import annotations
 
@@ -8,6 +8,10 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from tests.support.solving import NO_COMPILER
+
+from ikgen.emit.cpp.header_bundle import RUNTIME
+from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
 
 TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
 FLAGS = [
@@ -21,6 +25,20 @@ FLAGS = [
     "-Werror",
 ]
 EIGEN = Path(os.environ.get("EIGEN3_INCLUDE_DIR", "/usr/include/eigen3"))
+
+
+def compiled_header(text: str, folder: Path, *flags: str) -> Path:
+    """The program of a source that includes headers of the runtime; warnings are errors. Skips without a
+    compiler."""
+    if NO_COMPILER:
+        pytest.skip(NO_COMPILER)
+    source, program = folder / "main.cpp", folder / "main"
+    source.write_text(text)
+    includes = [f"-I{RUNTIME}", f"-I{Path(__file__).parent}", "-isystem", str(find_eigen())]
+    command = [*find_compiler(), *FLAGS, *flags, *includes, str(source), "-o", str(program)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return program
 
 
 def compiled_routine(name: str, main: str, folder: Path, eigen: bool = False) -> Path:

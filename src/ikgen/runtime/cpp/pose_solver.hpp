@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "constants.hpp"
 #include "pose_reading.hpp"
 
 namespace ikgen_runtime {
