@@ -7,48 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.support.solving import emitted
+from tests.support.tables import Row, table
 
 from ikgen.equations.probes import dh_pose
 from ikgen.importers.dh.dh_table import read_dh_table
-from ikgen.model.chain import PRISMATIC, REVOLUTE, ActuatedJoint
-from ikgen.model.dh import Angle, DHChain, DHRow, Length
-from ikgen.model.joint_tree import Limits
 from ikgen.solver.leaves import LEAVES
 from ikgen.solver.ranker import PREFERENCE
 from ikgen.solver.solve import solve_chain
 
 TABLES = Path(__file__).resolve().parents[1] / "robots/tables"
-Row = tuple[str, str, float, float]
-
-
-def table(*rows: Row) -> DHChain:
-    """A chain from (kind, twist in right angles, a, d)."""
-    from fractions import Fraction
-
-    made: list[DHRow] = []
-    joints: list[ActuatedJoint] = []
-    frames = [np.eye(4)]
-    straight = Angle(0.0, Fraction(0))
-    for i, (kind, twist, a, d) in enumerate(rows):
-        exact = Fraction(twist) / 2
-        alpha = Angle(float(exact) * np.pi, exact)
-        lengths = [Length(x, f"{n}_{i}" if x else None) for x, n in ((a, "a"), (d, "d"))]
-        kind_name = REVOLUTE if kind == "R" else PRISMATIC
-        offset: Angle | Length = straight if kind == "R" else Length(0.0, None)
-        made.append(DHRow(f"q{i}", kind_name, alpha, *lengths, straight, i, 1.0, offset))
-        joints.append(ActuatedJoint(f"q{i}", kind_name, Limits(-np.inf, np.inf)))
-        link = np.eye(4)
-        c, s = round(np.cos(alpha.value)), round(np.sin(alpha.value))
-        link[1:3, 1:3] = [[c, -s], [s, c]]
-        link[0, 3] = a
-        frames[-1] = frames[-1] @ link
-        after = np.eye(4)
-        after[2, 3] = d
-        frames.append(after)
-    eye = np.eye(4)
-    return DHChain("arm", "base", "tip", tuple(joints), tuple(made), eye, eye, tuple(frames))
-
-
 SPHERICAL = (("R", "-1", 0.0, 0.4), ("R", "1", 0.0, 0.0), ("R", "-1", 0.0, 0.0))
 CASES: dict[str, tuple[set[str], tuple[Row, ...]]] = {
     "two sliding joints": (

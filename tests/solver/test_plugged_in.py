@@ -8,8 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.solver.test_leaves import CASES, table
+from tests.solver.test_leaves import CASES
 from tests.support.solving import import_text, module_of
+from tests.support.tables import table
 
 from ikgen import plugins
 from ikgen.emit.python.python_emitter import emit_module

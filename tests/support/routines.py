@@ -1,9 +1,7 @@
-"""Routines in C++, compiled as programs that read numbers."""
+"""The routines of the C++ runtime, compiled as programs that read numbers."""
 
 from __future__ import annotations
 
-import os
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -13,7 +11,6 @@ from tests.support.solving import NO_COMPILER
 from ikgen.emit.cpp.header_bundle import RUNTIME
 from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
 
-TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
 FLAGS = [
     "-std=c++17",
     "-O2",
@@ -24,7 +21,6 @@ FLAGS = [
     "-Wshadow",
     "-Werror",
 ]
-EIGEN = Path(os.environ.get("EIGEN3_INCLUDE_DIR", "/usr/include/eigen3"))
 
 
 def compiled_header(text: str, folder: Path, *flags: str) -> Path:
@@ -37,29 +33,6 @@ def compiled_header(text: str, folder: Path, *flags: str) -> Path:
     includes = [f"-I{RUNTIME}", f"-I{Path(__file__).parent}", "-isystem", str(find_eigen())]
     command = [*find_compiler(), *FLAGS, *flags, *includes, str(source), "-o", str(program)]
     done = subprocess.run(command, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    return program
-
-
-def compiled_routine(name: str, main: str, folder: Path, eigen: bool = False) -> Path:
-    """An executable of `templates/cpp/routines/<name>.hpp.jinja` and `main`; skips without a
-    compiler."""
-    compiler = shutil.which("g++") or shutil.which("clang++")
-    if compiler is None:
-        pytest.skip("no C++ compiler on this machine")
-    if eigen and not EIGEN.is_dir():
-        pytest.skip("Eigen is not installed (set EIGEN3_INCLUDE_DIR)")
-    text = (TEMPLATES / "cpp" / "routines" / f"{name}.hpp.jinja").read_text()
-    standard = ["algorithm", "array", "cmath", "complex", "cstddef", "cstdio", "utility", "vector"]
-    head = "".join(f"#include <{h}>\n" for h in (["Eigen/Core"] if eigen else []) + standard)
-    source, program = folder / f"{name}.cpp", folder / name
-    source.write_text(head + text + main)
-    include = ["-isystem", str(EIGEN)] if eigen else []
-    done = subprocess.run(
-        [compiler, *FLAGS, *include, str(source), "-o", str(program)],
-        capture_output=True,
-        text=True,
-    )
     assert done.returncode == 0, done.stderr
     return program
 

@@ -65,7 +65,10 @@ def choose_form(
         guard = _pick(g, here, True if form.guard is None else form.guard, guard)
         single = _pick(g, here, form.branches == 1, single)
         clear = form.divisor.clear
-        free = _pick(g, here, False if clear is None else g.unary("not", clear), free)
+        if clear is None or clear is here:  # never taken near a continuum
+            free = _pick(g, here, False, free)
+        else:
+            free = _pick(g, here, g.unary("not", clear), free)
         if here is not None:
             both = zip(form.values, values, strict=True)
             values = tuple(g.select(here, mine, other) for mine, other in both)

@@ -85,7 +85,7 @@ def emit_header(module: SolverModule) -> str:
 
 def _careful(module: SolverModule) -> bool:
     """Whether every pose's rows are polished or judged one by one."""
-    return module.polish == "all" or module.plan is not None
+    return module.refine == "all" or module.plan is not None
 
 
 def _headers(module: SolverModule) -> list[str]:
@@ -93,10 +93,14 @@ def _headers(module: SolverModule) -> list[str]:
     routines = sorted({lv.call.routine for lv in module.program.levels if lv.call is not None})
     needed = ["lane_angle.hpp", "single_solve.hpp" if _careful(module) else "lane_solve.hpp"]
     needed += ["routine_roots.hpp"] * bool(routines)
-    needed += [f"{name}.hpp" for name in routines if module.plan is None]
+    needed += [_ROUTINES.get(name, f"{name}.hpp") for name in routines]
     needed += ["poses_beside.hpp"] * bool(module.beside)
     task = "whole_pose.hpp" if module.task == "pose" else "pose_entries.hpp"
     return [*needed, task, "pose_solver.hpp"]
+
+
+_ROUTINES = {"general_6r": "general_6r_arm.hpp"}
+"""Headers of routines that work on the whole arm."""
 
 
 def _size_text(module: SolverModule) -> str:
@@ -120,7 +124,7 @@ def _depth_first(branches: list[int]) -> list[int]:
 def _rough(module: SolverModule, policy: SolvePolicy) -> str:
     """Condition under which a row takes Newton steps."""
     program = module.program
-    if module.polish == "all":
+    if module.refine == "all":
         return "(spread<1>(1.0) > 0.0)"
     return " | ".join(
         [*program.singular, *(f"({r} > {policy.rough_square})" for r in program.residuals)]

@@ -1,0 +1,64 @@
+"""Divisors, their thresholds and the tolerances of square roots."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.support.probed import given
+
+from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.forms.lowered_form import ROUNDED, Tolerances, at_least, divisor_of, leading
+
+SHARES = np.array([1.0, 0.5, 1e-2, 1e-5, 1e-9, 0.0])
+
+
+@pytest.mark.parametrize("size", [1.0, 20.0])
+def test_shares_of_a_divisor_are_of_the_power_that_it_is(size: float) -> None:
+    g = ExpressionGraph(len(SHARES))
+    plain = divisor_of(g, given(g, -size * SHARES), Tolerances())
+    squares = leading(g, (given(g, size * SHARES), g.zero), Tolerances())
+    for divisor, power in ((plain, 1), (squares, 2)):
+        assert divisor.power == power
+        for share in (1e-3, 1e-7):
+            above = divisor.above(g, share)
+            assert above is not None
+            assert list(above.probe > 0.5) == list(share < SHARES)
+
+
+def test_a_divisor_is_one_where_it_vanishes() -> None:
+    g = ExpressionGraph(len(SHARES))
+    tolerances = Tolerances(singular=1e-7, flag=1e-3)
+    divisor = divisor_of(g, given(g, 3.0 * SHARES), tolerances)
+    assert divisor.regular is not None and divisor.clear is not None
+    assert list(divisor.regular.probe > 0.5) == list(SHARES > 1e-7)
+    assert list(divisor.clear.probe > 0.5) == list(SHARES > 1e-3)
+    np.testing.assert_array_equal(divisor.value.probe, np.where(SHARES > 1e-7, 3.0 * SHARES, 1.0))
+
+
+def test_a_constant_divisor_has_no_conditions() -> None:
+    g = ExpressionGraph(2)
+    divisor = divisor_of(g, g.param("a_1", 0.3), Tolerances())
+    assert divisor.regular is None and divisor.clear is None
+    assert divisor.above(g, 0.5) is None
+
+
+def test_a_square_root_may_be_a_little_outside_its_domain_more_where_digits_were_lost() -> None:
+    g = ExpressionGraph(4)
+    value = given(g, [-1e-13, -1e-6, -1e-6, -1.0])
+    rough = g.binary("gt", given(g, [0.0, 0.0, 1.0, 1.0]), g.zero)
+    plain = Tolerances().guard(g, value, 1.0)
+    wide = replace(Tolerances(), rough=rough).guard(g, value, 1.0)
+    assert list(plain.probe) == [1.0, 0.0, 0.0, 0.0]
+    assert list(wide.probe) == [1.0, 0.0, 1.0, 0.0]
+
+
+def test_branches_start_apart_only_where_rows_are_refined() -> None:
+    g = ExpressionGraph(2)
+    value = given(g, [0.5, -0.1])
+    assert at_least(g, value, g.zero) is value
+    assert list(at_least(g, value, g.const(0.2)).probe) == [0.5, 0.2]
+    exact, rounded = (Tolerances.for_model_error(x) for x in (0.1 * ROUNDED, 1e-4))
+    assert exact.fold == 0.0 < rounded.fold
+    assert rounded.clamp > 1e-4 > Tolerances.for_model_error(0.0).clamp

@@ -1,0 +1,145 @@
+"""Which form gives an unknown's value: by the relative size of the first one's divisor."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from tests.support.probed import given, sign
+from tests.support.tables import table
+
+from ikgen.algebra.expression import Expr
+from ikgen.equations.knowledge import Variable
+from ikgen.forms.form import Form
+from ikgen.forms.linear_form import Linear
+from ikgen.forms.lowered_form import LoweredForm, Tolerances
+from ikgen.forms.quadratic_form import Quadratic
+from ikgen.forms.sine_cosine_form import SineCosine
+from ikgen.forms.tangent_form import Tangent
+from ikgen.lowering.fallbacks import choose_form
+from ikgen.lowering.placement import Placement, Requirement
+from ikgen.solver.solution_graph import SolutionGraph
+from ikgen.solver.solve import solve_chain
+
+SHARES = (1.0, 3e-2, 3e-3, 3e-4, 3e-6, 3e-9, 0.0)
+"""Relative sizes of the divisor (of its square root for amplitudes) at the first probes."""
+
+
+@pytest.fixture(scope="module")
+def solved() -> SolutionGraph:
+    return solve_chain(table(("R", "0", 0.0, 0.0), ("P", "1", 0.0, 0.0)))
+
+
+class Bench:
+    """A placement whose probes start with the shares above, and forms to choose from in it."""
+
+    def __init__(self, solved: SolutionGraph, model_error: float = 0.0) -> None:
+        self.work = Placement(solved, model_error)
+        self.g = self.work.g
+        self.angle = Variable("angle", (1, 0))
+        self.length = Variable("prismatic", (0, 1))
+        self.share = self.given(SHARES)
+
+    def given(self, first: tuple[float, ...]) -> Expr:
+        """An input with these values at the first probes, 1 at the others."""
+        return given(self.g, [*first, *[1.0] * (self.g.probes - len(first))])
+
+    def lowered(self, form: Form, sigma: Expr) -> LoweredForm:
+        """The form lowered."""
+        found = form.lower(self.g, sigma, Tolerances())
+        assert isinstance(found, LoweredForm)
+        return found
+
+    def taken(self, v: Variable, first: Form, last: Form, sigma: float = 1.0) -> list[bool]:
+        """At which of the first probes the value is the first form's; elsewhere it is the last's."""
+        s = sign(self.g, sigma)
+        forms = [self.lowered(form, s) for form in (first, last)]
+        values = choose_form(self.work, v, forms, s)
+        one, other = (np.array([e.probe for e in form.values]) for form in forms)
+        both = np.array([e.probe for e in values])
+        assert np.abs(one - other).max(axis=0).min() > 1e-3
+        here = np.abs(both - one).max(axis=0) < 1e-12
+        assert (np.abs(both - other).max(axis=0)[~here] < 1e-12).all()
+        return [bool(x) for x in here[: len(SHARES)]]
+
+    @property
+    def requirements(self) -> list[np.ndarray]:
+        """The conditions that were required, at the first probes."""
+        items = [item for level in self.work.levels for item in level.items]
+        found = [item.condition for item in items if isinstance(item, Requirement)]
+        return [e.probe[: len(SHARES)] > 0.5 for e in found]
+
+
+def test_a_small_linear_divisor_gives_way_to_the_fallback(solved: SolutionGraph) -> None:
+    b = Bench(solved)
+    first = Linear(b.share, b.g.neg(b.g.mul(b.share, b.g.const(2.0))))
+    last = Linear(b.g.one, b.g.const(-3.0))
+    assert b.taken(b.length, first, last) == [share > 1e-3 for share in SHARES]
+    assert not b.requirements and not b.work.singular
+
+
+def test_a_small_leading_coefficient_of_a_quadratic_does(solved: SolutionGraph) -> None:
+    """Its two branches do not make its divisor a square."""
+    b = Bench(solved)
+    first = Quadratic(b.share, b.g.const(-20.0), b.g.const(5.0))
+    last = Quadratic(b.g.one, b.g.zero, b.g.const(-9.0))
+    assert b.taken(b.length, first, last) == [share > 1e-3 for share in SHARES]
+
+
+def test_an_amplitude_counts_by_its_size_not_its_square(solved: SolutionGraph) -> None:
+    b = Bench(solved)
+    first = Tangent(b.g.mul(b.share, b.g.const(0.6)), b.g.mul(b.share, b.g.const(0.8)))
+    last = Tangent(b.g.const(-0.8), b.g.const(0.6))
+    assert b.taken(b.angle, first, last) == [share > 1e-3 for share in SHARES]
+
+
+def test_branches_about_to_meet_give_way_too(solved: SolutionGraph) -> None:
+    """`cos = 1 - ...`: the discriminant is as small as the share's square."""
+    b = Bench(solved)
+    root = b.g.sqrt(b.g.sub(b.g.one, b.g.mul(b.g.const(0.99), b.g.square(b.share))))
+    meeting = SineCosine(b.given((1.0,)), b.g.zero, root)
+    last = Tangent(b.g.const(-0.8), b.g.const(0.6))
+    assert b.taken(b.angle, meeting, last) == [share > 1.1e-3 for share in SHARES]
+
+
+def test_rounded_geometry_gives_way_earlier(solved: SolutionGraph) -> None:
+    b = Bench(solved, model_error=1e-5)
+    first = Linear(b.share, b.g.neg(b.g.mul(b.share, b.g.const(2.0))))
+    last = Linear(b.g.one, b.g.const(-3.0))
+    limit = 10.0 * 1e-5**0.5
+    assert 3e-2 < limit < 0.1
+    assert b.taken(b.length, first, last) == [share > limit for share in SHARES]
+
+
+def test_the_seed_is_taken_where_all_fail(solved: SolutionGraph) -> None:
+    b = Bench(solved)
+    s = b.g.one
+    c2, s2 = b.g.const(0.6), b.g.const(0.8)
+    forms = [Tangent(b.g.mul(b.share, x), b.g.mul(b.share, y)) for x, y in ((c2, s2), (s2, c2))]
+    values = choose_form(b.work, b.angle, [b.lowered(form, s) for form in forms], s)
+    seed = [b.work.atom(f"seed_{x}1") for x in "cs"]
+    np.testing.assert_array_equal(
+        [e.probe[len(SHARES) - 1] for e in values], [e.probe[0] for e in seed]
+    )
+    np.testing.assert_allclose([e.probe[0] for e in values], [0.6, 0.8])
+    np.testing.assert_allclose([e.probe[4] for e in values], [0.8, 0.6])
+    [free] = b.work.singular
+    assert list(free.probe[: len(SHARES)] > 0.5) == [share < 1e-4 for share in SHARES]
+
+
+def test_a_fallback_with_one_branch_counts_once(solved: SolutionGraph) -> None:
+    for sigma in (1.0, -1.0):
+        b = Bench(solved)
+        first = Quadratic(b.share, b.g.const(-20.0), b.g.const(5.0))
+        last = Linear(b.g.one, b.g.const(-3.0))
+        b.taken(b.length, first, last, sigma)
+        guards = np.logical_and.reduce(b.requirements)
+        assert list(guards) == [share > 1e-3 or sigma > 0.0 for share in SHARES]
+
+
+def test_a_guard_holds_where_its_form_is_taken_alone(solved: SolutionGraph) -> None:
+    b = Bench(solved)
+    first = Linear(b.share, b.g.neg(b.g.mul(b.share, b.g.const(2.0))))
+    never = Quadratic(b.g.one, b.g.const(-10.0), b.given((26.0,) * len(SHARES)))
+    b.taken(b.length, first, never)
+    guards = np.logical_and.reduce(b.requirements)
+    assert list(guards) == [share > 1e-3 for share in SHARES]

@@ -1,0 +1,100 @@
+"""Which candidate becomes a step, on candidates constructed to fail at known configurations."""
+
+from __future__ import annotations
+
+import pytest
+from tests.support.constructed import Constructed
+
+from ikgen.forms.form import Form
+from ikgen.solver.candidate import Candidate
+from ikgen.solver.choice import Chooser, Step
+from ikgen.solver.ranker import rank_key
+
+
+@pytest.fixture(scope="module")
+def arm() -> Constructed:
+    return Constructed()
+
+
+def choose(
+    arm: Constructed, *candidates: Candidate, anything: bool = False, ranked: bool = True
+) -> Step | None:
+    """The step taken, the candidates ranked first or in the order given."""
+    order = sorted(candidates, key=rank_key) if ranked else list(candidates)
+    return Chooser(arm.system, arm.probes).choose(order, anything=anything)
+
+
+def found(arm: Constructed, *forms: Form) -> list[Candidate]:
+    """Judged candidates."""
+    return [arm.found(form) for form in forms]
+
+
+def test_the_best_sound_candidate_is_taken_alone(arm: Constructed) -> None:
+    weak, sound, dear = found(
+        arm, arm.pair(arm.c2), arm.tangent(arm.graph.one), arm.tangent(arm.graph.const(2.0))
+    )
+    step = choose(arm, weak, sound, dear)
+    assert step is not None and step.candidate is sound
+    assert step.sound and not step.fallbacks
+    assert set(map(id, step.rejected)) == {id(weak), id(dear)}
+
+
+def test_no_candidates_are_no_step(arm: Constructed) -> None:
+    assert choose(arm, anything=True) is None
+
+
+def test_a_zero_that_no_probe_met_is_found(arm: Constructed) -> None:
+    """The factor vanishes where cos(q2) is a third, off every right angle."""
+    g = arm.graph
+    [hidden] = found(arm, arm.tangent(g.sub(arm.c2, g.const(1.0 / 3.0))))
+    assert hidden.is_sound
+    assert choose(arm, hidden) is None
+    step = choose(arm, hidden, anything=True)
+    assert step is not None and not step.sound
+
+
+def test_a_fallback_covers_where_the_first_fails(arm: Constructed) -> None:
+    first, second = found(arm, arm.tangent(arm.c2), arm.tangent(arm.s2))
+    assert first.is_weak and second.is_weak
+    step = choose(arm, first, second)
+    assert step is not None and step.sound
+    assert [step.candidate, *step.fallbacks] == sorted([first, second], key=rank_key)
+
+
+def test_a_fallback_that_fails_at_the_same_place_covers_nothing(arm: Constructed) -> None:
+    g = arm.graph
+    first, same = found(arm, arm.tangent(arm.c2), arm.tangent(g.mul(arm.c2, arm.s2)))
+    assert choose(arm, first, same) is None
+    step = choose(arm, first, same, anything=True)
+    assert step is not None and not step.fallbacks and not step.sound
+
+
+def test_a_fallback_has_no_more_branches_than_the_first(arm: Constructed) -> None:
+    single, double = found(arm, arm.pair(arm.c2), arm.tangent(arm.s2))
+    step = choose(arm, single, double)
+    assert step is not None and step.sound and step.branches == 2
+    assert step.candidate is double and step.fallbacks == (single,)
+
+
+def test_branches_that_meet_are_taken_before_a_quartic(arm: Constructed) -> None:
+    folding, quartic = found(arm, arm.folding(), arm.quartic())
+    assert quartic.is_sound and not folding.is_sound
+    assert choose(arm, folding, quartic) is None
+    step = choose(arm, folding, quartic, anything=True)
+    assert step is not None and step.candidate is folding
+    assert step.sound  # it loses digits there, no solution
+
+
+def test_a_quartic_is_taken_before_what_fails(arm: Constructed) -> None:
+    weak, quartic = found(arm, arm.tangent(arm.c2), arm.quartic())
+    step = choose(arm, weak, quartic, anything=True)
+    assert step is not None and step.candidate is quartic and step.sound
+
+
+def test_what_fails_is_taken_where_there_is_nothing_else_and_is_not_sound(
+    arm: Constructed,
+) -> None:
+    [weak] = found(arm, arm.tangent(arm.c2))
+    assert choose(arm, weak) is None
+    step = choose(arm, weak, anything=True)
+    assert step is not None and step.candidate is weak and not step.sound
