@@ -8,11 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tests.support.solving import import_text
+from tests.support.solving import NO_COMPILER, import_text
 
+from ikgen.emit.cpp.cpp_emitter import emit
 from ikgen.emit.python.python_emitter import emit_module
+from ikgen.emit.solver_module import SolverModule
 from ikgen.generation.derive import derive
+from ikgen.generation.emitted_runners import arm_constants
 from ikgen.generation.request import Request
+from ikgen.verify.runners.cpp_header import CppHeader
 
 Array = NDArray[np.float64]
 ROOT = Path(__file__).resolve().parents[2]
@@ -31,10 +35,26 @@ NOISES = ("float32", "1e-6")
 
 
 @pytest.fixture(scope="module", params=ARMS)
-def arm(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Any:
+def module(request: pytest.FixtureRequest) -> SolverModule:
+    """An arm's solver."""
+    return derive(ARMS[request.param]).module
+
+
+@pytest.fixture(scope="module")
+def arm(module: SolverModule, tmp_path_factory: pytest.TempPathFactory) -> Any:
     """The emitted module of an arm."""
-    text = emit_module(derive(ARMS[request.param]).module)
-    return import_text(text, tmp_path_factory.mktemp("arm"))
+    return import_text(emit_module(module), tmp_path_factory.mktemp("arm"))
+
+
+@pytest.fixture(scope="module")
+def header(module: SolverModule, tmp_path_factory: pytest.TempPathFactory) -> CppHeader:
+    """The emitted header of an arm, compiled."""
+    if NO_COMPILER:
+        pytest.skip(NO_COMPILER)
+    folder = tmp_path_factory.mktemp("header")
+    for name, text in emit(module).items():
+        (folder / name).write_text(text)
+    return CppHeader(folder / f"{module.name}_ik.hpp", arm_constants(module))
 
 
 def configurations(arm: Any, n: int) -> Array:
@@ -106,3 +126,31 @@ def test_rotations_that_are_far_off_are_none(arm: Any) -> None:
     for T in bad:
         assert arm.solve(T).status == "INVALID"
         assert arm.solve_batch([T])[2].tolist() == ["INVALID"]
+
+
+@pytest.mark.parametrize("kind", NOISES)
+def test_the_header_has_the_rows_of_the_module(arm: Any, header: CppHeader, kind: str) -> None:
+    poses = noisy(arm.forward(configurations(arm, 25)), kind)
+    single, batch = header.solve_many(poses, limits=False), header.solve_batch(poses, limits=False)
+    assert batch is not None and np.array_equal(batch.q, single.q, equal_nan=True)
+    for T, mine, status in zip(poses, single, single.status, strict=True):
+        found = arm.solve(T, limits=False)
+        assert (status, len(mine)) == ("OK", len(found))
+        apart = np.abs((mine[:, None] - found.q + np.pi) % (2.0 * np.pi) - np.pi).max(axis=2)
+        assert max(apart.min(axis=0).max(), apart.min(axis=1).max()) < 1e-9
+
+
+def test_the_header_refuses_what_the_module_refuses(arm: Any, header: CppHeader) -> None:
+    good = arm.forward(configurations(arm, 1)[0])
+    bad = np.stack([good] * 4)
+    bad[0, :3, :3] *= 1.0 + 1e-5
+    bad[1, :3, :3] = np.nan
+    bad[2, :3, :3] = 0.0
+    bad[3, :3, 0] *= -1.0
+    mirrored = arm.TASK in ("pose", "rotation")
+    expected = ["INVALID"] * 3 + ["INVALID" if mirrored else arm.solve(bad[3]).status.value]
+    assert list(header.solve_many(bad).status) == expected
+    assert list(arm.solve_batch(bad)[2]) == expected
+    if arm.TASK == "pose":
+        good[3, 3] = 1.0 + 1e-9
+        assert header.solve_many(good[None]).status == ("INVALID",)

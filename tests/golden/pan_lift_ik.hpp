@@ -637,7 +637,7 @@ template <class Arm> struct SolutionRows {
   static bool place(double* q, const Options& options) noexcept {
     const double* seed = options.seed ? options.seed->data() : nullptr;
     for (int j = 0; j < Arm::kDof; ++j) {
-      const double low = Arm::kLower.data()[j] - Policy::kLimitTolerance, high = Arm::kUpper.data()[j] + Policy::kLimitTolerance;
+      const double low = Arm::kLower[j] - Policy::kLimitTolerance, high = Arm::kUpper[j] + Policy::kLimitTolerance;
       if (Arm::kRevolute[j] && !Arm::kHeld[j]) {
         q[j] += q[j] <= -kPi ? kTurn : q[j] > kPi ? -kTurn : 0.0;
         double shift = seed ? kTurn * std::nearbyint((seed[j] - q[j]) / kTurn) : 0.0;
@@ -647,7 +647,7 @@ template <class Arm> struct SolutionRows {
       }
       if (!options.limits) continue;
       if (!(low <= q[j] && q[j] <= high)) return false;
-      q[j] = std::min(std::max(q[j], Arm::kLower.data()[j]), Arm::kUpper.data()[j]);
+      q[j] = std::min(std::max(q[j], Arm::kLower[j]), Arm::kUpper[j]);
     }
     return true;
   }
@@ -832,6 +832,8 @@ template <int First, int Count, int Height> struct UnitColumns {
     return 4.0 * Count * Height * off * off * (1.0 + 2.0 * Count * Height * off);
   }
 
+  static constexpr bool has(int column) noexcept { return First <= column && column < First + Count; }
+
   static double defect(const double* t) noexcept {
     double sum = 0.0;
     for (int i = First; i < First + Count; ++i)
@@ -877,23 +879,22 @@ template <class Arm> struct PoseReading {
   using Columns = typename Arm::Columns;
   using Policy = typename Arm::Policy;
 
-  static bool exact(const Eigen::Isometry3d& pose) noexcept {
+  [[gnu::always_inline]] static bool exact(const Eigen::Isometry3d& pose) noexcept {
     return good(pose.matrix().data(), Policy::kOrthonormal * Policy::kOrthonormal);
   }
 
   static bool clean(Eigen::Isometry3d& pose) noexcept {
     double* t = pose.matrix().data();
-    if (good(t, Columns::most_defect(Policy::kPoseTolerance))) {
-      Columns::clean(t);
-      return true;
-    }
-    return Columns::tilted(t) && good(t, 1.0);
+    if (!good(t, Columns::most_defect(Policy::kPoseTolerance))) return Columns::tilted(t) && good(t, 1.0);
+    if (!exact(pose)) Columns::clean(t);
+    return true;
   }
 
  private:
-  static bool good(const double* t, double most) noexcept {
-    double defect = Columns::defect(t);
-    for (const auto [row, column] : Arm::kRead) defect += 0.0 * t[4 * column + row];
+  [[gnu::always_inline]] static bool good(const double* t, double most) noexcept {
+    double defect = Columns::defect(t), others = 0.0;
+    for (const auto [row, column] : Arm::kRead) others += Columns::has(column) ? 0.0 : t[4 * column + row];
+    defect += 0.0 * others;
     if (Arm::kWholePose && !(t[3] == 0.0 && t[7] == 0.0 && t[11] == 0.0 && t[15] == 1.0)) return false;
     return defect <= most && Columns::proper(t);
   }
@@ -925,24 +926,25 @@ template <class Arm, template <class> class Way> struct PoseSolver {
     return out;
   }
 
-  template <int P> static void some(const Eigen::Isometry3d* poses, const Options& options, Solutions* out) noexcept {
+  template <int P>
+  [[gnu::always_inline]] static void some(const Eigen::Isometry3d* poses, const Options& options,
+                                          Solutions* out) noexcept {
     bool exact = true;
     for (int p = 0; p < P; ++p) exact = PoseReading<Arm>::exact(poses[p]) && exact;
-    if (exact) {
-      Way<Arm>::template solve<P>(poses, options, out);
-    } else {
-      for (int p = 0; p < P; ++p) clean_and_solve(poses[p], options, out[p]);
-    }
+    if (!exact) return clean_and_solve(poses, P, options, out);
+    Way<Arm>::template solve<P>(poses, options, out);
   }
 
-  [[gnu::cold, gnu::noinline]] static void clean_and_solve(const Eigen::Isometry3d& pose, const Options& options,
-                                                           Solutions& out) noexcept {
-    Eigen::Isometry3d clean = pose;
-    if (PoseReading<Arm>::exact(pose) || PoseReading<Arm>::clean(clean)) {
-      Way<Arm>::template solve<1>(&clean, options, &out);
-    } else {
-      out.count = 0;
-      out.status = Arm::Status::Invalid;
+  [[gnu::cold, gnu::noinline]] static void clean_and_solve(const Eigen::Isometry3d* poses, int count,
+                                                           const Options& options, Solutions* out) noexcept {
+    for (; count > 0; --count, ++poses, ++out) {
+      Eigen::Isometry3d clean = *poses;
+      if (PoseReading<Arm>::clean(clean)) {
+        Way<Arm>::template solve<1>(&clean, options, out);
+      } else {
+        out->count = 0;
+        out->status = Arm::Status::Invalid;
+      }
     }
   }
 };

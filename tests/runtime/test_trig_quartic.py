@@ -7,13 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tests.support.routines import compiled_routine, feed
+from tests.support.routines import compiled_header, feed
 
 from ikgen.runtime.python.trig_quartic_roots import trig_quartic, trig_quartic_batch
 
 Array = NDArray[np.float64]
 KINDS = ("simple", "double", "two doubles", "shared", "pi", "zero", "two real", "nearly linear")
 MAIN = r"""
+#include <cstdio>
+#include "trig_quartic.hpp"
+using namespace ikgen_runtime;
 int main() {
   double k[5];
   while (std::scanf("%lf %lf %lf %lf %lf", k, k + 1, k + 2, k + 3, k + 4) == 5) {
@@ -118,7 +121,7 @@ def test_scalar_and_batch_agree() -> None:
 
 
 def test_cpp_agrees(tmp_path: Path) -> None:
-    program = compiled_routine("trig_quartic", MAIN, tmp_path)
+    program = compiled_header(MAIN, tmp_path)
     for kind in KINDS:
         k, roots = planted(kind, 2000, seed=3)
         lines = feed(program, k.ravel().tolist())

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
+from tests.support.solving import NO_COMPILER
 
-from ikgen.emit.cpp.header_bundle import bundle
+from ikgen.emit.cpp.header_bundle import RUNTIME
+from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
 
 FLAGS = [
     "-std=c++17",
@@ -21,26 +21,18 @@ FLAGS = [
     "-Wshadow",
     "-Werror",
 ]
-EIGEN = Path(os.environ.get("EIGEN3_INCLUDE_DIR", "/usr/include/eigen3"))
 
 
-def compiled_routine(name: str, main: str, folder: Path, eigen: bool = False) -> Path:
-    """An executable of the runtime's `<name>.hpp` and `main`; skips without a compiler."""
-    compiler = shutil.which("g++") or shutil.which("clang++")
-    if compiler is None:
-        pytest.skip("no C++ compiler on this machine")
-    if eigen and not EIGEN.is_dir():
-        pytest.skip("Eigen is not installed (set EIGEN3_INCLUDE_DIR)")
-    routine = bundle([f"{name}.hpp"], ("cstdio", "vector", *(["Eigen/Core"] if eigen else [])))
-    head = routine.includes + routine.body
-    source, program = folder / f"{name}.cpp", folder / name
-    source.write_text(head + main)
-    include = ["-isystem", str(EIGEN)] if eigen else []
-    done = subprocess.run(
-        [compiler, *FLAGS, *include, str(source), "-o", str(program)],
-        capture_output=True,
-        text=True,
-    )
+def compiled_header(text: str, folder: Path, *flags: str) -> Path:
+    """The program of a source that includes headers of the runtime; warnings are errors. Skips without a
+    compiler."""
+    if NO_COMPILER:
+        pytest.skip(NO_COMPILER)
+    source, program = folder / "main.cpp", folder / "main"
+    source.write_text(text)
+    includes = [f"-I{RUNTIME}", f"-I{Path(__file__).parent}", "-isystem", str(find_eigen())]
+    command = [*find_compiler(), *FLAGS, *flags, *includes, str(source), "-o", str(program)]
+    done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return program
 

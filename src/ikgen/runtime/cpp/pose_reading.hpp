@@ -13,24 +13,23 @@ template <class Arm> struct PoseReading {
   using Policy = typename Arm::Policy;
 
   // Whether all that is read is finite and free of noise, but for round-off.
-  static bool exact(const Eigen::Isometry3d& pose) noexcept {
+  [[gnu::always_inline]] static bool exact(const Eigen::Isometry3d& pose) noexcept {
     return good(pose.matrix().data(), Policy::kOrthonormal * Policy::kOrthonormal);
   }
 
-  // Takes the noise off; false where there is more than noise.
+  // Takes the noise off, if there is any; false where there is more than noise.
   static bool clean(Eigen::Isometry3d& pose) noexcept {
     double* t = pose.matrix().data();
-    if (good(t, Columns::most_defect(Policy::kPoseTolerance))) {
-      Columns::clean(t);
-      return true;
-    }
-    return Columns::tilted(t) && good(t, 1.0);
+    if (!good(t, Columns::most_defect(Policy::kPoseTolerance))) return Columns::tilted(t) && good(t, 1.0);
+    if (!exact(pose)) Columns::clean(t);
+    return true;
   }
 
  private:
-  static bool good(const double* t, double most) noexcept {
-    double defect = Columns::defect(t);
-    for (const auto [row, column] : Arm::kRead) defect += 0.0 * t[4 * column + row];
+  [[gnu::always_inline]] static bool good(const double* t, double most) noexcept {
+    double defect = Columns::defect(t), others = 0.0;
+    for (const auto [row, column] : Arm::kRead) others += Columns::has(column) ? 0.0 : t[4 * column + row];
+    defect += 0.0 * others;
     if (Arm::kWholePose && !(t[3] == 0.0 && t[7] == 0.0 && t[11] == 0.0 && t[15] == 1.0)) return false;
     return defect <= most && Columns::proper(t);
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "constants.hpp"
 #include "pose_reading.hpp"
 
 namespace ikgen_runtime {
@@ -34,25 +35,26 @@ template <class Arm, template <class> class Way> struct PoseSolver {
     return out;
   }
 
-  template <int P> static void some(const Eigen::Isometry3d* poses, const Options& options, Solutions* out) noexcept {
+  template <int P>
+  [[gnu::always_inline]] static void some(const Eigen::Isometry3d* poses, const Options& options,
+                                          Solutions* out) noexcept {
     bool exact = true;
     for (int p = 0; p < P; ++p) exact = PoseReading<Arm>::exact(poses[p]) && exact;
-    if (exact) {
-      Way<Arm>::template solve<P>(poses, options, out);
-    } else {
-      for (int p = 0; p < P; ++p) clean_and_solve(poses[p], options, out[p]);
-    }
+    if (!exact) return clean_and_solve(poses, P, options, out);
+    Way<Arm>::template solve<P>(poses, options, out);
   }
 
   // Few poses need it: small code, quickly compiled.
-  [[gnu::cold, gnu::noinline]] static void clean_and_solve(const Eigen::Isometry3d& pose, const Options& options,
-                                                           Solutions& out) noexcept {
-    Eigen::Isometry3d clean = pose;
-    if (PoseReading<Arm>::exact(pose) || PoseReading<Arm>::clean(clean)) {
-      Way<Arm>::template solve<1>(&clean, options, &out);
-    } else {
-      out.count = 0;
-      out.status = Arm::Status::Invalid;
+  [[gnu::cold, gnu::noinline]] static void clean_and_solve(const Eigen::Isometry3d* poses, int count,
+                                                           const Options& options, Solutions* out) noexcept {
+    for (; count > 0; --count, ++poses, ++out) {
+      Eigen::Isometry3d clean = *poses;
+      if (PoseReading<Arm>::clean(clean)) {
+        Way<Arm>::template solve<1>(&clean, options, out);
+      } else {
+        out->count = 0;
+        out->status = Arm::Status::Invalid;
+      }
     }
   }
 };

@@ -13,6 +13,8 @@ template <int First, int Count, int Height> struct UnitColumns {
     return 4.0 * Count * Height * off * off * (1.0 + 2.0 * Count * Height * off);
   }
 
+  static constexpr bool has(int column) noexcept { return First <= column && column < First + Count; }
+
   // Squared Frobenius norm of V^T V - 1.
   static double defect(const double* t) noexcept {
     double sum = 0.0;
