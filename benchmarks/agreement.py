@@ -21,9 +21,9 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.collection import ABSENT, CORPUS, load_arms, options_for, urdf_of
+from benchmarks.collection import ABSENT, CORPUS, load_arms, urdf_of
 from ikgen.emit.derivation import Derivation
-from ikgen.errors import IkgenError, UnsolvedChainError
+from ikgen.errors import IkgenError
 from ikgen.generation.derive import derive
 from ikgen.generation.emitted_arm import EmittedArm
 from ikgen.generation.emitted_checks import oracle_for
@@ -51,18 +51,11 @@ class Outcome:
 
 
 def derivation_of(arm: dict[str, Any], folder: Path) -> Derivation:
-    """The arm's derivation, joints held as the corpus command does."""
+    """The arm's derivation, without options."""
     path = CORPUS / arm["file"] if arm.get("file") else folder / f"{arm['name']}.urdf"
     if not arm.get("file"):
         path.write_text(urdf_of(arm))
-    for extra in options_for(arm):
-        free = dict.fromkeys(extra[1::2])
-        request = Request(path, base=arm["base_link"], tip=arm["tip_link"], free=free, name="arm")
-        try:
-            return derive(request)
-        except UnsolvedChainError as error:
-            last = error
-    raise last
+    return derive(Request(path, base=arm["base_link"], tip=arm["tip_link"], name="arm"))
 
 
 def compare(arm: dict[str, Any], poses: int, eliminated: int) -> Outcome:

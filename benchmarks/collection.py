@@ -11,7 +11,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-__all__ = ["ABSENT", "ARMS_FILE", "CORPUS", "load_arms", "options_for", "urdf_of"]
+__all__ = ["ABSENT", "ARMS_FILE", "CORPUS", "load_arms", "urdf_of"]
 
 _BESIDE = Path(__file__).resolve().parents[2] / "shared" / "robots"
 CORPUS = Path(os.environ.get("IKGEN_CORPUS") or _BESIDE).resolve()
@@ -47,21 +47,3 @@ def urdf_of(arm: dict[str, Any]) -> str:
             )
         lines.append("</joint>")
     return "\n".join([*lines, "</robot>"])
-
-
-def options_for(arm: dict[str, Any]) -> list[list[str]]:
-    """Option sets to try in turn: none up to six joints; else joints held free until six are left,
-    sliding ones first, then each choice of one more."""
-    moving = [j for j in arm["chain"] if j["type"] not in ("fixed", "mimic")]
-    spare = len(moving) - 6
-    if spare <= 0:
-        return [[]]
-    sliding = [j["joint"] for j in moving if j["type"] == "prismatic"][:spare]
-    turning = [j["joint"] for j in moving if j["type"] != "prismatic"]
-    spare -= len(sliding)
-    first, last = turning[: max(spare - 1, 0)], turning[max(spare - 1, 0) :]
-    choices = [[last[i]] for i in (6, 2, 3, 1, 0, 4, 5) if i < len(last)] if spare else [[]]
-    return [
-        [text for name in (*sliding, *first, *choice) for text in ("--free", name)]
-        for choice in choices
-    ]

@@ -18,7 +18,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from benchmarks.collection import CORPUS, load_arms, options_for, urdf_of
+from benchmarks.collection import CORPUS, load_arms, urdf_of
 
 __all__ = ["REPOSITORY", "Emitted", "Source", "emit", "load_module", "sources"]
 
@@ -77,7 +77,7 @@ def sources(collections: Sequence[str] = ("fixtures", "suite", "corpus")) -> lis
                 f"corpus/{arm['name']}", arm["family"],
                 CORPUS / arm["file"] if arm.get("file") else None,
                 ("--base", arm["base_link"], "--tip", arm["tip_link"]),
-                tuple(tuple(extra) for extra in options_for(arm)), arm,
+                row=arm,
             )
         )  # fmt: skip
     return out

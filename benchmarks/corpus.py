@@ -21,7 +21,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmarks.collection import ABSENT, CORPUS, load_arms, options_for, urdf_of
+from benchmarks.collection import ABSENT, CORPUS, load_arms, urdf_of
 from benchmarks.results import write_result
 
 WIDTHS = (4, 6, 8, 6, 8, 6)
@@ -47,22 +47,15 @@ def run_arm(arm: dict[str, Any], samples: int) -> Outcome:
         path = CORPUS / arm["file"] if arm.get("file") else Path(folder) / f"{arm['name']}.urdf"
         if not arm.get("file"):
             path.write_text(urdf_of(arm))
-        result: dict[str, Any] = {}
+        command = [
+            sys.executable, "-m", "ikgen", "from-urdf", str(path), "--json", "-q",
+            "--base", arm["base_link"], "--tip", arm["tip_link"], "-o", folder,
+            "--samples", str(samples),
+        ]  # fmt: skip
         started = time.perf_counter()
-        for extra in options_for(arm):
-            command = [
-                sys.executable, "-m", "ikgen", "from-urdf", str(path), "--json", "-q",
-                "--base", arm["base_link"], "--tip", arm["tip_link"], "-o", folder,
-                "--samples", str(samples), *extra,
-            ]  # fmt: skip
-            started = time.perf_counter()
-            done = subprocess.run(command, capture_output=True, text=True)
-            seconds = time.perf_counter() - started
-            result = _parse(done)
-            result["code"] = done.returncode
-            result["extra"] = " ".join(extra)
-            if done.returncode != 3:
-                break
+        done = subprocess.run(command, capture_output=True, text=True)
+        seconds = time.perf_counter() - started
+        result = {**_parse(done), "code": done.returncode}
         return _outcome(arm, result, seconds)
 
 
@@ -85,7 +78,8 @@ def _outcome(arm: dict[str, Any], result: dict[str, Any], seconds: float) -> Out
     closure = next((c for c in report.get("checks", []) if c["name"] == "closure"), {})
     worst = closure.get("worst") or {}
     numbers = " ".join(f"{v:.0e}" for v in worst.values() if v is not None)
-    message = str(result.get("error") or result["extra"] or "")
+    held = (result.get("chosen") or {}).get("held") or ()
+    message = str(result.get("error") or " ".join(["holding", *held] if held else []))
     task = str(result.get("task") or "")
     return Outcome(arm["name"], arm["family"], task, state, seconds, text, numbers, message[:300])
 

@@ -6,9 +6,12 @@ python benchmarks/cpp_speed.py generated/ur5e_ik.hpp ...
 from __future__ import annotations
 
 import argparse
+import re
 import subprocess
 import tempfile
 import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
@@ -21,20 +24,31 @@ FLAGS = {
 }
 
 
+@contextmanager
+def compiled_program(
+    source: Path, header: Path, flags: Sequence[str], libraries: Sequence[str] = ()
+) -> Iterator[Path]:
+    """A program of this folder compiled with an emitted header, for as long as the context lasts."""
+    text = header.read_text(encoding="utf-8")
+    held = int(re.search(r"constexpr int kFree = [1-9]", text) is not None)
+    defines = [
+        f'-DIKGEN_HEADER="{header.name}"', f"-DIKGEN_NAMESPACE={header.stem}", f"-DIKGEN_FREE={held}"
+    ]  # fmt: skip
+    includes = [f"-I{header.resolve().parent}", "-isystem", str(find_eigen())]
+    with tempfile.TemporaryDirectory() as folder:
+        program = Path(folder) / "program"
+        command = [*find_compiler(), "-std=c++17", "-pthread", *flags, *defines, *includes]
+        subprocess.run([*command, str(source), "-o", str(program), *libraries], check=True)
+        yield program
+
+
 def run_program(
-    source: Path, header: Path, flags: list[str], libraries: tuple[str, ...] = ()
+    source: Path, header: Path, flags: Sequence[str], libraries: Sequence[str] = ()
 ) -> tuple[float, list[float]]:
     """Compile a program of this folder with an emitted header: seconds that takes, and the numbers that
     the program prints."""
-    with tempfile.TemporaryDirectory() as folder:
-        program = Path(folder) / "program"
-        defines = [f'-DIKGEN_HEADER="{header.name}"', f"-DIKGEN_NAMESPACE={header.stem}"]
-        if "kFreeJoints" in header.read_text(encoding="utf-8"):
-            defines.append("-DIKGEN_FREE")
-        includes = [f"-I{header.parent}", "-isystem", str(find_eigen())]
-        start = time.perf_counter()
-        command = [*find_compiler(), "-std=c++17", "-pthread", *flags, *defines, *includes]
-        subprocess.run([*command, str(source), "-o", str(program), *libraries], check=True)
+    start = time.perf_counter()
+    with compiled_program(source, header, flags, libraries) as program:
         seconds = time.perf_counter() - start
         output = subprocess.run([str(program)], check=True, capture_output=True, text=True).stdout
         return seconds, [float(x) for x in output.split()]

@@ -1,7 +1,7 @@
 // Times an emitted header against another solver's C++ source, in turns and on the same poses.
 //
-// Compile with -DIKGEN_HEADER='"x_ik.hpp"' -DIKGEN_NAMESPACE=x_ik, -DIKGEN_FREE for a header with held
-// joints, and one of
+// Compile with -DIKGEN_HEADER='"x_ik.hpp"' -DIKGEN_NAMESPACE=x_ik, -DIKGEN_FREE=0, or 1 for a header with
+// held joints, and one of
 //   -DPEER_OPW -I<folder of opw_kinematics/opw_kinematics.h> -DPEER_PARAMETERS='{a1, a2, b, c1, c2, c3, c4,
 //     {offsets}, {signs}}'
 //   -DPEER_IKFAST='"ikfast_x.cpp"' -I<its folder, with ikfast.h>; held joints as its free parameters.

@@ -1,7 +1,7 @@
 // Time of solve and solve_batch of one emitted header, on reachable random poses.
 //
-// Compile with -DIKGEN_HEADER='"x_ik.hpp"' -DIKGEN_NAMESPACE=x_ik -DIKGEN_LIMITS=true, and -DIKGEN_FREE for a
-// header with held joints. Prints: ns per solve, ns per pose of solve_batch, mean number of solutions, ns per
+// Compile with -DIKGEN_HEADER='"x_ik.hpp"' -DIKGEN_NAMESPACE=x_ik -DIKGEN_LIMITS=true, -DIKGEN_FREE=0, or 1
+// for a header with held joints. Prints: ns per solve, ns per pose of solve_batch, mean number of solutions, ns per
 // pose of a long span in one thread and split among all, how many those are.
 
 #include <algorithm>

@@ -23,7 +23,7 @@ inline std::vector<Eigen::Isometry3d> reachable_poses() {
       const double low = std::max(ik::kLower[i], -3.1), high = std::min(ik::kUpper[i], 3.1);
       q[j] = std::uniform_real_distribution<double>(low, high)(random);
     }
-#ifdef IKGEN_FREE
+#if IKGEN_FREE
     for (std::size_t k = 0; k < ik::kFreeJoints.size(); ++k) q[ik::kFreeJoints[k]] = ik::Options().free[k];
 #endif
     poses.push_back(ik::forward(q));

@@ -28,7 +28,7 @@ def leaves(graph: ExpressionGraph) -> list[Expr]:
     """Constants, a parameter and three inputs, of either sign at the probes."""
     rng = np.random.default_rng(1)
     probe = rng.uniform(0.4, 1.7, (4, PROBES)) * rng.choice((-1.0, 1.0), (4, PROBES))
-    atoms = [graph.atom("dist", (i,), probe[i], unknown=True) for i in range(3)]
+    atoms = [graph.atom("prismatic", (i,), probe[i], unknown=True) for i in range(3)]
     return [*(graph.const(x) for x in CONSTANTS), graph.param("a_1", 0.7, probe[3]), *atoms]
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from ikgen.algebra import polynomial as poly
 from ikgen.algebra.expression_graph import ExpressionGraph
-from ikgen.algebra.polynomial import Key, Monomial, Polynomial, canonical
+from ikgen.algebra.polynomial import AngleCombination, Monomial, Polynomial, canonical
 
 PROBES = 4
 GROUP = (0, 0, 2, 3)
@@ -22,19 +22,22 @@ Words = list[tuple[Monomial, Fraction, int]]
 SMALL = st.integers(-2, 2)
 
 
-def group_of(key: Key) -> int:
-    """The group of the key's first angle."""
-    return next((GROUP[j] for j, k in enumerate(key) if k), -1)
+def group_of(combination: AngleCombination) -> int:
+    """The group of the combination's first angle."""
+    return next((GROUP[j] for j, k in enumerate(combination) if k), -1)
 
 
 @st.composite
 def monomials(draw: st.DrawFn) -> Monomial:
     """A product of at most one function a group, and of a power of the length."""
     trigs = []
-    for keys in (st.tuples(SMALL, SMALL, st.just(0), st.just(0)), st.sampled_from([(0, 0, 1, 0)])):
-        key, sign = canonical(draw(keys))
+    for combinations in (
+        st.tuples(SMALL, SMALL, st.just(0), st.just(0)),
+        st.sampled_from([(0, 0, 1, 0)]),
+    ):
+        combination, sign = canonical(draw(combinations))
         if sign and draw(st.booleans()):
-            trigs.append((key, draw(st.sampled_from("cs"))))
+            trigs.append((combination, draw(st.sampled_from("cs"))))
     power = draw(st.integers(0, 2))
     return tuple(trigs), ((3, power),) if power else ()
 
@@ -59,11 +62,11 @@ def made(g: ExpressionGraph, words: Words) -> Polynomial:
 def value(p: Polynomial) -> np.ndarray:
     """Its values (PROBES,), each coefficient's at one set of angles."""
     total = np.zeros(PROBES)
-    for (trigs, dist), coefficient in p.items():
+    for (trigs, slides), coefficient in p.items():
         term = coefficient.probe.copy()
-        for key, kind in trigs:
-            term *= (np.cos if kind == "c" else np.sin)(ANGLES @ np.array(key))
-        for joint, power in dist:
+        for combination, kind in trigs:
+            term *= (np.cos if kind == "c" else np.sin)(ANGLES @ np.array(combination))
+        for joint, power in slides:
             term *= ANGLES[:, joint] ** power
         total += term
     return total
@@ -114,18 +117,20 @@ def test_equal_polynomials_have_equal_terms(a: Words, b: Words, c: Words) -> Non
 
 
 @given(st.tuples(SMALL, SMALL, SMALL))
-def test_a_canonical_key_starts_positive(key: Key) -> None:
-    found, sign = canonical(key)
-    assert tuple(k * sign for k in found) == key
+def test_a_canonical_key_starts_positive(combination: AngleCombination) -> None:
+    found, sign = canonical(combination)
+    assert tuple(k * sign for k in found) == combination
     assert next((k for k in found if k), 0) >= 0
-    assert (sign == 0) == (not any(key))
+    assert (sign == 0) == (not any(combination))
 
 
 @given(st.tuples(SMALL, SMALL, st.just(0), st.just(0)).filter(any))
-def test_the_squares_of_cosine_and_sine_are_one_by_construction(key: Key) -> None:
+def test_the_squares_of_cosine_and_sine_are_one_by_construction(
+    combination: AngleCombination,
+) -> None:
     g = ExpressionGraph(PROBES)
-    key = canonical(key)[0]
-    parts = [{(((key, kind),), ()): g.one} for kind in "cs"]
+    combination = canonical(combination)[0]
+    parts = [{(((combination, kind),), ()): g.one} for kind in "cs"]
     squares = [poly.multiply(g, group_of, p, p) for p in parts]
     assert poly.add(g, *squares) == {ONE: g.one}
 
@@ -133,8 +138,8 @@ def test_the_squares_of_cosine_and_sine_are_one_by_construction(key: Key) -> Non
 def test_products_within_a_group_become_sums_and_others_stay() -> None:
     g = ExpressionGraph(PROBES)
     c1, s2, c3 = (
-        {(((key, kind),), ()): g.one}
-        for key, kind in (((1, 0, 0, 0), "c"), ((0, 1, 0, 0), "s"), ((0, 0, 1, 0), "c"))
+        {(((combination, kind),), ()): g.one}
+        for combination, kind in (((1, 0, 0, 0), "c"), ((0, 1, 0, 0), "s"), ((0, 0, 1, 0), "c"))
     )
     within = poly.multiply(g, group_of, c1, s2)
     assert set(within) == {((((1, 1, 0, 0), "s"),), ()), ((((1, -1, 0, 0), "s"),), ())}

@@ -11,6 +11,11 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, TORSO, Joint, serial_urdf
+from tests.support.small_robots import write_robot
+
+from ikgen.generation.record import read_record
+from ikgen.projects.config import load_config
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 KUKA = FIXTURES / "kuka_kr6r900sixx.urdf"
@@ -155,12 +160,53 @@ def test_bad_input_is_explained(tmp_path: Path, arguments: list[object], said: s
     assert not any(tmp_path.iterdir())
 
 
-def test_too_many_joints_have_no_closed_form(tmp_path: Path) -> None:
-    done = ikgen("from-urdf", FIXTURES / "franka_fr3.urdf", "-o", tmp_path / "out")
-    message = refused(done, 3)
-    assert "7 joints move and the task fixes 6 freedoms: one of them has to be held" in message
-    assert "--free" in message and "equations" not in message
-    assert not (tmp_path / "out").exists()
+def test_seven_joints_need_no_option(tmp_path: Path) -> None:
+    done = ikgen(
+        "from-urdf", FIXTURES / "franka_fr3.urdf", "-o", tmp_path, "--samples", 30, "--json"
+    )
+    assert done.returncode == 0, done.stderr
+    line = "holding fr3_joint7: closed form by rules (position apart from rotation, two branches a step)"
+    assert f"\n{line} with it held; others: fr3_joint6, fr3_joint4, " in done.stderr
+    record = json.loads(done.stdout)
+    assert record["free"] == record["chosen"]["held"] == ["fr3_joint7"]
+    assert record["chosen"]["task"] == "pose" and record["chosen"]["why"] in line
+    assert record["verification"]["python"]["passed"]
+    written = json.loads((tmp_path / "fr3_ik.json").read_text())
+    assert written["free"] == {"fr3_joint7": None} and written["asked"]["free"] == {}
+    before = (tmp_path / "fr3_ik.py").read_bytes()
+    again = read_record(tmp_path / "fr3_ik.json").again()
+    assert again.free == {"fr3_joint7": None}
+    done = ikgen(*again.command("-o", str(tmp_path), "--no-verify").split()[1:])
+    assert done.returncode == 0 and "holding" not in done.stderr
+    assert (tmp_path / "fr3_ik.py").read_bytes() == before
+
+
+@pytest.mark.parametrize("lift", [(), (TORSO,)], ids=["S-R-S", "P and S-R-S"])
+def test_redundant_arms_need_no_option(tmp_path: Path, lift: tuple[Joint, ...]) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text(serial_urdf("arm", [*lift, *SHOULDER_ELBOW_WRIST]))
+    done = ikgen("from-urdf", path, "-o", tmp_path, "--samples", 30, "--json")
+    assert done.returncode == 0, done.stderr
+    record = json.loads(done.stdout)
+    assert len(record["chosen"]["held"]) == 1 + len(lift)
+    assert all(step["branches"] <= 2 for step in record["solved"])
+    assert record["verification"]["python"]["passed"]
+
+
+def test_init_lists_every_arm(tmp_path: Path) -> None:
+    write_robot(tmp_path / "twin.urdf", sides=("left_", "right_"))
+    done = ikgen("init", "twin.urdf", "--emit", "python,cpp", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.endswith("wrote: ikgen.toml\nnext: ikgen build\n")
+    arms = load_config(tmp_path / "ikgen.toml")
+    assert [arm.name for arm in arms] == ["twin_left_tool0", "twin_right_tool0"]
+    assert {arm.request.base for arm in arms} == {"base_link"}
+    assert {arm.request.tip for arm in arms} == {"left_tool0", "right_tool0"}
+    assert "is there already" in refused(ikgen("init", "twin.urdf", cwd=tmp_path))
+    assert ikgen("init", "twin.urdf", "--force", cwd=tmp_path).returncode == 0
+    built = ikgen("build", "--no-verify", cwd=tmp_path)
+    assert built.returncode == 0, built.stderr
+    assert (tmp_path / "generated/twin_left_tool0_ik.py").is_file()
 
 
 def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:

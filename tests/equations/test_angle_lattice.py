@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from tests.support.tables import table
 
 from ikgen.algebra.expression_graph import ExpressionGraph
-from ikgen.algebra.polynomial import Key, canonical
+from ikgen.algebra.polynomial import AngleCombination, canonical
 from ikgen.equations.angle_lattice import AngleLattice
 from ikgen.equations.variables import JointVariables
 
@@ -30,7 +30,7 @@ SMALL = st.integers(-1, 1)
 
 
 @st.composite
-def keys(draw: st.DrawFn) -> Key:
+def keys(draw: st.DrawFn) -> AngleCombination:
     """A combination of the angles of one group."""
     group = draw(st.sampled_from(GROUPS))
     parts = draw(st.tuples(*(SMALL for _ in group)).filter(any))
@@ -40,19 +40,19 @@ def keys(draw: st.DrawFn) -> Key:
 SOLVED = st.lists(keys(), max_size=3, unique=True)
 
 
-def lattice_of(solved: list[Key]) -> AngleLattice:
+def lattice_of(solved: list[AngleCombination]) -> AngleLattice:
     """The lattice where `solved` are known."""
     graph = ExpressionGraph(len(ANGLES))
     lattice = AngleLattice(graph, JointVariables(graph, ARM, ANGLES))
-    for key in solved:
-        lattice.add(key)
+    for combination in solved:
+        lattice.add(combination)
     lattice.rebuild()
     return lattice
 
 
-def rank_by_hand(keys: list[Key]) -> int:
+def rank_by_hand(combinations: list[AngleCombination]) -> int:
     """Rank over the rationals, by elimination."""
-    rows = [[Fraction(k) for k in key] for key in keys]
+    rows = [[Fraction(k) for k in combination] for combination in combinations]
     rank = 0
     for column in range(5):
         pivot = next((r for r in rows[rank:] if r[column]), None)
@@ -69,14 +69,16 @@ def rank_by_hand(keys: list[Key]) -> int:
 
 @settings(deadline=None)
 @given(SOLVED)
-def test_known_is_what_small_combinations_of_solved_ones_give(solved: list[Key]) -> None:
+def test_known_is_what_small_combinations_of_solved_ones_give(
+    solved: list[AngleCombination],
+) -> None:
     known = lattice_of(solved).known
-    for key, terms in known.items():
+    for combination, terms in known.items():
         assert all(base in solved for _, base in terms)
         total = np.sum([factor * np.array(base) for factor, base in terms], axis=0)
-        assert np.array_equal(total if terms else np.zeros(5), key)
+        assert np.array_equal(total if terms else np.zeros(5), combination)
     for group in GROUPS:
-        mine = [key for key in solved if any(key[j] for j in group)]
+        mine = [combination for combination in solved if any(combination[j] for j in group)]
         for factors in itertools.product(range(-2, 3), repeat=len(mine)):
             total = sum((f * np.array(k) for f, k in zip(factors, mine, strict=True)), np.zeros(5))
             assert tuple(int(x) for x in total) in known
@@ -84,13 +86,15 @@ def test_known_is_what_small_combinations_of_solved_ones_give(solved: list[Key])
 
 @settings(deadline=None)
 @given(SOLVED, st.lists(keys(), min_size=1, max_size=4))
-def test_pairs_are_the_cosine_and_sine(solved: list[Key], asked: list[Key]) -> None:
+def test_pairs_are_the_cosine_and_sine(
+    solved: list[AngleCombination], asked: list[AngleCombination]
+) -> None:
     lattice = lattice_of(solved)
-    for key in (*lattice.known, *asked):
-        pair = lattice.pair(key)
-        assert (pair is not None) == (key in lattice.known)
+    for combination in (*lattice.known, *asked):
+        pair = lattice.pair(combination)
+        assert (pair is not None) == (combination in lattice.known)
         if pair is not None:
-            angle = ANGLES @ np.array(key)
+            angle = ANGLES @ np.array(combination)
             np.testing.assert_allclose(pair[0].probe, np.cos(angle), atol=1e-12)
             np.testing.assert_allclose(pair[1].probe, np.sin(angle), atol=1e-12)
 
@@ -98,16 +102,16 @@ def test_pairs_are_the_cosine_and_sine(solved: list[Key], asked: list[Key]) -> N
 @settings(deadline=None)
 @given(SOLVED, keys())
 def test_an_unknown_angle_is_a_representative_and_a_known_shift(
-    solved: list[Key], key: Key
+    solved: list[AngleCombination], combination: AngleCombination
 ) -> None:
     lattice = lattice_of(solved)
-    if key in lattice.known:
+    if combination in lattice.known:
         return
-    factor, representative, shift = lattice.represent(key)
-    assert np.array_equal(factor * np.array(representative) + np.array(shift), key)
+    factor, representative, shift = lattice.represent(combination)
+    assert np.array_equal(factor * np.array(representative) + np.array(shift), combination)
     assert shift in lattice.known
     assert representative not in lattice.known
-    assert lattice.represent(key) == (factor, representative, shift)
+    assert lattice.represent(combination) == (factor, representative, shift)
 
 
 def test_sums_with_a_solved_angle_are_written_on_the_joint_s_own() -> None:
@@ -120,20 +124,26 @@ def test_sums_with_a_solved_angle_are_written_on_the_joint_s_own() -> None:
 
 @settings(deadline=None)
 @given(SOLVED, st.lists(keys(), max_size=4))
-def test_the_rank_counts_what_solved_ones_leave_open(solved: list[Key], asked: list[Key]) -> None:
+def test_the_rank_counts_what_solved_ones_leave_open(
+    solved: list[AngleCombination], asked: list[AngleCombination]
+) -> None:
     expected = rank_by_hand([*solved, *asked]) - rank_by_hand(solved)
     assert lattice_of(solved).rank(asked) == expected
 
 
-@pytest.mark.parametrize("key", [(1, 0, 0, 0, 0), (0, 1, 1, 0, 0)])
-def test_a_lattice_over_another_graph_learns_by_itself(key: Key) -> None:
+@pytest.mark.parametrize("combination", [(1, 0, 0, 0, 0), (0, 1, 1, 0, 0)])
+def test_a_lattice_over_another_graph_learns_by_itself(combination: AngleCombination) -> None:
     lattice = lattice_of([(0, 0, 0, 1, 0)])
     graph = ExpressionGraph(len(ANGLES))
     other = lattice.over(graph, JointVariables(graph, ARM, ANGLES))
-    other.represent(key)
-    other.add(key)
+    other.represent(combination)
+    other.add(combination)
     other.rebuild()
-    assert key in other.known and key not in lattice.known and key not in lattice.solved
+    assert (
+        combination in other.known
+        and combination not in lattice.known
+        and combination not in lattice.solved
+    )
     lattice.add((1, 1, 0, 0, 0))
     lattice.rebuild()
     assert (1, 1, 0, 0, 0) not in other.known

@@ -37,7 +37,7 @@ def nothing_known() -> Knowledge:
 def learn(knowledge: Knowledge, variable: Variable) -> None:
     """Take a variable as solved."""
     if variable.kind == "angle":
-        knowledge.learn_angle(variable.key)
+        knowledge.learn_angle(variable.combination)
     else:
         knowledge.learn_distance(SLIDING)
 
@@ -47,18 +47,18 @@ VARIABLES = (
     Variable("angle", (0, 1, 0, 0)),
     Variable("angle", (0, 0, 1, 0)),
     Variable("angle", (0, 1, 1, 0)),
-    Variable("dist", (0, 0, 0, 1)),
+    Variable("prismatic", (0, 0, 0, 1)),
 )
 
 
 def value(polynomial: Polynomial) -> np.ndarray:
     """A polynomial's values at the probes."""
     total = np.zeros(len(PROBES.values))
-    for (trigs, dist), coefficient in polynomial.items():
+    for (trigs, slides), coefficient in polynomial.items():
         term = coefficient.probe.copy()
-        for key, kind in trigs:
-            term *= (np.cos if kind == "c" else np.sin)(PROBES.values @ np.array(key))
-        for joint, power in dist:
+        for combination, kind in trigs:
+            term *= (np.cos if kind == "c" else np.sin)(PROBES.values @ np.array(combination))
+        for joint, power in slides:
             term *= PROBES.values[:, joint] ** power
         total += term
     return total

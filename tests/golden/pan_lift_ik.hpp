@@ -13,8 +13,8 @@
 
 #pragma once
 
-#if defined(__FAST_MATH__)
-#error "pan_lift_ik.hpp needs IEEE arithmetic: do not compile it with -ffast-math"
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error "pan_lift_ik.hpp needs IEEE arithmetic: compile it without -ffast-math and -ffinite-math-only"
 #endif
 
 #include <algorithm>
@@ -25,7 +25,6 @@
 #include <cstring>
 #include <limits>
 #include <type_traits>
-#include <utility>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -94,17 +93,12 @@ void solve_batch(const Eigen::Isometry3d* poses, std::ptrdiff_t count, Solutions
 
 namespace detail {
 
+// --- constants -----------------------------------------------------------------------------------
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kTurn = 2.0 * kPi;
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
-inline constexpr double kLimitTolerance = 1e-9;
-inline constexpr double kTolerance = 1e-9;  // of a row's pose: rad, or m over the arm's size
-inline constexpr double kSame = 1e-6;  // rows closer than this are one
 
-// --- lanes: the branches of the solution side by side ---------------------------------------------
-// A pack holds N doubles, N a power of two, in one machine vector, or as two halves where it is wider.
-// An operation on packs of different widths repeats the narrower one.
-
+// --- machine vectors -----------------------------------------------------------------------------
 #if defined(__AVX512F__)
 inline constexpr int kNative = 8;
 #elif defined(__AVX__)
@@ -126,27 +120,6 @@ template <> struct Machine<1> {
   using Flags = bool;
 };
 
-template <int N, bool Halved> struct LanesOf;
-template <int N> using Lanes = LanesOf<N, (N > kNative)>;
-template <int N> struct LanesOf<N, false> { typename Machine<N>::Vector v; };
-template <int N> struct LanesOf<N, true> { Lanes<N / 2> lo, hi; };
-
-template <int N, bool Halved> struct MaskOf;
-template <int N> using Mask = MaskOf<N, (N > kNative)>;
-template <int N> struct MaskOf<N, false> { typename Machine<N>::Flags v; };
-template <int N> struct MaskOf<N, true> { Mask<N / 2> lo, hi; };
-
-template <class T> inline constexpr int kWidth = 0;
-template <> inline constexpr int kWidth<double> = 1;
-template <int N, bool H> inline constexpr int kWidth<LanesOf<N, H>> = N;
-template <int N, bool H> inline constexpr int kWidth<MaskOf<N, H>> = N;
-
-// Width of an operation on packs, or on a pack and a number.
-template <class A, class B, class = std::enable_if_t<(kWidth<A> > 0 && kWidth<B> > 0) &&
-                                                     (std::is_class_v<A> || std::is_class_v<B>)>>
-inline constexpr int kCommon = kWidth<A> > kWidth<B> ? kWidth<A> : kWidth<B>;
-
-// What the language has no operators for, or no good ones, on one machine vector.
 [[gnu::always_inline]] inline double root(double x) noexcept { return std::sqrt(x); }
 template <class V> [[gnu::always_inline]] inline V larger(V x, V y) noexcept { return x > y ? x : y; }
 template <class V> [[gnu::always_inline]] inline V smaller(V x, V y) noexcept { return x > y ? y : x; }
@@ -167,7 +140,9 @@ using Flags2 = Machine<2>::Flags;
   return reinterpret_cast<Vector2>((flags & reinterpret_cast<Flags2>(x)) | (~flags & reinterpret_cast<Flags2>(y)));
 }
 #elif defined(__GNUC__)
-[[gnu::always_inline]] inline Machine<2>::Vector root(Machine<2>::Vector x) noexcept { return {std::sqrt(x[0]), std::sqrt(x[1])}; }
+[[gnu::always_inline]] inline Machine<2>::Vector root(Machine<2>::Vector x) noexcept {
+  return {std::sqrt(x[0]), std::sqrt(x[1])};
+}
 #endif
 #if defined(__AVX__)
 using Vector4 = Machine<4>::Vector;
@@ -187,7 +162,26 @@ using Vector8 = Machine<8>::Vector;
 [[gnu::always_inline]] inline Vector8 root(Vector8 x) noexcept { return _mm512_maskz_sqrt_pd(0xFF, x); }
 #endif
 
-// f applied to each machine vector of the packs.
+// --- lanes ---------------------------------------------------------------------------------------
+template <int N, bool Halved> struct LanesOf;
+template <int N> using Lanes = LanesOf<N, (N > kNative)>;
+template <int N> struct LanesOf<N, false> { typename Machine<N>::Vector v; };
+template <int N> struct LanesOf<N, true> { Lanes<N / 2> lo, hi; };
+
+template <int N, bool Halved> struct MaskOf;
+template <int N> using Mask = MaskOf<N, (N > kNative)>;
+template <int N> struct MaskOf<N, false> { typename Machine<N>::Flags v; };
+template <int N> struct MaskOf<N, true> { Mask<N / 2> lo, hi; };
+
+template <class T> inline constexpr int kWidth = 0;
+template <> inline constexpr int kWidth<double> = 1;
+template <int N, bool H> inline constexpr int kWidth<LanesOf<N, H>> = N;
+template <int N, bool H> inline constexpr int kWidth<MaskOf<N, H>> = N;
+
+template <class A, class B, class = std::enable_if_t<(kWidth<A> > 0 && kWidth<B> > 0) &&
+                                                     (std::is_class_v<A> || std::is_class_v<B>)>>
+inline constexpr int kCommon = kWidth<A> > kWidth<B> ? kWidth<A> : kWidth<B>;
+
 template <class R, class F, class A, class... B>
 [[gnu::always_inline]] inline R each(const F& f, const A& a, const B&... b) noexcept {
   if constexpr (kWidth<A> > kNative) {
@@ -198,7 +192,6 @@ template <class R, class F, class A, class... B>
   }
 }
 
-// (x, x): a machine vector twice as long.
 template <class Twice, class V> [[gnu::always_inline]] inline Twice doubled(const V& x) noexcept {
 #if defined(__clang__) || __GNUC__ >= 12
   if constexpr (sizeof(Twice) == 32) return __builtin_shufflevector(x, x, 0, 1, 0, 1);
@@ -244,7 +237,6 @@ template <int N, int M, bool H> [[gnu::always_inline]] inline Mask<N> spread(con
   }
 }
 
-// +1 in the first half of the lanes, -1 in the second: the two branches of a level.
 template <int N> [[gnu::always_inline]] inline Lanes<N> signs() noexcept {
   if constexpr (N > kNative) {
     return {spread<N / 2>(1.0), spread<N / 2>(-1.0)};
@@ -309,7 +301,6 @@ template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> abs(const LanesO
   return max(a, -a);
 }
 
-// Square root; 0 below 0.
 template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> sqrt(const LanesOf<N, H>& a) noexcept {
   return each<Lanes<N>>([](auto x) { return root(x); }, max(a, 0.0));
 }
@@ -331,13 +322,11 @@ template <int N> [[gnu::always_inline]] inline Lanes<N> load(const double* in) n
     return out;
   }
 }
-// 1 where the flag is set, else 0.
 template <int N, bool H> [[gnu::always_inline]] inline void store(const MaskOf<N, H>& a, double* out) noexcept {
   store(select(a, 1.0, 0.0), out);
 }
 
-// Angle of the vector (x, y) in (-pi, pi], to 3e-16: reduced to |t| <= tan(pi/8), then a polynomial that
-// is within 6e-17 of the arctangent there. Not defined where both are 0.
+// --- lane angle ----------------------------------------------------------------------------------
 template <class Y, class X, int N = kCommon<Y, X>>
 [[gnu::always_inline]] inline Lanes<N> angle(const Y& narrow_y, const X& narrow_x) noexcept {
   const Lanes<N> y = spread<N>(narrow_y), x = spread<N>(narrow_x);
@@ -358,154 +347,70 @@ template <class Y, class X, int N = kCommon<Y, X>>
   return select(-1.2e-16 * ax > y, -third, third);  // an angle that rounds to -pi is pi
 }
 
-// --- the file's own chain -------------------------------------------------------------------------
-// T = F_0 M(v_1) F_1 ... M(v_n) F_n: M turns about or moves along z, v = scale * q[joint] + offset.
-// Plain loops over arrays: Eigen's expressions would multiply the compile time.
-
-struct Motion {
-  int joint;
-  bool revolute;
-  double scale, offset;
-};
-inline constexpr int kRows = 2;
-inline constexpr Motion kMotions[kRows] = {
-    {0, true, 1.0, 0.0},
-    {1, false, 1.0, 0.0},
-};
-inline constexpr double kFrames[kRows + 1][3][4] = {
-    {{1.0, -0.0, 0.0, 0.0},
-{0.0, 1.0, -0.0, -0.0},
-{0.0, 0.0, 1.0, 0.0}},
-    {{1.0, -0.0, 0.0, 0.3},
-{0.0, 1.0, -0.0, -0.0},
-{0.0, 0.0, 1.0, 0.0}},
-    {{1.0, 0.0, 0.0, 0.0},
-{0.0, 1.0, 0.0, 0.0},
-{0.0, 0.0, 1.0, 0.0}},
-};
-inline constexpr double kSize = 1.0;  // m, of the arm
-
-struct Frame {
-  double R[3][3], p[3];
-};
-
-// Moves along row i by its joint, then by the constant behind it.
-inline void advance(Frame& T, int i, const double* q) noexcept {
-  const Motion& motion = kMotions[i];
-  const auto& F = kFrames[i + 1];
-  const double v = motion.scale * q[motion.joint] + motion.offset;
-  const double c = motion.revolute ? std::cos(v) : 1.0, s = motion.revolute ? std::sin(v) : 0.0;
-  const double d = motion.revolute ? 0.0 : v;
-  for (int r = 0; r < 3; ++r) {
-    const double x = c * T.R[r][0] + s * T.R[r][1], y = c * T.R[r][1] - s * T.R[r][0], z = T.R[r][2];
-    T.p[r] += d * z + (x * F[0][3] + y * F[1][3] + z * F[2][3]);
-    for (int k = 0; k < 3; ++k) T.R[r][k] = x * F[0][k] + y * F[1][k] + z * F[2][k];
-  }
-}
-
-inline Frame first_frame() noexcept {
-  Frame T;
-  for (int r = 0; r < 3; ++r) {
-    for (int k = 0; k < 3; ++k) T.R[r][k] = kFrames[0][r][k];
-    T.p[r] = kFrames[0][r][3];
-  }
-  return T;
-}
-
-inline void cross(const double* a, const double* b, double* out) noexcept {
-  out[0] = a[1] * b[2] - a[2] * b[1];
-  out[1] = a[2] * b[0] - a[0] * b[2];
-  out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-// Tip frame and geometric Jacobian, linear rows first.
-inline Frame chain(const double* q, double (&J)[6][kDof]) noexcept {
-  double axes[kRows][3], origins[kRows][3];
-  Frame T = first_frame();
-  for (int i = 0; i < kRows; ++i) {
-    for (int r = 0; r < 3; ++r) {
-      axes[i][r] = kMotions[i].scale * T.R[r][2];
-      origins[i][r] = T.p[r];
-    }
-    advance(T, i, q);
-  }
-  for (auto& row : J)
-    for (double& x : row) x = 0.0;
-  for (int i = 0; i < kRows; ++i) {
-    const int j = kMotions[i].joint;
-    double linear[3] = {axes[i][0], axes[i][1], axes[i][2]};
-    if (kMotions[i].revolute) {
-      const double arm[3] = {T.p[0] - origins[i][0], T.p[1] - origins[i][1], T.p[2] - origins[i][2]};
-      cross(axes[i], arm, linear);
-      for (int r = 0; r < 3; ++r) J[3 + r][j] += axes[i][r];
-    }
-    for (int r = 0; r < 3; ++r) J[r][j] += linear[r];
-  }
-  return T;
-}
-
-// --- the solution ---------------------------------------------------------------------------------
-// P poses at once. The lanes of a level are the branches of all levels up to it: branch b of lane l is
-// lane b * width + l. Guards are masks, so no lane waits for another.
-
-inline constexpr double a_2 = 0.3;
-
-inline constexpr bool kRevolute[kDof] = {true, false};
-// Lane of each row, depth first.
-inline constexpr int kLaneOfRow[kMaxSolutions] = {0, 1};
-
-template <int P> struct Pose {
-  Lanes<P> t[3][4];
-};
-
-// What DH variables take that a pose leaves free.
-struct Seed {
-
-  Seed() = default;
-  explicit Seed([[maybe_unused]] const double* q) noexcept {
-  }
-};
-
-// Where joint values must lie.
+// --- joint range ---------------------------------------------------------------------------------
 struct Range {
   const double* lower;
   const double* upper;
 };
+
+template <int N> struct Unbounded {
+  double lower[N], upper[N];
+  constexpr Unbounded() noexcept : lower(), upper() {
+    for (int i = 0; i < N; ++i) {
+      lower[i] = -kInfinity;
+      upper[i] = kInfinity;
+    }
+  }
+};
+template <int N> inline constexpr Unbounded<N> kUnbounded{};
 
 template <int N> struct Placed {
   Lanes<N> q;
   Mask<N> inside;
 };
 
-template <int N, bool H>
+template <class Policy, int N, bool H>
 [[gnu::always_inline]] inline Placed<N> clamp(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
-  const auto outside = (range.lower[j] - kLimitTolerance > q) | (q > range.upper[j] + kLimitTolerance);
+  const auto outside =
+      (range.lower[j] - Policy::kLimitTolerance > q) | (q > range.upper[j] + Policy::kLimitTolerance);
   return {max(min(q, range.upper[j]), range.lower[j]), !outside};
 }
 
-// Value of joint j, given in (-pi, pi], on the whole turn that lies in the range.
-template <int N, bool H>
+template <class Policy, int N, bool H>
 [[gnu::always_inline]] inline Placed<N> place(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
-  const auto up = select(range.lower[j] - kLimitTolerance > q, kTurn, 0.0);
-  const auto down = select(q > range.upper[j] + kLimitTolerance, kTurn, 0.0);
-  return clamp(j, q + (up - down), range);
+  const auto up = select(range.lower[j] - Policy::kLimitTolerance > q, kTurn, 0.0);
+  const auto down = select(q > range.upper[j] + Policy::kLimitTolerance, kTurn, 0.0);
+  return clamp<Policy>(j, q + (up - down), range);
 }
 
-// What is known of a row: found inside the range, real, one of a continuum, in want of Newton steps, perhaps
-// equal to another; a joint was left free on the way to it. Kept as sums of these in doubles.
-enum Bit { kFound = 1, kReal = 2, kSingular = 4, kRough = 8, kAlike = 16, kHit = 32 };
+// --- lane rows -----------------------------------------------------------------------------------
+template <int P> struct Pose {
+  Lanes<P> t[3][4];
+};
+
+template <int P> [[gnu::always_inline]] inline Pose<P> gather(const Eigen::Isometry3d* poses) noexcept {
+  Pose<P> out;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 4; ++j) {
+      double entries[std::size_t{P}];
+      for (int p = 0; p < P; ++p) entries[p] = poses[p].matrix().data()[4 * j + i];
+      out.t[i][j] = load<P>(entries);
+    }
+  return out;
+}
+
+enum Bit { kFound = 1, kReal = 2, kSingular = 4, kRough = 8, kMeeting = 16, kHit = 32 };
 
 template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> bit(const MaskOf<N, H>& mask, Bit value) noexcept {
   return select(mask, static_cast<double>(value), 0.0);
 }
 
-template <int P> struct Rows {
-  static constexpr int kLanes = kMaxSolutions * P;
-  alignas(64) double q[kDof][std::size_t{kLanes}];
+template <int Dof, int Most, int P> struct LaneRows {
+  static constexpr int kLanes = Most * P;
+  alignas(64) double q[Dof][std::size_t{kLanes}];
   alignas(64) double flags[std::size_t{kLanes}];
 };
 
-// Distance between the two halves of a level's lanes, which are its branches.
 template <int N, bool H> [[gnu::always_inline]] inline Lanes<N / 2> gap(const LanesOf<N, H>& x) noexcept {
   if constexpr (H) {
     return abs(x.lo - x.hi);
@@ -516,18 +421,650 @@ template <int N, bool H> [[gnu::always_inline]] inline Lanes<N / 2> gap(const La
     return abs(lo - hi);
   }
 }
-// Whether the branches of a level of N lanes are almost equal in x, or in x and y.
-template <int N, class X> [[gnu::always_inline]] inline auto meeting(const X& x) noexcept {
-  return 20.0 * kSame > gap(spread<N>(x));
-}
-template <int N, class X, class Y> [[gnu::always_inline]] inline auto meeting(const X& x, const Y& y) noexcept {
-  return 20.0 * kSame > gap(spread<N>(x)) + gap(spread<N>(y));
+template <class Policy, int N, class... X> [[gnu::always_inline]] inline auto meeting(const X&... x) noexcept {
+  return Policy::kMeeting > (gap(spread<N>(x)) + ...);
 }
 
+// --- small matrix --------------------------------------------------------------------------------
+inline void cross(const double* a, const double* b, double* out) noexcept {
+  out[0] = a[1] * b[2] - a[2] * b[1];
+  out[1] = a[2] * b[0] - a[0] * b[2];
+  out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+template <int N> inline double dot(const double (&a)[N], const double (&b)[N]) noexcept {
+  double sum = 0.0;
+  for (int i = 0; i < N; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+template <int N> inline void solve_symmetric(double (&A)[N][N], double (&x)[N]) noexcept {
+  for (int i = 0; i < N; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      double sum = A[i][j];
+      for (int k = 0; k < j; ++k) sum -= A[i][k] * A[j][k];
+      A[i][j] = i == j ? std::sqrt(std::max(sum, 1e-300)) : sum / A[j][j];
+    }
+    for (int k = 0; k < i; ++k) x[i] -= A[i][k] * x[k];
+    x[i] /= A[i][i];
+  }
+  for (int i = N - 1; i >= 0; --i) {
+    for (int k = i + 1; k < N; ++k) x[i] -= A[k][i] * x[k];
+    x[i] /= A[i][i];
+  }
+}
+
+template <int R, int C> inline bool clearly_regular(const double (&V)[R][C], double bound) noexcept {
+  double L[R][R], determinant = 1.0, trace = 0.0;
+  for (int i = 0; i < R; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      double sum = dot(V[i], V[j]);
+      if (i == j) trace += sum;
+      for (int k = 0; k < j; ++k) sum -= L[i][k] * L[j][k];
+      if (i == j && !(sum > 1e-12)) return false;
+      if (i == j) determinant *= sum;
+      L[i][j] = i == j ? std::sqrt(sum) : sum / L[j][j];
+    }
+  }
+  for (int i = 1; i < R; ++i) determinant *= (R - 1) / trace;
+  return determinant > 4.0 * bound * bound;
+}
+
+template <int R, int C> inline double least_singular_square(double (&V)[R][C]) noexcept {
+  for (int sweep = 0, turned = 1; sweep < 30 && turned; ++sweep) {
+    turned = 0;
+    for (int a = 0; a < R; ++a)
+      for (int b = a + 1; b < R; ++b) {
+        const double aa = dot(V[a], V[a]), bb = dot(V[b], V[b]), ab = dot(V[a], V[b]);
+        if (!(ab * ab > 1e-30 * aa * bb)) continue;
+        turned = 1;
+        const double z = (bb - aa) / (2.0 * ab);
+        const double t = std::copysign(1.0, z) / (std::abs(z) + std::sqrt(1.0 + z * z));
+        const double c = 1.0 / std::sqrt(1.0 + t * t), s = c * t;
+        for (int i = 0; i < C; ++i) {
+          const double x = V[a][i], y = V[b][i];
+          V[a][i] = c * x - s * y;
+          V[b][i] = s * x + c * y;
+        }
+      }
+  }
+  double smallest = kInfinity;
+  for (const auto& v : V) smallest = std::min(smallest, dot(v, v));
+  return smallest;
+}
+
+// --- motion chain --------------------------------------------------------------------------------
+struct Motion {
+  int joint;
+  bool revolute;
+  double scale, offset;
+};
+
+struct Frame {
+  double R[3][3], p[3];
+};
+
+template <class Arm> struct MotionChain {
+  static constexpr int kCount = sizeof(Arm::kMotions) / sizeof(Motion);
+
+  static Frame first() noexcept {
+    Frame T;
+    for (int r = 0; r < 3; ++r) {
+      for (int k = 0; k < 3; ++k) T.R[r][k] = Arm::kFrames[0][r][k];
+      T.p[r] = Arm::kFrames[0][r][3];
+    }
+    return T;
+  }
+
+  static void advance(Frame& T, int i, const double* q) noexcept {
+    const Motion& motion = Arm::kMotions[i];
+    const auto& F = Arm::kFrames[i + 1];
+    const double v = motion.scale * q[motion.joint] + motion.offset;
+    const double c = motion.revolute ? std::cos(v) : 1.0, s = motion.revolute ? std::sin(v) : 0.0;
+    const double d = motion.revolute ? 0.0 : v;
+    for (int r = 0; r < 3; ++r) {
+      const double x = c * T.R[r][0] + s * T.R[r][1], y = c * T.R[r][1] - s * T.R[r][0], z = T.R[r][2];
+      T.p[r] += d * z + (x * F[0][3] + y * F[1][3] + z * F[2][3]);
+      for (int k = 0; k < 3; ++k) T.R[r][k] = x * F[0][k] + y * F[1][k] + z * F[2][k];
+    }
+  }
+
+  static Frame forward(const double* q) noexcept {
+    Frame T = first();
+    for (int i = 0; i < kCount; ++i) advance(T, i, q);
+    return T;
+  }
+
+  [[gnu::noinline]] static Frame forward(const double* q, double (&J)[6][Arm::kDof]) noexcept {
+    double axes[kCount][3], origins[kCount][3];
+    Frame T = first();
+    for (int i = 0; i < kCount; ++i) {
+      for (int r = 0; r < 3; ++r) {
+        axes[i][r] = Arm::kMotions[i].scale * T.R[r][2];
+        origins[i][r] = T.p[r];
+      }
+      advance(T, i, q);
+    }
+    for (auto& row : J)
+      for (double& x : row) x = 0.0;
+    for (int i = 0; i < kCount; ++i) {
+      const int j = Arm::kMotions[i].joint;
+      double linear[3] = {axes[i][0], axes[i][1], axes[i][2]};
+      if (Arm::kMotions[i].revolute) {
+        const double arm[3] = {T.p[0] - origins[i][0], T.p[1] - origins[i][1], T.p[2] - origins[i][2]};
+        cross(axes[i], arm, linear);
+        for (int r = 0; r < 3; ++r) J[3 + r][j] += axes[i][r];
+      }
+      for (int r = 0; r < 3; ++r) J[r][j] += linear[r];
+    }
+    return T;
+  }
+};
+
+// --- pose error ----------------------------------------------------------------------------------
+struct Entry {
+  int row, column;
+};
+
+template <class Arm> struct PoseError {
+  static constexpr int kCount = Arm::kWholePose ? 6 : sizeof(Arm::kRead) / sizeof(Entry);
+  double error[kCount], slope[kCount][Arm::kDof];
+
+  PoseError(const double* q, const Eigen::Isometry3d& pose) noexcept {
+    const double* t = pose.matrix().data();  // columns first
+    double J[6][Arm::kDof];
+    const Frame T = MotionChain<Arm>::forward(q, J);
+    if constexpr (Arm::kWholePose) {
+      compare_all(t, T, J);
+    } else {
+      compare_read(t, T, J);
+    }
+    for (const int j : Arm::kFreeJoints)
+      for (auto& row : slope) row[j] = 0.0;
+  }
+
+  double largest() const noexcept {
+    double worst = 0.0;
+    for (const double x : error) worst = std::abs(x) <= worst ? worst : std::abs(x);
+    return worst;
+  }
+
+ private:
+  void compare_all(const double* t, const Frame& T, const double (&J)[6][Arm::kDof]) noexcept {
+    double S[3][3];
+    for (int i = 0; i < 3; ++i) {
+      error[i] = (t[12 + i] - T.p[i]) / Arm::kSize;
+      for (int k = 0; k < 3; ++k) S[i][k] = t[i] * T.R[k][0] + t[4 + i] * T.R[k][1] + t[8 + i] * T.R[k][2];
+    }
+    const double flipped = S[0][0] + S[1][1] + S[2][2] < 1.0 ? 1.0 : 0.0;  // more than a right angle off
+    error[3] = 0.5 * (S[2][1] - S[1][2]) + flipped;
+    error[4] = 0.5 * (S[0][2] - S[2][0]) + flipped;
+    error[5] = 0.5 * (S[1][0] - S[0][1]) + flipped;
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < Arm::kDof; ++j) slope[i][j] = i < 3 ? J[i][j] / Arm::kSize : J[i][j];
+  }
+
+  void compare_read(const double* t, const Frame& T, const double (&J)[6][Arm::kDof]) noexcept {
+    for (int i = 0; i < kCount; ++i) {
+      const auto [r, c] = Arm::kRead[i];
+      const int u = (r + 1) % 3, v = (r + 2) % 3;
+      const bool length = c == 3;
+      error[i] = length ? (t[12 + r] - T.p[r]) / Arm::kSize : t[4 * c + r] - T.R[r][c];
+      for (int j = 0; j < Arm::kDof; ++j)
+        slope[i][j] = length ? J[r][j] / Arm::kSize : J[3 + u][j] * T.R[v][c] - J[3 + v][j] * T.R[u][c];
+    }
+  }
+};
+
+// --- newton refinement ---------------------------------------------------------------------------
+struct RefineStage {
+  int steps;
+  double fine, promising;
+};
+
+template <class Arm> struct NewtonRefinement {
+  using Policy = typename Arm::Policy;
+
+  static void step(const PoseError<Arm>& at, double worst, double (&q)[Arm::kDof]) noexcept {
+    const double bounded = std::min(worst, 1.0);
+    double A[Arm::kDof][Arm::kDof], x[Arm::kDof];
+    for (int i = 0; i < Arm::kDof; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        A[i][j] = 0.0;
+        for (int e = 0; e < at.kCount; ++e) A[i][j] += at.slope[e][i] * at.slope[e][j];
+      }
+      A[i][i] += std::max(Policy::kLeastDamping, Policy::kDamping * bounded * bounded);
+      x[i] = 0.0;
+      for (int e = 0; e < at.kCount; ++e) x[i] += at.slope[e][i] * at.error[e];
+    }
+    solve_symmetric(A, x);
+    for (int j = 0; j < Arm::kDof; ++j) q[j] += std::min(std::max(x[j], -Policy::kLargestStep), Policy::kLargestStep);
+  }
+
+  static double run(double* q, const Eigen::Isometry3d& pose, int steps) noexcept {
+    double trial[Arm::kDof], best = kInfinity;
+    std::copy_n(q, Arm::kDof, trial);
+    for (int i = 0, stalled = 0;; ++i) {
+      const PoseError<Arm> at(trial, pose);
+      const double worst = at.largest();
+      stalled = worst < Policy::kProgress * best && worst > Policy::kConverged ? 0 : stalled + 1;
+      if (worst < best) {
+        best = worst;
+        std::copy_n(trial, Arm::kDof, q);
+      }
+      if (i == steps || stalled == Policy::kPatience || !(best > Policy::kConverged)) return best;
+      step(at, worst, trial);
+    }
+  }
+
+  static bool refine(double* q, const Eigen::Isometry3d& pose) noexcept {
+    double error = kInfinity;
+    for (const RefineStage& stage : Policy::kRefinement) {
+      error = run(q, pose, stage.steps);
+      if (!(error >= stage.fine && error < stage.promising)) break;
+    }
+    return error < Policy::kArrived;
+  }
+};
+
+// --- rank loss -----------------------------------------------------------------------------------
+template <class Arm> struct RankLoss {
+  static constexpr int kMoving = Arm::kDof - Arm::kFree, kEquations = PoseError<Arm>::kCount;
+  static constexpr bool kTall = kMoving < kEquations;
+
+  static bool below(const double* q, double bound) noexcept {
+    const PoseError<Arm> at(q, Eigen::Isometry3d::Identity());
+    double V[kTall ? kMoving : kEquations][kTall ? kEquations : kMoving];
+    for (int e = 0; e < kEquations; ++e)
+      for (int j = 0, k = 0; j < Arm::kDof; ++j) {
+        if (Arm::kHeld[j]) continue;
+        V[kTall ? k : e][kTall ? e : k] = at.slope[e][j];
+        ++k;
+      }
+    return !clearly_regular(V, bound) && least_singular_square(V) < bound * bound;
+  }
+};
+
+// --- solution rows -------------------------------------------------------------------------------
+template <class Arm> struct SolutionRows {
+  using Options = typename Arm::Options;
+  using Policy = typename Arm::Policy;
+  using Solutions = typename Arm::Solutions;
+
+  static double* row(Solutions& out, int k) noexcept { return out.q.data()[k].data(); }
+  static bool& flag(Solutions& out, int k) noexcept { return out.singular.data()[k]; }
+  static void move(Solutions& out, int from, int to) noexcept {
+    std::copy_n(row(out, from), Arm::kDof, row(out, to));
+    flag(out, to) = flag(out, from);
+  }
+
+  static bool same(const double* a, const double* b) noexcept {
+    for (int j = 0; j < Arm::kDof; ++j) {
+      double gap = std::abs(a[j] - b[j]);
+      if (Arm::kRevolute[j] && gap > Policy::kCoincident) gap = std::abs(gap - kTurn * std::nearbyint(gap / kTurn));
+      if (!(gap <= Policy::kCoincident)) return false;
+    }
+    return true;
+  }
+
+  static void add(Solutions& out, const double* q, bool singular) noexcept {
+    if (out.count == Arm::kMaxSolutions) return;
+    for (int k = 0; k < out.count; ++k)
+      if (same(q, row(out, k))) return;
+    std::copy_n(q, Arm::kDof, row(out, out.count));
+    flag(out, out.count) = singular;
+    ++out.count;
+  }
+
+  static bool place(double* q, const Options& options) noexcept {
+    const double* seed = options.seed ? options.seed->data() : nullptr;
+    for (int j = 0; j < Arm::kDof; ++j) {
+      const double low = Arm::kLower[j] - Policy::kLimitTolerance, high = Arm::kUpper[j] + Policy::kLimitTolerance;
+      if (Arm::kRevolute[j] && !Arm::kHeld[j]) {
+        q[j] += q[j] <= -kPi ? kTurn : q[j] > kPi ? -kTurn : 0.0;
+        double shift = seed ? kTurn * std::nearbyint((seed[j] - q[j]) / kTurn) : 0.0;
+        if (options.limits && q[j] + shift < low) shift = kTurn * std::ceil((low - q[j]) / kTurn);
+        if (options.limits && q[j] + shift > high) shift = kTurn * std::floor((high - q[j]) / kTurn);
+        q[j] += shift;
+      }
+      if (!options.limits) continue;
+      if (!(low <= q[j] && q[j] <= high)) return false;
+      q[j] = std::min(std::max(q[j], Arm::kLower[j]), Arm::kUpper[j]);
+    }
+    return true;
+  }
+
+  static void place_all(const Options& options, Solutions& out) noexcept {
+    int kept = 0;
+    for (int k = 0; k < out.count; ++k) {
+      if (kept < k) move(out, k, kept);
+      kept += place(row(out, kept), options) ? 1 : 0;
+    }
+    out.count = kept;
+  }
+
+  static void sort_by_distance(Solutions& out, const double* seed) noexcept {
+    double distance[Arm::kMaxSolutions];
+    for (int k = 0; k < out.count; ++k) {
+      double q[Arm::kDof], mine = 0.0;
+      std::copy_n(row(out, k), Arm::kDof, q);
+      for (int j = 0; j < Arm::kDof; ++j) mine += (q[j] - seed[j]) * (q[j] - seed[j]);
+      const bool singular = flag(out, k);
+      int at = k;
+      for (; at > 0 && distance[at - 1] > mine; --at) {
+        move(out, at - 1, at);
+        distance[at] = distance[at - 1];
+      }
+      std::copy_n(q, Arm::kDof, row(out, at));
+      flag(out, at) = singular;
+      distance[at] = mine;
+    }
+  }
+};
+
+// --- careful solve -------------------------------------------------------------------------------
+template <class Arm> struct CarefulSolve {
+  using Options = typename Arm::Options;
+  using Policy = typename Arm::Policy;
+  using Refinement = NewtonRefinement<Arm>;
+  using Row = SolutionRows<Arm>;
+  using Rows = typename Arm::template Rows<1>;
+  using Solutions = typename Arm::Solutions;
+
+  [[gnu::always_inline]] static void solve(const Eigen::Isometry3d& pose, const Options& options,
+                                           Solutions& out) noexcept {
+    bool real = false;
+    for (int turn = 0; turn < Policy::kTries; ++turn) {
+      double start[Arm::kDof];
+      for (int j = 0; j < Arm::kDof; ++j)
+        start[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kRevolute[j] ? turn * Policy::kTryStep : 0.0);
+      for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) start[Arm::kFreeJoints[k]] = options.free[k];
+      const bool hit = find_rows(pose, start, options, out);
+      if constexpr (Arm::kSolvesBeside)
+        if (turn == 0) Arm::add_rows_beside(pose, start, options, out);
+      real = real || out.count > 0;
+      Row::place_all(options, out);
+      if (out.count == 0 && options.seed && Refinement::refine(start, pose)) {
+        add(out, start, true);
+        Row::place_all(options, out);
+      }
+      if (out.count > 0 || !hit) break;
+    }
+    if (options.seed) Row::sort_by_distance(out, options.seed->data());
+    out.status = out.count > 0 ? Arm::Status::Ok : real ? Arm::Status::Limits : Arm::Status::Unreachable;
+  }
+
+  static void find_lanes(const Eigen::Isometry3d& pose, const double* q0, const Options& options, Rows& out) noexcept {
+    constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
+    Arm::branches(gather<1>(&pose), typename Arm::Seed(q0), options.free, anywhere, out);
+  }
+
+  static void add_refined(const Eigen::Isometry3d& pose, const Rows& rows, int lane, Solutions& out) noexcept {
+    double q[Arm::kDof];
+    for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
+    if (Arm::kRefined || Refinement::refine(q, pose)) add(out, q, (bits(rows, lane) & kSingular) != 0);
+  }
+
+ private:
+  static int bits(const Rows& rows, int lane) noexcept { return static_cast<int>(rows.flags[lane]); }
+
+  static void add(Solutions& out, const double* q, bool marked) noexcept {
+    Row::add(out, q, RankLoss<Arm>::below(q, marked ? Policy::kContinuumRankLoss : Policy::kRankLoss));
+  }
+
+  [[gnu::always_inline]] static bool find_rows(const Eigen::Isometry3d& pose, const double* q0, const Options& options,
+                                               Solutions& out) noexcept {
+    Rows rows;
+    find_lanes(pose, q0, options, rows);
+    out.count = 0;
+    double q[Arm::kDof];
+    bool hit = false;
+    for (const int lane : Arm::kLaneOfRow) hit = hit || (bits(rows, lane) & kHit) != 0;
+    if (hit) {
+      std::copy_n(q0, Arm::kDof, q);
+      if (Refinement::refine(q, pose)) add(out, q, true);
+    }
+    for (const int lane : Arm::kLaneOfRow)
+      if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
+        add_refined(pose, rows, lane, out);
+    for (const int lane : Arm::kLaneOfRow) {
+      if (Arm::kRefined || (bits(rows, lane) & (kReal | kRough)) != kReal) continue;
+      for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
+      Row::add(out, q, false);
+    }
+    return hit;
+  }
+};
+
+// --- lane solve ----------------------------------------------------------------------------------
+template <class Arm> struct LaneSolve {
+  static constexpr int kBatch = kNative > 2 ? kNative / 2 : 1;  // poses at once
+  using Options = typename Arm::Options;
+  using Solutions = typename Arm::Solutions;
+  using Row = SolutionRows<Arm>;
+  template <int P> using Rows = typename Arm::template Rows<P>;
+
+  template <int P> static void solve(const Eigen::Isometry3d* poses, const Options& options, Solutions* out) noexcept {
+    const bool bounded = options.limits && !place_later(options);
+    Rows<P> rows;
+    Arm::branches(gather<P>(poses), typename Arm::Seed(), options.free, bounded ? kLimits : kAnywhere, rows);
+    for (int p = 0; p < P; ++p)
+      if (!collect(rows, p, options, out[p])) fall_back(poses[p], options, out[p]);
+  }
+
+ private:
+  static constexpr Range kLimits = {Arm::kLower.data(), Arm::kUpper.data()};
+  static constexpr Range kAnywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
+
+  [[gnu::cold, gnu::noinline]] static void fall_back(const Eigen::Isometry3d& pose, const Options& options,
+                                                     Solutions& out) noexcept {
+    CarefulSolve<Arm>::solve(pose, options, out);
+  }
+
+  static bool place_later(const Options& options) noexcept { return Arm::kFarLimits || options.seed != nullptr; }
+
+  template <int P> static bool collect(const Rows<P>& rows, int p, const Options& options, Solutions& out) noexcept {
+    int count = 0, seen = 0;
+    for (const int row : Arm::kLaneOfRow) {
+      const int lane = row * P + p;
+      const int bits = static_cast<int>(rows.flags[lane]);
+      double* q = Row::row(out, count);
+      for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
+      Row::flag(out, count) = false;
+      count += bits & kFound;
+      seen |= bits;
+    }
+    if ((seen & (kRough | kHit)) != 0) return false;
+    out.count = count;
+    if ((seen & kMeeting) != 0) {
+      out.count = 0;
+      for (int k = 0; k < count; ++k) {
+        double q[Arm::kDof];
+        std::copy_n(Row::row(out, k), Arm::kDof, q);
+        Row::add(out, q, false);
+      }
+    }
+    if (place_later(options)) Row::place_all(options, out);
+    if (options.seed) Row::sort_by_distance(out, options.seed->data());
+    out.status = out.count > 0 ? Arm::Status::Ok : (seen & kReal) != 0 ? Arm::Status::Limits : Arm::Status::Unreachable;
+    return out.count > 0 || !options.seed;
+  }
+};
+
+// --- pose reading --------------------------------------------------------------------------------
+template <class Policy, int N>
+inline constexpr double kMostDefect =
+    4.0 * N * Policy::kPoseTolerance * Policy::kPoseTolerance * (1.0 + 2.0 * N * Policy::kPoseTolerance);
+
+template <class Arm> struct PoseReading {
+  using Policy = typename Arm::Policy;
+  using Reading = typename Arm::Reading;
+
+  static bool exact(const Eigen::Isometry3d& pose) noexcept {
+    return good(pose.matrix().data(), Policy::kOrthonormal * Policy::kOrthonormal);
+  }
+
+  static bool clean(Eigen::Isometry3d& pose) noexcept {
+    double* t = pose.matrix().data();
+    if (!good(t, Reading::kMost)) return false;
+    Reading::clean(t);
+    return true;
+  }
+
+ private:
+  static bool good(const double* t, double most) noexcept {
+    double defect = Reading::defect(t);
+    for (const Entry& entry : Arm::kRead) defect += 0.0 * t[4 * entry.column + entry.row];
+    if (Arm::kWholePose && !(t[3] == 0.0 && t[7] == 0.0 && t[11] == 0.0 && t[15] == 1.0)) return false;
+    return defect <= most && Reading::proper(t);
+  }
+};
+
+struct EntriesReading {
+  static constexpr double kMost = 0.0;
+  static double defect(const double*) noexcept { return 0.0; }
+  static bool proper(const double*) noexcept { return true; }
+  static void clean(double*) noexcept {}
+};
+
+// --- pose solver ---------------------------------------------------------------------------------
+template <class Arm, template <class> class Way> struct PoseSolver {
+  using Options = typename Arm::Options;
+  using Solutions = typename Arm::Solutions;
+
+  static void solve(const Eigen::Isometry3d* poses, std::ptrdiff_t count, const Options& given,
+                    Solutions* out) noexcept {
+    constexpr int P = Way<Arm>::kBatch;
+    const Options options = checked(given);
+    if constexpr (P > 1)
+      for (; count >= P; count -= P, poses += P, out += P) some<P>(poses, options, out);
+    for (; count > 0; --count, ++poses, ++out) some<1>(poses, options, out);
+  }
+
+  static void solve(const Eigen::Isometry3d& pose, const Options& given, Solutions& out) noexcept {
+    some<1>(&pose, checked(given), &out);
+  }
+
+ private:
+  static Options checked(const Options& options) noexcept {
+    Options out = options;
+    for (int j = 0; j < Arm::kDof && out.seed; ++j)
+      if (!(std::abs(out.seed->data()[j]) < kInfinity)) out.seed = nullptr;
+    return out;
+  }
+
+  template <int P> static void some(const Eigen::Isometry3d* poses, const Options& options, Solutions* out) noexcept {
+    bool exact = true;
+    for (int p = 0; p < P; ++p) exact = PoseReading<Arm>::exact(poses[p]) && exact;
+    if (exact) {
+      Way<Arm>::template solve<P>(poses, options, out);
+    } else {
+      for (int p = 0; p < P; ++p) clean_and_solve(poses[p], options, out[p]);
+    }
+  }
+
+  [[gnu::cold, gnu::noinline]] static void clean_and_solve(const Eigen::Isometry3d& pose, const Options& options,
+                                                           Solutions& out) noexcept {
+    Eigen::Isometry3d clean = pose;
+    if (PoseReading<Arm>::exact(pose) || PoseReading<Arm>::clean(clean)) {
+      Way<Arm>::template solve<1>(&clean, options, &out);
+    } else {
+      out.count = 0;
+      out.status = Arm::Status::Invalid;
+    }
+  }
+};
+
+// --- this arm -------------------------------------------------------------------------------------
+
+struct Policy {
+  static constexpr double kArrived = 5e-10;
+  static constexpr double kPoseTolerance = 1e-06;
+  static constexpr double kOrthonormal = 1e-14;
+  static constexpr double kCoincident = 1e-06;
+  static constexpr double kMeeting = 2e-05;
+  static constexpr double kLimitTolerance = 1e-09;
+  static constexpr int kTries = 16;
+  static constexpr double kTryStep = 0.39269908169872414;
+  static constexpr double kRankLoss = 1e-07;
+  static constexpr double kContinuumRankLoss = 0.001;
+  static constexpr double kLeastDamping = 1e-12;
+  static constexpr double kDamping = 0.001;
+  static constexpr double kLargestStep = 0.3;
+  static constexpr double kConverged = 1e-13;
+  static constexpr int kPatience = 5;
+  static constexpr double kProgress = 0.8;
+  static constexpr RefineStage kRefinement[] = {{3, 1e-12, 0.1}, {6, 5e-10, 0.001}, {30, 0.0, 0.0}};
+};
+
+struct Seed;
+
+struct Arm {
+  using Options = pan_lift_ik::Options;
+  using Policy = detail::Policy;
+  using Seed = detail::Seed;
+  using Solutions = pan_lift_ik::Solutions;
+  using Status = pan_lift_ik::Status;
+  template <int P> using Rows = LaneRows<2, 2, P>;
+
+  static constexpr int kDof = 2, kFree = 0, kMaxSolutions = 2;
+  static constexpr auto& kLower = pan_lift_ik::kLower;
+  static constexpr auto& kUpper = pan_lift_ik::kUpper;
+  static constexpr std::array<int, kFree> kFreeJoints = {};
+  static constexpr bool kRevolute[kDof] = {true, false};
+  static constexpr bool kHeld[kDof] = {false, false};
+
+  // what the task reads
+  static constexpr bool kWholePose = false;
+  using Reading = EntriesReading;
+  static constexpr Entry kRead[] = {{0, 3}, {1, 3}, {2, 3}};
+
+  // the file's own chain
+  static constexpr double kSize = 1.0;  // m
+  static constexpr Motion kMotions[] = {
+      {0, true, 1.0, 0.0},
+      {1, false, 1.0, 0.0},
+  };
+  static constexpr double kFrames[][3][4] = {
+      {{1.0, -0.0, 0.0, 0.0},
+{0.0, 1.0, -0.0, -0.0},
+{0.0, 0.0, 1.0, 0.0}},
+      {{1.0, -0.0, 0.0, 0.3},
+{0.0, 1.0, -0.0, -0.0},
+{0.0, 0.0, 1.0, 0.0}},
+      {{1.0, 0.0, 0.0, 0.0},
+{0.0, 1.0, 0.0, 0.0},
+{0.0, 0.0, 1.0, 0.0}},
+  };
+
+  static constexpr bool kFarLimits = false;
+  static constexpr bool kRefined = false;
+  static constexpr bool kSolvesBeside = false;
+  // Lane of each row, depth first.
+  static constexpr int kLaneOfRow[kMaxSolutions] = {0, 1};
+
+  // The closed form.
+  template <int P>
+  static void branches(const Pose<P>& pose, const Seed& seed, const std::array<double, kFree>& held,
+                       const Range& range, Rows<P>& rows) noexcept;
+};
+
+// --- the solution ---------------------------------------------------------------------------------
+
+inline constexpr double a_2 = 0.3;
+
+// What DH variables take that a pose leaves free.
+struct Seed {
+
+  Seed() = default;
+  explicit Seed([[maybe_unused]] const double* q) noexcept {
+  }
+};
+
 template <int P>
-inline void branches(const Pose<P>& pose, [[maybe_unused]] const Seed& seed,
-                     [[maybe_unused]] const std::array<double, kFree>& held, [[maybe_unused]] const Range& range,
-                     Rows<P>& rows) noexcept {
+inline void Arm::branches(const Pose<P>& pose, [[maybe_unused]] const Seed& seed,
+                          [[maybe_unused]] const std::array<double, kFree>& held,
+                          [[maybe_unused]] const Range& range, Rows<P>& rows) noexcept {
   const auto t03 = pose.t[0][3];
   const auto t13 = pose.t[1][3];
   const auto t23 = pose.t[2][3];
@@ -541,8 +1078,8 @@ inline void branches(const Pose<P>& pose, [[maybe_unused]] const Seed& seed,
   const auto real_1 = (1e-09 > abs(error));
 
   // joint values, each on the turn inside its limits
-  const auto placed_1 = place(0, angle(s1, c1), range);
-  const auto placed_2 = clamp(1, t23, range);
+  const auto placed_1 = place<Policy>(0, angle(s1, c1), range);
+  const auto placed_2 = clamp<Policy>(1, t23, range);
 
   constexpr int n = Rows<P>::kLanes;
   store(spread<n>(placed_1.q), rows.q[0]);
@@ -551,388 +1088,16 @@ inline void branches(const Pose<P>& pose, [[maybe_unused]] const Seed& seed,
   const auto inside = placed_1.inside & placed_2.inside;
   const auto found = bit(real_1, kReal) + bit(real_1 & inside, kFound);
   constexpr double degenerate = 0.0;
-  const auto alike = bit(real_1 & (meeting<2 * P>(c1, s1)), kAlike);
+  const auto meets = bit(real_1 & (meeting<Policy, 2 * P>(c1, s1)), kMeeting);
   constexpr double rough = 0.0;
-  store(spread<n>(found + ((degenerate + alike) + rough)), rows.flags);
+  store(spread<n>(found + ((degenerate + meets) + rough)), rows.flags);
 }
-
-// --- Newton steps on the file's own chain ---------------------------------------------------------
-
-inline constexpr int kMoving = kDof - kFree;
-inline constexpr int kEquations = 3;
-// The entries of the pose that the task reads: row, column.
-inline constexpr int kRead[kEquations][2] = {{0, 3}, {1, 3}, {2, 3}};
-
-// Error of a configuration, lengths over the arm's size, and its slope by the joints that move.
-struct Offset {
-  double error[kEquations], slope[kEquations][kDof];
-};
-
-inline void offset_from(const double* q, const Eigen::Isometry3d& pose, Offset& out) noexcept {
-  const double* t = pose.matrix().data();  // columns first
-  double J[6][kDof];
-  const Frame T = chain(q, J);
-  for (int i = 0; i < kEquations; ++i) {
-    const int r = kRead[i][0], c = kRead[i][1], u = (r + 1) % 3, v = (r + 2) % 3;
-    const bool length = c == 3;
-    out.error[i] = length ? (t[12 + r] - T.p[r]) / kSize : t[4 * c + r] - T.R[r][c];
-    for (int j = 0; j < kDof; ++j)
-      out.slope[i][j] = length ? J[r][j] / kSize : J[3 + u][j] * T.R[v][c] - J[3 + v][j] * T.R[u][c];
-  }
-}
-
-// x = A^-1 x by Cholesky's factor, which takes A's place.
-inline void solve_symmetric(double (&A)[kDof][kDof], double (&x)[kDof]) noexcept {
-  for (int i = 0; i < kDof; ++i) {
-    for (int j = 0; j <= i; ++j) {
-      double sum = A[i][j];
-      for (int k = 0; k < j; ++k) sum -= A[i][k] * A[j][k];
-      A[i][j] = i == j ? std::sqrt(std::max(sum, 1e-300)) : sum / A[j][j];
-    }
-    for (int k = 0; k < i; ++k) x[i] -= A[i][k] * x[k];
-    x[i] /= A[i][i];
-  }
-  for (int i = kDof - 1; i >= 0; --i) {
-    for (int k = i + 1; k < kDof; ++k) x[i] -= A[k][i] * x[k];
-    x[i] /= A[i][i];
-  }
-}
-
-// Damped least squares: at a fold of the solution set the steps halve the error.
-inline void step(const Offset& at, double worst, double (&q)[kDof]) noexcept {
-  const double bounded = std::min(worst, 1.0);
-  double A[kDof][kDof], x[kDof];
-  for (int i = 0; i < kDof; ++i) {
-    for (int j = 0; j <= i; ++j) {
-      A[i][j] = 0.0;
-      for (int e = 0; e < kEquations; ++e) A[i][j] += at.slope[e][i] * at.slope[e][j];
-    }
-    A[i][i] += std::max(1e-12, 1e-3 * bounded * bounded);
-    x[i] = 0.0;
-    for (int e = 0; e < kEquations; ++e) x[i] += at.slope[e][i] * at.error[e];
-  }
-  solve_symmetric(A, x);
-  for (int j = 0; j < kDof; ++j) q[j] += std::min(std::max(x[j], -0.3), 0.3);
-}
-
-inline constexpr int kPatience = 5;  // steps without progress
-
-// At most `steps` Newton steps; the error that is left.
-inline double newton(double* q, const Eigen::Isometry3d& pose, int steps) noexcept {
-  double trial[kDof], best = kInfinity;
-  std::copy_n(q, kDof, trial);
-  for (int i = 0, stalled = 0;; ++i) {
-    Offset at;
-    offset_from(trial, pose, at);
-    double worst = 0.0;
-    for (const double x : at.error) worst = std::abs(x) <= worst ? worst : std::abs(x);
-    stalled = worst < 0.8 * best && worst > 1e-13 ? 0 : stalled + 1;
-    if (worst < best) {
-      best = worst;
-      std::copy_n(trial, kDof, q);
-    }
-    if (i == steps || stalled == kPatience || !(best > 1e-13)) return best;
-    step(at, worst, trial);
-  }
-}
-
-// Whether Newton steps lead from q to the pose: only what is promising takes many. All digits are wanted where
-// they come easily, as rows may lie on a limit.
-inline bool polish(double* q, const Eigen::Isometry3d& pose) noexcept {
-  double error = newton(q, pose, 3);
-  if (error >= 1e-12 && error < 0.1) error = newton(q, pose, 6);
-  if (error >= 0.5 * kTolerance && error < 1e-3) error = newton(q, pose, 30);
-  return error < 0.5 * kTolerance;
-}
-
-inline double dot(const double* a, const double* b, int n) noexcept {
-  double sum = 0.0;
-  for (int i = 0; i < n; ++i) sum += a[i] * b[i];
-  return sum;
-}
-
-// The smaller and the larger side of the slope's matrix.
-inline constexpr int kRank = kMoving;
-inline constexpr int kLong = kEquations;
-
-// Whether the smallest singular value is above `bound` for sure: it is at least the root of the determinant
-// over what the others can be at most, by the inequality of the means.
-inline bool clearly_regular(const double (&V)[kRank][kLong], double bound) noexcept {
-  double L[kRank][kRank], determinant = 1.0, trace = 0.0;
-  for (int i = 0; i < kRank; ++i) {
-    for (int j = 0; j <= i; ++j) {
-      double sum = dot(V[i], V[j], kLong);
-      if (i == j) trace += sum;
-      for (int k = 0; k < j; ++k) sum -= L[i][k] * L[j][k];
-      if (i == j && !(sum > 1e-12)) return false;
-      if (i == j) determinant *= sum;
-      L[i][j] = i == j ? std::sqrt(sum) : sum / L[j][j];
-    }
-  }
-  for (int i = 1; i < kRank; ++i) determinant *= (kRank - 1) / trace;
-  return determinant > 4.0 * bound * bound;
-}
-
-// Whether the slope at q has a singular value below `bound`: one-sided Jacobi rotations.
-inline bool loses_rank(const double* q, double bound) noexcept {
-  double V[kRank][kLong], smallest = kInfinity;
-  Offset at;
-  offset_from(q, Eigen::Isometry3d::Identity(), at);
-  for (int e = 0; e < kEquations; ++e)
-    for (int j = 0, k = 0; j < kDof; ++j) {
-      V[k][e] = at.slope[e][j];
-      ++k;
-    }
-  if (clearly_regular(V, bound)) return false;
-  for (int sweep = 0, turned = 1; sweep < 30 && turned; ++sweep) {
-    turned = 0;
-    for (int a = 0; a < kRank; ++a)
-      for (int b = a + 1; b < kRank; ++b) {
-        const double aa = dot(V[a], V[a], kLong), bb = dot(V[b], V[b], kLong), ab = dot(V[a], V[b], kLong);
-        if (!(ab * ab > 1e-30 * aa * bb)) continue;
-        turned = 1;
-        const double z = (bb - aa) / (2.0 * ab);
-        const double t = std::copysign(1.0, z) / (std::abs(z) + std::sqrt(1.0 + z * z));
-        const double c = 1.0 / std::sqrt(1.0 + t * t), s = c * t;
-        for (int i = 0; i < kLong; ++i) {
-          const double x = V[a][i], y = V[b][i];
-          V[a][i] = c * x - s * y;
-          V[b][i] = s * x + c * y;
-        }
-      }
-  }
-  for (const auto& v : V) smallest = std::min(smallest, dot(v, v, kLong));
-  return smallest < bound * bound;
-}
-
-// --- from lanes to rows ---------------------------------------------------------------------------
-
-// Joints whose values are the same a whole turn further.
-inline constexpr bool kTurning[kDof] = {true, false};
-inline constexpr double kUnboundedLower[kDof] = {-kInfinity, -kInfinity};
-inline constexpr double kUnboundedUpper[kDof] = {kInfinity, kInfinity};
-inline constexpr Range kUnbounded = {kUnboundedLower, kUnboundedUpper};
-
-// Whether two rows are the same, whole turns aside.
-inline bool same(const double* a, const double* b) noexcept {
-  for (int j = 0; j < kDof; ++j) {
-    double gap = std::abs(a[j] - b[j]);
-    if (kRevolute[j] && gap > kSame) gap = std::abs(gap - kTurn * std::nearbyint(gap / kTurn));
-    if (!(gap <= kSame)) return false;
-  }
-  return true;
-}
-
-inline double* row_of(Solutions& out, int k) noexcept { return out.q.data()[k].data(); }
-inline bool& flag_of(Solutions& out, int k) noexcept { return out.singular.data()[k]; }
-inline void move_row(Solutions& out, int from, int to) noexcept {
-  std::copy_n(row_of(out, from), kDof, row_of(out, to));
-  flag_of(out, to) = flag_of(out, from);
-}
-
-// Puts a row on the turns that the seed or the limits ask for; false where it is outside.
-inline bool place_row(double* q, const Options& options) noexcept {
-  const double* seed = options.seed ? options.seed->data() : nullptr;
-  for (int j = 0; j < kDof; ++j) {
-    const double low = kLower.data()[j], high = kUpper.data()[j];
-    if (kTurning[j]) {
-      q[j] += q[j] <= -kPi ? kTurn : q[j] > kPi ? -kTurn : 0.0;
-      double shift = seed ? kTurn * std::nearbyint((seed[j] - q[j]) / kTurn) : 0.0;
-      if (options.limits && q[j] + shift < low - kLimitTolerance)
-        shift = kTurn * std::ceil((low - kLimitTolerance - q[j]) / kTurn);
-      if (options.limits && q[j] + shift > high + kLimitTolerance)
-        shift = kTurn * std::floor((high + kLimitTolerance - q[j]) / kTurn);
-      q[j] += shift;
-    }
-    if (!options.limits) continue;
-    if (!(low - kLimitTolerance <= q[j] && q[j] <= high + kLimitTolerance)) return false;
-    q[j] = std::min(std::max(q[j], low), high);
-  }
-  return true;
-}
-
-// The rows that place_row keeps.
-inline void place_rows(const Options& options, Solutions& out) noexcept {
-  int kept = 0;
-  for (int k = 0; k < out.count; ++k) {
-    if (kept < k) move_row(out, k, kept);
-    kept += place_row(row_of(out, kept), options) ? 1 : 0;
-  }
-  out.count = kept;
-}
-
-// Adds a row unless it is there already.
-inline void add(Solutions& out, const double* q, bool singular) noexcept {
-  if (out.count == kMaxSolutions) return;
-  for (int k = 0; k < out.count; ++k)
-    if (same(q, row_of(out, k))) return;
-  std::copy_n(q, kDof, row_of(out, out.count));
-  flag_of(out, out.count) = singular;
-  ++out.count;
-}
-
-inline void sort_by_distance(Solutions& out, const double* seed) noexcept {
-  double distance[kMaxSolutions];
-  for (int k = 0; k < out.count; ++k) {
-    double row[kDof], mine = 0.0;
-    std::copy_n(row_of(out, k), kDof, row);
-    for (int j = 0; j < kDof; ++j) mine += (row[j] - seed[j]) * (row[j] - seed[j]);
-    const bool flag = flag_of(out, k);
-    int at = k;
-    for (; at > 0 && distance[at - 1] > mine; --at) {
-      move_row(out, at - 1, at);
-      distance[at] = distance[at - 1];
-    }
-    std::copy_n(row, kDof, row_of(out, at));
-    flag_of(out, at) = flag;
-    distance[at] = mine;
-  }
-}
-
-// P poses, entry by entry.
-template <int P> [[gnu::always_inline]] inline Pose<P> gather(const Eigen::Isometry3d* poses) noexcept {
-  Pose<P> out;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 4; ++j) {
-      double entries[std::size_t{P}];
-      for (int p = 0; p < P; ++p) entries[p] = poses[p].matrix().data()[4 * j + i];
-      out.t[i][j] = load<P>(entries);
-    }
-  return out;
-}
-
-// --- rows that need care: on singularities, near them, and those of a seed alone --------------------
-
-// The distinct solutions of a pose, polished where the closed form lost digits; q0 gives the values of joints
-// that the pose leaves free. Whether it left one.
-[[gnu::cold, gnu::noinline]] inline bool find_rows(const Eigen::Isometry3d& pose, const double* q0, const Options& options, Solutions& out) noexcept {
-  Rows<1> rows;
-  branches(gather<1>(&pose), Seed(q0), options.free, kUnbounded, rows);
-  out.count = 0;
-  double q[kDof];
-  bool hit = false;
-  for (const double flags : rows.flags) hit = hit || (static_cast<int>(flags) & kHit) != 0;
-  if (hit) {
-    std::copy_n(q0, kDof, q);
-    if (polish(q, pose)) add(out, q, loses_rank(q, 1e-3));
-  }
-  for (const int wanted : {int{kReal | kRough}, int{kReal}}) {
-    for (const int lane : kLaneOfRow) {
-      const int bits = static_cast<int>(rows.flags[lane]);
-      if ((bits & (kReal | kRough)) != wanted) continue;
-      for (int j = 0; j < kDof; ++j) q[j] = rows.q[j][lane];
-      const bool rough = (bits & kRough) != 0;
-      if (!rough || polish(q, pose)) add(out, q, rough && loses_rank(q, (bits & kSingular) != 0 ? 1e-3 : 1e-7));
-    }
-  }
-  return hit;
-}
-
-// All solutions, with care. Where the pose leaves a joint free and the seed's value of it leads nowhere,
-// fifteen others are tried; where no row fits, the seed is taken as a Newton start.
-[[gnu::cold, gnu::noinline]] inline void solve_carefully(const Eigen::Isometry3d& pose, const Options& options, Solutions& out) noexcept {
-  bool real = false;
-  for (int turn = 0; turn < 16; ++turn) {
-    double start[kDof];
-    for (int j = 0; j < kDof; ++j)
-      start[j] = (options.seed ? options.seed->data()[j] : 0.0) + (kRevolute[j] ? turn * kPi / 8.0 : 0.0);
-    const bool hit = find_rows(pose, start, options, out);
-    real = real || out.count > 0;
-    place_rows(options, out);
-    if (out.count == 0 && options.seed && polish(start, pose)) {
-      add(out, start, loses_rank(start, 1e-3));
-      place_rows(options, out);
-    }
-    if (out.count > 0 || !hit) break;
-  }
-  if (options.seed) sort_by_distance(out, options.seed->data());
-  out.status = out.count > 0 ? Status::Ok : real ? Status::Limits : Status::Unreachable;
-}
-
-// --- poses ----------------------------------------------------------------------------------------
-
-// Whether what the task reads of the pose is that of a rigid transform, to 1e-6.
-inline bool is_pose(const Eigen::Isometry3d& pose) noexcept {
-  const double* t = pose.matrix().data();  // columns first
-  const auto near = [](double x, double y) { return std::abs(x - y) < 1e-6; };
-  const double sum = t[12] + t[13] + t[14];
-  if (!(sum - sum == 0.0)) return false;
-  static_cast<void>(near);
-  return true;
-}
-
-// Options without a seed that is no number.
-inline Options checked(const Options& options) noexcept {
-  Options out = options;
-  for (int j = 0; j < kDof && out.seed; ++j)
-    if (!(std::abs(out.seed->data()[j]) < kInfinity)) out.seed = nullptr;
-  return out;
-}
-
-// Whether rows are placed one by one once they are found, not in the lanes.
-inline bool place_later([[maybe_unused]] const Options& options) noexcept {
-  return options.seed != nullptr;
-}
-
-// Copies the found rows of pose p. Whether that is all there is to it: every row is a regular one.
-template <int P>
-inline bool collect(const Rows<P>& rows, int p, const Options& options, Solutions& out) noexcept {
-  int count = 0, seen = 0;
-  for (const int row : kLaneOfRow) {
-    const int lane = row * P + p;
-    const int bits = static_cast<int>(rows.flags[lane]);
-    double* q = row_of(out, count);
-    for (int j = 0; j < kDof; ++j) q[j] = rows.q[j][lane];
-    flag_of(out, count) = false;
-    count += bits & kFound;
-    seen |= bits;
-  }
-  if ((seen & (kRough | kHit)) != 0) return false;
-  out.count = count;
-  if ((seen & kAlike) != 0) {
-    out.count = 0;
-    for (int k = 0; k < count; ++k) {
-      double q[kDof];
-      std::copy_n(row_of(out, k), kDof, q);
-      add(out, q, false);
-    }
-  }
-  if (place_later(options)) place_rows(options, out);
-  if (options.seed) sort_by_distance(out, options.seed->data());
-  out.status = out.count > 0 ? Status::Ok : (seen & kReal) != 0 ? Status::Limits : Status::Unreachable;
-  return out.count > 0 || !options.seed;
-}
-
-// Solves P poses at once.
-template <int P>
-inline void solve_several(const Eigen::Isometry3d* poses, const Options& given, Solutions* out) noexcept {
-  const Options options = checked(given);
-  const bool bounded = options.limits && !place_later(options);
-  Rows<P> rows;
-  branches(gather<P>(poses), Seed(), options.free, bounded ? Range{kLower.data(), kUpper.data()} : kUnbounded, rows);
-  for (int p = 0; p < P; ++p) {
-    if (!is_pose(poses[p])) {
-      out[p].count = 0;
-      out[p].status = Status::Invalid;
-    } else if (!collect(rows, p, options, out[p])) {
-      solve_carefully(poses[p], options, out[p]);
-    }
-  }
-}
-
-inline void solve_one(const Eigen::Isometry3d& pose, const Options& options, Solutions& out) noexcept {
-  solve_several<1>(&pose, options, &out);
-}
-
-// Poses of a batch that are solved at once.
-inline constexpr int kBatch = kNative > 2 ? kNative / 2 : 1;
 
 }  // namespace detail
 
 // Pose of kTipLink in kBaseLink.
 inline Eigen::Isometry3d forward(const Joints& q) noexcept {
-  detail::Frame T = detail::first_frame();
-  for (int i = 0; i < detail::kRows; ++i) detail::advance(T, i, q.data());
+  const detail::Frame T = detail::MotionChain<detail::Arm>::forward(q.data());
   Eigen::Isometry3d out;
   double* t = out.matrix().data();  // columns first
   for (int r = 0; r < 3; ++r) {
@@ -947,7 +1112,7 @@ inline Eigen::Isometry3d forward(const Joints& q) noexcept {
 // Geometric Jacobian of the tip in kBaseLink: linear rows (m/s), then angular (rad/s).
 inline Eigen::Matrix<double, 6, kDof> jacobian(const Joints& q) noexcept {
   double J[6][kDof];
-  detail::chain(q.data(), J);
+  detail::MotionChain<detail::Arm>::forward(q.data(), J);
   Eigen::Matrix<double, 6, kDof> out;
   for (int j = 0; j < kDof; ++j)
     for (int r = 0; r < 6; ++r) out.data()[6 * j + r] = J[r][j];
@@ -957,16 +1122,14 @@ inline Eigen::Matrix<double, 6, kDof> jacobian(const Joints& q) noexcept {
 // All joint values that bring kTipLink to the pose in kBaseLink.
 inline Solutions solve(const Eigen::Isometry3d& pose, const Options& options) noexcept {
   Solutions out;
-  detail::solve_one(pose, options, out);
+  detail::PoseSolver<detail::Arm, detail::LaneSolve>::solve(pose, options, out);
   return out;
 }
 
 // solve for each of `count` poses, several at a time.
 inline void solve_batch(const Eigen::Isometry3d* poses, std::ptrdiff_t count, Solutions* solutions,
                         const Options& options) noexcept {
-  constexpr int P = detail::kBatch;
-  for (; count >= P; count -= P, poses += P, solutions += P) detail::solve_several<P>(poses, options, solutions);
-  for (; count > 0; --count, ++poses, ++solutions) detail::solve_one(*poses, options, *solutions);
+  detail::PoseSolver<detail::Arm, detail::LaneSolve>::solve(poses, count, options, solutions);
 }
 
 }  // namespace pan_lift_ik

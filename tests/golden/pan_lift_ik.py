@@ -163,8 +163,8 @@ def _branches_batch(T: Array, q0: Array, held: Array) -> tuple[Array, _Flags, _F
     q0 (N, DOF) are the values of joints that a pose leaves free, held (N, len(FREE_JOINTS)).
     """
     count = len(T)
-    full = (2, count)
-    lane = (1, count)
+    full = (2, count,)
+    lane = (1, count,)
     t03 = T[:, 0, 3].reshape(lane)
     t13 = T[:, 1, 3].reshape(lane)
     t23 = T[:, 2, 3].reshape(lane)
@@ -211,8 +211,8 @@ class _Chain:
 
     `frames` (n + 1, 4, 4) and `motions` say the same as `parts` (4, n, 4, 4), with which
     `M(v) F = cos(v) parts[0] + sin(v) parts[1] + v parts[2] + parts[3]`, `joint`, `scale`, `offset` (n,),
-    `turning` (n, 1), 1 for rotations and else 0, and `drive` (n, dof), the derivatives of v by q.
-    `revolute` (dof): which joints turn.
+    `turning` (n, 1), whether M is a rotation, `slides`, whether one is not, and `drive` (n, dof), the
+    derivatives of v by q. `revolute` (dof): which joints turn.
     """
 
     frames: Array
@@ -221,7 +221,8 @@ class _Chain:
     joint: NDArray[np.intp]
     scale: Array
     offset: Array
-    turning: Array
+    turning: _Flags
+    slides: bool
     drive: Array
     revolute: tuple[bool, ...]
 
@@ -240,17 +241,19 @@ def _chain_of(frames: Array, motions: tuple[_Motion, ...], dof: int) -> _Chain:
             parts[3, i] = F
     joint = np.array([m[0] for m in motions])
     scale, offset = (np.array([m[i] for m in motions]) for i in (2, 3))
-    turns = np.array([[1.0 if m[1] else 0.0] for m in motions])
+    turns = np.array([[m[1]] for m in motions])
     drive = scale[:, None] * (joint[:, None] == np.arange(dof))
     revolute = tuple(next(m[1] for m in motions if m[0] == j) for j in range(dof))
-    return _Chain(frames, motions, parts, joint, scale, offset, turns, drive, revolute)
+    slides = not turns.all()
+    return _Chain(frames, motions, parts, joint, scale, offset, turns, slides, drive, revolute)
 
 
 def _steps(chain: _Chain, q: Array) -> Array:
     """The transforms `M(v_i) F_i` at q (..., dof): (..., n, 4, 4)."""
     v = (q[..., chain.joint] * chain.scale + chain.offset)[..., None, None]
     cosine, sine, value, rest = chain.parts
-    return np.asarray(np.cos(v) * cosine + np.sin(v) * sine + v * value + rest)
+    steps = np.cos(v) * cosine + np.sin(v) * sine + rest
+    return np.asarray(steps + v * value if chain.slides else steps)
 
 
 def _joint_values(chain: _Chain, q: ArrayLike) -> Array:
@@ -290,8 +293,10 @@ def _tip_and_jacobian(chain: _Chain, q: Array) -> tuple[Array, Array]:
         axes[..., i, :, :] = T[..., :3, 2:]
         T = T @ steps[..., i, :, :]
     z, p = axes[..., 0], axes[..., 1]
-    linear = chain.turning * _cross(z, T[..., None, :3, 3] - p) + (1.0 - chain.turning) * z
-    rows = np.concatenate([linear, chain.turning * z], axis=-1)
+    rows = np.concatenate([_cross(z, T[..., None, :3, 3] - p), z], axis=-1)
+    if chain.slides:
+        slide = np.concatenate([z, np.zeros_like(z)], axis=-1)
+        rows = np.where(chain.turning, rows, slide)
     return T, np.swapaxes(rows, -1, -2) @ chain.drive
 
 
@@ -426,49 +431,53 @@ def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...]) -> Array:
 
 def _refine(
     chain: _Chain, task: _Task, moving: Sequence[int], q: Array, T: Array, policy: _Policy
-) -> tuple[Array, _Flags]:
-    """Newton steps of the joints `moving` from q (k, dof) towards T (k, 4, 4); which rows arrived.
+) -> tuple[Array, _Flags, Array]:
+    """Newton steps of the joints `moving` from q (k, dof) towards T (k, 4, 4); which rows arrived, and
+    the errors before (k,).
 
     At a fold of the solution set the steps halve the error. Elsewhere all digits are wanted, as rows may
     lie on a limit.
     """
     q = q.copy()
-    error = np.full(len(q), inf)
+    error, before = np.full(len(q), inf), np.zeros(len(q))
     going = np.arange(len(q))
     for steps, fine, promising in policy.refinement:
-        q[going], error[going] = _newton(chain, task, moving, q[going], T[going], steps, policy)
+        part = _newton(chain, task, moving, q[going], T[going], steps, policy)
+        q[going], error[going] = part[:2]
+        before[going] = np.maximum(before[going], part[2])
         going = going[(error[going] >= fine) & (error[going] < promising)]
         if not len(going):
             break
-    return q, error < policy.arrived
+    return q, error < policy.arrived, before
 
 
 def _newton(
     chain: _Chain, task: _Task, moving: Sequence[int], q: Array, T: Array, steps: int, policy: _Policy
-) -> tuple[Array, Array]:
-    """The best rows (k, dof) of at most `steps` damped steps, and their errors (k,)."""
+) -> tuple[Array, Array, Array]:
+    """The best rows (k, dof) of at most `steps` damped steps, their errors and those of q (k,)."""
     moving = list(moving)
     best = np.full(len(q), inf)
     stalled = np.zeros(len(q), dtype=int)
-    result = q.copy()
-    for _ in range(steps + 1):
+    result, before = q.copy(), best
+    for step in range(steps + 1):
         pose, J = _tip_and_jacobian(chain, q)
         error = task.error(pose, T)
         worst = np.abs(error).max(axis=1)
+        before = before if step else worst
         better = worst < best
         stalled = np.where(worst < policy.progress * best, 0, stalled + 1)
         result[better] = q[better]
         best = np.minimum(best, worst)
         going = (best > policy.converged) & (stalled < policy.patience)
-        if not going.any():
+        if step == steps or not going.any():
             break
         J = task.rows(pose, J)[:, :, moving]
         Jt = J.transpose(0, 2, 1)
         damping = np.maximum(policy.least_damping, policy.damping * np.minimum(worst, 1.0) ** 2)
         normal = Jt @ J + damping[:, None, None] * np.eye(len(moving))
-        step = np.linalg.solve(normal, Jt @ error[:, :, None])[:, :, 0]
-        q[:, moving] += np.clip(step, -policy.largest_step, policy.largest_step) * going[:, None]
-    return result, best
+        change = np.linalg.solve(normal, Jt @ error[:, :, None])[:, :, 0]
+        q[:, moving] += np.clip(change, -policy.largest_step, policy.largest_step) * going[:, None]
+    return result, best, before
 
 
 def _rank_loss(chain: _Chain, task: _Task, moving: Sequence[int], q: Array) -> Array:
@@ -691,7 +700,7 @@ def _refined(arm: _Arm, rows: list[_Found], T: list[list[float]]) -> list[_Found
         return []
     target = np.broadcast_to(np.array(T), (len(rows), 4, 4))
     start = np.array([row for row, _ in rows])
-    q, arrived = _refine(arm.chain, arm.task, arm.moving, start, target, arm.policy)
+    q, arrived, _ = _refine(arm.chain, arm.task, arm.moving, start, target, arm.policy)
     loss = _rank_loss(arm.chain, arm.task, arm.moving, q)
     flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
     return [
@@ -785,7 +794,7 @@ def _rows_batch(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[A
     pose, row = np.nonzero(rough & valid)
     if len(pose):
         done = _refine(arm.chain, arm.task, arm.moving, q[pose, row], T[pose], arm.policy)
-        q[pose, row], valid[pose, row] = done
+        q[pose, row], valid[pose, row] = done[:2]
     return q, _distinct(arm, q, valid), singular
 
 

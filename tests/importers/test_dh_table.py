@@ -247,6 +247,19 @@ BAD = {
     ),
     "tool": (table(GOOD, tail="[tool]\nxyz = [1, 2]"), "not three numbers", "xyz"),
     "all fixed": (table([(F, 0, 0, 0, 0)]), "no joint moves", None),
+    "large": (table([*GOOD, (R, 0, 1e308, 0, 0)]), "1e+308 is beyond 10000", "1e+308"),
+    "large sum": (table([*GOOD, (R, 0, "1e200 * 1e100", 0, 0)]), "beyond 10000", "1e200"),
+    "large integer": (table([*GOOD, (R, 0, 10**400, 0, 0)]), "inf is beyond", "0000"),
+    "digits": (table([*GOOD, (R, 0, "@", 0, 0)]).replace('"@"', "9" * 5000), "TOML", None),
+    "long": (table([*GOOD, (R, 0, "1+" * 5000 + "1", 0, 0)]), "of 10001 characters", "1+1"),
+    "infinite": (table([*GOOD, (R, 0, "@", 0, 0)]).replace('"@"', "inf"), "inf is beyond", "inf"),
+    "large parameter": (
+        table(GOOD, 'convention = "modified"\n[parameters]\nb = 1' + "0" * 400), "too large", "b =",
+    ),
+    "limits far out": (table(GOOD, tail="limits = [1e15, 1e16]"), "hold no value", "limits"),
+    "large tool": (table(GOOD, tail="[tool]\nxyz = [1e9, 0, 0]"), "beyond 10000", "xyz"),
+    "many joints": (table([(R, "pi/2", 0.1, 0, 0)] * 17), "17 joints move, more than 16", None),
+    "many rows": (table([(F, 0, 0.1, 0, 0)] * 101), "101 rows, more than 100", None),
 }  # fmt: skip
 
 

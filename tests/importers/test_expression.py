@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from ikgen.importers.xacro import budget as budgets
 from ikgen.importers.xacro.budget import Budget
-from ikgen.importers.xacro.expression import Evaluator
+from ikgen.importers.xacro.macro_expression import Evaluator
 from ikgen.importers.xacro.refusals import ExpansionLimitError, RefusedExpressionError
 from ikgen.importers.xacro.symbol_table import global_symbols
 

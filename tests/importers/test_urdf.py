@@ -295,7 +295,7 @@ def test_a_file_too_big_is_refused_before_it_is_read(tmp_path):
     file = tmp_path / "bot.urdf"
     with file.open("wb") as stream:
         stream.truncate(LARGEST_FILE + 1)  # sparse: takes no room
-    with pytest.raises(BadDescriptionError, match="MB, more than 32 MB"):
+    with pytest.raises(BadDescriptionError, match="MB, more than 16 MB"):
         load_tree(file)
 
 

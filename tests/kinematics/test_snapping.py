@@ -86,5 +86,5 @@ def test_lengths_share_names_up_to_sign() -> None:
     zero = book.enter(8e-6, "d_5")
     assert (zero.value, zero.name) == (0.0, None)
     assert book.enter(8e-5, "d_6").name == "d_6"
-    assert book.enter(8e-5, "d_7", slack=1e-4).name is None
+    assert book.enter(8e-5, "d_7", length_error=1e-4).name is None
     assert [snap.what for snap in log.snaps] == ["d_4", "d_5", "d_7"]

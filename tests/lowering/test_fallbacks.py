@@ -36,7 +36,7 @@ class Bench:
         self.work = Placement(solved, model_error)
         self.g = self.work.g
         self.angle = Variable("angle", (1, 0))
-        self.length = Variable("dist", (0, 1))
+        self.length = Variable("prismatic", (0, 1))
         self.share = self.given(SHARES)
 
     def given(self, first: tuple[float, ...]) -> Expr:

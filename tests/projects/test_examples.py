@@ -44,7 +44,7 @@ def test_the_readme_works(name: str, tmp_path: Path) -> None:
         if importlib.util.find_spec(tool) is None:
             pytest.skip(f"needs {tool}")
     made = shutil.ignore_patterns(
-        "*_ik.*", "build", "dist", "site", "out", "*.egg-info", "generated"
+        "*_ik.*", "build", "prismatic", "site", "out", "*.egg-info", "generated"
     )
     shutil.copytree(ROOT / "examples" / name, tmp_path / "examples" / name, ignore=made)
     shutil.copytree(ROOT / "urdf_fixtures", tmp_path / "urdf_fixtures")

@@ -53,9 +53,9 @@ print(arm_ik.__file__)
 
 @needs_entry_point
 def test_the_wheel_works_with_numpy_alone(project: Path, tmp_path: Path) -> None:
-    done = build_wheel(project, tmp_path / "dist")
+    done = build_wheel(project, tmp_path / "prismatic")
     assert done.returncode == 0, done.stdout + done.stderr
-    (wheel,) = (tmp_path / "dist").glob("*.whl")
+    (wheel,) = (tmp_path / "prismatic").glob("*.whl")
     package = project.name
     with zipfile.ZipFile(wheel) as archive:
         names = set(archive.namelist())
@@ -81,7 +81,7 @@ def test_a_bad_description_ends_the_build(project: Path, tmp_path: Path) -> None
     (description,) = (project / "urdf").iterdir()
     text = description.read_text()
     description.write_text(text.replace('<child link="tool0"/>', '<child link="gripper"/>'))
-    done = build_wheel(project, tmp_path / "dist")
+    done = build_wheel(project, tmp_path / "prismatic")
     assert done.returncode != 0
     assert "tool0" in done.stdout + done.stderr or "gripper" in done.stdout + done.stderr
 
@@ -91,10 +91,10 @@ def test_a_bad_description_ends_the_build(project: Path, tmp_path: Path) -> None
 def test_the_installed_package_is_typed(tmp_path: Path) -> None:
     project = tmp_path / "setuptools_robot"
     shutil.copytree(ROOT / "examples/setuptools_robot", project)
-    done = build_wheel(project, tmp_path / "dist")
+    done = build_wheel(project, tmp_path / "prismatic")
     assert done.returncode == 0, done.stdout + done.stderr
     environment = numpy_alone(tmp_path / "env")
-    environment.install(*(tmp_path / "dist").glob("*.whl"))
+    environment.install(*(tmp_path / "prismatic").glob("*.whl"))
     (tmp_path / "use.py").write_text(
         "from setuptools_robot import arm_ik\n\n"
         "reveal_type(arm_ik.solve(arm_ik.forward([0.1, 0.2, 0.3])).q)\n"

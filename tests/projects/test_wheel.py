@@ -19,7 +19,7 @@ KINDS = ("wheel", "sdist", "editable")
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """The wheel and the sdist of this checkout."""
-    out = tmp_path_factory.mktemp("dist")
+    out = tmp_path_factory.mktemp("prismatic")
     done = subprocess.run(
         [sys.executable, "-m", "hatchling", "build", "-d", str(out)],
         cwd=ROOT,

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tests.elimination.test_elimination import apart, arm_frames, configurations, missing
 from tests.support.routines import FLAGS, feed
 
-from ikgen.elimination import UniversalPlan, choose_plan, hold_joint
+from ikgen.elimination import EliminationPlan, choose_plan, hold_joint
 from ikgen.elimination.loop_frames import forward
 from ikgen.elimination.resultant import RESULTANTS, root_shifts
 
@@ -151,7 +151,7 @@ def isolator(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFa
 
 
 def solutions(
-    program: Path, plan: UniversalPlan, frames: Array, poses: Array, method: int = 0
+    program: Path, plan: EliminationPlan, frames: Array, poses: Array, method: int = 0
 ) -> list[Array]:
     """Rows (k, 18) of each pose (N, 4, 4): angles, cosines, sines; method 1: by eigenproblems alone."""
     F, T = frames.copy(), poses.copy()

@@ -98,15 +98,15 @@ def test_soundness_comes_before_branches_these_before_leaf_this_before_cost(
         replace(single, judgement=replace(GOOD, weak=True)),
         ranked(arm, folds=True, cost=0.0),
     ]
-    keys = [rank_key(c) for c in order]
-    assert all(a < b for a, b in pairwise(keys))
+    combinations = [rank_key(c) for c in order]
+    assert all(a < b for a, b in pairwise(combinations))
 
 
 def test_leaves_come_in_the_order_of_preference_strangers_last(arm: Constructed) -> None:
     base = ranked(arm)
     names = (*PREFERENCE, "of another package")
-    keys = [rank_key(replace(base, leaf=name)) for name in names]
-    assert all(a < b for a, b in pairwise(keys))
+    combinations = [rank_key(replace(base, leaf=name)) for name in names]
+    assert all(a < b for a, b in pairwise(combinations))
 
 
 def test_what_is_a_tangent_but_for_rounding_ranks_as_one(arm: Constructed) -> None:

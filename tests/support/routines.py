@@ -1,4 +1,4 @@
-"""The routines of the C++ templates, compiled as programs that read numbers."""
+"""The routines of the C++ runtime, compiled as programs that read numbers."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-TEMPLATES = Path(__file__).resolve().parents[2] / "templates"
+from ikgen.emit.cpp.header_bundle import bundle
+
 FLAGS = [
     "-std=c++17",
     "-O2",
@@ -24,18 +25,16 @@ EIGEN = Path(os.environ.get("EIGEN3_INCLUDE_DIR", "/usr/include/eigen3"))
 
 
 def compiled_routine(name: str, main: str, folder: Path, eigen: bool = False) -> Path:
-    """An executable of `templates/cpp/routines/<name>.hpp.jinja` and `main`; skips without a
-    compiler."""
+    """An executable of the runtime's `<name>.hpp` and `main`; skips without a compiler."""
     compiler = shutil.which("g++") or shutil.which("clang++")
     if compiler is None:
         pytest.skip("no C++ compiler on this machine")
     if eigen and not EIGEN.is_dir():
         pytest.skip("Eigen is not installed (set EIGEN3_INCLUDE_DIR)")
-    text = (TEMPLATES / "cpp" / "routines" / f"{name}.hpp.jinja").read_text()
-    standard = ["algorithm", "array", "cmath", "complex", "cstddef", "cstdio", "utility", "vector"]
-    head = "".join(f"#include <{h}>\n" for h in (["Eigen/Core"] if eigen else []) + standard)
+    routine = bundle([f"{name}.hpp"], ("cstdio", "vector", *(["Eigen/Core"] if eigen else [])))
+    head = routine.includes + routine.body
     source, program = folder / f"{name}.cpp", folder / name
-    source.write_text(head + text + main)
+    source.write_text(head + main)
     include = ["-isystem", str(EIGEN)] if eigen else []
     done = subprocess.run(
         [compiler, *FLAGS, *include, str(source), "-o", str(program)],

@@ -1,7 +1,7 @@
 """Trigonometric polynomials in the unknowns, with coefficients in the known.
 
 A monomial is a product of at most one cosine or sine per group of parallel axes, of an integer
-combination ("key") of the group's angles, and of powers of prismatic variables. Products inside a
+combination ("combination") of the group's angles, and of powers of prismatic variables. Products inside a
 group are turned into sums (product-to-sum formulas), so `c^2 + s^2 = 1` and every sum-of-angles
 identity hold by construction and two polynomials are equal exactly when their terms are.
 """
@@ -13,25 +13,34 @@ from collections.abc import Callable
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 
-__all__ = ["Key", "Monomial", "Polynomial", "add", "canonical", "multiply", "scale", "subtract"]
+__all__ = [
+    "AngleCombination",
+    "Monomial",
+    "Polynomial",
+    "add",
+    "canonical",
+    "multiply",
+    "scale",
+    "subtract",
+]
 
-Key = tuple[int, ...]
-Trig = tuple[Key, str]
+AngleCombination = tuple[int, ...]
+Trig = tuple[AngleCombination, str]
 Monomial = tuple[tuple[Trig, ...], tuple[tuple[int, int], ...]]
 Polynomial = dict[Monomial, Expr]
-GroupOf = Callable[[Key], int]
+GroupOf = Callable[[AngleCombination], int]
 
 ONE: Monomial = ((), ())
 
 
-def canonical(key: Key) -> tuple[Key, int]:
-    """The key with its first nonzero entry positive, and the sign taken out (0 for the zero key)."""
-    for k in key:
+def canonical(combination: AngleCombination) -> tuple[AngleCombination, int]:
+    """The combination with its first nonzero entry positive, and the sign taken out (0 for all zeros)."""
+    for k in combination:
         if k > 0:
-            return key, 1
+            return combination, 1
         if k < 0:
-            return tuple(-x for x in key), -1
-    return key, 0
+            return tuple(-x for x in combination), -1
+    return combination, 0
 
 
 def _accumulate(graph: ExpressionGraph, into: Polynomial, mono: Monomial, value: Expr) -> None:
@@ -77,13 +86,13 @@ def _combine(a: Trig, b: Trig) -> list[tuple[float, Trig | None]]:
     else:
         parts = [(0.5, total, "s"), (-0.5, difference, "s")]
     out: list[tuple[float, Trig | None]] = []
-    for factor, key, kind in parts:
-        key, sign = canonical(key)
+    for factor, combination, kind in parts:
+        combination, sign = canonical(combination)
         if sign == 0:
             if kind == "c":
                 out.append((factor, None))
         else:
-            out.append((factor * (sign if kind == "s" else 1), (key, kind)))
+            out.append((factor * (sign if kind == "s" else 1), (combination, kind)))
     return out
 
 
@@ -93,7 +102,7 @@ def _multiply_monomials(
     powers = dict(a[1])
     for joint, power in b[1]:
         powers[joint] = powers.get(joint, 0) + power
-    dist = tuple(sorted(powers.items()))
+    slides = tuple(sorted(powers.items()))
     by_group: dict[int, list[Trig]] = {}
     for trig in (*a[0], *b[0]):
         by_group.setdefault(group_of(trig[0]), []).append(trig)
@@ -106,7 +115,7 @@ def _multiply_monomials(
             for c, trigs in terms
             for k, trig in pieces
         ]
-    return [(c, (trigs, dist)) for c, trigs in terms]
+    return [(c, (trigs, slides)) for c, trigs in terms]
 
 
 def multiply(graph: ExpressionGraph, group_of: GroupOf, a: Polynomial, b: Polynomial) -> Polynomial:

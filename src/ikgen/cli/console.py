@@ -63,6 +63,11 @@ class Console:
             click.echo(text if stage != "verify" or self.verbose else _WORDS["verify"], err=True)
         self._stage = stage
 
+    def note(self, text: str) -> None:
+        """Something to know, shown unless quiet."""
+        if not self.quiet:
+            click.echo(text, err=True)
+
     def warn(self, text: str) -> None:
         """A warning, shown unless quiet."""
         if not self.quiet:

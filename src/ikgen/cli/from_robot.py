@@ -122,6 +122,9 @@ def _run(
     outputs = Outputs(parse_emit(emit), out, samples, seed, not no_verify, only, force)
     with Console(quiet=quiet, verbose=verbose) as console, advised(request, console):
         generation = generate(request, outputs, console)
+    held = generation.derivation.held
+    if held is not None:
+        console.note(held.words)
     for text in _warnings(generation):
         console.warn(text)
     if depfile is not None:

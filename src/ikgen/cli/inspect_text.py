@@ -82,12 +82,8 @@ def _advice(found: Inspection) -> str:
     lines = ["advice:"]
     if found.moving < 6:
         lines.append(f"  {found.moving} joints move, so a pose cannot be chosen freely: see --task")
-    if found.moving > 7 and not found.attempts:
-        lines.append(
-            f"  {found.moving} joints move: hold {found.moving - 6} of them (--free or --lock)"
-        )
     for attempt in found.closed[:_PROPOSED]:
-        lines += _proposal(attempt)
+        lines += _proposal(attempt, chosen=bool(attempt.held) and attempt is found.attempts[0])
     if found.attempts and not found.closed:
         best = max(found.attempts, key=lambda attempt: len(attempt.order))
         lines.append(
@@ -96,9 +92,11 @@ def _advice(found: Inspection) -> str:
     return "\n".join(lines) if len(lines) > 1 else ""
 
 
-def _proposal(attempt: Attempt) -> list[str]:
+def _proposal(attempt: Attempt, chosen: bool) -> list[str]:
     """A closed form: the options to type, how many solutions, in which order, and what is weak in it."""
     options = attempt.options or "as it is"
+    if chosen:
+        options = f"without options, which is {options}"
     closed = "closed form" if not attempt.weak else "closed form with a weak step"
     lines = [f"  {options}: {closed}, at most {attempt.max_solutions} solutions"]
     lines.append(f"      {'; '.join(attempt.order)}")

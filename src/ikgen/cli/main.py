@@ -26,6 +26,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "from-dh": ("ikgen.cli.from_robot:from_dh", "Generate from a DH table (TOML)."),
     "inspect": ("ikgen.cli.inspect:inspect", "Show joint tree, chains, DH table and advice."),
     "verify": ("ikgen.cli.verify:verify", "Check emitted modules against their robot."),
+    "init": ("ikgen.cli.init:init", "Write a config with every arm of a robot."),
     "build": ("ikgen.cli.build:build", "Generate every arm that a config lists."),
     "report": ("ikgen.cli.report:report", "Write the derivation as LaTeX and HTML."),
     "cmake-dir": ("ikgen.cli.cmake_dir:cmake_dir", "Print where the CMake package files lie."),

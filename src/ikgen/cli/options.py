@@ -14,6 +14,7 @@ __all__ = [
     "chain_options",
     "console_options",
     "emit_option",
+    "reading_options",
     "sampling_options",
     "trust_option",
 ]
@@ -21,6 +22,18 @@ __all__ = [
 F = TypeVar("F", bound=Callable[..., Any])
 _FOLDER = click.Path(path_type=Path)
 
+
+_READING_OPTIONS = (
+    click.option("--arg", "args", multiple=True, metavar="NAME:=VALUE", help="A xacro argument."),
+    click.option(
+        "--package-path",
+        "package_paths",
+        multiple=True,
+        metavar="DIR",
+        type=_FOLDER,
+        help="Where $(find pkg) and package:// look.",
+    ),
+)
 
 _CHAIN_OPTIONS = (
     click.option("--base", metavar="LINK", help="Link that poses are given in."),
@@ -42,15 +55,7 @@ _CHAIN_OPTIONS = (
         metavar="JOINT=VALUE",
         help="Fix a joint for good (rad or m).",
     ),
-    click.option("--arg", "args", multiple=True, metavar="NAME:=VALUE", help="A xacro argument."),
-    click.option(
-        "--package-path",
-        "package_paths",
-        multiple=True,
-        metavar="DIR",
-        type=_FOLDER,
-        help="Where $(find pkg) and package:// look.",
-    ),
+    *_READING_OPTIONS,
     click.option(
         "--name",
         metavar="NAME",
@@ -84,6 +89,11 @@ def _apply(options: Sequence[Callable[[Any], Any]], function: F) -> F:
 def chain_options(function: F) -> F:
     """Which chain of the robot, which task, and how to read the file."""
     return _apply([*_CHAIN_OPTIONS, trust_option], function)
+
+
+def reading_options(function: F) -> F:
+    """How to read the file."""
+    return _apply([*_READING_OPTIONS, trust_option], function)
 
 
 def sampling_options(function: F) -> F:

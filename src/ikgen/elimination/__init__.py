@@ -5,11 +5,11 @@ The run-time half is the routine `general_6r` in the templates of each language.
 
 from ikgen.elimination.applies import elimination_plan
 from ikgen.elimination.loop_frames import held_frames, hold_joint
-from ikgen.elimination.plan import UniversalPlan, choose_plan
+from ikgen.elimination.plan import EliminationPlan, choose_plan
 from ikgen.elimination.routine import general_6r, general_6r_batch
 
 __all__ = [
-    "UniversalPlan",
+    "EliminationPlan",
     "choose_plan",
     "elimination_plan",
     "general_6r",

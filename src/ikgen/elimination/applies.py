@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ikgen.elimination.loop_frames import held_frames
-from ikgen.elimination.plan import UniversalPlan, choose_plan
+from ikgen.elimination.plan import EliminationPlan, choose_plan
 from ikgen.model.dh import DHChain
 
 __all__ = ["elimination_plan"]
@@ -14,7 +14,7 @@ _HELD_VALUES = (0.4, -1.1, 2.2)
 """Values of held joints (rad or m) at which plans are tried."""
 
 
-def elimination_plan(dh: DHChain) -> UniversalPlan | None:
+def elimination_plan(dh: DHChain) -> EliminationPlan | None:
     """The plan for a whole pose; None unless six revolute joints move, or where no plan finds all."""
     moving = dh.dof - len(dh.free)
     turning = all(row.revolute or dh.joints[row.driver].name in dh.free for row in dh.rows)

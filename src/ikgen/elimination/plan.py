@@ -20,7 +20,7 @@ from ikgen.elimination.resultant import RESULTANTS, Resultant, root_shifts
 from ikgen.elimination.routine import Elimination, initial_residuals
 from ikgen.model.joint_tree import Matrix
 
-__all__ = ["UniversalPlan", "choose_plan"]
+__all__ = ["EliminationPlan", "choose_plan"]
 
 _ELIMINATIONS: tuple[Elimination, ...] = tuple(
     (start, reverse, swap) for swap, reverse, start in product((0, 1), (0, 1), range(6))
@@ -32,7 +32,7 @@ _KEPT = 2
 
 
 @dataclass(frozen=True, slots=True)
-class UniversalPlan:
+class EliminationPlan:
     """What `general_6r` embeds for one arm.
 
     frames: (7, 4, 4) read-only, `T = F_0 Rz(v_1) F_1 ... Rz(v_6) F_6`. length: the arm's scale (m).
@@ -54,7 +54,7 @@ class UniversalPlan:
         return self.recall > 0.98
 
 
-def choose_plan(frames: Matrix, *, probes: int = 24, seed: int = 0) -> UniversalPlan:
+def choose_plan(frames: Matrix, *, probes: int = 24, seed: int = 0) -> EliminationPlan:
     """The best eliminations for a 6R chain, frames (7, 4, 4), or for all of a family (m, 7, 4, 4)
     that differs by a held joint's value (the plan then carries the first one's frames).
 
@@ -73,7 +73,7 @@ def choose_plan(frames: Matrix, *, probes: int = 24, seed: int = 0) -> Universal
     order = _ranking(hits, rough)
     first = family[0].copy()
     first.setflags(write=False)
-    return UniversalPlan(
+    return EliminationPlan(
         frames=first,
         length=typical_length(first),
         eliminations=tuple(_ELIMINATIONS[k] for k in order),

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ikgen.solver.solution_graph import SolutionGraph
     from ikgen.tasks import Task
 
-__all__ = ["Derivation", "Reading", "Unsolved"]
+__all__ = ["Derivation", "Held", "Reading", "Unsolved"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +28,27 @@ class Reading:
 
 
 @dataclass(frozen=True, slots=True)
+class Held:
+    """Joints that were chosen to be held, base to tip, why, the choices that came next, and those before
+    that the verification refused."""
+
+    joints: tuple[str, ...]
+    why: str
+    others: tuple[tuple[str, ...], ...] = ()
+    refused: tuple[tuple[str, ...], ...] = ()
+
+    @property
+    def words(self) -> str:
+        """One line."""
+        it = "it" if len(self.joints) == 1 else "them"
+        line = f"holding {' and '.join(self.joints)}: {self.why} with {it} held"
+        for kind, names in (("others", self.others), ("failed verification", self.refused)):
+            if names:
+                line += f"; {kind}: {', '.join(' and '.join(together) for together in names)}"
+        return line
+
+
+@dataclass(frozen=True, slots=True)
 class Derivation:
     """Everything between the file and the emitted text."""
 
@@ -38,6 +59,8 @@ class Derivation:
     module: SolverModule
     chosen: bool = False
     """Whether the task was chosen to fit the arm, not asked for."""
+    held: Held | None = None
+    """The joints that were chosen to be held; None where none was."""
 
 
 @dataclass(frozen=True, slots=True)

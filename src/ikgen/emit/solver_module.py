@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.elimination.plan import UniversalPlan
+from ikgen.elimination.plan import EliminationPlan
 from ikgen.kinematics.displacement import displacements
 from ikgen.model.dh import DHChain, DHRow
 from ikgen.program.statements import Program
@@ -18,7 +18,7 @@ __all__ = ["CLOSE", "SolverModule"]
 CLOSE = 8e-10
 """Deviation up to which a row that is exact for the solved geometry is right for the file (1e-9)."""
 
-FAR = 5e-5
+FAR = 1.5e-5
 """Deviation (rad or m) above which a closed-form row may be too far from the file's solution for Newton
 steps near folds, at regular configurations too."""
 
@@ -46,11 +46,11 @@ class SolverModule:
     generator_version: str
     geometry: str = ""
     order: tuple[str, ...] = ()
-    plan: UniversalPlan | None = None
+    plan: EliminationPlan | None = None
     sample: bool = False
 
     @property
-    def polish(self) -> str:
+    def refine(self) -> str:
         """Which rows take Newton steps on the file's own chain: "some" (those of a continuum or on the
         boundary, where the closed form lost digits) or "all" (the file rounds its geometry)."""
         if self.plan is not None:
@@ -64,7 +64,7 @@ class SolverModule:
         geometry may start from one of the solved geometry or from none, but not at all these poses.
         Empty where the file is close to what was solved."""
         deviation = max(self.dh.deviation)
-        if self.polish == "some" or deviation <= FAR:
+        if self.refine == "some" or deviation <= FAR:
             return ()
         return displacements(4.0 * deviation)
 

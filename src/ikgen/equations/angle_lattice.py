@@ -1,4 +1,4 @@
-"""The lattice of known angle keys: the integer combinations of solved ones, group by group."""
+"""The lattice of known angle combinations: the integer combinations of solved ones, group by group."""
 
 from __future__ import annotations
 
@@ -9,23 +9,25 @@ import numpy as np
 
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
-from ikgen.algebra.polynomial import Key
+from ikgen.algebra.polynomial import AngleCombination
 from ikgen.equations.variables import JointVariables
 
 __all__ = ["AngleLattice"]
 
 
 class AngleLattice:
-    """`solved` maps the keys that were solved to cosine and sine, `known` every key that follows from
-    them to its (factor, solved key) pairs."""
+    """`solved` maps the combinations that were solved to cosine and sine, `known` every combination
+    that follows from them to its (factor, solved combination) pairs."""
 
     def __init__(self, graph: ExpressionGraph, variables: JointVariables) -> None:
         self._graph = graph
         self._variables = variables
-        self.solved: dict[Key, tuple[Expr, Expr]] = {}
-        self.known: dict[Key, tuple[tuple[int, Key], ...]] = {}
+        self.solved: dict[AngleCombination, tuple[Expr, Expr]] = {}
+        self.known: dict[AngleCombination, tuple[tuple[int, AngleCombination], ...]] = {}
         self._representatives = self._contiguous_keys()
-        self._represented: dict[Key, tuple[int, Key, Key]] = {}
+        self._represented: dict[
+            AngleCombination, tuple[int, AngleCombination, AngleCombination]
+        ] = {}
 
     def over(self, graph: ExpressionGraph, variables: JointVariables) -> AngleLattice:
         """The same lattice over a graph that has all nodes of this one's."""
@@ -35,46 +37,46 @@ class AngleLattice:
         other._represented = dict(self._represented)
         return other
 
-    def add(self, key: Key) -> None:
-        """Take a key as solved; `rebuild` then finds what follows."""
-        self.solved[key] = self._variables.pair(key)
+    def add(self, combination: AngleCombination) -> None:
+        """Take a combination as solved; `rebuild` then finds what follows."""
+        self.solved[combination] = self._variables.pair(combination)
 
-    def _contiguous_keys(self) -> list[Key]:
+    def _contiguous_keys(self) -> list[AngleCombination]:
         n = self._variables.count
         units = [self._variables.unit(j) for j in range(n)]
-        keys: list[Key] = list(units)
+        combinations: list[AngleCombination] = list(units)
         for length in range(2, n + 1):
             for start in range(n - length + 1):
                 members = range(start, start + length)
                 if len({self._variables.group[j] for j in members}) == 1:
-                    keys.append(tuple(int(start <= j < start + length) for j in range(n)))
-        return keys
+                    combinations.append(tuple(int(start <= j < start + length) for j in range(n)))
+        return combinations
 
     def rebuild(self) -> None:
-        """Find all keys that follow from the solved ones."""
+        """Find all combinations that follow from the solved ones."""
         self._represented.clear()
         zero = tuple([0] * self._variables.count)
-        found: dict[Key, tuple[tuple[int, Key], ...]] = {zero: ()}
-        by_group: dict[int, list[Key]] = {}
-        for key in self.solved:
-            by_group.setdefault(self._variables.group_of(key), []).append(key)
-        for keys in by_group.values():
+        found: dict[AngleCombination, tuple[tuple[int, AngleCombination], ...]] = {zero: ()}
+        by_group: dict[int, list[AngleCombination]] = {}
+        for combination in self.solved:
+            by_group.setdefault(self._variables.group_of(combination), []).append(combination)
+        for combinations in by_group.values():
             choices = sorted(
-                itertools.product((0, 1, -1, 2, -2), repeat=len(keys)),
+                itertools.product((0, 1, -1, 2, -2), repeat=len(combinations)),
                 key=lambda c: (sum(map(abs, c)), c),
             )
             for coefs in choices:
                 total = tuple(
-                    sum(c * k[j] for c, k in zip(coefs, keys, strict=True))
+                    sum(c * k[j] for c, k in zip(coefs, combinations, strict=True))
                     for j in range(self._variables.count)
                 )
-                terms = tuple((c, k) for c, k in zip(coefs, keys, strict=True) if c)
+                terms = tuple((c, k) for c, k in zip(coefs, combinations, strict=True) if c)
                 found.setdefault(total, terms)
         self.known = found
 
-    def pair(self, key: Key) -> tuple[Expr, Expr] | None:
-        """Cosine and sine of a known key's angle, composed from solved ones; None if unknown."""
-        terms = self.known.get(key)
+    def pair(self, combination: AngleCombination) -> tuple[Expr, Expr] | None:
+        """Cosine and sine of a known combination's angle, composed from solved ones; None if unknown."""
+        terms = self.known.get(combination)
         if terms is None:
             return None
         g = self._graph
@@ -90,31 +92,33 @@ class AngleLattice:
                 )
         return c, s
 
-    def represent(self, key: Key) -> tuple[int, Key, Key]:
-        """`key = factor * representative + shift` with a known shift."""
-        if key in self._represented:
-            found = self._represented[key]
+    def represent(
+        self, combination: AngleCombination
+    ) -> tuple[int, AngleCombination, AngleCombination]:
+        """`combination = factor * representative + shift` with a known shift."""
+        if combination in self._represented:
+            found = self._represented[combination]
             assert found is not None
             return found
-        group = self._variables.group_of(key)
+        group = self._variables.group_of(combination)
         zero = tuple([0] * self._variables.count)
-        result = (1, key, zero)
+        result = (1, combination, zero)
         for factor in (1, -1, 2, -2):
             for rep in self._representatives:
                 if self._variables.group_of(rep) != group:
                     continue
-                shift = tuple(k - factor * r for k, r in zip(key, rep, strict=True))
+                shift = tuple(k - factor * r for k, r in zip(combination, rep, strict=True))
                 if shift in self.known and rep not in self.known:
-                    self._represented[key] = (factor, rep, shift)
+                    self._represented[combination] = (factor, rep, shift)
                     return factor, rep, shift
-        self._represented[key] = result
+        self._represented[combination] = result
         return result
 
-    def rank(self, keys: list[Key]) -> int:
-        """Number of independent unknowns among the angles of keys."""
-        if not keys:
+    def rank(self, combinations: list[AngleCombination]) -> int:
+        """Number of independent unknowns among the angles of combinations."""
+        if not combinations:
             return 0
         known = [list(k) for k in self.solved]
         base = np.linalg.matrix_rank(np.array(known)) if known else 0
-        both = np.linalg.matrix_rank(np.array(known + [list(k) for k in keys]))
+        both = np.linalg.matrix_rank(np.array(known + [list(k) for k in combinations]))
         return int(both - base)

@@ -1,7 +1,7 @@
 """What is known so far, and equations as polynomials in what is not.
 
-An angle key is known when it is an integer combination of solved ones: the lattice of the known keys of
-its group. Unknown keys are written modulo that lattice on one representative each, so that
+An angle combination is known when it is an integer combination of solved ones: the lattice of the
+known ones of its group. Unknown ones are written modulo that lattice on one representative each, so that
 `cos(theta_23)` with theta_3 known is linear in the cosine and sine of theta_2.
 """
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from ikgen.algebra import polynomial as poly
 from ikgen.algebra.expression import Expr
-from ikgen.algebra.polynomial import Key, Monomial, Polynomial, canonical
+from ikgen.algebra.polynomial import AngleCombination, Monomial, Polynomial, canonical
 from ikgen.equations.angle_lattice import AngleLattice
 from ikgen.equations.equation_set import Equation, EquationSet
 
@@ -23,24 +23,24 @@ __all__ = ["Knowledge", "PolynomialEquation", "Variable"]
 
 @dataclass(frozen=True, slots=True, order=True)
 class Variable:
-    """An unknown: the angle of a key, or the prismatic variable of a joint (kind "dist")."""
+    """An unknown: the angle of a combination, or the prismatic variable of a joint (kind "prismatic")."""
 
     kind: str
-    key: Key
+    combination: AngleCombination
 
     @property
     def joint(self) -> int | None:
         """The joint whose own variable this is, if it is one."""
-        ones = [j for j, k in enumerate(self.key) if k]
-        return ones[0] if len(ones) == 1 and self.key[ones[0]] == 1 else None
+        ones = [j for j, k in enumerate(self.combination) if k]
+        return ones[0] if len(ones) == 1 and self.combination[ones[0]] == 1 else None
 
     @property
     def text(self) -> str:
         """Name such as theta_23 or d_4."""
         letter = "theta" if self.kind == "angle" else "d"
-        if all(k in (0, 1) for k in self.key):
-            return f"{letter}_" + "".join(str(j + 1) for j, k in enumerate(self.key) if k)
-        parts = [f"{k:+d}*{letter}_{j + 1}" for j, k in enumerate(self.key) if k]
+        if all(k in (0, 1) for k in self.combination):
+            return f"{letter}_" + "".join(str(j + 1) for j, k in enumerate(self.combination) if k)
+        parts = [f"{k:+d}*{letter}_{j + 1}" for j, k in enumerate(self.combination) if k]
         return "(" + "".join(parts) + ")"
 
 
@@ -84,13 +84,13 @@ class Knowledge:
     def joint_variable(self, joint: int) -> Variable:
         """The variable of a joint."""
         revolute = self.variables.primary[joint].revolute
-        return Variable("angle" if revolute else "dist", self.variables.unit(joint))
+        return Variable("angle" if revolute else "prismatic", self.variables.unit(joint))
 
     # -- learning -------------------------------------------------------------------------------
 
-    def learn_angle(self, key: Key) -> None:
-        """Mark a key's cosine and sine as known."""
-        self._lattice.add(key)
+    def learn_angle(self, combination: AngleCombination) -> None:
+        """Mark a combination's cosine and sine as known."""
+        self._lattice.add(combination)
         self.refresh()
 
     def learn_distance(self, joint: int) -> None:
@@ -99,36 +99,38 @@ class Knowledge:
         self.refresh()
 
     def refresh(self) -> None:
-        """Rebuild the lattice of known keys and mark the atoms in it."""
+        """Rebuild the lattice of known combinations and mark the atoms in it."""
         self._converted.clear()
         self._lattice.rebuild()
         self._mark_atoms()
 
     def _mark_atoms(self) -> None:
-        """Every atom whose key has become known gets its definition, once."""
-        for key in self._lattice.known:
-            c = self.graph.find_atom("cos", key)
-            s = self.graph.find_atom("sin", key)
+        """Every atom whose combination has become known gets its definition, once."""
+        for combination in self._lattice.known:
+            c = self.graph.find_atom("cos", combination)
+            s = self.graph.find_atom("sin", combination)
             for node in (c, s):
                 if node is not None and not node.support & self.known_mask:
                     self.known_mask |= node.support
-                    if key not in self._lattice.solved:
-                        pair = self.known_pair(key)
+                    if combination not in self._lattice.solved:
+                        pair = self.known_pair(combination)
                         assert pair is not None
                         self.binding[node.id] = pair[0] if node is c else pair[1]
 
-    def known_pair(self, key: Key) -> tuple[Expr, Expr] | None:
-        """Cosine and sine of a known key's angle, composed from solved ones; None if unknown."""
-        return self._lattice.pair(key)
+    def known_pair(self, combination: AngleCombination) -> tuple[Expr, Expr] | None:
+        """Cosine and sine of a known combination's angle, composed from solved ones; None if unknown."""
+        return self._lattice.pair(combination)
 
-    def composition(self, key: Key) -> tuple[tuple[int, Key], ...]:
-        """A known key's angle as integer combination of solved ones: (factor, solved key) pairs."""
-        return self._lattice.known[key]
+    def composition(
+        self, combination: AngleCombination
+    ) -> tuple[tuple[int, AngleCombination], ...]:
+        """A known angle as integer combination of solved ones: (factor, solved combination) pairs."""
+        return self._lattice.known[combination]
 
     def is_known(self, variable: Variable) -> bool:
         """Whether the variable is solved or follows from solved ones."""
         if variable.kind == "angle":
-            return variable.key in self._lattice.known
+            return variable.combination in self._lattice.known
         joint = variable.joint
         assert joint is not None
         return bool(self.variables.distance(joint).support & self.known_mask)
@@ -140,7 +142,7 @@ class Knowledge:
     # -- conversion -----------------------------------------------------------------------------
 
     def convert(self, node: Expr) -> Polynomial:
-        """The node as a polynomial in the unknown atoms (keys not yet reduced)."""
+        """The node as a polynomial in the unknown atoms (combinations not yet reduced)."""
         if not node.support & ~self.known_mask:
             return {} if node.vanishes else {poly.ONE: node}
         found = self._converted.get(node.id)
@@ -167,7 +169,7 @@ class Knowledge:
     def _convert_atom(self, node: Expr) -> Polynomial:
         g, atom = self.graph, node.atom
         assert atom is not None
-        if atom.kind == "dist":
+        if atom.kind == "prismatic":
             assert not isinstance(atom.key, str)
             joint = atom.key.index(1)
             return {((), ((joint, 1),)): g.one}
@@ -175,23 +177,25 @@ class Knowledge:
         return {(((atom.key, atom.kind[0]),), ()): g.one}
 
     def reduce(self, polynomial: Polynomial) -> Polynomial:
-        """Rewrite every key on its representative modulo the known lattice."""
+        """Rewrite every combination on its representative modulo the known lattice."""
         g = self.graph
         out: Polynomial = {}
-        for (trigs, dist), value in polynomial.items():
-            term: Polynomial = {((), dist): value}
-            for key, kind in trigs:
-                term = poly.multiply(g, self.variables.group_of, term, self._reduced(key, kind))
+        for (trigs, slides), value in polynomial.items():
+            term: Polynomial = {((), slides): value}
+            for combination, kind in trigs:
+                term = poly.multiply(
+                    g, self.variables.group_of, term, self._reduced(combination, kind)
+                )
             out = poly.add(g, out, term)
         return out
 
-    def _reduced(self, key: Key, kind: str) -> Polynomial:
+    def _reduced(self, combination: AngleCombination, kind: str) -> Polynomial:
         g = self.graph
-        if key in self._lattice.known:
-            pair = self.known_pair(key)
+        if combination in self._lattice.known:
+            pair = self.known_pair(combination)
             assert pair is not None
             return {poly.ONE: pair[0] if kind == "c" else pair[1]}
-        factor, rep, shift = self._lattice.represent(key)
+        factor, rep, shift = self._lattice.represent(combination)
         target, sign = canonical(tuple(factor * r for r in rep))
         pair = self.known_pair(shift)
         assert pair is not None
@@ -211,30 +215,30 @@ class Knowledge:
     def unknown_rank(self, support: int) -> int:
         """Number of independent unknowns among the atoms of a support mask (99: unreadable pose)."""
         mask = support & ~self.known_mask
-        keys: list[Key] = []
-        distances: set[Key] = set()
+        combinations: list[AngleCombination] = []
+        distances: set[AngleCombination] = set()
         for node in self.graph.atoms_in(mask):
             assert node.atom is not None
             if node.atom.kind == "pose":
                 return 99
             assert not isinstance(node.atom.key, str)
-            if node.atom.kind == "dist":
+            if node.atom.kind == "prismatic":
                 distances.add(node.atom.key)
             else:
-                keys.append(node.atom.key)
-        return self._lattice.rank(keys) + len(distances)
+                combinations.append(node.atom.key)
+        return self._lattice.rank(combinations) + len(distances)
 
     def unknowns_of(self, polynomial: Polynomial) -> tuple[tuple[Variable, ...], int]:
         """Representatives in a reduced polynomial, and their rank."""
         angles: set[Variable] = set()
         distances: set[Variable] = set()
-        for trigs, dist in polynomial:
-            for key, _ in trigs:
-                divisor = int(np.gcd.reduce([abs(k) for k in key]))
-                angles.add(Variable("angle", tuple(k // divisor for k in key)))
-            for joint, _ in dist:
-                distances.add(Variable("dist", self.variables.unit(joint)))
-        rank = self._lattice.rank([v.key for v in angles]) + len(distances)
+        for trigs, slides in polynomial:
+            for combination, _ in trigs:
+                divisor = int(np.gcd.reduce([abs(k) for k in combination]))
+                angles.add(Variable("angle", tuple(k // divisor for k in combination)))
+            for joint, _ in slides:
+                distances.add(Variable("prismatic", self.variables.unit(joint)))
+        rank = self._lattice.rank([v.combination for v in angles]) + len(distances)
         return tuple(sorted(angles | distances)), rank
 
     def polynomial_equation(self, equation: Equation) -> PolynomialEquation:

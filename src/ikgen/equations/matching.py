@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
-from ikgen.algebra.polynomial import ONE, Key, Monomial, Polynomial
+from ikgen.algebra.polynomial import ONE, AngleCombination, Monomial, Polynomial
 from ikgen.equations.knowledge import PolynomialEquation, Variable
 
 __all__ = [
@@ -35,23 +35,23 @@ def split_angle(equation: PolynomialEquation, unknown: Variable) -> AngleSplit |
     cosine: Polynomial = {}
     sine: Polynomial = {}
     rest: Polynomial = {}
-    for (trigs, dist), value in equation.polynomial.items():
-        hits = [t for t in trigs if _parallel(t[0], unknown.key)]
+    for (trigs, slides), value in equation.polynomial.items():
+        hits = [t for t in trigs if _parallel(t[0], unknown.combination)]
         if not hits:
-            rest[trigs, dist] = value
+            rest[trigs, slides] = value
             continue
-        key, kind = hits[0]
-        if key != unknown.key:
+        combination, kind = hits[0]
+        if combination != unknown.combination:
             return None
         others = tuple(t for t in trigs if t is not hits[0])
-        (cosine if kind == "c" else sine)[others, dist] = value
+        (cosine if kind == "c" else sine)[others, slides] = value
     return AngleSplit(cosine, sine, rest)
 
 
-def _parallel(key: Key, unit: Key) -> bool:
-    factor = max(map(abs, key))
+def _parallel(combination: AngleCombination, unit: AngleCombination) -> bool:
+    factor = max(map(abs, combination))
     unit_factor = max(map(abs, unit))
-    return all(k * unit_factor == u * factor for k, u in zip(key, unit, strict=True))
+    return all(k * unit_factor == u * factor for k, u in zip(combination, unit, strict=True))
 
 
 def harmonics(
@@ -59,16 +59,16 @@ def harmonics(
 ) -> dict[tuple[int, str], Expr] | None:
     """Coefficients by (harmonic, "c" or "s"), (0, "c") the constant; None where others occur."""
     out: dict[tuple[int, str], Expr] = {}
-    for (trigs, dist), value in equation.polynomial.items():
-        if dist or len(trigs) > 1:
+    for (trigs, slides), value in equation.polynomial.items():
+        if slides or len(trigs) > 1:
             return None
         if not trigs:
             out[0, "c"] = value
             continue
-        key, kind = trigs[0]
-        if not _parallel(key, unknown.key):
+        combination, kind = trigs[0]
+        if not _parallel(combination, unknown.combination):
             return None
-        out[max(map(abs, key)) // max(map(abs, unknown.key)), kind] = value
+        out[max(map(abs, combination)) // max(map(abs, unknown.combination)), kind] = value
     return out
 
 
@@ -76,10 +76,10 @@ def powers(equation: PolynomialEquation, unknown: Variable) -> dict[int, Expr] |
     """Coefficients by power of a prismatic unknown; None where other unknowns occur."""
     joint = unknown.joint
     out: dict[int, Expr] = {}
-    for (trigs, dist), value in equation.polynomial.items():
-        if trigs or len(dist) > 1 or (dist and dist[0][0] != joint):
+    for (trigs, slides), value in equation.polynomial.items():
+        if trigs or len(slides) > 1 or (slides and slides[0][0] != joint):
             return None
-        out[dist[0][1] if dist else 0] = value
+        out[slides[0][1] if slides else 0] = value
     return out
 
 

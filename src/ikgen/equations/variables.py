@@ -1,8 +1,8 @@
 """Joint variables of a DH chain as atoms of the expression graph.
 
-A revolute variable is the DH angle of the row that its joint drives first; a key is an integer
+A revolute variable is the DH angle of the row that its joint drives first; a combination is an integer
 combination of such angles, one entry a variable. Angles of parallel consecutive axes share a group:
-their sums ("sum of angles") appear as keys of their own when the matrices are built.
+their sums ("sum of angles") appear as combinations of their own when the matrices are built.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
-from ikgen.algebra.polynomial import Key, canonical
+from ikgen.algebra.polynomial import AngleCombination, canonical
 from ikgen.errors import UnsupportedJointError
 from ikgen.kinematics.rigid import exact_cos_sin
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
@@ -97,40 +97,40 @@ class JointVariables:
                 seen[run] = row.driver
         return group
 
-    def group_of(self, key: Key) -> int:
-        """The group of parallel axes that the key's angles belong to."""
-        for j, k in enumerate(key):
+    def group_of(self, combination: AngleCombination) -> int:
+        """The group of parallel axes that the combination's angles belong to."""
+        for j, k in enumerate(combination):
             if k:
                 return self.group[j]
         return -1
 
-    def unit(self, joint: int) -> Key:
-        """The key of one joint's own angle."""
+    def unit(self, joint: int) -> AngleCombination:
+        """The combination of one joint's own angle."""
         return tuple(int(j == joint) for j in range(self.count))
 
-    def pair(self, key: Key) -> tuple[Expr, Expr]:
-        """Cosine and sine atoms of a key's angle."""
+    def pair(self, combination: AngleCombination) -> tuple[Expr, Expr]:
+        """Cosine and sine atoms of a combination's angle."""
         g = self.graph
-        key, sign = canonical(key)
+        combination, sign = canonical(combination)
         if sign == 0:
             return g.one, g.zero
-        angle = self.values @ np.array(key, dtype=float)
-        c = g.atom("cos", key, np.cos(angle), unknown=True)
-        s = g.atom("sin", key, np.sin(angle), unknown=True)
+        angle = self.values @ np.array(combination, dtype=float)
+        c = g.atom("cos", combination, np.cos(angle), unknown=True)
+        s = g.atom("sin", combination, np.sin(angle), unknown=True)
         return c, (s if sign > 0 else g.neg(s))
 
-    def rotated(self, key: Key, shift: float) -> tuple[Expr, Expr]:
-        """Cosine and sine of a key's angle plus a constant."""
+    def rotated(self, combination: AngleCombination, shift: float) -> tuple[Expr, Expr]:
+        """Cosine and sine of a combination's angle plus a constant."""
         g = self.graph
-        c, s = self.pair(key)
+        c, s = self.pair(combination)
         kc, ks = (g.const(x) for x in exact_cos_sin(shift))
         return (
             g.sub(g.mul(kc, c), g.mul(ks, s)),
             g.add(g.mul(ks, c), g.mul(kc, s)),
         )
 
-    def row_angle(self, i: int) -> tuple[Key, float]:
-        """Key and constant of the rotation about z in row i (0-based)."""
+    def row_angle(self, i: int) -> tuple[AngleCombination, float]:
+        """AngleCombination and constant of the rotation about z in row i (0-based)."""
         row, var = self.dh.rows[i], self._rows[i]
         if not row.revolute:
             return tuple([0] * self.count), row.theta.value
@@ -138,8 +138,8 @@ class JointVariables:
 
     def distance(self, joint: int) -> Expr:
         """The atom of a prismatic variable."""
-        key = self.unit(joint)
-        return self.graph.atom("dist", key, self.values[:, joint], unknown=True)
+        combination = self.unit(joint)
+        return self.graph.atom("prismatic", combination, self.values[:, joint], unknown=True)
 
     def row_distance(self, i: int) -> Expr:
         """The translation along z in row i: the constant d, or the prismatic variable."""

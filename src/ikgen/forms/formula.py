@@ -62,16 +62,16 @@ class FormulaWriter:
     def length(self) -> Math:
         """The unknown itself."""
         if self.unknown.kind == "angle":
-            return angle(self.unknown.key)
-        return m.name("d", str(self.unknown.key.index(1) + 1))
+            return angle(self.unknown.combination)
+        return m.name("d", str(self.unknown.combination.index(1) + 1))
 
     def cosine(self, kind: str = "cos") -> Math:
         """Its cosine, or with "sin" its sine."""
         v = self.unknown
-        if all(k in (0, 1) for k in v.key):
-            places = "".join(str(j + 1) for j, k in enumerate(v.key) if k)
+        if all(k in (0, 1) for k in v.combination):
+            places = "".join(str(j + 1) for j, k in enumerate(v.combination) if k)
             return m.name(kind[0], places)
-        return m.text(kind) + angle(v.key)
+        return m.text(kind) + angle(v.combination)
 
 
 def equals(left: Math, right: Math) -> Math:

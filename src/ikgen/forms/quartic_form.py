@@ -71,7 +71,7 @@ class TrigQuartic(Form):
 
     def formula(self, w: FormulaWriter) -> Formula:
         """The polynomial in cosines and sines, and in z = exp(i u)."""
-        theta = angle(w.unknown.key)
+        theta = angle(w.unknown.combination)
         letters = [m.name(x, i) for x, i in ("a2", "b2", "a1", "b1", "a0")]
         twice = m.number(2.0) + m.space() + theta
         marks = [

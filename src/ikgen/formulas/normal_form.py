@@ -85,7 +85,7 @@ class Radical:
 
 Factor = Symbol | Named | Sum | Radical
 
-_KINDS = {"param": 0, "pose": 1, "dist": 2, "cos": 3, "sin": 3, "sigma": 4}
+_KINDS = {"param": 0, "pose": 1, "prismatic": 2, "cos": 3, "sin": 3, "sigma": 4}
 
 
 def weight_of(factor: Factor) -> int:

@@ -12,21 +12,21 @@ __all__ = ["angle", "quotient", "show", "symbol", "variable"]
 _INLINE_FRACTION = 26
 
 
-def _index(key: tuple[int, ...]) -> str | None:
+def _index(combination: tuple[int, ...]) -> str | None:
     """23 for theta_2 + theta_3; None for a combination that is no plain sum."""
-    if any(k not in (0, 1) for k in key):
+    if any(k not in (0, 1) for k in combination):
         return None
-    places = [str(j + 1) for j, k in enumerate(key) if k]
-    return ("," if len(key) > 9 else "").join(places)
+    places = [str(j + 1) for j, k in enumerate(combination) if k]
+    return ("," if len(combination) > 9 else "").join(places)
 
 
-def angle(key: tuple[int, ...], version: str = "") -> Math:
+def angle(combination: tuple[int, ...], version: str = "") -> Math:
     """theta_2, theta_23, or a combination such as theta_2 - theta_4 in parentheses."""
-    index = _index(key)
+    index = _index(combination)
     if index is not None:
         return m.name("theta", index + version)
     parts = Math(())
-    for j, k in enumerate(key):
+    for j, k in enumerate(combination):
         if not k:
             continue
         sign = m.plus() if k > 0 else m.minus(sign=not parts.tokens)
@@ -40,8 +40,8 @@ def angle(key: tuple[int, ...], version: str = "") -> Math:
 def variable(v: Variable, version: str = "") -> Math:
     """An unknown, with the number of its version: theta_{3s1}, d_{2s4}."""
     if v.kind == "angle":
-        return angle(v.key, version)
-    return m.name("d", f"{v.key.index(1) + 1}{version}")
+        return angle(v.combination, version)
+    return m.name("d", f"{v.combination.index(1) + 1}{version}")
 
 
 def symbol(s: Symbol) -> Math:
@@ -50,7 +50,7 @@ def symbol(s: Symbol) -> Math:
         if s.kind == "pose":
             return m.name(s.key[0], s.key[1:])
         return _parameter(s.key)
-    if s.kind == "dist":
+    if s.kind == "prismatic":
         return m.name("d", str(s.key.index(1) + 1))
     index = _index(s.key)
     if index is not None:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from ikgen.generation.closed_forms import ClosedForm, Demand, forms_held, preference
+from ikgen.generation.held_joints import HeldChoice, held_choices
 from ikgen.generation.progress import Progress
 
 if TYPE_CHECKING:
+    from ikgen.emit.derivation import Reading
     from ikgen.generation.request import Request
     from ikgen.model.dh import DHChain
     from ikgen.solver.solution_graph import SolutionGraph
@@ -16,6 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["Attempt", "attempt", "attempts", "eliminations"]
 
 _POSE_FREEDOMS = 6
+_ENOUGH = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,50 +62,76 @@ class Attempt:
         return replace(request, task=task, free=free)
 
 
-def attempts(dh: DHChain, asked: str | None, progress: Progress) -> list[Attempt]:
+def attempts(reading: Reading, asked: str | None, progress: Progress) -> list[Attempt]:
     """The derivations worth trying for a chain, best first; the asked task alone where one is.
 
-    A chain with more joints than the task fixes is tried with each one held (two too many: none is
-    tried), by the elimination if the rules solve none; one with fewer is tried with the tasks that fit,
-    the whole pose among them, and with smaller ones.
+    Where joints are to be held, the choices in the order in which they are taken without options. An arm
+    with fewer joints than a pose has freedoms is tried with the tasks that fit, the whole pose among
+    them, and with smaller ones.
     """
-    from ikgen.tasks import TASKS, find_task, fits, fitting_tasks
+    from ikgen.tasks import TASKS, find_task, fitting_tasks
 
+    demand = Demand(asked, (), progress)
+    choices = held_choices(reading, find_task(asked or "pose"))
+    if choices:
+        return _attempts_held(reading, choices, demand)
+    dh = reading.dh
     moving = dh.dof - len(dh.free)
-    if asked is not None:
-        tasks = [find_task(asked)]
-    elif moving >= _POSE_FREEDOMS:
-        tasks = [find_task("pose")]
+    if asked is not None or moving >= _POSE_FREEDOMS:
+        tasks = [find_task(asked or "pose")]
     else:
         less = [t for t in TASKS if t.freedoms == moving - 1 and t.name != "rotation"]
         tasks = [*fitting_tasks(dh), *less]
     found: list[Attempt] = []
     for task in tasks:
-        spare = max(moving - task.freedoms, 0)
-        held = [j.name for j in dh.joints if j.name not in dh.free] if spare == 1 else [""]
-        for name in held if spare in (0, 1) else []:
-            held_dh = replace(dh, free=(*dh.free, name)) if name else dh
-            if name and not task.whole_pose and not fits(held_dh, task):
-                continue
-            progress("derive", f"{task.name}, {'hold ' + name if name else 'no joint held'}")
+        for held_dh in _held_chains(reading, task):
+            progress("derive", " ".join([task.name, *(f"hold {name}" for name in held_dh.free)]))
             found.append(attempt(held_dh, task))
     if not any(a.closed for a in found):
         found += eliminations([a for a in found if a.task == "pose"], dh, progress)
     return sorted(found, key=lambda a: a.rank)
 
 
+def _attempts_held(
+    reading: Reading, choices: Sequence[HeldChoice], demand: Demand
+) -> list[Attempt]:
+    """Attempts in the order in which `closed_form` prefers them, until enough of them are closed."""
+    tried: list[tuple[HeldChoice, ClosedForm]] = []
+    for choice, form in forms_held(reading, choices, demand):
+        tried.append((choice, form))
+        if sum(form.sound for _, form in tried) == _ENOUGH:
+            break
+    tried.sort(key=lambda pair: preference(*pair))
+    found = [
+        replace(_attempt_of(form.graph, form.task), held=choice.held) for choice, form in tried
+    ]
+    if not tried[0][1].sound:
+        failed = [a for a in found if a.task == "pose"]
+        found = [*eliminations(failed, reading.dh, demand.progress), *found]
+    return found
+
+
+def _held_chains(reading: Reading, task: Task) -> list[DHChain]:
+    """The chain with as many joints held as move the task in vain; none where too many would be."""
+    spare = reading.dh.dof - len(reading.dh.free) - task.freedoms
+    if spare <= 0:
+        return [reading.dh]
+    choices = held_choices(reading, task)
+    return [choice.dh for choice in choices if len(choice.held) == spare == 1]
+
+
 def eliminations(failed: list[Attempt], dh: DHChain, progress: Progress) -> list[Attempt]:
-    """The first of the failed attempts, joints near the tip held before others, that the general 6R
-    elimination solves; empty if it solves none."""
+    """The first of the failed attempts that the general 6R elimination solves; empty if it solves
+    none."""
     from ikgen.elimination import elimination_plan
     from ikgen.lowering.elimination_program import MOST_SOLUTIONS
 
-    names = [joint.name for joint in dh.joints]
-    for one in sorted(failed, key=lambda a: [-names.index(n) for n in a.free]):
+    for one in failed:
         progress("derive", " ".join(["6R elimination", *one.free]))
         if elimination_plan(replace(dh, free=one.free)) is not None:
             order = ("all joints at once (general 6R elimination)",)
-            return [replace(one, closed=True, max_solutions=MOST_SOLUTIONS, order=order, left=())]
+            solved = replace(one, closed=True, max_solutions=MOST_SOLUTIONS, order=order)
+            return [replace(solved, left=(), weak=())]
     return []
 
 
@@ -109,6 +140,12 @@ def attempt(dh: DHChain, task: Task) -> Attempt:
     from ikgen.solver.solve import solve_chain
 
     graph = solve_chain(dh, readable=task.readable, tool_on_right=not task.whole_pose)
+    return _attempt_of(graph, task)
+
+
+def _attempt_of(graph: SolutionGraph, task: Task) -> Attempt:
+    """What a derivation by the rules came to."""
+    dh = graph.dh
     closed = not graph.open_joints
     most = 0
     if closed:

@@ -77,6 +77,9 @@ def _again(kept: Sequence[str]) -> list[Emitter]:
         raise
 
 
+_REFUSED = 2
+"""How many choices of joints to hold may fail the verification before it ends the run."""
+
 _Made = tuple[dict[str, dict[str, str]], "Derivation", dict[str, "VerificationReport"]]
 
 
@@ -89,18 +92,23 @@ def _made(
 ) -> _Made:
     """The texts of each output, the derivation, and the verification.
 
-    Where the task was chosen to fit the arm, and its closed form has a weak step and fails, the next one
-    is taken: the whole pose.
+    Where what was chosen for the arm fails, the next choice is taken: of joints to hold, and of a task
+    whose closed form has a weak step the whole pose.
     """
-    derivation = derive(request, progress, reading=reading)
-    try:
-        made, reports = _emitted(derivation, emitters, outputs, progress)
-    except VerificationError:
-        if not derivation.chosen or derivation.graph.sound or derivation.task.whole_pose:
-            raise
-        passed_over = {derivation.task.name}
-        derivation = derive(request, progress, passed_over=passed_over, reading=reading)
-        made, reports = _emitted(derivation, emitters, outputs, progress)
+    tasks: set[str] = set()
+    held: list[tuple[str, ...]] = []
+    while True:
+        derivation = derive(request, progress, tasks, reading, held)
+        try:
+            made, reports = _emitted(derivation, emitters, outputs, progress)
+            break
+        except VerificationError:
+            if derivation.held is not None and len(held) < _REFUSED:
+                held.append(derivation.held.joints)
+            elif derivation.chosen and not (derivation.graph.sound or derivation.task.whole_pose):
+                tasks.add(derivation.task.name)
+            else:
+                raise
     for emitter in emitters:
         if emitter.tells_verification:
             progress("emit", emitter.name)

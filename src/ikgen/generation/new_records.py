@@ -57,8 +57,14 @@ def _record(request: Request, outputs: Outputs, derivation: Derivation, folder: 
     """What outputs in a folder were made from: enough to make and to verify them again."""
     module = derivation.module
     dh = module.dh
+    held = {name: request.free.get(name) for name in dh.free}
     explicit = replace(
-        request, base=dh.base_link, tip=dh.tip_link, task=module.task, name=module.name
+        request,
+        base=dh.base_link,
+        tip=dh.tip_link,
+        task=module.task,
+        name=module.name,
+        free=held,
     )
     return Record(
         generator=GENERATOR,

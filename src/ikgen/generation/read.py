@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ikgen.model.chain import ActuatedJoint
     from ikgen.model.joint_tree import Joint, JointTree
 
-__all__ = ["default_name", "read", "read_tree"]
+__all__ = ["arm_name", "default_name", "read", "read_tree"]
 
 
 def read(request: Request, tree: JointTree | None = None) -> Reading:
@@ -83,12 +83,18 @@ def _check_locks(request: Request, joints: Iterable[Joint | ActuatedJoint]) -> N
 def default_name(reading: Reading) -> str:
     """The prefix of an arm's files where none is asked for: the robot's name, with the tip's where the
     robot has several chains, so that their outputs do not meet."""
-    name = identifier(reading.dh.robot)
     if reading.tree is None:
-        return name
+        return identifier(reading.dh.robot)
     from ikgen.chains.arms import candidate_chains
 
-    if len(candidate_chains(reading.tree)) < 2:
+    several = len(candidate_chains(reading.tree)) > 1
+    return arm_name(reading.dh.robot, reading.dh.tip_link if several else "")
+
+
+def arm_name(robot: str, tip: str = "") -> str:
+    """An arm's name: its robot's, with that of a tip unless it begins with it."""
+    name = identifier(robot)
+    if not tip:
         return name
-    tip = identifier(reading.dh.tip_link)
-    return tip if tip.startswith(f"{name}_") else f"{name}_{tip}"
+    own = identifier(tip)
+    return own if own.startswith(f"{name}_") else f"{name}_{own}"

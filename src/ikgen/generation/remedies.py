@@ -14,8 +14,8 @@ from ikgen.generation.progress import Progress
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Unsolved
     from ikgen.generation.advice import Attempt
+    from ikgen.generation.held_joints import HeldChoice
     from ikgen.generation.request import Request
-    from ikgen.model.dh import DHChain
     from ikgen.tasks import Task
 
 __all__ = ["advised", "helped", "remedies"]
@@ -73,28 +73,34 @@ def remedies(unsolved: Unsolved, progress: Progress) -> list[Attempt]:
 
     found: list[Attempt] = []
     dh = unsolved.reading.dh
-    for task, held in itertools.islice(_choices(dh, unsolved.task), ATTEMPTS):
+    for task, choice in itertools.islice(_choices(unsolved), ATTEMPTS):
         closed = [a for a in found if a.closed]
         if len(closed) == _ENOUGH or any(a.task != task.name for a in closed):
             break
-        free = (*dh.free, *held)
+        held = () if choice is None else choice.held
         progress("try", " ".join([task.name, *(f"--free {name}" for name in held)]))
-        found.append(replace(attempt(replace(dh, free=free), task), held=held))
+        one = attempt(dh if choice is None else choice.dh, task)
+        found.append(replace(one, held=held))
     if not any(a.closed for a in found):
         found += eliminations([a for a in found if a.task == "pose"], dh, progress)
     return found
 
 
-def _choices(dh: DHChain, task: Task) -> Iterator[tuple[Task, tuple[str, ...]]]:
-    """The task with as many joints held as move in vain, then smaller tasks."""
-    from ikgen.tasks import TASKS, freedoms_moved
+def _choices(unsolved: Unsolved) -> Iterator[tuple[Task, HeldChoice | None]]:
+    """The choices of joints to hold that were not tried for the task, then smaller tasks, with as many
+    joints held as move in vain (None: none)."""
+    from ikgen.generation.closed_forms import RULE_TRIES
+    from ikgen.generation.held_joints import held_choices
+    from ikgen.tasks import TASKS
 
-    moving = [j.name for j in dh.joints if j.name not in dh.free]
+    reading, task = unsolved.reading, unsolved.task
     smaller = [t for t in TASKS if t.freedoms < task.freedoms and t.name != "rotation"]
-    for one in (task, *smaller):
-        spare = len(moving) - freedoms_moved(dh, one)
-        if spare < 0 or spare > _MOST_HELD or (one is task and spare == 0):
-            continue
-        for held in itertools.combinations(reversed(moving), spare):
-            if freedoms_moved(replace(dh, free=(*dh.free, *held)), one) == len(moving) - spare:
-                yield one, held
+    for choice in held_choices(reading, task)[RULE_TRIES:]:
+        yield task, choice
+    for one in smaller:
+        choices = held_choices(reading, one)
+        if not choices:
+            yield one, None
+        for choice in choices:
+            if len(choice.held) <= _MOST_HELD:
+                yield one, choice

@@ -16,7 +16,7 @@ __all__ = ["as_dict", "rounding"]
 def rounding(derivation: Derivation) -> tuple[float, float] | None:
     """How far (m, rad) the file is off what was solved, where Newton steps take the rows to it; else
     None."""
-    return None if derivation.module.polish == "some" else derivation.reading.dh.deviation
+    return None if derivation.module.refine == "some" else derivation.reading.dh.deviation
 
 
 def as_dict(generation: Generation) -> dict[str, Any]:
@@ -32,6 +32,7 @@ def as_dict(generation: Generation) -> dict[str, Any]:
         "joints": [joint.name for joint in dh.joints],
         "free": [dh.joints[j].name for j in module.free],
         "locked": dict(dh.locked),
+        "chosen": _chosen(derivation),
         "symbols": list(dh.symbols),
         "geometry": {"name": derivation.geometry.name, "words": derivation.geometry.words},
         "solved": [
@@ -45,6 +46,19 @@ def as_dict(generation: Generation) -> dict[str, Any]:
         "verification": {name: _report(r) for name, r in generation.reports.items()},
         "seconds": round(generation.seconds, 3),
     }
+
+
+def _chosen(derivation: Derivation) -> dict[str, Any]:
+    """What was left to ikgen and what it took: the task, the joints to hold, and why."""
+    chosen: dict[str, Any] = {}
+    if derivation.chosen:
+        chosen["task"] = derivation.task.name
+    held = derivation.held
+    if held is not None:
+        chosen |= {"held": list(held.joints), "why": held.why}
+        chosen["others"] = [list(names) for names in held.others]
+        chosen["refused"] = [list(names) for names in held.refused]
+    return chosen
 
 
 def _report(report: VerificationReport) -> dict[str, Any]:

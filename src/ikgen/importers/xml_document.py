@@ -29,8 +29,8 @@ __all__ = [
 Element = Any
 """An lxml element; lxml has no type stubs."""
 
-LARGEST_FILE = 32 * 2**20
-"""The most bytes that a description may have; the largest published ones have some 2 MB."""
+LARGEST_FILE = 16 * 2**20
+"""The most bytes that a description may have; published ones have up to some 200 kB."""
 
 _BYTE_ORDER_MARKS = (
     (b"\xef\xbb\xbf", "utf-8-sig"),

@@ -52,14 +52,14 @@ class Link:
     """Pose of an axis frame in the one before, z along the axis in both.
 
     `R` (3, 3) is snapped, `true_alpha` (rad) the angle between the axes before that, `p` (3,) in
-    m, `change` (rad) how far R was turned, `slack` (m) what that may have done to lengths.
+    m, `change` (rad) how far R was turned, `length_error` (m) what that may have done to lengths.
     """
 
     R: Matrix
     p: Matrix
     true_alpha: float
     change: float
-    slack: float
+    length_error: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +127,7 @@ def snapped_links(chain: Chain, tolerance: Tolerance) -> tuple[Link, ...]:
 def _measure(link: Link, tolerance: Tolerance) -> LinkShape:
     """The parameters of `link`: alpha in [0, pi], `a` of any sign and exact zero where near it."""
     R, p = link.R, link.p
-    near = tolerance.length + link.slack
+    near = tolerance.length + link.length_error
     alpha = math.atan2(math.hypot(R[0, 2], R[1, 2]), R[2, 2])
     if alpha < 1e-12:
         return _measure_parallel(link, tolerance)
@@ -142,7 +142,7 @@ def _measure(link: Link, tolerance: Tolerance) -> LinkShape:
 
 def _measure_parallel(link: Link, tolerance: Tolerance) -> LinkShape:
     R, p = link.R, link.p
-    near = tolerance.length + link.slack
+    near = tolerance.length + link.length_error
     turn = math.atan2(R[1, 0], R[0, 0])
     a, s = math.hypot(p[0], p[1]), float(p[2])
     if a <= near:

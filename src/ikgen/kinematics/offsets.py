@@ -17,7 +17,7 @@ __all__ = ["Offsets", "distribute"]
 
 @dataclass(frozen=True, slots=True)
 class Offsets:
-    """Constants of n rows before the ends are chosen: `d` (m), its `slack` (m), `theta` (rad).
+    """Constants of n rows before the ends are chosen: `d` (m), its `length_error` (m), `theta` (rad).
 
     The first theta lacks the base's turn and the last one the tip's; `base_lift` and `tip_lift` (m)
     are what the end constants take along the first and the last axis.
@@ -25,7 +25,7 @@ class Offsets:
 
     d: tuple[float, ...]
     theta: tuple[float, ...]
-    slack: tuple[float, ...]
+    length_error: tuple[float, ...]
     base_lift: float
     tip_lift: float
 
@@ -33,7 +33,7 @@ class Offsets:
 def distribute(shapes: tuple[LinkShape, ...], prismatic: tuple[bool, ...]) -> Offsets:
     """Row constants of the n axes that the n - 1 `shapes` link."""
     n = len(prismatic)
-    d, slack = [0.0] * n, [0.0] * n
+    d, length_error = [0.0] * n, [0.0] * n
     base_lift = tip_lift = 0.0
     for first, last in _parallel_runs(shapes):
         total = sum(shape.s1 + shape.s2 for shape in shapes[first:last])
@@ -47,9 +47,9 @@ def distribute(shapes: tuple[LinkShape, ...], prismatic: tuple[bool, ...]) -> Of
             sliding = [k for k in range(first, last + 1) if prismatic[k]]
             k = sliding[0] if sliding else last
             d[k] = total
-            slack[k] = sum(shape.link.slack for shape in shapes[first - 1 : last + 1])
+            length_error[k] = sum(shape.link.length_error for shape in shapes[first - 1 : last + 1])
     theta = tuple(wrap_angle(angle) for angle in _turns(shapes, prismatic))
-    return Offsets(tuple(d), theta, tuple(slack), base_lift, tip_lift)
+    return Offsets(tuple(d), theta, tuple(length_error), base_lift, tip_lift)
 
 
 def _parallel_runs(shapes: tuple[LinkShape, ...]) -> list[tuple[int, int]]:

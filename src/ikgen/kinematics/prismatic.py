@@ -64,7 +64,7 @@ def _cost(
     lengths = sum(shape.a != 0.0 for shape in shapes)
     shifts = turns = 0
     for k, slides in enumerate(prismatic):
-        nonzero = abs(offsets.d[k]) > tolerance.length + offsets.slack[k]
+        nonzero = abs(offsets.d[k]) > tolerance.length + offsets.length_error[k]
         lengths += nonzero and not slides
         shifts += nonzero and slides
         turns += slides and 0 < k < len(prismatic) - 1 and abs(offsets.theta[k]) > tolerance.angle
@@ -74,14 +74,14 @@ def _cost(
 def _shifted(links: tuple[Link, ...], k: int, c: Matrix) -> tuple[Link, ...]:
     """`links` with the line of axis k moved by c (3,), given in the frame of axis k."""
     moved = list(links)
-    around = [link.slack for link in links[max(0, k - 1) : k + 1]]
-    slack = max(around)
+    around = [link.length_error for link in links[max(0, k - 1) : k + 1]]
+    length_error = max(around)
     if k > 0:
         link = links[k - 1]
-        moved[k - 1] = replace(link, p=link.p + link.R @ c, slack=slack)
+        moved[k - 1] = replace(link, p=link.p + link.R @ c, length_error=length_error)
     if k < len(links):
         link = links[k]
-        moved[k] = replace(link, p=link.p - c, slack=slack)
+        moved[k] = replace(link, p=link.p - c, length_error=length_error)
     return tuple(moved)
 
 

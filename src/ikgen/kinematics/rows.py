@@ -70,7 +70,7 @@ def _revolute_row(
     i, theta = k + 1, offsets.theta[k]
     offset = exact_angle(theta, tolerance.turn * _SUM_FRACTION, f"theta_offset_{i}")
     log.add(f"theta_{i}", theta, _near(offset.value, theta))
-    d = book.enter(offsets.d[k], f"d_{i}", offsets.slack[k])
+    d = book.enter(offsets.d[k], f"d_{i}", offsets.length_error[k])
     return replace(row, d=d, offset=offset)
 
 
@@ -83,7 +83,7 @@ def _prismatic_row(
     # where the variable starts is no constant of the geometry: it shares no name
     own = LengthBook(book.tolerance, log)
     return replace(
-        row, theta=angle, offset=own.enter(offsets.d[k], f"d_offset_{i}", offsets.slack[k])
+        row, theta=angle, offset=own.enter(offsets.d[k], f"d_offset_{i}", offsets.length_error[k])
     )
 
 

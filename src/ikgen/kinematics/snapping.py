@@ -126,9 +126,9 @@ class LengthBook:
         self._log = log
         self._known: list[tuple[str, float]] = []
 
-    def enter(self, value: float, name: str, slack: float = 0.0) -> Length:
-        """`value` (m) as constant `name` or as one known already; zero within tolerance + slack."""
-        if abs(value) <= self.tolerance + slack:
+    def enter(self, value: float, name: str, length_error: float = 0.0) -> Length:
+        """`value` (m) as constant `name` or as one known already; zero within tolerance + length_error."""
+        if abs(value) <= self.tolerance + length_error:
             self._log.add(name, value, 0.0)
             return Length(0.0, None)
         sign = 1 if value > 0 else -1

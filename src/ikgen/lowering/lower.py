@@ -70,7 +70,7 @@ def _excess(work: Placement, v: Variable) -> Expr:
     """Two linear equations give a cosine and sine on the unit circle only if they agree with the
     rest: a branch whose squares do not add up to one is none."""
     g = work.g
-    c, s = work.knowledge.variables.pair(v.key)
+    c, s = work.knowledge.variables.pair(v.combination)
     return g.sub(g.add(g.square(c), g.square(s)), g.one)
 
 
@@ -79,7 +79,7 @@ def _routine(work: Placement, v: Variable, form: Form, lowered: LoweredRoutine, 
     arguments = _or_seed(work, v, form, lowered)
     for e in arguments:
         work.place(e)
-    atoms = work.knowledge.variables.pair(v.key)
+    atoms = work.knowledge.variables.pair(v.combination)
     work.levels.append(LoweredLevel(form.branches, None, (lowered.routine, arguments, atoms)))
     work.place(Comment(text))
     suffix = v.text.split("_", 1)[1]
@@ -112,7 +112,7 @@ def _joint_values(work: Placement) -> list[tuple[int, Expr]]:
             continue
         v = work.knowledge.joint_variable(j)
         if v.kind == "angle":
-            variable: tuple[Expr, ...] | None = work.knowledge.known_pair(v.key)
+            variable: tuple[Expr, ...] | None = work.knowledge.known_pair(v.combination)
             assert variable is not None
         else:
             variable = (work.knowledge.variables.distance(j),)

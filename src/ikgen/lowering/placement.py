@@ -158,7 +158,7 @@ class Placement:
     def atoms_of(self, v: Variable) -> tuple[Expr, ...]:
         """The atoms of a variable: its cosine and sine, or its distance."""
         if v.kind == "angle":
-            return self.knowledge.variables.pair(v.key)
+            return self.knowledge.variables.pair(v.combination)
         assert v.joint is not None
         return (self.knowledge.variables.distance(v.joint),)
 

@@ -57,7 +57,7 @@ def bind_joints(work: Placement) -> None:
         v = work.knowledge.joint_variable(j)
         held = HeldValue(j)
         if v.kind == "angle":
-            atoms: tuple[Expr, ...] = work.knowledge.variables.pair(v.key)
+            atoms: tuple[Expr, ...] = work.knowledge.variables.pair(v.combination)
             names = (f"c{j + 1}", f"s{j + 1}")
         else:
             atoms, names = (work.knowledge.variables.distance(j),), (f"d{j + 1}",)
@@ -70,11 +70,11 @@ def bind_joints(work: Placement) -> None:
 def seed_values(work: Placement, variable: Variable) -> tuple[Expr, ...]:
     """The seed's value of a variable: sums of joint angles are composed."""
     g = work.g
-    if variable.kind == "dist":
+    if variable.kind == "prismatic":
         assert variable.joint is not None
         return (work.atom(f"seed_d{variable.joint + 1}"),)
     c, s = g.one, g.zero
-    for j, k in enumerate(variable.key):
+    for j, k in enumerate(variable.combination):
         cj, sj = (work.atom(f"seed_{x}{j + 1}") for x in "cs") if k else (g.one, g.zero)
         for _ in range(abs(k)):
             sj_signed = sj if k > 0 else g.neg(sj)

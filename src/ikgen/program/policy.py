@@ -33,8 +33,8 @@ class SolvePolicy:
       below which refined rows are solutions; `rough_square`: squared error above which a row is refined.
     - `pose_tolerance`: how far a rotation's entries may be off; nearer ones are replaced by the nearest
       rotation; `orthonormal`: what is round-off of them.
-    - `coincident`: rows closer than that (rad or m) are one. `limit_tolerance`: a row that far (rad or m)
-      outside a limit is put back on it.
+    - `coincident`: rows closer than that (rad or m) are one; `meeting`: how close branches are where their
+      rows are compared. `limit_tolerance`: a row that far (rad or m) outside a limit is put back on it.
     - `tries`: how many values of a joint that a pose leaves free are tried, `try_step` (rad) apart.
     - `rank_loss`: smallest singular value below which a refined row is singular; `continuum_rank_loss`
       where the Program marked it already.
@@ -49,6 +49,7 @@ class SolvePolicy:
     pose_tolerance: float = 1e-6
     orthonormal: float = 1e-14
     coincident: float = 1e-6
+    meeting: float = 2e-5
     limit_tolerance: float = 1e-9
     tries: int = 16
     try_step: float = 0.39269908169872414

@@ -46,7 +46,7 @@ def _power(factor: Factor, power: int) -> str:
 def _symbol(s: Symbol) -> str:
     if isinstance(s.key, str):
         return f"{s.key[0]}_{s.key[1:]}" if s.kind == "pose" else s.key
-    if s.kind == "dist":
-        return Variable("dist", s.key).text
+    if s.kind == "prismatic":
+        return Variable("prismatic", s.key).text
     text = Variable("angle", s.key).text
     return text.replace("theta", s.kind[0]) if text.startswith("theta") else f"{s.kind}{text}"

@@ -76,4 +76,4 @@ def versions_of(graph: SolutionGraph) -> Versions:
 
 def _place(v: Variable) -> tuple[int, ...]:
     """Base to tip."""
-    return tuple(j for j, k in enumerate(v.key) if k)
+    return tuple(j for j, k in enumerate(v.combination) if k)

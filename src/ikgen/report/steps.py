@@ -181,15 +181,15 @@ def derived_section(w: Writer) -> list[Block]:
     solved = {step.candidate.unknown for step in w.graph.steps}
     lines = []
     for v, _ in w.graph.parents:
-        composed = v.kind == "angle" and w.known.composition(v.key)
-        if v in solved or not composed or composed == ((1, v.key),):
+        composed = v.kind == "angle" and w.known.composition(v.combination)
+        if v in solved or not composed or composed == ((1, v.combination),):
             continue
         right = Math(())
-        for factor, key in composed:
+        for factor, combination in composed:
             sign = m.minus(sign=not right.tokens) if factor < 0 else m.plus()
             right = right + (sign if right.tokens or factor < 0 else Math(()))
             right = right + (m.number(abs(factor)) if abs(factor) != 1 else Math(()))
-            right = right + variable(Variable("angle", key))
+            right = right + variable(Variable("angle", combination))
         lines.append(variable(v) + m.relation() + right)
     if not lines:
         return []

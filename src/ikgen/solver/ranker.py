@@ -113,6 +113,6 @@ def rank_key(candidate: Candidate) -> tuple[object, ...]:
         round(j.fragile, 1),
         candidate.branches == 1 and sum(e.squared for e in candidate.sources),
         j.cost,
-        tuple(-k for k in candidate.unknown.key),
+        tuple(-k for k in candidate.unknown.combination),
         tuple(e.id for e in candidate.coefficients),
     )

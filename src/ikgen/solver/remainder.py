@@ -97,13 +97,19 @@ def near_misses(equations: list[OpenEquation]) -> list[NearMiss]:
 
 def _degree(p: PolynomialEquation, v: Variable) -> int:
     """Degree of the equation in an unknown: in its cosine and sine, or in the length."""
-    if v.kind == "dist":
-        joint = v.key.index(1)
-        return max((n for _, dist in p.polynomial for j, n in dist if j == joint), default=0)
-    return max((sum(key == v.key for key, _ in trigs) for trigs, _ in p.polynomial), default=0)
+    if v.kind == "prismatic":
+        joint = v.combination.index(1)
+        return max((n for _, slides in p.polynomial for j, n in slides if j == joint), default=0)
+    return max(
+        (
+            sum(combination == v.combination for combination, _ in trigs)
+            for trigs, _ in p.polynomial
+        ),
+        default=0,
+    )
 
 
 def _leaf(v: Variable, degree: int) -> str:
-    if v.kind == "dist":
+    if v.kind == "prismatic":
         return "algebraic" if degree <= 1 else "quadratic"
     return "sine and cosine" if degree <= 1 else "quartic"

@@ -85,7 +85,7 @@ class Session:
 
     def truth(self, variable: Variable) -> tuple[NDArray[np.float64], ...]:
         """The variable's generating values at the probes."""
-        value = self.probes.values @ np.array(variable.key, dtype=float)
+        value = self.probes.values @ np.array(variable.combination, dtype=float)
         return (np.cos(value), np.sin(value)) if variable.kind == "angle" else (value,)
 
     def start(self) -> None:
@@ -94,7 +94,7 @@ class Session:
         for j in self.held:
             v = self.joint_variable(j)
             if v.kind == "angle":
-                self.knowledge.learn_angle(v.key)
+                self.knowledge.learn_angle(v.combination)
             else:
                 self.knowledge.learn_distance(j)
 
@@ -153,7 +153,7 @@ class Session:
             self._mark_used(c.coefficients)
         mask = k.known_mask
         if variable.kind == "angle":
-            k.learn_angle(variable.key)
+            k.learn_angle(variable.combination)
         else:
             joint = variable.joint
             assert joint is not None

@@ -66,9 +66,9 @@ def _variables_in(roots: tuple[Expr, ...], knowledge: Knowledge) -> set[Variable
         elif node.atom is not None and node.atom.kind in ("cos", "sin"):
             assert not isinstance(node.atom.key, str)
             found.add(Variable("angle", node.atom.key))
-        elif node.atom is not None and node.atom.kind == "dist":
+        elif node.atom is not None and node.atom.kind == "prismatic":
             assert not isinstance(node.atom.key, str)
-            found.add(Variable("dist", node.atom.key))
+            found.add(Variable("prismatic", node.atom.key))
         stack.extend(node.args)
     return found
 
@@ -108,7 +108,7 @@ def graph_of(session: Session) -> SolutionGraph:
     for joint in range(session.system.dh.dof):
         variable = session.joint_variable(joint)
         if variable.kind == "angle" and variable not in direct:
-            pair = k.known_pair(variable.key)
+            pair = k.known_pair(variable.combination)
             if pair is not None:
                 direct[variable] = _variables_in(pair, k) - {variable}
     passed = frozenset(

@@ -29,7 +29,7 @@ def conditions(candidate: Candidate, system: EquationSet, values: Array) -> list
     """What must not vanish, each (m, N) at configurations `values` (N, dof), in natural units."""
     form = candidate.form
     c, z = list(evaluate(system, form.coefficients, values)), scales(form.coefficients)
-    fold = form.fold(c, z, values @ np.array(candidate.unknown.key, dtype=float))
+    fold = form.fold(c, z, values @ np.array(candidate.unknown.combination, dtype=float))
     return [form.divisor(c, z)] if fold is None else [form.divisor(c, z), fold]
 
 

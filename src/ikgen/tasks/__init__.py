@@ -12,7 +12,15 @@ if TYPE_CHECKING:
     from ikgen.model.dh import DHChain
     from ikgen.model.joint_tree import Matrix
 
-__all__ = ["TASKS", "Task", "find_task", "fits", "fitting_tasks", "freedoms_moved"]
+__all__ = [
+    "TASKS",
+    "Task",
+    "find_task",
+    "fits",
+    "fitting_tasks",
+    "freedoms_moved",
+    "task_motion",
+]
 
 _POSITION = ("px", "py", "pz")
 _ROTATION = tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
@@ -127,21 +135,28 @@ def freedoms_moved(dh: DHChain, task: Task) -> int:
     the task's entries by the joints."""
     import numpy as np
 
+    moving = [j for j, joint in enumerate(dh.joints) if joint.name not in dh.free]
+    if not moving:
+        return 0
+    singular = np.linalg.svd(task_motion(dh, task)[..., moving], compute_uv=False)
+    largest = np.maximum(singular[:, :1], 1e-12)
+    return int((np.median(singular / largest, axis=0) > 1e-4).sum())
+
+
+def task_motion(dh: DHChain, task: Task) -> Matrix:
+    """How the task's entries change with all joints, held or not, at a few configurations: (8, entries,
+    dof), per rad and m."""
+    import numpy as np
+
     from ikgen.kinematics.forward import file_forward
 
     q = _configurations(dh)
     rows, columns = zip(*task.entries, strict=True)
     steps = []
-    for j in range(dh.dof):
-        if dh.joints[j].name not in dh.free:
-            h = 1e-6 * np.eye(dh.dof)[j]
-            change = (file_forward(dh, q + h) - file_forward(dh, q - h)) / 2e-6
-            steps.append(change[:, rows, columns])
-    if not steps:
-        return 0
-    singular = np.linalg.svd(np.stack(steps, axis=-1), compute_uv=False)
-    largest = np.maximum(singular[:, :1], 1e-12)
-    return int((np.median(singular / largest, axis=0) > 1e-4).sum())
+    for h in 1e-6 * np.eye(dh.dof):
+        change = (file_forward(dh, q + h) - file_forward(dh, q - h)) / 2e-6
+        steps.append(change[:, rows, columns])
+    return np.stack(steps, axis=-1)
 
 
 def _configurations(dh: DHChain) -> Matrix:

@@ -6,26 +6,27 @@ import math
 from typing import TYPE_CHECKING
 
 from ikgen.emit.blanks import blanks, pairs
-from ikgen.emit.cpp.cpp_language import CONSTANT, comment, literal, number
+from ikgen.emit.cpp.cpp_language import CONSTANT, comment, declared, literal, number
+from ikgen.emit.cpp.cpp_policy import policy_lines
 from ikgen.emit.cpp.cpp_statements import ProgramText
+from ikgen.emit.cpp.header_bundle import bundle
 from ikgen.emit.printer import expression
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
 from ikgen.errors import UsageError
 from ikgen.program.ops import Op
+from ikgen.program.policy import SolvePolicy
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
 
 __all__ = ["emit", "emit_derivation", "emit_header"]
 
-ROUGH = 1e-20
-"""Squared error of a row above which it takes Newton steps."""
+_SYSTEM = ("array", "cstddef", "Eigen/Core", "Eigen/Geometry")
+"""Headers that the shell itself needs."""
 
-_INLINE = "[[gnu::always_inline]] inline"
-
-_COLD = "[[gnu::cold, gnu::noinline]] inline"
-"""Of functions that few poses need: small code, quickly compiled."""
+_COLUMNS = {"rotation": "0, 3, 3", "direction": "2, 1, 3", "yaw": "0, 1, 2"}
+"""First column of the rotation that a task reads, how many, and how many rows of them."""
 
 
 def emit_derivation(derivation: Derivation) -> dict[str, str]:
@@ -48,19 +49,18 @@ def emit_header(module: SolverModule) -> str:
     if any(n & (n - 1) for n in branches):
         raise UsageError(f"the C++ emitter needs levels of 2, 4, ... branches, not {branches}")
     text = ProgramText(module)
+    policy, runtime = SolvePolicy(), bundle(_headers(module), _SYSTEM)
     return render(
         "cpp",
         "header.hpp.jinja",
         m=module,
         namespace=f"{module.name}_ik",
-        inline=_INLINE,
-        cold="[[gnu::noinline]] inline" if _careful(module) else _COLD,
+        runtime=runtime,
+        policy=policy_lines(policy, runtime.body),
         careful=_careful(module),
+        way="SingleSolve" if _careful(module) else "LaneSolve",
         entries_read=module.reads.entries,
-        equations=_equations(module),
-        tall=module.dh.dof - len(module.free) < _equations(module),
-        orientation=module.reads.orientation,
-        reads_position=module.reads.position,
+        columns=_COLUMNS.get(module.reads.orientation, "0, 0, 3"),
         joints=module.dh.joints,
         lower=[number(j.limits.lower) for j in module.dh.joints],
         upper=[number(j.limits.upper) for j in module.dh.joints],
@@ -68,9 +68,8 @@ def emit_header(module: SolverModule) -> str:
         first_rows=[module.first_row(j) for j in range(module.dh.dof)],
         text=text,
         values=text.joint_values(),
-        rough=_rough(module),
+        rough=_rough(module, policy),
         order=_depth_first(branches),
-        routines=sorted({lv.call.routine for lv in program.levels if lv.call is not None}),
         frames=[[[expression(CONSTANT, x) for x in row] for row in F] for F in program.frames],
         beside=[[number(float(x)) for x in D.T[:, :3].ravel()] for D in module.beside],
         size=_size_text(module),
@@ -78,6 +77,7 @@ def emit_header(module: SolverModule) -> str:
         angles=[(f, n) for n in pairs(module) for f in ("cos", "sin")],
         free_defaults=[number(x) for x in module.free_defaults],
         number=number,
+        declared=declared,
         literal=literal,
         comment=comment,
     )
@@ -85,12 +85,22 @@ def emit_header(module: SolverModule) -> str:
 
 def _careful(module: SolverModule) -> bool:
     """Whether every pose's rows are polished or judged one by one."""
-    return module.polish == "all" or module.plan is not None
+    return module.refine == "all" or module.plan is not None
 
 
-def _equations(module: SolverModule) -> int:
-    """Components of the error that Newton steps take to zero."""
-    return 6 if module.task == "pose" else len(module.reads.entries)
+def _headers(module: SolverModule) -> list[str]:
+    """The runtime's headers that the module needs, without those that they include."""
+    routines = sorted({lv.call.routine for lv in module.program.levels if lv.call is not None})
+    needed = ["lane_angle.hpp", "single_solve.hpp" if _careful(module) else "lane_solve.hpp"]
+    needed += ["routine_roots.hpp"] * bool(routines)
+    needed += [_ROUTINES.get(name, f"{name}.hpp") for name in routines]
+    needed += ["poses_beside.hpp"] * bool(module.beside)
+    task = "whole_pose.hpp" if module.task == "pose" else "pose_entries.hpp"
+    return [*needed, task, "pose_solver.hpp"]
+
+
+_ROUTINES = {"general_6r": "general_6r_arm.hpp"}
+"""Headers of routines that work on the whole arm."""
 
 
 def _size_text(module: SolverModule) -> str:
@@ -111,9 +121,11 @@ def _depth_first(branches: list[int]) -> list[int]:
     return lanes
 
 
-def _rough(module: SolverModule) -> str:
+def _rough(module: SolverModule, policy: SolvePolicy) -> str:
     """Condition under which a row takes Newton steps."""
     program = module.program
-    if module.polish == "all":
+    if module.refine == "all":
         return "(spread<1>(1.0) > 0.0)"
-    return " | ".join([*program.singular, *(f"({r} > {ROUGH})" for r in program.residuals)])
+    return " | ".join(
+        [*program.singular, *(f"({r} > {policy.rough_square})" for r in program.residuals)]
+    )

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import textwrap
+from collections.abc import Iterable
+
 from ikgen.emit.printer import Language
 
-__all__ = ["CONSTANT", "CPP", "LINE", "comment", "literal", "number"]
+__all__ = ["CONSTANT", "CPP", "LINE", "comment", "declared", "literal", "number"]
 
 LINE = 110
 """Longest line of the emitted text."""
@@ -29,6 +32,22 @@ def number(value: float) -> str:
     if value in (float("inf"), float("-inf")):
         return f"{'-' if value < 0 else ''}std::numeric_limits<double>::infinity()"
     return repr(float(value))
+
+
+def declared(kind: str, values: Iterable[tuple[str, str]]) -> list[str]:
+    """Lines that declare variables of one kind, each with its value."""
+    text = ", ".join(f"{name} = {value}" for name, value in values)
+    return (
+        textwrap.wrap(
+            f"{kind} {text};",
+            LINE,
+            subsequent_indent="    ",
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+        if text
+        else []
+    )
 
 
 def _flag(text: str) -> str:

@@ -136,7 +136,7 @@ class ProgramText:
         """Whether the two branches of a level meet, which makes equal rows."""
         names = [n for n in level.solved if n in self.live]
         if names:
-            self.flags["alike"].append(f"meeting<{width} * P>({', '.join(names)})")
+            self.flags["alike"].append(f"meeting<Policy, {width} * P>({', '.join(names)})")
 
     def _let(self, name: str, text: str) -> None:
         self._statement(f"const auto {name} = {text};")

@@ -50,7 +50,7 @@ def _scalar_row(module: SolverModule) -> str:
     row = ", ".join(values) + ("," if len(values) == 1 else "")
     flag = " or ".join(program.singular) or "False"
     rough = "True"
-    if module.polish == "some" and module.plan is None:
+    if module.refine == "some" and module.plan is None:
         rough = " or ".join([*program.singular, *(f"{r} > _ROUGH" for r in program.residuals)])
     return f"rows.append((({row}), {flag}, {rough or 'False'}))"
 
@@ -108,6 +108,6 @@ def _batch_flags(module: SolverModule) -> list[str]:
     flag = " | ".join(program.singular)
     lines = [f"singular: _Flags = {flag or 'np.zeros(1, dtype=bool)'}"]
     rough = "np.ones(1, dtype=bool)"
-    if module.polish == "some":
+    if module.refine == "some":
         rough = " | ".join([*program.singular, *(f"({r} > _ROUGH)" for r in program.residuals)])
     return [*lines, f"rough: _Flags = {rough or 'np.zeros(1, dtype=bool)'}"]

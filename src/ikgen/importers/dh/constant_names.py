@@ -9,7 +9,7 @@ from ikgen.importers.dh.entry_expression import Quantity
 from ikgen.kinematics.snapping import SnapLog, exact_angle, tidy, wrap_angle
 from ikgen.model.dh import Angle, Length
 
-__all__ = ["NameBook", "symbol_of"]
+__all__ = ["SymbolTable", "symbol_of"]
 
 _ZERO = 1e-12
 _TEXTBOOK = re.compile(r"[A-Za-z]{1,5}_[A-Za-z0-9]+")
@@ -27,7 +27,7 @@ def symbol_of(name: str) -> str:
 
 
 @dataclass
-class NameBook:
+class SymbolTable:
     """Gives out names: the user's where a quantity is one parameter or its negative, else new ones
     from the place in the table (a_2: before joint 3). Equal quantities share a name."""
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ikgen.importers.dh.constant_names import NameBook, symbol_of
+from ikgen.importers.dh.constant_names import SymbolTable, symbol_of
 from ikgen.importers.dh.row_merge import Merged, ModifiedRow, row_matrix
 from ikgen.kinematics.file_frames import largest_deviation
 from ikgen.kinematics.modified_dh import to_dh
@@ -41,7 +41,7 @@ def exact_chain(
 ) -> DHChain:
     """The rows as they are, with the user's names for lengths and angles."""
     log = SnapLog()
-    book = NameBook(log)
+    book = SymbolTable(log)
     for row in merged.rows:
         for q in (row.alpha, row.a, row.theta, row.d):
             for name, _ in q.terms:
@@ -97,7 +97,7 @@ def _joints(rows: tuple[ModifiedRow, ...]) -> tuple[ActuatedJoint, ...]:
     )
 
 
-def _row(i: int, row: ModifiedRow, book: NameBook) -> DHRow:
+def _row(i: int, row: ModifiedRow, book: SymbolTable) -> DHRow:
     none, zero = Length(0.0, None), book.angle(row.alpha.scaled(0.0), "", _OFFSET)
     revolute = row.kind == REVOLUTE
     alpha = book.angle(row.alpha, f"alpha_{i}", _TWIST)

@@ -14,8 +14,8 @@ from typing import Any
 
 from ikgen.importers.packages import PackageFinder
 from ikgen.importers.xacro.budget import Budget
-from ikgen.importers.xacro.expression import Evaluator
 from ikgen.importers.xacro.macro_copies import counted_copies
+from ikgen.importers.xacro.macro_expression import Evaluator
 from ikgen.importers.xacro.package_fence import PackageFence
 from ikgen.importers.xacro.refusals import ExpansionLimitError, RefusedFileError
 from ikgen.importers.xacro.symbol_table import global_symbols, substitution_names

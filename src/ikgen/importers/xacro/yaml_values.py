@@ -11,7 +11,7 @@ from ikgen.importers.xacro.refusals import ExpansionLimitError
 __all__ = ["LARGEST_YAML", "parse_yaml"]
 
 LARGEST_YAML = 2**19
-"""The most bytes of a YAML file; the largest published ones have 20 kB."""
+"""The most bytes of a YAML file; published ones have some 3 kB."""
 
 _DEEPEST = 100
 

@@ -31,8 +31,8 @@ inline g6::Chain chain_of(const double (&F)[7][12]) noexcept {
 
 // All real solutions of F_0 Rz(q_1) F_1 ... Rz(q_6) F_6 = T, sorted. F: constant rigid transforms, the upper three
 // rows of each by rows; T: the same. Plan: kLength (m), a typical size of the arm; kResultants (start, reverse) and
-// kEigenproblems (start, reverse, swap), arrays of eliminations in order of preference, the former perhaps empty. Joint angles are in (-pi, pi],
-// distinct, and verified to 1e-9 (lengths over kLength).
+// kEigenproblems (start, reverse, swap), arrays of eliminations in order of preference, the former perhaps empty.
+// Joint angles are in (-pi, pi], distinct, and verified to 1e-9 (lengths over kLength).
 template <class Plan>
 inline void general_6r(const double (&F)[7][12], const double (&T)[12], g6::Solutions& out) noexcept {
   const g6::Chain chain = chain_of<Plan>(F);

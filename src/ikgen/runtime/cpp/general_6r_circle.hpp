@@ -19,7 +19,8 @@ constexpr std::array<double, kTurnParts> cosine_table() noexcept {
   for (int k = 0; k < kTurnParts; ++k) {
     const int folded = k <= kTurnParts / 2 ? k : kTurnParts - k;  // to [0, pi]
     const bool far = folded > kTurnParts / 4;
-    const long double x = 6.283185307179586476925286766559005768L / kTurnParts * (far ? kTurnParts / 2 - folded : folded);
+    constexpr long double part = 6.283185307179586476925286766559005768L / kTurnParts;
+    const long double x = part * (far ? kTurnParts / 2 - folded : folded);
     long double term = 1.0L, sum = 0.0L;
     for (int n = 1; n < 30; n += 2) {
       sum += term;

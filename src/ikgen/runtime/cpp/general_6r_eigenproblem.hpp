@@ -53,6 +53,18 @@ inline Spectrum run_eigenproblem(const Chain& F, const Frame& T, const Frame& ai
   return roots;
 }
 
+// A rotation of about 1e-3 rad, and as much of a translation: where right angles make solutions coincide in
+// the hidden angle, they come apart at the pose displaced by it, and Newton's method takes them back.
+inline Frame displacement() noexcept {
+  constexpr double c = 0.99999959500002733750, s = 8.999998785000048e-4;      // 9e-4 rad about z
+  constexpr double d = 0.99999939500006100416, e = 1.0999997781666800920e-3;  // 1.1e-3 rad about x
+  Frame out{};
+  const double R[9] = {c, -s * d, s * e, s, c * d, -c * e, 0.0, e, d};
+  for (Index i = 0; i < 9; ++i) out.R.v[i] = R[i];
+  out.p = {8e-4, -1.1e-3, 6e-4};
+  return out;
+}
+
 // Adds all solutions of a pose to those that are known. One run of the first plan is enough where its roots are
 // real, apart and each a solution to many digits. Otherwise more runs follow, with the pose displaced to either side
 // and by the next elimination, until one finds all that is known and no more.

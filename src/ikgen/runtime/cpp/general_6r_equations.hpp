@@ -71,7 +71,8 @@ constexpr double kS3[3] = {0.0, 0.86602540378443864676, -0.86602540378443864676}
 inline Mat<14, 4> to_trig(const std::array<double, 14>& x, const std::array<double, 14>& y,
                           const std::array<double, 14>& z) noexcept {
   constexpr double third = 1.0 / 3.0, half = 2.0 / 3.0 * kS3[1];
-  constexpr double weights[3][4] = {{third, 2.0 * third, 0.0, 0.0}, {third, -third, half, 0.0}, {third, -third, -half, 0.0}};
+  constexpr double weights[3][4] = {
+      {third, 2.0 * third, 0.0, 0.0}, {third, -third, half, 0.0}, {third, -third, -half, 0.0}};
   const Lanes<4> a = load<4>(weights[0]), b = load<4>(weights[1]), c = load<4>(weights[2]);
   Mat<14, 4> out;
   for (Index i = 0; i < 14; ++i) store(x[i] * a + y[i] * b + z[i] * c, &out(i, 0));

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "lanes.hpp"
+#include "constants.hpp"
 
 namespace ikgen_runtime {
 
@@ -79,18 +79,6 @@ inline Loop make_loop(const Chain& F, const Frame& T, Index start, bool reverse)
     out.order[i] = k;
     out.C[i] = reverse ? inverse(c[(k + 5) % 6]) : c[k];
   }
-  return out;
-}
-
-// A rotation of about 1e-3 rad, and as much of a translation: where right angles make solutions coincide in
-// the hidden angle, they come apart at the pose displaced by it, and Newton's method takes them back.
-inline Frame displacement() noexcept {
-  constexpr double c = 0.99999959500002733750, s = 8.999998785000048e-4;      // 9e-4 rad about z
-  constexpr double d = 0.99999939500006100416, e = 1.0999997781666800920e-3;  // 1.1e-3 rad about x
-  Frame out{};
-  const double R[9] = {c, -s * d, s * e, s, c * d, -c * e, 0.0, e, d};
-  for (Index i = 0; i < 9; ++i) out.R.v[i] = R[i];
-  out.p = {8e-4, -1.1e-3, 6e-4};
   return out;
 }
 

@@ -99,7 +99,8 @@ inline void triangulate(int groups, Wide (&A)[G][R][N], Reflected (&h)[G][R]) no
 }
 
 template <int K, int G>
-inline void carry_back(int groups, const Wide (&A)[G][6][9], const Reflected (&h)[G][6], Wide (&basis)[G][3][9]) noexcept {
+inline void carry_back(int groups, const Wide (&A)[G][6][9], const Reflected (&h)[G][6],
+                       Wide (&basis)[G][3][9]) noexcept {
   for (int g = 0; g < groups; ++g)
     for (auto& n : basis[g]) reflect<K>(A[g][K], h[g][K].beta, n);
   if constexpr (K > 0) carry_back<K - 1>(groups, A, h, basis);

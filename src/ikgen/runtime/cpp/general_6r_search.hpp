@@ -2,6 +2,7 @@
 
 #include "general_6r_newton.hpp"
 #include "general_6r_solutions.hpp"
+#include "lane_angle.hpp"
 
 namespace ikgen_runtime {
 
@@ -151,11 +152,10 @@ inline bool add_rows(const Chain& F, const Frame& T, const Six& start, const dou
   return all;
 }
 
-// Adds the solutions for the pose T from the roots of the pose `aim`, which is T or close to it. True where they
-// are all: every root is single, and leads to a solution of its own.
-inline bool run_resultant(const Chain& F, const Frame& T, const Frame& aim, const std::array<int, 2>& plan,
-                          Solutions& out) noexcept {
-  const Loop loop = make_loop(F, aim, static_cast<Index>(plan[0]), plan[1] != 0);
+// Adds the solutions for the pose T. True where they are all: every root is single, and leads to a solution of
+// its own.
+inline bool run_resultant(const Chain& F, const Frame& T, const std::array<int, 2>& plan, Solutions& out) noexcept {
+  const Loop loop = make_loop(F, T, static_cast<Index>(plan[0]), plan[1] != 0);
   const Equations eq = eliminate(loop);
   const Pencil pencil = make_pencil(eq.E, eq.left);
   Roots roots;
@@ -173,27 +173,20 @@ inline bool run_resultant(const Chain& F, const Frame& T, const Frame& aim, cons
   return all;
 }
 
-// Adds what a run finds; whether it is sure, and found all that is known.
-inline bool confirm(const Chain& F, const Frame& T, const Frame& aim, const std::array<int, 2>& plan,
-                    Solutions& out) noexcept {
-  Solutions mine;
-  const bool all = run_resultant(F, T, aim, plan, mine);
-  for (int k = 0; k < mine.count; ++k) keep(mine.rows[static_cast<Index>(k)], out);
-  return all && mine.count == out.count && out.count % 2 == 0;
-}
-
-// All solutions, or false and those that were found. Where the first run leaves doubts, the next hidden angle may
-// not; else poses displaced to either side must agree: where solutions end there, it is on one side.
+// All solutions, or false and those that were found, where every hidden angle leaves doubts. Poses displaced a
+// little are no help: next to a singularity all of them may lack solutions that the pose itself has.
 template <std::size_t N>
 inline bool solve_resultant(const Chain& F, const Frame& T, const std::array<std::array<int, 2>, N>& plans,
                             Solutions& out) noexcept {
-  for (const std::array<int, 2>& plan : plans)
-    if (confirm(F, T, T, plan, out)) return true;
-  const Frame there = compose(T, displacement()), back = compose(T, inverse(displacement()));
   for (const std::array<int, 2>& plan : plans) {
-    if (!confirm(F, T, there, plan, out)) continue;
-    const int known = out.count;
-    if (confirm(F, T, back, plan, out) && out.count == known) return true;
+    if (out.count == 0) {
+      if (run_resultant(F, T, plan, out)) return true;
+      continue;
+    }
+    Solutions mine;
+    const bool all = run_resultant(F, T, plan, mine);
+    for (int k = 0; k < mine.count; ++k) keep(mine.rows[static_cast<Index>(k)], out);
+    if (all && mine.count == out.count) return true;
   }
   return false;
 }

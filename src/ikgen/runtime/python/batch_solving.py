@@ -100,5 +100,5 @@ def _rows_batch(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[Ar
     pose, row = np.nonzero(rough & valid)
     if len(pose):
         done = refine(arm.chain, arm.task, arm.moving, q[pose, row], T[pose], arm.policy)
-        q[pose, row], valid[pose, row] = done
+        q[pose, row], valid[pose, row] = done[:2]
     return q, distinct(arm, q, valid), singular

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ikgen.runtime.python.array_types import Array
+from ikgen.runtime.python.array_types import Array, Flags
 
 __all__ = ["Chain", "Motion", "chain_of", "cross", "forward", "jacobian", "tip_and_jacobian"]
 
@@ -21,8 +21,8 @@ class Chain:
 
     `frames` (n + 1, 4, 4) and `motions` say the same as `parts` (4, n, 4, 4), with which
     `M(v) F = cos(v) parts[0] + sin(v) parts[1] + v parts[2] + parts[3]`, `joint`, `scale`, `offset` (n,),
-    `turning` (n, 1), 1 for rotations and else 0, and `drive` (n, dof), the derivatives of v by q.
-    `revolute` (dof): which joints turn.
+    `turning` (n, 1), whether M is a rotation, `slides`, whether one is not, and `drive` (n, dof), the
+    derivatives of v by q. `revolute` (dof): which joints turn.
     """
 
     frames: Array
@@ -31,7 +31,8 @@ class Chain:
     joint: NDArray[np.intp]
     scale: Array
     offset: Array
-    turning: Array
+    turning: Flags
+    slides: bool
     drive: Array
     revolute: tuple[bool, ...]
 
@@ -50,17 +51,19 @@ def chain_of(frames: Array, motions: tuple[Motion, ...], dof: int) -> Chain:
             parts[3, i] = F
     joint = np.array([m[0] for m in motions])
     scale, offset = (np.array([m[i] for m in motions]) for i in (2, 3))
-    turns = np.array([[1.0 if m[1] else 0.0] for m in motions])
+    turns = np.array([[m[1]] for m in motions])
     drive = scale[:, None] * (joint[:, None] == np.arange(dof))
     revolute = tuple(next(m[1] for m in motions if m[0] == j) for j in range(dof))
-    return Chain(frames, motions, parts, joint, scale, offset, turns, drive, revolute)
+    slides = not turns.all()
+    return Chain(frames, motions, parts, joint, scale, offset, turns, slides, drive, revolute)
 
 
 def _steps(chain: Chain, q: Array) -> Array:
     """The transforms `M(v_i) F_i` at q (..., dof): (..., n, 4, 4)."""
     v = (q[..., chain.joint] * chain.scale + chain.offset)[..., None, None]
     cosine, sine, value, rest = chain.parts
-    return np.asarray(np.cos(v) * cosine + np.sin(v) * sine + v * value + rest)
+    steps = np.cos(v) * cosine + np.sin(v) * sine + rest
+    return np.asarray(steps + v * value if chain.slides else steps)
 
 
 def _joint_values(chain: Chain, q: ArrayLike) -> Array:
@@ -100,6 +103,8 @@ def tip_and_jacobian(chain: Chain, q: Array) -> tuple[Array, Array]:
         axes[..., i, :, :] = T[..., :3, 2:]
         T = T @ steps[..., i, :, :]
     z, p = axes[..., 0], axes[..., 1]
-    linear = chain.turning * cross(z, T[..., None, :3, 3] - p) + (1.0 - chain.turning) * z
-    rows = np.concatenate([linear, chain.turning * z], axis=-1)
+    rows = np.concatenate([cross(z, T[..., None, :3, 3] - p), z], axis=-1)
+    if chain.slides:
+        slide = np.concatenate([z, np.zeros_like(z)], axis=-1)
+        rows = np.where(chain.turning, rows, slide)
     return T, np.swapaxes(rows, -1, -2) @ chain.drive

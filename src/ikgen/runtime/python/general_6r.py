@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.back_substitution import complete_angles, null_angles
-from ikgen.runtime.python.chain_kinematics import Chain, chain_of, forward
+from ikgen.runtime.python.chain_kinematics import Chain, chain_of
 from ikgen.runtime.python.hidden_angle import hidden_angles, loop_resultant
 from ikgen.runtime.python.loop_equations import loop_constants, loop_equations
 from ikgen.runtime.python.refinement import refine
@@ -61,10 +61,7 @@ def _of(rows: Array, pose: NDArray[np.intp]) -> Array:
 
 def refined_angles(F: Array, T: Array, q: Array, policy: Policy) -> tuple[Array, Flags, Array]:
     """Newton steps from q (k, 6) to T (k, 4, 4): q, which arrived, and the errors before (k,)."""
-    chain, task = six_joints(F), PoseTask(1.0)
-    before = np.abs(task.error(forward(chain, q), T)).max(axis=1)
-    q, arrived = refine(chain, task, _SIX, q, T, policy)
-    return q, arrived, before
+    return refine(six_joints(F), PoseTask(1.0), _SIX, q, T, policy)
 
 
 def six_joints(F: Array) -> Chain:

@@ -108,7 +108,7 @@ def _refined(arm: Arm, rows: list[Found], T: list[list[float]]) -> list[Found | 
         return []
     target = np.broadcast_to(np.array(T), (len(rows), 4, 4))
     start = np.array([row for row, _ in rows])
-    q, arrived = refine(arm.chain, arm.task, arm.moving, start, target, arm.policy)
+    q, arrived, _ = refine(arm.chain, arm.task, arm.moving, start, target, arm.policy)
     loss = rank_loss(arm.chain, arm.task, arm.moving, q)
     flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
     return [

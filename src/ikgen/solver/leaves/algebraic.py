@@ -16,7 +16,7 @@ def find(
     equations: Sequence[PolynomialEquation], unknown: Variable, knowledge: Knowledge
 ) -> list[Candidate]:
     """Linear equations in the unknown alone."""
-    if unknown.kind != "dist":
+    if unknown.kind != "prismatic":
         return []
     out: list[Candidate] = []
     zero = knowledge.graph.zero

@@ -16,7 +16,7 @@ def find(
     equations: Sequence[PolynomialEquation], unknown: Variable, knowledge: Knowledge
 ) -> list[Candidate]:
     """Quadratic equations in the unknown alone."""
-    if unknown.kind != "dist":
+    if unknown.kind != "prismatic":
         return []
     zero = knowledge.graph.zero
     out: list[Candidate] = []

@@ -16,19 +16,19 @@ __all__ = ["apply"]
 
 def _part(equation: PolynomialEquation, unknown: Variable) -> Polynomial:
     out: Polynomial = {}
-    for (trigs, dist), value in equation.polynomial.items():
+    for (trigs, slides), value in equation.polynomial.items():
         if unknown.kind == "angle":
-            inside = any(_multiple(key, unknown.key) for key, _ in trigs)
+            inside = any(_multiple(combination, unknown.combination) for combination, _ in trigs)
         else:
-            inside = any(joint == unknown.joint for joint, _ in dist)
+            inside = any(joint == unknown.joint for joint, _ in slides)
         if inside:
-            out[trigs, dist] = value
+            out[trigs, slides] = value
     return out
 
 
-def _multiple(key: tuple[int, ...], unit: tuple[int, ...]) -> bool:
-    k, u = max(map(abs, key)), max(map(abs, unit))
-    return all(a * u == b * k for a, b in zip(key, unit, strict=True))
+def _multiple(combination: tuple[int, ...], unit: tuple[int, ...]) -> bool:
+    k, u = max(map(abs, combination)), max(map(abs, unit))
+    return all(a * u == b * k for a, b in zip(combination, unit, strict=True))
 
 
 def apply(

@@ -1,7 +1,12 @@
-// --- trig_quartic: a2 cos 2t + b2 sin 2t + a1 cos t + b1 sin t + a0 = 0 -----------------------------
-// Ferrari's resolvent in its geometric form: the pencil of the conic and the unit circle holds a pair of
-// real lines; each meets the circle in two roots. No half-angle tangent, hence no point at infinity.
-// Needs <algorithm>, <cmath>.
+// Real roots of a2 cos 2t + b2 sin 2t + a1 cos t + b1 sin t + a0. Ferrari's resolvent in its geometric form: the
+// pencil of the conic and the unit circle holds a pair of real lines; each meets the circle in two roots. No
+// half-angle tangent, hence no point at infinity.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace ikgen_runtime {
 
 struct TrigRoots {
   int count;       // 0 to 4; -1: all coefficients vanish, t is free
@@ -183,3 +188,15 @@ inline TrigRoots trig_quartic(double a2, double b2, double a1, double b1, double
   }
   return out;
 }
+
+// The roots as branches; none where the angle is free.
+inline int trig_quartic_branches(const double (&x)[5], double (&roots)[4][2]) noexcept {
+  const TrigRoots found = trig_quartic(x[0], x[1], x[2], x[3], x[4]);
+  for (int i = 0; i < found.count; ++i) {
+    roots[i][0] = found.c[i];
+    roots[i][1] = found.s[i];
+  }
+  return found.count;
+}
+
+}  // namespace ikgen_runtime

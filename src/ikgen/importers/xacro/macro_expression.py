@@ -1,7 +1,7 @@
 """xacro's expressions, computed from their syntax tree: Python's compiler never sees them.
 
 An expression may compute with numbers, texts, lists and dictionaries, name what the file and xacro
-define, and call those functions; see `docs/reference/xacro.md` for all of it. Everything else of
+define, and call those functions; see `docs/reference/robot-files.md` for all of it. Everything else of
 Python's language is refused, so that no attribute leads from a value to the interpreter.
 """
 

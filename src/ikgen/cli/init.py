@@ -1,0 +1,68 @@
+"""`ikgen init`."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ikgen.cli.console import Console
+from ikgen.cli.options import (
+    console_options,
+    emit_option,
+    reading_options,
+)
+from ikgen.cli.request_options import make_request, parse_emit
+
+__all__ = ["init"]
+
+
+@click.command()
+@click.argument("robot", type=click.Path(path_type=Path), metavar="ROBOT|TABLE")
+@reading_options
+@emit_option
+@click.option(
+    "-o",
+    "--output",
+    "out",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    default=Path("ikgen.toml"),
+    help="The config to write (default: ikgen.toml here).",
+)
+@click.option("--force", is_flag=True, help="Replace a config that is there.")
+@console_options
+def init(
+    robot: Path,
+    *,
+    emit: tuple[str, ...],
+    out: Path,
+    force: bool,
+    as_json: bool,
+    quiet: bool,
+    verbose: bool,
+    **reading: Any,
+) -> None:
+    """Write a config that lists every arm of ROBOT, for ikgen build."""
+    from ikgen.projects.new_config import config_path, robot_arms, write_config
+
+    request = make_request(robot, **reading)
+    path, outputs = config_path(out), parse_emit(emit)
+    with Console(quiet=quiet, verbose=verbose) as console:
+        console("read", robot.name)
+        arms = robot_arms(request)
+    write_config(path, request, arms, outputs, force=force)
+    command = ["ikgen", "build", *([] if path == Path("ikgen.toml") else [str(path)])]
+    command += ["--trust"] if request.trust else []
+    if as_json:
+        rows = [{"name": a.name, "base": a.base, "tip": a.tip, "dof": a.dof} for a in arms]
+        result = {"files": [str(path)], "arms": rows, "next": shlex.join(command)}
+        click.echo(json.dumps(result, indent=2))
+    elif not quiet:
+        for arm in arms:
+            ends = "" if arm.base is None else f"{arm.base} -> {arm.tip}, "
+            click.echo(f"{arm.name}: {ends}{arm.dof} joints")
+        click.echo(f"wrote: {path}\nnext: {shlex.join(command)}")

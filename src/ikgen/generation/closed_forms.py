@@ -1,0 +1,212 @@
+"""The closed form of a chain: its task, the joints to hold, and which solver does it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from ikgen.emit.derivation import Held, Reading
+from ikgen.generation.held_joints import HeldChoice, held_choices, nearby
+from ikgen.generation.progress import Progress
+
+if TYPE_CHECKING:
+    from ikgen.elimination import EliminationPlan
+    from ikgen.model.dh import DHChain
+    from ikgen.solver.solution_graph import SolutionGraph
+    from ikgen.tasks import Task
+
+__all__ = [
+    "RULE_TRIES",
+    "ClosedForm",
+    "Demand",
+    "closed_form",
+    "forms_held",
+    "preference",
+]
+
+RULE_TRIES = 8
+"""No more choices of joints to hold than these are derived. Their number counts, not the time they take:
+the same input gives the same choice on every machine."""
+
+_OTHERS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """What a closed form is sought for: the task asked for (None: what fits), tasks that are not to be
+    chosen, where to tell the progress, and choices of joints to hold that the verification refused."""
+
+    task: str | None
+    passed_over: Collection[str]
+    progress: Progress
+    refused: tuple[tuple[str, ...], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class ClosedForm:
+    """How a chain is solved: by `graph`, or by the elimination's `plan` where there is one; not at all
+    where neither does. `held` tells the joints that were chosen to be held; `reading` has them."""
+
+    reading: Reading
+    task: Task
+    graph: SolutionGraph
+    plan: EliminationPlan | None = None
+    held: Held | None = None
+
+    @property
+    def closed(self) -> bool:
+        """Whether the rules solve every joint."""
+        return not self.graph.open_joints
+
+    @property
+    def sound(self) -> bool:
+        """Whether they do at all regular configurations."""
+        return self.closed and self.graph.sound
+
+    @property
+    def two_branch(self) -> bool:
+        """Whether no step of the rules has more than two branches."""
+        return all(step.branches <= 2 for step in self.graph.steps)
+
+
+def closed_form(reading: Reading, demand: Demand) -> ClosedForm:
+    """The chain's best closed form; joints that move the task in vain are held, chosen by
+    `held_choices`."""
+    from ikgen.tasks import find_task
+
+    choices = held_choices(reading, find_task(demand.task or "pose"))
+    choices = tuple(choice for choice in choices if choice.held not in demand.refused)
+    if choices:
+        return _with_joints_held(reading, choices, demand)
+    found = _by_rules_somewhere(reading, demand)
+    found = _as_written(found, demand) if found.closed else found
+    return found if found.sound else _by_elimination(found, demand)
+
+
+def _by_rules_somewhere(reading: Reading, demand: Demand) -> ClosedForm:
+    """What the rules make of the file's geometry, or of one nearby where its own has no closed form."""
+    found = _best_task(reading, demand)
+    other = None if found.closed else nearby(reading)
+    if other is None:
+        return found
+    near = _best_task(replace(reading, dh=other), demand)
+    return near if near.closed else found
+
+
+def _with_joints_held(
+    reading: Reading, choices: Sequence[HeldChoice], demand: Demand
+) -> ClosedForm:
+    """The first choice that the rules solve, two-branch forms before quartics; else the first that the
+    elimination solves; else one with a weak step. None: the chain as it was asked for, unsolved."""
+    tried: list[tuple[HeldChoice, ClosedForm]] = []
+    for choice, form in forms_held(reading, choices, demand):
+        tried.append((choice, form))
+        later = choices[len(tried) :]
+        if not later or min(preference(*pair) for pair in tried) <= _hoped(later[0]):
+            break
+    tried.sort(key=lambda pair: preference(*pair))
+    choice, form = tried[0]
+    if form.sound:
+        return _explained(_as_written(form, demand), choice, choices, demand.refused)
+    for other, open_form in tried:
+        solved = _by_elimination(open_form, demand)
+        if solved.plan is not None:
+            return _explained(solved, other, choices, demand.refused)
+    if form.closed:
+        return _explained(_as_written(form, demand), choice, choices, demand.refused)
+    return replace(form, reading=reading)
+
+
+def forms_held(
+    reading: Reading, choices: Sequence[HeldChoice], demand: Demand
+) -> Iterator[tuple[HeldChoice, ClosedForm]]:
+    """What the rules make of each choice in turn, of no more than `RULE_TRIES`."""
+    for choice in choices[:RULE_TRIES]:
+        demand.progress("derive", f"holding {choice.words}")
+        yield choice, _by_rules_somewhere(replace(reading, dh=choice.dh), demand)
+
+
+def preference(choice: HeldChoice, form: ClosedForm) -> tuple[bool, bool, bool]:
+    """What comes first of forms in the order of their choices: sound ones, then those with a weak step; of
+    either those with two branches a step where the class lets expect them."""
+    from ikgen.kinematics.form_class import is_two_branch
+
+    as_expected = is_two_branch(choice.form) and form.two_branch
+    return not form.sound, not form.closed, not as_expected
+
+
+def _hoped(choice: HeldChoice) -> tuple[bool, bool, bool]:
+    """The best preference that a form of a choice can have."""
+    from ikgen.kinematics.form_class import is_two_branch
+
+    return False, False, not is_two_branch(choice.form)
+
+
+def _explained(
+    form: ClosedForm,
+    taken: HeldChoice,
+    choices: Sequence[HeldChoice],
+    refused: tuple[tuple[str, ...], ...],
+) -> ClosedForm:
+    """The form with the joints that it holds, why, and the runners-up."""
+    from ikgen.kinematics.form_class import FORM_WORDS
+
+    if form.plan is not None:
+        why = "the general 6R elimination"
+    elif form.sound:
+        why = f"closed form by rules ({FORM_WORDS[taken.form]})"
+    else:
+        why = "closed form by rules, with a weak step,"
+    others = dict.fromkeys(choice.held for choice in choices if choice.held != taken.held)
+    return replace(form, held=Held(taken.held, why, tuple(others)[:_OTHERS], refused))
+
+
+def _as_written(form: ClosedForm, demand: Demand) -> ClosedForm:
+    """The same of rows nearer to the file's."""
+    from ikgen.generation.as_written import solve_as_written
+
+    dh, graph = solve_as_written(
+        form.reading.dh, form.graph, lambda dh: _by_rules(dh, form.task, demand.progress)
+    )
+    return replace(form, reading=replace(form.reading, dh=dh), graph=graph)
+
+
+def _best_task(reading: Reading, demand: Demand) -> ClosedForm:
+    """The asked task; without one the task that fits the arm best and has a closed form."""
+    from ikgen.tasks import find_task, fitting_tasks
+
+    dh = reading.dh
+    if demand.task:
+        tasks = [find_task(demand.task)]
+    else:
+        tasks = [task for task in fitting_tasks(dh) if task.name not in demand.passed_over]
+    first: ClosedForm | None = None
+    for task in tasks:
+        form = ClosedForm(reading, task, _by_rules(dh, task, demand.progress))
+        if form.closed:
+            return form
+        first = first or form
+    assert first is not None
+    return first
+
+
+def _by_rules(dh: DHChain, task: Task, progress: Progress) -> SolutionGraph:
+    from ikgen.solver.solve import solve_chain
+
+    return solve_chain(
+        dh,
+        readable=task.readable,
+        tool_on_right=not task.whole_pose,
+        progress=lambda text: progress("derive", text),
+    )
+
+
+def _by_elimination(form: ClosedForm, demand: Demand) -> ClosedForm:
+    """The form with the general 6R elimination's plan where it applies."""
+    if not form.task.whole_pose:
+        return form
+    from ikgen.elimination import elimination_plan
+
+    demand.progress("derive", "6R elimination")
+    return replace(form, plan=elimination_plan(form.reading.dh))

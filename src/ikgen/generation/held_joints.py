@@ -1,0 +1,164 @@
+"""Which joints to hold of an arm with more of them than its task fixes, ranked before any derivation.
+
+The ranking is by the closed form that the geometry lets expect (`ikgen.kinematics.form_class`), then by
+the range of the held joints inside their limits, then by how well the joints that move do the task.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ikgen.emit.derivation import Reading
+    from ikgen.model.chain import ActuatedJoint
+    from ikgen.model.dh import DHChain
+    from ikgen.model.joint_tree import Matrix
+    from ikgen.tasks import Task
+
+__all__ = ["NEARBY", "HeldChoice", "held_choices", "nearby"]
+
+NEARBY = 5e-4
+"""Lengths (m) that may count as zero where the file's own geometry has no closed form: Newton steps on
+the file's chain follow (offsets of 0.2 mm in a wrist that is meant to be spherical are real)."""
+
+_POOR = 0.2
+"""Choices of a class that are conditioned worse than its best by this factor come last in it."""
+
+_INDEPENDENT = 1e-4
+"""Least singular value, relative to the largest, of joints that move the task's freedoms independently."""
+
+
+@dataclass(frozen=True, slots=True)
+class HeldChoice:
+    """Joints `held` beside those that were asked for, base to tip, and the chain `dh` with them held.
+
+    `form` indexes `FORM_WORDS`; `near` tells that it is that of the geometry nearby, better than the
+    file's own. `span` is what the held joints' limits leave them, in turns and lengths of the arm;
+    `condition` the median of smallest over largest singular value of what moves.
+    """
+
+    held: tuple[str, ...]
+    dh: DHChain
+    form: int
+    span: float
+    condition: float
+    near: bool = False
+
+    @property
+    def words(self) -> str:
+        """Their names."""
+        return " and ".join(self.held)
+
+
+def nearby(reading: Reading) -> DHChain | None:
+    """The chain in DH form with short offsets taken as zero; None for a table."""
+    from ikgen.kinematics.modified_dh import to_dh
+
+    if reading.chain is None:
+        return None
+    return to_dh(reading.chain, free=reading.dh.free, length_tolerance=NEARBY)
+
+
+def held_choices(reading: Reading, task: Task) -> tuple[HeldChoice, ...]:
+    """Every way to hold as many joints as are spare so that the others still do the task, best first;
+    none where no joint is spare.
+
+    Of one class, the file's own geometry comes before the one nearby, and choices that leave the others
+    an order worse conditioned than the best come last: an elbow that is held leaves the arm a shell to
+    reach.
+    """
+    dh = reading.dh
+    motion, moving = _task_motion(dh, task), _moving(dh)
+    rank = _rank(_singular(motion, [moving])[0])
+    spare = len(moving) - rank
+    if not spare or not rank:
+        return ()
+    subsets = [list(kept) for kept in itertools.combinations(moving, rank)]
+    measured = zip(subsets, _singular(motion, subsets), strict=True)
+    full = [(kept, ratios) for kept, ratios in measured if _rank(ratios) == rank]
+    found = _ranked(dh, full)
+    other = nearby(reading)
+    if other is not None and other.rows != dh.rows:
+        pairs = zip(found, _ranked(other, full), strict=True)
+        found = [replace(a, form=b.form, near=True) if b.form < a.form else a for a, b in pairs]
+    return tuple(_sorted(found))
+
+
+def _sorted(found: Sequence[HeldChoice]) -> list[HeldChoice]:
+    """Best first."""
+    best: dict[int, float] = {}
+    for choice in found:
+        best[choice.form] = max(choice.condition, best.get(choice.form, 0.0))
+
+    def key(choice: HeldChoice) -> tuple[object, ...]:
+        poor = choice.condition < _POOR * best[choice.form]
+        names = [joint.name for joint in choice.dh.joints]
+        from_tip = [-names.index(name) for name in reversed(choice.held)]
+        return choice.form, choice.near, poor, -choice.span, -choice.condition, from_tip
+
+    return sorted(found, key=key)
+
+
+def _ranked(dh: DHChain, kept: Sequence[tuple[Sequence[int], Matrix]]) -> list[HeldChoice]:
+    """A choice for each set of joints that move, by index, with its ratios of singular values."""
+    from ikgen.kinematics.axis_relations import axis_relations, reach
+    from ikgen.kinematics.form_class import form_class
+
+    relations, length = axis_relations(dh), reach(dh)
+    found = []
+    for joints, ratios in kept:
+        rows = [i for i, row in enumerate(dh.rows) if row.driver in joints]
+        held = [j for j in _moving(dh) if j not in joints]
+        names = tuple(dh.joints[j].name for j in held)
+        found.append(
+            HeldChoice(
+                names,
+                replace(dh, free=(*dh.free, *names)),
+                form_class(dh.rows, rows, relations),
+                round(sum(_span(dh.joints[j], length) for j in held), 6),
+                float(f"{ratios[-1]:.2g}"),
+            )
+        )
+    return found
+
+
+def _span(joint: ActuatedJoint, length: float) -> float:
+    """The range inside the limits, in turns or lengths of the arm, at most 1."""
+    width = joint.limits.upper - joint.limits.lower
+    return min(width / (2.0 * math.pi if joint.kind == "revolute" else length), 1.0)
+
+
+def _moving(dh: DHChain) -> list[int]:
+    return [j for j, joint in enumerate(dh.joints) if joint.name not in dh.free]
+
+
+def _task_motion(dh: DHChain, task: Task) -> Matrix:
+    """How the task's entries change with the joints, lengths in those of the arm: (samples, entries,
+    dof)."""
+    import numpy as np
+
+    from ikgen.kinematics.axis_relations import reach
+    from ikgen.tasks import task_motion
+
+    length = reach(dh)
+    rows = np.array([1.0 / length if column == 3 else 1.0 for _, column in task.entries])
+    columns = np.array([1.0 if joint.kind == "revolute" else length for joint in dh.joints])
+    scaled: Matrix = task_motion(dh, task) * rows[:, None] * columns
+    return scaled
+
+
+def _singular(motion: Matrix, subsets: Sequence[Sequence[int]]) -> Matrix:
+    """The singular values over the largest, their median over the samples: (subsets, joints)."""
+    import numpy as np
+
+    parts = np.stack([motion[:, :, list(columns)] for columns in subsets])
+    values = np.linalg.svd(parts, compute_uv=False)
+    return np.asarray(np.median(values / np.maximum(values[..., :1], 1e-12), axis=1))
+
+
+def _rank(ratios: Matrix) -> int:
+    return int((ratios > _INDEPENDENT).sum())

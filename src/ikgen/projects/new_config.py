@@ -1,0 +1,123 @@
+"""A config for a robot: one `[[arm]]` for each arm that it has."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ikgen.errors import UsageError
+from ikgen.generation.read import arm_name, read, read_tree
+from ikgen.generation.request import Request
+from ikgen.projects.config import CONFIG
+
+if TYPE_CHECKING:
+    from ikgen.chains.arms import ChainCandidate
+
+__all__ = ["ArmTable", "config_path", "robot_arms", "write_config"]
+
+_FOLDER = "generated"
+"""Where the outputs go, from the config's folder."""
+
+
+@dataclass(frozen=True, slots=True)
+class ArmTable:
+    """One arm: its name and ends, None for a DH table; `trunk` is the base of the chain that begins with
+    joints that other arms share ("": it shares none)."""
+
+    name: str
+    base: str | None
+    tip: str | None
+    dof: int
+    trunk: str = ""
+
+
+def config_path(out: Path) -> Path:
+    """The file that is meant: a folder stands for the config in it."""
+    return out / CONFIG if out.is_dir() else out
+
+
+def robot_arms(request: Request) -> tuple[ArmTable, ...]:
+    """Every arm of the request's robot; raises `UsageError` where none is found."""
+    if request.table:
+        dh = read(request).dh
+        return (ArmTable(arm_name(dh.robot), None, None, dh.dof),)
+    from ikgen.chains.arms import candidate_chains
+
+    tree = read_tree(request)
+    chains: dict[str, list[ChainCandidate]] = {}
+    for chain in candidate_chains(tree):
+        chains.setdefault(chain.tip, []).append(chain)
+    if not chains:
+        raise UsageError(
+            f"no arm found in '{tree.name}'",
+            hint="write [[arm]] tables with base and tip by hand; ikgen inspect shows the links",
+        )
+    arms = [_arm(tree.name, tip, ways, len(chains) > 1) for tip, ways in chains.items()]
+    return tuple(_told_apart(arms))
+
+
+def _arm(robot: str, tip: str, ways: Sequence[ChainCandidate], several: bool) -> ArmTable:
+    """The arm to a tip: from where it parts from others, if enough of it is left to be an arm."""
+    from ikgen.chains.grippers import ARM_JOINTS
+
+    whole = max(ways, key=lambda chain: chain.dof)
+    own = min(ways, key=lambda chain: (chain.dof < ARM_JOINTS, chain.dof))
+    trunk = whole.base if own is not whole and own.dof >= ARM_JOINTS else ""
+    taken = own if trunk else whole
+    return ArmTable(arm_name(robot, tip if several else ""), taken.base, tip, taken.dof, trunk)
+
+
+def _told_apart(arms: Iterable[ArmTable]) -> list[ArmTable]:
+    """The arms, those whose names an earlier one has numbered."""
+    found: list[ArmTable] = []
+    for arm in arms:
+        names = {other.name for other in found}
+        candidates = (arm.name, *(f"{arm.name}_{k}" for k in range(2, len(names) + 3)))
+        found.append(replace(arm, name=next(name for name in candidates if name not in names)))
+    return found
+
+
+def write_config(
+    path: Path, request: Request, arms: Sequence[ArmTable], emit: Sequence[str], *, force: bool
+) -> None:
+    """Write the config of a robot's arms; raises `UsageError` for a file that is there already."""
+    if path.exists() and not force:
+        raise UsageError(
+            f"{path} is there already", hint="replace it with --force, or name another by -o"
+        )
+    tables = [_table(arm, request, emit, path.parent) for arm in arms]
+    path.write_text("\n".join(tables), encoding="utf-8")
+
+
+def _table(arm: ArmTable, request: Request, emit: Sequence[str], folder: Path) -> str:
+    """One `[[arm]]`; paths as seen from the config."""
+
+    def seen(path: Path) -> str:
+        return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
+
+    entries: dict[str, object] = {"name": arm.name, "robot": seen(request.robot)}
+    if request.args:
+        entries["args"] = request.args
+    if request.package_paths:
+        entries["package_paths"] = [seen(place) for place in request.package_paths]
+    if arm.base is not None:
+        entries |= {"base": arm.base, "tip": arm.tip}
+    entries |= {"emit": list(emit), "out": _FOLDER}
+    lines = ["[[arm]]", *(f"{key} = {_value(value)}" for key, value in entries.items())]
+    if arm.trunk:
+        place = next(i for i, line in enumerate(lines) if line.startswith("base = "))
+        lines[place] += f"  # with the joints that arms share: {_value(arm.trunk)}"
+    return "\n".join(lines) + "\n"
+
+
+def _value(value: object) -> str:
+    """A text, list or table of texts as TOML; JSON's strings are TOML's basic strings."""
+    if isinstance(value, Mapping):
+        return f"{{ {', '.join(f'{_value(k)} = {_value(v)}' for k, v in value.items())} }}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_value, value))}]"
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <limits>
+
+namespace ikgen_runtime {
+
+inline constexpr double kPi = 3.14159265358979323846;
+inline constexpr double kTurn = 2.0 * kPi;
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+}  // namespace ikgen_runtime

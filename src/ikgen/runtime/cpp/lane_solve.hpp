@@ -1,0 +1,66 @@
+// All rows of a few poses at once; poses with rows that need care go one by one.
+#pragma once
+
+#include "careful_solve.hpp"
+
+namespace ikgen_runtime {
+
+// Arm: as for CarefulSolve; kFarLimits, whether limits leave no room within half a turn of 0.
+template <class Arm> struct LaneSolve {
+  static constexpr int kBatch = kNative > 2 ? kNative / 2 : 1;  // poses at once
+  using Options = typename Arm::Options;
+  using Solutions = typename Arm::Solutions;
+  using Row = SolutionRows<Arm>;
+  template <int P> using Rows = typename Arm::template Rows<P>;
+
+  template <int P> static void solve(const Eigen::Isometry3d* poses, const Options& options, Solutions* out) noexcept {
+    const bool bounded = options.limits && !place_later(options);
+    Rows<P> rows;
+    Arm::branches(gather<P>(poses), typename Arm::Seed(), options.free, bounded ? kLimits : kAnywhere, rows);
+    for (int p = 0; p < P; ++p)
+      if (!collect(rows, p, options, out[p])) fall_back(poses[p], options, out[p]);
+  }
+
+ private:
+  static constexpr Range kLimits = {Arm::kLower.data(), Arm::kUpper.data()};
+  static constexpr Range kAnywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
+
+  // Few poses need it: small code, quickly compiled.
+  [[gnu::cold, gnu::noinline]] static void fall_back(const Eigen::Isometry3d& pose, const Options& options,
+                                                     Solutions& out) noexcept {
+    CarefulSolve<Arm>::solve(pose, options, out);
+  }
+
+  // Whether rows are placed one by one once they are found, not in the lanes.
+  static bool place_later(const Options& options) noexcept { return Arm::kFarLimits || options.seed != nullptr; }
+
+  // Copies the found rows of pose p. Whether that is all there is to it: every row is a regular one.
+  template <int P> static bool collect(const Rows<P>& rows, int p, const Options& options, Solutions& out) noexcept {
+    int count = 0, seen = 0;
+    for (const int row : Arm::kLaneOfRow) {
+      const int lane = row * P + p;
+      const int bits = static_cast<int>(rows.flags[lane]);
+      double* q = Row::row(out, count);
+      for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
+      Row::flag(out, count) = false;
+      count += bits & kFound;
+      seen |= bits;
+    }
+    if ((seen & (kRough | kHit)) != 0) return false;
+    out.count = count;
+    if ((seen & kMeeting) != 0) {
+      out.count = 0;
+      for (int k = 0; k < count; ++k) {
+        double q[Arm::kDof];
+        std::copy_n(Row::row(out, k), Arm::kDof, q);
+        Row::add(out, q, false);
+      }
+    }
+    if (place_later(options)) Row::place_all(options, out);
+    if (options.seed) Row::sort_by_distance(out, options.seed->data());
+    out.status = out.count > 0 ? Arm::Status::Ok : (seen & kReal) != 0 ? Arm::Status::Limits : Arm::Status::Unreachable;
+    return out.count > 0 || !options.seed;
+  }
+};
+
+}  // namespace ikgen_runtime

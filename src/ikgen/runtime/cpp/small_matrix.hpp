@@ -1,0 +1,44 @@
+// Kernels on small dense arrays of fixed size.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace ikgen_runtime {
+
+inline void cross(const double* a, const double* b, double* out) noexcept {
+  out[0] = a[1] * b[2] - a[2] * b[1];
+  out[1] = a[2] * b[0] - a[0] * b[2];
+  out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+// Cholesky's factor of A, symmetric and given up to its diagonal, in its place.
+template <int N> inline void factor(double (&A)[N][N]) noexcept {
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j <= i; ++j) {
+      double sum = A[i][j];
+      for (int k = 0; k < j; ++k) sum -= A[i][k] * A[j][k];
+      A[i][j] = i == j ? std::sqrt(std::max(sum, 1e-300)) : sum / A[j][j];
+    }
+}
+
+// Whether the matrix was positive definite whose factor this is.
+template <int N> inline bool definite(const double (&L)[N][N]) noexcept {
+  for (int i = 0; i < N; ++i)
+    if (!(L[i][i] > 1e-149)) return false;
+  return true;
+}
+
+// x = A^-1 x by the factor of A.
+template <int N> inline void substitute(const double (&L)[N][N], double (&x)[N]) noexcept {
+  for (int i = 0; i < N; ++i) {
+    for (int k = 0; k < i; ++k) x[i] -= L[i][k] * x[k];
+    x[i] /= L[i][i];
+  }
+  for (int i = N - 1; i >= 0; --i) {
+    for (int k = i + 1; k < N; ++k) x[i] -= L[k][i] * x[k];
+    x[i] /= L[i][i];
+  }
+}
+
+}  // namespace ikgen_runtime

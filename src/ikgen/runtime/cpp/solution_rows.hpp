@@ -1,0 +1,92 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "constants.hpp"
+
+namespace ikgen_runtime {
+
+// The rows of one answer. Arm: kDof, kMaxSolutions, kLower, kUpper; kRevolute and kHeld, a flag a joint; Options,
+// Solutions, Policy.
+template <class Arm> struct SolutionRows {
+  using Options = typename Arm::Options;
+  using Policy = typename Arm::Policy;
+  using Solutions = typename Arm::Solutions;
+
+  static double* row(Solutions& out, int k) noexcept { return out.q.data()[k].data(); }
+  static bool& flag(Solutions& out, int k) noexcept { return out.singular.data()[k]; }
+  static void move(Solutions& out, int from, int to) noexcept {
+    std::copy_n(row(out, from), Arm::kDof, row(out, to));
+    flag(out, to) = flag(out, from);
+  }
+
+  // Whether two rows are the same, whole turns aside.
+  static bool same(const double* a, const double* b) noexcept {
+    for (int j = 0; j < Arm::kDof; ++j) {
+      double gap = std::abs(a[j] - b[j]);
+      if (Arm::kRevolute[j] && gap > Policy::kCoincident) gap = std::abs(gap - kTurn * std::nearbyint(gap / kTurn));
+      if (!(gap <= Policy::kCoincident)) return false;
+    }
+    return true;
+  }
+
+  // Adds a row unless it is there already.
+  static void add(Solutions& out, const double* q, bool singular) noexcept {
+    if (out.count == Arm::kMaxSolutions) return;
+    for (int k = 0; k < out.count; ++k)
+      if (same(q, row(out, k))) return;
+    std::copy_n(q, Arm::kDof, row(out, out.count));
+    flag(out, out.count) = singular;
+    ++out.count;
+  }
+
+  // Puts a row on the turns that the seed or the limits ask for; false where it is outside.
+  static bool place(double* q, const Options& options) noexcept {
+    const double* seed = options.seed ? options.seed->data() : nullptr;
+    for (int j = 0; j < Arm::kDof; ++j) {
+      const double low = Arm::kLower[j] - Policy::kLimitTolerance, high = Arm::kUpper[j] + Policy::kLimitTolerance;
+      if (Arm::kRevolute[j] && !Arm::kHeld[j]) {
+        q[j] += q[j] <= -kPi ? kTurn : q[j] > kPi ? -kTurn : 0.0;
+        double shift = seed ? kTurn * std::nearbyint((seed[j] - q[j]) / kTurn) : 0.0;
+        if (options.limits && q[j] + shift < low) shift = kTurn * std::ceil((low - q[j]) / kTurn);
+        if (options.limits && q[j] + shift > high) shift = kTurn * std::floor((high - q[j]) / kTurn);
+        q[j] += shift;
+      }
+      if (!options.limits) continue;
+      if (!(low <= q[j] && q[j] <= high)) return false;
+      q[j] = std::min(std::max(q[j], Arm::kLower[j]), Arm::kUpper[j]);
+    }
+    return true;
+  }
+
+  // Leaves the rows that can be placed.
+  static void place_all(const Options& options, Solutions& out) noexcept {
+    int kept = 0;
+    for (int k = 0; k < out.count; ++k) {
+      if (kept < k) move(out, k, kept);
+      kept += place(row(out, kept), options) ? 1 : 0;
+    }
+    out.count = kept;
+  }
+
+  static void sort_by_distance(Solutions& out, const double* seed) noexcept {
+    double distance[Arm::kMaxSolutions];
+    for (int k = 0; k < out.count; ++k) {
+      double q[Arm::kDof], mine = 0.0;
+      std::copy_n(row(out, k), Arm::kDof, q);
+      for (int j = 0; j < Arm::kDof; ++j) mine += (q[j] - seed[j]) * (q[j] - seed[j]);
+      const bool singular = flag(out, k);
+      int at = k;
+      for (; at > 0 && distance[at - 1] > mine; --at) {
+        move(out, at - 1, at);
+        distance[at] = distance[at - 1];
+      }
+      std::copy_n(q, Arm::kDof, row(out, at));
+      flag(out, at) = singular;
+      distance[at] = mine;
+    }
+  }
+};
+
+}  // namespace ikgen_runtime

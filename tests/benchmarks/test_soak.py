@@ -1,0 +1,117 @@
+"""A thousandth of the soak: poses through compiled headers, and failures that it must notice."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from benchmarks.command_line import REPOSITORY, Emitted, emit
+from benchmarks.soak import ABOVE, Soak, added, found_source, main, parsed, soak, table
+from tests.support.solving import NO_COMPILER
+
+from ikgen.verify import completeness
+
+FIXTURES = REPOSITORY / "urdf_fixtures"
+TABLES = REPOSITORY / "tests" / "robots" / "tables"
+EXACT = FIXTURES / "kuka_kr6r900sixx.urdf"
+POSES, NEAR = 10_000, 1_000
+QUICK = ("-O1",)
+"""Compiling takes most of the time."""
+needs_compiler = pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")
+BROKEN = """#pragma once
+#include "arm_ik.hpp"
+namespace broken_ik {
+using namespace arm_ik;
+inline Solutions solve(const Eigen::Isometry3d& pose, const Options& options = {}) {
+  Solutions found = arm_ik::solve(pose, options);
+  if (found.count > 1) { BREAK; }
+  return found;
+}
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def exact(tmp_path_factory: pytest.TempPathFactory) -> Emitted:
+    """The header of an arm with exact geometry."""
+    return emit(found_source(str(EXACT), ()), tmp_path_factory.mktemp("soak"))
+
+
+@needs_compiler
+def test_an_exact_arm_misses_nothing_at_any_singular_value(exact: Emitted) -> None:
+    found = soak(exact, POSES, NEAR, flags=QUICK)
+    assert sum(d[0] for d in found.decades) == POSES and sum(d[3] for d in found.decades) == NEAR
+    assert sum(d[3] > 20 for d in found.decades) > 8, "few decades are met"
+    assert found.rows > 4 * POSES
+    assert found.failures(0.0) == 0, "\n".join(table(found))
+
+
+@needs_compiler
+@pytest.mark.parametrize(
+    ("robot", "options"),
+    [
+        (FIXTURES / "ur5e.urdf", ()),
+        (FIXTURES / "doosan_m1013.urdf", ()),
+        (FIXTURES / "open_manipulator_x.urdf", ()),
+        (FIXTURES / "franka_fr3.urdf", ("--free", "fr3_joint7")),
+        (TABLES / "Issue4.toml", ()),
+    ],
+    ids=["rounded", "calibrated", "smaller task", "held joint", "elimination"],
+)
+def test_regular_poses_are_answered_rightly(
+    robot: Path, options: tuple[str, ...], tmp_path: Path
+) -> None:
+    made = emit(found_source(str(robot), options), tmp_path)
+    found = soak(made, POSES, NEAR, flags=QUICK)
+    assert found.rows > POSES / 2
+    assert found.failures(ABOVE) == 0, "\n".join(table(found))
+
+
+@needs_compiler
+@pytest.mark.parametrize(
+    ("what", "caught"),
+    [
+        ("--found.count", lambda s: s.wrong == 0 and sum(d[1] for d in s.decades) > 0),
+        ("found.count = 0", lambda s: sum(d[2] for d in s.decades) > 0.9 * POSES / 10),
+        ("found.q[0][1] += 1e-6", lambda s: s.wrong > POSES / 20),
+    ],
+    ids=["a row dropped", "no row", "a row moved"],
+)
+def test_what_is_wrong_is_noticed(
+    exact: Emitted, tmp_path: Path, what: str, caught: Callable[[Soak], bool]
+) -> None:
+    assert exact.header is not None
+    (tmp_path / "arm_ik.hpp").write_text(exact.header.read_text())
+    header = tmp_path / "broken_ik.hpp"
+    header.write_text(BROKEN.replace("BREAK", what))
+    found = soak(replace(exact, header=header), POSES // 10, 100, flags=QUICK)
+    assert caught(found), "\n".join(table(found))
+    assert found.failures(ABOVE) > 0 and found.cases
+
+
+def test_failures_count_from_the_threshold_on() -> None:
+    text = "rows 7 0\n" + "".join(f"decade {k} 10 {k == 2:d} 0 5 0 {k == 4:d}\n" for k in range(14))
+    found = parsed(text + "missed 3e-3 0.1 0.2\n")
+    assert [found.failures(above) for above in (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 0.0)] == [
+        0,
+        0,
+        1,
+        1,
+        2,
+        2,
+    ]
+    both = added([found, found])
+    assert both.rows == 14 and both.decades[2] == (20, 2, 0, 10, 0, 0) and len(both.cases) == 2
+
+
+def test_the_threshold_is_that_of_the_verification() -> None:
+    assert ABOVE == completeness.FAILS_ABOVE
+
+
+def test_an_arm_that_is_not_there(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit, match="no arm 'nowhere'"):
+        main(["nowhere"])
+    assert main([str(FIXTURES / "abb_yumi.urdf")]) == 2
+    assert "chain" in capsys.readouterr().err

@@ -1,0 +1,106 @@
+"""Configs that `ikgen init` writes: every arm of a robot, paths and arguments as the config sees them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from ikgen.errors import UsageError
+from ikgen.generation.request import Request
+from ikgen.projects.config import load_config
+from ikgen.projects.new_config import config_path, robot_arms, write_config
+
+FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
+AR4 = FIXTURES / "ar4_ros_driver/annin_ar4_description/urdf/ar.urdf.xacro"
+
+
+def written(request: Request, path: Path) -> Path:
+    write_config(path, request, robot_arms(request), ["python"], force=False)
+    return path
+
+
+def test_arguments_and_paths_are_recorded(tmp_path: Path) -> None:
+    packages = FIXTURES / "ar4_ros_driver"
+    arguments = {"ar_model": "mk3", "include_gripper": "false", "tf_prefix": "a_"}
+    request = Request(AR4, args=arguments, package_paths=(packages,))
+    (arm,) = load_config(written(request, tmp_path / "ikgen.toml"))
+    assert arm.request.robot.resolve() == AR4 and arm.request.args == arguments
+    assert [p.resolve() for p in arm.request.package_paths] == [packages]
+    assert arm.outputs.out == tmp_path / "generated"
+    assert not Path(robot_entry(tmp_path / "ikgen.toml")).is_absolute()
+
+
+def robot_entry(path: Path) -> str:
+    """The robot's path as the config has it."""
+    return path.read_text().partition('robot = "')[2].partition('"')[0]
+
+
+def test_texts_are_quoted(tmp_path: Path) -> None:
+    request = Request(FIXTURES / "scara_standard.toml", args={'odd "name"': 'a \\ "b"\t\x7f'})
+    arms = robot_arms(request)
+    write_config(tmp_path / "ikgen.toml", request, arms, ["python"], force=False)
+    assert load_config(tmp_path / "ikgen.toml")[0].request.args == request.args
+
+
+def test_table_is_one_arm(tmp_path: Path) -> None:
+    path = written(Request(FIXTURES / "scara_standard.toml"), tmp_path / "ikgen.toml")
+    (arm,) = load_config(path)
+    assert arm.name == "scara" and arm.request.base is None and arm.request.tip is None
+
+
+def test_arms_that_share_a_trunk_begin_where_they_part(tmp_path: Path) -> None:
+    arms = "".join(
+        branch(side, ("shoulder", "upper", "elbow", "fore", "wrist")) for side in ("left", "right")
+    )
+    path = tmp_path / "torso.urdf"
+    path.write_text(
+        f'<robot name="t"><link name="base_link"/>{joint("waist", "base_link")}{arms}</robot>'
+    )
+    found = robot_arms(Request(path))
+    assert [(a.name, a.base, a.dof, a.trunk) for a in found] == [
+        (f"t_{side}_wrist_link", "waist_link", 5, "base_link") for side in ("left", "right")
+    ]
+    text = written(Request(path), tmp_path / "ikgen.toml").read_text()
+    assert 'base = "waist_link"  # with the joints that arms share: "base_link"' in text
+    assert len(load_config(tmp_path / "ikgen.toml")) == 2
+
+
+def joint(name: str, parent: str) -> str:
+    return (
+        f'<joint name="{name}" type="revolute"><parent link="{parent}"/><child link="{name}_link"/>'
+        '<origin xyz="0.1 0.2 0.3"/><axis xyz="0 0 1"/>'
+        '<limit lower="-1" upper="1" effort="1" velocity="1"/></joint>'
+        f'<link name="{name}_link"/>'
+    )
+
+
+def branch(side: str, names: tuple[str, ...]) -> str:
+    parents = ("waist_link", *(f"{side}_{name}_link" for name in names))
+    return "".join(joint(f"{side}_{n}", p) for n, p in zip(names, parents, strict=False))
+
+
+def test_names_that_tips_share_are_told_apart(tmp_path: Path) -> None:
+    arms = joint("waist", "base_link") + branch("a", ("x", "y", "z", "end"))
+    arms += branch("a-", ("x", "y", "z", "end")).replace("a-_end", "a-end")
+    path = tmp_path / "twins.urdf"
+    path.write_text(f'<robot name="t"><link name="base_link"/>{arms}</robot>')
+    names = [arm.name for arm in robot_arms(Request(path))]
+    assert names == ["t_a_end_link", "t_a_end_link_2"]
+
+
+def test_a_config_is_not_replaced(tmp_path: Path) -> None:
+    request = Request(FIXTURES / "scara_standard.toml")
+    path = written(request, config_path(tmp_path))
+    assert path == tmp_path / "ikgen.toml"
+    before = path.read_text()
+    with pytest.raises(UsageError, match="is there already"):
+        written(request, path)
+    assert path.read_text() == before
+
+
+def test_robot_without_an_arm_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "box.urdf"
+    path.write_text('<robot name="box"><link name="base_link"/></robot>')
+    with pytest.raises(UsageError, match="no arm found in 'box'"):
+        robot_arms(Request(path))

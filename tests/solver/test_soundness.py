@@ -1,0 +1,88 @@
+"""Whether a step holds at every regular configuration, and what is done where one does not."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.equations.equation_set import EquationSet
+from ikgen.equations.knowledge import Knowledge
+from ikgen.equations.probes import arm_size, make_probes, smallest_singular
+from ikgen.generation import derive as derivation
+from ikgen.generation.read import read
+from ikgen.generation.request import Request
+from ikgen.solver.choice import Chooser
+from ikgen.solver.leaves import all_leaves
+from ikgen.solver.session import Session
+from ikgen.solver.solve import solve_chain
+from ikgen.tasks import find_task
+
+ROOT = Path(__file__).resolve().parents[2]
+FIVE_JOINTS = ROOT / "urdf_fixtures" / "igus_robolink_rl_dp_5.urdf"
+PUMA = ROOT / "tests" / "robots" / "tables" / "Puma.toml"
+
+
+def session_of(table: Path) -> Session:
+    """A session with the candidates of its first round."""
+    dh = read(Request(table)).dh
+    probes = make_probes(dh)
+    system = EquationSet(ExpressionGraph(len(probes.values)), dh, probes.values, probes.pose)
+    session = Session(system, probes, Knowledge(system))
+    session.start()
+    session.collect()
+    for leaf in all_leaves():
+        session.try_leaf(leaf)
+    return session
+
+
+def test_only_a_weak_candidate_makes_an_unsound_step() -> None:
+    session = session_of(PUMA.with_name("Craig417.toml"))
+    chooser = Chooser(session.system, session.probes)
+    weak = [c for c in session.candidates if c.is_weak]
+    assert weak, "the test needs a weak candidate"
+    step = chooser.choose(weak[:1], anything=True)
+    assert step is not None and not step.sound
+    best = chooser.choose(session.candidates, anything=False)
+    assert best is not None and best.sound
+
+
+def test_regular_is_what_the_task_reads() -> None:
+    """With the tool along the last axis, that joint turns nothing of the direction: the whole pose is
+    regular there, the task is not."""
+    dh, task = read(Request(FIVE_JOINTS)).dh, find_task("position-direction")
+    probes = make_probes(dh, tool=True)
+    q = probes.values[: probes.regular]
+    size = arm_size(dh)
+    whole = smallest_singular(dh, q, size)
+    read_alone = smallest_singular(dh, q, size, readable=task.readable, tool=True)
+    assert (whole > 1e-2).all() and (read_alone < 1e-8).any()
+    own = make_probes(dh, tool=True, readable=task.readable)
+    special = own.values[own.generic : own.regular]
+    assert len(special) and np.all(
+        smallest_singular(dh, special, size, readable=task.readable, tool=True) > 1e-2
+    )
+
+
+def test_divisors_may_vanish_where_the_task_is_singular() -> None:
+    dh, task = read(Request(FIVE_JOINTS)).dh, find_task("position-direction")
+    graph = solve_chain(dh, readable=task.readable, tool_on_right=True)
+    assert not graph.open_joints and graph.sound
+
+
+def test_the_elimination_is_taken_where_a_step_is_unsound(monkeypatch: pytest.MonkeyPatch) -> None:
+    by_rules = derivation._by_rules
+
+    def unsound(*arguments: object) -> object:
+        graph = by_rules(*arguments)  # type: ignore[arg-type]
+        first = dataclasses.replace(graph.steps[0], sound=False)
+        return dataclasses.replace(graph, steps=(first, *graph.steps[1:]))
+
+    assert derivation.derive(Request(PUMA)).module.plan is None
+    monkeypatch.setattr(derivation, "_by_rules", unsound)
+    found = derivation.derive(Request(PUMA))
+    assert not found.graph.sound
+    assert found.module.plan is not None

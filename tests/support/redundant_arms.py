@@ -1,0 +1,41 @@
+"""URDFs of arms with more joints than a pose has freedoms, of round numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+__all__ = ["SHOULDER_ELBOW_WRIST", "TORSO", "serial_urdf"]
+
+Joint = tuple[str, str, str, str, tuple[float, float]]
+"""Name, type, axis, origin and limits."""
+
+_TURN = (-2.9, 2.9)
+
+SHOULDER_ELBOW_WRIST: tuple[Joint, ...] = (
+    ("shoulder_yaw", "revolute", "0 0 1", "0 0 0.3", _TURN),
+    ("shoulder_pitch", "revolute", "0 1 0", "0 0 0", (-2.0, 2.0)),
+    ("shoulder_roll", "revolute", "0 0 1", "0 0 0", (-3.0, 3.0)),
+    ("elbow", "revolute", "0 1 0", "0 0 0.4", (-2.1, 2.1)),
+    ("wrist_yaw", "revolute", "0 0 1", "0 0 0.35", _TURN),
+    ("wrist_pitch", "revolute", "0 1 0", "0 0 0", (-2.0, 2.0)),
+    ("wrist_roll", "revolute", "0 0 1", "0 0 0", _TURN),
+)
+"""Two spherical joints with an elbow between them: the class of most arms with seven joints."""
+
+TORSO: Joint = ("torso", "prismatic", "0 0 1", "0 0 0.5", (0.0, 0.4))
+
+
+def serial_urdf(name: str, joints: Sequence[Joint]) -> str:
+    """A chain `base_link` to `tool0` of these joints, the tip 0.1 m beyond the last."""
+    text, parent = '<link name="base_link"/>\n', "base_link"
+    flange: Joint = ("flange", "fixed", "0 0 1", "0 0 0.1", (0.0, 0.0))
+    for joint, kind, axis, xyz, (low, high) in (*joints, flange):
+        child = "tool0" if kind == "fixed" else f"{joint}_link"
+        text += (
+            f'<joint name="{joint}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
+            f'<origin xyz="{xyz}" rpy="0 0 0"/><axis xyz="{axis}"/>'
+            f'<limit lower="{low}" upper="{high}" effort="1" velocity="1"/></joint>\n'
+            f'<link name="{child}"/>\n'
+        )
+        parent = child
+    return f'<robot name="{name}">\n{text}</robot>\n'

@@ -1,0 +1,60 @@
+"""What keeps the source readable: short modules and functions, names that stand once, types."""
+
+from __future__ import annotations
+
+import ast
+import statistics
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+SOURCE = ROOT / "src" / "ikgen"
+MODULES = sorted(p for p in SOURCE.rglob("*.py") if p.name != "__init__.py")
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+def functions(path: Path) -> list[Function]:
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    return [node for node in ast.walk(tree) if isinstance(node, Function)]
+
+
+def lines(path: Path) -> int:
+    return len(path.read_text(encoding="utf-8").splitlines())
+
+
+def test_modules_are_short() -> None:
+    assert statistics.median(lines(path) for path in MODULES) <= 110
+
+
+@pytest.mark.parametrize("folder", ["src/ikgen", "templates"])
+def test_no_file_is_long(folder: str) -> None:
+    kinds = (".py", ".hpp", ".jinja", ".cmake", ".in")
+    files = [p for p in (ROOT / folder).rglob("*") if p.suffix in kinds]
+    assert files
+    assert {p.name: lines(p) for p in files if lines(p) > 300} == {}
+
+
+def test_functions_are_short() -> None:
+    found = [(f.end_lineno or 0) - f.lineno + 1 for path in MODULES for f in functions(path)]
+    assert statistics.quantiles(found, n=10)[-1] <= 25
+    assert max(found) <= 50
+
+
+def test_no_module_has_the_name_of_another() -> None:
+    names = Counter(path.name for path in MODULES)
+    assert [name for name, count in names.items() if count > 1] == []
+
+
+def test_everything_is_typed() -> None:
+    bare = []
+    for path in SOURCE.rglob("*.py"):
+        for f in functions(path):
+            given = [*f.args.posonlyargs, *f.args.args, *f.args.kwonlyargs]
+            untyped = [
+                a.arg for a in given if a.annotation is None and a.arg not in ("self", "cls")
+            ]
+            if untyped or f.returns is None:
+                bare.append(f"{path.relative_to(ROOT)}:{f.lineno} {f.name}")
+    assert bare == []
