@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.support.polynomials import polynomial_values
 from tests.support.tables import table
 
 from ikgen.algebra.expression_graph import ExpressionGraph
@@ -53,15 +54,7 @@ VARIABLES = (
 
 def value(polynomial: Polynomial) -> np.ndarray:
     """A polynomial's values at the probes."""
-    total = np.zeros(len(PROBES.values))
-    for (trigs, slides), coefficient in polynomial.items():
-        term = coefficient.probe.copy()
-        for combination, kind in trigs:
-            term *= (np.cos if kind == "c" else np.sin)(PROBES.values @ np.array(combination))
-        for joint, power in slides:
-            term *= PROBES.values[:, joint] ** power
-        total += term
-    return total
+    return polynomial_values(polynomial, PROBES.values)
 
 
 @settings(max_examples=12, deadline=None)
