@@ -111,6 +111,16 @@ def test_a_workspace_and_its_origin_learn_apart(mine: Variable, others: Variable
     assert k.is_known(mine) and not work.is_known(mine)
 
 
+def test_definitions_found_in_a_workspace_stay_there() -> None:
+    k = nothing_known()
+    c2 = k.variables.pair((0, 1, 0, 0))[0]
+    work = k.workspace()
+    for key in ((0, 1, 1, 0), (0, 0, 1, 0)):
+        work.learn_angle(key)
+    assert c2.id in work.binding and not k.binding
+    assert work.known_expr(c2) and not k.known_expr(c2)
+
+
 def test_a_workspace_starts_with_what_is_known() -> None:
     k = nothing_known()
     for variable in VARIABLES[2:]:
