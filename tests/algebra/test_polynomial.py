@@ -43,8 +43,11 @@ def monomials(draw: st.DrawFn) -> Monomial:
     return tuple(trigs), ((3, power),) if power else ()
 
 
+QUARTERS = st.integers(-12, 12).map(lambda n: Fraction(n, 4))
+"""Numbers whose sums and products are exact, so that terms cancel entirely."""
+
 POLYNOMIALS: st.SearchStrategy[Words] = st.lists(
-    st.tuples(monomials(), st.integers(-12, 12).map(lambda n: Fraction(n, 4)), st.integers(0, 2)),
+    st.tuples(monomials(), QUARTERS, st.integers(0, 2)),
     max_size=4,
 )
 
