@@ -13,6 +13,7 @@ from tests.support.solving import FIXTURES
 
 from ikgen.cli.main import run
 
+KUKA = Path(__file__).resolve().parents[2] / "urdf_fixtures" / "kuka_kr6r900sixx.urdf"
 Called = Callable[..., tuple[int, dict[str, Any]]]
 
 
@@ -60,11 +61,12 @@ def test_the_place_of_an_error(called: Called) -> None:
 
 
 def test_without_a_closed_form(called: Called) -> None:
-    code, found = called("from-urdf", "elbow.urdf", "--task", "direction", "--no-verify")
+    asked = (str(KUKA), "--task", "position-yaw", "--no-verify")
+    code, found = called("from-urdf", *asked)
     error = found["error"]
-    assert code == error["exit_code"] == 3 and error["task"] == "direction"
-    assert error["left"] and "--free elbow" in error["hint"].splitlines()[0]
-    code, found = called("report", "elbow.urdf", "--task", "direction", "--no-verify")
+    assert code == error["exit_code"] == 3 and error["task"] == "position-yaw"
+    assert error["left"] and "--free JOINT --free JOINT" in error["hint"].splitlines()[0]
+    code, found = called("report", *asked)
     assert code == found["error"]["exit_code"] == 3
     assert {Path(name).suffix for name in found["files"]} >= {".tex", ".html"}
 
@@ -119,13 +121,13 @@ def test_success_has_no_error(called: Called) -> None:
 
 
 def test_the_tree_is_shown_on_failure(called: Called, capsys: pytest.CaptureFixture[str]) -> None:
-    asked = ["from-urdf", "elbow.urdf", "--task", "direction", "--no-verify"]
+    asked = ["from-urdf", str(KUKA), "--task", "position-yaw", "--no-verify"]
     assert run(asked) == 3
     brief = capsys.readouterr().err
     assert "behaviour tree:" not in brief and "equations" not in brief
     first = next(line for line in brief.splitlines() if line.startswith("error: "))
-    assert "3 joints move and the task fixes 2 freedoms: one of them has to be held" in first
-    assert "\nhint: ikgen from-urdf elbow.urdf --task direction --free elbow\n" in brief
+    assert "6 joints move and the task fixes 4 freedoms: 2 of them have to be held" in first
+    assert "--task position-yaw --free JOINT --free JOINT" in brief
     assert run([*asked, "-v"]) == 3
     told = capsys.readouterr().err
     assert "behaviour tree:\nround 1" in told and "left are the joints" in told

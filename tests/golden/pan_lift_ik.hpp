@@ -247,34 +247,21 @@ template <int N> [[gnu::always_inline]] inline Lanes<N> signs() noexcept {
   }
 }
 
-template <class A, class B, int N = kCommon<A, B>>
-[[gnu::always_inline]] inline Lanes<N> operator+(const A& a, const B& b) noexcept {
-  return each<Lanes<N>>([](auto x, auto y) { return x + y; }, spread<N>(a), spread<N>(b));
-}
-template <class A, class B, int N = kCommon<A, B>>
-[[gnu::always_inline]] inline Lanes<N> operator-(const A& a, const B& b) noexcept {
-  return each<Lanes<N>>([](auto x, auto y) { return x - y; }, spread<N>(a), spread<N>(b));
-}
-template <class A, class B, int N = kCommon<A, B>>
-[[gnu::always_inline]] inline Lanes<N> operator*(const A& a, const B& b) noexcept {
-  return each<Lanes<N>>([](auto x, auto y) { return x * y; }, spread<N>(a), spread<N>(b));
-}
-template <class A, class B, int N = kCommon<A, B>>
-[[gnu::always_inline]] inline Lanes<N> operator/(const A& a, const B& b) noexcept {
-  return each<Lanes<N>>([](auto x, auto y) { return x / y; }, spread<N>(a), spread<N>(b));
-}
-template <class A, class B, int N = kCommon<A, B>>
-[[gnu::always_inline]] inline Mask<N> operator>(const A& a, const B& b) noexcept {
-  return each<Mask<N>>([](auto x, auto y) { return above(x, y); }, spread<N>(a), spread<N>(b));
-}
-template <class A, class B, int N = kCommon<A, B>>
-[[gnu::always_inline]] inline Mask<N> operator&(const A& a, const B& b) noexcept {
-  return each<Mask<N>>([](auto x, auto y) -> decltype(x) { return x & y; }, spread<N>(a), spread<N>(b));
-}
-template <class A, class B, int N = kCommon<A, B>>
-[[gnu::always_inline]] inline Mask<N> operator|(const A& a, const B& b) noexcept {
-  return each<Mask<N>>([](auto x, auto y) -> decltype(x) { return x | y; }, spread<N>(a), spread<N>(b));
-}
+#define IKGEN_LANES_OPERATION(Pack, name, value) \
+  template <class A, class B, int N = kCommon<A, B>> \
+  [[gnu::always_inline]] inline Pack<N> name(const A& a, const B& b) noexcept { \
+    return each<Pack<N>>([](auto x, auto y) { return value; }, spread<N>(a), spread<N>(b)); \
+  }
+IKGEN_LANES_OPERATION(Lanes, operator+, x + y)
+IKGEN_LANES_OPERATION(Lanes, operator-, x - y)
+IKGEN_LANES_OPERATION(Lanes, operator*, x * y)
+IKGEN_LANES_OPERATION(Lanes, operator/, x / y)
+IKGEN_LANES_OPERATION(Lanes, max, larger(x, y))
+IKGEN_LANES_OPERATION(Lanes, min, smaller(x, y))
+IKGEN_LANES_OPERATION(Mask, operator>, above(x, y))
+IKGEN_LANES_OPERATION(Mask, operator&, static_cast<decltype(x)>(x & y))
+IKGEN_LANES_OPERATION(Mask, operator|, static_cast<decltype(x)>(x | y))
+#undef IKGEN_LANES_OPERATION
 template <int N, bool H> [[gnu::always_inline]] inline Mask<N> operator!(const MaskOf<N, H>& a) noexcept {
   return each<Mask<N>>([](auto x) { return inverted(x); }, a);
 }
@@ -288,14 +275,6 @@ template <int M, bool H, class A, class B>
   constexpr int N = M > K ? M : K;
   const auto choose = [](auto flags, auto x, auto y) { return chosen(flags, x, y); };
   return each<Lanes<N>>(choose, spread<N>(m), spread<N>(a), spread<N>(b));
-}
-template <class A, class B, int N = kCommon<A, B>>
-[[gnu::always_inline]] inline Lanes<N> max(const A& a, const B& b) noexcept {
-  return each<Lanes<N>>([](auto x, auto y) { return larger(x, y); }, spread<N>(a), spread<N>(b));
-}
-template <class A, class B, int N = kCommon<A, B>>
-[[gnu::always_inline]] inline Lanes<N> min(const A& a, const B& b) noexcept {
-  return each<Lanes<N>>([](auto x, auto y) { return smaller(x, y); }, spread<N>(a), spread<N>(b));
 }
 template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> abs(const LanesOf<N, H>& a) noexcept {
   return max(a, -a);
@@ -432,65 +411,30 @@ inline void cross(const double* a, const double* b, double* out) noexcept {
   out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-template <int N> inline double dot(const double (&a)[N], const double (&b)[N]) noexcept {
-  double sum = 0.0;
-  for (int i = 0; i < N; ++i) sum += a[i] * b[i];
-  return sum;
-}
-
-template <int N> inline void solve_symmetric(double (&A)[N][N], double (&x)[N]) noexcept {
-  for (int i = 0; i < N; ++i) {
+template <int N> inline void factor(double (&A)[N][N]) noexcept {
+  for (int i = 0; i < N; ++i)
     for (int j = 0; j <= i; ++j) {
       double sum = A[i][j];
       for (int k = 0; k < j; ++k) sum -= A[i][k] * A[j][k];
       A[i][j] = i == j ? std::sqrt(std::max(sum, 1e-300)) : sum / A[j][j];
     }
-    for (int k = 0; k < i; ++k) x[i] -= A[i][k] * x[k];
-    x[i] /= A[i][i];
+}
+
+template <int N> inline bool definite(const double (&L)[N][N]) noexcept {
+  for (int i = 0; i < N; ++i)
+    if (!(L[i][i] > 1e-149)) return false;
+  return true;
+}
+
+template <int N> inline void substitute(const double (&L)[N][N], double (&x)[N]) noexcept {
+  for (int i = 0; i < N; ++i) {
+    for (int k = 0; k < i; ++k) x[i] -= L[i][k] * x[k];
+    x[i] /= L[i][i];
   }
   for (int i = N - 1; i >= 0; --i) {
-    for (int k = i + 1; k < N; ++k) x[i] -= A[k][i] * x[k];
-    x[i] /= A[i][i];
+    for (int k = i + 1; k < N; ++k) x[i] -= L[k][i] * x[k];
+    x[i] /= L[i][i];
   }
-}
-
-template <int R, int C> inline bool clearly_regular(const double (&V)[R][C], double bound) noexcept {
-  double L[R][R], determinant = 1.0, trace = 0.0;
-  for (int i = 0; i < R; ++i) {
-    for (int j = 0; j <= i; ++j) {
-      double sum = dot(V[i], V[j]);
-      if (i == j) trace += sum;
-      for (int k = 0; k < j; ++k) sum -= L[i][k] * L[j][k];
-      if (i == j && !(sum > 1e-12)) return false;
-      if (i == j) determinant *= sum;
-      L[i][j] = i == j ? std::sqrt(sum) : sum / L[j][j];
-    }
-  }
-  for (int i = 1; i < R; ++i) determinant *= (R - 1) / trace;
-  return determinant > 4.0 * bound * bound;
-}
-
-template <int R, int C> inline double least_singular_square(double (&V)[R][C]) noexcept {
-  for (int sweep = 0, turned = 1; sweep < 30 && turned; ++sweep) {
-    turned = 0;
-    for (int a = 0; a < R; ++a)
-      for (int b = a + 1; b < R; ++b) {
-        const double aa = dot(V[a], V[a]), bb = dot(V[b], V[b]), ab = dot(V[a], V[b]);
-        if (!(ab * ab > 1e-30 * aa * bb)) continue;
-        turned = 1;
-        const double z = (bb - aa) / (2.0 * ab);
-        const double t = std::copysign(1.0, z) / (std::abs(z) + std::sqrt(1.0 + z * z));
-        const double c = 1.0 / std::sqrt(1.0 + t * t), s = c * t;
-        for (int i = 0; i < C; ++i) {
-          const double x = V[a][i], y = V[b][i];
-          V[a][i] = c * x - s * y;
-          V[b][i] = s * x + c * y;
-        }
-      }
-  }
-  double smallest = kInfinity;
-  for (const auto& v : V) smallest = std::min(smallest, dot(v, v));
-  return smallest;
 }
 
 // --- motion chain --------------------------------------------------------------------------------
@@ -562,23 +506,14 @@ template <class Arm> struct MotionChain {
 };
 
 // --- pose error ----------------------------------------------------------------------------------
-struct Entry {
-  int row, column;
-};
-
 template <class Arm> struct PoseError {
-  static constexpr int kCount = Arm::kWholePose ? 6 : sizeof(Arm::kRead) / sizeof(Entry);
+  static constexpr int kCount = Arm::Task::kCount;
   double error[kCount], slope[kCount][Arm::kDof];
 
   PoseError(const double* q, const Eigen::Isometry3d& pose) noexcept {
-    const double* t = pose.matrix().data();  // columns first
     double J[6][Arm::kDof];
     const Frame T = MotionChain<Arm>::forward(q, J);
-    if constexpr (Arm::kWholePose) {
-      compare_all(t, T, J);
-    } else {
-      compare_read(t, T, J);
-    }
+    Arm::Task::compare(pose.matrix().data(), T, J, error, slope);
     for (const int j : Arm::kFreeJoints)
       for (auto& row : slope) row[j] = 0.0;
   }
@@ -587,32 +522,6 @@ template <class Arm> struct PoseError {
     double worst = 0.0;
     for (const double x : error) worst = std::abs(x) <= worst ? worst : std::abs(x);
     return worst;
-  }
-
- private:
-  void compare_all(const double* t, const Frame& T, const double (&J)[6][Arm::kDof]) noexcept {
-    double S[3][3];
-    for (int i = 0; i < 3; ++i) {
-      error[i] = (t[12 + i] - T.p[i]) / Arm::kSize;
-      for (int k = 0; k < 3; ++k) S[i][k] = t[i] * T.R[k][0] + t[4 + i] * T.R[k][1] + t[8 + i] * T.R[k][2];
-    }
-    const double flipped = S[0][0] + S[1][1] + S[2][2] < 1.0 ? 1.0 : 0.0;  // more than a right angle off
-    error[3] = 0.5 * (S[2][1] - S[1][2]) + flipped;
-    error[4] = 0.5 * (S[0][2] - S[2][0]) + flipped;
-    error[5] = 0.5 * (S[1][0] - S[0][1]) + flipped;
-    for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < Arm::kDof; ++j) slope[i][j] = i < 3 ? J[i][j] / Arm::kSize : J[i][j];
-  }
-
-  void compare_read(const double* t, const Frame& T, const double (&J)[6][Arm::kDof]) noexcept {
-    for (int i = 0; i < kCount; ++i) {
-      const auto [r, c] = Arm::kRead[i];
-      const int u = (r + 1) % 3, v = (r + 2) % 3;
-      const bool length = c == 3;
-      error[i] = length ? (t[12 + r] - T.p[r]) / Arm::kSize : t[4 * c + r] - T.R[r][c];
-      for (int j = 0; j < Arm::kDof; ++j)
-        slope[i][j] = length ? J[r][j] / Arm::kSize : J[3 + u][j] * T.R[v][c] - J[3 + v][j] * T.R[u][c];
-    }
   }
 };
 
@@ -637,7 +546,8 @@ template <class Arm> struct NewtonRefinement {
       x[i] = 0.0;
       for (int e = 0; e < at.kCount; ++e) x[i] += at.slope[e][i] * at.error[e];
     }
-    solve_symmetric(A, x);
+    factor(A);
+    substitute(A, x);
     for (int j = 0; j < Arm::kDof; ++j) q[j] += std::min(std::max(x[j], -Policy::kLargestStep), Policy::kLargestStep);
   }
 
@@ -670,18 +580,26 @@ template <class Arm> struct NewtonRefinement {
 // --- rank loss -----------------------------------------------------------------------------------
 template <class Arm> struct RankLoss {
   static constexpr int kMoving = Arm::kDof - Arm::kFree, kEquations = PoseError<Arm>::kCount;
-  static constexpr bool kTall = kMoving < kEquations;
+  static constexpr int kRank = kMoving < kEquations ? kMoving : kEquations;
 
   static bool below(const double* q, double bound) noexcept {
     const PoseError<Arm> at(q, Eigen::Isometry3d::Identity());
-    double V[kTall ? kMoving : kEquations][kTall ? kEquations : kMoving];
-    for (int e = 0; e < kEquations; ++e)
-      for (int j = 0, k = 0; j < Arm::kDof; ++j) {
-        if (Arm::kHeld[j]) continue;
-        V[kTall ? k : e][kTall ? e : k] = at.slope[e][j];
-        ++k;
+    int moving[kMoving];
+    for (int j = 0, k = 0; j < Arm::kDof; ++j)
+      if (!Arm::kHeld[j]) moving[k++] = j;
+    double A[kRank][kRank];
+    for (int a = 0; a < kRank; ++a)
+      for (int b = 0; b <= a; ++b) {
+        double sum = a == b ? -bound * bound : 0.0;
+        if constexpr (kMoving < kEquations) {
+          for (const auto& row : at.slope) sum += row[moving[a]] * row[moving[b]];
+        } else {
+          for (const int j : moving) sum += at.slope[a][j] * at.slope[b][j];
+        }
+        A[a][b] = sum;
       }
-    return !clearly_regular(V, bound) && least_singular_square(V) < bound * bound;
+    factor(A);
+    return !definite(A);
   }
 };
 
@@ -891,14 +809,73 @@ template <class Arm> struct LaneSolve {
   }
 };
 
-// --- pose reading --------------------------------------------------------------------------------
-template <class Policy, int N>
-inline constexpr double kMostDefect =
-    4.0 * N * Policy::kPoseTolerance * Policy::kPoseTolerance * (1.0 + 2.0 * N * Policy::kPoseTolerance);
+// --- pose entries --------------------------------------------------------------------------------
+template <class Arm> struct PoseEntries {
+  static constexpr int kCount = sizeof(Arm::kRead) / sizeof(Arm::kRead[0]);
 
+  static void compare(const double* t, const Frame& T, const double (&J)[6][Arm::kDof], double (&error)[kCount],
+                      double (&slope)[kCount][Arm::kDof]) noexcept {
+    for (int i = 0; i < kCount; ++i) {
+      const auto [r, c] = Arm::kRead[i];
+      const int u = (r + 1) % 3, v = (r + 2) % 3;
+      const bool length = c == 3;
+      error[i] = length ? (t[12 + r] - T.p[r]) / Arm::kSize : t[4 * c + r] - T.R[r][c];
+      for (int j = 0; j < Arm::kDof; ++j)
+        slope[i][j] = length ? J[r][j] / Arm::kSize : J[3 + u][j] * T.R[v][c] - J[3 + v][j] * T.R[u][c];
+    }
+  }
+};
+
+// --- unit columns --------------------------------------------------------------------------------
+template <int First, int Count, int Height> struct UnitColumns {
+  static constexpr double most_defect(double off) noexcept {
+    return 4.0 * Count * Height * off * off * (1.0 + 2.0 * Count * Height * off);
+  }
+
+  static double defect(const double* t) noexcept {
+    double sum = 0.0;
+    for (int i = First; i < First + Count; ++i)
+      for (int j = First; j <= i; ++j) {
+        const double gap = dot(t + 4 * i, t + 4 * j) - (i == j ? 1.0 : 0.0);
+        sum += (i == j ? 1.0 : 2.0) * gap * gap;
+      }
+    return sum;
+  }
+
+  static bool proper(const double* t) noexcept {
+    if (Count < 3) return true;
+    const double x = t[1] * t[6] - t[2] * t[5], y = t[2] * t[4] - t[0] * t[6], z = t[0] * t[5] - t[1] * t[4];
+    return x * t[8] + y * t[9] + z * t[10] > 0.0;
+  }
+
+  static bool tilted(const double* t) noexcept {
+    return Height == 2 && dot(t + 4 * First, t + 4 * First) > 0.0 && dot(t + 4 * First, t + 4 * First) < 1.0;
+  }
+
+  static void clean(double* t) noexcept {
+    for (int step = 0; step < 2; ++step) {
+      double V[12];
+      for (int i = 0; i < 12; ++i) V[i] = t[i];
+      for (int i = 4 * First; i < 4 * (First + Count); i += 4) {
+        for (int r = 0; r < Height; ++r) t[i + r] = 1.5 * V[i + r];
+        for (int j = 4 * First; j < 4 * (First + Count); j += 4) {
+          const double half = 0.5 * dot(V + i, V + j);
+          for (int r = 0; r < Height; ++r) t[i + r] -= half * V[j + r];
+        }
+      }
+    }
+  }
+
+ private:
+  static double dot(const double* u, const double* v) noexcept {
+    return u[0] * v[0] + u[1] * v[1] + (Height == 2 ? 0.0 : u[2] * v[2]);
+  }
+};
+
+// --- pose reading --------------------------------------------------------------------------------
 template <class Arm> struct PoseReading {
+  using Columns = typename Arm::Columns;
   using Policy = typename Arm::Policy;
-  using Reading = typename Arm::Reading;
 
   static bool exact(const Eigen::Isometry3d& pose) noexcept {
     return good(pose.matrix().data(), Policy::kOrthonormal * Policy::kOrthonormal);
@@ -906,25 +883,20 @@ template <class Arm> struct PoseReading {
 
   static bool clean(Eigen::Isometry3d& pose) noexcept {
     double* t = pose.matrix().data();
-    if (!good(t, Reading::kMost)) return false;
-    Reading::clean(t);
-    return true;
+    if (good(t, Columns::most_defect(Policy::kPoseTolerance))) {
+      Columns::clean(t);
+      return true;
+    }
+    return Columns::tilted(t) && good(t, 1.0);
   }
 
  private:
   static bool good(const double* t, double most) noexcept {
-    double defect = Reading::defect(t);
-    for (const Entry& entry : Arm::kRead) defect += 0.0 * t[4 * entry.column + entry.row];
+    double defect = Columns::defect(t);
+    for (const auto [row, column] : Arm::kRead) defect += 0.0 * t[4 * column + row];
     if (Arm::kWholePose && !(t[3] == 0.0 && t[7] == 0.0 && t[11] == 0.0 && t[15] == 1.0)) return false;
-    return defect <= most && Reading::proper(t);
+    return defect <= most && Columns::proper(t);
   }
-};
-
-struct EntriesReading {
-  static constexpr double kMost = 0.0;
-  static double defect(const double*) noexcept { return 0.0; }
-  static bool proper(const double*) noexcept { return true; }
-  static void clean(double*) noexcept {}
 };
 
 // --- pose solver ---------------------------------------------------------------------------------
@@ -978,22 +950,11 @@ template <class Arm, template <class> class Way> struct PoseSolver {
 // --- this arm -------------------------------------------------------------------------------------
 
 struct Policy {
-  static constexpr double kArrived = 5e-10;
-  static constexpr double kPoseTolerance = 1e-06;
-  static constexpr double kOrthonormal = 1e-14;
-  static constexpr double kCoincident = 1e-06;
-  static constexpr double kMeeting = 2e-05;
-  static constexpr double kLimitTolerance = 1e-09;
-  static constexpr int kTries = 16;
-  static constexpr double kTryStep = 0.39269908169872414;
-  static constexpr double kRankLoss = 1e-07;
-  static constexpr double kContinuumRankLoss = 0.001;
-  static constexpr double kLeastDamping = 1e-12;
-  static constexpr double kDamping = 0.001;
-  static constexpr double kLargestStep = 0.3;
-  static constexpr double kConverged = 1e-13;
-  static constexpr int kPatience = 5;
-  static constexpr double kProgress = 0.8;
+  static constexpr int kTries = 16, kPatience = 5;
+  static constexpr double kArrived = 5e-10, kPoseTolerance = 1e-06, kOrthonormal = 1e-14, kCoincident = 1e-06,
+      kMeeting = 2e-05, kLimitTolerance = 1e-09, kTryStep = 0.39269908169872414, kRankLoss = 1e-07,
+      kContinuumRankLoss = 0.001, kLeastDamping = 1e-12, kDamping = 0.001, kLargestStep = 0.3, kConverged =
+      1e-13, kProgress = 0.8;
   static constexpr RefineStage kRefinement[] = {{3, 1e-12, 0.1}, {6, 5e-10, 0.001}, {30, 0.0, 0.0}};
 };
 
@@ -1015,9 +976,10 @@ struct Arm {
   static constexpr bool kHeld[kDof] = {false, false};
 
   // what the task reads
+  using Task = PoseEntries<Arm>;
+  using Columns = UnitColumns<0, 0, 3>;
   static constexpr bool kWholePose = false;
-  using Reading = EntriesReading;
-  static constexpr Entry kRead[] = {{0, 3}, {1, 3}, {2, 3}};
+  static constexpr int kRead[][2] = {{0, 3}, {1, 3}, {2, 3}};
 
   // the file's own chain
   static constexpr double kSize = 1.0;  // m

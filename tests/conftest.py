@@ -1,0 +1,15 @@
+"""CMake finds Eigen where this environment has it, as a package of its own or the system's."""
+
+from __future__ import annotations
+
+import os
+
+from ikgen.errors import MissingToolError
+from ikgen.verify.runners.cpp_toolchain import find_eigen
+
+try:
+    _PREFIX = [str(find_eigen().parents[1])]
+except MissingToolError:
+    _PREFIX = []
+_GIVEN = [part for part in os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep) if part]
+os.environ["CMAKE_PREFIX_PATH"] = os.pathsep.join([*_GIVEN, *_PREFIX])
