@@ -7,6 +7,7 @@ from fractions import Fraction
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.support.polynomials import polynomial_values
 
 from ikgen.algebra import polynomial as poly
 from ikgen.algebra.expression_graph import ExpressionGraph
@@ -64,15 +65,7 @@ def made(g: ExpressionGraph, words: Words) -> Polynomial:
 
 def value(p: Polynomial) -> np.ndarray:
     """Its values (PROBES,), each coefficient's at one set of angles."""
-    total = np.zeros(PROBES)
-    for (trigs, slides), coefficient in p.items():
-        term = coefficient.probe.copy()
-        for combination, kind in trigs:
-            term *= (np.cos if kind == "c" else np.sin)(ANGLES @ np.array(combination))
-        for joint, power in slides:
-            term *= ANGLES[:, joint] ** power
-        total += term
-    return total
+    return polynomial_values(p, ANGLES)
 
 
 def assert_same(g: ExpressionGraph, a: Polynomial, b: Polynomial) -> None:

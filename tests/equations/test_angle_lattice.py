@@ -122,6 +122,13 @@ def test_sums_with_a_solved_angle_are_written_on_the_joint_s_own() -> None:
     assert lattice.represent((0, 2, 1, 0, 0)) == (2, own, (0, 0, 1, 0, 0))
 
 
+def test_a_multiple_too_large_to_be_known_stands_for_itself() -> None:
+    key = (0, 0, 0, 4, 0)
+    lattice = lattice_of([(0, 0, 0, 1, 0)])
+    assert key not in lattice.known
+    assert lattice.represent(key) == (1, key, (0, 0, 0, 0, 0))
+
+
 @settings(deadline=None)
 @given(SOLVED, st.lists(keys(), max_size=4))
 def test_the_rank_counts_what_solved_ones_leave_open(

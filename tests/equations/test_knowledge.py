@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.support.polynomials import polynomial_values
 from tests.support.tables import table
 
 from ikgen.algebra.expression_graph import ExpressionGraph
@@ -53,15 +54,7 @@ VARIABLES = (
 
 def value(polynomial: Polynomial) -> np.ndarray:
     """A polynomial's values at the probes."""
-    total = np.zeros(len(PROBES.values))
-    for (trigs, slides), coefficient in polynomial.items():
-        term = coefficient.probe.copy()
-        for combination, kind in trigs:
-            term *= (np.cos if kind == "c" else np.sin)(PROBES.values @ np.array(combination))
-        for joint, power in slides:
-            term *= PROBES.values[:, joint] ** power
-        total += term
-    return total
+    return polynomial_values(polynomial, PROBES.values)
 
 
 @settings(max_examples=12, deadline=None)
@@ -116,6 +109,16 @@ def test_a_workspace_and_its_origin_learn_apart(mine: Variable, others: Variable
     assert k.graph.const(2345.5).id == count + 1
     learn(k, mine)
     assert k.is_known(mine) and not work.is_known(mine)
+
+
+def test_definitions_found_in_a_workspace_stay_there() -> None:
+    k = nothing_known()
+    c2 = k.variables.pair((0, 1, 0, 0))[0]
+    work = k.workspace()
+    for key in ((0, 1, 1, 0), (0, 0, 1, 0)):
+        work.learn_angle(key)
+    assert c2.id in work.binding and not k.binding
+    assert work.known_expr(c2) and not k.known_expr(c2)
 
 
 def test_a_workspace_starts_with_what_is_known() -> None:

@@ -104,6 +104,23 @@ def test_constants_read_parameters_alone_and_nothing_else_is_constant(arm) -> No
             assert operand_names(op) - fixed
 
 
+def test_nothing_is_computed_in_a_branch_that_does_not_depend_on_it(arm) -> None:
+    _, program = arm
+    at: dict[str, int] = {}
+    for index, level in enumerate(program.levels):
+        for name in level.call.names if level.call else (level.sigma,):
+            if name:
+                at[name] = index
+        for statement in level.body:
+            if isinstance(statement, Let | Require):
+                value = statement.value if isinstance(statement, Let) else statement.condition
+                for op in operations(value):
+                    assert max(at.get(name, 0) for name in operand_names(op)) == index
+            if isinstance(statement, Let):
+                at[statement.name] = index
+    assert set(at.values()) == set(range(len(program.levels)))
+
+
 def test_no_statement_is_idle(arm) -> None:
     _, program = arm
     live = live_names(program)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from tests.support.constructed import Constructed
 
+from ikgen.algebra.expression import Expr
 from ikgen.forms.form import Form
 from ikgen.solver.candidate import Candidate
 from ikgen.solver.choice import Chooser, Step
@@ -67,6 +68,24 @@ def test_a_fallback_that_fails_at_the_same_place_covers_nothing(arm: Constructed
     assert choose(arm, first, same) is None
     step = choose(arm, first, same, anything=True)
     assert step is not None and not step.fallbacks and not step.sound
+
+
+def test_two_fallbacks_are_the_most(arm: Constructed) -> None:
+    """Four zeros; each candidate holds at one of those where another fails."""
+    g = arm.graph
+    at = [g.sub(arm.c2, g.const(x)) for x in (-0.7, -0.2, 0.3, 0.8)]
+
+    def factor(*zeros: int) -> Expr:
+        product = g.one
+        for i in zeros:
+            product = g.mul(product, at[i])
+        return product
+
+    three = [factor(0, 1, 2), factor(1, 2, 3), factor(0, 2, 3), factor(0, 1, 3)]
+    assert choose(arm, *found(arm, *(arm.tangent(f) for f in three))) is None
+    two = [factor(0, 1), factor(1, 2), factor(0, 2)]
+    step = choose(arm, *found(arm, *(arm.tangent(f) for f in two)))
+    assert step is not None and step.sound and len(step.fallbacks) == 2
 
 
 def test_a_fallback_has_no_more_branches_than_the_first(arm: Constructed) -> None:

@@ -17,7 +17,7 @@ from ikgen.emit.python.python_emitter import emit_module
 from ikgen.errors import PlugInError
 from ikgen.importers.dh.dh_table import read_dh_table
 from ikgen.solver import leaves
-from ikgen.solver.behavior_tree import Tree, the_tree
+from ikgen.solver.behavior_tree import Action, Tree, the_tree
 from ikgen.solver.leaves import LEAVES, Leaf
 from ikgen.solver.solve import solve_chain
 
@@ -100,6 +100,12 @@ def test_the_tree_of_another_package_takes_the_place_of_the_own(
     entry = EntryPoint("mine", "tests.solver.test_plugged_in:documented_tree", "ikgen.trees")
     monkeypatch.setattr(plugins, "entry_points", lambda group: [entry])
     assert the_tree().name == "one leaf at a time"
+
+
+def test_a_tree_that_succeeds_with_nothing_solved_ends_the_derivation() -> None:
+    idle = Tree("idle", lambda session, _: Action("idle", session, lambda _: (True, "")))
+    graph = solve_chain(table(*CASES["planar arm"][1]), tree=idle)
+    assert graph.open_joints == (0, 1, 2) and len(graph.ticks) == 1
 
 
 def test_two_trees_are_one_too_many(monkeypatch: pytest.MonkeyPatch) -> None:

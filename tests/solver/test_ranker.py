@@ -32,6 +32,14 @@ def test_what_does_not_reproduce_the_probes_is_dropped(arm: Constructed) -> None
     assert arm.judged(arm.candidate(almost)) is None
 
 
+def test_what_is_right_at_half_of_the_probes_is_dropped(arm: Constructed) -> None:
+    one = arm.graph.one
+    pair = arm.pair(one)
+    half = replace(pair, c1=arm.graph.unary("abs", arm.c1))
+    assert arm.judged(arm.candidate(pair)) is not None
+    assert arm.judged(arm.candidate(half)) is None
+
+
 def test_either_branch_may_be_the_truth(arm: Constructed) -> None:
     backwards = arm.tangent(arm.graph.minus_one)
     assert arm.judged(arm.candidate(backwards)) is not None

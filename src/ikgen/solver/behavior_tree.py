@@ -1,12 +1,11 @@
 """The behavior tree, as in the figure of the IKBT paper.
 
     solve one unknown: Sequence
-    ├── collect equations          sorts the scalar equations by number of unknowns
+    ├── collect equations              sorts the scalar equations by number of unknowns
     └── Selector
-        ├── Sequence: rules        OR over the leaves, then the ranker if a good candidate was found
-        ├── Sequence: substitution the transform, then the same
-        ├── Sequence: square and add
-        └── take what there is     the ranker, whatever the candidates
+        ├── Sequence: rules            OR over the leaves, then the ranker if a good candidate was found
+        ├── Sequence: square and add   the transform, then the same
+        └── take what there is         the ranker, whatever the candidates
 
 Nodes read and write a `Session`; this module is the only one that knows py_trees. Its `Parallel` fails
 as soon as one child fails, so the paper's "OR" (tick all, succeed if any did) is a composite of our own.
@@ -29,7 +28,7 @@ from ikgen.errors import PlugInError
 from ikgen.plugins import plug_ins
 from ikgen.solver.leaves import Leaf
 from ikgen.solver.session import Session
-from ikgen.solver.transforms import square_and_add, substitution
+from ikgen.solver.transforms import square_and_add
 
 __all__ = [
     "TREE",
@@ -105,10 +104,10 @@ def leaf_node(leaf: Leaf, session: Session) -> Action:
     return Action(leaf.name, session, act)
 
 
-def _transform(transform: Transform, *, keep: bool) -> Callable[[Session], tuple[bool, str]]:
+def _transform(transform: Transform) -> Callable[[Session], tuple[bool, str]]:
     def act(session: Session) -> tuple[bool, str]:
         made = transform(session.equations, session.knowledge)
-        session.new_equations(made, keep=keep)
+        session.new_equations(made)
         return bool(made), f"{len(made)} new equations"
 
     return act
@@ -138,12 +137,10 @@ def build_tree(session: Session, leaves: Sequence[Leaf]) -> Behaviour:
     """The tree that solves one unknown a tick."""
     root = py_trees.composites.Sequence("solve one unknown", memory=False)
     ways = py_trees.composites.Selector("ways", memory=False)
-    replace = Action("substitution", session, _transform(substitution.apply, keep=True))
-    square = Action("square and add", session, _transform(square_and_add.apply, keep=False))
+    square = Action("square and add", session, _transform(square_and_add.apply))
     ways.add_children(
         [
             _attempt("rules", session, leaves, []),
-            _attempt("after substitution", session, leaves, [replace]),
             _attempt("after square and add", session, leaves, [square]),
             Action("take what there is", session, partial(choose, anything=True)),
         ]

@@ -115,9 +115,9 @@ class Session:
                 out.append(p)
         self.equations = out
 
-    def new_equations(self, made: list[PolynomialEquation], *, keep: bool) -> None:
-        """Equations that a transform made, beside the round's own or in their place."""
-        self.equations = [*self.equations, *made] if keep else made
+    def new_equations(self, made: list[PolynomialEquation]) -> None:
+        """Equations that a transform made, in place of the round's own."""
+        self.equations = made
 
     @property
     def unknowns(self) -> list[Variable]:

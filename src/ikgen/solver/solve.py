@@ -52,7 +52,8 @@ def solve_chain(
     session.start()
     root = (tree or the_tree()).build(session, all_leaves() if leaves is None else leaves)
     while session.open_joints:
-        if not tick(root, session):
+        solved = len(session.steps)
+        if not tick(root, session) or len(session.steps) == solved:
             break
         if progress is not None:
             progress(session.steps[-1].candidate.unknown.text)
