@@ -27,7 +27,8 @@ FACTS = ("derive", "solve", "batch", "cpp")
 class Difference:
     """One arm. `lost`, `gained`: rows at poses whose sets differ; `poses`: how many those are, `regular`:
     of them those whose rows are all regular; `statuses`: poses with another status, with or without
-    limits; `largest`: the largest distance of rows taken as the same; `state`: what else is to be said."""
+    limits; `largest`: the largest distance of rows taken as the same; `state`: what else differs; `note`:
+    what does not count as a difference."""
 
     key: str
     compared: int = 0
@@ -38,6 +39,7 @@ class Difference:
     statuses: int = 0
     largest: float = 0.0
     state: str = ""
+    note: str = ""
 
     @property
     def same(self) -> bool:
@@ -54,6 +56,8 @@ def same_to(sigma: Array) -> Array:
 def compare(old: ArmRecord, new: ArmRecord) -> Difference:
     """Rows as sets modulo whole turns, pose by pose. Flagged rows stand for a continuum each and are
     compared by their number alone."""
+    if new.solved and not old.solved:
+        return Difference(old.key, note="solved now, and not before")
     if old.solved != new.solved:
         return Difference(old.key, state=f"exit code {old.facts['code']} -> {new.facts['code']}")
     if not old.solved:

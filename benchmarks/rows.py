@@ -10,7 +10,7 @@ poses each time: half of them random, a quarter with joints at multiples of 45 d
 one joint 10^-1 to 10^-10 beside a right angle. `--poses-of` takes poses and held joints of an earlier
 record, without which two records may differ by the last digits of their poses. `compare` exits with 1
 where an arm differs: in rows (as sets, to 1e-9; closer to a singularity to what the last digits of a
-pose move), statuses, or in whether it is solved.
+pose move), statuses, or in that it is no longer solved.
 """
 
 from __future__ import annotations
@@ -71,6 +71,8 @@ def report(options: argparse.Namespace) -> int:
     found = [compare(old[key], new[key]) for key in both]
     found += [Difference(key, state="only in one record") for key in old.keys() ^ new.keys()]
     for d in found:
+        if d.note:
+            print(f"{d.key:44} {d.note}")
         if not d.same:
             print(
                 f"{d.key:44} {d.poses:3} of {d.compared} poses ({d.regular} regular): {d.lost} rows lost, "

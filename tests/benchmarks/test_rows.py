@@ -83,6 +83,7 @@ def test_an_arm_that_is_no_longer_solved_is_a_difference() -> None:
     gone = ArmRecord("corpus/some", "some", {"code": 3})
     assert not compare(record(), gone).same
     assert compare(gone, replace(gone)).same
+    assert compare(gone, record()).same and compare(gone, record()).note
 
 
 def test_recorded_and_compared(
