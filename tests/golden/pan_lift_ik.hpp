@@ -637,7 +637,7 @@ template <class Arm> struct SolutionRows {
   static bool place(double* q, const Options& options) noexcept {
     const double* seed = options.seed ? options.seed->data() : nullptr;
     for (int j = 0; j < Arm::kDof; ++j) {
-      const double low = Arm::kLower[j] - Policy::kLimitTolerance, high = Arm::kUpper[j] + Policy::kLimitTolerance;
+      const double low = Arm::kLower.data()[j] - Policy::kLimitTolerance, high = Arm::kUpper.data()[j] + Policy::kLimitTolerance;
       if (Arm::kRevolute[j] && !Arm::kHeld[j]) {
         q[j] += q[j] <= -kPi ? kTurn : q[j] > kPi ? -kTurn : 0.0;
         double shift = seed ? kTurn * std::nearbyint((seed[j] - q[j]) / kTurn) : 0.0;
@@ -647,7 +647,7 @@ template <class Arm> struct SolutionRows {
       }
       if (!options.limits) continue;
       if (!(low <= q[j] && q[j] <= high)) return false;
-      q[j] = std::min(std::max(q[j], Arm::kLower[j]), Arm::kUpper[j]);
+      q[j] = std::min(std::max(q[j], Arm::kLower.data()[j]), Arm::kUpper.data()[j]);
     }
     return true;
   }
