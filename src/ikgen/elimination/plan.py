@@ -6,7 +6,7 @@ the two angles next to the hidden one be raised to the second degree in Raghavan
 elimination (1990): 24 eliminations. Parallel or intersecting axes make some of them rank-deficient,
 others leave solutions that share the hidden angle; which ones is a property of the arm, hence found
 at generation time. A slide has to be the first of the loop's joints or the second: eight eliminations. With
-two slides one of the four angles is hidden.
+two slides one of the four angles is hidden; with three the rotation gives all angles.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def eliminations(turning: Turning) -> tuple[Elimination, ...]:
 def choose_plan(
     frames: Matrix, turning: Turning = _REVOLUTE, *, probes: int = 24, seed: int = 0
 ) -> EliminationPlan:
-    """The best eliminations for a chain of six joints, at most two of them slides, frames (7, 4, 4), or for
+    """The best eliminations for a chain of six joints, at most three of them slides, frames (7, 4, 4), or for
     all of a family (m, 7, 4, 4) that differs by a held joint's value (the plan then carries the first one's
     frames).
 
