@@ -19,8 +19,8 @@ _MOST_SLIDES = 3
 
 
 def elimination_plan(dh: DHChain) -> EliminationPlan | None:
-    """The plan for a whole pose; None unless six joints move, at most three of them slides, or where no plan
-    finds all."""
+    """The plan for a whole pose; None unless six joints move, at most three of them slides, or
+    where no plan finds all."""
     moving = [row for row in dh.rows if dh.joints[row.driver].name not in dh.free]
     turning = tuple(row.revolute for row in moving)
     if len(moving) != 6 or len(dh.rows) != dh.dof or turning.count(False) > _MOST_SLIDES:

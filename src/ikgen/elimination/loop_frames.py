@@ -42,19 +42,19 @@ def typical_length(frames: Matrix) -> float:
     return size if size > 1e-9 else 1.0
 
 
-def forward(frames: Matrix, turning: Sequence[bool], values: Matrix) -> Matrix:
-    """Pose (4, 4) at the joint values (n,) in rad or m, of joints that are `turning` or slide."""
+def forward(frames: Matrix, values: Matrix, turning: Sequence[bool] | None = None) -> Matrix:
+    """Pose (4, 4) at the joint values (n,), rad or m; `turning` (None: all) tells joints that slide."""
     T = frames[0]
-    for frame, turns, value in zip(frames[1:], turning, values, strict=True):
+    for frame, turns, value in zip(frames[1:], _kinds(values, turning), values, strict=True):
         T = T @ z_motion(turns, value) @ frame
     return np.asarray(T)
 
 
-def jacobian(frames: Matrix, turning: Sequence[bool], values: Matrix) -> Matrix:
+def jacobian(frames: Matrix, values: Matrix, turning: Sequence[bool] | None = None) -> Matrix:
     """Geometric Jacobian (6, n) at the values (n,): linear rows over the typical length, then
     angular; of slides by their value over that length."""
     axes, T = [], frames[0]
-    for frame, turns, value in zip(frames[1:], turning, values, strict=True):
+    for frame, turns, value in zip(frames[1:], _kinds(values, turning), values, strict=True):
         axes.append((turns, T[:3, 2], T[:3, 3]))
         T = T @ z_motion(turns, value) @ frame
     scale = typical_length(frames)
@@ -63,3 +63,7 @@ def jacobian(frames: Matrix, turning: Sequence[bool], values: Matrix) -> Matrix:
         for turns, z, p in axes
     ]
     return np.asarray(np.array(columns).T)
+
+
+def _kinds(values: Matrix, turning: Sequence[bool] | None) -> Sequence[bool]:
+    return (True,) * len(values) if turning is None else turning

@@ -71,9 +71,9 @@ def eliminations(turning: Turning) -> tuple[Elimination, ...]:
 def choose_plan(
     frames: Matrix, turning: Turning = _REVOLUTE, *, probes: int = 24, seed: int = 0
 ) -> EliminationPlan:
-    """The best eliminations for a chain of six joints, at most three of them slides, frames (7, 4, 4), or for
-    all of a family (m, 7, 4, 4) that differs by a held joint's value (the plan then carries the first one's
-    frames).
+    """The best eliminations for a chain of six joints, at most three of them slides, frames
+    (7, 4, 4), or for all of a family (m, 7, 4, 4) that differs by a held joint's value (the plan
+    then carries the first one's frames).
 
     Raises ValueError for other shapes.
     """
@@ -127,7 +127,7 @@ class _Probe:
 def _probe(frames: Matrix, turning: Turning, count: int, rng: np.random.Generator) -> _Probe:
     length, plans = typical_length(frames), eliminations(turning)
     q = _configurations(frames, turning, count, rng)
-    poses = np.array([forward(frames, turning, row) for row in q])
+    poses = np.array([forward(frames, row, turning) for row in q])
     if not len(poses):  # singular everywhere: two axes on one line, or four that keep parallel
         hits = np.zeros((len(plans), 0), dtype=bool)
         return _Probe(hits, np.zeros(len(plans)), np.ones(len(RESULTANTS)))
@@ -169,7 +169,7 @@ def _configurations(
     many. Slides are drawn within the typical length."""
     reach = np.where(turning, np.pi, typical_length(frames))
     drawn = rng.uniform(-reach, reach, (12 * count, 6))
-    slopes = [jacobian(frames, turning, q) for q in drawn]
+    slopes = [jacobian(frames, q, turning) for q in drawn]
     size = np.array([np.linalg.svd(J, compute_uv=False)[-1] for J in slopes])
     regular = np.nonzero(size > _REGULAR)[0]
     hard = regular[np.argsort(size[regular])][: count // 2]

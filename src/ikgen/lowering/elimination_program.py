@@ -1,4 +1,4 @@
-"""The Program of an arm that only an elimination solves: one call, as many branches as its polynomial has roots."""
+"""The Program of an arm that only an elimination solves: one call, a branch for each root."""
 
 from __future__ import annotations
 

@@ -42,8 +42,8 @@ _SIX = range(6)
 
 @dataclass(frozen=True)
 class Plan:
-    """How an arm is solved: its typical `length` (m), the `eliminations` that suit it, in order of preference,
-    and the function that finds candidates by one of them."""
+    """How an arm is solved: its typical `length` (m), the `eliminations` that suit it, in order of
+    preference, and the function that finds candidates by one of them."""
 
     length: float
     eliminations: tuple[Elimination, ...]

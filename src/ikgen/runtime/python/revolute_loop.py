@@ -16,8 +16,8 @@ __all__ = ["RevoluteLoop", "displacement", "revolute_loop", "slide_lengths"]
 @dataclass(frozen=True)
 class RevoluteLoop:
     """The loop `R_1 K_1 ... R_r K_r = 1` of r revolute joints, for n poses: rotations K (r, n, 3, 3) and
-    displacements k (r, n, 3) behind each joint; the directions u (6 - r, n, 3) of the slides, each behind the
-    revolute joint of that number `at` (from 0)."""
+    displacements k (r, n, 3) behind each joint; the directions u (6 - r, n, 3) of the slides, each behind
+    the revolute joint of that number `at` (from 0)."""
 
     K: Array
     k: Array

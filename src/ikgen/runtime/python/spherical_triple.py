@@ -1,4 +1,4 @@
-"""Three angles of which the rotation is given, `R_1 K_1 R_2 K_2 R_3 = M`: two solutions, complex ones too."""
+"""Three angles whose rotation is given, `R_1 K_1 R_2 K_2 R_3 = M`: two solutions, complex ones too."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ def turns_z(c: Complex, s: Complex) -> Complex:
 def spherical_triple(K: Array, M: Array) -> tuple[Array, Complex, Complex]:
     """Cosines and sines (2, 3, n) for K (2, n, 3, 3) and M (n, 3, 3), and their divisor h (n,).
 
-    The cosine m between the outer axes, an entry of M, gives that of the angle in the middle. Those beside it
-    turn one vector into another; h = 1 - m^2, the square of the vector's part that turns.
+    The cosine m between the outer axes, an entry of M, gives that of the angle in the middle. Those beside
+    it turn one vector into another; h = 1 - m^2, the square of the vector's part that turns.
     """
     m = M[:, 2, 2]
     h = 1.0 - m * m

@@ -1,11 +1,11 @@
 """Approximate solutions of four revolute joints and two slides: a trigonometric polynomial of degree 4.
 
 Slides leave rotations alone: those of the four revolute joints close a spherical quadrilateral. One angle
-hidden, the opposite one has two values, from the cosine, and the two between follow. The lengths of the slides
-are eliminated by the triple product g of their directions and of the loop's displacement without them. It is
-linear in the angles beside the hidden one, whose cosines and sines have the divisor h = 1 - m^2, m the cosine
-between the axes beside it; so `g_+ g_- h`, over both values, has degree 4 in the hidden angle: the eight
-solutions that Raghavan and Roth (1993) count, and none that is extraneous.
+hidden, the opposite one has two values, from the cosine, and the two between follow. The lengths of the
+slides are eliminated by the triple product g of their directions and of the loop's displacement without
+them. It is linear in the angles beside the hidden one, whose cosines and sines have the divisor h = 1 - m^2,
+m the cosine between the axes beside it; so `g_+ g_- h`, over both values, has degree 4 in the hidden angle:
+the eight solutions that Raghavan and Roth (1993) count, and none that is extraneous.
 """
 
 from __future__ import annotations
@@ -83,8 +83,8 @@ def _polynomial(loop: RevoluteLoop, count: int) -> tuple[Array, Array]:
 
 
 def _roots(value: Array, offset: Array) -> tuple[Complex, Array]:
-    """Eigenvalues t (n, 8), and the angle a (n,) for which hidden angles are `a + 2 atan(t)`: opposite to the
-    node where the polynomial is largest, so that this is the leading coefficient."""
+    """Eigenvalues t (n, 8), and the angle a (n,) for which hidden angles are `a + 2 atan(t)`: opposite to
+    the node where the polynomial is largest, so that this is the leading coefficient."""
     spectrum = np.fft.fft(value, axis=1)[:, _HARMONICS] / _COUNT
     opposite = (np.abs(value).argmax(axis=1) + _COUNT // 2) % _COUNT
     spectrum = spectrum * np.exp(1j * _NODES[opposite][:, None] * _HARMONICS)
@@ -93,12 +93,12 @@ def _roots(value: Array, offset: Array) -> tuple[Complex, Array]:
     companion = np.zeros((len(value), 8, 8))
     companion[:, 1:, :-1] = np.eye(7)
     companion[:, :, -1] = -powers[:, :-1] / lead
-    return np.linalg.eigvals(companion) + 0j, offset + _NODES[opposite]
+    return np.asarray(np.linalg.eigvals(companion), dtype=complex), offset + _NODES[opposite]
 
 
 def two_slide_candidates(F: Array, T: Array, plan: Elimination, turning: Turning) -> Candidates:
-    """As `candidates`, of a chain with two joints that are not `turning`; the plan begins at the angle that is
-    hidden."""
+    """As `candidates`, of a chain with two joints that are not `turning`; the plan begins at the angle that
+    is hidden."""
     order, C = loop_constants(F, T, *plan[:2])
     turns = [turning[j] for j in order]
     loop = revolute_loop(C, turns, len(T))
