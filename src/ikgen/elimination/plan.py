@@ -92,7 +92,7 @@ def choose_plan(
     first.setflags(write=False)
     return EliminationPlan(
         frames=first,
-        length=typical_length(first),
+        length=typical_length(first, turning),
         eliminations=tuple(eliminations(turning)[k] for k in order),
         recall=float(hits[order[0]].mean()) if hits.size else 0.0,
         resultants=tuple(RESULTANTS[k] for k in np.argsort(shifts)[:_KEPT] if shifts[k] < _BLURRED),
@@ -125,7 +125,7 @@ class _Probe:
 
 
 def _probe(frames: Matrix, turning: Turning, count: int, rng: np.random.Generator) -> _Probe:
-    length, plans = typical_length(frames), eliminations(turning)
+    length, plans = typical_length(frames, turning), eliminations(turning)
     q = _configurations(frames, turning, count, rng)
     poses = np.array([forward(frames, row, turning) for row in q])
     if not len(poses):  # singular everywhere: two axes on one line, or four that keep parallel
@@ -167,7 +167,7 @@ def _configurations(
 ) -> list[Matrix]:
     """Regular configurations (count, 6): half at random, half the nearest to singular ones of
     many. Slides are drawn within the typical length."""
-    reach = np.where(turning, np.pi, typical_length(frames))
+    reach = np.where(turning, np.pi, typical_length(frames, turning))
     drawn = rng.uniform(-reach, reach, (12 * count, 6))
     slopes = [jacobian(frames, q, turning) for q in drawn]
     size = np.array([np.linalg.svd(J, compute_uv=False)[-1] for J in slopes])

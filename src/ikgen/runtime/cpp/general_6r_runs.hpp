@@ -15,6 +15,8 @@ namespace ikgen_runtime {
 
 namespace g6 {
 
+inline constexpr double kFarthest = 1e4;  // of a slide, in arm lengths: beyond are those that become parallel
+
 inline Solution solution_of(const Turning& turning, const Vector& q) noexcept {
   Solution out;
   for (Index i = 0; i < 6; ++i) {
@@ -28,8 +30,10 @@ inline Solution solution_of(const Turning& turning, const Vector& q) noexcept {
 // Adds a candidate of a run if it can be refined; one that is far off shows that the run's roots are not all sharp.
 inline void add_refined(const Chain& F, const Frame& T, const Turning& turning, Vector q, Spectrum& roots,
                         Solutions& out) noexcept {
-  double before = 0.0;
-  if (refine_one(F, T, turning, q, before) < kVerified) keep(solution_of(turning, q), out);
+  double before = 0.0, farthest = 0.0;
+  const bool arrived = refine_one(F, T, turning, q, before) < kVerified;
+  for (Index i = 0; i < 6; ++i) farthest = std::max(farthest, turning[i] ? 0.0 : std::abs(q[i]));
+  if (arrived && farthest < kFarthest) keep(solution_of(turning, q), out);
   if (!(before <= 1e-5)) roots.simple = false;
 }
 
@@ -46,9 +50,9 @@ inline Frame displacement() noexcept {
 }
 
 // Adds all solutions of a pose to those that are known: `run` gives those of a plan, with the roots of the pose
-// `aim` beside. One run of the first plan is enough where its roots are
-// real, apart and each a solution to many digits. Otherwise more runs follow, with the pose displaced to either side
-// and by the next elimination, until one finds all that is known and no more.
+// `aim` beside. One run of the first plan is enough where its roots are real, apart and each a solution to many
+// digits. Otherwise more runs follow, with the pose displaced to either side and by the next elimination, until one
+// finds all that is known and no more.
 template <std::size_t N, class Run>
 inline void solve_in_runs(const Frame& T, const std::array<std::array<int, 3>, N>& plans, const Run& run,
                           Solutions& out) noexcept {

@@ -1,5 +1,7 @@
-"""Approximate solutions of three revolute joints and three slides: the rotation gives the angles, the position
-the lengths, linearly."""
+"""Approximate solutions of three revolute joints and three slides.
+
+The rotation gives the angles, the position the lengths, linearly.
+"""
 
 from __future__ import annotations
 

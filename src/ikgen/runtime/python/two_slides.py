@@ -3,9 +3,9 @@
 Slides leave rotations alone: those of the four revolute joints close a spherical quadrilateral. One angle
 hidden, the opposite one has two values, from the cosine, and the two between follow. The lengths of the
 slides are eliminated by the triple product g of their directions and of the loop's displacement without
-them. It is linear in the angles beside the hidden one, whose cosines and sines have the divisor h = 1 - m^2,
-m the cosine between the axes beside it; so `g_+ g_- h`, over both values, has degree 4 in the hidden angle:
-the eight solutions that Raghavan and Roth (1993) count, and none that is extraneous.
+them. It is linear in the angles beside the hidden one, whose cosines and sines have the divisor
+h = 1 - m^2, m the cosine between the axes beside it; so `g_+ g_- h`, over both values, has degree 4: the
+eight solutions that Raghavan and Roth (1993) count, and none that is extraneous.
 """
 
 from __future__ import annotations
