@@ -12,6 +12,7 @@ from ikgen.library.load_arguments import checked_count, checked_flag, checked_re
 from ikgen.library.solver_cache import SolverCache, SolverEntry
 
 if TYPE_CHECKING:
+    from ikgen.emit.derivation import Derivation
     from ikgen.generation.request import Request
     from ikgen.library.loaded_arm import Arm
 
@@ -73,7 +74,7 @@ def load(
     return arm
 
 
-def _made(request: Request, outputs: Outputs, progress: Progress) -> tuple[SolverEntry, object]:
+def _made(request: Request, outputs: Outputs, progress: Progress) -> tuple[SolverEntry, Derivation]:
     """The solver of a request, made now."""
     from ikgen.generation.emitters import find_emitter
     from ikgen.generation.generate import make_texts

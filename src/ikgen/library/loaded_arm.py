@@ -235,6 +235,5 @@ class Arm:
         )
 
     def _repr_html_(self) -> str:
-        from ikgen.library.arm_card import card
-
-        return card(self)
+        """What a notebook shows."""
+        return self._entry.card

@@ -41,10 +41,13 @@ class SolverEntry:
     passed_over: tuple[str, ...] = ()
     refused: tuple[tuple[str, ...], ...] = ()
     warnings: tuple[str, ...] = ()
+    card: str = ""
 
     @classmethod
     def of(cls, made: Made) -> SolverEntry:
         """The solver that was just made."""
+        from ikgen.library.arm_card import card
+
         derivation = made.derivation
         (text,) = made.texts["python"].values()
         return cls(
@@ -55,6 +58,7 @@ class SolverEntry:
             made.passed_over,
             () if derivation.held is None else derivation.held.refused,
             derivation.reading.source.warnings,
+            card(derivation, made.reports.get("python")),
         )
 
 
@@ -115,6 +119,7 @@ def _entry(data: dict[str, Any]) -> SolverEntry:
         tuple(data["passed_over"]),
         tuple(tuple(names) for names in refused),
         tuple(data["warnings"]),
+        data["card"],
     )
 
 
