@@ -52,26 +52,29 @@ def load(
     a file that cannot be read, `UnsolvedChainError` where there is no closed form, `VerificationError`
     where a check fails.
     """
-    from ikgen.library.loaded_arm import Arm
-
     request = checked_request(
         robot, base=base, tip=tip, task=task, free=free, lock=lock, args=args,
-        package_paths=package_paths, name=name, trust=checked_flag("trust", trust),
+        package_paths=package_paths, name=name, trust=trust,
     )  # fmt: skip
     outputs = Outputs(
         samples=checked_count("samples", samples), verify=checked_flag("verify", verify)
     )
     store = SolverCache.default() if checked_flag("cache", cache) else None
-    key = None if store is None else store.key(request, outputs)
-    entry = None if store is None or key is None else store.read(key)
+    return _arm(request, outputs, store, progress)
+
+
+def _arm(request: Request, outputs: Outputs, store: SolverCache | None, progress: Progress) -> Arm:
+    """The arm of a request, from the cache where it has it."""
+    from ikgen.library.loaded_arm import Arm
+
+    key = "" if store is None else store.key(request, outputs)
+    entry = None if store is None else store.read(key)
     if entry is not None:
         return Arm(request, outputs, entry)
     entry, derivation = _made(request, outputs, progress)
-    if store is not None and key is not None:
+    if store is not None:
         store.write(key, entry)
-    arm = Arm(request, outputs, entry)
-    arm.remember(derivation)
-    return arm
+    return Arm(request, outputs, entry, derivation)
 
 
 def _made(request: Request, outputs: Outputs, progress: Progress) -> tuple[SolverEntry, Derivation]:

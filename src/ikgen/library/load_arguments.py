@@ -26,7 +26,7 @@ def checked_request(
     args: object,
     package_paths: object,
     name: object,
-    trust: bool,
+    trust: object,
 ) -> Request:
     """The request that the arguments make; raises `ArgumentError` that names the wrong one."""
     file = _robot(robot)
@@ -44,7 +44,7 @@ def checked_request(
         args=_xacro_arguments(args),
         package_paths=_folders(package_paths),
         name=_name(name),
-        trust=trust,
+        trust=checked_flag("trust", trust),
     )
     _refuse_for_tables(request)
     return request

@@ -36,12 +36,15 @@ class Arm:
     Functions raise `ArgumentError` for arguments that do not do.
     """
 
-    def __init__(self, request: Request, outputs: Outputs, entry: SolverEntry) -> None:
+    def __init__(
+        self,
+        request: Request,
+        outputs: Outputs,
+        entry: SolverEntry,
+        derivation: Derivation | None = None,
+    ) -> None:
+        """`derivation` is that of the solver where it was just made; else it is made when asked for."""
         self._request, self._outputs, self._entry = request, outputs, entry
-        self._derived: Derivation | None = None
-
-    def remember(self, derivation: Derivation) -> None:
-        """Take the derivation that the solver was just made by, which is else made when asked for."""
         self._derived = derivation
 
     @property
