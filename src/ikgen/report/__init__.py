@@ -38,7 +38,8 @@ def emit_report(
     page = _Page(derivation.reading, derivation.geometry, derivation.task, graph, module.name)
     eliminated = bool(graph.open_joints)
     blocks = page.opening(f"At most {module.max_solutions} solutions a pose.")
-    blocks += elimination_section() if eliminated else [*page.steps(), *page.results()]
+    slides = module.plan.turning.count(False) if module.plan else 0
+    blocks += elimination_section(slides) if eliminated else [*page.steps(), *page.results()]
     blocks += behavior_section(graph)
     blocks += verification_section(reports or {})
     return page.texts(blocks, module.source_name)
