@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.rigid import z_motion
 from ikgen.model.dh import DHChain
 from ikgen.model.joint_tree import Matrix
@@ -30,7 +31,7 @@ def held_frames(dh: DHChain, value: float = 0.0) -> Matrix:
 def hold_joint(frames: Matrix, joint: int, value: float, *, revolute: bool = True) -> Matrix:
     """The chain (n, 4, 4) that is left of (n + 1, 4, 4) with joint `joint` (0-based) held at
     `value` rad or m."""
-    merged = frames[joint] @ z_motion(revolute, value) @ frames[joint + 1]
+    merged = product(frames[joint], z_motion(revolute, value), frames[joint + 1])
     return np.concatenate([frames[:joint], merged[None], frames[joint + 2 :]])
 
 
@@ -43,7 +44,7 @@ def forward(frames: Matrix, angles: Matrix) -> Matrix:
     """Pose (4, 4) at the joint angles (n,) in rad."""
     T = frames[0]
     for frame, angle in zip(frames[1:], angles, strict=True):
-        T = T @ z_motion(True, angle) @ frame
+        T = product(T, z_motion(True, angle), frame)
     return np.asarray(T)
 
 
@@ -53,7 +54,7 @@ def jacobian(frames: Matrix, angles: Matrix) -> Matrix:
     axes, T = [], frames[0]
     for frame, angle in zip(frames[1:], angles, strict=True):
         axes.append((T[:3, 2], T[:3, 3]))
-        T = T @ z_motion(True, angle) @ frame
+        T = product(T, z_motion(True, angle), frame)
     scale = typical_length(frames)
     columns = [np.r_[np.cross(z, T[:3, 3] - p) / scale, z] for z, p in axes]
     return np.asarray(np.array(columns).T)

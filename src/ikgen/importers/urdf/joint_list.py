@@ -17,6 +17,7 @@ from ikgen.importers.urdf.attribute_values import BadValueError
 from ikgen.importers.urdf.joint_element import clean_joint, required_attribute
 from ikgen.importers.urdf.joint_limits import joint_limits
 from ikgen.importers.xml_document import Element, Place, children
+from ikgen.kinematics.fixed_order import length
 from ikgen.kinematics.rigid import read_only
 from ikgen.model.joint_tree import Joint, JointType, Mimic
 
@@ -104,7 +105,7 @@ def _joint(parsed: Any, element: Element, place: Place) -> Joint:
         parent=parsed.parent,
         child=parsed.child,
         T_parent_child=read_only(np.eye(4) if parsed.origin is None else parsed.origin),
-        axis=read_only(parsed.axis / np.linalg.norm(parsed.axis)),
+        axis=read_only(parsed.axis / length(parsed.axis)),
         limits=limits,
         mimic=None if mimic is None else Mimic(mimic.joint, mimic.multiplier, mimic.offset),
         line=element.sourceline,
