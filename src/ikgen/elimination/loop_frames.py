@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.rigid import z_motion
 from ikgen.model.dh import DHChain
 from ikgen.model.joint_tree import Matrix
@@ -33,7 +34,7 @@ def held_frames(dh: DHChain, value: float = 0.0) -> Matrix:
 def hold_joint(frames: Matrix, joint: int, value: float, *, revolute: bool = True) -> Matrix:
     """The chain (n, 4, 4) that is left of (n + 1, 4, 4) with joint `joint` (0-based) held at
     `value` rad or m."""
-    merged = frames[joint] @ z_motion(revolute, value) @ frames[joint + 1]
+    merged = product(frames[joint], z_motion(revolute, value), frames[joint + 1])
     return np.concatenate([frames[:joint], merged[None], frames[joint + 2 :]])
 
 
@@ -48,7 +49,7 @@ def forward(frames: Matrix, values: Matrix, turning: Sequence[bool] | None = Non
     """Pose (4, 4) at the joint values (n,), rad or m; `turning` (None: all) tells joints that slide."""
     T = frames[0]
     for frame, turns, value in zip(frames[1:], _kinds(values, turning), values, strict=True):
-        T = T @ z_motion(turns, value) @ frame
+        T = product(T, z_motion(turns, value), frame)
     return np.asarray(T)
 
 
@@ -58,7 +59,7 @@ def jacobian(frames: Matrix, values: Matrix, turning: Sequence[bool] | None = No
     axes, T = [], frames[0]
     for frame, turns, value in zip(frames[1:], _kinds(values, turning), values, strict=True):
         axes.append((turns, T[:3, 2], T[:3, 3]))
-        T = T @ z_motion(turns, value) @ frame
+        T = product(T, z_motion(turns, value), frame)
     scale = typical_length(frames, turning)
     columns = [
         np.r_[np.cross(z, T[:3, 3] - p) / scale, z] if turns else np.r_[z, 0.0, 0.0, 0.0]
