@@ -30,6 +30,7 @@ __all__ = ["two_slide_candidates"]
 _COUNT = 16
 _NODES = 2.0 * np.pi / _COUNT * np.arange(_COUNT)
 _OFFSETS = np.array([0.1, 0.19, 0.28, 0.37])  # rad, of the nodes: one where no divisor is small
+_WELL = 1e-3  # divisors above it need no other nodes
 _DEGREE = 4
 _HARMONICS = np.arange(-_DEGREE, _DEGREE + 1)
 
@@ -72,12 +73,12 @@ def _polynomial(loop: RevoluteLoop, count: int) -> tuple[Array, Array]:
         h, c, s = _others(rows, np.tile(_NODES + shift, count))
         g = _product(*displacement(rows, c, s))
         least = np.abs(h).reshape(count, -1).min(axis=1)
-        better = least > best
+        better = (least > best) & (best <= _WELL)
         best = np.where(better, least, best)
         offset = np.where(better, shift, offset)
         product = (g[0] * g[1] * h).real.reshape(count, -1)
         value = np.where(better[:, None], product, value)
-        if (best > 1e-3).all():
+        if (best > _WELL).all():
             break
     return value, offset
 
@@ -88,7 +89,8 @@ def _roots(value: Array, offset: Array) -> tuple[Complex, Array]:
     spectrum = np.fft.fft(value, axis=1)[:, _HARMONICS] / _COUNT
     opposite = (np.abs(value).argmax(axis=1) + _COUNT // 2) % _COUNT
     spectrum = spectrum * np.exp(1j * _NODES[opposite][:, None] * _HARMONICS)
-    powers = (spectrum @ _POWERS).real
+    # not a matrix product, whose rounding hangs on the number of poses
+    powers = (spectrum[:, :, None] * _POWERS).sum(axis=1).real
     lead = np.where(powers[:, -1:] == 0.0, 1e-300, powers[:, -1:])
     companion = np.zeros((len(value), 8, 8))
     companion[:, 1:, :-1] = np.eye(7)
