@@ -32,20 +32,17 @@ def is_new(arm: Arm, row: Row, kept: Sequence[Found]) -> bool:
 
 
 def distinct(arm: Arm, q: Array, valid: Flags) -> Flags:
-    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside; long slides
-    count relative to their length."""
+    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside; long
+    slides count relative to their length."""
     near = arm.policy.coincident
     later, earlier = np.tril_indices(q.shape[1], -1)
     same = valid.T[later] & valid.T[earlier]
     for j in reversed(range(q.shape[2])):  # the last joints differ between most rows
         value = q[:, :, j].T
         gap = np.abs(value[later] - value[earlier])
-        turned = (
-            np.abs(gap - _TURN) <= near
-            if arm.chain.revolute[j]
-            else gap <= near * np.abs(value[later])
-        )
-        same &= (gap <= near) | turned
+        bound = near if arm.chain.revolute[j] else near * np.abs(value[later])
+        far = np.abs(gap - _TURN) if arm.chain.revolute[j] else gap
+        same &= (gap <= near) | (far <= bound)
         if not same.any():
             return valid
     valid = valid.copy()
