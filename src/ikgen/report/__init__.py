@@ -16,6 +16,7 @@ from ikgen.report.html import to_html
 from ikgen.report.latex import to_latex
 from ikgen.report.leftover import leftover_section
 from ikgen.report.opening import forward_section, robot_section
+from ikgen.report.proof_section import proof_section
 from ikgen.report.results import graph_section, poses_section, verification_section
 from ikgen.report.solution_sets import versions_of
 from ikgen.report.splits import splits_section
@@ -40,6 +41,7 @@ def emit_report(
     blocks = page.opening(f"At most {module.max_solutions} solutions a pose.")
     blocks += elimination_section() if eliminated else [*page.steps(), *page.results()]
     blocks += behavior_section(graph)
+    blocks += proof_section(derivation)
     blocks += verification_section(reports or {})
     return page.texts(blocks, module.source_name)
 
