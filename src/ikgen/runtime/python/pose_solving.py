@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ikgen.runtime.python.array_types import Row
+from ikgen.runtime.python.chain_kinematics import forward
 from ikgen.runtime.python.joint_arguments import held_values, seed_rows
+from ikgen.runtime.python.projection import nearest_row, off_by
 from ikgen.runtime.python.refinement import rank_loss, refine
 from ikgen.runtime.python.row_placement import is_new, place_rows
 from ikgen.runtime.python.solutions import Solutions, Status
@@ -23,8 +25,10 @@ def solve_pose(
     free: Sequence[float] | Mapping[str, float] | None,
     seed: ArrayLike | None,
     limits: bool,
+    project: bool = False,
 ) -> Solutions:
-    """All joint values that bring the tip to `pose` (4, 4); raises ValueError for bad arguments."""
+    """All joint values that bring the tip to `pose` (4, 4), or with `project` to the nearest pose that
+    the arm can take; raises ValueError for bad arguments."""
     matrix, dof = np.asarray(pose, dtype=float), len(arm.lower)
     if matrix.shape != (4, 4):
         raise ValueError(f"pose has shape {matrix.shape}, expected (4, 4)")
@@ -32,6 +36,8 @@ def solve_pose(
     held = held_values(arm, free)
     T = arm.task.read(matrix.tolist(), arm.policy)
     found, real = ([], False) if T is None else _fitting(arm, T, near, held, limits)
+    if project and T is not None and not found:
+        found = _projected(arm, T, near, held, limits)
     if not found:
         status = Status.INVALID if T is None else Status.LIMITS if real else Status.UNREACHABLE
         return Solutions(np.empty((0, dof)), status, np.empty(0, dtype=bool))
@@ -39,7 +45,20 @@ def solve_pose(
         origin = near
         found.sort(key=lambda item: sum((a - b) * (a - b) for a, b in zip(item[0], origin)))
     q = np.array([row for row, _ in found]) + 0.0
-    return Solutions(q, Status.OK, np.array([flag for _, flag in found], dtype=bool))
+    off = off_by(arm.task, forward(arm.chain, q), np.array(T)) if project else None
+    return Solutions(q, Status.OK, np.array([flag for _, flag in found], dtype=bool), off)
+
+
+def _projected(
+    arm: Arm, T: list[list[float]], near: Row | None, held: Row, limits: bool
+) -> list[Found]:
+    """Solutions of the nearest pose that the arm can take."""
+    row = nearest_row(arm, np.array(T), _start(arm, near, held, 0.0), limits)
+    pose: list[list[float]] = forward(arm.chain, row).tolist()
+    found, _ = _fitting(arm, pose, near, held, limits)
+    if len(found) < arm.most and is_new(arm, row, found):
+        found += place_rows(arm, [(row, False)], near, limits)
+    return found
 
 
 def _fitting(

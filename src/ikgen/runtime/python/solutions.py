@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 
+import numpy as np
+
 from ikgen.runtime.python.array_types import Array, Flags
 
 __all__ = ["Solutions", "Status"]
@@ -23,11 +25,18 @@ class Status(str, Enum):
 
 @dataclass(frozen=True)
 class Solutions:
-    """Solutions of one pose: `q` (k, DOF), `status`, and `singular` (k,): rows of a continuum."""
+    """Solutions of one pose: `q` (k, DOF), `status`, and `singular` (k,): rows of a continuum. `projected`
+    (k, 2), where it was asked for: m and rad by which rows miss the pose."""
 
     q: Array
     status: Status
     singular: Flags
+    projected: Array | None = None
+
+    @property
+    def off(self) -> Array:
+        """How far each row's pose is from the one asked for, (k, 2): m, rad; zeros without `project`."""
+        return np.zeros((len(self.q), 2)) if self.projected is None else self.projected
 
     def __len__(self) -> int:
         return len(self.q)
