@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import partial
-from math import atan2, ceil, floor, inf, isfinite, pi, sqrt
+from math import asin, atan2, ceil, floor, inf, isfinite, pi, sqrt
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
@@ -94,18 +94,20 @@ def solve(
     free: Sequence[float] | Mapping[str, float] | None = None,
     seed: ArrayLike | None = None,
     limits: bool = True,
+    project: bool = False,
     orthonormalize: bool = False,
 ) -> Solutions:
     """All joint values (rad, m) that bring TIP_LINK to `pose` in BASE_LINK: a matrix (4, 4) or (3, 4), a
     pair (rotation, position) or (position, quaternion x y z w), or a transform that NumPy packages have.
 
     free: values of FREE_JOINTS; seed: (DOF,) values that order the solutions by distance, choose whole
-    turns, and are taken where the pose leaves a joint free; limits: drop rows outside the limits.
+    turns, and are taken where the pose leaves a joint free; limits: drop rows outside the limits; project: of a pose
+    without rows, those of the nearest pose that the arm can take (`Solutions.off` says by how much).
     A rotation that is right to 1e-06 stands for the nearest one;
     orthonormalize: so does one that is right to 0.001.
     Raises ValueError for a wrong shape, or a seed or free value that is not finite; an unreachable pose is a status.
     """
-    return _solve_pose(_ARM, pose, free, seed, limits, orthonormalize)
+    return _solve_pose(_ARM, pose, free, seed, limits, project, orthonormalize)
 
 
 def solve_batch(
@@ -314,18 +316,48 @@ class _Policy:
     refinement: tuple[tuple[int, float, float], ...]  # steps; errors between which more follow
 
 
+# Differences of single entries of poses, and their derivatives by the joints.
+
+
+_Entries = tuple[tuple[int, int], ...]  # row and column of each; column 3 is the position
+
+
+def _entry_errors(entries: _Entries, weight: Array, pose: Array, T: Array) -> Array:
+    """What poses (k, 4, 4) are off T (k, 4, 4), times the weights: (k, entries)."""
+    row, column = zip(*entries)
+    return np.asarray((T[:, row, column] - pose[:, row, column]) * weight)
+
+
+def _entry_rows(entries: _Entries, weight: Array, pose: Array, J: Array) -> Array:
+    """The entries' derivatives (k, entries, dof) at poses (k, 4, 4), by their Jacobians (k, 6, dof)."""
+    out = np.empty((len(pose), len(entries), J.shape[2]))
+    for i, (r, c) in enumerate(entries):
+        if c == 3:
+            out[:, i] = J[:, r]
+        else:
+            out[:, i] = _cross(J[:, 3:].transpose(0, 2, 1), pose[:, None, :3, c])[:, :, r]
+    return out * weight[:, None]
+
+
 # What of a pose counts.
 
 
 class _Task(Protocol):
-    """How poses are read and compared. `unit`: columns of the rotation that are read, unit vectors at right
-    angles; `alone`: "rotation" or "position" where no other part of the pose is read, else ""."""
+    """How poses are read and compared: `entries` of them, of which the columns `unit` are unit vectors
+    at right angles; positions count over `size` (m); `alone`: "rotation" or "position" where no other
+    part of the pose is read, else ""."""
+
+    @property
+    def entries(self) -> _Entries: ...
 
     @property
     def unit(self) -> tuple[int, ...]: ...
 
     @property
     def alone(self) -> str: ...
+
+    @property
+    def size(self) -> float: ...
 
     def read(self, T: list[list[float]], policy: _Policy) -> list[list[float]] | None:
         """The pose that nested lists stand for, its rotation the nearest one; None for no pose."""
@@ -635,6 +667,113 @@ def _branch_numbers(arm: _Arm, q: Array) -> list[int]:
     return nearest
 
 
+# The nearest pose that the arm can take, of one that it cannot.
+
+
+_STARTS = 128  # drawn; the best of them are followed
+_FOLLOWED = 16
+_STEPS = 80
+_LEAST, _FIRST, _MOST = 1e-10, 1e-3, 1e10  # damping of a step
+_LONGEST = 0.5  # rad or m: step of a joint
+
+
+def _nearest_row(arm: _Arm, T: Array, start: Row, limits: bool) -> Row:
+    """The joint values whose pose is nearest to T (4, 4), held joints as in `start`."""
+    low, high = _bounds(arm, limits)
+    q = np.vstack([np.clip(start, low, high), _starts(arm, low, high)])
+    q[:, list(arm.free)] = [start[j] for j in arm.free]
+    cost = (_chords(arm.task, _forward(arm.chain, q), T) ** 2).sum(axis=1)
+    q, cost = _descend(arm, T, q[np.argsort(cost, kind="stable")[:_FOLLOWED]], (low, high))
+    best: Row = tuple(q[int(np.argmin(cost))].tolist())
+    return best
+
+
+def _off_by(task: _Task, pose: Array, T: Array) -> Array:
+    """How far poses (k, 4, 4) are from T (4, 4): (k, 2), m and rad."""
+    error = _chords(task, pose, T)
+    length = np.array([c == 3 for _, c in task.entries])
+    off = np.empty((len(pose), 2))
+    off[:, 0] = np.sqrt((error[:, length] ** 2).sum(axis=1)) * task.size
+    if task.unit:
+        chord = np.sqrt((error[:, ~length] ** 2).sum(axis=1))
+        off[:, 1] = 2.0 * np.arcsin(np.minimum(0.5 * chord, 1.0))
+    else:  # single entries are sines of angles to the base's planes
+        gaps = [
+            np.arcsin(pose[:, r, c].clip(-1.0, 1.0)) - asin(T[r, c])
+            for r, c in task.entries
+            if c < 3
+        ]
+        off[:, 1] = np.sqrt(sum(gap**2 for gap in gaps))
+    return off
+
+
+def _weight(task: _Task) -> Array:
+    """Of each entry: a turn by x moves the nine of a rotation by sqrt(8) sin(x / 2)."""
+    turn = sqrt(0.5) if len(task.unit) == 3 else 1.0
+    return np.array([1.0 / task.size if c == 3 else turn for _, c in task.entries])
+
+
+def _chords(task: _Task, pose: Array, T: Array) -> Array:
+    """What poses (k, 4, 4) are off T (4, 4): (k, entries)."""
+    return _entry_errors(task.entries, _weight(task), pose, np.broadcast_to(T, pose.shape))
+
+
+def _bounds(arm: _Arm, limits: bool) -> tuple[Array, Array]:
+    """Where steps are clipped to."""
+    low, high = np.array(arm.lower), np.array(arm.upper)
+    return (low, high) if limits else (np.full(len(low), -inf), np.full(len(low), inf))
+
+
+def _starts(arm: _Arm, low: Array, high: Array) -> Array:
+    """Configurations (n, dof) that fill the limits evenly: Kronecker's sequence by powers of the root of
+    `x^(dof + 1) = x + 1` (Roberts 2018)."""
+    dof = len(low)
+    root = 2.0
+    for _ in range(40):
+        root = (1.0 + root) ** (1.0 / (dof + 1))
+    steps = (1.0 / root) ** np.arange(1, dof + 1)
+    part = (0.5 + np.arange(1, _STARTS + 1)[:, None] * steps) % 1.0
+    half = np.where(arm.chain.revolute, pi, arm.task.size)
+    centre = np.clip(0.0, low + half, np.maximum(high - half, low + half))
+    least, most = np.maximum(low, centre - half), np.minimum(high, centre + half)
+    return np.asarray(least + part * (most - least))
+
+
+def _descend(arm: _Arm, T: Array, q: Array, bounds: tuple[Array, Array]) -> tuple[Array, Array]:
+    """The rows (k, dof) at the ends of the steps, and what is least there (k,)."""
+    moving, damping = list(arm.moving), np.full(len(q), _FIRST)
+    low, high = (bound[moving] for bound in bounds)
+    pose, J = _tip_and_jacobian(arm.chain, q)
+    error = _chords(arm.task, pose, T)
+    cost = (error**2).sum(axis=1)
+    for _ in range(_STEPS):
+        trial = q.copy()
+        slope = _entry_rows(arm.task.entries, _weight(arm.task), pose, J)[:, :, moving]
+        trial[:, moving] = _stepped(q[:, moving], slope, error, damping, (low, high))
+        new = (trial, *_tip_and_jacobian(arm.chain, trial))
+        errors = _chords(arm.task, new[1], T)
+        costs = (errors**2).sum(axis=1)
+        better = costs < cost
+        q[better], error[better], cost[better] = trial[better], errors[better], costs[better]
+        pose, J = (np.where(better[:, None, None], a, b) for a, b in zip(new[1:], (pose, J)))
+        damping = np.clip(damping * np.where(better, 0.2, 8.0), _LEAST, _MOST)
+        if damping.min() == _MOST:
+            break
+    return q, cost
+
+
+def _stepped(
+    q: Array, slope: Array, error: Array, damping: Array, bounds: tuple[Array, Array]
+) -> Array:
+    """The rows (k, n) after one step; joints at a limit that it would pass stay."""
+    push = np.einsum("kmj,km->kj", slope, error)
+    stuck = ((q <= bounds[0]) & (push < 0.0)) | ((q >= bounds[1]) & (push > 0.0))
+    slope = np.where(stuck[:, None], 0.0, slope)
+    normal = np.einsum("kmi,kmj->kij", slope, slope) + damping[:, None, None] * np.eye(q.shape[1])
+    step = np.linalg.solve(normal, np.where(stuck, 0.0, push)[:, :, None])[:, :, 0]
+    return np.asarray(np.clip(q + np.clip(step, -_LONGEST, _LONGEST), *bounds))
+
+
 # Newton's method on the chain: damped least squares (Levenberg 1944, Marquardt 1963).
 
 
@@ -799,7 +938,8 @@ class Status(str, Enum):
 @dataclass(frozen=True)
 class Solutions:
     """Solutions of one pose: `q` (k, DOF), `status`, and `singular` (k,): rows of a continuum; `reason`
-    says why a pose is INVALID. As a sequence: its rows."""
+    says why a pose is INVALID. As a sequence: its rows. `projected` (k, 2), where it was asked for: m and
+    rad by which rows miss the pose."""
 
     q: Array
     status: Status
@@ -808,11 +948,17 @@ class Solutions:
     names: Callable[[Array], tuple[str, ...]] | None = field(
         default=None, repr=False, compare=False
     )
+    projected: Array | None = None
 
     @property
     def branch(self) -> tuple[str, ...]:
         """What distinguishes each row: sides of shoulder, elbow and wrist where the arm has those."""
         return () if self.names is None else self.names(self.q)
+
+    @property
+    def off(self) -> Array:
+        """How far each row's pose is from the one asked for, (k, 2): m, rad; zeros without `project`."""
+        return np.zeros((len(self.q), 2)) if self.projected is None else self.projected
 
     def __len__(self) -> int:
         return len(self.q)
@@ -834,9 +980,11 @@ def _solve_pose(
     free: Sequence[float] | Mapping[str, float] | None,
     seed: ArrayLike | None,
     limits: bool,
+    project: bool = False,
     orthonormalize: bool = False,
 ) -> Solutions:
-    """All joint values that bring the tip to `pose`; raises ValueError for bad arguments."""
+    """All joint values that bring the tip to `pose`, or with `project` to the nearest pose that the arm
+    can take; raises ValueError for bad arguments."""
     matrix, dof = _pose_matrices(pose, arm.task.alone), len(arm.lower)
     if matrix.shape != (4, 4):
         raise ValueError(f"pose has shape {matrix.shape}, expected (4, 4)")
@@ -847,6 +995,8 @@ def _solve_pose(
         lines = _nearest_pose(arm.task, lines, arm.policy)
     T = arm.task.read(lines, arm.policy)
     found, real = ([], False) if T is None else _fitting(arm, T, near, held, limits)
+    if project and T is not None and not found:
+        found = _projected(arm, T, near, held, limits)
     if not found:
         status = Status.INVALID if T is None else Status.LIMITS if real else Status.UNREACHABLE
         reason = _pose_fault(arm.task, lines, arm.policy) if T is None else ""
@@ -856,7 +1006,21 @@ def _solve_pose(
         found.sort(key=lambda item: sum((a - b) * (a - b) for a, b in zip(item[0], origin)))
     q = np.array([row for row, _ in found]) + 0.0
     flags = np.array([flag for _, flag in found], dtype=bool)
-    return Solutions(q, Status.OK, flags, names=partial(_branch_names, arm))
+    off = _off_by(arm.task, _forward(arm.chain, q), np.array(T)) if project else None
+    names = partial(_branch_names, arm)
+    return Solutions(q, Status.OK, flags, names=names, projected=off)
+
+
+def _projected(
+    arm: _Arm, T: list[list[float]], near: Row | None, held: Row, limits: bool
+) -> list[_Found]:
+    """Solutions of the nearest pose that the arm can take."""
+    row = _nearest_row(arm, np.array(T), _start(arm, near, held, 0.0), limits)
+    pose: list[list[float]] = _forward(arm.chain, row).tolist()
+    found, _ = _fitting(arm, pose, near, held, limits)
+    if len(found) < arm.most and _is_new(arm, row, found):
+        found += _place_rows(arm, [(row, False)], near, limits)
+    return found
 
 
 def _fitting(
@@ -1045,7 +1209,7 @@ class _EntriesTask:
 
     def read_batch(self, T: Array, policy: _Policy) -> tuple[Array, _Flags]:
         """Implements `Task`."""
-        good: _Flags = np.asarray(np.isfinite(T[:, self.row, self.column]).all(axis=1))
+        T, good = self._single_entries(T, policy)
         if not self.unit:
             return T, good
         height = 2 if self.flat else 3
@@ -1067,19 +1231,32 @@ class _EntriesTask:
                 T[np.ix_(near, range(height), self.unit)] = R[near, :height]
         return T, good
 
+    def _single_entries(self, T: Array, policy: _Policy) -> tuple[Array, _Flags]:
+        """Poses whose entries of no unit column, which are cosines, lie between -1 and 1; and which are
+        poses."""
+        good: _Flags = np.asarray(np.isfinite(T[:, self.row, self.column]).all(axis=1))
+        for r, c in zip(self.row, self.column):
+            if c == 3 or c in self.unit:
+                continue
+            beyond = np.abs(T[:, r, c]) > 1.0
+            good &= ~beyond | (np.abs(T[:, r, c]) <= 1.0 + policy.pose_tolerance)
+            if (good & beyond).any():
+                T = T.copy()
+                T[:, r, c] = np.clip(T[:, r, c], -1.0, 1.0)
+        return T, good
+
+    @property
+    def entries(self) -> _Entries:
+        """Implements `Task`."""
+        return tuple(zip(self.row, self.column))
+
     def error(self, pose: Array, T: Array) -> Array:
         """The entries' differences."""
-        return (T[:, self.row, self.column] - pose[:, self.row, self.column]) * self._weight()
+        return _entry_errors(self.entries, self._weight(), pose, T)
 
     def rows(self, pose: Array, J: Array) -> Array:
         """The entries' derivatives."""
-        out = np.empty((len(pose), len(self.row), J.shape[2]))
-        for i, (r, c) in enumerate(zip(self.row, self.column)):
-            if c == 3:
-                out[:, i] = J[:, r]
-            else:
-                out[:, i] = _cross(J[:, 3:].transpose(0, 2, 1), pose[:, None, :3, c])[:, :, r]
-        return out * self._weight()[:, None]
+        return _entry_rows(self.entries, self._weight(), pose, J)
 
     def _weight(self) -> Array:
         return np.array([1.0 / self.size if c == 3 else 1.0 for c in self.column])

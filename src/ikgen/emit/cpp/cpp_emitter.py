@@ -16,6 +16,7 @@ from ikgen.emit.solver_module import SolverModule
 from ikgen.errors import UsageError
 from ikgen.program.ops import Op
 from ikgen.program.policy import SolvePolicy
+from ikgen.tasks import AXES, Task
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -25,8 +26,12 @@ __all__ = ["emit", "emit_derivation", "emit_header"]
 _SYSTEM = ("array", "cstddef", "Eigen/Core", "Eigen/Geometry")
 """Headers that the shell itself needs."""
 
-_COLUMNS = {"rotation": "0, 3, 3", "direction": "2, 1, 3", "yaw": "0, 1, 2"}
-"""First column of the rotation that a task reads, how many, and how many rows of them."""
+
+def _columns(task: Task) -> str:
+    """First column of the rotation that a task reads, how many, and how many rows of them."""
+    if task.orientation == "direction":
+        return f"{AXES.index(task.axis)}, 1, 3"
+    return {"rotation": "0, 3, 3", "yaw": "0, 1, 2"}.get(task.orientation, "0, 0, 3")
 
 
 def emit_derivation(derivation: Derivation) -> dict[str, str]:
@@ -60,7 +65,7 @@ def emit_header(module: SolverModule) -> str:
         careful=_careful(module),
         way="SingleSolve" if _careful(module) else "LaneSolve",
         entries_read=module.reads.entries,
-        columns=_COLUMNS.get(module.reads.orientation, "0, 0, 3"),
+        columns=_columns(module.reads),
         joints=module.dh.joints,
         lower=[number(j.limits.lower) for j in module.dh.joints],
         upper=[number(j.limits.upper) for j in module.dh.joints],
@@ -96,7 +101,7 @@ def _headers(module: SolverModule) -> list[str]:
     needed += [_ROUTINES.get(name, f"{name}.hpp") for name in routines]
     needed += ["poses_beside.hpp"] * bool(module.beside)
     task = "whole_pose.hpp" if module.task == "pose" else "pose_entries.hpp"
-    return [*needed, task, "pose_solver.hpp"]
+    return [*needed, task, "pose_solver.hpp", "projection.hpp"]
 
 
 _ROUTINES = {"general_6r": "general_6r_arm.hpp"}
