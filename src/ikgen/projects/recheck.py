@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING
 from ikgen.errors import UnknownNameError, UsageError
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.publish import left_over
+from ikgen.generation.publishing import interrupted
 from ikgen.generation.read import read
 from ikgen.generation.record import Record, digest
 from ikgen.generation.request import Outputs
+from ikgen.importers.named_robots import is_named
 from ikgen.projects.check_findings import Finding, Recheck
 from ikgen.projects.output_checks import OutputChecks
 
@@ -43,7 +45,7 @@ def recheck(
     try:
         reading = read(request)
     except (UnknownNameError, UsageError) as error:
-        if not request.robot.is_file():
+        if not (is_named(request.robot) or request.robot.is_file()):
             raise
         message = f"made from another description: {error.message}"
         return Recheck(record.path, record, (*findings, Finding(record.path, message, fix)))
@@ -52,8 +54,10 @@ def recheck(
 
 
 def _edited(record: Record, fix: str) -> list[Finding]:
-    """Outputs that are gone or differ from what was written."""
+    """Outputs that are gone, half in place, or differ from what was written."""
     found = []
+    if record.path.name in {Path(name).name for name in interrupted(record.out or record.folder)}:
+        found.append(Finding(record.path, "a killed run left the files half in place", fix))
     for name, expected in record.files.items():
         path = record.folder / name
         actual = digest(path)
