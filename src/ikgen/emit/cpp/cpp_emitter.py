@@ -9,6 +9,7 @@ from ikgen.emit.blanks import blanks, pairs
 from ikgen.emit.cpp.cpp_language import CONSTANT, comment, declared, literal, number
 from ikgen.emit.cpp.cpp_policy import policy_lines
 from ikgen.emit.cpp.cpp_statements import ProgramText
+from ikgen.emit.cpp.cpp_twist_chain import twist_lines
 from ikgen.emit.cpp.header_bundle import bundle
 from ikgen.emit.printer import expression
 from ikgen.emit.rendering import render
@@ -76,6 +77,7 @@ def emit_header(module: SolverModule) -> str:
         rough=_rough(module, policy),
         order=_depth_first(branches),
         frames=[[[expression(CONSTANT, x) for x in row] for row in F] for F in program.frames],
+        twisted=twist_lines(module) if module.refine == "all" else None,
         beside=[[number(float(x)) for x in D.T[:, :3].ravel()] for D in module.beside],
         size=_size_text(module),
         blanks=blanks(module),
@@ -89,8 +91,8 @@ def emit_header(module: SolverModule) -> str:
 
 
 def _careful(module: SolverModule) -> bool:
-    """Whether every pose's rows are polished or judged one by one."""
-    return module.refine == "all" or module.plan is not None
+    """Whether every pose's rows are judged one by one."""
+    return module.plan is not None
 
 
 def _headers(module: SolverModule) -> list[str]:
@@ -99,6 +101,7 @@ def _headers(module: SolverModule) -> list[str]:
     needed = ["lane_angle.hpp", "single_solve.hpp" if _careful(module) else "lane_solve.hpp"]
     needed += ["routine_roots.hpp"] * bool(routines)
     needed += [_ROUTINES.get(name, f"{name}.hpp") for name in routines]
+    needed += ["lane_newton.hpp"] * (module.refine == "all")
     needed += ["poses_beside.hpp"] * bool(module.beside)
     task = "whole_pose.hpp" if module.task == "pose" else "pose_entries.hpp"
     return [*needed, task, "pose_solver.hpp", "projection.hpp"]
