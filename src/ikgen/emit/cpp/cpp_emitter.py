@@ -81,6 +81,7 @@ def emit_header(module: SolverModule) -> str:
         beside=[[number(float(x)) for x in D.T[:, :3].ravel()] for D in module.beside],
         size=_size_text(module),
         blanks=blanks(module),
+        **_elimination(module),
         angles=[(f, n) for n in pairs(module) for f in ("cos", "sin")],
         free_defaults=[number(x) for x in module.free_defaults],
         number=number,
@@ -108,7 +109,28 @@ def _headers(module: SolverModule) -> list[str]:
 
 
 _ROUTINES = {"general_6r": "general_6r_arm.hpp"}
-"""Headers of routines that work on the whole arm."""
+"""Headers of routines that are not named after them."""
+
+_ELIMINATIONS = {
+    "general_6r": "General6r",
+    "one_slide": "OneSlide",
+    "two_slides": "TwoSlides",
+    "three_slides": "ThreeSlides",
+}
+"""The class of each elimination."""
+
+
+def _elimination(module: SolverModule) -> dict[str, object]:
+    """What the templates say of an elimination: its routine, class, and the numbers that it gives a row."""
+    calls = [level.call for level in module.program.levels if level.call is not None]
+    if module.plan is None:
+        return {"routine": ""}
+    return {
+        "routine": calls[0].routine,
+        "elimination": _ELIMINATIONS[calls[0].routine],
+        "numbers": len(calls[0].names),
+        "all_turn": all(module.plan.turning),
+    }
 
 
 def _size_text(module: SolverModule) -> str:

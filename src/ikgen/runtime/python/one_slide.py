@@ -1,4 +1,4 @@
-"""Approximate solutions of five revolute joints and a slide, by the elimination of Raghavan and Roth (1993).
+"""Approximate solutions of five revolute joints and a slide: elimination of Raghavan and Roth (1993).
 
 The loop is begun so that the slide is the first joint or the second. Of the fourteen functions of the other
 side its monomials 1, d, d^2 are eliminated as cosine and sine would be; six equations are left in three
@@ -28,7 +28,9 @@ __all__ = ["one_slide_candidates"]
 
 _SAMPLES = np.array([0.0, 1.0, -1.0])
 _SLIDES = motions_z(_SAMPLES)
-_PARABOLA = np.array([[1.0, 0.0, 0.0], [0.0, 0.5, -0.5], [-1.0, 0.5, 0.5]])  # of values at the samples
+_PARABOLA = np.array(
+    [[1.0, 0.0, 0.0], [0.0, 0.5, -0.5], [-1.0, 0.5, 0.5]]
+)  # of values at the samples
 
 
 def one_slide_candidates(
