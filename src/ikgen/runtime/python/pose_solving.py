@@ -29,7 +29,7 @@ def solve_pose(
     if matrix.shape != (4, 4):
         raise ValueError(f"pose has shape {matrix.shape}, expected (4, 4)")
     near = None if seed is None else tuple(seed_rows(arm, seed, (dof,)).tolist())
-    held = held_values(arm, free)
+    held = held_values(arm, free, near)
     T = arm.task.read(matrix.tolist(), arm.policy)
     found, real = ([], False) if T is None else _fitting(arm, T, near, held, limits)
     if not found:

@@ -11,7 +11,10 @@ __all__ = ["Task"]
 
 
 class Task(Protocol):
-    """How poses are read and compared."""
+    """How poses are read and compared, positions over `size` (m)."""
+
+    @property
+    def size(self) -> float: ...
 
     def read(self, T: list[list[float]], policy: Policy) -> list[list[float]] | None:
         """The pose that nested lists stand for, its rotation the nearest one; None for no pose."""
