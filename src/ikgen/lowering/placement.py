@@ -25,7 +25,8 @@ FOLDED = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class Requirement:
-    """A condition without which the branch has no solution; `fold`: it bounds where the solution is real."""
+    """A condition without which the branch has no solution; `fold`: it bounds where the solution is
+    real."""
 
     condition: Expr
     fold: bool = False

@@ -1,7 +1,7 @@
 """Rows of a pose over the values of a held joint, followed from one value to the next.
 
-Cells between samples are halved until nothing can happen in them unseen, by second differences of joint values
-and of what is under square roots.
+Cells between samples are halved until nothing can happen in them unseen, by second differences of joint
+values and of what is under square roots.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ _NARROW = 1e-3  # the same where rows begin or end
 
 @dataclass(frozen=True)
 class Tracks:
-    """Rows and what each goes on as; how far each is outside the limits, `off` (n, m), and whether it is real
-    and inside, `inside` (n, m)."""
+    """Rows and what each goes on as; how far each is outside the limits, `off` (n, m), and whether it is
+    real and inside, `inside` (n, m)."""
 
     rows: Rows
     links: Links
@@ -72,8 +72,8 @@ def _doubtful(joint: HeldJoint, rows: Rows, following: Links, limits: bool) -> F
 
 
 def _row_bends(arm: Arm, rows: Rows, following: Links) -> tuple[Array, Array, Array]:
-    """Per cell and row at its lower end: joint values, their change over the cell, and a bound of how far they
-    are off the straight line between; (n - 1, m, dof) each."""
+    """Per cell and row at its lower end: joint values, their change over the cell, and a bound of how
+    far they are off the straight line between; (n - 1, m, dof) each."""
     cells, m = following.shape
     at = np.arange(cells)[:, None]
     to = np.where(following >= 0, following, 0)
@@ -102,8 +102,8 @@ def _row_bends(arm: Arm, rows: Rows, following: Links) -> tuple[Array, Array, Ar
 def _limit_crossings(
     arm: Arm, q: Array, change: Array, bend: Array, linked: Flags, limits: bool
 ) -> tuple[Flags, Array]:
-    """Per cell and row: whether it is outside the limits all over the cell; how many joints may cross a limit
-    in it, more than 1 where one may do so more than once."""
+    """Per cell and row: whether it is outside the limits all over the cell; how many joints may cross a
+    limit in it, more than 1 where one may do so more than once."""
     dead = np.zeros(linked.shape, dtype=bool)
     count = np.zeros(linked.shape)
     for j, middle, half, turns in bounded_joints(arm) if limits else ():
@@ -122,8 +122,8 @@ def _limit_crossings(
 def _ending(
     arm: Arm, rows: Rows, following: Links, change: Array, limits: bool, wide: Flags, narrow: Flags
 ) -> Flags:
-    """Cells to be halved for rows of one end that do not go on to the other: the narrower ones where rows of
-    both ends don't, or where such a row may cross a limit on its way to the fold."""
+    """Cells to be halved for rows of one end that do not go on to the other: the narrower ones where
+    rows of both ends don't, or where such a row may cross a limit on its way to the fold."""
     before = origins(following)
     lower, upper = rows.real[:-1] & (following < 0), rows.real[1:] & (before < 0)
     moved = np.abs(change).max(axis=2)
@@ -137,12 +137,14 @@ def _ending(
     near = lower & (off[:-1] < down * _reach(width[1:], width[:-1], 0)[:, None])
     near |= upper & (off[1:] < up * _reach(width[:-1], width[1:], 1)[:, None])
     some = lower.any(axis=1), upper.any(axis=1)
-    return (some[0] | some[1]) & wide | (near.any(axis=1) | (some[0] & some[1])) & narrow
+    fine = near.any(axis=1) | (some[0] & some[1])
+    return np.asarray((some[0] | some[1]) & wide | fine & narrow)
 
 
 def _reach(own: Array, beside: Array, where: int) -> Array:
-    """How far a row may move at most on its way to a fold in a cell of width `own`, over its change in the cell
-    beside it, as the square root of the distance from the fold; 1 for the cell without one beside it."""
+    """How far a row may move at most on its way to a fold in a cell of width `own`, over its change in
+    the cell beside it, as the square root of the distance from the fold; 1 for the cell without one
+    beside it."""
     share = _SAFETY * np.sqrt(own * (own + beside)) / beside
     return np.concatenate([share, [1.0]] if where else [[1.0], share])
 

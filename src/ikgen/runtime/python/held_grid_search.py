@@ -26,8 +26,8 @@ _CHUNK = 1024
 def search_grid(
     arm: Arm, pose: ArrayLike, seed: ArrayLike | None, prefer: str, limits: bool
 ) -> Solutions:
-    """Good rows over a grid of the held joints' values, each made better by a compass search. Raises ValueError
-    for bad arguments."""
+    """Good rows over a grid of the held joints' values, each made better by a compass search. Raises
+    ValueError for bad arguments."""
     dof = len(arm.lower)
     near = None if seed is None else tuple(seed_rows(arm, seed, (dof,)).tolist())
     preference = preference_of(arm, prefer, near)
@@ -57,8 +57,9 @@ def search_grid(
 
 
 def _grid(arm: Arm, middle: tuple[float, ...], limits: bool) -> tuple[Array, tuple[float, ...]]:
-    """Values of the held joints (n, k), evenly spread over their ranges and those nearest to what is wanted, and half
-    the steps between them. A turn, or a metre to either side, is looked at where there are no limits."""
+    """Values of the held joints (n, k), evenly spread over their ranges and those nearest to what is
+    wanted, and half the steps between them. A turn, or a metre to either side, is looked at where there
+    are no limits."""
     count = max(3, int(_POINTS ** (1.0 / len(arm.free)) + 1e-9))
     axes, steps = [], []
     for j in arm.free:

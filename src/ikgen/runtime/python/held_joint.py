@@ -59,14 +59,15 @@ def merged_rows(one: Rows, other: Rows) -> Rows:
     """Both, in the order of the held joint's values."""
     held = np.concatenate([one.held, other.held])
     order = np.argsort(held, kind="stable")
-    parts = ((one.q, other.q), (one.real, other.real), (one.folds, other.folds))
-    q, real, folds = (np.concatenate(pair)[order] for pair in parts)
-    return Rows(held[order], q, real, folds)
+    q, folds = (
+        np.concatenate(pair)[order] for pair in ((one.q, other.q), (one.folds, other.folds))
+    )
+    return Rows(held[order], q, np.concatenate([one.real, other.real])[order], folds)
 
 
 def held_range(arm: Arm, T: Array, limits: bool) -> tuple[float, float]:
-    """Values of the held joint that count: its limits; one turn where it turns without any, or none are asked
-    for. A slide without limits is looked at as far as the arm's lengths reach from the pose."""
+    """Values of the held joint that count: its limits; one turn where it turns without any, or none are
+    asked for. A slide without limits is looked at as far as the arm's lengths reach from the pose."""
     (j,) = arm.free
     low, high = arm.lower[j], arm.upper[j]
     if arm.chain.revolute[j]:

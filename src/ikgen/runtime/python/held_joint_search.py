@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ikgen.runtime.python.array_types import Array
 from ikgen.runtime.python.branch_tracks import Tracks, tracked
-from ikgen.runtime.python.held_joint import HeldJoint, held_range, pose_lines, rows_at
+from ikgen.runtime.python.held_joint import HeldJoint, held_range, pose_lines
 from ikgen.runtime.python.joint_arguments import seed_rows
 from ikgen.runtime.python.row_preference import Preference, preference_costs, preference_of
 from ikgen.runtime.python.self_motion import Piece, pieces_of
@@ -20,7 +19,8 @@ __all__ = ["search_interval"]
 def search_interval(
     joint: HeldJoint, pose: ArrayLike, seed: ArrayLike | None, prefer: str, limits: bool
 ) -> Solutions:
-    """The best row of each interval of the held joint's values, best first. Raises ValueError for bad arguments."""
+    """The best row of each interval of the held joint's values, best first. Raises ValueError for bad
+    arguments."""
     arm, dof = joint.arm, len(joint.arm.lower)
     near = None if seed is None else tuple(seed_rows(arm, seed, (dof,)).tolist())
     preference = preference_of(arm, prefer, near)

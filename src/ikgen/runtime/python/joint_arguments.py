@@ -17,8 +17,8 @@ __all__ = ["held_rows", "held_values", "seed_rows"]
 def held_values(
     arm: Arm, free: Sequence[float] | Mapping[str, float] | None, near: Row | None
 ) -> Row:
-    """Values of the held joints, base to tip: those of the seed `near`, or without one the defaults, where `free`
-    gives none. Raises ValueError where they are no such values."""
+    """Values of the held joints, base to tip: those of the seed `near`, or without one the defaults,
+    where `free` gives none. Raises ValueError where they are no such values."""
     names, others = arm.free_joints, arm.free_defaults
     if near is not None:
         others = tuple(near[j] for j in arm.free)
@@ -41,8 +41,8 @@ def held_values(
 def held_rows(
     arm: Arm, free: ArrayLike | Mapping[str, float] | None, near: Array | None, count: int
 ) -> Array:
-    """`held_values` for many poses: one row for all of them, or one each; (count, held joints). `near`: the seeds
-    (count, dof)."""
+    """`held_values` for many poses: one row for all of them, or one each; (count, held joints). `near`:
+    the seeds (count, dof)."""
     shape = (count, len(arm.free_joints))
     if free is None or isinstance(free, Mapping):
         values = np.tile(held_values(arm, free, None), (count, 1)).reshape(shape)

@@ -17,7 +17,7 @@ def bounded_joints(arm: Arm) -> list[tuple[int, float, float, bool]]:
     out = []
     for j in arm.moving:
         low, high, turns = arm.lower[j], arm.upper[j], arm.chain.revolute[j]
-        if turns and high - low < 2.0 * pi or not turns and (low > -inf or high < inf):
+        if (turns and high - low < 2.0 * pi) or (not turns and (low > -inf or high < inf)):
             low, high = max(low, -1e6), min(high, 1e6)
             out.append((j, 0.5 * (low + high), 0.5 * (high - low), turns))
     return out

@@ -38,8 +38,8 @@ def preference_of(arm: Arm, prefer: str, seed: Row | None) -> Preference:
 def preference_costs(
     arm: Arm, preference: Preference, q: Array, limits: bool
 ) -> tuple[Array, Array, Flags]:
-    """Rows (n, m, dof) on the turns that limits and preference ask for, their costs (n, m), less is better, and
-    which are inside the limits (n, m).
+    """Rows (n, m, dof) on the turns that limits and preference ask for, their costs (n, m), less is
+    better, and which are inside the limits (n, m).
 
     "near": the squared distance from the seed; "centre": from the middle of the limits, in halves of their
     range; "dexterous": minus the smallest singular value of the task's Jacobian (m/s and rad/s).

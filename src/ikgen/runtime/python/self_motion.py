@@ -13,7 +13,7 @@ from ikgen.runtime.python.array_types import Array
 from ikgen.runtime.python.branch_tracks import Tracks, tracked
 from ikgen.runtime.python.held_joint import HeldJoint, held_range, pose_lines, rows_at
 from ikgen.runtime.python.limit_margins import outside
-from ikgen.runtime.python.row_links import differences, origins
+from ikgen.runtime.python.row_links import Links, differences, origins
 
 __all__ = ["Interval", "Piece", "pieces_of", "self_motion_of"]
 
@@ -34,8 +34,8 @@ class Interval:
 
 @dataclass
 class _End:
-    """A value of the held joint at which the row `lane`, `q`, is inside, and one at which it is not, with what
-    is negative inside and positive outside at both (None: unknown)."""
+    """A value of the held joint at which the row `lane`, `q`, is inside, and one at which it is not,
+    with what is negative inside and positive outside at both (None: unknown)."""
 
     inner: float
     outer: float
@@ -97,7 +97,7 @@ def _pieces(tracks: Tracks) -> Iterator[Piece]:
 
 
 def _piece(
-    tracks: Tracks, branch: int, run: list[tuple[int, int]], before: Array, following: int
+    tracks: Tracks, branch: int, run: list[tuple[int, int]], before: Links, following: int
 ) -> Piece:
     (first, row), (last, end) = run[0], run[-1]
     held, count = tracks.rows.held, len(tracks.rows.held)
@@ -123,8 +123,8 @@ def _end(tracks: Tracks, at: int, row: int, beyond: int, other: int) -> _End:
 
 
 def _find(joint: HeldJoint, T: Array, ends: list[_End], limits: bool) -> None:
-    """False position with halved values (Dowell, Jarratt 1971: the Illinois method), and halving where no value
-    is known or it is slow."""
+    """False position with halved values (Dowell, Jarratt 1971: the Illinois method), and halving where
+    no value is known or it is slow."""
     for step in range(_STEPS):
         going = [e for e in ends if abs(e.outer - e.inner) > _ENOUGH]
         if not going:
@@ -155,8 +155,8 @@ def _trial(end: _End, step: int) -> float:
 
 
 def _narrow(end: _End, held: float, seen: bool, off: float, fold: float) -> None:
-    """Takes what was found at a value between: whether there is a row of the branch, how far that is outside the
-    limits, and how far its lane is from real rows."""
+    """Takes what was found at a value between: whether there is a row of the branch, how far that is
+    outside the limits, and how far its lane is from real rows."""
     good = seen and off <= 0.0
     if good:
         end.inner = held

@@ -5,11 +5,9 @@ from __future__ import annotations
 from math import inf
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.batch_solving import rows_batch
-from ikgen.runtime.python.joint_arguments import seed_rows
 from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.row_links import differences
 from ikgen.runtime.python.row_preference import Preference, preference_costs
@@ -28,8 +26,8 @@ _NEAR = 0.5  # rad or m that a row may be from the one that a step began at
 def best_rows(
     arm: Arm, T: Array, starts: list[Start], preference: Preference, limits: bool
 ) -> Solutions:
-    """From each start the best row that a compass search (Hooke, Jeeves 1961) of the held values finds on its
-    branch; of each group the best, best first, at most as many as `solve` gives."""
+    """From each start the best row that a compass search (Hooke, Jeeves 1961) of the held values finds
+    on its branch; of each group the best, best first, at most as many as `solve` gives."""
     held = np.array([s[0] for s in starts])
     rows = np.array([s[1] for s in starts])
     step = np.array([s[2] for s in starts])
