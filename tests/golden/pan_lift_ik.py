@@ -61,24 +61,9 @@ a_2 = 0.3
 # v_i = scale * q[joint] + offset.
 _FRAMES: Array = np.array(
     [
-        [
-            [1.0, -0.0, 0.0, 0.0],
-            [0.0, 1.0, -0.0, -0.0],
-            [0.0, 0.0, 1.0, 0.0],
-            [0.0, 0.0, 0.0, 1.0],
-        ],
-        [
-            [1.0, -0.0, 0.0, 0.3],
-            [0.0, 1.0, -0.0, -0.0],
-            [0.0, 0.0, 1.0, 0.0],
-            [0.0, 0.0, 0.0, 1.0],
-        ],
-        [
-            [1.0, 0.0, 0.0, 0.0],
-            [0.0, 1.0, 0.0, 0.0],
-            [0.0, 0.0, 1.0, 0.0],
-            [0.0, 0.0, 0.0, 1.0],
-        ],
+        [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]],
+        [[1.0, 0.0, 0.0, 0.3], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]],
+        [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]],
     ]
 )
 _MOTIONS: tuple[tuple[int, bool, float, float], ...] = (
@@ -207,13 +192,7 @@ _Motion = tuple[int, bool, float, float]  # joint, whether it turns, scale and o
 @dataclass(frozen=True)
 class _Chain:
     """`T = F_0 M(v_1) F_1 ... M(v_n) F_n`, M a rotation about or a motion along z,
-    `v_i = scale_i * q[joint_i] + offset_i`.
-
-    `frames` (n + 1, 4, 4) and `motions` say the same as `parts` (4, n, 4, 4), with which
-    `M(v) F = cos(v) parts[0] + sin(v) parts[1] + v parts[2] + parts[3]`, `joint`, `scale`, `offset` (n,),
-    `turning` (n, 1), whether M is a rotation, `slides`, whether one is not, and `drive` (n, dof), the
-    derivatives of v by q. `revolute` (dof): which joints turn.
-    """
+    `v_i = scale_i * q[joint_i] + offset_i`."""
 
     frames: Array
     motions: tuple[_Motion, ...]
@@ -433,11 +412,7 @@ def _refine(
     chain: _Chain, task: _Task, moving: Sequence[int], q: Array, T: Array, policy: _Policy
 ) -> tuple[Array, _Flags, Array]:
     """Newton steps of the joints `moving` from q (k, dof) towards T (k, 4, 4); which rows arrived, and
-    the errors before (k,).
-
-    At a fold of the solution set the steps halve the error. Elsewhere all digits are wanted, as rows may
-    lie on a limit.
-    """
+    the errors before (k,)."""
     q = q.copy()
     error, before = np.full(len(q), inf), np.zeros(len(q))
     going = np.arange(len(q))
@@ -637,10 +612,7 @@ def _solve_pose(
 def _fitting(
     arm: _Arm, T: list[list[float]], near: Row | None, held: Row, limits: bool
 ) -> tuple[list[_Found], bool]:
-    """Solutions on the right turns, and whether there were any before limits.
-
-    Where the pose leaves a joint free and its given value leads nowhere, other values are tried.
-    """
+    """Solutions on the right turns, and whether there were any before limits."""
     real = False
     for tries in (range(1), range(1, arm.policy.tries)):
         starts = [_start(arm, near, held, n * arm.policy.try_step) for n in tries]
@@ -668,10 +640,7 @@ def _start(arm: _Arm, near: Row | None, held: Row, turn: float) -> Row:
 def _rows(
     arm: _Arm, T: list[list[float]], starts: list[Row], held: Row
 ) -> list[tuple[list[_Found], bool]]:
-    """For each start, the distinct solutions (radians between -pi and pi) and whether it was read.
-
-    Newton steps are taken by all rough rows together: their price is that of the calls.
-    """
+    """For each start, the distinct solutions (radians between -pi and pi) and whether it was read."""
     kept: list[list[_Found]] = [[] for _ in starts]
     fine: list[tuple[int, _Found]] = []
     rough: list[tuple[int, _Found]] = []
@@ -730,10 +699,7 @@ def _solve_poses(
     seed: ArrayLike | None,
     limits: bool,
 ) -> _Batch:
-    """Rows (N, most, dof) padded with NaN, counts (N,) and names of Status (N,) for poses (N, 4, 4).
-
-    Raises ValueError for bad arguments.
-    """
+    """Rows (N, most, dof) padded with NaN, counts (N,) and names of Status (N,) for poses (N, 4, 4)."""
     T, dof = np.asarray(poses, dtype=float), len(arm.lower)
     if T.ndim != 3 or T.shape[1:] != (4, 4):
         raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
@@ -799,9 +765,6 @@ def _rows_batch(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[A
 
 
 # The orthonormal vectors nearest to some that are so to a few digits: floats or arrays.
-#
-# The orthogonal polar factor is the nearest in the Frobenius norm; `V (3 - V'V) / 2` (Bjorck and Bowie
-# 1971) doubles its digits, with the same bits on every machine.
 
 
 _N = TypeVar("_N", float, Array)
@@ -857,11 +820,7 @@ def _nearest_columns(columns: _Columns[_N]) -> _Columns[_N]:
 
 @dataclass(frozen=True)
 class _EntriesTask:
-    """The entries of `row` and `column`; positions count over `size` (m).
-
-    `unit`: columns of the rotation that are read, unit vectors at right angles; one that lies `flat` in the
-    x-y plane is a heading: it may be shorter than 1, as that of a tilted tool, which nothing reaches.
-    """
+    """The entries of `row` and `column`; positions count over `size` (m)."""
 
     size: float
     row: tuple[int, ...]
