@@ -19,8 +19,8 @@ from ikgen.runtime.python.solved_arm import Arm
 __all__ = ["search_grid"]
 
 _POINTS = 4096  # of the grid
-_STARTS = 32
-_CHUNK = 1024
+_BEGINNINGS = 32
+_PART = 1024
 
 
 def search_grid(
@@ -37,8 +37,8 @@ def search_grid(
         return Solutions(empty[0], Status.INVALID, empty[1])
     values, steps = _grid(arm, preference[1], limits)
     q, cost, any_real = [], [], False
-    for k in range(0, len(values), _CHUNK):
-        part = values[k : k + _CHUNK]
+    for k in range(0, len(values), _PART):
+        part = values[k : k + _PART]
         rows, real, _ = rows_batch(arm, np.broadcast_to(T, (len(part), 4, 4)), part, None)
         any_real = any_real or bool(real.any())
         rows, costs, inside = preference_costs(arm, preference, rows, limits)
@@ -46,7 +46,7 @@ def search_grid(
         cost.append(np.where(real & inside, costs, inf))
     found, costs = np.concatenate(q), np.concatenate(cost)
     starts: list[Start] = []
-    for flat in np.argsort(costs, axis=None, kind="stable")[:_STARTS].tolist():
+    for flat in np.argsort(costs, axis=None, kind="stable")[:_BEGINNINGS].tolist():
         point, row = divmod(flat, costs.shape[1])
         if costs[point, row] < inf:
             held = tuple(values[point].tolist())
