@@ -32,10 +32,13 @@ __all__ = [
     "TASK",
     "TIP_LINK",
     "UPPER",
+    "Path",
     "Solutions",
     "Status",
+    "follow",
     "forward",
     "jacobian",
+    "search",
     "solve",
     "solve_batch",
 ]
@@ -125,6 +128,34 @@ def solve_batch(
     Returns q (N, MAX_SOLUTIONS, DOF) padded with NaN, count (N,), and status (N,): the Status names.
     """
     return _solve_poses(_ARM, poses, free, seed, limits, orthonormalize)
+
+
+def search(
+    pose: ArrayLike,
+    *,
+    seed: ArrayLike | None = None,
+    prefer: str = "near",
+    limits: bool = True,
+) -> Solutions:
+    """The rows of `solve`, best first.
+
+    prefer: "near" to the seed (DOF,), "centre" of the limits (as "near" without a seed), or "dexterous", of the
+    largest smallest singular value of the task's Jacobian. Raises ValueError for bad arguments.
+    """
+    return _search_held(_ARM, pose, seed, prefer, limits)
+
+
+def follow(poses: ArrayLike, *, start: ArrayLike, limits: bool = True) -> Path:
+    """Joint values along poses (N, 4, 4) on one branch, from the row of the first that is nearest to `start` (DOF,).
+
+    Whole turns are unwound. Between two poses the tip is
+    taken on a straight line while it turns about one axis. Raises ValueError for bad arguments.
+    """
+
+    def nearest(pose: Array, seed: Array, inside: bool) -> Solutions:
+        return search(pose, seed=seed, limits=inside)
+
+    return _follow_poses(_ARM, nearest, poses, start, limits)
 
 
 def _branches(T: Sequence[Sequence[float]], q0: Row, held: Row) -> tuple[list[_Candidate], bool]:
@@ -411,16 +442,21 @@ class _Arm:
 # The arguments `free` and `seed` as joint values.
 
 
-def _held_values(arm: _Arm, free: Sequence[float] | Mapping[str, float] | None) -> Row:
-    """Values of the held joints, base to tip; raises ValueError where they are no such values."""
+def _held_values(
+    arm: _Arm, free: Sequence[float] | Mapping[str, float] | None, near: Row | None
+) -> Row:
+    """Values of the held joints, base to tip: those of the seed `near`, or without one the defaults,
+    where `free` gives none. Raises ValueError where they are no such values."""
+    names, others = arm.free_joints, arm.free_defaults
+    if near is not None:
+        others = tuple(near[j] for j in arm.free)
     if free is None:
-        return arm.free_defaults
-    names = arm.free_joints
+        return others
     if isinstance(free, Mapping):
         unknown = set(free) - set(names)
         if unknown:
             raise ValueError(f"no free joint named {sorted(unknown)}; there is {list(names)}")
-        values = tuple(float(free.get(n, x)) for n, x in zip(names, arm.free_defaults))
+        values = tuple(float(free.get(n, x)) for n, x in zip(names, others))
     else:
         values = tuple(float(x) for x in free)
     if len(values) != len(names):
@@ -430,14 +466,22 @@ def _held_values(arm: _Arm, free: Sequence[float] | Mapping[str, float] | None) 
     return values
 
 
-def _held_rows(arm: _Arm, free: ArrayLike | Mapping[str, float] | None, count: int) -> Array:
-    """`_held_values` for many poses: one row for all of them, or one each; (count, held joints)."""
+def _held_rows(
+    arm: _Arm, free: ArrayLike | Mapping[str, float] | None, near: Array | None, count: int
+) -> Array:
+    """`_held_values` for many poses: one row for all of them, or one each; (count, held joints). `near`:
+    the seeds (count, dof)."""
     shape = (count, len(arm.free_joints))
     if free is None or isinstance(free, Mapping):
-        return np.broadcast_to(_held_values(arm, free), shape)
+        values = np.tile(_held_values(arm, free, None), (count, 1)).reshape(shape)
+        given = () if free is None else free
+        for k, (j, name) in enumerate(zip(arm.free, arm.free_joints)):
+            if near is not None and name not in given:
+                values[:, k] = near[:, j]
+        return values
     if np.ndim(free) < 2:
         one: list[float] = np.asarray(free, dtype=float).tolist()
-        return np.broadcast_to(_held_values(arm, one), shape)
+        return np.broadcast_to(_held_values(arm, one, None), shape)
     held = np.asarray(free, dtype=float)
     if held.shape != shape:
         raise ValueError(f"free has shape {held.shape}, expected {shape}")
@@ -932,6 +976,7 @@ class Status(str, Enum):
     UNREACHABLE = "UNREACHABLE"
     LIMITS = "LIMITS"
     INVALID = "INVALID"
+    SINGULAR = "SINGULAR"  # of a path alone
     __str__ = str.__str__  # NumPy compares by it
 
 
@@ -989,7 +1034,7 @@ def _solve_pose(
     if matrix.shape != (4, 4):
         raise ValueError(f"pose has shape {matrix.shape}, expected (4, 4)")
     near = None if seed is None else tuple(_seed_rows(arm, seed, (dof,)).tolist())
-    held = _held_values(arm, free)
+    held = _held_values(arm, free, near)
     lines = matrix.tolist()
     if orthonormalize:
         lines = _nearest_pose(arm.task, lines, arm.policy)
@@ -1119,10 +1164,10 @@ def _solve_poses(
     if T.ndim != 3 or T.shape[1:] != (4, 4):
         raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
     count = len(T)
-    held = _held_rows(arm, free, count)
     near: Array | None = None
     if seed is not None:
         near = np.broadcast_to(_seed_rows(arm, seed, (dof,), (count, dof)), (count, dof))
+    held = _held_rows(arm, free, near, count)
     q = np.full((count, arm.most, dof), np.nan)
     number = np.zeros(count, dtype=np.int64)
     status = np.full(count, Status.INVALID.value, dtype="<U11")
@@ -1179,6 +1224,235 @@ def _rows_batch(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[A
         done = _refine(arm.chain, arm.task, arm.moving, q[pose, row], T[pose], arm.policy)
         q[pose, row], valid[pose, row] = done[:2]
     return q, _distinct(arm, q, valid), singular
+
+
+# Which rows are better than others.
+
+
+_Preference = tuple[str, Row, Row]  # its name; what rows are wanted near to, and the joints' weights
+
+
+def _preference_of(arm: _Arm, prefer: str, seed: Row | None) -> _Preference:
+    """ "near": to the seed, "centre": of the limits, as near without a seed, or "dexterous"."""
+    if prefer not in ("near", "centre", "dexterous"):
+        raise ValueError(f"prefer is {prefer!r}, expected 'near', 'centre' or 'dexterous'")
+    if prefer == "near" and seed is not None:
+        return prefer, seed, (1.0,) * len(seed)
+    bounded = [isfinite(b - a) for a, b in zip(arm.lower, arm.upper)]
+    middle = [0.5 * (a + b) if ok else 0.0 for a, b, ok in zip(arm.lower, arm.upper, bounded)]
+    if seed is not None:
+        middle = [m if ok else s for m, s, ok in zip(middle, seed, bounded)]
+    halves = (
+        max(0.5 * (b - a), 1e-6) if ok else inf for a, b, ok in zip(arm.lower, arm.upper, bounded)
+    )
+    return prefer, tuple(middle), tuple(1.0 / half**2 for half in halves)
+
+
+def _preference_costs(
+    arm: _Arm, preference: _Preference, q: Array, limits: bool
+) -> tuple[Array, Array, _Flags]:
+    """Rows (n, m, dof) on the turns that limits and preference ask for, their costs (n, m), less is
+    better, and which are inside the limits (n, m)."""
+    name, middle, weights = preference
+    q = q.copy()
+    for j in arm.free:
+        if arm.chain.revolute[j] and not isfinite(arm.upper[j] - arm.lower[j]):
+            q[..., j] += 2.0 * pi * np.round((middle[j] - q[..., j]) / (2.0 * pi))
+    q, inside = _place_rows_batch(arm, q, np.tile(middle, (len(q), 1)), limits)
+    if name != "dexterous":
+        return q, np.asarray((q - np.array(middle)) ** 2 @ np.array(weights)), inside
+    flat = q.reshape(-1, q.shape[-1])
+    pose, J = _tip_and_jacobian(arm.chain, flat)
+    J[:, :3] *= arm.task.size  # rows are over it
+    least = np.linalg.svd(arm.task.rows(pose, J), compute_uv=False)[:, -1]
+    return q, np.asarray(-least.reshape(q.shape[:2])), inside
+
+
+# Search of an arm without held joints: its rows in the order of a preference.
+
+
+def _search_held(
+    arm: _Arm, pose: ArrayLike, seed: ArrayLike | None, prefer: str, limits: bool
+) -> Solutions:
+    """All rows, best first. Raises ValueError for bad arguments."""
+    near = None if seed is None else tuple(_seed_rows(arm, seed, (len(arm.lower),)).tolist())
+    preference = _preference_of(arm, prefer, near)
+    found = _solve_pose(arm, pose, None, seed, limits)
+    if not len(found):
+        return found
+    q, cost, _ = _preference_costs(arm, preference, found.q[None], limits)
+    order = np.argsort(cost[0], kind="stable")
+    return Solutions(q[0, order], found.status, found.singular[order])
+
+
+# Joint values along a path of poses, on one branch.
+
+
+_DEEPEST = 24  # of the way from one pose to the next
+_SHALLOW = 9  # the same where there are no rows
+_FARTHEST = 0.3  # rad or m that a joint may move at once
+_OFF = 0.2  # of the motion, and
+_LEAST_OFF = 1e-4  # rad or m: how far a row may be from where the Jacobian leads
+_DAMPING = 1e-8  # of directions that are all but lost
+_JUMP = 0.05  # rad or m that a row may be from the last one where halving does not help
+
+
+@dataclass(frozen=True)
+class Path:
+    """Joint values `q` (N, DOF) along N poses, on one branch and without leaps of whole turns; NaN from
+    the first that was not reached. `reached`: how many were; `status`: OK for all of them, else why the
+    next was not, SINGULAR where its rows are a leap away. `singular` (N,): the row is at a singularity,
+    or was reached across one."""
+
+    q: Array
+    reached: int
+    status: Status
+    singular: _Flags
+
+
+def _follow_poses(
+    arm: _Arm,
+    search: Callable[[Array, Array, bool], Solutions],
+    poses: ArrayLike,
+    start: ArrayLike,
+    limits: bool,
+) -> Path:
+    """From the row of the first pose (N, 4, 4) that is nearest to `start` (dof,); `search(pose, start,
+    limits)`: rows nearest to it first. Raises ValueError for bad arguments."""
+    T, dof = np.asarray(poses, dtype=float), len(arm.lower)
+    if T.ndim != 3 or T.shape[1:] != (4, 4):
+        raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
+    row = _seed_rows(arm, start, (dof,))
+    q, singular = np.full((len(T), dof), np.nan), np.zeros(len(T), dtype=bool)
+    walk = _Walk(arm, limits)
+    for i, pose in enumerate(T):
+        walk.crossed = False
+        if arm.task.read(pose.tolist(), arm.policy) is None:
+            status = Status.INVALID
+        elif i:
+            status = walk.step(T[i - 1], pose, 0)
+        else:
+            status = walk.begin(search(pose, row, limits))
+        if status is not Status.OK:
+            return Path(q, i, status, singular)
+        q[i], singular[i] = walk.q, walk.crossed
+    return Path(q, len(T), Status.OK, singular)
+
+
+class _Walk:
+    """`q`: where the arm is; `crossed`: whether it came across a singularity since that was last unset."""
+
+    def __init__(self, arm: _Arm, limits: bool) -> None:
+        self.arm, self.limits = arm, limits
+        self.q: Array = np.zeros(len(arm.lower))
+        self.crossed = False
+
+    def begin(self, found: Solutions) -> Status:
+        """To the first of some rows."""
+        if len(found):
+            self.q, self.crossed = found.q[0], bool(found.singular[0])
+        return found.status
+
+    def step(self, before: Array, pose: Array, depth: int) -> Status:
+        """From a pose to the next, with halved steps where the rows do not follow the Jacobian."""
+        expected = self._expected(pose)
+        rows, flags, status = self._rows(pose, expected)
+        if len(rows):
+            gap = np.abs(rows - expected).max(axis=1)
+            k = int(gap.argmin())
+            moved = float(np.abs(rows[k] - self.q).max())
+            follows = moved < _FARTHEST and gap[k] < _LEAST_OFF + _OFF * moved
+            if follows or (depth == _DEEPEST and moved < _JUMP):
+                self.crossed = self.crossed or bool(flags[k]) or not follows
+                return self._arrive(rows[k])
+            status = Status.SINGULAR
+        if depth == _DEEPEST or (depth >= _SHALLOW and not len(rows)):
+            return status
+        middle = _between(before, pose)
+        first = self.step(before, middle, depth + 1)
+        return first if first is not Status.OK else self.step(middle, pose, depth + 1)
+
+    def _arrive(self, row: Array) -> Status:
+        """To a row, if it is inside the limits on the turn that it came to."""
+        if self.limits:
+            inside = np.clip(row, self.arm.lower, self.arm.upper)
+            if np.abs(inside - row).max() > self.arm.policy.limit_tolerance:
+                return Status.LIMITS
+            row = inside
+        self.q = row
+        return Status.OK
+
+    def _expected(self, pose: Array) -> Array:
+        """Where the shortest motion by the Jacobian leads from here."""
+        return self.q + self._motion(pose, list(range(len(self.q))))
+
+    def _motion(self, pose: Array, moving: list[int]) -> Array:
+        """The shortest motion (dof,) of some joints that the Jacobian asks for, at most a radian or
+        metre each."""
+        arm = self.arm
+        here, J = _tip_and_jacobian(arm.chain, self.q[None])
+        error, rows = arm.task.error(here, pose[None])[0], arm.task.rows(here, J)[0][:, moving]
+        normal = rows @ rows.T + _DAMPING * np.eye(len(rows))
+        step = np.zeros(len(self.q))
+        step[moving] = np.clip(rows.T @ np.linalg.solve(normal, error), -1.0, 1.0)
+        return step
+
+    def _rows(self, pose: Array, expected: Array) -> tuple[Array, _Flags, Status]:
+        """All rows without limits; with held joints the one that those lead to which no limit stops."""
+        if self.arm.free:
+            return self._unstopped(pose)
+        found = _solve_pose(self.arm, pose, None, self.q, False)
+        return found.q, found.singular, found.status
+
+    def _unstopped(self, pose: Array) -> tuple[Array, _Flags, Status]:
+        """The row next to the expected one that all joints reach together, those that it would take out
+        of their limits stopped there."""
+        arm, stopped = self.arm, dict[int, float]()
+        while True:
+            moving = [j for j in range(len(self.q)) if j not in stopped]
+            at = self.q.copy()
+            for j, value in stopped.items():
+                at[j] = value
+            q, arrived, _ = _refine(
+                arm.chain,
+                arm.task,
+                moving,
+                (at + self._motion(pose, moving))[None],
+                pose[None],
+                arm.policy,
+            )
+            if not arrived[0]:
+                none = np.empty((0, len(at))), np.empty(0, dtype=bool)
+                return *none, Status.LIMITS if stopped else Status.UNREACHABLE
+            low, high = np.array(arm.lower), np.array(arm.upper)
+            excess = np.maximum(low - q[0], q[0] - high)
+            worst = int(excess.argmax())
+            if not self.limits or excess[worst] <= arm.policy.limit_tolerance:
+                loss = _rank_loss(arm.chain, arm.task, range(len(at)), q)
+                return q, loss < arm.policy.rank_loss, Status.OK
+            stopped[worst] = float(low[worst] if q[0, worst] < low[worst] else high[worst])
+
+
+def _between(a: Array, b: Array) -> Array:
+    """The pose halfway (4, 4): the middle of the positions, half of the turn between (its axis by the
+    antisymmetric part, or the largest column of the symmetric one for half turns)."""
+    T = 0.5 * (a + b)
+    R = a[:3, :3].T @ b[:3, :3]
+    w = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
+    sine, cosine = 0.5 * float(np.linalg.norm(w)), 0.5 * (float(np.trace(R)) - 1.0)
+    angle = float(np.arctan2(sine, cosine))
+    if sine > 1e-6:
+        axis = w / (2.0 * sine)
+    elif cosine > 0.0:
+        return np.asarray(np.where(np.arange(4) == 3, T, a))
+    else:
+        S = R + np.eye(3)
+        column = S[:, int(np.argmax(np.diag(S)))]
+        axis = column / np.linalg.norm(column)
+    K = np.cross(np.eye(3), -axis)
+    half = 0.5 * angle
+    T[:3, :3] = a[:3, :3] @ (np.eye(3) + np.sin(half) * K + (1.0 - np.cos(half)) * K @ K)
+    return T
 
 
 # Tasks that read some entries of the pose.

@@ -39,7 +39,7 @@ def solve_pose(
     if matrix.shape != (4, 4):
         raise ValueError(f"pose has shape {matrix.shape}, expected (4, 4)")
     near = None if seed is None else tuple(seed_rows(arm, seed, (dof,)).tolist())
-    held = held_values(arm, free)
+    held = held_values(arm, free, near)
     lines = matrix.tolist()
     if orthonormalize:
         lines = nearest_pose(arm.task, lines, arm.policy)

@@ -21,6 +21,7 @@ class Status(str, Enum):
     UNREACHABLE = "UNREACHABLE"
     LIMITS = "LIMITS"
     INVALID = "INVALID"
+    SINGULAR = "SINGULAR"  # of a path alone
     __str__ = str.__str__  # NumPy compares by it
 
 
