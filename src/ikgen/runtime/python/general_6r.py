@@ -84,13 +84,13 @@ def refined_rows(
     F: Array, turning: Turning, T: Array, q: Array, policy: Policy
 ) -> tuple[Array, Flags, Array]:
     """Newton steps from q (k, 6) to T (k, 4, 4): q, which arrived, and the errors before (k,)."""
-    near = _within(q, turning)
+    near = _slides_near(q, turning)
     chain, start = six_joints(F, turning), np.where(near[:, None], q, 0.0)
     q, arrived, before = refine(chain, PoseTask(1.0), _SIX, start, T, policy)
     return q, arrived & near, np.where(near, before, np.inf)
 
 
-def _within(q: Array, turning: Turning) -> Flags:
+def _slides_near(q: Array, turning: Turning) -> Flags:
     """Which rows (k, 6) have no slide far beyond the arm: there slides become parallel."""
     return np.asarray((np.array(turning) | (np.abs(q) < _FARTHEST)).all(axis=1))
 
@@ -105,7 +105,7 @@ def distinct_rows(q: Array, turning: Turning, coincident: float) -> Array:
     long slides count relative to their length."""
     turns = np.array(turning)
     q = np.where(turns, np.pi - np.mod(np.pi - q, 2.0 * np.pi), q)
-    q = q[_within(q, turning)]
+    q = q[_slides_near(q, turning)]
     size = np.where(turns, 1.0, np.maximum(np.abs(q), 1.0))
     apart = np.abs(q[:, None] - q)
     apart = np.where(turns, np.abs(np.pi - np.abs(np.pi - apart)), apart / size).max(axis=2)
