@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import Any
 
 __all__ = [
+    "ArgumentError",
     "BadDescriptionError",
     "IkgenError",
     "MissingToolError",
@@ -36,9 +37,17 @@ class IkgenError(Exception):
         self.message = message
         self.hint = hint
 
+    def __str__(self) -> str:
+        """The message, and below it the way out: what a traceback shows."""
+        return f"{self.message}\nhint: {self.hint}" if self.hint else self.message
+
 
 class UsageError(IkgenError):
     """Options that do not fit together or lack a value."""
+
+
+class ArgumentError(UsageError, ValueError):
+    """An argument of a function of the library that does not do; the message names it."""
 
 
 class BadDescriptionError(IkgenError):

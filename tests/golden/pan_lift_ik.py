@@ -11,10 +11,11 @@ Needs NumPy and the standard library only. Angles in rad, lengths in m.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from enum import Enum
+from functools import partial
 from math import atan2, ceil, floor, inf, isfinite, pi, sqrt
-from typing import Protocol, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -61,24 +62,9 @@ a_2 = 0.3
 # v_i = scale * q[joint] + offset.
 _FRAMES: Array = np.array(
     [
-        [
-            [1.0, -0.0, 0.0, 0.0],
-            [0.0, 1.0, -0.0, -0.0],
-            [0.0, 0.0, 1.0, 0.0],
-            [0.0, 0.0, 0.0, 1.0],
-        ],
-        [
-            [1.0, -0.0, 0.0, 0.3],
-            [0.0, 1.0, -0.0, -0.0],
-            [0.0, 0.0, 1.0, 0.0],
-            [0.0, 0.0, 0.0, 1.0],
-        ],
-        [
-            [1.0, 0.0, 0.0, 0.0],
-            [0.0, 1.0, 0.0, 0.0],
-            [0.0, 0.0, 1.0, 0.0],
-            [0.0, 0.0, 0.0, 1.0],
-        ],
+        [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]],
+        [[1.0, 0.0, 0.0, 0.3], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]],
+        [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]],
     ]
 )
 _MOTIONS: tuple[tuple[int, bool, float, float], ...] = (
@@ -103,36 +89,40 @@ def jacobian(q: ArrayLike) -> Array:
 
 
 def solve(
-    pose: ArrayLike,
+    pose: Any,
     *,
     free: Sequence[float] | Mapping[str, float] | None = None,
     seed: ArrayLike | None = None,
     limits: bool = True,
+    orthonormalize: bool = False,
 ) -> Solutions:
-    """All joint values (rad, m) that bring TIP_LINK to `pose` (4, 4) in BASE_LINK.
+    """All joint values (rad, m) that bring TIP_LINK to `pose` in BASE_LINK: a matrix (4, 4) or (3, 4), a
+    pair (rotation, position) or (position, quaternion x y z w), or a transform that NumPy packages have.
 
     free: values of FREE_JOINTS; seed: (DOF,) values that order the solutions by distance, choose whole
     turns, and are taken where the pose leaves a joint free; limits: drop rows outside the limits.
-    A rotation that is right to 1e-06 stands for the nearest one.
+    A rotation that is right to 1e-06 stands for the nearest one;
+    orthonormalize: so does one that is right to 0.001.
     Raises ValueError for a wrong shape, or a seed or free value that is not finite; an unreachable pose is a status.
     """
-    return _solve_pose(_ARM, pose, free, seed, limits)
+    return _solve_pose(_ARM, pose, free, seed, limits, orthonormalize)
 
 
 def solve_batch(
-    poses: ArrayLike,
+    poses: Any,
     *,
     free: ArrayLike | Mapping[str, float] | None = None,
     seed: ArrayLike | None = None,
     limits: bool = True,
+    orthonormalize: bool = False,
 ) -> tuple[Array, NDArray[np.int64], NDArray[np.str_]]:
-    """`solve` for many poses (N, 4, 4) at once, in arrays.
+    """`solve` for many poses at once, in arrays: (N, 4, 4), or arrays or a sequence of what `solve` takes.
 
     free: as for `solve`, or one row a pose (N, len(FREE_JOINTS)); seed: (DOF,) or (N, DOF).
     Values of both must be finite.
     Returns q (N, MAX_SOLUTIONS, DOF) padded with NaN, count (N,), and status (N,): the Status names.
     """
-    return _solve_poses(_ARM, poses, free, seed, limits)
+    return _solve_poses(_ARM, poses, free, seed, limits, orthonormalize)
 
 
 def _branches(T: Sequence[Sequence[float]], q0: Row, held: Row) -> tuple[list[_Candidate], bool]:
@@ -207,13 +197,7 @@ _Motion = tuple[int, bool, float, float]  # joint, whether it turns, scale and o
 @dataclass(frozen=True)
 class _Chain:
     """`T = F_0 M(v_1) F_1 ... M(v_n) F_n`, M a rotation about or a motion along z,
-    `v_i = scale_i * q[joint_i] + offset_i`.
-
-    `frames` (n + 1, 4, 4) and `motions` say the same as `parts` (4, n, 4, 4), with which
-    `M(v) F = cos(v) parts[0] + sin(v) parts[1] + v parts[2] + parts[3]`, `joint`, `scale`, `offset` (n,),
-    `turning` (n, 1), whether M is a rotation, `slides`, whether one is not, and `drive` (n, dof), the
-    derivatives of v by q. `revolute` (dof): which joints turn.
-    """
+    `v_i = scale_i * q[joint_i] + offset_i`."""
 
     frames: Array
     motions: tuple[_Motion, ...]
@@ -284,15 +268,20 @@ def _cross(a: Array, b: Array) -> Array:
     return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)
 
 
-def _tip_and_jacobian(chain: _Chain, q: Array) -> tuple[Array, Array]:
-    """Tip poses (..., 4, 4) and geometric Jacobians (..., 6, dof), linear rows first."""
+def _joint_axes(chain: _Chain, q: Array) -> tuple[Array, Array, Array]:
+    """Directions (..., n, 3) of the axes, points (..., n, 3) on them, and tip poses (..., 4, 4)."""
     steps, count = _steps(chain, q), len(chain.motions)
     T = np.broadcast_to(chain.frames[0], (*q.shape[:-1], 4, 4))
     axes = np.empty((*q.shape[:-1], count, 3, 2))
     for i in range(count):
         axes[..., i, :, :] = T[..., :3, 2:]
         T = T @ steps[..., i, :, :]
-    z, p = axes[..., 0], axes[..., 1]
+    return axes[..., 0], axes[..., 1], T
+
+
+def _tip_and_jacobian(chain: _Chain, q: Array) -> tuple[Array, Array]:
+    """Tip poses (..., 4, 4) and geometric Jacobians (..., 6, dof), linear rows first."""
+    z, p, T = _joint_axes(chain, q)
     rows = np.concatenate([_cross(z, T[..., None, :3, 3] - p), z], axis=-1)
     if chain.slides:
         slide = np.concatenate([z, np.zeros_like(z)], axis=-1)
@@ -329,7 +318,14 @@ class _Policy:
 
 
 class _Task(Protocol):
-    """How poses are read and compared."""
+    """How poses are read and compared. `unit`: columns of the rotation that are read, unit vectors at right
+    angles; `alone`: "rotation" or "position" where no other part of the pose is read, else ""."""
+
+    @property
+    def unit(self) -> tuple[int, ...]: ...
+
+    @property
+    def alone(self) -> str: ...
 
     def read(self, T: list[list[float]], policy: _Policy) -> list[list[float]] | None:
         """The pose that nested lists stand for, its rotation the nearest one; None for no pose."""
@@ -359,7 +355,8 @@ class _Arm:
     most. `branches(T, q0, held)`: the closed form's rows for a pose, values of joints that it leaves
     free, values of held joints, and whether it left one free; `branches_batch`: in arrays. `beside`
     (n, 4, 4): motions of the tool to poses that are solved as well. `turning`: which joints are
-    revolute and not held; `moving`: indices of those not held."""
+    revolute and not held; `moving`: indices of those not held. `branch_kind`, `elbow_end`: as in
+    `branch_names`."""
 
     chain: _Chain
     task: _Task
@@ -375,6 +372,8 @@ class _Arm:
     beside: Array
     turning: tuple[bool, ...]
     moving: tuple[int, ...]
+    branch_kind: str
+    elbow_end: int
 
 
 # The arguments `free` and `seed` as joint values.
@@ -426,6 +425,216 @@ def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...]) -> Array:
     return values
 
 
+# Poses as people have them, as homogeneous matrices.
+
+
+_TRANSFORMS = (
+    "homogeneous",
+    "as_matrix",
+    "A",
+)  # pin.SE3; RigidTransform of SciPy; SE3 of spatialmath
+
+
+def _pose_matrices(pose: Any, alone: str) -> Array:
+    """(4, 4), or (N, 4, 4) of many: of matrices (4, 4) or (3, 4), pairs (rotation (3, 3), position) or
+    (position, quaternion x y z w), objects that have one of `_TRANSFORMS`, or a sequence of those."""
+    if isinstance(pose, np.ndarray) and pose.shape[-2:] == (4, 4):
+        return np.asarray(pose, dtype=float)
+    if isinstance(pose, (list, tuple)) and len(pose):
+        if any(hasattr(pose[0], name) for name in _TRANSFORMS):
+            return np.stack([_pose_matrices(one, alone) for one in pose])
+        pair = _of_pair(*map(_numbers, pose)) if len(pose) == 2 else None
+        if pair is not None:
+            return pair
+    for name in _TRANSFORMS:
+        value = getattr(pose, name, None)
+        if value is not None:
+            pose = value() if callable(value) else value
+            break
+    return _completed(_numbers(pose), alone)
+
+
+def _numbers(value: Any) -> Array:
+    try:
+        return np.asarray(value, dtype=float)
+    except TypeError:
+        raise ValueError(f"pose is no array of numbers: {type(value).__name__}") from None
+
+
+def _of_pair(a: Array, b: Array) -> Array | None:
+    """The matrices of a rotation and a position, or of a position and a quaternion."""
+    if a.shape[-2:] == (3, 3) and b.shape == a.shape[:-1]:
+        return _matrices(a, b)
+    if a.shape[-1:] == (3,) and b.shape == (*a.shape[:-1], 4):
+        return _matrices(_rotations(b), a)
+    return None
+
+
+def _matrices(R: Array, p: Array) -> Array:
+    T = np.zeros((*p.shape[:-1], 4, 4))
+    T[..., :3, :3], T[..., :3, 3], T[..., 3, 3] = R, p, 1.0
+    return T
+
+
+def _rotations(quaternion: Array) -> Array:
+    """(..., 3, 3) of x y z w: times its squared norm, so that a norm that is not 1 gives no rotation."""
+    x, y, z, w = np.moveaxis(quaternion, -1, 0)
+    rows = (
+        (w * w + x * x - y * y - z * z, 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
+        (2.0 * (x * y + w * z), w * w - x * x + y * y - z * z, 2.0 * (y * z - w * x)),
+        (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), w * w - x * x - y * y + z * z),
+    )
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def _completed(given: Array, alone: str) -> Array:
+    if given.shape[-2:] == (3, 4):
+        return _matrices(given[..., :3], given[..., 3])
+    if alone == "rotation" and given.shape[-2:] == (3, 3):
+        return _matrices(given, np.zeros(given.shape[:-1]))
+    if alone == "position" and given.shape[-1:] == (3,):
+        return _matrices(np.eye(3), given)
+    return given
+
+
+# The orthonormal vectors nearest to some that are so to a few digits: floats or arrays.
+
+
+_N = TypeVar("_N", float, Array)
+_Vector = tuple[_N, _N, _N]
+_Columns = tuple[_Vector[_N], ...]
+
+
+def _dot(u: _Vector[_N], v: _Vector[_N]) -> _N:
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+
+
+def _columns_defect(columns: _Columns[_N]) -> _N:
+    """Squared Frobenius norm of `V'V - 1`."""
+    total: _N = 0.0 * columns[0][0]
+    for i, u in enumerate(columns):
+        gap = _dot(u, u) - 1.0
+        total = total + gap * gap
+        for v in columns[:i]:
+            gap = _dot(u, v)
+            total = total + 2.0 * gap * gap
+    return total
+
+
+def _most_defect(entries: int, off: float) -> float:
+    """The largest defect of columns with so many entries, each off by `off`."""
+    norm = off * sqrt(entries)
+    return (2.0 * norm + norm * norm) ** 2
+
+
+def _determinant(columns: _Columns[_N]) -> _N:
+    """Of three columns: positive where they are right-handed."""
+    u, v, w = columns
+    x, y, z = u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+    return x * w[0] + y * w[1] + z * w[2]
+
+
+def _nearest_columns(columns: _Columns[_N]) -> _Columns[_N]:
+    """The nearest orthonormal columns, to all digits where entries are off by 1e-5 at most."""
+    for _ in range(2):
+        new: list[_Vector[_N]] = []
+        for v in columns:
+            x, y, z = (1.5 * a for a in v)
+            for u in columns:
+                half = 0.5 * _dot(u, v)
+                x, y, z = x - half * u[0], y - half * u[1], z - half * u[2]
+            new.append((x, y, z))
+        columns = tuple(new)
+    return columns
+
+
+# What is wrong with a pose that is none, and the rotation that one with few digits stands for.
+
+
+_PRINTED = 1e-3  # how far the entries of a rotation that was printed with a few digits may be off
+
+
+def _nearest_pose(task: _Task, T: list[list[float]], policy: _Policy) -> list[list[float]]:
+    """The pose with the nearest rotation; as it is where that is too far."""
+    return task.read(T, replace(policy, pose_tolerance=_PRINTED)) or T
+
+
+def _nearest_poses(task: _Task, T: Array, policy: _Policy) -> Array:
+    """The same of T (N, 4, 4)."""
+    near, good = task.read_batch(T, replace(policy, pose_tolerance=_PRINTED))
+    return np.where(good[:, None, None], near, T)
+
+
+def _pose_fault(task: _Task, T: list[list[float]], policy: _Policy) -> str:
+    """Why a pose is none."""
+    if not all(isfinite(x) for row in T[:3] for x in row):
+        return "the pose has entries that are not finite"
+    if T[3] != [0.0, 0.0, 0.0, 1.0]:
+        return f"the pose's last row is {T[3]}, not [0, 0, 0, 1]"
+    R = [(x, y, z) for x, y, z in zip(*T[:3])]
+    columns = tuple(R[j] for j in task.unit)
+    if len(columns) == 3 and _determinant(columns) < 0.0:
+        return "the pose's rotation is a reflection: its determinant is negative"
+    if not columns:
+        return "the pose has entries that no rotation has"
+    defect = sqrt(_columns_defect(columns))
+    off = (sqrt(1.0 + defect) - 1.0) / sqrt(3.0 * len(columns))
+    text = f"the pose's rotation is off by {off:.1e}, more than {policy.pose_tolerance:.0e}"
+    if task.read(T, replace(policy, pose_tolerance=_PRINTED)) is None:
+        return text
+    return f"{text}: orthonormalize=True takes the nearest one"
+
+
+# What distinguishes the rows of a pose: names of their branches, from the geometry of each row alone.
+
+
+def _branch_names(arm: _Arm, q: Array) -> tuple[str, ...]:
+    """A name for each row (k, dof)."""
+    if not len(q):
+        return ()
+    if arm.branch_kind == "names":
+        return _side_names(arm, q)
+    if arm.branch_kind == "number":
+        return tuple(f"branch {number}" for number in _branch_numbers(arm, q))
+    J = _tip_and_jacobian(arm.chain, q)[1][:, :, arm.moving]
+    return tuple(f"det J {'>' if sign > 0.0 else '<'} 0" for sign in np.linalg.det(J))
+
+
+def _inner(a: Array, b: Array) -> Array:
+    return np.asarray((a * b).sum(axis=-1))
+
+
+def _side_names(arm: _Arm, q: Array) -> tuple[str, ...]:
+    """Of six axes, the first at right angles to the second, which is parallel to the third."""
+    z, p, _ = _joint_axes(arm.chain, q)
+    up = z[:, 0] * np.where(z[:, :1, 2] < 0.0, -1.0, 1.0)
+    right = _inner(_cross(up, z[:, 1]), p[:, 5] - p[:, 0]) >= 0.0
+    elbow, end = p[:, 2] - p[:, 1], p[:, arm.elbow_end] - p[:, 1]
+    level = _cross(z[:, 1], up)  # in the plane of the links
+    above = _inner(z[:, 1], _cross(end, elbow)) * _inner(level, end) <= 0.0
+    plain = _inner(_cross(z[:, 3], z[:, 5]), z[:, 4]) >= 0.0
+    return tuple(
+        f"shoulder {'right' if r else 'left'}, elbow {'up' if a else 'down'}, "
+        f"wrist {'not flipped' if f else 'flipped'}"
+        for r, a, f in zip(right.tolist(), above.tolist(), plain.tolist())
+    )
+
+
+def _branch_numbers(arm: _Arm, q: Array) -> list[int]:
+    """For each row the closed form's branch, of those for the row's own pose, that is nearest to it."""
+    poses = _forward(arm.chain, q)
+    with np.errstate(all="ignore"):
+        rows, valid, _, _ = arm.branches_batch(poses, q, q[:, arm.free])
+        gap = rows - q[:, None, :]
+        turned = np.abs((gap + np.pi) % (2.0 * np.pi) - np.pi)
+        gap = np.where(arm.chain.revolute, turned, np.abs(gap))
+        gap[:, :, arm.free] = 0.0
+        distance = np.where(valid, gap.max(axis=2), np.inf)
+    distance[np.isnan(distance)] = np.inf
+    nearest: list[int] = distance.argmin(axis=1).tolist()
+    return nearest
+
+
 # Newton's method on the chain: damped least squares (Levenberg 1944, Marquardt 1963).
 
 
@@ -433,11 +642,7 @@ def _refine(
     chain: _Chain, task: _Task, moving: Sequence[int], q: Array, T: Array, policy: _Policy
 ) -> tuple[Array, _Flags, Array]:
     """Newton steps of the joints `moving` from q (k, dof) towards T (k, 4, 4); which rows arrived, and
-    the errors before (k,).
-
-    At a fold of the solution set the steps halve the error. Elsewhere all digits are wanted, as rows may
-    lie on a limit.
-    """
+    the errors before (k,)."""
     q = q.copy()
     error, before = np.full(len(q), inf), np.zeros(len(q))
     going = np.arange(len(q))
@@ -593,11 +798,21 @@ class Status(str, Enum):
 
 @dataclass(frozen=True)
 class Solutions:
-    """Solutions of one pose: `q` (k, DOF), `status`, and `singular` (k,): rows of a continuum."""
+    """Solutions of one pose: `q` (k, DOF), `status`, and `singular` (k,): rows of a continuum; `reason`
+    says why a pose is INVALID. As a sequence: its rows."""
 
     q: Array
     status: Status
     singular: _Flags
+    reason: str = ""
+    names: Callable[[Array], tuple[str, ...]] | None = field(
+        default=None, repr=False, compare=False
+    )
+
+    @property
+    def branch(self) -> tuple[str, ...]:
+        """What distinguishes each row: sides of shoulder, elbow and wrist where the arm has those."""
+        return () if self.names is None else self.names(self.q)
 
     def __len__(self) -> int:
         return len(self.q)
@@ -605,42 +820,49 @@ class Solutions:
     def __iter__(self) -> Iterator[Array]:
         return iter(self.q)
 
+    def __getitem__(self, index: Any) -> Array:
+        rows: Array = self.q[index]
+        return rows
+
 
 # All solutions of one pose, the closed form's inner loop on floats.
 
 
 def _solve_pose(
     arm: _Arm,
-    pose: ArrayLike,
+    pose: Any,
     free: Sequence[float] | Mapping[str, float] | None,
     seed: ArrayLike | None,
     limits: bool,
+    orthonormalize: bool = False,
 ) -> Solutions:
-    """All joint values that bring the tip to `pose` (4, 4); raises ValueError for bad arguments."""
-    matrix, dof = np.asarray(pose, dtype=float), len(arm.lower)
+    """All joint values that bring the tip to `pose`; raises ValueError for bad arguments."""
+    matrix, dof = _pose_matrices(pose, arm.task.alone), len(arm.lower)
     if matrix.shape != (4, 4):
         raise ValueError(f"pose has shape {matrix.shape}, expected (4, 4)")
     near = None if seed is None else tuple(_seed_rows(arm, seed, (dof,)).tolist())
     held = _held_values(arm, free)
-    T = arm.task.read(matrix.tolist(), arm.policy)
+    lines = matrix.tolist()
+    if orthonormalize:
+        lines = _nearest_pose(arm.task, lines, arm.policy)
+    T = arm.task.read(lines, arm.policy)
     found, real = ([], False) if T is None else _fitting(arm, T, near, held, limits)
     if not found:
         status = Status.INVALID if T is None else Status.LIMITS if real else Status.UNREACHABLE
-        return Solutions(np.empty((0, dof)), status, np.empty(0, dtype=bool))
+        reason = _pose_fault(arm.task, lines, arm.policy) if T is None else ""
+        return Solutions(np.empty((0, dof)), status, np.empty(0, dtype=bool), reason)
     if near is not None:
         origin = near
         found.sort(key=lambda item: sum((a - b) * (a - b) for a, b in zip(item[0], origin)))
     q = np.array([row for row, _ in found]) + 0.0
-    return Solutions(q, Status.OK, np.array([flag for _, flag in found], dtype=bool))
+    flags = np.array([flag for _, flag in found], dtype=bool)
+    return Solutions(q, Status.OK, flags, names=partial(_branch_names, arm))
 
 
 def _fitting(
     arm: _Arm, T: list[list[float]], near: Row | None, held: Row, limits: bool
 ) -> tuple[list[_Found], bool]:
-    """Solutions on the right turns, and whether there were any before limits.
-
-    Where the pose leaves a joint free and its given value leads nowhere, other values are tried.
-    """
+    """Solutions on the right turns, and whether there were any before limits."""
     real = False
     for tries in (range(1), range(1, arm.policy.tries)):
         starts = [_start(arm, near, held, n * arm.policy.try_step) for n in tries]
@@ -668,10 +890,7 @@ def _start(arm: _Arm, near: Row | None, held: Row, turn: float) -> Row:
 def _rows(
     arm: _Arm, T: list[list[float]], starts: list[Row], held: Row
 ) -> list[tuple[list[_Found], bool]]:
-    """For each start, the distinct solutions (radians between -pi and pi) and whether it was read.
-
-    Newton steps are taken by all rough rows together: their price is that of the calls.
-    """
+    """For each start, the distinct solutions (radians between -pi and pi) and whether it was read."""
     kept: list[list[_Found]] = [[] for _ in starts]
     fine: list[tuple[int, _Found]] = []
     rough: list[tuple[int, _Found]] = []
@@ -725,16 +944,14 @@ def _branch_axis(level: int, depth: int) -> Array:
 
 def _solve_poses(
     arm: _Arm,
-    poses: ArrayLike,
+    poses: Any,
     free: ArrayLike | Mapping[str, float] | None,
     seed: ArrayLike | None,
     limits: bool,
+    orthonormalize: bool = False,
 ) -> _Batch:
-    """Rows (N, most, dof) padded with NaN, counts (N,) and names of Status (N,) for poses (N, 4, 4).
-
-    Raises ValueError for bad arguments.
-    """
-    T, dof = np.asarray(poses, dtype=float), len(arm.lower)
+    """Rows (N, most, dof) padded with NaN, counts (N,) and names of Status (N,) for poses (N, 4, 4)."""
+    T, dof = _pose_matrices(poses, arm.task.alone), len(arm.lower)
     if T.ndim != 3 or T.shape[1:] != (4, 4):
         raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
     count = len(T)
@@ -745,6 +962,8 @@ def _solve_poses(
     q = np.full((count, arm.most, dof), np.nan)
     number = np.zeros(count, dtype=np.int64)
     status = np.full(count, Status.INVALID.value, dtype="<U11")
+    if orthonormalize:
+        T = _nearest_poses(arm.task, T, arm.policy)
     T, good = arm.task.read_batch(T, arm.policy)
     usable, size = np.flatnonzero(good), _CHUNK // (1 + len(arm.beside))
     for start in range(0, len(usable), size):
@@ -798,76 +1017,25 @@ def _rows_batch(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[A
     return q, _distinct(arm, q, valid), singular
 
 
-# The orthonormal vectors nearest to some that are so to a few digits: floats or arrays.
-#
-# The orthogonal polar factor is the nearest in the Frobenius norm; `V (3 - V'V) / 2` (Bjorck and Bowie
-# 1971) doubles its digits, with the same bits on every machine.
-
-
-_N = TypeVar("_N", float, Array)
-_Vector = tuple[_N, _N, _N]
-_Columns = tuple[_Vector[_N], ...]
-
-
-def _dot(u: _Vector[_N], v: _Vector[_N]) -> _N:
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
-
-
-def _columns_defect(columns: _Columns[_N]) -> _N:
-    """Squared Frobenius norm of `V'V - 1`."""
-    total: _N = 0.0 * columns[0][0]
-    for i, u in enumerate(columns):
-        gap = _dot(u, u) - 1.0
-        total = total + gap * gap
-        for v in columns[:i]:
-            gap = _dot(u, v)
-            total = total + 2.0 * gap * gap
-    return total
-
-
-def _most_defect(entries: int, off: float) -> float:
-    """The largest defect of columns with so many entries, each off by `off`."""
-    norm = off * sqrt(entries)
-    return (2.0 * norm + norm * norm) ** 2
-
-
-def _determinant(columns: _Columns[_N]) -> _N:
-    """Of three columns: positive where they are right-handed."""
-    u, v, w = columns
-    x, y, z = u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
-    return x * w[0] + y * w[1] + z * w[2]
-
-
-def _nearest_columns(columns: _Columns[_N]) -> _Columns[_N]:
-    """The nearest orthonormal columns, to all digits where entries are off by 1e-5 at most."""
-    for _ in range(2):
-        new: list[_Vector[_N]] = []
-        for v in columns:
-            x, y, z = (1.5 * a for a in v)
-            for u in columns:
-                half = 0.5 * _dot(u, v)
-                x, y, z = x - half * u[0], y - half * u[1], z - half * u[2]
-            new.append((x, y, z))
-        columns = tuple(new)
-    return columns
-
-
 # Tasks that read some entries of the pose.
 
 
 @dataclass(frozen=True)
 class _EntriesTask:
-    """The entries of `row` and `column`; positions count over `size` (m).
-
-    `unit`: columns of the rotation that are read, unit vectors at right angles; one that lies `flat` in the
-    x-y plane is a heading: it may be shorter than 1, as that of a tilted tool, which nothing reaches.
-    """
+    """The entries of `row` and `column`; positions count over `size` (m)."""
 
     size: float
     row: tuple[int, ...]
     column: tuple[int, ...]
     unit: tuple[int, ...]
     flat: bool
+
+    @property
+    def alone(self) -> str:
+        """Implements `Task`."""
+        if 3 not in self.column:
+            return "rotation"
+        return "position" if set(self.column) == {3} else ""
 
     def read(self, T: list[list[float]], policy: _Policy) -> list[list[float]] | None:
         """Implements `Task`."""
@@ -954,6 +1122,8 @@ _ARM = _Arm(
     branches=_branches,
     branches_batch=_branches_batch,
     beside=_BESIDE,
+    branch_kind="number",
+    elbow_end=5,
     turning=(True, False, ),
     moving=(0, 1, ),
 )

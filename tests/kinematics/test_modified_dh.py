@@ -78,6 +78,14 @@ def test_rows_reproduce_any_chain(chain: Chain) -> None:
     assert not dh.snaps
 
 
+def test_twists_share_a_name_within_the_tolerance_only() -> None:
+    # two twists of this chain are 3e-6 rad apart
+    chain = random_chain(np.random.default_rng(3292), "RRRRPRPRR", "ggpgmsapm")
+    exact, shared = to_dh(chain, **TIGHT), to_dh(chain, angle_tolerance=1e-4)
+    assert max(exact.deviation) < 1e-11 and not exact.snaps
+    assert exact.rows[3].alpha.name == "alpha_3" and shared.rows[3].alpha.name == "alpha_1"
+
+
 @given(chains(), st.integers(0, 2**32))
 @settings(max_examples=100, deadline=None)
 def test_other_frames_give_the_same_geometry(chain: Chain, seed: int) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from ikgen.cli.tree_text import angle_text, constants, length_text
+from ikgen.library.dh_text import angle_text, constants, length_text
 
 if TYPE_CHECKING:
     from ikgen.generation.advice import Attempt

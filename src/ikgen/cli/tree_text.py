@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from ikgen.cli.tables import table
+from ikgen.library.dh_text import constants, row_texts
 
 if TYPE_CHECKING:
-    from ikgen.model.dh import Angle, DHChain, DHRow, Length
+    from ikgen.model.dh import DHChain
     from ikgen.model.joint_tree import Joint, JointTree, Limits, Matrix
 
-__all__ = ["angle_text", "constants", "dh_table", "joint_tree", "length_text", "transform_text"]
+__all__ = ["dh_table", "joint_tree", "transform_text"]
 
 _WIDEST = 120
 """Characters of indent; what lies deeper is not indented further."""
@@ -61,55 +61,9 @@ def _range(limits: Limits) -> str:
 
 def dh_table(dh: DHChain) -> str:
     """The modified DH rows, then the values of their constants."""
-    rows = [("i", "joint", "alpha", "a", "theta", "d")]
-    for i, row in enumerate(dh.rows, start=1):
-        theta, d = _variable(row, dh), length_text(row.d)
-        if not row.revolute:
-            theta, d = angle_text(row.theta), theta
-        rows.append((str(i), row.name, angle_text(row.alpha), length_text(row.a), theta, d))
+    rows = [("i", "joint", "alpha", "a", "theta", "d"), *row_texts(dh)]
     values = ", ".join(f"{name} = {value:.10g}" for name, value in constants(dh).items())
     return table(rows) + (f"\n  {values}" if values else "")
-
-
-def constants(dh: DHChain) -> dict[str, float]:
-    """Named constants (rad or m) in the order of the rows; None of them is exact."""
-    found: dict[str, float] = {}
-    for row in dh.rows:
-        for constant in (row.alpha, row.a, row.d, row.theta, row.offset):
-            if constant.name is not None:
-                sign = getattr(constant, "sign", 1)
-                found.setdefault(constant.name, sign * constant.value)
-    return found
-
-
-def _variable(row: DHRow, dh: DHChain) -> str:
-    """The row's variable: `scale * q + offset` with the joint's name for q."""
-    name = dh.joints[row.driver].name
-    text = name if row.scale == 1 else f"-{name}" if row.scale == -1 else f"{row.scale:g} {name}"
-    offset = angle_text(row.offset) if row.revolute else length_text(row.offset)  # type: ignore[arg-type]
-    if offset == "0":
-        return text
-    return f"{text} - {offset[1:]}" if offset.startswith("-") else f"{text} + {offset}"
-
-
-def angle_text(angle: Angle) -> str:
-    """An exact angle as a multiple of pi, another one by its name or value."""
-    exact = angle.exact
-    if exact is None:
-        return angle.name or f"{angle.value:.10g}"
-    if exact == 0:
-        return "0"
-    sign = "-" if exact < 0 else ""
-    size = Fraction(abs(exact))
-    top = "pi" if size.numerator == 1 else f"{size.numerator} pi"
-    return f"{sign}{top}" if size.denominator == 1 else f"{sign}{top}/{size.denominator}"
-
-
-def length_text(length: Length) -> str:
-    """A length by its signed name; exact zero is 0."""
-    if length.name is None:
-        return "0"
-    return f"-{length.name}" if length.sign < 0 else length.name
 
 
 def transform_text(T: Matrix) -> tuple[str, str]:

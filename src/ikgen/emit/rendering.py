@@ -11,7 +11,7 @@ from ikgen.errors import IkgenError
 if TYPE_CHECKING:
     import jinja2
 
-__all__ = ["environment", "folder_environment", "render"]
+__all__ = ["environment", "folder_environment", "render", "template_folder"]
 
 
 def environment(language: str) -> jinja2.Environment:
@@ -19,7 +19,7 @@ def environment(language: str) -> jinja2.Environment:
 
     Raises IkgenError where the installation has no templates for the language.
     """
-    return folder_environment(_folder(language))
+    return folder_environment(template_folder(language))
 
 
 @cache
@@ -42,8 +42,9 @@ def render(language: str, template: str, **values: object) -> str:
     return environment(language).get_template(template).render(**values)
 
 
-def _folder(language: str) -> Path:
-    """A wheel carries the templates inside the package; a checkout has them beside `src`."""
+def template_folder(language: str) -> Path:
+    """Where the templates of a language lie: a wheel carries them inside the package, a checkout has them
+    beside `src`."""
     package = Path(__file__).resolve().parent.parent
     for folder in (package / "templates", package.parent.parent / "templates"):
         if (folder / language).is_dir():

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ikgen.generation.request import Outputs, Request
     from ikgen.verify.verification_report import VerificationReport
 
-__all__ = ["Generation", "generate"]
+__all__ = ["Generation", "Made", "generate", "make_texts"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,16 +57,16 @@ def generate(request: Request, outputs: Outputs, progress: Progress = silent) ->
         earlier.check(request, reading, find_task(request.task).name if request.task else None)
     kept = () if outputs.only else tuple(n for n in earlier.emit if n not in outputs.emit)
     emitters = [*_again(kept), *asked]
-    made, derivation, reports = _made(request, reading, emitters, outputs, progress)
+    made = make_texts(request, reading, emitters, outputs, progress)
+    derivation = made.derivation
     if not outputs.force:
         earlier.check(request, reading, derivation.task.name)
-    texts = {name: text for one in made.values() for name, text in one.items()}
-    texts |= record_texts(request, outputs, derivation, made)
+    texts = made.files | record_texts(request, outputs, derivation, made.texts)
     removed = tuple(earlier.outdated([outputs.out / name for name in texts]))
     files = publish(outputs.out, texts, removed)
     seconds = time.perf_counter() - started
     left = left_over(outputs.out, derivation.module.name, files)
-    return Generation(derivation, files, reports, seconds, kept, removed, left)
+    return Generation(derivation, files, made.reports, seconds, kept, removed, left)
 
 
 def _again(kept: Sequence[str]) -> list[Emitter]:
@@ -81,17 +81,31 @@ def _again(kept: Sequence[str]) -> list[Emitter]:
 _REFUSED = 2
 """How many choices of joints to hold may fail the verification before it ends the run."""
 
-_Made = tuple[dict[str, dict[str, str]], "Derivation", dict[str, "VerificationReport"]]
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """Texts that are not written yet: `texts` by output and file name, the derivation, the verification of
+    each language, and tasks that were `passed_over` because what they gave failed it."""
+
+    texts: Mapping[str, dict[str, str]]
+    derivation: Derivation
+    reports: Mapping[str, VerificationReport]
+    passed_over: tuple[str, ...] = ()
+
+    @property
+    def files(self) -> dict[str, str]:
+        """File name -> text of all outputs."""
+        return {name: text for one in self.texts.values() for name, text in one.items()}
 
 
-def _made(
+def make_texts(
     request: Request,
     reading: Reading,
     emitters: Sequence[Emitter],
     outputs: Outputs,
-    progress: Progress,
-) -> _Made:
-    """The texts of each output, the derivation, and the verification.
+    progress: Progress = silent,
+) -> Made:
+    """Derive, emit and verify; nothing is written. Raises `VerificationError` if a check fails.
 
     Where what was chosen for the arm fails, the next choice is taken: of joints to hold, and of a task
     whose closed form has a weak step the whole pose.
@@ -114,7 +128,7 @@ def _made(
         if emitter.tells_verification:
             progress("emit", emitter.name)
             made[emitter.name] = emitter.emit(derivation, reports)
-    return made, derivation, reports
+    return Made(made, derivation, reports, tuple(sorted(tasks)))
 
 
 def _emitted(

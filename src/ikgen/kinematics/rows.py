@@ -24,7 +24,7 @@ _MOSTLY_TWIST = 1.01
 """A link turned by less than this times its change of alpha was turned in alpha alone."""
 
 _SAME_ANGLE = 1e-5
-"""Twists (rad) that are not multiples of pi/12 share a name within this."""
+"""Twists (rad) that are not multiples of pi/12 share a name within this, and within the tolerance."""
 
 
 def build_rows(
@@ -45,7 +45,7 @@ def build_rows(
     for k, axis in enumerate(axes):
         alpha, a = _ZERO_ANGLE, _ZERO_LENGTH
         if k > 0:
-            alpha = _twist(shapes[k - 1], k, twists, log)
+            alpha = _twist(shapes[k - 1], k, twists, tolerance, log)
             a = book.enter(shapes[k - 1].a, f"a_{k}")
             log.add(f"a_{k}", shapes[k - 1].measured_a, shapes[k - 1].a)
         row = DHRow(
@@ -101,11 +101,13 @@ def drive_row(row: DHRow, axis: ChainAxis, number: int) -> DHRow:
     return replace(row, scale=sign * axis.multiplier, offset=offset)
 
 
-def _twist(shape: LinkShape, number: int, known: list[Angle], log: SnapLog) -> Angle:
-    name = f"alpha_{number}"
+def _twist(
+    shape: LinkShape, number: int, known: list[Angle], tolerance: Tolerance, log: SnapLog
+) -> Angle:
+    name, same = f"alpha_{number}", min(_SAME_ANGLE, tolerance.angle)
     alpha = exact_angle(shape.alpha, 1e-9, name)
     for twist in known:
-        if alpha.exact is None and abs(twist.value - alpha.value) <= _SAME_ANGLE:
+        if alpha.exact is None and abs(twist.value - alpha.value) <= same:
             alpha = twist
     if alpha.exact is None:
         known.append(alpha)

@@ -37,7 +37,7 @@ def operand_of(e: Expr) -> Operand:
 
 
 def _numbers(F: NDArray[np.float64]) -> Entries:
-    return tuple(tuple(float(x) for x in row) for row in F[:3])
+    return tuple(tuple(float(x) + 0.0 for x in row) for row in F[:3])  # no negative zeros
 
 
 def _symbolic(before: NDArray[np.float64], row: DHRow) -> Entries:

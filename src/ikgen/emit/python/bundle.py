@@ -108,14 +108,14 @@ def _kept(module: RuntimeSource, used: _Bundle) -> list[Definition]:
 
 
 def _section(module: RuntimeSource, used: _Bundle) -> str:
-    """A module's used definitions under its docstring as a comment."""
+    """A module's used definitions under its docstring's first line as a comment."""
     names: dict[str, str] = {}
     for one in module.definitions:
         for name in one.defines:
             names[name] = used.names.get((module.name, name), name)
     for local, key in module.internal.items():
         names[local] = used.names.get(key, local)
-    text = "\n".join(f"# {line}".rstrip() for line in module.docstring.splitlines())
+    text = f"# {next(iter(module.docstring.splitlines()), module.name)}"
     before: Definition | None = None
     for one in _kept(module, used):
         if one.block or before is None or before.block:

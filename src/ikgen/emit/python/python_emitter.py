@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from ikgen.elimination.routine import runtime_policy
 from ikgen.emit.blanks import blanks, pairs
 from ikgen.emit.printer import expression
+from ikgen.emit.python.branch_kinds import branch_kind, elbow_end
 from ikgen.emit.python.bundle import bundle
 from ikgen.emit.python.python_language import SCALAR, number
 from ikgen.emit.python.python_statements import batch_lines, scalar_lines
@@ -56,6 +57,8 @@ def emit_module(module: SolverModule) -> str:
         orientation=module.reads.orientation,
         entries=module.reads.entries,
         size=module.size,
+        branch_kind=branch_kind(module),
+        elbow_end=elbow_end(module),
         unit_columns=_UNIT_COLUMNS.get(module.reads.orientation, ()),
         policy=policy,
         policy_values=_policy_values(runtime_policy(policy)),

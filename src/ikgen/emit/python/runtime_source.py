@@ -20,13 +20,15 @@ PACKAGE = "ikgen.runtime.python"
 class Definition:
     """A top-level statement: the names it `defines`; its `lines` from the comments above it on, the
     first being line `start` of the module; `places` of names in them (line from 0, column in
-    bytes, name); whether it is a `block`, a function or class."""
+    bytes, name); whether it is a `block`, a function or class; the lines (first, last, from 0) that
+    docstrings have behind their first paragraph as its `details`."""
 
     defines: tuple[str, ...]
     lines: tuple[str, ...]
     start: int
     places: tuple[tuple[int, int, str], ...]
     block: bool
+    details: tuple[tuple[int, int], ...] = ()
 
     @property
     def uses(self) -> frozenset[str]:
@@ -34,12 +36,16 @@ class Definition:
         return frozenset(name for _, _, name in self.places)
 
     def text(self, names: Mapping[str, str]) -> str:
-        """Its text with names replaced, in backticks of its documentation too."""
+        """Its text with names replaced, in backticks of its documentation too; without details where
+        no name of it is public: those are for who works on the runtime."""
         lines = [line.encode() for line in self.lines]
         for line, column, name in sorted(self.places, reverse=True):
             end = column + len(name.encode())
             new = names.get(name, name).encode()
             lines[line] = lines[line][:column] + new + lines[line][end:]
+        if all(names.get(name, name).startswith("_") for name in self.defines):
+            for first, last in reversed(self.details):
+                lines[first - 1 : last + 1] = [lines[first - 1] + b'"""']
         text = b"\n".join(lines).decode()
         return re.sub(r"`(\w+)`", lambda m: f"`{names.get(m[1], m[1])}`", text)
 
@@ -113,7 +119,18 @@ def _definition(node: ast.stmt, lines: list[str], above: int) -> Definition:
         start -= 1
     places = tuple((line - start, column, name) for line, column, name in _places(node))
     part = tuple(lines[start - 1 : node.end_lineno])
-    return Definition(_defined(node), part, start, places, block)
+    details = tuple((a - start, b - start) for a, b in _details(node, lines))
+    return Definition(_defined(node), part, start, places, block, details)
+
+
+def _details(node: ast.stmt, lines: list[str]) -> Iterator[tuple[int, int]]:
+    """First and last line (from 1) of what docstrings say behind their first paragraph, in order."""
+    for part in ast.walk(node):
+        if isinstance(part, ast.FunctionDef | ast.ClassDef) and ast.get_docstring(part):
+            first, last = part.body[0].lineno, part.body[0].end_lineno or part.body[0].lineno
+            blank = next((i for i in range(first, last) if not lines[i - 1].strip()), None)
+            if blank is not None:
+                yield blank, last
 
 
 def _defined(node: ast.stmt) -> tuple[str, ...]:

@@ -11,7 +11,14 @@ __all__ = ["Task"]
 
 
 class Task(Protocol):
-    """How poses are read and compared."""
+    """How poses are read and compared. `unit`: columns of the rotation that are read, unit vectors at right
+    angles; `alone`: "rotation" or "position" where no other part of the pose is read, else ""."""
+
+    @property
+    def unit(self) -> tuple[int, ...]: ...
+
+    @property
+    def alone(self) -> str: ...
 
     def read(self, T: list[list[float]], policy: Policy) -> list[list[float]] | None:
         """The pose that nested lists stand for, its rotation the nearest one; None for no pose."""

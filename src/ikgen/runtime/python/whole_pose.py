@@ -24,6 +24,8 @@ class PoseTask:
     """Positions count over `size` (m)."""
 
     size: float
+    unit: tuple[int, ...] = (0, 1, 2)
+    alone: str = ""
 
     def read(self, T: list[list[float]], policy: Policy) -> list[list[float]] | None:
         """Implements `Task`."""

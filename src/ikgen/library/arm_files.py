@@ -1,0 +1,79 @@
+"""Files of an arm in memory: its outputs, and the page of its derivation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ikgen.errors import ArgumentError, MissingToolError
+from ikgen.generation.publish import Content, check_folder, publish
+
+if TYPE_CHECKING:
+    from ikgen.generation.request import Outputs, Request
+    from ikgen.library.loaded_arm import Arm
+
+__all__ = ["save", "write_page"]
+
+_PAGES = {
+    ".html": "_report.html",
+    ".tex": "_report.tex",
+    ".pdf": "_report.tex",
+    ".svg": "_graph.svg",
+}
+"""Suffix of a page -> end of the name of the text that it is made from."""
+
+
+def save(
+    request: Request, outputs: Outputs, folder: Path, emit: str | Iterable[str]
+) -> tuple[Path, ...]:
+    """Write outputs (and their records) as the command line does."""
+    from ikgen.generation.emitters import find_emitter
+    from ikgen.generation.generate import generate
+
+    names = (emit,) if isinstance(emit, str) else emit
+    if not isinstance(names, Iterable):
+        raise ArgumentError(
+            f"emit: {emit!r} does not do", hint="give names of outputs: python, cpp"
+        )
+    asked = tuple(names)
+    if not asked or not all(isinstance(name, str) for name in asked):
+        raise ArgumentError(
+            f"emit: {emit!r} does not do", hint="give names of outputs: python, cpp"
+        )
+    for name in asked:
+        find_emitter(name)
+    return generate(request, replace(outputs, emit=asked, out=folder)).files
+
+
+def write_page(arm: Arm, file: Path) -> Path:
+    """Write the derivation report, in the format of the file's suffix."""
+    from ikgen.report import emit_report
+
+    end = _PAGES.get(file.suffix.lower())
+    if end is None:
+        known = ", ".join(_PAGES)
+        raise ArgumentError(
+            f"file: '{file}' has none of the suffixes of a report",
+            hint=f"name it with one of {known}",
+        )
+    check_folder(file.parent)
+    report = arm.verification
+    texts = emit_report(arm.derivation.whole, {} if report is None else {"python": report})
+    content: Content = next(text for name, text in texts.items() if name.endswith(end))
+    if file.suffix.lower() == ".pdf":
+        content = _pdf(file.with_suffix(".tex").name, str(content))
+    return publish(file.parent, {file.name: content})[0]
+
+
+def _pdf(name: str, text: str) -> bytes:
+    from ikgen.report.pdf import typeset
+
+    result = typeset(name, text)
+    if result.pdf is None:
+        raise MissingToolError(
+            f"no PDF: {result.failure or 'LaTeX is not installed'}",
+            hint="apt-get install texlive-latex-base; or write .tex or .html",
+        )
+    return result.pdf

@@ -1,0 +1,199 @@
+"""The arguments of `ikgen.load`, checked one by one, as a `Request`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from ikgen.errors import ArgumentError, IkgenError
+from ikgen.generation.joint_value import joint_value
+from ikgen.generation.request import Request
+from ikgen.importers.named_robots import is_named
+from ikgen.model.module_name import identifier, is_module_name
+
+__all__ = ["checked_count", "checked_flag", "checked_path", "checked_request"]
+
+
+def checked_request(
+    robot: object,
+    *,
+    base: object,
+    tip: object,
+    task: object,
+    free: object,
+    lock: object,
+    args: object,
+    package_paths: object,
+    name: object,
+    trust: object,
+) -> Request:
+    """The request that the arguments make; raises `ArgumentError` that names the wrong one."""
+    file = _robot(robot)
+    held, locked = _held(free), _locked(lock)
+    for joint in held:
+        if joint in locked:
+            raise ArgumentError(f"joint '{joint}' is in both free and lock", hint="leave one out")
+    request = Request(
+        robot=file,
+        base=_text("base", base, "the name of a link, as in the file"),
+        tip=_text("tip", tip, "the name of a link, as in the file"),
+        task=_task(task),
+        free=held,
+        lock=locked,
+        args=_xacro_arguments(args),
+        package_paths=_folders(package_paths),
+        name=_name(name),
+        trust=checked_flag("trust", trust),
+    )
+    _refuse_for_tables(request)
+    return request
+
+
+def _robot(robot: object) -> Path:
+    """The file that is meant."""
+    if not isinstance(robot, str | os.PathLike):
+        raise _wrong("robot", robot, 'a path, or a name such as "example-robot-data:panda"')
+    path = Path(os.fsdecode(robot))
+    if is_named(path):
+        return path
+    if not os.fsdecode(robot):
+        raise ArgumentError("robot is empty", hint="name a URDF or xacro file, or a DH table")
+    if path.is_dir():
+        raise ArgumentError(f"robot: '{path}' is a directory", hint="name the file in it")
+    if not path.exists():
+        raise ArgumentError(
+            f"robot: there is no file '{path}'", hint=f"paths are relative to {Path.cwd()}"
+        )
+    return path
+
+
+def _refuse_for_tables(request: Request) -> None:
+    """A DH table is one chain without arguments."""
+    for given in ("base", "tip", "args", "package_paths"):
+        if request.table and getattr(request, given):
+            raise ArgumentError(
+                f"{given}: a DH table is one chain without arguments", hint=f"leave {given} out"
+            )
+
+
+def _text(argument: str, value: object, what: str) -> str | None:
+    if value is not None and (not isinstance(value, str) or not value):
+        raise _wrong(argument, value, what)
+    return value
+
+
+def _task(task: object) -> str | None:
+    from ikgen.tasks import TASKS, find_task
+
+    known = ", ".join(one.name for one in TASKS)
+    text = _text("task", task, f"one of {known}")
+    try:
+        return None if text is None else find_task(text).name
+    except IkgenError as error:
+        raise ArgumentError(f"task: {error.message}", hint=error.hint) from None
+
+
+def _held(free: object) -> dict[str, float | None]:
+    what = "a joint's name, several, or a mapping of names to default values"
+    if free is None:
+        return {}
+    if isinstance(free, str):
+        free = [free]
+    if isinstance(free, Mapping):
+        pairs = list(free.items())
+    elif isinstance(free, Iterable):
+        pairs = [(joint, None) for joint in free]
+    else:
+        raise _wrong("free", free, what)
+    found: dict[str, float | None] = {}
+    for joint, value in pairs:
+        if not isinstance(joint, str) or not joint:
+            raise _wrong("free", joint, what)
+        found[joint] = None if value is None else _value("free", joint, value)
+    return found
+
+
+def _locked(lock: object) -> dict[str, float]:
+    what = "a mapping of joints' names to values"
+    if lock is None:
+        return {}
+    if not isinstance(lock, Mapping) or not all(isinstance(n, str) and n for n in lock):
+        raise _wrong("lock", lock, what)
+    return {joint: _value("lock", joint, value) for joint, value in lock.items()}
+
+
+def _value(argument: str, joint: str, value: object) -> float:
+    try:
+        return joint_value(value)
+    except ValueError as error:
+        raise ArgumentError(
+            f"{argument}: {joint}: {error}",
+            hint='give rad or m, or a text with its unit: 0.5, "45deg", "120mm"',
+        ) from None
+
+
+def _xacro_arguments(args: object) -> dict[str, str]:
+    if args is None:
+        return {}
+    if not isinstance(args, Mapping) or not all(isinstance(n, str) and n for n in args):
+        raise _wrong("args", args, "a mapping of the xacro file's arguments to their values")
+    return {n: str(x).lower() if isinstance(x, bool) else str(x) for n, x in args.items()}
+
+
+def _folders(paths: object) -> tuple[Path, ...]:
+    what = "folders that are packages or hold them"
+    if isinstance(paths, str | os.PathLike):
+        paths = [paths]
+    if not isinstance(paths, Iterable):
+        raise _wrong("package_paths", paths, what)
+    found = []
+    for one in paths:
+        if not isinstance(one, str | os.PathLike):
+            raise _wrong("package_paths", one, what)
+        found.append(Path(os.fsdecode(one)))
+        if not found[-1].is_dir():
+            raise ArgumentError(f"package_paths: there is no directory '{found[-1]}'", hint=what)
+    return tuple(found)
+
+
+def _name(name: object) -> str | None:
+    text = _text("name", name, "an identifier, which begins the names of files")
+    if text is not None and not is_module_name(text):
+        raise ArgumentError(
+            f"name: '{text}' is not an identifier", hint=f'for example "{identifier(text)}"'
+        )
+    return text
+
+
+def checked_path(argument: str, path: object) -> Path:
+    """A path to write to."""
+    if not isinstance(path, str | os.PathLike) or not os.fsdecode(path):
+        raise _wrong(argument, path, "a path")
+    return Path(os.fsdecode(path))
+
+
+def checked_count(argument: str, value: object) -> int:
+    """A number of things, at least one."""
+    if isinstance(value, bool) or not hasattr(value, "__index__"):
+        raise _wrong(argument, value, "a whole number of 1 or more")
+    count = int(value.__index__())
+    if count < 1:
+        raise _wrong(argument, value, "a whole number of 1 or more")
+    return count
+
+
+def checked_flag(argument: str, value: Any) -> bool:
+    """True or false."""
+    if not isinstance(value, bool):
+        raise _wrong(argument, value, "True or False")
+    return value
+
+
+def _wrong(argument: str, value: object, what: str) -> ArgumentError:
+    shown = repr(value)
+    shown = shown if len(shown) <= 60 else f"{shown[:57]}..."
+    return ArgumentError(
+        f"{argument}: {shown} ({type(value).__name__}) does not do", hint=f"give {what}"
+    )

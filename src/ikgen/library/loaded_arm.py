@@ -1,0 +1,248 @@
+"""An arm in memory: its solver, where it came from, and how it was checked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ikgen.errors import ArgumentError, UsageError
+from ikgen.library.load_arguments import checked_path
+from ikgen.library.module_text import module_of
+
+if TYPE_CHECKING:
+    from ikgen.emit.derivation import Derivation
+    from ikgen.generation.request import Outputs, Request
+    from ikgen.library.arm_derivation import ArmDerivation
+    from ikgen.library.solver_cache import SolverEntry
+    from ikgen.runtime.python.solutions import Solutions
+    from ikgen.verify.verification_report import VerificationReport
+
+__all__ = ["Arm"]
+
+Array = NDArray[np.float64]
+
+
+class Arm:
+    """A robot's arm with its inverse kinematics, as `ikgen.load` gives it.
+
+    Its functions are those of the emitted module (`docs/reference/python-api.md`), which is `module`;
+    `source` is the module's text. Values are in rad and m, poses those of the tip in the base.
+    Functions raise `ArgumentError` for arguments that do not do.
+    """
+
+    def __init__(
+        self,
+        request: Request,
+        outputs: Outputs,
+        entry: SolverEntry,
+        derivation: Derivation | None = None,
+    ) -> None:
+        """`derivation` is that of the solver where it was just made; else it is made when asked for."""
+        self._request, self._outputs, self._entry = request, outputs, entry
+        self._derived = derivation
+
+    @property
+    def name(self) -> str:
+        """The arm's name, which begins the names of its files."""
+        return self._entry.name
+
+    @property
+    def source(self) -> str:
+        """The text of the Python module."""
+        return self._entry.text
+
+    @cached_property
+    def module(self) -> ModuleType:
+        """The Python module, as `import` would give it from a file."""
+        return module_of(self.name, self.source)
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """The joints, base to tip; held ones included, locked ones not."""
+        names: tuple[str, ...] = self.module.JOINT_NAMES
+        return names
+
+    @property
+    def dof(self) -> int:
+        """How many joints there are."""
+        return len(self.joint_names)
+
+    @property
+    def lower(self) -> Array:
+        """Lower limits (dof,) in rad or m; -inf where the file sets none."""
+        return np.array(self.module.LOWER)
+
+    @property
+    def upper(self) -> Array:
+        """Upper limits (dof,) in rad or m; inf where the file sets none."""
+        return np.array(self.module.UPPER)
+
+    @property
+    def free_joints(self) -> tuple[str, ...]:
+        """Joints that are held: their values are an input of `solve`."""
+        names: tuple[str, ...] = self.module.FREE_JOINTS
+        return names
+
+    @property
+    def base_link(self) -> str:
+        """The link that poses are given in."""
+        return str(self.module.BASE_LINK)
+
+    @property
+    def tip_link(self) -> str:
+        """The link that is placed."""
+        return str(self.module.TIP_LINK)
+
+    @property
+    def task(self) -> str:
+        """What of a pose counts."""
+        return str(self.module.TASK)
+
+    @property
+    def max_solutions(self) -> int:
+        """Rows of a solution at most."""
+        return int(self.module.MAX_SOLUTIONS)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What was odd in the robot's file."""
+        return self._entry.warnings
+
+    def forward(self, q: ArrayLike) -> Array:
+        """Poses (..., 4, 4) of the tip in the base at q (..., dof)."""
+        T: Array = self._call("forward", q)
+        return T
+
+    def jacobian(self, q: ArrayLike) -> Array:
+        """Geometric Jacobians (..., 6, dof) of the tip in the base: linear rows, then angular."""
+        J: Array = self._call("jacobian", q)
+        return J
+
+    def solve(
+        self,
+        pose: Any,
+        *,
+        free: Sequence[float] | Mapping[str, float] | None = None,
+        seed: ArrayLike | None = None,
+        limits: bool = True,
+        orthonormalize: bool = False,
+    ) -> Solutions:
+        """All joint values that bring the tip to `pose`: a matrix (4, 4) or (3, 4), a pair (rotation,
+        position) or (position, quaternion x y z w), a transform of Pinocchio, SciPy or spatialmath.
+
+        free: values of the held joints; seed: (dof,) values that order the rows by distance, choose
+        whole turns, and are taken where the pose leaves a joint free; limits: drop rows outside the
+        limits; orthonormalize: take the nearest rotation of one that was printed with a few digits (off by
+        up to 1e-3). A pose that cannot be reached, or is none, is a status of what comes back, and its
+        `reason` says what is wrong with it.
+        """
+        options = {"free": free, "seed": seed, "limits": limits}
+        found: Solutions = self._call("solve", pose, **options, orthonormalize=orthonormalize)
+        return found
+
+    def solve_batch(
+        self,
+        poses: Any,
+        *,
+        free: ArrayLike | Mapping[str, float] | None = None,
+        seed: ArrayLike | None = None,
+        limits: bool = True,
+        orthonormalize: bool = False,
+    ) -> tuple[Array, NDArray[np.int64], NDArray[np.str_]]:
+        """`solve` for N poses: q (N, max_solutions, dof) padded with NaN, counts (N,), status (N,)."""
+        found: tuple[Array, NDArray[np.int64], NDArray[np.str_]] = self._call(
+            "solve_batch", poses, free=free, seed=seed, limits=limits, orthonormalize=orthonormalize
+        )
+        return found
+
+    def self_motion(self, pose: Any, *, limits: bool = True) -> tuple[Any, ...]:
+        """Intervals of the held joint's values on which the pose has a row, one a branch."""
+        found: tuple[Any, ...] = self._call("self_motion", pose, limits=limits)
+        return found
+
+    def search(
+        self,
+        pose: Any,
+        *,
+        seed: ArrayLike | None = None,
+        prefer: str = "near",
+        limits: bool = True,
+    ) -> Solutions:
+        """Rows over all values of the held joints, best first: near to the seed, in the centre of the
+        limits, or dexterous."""
+        found: Solutions = self._call("search", pose, seed=seed, prefer=prefer, limits=limits)
+        return found
+
+    def follow(self, poses: Any, *, start: ArrayLike, limits: bool = True) -> Any:
+        """The path of one branch through poses, from `start` on."""
+        return self._call("follow", poses, start=start, limits=limits)
+
+    def _call(self, function: str, *arguments: Any, **options: Any) -> Any:
+        """What a function of the module gives; what it refuses, ikgen's own error refuses."""
+        called: Callable[..., Any] | None = getattr(self.module, function, None)
+        if called is None:
+            raise UsageError(
+                f"the solver of {self.name} has no {function}", hint=self._without(function)
+            )
+        try:
+            return called(*arguments, **options)
+        except (ValueError, TypeError) as error:
+            text = str(error)
+            raise ArgumentError(f"{function}: {text}", hint=self._expected(text)) from error
+
+    def _without(self, function: str) -> str:
+        if not self.free_joints:
+            return f"{function} is of arms with held joints: this one has none (see free=)"
+        return f"modules of this version of ikgen have no {function}"
+
+    def _expected(self, text: str) -> str:
+        """What the arguments of the module's functions are."""
+        dof, held = self.dof, ", ".join(self.free_joints) or "none"
+        words = {
+            "free": f"the held joints are: {held}",
+            "seed": f"seed has {dof} finite values: {', '.join(self.joint_names)}",
+            "q has": f"q has {dof} values: {', '.join(self.joint_names)}",
+            "pose": "a pose is a 4x4 matrix, or one of docs/reference/library.md#poses",
+        }
+        return next((hint for start, hint in words.items() if text.startswith(start)), "see help()")
+
+    @cached_property
+    def derivation(self) -> ArmDerivation:
+        """How the inverse kinematics was derived; made again where the solver came from the cache."""
+        from ikgen.library.arm_derivation import ArmDerivation, derived_again
+
+        return ArmDerivation(self._derived or derived_again(self._request, self._entry))
+
+    @property
+    def verification(self) -> VerificationReport | None:
+        """What the verification found: checks by name and as a table; None where it was left out."""
+        return self._entry.report
+
+    def save(self, folder: Any, emit: str | Iterable[str] = ("python",)) -> tuple[Path, ...]:
+        """Write outputs into a folder, each verified: the files. `emit` names outputs, as --emit does."""
+        from ikgen.library.arm_files import save
+
+        return save(self._request, self._outputs, checked_path("folder", folder), emit)
+
+    def report(self, file: Any) -> Path:
+        """Write the derivation as a page (.html), LaTeX (.tex, .pdf) or the solution graph (.svg)."""
+        from ikgen.library.arm_files import write_page
+
+        return write_page(self, checked_path("file", file))
+
+    def __repr__(self) -> str:
+        held = f", holding {', '.join(self.free_joints)}" if self.free_joints else ""
+        return (
+            f"<ikgen.Arm {self.name}: {self.base_link} -> {self.tip_link}, {self.dof} joints{held}, "
+            f"task {self.task}, at most {self.max_solutions} solutions>"
+        )
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        return self._entry.card
