@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pytest
+from benchmarks.command_line import REPOSITORY
 
 from benchmarks import determinism
-from benchmarks.command_line import REPOSITORY
 
 ELBOW = REPOSITORY / "examples/setuptools_robot/urdf/elbow.urdf"
 

@@ -6,9 +6,9 @@ import random
 from pathlib import Path
 
 import pytest
+from benchmarks.mutations import mutant
 
 from benchmarks import mutants
-from benchmarks.mutations import mutant
 
 
 def test_a_seed_gives_the_same_mutants() -> None:
