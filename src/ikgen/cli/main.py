@@ -15,6 +15,7 @@ import click
 from ikgen import __version__
 from ikgen.cli.error_output import ResultError, as_object, say, say_error, say_object
 from ikgen.errors import IkgenError
+from ikgen.processes.termination import TERMINATED, Terminated, unwind_on_signals
 
 __all__ = ["COMMANDS", "ikgen", "main", "run"]
 
@@ -66,6 +67,7 @@ def ikgen() -> None:
 def main() -> NoReturn:
     """Run the command line and exit."""
     warnings.simplefilter("ignore")  # NumPy's, of divisions whose results are then discarded
+    unwind_on_signals()
     code = run(sys.argv[1:])
     try:
         sys.stdout.flush()
@@ -80,7 +82,7 @@ def run(arguments: Sequence[str]) -> int:
         code = ikgen.main(args=list(arguments), prog_name="ikgen", standalone_mode=False)
     except BrokenPipeError:
         return 0
-    except (Exception, KeyboardInterrupt) as error:
+    except (Exception, KeyboardInterrupt, Terminated) as error:
         return _failed(error, _Wanted.of(arguments))
     return code if isinstance(code, int) else 0
 
@@ -125,6 +127,8 @@ def _explained(error: BaseException, verbose: bool) -> tuple[str, str, int]:
         return error.format_message(), f"see {command} --help", 2
     if isinstance(error, click.Abort | KeyboardInterrupt):
         return "interrupted", "", 130
+    if isinstance(error, Terminated):
+        return "ended by a signal", "", TERMINATED
     if isinstance(error, OSError):
         where = f"{error.filename}: " if error.filename else ""
         return f"{where}{error.strerror or error}", "check the path and its permissions", 2

@@ -14,12 +14,17 @@ _HELD_VALUES = (0.4, -1.1, 2.2)
 """Values of held joints (rad or m) at which plans are tried."""
 
 
+_MOST_SLIDES = 2
+"""Three leave the rotation to three joints alone, which rules solve."""
+
+
 def elimination_plan(dh: DHChain) -> EliminationPlan | None:
-    """The plan for a whole pose; None unless six revolute joints move, or where no plan finds all."""
-    moving = dh.dof - len(dh.free)
-    turning = all(row.revolute or dh.joints[row.driver].name in dh.free for row in dh.rows)
-    if moving != 6 or len(dh.rows) != dh.dof or not turning:
+    """The plan for a whole pose; None unless six joints move, at most two of them slides, or where no plan
+    finds all."""
+    moving = [row for row in dh.rows if dh.joints[row.driver].name not in dh.free]
+    turning = tuple(row.revolute for row in moving)
+    if len(moving) != 6 or len(dh.rows) != dh.dof or turning.count(False) > _MOST_SLIDES:
         return None
     values = _HELD_VALUES if dh.free else (0.0,)
-    plan = choose_plan(np.array([held_frames(dh, value) for value in values]))
+    plan = choose_plan(np.array([held_frames(dh, value) for value in values]), turning)
     return plan if plan.usable else None

@@ -5,7 +5,8 @@ The closed loop `R_1 C_1 ... R_6 C_6 = 1` may be begun at any joint and run back
 the two angles next to the hidden one be raised to the second degree in Raghavan and Roth's
 elimination (1990): 24 eliminations. Parallel or intersecting axes make some of them rank-deficient,
 others leave solutions that share the hidden angle; which ones is a property of the arm, hence found
-at generation time.
+at generation time. A slide has to be the first of the loop's joints or the second: eight eliminations. With
+two slides one of the four angles is hidden.
 """
 
 from __future__ import annotations
@@ -17,14 +18,15 @@ import numpy as np
 
 from ikgen.elimination.loop_frames import forward, jacobian, typical_length
 from ikgen.elimination.resultant import RESULTANTS, Resultant, root_shifts
-from ikgen.elimination.routine import Elimination, initial_residuals
+from ikgen.elimination.routine import Elimination, Plan, Turning, finder, initial_residuals
 from ikgen.model.joint_tree import Matrix
 
-__all__ = ["EliminationPlan", "choose_plan"]
+__all__ = ["EliminationPlan", "choose_plan", "eliminations"]
 
-_ELIMINATIONS: tuple[Elimination, ...] = tuple(
+_ALL: tuple[Elimination, ...] = tuple(
     (start, reverse, swap) for swap, reverse, start in product((0, 1), (0, 1), range(6))
 )
+_REVOLUTE: Turning = (True,) * 6
 _REGULAR = 1e-3
 _BLURRED = 1e-4  # rad; roots that move further are not worth a resultant
 _SAME = 1e-5
@@ -33,12 +35,13 @@ _KEPT = 2
 
 @dataclass(frozen=True, slots=True)
 class EliminationPlan:
-    """What `general_6r` embeds for one arm.
+    """What is embedded for one arm.
 
-    frames: (7, 4, 4) read-only, `T = F_0 Rz(v_1) F_1 ... Rz(v_6) F_6`. length: the arm's scale (m).
+    frames: (7, 4, 4) read-only, `T = F_0 M(v_1) F_1 ... M(v_6) F_6`. length: the arm's scale (m).
     eliminations: (start, reverse, swap) in order of preference. recall: fraction of all solutions
     met in probing that the first of them finds alone. resultants: (start, reverse) of hidden angles
-    whose polynomial has separate roots, in order of preference; may be none.
+    whose polynomial has separate roots, in order of preference; may be none. turning: which of the six
+    joints turn, the others slide.
     """
 
     frames: Matrix
@@ -46,6 +49,7 @@ class EliminationPlan:
     eliminations: tuple[Elimination, ...]
     recall: float
     resultants: tuple[Resultant, ...] = ()
+    turning: Turning = _REVOLUTE
 
     @property
     def usable(self) -> bool:
@@ -54,19 +58,32 @@ class EliminationPlan:
         return self.recall > 0.98
 
 
-def choose_plan(frames: Matrix, *, probes: int = 24, seed: int = 0) -> EliminationPlan:
-    """The best eliminations for a 6R chain, frames (7, 4, 4), or for all of a family (m, 7, 4, 4)
-    that differs by a held joint's value (the plan then carries the first one's frames).
+def eliminations(turning: Turning) -> tuple[Elimination, ...]:
+    """All that there are for six joints of which some slide."""
+    slides = turning.count(False)
+    if slides == 0:
+        return _ALL
+    if slides == 1:
+        return tuple(e for e in _ALL if not (turning[e[0]] and turning[(e[0] + 1 - 2 * e[1]) % 6]))
+    return tuple((start, 0, 0) for start in range(6) if turning[start])
+
+
+def choose_plan(
+    frames: Matrix, turning: Turning = _REVOLUTE, *, probes: int = 24, seed: int = 0
+) -> EliminationPlan:
+    """The best eliminations for a chain of six joints, at most two of them slides, frames (7, 4, 4), or for
+    all of a family (m, 7, 4, 4) that differs by a held joint's value (the plan then carries the first one's
+    frames).
 
     Raises ValueError for other shapes.
     """
     family = np.asarray(frames, dtype=np.float64)
     family = family[None] if family.ndim == 3 else family
     if family.ndim != 4 or family.shape[1:] != (7, 4, 4):
-        raise ValueError(f"frames of six revolute joints are (7, 4, 4), not {np.shape(frames)}")
+        raise ValueError(f"frames of six joints are (7, 4, 4), not {np.shape(frames)}")
     rng = np.random.default_rng(seed)
     each = max(probes // len(family), 2)
-    parts = [_probe(member, each, rng) for member in family]
+    parts = [_probe(member, turning, each, rng) for member in family]
     hits = np.concatenate([probe.hits for probe in parts], axis=1)
     rough = np.max([probe.rough for probe in parts], axis=0)
     shifts = np.max([probe.shifts for probe in parts], axis=0)
@@ -76,9 +93,10 @@ def choose_plan(frames: Matrix, *, probes: int = 24, seed: int = 0) -> Eliminati
     return EliminationPlan(
         frames=first,
         length=typical_length(first),
-        eliminations=tuple(_ELIMINATIONS[k] for k in order),
+        eliminations=tuple(eliminations(turning)[k] for k in order),
         recall=float(hits[order[0]].mean()) if hits.size else 0.0,
         resultants=tuple(RESULTANTS[k] for k in np.argsort(shifts)[:_KEPT] if shifts[k] < _BLURRED),
+        turning=turning,
     )
 
 
@@ -88,7 +106,7 @@ def _ranking(hits: Matrix, rough: Matrix) -> list[int]:
     order: list[int] = []
     covered = np.zeros(hits.shape[1], dtype=bool)
     for _ in range(_KEPT):
-        rest = [k for k in range(len(_ELIMINATIONS)) if k not in order]
+        rest = [k for k in range(len(hits)) if k not in order]
         found = {k: int((covered | hits[k]).sum()) for k in rest}
         penalty = {k: 0.005 * max(rough[k] + 8.0, 0.0) * hits.shape[1] for k in rest}
         order.append(max(rest, key=lambda k: (found[k] - penalty[k], -rough[k])))
@@ -98,27 +116,29 @@ def _ranking(hits: Matrix, rough: Matrix) -> list[int]:
 
 @dataclass(frozen=True, slots=True)
 class _Probe:
-    """hits (24, n) bool: which elimination finds which solution. rough (24,): the logarithm of its
-    candidates' errors. shifts (12,) in rad: how far rounding moves the roots of the resultants."""
+    """hits (n_e, n) bool: which elimination finds which solution. rough (n_e,): the logarithm of its
+    candidates' errors. shifts (n_r,) in rad: how far rounding moves the roots of the resultants."""
 
     hits: Matrix
     rough: Matrix
     shifts: Matrix
 
 
-def _probe(frames: Matrix, count: int, rng: np.random.Generator) -> _Probe:
-    length = typical_length(frames)
-    q = _configurations(frames, count, rng)
-    poses = np.array([forward(frames, row) for row in q])
+def _probe(frames: Matrix, turning: Turning, count: int, rng: np.random.Generator) -> _Probe:
+    length, plans = typical_length(frames), eliminations(turning)
+    q = _configurations(frames, turning, count, rng)
+    poses = np.array([forward(frames, turning, row) for row in q])
     if not len(poses):  # singular everywhere: two axes on one line, or four that keep parallel
-        hits = np.zeros((len(_ELIMINATIONS), 0), dtype=bool)
-        return _Probe(hits, np.zeros(len(_ELIMINATIONS)), np.ones(len(RESULTANTS)))
-    runs = [initial_residuals(frames, length, plan, poses) for plan in _ELIMINATIONS]
+        hits = np.zeros((len(plans), 0), dtype=bool)
+        return _Probe(hits, np.zeros(len(plans)), np.ones(len(RESULTANTS)))
+    find = finder(turning)
+    runs = [initial_residuals(frames, Plan(length, (e,), turning, find), poses) for e in plans]
     rough = [np.quantile(np.log10(e + 1e-16), 0.9) if len(e) else 0.0 for _, e in runs]
-    hits = np.concatenate(
-        [_found([rows[i] for rows, _ in runs]) for i in range(len(poses))], axis=1
-    )
-    shifts = root_shifts(_over(frames, length), _over(poses, length), np.array(q))
+    unions = [_found([rows[i] for rows, _ in runs], turning) for i in range(len(poses))]
+    shifts = np.ones((len(RESULTANTS), 1))
+    if all(turning):
+        shifts = root_shifts(_over(frames, length), _over(poses, length), np.array(q))
+    hits = np.concatenate(unions, axis=1)
     return _Probe(hits, np.array(rough), np.quantile(shifts, 0.75, axis=1))
 
 
@@ -128,24 +148,29 @@ def _over(frames: Matrix, length: float) -> Matrix:
     return scaled
 
 
-def _found(runs: list[Matrix]) -> Matrix:
+def _found(runs: list[Matrix], turning: Turning) -> Matrix:
     """Which of the runs' rows (k, 6) has which of all distinct rows: (24, n) bool."""
     union = np.concatenate(runs)
-    fresh = [k for k in range(len(union)) if not _among(union[k], union[:k])]
-    return np.array([[_among(union[k], rows) for k in fresh] for rows in runs], dtype=bool)
+    fresh = [k for k in range(len(union)) if not _among(union[k], union[:k], turning)]
+    return np.array([[_among(union[k], rows, turning) for k in fresh] for rows in runs], dtype=bool)
 
 
-def _among(q: Matrix, rows: Matrix) -> bool:
-    """Whether the joint angles q (6,) are one of rows (k, 6), modulo turns."""
-    apart = np.abs(np.remainder(rows - q + np.pi, 2.0 * np.pi) - np.pi)
+def _among(q: Matrix, rows: Matrix, turning: Turning) -> bool:
+    """Whether the joint values q (6,) are one of rows (k, 6), modulo turns."""
+    gap = rows - q
+    apart = np.abs(np.where(turning, np.remainder(gap + np.pi, 2.0 * np.pi) - np.pi, gap))
     return bool((apart.max(axis=1) < _SAME).any()) if len(rows) else False
 
 
-def _configurations(frames: Matrix, count: int, rng: np.random.Generator) -> list[Matrix]:
+def _configurations(
+    frames: Matrix, turning: Turning, count: int, rng: np.random.Generator
+) -> list[Matrix]:
     """Regular configurations (count, 6): half at random, half the nearest to singular ones of
-    many."""
-    drawn = rng.uniform(-np.pi, np.pi, (12 * count, 6))
-    size = np.array([np.linalg.svd(jacobian(frames, q), compute_uv=False)[-1] for q in drawn])
+    many. Slides are drawn within the typical length."""
+    reach = np.where(turning, np.pi, typical_length(frames))
+    drawn = rng.uniform(-reach, reach, (12 * count, 6))
+    slopes = [jacobian(frames, turning, q) for q in drawn]
+    size = np.array([np.linalg.svd(J, compute_uv=False)[-1] for J in slopes])
     regular = np.nonzero(size > _REGULAR)[0]
     hard = regular[np.argsort(size[regular])][: count // 2]
     plain = [k for k in regular if k not in set(hard.tolist())][: count - len(hard)]

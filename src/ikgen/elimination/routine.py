@@ -9,11 +9,31 @@ import numpy as np
 
 from ikgen.model.joint_tree import Matrix
 from ikgen.program.policy import SolvePolicy
-from ikgen.runtime.python import general_6r as runtime
-from ikgen.runtime.python.general_6r import Elimination
+from ikgen.runtime.python.general_6r import (
+    Elimination,
+    Finder,
+    Plan,
+    Turning,
+    candidates,
+    distinct_rows,
+    refined_rows,
+    six_joint_rows,
+)
+from ikgen.runtime.python.one_slide import one_slide_candidates
 from ikgen.runtime.python.solve_policy import Policy
+from ikgen.runtime.python.two_slides import two_slide_candidates
 
-__all__ = ["Elimination", "general_6r", "general_6r_batch", "initial_residuals", "runtime_policy"]
+__all__ = [
+    "Elimination",
+    "Plan",
+    "Turning",
+    "finder",
+    "general_6r",
+    "general_6r_batch",
+    "initial_residuals",
+    "runtime_policy",
+    "six_joints_batch",
+]
 
 
 def runtime_policy(given: SolvePolicy) -> Policy:
@@ -23,15 +43,25 @@ def runtime_policy(given: SolvePolicy) -> Policy:
     return Policy(**{name: getattr(given, name) for name in names}, refinement=stages)
 
 
+def finder(turning: Turning) -> Finder:
+    """The function that finds candidates of six joints of which some slide."""
+    return (candidates, one_slide_candidates, two_slide_candidates)[turning.count(False)]
+
+
+def six_joints_batch(frames: Matrix, plan: Plan, poses: Matrix) -> list[Matrix]:
+    """All joint values (k, 6), angles in (-pi, pi], that reach each of the poses (N, 4, 4).
+
+    frames (7, 4, 4): the chain as in `loop_frames.py`.
+    """
+    return six_joint_rows(frames, plan, poses, runtime_policy(SolvePolicy()))
+
+
 def general_6r_batch(
     frames: Matrix, length: float, plans: Sequence[Elimination], poses: Matrix
 ) -> list[Matrix]:
-    """All joint angles (k, 6) in (-pi, pi] that reach each of the poses (N, 4, 4).
-
-    frames (7, 4, 4): the chain as in `frames.py`; length (m): its scale; plans in order of
-    preference.
-    """
-    return runtime.general_6r(frames, length, tuple(plans), poses, runtime_policy(SolvePolicy()))
+    """`six_joints_batch` of revolute joints; length (m): the chain's scale; plans in order of
+    preference."""
+    return six_joints_batch(frames, Plan(length, tuple(plans), (True,) * 6, candidates), poses)
 
 
 def general_6r(frames: Matrix, length: float, plans: Sequence[Elimination], pose: Matrix) -> Matrix:
@@ -39,19 +69,20 @@ def general_6r(frames: Matrix, length: float, plans: Sequence[Elimination], pose
     return general_6r_batch(frames, length, plans, np.asarray(pose, dtype=np.float64)[None])[0]
 
 
-def initial_residuals(
-    frames: Matrix, length: float, plan: Elimination, poses: Matrix
-) -> tuple[list[Matrix], Matrix]:
-    """One plan's solutions for poses (N, 4, 4), and the pose errors (m,) of those candidates that
-    became solutions, before Newton's method: how well conditioned the elimination is."""
+def initial_residuals(frames: Matrix, plan: Plan, poses: Matrix) -> tuple[list[Matrix], Matrix]:
+    """The first elimination's solutions for poses (N, 4, 4), lengths over the plan's, and the pose errors
+    (m,) of those candidates that became solutions, before Newton's method: how well conditioned the
+    elimination is."""
     policy = runtime_policy(SolvePolicy())
     F, T = frames.copy(), poses.copy()
-    F[:, :3, 3] /= length
-    T[:, :3, 3] /= length
-    index, q, *_ = runtime.candidates(F, T, plan)
+    F[:, :3, 3] /= plan.length
+    T[:, :3, 3] /= plan.length
+    index, q, *_ = plan.find(F, T, plan.eliminations[0], plan.turning)
     if not len(q):
         return [np.zeros((0, 6)) for _ in poses], np.zeros(0)
-    q, good, before = runtime.refined_angles(F, T[index], q, policy)
+    q, good, before = refined_rows(F, plan.turning, T[index], q, policy)
     near = policy.coincident
-    rows = [runtime.distinct_angles(q[good & (index == i)], near) for i in range(len(poses))]
+    rows = [
+        distinct_rows(q[good & (index == i)], plan.turning, near) for i in range(len(poses))
+    ]
     return rows, before[good]

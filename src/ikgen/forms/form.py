@@ -84,6 +84,11 @@ class Form(ABC):
         """Per branch the unknown for coefficients c, (cosine, sine) or (length,), each (N,); NaN where
         the divisor vanishes."""
 
+    def pattern(self, g: ExpressionGraph, unknown: tuple[Expr, ...]) -> tuple[Expr, ...]:
+        """What vanishes where the unknown has the value (cosine, sine) or (length,): the equations that the
+        form solves. Empty for a form that does not say; such a one cannot be proved."""
+        return ()
+
     @abstractmethod
     def lower(
         self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances

@@ -33,6 +33,10 @@ class Linear(Form):
         """`-b / a`"""
         return [(-c[1] / c[0],)]
 
+    def pattern(self, g: ExpressionGraph, unknown: tuple[Expr, ...]) -> tuple[Expr, ...]:
+        """`a x + b`"""
+        return (g.add(g.mul(self.a, unknown[0]), self.b),)
+
     def lower(self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances) -> LoweredForm:
         """`-b / a`"""
         divisor = divisor_of(g, self.a, tolerances)

@@ -48,6 +48,11 @@ class LinearPair(Form):
         det = c[0] * c[4] - c[1] * c[3]
         return [((c[2] * c[4] - c[5] * c[1]) / det, (c[0] * c[5] - c[3] * c[2]) / det)]
 
+    def pattern(self, g: ExpressionGraph, unknown: tuple[Expr, ...]) -> tuple[Expr, ...]:
+        """Both equations."""
+        rows = (([self.a1, self.b1], self.c1), ([self.a2, self.b2], self.c2))
+        return tuple(g.sub(g.dot(row, [*unknown]), c) for row, c in rows)
+
     def lower(self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances) -> LoweredForm:
         """Cramer's rule with one division."""
         det = g.sub(g.mul(self.a1, self.b2), g.mul(self.b1, self.a2))

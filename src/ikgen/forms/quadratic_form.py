@@ -45,6 +45,11 @@ class Quadratic(Form):
         w = np.sqrt(np.maximum(c[1] ** 2 - 4 * c[0] * c[2], 0))
         return [((-c[1] + w) / (2 * c[0]),), ((-c[1] - w) / (2 * c[0]),)]
 
+    def pattern(self, g: ExpressionGraph, unknown: tuple[Expr, ...]) -> tuple[Expr, ...]:
+        """`a x^2 + b x + c`"""
+        (x,) = unknown
+        return (g.add(g.mul(g.add(g.mul(self.a, x), self.b), x), self.c),)
+
     def lower(self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances) -> LoweredForm:
         """With `b / 2` in place of `b`."""
         divisor = divisor_of(g, self.a, tolerances)

@@ -59,6 +59,12 @@ class TrigQuartic(Form):
                     out[k, :, n] = root.real, root.imag
         return [(out[k, 0], out[k, 1]) for k in range(4)]
 
+    def pattern(self, g: ExpressionGraph, unknown: tuple[Expr, ...]) -> tuple[Expr, ...]:
+        """The polynomial, `cos(2u)` and `sin(2u)` by the cosine and sine of u."""
+        c, s = unknown
+        double = [g.sub(g.square(c), g.square(s)), g.mul(g.const(2.0), g.mul(c, s))]
+        return (g.add(g.dot([*self.coefficients[:4]], [*double, c, s]), self.a0),)
+
     def lower(self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances) -> LoweredRoutine:
         """A call of the routine `trig_quartic`."""
         divisor = leading(g, self.divisor_parts, tolerances)

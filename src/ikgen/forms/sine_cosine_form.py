@@ -69,6 +69,10 @@ class SineCosine(Form):
         w = np.sqrt(np.maximum(h - r * r, 0))
         return [((a * r - k * b * w) / h, (b * r + k * a * w) / h) for k in (1, -1)]
 
+    def pattern(self, g: ExpressionGraph, unknown: tuple[Expr, ...]) -> tuple[Expr, ...]:
+        """`a cos + b sin - c`"""
+        return (g.sub(g.dot([self.a, self.b], [*unknown]), self.c),)
+
     def lower(self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances) -> LoweredForm:
         """Without arctangents: cosine and sine of both intersections."""
         a, b, r = self.a, self.b, self.c

@@ -42,6 +42,11 @@ class Tangent(Form):
         h = np.hypot(c[0], c[1])
         return [(k * c[0] / h, k * c[1] / h) for k in (1, -1)]
 
+    def pattern(self, g: ExpressionGraph, unknown: tuple[Expr, ...]) -> tuple[Expr, ...]:
+        """`x sin - y cos`: the factor of both is gone."""
+        c, s = unknown
+        return (g.sub(g.mul(self.x, s), g.mul(self.y, c)),)
+
     def lower(self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances) -> LoweredForm:
         """The direction, normalized, times sigma."""
         h = g.add(g.square(self.x), g.square(self.y))

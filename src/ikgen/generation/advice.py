@@ -121,16 +121,16 @@ def _held_chains(reading: Reading, task: Task) -> list[DHChain]:
 
 
 def eliminations(failed: list[Attempt], dh: DHChain, progress: Progress) -> list[Attempt]:
-    """The first of the failed attempts that the general 6R elimination solves; empty if it solves
-    none."""
+    """The first of the failed attempts that an elimination solves; empty if none does."""
     from ikgen.elimination import elimination_plan
-    from ikgen.lowering.elimination_program import MOST_SOLUTIONS
+    from ikgen.lowering.elimination_program import elimination_name, most_solutions
 
     for one in failed:
-        progress("derive", " ".join(["6R elimination", *one.free]))
-        if elimination_plan(replace(dh, free=one.free)) is not None:
-            order = ("all joints at once (general 6R elimination)",)
-            solved = replace(one, closed=True, max_solutions=MOST_SOLUTIONS, order=order)
+        progress("derive", " ".join(["elimination", *one.free]))
+        held = replace(dh, free=one.free)
+        if elimination_plan(held) is not None:
+            order = (f"all joints at once (general {elimination_name(held)} elimination)",)
+            solved = replace(one, closed=True, max_solutions=most_solutions(held), order=order)
             return [replace(solved, left=(), weak=())]
     return []
 

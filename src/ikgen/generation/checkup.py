@@ -22,7 +22,6 @@ _PACKAGES = {
     "click": "command line",
     "rich": "progress",
     "py_trees": "behavior tree",
-    "yourdfpy": "reads URDF",
     "lxml": "reads XML, with line numbers",
     "xacro": "expands xacro files",
     "pin": "Pinocchio: verifies",

@@ -151,9 +151,10 @@ def _explained(
 ) -> ClosedForm:
     """The form with the joints that it holds, why, and the runners-up."""
     from ikgen.kinematics.form_class import FORM_WORDS
+    from ikgen.lowering.elimination_program import elimination_name
 
     if form.plan is not None:
-        why = "the general 6R elimination"
+        why = f"the general {elimination_name(form.reading.dh)} elimination"
     elif form.sound:
         why = f"closed form by rules ({FORM_WORDS[taken.form]})"
     else:
@@ -203,10 +204,10 @@ def _by_rules(dh: DHChain, task: Task, progress: Progress) -> SolutionGraph:
 
 
 def _by_elimination(form: ClosedForm, demand: Demand) -> ClosedForm:
-    """The form with the general 6R elimination's plan where it applies."""
+    """The form with the plan of an elimination where one applies."""
     if not form.task.whole_pose:
         return form
     from ikgen.elimination import elimination_plan
 
-    demand.progress("derive", "6R elimination")
+    demand.progress("derive", "elimination")
     return replace(form, plan=elimination_plan(form.reading.dh))

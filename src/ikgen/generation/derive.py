@@ -62,7 +62,7 @@ def _module(
 ) -> SolverModule:
     from ikgen.emit.solver_module import SolverModule
     from ikgen.kinematics.classify import classify
-    from ikgen.lowering.elimination_program import elimination_program
+    from ikgen.lowering.elimination_program import elimination_name, elimination_program
     from ikgen.lowering.lower import lower
 
     reading, graph, plan = found.reading, found.graph, found.plan
@@ -80,6 +80,6 @@ def _module(
         source_sha256=reading.source.sha256,
         generator_version=__version__,
         geometry=classify(dh).words,
-        order=("all joints (6R elimination)",) if plan else graph.order,
+        order=(f"all joints ({elimination_name(dh)} elimination)",) if plan else graph.order,
         plan=plan,
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -12,6 +11,7 @@ from ikgen.errors import BadDescriptionError, VerificationError
 from ikgen.generation.emitted_arm import EmittedArm
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.publish import write_texts
+from ikgen.processes.scratch_folder import ScratchFolder
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation, Reading
@@ -56,9 +56,9 @@ def verify_texts(
 ) -> dict[str, VerificationReport]:
     """Verify emitted texts (name -> text) before they are written, each language that can run; raises
     `VerificationError` if one fails."""
-    with tempfile.TemporaryDirectory(prefix="ikgen-", ignore_cleanup_errors=True) as name:
-        write_texts(Path(name), texts)
-        reports = _reports(derivation, Path(name), emitters, outputs, progress)
+    with ScratchFolder("ikgen-") as folder:
+        write_texts(folder, texts)
+        reports = _reports(derivation, folder, emitters, outputs, progress)
     for name, report in reports.items():
         if not report.passed:
             raise VerificationError(

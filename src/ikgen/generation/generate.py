@@ -15,7 +15,8 @@ from ikgen.generation.emitted_checks import verify_emitted
 from ikgen.generation.emitters import Emitter, find_emitter
 from ikgen.generation.new_records import record_texts
 from ikgen.generation.progress import Progress, silent
-from ikgen.generation.publish import check_folder, left_over, publish, remove
+from ikgen.generation.publish import check_folder, left_over, publish
+from ikgen.generation.publishing import complete_folder
 from ikgen.generation.read import default_name, read
 from ikgen.tasks import find_task
 
@@ -50,6 +51,7 @@ def generate(request: Request, outputs: Outputs, progress: Progress = silent) ->
     asked = [find_emitter(name) for name in outputs.emit]
     progress("read", request.robot.name)
     reading = read(request)
+    complete_folder(outputs.out)  # first: it tells what is there
     earlier = earlier_outputs(outputs.out, request.name or default_name(reading))
     if not outputs.force:
         earlier.check(request, reading, find_task(request.task).name if request.task else None)
@@ -60,9 +62,8 @@ def generate(request: Request, outputs: Outputs, progress: Progress = silent) ->
     if not outputs.force:
         earlier.check(request, reading, derivation.task.name)
     texts = made.files | record_texts(request, outputs, derivation, made.texts)
-    files = publish(outputs.out, texts)
-    removed = tuple(earlier.outdated(files))
-    remove(removed, outputs.out)
+    removed = tuple(earlier.outdated([outputs.out / name for name in texts]))
+    files = publish(outputs.out, texts, removed)
     seconds = time.perf_counter() - started
     left = left_over(outputs.out, derivation.module.name, files)
     return Generation(derivation, files, made.reports, seconds, kept, removed, left)

@@ -1,4 +1,4 @@
-"""The Program of an arm that only the general 6R elimination solves: one call, sixteen branches."""
+"""The Program of an arm that only an elimination solves: one call, as many branches as its polynomial has roots."""
 
 from __future__ import annotations
 
@@ -13,32 +13,47 @@ from ikgen.program.inputs import HeldValue, PoseEntry
 from ikgen.program.liveness import trimmed
 from ikgen.program.statements import Call, Comment, JointOutput, Let, Level, Program, Statement
 
-__all__ = ["MOST_SOLUTIONS", "ROUTINE", "elimination_program"]
+__all__ = ["elimination_name", "elimination_program", "most_solutions"]
 
-ROUTINE = "general_6r"
-MOST_SOLUTIONS = 16
+_ROUTINES = ("general_6r", "one_slide", "two_slides")
+_NAMES = ("6R", "5R1P", "4R2P")
+_MOST = (16, 16, 8)
+"""By the number of slides (Raghavan and Roth 1993)."""
+
+
+def _slides(dh: DHChain) -> int:
+    return sum(not row.revolute for row in dh.rows if dh.joints[row.driver].name not in dh.free)
+
+
+def elimination_name(dh: DHChain) -> str:
+    """The elimination's class: how many of the moving joints turn and slide."""
+    return _NAMES[_slides(dh)]
+
+
+def most_solutions(dh: DHChain) -> int:
+    """Solutions at most."""
+    return _MOST[_slides(dh)]
 
 
 def elimination_program(dh: DHChain) -> Program:
-    """All joints that are not held from one call of `general_6r` (Raghavan and Roth 1990)."""
+    """All joints that are not held from one call of an elimination (Raghavan and Roth 1993)."""
     pose = tuple(PoseEntry(i, j) for i in range(3) for j in range(4))
     held = tuple(HeldValue(j) for j, joint in enumerate(dh.joints) if joint.name in dh.free)
     prelude: list[Let] = []
     given: list[str] = []
     for one in held:
-        row, place = first_row(dh, one.joint), one.joint + 1
-        names = (f"c{place}", f"s{place}") if row.revolute else (f"d{place}",)
-        prelude += variable_lets(row, one.name, names)
+        names = _names(dh, one.joint)
+        prelude += variable_lets(first_row(dh, one.joint), one.name, names)
         given += names
     moving = [j for j in range(dh.dof) if HeldValue(j) not in held]
-    found = tuple(f"{x}{j + 1}" for j in moving for x in "cs")
-    call = Call(ROUTINE, (*(entry.name for entry in pose), *given), found)
+    found = tuple(name for j in moving for name in _names(dh, j))
+    call = Call(_ROUTINES[_slides(dh)], (*(entry.name for entry in pose), *given), found)
     values = [_value(dh, j) for j in moving]
     body: tuple[Statement, ...] = (
-        Comment("all joints at once: the general 6R elimination"),
+        Comment(f"all joints at once: the general {elimination_name(dh)} elimination"),
         *(Let(f"q{j + 1}", operand_of(e)) for j, e in zip(moving, values, strict=True)),
     )
-    levels = (Level(1, None, None, ()), Level(MOST_SOLUTIONS, None, call, body))
+    levels = (Level(1, None, None, ()), Level(most_solutions(dh), None, call, body))
     outputs = tuple(
         JointOutput(j, HeldValue(j).name if HeldValue(j) in held else f"q{j + 1}")
         for j in range(dh.dof)
@@ -51,7 +66,14 @@ def elimination_program(dh: DHChain) -> Program:
     )  # fmt: skip
 
 
+def _names(dh: DHChain, joint: int) -> tuple[str, ...]:
+    """What the call gives of a joint: cosine and sine of its angle, or its length."""
+    place = joint + 1
+    return (f"c{place}", f"s{place}") if first_row(dh, joint).revolute else (f"d{place}",)
+
+
 def _value(dh: DHChain, joint: int) -> Expr:
     g = ExpressionGraph(1)
-    pair = tuple(g.atom("input", f"{x}{joint + 1}", np.zeros(1), unknown=False) for x in "cs")
-    return joint_value(g, first_row(dh, joint), pair)
+    names = _names(dh, joint)
+    parts = tuple(g.atom("input", name, np.zeros(1), unknown=False) for name in names)
+    return joint_value(g, first_row(dh, joint), parts)

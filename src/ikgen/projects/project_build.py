@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING
 
 from ikgen.errors import IkgenError
 from ikgen.generation.progress import Progress, silent
+from ikgen.generation.publishing import complete_folder
 from ikgen.generation.record import read_record
+from ikgen.processes.termination import Terminated, end_now, end_with_parent, end_workers
 from ikgen.projects.config import ArmConfig
 from ikgen.projects.stale import stale_reasons
 
@@ -47,6 +49,8 @@ def build_arms(
     progress: Progress = silent,
 ) -> Iterator[Outcome]:
     """Bring every arm up to date; outcomes in the order of the config."""
+    for out in {arm.outputs.out for arm in arms}:
+        complete_folder(out)
     reasons = [
         reason or ("asked for" if force else "") for reason in stale_reasons(arms, verify=verify)
     ]
@@ -68,17 +72,21 @@ def _run(work: Sequence[tuple[ArmConfig, str, bool]], jobs: int | None) -> Itera
     from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 
     context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(workers, mp_context=context) as pool:
-        waiting = [(job, _submit(pool, job)) for job in work]
+    others = multiprocessing.active_children()
+    with ProcessPoolExecutor(workers, mp_context=context, initializer=end_with_parent) as pool:
+        waiting: list[tuple[tuple[ArmConfig, str, bool], Future[Outcome]]] = []
         try:
+            waiting += [(job, _submit(pool, job)) for job in work]
             for (arm, reason, _), answer in waiting:
                 try:
                     yield answer.result()
                 except BrokenExecutor:
                     yield _killed(arm.name, reason)
-        finally:  # whoever stops asking does not wait for the rest
-            for _, answer in waiting:
-                answer.cancel()
+        except BaseException:  # whoever stops asking, or is ended, does not wait for the rest
+            if not all(answer.done() for _, answer in waiting):
+                pool.shutdown(wait=False, cancel_futures=True)
+                end_workers(others)
+            raise
 
 
 def _submit(pool: Executor, job: tuple[ArmConfig, str, bool]) -> Future[Outcome]:
@@ -86,7 +94,7 @@ def _submit(pool: Executor, job: tuple[ArmConfig, str, bool]) -> Future[Outcome]
     from concurrent.futures import BrokenExecutor, Future
 
     try:
-        return pool.submit(_build_one, job)
+        return pool.submit(_build_in_worker, job)
     except BrokenExecutor as error:
         refused: Future[Outcome] = Future()
         refused.set_exception(error)
@@ -102,6 +110,14 @@ def _killed(name: str, reason: str) -> Outcome:
         hint="too little memory? --jobs 1 generates one arm at a time",
         exit_code=INTERNAL_ERROR,
     )
+
+
+def _build_in_worker(job: tuple[ArmConfig, str, bool]) -> Outcome:
+    """`_build_one` in a process of a pool, which takes no exception for an end."""
+    try:
+        return _build_one(job)
+    except Terminated as ended:
+        end_now(ended)
 
 
 def _build_one(job: tuple[ArmConfig, str, bool]) -> Outcome:

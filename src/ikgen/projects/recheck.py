@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from ikgen.errors import UnknownNameError, UsageError
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.publish import left_over
+from ikgen.generation.publishing import interrupted
 from ikgen.generation.read import read
 from ikgen.generation.record import Record, digest
 from ikgen.generation.request import Outputs
@@ -53,8 +54,10 @@ def recheck(
 
 
 def _edited(record: Record, fix: str) -> list[Finding]:
-    """Outputs that are gone or differ from what was written."""
+    """Outputs that are gone, half in place, or differ from what was written."""
     found = []
+    if record.path.name in {Path(name).name for name in interrupted(record.out or record.folder)}:
+        found.append(Finding(record.path, "a killed run left the files half in place", fix))
     for name, expected in record.files.items():
         path = record.folder / name
         actual = digest(path)

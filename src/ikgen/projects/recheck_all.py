@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 from ikgen.errors import IkgenError, UsageError
 from ikgen.generation.progress import Progress, silent
-from ikgen.generation.record import find_records, read_record
-from ikgen.projects.check_findings import Recheck, unchecked
+from ikgen.generation.publishing import interrupted
+from ikgen.generation.record import SUFFIX, find_records, read_record
+from ikgen.projects.check_findings import Finding, Recheck, unchecked
 from ikgen.projects.config import default_config, load_config
 from ikgen.projects.recheck import recheck
 
@@ -31,6 +32,11 @@ def recheck_all(
     one record. What keeps one from being checked is its finding, so that the others are checked too."""
     results = []
     for path, command in _records(target, robot):
+        if not path.is_file() and interrupted(path.parent):
+            command = command or f"ikgen build, or the command that wrote to '{path.parent}', again"
+            half = Finding(path, "a killed run left the files half in place", command)
+            results.append(Recheck(path, None, (half,)))
+            continue
         record = None
         try:
             record = read_record(path)
@@ -54,7 +60,9 @@ def _records(target: Path | None, robot: Path | None) -> list[tuple[Path, str | 
     """The records meant, each with the command that makes its outputs again, if not its own."""
     target = target or default_config(Path()) or Path()
     if target.is_dir():
-        return [(path, None) for path in find_records(target)]
+        half = [target / name for name in interrupted(target) if name.endswith(SUFFIX)]
+        whole = [] if half and not any(target.rglob(f"*{SUFFIX}")) else find_records(target)
+        return [(path, None) for path in dict.fromkeys([*half, *whole])]
     if target.suffix.lower() == ".json":
         return [(target, None)]
     if not target.is_file():

@@ -7,12 +7,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 from ikgen import __version__
 from ikgen.errors import BadDescriptionError
 from ikgen.generation.codec import encode, entries_of
-from ikgen.generation.record import Record, digest, read_record, seen
+from ikgen.generation.publishing import interrupted
+from ikgen.generation.record import Record, digest, read_record, record_name, seen
 from ikgen.generation.request import Request
 from ikgen.projects.config import ArmConfig
 from ikgen.projects.recorded_inputs import Packages
@@ -30,6 +32,8 @@ def why_stale(arm: ArmConfig, packages: Packages | None = None, *, verify: bool 
     """The reason to generate the arm again; empty where its outputs are fresh. With `verify` outputs
     that were never verified are not."""
     paths = arm.records
+    if record_name(arm.name) in {Path(name).name for name in interrupted(arm.outputs.out)}:
+        return "a killed run left its files half in place"
     if not paths[0].is_file():
         return "not generated yet"
     try:

@@ -5,14 +5,14 @@ from __future__ import annotations
 import os
 import re
 import shutil
-import subprocess
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+from ikgen.processes.outside_program import run_program
+from ikgen.processes.scratch_folder import ScratchFolder
+
 __all__ = ["Typeset", "typeset"]
 
-_SECONDS = 120
 _RUNS = 2  # the second resolves references
 
 
@@ -33,19 +33,16 @@ def typeset(name: str, text: str) -> Typeset:
     if latex is None:
         return Typeset()
     environment = {**os.environ, "SOURCE_DATE_EPOCH": "0", "FORCE_SOURCE_DATE": "1"}
-    with tempfile.TemporaryDirectory(prefix="ikgen-", ignore_cleanup_errors=True) as folder:
-        source = Path(folder, Path(name).name)
+    with ScratchFolder("ikgen-") as folder:
+        source = folder / Path(name).name
         source.write_text(text, encoding="utf-8", newline="\n")
         command = [latex, "-no-shell-escape", "-interaction=batchmode", source.name]
         for _ in range(_RUNS):
-            try:
-                done = subprocess.run(
-                    command, cwd=folder, env=environment, capture_output=True, timeout=_SECONDS
-                )
-            except subprocess.TimeoutExpired:
-                return Typeset(failure=f"pdflatex takes more than {_SECONDS} s")
+            done = run_program(command, cwd=folder, environment=environment)
+            if done.late or done.crashed:
+                return Typeset(failure=f"pdflatex {done.words}")
         made = source.with_suffix(".pdf")
-        if done.returncode == 0 and made.is_file():
+        if done.code == 0 and made.is_file():
             return Typeset(made.read_bytes())
         return Typeset(failure=f"pdflatex fails: {_first_error(source.with_suffix('.log'))}")
 

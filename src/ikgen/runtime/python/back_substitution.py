@@ -9,7 +9,7 @@ from ikgen.runtime.python.array_types import Array
 from ikgen.runtime.python.loop_equations import XS, YS, ZS, loop_action
 from ikgen.runtime.python.rigid_motion import rotations_z
 
-__all__ = ["complete_angles", "null_angles"]
+__all__ = ["complete_angles", "null_angles", "turned"]
 
 
 def _split(N: Array) -> Array:
@@ -51,14 +51,20 @@ def null_angles(M: Array) -> tuple[NDArray[np.intp], Array]:
     return index, np.stack([t4, np.arctan2(w[:, 2], w[:, 1])], axis=-1)
 
 
-def complete_angles(C: list[Array], left: Array, right: Array, t: Array) -> Array:
-    """The six loop angles (k, 6) from theta_3, theta_4, theta_5 in t (k, 3), one row of C, left and
-    right each: theta_1 and theta_2 linearly, theta_6 from the rotation left over."""
+def turned(left: Array, t: Array) -> Array:
+    """The invariants of `R_3 C_3 R_4 C_4 R_5 C_5` and 1 (k, 15) at theta_3, theta_4, theta_5 in t (k, 3)."""
     one = np.ones(len(t))
     b3, b4, b5 = (np.stack([one, np.cos(x), np.sin(x)], axis=-1) for x in t.T)
     v = (left @ (b4[:, :, None] * b5[:, None]).reshape(-1, 9, 1))[..., 0]
     w = (v[:, XS] + 1j * v[:, YS]) * (b3[:, 1:2] + 1j * b3[:, 2:])
-    v = np.concatenate([w.real, w.imag, v[:, ZS], one[:, None]], axis=1)
+    return np.concatenate([w.real, w.imag, v[:, ZS], one[:, None]], axis=1)
+
+
+def complete_angles(C: list[Array], left: Array, right: Array, t: Array) -> Array:
+    """The six loop angles (k, 6) from theta_3, theta_4, theta_5 in t (k, 3), one row of C, left and
+    right each: theta_1 and theta_2 linearly, theta_6 from the rotation left over."""
+    one = np.ones(len(t))
+    v = turned(left, t)
     u = (loop_action(C[1]) @ v[..., None])[..., 0]
     cs = np.linalg.pinv(right[:, ZS, 1:]) @ (u[:, ZS] - right[:, ZS, 0])[..., None]
     t1 = np.arctan2(cs[:, 1, 0], cs[:, 0, 0])

@@ -1,26 +1,17 @@
-"""The general 6R elimination as the closed form of an arm, held joints merged into the chain."""
+"""An elimination of six joints as the closed form of an arm, held joints merged into the chain."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import atan2, cos, sin
 
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Row
-from ikgen.runtime.python.general_6r import Elimination, general_6r
+from ikgen.runtime.python.general_6r import Plan, six_joint_rows
 from ikgen.runtime.python.refinement import rank_loss
 from ikgen.runtime.python.solved_arm import Arm
 
-__all__ = ["Plan", "elimination_branches", "elimination_lanes"]
-
-
-@dataclass(frozen=True)
-class Plan:
-    """The arm's typical `length` (m) and the `eliminations` that suit it, in order of preference."""
-
-    length: float
-    eliminations: tuple[Elimination, ...]
+__all__ = ["elimination_branches", "elimination_lanes"]
 
 
 def _frames(arm: Arm, held: Array) -> Array:
@@ -46,7 +37,7 @@ def _frames(arm: Arm, held: Array) -> Array:
 
 
 def _regular_first(arm: Arm, angles: Array, held: Array) -> Array:
-    """At most `arm.most` rows of DH angles (k, 6): where a continuum gives more, its samples go."""
+    """At most `arm.most` rows of DH variables (k, 6): where a continuum gives more, its samples go."""
     if len(angles) <= arm.most:
         return angles
     v = np.empty((len(angles), len(arm.chain.motions)))
@@ -67,22 +58,27 @@ def _regular_first(arm: Arm, angles: Array, held: Array) -> Array:
 
 
 def elimination_branches(arm: Arm, plan: Plan, entries: Row) -> list[Row]:
-    """Per solution the cosine and sine of every moving joint's angle.
+    """Per solution the cosine and sine of every moving joint's angle, and the lengths of slides.
 
     entries: the pose's first three rows, then cosines, sines and distances of held joints.
     """
     T = np.vstack([np.array(entries[:12]).reshape(3, 4), [0.0, 0.0, 0.0, 1.0]])
     held = np.array(entries[12:])
-    found = general_6r(_frames(arm, held), plan.length, plan.eliminations, T[None], arm.policy)
-    angles = _regular_first(arm, found[0], held)
-    return [tuple(x for a in row for x in (cos(a), sin(a))) for row in angles.tolist()]
+    found = six_joint_rows(_frames(arm, held), plan, T[None], arm.policy)
+    rows = _regular_first(arm, found[0], held).tolist()
+    return [tuple(x for part in map(_named, row, plan.turning) for x in part) for row in rows]
+
+
+def _named(value: float, turns: bool) -> Row:
+    """What the program calls for: cosine and sine of an angle, or a length."""
+    return (cos(value), sin(value)) if turns else (value,)
 
 
 def elimination_lanes(arm: Arm, plan: Plan, entries: tuple[Array, ...]) -> tuple[Array, ...]:
-    """`elimination_branches` for many poses: cosines and sines (16, N), and which there are."""
+    """`elimination_branches` for many poses: cosines, sines and lengths (most, N), and which there are."""
     columns = np.array([e.reshape(-1) for e in np.broadcast_arrays(*entries)])
     count = columns.shape[1]
-    lanes = np.ones((12, arm.most, count))
+    lanes = np.ones((6 + sum(plan.turning), arm.most, count))
     found = np.zeros((arm.most, count), dtype=bool)
     distinct: Array
     distinct, group = np.unique(columns[12:], axis=1, return_inverse=True)
@@ -92,10 +88,14 @@ def elimination_lanes(arm: Arm, plan: Plan, entries: tuple[Array, ...]) -> tuple
         T[:, :3] = columns[:12, members].T.reshape(-1, 3, 4)
         held: Array = distinct[:, k] if len(columns) > 12 else np.empty(0)
         frames = _frames(arm, held)
-        solved = general_6r(frames, plan.length, plan.eliminations, T, arm.policy)
+        solved = six_joint_rows(frames, plan, T, arm.policy)
         for i, angles in zip(members, solved):
             rows = _regular_first(arm, angles, held)
-            lanes[0::2, : len(rows), i] = np.cos(rows).T
-            lanes[1::2, : len(rows), i] = np.sin(rows).T
+            lane = 0
+            for value, turns in zip(rows.T, plan.turning):
+                lanes[lane, : len(rows), i] = np.cos(value) if turns else value
+                if turns:
+                    lanes[lane + 1, : len(rows), i] = np.sin(value)
+                lane += 2 if turns else 1
             found[: len(rows), i] = True
     return (*lanes, found)

@@ -1,7 +1,9 @@
-"""All real solutions of any 6R chain."""
+"""All real solutions of six joints by an elimination, and the one of six revolute joints."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cmp_to_key
 
 import numpy as np
@@ -18,21 +20,38 @@ from ikgen.runtime.python.solve_policy import Policy
 from ikgen.runtime.python.whole_pose import PoseTask
 
 __all__ = [
+    "Candidates",
     "Elimination",
+    "Finder",
+    "Plan",
+    "Turning",
     "candidates",
-    "distinct_angles",
-    "general_6r",
-    "refined_angles",
+    "distinct_rows",
+    "refined_rows",
+    "rows_of",
+    "six_joint_rows",
     "six_joints",
 ]
 
 Elimination = tuple[int, int, int]  # joint that the loop begins at, whether reversed or swapped
+Turning = tuple[bool, ...]  # which of the six joints turn; the others slide
+Candidates = tuple[NDArray[np.intp], Array, NDArray[np.intp], Flags]
+Finder = Callable[[Array, Array, Elimination, Turning], Candidates]
 _SIX = range(6)
 
 
-def candidates(
-    F: Array, T: Array, plan: Elimination
-) -> tuple[NDArray[np.intp], Array, NDArray[np.intp], Flags]:
+@dataclass(frozen=True)
+class Plan:
+    """How an arm is solved: its typical `length` (m), the `eliminations` that suit it, in order of preference,
+    and the function that finds candidates by one of them."""
+
+    length: float
+    eliminations: tuple[Elimination, ...]
+    turning: Turning
+    find: Finder
+
+
+def candidates(F: Array, T: Array, plan: Elimination, _: Turning) -> Candidates:
     """Approximate solutions for the poses T (N, 4, 4) by one plan: pose index (k,), joint angles
     (k, 6); how many solutions each pose has at least, and whether its roots are simple (N,)."""
     start, reverse, swap = plan
@@ -44,35 +63,40 @@ def candidates(
     if not len(pose):
         return pose, np.zeros((0, 6)), least, simple
     c, s = np.cos(t3)[:, None, None], np.sin(t3)[:, None, None]
-    M0, M1, M2 = (_of(m, pose) for m in M)
+    M0, M1, M2 = (rows_of(m, pose) for m in M)
     k, t45 = null_angles(M0 + c * M1 + s * M2)
     t = np.concatenate([t3[k, None], t45[:, ::-1] if swap else t45], axis=1)
     pose = pose[k]
-    angles = complete_angles([_of(c, pose) for c in C], _of(left, pose), _of(right, pose), t)
+    frames = [rows_of(c, pose) for c in C]
+    angles = complete_angles(frames, rows_of(left, pose), rows_of(right, pose), t)
     q = np.empty_like(angles)
     q[:, order] = -angles if reverse else angles
     return pose, q, least, simple
 
 
-def _of(rows: Array, pose: NDArray[np.intp]) -> Array:
+def rows_of(rows: Array, pose: NDArray[np.intp]) -> Array:
     """Rows of poses, where they are not the same for all."""
     return rows[pose] if len(rows) > 1 else rows
 
 
-def refined_angles(F: Array, T: Array, q: Array, policy: Policy) -> tuple[Array, Flags, Array]:
+def refined_rows(
+    F: Array, turning: Turning, T: Array, q: Array, policy: Policy
+) -> tuple[Array, Flags, Array]:
     """Newton steps from q (k, 6) to T (k, 4, 4): q, which arrived, and the errors before (k,)."""
-    return refine(six_joints(F), PoseTask(1.0), _SIX, q, T, policy)
+    return refine(six_joints(F, turning), PoseTask(1.0), _SIX, q, T, policy)
 
 
-def six_joints(F: Array) -> Chain:
-    """The chain of frames F (7, 4, 4)."""
-    return chain_of(F, tuple((i, True, 1.0, 0.0) for i in _SIX), 6)
+def six_joints(F: Array, turning: Turning) -> Chain:
+    """The chain of frames F (7, 4, 4), each joint turning or sliding."""
+    return chain_of(F, tuple((i, turns, 1.0, 0.0) for i, turns in enumerate(turning)), 6)
 
 
-def distinct_angles(q: Array, coincident: float) -> Array:
-    """The rows of q (k, 6), reduced to (-pi, pi], without repetitions."""
-    q = np.pi - np.mod(np.pi - q, 2.0 * np.pi)
-    apart = np.abs(np.pi - np.abs(np.pi - np.abs(q[:, None] - q))).max(axis=2)
+def distinct_rows(q: Array, turning: Turning, coincident: float) -> Array:
+    """The rows of q (k, 6), angles reduced to (-pi, pi], without repetitions."""
+    turns = np.array(turning)
+    q = np.where(turns, np.pi - np.mod(np.pi - q, 2.0 * np.pi), q)
+    apart = np.abs(q[:, None] - q)
+    apart = np.where(turns, np.abs(np.pi - np.abs(np.pi - apart)), apart).max(axis=2)
     return np.asarray(q[~np.tril(apart < coincident, -1).any(axis=1)], dtype=float)
 
 
@@ -87,59 +111,59 @@ def _displaced() -> Array:
 
 
 def _compare(a: list[float], b: list[float]) -> int:
-    """Sign of the first difference of two rows; the turn is cut at -1 rad, where no right angle lies."""
+    """Sign of the first difference of two rows."""
     for x, y in zip(a, b):
-        gap = (x + 1.0) % (2.0 * np.pi) - (y + 1.0) % (2.0 * np.pi)
-        if abs(gap) > 1e-7:
-            return 1 if gap > 0.0 else -1
+        if abs(x - y) > 1e-7:
+            return 1 if x > y else -1
     return 0
 
 
-def _sorted(rows: Array) -> Array:
-    """Rows (k, 6) in an order that does not hang on how they were found."""
-    return np.array(sorted(rows.tolist(), key=cmp_to_key(_compare))).reshape(-1, 6)
+def _sorted(rows: Array, turning: Turning) -> Array:
+    """Rows (k, 6) in an order that does not hang on how they were found; turns are cut at -1 rad, where no
+    right angle lies."""
+    keys = np.where(turning, np.mod(rows + 1.0, 2.0 * np.pi), rows).tolist()
+    order = sorted(range(len(keys)), key=cmp_to_key(lambda i, k: _compare(keys[i], keys[k])))
+    return np.asarray(rows[order])
 
 
-def general_6r(
-    F: Array, length: float, plans: tuple[Elimination, ...], T: Array, policy: Policy
-) -> list[Array]:
-    """All real solutions of `F_0 Rz(q_1) F_1 ... Rz(q_6) F_6 = T` for poses T (N, 4, 4).
+def six_joint_rows(F: Array, plan: Plan, T: Array, policy: Policy) -> list[Array]:
+    """All real solutions of `F_0 M_1 F_1 ... M_6 F_6 = T` for poses T (N, 4, 4).
 
-    F (7, 4, 4) constant rigid transforms, length (m) a typical size of the arm, plans the
-    eliminations in order of preference. One run of the first is enough where its roots are real, apart and
-    each a solution to many digits. Otherwise more runs follow, with the pose displaced to either side
-    (where right angles make roots coincide they come apart, and Newton's method takes them back) and by
-    the next elimination, until one finds all that is known and no more. Returns for every pose its joint
-    angles (k, 6) in (-pi, pi], sorted.
+    F (7, 4, 4) constant rigid transforms; M_i turns about z or moves along it. One run of the first is
+    enough where its roots are real, apart and each a solution to many digits. Otherwise more runs follow,
+    with the pose displaced to either side (where right angles make roots coincide they come apart, and
+    Newton's method takes them back) and by the next elimination, until one finds all that is known and no
+    more. Returns for every pose its joint values (k, 6), angles in (-pi, pi], sorted.
     """
     F, T = F.copy(), T.copy()
-    F[:, :3, 3] /= length
-    T[:, :3, 3] /= length
+    F[:, :3, 3] /= plan.length
+    T[:, :3, 3] /= plan.length
     found = [np.zeros((0, 6)) for _ in T]
     near = np.abs(T[:, :3]).max(axis=(1, 2), initial=0.0) < 1e6  # false for NaN
     todo = np.nonzero(near)[0]
     least = np.zeros(len(T), dtype=int)
     aside = _displaced()
-    runs = [(plan, X) for plan in plans for X in (None, aside, inverses(aside))]
-    for number, (plan, X) in enumerate(runs):
+    runs = [(one, X) for one in plan.eliminations for X in (None, aside, inverses(aside))]
+    for number, (one, X) in enumerate(runs):
         if not len(todo):
             break
         exact = T[todo]
-        pose, q, real, simple = candidates(F, exact if X is None else exact @ X, plan)
+        pose, q, real, simple = plan.find(F, exact if X is None else exact @ X, one, plan.turning)
         if X is None:
             least[todo] = np.maximum(least[todo], real)
         if len(q):
-            q, arrived, before = refined_angles(F, exact[pose], q, policy)
+            q, arrived, before = refined_rows(F, plan.turning, exact[pose], q, policy)
             simple[pose[before > 1e-5]] = False
             pose, q = pose[arrived], q[arrived]
         settled = np.zeros(len(todo), dtype=bool)
         for i, n in enumerate(todo):
-            mine, known = distinct_angles(q[pose == i], policy.coincident), len(found[n])
+            mine, known = distinct_rows(q[pose == i], plan.turning, policy.coincident), len(found[n])
             both = np.concatenate([found[n], mine])
-            found[n] = distinct_angles(both, policy.coincident) if known else mine
+            found[n] = distinct_rows(both, plan.turning, policy.coincident) if known else mine
             count = len(found[n])
             enough = count % 2 == 0 and count >= least[n]
             alone = number == 0 and bool(simple[i]) and count == real[i] > 0
             settled[i] = enough and (alone or (number > 0 and len(mine) == known == count))
         todo = todo[~settled]
-    return [_sorted(rows) for rows in found]
+    unit = np.where(plan.turning, 1.0, plan.length)
+    return [_sorted(rows, plan.turning) * unit for rows in found]

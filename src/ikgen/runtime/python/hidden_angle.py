@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.loop_equations import XS, YS, ZS
 
-__all__ = ["Resultant", "hidden_angles", "loop_resultant"]
+__all__ = ["Resultant", "hidden_angles", "loop_resultant", "real_angles"]
 
 Resultant = tuple[Array, Array, Array]
 _NODES = 2.0 * np.pi / 7.0 * np.arange(7)
@@ -58,15 +58,23 @@ def hidden_angles(
     W = np.concatenate([_lift(left[:, XS]), _lift(left[:, YS])], axis=1)
     K = np.eye(16) + 2.0 * W @ _solved(at_node[row, k], N)
     t = np.linalg.eigvals(np.concatenate([K[:, 8:], -K[:, :8]], axis=1))
+    return real_angles(t, _NODES[k], accept)
+
+
+def real_angles(
+    t: Array, about: Array, accept: float
+) -> tuple[NDArray[np.intp], Array, NDArray[np.intp], Flags]:
+    """Those angles `about + 2 atan(t)`, about (N,) and t (N, n) complex, of which the imaginary part is below
+    `accept`: as `hidden_angles` has them."""
     # angle and modulus of (1 + i t) / (1 - i t)
     z = (1.0 + 1j * t) / np.where(t == -1j, 1e-300, 1.0 - 1j * t)
     off = np.abs(np.log(np.maximum(np.abs(z), 1e-300)))
     real = (off < 1e-8).sum(axis=1)
     angle = np.where(off < accept, np.angle(z), np.nan)
     gap = np.abs(np.remainder(angle[:, :, None] - angle[:, None] + np.pi, 2.0 * np.pi) - np.pi)
-    close = (gap + 4.0 * np.eye(16) < 1e-3).any(axis=(1, 2))
+    close = (gap + 4.0 * np.eye(t.shape[1]) < 1e-3).any(axis=(1, 2))
     row, i = np.nonzero(off < accept)
-    return row, _NODES[k[row]] + angle[row, i], real, ~close & ((off < accept).sum(axis=1) == real)
+    return row, about[row] + angle[row, i], real, ~close & ((off < accept).sum(axis=1) == real)
 
 
 def _solved(pivot: Array, N: Array) -> Array:

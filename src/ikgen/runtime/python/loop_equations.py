@@ -11,14 +11,25 @@ from ikgen.runtime.python.array_types import Array
 from ikgen.runtime.python.chain_kinematics import cross
 from ikgen.runtime.python.rigid_motion import inverses, rotations_z
 
-__all__ = ["XS", "YS", "ZS", "loop_action", "loop_constants", "loop_equations"]
+__all__ = [
+    "FIT",
+    "ROTATIONS",
+    "XS",
+    "YS",
+    "ZS",
+    "invariants",
+    "left_invariants",
+    "loop_action",
+    "loop_constants",
+    "loop_equations",
+]
 
 XS, YS = [0, 1, 2, 3], [4, 5, 6, 7]
 ZS = [8, 9, 10, 11, 12, 13]  # the invariants that a rotation about z leaves alone
 _THIRDS = np.array([0.0, 2.0 * np.pi / 3.0, 4.0 * np.pi / 3.0])
-_FIT = np.array([np.full(3, 1 / 3), 2 / 3 * np.cos(_THIRDS), 2 / 3 * np.sin(_THIRDS)])
-_FIT_PAIR = np.kron(_FIT, _FIT)
-_ROTATIONS = rotations_z(_THIRDS)
+FIT = np.array([np.full(3, 1 / 3), 2 / 3 * np.cos(_THIRDS), 2 / 3 * np.sin(_THIRDS)])
+_FIT_PAIR = np.kron(FIT, FIT)
+ROTATIONS = rotations_z(_THIRDS)
 
 
 def loop_constants(F: Array, T: Array, start: int, reverse: int) -> tuple[list[int], list[Array]]:
@@ -32,7 +43,7 @@ def loop_constants(F: Array, T: Array, start: int, reverse: int) -> tuple[list[i
     return order, [inverses(C[(i - 1) % 6]) for i in order]
 
 
-def _invariants(X: Array) -> Array:
+def invariants(X: Array) -> Array:
     """The 14 bilinear functions z, p, m = p x z, q = (p.p) z - 2 (p.z) p, p.p, p.z of the columns z
     and p of X (..., 4, 4), in the order x, y, z of the four vectors, then the two scalars."""
     z, p = X[..., :3, 2], X[..., :3, 3]
@@ -68,18 +79,23 @@ def loop_action(C: Array) -> Array:
     return G
 
 
+def left_invariants(C: list[Array]) -> Array:
+    """The invariants of `C_3 R_4 C_4 R_5 C_5` (n, 14, 9) in (1, c4, s4) x (1, c5, s5)."""
+    D = (C[2][:, None] @ ROTATIONS)[:, :, None] @ (C[3][:, None] @ ROTATIONS @ C[4][:, None])[
+        :, None
+    ]
+    V = invariants(D)
+    return np.asarray(np.swapaxes(_FIT_PAIR @ V.reshape(len(V), 9, 14), 1, 2), dtype=float)
+
+
 def loop_equations(C: list[Array]) -> tuple[Array, Array, Array]:
     """Six equations `E (v_0, v) = 0`, free of theta_1, theta_2, theta_6, for the invariants v of
     `R_3 C_3 R_4 C_4 R_5 C_5` and v_0 = 1: E (N, 6, 15) in the order (v, v_0). With it the
     invariants of `C_3 R_4 C_4 R_5 C_5` (n, 14, 9) in (1, c4, s4) x (1, c5, s5), and those of `R_2
     C_2 R_3 ... C_5 = C_1^-1 R_1^-1 C_6^-1 R_6^-1` (N, 14, 3) in (1, c1, s1)."""
-    D = (C[2][:, None] @ _ROTATIONS)[:, :, None] @ (C[3][:, None] @ _ROTATIONS @ C[4][:, None])[
-        :, None
-    ]
-    V = _invariants(D)
-    left = np.swapaxes(_FIT_PAIR @ V.reshape(len(V), 9, 14), 1, 2)
-    Y = inverses(C[0])[:, None] @ np.swapaxes(_ROTATIONS, 1, 2) @ inverses(C[5])[:, None]
-    right = np.swapaxes(_FIT @ _invariants(Y), 1, 2)
+    left = left_invariants(C)
+    Y = inverses(C[0])[:, None] @ np.swapaxes(ROTATIONS, 1, 2) @ inverses(C[5])[:, None]
+    right = np.swapaxes(FIT @ invariants(Y), 1, 2)
     G = loop_action(C[1])
     null_6 = np.linalg.qr(right[:, ZS, 1:], mode="complete")[0][..., 2:]
     top = np.swapaxes(null_6, 1, 2)

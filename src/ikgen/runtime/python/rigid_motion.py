@@ -6,7 +6,7 @@ import numpy as np
 
 from ikgen.runtime.python.array_types import Array
 
-__all__ = ["inverses", "rotations_z"]
+__all__ = ["inverses", "motions_z", "rotations_z"]
 
 
 def rotations_z(t: Array) -> Array:
@@ -17,6 +17,14 @@ def rotations_z(t: Array) -> Array:
     R[..., 0, 1] = -R[..., 1, 0]
     R[..., 2, 2] = R[..., 3, 3] = 1.0
     return R
+
+
+def motions_z(d: Array) -> Array:
+    """Motions along z by d (...): (..., 4, 4)."""
+    X = np.zeros((*np.shape(d), 4, 4))
+    X[..., (0, 1, 2, 3), (0, 1, 2, 3)] = 1.0
+    X[..., 2, 3] = d
+    return X
 
 
 def inverses(T: Array) -> Array:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
 
 from ikgen.errors import BadDescriptionError
+from ikgen.processes.scratch_folder import ScratchFolder
 from ikgen.verify.runners.cpp_driver import driver
 from ikgen.verify.runners.cpp_toolchain import compile_program
 from ikgen.verify.runners.program_runner import ProgramRunner
@@ -26,8 +26,8 @@ class CppHeader(ProgramRunner):
         self.path = Path(path).resolve()
         if not self.path.is_file():
             raise BadDescriptionError("no such C++ header", file=str(path))
-        self._directory = tempfile.TemporaryDirectory(prefix="ikgen-verify-")
-        work = Path(self._directory.name)
+        self._folder = ScratchFolder("ikgen-")  # goes with this object
+        work = self._folder.path
         source, program = work / "driver.cpp", work / "driver"
         batch = "solve_batch(" in self.path.read_text(encoding="utf-8")
         text = driver(self.path.name, self.path.stem, batch=batch)

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import errno
 import os
+import re
 import shlex
 import shutil
-import subprocess
 import sysconfig
 from pathlib import Path
 
 from ikgen.errors import MissingToolError, VerificationError
+from ikgen.processes.outside_program import SECONDS_VARIABLE, Finished, run_program
 
 __all__ = ["compile_program", "find_compiler", "find_eigen"]
 
+_COMPLAINT = re.compile(r":\d+:\d+: .*\berror: ")
 _COMPILERS = ("c++", "g++", "clang++")
 
 
@@ -21,7 +24,13 @@ def find_compiler() -> list[str]:
 
     Raises `MissingToolError` where there is none.
     """
-    chosen = shlex.split(os.environ.get("CXX", ""))
+    asked = os.environ.get("CXX", "")
+    try:
+        chosen = shlex.split(asked)
+    except ValueError as error:
+        raise MissingToolError(
+            f"CXX={asked} is no command: {error}", hint="quote as in a shell, or unset CXX"
+        ) from None
     if chosen and shutil.which(chosen[0]):
         return chosen
     for name in _COMPILERS if not chosen else ():
@@ -66,17 +75,39 @@ def find_eigen() -> Path:
 def compile_program(source: Path, output: Path, include: list[Path]) -> None:
     """Compile one C++17 file with light optimisation.
 
-    Raises `MissingToolError` without compiler or Eigen, `VerificationError` with the compiler's
-    first messages where the code does not compile.
+    Raises `MissingToolError` without compiler or Eigen, and where the compiler itself fails: crashes,
+    takes too long, finds no room; `VerificationError` with its first messages where the code does not
+    compile.
     """
     includes = [f"-I{directory}" for directory in include]
     command = [*find_compiler(), "-std=c++17", "-O1", *includes, "-isystem", str(find_eigen())]
-    done = subprocess.run(
-        [*command, str(source), "-o", str(output)], capture_output=True, text=True, check=False
+    done = run_program(
+        [*command, str(source), "-o", str(output)], environment={**os.environ, "LC_ALL": "C"}
     )
-    if done.returncode:
-        lines = [line for line in done.stderr.splitlines() if "error" in line] or [done.stderr]
+    wrong = _complaints(done.printed)
+    if wrong and done.code and not (done.late or done.crashed):
         raise VerificationError(
-            "the emitted header does not compile: " + "\n".join(lines[:5]),
+            "the emitted header does not compile: " + "\n".join(wrong[:5]),
             hint=f"compiler: {command[0]}",
         )
+    if done.late or done.code or not output.is_file():
+        raise _compiler_failed(command[0], done)
+
+
+def _complaints(printed: str) -> list[str]:
+    """What a compiler has against the code: errors with a place in it. It gives one too where it crashes
+    or finds no room, whose fault the code is not."""
+    lines = [line for line in printed.splitlines() if _COMPLAINT.search(line)]
+    own = ("internal compiler error", os.strerror(errno.ENOSPC), os.strerror(errno.EDQUOT))
+    return [] if any(text in line for line in lines for text in own) else lines
+
+
+def _compiler_failed(compiler: str, done: Finished) -> MissingToolError:
+    said = next((line.strip() for line in done.printed.splitlines() if line.strip()), "")
+    more = (
+        f"limit: {SECONDS_VARIABLE}" if done.late else "try it by hand, or set CXX to another one"
+    )
+    return MissingToolError(
+        f"the compiler {compiler} {done.words}" + (f": {said[:300]}" if said else ""),
+        hint=f"whether the emitted header is right is not known; {more}",
+    )

@@ -18,13 +18,13 @@ joints and whether it is singular; those beyond the count are zeros.
 from __future__ import annotations
 
 import dataclasses
-import subprocess
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.errors import BadDescriptionError, VerificationError
+from ikgen.processes.outside_program import run_program
 from ikgen.verify.runners.runner import ArmConstants, Rows
 
 __all__ = ["BATCH", "FORWARD", "INFO", "JACOBIAN", "SOLVE", "ProgramRunner"]
@@ -75,12 +75,10 @@ class ProgramRunner:
         work = self._program.parent
         request, answer = work / "request", work / "answer"
         request.write_bytes(np.concatenate([head, body]).tobytes())
-        command = [str(self._program), str(request), str(answer)]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        if done.returncode:
-            raise VerificationError(
-                f"the emitted {self.label} code's driver ended with {done.returncode}: {done.stderr[:500]}"
-            )
+        done = run_program([str(self._program), str(request), str(answer)])
+        if done.late or done.code:
+            said = f": {done.printed[:500]}" if done.printed.strip() else ""
+            raise VerificationError(f"the emitted {self.label} code's driver {done.words}{said}")
         return np.fromfile(answer)
 
     def solve(

@@ -1,0 +1,141 @@
+"""Other programs, run with a time limit and a bound on what is kept of what they print.
+
+A compiler is several processes: all of them end where one takes too long or ikgen is ended, since they
+form a group of their own.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import os
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO
+
+from ikgen.errors import MissingToolError, UsageError
+
+__all__ = ["SECONDS_VARIABLE", "Finished", "run_program", "time_limit"]
+
+SECONDS_VARIABLE = "IKGEN_TOOL_SECONDS"
+"""Environment variable: how long a compiler or a compiled driver may run."""
+
+_SECONDS = 600.0
+_MOST_KEPT = 64 * 1024
+_PIECE = 64 * 1024
+_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
+
+
+@dataclass(frozen=True, slots=True)
+class Finished:
+    """How a program ended: its exit code, negative for the signal that ended it; the beginning of what it
+    printed on stderr; whether the time limit ended it."""
+
+    code: int
+    printed: str
+    late: bool = False
+
+    @property
+    def crashed(self) -> bool:
+        """Whether a signal ended it, of itself or (shells tell so) of what it had started."""
+        return self.code < 0 or self.code > 128
+
+    @property
+    def words(self) -> str:
+        """How it ended, to follow its name."""
+        if self.late:
+            return f"takes more than {time_limit():g} s"
+        if self.crashed:
+            number = -self.code if self.code < 0 else self.code - 128
+            try:
+                return f"was ended by {signal.Signals(number).name}"
+            except ValueError:
+                return f"ended with exit code {self.code}"
+        return f"ended with exit code {self.code}"
+
+
+def time_limit() -> float:
+    """The limit (s) of one run; raises `UsageError` where the environment names none that is a number."""
+    text = os.environ.get(SECONDS_VARIABLE, "")
+    try:
+        seconds = float(text or _SECONDS)
+    except ValueError:
+        seconds = 0.0
+    if not 0.0 < seconds < float("inf"):
+        raise UsageError(
+            f"{SECONDS_VARIABLE}={text}: no number of seconds", hint="give one above 0"
+        )
+    return seconds
+
+
+def run_program(
+    command: Sequence[str], *, cwd: Path | None = None, environment: Mapping[str, str] | None = None
+) -> Finished:
+    """Run a program to its end, without input; raises `MissingToolError` where it cannot be started."""
+    limit = time_limit()
+    try:
+        process = subprocess.Popen(
+            command,
+            cwd=cwd,
+            env=None if environment is None else {**environment},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            start_new_session=True,
+            preexec_fn=_dying_with_parent(),
+        )
+    except (OSError, ValueError, subprocess.SubprocessError) as error:
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        raise MissingToolError(
+            f"{command[0]} cannot be started: {reason}", hint="check that it is a program"
+        ) from error
+    return _awaited(process, limit)
+
+
+def _awaited(process: subprocess.Popen[bytes], limit: float) -> Finished:
+    """What came of a process; nothing of it is left."""
+    kept = bytearray()
+    assert process.stderr is not None
+    reader = threading.Thread(target=_keep, args=(process.stderr, kept), daemon=True)
+    reader.start()
+    late = False
+    try:
+        process.wait(limit)
+    except subprocess.TimeoutExpired:
+        late = True
+    finally:  # an interrupt too
+        _end_group(process)
+        reader.join(1.0)
+    return Finished(process.returncode, bytes(kept).decode("utf-8", "replace"), late)
+
+
+def _keep(stream: IO[bytes], kept: bytearray) -> None:
+    """Read to the end, and keep the beginning: a program whose pipe is full would wait for ever."""
+    with stream:
+        while piece := os.read(stream.fileno(), _PIECE):
+            kept += piece[: _MOST_KEPT - len(kept)]
+
+
+def _end_group(process: subprocess.Popen[bytes]) -> None:
+    """End what is left of the program's group."""
+    if hasattr(os, "killpg"):
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(process.pid, signal.SIGKILL)
+    else:
+        process.kill()
+    process.wait()
+
+
+def _dying_with_parent() -> Callable[[], object] | None:
+    """What makes a new process end with this one, where the system can (Linux)."""
+    if not sys.platform.startswith("linux"):
+        return None
+    library = ctypes.CDLL(None)  # loaded here: after fork only system calls are safe
+    if not hasattr(library, "prctl"):
+        return None
+    return lambda: library.prctl(_DEATH_SIGNAL, signal.SIGKILL)

@@ -1,0 +1,63 @@
+"""Programs that crash, hang, or print without end."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from ikgen.errors import MissingToolError, UsageError
+from ikgen.processes.outside_program import run_program
+
+
+def python(text: str) -> list[str]:
+    return [sys.executable, "-c", text]
+
+
+def test_the_beginning_of_what_it_prints_is_kept() -> None:
+    done = run_program(python("import sys; sys.stderr.write('first' + 'x' * 50_000_000)"))
+    assert done.code == 0 and done.printed.startswith("firstxxx")
+    assert len(done.printed) <= 64 * 1024
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs signals")
+def test_one_that_crashes() -> None:
+    done = run_program(python("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"))
+    assert done.crashed and done.words == "was ended by SIGSEGV"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs process groups")
+def test_one_that_hangs_ends_with_all_that_it_started(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("IKGEN_TOOL_SECONDS", "1")
+    child = tmp_path / "child"
+    text = (
+        "import subprocess, sys, time\n"
+        "p = subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(600)'])\n"
+        f"open({str(child)!r}, 'w').write(str(p.pid))\n"
+        "time.sleep(600)\n"
+    )
+    started = time.monotonic()
+    done = run_program(python(text))
+    assert done.late and done.words == "takes more than 1 s"
+    assert time.monotonic() - started < 20.0
+    state = Path(f"/proc/{child.read_text()}/stat")
+    if Path("/proc/self").exists():
+        assert not state.exists() or state.read_text().rpartition(")")[2].split()[0] == "Z"
+
+
+def test_one_that_cannot_be_started(tmp_path: Path) -> None:
+    (tmp_path / "text").write_text("no program")
+    with pytest.raises(MissingToolError, match="cannot be started"):
+        run_program([str(tmp_path / "text")])
+
+
+@pytest.mark.parametrize("text", ["soon", "-1", "inf", "nan"])
+def test_limits_that_are_none(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("IKGEN_TOOL_SECONDS", text)
+    with pytest.raises(UsageError, match="no number of seconds"):
+        run_program(python(""))

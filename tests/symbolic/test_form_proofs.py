@@ -1,0 +1,116 @@
+"""Every form's formula is proved to solve its pattern, and wrong ones are found out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import pytest
+import sympy
+
+from ikgen.algebra.expression import Expr
+from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.forms.form import Form
+from ikgen.forms.linear_form import Linear
+from ikgen.forms.lowered_form import LoweredForm, Tolerances
+from ikgen.forms.pair_form import LinearPair
+from ikgen.forms.quadratic_form import Quadratic
+from ikgen.forms.quartic_form import TrigQuartic
+from ikgen.forms.sine_cosine_form import SineCosine
+from ikgen.forms.tangent_form import Tangent
+from ikgen.symbolic.form_branches import alternatives
+from ikgen.symbolic.form_proofs import prove_form
+from ikgen.symbolic.lowered_view import LoweredView
+from ikgen.symbolic.quartic_roots import quartic_roots
+
+V, C, O = "variable", "constant", "zero"  # noqa: E741
+CASES = [
+    (Linear, (V, V)), (Linear, (C, V)),
+    (Quadratic, (V, V, V)), (Quadratic, (C, O, V)),
+    (LinearPair, (V,) * 6), (LinearPair, (C, O, V, O, C, V)), (LinearPair, (O, C, V, C, V, V)),
+    (SineCosine, (V, V, V)), (SineCosine, (C, C, V)), (SineCosine, (C, O, V)), (SineCosine, (O, C, V)),
+    (SineCosine, (V, O, V)),
+    (Tangent, (V, V)),
+    (TrigQuartic, (V,) * 5), (TrigQuartic, (V, O, V, V, V)),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("form", "kinds"), CASES)
+def test_form_solves_its_pattern(form: type[Form], kinds: tuple[str, ...]) -> None:
+    proof = prove_form(form, kinds)
+    assert proof.solves and proof.complete, proof.reason
+
+
+def test_conditions_are_the_divisor_and_the_radicand() -> None:
+    a, b, c = sympy.symbols("a b c", real=True)
+    found = set(prove_form(SineCosine, (V, V, V)).conditions)
+    assert found == {sympy.Ne(a**2 + b**2, 0), sympy.Ge(a**2 + b**2 - c**2, 0)}
+
+
+@dataclass(frozen=True, slots=True)
+class WrongSign(Quadratic):
+    """The roots of `a x^2 - b x + c`."""
+
+    def lower(self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances) -> LoweredForm:
+        return Quadratic(self.a, g.neg(self.b), self.c).lower(g, sigma, tolerances)
+
+
+@dataclass(frozen=True, slots=True)
+class OneRoot(Quadratic):
+    """One root of two."""
+
+    branches: ClassVar[int] = 1
+
+    def lower(self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances) -> LoweredForm:
+        made = Quadratic(self.a, self.b, self.c).lower(g, g.one, tolerances)
+        return LoweredForm(made.values, made.divisor, made.guard, 1, made.under)
+
+
+@dataclass(frozen=True, slots=True)
+class Silent(Linear):
+    """A form that does not say what it solves."""
+
+    def pattern(self, g: ExpressionGraph, unknown: tuple[Expr, ...]) -> tuple[Expr, ...]:
+        return ()
+
+
+def test_a_wrong_branch_is_found_out() -> None:
+    proof = prove_form(WrongSign, (V, V, V))
+    assert not proof.solves and "does not solve" in proof.reason
+
+
+def test_a_missing_branch_is_found_out() -> None:
+    proof = prove_form(OneRoot, (V, V, V))
+    assert proof.solves and not proof.complete and "may be in no branch" in proof.reason
+
+
+def test_a_form_without_a_pattern_is_not_proved() -> None:
+    proof = prove_form(Silent, (V, V))
+    assert not proof.proved and "does not say" in proof.reason
+
+
+@pytest.mark.parametrize(("form", "kinds"), [case for case in CASES if case[0] is not TrigQuartic])
+def test_textbook_and_emitted_formulas_agree(form: type[Form], kinds: tuple[str, ...]) -> None:
+    view = LoweredView(form, kinds)
+    given = view.coefficients
+    textbook = alternatives(view.form, given).values
+    at = {s: sympy.Rational(k + 7, 9) for k, s in enumerate(given) if s.is_Symbol}
+    at = {s: x / (3 if s is given[-1] else 1) for s, x in at.items()}
+    signs = (1, -1) if len(textbook) == 2 else (1,)
+    emitted = {_angle(view.value(sign).xreplace(at)) for sign in signs}
+    assert {_angle(value.xreplace(at)) for value in textbook} == emitted
+
+
+def _angle(value: sympy.Expr) -> tuple[str, str]:
+    """The value, angles up to whole turns."""
+    n = sympy.N(value, 30)
+    return str(sympy.N(sympy.cos(n), 12)), str(sympy.N(sympy.sin(n), 12))
+
+
+def test_roots_of_degree_four() -> None:
+    coefficients = [sympy.Integer(k) for k in (3, -7, 2, 11, -5)]
+    roots = {complex(sympy.N(z)) for z in quartic_roots(coefficients)}
+    z = sympy.Symbol("z")
+    wanted = sympy.Poly([3, -7, 2, 11, -5], z).nroots()
+    assert len(roots) == 4
+    assert all(min(abs(complex(w) - z) for z in roots) < 1e-10 for w in wanted)

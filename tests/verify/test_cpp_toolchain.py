@@ -1,0 +1,66 @@
+"""Compilers that fail by themselves are not taken for a fault of the emitted code."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from ikgen.errors import MissingToolError, VerificationError
+from ikgen.verify.runners.cpp_toolchain import compile_program, find_compiler
+
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="needs sh")
+
+FAILING = {
+    "crashes": ("kill -SEGV $$", "was ended by SIGSEGV"),
+    "part-crashes": (
+        "echo 'x.cpp:1:1: internal compiler error: Segmentation fault' >&2; exit 1",
+        "internal compiler error",
+    ),
+    "no-room": (
+        "echo 'x.cpp:1:1: fatal error: error writing to /tmp/c.s: No space left on device' >&2; exit 1",
+        "No space left",
+    ),
+    "killed-part": (
+        "echo 'g++: fatal error: Killed signal terminated program cc1plus' >&2; exit 1",
+        "Killed signal",
+    ),
+    "refuses": ("echo 'error: unknown option -std=c++17' >&2; exit 1", "exit code 1"),
+    "hangs": ("sleep 600", "takes more than 1 s"),
+    "does-nothing": ("exit 0", "exit code 0"),
+    "talks": ("yes 'a warning' | head -c 5000000 >&2; exit 7", "exit code 7: a warning"),
+}
+
+
+@pytest.mark.parametrize("kind", FAILING)
+def test_a_compiler_that_fails(kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    does, told = FAILING[kind]
+    compiler = tmp_path / "compiler"
+    compiler.write_text(f"#!/bin/sh\n{does}\n")
+    compiler.chmod(0o755)
+    monkeypatch.setenv("CXX", str(compiler))
+    monkeypatch.setenv("IKGEN_TOOL_SECONDS", "1" if kind == "hangs" else "60")
+    with pytest.raises(MissingToolError, match=told) as caught:
+        compile_program(tmp_path / "x.cpp", tmp_path / "x", [])
+    assert "is not known" in caught.value.hint
+
+
+def test_code_that_does_not_compile_in_another_language(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("LC_ALL", "de_DE.UTF-8")
+    monkeypatch.setenv("LANGUAGE", "de")
+    try:
+        find_compiler()
+    except MissingToolError as missing:
+        pytest.skip(missing.message)
+    (tmp_path / "x.cpp").write_text("int main() { return nothing; }\n")
+    with pytest.raises(VerificationError, match="does not compile"):
+        compile_program(tmp_path / "x.cpp", tmp_path / "x", [])
+
+
+def test_a_variable_that_is_no_command(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CXX", '"x')
+    with pytest.raises(MissingToolError, match="CXX="):
+        find_compiler()
