@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ikgen.runtime.python.array_types import Row
-from ikgen.runtime.python.branch_names import branch_names
+from ikgen.runtime.python.row_names import branch_names
 from ikgen.runtime.python.joint_arguments import held_values, seed_rows
 from ikgen.runtime.python.pose_arguments import pose_matrices
 from ikgen.runtime.python.pose_faults import nearest_pose, pose_fault
