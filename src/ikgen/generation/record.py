@@ -44,6 +44,7 @@ class Asked:
     tip: str | None = None
     task: str | None = None
     free: Mapping[str, float | None] | None = field(default=None, metadata=coded(read_free))
+    tool_axis: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +88,8 @@ class Record:
         """The request as the user gave it."""
         free = self.request.free if self.asked.free is None else self.asked.free
         asked = self.asked
-        return replace(self.request, base=asked.base, tip=asked.tip, task=asked.task, free=free)
+        ends = replace(self.request, base=asked.base, tip=asked.tip, free=free)
+        return replace(ends, task=asked.task, tool_axis=asked.tool_axis)
 
     def again(self, robot: Path | None = None) -> Request:
         """The request that makes the outputs again, for its own or another description."""
