@@ -131,7 +131,7 @@ def solve_batch(
 
 
 def search(
-    pose: ArrayLike,
+    pose: Any,
     *,
     seed: ArrayLike | None = None,
     prefer: str = "near",
@@ -145,7 +145,7 @@ def search(
     return _search_held(_ARM, pose, seed, prefer, limits)
 
 
-def follow(poses: ArrayLike, *, start: ArrayLike, limits: bool = True) -> Path:
+def follow(poses: Any, *, start: ArrayLike, limits: bool = True) -> Path:
     """Joint values along poses (N, 4, 4) on one branch, from the row of the first that is nearest to `start` (DOF,).
 
     Whole turns are unwound. Between two poses the tip is
@@ -1282,7 +1282,7 @@ def _search_held(
         return found
     q, cost, _ = _preference_costs(arm, preference, found.q[None], limits)
     order = np.argsort(cost[0], kind="stable")
-    return Solutions(q[0, order], found.status, found.singular[order])
+    return Solutions(q[0, order], found.status, found.singular[order], names=found.names)
 
 
 # Joint values along a path of poses, on one branch.
@@ -1319,7 +1319,7 @@ def _follow_poses(
 ) -> Path:
     """From the row of the first pose (N, 4, 4) that is nearest to `start` (dof,); `search(pose, start,
     limits)`: rows nearest to it first. Raises ValueError for bad arguments."""
-    T, dof = np.asarray(poses, dtype=float), len(arm.lower)
+    T, dof = _pose_matrices(poses, arm.task.alone), len(arm.lower)
     if T.ndim != 3 or T.shape[1:] != (4, 4):
         raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
     row = _seed_rows(arm, start, (dof,))
