@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Console"]
 
-_WORDS = {"read": "reading", "derive": "deriving", "emit": "writing", "verify": "verifying"}
+_WORDS = {"read": "reading", "derive": "deriving", "emit": "writing", "verify": "verifying",
+    "compile": "compiling", "map": "mapping",
+}  # fmt: skip
 
 
 class Console:

@@ -8,6 +8,7 @@ import re
 import shlex
 import shutil
 import sysconfig
+from collections.abc import Sequence
 from pathlib import Path
 
 from ikgen.errors import MissingToolError, VerificationError
@@ -72,15 +73,17 @@ def find_eigen() -> Path:
     )
 
 
-def compile_program(source: Path, output: Path, include: list[Path]) -> None:
-    """Compile one C++17 file with light optimisation.
+def compile_program(
+    source: Path, output: Path, include: list[Path], flags: Sequence[str] = ("-O1",)
+) -> None:
+    """Compile one C++17 file, by default with light optimisation.
 
     Raises `MissingToolError` without compiler or Eigen, and where the compiler itself fails: crashes,
     takes too long, finds no room; `VerificationError` with its first messages where the code does not
     compile.
     """
     includes = [f"-I{directory}" for directory in include]
-    command = [*find_compiler(), "-std=c++17", "-O1", *includes, "-isystem", str(find_eigen())]
+    command = [*find_compiler(), "-std=c++17", *flags, *includes, "-isystem", str(find_eigen())]
     done = run_program(
         [*command, str(source), "-o", str(output)], environment={**os.environ, "LC_ALL": "C"}
     )
