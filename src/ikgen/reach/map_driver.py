@@ -25,8 +25,8 @@ constexpr int kChunk = 512;
 
 using Small = Eigen::Matrix<double, kSmall, kSmall>;
 
-// The 256th power of the inverse is all but of rank one: its largest column is the eigenvector, to less than
-// a thousandth in the value however close the next one is.
+// The 256th power of the inverse is all but of rank one: its largest column is the eigenvector, to less
+// than a thousandth in the value however close the next one is.
 static double smallest_eigenvalue(Small A) {
   A.diagonal().array() += 1e-14 * A.trace();
   Small inverse = Small::Identity();

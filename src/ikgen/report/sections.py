@@ -14,6 +14,7 @@ from ikgen.report.held_section import held_section
 from ikgen.report.leftover import leftover_section
 from ikgen.report.opening import forward_section, robot_section
 from ikgen.report.page import Page, SolvedPage, UnsolvedPage
+from ikgen.report.proof_section import proof_section
 from ikgen.report.results import graph_section, poses_section, verification_section
 from ikgen.report.roots_picture import roots_blocks
 from ikgen.report.splits import splits_section
@@ -70,8 +71,8 @@ def _solution(page: SolvedPage) -> list[Block]:
     if not page.eliminated:
         return _inverse(page)
     blocks: list[Block] = [Heading(("Inverse kinematics",), anchor="inverse")]
-    blocks += elimination_section()
     plan = page.derivation.module.plan
+    blocks += elimination_section(plan.turning.count(False) if plan is not None else 0)
     if page.example is not None and plan is not None:
         blocks += roots_blocks(page.reading.dh, plan, page.example)
     return blocks
@@ -100,12 +101,17 @@ def _tree(page: Page) -> list[Block]:
     return behavior_section(page.graph)
 
 
+def _proof(page: SolvedPage) -> list[Block]:
+    return proof_section(page.derivation)
+
+
 def _verification(page: SolvedPage) -> list[Block]:
     return verification_section(page.reports)
 
 
 SOLVED: tuple[Callable[[SolvedPage], list[Block]], ...] = (
-    _card, _held, _example, _robot, _forward, _solution, _drawn, _sets, _tree, _verification,
+    _card, _held, _example, _robot, _forward, _solution, _drawn, _sets, _tree, _proof,
+    _verification,
 )  # fmt: skip
 """Of a solved arm; a section that does not apply is empty."""
 
