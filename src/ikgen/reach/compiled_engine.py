@@ -20,7 +20,7 @@ def compiled_engine(
     """`portable`: for any processor of this kind, not this one alone. Raises `MissingToolError` without a
     compiler or Eigen."""
     name = f"{module.name}_ik"
-    with ScratchFolder("ikgen-reach-") as folder:
+    with ScratchFolder("ikgen-") as folder:
         (folder / f"{name}.hpp").write_text(emit_header(module), encoding="utf-8")
         source, program = folder / "map.cpp", folder / "map"
         text = map_driver(f"{name}.hpp", name, rows=rows, moving=moving, size=size)

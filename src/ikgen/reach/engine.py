@@ -73,8 +73,8 @@ def solve_block(block: Block) -> MapRows:
 
 @cache
 def _folder(digest: str) -> ScratchFolder:
-    """One folder a process and engine, removed with the process."""
-    return ScratchFolder(f"ikgen-reach-{digest[:8]}-", sweep=False)
+    """One folder a process and content (`digest`), removed with the process."""
+    return ScratchFolder("ikgen-")
 
 
 def _file(name: str, content: bytes) -> Path:
