@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shlex
 import time
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -87,7 +88,8 @@ def reach(
         portable=portable or scheduler is not None, command=_command(robot, cells, directions, rolls),
     )  # fmt: skip
     with Console(quiet=quiet, verbose=verbose) as console:
-        found, files = write_map(make_request(robot, **chain), order, out, console, console.warn)
+        request, done = make_request(robot, **chain), partial(console.share, "map")
+        found, files = write_map(request, order, out, console, console.warn, done)
     seconds = time.perf_counter() - started
     if as_json:
         names = [str(path) for path in files]

@@ -36,6 +36,7 @@ def write_map(
     out: Path,
     progress: Progress = silent,
     warn: Callable[[str], None] = lambda text: None,
+    done: Callable[[int, int], None] = lambda ready, total: None,
 ) -> tuple[ReachMap, tuple[Path, ...]]:
     """The map and its files: the archive and the page."""
     check_folder(out)
@@ -43,11 +44,8 @@ def write_map(
     grid = grid_over(derivation.reading.dh, order.cells, order.directions, order.rolls)
     progress("compile", derivation.module.name)
     engine, size = engine_of(derivation, portable=order.portable, warn=warn)
-
-    def told(ready: int, total: int) -> None:
-        progress("map", f"{grid.poses:,} poses: {100 * ready // total} %")
-
-    found = reach_map(derivation, grid, engine, size, order.workers, told)
+    progress("map", f"{grid.poses:,} poses")
+    found = reach_map(derivation, grid, engine, size, order.workers, done)
     name = derivation.module.name
     page = slices_page(found, order.command)
     files: dict[str, Content] = {f"{name}_reach.npz": found.archive(), f"{name}_reach.html": page}
