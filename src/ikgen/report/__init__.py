@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from ikgen import __version__
 from ikgen.emit.derivation import Derivation, Reading, Unsolved
-from ikgen.formulas.normal_form import Normalizer
+from ikgen.formulas.normalizer import Normalizer
 from ikgen.kinematics.classify import GeometryClass
 from ikgen.report.behavior import behavior_section
 from ikgen.report.document import Block, Heading, Paragraph
