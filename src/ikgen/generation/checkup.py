@@ -17,7 +17,7 @@ __all__ = ["Offer", "Thing", "offers", "packages", "tools"]
 
 _PACKAGES = {
     "numpy": "arrays",
-    "sympy": "polynomials",
+    "sympy": "symbolic solutions and exact proofs (verify --prove, report)",
     "jinja2": "templates of the outputs",
     "click": "command line",
     "rich": "progress",

@@ -63,6 +63,7 @@ def _record(request: Request, outputs: Outputs, derivation: Derivation, folder: 
         base=dh.base_link,
         tip=dh.tip_link,
         task=module.task,
+        tool_axis=None,
         name=module.name,
         free=held,
     )
@@ -71,7 +72,7 @@ def _record(request: Request, outputs: Outputs, derivation: Derivation, folder: 
         version=module.generator_version,
         request=explicit,
         source_sha256=module.source_sha256,
-        asked=Asked(request.base, request.tip, request.task, dict(request.free)),
+        asked=Asked(request.base, request.tip, request.task, dict(request.free), request.tool_axis),
         emit=(),
         verified=outputs.verify,
         joints=tuple(joint.name for joint in dh.joints),

@@ -16,6 +16,7 @@ from pathlib import Path
 from ikgen.errors import BadDescriptionError, UsageError
 from ikgen.generation.codec import CodecError, Decoder, coded, encode, inlined, read_free, uncoded
 from ikgen.generation.request import Request
+from ikgen.importers.named_robots import is_named
 
 __all__ = [
     "GENERATOR",
@@ -43,6 +44,7 @@ class Asked:
     tip: str | None = None
     task: str | None = None
     free: Mapping[str, float | None] | None = field(default=None, metadata=coded(read_free))
+    tool_axis: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +88,8 @@ class Record:
         """The request as the user gave it."""
         free = self.request.free if self.asked.free is None else self.asked.free
         asked = self.asked
-        return replace(self.request, base=asked.base, tip=asked.tip, task=asked.task, free=free)
+        ends = replace(self.request, base=asked.base, tip=asked.tip, free=free)
+        return replace(ends, task=asked.task, tool_axis=asked.tool_axis)
 
     def again(self, robot: Path | None = None) -> Request:
         """The request that makes the outputs again, for its own or another description."""
@@ -109,6 +112,8 @@ def record_text(record: Record) -> str:
     folder = record.folder.resolve()
 
     def place(path: Path) -> str:
+        if is_named(path):
+            return str(path)
         return Path(os.path.relpath(path.resolve(), folder)).as_posix()
 
     return json.dumps(encode(record, place), indent=2) + "\n"
@@ -168,7 +173,7 @@ def read_record(path: Path) -> Record:
     """The record in a file; raises `BadDescriptionError` for a file that is none."""
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
-        decoder = Decoder(lambda text: seen(path.parent / text))
+        decoder = Decoder(lambda text: Path(text) if is_named(text) else seen(path.parent / text))
         record = decoder.table(Record, data, "the record")
         if record.request.name is None:
             raise CodecError("the record", " has no 'name'")

@@ -16,6 +16,7 @@ from ikgen.importers.urdf.attribute_values import (
 )
 from ikgen.importers.urdf.joint_limits import UNLIMITED, joint_limits
 from ikgen.importers.xml_document import Element, Place, children
+from ikgen.kinematics.fixed_order import length
 from ikgen.kinematics.rigid import read_only, rotation_rpy
 from ikgen.model.joint_tree import Joint, JointType, Limits, Matrix, Mimic
 
@@ -141,17 +142,17 @@ def _axis(joint: Element, name: str, place: Place) -> Matrix:
         xyz = _vector(axis, "xyz", xyz, name, place)
         if axis.get("rpy") is not None:
             place.warn(axis, f"joint '{name}': <axis> has an rpy, which URDF ignores")
-    length = math.hypot(*xyz)
-    if length > _AXIS_LONGEST:
-        raise place.error(axis, f"joint '{name}': axis of length {length:g}", "use a unit vector")
-    if length < _AXIS_SHORTEST:
+    size = math.hypot(*xyz)
+    if size > _AXIS_LONGEST:
+        raise place.error(axis, f"joint '{name}': axis of length {size:g}", "use a unit vector")
+    if size < _AXIS_SHORTEST:
         raise place.error(
             axis, f"joint '{name}' moves about a zero axis", "give the axis a direction"
         )
-    if abs(length - 1.0) > _AXIS_ROUNDING:
-        place.warn(axis, f"joint '{name}': axis of length {length:g} normalised")
+    if abs(size - 1.0) > _AXIS_ROUNDING:
+        place.warn(axis, f"joint '{name}': axis of length {size:g} normalised")
     vector = np.array(xyz)
-    return np.asarray(vector / np.linalg.norm(vector))
+    return np.asarray(vector / length(vector))
 
 
 def _limits(joint: Element, type_: JointType, name: str, place: Place) -> Limits:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import inf
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.joint_arguments import held_rows, seed_rows
+from ikgen.runtime.python.pose_arguments import pose_matrices
+from ikgen.runtime.python.pose_faults import nearest_poses
 from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.refinement import refine
 from ikgen.runtime.python.row_placement import distinct, place_rows_batch
@@ -31,16 +34,17 @@ def branch_axis(level: int, depth: int) -> Array:
 
 def solve_poses(
     arm: Arm,
-    poses: ArrayLike,
+    poses: Any,
     free: ArrayLike | Mapping[str, float] | None,
     seed: ArrayLike | None,
     limits: bool,
+    orthonormalize: bool = False,
 ) -> _Batch:
     """Rows (N, most, dof) padded with NaN, counts (N,) and names of Status (N,) for poses (N, 4, 4).
 
     Raises ValueError for bad arguments.
     """
-    T, dof = np.asarray(poses, dtype=float), len(arm.lower)
+    T, dof = pose_matrices(poses, arm.task.alone), len(arm.lower)
     if T.ndim != 3 or T.shape[1:] != (4, 4):
         raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
     count = len(T)
@@ -51,6 +55,8 @@ def solve_poses(
     q = np.full((count, arm.most, dof), np.nan)
     number = np.zeros(count, dtype=np.int64)
     status = np.full(count, Status.INVALID.value, dtype="<U11")
+    if orthonormalize:
+        T = nearest_poses(arm.task, T, arm.policy)
     T, good = arm.task.read_batch(T, arm.policy)
     usable, size = np.flatnonzero(good), _CHUNK // (1 + len(arm.beside))
     for start in range(0, len(usable), size):
