@@ -55,7 +55,7 @@ template <class Arm> struct HeldSample {
   HeldSample(const Eigen::Isometry3d& T, double value, const JointBounds<Arm>& bounds) noexcept : held(value) {
     bool again = take(T, T, 0);
     if constexpr (Arm::kBesides > 0)
-      for (int i = 0; i < Arm::kBesides; ++i) again = take(T, Arm::moved(T, i), i + 1) || again;
+      for (int i = 0; i < Arm::kBesides; ++i) again = take(T, beside(T, Arm::kBeside[i]), i + 1) || again;
     if (again) remove_repetitions();
     for (int l = 0; l < kLanes; ++l) off[l] = -kInfinity;
     for (int i = 0; i < bounds.count; ++i)
@@ -102,6 +102,13 @@ template <class Arm> struct HeldSample {
         q[j][l] = !Arm::kRevolute[j] || Arm::kHeld[j] ? refined[j] : refined[j] - kTurn * std::nearbyint(refined[j] / kTurn);
     }
     return again;
+  }
+
+  template <class Motion> static Eigen::Isometry3d beside(const Eigen::Isometry3d& T, const Motion& motion) noexcept {
+    Eigen::Isometry3d out = T;
+    out.translation() += T.linear() * Eigen::Map<const Eigen::Vector3d>(motion.p);
+    out.linear() = T.linear() * Eigen::Map<const Eigen::Matrix3d>(motion.R);
+    return out;
   }
 
   void remove_repetitions() noexcept {
