@@ -112,7 +112,8 @@ def _headers(module: SolverModule) -> list[str]:
     needed += ["poses_beside.hpp"] * bool(module.beside)
     task = "whole_pose.hpp" if module.task == "pose" else "pose_entries.hpp"
     needed += [task, "pose_solver.hpp", "projection.hpp"]
-    return [*needed, *["self_motion.hpp"] * (len(module.free) == 1)]
+    searches = ("row_preference.hpp", "held_search.hpp", "held_grid_search.hpp")
+    return [*needed, searches[min(len(module.free), 2)]]
 
 
 _ROUTINES = {"general_6r": "general_6r_arm.hpp"}

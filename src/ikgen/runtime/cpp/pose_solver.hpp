@@ -27,11 +27,16 @@ template <class Arm, template <class> class Way> struct PoseSolver {
   }
 
  private:
-  // Options without a seed that is no number.
+  // Options without a seed that is no number; with one, free values that are the defaults are the seed's.
   static Options checked(const Options& options) noexcept {
     Options out = options;
     for (int j = 0; j < Arm::kDof && out.seed; ++j)
       if (!(std::abs(out.seed->data()[j]) < kInfinity)) out.seed = nullptr;
+    if constexpr (Arm::kFree > 0) {
+      const Options plain;
+      for (std::size_t k = 0; k < Arm::kFree && out.seed && out.hold_seed; ++k)
+        if (out.free[k] == plain.free[k]) out.free[k] = out.seed->data()[Arm::kFreeJoints[k]];
+    }
     return out;
   }
 
