@@ -4,6 +4,12 @@
 
 namespace ikgen_runtime {
 
+// The samples between which the last end was found: other rows may end there as well.
+template <class Arm> struct LastEnd {
+  HeldSample<Arm> inside, outside;
+  bool known = false;
+};
+
 // Between a value of the held joint at which a branch's row is inside and one at which it is not, the last at which
 // it is: false position with halved values (Dowell, Jarratt 1971: the Illinois method), and halving where no value is
 // known or it is slow. Arm: as for HeldSweep.
@@ -25,7 +31,9 @@ template <class Arm> struct BranchEnd {
     set(1, b, at_fold ? lane_a : lane_b, !at_fold);
   }
 
-  void find(const HeldSweep<Arm>& sweep) noexcept {
+  void find(const HeldSweep<Arm>& sweep, LastEnd<Arm>& last) noexcept {
+    if (last.known && (found(last.inside, last.outside) || found(last.outside, last.inside))) return;
+    last.inside.held = last.outside.held = kInfinity;
     for (int step = 0; step < kSteps && std::abs(outer - inner) > kEnough; ++step) {
       const Sample s = sweep.at(trial(step));
       int row = lane;
@@ -40,14 +48,29 @@ template <class Arm> struct BranchEnd {
       set(side, s, seen ? row : lane, seen);
       if (moved == side) values[1 - side] *= 0.5;
       moved = side;
+      (good ? last.inside : last.outside) = s;
       if (good) {
         s.row(row, q);
         lane = row;
       }
     }
+    last.known = last.inside.held == inner && last.outside.held == outer;
   }
 
  private:
+  // Whether the end lies between two samples that are close enough.
+  bool found(const Sample& a, const Sample& b) noexcept {
+    if (!(std::abs(a.held - b.held) <= kEnough) || (a.held - inner) * (a.held - outer) > 0.0) return false;
+    const int row = at_fold && Arm::kGuarded ? lane : nearest(a), other = at_fold && Arm::kGuarded ? lane : nearest(b);
+    if (row < 0 || !a.inside(row) || distance(a, row) > 1.0) return false;
+    if (other >= 0 && b.inside(other) && distance(b, other) < 1.0) return false;
+    inner = a.held;
+    outer = b.held;
+    a.row(row, q);
+    lane = row;
+    return true;
+  }
+
   double trial(int step) const noexcept {
     if (!known[0] || !known[1] || !(values[0] <= 0.0 && values[1] > 0.0) || step % 4 == 3) return 0.5 * (inner + outer);
     const double least = 0.4 * kEnough / std::abs(outer - inner);

@@ -36,14 +36,22 @@ template <class Arm> struct HeldSweep {
   Sample at(double held) const noexcept { return Sample(pose, held, bounds); }
 
   template <class Visit> void run(Visit& visit) const noexcept {
-    Sample window[4];  // before, lower end, upper end, after
+    Sample window[4];  // before, lower end, upper end, after; a ring
+    Links links[4];    // from each to the next
     window[1] = at(low);
     window[2] = at(value(1));
+    links[1] = Links(window[1], window[2]);
     visit.first(window[1]);
     for (int k = 0; k < kCells; ++k) {
-      if (k + 2 <= kCells) window[3] = at(value(k + 2));
-      cell(k > 0 ? &window[0] : nullptr, window[1], window[2], k + 2 <= kCells ? &window[3] : nullptr, visit);
-      for (int i = 0; i < 3; ++i) window[i] = window[i + 1];
+      const Sample &a = window[(k + 1) % 4], &b = window[(k + 2) % 4];
+      const Beside before = {k > 0 ? &window[k % 4] : nullptr, &links[k % 4]};
+      Beside after = {nullptr, nullptr};
+      if (k + 2 <= kCells) {
+        window[(k + 3) % 4] = at(value(k + 2));
+        links[(k + 2) % 4] = Links(b, window[(k + 3) % 4]);
+        after = {&window[(k + 3) % 4], &links[(k + 2) % 4]};
+      }
+      cell(before, a, b, links[(k + 1) % 4], after, visit);
     }
   }
 
@@ -60,48 +68,61 @@ template <class Arm> struct HeldSweep {
     return far;
   }
 
-  template <class Visit>
-  void cell(const Sample* before, const Sample& a, const Sample& b, const Sample* after, Visit& visit) const noexcept {
-    int next[kLanes], last[kLanes], on[kLanes];
-    link(a, b, next);
-    if (before) link(*before, a, last);
-    if (after) link(b, *after, on);
-    if (!doubtful(before, last, a, b, next, after, on)) return visit.cell(a, b, next);
-    const Sample middle = at(0.5 * (a.held + b.held));
-    cell(before, a, middle, &b, visit);
-    cell(&a, middle, b, after, visit);
-  }
+  // The rows that are nearest to each other at two values: next[lane], origin[lane], -1 for none.
+  struct Links {
+    int next[kLanes], origin[kLanes];
 
-  // Rows that are nearest to each other.
-  static void link(const Sample& a, const Sample& b, int* next) noexcept {
-    bool plain = true;
-    for (int l = 0; l < kLanes; ++l) {
-      next[l] = a.real[l] && b.real[l] && Sample::gap(a, l, b, l) < 0.3 ? l : -1;
-      plain = plain && (next[l] >= 0 || (!a.real[l] && !b.real[l]));
-    }
-    if (plain && Arm::kGuarded) return;
-    for (int l = 0; l < kLanes; ++l) next[l] = nearest(a, l, b);
-    for (int l = 0; l < kLanes; ++l)
-      if (next[l] >= 0 && nearest(b, next[l], a) != l) next[l] = -1;
-  }
-
-  static int nearest(const Sample& a, int lane, const Sample& b) noexcept {
-    int best = -1;
-    double least = kInfinity;
-    for (int l = 0; l < kLanes && a.real[lane]; ++l) {
-      const double gap = b.real[l] ? Sample::gap(a, lane, b, l) : kInfinity;
-      if (gap < least) {
-        least = gap;
-        best = l;
+    Links() = default;
+    Links(const Sample& a, const Sample& b) noexcept {
+      bool plain = Arm::kGuarded;
+      for (int l = 0; l < kLanes; ++l) {
+        next[l] = a.real[l] && b.real[l] && Sample::gap(a, l, b, l) < 0.3 ? l : -1;
+        origin[l] = next[l];
+        plain = plain && (next[l] >= 0 || (!a.real[l] && !b.real[l]));
       }
+      if (!plain) search(a, b);
     }
-    return best;
-  }
 
-  static int origin(const int* next, int lane) noexcept {
-    for (int l = 0; l < kLanes; ++l)
-      if (next[l] == lane) return l;
-    return -1;
+   private:
+    [[gnu::cold, gnu::noinline]] void search(const Sample& a, const Sample& b) noexcept {
+      for (int l = 0; l < kLanes; ++l) {
+        origin[l] = -1;
+        next[l] = nearest(a, l, b);
+      }
+      for (int l = 0; l < kLanes; ++l)
+        if (next[l] >= 0 && nearest(b, next[l], a) != l) next[l] = -1;
+      for (int l = 0; l < kLanes; ++l)
+        if (next[l] >= 0) origin[next[l]] = l;
+    }
+
+    static int nearest(const Sample& a, int lane, const Sample& b) noexcept {
+      int best = -1;
+      double least = kInfinity;
+      for (int l = 0; l < kLanes && a.real[lane]; ++l) {
+        const double gap = b.real[l] ? Sample::gap(a, lane, b, l) : kInfinity;
+        if (gap < least) {
+          least = gap;
+          best = l;
+        }
+      }
+      return best;
+    }
+  };
+
+  // The sample beyond an end of a cell, if there is one, and the links between.
+  struct Beside {
+    const Sample* sample;
+    const Links* links;
+  };
+
+  template <class Visit>
+  void cell(const Beside& before, const Sample& a, const Sample& b, const Links& links, const Beside& after,
+            Visit& visit) const noexcept {
+    if (!doubtful(before, a, b, links, after)) return visit.cell(a, b, links.next);
+    const Sample middle = at(0.5 * (a.held + b.held));
+    const Links up(a, middle), on(middle, b);
+    cell(before, a, middle, up, {&b, &on}, visit);
+    cell({&a, &up}, middle, b, on, after, visit);
   }
 
   // Change of a joint from one row to another.
@@ -110,8 +131,9 @@ template <class Arm> struct HeldSweep {
     return Arm::kRevolute[j] ? shortest(gap) : gap;
   }
 
-  bool doubtful(const Sample* before, const int* last, const Sample& a, const Sample& b, const int* next,
-                const Sample* after, const int* on) const noexcept {
+  bool doubtful(const Beside& down, const Sample& a, const Sample& b, const Links& links, const Beside& up) const noexcept {
+    const Sample *before = down.sample, *after = up.sample;
+    const int* next = links.next;
     const double width = b.held - a.held;
     const bool narrow = width > kLeast * (high - low), wide = width > kNarrow * (high - low);
     if (!narrow) return false;
@@ -119,13 +141,13 @@ template <class Arm> struct HeldSweep {
     for (int l = 0; l < kLanes; ++l) {
       if (a.real[l] && next[l] < 0) {
         ending = true;
-        const int p = before ? origin(last, l) : -1;
+        const int p = before ? down.links->origin[l] : -1;
         if (near_limit(a, l, p < 0 ? kInfinity : Sample::gap(*before, p, a, l), width, before ? a.held - before->held : 1.0))
           return true;
       }
-      if (b.real[l] && origin(next, l) < 0) {
+      if (b.real[l] && links.origin[l] < 0) {
         beginning = true;
-        const int n = after ? on[l] : -1;
+        const int n = after ? up.links->next[l] : -1;
         if (near_limit(b, l, n < 0 ? kInfinity : Sample::gap(b, l, *after, n), width, after ? after->held - b.held : 1.0))
           return true;
       }
@@ -136,7 +158,7 @@ template <class Arm> struct HeldSweep {
       bool dead = false;
       if (k >= 0) {
         if (Arm::kGuarded && k != l) return true;
-        const int p = before ? origin(last, l) : -1, n = after ? on[k] : -1;
+        const int p = before ? down.links->origin[l] : -1, n = after ? up.links->next[k] : -1;
         if (bends(p >= 0 ? before : nullptr, p, a, l, b, k, n >= 0 ? after : nullptr, n, dead)) return true;
       }
       if (hides_fold(before, a, b, after, l, dead)) return true;

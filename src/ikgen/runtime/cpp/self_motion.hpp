@@ -25,6 +25,7 @@ template <class Arm, class Record> struct BranchFollower {
   }
 
   void cell(const Sample& a, const Sample& b, const int* next) noexcept {
+    LastEnd<Arm> last;
     int carried[kLanes];
     bool begun[kLanes];
     for (int l = 0; l < kLanes; ++l) {
@@ -34,7 +35,7 @@ template <class Arm, class Record> struct BranchFollower {
     for (int l = 0; l < kLanes; ++l) {
       if (!a.real[l] || !a.inside(l) || (next[l] >= 0 && b.inside(next[l]))) continue;
       BranchEnd<Arm> end(a, l, b, next[l]);
-      end.find(sweep);
+      end.find(sweep, last);
       record.close(l, end.inner, end.q);
     }
     record.move(next);
@@ -49,7 +50,7 @@ template <class Arm, class Record> struct BranchFollower {
       begun[k] = b.inside(k) && !(carried[k] >= 0 && a.inside(carried[k]));
       if (!begun[k]) continue;
       BranchEnd<Arm> end(b, k, a, carried[k]);
-      end.find(sweep);
+      end.find(sweep, last);
       open(k, b, k, end.inner, end.q);
     }
     for (int k = 0; k < kLanes; ++k)
