@@ -69,6 +69,11 @@ class SolverModule:
         return displacements(4.0 * deviation)
 
     @property
+    def guarded(self) -> bool:
+        """Whether the guards alone make rows come and go: the Program calls no routine for roots."""
+        return self.plan is None and all(level.call is None for level in self.program.levels)
+
+    @property
     def max_solutions(self) -> int:
         """Rows of the solution at most (two whole turns of a joint count once)."""
         return self.program.max_solutions
