@@ -56,7 +56,9 @@ def test_what_is_used_comes_along(tmp_path: Path) -> None:
 
 
 def test_details_of_private_documentation_stay_with_the_runtime() -> None:
-    body = 'def turned(x: float) -> float:\n    """Say it.\n\n    And why.\n    """\n    return -x\n'
+    body = (
+        'def turned(x: float) -> float:\n    """Say it.\n\n    And why.\n    """\n    return -x\n'
+    )
     text = f'"""A module."""\n\n\n{body}'
     (turned,) = taken_apart("module", text).definitions
     assert turned.text({}) == text.partition("\n\n\n")[2].rstrip()

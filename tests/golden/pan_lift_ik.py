@@ -441,17 +441,13 @@ def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...]) -> Array:
 
 
 # The nearest pose that the arm can take, of one that it cannot.
-#
-# What is least is `|p - p'|^2 / size^2 + chord^2`, the chord that of the rotation, direction or heading that
-# the task reads (for a turn by x: 2 sin(x / 2)). Damped Gauss-Newton steps inside the limits (Levenberg 1944,
-# Marquardt 1963), from the best of many starts.
 
 
-_STARTS = 128  # drawn; the best of them are followed
+_START_COUNT = 128  # drawn; the best of them are followed
 _FOLLOWED = 16
-_STEPS = 80
-_LEAST, _FIRST, _MOST = 1e-10, 1e-3, 1e10  # damping of a step
-_LONGEST = 0.5  # rad or m: step of a joint
+_STEP_COUNT = 80
+_LEAST_DAMPING, _FIRST_DAMPING, _MOST_DAMPING = 1e-10, 1e-3, 1e10  # damping of a step
+_LONGEST_STEP = 0.5  # rad or m: step of a joint
 
 
 def _nearest_row(arm: _Arm, T: Array, start: Row, limits: bool) -> Row:
@@ -509,7 +505,7 @@ def _starts(arm: _Arm, low: Array, high: Array) -> Array:
     for _ in range(40):
         root = (1.0 + root) ** (1.0 / (dof + 1))
     steps = (1.0 / root) ** np.arange(1, dof + 1)
-    part = (0.5 + np.arange(1, _STARTS + 1)[:, None] * steps) % 1.0
+    part = (0.5 + np.arange(1, _START_COUNT + 1)[:, None] * steps) % 1.0
     half = np.where(arm.chain.revolute, pi, arm.task.size)
     centre = np.clip(0.0, low + half, np.maximum(high - half, low + half))
     least, most = np.maximum(low, centre - half), np.minimum(high, centre + half)
@@ -518,12 +514,12 @@ def _starts(arm: _Arm, low: Array, high: Array) -> Array:
 
 def _descend(arm: _Arm, T: Array, q: Array, bounds: tuple[Array, Array]) -> tuple[Array, Array]:
     """The rows (k, dof) at the ends of the steps, and what is least there (k,)."""
-    moving, damping = list(arm.moving), np.full(len(q), _FIRST)
+    moving, damping = list(arm.moving), np.full(len(q), _FIRST_DAMPING)
     low, high = (bound[moving] for bound in bounds)
     pose, J = _tip_and_jacobian(arm.chain, q)
     error = _chords(arm.task, pose, T)
     cost = (error**2).sum(axis=1)
-    for _ in range(_STEPS):
+    for _ in range(_STEP_COUNT):
         trial = q.copy()
         slope = _entry_rows(arm.task.entries, _weight(arm.task), pose, J)[:, :, moving]
         trial[:, moving] = _stepped(q[:, moving], slope, error, damping, (low, high))
@@ -533,8 +529,8 @@ def _descend(arm: _Arm, T: Array, q: Array, bounds: tuple[Array, Array]) -> tupl
         better = costs < cost
         q[better], error[better], cost[better] = trial[better], errors[better], costs[better]
         pose, J = (np.where(better[:, None, None], a, b) for a, b in zip(new[1:], (pose, J)))
-        damping = np.clip(damping * np.where(better, 0.2, 8.0), _LEAST, _MOST)
-        if damping.min() == _MOST:
+        damping = np.clip(damping * np.where(better, 0.2, 8.0), _LEAST_DAMPING, _MOST_DAMPING)
+        if damping.min() == _MOST_DAMPING:
             break
     return q, cost
 
@@ -548,7 +544,7 @@ def _stepped(
     slope = np.where(stuck[:, None], 0.0, slope)
     normal = np.einsum("kmi,kmj->kij", slope, slope) + damping[:, None, None] * np.eye(q.shape[1])
     step = np.linalg.solve(normal, np.where(stuck, 0.0, push)[:, :, None])[:, :, 0]
-    return np.asarray(np.clip(q + np.clip(step, -_LONGEST, _LONGEST), *bounds))
+    return np.asarray(np.clip(q + np.clip(step, -_LONGEST_STEP, _LONGEST_STEP), *bounds))
 
 
 # Newton's method on the chain: damped least squares (Levenberg 1944, Marquardt 1963).

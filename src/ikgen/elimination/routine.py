@@ -82,7 +82,5 @@ def initial_residuals(frames: Matrix, plan: Plan, poses: Matrix) -> tuple[list[M
         return [np.zeros((0, 6)) for _ in poses], np.zeros(0)
     q, good, before = refined_rows(F, plan.turning, T[index], q, policy)
     near = policy.coincident
-    rows = [
-        distinct_rows(q[good & (index == i)], plan.turning, near) for i in range(len(poses))
-    ]
+    rows = [distinct_rows(q[good & (index == i)], plan.turning, near) for i in range(len(poses))]
     return rows, before[good]

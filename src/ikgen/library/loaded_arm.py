@@ -131,14 +131,19 @@ class Arm:
         free: Sequence[float] | Mapping[str, float] | None = None,
         seed: ArrayLike | None = None,
         limits: bool = True,
+        project: bool = False,
     ) -> Solutions:
         """All joint values that bring the tip to `pose`.
 
         free: values of the held joints; seed: (dof,) values that order the rows by distance, choose
         whole turns, and are taken where the pose leaves a joint free; limits: drop rows outside the
-        limits. A pose that cannot be reached, or is none, is a status of what comes back.
+        limits; project: of a pose without rows, those of the nearest pose that the arm can take
+        (`Solutions.off` says by how much). A pose that cannot be reached, or is none, is a status of what
+        comes back.
         """
-        found: Solutions = self._call("solve", pose, free=free, seed=seed, limits=limits)
+        found: Solutions = self._call(
+            "solve", pose, free=free, seed=seed, limits=limits, project=project
+        )
         return found
 
     def solve_batch(
@@ -167,6 +172,7 @@ class Arm:
         seed: ArrayLike | None = None,
         prefer: str = "near",
         limits: bool = True,
+        project: bool = False,
     ) -> Solutions:
         """Rows over all values of the held joints, best first: near to the seed, in the centre of the
         limits, or dexterous."""

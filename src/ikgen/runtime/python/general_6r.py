@@ -157,7 +157,10 @@ def six_joint_rows(F: Array, plan: Plan, T: Array, policy: Policy) -> list[Array
             pose, q = pose[arrived], q[arrived]
         settled = np.zeros(len(todo), dtype=bool)
         for i, n in enumerate(todo):
-            mine, known = distinct_rows(q[pose == i], plan.turning, policy.coincident), len(found[n])
+            mine, known = (
+                distinct_rows(q[pose == i], plan.turning, policy.coincident),
+                len(found[n]),
+            )
             both = np.concatenate([found[n], mine])
             found[n] = distinct_rows(both, plan.turning, policy.coincident) if known else mine
             count = len(found[n])

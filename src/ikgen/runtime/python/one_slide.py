@@ -28,7 +28,9 @@ __all__ = ["one_slide_candidates"]
 
 _SAMPLES = np.array([0.0, 1.0, -1.0])
 _SLIDES = motions_z(_SAMPLES)
-_PARABOLA = np.array([[1.0, 0.0, 0.0], [0.0, 0.5, -0.5], [-1.0, 0.5, 0.5]])  # of values at the samples
+_PARABOLA = np.array(
+    [[1.0, 0.0, 0.0], [0.0, 0.5, -0.5], [-1.0, 0.5, 0.5]]
+)  # of values at the samples
 
 
 def one_slide_candidates(
