@@ -1,11 +1,15 @@
 """The robots of the IKBT paper and its repository: derive, emit, and count solutions.
 
     python -m benchmarks.suite [--robot TEXT] [--poses N] [--searched N] [--starts N] [--json] [--record]
+    python -m benchmarks.suite --prove
 
 Prints one row a robot: how it was solved, how many solutions each pose has by the emitted Python
 module and by an independent numerical search, how many rows were wrong and how many missed. A row
 is wrong if forward kinematics does not give the pose back; a generating configuration or a solution
 of the search is missed if no row equals it. Exits with 1 if any row was wrong or missed.
+
+With `--prove` the derivations are proved in exact arithmetic instead, for every pose. Exits with 1 if one
+of a table that rules solve is not proved.
 """
 
 from __future__ import annotations
@@ -129,6 +133,37 @@ def _check(
     )
 
 
+def prove_robot(path: Path) -> tuple[str, str]:
+    """What is said about the proof of a table, and its state."""
+    from ikgen.symbolic import prove
+
+    started = time.perf_counter()
+    try:
+        derivation = derive(Request(path))
+    except IkgenError as error:
+        return f"{path.stem:16} not solved: {error.message}", "not solved"
+    derived = time.perf_counter()
+    proof = prove(derivation)
+    seconds = f"{derived - started:5.1f} s, {time.perf_counter() - derived:5.2f} s"
+    lines = [f"{path.stem:16} {seconds}  {proof.words}", *(f"    {r}" for r in proof.remarks)]
+    state = "proved" if proof.proved else "solved by elimination" if proof.reason else "NOT PROVED"
+    return "\n".join(lines), state
+
+
+def _prove_all(part: str) -> int:
+    """Prints the proofs; the exit code."""
+    started = time.perf_counter()
+    print(f"{'robot':16} derived, proved")
+    states: Counter[str] = Counter()
+    for path in tables(part):
+        line, state = prove_robot(path)
+        print(line, flush=True)
+        states[state] += 1
+    words = ", ".join(f"{n} {state}" for state, n in states.items())
+    print(f"\n{states.total()} robots: {words}; {time.perf_counter() - started:.0f} s")
+    return int("NOT PROVED" in states)
+
+
 def _arm(derivation: Derivation) -> ArmUnderTest:
     dh = derivation.reading.dh
     bounds = np.full(dh.dof, -np.inf), np.full(dh.dof, np.inf)
@@ -222,7 +257,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--starts", type=int, default=300, help="starts of the search, per pose")
     parser.add_argument("--json", action="store_true", help="machine-readable rows")
     parser.add_argument("--record", action="store_true", help="write results/suite.json")
+    parser.add_argument("--prove", action="store_true", help="prove the derivations instead")
     options = parser.parse_args(arguments)
+    if options.prove:
+        return _prove_all(options.robot)
     if options.record and options.robot:
         parser.error("--record is for all tables")
     sizes = options.poses, min(options.searched, options.poses), options.starts

@@ -130,6 +130,12 @@ template <class V> [[gnu::always_inline]] inline auto above(V x, V y) noexcept {
 template <class F, class V> [[gnu::always_inline]] inline V chosen(F flags, V x, V y) noexcept { return flags ? x : y; }
 [[gnu::always_inline]] inline bool inverted(bool flags) noexcept { return !flags; }
 template <class F> [[gnu::always_inline]] inline F inverted(F flags) noexcept { return ~flags; }
+[[gnu::always_inline]] inline bool none(bool flags) noexcept { return !flags; }
+template <class F> [[gnu::always_inline]] inline bool none(F flags) noexcept {
+  std::int64_t any = 0;
+  for (std::size_t i = 0; i < sizeof(F) / sizeof(any); ++i) any |= flags[i];
+  return any == 0;
+}
 #if defined(__SSE2__)
 using Vector2 = Machine<2>::Vector;
 using Flags2 = Machine<2>::Flags;
@@ -267,6 +273,13 @@ IKGEN_LANES_OPERATION(Mask, operator|, static_cast<decltype(x)>(x | y))
 #undef IKGEN_LANES_OPERATION
 template <int N, bool H> [[gnu::always_inline]] inline Mask<N> operator!(const MaskOf<N, H>& a) noexcept {
   return each<Mask<N>>([](auto x) { return inverted(x); }, a);
+}
+template <int N, bool H> [[gnu::always_inline]] inline bool all(const MaskOf<N, H>& a) noexcept {
+  if constexpr (H) {
+    return all(a.lo) && all(a.hi);
+  } else {
+    return none(inverted(a.v));
+  }
 }
 template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> operator-(const LanesOf<N, H>& a) noexcept {
   return each<Lanes<N>>([](auto x) { return -x; }, a);
@@ -516,7 +529,11 @@ template <class Arm> struct PoseError {
   PoseError(const double* q, const Eigen::Isometry3d& pose) noexcept {
     double J[6][Arm::kDof];
     const Frame T = MotionChain<Arm>::forward(q, J);
-    Arm::Task::compare(pose.matrix().data(), T, J, error, slope);
+    double t[3][4];
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 4; ++c) t[r][c] = pose.matrix().data()[4 * c + r];
+    Arm::Task::error(t, T, error);
+    Arm::Task::slope(T, J, slope);
     for (const int j : Arm::kFreeJoints)
       for (auto& row : slope) row[j] = 0.0;
   }
@@ -767,8 +784,15 @@ template <class Arm> struct LaneSolve {
 
   template <int P> static void solve(const Eigen::Isometry3d* poses, const Options& options, Solutions* out) noexcept {
     const bool bounded = options.limits && !place_later(options);
+    const Pose<P> pose = gather<P>(poses);
+    const Range range = bounded ? kLimits : kAnywhere;
     Rows<P> rows;
-    Arm::branches(gather<P>(poses), typename Arm::Seed(), options.free, bounded ? kLimits : kAnywhere, rows);
+    if constexpr (Arm::kNewton) {
+      Arm::branches(pose, typename Arm::Seed(), options.free, kAnywhere, rows);
+      Arm::refine(pose, range, rows);
+    } else {
+      Arm::branches(pose, typename Arm::Seed(), options.free, range, rows);
+    }
     for (int p = 0; p < P; ++p)
       if (!collect(rows, p, options, out[p])) fall_back(poses[p], options, out[p]);
   }
@@ -784,6 +808,16 @@ template <class Arm> struct LaneSolve {
 
   static bool place_later(const Options& options) noexcept { return Arm::kFarLimits || options.seed != nullptr; }
 
+  static void leave_distinct(Solutions& out) noexcept {
+    const int count = out.count;
+    out.count = 0;
+    for (int k = 0; k < count; ++k) {
+      double q[Arm::kDof];
+      std::copy_n(Row::row(out, k), Arm::kDof, q);
+      Row::add(out, q, false);
+    }
+  }
+
   template <int P> static bool collect(const Rows<P>& rows, int p, const Options& options, Solutions& out) noexcept {
     int count = 0, seen = 0;
     for (const int row : Arm::kLaneOfRow) {
@@ -797,13 +831,9 @@ template <class Arm> struct LaneSolve {
     }
     if ((seen & (kRough | kHit)) != 0) return false;
     out.count = count;
-    if ((seen & kMeeting) != 0) {
-      out.count = 0;
-      for (int k = 0; k < count; ++k) {
-        double q[Arm::kDof];
-        std::copy_n(Row::row(out, k), Arm::kDof, q);
-        Row::add(out, q, false);
-      }
+    if (Arm::kNewton || (seen & kMeeting) != 0) {
+      leave_distinct(out);
+      if (Arm::kNewton && out.count < count) return false;  // another may lie there
     }
     if (place_later(options)) Row::place_all(options, out);
     if (options.seed) Row::sort_by_distance(out, options.seed->data());
@@ -816,15 +846,30 @@ template <class Arm> struct LaneSolve {
 template <class Arm> struct PoseEntries {
   static constexpr int kCount = sizeof(Arm::kRead) / sizeof(Arm::kRead[0]);
 
-  static void compare(const double* t, const Frame& T, const double (&J)[6][Arm::kDof], double (&error)[kCount],
-                      double (&slope)[kCount][Arm::kDof]) noexcept {
+  template <class X, class Tip>
+  static void error(const X (&t)[3][4], const Tip& T, X (&error)[kCount]) noexcept {
+    for (int i = 0; i < kCount; ++i) {
+      const auto [r, c] = Arm::kRead[i];
+      if (c == 3) {
+        error[i] = (t[r][3] - T.p[r]) / Arm::kSize;
+      } else {
+        error[i] = t[r][c] - T.R[r][c];
+      }
+    }
+  }
+
+  template <class X, class Tip>
+  static void slope(const Tip& T, const X (&J)[6][Arm::kDof], X (&slope)[kCount][Arm::kDof]) noexcept {
     for (int i = 0; i < kCount; ++i) {
       const auto [r, c] = Arm::kRead[i];
       const int u = (r + 1) % 3, v = (r + 2) % 3;
-      const bool length = c == 3;
-      error[i] = length ? (t[12 + r] - T.p[r]) / Arm::kSize : t[4 * c + r] - T.R[r][c];
-      for (int j = 0; j < Arm::kDof; ++j)
-        slope[i][j] = length ? J[r][j] / Arm::kSize : J[3 + u][j] * T.R[v][c] - J[3 + v][j] * T.R[u][c];
+      for (int j = 0; j < Arm::kDof; ++j) {
+        if (c == 3) {
+          slope[i][j] = J[r][j] / Arm::kSize;
+        } else {
+          slope[i][j] = J[3 + u][j] * T.R[v][c] - J[3 + v][j] * T.R[u][c];
+        }
+      }
     }
   }
 };
@@ -1187,6 +1232,7 @@ struct Arm {
   };
 
   static constexpr bool kFarLimits = false;
+  static constexpr bool kNewton = false;
   static constexpr bool kRefined = false;
   static constexpr bool kSolvesBeside = false;
   // Lane of each row, depth first.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
 import pytest
 import sympy
 
@@ -21,7 +22,7 @@ from ikgen.forms.tangent_form import Tangent
 from ikgen.symbolic.form_branches import alternatives
 from ikgen.symbolic.form_proofs import prove_form
 from ikgen.symbolic.lowered_view import LoweredView
-from ikgen.symbolic.quartic_roots import quartic_roots
+from ikgen.symbolic.trig_quartic_root import TrigQuarticRoot
 
 V, C, O = "variable", "constant", "zero"  # noqa: E741
 CASES = [
@@ -107,10 +108,15 @@ def _angle(value: sympy.Expr) -> tuple[str, str]:
     return str(sympy.N(sympy.cos(n), 12)), str(sympy.N(sympy.sin(n), 12))
 
 
-def test_roots_of_degree_four() -> None:
-    coefficients = [sympy.Integer(k) for k in (3, -7, 2, 11, -5)]
-    roots = {complex(sympy.N(z)) for z in quartic_roots(coefficients)}
-    z = sympy.Symbol("z")
-    wanted = sympy.Poly([3, -7, 2, 11, -5], z).nroots()
-    assert len(roots) == 4
-    assert all(min(abs(complex(w) - z) for z in roots) < 1e-10 for w in wanted)
+def test_roots_of_a_trigonometric_polynomial() -> None:
+    u = sympy.Symbol("u", real=True)
+    given = [sympy.Rational(x, 10) for x in (11, -4, 3, 7, -2)]
+    a2, b2, a1, b1, a0 = given
+    left = (
+        a2 * sympy.cos(2 * u) + b2 * sympy.sin(2 * u) + a1 * sympy.cos(u) + b1 * sympy.sin(u) + a0
+    )
+    roots = [float(TrigQuarticRoot(*given, k).evalf()) for k in range(4)]
+    assert roots == sorted(roots) and len({round(x, 6) for x in roots}) == 4
+    assert all(abs(float(left.subs(u, x))) < 1e-12 for x in roots)
+    arrays = sympy.lambdify(u, TrigQuarticRoot(*given[:4], u, 2), "numpy")(np.array([-0.2, 9.0]))
+    assert abs(arrays[0] - roots[2]) < 1e-12 and np.isnan(arrays[1])

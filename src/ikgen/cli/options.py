@@ -54,13 +54,13 @@ _CHAIN_OPTIONS = (
         "--free",
         multiple=True,
         metavar="JOINT[=VALUE]",
-        help="Hold a joint: its value becomes an input, by default VALUE.",
+        help="Hold a joint: its value becomes an input, by default VALUE (rad, m, 45deg, 120mm).",
     ),
     click.option(
         "--lock",
         multiple=True,
         metavar="JOINT=VALUE",
-        help="Fix a joint for good (rad or m).",
+        help="Fix a joint for good (rad, m, 45deg, 120mm).",
     ),
     *_READING_OPTIONS,
     click.option(

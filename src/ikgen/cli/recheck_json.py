@@ -28,7 +28,7 @@ def as_dict(results: Sequence[Recheck], code: int) -> dict[str, Any]:
 
 
 def _output(result: Recheck) -> dict[str, Any]:
-    return {
+    found = {
         "name": result.name,
         "record": result.path.as_posix(),
         "robot": result.record.request.robot.as_posix() if result.record else None,
@@ -37,6 +37,7 @@ def _output(result: Recheck) -> dict[str, Any]:
         "notes": list(result.notes),
         "verification": {name: report.to_dict() for name, report in result.reports.items()},
     }
+    return found if result.proof is None else {**found, "proof": result.proof.to_dict()}
 
 
 def _finding(finding: Finding) -> dict[str, Any]:

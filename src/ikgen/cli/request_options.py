@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 
 from ikgen.errors import UsageError
+from ikgen.generation.joint_value import joint_value
 from ikgen.generation.request import Request
 from ikgen.model.module_name import identifier, is_module_name
 
@@ -73,7 +73,10 @@ def parse_locked(texts: Sequence[str]) -> dict[str, float]:
     for text in texts:
         joint, _, value = text.rpartition("=")
         if not joint:
-            raise UsageError(f"--lock {text}: no value", hint="write --lock JOINT=VALUE (rad or m)")
+            raise UsageError(
+                f"--lock {text}: no value",
+                hint="write --lock JOINT=VALUE (rad or m, or 45deg, 120mm)",
+            )
         if joint in found:
             raise UsageError(f"--lock {text}: joint '{joint}' is given twice")
         found[joint] = _number("--lock", text, value)
@@ -93,15 +96,12 @@ def parse_emit(texts: Sequence[str], default: tuple[str, ...] = ("python",)) -> 
 
 def _number(option: str, text: str, value: str) -> float:
     try:
-        number = float(value)
+        return joint_value(value)
     except ValueError:
-        number = math.nan
-    if not math.isfinite(number):
         raise UsageError(
             f"{option} {text}: '{value}' is not a finite number",
-            hint="give the value in rad (revolute) or m (prismatic)",
-        )
-    return number
+            hint="give the value in rad (revolute) or m (prismatic), or with its unit: 45deg, 120mm",
+        ) from None
 
 
 def _arguments(texts: Sequence[str]) -> dict[str, str]:

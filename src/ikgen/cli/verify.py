@@ -36,6 +36,11 @@ __all__ = ["verify"]
     help="Also write the results as JUnit XML.",
 )
 @sampling_options
+@click.option(
+    "--prove",
+    is_flag=True,
+    help="Also prove the derivations, for every pose, in exact arithmetic (SymPy).",
+)
 @trust_option
 @console_options
 def verify(
@@ -45,6 +50,7 @@ def verify(
     junit_xml: Path | None,
     samples: int,
     seed: int,
+    prove: bool,
     trust: bool,
     as_json: bool,
     quiet: bool,
@@ -61,7 +67,13 @@ def verify(
     with Console(quiet=quiet, verbose=verbose) as console:
         try:
             results = recheck_all(
-                target, robot=robot, samples=samples, seed=seed, trust=trust, progress=console
+                target,
+                robot=robot,
+                samples=samples,
+                seed=seed,
+                trust=trust,
+                prove=prove,
+                progress=console,
             )
         except IkgenError as error:
             annotate_error(error)
@@ -88,6 +100,8 @@ def _print(results: Sequence[Recheck], *, as_json: bool, quiet: bool, verbose: b
             click.echo(f"hint: {command}", err=True)
         if not quiet and not as_json:
             click.echo(_line(result))
+            for remark in result.proof.remarks if result.proof else ():
+                click.echo(f"  {remark}")
 
 
 def _placed(finding: Finding) -> str:
@@ -98,7 +112,8 @@ def _placed(finding: Finding) -> str:
 
 def _line(result: Recheck) -> str:
     """One line about one record."""
-    notes = "".join(f"; {note}" for note in result.notes)
+    proof = (result.proof.words,) if result.proof else ()
+    notes = "".join(f"; {note}" for note in (*proof, *result.notes))
     if not result.passed:
         verdict = "WRONG" if result.exit_code == 1 else "NOT CHECKED"
         return f"{result.name}: {verdict}{notes}"

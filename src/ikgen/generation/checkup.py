@@ -17,12 +17,11 @@ __all__ = ["Offer", "Thing", "offers", "packages", "tools"]
 
 _PACKAGES = {
     "numpy": "arrays",
-    "sympy": "polynomials",
+    "sympy": "symbolic solutions and exact proofs (verify --prove, report)",
     "jinja2": "templates of the outputs",
     "click": "command line",
     "rich": "progress",
     "py_trees": "behavior tree",
-    "yourdfpy": "reads URDF",
     "lxml": "reads XML, with line numbers",
     "xacro": "expands xacro files",
     "pin": "Pinocchio: verifies",

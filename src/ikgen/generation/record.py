@@ -16,6 +16,7 @@ from pathlib import Path
 from ikgen.errors import BadDescriptionError, UsageError
 from ikgen.generation.codec import CodecError, Decoder, coded, encode, inlined, read_free, uncoded
 from ikgen.generation.request import Request
+from ikgen.importers.named_robots import is_named
 
 __all__ = [
     "GENERATOR",
@@ -111,6 +112,8 @@ def record_text(record: Record) -> str:
     folder = record.folder.resolve()
 
     def place(path: Path) -> str:
+        if is_named(path):
+            return str(path)
         return Path(os.path.relpath(path.resolve(), folder)).as_posix()
 
     return json.dumps(encode(record, place), indent=2) + "\n"
@@ -170,7 +173,7 @@ def read_record(path: Path) -> Record:
     """The record in a file; raises `BadDescriptionError` for a file that is none."""
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
-        decoder = Decoder(lambda text: seen(path.parent / text))
+        decoder = Decoder(lambda text: Path(text) if is_named(text) else seen(path.parent / text))
         record = decoder.table(Record, data, "the record")
         if record.request.name is None:
             raise CodecError("the record", " has no 'name'")

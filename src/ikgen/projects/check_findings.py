@@ -11,6 +11,7 @@ from ikgen.errors import BadDescriptionError, IkgenError
 from ikgen.generation.record import SUFFIX, Record
 
 if TYPE_CHECKING:
+    from ikgen.symbolic.proof import Proof
     from ikgen.verify.verification_report import VerificationReport
 
 __all__ = ["Finding", "Recheck", "unchecked"]
@@ -32,14 +33,15 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Recheck:
-    """What came of one record: findings (none: all is right), notes and the verifications; `record` is
-    None where its file `path` could not be read."""
+    """What came of one record: findings (none: all is right), notes and the verifications, and the proof
+    where one was asked for; `record` is None where its file `path` could not be read."""
 
     path: Path
     record: Record | None
     findings: tuple[Finding, ...] = ()
     notes: tuple[str, ...] = ()
     reports: Mapping[str, VerificationReport] = field(default_factory=dict)
+    proof: Proof | None = None
 
     @property
     def passed(self) -> bool:

@@ -11,6 +11,7 @@ from ikgen.generation.publishing import interrupted
 from ikgen.generation.record import SUFFIX, find_records, read_record
 from ikgen.projects.check_findings import Finding, Recheck, unchecked
 from ikgen.projects.config import default_config, load_config
+from ikgen.projects.proofs import proved
 from ikgen.projects.recheck import recheck
 
 if TYPE_CHECKING:
@@ -26,10 +27,12 @@ def recheck_all(
     samples: int = 1000,
     seed: int = 0,
     trust: bool = False,
+    prove: bool = False,
     progress: Progress = silent,
 ) -> list[Recheck]:
     """Check everything that is meant, in order: the outputs of a config, those below a folder, or those of
-    one record. What keeps one from being checked is its finding, so that the others are checked too."""
+    one record; with `prove` also prove their derivations. What keeps one from being checked is its finding,
+    so that the others are checked too."""
     results = []
     for path, command in _records(target, robot):
         if not path.is_file() and interrupted(path.parent):
@@ -40,17 +43,16 @@ def recheck_all(
         record = None
         try:
             record = read_record(path)
-            results.append(
-                recheck(
-                    record,
-                    robot=robot,
-                    command=command,
-                    samples=samples,
-                    seed=seed,
-                    trust=trust,
-                    progress=progress,
-                )
+            result = recheck(
+                record,
+                robot=robot,
+                command=command,
+                samples=samples,
+                seed=seed,
+                trust=trust,
+                progress=progress,
             )
+            results.append(proved(result, robot, progress) if prove else result)
         except IkgenError as error:
             results.append(unchecked(path, record, error))
     return results

@@ -20,7 +20,7 @@ from ikgen.forms.quartic_form import TrigQuartic
 from ikgen.forms.sine_cosine_form import SineCosine
 from ikgen.forms.tangent_form import Tangent
 from ikgen.symbolic.lowered_view import LoweredView
-from ikgen.symbolic.quartic_roots import quartic_roots
+from ikgen.symbolic.trig_quartic_root import TrigQuarticRoot
 
 __all__ = ["Alternatives", "alternatives"]
 
@@ -31,17 +31,16 @@ _SIGNS = (1, -1)
 @dataclass(frozen=True, slots=True)
 class Alternatives:
     """Values of the unknown (an angle or a length), what must not vanish for them to hold (`divisor`,
-    None for a constant), what must not be negative for them to be real (`radicand`), and what else must
-    hold for each of them (`each`)."""
+    None for a constant), and what must not be negative for them to be real (`radicand`)."""
 
     values: tuple[Expression, ...]
     divisor: Expression | None = None
     radicand: Expression | None = None
-    each: tuple[sympy.Basic, ...] = ()
 
-    def conditions(self, index: int) -> tuple[sympy.Basic, ...]:
-        """Of one alternative all of them as SymPy conditions; what SymPy knows to hold is left out."""
-        found = [self.each[index]] if self.each else []
+    @property
+    def conditions(self) -> tuple[sympy.Basic, ...]:
+        """Both as SymPy conditions; what SymPy knows to hold is left out."""
+        found = []
         if self.radicand is not None:
             found.append(sympy.Ge(self.radicand, 0))
         if self.divisor is not None:
@@ -95,15 +94,8 @@ def _tangent(x: Expression, y: Expression) -> Alternatives:
 def _quartic(
     a2: Expression, b2: Expression, a1: Expression, b1: Expression, a0: Expression
 ) -> Alternatives:
-    """Arguments of the roots `z = exp(i u)` of a polynomial of degree four, by Ferrari's resolvent
-    (Abramowitz and Stegun, Handbook of Mathematical Functions, 3.8.3); those on the unit circle are
-    solutions.
-    """
-    roots = quartic_roots(
-        (a2 - sympy.I * b2, a1 - sympy.I * b1, 2 * a0, a1 + sympy.I * b1, a2 + sympy.I * b2)
-    )
-    on_circle = tuple(sympy.Eq(sympy.Abs(z), 1) for z in roots)
-    return Alternatives(tuple(sympy.arg(z) for z in roots), a2**2 + b2**2, None, on_circle)
+    values = tuple(TrigQuarticRoot(a2, b2, a1, b1, a0, k) for k in range(4))
+    return Alternatives(values, a2**2 + b2**2)
 
 
 def _as_lowered(form: Form, coefficients: Sequence[Expression]) -> Alternatives:

@@ -18,7 +18,7 @@ import sympy
 from ikgen.forms.form import Form
 from ikgen.forms.quartic_form import TrigQuartic
 from ikgen.symbolic.lowered_view import Kind, LoweredView, NotAlgebraicError
-from ikgen.symbolic.quartic_roots import roots_are_proved
+from ikgen.symbolic.trig_quartic_root import TrigQuarticRoot
 
 __all__ = ["FormProof", "kinds_of", "prove_form"]
 
@@ -166,14 +166,11 @@ def _quartic(kinds: tuple[Kind, ...]) -> FormProof:
     view = _quartic_symbols(kinds)
     a2, b2, a1, b1, a0 = view
     c, s = sympy.symbols("cosine sine", real=True)
-    z, i = c + sympy.I * s, sympy.I
+    z = c + sympy.I * s
     pattern = a2 * (c**2 - s**2) + 2 * b2 * c * s + a1 * c + b1 * s + a0
-    polynomial = (
-        (a2 - i * b2) * z**4 + (a1 - i * b1) * z**3 + 2 * a0 * z**2 + (a1 + i * b1) * z
-    ) + (a2 + i * b2)
+    polynomial = TrigQuarticRoot(a2, b2, a1, b1, a0, 0).polynomial(z)
     difference = sympy.expand(polynomial - 2 * z**2 * pattern)
-    same = sympy.expand(sympy.rem(difference, s**2 + c**2 - 1, s)) == 0
-    proved = same and roots_are_proved()
+    proved = bool(sympy.expand(sympy.rem(difference, s**2 + c**2 - 1, s)) == 0)
     reason = "the routine of the emitted code that finds the roots is tested, not proved"
     conditions = (sympy.Ne(a2**2 + b2**2, 0),)
     return FormProof(TrigQuartic.name, proved, proved, conditions, reason)

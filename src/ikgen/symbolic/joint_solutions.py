@@ -107,7 +107,7 @@ class _Reader:
             made = alternatives(form, self._coefficients(form))
             symbol = self.names.variable(candidate.unknown)
             for index, value in enumerate(made.values):
-                conditions = (*where, *made.conditions(index))
+                conditions = (*where, *made.conditions)
                 yield Branch(symbol, value, conditions, index, position > 0)
             if made.divisor is not None:
                 where = (*where, sympy.Eq(made.divisor, 0))

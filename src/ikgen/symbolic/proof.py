@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ikgen.solver.solution_graph import SolutionGraph
 from ikgen.symbolic.form_proofs import FormProof, kinds_of, prove_form
@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
 
 __all__ = ["Proof", "prove"]
+
+Parts: TypeAlias = tuple[Identity, ...] | tuple[FormProof, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +62,21 @@ class Proof:
         lines += [f"form '{one.form}': {one.reason}" for one in self.forms]
         return tuple(dict.fromkeys(line for line in lines if not line.endswith(": ")))
 
+    def to_dict(self) -> dict[str, Any]:
+        """For --json."""
+        parts: dict[str, Parts] = {
+            "equations": self.equations,
+            "solved_equations": self.patterns,
+            "forms": self.forms,
+        }
+        counts = {
+            name: {"proved": sum(one.proved for one in found), "total": len(found)}
+            for name, found in parts.items()
+        }
+        conditions = {one.form: [str(c) for c in one.conditions] for one in self.forms}
+        remarks = [self.reason] if self.reason else list(self.remarks)
+        return {"proved": self.proved, **counts, "conditions": conditions, "remarks": remarks}
+
 
 def prove(derivation: Derivation) -> Proof:
     """Prove a derivation in exact arithmetic: rational numbers, lengths as symbols, right angles and
@@ -82,6 +99,6 @@ def prove_graph(graph: SolutionGraph) -> Proof:
     return Proof(matrix, patterns, proofs, deviation=graph.dh.deviation)
 
 
-def _count(parts: tuple[Identity, ...] | tuple[FormProof, ...], what: str) -> str:
+def _count(parts: Parts, what: str) -> str:
     done = sum(part.proved for part in parts)
     return f"{done} of {len(parts)} {what}s"

@@ -9,6 +9,7 @@ from ikgen.emit.blanks import blanks, pairs
 from ikgen.emit.cpp.cpp_language import CONSTANT, comment, declared, literal, number
 from ikgen.emit.cpp.cpp_policy import policy_lines
 from ikgen.emit.cpp.cpp_statements import ProgramText
+from ikgen.emit.cpp.cpp_twist_chain import twist_lines
 from ikgen.emit.cpp.header_bundle import bundle
 from ikgen.emit.printer import expression
 from ikgen.emit.rendering import render
@@ -76,9 +77,11 @@ def emit_header(module: SolverModule) -> str:
         rough=_rough(module, policy),
         order=_depth_first(branches),
         frames=[[[expression(CONSTANT, x) for x in row] for row in F] for F in program.frames],
+        twisted=twist_lines(module) if module.refine == "all" else None,
         beside=[[number(float(x)) for x in D.T[:, :3].ravel()] for D in module.beside],
         size=_size_text(module),
         blanks=blanks(module),
+        **_elimination(module),
         angles=[(f, n) for n in pairs(module) for f in ("cos", "sin")],
         free_defaults=[number(x) for x in module.free_defaults],
         number=number,
@@ -89,8 +92,8 @@ def emit_header(module: SolverModule) -> str:
 
 
 def _careful(module: SolverModule) -> bool:
-    """Whether every pose's rows are polished or judged one by one."""
-    return module.refine == "all" or module.plan is not None
+    """Whether every pose's rows are judged one by one."""
+    return module.plan is not None
 
 
 def _headers(module: SolverModule) -> list[str]:
@@ -99,13 +102,35 @@ def _headers(module: SolverModule) -> list[str]:
     needed = ["lane_angle.hpp", "single_solve.hpp" if _careful(module) else "lane_solve.hpp"]
     needed += ["routine_roots.hpp"] * bool(routines)
     needed += [_ROUTINES.get(name, f"{name}.hpp") for name in routines]
+    needed += ["lane_newton.hpp"] * (module.refine == "all")
     needed += ["poses_beside.hpp"] * bool(module.beside)
     task = "whole_pose.hpp" if module.task == "pose" else "pose_entries.hpp"
     return [*needed, task, "pose_solver.hpp", "projection.hpp"]
 
 
 _ROUTINES = {"general_6r": "general_6r_arm.hpp"}
-"""Headers of routines that work on the whole arm."""
+"""Headers of routines that are not named after them."""
+
+_ELIMINATIONS = {
+    "general_6r": "General6r",
+    "one_slide": "OneSlide",
+    "two_slides": "TwoSlides",
+    "three_slides": "ThreeSlides",
+}
+"""The class of each elimination."""
+
+
+def _elimination(module: SolverModule) -> dict[str, object]:
+    """What the templates say of an elimination: its routine, class, and the numbers that it gives a row."""
+    calls = [level.call for level in module.program.levels if level.call is not None]
+    if module.plan is None:
+        return {"routine": ""}
+    return {
+        "routine": calls[0].routine,
+        "elimination": _ELIMINATIONS[calls[0].routine],
+        "numbers": len(calls[0].names),
+        "all_turn": all(module.plan.turning),
+    }
 
 
 def _size_text(module: SolverModule) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from ikgen.elimination.routine import runtime_policy
 from ikgen.emit.blanks import blanks, pairs
 from ikgen.emit.printer import expression
+from ikgen.emit.python.branch_kinds import branch_kind, elbow_end
 from ikgen.emit.python.bundle import bundle
 from ikgen.emit.python.python_language import SCALAR, number
 from ikgen.emit.python.python_statements import batch_lines, scalar_lines
@@ -53,10 +54,16 @@ def emit_module(module: SolverModule) -> str:
         number=number,
         literal=literal,
         words=words,
+        held=len(module.free),
+        held_name=words(module.dh.joints[module.free[0]].name) if module.free else "",
+        held_turns=bool(module.free) and module.first_row(module.free[0]).revolute,
+        guarded=all(level.call is None for level in program.levels) and module.plan is None,
         beside=[[[number(float(x)) for x in row] for row in D] for D in module.beside],
         orientation=module.reads.orientation,
         entries=module.reads.entries,
         size=module.size,
+        branch_kind=branch_kind(module),
+        elbow_end=elbow_end(module),
         unit_columns=_unit_columns(module.reads),
         policy=policy,
         policy_values=_policy_values(runtime_policy(policy)),

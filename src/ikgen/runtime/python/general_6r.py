@@ -38,12 +38,13 @@ Turning = tuple[bool, ...]  # which of the six joints turn; the others slide
 Candidates = tuple[NDArray[np.intp], Array, NDArray[np.intp], Flags]
 Finder = Callable[[Array, Array, Elimination, Turning], Candidates]
 _SIX = range(6)
+_FARTHEST = 1e4  # of a slide, in arm lengths
 
 
 @dataclass(frozen=True)
 class Plan:
-    """How an arm is solved: its typical `length` (m), the `eliminations` that suit it, in order of preference,
-    and the function that finds candidates by one of them."""
+    """How an arm is solved: its typical `length` (m), the `eliminations` that suit it, in order of
+    preference, and the function that finds candidates by one of them."""
 
     length: float
     eliminations: tuple[Elimination, ...]
@@ -92,11 +93,14 @@ def six_joints(F: Array, turning: Turning) -> Chain:
 
 
 def distinct_rows(q: Array, turning: Turning, coincident: float) -> Array:
-    """The rows of q (k, 6), angles reduced to (-pi, pi], without repetitions."""
+    """The rows of q (k, 6), angles reduced to (-pi, pi], without repetitions: long slides count relative to
+    their length. Slides far beyond the arm are those of directions that become parallel, and go."""
     turns = np.array(turning)
     q = np.where(turns, np.pi - np.mod(np.pi - q, 2.0 * np.pi), q)
+    q = q[(turns | (np.abs(q) < _FARTHEST)).all(axis=1)]
+    size = np.where(turns, 1.0, np.maximum(np.abs(q), 1.0))
     apart = np.abs(q[:, None] - q)
-    apart = np.where(turns, np.abs(np.pi - np.abs(np.pi - apart)), apart).max(axis=2)
+    apart = np.where(turns, np.abs(np.pi - np.abs(np.pi - apart)), apart / size).max(axis=2)
     return np.asarray(q[~np.tril(apart < coincident, -1).any(axis=1)], dtype=float)
 
 

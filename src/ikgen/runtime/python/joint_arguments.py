@@ -14,16 +14,21 @@ from ikgen.runtime.python.solved_arm import Arm
 __all__ = ["held_rows", "held_values", "seed_rows"]
 
 
-def held_values(arm: Arm, free: Sequence[float] | Mapping[str, float] | None) -> Row:
-    """Values of the held joints, base to tip; raises ValueError where they are no such values."""
+def held_values(
+    arm: Arm, free: Sequence[float] | Mapping[str, float] | None, near: Row | None
+) -> Row:
+    """Values of the held joints, base to tip: those of the seed `near`, or without one the defaults,
+    where `free` gives none. Raises ValueError where they are no such values."""
+    names, others = arm.free_joints, arm.free_defaults
+    if near is not None:
+        others = tuple(near[j] for j in arm.free)
     if free is None:
-        return arm.free_defaults
-    names = arm.free_joints
+        return others
     if isinstance(free, Mapping):
         unknown = set(free) - set(names)
         if unknown:
             raise ValueError(f"no free joint named {sorted(unknown)}; there is {list(names)}")
-        values = tuple(float(free.get(n, x)) for n, x in zip(names, arm.free_defaults))
+        values = tuple(float(free.get(n, x)) for n, x in zip(names, others))
     else:
         values = tuple(float(x) for x in free)
     if len(values) != len(names):
@@ -33,14 +38,22 @@ def held_values(arm: Arm, free: Sequence[float] | Mapping[str, float] | None) ->
     return values
 
 
-def held_rows(arm: Arm, free: ArrayLike | Mapping[str, float] | None, count: int) -> Array:
-    """`held_values` for many poses: one row for all of them, or one each; (count, held joints)."""
+def held_rows(
+    arm: Arm, free: ArrayLike | Mapping[str, float] | None, near: Array | None, count: int
+) -> Array:
+    """`held_values` for many poses: one row for all of them, or one each; (count, held joints). `near`:
+    the seeds (count, dof)."""
     shape = (count, len(arm.free_joints))
     if free is None or isinstance(free, Mapping):
-        return np.broadcast_to(held_values(arm, free), shape)
+        values = np.tile(held_values(arm, free, None), (count, 1)).reshape(shape)
+        given = () if free is None else free
+        for k, (j, name) in enumerate(zip(arm.free, arm.free_joints)):
+            if near is not None and name not in given:
+                values[:, k] = near[:, j]
+        return values
     if np.ndim(free) < 2:
         one: list[float] = np.asarray(free, dtype=float).tolist()
-        return np.broadcast_to(held_values(arm, one), shape)
+        return np.broadcast_to(held_values(arm, one, None), shape)
     held = np.asarray(free, dtype=float)
     if held.shape != shape:
         raise ValueError(f"free has shape {held.shape}, expected {shape}")

@@ -1,4 +1,4 @@
-"""Approximate solutions of five revolute joints and a slide, by the elimination of Raghavan and Roth (1993).
+"""Approximate solutions of five revolute joints and a slide: elimination of Raghavan and Roth (1993).
 
 The loop is begun so that the slide is the first joint or the second. Of the fourteen functions of the other
 side its monomials 1, d, d^2 are eliminated as cosine and sine would be; six equations are left in three

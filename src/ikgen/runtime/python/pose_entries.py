@@ -33,6 +33,13 @@ class EntriesTask:
     unit: tuple[int, ...]
     flat: bool
 
+    @property
+    def alone(self) -> str:
+        """Implements `Task`."""
+        if 3 not in self.column:
+            return "rotation"
+        return "position" if set(self.column) == {3} else ""
+
     def read(self, T: list[list[float]], policy: Policy) -> list[list[float]] | None:
         """Implements `Task`."""
         poses, (good,) = self.read_batch(np.array([T]), policy)

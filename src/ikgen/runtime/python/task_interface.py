@@ -12,14 +12,18 @@ __all__ = ["Task"]
 
 
 class Task(Protocol):
-    """How poses are read and compared: `entries` of them, of which the columns `unit` are unit vectors;
-    positions count over `size` (m)."""
+    """How poses are read and compared: `entries` of them, of which the columns `unit` are unit vectors
+    at right angles; positions count over `size` (m); `alone`: "rotation" or "position" where no other
+    part of the pose is read, else ""."""
 
     @property
     def entries(self) -> Entries: ...
 
     @property
     def unit(self) -> tuple[int, ...]: ...
+
+    @property
+    def alone(self) -> str: ...
 
     @property
     def size(self) -> float: ...

@@ -25,16 +25,13 @@ class PoseTask:
     """Positions count over `size` (m)."""
 
     size: float
+    unit: tuple[int, ...] = (0, 1, 2)
+    alone: str = ""
 
     @property
     def entries(self) -> Entries:
         """Implements `Task`."""
         return tuple((r, c) for r in range(3) for c in range(4))
-
-    @property
-    def unit(self) -> tuple[int, ...]:
-        """Implements `Task`."""
-        return (0, 1, 2)
 
     def read(self, T: list[list[float]], policy: Policy) -> list[list[float]] | None:
         """Implements `Task`."""
