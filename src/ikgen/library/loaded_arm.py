@@ -175,7 +175,6 @@ class Arm:
         seed: ArrayLike | None = None,
         prefer: str = "near",
         limits: bool = True,
-        project: bool = False,
     ) -> Solutions:
         """Rows over all values of the held joints, best first: near to the seed, in the centre of the
         limits, or dexterous."""
