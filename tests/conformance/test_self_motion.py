@@ -1,4 +1,4 @@
-"""Intervals of a held joint against a grid of its values, and the best rows against those of random values."""
+"""Intervals of a held joint against a grid of its values, and the best rows against random values."""
 
 from __future__ import annotations
 
