@@ -221,6 +221,17 @@ _Flags = NDArray[np.bool_]
 Row = tuple[float, ...]
 
 
+# Arguments as arrays of real numbers.
+
+
+def _real_array(values: ArrayLike, name: str) -> Array:
+    """The values as doubles; raises ValueError for complex ones, whose imaginary part would be lost."""
+    array = np.asarray(values)
+    if array.dtype.kind == "c":
+        raise ValueError(f"{name} has complex values")
+    return np.asarray(array, dtype=float)
+
+
 # Forward kinematics and Jacobian of a serial chain, for any number of configurations at once.
 
 
@@ -274,7 +285,7 @@ def _steps(chain: _Chain, q: Array) -> Array:
 
 
 def _joint_values(chain: _Chain, q: ArrayLike) -> Array:
-    values, dof = np.asarray(q, dtype=float), chain.drive.shape[1]
+    values, dof = _real_array(q, "q"), chain.drive.shape[1]
     if values.ndim < 1 or values.shape[-1] != dof:
         raise ValueError(f"q has shape {values.shape}, expected (..., {dof})")
     return values
@@ -442,6 +453,9 @@ class _Arm:
 # The arguments `free` and `seed` as joint values.
 
 
+_FARTHEST = 1e5  # rad: neighbouring doubles are 1.5e-11 apart
+
+
 def _held_values(
     arm: _Arm, free: Sequence[float] | Mapping[str, float] | None, near: Row | None
 ) -> Row:
@@ -480,9 +494,9 @@ def _held_rows(
                 values[:, k] = near[:, j]
         return values
     if np.ndim(free) < 2:
-        one: list[float] = np.asarray(free, dtype=float).tolist()
+        one: list[float] = _real_array(free, "free").tolist()
         return np.broadcast_to(_held_values(arm, one, None), shape)
-    held = np.asarray(free, dtype=float)
+    held = _real_array(free, "free")
     if held.shape != shape:
         raise ValueError(f"free has shape {held.shape}, expected {shape}")
     if not np.isfinite(held).all():
@@ -491,14 +505,16 @@ def _held_rows(
 
 
 def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...]) -> Array:
-    """The seed as an array of one of the shapes; raises ValueError for others."""
-    values = np.asarray(seed, dtype=float)
+    """The seed as an array of one of the shapes; raises ValueError for others. Turns of a revolute joint
+    that doubles cannot tell apart to 1e-11 rad are left out."""
+    values = _real_array(seed, "seed")
     if values.shape not in shapes:
         expected = " or ".join(map(str, shapes))
         raise ValueError(f"seed has shape {values.shape}, expected {expected}")
     if not np.isfinite(values).all():
         raise ValueError(f"seed {values.tolist()} has values that are not finite")
-    return values
+    far = np.array(arm.turning) & (np.abs(values) > _FARTHEST)
+    return np.where(far, np.fmod(values, 2.0 * pi), values) if far.any() else values
 
 
 # Poses as people have them, as homogeneous matrices.
@@ -515,7 +531,7 @@ def _pose_matrices(pose: Any, alone: str) -> Array:
     """(4, 4), or (N, 4, 4) of many: of matrices (4, 4) or (3, 4), pairs (rotation (3, 3), position) or
     (position, quaternion x y z w), objects that have one of `_TRANSFORMS`, or a sequence of those."""
     if isinstance(pose, np.ndarray) and pose.shape[-2:] == (4, 4):
-        return np.asarray(pose, dtype=float)
+        return _real_array(pose, "pose")
     if isinstance(pose, (list, tuple)) and len(pose):
         if any(hasattr(pose[0], name) for name in _TRANSFORMS):
             return np.stack([_pose_matrices(one, alone) for one in pose])
@@ -532,7 +548,7 @@ def _pose_matrices(pose: Any, alone: str) -> Array:
 
 def _numbers(value: Any) -> Array:
     try:
-        return np.asarray(value, dtype=float)
+        return _real_array(value, "pose")
     except TypeError:
         raise ValueError(f"pose is no array of numbers: {type(value).__name__}") from None
 
@@ -664,27 +680,27 @@ def _pose_fault(task: _Task, T: list[list[float]], policy: _Policy) -> str:
 # The nearest pose that the arm can take, of one that it cannot.
 
 
-_STARTS = 128  # drawn; the best of them are followed
+_START_COUNT = 128  # drawn; the best of them are followed
 _FOLLOWED = 16
-_STEPS = 80
-_LEAST, _FIRST, _MOST = 1e-10, 1e-3, 1e10  # damping of a step
-_LONGEST = 0.5  # rad or m: step of a joint
+_STEP_COUNT = 80
+_LEAST_DAMPING, _FIRST_DAMPING, _MOST_DAMPING = 1e-10, 1e-3, 1e10  # damping of a step
+_LONGEST_STEP = 0.5  # rad or m: step of a joint
 
 
 def _nearest_row(arm: _Arm, T: Array, start: Row, limits: bool) -> Row:
     """The joint values whose pose is nearest to T (4, 4), held joints as in `start`."""
-    low, high = _bounds(arm, limits)
-    q = np.vstack([np.clip(start, low, high), _starts(arm, low, high)])
+    low, high = _step_bounds(arm, limits)
+    q = np.vstack([np.clip(start, low, high), _even_starts(arm, low, high)])
     q[:, list(arm.free)] = [start[j] for j in arm.free]
-    cost = (_chords(arm.task, _forward(arm.chain, q), T) ** 2).sum(axis=1)
-    q, cost = _descend(arm, T, q[np.argsort(cost, kind="stable")[:_FOLLOWED]], (low, high))
+    cost = (_chord_errors(arm.task, _forward(arm.chain, q), T) ** 2).sum(axis=1)
+    q, cost = _descend_to(arm, T, q[np.argsort(cost, kind="stable")[:_FOLLOWED]], (low, high))
     best: Row = tuple(q[int(np.argmin(cost))].tolist())
     return best
 
 
 def _off_by(task: _Task, pose: Array, T: Array) -> Array:
     """How far poses (k, 4, 4) are from T (4, 4): (k, 2), m and rad."""
-    error = _chords(task, pose, T)
+    error = _chord_errors(task, pose, T)
     length = np.array([c == 3 for _, c in task.entries])
     off = np.empty((len(pose), 2))
     off[:, 0] = np.sqrt((error[:, length] ** 2).sum(axis=1)) * task.size
@@ -701,24 +717,24 @@ def _off_by(task: _Task, pose: Array, T: Array) -> Array:
     return off
 
 
-def _weight(task: _Task) -> Array:
+def _chord_weight(task: _Task) -> Array:
     """Of each entry: a turn by x moves the nine of a rotation by sqrt(8) sin(x / 2)."""
     turn = sqrt(0.5) if len(task.unit) == 3 else 1.0
     return np.array([1.0 / task.size if c == 3 else turn for _, c in task.entries])
 
 
-def _chords(task: _Task, pose: Array, T: Array) -> Array:
+def _chord_errors(task: _Task, pose: Array, T: Array) -> Array:
     """What poses (k, 4, 4) are off T (4, 4): (k, entries)."""
-    return _entry_errors(task.entries, _weight(task), pose, np.broadcast_to(T, pose.shape))
+    return _entry_errors(task.entries, _chord_weight(task), pose, np.broadcast_to(T, pose.shape))
 
 
-def _bounds(arm: _Arm, limits: bool) -> tuple[Array, Array]:
+def _step_bounds(arm: _Arm, limits: bool) -> tuple[Array, Array]:
     """Where steps are clipped to."""
     low, high = np.array(arm.lower), np.array(arm.upper)
     return (low, high) if limits else (np.full(len(low), -inf), np.full(len(low), inf))
 
 
-def _starts(arm: _Arm, low: Array, high: Array) -> Array:
+def _even_starts(arm: _Arm, low: Array, high: Array) -> Array:
     """Configurations (n, dof) that fill the limits evenly: Kronecker's sequence by powers of the root of
     `x^(dof + 1) = x + 1` (Roberts 2018)."""
     dof = len(low)
@@ -726,37 +742,37 @@ def _starts(arm: _Arm, low: Array, high: Array) -> Array:
     for _ in range(40):
         root = (1.0 + root) ** (1.0 / (dof + 1))
     steps = (1.0 / root) ** np.arange(1, dof + 1)
-    part = (0.5 + np.arange(1, _STARTS + 1)[:, None] * steps) % 1.0
+    part = (0.5 + np.arange(1, _START_COUNT + 1)[:, None] * steps) % 1.0
     half = np.where(arm.chain.revolute, pi, arm.task.size)
     centre = np.clip(0.0, low + half, np.maximum(high - half, low + half))
     least, most = np.maximum(low, centre - half), np.minimum(high, centre + half)
     return np.asarray(least + part * (most - least))
 
 
-def _descend(arm: _Arm, T: Array, q: Array, bounds: tuple[Array, Array]) -> tuple[Array, Array]:
+def _descend_to(arm: _Arm, T: Array, q: Array, bounds: tuple[Array, Array]) -> tuple[Array, Array]:
     """The rows (k, dof) at the ends of the steps, and what is least there (k,)."""
-    moving, damping = list(arm.moving), np.full(len(q), _FIRST)
+    moving, damping = list(arm.moving), np.full(len(q), _FIRST_DAMPING)
     low, high = (bound[moving] for bound in bounds)
     pose, J = _tip_and_jacobian(arm.chain, q)
-    error = _chords(arm.task, pose, T)
+    error = _chord_errors(arm.task, pose, T)
     cost = (error**2).sum(axis=1)
-    for _ in range(_STEPS):
+    for _ in range(_STEP_COUNT):
         trial = q.copy()
-        slope = _entry_rows(arm.task.entries, _weight(arm.task), pose, J)[:, :, moving]
-        trial[:, moving] = _stepped(q[:, moving], slope, error, damping, (low, high))
+        slope = _entry_rows(arm.task.entries, _chord_weight(arm.task), pose, J)[:, :, moving]
+        trial[:, moving] = _clipped_step(q[:, moving], slope, error, damping, (low, high))
         new = (trial, *_tip_and_jacobian(arm.chain, trial))
-        errors = _chords(arm.task, new[1], T)
+        errors = _chord_errors(arm.task, new[1], T)
         costs = (errors**2).sum(axis=1)
         better = costs < cost
         q[better], error[better], cost[better] = trial[better], errors[better], costs[better]
         pose, J = (np.where(better[:, None, None], a, b) for a, b in zip(new[1:], (pose, J)))
-        damping = np.clip(damping * np.where(better, 0.2, 8.0), _LEAST, _MOST)
-        if damping.min() == _MOST:
+        damping = np.clip(damping * np.where(better, 0.2, 8.0), _LEAST_DAMPING, _MOST_DAMPING)
+        if damping.min() == _MOST_DAMPING:
             break
     return q, cost
 
 
-def _stepped(
+def _clipped_step(
     q: Array, slope: Array, error: Array, damping: Array, bounds: tuple[Array, Array]
 ) -> Array:
     """The rows (k, n) after one step; joints at a limit that it would pass stay."""
@@ -765,7 +781,7 @@ def _stepped(
     slope = np.where(stuck[:, None], 0.0, slope)
     normal = np.einsum("kmi,kmj->kij", slope, slope) + damping[:, None, None] * np.eye(q.shape[1])
     step = np.linalg.solve(normal, np.where(stuck, 0.0, push)[:, :, None])[:, :, 0]
-    return np.asarray(np.clip(q + np.clip(step, -_LONGEST, _LONGEST), *bounds))
+    return np.asarray(np.clip(q + np.clip(step, -_LONGEST_STEP, _LONGEST_STEP), *bounds))
 
 
 # Newton's method on the chain: damped least squares (Levenberg 1944, Marquardt 1963).
@@ -881,12 +897,15 @@ _TURN = 2.0 * pi
 
 
 def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
-    """Whether the row differs from all kept ones, whole turns aside."""
+    """Whether the row differs from all kept ones, whole turns aside; long slides count relative to their
+    length."""
     near = arm.policy.coincident
     for other, _ in kept:
         for a, b, turns in zip(row, other, arm.chain.revolute):
             gap = abs(a - b)
-            if gap > near and (not turns or abs((gap + pi) % _TURN - pi) > near):
+            if gap <= near:
+                continue
+            if abs((gap + pi) % _TURN - pi) > near if turns else gap > near * abs(a):
                 break
         else:
             return False
@@ -894,15 +913,17 @@ def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
 
 
 def _distinct(arm: _Arm, q: Array, valid: _Flags) -> _Flags:
-    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside."""
+    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside; long
+    slides count relative to their length."""
     near = arm.policy.coincident
     later, earlier = np.tril_indices(q.shape[1], -1)
     same = valid.T[later] & valid.T[earlier]
     for j in reversed(range(q.shape[2])):  # the last joints differ between most rows
         value = q[:, :, j].T
         gap = np.abs(value[later] - value[earlier])
-        close = gap <= near
-        same &= close | (np.abs(gap - _TURN) <= near) if arm.chain.revolute[j] else close
+        bound = near if arm.chain.revolute[j] else near * np.abs(value[later])
+        far = np.abs(gap - _TURN) if arm.chain.revolute[j] else gap
+        same &= (gap <= near) | (far <= bound)
         if not same.any():
             return valid
     valid = valid.copy()
@@ -1290,7 +1311,7 @@ def _search_held(
 
 _DEEPEST = 24  # of the way from one pose to the next
 _SHALLOW = 9  # the same where there are no rows
-_FARTHEST = 0.3  # rad or m that a joint may move at once
+_path_following_FARTHEST = 0.3  # rad or m that a joint may move at once
 _OFF = 0.2  # of the motion, and
 _LEAST_OFF = 1e-4  # rad or m: how far a row may be from where the Jacobian leads
 _DAMPING = 1e-8  # of directions that are all but lost
@@ -1361,7 +1382,7 @@ class _Walk:
             gap = np.abs(rows - expected).max(axis=1)
             k = int(gap.argmin())
             moved = float(np.abs(rows[k] - self.q).max())
-            follows = moved < _FARTHEST and gap[k] < _LEAST_OFF + _OFF * moved
+            follows = moved < _path_following_FARTHEST and gap[k] < _LEAST_OFF + _OFF * moved
             if follows or (depth == _DEEPEST and moved < _JUMP):
                 self.crossed = self.crossed or bool(flags[k]) or not follows
                 return self._arrive(rows[k])
