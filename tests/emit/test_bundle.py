@@ -56,7 +56,9 @@ def test_what_is_used_comes_along(tmp_path: Path) -> None:
 
 
 def test_details_of_private_documentation_stay_with_the_runtime() -> None:
-    body = 'def turned(x: float) -> float:\n    """Say it.\n\n    And why.\n    """\n    return -x\n'
+    body = (
+        'def turned(x: float) -> float:\n    """Say it.\n\n    And why.\n    """\n    return -x\n'
+    )
     text = f'"""A module."""\n\n\n{body}'
     (turned,) = taken_apart("module", text).definitions
     assert turned.text({}) == text.partition("\n\n\n")[2].rstrip()
@@ -68,8 +70,15 @@ def test_the_same_text_each_time() -> None:
     assert bundle(SHELL) == bundle(SHELL)
 
 
-def test_two_definitions_of_one_name() -> None:
-    with pytest.raises(ValueError, match="two definitions would get: _turns"):
+def test_a_private_name_that_is_taken_gets_its_module_in_front(tmp_path: Path) -> None:
+    text = bundle(SHELL + "\n\ndef _Array() -> None:\n    return None\n")
+    assert "_array_types_Array = NDArray[np.float64]" in text and "def _Array() -> None" in text
+    turns = import_text(text, tmp_path)
+    assert np.allclose(turns.half_turn(), np.diag([-1.0, -1.0, 1.0, 1.0]))
+
+
+def test_a_shell_that_defines_what_it_imports() -> None:
+    with pytest.raises(ValueError, match="imported and defined: _turns"):
         bundle(SHELL + "\n\ndef _turns() -> None:\n    return None\n")
 
 

@@ -120,6 +120,8 @@ def _print(
         hint = "\n".join(dict.fromkeys(o.hint for o in bad if o.hint))
         _echo({"arms": [_row(o) for o in outcomes]}, code, message, hint)
     for o in outcomes:
+        for text in o.warnings if not quiet else ():
+            click.echo(f"warning: {o.name}: {text}", err=True)
         if o.exit_code:
             if o.trace and verbose:
                 click.echo(o.trace, err=True)

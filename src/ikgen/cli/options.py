@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 import click
 
 from ikgen.generation.emitters import EMITTERS
+from ikgen.tasks import AXES
 
 __all__ = [
     "chain_options",
@@ -41,7 +42,13 @@ _CHAIN_OPTIONS = (
     click.option(
         "--task",
         metavar="TASK",
-        help="pose (default), position-direction, position-yaw, position, rotation, direction.",
+        help="pose (default), position-direction, position-pitch, position-yaw, position, rotation, "
+        "direction.",
+    ),
+    click.option(
+        "--tool-axis",
+        type=click.Choice(AXES),
+        help="The tool's axis whose direction or elevation counts (default: z, or the one that suits).",
     ),
     click.option(
         "--free",

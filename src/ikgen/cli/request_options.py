@@ -19,6 +19,7 @@ def make_request(
     base: str | None = None,
     tip: str | None = None,
     task: str | None = None,
+    tool_axis: str | None = None,
     free: Sequence[str] = (),
     lock: Sequence[str] = (),
     args: Sequence[str] = (),
@@ -30,7 +31,7 @@ def make_request(
     from ikgen.tasks import find_task
 
     if task is not None:
-        task = find_task(task).name
+        task = find_task(task, tool_axis).stem if tool_axis else find_task(task).name
     for folder in package_paths:
         if not folder.is_dir():
             raise UsageError(f"--package-path {folder}: no such directory")
@@ -43,6 +44,7 @@ def make_request(
         base=base,
         tip=tip,
         task=task,
+        tool_axis=tool_axis,
         free=held,
         lock=locked,
         args=_arguments(args),

@@ -6,6 +6,7 @@ when they are imported. Nothing but the standard library is imported here.
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import importlib.util
 import os
@@ -78,10 +79,8 @@ def _robots_folder() -> Path:
     """The folder of example-robot-data's robots: of this environment, or of a sourced workspace."""
     share = f"share/{DATA}/robots"
     places = [Path(sys.prefix, share)]
-    try:
+    with contextlib.suppress(PackageNotFoundError):
         places.insert(0, Path(str(distribution(DATA).locate_file(f"cmeel.prefix/{share}"))))
-    except PackageNotFoundError:
-        pass
     places += [
         Path(p, share) for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p
     ]

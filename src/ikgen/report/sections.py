@@ -71,8 +71,8 @@ def _solution(page: SolvedPage) -> list[Block]:
     if not page.eliminated:
         return _inverse(page)
     blocks: list[Block] = [Heading(("Inverse kinematics",), anchor="inverse")]
-    blocks += elimination_section()
     plan = page.derivation.module.plan
+    blocks += elimination_section(plan.turning.count(False) if plan is not None else 0)
     if page.example is not None and plan is not None:
         blocks += roots_blocks(page.reading.dh, plan, page.example)
     return blocks

@@ -20,7 +20,7 @@ from ikgen.runtime.python.row_placement import distinct, place_rows_batch
 from ikgen.runtime.python.solutions import Status
 from ikgen.runtime.python.solved_arm import Arm
 
-__all__ = ["branch_axis", "solve_poses"]
+__all__ = ["branch_axis", "rows_batch", "solve_poses"]
 
 _CHUNK = 2048  # closed forms solved at a time
 _Batch = tuple[Array, NDArray[np.int64], NDArray[np.str_]]
@@ -49,10 +49,10 @@ def solve_poses(
     if T.ndim != 3 or T.shape[1:] != (4, 4):
         raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
     count = len(T)
-    held = held_rows(arm, free, count)
     near: Array | None = None
     if seed is not None:
         near = np.broadcast_to(seed_rows(arm, seed, (dof,), (count, dof)), (count, dof))
+    held = held_rows(arm, free, near, count)
     q = np.full((count, arm.most, dof), np.nan)
     number = np.zeros(count, dtype=np.int64)
     status = np.full(count, Status.INVALID.value, dtype="<U11")
@@ -68,7 +68,7 @@ def solve_poses(
 
 
 def _solve_chunk(arm: Arm, T: Array, held: Array, near: Array | None, limits: bool) -> _Batch:
-    q, valid, singular = _rows_batch(arm, T, held, near)
+    q, valid, singular = rows_batch(arm, T, held, near)
     real = valid.any(axis=1)
     q, inside = place_rows_batch(arm, q, near, limits)
     valid &= inside
@@ -92,7 +92,7 @@ def _solve_chunk(arm: Arm, T: Array, held: Array, near: Array | None, limits: bo
     return q, number, status
 
 
-def _rows_batch(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, Flags, Flags]:
+def rows_batch(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, Flags, Flags]:
     """Rows (N, M, dof) on no turn in particular; which are distinct solutions, which of a continuum."""
     if not arm.rounded:
         return _careful_rows(arm, T, held, near)
