@@ -349,6 +349,12 @@ class _Policy:
     try_step: float  # rad from one to the next
     rank_loss: float  # smallest singular value below which a refined row is singular
     continuum_rank_loss: float  # the same where the closed form says that it is
+    farthest_start: float  # first step (rad, m) of rows that are refined together
+    contraction: float  # of each further one
+    least_pivot: float  # how far the derivatives by each joint must be from the others' span
+    least_miss: float  # error that shows that a row ends beside the pose
+    near: float  # largest step behind which the derivatives stay
+    lane_steps: int  # at most
     least_damping: float
     damping: float  # of a Newton step, times the squared error
     largest_step: float  # of a joint
@@ -429,8 +435,9 @@ class _Arm:
     most. `branches(T, q0, held)`: the closed form's rows for a pose, values of joints that it leaves
     free, values of held joints, and whether it left one free; `branches_batch`: in arrays. `beside`
     (n, 4, 4): motions of the tool to poses that are solved as well. `turning`: which joints are
-    revolute and not held; `moving`: indices of those not held. `branch_kind`, `elbow_end`: as in
-    `branch_names`."""
+    revolute and not held; `moving`: indices of those not held.
+    `rounded`: whether the closed form is of another geometry than the file's, and all rows are rough.
+    `branch_kind`, `elbow_end`: as in `branch_names`."""
 
     chain: _Chain
     task: _Task
@@ -446,6 +453,7 @@ class _Arm:
     beside: Array
     turning: tuple[bool, ...]
     moving: tuple[int, ...]
+    rounded: bool
     branch_kind: str
     elbow_end: int
 
@@ -515,6 +523,48 @@ def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...]) -> Array:
         raise ValueError(f"seed {values.tolist()} has values that are not finite")
     far = np.array(arm.turning) & (np.abs(values) > _FARTHEST)
     return np.where(far, np.fmod(values, 2.0 * pi), values) if far.any() else values
+
+
+# Undamped Newton steps of all rows at once, and which of them leave no doubt.
+
+
+def _refine_together(arm: _Arm, q: Array, T: Array) -> tuple[Array, _Flags, _Flags]:
+    """Rows (k, dof) after steps towards T (k, 4, 4); which arrived at the one solution near their start,
+    and which at a least error that is not 0."""
+    policy, q, done = arm.policy, q.copy(), np.zeros(len(q), dtype=bool)
+    before, good = np.full(len(q), policy.farthest_start), ~done
+    slope = inverse = error = change = np.empty(0)
+    for step in range(policy.lane_steps):
+        if (
+            step in (1, 2) and before.max() < policy.near
+        ):  # so close that the slope is the one before
+            error = arm.task.error(_forward(arm.chain, q), T)
+        else:
+            pose, J = _tip_and_jacobian(arm.chain, q)
+            error = arm.task.error(pose, T)
+            slope = arm.task.rows(pose, J)[:, :, list(arm.moving)]
+            inverse, pivot = _inverse(slope)
+            good &= pivot > policy.least_pivot
+        change = (inverse @ error[:, :, None])[:, :, 0]
+        size = np.abs(change).max(axis=1)
+        most = before if step == 0 else policy.contraction * before
+        good &= (size < most) | (size < policy.converged)
+        q[:, arm.moving] += change * good[:, None]
+        if step:
+            done = ~good | (size * size < policy.converged * before) | (size < policy.converged)
+            if done.all():
+                break
+        before = size
+    good &= done
+    rest = np.abs(error - (slope @ change[:, :, None])[:, :, 0]).max(axis=1)
+    return q, good & (rest < policy.arrived), good & (rest > policy.least_miss)
+
+
+def _inverse(J: Array) -> tuple[Array, Array]:
+    """The left inverses of J (k, m, n), and how far the nearest column of each is from the others' span."""
+    Jt = J.transpose(0, 2, 1)
+    G = np.linalg.inv(Jt @ J + 1e-14 * np.eye(J.shape[2]))  # never singular
+    return G @ Jt, 1.0 / np.sqrt(np.einsum("kii->ki", G).max(axis=1))
 
 
 # Poses as people have them, as homogeneous matrices.
@@ -1127,6 +1177,10 @@ def _rows(
     hits: list[bool] = []
     for i, q0 in enumerate(starts):
         answers, hit = arm.branches(T, q0, held)
+        if arm.rounded and len(starts) == 1 and not hit:
+            found = _certain_rows(arm, answers, T)
+            if found is not None:
+                return [(found, False)]
         hits.append(hit)
         if hit:
             rough.append((i, (q0, True)))
@@ -1141,6 +1195,24 @@ def _rows(
         if len(kept[i]) < arm.most and _is_new(arm, item[0], kept[i]):
             kept[i].append(item)
     return list(zip(kept, hits))
+
+
+def _certain_rows(arm: _Arm, answers: list[_Candidate], T: list[list[float]]) -> list[_Found] | None:
+    """The rows refined all at once; None where that leaves a doubt."""
+    if not answers or any(flag for _, flag, _ in answers):
+        return None if answers or len(arm.beside) else []
+    start = np.array([row for row, _, _ in answers])
+    q, arrived, missed = _refine_together(
+        arm, start, np.broadcast_to(np.array(T), (len(start), 4, 4))
+    )
+    if not (arrived | missed).all():
+        return None
+    kept: list[_Found] = []
+    for row in q[arrived].tolist():
+        if not _is_new(arm, row, kept):  # another may lie there
+            return None
+        kept.append((tuple(row), False))
+    return kept
 
 
 def _refined(arm: _Arm, rows: list[_Found], T: list[list[float]]) -> list[_Found | None]:
@@ -1195,7 +1267,7 @@ def _solve_poses(
     if orthonormalize:
         T = _nearest_poses(arm.task, T, arm.policy)
     T, good = arm.task.read_batch(T, arm.policy)
-    usable, size = np.flatnonzero(good), _CHUNK // (1 + len(arm.beside))
+    usable, size = np.flatnonzero(good), _CHUNK
     for start in range(0, len(usable), size):
         part = usable[start : start + size]
         seeds = None if near is None else near[part]
@@ -1230,6 +1302,41 @@ def _solve_chunk(arm: _Arm, T: Array, held: Array, near: Array | None, limits: b
 
 def _rows_batch(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, _Flags, _Flags]:
     """Rows (N, M, dof) on no turn in particular; which are distinct solutions, which of a continuum."""
+    if not arm.rounded:
+        return _careful_rows(arm, T, held, near)
+    start = np.zeros((len(T), len(arm.lower))) if near is None else near
+    with np.errstate(all="ignore"):
+        q, valid, singular, _ = arm.branches_batch(T, start, held)
+    q[:, :, arm.free] = held[:, None, :]
+    q, valid, doubt = _certain_batch(arm, T, q, valid)
+    doubt |= singular.any(axis=1) | ~valid.any(axis=1)
+    if doubt.any():
+        seeds = None if near is None else near[doubt]
+        more, fine, flags = _careful_rows(arm, T[doubt], held[doubt], seeds)
+        order = np.argsort(~fine, axis=1, kind="stable")[:, : q.shape[1]]
+        q[doubt] = np.take_along_axis(more, order[:, :, None], axis=1)
+        valid[doubt] = np.take_along_axis(fine, order, axis=1)
+        singular = singular.copy()
+        singular[doubt] = flags
+    return q, valid, singular
+
+
+def _certain_batch(arm: _Arm, T: Array, q: Array, valid: _Flags) -> tuple[Array, _Flags, _Flags]:
+    """Rows (N, M, dof) refined all at once, which are solutions, and for which poses (N,) that leaves a
+    doubt."""
+    pose, row = np.nonzero(valid)
+    done, arrived, missed = _refine_together(arm, q[pose, row], T[pose])
+    q, found, doubt = q.copy(), valid.copy(), np.zeros(len(T), dtype=bool)
+    q[pose, row], found[pose, row] = done, arrived
+    doubt[pose[~(arrived | missed)]] = True
+    doubt |= (_distinct(arm, q, found) != found).any(axis=1)
+    return q, found, doubt
+
+
+def _careful_rows(
+    arm: _Arm, T: Array, held: Array, near: Array | None
+) -> tuple[Array, _Flags, _Flags]:
+    """Rows of which each is refined for as long as it takes, near folds with those of poses beside."""
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
     with np.errstate(all="ignore"):
         q, valid, singular, rough = arm.branches_batch(T, start, held)
@@ -1577,6 +1684,12 @@ _ARM = _Arm(
         try_step=0.39269908169872414,
         rank_loss=1e-07,
         continuum_rank_loss=0.001,
+        farthest_start=0.05,
+        contraction=0.25,
+        least_pivot=1e-05,
+        least_miss=1e-08,
+        near=0.0001,
+        lane_steps=7,
         least_damping=1e-12,
         damping=0.001,
         largest_step=0.3,
@@ -1597,5 +1710,6 @@ _ARM = _Arm(
     branch_kind="number",
     elbow_end=5,
     turning=(True, False, ),
+    rounded=False,
     moving=(0, 1, ),
 )
