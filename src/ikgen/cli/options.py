@@ -15,6 +15,7 @@ __all__ = [
     "chain_options",
     "console_options",
     "emit_option",
+    "executor_options",
     "reading_options",
     "sampling_options",
     "trust_option",
@@ -63,6 +64,12 @@ _CHAIN_OPTIONS = (
         help="Fix a joint for good (rad, m, 45deg, 120mm).",
     ),
     *_READING_OPTIONS,
+    click.option(
+        "--calibration",
+        metavar="FILE",
+        type=click.Path(path_type=Path),
+        help="The one arm's own kinematics: a calibration.yaml, or offsets of its DH rows (.toml).",
+    ),
     click.option(
         "--name",
         metavar="NAME",
@@ -137,6 +144,31 @@ def console_options(function: F) -> F:
             ),
             click.option("-q", "--quiet", is_flag=True, help="Print errors only."),
             click.option("-v", "--verbose", is_flag=True, help="Print every step and check."),
+        ],
+        function,
+    )
+
+
+def executor_options(function: F) -> F:
+    """Who computes."""
+    return _apply(
+        [
+            click.option(
+                "--executor",
+                type=click.Choice(["process", "dask"]),
+                default="process",
+                show_default=True,
+                help="Processes of this machine, or Dask (a local cluster without --scheduler).",
+            ),
+            click.option(
+                "--scheduler", metavar="ADDRESS", help="The Dask scheduler that runs already."
+            ),
+            click.option(
+                "--workers",
+                metavar="N",
+                type=click.IntRange(min=1),
+                help="How many (default: one a core).",
+            ),
         ],
         function,
     )

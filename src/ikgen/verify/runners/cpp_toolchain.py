@@ -74,14 +74,16 @@ def find_eigen() -> Path:
     )
 
 
-def compile_program(source: Path, output: Path, include: list[Path]) -> None:
-    """Compile one C++17 file with light optimisation.
+def compile_program(
+    source: Path, output: Path, include: list[Path], flags: Sequence[str] = ("-O1",)
+) -> None:
+    """Compile one C++17 file, by default with light optimisation.
 
     Raises `MissingToolError` without compiler or Eigen, and where the compiler itself fails: crashes,
     takes too long, finds no room; `VerificationError` with its first messages where the code does not
     compile.
     """
-    _compile([source], output, include, ["-O1"])
+    _compile([source], output, include, flags)
 
 
 def compile_extension(

@@ -15,7 +15,7 @@ from ikgen.model.dh import DHChain
 from ikgen.report.skeleton_bones import skeleton
 from ikgen.solver.solution_graph import SolutionGraph
 
-__all__ = ["branch_names"]
+__all__ = ["row_names"]
 
 Array = NDArray[np.float64]
 
@@ -23,7 +23,7 @@ _SAME = 1e-5
 """Difference (rad, m) below which two values of an unknown are one branch."""
 
 
-def branch_names(
+def row_names(
     dh: DHChain, geometry: GeometryClass, graph: SolutionGraph, rows: Array
 ) -> tuple[str, ...]:
     """A name for each of the rows (k, dof), rad and m, no two of them the same."""
