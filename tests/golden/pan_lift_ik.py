@@ -570,11 +570,8 @@ def _inverse(J: Array) -> tuple[Array, Array]:
 # Poses as people have them, as homogeneous matrices.
 
 
-_TRANSFORMS = (
-    "homogeneous",
-    "as_matrix",
-    "A",
-)  # pin.SE3; RigidTransform of SciPy; SE3 of spatialmath
+# of pin.SE3, RigidTransform of SciPy, SE3 of spatialmath
+_TRANSFORMS = ("homogeneous", "as_matrix", "A")
 
 
 def _pose_matrices(pose: Any, alone: str) -> Array:
