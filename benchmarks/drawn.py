@@ -62,24 +62,27 @@ def smallest_singular(module: ModuleType, q: Array) -> Array:
     for row in q:
         J = module.jacobian(row) * unit
         J[:3] /= size
-        rows = _task_rows(module.TASK, J, module.forward(row))[:, active]
+        axis = getattr(module, "TOOL_AXIS", "z")
+        rows = _task_rows(module.TASK, axis, J, module.forward(row))[:, active]
         values.append(np.linalg.svd(rows, compute_uv=False))
     return np.array([v[min(_FREEDOMS.get(module.TASK, 6), len(active)) - 1] for v in values])
 
 
 _FREEDOMS = {
-    "pose": 6, "position": 3, "position-direction": 5, "position-yaw": 4, "rotation": 3, "direction": 2,
+    "pose": 6, "position": 3, "position-direction": 5, "position-yaw": 4, "position-pitch": 4,
+    "rotation": 3, "direction": 2,
 }  # fmt: skip
 
 
-def _task_rows(task: str, J: Array, T: Array) -> Array:
+def _task_rows(task: str, axis: str, J: Array, T: Array) -> Array:
     """The rows that the task reads; all of them for a task not known here."""
-    z = T[:3, 2]
+    z = T[:3, "xyz".index(axis)]
     direction = J[3:] - np.outer(z, z @ J[3:])
     chosen = {
         "position": J[:3],
         "position-direction": np.vstack([J[:3], direction]),
         "position-yaw": np.vstack([J[:3], J[5:]]),
+        "position-pitch": np.vstack([J[:3], np.cross(J[3:].T, z).T[2:]]),
         "rotation": J[3:],
         "direction": direction,
     }

@@ -1,10 +1,15 @@
-"""Random chains by the rules: the share solved, and whether what was solved is right and complete.
+"""Random chains: the share solved, and whether what was solved is right and complete.
 
-    python -m benchmarks.random_chains [--count N] [--poses N] [--seed N] [--record]
+    python -m benchmarks.random_chains [--count N] [--poses N] [--search N] [--seed N]
+        [--joints N] [--slides N] [--any-angle] [--command-line] [--emit python,cpp] [--record]
 
 Modified DH tables of 3 to 6 joints, revolute and prismatic mixed, twists of 0 and ±90 degrees, about
-half of the lengths zero. Arms whose joints are not independent (a smaller rank than joints) are drawn
-again: they have infinitely many solutions.
+half of the lengths zero; or of `--joints` of which `--slides` are prismatic, `--any-angle` with arbitrary
+twists. Arms whose joints are not independent (a smaller rank than joints) are drawn again: they have
+infinitely many solutions. What the rules leave goes on to the eliminations, where six joints move.
+`--command-line` takes each through `ikgen from-dh` with its whole verification, special poses included.
+`--search` compares the solutions of so many poses a table with those of an independent search: Newton's
+method from many random starts.
 """
 
 from __future__ import annotations
@@ -12,111 +17,53 @@ from __future__ import annotations
 import argparse
 import importlib.util
 import itertools
+import re
+import subprocess
 import sys
 import tempfile
 import time
 from collections import Counter
 from collections.abc import Sequence
-from fractions import Fraction
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 
+from benchmarks.drawn import revolute
+from benchmarks.random_tables import Drawn, pattern, random_table, table_text
 from benchmarks.results import write_result
+from benchmarks.solution_search import apart, searched
+from ikgen.elimination import elimination_plan
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.solver_module import SolverModule
 from ikgen.equations.probes import arm_size, dh_pose, smallest_singular
+from ikgen.lowering.elimination_program import elimination_program
 from ikgen.lowering.lower import lower
-from ikgen.model.chain import PRISMATIC, REVOLUTE, ActuatedJoint
-from ikgen.model.dh import Angle, DHChain, DHRow, Length
-from ikgen.model.joint_tree import Limits
+from ikgen.model.dh import DHChain
 from ikgen.solver.solve import solve_chain
 
-QUARTERS = (Fraction(0), Fraction(1, 2), Fraction(-1, 2))
+RULES, ELIMINATION, NEITHER = "rules", "elimination", "nothing"
 _count = itertools.count()
 
 
-def _length(rng: np.random.Generator, name: str, zero: float) -> Length:
-    if rng.random() < zero:
-        return Length(0.0, None)
-    return Length(float(rng.uniform(0.2, 1.0)), name)
+@dataclass(slots=True)
+class Tally:
+    """What came of the tables."""
+
+    ways: Counter[str] = field(default_factory=Counter)
+    solved: Counter[int] = field(default_factory=Counter)
+    total: Counter[int] = field(default_factory=Counter)
+    wrong: int = 0
+    missed: int = 0
+    refused: int = 0
+    times: list[float] = field(default_factory=list)
+    unsolved: list[str] = field(default_factory=list)
 
 
-def random_table(rng: np.random.Generator) -> DHChain:
-    """A chain whose joints move its tip independently of each other."""
-    while True:
-        dh = _draw(rng)
-        values = rng.uniform(-2.0, 2.0, (6, dh.dof))
-        if np.median(smallest_singular(dh, values, arm_size(dh))) > 1e-3:
-            return dh
-
-
-def _draw(rng: np.random.Generator) -> DHChain:
-    n = int(rng.integers(3, 7))
-    rows: list[DHRow] = []
-    joints: list[ActuatedJoint] = []
-    zero = Length(0.0, None)
-    straight = Angle(0.0, Fraction(0))
-    for i in range(n):
-        kind = PRISMATIC if rng.random() < 0.25 else REVOLUTE
-        twist = QUARTERS[int(rng.integers(3))] if i else Fraction(0)
-        a = _length(rng, f"a_{i}", 0.5) if i else zero
-        d = _length(rng, f"d_{i + 1}", 0.6)
-        alpha = Angle(float(twist) * np.pi, twist)
-        offset: Angle | Length = straight if kind == REVOLUTE else zero
-        rows.append(
-            DHRow(
-                f"q{i + 1}",
-                kind,
-                alpha,
-                a,
-                d if kind == REVOLUTE else zero,
-                straight,
-                i,
-                1.0,
-                offset,
-            )
-        )
-        joints.append(ActuatedJoint(f"q{i + 1}", kind, Limits(-np.inf, np.inf)))
-    frames = _frames(rows)
-    eye = np.eye(4)
-    return DHChain("random", "base", "tip", tuple(joints), tuple(rows), eye, eye, frames)
-
-
-def _frames(rows: Sequence[DHRow]) -> tuple[np.ndarray, ...]:
-    """`F_0 ... F_n` of the table itself."""
-    frames = [np.eye(4)]
-    for row in rows:
-        frames[-1] = frames[-1] @ _link(row)
-        after = np.eye(4)
-        after[2, 3] = row.d.value
-        frames.append(after)
-    return tuple(frames)
-
-
-def _link(row: DHRow) -> np.ndarray:
-    T = np.eye(4)
-    c, s = np.cos(row.alpha.value), np.sin(row.alpha.value)
-    T[1:3, 1:3] = [[c, -s], [s, c]]
-    T[0, 3] = row.a.value
-    return T
-
-
-def pattern(dh: DHChain) -> str:
-    """Joint types with what lies between them: = parallel, | at right angles, o no offset."""
-    text = ""
-    for row in dh.rows:
-        text += ("=" if row.alpha.exact == 0 else "|") + ("o" if row.a.name is None else "a")
-        text += ("R" if row.revolute else "P") + ("" if row.d.name is None else "d")
-    return text[2:]
-
-
-def load(text: str, folder: Path) -> ModuleType:
-    """An emitted module from its text."""
+def load(path: Path) -> ModuleType:
+    """An emitted module from its file."""
     name = f"random_{next(_count)}_ik"
-    path = folder / f"{name}.py"
-    path.write_text(text)
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -125,69 +72,144 @@ def load(text: str, folder: Path) -> ModuleType:
     return module
 
 
+def derived(dh: DHChain, folder: Path) -> tuple[str, Path | None]:
+    """How the chain was solved, and the emitted module's file."""
+    facts = ("pose", (), (), "table", "0" * 64, "benchmark")
+    graph, path = solve_chain(dh), folder / f"random_{next(_count)}.py"
+    if not graph.open_joints:
+        path.write_text(emit_module(SolverModule("random", lower(graph), dh, *facts)))
+        return RULES, path
+    plan = elimination_plan(dh)
+    if plan is None:
+        return NEITHER, None
+    module = SolverModule("random", elimination_program(dh), dh, *facts, plan=plan)
+    path.write_text(emit_module(module))
+    return ELIMINATION, path
+
+
+def through_command_line(dh: DHChain, folder: Path, emit: str) -> tuple[str, Path | None, str]:
+    """The same by `ikgen from-dh` with its verification, and what it said of it."""
+    name = f"drawn{next(_count)}"
+    table = folder / f"{name}.toml"
+    table.write_text(table_text(dh, name))
+    command = [sys.executable, "-m", "ikgen", "from-dh", str(table), "--output", str(folder)]
+    done = subprocess.run([*command, "--emit", emit], capture_output=True, text=True)
+    lines = (done.stdout + done.stderr).splitlines()
+    said = " | ".join(x.strip() for x in lines if re.match(r"(verified|error|solutions):", x))
+    path = folder / f"{name}_ik.py"
+    if done.returncode == 3:
+        return NEITHER, None, said
+    way = ELIMINATION if any("elimination)" in x for x in lines) else RULES
+    return way, path if done.returncode == 0 else None, said
+
+
 def check(dh: DHChain, module: ModuleType, poses: int, rng: np.random.Generator) -> tuple[int, int]:
     """Wrong rows and missed configurations over random regular poses."""
     q = rng.uniform(-2.5, 2.5, (poses, dh.dof))
     regular = smallest_singular(dh, q, arm_size(dh)) > 1e-3
+    turning = revolute(module)
     wrong = missed = 0
     for at, pose in zip(q[regular], dh_pose(dh, q[regular]), strict=True):
         rows = module.solve(pose, limits=False).q
-        if len(rows):
-            wrong += int((np.abs(module.forward(rows) - pose).max(axis=(1, 2)) > 1e-8).sum())
-        turn = np.array([row.revolute for row in dh.rows])
-        gap = np.abs(rows - at)
-        gap = np.where(turn, np.minimum(gap % (2 * np.pi), -gap % (2 * np.pi)), gap)
-        missed += int(not len(rows) or gap.max(axis=1).min() > 1e-6)
+        wrong += int((np.abs(module.forward(rows) - pose).max(axis=(1, 2)) > 1e-8).sum())
+        missed += int(not len(rows) or apart(at, rows, turning).min() > 1e-6)
     return wrong, missed
+
+
+def compare(dh: DHChain, module: ModuleType, poses: int, rng: np.random.Generator) -> int:
+    """Solutions of random regular poses that the independent search finds and the module does not; poses at
+    which their numbers differ are printed."""
+    q = rng.uniform(-2.0, 2.0, (4 * poses, dh.dof))
+    q = q[smallest_singular(dh, q, arm_size(dh)) > 1e-2][:poses]
+    turning, missed = revolute(module), 0
+    for pose in dh_pose(dh, q):
+        rows = module.solve(pose, limits=False).q
+        found = searched(module, pose, rng, 3.0 * arm_size(dh))
+        lost = sum(not len(rows) or apart(x, rows, turning).min() > 1e-4 for x in found)
+        if lost or len(found) != len(rows):
+            print(
+                f"{pattern(dh)}: {len(rows)} solutions, {len(found)} by search, {lost} of them lost"
+            )
+        missed += lost
+    return missed
+
+
+def one_table(
+    dh: DHChain, folder: Path, options: argparse.Namespace, seed: int, tally: Tally
+) -> None:
+    """Derive, check and compare one table."""
+    started, said = time.perf_counter(), ""
+    if options.command_line:
+        way, path, said = through_command_line(dh, folder, options.emit)
+    else:
+        way, path = derived(dh, folder)
+    tally.times.append(time.perf_counter() - started)
+    tally.ways[way] += 1
+    tally.total[dh.dof] += 1
+    if path is None:
+        tally.refused += way != NEITHER
+        tally.unsolved.append(pattern(dh))
+        print(f"{pattern(dh)}: {way} {said}", flush=True)
+        return
+    tally.solved[dh.dof] += 1
+    rng = np.random.default_rng(seed)
+    if said:
+        print(f"{pattern(dh)}: {way} {said}", flush=True)
+    module = load(path) if path.exists() else None
+    if module is None:
+        return
+    bad, lost = check(dh, module, options.poses, rng)
+    lost += compare(dh, module, options.search, rng)
+    if bad or lost:
+        print(f"{pattern(dh)}: {bad} wrong, {lost} missed ({way})", flush=True)
+    tally.wrong, tally.missed = tally.wrong + bad, tally.missed + lost
+
+
+def parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
+    """The options."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--poses", type=int, default=100)
+    parser.add_argument("--search", type=int, default=0, help="poses to compare with a search")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--joints", type=int, help="as many joints (default: 3 to 6)")
+    parser.add_argument("--slides", type=int, help="as many of them prismatic (default: a quarter)")
+    parser.add_argument("--any-angle", action="store_true", help="twists that are no right angles")
+    parser.add_argument("--command-line", action="store_true", help="through `ikgen from-dh`")
+    parser.add_argument("--emit", default="python", help="what it writes")
+    parser.add_argument("--record", action="store_true", help="write results/random_chains.json")
+    return parser.parse_args(arguments)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table; 1 if a solved chain is wrong or incomplete."""
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--count", type=int, default=200)
-    parser.add_argument("--poses", type=int, default=100)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--record", action="store_true", help="write results/random_chains.json")
-    options = parser.parse_args(arguments)
+    options, tally = parsed(arguments), Tally()
     rng = np.random.default_rng(options.seed)
-    solved: Counter[int] = Counter()
-    total: Counter[int] = Counter()
-    wrong = missed = 0
-    unsolved: list[str] = []
-    times: list[float] = []
+    least, most = (options.joints, options.joints) if options.joints else (3, 6)
+    drawn = Drawn(least, most, options.slides, options.any_angle)
     with tempfile.TemporaryDirectory() as folder:
-        for _ in range(options.count):
-            dh = random_table(rng)
-            total[dh.dof] += 1
-            started = time.perf_counter()
-            graph = solve_chain(dh)
-            times.append(time.perf_counter() - started)
-            if graph.open_joints:
-                unsolved.append(pattern(dh))
-                continue
-            solved[dh.dof] += 1
-            module = SolverModule(
-                "random", lower(graph), dh, "pose", (), (), "table", "0" * 64, "benchmark"
-            )
-            bad, lost = check(dh, load(emit_module(module), Path(folder)), options.poses, rng)
-            if bad or lost:
-                leaves = ", ".join(s.candidate.leaf for s in graph.steps)
-                print(f"{pattern(dh)}: {bad} wrong, {lost} missed ({leaves})", flush=True)
-            wrong, missed = wrong + bad, missed + lost
-    for dof in sorted(total):
-        print(f"{dof} joints: {solved[dof]} of {total[dof]} solved by the rules")
-    print(f"all: {sum(solved.values())} of {options.count}; {wrong} wrong rows, {missed} missed")
-    print(f"seconds: median {np.median(times):.2f}, max {max(times):.2f}")
-    for text, number in sorted(Counter(unsolved).items()):
+        for number in range(options.count):
+            one_table(random_table(rng, drawn), Path(folder), options, number, tally)
+    for dof in sorted(tally.total):
+        print(f"{dof} joints: {tally.solved[dof]} of {tally.total[dof]} solved")
+    print(
+        f"by rules {tally.ways[RULES]}, by eliminations {tally.ways[ELIMINATION]}, of {options.count}"
+    )
+    print(
+        f"{tally.wrong} wrong rows, {tally.missed} missed, {tally.refused} refused by the verification"
+    )
+    print(f"seconds: median {np.median(tally.times):.2f}, max {max(tally.times):.2f}")
+    for text, number in sorted(Counter(tally.unsolved).items()):
         print(f"not solved: {text} ({number})")
     if options.record:
         found = {
-            "tables": options.count, "by_rules": sum(solved.values()), "by_elimination": 0,
-            "wrong": wrong, "missed": missed, "median": round(float(np.median(times)), 2),
-            "by_joints": {dof: [solved[dof], total[dof]] for dof in sorted(total)},
+            "tables": options.count, "by_rules": tally.ways[RULES],
+            "by_elimination": tally.ways[ELIMINATION], "wrong": tally.wrong, "missed": tally.missed,
+            "median": round(float(np.median(tally.times)), 2),
+            "by_joints": {n: [tally.solved[n], tally.total[n]] for n in sorted(tally.total)},
         }  # fmt: skip
         write_result("random_chains", "python -m benchmarks.random_chains", found)
-    return int(wrong + missed > 0)
+    return int(tally.wrong + tally.missed + tally.refused > 0)
 
 
 if __name__ == "__main__":

@@ -36,10 +36,11 @@ from ikgen.errors import IkgenError
 from ikgen.generation.derive import derive
 from ikgen.generation.emitted_checks import oracle_for
 from ikgen.generation.request import Request
+from ikgen.tasks import find_task
 from ikgen.verify.arm import REGULAR_SIGMA, ArmUnderTest, arm_under_test
 from ikgen.verify.runners.python_module import PythonModule
 from ikgen.verify.search import find_solutions
-from ikgen.verify.task_space import TASK_SPACES
+from ikgen.verify.task_space import task_space
 
 TABLES = Path(__file__).resolve().parents[1] / "tests" / "robots" / "tables"
 Array = NDArray[np.float64]
@@ -167,7 +168,10 @@ def _arm(derivation: Derivation) -> ArmUnderTest:
     dh = derivation.reading.dh
     bounds = np.full(dh.dof, -np.inf), np.full(dh.dof, np.inf)
     return arm_under_test(
-        oracle_for(derivation.reading), TASK_SPACES[derivation.module.task], bounds, dh.free
+        oracle_for(derivation.reading),
+        task_space(find_task(derivation.module.task)),
+        bounds,
+        dh.free,
     )
 
 

@@ -214,7 +214,7 @@ def test_pre_commit_runs_the_check_hook(package: Path) -> None:
 def test_build_check_imports_nothing_heavy(package: Path) -> None:
     code = (
         "import sys\nfrom ikgen.cli.main import run\nrun(['build', '--check'])\n"
-        "print([m for m in ('numpy', 'sympy', 'pinocchio', 'yourdfpy', 'xacro', 'jinja2',"
+        "print([m for m in ('numpy', 'sympy', 'pinocchio', 'xacro', 'jinja2',"
         " 'py_trees', 'lxml', 'rich') if m in sys.modules])"
     )
     for change in (lambda _: None, lengthen):

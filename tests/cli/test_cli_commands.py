@@ -227,7 +227,7 @@ def test_inspect_writes_nothing(tmp_path: Path) -> None:
 def test_help_and_version_import_nothing_heavy() -> None:
     code = (
         "import sys; from ikgen.cli.main import run; run({!r}); "
-        "print([m for m in ('numpy','sympy','pinocchio','yourdfpy','xacro','jinja2','rich',"
+        "print([m for m in ('numpy','sympy','pinocchio','xacro','jinja2','rich',"
         "'py_trees','lxml') if m in sys.modules])"
     )
     for arguments in (["--help"], ["--version"], ["from-urdf", "--help"], ["build", "--check"]):

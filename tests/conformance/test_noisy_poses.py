@@ -28,6 +28,7 @@ ARMS = {
     "eliminated": Request(TABLES / "KawasakiRS05L.toml"),
     "held": Request(FIXTURES / "franka_fr3.urdf", free={"fr3_joint7": 0.3}),
     "direction": Request(FIXTURES / "igus_robolink_rl_dp_5.urdf", task="position-direction"),
+    "pitch": Request(FIXTURES / "open_manipulator_x.urdf", task="position-pitch"),
     "yaw": Request(FIXTURES / "scara_standard.toml", task="position-yaw"),
     "rotation": Request(TABLES / "Wrist.toml", task="rotation"),
 }
@@ -79,6 +80,8 @@ def nearest(T: Array, task: str) -> Array:
     out = T.copy()
     if task == "position-direction":
         out[:3, 2] /= np.linalg.norm(T[:3, 2])
+    elif task == "position-pitch":
+        out[2, 2] = np.clip(T[2, 2], -1.0, 1.0)
     elif task == "position-yaw":
         out[:2, 0] /= np.linalg.norm(T[:2, 0])
     else:
@@ -91,6 +94,8 @@ def read(T: Array, task: str) -> Array:
     """The entries (..., m) that the task reads."""
     if task == "position-direction":
         return T[..., :3, 2:].reshape(*T.shape[:-2], 6)
+    if task == "position-pitch":
+        return np.concatenate([T[..., :3, 3], T[..., 2, 2:3]], axis=-1)
     if task == "position-yaw":
         return np.concatenate([T[..., :3, 3], T[..., :2, 0]], axis=-1)
     return T[..., :3, : 3 if task == "rotation" else 4].reshape(*T.shape[:-2], -1)

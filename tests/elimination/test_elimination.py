@@ -22,7 +22,7 @@ from ikgen.elimination.loop_frames import forward, jacobian
 from ikgen.elimination.routine import runtime_policy
 from ikgen.kinematics.modified_dh import to_dh
 from ikgen.program.policy import SolvePolicy
-from ikgen.runtime.python.general_6r import distinct_angles, six_joints
+from ikgen.runtime.python.general_6r import distinct_rows, six_joints
 from ikgen.runtime.python.refinement import newton
 from ikgen.runtime.python.whole_pose import PoseTask
 
@@ -120,9 +120,9 @@ def test_no_more_solutions_than_a_multi_start_search_finds(name: str) -> None:
         T[:3, 3] /= plan.length
         starts = rng.uniform(-np.pi, np.pi, (600, 6))
         poses = np.broadcast_to(T, (600, 4, 4))
-        chain, task = six_joints(scaled), PoseTask(1.0)
+        chain, task = six_joints(scaled, (True,) * 6), PoseTask(1.0)
         q, error, _ = newton(chain, task, range(6), starts, poses, 40, POLICY)
-        candidates = distinct_angles(q[error < POLICY.arrived], POLICY.coincident)
+        candidates = distinct_rows(q[error < POLICY.arrived], (True,) * 6, POLICY.coincident)
         assert len(candidates), "the search found nothing to compare"
         for candidate in candidates:
             assert apart(found, candidate).min() < 1e-5
@@ -159,7 +159,7 @@ def test_an_arm_that_is_singular_everywhere_has_no_usable_plan() -> None:
 
 
 def test_wrong_shapes() -> None:
-    with pytest.raises(ValueError, match="six revolute joints"):
+    with pytest.raises(ValueError, match="six joints"):
         choose_plan(np.zeros((6, 4, 4)))
 
 

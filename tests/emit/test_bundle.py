@@ -70,8 +70,15 @@ def test_the_same_text_each_time() -> None:
     assert bundle(SHELL) == bundle(SHELL)
 
 
-def test_two_definitions_of_one_name() -> None:
-    with pytest.raises(ValueError, match="two definitions would get: _turns"):
+def test_a_private_name_that_is_taken_gets_its_module_in_front(tmp_path: Path) -> None:
+    text = bundle(SHELL + "\n\ndef _Array() -> None:\n    return None\n")
+    assert "_array_types_Array = NDArray[np.float64]" in text and "def _Array() -> None" in text
+    turns = import_text(text, tmp_path)
+    assert np.allclose(turns.half_turn(), np.diag([-1.0, -1.0, 1.0, 1.0]))
+
+
+def test_a_shell_that_defines_what_it_imports() -> None:
+    with pytest.raises(ValueError, match="imported and defined: _turns"):
         bundle(SHELL + "\n\ndef _turns() -> None:\n    return None\n")
 
 

@@ -17,7 +17,8 @@ from ikgen.generation.held_joints import held_choices
 from ikgen.generation.progress import silent
 from ikgen.generation.read import read
 from ikgen.generation.request import Outputs, Request
-from ikgen.tasks import find_task, freedoms_moved
+from ikgen.tasks import find_task
+from ikgen.tasks.fitting import freedoms_moved
 
 ROOT = Path(__file__).resolve().parents[2]
 FR3 = ROOT / "urdf_fixtures/franka_fr3.urdf"

@@ -61,6 +61,7 @@ def test_earlier_files_come_back_when_a_move_fails(
 
 
 def test_what_killed_runs_left_is_removed(tmp_path: Path) -> None:
+    running = ScratchFolder(".ikgen-", tmp_path)
     for name, age in (("killed", 2 * HOUR), ("begun", 0.1 * HOUR), ("also-killed", 0.0)):
         folder = tmp_path / f".ikgen-{name}"
         folder.mkdir()
@@ -68,7 +69,6 @@ def test_what_killed_runs_left_is_removed(tmp_path: Path) -> None:
         if name == "also-killed":
             (folder / ".lock").write_text("")  # which no process has locked
         os.utime(folder, (time.time() - age,) * 2)
-    running = ScratchFolder(".ikgen-", tmp_path, sweep=False)
     publish(tmp_path, {"a.py": "one\n"})
     left = {p.name for p in tmp_path.iterdir()}
     assert left == {".ikgen-begun", running.path.name, "a.py"}

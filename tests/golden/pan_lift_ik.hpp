@@ -67,12 +67,14 @@ enum class Status {
   Invalid,      // not a pose: NaN, or not a rotation
 };
 
-// The solutions of one pose. singular: the row is one of a continuum.
+// The solutions of one pose. singular: the row is one of a continuum; off, with Options::project: m and rad by
+// which the row's pose misses the one asked for.
 struct Solutions {
   Status status = Status::Unreachable;
   int count = 0;
   std::array<Joints, kMaxSolutions> q;
   std::array<bool, kMaxSolutions> singular;
+  std::array<std::array<double, 2>, kMaxSolutions> off;
 
   const Joints* begin() const noexcept { return q.data(); }
   const Joints* end() const noexcept { return q.data() + count; }
@@ -83,6 +85,7 @@ struct Options {
   bool limits = true;            // drop rows that no whole turn brings inside the limits
   const Joints* seed = nullptr;  // orders the rows by distance, chooses whole turns and free values
   std::array<double, kFree> free = {};
+  bool project = false;  // of a pose without rows, those of the nearest pose that the arm can take
 };
 
 Eigen::Isometry3d forward(const Joints& q) noexcept;
@@ -127,6 +130,12 @@ template <class V> [[gnu::always_inline]] inline auto above(V x, V y) noexcept {
 template <class F, class V> [[gnu::always_inline]] inline V chosen(F flags, V x, V y) noexcept { return flags ? x : y; }
 [[gnu::always_inline]] inline bool inverted(bool flags) noexcept { return !flags; }
 template <class F> [[gnu::always_inline]] inline F inverted(F flags) noexcept { return ~flags; }
+[[gnu::always_inline]] inline bool none(bool flags) noexcept { return !flags; }
+template <class F> [[gnu::always_inline]] inline bool none(F flags) noexcept {
+  std::int64_t any = 0;
+  for (std::size_t i = 0; i < sizeof(F) / sizeof(any); ++i) any |= flags[i];
+  return any == 0;
+}
 #if defined(__SSE2__)
 using Vector2 = Machine<2>::Vector;
 using Flags2 = Machine<2>::Flags;
@@ -264,6 +273,13 @@ IKGEN_LANES_OPERATION(Mask, operator|, static_cast<decltype(x)>(x | y))
 #undef IKGEN_LANES_OPERATION
 template <int N, bool H> [[gnu::always_inline]] inline Mask<N> operator!(const MaskOf<N, H>& a) noexcept {
   return each<Mask<N>>([](auto x) { return inverted(x); }, a);
+}
+template <int N, bool H> [[gnu::always_inline]] inline bool all(const MaskOf<N, H>& a) noexcept {
+  if constexpr (H) {
+    return all(a.lo) && all(a.hi);
+  } else {
+    return none(inverted(a.v));
+  }
 }
 template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> operator-(const LanesOf<N, H>& a) noexcept {
   return each<Lanes<N>>([](auto x) { return -x; }, a);
@@ -513,7 +529,11 @@ template <class Arm> struct PoseError {
   PoseError(const double* q, const Eigen::Isometry3d& pose) noexcept {
     double J[6][Arm::kDof];
     const Frame T = MotionChain<Arm>::forward(q, J);
-    Arm::Task::compare(pose.matrix().data(), T, J, error, slope);
+    double t[3][4];
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 4; ++c) t[r][c] = pose.matrix().data()[4 * c + r];
+    Arm::Task::error(t, T, error);
+    Arm::Task::slope(T, J, slope);
     for (const int j : Arm::kFreeJoints)
       for (auto& row : slope) row[j] = 0.0;
   }
@@ -764,8 +784,15 @@ template <class Arm> struct LaneSolve {
 
   template <int P> static void solve(const Eigen::Isometry3d* poses, const Options& options, Solutions* out) noexcept {
     const bool bounded = options.limits && !place_later(options);
+    const Pose<P> pose = gather<P>(poses);
+    const Range range = bounded ? kLimits : kAnywhere;
     Rows<P> rows;
-    Arm::branches(gather<P>(poses), typename Arm::Seed(), options.free, bounded ? kLimits : kAnywhere, rows);
+    if constexpr (Arm::kNewton) {
+      Arm::branches(pose, typename Arm::Seed(), options.free, kAnywhere, rows);
+      Arm::refine(pose, range, rows);
+    } else {
+      Arm::branches(pose, typename Arm::Seed(), options.free, range, rows);
+    }
     for (int p = 0; p < P; ++p)
       if (!collect(rows, p, options, out[p])) fall_back(poses[p], options, out[p]);
   }
@@ -781,6 +808,16 @@ template <class Arm> struct LaneSolve {
 
   static bool place_later(const Options& options) noexcept { return Arm::kFarLimits || options.seed != nullptr; }
 
+  static void leave_distinct(Solutions& out) noexcept {
+    const int count = out.count;
+    out.count = 0;
+    for (int k = 0; k < count; ++k) {
+      double q[Arm::kDof];
+      std::copy_n(Row::row(out, k), Arm::kDof, q);
+      Row::add(out, q, false);
+    }
+  }
+
   template <int P> static bool collect(const Rows<P>& rows, int p, const Options& options, Solutions& out) noexcept {
     int count = 0, seen = 0;
     for (const int row : Arm::kLaneOfRow) {
@@ -794,13 +831,9 @@ template <class Arm> struct LaneSolve {
     }
     if ((seen & (kRough | kHit)) != 0) return false;
     out.count = count;
-    if ((seen & kMeeting) != 0) {
-      out.count = 0;
-      for (int k = 0; k < count; ++k) {
-        double q[Arm::kDof];
-        std::copy_n(Row::row(out, k), Arm::kDof, q);
-        Row::add(out, q, false);
-      }
+    if (Arm::kNewton || (seen & kMeeting) != 0) {
+      leave_distinct(out);
+      if (Arm::kNewton && out.count < count) return false;  // another may lie there
     }
     if (place_later(options)) Row::place_all(options, out);
     if (options.seed) Row::sort_by_distance(out, options.seed->data());
@@ -813,15 +846,30 @@ template <class Arm> struct LaneSolve {
 template <class Arm> struct PoseEntries {
   static constexpr int kCount = sizeof(Arm::kRead) / sizeof(Arm::kRead[0]);
 
-  static void compare(const double* t, const Frame& T, const double (&J)[6][Arm::kDof], double (&error)[kCount],
-                      double (&slope)[kCount][Arm::kDof]) noexcept {
+  template <class X, class Tip>
+  static void error(const X (&t)[3][4], const Tip& T, X (&error)[kCount]) noexcept {
+    for (int i = 0; i < kCount; ++i) {
+      const auto [r, c] = Arm::kRead[i];
+      if (c == 3) {
+        error[i] = (t[r][3] - T.p[r]) / Arm::kSize;
+      } else {
+        error[i] = t[r][c] - T.R[r][c];
+      }
+    }
+  }
+
+  template <class X, class Tip>
+  static void slope(const Tip& T, const X (&J)[6][Arm::kDof], X (&slope)[kCount][Arm::kDof]) noexcept {
     for (int i = 0; i < kCount; ++i) {
       const auto [r, c] = Arm::kRead[i];
       const int u = (r + 1) % 3, v = (r + 2) % 3;
-      const bool length = c == 3;
-      error[i] = length ? (t[12 + r] - T.p[r]) / Arm::kSize : t[4 * c + r] - T.R[r][c];
-      for (int j = 0; j < Arm::kDof; ++j)
-        slope[i][j] = length ? J[r][j] / Arm::kSize : J[3 + u][j] * T.R[v][c] - J[3 + v][j] * T.R[u][c];
+      for (int j = 0; j < Arm::kDof; ++j) {
+        if (c == 3) {
+          slope[i][j] = J[r][j] / Arm::kSize;
+        } else {
+          slope[i][j] = J[3 + u][j] * T.R[v][c] - J[3 + v][j] * T.R[u][c];
+        }
+      }
     }
   }
 };
@@ -880,20 +928,28 @@ template <class Arm> struct PoseReading {
   using Policy = typename Arm::Policy;
 
   [[gnu::always_inline]] static bool exact(const Eigen::Isometry3d& pose) noexcept {
-    return good(pose.matrix().data(), Policy::kOrthonormal * Policy::kOrthonormal);
+    return good(pose.matrix().data(), Policy::kOrthonormal * Policy::kOrthonormal, 1.0);
   }
 
   static bool clean(Eigen::Isometry3d& pose) noexcept {
     double* t = pose.matrix().data();
-    if (!good(t, Columns::most_defect(Policy::kPoseTolerance))) return Columns::tilted(t) && good(t, 1.0);
-    if (!exact(pose)) Columns::clean(t);
+    constexpr double most = 1.0 + Policy::kPoseTolerance;
+    if (!good(t, Columns::most_defect(Policy::kPoseTolerance), most)) return Columns::tilted(t) && good(t, 1.0, most);
+    if (exact(pose)) return true;
+    Columns::clean(t);
+    for (const auto [row, column] : Arm::kRead)
+      if (single(column)) t[4 * column + row] = std::min(std::max(t[4 * column + row], -1.0), 1.0);
     return true;
   }
 
  private:
-  [[gnu::always_inline]] static bool good(const double* t, double most) noexcept {
+  static constexpr bool single(int column) noexcept { return column < 3 && !Columns::has(column); }
+
+  [[gnu::always_inline]] static bool good(const double* t, double most, double largest) noexcept {
     double defect = Columns::defect(t), others = 0.0;
     for (const auto [row, column] : Arm::kRead) others += Columns::has(column) ? 0.0 : t[4 * column + row];
+    for (const auto [row, column] : Arm::kRead)
+      if (single(column) && !(std::abs(t[4 * column + row]) <= largest)) return false;
     defect += 0.0 * others;
     if (Arm::kWholePose && !(t[3] == 0.0 && t[7] == 0.0 && t[11] == 0.0 && t[15] == 1.0)) return false;
     return defect <= most && Columns::proper(t);
@@ -949,6 +1005,186 @@ template <class Arm, template <class> class Way> struct PoseSolver {
   }
 };
 
+// --- projection ----------------------------------------------------------------------------------
+template <class Arm> struct PoseChords {
+  static constexpr int kCount = sizeof(Arm::kRead) / sizeof(Arm::kRead[0]);
+  double error[kCount], slope[kCount][Arm::kDof], cost = 0.0;
+
+  PoseChords(const double* q, const double* t) noexcept {
+    double J[6][Arm::kDof], f[16];
+    by_columns(MotionChain<Arm>::forward(q, J), f);
+    for (int i = 0; i < kCount; ++i) {
+      const auto [r, c] = Arm::kRead[i];
+      const int u = (r + 1) % 3, v = (r + 2) % 3;
+      const double weight = c == 3 ? 1.0 / Arm::kSize : turn();
+      error[i] = weight * (t[4 * c + r] - f[4 * c + r]);
+      cost += error[i] * error[i];
+      for (int j = 0; j < Arm::kDof; ++j) {
+        const double turned = J[3 + u][j] * f[4 * c + v] - J[3 + v][j] * f[4 * c + u];
+        slope[i][j] = Arm::kHeld[j] ? 0.0 : weight * (c == 3 ? J[r][j] : turned);
+      }
+    }
+  }
+
+  static void by_columns(const Frame& T, double* f) noexcept {
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) f[4 * c + r] = T.R[r][c];
+      f[12 + r] = T.p[r];
+      f[4 * r + 3] = 0.0;
+    }
+    f[15] = 1.0;
+  }
+
+  static double turn() noexcept {
+    int turned = 0;
+    for (const auto& entry : Arm::kRead) turned += entry[1] < 3 ? 1 : 0;
+    return turned == 9 ? std::sqrt(0.5) : 1.0;
+  }
+
+  static void off_by(const double* q, const double* t, double* off) noexcept {
+    const PoseChords at(q, t);
+    double f[16], length = 0.0, chord = 0.0, angles = 0.0;
+    by_columns(MotionChain<Arm>::forward(q), f);
+    for (int i = 0; i < kCount; ++i) {
+      const auto [r, c] = Arm::kRead[i];
+      (c == 3 ? length : chord) += at.error[i] * at.error[i];
+      if (c == 3 || Arm::Columns::has(c)) continue;
+      const double gap = std::asin(clipped(f[4 * c + r], -1.0, 1.0)) - std::asin(clipped(t[4 * c + r], -1.0, 1.0));
+      angles += gap * gap;
+    }
+    off[0] = std::sqrt(length) * Arm::kSize;
+    off[1] = angles > 0.0 ? std::sqrt(angles) : 2.0 * std::asin(std::min(0.5 * std::sqrt(chord), 1.0));
+  }
+
+  static double clipped(double x, double low, double high) noexcept { return std::min(std::max(x, low), high); }
+};
+
+template <class Arm, template <class> class Way> struct Projection {
+  using Options = typename Arm::Options;
+  using Solutions = typename Arm::Solutions;
+  using Chords = PoseChords<Arm>;
+  static constexpr int kStarts = 128, kFollowed = 16, kSteps = 80;
+  static constexpr double kLeast = 1e-10, kFirst = 1e-3, kMost = 1e10;  // damping of a step
+  static constexpr double kLongest = 0.5;                              // rad or m: step of a joint
+
+  [[gnu::cold, gnu::noinline]] static void apply(const Eigen::Isometry3d& pose, const Options& given,
+                                                 Solutions& out) noexcept {
+    if (out.status == Arm::Status::Invalid) return;
+    Eigen::Isometry3d target = pose;
+    PoseReading<Arm>::clean(target);
+    const double* t = target.matrix().data();
+    if (out.count == 0) solve_nearest(t, given, out);
+    for (int k = 0; k < out.count; ++k) Chords::off_by(out.q.data()[k].data(), t, out.off.data()[k].data());
+  }
+
+ private:
+  static void solve_nearest(const double* t, Options options, Solutions& out) noexcept {
+    for (int j = 0; j < Arm::kDof && options.seed; ++j)
+      if (!(std::abs(options.seed->data()[j]) < kInfinity)) options.seed = nullptr;
+    double q[Arm::kDof];
+    nearest(t, options, q);
+    Eigen::Isometry3d pose;
+    Chords::by_columns(MotionChain<Arm>::forward(q), pose.matrix().data());
+    Way<Arm>::template solve<1>(&pose, options, &out);
+    if (SolutionRows<Arm>::place(q, options)) SolutionRows<Arm>::add(out, q, false);
+    if (out.count > 0) out.status = Arm::Status::Ok;
+  }
+
+  static void bounds(int j, bool limits, double* low, double* high) noexcept {
+    *low = limits ? Arm::kLower.data()[j] : -kInfinity;
+    *high = limits ? Arm::kUpper.data()[j] : kInfinity;
+  }
+
+  static void start(int i, double root, const Options& options, double* q) noexcept {
+    double step = 1.0;
+    for (int j = 0; j < Arm::kDof; ++j) {
+      step /= root;
+      double low, high, whole;
+      bounds(j, options.limits, &low, &high);
+      const double half = Arm::kRevolute[j] ? kPi : Arm::kSize;
+      const double centre = Chords::clipped(0.0, low + half, std::max(high - half, low + half));
+      low = std::max(low, centre - half);
+      high = std::min(high, centre + half);
+      q[j] = low + std::modf(0.5 + (i + 1) * step, &whole) * (high - low);
+    }
+    hold(options, q);
+  }
+
+  static void hold(const Options& options, double* q) noexcept {
+    for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) q[Arm::kFreeJoints[k]] = options.free[k];
+  }
+
+  static void nearest(const double* t, const Options& options, double* best) noexcept {
+    double rows[kFollowed][Arm::kDof], costs[kFollowed], q[Arm::kDof], root = 2.0;
+    for (int k = 0; k < 40; ++k) root = std::pow(1.0 + root, 1.0 / (Arm::kDof + 1));
+    int kept = 0;
+    for (int i = -1; i < kStarts; ++i) {
+      if (i >= 0) start(i, root, options, q);
+      for (int j = 0; i < 0 && j < Arm::kDof; ++j) {
+        double low, high;
+        bounds(j, options.limits, &low, &high);
+        q[j] = Chords::clipped(options.seed ? options.seed->data()[j] : 0.0, low, high);
+      }
+      hold(options, q);
+      const double cost = Chords(q, t).cost;
+      int at = std::min(kept, kFollowed - 1);
+      if (kept == kFollowed && !(cost < costs[at])) continue;
+      for (; at > 0 && costs[at - 1] > cost; --at) {
+        costs[at] = costs[at - 1];
+        std::copy_n(rows[at - 1], Arm::kDof, rows[at]);
+      }
+      costs[at] = cost;
+      std::copy_n(q, Arm::kDof, rows[at]);
+      kept = std::min(kept + 1, kFollowed);
+    }
+    double least = kInfinity;
+    for (int k = 0; k < kept; ++k) {
+      const double cost = descend(t, options.limits, rows[k]);
+      if (!(cost < least)) continue;
+      least = cost;
+      std::copy_n(rows[k], Arm::kDof, best);
+    }
+  }
+
+  static double descend(const double* t, bool limits, double* q) noexcept {
+    double damping = kFirst;
+    Chords at(q, t);
+    for (int i = 0; i < kSteps && damping < kMost; ++i) {
+      double trial[Arm::kDof];
+      std::copy_n(q, Arm::kDof, trial);
+      step(at, limits, damping, trial);
+      const Chords there(trial, t);
+      const bool better = there.cost < at.cost;
+      damping = Chords::clipped(damping * (better ? 0.2 : 8.0), kLeast, kMost);
+      if (!better) continue;
+      at = there;
+      std::copy_n(trial, Arm::kDof, q);
+    }
+    return at.cost;
+  }
+
+  static void step(const Chords& at, bool limits, double damping, double* q) noexcept {
+    double A[Arm::kDof][Arm::kDof], x[Arm::kDof], low[Arm::kDof], high[Arm::kDof];
+    bool stuck[Arm::kDof];
+    for (int j = 0; j < Arm::kDof; ++j) {
+      bounds(j, limits, low + j, high + j);
+      x[j] = 0.0;
+      for (int e = 0; e < Chords::kCount; ++e) x[j] += at.slope[e][j] * at.error[e];
+      stuck[j] = Arm::kHeld[j] || (q[j] <= low[j] && x[j] < 0.0) || (q[j] >= high[j] && x[j] > 0.0);
+      if (stuck[j]) x[j] = 0.0;
+    }
+    for (int i = 0; i < Arm::kDof; ++i)
+      for (int j = 0; j <= i; ++j) {
+        A[i][j] = i == j ? damping : 0.0;
+        for (int e = 0; e < Chords::kCount && !stuck[i] && !stuck[j]; ++e) A[i][j] += at.slope[e][i] * at.slope[e][j];
+      }
+    factor(A);
+    substitute(A, x);
+    for (int j = 0; j < Arm::kDof; ++j)
+      if (!stuck[j]) q[j] = Chords::clipped(q[j] + Chords::clipped(x[j], -kLongest, kLongest), low[j], high[j]);
+  }
+};
+
 // --- this arm -------------------------------------------------------------------------------------
 
 struct Policy {
@@ -996,6 +1232,7 @@ struct Arm {
   };
 
   static constexpr bool kFarLimits = false;
+  static constexpr bool kNewton = false;
   static constexpr bool kRefined = false;
   static constexpr bool kSolvesBeside = false;
   // Lane of each row, depth first.
@@ -1081,6 +1318,7 @@ inline Eigen::Matrix<double, 6, kDof> jacobian(const Joints& q) noexcept {
 inline Solutions solve(const Eigen::Isometry3d& pose, const Options& options) noexcept {
   Solutions out;
   detail::PoseSolver<detail::Arm, detail::LaneSolve>::solve(pose, options, out);
+  if (options.project) detail::Projection<detail::Arm, detail::LaneSolve>::apply(pose, options, out);
   return out;
 }
 
@@ -1088,6 +1326,8 @@ inline Solutions solve(const Eigen::Isometry3d& pose, const Options& options) no
 inline void solve_batch(const Eigen::Isometry3d* poses, std::ptrdiff_t count, Solutions* solutions,
                         const Options& options) noexcept {
   detail::PoseSolver<detail::Arm, detail::LaneSolve>::solve(poses, count, options, solutions);
+  for (std::ptrdiff_t i = 0; i < count && options.project; ++i)
+    detail::Projection<detail::Arm, detail::LaneSolve>::apply(poses[i], options, solutions[i]);
 }
 
 }  // namespace pan_lift_ik

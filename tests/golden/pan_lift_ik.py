@@ -11,10 +11,11 @@ Needs NumPy and the standard library only. Angles in rad, lengths in m.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from enum import Enum
-from math import atan2, ceil, floor, inf, isfinite, pi, sqrt
-from typing import Protocol, TypeVar
+from functools import partial
+from math import asin, atan2, ceil, floor, inf, isfinite, pi, sqrt
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,10 +32,13 @@ __all__ = [
     "TASK",
     "TIP_LINK",
     "UPPER",
+    "Path",
     "Solutions",
     "Status",
+    "follow",
     "forward",
     "jacobian",
+    "search",
     "solve",
     "solve_batch",
 ]
@@ -88,36 +92,70 @@ def jacobian(q: ArrayLike) -> Array:
 
 
 def solve(
-    pose: ArrayLike,
+    pose: Any,
     *,
     free: Sequence[float] | Mapping[str, float] | None = None,
     seed: ArrayLike | None = None,
     limits: bool = True,
+    project: bool = False,
+    orthonormalize: bool = False,
 ) -> Solutions:
-    """All joint values (rad, m) that bring TIP_LINK to `pose` (4, 4) in BASE_LINK.
+    """All joint values (rad, m) that bring TIP_LINK to `pose` in BASE_LINK: a matrix (4, 4) or (3, 4), a
+    pair (rotation, position) or (position, quaternion x y z w), or a transform that NumPy packages have.
 
     free: values of FREE_JOINTS; seed: (DOF,) values that order the solutions by distance, choose whole
-    turns, and are taken where the pose leaves a joint free; limits: drop rows outside the limits.
-    A rotation that is right to 1e-06 stands for the nearest one.
+    turns, and are taken where the pose leaves a joint free; limits: drop rows outside the limits; project: of a pose
+    without rows, those of the nearest pose that the arm can take (`Solutions.off` says by how much).
+    A rotation that is right to 1e-06 stands for the nearest one;
+    orthonormalize: so does one that is right to 0.001.
     Raises ValueError for a wrong shape, or a seed or free value that is not finite; an unreachable pose is a status.
     """
-    return _solve_pose(_ARM, pose, free, seed, limits)
+    return _solve_pose(_ARM, pose, free, seed, limits, project, orthonormalize)
 
 
 def solve_batch(
-    poses: ArrayLike,
+    poses: Any,
     *,
     free: ArrayLike | Mapping[str, float] | None = None,
     seed: ArrayLike | None = None,
     limits: bool = True,
+    orthonormalize: bool = False,
 ) -> tuple[Array, NDArray[np.int64], NDArray[np.str_]]:
-    """`solve` for many poses (N, 4, 4) at once, in arrays.
+    """`solve` for many poses at once, in arrays: (N, 4, 4), or arrays or a sequence of what `solve` takes.
 
     free: as for `solve`, or one row a pose (N, len(FREE_JOINTS)); seed: (DOF,) or (N, DOF).
     Values of both must be finite.
     Returns q (N, MAX_SOLUTIONS, DOF) padded with NaN, count (N,), and status (N,): the Status names.
     """
-    return _solve_poses(_ARM, poses, free, seed, limits)
+    return _solve_poses(_ARM, poses, free, seed, limits, orthonormalize)
+
+
+def search(
+    pose: Any,
+    *,
+    seed: ArrayLike | None = None,
+    prefer: str = "near",
+    limits: bool = True,
+) -> Solutions:
+    """The rows of `solve`, best first.
+
+    prefer: "near" to the seed (DOF,), "centre" of the limits (as "near" without a seed), or "dexterous", of the
+    largest smallest singular value of the task's Jacobian. Raises ValueError for bad arguments.
+    """
+    return _search_held(_ARM, pose, seed, prefer, limits)
+
+
+def follow(poses: Any, *, start: ArrayLike, limits: bool = True) -> Path:
+    """Joint values along poses (N, 4, 4) on one branch, from the row of the first that is nearest to `start` (DOF,).
+
+    Whole turns are unwound. Between two poses the tip is
+    taken on a straight line while it turns about one axis. Raises ValueError for bad arguments.
+    """
+
+    def nearest(pose: Array, seed: Array, inside: bool) -> Solutions:
+        return search(pose, seed=seed, limits=inside)
+
+    return _follow_poses(_ARM, nearest, poses, start, limits)
 
 
 def _branches(T: Sequence[Sequence[float]], q0: Row, held: Row) -> tuple[list[_Candidate], bool]:
@@ -263,15 +301,20 @@ def _cross(a: Array, b: Array) -> Array:
     return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)
 
 
-def _tip_and_jacobian(chain: _Chain, q: Array) -> tuple[Array, Array]:
-    """Tip poses (..., 4, 4) and geometric Jacobians (..., 6, dof), linear rows first."""
+def _joint_axes(chain: _Chain, q: Array) -> tuple[Array, Array, Array]:
+    """Directions (..., n, 3) of the axes, points (..., n, 3) on them, and tip poses (..., 4, 4)."""
     steps, count = _steps(chain, q), len(chain.motions)
     T = np.broadcast_to(chain.frames[0], (*q.shape[:-1], 4, 4))
     axes = np.empty((*q.shape[:-1], count, 3, 2))
     for i in range(count):
         axes[..., i, :, :] = T[..., :3, 2:]
         T = T @ steps[..., i, :, :]
-    z, p = axes[..., 0], axes[..., 1]
+    return axes[..., 0], axes[..., 1], T
+
+
+def _tip_and_jacobian(chain: _Chain, q: Array) -> tuple[Array, Array]:
+    """Tip poses (..., 4, 4) and geometric Jacobians (..., 6, dof), linear rows first."""
+    z, p, T = _joint_axes(chain, q)
     rows = np.concatenate([_cross(z, T[..., None, :3, 3] - p), z], axis=-1)
     if chain.slides:
         slide = np.concatenate([z, np.zeros_like(z)], axis=-1)
@@ -304,11 +347,48 @@ class _Policy:
     refinement: tuple[tuple[int, float, float], ...]  # steps; errors between which more follow
 
 
+# Differences of single entries of poses, and their derivatives by the joints.
+
+
+_Entries = tuple[tuple[int, int], ...]  # row and column of each; column 3 is the position
+
+
+def _entry_errors(entries: _Entries, weight: Array, pose: Array, T: Array) -> Array:
+    """What poses (k, 4, 4) are off T (k, 4, 4), times the weights: (k, entries)."""
+    row, column = zip(*entries)
+    return np.asarray((T[:, row, column] - pose[:, row, column]) * weight)
+
+
+def _entry_rows(entries: _Entries, weight: Array, pose: Array, J: Array) -> Array:
+    """The entries' derivatives (k, entries, dof) at poses (k, 4, 4), by their Jacobians (k, 6, dof)."""
+    out = np.empty((len(pose), len(entries), J.shape[2]))
+    for i, (r, c) in enumerate(entries):
+        if c == 3:
+            out[:, i] = J[:, r]
+        else:
+            out[:, i] = _cross(J[:, 3:].transpose(0, 2, 1), pose[:, None, :3, c])[:, :, r]
+    return out * weight[:, None]
+
+
 # What of a pose counts.
 
 
 class _Task(Protocol):
-    """How poses are read and compared."""
+    """How poses are read and compared: `entries` of them, of which the columns `unit` are unit vectors
+    at right angles; positions count over `size` (m); `alone`: "rotation" or "position" where no other
+    part of the pose is read, else ""."""
+
+    @property
+    def entries(self) -> _Entries: ...
+
+    @property
+    def unit(self) -> tuple[int, ...]: ...
+
+    @property
+    def alone(self) -> str: ...
+
+    @property
+    def size(self) -> float: ...
 
     def read(self, T: list[list[float]], policy: _Policy) -> list[list[float]] | None:
         """The pose that nested lists stand for, its rotation the nearest one; None for no pose."""
@@ -338,7 +418,8 @@ class _Arm:
     most. `branches(T, q0, held)`: the closed form's rows for a pose, values of joints that it leaves
     free, values of held joints, and whether it left one free; `branches_batch`: in arrays. `beside`
     (n, 4, 4): motions of the tool to poses that are solved as well. `turning`: which joints are
-    revolute and not held; `moving`: indices of those not held."""
+    revolute and not held; `moving`: indices of those not held. `branch_kind`, `elbow_end`: as in
+    `branch_names`."""
 
     chain: _Chain
     task: _Task
@@ -354,21 +435,28 @@ class _Arm:
     beside: Array
     turning: tuple[bool, ...]
     moving: tuple[int, ...]
+    branch_kind: str
+    elbow_end: int
 
 
 # The arguments `free` and `seed` as joint values.
 
 
-def _held_values(arm: _Arm, free: Sequence[float] | Mapping[str, float] | None) -> Row:
-    """Values of the held joints, base to tip; raises ValueError where they are no such values."""
+def _held_values(
+    arm: _Arm, free: Sequence[float] | Mapping[str, float] | None, near: Row | None
+) -> Row:
+    """Values of the held joints, base to tip: those of the seed `near`, or without one the defaults,
+    where `free` gives none. Raises ValueError where they are no such values."""
+    names, others = arm.free_joints, arm.free_defaults
+    if near is not None:
+        others = tuple(near[j] for j in arm.free)
     if free is None:
-        return arm.free_defaults
-    names = arm.free_joints
+        return others
     if isinstance(free, Mapping):
         unknown = set(free) - set(names)
         if unknown:
             raise ValueError(f"no free joint named {sorted(unknown)}; there is {list(names)}")
-        values = tuple(float(free.get(n, x)) for n, x in zip(names, arm.free_defaults))
+        values = tuple(float(free.get(n, x)) for n, x in zip(names, others))
     else:
         values = tuple(float(x) for x in free)
     if len(values) != len(names):
@@ -378,14 +466,22 @@ def _held_values(arm: _Arm, free: Sequence[float] | Mapping[str, float] | None) 
     return values
 
 
-def _held_rows(arm: _Arm, free: ArrayLike | Mapping[str, float] | None, count: int) -> Array:
-    """`_held_values` for many poses: one row for all of them, or one each; (count, held joints)."""
+def _held_rows(
+    arm: _Arm, free: ArrayLike | Mapping[str, float] | None, near: Array | None, count: int
+) -> Array:
+    """`_held_values` for many poses: one row for all of them, or one each; (count, held joints). `near`:
+    the seeds (count, dof)."""
     shape = (count, len(arm.free_joints))
     if free is None or isinstance(free, Mapping):
-        return np.broadcast_to(_held_values(arm, free), shape)
+        values = np.tile(_held_values(arm, free, None), (count, 1)).reshape(shape)
+        given = () if free is None else free
+        for k, (j, name) in enumerate(zip(arm.free, arm.free_joints)):
+            if near is not None and name not in given:
+                values[:, k] = near[:, j]
+        return values
     if np.ndim(free) < 2:
         one: list[float] = np.asarray(free, dtype=float).tolist()
-        return np.broadcast_to(_held_values(arm, one), shape)
+        return np.broadcast_to(_held_values(arm, one, None), shape)
     held = np.asarray(free, dtype=float)
     if held.shape != shape:
         raise ValueError(f"free has shape {held.shape}, expected {shape}")
@@ -403,6 +499,273 @@ def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...]) -> Array:
     if not np.isfinite(values).all():
         raise ValueError(f"seed {values.tolist()} has values that are not finite")
     return values
+
+
+# Poses as people have them, as homogeneous matrices.
+
+
+_TRANSFORMS = (
+    "homogeneous",
+    "as_matrix",
+    "A",
+)  # pin.SE3; RigidTransform of SciPy; SE3 of spatialmath
+
+
+def _pose_matrices(pose: Any, alone: str) -> Array:
+    """(4, 4), or (N, 4, 4) of many: of matrices (4, 4) or (3, 4), pairs (rotation (3, 3), position) or
+    (position, quaternion x y z w), objects that have one of `_TRANSFORMS`, or a sequence of those."""
+    if isinstance(pose, np.ndarray) and pose.shape[-2:] == (4, 4):
+        return np.asarray(pose, dtype=float)
+    if isinstance(pose, (list, tuple)) and len(pose):
+        if any(hasattr(pose[0], name) for name in _TRANSFORMS):
+            return np.stack([_pose_matrices(one, alone) for one in pose])
+        pair = _of_pair(*map(_numbers, pose)) if len(pose) == 2 else None
+        if pair is not None:
+            return pair
+    for name in _TRANSFORMS:
+        value = getattr(pose, name, None)
+        if value is not None:
+            pose = value() if callable(value) else value
+            break
+    return _completed(_numbers(pose), alone)
+
+
+def _numbers(value: Any) -> Array:
+    try:
+        return np.asarray(value, dtype=float)
+    except TypeError:
+        raise ValueError(f"pose is no array of numbers: {type(value).__name__}") from None
+
+
+def _of_pair(a: Array, b: Array) -> Array | None:
+    """The matrices of a rotation and a position, or of a position and a quaternion."""
+    if a.shape[-2:] == (3, 3) and b.shape == a.shape[:-1]:
+        return _matrices(a, b)
+    if a.shape[-1:] == (3,) and b.shape == (*a.shape[:-1], 4):
+        return _matrices(_rotations(b), a)
+    return None
+
+
+def _matrices(R: Array, p: Array) -> Array:
+    T = np.zeros((*p.shape[:-1], 4, 4))
+    T[..., :3, :3], T[..., :3, 3], T[..., 3, 3] = R, p, 1.0
+    return T
+
+
+def _rotations(quaternion: Array) -> Array:
+    """(..., 3, 3) of x y z w: times its squared norm, so that a norm that is not 1 gives no rotation."""
+    x, y, z, w = np.moveaxis(quaternion, -1, 0)
+    rows = (
+        (w * w + x * x - y * y - z * z, 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
+        (2.0 * (x * y + w * z), w * w - x * x + y * y - z * z, 2.0 * (y * z - w * x)),
+        (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), w * w - x * x - y * y + z * z),
+    )
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def _completed(given: Array, alone: str) -> Array:
+    if given.shape[-2:] == (3, 4):
+        return _matrices(given[..., :3], given[..., 3])
+    if alone == "rotation" and given.shape[-2:] == (3, 3):
+        return _matrices(given, np.zeros(given.shape[:-1]))
+    if alone == "position" and given.shape[-1:] == (3,):
+        return _matrices(np.eye(3), given)
+    return given
+
+
+# The orthonormal vectors nearest to some that are so to a few digits: floats or arrays.
+
+
+_N = TypeVar("_N", float, Array)
+_Vector = tuple[_N, _N, _N]
+_Columns = tuple[_Vector[_N], ...]
+
+
+def _dot(u: _Vector[_N], v: _Vector[_N]) -> _N:
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+
+
+def _columns_defect(columns: _Columns[_N]) -> _N:
+    """Squared Frobenius norm of `V'V - 1`."""
+    total: _N = 0.0 * columns[0][0]
+    for i, u in enumerate(columns):
+        gap = _dot(u, u) - 1.0
+        total = total + gap * gap
+        for v in columns[:i]:
+            gap = _dot(u, v)
+            total = total + 2.0 * gap * gap
+    return total
+
+
+def _most_defect(entries: int, off: float) -> float:
+    """The largest defect of columns with so many entries, each off by `off`."""
+    norm = off * sqrt(entries)
+    return (2.0 * norm + norm * norm) ** 2
+
+
+def _determinant(columns: _Columns[_N]) -> _N:
+    """Of three columns: positive where they are right-handed."""
+    u, v, w = columns
+    x, y, z = u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+    return x * w[0] + y * w[1] + z * w[2]
+
+
+def _nearest_columns(columns: _Columns[_N]) -> _Columns[_N]:
+    """The nearest orthonormal columns, to all digits where entries are off by 1e-5 at most."""
+    for _ in range(2):
+        new: list[_Vector[_N]] = []
+        for v in columns:
+            x, y, z = (1.5 * a for a in v)
+            for u in columns:
+                half = 0.5 * _dot(u, v)
+                x, y, z = x - half * u[0], y - half * u[1], z - half * u[2]
+            new.append((x, y, z))
+        columns = tuple(new)
+    return columns
+
+
+# What is wrong with a pose that is none, and the rotation that one with few digits stands for.
+
+
+_PRINTED = 1e-3  # how far the entries of a rotation that was printed with a few digits may be off
+
+
+def _nearest_pose(task: _Task, T: list[list[float]], policy: _Policy) -> list[list[float]]:
+    """The pose with the nearest rotation; as it is where that is too far."""
+    return task.read(T, replace(policy, pose_tolerance=_PRINTED)) or T
+
+
+def _nearest_poses(task: _Task, T: Array, policy: _Policy) -> Array:
+    """The same of T (N, 4, 4)."""
+    near, good = task.read_batch(T, replace(policy, pose_tolerance=_PRINTED))
+    return np.where(good[:, None, None], near, T)
+
+
+def _pose_fault(task: _Task, T: list[list[float]], policy: _Policy) -> str:
+    """Why a pose is none."""
+    if not all(isfinite(x) for row in T[:3] for x in row):
+        return "the pose has entries that are not finite"
+    if T[3] != [0.0, 0.0, 0.0, 1.0]:
+        return f"the pose's last row is {T[3]}, not [0, 0, 0, 1]"
+    R = [(x, y, z) for x, y, z in zip(*T[:3])]
+    columns = tuple(R[j] for j in task.unit)
+    if len(columns) == 3 and _determinant(columns) < 0.0:
+        return "the pose's rotation is a reflection: its determinant is negative"
+    if not columns:
+        return "the pose has entries that no rotation has"
+    defect = sqrt(_columns_defect(columns))
+    off = (sqrt(1.0 + defect) - 1.0) / sqrt(3.0 * len(columns))
+    text = f"the pose's rotation is off by {off:.1e}, more than {policy.pose_tolerance:.0e}"
+    if task.read(T, replace(policy, pose_tolerance=_PRINTED)) is None:
+        return text
+    return f"{text}: orthonormalize=True takes the nearest one"
+
+
+# The nearest pose that the arm can take, of one that it cannot.
+
+
+_STARTS = 128  # drawn; the best of them are followed
+_FOLLOWED = 16
+_STEPS = 80
+_LEAST, _FIRST, _MOST = 1e-10, 1e-3, 1e10  # damping of a step
+_LONGEST = 0.5  # rad or m: step of a joint
+
+
+def _nearest_row(arm: _Arm, T: Array, start: Row, limits: bool) -> Row:
+    """The joint values whose pose is nearest to T (4, 4), held joints as in `start`."""
+    low, high = _bounds(arm, limits)
+    q = np.vstack([np.clip(start, low, high), _starts(arm, low, high)])
+    q[:, list(arm.free)] = [start[j] for j in arm.free]
+    cost = (_chords(arm.task, _forward(arm.chain, q), T) ** 2).sum(axis=1)
+    q, cost = _descend(arm, T, q[np.argsort(cost, kind="stable")[:_FOLLOWED]], (low, high))
+    best: Row = tuple(q[int(np.argmin(cost))].tolist())
+    return best
+
+
+def _off_by(task: _Task, pose: Array, T: Array) -> Array:
+    """How far poses (k, 4, 4) are from T (4, 4): (k, 2), m and rad."""
+    error = _chords(task, pose, T)
+    length = np.array([c == 3 for _, c in task.entries])
+    off = np.empty((len(pose), 2))
+    off[:, 0] = np.sqrt((error[:, length] ** 2).sum(axis=1)) * task.size
+    if task.unit:
+        chord = np.sqrt((error[:, ~length] ** 2).sum(axis=1))
+        off[:, 1] = 2.0 * np.arcsin(np.minimum(0.5 * chord, 1.0))
+    else:  # single entries are sines of angles to the base's planes
+        gaps = [
+            np.arcsin(pose[:, r, c].clip(-1.0, 1.0)) - asin(T[r, c])
+            for r, c in task.entries
+            if c < 3
+        ]
+        off[:, 1] = np.sqrt(sum(gap**2 for gap in gaps))
+    return off
+
+
+def _weight(task: _Task) -> Array:
+    """Of each entry: a turn by x moves the nine of a rotation by sqrt(8) sin(x / 2)."""
+    turn = sqrt(0.5) if len(task.unit) == 3 else 1.0
+    return np.array([1.0 / task.size if c == 3 else turn for _, c in task.entries])
+
+
+def _chords(task: _Task, pose: Array, T: Array) -> Array:
+    """What poses (k, 4, 4) are off T (4, 4): (k, entries)."""
+    return _entry_errors(task.entries, _weight(task), pose, np.broadcast_to(T, pose.shape))
+
+
+def _bounds(arm: _Arm, limits: bool) -> tuple[Array, Array]:
+    """Where steps are clipped to."""
+    low, high = np.array(arm.lower), np.array(arm.upper)
+    return (low, high) if limits else (np.full(len(low), -inf), np.full(len(low), inf))
+
+
+def _starts(arm: _Arm, low: Array, high: Array) -> Array:
+    """Configurations (n, dof) that fill the limits evenly: Kronecker's sequence by powers of the root of
+    `x^(dof + 1) = x + 1` (Roberts 2018)."""
+    dof = len(low)
+    root = 2.0
+    for _ in range(40):
+        root = (1.0 + root) ** (1.0 / (dof + 1))
+    steps = (1.0 / root) ** np.arange(1, dof + 1)
+    part = (0.5 + np.arange(1, _STARTS + 1)[:, None] * steps) % 1.0
+    half = np.where(arm.chain.revolute, pi, arm.task.size)
+    centre = np.clip(0.0, low + half, np.maximum(high - half, low + half))
+    least, most = np.maximum(low, centre - half), np.minimum(high, centre + half)
+    return np.asarray(least + part * (most - least))
+
+
+def _descend(arm: _Arm, T: Array, q: Array, bounds: tuple[Array, Array]) -> tuple[Array, Array]:
+    """The rows (k, dof) at the ends of the steps, and what is least there (k,)."""
+    moving, damping = list(arm.moving), np.full(len(q), _FIRST)
+    low, high = (bound[moving] for bound in bounds)
+    pose, J = _tip_and_jacobian(arm.chain, q)
+    error = _chords(arm.task, pose, T)
+    cost = (error**2).sum(axis=1)
+    for _ in range(_STEPS):
+        trial = q.copy()
+        slope = _entry_rows(arm.task.entries, _weight(arm.task), pose, J)[:, :, moving]
+        trial[:, moving] = _stepped(q[:, moving], slope, error, damping, (low, high))
+        new = (trial, *_tip_and_jacobian(arm.chain, trial))
+        errors = _chords(arm.task, new[1], T)
+        costs = (errors**2).sum(axis=1)
+        better = costs < cost
+        q[better], error[better], cost[better] = trial[better], errors[better], costs[better]
+        pose, J = (np.where(better[:, None, None], a, b) for a, b in zip(new[1:], (pose, J)))
+        damping = np.clip(damping * np.where(better, 0.2, 8.0), _LEAST, _MOST)
+        if damping.min() == _MOST:
+            break
+    return q, cost
+
+
+def _stepped(
+    q: Array, slope: Array, error: Array, damping: Array, bounds: tuple[Array, Array]
+) -> Array:
+    """The rows (k, n) after one step; joints at a limit that it would pass stay."""
+    push = np.einsum("kmj,km->kj", slope, error)
+    stuck = ((q <= bounds[0]) & (push < 0.0)) | ((q >= bounds[1]) & (push > 0.0))
+    slope = np.where(stuck[:, None], 0.0, slope)
+    normal = np.einsum("kmi,kmj->kij", slope, slope) + damping[:, None, None] * np.eye(q.shape[1])
+    step = np.linalg.solve(normal, np.where(stuck, 0.0, push)[:, :, None])[:, :, 0]
+    return np.asarray(np.clip(q + np.clip(step, -_LONGEST, _LONGEST), *bounds))
 
 
 # Newton's method on the chain: damped least squares (Levenberg 1944, Marquardt 1963).
@@ -459,6 +822,56 @@ def _rank_loss(chain: _Chain, task: _Task, moving: Sequence[int], q: Array) -> A
     """Smallest singular value (k,) of the task's derivatives by the joints `moving` at q (k, dof)."""
     J = task.rows(*_tip_and_jacobian(chain, q))[:, :, list(moving)]
     return np.asarray(np.linalg.svd(J, compute_uv=False)[:, -1])
+
+
+# What distinguishes the rows of a pose: names of their branches, from the geometry of each row alone.
+
+
+def _branch_names(arm: _Arm, q: Array) -> tuple[str, ...]:
+    """A name for each row (k, dof)."""
+    if not len(q):
+        return ()
+    if arm.branch_kind == "names":
+        return _side_names(arm, q)
+    if arm.branch_kind == "number":
+        return tuple(f"branch {number}" for number in _branch_numbers(arm, q))
+    J = _tip_and_jacobian(arm.chain, q)[1][:, :, arm.moving]
+    return tuple(f"det J {'>' if sign > 0.0 else '<'} 0" for sign in np.linalg.det(J))
+
+
+def _inner(a: Array, b: Array) -> Array:
+    return np.asarray((a * b).sum(axis=-1))
+
+
+def _side_names(arm: _Arm, q: Array) -> tuple[str, ...]:
+    """Of six axes, the first at right angles to the second, which is parallel to the third."""
+    z, p, _ = _joint_axes(arm.chain, q)
+    up = z[:, 0] * np.where(z[:, :1, 2] < 0.0, -1.0, 1.0)
+    right = _inner(_cross(up, z[:, 1]), p[:, 5] - p[:, 0]) >= 0.0
+    elbow, end = p[:, 2] - p[:, 1], p[:, arm.elbow_end] - p[:, 1]
+    level = _cross(z[:, 1], up)  # in the plane of the links
+    above = _inner(z[:, 1], _cross(end, elbow)) * _inner(level, end) <= 0.0
+    plain = _inner(_cross(z[:, 3], z[:, 5]), z[:, 4]) >= 0.0
+    return tuple(
+        f"shoulder {'right' if r else 'left'}, elbow {'up' if a else 'down'}, "
+        f"wrist {'not flipped' if f else 'flipped'}"
+        for r, a, f in zip(right.tolist(), above.tolist(), plain.tolist())
+    )
+
+
+def _branch_numbers(arm: _Arm, q: Array) -> list[int]:
+    """For each row the closed form's branch, of those for the row's own pose, that is nearest to it."""
+    poses = _forward(arm.chain, q)
+    with np.errstate(all="ignore"):
+        rows, valid, _, _ = arm.branches_batch(poses, q, q[:, arm.free])
+        gap = rows - q[:, None, :]
+        turned = np.abs((gap + np.pi) % (2.0 * np.pi) - np.pi)
+        gap = np.where(arm.chain.revolute, turned, np.abs(gap))
+        gap[:, :, arm.free] = 0.0
+        distance = np.where(valid, gap.max(axis=2), np.inf)
+    distance[np.isnan(distance)] = np.inf
+    nearest: list[int] = distance.argmin(axis=1).tolist()
+    return nearest
 
 
 # Rows on the whole turns that limits and seed ask for, and without repetitions: for floats and arrays.
@@ -563,16 +976,34 @@ class Status(str, Enum):
     UNREACHABLE = "UNREACHABLE"
     LIMITS = "LIMITS"
     INVALID = "INVALID"
+    SINGULAR = "SINGULAR"  # of a path alone
     __str__ = str.__str__  # NumPy compares by it
 
 
 @dataclass(frozen=True)
 class Solutions:
-    """Solutions of one pose: `q` (k, DOF), `status`, and `singular` (k,): rows of a continuum."""
+    """Solutions of one pose: `q` (k, DOF), `status`, and `singular` (k,): rows of a continuum; `reason`
+    says why a pose is INVALID. As a sequence: its rows. `projected` (k, 2), where it was asked for: m and
+    rad by which rows miss the pose."""
 
     q: Array
     status: Status
     singular: _Flags
+    reason: str = ""
+    names: Callable[[Array], tuple[str, ...]] | None = field(
+        default=None, repr=False, compare=False
+    )
+    projected: Array | None = None
+
+    @property
+    def branch(self) -> tuple[str, ...]:
+        """What distinguishes each row: sides of shoulder, elbow and wrist where the arm has those."""
+        return () if self.names is None else self.names(self.q)
+
+    @property
+    def off(self) -> Array:
+        """How far each row's pose is from the one asked for, (k, 2): m, rad; zeros without `project`."""
+        return np.zeros((len(self.q), 2)) if self.projected is None else self.projected
 
     def __len__(self) -> int:
         return len(self.q)
@@ -580,33 +1011,61 @@ class Solutions:
     def __iter__(self) -> Iterator[Array]:
         return iter(self.q)
 
+    def __getitem__(self, index: Any) -> Array:
+        rows: Array = self.q[index]
+        return rows
+
 
 # All solutions of one pose, the closed form's inner loop on floats.
 
 
 def _solve_pose(
     arm: _Arm,
-    pose: ArrayLike,
+    pose: Any,
     free: Sequence[float] | Mapping[str, float] | None,
     seed: ArrayLike | None,
     limits: bool,
+    project: bool = False,
+    orthonormalize: bool = False,
 ) -> Solutions:
-    """All joint values that bring the tip to `pose` (4, 4); raises ValueError for bad arguments."""
-    matrix, dof = np.asarray(pose, dtype=float), len(arm.lower)
+    """All joint values that bring the tip to `pose`, or with `project` to the nearest pose that the arm
+    can take; raises ValueError for bad arguments."""
+    matrix, dof = _pose_matrices(pose, arm.task.alone), len(arm.lower)
     if matrix.shape != (4, 4):
         raise ValueError(f"pose has shape {matrix.shape}, expected (4, 4)")
     near = None if seed is None else tuple(_seed_rows(arm, seed, (dof,)).tolist())
-    held = _held_values(arm, free)
-    T = arm.task.read(matrix.tolist(), arm.policy)
+    held = _held_values(arm, free, near)
+    lines = matrix.tolist()
+    if orthonormalize:
+        lines = _nearest_pose(arm.task, lines, arm.policy)
+    T = arm.task.read(lines, arm.policy)
     found, real = ([], False) if T is None else _fitting(arm, T, near, held, limits)
+    if project and T is not None and not found:
+        found = _projected(arm, T, near, held, limits)
     if not found:
         status = Status.INVALID if T is None else Status.LIMITS if real else Status.UNREACHABLE
-        return Solutions(np.empty((0, dof)), status, np.empty(0, dtype=bool))
+        reason = _pose_fault(arm.task, lines, arm.policy) if T is None else ""
+        return Solutions(np.empty((0, dof)), status, np.empty(0, dtype=bool), reason)
     if near is not None:
         origin = near
         found.sort(key=lambda item: sum((a - b) * (a - b) for a, b in zip(item[0], origin)))
     q = np.array([row for row, _ in found]) + 0.0
-    return Solutions(q, Status.OK, np.array([flag for _, flag in found], dtype=bool))
+    flags = np.array([flag for _, flag in found], dtype=bool)
+    off = _off_by(arm.task, _forward(arm.chain, q), np.array(T)) if project else None
+    names = partial(_branch_names, arm)
+    return Solutions(q, Status.OK, flags, names=names, projected=off)
+
+
+def _projected(
+    arm: _Arm, T: list[list[float]], near: Row | None, held: Row, limits: bool
+) -> list[_Found]:
+    """Solutions of the nearest pose that the arm can take."""
+    row = _nearest_row(arm, np.array(T), _start(arm, near, held, 0.0), limits)
+    pose: list[list[float]] = _forward(arm.chain, row).tolist()
+    found, _ = _fitting(arm, pose, near, held, limits)
+    if len(found) < arm.most and _is_new(arm, row, found):
+        found += _place_rows(arm, [(row, False)], near, limits)
+    return found
 
 
 def _fitting(
@@ -694,23 +1153,26 @@ def _branch_axis(level: int, depth: int) -> Array:
 
 def _solve_poses(
     arm: _Arm,
-    poses: ArrayLike,
+    poses: Any,
     free: ArrayLike | Mapping[str, float] | None,
     seed: ArrayLike | None,
     limits: bool,
+    orthonormalize: bool = False,
 ) -> _Batch:
     """Rows (N, most, dof) padded with NaN, counts (N,) and names of Status (N,) for poses (N, 4, 4)."""
-    T, dof = np.asarray(poses, dtype=float), len(arm.lower)
+    T, dof = _pose_matrices(poses, arm.task.alone), len(arm.lower)
     if T.ndim != 3 or T.shape[1:] != (4, 4):
         raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
     count = len(T)
-    held = _held_rows(arm, free, count)
     near: Array | None = None
     if seed is not None:
         near = np.broadcast_to(_seed_rows(arm, seed, (dof,), (count, dof)), (count, dof))
+    held = _held_rows(arm, free, near, count)
     q = np.full((count, arm.most, dof), np.nan)
     number = np.zeros(count, dtype=np.int64)
     status = np.full(count, Status.INVALID.value, dtype="<U11")
+    if orthonormalize:
+        T = _nearest_poses(arm.task, T, arm.policy)
     T, good = arm.task.read_batch(T, arm.policy)
     usable, size = np.flatnonzero(good), _CHUNK // (1 + len(arm.beside))
     for start in range(0, len(usable), size):
@@ -764,55 +1226,233 @@ def _rows_batch(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[A
     return q, _distinct(arm, q, valid), singular
 
 
-# The orthonormal vectors nearest to some that are so to a few digits: floats or arrays.
+# Which rows are better than others.
 
 
-_N = TypeVar("_N", float, Array)
-_Vector = tuple[_N, _N, _N]
-_Columns = tuple[_Vector[_N], ...]
+_Preference = tuple[str, Row, Row]  # its name; what rows are wanted near to, and the joints' weights
 
 
-def _dot(u: _Vector[_N], v: _Vector[_N]) -> _N:
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+def _preference_of(arm: _Arm, prefer: str, seed: Row | None) -> _Preference:
+    """ "near": to the seed, "centre": of the limits, as near without a seed, or "dexterous"."""
+    if prefer not in ("near", "centre", "dexterous"):
+        raise ValueError(f"prefer is {prefer!r}, expected 'near', 'centre' or 'dexterous'")
+    if prefer == "near" and seed is not None:
+        return prefer, seed, (1.0,) * len(seed)
+    bounded = [isfinite(b - a) for a, b in zip(arm.lower, arm.upper)]
+    middle = [0.5 * (a + b) if ok else 0.0 for a, b, ok in zip(arm.lower, arm.upper, bounded)]
+    if seed is not None:
+        middle = [m if ok else s for m, s, ok in zip(middle, seed, bounded)]
+    halves = (
+        max(0.5 * (b - a), 1e-6) if ok else inf for a, b, ok in zip(arm.lower, arm.upper, bounded)
+    )
+    return prefer, tuple(middle), tuple(1.0 / half**2 for half in halves)
 
 
-def _columns_defect(columns: _Columns[_N]) -> _N:
-    """Squared Frobenius norm of `V'V - 1`."""
-    total: _N = 0.0 * columns[0][0]
-    for i, u in enumerate(columns):
-        gap = _dot(u, u) - 1.0
-        total = total + gap * gap
-        for v in columns[:i]:
-            gap = _dot(u, v)
-            total = total + 2.0 * gap * gap
-    return total
+def _preference_costs(
+    arm: _Arm, preference: _Preference, q: Array, limits: bool
+) -> tuple[Array, Array, _Flags]:
+    """Rows (n, m, dof) on the turns that limits and preference ask for, their costs (n, m), less is
+    better, and which are inside the limits (n, m)."""
+    name, middle, weights = preference
+    q = q.copy()
+    for j in arm.free:
+        if arm.chain.revolute[j] and not isfinite(arm.upper[j] - arm.lower[j]):
+            q[..., j] += 2.0 * pi * np.round((middle[j] - q[..., j]) / (2.0 * pi))
+    q, inside = _place_rows_batch(arm, q, np.tile(middle, (len(q), 1)), limits)
+    if name != "dexterous":
+        return q, np.asarray((q - np.array(middle)) ** 2 @ np.array(weights)), inside
+    flat = q.reshape(-1, q.shape[-1])
+    pose, J = _tip_and_jacobian(arm.chain, flat)
+    J[:, :3] *= arm.task.size  # rows are over it
+    least = np.linalg.svd(arm.task.rows(pose, J), compute_uv=False)[:, -1]
+    return q, np.asarray(-least.reshape(q.shape[:2])), inside
 
 
-def _most_defect(entries: int, off: float) -> float:
-    """The largest defect of columns with so many entries, each off by `off`."""
-    norm = off * sqrt(entries)
-    return (2.0 * norm + norm * norm) ** 2
+# Search of an arm without held joints: its rows in the order of a preference.
 
 
-def _determinant(columns: _Columns[_N]) -> _N:
-    """Of three columns: positive where they are right-handed."""
-    u, v, w = columns
-    x, y, z = u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
-    return x * w[0] + y * w[1] + z * w[2]
+def _search_held(
+    arm: _Arm, pose: ArrayLike, seed: ArrayLike | None, prefer: str, limits: bool
+) -> Solutions:
+    """All rows, best first. Raises ValueError for bad arguments."""
+    near = None if seed is None else tuple(_seed_rows(arm, seed, (len(arm.lower),)).tolist())
+    preference = _preference_of(arm, prefer, near)
+    found = _solve_pose(arm, pose, None, seed, limits)
+    if not len(found):
+        return found
+    q, cost, _ = _preference_costs(arm, preference, found.q[None], limits)
+    order = np.argsort(cost[0], kind="stable")
+    return Solutions(q[0, order], found.status, found.singular[order], names=found.names)
 
 
-def _nearest_columns(columns: _Columns[_N]) -> _Columns[_N]:
-    """The nearest orthonormal columns, to all digits where entries are off by 1e-5 at most."""
-    for _ in range(2):
-        new: list[_Vector[_N]] = []
-        for v in columns:
-            x, y, z = (1.5 * a for a in v)
-            for u in columns:
-                half = 0.5 * _dot(u, v)
-                x, y, z = x - half * u[0], y - half * u[1], z - half * u[2]
-            new.append((x, y, z))
-        columns = tuple(new)
-    return columns
+# Joint values along a path of poses, on one branch.
+
+
+_DEEPEST = 24  # of the way from one pose to the next
+_SHALLOW = 9  # the same where there are no rows
+_FARTHEST = 0.3  # rad or m that a joint may move at once
+_OFF = 0.2  # of the motion, and
+_LEAST_OFF = 1e-4  # rad or m: how far a row may be from where the Jacobian leads
+_DAMPING = 1e-8  # of directions that are all but lost
+_JUMP = 0.05  # rad or m that a row may be from the last one where halving does not help
+
+
+@dataclass(frozen=True)
+class Path:
+    """Joint values `q` (N, DOF) along N poses, on one branch and without leaps of whole turns; NaN from
+    the first that was not reached. `reached`: how many were; `status`: OK for all of them, else why the
+    next was not, SINGULAR where its rows are a leap away. `singular` (N,): the row is at a singularity,
+    or was reached across one."""
+
+    q: Array
+    reached: int
+    status: Status
+    singular: _Flags
+
+
+def _follow_poses(
+    arm: _Arm,
+    search: Callable[[Array, Array, bool], Solutions],
+    poses: ArrayLike,
+    start: ArrayLike,
+    limits: bool,
+) -> Path:
+    """From the row of the first pose (N, 4, 4) that is nearest to `start` (dof,); `search(pose, start,
+    limits)`: rows nearest to it first. Raises ValueError for bad arguments."""
+    T, dof = _pose_matrices(poses, arm.task.alone), len(arm.lower)
+    if T.ndim != 3 or T.shape[1:] != (4, 4):
+        raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
+    row = _seed_rows(arm, start, (dof,))
+    q, singular = np.full((len(T), dof), np.nan), np.zeros(len(T), dtype=bool)
+    walk = _Walk(arm, limits)
+    for i, pose in enumerate(T):
+        walk.crossed = False
+        if arm.task.read(pose.tolist(), arm.policy) is None:
+            status = Status.INVALID
+        elif i:
+            status = walk.step(T[i - 1], pose, 0)
+        else:
+            status = walk.begin(search(pose, row, limits))
+        if status is not Status.OK:
+            return Path(q, i, status, singular)
+        q[i], singular[i] = walk.q, walk.crossed
+    return Path(q, len(T), Status.OK, singular)
+
+
+class _Walk:
+    """`q`: where the arm is; `crossed`: whether it came across a singularity since that was last unset."""
+
+    def __init__(self, arm: _Arm, limits: bool) -> None:
+        self.arm, self.limits = arm, limits
+        self.q: Array = np.zeros(len(arm.lower))
+        self.crossed = False
+
+    def begin(self, found: Solutions) -> Status:
+        """To the first of some rows."""
+        if len(found):
+            self.q, self.crossed = found.q[0], bool(found.singular[0])
+        return found.status
+
+    def step(self, before: Array, pose: Array, depth: int) -> Status:
+        """From a pose to the next, with halved steps where the rows do not follow the Jacobian."""
+        expected = self._expected(pose)
+        rows, flags, status = self._rows(pose, expected)
+        if len(rows):
+            gap = np.abs(rows - expected).max(axis=1)
+            k = int(gap.argmin())
+            moved = float(np.abs(rows[k] - self.q).max())
+            follows = moved < _FARTHEST and gap[k] < _LEAST_OFF + _OFF * moved
+            if follows or (depth == _DEEPEST and moved < _JUMP):
+                self.crossed = self.crossed or bool(flags[k]) or not follows
+                return self._arrive(rows[k])
+            status = Status.SINGULAR
+        if depth == _DEEPEST or (depth >= _SHALLOW and not len(rows)):
+            return status
+        middle = _between(before, pose)
+        first = self.step(before, middle, depth + 1)
+        return first if first is not Status.OK else self.step(middle, pose, depth + 1)
+
+    def _arrive(self, row: Array) -> Status:
+        """To a row, if it is inside the limits on the turn that it came to."""
+        if self.limits:
+            inside = np.clip(row, self.arm.lower, self.arm.upper)
+            if np.abs(inside - row).max() > self.arm.policy.limit_tolerance:
+                return Status.LIMITS
+            row = inside
+        self.q = row
+        return Status.OK
+
+    def _expected(self, pose: Array) -> Array:
+        """Where the shortest motion by the Jacobian leads from here."""
+        return self.q + self._motion(pose, list(range(len(self.q))))
+
+    def _motion(self, pose: Array, moving: list[int]) -> Array:
+        """The shortest motion (dof,) of some joints that the Jacobian asks for, at most a radian or
+        metre each."""
+        arm = self.arm
+        here, J = _tip_and_jacobian(arm.chain, self.q[None])
+        error, rows = arm.task.error(here, pose[None])[0], arm.task.rows(here, J)[0][:, moving]
+        normal = rows @ rows.T + _DAMPING * np.eye(len(rows))
+        step = np.zeros(len(self.q))
+        step[moving] = np.clip(rows.T @ np.linalg.solve(normal, error), -1.0, 1.0)
+        return step
+
+    def _rows(self, pose: Array, expected: Array) -> tuple[Array, _Flags, Status]:
+        """All rows without limits; with held joints the one that those lead to which no limit stops."""
+        if self.arm.free:
+            return self._unstopped(pose)
+        found = _solve_pose(self.arm, pose, None, self.q, False)
+        return found.q, found.singular, found.status
+
+    def _unstopped(self, pose: Array) -> tuple[Array, _Flags, Status]:
+        """The row next to the expected one that all joints reach together, those that it would take out
+        of their limits stopped there."""
+        arm, stopped = self.arm, dict[int, float]()
+        while True:
+            moving = [j for j in range(len(self.q)) if j not in stopped]
+            at = self.q.copy()
+            for j, value in stopped.items():
+                at[j] = value
+            q, arrived, _ = _refine(
+                arm.chain,
+                arm.task,
+                moving,
+                (at + self._motion(pose, moving))[None],
+                pose[None],
+                arm.policy,
+            )
+            if not arrived[0]:
+                none = np.empty((0, len(at))), np.empty(0, dtype=bool)
+                return *none, Status.LIMITS if stopped else Status.UNREACHABLE
+            low, high = np.array(arm.lower), np.array(arm.upper)
+            excess = np.maximum(low - q[0], q[0] - high)
+            worst = int(excess.argmax())
+            if not self.limits or excess[worst] <= arm.policy.limit_tolerance:
+                loss = _rank_loss(arm.chain, arm.task, range(len(at)), q)
+                return q, loss < arm.policy.rank_loss, Status.OK
+            stopped[worst] = float(low[worst] if q[0, worst] < low[worst] else high[worst])
+
+
+def _between(a: Array, b: Array) -> Array:
+    """The pose halfway (4, 4): the middle of the positions, half of the turn between (its axis by the
+    antisymmetric part, or the largest column of the symmetric one for half turns)."""
+    T = 0.5 * (a + b)
+    R = a[:3, :3].T @ b[:3, :3]
+    w = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
+    sine, cosine = 0.5 * float(np.linalg.norm(w)), 0.5 * (float(np.trace(R)) - 1.0)
+    angle = float(np.arctan2(sine, cosine))
+    if sine > 1e-6:
+        axis = w / (2.0 * sine)
+    elif cosine > 0.0:
+        return np.asarray(np.where(np.arange(4) == 3, T, a))
+    else:
+        S = R + np.eye(3)
+        column = S[:, int(np.argmax(np.diag(S)))]
+        axis = column / np.linalg.norm(column)
+    K = np.cross(np.eye(3), -axis)
+    half = 0.5 * angle
+    T[:3, :3] = a[:3, :3] @ (np.eye(3) + np.sin(half) * K + (1.0 - np.cos(half)) * K @ K)
+    return T
 
 
 # Tasks that read some entries of the pose.
@@ -828,6 +1468,13 @@ class _EntriesTask:
     unit: tuple[int, ...]
     flat: bool
 
+    @property
+    def alone(self) -> str:
+        """Implements `Task`."""
+        if 3 not in self.column:
+            return "rotation"
+        return "position" if set(self.column) == {3} else ""
+
     def read(self, T: list[list[float]], policy: _Policy) -> list[list[float]] | None:
         """Implements `Task`."""
         poses, (good,) = self.read_batch(np.array([T]), policy)
@@ -836,7 +1483,7 @@ class _EntriesTask:
 
     def read_batch(self, T: Array, policy: _Policy) -> tuple[Array, _Flags]:
         """Implements `Task`."""
-        good: _Flags = np.asarray(np.isfinite(T[:, self.row, self.column]).all(axis=1))
+        T, good = self._single_entries(T, policy)
         if not self.unit:
             return T, good
         height = 2 if self.flat else 3
@@ -858,19 +1505,32 @@ class _EntriesTask:
                 T[np.ix_(near, range(height), self.unit)] = R[near, :height]
         return T, good
 
+    def _single_entries(self, T: Array, policy: _Policy) -> tuple[Array, _Flags]:
+        """Poses whose entries of no unit column, which are cosines, lie between -1 and 1; and which are
+        poses."""
+        good: _Flags = np.asarray(np.isfinite(T[:, self.row, self.column]).all(axis=1))
+        for r, c in zip(self.row, self.column):
+            if c == 3 or c in self.unit:
+                continue
+            beyond = np.abs(T[:, r, c]) > 1.0
+            good &= ~beyond | (np.abs(T[:, r, c]) <= 1.0 + policy.pose_tolerance)
+            if (good & beyond).any():
+                T = T.copy()
+                T[:, r, c] = np.clip(T[:, r, c], -1.0, 1.0)
+        return T, good
+
+    @property
+    def entries(self) -> _Entries:
+        """Implements `Task`."""
+        return tuple(zip(self.row, self.column))
+
     def error(self, pose: Array, T: Array) -> Array:
         """The entries' differences."""
-        return (T[:, self.row, self.column] - pose[:, self.row, self.column]) * self._weight()
+        return _entry_errors(self.entries, self._weight(), pose, T)
 
     def rows(self, pose: Array, J: Array) -> Array:
         """The entries' derivatives."""
-        out = np.empty((len(pose), len(self.row), J.shape[2]))
-        for i, (r, c) in enumerate(zip(self.row, self.column)):
-            if c == 3:
-                out[:, i] = J[:, r]
-            else:
-                out[:, i] = _cross(J[:, 3:].transpose(0, 2, 1), pose[:, None, :3, c])[:, :, r]
-        return out * self._weight()[:, None]
+        return _entry_rows(self.entries, self._weight(), pose, J)
 
     def _weight(self) -> Array:
         return np.array([1.0 / self.size if c == 3 else 1.0 for c in self.column])
@@ -913,6 +1573,8 @@ _ARM = _Arm(
     branches=_branches,
     branches_batch=_branches_batch,
     beside=_BESIDE,
+    branch_kind="number",
+    elbow_end=5,
     turning=(True, False, ),
     moving=(0, 1, ),
 )

@@ -36,7 +36,7 @@ def test_unknown_suffix_lists_the_known_ones():
 
 
 def test_importing_the_registry_loads_no_reader():
-    heavy = "{'yourdfpy', 'xacro', 'lxml', 'numpy', 'ikgen.importers.urdf.urdf_tree'}"
+    heavy = "{'xacro', 'lxml', 'numpy', 'ikgen.importers.urdf.urdf_tree'}"
     code = f"import sys, ikgen.importers; print(sorted({heavy} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

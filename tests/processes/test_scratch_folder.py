@@ -36,6 +36,15 @@ def test_what_a_killed_process_left_is_removed(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.skipif(os.name == "nt", reason="needs process numbers")
+def test_one_whose_process_was_killed_before_it_had_a_lock(tmp_path: Path) -> None:
+    ended = subprocess.Popen([sys.executable, "-c", ""])
+    ended.wait()
+    for number in (ended.pid, os.getpid()):
+        (tmp_path / f"x-{number}-abc").mkdir()
+    assert abandoned("x-", tmp_path) == [tmp_path / f"x-{ended.pid}-abc"]
+
+
 def test_links_and_other_names_are_left_alone(tmp_path: Path) -> None:
     real = tmp_path / "real"
     real.mkdir()

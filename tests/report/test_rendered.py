@@ -6,7 +6,9 @@ import json
 import re
 import shutil
 import subprocess
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -27,27 +29,39 @@ STICKS_OUT = 2.0
 MEASURE = """
 <script>
 window.addEventListener("load", () => {
-  const seen = [...document.querySelectorAll("math")].map((m) => m.getBoundingClientRect());
+  const shown = [...document.querySelectorAll("math")].filter((m) => m.checkVisibility());
+  const seen = shown.map((m) => m.getBoundingClientRect());
   const svg = document.querySelector("figure svg");
   const box = svg ? svg.getBoundingClientRect() : { width: 0, height: 0 };
-  const fraction = document.querySelector("mfrac");
+  const fraction = document.querySelector("main > .formulas mfrac");
+  const right = document.documentElement.clientWidth + 1;
+  const scrolled = ".wide *, .matrix *, .formulas *, figure *";
   const wide = [...document.querySelectorAll("body *")].filter(
-    (e) => e.getBoundingClientRect().right > document.documentElement.clientWidth + 1);
+    (e) => !e.matches(scrolled) && e.getBoundingClientRect().right > right);
+  const targets = [...document.querySelectorAll("a[href]")].map((a) => a.getAttribute("href"));
   const result = {
     width: document.documentElement.scrollWidth, inner: document.documentElement.clientWidth,
     maths: seen.length, empty: seen.filter((r) => r.width < 2 || r.height < 2).length,
-    svg: [box.width, box.height], wide: wide.length,
+    svg: [box.width, box.height], wide: wide.map((e) => e.tagName),
     stacked: fraction === null ? null : fraction.firstElementChild.getBoundingClientRect().bottom
       <= fraction.lastElementChild.getBoundingClientRect().top + 4,
     resources: performance.getEntriesByType("resource").length, errors: window.failed,
+    links: targets.length, dangling: targets.filter((t) => !document.getElementById(t.slice(1))),
+    ids: [...document.querySelectorAll("[id]")].length,
+    distinct: new Set([...document.querySelectorAll("[id]")].map((e) => e.id)).size,
   };
-  document.body.setAttribute("data-measured", JSON.stringify(result));
+  parent.postMessage(JSON.stringify(result), "*");
 });
 </script>
+"""
+FRAME = """<!DOCTYPE html><script>
+addEventListener("message", (e) => document.body.setAttribute("data-measured", e.data));
+</script><body><iframe src="report.html" width="{width}" height="800" frameborder="0"></iframe></body>
 """
 CATCH = "<script>window.failed = 0; window.onerror = () => { window.failed += 1; };</script>"
 
 
+@cache
 def report_of(name: str, kind: str) -> str:
     """The text of one file of a robot's report, solved or not."""
     try:
@@ -66,28 +80,48 @@ def chromium() -> str:
     return found
 
 
-@pytest.mark.parametrize("name", IN_BROWSER)
-def test_page_in_a_browser(name: str, tmp_path: Path) -> None:
+def measured(page: str, width: int, folder: Path) -> dict[str, Any]:
+    """What a browser says of a page in a window of the width (px)."""
     browser = chromium()
-    page = report_of(name, ".html")
-    assert "<script" not in page
-    measured = page.replace("<head>", f"<head>{CATCH}").replace("</body>", f"{MEASURE}</body>")
-    file = tmp_path / "report.html"
-    file.write_text(measured, encoding="utf-8")
+    inside = page.replace("<head>", f"<head>{CATCH}").replace("</body>", f"{MEASURE}</body>")
+    (folder / "report.html").write_text(inside, encoding="utf-8")
+    frame = folder / "frame.html"
+    frame.write_text(FRAME.format(width=width), encoding="utf-8")
     command = [
-        browser, "--headless", "--no-sandbox", "--disable-gpu", "--window-size=1200,900",
-        f"--user-data-dir={tmp_path / 'profile'}", "--virtual-time-budget=2000", "--dump-dom",
-        file.as_uri(),
+        browser, "--headless", "--no-sandbox", "--disable-gpu", "--window-size=1400,900",
+        f"--user-data-dir={folder / 'profile'}", "--virtual-time-budget=3000", "--dump-dom",
+        frame.as_uri(),
     ]  # fmt: skip
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     found = re.search(r'data-measured="([^"]*)"', done.stdout)
     assert found is not None, done.stderr[-2000:]
-    seen = json.loads(found.group(1).replace("&quot;", '"'))
+    result: dict[str, Any] = json.loads(found.group(1).replace("&quot;", '"'))
+    return result
+
+
+def check_page(page: str, width: int, folder: Path) -> dict[str, Any]:
+    """What holds for every report: nothing sticks out, nothing is fetched, all links lead somewhere."""
+    assert "<script" not in page and len(page.encode()) < 1.5e6
+    seen = measured(page, width, folder)
     assert seen["errors"] == 0 and seen["resources"] == 0
-    assert seen["maths"] > 50 and seen["empty"] == 0
-    assert seen["stacked"] in (True, None)
+    assert seen["empty"] == 0 and seen["stacked"] in (True, None)
     assert min(seen["svg"]) > 40
-    assert seen["width"] <= seen["inner"] <= 1200 and seen["wide"] == 0
+    assert seen["width"] <= seen["inner"] <= width and seen["wide"] == []
+    assert seen["links"] > 3 and seen["dangling"] == [] and seen["ids"] == seen["distinct"]
+    return seen
+
+
+@pytest.mark.parametrize("width", [1200, 390])
+@pytest.mark.parametrize("name", IN_BROWSER)
+def test_page_in_a_browser(name: str, width: int, tmp_path: Path) -> None:
+    assert check_page(report_of(name, ".html"), width, tmp_path)["maths"] > 50
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SUITE)
+def test_page_of_the_whole_suite_on_a_phone(name: str, tmp_path: Path) -> None:
+    """`python -m pytest -m slow tests/report/test_rendered.py`"""
+    check_page(report_of(name, ".html"), 390, tmp_path)
 
 
 def typeset(text: str, folder: Path) -> str:

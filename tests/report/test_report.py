@@ -106,9 +106,11 @@ def test_olson13_has_the_papers_pose_sets() -> None:
 
 
 def test_every_node_of_the_tree_is_told_in_every_round() -> None:
-    html = text("olson", ".html")
+    html, tex = text("olson", ".html"), text("olson", ".tex")
+    for node in ("→ solve one unknown", "? ways", "∨ leaves", "ranker"):
+        assert f">{node}<" in html
     for node in ("solve one unknown (sequence)", "ways (selector)", "leaves (OR)", "ranker"):
-        assert node in html
+        assert node in tex
     graph = derivation("olson").graph
     assert {t.round for t in graph.ticks} == set(range(1, len(graph.steps) + 1))
     assert {t.path for t in graph.ticks} <= set(graph.outline)
@@ -162,7 +164,7 @@ def test_puma_report_reads_like_the_paper() -> None:
     assert r"\theta_{1s1}=\operatorname{atan2}(-p_{x},\penalty150\,p_{y})" in tex
     assert r"p_{z}=-a_{3}\,s_{23}-d_{4}\,c_{23}-a_{2}\,s_{2}" in tex
     assert r"p_{y}\,c_{1}-p_{x}\,s_{1}=d_{3}" in tex
-    assert "Pose 8" in tex
+    assert "Solution 8" in tex
     assert "Degenerate where" in tex
 
 

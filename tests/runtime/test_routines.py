@@ -5,12 +5,18 @@ from __future__ import annotations
 import pytest
 
 from ikgen.emit.cpp.header_bundle import bundle
-from ikgen.runtime.python.elimination_rows import elimination_branches
+from ikgen.runtime.python.general_6r import candidates
+from ikgen.runtime.python.one_slide import one_slide_candidates
+from ikgen.runtime.python.three_slides import three_slide_candidates
 from ikgen.runtime.python.trig_quartic_roots import trig_quartic_branches
+from ikgen.runtime.python.two_slides import two_slide_candidates
 
 ROUTINES = {
     "trig_quartic": (trig_quartic_branches, "trig_quartic.hpp", "int trig_quartic_branches("),
-    "general_6r": (elimination_branches, "general_6r_arm.hpp", "struct General6r"),
+    "general_6r": (candidates, "general_6r_arm.hpp", "struct General6r"),
+    "one_slide": (one_slide_candidates, "one_slide.hpp", "struct OneSlide"),
+    "two_slides": (two_slide_candidates, "two_slides.hpp", "struct TwoSlides"),
+    "three_slides": (three_slide_candidates, "three_slides.hpp", "struct ThreeSlides"),
 }
 
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ikgen.chains.mimic import Coupling
+from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.rigid import axis_motion, read_only
 from ikgen.model.chain import PRISMATIC, REVOLUTE, ActuatedJoint, Chain, ChainAxis
 from ikgen.model.joint_tree import Joint, JointType, Matrix
@@ -46,14 +47,14 @@ def _axes(
     axes: list[ChainAxis] = []
     T = np.eye(4)  # from the previous axis' joint frame
     for joint in path:
-        T = T @ joint.T_parent_child
+        T = product(T, joint.T_parent_child)
         if not joint.type.moves_on_one_axis:
             continue
         coupling = couplings[joint.name]
         constant = coupling.value(locked)
         if constant is not None:
             revolute = joint.type is not JointType.PRISMATIC
-            T = T @ axis_motion(revolute, joint.axis, constant)
+            T = product(T, axis_motion(revolute, joint.axis, constant))
             continue
         axes.append(
             ChainAxis(

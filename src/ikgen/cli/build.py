@@ -120,12 +120,17 @@ def _print(
         hint = "\n".join(dict.fromkeys(o.hint for o in bad if o.hint))
         _echo({"arms": [_row(o) for o in outcomes]}, code, message, hint)
     for o in outcomes:
+        for text in o.warnings if not quiet else ():
+            click.echo(f"warning: {o.name}: {text}", err=True)
         if o.exit_code:
             if o.trace and verbose:
                 click.echo(o.trace, err=True)
             say(f"{o.name}: {o.message}", o.hint)
         elif not quiet and not as_json:
-            state = f"generated in {o.seconds:.1f} s ({o.reason})" if o.reason else "up to date"
+            many = f", at most {o.solutions} solutions a pose"
+            state = (
+                f"generated in {o.seconds:.1f} s{many} ({o.reason})" if o.reason else "up to date"
+            )
             click.echo(f"{o.name}: {state}")
 
 

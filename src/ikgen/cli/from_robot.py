@@ -138,9 +138,11 @@ def _run(
 
 
 def _warnings(generation: Generation) -> list[str]:
-    """What was odd in the file, and what became of outputs of earlier runs."""
+    """What has to be told of the derivation, and what became of outputs of earlier runs."""
+    from ikgen.generation.announcements import announcements
+
     return [
-        *generation.derivation.reading.source.warnings,
+        *announcements(generation.derivation),
         *(f"removed {path}: an earlier run made it" for path in generation.removed),
         *(
             f"{path} is of an earlier run: remove it, or name its output in --emit too"

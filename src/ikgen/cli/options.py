@@ -9,11 +9,13 @@ from typing import Any, TypeVar
 import click
 
 from ikgen.generation.emitters import EMITTERS
+from ikgen.tasks import AXES
 
 __all__ = [
     "chain_options",
     "console_options",
     "emit_option",
+    "executor_options",
     "reading_options",
     "sampling_options",
     "trust_option",
@@ -41,19 +43,25 @@ _CHAIN_OPTIONS = (
     click.option(
         "--task",
         metavar="TASK",
-        help="pose (default), position-direction, position-yaw, position, rotation, direction.",
+        help="pose (default), position-direction, position-pitch, position-yaw, position, rotation, "
+        "direction.",
+    ),
+    click.option(
+        "--tool-axis",
+        type=click.Choice(AXES),
+        help="The tool's axis whose direction or elevation counts (default: z, or the one that suits).",
     ),
     click.option(
         "--free",
         multiple=True,
         metavar="JOINT[=VALUE]",
-        help="Hold a joint: its value becomes an input, by default VALUE.",
+        help="Hold a joint: its value becomes an input, by default VALUE (rad, m, 45deg, 120mm).",
     ),
     click.option(
         "--lock",
         multiple=True,
         metavar="JOINT=VALUE",
-        help="Fix a joint for good (rad or m).",
+        help="Fix a joint for good (rad, m, 45deg, 120mm).",
     ),
     *_READING_OPTIONS,
     click.option(
@@ -130,6 +138,31 @@ def console_options(function: F) -> F:
             ),
             click.option("-q", "--quiet", is_flag=True, help="Print errors only."),
             click.option("-v", "--verbose", is_flag=True, help="Print every step and check."),
+        ],
+        function,
+    )
+
+
+def executor_options(function: F) -> F:
+    """Who computes."""
+    return _apply(
+        [
+            click.option(
+                "--executor",
+                type=click.Choice(["process", "dask"]),
+                default="process",
+                show_default=True,
+                help="Processes of this machine, or Dask (a local cluster without --scheduler).",
+            ),
+            click.option(
+                "--scheduler", metavar="ADDRESS", help="The Dask scheduler that runs already."
+            ),
+            click.option(
+                "--workers",
+                metavar="N",
+                type=click.IntRange(min=1),
+                help="How many (default: one a core).",
+            ),
         ],
         function,
     )

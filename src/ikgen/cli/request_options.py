@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 
 from ikgen.errors import UsageError
+from ikgen.generation.joint_value import joint_value
 from ikgen.generation.request import Request
 from ikgen.model.module_name import identifier, is_module_name
 
@@ -19,6 +19,7 @@ def make_request(
     base: str | None = None,
     tip: str | None = None,
     task: str | None = None,
+    tool_axis: str | None = None,
     free: Sequence[str] = (),
     lock: Sequence[str] = (),
     args: Sequence[str] = (),
@@ -30,7 +31,7 @@ def make_request(
     from ikgen.tasks import find_task
 
     if task is not None:
-        task = find_task(task).name
+        task = find_task(task, tool_axis).stem if tool_axis else find_task(task).name
     for folder in package_paths:
         if not folder.is_dir():
             raise UsageError(f"--package-path {folder}: no such directory")
@@ -43,6 +44,7 @@ def make_request(
         base=base,
         tip=tip,
         task=task,
+        tool_axis=tool_axis,
         free=held,
         lock=locked,
         args=_arguments(args),
@@ -71,7 +73,10 @@ def parse_locked(texts: Sequence[str]) -> dict[str, float]:
     for text in texts:
         joint, _, value = text.rpartition("=")
         if not joint:
-            raise UsageError(f"--lock {text}: no value", hint="write --lock JOINT=VALUE (rad or m)")
+            raise UsageError(
+                f"--lock {text}: no value",
+                hint="write --lock JOINT=VALUE (rad or m, or 45deg, 120mm)",
+            )
         if joint in found:
             raise UsageError(f"--lock {text}: joint '{joint}' is given twice")
         found[joint] = _number("--lock", text, value)
@@ -91,15 +96,12 @@ def parse_emit(texts: Sequence[str], default: tuple[str, ...] = ("python",)) -> 
 
 def _number(option: str, text: str, value: str) -> float:
     try:
-        number = float(value)
+        return joint_value(value)
     except ValueError:
-        number = math.nan
-    if not math.isfinite(number):
         raise UsageError(
             f"{option} {text}: '{value}' is not a finite number",
-            hint="give the value in rad (revolute) or m (prismatic)",
-        )
-    return number
+            hint="give the value in rad (revolute) or m (prismatic), or with its unit: 45deg, 120mm",
+        ) from None
 
 
 def _arguments(texts: Sequence[str]) -> dict[str, str]:

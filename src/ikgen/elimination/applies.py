@@ -14,13 +14,13 @@ _HELD_VALUES = (0.4, -1.1, 2.2)
 """Values of held joints (rad or m) at which plans are tried."""
 
 
-_MOST_SLIDES = 2
-"""Three leave the rotation to three joints alone, which rules solve."""
+_MOST_SLIDES = 3
+"""With more of them the rest cannot turn the tip to every rotation."""
 
 
 def elimination_plan(dh: DHChain) -> EliminationPlan | None:
-    """The plan for a whole pose; None unless six joints move, at most two of them slides, or where no plan
-    finds all."""
+    """The plan for a whole pose; None unless six joints move, at most three of them slides, or
+    where no plan finds all."""
     moving = [row for row in dh.rows if dh.joints[row.driver].name not in dh.free]
     turning = tuple(row.revolute for row in moving)
     if len(moving) != 6 or len(dh.rows) != dh.dof or turning.count(False) > _MOST_SLIDES:

@@ -6,11 +6,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.rigid import z_motion
 from ikgen.model.dh import DHChain
 from ikgen.model.joint_tree import Matrix
 
 __all__ = ["forward", "held_frames", "hold_joint", "jacobian", "typical_length"]
+
+_LEAST_WITH_SLIDES = 0.1  # m
 
 
 def held_frames(dh: DHChain, value: float = 0.0) -> Matrix:
@@ -31,35 +34,39 @@ def held_frames(dh: DHChain, value: float = 0.0) -> Matrix:
 def hold_joint(frames: Matrix, joint: int, value: float, *, revolute: bool = True) -> Matrix:
     """The chain (n, 4, 4) that is left of (n + 1, 4, 4) with joint `joint` (0-based) held at
     `value` rad or m."""
-    merged = frames[joint] @ z_motion(revolute, value) @ frames[joint + 1]
+    merged = product(frames[joint], z_motion(revolute, value), frames[joint + 1])
     return np.concatenate([frames[:joint], merged[None], frames[joint + 2 :]])
 
 
-def typical_length(frames: Matrix) -> float:
-    """Sum of the distances between the axes' frames (m): the scale of the arm. 1 where there are none, as
-    slides alone may give an arm its size."""
-    size = float(np.linalg.norm(frames[1:-1, :3, 3], axis=1).sum())
-    return size if size > 1e-9 else 1.0
+def typical_length(frames: Matrix, turning: Sequence[bool] | None = None) -> float:
+    """Sum of the distances between the axes' frames (m): the scale of the arm. It is at least 0.1 m where a
+    joint slides, as slides alone may give an arm its size."""
+    least = 1e-9 if turning is None or all(turning) else _LEAST_WITH_SLIDES
+    return max(float(np.linalg.norm(frames[1:-1, :3, 3], axis=1).sum()), least)
 
 
-def forward(frames: Matrix, turning: Sequence[bool], values: Matrix) -> Matrix:
-    """Pose (4, 4) at the joint values (n,) in rad or m, of joints that are `turning` or slide."""
+def forward(frames: Matrix, values: Matrix, turning: Sequence[bool] | None = None) -> Matrix:
+    """Pose (4, 4) at the joint values (n,), rad or m; `turning` (None: all) tells joints that slide."""
     T = frames[0]
-    for frame, turns, value in zip(frames[1:], turning, values, strict=True):
-        T = T @ z_motion(turns, value) @ frame
+    for frame, turns, value in zip(frames[1:], _kinds(values, turning), values, strict=True):
+        T = product(T, z_motion(turns, value), frame)
     return np.asarray(T)
 
 
-def jacobian(frames: Matrix, turning: Sequence[bool], values: Matrix) -> Matrix:
+def jacobian(frames: Matrix, values: Matrix, turning: Sequence[bool] | None = None) -> Matrix:
     """Geometric Jacobian (6, n) at the values (n,): linear rows over the typical length, then
     angular; of slides by their value over that length."""
     axes, T = [], frames[0]
-    for frame, turns, value in zip(frames[1:], turning, values, strict=True):
+    for frame, turns, value in zip(frames[1:], _kinds(values, turning), values, strict=True):
         axes.append((turns, T[:3, 2], T[:3, 3]))
-        T = T @ z_motion(turns, value) @ frame
-    scale = typical_length(frames)
+        T = product(T, z_motion(turns, value), frame)
+    scale = typical_length(frames, turning)
     columns = [
         np.r_[np.cross(z, T[:3, 3] - p) / scale, z] if turns else np.r_[z, 0.0, 0.0, 0.0]
         for turns, z, p in axes
     ]
     return np.asarray(np.array(columns).T)
+
+
+def _kinds(values: Matrix, turning: Sequence[bool] | None) -> Sequence[bool]:
+    return (True,) * len(values) if turning is None else turning

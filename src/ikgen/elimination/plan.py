@@ -6,7 +6,7 @@ the two angles next to the hidden one be raised to the second degree in Raghavan
 elimination (1990): 24 eliminations. Parallel or intersecting axes make some of them rank-deficient,
 others leave solutions that share the hidden angle; which ones is a property of the arm, hence found
 at generation time. A slide has to be the first of the loop's joints or the second: eight eliminations. With
-two slides one of the four angles is hidden.
+two slides one of the four angles is hidden; with three the rotation gives all angles.
 """
 
 from __future__ import annotations
@@ -71,9 +71,9 @@ def eliminations(turning: Turning) -> tuple[Elimination, ...]:
 def choose_plan(
     frames: Matrix, turning: Turning = _REVOLUTE, *, probes: int = 24, seed: int = 0
 ) -> EliminationPlan:
-    """The best eliminations for a chain of six joints, at most two of them slides, frames (7, 4, 4), or for
-    all of a family (m, 7, 4, 4) that differs by a held joint's value (the plan then carries the first one's
-    frames).
+    """The best eliminations for a chain of six joints, at most three of them slides, frames
+    (7, 4, 4), or for all of a family (m, 7, 4, 4) that differs by a held joint's value (the plan
+    then carries the first one's frames).
 
     Raises ValueError for other shapes.
     """
@@ -92,7 +92,7 @@ def choose_plan(
     first.setflags(write=False)
     return EliminationPlan(
         frames=first,
-        length=typical_length(first),
+        length=typical_length(first, turning),
         eliminations=tuple(eliminations(turning)[k] for k in order),
         recall=float(hits[order[0]].mean()) if hits.size else 0.0,
         resultants=tuple(RESULTANTS[k] for k in np.argsort(shifts)[:_KEPT] if shifts[k] < _BLURRED),
@@ -125,9 +125,9 @@ class _Probe:
 
 
 def _probe(frames: Matrix, turning: Turning, count: int, rng: np.random.Generator) -> _Probe:
-    length, plans = typical_length(frames), eliminations(turning)
+    length, plans = typical_length(frames, turning), eliminations(turning)
     q = _configurations(frames, turning, count, rng)
-    poses = np.array([forward(frames, turning, row) for row in q])
+    poses = np.array([forward(frames, row, turning) for row in q])
     if not len(poses):  # singular everywhere: two axes on one line, or four that keep parallel
         hits = np.zeros((len(plans), 0), dtype=bool)
         return _Probe(hits, np.zeros(len(plans)), np.ones(len(RESULTANTS)))
@@ -167,9 +167,9 @@ def _configurations(
 ) -> list[Matrix]:
     """Regular configurations (count, 6): half at random, half the nearest to singular ones of
     many. Slides are drawn within the typical length."""
-    reach = np.where(turning, np.pi, typical_length(frames))
+    reach = np.where(turning, np.pi, typical_length(frames, turning))
     drawn = rng.uniform(-reach, reach, (12 * count, 6))
-    slopes = [jacobian(frames, turning, q) for q in drawn]
+    slopes = [jacobian(frames, q, turning) for q in drawn]
     size = np.array([np.linalg.svd(J, compute_uv=False)[-1] for J in slopes])
     regular = np.nonzero(size > _REGULAR)[0]
     hard = regular[np.argsort(size[regular])][: count // 2]

@@ -21,6 +21,7 @@ from ikgen.runtime.python.general_6r import (
 )
 from ikgen.runtime.python.one_slide import one_slide_candidates
 from ikgen.runtime.python.solve_policy import Policy
+from ikgen.runtime.python.three_slides import three_slide_candidates
 from ikgen.runtime.python.two_slides import two_slide_candidates
 
 __all__ = [
@@ -43,9 +44,17 @@ def runtime_policy(given: SolvePolicy) -> Policy:
     return Policy(**{name: getattr(given, name) for name in names}, refinement=stages)
 
 
+_FINDERS: tuple[Finder, ...] = (
+    candidates,
+    one_slide_candidates,
+    two_slide_candidates,
+    three_slide_candidates,
+)
+
+
 def finder(turning: Turning) -> Finder:
     """The function that finds candidates of six joints of which some slide."""
-    return (candidates, one_slide_candidates, two_slide_candidates)[turning.count(False)]
+    return _FINDERS[turning.count(False)]
 
 
 def six_joints_batch(frames: Matrix, plan: Plan, poses: Matrix) -> list[Matrix]:

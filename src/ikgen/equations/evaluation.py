@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ikgen.algebra.expression import BINARY, UNARY, Expr
 from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.probes import dh_pose
+from ikgen.kinematics.fixed_order import cosines, product, sines
 
 __all__ = ["evaluate"]
 
@@ -20,7 +21,7 @@ def evaluate(
     """Values (len(roots), N) of expressions at DH variables `values` (N, dof)."""
     pose = dh_pose(system.dh, values)
     if system.tool_on_right:
-        pose = pose @ system.dh.X_tip
+        pose = product(pose, system.dh.X_tip)
     known: dict[int, NDArray[np.float64]] = {}
 
     def atom(node: Expr) -> NDArray[np.float64]:
@@ -31,8 +32,8 @@ def evaluate(
             row = "xyz".index(key[1]) if key[0] == "p" else int(key[1]) - 1
             column = 3 if key[0] == "p" else int(key[2]) - 1
             return np.asarray(pose[:, row, column])
-        angle = values @ np.array(key, dtype=float)
-        return np.asarray({"cos": np.cos, "sin": np.sin}.get(kind, np.asarray)(angle))
+        angle = product(values, np.array(key, dtype=float))
+        return np.asarray({"cos": cosines, "sin": sines}.get(kind, np.asarray)(angle))
 
     def visit(node: Expr) -> NDArray[np.float64]:
         found = known.get(node.id)

@@ -14,6 +14,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.rigid import dh_link
 from ikgen.model.dh import Angle, DHChain, Length
 
@@ -59,7 +60,7 @@ def dh_pose(dh: DHChain, values: NDArray[np.float64], kept: Kept = _NONE) -> NDA
         v = ratio * (values[:, row.driver] - lead.offset.value) + row.offset.value
         theta = v if row.revolute else np.full(count, row.theta.value)
         d = np.zeros(count) + _constant(row.d, kept) if row.revolute else v
-        T = T @ dh_link(_constant(row.alpha, kept), _constant(row.a, kept), theta, d)
+        T = product(T, dh_link(_constant(row.alpha, kept), _constant(row.a, kept), theta, d))
     return T
 
 
@@ -86,7 +87,7 @@ def smallest_singular(
             continue
         step = np.zeros(dh.dof)
         step[j] = h * (1.0 if dh.rows[_first_row(dh, j)].revolute else size)
-        dT = (dh_pose(dh, values + step) - dh_pose(dh, values - step)) @ end / (2 * h)
+        dT = product(dh_pose(dh, values + step) - dh_pose(dh, values - step), end) / (2 * h)
         dT = dT[:, :3, :] * read
         dT[:, :, 3] /= size
         columns.append(dT.reshape(len(values), 12))
@@ -145,7 +146,7 @@ def make_probes(
     kept = _kept_values(dh, len(values), size)
     pose = dh_pose(dh, values, kept)
     if tool:
-        pose = pose @ dh.X_tip
+        pose = product(pose, dh.X_tip)
     return Probes(values, pose, GENERIC, GENERIC + len(regular), kept)
 
 

@@ -20,6 +20,7 @@ from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.algebra.polynomial import AngleCombination, canonical
 from ikgen.errors import UnsupportedJointError
+from ikgen.kinematics.fixed_order import cosines, product, sines
 from ikgen.kinematics.rigid import exact_cos_sin
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
 
@@ -114,9 +115,9 @@ class JointVariables:
         combination, sign = canonical(combination)
         if sign == 0:
             return g.one, g.zero
-        angle = self.values @ np.array(combination, dtype=float)
-        c = g.atom("cos", combination, np.cos(angle), unknown=True)
-        s = g.atom("sin", combination, np.sin(angle), unknown=True)
+        angle = product(self.values, np.array(combination, dtype=float))
+        c = g.atom("cos", combination, cosines(angle), unknown=True)
+        s = g.atom("sin", combination, sines(angle), unknown=True)
         return c, (s if sign > 0 else g.neg(s))
 
     def rotated(self, combination: AngleCombination, shift: float) -> tuple[Expr, Expr]:

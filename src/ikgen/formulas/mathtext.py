@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from html import escape
 
 __all__ = [
-    "Math", "Token", "close", "comma", "dots", "fraction", "function", "group", "join", "minus", "name",
-    "number", "operator", "plus", "power", "radical", "relation", "space", "text",
+    "Math", "Token", "close", "comma", "decimal", "dots", "fraction", "function", "group", "join", "minus",
+    "name", "number", "operator", "plus", "power", "radical", "relation", "space", "text",
 ]  # fmt: skip
 
 GREEK = {
@@ -107,6 +107,11 @@ def number(value: float) -> Math:
             f"<mn>{mantissa}</mn><mo>·</mo><msup><mn>10</mn><mn>{int(exponent)}</mn></msup>",
         )
     return _mark(shown, f"<mn>{shown}</mn>")
+
+
+def decimal(digits: str) -> Math:
+    """A positive number as it is written."""
+    return _mark(digits, f"<mn>{digits}</mn>")
 
 
 def _ratio(above: int, root: str, below: int) -> Math:

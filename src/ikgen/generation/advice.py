@@ -69,7 +69,8 @@ def attempts(reading: Reading, asked: str | None, progress: Progress) -> list[At
     with fewer joints than a pose has freedoms is tried with the tasks that fit, the whole pose among
     them, and with smaller ones.
     """
-    from ikgen.tasks import TASKS, find_task, fitting_tasks
+    from ikgen.tasks import TASKS, find_task
+    from ikgen.tasks.fitting import fitting_tasks
 
     demand = Demand(asked, (), progress)
     choices = held_choices(reading, find_task(asked or "pose"))

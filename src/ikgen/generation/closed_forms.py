@@ -35,12 +35,14 @@ _OTHERS = 3
 @dataclass(frozen=True, slots=True)
 class Demand:
     """What a closed form is sought for: the task asked for (None: what fits), tasks that are not to be
-    chosen, where to tell the progress, and choices of joints to hold that the verification refused."""
+    chosen, where to tell the progress, choices of joints to hold that the verification refused, and the
+    tool's axis that a task which fits goes by (None: the one that suits)."""
 
     task: str | None
     passed_over: Collection[str]
     progress: Progress
     refused: tuple[tuple[str, ...], ...] = ()
+    axis: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,13 +177,15 @@ def _as_written(form: ClosedForm, demand: Demand) -> ClosedForm:
 
 def _best_task(reading: Reading, demand: Demand) -> ClosedForm:
     """The asked task; without one the task that fits the arm best and has a closed form."""
-    from ikgen.tasks import find_task, fitting_tasks
+    from ikgen.tasks import find_task
+    from ikgen.tasks.fitting import fitting_tasks
 
     dh = reading.dh
     if demand.task:
         tasks = [find_task(demand.task)]
     else:
-        tasks = [task for task in fitting_tasks(dh) if task.name not in demand.passed_over]
+        fitting = fitting_tasks(dh, demand.axis)
+        tasks = [task for task in fitting if task.name not in demand.passed_over]
     first: ClosedForm | None = None
     for task in tasks:
         form = ClosedForm(reading, task, _by_rules(dh, task, demand.progress))

@@ -41,7 +41,10 @@ def derive(
     defaults = request.free.items()
     free_defaults(reading.dh, defaults)  # first: some values are refused
     progress("derive", classify(reading.dh).name)
-    found = closed_form(reading, Demand(request.task, passed_over, progress, tuple(refused)))
+    demand = Demand(request.named_task, passed_over, progress, tuple(refused), request.tool_axis)
+    found = closed_form(reading, demand)
+    if request.tool_axis is not None:
+        found.task.along(request.tool_axis)  # refuses what has no axis
     name = request.name or default_name(found.reading)
     geometry = classify(found.reading.dh)
     if not found.closed and found.plan is None:

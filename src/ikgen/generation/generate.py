@@ -54,7 +54,7 @@ def generate(request: Request, outputs: Outputs, progress: Progress = silent) ->
     complete_folder(outputs.out)  # first: it tells what is there
     earlier = earlier_outputs(outputs.out, request.name or default_name(reading))
     if not outputs.force:
-        earlier.check(request, reading, find_task(request.task).name if request.task else None)
+        earlier.check(request, reading, _task_name(request))
     kept = () if outputs.only else tuple(n for n in earlier.emit if n not in outputs.emit)
     emitters = [*_again(kept), *asked]
     made = make_texts(request, reading, emitters, outputs, progress)
@@ -67,6 +67,12 @@ def generate(request: Request, outputs: Outputs, progress: Progress = silent) ->
     seconds = time.perf_counter() - started
     left = left_over(outputs.out, derivation.module.name, files)
     return Generation(derivation, files, made.reports, seconds, kept, removed, left)
+
+
+def _task_name(request: Request) -> str | None:
+    """The name of the task that is asked for; None where none is."""
+    name = request.named_task
+    return find_task(name).name if name else None
 
 
 def _again(kept: Sequence[str]) -> list[Emitter]:

@@ -71,8 +71,10 @@ def held_choices(reading: Reading, task: Task) -> tuple[HeldChoice, ...]:
     an order worse conditioned than the best come last: an elbow that is held leaves the arm a shell to
     reach.
     """
+    from ikgen.tasks.fitting import scaled_motion
+
     dh = reading.dh
-    motion, moving = _task_motion(dh, task), _moving(dh)
+    motion, moving = scaled_motion(dh, task), _moving(dh)
     rank = _rank(_singular(motion, [moving])[0])
     spare = len(moving) - rank
     if not spare or not rank:
@@ -134,21 +136,6 @@ def _span(joint: ActuatedJoint, length: float) -> float:
 
 def _moving(dh: DHChain) -> list[int]:
     return [j for j, joint in enumerate(dh.joints) if joint.name not in dh.free]
-
-
-def _task_motion(dh: DHChain, task: Task) -> Matrix:
-    """How the task's entries change with the joints, lengths in those of the arm: (samples, entries,
-    dof)."""
-    import numpy as np
-
-    from ikgen.kinematics.axis_relations import reach
-    from ikgen.tasks import task_motion
-
-    length = reach(dh)
-    rows = np.array([1.0 / length if column == 3 else 1.0 for _, column in task.entries])
-    columns = np.array([1.0 if joint.kind == "revolute" else length for joint in dh.joints])
-    scaled: Matrix = task_motion(dh, task) * rows[:, None] * columns
-    return scaled
 
 
 def _singular(motion: Matrix, subsets: Sequence[Sequence[int]]) -> Matrix:

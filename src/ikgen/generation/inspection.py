@@ -67,6 +67,6 @@ def inspect_robot(
         candidates = candidate_chains(tree, request.base)
         if request.tip is not None or len(candidates) == 1:
             reading = read(request, tree)
-    tried = attempts(reading, request.task, progress) if advice and reading else []
+    tried = attempts(reading, request.named_task, progress) if advice and reading else []
     geometry = classify(reading.dh) if reading else None
     return Inspection(reading, geometry, tree, candidates, tuple(tried))

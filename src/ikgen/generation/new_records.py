@@ -9,7 +9,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ikgen.generation.record import GENERATOR, Asked, Record, record_name, record_text
+from ikgen.generation.record import (
+    GENERATOR,
+    Asked,
+    Record,
+    environment_digest,
+    record_name,
+    record_text,
+)
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -63,6 +70,7 @@ def _record(request: Request, outputs: Outputs, derivation: Derivation, folder: 
         base=dh.base_link,
         tip=dh.tip_link,
         task=module.task,
+        tool_axis=None,
         name=module.name,
         free=held,
     )
@@ -71,13 +79,16 @@ def _record(request: Request, outputs: Outputs, derivation: Derivation, folder: 
         version=module.generator_version,
         request=explicit,
         source_sha256=module.source_sha256,
-        asked=Asked(request.base, request.tip, request.task, dict(request.free)),
+        asked=Asked(request.base, request.tip, request.task, dict(request.free), request.tool_axis),
         emit=(),
         verified=outputs.verify,
         joints=tuple(joint.name for joint in dh.joints),
         max_solutions=module.max_solutions,
         inputs=_inputs(derivation.reading.source, folder),
         files={},
+        environment={
+            name: environment_digest(value) for name, value in derivation.reading.source.environment
+        },
         out=outputs.out,
         path=folder / record_name(module.name),
     )

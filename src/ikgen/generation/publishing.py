@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from ikgen.generation.record import SUFFIX
-from ikgen.processes.scratch_folder import abandoned, try_lock
+from ikgen.processes.scratch_folder import abandoned, remove_abandoned, try_lock
 
 __all__ = ["PREFIX", "Publishing", "complete", "complete_folder", "interrupted", "publishing_alone"]
 
@@ -120,9 +120,11 @@ def interrupted(out: Path) -> tuple[str, ...]:
 
 
 def complete(out: Path) -> None:
-    """Put in place what killed runs had begun to put into the folder; for who publishes there alone."""
+    """Put in place what killed runs had begun to put into the folder, and remove what else they left; for
+    who publishes there alone."""
     for publishing in _begun(out):
         publishing.finish()
+    remove_abandoned(PREFIX, out)
 
 
 def complete_folder(out: Path) -> None:

@@ -16,6 +16,7 @@ from pathlib import Path
 from ikgen.errors import BadDescriptionError, UsageError
 from ikgen.generation.codec import CodecError, Decoder, coded, encode, inlined, read_free, uncoded
 from ikgen.generation.request import Request
+from ikgen.importers.named_robots import is_named
 
 __all__ = [
     "GENERATOR",
@@ -23,6 +24,7 @@ __all__ = [
     "Asked",
     "Record",
     "digest",
+    "environment_digest",
     "find_records",
     "read_record",
     "record_name",
@@ -43,6 +45,7 @@ class Asked:
     tip: str | None = None
     task: str | None = None
     free: Mapping[str, float | None] | None = field(default=None, metadata=coded(read_free))
+    tool_axis: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +55,8 @@ class Record:
     Its paths are relative to the record's folder in the file, and as seen from the current directory here.
     `out` is the folder that was given for the outputs: the record's own, or the one around it for a
     package. `inputs` (relative path or `package://` URL -> SHA-256) are read by `recorded_inputs`; `files`
-    (path relative to the record's folder -> SHA-256) are the outputs; `verified` is false after
+    (path relative to the record's folder -> SHA-256) are the outputs; `environment` is what the description
+    asked of the environment, as `environment_digest` gives it; `verified` is false after
     `--no-verify`. `path` is the record's file.
     """
 
@@ -68,6 +72,7 @@ class Record:
     inputs: Mapping[str, str]
     files: Mapping[str, str]
     out: Path | None = None
+    environment: Mapping[str, str] = field(default_factory=dict)
     path: Path = field(default=Path(), metadata=uncoded())
 
     @property
@@ -86,7 +91,8 @@ class Record:
         """The request as the user gave it."""
         free = self.request.free if self.asked.free is None else self.asked.free
         asked = self.asked
-        return replace(self.request, base=asked.base, tip=asked.tip, task=asked.task, free=free)
+        ends = replace(self.request, base=asked.base, tip=asked.tip, free=free)
+        return replace(ends, task=asked.task, tool_axis=asked.tool_axis)
 
     def again(self, robot: Path | None = None) -> Request:
         """The request that makes the outputs again, for its own or another description."""
@@ -109,6 +115,8 @@ def record_text(record: Record) -> str:
     folder = record.folder.resolve()
 
     def place(path: Path) -> str:
+        if is_named(path):
+            return str(path)
         return Path(os.path.relpath(path.resolve(), folder)).as_posix()
 
     return json.dumps(encode(record, place), indent=2) + "\n"
@@ -120,6 +128,11 @@ def digest(path: Path) -> str | None:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except OSError:
         return None
+
+
+def environment_digest(value: str | None) -> str:
+    """SHA-256 of an environment variable's value, which may be a secret; "" where it is not set."""
+    return "" if value is None else hashlib.sha256(value.encode("utf-8", "replace")).hexdigest()
 
 
 def find_records(folder: Path) -> list[Path]:
@@ -168,7 +181,7 @@ def read_record(path: Path) -> Record:
     """The record in a file; raises `BadDescriptionError` for a file that is none."""
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
-        decoder = Decoder(lambda text: seen(path.parent / text))
+        decoder = Decoder(lambda text: Path(text) if is_named(text) else seen(path.parent / text))
         record = decoder.table(Record, data, "the record")
         if record.request.name is None:
             raise CodecError("the record", " has no 'name'")

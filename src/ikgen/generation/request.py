@@ -14,6 +14,7 @@ from typing import Any
 
 from ikgen.generation.codec import CodecError, coded, read_free, uncoded
 from ikgen.model.module_name import is_module_name
+from ikgen.tasks import AXES
 
 __all__ = ["Outputs", "Request", "is_table"]
 
@@ -36,6 +37,12 @@ def _arguments(value: Any, where: str) -> Any:
     return {n: str(x).lower() if isinstance(x, bool) else str(x) for n, x in value.items()}
 
 
+def _axis(value: Any, where: str) -> Any:
+    if isinstance(value, str) and value not in AXES:
+        raise CodecError(where, f"the tool axis '{value}' is none of {', '.join(AXES)}")
+    return value
+
+
 def _positive(value: Any, where: str) -> Any:
     if isinstance(value, int) and value < 1:
         raise CodecError(where, f"{value} is less than 1")
@@ -44,7 +51,8 @@ def _positive(value: Any, where: str) -> Any:
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """One robot file or DH table, one chain, one task. `free` maps held joints to their default value
+    """One robot file or DH table, one chain, one task, by the tool's axis `tool_axis` where it is one with
+    a direction (None: the one that suits). `free` maps held joints to their default value
     (None: chosen), `lock` fixed joints to their value (rad or m), `args` are xacro's; `name` is the prefix
     of the files (None: made from the robot's); `trust` lets the file do whatever xacro can."""
 
@@ -52,6 +60,7 @@ class Request:
     base: str | None = None
     tip: str | None = None
     task: str | None = None
+    tool_axis: str | None = field(default=None, metadata=coded(_axis))
     free: Mapping[str, float | None] = field(default_factory=dict, metadata=coded(read_free))
     lock: Mapping[str, float] = field(default_factory=dict)
     args: Mapping[str, str] = field(default_factory=dict, metadata=coded(_arguments))
@@ -65,13 +74,20 @@ class Request:
         """Whether the robot is a DH table."""
         return is_table(self.robot)
 
+    @property
+    def named_task(self) -> str | None:
+        """The task's name with the tool's axis; None where the task is left to ikgen."""
+        if self.task is None or self.tool_axis is None or ":" in self.task:
+            return self.task
+        return f"{self.task}:{self.tool_axis}"
+
     def command(self, *more: str) -> str:
         """The command that generates what is asked for, with `more` options."""
         words = ["ikgen", "from-dh" if self.table else "from-urdf", str(self.robot)]
-        for option in ("base", "tip", "task", "name"):
+        for option in ("base", "tip", "task", "tool_axis", "name"):
             value = getattr(self, option)
             if value is not None:
-                words += [f"--{option}", value]
+                words += [f"--{option.replace('_', '-')}", value]
         for joint, held in self.free.items():
             words += ["--free", joint if held is None else f"{joint}={held!r}"]
         for joint, locked in self.lock.items():

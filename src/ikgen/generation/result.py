@@ -21,6 +21,8 @@ def rounding(derivation: Derivation) -> tuple[float, float] | None:
 
 def as_dict(generation: Generation) -> dict[str, Any]:
     """The result as a plain table, for --json."""
+    from ikgen.generation.announcements import announcements
+
     derivation = generation.derivation
     module, dh = derivation.module, derivation.reading.dh
     return {
@@ -41,7 +43,7 @@ def as_dict(generation: Generation) -> dict[str, Any]:
         ],
         "max_solutions": module.max_solutions,
         "deviation": {"m": dh.deviation[0], "rad": dh.deviation[1]},
-        "warnings": list(derivation.reading.source.warnings),
+        "warnings": list(announcements(derivation)),
         "files": [str(path) for path in generation.files],
         "verification": {name: _report(r) for name, r in generation.reports.items()},
         "seconds": round(generation.seconds, 3),

@@ -16,6 +16,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Protocol, cast
 
 from ikgen.errors import PlugInError, UsageError
+from ikgen.importers.named_robots import find_robot, is_named
 from ikgen.plugins import PlugIn, plug_ins
 
 if TYPE_CHECKING:
@@ -125,14 +126,26 @@ def load_tree(
     package_paths: Sequence[Path] = (),
     trust: bool = False,
 ) -> JointTree:
-    """Read a robot description into a `JointTree`.
+    """Read a robot description, a file or a robot by name, into a `JointTree`.
 
     `arguments` are xacro's NAME:=VALUE; `package_paths` are directories that are or contain the
     packages which `$(find pkg)` and `package://pkg` name. `trust` lets a xacro file run any code and
     read any file, without bounds: only for files of one's own. Raises `BadDescriptionError` with file
     and line for anything in the file that cannot be read, `UsageError` for an unknown suffix.
     """
-    file = Path(path)
-    return importer_of(file).read(
-        file, arguments=arguments, package_paths=package_paths, trust=trust
+    if not is_named(path):
+        file = Path(path)
+        return importer_of(file).read(
+            file, arguments=arguments, package_paths=package_paths, trust=trust
+        )
+    robot = find_robot(path)
+    tree = importer_of(robot.file).read(
+        robot.file,
+        arguments={**robot.arguments, **arguments},
+        package_paths=(*package_paths, *robot.package_paths),
+        trust=trust,
     )
+    known = dict(tree.source.package_urls)
+    urls = {file: known.get(file) or robot.url_of(file) for file in tree.source.dependencies}
+    source = replace(tree.source, package_urls=tuple(urls.items()))
+    return replace(tree, source=source)

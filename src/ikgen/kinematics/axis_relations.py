@@ -12,6 +12,7 @@ from itertools import combinations
 
 import numpy as np
 
+from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.forward import row_values
 from ikgen.kinematics.rigid import dh_link, z_motion
 from ikgen.model.dh import DHChain
@@ -65,8 +66,8 @@ def _lines(dh: DHChain) -> tuple[Matrix, Matrix]:
     T: Matrix = np.eye(4)
     directions, points = [], []
     for i, row in enumerate(dh.rows):
-        T = T @ dh_link(row.alpha.nominal, row.a.nominal, row.theta.nominal, row.d.nominal)
-        T = T @ z_motion(row.revolute, values[..., i])
+        T = product(T, dh_link(row.alpha.nominal, row.a.nominal, row.theta.nominal, row.d.nominal))
+        T = product(T, z_motion(row.revolute, values[..., i]))
         directions.append(T[..., :3, 2])
         points.append(T[..., :3, 3])
     return np.stack(directions, axis=1), np.stack(points, axis=1)

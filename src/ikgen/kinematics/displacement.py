@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.kinematics.fixed_order import length
 from ikgen.kinematics.rigid import inverse, rotation_about
 
 __all__ = ["displacements"]
@@ -27,7 +28,7 @@ def displacements(size: float) -> tuple[Array, ...]:
 
 def _motion(twist: Array) -> Array:
     """The motion with a rotation vector and a translation."""
-    angle = float(np.linalg.norm(twist[:3]))
+    angle = length(twist[:3])
     T = np.eye(4)
     T[:3, :3] = rotation_about(twist[:3] / angle, angle)
     T[:3, 3] = twist[3:]

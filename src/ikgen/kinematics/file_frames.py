@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ikgen.kinematics.fixed_order import dot, length, product
 from ikgen.kinematics.forward import dh_forward, file_forward, pose_difference, row_constant
 from ikgen.kinematics.rigid import inverse, read_only, z_motion
 from ikgen.model.chain import Chain
@@ -34,9 +35,9 @@ def file_frames(
     """
     axes, T = [], np.eye(4)
     for axis, sign in zip(chain.axes, signs, strict=True):
-        T = T @ axis.T_prev_axis
+        T = product(T, axis.T_prev_axis)
         axes.append((T, sign * axis.axis))
-    return _frames(axes, T @ chain.T_last_tip, rows, offsets, ends)
+    return _frames(axes, product(T, chain.T_last_tip), rows, offsets, ends)
 
 
 def frames_beside(
@@ -45,11 +46,11 @@ def frames_beside(
     """The constants of the file's chain of `dh`, written with the variables of other `rows`."""
     axes, T, z = [], np.eye(4), np.array([0.0, 0.0, 1.0])
     for F, row in zip(dh.file_frames, dh.rows, strict=False):
-        T = T @ F
+        T = product(T, F)
         axes.append((T, z))
-        T = T @ z_motion(row.revolute, row.offset.value)
+        T = product(T, z_motion(row.revolute, row.offset.value))
     offsets = tuple(row.offset.value for row in rows)
-    return _frames(axes, T @ dh.file_frames[-1], rows, offsets, ends)
+    return _frames(axes, product(T, dh.file_frames[-1]), rows, offsets, ends)
 
 
 def _frames(
@@ -66,27 +67,27 @@ def _frames(
     pending, T_dh = np.eye(4), X_base
     for i, ((T_axis, axis), row) in enumerate(zip(axes, rows, strict=True)):
         if i:
-            T_dh = T_dh @ row_constant(row)
+            T_dh = product(T_dh, row_constant(row))
         home = z_motion(row.revolute, offsets[i])
-        T_dh = T_dh @ home
+        T_dh = product(T_dh, home)
         B = _nearest_frame(T_dh, T_axis, axis, row.revolute)
-        F.append(pending @ B @ inverse(home))
+        F.append(product(pending, B, inverse(home)))
         pending = inverse(B)
-    F.append(pending @ T_home)
+    F.append(product(pending, T_home))
     return tuple(read_only(_clean(f, exact)) for f, exact in zip(F, nominal, strict=True))
 
 
 def _nearest_frame(T_dh: Matrix, T_axis: Matrix, axis: Matrix, revolute: bool) -> Matrix:
     """The frame with z exactly along the file's axis, otherwise as near to `T_dh` as it can be."""
-    z = T_axis[:3, :3] @ axis
-    z = z / np.linalg.norm(z)
-    x = T_dh[:3, 0] - z * float(z @ T_dh[:3, 0])
-    x = x / np.linalg.norm(x)
+    z = product(T_axis[:3, :3], axis)
+    z = z / length(z)
+    x = T_dh[:3, 0] - z * dot(z, T_dh[:3, 0])
+    x = x / length(x)
     B = np.eye(4)
     B[:3, 0], B[:3, 1], B[:3, 2] = x, np.cross(z, x), z
     origin = T_dh[:3, 3]
     if revolute:
-        origin = T_axis[:3, 3] + z * float(z @ (origin - T_axis[:3, 3]))
+        origin = T_axis[:3, 3] + z * dot(z, origin - T_axis[:3, 3])
     B[:3, 3] = origin
     return B
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.rigid import axis_motion, dh_link, z_motion
 from ikgen.model.chain import REVOLUTE, Chain
 from ikgen.model.dh import DHChain, DHRow
@@ -36,8 +37,8 @@ def chain_forward(chain: Chain, q: ArrayLike) -> Matrix:
     T = np.eye(4)
     for axis in chain.axes:
         value = axis.multiplier * values[..., axis.driver] + axis.offset
-        T = T @ axis.T_prev_axis @ axis_motion(axis.kind == REVOLUTE, axis.axis, value)
-    return np.asarray(T @ chain.T_last_tip)
+        T = product(T, axis.T_prev_axis, axis_motion(axis.kind == REVOLUTE, axis.axis, value))
+    return np.asarray(product(T, chain.T_last_tip))
 
 
 def dh_forward(dh: DHChain, q: ArrayLike) -> Matrix:
@@ -45,8 +46,8 @@ def dh_forward(dh: DHChain, q: ArrayLike) -> Matrix:
     values = row_values(dh, q)
     T = dh.X_base
     for i, row in enumerate(dh.rows):
-        T = T @ row_constant(row) @ z_motion(row.revolute, values[..., i])
-    return np.asarray(T @ dh.X_tip)
+        T = product(T, row_constant(row), z_motion(row.revolute, values[..., i]))
+    return np.asarray(product(T, dh.X_tip))
 
 
 def file_forward(dh: DHChain, q: ArrayLike) -> Matrix:
@@ -54,7 +55,7 @@ def file_forward(dh: DHChain, q: ArrayLike) -> Matrix:
     values = row_values(dh, q)
     T = dh.file_frames[0]
     for i, row in enumerate(dh.rows):
-        T = T @ z_motion(row.revolute, values[..., i]) @ dh.file_frames[i + 1]
+        T = product(T, z_motion(row.revolute, values[..., i]), dh.file_frames[i + 1])
     return np.asarray(T)
 
 
@@ -68,7 +69,7 @@ def file_jacobian(dh: DHChain, q: ArrayLike) -> Matrix:
     lines = []
     for i, row in enumerate(dh.rows):
         lines.append((T[..., :3, 2], T[..., :3, 3]))
-        T = T @ z_motion(row.revolute, values[..., i]) @ dh.file_frames[i + 1]
+        T = product(T, z_motion(row.revolute, values[..., i]), dh.file_frames[i + 1])
     J = np.zeros((*values.shape[:-1], 6, dh.dof))
     for row, (z, origin) in zip(dh.rows, lines, strict=True):
         if row.revolute:

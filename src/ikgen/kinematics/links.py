@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ikgen.kinematics.fixed_order import dot, length, product
 from ikgen.kinematics.rigid import cross_matrix, exact_cos_sin
 from ikgen.kinematics.snapping import (
     snap_angle,
@@ -100,11 +101,11 @@ def align_z(axis: Matrix) -> Matrix:
     x = np.zeros(3)
     x[0 if k else 1] = 1.0
     near = np.column_stack([x, np.cross(nearest, x), nearest])
-    v, c = np.cross(nearest, axis), float(nearest @ axis)
+    v, c = np.cross(nearest, axis), dot(nearest, axis)
     if not v.any():
         return near
     K = cross_matrix(v)
-    return np.asarray((np.eye(3) + K + K @ K / (1.0 + c)) @ near)
+    return np.asarray(product(np.eye(3) + K + product(K, K) / (1.0 + c), near))
 
 
 def snapped_links(chain: Chain, tolerance: Tolerance) -> tuple[Link, ...]:
@@ -114,13 +115,13 @@ def snapped_links(chain: Chain, tolerance: Tolerance) -> tuple[Link, ...]:
     links = []
     for i in range(1, len(chain.axes)):
         T = chain.axes[i].T_prev_axis
-        R_true = true[i - 1].T @ T[:3, :3] @ true[i]
-        R = snapped[i - 1].T @ T[:3, :3] @ snapped[i]
+        R_true = product(true[i - 1].T, T[:3, :3], true[i])
+        R = product(snapped[i - 1].T, T[:3, :3], snapped[i])
         R = snap_rotation(R, tolerance.angle, tolerance.turn)
-        p = snapped[i - 1].T @ T[:3, 3]
-        change = float(np.linalg.norm(R_true - R)) / math.sqrt(2)
+        p = product(snapped[i - 1].T, T[:3, 3])
+        change = length(R_true - R) / math.sqrt(2)
         alpha = math.atan2(math.hypot(R_true[0, 2], R_true[1, 2]), R_true[2, 2])
-        links.append(Link(R, p, alpha, change, change * float(np.linalg.norm(p))))
+        links.append(Link(R, p, alpha, change, change * length(p)))
     return tuple(links)
 
 
@@ -164,13 +165,13 @@ def orient(
     signs, shapes = [-1 if flip_first else 1], []
     for link in links:
         if signs[-1] < 0:
-            R, p = FLIP @ link.R, FLIP @ link.p
+            R, p = product(FLIP, link.R), product(FLIP, link.p)
             link = replace(link, R=R, p=p, true_alpha=math.pi - link.true_alpha)
         shape = _measure(link, tolerance)
         obtuse = shape.a == 0.0 and shape.alpha > math.pi / 2 + 1e-9
         flip = shape.a < 0.0 or obtuse or math.pi - shape.alpha < 1e-12
         if flip:
-            link = replace(link, R=link.R @ FLIP, true_alpha=math.pi - link.true_alpha)
+            link = replace(link, R=product(link.R, FLIP), true_alpha=math.pi - link.true_alpha)
             shape = _measure(link, tolerance)
         shapes.append(shape)
         signs.append(-1 if flip else 1)

@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ikgen.kinematics.file_frames import random_configurations
+from ikgen.kinematics.fixed_order import dot, least_squares, length, product
 from ikgen.kinematics.forward import file_forward, row_values
-from ikgen.kinematics.rigid import coordinate_motion
+from ikgen.kinematics.rigid import coordinate_motion, inverse
 from ikgen.kinematics.row_ends import tidy_pose
 from ikgen.model.dh import DHChain
 from ikgen.model.joint_tree import Matrix
@@ -77,11 +78,11 @@ def fit_rows(dh: DHChain, constants: tuple[Constant, ...]) -> Fitted:
         J = columns[:, :, :3].reshape(len(constants), -1).T
         chosen = _independent(J) if chosen is None else chosen
         step = np.zeros(len(constants))
-        step[chosen] = np.linalg.lstsq(J[:, chosen], (target - T)[:, :3].ravel(), rcond=None)[0]
+        step[chosen] = least_squares(J[:, chosen], (target - T)[:, :3].ravel())
         by_label = dict(zip(constants, step.tolist(), strict=True))
         change = {c: change[c] + by_label[c] for c in constants}
-        X_base = X_base @ _end_motion(by_label, -1)
-        X_tip = _end_motion(by_label, len(dh.rows)) @ X_tip
+        X_base = product(X_base, _end_motion(by_label, -1))
+        X_tip = product(_end_motion(by_label, len(dh.rows)), X_tip)
         if np.abs(step).max() < _SETTLED:
             break
     return Fitted(change, tidy_pose(X_base), tidy_pose(X_tip))
@@ -108,17 +109,17 @@ def _derivatives(
     """The poses (N, 4, 4) and their derivatives by `labels`, each (N, 4, 4)."""
     before = [np.broadcast_to(X_base, (len(factors[0].value), 4, 4))]
     for factor in factors:
-        before.append(before[-1] @ _motion(factor.motion, factor.value))
+        before.append(product(before[-1], _motion(factor.motion, factor.value)))
     places = {f.label: (f.motion, k + 1) for k, f in enumerate(factors)}
     last = max(row for row, _ in places) + 1
     for m in _ENDS:
         places[-1, m], places[last, m] = (m, 0), (m, len(factors))
-    T = before[-1] @ X_tip
+    T = product(before[-1], X_tip)
     columns = []
     for label in labels:
         motion, k = places[label]
-        moved = before[k] @ _GENERATORS[motion]
-        columns.append(moved @ np.linalg.inv(before[k]) @ T)
+        moved = product(before[k], _GENERATORS[motion])
+        columns.append(product(moved, inverse(before[k]), T))
     return T, np.stack(columns)
 
 
@@ -130,9 +131,9 @@ def _independent(J: Matrix) -> list[int]:
         rest = column
         for _ in range(2):
             for b in basis:
-                rest = rest - b * float(b @ rest)
-        size = float(np.linalg.norm(rest))
-        if size > _DEPENDENT * max(float(np.linalg.norm(column)), 1e-3):
+                rest = rest - b * dot(b, rest)
+        size = length(rest)
+        if size > _DEPENDENT * max(length(column), 1e-3):
             basis.append(rest / size)
             chosen.append(k)
     return chosen
@@ -141,7 +142,7 @@ def _independent(J: Matrix) -> list[int]:
 def _end_motion(step: dict[Constant, float], end: int) -> Matrix:
     T = np.eye(4)
     for m in _ENDS:
-        T = T @ _motion(m, step.get((end, m), 0.0))
+        T = product(T, _motion(m, step.get((end, m), 0.0)))
     return T
 
 

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ikgen.kinematics.fixed_order import dot, product
 from ikgen.kinematics.links import Link, Tolerance, orient
 from ikgen.kinematics.offsets import distribute
 from ikgen.model.joint_tree import Matrix
@@ -78,7 +79,7 @@ def _shifted(links: tuple[Link, ...], k: int, c: Matrix) -> tuple[Link, ...]:
     length_error = max(around)
     if k > 0:
         link = links[k - 1]
-        moved[k - 1] = replace(link, p=link.p + link.R @ c, length_error=length_error)
+        moved[k - 1] = replace(link, p=link.p + product(link.R, c), length_error=length_error)
     if k < len(links):
         link = links[k]
         moved[k] = replace(link, p=link.p - c, length_error=length_error)
@@ -90,17 +91,17 @@ def _candidates(links: tuple[Link, ...], k: int) -> Iterator[Matrix]:
     frames = [(np.eye(3), np.zeros(3))]
     for link in links:
         R, o = frames[-1]
-        frames.append((R @ link.R, o + R @ link.p))
+        frames.append((product(R, link.R), o + product(R, link.p)))
     R, o = frames[k]
     if k + 1 < len(frames):
-        yield _ACROSS * (R.T @ (_origin(frames, k + 1, +1) - o))
+        yield _ACROSS * product(R.T, _origin(frames, k + 1, +1) - o)
     if k > 0:
-        yield _ACROSS * (R.T @ (_origin(frames, k - 1, -1) - o))
+        yield _ACROSS * product(R.T, _origin(frames, k - 1, -1) - o)
     if 0 < k < len(links):
         (R_prev, o_prev), (R_next, o_next) = frames[k - 1], frames[k + 1]
         columns = np.column_stack([R_prev[:, 2], R[:, 2], -R_next[:, 2]])
         along = np.linalg.lstsq(columns, o_next - o_prev, rcond=1e-9)[0]
-        yield _ACROSS * (R.T @ (o_prev + along[0] * R_prev[:, 2] - o))
+        yield _ACROSS * product(R.T, o_prev + along[0] * R_prev[:, 2] - o)
     yield np.zeros(3)
 
 
@@ -111,10 +112,10 @@ def _origin(frames: list[tuple[Matrix, Matrix]], k: int, step: int) -> Matrix:
     while 0 <= j + step < len(frames):
         z_next, o_next = frames[j + step][0][:, 2], frames[j + step][1]
         normal = np.cross(z, z_next)
-        square = float(normal @ normal)
+        square = dot(normal, normal)
         if square > 1e-18:
-            along = float(np.cross(o_next - frames[j][1], z_next) @ normal) / square
+            along = dot(np.cross(o_next - frames[j][1], z_next), normal) / square
             foot = frames[j][1] + z * along
-            return np.asarray(o + z * float(z @ (foot - o)))
+            return np.asarray(o + z * dot(z, foot - o))
         j += step
     return o

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ikgen.kinematics.fixed_order import cosines, product, sines
 from ikgen.model.joint_tree import Matrix
 
 __all__ = [
@@ -33,10 +34,10 @@ _EXACT = 5e-16
 
 
 def inverse(T: Matrix) -> Matrix:
-    """The inverse (4, 4) of a rigid transform, its rotation without round-off."""
-    out = np.eye(4)
-    out[:3, :3] = T[:3, :3].T
-    out[:3, 3] = -T[:3, :3].T @ T[:3, 3]
+    """The inverses (..., 4, 4) of rigid transforms, their rotations without round-off."""
+    out = _identities(T.shape[:-2])
+    out[..., :3, :3] = np.swapaxes(T[..., :3, :3], -1, -2)
+    out[..., :3, 3:] = -product(out[..., :3, :3], T[..., :3, 3:])
     return out
 
 
@@ -82,7 +83,7 @@ def rotation_about(axis: Matrix, angle: ArrayLike) -> Matrix:
     formula; Lynch and Park, Modern Robotics, section 3.2.3)."""
     K = cross_matrix(axis)
     angles = np.asarray(angle, dtype=np.float64)[..., None, None]
-    return np.asarray(np.eye(3) + (np.sin(angles) * K + (1.0 - np.cos(angles)) * (K @ K)))
+    return np.asarray(np.eye(3) + (sines(angles) * K + (1.0 - cosines(angles)) * product(K, K)))
 
 
 def axis_motion(revolute: bool, axis: Matrix, value: ArrayLike) -> Matrix:
@@ -102,8 +103,8 @@ def coordinate_motion(revolute: bool, axis: int, value: ArrayLike) -> Matrix:
         T[..., axis, 3] = value
         return T
     i, j = (axis + 1) % 3, (axis + 2) % 3
-    T[..., i, i] = T[..., j, j] = np.cos(value)
-    T[..., j, i] = np.sin(value)
+    T[..., i, i] = T[..., j, j] = cosines(value)
+    T[..., j, i] = sines(value)
     T[..., i, j] = -T[..., j, i]
     return T
 
@@ -131,7 +132,7 @@ def dh_link(alpha: ArrayLike, a: ArrayLike, theta: ArrayLike, d: ArrayLike) -> M
 
 def _cos_sin(angle: ArrayLike) -> tuple[Any, Any]:
     if np.ndim(angle):
-        return np.cos(angle), np.sin(angle)
+        return cosines(angle), sines(angle)
     return exact_cos_sin(float(np.asarray(angle)))
 
 

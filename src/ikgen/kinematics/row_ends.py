@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 
+from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.links import FLIP, Tolerance, align_z
 from ikgen.kinematics.offsets import Offsets
 from ikgen.kinematics.rigid import inverse, rotation_z
@@ -24,7 +25,7 @@ __all__ = ["base_points_down", "end_transforms", "tidy_pose"]
 def base_points_down(chain: Chain, tolerance: Tolerance) -> bool:
     """Whether the first axis runs against the base frame's z, so that z is better reversed."""
     first = chain.axes[0]
-    return float((first.T_prev_axis[:3, :3] @ first.axis)[2]) < -math.cos(tolerance.angle)
+    return float(product(first.T_prev_axis[:3, :3], first.axis)[2]) < -math.cos(tolerance.angle)
 
 
 def end_transforms(
@@ -35,17 +36,17 @@ def end_transforms(
     tolerance: Tolerance,
 ) -> tuple[Matrix, Matrix, tuple[float, ...]]:
     """`X_base`, `X_tip` (4, 4) and the rows' thetas (rad) with the ends' turns settled."""
-    base = chain.axes[0].T_prev_axis @ _axis_frame(chain, 0, signs, shifts)
-    tip = inverse(_axis_frame(chain, -1, signs, shifts)) @ chain.T_last_tip
+    base = product(chain.axes[0].T_prev_axis, _axis_frame(chain, 0, signs, shifts))
+    tip = product(inverse(_axis_frame(chain, -1, signs, shifts)), chain.T_last_tip)
     theta = list(offsets.theta)
     prismatic = chain.axes[0].kind != "revolute", chain.axes[-1].kind != "revolute"
 
     turn = _turn(base[:3, :3], theta[0], prismatic[0], tolerance)
-    X_base = base @ _screw(turn, offsets.base_lift)
+    X_base = product(base, _screw(turn, offsets.base_lift))
     theta[0] = wrap_angle(theta[0] - turn)
 
     turn = _turn(tip[:3, :3].T, theta[-1], prismatic[1], tolerance)
-    X_tip = _screw(turn, offsets.tip_lift) @ tip
+    X_tip = product(_screw(turn, offsets.tip_lift), tip)
     theta[-1] = wrap_angle(theta[-1] - turn)
     return tidy_pose(X_base), tidy_pose(X_tip), tuple(theta)
 
@@ -72,8 +73,8 @@ def _axis_frame(chain: Chain, k: int, signs: tuple[int, ...], shifts: tuple[Matr
     """Frame (4, 4) with z along axis k as the rows direct it, in the axis' joint frame."""
     T = np.eye(4)
     R = align_z(chain.axes[k].axis)
-    T[:3, :3] = R if signs[k] > 0 else R @ FLIP
-    T[:3, 3] = R @ shifts[k]
+    T[:3, :3] = R if signs[k] > 0 else product(R, FLIP)
+    T[:3, 3] = product(R, shifts[k])
     return T
 
 

@@ -12,6 +12,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from ikgen.kinematics.fixed_order import length, product
 from ikgen.kinematics.rigid import rotation_x, rotation_z
 from ikgen.model.dh import Angle, Length, Snap
 from ikgen.model.joint_tree import Matrix
@@ -73,7 +74,7 @@ def tidy(length: float) -> float:
 def snap_axis(axis: Matrix, tolerance: float) -> Matrix:
     """The signed coordinate axis (3,) within `tolerance` (rad) of unit vector `axis`, or `axis`."""
     k = int(np.argmax(np.abs(axis)))
-    rest = float(np.linalg.norm(np.delete(axis, k)))
+    rest = length(np.delete(axis, k))
     if rest > tolerance:
         return axis
     snapped = np.zeros(3)
@@ -95,10 +96,10 @@ def snap_rotation(R: Matrix, tolerance: float, turn_tolerance: float) -> Matrix:
         return rotation_z(snap_angle(turn, turn_tolerance))
     if math.pi - alpha <= tolerance:
         turn = math.atan2(R[1, 0] + R[0, 1], R[0, 0] - R[1, 1])
-        return rotation_z(snap_angle(turn, turn_tolerance)) @ np.diag([1.0, -1.0, -1.0])
+        return product(rotation_z(snap_angle(turn, turn_tolerance)), np.diag([1.0, -1.0, -1.0]))
     phi = snap_angle(math.atan2(R[0, 2], -R[1, 2]), turn_tolerance)
     psi = snap_angle(math.atan2(R[2, 0], R[2, 1]), turn_tolerance)
-    return rotation_z(phi) @ rotation_x(snap_angle(alpha, tolerance)) @ rotation_z(psi)
+    return product(rotation_z(phi), rotation_x(snap_angle(alpha, tolerance)), rotation_z(psi))
 
 
 class SnapLog:

@@ -10,6 +10,7 @@ from typing import Any
 from ikgen.errors import ArgumentError, IkgenError
 from ikgen.generation.joint_value import joint_value
 from ikgen.generation.request import Request
+from ikgen.importers.named_robots import is_named
 from ikgen.model.module_name import identifier, is_module_name
 
 __all__ = ["checked_count", "checked_flag", "checked_path", "checked_request"]
@@ -55,6 +56,8 @@ def _robot(robot: object) -> Path:
     if not isinstance(robot, str | os.PathLike):
         raise _wrong("robot", robot, 'a path, or a name such as "example-robot-data:panda"')
     path = Path(os.fsdecode(robot))
+    if is_named(path):
+        return path
     if not os.fsdecode(robot):
         raise ArgumentError("robot is empty", hint="name a URDF or xacro file, or a DH table")
     if path.is_dir():

@@ -131,14 +131,21 @@ class Arm:
         free: Sequence[float] | Mapping[str, float] | None = None,
         seed: ArrayLike | None = None,
         limits: bool = True,
+        project: bool = False,
+        orthonormalize: bool = False,
     ) -> Solutions:
-        """All joint values that bring the tip to `pose`.
+        """All joint values that bring the tip to `pose`: a matrix (4, 4) or (3, 4), a pair (rotation,
+        position) or (position, quaternion x y z w), a transform of Pinocchio, SciPy or spatialmath.
 
         free: values of the held joints; seed: (dof,) values that order the rows by distance, choose
         whole turns, and are taken where the pose leaves a joint free; limits: drop rows outside the
-        limits. A pose that cannot be reached, or is none, is a status of what comes back.
+        limits; project: of a pose without rows, those of the nearest pose that the arm can take (`off` says
+        by how much); orthonormalize: take the nearest rotation of one that was printed with a few
+        digits (off by up to 1e-3). A pose that cannot be reached, or is none, is a status of what comes
+        back, and its `reason` says what is wrong with it.
         """
-        found: Solutions = self._call("solve", pose, free=free, seed=seed, limits=limits)
+        options = {"free": free, "seed": seed, "limits": limits, "project": project}
+        found: Solutions = self._call("solve", pose, **options, orthonormalize=orthonormalize)
         return found
 
     def solve_batch(
@@ -148,10 +155,11 @@ class Arm:
         free: ArrayLike | Mapping[str, float] | None = None,
         seed: ArrayLike | None = None,
         limits: bool = True,
+        orthonormalize: bool = False,
     ) -> tuple[Array, NDArray[np.int64], NDArray[np.str_]]:
         """`solve` for N poses: q (N, max_solutions, dof) padded with NaN, counts (N,), status (N,)."""
         found: tuple[Array, NDArray[np.int64], NDArray[np.str_]] = self._call(
-            "solve_batch", poses, free=free, seed=seed, limits=limits
+            "solve_batch", poses, free=free, seed=seed, limits=limits, orthonormalize=orthonormalize
         )
         return found
 
@@ -184,6 +192,12 @@ class Arm:
             raise UsageError(
                 f"the solver of {self.name} has no {function}", hint=self._without(function)
             )
+        return self._refusing(called, function, *arguments, **options)
+
+    def _refusing(
+        self, called: Callable[..., Any], function: str, *arguments: Any, **options: Any
+    ) -> Any:
+        """What it gives; a value that it refuses is an `ArgumentError`."""
         try:
             return called(*arguments, **options)
         except (ValueError, TypeError) as error:

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ikgen.generation.codec import encode
+from ikgen.importers.named_robots import is_named
 
 if TYPE_CHECKING:
     from ikgen.generation.generate import Made
@@ -150,6 +151,8 @@ def _content(request: Request) -> str:
     from ikgen.generation.read import read_tree
     from ikgen.importers import importer_of
 
+    if is_named(request.robot):
+        return read_tree(request).source.sha256
     if request.table or importer_of(request.robot).kind == "urdf":
         return hashlib.sha256(request.robot.read_bytes()).hexdigest()
     return read_tree(request).source.sha256

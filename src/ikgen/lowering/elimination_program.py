@@ -1,4 +1,4 @@
-"""The Program of an arm that only an elimination solves: one call, as many branches as its polynomial has roots."""
+"""The Program of an arm that only an elimination solves: one call, a branch for each root."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from ikgen.program.statements import Call, Comment, JointOutput, Let, Level, Pro
 
 __all__ = ["elimination_name", "elimination_program", "most_solutions"]
 
-_ROUTINES = ("general_6r", "one_slide", "two_slides")
-_NAMES = ("6R", "5R1P", "4R2P")
-_MOST = (16, 16, 8)
+_ROUTINES = ("general_6r", "one_slide", "two_slides", "three_slides")
+_NAMES = ("6R", "5R1P", "4R2P", "3R3P")
+_MOST = (16, 16, 8, 2)
 """By the number of slides (Raghavan and Roth 1993)."""
 
 

@@ -75,7 +75,7 @@ def choose_form(
         else:
             values = form.values
     if isinstance(guard, Expr):
-        work.require(guard)
+        work.require(guard, fold=True)
     if isinstance(single, Expr) and sigma is not g.one:
         work.require(g.binary("or", g.unary("not", single), g.binary("gt", sigma, g.zero)))
     if isinstance(free, Expr):

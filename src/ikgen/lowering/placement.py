@@ -25,9 +25,11 @@ FOLDED = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class Requirement:
-    """A condition without which the branch has no solution."""
+    """A condition without which the branch has no solution; `fold`: it bounds where the solution is
+    real."""
 
     condition: Expr
+    fold: bool = False
 
 
 @dataclass
@@ -140,10 +142,10 @@ class Placement:
         if item.args or item.id in self.definition:
             self.levels[self.level(item)].items.append(item)
 
-    def require(self, condition: Expr) -> None:
+    def require(self, condition: Expr, *, fold: bool = False) -> None:
         """Schedule a guard."""
         self.place(condition)
-        self.levels[self.level(condition)].items.append(Requirement(condition))
+        self.levels[self.level(condition)].items.append(Requirement(condition, fold))
 
     def define(self, v: Variable, values: tuple[Expr, ...]) -> None:
         """Give a solved variable its cosine and sine, or its distance."""

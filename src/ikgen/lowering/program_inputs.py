@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ikgen.algebra.expression import Expr
 from ikgen.equations.knowledge import Variable
 from ikgen.equations.symbolic_transforms import Rigid, constant, inverse, multiply
+from ikgen.kinematics.fixed_order import product
 from ikgen.lowering.joint_values import first_row, variable_lets
 from ikgen.lowering.placement import Placement
 from ikgen.program.inputs import HeldValue, PoseEntry, SeedValue
@@ -21,9 +22,9 @@ def bind_pose(work: Placement) -> None:
     g = work.g
     base, tip = constant(g, work.dh.X_base), constant(g, work.dh.X_tip)
     pose = work.probes.pose
-    raw = work.dh.X_base @ pose
+    raw = product(work.dh.X_base, pose)
     if work.whole_pose:
-        raw = raw @ work.dh.X_tip
+        raw = product(raw, work.dh.X_tip)
     rows = tuple(tuple(_entry(work, i, j, raw) for j in range(3)) for i in range(3))
     p = tuple(_entry(work, i, 3, raw) for i in range(3))
     T: Rigid = multiply(g, inverse(g, base), Rigid(rows, p))

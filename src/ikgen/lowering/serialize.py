@@ -132,7 +132,7 @@ class _Serializer:
             if isinstance(item, Comment):
                 body.append(item)
             elif isinstance(item, Requirement):
-                body.append(Require(self.operand(item.condition)))
+                body.append(Require(self.operand(item.condition), item.fold))
             else:
                 let = self.statement(item)
                 if let is not None:

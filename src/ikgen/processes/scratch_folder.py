@@ -7,6 +7,7 @@ ends, so that a folder without a lock is nobody's.
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import tempfile
 import time
@@ -22,11 +23,13 @@ try:
 except ImportError:  # pragma: no cover  (Windows: folders count by age alone)
     fcntl = None  # type: ignore[assignment]
 
-__all__ = ["ScratchFolder", "abandoned", "try_lock"]
+__all__ = ["ScratchFolder", "abandoned", "remove_abandoned", "try_lock"]
 
 _LOCK = ".lock"
+_MAKER = re.compile(r"-(\d+)-[^-]*$")
 _LOCKLESS = 3600.0
-"""Age (s) from which a folder without a file to lock is one that a killed run left."""
+"""Age (s) from which a folder without a file to lock is one that a killed run left, whose process may
+not be looked for."""
 
 
 class ScratchFolder:
@@ -34,12 +37,10 @@ class ScratchFolder:
     files), removed at `close`, at the end of a `with` and of the process. Those that killed runs left
     beside it are removed first."""
 
-    def __init__(self, prefix: str, place: Path | None = None, *, sweep: bool = True) -> None:
-        if sweep:
-            for folder in abandoned(prefix, place):
-                shutil.rmtree(folder, ignore_errors=True)
+    def __init__(self, prefix: str, place: Path | None = None) -> None:
+        remove_abandoned(prefix, place)
         try:
-            self.path = Path(tempfile.mkdtemp(prefix=prefix, dir=place))
+            self.path = Path(tempfile.mkdtemp(prefix=f"{prefix}{os.getpid()}-", dir=place))
             lock = _locked(self.path)
         except OSError as error:
             where = place or os.environ.get("TMPDIR") or "/tmp"
@@ -93,6 +94,12 @@ def try_lock(file: IO[Any] | int, *, wait: bool = False) -> bool:
     return True
 
 
+def remove_abandoned(prefix: str, place: Path | None = None) -> None:
+    """Remove the folders that `abandoned` finds."""
+    for folder in abandoned(prefix, place):
+        shutil.rmtree(folder, ignore_errors=True)
+
+
 def abandoned(prefix: str, place: Path | None = None) -> list[Path]:
     """Folders named `prefix` and more, of this user, whose process is gone."""
     try:
@@ -109,11 +116,25 @@ def _is_abandoned(folder: Path) -> bool:
         if folder.is_symlink() or not folder.is_dir() or not _is_ours(status):
             return False
         if fcntl is None or not (folder / _LOCK).is_file():
-            return time.time() - status.st_mtime > _LOCKLESS
+            return time.time() - status.st_mtime > _LOCKLESS or not _maker_lives(folder.name)
         with (folder / _LOCK).open("rb") as lock:
             return try_lock(lock)
     except OSError:  # gone meanwhile, or not ours to look into
         return False
+
+
+def _maker_lives(name: str) -> bool:
+    """Whether the process is there that a folder's name tells; true where that cannot be known."""
+    number = _MAKER.search(name)
+    if number is None or os.name == "nt":  # there a signal 0 ends the process
+        return True
+    try:
+        os.kill(int(number.group(1)), 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):
+        return True
+    return True
 
 
 def _is_ours(status: os.stat_result) -> bool:

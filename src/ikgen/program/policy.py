@@ -38,6 +38,11 @@ class SolvePolicy:
     - `tries`: how many values of a joint that a pose leaves free are tried, `try_step` (rad) apart.
     - `rank_loss`: smallest singular value below which a refined row is singular; `continuum_rank_loss`
       where the Program marked it already.
+    - `farthest_start`: the largest first step (rad, m) of rows that are refined together, `contraction`:
+      the most that a step of theirs may be of the one before, `least_pivot`: the least entry of the
+      diagonal of their derivatives' triangular factor, `reach`: the same over the root of how far the file
+      is off what was solved, `least_miss`: the error that shows that they end beside the pose,
+      `lane_steps`: how many they take at most; other rows are refined one by one.
     - `least_damping`, `damping`: a Newton step is damped by max(least, damping * error^2); `largest_step`
       (rad or m) bounds each joint's; `converged`: error at which steps end; `patience` steps may pass
       without the error falling to `progress` of what it was.
@@ -55,6 +60,12 @@ class SolvePolicy:
     try_step: float = 0.39269908169872414
     rank_loss: float = 1e-7
     continuum_rank_loss: float = 1e-3
+    farthest_start: float = 0.05
+    contraction: float = 0.25
+    least_pivot: float = 1e-5
+    reach: float = 1.0
+    least_miss: float = 1e-8
+    lane_steps: int = 7
     least_damping: float = 1e-12
     damping: float = 1e-3
     largest_step: float = 0.3

@@ -32,9 +32,11 @@ class Let:
 
 @dataclass(frozen=True, slots=True)
 class Require:
-    """The branch has no solution unless the condition holds."""
+    """The branch has no solution unless the condition holds; `fold`: where it ceases to, two solutions meet
+    and vanish."""
 
     condition: Operand
+    fold: bool = False
 
 
 @dataclass(frozen=True, slots=True)

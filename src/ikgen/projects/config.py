@@ -13,6 +13,7 @@ from ikgen.errors import BadDescriptionError, UsageError
 from ikgen.generation.codec import CodecError, Decoder, inlined
 from ikgen.generation.record import record_name, records_of
 from ikgen.generation.request import Outputs, Request
+from ikgen.importers.named_robots import is_named
 from ikgen.projects.config_lines import line_of
 
 if sys.version_info >= (3, 11):
@@ -75,7 +76,7 @@ def load_config(path: Path) -> tuple[ArmConfig, ...]:
     tables = data.get("arm", [])
     if not isinstance(tables, list) or not tables:
         raise _error(path, "lists no arm", hint="add a table [[arm]] with name and robot")
-    decoder = Decoder(lambda name: path.parent / name, strict=True)
+    decoder = Decoder(lambda text: Path(text) if is_named(text) else path.parent / text, True)
     try:
         for key in set(data) - {"arm"}:
             raise CodecError(key, f"unknown entry '{key}'", "there is: arm")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from ikgen.errors import UsageError
 from ikgen.generation.read import arm_name, read, read_tree
 from ikgen.generation.request import Request
+from ikgen.importers.named_robots import is_named
 from ikgen.projects.config import CONFIG
 
 if TYPE_CHECKING:
@@ -97,6 +98,8 @@ def _table(arm: ArmTable, request: Request, emit: Sequence[str], folder: Path) -
     """One `[[arm]]`; paths as seen from the config."""
 
     def seen(path: Path) -> str:
+        if is_named(path):
+            return str(path)
         return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
 
     entries: dict[str, object] = {"name": arm.name, "robot": seen(request.robot)}

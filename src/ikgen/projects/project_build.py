@@ -28,7 +28,8 @@ INTERNAL_ERROR = 70
 @dataclass(frozen=True, slots=True)
 class Outcome:
     """What happened to one arm: `reason` it was stale (empty: fresh, left alone), its files, and
-    the error if it failed (`exit_code` then is not 0); `trace` is that of an internal error."""
+    the error if it failed (`exit_code` then is not 0); `trace` is that of an internal error, `warnings`
+    are what has to be told of what was generated, `solutions` how many a pose has at most."""
 
     name: str
     reason: str
@@ -38,6 +39,8 @@ class Outcome:
     hint: str = ""
     exit_code: int = 0
     trace: str = ""
+    warnings: tuple[str, ...] = ()
+    solutions: int = 0
 
 
 def build_arms(
@@ -122,6 +125,7 @@ def _build_in_worker(job: tuple[ArmConfig, str, bool]) -> Outcome:
 
 def _build_one(job: tuple[ArmConfig, str, bool]) -> Outcome:
     """Generate one arm; errors become part of the outcome, since they must cross processes."""
+    from ikgen.generation.announcements import announcements
     from ikgen.generation.generate import generate
 
     arm, reason, verify = job
@@ -136,7 +140,9 @@ def _build_one(job: tuple[ArmConfig, str, bool]) -> Outcome:
         return Outcome(arm.name, reason, message=f"{where}{error.strerror or error}", exit_code=2)
     except Exception as error:
         return _internal(arm.name, reason, error)
-    return Outcome(arm.name, reason, made.files, made.seconds)
+    told = announcements(made.derivation)
+    most = made.derivation.module.max_solutions
+    return Outcome(arm.name, reason, made.files, made.seconds, warnings=told, solutions=most)
 
 
 def _internal(name: str, reason: str, error: Exception) -> Outcome:

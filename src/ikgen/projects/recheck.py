@@ -13,6 +13,7 @@ from ikgen.generation.publishing import interrupted
 from ikgen.generation.read import read
 from ikgen.generation.record import Record, digest
 from ikgen.generation.request import Outputs
+from ikgen.importers.named_robots import is_named
 from ikgen.projects.check_findings import Finding, Recheck
 from ikgen.projects.output_checks import OutputChecks
 
@@ -44,7 +45,7 @@ def recheck(
     try:
         reading = read(request)
     except (UnknownNameError, UsageError) as error:
-        if not request.robot.is_file():
+        if not (is_named(request.robot) or request.robot.is_file()):
             raise
         message = f"made from another description: {error.message}"
         return Recheck(record.path, record, (*findings, Finding(record.path, message, fix)))

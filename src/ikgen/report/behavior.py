@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from html import escape
+
 from ikgen.formulas.notation import variable
-from ikgen.report.document import Block, Heading, Inline, Paragraph, Rows, Text
-from ikgen.solver.session import Tick
+from ikgen.report.document import Block, Heading, Inline, Paragraph, Picture, Rows, Text
+from ikgen.report.latex import rows_latex
+from ikgen.report.tree_picture import mark, tree_picture
+from ikgen.solver.choice import Step
 from ikgen.solver.solution_graph import SolutionGraph
 
 __all__ = ["behavior_section"]
@@ -17,22 +21,33 @@ _KINDS = {"sequence": "sequence", "selector": "selector", "or": "OR"}
 
 
 def behavior_section(graph: SolutionGraph) -> list[Block]:
-    """What every node of the tree did in every round."""
+    """What every node of the tree did in every round: a picture, on paper a table."""
     blocks: list[Block] = [
-        Heading(("Behaviour tree",)),
+        Heading(("Behaviour tree",), anchor="tree"),
         Paragraph((
             "One round solves one unknown: equations with one or two unknowns are collected, every "
             "leaf looks at them, the ranker takes the best candidate; transforms run where no leaf "
-            "found a sound one. A sequence stops at its first child that fails, a selector at the "
-            "first that succeeds, OR ticks all and succeeds if any does. Numbers are the equations "
-            "or candidates that a node gave; – stands for failure, an empty cell for a node that was "
-            "not ticked.",
+            "found a sound one. A sequence (→) stops at its first child that fails, a selector (?) at "
+            "the first that succeeds, OR (∨) ticks all and succeeds if any does. Numbers are the "
+            "equations or candidates that a node gave; – stands for failure, a node that is not lit "
+            "was not ticked or failed.",
         )),
     ]  # fmt: skip
+    if not graph.ticks:
+        return []
+    kinds = {t.path: t.kind for t in graph.ticks}
+    nodes = [path for path in graph.outline if any(p[: len(path)] == path for p in kinds)]
+    picture = tree_picture(nodes, graph.ticks, _told(graph))
+    return [*blocks, Picture(picture, "\n\n".join(map(rows_latex, _tables(graph))))]
+
+
+def _tables(graph: SolutionGraph) -> list[Rows]:
+    """The picture's content as tables of at most `_WIDE` rounds."""
     rounds = sorted({t.round for t in graph.ticks})
-    cells = {(t.path, t.round): _mark(t) for t in graph.ticks}
+    cells = {(t.path, t.round): mark(t) for t in graph.ticks}
     kinds = {t.path: t.kind for t in graph.ticks}
     paths = [path for path in graph.outline if path in kinds]
+    tables = []
     for start in range(0, len(rounds), _WIDE):
         part = rounds[start : start + _WIDE]
         header: tuple[Text, ...] = (("node",), *((f"round {r}",) for r in part))
@@ -40,16 +55,8 @@ def behavior_section(graph: SolutionGraph) -> list[Block]:
             ((_label(path, kinds[path]),), *((cells.get((path, r), ""),) for r in part))
             for path in paths
         )
-        blocks.append(Rows(header, rows, small=True, left=1))
-    return [*blocks, *_solved(graph)]
-
-
-def _mark(t: Tick) -> str:
-    """The number that a node gave, or whether it succeeded."""
-    first = t.detail.split(" ", 1)[0]
-    if t.outcome != "success":
-        return "–"
-    return first if first.isdigit() else "yes"
+        tables.append(Rows(header, rows, small=True, left=1))
+    return tables + _solved(graph)
 
 
 def _label(path: tuple[str, ...], kind: str) -> str:
@@ -58,11 +65,26 @@ def _label(path: tuple[str, ...], kind: str) -> str:
     return _INDENT * (len(path) - 1) + words
 
 
-def _solved(graph: SolutionGraph) -> list[Block]:
-    """Which unknown each round solved."""
+def _by_round(graph: SolutionGraph) -> list[tuple[int, Step]]:
     done = [t.round for t in graph.ticks if t.outcome == "success" and " by " in t.detail]
+    return list(zip(done, graph.steps, strict=False))
+
+
+def _told(graph: SolutionGraph) -> dict[int, str]:
+    """HTML per round: what it solved, and how."""
+    out = {}
+    for number, step in _by_round(graph):
+        c = step.candidate
+        labels = " and ".join(dict.fromkeys(e.label for e in c.sources))
+        name = f"<math><mrow>{variable(c.unknown).mathml}</mrow></math>"
+        out[number] = f"{name} by {escape(c.leaf)}" + (f" from {escape(labels)}" * bool(labels))
+    return out
+
+
+def _solved(graph: SolutionGraph) -> list[Rows]:
+    """Which unknown each round solved."""
     rows = []
-    for number, step in zip(done, graph.steps, strict=False):
+    for number, step in _by_round(graph):
         c = step.candidate
         labels = " and ".join(dict.fromkeys(e.label for e in c.sources))
         what: list[Inline] = [

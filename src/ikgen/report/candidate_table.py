@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from ikgen.report.document import Block, Rows, Text
+from ikgen.report.document import Block, Fold, Inline, Link, Rows, Text
+from ikgen.report.splits import equation_anchor
 from ikgen.solver.candidate import Candidate
 from ikgen.solver.choice import Step
 from ikgen.solver.ranker import rank_key
@@ -36,7 +37,8 @@ def candidates_table(step: Step) -> list[Block]:
         return []
     rows = [_row(step.candidate, "chosen")]
     rows += [_row(c, _reason(step.candidate, c)) for c in others]
-    return [Rows(_HEADER, tuple(rows), "Candidates", small=True)]
+    words = f"{len(rows)} candidates, and why this one was taken"
+    return [Fold(words, (Rows(_HEADER, tuple(rows), "Candidates", small=True),))]
 
 
 def _reason(best: Candidate, other: Candidate) -> str:
@@ -49,6 +51,8 @@ def _reason(best: Candidate, other: Candidate) -> str:
 
 def _row(c: Candidate, verdict: str) -> tuple[Text, ...]:
     assert c.judgement is not None
-    labels = ", ".join(dict.fromkeys(e.label for e in c.sources))
+    labels: list[Inline] = []
+    for label, e in {e.label: e for e in c.sources}.items():
+        labels += [", "] * bool(labels) + [Link(label, equation_anchor(e))]
     margin, cost = f"{c.judgement.margin:.1e}", f"{c.judgement.cost:g}"
-    return (c.leaf,), (labels,), (str(c.branches),), (margin,), (cost,), (verdict,)
+    return (c.leaf,), tuple(labels), (str(c.branches),), (margin,), (cost,), (verdict,)

@@ -1,4 +1,4 @@
-"""The section of arms that no rule solves: the elimination for any 6R arm."""
+"""The section of arms that no rule solves: the elimination for any six joints."""
 
 from __future__ import annotations
 
@@ -9,7 +9,37 @@ from ikgen.report.document import Block, Formulas, Paragraph
 __all__ = ["elimination_section"]
 
 
-def elimination_section() -> list[Block]:
+_SLIDE = (
+    "Of this arm one joint slides. The loop is begun so that this is its first joint or its second, "
+    "where its length to the powers 0, 1 and 2 takes the place of 1, cosine and sine of an angle, and "
+    "is eliminated like them."
+)
+_TWO_SLIDES = (
+    "No unknown of this arm can be solved alone. Slides leave rotations alone: the rotation of the "
+    "four revolute joints leaves one angle free, which is hidden. The opposite angle has two values, "
+    "from its cosine, and the two between follow. The lengths of the slides are eliminated by the "
+    "triple product g of their directions and of the displacement of the closed loop without them. "
+    "With h = 1 − m², m the cosine between the axes beside the hidden one, the product of h and of "
+    "both values of g is a trigonometric polynomial of degree 4 in the hidden angle: at most 8 "
+    "solutions (Raghavan and Roth, 1993), those on the unit circle being real. Newton steps sharpen "
+    "each, and forward kinematics decides. Which angle is hidden was chosen by trying all four on "
+    "configurations of this arm."
+)
+_THREE_SLIDES = (
+    "Slides leave rotations alone: the rotation gives the three angles, two solutions at most, the "
+    "middle one from its cosine. The position is linear in the lengths of the three slides. Newton "
+    "steps sharpen each solution, and forward kinematics decides."
+)
+
+
+def elimination_section(slides: int = 0) -> list[Block]:
+    """The elimination of six joints of which some slide, in words and equations."""
+    if slides >= 2:
+        return [Paragraph((_TWO_SLIDES if slides == 2 else _THREE_SLIDES,))]
+    return [*_revolute(slides), *([Paragraph((_SLIDE,))] if slides else [])]
+
+
+def _revolute(slides: int) -> list[Block]:
     """Raghavan and Roth's elimination, in words and in its three equations."""
     return [
         Paragraph((
@@ -43,8 +73,7 @@ def elimination_section() -> list[Block]:
             ", the pose ", m.name("z", "6"), "; Newton steps sharpen each, and forward "
             "kinematics "
             "decides. Which angle is hidden, and in which direction the loop is read, "
-            "was chosen by "
-            "trying all 24 ways on configurations of this arm.",
+            f"was chosen by trying all {8 if slides else 24} ways on configurations of this arm.",
         )),
     ]  # fmt: skip
 

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from html import escape
 from itertools import pairwise
 
 from ikgen.equations.knowledge import Variable
 from ikgen.formulas.notation import variable
 from ikgen.report.layout import layout
 from ikgen.report.solution_sets import Versions
+from ikgen.report.step_anchor import step_anchor
 from ikgen.solver.solution_graph import SolutionGraph
 
 __all__ = ["Drawing", "draw"]
 
-_STEP_X, _STEP_Y, _WIDTH, _HEIGHT, _MARGIN = 118, 84, 92, 42, 14
+_STEP_X, _STEP_Y, _WIDTH, _HEIGHT, _MARGIN = 124, 98, 100, 54, 14
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,22 +27,39 @@ class Drawing:
 
 
 def draw(graph: SolutionGraph, versions: Versions, title: str) -> Drawing:
-    """The drawing: a box an unknown with its number of versions, an arrow a direct parent."""
+    """The drawing: a box an unknown with its number of solutions, an arrow a direct parent."""
     plan = layout(graph)
     place = {v: _point(at) for v, at in plan.place.items()}
     every = [*place.values(), *(_point(at) for route in plan.routes.values() for at in route)]
     width = max((x for x, _ in every), default=0.0) + _WIDTH / 2 + _MARGIN
     height = max((y for _, y in every), default=0.0) + _HEIGHT / 2 + _MARGIN
-    leaves = frozenset(s.candidate.unknown for s in graph.steps)
-    routes = [_strokes([_point(at) for at in route]) for route in plan.routes.values()]
+    leaves = {graph.known.joint_variable(j): _HELD for j in graph.held}
+    leaves |= {s.candidate.unknown: s.candidate.leaf for s in graph.steps}
+    forks = dict(versions.forks)
+    arrows = [
+        _Arrow(_strokes([_point(at) for at in route]), forks.get(edge[0], 1))
+        for edge, route in plan.routes.items()
+    ]
+    routes = [arrow.strokes for arrow in arrows]
     return Drawing(
-        _svg(place, routes, versions, leaves, (width, height), title),
+        _svg(place, arrows, versions, leaves, (width, height), title),
         _latex(place, routes, versions, (width, height)),
     )
 
 
+_HELD = "held"
+"""What stands in the box of a joint whose value is given."""
+
 Point = tuple[float, float]
 Stroke = tuple[Point, Point]
+
+
+@dataclass(frozen=True, slots=True)
+class _Arrow:
+    """From an unknown with so many branches to one that is computed from it."""
+
+    strokes: list[Stroke]
+    branches: int
 
 
 def _point(at: Point) -> Point:
@@ -57,14 +76,14 @@ def _strokes(route: list[Point]) -> list[Stroke]:
 
 def _count(versions: Versions, v: Variable) -> str:
     n = versions.count(v)
-    return f"{n} version{'s' if n > 1 else ''}"
+    return f"{n} solution{'s' if n > 1 else ''}"
 
 
 def _svg(
     place: dict[Variable, Point],
-    routes: list[list[Stroke]],
+    arrows: list[_Arrow],
     versions: Versions,
-    leaves: frozenset[Variable],
+    leaves: dict[Variable, str],
     size: Point,
     title: str,
 ) -> str:
@@ -73,15 +92,38 @@ def _svg(
         f'width="{size[0]:g}" height="{size[1]:g}" role="img" font-family="serif">',
         f"<title>{title}</title>",
         '<defs><marker id="arrow" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" '
-        'markerHeight="7" orient="auto"><path d="M0 1 L7 4 L0 7 z" fill="#345"/></marker></defs>',
+        'markerHeight="7" orient="auto"><path class="head" d="M0 1 L7 4 L0 7 z" fill="#345"/></marker>'
+        "</defs>",
     ]
-    for strokes in routes:
-        parts.append(
-            f'<path d="{_path(strokes)}" fill="none" stroke="#345" stroke-width="1.2" '
-            'marker-end="url(#arrow)"/>'
-        )
-    parts += [_box(v, at, versions, v in leaves) for v, at in place.items()]
+    parts += [*map(_arrow, arrows), *_branches(arrows)]
+    parts += [
+        _linked(v, _box(v, at, versions, leaves.get(v, "")), leaves) for v, at in place.items()
+    ]
     return "\n".join([*parts, "</svg>"]) + "\n"
+
+
+def _arrow(arrow: _Arrow) -> str:
+    return (
+        f'<path class="line" d="{_path(arrow.strokes)}" fill="none" stroke="#345" stroke-width="1.2" '
+        'marker-end="url(#arrow)"/>'
+    )
+
+
+def _branches(arrows: list[_Arrow]) -> list[str]:
+    """How many branches an unknown leaves behind, beside where its arrows start."""
+    starts = {arrow.strokes[0][0]: arrow.branches for arrow in arrows if arrow.branches > 1}
+    return [
+        f'<text class="soft" x="{x - 24:.1f}" y="{y + 13:.1f}" font-size="10" fill="#456" '
+        f'font-family="sans-serif">×{n}</text>'
+        for (x, y), n in starts.items()
+    ]
+
+
+def _linked(v: Variable, box: str, leaves: dict[Variable, str]) -> str:
+    """The box leads to the step that solves its unknown, or to the sums of angles."""
+    if leaves.get(v) == _HELD:
+        return box
+    return f'<a href="#{step_anchor(v) if v in leaves else "sums"}">{box}</a>'
 
 
 def _path(strokes: list[Stroke]) -> str:
@@ -132,8 +174,8 @@ def _latex(
     return "\n".join([*lines, "\\end{picture}"])
 
 
-def _box(v: Variable, at: Point, versions: Versions, solved: bool) -> str:
-    """One unknown: its name, and how many versions it has."""
+def _box(v: Variable, at: Point, versions: Versions, leaf: str) -> str:
+    """One unknown: its name, the leaf that solved it, and how many solutions it has."""
     x, y = at
     index = v.text.partition("_")[2]
     if v.text.startswith("("):
@@ -141,12 +183,13 @@ def _box(v: Variable, at: Point, versions: Versions, solved: bool) -> str:
     else:
         letter = "θ" if v.kind == "angle" else "d"
         shown = f'{letter}<tspan dy="4" font-size="11">{index}</tspan>'
-    fill = "#eef4fb" if solved else "#f6f6f2"
+    fill, kind = ("#eef4fb", "box solved") if leaf else ("#f6f6f2", "box")
+    small = 'text-anchor="middle" font-size="10" fill="#456" font-family="sans-serif"'
     return (
-        f'<rect x="{x - _WIDTH / 2:g}" y="{y - _HEIGHT / 2:g}" width="{_WIDTH}" '
+        f'<rect class="{kind}" x="{x - _WIDTH / 2:g}" y="{y - _HEIGHT / 2:g}" width="{_WIDTH}" '
         f'height="{_HEIGHT}" rx="7" fill="{fill}" stroke="#345"/>'
-        f'<text x="{x:g}" y="{y - 3:g}" text-anchor="middle" font-style="italic" '
+        f'<text class="ink" x="{x:g}" y="{y - 9:g}" text-anchor="middle" font-style="italic" '
         f'font-size="16" fill="#123">{shown}</text>'
-        f'<text x="{x:g}" y="{y + 14:g}" text-anchor="middle" font-size="10" fill="#456" '
-        f'font-family="sans-serif">{_count(versions, v)}</text>'
+        f'<text class="soft" x="{x:g}" y="{y + 8:g}" {small}>{escape(leaf or "sum")}</text>'
+        f'<text class="soft" x="{x:g}" y="{y + 20:g}" {small}>{_count(versions, v)}</text>'
     )

@@ -8,16 +8,21 @@ import unicodedata
 from ikgen.emit.rendering import render
 from ikgen.report.document import (
     Block,
+    Card,
+    Fold,
     Formulas,
     Heading,
+    Inline,
+    Link,
     Matrix,
     Paragraph,
     Picture,
+    Pictures,
     Rows,
     Text,
 )
 
-__all__ = ["to_latex"]
+__all__ = ["rows_latex", "to_latex"]
 
 _ESCAPES = {
     "\\": "\\textbackslash{}", "&": "\\&", "%": "\\%", "$": "\\$", "#": "\\#", "_": "\\_",
@@ -59,36 +64,81 @@ def _in_font(ch: str) -> bool:
     return ch in _LETTERS or accented
 
 
+def _inline(part: Inline) -> str:
+    if isinstance(part, str):
+        return _words(part)
+    if isinstance(part, Link):
+        return f"\\hyperlink{{{part.anchor}}}{{{_words(part.words)}}}"
+    return f"${part.latex}$"
+
+
 def _text(text: Text) -> str:
-    return "".join(_words(part) if isinstance(part, str) else f"${part.latex}$" for part in text)
+    return "".join(map(_inline, text))
 
 
 def _block(block: Block) -> str:
     match block:
-        case Heading(title, level):
-            plain = "".join(_words(p) if isinstance(p, str) else f"${p.latex}$" for p in title)
-            return f"\\{'section' if level == 1 else 'subsection'}*{{{plain}}}"
+        case Heading(title, level, anchor):
+            place = f"\\hypertarget{{{anchor}}}{{}}" if anchor else ""
+            plain = _words("".join(p if isinstance(p, str) else "" for p in title)).strip(" :")
+            kind = "section" if level == 1 else "subsection"
+            mark = f"\\pdfbookmark[{level}]{{{plain}}}{{{anchor}}}" if anchor else ""
+            return f"{mark}\\{kind}*{{{place}{_text(title)}}}"
         case Paragraph(text, note):
             if note:
                 return f"{{\\small\\itshape {_text(text)}\\par}}"
             keep = "\\nopagebreak" if str(text[-1]).endswith(":") else ""
             return f"{_text(text)}\\par{keep}"
-        case Formulas(lines):
-            inside = "\n".join(f"\\formula{{{line.latex}}}" for line in lines)
-            return f"\\begin{{formulas}}\n{inside}\n\\end{{formulas}}"
+        case Formulas():
+            return _formulas(block)
         case Matrix(name, rows):
             inside = " \\\\\n".join(" & ".join(x.latex for x in row) for row in rows)
             columns = "c" * len(rows[0])
             array = f"\\begin{{array}}{{{columns}}}\n{inside}\n\\end{{array}}"
             return f"\\[ {name.latex} = \\left[{array}\\right] \\]"
         case Rows():
-            return _rows(block)
-        case Picture(_, latex, caption):
-            below = f"\\smallskip{{\\small {_words(caption)}}}"
-            return f"\\begin{{center}}\n{latex}\n\n{below}\n\\end{{center}}"
+            return rows_latex(block)
+        case _:
+            return _arranged(block)
 
 
-def _rows(block: Rows) -> str:
+def _arranged(block: Picture | Pictures | Card | Fold) -> str:
+    """Blocks that hold others."""
+    match block:
+        case Picture():
+            return _picture(block)
+        case Pictures(drawings):
+            return "\n".join(map(_picture, drawings))
+        case Card(picture, facts):
+            rows = [f"\\textcolor{{soft}}{{{_words(n)}}} & {_text(t)} \\\\" for n, t in facts]
+            inside = "\n".join(rows)
+            width = "\\setlength{\\wide}{0.72\\linewidth}"
+            return f"{_picture(picture)}{{{width}\\begin{{tabular}}{{lL}}\n{inside}\n\\end{{tabular}}}}"
+        case Fold(words, inner):
+            lead = f"{{\\small\\color{{soft}} {_words(words)}\\par}}\\nopagebreak"
+            return "\n\n".join([lead, *map(_block, inner)])
+
+
+def _picture(picture: Picture) -> str:
+    if not picture.latex:
+        return ""
+    below = f"\\smallskip{{\\small {_words(picture.caption)}}}" if picture.caption else ""
+    return f"\\begin{{center}}\n{picture.latex}\n\n{below}\n\\end{{center}}"
+
+
+def _formulas(block: Formulas) -> str:
+    lines = []
+    for i, line in enumerate(block.lines):
+        number = str(block.numbers[i]) if block.numbers else ""
+        anchor = block.anchors[i] if block.anchors else ""
+        place = f"\\hypertarget{{{anchor}}}{{}}" if anchor else ""
+        lines.append(f"{place}\\formula{{{number}}}{{{line.latex}}}")
+    inside = "\n".join(lines)
+    return f"\\begin{{formulas}}\n{inside}\n\\end{{formulas}}"
+
+
+def rows_latex(block: Rows) -> str:
+    """A table that fits the line."""
     wide = [
         max((_width(row[i]) for row in block.rows), default=0) for i in range(len(block.header))
     ]
@@ -117,4 +167,10 @@ def _rows(block: Rows) -> str:
 
 
 def _width(text: Text) -> int:
-    return sum(len(part) if isinstance(part, str) else 2 * len(part.tokens) for part in text)
+    return sum(map(_size, text))
+
+
+def _size(part: Inline) -> int:
+    if isinstance(part, Link):
+        return len(part.words)
+    return len(part) if isinstance(part, str) else 2 * len(part.tokens)

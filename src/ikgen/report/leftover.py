@@ -60,7 +60,7 @@ def leftover_section(graph: SolutionGraph) -> list[Block]:
     left = _left(graph, normal)
     names = [graph.known.joint_variable(j) for j in graph.open_joints]
     lead: list[Inline] = ["No closed form was found for ", *_listed(names), ". "]
-    blocks: list[Block] = [Heading(("What is left",))]
+    blocks: list[Block] = [Heading(("What is left",), anchor="left")]
     if not left:
         lead.append("No equation that the task reads holds them.")
         return [*blocks, Paragraph(tuple(lead))]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 
@@ -13,7 +14,6 @@ from ikgen.formulas.mathtext import Math
 from ikgen.formulas.normal_form import Symbol
 from ikgen.formulas.normalizer import Normalizer
 from ikgen.formulas.notation import show, symbol
-from ikgen.kinematics.classify import GeometryClass
 from ikgen.kinematics.kept import kept_constants
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
 from ikgen.model.joint_tree import Matrix as Array
@@ -27,15 +27,10 @@ _MOST_WRITTEN = 900
 """Symbols in all entries of the pose together, above which they are not written out."""
 
 
-def robot_section(reading: Reading, geometry: GeometryClass, task: Task, most: str) -> list[Block]:
-    """What robot this is, and its table; `most` says how many solutions there are."""
+def robot_section(reading: Reading, task: Task) -> list[Block]:
+    """The table of the robot, its constants and what was made of the file's."""
     dh = reading.dh
-    moving = "".join("R" if row.revolute else "P" for row in dh.rows)
-    lead = (
-        f"{dh.dof} joints ({moving}), from {dh.base_link} to {dh.tip_link}. "
-        f"Geometry: {geometry.words}. Task: {task.name} ({task.words}). {most}"
-    )
-    blocks: list[Block] = [Heading(("Robot",)), Paragraph((lead,)), _table(dh)]
+    blocks: list[Block] = [Heading(("Robot",), anchor="robot"), _table(dh)]
     if dh.free or dh.locked:
         held = [f"{name} is held free: its value is given with the pose" for name in dh.free]
         held += [f"{name} is locked at {value:g}" for name, value in dh.locked]
@@ -226,25 +221,37 @@ def forward_section(graph: SolutionGraph, normal: Normalizer) -> list[Block]:
     lines = [a + m.relation() + show(s) for a, s in zip(entries, sums, strict=True)]
     words = (
         "The desired pose, and its entries by the table. ",
-        m.name("c", "i"), " and ", m.name("s", "i"), " are cosine and sine of ",
-        m.name("theta", "i"),
-        "; angles of parallel axes come as sums: ",
-        m.name("theta", "23") + m.relation() + m.name("theta", "2") + m.plus()
-        + m.name("theta", "3"), ".",
+        m.name("c", "i"), " and ", m.name("s", "i"), " are cosine and sine of ", m.name("theta", "i"),
+        *_sums_words(graph.dh),
     )  # fmt: skip
     return [
-        Heading(("Forward kinematics",)),
+        Heading(("Forward kinematics",), anchor="forward"),
         Paragraph(words),
         Matrix(left, tuple(rows)),
         Formulas(tuple(lines)),
     ]
 
 
+def _sums_words(dh: DHChain) -> Text:
+    """How sums of angles are written, for an arm where some come up: the first pair of parallel axes."""
+    pairs = [
+        i
+        for i, (one, two) in enumerate(pairwise(dh.rows), start=1)
+        if one.revolute and two.revolute and two.alpha.exact == 0
+    ]
+    if not pairs:
+        return (".",)
+    first, second = str(pairs[0]), str(pairs[0] + 1)
+    total = m.name("theta", first) + m.plus() + m.name("theta", second)
+    words = "; angles of parallel axes come as sums: "
+    return (words, m.name("theta", first + second) + m.relation() + total, ".")
+
+
 def _unwritten(pose: Matrix, n: int) -> list[Block]:
     """Forward kinematics whose entries are too long to be read: the product alone."""
     factors = [m.name("A", str(i)) for i in range(1, n + 1)]
     return [
-        Heading(("Forward kinematics",)),
+        Heading(("Forward kinematics",), anchor="forward"),
         Paragraph((
             "The desired pose is the product of the matrices of the table's rows (below); without "
             "parallel axes and right angles its entries are too long to be written out.",

@@ -24,7 +24,7 @@ _EXACT = (
 
 def proof_section(derivation: Derivation) -> list[Block]:
     """The proof in words, and the conditions under which each form holds."""
-    heading = Heading(("Proof",))
+    heading = Heading(("Proof",), anchor="proof")
     try:
         from ikgen.symbolic.proof import prove
     except MissingToolError as error:

@@ -33,7 +33,8 @@ def graph_section(
     """The drawing, and the direct parents in words."""
     text: list[Inline] = [
         "An arrow leads from an unknown to those that are computed from it; what it leads to by way "
-        "of another unknown has no arrow of its own. "
+        "of another unknown has no arrow of its own. Boxes name the leaf that solved the unknown and lead "
+        "to its step; ×2 stands below an unknown with two branches. "
     ]
     several = [
         (v, above) for v, above in versions.parents.items() if len(above) > 1 and v not in passed
@@ -46,7 +47,7 @@ def graph_section(
     for v in passed:
         text += [variable(v), " is computed on the way and brings no branch of its own. "]
     return [
-        Heading(("Solution graph",)),
+        Heading(("Solution graph",), anchor="graph"),
         Paragraph(tuple(text)),
         Picture(drawing.svg, drawing.latex, "Solution graph"),
     ]
@@ -57,15 +58,18 @@ def poses_section(graph: SolutionGraph, versions: Versions) -> list[Block]:
     joints = [graph.known.joint_variable(j) for j in range(graph.dh.dof)]
     known = [v for v in joints if v in versions.within]
     lead = (
-        f"{versions.poses} sets of versions, one a choice of branches; "
+        f"{versions.poses} solutions of the whole arm, one a choice of branches; "
         "a branch whose guard fails drops out."
     )
-    blocks: list[Block] = [Heading(("Sets of joint solutions",)), Paragraph((lead,))]
+    blocks: list[Block] = [
+        Heading(("Sets of joint solutions",), anchor="sets"),
+        Paragraph((lead,)),
+    ]
     if versions.poses <= _MOST_SETS:
         lines = []
         for i, chosen in enumerate(versions.sets(), start=1):
             inside = m.join([variable(v, versions.label(v, chosen)) for v in known], m.comma())
-            lines.append(m.text(f"Pose {i}: ") + m.space() + m.group(inside, "[]"))
+            lines.append(m.text(f"Solution {i}: ") + m.space() + m.group(inside, "[]"))
         blocks.append(Formulas(tuple(lines)))
     return blocks
 
@@ -90,4 +94,4 @@ def verification_section(reports: Mapping[str, VerificationReport]) -> list[Bloc
                 small=True,
             )
         ]
-    return [Heading(("Verification",)), *blocks] if blocks else []
+    return [Heading(("Verification",), anchor="verification"), *blocks] if blocks else []

@@ -51,10 +51,9 @@ class Style:
 
 def skeleton_camera(dh: DHChain, rows: Sequence[ArrayLike], style: Style) -> Camera:
     """One camera for several configurations (dof,), so that their drawings can be compared."""
-    points = [skeleton(dh, q).points for q in rows]
-    every = np.concatenate(points)
-    floor = every * (1.0, 1.0, 0.0)
-    return look_at(np.concatenate([every, floor]), style.width, style.height, style.margin)
+    arms = [skeleton(dh, q) for q in rows]
+    parts = [arm.points for arm in arms] + [_floor(arm) for arm in arms if _stands(arm)]
+    return look_at(np.concatenate(parts), style.width, style.height, style.margin)
 
 
 def skeleton_svg(
@@ -88,15 +87,29 @@ def _path(points: Array, *, closed: bool = False) -> str:
     return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in points + 0.0) + "Z" * closed
 
 
+def _stands(arm: Skeleton) -> bool:
+    """Whether the arm is above its base, as one on the floor is."""
+    return bool(arm.points[:, 2].mean() > 0.0)
+
+
+def _floor(arm: Skeleton) -> Array:
+    """The shadow's corners (n, 3)."""
+    return np.asarray(np.concatenate([arm.points[:1], arm.points[1::2]]) * (1.0, 1.0, 0.0))
+
+
 def _shade(camera: Camera, arm: Skeleton, style: Style) -> str:
     """The base's disc on the floor, and the shadow that the arm casts there."""
     angles = np.linspace(0.0, 2 * np.pi, 33)[:-1]
     wide = 2.4 * style.radius / camera.scale
     rim = wide * np.stack([np.cos(angles), np.sin(angles), np.zeros(32)], axis=1)
-    floor = np.concatenate([arm.points[:1], arm.points[1::2]]) * (1.0, 1.0, 0.0)
-    return (
+    disc = (
         f'<path class="arm-shade" d="{_path(camera.place(rim), closed=True)}" fill="{SHADE}" '
-        f'fill-opacity="0.3"/><path class="arm-shadow" d="{_path(camera.place(floor))}" fill="none" '
+        'fill-opacity="0.3"/>'
+    )
+    if not _stands(arm):
+        return disc
+    return disc + (
+        f'<path class="arm-shadow" d="{_path(camera.place(_floor(arm)))}" fill="none" '
         f'stroke="{SHADE}" stroke-opacity="0.35" stroke-width="{style.radius / 2:.1f}" '
         'stroke-linejoin="round" stroke-linecap="round"/>'
     )

@@ -9,7 +9,7 @@ from ikgen.formulas import mathtext as m
 from ikgen.formulas.mathtext import Math
 from ikgen.report.document import Block, Formulas, Inline, Paragraph
 
-__all__ = ["origin", "place", "splits_section"]
+__all__ = ["equation_anchor", "origin", "place", "splits_section"]
 
 _WORDS = {
     "p.p": "squared length of column 4",
@@ -46,6 +46,12 @@ def splits_section(system: EquationSet) -> list[Block]:
             "branches to compute it for.",
         )),
     ]  # fmt: skip
+
+
+def equation_anchor(e: Equation) -> str:
+    """The place of a scalar equation in the document, for links: eq-3-4-py."""
+    entry = "".join(ch if ch.isalnum() else "-" for ch in e.entry)
+    return f"eq-{e.k}-{e.m}-{entry}"
 
 
 def place(e: Equation) -> str:

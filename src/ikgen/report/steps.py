@@ -14,9 +14,11 @@ from ikgen.formulas.normal_form import Sum
 from ikgen.formulas.normalizer import Normalizer
 from ikgen.formulas.notation import show, variable
 from ikgen.report.candidate_table import candidates_table
-from ikgen.report.document import Block, Formulas, Heading, Inline, Paragraph, Rows, Text
+from ikgen.report.document import Block, Fold, Formulas, Heading, Inline, Paragraph, Rows, Text
+from ikgen.report.leaf_words import leaf_sentence
 from ikgen.report.solution_sets import Versions
-from ikgen.report.splits import origin, place
+from ikgen.report.splits import equation_anchor, origin, place
+from ikgen.report.step_anchor import step_anchor
 from ikgen.solver.candidate import Candidate
 from ikgen.solver.choice import Step
 from ikgen.solver.solution_graph import SolutionGraph
@@ -52,10 +54,12 @@ def step_section(w: Writer, number: int, step: Step) -> list[Block]:
     v = variable(c.unknown)
     title: Text = (f"{number}. ", v, f": {c.leaf}")
     solved = _formula(w, c)
-    blocks: list[Block] = [Heading(title, 2), *_origin(w, c)]
-    shown = [_equation(w, e) for e in dict.fromkeys(c.sources) if _short(w, e)]
+    blocks: list[Block] = [Heading(title, 2, step_anchor(c.unknown))]
+    blocks += [*leaf_sentence(c.leaf), *_origin(w, c)]
+    shown = [e for e in dict.fromkeys(c.sources) if _short(w, e)]
     if shown:
-        blocks += [Paragraph(("that is:",)), Formulas(tuple(shown))]
+        written = tuple(_equation(w, e) for e in shown)
+        blocks += [Paragraph(("that is:",)), Formulas(written, tuple(map(equation_anchor, shown)))]
     if solved.equations:
         blocks += [Paragraph(("In the unknown:",)), Formulas(solved.equations)]
     news = w.names.news()
@@ -114,7 +118,7 @@ def _versions(w: Writer, v: Variable, branches: int) -> list[Block]:
     if count == branches or not parents:
         return []
     forks = w.versions.within[v]
-    lead: list[Inline] = [f"{count} versions, from those of "]
+    lead: list[Inline] = [f"{count} solutions, from those of "]
     for i, p in enumerate(parents):
         lead += [", " if i else "", variable(p)]
     own = [f for f in forks if w.versions.forks[f][0] == v]
@@ -128,9 +132,11 @@ def _versions(w: Writer, v: Variable, branches: int) -> list[Block]:
         if own:
             cells.append((str(chosen[own[0]] + 1),))
         rows.append(tuple(cells))
-    header: list[Text] = [("version",), *(("from ", variable(p)) for p in parents)]
+    header: list[Text] = [("solution",), *(("from ", variable(p)) for p in parents)]
     header += [("branch",)] if own else []
-    return [Paragraph((*lead, ":")), Rows(tuple(header), tuple(rows), small=True)]
+    table = Rows(tuple(header), tuple(rows), small=True)
+    words = f"The {count} solutions and what each is computed from"
+    return [Paragraph((*lead, ".")), Fold(words, (table,))]
 
 
 def _guards(step: Step, solved: Formula) -> list[Block]:
@@ -195,7 +201,7 @@ def derived_section(w: Writer) -> list[Block]:
     if not lines:
         return []
     return [
-        Heading(("Sums of angles",), 2),
+        Heading(("Sums of angles",), 2, "sums"),
         Paragraph(("Linear relations give the other joints:",)),
         Formulas(tuple(lines)),
     ]

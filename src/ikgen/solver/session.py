@@ -12,6 +12,7 @@ from ikgen.algebra.expression import Expr
 from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
 from ikgen.equations.probes import Probes
+from ikgen.kinematics.fixed_order import cosines, product, sines
 from ikgen.solver.candidate import Candidate
 from ikgen.solver.choice import Chooser, Step
 from ikgen.solver.leaves import Leaf
@@ -85,8 +86,8 @@ class Session:
 
     def truth(self, variable: Variable) -> tuple[NDArray[np.float64], ...]:
         """The variable's generating values at the probes."""
-        value = self.probes.values @ np.array(variable.combination, dtype=float)
-        return (np.cos(value), np.sin(value)) if variable.kind == "angle" else (value,)
+        value = product(self.probes.values, np.array(variable.combination, dtype=float))
+        return (cosines(value), sines(value)) if variable.kind == "angle" else (value,)
 
     def start(self) -> None:
         """Held joints are known from the start."""

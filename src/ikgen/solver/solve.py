@@ -10,6 +10,7 @@ from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.knowledge import Knowledge
 from ikgen.equations.probes import make_probes
 from ikgen.equations.products import ENTRY_NAMES
+from ikgen.equations.readable import readable_in_dh
 from ikgen.model.dh import DHChain
 from ikgen.solver.behavior_tree import Tree, outline, the_tree, tick
 from ikgen.solver.leaves import Leaf, all_leaves
@@ -34,6 +35,7 @@ def solve_chain(
     part of the chain (tasks that do not read the whole pose). `leaves` are by default ikgen's own and
     those of other packages, `tree` ikgen's own or that of another package.
     """
+    readable = readable_in_dh(dh, readable)
     probes = make_probes(dh, tool=tool_on_right, readable=readable)
     graph = ExpressionGraph(len(probes.values))
     system = EquationSet(

@@ -14,6 +14,7 @@ from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.evaluation import evaluate
 from ikgen.equations.probes import Probes, arm_size, smallest_singular
 from ikgen.forms.form import scales
+from ikgen.kinematics.fixed_order import product
 from ikgen.solver.candidate import Candidate
 
 __all__ = ["conditions", "weak_configurations"]
@@ -29,7 +30,7 @@ def conditions(candidate: Candidate, system: EquationSet, values: Array) -> list
     """What must not vanish, each (m, N) at configurations `values` (N, dof), in natural units."""
     form = candidate.form
     c, z = list(evaluate(system, form.coefficients, values)), scales(form.coefficients)
-    fold = form.fold(c, z, values @ np.array(candidate.unknown.combination, dtype=float))
+    fold = form.fold(c, z, product(values, np.array(candidate.unknown.combination, dtype=float)))
     return [form.divisor(c, z)] if fold is None else [form.divisor(c, z), fold]
 
 

@@ -2,48 +2,65 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
 
-from ikgen.errors import UnknownNameError
+from ikgen.errors import UnknownNameError, UsageError
 from ikgen.plugins import find_plug_in, plug_ins
 
-if TYPE_CHECKING:
-    from ikgen.model.dh import DHChain
-    from ikgen.model.joint_tree import Matrix
+__all__ = ["AXES", "TASKS", "Task", "find_task"]
 
-__all__ = [
-    "TASKS",
-    "Task",
-    "find_task",
-    "fits",
-    "fitting_tasks",
-    "freedoms_moved",
-    "task_motion",
-]
+AXES = ("x", "y", "z")
+"""The tool's axes, by which a task with a direction goes."""
 
 _POSITION = ("px", "py", "pz")
 _ROTATION = tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
 _DIRECTION = ("r13", "r23", "r33")
+_ELEVATION = ("r33",)
 _HEADING = ("r11", "r21")
 _ORIENTATIONS = {
     frozenset(): "",
     frozenset(_ROTATION): "rotation",
-    frozenset(_DIRECTION): "direction",
     frozenset(_HEADING): "yaw",
+    **{frozenset((f"r1{j}", f"r2{j}", f"r3{j}")): "direction" for j in (1, 2, 3)},
+    **{frozenset((f"r3{j}",)): "pitch" for j in (1, 2, 3)},
 }
 
 
 @dataclass(frozen=True, slots=True)
 class Task:
     """A task reads the pose entries `readable` (rows and columns from 1) and fixes `freedoms` of the
-    tip's six; `aliases` are IKFast's names, which MoveIt users know."""
+    tip's six; `aliases` are IKFast's names, which MoveIt users know. `axis` is the tool's axis that a task
+    with a direction reads ("": the task has none)."""
 
     name: str
     readable: frozenset[str]
     freedoms: int
     words: str
     aliases: tuple[str, ...] = ()
+    axis: str = ""
+
+    @property
+    def stem(self) -> str:
+        """The name without the axis."""
+        return self.name.partition(":")[0]
+
+    def along(self, axis: str) -> Task:
+        """The task by another axis of the tool: `position-direction:x`, without an axis where it is z.
+
+        Raises `UsageError` for a task that has no direction.
+        """
+        if not self.axis:
+            raise UsageError(
+                f"the task '{self.name}' reads no single axis of the tool",
+                hint=f"leave the tool axis out; tasks with one: {', '.join(_with_axis())}",
+            )
+        old, new = (str(AXES.index(a) + 1) for a in (self.axis, axis))
+        readable = frozenset(
+            n[:-1] + new if n[0] == "r" and n[-1] == old else n for n in self.readable
+        )
+        words = self.words.replace(f"tool's {self.axis} axis", f"tool's {axis} axis")
+        name = self.stem if axis == "z" else f"{self.stem}:{axis}"
+        return replace(self, name=name, readable=readable, words=words, axis=axis)
 
     @property
     def whole_pose(self) -> bool:
@@ -65,8 +82,8 @@ class Task:
 
     @property
     def orientation(self) -> str:
-        """What is read of the rotation: "", rotation, direction or yaw; "entries" where the task reads
-        other entries of the pose, or a part of the position, each compared for itself."""
+        """What is read of the rotation: "", rotation, direction, yaw or pitch; "entries" where the task
+        reads other entries of the pose, or a part of the position, each compared for itself."""
         rest = self.readable - set(_POSITION) if self.position else self.readable
         return _ORIENTATIONS.get(rest, "entries")
 
@@ -79,6 +96,15 @@ TASKS: tuple[Task, ...] = (
         5,
         "position and direction of the tool's z axis",
         ("TranslationDirection5D",),
+        "z",
+    ),
+    Task(
+        "position-pitch",
+        frozenset(_POSITION + _ELEVATION),
+        4,
+        "position and elevation of the tool's z axis over the base's x-y plane",
+        ("TranslationZAxisAngle4D",),
+        "z",
     ),
     Task(
         "position-yaw",
@@ -89,13 +115,34 @@ TASKS: tuple[Task, ...] = (
     ),
     Task("position", frozenset(_POSITION), 3, "position", ("Translation3D",)),
     Task("rotation", frozenset(_ROTATION), 3, "rotation", ("Rotation3D",)),
-    Task("direction", frozenset(_DIRECTION), 2, "direction of the tool's z axis", ("Direction3D",)),
+    Task(
+        "direction",
+        frozenset(_DIRECTION),
+        2,
+        "direction of the tool's z axis",
+        ("Direction3D",),
+        "z",
+    ),
 )
 
 
-def find_task(name: str) -> Task:
-    """The task of a name or alias, ikgen's own or another package's; raises `UnknownNameError` with
-    what there is."""
+def _with_axis() -> list[str]:
+    return [task.name for task in TASKS if task.axis]
+
+
+def find_task(name: str, axis: str | None = None) -> Task:
+    """The task of a name or alias, ikgen's own or another package's, by the tool's axis (None: the name's,
+    as in `position-pitch:x`, or z); raises `UnknownNameError` with what there is, `UsageError` for an axis
+    of a task that has none."""
+    stem, colon, own = name.partition(":")
+    axis = axis or (own if colon else None)
+    if axis is not None and axis not in AXES:
+        raise UnknownNameError("tool axis", axis, AXES)
+    task = _named(stem)
+    return task if axis is None else task.along(axis)
+
+
+def _named(name: str) -> Task:
     for task in TASKS:
         if name == task.name or name.lower() in (a.lower() for a in task.aliases):
             return task
@@ -104,63 +151,3 @@ def find_task(name: str) -> Task:
         return plug_in.load(Task)
     others = (one.name for one in plug_ins("ikgen.tasks"))
     raise UnknownNameError("task", name, [*(task.name for task in TASKS), *others])
-
-
-def fitting_tasks(dh: DHChain) -> tuple[Task, ...]:
-    """Tasks for an arm when none was asked for, the best first and the whole pose last.
-
-    An arm with fewer than six moving joints gets the task that fixes as many freedoms as it has, if
-    its joints do move all of them; the whole pose then only counts on the poses that it can take.
-    """
-    moving = dh.dof - len(dh.free)
-    smaller = [t for t in TASKS if t.freedoms == moving and t.name != "rotation" and fits(dh, t)]
-    whole = TASKS[0]
-    return (whole,) if moving >= whole.freedoms else (*smaller, whole)
-
-
-def fits(dh: DHChain, task: Task) -> bool:
-    """Whether the joints that are not held move the task's freedoms independently of each other."""
-    import numpy as np
-
-    from ikgen.kinematics.forward import file_forward
-
-    q = _configurations(dh)
-    if task.name == "position-yaw" and np.abs(file_forward(dh, q)[:, 2, 0]).max() > 1e-6:
-        return False  # a heading is well-defined where the tool's x axis stays horizontal
-    return freedoms_moved(dh, task) == dh.dof - len(dh.free)
-
-
-def freedoms_moved(dh: DHChain, task: Task) -> int:
-    """How many freedoms of the task the joints that are not held move, nearly everywhere: the rank of
-    the task's entries by the joints."""
-    import numpy as np
-
-    moving = [j for j, joint in enumerate(dh.joints) if joint.name not in dh.free]
-    if not moving:
-        return 0
-    singular = np.linalg.svd(task_motion(dh, task)[..., moving], compute_uv=False)
-    largest = np.maximum(singular[:, :1], 1e-12)
-    return int((np.median(singular / largest, axis=0) > 1e-4).sum())
-
-
-def task_motion(dh: DHChain, task: Task) -> Matrix:
-    """How the task's entries change with all joints, held or not, at a few configurations: (8, entries,
-    dof), per rad and m."""
-    import numpy as np
-
-    from ikgen.kinematics.forward import file_forward
-
-    q = _configurations(dh)
-    rows, columns = zip(*task.entries, strict=True)
-    steps = []
-    for h in 1e-6 * np.eye(dh.dof):
-        change = (file_forward(dh, q + h) - file_forward(dh, q - h)) / 2e-6
-        steps.append(change[:, rows, columns])
-    return np.stack(steps, axis=-1)
-
-
-def _configurations(dh: DHChain) -> Matrix:
-    """A few configurations (8, dof) in rad and m, the same each time."""
-    import numpy as np
-
-    return np.random.default_rng(0).uniform(-1.5, 1.5, (8, dh.dof))

@@ -134,13 +134,14 @@ def check_invalid(arm: ArmUnderTest, runner: Runner, pose: Array) -> CheckResult
     return result("invalid poses", len(cases), len(wrong), detail="; ".join(wrong))
 
 
-def check_shapes(runner: Runner, pose: Array) -> CheckResult:
+def check_shapes(arm: ArmUnderTest, runner: Runner, pose: Array) -> CheckResult:
     """Inputs of a wrong shape raise `ValueError`, where the language lets them through at all."""
     if not runner.dynamic_shapes:
         return result("bad shapes", 0, 0, detail=f"the types of {runner.label} exclude them")
     dof, wrong = runner.constants.dof, []
+    size = 3 if arm.task.position else 2  # a rotation alone does where no position is read
     attempts: dict[str, Callable[[], object]] = {
-        "pose (3, 3)": lambda: runner.solve(np.eye(3)),
+        f"pose ({size}, {size})": lambda: runner.solve(np.eye(size)),
         "pose (16,)": lambda: runner.solve(pose.reshape(16)),
         "seed too long": lambda: runner.solve(pose, seed=np.zeros(dof + 1)),
         "forward of q too long": lambda: runner.forward(np.zeros((1, dof + 1))),

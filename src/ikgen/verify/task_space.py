@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.tasks import TASKS, Task
+from ikgen.tasks import AXES, TASKS, Task
 
 __all__ = ["TASK_SPACES", "TaskSpace", "task_space"]
 
@@ -31,36 +31,45 @@ def _turn(cross: Array, dot: Array) -> Array:
     return np.asarray(axis * scale[:, None])
 
 
-def _rotation(T: Array, target: Array) -> Array:
+def _rotation(T: Array, target: Array, axis: int) -> Array:
     E = target[:, :3, :3] @ T[:, :3, :3].transpose(0, 2, 1)
     vee = np.stack([E[:, 2, 1] - E[:, 1, 2], E[:, 0, 2] - E[:, 2, 0], E[:, 1, 0] - E[:, 0, 1]], 1)
     return _turn(vee / 2, (np.trace(E, axis1=1, axis2=2) - 1) / 2)
 
 
-def _direction(T: Array, target: Array) -> Array:
-    z, wanted = T[:, :3, 2], target[:, :3, 2]
+def _direction(T: Array, target: Array, axis: int) -> Array:
+    z, wanted = T[:, :3, axis], target[:, :3, axis]
     return _turn(np.cross(z, wanted), np.einsum("ni,ni->n", z, wanted))
 
 
-def _yaw(T: Array, target: Array) -> Array:
+def _pitch(T: Array, target: Array, axis: int) -> Array:
+    """Differences of the elevation's sine, which is what the pose has."""
+    return np.asarray((target[:, 2, axis] - T[:, 2, axis])[:, None])
+
+
+def _yaw(T: Array, target: Array, axis: int) -> Array:
     difference = [np.arctan2(X[:, 1, 0], X[:, 0, 0]) for X in (target, T)]
     return np.asarray(
         (np.remainder(difference[0] - difference[1] + np.pi, 2 * np.pi) - np.pi)[:, None]
     )
 
 
-def _rotation_rows(T: Array, J: Array) -> Array:
+def _rotation_rows(T: Array, J: Array, axis: int) -> Array:
     return J[:, 3:]
 
 
-def _direction_rows(T: Array, J: Array) -> Array:
-    """Angular velocity without its part about the tool's z axis."""
-    z = T[:, :3, 2]
+def _direction_rows(T: Array, J: Array, axis: int) -> Array:
+    """Angular velocity without its part about the tool's axis."""
+    z = T[:, :3, axis]
     along = np.einsum("ni,nij->nj", z, J[:, 3:])
     return np.asarray(J[:, 3:] - z[:, :, None] * along[:, None, :])
 
 
-def _yaw_rows(T: Array, J: Array) -> Array:
+def _pitch_rows(T: Array, J: Array, axis: int) -> Array:
+    return _entry_rows(T, J, ((2, axis),))
+
+
+def _yaw_rows(T: Array, J: Array, axis: int) -> Array:
     x = T[:, :3, 0]
     velocity = np.cross(J[:, 3:], x[:, :, None], axis=1)
     squared = np.maximum(x[:, 0] ** 2 + x[:, 1] ** 2, 1e-12)[:, None]
@@ -77,20 +86,22 @@ def _entry_rows(T: Array, J: Array, entries: tuple[tuple[int, int], ...]) -> Arr
     return np.stack(rows, axis=1)
 
 
-_Residual = Callable[[Array, Array], Array]
+_Residual = Callable[[Array, Array, int], Array]
 
 
 @dataclass(frozen=True, slots=True)
 class TaskSpace:
     """One task. `rank` is its number of independent equations; `position` says whether it reads the
     tip's position; `orientation` names what it reads of the rotation ("", rotation, direction,
-    yaw); `entries` are entries of the pose (row, column) that count each for itself."""
+    yaw, pitch), of direction and pitch by the tool's `axis` (0 to 2); `entries` are entries of the pose
+    (row, column) that count each for itself."""
 
     name: str
     rank: int
     position: bool
     orientation: str
     entries: tuple[tuple[int, int], ...] = ()
+    axis: int = 2
 
     @property
     def lengths(self) -> list[int]:
@@ -103,7 +114,7 @@ class TaskSpace:
         """Target minus tip, (N, m): position in m, then orientation as a rotation vector in rad."""
         parts = [target[:, :3, 3] - T[:, :3, 3]] if self.position else []
         if self.orientation:
-            parts.append(_ORIENTATIONS[self.orientation][0](T, target))
+            parts.append(_ORIENTATIONS[self.orientation][0](T, target, self.axis))
         if self.entries:
             rows, columns = zip(*self.entries, strict=True)
             parts.append(target[:, rows, columns] - T[:, rows, columns])
@@ -113,7 +124,7 @@ class TaskSpace:
         """Task Jacobian (N, m, dof) from poses (N, 4, 4) and geometric Jacobians (N, 6, dof)."""
         parts = [J[:, :3]] if self.position else []
         if self.orientation:
-            parts.append(_ORIENTATIONS[self.orientation][1](T, J))
+            parts.append(_ORIENTATIONS[self.orientation][1](T, J, self.axis))
         if self.entries:
             parts.append(_entry_rows(T, J, self.entries))
         return np.concatenate(parts, axis=1)
@@ -132,7 +143,7 @@ class TaskSpace:
         position = np.linalg.norm(T[:, :3, 3] - target[:, :3, 3], axis=1) if self.position else zero
         if not self.orientation:
             return np.asarray(position), zero
-        turn = _ORIENTATIONS[self.orientation][0](T, target)
+        turn = _ORIENTATIONS[self.orientation][0](T, target, self.axis)
         return np.asarray(position), np.linalg.norm(turn, axis=1)
 
 
@@ -140,9 +151,10 @@ _ORIENTATIONS: dict[str, tuple[_Residual, _Residual]] = {
     "rotation": (_rotation, _rotation_rows),
     "direction": (_direction, _direction_rows),
     "yaw": (_yaw, _yaw_rows),
+    "pitch": (_pitch, _pitch_rows),
 }
 
-_ROWS = {"rotation": 3, "direction": 3, "yaw": 1}
+_ROWS = {"rotation": 3, "direction": 3, "yaw": 1, "pitch": 1}
 """Components of each residual."""
 
 
@@ -150,7 +162,8 @@ def task_space(task: Task) -> TaskSpace:
     """How a task is verified."""
     if task.orientation == "entries":
         return TaskSpace(task.name, task.freedoms, False, "", task.entries)
-    return TaskSpace(task.name, task.freedoms, task.position, task.orientation)
+    axis = AXES.index(task.axis) if task.axis else 2
+    return TaskSpace(task.name, task.freedoms, task.position, task.orientation, axis=axis)
 
 
 TASK_SPACES = {task.name: task_space(task) for task in TASKS}

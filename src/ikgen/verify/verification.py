@@ -62,7 +62,7 @@ def _plan(
         "free joints": lambda: checks.check_free_joints(arm, a.reachable),
         "unreachable poses": lambda: coverage.check_unreachable(arm, a.unreachable),
         "invalid poses": lambda: interface_checks.check_invalid(arm, runner, random.poses[0]),
-        "bad shapes": lambda: interface_checks.check_shapes(runner, random.poses[0]),
+        "bad shapes": lambda: interface_checks.check_shapes(arm, runner, random.poses[0]),
         "solve_batch": lambda: interface_checks.check_batch(arm, runner, a.ordered.sample),
         "determinism": lambda: interface_checks.check_determinism(a.limited, a.repeated),
         **agreement,

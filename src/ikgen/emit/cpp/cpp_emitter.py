@@ -9,6 +9,7 @@ from ikgen.emit.blanks import blanks, pairs
 from ikgen.emit.cpp.cpp_language import CONSTANT, comment, declared, literal, number
 from ikgen.emit.cpp.cpp_policy import policy_lines
 from ikgen.emit.cpp.cpp_statements import ProgramText
+from ikgen.emit.cpp.cpp_twist_chain import twist_lines
 from ikgen.emit.cpp.header_bundle import bundle
 from ikgen.emit.printer import expression
 from ikgen.emit.rendering import render
@@ -16,6 +17,7 @@ from ikgen.emit.solver_module import SolverModule
 from ikgen.errors import UsageError
 from ikgen.program.ops import Op
 from ikgen.program.policy import SolvePolicy
+from ikgen.tasks import AXES, Task
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -25,8 +27,12 @@ __all__ = ["emit", "emit_derivation", "emit_header"]
 _SYSTEM = ("array", "cstddef", "Eigen/Core", "Eigen/Geometry")
 """Headers that the shell itself needs."""
 
-_COLUMNS = {"rotation": "0, 3, 3", "direction": "2, 1, 3", "yaw": "0, 1, 2"}
-"""First column of the rotation that a task reads, how many, and how many rows of them."""
+
+def _columns(task: Task) -> str:
+    """First column of the rotation that a task reads, how many, and how many rows of them."""
+    if task.orientation == "direction":
+        return f"{AXES.index(task.axis)}, 1, 3"
+    return {"rotation": "0, 3, 3", "yaw": "0, 1, 2"}.get(task.orientation, "0, 0, 3")
 
 
 def emit_derivation(derivation: Derivation) -> dict[str, str]:
@@ -60,7 +66,7 @@ def emit_header(module: SolverModule) -> str:
         careful=_careful(module),
         way="SingleSolve" if _careful(module) else "LaneSolve",
         entries_read=module.reads.entries,
-        columns=_COLUMNS.get(module.reads.orientation, "0, 0, 3"),
+        columns=_columns(module.reads),
         joints=module.dh.joints,
         lower=[number(j.limits.lower) for j in module.dh.joints],
         upper=[number(j.limits.upper) for j in module.dh.joints],
@@ -71,9 +77,11 @@ def emit_header(module: SolverModule) -> str:
         rough=_rough(module, policy),
         order=_depth_first(branches),
         frames=[[[expression(CONSTANT, x) for x in row] for row in F] for F in program.frames],
+        twisted=twist_lines(module) if module.refine == "all" else None,
         beside=[[number(float(x)) for x in D.T[:, :3].ravel()] for D in module.beside],
         size=_size_text(module),
         blanks=blanks(module),
+        **_elimination(module),
         angles=[(f, n) for n in pairs(module) for f in ("cos", "sin")],
         free_defaults=[number(x) for x in module.free_defaults],
         number=number,
@@ -84,8 +92,8 @@ def emit_header(module: SolverModule) -> str:
 
 
 def _careful(module: SolverModule) -> bool:
-    """Whether every pose's rows are polished or judged one by one."""
-    return module.refine == "all" or module.plan is not None
+    """Whether every pose's rows are judged one by one."""
+    return module.plan is not None
 
 
 def _headers(module: SolverModule) -> list[str]:
@@ -94,13 +102,35 @@ def _headers(module: SolverModule) -> list[str]:
     needed = ["lane_angle.hpp", "single_solve.hpp" if _careful(module) else "lane_solve.hpp"]
     needed += ["routine_roots.hpp"] * bool(routines)
     needed += [_ROUTINES.get(name, f"{name}.hpp") for name in routines]
+    needed += ["lane_newton.hpp"] * (module.refine == "all")
     needed += ["poses_beside.hpp"] * bool(module.beside)
     task = "whole_pose.hpp" if module.task == "pose" else "pose_entries.hpp"
-    return [*needed, task, "pose_solver.hpp"]
+    return [*needed, task, "pose_solver.hpp", "projection.hpp"]
 
 
 _ROUTINES = {"general_6r": "general_6r_arm.hpp"}
-"""Headers of routines that work on the whole arm."""
+"""Headers of routines that are not named after them."""
+
+_ELIMINATIONS = {
+    "general_6r": "General6r",
+    "one_slide": "OneSlide",
+    "two_slides": "TwoSlides",
+    "three_slides": "ThreeSlides",
+}
+"""The class of each elimination."""
+
+
+def _elimination(module: SolverModule) -> dict[str, object]:
+    """What the templates say of an elimination: its routine, class, and the numbers that it gives a row."""
+    calls = [level.call for level in module.program.levels if level.call is not None]
+    if module.plan is None:
+        return {"routine": ""}
+    return {
+        "routine": calls[0].routine,
+        "elimination": _ELIMINATIONS[calls[0].routine],
+        "numbers": len(calls[0].names),
+        "all_turn": all(module.plan.turning),
+    }
 
 
 def _size_text(module: SolverModule) -> str:

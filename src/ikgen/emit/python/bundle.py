@@ -34,9 +34,10 @@ def bundle(shell: str) -> str:
     """The shell's text with the runtime's definitions that it uses in place of `MARK`.
 
     A shell is a module that imports from `ikgen.runtime.python`, each name once. What it imports is called
-    as it calls it, what that uses in turn gets an underscore in front. Imports of the standard library and
-    of other packages are merged into the shell's, those that nothing uses are left out.
-    Raises ValueError where two definitions would get the same name.
+    as it calls it, what that uses in turn gets an underscore in front, and its module's name where another
+    has the name already. Imports of the standard library and of other packages are merged into the
+    shell's, those that nothing uses are left out.
+    Raises ValueError for a shell that defines what it imports.
     """
     source = taken_apart("shell", shell, moved=False)
     used = _used(source)
@@ -52,21 +53,26 @@ def _used(shell: RuntimeSource) -> _Bundle:
     """What the shell's imports lead to."""
     names: dict[Key, str] = {}
     stack = [(key, alias) for alias, key in shell.internal.items()]
+    own = {n for d in shell.definitions for n in d.defines}
+    if own & set(shell.internal):
+        raise ValueError(
+            f"names imported and defined: {', '.join(sorted(own & set(shell.internal)))}"
+        )
+    taken = own | set(shell.internal)
     while stack:
         key, name = stack.pop(0)
         if key in names:
             continue
+        if name in taken and shell.internal.get(name) != key:
+            name = f"_{key[0]}_{name.lstrip('_')}"
         names[key] = name
+        taken.add(name)
         module = read_source(key[0])
         definition = _definition(module, key[1])
         for other in sorted({*definition.uses, *definition.defines}):
             needed = _owner(module, other)
             if needed is not None:
                 stack.append((needed, _private(needed[1])))
-    taken = [n for d in shell.definitions for n in d.defines] + list(names.values())
-    twice = sorted({name for name in taken if taken.count(name) > 1})
-    if twice:
-        raise ValueError(f"names that two definitions would get: {', '.join(twice)}")
     order: dict[str, None] = {}
     for module_name in sorted({module_name for module_name, _ in names}):
         order |= dict.fromkeys(_after_imports(module_name))

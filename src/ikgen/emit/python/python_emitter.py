@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from ikgen.elimination.routine import runtime_policy
 from ikgen.emit.blanks import blanks, pairs
 from ikgen.emit.printer import expression
+from ikgen.emit.python.branch_kinds import branch_kind, elbow_end
 from ikgen.emit.python.bundle import bundle
 from ikgen.emit.python.python_language import SCALAR, number
 from ikgen.emit.python.python_statements import batch_lines, scalar_lines
@@ -16,6 +17,7 @@ from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
 from ikgen.program.policy import SolvePolicy
 from ikgen.runtime.python.solve_policy import Policy
+from ikgen.tasks import AXES, Task
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -52,19 +54,28 @@ def emit_module(module: SolverModule) -> str:
         number=number,
         literal=literal,
         words=words,
+        held=len(module.free),
+        held_name=words(module.dh.joints[module.free[0]].name) if module.free else "",
+        held_turns=bool(module.free) and module.first_row(module.free[0]).revolute,
+        guarded=all(level.call is None for level in program.levels) and module.plan is None,
         beside=[[[number(float(x)) for x in row] for row in D] for D in module.beside],
         orientation=module.reads.orientation,
         entries=module.reads.entries,
         size=module.size,
-        unit_columns=_UNIT_COLUMNS.get(module.reads.orientation, ()),
+        branch_kind=branch_kind(module),
+        elbow_end=elbow_end(module),
+        unit_columns=_unit_columns(module.reads),
         policy=policy,
         policy_values=_policy_values(runtime_policy(policy)),
     )
     return bundle(shell)
 
 
-_UNIT_COLUMNS = {"rotation": (0, 1, 2), "direction": (2,), "yaw": (0,)}
-"""Columns of the rotation that a task's entries make up."""
+def _unit_columns(task: Task) -> tuple[int, ...]:
+    """Columns of the rotation that a task's entries make up."""
+    if task.orientation == "direction":
+        return (AXES.index(task.axis),)
+    return {"rotation": (0, 1, 2), "yaw": (0,)}.get(task.orientation, ())
 
 
 def _policy_values(policy: Policy) -> list[tuple[str, str]]:

@@ -6,6 +6,7 @@ from ikgen.emit.printer import expression
 from ikgen.emit.python.python_language import BATCH, SCALAR
 from ikgen.emit.solver_module import SolverModule
 from ikgen.program.inputs import HeldValue, PoseEntry, SeedValue
+from ikgen.program.margins import margin
 from ikgen.program.ops import renamed
 from ikgen.program.statements import Comment, Let, Level, Program, Require, Statement
 
@@ -84,6 +85,11 @@ def batch_lines(module: SolverModule) -> list[str]:
                 lines.append(f"{statement.name} = {expression(BATCH, statement.value)}")
             else:
                 lines.append(f"valid = valid & {expression(BATCH, statement.condition, 9)}")
+                if statement.fold and len(module.free) == 1:
+                    text = expression(BATCH, margin(statement.condition))
+                    lines.append(
+                        f"folds.append(np.broadcast_to({text}, full).reshape(-1, count).T)"
+                    )
     lines.append("q = (")
     lines += [f"    {expression(BATCH, one.value)}," for one in program.outputs]
     lines.append(")")

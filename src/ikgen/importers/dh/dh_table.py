@@ -11,6 +11,7 @@ import numpy as np
 
 from ikgen.errors import BadDescriptionError
 from ikgen.importers.dh.entry_expression import BadEntryError, evaluate, finite
+from ikgen.importers.dh.example_entry import read_example
 from ikgen.importers.dh.row_merge import Merged, merge, modified_rows
 from ikgen.importers.dh.table_chain import TableEnds, chain_of_rows, exact_chain
 from ikgen.importers.dh.table_document import TableDocument, read_document
@@ -59,7 +60,7 @@ def read_dh_table(
     make = exact_chain if merged.complete else chain_of_rows
     dh = make(merged, ends, free=tuple(free), locked=given)
     document.warnings.extend(_redundant(dh))
-    return _source(document), dh
+    return _source(document, read_example(document, entries, tuple(locked or {}))), dh
 
 
 def _note_new_rows(document: TableDocument, merged: Merged) -> None:
@@ -73,7 +74,7 @@ def _note_new_rows(document: TableDocument, merged: Merged) -> None:
     document.warnings.append("a fixed row between joints: the rows were made anew from the axes")
 
 
-def _source(document: TableDocument) -> Source:
+def _source(document: TableDocument, example: tuple[float, ...]) -> Source:
     return Source(
         path=document.path,
         kind="dh-table",
@@ -81,6 +82,7 @@ def _source(document: TableDocument) -> Source:
         sha256=hashlib.sha256(document.text.encode()).hexdigest(),
         dependencies=(document.path.resolve(),),
         warnings=tuple(document.warnings),
+        example=example,
     )
 
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from ikgen.importers.dh.entry_expression import Quantity, number
 from ikgen.importers.dh.table_entries import Entry
+from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.rigid import dh_link
 from ikgen.model.joint_tree import Limits, Matrix
 
@@ -71,10 +72,10 @@ def merge(rows: Sequence[ModifiedRow], X_base: Matrix, X_tip: Matrix) -> Merged:
     """Fixed rows go into the ends, into their neighbours where that is exact, else they stay."""
     left = list(rows)
     while left and left[0].kind == "fixed":
-        X_base = X_base @ row_matrix(left.pop(0))
+        X_base = product(X_base, row_matrix(left.pop(0)))
     tail = np.eye(4)
     while left and left[-1].kind == "fixed":
-        tail = row_matrix(left.pop()) @ tail
+        tail = product(row_matrix(left.pop()), tail)
     out: list[ModifiedRow] = []
     complete = True
     for row in left:
@@ -88,8 +89,8 @@ def merge(rows: Sequence[ModifiedRow], X_base: Matrix, X_tip: Matrix) -> Merged:
         out.append(row)
     if complete:
         out, flip = _forward(out)
-        tail = flip @ tail
-    return Merged(X_base, tuple(out), tail @ X_tip, complete)
+        tail = product(flip, tail)
+    return Merged(X_base, tuple(out), product(tail, X_tip), complete)
 
 
 def _absorb(

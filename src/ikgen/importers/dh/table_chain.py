@@ -9,6 +9,7 @@ import numpy as np
 from ikgen.importers.dh.constant_names import SymbolTable, symbol_of
 from ikgen.importers.dh.row_merge import Merged, ModifiedRow, row_matrix
 from ikgen.kinematics.file_frames import largest_deviation
+from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.modified_dh import to_dh
 from ikgen.kinematics.rigid import read_only
 from ikgen.kinematics.snapping import SnapLog
@@ -75,7 +76,7 @@ def chain_of_rows(
     axes: list[ChainAxis] = []
     pending = merged.X_base
     for row in merged.rows:
-        pending = pending @ row_matrix(row)
+        pending = product(pending, row_matrix(row))
         if row.kind != "fixed":
             axis = np.array([0.0, 0.0, 1.0])
             axes.append(ChainAxis(row.name, row.kind, pending, axis, len(axes)))
@@ -83,7 +84,7 @@ def chain_of_rows(
     moving = tuple(row for row in merged.rows if row.kind != "fixed")
     chain = Chain(
         ends.robot, ends.base_link, ends.tip_link, _joints(moving), tuple(axes),
-        pending @ merged.X_tip, locked,
+        product(pending, merged.X_tip), locked,
     )  # fmt: skip
     return to_dh(chain, free=free)
 
@@ -133,9 +134,9 @@ def _file_frames(merged: Merged, rows: tuple[DHRow, ...]) -> tuple[Matrix, ...]:
             constant = _constant(own, 0.0 if abs(theta) < 1e-15 else theta, own.d.value)
         else:
             constant = _constant(own, own.theta.value, own.d.value - row.offset.value)
-        out.append(read_only(pending @ constant + 0.0))
+        out.append(read_only(product(pending, constant) + 0.0))
         pending = np.eye(4)
-    out.append(read_only(pending @ merged.X_tip + 0.0))
+    out.append(read_only(product(pending, merged.X_tip) + 0.0))
     return tuple(out)
 
 

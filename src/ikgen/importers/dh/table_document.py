@@ -25,7 +25,7 @@ KINDS = ("revolute", "prismatic", "fixed")
 CONVENTIONS = ("modified", "standard")
 _TOP_KEYS = (
     "name", "convention", "description", "source", "licence", "parameters", "joints", "base",
-    "tool",
+    "tool", "example",
 )  # fmt: skip
 _JOINT_KEYS = ("type", *ENTRIES, "limits", "name")
 _END_KEYS = ("xyz", "rpy", "name")

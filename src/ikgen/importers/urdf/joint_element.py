@@ -1,11 +1,11 @@
-"""One `<joint>` element: checked, and copied in the plain form that suits yourdfpy."""
+"""One `<joint>` element of URDF as a joint, every number checked."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 
-from lxml import etree
+import numpy as np
 
 from ikgen.errors import BadDescriptionError
 from ikgen.importers.urdf.attribute_values import (
@@ -14,11 +14,15 @@ from ikgen.importers.urdf.attribute_values import (
     parse_numbers,
     shortened,
 )
+from ikgen.importers.urdf.joint_limits import UNLIMITED, joint_limits
 from ikgen.importers.xml_document import Element, Place, children
-from ikgen.model.joint_tree import JointType
+from ikgen.kinematics.fixed_order import length
+from ikgen.kinematics.rigid import read_only, rotation_rpy
+from ikgen.model.joint_tree import Joint, JointType, Limits, Matrix, Mimic
 
-__all__ = ["clean_joint", "required_attribute"]
+__all__ = ["read_joint", "required_attribute", "stated_limits"]
 
+_X: tuple[float, ...] = (1.0, 0.0, 0.0)  # URDF's default axis
 # Files write 0.57735 for 1/sqrt(3); what is farther from unit length than that was not meant so.
 _AXIS_ROUNDING = 1e-4
 # Beyond these a direction is noise, or its normalisation under- or overflows.
@@ -42,26 +46,34 @@ def required_attribute(element: Element, attribute: str, what: str, place: Place
     return value
 
 
-def clean_joint(joint: Element, place: Place) -> Element:
-    """A copy of a `<joint>` with its kinematics only, every number checked and complete.
+def read_joint(element: Element, place: Place) -> Joint:
+    """A `<joint>` with its kinematics only: meshes, materials and inertias are none of its business, and
+    their faults need not stop it.
 
     Raises `BadDescriptionError` (file, line) for what cannot be read; warns about what can.
     """
-    name = required_attribute(joint, "name", "<joint>", place)
-    type_ = _joint_type(joint, name, place)
-    plain = etree.Element("joint", name=name, type=type_.value)
-    for role in ("parent", "child"):
-        link = _only_child(joint, role, name, place)
-        if link is None:
-            raise place.error(joint, f"joint '{name}' has no <{role}>", f'add <{role} link="..."/>')
-        label = f"<{role}> of joint '{name}'"
-        etree.SubElement(plain, role, link=required_attribute(link, "link", label, place))
-    _copy_origin(joint, plain, name, place)
-    if type_.moves_on_one_axis:
-        _copy_axis(joint, plain, name, place)
-        _copy_limit(joint, plain, name, place)
-        _copy_mimic(joint, plain, name, place)
-    return plain
+    name = required_attribute(element, "name", "<joint>", place)
+    type_ = _joint_type(element, name, place)
+    parent, child = (_link(element, role, name, place) for role in ("parent", "child"))
+    moves = type_.moves_on_one_axis
+    return Joint(
+        name=name,
+        type=type_,
+        parent=parent,
+        child=child,
+        T_parent_child=read_only(_origin(element, name, place)),
+        axis=read_only(_axis(element, name, place) if moves else _X),
+        limits=_limits(element, type_, name, place) if moves else UNLIMITED,
+        mimic=_mimic(element, name, place) if moves else None,
+        line=element.sourceline,
+    )
+
+
+def stated_limits(element: Element) -> bool:
+    """Whether a `<joint>` that was read states limits other than 0."""
+    found = list(children(element, "limit"))
+    bounds = [limit.get(bound) for limit in found for bound in ("lower", "upper")]
+    return any(parse_number(text, finite=False) != 0.0 for text in bounds if text is not None)
 
 
 def _joint_type(joint: Element, name: str, place: Place) -> JointType:
@@ -105,65 +117,78 @@ def _vector(
         raise _bad(element, name, attribute, bad, place) from None
 
 
-def _write(values: Sequence[float]) -> str:
-    return " ".join(repr(value) for value in values)
+def _link(joint: Element, role: str, name: str, place: Place) -> str:
+    link = _only_child(joint, role, name, place)
+    if link is None:
+        raise place.error(joint, f"joint '{name}' has no <{role}>", f'add <{role} link="..."/>')
+    return required_attribute(link, "link", f"<{role}> of joint '{name}'", place)
 
 
-def _copy_origin(joint: Element, plain: Element, name: str, place: Place) -> None:
+def _origin(joint: Element, name: str, place: Place) -> Matrix:
+    """The pose (4, 4) of the joint's frame in its parent's."""
+    T = np.eye(4)
     origin = _only_child(joint, "origin", name, place)
-    if origin is None:
-        return
-    xyz = _vector(origin, "xyz", (0.0, 0.0, 0.0), name, place, _LONGEST)
-    rpy = _vector(origin, "rpy", (0.0, 0.0, 0.0), name, place)
-    etree.SubElement(plain, "origin", xyz=_write(xyz), rpy=_write(rpy))
+    if origin is not None:
+        T[:3, 3] = _vector(origin, "xyz", (0.0, 0.0, 0.0), name, place, _LONGEST)
+        T[:3, :3] = rotation_rpy(*_vector(origin, "rpy", (0.0, 0.0, 0.0), name, place))
+    return T
 
 
-def _copy_axis(joint: Element, plain: Element, name: str, place: Place) -> None:
+def _axis(joint: Element, name: str, place: Place) -> Matrix:
+    """The unit vector (3,) of the axis in the joint's frame."""
     axis = _only_child(joint, "axis", name, place)
-    xyz: tuple[float, ...] = (1.0, 0.0, 0.0)
+    xyz = _X
     if axis is not None:
         xyz = _vector(axis, "xyz", xyz, name, place)
         if axis.get("rpy") is not None:
             place.warn(axis, f"joint '{name}': <axis> has an rpy, which URDF ignores")
-    length = math.hypot(*xyz)
-    if length > _AXIS_LONGEST:
-        raise place.error(axis, f"joint '{name}': axis of length {length:g}", "use a unit vector")
-    if length < _AXIS_SHORTEST:
+    size = math.hypot(*xyz)
+    if size > _AXIS_LONGEST:
+        raise place.error(axis, f"joint '{name}': axis of length {size:g}", "use a unit vector")
+    if size < _AXIS_SHORTEST:
         raise place.error(
             axis, f"joint '{name}' moves about a zero axis", "give the axis a direction"
         )
-    if abs(length - 1.0) > _AXIS_ROUNDING:
-        place.warn(axis, f"joint '{name}': axis of length {length:g} normalised")
-    etree.SubElement(plain, "axis", xyz=_write(xyz))
+    if abs(size - 1.0) > _AXIS_ROUNDING:
+        place.warn(axis, f"joint '{name}': axis of length {size:g} normalised")
+    vector = np.array(xyz)
+    return np.asarray(vector / length(vector))
 
 
-def _copy_limit(joint: Element, plain: Element, name: str, place: Place) -> None:
+def _limits(joint: Element, type_: JointType, name: str, place: Place) -> Limits:
     limit = _only_child(joint, "limit", name, place)
-    if limit is None:
-        return
-    copied: dict[str, str] = {}
-    for attribute in ("lower", "upper"):
-        text = limit.get(attribute)
-        if text is not None:
-            copied[attribute] = repr(_scalar(limit, attribute, text, name, place, finite=False))
-    etree.SubElement(plain, "limit", copied)
-    for attribute in ("effort", "velocity"):
-        text = limit.get(attribute)
-        if text is not None and _scalar(limit, attribute, text, name, place, finite=False) < 0.0:
-            place.warn(limit, f"joint '{name}': negative {attribute} limit {text} ignored")
+    bounds: dict[str, float] = {}
+    if limit is not None:
+        for attribute in ("lower", "upper", "effort", "velocity"):
+            text = limit.get(attribute)
+            if text is not None:
+                bounds[attribute] = _scalar(limit, attribute, text, name, place, finite=False)
+        for attribute in ("effort", "velocity"):
+            if bounds.get(attribute, 0.0) < 0.0:
+                text = limit.get(attribute)
+                place.warn(limit, f"joint '{name}': negative {attribute} limit {text} ignored")
+    try:
+        limits, notes = joint_limits(type_, bounds.get("lower"), bounds.get("upper"))
+    except BadValueError as bad:
+        raise place.error(joint, f"joint '{name}': {bad}", bad.hint) from None
+    for note in notes:
+        place.warn(joint, f"joint '{name}': {note}")
+    return limits
 
 
-def _copy_mimic(joint: Element, plain: Element, name: str, place: Place) -> None:
+def _mimic(joint: Element, name: str, place: Place) -> Mimic | None:
     mimic = _only_child(joint, "mimic", name, place)
     if mimic is None:
-        return
-    copied = {"joint": required_attribute(mimic, "joint", f"<mimic> of joint '{name}'", place)}
-    for attribute in ("multiplier", "offset"):
+        return None
+    source = required_attribute(mimic, "joint", f"<mimic> of joint '{name}'", place)
+    values = {"multiplier": 1.0, "offset": 0.0}
+    for attribute in values:
         text = mimic.get(attribute)
         if text is not None:
-            value = _scalar(mimic, attribute, text, name, place, largest=_LARGEST_COUPLING)
-            copied[attribute] = repr(value)
-    etree.SubElement(plain, "mimic", copied)
+            values[attribute] = _scalar(
+                mimic, attribute, text, name, place, largest=_LARGEST_COUPLING
+            )
+    return Mimic(source, values["multiplier"], values["offset"])
 
 
 def _scalar(

@@ -28,23 +28,30 @@ inline std::array<Complex, 2> outer_pair(const Equations& eq, const std::array<d
   return {Complex(c1, s1), z2 / (std::abs(z2) + 1e-300)};
 }
 
-// All loop angles from three: theta_1 and theta_2 linearly, theta_6 from the rotation left over.
-inline std::array<double, 6> complete(const Loop& loop, const Equations& eq, double t3, Complex z4,
-                                      Complex z5) noexcept {
+// The invariants of C2 R3 C3 R4 C4 R5 C5: `left` in (1, c4, s4) x (1, c5, s5), turned, by the action G of C2.
+inline std::array<double, 14> inner_invariants(const Mat<14, 12>& left, const Mat<14, 16>& G, Complex z3, Complex z4,
+                                               Complex z5) noexcept {
   const double b4[3] = {1.0, z4.real(), z4.imag()}, b5[3] = {1.0, z5.real(), z5.imag()};
-  const Complex z3(std::cos(t3), std::sin(t3));
   std::array<double, 14> v{}, u{};
   for (Index r = 0; r < 14; ++r)
-    for (Index k = 0; k < 9; ++k) v[r] += eq.left(r, k) * b4[k / 3] * b5[k % 3];
+    for (Index k = 0; k < 9; ++k) v[r] += left(r, k) * b4[k / 3] * b5[k % 3];
   for (Index i = 0; i < 4; ++i) {
     const double x = v[i], y = v[4 + i];
     v[i] = z3.real() * x - z3.imag() * y;
     v[4 + i] = z3.imag() * x + z3.real() * y;
   }
   for (Index r = 0; r < 14; ++r) {
-    u[r] = eq.G(r, 14);
-    for (Index k = 0; k < 14; ++k) u[r] += eq.G(r, k) * v[k];
+    u[r] = G(r, 14);
+    for (Index k = 0; k < 14; ++k) u[r] += G(r, k) * v[k];
   }
+  return u;
+}
+
+// All loop angles from three: theta_1 and theta_2 linearly, theta_6 from the rotation left over.
+inline std::array<double, 6> complete(const Loop& loop, const Equations& eq, double t3, Complex z4,
+                                      Complex z5) noexcept {
+  const Complex z3(std::cos(t3), std::sin(t3));
+  const std::array<double, 14> u = inner_invariants(eq.left, eq.G, z3, z4, z5);
   const std::array<Complex, 2> outer = outer_pair(eq, u);
   const Complex z[5] = {outer[0], outer[1], z3, z4, z5};
   Frame X = loop.C[5];
@@ -61,7 +68,7 @@ struct State {
   double r, square;
 };
 
-inline State residual(const Chain& F, const Frame& T, const Vector& q) noexcept {
+inline State residual(const Chain& F, const Frame& T, const Vector& q, const Turning& turning) noexcept {
   State out;
   Frame X = F[0];
   Mat<6, 3> p;
@@ -70,7 +77,7 @@ inline State residual(const Chain& F, const Frame& T, const Vector& q) noexcept 
       out.J(3 + k, i) = X.R(k, 2);
       p(i, k) = X.p[k];
     }
-    X = compose(turn(X, std::cos(q[i]), std::sin(q[i])), F[i + 1]);
+    X = compose(moved(X, turning[i], q[i]), F[i + 1]);
   }
   Mat<3, 3> S{};
   out.r = out.square = 0.0;
@@ -88,6 +95,11 @@ inline State residual(const Chain& F, const Frame& T, const Vector& q) noexcept 
     for (Index i = 0; i < 6; ++i)
       out.J(k, i) = out.J(3 + m, i) * (X.p[n] - p(i, n)) - out.J(3 + n, i) * (X.p[m] - p(i, m));
   }
+  for (Index i = 0; i < 6; ++i)
+    for (Index k = 0; k < 3 && !turning[i]; ++k) {
+      out.J(k, i) = out.J(3 + k, i);
+      out.J(3 + k, i) = 0.0;
+    }
   for (const double x : out.e) out.square += x * x;
   return out;
 }
@@ -123,8 +135,8 @@ inline Vector damped_step(const State& at, double mu) noexcept {
 }
 
 // Damped Newton (Levenberg-Marquardt) on the chain; returns the residual, and in `before` that of the start.
-inline double refine_one(const Chain& F, const Frame& T, Vector& q, double& before) noexcept {
-  State now = residual(F, T, q);
+inline double refine_one(const Chain& F, const Frame& T, const Turning& turning, Vector& q, double& before) noexcept {
+  State now = residual(F, T, q, turning);
   before = now.r;
   double damp = 1e-3, bound = 1e4;
   for (int step = 0; step < 14; ++step, bound *= 0.1) {
@@ -135,7 +147,7 @@ inline double refine_one(const Chain& F, const Frame& T, Vector& q, double& befo
     if (!(size < 1e300)) break;
     Vector trial = q;
     for (Index i = 0; i < 6; ++i) trial[i] += size > 0.4 ? dq[i] * (0.4 / size) : dq[i];
-    const State next = residual(F, T, trial);
+    const State next = residual(F, T, trial, turning);
     if (next.r < now.r) {
       q = trial;
       now = next;

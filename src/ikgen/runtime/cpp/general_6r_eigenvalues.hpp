@@ -9,27 +9,28 @@
 
 namespace ikgen_runtime {
 
-// --- general_6r: eigenvalues of a 16x16 matrix ------------------------------------------------------
+// --- general_6r: eigenvalues of a real matrix ------------------------------------------------------
 // Hessenberg form by elimination, then Francis' double shifts (the algorithms elmhes and hqr of Wilkinson &
 // Reinsch 1971).
 
 namespace g6 {
 
-inline void hessenberg(Mat<16, 16>& a) noexcept {
-  for (Index m = 1; m < 15; ++m) {
+template <Index N>
+inline void hessenberg(Mat<N, N>& a) noexcept {
+  for (Index m = 1; m + 1 < N; ++m) {
     Index best = m;
-    for (Index i = m + 1; i < 16; ++i)
+    for (Index i = m + 1; i < N; ++i)
       if (std::abs(a(i, m - 1)) > std::abs(a(best, m - 1))) best = i;
     if (best != m) {
-      for (Index j = m - 1; j < 16; ++j) std::swap(a(best, j), a(m, j));
-      for (Index i = 0; i < 16; ++i) std::swap(a(i, best), a(i, m));
+      for (Index j = m - 1; j < N; ++j) std::swap(a(best, j), a(m, j));
+      for (Index i = 0; i < N; ++i) std::swap(a(i, best), a(i, m));
     }
     const double x = a(m, m - 1);
     if (x == 0.0) continue;
-    for (Index i = m + 1; i < 16; ++i) {
+    for (Index i = m + 1; i < N; ++i) {
       const double y = a(i, m - 1) / x;
       if (y == 0.0) continue;
-      for (Index j = m; j < 16; ++j) a(i, j) -= y * a(m, j);
+      for (Index j = m; j < N; ++j) a(i, j) -= y * a(m, j);
       for (Index k = 0; k < 16; ++k) a(k, m) += y * a(k, i);
     }
   }
@@ -41,7 +42,8 @@ struct Bulge {
   double p, q, r;
 };
 
-inline Bulge begin_sweep(const Mat<16, 16>& a, Index l, Index n, double x, double y, double w) noexcept {
+template <Index N>
+inline Bulge begin_sweep(const Mat<N, N>& a, Index l, Index n, double x, double y, double w) noexcept {
   Index m = n - 2;
   for (;; --m) {
     const double z = a(m, m), rr = x - z, ss = y - z;
@@ -58,7 +60,8 @@ inline Bulge begin_sweep(const Mat<16, 16>& a, Index l, Index n, double x, doubl
 }
 
 // The reflection of the sweep at row k, on both sides.
-inline void chase(Mat<16, 16>& a, Index l, Index n, const Bulge& at, double s) noexcept {
+template <Index N>
+inline void chase(Mat<N, N>& a, Index l, Index n, const Bulge& at, double s) noexcept {
   const Index k = at.row;
   const bool last = k == n - 1;
   const double p = at.p + s, x = p / s, y = at.q / s, z = at.r / s, q = at.q / p, r = at.r / p;
@@ -78,7 +81,8 @@ inline void chase(Mat<16, 16>& a, Index l, Index n, const Bulge& at, double s) n
 }
 
 // One double-shift sweep on rows and columns l..n of the Hessenberg matrix.
-inline void francis(Mat<16, 16>& a, Index l, Index n, double x, double y, double w) noexcept {
+template <Index N>
+inline void francis(Mat<N, N>& a, Index l, Index n, double x, double y, double w) noexcept {
   Bulge at = begin_sweep(a, l, n, x, y, w);
   const Index m = at.row;
   for (Index i = m + 2; i <= n; ++i) {
@@ -109,7 +113,8 @@ inline void francis(Mat<16, 16>& a, Index l, Index n, double x, double y, double
 }
 
 // The last row n that is not yet split off begins a block at the row returned.
-inline Index block_start(Mat<16, 16>& a, Index n, double norm) noexcept {
+template <Index N>
+inline Index block_start(Mat<N, N>& a, Index n, double norm) noexcept {
   for (Index l = n; l > 0; --l) {
     const double s = std::abs(a(l - 1, l - 1)) + std::abs(a(l, l));
     if (std::abs(a(l, l - 1)) > 2.3e-16 * s + 1e-17 * norm) continue;
@@ -133,12 +138,13 @@ inline void split_pair(double x, double y, double w, double shift, Complex* out)
 }
 
 // False where 60 sweeps do not separate one.
-inline bool eigenvalues(Mat<16, 16>& a, std::array<Complex, 16>& out) noexcept {
+template <Index N>
+inline bool eigenvalues(Mat<N, N>& a, std::array<Complex, N>& out) noexcept {
   hessenberg(a);
   double norm = 0.0, shift = 0.0;
-  for (Index i = 0; i < 16; ++i)
-    for (Index j = i > 0 ? i - 1 : 0; j < 16; ++j) norm += std::abs(a(i, j));
-  Index size = 16;
+  for (Index i = 0; i < N; ++i)
+    for (Index j = i > 0 ? i - 1 : 0; j < N; ++j) norm += std::abs(a(i, j));
+  Index size = N;
   for (int sweeps = 0; size > 0;) {
     const Index n = size - 1, l = block_start(a, n, norm);
     double x = a(n, n);

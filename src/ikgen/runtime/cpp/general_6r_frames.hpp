@@ -56,14 +56,28 @@ constexpr Frame turn(const Frame& a, double c, double s) noexcept {
   return out;
 }
 
+// a * Tz
+constexpr Frame slide(const Frame& a, double d) noexcept {
+  Frame out = a;
+  for (Index i = 0; i < 3; ++i) out.p[i] += d * a.R(i, 2);
+  return out;
+}
+
+using Turning = std::array<bool, 6>;  // which of the six joints turn; the others slide
+inline constexpr Turning kAllTurn = {true, true, true, true, true, true};
+
+inline Frame moved(const Frame& a, bool turns, double value) noexcept {
+  return turns ? turn(a, std::cos(value), std::sin(value)) : slide(a, value);
+}
+
 inline double wrap(double x) noexcept {  // to (-pi, pi]
   const double y = x - 2.0 * kPi * std::floor((x + kPi) / (2.0 * kPi));
   return y <= -kPi ? kPi : y;
 }
 
-using Chain = std::array<Frame, 7>;  // F_0 Rz(q_1) F_1 ... Rz(q_6) F_6
+using Chain = std::array<Frame, 7>;  // F_0 M(q_1) F_1 ... M(q_6) F_6
 
-// Closed loop R_1 C_1 ... R_6 C_6 = 1 begun at joint `start`; reversed: inverses, negated angles.
+// Closed loop M_1 C_1 ... M_6 C_6 = 1 begun at joint `start`; reversed: inverses, negated values.
 struct Loop {
   std::array<Frame, 6> C;
   std::array<Index, 6> order;

@@ -19,7 +19,7 @@ inline constexpr int kRoom = 64;  // a continuum gives more than the 16 that are
 inline constexpr double kVerified = 1e-9;  // of the pose that a row reaches, lengths over the arm's
 
 struct Solution {
-  double q[6], c[6], s[6];  // angles in (-pi, pi], their cosines and sines
+  double q[6], c[6], s[6];  // angles in (-pi, pi], their cosines and sines; lengths of slides
 };
 
 struct Solutions {
@@ -27,12 +27,12 @@ struct Solutions {
   std::array<Solution, std::size_t{kRoom}> rows;
 };
 
-// Whether two configurations are one, to 1e-6 rad.
+// Whether two configurations are one, to 1e-6 rad; slides longer than any angle count relative to their length.
 inline bool alike(const double* a, const double* b) noexcept {
   for (int i = 0; i < 6; ++i) {
     double gap = std::abs(a[i] - b[i]);
     if (gap > 3.0) gap = std::abs(gap - 2.0 * kPi);
-    if (!(gap < 1e-6)) return false;
+    if (!(gap < 1e-6 * (std::abs(a[i]) > 4.0 ? std::abs(a[i]) : 1.0))) return false;
   }
   return true;
 }
@@ -52,11 +52,13 @@ inline bool keep(const Solution& row, Solutions& out) noexcept {
 
 // Sorts the rows by their first difference, so that the order does not hang on how they were found. The turn is
 // cut at -1 rad, where no right angle lies.
-inline void sort_rows(Solutions& out) noexcept {
-  const auto key = [](double x) { return x + 1.0 < 0.0 ? x + 1.0 + 2.0 * kPi : x + 1.0; };
+inline void sort_rows(const Turning& turning, Solutions& out) noexcept {
+  const auto key = [&](double x, int i) {
+    return turning[static_cast<Index>(i)] && x + 1.0 < 0.0 ? x + 1.0 + 2.0 * kPi : x + 1.0;
+  };
   const auto before = [&](const Solution& a, const Solution& b) {
     for (int i = 0; i < 6; ++i) {
-      const double gap = key(a.q[i]) - key(b.q[i]);
+      const double gap = key(a.q[i], i) - key(b.q[i], i);
       if (std::abs(gap) > 1e-7) return gap < 0.0;
     }
     return false;

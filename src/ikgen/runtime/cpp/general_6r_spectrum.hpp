@@ -119,7 +119,8 @@ inline void best_node(const Resultant& M, Node& out) noexcept {
 }
 
 // The roots theta_3 of eigenvalues t: modulus and angle of (1 + i t) / (1 - i t).
-inline void add_angles(const std::array<Complex, 16>& t, double node, double accept, Spectrum& out) noexcept {
+template <Index N>
+inline void add_angles(const std::array<Complex, N>& t, double node, double accept, Spectrum& out) noexcept {
   for (const Complex& e : t) {
     const double a = e.real(), b = e.imag();
     const double off = std::abs(0.5 * std::log(((1.0 - b) * (1.0 - b) + a * a + 1e-300) /

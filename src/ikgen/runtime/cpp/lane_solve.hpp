@@ -1,11 +1,13 @@
-// All rows of a few poses at once; poses with rows that need care go one by one.
+// All rows of a few poses at once, refined if the closed form is of another geometry than the file; poses with rows
+// that need care go one by one.
 #pragma once
 
 #include "careful_solve.hpp"
 
 namespace ikgen_runtime {
 
-// Arm: as for CarefulSolve; kFarLimits, whether limits leave no room within half a turn of 0.
+// Arm: as for CarefulSolve; kFarLimits, whether limits leave no room within half a turn of 0; kNewton, whether all rows
+// are to be refined, then refine<P>.
 template <class Arm> struct LaneSolve {
   static constexpr int kBatch = kNative > 2 ? kNative / 2 : 1;  // poses at once
   using Options = typename Arm::Options;
@@ -15,8 +17,15 @@ template <class Arm> struct LaneSolve {
 
   template <int P> static void solve(const Eigen::Isometry3d* poses, const Options& options, Solutions* out) noexcept {
     const bool bounded = options.limits && !place_later(options);
+    const Pose<P> pose = gather<P>(poses);
+    const Range range = bounded ? kLimits : kAnywhere;
     Rows<P> rows;
-    Arm::branches(gather<P>(poses), typename Arm::Seed(), options.free, bounded ? kLimits : kAnywhere, rows);
+    if constexpr (Arm::kNewton) {
+      Arm::branches(pose, typename Arm::Seed(), options.free, kAnywhere, rows);
+      Arm::refine(pose, range, rows);
+    } else {
+      Arm::branches(pose, typename Arm::Seed(), options.free, range, rows);
+    }
     for (int p = 0; p < P; ++p)
       if (!collect(rows, p, options, out[p])) fall_back(poses[p], options, out[p]);
   }
@@ -34,6 +43,16 @@ template <class Arm> struct LaneSolve {
   // Whether rows are placed one by one once they are found, not in the lanes.
   static bool place_later(const Options& options) noexcept { return Arm::kFarLimits || options.seed != nullptr; }
 
+  static void leave_distinct(Solutions& out) noexcept {
+    const int count = out.count;
+    out.count = 0;
+    for (int k = 0; k < count; ++k) {
+      double q[Arm::kDof];
+      std::copy_n(Row::row(out, k), Arm::kDof, q);
+      Row::add(out, q, false);
+    }
+  }
+
   // Copies the found rows of pose p. Whether that is all there is to it: every row is a regular one.
   template <int P> static bool collect(const Rows<P>& rows, int p, const Options& options, Solutions& out) noexcept {
     int count = 0, seen = 0;
@@ -48,13 +67,9 @@ template <class Arm> struct LaneSolve {
     }
     if ((seen & (kRough | kHit)) != 0) return false;
     out.count = count;
-    if ((seen & kMeeting) != 0) {
-      out.count = 0;
-      for (int k = 0; k < count; ++k) {
-        double q[Arm::kDof];
-        std::copy_n(Row::row(out, k), Arm::kDof, q);
-        Row::add(out, q, false);
-      }
+    if (Arm::kNewton || (seen & kMeeting) != 0) {
+      leave_distinct(out);
+      if (Arm::kNewton && out.count < count) return false;  // another may lie there
     }
     if (place_later(options)) Row::place_all(options, out);
     if (options.seed) Row::sort_by_distance(out, options.seed->data());

@@ -115,6 +115,14 @@ IKGEN_LANES_OPERATION(Mask, operator|, static_cast<decltype(x)>(x | y))
 template <int N, bool H> [[gnu::always_inline]] inline Mask<N> operator!(const MaskOf<N, H>& a) noexcept {
   return each<Mask<N>>([](auto x) { return inverted(x); }, a);
 }
+// Whether the flag is set in every lane.
+template <int N, bool H> [[gnu::always_inline]] inline bool all(const MaskOf<N, H>& a) noexcept {
+  if constexpr (H) {
+    return all(a.lo) && all(a.hi);
+  } else {
+    return none(inverted(a.v));
+  }
+}
 template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> operator-(const LanesOf<N, H>& a) noexcept {
   return each<Lanes<N>>([](auto x) { return -x; }, a);
 }

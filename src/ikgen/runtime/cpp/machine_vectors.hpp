@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #if defined(__AVX__)
 #include <immintrin.h>
@@ -39,6 +40,12 @@ template <class V> [[gnu::always_inline]] inline auto above(V x, V y) noexcept {
 template <class F, class V> [[gnu::always_inline]] inline V chosen(F flags, V x, V y) noexcept { return flags ? x : y; }
 [[gnu::always_inline]] inline bool inverted(bool flags) noexcept { return !flags; }
 template <class F> [[gnu::always_inline]] inline F inverted(F flags) noexcept { return ~flags; }
+[[gnu::always_inline]] inline bool none(bool flags) noexcept { return !flags; }
+template <class F> [[gnu::always_inline]] inline bool none(F flags) noexcept {
+  std::int64_t any = 0;
+  for (std::size_t i = 0; i < sizeof(F) / sizeof(any); ++i) any |= flags[i];
+  return any == 0;
+}
 #if defined(__SSE2__)
 using Vector2 = Machine<2>::Vector;
 using Flags2 = Machine<2>::Flags;

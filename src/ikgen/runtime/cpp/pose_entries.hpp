@@ -1,22 +1,37 @@
 #pragma once
 
-#include "motion_chain.hpp"
-
 namespace ikgen_runtime {
 
-// A task that reads some entries of the pose, Arm::kRead. t: the pose's matrix, columns first.
+// A task that reads some entries of the pose, Arm::kRead; of one configuration (X: double), or of those in lanes.
 template <class Arm> struct PoseEntries {
   static constexpr int kCount = sizeof(Arm::kRead) / sizeof(Arm::kRead[0]);
 
-  static void compare(const double* t, const Frame& T, const double (&J)[6][Arm::kDof], double (&error)[kCount],
-                      double (&slope)[kCount][Arm::kDof]) noexcept {
+  // t: the rows of the pose; T: the tip's frame.
+  template <class X, class Tip>
+  static void error(const X (&t)[3][4], const Tip& T, X (&error)[kCount]) noexcept {
+    for (int i = 0; i < kCount; ++i) {
+      const auto [r, c] = Arm::kRead[i];
+      if (c == 3) {
+        error[i] = (t[r][3] - T.p[r]) / Arm::kSize;
+      } else {
+        error[i] = t[r][c] - T.R[r][c];
+      }
+    }
+  }
+
+  // J: the tip's geometric Jacobian.
+  template <class X, class Tip>
+  static void slope(const Tip& T, const X (&J)[6][Arm::kDof], X (&slope)[kCount][Arm::kDof]) noexcept {
     for (int i = 0; i < kCount; ++i) {
       const auto [r, c] = Arm::kRead[i];
       const int u = (r + 1) % 3, v = (r + 2) % 3;
-      const bool length = c == 3;
-      error[i] = length ? (t[12 + r] - T.p[r]) / Arm::kSize : t[4 * c + r] - T.R[r][c];
-      for (int j = 0; j < Arm::kDof; ++j)
-        slope[i][j] = length ? J[r][j] / Arm::kSize : J[3 + u][j] * T.R[v][c] - J[3 + v][j] * T.R[u][c];
+      for (int j = 0; j < Arm::kDof; ++j) {
+        if (c == 3) {
+          slope[i][j] = J[r][j] / Arm::kSize;
+        } else {
+          slope[i][j] = J[3 + u][j] * T.R[v][c] - J[3 + v][j] * T.R[u][c];
+        }
+      }
     }
   }
 };

@@ -18,7 +18,11 @@ template <class Arm> struct PoseError {
   PoseError(const double* q, const Eigen::Isometry3d& pose) noexcept {
     double J[6][Arm::kDof];
     const Frame T = MotionChain<Arm>::forward(q, J);
-    Arm::Task::compare(pose.matrix().data(), T, J, error, slope);
+    double t[3][4];
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 4; ++c) t[r][c] = pose.matrix().data()[4 * c + r];
+    Arm::Task::error(t, T, error);
+    Arm::Task::slope(T, J, slope);
     for (const int j : Arm::kFreeJoints)
       for (auto& row : slope) row[j] = 0.0;
   }

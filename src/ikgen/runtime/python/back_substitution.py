@@ -52,7 +52,7 @@ def null_angles(M: Array) -> tuple[NDArray[np.intp], Array]:
 
 
 def turned(left: Array, t: Array) -> Array:
-    """The invariants of `R_3 C_3 R_4 C_4 R_5 C_5` and 1 (k, 15) at theta_3, theta_4, theta_5 in t (k, 3)."""
+    """The invariants of `R_3 C_3 R_4 C_4 R_5 C_5` and 1 (k, 15) at the three angles t (k, 3)."""
     one = np.ones(len(t))
     b3, b4, b5 = (np.stack([one, np.cos(x), np.sin(x)], axis=-1) for x in t.T)
     v = (left @ (b4[:, :, None] * b5[:, None]).reshape(-1, 9, 1))[..., 0]

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import inf
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.joint_arguments import held_rows, seed_rows
+from ikgen.runtime.python.pose_arguments import pose_matrices
+from ikgen.runtime.python.pose_faults import nearest_poses
 from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.refinement import refine
 from ikgen.runtime.python.row_placement import distinct, place_rows_batch
 from ikgen.runtime.python.solutions import Status
 from ikgen.runtime.python.solved_arm import Arm
 
-__all__ = ["branch_axis", "solve_poses"]
+__all__ = ["branch_axis", "rows_batch", "solve_poses"]
 
 _CHUNK = 2048  # closed forms solved at a time
 _Batch = tuple[Array, NDArray[np.int64], NDArray[np.str_]]
@@ -31,26 +34,29 @@ def branch_axis(level: int, depth: int) -> Array:
 
 def solve_poses(
     arm: Arm,
-    poses: ArrayLike,
+    poses: Any,
     free: ArrayLike | Mapping[str, float] | None,
     seed: ArrayLike | None,
     limits: bool,
+    orthonormalize: bool = False,
 ) -> _Batch:
     """Rows (N, most, dof) padded with NaN, counts (N,) and names of Status (N,) for poses (N, 4, 4).
 
     Raises ValueError for bad arguments.
     """
-    T, dof = np.asarray(poses, dtype=float), len(arm.lower)
+    T, dof = pose_matrices(poses, arm.task.alone), len(arm.lower)
     if T.ndim != 3 or T.shape[1:] != (4, 4):
         raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
     count = len(T)
-    held = held_rows(arm, free, count)
     near: Array | None = None
     if seed is not None:
         near = np.broadcast_to(seed_rows(arm, seed, (dof,), (count, dof)), (count, dof))
+    held = held_rows(arm, free, near, count)
     q = np.full((count, arm.most, dof), np.nan)
     number = np.zeros(count, dtype=np.int64)
     status = np.full(count, Status.INVALID.value, dtype="<U11")
+    if orthonormalize:
+        T = nearest_poses(arm.task, T, arm.policy)
     T, good = arm.task.read_batch(T, arm.policy)
     usable, size = np.flatnonzero(good), _CHUNK // (1 + len(arm.beside))
     for start in range(0, len(usable), size):
@@ -61,7 +67,7 @@ def solve_poses(
 
 
 def _solve_chunk(arm: Arm, T: Array, held: Array, near: Array | None, limits: bool) -> _Batch:
-    q, valid, singular = _rows_batch(arm, T, held, near)
+    q, valid, singular = rows_batch(arm, T, held, near)
     real = valid.any(axis=1)
     q, inside = place_rows_batch(arm, q, near, limits)
     valid &= inside
@@ -85,7 +91,7 @@ def _solve_chunk(arm: Arm, T: Array, held: Array, near: Array | None, limits: bo
     return q, number, status
 
 
-def _rows_batch(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, Flags, Flags]:
+def rows_batch(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, Flags, Flags]:
     """Rows (N, M, dof) on no turn in particular; which are distinct solutions, which of a continuum."""
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
     with np.errstate(all="ignore"):

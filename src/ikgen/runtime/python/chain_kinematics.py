@@ -8,8 +8,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.real_numbers import real_array
 
-__all__ = ["Chain", "Motion", "chain_of", "cross", "forward", "jacobian", "tip_and_jacobian"]
+__all__ = [
+    "Chain",
+    "Motion",
+    "chain_of",
+    "cross",
+    "forward",
+    "jacobian",
+    "joint_axes",
+    "tip_and_jacobian",
+]
 
 Motion = tuple[int, bool, float, float]  # joint, whether it turns, scale and offset of its value
 
@@ -67,7 +77,7 @@ def _steps(chain: Chain, q: Array) -> Array:
 
 
 def _joint_values(chain: Chain, q: ArrayLike) -> Array:
-    values, dof = np.asarray(q, dtype=float), chain.drive.shape[1]
+    values, dof = real_array(q, "q"), chain.drive.shape[1]
     if values.ndim < 1 or values.shape[-1] != dof:
         raise ValueError(f"q has shape {values.shape}, expected (..., {dof})")
     return values
@@ -94,15 +104,20 @@ def cross(a: Array, b: Array) -> Array:
     return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)
 
 
-def tip_and_jacobian(chain: Chain, q: Array) -> tuple[Array, Array]:
-    """Tip poses (..., 4, 4) and geometric Jacobians (..., 6, dof), linear rows first."""
+def joint_axes(chain: Chain, q: Array) -> tuple[Array, Array, Array]:
+    """Directions (..., n, 3) of the axes, points (..., n, 3) on them, and tip poses (..., 4, 4)."""
     steps, count = _steps(chain, q), len(chain.motions)
     T = np.broadcast_to(chain.frames[0], (*q.shape[:-1], 4, 4))
     axes = np.empty((*q.shape[:-1], count, 3, 2))
     for i in range(count):
         axes[..., i, :, :] = T[..., :3, 2:]
         T = T @ steps[..., i, :, :]
-    z, p = axes[..., 0], axes[..., 1]
+    return axes[..., 0], axes[..., 1], T
+
+
+def tip_and_jacobian(chain: Chain, q: Array) -> tuple[Array, Array]:
+    """Tip poses (..., 4, 4) and geometric Jacobians (..., 6, dof), linear rows first."""
+    z, p, T = joint_axes(chain, q)
     rows = np.concatenate([cross(z, T[..., None, :3, 3] - p), z], axis=-1)
     if chain.slides:
         slide = np.concatenate([z, np.zeros_like(z)], axis=-1)

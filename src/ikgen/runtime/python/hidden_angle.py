@@ -62,10 +62,10 @@ def hidden_angles(
 
 
 def real_angles(
-    t: Array, about: Array, accept: float
+    t: Array | NDArray[np.complex128], about: Array, accept: float
 ) -> tuple[NDArray[np.intp], Array, NDArray[np.intp], Flags]:
-    """Those angles `about + 2 atan(t)`, about (N,) and t (N, n) complex, of which the imaginary part is below
-    `accept`: as `hidden_angles` has them."""
+    """Those angles `about + 2 atan(t)`, about (N,) and t (N, n) complex, of which the imaginary part is
+    below `accept`: as `hidden_angles` has them."""
     # angle and modulus of (1 + i t) / (1 - i t)
     z = (1.0 + 1j * t) / np.where(t == -1j, 1e-300, 1.0 - 1j * t)
     off = np.abs(np.log(np.maximum(np.abs(z), 1e-300)))

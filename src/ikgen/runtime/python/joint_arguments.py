@@ -3,27 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import isfinite
+from math import isfinite, pi
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ikgen.runtime.python.array_types import Array, Row
+from ikgen.runtime.python.real_numbers import real_array
 from ikgen.runtime.python.solved_arm import Arm
 
 __all__ = ["held_rows", "held_values", "seed_rows"]
 
+_FARTHEST = 1e5  # rad: neighbouring doubles are 1.5e-11 apart
 
-def held_values(arm: Arm, free: Sequence[float] | Mapping[str, float] | None) -> Row:
-    """Values of the held joints, base to tip; raises ValueError where they are no such values."""
+
+def held_values(
+    arm: Arm, free: Sequence[float] | Mapping[str, float] | None, near: Row | None
+) -> Row:
+    """Values of the held joints, base to tip: those of the seed `near`, or without one the defaults,
+    where `free` gives none. Raises ValueError where they are no such values."""
+    names, others = arm.free_joints, arm.free_defaults
+    if near is not None:
+        others = tuple(near[j] for j in arm.free)
     if free is None:
-        return arm.free_defaults
-    names = arm.free_joints
+        return others
     if isinstance(free, Mapping):
         unknown = set(free) - set(names)
         if unknown:
             raise ValueError(f"no free joint named {sorted(unknown)}; there is {list(names)}")
-        values = tuple(float(free.get(n, x)) for n, x in zip(names, arm.free_defaults))
+        values = tuple(float(free.get(n, x)) for n, x in zip(names, others))
     else:
         values = tuple(float(x) for x in free)
     if len(values) != len(names):
@@ -33,15 +41,23 @@ def held_values(arm: Arm, free: Sequence[float] | Mapping[str, float] | None) ->
     return values
 
 
-def held_rows(arm: Arm, free: ArrayLike | Mapping[str, float] | None, count: int) -> Array:
-    """`held_values` for many poses: one row for all of them, or one each; (count, held joints)."""
+def held_rows(
+    arm: Arm, free: ArrayLike | Mapping[str, float] | None, near: Array | None, count: int
+) -> Array:
+    """`held_values` for many poses: one row for all of them, or one each; (count, held joints). `near`:
+    the seeds (count, dof)."""
     shape = (count, len(arm.free_joints))
     if free is None or isinstance(free, Mapping):
-        return np.broadcast_to(held_values(arm, free), shape)
+        values = np.tile(held_values(arm, free, None), (count, 1)).reshape(shape)
+        given = () if free is None else free
+        for k, (j, name) in enumerate(zip(arm.free, arm.free_joints)):
+            if near is not None and name not in given:
+                values[:, k] = near[:, j]
+        return values
     if np.ndim(free) < 2:
-        one: list[float] = np.asarray(free, dtype=float).tolist()
-        return np.broadcast_to(held_values(arm, one), shape)
-    held = np.asarray(free, dtype=float)
+        one: list[float] = real_array(free, "free").tolist()
+        return np.broadcast_to(held_values(arm, one, None), shape)
+    held = real_array(free, "free")
     if held.shape != shape:
         raise ValueError(f"free has shape {held.shape}, expected {shape}")
     if not np.isfinite(held).all():
@@ -50,11 +66,13 @@ def held_rows(arm: Arm, free: ArrayLike | Mapping[str, float] | None, count: int
 
 
 def seed_rows(arm: Arm, seed: ArrayLike, *shapes: tuple[int, ...]) -> Array:
-    """The seed as an array of one of the shapes; raises ValueError for others."""
-    values = np.asarray(seed, dtype=float)
+    """The seed as an array of one of the shapes; raises ValueError for others. Turns of a revolute joint
+    that doubles cannot tell apart to 1e-11 rad are left out."""
+    values = real_array(seed, "seed")
     if values.shape not in shapes:
         expected = " or ".join(map(str, shapes))
         raise ValueError(f"seed has shape {values.shape}, expected {expected}")
     if not np.isfinite(values).all():
         raise ValueError(f"seed {values.tolist()} has values that are not finite")
-    return values
+    far = np.array(arm.turning) & (np.abs(values) > _FARTHEST)
+    return np.where(far, np.fmod(values, 2.0 * pi), values) if far.any() else values

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags
-from ikgen.runtime.python.chain_kinematics import cross
+from ikgen.runtime.python.entry_differences import Entries, entry_errors, entry_rows
 from ikgen.runtime.python.orthonormal_columns import (
     columns_defect,
     determinant,
@@ -33,6 +33,13 @@ class EntriesTask:
     unit: tuple[int, ...]
     flat: bool
 
+    @property
+    def alone(self) -> str:
+        """Implements `Task`."""
+        if 3 not in self.column:
+            return "rotation"
+        return "position" if set(self.column) == {3} else ""
+
     def read(self, T: list[list[float]], policy: Policy) -> list[list[float]] | None:
         """Implements `Task`."""
         poses, (good,) = self.read_batch(np.array([T]), policy)
@@ -41,7 +48,7 @@ class EntriesTask:
 
     def read_batch(self, T: Array, policy: Policy) -> tuple[Array, Flags]:
         """Implements `Task`."""
-        good: Flags = np.asarray(np.isfinite(T[:, self.row, self.column]).all(axis=1))
+        T, good = self._single_entries(T, policy)
         if not self.unit:
             return T, good
         height = 2 if self.flat else 3
@@ -63,19 +70,32 @@ class EntriesTask:
                 T[np.ix_(near, range(height), self.unit)] = R[near, :height]
         return T, good
 
+    def _single_entries(self, T: Array, policy: Policy) -> tuple[Array, Flags]:
+        """Poses whose entries of no unit column, which are cosines, lie between -1 and 1; and which are
+        poses."""
+        good: Flags = np.asarray(np.isfinite(T[:, self.row, self.column]).all(axis=1))
+        for r, c in zip(self.row, self.column):
+            if c == 3 or c in self.unit:
+                continue
+            beyond = np.abs(T[:, r, c]) > 1.0
+            good &= ~beyond | (np.abs(T[:, r, c]) <= 1.0 + policy.pose_tolerance)
+            if (good & beyond).any():
+                T = T.copy()
+                T[:, r, c] = np.clip(T[:, r, c], -1.0, 1.0)
+        return T, good
+
+    @property
+    def entries(self) -> Entries:
+        """Implements `Task`."""
+        return tuple(zip(self.row, self.column))
+
     def error(self, pose: Array, T: Array) -> Array:
         """The entries' differences."""
-        return (T[:, self.row, self.column] - pose[:, self.row, self.column]) * self._weight()
+        return entry_errors(self.entries, self._weight(), pose, T)
 
     def rows(self, pose: Array, J: Array) -> Array:
         """The entries' derivatives."""
-        out = np.empty((len(pose), len(self.row), J.shape[2]))
-        for i, (r, c) in enumerate(zip(self.row, self.column)):
-            if c == 3:
-                out[:, i] = J[:, r]
-            else:
-                out[:, i] = cross(J[:, 3:].transpose(0, 2, 1), pose[:, None, :3, c])[:, :, r]
-        return out * self._weight()[:, None]
+        return entry_rows(self.entries, self._weight(), pose, J)
 
     def _weight(self) -> Array:
         return np.array([1.0 / self.size if c == 3 else 1.0 for c in self.column])

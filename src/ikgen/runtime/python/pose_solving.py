@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ikgen.runtime.python.array_types import Row
+from ikgen.runtime.python.chain_kinematics import forward
 from ikgen.runtime.python.joint_arguments import held_values, seed_rows
+from ikgen.runtime.python.pose_arguments import pose_matrices
+from ikgen.runtime.python.pose_faults import nearest_pose, pose_fault
+from ikgen.runtime.python.projection import nearest_row, off_by
 from ikgen.runtime.python.refinement import rank_loss, refine
+from ikgen.runtime.python.row_names import branch_names
 from ikgen.runtime.python.row_placement import is_new, place_rows
 from ikgen.runtime.python.solutions import Solutions, Status
 from ikgen.runtime.python.solved_arm import Arm, Found
@@ -19,27 +26,51 @@ __all__ = ["solve_pose"]
 
 def solve_pose(
     arm: Arm,
-    pose: ArrayLike,
+    pose: Any,
     free: Sequence[float] | Mapping[str, float] | None,
     seed: ArrayLike | None,
     limits: bool,
+    project: bool = False,
+    orthonormalize: bool = False,
 ) -> Solutions:
-    """All joint values that bring the tip to `pose` (4, 4); raises ValueError for bad arguments."""
-    matrix, dof = np.asarray(pose, dtype=float), len(arm.lower)
+    """All joint values that bring the tip to `pose`, or with `project` to the nearest pose that the arm
+    can take; raises ValueError for bad arguments."""
+    matrix, dof = pose_matrices(pose, arm.task.alone), len(arm.lower)
     if matrix.shape != (4, 4):
         raise ValueError(f"pose has shape {matrix.shape}, expected (4, 4)")
     near = None if seed is None else tuple(seed_rows(arm, seed, (dof,)).tolist())
-    held = held_values(arm, free)
-    T = arm.task.read(matrix.tolist(), arm.policy)
+    held = held_values(arm, free, near)
+    lines = matrix.tolist()
+    if orthonormalize:
+        lines = nearest_pose(arm.task, lines, arm.policy)
+    T = arm.task.read(lines, arm.policy)
     found, real = ([], False) if T is None else _fitting(arm, T, near, held, limits)
+    if project and T is not None and not found:
+        found = _projected(arm, T, near, held, limits)
     if not found:
         status = Status.INVALID if T is None else Status.LIMITS if real else Status.UNREACHABLE
-        return Solutions(np.empty((0, dof)), status, np.empty(0, dtype=bool))
+        reason = pose_fault(arm.task, lines, arm.policy) if T is None else ""
+        return Solutions(np.empty((0, dof)), status, np.empty(0, dtype=bool), reason)
     if near is not None:
         origin = near
         found.sort(key=lambda item: sum((a - b) * (a - b) for a, b in zip(item[0], origin)))
     q = np.array([row for row, _ in found]) + 0.0
-    return Solutions(q, Status.OK, np.array([flag for _, flag in found], dtype=bool))
+    flags = np.array([flag for _, flag in found], dtype=bool)
+    off = off_by(arm.task, forward(arm.chain, q), np.array(T)) if project else None
+    names = partial(branch_names, arm)
+    return Solutions(q, Status.OK, flags, names=names, projected=off)
+
+
+def _projected(
+    arm: Arm, T: list[list[float]], near: Row | None, held: Row, limits: bool
+) -> list[Found]:
+    """Solutions of the nearest pose that the arm can take."""
+    row = nearest_row(arm, np.array(T), _start(arm, near, held, 0.0), limits)
+    pose: list[list[float]] = forward(arm.chain, row).tolist()
+    found, _ = _fitting(arm, pose, near, held, limits)
+    if len(found) < arm.most and is_new(arm, row, found):
+        found += place_rows(arm, [(row, False)], near, limits)
+    return found
 
 
 def _fitting(

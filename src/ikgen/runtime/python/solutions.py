@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
 from enum import Enum
+from typing import Any
+
+import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags
 
@@ -18,19 +21,41 @@ class Status(str, Enum):
     UNREACHABLE = "UNREACHABLE"
     LIMITS = "LIMITS"
     INVALID = "INVALID"
+    SINGULAR = "SINGULAR"  # of a path alone
     __str__ = str.__str__  # NumPy compares by it
 
 
 @dataclass(frozen=True)
 class Solutions:
-    """Solutions of one pose: `q` (k, DOF), `status`, and `singular` (k,): rows of a continuum."""
+    """Solutions of one pose: `q` (k, DOF), `status`, and `singular` (k,): rows of a continuum; `reason`
+    says why a pose is INVALID. As a sequence: its rows. `projected` (k, 2), where it was asked for: m and
+    rad by which rows miss the pose."""
 
     q: Array
     status: Status
     singular: Flags
+    reason: str = ""
+    names: Callable[[Array], tuple[str, ...]] | None = field(
+        default=None, repr=False, compare=False
+    )
+    projected: Array | None = None
+
+    @property
+    def branch(self) -> tuple[str, ...]:
+        """What distinguishes each row: sides of shoulder, elbow and wrist where the arm has those."""
+        return () if self.names is None else self.names(self.q)
+
+    @property
+    def off(self) -> Array:
+        """How far each row's pose is from the one asked for, (k, 2): m, rad; zeros without `project`."""
+        return np.zeros((len(self.q), 2)) if self.projected is None else self.projected
 
     def __len__(self) -> int:
         return len(self.q)
 
     def __iter__(self) -> Iterator[Array]:
         return iter(self.q)
+
+    def __getitem__(self, index: Any) -> Array:
+        rows: Array = self.q[index]
+        return rows

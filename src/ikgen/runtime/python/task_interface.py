@@ -5,13 +5,28 @@ from __future__ import annotations
 from typing import Protocol
 
 from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.entry_differences import Entries
 from ikgen.runtime.python.solve_policy import Policy
 
 __all__ = ["Task"]
 
 
 class Task(Protocol):
-    """How poses are read and compared."""
+    """How poses are read and compared: `entries` of them, of which the columns `unit` are unit vectors
+    at right angles; positions count over `size` (m); `alone`: "rotation" or "position" where no other
+    part of the pose is read, else ""."""
+
+    @property
+    def entries(self) -> Entries: ...
+
+    @property
+    def unit(self) -> tuple[int, ...]: ...
+
+    @property
+    def alone(self) -> str: ...
+
+    @property
+    def size(self) -> float: ...
 
     def read(self, T: list[list[float]], policy: Policy) -> list[list[float]] | None:
         """The pose that nested lists stand for, its rotation the nearest one; None for no pose."""

@@ -8,6 +8,7 @@ from math import inf
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.entry_differences import Entries
 from ikgen.runtime.python.orthonormal_columns import (
     columns_defect,
     determinant,
@@ -24,6 +25,13 @@ class PoseTask:
     """Positions count over `size` (m)."""
 
     size: float
+    unit: tuple[int, ...] = (0, 1, 2)
+    alone: str = ""
+
+    @property
+    def entries(self) -> Entries:
+        """Implements `Task`."""
+        return tuple((r, c) for r in range(3) for c in range(4))
 
     def read(self, T: list[list[float]], policy: Policy) -> list[list[float]] | None:
         """Implements `Task`."""

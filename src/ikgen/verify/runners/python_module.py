@@ -46,6 +46,12 @@ def _load(path: Path) -> ModuleType:
     return module
 
 
+def _task_name(module: ModuleType) -> str:
+    """The task with the tool's axis, where that is not z."""
+    axis = getattr(module, "TOOL_AXIS", "z")
+    return str(module.TASK) if axis == "z" else f"{module.TASK}:{axis}"
+
+
 class PythonModule:
     """A `Runner` over an emitted `<name>_ik.py`.
 
@@ -68,7 +74,7 @@ class PythonModule:
         m = self.module
         self._constants = ArmConstants(
             tuple(m.JOINT_NAMES), np.asarray(m.LOWER, float), np.asarray(m.UPPER, float),
-            m.BASE_LINK, m.TIP_LINK, int(m.MAX_SOLUTIONS), m.TASK, tuple(m.FREE_JOINTS),
+            m.BASE_LINK, m.TIP_LINK, int(m.MAX_SOLUTIONS), _task_name(m), tuple(m.FREE_JOINTS),
             getattr(m, "_FREE_DEFAULTS", None),
         )  # fmt: skip
 

@@ -1,0 +1,51 @@
+"""The chain on which C++ refines rows in lanes: its constants as text."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from ikgen.emit.cpp.cpp_language import number
+from ikgen.emit.solver_module import SolverModule
+from ikgen.kinematics.rigid import exact_cos_sin
+from ikgen.kinematics.twist_links import TwistLink, twist_chain
+from ikgen.model.joint_tree import Matrix
+from ikgen.program.policy import SolvePolicy
+
+__all__ = ["TwistLines", "twist_lines"]
+
+
+@dataclass(frozen=True, slots=True)
+class TwistLines:
+    """`first`, `last`: upper rows of the frames at the ends; `links`: members of `Link` in its order;
+    `least_pivot`: pivot of the derivatives below which rows are refined one by one."""
+
+    first: tuple[str, ...]
+    links: tuple[str, ...]
+    last: tuple[str, ...]
+    least_pivot: float
+
+
+def twist_lines(module: SolverModule) -> TwistLines:
+    """Braced lists of the file's own chain in twist form."""
+    chain = twist_chain(module.dh)
+    policy, deviation = SolvePolicy(), max(module.dh.deviation)
+    least = max(policy.least_pivot, policy.reach * math.sqrt(deviation))
+    return TwistLines(_rows(chain.first), tuple(map(_link, chain.links)), _rows(chain.last), least)
+
+
+def _rows(F: Matrix) -> tuple[str, ...]:
+    return tuple(_braced(map(number, row)) for row in F[:3].tolist())
+
+
+def _link(link: TwistLink) -> str:
+    values = (
+        link.scale, link.offset, *exact_cos_sin(link.turn), link.x, link.y, *exact_cos_sin(link.twist)
+    )  # fmt: skip
+    turning = "true" if link.revolute else "false"
+    return _braced([str(link.driver), turning, *map(number, values)])
+
+
+def _braced(parts: Iterable[str]) -> str:
+    return "{" + ", ".join(parts) + "}"

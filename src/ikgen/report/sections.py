@@ -1,0 +1,121 @@
+"""The sections of a report in their order, one row each: functions from the page to its blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from ikgen.report.behavior import behavior_section
+from ikgen.report.card_section import card_section
+from ikgen.report.document import Block, Heading
+from ikgen.report.elimination_section import elimination_section
+from ikgen.report.example_section import example_section
+from ikgen.report.held_section import held_section
+from ikgen.report.leftover import leftover_section
+from ikgen.report.opening import forward_section, robot_section
+from ikgen.report.page import Page, SolvedPage, UnsolvedPage
+from ikgen.report.proof_section import proof_section
+from ikgen.report.results import graph_section, poses_section, verification_section
+from ikgen.report.roots_picture import roots_blocks
+from ikgen.report.row_names import row_names
+from ikgen.report.splits import splits_section
+from ikgen.report.steps import Writer, abbreviations, derived_section, step_section
+
+__all__ = ["SOLVED", "UNSOLVED"]
+
+
+def _card(page: SolvedPage) -> list[Block]:
+    most = f"at most {page.derivation.module.max_solutions} a pose"
+    return card_section(page.reading, page.geometry, page.task, page.shown, most, page.reports)
+
+
+def _unsolved_card(page: UnsolvedPage) -> list[Block]:
+    most = "no closed form was found"
+    return card_section(page.reading, page.geometry, page.task, page.shown, most, {})
+
+
+def _held(page: SolvedPage) -> list[Block]:
+    if page.example is None or page.solver is None:
+        return []
+    return held_section(page.derivation, page.example, page.solver)
+
+
+def _example(page: SolvedPage) -> list[Block]:
+    if page.example is None:
+        return []
+    dh = page.reading.dh
+    names = row_names(dh, page.geometry, page.graph, page.example.rows)
+    return example_section(dh, page.example, names, f"{page.derivation.module.name}_ik")
+
+
+def _robot(page: Page) -> list[Block]:
+    return robot_section(page.reading, page.task)
+
+
+def _forward(page: Page) -> list[Block]:
+    return forward_section(page.graph, page.normal)
+
+
+def _inverse(page: Page) -> list[Block]:
+    """How the equations are made, then one step a solved unknown."""
+    graph = page.graph
+    names = abbreviations(graph, page.normal)
+    writer = Writer(graph, graph.workspace(), page.versions, page.normal, names)
+    blocks: list[Block] = [Heading(("Inverse kinematics",), anchor="inverse")]
+    blocks += splits_section(writer.known.equations)
+    for number, step in enumerate(graph.steps, start=1):
+        blocks += step_section(writer, number, step)
+    return blocks + derived_section(writer)
+
+
+def _solution(page: SolvedPage) -> list[Block]:
+    if not page.eliminated:
+        return _inverse(page)
+    blocks: list[Block] = [Heading(("Inverse kinematics",), anchor="inverse")]
+    plan = page.derivation.module.plan
+    blocks += elimination_section(plan.turning.count(False) if plan is not None else 0)
+    if page.example is not None and plan is not None:
+        blocks += roots_blocks(page.reading.dh, plan, page.example)
+    return blocks
+
+
+def _graph(page: Page) -> list[Block]:
+    """Nothing where no unknown was solved alone."""
+    if not page.graph.steps:
+        return []
+    return graph_section(page.versions, page.picture, page.graph.passed)
+
+
+def _sets(page: SolvedPage) -> list[Block]:
+    return [] if page.eliminated else poses_section(page.graph, page.versions)
+
+
+def _drawn(page: SolvedPage) -> list[Block]:
+    return [] if page.eliminated else _graph(page)
+
+
+def _left(page: UnsolvedPage) -> list[Block]:
+    return leftover_section(page.graph)
+
+
+def _tree(page: Page) -> list[Block]:
+    return behavior_section(page.graph)
+
+
+def _proof(page: SolvedPage) -> list[Block]:
+    return proof_section(page.derivation)
+
+
+def _verification(page: SolvedPage) -> list[Block]:
+    return verification_section(page.reports)
+
+
+SOLVED: tuple[Callable[[SolvedPage], list[Block]], ...] = (
+    _card, _held, _example, _robot, _forward, _solution, _drawn, _sets, _tree, _proof,
+    _verification,
+)  # fmt: skip
+"""Of a solved arm; a section that does not apply is empty."""
+
+UNSOLVED: tuple[Callable[[UnsolvedPage], list[Block]], ...] = (
+    _unsolved_card, _robot, _forward, _inverse, _graph, _left, _tree,
+)  # fmt: skip
+"""Of an arm without a closed form."""

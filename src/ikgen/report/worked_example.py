@@ -1,0 +1,108 @@
+"""One pose and all its solutions, by the module that is emitted."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.emit.derivation import Derivation
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.kinematics.forward import dh_forward, file_jacobian
+from ikgen.model.dh import DHChain
+from ikgen.report.skeleton_bones import skeleton
+from ikgen.verify.runners.python_module import PythonModule
+
+__all__ = ["WorkedExample", "shown_configuration", "solver_of", "worked_example"]
+
+Array = NDArray[np.float64]
+
+_TRIED, _SEED, _WIDEST = 40, 7, 2.6
+"""Configurations to choose from; half the range (rad, m) of a joint without limits."""
+
+
+@dataclass(frozen=True, slots=True)
+class WorkedExample:
+    """`q` (dof,) made the `pose` (4, 4); `rows` (k, dof) are all its solutions, `inside` (k,) those inside
+    the limits, `off` the largest entry (m, or of the rotation) by which a row's pose is another one in what
+    the task reads of a whole pose, None for smaller tasks. Values of joints in rad and m."""
+
+    q: Array
+    pose: Array
+    rows: Array
+    inside: NDArray[np.bool_]
+    off: float | None
+
+
+def worked_example(derivation: Derivation, runner: PythonModule) -> WorkedExample:
+    """The configuration that the description proposes, or one with many solutions inside the limits."""
+    dh = derivation.reading.dh
+    given = derivation.reading.source.example
+    q = np.array(given) if given else _chosen(dh, runner)
+    pose = runner.forward(q[None])[0]
+    rows, _, _ = runner.solve(pose, free=_free(derivation, q), limits=False)
+    inside, _, _ = runner.solve(pose, free=_free(derivation, q), limits=True)
+    rows = rows[np.lexsort(np.round(rows, 6).T[::-1])] if len(rows) else rows
+    places = [_place(row, inside) for row in rows]
+    rows = np.array([r if i is None else inside[i] for r, i in zip(rows, places, strict=True)])
+    flags = np.array([i is not None for i in places], dtype=bool)
+    off = float(np.abs(runner.forward(rows) - pose).max()) if derivation.task.whole_pose else None
+    return WorkedExample(q, pose, rows, flags, off if len(rows) else None)
+
+
+def solver_of(derivation: Derivation) -> PythonModule | None:
+    """The emitted Python module; None of a table whose lengths have no numbers."""
+    if derivation.reading.dh.symbols:
+        return None
+    with tempfile.TemporaryDirectory(prefix="ikgen-", ignore_cleanup_errors=True) as folder:
+        path = Path(folder, f"{derivation.module.name}_ik.py")
+        path.write_text(emit_module(derivation.module), encoding="utf-8")
+        return PythonModule(path)
+
+
+def _free(derivation: Derivation, q: Array) -> Array | None:
+    free = list(derivation.module.free)
+    return q[free] if free else None
+
+
+def _place(row: Array, rows: Array) -> int | None:
+    """Which of the others a row is, whole turns aside."""
+    apart = np.abs(np.exp(1j * rows) - np.exp(1j * row)).max(axis=1, initial=0.0)
+    return int(apart.argmin()) if len(rows) and apart.min() < 1e-6 else None
+
+
+def _drawn(dh: DHChain) -> Array:
+    """Configurations inside the limits, always the same ones."""
+    low = np.array([max(j.limits.lower, -_WIDEST) for j in dh.joints])
+    high = np.array([min(j.limits.upper, _WIDEST) for j in dh.joints])
+    high, low = np.maximum(high, low), np.minimum(low, high)
+    draws = np.random.default_rng(_SEED).uniform(0.12, 0.88, (_TRIED, dh.dof))
+    return np.asarray(np.round(low + draws * (high - low), 3))
+
+
+def shown_configuration(dh: DHChain) -> Array:
+    """A configuration (dof,) to draw the arm at: above the floor and far from singular ones."""
+    rows = _drawn(dh)
+    return np.asarray(rows[int(np.argmax([_standing(dh, q) for q in rows]))])
+
+
+def _standing(dh: DHChain, q: Array) -> float:
+    arm = skeleton(dh, q)
+    scales = np.array([1 / arm.size] * 3 + [1.0] * 3)[:, None]
+    sigma = float(np.linalg.svd(file_jacobian(dh, q) * scales, compute_uv=False)[-1])
+    below = float(min(arm.points[:, 2].min() / arm.size, 0.0))
+    height = float(dh_forward(dh, q)[2, 3]) / arm.size
+    return round(sigma + 3.0 * below + 0.3 * min(height, 0.5), 6)
+
+
+def _chosen(dh: DHChain, runner: PythonModule) -> Array:
+    """The configuration of the drawn ones whose pose has the most solutions inside the limits."""
+    rows = _drawn(dh)
+    poses = runner.forward(rows)
+    free = [runner.constants.joint_names.index(n) for n in runner.constants.free_joints]
+    counts = runner.solve_many(poses, free=rows[:, free] if free else None).count
+    scores = [(int(n), _standing(dh, q)) for n, q in zip(counts, rows, strict=True)]
+    return np.asarray(rows[scores.index(max(scores))])

@@ -1,0 +1,144 @@
+// Newton steps of all rows at once on the file's own chain.
+#pragma once
+
+#include "joint_range.hpp"
+#include "lane_chain.hpp"
+#include "lane_rows.hpp"
+
+namespace ikgen_runtime {
+
+// The least squares solution of V d = e in lanes by V = Q R (modified Gram-Schmidt).
+template <int Rows, int Columns, int N> struct LaneFactors {
+  Lanes<N> Q[Rows][Columns], R[Columns][Columns], inverse[Columns];
+  Lanes<N> pivot;  // the smallest diagonal entry of R
+
+  // Q holds V before.
+  [[gnu::always_inline]] void factor() noexcept {
+    for (int k = 0; k < Columns; ++k) {
+      Lanes<N> square = Q[0][k] * Q[0][k];
+      for (int e = 1; e < Rows; ++e) square = square + Q[e][k] * Q[e][k];
+      const Lanes<N> length = sqrt(max(square, 1e-200));
+      pivot = k == 0 ? length : min(pivot, length);
+      inverse[k] = 1.0 / length;
+      for (int e = 0; e < Rows; ++e) Q[e][k] = Q[e][k] * inverse[k];
+      for (int j = k + 1; j < Columns; ++j) {
+        R[k][j] = Q[0][k] * Q[0][j];
+        for (int e = 1; e < Rows; ++e) R[k][j] = R[k][j] + Q[e][k] * Q[e][j];
+        for (int e = 0; e < Rows; ++e) Q[e][j] = Q[e][j] - R[k][j] * Q[e][k];
+      }
+    }
+  }
+
+  // d; e is left with what no d takes away.
+  [[gnu::always_inline]] void solve(Lanes<N> (&e)[Rows], Lanes<N> (&d)[Columns]) const noexcept {
+    for (int k = 0; k < Columns; ++k) {
+      d[k] = Q[0][k] * e[0];
+      for (int i = 1; i < Rows; ++i) d[k] = d[k] + Q[i][k] * e[i];
+      for (int i = 0; i < Rows; ++i) e[i] = e[i] - d[k] * Q[i][k];
+    }
+    for (int k = Columns - 1; k >= 0; --k) {
+      for (int j = k + 1; j < Columns; ++j) d[k] = d[k] - R[k][j] * d[j];
+      d[k] = d[k] * inverse[k];
+    }
+  }
+};
+
+// Arm: as for LaneChain; Task; kSize; kHeld, a flag a joint, kFree, how many are; kLeastPivot; Rows<P>; Policy.
+template <class Arm> struct LaneNewton {
+  using Policy = typename Arm::Policy;
+  template <int P> using Rows = typename Arm::template Rows<P>;
+  static constexpr int kEquations = Arm::Task::kCount, kMoving = Arm::kDof - Arm::kFree;
+  static_assert(kMoving <= kEquations);
+
+  // Refines the rows that are real, and puts them into the range. What is not shown to be the one solution near its
+  // start stays rough.
+  template <int P> static void refine(const Pose<P>& pose, const Range& range, Rows<P>& rows) noexcept {
+    constexpr int N = Rows<P>::kLanes < kNative ? Rows<P>::kLanes : kNative;
+    for (int at = 0; at < Rows<P>::kLanes; at += N) {
+      alignas(64) double real[std::size_t{N}];
+      int any = 0;
+      for (int i = 0; i < N; ++i) {
+        const int bits = static_cast<int>(rows.flags[at + i]);
+        real[i] = (bits & kReal) != 0 ? 1.0 : 0.0;
+        any |= bits & (kReal | kHit);
+      }
+      if (any == 0) continue;
+      const auto flags = bit((any & kHit) != 0 ? spread<N>(1.0) > 0.0 : spread<N>(-1.0) > 0.0, kHit);
+      refine_pack<P, N>(pose, range, at, load<N>(real) > 0.5, flags, rows);
+    }
+  }
+
+ private:
+  template <int P, int N, bool H, bool F>
+  static void refine_pack(const Pose<P>& pose, const Range& range, int at, const MaskOf<N, H>& given,
+                          const LanesOf<N, F>& flags, Rows<P>& rows) noexcept {
+    LaneChain<Arm, N> chain;
+    for (int j = 0; j < Arm::kDof; ++j) chain.q[j] = load<N>(rows.q[j] + at);
+    const Arrival<N> at_end = steps<P, N>(pose, given, chain);
+    const Mask<N> real = given & !at_end.beside, good = at_end.good;
+    Mask<N> inside = real;
+    for (int j = 0; j < Arm::kDof; ++j) {
+      Lanes<N> q = chain.q[j];
+      if (Arm::kRevolute[j] && !Arm::kHeld[j]) q = q + select(q > kPi, -kTurn, select(-kPi > q, kTurn, 0.0));
+      const Placed<N> placed =
+          Arm::kRevolute[j] && !Arm::kHeld[j] ? place<Policy>(j, q, range) : clamp<Policy>(j, q, range);
+      inside = inside & placed.inside;
+      store(select(good, placed.q, load<N>(rows.q[j] + at)), rows.q[j] + at);
+    }
+    store((bit(real, kReal) + bit(good & inside, kFound)) + (bit(real & !good, kRough) + flags), rows.flags + at);
+  }
+
+  // Which lanes arrived at the one solution near their start, and which at a least error that is not 0.
+  template <int N> struct Arrival {
+    Mask<N> good, beside;
+  };
+
+  // Steps until all lanes are done, or as many as there may be.
+  template <int P, int N>
+  static Arrival<N> steps(const Pose<P>& pose, const Mask<N>& real, LaneChain<Arm, N>& chain) noexcept {
+    LaneFactors<kEquations, kMoving, N> factors;
+    Lanes<N> before = spread<N>(Policy::kFarthestStart), rest = before;
+    Mask<N> good = real, done = !real;
+    chain.start();
+    for (int k = 0; k < Policy::kLaneSteps; ++k) {
+      Lanes<N> error[kEquations], d[kMoving], step[Arm::kDof];
+      chain.forward();
+      compare<P, N>(pose, chain, k < 2 || k > 2, error, factors);
+      factors.solve(error, d);
+      Lanes<N> size = abs(d[0]);
+      for (int i = 1; i < kMoving; ++i) size = max(size, abs(d[i]));
+      // Newton's method contracts this fast only near the one solution there (Deuflhard 2004, theorem 2.1)
+      good = good & (((k == 0 ? 1.0 : Policy::kContraction) * before > size) | (Policy::kConverged > size)) &
+             (factors.pivot > Arm::kLeastPivot);
+      for (int i = 0, j = 0; j < Arm::kDof; ++j) step[j] = Arm::kHeld[j] ? spread<N>(0.0) : select(good, d[i++], 0.0);
+      chain.move(step);
+      if (k > 0) done = (!good) | (Policy::kConverged * before > size * size) | (Policy::kConverged > size);
+      rest = abs(error[0]);
+      for (int i = 1; i < kEquations; ++i) rest = max(rest, abs(error[i]));
+      if (k > 0 && all(done)) break;
+      before = size;
+    }
+    const Mask<N> ended = good & done, far = rest > Policy::kLeastMiss;
+    return {ended & (Policy::kArrived > rest), ended & far};
+  }
+
+  // The error at the chain's tip, and with `fresh` its slope, factored.
+  template <int P, int N>
+  static void compare(const Pose<P>& pose, const LaneChain<Arm, N>& chain, bool fresh, Lanes<N> (&error)[kEquations],
+                      LaneFactors<kEquations, kMoving, N>& factors) noexcept {
+    Lanes<N> t[3][4];
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 4; ++c) t[r][c] = spread<N>(pose.t[r][c]);
+    Arm::Task::error(t, chain.tip, error);
+    if (!fresh) return;
+    Lanes<N> J[6][Arm::kDof], slope[kEquations][Arm::kDof];
+    chain.jacobian(J);
+    Arm::Task::slope(chain.tip, J, slope);
+    for (int e = 0; e < kEquations; ++e)
+      for (int i = 0, j = 0; j < Arm::kDof; ++j)
+        if (!Arm::kHeld[j]) factors.Q[e][i++] = slope[e][j];
+    factors.factor();
+  }
+};
+
+}  // namespace ikgen_runtime

@@ -1,0 +1,76 @@
+"""Search over the values of several held joints."""
+
+from __future__ import annotations
+
+from math import inf, pi
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ikgen.runtime.python.array_types import Array
+from ikgen.runtime.python.batch_solving import rows_batch
+from ikgen.runtime.python.held_joint import pose_lines
+from ikgen.runtime.python.joint_arguments import seed_rows
+from ikgen.runtime.python.pose_solving import solve_pose
+from ikgen.runtime.python.row_preference import preference_costs, preference_of
+from ikgen.runtime.python.solution_search import Start, best_rows
+from ikgen.runtime.python.solutions import Solutions, Status
+from ikgen.runtime.python.solved_arm import Arm
+
+__all__ = ["search_grid"]
+
+_POINTS = 4096  # of the grid
+_BEGINNINGS = 32
+_PART = 1024
+
+
+def search_grid(
+    arm: Arm, pose: ArrayLike, seed: ArrayLike | None, prefer: str, limits: bool
+) -> Solutions:
+    """Good rows over a grid of the held joints' values, each made better by a compass search. Raises
+    ValueError for bad arguments."""
+    dof = len(arm.lower)
+    near = None if seed is None else tuple(seed_rows(arm, seed, (dof,)).tolist())
+    preference = preference_of(arm, prefer, near)
+    T = pose_lines(arm, pose)
+    empty = np.empty((0, dof)), np.empty(0, dtype=bool)
+    if T is None:
+        return solve_pose(arm, pose, None, None, limits)  # which says why it is none
+    values, steps = _grid(arm, preference[1], limits)
+    q, cost, any_real = [], [], False
+    for k in range(0, len(values), _PART):
+        part = values[k : k + _PART]
+        rows, real, _ = rows_batch(arm, np.broadcast_to(T, (len(part), 4, 4)), part, None)
+        any_real = any_real or bool(real.any())
+        rows, costs, inside = preference_costs(arm, preference, rows, limits)
+        q.append(rows)
+        cost.append(np.where(real & inside, costs, inf))
+    found, costs = np.concatenate(q), np.concatenate(cost)
+    starts: list[Start] = []
+    for flat in np.argsort(costs, axis=None, kind="stable")[:_BEGINNINGS].tolist():
+        point, row = divmod(flat, costs.shape[1])
+        if costs[point, row] < inf:
+            held = tuple(values[point].tolist())
+            starts.append((held, found[point, row], steps, len(starts)))
+    if not starts:
+        return Solutions(empty[0], Status.LIMITS if any_real else Status.UNREACHABLE, empty[1])
+    return best_rows(arm, T, starts, preference, limits)
+
+
+def _grid(arm: Arm, middle: tuple[float, ...], limits: bool) -> tuple[Array, tuple[float, ...]]:
+    """Values of the held joints (n, k), evenly spread over their ranges and those nearest to what is
+    wanted, and half the steps between them. A turn, or a metre to either side, is looked at where there
+    are no limits."""
+    count = max(3, int(_POINTS ** (1.0 / len(arm.free)) + 1e-9))
+    axes, steps = [], []
+    for j in arm.free:
+        low, high = arm.lower[j], arm.upper[j]
+        if arm.chain.revolute[j] and not (limits and high - low < inf):
+            low, high = -pi, pi
+        low, high = max(low, middle[j] - 1.0) if low == -inf else low, high
+        high = min(high, max(low, middle[j]) + 1.0) if high == inf else high
+        axis = np.linspace(low, high, count)
+        axis[np.abs(axis - middle[j]).argmin()] = min(max(middle[j], low), high)
+        axes.append(axis)
+        steps.append(0.5 * (high - low) / (count - 1))
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes)), tuple(steps)

@@ -1,0 +1,92 @@
+"""An arm with one held joint, at many values of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import inf, pi
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.batch_solving import rows_batch
+from ikgen.runtime.python.pose_arguments import pose_matrices
+from ikgen.runtime.python.solved_arm import Arm
+
+__all__ = ["HeldJoint", "Rows", "held_range", "merged_rows", "pose_lines", "rows_at"]
+
+BranchesAndFolds = Callable[[Array, Array, Array, "list[Array]"], tuple[Array, Flags, Flags, Flags]]
+
+
+@dataclass(frozen=True)
+class HeldJoint:
+    """`branches_and_folds`: the arm's closed form, which adds to a list what is positive where rows are
+    real; `guarded`: whether that is all that makes rows come and go."""
+
+    arm: Arm
+    branches_and_folds: BranchesAndFolds
+    guarded: bool
+
+
+@dataclass(frozen=True)
+class Rows:
+    """At values `held` (n,) of the held joint, ascending: rows `q` (n, m, dof), which of them are `real`
+    (n, m), and what is positive where they are, `folds` (n, m, k)."""
+
+    held: Array
+    q: Array
+    real: Flags
+    folds: Array
+
+
+def rows_at(joint: HeldJoint, T: Array, held: Array) -> Rows:
+    """The rows of a pose T (4, 4) at values of the held joint, without limits."""
+    margins: list[Array] = []
+
+    def branches(poses: Array, q0: Array, values: Array) -> tuple[Array, Flags, Flags, Flags]:
+        return joint.branches_and_folds(poses, q0, values, margins)
+
+    arm, count = replace(joint.arm, branches_batch=branches), len(held)
+    q, real, _ = rows_batch(arm, np.broadcast_to(T, (count, 4, 4)), held[:, None], None)
+    own = margins[: len(margins) // (1 + len(arm.beside))]
+    folds = np.full((*real.shape, len(own)), inf)
+    for k, values in enumerate(own):
+        folds[:, : values.shape[1], k] = values
+    return Rows(held, q, real, folds)
+
+
+def merged_rows(one: Rows, other: Rows) -> Rows:
+    """Both, in the order of the held joint's values."""
+    held = np.concatenate([one.held, other.held])
+    order = np.argsort(held, kind="stable")
+    q, folds = (
+        np.concatenate(pair)[order] for pair in ((one.q, other.q), (one.folds, other.folds))
+    )
+    return Rows(held[order], q, np.concatenate([one.real, other.real])[order], folds)
+
+
+def held_range(arm: Arm, T: Array, limits: bool) -> tuple[float, float]:
+    """Values of the held joint that count: its limits; one turn where it turns without any, or none are
+    asked for. A slide without limits is looked at as far as the arm's lengths reach from the pose."""
+    (j,) = arm.free
+    low, high = arm.lower[j], arm.upper[j]
+    if arm.chain.revolute[j]:
+        return (low, high) if limits and high - low < inf else (-pi, pi)
+    lengths = np.linalg.norm(arm.chain.frames[:, :3, 3], axis=1).sum()
+    slides = sum(
+        max(abs(a), abs(b))
+        for a, b, turns in zip(arm.lower, arm.upper, arm.chain.revolute)
+        if not turns and b - a < inf
+    )
+    far = float(np.linalg.norm(T[:3, 3]) + lengths + slides)
+    return max(low, -far), min(high, far)
+
+
+def pose_lines(arm: Arm, pose: ArrayLike) -> Array | None:
+    """A pose as it is read, (4, 4); None for what is no pose. Raises ValueError for a wrong shape."""
+    matrix = pose_matrices(pose, arm.task.alone)
+    if matrix.shape != (4, 4):
+        raise ValueError(f"pose has shape {matrix.shape}, expected (4, 4)")
+    T = arm.task.read(matrix.tolist(), arm.policy)
+    return None if T is None else np.array(T)

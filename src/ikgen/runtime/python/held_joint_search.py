@@ -1,0 +1,63 @@
+"""Search over the values of one held joint."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ikgen.runtime.python.branch_tracks import Tracks, tracked
+from ikgen.runtime.python.held_joint import HeldJoint, held_range, pose_lines
+from ikgen.runtime.python.joint_arguments import seed_rows
+from ikgen.runtime.python.pose_solving import solve_pose
+from ikgen.runtime.python.row_preference import Preference, preference_costs, preference_of
+from ikgen.runtime.python.self_motion import Piece, pieces_of
+from ikgen.runtime.python.solution_search import Start, best_rows
+from ikgen.runtime.python.solutions import Solutions, Status
+
+__all__ = ["search_interval"]
+
+
+def search_interval(
+    joint: HeldJoint, pose: ArrayLike, seed: ArrayLike | None, prefer: str, limits: bool
+) -> Solutions:
+    """The best row of each interval of the held joint's values, best first. Raises ValueError for bad
+    arguments."""
+    arm, dof = joint.arm, len(joint.arm.lower)
+    near = None if seed is None else tuple(seed_rows(arm, seed, (dof,)).tolist())
+    preference = preference_of(arm, prefer, near)
+    T = pose_lines(arm, pose)
+    none = np.empty((0, dof)), np.empty(0, dtype=bool)
+    if T is None:
+        return solve_pose(arm, pose, None, None, limits)  # which says why it is none
+    tracks = tracked(joint, T, *held_range(arm, T, limits), limits)
+    starts = [
+        start
+        for group, piece in enumerate(pieces_of(joint, T, tracks, limits))
+        for start in _starts(tracks, piece, group, preference, joint, limits)
+    ]
+    if not starts:
+        status = Status.LIMITS if tracks.rows.real.any() else Status.UNREACHABLE
+        return Solutions(none[0], status, none[1])
+    return best_rows(arm, T, starts, preference, limits)
+
+
+def _starts(
+    tracks: Tracks, piece: Piece, group: int, preference: Preference, joint: HeldJoint, limits: bool
+) -> list[Start]:
+    """The ends of an interval, and the samples in it that are better than those beside them."""
+    held, q = tracks.rows.held, tracks.rows.q
+    points = [(float(held[at]), q[at, row]) for at, row in piece.samples]
+    interval = piece.interval()
+    for value, end in ((interval.low, piece.low), (interval.high, piece.high)):
+        if not isinstance(end, float):
+            points.append((value, end.q))
+    points.sort(key=lambda point: point[0])
+    rows = np.array([row for _, row in points])
+    cost = preference_costs(joint.arm, preference, rows[:, None], limits)[1][:, 0]
+    out: list[Start] = []
+    for k, (value, row) in enumerate(points):
+        beside = [i for i in (k - 1, k + 1) if 0 <= i < len(points)]
+        if all(cost[k] <= cost[i] for i in beside):
+            step = max((abs(points[i][0] - value) for i in beside), default=1e-3)
+            out.append(((value,), row, (0.5 * step,), group))
+    return out

@@ -1,0 +1,186 @@
+"""Joint values along a path of poses, on one branch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.chain_kinematics import tip_and_jacobian
+from ikgen.runtime.python.joint_arguments import seed_rows
+from ikgen.runtime.python.pose_arguments import pose_matrices
+from ikgen.runtime.python.pose_solving import solve_pose
+from ikgen.runtime.python.refinement import rank_loss, refine
+from ikgen.runtime.python.solutions import Solutions, Status
+from ikgen.runtime.python.solved_arm import Arm
+
+__all__ = ["Path", "follow_poses"]
+
+_DEEPEST = 24  # of the way from one pose to the next
+_SHALLOW = 9  # the same where there are no rows
+_FARTHEST = 0.3  # rad or m that a joint may move at once
+_OFF = 0.2  # of the motion, and
+_LEAST_OFF = 1e-4  # rad or m: how far a row may be from where the Jacobian leads
+_DAMPING = 1e-8  # of directions that are all but lost
+_JUMP = 0.05  # rad or m that a row may be from the last one where halving does not help
+
+
+@dataclass(frozen=True)
+class Path:
+    """Joint values `q` (N, DOF) along N poses, on one branch and without leaps of whole turns; NaN from
+    the first that was not reached. `reached`: how many were; `status`: OK for all of them, else why the
+    next was not, SINGULAR where its rows are a leap away. `singular` (N,): the row is at a singularity,
+    or was reached across one."""
+
+    q: Array
+    reached: int
+    status: Status
+    singular: Flags
+
+
+def follow_poses(
+    arm: Arm,
+    search: Callable[[Array, Array, bool], Solutions],
+    poses: ArrayLike,
+    start: ArrayLike,
+    limits: bool,
+) -> Path:
+    """From the row of the first pose (N, 4, 4) that is nearest to `start` (dof,); `search(pose, start,
+    limits)`: rows nearest to it first. Raises ValueError for bad arguments."""
+    T, dof = pose_matrices(poses, arm.task.alone), len(arm.lower)
+    if T.ndim != 3 or T.shape[1:] != (4, 4):
+        raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
+    row = seed_rows(arm, start, (dof,))
+    q, singular = np.full((len(T), dof), np.nan), np.zeros(len(T), dtype=bool)
+    walk = _Walk(arm, limits)
+    for i, pose in enumerate(T):
+        walk.crossed = False
+        if arm.task.read(pose.tolist(), arm.policy) is None:
+            status = Status.INVALID
+        elif i:
+            status = walk.step(T[i - 1], pose, 0)
+        else:
+            status = walk.begin(search(pose, row, limits))
+        if status is not Status.OK:
+            return Path(q, i, status, singular)
+        q[i], singular[i] = walk.q, walk.crossed
+    return Path(q, len(T), Status.OK, singular)
+
+
+class _Walk:
+    """`q`: where the arm is; `crossed`: whether it came across a singularity since that was last unset."""
+
+    def __init__(self, arm: Arm, limits: bool) -> None:
+        self.arm, self.limits = arm, limits
+        self.q: Array = np.zeros(len(arm.lower))
+        self.crossed = False
+
+    def begin(self, found: Solutions) -> Status:
+        """To the first of some rows."""
+        if len(found):
+            self.q, self.crossed = found.q[0], bool(found.singular[0])
+        return found.status
+
+    def step(self, before: Array, pose: Array, depth: int) -> Status:
+        """From a pose to the next, with halved steps where the rows do not follow the Jacobian."""
+        expected = self._expected(pose)
+        rows, flags, status = self._rows(pose, expected)
+        if len(rows):
+            gap = np.abs(rows - expected).max(axis=1)
+            k = int(gap.argmin())
+            moved = float(np.abs(rows[k] - self.q).max())
+            follows = moved < _FARTHEST and gap[k] < _LEAST_OFF + _OFF * moved
+            if follows or (depth == _DEEPEST and moved < _JUMP):
+                self.crossed = self.crossed or bool(flags[k]) or not follows
+                return self._arrive(rows[k])
+            status = Status.SINGULAR
+        if depth == _DEEPEST or (depth >= _SHALLOW and not len(rows)):
+            return status
+        middle = _between(before, pose)
+        first = self.step(before, middle, depth + 1)
+        return first if first is not Status.OK else self.step(middle, pose, depth + 1)
+
+    def _arrive(self, row: Array) -> Status:
+        """To a row, if it is inside the limits on the turn that it came to."""
+        if self.limits:
+            inside = np.clip(row, self.arm.lower, self.arm.upper)
+            if np.abs(inside - row).max() > self.arm.policy.limit_tolerance:
+                return Status.LIMITS
+            row = inside
+        self.q = row
+        return Status.OK
+
+    def _expected(self, pose: Array) -> Array:
+        """Where the shortest motion by the Jacobian leads from here."""
+        return self.q + self._motion(pose, list(range(len(self.q))))
+
+    def _motion(self, pose: Array, moving: list[int]) -> Array:
+        """The shortest motion (dof,) of some joints that the Jacobian asks for, at most a radian or
+        metre each."""
+        arm = self.arm
+        here, J = tip_and_jacobian(arm.chain, self.q[None])
+        error, rows = arm.task.error(here, pose[None])[0], arm.task.rows(here, J)[0][:, moving]
+        normal = rows @ rows.T + _DAMPING * np.eye(len(rows))
+        step = np.zeros(len(self.q))
+        step[moving] = np.clip(rows.T @ np.linalg.solve(normal, error), -1.0, 1.0)
+        return step
+
+    def _rows(self, pose: Array, expected: Array) -> tuple[Array, Flags, Status]:
+        """All rows without limits; with held joints the one that those lead to which no limit stops."""
+        if self.arm.free:
+            return self._unstopped(pose)
+        found = solve_pose(self.arm, pose, None, self.q, False)
+        return found.q, found.singular, found.status
+
+    def _unstopped(self, pose: Array) -> tuple[Array, Flags, Status]:
+        """The row next to the expected one that all joints reach together, those that it would take out
+        of their limits stopped there."""
+        arm, stopped = self.arm, dict[int, float]()
+        while True:
+            moving = [j for j in range(len(self.q)) if j not in stopped]
+            at = self.q.copy()
+            for j, value in stopped.items():
+                at[j] = value
+            q, arrived, _ = refine(
+                arm.chain,
+                arm.task,
+                moving,
+                (at + self._motion(pose, moving))[None],
+                pose[None],
+                arm.policy,
+            )
+            if not arrived[0]:
+                none = np.empty((0, len(at))), np.empty(0, dtype=bool)
+                return *none, Status.LIMITS if stopped else Status.UNREACHABLE
+            low, high = np.array(arm.lower), np.array(arm.upper)
+            excess = np.maximum(low - q[0], q[0] - high)
+            worst = int(excess.argmax())
+            if not self.limits or excess[worst] <= arm.policy.limit_tolerance:
+                loss = rank_loss(arm.chain, arm.task, range(len(at)), q)
+                return q, loss < arm.policy.rank_loss, Status.OK
+            stopped[worst] = float(low[worst] if q[0, worst] < low[worst] else high[worst])
+
+
+def _between(a: Array, b: Array) -> Array:
+    """The pose halfway (4, 4): the middle of the positions, half of the turn between (its axis by the
+    antisymmetric part, or the largest column of the symmetric one for half turns)."""
+    T = 0.5 * (a + b)
+    R = a[:3, :3].T @ b[:3, :3]
+    w = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
+    sine, cosine = 0.5 * float(np.linalg.norm(w)), 0.5 * (float(np.trace(R)) - 1.0)
+    angle = float(np.arctan2(sine, cosine))
+    if sine > 1e-6:
+        axis = w / (2.0 * sine)
+    elif cosine > 0.0:
+        return np.asarray(np.where(np.arange(4) == 3, T, a))
+    else:
+        S = R + np.eye(3)
+        column = S[:, int(np.argmax(np.diag(S)))]
+        axis = column / np.linalg.norm(column)
+    K = np.cross(np.eye(3), -axis)
+    half = 0.5 * angle
+    T[:3, :3] = a[:3, :3] @ (np.eye(3) + np.sin(half) * K + (1.0 - np.cos(half)) * K @ K)
+    return T

@@ -1,0 +1,42 @@
+"""Which rows at one value of a held joint go on as which at the next."""
+
+from __future__ import annotations
+
+from math import inf, pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.solved_arm import Arm
+
+__all__ = ["Links", "differences", "linked_rows", "origins"]
+
+Links = NDArray[np.intp]
+_WHOLE_TURN = 2.0 * pi
+
+
+def differences(arm: Arm, a: Array, b: Array) -> Array:
+    """b - a (..., dof), of turning joints on the shortest way."""
+    gap = b - a
+    turning = np.array(arm.chain.revolute)
+    return np.where(turning, gap - _WHOLE_TURN * np.round(gap / _WHOLE_TURN), gap)
+
+
+def linked_rows(arm: Arm, q: Array, real: Flags) -> Links:
+    """For rows (n, m, dof) of which some are real (n, m): the index (n - 1, m) of the row at the next value
+    that each is nearest to and that is nearest to it; -1 where there is none."""
+    gap = np.abs(differences(arm, q[:-1, :, None], q[1:, None])).max(axis=3)
+    gap = np.where(real[:-1, :, None] & real[1:, None], gap, inf)
+    there, back = gap.argmin(axis=2), gap.argmin(axis=1)
+    mutual = np.take_along_axis(back, there, axis=1) == np.arange(q.shape[1])
+    near = np.take_along_axis(gap, there[:, :, None], axis=2)[:, :, 0] < inf
+    return np.where(mutual & near, there, -1)
+
+
+def origins(following: Links) -> Links:
+    """For each row at the upper end of a cell, the row at its lower end that goes on as it; -1 for none."""
+    out = np.full_like(following, -1)
+    cell, row = np.nonzero(following >= 0)
+    out[cell, following[cell, row]] = row
+    return out

@@ -1,0 +1,45 @@
+"""Approximate solutions of three revolute joints and three slides.
+
+The rotation gives the angles, the position the lengths, linearly.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ikgen.runtime.python.array_types import Array
+from ikgen.runtime.python.general_6r import Candidates, Elimination, Turning
+from ikgen.runtime.python.loop_equations import loop_constants
+from ikgen.runtime.python.revolute_loop import displacement, revolute_loop, slide_lengths
+from ikgen.runtime.python.spherical_triple import spherical_triple
+
+__all__ = ["three_slide_candidates"]
+
+_SLIDES_FOLD = 1e-3  # imaginary part of an angle that may be a fold's round-off
+_SLIDES_APART = 1e-6
+
+
+def three_slide_candidates(F: Array, T: Array, plan: Elimination, turning: Turning) -> Candidates:
+    """As `candidates`, of a chain with three joints that are not `turning`; the plan begins at a revolute
+    joint."""
+    order, C = loop_constants(F, T, *plan[:2])
+    turns = [turning[j] for j in order]
+    loop = revolute_loop(C, turns, len(T))
+    h, c, s = spherical_triple(loop.K[:2], np.swapaxes(loop.K[2], -1, -2))
+    off = np.maximum(np.abs(c[0, 1].imag), np.abs(s[0, 1].imag))
+    pose = np.flatnonzero(off < _SLIDES_FOLD)
+    twice = np.tile(pose, 2)
+    branch = np.repeat([0, 1], len(pose))
+    p, u = displacement(loop, c, s)
+    values = np.empty((len(twice), 6))
+    values[:, np.flatnonzero(turns)] = np.arctan2(
+        s[branch, :, twice].real, c[branch, :, twice].real
+    )
+    slides = slide_lengths(p[branch, twice], u[:, branch, twice])
+    values[:, np.flatnonzero(~np.array(turns))] = slides
+    q = np.empty_like(values)
+    q[:, order] = values
+    simple = (np.abs(s[0, 1] - s[1, 1]) + np.abs(c[0, 1] - c[1, 1]) > _SLIDES_APART) & (
+        h > _SLIDES_APART
+    )
+    return twice, q, np.where(off < 1e-12, 2, 0).astype(np.intp), simple

@@ -1,0 +1,110 @@
+"""Which tasks an arm can do everywhere: those whose freedoms its joints move independently."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ikgen.kinematics.axis_relations import reach
+from ikgen.kinematics.forward import file_forward
+from ikgen.tasks import AXES, TASKS, Task
+
+if TYPE_CHECKING:
+    from ikgen.model.dh import DHChain
+    from ikgen.model.joint_tree import Matrix
+
+__all__ = ["fits", "fitting_tasks", "freedoms_moved", "over_constrained", "scaled_motion"]
+
+_INDEPENDENT = 1e-4
+"""Least singular value, relative to the largest, of freedoms that are moved independently."""
+
+_AS_GOOD = 0.1
+"""The tool's z axis is taken unless it is conditioned worse than another by this factor."""
+
+
+def fitting_tasks(dh: DHChain, axis: str | None = None) -> tuple[Task, ...]:
+    """Tasks for an arm when none was asked for, the best first and the whole pose last; by the tool's
+    `axis`, or the one that suits.
+
+    An arm with fewer than six moving joints gets the task that fixes as many freedoms as it has, if
+    its joints do move all of them; the whole pose then only counts on the poses that it can take.
+    """
+    moving = dh.dof - len(dh.free)
+    whole = TASKS[0]
+    if moving >= whole.freedoms:
+        return (whole,)
+    sized = [t for t in TASKS if t.freedoms == moving and t.name != "rotation"]
+    found = (_along(dh, task, (axis,) if axis else AXES) for task in sized)
+    return (*(task for task in found if task is not None), whole)
+
+
+def _along(dh: DHChain, task: Task, axes: Sequence[str]) -> Task | None:
+    """The task by that of the axes which suits the arm best; None where it fits by none."""
+    ways = [task.along(axis) for axis in axes] if task.axis else [task]
+    rated = [(_condition(dh, way), way) for way in ways if fits(dh, way)]
+    if not rated:
+        return None
+    best = max(rated, key=lambda pair: pair[0])
+    plain = next((pair for pair in rated if pair[1].name == task.name), best)
+    return plain[1] if plain[0] >= _AS_GOOD * best[0] else best[1]
+
+
+def fits(dh: DHChain, task: Task) -> bool:
+    """Whether the joints that are not held move the task's freedoms independently of each other."""
+    q = _configurations(dh)
+    if task.name == "position-yaw" and np.abs(file_forward(dh, q)[:, 2, 0]).max() > 1e-6:
+        return False  # a heading is well-defined where the tool's x axis stays horizontal
+    return freedoms_moved(dh, task) == dh.dof - len(dh.free)
+
+
+def over_constrained(dh: DHChain, task: Task) -> int:
+    """How many of the task's freedoms the joints cannot move: 0 for a task that the arm can do."""
+    return max(0, task.freedoms - freedoms_moved(dh, task))
+
+
+def freedoms_moved(dh: DHChain, task: Task) -> int:
+    """How many freedoms of the task the joints that are not held move, nearly everywhere: the rank of
+    the task's entries by the joints."""
+    return int((_ratios(dh, task) > _INDEPENDENT).sum())
+
+
+def _condition(dh: DHChain, task: Task) -> float:
+    """Smallest singular value of the motion over the largest, nearly everywhere, to two digits."""
+    return float(f"{min(_ratios(dh, task), default=0.0):.2g}")
+
+
+def _ratios(dh: DHChain, task: Task) -> Matrix:
+    """Singular values of the task's motion over the largest, their median over the samples."""
+    moving = [j for j, joint in enumerate(dh.joints) if joint.name not in dh.free]
+    if not moving:
+        return np.empty(0)
+    singular = np.linalg.svd(scaled_motion(dh, task)[..., moving], compute_uv=False)
+    largest = np.maximum(singular[:, :1], 1e-12)
+    return np.asarray(np.median(singular / largest, axis=0))
+
+
+def scaled_motion(dh: DHChain, task: Task) -> Matrix:
+    """How the task's entries change with all joints, held or not, lengths in those of the arm, at a few
+    configurations: (8, entries, dof)."""
+    length = reach(dh)
+    rows = np.array([1.0 / length if column == 3 else 1.0 for _, column in task.entries])
+    columns = np.array([1.0 if joint.kind == "revolute" else length for joint in dh.joints])
+    return np.asarray(_task_motion(dh, task) * rows[:, None] * columns)
+
+
+def _task_motion(dh: DHChain, task: Task) -> Matrix:
+    """The same per rad and m."""
+    q = _configurations(dh)
+    rows, columns = zip(*task.entries, strict=True)
+    steps = []
+    for h in 1e-6 * np.eye(dh.dof):
+        change = (file_forward(dh, q + h) - file_forward(dh, q - h)) / 2e-6
+        steps.append(change[:, rows, columns])
+    return np.stack(steps, axis=-1)
+
+
+def _configurations(dh: DHChain) -> Matrix:
+    """A few configurations (8, dof) in rad and m, the same each time."""
+    return np.random.default_rng(0).uniform(-1.5, 1.5, (8, dh.dof))

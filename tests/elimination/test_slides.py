@@ -1,0 +1,188 @@
+"""Six joints of which some slide: complete and exact for every mix, at special poses too."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from ikgen.elimination import EliminationPlan, choose_plan
+from ikgen.elimination.loop_frames import forward, jacobian
+from ikgen.elimination.plan import eliminations
+from ikgen.elimination.routine import Plan, finder, runtime_policy, six_joints_batch
+from ikgen.program.policy import SolvePolicy
+from ikgen.runtime.python.general_6r import distinct_rows, six_joints
+from ikgen.runtime.python.refinement import newton
+from ikgen.runtime.python.whole_pose import PoseTask
+
+Array = NDArray[np.float64]
+Turning = tuple[bool, ...]
+POLICY = runtime_policy(SolvePolicy())
+MOST = {1: 16, 2: 8, 3: 2}
+MIXES = ["RRRPRR", "PRRRRR", "RPRRRR", "RRPPRR", "RPRPRR", "PRRPRR", "RPRPRP", "RPPRPR"]
+
+
+def turning_of(kinds: str) -> Turning:
+    """Which joints turn."""
+    return tuple(kind == "R" for kind in kinds)
+
+
+def general_frames(seed: int) -> Array:
+    """Seven transforms of random modified DH constants."""
+    rng = np.random.default_rng(seed)
+    alpha, a, d = rng.uniform(-1.5, 1.5, 6), rng.uniform(-0.6, 0.6, 6), rng.uniform(-0.6, 0.6, 6)
+    return dh_frames(alpha.tolist(), a.tolist(), d.tolist())
+
+
+def dh_frames(alpha: list[float], a: list[float], d: list[float]) -> Array:
+    """Seven transforms of modified DH constants."""
+    frames = [np.eye(4) for _ in range(7)]
+    for i in range(6):
+        c, s = math.cos(alpha[i]), math.sin(alpha[i])
+        frames[i] = frames[i] @ np.array(
+            [[1, 0, 0, a[i]], [0, c, -s, 0], [0, s, c, 0], [0, 0, 0, 1]]
+        )
+        frames[i + 1][2, 3] = d[i]
+    return np.array(frames)
+
+
+def solver(plan: EliminationPlan) -> Plan:
+    """What is embedded of a plan."""
+    return Plan(plan.length, plan.eliminations, plan.turning, finder(plan.turning))
+
+
+def regular(frames: Array, turning: Turning, drawn: Array) -> Array:
+    """Those of configurations (n, 6) at which the arm can move every way."""
+    slopes = [jacobian(frames, q, turning) for q in drawn]
+    return drawn[np.linalg.svd(np.array(slopes), compute_uv=False)[:, -1] > 2e-3]
+
+
+def configurations(frames: Array, turning: Turning, count: int, seed: int = 5) -> Array:
+    """Random regular configurations (count, 6)."""
+    reach = np.where(turning, np.pi, 1.0)
+    drawn = np.random.default_rng(seed).uniform(-reach, reach, (3 * count, 6))
+    return regular(frames, turning, drawn)[:count]
+
+
+def apart(rows: Array, q: Array, turning: Turning) -> Array:
+    """Largest difference between q (6,) and each of rows (k, 6)."""
+    gap = rows - q
+    turned = np.remainder(gap + np.pi, 2.0 * np.pi) - np.pi
+    return np.asarray(np.abs(np.where(turning, turned, gap)).max(axis=1))
+
+
+def missing(found: list[Array], wanted: Array, turning: Turning) -> int:
+    """How many of wanted (n, 6) are not among the solutions of their poses."""
+    pairs = zip(found, wanted, strict=True)
+    return sum(not (apart(rows, q, turning) < 1e-5).any() for rows, q in pairs)
+
+
+def assert_closed(frames: Array, turning: Turning, found: list[Array], poses: Array) -> None:
+    for rows, pose in zip(found, poses, strict=True):
+        for row in rows:
+            assert np.abs(forward(frames, row, turning) - pose).max() < 1e-9
+
+
+def searched(frames: Array, plan: EliminationPlan, pose: Array, seed: int) -> Array:
+    """An independent search: Newton's method from 600 random starts."""
+    F, T = frames.copy(), pose.copy()
+    F[:, :3, 3] /= plan.length
+    T[:3, 3] /= plan.length
+    reach = np.where(plan.turning, np.pi, 4.0)
+    starts = np.random.default_rng(seed).uniform(-reach, reach, (600, 6))
+    poses, chain = np.broadcast_to(T, (600, 4, 4)), six_joints(F, plan.turning)
+    q, error, _ = newton(chain, PoseTask(1.0), range(6), starts, poses, 40, POLICY)
+    rows = distinct_rows(q[error < POLICY.arrived], plan.turning, 1e-5)
+    return rows * np.where(plan.turning, 1.0, plan.length)
+
+
+@pytest.mark.parametrize("kinds", MIXES)
+def test_every_mix_is_complete_and_exact(kinds: str) -> None:
+    turning, frames = turning_of(kinds), general_frames(seed=3)
+    plan = choose_plan(frames, turning, probes=8)
+    q = configurations(frames, turning, 60)
+    poses = np.array([forward(frames, row, turning) for row in q])
+    found = six_joints_batch(frames, solver(plan), poses)
+    assert plan.usable
+    assert missing(found, q, turning) == 0
+    assert_closed(frames, turning, found, poses)
+    assert max(len(rows) for rows in found) <= MOST[kinds.count("P")]
+
+
+@pytest.mark.parametrize("kinds", ["RRRPRR", "RPRPRR", "PRRPRR", "RPRPRP"])
+def test_as_many_solutions_as_a_multi_start_search_finds(kinds: str) -> None:
+    turning, frames = turning_of(kinds), general_frames(seed=4)
+    plan = choose_plan(frames, turning, probes=8)
+    for k, row in enumerate(configurations(frames, turning, 3, seed=8)):
+        pose = forward(frames, row, turning)
+        found = six_joints_batch(frames, solver(plan), pose[None])[0]
+        others = searched(frames, plan, pose, seed=k)
+        assert len(others), "the search found nothing to compare"
+        for other in others:
+            assert apart(found, other, turning).min() < 1e-4
+
+
+@pytest.mark.parametrize("kinds", ["RRRPRR", "RRRPRP"])
+def test_every_elimination_finds_the_same(kinds: str) -> None:
+    """Whichever joint the loop begins at, reversed and swapped or not."""
+    turning, frames = turning_of(kinds), general_frames(seed=5)
+    q = configurations(frames, turning, 12)
+    poses = np.array([forward(frames, row, turning) for row in q])
+    counts = []
+    for one in eliminations(turning):
+        plan = Plan(1.0, (one,), turning, finder(turning))
+        found = six_joints_batch(frames, plan, poses)
+        assert missing(found, q, turning) == 0
+        counts.append([len(rows) for rows in found])
+    assert len(counts) == (8 if kinds.count("P") == 1 else 4)
+    assert all(count == counts[0] for count in counts)
+
+
+def surgical() -> tuple[Turning, Array]:
+    """Two axes that meet, a slide, and a wrist whose axes miss each other by a few millimetres."""
+    h = 0.5 * math.pi
+    alpha, a = [0.0, h, h, 0.0, -h, -h], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0091]
+    return turning_of("RRPRRR"), dh_frames(alpha, a, [0.0, 0.0, -0.43, 0.38, 0.0, 0.0])
+
+
+def test_small_wrist_offset() -> None:
+    turning, frames = surgical()
+    plan = choose_plan(frames, turning)
+    q = configurations(frames, turning, 80)
+    poses = np.array([forward(frames, row, turning) for row in q])
+    found = six_joints_batch(frames, solver(plan), poses)
+    assert plan.usable
+    assert missing(found, q, turning) == 0
+    assert_closed(frames, turning, found, poses)
+
+
+@pytest.mark.parametrize("kinds", ["RRRRPR", "RRPRRP"])
+def test_right_angles_and_poses_at_multiples_of_them(kinds: str) -> None:
+    h = 0.5 * math.pi
+    alpha, a, d = [0, -h, 0, h, h, -h], [0, 0.3, 0.4, 0, 0.2, 0.3], [0.2, 0, 0.3, 0.5, 0, 0.1]
+    turning, frames = turning_of(kinds), dh_frames(alpha, a, d)
+    plan = choose_plan(frames, turning)
+    rng = np.random.default_rng(2)
+    step = rng.integers(-2, 3, (400, 6)) * np.where(turning, 0.5 * h, 0.25)
+    q = regular(frames, turning, np.where(np.remainder(step, 2 * np.pi) > 3.2, -step, step))[:60]
+    poses = np.array([forward(frames, row, turning) for row in q])
+    found = six_joints_batch(frames, solver(plan), poses)
+    assert len(q) > 20
+    assert missing(found, q, turning) == 0
+    assert_closed(frames, turning, found, poses)
+
+
+def test_unreachable_and_distant_poses_have_no_solution() -> None:
+    turning, frames = turning_of("RRRPRR"), general_frames(seed=3)
+    plan = choose_plan(frames, turning, probes=4)
+    for nonsense in (np.full((4, 4), np.nan), np.zeros((4, 4)), np.full((4, 4), 1e200)):
+        assert len(six_joints_batch(frames, solver(plan), nonsense[None])[0]) == 0
+
+
+def test_slides_that_differ_by_a_turn_are_two() -> None:
+    turning = turning_of("RRRPRR")
+    rows = np.zeros((3, 6))
+    rows[1, 3] = rows[2, 0] = 2.0 * np.pi
+    assert len(distinct_rows(rows, turning, 1e-6)) == 2

@@ -1,0 +1,171 @@
+"""Sines and Newton steps in lanes of the C++ runtime."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from tests.support.chains import make_chain, rotation, translation
+from tests.support.cpp_modules import solver_module as published_module
+from tests.support.rounded_arms import EXACT, X, Z, spherical_wrist
+from tests.support.routines import compiled_header, feed
+from tests.support.solving import solver_module
+
+from ikgen.emit.cpp.cpp_emitter import emit_header
+from ikgen.emit.solver_module import SolverModule
+from ikgen.kinematics.modified_dh import to_dh
+from ikgen.model.chain import Chain
+
+Array = NDArray[np.float64]
+
+SINES = r"""
+#include <cstdio>
+#include "lane_sines.hpp"
+using namespace ikgen_runtime;
+int main() {
+  for (double x = 0.0, d = 0.0; std::scanf("%lf %lf", &x, &d) == 2;) {
+    const double in[4] = {x, -x, x + 1.0, 0.0}, by[4] = {d, d, -d, 0.0};
+    const auto at = sines(load<4>(in));
+    const auto on = turned(at, load<4>(by));
+    double out[4][4];
+    store(at.cosine, out[0]), store(at.sine, out[1]), store(on.cosine, out[2]), store(on.sine, out[3]);
+    for (int i = 0; i < 4; ++i) {
+      std::printf("%.17g %.17g ", in[i], by[i]);
+      std::printf("%.17g %.17g %.17g %.17g\n", out[0][i], out[1][i], out[2][i], out[3][i]);
+    }
+  }
+}
+"""
+ROWS = r"""
+#include <cstdio>
+#include <vector>
+#include "arm_ik.hpp"
+// For each configuration its rows by solve, by solve_batch and by the careful way alone.
+using namespace arm_ik;
+void print(const Solutions& found) {
+  std::printf("%d", found.count);
+  for (const Joints& q : found)
+    for (int j = 0; j < kDof; ++j) std::printf(" %.17g", q[j]);
+  std::printf("\n");
+}
+int main() {
+  std::vector<Eigen::Isometry3d> poses;
+  Joints q;
+  for (bool more = true; more;) {
+    for (int j = 0; j < kDof; ++j) more = std::scanf("%lf", &q[j]) == 1;
+    if (more) poses.push_back(forward(q));
+  }
+  std::vector<Solutions> batch(poses.size());
+  Options options;
+  options.limits = false;
+  solve_batch(poses.data(), static_cast<std::ptrdiff_t>(poses.size()), batch.data(), options);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    print(solve(poses[i], options));
+    print(batch[i]);
+    Solutions careful;
+    detail::CarefulSolve<detail::Arm>::solve(poses[i], options, careful);
+    print(careful);
+    detail::Arm::Rows<1> rows;
+    const auto pose = detail::gather<1>(&poses[i]);
+    constexpr detail::Range anywhere = {detail::kUnbounded<kDof>.lower, detail::kUnbounded<kDof>.upper};
+    detail::Arm::branches(pose, detail::Seed(), options.free, anywhere, rows);
+    detail::Arm::refine(pose, anywhere, rows);
+    int rough = 0;
+    for (const double flags : rows.flags)
+      rough += (static_cast<int>(flags) & (detail::kRough | detail::kHit)) != 0;
+    std::printf("%d\n", rough);
+  }
+}
+"""
+SLIDE = make_chain(
+    "RPRRR",
+    [
+        translation(0, 0, 0.4),
+        rotation(X, 1.5708) @ translation(0, 0.2, 0),
+        rotation(X, 1.5708) @ translation(0.1, 0, 0),
+        translation(0.3, 0, 0) @ rotation(X, 1.5708),
+        translation(0, 2e-4, 0) @ rotation(X, -1.5708),
+    ],
+    [Z] * 5,
+    translation(0, 0.05, 0.1),
+)
+
+
+@pytest.mark.parametrize("flags", [[], ["-march=native"]])
+def test_sines_are_right_to_round_off(flags: list[str], tmp_path: Path) -> None:
+    program = compiled_header(SINES, tmp_path, *flags)
+    random = np.random.default_rng(2)
+    values = np.concatenate(
+        [random.uniform(-7, 7, 400), 50 * random.normal(size=50), np.arange(9) * math.pi / 4]
+    )
+    turns = random.uniform(-0.1, 0.1, len(values))
+    lines = feed(program, np.column_stack([values, turns]).ravel().tolist())
+    assert len(lines) == 4 * len(values)
+    for x, d, c, s, c_on, s_on in lines:
+        assert max(abs(c - math.cos(x)), abs(s - math.sin(x))) < 4e-16
+        assert max(abs(c_on - math.cos(x + d)), abs(s_on - math.sin(x + d))) < 6e-16 + 1e-16 * abs(
+            x
+        )
+
+
+def answers(
+    module: SolverModule, q: Array, folder: Path, *flags: str
+) -> list[tuple[list[Array], int]]:
+    """Of each configuration the rows by `solve`, in a batch and one by one, and how many rows the lanes
+    left to the latter."""
+    (folder / "arm_ik.hpp").write_text(emit_header(replace(module, name="arm")))
+    program = compiled_header(ROWS, folder, f"-I{folder}", *flags)
+    lines = feed(program, q.ravel().tolist())
+    assert len(lines) == 4 * len(q)
+    return [
+        (
+            [np.array(one[1:]).reshape(int(one[0]), -1) for one in lines[i : i + 3]],
+            int(lines[i + 3][0]),
+        )
+        for i in range(0, len(lines), 4)
+    ]
+
+
+def apart(a: Array, b: Array) -> Array:
+    return np.abs(np.remainder(a - b + math.pi, 2 * math.pi) - math.pi).max(axis=-1)
+
+
+def rounded(chain: Chain) -> SolverModule:
+    module = solver_module(to_dh(chain))
+    assert module.refine == "all"
+    return module
+
+
+WRIST = spherical_wrist(EXACT, offset=2e-6)
+
+
+@pytest.mark.parametrize("module", [rounded(WRIST), published_module("doosan_m1013")])
+def test_lanes_find_what_one_by_one_finds(module: SolverModule, tmp_path: Path) -> None:
+    q = np.random.default_rng(4).uniform(-3, 3, (300, 6))
+    found = answers(module, q, tmp_path, "-march=native")
+    for at, ((rows, batch, careful), _) in zip(q, found, strict=True):
+        assert apart(rows, at).min() < 1e-9
+        assert rows.shape == batch.shape and len(rows) >= len(careful)
+        assert np.abs(rows - batch).max() < 1e-9
+        for row in careful:
+            assert apart(rows, row).min() < 1e-6
+    assert sum(rough > 0 for _, rough in found) < 0.2 * len(q)
+
+
+def test_rows_beside_the_wrists_singularity_are_handed_on(tmp_path: Path) -> None:
+    q = np.random.default_rng(4).uniform(-3, 3, (40, 6))
+    q[:, 4] = 1e-7
+    found = answers(rounded(WRIST), q, tmp_path)
+    assert all(rough > 0 for _, rough in found)
+
+
+def test_a_slide_and_fewer_joints_than_equations(tmp_path: Path) -> None:
+    q = np.random.default_rng(4).uniform(-1, 1, (60, 5))
+    found = answers(rounded(SLIDE), q, tmp_path, "-march=native")
+    for at, ((rows, _, careful), _) in zip(q, found, strict=True):
+        assert apart(rows, at).min() < 1e-9 and len(rows) == len(careful)
+    assert sum(rough > 0 for _, rough in found) < 10

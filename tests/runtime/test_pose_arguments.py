@@ -1,0 +1,148 @@
+"""Poses as people have them, and what is said of those that are none."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from ikgen.elimination.routine import runtime_policy
+from ikgen.program.policy import SolvePolicy
+from ikgen.runtime.python.pose_arguments import pose_matrices
+from ikgen.runtime.python.pose_entries import EntriesTask
+from ikgen.runtime.python.pose_faults import nearest_pose, nearest_poses, pose_fault
+from ikgen.runtime.python.whole_pose import PoseTask
+
+POLICY = runtime_policy(SolvePolicy())
+TURN = Rotation.from_rotvec([0.3, -1.1, 0.7])
+R, P = TURN.as_matrix(), np.array([0.1, -0.2, 0.3])
+T = np.eye(4)
+T[:3, :3], T[:3, 3] = R, P
+MANY = np.stack([T, np.eye(4), T @ T])
+QUATERNION = TURN.as_quat()  # x y z w
+
+
+class Spatial:
+    """Like `spatialmath.SE3`: an array, or a list of arrays where it holds several."""
+
+    def __init__(self, A: Any) -> None:
+        self.A = A
+
+
+SINGLE = {
+    "array": T,
+    "lists": T.tolist(),
+    "single precision": T.astype(np.float32),
+    "three rows": T[:3],
+    "three rows as lists": T[:3].tolist(),
+    "rotation and position": (R, P),
+    "rotation and position as lists": [R.tolist(), P.tolist()],
+    "position and quaternion": (P, QUATERNION),
+    "position and the other quaternion": (P.tolist(), (-QUATERNION).tolist()),
+    "homogeneous": SimpleNamespace(homogeneous=T),
+    "as_matrix": SimpleNamespace(as_matrix=lambda: T),
+    "A": Spatial(T),
+    "np.matrix": np.asmatrix(T),
+}
+
+
+@pytest.mark.parametrize("kind", SINGLE)
+def test_a_pose_of_any_kind_is_its_matrix(kind: str) -> None:
+    found = pose_matrices(SINGLE[kind], "")
+    assert found.shape == (4, 4) and found.dtype == float and type(found) is np.ndarray
+    assert np.allclose(found, T, atol=1e-6 if kind == "single precision" else 1e-14)
+
+
+BATCH = {
+    "array": MANY,
+    "three rows": MANY[:, :3],
+    "list of arrays": list(MANY),
+    "rotations and positions": (MANY[:, :3, :3], MANY[:, :3, 3]),
+    "positions and quaternions": (
+        MANY[:, :3, 3],
+        Rotation.from_matrix(MANY[:, :3, :3]).as_quat(),
+    ),
+    "objects": [SimpleNamespace(homogeneous=one) for one in MANY],
+    "one object of several": Spatial(list(MANY)),
+    "as_matrix": SimpleNamespace(as_matrix=lambda: MANY),
+}
+
+
+@pytest.mark.parametrize("kind", BATCH)
+def test_many_poses_of_any_kind_are_their_matrices(kind: str) -> None:
+    found = pose_matrices(BATCH[kind], "")
+    assert found.shape == (3, 4, 4) and np.allclose(found, MANY, atol=1e-14)
+
+
+def test_two_poses_are_no_pair() -> None:
+    assert np.array_equal(pose_matrices([T.tolist(), T.tolist()], ""), [T, T])
+    assert np.array_equal(pose_matrices([T[:3], T[:3]], ""), [T, T])
+
+
+def test_parts_alone_do_where_the_task_reads_no_other() -> None:
+    assert np.allclose(pose_matrices(R, "rotation")[:3, :3], R)
+    assert np.allclose(pose_matrices(TURN, "rotation")[:3, :3], R)
+    assert np.allclose(pose_matrices(P.tolist(), "position")[:3, 3], P)
+    assert pose_matrices(np.zeros((5, 3)), "position").shape == (5, 4, 4)
+    assert pose_matrices(np.zeros((5, 3, 3)), "rotation").shape == (5, 4, 4)
+    assert pose_matrices(R, "").shape == (3, 3)  # which the caller refuses
+    assert pose_matrices(P, "rotation").shape == (3,)
+
+
+@pytest.mark.parametrize("wrong", ["here", {}, {"p": 1}, [[1.0], [1.0, 2.0]], (R, P[:2]), object()])
+def test_what_is_no_array_is_a_value_error(wrong: Any) -> None:
+    with pytest.raises(ValueError):
+        pose_matrices(wrong, "")
+
+
+def test_a_quaternion_that_is_not_of_norm_one_gives_no_rotation() -> None:
+    good = pose_matrices((P, np.float32(QUATERNION)), "").tolist()
+    assert PoseTask(1.0).read(good, POLICY) is not None
+    bad = pose_matrices((P, 1.001 * QUATERNION), "").tolist()
+    assert PoseTask(1.0).read(bad, POLICY) is None
+
+
+@pytest.mark.parametrize("digits", [3, 4, 5])
+def test_a_rotation_of_few_digits_is_refused_with_a_reason_and_a_way_out(digits: int) -> None:
+    task, rough = PoseTask(1.0), T.copy()
+    rough[:3, :3] = np.round(R, digits)
+    assert task.read(rough.tolist(), POLICY) is None
+    assert "orthonormalize=True" in pose_fault(task, rough.tolist(), POLICY)
+    near = nearest_pose(task, rough.tolist(), POLICY)
+    clean = task.read(near, POLICY)
+    assert clean is not None
+    read = np.array(clean)[:3, :3]
+    assert np.abs(read.T @ read - np.eye(3)).max() < 1e-14
+    U, _, V = np.linalg.svd(rough[:3, :3])  # the nearest in the Frobenius norm
+    assert np.abs(read - U @ V).max() < 1e-9
+    assert np.allclose(nearest_poses(task, np.stack([rough, T]), POLICY)[0], near)
+
+
+FAULTS = {
+    "finite": np.full((4, 4), np.nan),
+    "last row": np.vstack([T[:3], [[0.0, 0.0, 0.1, 1.0]]]),
+    "reflection": T @ np.diag([1.0, 1.0, -1.0, 1.0]),
+    "off by 5.0e-01": np.block([[1.5 * R, P[:, None]], [np.zeros((1, 3)), np.ones((1, 1))]]),
+}
+
+
+@pytest.mark.parametrize("words", FAULTS)
+def test_what_is_wrong_is_said(words: str) -> None:
+    task, bad = PoseTask(1.0), FAULTS[words].tolist()
+    text = pose_fault(task, bad, POLICY)
+    assert task.read(bad, POLICY) is None and "orthonormalize" not in text
+    assert words in text or words == "off by 5.0e-01"
+    assert np.array_equal(nearest_pose(task, bad, POLICY), bad, equal_nan=True)
+
+
+def test_a_task_of_some_entries_tells_of_those() -> None:
+    direction = EntriesTask(1.0, (0, 1, 2), (2, 2, 2), (2,), False)
+    assert direction.alone == "rotation"
+    bad = T.copy()
+    bad[:3, 2] *= 1.0002
+    assert "orthonormalize=True" in pose_fault(direction, bad.tolist(), POLICY)
+    assert EntriesTask(1.0, (0, 1, 2), (3, 3, 3), (), False).alone == "position"
+    assert EntriesTask(1.0, (0, 1), (3, 0), (0,), True).alone == ""

@@ -1,0 +1,121 @@
+"""Tasks by the tool's axes, and which of them an arm can do everywhere."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ikgen.equations.products import ENTRY_NAMES
+from ikgen.equations.readable import readable_in_dh
+from ikgen.errors import UnknownNameError, UsageError
+from ikgen.generation.read import read
+from ikgen.generation.request import Request
+from ikgen.model.dh import DHChain
+from ikgen.tasks import TASKS, find_task
+from ikgen.tasks.fitting import fits, fitting_tasks, freedoms_moved, over_constrained
+
+FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
+
+# Yaw, two parallel joints and a roll about the tool's z axis: its direction does not see the roll.
+ROLL = """
+name = "roll"
+convention = "modified"
+[[joints]]
+type = "revolute"
+alpha = 0
+a = 0
+d = 0.3
+[[joints]]
+type = "revolute"
+alpha = "-pi/2"
+a = 0.1
+d = 0
+[[joints]]
+type = "revolute"
+alpha = 0
+a = 0.4
+d = 0
+[[joints]]
+type = "revolute"
+alpha = 0
+a = 0.3
+d = 0
+[[joints]]
+type = "revolute"
+alpha = "pi/2"
+a = 0
+d = 0.2
+"""
+
+
+def chain(name: str) -> DHChain:
+    return read(Request(FIXTURES / name)).dh
+
+
+def roll(folder: Path) -> DHChain:
+    path = folder / "roll.toml"
+    path.write_text(ROLL)
+    return read(Request(path)).dh
+
+
+def turned(dh: DHChain, R: np.ndarray) -> DHChain:
+    X = np.eye(4)
+    X[:3, :3] = R
+    return replace(dh, X_base=X)
+
+
+def test_the_axis_chooses_the_column() -> None:
+    plain, along = find_task("position-direction"), find_task("position-direction", "x")
+    assert plain == find_task("position-direction", "z")
+    assert along.name == "position-direction:x" and along.stem == plain.stem
+    assert along.readable - plain.readable == {"r11", "r21", "r31"}
+    assert "x axis" in along.words and along.orientation == "direction"
+    assert find_task(along.name) == along
+    assert along.along("z") == plain
+    pitch = find_task("TranslationZAxisAngle4D", "y")
+    assert pitch.readable == {"px", "py", "pz", "r32"} and pitch.orientation == "pitch"
+
+
+def test_tasks_without_a_direction_have_no_axis() -> None:
+    for task in TASKS:
+        if not task.axis:
+            with pytest.raises(UsageError, match="no single axis"):
+                find_task(task.name, "x")
+    with pytest.raises(UnknownNameError, match="tool axis"):
+        find_task("position-pitch:w")
+
+
+def test_yaw_and_three_parallel_joints_fit_the_elevation() -> None:
+    dh = chain("open_manipulator_x.urdf")
+    first, last = fitting_tasks(dh)
+    assert first.stem == "position-pitch" and last.whole_pose
+    assert over_constrained(dh, last) == 2 and over_constrained(dh, first) == 0
+    assert fitting_tasks(dh, "x")[0].name == "position-pitch:x"
+    assert not fits(dh, find_task("position-pitch", "y"))  # parallel to the joints: always level
+    assert not fits(dh, find_task("position-yaw"))
+
+
+def test_a_roll_about_the_tool_axis_asks_for_another_axis(tmp_path: Path) -> None:
+    dh = roll(tmp_path)
+    assert freedoms_moved(dh, find_task("position-direction")) == 4
+    assert fitting_tasks(dh)[0].name in ("position-direction:x", "position-direction:y")
+    assert [task.name for task in fitting_tasks(dh, "z")] == ["pose"]
+
+
+def test_six_joints_take_the_whole_pose() -> None:
+    assert [task.name for task in fitting_tasks(chain("ur5e.urdf"))] == ["pose"]
+
+
+def test_entries_are_known_in_dh_frames_where_all_their_parts_are_read(tmp_path: Path) -> None:
+    dh = roll(tmp_path)
+    pitch = find_task("position-pitch").readable
+    assert readable_in_dh(dh, pitch) == pitch
+    assert readable_in_dh(dh, frozenset(ENTRY_NAMES)) == frozenset(ENTRY_NAMES)
+    axes = np.array([[0.0, 0, 1], [1, 0, 0], [0, 1, 0]])  # the base's z is the chain's y
+    assert readable_in_dh(turned(dh, axes), pitch) == {"px", "py", "pz", "r23"}
+    c, s = np.cos(0.3), np.sin(0.3)
+    tilt = np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+    assert readable_in_dh(turned(dh, tilt), pitch) == {"px", "py", "pz"}
