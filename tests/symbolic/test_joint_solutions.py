@@ -48,7 +48,9 @@ def _check(derivation: Derivation, count: int, folder: Path) -> None:
     poses = module.forward(q)
     rows, counts, _ = module.solve_batch(poses, limits=False)
     made = symbolic_rows(derivation, poses)
-    back = np.abs(module.forward(np.nan_to_num(made)) - poses[:, None]).max(axis=(-2, -1))
+    i, j = np.transpose(derivation.task.entries)  # what the task reads
+    off = np.abs(module.forward(np.nan_to_num(made)) - poses[:, None])
+    back = off[..., i, j].max(axis=-1)
     right = np.isfinite(made).all(axis=-1) & (back < SAME * size)
     assert counts.min() >= 1
     for i in range(count):
