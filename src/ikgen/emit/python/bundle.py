@@ -55,7 +55,9 @@ def _used(shell: RuntimeSource) -> _Bundle:
     stack = [(key, alias) for alias, key in shell.internal.items()]
     own = {n for d in shell.definitions for n in d.defines}
     if own & set(shell.internal):
-        raise ValueError(f"names imported and defined: {', '.join(sorted(own & set(shell.internal)))}")
+        raise ValueError(
+            f"names imported and defined: {', '.join(sorted(own & set(shell.internal)))}"
+        )
     taken = own | set(shell.internal)
     while stack:
         key, name = stack.pop(0)
