@@ -29,7 +29,8 @@ template <class Arm, template <class> class Way> struct PoseSolver {
   }
 
  private:
-  // Options without a seed that is no number, or with one without the turns that doubles cannot tell apart.
+  // Options without a seed that is no number, or with one without the turns that doubles cannot tell apart;
+  // with one, free values that are the defaults are the seed's.
   struct Checked {
     Options options;
     std::remove_const_t<std::remove_pointer_t<decltype(Options::seed)>> near;
@@ -42,6 +43,11 @@ template <class Arm, template <class> class Way> struct PoseSolver {
         if (!(value < kInfinity)) options.seed = nullptr;
       }
       if (far && options.seed) without_turns();
+      if constexpr (Arm::kFree > 0) {
+        const Options plain;
+        for (std::size_t k = 0; k < Arm::kFree && options.seed && options.hold_seed; ++k)
+          if (options.free[k] == plain.free[k]) options.free[k] = options.seed->data()[Arm::kFreeJoints[k]];
+      }
     }
     Checked(const Checked&) = delete;
     Checked& operator=(const Checked&) = delete;
