@@ -131,7 +131,7 @@ def solve_batch(
 
 
 def search(
-    pose: ArrayLike,
+    pose: Any,
     *,
     seed: ArrayLike | None = None,
     prefer: str = "near",
@@ -145,7 +145,7 @@ def search(
     return _search_held(_ARM, pose, seed, prefer, limits)
 
 
-def follow(poses: ArrayLike, *, start: ArrayLike, limits: bool = True) -> Path:
+def follow(poses: Any, *, start: ArrayLike, limits: bool = True) -> Path:
     """Joint values along poses (N, 4, 4) on one branch, from the row of the first that is nearest to `start` (DOF,).
 
     Whole turns are unwound. Between two poses the tip is
@@ -661,56 +661,6 @@ def _pose_fault(task: _Task, T: list[list[float]], policy: _Policy) -> str:
     return f"{text}: orthonormalize=True takes the nearest one"
 
 
-# What distinguishes the rows of a pose: names of their branches, from the geometry of each row alone.
-
-
-def _branch_names(arm: _Arm, q: Array) -> tuple[str, ...]:
-    """A name for each row (k, dof)."""
-    if not len(q):
-        return ()
-    if arm.branch_kind == "names":
-        return _side_names(arm, q)
-    if arm.branch_kind == "number":
-        return tuple(f"branch {number}" for number in _branch_numbers(arm, q))
-    J = _tip_and_jacobian(arm.chain, q)[1][:, :, arm.moving]
-    return tuple(f"det J {'>' if sign > 0.0 else '<'} 0" for sign in np.linalg.det(J))
-
-
-def _inner(a: Array, b: Array) -> Array:
-    return np.asarray((a * b).sum(axis=-1))
-
-
-def _side_names(arm: _Arm, q: Array) -> tuple[str, ...]:
-    """Of six axes, the first at right angles to the second, which is parallel to the third."""
-    z, p, _ = _joint_axes(arm.chain, q)
-    up = z[:, 0] * np.where(z[:, :1, 2] < 0.0, -1.0, 1.0)
-    right = _inner(_cross(up, z[:, 1]), p[:, 5] - p[:, 0]) >= 0.0
-    elbow, end = p[:, 2] - p[:, 1], p[:, arm.elbow_end] - p[:, 1]
-    level = _cross(z[:, 1], up)  # in the plane of the links
-    above = _inner(z[:, 1], _cross(end, elbow)) * _inner(level, end) <= 0.0
-    plain = _inner(_cross(z[:, 3], z[:, 5]), z[:, 4]) >= 0.0
-    return tuple(
-        f"shoulder {'right' if r else 'left'}, elbow {'up' if a else 'down'}, "
-        f"wrist {'not flipped' if f else 'flipped'}"
-        for r, a, f in zip(right.tolist(), above.tolist(), plain.tolist())
-    )
-
-
-def _branch_numbers(arm: _Arm, q: Array) -> list[int]:
-    """For each row the closed form's branch, of those for the row's own pose, that is nearest to it."""
-    poses = _forward(arm.chain, q)
-    with np.errstate(all="ignore"):
-        rows, valid, _, _ = arm.branches_batch(poses, q, q[:, arm.free])
-        gap = rows - q[:, None, :]
-        turned = np.abs((gap + np.pi) % (2.0 * np.pi) - np.pi)
-        gap = np.where(arm.chain.revolute, turned, np.abs(gap))
-        gap[:, :, arm.free] = 0.0
-        distance = np.where(valid, gap.max(axis=2), np.inf)
-    distance[np.isnan(distance)] = np.inf
-    nearest: list[int] = distance.argmin(axis=1).tolist()
-    return nearest
-
-
 # The nearest pose that the arm can take, of one that it cannot.
 
 
@@ -872,6 +822,56 @@ def _rank_loss(chain: _Chain, task: _Task, moving: Sequence[int], q: Array) -> A
     """Smallest singular value (k,) of the task's derivatives by the joints `moving` at q (k, dof)."""
     J = task.rows(*_tip_and_jacobian(chain, q))[:, :, list(moving)]
     return np.asarray(np.linalg.svd(J, compute_uv=False)[:, -1])
+
+
+# What distinguishes the rows of a pose: names of their branches, from the geometry of each row alone.
+
+
+def _branch_names(arm: _Arm, q: Array) -> tuple[str, ...]:
+    """A name for each row (k, dof)."""
+    if not len(q):
+        return ()
+    if arm.branch_kind == "names":
+        return _side_names(arm, q)
+    if arm.branch_kind == "number":
+        return tuple(f"branch {number}" for number in _branch_numbers(arm, q))
+    J = _tip_and_jacobian(arm.chain, q)[1][:, :, arm.moving]
+    return tuple(f"det J {'>' if sign > 0.0 else '<'} 0" for sign in np.linalg.det(J))
+
+
+def _inner(a: Array, b: Array) -> Array:
+    return np.asarray((a * b).sum(axis=-1))
+
+
+def _side_names(arm: _Arm, q: Array) -> tuple[str, ...]:
+    """Of six axes, the first at right angles to the second, which is parallel to the third."""
+    z, p, _ = _joint_axes(arm.chain, q)
+    up = z[:, 0] * np.where(z[:, :1, 2] < 0.0, -1.0, 1.0)
+    right = _inner(_cross(up, z[:, 1]), p[:, 5] - p[:, 0]) >= 0.0
+    elbow, end = p[:, 2] - p[:, 1], p[:, arm.elbow_end] - p[:, 1]
+    level = _cross(z[:, 1], up)  # in the plane of the links
+    above = _inner(z[:, 1], _cross(end, elbow)) * _inner(level, end) <= 0.0
+    plain = _inner(_cross(z[:, 3], z[:, 5]), z[:, 4]) >= 0.0
+    return tuple(
+        f"shoulder {'right' if r else 'left'}, elbow {'up' if a else 'down'}, "
+        f"wrist {'not flipped' if f else 'flipped'}"
+        for r, a, f in zip(right.tolist(), above.tolist(), plain.tolist())
+    )
+
+
+def _branch_numbers(arm: _Arm, q: Array) -> list[int]:
+    """For each row the closed form's branch, of those for the row's own pose, that is nearest to it."""
+    poses = _forward(arm.chain, q)
+    with np.errstate(all="ignore"):
+        rows, valid, _, _ = arm.branches_batch(poses, q, q[:, arm.free])
+        gap = rows - q[:, None, :]
+        turned = np.abs((gap + np.pi) % (2.0 * np.pi) - np.pi)
+        gap = np.where(arm.chain.revolute, turned, np.abs(gap))
+        gap[:, :, arm.free] = 0.0
+        distance = np.where(valid, gap.max(axis=2), np.inf)
+    distance[np.isnan(distance)] = np.inf
+    nearest: list[int] = distance.argmin(axis=1).tolist()
+    return nearest
 
 
 # Rows on the whole turns that limits and seed ask for, and without repetitions: for floats and arrays.
@@ -1282,7 +1282,7 @@ def _search_held(
         return found
     q, cost, _ = _preference_costs(arm, preference, found.q[None], limits)
     order = np.argsort(cost[0], kind="stable")
-    return Solutions(q[0, order], found.status, found.singular[order])
+    return Solutions(q[0, order], found.status, found.singular[order], names=found.names)
 
 
 # Joint values along a path of poses, on one branch.
@@ -1319,7 +1319,7 @@ def _follow_poses(
 ) -> Path:
     """From the row of the first pose (N, 4, 4) that is nearest to `start` (dof,); `search(pose, start,
     limits)`: rows nearest to it first. Raises ValueError for bad arguments."""
-    T, dof = np.asarray(poses, dtype=float), len(arm.lower)
+    T, dof = _pose_matrices(poses, arm.task.alone), len(arm.lower)
     if T.ndim != 3 or T.shape[1:] != (4, 4):
         raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
     row = _seed_rows(arm, start, (dof,))

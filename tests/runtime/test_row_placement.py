@@ -100,3 +100,12 @@ def test_repetitions() -> None:
 def test_a_repetition_of_what_is_none_is_kept() -> None:
     q = np.zeros((1, 2, 5))
     assert distinct(arm(), q, np.array([[False, True]])).tolist() == [[False, True]]
+
+
+def test_long_slides_are_compared_relative_to_their_length() -> None:
+    one, policy = arm(), runtime_policy(SolvePolicy())
+    q = np.zeros((1, 4, 5))
+    q[0, :, 3] = 0.5, 0.5 + 2.0 * policy.coincident, 50.0, 50.0 + 20.0 * policy.coincident
+    assert distinct(one, q, np.ones((1, 4), dtype=bool)).tolist() == [[True, True, True, False]]
+    kept = [(tuple(row), False) for row in q[0].tolist()]
+    assert [is_new(one, kept[k][0], kept[k - 1 : k]) for k in (1, 3)] == [True, False]

@@ -30,7 +30,7 @@ class SolverModule:
     `name` is the prefix of the emitted files (`<name>_ik.py`), `free` the indices of joints held free,
     `free_defaults` their default values inside the limits (rad or m). `source_name` and
     `source_sha256` tell what it was made from, `geometry` is the geometry class in words,
-    `plan` what the general 6R elimination needs where the rules did not solve the arm. Of a table
+    `plan` what an elimination needs where the rules did not solve the arm. Of a table
     without numbers the constants are left to be filled in, or with `sample` those that its derivation
     was checked with.
     """
@@ -70,7 +70,7 @@ class SolverModule:
 
     @property
     def guarded(self) -> bool:
-        """Whether the Program's guards are all that makes rows come and go: it calls no routine for roots."""
+        """Whether the guards alone make rows come and go: the Program calls no routine for roots."""
         return self.plan is None and all(level.call is None for level in self.program.levels)
 
     @property

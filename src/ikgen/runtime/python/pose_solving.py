@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ikgen.runtime.python.array_types import Row
-from ikgen.runtime.python.branch_names import branch_names
 from ikgen.runtime.python.chain_kinematics import forward
 from ikgen.runtime.python.joint_arguments import held_values, seed_rows
 from ikgen.runtime.python.pose_arguments import pose_matrices
 from ikgen.runtime.python.pose_faults import nearest_pose, pose_fault
 from ikgen.runtime.python.projection import nearest_row, off_by
 from ikgen.runtime.python.refinement import rank_loss, refine
+from ikgen.runtime.python.row_names import branch_names
 from ikgen.runtime.python.row_placement import is_new, place_rows
 from ikgen.runtime.python.solutions import Solutions, Status
 from ikgen.runtime.python.solved_arm import Arm, Found
