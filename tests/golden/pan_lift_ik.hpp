@@ -122,6 +122,7 @@ namespace detail {
 // --- constants -----------------------------------------------------------------------------------
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kTurn = 2.0 * kPi;
+inline constexpr double kFarthestSeed = 1e5;  // rad: neighbouring doubles are 1.5e-11 apart
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // --- machine vectors -----------------------------------------------------------------------------
@@ -663,7 +664,8 @@ template <class Arm> struct SolutionRows {
     for (int j = 0; j < Arm::kDof; ++j) {
       double gap = std::abs(a[j] - b[j]);
       if (Arm::kRevolute[j] && gap > Policy::kCoincident) gap = std::abs(gap - kTurn * std::nearbyint(gap / kTurn));
-      if (!(gap <= Policy::kCoincident)) return false;
+      const double bound = Policy::kCoincident * (Arm::kRevolute[j] ? 1.0 : std::max(std::abs(a[j]), 1.0));
+      if (!(gap <= bound)) return false;
     }
     return true;
   }
@@ -987,28 +989,46 @@ template <class Arm, template <class> class Way> struct PoseSolver {
   static void solve(const Eigen::Isometry3d* poses, std::ptrdiff_t count, const Options& given,
                     Solutions* out) noexcept {
     constexpr int P = Way<Arm>::kBatch;
-    const Options options = checked(given);
+    const Checked checked(given);
+    const Options& options = checked.options;
     if constexpr (P > 1)
       for (; count >= P; count -= P, poses += P, out += P) some<P>(poses, options, out);
     for (; count > 0; --count, ++poses, ++out) some<1>(poses, options, out);
   }
 
   static void solve(const Eigen::Isometry3d& pose, const Options& given, Solutions& out) noexcept {
-    some<1>(&pose, checked(given), &out);
+    some<1>(&pose, Checked(given).options, &out);
   }
 
  private:
-  static Options checked(const Options& options) noexcept {
-    Options out = options;
-    for (int j = 0; j < Arm::kDof && out.seed; ++j)
-      if (!(std::abs(out.seed->data()[j]) < kInfinity)) out.seed = nullptr;
-    if constexpr (Arm::kFree > 0) {
-      const Options plain;
-      for (std::size_t k = 0; k < Arm::kFree && out.seed && out.hold_seed; ++k)
-        if (out.free[k] == plain.free[k]) out.free[k] = out.seed->data()[Arm::kFreeJoints[k]];
+  struct Checked {
+    Options options;
+    std::remove_const_t<std::remove_pointer_t<decltype(Options::seed)>> near;
+
+    explicit Checked(const Options& given) noexcept : options(given) {
+      bool far = false;
+      for (int j = 0; j < Arm::kDof && options.seed; ++j) {
+        const double value = std::abs(options.seed->data()[j]);
+        far = far || value > kFarthestSeed;
+        if (!(value < kInfinity)) options.seed = nullptr;
+      }
+      if (far && options.seed) without_turns();
+      if constexpr (Arm::kFree > 0) {
+        const Options plain;
+        for (std::size_t k = 0; k < Arm::kFree && options.seed && options.hold_seed; ++k)
+          if (options.free[k] == plain.free[k]) options.free[k] = options.seed->data()[Arm::kFreeJoints[k]];
+      }
     }
-    return out;
-  }
+    Checked(const Checked&) = delete;
+    Checked& operator=(const Checked&) = delete;
+
+    void without_turns() noexcept {
+      near = *options.seed;
+      for (int j = 0; j < Arm::kDof; ++j)
+        if (Arm::kRevolute[j] && !Arm::kHeld[j] && std::abs(near[j]) > kFarthestSeed) near[j] = std::fmod(near[j], kTurn);
+      options.seed = &near;
+    }
+  };
 
   template <int P>
   [[gnu::always_inline]] static void some(const Eigen::Isometry3d* poses, const Options& options,
@@ -1256,6 +1276,14 @@ template <class A, class Solver> struct PathStep {
     return first == Status::Ok ? step(middle, pose, depth + 1) : first;
   }
 
+  Status begin(const Eigen::Isometry3d& pose, const typename A::Joints& start) noexcept {
+    double row[kDof], most = 0.0;
+    std::copy_n(start.data(), kDof, q);
+    if (A::kFree == 0 || unstopped(pose, row, crossed) != Status::Ok) return Status::Unreachable;
+    for (int j = 0; j < kDof; ++j) most = std::max(most, std::abs(row[j] - q[j]));
+    return most < 0.1 ? arrive(row) : Status::Unreachable;
+  }
+
  private:
   Status arrive(const double* row) noexcept {
     for (int j = 0; j < kDof && limits; ++j)
@@ -1324,10 +1352,12 @@ template <class A, class Solver> struct PathStep {
         double before[kDof];
         std::copy_n(tried, kDof, before);
         const double here = move(tried, pose, stopped);
-        if (here < error) std::copy_n(before, kDof, row);
-        if (!(here < 0.5 * error) && i > 2) break;
-        error = std::min(error, here);
-        if (error < A::Policy::kConverged) break;
+        const bool slow = !(here < 0.5 * error);
+        if (here < error) {
+          error = here;
+          std::copy_n(before, kDof, row);
+        }
+        if ((slow && i > 2) || error < A::Policy::kConverged) break;
       }
       if (!(error < A::Policy::kArrived)) return stops > 0 ? Status::Limits : Status::Unreachable;
       double most = A::Policy::kLimitTolerance;
@@ -1371,7 +1401,7 @@ inline Walk follow_poses(const Eigen::Isometry3d* poses, std::ptrdiff_t count, c
       out.status = Status::Invalid;
     } else if (i > 0) {
       out.status = walk.step(before, pose, 0);
-    } else {
+    } else if (out.status = walk.begin(pose, start); out.status != Status::Ok) {
       typename A::Solutions found;
       typename A::SearchOptions options;
       options.seed = &start;

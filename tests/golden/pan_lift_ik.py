@@ -221,6 +221,17 @@ _Flags = NDArray[np.bool_]
 Row = tuple[float, ...]
 
 
+# Arguments as arrays of real numbers.
+
+
+def _real_array(values: ArrayLike, name: str) -> Array:
+    """The values as doubles; raises ValueError for complex ones, whose imaginary part would be lost."""
+    array = np.asarray(values)
+    if array.dtype.kind == "c":
+        raise ValueError(f"{name} has complex values")
+    return np.asarray(array, dtype=float)
+
+
 # Forward kinematics and Jacobian of a serial chain, for any number of configurations at once.
 
 
@@ -274,7 +285,7 @@ def _steps(chain: _Chain, q: Array) -> Array:
 
 
 def _joint_values(chain: _Chain, q: ArrayLike) -> Array:
-    values, dof = np.asarray(q, dtype=float), chain.drive.shape[1]
+    values, dof = _real_array(q, "q"), chain.drive.shape[1]
     if values.ndim < 1 or values.shape[-1] != dof:
         raise ValueError(f"q has shape {values.shape}, expected (..., {dof})")
     return values
@@ -442,6 +453,9 @@ class _Arm:
 # The arguments `free` and `seed` as joint values.
 
 
+_FARTHEST = 1e5  # rad: neighbouring doubles are 1.5e-11 apart
+
+
 def _held_values(
     arm: _Arm, free: Sequence[float] | Mapping[str, float] | None, near: Row | None
 ) -> Row:
@@ -480,9 +494,9 @@ def _held_rows(
                 values[:, k] = near[:, j]
         return values
     if np.ndim(free) < 2:
-        one: list[float] = np.asarray(free, dtype=float).tolist()
+        one: list[float] = _real_array(free, "free").tolist()
         return np.broadcast_to(_held_values(arm, one, None), shape)
-    held = np.asarray(free, dtype=float)
+    held = _real_array(free, "free")
     if held.shape != shape:
         raise ValueError(f"free has shape {held.shape}, expected {shape}")
     if not np.isfinite(held).all():
@@ -491,14 +505,16 @@ def _held_rows(
 
 
 def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...]) -> Array:
-    """The seed as an array of one of the shapes; raises ValueError for others."""
-    values = np.asarray(seed, dtype=float)
+    """The seed as an array of one of the shapes; raises ValueError for others. Turns of a revolute joint
+    that doubles cannot tell apart to 1e-11 rad are left out."""
+    values = _real_array(seed, "seed")
     if values.shape not in shapes:
         expected = " or ".join(map(str, shapes))
         raise ValueError(f"seed has shape {values.shape}, expected {expected}")
     if not np.isfinite(values).all():
         raise ValueError(f"seed {values.tolist()} has values that are not finite")
-    return values
+    far = np.array(arm.turning) & (np.abs(values) > _FARTHEST)
+    return np.where(far, np.fmod(values, 2.0 * pi), values) if far.any() else values
 
 
 # Poses as people have them, as homogeneous matrices.
@@ -515,7 +531,7 @@ def _pose_matrices(pose: Any, alone: str) -> Array:
     """(4, 4), or (N, 4, 4) of many: of matrices (4, 4) or (3, 4), pairs (rotation (3, 3), position) or
     (position, quaternion x y z w), objects that have one of `_TRANSFORMS`, or a sequence of those."""
     if isinstance(pose, np.ndarray) and pose.shape[-2:] == (4, 4):
-        return np.asarray(pose, dtype=float)
+        return _real_array(pose, "pose")
     if isinstance(pose, (list, tuple)) and len(pose):
         if any(hasattr(pose[0], name) for name in _TRANSFORMS):
             return np.stack([_pose_matrices(one, alone) for one in pose])
@@ -532,7 +548,7 @@ def _pose_matrices(pose: Any, alone: str) -> Array:
 
 def _numbers(value: Any) -> Array:
     try:
-        return np.asarray(value, dtype=float)
+        return _real_array(value, "pose")
     except TypeError:
         raise ValueError(f"pose is no array of numbers: {type(value).__name__}") from None
 
@@ -881,12 +897,15 @@ _TURN = 2.0 * pi
 
 
 def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
-    """Whether the row differs from all kept ones, whole turns aside."""
+    """Whether the row differs from all kept ones, whole turns aside; long slides count relative to their
+    length."""
     near = arm.policy.coincident
     for other, _ in kept:
         for a, b, turns in zip(row, other, arm.chain.revolute):
             gap = abs(a - b)
-            if gap > near and (not turns or abs((gap + pi) % _TURN - pi) > near):
+            if gap <= near:
+                continue
+            if abs((gap + pi) % _TURN - pi) > near if turns else gap > near * abs(a):
                 break
         else:
             return False
@@ -894,15 +913,17 @@ def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
 
 
 def _distinct(arm: _Arm, q: Array, valid: _Flags) -> _Flags:
-    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside."""
+    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside; long
+    slides count relative to their length."""
     near = arm.policy.coincident
     later, earlier = np.tril_indices(q.shape[1], -1)
     same = valid.T[later] & valid.T[earlier]
     for j in reversed(range(q.shape[2])):  # the last joints differ between most rows
         value = q[:, :, j].T
         gap = np.abs(value[later] - value[earlier])
-        close = gap <= near
-        same &= close | (np.abs(gap - _TURN) <= near) if arm.chain.revolute[j] else close
+        bound = near if arm.chain.revolute[j] else near * np.abs(value[later])
+        far = np.abs(gap - _TURN) if arm.chain.revolute[j] else gap
+        same &= (gap <= near) | (far <= bound)
         if not same.any():
             return valid
     valid = valid.copy()
@@ -1272,7 +1293,7 @@ def _preference_costs(
 
 
 def _search_held(
-    arm: _Arm, pose: ArrayLike, seed: ArrayLike | None, prefer: str, limits: bool
+    arm: _Arm, pose: Any, seed: ArrayLike | None, prefer: str, limits: bool
 ) -> Solutions:
     """All rows, best first. Raises ValueError for bad arguments."""
     near = None if seed is None else tuple(_seed_rows(arm, seed, (len(arm.lower),)).tolist())
@@ -1290,9 +1311,11 @@ def _search_held(
 
 _DEEPEST = 24  # of the way from one pose to the next
 _SHALLOW = 9  # the same where there are no rows
-_FARTHEST = 0.3  # rad or m that a joint may move at once
+_path_following_FARTHEST = 0.3  # rad or m that a joint may move at once
 _OFF = 0.2  # of the motion, and
 _LEAST_OFF = 1e-4  # rad or m: how far a row may be from where the Jacobian leads
+_NEWTON_STEPS = 30
+_BESIDE_START = 0.1  # rad or m
 _DAMPING = 1e-8  # of directions that are all but lost
 _JUMP = 0.05  # rad or m that a row may be from the last one where halving does not help
 
@@ -1313,7 +1336,7 @@ class Path:
 def _follow_poses(
     arm: _Arm,
     search: Callable[[Array, Array, bool], Solutions],
-    poses: ArrayLike,
+    poses: Any,
     start: ArrayLike,
     limits: bool,
 ) -> Path:
@@ -1324,18 +1347,20 @@ def _follow_poses(
         raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
     row = _seed_rows(arm, start, (dof,))
     q, singular = np.full((len(T), dof), np.nan), np.zeros(len(T), dtype=bool)
-    walk = _Walk(arm, limits)
-    for i, pose in enumerate(T):
+    walk, before = _Walk(arm, limits), np.eye(4)
+    for i, lines in enumerate(T.tolist()):
         walk.crossed = False
-        if arm.task.read(pose.tolist(), arm.policy) is None:
+        read = arm.task.read(lines, arm.policy)
+        pose = np.array(lines if read is None else read)
+        if read is None:
             status = Status.INVALID
         elif i:
-            status = walk.step(T[i - 1], pose, 0)
+            status = walk.step(before, pose, 0)
         else:
-            status = walk.begin(search(pose, row, limits))
+            status = walk.begin(pose, row, search)
         if status is not Status.OK:
             return Path(q, i, status, singular)
-        q[i], singular[i] = walk.q, walk.crossed
+        q[i], singular[i], before = walk.q, walk.crossed, pose
     return Path(q, len(T), Status.OK, singular)
 
 
@@ -1347,8 +1372,17 @@ class _Walk:
         self.q: Array = np.zeros(len(arm.lower))
         self.crossed = False
 
-    def begin(self, found: Solutions) -> Status:
-        """To the first of some rows."""
+    def begin(
+        self, pose: Array, start: Array, search: Callable[[Array, Array, bool], Solutions]
+    ) -> Status:
+        """To the row next to the start, or the best that a search finds."""
+        self.q = start
+        if self.arm.free:
+            rows, flags, _ = self._unstopped(pose)
+            if len(rows) and np.abs(rows[0] - start).max() < _BESIDE_START:
+                self.crossed = bool(flags[0])
+                return self._arrive(rows[0])
+        found = search(pose, start, self.limits)
         if len(found):
             self.q, self.crossed = found.q[0], bool(found.singular[0])
         return found.status
@@ -1361,7 +1395,7 @@ class _Walk:
             gap = np.abs(rows - expected).max(axis=1)
             k = int(gap.argmin())
             moved = float(np.abs(rows[k] - self.q).max())
-            follows = moved < _FARTHEST and gap[k] < _LEAST_OFF + _OFF * moved
+            follows = moved < _path_following_FARTHEST and gap[k] < _LEAST_OFF + _OFF * moved
             if follows or (depth == _DEEPEST and moved < _JUMP):
                 self.crossed = self.crossed or bool(flags[k]) or not follows
                 return self._arrive(rows[k])
@@ -1384,18 +1418,18 @@ class _Walk:
 
     def _expected(self, pose: Array) -> Array:
         """Where the shortest motion by the Jacobian leads from here."""
-        return self.q + self._motion(pose, list(range(len(self.q))))
+        return self.q + self._motion(self.q, pose, list(range(len(self.q))))[0]
 
-    def _motion(self, pose: Array, moving: list[int]) -> Array:
-        """The shortest motion (dof,) of some joints that the Jacobian asks for, at most a radian or
-        metre each."""
+    def _motion(self, q: Array, pose: Array, moving: list[int]) -> tuple[Array, float]:
+        """The shortest motion (dof,) of some joints that the Jacobian asks for, at most a radian or metre
+        each; the error that it shall make good."""
         arm = self.arm
-        here, J = _tip_and_jacobian(arm.chain, self.q[None])
+        here, J = _tip_and_jacobian(arm.chain, q[None])
         error, rows = arm.task.error(here, pose[None])[0], arm.task.rows(here, J)[0][:, moving]
         normal = rows @ rows.T + _DAMPING * np.eye(len(rows))
-        step = np.zeros(len(self.q))
+        step = np.zeros(len(q))
         step[moving] = np.clip(rows.T @ np.linalg.solve(normal, error), -1.0, 1.0)
-        return step
+        return step, float(np.abs(error).max())
 
     def _rows(self, pose: Array, expected: Array) -> tuple[Array, _Flags, Status]:
         """All rows without limits; with held joints the one that those lead to which no limit stops."""
@@ -1413,24 +1447,30 @@ class _Walk:
             at = self.q.copy()
             for j, value in stopped.items():
                 at[j] = value
-            q, arrived, _ = _refine(
-                arm.chain,
-                arm.task,
-                moving,
-                (at + self._motion(pose, moving))[None],
-                pose[None],
-                arm.policy,
-            )
-            if not arrived[0]:
+            q, error = self._newton(at, pose, moving)
+            if not error < arm.policy.arrived:
                 none = np.empty((0, len(at))), np.empty(0, dtype=bool)
                 return *none, Status.LIMITS if stopped else Status.UNREACHABLE
             low, high = np.array(arm.lower), np.array(arm.upper)
-            excess = np.maximum(low - q[0], q[0] - high)
+            excess = np.maximum(low - q, q - high)
             worst = int(excess.argmax())
             if not self.limits or excess[worst] <= arm.policy.limit_tolerance:
-                loss = _rank_loss(arm.chain, arm.task, range(len(at)), q)
-                return q, loss < arm.policy.rank_loss, Status.OK
-            stopped[worst] = float(low[worst] if q[0, worst] < low[worst] else high[worst])
+                loss = _rank_loss(arm.chain, arm.task, range(len(at)), q[None])
+                return q[None], loss < arm.policy.rank_loss, Status.OK
+            stopped[worst] = float(low[worst] if q[worst] < low[worst] else high[worst])
+
+    def _newton(self, q: Array, pose: Array, moving: list[int]) -> tuple[Array, float]:
+        """The best row of shortest motions from q, and its error."""
+        best, least = q, inf
+        for i in range(_NEWTON_STEPS):
+            step, error = self._motion(q, pose, moving)
+            slow = not error < 0.5 * least
+            if error < least:
+                best, least = q, error
+            if (slow and i > 2) or least < self.arm.policy.converged:
+                break
+            q = q + step
+        return best, least
 
 
 def _between(a: Array, b: Array) -> Array:

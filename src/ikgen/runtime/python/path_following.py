@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -47,7 +48,7 @@ class Path:
 def follow_poses(
     arm: Arm,
     search: Callable[[Array, Array, bool], Solutions],
-    poses: ArrayLike,
+    poses: Any,
     start: ArrayLike,
     limits: bool,
 ) -> Path:
@@ -58,18 +59,20 @@ def follow_poses(
         raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
     row = seed_rows(arm, start, (dof,))
     q, singular = np.full((len(T), dof), np.nan), np.zeros(len(T), dtype=bool)
-    walk = _Walk(arm, limits)
-    for i, pose in enumerate(T):
+    walk, before = _Walk(arm, limits), np.eye(4)
+    for i, lines in enumerate(T.tolist()):
         walk.crossed = False
-        if arm.task.read(pose.tolist(), arm.policy) is None:
+        read = arm.task.read(lines, arm.policy)
+        pose = np.array(lines if read is None else read)
+        if read is None:
             status = Status.INVALID
         elif i:
-            status = walk.step(T[i - 1], pose, 0)
+            status = walk.step(before, pose, 0)
         else:
             status = walk.begin(pose, row, search)
         if status is not Status.OK:
             return Path(q, i, status, singular)
-        q[i], singular[i] = walk.q, walk.crossed
+        q[i], singular[i], before = walk.q, walk.crossed, pose
     return Path(q, len(T), Status.OK, singular)
 
 
@@ -130,8 +133,8 @@ class _Walk:
         return self.q + self._motion(self.q, pose, list(range(len(self.q))))[0]
 
     def _motion(self, q: Array, pose: Array, moving: list[int]) -> tuple[Array, float]:
-        """The shortest motion (dof,) of some joints that the Jacobian asks for, at most a radian or metre each;
-        the error that it shall make good."""
+        """The shortest motion (dof,) of some joints that the Jacobian asks for, at most a radian or metre
+        each; the error that it shall make good."""
         arm = self.arm
         here, J = tip_and_jacobian(arm.chain, q[None])
         error, rows = arm.task.error(here, pose[None])[0], arm.task.rows(here, J)[0][:, moving]
