@@ -1,4 +1,4 @@
-"""Lines and circles through a wrist singularity, past a shoulder singularity, into an elbow limit and out of reach."""
+"""Lines and circles through a wrist singularity, by a shoulder singularity, into a limit, out of reach."""
 
 from __future__ import annotations
 
@@ -56,7 +56,9 @@ def test_a_motion_through_the_wrist_singularity_comes_back(ur5e: ModuleType) -> 
         path = ur5e.follow(poses, start=start)
         q = check(ur5e, path, poses)
         assert path.status is ur5e.Status.OK and path.reached == count
-        assert np.abs(q - motion).max() < 1e-6
+        off = np.abs(q - motion).max(axis=1)
+        assert off[~path.singular].max() < 1e-6
+        assert off.max() < 0.02  # the row at the singularity itself is one of many
         assert bool(path.singular.any()) == (count == 41)
 
 
@@ -96,7 +98,7 @@ def test_the_elbow_meets_its_limit(redundant: ModuleType) -> None:
 
 
 def test_held_joints_move_to_keep_the_branch(redundant: ModuleType) -> None:
-    start = np.array([0.2, 0.9, 0.1, 1.2, 0.2, 1.7, 0.1])
+    start = np.array([0.2, 0.7, 0.1, 1.2, 0.2, 0.8, 0.1])
     poses = circle(redundant.forward(start), 0.12, 120)
     path = redundant.follow(poses, start=start)
     q = check(redundant, path, poses)
@@ -113,6 +115,7 @@ def test_out_of_reach_and_bad_poses(redundant: ModuleType) -> None:
     assert path.status is redundant.Status.UNREACHABLE and 0 < path.reached < 60
     there = redundant.search(poses[path.reached + 1], limits=False)
     assert there.status is redundant.Status.UNREACHABLE
+    poses = line(redundant.forward(start), np.array([0.02, 0.0, 0.0]), 9)
     poses[5, 0, 0] = np.nan
     path = redundant.follow(poses, start=start)
     assert path.status is redundant.Status.INVALID and path.reached == 5
