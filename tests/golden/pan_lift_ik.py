@@ -349,6 +349,12 @@ class _Policy:
     try_step: float  # rad from one to the next
     rank_loss: float  # smallest singular value below which a refined row is singular
     continuum_rank_loss: float  # the same where the closed form says that it is
+    farthest_start: float  # first step (rad, m) of rows that are refined together
+    contraction: float  # of each further one
+    least_pivot: float  # how far the derivatives by each joint must be from the others' span
+    least_miss: float  # error that shows that a row ends beside the pose
+    near: float  # largest step behind which the derivatives stay
+    lane_steps: int  # at most
     least_damping: float
     damping: float  # of a Newton step, times the squared error
     largest_step: float  # of a joint
@@ -429,8 +435,9 @@ class _Arm:
     most. `branches(T, q0, held)`: the closed form's rows for a pose, values of joints that it leaves
     free, values of held joints, and whether it left one free; `branches_batch`: in arrays. `beside`
     (n, 4, 4): motions of the tool to poses that are solved as well. `turning`: which joints are
-    revolute and not held; `moving`: indices of those not held. `branch_kind`, `elbow_end`: as in
-    `branch_names`."""
+    revolute and not held; `moving`: indices of those not held.
+    `rounded`: whether the closed form is of another geometry than the file's, and all rows are rough.
+    `branch_kind`, `elbow_end`: as in `branch_names`."""
 
     chain: _Chain
     task: _Task
@@ -446,6 +453,7 @@ class _Arm:
     beside: Array
     turning: tuple[bool, ...]
     moving: tuple[int, ...]
+    rounded: bool
     branch_kind: str
     elbow_end: int
 
@@ -515,6 +523,48 @@ def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...]) -> Array:
         raise ValueError(f"seed {values.tolist()} has values that are not finite")
     far = np.array(arm.turning) & (np.abs(values) > _FARTHEST)
     return np.where(far, np.fmod(values, 2.0 * pi), values) if far.any() else values
+
+
+# Undamped Newton steps of all rows at once, and which of them leave no doubt.
+
+
+def _refine_together(arm: _Arm, q: Array, T: Array) -> tuple[Array, _Flags, _Flags]:
+    """Rows (k, dof) after steps towards T (k, 4, 4); which arrived at the one solution near their start,
+    and which at a least error that is not 0."""
+    policy, q, done = arm.policy, q.copy(), np.zeros(len(q), dtype=bool)
+    before, good = np.full(len(q), policy.farthest_start), ~done
+    slope = inverse = error = change = np.empty(0)
+    for step in range(policy.lane_steps):
+        if (
+            step in (1, 2) and before.max() < policy.near
+        ):  # so close that the slope is the one before
+            error = arm.task.error(_forward(arm.chain, q), T)
+        else:
+            pose, J = _tip_and_jacobian(arm.chain, q)
+            error = arm.task.error(pose, T)
+            slope = arm.task.rows(pose, J)[:, :, list(arm.moving)]
+            inverse, pivot = _inverse(slope)
+            good &= pivot > policy.least_pivot
+        change = (inverse @ error[:, :, None])[:, :, 0]
+        size = np.abs(change).max(axis=1)
+        most = before if step == 0 else policy.contraction * before
+        good &= (size < most) | (size < policy.converged)
+        q[:, arm.moving] += change * good[:, None]
+        if step:
+            done = ~good | (size * size < policy.converged * before) | (size < policy.converged)
+            if done.all():
+                break
+        before = size
+    good &= done
+    rest = np.abs(error - (slope @ change[:, :, None])[:, :, 0]).max(axis=1)
+    return q, good & (rest < policy.arrived), good & (rest > policy.least_miss)
+
+
+def _inverse(J: Array) -> tuple[Array, Array]:
+    """The left inverses of J (k, m, n), and how far the nearest column of each is from the others' span."""
+    Jt = J.transpose(0, 2, 1)
+    G = np.linalg.inv(Jt @ J + 1e-14 * np.eye(J.shape[2]))  # never singular
+    return G @ Jt, 1.0 / np.sqrt(np.einsum("kii->ki", G).max(axis=1))
 
 
 # Poses as people have them, as homogeneous matrices.
@@ -680,27 +730,27 @@ def _pose_fault(task: _Task, T: list[list[float]], policy: _Policy) -> str:
 # The nearest pose that the arm can take, of one that it cannot.
 
 
-_STARTS = 128  # drawn; the best of them are followed
+_START_COUNT = 128  # drawn; the best of them are followed
 _FOLLOWED = 16
-_STEPS = 80
-_LEAST, _FIRST, _MOST = 1e-10, 1e-3, 1e10  # damping of a step
-_LONGEST = 0.5  # rad or m: step of a joint
+_STEP_COUNT = 80
+_LEAST_DAMPING, _FIRST_DAMPING, _MOST_DAMPING = 1e-10, 1e-3, 1e10  # damping of a step
+_LONGEST_STEP = 0.5  # rad or m: step of a joint
 
 
 def _nearest_row(arm: _Arm, T: Array, start: Row, limits: bool) -> Row:
     """The joint values whose pose is nearest to T (4, 4), held joints as in `start`."""
-    low, high = _bounds(arm, limits)
-    q = np.vstack([np.clip(start, low, high), _starts(arm, low, high)])
+    low, high = _step_bounds(arm, limits)
+    q = np.vstack([np.clip(start, low, high), _even_starts(arm, low, high)])
     q[:, list(arm.free)] = [start[j] for j in arm.free]
-    cost = (_chords(arm.task, _forward(arm.chain, q), T) ** 2).sum(axis=1)
-    q, cost = _descend(arm, T, q[np.argsort(cost, kind="stable")[:_FOLLOWED]], (low, high))
+    cost = (_chord_errors(arm.task, _forward(arm.chain, q), T) ** 2).sum(axis=1)
+    q, cost = _descend_to(arm, T, q[np.argsort(cost, kind="stable")[:_FOLLOWED]], (low, high))
     best: Row = tuple(q[int(np.argmin(cost))].tolist())
     return best
 
 
 def _off_by(task: _Task, pose: Array, T: Array) -> Array:
     """How far poses (k, 4, 4) are from T (4, 4): (k, 2), m and rad."""
-    error = _chords(task, pose, T)
+    error = _chord_errors(task, pose, T)
     length = np.array([c == 3 for _, c in task.entries])
     off = np.empty((len(pose), 2))
     off[:, 0] = np.sqrt((error[:, length] ** 2).sum(axis=1)) * task.size
@@ -717,24 +767,24 @@ def _off_by(task: _Task, pose: Array, T: Array) -> Array:
     return off
 
 
-def _weight(task: _Task) -> Array:
+def _chord_weight(task: _Task) -> Array:
     """Of each entry: a turn by x moves the nine of a rotation by sqrt(8) sin(x / 2)."""
     turn = sqrt(0.5) if len(task.unit) == 3 else 1.0
     return np.array([1.0 / task.size if c == 3 else turn for _, c in task.entries])
 
 
-def _chords(task: _Task, pose: Array, T: Array) -> Array:
+def _chord_errors(task: _Task, pose: Array, T: Array) -> Array:
     """What poses (k, 4, 4) are off T (4, 4): (k, entries)."""
-    return _entry_errors(task.entries, _weight(task), pose, np.broadcast_to(T, pose.shape))
+    return _entry_errors(task.entries, _chord_weight(task), pose, np.broadcast_to(T, pose.shape))
 
 
-def _bounds(arm: _Arm, limits: bool) -> tuple[Array, Array]:
+def _step_bounds(arm: _Arm, limits: bool) -> tuple[Array, Array]:
     """Where steps are clipped to."""
     low, high = np.array(arm.lower), np.array(arm.upper)
     return (low, high) if limits else (np.full(len(low), -inf), np.full(len(low), inf))
 
 
-def _starts(arm: _Arm, low: Array, high: Array) -> Array:
+def _even_starts(arm: _Arm, low: Array, high: Array) -> Array:
     """Configurations (n, dof) that fill the limits evenly: Kronecker's sequence by powers of the root of
     `x^(dof + 1) = x + 1` (Roberts 2018)."""
     dof = len(low)
@@ -742,37 +792,37 @@ def _starts(arm: _Arm, low: Array, high: Array) -> Array:
     for _ in range(40):
         root = (1.0 + root) ** (1.0 / (dof + 1))
     steps = (1.0 / root) ** np.arange(1, dof + 1)
-    part = (0.5 + np.arange(1, _STARTS + 1)[:, None] * steps) % 1.0
+    part = (0.5 + np.arange(1, _START_COUNT + 1)[:, None] * steps) % 1.0
     half = np.where(arm.chain.revolute, pi, arm.task.size)
     centre = np.clip(0.0, low + half, np.maximum(high - half, low + half))
     least, most = np.maximum(low, centre - half), np.minimum(high, centre + half)
     return np.asarray(least + part * (most - least))
 
 
-def _descend(arm: _Arm, T: Array, q: Array, bounds: tuple[Array, Array]) -> tuple[Array, Array]:
+def _descend_to(arm: _Arm, T: Array, q: Array, bounds: tuple[Array, Array]) -> tuple[Array, Array]:
     """The rows (k, dof) at the ends of the steps, and what is least there (k,)."""
-    moving, damping = list(arm.moving), np.full(len(q), _FIRST)
+    moving, damping = list(arm.moving), np.full(len(q), _FIRST_DAMPING)
     low, high = (bound[moving] for bound in bounds)
     pose, J = _tip_and_jacobian(arm.chain, q)
-    error = _chords(arm.task, pose, T)
+    error = _chord_errors(arm.task, pose, T)
     cost = (error**2).sum(axis=1)
-    for _ in range(_STEPS):
+    for _ in range(_STEP_COUNT):
         trial = q.copy()
-        slope = _entry_rows(arm.task.entries, _weight(arm.task), pose, J)[:, :, moving]
-        trial[:, moving] = _stepped(q[:, moving], slope, error, damping, (low, high))
+        slope = _entry_rows(arm.task.entries, _chord_weight(arm.task), pose, J)[:, :, moving]
+        trial[:, moving] = _clipped_step(q[:, moving], slope, error, damping, (low, high))
         new = (trial, *_tip_and_jacobian(arm.chain, trial))
-        errors = _chords(arm.task, new[1], T)
+        errors = _chord_errors(arm.task, new[1], T)
         costs = (errors**2).sum(axis=1)
         better = costs < cost
         q[better], error[better], cost[better] = trial[better], errors[better], costs[better]
         pose, J = (np.where(better[:, None, None], a, b) for a, b in zip(new[1:], (pose, J)))
-        damping = np.clip(damping * np.where(better, 0.2, 8.0), _LEAST, _MOST)
-        if damping.min() == _MOST:
+        damping = np.clip(damping * np.where(better, 0.2, 8.0), _LEAST_DAMPING, _MOST_DAMPING)
+        if damping.min() == _MOST_DAMPING:
             break
     return q, cost
 
 
-def _stepped(
+def _clipped_step(
     q: Array, slope: Array, error: Array, damping: Array, bounds: tuple[Array, Array]
 ) -> Array:
     """The rows (k, n) after one step; joints at a limit that it would pass stay."""
@@ -781,7 +831,7 @@ def _stepped(
     slope = np.where(stuck[:, None], 0.0, slope)
     normal = np.einsum("kmi,kmj->kij", slope, slope) + damping[:, None, None] * np.eye(q.shape[1])
     step = np.linalg.solve(normal, np.where(stuck, 0.0, push)[:, :, None])[:, :, 0]
-    return np.asarray(np.clip(q + np.clip(step, -_LONGEST, _LONGEST), *bounds))
+    return np.asarray(np.clip(q + np.clip(step, -_LONGEST_STEP, _LONGEST_STEP), *bounds))
 
 
 # Newton's method on the chain: damped least squares (Levenberg 1944, Marquardt 1963).
@@ -1127,6 +1177,10 @@ def _rows(
     hits: list[bool] = []
     for i, q0 in enumerate(starts):
         answers, hit = arm.branches(T, q0, held)
+        if arm.rounded and len(starts) == 1 and not hit:
+            found = _certain_rows(arm, answers, T)
+            if found is not None:
+                return [(found, False)]
         hits.append(hit)
         if hit:
             rough.append((i, (q0, True)))
@@ -1141,6 +1195,24 @@ def _rows(
         if len(kept[i]) < arm.most and _is_new(arm, item[0], kept[i]):
             kept[i].append(item)
     return list(zip(kept, hits))
+
+
+def _certain_rows(arm: _Arm, answers: list[_Candidate], T: list[list[float]]) -> list[_Found] | None:
+    """The rows refined all at once; None where that leaves a doubt."""
+    if not answers or any(flag for _, flag, _ in answers):
+        return None if answers or len(arm.beside) else []
+    start = np.array([row for row, _, _ in answers])
+    q, arrived, missed = _refine_together(
+        arm, start, np.broadcast_to(np.array(T), (len(start), 4, 4))
+    )
+    if not (arrived | missed).all():
+        return None
+    kept: list[_Found] = []
+    for row in q[arrived].tolist():
+        if not _is_new(arm, row, kept):  # another may lie there
+            return None
+        kept.append((tuple(row), False))
+    return kept
 
 
 def _refined(arm: _Arm, rows: list[_Found], T: list[list[float]]) -> list[_Found | None]:
@@ -1195,7 +1267,7 @@ def _solve_poses(
     if orthonormalize:
         T = _nearest_poses(arm.task, T, arm.policy)
     T, good = arm.task.read_batch(T, arm.policy)
-    usable, size = np.flatnonzero(good), _CHUNK // (1 + len(arm.beside))
+    usable, size = np.flatnonzero(good), _CHUNK
     for start in range(0, len(usable), size):
         part = usable[start : start + size]
         seeds = None if near is None else near[part]
@@ -1230,6 +1302,41 @@ def _solve_chunk(arm: _Arm, T: Array, held: Array, near: Array | None, limits: b
 
 def _rows_batch(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, _Flags, _Flags]:
     """Rows (N, M, dof) on no turn in particular; which are distinct solutions, which of a continuum."""
+    if not arm.rounded:
+        return _careful_rows(arm, T, held, near)
+    start = np.zeros((len(T), len(arm.lower))) if near is None else near
+    with np.errstate(all="ignore"):
+        q, valid, singular, _ = arm.branches_batch(T, start, held)
+    q[:, :, arm.free] = held[:, None, :]
+    q, valid, doubt = _certain_batch(arm, T, q, valid)
+    doubt |= singular.any(axis=1) | ~valid.any(axis=1)
+    if doubt.any():
+        seeds = None if near is None else near[doubt]
+        more, fine, flags = _careful_rows(arm, T[doubt], held[doubt], seeds)
+        order = np.argsort(~fine, axis=1, kind="stable")[:, : q.shape[1]]
+        q[doubt] = np.take_along_axis(more, order[:, :, None], axis=1)
+        valid[doubt] = np.take_along_axis(fine, order, axis=1)
+        singular = singular.copy()
+        singular[doubt] = flags
+    return q, valid, singular
+
+
+def _certain_batch(arm: _Arm, T: Array, q: Array, valid: _Flags) -> tuple[Array, _Flags, _Flags]:
+    """Rows (N, M, dof) refined all at once, which are solutions, and for which poses (N,) that leaves a
+    doubt."""
+    pose, row = np.nonzero(valid)
+    done, arrived, missed = _refine_together(arm, q[pose, row], T[pose])
+    q, found, doubt = q.copy(), valid.copy(), np.zeros(len(T), dtype=bool)
+    q[pose, row], found[pose, row] = done, arrived
+    doubt[pose[~(arrived | missed)]] = True
+    doubt |= (_distinct(arm, q, found) != found).any(axis=1)
+    return q, found, doubt
+
+
+def _careful_rows(
+    arm: _Arm, T: Array, held: Array, near: Array | None
+) -> tuple[Array, _Flags, _Flags]:
+    """Rows of which each is refined for as long as it takes, near folds with those of poses beside."""
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
     with np.errstate(all="ignore"):
         q, valid, singular, rough = arm.branches_batch(T, start, held)
@@ -1596,6 +1703,12 @@ _ARM = _Arm(
         try_step=0.39269908169872414,
         rank_loss=1e-07,
         continuum_rank_loss=0.001,
+        farthest_start=0.05,
+        contraction=0.25,
+        least_pivot=1e-05,
+        least_miss=1e-08,
+        near=0.0001,
+        lane_steps=7,
         least_damping=1e-12,
         damping=0.001,
         largest_step=0.3,
@@ -1616,5 +1729,6 @@ _ARM = _Arm(
     branch_kind="number",
     elbow_end=5,
     turning=(True, False, ),
+    rounded=False,
     moving=(0, 1, ),
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from ikgen.elimination.plan import EliminationPlan
 from ikgen.kinematics.displacement import displacements
 from ikgen.model.dh import DHChain, DHRow
+from ikgen.program.policy import SolvePolicy
 from ikgen.program.statements import Program
 from ikgen.tasks import Task, find_task
 
@@ -56,6 +58,13 @@ class SolverModule:
         if self.plan is not None:
             return "some"
         return "some" if max(self.dh.deviation) <= CLOSE else "all"
+
+    @property
+    def least_pivot(self) -> float:
+        """How far the derivatives by each joint must be from the others' span where rows are refined
+        together: nearer to a singularity the file's solutions may be others in number."""
+        policy = SolvePolicy()
+        return max(policy.least_pivot, policy.reach * math.sqrt(max(self.dh.deviation)))
 
     @property
     def beside(self) -> tuple[NDArray[np.float64], ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import TYPE_CHECKING
 
 from ikgen.elimination.routine import runtime_policy
@@ -33,7 +33,7 @@ def emit_derivation(derivation: Derivation) -> dict[str, str]:
 
 def emit_module(module: SolverModule) -> str:
     """The text of `<name>_ik.py`."""
-    program, policy = module.program, SolvePolicy()
+    program, policy = module.program, replace(SolvePolicy(), least_pivot=module.least_pivot)
     shell = render(
         "python",
         "module.py.jinja",
