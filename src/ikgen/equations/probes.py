@@ -1,4 +1,4 @@
-"""Probe configurations: random ones, and regular ones with joints at multiples of 90 degrees and slides at 0.
+"""Probe configurations: random ones, and regular ones with joints at multiples of 90 degrees, slides at 0.
 
 A constant that a file rounds and that is kept so has any value at the random ones: what is zero there
 is so for every arm of the structure, not for cos(1.5708) being small. At the others it has the value
