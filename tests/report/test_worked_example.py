@@ -14,8 +14,8 @@ from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 from ikgen.kinematics.forward import row_values
 from ikgen.report import emit_report
-from ikgen.report.branch_names import branch_names
 from ikgen.report.roots_picture import hidden_roots
+from ikgen.report.row_names import row_names
 from ikgen.report.worked_example import WorkedExample, solver_of, worked_example
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -56,7 +56,7 @@ def example(name: str) -> WorkedExample:
 
 def names(name: str) -> tuple[str, ...]:
     d = derivation(name)
-    return branch_names(d.reading.dh, d.geometry, d.graph, example(name).rows)
+    return row_names(d.reading.dh, d.geometry, d.graph, example(name).rows)
 
 
 def test_the_papers_puma_has_the_papers_pose_and_rows() -> None:

@@ -127,7 +127,10 @@ def _print(
                 click.echo(o.trace, err=True)
             say(f"{o.name}: {o.message}", o.hint)
         elif not quiet and not as_json:
-            state = f"generated in {o.seconds:.1f} s ({o.reason})" if o.reason else "up to date"
+            many = f", at most {o.solutions} solutions a pose"
+            state = (
+                f"generated in {o.seconds:.1f} s{many} ({o.reason})" if o.reason else "up to date"
+            )
             click.echo(f"{o.name}: {state}")
 
 

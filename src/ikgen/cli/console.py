@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import time
 from types import TracebackType
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Console"]
 
-_WORDS = {"read": "reading", "derive": "deriving", "emit": "writing", "verify": "verifying"}
+_WORDS = {"read": "reading", "derive": "deriving", "emit": "writing", "verify": "verifying",
+    "compile": "compiling", "map": "mapping",
+}  # fmt: skip
+
+_BAR = 30
+"""Characters of a bar."""
 
 
 class Console:
@@ -29,13 +35,16 @@ class Console:
         self.verbose = verbose and not quiet
         self._stage = ""
         self._status: Status | None = None
+        self._shared = ("", 0.0)
         ci = os.environ.get("CI", "").lower() in ("1", "true", "yes")
         self._live = sys.stderr.isatty() and not (quiet or verbose or ci)
 
     def __enter__(self) -> Console:
         if self._live:
-            from rich.console import Console as RichConsole
-
+            try:
+                from rich.console import Console as RichConsole
+            except ImportError:  # an extra: plain lines do as well
+                return self
             self._status = RichConsole(stderr=True).status("starting")
             self._status.start()
         return self
@@ -62,6 +71,20 @@ class Console:
         elif self.verbose or stage != self._stage:
             click.echo(text if stage != "verify" or self.verbose else _WORDS["verify"], err=True)
         self._stage = stage
+
+    def share(self, stage: str, ready: int, total: int) -> None:
+        """How much of a long stage is done: on a terminal as a bar with the time left, elsewhere not."""
+        if self._status is None:
+            return
+        now = time.monotonic()
+        if stage != self._shared[0]:
+            self._shared = (stage, now)
+        part = ready / max(total, 1)
+        left = (now - self._shared[1]) * (1 - part) / part if part > 0 else 0.0
+        whole = round(part * _BAR)
+        bar = f"[green]{'━' * whole}[/green]{'─' * (_BAR - whole)}"
+        words = _WORDS.get(stage, stage)
+        self._status.update(f"{words} {bar} {100 * part:.0f} %, {left:.0f} s left")
 
     def note(self, text: str) -> None:
         """Something to know, shown unless quiet."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ikgen.cli.braille import skeleton_text
 from ikgen.cli.tables import table
 from ikgen.cli.tree_text import dh_table, joint_tree, transform_text
 
@@ -50,7 +51,8 @@ def _chain(dh: DHChain, geometry: GeometryClass) -> list[str]:
         [("base:", *transform_text(dh.X_base)), ("tool:", *transform_text(dh.X_tip))],
     )
     parts = [
-        f"{head}\nmodified DH rows (rad, m):\n{dh_table(dh)}",
+        f"{head}\n{skeleton_text(dh)}",
+        f"modified DH rows:\n{dh_table(dh)}",
         f"before the first row and after the last (m, rad):\n{ends}",
         f"geometry: {geometry.words}",
     ]

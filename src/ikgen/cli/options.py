@@ -15,6 +15,7 @@ __all__ = [
     "chain_options",
     "console_options",
     "emit_option",
+    "executor_options",
     "reading_options",
     "sampling_options",
     "trust_option",
@@ -143,6 +144,31 @@ def console_options(function: F) -> F:
             ),
             click.option("-q", "--quiet", is_flag=True, help="Print errors only."),
             click.option("-v", "--verbose", is_flag=True, help="Print every step and check."),
+        ],
+        function,
+    )
+
+
+def executor_options(function: F) -> F:
+    """Who computes."""
+    return _apply(
+        [
+            click.option(
+                "--executor",
+                type=click.Choice(["process", "dask"]),
+                default="process",
+                show_default=True,
+                help="Processes of this machine, or Dask (a local cluster without --scheduler).",
+            ),
+            click.option(
+                "--scheduler", metavar="ADDRESS", help="The Dask scheduler that runs already."
+            ),
+            click.option(
+                "--workers",
+                metavar="N",
+                type=click.IntRange(min=1),
+                help="How many (default: one a core).",
+            ),
         ],
         function,
     )

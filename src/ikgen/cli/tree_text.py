@@ -10,7 +10,7 @@ from ikgen.cli.tables import table
 from ikgen.library.dh_text import constants, row_texts
 
 if TYPE_CHECKING:
-    from ikgen.model.dh import DHChain
+    from ikgen.model.dh import Angle, DHChain, Length
     from ikgen.model.joint_tree import Joint, JointTree, Limits, Matrix
 
 __all__ = ["dh_table", "joint_tree", "transform_text"]
@@ -61,9 +61,17 @@ def _range(limits: Limits) -> str:
 
 def dh_table(dh: DHChain) -> str:
     """The modified DH rows, then the values of their constants."""
-    rows = [("i", "joint", "alpha", "a", "theta", "d"), *row_texts(dh)]
-    values = ", ".join(f"{name} = {value:.10g}" for name, value in constants(dh).items())
+    rows = [("i", "joint", "alpha (rad)", "a (m)", "theta (rad)", "d (m)"), *row_texts(dh)]
+    angles = {x.name for row in dh.rows for x in (row.alpha, row.theta, row.offset) if _turns(x)}
+    values = ", ".join(
+        f"{name} = {value:.10g} {'rad' if name in angles else 'm'}"
+        for name, value in constants(dh).items()
+    )
     return table(rows) + (f"\n  {values}" if values else "")
+
+
+def _turns(constant: Angle | Length) -> bool:
+    return not hasattr(constant, "sign")
 
 
 def transform_text(T: Matrix) -> tuple[str, str]:

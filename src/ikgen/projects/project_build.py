@@ -29,7 +29,7 @@ INTERNAL_ERROR = 70
 class Outcome:
     """What happened to one arm: `reason` it was stale (empty: fresh, left alone), its files, and
     the error if it failed (`exit_code` then is not 0); `trace` is that of an internal error, `warnings`
-    are what has to be told of what was generated."""
+    are what has to be told of what was generated, `solutions` how many a pose has at most."""
 
     name: str
     reason: str
@@ -40,6 +40,7 @@ class Outcome:
     exit_code: int = 0
     trace: str = ""
     warnings: tuple[str, ...] = ()
+    solutions: int = 0
 
 
 def build_arms(
@@ -140,7 +141,8 @@ def _build_one(job: tuple[ArmConfig, str, bool]) -> Outcome:
     except Exception as error:
         return _internal(arm.name, reason, error)
     told = announcements(made.derivation)
-    return Outcome(arm.name, reason, made.files, made.seconds, warnings=told)
+    most = made.derivation.module.max_solutions
+    return Outcome(arm.name, reason, made.files, made.seconds, warnings=told, solutions=most)
 
 
 def _internal(name: str, reason: str, error: Exception) -> Outcome:

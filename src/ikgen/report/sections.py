@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ikgen.report.behavior import behavior_section
-from ikgen.report.branch_names import branch_names
 from ikgen.report.card_section import card_section
 from ikgen.report.document import Block, Heading
 from ikgen.report.elimination_section import elimination_section
@@ -17,6 +16,7 @@ from ikgen.report.page import Page, SolvedPage, UnsolvedPage
 from ikgen.report.proof_section import proof_section
 from ikgen.report.results import graph_section, poses_section, verification_section
 from ikgen.report.roots_picture import roots_blocks
+from ikgen.report.row_names import row_names
 from ikgen.report.splits import splits_section
 from ikgen.report.steps import Writer, abbreviations, derived_section, step_section
 
@@ -43,7 +43,7 @@ def _example(page: SolvedPage) -> list[Block]:
     if page.example is None:
         return []
     dh = page.reading.dh
-    names = branch_names(dh, page.geometry, page.graph, page.example.rows)
+    names = row_names(dh, page.geometry, page.graph, page.example.rows)
     return example_section(dh, page.example, names, f"{page.derivation.module.name}_ik")
 
 

@@ -1,0 +1,57 @@
+"""`ikgen view`: the arm in a browser, with all solutions of a target that can be dragged."""
+
+from __future__ import annotations
+
+import time
+import webbrowser
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ikgen.cli.console import Console
+from ikgen.cli.options import chain_options
+from ikgen.cli.request_options import make_request
+from ikgen.errors import UsageError
+
+__all__ = ["view"]
+
+
+@click.command()
+@click.argument("robot", type=click.Path(path_type=Path), metavar="ROBOT|TABLE")
+@chain_options
+@click.option(
+    "--port",
+    metavar="N",
+    type=click.IntRange(min=1, max=65535),
+    default=8080,
+    show_default=True,
+    help="Port of this machine that the page is served on.",
+)
+@click.option("--no-browser", is_flag=True, help="Serve the page, open none.")
+@click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
+@click.option("-v", "--verbose", is_flag=True, help="Print every step.")
+def view(
+    robot: Path, *, port: int, no_browser: bool, quiet: bool, verbose: bool, **chain: Any
+) -> None:
+    """Show all solutions of a target that is dragged in a browser, until interrupted."""
+    from ikgen.generation.derive import derive
+    from ikgen.report.worked_example import solver_of
+    from ikgen.view.arm_scene import ArmScene, open_server
+
+    with Console(quiet=quiet, verbose=verbose) as console:
+        derivation = derive(make_request(robot, **chain), console)
+        runner = solver_of(derivation)
+        if runner is None:
+            raise UsageError(
+                "a table without numbers has no poses", hint="give [parameters] values"
+            )
+        server = open_server(port)
+        ArmScene(server, derivation, runner)
+    address = f"http://127.0.0.1:{server.get_port()}"
+    if not quiet:
+        click.echo(f"showing {derivation.reading.dh.robot} at {address} until interrupted (Ctrl-C)")
+    if not no_browser:
+        webbrowser.open(address)
+    while True:
+        time.sleep(3600)

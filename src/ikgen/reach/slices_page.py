@@ -1,0 +1,77 @@
+"""A map as a page: slices of its grid as images, what they show in numbers; one file, nothing to fetch."""
+
+from __future__ import annotations
+
+from html import escape
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.emit.rendering import render
+from ikgen.reach.png_image import COLOURS, data_address, png
+from ikgen.reach.reach_map import ReachMap
+
+__all__ = ["slices_page"]
+
+Array = NDArray[np.float64]
+
+_PIXELS, _MOST = 300, 12
+
+
+def slices_page(found: ReachMap, command: str) -> str:
+    """The text of the .html file; `command` makes it again."""
+    layers = {
+        "share of directions that have a solution": found.by_position,
+        "solutions a pose, the most of any direction": _scaled(found.count.max(axis=3)),
+        "smallest singular value, the best direction": _scaled(found.sigma.max(axis=3)),
+        "room to the joint limits, the best direction": found.margin.max(axis=3).astype(float),
+    }
+    stops = [f"rgb({r},{g},{b})" for r, g, b in COLOURS.tolist()]
+    return render(
+        "reach",
+        "slices.html.jinja",
+        title=escape(f"Reach of {found.robot}"),
+        facts=[(escape(name), escape(text)) for name, text in _facts(found, command)],
+        colours=", ".join(stops),
+        sections=[(escape(name), _slices(found, values)) for name, values in layers.items()],
+    )
+
+
+def _scaled(values: NDArray[np.generic]) -> Array:
+    """Relative to the largest."""
+    numbers = values.astype(float)
+    return numbers / max(float(numbers.max()), 1e-12)
+
+
+def _facts(found: ReachMap, command: str) -> list[tuple[str, str]]:
+    nx, ny, nz, n = found.grid.shape
+    step = found.grid.x[1] - found.grid.x[0] if nx > 1 else 0.0
+    return [
+        ("chain", f"{found.base} to {found.tip}, task {found.task}"),
+        ("grid", f"{nx} by {ny} by {nz} positions, {1e3 * step:.3g} mm apart; {n} orientations each"),
+        ("poses", f"{found.grid.poses:,}, {100 * found.solved:.1f} % with a solution inside the limits"),
+        ("positions", f"{100 * (found.by_position > 0).mean():.1f} % reached in some direction, "
+         f"{100 * (found.by_position == 1).mean():.1f} % in all of them"),
+        ("solutions", f"at most {int(found.count.max())} a pose, {found.count.mean():.2f} on average"),
+        ("best singular value", f"{float(found.sigma.max()):.3g}, lengths relative to {found.size:.3g} m"),
+        ("make it again", command),
+    ]  # fmt: skip
+
+
+def _slices(found: ReachMap, values: Array) -> list[tuple[str, str]]:
+    """One upright slice through the base's axis, and level ones from below to above."""
+    grid = found.grid
+    middle = int(np.argmin(np.abs(grid.y)))
+    out = [
+        (f"y = {grid.y[middle]:.3g} m, seen from the side", _image(values[:, middle, :].T[::-1]))
+    ]
+    wanted = np.unique(np.linspace(0, len(grid.z) - 1, min(_MOST, len(grid.z))).round().astype(int))
+    for k in wanted.tolist():
+        if values[:, :, k].any():
+            words = f"z = {grid.z[k] + 0.0:.3g} m, seen from above"
+            out.append((words, _image(values[:, :, k].T[::-1])))
+    return out
+
+
+def _image(values: Array) -> str:
+    return data_address(png(values, max(1, _PIXELS // max(values.shape))))

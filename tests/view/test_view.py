@@ -1,0 +1,123 @@
+"""The viewer: what is drawn is what `solve` gives, in a real browser too where there is one."""
+
+from __future__ import annotations
+
+import shutil
+import socket
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ikgen.cli.main import run
+from ikgen.emit.derivation import Derivation
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
+from ikgen.kinematics.quaternion_rotation import quaternion, rotation
+from ikgen.report.worked_example import solver_of
+from ikgen.verify.runners.python_module import PythonModule
+from ikgen.view.arm_scene import ArmScene, open_server
+from ikgen.view.branches import solved
+
+ROOT = Path(__file__).resolve().parents[2]
+KUKA = ROOT / "urdf_fixtures/kuka_kr6r900sixx.urdf"
+
+
+@cache
+def arm() -> tuple[Derivation, PythonModule]:
+    derivation = derive(Request(KUKA))
+    runner = solver_of(derivation)
+    assert runner is not None
+    return derivation, runner
+
+
+def poses(n: int) -> np.ndarray:
+    """Poses of random configurations inside the limits, and one out of reach."""
+    runner = arm()[1]
+    lower, upper = runner.constants.lower, runner.constants.upper
+    q = np.random.default_rng(2).uniform(lower, upper, (n, len(lower)))
+    far = np.eye(4)
+    far[:3, 3] = 9.0
+    return np.concatenate([runner.forward(q), far[None]])
+
+
+def test_quaternions_and_rotations() -> None:
+    for q in np.random.default_rng(0).normal(size=(50, 4)):
+        R = rotation(q)
+        np.testing.assert_allclose(R @ R.T, np.eye(3), atol=1e-12)
+        assert np.linalg.det(R) > 0
+        np.testing.assert_allclose(rotation(quaternion(R)), R, atol=1e-12)
+    quarter = rotation(np.array([np.sqrt(0.5), 0, 0, np.sqrt(0.5)]))
+    np.testing.assert_allclose(quarter @ [1, 0, 0], [0, 1, 0], atol=1e-12)
+
+
+def test_branches_are_those_of_solve() -> None:
+    derivation, runner = arm()
+    for pose in poses(10):
+        answer = solved(derivation, runner, pose)
+        inside, status, _ = runner.solve(pose)
+        every, _, _ = runner.solve(pose, limits=False)
+        assert answer.status == status and len(answer.branches) == len(every)
+        assert sum(branch.inside for branch in answer.branches) == len(inside)
+        for branch in answer.branches:
+            np.testing.assert_allclose(runner.forward(branch.q[None])[0], pose, atol=1e-9)
+        assert len({branch.name for branch in answer.branches}) == len(every)
+        assert f"{len(inside)} solutions inside the limits" in answer.table(derivation)
+
+
+def test_viser_is_asked_for_where_it_lacks(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    import sys
+
+    monkeypatch.setitem(sys.modules, "viser", None)
+    table = ROOT / "urdf_fixtures/scara_standard.toml"
+    assert run(["view", str(table), "-q", "--no-browser"]) == 2
+    assert "pip install 'ikgen[view]'" in capsys.readouterr().err
+
+
+@pytest.fixture
+def scene() -> Any:
+    """A scene with a server of its own."""
+    pytest.importorskip("viser")
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    server = open_server(port)
+    yield ArmScene(server, *arm())
+    server.stop()
+
+
+def test_moving_the_target_draws_its_solutions(scene: Any) -> None:
+    runner = arm()[1]
+    assert scene.ghosts > 1
+    for pose in poses(5):
+        scene.move(pose)
+        np.testing.assert_allclose(scene.pose, pose, atol=1e-6)
+        assert scene.ghosts == len(runner.solve(scene.pose, limits=False)[0])
+
+
+def test_the_page_in_a_browser(scene: Any) -> None:
+    sync_api = pytest.importorskip("playwright.sync_api")
+    chromium = shutil.which("chromium")
+    if chromium is None:
+        pytest.skip("no chromium here")
+    runner = arm()[1]
+    with sync_api.sync_playwright() as playwright:
+        options = ["--no-sandbox", "--enable-unsafe-swiftshader"]
+        browser = playwright.chromium.launch(executable_path=chromium, args=options)
+        page = browser.new_page(viewport={"width": 1100, "height": 750})
+        wrong: list[str] = []
+        page.on("pageerror", lambda error: wrong.append(str(error)))
+        page.goto(f"http://127.0.0.1:{scene.server.get_port()}")
+        for pose in poses(3):
+            scene.move(pose)
+            inside = len(runner.solve(scene.pose)[0])
+            every = len(runner.solve(scene.pose, limits=False)[0])
+            assert scene.ghosts == every
+            told = f"{inside} solutions inside the limits of {every}"
+            page.get_by_text(told).wait_for(timeout=60_000)
+        assert page.locator("canvas").count() >= 1 and wrong == []
+        browser.close()
