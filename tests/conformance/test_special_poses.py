@@ -15,8 +15,13 @@ from ikgen.generation.request import Request
 
 # kind, alpha (quarters), a, d of each row; joint values
 SLIDE = (
-    [("revolute", 0, 0.0, 0.44), ("revolute", -1, 0.0, 0.0), ("prismatic", 0, 0.0, 0.0)]
-    + [("revolute", -1, 0.74, 0.0), ("revolute", 1, 0.0, 0.35)],
+    [
+        ("revolute", 0, 0.0, 0.44),
+        ("revolute", -1, 0.0, 0.0),
+        ("prismatic", 0, 0.0, 0.0),
+        ("revolute", -1, 0.74, 0.0),
+        ("revolute", 1, 0.0, 0.35),
+    ],
     [-pi, -pi / 2, 0.0, 0.1546173992229667, pi],
 )
 FOLDS = (
