@@ -99,6 +99,7 @@ namespace detail {
 // --- constants -----------------------------------------------------------------------------------
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kTurn = 2.0 * kPi;
+inline constexpr double kFarthestSeed = 1e5;  // rad: neighbouring doubles are 1.5e-11 apart
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // --- machine vectors -----------------------------------------------------------------------------
@@ -640,7 +641,8 @@ template <class Arm> struct SolutionRows {
     for (int j = 0; j < Arm::kDof; ++j) {
       double gap = std::abs(a[j] - b[j]);
       if (Arm::kRevolute[j] && gap > Policy::kCoincident) gap = std::abs(gap - kTurn * std::nearbyint(gap / kTurn));
-      if (!(gap <= Policy::kCoincident)) return false;
+      const double bound = Policy::kCoincident * (Arm::kRevolute[j] ? 1.0 : std::max(std::abs(a[j]), 1.0));
+      if (!(gap <= bound)) return false;
     }
     return true;
   }
@@ -964,23 +966,41 @@ template <class Arm, template <class> class Way> struct PoseSolver {
   static void solve(const Eigen::Isometry3d* poses, std::ptrdiff_t count, const Options& given,
                     Solutions* out) noexcept {
     constexpr int P = Way<Arm>::kBatch;
-    const Options options = checked(given);
+    const Checked checked(given);
+    const Options& options = checked.options;
     if constexpr (P > 1)
       for (; count >= P; count -= P, poses += P, out += P) some<P>(poses, options, out);
     for (; count > 0; --count, ++poses, ++out) some<1>(poses, options, out);
   }
 
   static void solve(const Eigen::Isometry3d& pose, const Options& given, Solutions& out) noexcept {
-    some<1>(&pose, checked(given), &out);
+    some<1>(&pose, Checked(given).options, &out);
   }
 
  private:
-  static Options checked(const Options& options) noexcept {
-    Options out = options;
-    for (int j = 0; j < Arm::kDof && out.seed; ++j)
-      if (!(std::abs(out.seed->data()[j]) < kInfinity)) out.seed = nullptr;
-    return out;
-  }
+  struct Checked {
+    Options options;
+    std::remove_const_t<std::remove_pointer_t<decltype(Options::seed)>> near;
+
+    explicit Checked(const Options& given) noexcept : options(given) {
+      bool far = false;
+      for (int j = 0; j < Arm::kDof && options.seed; ++j) {
+        const double value = std::abs(options.seed->data()[j]);
+        far = far || value > kFarthestSeed;
+        if (!(value < kInfinity)) options.seed = nullptr;
+      }
+      if (far && options.seed) without_turns();
+    }
+    Checked(const Checked&) = delete;
+    Checked& operator=(const Checked&) = delete;
+
+    void without_turns() noexcept {
+      near = *options.seed;
+      for (int j = 0; j < Arm::kDof; ++j)
+        if (Arm::kRevolute[j] && !Arm::kHeld[j] && std::abs(near[j]) > kFarthestSeed) near[j] = std::fmod(near[j], kTurn);
+      options.seed = &near;
+    }
+  };
 
   template <int P>
   [[gnu::always_inline]] static void some(const Eigen::Isometry3d* poses, const Options& options,

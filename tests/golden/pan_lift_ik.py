@@ -221,6 +221,17 @@ _Flags = NDArray[np.bool_]
 Row = tuple[float, ...]
 
 
+# Arguments as arrays of real numbers.
+
+
+def _real_array(values: ArrayLike, name: str) -> Array:
+    """The values as doubles; raises ValueError for complex ones, whose imaginary part would be lost."""
+    array = np.asarray(values)
+    if array.dtype.kind == "c":
+        raise ValueError(f"{name} has complex values")
+    return np.asarray(array, dtype=float)
+
+
 # Forward kinematics and Jacobian of a serial chain, for any number of configurations at once.
 
 
@@ -274,7 +285,7 @@ def _steps(chain: _Chain, q: Array) -> Array:
 
 
 def _joint_values(chain: _Chain, q: ArrayLike) -> Array:
-    values, dof = np.asarray(q, dtype=float), chain.drive.shape[1]
+    values, dof = _real_array(q, "q"), chain.drive.shape[1]
     if values.ndim < 1 or values.shape[-1] != dof:
         raise ValueError(f"q has shape {values.shape}, expected (..., {dof})")
     return values
@@ -450,6 +461,9 @@ class _Arm:
 # The arguments `free` and `seed` as joint values.
 
 
+_FARTHEST = 1e5  # rad: neighbouring doubles are 1.5e-11 apart
+
+
 def _held_values(
     arm: _Arm, free: Sequence[float] | Mapping[str, float] | None, near: Row | None
 ) -> Row:
@@ -488,9 +502,9 @@ def _held_rows(
                 values[:, k] = near[:, j]
         return values
     if np.ndim(free) < 2:
-        one: list[float] = np.asarray(free, dtype=float).tolist()
+        one: list[float] = _real_array(free, "free").tolist()
         return np.broadcast_to(_held_values(arm, one, None), shape)
-    held = np.asarray(free, dtype=float)
+    held = _real_array(free, "free")
     if held.shape != shape:
         raise ValueError(f"free has shape {held.shape}, expected {shape}")
     if not np.isfinite(held).all():
@@ -499,14 +513,16 @@ def _held_rows(
 
 
 def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...]) -> Array:
-    """The seed as an array of one of the shapes; raises ValueError for others."""
-    values = np.asarray(seed, dtype=float)
+    """The seed as an array of one of the shapes; raises ValueError for others. Turns of a revolute joint
+    that doubles cannot tell apart to 1e-11 rad are left out."""
+    values = _real_array(seed, "seed")
     if values.shape not in shapes:
         expected = " or ".join(map(str, shapes))
         raise ValueError(f"seed has shape {values.shape}, expected {expected}")
     if not np.isfinite(values).all():
         raise ValueError(f"seed {values.tolist()} has values that are not finite")
-    return values
+    far = np.array(arm.turning) & (np.abs(values) > _FARTHEST)
+    return np.where(far, np.fmod(values, 2.0 * pi), values) if far.any() else values
 
 
 # Undamped Newton steps of all rows at once, and which of them leave no doubt.
@@ -565,7 +581,7 @@ def _pose_matrices(pose: Any, alone: str) -> Array:
     """(4, 4), or (N, 4, 4) of many: of matrices (4, 4) or (3, 4), pairs (rotation (3, 3), position) or
     (position, quaternion x y z w), objects that have one of `_TRANSFORMS`, or a sequence of those."""
     if isinstance(pose, np.ndarray) and pose.shape[-2:] == (4, 4):
-        return np.asarray(pose, dtype=float)
+        return _real_array(pose, "pose")
     if isinstance(pose, (list, tuple)) and len(pose):
         if any(hasattr(pose[0], name) for name in _TRANSFORMS):
             return np.stack([_pose_matrices(one, alone) for one in pose])
@@ -582,7 +598,7 @@ def _pose_matrices(pose: Any, alone: str) -> Array:
 
 def _numbers(value: Any) -> Array:
     try:
-        return np.asarray(value, dtype=float)
+        return _real_array(value, "pose")
     except TypeError:
         raise ValueError(f"pose is no array of numbers: {type(value).__name__}") from None
 
@@ -931,12 +947,15 @@ _TURN = 2.0 * pi
 
 
 def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
-    """Whether the row differs from all kept ones, whole turns aside."""
+    """Whether the row differs from all kept ones, whole turns aside; long slides count relative to their
+    length."""
     near = arm.policy.coincident
     for other, _ in kept:
         for a, b, turns in zip(row, other, arm.chain.revolute):
             gap = abs(a - b)
-            if gap > near and (not turns or abs((gap + pi) % _TURN - pi) > near):
+            if gap <= near:
+                continue
+            if abs((gap + pi) % _TURN - pi) > near if turns else gap > near * abs(a):
                 break
         else:
             return False
@@ -944,15 +963,17 @@ def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
 
 
 def _distinct(arm: _Arm, q: Array, valid: _Flags) -> _Flags:
-    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside."""
+    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside; long
+    slides count relative to their length."""
     near = arm.policy.coincident
     later, earlier = np.tril_indices(q.shape[1], -1)
     same = valid.T[later] & valid.T[earlier]
     for j in reversed(range(q.shape[2])):  # the last joints differ between most rows
         value = q[:, :, j].T
         gap = np.abs(value[later] - value[earlier])
-        close = gap <= near
-        same &= close | (np.abs(gap - _TURN) <= near) if arm.chain.revolute[j] else close
+        bound = near if arm.chain.revolute[j] else near * np.abs(value[later])
+        far = np.abs(gap - _TURN) if arm.chain.revolute[j] else gap
+        same &= (gap <= near) | (far <= bound)
         if not same.any():
             return valid
     valid = valid.copy()
@@ -1397,7 +1418,7 @@ def _search_held(
 
 _DEEPEST = 24  # of the way from one pose to the next
 _SHALLOW = 9  # the same where there are no rows
-_FARTHEST = 0.3  # rad or m that a joint may move at once
+_path_following_FARTHEST = 0.3  # rad or m that a joint may move at once
 _OFF = 0.2  # of the motion, and
 _LEAST_OFF = 1e-4  # rad or m: how far a row may be from where the Jacobian leads
 _DAMPING = 1e-8  # of directions that are all but lost
@@ -1426,7 +1447,7 @@ def _follow_poses(
 ) -> Path:
     """From the row of the first pose (N, 4, 4) that is nearest to `start` (dof,); `search(pose, start,
     limits)`: rows nearest to it first. Raises ValueError for bad arguments."""
-    T, dof = np.asarray(poses, dtype=float), len(arm.lower)
+    T, dof = _real_array(poses, "poses"), len(arm.lower)
     if T.ndim != 3 or T.shape[1:] != (4, 4):
         raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
     row = _seed_rows(arm, start, (dof,))
@@ -1468,7 +1489,7 @@ class _Walk:
             gap = np.abs(rows - expected).max(axis=1)
             k = int(gap.argmin())
             moved = float(np.abs(rows[k] - self.q).max())
-            follows = moved < _FARTHEST and gap[k] < _LEAST_OFF + _OFF * moved
+            follows = moved < _path_following_FARTHEST and gap[k] < _LEAST_OFF + _OFF * moved
             if follows or (depth == _DEEPEST and moved < _JUMP):
                 self.crossed = self.crossed or bool(flags[k]) or not follows
                 return self._arrive(rows[k])
