@@ -21,6 +21,7 @@ if TYPE_CHECKING:
         UsageError,
         VerificationError,
     )
+    from ikgen.library.compilation import compile
     from ikgen.library.load import load
     from ikgen.library.loaded_arm import Arm
 
@@ -38,10 +39,15 @@ __all__ = [
     "UsageError",
     "VerificationError",
     "__version__",
+    "compile",
     "load",
 ]
 
-_PLACES = {"load": "ikgen.library.load", "Arm": "ikgen.library.loaded_arm"}
+_PLACES = {
+    "Arm": "ikgen.library.loaded_arm",
+    "compile": "ikgen.library.compilation",
+    "load": "ikgen.library.load",
+}
 
 
 def __getattr__(name: str) -> Any:

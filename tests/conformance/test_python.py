@@ -147,3 +147,43 @@ def test_odd_names_in_a_file(tmp_path: Path) -> None:
     assert run(["from-urdf", str(robot), *options, "--samples", "10"]) == 0
     (module,) = (tmp_path / "out").glob("*_ik.py")
     assert r"of C:\users\new, ba" in str(PythonModule(module).module.__doc__)
+
+
+FAR = (1e3, 2e5, 1e9, 1e16, -1e16, 1e300)
+
+
+@pytest.mark.parametrize("far", FAR)
+def test_rows_are_right_whatever_turn_the_seed_is_on(far: float, tmp_path: Path) -> None:
+    arm = imported(emit_module(kuka()), tmp_path)
+    pose = arm.forward([0.3, -0.5, 0.9, 0.2, 0.4, 0.1])
+    seed = np.full(6, far)
+    for limits in (True, False):
+        plain = arm.solve(pose, limits=limits)
+        found = arm.solve(pose, seed=seed, limits=limits)
+        assert len(found) == len(plain) > 0
+        assert np.abs(arm.forward(found.q) - pose).max() < 1e-9
+        q, count, _ = arm.solve_batch(pose[None], seed=seed, limits=limits)
+        assert count[0] == len(plain)
+        assert np.abs(arm.forward(q[0, : count[0]]) - pose).max() < 1e-9
+
+
+def test_turns_that_can_be_told_apart_are_kept(tmp_path: Path) -> None:
+    arm = imported(emit_module(kuka()), tmp_path)
+    pose = arm.forward([0.3, -0.5, 0.9, 0.2, 0.4, 0.1])
+    found = arm.solve(pose, seed=np.full(6, 9e4), limits=False)
+    assert np.abs(found.q - 9e4).max() <= np.pi + 1e-9
+
+
+def test_complex_numbers_are_refused(tmp_path: Path) -> None:
+    arm = imported(emit_module(kuka()), tmp_path)
+    pose, q = arm.forward(np.zeros(6)), np.zeros(6)
+    for call in (
+        lambda: arm.solve(pose + 0.5j),
+        lambda: arm.solve((pose + 0j).tolist()),
+        lambda: arm.solve_batch((pose + 0j)[None]),
+        lambda: arm.solve(pose, seed=q + 1j),
+        lambda: arm.forward(q + 1j),
+        lambda: arm.jacobian(q + 1j),
+    ):
+        with pytest.raises(ValueError, match="complex"):
+            call()

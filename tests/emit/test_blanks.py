@@ -142,5 +142,5 @@ def test_elimination_needs_numbers(tmp_path: Path) -> None:
     path = tmp_path / "issue4.toml"
     path.write_text(re.sub(r"(?ms)^\[parameters\].*?(?=^\[)", "", text))
     module = derive(Request(path)).module
-    with pytest.raises(UsageError, match="only the 6R elimination solves this arm"):
+    with pytest.raises(UsageError, match="only an elimination solves this arm"):
         emit_module(module)

@@ -65,6 +65,7 @@ enum class Status {
   Unreachable,  // no real solution
   Limits,       // solutions exist, all of them outside the joint limits
   Invalid,      // not a pose: NaN, or not a rotation
+  Singular,     // of a path alone: the next pose's rows are a leap away
 };
 
 // The solutions of one pose. singular: the row is one of a continuum; off, with Options::project: m and rad by
@@ -94,11 +95,34 @@ Solutions solve(const Eigen::Isometry3d& pose, const Options& options = {}) noex
 void solve_batch(const Eigen::Isometry3d* poses, std::ptrdiff_t count, Solutions* solutions,
                  const Options& options = {}) noexcept;
 
+enum class Prefer {
+  Near,       // to the seed
+  Centre,     // of the limits, as Near without a seed
+  Dexterous,  // the largest smallest singular value of the task's Jacobian (m/s, rad/s)
+};
+
+struct SearchOptions {
+  const Joints* seed = nullptr;
+  Prefer prefer = Prefer::Near;
+  bool limits = true;
+};
+
+// How many poses of a path were reached, and why the next was not.
+struct Path {
+  Status status = Status::Ok;
+  std::ptrdiff_t reached = 0;
+};
+
+Solutions search(const Eigen::Isometry3d& pose, const SearchOptions& options = {}) noexcept;
+Path follow(const Eigen::Isometry3d* poses, std::ptrdiff_t count, const Joints& start, Joints* q,
+            bool limits = true, bool* singular = nullptr) noexcept;
+
 namespace detail {
 
 // --- constants -----------------------------------------------------------------------------------
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kTurn = 2.0 * kPi;
+inline constexpr double kFarthestSeed = 1e5;  // rad: neighbouring doubles are 1.5e-11 apart
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // --- machine vectors -----------------------------------------------------------------------------
@@ -640,7 +664,8 @@ template <class Arm> struct SolutionRows {
     for (int j = 0; j < Arm::kDof; ++j) {
       double gap = std::abs(a[j] - b[j]);
       if (Arm::kRevolute[j] && gap > Policy::kCoincident) gap = std::abs(gap - kTurn * std::nearbyint(gap / kTurn));
-      if (!(gap <= Policy::kCoincident)) return false;
+      const double bound = Policy::kCoincident * (Arm::kRevolute[j] ? 1.0 : std::max(std::abs(a[j]), 1.0));
+      if (!(gap <= bound)) return false;
     }
     return true;
   }
@@ -964,23 +989,46 @@ template <class Arm, template <class> class Way> struct PoseSolver {
   static void solve(const Eigen::Isometry3d* poses, std::ptrdiff_t count, const Options& given,
                     Solutions* out) noexcept {
     constexpr int P = Way<Arm>::kBatch;
-    const Options options = checked(given);
+    const Checked checked(given);
+    const Options& options = checked.options;
     if constexpr (P > 1)
       for (; count >= P; count -= P, poses += P, out += P) some<P>(poses, options, out);
     for (; count > 0; --count, ++poses, ++out) some<1>(poses, options, out);
   }
 
   static void solve(const Eigen::Isometry3d& pose, const Options& given, Solutions& out) noexcept {
-    some<1>(&pose, checked(given), &out);
+    some<1>(&pose, Checked(given).options, &out);
   }
 
  private:
-  static Options checked(const Options& options) noexcept {
-    Options out = options;
-    for (int j = 0; j < Arm::kDof && out.seed; ++j)
-      if (!(std::abs(out.seed->data()[j]) < kInfinity)) out.seed = nullptr;
-    return out;
-  }
+  struct Checked {
+    Options options;
+    std::remove_const_t<std::remove_pointer_t<decltype(Options::seed)>> near;
+
+    explicit Checked(const Options& given) noexcept : options(given) {
+      bool far = false;
+      for (int j = 0; j < Arm::kDof && options.seed; ++j) {
+        const double value = std::abs(options.seed->data()[j]);
+        far = far || value > kFarthestSeed;
+        if (!(value < kInfinity)) options.seed = nullptr;
+      }
+      if (far && options.seed) without_turns();
+      if constexpr (Arm::kFree > 0) {
+        const Options plain;
+        for (std::size_t k = 0; k < Arm::kFree && options.seed && options.hold_seed; ++k)
+          if (options.free[k] == plain.free[k]) options.free[k] = options.seed->data()[Arm::kFreeJoints[k]];
+      }
+    }
+    Checked(const Checked&) = delete;
+    Checked& operator=(const Checked&) = delete;
+
+    void without_turns() noexcept {
+      near = *options.seed;
+      for (int j = 0; j < Arm::kDof; ++j)
+        if (Arm::kRevolute[j] && !Arm::kHeld[j] && std::abs(near[j]) > kFarthestSeed) near[j] = std::fmod(near[j], kTurn);
+      options.seed = &near;
+    }
+  };
 
   template <int P>
   [[gnu::always_inline]] static void some(const Eigen::Isometry3d* poses, const Options& options,
@@ -1185,6 +1233,279 @@ template <class Arm, template <class> class Way> struct Projection {
   }
 };
 
+// --- path following ------------------------------------------------------------------------------
+template <class A> struct AllMoving : A {
+  static constexpr int kFree = 0;
+  static constexpr std::array<int, 0> kFreeJoints = {};
+  static constexpr bool kHeld[A::kDof] = {};
+};
+
+template <class A, class Solver> struct PathStep {
+  static constexpr int kDof = A::kDof, kDeepest = 24, kShallow = 9;
+  static constexpr double kFarthest = 0.3, kOff = 0.2, kLeastOff = 1e-4, kDamping = 1e-8, kJump = 0.05;
+  using Status = typename A::Status;
+
+  double q[kDof];
+  bool limits, crossed = false;
+
+  Status step(const Eigen::Isometry3d& before, const Eigen::Isometry3d& pose, int depth) noexcept {
+    double expected[kDof], row[kDof];
+    bool singular = false;
+    const bool none[kDof] = {};
+    std::copy_n(q, kDof, expected);
+    move(expected, pose, none);
+    Status status = next_row(pose, expected, row, singular);
+    if (status == Status::Ok) {
+      double gap = 0.0, moved = 0.0;
+      for (int j = 0; j < kDof; ++j) {
+        gap = std::max(gap, std::abs(row[j] - expected[j]));
+        moved = std::max(moved, std::abs(row[j] - q[j]));
+      }
+      const bool follows = moved < kFarthest && gap < kLeastOff + kOff * moved;
+      if (follows || (depth == kDeepest && moved < kJump)) {
+        crossed = crossed || singular || !follows;
+        return arrive(row);
+      }
+      status = Status::Singular;
+    } else if (depth >= kShallow) {
+      return status;
+    }
+    if (depth == kDeepest) return status;
+    const Eigen::Isometry3d middle = between(before, pose);
+    const Status first = step(before, middle, depth + 1);
+    return first == Status::Ok ? step(middle, pose, depth + 1) : first;
+  }
+
+ private:
+  Status arrive(const double* row) noexcept {
+    for (int j = 0; j < kDof && limits; ++j)
+      if (!(row[j] >= A::kLower.data()[j] - A::Policy::kLimitTolerance && row[j] <= A::kUpper.data()[j] + A::Policy::kLimitTolerance))
+        return Status::Limits;
+    for (int j = 0; j < kDof; ++j)
+      q[j] = limits ? std::min(std::max(row[j], A::kLower.data()[j]), A::kUpper.data()[j]) : row[j];
+    return Status::Ok;
+  }
+
+  static double move(double* at, const Eigen::Isometry3d& pose, const bool* stopped) noexcept {
+    PoseError<AllMoving<A>> here(at, pose);
+    constexpr int n = PoseError<AllMoving<A>>::kCount;
+    const double worst = here.largest();
+    double N[n][n];
+    for (auto& row : here.slope)
+      for (int j = 0; j < kDof; ++j) row[j] = stopped[j] ? 0.0 : row[j];
+    for (int a = 0; a < n; ++a)
+      for (int b = 0; b <= a; ++b) {
+        N[a][b] = a == b ? kDamping : 0.0;
+        for (int j = 0; j < kDof; ++j) N[a][b] += here.slope[a][j] * here.slope[b][j];
+      }
+    factor(N);
+    substitute(N, here.error);
+    for (int j = 0; j < kDof; ++j) {
+      double step = 0.0;
+      for (int a = 0; a < n; ++a) step += here.slope[a][j] * here.error[a];
+      at[j] += std::min(std::max(step, -1.0), 1.0);
+    }
+    return worst;
+  }
+
+  Status next_row(const Eigen::Isometry3d& pose, const double* expected, double* row, bool& singular) const noexcept {
+    if constexpr (A::kFree > 0) {
+      return unstopped(pose, row, singular);
+    } else {
+      typename A::Options options;
+      typename A::Joints seed;
+      std::copy_n(q, kDof, seed.data());
+      options.seed = &seed;
+      options.limits = false;
+      typename A::Solutions found;
+      Solver::solve(pose, options, found);
+      double least = kInfinity;
+      for (int k = 0; k < found.count; ++k) {
+        double gap = 0.0;
+        for (int j = 0; j < kDof; ++j) gap = std::max(gap, std::abs(found.q.data()[k].data()[j] - expected[j]));
+        if (!(gap < least)) continue;
+        least = gap;
+        std::copy_n(found.q.data()[k].data(), kDof, row);
+        singular = found.singular.data()[k];
+      }
+      return found.status;
+    }
+  }
+
+  Status unstopped(const Eigen::Isometry3d& pose, double* row, bool& singular) const noexcept {
+    bool stopped[kDof] = {};
+    double at[kDof];
+    std::copy_n(q, kDof, at);
+    for (int stops = 0;; ++stops) {
+      std::copy_n(at, kDof, row);
+      double error = kInfinity, tried[kDof];
+      std::copy_n(row, kDof, tried);
+      for (int i = 0; i < 30; ++i) {
+        double before[kDof];
+        std::copy_n(tried, kDof, before);
+        const double here = move(tried, pose, stopped);
+        if (here < error) std::copy_n(before, kDof, row);
+        if (!(here < 0.5 * error) && i > 2) break;
+        error = std::min(error, here);
+        if (error < A::Policy::kConverged) break;
+      }
+      if (!(error < A::Policy::kArrived)) return stops > 0 ? Status::Limits : Status::Unreachable;
+      double most = A::Policy::kLimitTolerance;
+      int worst = -1;
+      for (int j = 0; j < kDof && limits; ++j) {
+        const double excess = std::max(A::kLower.data()[j] - row[j], row[j] - A::kUpper.data()[j]);
+        if (excess > most) {
+          most = excess;
+          worst = j;
+        }
+      }
+      if (worst < 0) break;
+      stopped[worst] = true;
+      at[worst] = row[worst] < A::kLower.data()[worst] ? A::kLower.data()[worst] : A::kUpper.data()[worst];
+    }
+    singular = RankLoss<AllMoving<A>>::below(row, A::Policy::kRankLoss);
+    return Status::Ok;
+  }
+
+  static Eigen::Isometry3d between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) noexcept {
+    Eigen::Isometry3d out = a;
+    const Eigen::Quaterniond p(a.linear()), r(b.linear());
+    out.linear() = p.slerp(0.5, r).toRotationMatrix();
+    out.translation() = 0.5 * (a.translation() + b.translation());
+    return out;
+  }
+};
+
+template <class A, class Solver, class Walk>
+inline Walk follow_poses(const Eigen::Isometry3d* poses, std::ptrdiff_t count, const typename A::Joints& start, bool limits,
+                         typename A::Joints* q, bool* singular) noexcept {
+  using Status = typename A::Status;
+  Walk out;
+  PathStep<A, Solver> walk;
+  walk.limits = limits;
+  Eigen::Isometry3d before;
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    Eigen::Isometry3d pose = poses[i];
+    walk.crossed = false;
+    if (!PoseReading<A>::clean(pose)) {
+      out.status = Status::Invalid;
+    } else if (i > 0) {
+      out.status = walk.step(before, pose, 0);
+    } else {
+      typename A::Solutions found;
+      typename A::SearchOptions options;
+      options.seed = &start;
+      options.limits = limits;
+      Solver::search(pose, options, found);
+      out.status = found.status;
+      if (found.count > 0) {
+        std::copy_n(found.q.data()->data(), A::kDof, walk.q);
+        walk.crossed = found.singular.data()[0];
+      }
+    }
+    if (out.status != Status::Ok) return out;
+    std::copy_n(walk.q, A::kDof, q[i].data());
+    if (singular) singular[i] = walk.crossed;
+    out.reached = i + 1;
+    before = pose;
+  }
+  out.status = Status::Ok;
+  return out;
+}
+
+// --- row preference ------------------------------------------------------------------------------
+template <class A> struct RowPreference {
+  using Prefer = typename A::Prefer;
+  typename A::Joints wanted;
+  double weight[A::kDof];
+  typename A::Options options;
+  Prefer prefer;
+
+  RowPreference(const double* seed, Prefer kind, bool limits) noexcept : prefer(kind) {
+    for (int j = 0; j < A::kDof && seed; ++j)
+      if (!(std::abs(seed[j]) < kInfinity)) seed = nullptr;
+    for (int j = 0; j < A::kDof; ++j) {
+      const double low = A::kLower.data()[j], high = A::kUpper.data()[j];
+      const bool bounded = high - low < kInfinity, near = kind == Prefer::Near && seed;
+      const double half = std::max(0.5 * (high - low), 1e-6);
+      wanted.data()[j] = bounded && !near ? 0.5 * (low + high) : seed ? seed[j] : 0.0;
+      weight[j] = near ? 1.0 : bounded ? 1.0 / (half * half) : 0.0;
+    }
+    options.limits = limits;
+    options.seed = &wanted;
+  }
+  RowPreference(const RowPreference&) = delete;
+
+  bool place(double* q) const noexcept {
+    for (int j = 0; j < A::kDof; ++j)
+      if (A::kHeld[j] && A::kRevolute[j] && !(A::kUpper.data()[j] - A::kLower.data()[j] < kInfinity))
+        q[j] += kTurn * std::nearbyint((wanted.data()[j] - q[j]) / kTurn);
+    return SolutionRows<A>::place(q, options);
+  }
+
+  double cost(const double* q) const noexcept {
+    if (prefer == Prefer::Dexterous) return -smallest_singular_value(q);
+    double sum = 0.0;
+    for (int j = 0; j < A::kDof; ++j) sum += weight[j] * (q[j] - wanted.data()[j]) * (q[j] - wanted.data()[j]);
+    return sum;
+  }
+
+  static double smallest_singular_value(const double* q) noexcept {
+    constexpr int e = PoseError<AllMoving<A>>::kCount, n = A::kDof < e ? A::kDof : e;
+    PoseError<AllMoving<A>> at(q, Eigen::Isometry3d::Identity());
+    for (int a = 0; a < e; ++a)
+      if (A::kWholePose ? a < 3 : A::kRead[a][1] == 3)
+        for (double& x : at.slope[a]) x *= A::kSize;
+    double N[n][n], v[n];
+    for (int a = 0; a < n; ++a) {
+      for (int b = 0; b <= a; ++b) {
+        N[a][b] = 0.0;
+        for (int k = 0; k < (n == e ? A::kDof : e); ++k)
+          N[a][b] += n == e ? at.slope[a][k] * at.slope[b][k] : at.slope[k][a] * at.slope[k][b];
+      }
+      v[a] = 1.0 + 0.1 * a;
+    }
+    factor(N);
+    double value = kInfinity;
+    for (int i = 0; i < 300; ++i) {
+      double length = 0.0, growth = 0.0, old[n];
+      for (const double x : v) length += x * x;
+      for (int a = 0; a < n; ++a) old[a] = v[a] /= std::sqrt(length);
+      substitute(N, v);
+      for (int a = 0; a < n; ++a) growth += old[a] * v[a];
+      const double here = 1.0 / growth;
+      if (std::abs(value - here) <= 1e-14 * here) break;
+      value = here;
+    }
+    return std::sqrt(std::max(value, 0.0));
+  }
+};
+
+template <class A, class Solver>
+inline void order_rows(const Eigen::Isometry3d& pose, const double* seed, typename A::Prefer prefer, bool limits,
+                       typename A::Solutions& out) noexcept {
+  const RowPreference<A> preference(seed, prefer, limits);
+  typename A::Options options;
+  typename A::Joints near;
+  if (seed) {
+    std::copy_n(seed, A::kDof, near.data());
+    options.seed = &near;
+  }
+  options.limits = limits;
+  Solver::solve(pose, options, out);
+  for (int k = 0; k < out.count; ++k) {
+    preference.place(SolutionRows<A>::row(out, k));
+    double q[A::kDof];
+    std::copy_n(SolutionRows<A>::row(out, k), A::kDof, q);
+    const bool singular = out.singular.data()[k];
+    const double mine = preference.cost(q);
+    int at = k;
+    for (; at > 0 && preference.cost(SolutionRows<A>::row(out, at - 1)) > mine; --at) SolutionRows<A>::move(out, at - 1, at);
+    std::copy_n(q, A::kDof, SolutionRows<A>::row(out, at));
+    out.singular.data()[at] = singular;
+  }
+}
+
 // --- this arm -------------------------------------------------------------------------------------
 
 struct Policy {
@@ -1199,8 +1520,11 @@ struct Policy {
 struct Seed;
 
 struct Arm {
+  using Joints = pan_lift_ik::Joints;
   using Options = pan_lift_ik::Options;
   using Policy = detail::Policy;
+  using Prefer = pan_lift_ik::Prefer;
+  using SearchOptions = pan_lift_ik::SearchOptions;
   using Seed = detail::Seed;
   using Solutions = pan_lift_ik::Solutions;
   using Status = pan_lift_ik::Status;
@@ -1328,6 +1652,35 @@ inline void solve_batch(const Eigen::Isometry3d* poses, std::ptrdiff_t count, So
   detail::PoseSolver<detail::Arm, detail::LaneSolve>::solve(poses, count, options, solutions);
   for (std::ptrdiff_t i = 0; i < count && options.project; ++i)
     detail::Projection<detail::Arm, detail::LaneSolve>::apply(poses[i], options, solutions[i]);
+}
+
+namespace detail {
+
+struct Solver {
+  static void solve(const Eigen::Isometry3d& pose, const Options& options, Solutions& out) noexcept {
+    PoseSolver<Arm, LaneSolve>::solve(pose, options, out);
+  }
+
+  static void search(const Eigen::Isometry3d& pose, const SearchOptions& options, Solutions& out) noexcept {
+    const double* seed = options.seed ? options.seed->data() : nullptr;
+    order_rows<Arm, Solver>(pose, seed, options.prefer, options.limits, out);
+  }
+};
+
+}  // namespace detail
+
+// The rows of solve, best first.
+inline Solutions search(const Eigen::Isometry3d& pose, const SearchOptions& options) noexcept {
+  Solutions out;
+  detail::Solver::search(pose, options, out);
+  return out;
+}
+
+// Joint values `q` along `count` poses on one branch, from the row of the first that is nearest to `start`: whole turns
+// are unwound. singular: which rows are at a singularity or were reached across one.
+inline Path follow(const Eigen::Isometry3d* poses, std::ptrdiff_t count, const Joints& start, Joints* q, bool limits,
+                   bool* singular) noexcept {
+  return detail::follow_poses<detail::Arm, detail::Solver, Path>(poses, count, start, limits, q, singular);
 }
 
 }  // namespace pan_lift_ik

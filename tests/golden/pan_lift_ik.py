@@ -131,7 +131,7 @@ def solve_batch(
 
 
 def search(
-    pose: ArrayLike,
+    pose: Any,
     *,
     seed: ArrayLike | None = None,
     prefer: str = "near",
@@ -145,7 +145,7 @@ def search(
     return _search_held(_ARM, pose, seed, prefer, limits)
 
 
-def follow(poses: ArrayLike, *, start: ArrayLike, limits: bool = True) -> Path:
+def follow(poses: Any, *, start: ArrayLike, limits: bool = True) -> Path:
     """Joint values along poses (N, 4, 4) on one branch, from the row of the first that is nearest to `start` (DOF,).
 
     Whole turns are unwound. Between two poses the tip is
@@ -221,6 +221,17 @@ _Flags = NDArray[np.bool_]
 Row = tuple[float, ...]
 
 
+# Arguments as arrays of real numbers.
+
+
+def _real_array(values: ArrayLike, name: str) -> Array:
+    """The values as doubles; raises ValueError for complex ones, whose imaginary part would be lost."""
+    array = np.asarray(values)
+    if array.dtype.kind == "c":
+        raise ValueError(f"{name} has complex values")
+    return np.asarray(array, dtype=float)
+
+
 # Forward kinematics and Jacobian of a serial chain, for any number of configurations at once.
 
 
@@ -274,7 +285,7 @@ def _steps(chain: _Chain, q: Array) -> Array:
 
 
 def _joint_values(chain: _Chain, q: ArrayLike) -> Array:
-    values, dof = np.asarray(q, dtype=float), chain.drive.shape[1]
+    values, dof = _real_array(q, "q"), chain.drive.shape[1]
     if values.ndim < 1 or values.shape[-1] != dof:
         raise ValueError(f"q has shape {values.shape}, expected (..., {dof})")
     return values
@@ -338,6 +349,12 @@ class _Policy:
     try_step: float  # rad from one to the next
     rank_loss: float  # smallest singular value below which a refined row is singular
     continuum_rank_loss: float  # the same where the closed form says that it is
+    farthest_start: float  # first step (rad, m) of rows that are refined together
+    contraction: float  # of each further one
+    least_pivot: float  # how far the derivatives by each joint must be from the others' span
+    least_miss: float  # error that shows that a row ends beside the pose
+    near: float  # largest step behind which the derivatives stay
+    lane_steps: int  # at most
     least_damping: float
     damping: float  # of a Newton step, times the squared error
     largest_step: float  # of a joint
@@ -418,8 +435,9 @@ class _Arm:
     most. `branches(T, q0, held)`: the closed form's rows for a pose, values of joints that it leaves
     free, values of held joints, and whether it left one free; `branches_batch`: in arrays. `beside`
     (n, 4, 4): motions of the tool to poses that are solved as well. `turning`: which joints are
-    revolute and not held; `moving`: indices of those not held. `branch_kind`, `elbow_end`: as in
-    `branch_names`."""
+    revolute and not held; `moving`: indices of those not held.
+    `rounded`: whether the closed form is of another geometry than the file's, and all rows are rough.
+    `branch_kind`, `elbow_end`: as in `branch_names`."""
 
     chain: _Chain
     task: _Task
@@ -435,11 +453,15 @@ class _Arm:
     beside: Array
     turning: tuple[bool, ...]
     moving: tuple[int, ...]
+    rounded: bool
     branch_kind: str
     elbow_end: int
 
 
 # The arguments `free` and `seed` as joint values.
+
+
+_FARTHEST = 1e5  # rad: neighbouring doubles are 1.5e-11 apart
 
 
 def _held_values(
@@ -480,9 +502,9 @@ def _held_rows(
                 values[:, k] = near[:, j]
         return values
     if np.ndim(free) < 2:
-        one: list[float] = np.asarray(free, dtype=float).tolist()
+        one: list[float] = _real_array(free, "free").tolist()
         return np.broadcast_to(_held_values(arm, one, None), shape)
-    held = np.asarray(free, dtype=float)
+    held = _real_array(free, "free")
     if held.shape != shape:
         raise ValueError(f"free has shape {held.shape}, expected {shape}")
     if not np.isfinite(held).all():
@@ -491,14 +513,58 @@ def _held_rows(
 
 
 def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...]) -> Array:
-    """The seed as an array of one of the shapes; raises ValueError for others."""
-    values = np.asarray(seed, dtype=float)
+    """The seed as an array of one of the shapes; raises ValueError for others. Turns of a revolute joint
+    that doubles cannot tell apart to 1e-11 rad are left out."""
+    values = _real_array(seed, "seed")
     if values.shape not in shapes:
         expected = " or ".join(map(str, shapes))
         raise ValueError(f"seed has shape {values.shape}, expected {expected}")
     if not np.isfinite(values).all():
         raise ValueError(f"seed {values.tolist()} has values that are not finite")
-    return values
+    far = np.array(arm.turning) & (np.abs(values) > _FARTHEST)
+    return np.where(far, np.fmod(values, 2.0 * pi), values) if far.any() else values
+
+
+# Undamped Newton steps of all rows at once, and which of them leave no doubt.
+
+
+def _refine_together(arm: _Arm, q: Array, T: Array) -> tuple[Array, _Flags, _Flags]:
+    """Rows (k, dof) after steps towards T (k, 4, 4); which arrived at the one solution near their start,
+    and which at a least error that is not 0."""
+    policy, q, done = arm.policy, q.copy(), np.zeros(len(q), dtype=bool)
+    before, good = np.full(len(q), policy.farthest_start), ~done
+    slope = inverse = error = change = np.empty(0)
+    for step in range(policy.lane_steps):
+        if (
+            step in (1, 2) and before.max() < policy.near
+        ):  # so close that the slope is the one before
+            error = arm.task.error(_forward(arm.chain, q), T)
+        else:
+            pose, J = _tip_and_jacobian(arm.chain, q)
+            error = arm.task.error(pose, T)
+            slope = arm.task.rows(pose, J)[:, :, list(arm.moving)]
+            inverse, pivot = _inverse(slope)
+            good &= pivot > policy.least_pivot
+        change = (inverse @ error[:, :, None])[:, :, 0]
+        size = np.abs(change).max(axis=1)
+        most = before if step == 0 else policy.contraction * before
+        good &= (size < most) | (size < policy.converged)
+        q[:, arm.moving] += change * good[:, None]
+        if step:
+            done = ~good | (size * size < policy.converged * before) | (size < policy.converged)
+            if done.all():
+                break
+        before = size
+    good &= done
+    rest = np.abs(error - (slope @ change[:, :, None])[:, :, 0]).max(axis=1)
+    return q, good & (rest < policy.arrived), good & (rest > policy.least_miss)
+
+
+def _inverse(J: Array) -> tuple[Array, Array]:
+    """The left inverses of J (k, m, n), and how far the nearest column of each is from the others' span."""
+    Jt = J.transpose(0, 2, 1)
+    G = np.linalg.inv(Jt @ J + 1e-14 * np.eye(J.shape[2]))  # never singular
+    return G @ Jt, 1.0 / np.sqrt(np.einsum("kii->ki", G).max(axis=1))
 
 
 # Poses as people have them, as homogeneous matrices.
@@ -515,7 +581,7 @@ def _pose_matrices(pose: Any, alone: str) -> Array:
     """(4, 4), or (N, 4, 4) of many: of matrices (4, 4) or (3, 4), pairs (rotation (3, 3), position) or
     (position, quaternion x y z w), objects that have one of `_TRANSFORMS`, or a sequence of those."""
     if isinstance(pose, np.ndarray) and pose.shape[-2:] == (4, 4):
-        return np.asarray(pose, dtype=float)
+        return _real_array(pose, "pose")
     if isinstance(pose, (list, tuple)) and len(pose):
         if any(hasattr(pose[0], name) for name in _TRANSFORMS):
             return np.stack([_pose_matrices(one, alone) for one in pose])
@@ -532,7 +598,7 @@ def _pose_matrices(pose: Any, alone: str) -> Array:
 
 def _numbers(value: Any) -> Array:
     try:
-        return np.asarray(value, dtype=float)
+        return _real_array(value, "pose")
     except TypeError:
         raise ValueError(f"pose is no array of numbers: {type(value).__name__}") from None
 
@@ -661,80 +727,30 @@ def _pose_fault(task: _Task, T: list[list[float]], policy: _Policy) -> str:
     return f"{text}: orthonormalize=True takes the nearest one"
 
 
-# What distinguishes the rows of a pose: names of their branches, from the geometry of each row alone.
-
-
-def _branch_names(arm: _Arm, q: Array) -> tuple[str, ...]:
-    """A name for each row (k, dof)."""
-    if not len(q):
-        return ()
-    if arm.branch_kind == "names":
-        return _side_names(arm, q)
-    if arm.branch_kind == "number":
-        return tuple(f"branch {number}" for number in _branch_numbers(arm, q))
-    J = _tip_and_jacobian(arm.chain, q)[1][:, :, arm.moving]
-    return tuple(f"det J {'>' if sign > 0.0 else '<'} 0" for sign in np.linalg.det(J))
-
-
-def _inner(a: Array, b: Array) -> Array:
-    return np.asarray((a * b).sum(axis=-1))
-
-
-def _side_names(arm: _Arm, q: Array) -> tuple[str, ...]:
-    """Of six axes, the first at right angles to the second, which is parallel to the third."""
-    z, p, _ = _joint_axes(arm.chain, q)
-    up = z[:, 0] * np.where(z[:, :1, 2] < 0.0, -1.0, 1.0)
-    right = _inner(_cross(up, z[:, 1]), p[:, 5] - p[:, 0]) >= 0.0
-    elbow, end = p[:, 2] - p[:, 1], p[:, arm.elbow_end] - p[:, 1]
-    level = _cross(z[:, 1], up)  # in the plane of the links
-    above = _inner(z[:, 1], _cross(end, elbow)) * _inner(level, end) <= 0.0
-    plain = _inner(_cross(z[:, 3], z[:, 5]), z[:, 4]) >= 0.0
-    return tuple(
-        f"shoulder {'right' if r else 'left'}, elbow {'up' if a else 'down'}, "
-        f"wrist {'not flipped' if f else 'flipped'}"
-        for r, a, f in zip(right.tolist(), above.tolist(), plain.tolist())
-    )
-
-
-def _branch_numbers(arm: _Arm, q: Array) -> list[int]:
-    """For each row the closed form's branch, of those for the row's own pose, that is nearest to it."""
-    poses = _forward(arm.chain, q)
-    with np.errstate(all="ignore"):
-        rows, valid, _, _ = arm.branches_batch(poses, q, q[:, arm.free])
-        gap = rows - q[:, None, :]
-        turned = np.abs((gap + np.pi) % (2.0 * np.pi) - np.pi)
-        gap = np.where(arm.chain.revolute, turned, np.abs(gap))
-        gap[:, :, arm.free] = 0.0
-        distance = np.where(valid, gap.max(axis=2), np.inf)
-    distance[np.isnan(distance)] = np.inf
-    nearest: list[int] = distance.argmin(axis=1).tolist()
-    return nearest
-
-
 # The nearest pose that the arm can take, of one that it cannot.
 
 
-_STARTS = 128  # drawn; the best of them are followed
+_START_COUNT = 128  # drawn; the best of them are followed
 _FOLLOWED = 16
-_STEPS = 80
-_LEAST, _FIRST, _MOST = 1e-10, 1e-3, 1e10  # damping of a step
-_LONGEST = 0.5  # rad or m: step of a joint
+_STEP_COUNT = 80
+_LEAST_DAMPING, _FIRST_DAMPING, _MOST_DAMPING = 1e-10, 1e-3, 1e10  # damping of a step
+_LONGEST_STEP = 0.5  # rad or m: step of a joint
 
 
 def _nearest_row(arm: _Arm, T: Array, start: Row, limits: bool) -> Row:
     """The joint values whose pose is nearest to T (4, 4), held joints as in `start`."""
-    low, high = _bounds(arm, limits)
-    q = np.vstack([np.clip(start, low, high), _starts(arm, low, high)])
+    low, high = _step_bounds(arm, limits)
+    q = np.vstack([np.clip(start, low, high), _even_starts(arm, low, high)])
     q[:, list(arm.free)] = [start[j] for j in arm.free]
-    cost = (_chords(arm.task, _forward(arm.chain, q), T) ** 2).sum(axis=1)
-    q, cost = _descend(arm, T, q[np.argsort(cost, kind="stable")[:_FOLLOWED]], (low, high))
+    cost = (_chord_errors(arm.task, _forward(arm.chain, q), T) ** 2).sum(axis=1)
+    q, cost = _descend_to(arm, T, q[np.argsort(cost, kind="stable")[:_FOLLOWED]], (low, high))
     best: Row = tuple(q[int(np.argmin(cost))].tolist())
     return best
 
 
 def _off_by(task: _Task, pose: Array, T: Array) -> Array:
     """How far poses (k, 4, 4) are from T (4, 4): (k, 2), m and rad."""
-    error = _chords(task, pose, T)
+    error = _chord_errors(task, pose, T)
     length = np.array([c == 3 for _, c in task.entries])
     off = np.empty((len(pose), 2))
     off[:, 0] = np.sqrt((error[:, length] ** 2).sum(axis=1)) * task.size
@@ -751,24 +767,24 @@ def _off_by(task: _Task, pose: Array, T: Array) -> Array:
     return off
 
 
-def _weight(task: _Task) -> Array:
+def _chord_weight(task: _Task) -> Array:
     """Of each entry: a turn by x moves the nine of a rotation by sqrt(8) sin(x / 2)."""
     turn = sqrt(0.5) if len(task.unit) == 3 else 1.0
     return np.array([1.0 / task.size if c == 3 else turn for _, c in task.entries])
 
 
-def _chords(task: _Task, pose: Array, T: Array) -> Array:
+def _chord_errors(task: _Task, pose: Array, T: Array) -> Array:
     """What poses (k, 4, 4) are off T (4, 4): (k, entries)."""
-    return _entry_errors(task.entries, _weight(task), pose, np.broadcast_to(T, pose.shape))
+    return _entry_errors(task.entries, _chord_weight(task), pose, np.broadcast_to(T, pose.shape))
 
 
-def _bounds(arm: _Arm, limits: bool) -> tuple[Array, Array]:
+def _step_bounds(arm: _Arm, limits: bool) -> tuple[Array, Array]:
     """Where steps are clipped to."""
     low, high = np.array(arm.lower), np.array(arm.upper)
     return (low, high) if limits else (np.full(len(low), -inf), np.full(len(low), inf))
 
 
-def _starts(arm: _Arm, low: Array, high: Array) -> Array:
+def _even_starts(arm: _Arm, low: Array, high: Array) -> Array:
     """Configurations (n, dof) that fill the limits evenly: Kronecker's sequence by powers of the root of
     `x^(dof + 1) = x + 1` (Roberts 2018)."""
     dof = len(low)
@@ -776,37 +792,37 @@ def _starts(arm: _Arm, low: Array, high: Array) -> Array:
     for _ in range(40):
         root = (1.0 + root) ** (1.0 / (dof + 1))
     steps = (1.0 / root) ** np.arange(1, dof + 1)
-    part = (0.5 + np.arange(1, _STARTS + 1)[:, None] * steps) % 1.0
+    part = (0.5 + np.arange(1, _START_COUNT + 1)[:, None] * steps) % 1.0
     half = np.where(arm.chain.revolute, pi, arm.task.size)
     centre = np.clip(0.0, low + half, np.maximum(high - half, low + half))
     least, most = np.maximum(low, centre - half), np.minimum(high, centre + half)
     return np.asarray(least + part * (most - least))
 
 
-def _descend(arm: _Arm, T: Array, q: Array, bounds: tuple[Array, Array]) -> tuple[Array, Array]:
+def _descend_to(arm: _Arm, T: Array, q: Array, bounds: tuple[Array, Array]) -> tuple[Array, Array]:
     """The rows (k, dof) at the ends of the steps, and what is least there (k,)."""
-    moving, damping = list(arm.moving), np.full(len(q), _FIRST)
+    moving, damping = list(arm.moving), np.full(len(q), _FIRST_DAMPING)
     low, high = (bound[moving] for bound in bounds)
     pose, J = _tip_and_jacobian(arm.chain, q)
-    error = _chords(arm.task, pose, T)
+    error = _chord_errors(arm.task, pose, T)
     cost = (error**2).sum(axis=1)
-    for _ in range(_STEPS):
+    for _ in range(_STEP_COUNT):
         trial = q.copy()
-        slope = _entry_rows(arm.task.entries, _weight(arm.task), pose, J)[:, :, moving]
-        trial[:, moving] = _stepped(q[:, moving], slope, error, damping, (low, high))
+        slope = _entry_rows(arm.task.entries, _chord_weight(arm.task), pose, J)[:, :, moving]
+        trial[:, moving] = _clipped_step(q[:, moving], slope, error, damping, (low, high))
         new = (trial, *_tip_and_jacobian(arm.chain, trial))
-        errors = _chords(arm.task, new[1], T)
+        errors = _chord_errors(arm.task, new[1], T)
         costs = (errors**2).sum(axis=1)
         better = costs < cost
         q[better], error[better], cost[better] = trial[better], errors[better], costs[better]
         pose, J = (np.where(better[:, None, None], a, b) for a, b in zip(new[1:], (pose, J)))
-        damping = np.clip(damping * np.where(better, 0.2, 8.0), _LEAST, _MOST)
-        if damping.min() == _MOST:
+        damping = np.clip(damping * np.where(better, 0.2, 8.0), _LEAST_DAMPING, _MOST_DAMPING)
+        if damping.min() == _MOST_DAMPING:
             break
     return q, cost
 
 
-def _stepped(
+def _clipped_step(
     q: Array, slope: Array, error: Array, damping: Array, bounds: tuple[Array, Array]
 ) -> Array:
     """The rows (k, n) after one step; joints at a limit that it would pass stay."""
@@ -815,7 +831,7 @@ def _stepped(
     slope = np.where(stuck[:, None], 0.0, slope)
     normal = np.einsum("kmi,kmj->kij", slope, slope) + damping[:, None, None] * np.eye(q.shape[1])
     step = np.linalg.solve(normal, np.where(stuck, 0.0, push)[:, :, None])[:, :, 0]
-    return np.asarray(np.clip(q + np.clip(step, -_LONGEST, _LONGEST), *bounds))
+    return np.asarray(np.clip(q + np.clip(step, -_LONGEST_STEP, _LONGEST_STEP), *bounds))
 
 
 # Newton's method on the chain: damped least squares (Levenberg 1944, Marquardt 1963).
@@ -874,6 +890,56 @@ def _rank_loss(chain: _Chain, task: _Task, moving: Sequence[int], q: Array) -> A
     return np.asarray(np.linalg.svd(J, compute_uv=False)[:, -1])
 
 
+# What distinguishes the rows of a pose: names of their branches, from the geometry of each row alone.
+
+
+def _branch_names(arm: _Arm, q: Array) -> tuple[str, ...]:
+    """A name for each row (k, dof)."""
+    if not len(q):
+        return ()
+    if arm.branch_kind == "names":
+        return _side_names(arm, q)
+    if arm.branch_kind == "number":
+        return tuple(f"branch {number}" for number in _branch_numbers(arm, q))
+    J = _tip_and_jacobian(arm.chain, q)[1][:, :, arm.moving]
+    return tuple(f"det J {'>' if sign > 0.0 else '<'} 0" for sign in np.linalg.det(J))
+
+
+def _inner(a: Array, b: Array) -> Array:
+    return np.asarray((a * b).sum(axis=-1))
+
+
+def _side_names(arm: _Arm, q: Array) -> tuple[str, ...]:
+    """Of six axes, the first at right angles to the second, which is parallel to the third."""
+    z, p, _ = _joint_axes(arm.chain, q)
+    up = z[:, 0] * np.where(z[:, :1, 2] < 0.0, -1.0, 1.0)
+    right = _inner(_cross(up, z[:, 1]), p[:, 5] - p[:, 0]) >= 0.0
+    elbow, end = p[:, 2] - p[:, 1], p[:, arm.elbow_end] - p[:, 1]
+    level = _cross(z[:, 1], up)  # in the plane of the links
+    above = _inner(z[:, 1], _cross(end, elbow)) * _inner(level, end) <= 0.0
+    plain = _inner(_cross(z[:, 3], z[:, 5]), z[:, 4]) >= 0.0
+    return tuple(
+        f"shoulder {'right' if r else 'left'}, elbow {'up' if a else 'down'}, "
+        f"wrist {'not flipped' if f else 'flipped'}"
+        for r, a, f in zip(right.tolist(), above.tolist(), plain.tolist())
+    )
+
+
+def _branch_numbers(arm: _Arm, q: Array) -> list[int]:
+    """For each row the closed form's branch, of those for the row's own pose, that is nearest to it."""
+    poses = _forward(arm.chain, q)
+    with np.errstate(all="ignore"):
+        rows, valid, _, _ = arm.branches_batch(poses, q, q[:, arm.free])
+        gap = rows - q[:, None, :]
+        turned = np.abs((gap + np.pi) % (2.0 * np.pi) - np.pi)
+        gap = np.where(arm.chain.revolute, turned, np.abs(gap))
+        gap[:, :, arm.free] = 0.0
+        distance = np.where(valid, gap.max(axis=2), np.inf)
+    distance[np.isnan(distance)] = np.inf
+    nearest: list[int] = distance.argmin(axis=1).tolist()
+    return nearest
+
+
 # Rows on the whole turns that limits and seed ask for, and without repetitions: for floats and arrays.
 
 
@@ -881,12 +947,15 @@ _TURN = 2.0 * pi
 
 
 def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
-    """Whether the row differs from all kept ones, whole turns aside."""
+    """Whether the row differs from all kept ones, whole turns aside; long slides count relative to their
+    length."""
     near = arm.policy.coincident
     for other, _ in kept:
         for a, b, turns in zip(row, other, arm.chain.revolute):
             gap = abs(a - b)
-            if gap > near and (not turns or abs((gap + pi) % _TURN - pi) > near):
+            if gap <= near:
+                continue
+            if abs((gap + pi) % _TURN - pi) > near if turns else gap > near * abs(a):
                 break
         else:
             return False
@@ -894,15 +963,17 @@ def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
 
 
 def _distinct(arm: _Arm, q: Array, valid: _Flags) -> _Flags:
-    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside."""
+    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside; long
+    slides count relative to their length."""
     near = arm.policy.coincident
     later, earlier = np.tril_indices(q.shape[1], -1)
     same = valid.T[later] & valid.T[earlier]
     for j in reversed(range(q.shape[2])):  # the last joints differ between most rows
         value = q[:, :, j].T
         gap = np.abs(value[later] - value[earlier])
-        close = gap <= near
-        same &= close | (np.abs(gap - _TURN) <= near) if arm.chain.revolute[j] else close
+        bound = near if arm.chain.revolute[j] else near * np.abs(value[later])
+        far = np.abs(gap - _TURN) if arm.chain.revolute[j] else gap
+        same &= (gap <= near) | (far <= bound)
         if not same.any():
             return valid
     valid = valid.copy()
@@ -1106,6 +1177,10 @@ def _rows(
     hits: list[bool] = []
     for i, q0 in enumerate(starts):
         answers, hit = arm.branches(T, q0, held)
+        if arm.rounded and len(starts) == 1 and not hit:
+            found = _certain_rows(arm, answers, T)
+            if found is not None:
+                return [(found, False)]
         hits.append(hit)
         if hit:
             rough.append((i, (q0, True)))
@@ -1120,6 +1195,24 @@ def _rows(
         if len(kept[i]) < arm.most and _is_new(arm, item[0], kept[i]):
             kept[i].append(item)
     return list(zip(kept, hits))
+
+
+def _certain_rows(arm: _Arm, answers: list[_Candidate], T: list[list[float]]) -> list[_Found] | None:
+    """The rows refined all at once; None where that leaves a doubt."""
+    if not answers or any(flag for _, flag, _ in answers):
+        return None if answers or len(arm.beside) else []
+    start = np.array([row for row, _, _ in answers])
+    q, arrived, missed = _refine_together(
+        arm, start, np.broadcast_to(np.array(T), (len(start), 4, 4))
+    )
+    if not (arrived | missed).all():
+        return None
+    kept: list[_Found] = []
+    for row in q[arrived].tolist():
+        if not _is_new(arm, row, kept):  # another may lie there
+            return None
+        kept.append((tuple(row), False))
+    return kept
 
 
 def _refined(arm: _Arm, rows: list[_Found], T: list[list[float]]) -> list[_Found | None]:
@@ -1174,7 +1267,7 @@ def _solve_poses(
     if orthonormalize:
         T = _nearest_poses(arm.task, T, arm.policy)
     T, good = arm.task.read_batch(T, arm.policy)
-    usable, size = np.flatnonzero(good), _CHUNK // (1 + len(arm.beside))
+    usable, size = np.flatnonzero(good), _CHUNK
     for start in range(0, len(usable), size):
         part = usable[start : start + size]
         seeds = None if near is None else near[part]
@@ -1209,6 +1302,41 @@ def _solve_chunk(arm: _Arm, T: Array, held: Array, near: Array | None, limits: b
 
 def _rows_batch(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, _Flags, _Flags]:
     """Rows (N, M, dof) on no turn in particular; which are distinct solutions, which of a continuum."""
+    if not arm.rounded:
+        return _careful_rows(arm, T, held, near)
+    start = np.zeros((len(T), len(arm.lower))) if near is None else near
+    with np.errstate(all="ignore"):
+        q, valid, singular, _ = arm.branches_batch(T, start, held)
+    q[:, :, arm.free] = held[:, None, :]
+    q, valid, doubt = _certain_batch(arm, T, q, valid)
+    doubt |= singular.any(axis=1) | ~valid.any(axis=1)
+    if doubt.any():
+        seeds = None if near is None else near[doubt]
+        more, fine, flags = _careful_rows(arm, T[doubt], held[doubt], seeds)
+        order = np.argsort(~fine, axis=1, kind="stable")[:, : q.shape[1]]
+        q[doubt] = np.take_along_axis(more, order[:, :, None], axis=1)
+        valid[doubt] = np.take_along_axis(fine, order, axis=1)
+        singular = singular.copy()
+        singular[doubt] = flags
+    return q, valid, singular
+
+
+def _certain_batch(arm: _Arm, T: Array, q: Array, valid: _Flags) -> tuple[Array, _Flags, _Flags]:
+    """Rows (N, M, dof) refined all at once, which are solutions, and for which poses (N,) that leaves a
+    doubt."""
+    pose, row = np.nonzero(valid)
+    done, arrived, missed = _refine_together(arm, q[pose, row], T[pose])
+    q, found, doubt = q.copy(), valid.copy(), np.zeros(len(T), dtype=bool)
+    q[pose, row], found[pose, row] = done, arrived
+    doubt[pose[~(arrived | missed)]] = True
+    doubt |= (_distinct(arm, q, found) != found).any(axis=1)
+    return q, found, doubt
+
+
+def _careful_rows(
+    arm: _Arm, T: Array, held: Array, near: Array | None
+) -> tuple[Array, _Flags, _Flags]:
+    """Rows of which each is refined for as long as it takes, near folds with those of poses beside."""
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
     with np.errstate(all="ignore"):
         q, valid, singular, rough = arm.branches_batch(T, start, held)
@@ -1282,7 +1410,7 @@ def _search_held(
         return found
     q, cost, _ = _preference_costs(arm, preference, found.q[None], limits)
     order = np.argsort(cost[0], kind="stable")
-    return Solutions(q[0, order], found.status, found.singular[order])
+    return Solutions(q[0, order], found.status, found.singular[order], names=found.names)
 
 
 # Joint values along a path of poses, on one branch.
@@ -1290,7 +1418,7 @@ def _search_held(
 
 _DEEPEST = 24  # of the way from one pose to the next
 _SHALLOW = 9  # the same where there are no rows
-_FARTHEST = 0.3  # rad or m that a joint may move at once
+_path_following_FARTHEST = 0.3  # rad or m that a joint may move at once
 _OFF = 0.2  # of the motion, and
 _LEAST_OFF = 1e-4  # rad or m: how far a row may be from where the Jacobian leads
 _DAMPING = 1e-8  # of directions that are all but lost
@@ -1319,7 +1447,7 @@ def _follow_poses(
 ) -> Path:
     """From the row of the first pose (N, 4, 4) that is nearest to `start` (dof,); `search(pose, start,
     limits)`: rows nearest to it first. Raises ValueError for bad arguments."""
-    T, dof = np.asarray(poses, dtype=float), len(arm.lower)
+    T, dof = _pose_matrices(poses, arm.task.alone), len(arm.lower)
     if T.ndim != 3 or T.shape[1:] != (4, 4):
         raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
     row = _seed_rows(arm, start, (dof,))
@@ -1361,7 +1489,7 @@ class _Walk:
             gap = np.abs(rows - expected).max(axis=1)
             k = int(gap.argmin())
             moved = float(np.abs(rows[k] - self.q).max())
-            follows = moved < _FARTHEST and gap[k] < _LEAST_OFF + _OFF * moved
+            follows = moved < _path_following_FARTHEST and gap[k] < _LEAST_OFF + _OFF * moved
             if follows or (depth == _DEEPEST and moved < _JUMP):
                 self.crossed = self.crossed or bool(flags[k]) or not follows
                 return self._arrive(rows[k])
@@ -1556,6 +1684,12 @@ _ARM = _Arm(
         try_step=0.39269908169872414,
         rank_loss=1e-07,
         continuum_rank_loss=0.001,
+        farthest_start=0.05,
+        contraction=0.25,
+        least_pivot=1e-05,
+        least_miss=1e-08,
+        near=0.0001,
+        lane_steps=7,
         least_damping=1e-12,
         damping=0.001,
         largest_step=0.3,
@@ -1576,5 +1710,6 @@ _ARM = _Arm(
     branch_kind="number",
     elbow_end=5,
     turning=(True, False, ),
+    rounded=False,
     moving=(0, 1, ),
 )

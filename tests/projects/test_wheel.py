@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from tests.support.environments import Environment, without_ikgen
+from tests.support.markdown_steps import blocks
 
 pytest.importorskip("hatchling")
 ROOT = Path(__file__).resolve().parents[2]
@@ -63,6 +64,24 @@ def installed(
     what = ("-e", ROOT) if request.param == "editable" else (built[request.param],)
     environment.install(*what)
     return environment
+
+
+def test_the_page_on_the_library_works(installed: Environment, tmp_path: Path) -> None:
+    """Its snippets, one after the other, in one program beside a robot.urdf."""
+    shown = [block.text for block in blocks(ROOT / "docs/reference/library.md")]
+    code = [
+        text for text in shown if text.startswith(("import", "rough", "try"))
+    ]  # not what has to be compiled
+    assert len(code) == 3
+    robot = (ROOT / "urdf_fixtures/ur5e.urdf").read_text(encoding="utf-8")
+    (tmp_path / "robot.urdf").write_text(robot, encoding="utf-8")
+    script = "import os\nos.environ['IKGEN_CACHE_DIR'] = 'cache'\n" + "\n".join(code)
+    (tmp_path / "page.py").write_text(script, encoding="utf-8")
+    printed = installed.call("python", "page.py", cwd=tmp_path)
+    assert "shoulder right, elbow up, wrist not flipped" in printed
+    assert "lock: elbow_joint: 'much' is not a finite number" in printed
+    assert (tmp_path / "generated/ur5e_ik.py").is_file()
+    assert (tmp_path / "robot.html").is_file()
 
 
 def test_smoke(installed: Environment, tmp_path: Path) -> None:

@@ -13,7 +13,8 @@ import pytest
 
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.emit.derivation import Derivation
-from ikgen.formulas.normal_form import Normalizer, Sum
+from ikgen.formulas.normal_form import Sum
+from ikgen.formulas.normalizer import Normalizer
 from ikgen.formulas.notation import show
 from ikgen.generation.derive import derive
 from ikgen.generation.emitters import find_emitter

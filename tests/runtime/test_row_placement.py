@@ -37,6 +37,7 @@ def arm() -> Arm:
         beside=np.empty((0, 4, 4)),
         turning=(True, True, True, False, False),
         moving=(0, 1, 2, 3),
+        rounded=False,
         branch_kind="number",
         elbow_end=0,
     )
@@ -100,3 +101,12 @@ def test_repetitions() -> None:
 def test_a_repetition_of_what_is_none_is_kept() -> None:
     q = np.zeros((1, 2, 5))
     assert distinct(arm(), q, np.array([[False, True]])).tolist() == [[False, True]]
+
+
+def test_long_slides_are_compared_relative_to_their_length() -> None:
+    one, policy = arm(), runtime_policy(SolvePolicy())
+    q = np.zeros((1, 4, 5))
+    q[0, :, 3] = 0.5, 0.5 + 2.0 * policy.coincident, 50.0, 50.0 + 20.0 * policy.coincident
+    assert distinct(one, q, np.ones((1, 4), dtype=bool)).tolist() == [[True, True, True, False]]
+    kept = [(tuple(row), False) for row in q[0].tolist()]
+    assert [is_new(one, kept[k][0], kept[k - 1 : k]) for k in (1, 3)] == [True, False]

@@ -17,7 +17,7 @@ from ikgen.emit.derivation import Derivation
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
-from ikgen.symbolic import equations, solutions
+from ikgen.symbolic import equations, prove, solutions
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -64,11 +64,16 @@ def _check(derivation: Derivation, count: int, folder: Path) -> None:
 
 
 @pytest.mark.parametrize("name", SOLVED)
-def test_rows_are_those_of_the_emitted_module(name: str, tmp_path: Path) -> None:
+def test_every_table_is_proved_and_its_rows_are_those_of_the_emitted_module(
+    name: str, tmp_path: Path
+) -> None:
     derivation = derive(Request(ROBOTS / "tables" / f"{name}.toml"))
+    proof = prove(derivation)
     if derivation.module.plan is not None:
-        assert not solutions(derivation)
+        assert not solutions(derivation) and "elimination" in proof.reason
         return
+    assert proof.proved and proof.equations, proof.remarks
+    assert len(proof.patterns) >= len(derivation.graph.steps)
     _check(derivation, 20, tmp_path)
 
 

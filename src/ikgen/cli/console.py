@@ -41,8 +41,10 @@ class Console:
 
     def __enter__(self) -> Console:
         if self._live:
-            from rich.console import Console as RichConsole
-
+            try:
+                from rich.console import Console as RichConsole
+            except ImportError:  # an extra: plain lines do as well
+                return self
             self._status = RichConsole(stderr=True).status("starting")
             self._status.start()
         return self

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
+from pathlib import Path
 from typing import NoReturn
 
 import click
@@ -30,9 +32,9 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "init": ("ikgen.cli.init:init", "Write a config with every arm of a robot."),
     "build": ("ikgen.cli.build:build", "Generate every arm that a config lists."),
     "report": ("ikgen.cli.report:report", "Write the derivation as LaTeX and HTML."),
+    "robots": ("ikgen.cli.robots:robots", "List robots that are known by name, with their arms."),
     "view": ("ikgen.cli.view_command:view", "Drag a target, see all solutions, in a browser."),
     "reach": ("ikgen.cli.reach_command:reach", "Map which poses an arm reaches."),
-    "robots": ("ikgen.cli.robots:robots", "List robots that are known by name, with their arms."),
     "cmake-dir": ("ikgen.cli.cmake_dir:cmake_dir", "Print where the CMake package files lie."),
     "doctor": ("ikgen.cli.doctor:doctor", "Say which tools and plug-ins there are."),
 }
@@ -70,12 +72,24 @@ def main() -> NoReturn:
     """Run the command line and exit."""
     warnings.simplefilter("ignore")  # NumPy's, of divisions whose results are then discarded
     unwind_on_signals()
+    _open_closed_streams()
     code = run(sys.argv[1:])
     try:
         sys.stdout.flush()
-    except BrokenPipeError:
+    except OSError as error:  # what is still buffered must not be tried again when Python ends
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if not isinstance(error, BrokenPipeError):
+            code = code or 2
+            say(f"cannot write to stdout: {error.strerror}")
     sys.exit(code)
+
+
+def _open_closed_streams() -> None:
+    """Whoever starts a program with stdout or stderr closed wants to hear nothing."""
+    if sys.stdout is None:
+        sys.stdout = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115
+    if sys.stderr is None:
+        sys.stderr = Path(os.devnull).open("w", encoding="utf-8")  # noqa: SIM115
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -117,7 +131,8 @@ def _failed(error: BaseException, wanted: _Wanted) -> int:
         message, hint, code = _explained(error, wanted.verbose)
         say(message, hint)
     if wanted.as_json:
-        say_object(as_object(message, hint, code, error), result)
+        with contextlib.suppress(OSError):  # stdout may be what the error is about
+            say_object(as_object(message, hint, code, error), result)
     return code
 
 

@@ -65,6 +65,12 @@ _CHAIN_OPTIONS = (
     ),
     *_READING_OPTIONS,
     click.option(
+        "--calibration",
+        metavar="FILE",
+        type=click.Path(path_type=Path),
+        help="The one arm's own kinematics: a calibration.yaml, or offsets of its DH rows (.toml).",
+    ),
+    click.option(
         "--name",
         metavar="NAME",
         help="Prefix of the output files (default: the robot's name).",

@@ -29,6 +29,12 @@ __all__ = ["report"]
     default=Path(),
     help="Where the report goes (default: here).",
 )
+@click.option(
+    "--emit",
+    multiple=True,
+    type=click.Choice(["sympy"]),
+    help="Also write the solutions and equations as a module of SymPy expressions.",
+)
 @sampling_options
 @click.option("--no-verify", is_flag=True, help="Leave the table of verification out.")
 @console_options
@@ -36,6 +42,7 @@ def report(
     robot: Path,
     *,
     out: Path,
+    emit: tuple[str, ...],
     samples: int,
     seed: int,
     no_verify: bool,
@@ -51,7 +58,7 @@ def report(
     """
     from ikgen.generation.report_files import write_report
 
-    outputs = Outputs(out=out, samples=samples, seed=seed, verify=not no_verify)
+    outputs = Outputs(emit=emit, out=out, samples=samples, seed=seed, verify=not no_verify)
     with Console(quiet=quiet, verbose=verbose) as console:
         made = write_report(make_request(robot, **chain), outputs, console)
         for text in made.warnings:

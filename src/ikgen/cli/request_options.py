@@ -24,6 +24,7 @@ def make_request(
     lock: Sequence[str] = (),
     args: Sequence[str] = (),
     package_paths: Sequence[Path] = (),
+    calibration: Path | None = None,
     name: str | None = None,
     trust: bool = False,
 ) -> Request:
@@ -49,6 +50,7 @@ def make_request(
         lock=locked,
         args=_arguments(args),
         package_paths=tuple(package_paths),
+        calibration=calibration,
         name=_module_name(name),
         trust=trust,
     )

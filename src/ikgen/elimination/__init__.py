@@ -1,6 +1,6 @@
-"""The universal solver's generation-time half: which elimination to use for a given 6R arm.
+"""The eliminations' generation-time half: which one to use for six moving joints, slides among them.
 
-The run-time half is the routine `general_6r` in the templates of each language.
+The run-time half is `six_joint_rows` of the runtime, and its like in each language.
 """
 
 from ikgen.elimination.applies import elimination_plan

@@ -32,7 +32,7 @@ def blanks(module: SolverModule) -> tuple[Blank, ...]:
         return ()
     if module.plan is not None:
         raise UsageError(
-            f"no numbers for {', '.join(names)}: only the 6R elimination solves this arm, and it "
+            f"no numbers for {', '.join(names)}: only an elimination solves this arm, and it "
             "works with numbers",
             hint="give them under [parameters]; without numbers only a report can be written",
         )

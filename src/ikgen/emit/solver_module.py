@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from ikgen.elimination.plan import EliminationPlan
 from ikgen.kinematics.displacement import displacements
 from ikgen.model.dh import DHChain, DHRow
+from ikgen.program.policy import SolvePolicy
 from ikgen.program.statements import Program
 from ikgen.tasks import Task, find_task
 
@@ -30,7 +32,7 @@ class SolverModule:
     `name` is the prefix of the emitted files (`<name>_ik.py`), `free` the indices of joints held free,
     `free_defaults` their default values inside the limits (rad or m). `source_name` and
     `source_sha256` tell what it was made from, `geometry` is the geometry class in words,
-    `plan` what the general 6R elimination needs where the rules did not solve the arm. Of a table
+    `plan` what an elimination needs where the rules did not solve the arm. Of a table
     without numbers the constants are left to be filled in, or with `sample` those that its derivation
     was checked with.
     """
@@ -58,6 +60,13 @@ class SolverModule:
         return "some" if max(self.dh.deviation) <= CLOSE else "all"
 
     @property
+    def least_pivot(self) -> float:
+        """How far the derivatives by each joint must be from the others' span where rows are refined
+        together: nearer to a singularity the file's solutions may be others in number."""
+        policy = SolvePolicy()
+        return max(policy.least_pivot, policy.reach * math.sqrt(max(self.dh.deviation)))
+
+    @property
     def beside(self) -> tuple[NDArray[np.float64], ...]:
         """Small motions (4, 4) of the tool: the poses that they lead to are solved as well as the asked
         one, and all rows take Newton steps to the asked one. Near a fold two solutions of the file's
@@ -67,6 +76,11 @@ class SolverModule:
         if self.refine == "some" or deviation <= FAR:
             return ()
         return displacements(4.0 * deviation)
+
+    @property
+    def guarded(self) -> bool:
+        """Whether the guards alone make rows come and go: the Program calls no routine for roots."""
+        return self.plan is None and all(level.call is None for level in self.program.levels)
 
     @property
     def max_solutions(self) -> int:

@@ -11,7 +11,8 @@ from ikgen.equations.knowledge import Variable
 from ikgen.formulas import mathtext as m
 from ikgen.formulas.mathtext import Math
 from ikgen.formulas.naming import Abbreviations
-from ikgen.formulas.normal_form import Normalizer, Sum
+from ikgen.formulas.normal_form import Sum
+from ikgen.formulas.normalizer import Normalizer
 from ikgen.formulas.notation import angle, grouped, show
 
 __all__ = ["Formula", "FormulaWriter", "equals", "linear_combination", "plain_formula"]

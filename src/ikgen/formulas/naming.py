@@ -22,6 +22,7 @@ class Abbreviations:
     def __init__(self, formulas: Iterable[Sum]) -> None:
         self._count: Counter[Sum] = Counter()
         self._index: dict[Sum, int] = {}
+        self._by_terms: dict[frozenset[Term], int] = {}
         self._told: set[int] = set()
         self._definition: dict[int, Sum] = {}
         tops = []
@@ -43,6 +44,9 @@ class Abbreviations:
 
     def short(self, s: Sum) -> Sum:
         """The formula with names in it."""
+        named = self._named(s)
+        if named is not None:
+            return Sum((Term(named[1], ((named[0], 1),)),))
         for form, sign in ((s, 1.0), (-s, -1.0)):
             if len(s.terms) > 1 and self._wanted(form):
                 return Sum((Term(sign, ((self._name(form), 1),)),))
@@ -51,8 +55,9 @@ class Abbreviations:
     def force(self, s: Sum) -> Sum:
         """A name for a formula that will be used several times, unless it is short."""
         worth = len(s.terms) > 1 and s.weight >= _AGAIN + 2
-        if worth and s not in self._index and -s not in self._index:
-            self._name(factor_of(s))
+        if worth and self._named(s) is None:
+            factor = factor_of(s)
+            self._name(factor if factor in self._count else s)
         return self.short(s)
 
     def unbroken(self, s: Sum) -> Sum:
@@ -65,24 +70,40 @@ class Abbreviations:
 
     def inside(self, s: Sum) -> Sum:
         """The formula with names inside its terms, but not for the whole."""
-        return Sum(
-            tuple(
-                Term(t.coefficient, tuple((self._factor(f), p) for f, p in t.factors))
-                for t in s.terms
-            )
-        )
+        return Sum(tuple(self._term(t) for t in s.terms))
 
-    def _factor(self, factor: Factor) -> Factor:
+    def _term(self, term: Term) -> Term:
+        coefficient, factors = term.coefficient, []
+        for factor, power in term.factors:
+            short, sign = self._factor(factor)
+            coefficient *= sign**power
+            factors.append((short, power))
+        return Term(coefficient, tuple(factors))
+
+    def _factor(self, factor: Factor) -> tuple[Factor, float]:
+        """The factor with names in it, and its sign."""
         if isinstance(factor, Radical):
-            return Radical(self.short(factor.inside))
+            return Radical(self.short(factor.inside)), 1.0
         if not isinstance(factor, Sum):
-            return factor
-        return self._name(factor) if self._wanted(factor) else self.inside(factor)
+            return factor, 1.0
+        named = self._named(factor)
+        if named is not None:
+            return named
+        return (self._name(factor) if self._wanted(factor) else self.inside(factor)), 1.0
+
+    def _named(self, s: Sum) -> tuple[Named, float] | None:
+        """The name that a sum or its negative has, whatever the order of the terms; its sign."""
+        for sign in (1.0, -1.0):
+            terms = frozenset(Term(sign * t.coefficient, t.factors) for t in s.terms)
+            if terms in self._by_terms:
+                return Named(self._by_terms[terms]), sign
+        return None
 
     def _name(self, s: Sum) -> Named:
         if s not in self._index:
             definition = self.inside(s)
             self._index[s] = len(self._index) + 1
+            self._by_terms[frozenset(s.terms)] = self._index[s]
             self._definition[self._index[s]] = definition
         return Named(self._index[s])
 

@@ -17,15 +17,22 @@ __all__ = ["Offer", "Thing", "offers", "packages", "tools"]
 
 _PACKAGES = {
     "numpy": "arrays",
-    "sympy": "symbolic solutions and exact proofs (verify --prove, report)",
     "jinja2": "templates of the outputs",
     "click": "command line",
-    "rich": "progress",
     "py_trees": "behavior tree",
     "lxml": "reads XML, with line numbers",
     "xacro": "expands xacro files",
     "pin": "Pinocchio: verifies",
 }
+
+
+_EXTRAS = {
+    "sympy": ("symbolic solutions and exact proofs (verify --prove, report)", "symbolic"),
+    "rich": ("a status line on terminals", "terminal"),
+    "nanobind": ("ikgen.compile", "compile"),
+    "example-robot-data": ("robots by name", "robots"),
+}
+"""Packages that ikgen does without: what they are for, and the extra that brings them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,10 +69,14 @@ def _version(name: str) -> str | None:
 
 
 def tools() -> list[Thing]:
-    """Programs and headers that some outputs and commands use."""
+    """Programs, headers and packages that some outputs and commands use."""
     from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
 
     return [
+        *(
+            Thing(name, _version(name), purpose, f"pip install 'ikgen[{extra}]'")
+            for name, (purpose, extra) in _EXTRAS.items()
+        ),
         _sought("C++ compiler", lambda: shlex.join(find_compiler()), "verifies the C++ header"),
         _sought("Eigen", lambda: str(find_eigen()), "the C++ header includes it"),
         _program("cmake", "ikgen_generate()", "apt-get install cmake, or pip install cmake"),

@@ -99,6 +99,11 @@ EMITTERS: tuple[Emitter, ...] = (
         "ikgen.report:emit_report",
         tells_verification=True,
     ),
+    Emitter(
+        "sympy",
+        "its solutions and equations as a Python module of SymPy expressions",
+        "ikgen.symbolic.module_text:emit_derivation",
+    ),
 )
 
 

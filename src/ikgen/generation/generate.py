@@ -113,8 +113,8 @@ def make_texts(
 ) -> Made:
     """Derive, emit and verify; nothing is written. Raises `VerificationError` if a check fails.
 
-    Where what was chosen for the arm fails, the next choice is taken: of joints to hold, and of a task
-    whose closed form has a weak step the whole pose.
+    Where what was chosen for the arm fails, the next choice is taken: of joints to hold, of the tool's
+    axis, and in the end the whole pose.
     """
     tasks: set[str] = set()
     held: list[tuple[str, ...]] = []
@@ -126,7 +126,7 @@ def make_texts(
         except VerificationError:
             if derivation.held is not None and len(held) < _REFUSED:
                 held.append(derivation.held.joints)
-            elif derivation.chosen and not (derivation.graph.sound or derivation.task.whole_pose):
+            elif derivation.chosen and not derivation.task.whole_pose:
                 tasks.add(derivation.task.name)
             else:
                 raise

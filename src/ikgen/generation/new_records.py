@@ -9,7 +9,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ikgen.generation.record import GENERATOR, Asked, Record, record_name, record_text
+from ikgen.generation.record import (
+    GENERATOR,
+    Asked,
+    Record,
+    environment_digest,
+    record_name,
+    record_text,
+)
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -79,6 +86,9 @@ def _record(request: Request, outputs: Outputs, derivation: Derivation, folder: 
         max_solutions=module.max_solutions,
         inputs=_inputs(derivation.reading.source, folder),
         files={},
+        environment={
+            name: environment_digest(value) for name, value in derivation.reading.source.environment
+        },
         out=outputs.out,
         path=folder / record_name(module.name),
     )

@@ -23,14 +23,39 @@ def read(request: Request, tree: JointTree | None = None) -> Reading:
     read before."""
     free = tuple(request.free)
     if request.table:
-        return _read_table(request, free)
+        return _with_offsets(_read_table(request, free), request)
     from ikgen.chains.selection import select_chain
+    from ikgen.importers.calibration import calibrated_tree, is_offsets
+    from ikgen.kinematics.calibrated import calibrated_dh
     from ikgen.kinematics.modified_dh import to_dh
 
     tree = tree or read_tree(request)
     _check_locks(request, tree.joints)
     chain = select_chain(tree, request.base, request.tip, dict(request.lock))
-    return Reading(tree.source, tree, chain, to_dh(chain, free=free))
+    reading = Reading(tree.source, tree, chain, to_dh(chain, free=free))
+    if request.calibration is None or is_offsets(request.calibration):
+        return _with_offsets(reading, request)
+    own = calibrated_tree(tree, request.calibration)
+    calibrated = select_chain(own, chain.base_link, chain.tip_link, dict(request.lock))
+    return Reading(own.source, own, calibrated, calibrated_dh(reading.dh, calibrated))
+
+
+def _with_offsets(reading: Reading, request: Request) -> Reading:
+    """The reading with the offsets of DH rows, where the request has some: its chain is then that of the
+    rows alone."""
+    path = request.calibration
+    if path is None:
+        return reading
+    from ikgen.importers.calibration import calibrated_source, is_offsets, row_offsets
+    from ikgen.kinematics.calibrated import offset_dh
+
+    if not is_offsets(path):
+        raise UsageError(
+            f"--calibration {path}: a DH table takes offsets of its rows",
+            hint="write [[joints]] with alpha, a, d, theta in a .toml file",
+        )
+    dh = offset_dh(reading.dh, row_offsets(path, len(reading.dh.rows)))
+    return Reading(calibrated_source(reading.source, path), None, None, dh)
 
 
 def read_tree(request: Request) -> JointTree:

@@ -24,6 +24,7 @@ __all__ = [
     "Asked",
     "Record",
     "digest",
+    "environment_digest",
     "find_records",
     "read_record",
     "record_name",
@@ -54,7 +55,8 @@ class Record:
     Its paths are relative to the record's folder in the file, and as seen from the current directory here.
     `out` is the folder that was given for the outputs: the record's own, or the one around it for a
     package. `inputs` (relative path or `package://` URL -> SHA-256) are read by `recorded_inputs`; `files`
-    (path relative to the record's folder -> SHA-256) are the outputs; `verified` is false after
+    (path relative to the record's folder -> SHA-256) are the outputs; `environment` is what the description
+    asked of the environment, as `environment_digest` gives it; `verified` is false after
     `--no-verify`. `path` is the record's file.
     """
 
@@ -70,6 +72,7 @@ class Record:
     inputs: Mapping[str, str]
     files: Mapping[str, str]
     out: Path | None = None
+    environment: Mapping[str, str] = field(default_factory=dict)
     path: Path = field(default=Path(), metadata=uncoded())
 
     @property
@@ -125,6 +128,11 @@ def digest(path: Path) -> str | None:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except OSError:
         return None
+
+
+def environment_digest(value: str | None) -> str:
+    """SHA-256 of an environment variable's value, which may be a secret; "" where it is not set."""
+    return "" if value is None else hashlib.sha256(value.encode("utf-8", "replace")).hexdigest()
 
 
 def find_records(folder: Path) -> list[Path]:

@@ -32,7 +32,7 @@ class ReportFiles:
 
 
 def write_report(request: Request, outputs: Outputs, progress: Progress = silent) -> ReportFiles:
-    """Write how the inverse kinematics was derived into the outputs' folder."""
+    """Write how the inverse kinematics was derived into the outputs' folder, and what else they name."""
     check_folder(outputs.out)
     texts, wrong = _texts(request, outputs, progress)
     pdfs, warnings = _pdfs(texts, progress)
@@ -49,6 +49,7 @@ def _texts(
     request: Request, outputs: Outputs, progress: Progress
 ) -> tuple[dict[str, str], IkgenError | None]:
     """File name -> text of the report, and the error to end with."""
+    from ikgen.generation.emitters import find_emitter
     from ikgen.generation.remedies import helped
     from ikgen.report import emit_report, emit_unsolved
 
@@ -69,7 +70,10 @@ def _texts(
             hint="the report has all checks",
         )
     progress("emit", "report")
-    return emit_report(derivation, reports), wrong
+    texts = emit_report(derivation, reports)
+    for name in dict.fromkeys(outputs.emit):
+        texts |= find_emitter(name).emit(derivation)
+    return texts, wrong
 
 
 def _verified(

@@ -53,8 +53,9 @@ def _positive(value: Any, where: str) -> Any:
 class Request:
     """One robot file or DH table, one chain, one task, by the tool's axis `tool_axis` where it is one with
     a direction (None: the one that suits). `free` maps held joints to their default value
-    (None: chosen), `lock` fixed joints to their value (rad or m), `args` are xacro's; `name` is the prefix
-    of the files (None: made from the robot's); `trust` lets the file do whatever xacro can."""
+    (None: chosen), `lock` fixed joints to their value (rad or m), `args` are xacro's, `calibration` is a
+    file of the one arm's own kinematics; `name` is the prefix of the files (None: made from the robot's);
+    `trust` lets the file do whatever xacro can."""
 
     robot: Path
     base: str | None = None
@@ -65,6 +66,7 @@ class Request:
     lock: Mapping[str, float] = field(default_factory=dict)
     args: Mapping[str, str] = field(default_factory=dict, metadata=coded(_arguments))
     package_paths: tuple[Path, ...] = ()
+    calibration: Path | None = None
     name: str | None = field(default=None, metadata=coded(_name))
     # Only who runs ikgen may trust a file: neither a config nor a record says so.
     trust: bool = field(default=False, metadata=uncoded())
@@ -94,6 +96,8 @@ class Request:
             words += ["--lock", f"{joint}={locked!r}"]
         for name, text in self.args.items():
             words += ["--arg", f"{name}:={text}"]
+        if self.calibration is not None:
+            words += ["--calibration", str(self.calibration)]
         for folder in self.package_paths:
             words += ["--package-path", str(folder)]
         if self.trust:

@@ -6,12 +6,12 @@ when they are imported. Nothing but the standard library is imported here.
 
 from __future__ import annotations
 
-import contextlib
 import importlib
 import importlib.util
 import os
 import sys
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
@@ -79,7 +79,7 @@ def _robots_folder() -> Path:
     """The folder of example-robot-data's robots: of this environment, or of a sourced workspace."""
     share = f"share/{DATA}/robots"
     places = [Path(sys.prefix, share)]
-    with contextlib.suppress(PackageNotFoundError):
+    with suppress(PackageNotFoundError):
         places.insert(0, Path(str(distribution(DATA).locate_file(f"cmeel.prefix/{share}"))))
     places += [
         Path(p, share) for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p
@@ -94,11 +94,14 @@ def _files(folder: Path) -> dict[str, Path]:
     """Name -> URDF file: the loaders' names, else the file's own."""
     renamed = {place: name for name, place in RENAMED.items()}
     found: dict[str, Path] = {}
+    plain: dict[str, Path] = {}
     for path in sorted(folder.rglob("*.urdf")):
-        place = path.relative_to(folder).as_posix()
-        name = renamed.get(place) or path.stem.removesuffix("_robot").replace("-", "_").lower()
-        found.setdefault(name, path)
-    return found
+        name = renamed.get(path.relative_to(folder).as_posix())
+        if name is not None:
+            found[name] = path
+        else:
+            plain.setdefault(path.stem.removesuffix("_robot").replace("-", "_").lower(), path)
+    return plain | found
 
 
 def _of_descriptions(name: str) -> NamedRobot:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ikgen.kinematics.fixed_order import dot, length, product
 from ikgen.kinematics.forward import dh_forward, file_forward, pose_difference, row_constant
-from ikgen.kinematics.rigid import inverse, read_only, z_motion
-from ikgen.model.chain import Chain
+from ikgen.kinematics.rigid import axis_motion, inverse, read_only, z_motion
+from ikgen.model.chain import REVOLUTE, Chain
 from ikgen.model.dh import DHChain, DHRow
 from ikgen.model.joint_tree import Matrix
 
-__all__ = ["file_frames", "frames_beside", "largest_deviation", "random_configurations"]
+__all__ = [
+    "file_frames", "frames_beside", "frames_of_chain", "largest_deviation", "random_configurations",
+]  # fmt: skip
 
 _SAMPLES = 64
 _SEED = 20180513
@@ -38,6 +42,17 @@ def file_frames(
         T = product(T, axis.T_prev_axis)
         axes.append((T, sign * axis.axis))
     return _frames(axes, product(T, chain.T_last_tip), rows, offsets, ends)
+
+
+def frames_of_chain(chain: Chain, dh: DHChain) -> tuple[Matrix, ...]:
+    """The constants of another chain with the joints of `dh`, written with the variables of its rows."""
+    axes, T = [], np.eye(4)
+    for axis, row in zip(chain.axes, dh.rows, strict=True):
+        T = product(T, axis.T_prev_axis)
+        axes.append((T, math.copysign(1.0, row.scale * axis.multiplier) * axis.axis))
+        T = product(T, axis_motion(axis.kind == REVOLUTE, axis.axis, axis.offset))
+    offsets = tuple(row.offset.value for row in dh.rows)
+    return _frames(axes, product(T, chain.T_last_tip), dh.rows, offsets, (dh.X_base, dh.X_tip))
 
 
 def frames_beside(

@@ -131,6 +131,7 @@ class Arm:
         free: Sequence[float] | Mapping[str, float] | None = None,
         seed: ArrayLike | None = None,
         limits: bool = True,
+        project: bool = False,
         orthonormalize: bool = False,
     ) -> Solutions:
         """All joint values that bring the tip to `pose`: a matrix (4, 4) or (3, 4), a pair (rotation,
@@ -138,11 +139,12 @@ class Arm:
 
         free: values of the held joints; seed: (dof,) values that order the rows by distance, choose
         whole turns, and are taken where the pose leaves a joint free; limits: drop rows outside the
-        limits; orthonormalize: take the nearest rotation of one that was printed with a few digits (off by
-        up to 1e-3). A pose that cannot be reached, or is none, is a status of what comes back, and its
-        `reason` says what is wrong with it.
+        limits; project: of a pose without rows, those of the nearest pose that the arm can take (`off` says
+        by how much); orthonormalize: take the nearest rotation of one that was printed with a few
+        digits (off by up to 1e-3). A pose that cannot be reached, or is none, is a status of what comes
+        back, and its `reason` says what is wrong with it.
         """
-        options = {"free": free, "seed": seed, "limits": limits}
+        options = {"free": free, "seed": seed, "limits": limits, "project": project}
         found: Solutions = self._call("solve", pose, **options, orthonormalize=orthonormalize)
         return found
 
@@ -190,6 +192,12 @@ class Arm:
             raise UsageError(
                 f"the solver of {self.name} has no {function}", hint=self._without(function)
             )
+        return self._refusing(called, function, *arguments, **options)
+
+    def _refusing(
+        self, called: Callable[..., Any], function: str, *arguments: Any, **options: Any
+    ) -> Any:
+        """What it gives; a value that it refuses is an `ArgumentError`."""
         try:
             return called(*arguments, **options)
         except (ValueError, TypeError) as error:

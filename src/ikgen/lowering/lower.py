@@ -62,8 +62,14 @@ def _step(work: Placement, index: int, step: Step) -> None:
     work.define(v, choose_form(work, v, alternatives, sigma))
     if sigma is not g.one:
         work.levels[-1].solved = work.atoms_of(v)
-    if not all(form.on_circle for form in forms):
+    if not all(form.on_circle for form in forms) or _given_way(work, alternatives):
         work.norms.append(_excess(work, v))
+
+
+def _given_way(work: Placement, forms: list[LoweredForm]) -> bool:
+    """Whether a square root may have been taken of what is far outside its domain, unseen: where a task
+    reads too few entries, no equation but the one that was solved tells."""
+    return work.rough is not None and not work.whole_pose and any(f.under for f in forms)
 
 
 def _excess(work: Placement, v: Variable) -> Expr:

@@ -69,6 +69,7 @@ class Source:
 
     `path` is the file the user named, `dependencies` every file read (itself included, absolute),
     `package_urls` names those of them that another package holds (file, `package://pkg/path`),
+    `environment` the variables that it asked for and their values (None: not set),
     `text` the description after expansion (URDF XML, or the TOML of a DH table), `sha256` the digest
     of `text`, `warnings` what was odd in it but could be read, and `example` joint values (rad, m) that the
     description proposes to look at, none of it that says nothing.
@@ -83,6 +84,7 @@ class Source:
     arguments: tuple[tuple[str, str], ...] = ()
     warnings: tuple[str, ...] = ()
     example: tuple[float, ...] = ()
+    environment: tuple[tuple[str, str | None], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,7 +42,8 @@ class SolvePolicy:
       the most that a step of theirs may be of the one before, `least_pivot`: the least entry of the
       diagonal of their derivatives' triangular factor, `reach`: the same over the root of how far the file
       is off what was solved, `least_miss`: the error that shows that they end beside the pose,
-      `lane_steps`: how many they take at most; other rows are refined one by one.
+      `near`: the largest step behind which the derivatives stay, `lane_steps`: how many they take at most;
+      other rows are refined one by one.
     - `least_damping`, `damping`: a Newton step is damped by max(least, damping * error^2); `largest_step`
       (rad or m) bounds each joint's; `converged`: error at which steps end; `patience` steps may pass
       without the error falling to `progress` of what it was.
@@ -65,6 +66,7 @@ class SolvePolicy:
     least_pivot: float = 1e-5
     reach: float = 1.0
     least_miss: float = 1e-8
+    near: float = 1e-4
     lane_steps: int = 7
     least_damping: float = 1e-12
     damping: float = 1e-3

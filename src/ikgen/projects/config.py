@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ from ikgen.generation.codec import CodecError, Decoder, inlined
 from ikgen.generation.record import record_name, records_of
 from ikgen.generation.request import Outputs, Request
 from ikgen.importers.named_robots import is_named
+from ikgen.model.module_name import identifier
 from ikgen.projects.config_lines import line_of
 
 if sys.version_info >= (3, 11):
@@ -80,12 +81,27 @@ def load_config(path: Path) -> tuple[ArmConfig, ...]:
     try:
         for key in set(data) - {"arm"}:
             raise CodecError(key, f"unknown entry '{key}'", "there is: arm")
-        arms = [_arm(decoder, table, i) for i, table in enumerate(tables)]
+        arms = [arm for i, table in enumerate(tables) for arm in _arms(decoder, table, i)]
         _check_places(arms)
     except CodecError as error:
         line = line_of(text, error.where)
         raise _error(path, str(error), line=line, hint=error.hint) from None
     return tuple(arms)
+
+
+def _arms(decoder: Decoder, table: Any, index: int) -> Iterator[ArmConfig]:
+    """The arms of one table: of a fleet one for each calibration, named after its file."""
+    files = table.get("calibration") if isinstance(table, dict) else None
+    if not isinstance(files, list):
+        yield _arm(decoder, table, index)
+        return
+    where = f"arm[{index}].calibration"
+    if not files or not all(isinstance(file, str) for file in files):
+        raise CodecError(where, f"{files!r} is no list of files")
+    for file in files:
+        arm = _arm(decoder, {**table, "calibration": file}, index)
+        name = f"{arm.name}_{identifier(Path(file).stem)}"
+        yield replace(arm, request=replace(arm.request, name=name))
 
 
 def _arm(decoder: Decoder, table: Any, index: int) -> ArmConfig:

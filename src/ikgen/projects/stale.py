@@ -14,7 +14,14 @@ from ikgen import __version__
 from ikgen.errors import BadDescriptionError
 from ikgen.generation.codec import encode, entries_of
 from ikgen.generation.publishing import interrupted
-from ikgen.generation.record import Record, digest, read_record, record_name, seen
+from ikgen.generation.record import (
+    Record,
+    digest,
+    environment_digest,
+    read_record,
+    record_name,
+    seen,
+)
 from ikgen.generation.request import Request
 from ikgen.projects.config import ArmConfig
 from ikgen.projects.recorded_inputs import Packages
@@ -71,13 +78,16 @@ def _changed_outputs(arm: ArmConfig, records: Sequence[Record]) -> str:
 
 
 def _changed_files(record: Record, packages: Packages) -> str:
-    """The first file, read or written, whose content differs from the one recorded."""
+    """The first file, read or written, or variable that differs from the one recorded."""
     for file in packages.inputs(record):
         actual = digest(file.path)
         if actual is None:
             return f"{file.name} is not there"
         if actual != file.sha256:
             return f"{file.name} has changed"
+    for name, was in record.environment.items():
+        if environment_digest(os.environ.get(name)) != was:
+            return f"the environment variable {name}, which the description reads, has changed"
     for name, expected in record.files.items():
         path = seen(record.folder / name)
         actual = digest(path)

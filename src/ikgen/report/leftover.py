@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ikgen.equations.knowledge import Variable
 from ikgen.formulas.mathtext import relation
-from ikgen.formulas.normal_form import Normalizer
+from ikgen.formulas.normalizer import Normalizer
 from ikgen.formulas.notation import show, variable
 from ikgen.report.document import Block, Formulas, Heading, Inline, Paragraph, Rows, Text
 from ikgen.report.plain import plain

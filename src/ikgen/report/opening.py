@@ -11,7 +11,8 @@ from ikgen.emit.derivation import Reading
 from ikgen.equations.symbolic_transforms import link, multiply
 from ikgen.formulas import mathtext as m
 from ikgen.formulas.mathtext import Math
-from ikgen.formulas.normal_form import Normalizer, Symbol
+from ikgen.formulas.normal_form import Symbol
+from ikgen.formulas.normalizer import Normalizer
 from ikgen.formulas.notation import show, symbol
 from ikgen.kinematics.kept import kept_constants
 from ikgen.model.dh import Angle, DHChain, DHRow, Length

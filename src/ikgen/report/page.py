@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ikgen.emit.derivation import Derivation, Reading, Unsolved
-from ikgen.formulas.normal_form import Normalizer
+from ikgen.formulas.normalizer import Normalizer
 from ikgen.kinematics.classify import GeometryClass
 from ikgen.report.graph_picture import Drawing, draw
 from ikgen.report.solution_sets import Versions, versions_of

@@ -51,12 +51,13 @@ def _posture(dh: DHChain, q: Array) -> tuple[str, str, str]:
     wrist on which the elbow is, and the sense in which the wrist turns."""
     frames = skeleton(dh, q).frames
     origin, z = frames[:, :3, 3], frames[:, :3, 2]
-    forward = np.cross(z[2], z[1])
+    up = -z[1] if z[1, 2] < 0.0 else z[1]
+    forward = np.cross(up, z[2])  # of an arm whose second axis points to the right
     side = float((origin[5] - origin[2]) @ forward + (origin[2] - origin[1]) @ forward)
     across = z[2]
     elbow, wrist = (_flat(origin[k] - origin[2], across) for k in (3, 4))
     line = wrist / max(float(np.linalg.norm(wrist)), 1e-12)
-    upward = z[1] - (z[1] @ line) * line
+    upward = up - (up @ line) * line
     turn = float(np.cross(z[4], z[6]) @ z[5])
     return (
         "shoulder right" if side > 0 else "shoulder left",

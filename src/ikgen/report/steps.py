@@ -10,7 +10,8 @@ from ikgen.forms.formula import Formula, FormulaWriter
 from ikgen.formulas import mathtext as m
 from ikgen.formulas.mathtext import Math
 from ikgen.formulas.naming import Abbreviations
-from ikgen.formulas.normal_form import Normalizer, Sum
+from ikgen.formulas.normal_form import Sum
+from ikgen.formulas.normalizer import Normalizer
 from ikgen.formulas.notation import show, variable
 from ikgen.report.candidate_table import candidates_table
 from ikgen.report.document import Block, Fold, Formulas, Heading, Inline, Paragraph, Rows, Text

@@ -20,7 +20,7 @@ __all__ = ["fits", "fitting_tasks", "freedoms_moved", "over_constrained", "scale
 _INDEPENDENT = 1e-4
 """Least singular value, relative to the largest, of freedoms that are moved independently."""
 
-_AS_GOOD = 0.1
+_AS_GOOD = 0.5
 """The tool's z axis is taken unless it is conditioned worse than another by this factor."""
 
 
@@ -36,19 +36,20 @@ def fitting_tasks(dh: DHChain, axis: str | None = None) -> tuple[Task, ...]:
     if moving >= whole.freedoms:
         return (whole,)
     sized = [t for t in TASKS if t.freedoms == moving and t.name != "rotation"]
-    found = (_along(dh, task, (axis,) if axis else AXES) for task in sized)
-    return (*(task for task in found if task is not None), whole)
+    found = (way for task in sized for way in _along(dh, task, (axis,) if axis else AXES))
+    return (*found, whole)
 
 
-def _along(dh: DHChain, task: Task, axes: Sequence[str]) -> Task | None:
-    """The task by that of the axes which suits the arm best; None where it fits by none."""
+def _along(dh: DHChain, task: Task, axes: Sequence[str]) -> list[Task]:
+    """The task by those of the axes by which it fits, the one that suits the arm best first."""
     ways = [task.along(axis) for axis in axes] if task.axis else [task]
-    rated = [(_condition(dh, way), way) for way in ways if fits(dh, way)]
-    if not rated:
-        return None
-    best = max(rated, key=lambda pair: pair[0])
-    plain = next((pair for pair in rated if pair[1].name == task.name), best)
-    return plain[1] if plain[0] >= _AS_GOOD * best[0] else best[1]
+    rated = {way: _condition(dh, way) for way in ways if fits(dh, way)}
+    best = max(rated.values(), default=0.0)
+
+    def key(way: Task) -> tuple[bool, float]:
+        return way.name != task.name or rated[way] < _AS_GOOD * best, -rated[way]
+
+    return sorted(rated, key=key)
 
 
 def fits(dh: DHChain, task: Task) -> bool:

@@ -15,6 +15,7 @@ from ikgen.emit.printer import expression
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
 from ikgen.errors import UsageError
+from ikgen.program.margins import fold_margins
 from ikgen.program.ops import Op
 from ikgen.program.policy import SolvePolicy
 from ikgen.tasks import AXES, Task
@@ -78,6 +79,11 @@ def emit_header(module: SolverModule) -> str:
         order=_depth_first(branches),
         frames=[[[expression(CONSTANT, x) for x in row] for row in F] for F in program.frames],
         twisted=twist_lines(module) if module.refine == "all" else None,
+        held=len(module.free),
+        folds=fold_margins(program),
+        guarded=module.guarded,
+        closed_form="int P, class Out" if len(module.free) == 1 else "int P",
+        rows="Out" if len(module.free) == 1 else "Rows<P>",
         beside=[[number(float(x)) for x in D.T[:, :3].ravel()] for D in module.beside],
         size=_size_text(module),
         blanks=blanks(module),
@@ -105,7 +111,9 @@ def _headers(module: SolverModule) -> list[str]:
     needed += ["lane_newton.hpp"] * (module.refine == "all")
     needed += ["poses_beside.hpp"] * bool(module.beside)
     task = "whole_pose.hpp" if module.task == "pose" else "pose_entries.hpp"
-    return [*needed, task, "pose_solver.hpp", "projection.hpp"]
+    needed += [task, "pose_solver.hpp", "projection.hpp"]
+    searches = ("row_preference.hpp", "held_search.hpp", "held_grid_search.hpp")
+    return [*needed, searches[min(len(module.free), 2)]]
 
 
 _ROUTINES = {"general_6r": "general_6r_arm.hpp"}

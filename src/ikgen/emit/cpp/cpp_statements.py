@@ -16,6 +16,7 @@ from ikgen.emit.solver_module import SolverModule
 from ikgen.program.inputs import HeldValue, PoseEntry, SeedValue
 from ikgen.program.interpret import evaluate
 from ikgen.program.liveness import live_names
+from ikgen.program.margins import margin
 from ikgen.program.ops import Op, Operand, operand_names, renamed
 from ikgen.program.statements import Call, Comment, Let, Level, Require
 
@@ -37,6 +38,7 @@ class ProgramText:
         self.flags: dict[str, list[str]] = {"hit": [], "alike": []}
         self.real = ""
         self._guards = 0
+        self._folds = 0
         self._write()
 
     # -- constants ------------------------------------------------------------------------------
@@ -109,6 +111,10 @@ class ProgramText:
                 )
             elif isinstance(s, Require):
                 self._require(index, expression(CPP, s.condition, 3))
+                if s.fold and len(self.module.free) == 1:
+                    text = expression(CPP, margin(s.condition))
+                    self._statement(f"rows.template fold<{self._folds}>({text});")
+                    self._folds += 1
             elif s.name in self.live and s.name not in self.fixed:
                 self._let(s.name, expression(CPP, self._in_lanes(s.value)))
                 if s.name in self.program.singular:

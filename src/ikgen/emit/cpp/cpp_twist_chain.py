@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -11,28 +10,24 @@ from ikgen.emit.solver_module import SolverModule
 from ikgen.kinematics.rigid import exact_cos_sin
 from ikgen.kinematics.twist_links import TwistLink, twist_chain
 from ikgen.model.joint_tree import Matrix
-from ikgen.program.policy import SolvePolicy
 
 __all__ = ["TwistLines", "twist_lines"]
 
 
 @dataclass(frozen=True, slots=True)
 class TwistLines:
-    """`first`, `last`: upper rows of the frames at the ends; `links`: members of `Link` in its order;
-    `least_pivot`: pivot of the derivatives below which rows are refined one by one."""
+    """`first`, `last`: upper rows of the frames at the ends; `links`: members of `Link` in its order."""
 
     first: tuple[str, ...]
     links: tuple[str, ...]
     last: tuple[str, ...]
-    least_pivot: float
 
 
 def twist_lines(module: SolverModule) -> TwistLines:
     """Braced lists of the file's own chain in twist form."""
     chain = twist_chain(module.dh)
-    policy, deviation = SolvePolicy(), max(module.dh.deviation)
-    least = max(policy.least_pivot, policy.reach * math.sqrt(deviation))
-    return TwistLines(_rows(chain.first), tuple(map(_link, chain.links)), _rows(chain.last), least)
+    links = tuple(map(_link, chain.links))
+    return TwistLines(_rows(chain.first), links, _rows(chain.last))
 
 
 def _rows(F: Matrix) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import TYPE_CHECKING
 
 from ikgen.elimination.routine import runtime_policy
@@ -33,7 +33,7 @@ def emit_derivation(derivation: Derivation) -> dict[str, str]:
 
 def emit_module(module: SolverModule) -> str:
     """The text of `<name>_ik.py`."""
-    program, policy = module.program, SolvePolicy()
+    program, policy = module.program, replace(SolvePolicy(), least_pivot=module.least_pivot)
     shell = render(
         "python",
         "module.py.jinja",
@@ -57,7 +57,7 @@ def emit_module(module: SolverModule) -> str:
         held=len(module.free),
         held_name=words(module.dh.joints[module.free[0]].name) if module.free else "",
         held_turns=bool(module.free) and module.first_row(module.free[0]).revolute,
-        guarded=all(level.call is None for level in program.levels) and module.plan is None,
+        guarded=module.guarded,
         beside=[[[number(float(x)) for x in row] for row in D] for D in module.beside],
         orientation=module.reads.orientation,
         entries=module.reads.entries,

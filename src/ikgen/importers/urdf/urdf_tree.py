@@ -45,6 +45,7 @@ def parse_urdf(
     kind: str = "urdf",
     dependencies: tuple[Path, ...] = (),
     package_urls: tuple[tuple[Path, str], ...] = (),
+    environment: tuple[tuple[str, str | None], ...] = (),
     arguments: Mapping[str, str] | None = None,
     warnings: Sequence[str] = (),
 ) -> JointTree:
@@ -60,6 +61,7 @@ def parse_urdf(
         sha256=hashlib.sha256(text.encode("utf-8", "replace")).hexdigest(),
         dependencies=dependencies or (path.resolve(),),
         package_urls=package_urls,
+        environment=environment,
         arguments=tuple(sorted((arguments or {}).items())),
     )
     place = Place(shown_file(source), list(warnings))

@@ -23,12 +23,13 @@ _ARGUMENT = re.compile(r"\$\(arg\s+([^)\s]+)\s*\)")
 @dataclass(frozen=True, slots=True)
 class Expansion:
     """A xacro file's URDF text, the files read for it (absolute, itself first), the URLs of those
-    that another package holds, and warnings."""
+    that another package holds, the environment variables that it asked for, and warnings."""
 
     text: str
     dependencies: tuple[Path, ...]
     package_urls: tuple[tuple[Path, str], ...] = ()
     warnings: tuple[str, ...] = ()
+    environment: tuple[tuple[str, str | None], ...] = ()
 
 
 def read(
@@ -51,6 +52,7 @@ def read(
         package_urls=expansion.package_urls,
         arguments=arguments,
         warnings=expansion.warnings,
+        environment=expansion.environment,
     )
 
 
@@ -93,6 +95,7 @@ def expand(
         tuple(dependencies),
         tuple(urls.items()),
         tuple(warnings),
+        tuple(sorted(session.environment.items())),
     )
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import io
+import os
 import sys
+from collections.abc import Callable
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from types import TracebackType
@@ -38,6 +40,7 @@ class Session:
     """Context in which xacro resolves packages through a `PackageFinder`, with its readers and
     evaluators replaced by guarded ones unless the files are trusted.
 
+    `environment` maps the variables that `$(env)` and `$(optenv)` asked for to values (None: not set),
     `files` is xacro's stack of files being read (the innermost last, also after a failure),
     `includes` every file that it opened beside the first, `warnings` what it printed.
     """
@@ -48,6 +51,7 @@ class Session:
         self._trust = trust
         self._saved: list[tuple[Any, str, Any]] = []
         self._output = io.StringIO()
+        self.environment: dict[str, str | None] = {}
         self.files: list[Path] = []
         self.includes: list[Path] = []
         self.warnings: tuple[str, ...] = ()
@@ -75,6 +79,8 @@ class Session:
             return str(resolve(spec))
 
         self._set(substitution_args, "_eval_find", find)
+        for name in ("_eval_env", "_eval_optenv"):
+            self._set(substitution_args, name, self._noting(substitution_args, name))
         self._set(xacro, "abs_filename_spec", resolve_file)
         self._set(xacro, "all_includes", [])
         self._set(xacro, "filestack", None)
@@ -85,6 +91,17 @@ class Session:
             guarded = GuardedXacro(self._top, self._finder)
             for owner, name, value in guarded.replacements(xacro, substitution_args):
                 self._set(owner, name, value)
+
+    def _noting(self, substitution_args: Any, function: str) -> Callable[..., str]:
+        """A function that reads an environment variable, and notes which."""
+        read = getattr(substitution_args, function, None)  # an absent one is refused by `_set`
+
+        def noting(name: str, *default: str, **named: str) -> str:
+            self.environment[name] = os.environ.get(name)
+            assert read is not None
+            return str(read(name, *default, **named))
+
+        return noting
 
     def _set(self, owner: Any, name: str, value: Any) -> None:
         if not hasattr(owner, name):  # never run unguarded because a name has changed

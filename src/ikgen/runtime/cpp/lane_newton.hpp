@@ -103,7 +103,8 @@ template <class Arm> struct LaneNewton {
     for (int k = 0; k < Policy::kLaneSteps; ++k) {
       Lanes<N> error[kEquations], d[kMoving], step[Arm::kDof];
       chain.forward();
-      compare<P, N>(pose, chain, k < 2 || k > 2, error, factors);
+      const bool fresh = k == 0 || k > 2 || !all((!good) | (Policy::kNear > before));
+      compare<P, N>(pose, chain, fresh, error, factors);
       factors.solve(error, d);
       Lanes<N> size = abs(d[0]);
       for (int i = 1; i < kMoving; ++i) size = max(size, abs(d[i]));

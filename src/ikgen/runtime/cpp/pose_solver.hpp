@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 
 #include "constants.hpp"
 #include "pose_reading.hpp"
@@ -16,24 +17,48 @@ template <class Arm, template <class> class Way> struct PoseSolver {
   static void solve(const Eigen::Isometry3d* poses, std::ptrdiff_t count, const Options& given,
                     Solutions* out) noexcept {
     constexpr int P = Way<Arm>::kBatch;
-    const Options options = checked(given);
+    const Checked checked(given);
+    const Options& options = checked.options;
     if constexpr (P > 1)
       for (; count >= P; count -= P, poses += P, out += P) some<P>(poses, options, out);
     for (; count > 0; --count, ++poses, ++out) some<1>(poses, options, out);
   }
 
   static void solve(const Eigen::Isometry3d& pose, const Options& given, Solutions& out) noexcept {
-    some<1>(&pose, checked(given), &out);
+    some<1>(&pose, Checked(given).options, &out);
   }
 
  private:
-  // Options without a seed that is no number.
-  static Options checked(const Options& options) noexcept {
-    Options out = options;
-    for (int j = 0; j < Arm::kDof && out.seed; ++j)
-      if (!(std::abs(out.seed->data()[j]) < kInfinity)) out.seed = nullptr;
-    return out;
-  }
+  // Options without a seed that is no number, or with one without the turns that doubles cannot tell apart;
+  // with one, free values that are the defaults are the seed's.
+  struct Checked {
+    Options options;
+    std::remove_const_t<std::remove_pointer_t<decltype(Options::seed)>> near;
+
+    explicit Checked(const Options& given) noexcept : options(given) {
+      bool far = false;
+      for (int j = 0; j < Arm::kDof && options.seed; ++j) {
+        const double value = std::abs(options.seed->data()[j]);
+        far = far || value > kFarthestSeed;
+        if (!(value < kInfinity)) options.seed = nullptr;
+      }
+      if (far && options.seed) without_turns();
+      if constexpr (Arm::kFree > 0) {
+        const Options plain;
+        for (std::size_t k = 0; k < Arm::kFree && options.seed && options.hold_seed; ++k)
+          if (options.free[k] == plain.free[k]) options.free[k] = options.seed->data()[Arm::kFreeJoints[k]];
+      }
+    }
+    Checked(const Checked&) = delete;
+    Checked& operator=(const Checked&) = delete;
+
+    void without_turns() noexcept {
+      near = *options.seed;
+      for (int j = 0; j < Arm::kDof; ++j)
+        if (Arm::kRevolute[j] && !Arm::kHeld[j] && std::abs(near[j]) > kFarthestSeed) near[j] = std::fmod(near[j], kTurn);
+      options.seed = &near;
+    }
+  };
 
   template <int P>
   [[gnu::always_inline]] static void some(const Eigen::Isometry3d* poses, const Options& options,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
@@ -83,7 +84,7 @@ inline Triple triple(const Mat<3, 3>& K1, const Mat<3, 3>& K2, const Mat<3, 3>& 
   Triple out{&K1, &K2, M, 0.0, 0.0, 0.0, 0.0};
   const double m = M(2, 2);
   const double beta = K1(2, 0) * K2(0, 2) + K1(2, 1) * K2(1, 2), gamma = K1(2, 1) * K2(0, 2) - K1(2, 0) * K2(1, 2);
-  const double size = std::sqrt(beta * beta + gamma * gamma) + 1e-300;
+  const double size = std::max(std::sqrt(beta * beta + gamma * gamma), 1e-9);  // less: axes are parallel
   out.x = (m - K1(2, 2) * K2(2, 2)) / size;
   out.c0 = beta / size;
   out.s0 = gamma / size;

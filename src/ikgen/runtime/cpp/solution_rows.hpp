@@ -21,12 +21,13 @@ template <class Arm> struct SolutionRows {
     flag(out, to) = flag(out, from);
   }
 
-  // Whether two rows are the same, whole turns aside.
+  // Whether two rows are the same, whole turns aside; long slides count relative to their length.
   static bool same(const double* a, const double* b) noexcept {
     for (int j = 0; j < Arm::kDof; ++j) {
       double gap = std::abs(a[j] - b[j]);
       if (Arm::kRevolute[j] && gap > Policy::kCoincident) gap = std::abs(gap - kTurn * std::nearbyint(gap / kTurn));
-      if (!(gap <= Policy::kCoincident)) return false;
+      const double bound = Policy::kCoincident * (Arm::kRevolute[j] ? 1.0 : std::max(std::abs(a[j]), 1.0));
+      if (!(gap <= bound)) return false;
     }
     return true;
   }

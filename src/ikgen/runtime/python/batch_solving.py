@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.joint_arguments import held_rows, seed_rows
+from ikgen.runtime.python.joint_refinement import refine_together
 from ikgen.runtime.python.pose_arguments import pose_matrices
 from ikgen.runtime.python.pose_faults import nearest_poses
 from ikgen.runtime.python.pose_solving import solve_pose
@@ -58,7 +59,7 @@ def solve_poses(
     if orthonormalize:
         T = nearest_poses(arm.task, T, arm.policy)
     T, good = arm.task.read_batch(T, arm.policy)
-    usable, size = np.flatnonzero(good), _CHUNK // (1 + len(arm.beside))
+    usable, size = np.flatnonzero(good), _CHUNK
     for start in range(0, len(usable), size):
         part = usable[start : start + size]
         seeds = None if near is None else near[part]
@@ -93,6 +94,41 @@ def _solve_chunk(arm: Arm, T: Array, held: Array, near: Array | None, limits: bo
 
 def rows_batch(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, Flags, Flags]:
     """Rows (N, M, dof) on no turn in particular; which are distinct solutions, which of a continuum."""
+    if not arm.rounded:
+        return _careful_rows(arm, T, held, near)
+    start = np.zeros((len(T), len(arm.lower))) if near is None else near
+    with np.errstate(all="ignore"):
+        q, valid, singular, _ = arm.branches_batch(T, start, held)
+    q[:, :, arm.free] = held[:, None, :]
+    q, valid, doubt = _certain_batch(arm, T, q, valid)
+    doubt |= singular.any(axis=1) | ~valid.any(axis=1)
+    if doubt.any():
+        seeds = None if near is None else near[doubt]
+        more, fine, flags = _careful_rows(arm, T[doubt], held[doubt], seeds)
+        order = np.argsort(~fine, axis=1, kind="stable")[:, : q.shape[1]]
+        q[doubt] = np.take_along_axis(more, order[:, :, None], axis=1)
+        valid[doubt] = np.take_along_axis(fine, order, axis=1)
+        singular = singular.copy()
+        singular[doubt] = flags
+    return q, valid, singular
+
+
+def _certain_batch(arm: Arm, T: Array, q: Array, valid: Flags) -> tuple[Array, Flags, Flags]:
+    """Rows (N, M, dof) refined all at once, which are solutions, and for which poses (N,) that leaves a
+    doubt."""
+    pose, row = np.nonzero(valid)
+    done, arrived, missed = refine_together(arm, q[pose, row], T[pose])
+    q, found, doubt = q.copy(), valid.copy(), np.zeros(len(T), dtype=bool)
+    q[pose, row], found[pose, row] = done, arrived
+    doubt[pose[~(arrived | missed)]] = True
+    doubt |= (distinct(arm, q, found) != found).any(axis=1)
+    return q, found, doubt
+
+
+def _careful_rows(
+    arm: Arm, T: Array, held: Array, near: Array | None
+) -> tuple[Array, Flags, Flags]:
+    """Rows of which each is refined for as long as it takes, near folds with those of poses beside."""
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
     with np.errstate(all="ignore"):
         q, valid, singular, rough = arm.branches_batch(T, start, held)

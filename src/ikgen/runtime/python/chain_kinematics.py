@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.real_numbers import real_array
 
 __all__ = [
     "Chain",
@@ -76,7 +77,7 @@ def _steps(chain: Chain, q: Array) -> Array:
 
 
 def _joint_values(chain: Chain, q: ArrayLike) -> Array:
-    values, dof = np.asarray(q, dtype=float), chain.drive.shape[1]
+    values, dof = real_array(q, "q"), chain.drive.shape[1]
     if values.ndim < 1 or values.shape[-1] != dof:
         raise ValueError(f"q has shape {values.shape}, expected (..., {dof})")
     return values

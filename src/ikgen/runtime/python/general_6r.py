@@ -84,7 +84,15 @@ def refined_rows(
     F: Array, turning: Turning, T: Array, q: Array, policy: Policy
 ) -> tuple[Array, Flags, Array]:
     """Newton steps from q (k, 6) to T (k, 4, 4): q, which arrived, and the errors before (k,)."""
-    return refine(six_joints(F, turning), PoseTask(1.0), _SIX, q, T, policy)
+    near = _slides_near(q, turning)
+    chain, start = six_joints(F, turning), np.where(near[:, None], q, 0.0)
+    q, arrived, before = refine(chain, PoseTask(1.0), _SIX, start, T, policy)
+    return q, arrived & near, np.where(near, before, np.inf)
+
+
+def _slides_near(q: Array, turning: Turning) -> Flags:
+    """Which rows (k, 6) have no slide far beyond the arm: there slides become parallel."""
+    return np.asarray((np.array(turning) | (np.abs(q) < _FARTHEST)).all(axis=1))
 
 
 def six_joints(F: Array, turning: Turning) -> Chain:
@@ -93,11 +101,11 @@ def six_joints(F: Array, turning: Turning) -> Chain:
 
 
 def distinct_rows(q: Array, turning: Turning, coincident: float) -> Array:
-    """The rows of q (k, 6), angles reduced to (-pi, pi], without repetitions: long slides count relative to
-    their length. Slides far beyond the arm are those of directions that become parallel, and go."""
+    """The rows of q (k, 6), angles reduced to (-pi, pi], without repetitions and slides far beyond the arm:
+    long slides count relative to their length."""
     turns = np.array(turning)
     q = np.where(turns, np.pi - np.mod(np.pi - q, 2.0 * np.pi), q)
-    q = q[(turns | (np.abs(q) < _FARTHEST)).all(axis=1)]
+    q = q[_slides_near(q, turning)]
     size = np.where(turns, 1.0, np.maximum(np.abs(q), 1.0))
     apart = np.abs(q[:, None] - q)
     apart = np.where(turns, np.abs(np.pi - np.abs(np.pi - apart)), apart / size).max(axis=2)

@@ -11,6 +11,7 @@ from ikgen.runtime.python.array_types import Array
 from ikgen.runtime.python.batch_solving import rows_batch
 from ikgen.runtime.python.held_joint import pose_lines
 from ikgen.runtime.python.joint_arguments import seed_rows
+from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.row_preference import preference_costs, preference_of
 from ikgen.runtime.python.solution_search import Start, best_rows
 from ikgen.runtime.python.solutions import Solutions, Status
@@ -34,7 +35,7 @@ def search_grid(
     T = pose_lines(arm, pose)
     empty = np.empty((0, dof)), np.empty(0, dtype=bool)
     if T is None:
-        return Solutions(empty[0], Status.INVALID, empty[1])
+        return solve_pose(arm, pose, None, None, limits)  # which says why it is none
     values, steps = _grid(arm, preference[1], limits)
     q, cost, any_real = [], [], False
     for k in range(0, len(values), _PART):

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.batch_solving import rows_batch
+from ikgen.runtime.python.pose_arguments import pose_matrices
 from ikgen.runtime.python.solved_arm import Arm
 
 __all__ = ["HeldJoint", "Rows", "held_range", "merged_rows", "pose_lines", "rows_at"]
@@ -84,7 +85,7 @@ def held_range(arm: Arm, T: Array, limits: bool) -> tuple[float, float]:
 
 def pose_lines(arm: Arm, pose: ArrayLike) -> Array | None:
     """A pose as it is read, (4, 4); None for what is no pose. Raises ValueError for a wrong shape."""
-    matrix = np.asarray(pose, dtype=float)
+    matrix = pose_matrices(pose, arm.task.alone)
     if matrix.shape != (4, 4):
         raise ValueError(f"pose has shape {matrix.shape}, expected (4, 4)")
     T = arm.task.read(matrix.tolist(), arm.policy)

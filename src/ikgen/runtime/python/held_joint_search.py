@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from ikgen.runtime.python.branch_tracks import Tracks, tracked
 from ikgen.runtime.python.held_joint import HeldJoint, held_range, pose_lines
 from ikgen.runtime.python.joint_arguments import seed_rows
+from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.row_preference import Preference, preference_costs, preference_of
 from ikgen.runtime.python.self_motion import Piece, pieces_of
 from ikgen.runtime.python.solution_search import Start, best_rows
@@ -27,7 +28,7 @@ def search_interval(
     T = pose_lines(arm, pose)
     none = np.empty((0, dof)), np.empty(0, dtype=bool)
     if T is None:
-        return Solutions(none[0], Status.INVALID, none[1])
+        return solve_pose(arm, pose, None, None, limits)  # which says why it is none
     tracks = tracked(joint, T, *held_range(arm, T, limits), limits)
     starts = [
         start

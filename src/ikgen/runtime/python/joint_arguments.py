@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import isfinite
+from math import isfinite, pi
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ikgen.runtime.python.array_types import Array, Row
+from ikgen.runtime.python.real_numbers import real_array
 from ikgen.runtime.python.solved_arm import Arm
 
 __all__ = ["held_rows", "held_values", "seed_rows"]
+
+_FARTHEST = 1e5  # rad: neighbouring doubles are 1.5e-11 apart
 
 
 def held_values(
@@ -52,9 +55,9 @@ def held_rows(
                 values[:, k] = near[:, j]
         return values
     if np.ndim(free) < 2:
-        one: list[float] = np.asarray(free, dtype=float).tolist()
+        one: list[float] = real_array(free, "free").tolist()
         return np.broadcast_to(held_values(arm, one, None), shape)
-    held = np.asarray(free, dtype=float)
+    held = real_array(free, "free")
     if held.shape != shape:
         raise ValueError(f"free has shape {held.shape}, expected {shape}")
     if not np.isfinite(held).all():
@@ -63,11 +66,13 @@ def held_rows(
 
 
 def seed_rows(arm: Arm, seed: ArrayLike, *shapes: tuple[int, ...]) -> Array:
-    """The seed as an array of one of the shapes; raises ValueError for others."""
-    values = np.asarray(seed, dtype=float)
+    """The seed as an array of one of the shapes; raises ValueError for others. Turns of a revolute joint
+    that doubles cannot tell apart to 1e-11 rad are left out."""
+    values = real_array(seed, "seed")
     if values.shape not in shapes:
         expected = " or ".join(map(str, shapes))
         raise ValueError(f"seed has shape {values.shape}, expected {expected}")
     if not np.isfinite(values).all():
         raise ValueError(f"seed {values.tolist()} has values that are not finite")
-    return values
+    far = np.array(arm.turning) & (np.abs(values) > _FARTHEST)
+    return np.where(far, np.fmod(values, 2.0 * pi), values) if far.any() else values

@@ -26,8 +26,8 @@ from ikgen.runtime.python.rigid_motion import inverses, motions_z, rotations_z
 
 __all__ = ["one_slide_candidates"]
 
-_SAMPLES = np.array([0.0, 1.0, -1.0])
-_SLIDES = motions_z(_SAMPLES)
+_SLIDE_SAMPLES = np.array([0.0, 1.0, -1.0])
+_SAMPLED_SLIDES = motions_z(_SLIDE_SAMPLES)
 _PARABOLA = np.array(
     [[1.0, 0.0, 0.0], [0.0, 0.5, -0.5], [-1.0, 0.5, 0.5]]
 )  # of values at the samples
@@ -41,7 +41,7 @@ def one_slide_candidates(
     order, C = loop_constants(F, T, start, reverse)
     first = not turning[order[0]]
     left = left_invariants(C)
-    right = _other_side(C, first)
+    right = _slide_side(C, first)
     basis = np.linalg.qr(right[..., 1:], mode="complete")[0][..., 8:]
     top = np.swapaxes(basis, 1, 2)
     E = top @ loop_action(C[1])
@@ -56,7 +56,7 @@ def one_slide_candidates(
     k, t45 = null_angles(M0 + c * M1 + s * M2)
     t = np.concatenate([t3[k, None], t45[:, ::-1] if swap else t45], axis=1)
     pose = pose[k]
-    found = _completed(
+    found = _with_slide(
         [rows_of(c, pose) for c in C], rows_of(left, pose), rows_of(right, pose), t, first
     )
     q = np.empty_like(found)
@@ -64,18 +64,18 @@ def one_slide_candidates(
     return pose, q, least, simple
 
 
-def _other_side(C: list[Array], first: bool) -> Array:
+def _slide_side(C: list[Array], first: bool) -> Array:
     """The invariants of `M_2^-1 C_1^-1 M_1^-1 C_6^-1` (N, 14, 9) in the monomials of the first joint times
     those of the second, a slide being the `first` of them or the other."""
     turn = np.swapaxes(ROTATIONS, 1, 2)
-    one, two = (_SLIDES, turn) if first else (turn, _SLIDES)
+    one, two = (_SAMPLED_SLIDES, turn) if first else (turn, _SAMPLED_SLIDES)
     Y = inverses(C[0])[:, None] @ one @ inverses(C[5])[:, None]
     V = invariants(two @ Y[:, :, None])
     fits = (_PARABOLA, FIT) if first else (FIT, _PARABOLA)
     return np.swapaxes(np.kron(*fits) @ V.reshape(len(V), 9, 14), 1, 2)
 
 
-def _completed(C: list[Array], left: Array, right: Array, t: Array, first: bool) -> Array:
+def _with_slide(C: list[Array], left: Array, right: Array, t: Array, first: bool) -> Array:
     """The six values of the loop (k, 6) from theta_3, theta_4, theta_5 in t (k, 3): the slide and the angle
     beside it linearly, theta_6 from the rotation left over."""
     v = turned(left, t)

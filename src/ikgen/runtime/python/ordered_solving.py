@@ -25,4 +25,4 @@ def search_rows(
         return found
     q, cost, _ = preference_costs(arm, preference, found.q[None], limits)
     order = np.argsort(cost[0], kind="stable")
-    return Solutions(q[0, order], found.status, found.singular[order])
+    return Solutions(q[0, order], found.status, found.singular[order], names=found.names)

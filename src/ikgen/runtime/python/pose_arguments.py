@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array
+from ikgen.runtime.python.real_numbers import real_array
 
 __all__ = ["pose_matrices"]
 
@@ -25,7 +26,7 @@ def pose_matrices(pose: Any, alone: str) -> Array:
     its shape, or raises ValueError.
     """
     if isinstance(pose, np.ndarray) and pose.shape[-2:] == (4, 4):
-        return np.asarray(pose, dtype=float)
+        return real_array(pose, "pose")
     if isinstance(pose, (list, tuple)) and len(pose):
         if any(hasattr(pose[0], name) for name in _TRANSFORMS):
             return np.stack([pose_matrices(one, alone) for one in pose])
@@ -42,7 +43,7 @@ def pose_matrices(pose: Any, alone: str) -> Array:
 
 def _numbers(value: Any) -> Array:
     try:
-        return np.asarray(value, dtype=float)
+        return real_array(value, "pose")
     except TypeError:
         raise ValueError(f"pose is no array of numbers: {type(value).__name__}") from None
 

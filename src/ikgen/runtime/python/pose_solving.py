@@ -10,16 +10,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ikgen.runtime.python.array_types import Row
-from ikgen.runtime.python.branch_names import branch_names
 from ikgen.runtime.python.chain_kinematics import forward
 from ikgen.runtime.python.joint_arguments import held_values, seed_rows
+from ikgen.runtime.python.joint_refinement import refine_together
 from ikgen.runtime.python.pose_arguments import pose_matrices
 from ikgen.runtime.python.pose_faults import nearest_pose, pose_fault
 from ikgen.runtime.python.projection import nearest_row, off_by
 from ikgen.runtime.python.refinement import rank_loss, refine
+from ikgen.runtime.python.row_names import branch_names
 from ikgen.runtime.python.row_placement import is_new, place_rows
 from ikgen.runtime.python.solutions import Solutions, Status
-from ikgen.runtime.python.solved_arm import Arm, Found
+from ikgen.runtime.python.solved_arm import Arm, Candidate, Found
 
 __all__ = ["solve_pose"]
 
@@ -117,6 +118,10 @@ def _rows(
     hits: list[bool] = []
     for i, q0 in enumerate(starts):
         answers, hit = arm.branches(T, q0, held)
+        if arm.rounded and len(starts) == 1 and not hit:
+            found = _certain_rows(arm, answers, T)
+            if found is not None:
+                return [(found, False)]
         hits.append(hit)
         if hit:
             rough.append((i, (q0, True)))
@@ -131,6 +136,24 @@ def _rows(
         if len(kept[i]) < arm.most and is_new(arm, item[0], kept[i]):
             kept[i].append(item)
     return list(zip(kept, hits))
+
+
+def _certain_rows(arm: Arm, answers: list[Candidate], T: list[list[float]]) -> list[Found] | None:
+    """The rows refined all at once; None where that leaves a doubt."""
+    if not answers or any(flag for _, flag, _ in answers):
+        return None if answers or len(arm.beside) else []
+    start = np.array([row for row, _, _ in answers])
+    q, arrived, missed = refine_together(
+        arm, start, np.broadcast_to(np.array(T), (len(start), 4, 4))
+    )
+    if not (arrived | missed).all():
+        return None
+    kept: list[Found] = []
+    for row in q[arrived].tolist():
+        if not is_new(arm, row, kept):  # another may lie there
+            return None
+        kept.append((tuple(row), False))
+    return kept
 
 
 def _refined(arm: Arm, rows: list[Found], T: list[list[float]]) -> list[Found | None]:

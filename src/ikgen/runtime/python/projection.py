@@ -19,27 +19,27 @@ from ikgen.runtime.python.task_interface import Task
 
 __all__ = ["nearest_row", "off_by"]
 
-_STARTS = 128  # drawn; the best of them are followed
+_START_COUNT = 128  # drawn; the best of them are followed
 _FOLLOWED = 16
-_STEPS = 80
-_LEAST, _FIRST, _MOST = 1e-10, 1e-3, 1e10  # damping of a step
-_LONGEST = 0.5  # rad or m: step of a joint
+_STEP_COUNT = 80
+_LEAST_DAMPING, _FIRST_DAMPING, _MOST_DAMPING = 1e-10, 1e-3, 1e10  # damping of a step
+_LONGEST_STEP = 0.5  # rad or m: step of a joint
 
 
 def nearest_row(arm: Arm, T: Array, start: Row, limits: bool) -> Row:
     """The joint values whose pose is nearest to T (4, 4), held joints as in `start`."""
-    low, high = _bounds(arm, limits)
-    q = np.vstack([np.clip(start, low, high), _starts(arm, low, high)])
+    low, high = _step_bounds(arm, limits)
+    q = np.vstack([np.clip(start, low, high), _even_starts(arm, low, high)])
     q[:, list(arm.free)] = [start[j] for j in arm.free]
-    cost = (_chords(arm.task, forward(arm.chain, q), T) ** 2).sum(axis=1)
-    q, cost = _descend(arm, T, q[np.argsort(cost, kind="stable")[:_FOLLOWED]], (low, high))
+    cost = (_chord_errors(arm.task, forward(arm.chain, q), T) ** 2).sum(axis=1)
+    q, cost = _descend_to(arm, T, q[np.argsort(cost, kind="stable")[:_FOLLOWED]], (low, high))
     best: Row = tuple(q[int(np.argmin(cost))].tolist())
     return best
 
 
 def off_by(task: Task, pose: Array, T: Array) -> Array:
     """How far poses (k, 4, 4) are from T (4, 4): (k, 2), m and rad."""
-    error = _chords(task, pose, T)
+    error = _chord_errors(task, pose, T)
     length = np.array([c == 3 for _, c in task.entries])
     off = np.empty((len(pose), 2))
     off[:, 0] = np.sqrt((error[:, length] ** 2).sum(axis=1)) * task.size
@@ -56,24 +56,24 @@ def off_by(task: Task, pose: Array, T: Array) -> Array:
     return off
 
 
-def _weight(task: Task) -> Array:
+def _chord_weight(task: Task) -> Array:
     """Of each entry: a turn by x moves the nine of a rotation by sqrt(8) sin(x / 2)."""
     turn = sqrt(0.5) if len(task.unit) == 3 else 1.0
     return np.array([1.0 / task.size if c == 3 else turn for _, c in task.entries])
 
 
-def _chords(task: Task, pose: Array, T: Array) -> Array:
+def _chord_errors(task: Task, pose: Array, T: Array) -> Array:
     """What poses (k, 4, 4) are off T (4, 4): (k, entries)."""
-    return entry_errors(task.entries, _weight(task), pose, np.broadcast_to(T, pose.shape))
+    return entry_errors(task.entries, _chord_weight(task), pose, np.broadcast_to(T, pose.shape))
 
 
-def _bounds(arm: Arm, limits: bool) -> tuple[Array, Array]:
+def _step_bounds(arm: Arm, limits: bool) -> tuple[Array, Array]:
     """Where steps are clipped to."""
     low, high = np.array(arm.lower), np.array(arm.upper)
     return (low, high) if limits else (np.full(len(low), -inf), np.full(len(low), inf))
 
 
-def _starts(arm: Arm, low: Array, high: Array) -> Array:
+def _even_starts(arm: Arm, low: Array, high: Array) -> Array:
     """Configurations (n, dof) that fill the limits evenly: Kronecker's sequence by powers of the root of
     `x^(dof + 1) = x + 1` (Roberts 2018)."""
     dof = len(low)
@@ -81,37 +81,37 @@ def _starts(arm: Arm, low: Array, high: Array) -> Array:
     for _ in range(40):
         root = (1.0 + root) ** (1.0 / (dof + 1))
     steps = (1.0 / root) ** np.arange(1, dof + 1)
-    part = (0.5 + np.arange(1, _STARTS + 1)[:, None] * steps) % 1.0
+    part = (0.5 + np.arange(1, _START_COUNT + 1)[:, None] * steps) % 1.0
     half = np.where(arm.chain.revolute, pi, arm.task.size)
     centre = np.clip(0.0, low + half, np.maximum(high - half, low + half))
     least, most = np.maximum(low, centre - half), np.minimum(high, centre + half)
     return np.asarray(least + part * (most - least))
 
 
-def _descend(arm: Arm, T: Array, q: Array, bounds: tuple[Array, Array]) -> tuple[Array, Array]:
+def _descend_to(arm: Arm, T: Array, q: Array, bounds: tuple[Array, Array]) -> tuple[Array, Array]:
     """The rows (k, dof) at the ends of the steps, and what is least there (k,)."""
-    moving, damping = list(arm.moving), np.full(len(q), _FIRST)
+    moving, damping = list(arm.moving), np.full(len(q), _FIRST_DAMPING)
     low, high = (bound[moving] for bound in bounds)
     pose, J = tip_and_jacobian(arm.chain, q)
-    error = _chords(arm.task, pose, T)
+    error = _chord_errors(arm.task, pose, T)
     cost = (error**2).sum(axis=1)
-    for _ in range(_STEPS):
+    for _ in range(_STEP_COUNT):
         trial = q.copy()
-        slope = entry_rows(arm.task.entries, _weight(arm.task), pose, J)[:, :, moving]
-        trial[:, moving] = _stepped(q[:, moving], slope, error, damping, (low, high))
+        slope = entry_rows(arm.task.entries, _chord_weight(arm.task), pose, J)[:, :, moving]
+        trial[:, moving] = _clipped_step(q[:, moving], slope, error, damping, (low, high))
         new = (trial, *tip_and_jacobian(arm.chain, trial))
-        errors = _chords(arm.task, new[1], T)
+        errors = _chord_errors(arm.task, new[1], T)
         costs = (errors**2).sum(axis=1)
         better = costs < cost
         q[better], error[better], cost[better] = trial[better], errors[better], costs[better]
         pose, J = (np.where(better[:, None, None], a, b) for a, b in zip(new[1:], (pose, J)))
-        damping = np.clip(damping * np.where(better, 0.2, 8.0), _LEAST, _MOST)
-        if damping.min() == _MOST:
+        damping = np.clip(damping * np.where(better, 0.2, 8.0), _LEAST_DAMPING, _MOST_DAMPING)
+        if damping.min() == _MOST_DAMPING:
             break
     return q, cost
 
 
-def _stepped(
+def _clipped_step(
     q: Array, slope: Array, error: Array, damping: Array, bounds: tuple[Array, Array]
 ) -> Array:
     """The rows (k, n) after one step; joints at a limit that it would pass stay."""
@@ -120,4 +120,4 @@ def _stepped(
     slope = np.where(stuck[:, None], 0.0, slope)
     normal = np.einsum("kmi,kmj->kij", slope, slope) + damping[:, None, None] * np.eye(q.shape[1])
     step = np.linalg.solve(normal, np.where(stuck, 0.0, push)[:, :, None])[:, :, 0]
-    return np.asarray(np.clip(q + np.clip(step, -_LONGEST, _LONGEST), *bounds))
+    return np.asarray(np.clip(q + np.clip(step, -_LONGEST_STEP, _LONGEST_STEP), *bounds))

@@ -16,12 +16,15 @@ _TURN = 2.0 * pi
 
 
 def is_new(arm: Arm, row: Row, kept: Sequence[Found]) -> bool:
-    """Whether the row differs from all kept ones, whole turns aside."""
+    """Whether the row differs from all kept ones, whole turns aside; long slides count relative to their
+    length."""
     near = arm.policy.coincident
     for other, _ in kept:
         for a, b, turns in zip(row, other, arm.chain.revolute):
             gap = abs(a - b)
-            if gap > near and (not turns or abs((gap + pi) % _TURN - pi) > near):
+            if gap <= near:
+                continue
+            if abs((gap + pi) % _TURN - pi) > near if turns else gap > near * abs(a):
                 break
         else:
             return False
@@ -29,15 +32,17 @@ def is_new(arm: Arm, row: Row, kept: Sequence[Found]) -> bool:
 
 
 def distinct(arm: Arm, q: Array, valid: Flags) -> Flags:
-    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside."""
+    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside; long
+    slides count relative to their length."""
     near = arm.policy.coincident
     later, earlier = np.tril_indices(q.shape[1], -1)
     same = valid.T[later] & valid.T[earlier]
     for j in reversed(range(q.shape[2])):  # the last joints differ between most rows
         value = q[:, :, j].T
         gap = np.abs(value[later] - value[earlier])
-        close = gap <= near
-        same &= close | (np.abs(gap - _TURN) <= near) if arm.chain.revolute[j] else close
+        bound = near if arm.chain.revolute[j] else near * np.abs(value[later])
+        far = np.abs(gap - _TURN) if arm.chain.revolute[j] else gap
+        same &= (gap <= near) | (far <= bound)
         if not same.any():
             return valid
     valid = valid.copy()

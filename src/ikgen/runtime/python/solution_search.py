@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from math import inf
 
 import numpy as np
@@ -10,6 +11,7 @@ from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.batch_solving import rows_batch
 from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.row_links import differences
+from ikgen.runtime.python.row_names import branch_names
 from ikgen.runtime.python.row_preference import Preference, preference_costs
 from ikgen.runtime.python.solutions import Solutions, Status
 from ikgen.runtime.python.solved_arm import Arm
@@ -85,4 +87,5 @@ def _solutions(
             flags.append(bool(found.singular[0]))
     if not q:
         return Solutions(np.empty((0, len(arm.lower))), Status.LIMITS, np.empty(0, dtype=bool))
-    return Solutions(np.array(q), Status.OK, np.array(flags))
+    names = partial(branch_names, arm)
+    return Solutions(np.array(q), Status.OK, np.array(flags), names=names)

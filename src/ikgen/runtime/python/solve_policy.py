@@ -20,6 +20,12 @@ class Policy:
     try_step: float  # rad from one to the next
     rank_loss: float  # smallest singular value below which a refined row is singular
     continuum_rank_loss: float  # the same where the closed form says that it is
+    farthest_start: float  # first step (rad, m) of rows that are refined together
+    contraction: float  # of each further one
+    least_pivot: float  # how far the derivatives by each joint must be from the others' span
+    least_miss: float  # error that shows that a row ends beside the pose
+    near: float  # largest step behind which the derivatives stay
+    lane_steps: int  # at most
     least_damping: float
     damping: float  # of a Newton step, times the squared error
     largest_step: float  # of a joint

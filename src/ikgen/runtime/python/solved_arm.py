@@ -24,8 +24,9 @@ class Arm:
     most. `branches(T, q0, held)`: the closed form's rows for a pose, values of joints that it leaves
     free, values of held joints, and whether it left one free; `branches_batch`: in arrays. `beside`
     (n, 4, 4): motions of the tool to poses that are solved as well. `turning`: which joints are
-    revolute and not held; `moving`: indices of those not held. `branch_kind`, `elbow_end`: as in
-    `branch_names`."""
+    revolute and not held; `moving`: indices of those not held.
+    `rounded`: whether the closed form is of another geometry than the file's, and all rows are rough.
+    `branch_kind`, `elbow_end`: as in `branch_names`."""
 
     chain: Chain
     task: Task
@@ -41,5 +42,6 @@ class Arm:
     beside: Array
     turning: tuple[bool, ...]
     moving: tuple[int, ...]
+    rounded: bool
     branch_kind: str
     elbow_end: int

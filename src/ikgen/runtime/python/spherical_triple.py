@@ -11,8 +11,9 @@ __all__ = ["Complex", "spherical_triple", "turns_z"]
 
 Complex = NDArray[np.complex128]
 
-_SIGNS = np.array([[1.0], [-1.0]])
-_LEAST = 1e-12  # of the divisor
+_TRIPLE_SIGNS = np.array([[1.0], [-1.0]])
+_LEAST_DIVISOR = 1e-12  # of the divisor
+_PARALLEL_SINE = 1e-9  # the middle axis with one beside it: no cosine gives its angle
 
 
 def turns_z(c: Complex, s: Complex) -> Complex:
@@ -32,12 +33,12 @@ def spherical_triple(K: Array, M: Array) -> tuple[Array, Complex, Complex]:
     """
     m = M[:, 2, 2]
     h = 1.0 - m * m
-    over = 1.0 / np.where(np.abs(h) < _LEAST, _LEAST, h)
+    over = 1.0 / np.where(np.abs(h) < _LEAST_DIVISOR, _LEAST_DIVISOR, h)
     a, b = K[0][:, 2], K[1][:, :, 2]
     beta, gamma = a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1], a[:, 1] * b[:, 0] - a[:, 0] * b[:, 1]
-    size = np.hypot(beta, gamma) + 1e-300
+    size = np.maximum(np.hypot(beta, gamma), _PARALLEL_SINE)
     x = (m - a[:, 2] * b[:, 2]) / size + 0j
-    y = _SIGNS * np.sqrt(1.0 - x * x)
+    y = _TRIPLE_SIGNS * np.sqrt(1.0 - x * x)
     c2, s2 = (beta * x - gamma * y) / size, (gamma * x + beta * y) / size
     W = K[0] @ turns_z(c2, s2) @ K[1]
     e, f = W[..., :, 2], W[..., 2, :]

@@ -15,8 +15,8 @@ from ikgen.runtime.python.spherical_triple import spherical_triple
 
 __all__ = ["three_slide_candidates"]
 
-_FOLD = 1e-3  # imaginary part of an angle that may be a fold's round-off
-_APART = 1e-6
+_SLIDES_FOLD = 1e-3  # imaginary part of an angle that may be a fold's round-off
+_SLIDES_APART = 1e-6
 
 
 def three_slide_candidates(F: Array, T: Array, plan: Elimination, turning: Turning) -> Candidates:
@@ -27,7 +27,7 @@ def three_slide_candidates(F: Array, T: Array, plan: Elimination, turning: Turni
     loop = revolute_loop(C, turns, len(T))
     h, c, s = spherical_triple(loop.K[:2], np.swapaxes(loop.K[2], -1, -2))
     off = np.maximum(np.abs(c[0, 1].imag), np.abs(s[0, 1].imag))
-    pose = np.flatnonzero(off < _FOLD)
+    pose = np.flatnonzero(off < _SLIDES_FOLD)
     twice = np.tile(pose, 2)
     branch = np.repeat([0, 1], len(pose))
     p, u = displacement(loop, c, s)
@@ -39,5 +39,7 @@ def three_slide_candidates(F: Array, T: Array, plan: Elimination, turning: Turni
     values[:, np.flatnonzero(~np.array(turns))] = slides
     q = np.empty_like(values)
     q[:, order] = values
-    simple = (np.abs(s[0, 1] - s[1, 1]) + np.abs(c[0, 1] - c[1, 1]) > _APART) & (h > _APART)
+    simple = (np.abs(s[0, 1] - s[1, 1]) + np.abs(c[0, 1] - c[1, 1]) > _SLIDES_APART) & (
+        h > _SLIDES_APART
+    )
     return twice, q, np.where(off < 1e-12, 2, 0).astype(np.intp), simple

@@ -27,29 +27,32 @@ from ikgen.runtime.python.spherical_triple import Complex, spherical_triple, tur
 
 __all__ = ["two_slide_candidates"]
 
-_COUNT = 16
-_NODES = 2.0 * np.pi / _COUNT * np.arange(_COUNT)
-_OFFSETS = np.array([0.1, 0.19, 0.28, 0.37])  # rad, of the nodes: one where no divisor is small
-_DEGREE = 4
-_HARMONICS = np.arange(-_DEGREE, _DEGREE + 1)
+_QUARTIC_COUNT = 16
+_QUARTIC_NODES = 2.0 * np.pi / _QUARTIC_COUNT * np.arange(_QUARTIC_COUNT)
+_QUARTIC_OFFSETS = np.array(
+    [0.1, 0.19, 0.28, 0.37]
+)  # rad, of the nodes: one where no divisor is small
+_WELL_APART = 1e-3  # divisors above it need no other nodes
+_QUARTIC_DEGREE = 4
+_QUARTIC_HARMONICS = np.arange(-_QUARTIC_DEGREE, _QUARTIC_DEGREE + 1)
 
 
 def _half_angle_powers() -> Complex:
     """Coefficients (9, 9) by powers of t = tan(a / 2) of `exp(i k a) (1 + t^2)^4`, a row for each k."""
     up, down = np.array([1j, 1.0]), np.array([-1j, 1.0])
     rows = []
-    for k in _HARMONICS.tolist():
+    for k in _QUARTIC_HARMONICS.tolist():
         row = np.array([1.0 + 0j])
-        for factor in [up] * (_DEGREE + k) + [down] * (_DEGREE - k):
+        for factor in [up] * (_QUARTIC_DEGREE + k) + [down] * (_QUARTIC_DEGREE - k):
             row = np.convolve(row, factor)
         rows.append(row[::-1])
     return np.array(rows)
 
 
-_POWERS = _half_angle_powers()
+_QUARTIC_POWERS = _half_angle_powers()
 
 
-def _others(loop: RevoluteLoop, angle: Array) -> tuple[Array, Complex, Complex]:
+def _beside_hidden(loop: RevoluteLoop, angle: Array) -> tuple[Array, Complex, Complex]:
     """The divisor h (n,), and cosines and sines (2, 4, n) of all angles with the first at `angle` (n,)."""
     c, s = np.cos(angle) + 0j, np.sin(angle) + 0j
     M = np.swapaxes(loop.K[3] @ turns_z(c, s).real @ loop.K[0], -1, -2)
@@ -58,42 +61,45 @@ def _others(loop: RevoluteLoop, angle: Array) -> tuple[Array, Complex, Complex]:
     return h, np.concatenate([first * c, cosines], 1), np.concatenate([first * s, sines], 1)
 
 
-def _product(p: Complex, u: Complex) -> Complex:
+def _triple_product(p: Complex, u: Complex) -> Complex:
     """The triple product g (2, n)."""
     return np.asarray((cross(u[0], u[1]) * p).sum(axis=-1))
 
 
-def _polynomial(loop: RevoluteLoop, count: int) -> tuple[Array, Array]:
+def _quartic_values(loop: RevoluteLoop, count: int) -> tuple[Array, Array]:
     """`g_+ g_- h` at the nodes (n, 16), and the offset of each pose's nodes (n,)."""
-    pose = np.repeat(np.arange(count), _COUNT)
-    best, value, offset = np.full(count, -1.0), np.zeros((count, _COUNT)), np.zeros(count)
-    for shift in _OFFSETS:
+    pose = np.repeat(np.arange(count), _QUARTIC_COUNT)
+    best, value, offset = np.full(count, -1.0), np.zeros((count, _QUARTIC_COUNT)), np.zeros(count)
+    for shift in _QUARTIC_OFFSETS:
         rows = loop.of(pose)
-        h, c, s = _others(rows, np.tile(_NODES + shift, count))
-        g = _product(*displacement(rows, c, s))
+        h, c, s = _beside_hidden(rows, np.tile(_QUARTIC_NODES + shift, count))
+        g = _triple_product(*displacement(rows, c, s))
         least = np.abs(h).reshape(count, -1).min(axis=1)
-        better = least > best
+        better = (least > best) & (best <= _WELL_APART)
         best = np.where(better, least, best)
         offset = np.where(better, shift, offset)
         product = (g[0] * g[1] * h).real.reshape(count, -1)
         value = np.where(better[:, None], product, value)
-        if (best > 1e-3).all():
+        if (best > _WELL_APART).all():
             break
     return value, offset
 
 
-def _roots(value: Array, offset: Array) -> tuple[Complex, Array]:
+def _quartic_roots(value: Array, offset: Array) -> tuple[Complex, Array]:
     """Eigenvalues t (n, 8), and the angle a (n,) for which hidden angles are `a + 2 atan(t)`: opposite to
     the node where the polynomial is largest, so that this is the leading coefficient."""
-    spectrum = np.fft.fft(value, axis=1)[:, _HARMONICS] / _COUNT
-    opposite = (np.abs(value).argmax(axis=1) + _COUNT // 2) % _COUNT
-    spectrum = spectrum * np.exp(1j * _NODES[opposite][:, None] * _HARMONICS)
-    powers = (spectrum @ _POWERS).real
+    spectrum = np.fft.fft(value, axis=1)[:, _QUARTIC_HARMONICS] / _QUARTIC_COUNT
+    opposite = (np.abs(value).argmax(axis=1) + _QUARTIC_COUNT // 2) % _QUARTIC_COUNT
+    spectrum = spectrum * np.exp(1j * _QUARTIC_NODES[opposite][:, None] * _QUARTIC_HARMONICS)
+    # not a matrix product, whose rounding hangs on the number of poses
+    powers = (spectrum[:, :, None] * _QUARTIC_POWERS).sum(axis=1).real
     lead = np.where(powers[:, -1:] == 0.0, 1e-300, powers[:, -1:])
     companion = np.zeros((len(value), 8, 8))
     companion[:, 1:, :-1] = np.eye(7)
     companion[:, :, -1] = -powers[:, :-1] / lead
-    return np.asarray(np.linalg.eigvals(companion), dtype=complex), offset + _NODES[opposite]
+    return np.asarray(np.linalg.eigvals(companion), dtype=complex), offset + _QUARTIC_NODES[
+        opposite
+    ]
 
 
 def two_slide_candidates(F: Array, T: Array, plan: Elimination, turning: Turning) -> Candidates:
@@ -102,12 +108,12 @@ def two_slide_candidates(F: Array, T: Array, plan: Elimination, turning: Turning
     order, C = loop_constants(F, T, *plan[:2])
     turns = [turning[j] for j in order]
     loop = revolute_loop(C, turns, len(T))
-    t, about = _roots(*_polynomial(loop, len(T)))
+    t, about = _quartic_roots(*_quartic_values(loop, len(T)))
     pose, angle, least, simple = real_angles(t, about, 0.03)
     loop = loop.of(pose)
-    _, c, s = _others(loop, angle)
+    _, c, s = _beside_hidden(loop, angle)
     p, u = displacement(loop, c, s)
-    g = np.abs(_product(p, u))
+    g = np.abs(_triple_product(p, u))
     branch, k = np.nonzero(g <= 1e3 * g[::-1] + 1e-6)  # the one of which it is a root, or both
     values = np.empty((len(k), 6))
     values[:, np.flatnonzero(turns)] = np.arctan2(s[branch, :, k].real, c[branch, :, k].real)

@@ -41,11 +41,17 @@ static void put(Numbers& out, const ik::Solutions& found) {
   }
 }
 
+template <class O> static auto hold(O& options, bool seed, int) -> decltype((void)options.hold_seed) {
+  options.hold_seed = seed;
+}
+template <class O> static void hold(O&, bool, long) {}
+
 static void solve(const double*& in, bool has_free, bool has_seed, bool limits, Numbers& out) {
   const Eigen::Isometry3d pose = take_pose(in);
   ik::Options options;
   options.limits = limits;
   if (has_free) for (int i = 0; i < ik::kFree; ++i) options.free[i] = *in++;
+  hold(options, !has_free, 0);
   ik::Joints seed;
   if (has_seed) {
     seed = Eigen::Map<const ik::Joints>(in);

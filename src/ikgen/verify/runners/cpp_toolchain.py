@@ -7,6 +7,7 @@ import os
 import re
 import shlex
 import shutil
+import sys
 import sysconfig
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,7 +15,7 @@ from pathlib import Path
 from ikgen.errors import MissingToolError, VerificationError
 from ikgen.processes.outside_program import SECONDS_VARIABLE, Finished, run_program
 
-__all__ = ["compile_program", "find_compiler", "find_eigen"]
+__all__ = ["compile_extension", "compile_program", "find_compiler", "find_eigen"]
 
 _COMPLAINT = re.compile(r":\d+:\d+: .*\berror: ")
 _COMPILERS = ("c++", "g++", "clang++")
@@ -82,10 +83,29 @@ def compile_program(
     takes too long, finds no room; `VerificationError` with its first messages where the code does not
     compile.
     """
+    _compile([source], output, include, flags)
+
+
+def compile_extension(
+    sources: Sequence[Path], output: Path, include: Sequence[Path], *defines: str
+) -> None:
+    """Compile C++17 files into a module of the running Python, with full optimisation. Raises as
+    `compile_program`."""
+    options = [f"-D{one}" for one in ("NDEBUG", *defines)]
+    options += ["-O3", "-shared", "-fPIC", "-fvisibility=hidden", "-fno-strict-aliasing"]
+    if sys.platform == "darwin":
+        options += ["-undefined", "dynamic_lookup"]
+    _compile(sources, output, [*include, Path(sysconfig.get_path("include"))], options)
+
+
+def _compile(
+    sources: Sequence[Path], output: Path, include: Sequence[Path], options: Sequence[str]
+) -> None:
     includes = [f"-I{directory}" for directory in include]
-    command = [*find_compiler(), "-std=c++17", *flags, *includes, "-isystem", str(find_eigen())]
+    command = [*find_compiler(), "-std=c++17", *options, *includes, "-isystem", str(find_eigen())]
     done = run_program(
-        [*command, str(source), "-o", str(output)], environment={**os.environ, "LC_ALL": "C"}
+        [*command, *map(str, sources), "-o", str(output)],
+        environment={**os.environ, "LC_ALL": "C"},
     )
     wrong = _complaints(done.printed)
     if wrong and done.code and not (done.late or done.crashed):

@@ -37,7 +37,8 @@ def _side_names(arm: Arm, q: Array) -> tuple[str, ...]:
 
     Seen from the first axis towards the wrist (where the last two axes meet), the second one points to the
     right or to the left; the elbow is above or below the line from the shoulder to the point that the
-    third axis turns, where up is along the first axis; the fifth angle is positive, or the wrist flipped.
+    third axis turns, where up is along the first axis; the wrist is flipped where the sixth axis is turned
+    from the fourth by a negative angle about the fifth.
     """
     z, p, _ = joint_axes(arm.chain, q)
     up = z[:, 0] * np.where(z[:, :1, 2] < 0.0, -1.0, 1.0)

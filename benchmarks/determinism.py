@@ -1,0 +1,139 @@
+"""The same bytes whatever the surroundings: a matrix of builds that are compared with a first one.
+
+    python -m benchmarks.determinism [--arms FILE ...] [--record]
+
+Each row changes one thing: the kernels that OpenBLAS chooses, the vector instructions that NumPy and the C
+library may use, hash seed, locale, time zone, working directory, spelling of the path, number of processes.
+Exit code 1 where a file differs.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from benchmarks.collection import CORPUS
+from benchmarks.command_line import FIXTURES
+from benchmarks.results import write_result
+
+__all__ = ["Row", "main", "rows"]
+
+_WIDE = "AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL X86_V4 AVX512_SPR"
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One build: what is changed, in words, and how: environment, options of `ikgen build`, the working
+    directory (by its place above the project) and how the config is named from there."""
+
+    words: str
+    environment: Mapping[str, str] = field(default_factory=dict)
+    options: tuple[str, ...] = ("-j", "1")
+    above: int = 0
+    config: str = "ikgen.toml"
+
+
+def rows() -> list[Row]:
+    """The matrix; its first row is what the others are compared with."""
+    kernels = ("SkylakeX", "Haswell", "Sandybridge", "Zen")
+    found = [Row("as it is")]
+    found += [Row(f"OpenBLAS for {name}", {"OPENBLAS_CORETYPE": name}) for name in kernels]
+    found += [
+        Row("two threads of OpenBLAS", {"OPENBLAS_NUM_THREADS": "2"}),
+        Row("NumPy without AVX-512", {"NPY_DISABLE_CPU_FEATURES": _wide()}),
+        Row("NumPy without AVX2", {"NPY_DISABLE_CPU_FEATURES": _wide("AVX2", "FMA3", "X86_V3")}),
+        Row("C library without AVX-512", {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX512F"}),
+    ]
+    found += [Row(f"hash seed {seed}", {"PYTHONHASHSEED": seed}) for seed in ("0", "1", "4242")]
+    found += [Row(f"locale {name}", {"LC_ALL": name}) for name in ("C", "C.UTF-8", "tr_TR.UTF-8")]
+    found += [Row(f"time zone {name}", {"TZ": name}) for name in ("UTC", "Asia/Kathmandu")]
+    found += [
+        Row("from the folder above", above=1, config="project/ikgen.toml"),
+        Row(
+            "from two above, a long spelling",
+            above=2,
+            config="{up}/project/../project/./ikgen.toml",
+        ),
+        Row("an absolute path", above=1, config="{absolute}"),
+        Row("two processes", options=("-j", "2")),
+    ]
+    return found
+
+
+def _wide(*more: str) -> str:
+    """Those of the features that this NumPy knows and the processor has."""
+    from numpy._core._multiarray_umath import __cpu_dispatch__, __cpu_features__
+
+    wanted = {*_WIDE.split(), *more}
+    return " ".join(n for n in __cpu_dispatch__ if n in wanted and __cpu_features__.get(n))
+
+
+def built(row: Row, arms: Sequence[Path]) -> dict[str, str]:
+    """Digests of what a build in a new folder gives, by name."""
+    place = Path(tempfile.mkdtemp(prefix="determinism-"))
+    try:
+        project = place / "up" / "project"
+        project.mkdir(parents=True)
+        text = ""
+        for arm in arms:
+            shutil.copy(arm, project)
+            text += f'[[arm]]\nname = "{arm.stem}"\nrobot = "{arm.name}"\nout = "out"\n'
+            text += 'emit = ["python", "cpp"]\n'
+        (project / "ikgen.toml").write_text(text, encoding="utf-8")
+        here = (project, place / "up", place)[row.above]
+        config = row.config.format(up="up", absolute=project / "ikgen.toml")
+        command = [sys.executable, "-m", "ikgen", "build", config, "-q", "--no-verify"]
+        subprocess.run(
+            [*command, *row.options], cwd=here, env={**os.environ, **row.environment}, check=True
+        )
+        files = sorted((project / "out").iterdir())
+        return {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in files}
+    finally:
+        shutil.rmtree(place, ignore_errors=True)
+
+
+def default_arms() -> list[Path]:
+    """Arms of exact and of rounded files, solved by rules and by elimination."""
+    found = [FIXTURES / f"{name}.urdf" for name in ("kuka_kr6r900sixx",)]
+    found += [
+        CORPUS / "urdf" / f"{n}.urdf" for n in ("doosan_m1013", "ur5e", "franka_fr3", "xarm6")
+    ]
+    return [path for path in found if path.is_file()]
+
+
+def main() -> int:
+    """Print the matrix."""
+    parser = argparse.ArgumentParser(description="The same bytes in all surroundings.")
+    parser.add_argument("--arms", nargs="+", type=Path, default=None)
+    parser.add_argument(
+        "--only", nargs="+", default=None, help="rows whose words have one of these"
+    )
+    parser.add_argument("--record", action="store_true", help="write the recorded result")
+    options = parser.parse_args()
+    arms = options.arms or default_arms()
+    first, *others = rows()
+    expected = built(first, arms)
+    others = [r for r in others if not options.only or any(o in r.words for o in options.only)]
+    print(f"{len(expected)} files of {len(arms)} arms")
+    differing: dict[str, int] = {}
+    for row in others:
+        found = built(row, arms)
+        names = [n for n in {**expected, **found} if expected.get(n) != found.get(n)]
+        differing[row.words] = len(names)
+        print(f"{row.words:34} {'differs: ' + ', '.join(names) if names else 'same'}", flush=True)
+    if options.record:
+        shown = {"files": len(expected), "arms": len(arms), "differing": differing}
+        write_result("determinism", "python -m benchmarks.determinism", shown)
+    return 1 if any(differing.values()) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

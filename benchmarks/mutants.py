@@ -1,0 +1,148 @@
+"""Mutants of real robot files: whatever a file says, an answer or a refusal with its place, in time.
+
+    python -m benchmarks.mutants [--read N] [--run N] [--seed N] [--keep DIR] [--record]
+
+N mutants are read in this process (file, chains, DH form, geometry), another N go through the command line
+(`ikgen from-urdf`, Python and verification). Wrong is: an exception that is no `IkgenError`, an exit code
+other than 0, 2 or 3, a traceback, "please report it", more than two minutes. Exit code 1 where any is.
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import traceback
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+from benchmarks.collection import CORPUS
+from benchmarks.command_line import FIXTURES
+from benchmarks.mutations import mutant
+from benchmarks.results import write_result
+
+__all__ = ["main", "read_one", "robot_files"]
+
+SECONDS = 120
+_READ_SECONDS = 20
+
+
+def robot_files() -> list[Path]:
+    """The files that are changed."""
+    return [*sorted(FIXTURES.glob("*.urdf")), *sorted((CORPUS / "urdf").glob("*.urdf"))]
+
+
+def mutants(count: int, seed: int) -> Iterator[tuple[str, bytes]]:
+    """Names and texts, each file in turn."""
+    files = robot_files()
+    texts = {path: path.read_text("utf-8") for path in files}
+    for number, path in zip(range(count), itertools.cycle(files)):
+        draw = random.Random(f"{seed}/{number}")
+        text = mutant(texts[path], draw)
+        yield f"{path.stem}_{seed}_{number}", text.encode("utf-8", "surrogateescape")
+
+
+def read_one(path: Path) -> str:
+    """How far reading in this process came, in a word; raises what is no refusal."""
+    from ikgen.errors import IkgenError
+    from ikgen.generation.inspection import inspect_robot
+    from ikgen.generation.request import Request
+
+    try:
+        found = inspect_robot(Request(path), advice=False)
+        if found.reading is None and found.candidates:
+            chain = found.candidates[0]
+            inspect_robot(Request(path, base=chain.base, tip=chain.tip), advice=False)
+    except IkgenError as error:
+        return "refused" if error.message and error.hint else "refused without a way out"
+    return "read"
+
+
+def read_all(count: int, seed: int, keep: Path) -> Counter[str]:
+    """The mutants of the first kind; wrong ones are kept."""
+
+    def late(*_: object) -> None:
+        raise TimeoutError
+
+    signal.signal(signal.SIGALRM, late)
+    counts = Counter[str]()
+    path = keep / "mutant.urdf"
+    for name, data in mutants(count, seed):
+        path.write_bytes(data)
+        signal.alarm(_READ_SECONDS)
+        try:
+            counts[read_one(path)] += 1
+        except Exception as error:
+            signal.alarm(0)
+            words = f"WRONG: {type(error).__name__}"
+            counts[words] += 1
+            last = traceback.extract_tb(error.__traceback__)[-1]
+            print(
+                f"{name}: {words}: {error} ({Path(last.filename).name}:{last.lineno})", flush=True
+            )
+            (keep / f"{name}.urdf").write_bytes(data)
+        finally:
+            signal.alarm(0)
+    path.unlink(missing_ok=True)
+    return counts
+
+
+def run_all(count: int, seed: int, keep: Path) -> Counter[str]:
+    """The mutants of the second kind."""
+    counts = Counter[str]()
+    for name, data in mutants(count, seed + 1):
+        path = keep / f"{name}.urdf"
+        path.write_bytes(data)
+        words = run_one(path)
+        counts[words] += 1
+        if words.startswith("WRONG"):
+            print(f"{name}: {words}", flush=True)
+        else:
+            path.unlink()
+    return counts
+
+
+def run_one(path: Path) -> str:
+    """What the command line says to one file."""
+    with tempfile.TemporaryDirectory(prefix="mutants-") as out:
+        command = [sys.executable, "-m", "ikgen", "from-urdf", str(path), "-q", "--samples", "100"]
+        try:
+            done = subprocess.run([*command, "-o", out], capture_output=True, timeout=SECONDS)
+        except subprocess.TimeoutExpired:
+            return f"WRONG: more than {SECONDS} s"
+    said = done.stderr.decode("utf-8", "replace")
+    if done.returncode not in (0, 2, 3) or "Traceback" in said or "please report" in said:
+        return f"WRONG: exit code {done.returncode}: {' '.join(said.split())[:300]}"
+    return f"exit code {done.returncode}"
+
+
+def main() -> int:
+    """Count what came of the mutants."""
+    parser = argparse.ArgumentParser(description="Mutants of real robot files.")
+    parser.add_argument("--read", type=int, default=20000)
+    parser.add_argument("--run", type=int, default=1000)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--keep", type=Path, default=None, help="where wrong ones are kept")
+    parser.add_argument("--record", action="store_true", help="write the recorded result")
+    options = parser.parse_args()
+    keep = options.keep or Path(tempfile.mkdtemp(prefix="mutants-"))
+    keep.mkdir(parents=True, exist_ok=True)
+    found = {"read": read_all(options.read, options.seed, keep)}
+    found["run"] = run_all(options.run, options.seed, keep)
+    for kind, counts in found.items():
+        for words, count in counts.most_common():
+            print(f"{kind:5} {count:6}  {words}")
+    wrong = sum(n for c in found.values() for words, n in c.items() if words.startswith("WRONG"))
+    if options.record:
+        result = {kind: dict(counts) for kind, counts in found.items()}
+        write_result("mutants", "python -m benchmarks.mutants", {**result, "wrong": wrong})
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,184 @@
+"""Calibrations: what one arm's own kinematics is off its model's.
+
+Two forms. YAML as `ur_description` reads it (`kinematics: shoulder: {x, y, z, roll, pitch, yaw}`, lengths
+in m and angles in rad): the origins of joints, by the link that they carry, in place of the file's. TOML as
+DH tables are written: `[[joints]]` with `alpha`, `a`, `d`, `theta` to add to the arm's modified rows.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ikgen.errors import BadDescriptionError
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+if TYPE_CHECKING:
+    from ikgen.model.joint_tree import JointTree, Source
+
+__all__ = ["ROW_ENTRIES", "calibrated_source", "calibrated_tree", "is_offsets", "row_offsets"]
+
+ROW_ENTRIES = ("alpha", "a", "d", "theta")
+_ORIGIN = ("x", "y", "z", "roll", "pitch", "yaw")
+_NOT_A_LINK = ("hash",)
+_LARGEST = 2**19  # bytes
+
+
+def is_offsets(path: Path) -> bool:
+    """Whether a calibration is one of DH rows, by its suffix."""
+    return path.suffix.lower() == ".toml"
+
+
+def calibrated_source(source: Source, path: Path) -> Source:
+    """The source of a description with a calibration beside it: another digest, one more file."""
+    from dataclasses import replace
+
+    digest = hashlib.sha256(f"{source.text}\n{_text(path)}".encode("utf-8", "replace")).hexdigest()
+    files = dict.fromkeys((*(source.dependencies or (source.path.resolve(),)), path.resolve()))
+    return replace(source, sha256=digest, dependencies=tuple(files))
+
+
+def calibrated_tree(tree: JointTree, path: Path) -> JointTree:
+    """The tree of the same text with the origins of a calibration in YAML.
+
+    Raises `BadDescriptionError` for a file that is none, and for entries that name no link of the tree, or
+    several.
+    """
+    from dataclasses import replace
+
+    from lxml import etree
+
+    from ikgen.importers.urdf.urdf_tree import parse_urdf
+    from ikgen.importers.xml_document import children, parse_xml, shown_file
+
+    source = tree.source
+    root = parse_xml(source.text, shown_file(source))
+    joints = {
+        joint: element for element in children(root, "joint") if (joint := element.get("name"))
+    }
+    for key, origin in _origins(path).items():
+        element = joints[_carrier(tree, key, path)]
+        for old in list(children(element, "origin")):
+            element.remove(old)
+        numbers = [f"{origin[name]!r}" for name in _ORIGIN]
+        etree.SubElement(element, "origin", xyz=" ".join(numbers[:3]), rpy=" ".join(numbers[3:]))
+    text = etree.tostring(root, encoding="unicode")
+    made = parse_urdf(
+        text,
+        path=source.path,
+        kind=source.kind,
+        dependencies=source.dependencies,
+        package_urls=source.package_urls,
+        arguments=dict(source.arguments),
+        warnings=source.warnings,
+    )
+    merged = replace(made.source, warnings=tuple(dict.fromkeys(made.source.warnings)))
+    return replace(made, source=calibrated_source(merged, path))
+
+
+def _carrier(tree: JointTree, key: str, path: Path) -> str:
+    """The joint whose child is the link that an entry means: `<key>_link` or `<key>`, with any prefix."""
+    exact = [joint.name for joint in tree.joints if joint.child in (f"{key}_link", key)]
+    ends = (f"_{key}_link", f"/{key}_link")
+    found = exact or [joint.name for joint in tree.joints if joint.child.endswith(ends)]
+    if len(found) == 1:
+        return found[0]
+    what = f"several links of that name ({', '.join(found)})" if found else f"no link '{key}_link'"
+    links = ", ".join(joint.child for joint in tree.joints if joint.type.moves_on_one_axis)
+    raise BadDescriptionError(
+        f"the entry '{key}' of the calibration: the robot has {what}",
+        file=str(path),
+        hint=f"entries are named like the links that joints carry: {links}",
+    )
+
+
+def _origins(path: Path) -> dict[str, dict[str, float]]:
+    """Link -> the six numbers of its joint's origin."""
+    data = _yaml(path)
+    table = data.get("kinematics") if isinstance(data, Mapping) else None
+    if not isinstance(table, Mapping):
+        raise BadDescriptionError(
+            "no calibration: it has no table 'kinematics'",
+            file=str(path),
+            hint="a robot's own is written by ur_calibration; offsets of DH rows go in a .toml file",
+        )
+    found = {}
+    for key, entry in table.items():
+        if key in _NOT_A_LINK:
+            continue
+        if not isinstance(entry, Mapping) or set(entry) != set(_ORIGIN):
+            problem = (
+                f"the entry '{key}' of the calibration has not the numbers {', '.join(_ORIGIN)}"
+            )
+            raise BadDescriptionError(problem, file=str(path), hint="lengths in m, angles in rad")
+        found[str(key)] = {name: _number(entry[name], f"{key}.{name}", path) for name in _ORIGIN}
+    return found
+
+
+def row_offsets(path: Path, rows: int) -> tuple[dict[str, float], ...]:
+    """What a calibration in TOML adds to each of the arm's modified rows: `ROW_ENTRIES`, in m and rad.
+
+    Raises `BadDescriptionError` for another number of rows, unknown entries, and what is no number.
+    """
+    try:
+        data = tomllib.loads(_text(path))
+    except tomllib.TOMLDecodeError as error:
+        raise BadDescriptionError(f"not TOML: {error}", file=str(path)) from None
+    joints = data.get("joints")
+    if set(data) != {"joints"} or not isinstance(joints, list) or len(joints) != rows:
+        raise BadDescriptionError(
+            f"no calibration of {rows} rows",
+            file=str(path),
+            hint=f"write {rows} tables [[joints]] with the offsets alpha, a, d, theta (rad, m) of each "
+            "row, and nothing else; ikgen inspect shows the rows",
+        )
+    return tuple(dict(_row(joint, i, path)) for i, joint in enumerate(joints, start=1))
+
+
+def _row(joint: Any, number: int, path: Path) -> Iterator[tuple[str, float]]:
+    unknown = sorted(set(joint) - set(ROW_ENTRIES)) if isinstance(joint, Mapping) else ["row"]
+    if unknown:
+        problem = f"row {number} of the calibration: unknown entry '{unknown[0]}'"
+        raise BadDescriptionError(
+            problem, file=str(path), hint=f"there is: {', '.join(ROW_ENTRIES)}"
+        )
+    for name in ROW_ENTRIES:
+        yield name, _number(joint.get(name, 0.0), f"row {number}, {name}", path)
+
+
+def _number(value: Any, where: str, path: Path) -> float:
+    if isinstance(value, str):  # YAML 1.1 takes 2e-05 for a text
+        with suppress(ValueError):
+            value = float(value)
+    if isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
+        return float(value)
+    problem = f"{where} of the calibration is {value!r}, not a finite number"
+    raise BadDescriptionError(problem, file=str(path))
+
+
+def _text(path: Path) -> str:
+    from ikgen.importers.xml_document import read_text
+
+    return read_text(path, _LARGEST)
+
+
+def _yaml(path: Path) -> Any:
+    import yaml
+
+    from ikgen.importers.xacro.refusals import ExpansionLimitError
+    from ikgen.importers.xacro.yaml_values import parse_yaml
+
+    try:
+        return parse_yaml(_text(path), str(path), {})
+    except (yaml.YAMLError, ExpansionLimitError) as error:
+        what = " ".join(str(error).split())
+        raise BadDescriptionError(f"not YAML: {what}", file=str(path)) from None

@@ -1,0 +1,200 @@
+"""`ikgen.compile`: an arm whose solver is compiled, with the functions of `Arm`."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import os
+import platform
+import sys
+import sysconfig
+import tempfile
+from collections.abc import Mapping, Sequence
+from functools import cache, cached_property, partial
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ikgen.errors import ArgumentError, MissingToolError, VerificationError
+from ikgen.library.loaded_arm import Arm, Array
+from ikgen.library.solver_cache import cache_folder
+
+if TYPE_CHECKING:
+    from ikgen.runtime.python.solutions import Solutions
+
+__all__ = ["CompiledArm", "compile"]
+
+_POSES = 64
+_SAME = 1e-9  # rad, m: rows of the compiled solver and of the Python module
+
+
+class CompiledArm(Arm):
+    """An `Arm` whose `solve`, `solve_batch`, `forward` and `jacobian` run compiled: `compiled` is the
+    module of the nanobind package. What they take and give is what those of `Arm` do; other functions are
+    the Python module's."""
+
+    def __init__(self, arm: Arm, compiled: ModuleType) -> None:
+        super().__init__(arm._request, arm._outputs, arm._entry, arm._derived)
+        self.compiled = compiled
+
+    def solve(
+        self,
+        pose: Any,
+        *,
+        free: Sequence[float] | Mapping[str, float] | None = None,
+        seed: ArrayLike | None = None,
+        limits: bool = True,
+        project: bool = False,
+        orthonormalize: bool = False,
+    ) -> Solutions:
+        """As `Arm.solve`, by the compiled solver; by the Python module what only that knows."""
+        plain = isinstance(pose, np.ndarray) and not (project or orthonormalize)
+        T = pose if plain else self._matrices("solve", pose, orthonormalize)
+        options: dict[str, Any] = {"free": free, "seed": seed, "limits": limits}
+        found = None if project else self._refusing(self.compiled.solve, "solve", T, **options)
+        if found is None or not len(found):  # which tells more of a pose without solutions
+            return super().solve(pose, **options, project=project, orthonormalize=orthonormalize)
+        module = self.module
+        rows: Solutions = module.Solutions(
+            np.array(found.q), module.Status.OK, np.array(found.singular), names=self._names
+        )
+        return rows
+
+    def solve_batch(
+        self,
+        poses: Any,
+        *,
+        free: ArrayLike | Mapping[str, float] | None = None,
+        seed: ArrayLike | None = None,
+        limits: bool = True,
+        orthonormalize: bool = False,
+    ) -> tuple[Array, NDArray[np.int64], NDArray[np.str_]]:
+        """As `Arm.solve_batch`, by the compiled solver."""
+        T = self._matrices("solve_batch", poses, orthonormalize)
+        options = {"free": free, "seed": seed, "limits": limits}
+        found: tuple[Array, NDArray[np.int64], NDArray[np.str_]] = self._refusing(
+            self.compiled.solve_batch, "solve_batch", T, **options
+        )
+        return found
+
+    def forward(self, q: ArrayLike) -> Array:
+        """As `Arm.forward`, by the compiled solver."""
+        T: Array = self._refusing(self.compiled.forward, "forward", q)
+        return T
+
+    def jacobian(self, q: ArrayLike) -> Array:
+        """As `Arm.jacobian`, by the compiled solver."""
+        J: Array = self._refusing(self.compiled.jacobian, "jacobian", q)
+        return J
+
+    @cached_property
+    def _names(self) -> Any:
+        return partial(self.module._branch_names, self.module._ARM)
+
+    def _matrices(self, function: str, poses: Any, orthonormalize: bool) -> Array:
+        """Poses of any form as matrices."""
+        module = self.module
+        task = module._ARM.task
+        T: Array = self._refusing(module._pose_matrices, function, poses, task.alone)
+        if orthonormalize and T.shape[-2:] == (4, 4):
+            many = T.reshape(-1, 4, 4)
+            T = module._nearest_poses(task, many, module._ARM.policy).reshape(T.shape)
+        return T
+
+
+def compile(arm: Arm) -> CompiledArm:
+    """The arm with a compiled solver: the nanobind package, built here and kept in the cache.
+
+    Needs a C++ compiler, Eigen and the package nanobind (`MissingToolError` says what is missing). Raises
+    `VerificationError` where it does not compile, or its rows are not those of the Python module.
+    """
+    from ikgen.emit.nanobind import emit
+
+    if not isinstance(arm, Arm):
+        raise ArgumentError(
+            f"arm: {arm!r} does not do", hint="give what ikgen.load gives: ikgen.compile(arm)"
+        )
+    texts = emit(arm.derivation.whole.module)
+    package = f"{arm.name}_ik_ext"
+    folder = cache_folder() / "compiled" / _key(texts)
+    if not list((folder / package).glob("_native*")):
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        _build(texts, package, folder)
+    compiled = CompiledArm(arm, _loaded(folder / package, package))
+    _compare(arm, compiled)
+    return compiled
+
+
+def _key(texts: Mapping[str, str]) -> str:
+    """Digest of what a binary is made from, and of what runs it."""
+    told = [sys.version, platform.machine(), os.environ.get("CXX", ""), *sorted(texts.items())]
+    return hashlib.sha256(repr(told).encode()).hexdigest()
+
+
+def _build(texts: Mapping[str, str], package: str, folder: Path) -> None:
+    """Compile into a folder beside, which then is moved into place."""
+    from ikgen.generation.publish import write_texts
+    from ikgen.verify.runners.cpp_toolchain import compile_extension
+
+    nanobind = _nanobind()
+    with tempfile.TemporaryDirectory(dir=folder.parent, ignore_cleanup_errors=True) as name:
+        root = Path(name, "made")
+        write_texts(root, texts)
+        suffix = sysconfig.get_config_var("EXT_SUFFIX")
+        made = root / package / package / f"_native{suffix}"
+        sources = [root / package / "native.cpp", nanobind / "src/nb_combined.cpp"]
+        headers = [nanobind / "include", nanobind / "ext/robin_map/include"]
+        # a domain of its own: types of another arm of that name are not this one's
+        domain = f"NB_DOMAIN=ikgen_{folder.name[:16]}"
+        compile_extension(sources, made, [root / package, *headers], domain)
+        try:
+            (root / package).rename(folder)
+        except OSError:
+            if not folder.is_dir():  # another process was faster
+                raise
+
+
+def _nanobind() -> Path:
+    found = importlib.util.find_spec("nanobind")
+    if found is None or not found.submodule_search_locations:
+        raise MissingToolError(
+            "the package nanobind is not installed", hint="pip install 'ikgen[compile]'"
+        )
+    return Path(found.submodule_search_locations[0])
+
+
+@cache
+def _loaded(folder: Path, package: str) -> ModuleType:
+    """The package in a folder, which leaves its name to one that is installed."""
+    names = (package, f"{package}._native", f"{package}._status")
+    others = {name: sys.modules.pop(name) for name in names if name in sys.modules}
+    spec = importlib.util.spec_from_file_location(
+        package, folder / "__init__.py", submodule_search_locations=[str(folder)]
+    )
+    assert spec is not None and spec.loader is not None
+    module = sys.modules[package] = importlib.util.module_from_spec(spec)
+    try:
+        spec.loader.exec_module(module)
+    finally:
+        for name in names:
+            sys.modules.pop(name, None)
+        sys.modules.update(others)
+    return module
+
+
+def _compare(arm: Arm, compiled: CompiledArm) -> None:
+    """The rows of some poses; both are the same program, of which the Python module was verified."""
+    rng = np.random.default_rng(0)
+    low, high = np.maximum(arm.lower, -np.pi), np.minimum(arm.upper, np.pi)
+    poses = arm.forward(rng.uniform(low, high, (_POSES, arm.dof)))
+    mine, theirs = compiled.solve_batch(poses), arm.solve_batch(poses)
+    if not np.array_equal(mine[1], theirs[1]) or not np.allclose(
+        mine[0], theirs[0], rtol=0.0, atol=_SAME, equal_nan=True
+    ):
+        raise VerificationError(
+            f"the compiled solver of {arm.name} gives other rows than the Python module",
+            hint="please report it with the robot description and the compiler's version",
+        )

@@ -1,0 +1,121 @@
+// Rows of a pose at one value of the held joint, lane by lane.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "fold_rows.hpp"
+#include "newton_refinement.hpp"
+#include "solution_rows.hpp"
+
+namespace ikgen_runtime {
+
+// The difference of two angles within a turn of each other, on the shortest way.
+inline double shortest(double gap) noexcept {
+  return gap > kPi ? gap - kTurn : gap < -kPi ? gap + kTurn : gap;
+}
+
+// Limits of the joints that move: index, middle and half of the range. Arm: as for SolutionRows.
+template <class Arm> struct JointBounds {
+  int count = 0;
+  int joint[Arm::kDof];
+  double middle[Arm::kDof], half[Arm::kDof];
+
+  explicit JointBounds(bool limits) noexcept {
+    for (int j = 0; j < Arm::kDof && limits; ++j) {
+      double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j];
+      const bool bounded = Arm::kRevolute[j] ? high - low < kTurn : low > -kInfinity || high < kInfinity;
+      if (Arm::kHeld[j] || !bounded) continue;
+      low = std::max(low, -1e6);
+      high = std::min(high, 1e6);
+      joint[count] = j;
+      middle[count] = 0.5 * (low + high);
+      if (Arm::kRevolute[j]) middle[count] -= kTurn * std::nearbyint(middle[count] / kTurn);
+      half[count++] = 0.5 * (high - low);
+    }
+  }
+
+  // A joint's value from the middle of its range.
+  double offset(int i, double q) const noexcept {
+    return Arm::kRevolute[joint[i]] ? shortest(q - middle[i]) : q - middle[i];
+  }
+};
+
+// Arm: as for CarefulSolve; kFolds, how many margins its closed form has.
+template <class Arm> struct HeldSample {
+  static constexpr int kLanes = Arm::kMaxSolutions * (1 + Arm::kBesides), kMargins = Arm::kFolds > 0 ? Arm::kFolds : 1;
+  double held = 0.0;
+  double q[Arm::kDof][kLanes], off[kLanes], fold[kMargins][Arm::kMaxSolutions];
+  bool real[kLanes];
+
+  // Whether a row is real and inside the limits.
+  bool inside(int lane) const noexcept { return real[lane] && off[lane] <= 0.0; }
+
+  // The rows at a value; T: the pose as it is read.
+  HeldSample(const Eigen::Isometry3d& T, double value, const JointBounds<Arm>& bounds) noexcept : held(value) {
+    bool again = take(T, T, 0);
+    if constexpr (Arm::kBesides > 0)
+      for (int i = 0; i < Arm::kBesides; ++i) again = take(T, beside(T, Arm::kBeside[i]), i + 1) || again;
+    if (again) remove_repetitions();
+    for (int l = 0; l < kLanes; ++l) off[l] = -kInfinity;
+    for (int i = 0; i < bounds.count; ++i)
+      for (int l = 0; l < kLanes; ++l)
+        off[l] = std::max(off[l], std::abs(bounds.offset(i, q[bounds.joint[i]][l])) - bounds.half[i] - Arm::Policy::kLimitTolerance);
+  }
+
+  HeldSample() = default;
+
+  void row(int lane, double* out) const noexcept {
+    for (int j = 0; j < Arm::kDof; ++j) out[j] = q[j][lane];
+  }
+
+  // The largest difference of two rows in a joint that moves.
+  static double gap(const HeldSample& a, int i, const HeldSample& b, int k) noexcept {
+    double most = 0.0;
+    for (int j = 0; j < Arm::kDof; ++j)
+      if (!Arm::kHeld[j]) {
+        const double d = b.q[j][k] - a.q[j][i];
+        most = std::max(most, std::abs(Arm::kRevolute[j] ? shortest(d) : d));
+      }
+    return most;
+  }
+
+ private:
+  // Takes the rows of the pose, or of one beside it, refined where that is needed; whether some may be equal.
+  bool take(const Eigen::Isometry3d& T, const Eigen::Isometry3d& near, int part) noexcept {
+    constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
+    FoldRows<Arm::kDof, Arm::kMaxSolutions, Arm::kFolds> rows;
+    Arm::branches(gather<1>(&near), typename Arm::Seed(), std::array<double, 1>{held}, anywhere, rows);
+    bool again = part > 0;
+    for (int r = 0; r < Arm::kMaxSolutions; ++r) {
+      const int lane = Arm::kLaneOfRow[r], l = part * Arm::kMaxSolutions + r, bits = static_cast<int>(rows.flags[lane]);
+      real[l] = (bits & kReal) != 0;
+      for (int j = 0; j < Arm::kDof; ++j) q[j][l] = Arm::kHeld[j] ? held : rows.q[j][lane];
+      if (part == 0)
+        for (int k = 0; k < Arm::kFolds; ++k) fold[k][r] = rows.margin[k][lane];
+      again = again || (real[l] && (bits & (kRough | kMeeting)) != 0);
+      if (!real[l] || (bits & kRough) == 0 || Arm::kRefined) continue;
+      double refined[Arm::kDof];
+      row(l, refined);
+      real[l] = NewtonRefinement<Arm>::refine(refined, T);
+      for (int j = 0; j < Arm::kDof; ++j)
+        q[j][l] = !Arm::kRevolute[j] || Arm::kHeld[j] ? refined[j] : refined[j] - kTurn * std::nearbyint(refined[j] / kTurn);
+    }
+    return again;
+  }
+
+  template <class Motion> static Eigen::Isometry3d beside(const Eigen::Isometry3d& T, const Motion& motion) noexcept {
+    Eigen::Isometry3d out = T;
+    out.translation() += T.linear() * Eigen::Map<const Eigen::Vector3d>(motion.p);
+    out.linear() = T.linear() * Eigen::Map<const Eigen::Matrix3d>(motion.R);
+    return out;
+  }
+
+  void remove_repetitions() noexcept {
+    for (int l = 1; l < kLanes; ++l)
+      for (int k = 0; k < l; ++k)
+        if (real[l] && real[k] && gap(*this, l, *this, k) <= Arm::Policy::kCoincident) real[l] = false;
+  }
+};
+
+}  // namespace ikgen_runtime

@@ -1,0 +1,196 @@
+// The best row of each interval of the held joint's values.
+#pragma once
+
+#include "row_preference.hpp"
+#include "self_motion.hpp"
+
+namespace ikgen_runtime {
+
+// Arm: as for BranchFollower and RowPreference.
+template <class Arm> struct HeldSearch {
+  using Sample = HeldSample<Arm>;
+  static constexpr int kMost = 4;  // minima of an interval that are looked at
+
+  struct Point {
+    double at, cost, q[Arm::kDof];
+  };
+  struct Minimum {
+    double low, high;
+    Point best;
+  };
+  struct Run {
+    int points = 0, count = 0;
+    Point last[2];
+    Minimum minima[kMost];
+  };
+
+  const HeldSweep<Arm>& sweep;
+  const RowPreference<Arm>& preference;
+  typename Arm::Solutions& out;
+  double costs[Arm::kMaxSolutions];
+  Run runs[Sample::kLanes];
+
+  void open(int lane, double at, const double* q, int) noexcept {
+    runs[lane].points = runs[lane].count = 0;
+    add(runs[lane], at, q);
+  }
+  void pass(int lane, const Sample& s) noexcept {
+    double q[Arm::kDof];
+    s.row(lane, q);
+    if (s.held > runs[lane].last[0].at) add(runs[lane], s.held, q);
+  }
+  void move(const int* next) noexcept {
+    bool plain = true;
+    for (int l = 0; l < Sample::kLanes; ++l) plain = plain && (next[l] < 0 || next[l] == l);
+    if (plain) return;
+    Run old[Sample::kLanes];
+    std::copy_n(runs, Sample::kLanes, old);
+    for (int l = 0; l < Sample::kLanes; ++l)
+      if (next[l] >= 0) runs[next[l]] = old[l];
+  }
+  void close(int lane, double at, const double* q) noexcept {
+    Run& run = runs[lane];
+    if (at > run.last[0].at) add(run, at, q);
+    const Point& end = run.last[0];
+    if (run.points < 2 || end.cost <= run.last[1].cost) keep(run, run.points < 2 ? end.at : run.last[1].at, end.at, end);
+    int best = 0;
+    for (int k = 0; k < run.count; ++k) {
+      refine(run.minima[k]);
+      if (run.minima[k].best.cost < run.minima[best].best.cost) best = k;
+    }
+    insert(run.minima[best].best);
+  }
+
+  static void solve(const Eigen::Isometry3d& pose, const RowPreference<Arm>& preference, bool limits,
+                    typename Arm::Solutions& out) noexcept {
+    out.count = 0;
+    const HeldSweep<Arm> sweep(pose, limits);
+    HeldSearch search{sweep, preference, out, {}, {}};
+    BranchFollower<Arm, HeldSearch> follower{sweep, search, {}};
+    sweep.run(follower);
+    out.status = out.count > 0 ? Arm::Status::Ok : follower.any ? Arm::Status::Limits : Arm::Status::Unreachable;
+    for (int k = 0; k < out.count; ++k)
+      out.singular.data()[k] = RankLoss<Arm>::below(SolutionRows<Arm>::row(out, k), Arm::Policy::kRankLoss);
+  }
+
+ private:
+  Point point(double at, const double* q) const noexcept {
+    Point p;
+    p.at = at;
+    std::copy_n(q, Arm::kDof, p.q);
+    p.cost = preference.place(p.q) ? preference.cost(p.q) : kInfinity;
+    return p;
+  }
+
+  void add(Run& run, double at, const double* q) noexcept {
+    const Point p = point(at, q);
+    const Point &b = run.last[0], &a = run.last[1];
+    if (run.points == 1 && b.cost <= p.cost) keep(run, b.at, p.at, b);
+    if (run.points > 1 && b.cost <= a.cost && b.cost <= p.cost) keep(run, a.at, p.at, b);
+    run.last[1] = run.last[0];
+    run.last[0] = p;
+    ++run.points;
+  }
+
+  // Keeps a minimum, of too many the lowest.
+  static void keep(Run& run, double low, double high, const Point& best) noexcept {
+    int at = run.count < kMost ? run.count++ : 0;
+    if (run.count == kMost && at == 0) {
+      for (int k = 1; k < kMost; ++k)
+        if (run.minima[k].best.cost > run.minima[at].best.cost) at = k;
+      if (run.minima[at].best.cost < best.cost) return;
+    }
+    run.minima[at] = {low, high, best};
+  }
+
+  // The branch's row at a value next to a point; its cost is infinite where there is none inside the limits.
+  Point beside(double at, const Point& near) const noexcept {
+    const Sample s = sweep.at(at);
+    int best = -1;
+    double least = 0.5;
+    for (int l = 0; l < Sample::kLanes; ++l) {
+      double gap = s.inside(l) ? 0.0 : kInfinity;
+      for (int j = 0; j < Arm::kDof && gap < least; ++j) {
+        if (Arm::kHeld[j]) continue;
+        const double d = s.q[j][l] - near.q[j];
+        gap = std::max(gap, std::abs(Arm::kRevolute[j] ? d - kTurn * std::nearbyint(d / kTurn) : d));
+      }
+      if (gap < least) {
+        least = gap;
+        best = l;
+      }
+    }
+    Point p;
+    p.at = at;
+    p.cost = kInfinity;
+    if (best < 0) return p;
+    double q[Arm::kDof];
+    s.row(best, q);
+    return point(at, q);
+  }
+
+  // Parabolic interpolation guarded by the golden section (Brent 1973).
+  void refine(Minimum& m) const noexcept {
+    constexpr double kGolden = 0.3819660112501051;
+    double low = m.low, high = m.high, step = 0.0, before = 0.0;
+    double second = m.best.at, third = m.best.at, second_cost = kInfinity, third_cost = kInfinity;
+    for (int i = 0; i < 40; ++i) {
+      const double x = m.best.at, middle = 0.5 * (low + high), least = 1e-9 * (1.0 + std::abs(x));
+      if (std::abs(x - middle) <= 2.0 * least - 0.5 * (high - low)) return;
+      double golden = x < middle ? high - x : low - x;
+      bool parabolic = false;
+      if (std::abs(before) > least && second_cost < kInfinity && third_cost < kInfinity) {
+        const double r = (x - second) * (m.best.cost - third_cost);
+        double t = (x - third) * (m.best.cost - second_cost), p = (x - third) * t - (x - second) * r;
+        t = 2.0 * (t - r);
+        p = t > 0.0 ? -p : p;
+        t = std::abs(t);
+        parabolic = std::abs(p) < std::abs(0.5 * t * before) && p > t * (low - x) && p < t * (high - x);
+        if (parabolic) {
+          before = step;
+          step = p / t;
+        }
+      }
+      if (!parabolic) {
+        before = golden;
+        step = kGolden * golden;
+      }
+      const double u = std::abs(step) >= least ? x + step : x + (step > 0.0 ? least : -least);
+      const Point trial = beside(std::min(std::max(u, m.low), m.high), m.best);
+      if (trial.cost < m.best.cost) {
+        (trial.at >= x ? low : high) = x;
+        third = second;
+        third_cost = second_cost;
+        second = x;
+        second_cost = m.best.cost;
+        m.best = trial;
+      } else {
+        (trial.at < x ? low : high) = trial.at;
+        if (trial.cost <= second_cost || second == x) {
+          third = second;
+          third_cost = second_cost;
+          second = trial.at;
+          second_cost = trial.cost;
+        } else if (trial.cost <= third_cost || third == x || third == second) {
+          third = trial.at;
+          third_cost = trial.cost;
+        }
+      }
+    }
+  }
+
+  void insert(const Point& p) noexcept {
+    int at = out.count;
+    while (at > 0 && costs[at - 1] > p.cost) --at;
+    if (at == Arm::kMaxSolutions) return;
+    if (out.count < Arm::kMaxSolutions) ++out.count;
+    for (int k = out.count - 1; k > at; --k) {
+      SolutionRows<Arm>::move(out, k - 1, k);
+      costs[k] = costs[k - 1];
+    }
+    std::copy_n(p.q, Arm::kDof, SolutionRows<Arm>::row(out, at));
+    costs[at] = p.cost;
+  }
+};
+
+}  // namespace ikgen_runtime

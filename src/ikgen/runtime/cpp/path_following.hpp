@@ -1,0 +1,203 @@
+// Joint values along a path of poses, on one branch.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "newton_refinement.hpp"
+#include "pose_reading.hpp"
+#include "rank_loss.hpp"
+
+namespace ikgen_runtime {
+
+// An arm all of whose joints move.
+template <class A> struct AllMoving : A {
+  static constexpr int kFree = 0;
+  static constexpr std::array<int, 0> kFreeJoints = {};
+  static constexpr bool kHeld[A::kDof] = {};
+};
+
+// A: as for PoseError and RankLoss; Solver: solve(pose, options, out), search(pose, seed, limits, out).
+template <class A, class Solver> struct PathStep {
+  static constexpr int kDof = A::kDof, kDeepest = 24, kShallow = 9;
+  static constexpr double kFarthest = 0.3, kOff = 0.2, kLeastOff = 1e-4, kDamping = 1e-8, kJump = 0.05;
+  using Status = typename A::Status;
+
+  double q[kDof];
+  bool limits, crossed = false;
+
+  // From a pose to the next, with halved steps where the rows do not follow the Jacobian.
+  Status step(const Eigen::Isometry3d& before, const Eigen::Isometry3d& pose, int depth) noexcept {
+    double expected[kDof], row[kDof];
+    bool singular = false;
+    const bool none[kDof] = {};
+    std::copy_n(q, kDof, expected);
+    move(expected, pose, none);
+    Status status = next_row(pose, expected, row, singular);
+    if (status == Status::Ok) {
+      double gap = 0.0, moved = 0.0;
+      for (int j = 0; j < kDof; ++j) {
+        gap = std::max(gap, std::abs(row[j] - expected[j]));
+        moved = std::max(moved, std::abs(row[j] - q[j]));
+      }
+      const bool follows = moved < kFarthest && gap < kLeastOff + kOff * moved;
+      if (follows || (depth == kDeepest && moved < kJump)) {
+        crossed = crossed || singular || !follows;
+        return arrive(row);
+      }
+      status = Status::Singular;
+    } else if (depth >= kShallow) {
+      return status;
+    }
+    if (depth == kDeepest) return status;
+    const Eigen::Isometry3d middle = between(before, pose);
+    const Status first = step(before, middle, depth + 1);
+    return first == Status::Ok ? step(middle, pose, depth + 1) : first;
+  }
+
+ private:
+  // To a row, if it is inside the limits on the turn that it came to.
+  Status arrive(const double* row) noexcept {
+    for (int j = 0; j < kDof && limits; ++j)
+      if (!(row[j] >= A::kLower.data()[j] - A::Policy::kLimitTolerance && row[j] <= A::kUpper.data()[j] + A::Policy::kLimitTolerance))
+        return Status::Limits;
+    for (int j = 0; j < kDof; ++j)
+      q[j] = limits ? std::min(std::max(row[j], A::kLower.data()[j]), A::kUpper.data()[j]) : row[j];
+    return Status::Ok;
+  }
+
+  // The shortest motion by the Jacobian, of joints that are not stopped; the error before it.
+  static double move(double* at, const Eigen::Isometry3d& pose, const bool* stopped) noexcept {
+    PoseError<AllMoving<A>> here(at, pose);
+    constexpr int n = PoseError<AllMoving<A>>::kCount;
+    const double worst = here.largest();
+    double N[n][n];
+    for (auto& row : here.slope)
+      for (int j = 0; j < kDof; ++j) row[j] = stopped[j] ? 0.0 : row[j];
+    for (int a = 0; a < n; ++a)
+      for (int b = 0; b <= a; ++b) {
+        N[a][b] = a == b ? kDamping : 0.0;
+        for (int j = 0; j < kDof; ++j) N[a][b] += here.slope[a][j] * here.slope[b][j];
+      }
+    factor(N);
+    substitute(N, here.error);
+    for (int j = 0; j < kDof; ++j) {
+      double step = 0.0;
+      for (int a = 0; a < n; ++a) step += here.slope[a][j] * here.error[a];
+      at[j] += std::min(std::max(step, -1.0), 1.0);
+    }
+    return worst;
+  }
+
+  // The row that goes on from here: of an arm without held joints the closed form's nearest to the expected one, of
+  // others the one that all joints reach together, those that it would take out of their limits stopped there.
+  Status next_row(const Eigen::Isometry3d& pose, const double* expected, double* row, bool& singular) const noexcept {
+    if constexpr (A::kFree > 0) {
+      return unstopped(pose, row, singular);
+    } else {
+      typename A::Options options;
+      typename A::Joints seed;
+      std::copy_n(q, kDof, seed.data());
+      options.seed = &seed;
+      options.limits = false;
+      typename A::Solutions found;
+      Solver::solve(pose, options, found);
+      double least = kInfinity;
+      for (int k = 0; k < found.count; ++k) {
+        double gap = 0.0;
+        for (int j = 0; j < kDof; ++j) gap = std::max(gap, std::abs(found.q.data()[k].data()[j] - expected[j]));
+        if (!(gap < least)) continue;
+        least = gap;
+        std::copy_n(found.q.data()[k].data(), kDof, row);
+        singular = found.singular.data()[k];
+      }
+      return found.status;
+    }
+  }
+
+  Status unstopped(const Eigen::Isometry3d& pose, double* row, bool& singular) const noexcept {
+    bool stopped[kDof] = {};
+    double at[kDof];
+    std::copy_n(q, kDof, at);
+    for (int stops = 0;; ++stops) {
+      std::copy_n(at, kDof, row);
+      double error = kInfinity, tried[kDof];
+      std::copy_n(row, kDof, tried);
+      for (int i = 0; i < 30; ++i) {
+        double before[kDof];
+        std::copy_n(tried, kDof, before);
+        const double here = move(tried, pose, stopped);
+        if (here < error) std::copy_n(before, kDof, row);
+        if (!(here < 0.5 * error) && i > 2) break;
+        error = std::min(error, here);
+        if (error < A::Policy::kConverged) break;
+      }
+      if (!(error < A::Policy::kArrived)) return stops > 0 ? Status::Limits : Status::Unreachable;
+      double most = A::Policy::kLimitTolerance;
+      int worst = -1;
+      for (int j = 0; j < kDof && limits; ++j) {
+        const double excess = std::max(A::kLower.data()[j] - row[j], row[j] - A::kUpper.data()[j]);
+        if (excess > most) {
+          most = excess;
+          worst = j;
+        }
+      }
+      if (worst < 0) break;
+      stopped[worst] = true;
+      at[worst] = row[worst] < A::kLower.data()[worst] ? A::kLower.data()[worst] : A::kUpper.data()[worst];
+    }
+    singular = RankLoss<AllMoving<A>>::below(row, A::Policy::kRankLoss);
+    return Status::Ok;
+  }
+
+  // The pose halfway: the middle of the positions, half of the turn between.
+  static Eigen::Isometry3d between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) noexcept {
+    Eigen::Isometry3d out = a;
+    const Eigen::Quaterniond p(a.linear()), r(b.linear());
+    out.linear() = p.slerp(0.5, r).toRotationMatrix();
+    out.translation() = 0.5 * (a.translation() + b.translation());
+    return out;
+  }
+};
+
+// Joint values along `count` poses. `Walk`: its result.
+template <class A, class Solver, class Walk>
+inline Walk follow_poses(const Eigen::Isometry3d* poses, std::ptrdiff_t count, const typename A::Joints& start, bool limits,
+                         typename A::Joints* q, bool* singular) noexcept {
+  using Status = typename A::Status;
+  Walk out;
+  PathStep<A, Solver> walk;
+  walk.limits = limits;
+  Eigen::Isometry3d before;
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    Eigen::Isometry3d pose = poses[i];
+    walk.crossed = false;
+    if (!PoseReading<A>::clean(pose)) {
+      out.status = Status::Invalid;
+    } else if (i > 0) {
+      out.status = walk.step(before, pose, 0);
+    } else {
+      typename A::Solutions found;
+      typename A::SearchOptions options;
+      options.seed = &start;
+      options.limits = limits;
+      Solver::search(pose, options, found);
+      out.status = found.status;
+      if (found.count > 0) {
+        std::copy_n(found.q.data()->data(), A::kDof, walk.q);
+        walk.crossed = found.singular.data()[0];
+      }
+    }
+    if (out.status != Status::Ok) return out;
+    std::copy_n(walk.q, A::kDof, q[i].data());
+    if (singular) singular[i] = walk.crossed;
+    out.reached = i + 1;
+    before = pose;
+  }
+  out.status = Status::Ok;
+  return out;
+}
+
+}  // namespace ikgen_runtime

@@ -1,0 +1,27 @@
+"""A sample of the matrix of surroundings; the whole is `python -m benchmarks.determinism`."""
+
+from __future__ import annotations
+
+import pytest
+from benchmarks.command_line import REPOSITORY
+
+from benchmarks import determinism
+
+ELBOW = REPOSITORY / "examples/setuptools_robot/urdf/elbow.urdf"
+
+
+def test_the_same_bytes(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    chosen = [
+        "Haswell",
+        "SkylakeX",
+        "seed 4242",
+        "tr_TR",
+        "Kathmandu",
+        "long spelling",
+        "processes",
+    ]
+    monkeypatch.setattr("sys.argv", ["determinism", "--arms", str(ELBOW), "--only", *chosen])
+    assert determinism.main() == 0, capsys.readouterr().out
+    assert len(capsys.readouterr().out.splitlines()) == 1 + len(chosen)

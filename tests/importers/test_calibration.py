@@ -1,0 +1,120 @@
+"""Calibrations of single arms: origins of joints in YAML, offsets of DH rows in TOML."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ikgen.errors import BadDescriptionError, UsageError
+from ikgen.generation.emitted_checks import oracle_for
+from ikgen.generation.read import read
+from ikgen.generation.request import Request
+from ikgen.importers.calibration import row_offsets
+from ikgen.kinematics.forward import file_forward
+
+FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
+UR5E = Request(FIXTURES / "ur5e.urdf", base="base_link", tip="tool0")
+OWN = """
+kinematics:
+  shoulder: {x: 0, y: 0, z: 0.16236, roll: 0, pitch: 0, yaw: 2.1e-05}
+  upper_arm: {x: 0.00013, y: 0, z: 0, roll: 1.57138, pitch: 0, yaw: -3.4e-05}
+  forearm: {x: -0.42487, y: 0, z: 0, roll: 0.00073, pitch: -0.00041, yaw: 1.2e-05}
+  wrist_1: {x: -0.39231, y: 0.00021, z: 0.13342, roll: -0.00118, pitch: 0.0006, yaw: -2e-05}
+  wrist_2: {x: 4.1e-05, y: -0.09967, z: 8.8e-05, roll: 1.56991, pitch: 0, yaw: 6e-06}
+  wrist_3: {x: -2.6e-05, y: 0.09953, z: -6.1e-05, roll: 1.57141, pitch: 3.141592653589793, yaw: 3.14156}
+  hash: calib_1
+"""
+
+
+def calibrated(text: str, folder: Path, request: Request = UR5E, suffix: str = "yaml") -> Request:
+    path = folder / f"own.{suffix}"
+    path.write_text(text)
+    values = {name: getattr(request, name) for name in ("robot", "base", "tip")}
+    return Request(**values, calibration=path)
+
+
+def test_the_chain_is_the_arms_own_and_the_rows_are_the_models(tmp_path: Path) -> None:
+    model, own = read(UR5E), read(calibrated(OWN, tmp_path))
+    alike = [(r.alpha.exact, r.a.name, r.d.name) for r in own.dh.rows]
+    assert alike == [(r.alpha.exact, r.a.name, r.d.name) for r in model.dh.rows]
+    q = np.random.default_rng(0).uniform(-3, 3, (20, 6))
+    assert np.abs(file_forward(own.dh, q) - oracle_for(own).forward(q)).max() < 1e-14
+    off = np.abs(file_forward(own.dh, q) - file_forward(model.dh, q)).max()
+    assert 1e-4 < off < 1e-2 and 1e-4 < max(own.dh.deviation) < 1e-2
+    assert own.source.sha256 != model.source.sha256
+    assert (tmp_path / "own.yaml").resolve() in own.source.dependencies
+
+
+def test_the_origins_are_those_of_the_file(tmp_path: Path) -> None:
+    tree = read(calibrated(OWN, tmp_path)).tree
+    assert tree is not None
+    wrist = next(joint for joint in tree.joints if joint.child == "wrist_1_link")
+    assert wrist.T_parent_child[:3, 3].tolist() == [-0.39231, 0.00021, 0.13342]
+    assert wrist.T_parent_child[2, 1] == pytest.approx(math.sin(-0.00118) * math.cos(0.0006))
+
+
+def test_offsets_of_rows_are_added(tmp_path: Path) -> None:
+    rows = "".join(
+        f"[[joints]]\nalpha = {k}e-4\na = 2e-4\ntheta = -1e-3\nd = 3e-4\n" for k in range(6)
+    )
+    model, own = read(UR5E), read(calibrated(rows, tmp_path, suffix="toml"))
+    assert own.dh.rows == model.dh.rows and own.tree is None
+    q = np.random.default_rng(0).uniform(-3, 3, (8, 6))
+    T = np.eye(4)
+    for i, (F, row) in enumerate(zip(model.dh.file_frames[:-1], model.dh.rows, strict=True)):
+        alpha, v = i * 1e-4, row.scale * q[:, row.driver] + row.offset.value - 1e-3
+        c, s = math.cos(alpha), math.sin(alpha)
+        twist = np.array([[1, 0, 0, 2e-4], [0, c, -s, 0], [0, s, c, 0], [0, 0, 0, 1]])
+        turn = np.zeros((len(q), 4, 4))
+        turn[:, 0, 0] = turn[:, 1, 1] = np.cos(v)
+        turn[:, 1, 0], turn[:, 0, 1] = np.sin(v), -np.sin(v)
+        turn[:, 2, 2] = turn[:, 3, 3] = 1.0
+        turn[:, 2, 3] = 3e-4
+        T = T @ F @ twist @ turn
+    T = T @ model.dh.file_frames[-1]
+    assert np.abs(file_forward(own.dh, q) - T).max() < 1e-14
+    assert np.abs(oracle_for(own).forward(q) - T).max() < 1e-14
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("kinematics: [1]", "no table 'kinematics'"),
+        ("shoulder: 1", "no table 'kinematics'"),
+        (
+            "kinematics: {elbow: {x: 0, y: 0, z: 0, roll: 0, pitch: 0, yaw: 0}}",
+            "no link 'elbow_link'",
+        ),
+        ("kinematics: {shoulder: {x: 0}}", "has not the numbers"),
+        (OWN.replace("0.16236", "high"), "shoulder.z .* not a finite number"),
+        ("kinematics: {", "not YAML"),
+    ],
+)
+def test_what_is_no_calibration_is_refused(text: str, said: str, tmp_path: Path) -> None:
+    with pytest.raises(BadDescriptionError, match=said) as caught:
+        read(calibrated(text, tmp_path))
+    assert "own.yaml" in caught.value.message
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("[[joints]]\na = 1\n", "no calibration of 2 rows"),
+        ("[[joints]]\nb = 1\n[[joints]]\n", "unknown entry 'b'"),
+        ("[[joints]]\na = 'x'\n[[joints]]\n", "not a finite number"),
+        ("[[joints]\n", "not TOML"),
+    ],
+)
+def test_what_are_no_offsets_is_refused(text: str, said: str, tmp_path: Path) -> None:
+    (tmp_path / "own.toml").write_text(text)
+    with pytest.raises(BadDescriptionError, match=said):
+        row_offsets(tmp_path / "own.toml", 2)
+
+
+def test_a_table_takes_offsets_only(tmp_path: Path) -> None:
+    table = Request(FIXTURES / "scara_standard.toml")
+    with pytest.raises(UsageError, match="offsets of its rows"):
+        read(calibrated(OWN, tmp_path, table))

@@ -1,0 +1,69 @@
+"""`ikgen.compile`: an arm that gives what the Python module gives, faster."""
+
+from __future__ import annotations
+
+import importlib.util
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import ikgen
+from ikgen.errors import ArgumentError, MissingToolError
+
+ELBOW = Path(__file__).resolve().parents[2] / "examples/setuptools_robot/urdf/elbow.urdf"
+UR5E = Path(__file__).resolve().parents[2] / "urdf_fixtures/ur5e.urdf"
+
+
+@pytest.fixture(autouse=True)
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("IKGEN_CACHE_DIR", str(tmp_path / "cache"))
+    return tmp_path / "cache"
+
+
+def test_what_is_no_arm_is_refused() -> None:
+    with pytest.raises(ArgumentError, match="arm") as caught:
+        ikgen.compile("robot.urdf")  # type: ignore[arg-type]
+    assert "ikgen.load" in caught.value.hint
+
+
+def test_what_is_missing_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    arm = ikgen.load(ELBOW, verify=False)
+    find = importlib.util.find_spec
+    monkeypatch.setattr(
+        importlib.util, "find_spec", lambda name: None if name == "nanobind" else find(name)
+    )
+    with pytest.raises(MissingToolError, match="nanobind") as caught:
+        ikgen.compile(arm)
+    assert "ikgen[compile]" in caught.value.hint
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(importlib.util.find_spec("nanobind") is None, reason="needs nanobind")
+@pytest.mark.skipif(not shutil.which("c++"), reason="needs a C++ compiler")
+def test_a_compiled_arm_does_what_the_arm_does(cache: Path) -> None:
+    arm = ikgen.load(UR5E, verify=False)
+    fast = ikgen.compile(arm)
+    assert isinstance(fast, ikgen.Arm) and fast.joint_names == arm.joint_names
+    q = np.random.default_rng(0).uniform(-2.0, 2.0, (20, 6))
+    poses = arm.forward(q)
+    assert np.allclose(fast.forward(q), poses, atol=1e-12)
+    assert np.allclose(fast.jacobian(q[0]), arm.jacobian(q[0]), atol=1e-12)
+    for pose, row in zip(poses, q, strict=True):
+        mine, theirs = fast.solve(pose, seed=row), arm.solve(pose, seed=row)
+        assert np.allclose(mine.q, theirs.q, atol=1e-9) and mine.branch == theirs.branch
+        assert np.allclose(mine[0], theirs[0], atol=1e-9) and mine.status == theirs.status
+    pair = poses[0][:3, :3], poses[0][:3, 3]
+    assert np.allclose(fast.solve(pair).q, arm.solve(pair).q, atol=1e-9)
+    rough = poses[0].round(4)
+    assert "orthonormalize=True" in fast.solve(rough).reason
+    assert len(fast.solve(rough, orthonormalize=True)) == len(arm.solve(rough, orthonormalize=True))
+    assert (fast.solve_batch(poses[:, :3])[1] == arm.solve_batch(poses)[1]).all()
+    assert fast.solve(poses[0] + 9.0).status == arm.solve(poses[0] + 9.0).status
+    for wrong in (np.eye(3), "here"):
+        with pytest.raises(ArgumentError):
+            fast.solve(wrong)
+    (folder,) = (cache / "compiled").iterdir()
+    stamp = folder.stat().st_mtime_ns
+    assert ikgen.compile(arm).compiled is fast.compiled and folder.stat().st_mtime_ns == stamp

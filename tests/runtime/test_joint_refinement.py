@@ -1,0 +1,72 @@
+"""Newton steps of all rows at once in Python, and what they leave to others."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from types import ModuleType
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from tests.support.cpp_modules import solver_module
+from tests.support.solving import import_text
+
+from ikgen.emit.python.python_emitter import emit_module
+
+Array = NDArray[np.float64]
+
+
+@pytest.fixture(scope="module")
+def doosan(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
+    module = solver_module("doosan_m1013")
+    assert module.refine == "all" and len(module.beside) == 6
+    return import_text(emit_module(module), tmp_path_factory.mktemp("doosan"))
+
+
+def apart(a: Array, b: Array) -> Array:
+    return np.abs(np.remainder(a - b + math.pi, 2 * math.pi) - math.pi).max(axis=-1)
+
+
+def steps(module: ModuleType, q: Array, T: Array) -> tuple[Array, Array, Array]:
+    return module._refine_together(module._ARM, q, np.broadcast_to(T, (len(q), 4, 4)))
+
+
+def test_rows_close_and_none_is_lost(doosan: ModuleType) -> None:
+    q = np.random.default_rng(6).uniform(-3, 3, (60, 6))
+    T = doosan.forward(q)
+    rows, count, _ = doosan.solve_batch(T, limits=False)
+    careful = replace(doosan._ARM, rounded=False)
+    for at, pose, many, n in zip(q, T, rows, count, strict=True):
+        found = doosan.solve(pose, limits=False).q
+        assert np.abs(doosan.forward(found) - pose).max() < 1e-11
+        assert apart(found, at).min() < 1e-9
+        assert n == len(found)
+        assert all(apart(found, row).min() < 1e-9 for row in many[:n])
+        before = doosan._solve_pose(careful, pose, None, None, False).q
+        assert all(apart(found, row).min() < 1e-6 for row in before)
+
+
+def test_a_row_near_a_solution_arrives(doosan: ModuleType) -> None:
+    q = np.array([0.3, 0.4, 1.2, 0.2, 0.9, -0.4])
+    starts = q + 1e-4 * np.random.default_rng(6).normal(size=(5, 6))
+    done, arrived, missed = steps(doosan, starts, doosan.forward(q))
+    assert arrived.all() and not missed.any() and np.abs(done - q).max() < 1e-12
+
+
+def test_rows_beside_folds_or_far_away_are_in_doubt(doosan: ModuleType) -> None:
+    folded = np.array([0.3, 0.4, 1.2, 0.2, 1e-3, -0.4])
+    _, arrived, missed = steps(doosan, folded[None], doosan.forward(folded))
+    assert not arrived.any() and not missed.any()
+    regular = np.array([0.3, 0.4, 1.2, 0.2, 0.9, -0.4])
+    _, arrived, _ = steps(doosan, regular[None] + 0.3, doosan.forward(regular))
+    assert not arrived.any()
+
+
+def test_a_least_error_above_zero_is_no_solution(doosan: ModuleType) -> None:
+    q = np.array([0.3, 0.4, 1.2, 0.2, 0.9, -0.4])
+    held = replace(doosan._ARM, moving=(0, 1, 2, 4, 5))
+    start = q + 1e-4 * np.eye(6)[3]
+    pose = doosan.forward(q)[None]
+    _, arrived, missed = doosan._refine_together(held, start[None], pose)
+    assert missed.all() and not arrived.any()
