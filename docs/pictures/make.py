@@ -13,7 +13,7 @@ import numpy as np
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 from ikgen.report.graph_picture import draw
-from ikgen.report.row_names import row_names
+from ikgen.report.posture_names import row_names
 from ikgen.report.skeleton import Style, skeleton_camera, skeleton_svg
 from ikgen.report.solution_sets import versions_of
 from ikgen.report.worked_example import solver_of, worked_example
