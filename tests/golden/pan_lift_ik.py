@@ -1333,9 +1333,7 @@ def _certain_batch(arm: _Arm, T: Array, q: Array, valid: _Flags) -> tuple[Array,
     return q, found, doubt
 
 
-def _careful_rows(
-    arm: _Arm, T: Array, held: Array, near: Array | None
-) -> tuple[Array, _Flags, _Flags]:
+def _careful_rows(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, _Flags, _Flags]:
     """Rows of which each is refined for as long as it takes, near folds with those of poses beside."""
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
     with np.errstate(all="ignore"):
