@@ -461,7 +461,7 @@ class _Arm:
 # The arguments `free` and `seed` as joint values.
 
 
-_FARTHEST = 1e5  # rad: neighbouring doubles are 1.5e-11 apart
+_FARTHEST = 1e6  # rad: neighbouring doubles are 1e-10 apart
 
 
 def _held_values(
@@ -514,7 +514,7 @@ def _held_rows(
 
 def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...]) -> Array:
     """The seed as an array of one of the shapes; raises ValueError for others. Turns of a revolute joint
-    that doubles cannot tell apart to 1e-11 rad are left out."""
+    that doubles cannot tell apart to 1e-10 rad are left out."""
     values = _real_array(seed, "seed")
     if values.shape not in shapes:
         expected = " or ".join(map(str, shapes))
@@ -570,11 +570,8 @@ def _inverse(J: Array) -> tuple[Array, Array]:
 # Poses as people have them, as homogeneous matrices.
 
 
-_TRANSFORMS = (
-    "homogeneous",
-    "as_matrix",
-    "A",
-)  # pin.SE3; RigidTransform of SciPy; SE3 of spatialmath
+# of pin.SE3, RigidTransform of SciPy, SE3 of spatialmath
+_TRANSFORMS = ("homogeneous", "as_matrix", "A")
 
 
 def _pose_matrices(pose: Any, alone: str) -> Array:
