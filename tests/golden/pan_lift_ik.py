@@ -536,7 +536,7 @@ def _refine_together(arm: _Arm, q: Array, T: Array) -> tuple[Array, _Flags, _Fla
     slope = inverse = error = change = np.empty(0)
     for step in range(policy.lane_steps):
         if (
-            step in (1, 2) and before.max() < policy.near
+            step in (1, 2) and before.max(initial=0.0) < policy.near
         ):  # so close that the slope is the one before
             error = arm.task.error(_forward(arm.chain, q), T)
         else:
@@ -1330,9 +1330,7 @@ def _certain_batch(arm: _Arm, T: Array, q: Array, valid: _Flags) -> tuple[Array,
     return q, found, doubt
 
 
-def _careful_rows(
-    arm: _Arm, T: Array, held: Array, near: Array | None
-) -> tuple[Array, _Flags, _Flags]:
+def _careful_rows(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, _Flags, _Flags]:
     """Rows of which each is refined for as long as it takes, near folds with those of poses beside."""
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
     with np.errstate(all="ignore"):

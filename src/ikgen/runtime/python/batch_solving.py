@@ -20,7 +20,7 @@ from ikgen.runtime.python.row_placement import distinct, place_rows_batch
 from ikgen.runtime.python.solutions import Status
 from ikgen.runtime.python.solved_arm import Arm
 
-__all__ = ["branch_axis", "rows_batch", "solve_poses"]
+__all__ = ["branch_axis", "careful_rows", "rows_batch", "solve_poses"]
 
 _CHUNK = 2048  # closed forms solved at a time
 _Batch = tuple[Array, NDArray[np.int64], NDArray[np.str_]]
@@ -95,7 +95,7 @@ def _solve_chunk(arm: Arm, T: Array, held: Array, near: Array | None, limits: bo
 def rows_batch(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, Flags, Flags]:
     """Rows (N, M, dof) on no turn in particular; which are distinct solutions, which of a continuum."""
     if not arm.rounded:
-        return _careful_rows(arm, T, held, near)
+        return careful_rows(arm, T, held, near)
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
     with np.errstate(all="ignore"):
         q, valid, singular, _ = arm.branches_batch(T, start, held)
@@ -104,7 +104,7 @@ def rows_batch(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[Arr
     doubt |= singular.any(axis=1) | ~valid.any(axis=1)
     if doubt.any():
         seeds = None if near is None else near[doubt]
-        more, fine, flags = _careful_rows(arm, T[doubt], held[doubt], seeds)
+        more, fine, flags = careful_rows(arm, T[doubt], held[doubt], seeds)
         order = np.argsort(~fine, axis=1, kind="stable")[:, : q.shape[1]]
         q[doubt] = np.take_along_axis(more, order[:, :, None], axis=1)
         valid[doubt] = np.take_along_axis(fine, order, axis=1)
@@ -125,9 +125,7 @@ def _certain_batch(arm: Arm, T: Array, q: Array, valid: Flags) -> tuple[Array, F
     return q, found, doubt
 
 
-def _careful_rows(
-    arm: Arm, T: Array, held: Array, near: Array | None
-) -> tuple[Array, Flags, Flags]:
+def careful_rows(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, Flags, Flags]:
     """Rows of which each is refined for as long as it takes, near folds with those of poses beside."""
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
     with np.errstate(all="ignore"):

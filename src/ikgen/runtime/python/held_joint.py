@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags
-from ikgen.runtime.python.batch_solving import rows_batch
+from ikgen.runtime.python.batch_solving import careful_rows
 from ikgen.runtime.python.pose_arguments import pose_matrices
 from ikgen.runtime.python.solved_arm import Arm
 
@@ -48,7 +48,7 @@ def rows_at(joint: HeldJoint, T: Array, held: Array) -> Rows:
         return joint.branches_and_folds(poses, q0, values, margins)
 
     arm, count = replace(joint.arm, branches_batch=branches), len(held)
-    q, real, _ = rows_batch(arm, np.broadcast_to(T, (count, 4, 4)), held[:, None], None)
+    q, real, _ = careful_rows(arm, np.broadcast_to(T, (count, 4, 4)), held[:, None], None)
     own = margins[: len(margins) // (1 + len(arm.beside))]
     folds = np.full((*real.shape, len(own)), inf)
     for k, values in enumerate(own):

@@ -23,7 +23,7 @@ def refine_together(arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
     slope = inverse = error = change = np.empty(0)
     for step in range(policy.lane_steps):
         if (
-            step in (1, 2) and before.max() < policy.near
+            step in (1, 2) and before.max(initial=0.0) < policy.near
         ):  # so close that the slope is the one before
             error = arm.task.error(forward(arm.chain, q), T)
         else:
