@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ikgen.errors import ArgumentError, UsageError
 from ikgen.library.load_arguments import checked_path
-from ikgen.library.module_text import module_of
+from ikgen.library.memory_module import module_of
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation

@@ -17,7 +17,7 @@ from ikgen.runtime.python.pose_arguments import pose_matrices
 from ikgen.runtime.python.pose_faults import nearest_pose, pose_fault
 from ikgen.runtime.python.projection import nearest_row, off_by
 from ikgen.runtime.python.refinement import rank_loss, refine
-from ikgen.runtime.python.row_names import branch_names
+from ikgen.runtime.python.row_branches import branch_names
 from ikgen.runtime.python.row_placement import is_new, place_rows
 from ikgen.runtime.python.solutions import Solutions, Status
 from ikgen.runtime.python.solved_arm import Arm, Candidate, Found

@@ -10,8 +10,8 @@ import numpy as np
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.batch_solving import rows_batch
 from ikgen.runtime.python.pose_solving import solve_pose
+from ikgen.runtime.python.row_branches import branch_names
 from ikgen.runtime.python.row_links import differences
-from ikgen.runtime.python.row_names import branch_names
 from ikgen.runtime.python.row_preference import Preference, preference_costs
 from ikgen.runtime.python.solutions import Solutions, Status
 from ikgen.runtime.python.solved_arm import Arm
