@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cmp_to_key
 
 import numpy as np
@@ -39,6 +39,8 @@ Candidates = tuple[NDArray[np.intp], Array, NDArray[np.intp], Flags]
 Finder = Callable[[Array, Array, Elimination, Turning], Candidates]
 _SIX = range(6)
 _FARTHEST = 1e4  # of a slide, in arm lengths
+# Beside a fold rows of several runs are one only where all have all their digits.
+_THOROUGH = ((3, 1e-12, 0.1), (6, 1e-12, 1e-3), (30, 0.0, 0.0))
 
 
 @dataclass(frozen=True)
@@ -86,7 +88,8 @@ def refined_rows(
     """Newton steps from q (k, 6) to T (k, 4, 4): q, which arrived, and the errors before (k,)."""
     near = _slides_near(q, turning)
     chain, start = six_joints(F, turning), np.where(near[:, None], q, 0.0)
-    q, arrived, before = refine(chain, PoseTask(1.0), _SIX, start, T, policy)
+    thorough = replace(policy, refinement=_THOROUGH)
+    q, arrived, before = refine(chain, PoseTask(1.0), _SIX, start, T, thorough)
     return q, arrived & near, np.where(near, before, np.inf)
 
 
