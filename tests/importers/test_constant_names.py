@@ -13,9 +13,8 @@ from ikgen.importers.dh.constant_names import symbol_of
 
 WORDS = (
     "const_cast", "M_PI", "M_1_PI", "int", "EOF", "NULL", "NAN", "errno", "linux", "stdin", "kDof",
-    "solve", "T", "Eigen", "std", "double", "np", "math", "I", "q", "seed_1", "a_2", "l1", "h_", "int8_t",
-    "co_await",
-    "E_2", "and_eq", "a_2_", "p_A",
+    "solve", "T", "Eigen", "std", "double", "np", "math", "I", "q", "seed_1", "a_2", "l1", "h_",
+    "int8_t", "co_await", "E_2", "and_eq", "a_2_", "p_A",
 )  # fmt: skip
 
 
