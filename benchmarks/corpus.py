@@ -1,8 +1,9 @@
 """Generate and verify every arm of the corpus; print a table by class.
 
-    python -m benchmarks.corpus [--family TEXT] [--arm NAME] [--samples N] [--jobs N] [--record]
+    python -m benchmarks.corpus [--family TEXT] [--arm NAME] [--samples N] [--jobs N] [--record] [--public]
 
-The corpus is not part of the package (see benchmarks/README.md); without it the command says so.
+The corpus is not part of the package (see benchmarks/README.md). Without it, or with --public, the arms are
+those of files that anybody has: `urdf_fixtures/`, and example-robot-data where it is installed.
 """
 
 from __future__ import annotations
@@ -22,7 +23,9 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.collection import ABSENT, CORPUS, load_arms, urdf_of
+from benchmarks.public_arms import public_arms
 from benchmarks.results import write_result
+from ikgen.importers.named_robots import is_named
 
 WIDTHS = (4, 6, 8, 6, 8, 6)
 
@@ -44,11 +47,9 @@ class Outcome:
 def run_arm(arm: dict[str, Any], samples: int) -> Outcome:
     """Run the command line on one arm in a folder of its own."""
     with tempfile.TemporaryDirectory() as folder:
-        path = CORPUS / arm["file"] if arm.get("file") else Path(folder) / f"{arm['name']}.urdf"
-        if not arm.get("file"):
-            path.write_text(urdf_of(arm))
+        robot = _robot(arm, Path(folder))
         command = [
-            sys.executable, "-m", "ikgen", "from-urdf", str(path), "--json", "-q",
+            sys.executable, "-m", "ikgen", "from-urdf", robot, "--json", "-q",
             "--base", arm["base_link"], "--tip", arm["tip_link"], "-o", folder,
             "--samples", str(samples),
         ]  # fmt: skip
@@ -57,6 +58,16 @@ def run_arm(arm: dict[str, Any], samples: int) -> Outcome:
         seconds = time.perf_counter() - started
         result = {**_parse(done), "code": done.returncode}
         return _outcome(arm, result, seconds)
+
+
+def _robot(arm: dict[str, Any], folder: Path) -> str:
+    """What to type for the arm's robot: a name, its file, or one that is written now."""
+    file = arm.get("file")
+    if file:
+        return file if is_named(file) else str(CORPUS / file)
+    path = folder / f"{arm['name']}.urdf"
+    path.write_text(urdf_of(arm))
+    return str(path)
 
 
 def _parse(done: subprocess.CompletedProcess[str]) -> dict[str, Any]:
@@ -120,14 +131,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--samples", type=int, default=1000)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--json", type=Path, help="write the outcomes here")
+    parser.add_argument("--public", action="store_true", help="arms that anybody has")
     parser.add_argument("--record", action="store_true", help="write results/corpus.json")
     options = parser.parse_args(arguments)
     if options.record and (options.family or options.arm):
         parser.error("--record is for the whole collection")
-    arms = load_arms()
-    if not arms:
-        print(ABSENT)
-        return 0
+    arms = [] if options.public else load_arms()
+    if options.record and not arms:
+        parser.error(f"--record is for the collection; {ABSENT}")
+    arms = arms or public_arms()
     arms = [a for a in arms if options.family in a["family"]]
     arms = [a for a in arms if not options.arm or a["name"] in options.arm]
     with ThreadPoolExecutor(options.jobs) as pool:

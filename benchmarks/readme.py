@@ -20,8 +20,10 @@ from typing import Any
 from benchmarks.peer_picture import picture
 from benchmarks.results import Measured, read_result
 
-__all__ = ["BLOCKS", "PAGE", "PICTURE", "MarkError", "drawn", "filled_in"]
+__all__ = ["BLOCKS", "COPY", "PAGE", "PICTURE", "MarkError", "copied", "drawn", "filled_in"]
 
+COPY = Path(__file__).resolve().parents[1] / "docs/explanation/comparison.md"
+"""A page that shows the README's block of other solvers."""
 PAGE = Path(__file__).resolve().parents[1] / "README.md"
 PICTURE = Path(__file__).with_name("peers.svg")
 _START = re.compile(r"<!-- figures: (\w+) -->\n")
@@ -64,6 +66,16 @@ def filled_in(text: str, read: Callable[[str], Measured] = read_result) -> str:
             raise MarkError(f"the block {name} does not end before the next")
         out += [f"<!-- figures: {name} -->\n", BLOCKS[name](read), _END, after]
     return "".join(out)
+
+
+def copied(text: str, readme: str) -> str:
+    """A page's text with the README's block of other solvers in place of what is between its marks."""
+    start = "<!-- figures: peers -->\n"
+    before, mark, rest = text.partition(start)
+    _, end, after = rest.partition(_END)
+    if not mark or not end:
+        raise MarkError(f"{COPY.name} has no block peers")
+    return before + start + readme.partition(start)[2].partition(_END)[0] + _END + after
 
 
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
@@ -157,7 +169,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--check", action="store_true")
     options = parser.parse_args(arguments)
-    made = {PAGE: filled_in(PAGE.read_text(encoding="utf-8")), PICTURE: drawn()}
+    readme = filled_in(PAGE.read_text(encoding="utf-8"))
+    copy = copied(COPY.read_text(encoding="utf-8"), readme)
+    made = {PAGE: readme, PICTURE: drawn(), COPY: copy}
     old = {path for path, text in made.items() if path.read_text(encoding="utf-8") != text}
     for path in old:
         print(f"{path.name} is not what was recorded")

@@ -13,7 +13,10 @@ import numpy as np
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 from ikgen.report.graph_picture import draw
+from ikgen.report.posture_names import row_names
+from ikgen.report.skeleton import Style, skeleton_camera, skeleton_svg
 from ikgen.report.solution_sets import versions_of
+from ikgen.report.worked_example import solver_of, worked_example
 from ikgen.solver.behavior_tree import build_tree
 from ikgen.solver.leaves import LEAVES
 from ikgen.solver.session import Session
@@ -22,6 +25,7 @@ __all__ = ["PICTURES"]
 
 HERE = Path(__file__).resolve().parent
 PUMA = HERE.parents[1] / "urdf_fixtures/puma560_paper.toml"
+UR5E = HERE.parents[1] / "urdf_fixtures/ur5e.urdf"
 INK, LINE, FILL, PALE, SOFT = "#12263a", "#345", "#eef4fb", "#f6f6f2", "#5a6b7b"
 
 
@@ -136,6 +140,24 @@ def puma_graph() -> str:
     return draw(graph, versions_of(graph), "Solution graph of the Puma 560").svg
 
 
+def solutions() -> str:
+    """The solutions of one pose of a UR5e, each as a skeleton, named as in its report."""
+    found = derive(Request(UR5E, tip="tool0"))
+    solver = solver_of(found)
+    assert solver is not None
+    example = worked_example(found, solver)
+    dh, style = found.reading.dh, Style(190, 170, named=False)
+    names = row_names(dh, found.geometry, found.graph, example.rows)
+    camera = skeleton_camera(dh, list(example.rows), style)
+    parts = []
+    for i, (q, name) in enumerate(zip(example.rows, names, strict=True)):
+        x, y = i % 4 * 200.0, i // 4 * 210.0
+        drawing = skeleton_svg(dh, q, style=style, camera=camera, title=name)
+        parts.append(drawing.replace("<svg ", f'<svg x="{x:g}" y="{y:g}" ', 1).strip())
+        parts.append(text(x + 95, y + 188, name, 9, fill=SOFT))
+    return svg(800, 420, "The eight solutions of one pose of a UR5e", parts)
+
+
 Vector = np.ndarray
 
 
@@ -215,6 +237,7 @@ PICTURES: dict[str, Callable[[], str]] = {
     "tree.svg": tree,
     "puma560_graph.svg": puma_graph,
     "dh_frames.svg": frames,
+    "ur5e_solutions.svg": solutions,
 }
 
 

@@ -6,7 +6,7 @@ import re
 from dataclasses import replace
 
 import pytest
-from benchmarks.readme import BLOCKS, PAGE, PICTURE, MarkError, drawn, filled_in
+from benchmarks.readme import BLOCKS, COPY, PAGE, PICTURE, MarkError, copied, drawn, filled_in
 from benchmarks.results import Measured, read_result
 
 from ikgen.cli.main import COMMANDS
@@ -18,6 +18,12 @@ START, END = "<!-- figures: corpus -->\n", "<!-- end of figures -->\n"
 def test_figures_are_those_recorded() -> None:
     assert filled_in(TEXT) == TEXT, "run python -m benchmarks.readme"
     assert drawn() == PICTURE.read_text(encoding="utf-8"), "run python -m benchmarks.readme"
+
+
+def test_the_comparison_shows_the_same_figures() -> None:
+    page = COPY.read_text(encoding="utf-8")
+    assert copied(page, TEXT) == page, "run python -m benchmarks.readme"
+    assert "| opw_kinematics, C++ (-O3) |" in page
 
 
 def test_another_record_changes_its_block_alone() -> None:

@@ -131,14 +131,16 @@ def test_values_of_a_held_joint_spread_from_the_seeds(arm: Arm, plugin: Plugin) 
 
 
 @needs(FRANKA)
-def test_a_search_ends_when_its_time_is_up(arm: Arm, plugin: Plugin) -> None:
+def test_a_search_ends_where_no_value_of_the_held_joint_reaches_the_pose(
+    arm: Arm, plugin: Plugin
+) -> None:
     assert plugin.initialize(arm.base, arm.tip).good
     pose, seed = arm.pose(np.zeros(7)), arm.configurations(11, 1)[0]
     pose[0, 3] = 5.0
-    for timeout in (0.0, 0.2):
+    for timeout in (0.0, 60.0):
         start = time.perf_counter()
         found = plugin.search(pose, seed, timeout=timeout)
-        assert not found.good and found.code == driver.TIMED_OUT
-        assert timeout <= time.perf_counter() - start < timeout + 5.0
+        assert not found.good and found.code == driver.NO_IK_SOLUTION
+        assert time.perf_counter() - start < 5.0
     assert plugin.search(arm.pose(seed), seed, timeout=-1.0).good
     assert plugin.search(arm.pose(seed), seed, timeout=float("nan")).good

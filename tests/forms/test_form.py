@@ -137,7 +137,7 @@ def holds(condition: object) -> Array:
 
 
 def test_all_forms_are_here() -> None:
-    found = {one.name for one in Form.__subclasses__() if one.__module__.startswith("ikgen.")}
+    found = {one.name for one in Form.__subclasses__() if one.__module__.startswith("ikgen.forms.")}
     assert found == set(PATTERNS)
 
 

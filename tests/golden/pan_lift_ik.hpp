@@ -122,7 +122,7 @@ namespace detail {
 // --- constants -----------------------------------------------------------------------------------
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kTurn = 2.0 * kPi;
-inline constexpr double kFarthestSeed = 1e5;  // rad: neighbouring doubles are 1.5e-11 apart
+inline constexpr double kFarthestSeed = 1e6;  // rad: neighbouring doubles are 1e-10 apart
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // --- machine vectors -----------------------------------------------------------------------------
@@ -1276,6 +1276,14 @@ template <class A, class Solver> struct PathStep {
     return first == Status::Ok ? step(middle, pose, depth + 1) : first;
   }
 
+  Status begin(const Eigen::Isometry3d& pose, const typename A::Joints& start) noexcept {
+    double row[kDof], most = 0.0;
+    std::copy_n(start.data(), kDof, q);
+    if (A::kFree == 0 || unstopped(pose, row, crossed) != Status::Ok) return Status::Unreachable;
+    for (int j = 0; j < kDof; ++j) most = std::max(most, std::abs(row[j] - q[j]));
+    return most < 0.1 ? arrive(row) : Status::Unreachable;
+  }
+
  private:
   Status arrive(const double* row) noexcept {
     for (int j = 0; j < kDof && limits; ++j)
@@ -1344,10 +1352,12 @@ template <class A, class Solver> struct PathStep {
         double before[kDof];
         std::copy_n(tried, kDof, before);
         const double here = move(tried, pose, stopped);
-        if (here < error) std::copy_n(before, kDof, row);
-        if (!(here < 0.5 * error) && i > 2) break;
-        error = std::min(error, here);
-        if (error < A::Policy::kConverged) break;
+        const bool slow = !(here < 0.5 * error);
+        if (here < error) {
+          error = here;
+          std::copy_n(before, kDof, row);
+        }
+        if ((slow && i > 2) || error < A::Policy::kConverged) break;
       }
       if (!(error < A::Policy::kArrived)) return stops > 0 ? Status::Limits : Status::Unreachable;
       double most = A::Policy::kLimitTolerance;
@@ -1391,7 +1401,7 @@ inline Walk follow_poses(const Eigen::Isometry3d* poses, std::ptrdiff_t count, c
       out.status = Status::Invalid;
     } else if (i > 0) {
       out.status = walk.step(before, pose, 0);
-    } else {
+    } else if (out.status = walk.begin(pose, start); out.status != Status::Ok) {
       typename A::Solutions found;
       typename A::SearchOptions options;
       options.seed = &start;

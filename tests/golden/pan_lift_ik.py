@@ -461,7 +461,7 @@ class _Arm:
 # The arguments `free` and `seed` as joint values.
 
 
-_FARTHEST = 1e5  # rad: neighbouring doubles are 1.5e-11 apart
+_FARTHEST = 1e6  # rad: neighbouring doubles are 1e-10 apart
 
 
 def _held_values(
@@ -514,7 +514,7 @@ def _held_rows(
 
 def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...]) -> Array:
     """The seed as an array of one of the shapes; raises ValueError for others. Turns of a revolute joint
-    that doubles cannot tell apart to 1e-11 rad are left out."""
+    that doubles cannot tell apart to 1e-10 rad are left out."""
     values = _real_array(seed, "seed")
     if values.shape not in shapes:
         expected = " or ".join(map(str, shapes))
@@ -570,11 +570,8 @@ def _inverse(J: Array) -> tuple[Array, Array]:
 # Poses as people have them, as homogeneous matrices.
 
 
-_TRANSFORMS = (
-    "homogeneous",
-    "as_matrix",
-    "A",
-)  # pin.SE3; RigidTransform of SciPy; SE3 of spatialmath
+# of pin.SE3, RigidTransform of SciPy, SE3 of spatialmath
+_TRANSFORMS = ("homogeneous", "as_matrix", "A")
 
 
 def _pose_matrices(pose: Any, alone: str) -> Array:
@@ -1400,7 +1397,7 @@ def _preference_costs(
 
 
 def _search_held(
-    arm: _Arm, pose: ArrayLike, seed: ArrayLike | None, prefer: str, limits: bool
+    arm: _Arm, pose: Any, seed: ArrayLike | None, prefer: str, limits: bool
 ) -> Solutions:
     """All rows, best first. Raises ValueError for bad arguments."""
     near = None if seed is None else tuple(_seed_rows(arm, seed, (len(arm.lower),)).tolist())
@@ -1421,6 +1418,8 @@ _SHALLOW = 9  # the same where there are no rows
 _path_following_FARTHEST = 0.3  # rad or m that a joint may move at once
 _OFF = 0.2  # of the motion, and
 _LEAST_OFF = 1e-4  # rad or m: how far a row may be from where the Jacobian leads
+_NEWTON_STEPS = 30
+_BESIDE_START = 0.1  # rad or m
 _DAMPING = 1e-8  # of directions that are all but lost
 _JUMP = 0.05  # rad or m that a row may be from the last one where halving does not help
 
@@ -1441,7 +1440,7 @@ class Path:
 def _follow_poses(
     arm: _Arm,
     search: Callable[[Array, Array, bool], Solutions],
-    poses: ArrayLike,
+    poses: Any,
     start: ArrayLike,
     limits: bool,
 ) -> Path:
@@ -1452,18 +1451,20 @@ def _follow_poses(
         raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
     row = _seed_rows(arm, start, (dof,))
     q, singular = np.full((len(T), dof), np.nan), np.zeros(len(T), dtype=bool)
-    walk = _Walk(arm, limits)
-    for i, pose in enumerate(T):
+    walk, before = _Walk(arm, limits), np.eye(4)
+    for i, lines in enumerate(T.tolist()):
         walk.crossed = False
-        if arm.task.read(pose.tolist(), arm.policy) is None:
+        read = arm.task.read(lines, arm.policy)
+        pose = np.array(lines if read is None else read)
+        if read is None:
             status = Status.INVALID
         elif i:
-            status = walk.step(T[i - 1], pose, 0)
+            status = walk.step(before, pose, 0)
         else:
-            status = walk.begin(search(pose, row, limits))
+            status = walk.begin(pose, row, search)
         if status is not Status.OK:
             return Path(q, i, status, singular)
-        q[i], singular[i] = walk.q, walk.crossed
+        q[i], singular[i], before = walk.q, walk.crossed, pose
     return Path(q, len(T), Status.OK, singular)
 
 
@@ -1475,8 +1476,17 @@ class _Walk:
         self.q: Array = np.zeros(len(arm.lower))
         self.crossed = False
 
-    def begin(self, found: Solutions) -> Status:
-        """To the first of some rows."""
+    def begin(
+        self, pose: Array, start: Array, search: Callable[[Array, Array, bool], Solutions]
+    ) -> Status:
+        """To the row next to the start, or the best that a search finds."""
+        self.q = start
+        if self.arm.free:
+            rows, flags, _ = self._unstopped(pose)
+            if len(rows) and np.abs(rows[0] - start).max() < _BESIDE_START:
+                self.crossed = bool(flags[0])
+                return self._arrive(rows[0])
+        found = search(pose, start, self.limits)
         if len(found):
             self.q, self.crossed = found.q[0], bool(found.singular[0])
         return found.status
@@ -1512,18 +1522,18 @@ class _Walk:
 
     def _expected(self, pose: Array) -> Array:
         """Where the shortest motion by the Jacobian leads from here."""
-        return self.q + self._motion(pose, list(range(len(self.q))))
+        return self.q + self._motion(self.q, pose, list(range(len(self.q))))[0]
 
-    def _motion(self, pose: Array, moving: list[int]) -> Array:
-        """The shortest motion (dof,) of some joints that the Jacobian asks for, at most a radian or
-        metre each."""
+    def _motion(self, q: Array, pose: Array, moving: list[int]) -> tuple[Array, float]:
+        """The shortest motion (dof,) of some joints that the Jacobian asks for, at most a radian or metre
+        each; the error that it shall make good."""
         arm = self.arm
-        here, J = _tip_and_jacobian(arm.chain, self.q[None])
+        here, J = _tip_and_jacobian(arm.chain, q[None])
         error, rows = arm.task.error(here, pose[None])[0], arm.task.rows(here, J)[0][:, moving]
         normal = rows @ rows.T + _DAMPING * np.eye(len(rows))
-        step = np.zeros(len(self.q))
+        step = np.zeros(len(q))
         step[moving] = np.clip(rows.T @ np.linalg.solve(normal, error), -1.0, 1.0)
-        return step
+        return step, float(np.abs(error).max())
 
     def _rows(self, pose: Array, expected: Array) -> tuple[Array, _Flags, Status]:
         """All rows without limits; with held joints the one that those lead to which no limit stops."""
@@ -1541,24 +1551,30 @@ class _Walk:
             at = self.q.copy()
             for j, value in stopped.items():
                 at[j] = value
-            q, arrived, _ = _refine(
-                arm.chain,
-                arm.task,
-                moving,
-                (at + self._motion(pose, moving))[None],
-                pose[None],
-                arm.policy,
-            )
-            if not arrived[0]:
+            q, error = self._newton(at, pose, moving)
+            if not error < arm.policy.arrived:
                 none = np.empty((0, len(at))), np.empty(0, dtype=bool)
                 return *none, Status.LIMITS if stopped else Status.UNREACHABLE
             low, high = np.array(arm.lower), np.array(arm.upper)
-            excess = np.maximum(low - q[0], q[0] - high)
+            excess = np.maximum(low - q, q - high)
             worst = int(excess.argmax())
             if not self.limits or excess[worst] <= arm.policy.limit_tolerance:
-                loss = _rank_loss(arm.chain, arm.task, range(len(at)), q)
-                return q, loss < arm.policy.rank_loss, Status.OK
-            stopped[worst] = float(low[worst] if q[0, worst] < low[worst] else high[worst])
+                loss = _rank_loss(arm.chain, arm.task, range(len(at)), q[None])
+                return q[None], loss < arm.policy.rank_loss, Status.OK
+            stopped[worst] = float(low[worst] if q[worst] < low[worst] else high[worst])
+
+    def _newton(self, q: Array, pose: Array, moving: list[int]) -> tuple[Array, float]:
+        """The best row of shortest motions from q, and its error."""
+        best, least = q, inf
+        for i in range(_NEWTON_STEPS):
+            step, error = self._motion(q, pose, moving)
+            slow = not error < 0.5 * least
+            if error < least:
+                best, least = q, error
+            if (slow and i > 2) or least < self.arm.policy.converged:
+                break
+            q = q + step
+        return best, least
 
 
 def _between(a: Array, b: Array) -> Array:

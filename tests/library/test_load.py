@@ -130,6 +130,7 @@ WRONG: dict[str, tuple[Any, str]] = {
     "free": (3, "free"),
     "lock": (["elbow"], "lock"),
     "args": ("a:=b", "args"),
+    "calibration": ("nowhere.yaml", "calibration"),
     "verify": ("yes", "verify"),
     "samples": (0, "samples"),
     "package_paths": (["nowhere"], "package_paths"),

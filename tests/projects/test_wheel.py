@@ -69,9 +69,8 @@ def installed(
 def test_the_page_on_the_library_works(installed: Environment, tmp_path: Path) -> None:
     """Its snippets, one after the other, in one program beside a robot.urdf."""
     shown = [block.text for block in blocks(ROOT / "docs/reference/library.md")]
-    code = [
-        text for text in shown if text.startswith(("import", "rough", "try"))
-    ]  # not what has to be compiled
+    # all but what has to be compiled
+    code = [text for text in shown if text.startswith(("import", "rough", "try"))]
     assert len(code) == 3
     robot = (ROOT / "urdf_fixtures/ur5e.urdf").read_text(encoding="utf-8")
     (tmp_path / "robot.urdf").write_text(robot, encoding="utf-8")

@@ -14,8 +14,8 @@ from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 from ikgen.kinematics.forward import row_values
 from ikgen.report import emit_report
+from ikgen.report.posture_names import row_names
 from ikgen.report.roots_picture import hidden_roots
-from ikgen.report.row_names import row_names
 from ikgen.report.worked_example import WorkedExample, solver_of, worked_example
 
 ROOT = Path(__file__).resolve().parents[2]

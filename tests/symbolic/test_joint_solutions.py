@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 from types import ModuleType
@@ -47,7 +48,9 @@ def _check(derivation: Derivation, count: int, folder: Path) -> None:
     poses = module.forward(q)
     rows, counts, _ = module.solve_batch(poses, limits=False)
     made = symbolic_rows(derivation, poses)
-    back = np.abs(module.forward(np.nan_to_num(made)) - poses[:, None]).max(axis=(-2, -1))
+    i, j = np.transpose(derivation.task.entries)  # what the task reads
+    off = np.abs(module.forward(np.nan_to_num(made)) - poses[:, None])
+    back = off[..., i, j].max(axis=-1)
     right = np.isfinite(made).all(axis=-1) & (back < SAME * size)
     assert counts.min() >= 1
     for i in range(count):
@@ -95,6 +98,17 @@ def test_what_a_branch_says() -> None:
     assert one.expression - swing == two.expression + swing == sympy.atan2(-p_x, p_y)
     assert sympy.Ge(p_x**2 + p_y**2 - d_3**2, 0) in one.conditions
     assert sympy.Ne(p_x**2 + p_y**2, 0) in one.conditions
+
+
+def test_the_page_runs(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(FIXTURES.parent)
+    page = (FIXTURES.parent / "docs/how-to/sympy.md").read_text()
+    code = re.search(r'^```python title="sympy"\n(.*?)^```', page, re.M | re.S)
+    assert code is not None
+    exec(compile(code.group(1), "sympy.md", "exec", dont_inherit=True), {})
+    said = capsys.readouterr().out.splitlines()
+    promised = re.findall(r"  # (Eq.*|proved: 10 of 10 equations)", code.group(1))
+    assert len(promised) == 2 and said[-2] == promised[0] and said[-1].startswith(promised[1])
 
 
 def test_only_what_was_solved_before_is_used() -> None:

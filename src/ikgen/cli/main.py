@@ -32,9 +32,9 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "init": ("ikgen.cli.init:init", "Write a config with every arm of a robot."),
     "build": ("ikgen.cli.build:build", "Generate every arm that a config lists."),
     "report": ("ikgen.cli.report:report", "Write the derivation as LaTeX and HTML."),
+    "robots": ("ikgen.cli.robots:robots", "List robots that are known by name, with their arms."),
     "view": ("ikgen.cli.view_command:view", "Drag a target, see all solutions, in a browser."),
     "reach": ("ikgen.cli.reach_command:reach", "Map which poses an arm reaches."),
-    "robots": ("ikgen.cli.robots:robots", "List robots that are known by name, with their arms."),
     "cmake-dir": ("ikgen.cli.cmake_dir:cmake_dir", "Print where the CMake package files lie."),
     "doctor": ("ikgen.cli.doctor:doctor", "Say which tools and plug-ins there are."),
 }

@@ -11,7 +11,12 @@ from ikgen.errors import IkgenError
 if TYPE_CHECKING:
     import jinja2
 
-__all__ = ["environment", "folder_environment", "render", "template_folder"]
+__all__ = ["TURNING_MARKS", "environment", "folder_environment", "render", "template_folder"]
+
+TURNING_MARKS = (0x61C, 0x200E, 0x200F, *range(0x202A, 0x202F), *range(0x2066, 0x206A))
+"""Marks of Unicode that turn the direction of text around them."""
+
+_TURNING = {mark: f"[U+{mark:04X}]" for mark in TURNING_MARKS}
 
 
 def environment(language: str) -> jinja2.Environment:
@@ -38,8 +43,9 @@ def folder_environment(folder: Path) -> jinja2.Environment:
 
 
 def render(language: str, template: str, **values: object) -> str:
-    """One template of a language, filled in."""
-    return environment(language).get_template(template).render(**values)
+    """One template of a language, filled in; marks that turn the direction of text are told in words,
+    since they make a line read as what it is not (CVE-2021-42574)."""
+    return environment(language).get_template(template).render(**values).translate(_TURNING)
 
 
 def template_folder(language: str) -> Path:

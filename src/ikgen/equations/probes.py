@@ -1,4 +1,4 @@
-"""Probe configurations: random ones, and regular ones with joints at multiples of 90 degrees.
+"""Probe configurations: random ones, and regular ones with joints at multiples of 90 degrees, slides at 0.
 
 A constant that a file rounds and that is kept so has any value at the random ones: what is zero there
 is so for every arm of the structure, not for cos(1.5708) being small. At the others it has the value
@@ -137,8 +137,8 @@ def make_probes(
     generic = random(GENERIC)
     special = random(8 * SPECIAL)
     quarter = rng.integers(-1, 3, special.shape) * (np.pi / 2)
-    chosen = (rng.random(special.shape) < rng.uniform(0.15, 1.0, (len(special), 1))) & revolute
-    special = np.where(chosen, quarter, special)
+    chosen = rng.random(special.shape) < rng.uniform(0.15, 1.0, (len(special), 1))
+    special = np.where(chosen, np.where(revolute, quarter, 0.0), special)
     smallest = smallest_singular(dh, special, size, readable=readable, tool=tool)
     regular = special[smallest > 1e-2][:SPECIAL]
     singular = special[smallest < 1e-8][:SINGULAR]

@@ -102,7 +102,7 @@ EMITTERS: tuple[Emitter, ...] = (
     Emitter(
         "sympy",
         "its solutions and equations as a Python module of SymPy expressions",
-        "ikgen.symbolic.module_text:emit_derivation",
+        "ikgen.symbolic.sympy_module:emit_derivation",
     ),
 )
 

@@ -28,6 +28,7 @@ def load(
     free: str | Iterable[str] | Mapping[str, float | str | None] | None = None,
     lock: Mapping[str, float | str] | None = None,
     args: Mapping[str, object] | None = None,
+    calibration: str | os.PathLike[str] | None = None,
     verify: bool = True,
     samples: int = 1000,
     package_paths: Iterable[str | os.PathLike[str]] = (),
@@ -41,7 +42,8 @@ def load(
     `base` and `tip` are links (poses are those of the tip in the base), `task` says what of a pose
     counts, `free` names joints whose values become an input of `solve`, with default values or without,
     `lock` fixes joints; values are in rad or m, or texts with a unit ("45deg"). `args` are xacro's
-    arguments, `package_paths` where it finds packages. What is left out is chosen: the one chain that
+    arguments, `calibration` is the file of the one arm's own kinematics, `package_paths` are where packages
+    are found. What is left out is chosen: the one chain that
     there is, a task that fits it, joints to hold.
 
     The solver is verified on `samples` random poses unless `verify` is false, and kept in the cache
@@ -54,7 +56,7 @@ def load(
     """
     request = checked_request(
         robot, base=base, tip=tip, task=task, free=free, lock=lock, args=args,
-        package_paths=package_paths, name=name, trust=trust,
+        calibration=calibration, package_paths=package_paths, name=name, trust=trust,
     )  # fmt: skip
     outputs = Outputs(
         samples=checked_count("samples", samples), verify=checked_flag("verify", verify)

@@ -25,6 +25,7 @@ def checked_request(
     free: object,
     lock: object,
     args: object,
+    calibration: object,
     package_paths: object,
     name: object,
     trust: object,
@@ -43,6 +44,7 @@ def checked_request(
         free=held,
         lock=locked,
         args=_xacro_arguments(args),
+        calibration=_calibration(calibration),
         package_paths=_folders(package_paths),
         name=_name(name),
         trust=checked_flag("trust", trust),
@@ -140,6 +142,17 @@ def _xacro_arguments(args: object) -> dict[str, str]:
     if not isinstance(args, Mapping) or not all(isinstance(n, str) and n for n in args):
         raise _wrong("args", args, "a mapping of the xacro file's arguments to their values")
     return {n: str(x).lower() if isinstance(x, bool) else str(x) for n, x in args.items()}
+
+
+def _calibration(file: object) -> Path | None:
+    if file is None:
+        return None
+    path = checked_path("calibration", file)
+    if not path.is_file():
+        raise ArgumentError(
+            f"calibration: there is no file '{path}'", hint=f"paths are relative to {Path.cwd()}"
+        )
+    return path
 
 
 def _folders(paths: object) -> tuple[Path, ...]:

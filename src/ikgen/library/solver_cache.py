@@ -79,6 +79,7 @@ class SolverCache:
         told = {
             "ikgen": _fingerprint(),
             "robot": [request.robot.name, _content(request)],
+            "calibration": _digest(request.calibration),
             "options": encode(request, lambda path: path.name),
             "verify": [outputs.verify, outputs.samples, outputs.seed],
         }
@@ -146,6 +147,10 @@ def cache_folder() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "ikgen"
 
 
+def _digest(file: Path | None) -> str | None:
+    return None if file is None else hashlib.sha256(file.read_bytes()).hexdigest()
+
+
 def _content(request: Request) -> str:
     """Digest of the description: of a file that can take others in, after it did."""
     from ikgen.generation.read import read_tree
@@ -154,7 +159,7 @@ def _content(request: Request) -> str:
     if is_named(request.robot):
         return read_tree(request).source.sha256
     if request.table or importer_of(request.robot).kind == "urdf":
-        return hashlib.sha256(request.robot.read_bytes()).hexdigest()
+        return str(_digest(request.robot))
     return read_tree(request).source.sha256
 
 

@@ -14,6 +14,7 @@ from ikgen.equations.products import ENTRY_NAMES
 from ikgen.forms.lowered_form import Tolerances
 from ikgen.program.inputs import Input
 from ikgen.program.statements import Comment, Let
+from ikgen.solver.choice import Step
 from ikgen.solver.solution_graph import SolutionGraph
 
 __all__ = ["LoweredLevel", "Placement", "Requirement", "identifier"]
@@ -57,6 +58,7 @@ class Placement:
         self.g: ExpressionGraph = self.knowledge.graph
         self.model_error = model_error
         self._tolerances = Tolerances.for_model_error(model_error)
+        self.loses_digits = bool(graph.probes.kept) or any(map(_folds, graph.steps))
         self.residuals: list[Expr] = []
         self.norms: list[Expr] = []
         self.folds: list[Expr] = []
@@ -73,8 +75,9 @@ class Placement:
     def rough(self) -> Expr | None:
         """Condition that an unknown solved so far has lost digits. With constants as the file rounds them
         a continuum's place is taken by solutions that few digits tell apart, and two of them meet where
-        it would be. None for exact constants."""
-        if not self.probes.kept:
+        it would be; where branches of a step meet at a regular configuration, the next root is taken of
+        what has half the digits. None for exact constants without such a step."""
+        if not self.loses_digits:
             return None
         total: Expr | None = None
         for flag in (*self.singular, *self.folds):
@@ -83,7 +86,7 @@ class Placement:
 
     def note_fold(self, under: Expr, size: float) -> None:
         """A square root was taken of `under`: of few digits where that is small beside `size`."""
-        if self.probes.kept:
+        if self.loses_digits:
             self.folds.append(self.g.binary("gt", self.g.const(FOLDED * size), under))
 
     @property
@@ -183,6 +186,12 @@ class Placement:
                 total += counts[self.level(node)]
             stack.extend(node.args)
         return total
+
+
+def _folds(step: Step) -> bool:
+    """Whether branches of a step meet at a regular configuration."""
+    forms = (step.candidate, *step.fallbacks)
+    return any(c.judgement is not None and c.judgement.folds for c in forms)
 
 
 def identifier(name: str) -> str:

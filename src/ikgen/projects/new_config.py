@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ikgen.emit.rendering import TURNING_MARKS
 from ikgen.errors import UsageError
 from ikgen.generation.read import arm_name, read, read_tree
 from ikgen.generation.request import Request
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ArmTable", "config_path", "robot_arms", "write_config"]
 
+_ESCAPED = {code: f"\\u{code:04x}" for code in (0x7F, *TURNING_MARKS)}
 _FOLDER = "generated"
 """Where the outputs go, from the config's folder."""
 
@@ -123,4 +125,4 @@ def _value(value: object) -> str:
         return f"{{ {', '.join(f'{_value(k)} = {_value(v)}' for k, v in value.items())} }}"
     if isinstance(value, list):
         return f"[{', '.join(map(_value, value))}]"
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return json.dumps(value, ensure_ascii=False).translate(_ESCAPED)

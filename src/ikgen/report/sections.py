@@ -13,10 +13,10 @@ from ikgen.report.held_section import held_section
 from ikgen.report.leftover import leftover_section
 from ikgen.report.opening import forward_section, robot_section
 from ikgen.report.page import Page, SolvedPage, UnsolvedPage
+from ikgen.report.posture_names import row_names
 from ikgen.report.proof_section import proof_section
 from ikgen.report.results import graph_section, poses_section, verification_section
 from ikgen.report.roots_picture import roots_blocks
-from ikgen.report.row_names import row_names
 from ikgen.report.splits import splits_section
 from ikgen.report.steps import Writer, abbreviations, derived_section, step_section
 

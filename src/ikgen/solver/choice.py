@@ -52,10 +52,8 @@ class Chooser:
         its divisor vanishes; failing that, with `anything`, the best there is."""
         step = self._sound(ranked) or self._covered(ranked)
         if step is None and anything and ranked:
-            holds = [
-                c for c in ranked if not c.is_weak
-            ]  # folds are no reason to take more branches
-            best = min(holds or ranked, key=lambda c: (c.branches > 2, not c.is_sound))
+            holds = [c for c in ranked if not c.is_weak]
+            best = min(holds or ranked, key=_last_resort)
             step = _step(best, (), ranked, sound=self._divides(best))
         return step
 
@@ -122,6 +120,14 @@ class Chooser:
             out.append(chosen)
             uncovered = uncovered[~self._holds(chosen, uncovered)]
         return None if len(uncovered) else tuple(out)
+
+
+def _last_resort(candidate: Candidate) -> tuple[bool, bool, bool]:
+    """What comes first of candidates none of which holds everywhere. Folds are no reason to take more
+    branches; a divisor that nearly vanishes is."""
+    judged = candidate.judgement
+    poor = judged is not None and judged.margin < SAFE_MARGIN
+    return poor, candidate.branches > 2, not candidate.is_sound
 
 
 def _step(

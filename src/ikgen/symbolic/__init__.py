@@ -17,5 +17,6 @@ except ImportError as error:
 from ikgen.symbolic.joint_solutions import Branch, solutions
 from ikgen.symbolic.matrix_equations import equations
 from ikgen.symbolic.proof import Proof, prove
+from ikgen.symbolic.sympy_leaf import sympy_leaf
 
-__all__ = ["Branch", "Proof", "equations", "prove", "solutions"]
+__all__ = ["Branch", "Proof", "equations", "prove", "solutions", "sympy_leaf"]

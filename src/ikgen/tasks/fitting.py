@@ -35,7 +35,7 @@ def fitting_tasks(dh: DHChain, axis: str | None = None) -> tuple[Task, ...]:
     whole = TASKS[0]
     if moving >= whole.freedoms:
         return (whole,)
-    sized = [t for t in TASKS if t.freedoms == moving and t.name != "rotation"]
+    sized = [task for task in TASKS if task.freedoms == moving]
     found = (way for task in sized for way in _along(dh, task, (axis,) if axis else AXES))
     return (*found, whole)
 

@@ -16,6 +16,10 @@ _MARGIN = 1.02
 """How far outside the largest reach found a "slightly unreachable" pose lies, as a factor."""
 
 
+_POINT = 1e-6
+"""Largest reach, in lengths of the arm, of a tip that stays where it is."""
+
+
 def _candidates(arm: ArmUnderTest, j: int) -> Array:
     """Values of joint j whose distances determine the best one, or among which it is sought."""
     if not arm.revolute[j]:
@@ -77,7 +81,9 @@ def unreachable_poses(arm: ArmUnderTest, count: int, rng: np.random.Generator) -
         directions /= np.linalg.norm(directions, axis=1, keepdims=True)
         far[:, :3, 3] = directions * (5 * radius + 1)
         slight[:, :3, 3] *= np.linspace(_MARGIN, _MARGIN + 0.1, count)[:, None]
-        sets = {"far outside": far, "slightly outside": slight}
+        sets = {"far outside": far}
+        if radius > _POINT * arm.length:
+            sets["slightly outside"] = slight
     if len(arm.active) < arm.task.rank:
         poses = arm.screws.forward(arm.uniform(rng, count))
         poses[:, :3, :3] = poses[:, :3, :3] @ _turn(0.3, 0.5)

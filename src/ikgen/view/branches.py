@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ikgen.emit.derivation import Derivation
 from ikgen.kinematics.forward import file_jacobian
 from ikgen.report.example_section import joint_value
-from ikgen.report.row_names import row_names
+from ikgen.report.posture_names import row_names
 from ikgen.verify.runners.python_module import PythonModule
 
 __all__ = ["Branch", "Solved", "solved"]

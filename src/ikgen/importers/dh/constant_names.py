@@ -12,18 +12,18 @@ from ikgen.model.dh import Angle, Length
 __all__ = ["SymbolTable", "symbol_of"]
 
 _ZERO = 1e-12
-_TEXTBOOK = re.compile(r"[A-Za-z]{1,5}_[A-Za-z0-9]+")
+_TEXTBOOK = re.compile(r"[A-Za-z]{1,5}_\d+[A-Za-z]?")
 _TAKEN = re.compile(r"(seed|sigma|cos|sin)_.*")
 
 
 def symbol_of(name: str) -> str:
-    """The user's name as a symbol that no variable of emitted code can have: a_2 stays, a2 becomes
-    a_2, and plain words such as h get an underscore."""
+    """The user's name as a symbol that no variable, keyword or macro of emitted code can be: a_2 stays, a2
+    becomes a_2, and words, of whatever letters, get an underscore."""
     split = re.fullmatch(r"([A-Za-z]{1,5})(\d+)", name)
     if split:
         name = f"{split.group(1)}_{split.group(2)}"
     taken = _TAKEN.fullmatch(name) or not _TEXTBOOK.fullmatch(name)
-    return f"{name}_" if taken and not name.endswith("_") else name
+    return f"{name}_" if taken else name
 
 
 @dataclass

@@ -14,6 +14,7 @@ UNLIMITED = Limits(-math.inf, math.inf)
 # Two turns either way; robots that state more than that mean degrees (or no limit at all).
 _DEGREES_ABOVE = 4.0 * math.pi + 1e-6
 _NO_LIMIT_FROM = 1e3
+_TURN = 2.0 * math.pi
 FARTHEST = 1e6
 """Neighbouring doubles are 1e-10 apart here: no joint value beyond this (rad or m) is exact."""
 
@@ -41,7 +42,7 @@ def joint_limits(
     if low > high:
         notes.append(f"lower limit {low:g} is above the upper limit {high:g}: swapped")
         low, high = high, low
-    if low > FARTHEST or high < -FARTHEST:
+    if low > FARTHEST - _TURN or high < -FARTHEST + _TURN:  # a turn inside has to be there
         raise BadValueError(
             f"limits {low:g} to {high:g} hold no value that can be told from its neighbours",
             "write limits in rad or m",

@@ -57,6 +57,15 @@ template <class A, class Solver> struct PathStep {
     return first == Status::Ok ? step(middle, pose, depth + 1) : first;
   }
 
+  // To the row next to the start, if the arm has held joints and there is one.
+  Status begin(const Eigen::Isometry3d& pose, const typename A::Joints& start) noexcept {
+    double row[kDof], most = 0.0;
+    std::copy_n(start.data(), kDof, q);
+    if (A::kFree == 0 || unstopped(pose, row, crossed) != Status::Ok) return Status::Unreachable;
+    for (int j = 0; j < kDof; ++j) most = std::max(most, std::abs(row[j] - q[j]));
+    return most < 0.1 ? arrive(row) : Status::Unreachable;
+  }
+
  private:
   // To a row, if it is inside the limits on the turn that it came to.
   Status arrive(const double* row) noexcept {
@@ -129,10 +138,12 @@ template <class A, class Solver> struct PathStep {
         double before[kDof];
         std::copy_n(tried, kDof, before);
         const double here = move(tried, pose, stopped);
-        if (here < error) std::copy_n(before, kDof, row);
-        if (!(here < 0.5 * error) && i > 2) break;
-        error = std::min(error, here);
-        if (error < A::Policy::kConverged) break;
+        const bool slow = !(here < 0.5 * error);
+        if (here < error) {
+          error = here;
+          std::copy_n(before, kDof, row);
+        }
+        if ((slow && i > 2) || error < A::Policy::kConverged) break;
       }
       if (!(error < A::Policy::kArrived)) return stops > 0 ? Status::Limits : Status::Unreachable;
       double most = A::Policy::kLimitTolerance;
@@ -178,7 +189,7 @@ inline Walk follow_poses(const Eigen::Isometry3d* poses, std::ptrdiff_t count, c
       out.status = Status::Invalid;
     } else if (i > 0) {
       out.status = walk.step(before, pose, 0);
-    } else {
+    } else if (out.status = walk.begin(pose, start); out.status != Status::Ok) {
       typename A::Solutions found;
       typename A::SearchOptions options;
       options.seed = &start;

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import inf, pi
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,7 +26,7 @@ _PART = 1024
 
 
 def search_grid(
-    arm: Arm, pose: ArrayLike, seed: ArrayLike | None, prefer: str, limits: bool
+    arm: Arm, pose: Any, seed: ArrayLike | None, prefer: str, limits: bool
 ) -> Solutions:
     """Good rows over a grid of the held joints' values, each made better by a compass search. Raises
     ValueError for bad arguments."""

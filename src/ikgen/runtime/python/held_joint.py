@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import inf, pi
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.batch_solving import rows_batch
@@ -83,7 +83,7 @@ def held_range(arm: Arm, T: Array, limits: bool) -> tuple[float, float]:
     return max(low, -far), min(high, far)
 
 
-def pose_lines(arm: Arm, pose: ArrayLike) -> Array | None:
+def pose_lines(arm: Arm, pose: Any) -> Array | None:
     """A pose as it is read, (4, 4); None for what is no pose. Raises ValueError for a wrong shape."""
     matrix = pose_matrices(pose, arm.task.alone)
     if matrix.shape != (4, 4):

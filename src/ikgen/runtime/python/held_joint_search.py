@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -18,7 +20,7 @@ __all__ = ["search_interval"]
 
 
 def search_interval(
-    joint: HeldJoint, pose: ArrayLike, seed: ArrayLike | None, prefer: str, limits: bool
+    joint: HeldJoint, pose: Any, seed: ArrayLike | None, prefer: str, limits: bool
 ) -> Solutions:
     """The best row of each interval of the held joint's values, best first. Raises ValueError for bad
     arguments."""

@@ -14,7 +14,7 @@ from ikgen.runtime.python.solved_arm import Arm
 
 __all__ = ["held_rows", "held_values", "seed_rows"]
 
-_FARTHEST = 1e5  # rad: neighbouring doubles are 1.5e-11 apart
+_FARTHEST = 1e6  # rad: neighbouring doubles are 1e-10 apart
 
 
 def held_values(
@@ -67,7 +67,7 @@ def held_rows(
 
 def seed_rows(arm: Arm, seed: ArrayLike, *shapes: tuple[int, ...]) -> Array:
     """The seed as an array of one of the shapes; raises ValueError for others. Turns of a revolute joint
-    that doubles cannot tell apart to 1e-11 rad are left out."""
+    that doubles cannot tell apart to 1e-10 rad are left out."""
     values = real_array(seed, "seed")
     if values.shape not in shapes:
         expected = " or ".join(map(str, shapes))

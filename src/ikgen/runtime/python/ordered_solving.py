@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -15,7 +17,7 @@ __all__ = ["search_rows"]
 
 
 def search_rows(
-    arm: Arm, pose: ArrayLike, seed: ArrayLike | None, prefer: str, limits: bool
+    arm: Arm, pose: Any, seed: ArrayLike | None, prefer: str, limits: bool
 ) -> Solutions:
     """All rows, best first. Raises ValueError for bad arguments."""
     near = None if seed is None else tuple(seed_rows(arm, seed, (len(arm.lower),)).tolist())

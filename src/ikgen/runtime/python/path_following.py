@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import inf
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,7 +15,7 @@ from ikgen.runtime.python.chain_kinematics import tip_and_jacobian
 from ikgen.runtime.python.joint_arguments import seed_rows
 from ikgen.runtime.python.pose_arguments import pose_matrices
 from ikgen.runtime.python.pose_solving import solve_pose
-from ikgen.runtime.python.refinement import rank_loss, refine
+from ikgen.runtime.python.refinement import rank_loss
 from ikgen.runtime.python.solutions import Solutions, Status
 from ikgen.runtime.python.solved_arm import Arm
 
@@ -24,6 +26,8 @@ _SHALLOW = 9  # the same where there are no rows
 _FARTHEST = 0.3  # rad or m that a joint may move at once
 _OFF = 0.2  # of the motion, and
 _LEAST_OFF = 1e-4  # rad or m: how far a row may be from where the Jacobian leads
+_NEWTON_STEPS = 30
+_BESIDE_START = 0.1  # rad or m
 _DAMPING = 1e-8  # of directions that are all but lost
 _JUMP = 0.05  # rad or m that a row may be from the last one where halving does not help
 
@@ -44,7 +48,7 @@ class Path:
 def follow_poses(
     arm: Arm,
     search: Callable[[Array, Array, bool], Solutions],
-    poses: ArrayLike,
+    poses: Any,
     start: ArrayLike,
     limits: bool,
 ) -> Path:
@@ -55,18 +59,20 @@ def follow_poses(
         raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
     row = seed_rows(arm, start, (dof,))
     q, singular = np.full((len(T), dof), np.nan), np.zeros(len(T), dtype=bool)
-    walk = _Walk(arm, limits)
-    for i, pose in enumerate(T):
+    walk, before = _Walk(arm, limits), np.eye(4)
+    for i, lines in enumerate(T.tolist()):
         walk.crossed = False
-        if arm.task.read(pose.tolist(), arm.policy) is None:
+        read = arm.task.read(lines, arm.policy)
+        pose = np.array(lines if read is None else read)
+        if read is None:
             status = Status.INVALID
         elif i:
-            status = walk.step(T[i - 1], pose, 0)
+            status = walk.step(before, pose, 0)
         else:
-            status = walk.begin(search(pose, row, limits))
+            status = walk.begin(pose, row, search)
         if status is not Status.OK:
             return Path(q, i, status, singular)
-        q[i], singular[i] = walk.q, walk.crossed
+        q[i], singular[i], before = walk.q, walk.crossed, pose
     return Path(q, len(T), Status.OK, singular)
 
 
@@ -78,8 +84,17 @@ class _Walk:
         self.q: Array = np.zeros(len(arm.lower))
         self.crossed = False
 
-    def begin(self, found: Solutions) -> Status:
-        """To the first of some rows."""
+    def begin(
+        self, pose: Array, start: Array, search: Callable[[Array, Array, bool], Solutions]
+    ) -> Status:
+        """To the row next to the start, or the best that a search finds."""
+        self.q = start
+        if self.arm.free:
+            rows, flags, _ = self._unstopped(pose)
+            if len(rows) and np.abs(rows[0] - start).max() < _BESIDE_START:
+                self.crossed = bool(flags[0])
+                return self._arrive(rows[0])
+        found = search(pose, start, self.limits)
         if len(found):
             self.q, self.crossed = found.q[0], bool(found.singular[0])
         return found.status
@@ -115,18 +130,18 @@ class _Walk:
 
     def _expected(self, pose: Array) -> Array:
         """Where the shortest motion by the Jacobian leads from here."""
-        return self.q + self._motion(pose, list(range(len(self.q))))
+        return self.q + self._motion(self.q, pose, list(range(len(self.q))))[0]
 
-    def _motion(self, pose: Array, moving: list[int]) -> Array:
-        """The shortest motion (dof,) of some joints that the Jacobian asks for, at most a radian or
-        metre each."""
+    def _motion(self, q: Array, pose: Array, moving: list[int]) -> tuple[Array, float]:
+        """The shortest motion (dof,) of some joints that the Jacobian asks for, at most a radian or metre
+        each; the error that it shall make good."""
         arm = self.arm
-        here, J = tip_and_jacobian(arm.chain, self.q[None])
+        here, J = tip_and_jacobian(arm.chain, q[None])
         error, rows = arm.task.error(here, pose[None])[0], arm.task.rows(here, J)[0][:, moving]
         normal = rows @ rows.T + _DAMPING * np.eye(len(rows))
-        step = np.zeros(len(self.q))
+        step = np.zeros(len(q))
         step[moving] = np.clip(rows.T @ np.linalg.solve(normal, error), -1.0, 1.0)
-        return step
+        return step, float(np.abs(error).max())
 
     def _rows(self, pose: Array, expected: Array) -> tuple[Array, Flags, Status]:
         """All rows without limits; with held joints the one that those lead to which no limit stops."""
@@ -144,24 +159,30 @@ class _Walk:
             at = self.q.copy()
             for j, value in stopped.items():
                 at[j] = value
-            q, arrived, _ = refine(
-                arm.chain,
-                arm.task,
-                moving,
-                (at + self._motion(pose, moving))[None],
-                pose[None],
-                arm.policy,
-            )
-            if not arrived[0]:
+            q, error = self._newton(at, pose, moving)
+            if not error < arm.policy.arrived:
                 none = np.empty((0, len(at))), np.empty(0, dtype=bool)
                 return *none, Status.LIMITS if stopped else Status.UNREACHABLE
             low, high = np.array(arm.lower), np.array(arm.upper)
-            excess = np.maximum(low - q[0], q[0] - high)
+            excess = np.maximum(low - q, q - high)
             worst = int(excess.argmax())
             if not self.limits or excess[worst] <= arm.policy.limit_tolerance:
-                loss = rank_loss(arm.chain, arm.task, range(len(at)), q)
-                return q, loss < arm.policy.rank_loss, Status.OK
-            stopped[worst] = float(low[worst] if q[0, worst] < low[worst] else high[worst])
+                loss = rank_loss(arm.chain, arm.task, range(len(at)), q[None])
+                return q[None], loss < arm.policy.rank_loss, Status.OK
+            stopped[worst] = float(low[worst] if q[worst] < low[worst] else high[worst])
+
+    def _newton(self, q: Array, pose: Array, moving: list[int]) -> tuple[Array, float]:
+        """The best row of shortest motions from q, and its error."""
+        best, least = q, inf
+        for i in range(_NEWTON_STEPS):
+            step, error = self._motion(q, pose, moving)
+            slow = not error < 0.5 * least
+            if error < least:
+                best, least = q, error
+            if (slow and i > 2) or least < self.arm.policy.converged:
+                break
+            q = q + step
+        return best, least
 
 
 def _between(a: Array, b: Array) -> Array:

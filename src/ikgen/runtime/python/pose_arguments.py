@@ -11,11 +11,8 @@ from ikgen.runtime.python.real_numbers import real_array
 
 __all__ = ["pose_matrices"]
 
-_TRANSFORMS = (
-    "homogeneous",
-    "as_matrix",
-    "A",
-)  # pin.SE3; RigidTransform of SciPy; SE3 of spatialmath
+# of pin.SE3, RigidTransform of SciPy, SE3 of spatialmath
+_TRANSFORMS = ("homogeneous", "as_matrix", "A")
 
 
 def pose_matrices(pose: Any, alone: str) -> Array:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import inf
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ikgen.runtime.python.array_types import Array
 from ikgen.runtime.python.branch_tracks import Tracks, tracked
@@ -61,7 +61,7 @@ class Piece:
         return Interval(low, high, self.branch)
 
 
-def self_motion_of(joint: HeldJoint, pose: ArrayLike, limits: bool) -> tuple[Interval, ...]:
+def self_motion_of(joint: HeldJoint, pose: Any, limits: bool) -> tuple[Interval, ...]:
     """The intervals of a pose (4, 4), by branch and value; none for what is no pose."""
     T = pose_lines(joint.arm, pose)
     if T is None:

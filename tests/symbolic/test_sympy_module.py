@@ -16,7 +16,7 @@ from ikgen.emit.python.python_emitter import emit_module
 from ikgen.errors import UsageError
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
-from ikgen.symbolic.module_text import module_text
+from ikgen.symbolic.sympy_module import module_text
 
 TABLES = Path(__file__).resolve().parents[1] / "robots" / "tables"
 DRIVER = """

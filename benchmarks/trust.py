@@ -1,0 +1,88 @@
+"""All that "How far you can trust this" tells: runs the commands, records, and fills the page's table.
+
+    python -m benchmarks.trust [--fill]
+
+With `--fill` nothing is run: the table is made from what was recorded. Exit code 1 where a command found
+anything wrong.
+"""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+from pathlib import Path
+
+from benchmarks.results import Measured, read_result
+
+__all__ = ["COMMANDS", "PAGE", "filled_in", "main"]
+
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "explanation" / "trust.md"
+START, END = "<!-- figures: trust -->\n", "<!-- end of figures -->\n"
+COMMANDS = ("mutants", "kills", "determinism", "planted")
+
+
+def _mutants(found: dict[str, object]) -> list[tuple[str, str]]:
+    rows = []
+    for kind, words in (
+        ("read", "mutants read in one process"),
+        ("run", "mutants run to verified code"),
+    ):
+        counts = found[kind]
+        assert isinstance(counts, dict)
+        wrong = sum(n for said, n in counts.items() if said.startswith("WRONG"))
+        rows.append((f"{sum(counts.values()):,} {words}", f"{wrong} wrong"))
+    return rows
+
+
+def _kills(found: dict[str, object]) -> list[tuple[str, str]]:
+    return [(f"{found['kills']} kills over outputs that are there", f"{found['wrong']} wrong")]
+
+
+def _determinism(found: dict[str, object]) -> list[tuple[str, str]]:
+    rows = found["differing"]
+    assert isinstance(rows, dict)
+    words = f"{len(rows)} surroundings, {found['files']} files each"
+    return [(words, f"{sum(map(bool, rows.values()))} with a file that differs")]
+
+
+def _planted(found: dict[str, object]) -> list[tuple[str, str]]:
+    left = found["unfound"]
+    assert isinstance(left, list)
+    return [(f"{found['planted']} defects planted in emitted code", f"{len(left)} not found")]
+
+
+_ROWS = {"mutants": _mutants, "kills": _kills, "determinism": _determinism, "planted": _planted}
+
+
+def filled_in(text: str) -> str:
+    """The page's text with its table made from what was recorded."""
+    before, _, rest = text.partition(START)
+    _, mark, after = rest.partition(END)
+    if not mark:
+        raise ValueError(f"{PAGE.name} has no marks for its table")
+    lines = ["| command | what | found |", "|---|---|---|"]
+    measured: list[Measured] = [read_result(name) for name in COMMANDS]
+    for name, one in zip(COMMANDS, measured, strict=True):
+        lines += [f"| `{one.command}` | {a} | {b} |" for a, b in _ROWS[name](one.found)]
+    said = ", ".join(dict.fromkeys(f"`{m.commit}` on {m.date}" for m in measured))
+    return before + START + "\n".join(lines) + f"\n\nMeasured at {said}.\n" + END + after
+
+
+def main() -> int:
+    """Run, record, and write the page."""
+    parser = argparse.ArgumentParser(description="All figures of the page on trust.")
+    parser.add_argument("--fill", action="store_true", help="only make the table")
+    options = parser.parse_args()
+    codes = [0]
+    for name in () if options.fill else COMMANDS:
+        print(f"== {name}", flush=True)
+        codes.append(
+            subprocess.run([sys.executable, "-m", f"benchmarks.{name}", "--record"]).returncode
+        )
+    PAGE.write_text(filled_in(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+    return max(codes)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,179 @@
+"""Intervals, searches and paths of the C++ header are the Python module's."""
+
+from __future__ import annotations
+
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from tests.support.held_arms import HELD, held_module
+from tests.support.solving import NO_COMPILER, import_text
+
+from ikgen.emit.cpp.cpp_emitter import emit_header
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.verify.runners.cpp_toolchain import compile_program, find_eigen
+
+pytestmark = pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
+
+Array = NDArray[np.float64]
+
+PROGRAM = r"""
+#include "@_ik.hpp"
+#include <cstdio>
+#include <vector>
+namespace ik = @_ik;
+int main() {
+  int mode, n;
+  ik::Joints seed;
+  while (std::scanf("%d %d", &mode, &n) == 2) {
+    for (int j = 0; j < ik::kDof; ++j) std::scanf("%lf", &seed[j]);
+    std::vector<Eigen::Isometry3d, Eigen::aligned_allocator<Eigen::Isometry3d>> poses(n);
+    for (auto& T : poses)
+      for (int i = 0; i < 16; ++i) std::scanf("%lf", &T.matrix()(i / 4, i % 4));
+    std::vector<double> out;
+#ifdef ONE_HELD
+    if (mode == 0) {
+      const auto found = ik::self_motion(poses[0]);
+      out = {double(found.status), double(found.count)};
+      for (const auto& one : found) out.insert(out.end(), {one.low, one.high, double(one.branch)});
+    }
+#endif
+    if (mode >= 1 && mode <= 3) {
+      ik::SearchOptions options;
+      options.seed = &seed;
+      options.prefer = static_cast<ik::Prefer>(mode - 1);
+      const ik::Solutions found = ik::search(poses[0], options);
+      out = {double(found.status), double(found.count)};
+      for (const auto& q : found) out.insert(out.end(), q.data(), q.data() + ik::kDof);
+    }
+    if (mode == 4) {
+      std::vector<ik::Joints, Eigen::aligned_allocator<ik::Joints>> q(n);
+      const ik::Path path = ik::follow(poses.data(), n, seed, q.data());
+      out = {double(path.status), double(path.reached)};
+      for (int i = 0; i < path.reached; ++i) out.insert(out.end(), q[i].data(), q[i].data() + ik::kDof);
+    }
+    if (mode == 5) {
+      ik::Options options;
+      options.seed = &seed;
+      const ik::Solutions found = ik::solve(poses[0], options);
+      out = {double(found.status), double(found.count)};
+      for (const auto& q : found) out.insert(out.end(), q.data(), q.data() + ik::kDof);
+    }
+    for (const double x : out) std::printf("%.17g ", x);
+    std::printf("\n");
+  }
+}
+"""
+
+STATUS = ("OK", "UNREACHABLE", "LIMITS", "INVALID", "SINGULAR")
+
+
+@dataclass(frozen=True)
+class Both:
+    """An arm in both languages."""
+
+    arm: ModuleType
+    program: Path
+
+    def run(self, mode: int, seed: Array, poses: Array) -> tuple[str, Array]:
+        """Status and numbers that the C++ program answers."""
+        numbers = [mode, len(poses), *seed.tolist(), *poses.ravel().tolist()]
+        text = subprocess.run(
+            [self.program],
+            input=" ".join(map(repr, numbers)),
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        values = np.array(text.split(), dtype=float)
+        return STATUS[int(values[0])], values[2:]
+
+
+@pytest.fixture(scope="module", params=list(HELD))
+def both(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Both:
+    folder = tmp_path_factory.mktemp("both")
+    module = held_module(request.param, folder)
+    (folder / f"{module.name}_ik.hpp").write_text(emit_header(module))
+    define = "#define ONE_HELD\n" if len(module.free) == 1 else ""
+    source = folder / "main.cpp"
+    source.write_text(define + PROGRAM.replace("@", module.name))
+    compile_program(source, folder / "main", [folder, find_eigen()])
+    return Both(import_text(emit_module(module), folder), folder / "main")
+
+
+def drawn(arm: ModuleType, rng: np.random.Generator) -> Array:
+    return rng.uniform(np.maximum(arm.LOWER, -np.pi), np.minimum(arm.UPPER, np.pi))
+
+
+def test_intervals(both: Both) -> None:
+    arm, rng = both.arm, np.random.default_rng(1)
+    if len(arm.FREE_JOINTS) != 1:
+        assert not hasattr(arm, "self_motion")
+        return
+    for _ in range(8):
+        pose = arm.forward(drawn(arm, rng))
+        status, numbers = both.run(0, np.zeros(arm.DOF), pose[None])
+        mine = np.array([[one.low, one.high, one.branch] for one in arm.self_motion(pose)])
+        theirs = numbers.reshape(-1, 3)
+        assert status == "OK"
+        # an interval narrower than the cells that are looked at may be seen by one alone
+        wide = [x[x[:, 1] - x[:, 0] > 1e-3] for x in (mine, theirs)]
+        assert len(wide[0]) == len(wide[1])
+        assert np.abs(wide[0][:, :2] - wide[1][:, :2]).max() < 1e-9
+
+
+def cost(arm: ModuleType, mode: int, q: Array, seed: Array) -> float:
+    if mode == 1:
+        return float(np.linalg.norm(q - seed))
+    if mode == 2:
+        half = 0.5 * (arm.UPPER - arm.LOWER)
+        return float(np.linalg.norm((q - 0.5 * (arm.LOWER + arm.UPPER)) / half))
+    return -float(np.linalg.svd(arm.jacobian(q), compute_uv=False)[-1])
+
+
+@pytest.mark.parametrize("mode", [1, 2, 3])
+def test_searches(both: Both, mode: int) -> None:
+    arm, rng = both.arm, np.random.default_rng(2)
+    near = 1e-5 if len(arm.FREE_JOINTS) < 2 else 0.02  # a grid's start may lead elsewhere
+    for _ in range(3):
+        pose, seed = arm.forward(drawn(arm, rng)), drawn(arm, rng)
+        status, numbers = both.run(mode, seed, pose[None])
+        found = arm.search(pose, seed=seed, prefer=("near", "centre", "dexterous")[mode - 1])
+        rows = numbers.reshape(-1, arm.DOF)
+        assert status == found.status.value == "OK"
+        assert np.abs(arm.forward(rows) - pose).max() < 1e-9
+        best = cost(arm, mode, found.q[0], seed)
+        assert cost(arm, mode, rows[0], seed) == pytest.approx(best, abs=near)
+
+
+def test_seeds_hold_their_own_values(both: Both) -> None:
+    arm, rng = both.arm, np.random.default_rng(3)
+    for _ in range(4):
+        q = drawn(arm, rng)
+        pose = arm.forward(q)
+        status, numbers = both.run(5, q, pose[None])
+        found = arm.solve(pose, seed=q)
+        rows = numbers.reshape(-1, arm.DOF)
+        assert status == "OK" and rows.shape == found.q.shape
+        assert np.abs(rows - found.q).max() < 1e-8
+        assert np.abs(rows[0] - q).max() < 1e-6
+
+
+def test_paths(both: Both) -> None:
+    arm, rng = both.arm, np.random.default_rng(4)
+    seen = 0
+    for _ in range(6):
+        q = drawn(arm, rng)
+        poses = np.repeat(arm.forward(q)[None], 30, axis=0)
+        poses[:, :3, 3] += np.linspace(0.0, 0.3, 30)[:, None] * rng.normal(size=3) / 1.7
+        status, numbers = both.run(4, q, poses)
+        path = arm.follow(poses, start=q)
+        rows = numbers.reshape(-1, arm.DOF)
+        assert (status, len(rows)) == (path.status.value, path.reached)
+        assert np.abs(rows - path.q[: path.reached]).max() < 1e-6
+        seen += path.reached
+    assert seen > 60
