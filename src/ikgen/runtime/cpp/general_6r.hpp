@@ -24,7 +24,7 @@ inline void solve_6r(const Chain& F, const Frame& T, Solutions& out) noexcept {
 // All real solutions of F_0 Rz(q_1) F_1 ... Rz(q_6) F_6 = T, sorted. F: constant rigid transforms, the upper three
 // rows of each by rows; T: the same. Plan: kLength (m), a typical size of the arm; kResultants (start, reverse) and
 // kEigenproblems (start, reverse, swap), arrays of eliminations in order of preference, the former perhaps empty.
-// Joint angles are in (-pi, pi], distinct, and verified to 1e-9 (lengths over kLength).
+// Joint angles are in (-pi, pi], distinct, and verified to 0.5e-9 (lengths over kLength).
 template <class Plan>
 inline void general_6r(const double (&F)[7][12], const double (&T)[12], g6::Solutions& out) noexcept {
   out.count = 0;

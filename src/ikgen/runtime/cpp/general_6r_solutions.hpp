@@ -16,7 +16,7 @@ namespace g6 {
 
 inline constexpr int kRoom = 64;  // a continuum gives more than the 16 that are apart
 
-inline constexpr double kVerified = 1e-9;  // of the pose that a row reaches, lengths over the arm's
+inline constexpr double kVerified = 0.5e-9;  // of the pose that a row reaches, lengths over the arm's
 
 struct Solution {
   double q[6], c[6], s[6];  // angles in (-pi, pi], their cosines and sines; lengths of slides
