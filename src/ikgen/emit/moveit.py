@@ -68,8 +68,7 @@ def package_name(name: str) -> str:
 
 def _values(module: SolverModule, package: str) -> dict[str, object]:
     """What the templates name."""
-    rows = [module.first_row(j) for j in range(module.dh.dof)]
-    turning = [row.revolute and j not in module.free for j, row in enumerate(rows)]
+    turning = [module.turns(j) and j not in module.free for j in range(module.dh.dof)]
     return {
         "m": module,
         "package": package,

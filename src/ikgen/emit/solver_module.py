@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ikgen.elimination.plan import EliminationPlan
 from ikgen.kinematics.displacement import displacements
+from ikgen.kinematics.whole_turns import turns_freely
 from ikgen.model.dh import DHChain, DHRow
 from ikgen.program.policy import SolvePolicy
 from ikgen.program.statements import Program
@@ -100,3 +101,8 @@ class SolverModule:
     def first_row(self, joint: int) -> DHRow:
         """The first row of the chain that a joint drives: its scale and offset."""
         return next(row for row in self.dh.rows if row.driver == joint)
+
+    def turns(self, joint: int) -> bool:
+        """Whether values of the joint that differ by whole turns are the same configuration, and no
+        others are; a mimic joint with another ratio than a whole one is in the way."""
+        return turns_freely(self.dh, joint)

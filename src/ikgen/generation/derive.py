@@ -34,10 +34,12 @@ def derive(
     """
     from ikgen.kinematics.classify import classify
     from ikgen.kinematics.free_joints import free_defaults
+    from ikgen.kinematics.whole_turns import check_couplings
 
     if reading is None:
         progress("read", request.robot.name)
         reading = read(request)
+    check_couplings(reading.dh)
     defaults = request.free.items()
     free_defaults(reading.dh, defaults)  # first: some values are refused
     progress("derive", classify(reading.dh).name)

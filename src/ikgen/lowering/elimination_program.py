@@ -6,6 +6,7 @@ import numpy as np
 
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.kinematics.whole_turns import middle_of
 from ikgen.lowering.frames import file_frames, operand_of
 from ikgen.lowering.joint_values import first_row, joint_value, variable_lets
 from ikgen.model.dh import DHChain
@@ -76,4 +77,4 @@ def _value(dh: DHChain, joint: int) -> Expr:
     g = ExpressionGraph(1)
     names = _names(dh, joint)
     parts = tuple(g.atom("input", name, np.zeros(1), unknown=False) for name in names)
-    return joint_value(g, first_row(dh, joint), parts)
+    return joint_value(g, first_row(dh, joint), parts, middle_of(dh, joint))

@@ -1,7 +1,8 @@
 """Joint values of the file from DH variables, and back: offsets, signs and ratios.
 
 A joint's DH variable is `v = scale * q + offset`. For angles the pair of cosine and sine is turned by the
-offset and mirrored instead, so that the value of the one arctangent is in (-pi, pi].
+offset and mirrored instead, so that the value of the one arctangent is in (-pi, pi]; of a joint whose
+whole turns are other configurations it is counted from the middle of the limits.
 """
 
 from __future__ import annotations
@@ -21,18 +22,22 @@ def first_row(dh: DHChain, joint: int) -> DHRow:
     return next(row for row in dh.rows if row.driver == joint)
 
 
-def joint_value(g: ExpressionGraph, row: DHRow, variable: tuple[Expr, ...]) -> Expr:
-    """The joint's value `(v - offset) / scale` (rad or m) from (cosine, sine) or (length,) of v."""
+def joint_value(
+    g: ExpressionGraph, row: DHRow, variable: tuple[Expr, ...], middle: float = 0.0
+) -> Expr:
+    """The joint's value `(v - offset) / scale` (rad or m) from (cosine, sine) or (length,) of v; of an
+    angle's values the one next to `middle`."""
     if not row.revolute:
         moved = g.sub(variable[0], g.const(row.offset.value))
         return g.div(moved, g.const(row.scale))
     c, s = variable
-    co, so = (g.const(x) for x in exact_cos_sin(row.offset.value))
+    co, so = (g.const(x) for x in exact_cos_sin(row.offset.value + row.scale * middle))
     cosine = g.add(g.mul(co, c), g.mul(so, s))
     sine = g.sub(g.mul(co, s), g.mul(so, c))
     if row.scale < 0.0:
         sine = g.neg(sine)
-    return g.div(g.binary("atan2", sine, cosine), g.const(abs(row.scale)))
+    value = g.div(g.binary("atan2", sine, cosine), g.const(abs(row.scale)))
+    return g.add(g.const(middle), value) if middle else value
 
 
 def variable_lets(row: DHRow, given: str, names: tuple[str, ...]) -> tuple[Let, ...]:

@@ -8,6 +8,7 @@ from ikgen.algebra.expression import Expr
 from ikgen.equations.knowledge import Variable
 from ikgen.forms.form import Form
 from ikgen.forms.lowered_form import LoweredForm, LoweredRoutine
+from ikgen.kinematics.whole_turns import middle_of
 from ikgen.lowering.closure import require_closure
 from ikgen.lowering.fallbacks import choose_form
 from ikgen.lowering.joint_values import first_row, joint_value
@@ -124,7 +125,7 @@ def _joint_values(work: Placement) -> list[tuple[int, Expr]]:
             variable = (work.knowledge.variables.distance(j),)
         for e in variable:
             work.place(e)
-        out.append((j, joint_value(work.g, first_row(work.dh, j), variable)))
+        out.append((j, _value(work, j, variable)))
     return out
 
 
@@ -139,3 +140,9 @@ def _place_values(work: Placement, values: list[tuple[int, Expr]]) -> None:
 
 def _labels(step: Step) -> str:
     return " and ".join(dict.fromkeys(e.label for e in step.candidate.sources))
+
+
+def _value(work: Placement, joint: int, variable: tuple[Expr, ...]) -> Expr:
+    """A joint's value from its DH variable."""
+    middle = middle_of(work.dh, joint)
+    return joint_value(work.g, first_row(work.dh, joint), variable, middle)

@@ -32,7 +32,7 @@ class ArmUnderTest:
     """`lower`, `upper` (dof,): limits in rad or m; `low`, `high`: the part of them that is sampled
     (at most one turn); `free`: indices of held joints; `active`: the others; `length` (m) scales
     metres against radians: the largest distance of the tip from the base that a random sample
-    reached."""
+    reached; `period` (dof,): as of the oracle, by which values are compared."""
 
     oracle: Oracle
     task: TaskSpace
@@ -43,6 +43,7 @@ class ArmUnderTest:
     free: tuple[int, ...]
     active: tuple[int, ...]
     revolute: NDArray[np.bool_]
+    period: Array
     screws: ScrewChain
     length: float
 
@@ -66,10 +67,11 @@ class ArmUnderTest:
         return np.asarray(values[:, min(self.task.rank, len(self.active)) - 1])
 
     def difference(self, a: Array, b: Array) -> Array:
-        """Joint-wise a - b, revolute joints modulo whole turns."""
+        """Joint-wise a - b, modulo the joints' periods."""
         d = a - b
-        turned = np.remainder(d + np.pi, 2 * np.pi) - np.pi
-        return np.asarray(np.where(self.revolute, turned, d))
+        period = np.where(np.isfinite(self.period), self.period, 2 * np.pi)
+        turned = np.remainder(d + 0.5 * period, period) - 0.5 * period
+        return np.asarray(np.where(np.isfinite(self.period), turned, d))
 
     def unit_of(self, q: Array) -> Array:
         """What a tolerance on each value of q (…, dof) is relative to: a slide's size (m) where that
@@ -94,18 +96,18 @@ class ArmUnderTest:
         return np.asarray(np.all(inside, axis=-1))
 
     def uniform(self, rng: np.random.Generator, n: int, *, limits: bool = True) -> Array:
-        """Random configurations (n, dof); without limits revolute joints take the whole turn."""
-        whole = self.revolute & (not limits)
-        low, high = np.where(whole, -np.pi, self.low), np.where(whole, np.pi, self.high)
+        """Random configurations (n, dof); without limits joints take their whole period."""
+        whole, half = np.isfinite(self.period) & (not limits), 0.5 * self.period
+        low, high = np.where(whole, -half, self.low), np.where(whole, half, self.high)
         return np.asarray(rng.uniform(low, high, size=(n, self.dof)))
 
 
-def _sampled_range(lower: Array, upper: Array, revolute: NDArray[np.bool_]) -> tuple[Array, Array]:
-    """The part of the limits to sample: one turn about the value nearest to 0, or 1 m to each
+def _sampled_range(lower: Array, upper: Array, period: Array) -> tuple[Array, Array]:
+    """The part of the limits to sample: one period about the value nearest to 0, or 1 m to each
     side."""
-    half = np.where(revolute, np.pi, _UNBOUNDED_SLIDE)
+    half = np.where(np.isfinite(period), 0.5 * period, _UNBOUNDED_SLIDE)
     unbounded = (np.abs(lower) > FAR_LIMIT) | (np.abs(upper) > FAR_LIMIT)
-    wide = unbounded | (revolute & (upper - lower > 2 * np.pi))
+    wide = unbounded | (upper - lower > period)
     centre = np.clip(0.0, lower + half, np.maximum(upper - half, lower + half))
     return np.where(wide, centre - half, lower), np.where(wide, centre + half, upper)
 
@@ -115,13 +117,13 @@ def arm_under_test(
 ) -> ArmUnderTest:
     """Gather what the checks need; `limits` are (lower, upper), each (dof,), in rad or m."""
     lower, upper = (np.asarray(bound, dtype=float) for bound in limits)
-    screws, revolute = oracle.screws, oracle.revolute
-    low, high = _sampled_range(lower, upper, revolute)
+    screws, period = oracle.screws, oracle.period
+    low, high = _sampled_range(lower, upper, period)
     free = tuple(oracle.joint_names.index(name) for name in free_joints)
     active = tuple(i for i in range(oracle.dof) if i not in free)
     probe = np.random.default_rng(0).uniform(low, high, size=(64, oracle.dof))
     tips = screws.forward(probe)[:, :3, 3]
     length = max(float(np.max(np.linalg.norm(tips, axis=1))), 1e-3)
     return ArmUnderTest(
-        oracle, task, lower, upper, low, high, free, active, revolute, screws, length
-    )
+        oracle, task, lower, upper, low, high, free, active, oracle.revolute, period, screws, length,
+    )  # fmt: skip

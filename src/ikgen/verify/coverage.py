@@ -69,8 +69,9 @@ def _bring_inside(arm: ArmUnderTest, q: Array, margin: float | Array) -> NDArray
     """Which rows (…, dof) some whole turns bring inside the limits by more than `margin`."""
     margin = margin * arm.unit_of(q)
     low, high = arm.lower + margin, arm.upper - margin
-    turns = np.ceil((np.where(np.isfinite(low), low, q) - q) / (2 * np.pi))
-    turned = np.where(arm.revolute, q + 2 * np.pi * turns, q)
+    period = np.where(np.isfinite(arm.period), arm.period, 0.0)
+    turns = np.ceil((np.where(np.isfinite(low), low, q) - q) / arm.period)
+    turned = q + period * turns
     return np.asarray(np.all((turned >= low) & (turned <= high), axis=-1))
 
 

@@ -69,6 +69,16 @@ class Oracle:
         sliding = [~np.any(s[3:]) for s in self.screws.screws]
         return np.asarray(~np.any(self.screws.A[sliding] != 0, axis=0))
 
+    @property
+    def period(self) -> Array:
+        """(dof,): the least step (rad) between values of a joint that are the same configuration: a whole
+        turn, more or less where only mimic joints turn with it; infinite where there is none."""
+        A = np.abs(self.screws.A)
+        least = np.min(np.where(A > 0.0, A, np.inf), axis=0, initial=np.inf)
+        least = np.where(np.isinf(least), 1.0, least)  # a joint that moves nothing
+        whole = np.all(np.abs(A / least - np.round(A / least)) <= 1e-12, axis=0)
+        return np.asarray(np.where(self.revolute & whole, 2.0 * np.pi / least, np.inf))
+
     def _wire(self, wiring: Mapping[str, tuple[int, float, float]]) -> None:
         joints = list(self._model.names)[1:]
         self._A, self._b = np.zeros((len(joints), self.dof)), np.zeros(len(joints))

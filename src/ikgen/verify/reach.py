@@ -22,11 +22,11 @@ _POINT = 1e-6
 
 def _candidates(arm: ArmUnderTest, j: int) -> Array:
     """Values of joint j whose distances determine the best one, or among which it is sought."""
-    if not arm.revolute[j]:
+    if not np.isfinite(arm.period[j]):
         return np.array([arm.low[j], arm.high[j]])
-    simple = np.count_nonzero(arm.screws.A[:, j]) == 1
-    turns = 3 if simple and abs(np.sum(arm.screws.A[:, j])) == 1 else 72
-    return np.asarray(np.arange(turns) * 2 * np.pi / turns)
+    simple = np.count_nonzero(arm.screws.A[:, j]) == 1 and arm.period[j] == 2 * np.pi
+    turns = 3 if simple else 72
+    return np.asarray(np.arange(turns) * arm.period[j] / turns)
 
 
 def _improve(arm: ArmUnderTest, q: Array, j: int) -> Array:

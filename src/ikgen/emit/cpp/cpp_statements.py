@@ -222,8 +222,8 @@ class ProgramText:
         return out
 
     def _placing(self, joint: int) -> str:
-        limits, row = self.module.dh.joints[joint].limits, self.module.first_row(joint)
-        turning = row.revolute and joint not in self.module.free
+        limits = self.module.dh.joints[joint].limits
+        turning = self.module.turns(joint) and joint not in self.module.free
         if math.isinf(limits.lower) and math.isinf(limits.upper):
             return ""
         if turning and limits.lower <= -math.pi and limits.upper >= math.pi:

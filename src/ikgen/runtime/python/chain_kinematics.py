@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,7 +33,8 @@ class Chain:
     `frames` (n + 1, 4, 4) and `motions` say the same as `parts` (4, n, 4, 4), with which
     `M(v) F = cos(v) parts[0] + sin(v) parts[1] + v parts[2] + parts[3]`, `joint`, `scale`, `offset` (n,),
     `turning` (n, 1), whether M is a rotation, `slides`, whether one is not, and `drive` (n, dof), the
-    derivatives of v by q. `revolute` (dof): which joints turn.
+    derivatives of v by q. `revolute` (dof): whose values are the same
+    configuration exactly where they differ by whole turns.
     """
 
     frames: Array
@@ -63,9 +65,16 @@ def chain_of(frames: Array, motions: tuple[Motion, ...], dof: int) -> Chain:
     scale, offset = (np.array([m[i] for m in motions]) for i in (2, 3))
     turns = np.array([[m[1]] for m in motions])
     drive = scale[:, None] * (joint[:, None] == np.arange(dof))
-    revolute = tuple(next(m[1] for m in motions if m[0] == j) for j in range(dof))
+    revolute = tuple(_turns_freely([m for m in motions if m[0] == j]) for j in range(dof))
     slides = not turns.all()
     return Chain(frames, motions, parts, joint, scale, offset, turns, slides, drive, revolute)
+
+
+def _turns_freely(motions: Sequence[Motion]) -> bool:
+    """Whether a joint's values are the same configuration where they differ by whole turns, and only
+    there: not with a motion that turns by another ratio."""
+    _, turning, ratio, _ = motions[0]
+    return turning and abs(ratio) == 1.0 and all(abs(m[2] - round(m[2])) < 1e-12 for m in motions)
 
 
 def _steps(chain: Chain, q: Array) -> Array:

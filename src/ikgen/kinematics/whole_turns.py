@@ -1,0 +1,80 @@
+"""What whole turns of a joint do where mimic joints follow it.
+
+A row's angle is `scale * q + offset` and counts modulo 2 pi. Where the first row of a joint has the scale
+±1 and all others whole multiples of it, `q + 2 pi` is the same configuration, and no smaller step is. With
+another scale the step is `2 pi / |scale|`: a whole turn of the joint is then another configuration, or one
+of several that are the same.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ikgen.errors import UnsolvedChainError
+from ikgen.model.dh import DHChain, DHRow
+
+__all__ = ["check_couplings", "middle_of", "turns_freely"]
+
+_WHOLE = 1e-12
+
+
+def turns_freely(dh: DHChain, joint: int) -> bool:
+    """Whether two values of the joint are the same configuration exactly where whole turns are between."""
+    rows = _rows(dh, joint)
+    whole = all(abs(row.scale - round(row.scale)) <= _WHOLE for row in rows)
+    return rows[0].revolute and abs(rows[0].scale) == 1.0 and whole
+
+
+def middle_of(dh: DHChain, joint: int) -> float:
+    """The value (rad or m) that an arctangent's value is counted from: 0 where turns place it, else the
+    middle of the limits, since they span one period at most (`check_couplings`)."""
+    row, limits = _rows(dh, joint)[0], dh.joints[joint].limits
+    span = limits.upper - limits.lower
+    if not row.revolute or turns_freely(dh, joint) or not math.isfinite(span):
+        return 0.0
+    return limits.lower + 0.5 * span
+
+
+def check_couplings(dh: DHChain) -> None:
+    """Raises `UnsolvedChainError` where mimic joints make a joint's value no function of a pose: an angle
+    and a length that follow one joint, a ratio that is no whole number, or limits wider than a period."""
+    for joint in range(dh.dof):
+        rows = _rows(dh, joint)
+        cause = _cause(dh, joint, rows)
+        if cause:
+            name = dh.joints[joint].name
+            raise UnsolvedChainError(
+                f"no closed form for the mimic joints of '{name}': {cause[0]}",
+                hint=f"--lock {name}=VALUE makes it a constant{cause[1]}",
+            )
+
+
+def _cause(dh: DHChain, joint: int, rows: tuple[DHRow, ...]) -> tuple[str, str] | None:
+    """Why the joint has no closed form, and what else than locking it would help."""
+    first = rows[0]
+    for row in rows[1:]:
+        names = f"'{row.name}' and '{first.name}'"
+        if row.revolute != first.revolute:
+            text = f"of {names} one turns and the other slides, so the equations are not algebraic"
+            return text, ""
+        ratio = row.scale / first.scale
+        if row.revolute and abs(ratio - round(ratio)) > _WHOLE:
+            text = f"{names} turn in the ratio {abs(ratio):g}, which is no whole number"
+            return text, "; so do --base and --tip with one of the two between them"
+    limits, held = dh.joints[joint].limits, dh.joints[joint].name in dh.free
+    if not first.revolute or held or turns_freely(dh, joint):
+        return None
+    period = 2.0 * math.pi / abs(first.scale)
+    if limits.upper - limits.lower <= period * (1.0 + _WHOLE):
+        return None
+    text = (
+        f"'{first.name}' turns {abs(first.scale):g} times as far, so a pose has solutions every "
+        f"{period:.6g} of '{dh.joints[joint].name}', and the limits span "
+        f"{limits.upper - limits.lower:.6g}"
+    )
+    return text, f"; so do limits that span {period:.6g} at most"
+
+
+def _rows(dh: DHChain, joint: int) -> tuple[DHRow, ...]:
+    """The rows that a joint drives."""
+    return tuple(row for row in dh.rows if row.driver == joint)

@@ -1,0 +1,108 @@
+"""Mimic joints whose driver has another period than whole turns."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.support.coupled_arms import crank_robot
+from tests.support.small_robots import write_robot
+from tests.support.solving import NO_COMPILER, import_text
+
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.errors import UnsolvedChainError
+from ikgen.generation.derive import derive
+from ikgen.generation.generate import generate
+from ikgen.generation.read import read
+from ikgen.generation.request import Outputs, Request
+from ikgen.kinematics.whole_turns import check_couplings, middle_of, turns_freely
+
+LIMITS = (-5.0, 7.0)  # of the crank: nearly two turns, a waist at half its value takes one
+ENDS = {"base": "base_link", "tip": "tool0", "task": "position"}
+
+
+def request(robot: Path) -> Request:
+    return Request(robot, **ENDS)
+
+
+def test_a_crank_of_two_turns_has_every_row_once(tmp_path: Path) -> None:
+    made = derive(request(crank_robot(tmp_path, 0.5, LIMITS)))
+    arm = import_text(emit_module(made.module), tmp_path)
+    plain = derive(request(write_robot(tmp_path / "plain.urdf")))
+    free = import_text(emit_module(plain.module), tmp_path)
+    rng = np.random.default_rng(3)
+    q = np.column_stack([rng.uniform(*LIMITS, 60), rng.uniform(-2.5, 2.5, (60, 2))])
+    poses = np.array([arm.forward(row) for row in q])
+    batch, counts, _ = arm.solve_batch(poses)
+    several = 0
+    for pose, start, rows, count in zip(poses, q, batch, counts, strict=True):
+        found = arm.solve(pose)
+        for row in found:
+            assert np.allclose(arm.forward(row)[:3, 3], pose[:3, 3], atol=1e-9)
+            assert LIMITS[0] <= row[0] <= LIMITS[1]
+        assert np.min(np.abs(found.q - start).max(axis=1)) < 1e-6
+        near = arm.solve(pose, seed=start + 0.01).q[0]
+        assert np.abs(near - start).max() < 1e-6
+        expected = set()
+        for waist, *rest in free.solve(pose, limits=False).q:
+            for crank in 2.0 * (waist + 2.0 * np.pi * np.arange(-2, 3)):
+                if LIMITS[0] <= crank <= LIMITS[1] and np.abs(rest).max() <= 2.5:
+                    expected.add(tuple(np.round([crank, *rest], 6) + 0.0))
+        assert {tuple(np.round(row, 6) + 0.0) for row in found.q} == expected
+        assert {tuple(np.round(row, 6) + 0.0) for row in rows[:count]} == expected
+        several += len(expected) > 1
+    assert several > 10
+
+
+@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
+def test_a_crank_of_two_turns_is_verified_in_both_languages(tmp_path: Path) -> None:
+    outputs = Outputs(("python", "cpp"), tmp_path / "out", samples=300)
+    made = generate(request(crank_robot(tmp_path, -0.5, LIMITS)), outputs)
+    assert sorted(made.reports) == ["cpp", "python"]
+    assert all(report.passed for report in made.reports.values())
+
+
+@pytest.mark.parametrize(
+    ("ratio", "limits", "step"),
+    [(2.0, (-3.0, 3.0), "3.14159"), (0.5, (-7.0, 7.0), "12.5664"), (-3.0, (-1.2, 1.2), "2.0944")],
+)
+def test_limits_beyond_one_period_are_refused(
+    tmp_path: Path, ratio: float, limits: tuple[float, float], step: str
+) -> None:
+    with pytest.raises(UnsolvedChainError, match=f"solutions every {step} of 'crank'") as caught:
+        derive(request(crank_robot(tmp_path, ratio, limits)))
+    assert caught.value.exit_code == 3
+    assert "--lock crank=VALUE" in caught.value.hint
+    assert f"limits that span {step} at most" in caught.value.hint
+
+
+def test_a_slide_that_turns_a_joint_has_a_period_too(tmp_path: Path) -> None:
+    long = read(request(crank_robot(tmp_path, 7.0, (0.0, 1.0), kind="prismatic"))).dh
+    with pytest.raises(UnsolvedChainError, match=r"every 0\.897598 of 'crank'"):
+        check_couplings(long)
+    short = read(request(crank_robot(tmp_path, 7.0, (0.1, 0.5), kind="prismatic"))).dh
+    check_couplings(short)
+    assert not turns_freely(short, 0)
+    assert middle_of(short, 0) == pytest.approx(0.3)
+
+
+def test_ratios_that_are_not_whole_are_refused(tmp_path: Path) -> None:
+    robot = write_robot(tmp_path / "elbow.urdf")
+    text = robot.read_text().replace(
+        '<joint name="elbow" type="revolute">',
+        '<joint name="elbow" type="revolute"><mimic joint="waist" multiplier="0.007"/>',
+    )
+    robot.write_text(text)
+    with pytest.raises(UnsolvedChainError, match=r"turn in the ratio 0\.007, which is no whole"):
+        derive(request(robot))
+    robot.write_text(text.replace('"elbow" type="revolute"', '"elbow" type="prismatic"'))
+    slides = read(request(robot)).dh
+    with pytest.raises(UnsolvedChainError, match="one turns and the other slides"):
+        check_couplings(slides)
+
+
+def test_whole_ratios_turn_freely(tmp_path: Path) -> None:
+    dh = read(request(write_robot(tmp_path / "elbow.urdf"))).dh
+    assert all(turns_freely(dh, j) for j in range(dh.dof))
+    check_couplings(dh)
