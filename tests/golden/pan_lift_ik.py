@@ -271,9 +271,16 @@ def _chain_of(frames: Array, motions: tuple[_Motion, ...], dof: int) -> _Chain:
     scale, offset = (np.array([m[i] for m in motions]) for i in (2, 3))
     turns = np.array([[m[1]] for m in motions])
     drive = scale[:, None] * (joint[:, None] == np.arange(dof))
-    revolute = tuple(next(m[1] for m in motions if m[0] == j) for j in range(dof))
+    revolute = tuple(_turns_freely([m for m in motions if m[0] == j]) for j in range(dof))
     slides = not turns.all()
     return _Chain(frames, motions, parts, joint, scale, offset, turns, slides, drive, revolute)
+
+
+def _turns_freely(motions: Sequence[_Motion]) -> bool:
+    """Whether a joint's values are the same configuration where they differ by whole turns, and only
+    there: not with a motion that turns by another ratio."""
+    _, turning, ratio, _ = motions[0]
+    return turning and abs(ratio) == 1.0 and all(abs(m[2] - round(m[2])) < 1e-12 for m in motions)
 
 
 def _steps(chain: _Chain, q: Array) -> Array:
