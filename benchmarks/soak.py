@@ -89,7 +89,10 @@ def soak(
 ) -> Soak:
     """Compile the header and put the poses through it, shared among `jobs` processes."""
     assert made.header is not None
-    position, turn = TASKS[made.answer["task"]]
+    task = str(made.answer["task"])
+    if task not in TASKS:
+        raise SystemExit(f"soak knows no way to compare poses by {task}: {', '.join(TASKS)}")
+    position, turn = TASKS[task]
     defines = [f"-DSOAK_POSITION={position}", f"-DSOAK_TURN={turn}"]
     with compiled_program(SOURCE, made.header, [*flags, *defines]) as program:
 

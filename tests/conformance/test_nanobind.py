@@ -71,10 +71,14 @@ def test_answers_are_the_python_modules(both: tuple[ModuleType, ModuleType]) -> 
         assert (one[1] == other[1]).all() and (one[2] == other[2]).all()
 
 
+PYTHON_ALONE = {"Interval", "Path", "follow", "search", "self_motion"}
+"""What the compiled package has not."""
+
+
 @pytest.mark.slow
 def test_constants_and_errors_are_the_python_modules(both: tuple[ModuleType, ModuleType]) -> None:
     native, python = both
-    for name in python.__all__:
+    for name in set(python.__all__) - PYTHON_ALONE:
         mine, its = getattr(native, name), getattr(python, name)
         assert callable(its) or np.array_equal(mine, its), name
     pose = python.forward(np.zeros(6))

@@ -51,8 +51,8 @@ PAPER_SOLUTIONS = (
 
 
 def module_of(table: Path, folder: Path) -> ModuleType:
-    """The emitted Python module of a table, imported."""
-    derivation = derive(Request(table))
+    """The emitted Python module of a table for the whole pose, imported."""
+    derivation = derive(Request(table, task="pose"))
     file = folder / f"{derivation.module.name}_ik.py"
     file.write_text(emit_module(derivation.module), encoding="utf-8")
     return PythonModule(file).module

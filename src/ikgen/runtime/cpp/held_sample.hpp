@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fold_rows.hpp"
+#include "joint_range.hpp"
 #include "newton_refinement.hpp"
 #include "solution_rows.hpp"
 

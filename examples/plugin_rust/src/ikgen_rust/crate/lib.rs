@@ -50,7 +50,7 @@ pub struct Options {
     pub limits: bool,
     /// Orders the rows by distance, chooses whole turns, and is taken where a pose leaves a joint free.
     pub seed: Option<Joints>,
-    /// Values of FREE_JOINTS.
+    /// Values of FREE_JOINTS; with a seed, those left at their defaults are the seed's.
     pub free: [f64; FREE],
 }
 

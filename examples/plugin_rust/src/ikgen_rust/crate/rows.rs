@@ -17,13 +17,26 @@ pub fn solve(pose: &Pose, options: &Options) -> Solutions {
         return Solutions { status: Status::Invalid, rows: Vec::new() };
     }
     let seed = options.seed.filter(|q| q.iter().all(|x| x.is_finite()));
-    let (rows, real) = fitting(pose, seed, options);
+    let (rows, real) = fitting(pose, seed, &held(options, seed));
     let status = match (rows.is_empty(), real) {
         (false, _) => Status::Ok,
         (true, true) => Status::Limits,
         (true, false) => Status::Unreachable,
     };
     Solutions { status, rows }
+}
+
+/// The options with the seed's values for held joints that are left at their defaults.
+fn held(options: &Options, seed: Option<Joints>) -> Options {
+    let mut out = *options;
+    if let Some(q) = seed {
+        for (i, &j) in FREE_JOINTS.iter().enumerate() {
+            if out.free[i] == FREE_DEFAULTS[i] {
+                out.free[i] = q[j];
+            }
+        }
+    }
+    out
 }
 
 /// Solutions on the right turns, and whether there were any before limits. Where the pose leaves a joint
