@@ -127,6 +127,7 @@ WRONG: dict[str, tuple[Any, str]] = {
     "base": (7, "base"),
     "tip": ("", "tip"),
     "task": ("fly", "task"),
+    "tool_axis": ("w", "task"),
     "free": (3, "free"),
     "lock": (["elbow"], "lock"),
     "args": ("a:=b", "args"),

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from ikgen.report.row_names import row_names as in_report
 
 import ikgen
+from ikgen.report.posture_names import row_names as in_report
 
 ROOT = Path(__file__).resolve().parents[2]
 SIDES = ("ur5e.urdf", "abb_irb2400.urdf", "puma560_paper.toml", "doosan_m1013.urdf")

@@ -25,6 +25,7 @@ def load(
     base: str | None = None,
     tip: str | None = None,
     task: str | None = None,
+    tool_axis: str | None = None,
     free: str | Iterable[str] | Mapping[str, float | str | None] | None = None,
     lock: Mapping[str, float | str] | None = None,
     args: Mapping[str, object] | None = None,
@@ -40,11 +41,11 @@ def load(
     """The arm of a URDF or xacro file, of a DH table, or of a robot by name.
 
     `base` and `tip` are links (poses are those of the tip in the base), `task` says what of a pose
-    counts, `free` names joints whose values become an input of `solve`, with default values or without,
-    `lock` fixes joints; values are in rad or m, or texts with a unit ("45deg"). `args` are xacro's
-    arguments, `calibration` is the file of the one arm's own kinematics, `package_paths` are where packages
-    are found. What is left out is chosen: the one chain that
-    there is, a task that fits it, joints to hold.
+    counts, `tool_axis` by which of the tool's axes where that is a direction. `free` names joints whose
+    values become an input of `solve`, with default values or without, `lock` fixes joints; values are in
+    rad or m, or texts with a unit ("45deg"). `args` are xacro's arguments, `calibration` is the file of
+    the one arm's own kinematics, `package_paths` are where packages are found. What is left out is
+    chosen: the one chain that there is, a task that fits it, joints to hold.
 
     The solver is verified on `samples` random poses unless `verify` is false, and kept in the cache
     (`ikgen.library.solver_cache`) unless `cache` is false. `trust` lets a xacro file do whatever xacro
@@ -55,7 +56,7 @@ def load(
     where a check fails.
     """
     request = checked_request(
-        robot, base=base, tip=tip, task=task, free=free, lock=lock, args=args,
+        robot, base=base, tip=tip, task=task, tool_axis=tool_axis, free=free, lock=lock, args=args,
         calibration=calibration, package_paths=package_paths, name=name, trust=trust,
     )  # fmt: skip
     outputs = Outputs(

@@ -26,6 +26,7 @@ def checked_request(
     lock: object,
     args: object,
     calibration: object,
+    tool_axis: object,
     package_paths: object,
     name: object,
     trust: object,
@@ -33,6 +34,7 @@ def checked_request(
     """The request that the arguments make; raises `ArgumentError` that names the wrong one."""
     file = _robot(robot)
     held, locked = _held(free), _locked(lock)
+    axis = _text("tool_axis", tool_axis, '"x", "y" or "z"')
     for joint in held:
         if joint in locked:
             raise ArgumentError(f"joint '{joint}' is in both free and lock", hint="leave one out")
@@ -40,7 +42,8 @@ def checked_request(
         robot=file,
         base=_text("base", base, "the name of a link, as in the file"),
         tip=_text("tip", tip, "the name of a link, as in the file"),
-        task=_task(task),
+        task=_task(task, axis),
+        tool_axis=axis,
         free=held,
         lock=locked,
         args=_xacro_arguments(args),
@@ -86,15 +89,18 @@ def _text(argument: str, value: object, what: str) -> str | None:
     return value
 
 
-def _task(task: object) -> str | None:
+def _task(task: object, axis: str | None) -> str | None:
     from ikgen.tasks import TASKS, find_task
 
     known = ", ".join(one.name for one in TASKS)
     text = _text("task", task, f"one of {known}")
     try:
-        return None if text is None else find_task(text).name
+        if axis is None:
+            return None if text is None else find_task(text).name
+        named = find_task(text or "position-direction", axis).stem
     except IkgenError as error:
         raise ArgumentError(f"task: {error.message}", hint=error.hint) from None
+    return None if text is None else named
 
 
 def _held(free: object) -> dict[str, float | None]:
