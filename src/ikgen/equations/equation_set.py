@@ -4,7 +4,7 @@ For every 0 <= k < m <= n the matrix equation
 `(A_1 ... A_k C_{k+1})^-1 T (C_{m+1} A_{m+1} ... A_n)^-1 = V_{k+1} C_{k+2} ... V_m`, where `A_i = C_i V_i`
 with `C_i = Rx(alpha) Tx(a)` and `V_i = Rz(theta) Tz(d)` (IKBT eqs. 2-5 use m = n only). Added for each
 split are the position of the inverse and the squared norms in which whole rotations drop out (IKBT's
-x^2 y^2). Chains with many joints held are split at their moving joints only.
+x^2 y^2). Long chains are split at their moving joints only.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from ikgen.equations.symbolic_transforms import (
 
 __all__ = ["Equation", "EquationSet"]
 
-_MOST_HELD = 2
-"""A chain with more joints held is split at its moving joints only."""
+_LONGEST = 8
+"""A chain with more rows is split at its moving joints only."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +101,7 @@ class EquationSet(ChainProducts):
         """Whether the chain is split at row i: a held joint's splits turn a moving one's by what is known,
         and are left out where their number would grow with every joint held."""
         dh = self.dh
-        return len(dh.free) <= _MOST_HELD or dh.joints[dh.rows[i].driver].name not in dh.free
+        return self.n <= _LONGEST or dh.joints[dh.rows[i].driver].name not in dh.free
 
     def split(self, k: int, m: int) -> list[Equation]:
         """The scalar equations of one split."""
