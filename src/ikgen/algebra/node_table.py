@@ -76,6 +76,11 @@ class NodeTable:
             self._by_bit.append(node)
         return self._register(("atom", atom), node)
 
+    @property
+    def unknown_mask(self) -> int:
+        """The support mask of all atoms that may be unknown."""
+        return (1 << len(self._by_bit)) - 1
+
     def atoms_in(self, mask: int) -> list[Expr]:
         """The atoms whose bits are set in a support mask."""
         out: list[Expr] = []

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from copy import copy
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.algebra.polynomial import AngleCombination
+from ikgen.equations.known_combinations import KnownCombinations
 from ikgen.equations.variables import JointVariables
 
 __all__ = ["AngleLattice"]
@@ -23,7 +23,7 @@ class AngleLattice:
         self._graph = graph
         self._variables = variables
         self.solved: dict[AngleCombination, tuple[Expr, Expr]] = {}
-        self.known: dict[AngleCombination, tuple[tuple[int, AngleCombination], ...]] = {}
+        self.known = KnownCombinations((), tuple(variables.group))
         self._representatives = self._contiguous_keys()
         self._represented: dict[
             AngleCombination, tuple[int, AngleCombination, AngleCombination]
@@ -33,7 +33,7 @@ class AngleLattice:
         """The same lattice over a graph that has all nodes of this one's."""
         other = copy(self)
         other._graph, other._variables = graph, variables
-        other.solved, other.known = dict(self.solved), dict(self.known)
+        other.solved = dict(self.solved)
         other._represented = dict(self._represented)
         return other
 
@@ -55,24 +55,7 @@ class AngleLattice:
     def rebuild(self) -> None:
         """Find all combinations that follow from the solved ones."""
         self._represented.clear()
-        zero = tuple([0] * self._variables.count)
-        found: dict[AngleCombination, tuple[tuple[int, AngleCombination], ...]] = {zero: ()}
-        by_group: dict[int, list[AngleCombination]] = {}
-        for combination in self.solved:
-            by_group.setdefault(self._variables.group_of(combination), []).append(combination)
-        for combinations in by_group.values():
-            choices = sorted(
-                itertools.product((0, 1, -1, 2, -2), repeat=len(combinations)),
-                key=lambda c: (sum(map(abs, c)), c),
-            )
-            for coefs in choices:
-                total = tuple(
-                    sum(c * k[j] for c, k in zip(coefs, combinations, strict=True))
-                    for j in range(self._variables.count)
-                )
-                terms = tuple((c, k) for c, k in zip(coefs, combinations, strict=True) if c)
-                found.setdefault(total, terms)
-        self.known = found
+        self.known = KnownCombinations(self.solved, tuple(self._variables.group))
 
     def pair(self, combination: AngleCombination) -> tuple[Expr, Expr] | None:
         """Cosine and sine of a known combination's angle, composed from solved ones; None if unknown."""

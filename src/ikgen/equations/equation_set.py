@@ -4,7 +4,7 @@ For every 0 <= k < m <= n the matrix equation
 `(A_1 ... A_k C_{k+1})^-1 T (C_{m+1} A_{m+1} ... A_n)^-1 = V_{k+1} C_{k+2} ... V_m`, where `A_i = C_i V_i`
 with `C_i = Rx(alpha) Tx(a)` and `V_i = Rz(theta) Tz(d)` (IKBT eqs. 2-5 use m = n only). Added for each
 split are the position of the inverse and the squared norms in which whole rotations drop out (IKBT's
-x^2 y^2).
+x^2 y^2). Long chains are split at their moving joints only.
 """
 
 from __future__ import annotations
@@ -24,6 +24,9 @@ from ikgen.equations.symbolic_transforms import (
 )
 
 __all__ = ["Equation", "EquationSet"]
+
+_LONGEST = 8
+"""A chain with more rows is split at its moving joints only."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +77,7 @@ class EquationSet(ChainProducts):
         Their norms do not depend on joints that turn the offset as a whole.
         """
         for j in range(k + 1):
-            if j == self._run_start(j) or j == 0:
+            if j == 0 or (j == self._run_start(j) and self._splits_at(j)):
                 target, start = self._target(j, m), self._between(j, k)
                 pairs = zip(target.p, start.p, strict=True)
                 yield target, [self.graph.sub(p, q) for p, q in pairs]
@@ -93,6 +96,12 @@ class EquationSet(ChainProducts):
             u = self._stripped_inverse(k, m)
             out.append(Equation(squares(q[:2]), squares(list(u[:2])), k, m, "qx2+qy2"))
         return out
+
+    def _splits_at(self, i: int) -> bool:
+        """Whether the chain is split at row i: a held joint's splits turn a moving one's by what is known,
+        and are left out where their number would grow with every joint held."""
+        dh = self.dh
+        return self.n <= _LONGEST or dh.joints[dh.rows[i].driver].name not in dh.free
 
     def split(self, k: int, m: int) -> list[Equation]:
         """The scalar equations of one split."""
@@ -117,8 +126,9 @@ class EquationSet(ChainProducts):
         """Every equation whose sides differ as expressions, each pair of sides once."""
         seen: set[tuple[int, int]] = set()
         out: list[Equation] = []
-        for k in range(self.n):
-            for m in range(k + 1, self.n + 1):
+        rows = [i for i in range(self.n) if self._splits_at(i)]
+        for k in rows:
+            for m in (i + 1 for i in rows if i >= k):
                 for e in self.split(k, m):
                     sides = (e.left.id, e.right.id)
                     if e.left is not e.right and sides not in seen:

@@ -106,7 +106,15 @@ class Knowledge:
 
     def _mark_atoms(self) -> None:
         """Every atom whose combination has become known gets its definition, once."""
-        for combination in self._lattice.known:
+        known = self._lattice.known
+        pending: set[AngleCombination] = set()
+        for unknown in self.graph.atoms_in(self.graph.unknown_mask & ~self.known_mask):
+            atom = unknown.atom
+            assert atom is not None
+            if atom.kind in ("cos", "sin"):
+                assert not isinstance(atom.key, str)
+                pending.add(atom.key)
+        for combination in sorted(filter(known.__contains__, pending), key=known.order):
             c = self.graph.find_atom("cos", combination)
             s = self.graph.find_atom("sin", combination)
             for node in (c, s):

@@ -23,11 +23,15 @@ __all__ = [
     "closed_form",
     "forms_held",
     "preference",
+    "rule_tries",
 ]
 
 RULE_TRIES = 8
 """No more choices of joints to hold than these are derived. Their number counts, not the time they take:
 the same input gives the same choice on every machine."""
+
+_FULL_TRIES_JOINTS = 8
+"""Longer chains get fewer tries, as the work of one grows with the cube of their joints."""
 
 _OTHERS = 3
 
@@ -123,10 +127,15 @@ def _with_joints_held(
 def forms_held(
     reading: Reading, choices: Sequence[HeldChoice], demand: Demand
 ) -> Iterator[tuple[HeldChoice, ClosedForm]]:
-    """What the rules make of each choice in turn, of no more than `RULE_TRIES`."""
-    for choice in choices[:RULE_TRIES]:
+    """What the rules make of each choice in turn, of no more than `rule_tries`."""
+    for choice in choices[: rule_tries(reading.dh)]:
         demand.progress("derive", f"holding {choice.words}")
         yield choice, _by_rules_somewhere(replace(reading, dh=choice.dh), demand)
+
+
+def rule_tries(dh: DHChain) -> int:
+    """How many choices of joints to hold are derived for a chain, from 1 to `RULE_TRIES`."""
+    return max(1, min(RULE_TRIES, RULE_TRIES * _FULL_TRIES_JOINTS**3 // dh.dof**3))
 
 
 def preference(choice: HeldChoice, form: ClosedForm) -> tuple[bool, bool, bool]:

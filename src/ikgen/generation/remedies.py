@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from ikgen.generation.advice import Attempt
     from ikgen.generation.held_joints import HeldChoice
     from ikgen.generation.request import Request
+    from ikgen.model.dh import DHChain
     from ikgen.tasks import Task
 
 __all__ = ["advised", "helped", "remedies"]
@@ -73,7 +74,7 @@ def remedies(unsolved: Unsolved, progress: Progress) -> list[Attempt]:
 
     found: list[Attempt] = []
     dh = unsolved.reading.dh
-    for task, choice in itertools.islice(_choices(unsolved), ATTEMPTS):
+    for task, choice in itertools.islice(_choices(unsolved), _most_attempts(dh)):
         closed = [a for a in found if a.closed]
         if len(closed) == _ENOUGH or any(a.task != task.name for a in closed):
             break
@@ -86,16 +87,23 @@ def remedies(unsolved: Unsolved, progress: Progress) -> list[Attempt]:
     return found
 
 
+def _most_attempts(dh: DHChain) -> int:
+    """How many derivations are tried for a chain: fewer where each takes more work."""
+    from ikgen.generation.closed_forms import RULE_TRIES, rule_tries
+
+    return max(1, ATTEMPTS * rule_tries(dh) // RULE_TRIES)
+
+
 def _choices(unsolved: Unsolved) -> Iterator[tuple[Task, HeldChoice | None]]:
     """The choices of joints to hold that were not tried for the task, then smaller tasks, with as many
     joints held as move in vain (None: none)."""
-    from ikgen.generation.closed_forms import RULE_TRIES
+    from ikgen.generation.closed_forms import rule_tries
     from ikgen.generation.held_joints import held_choices
     from ikgen.tasks import TASKS
 
     reading, task = unsolved.reading, unsolved.task
     smaller = [t for t in TASKS if t.freedoms < task.freedoms and t.name != "rotation"]
-    for choice in held_choices(reading, task)[RULE_TRIES:]:
+    for choice in held_choices(reading, task)[rule_tries(reading.dh) :]:
         yield task, choice
     for one in smaller:
         choices = held_choices(reading, one)

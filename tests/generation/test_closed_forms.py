@@ -1,0 +1,45 @@
+"""How much is tried for chains with many joints to hold."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from tests.support.redundant_arms import Joint, serial_urdf
+from tests.support.tables import table
+
+from ikgen.errors import IkgenError
+from ikgen.generation.closed_forms import rule_tries
+from ikgen.generation.inspection import inspect_robot
+from ikgen.generation.request import Request
+
+
+def parallel(joints: int, folder: Path) -> Request:
+    """A chain of parallel joints, each link longer than the one before."""
+    made: list[Joint] = [
+        (f"q{i}", "revolute", "0 0 1", f"{0.1 + 0.013 * i:.3f} 0 0", (-3.0, 3.0))
+        for i in range(joints)
+    ]
+    path = folder / "parallel.urdf"
+    path.write_text(serial_urdf("parallel", made))
+    return Request(path)
+
+
+@pytest.mark.parametrize(("joints", "tries"), [(6, 8), (8, 8), (9, 5), (12, 2), (16, 1)])
+def test_longer_chains_get_fewer_tries(joints: int, tries: int) -> None:
+    assert rule_tries(table(*[("R", "1", 0.1, 0.2)] * joints)) == tries
+
+
+def test_many_parallel_joints_have_a_closed_form(tmp_path: Path) -> None:
+    found = inspect_robot(parallel(12, tmp_path))
+    best = found.closed[0]
+    assert best.max_solutions == 2 and len(best.free) == 9
+
+
+@pytest.mark.parametrize("joints", [20, 100])
+def test_more_joints_than_can_be_solved_are_refused_with_a_way_out(
+    joints: int, tmp_path: Path
+) -> None:
+    with pytest.raises(IkgenError, match=f"{joints} joints move") as caught:
+        inspect_robot(parallel(joints, tmp_path))
+    assert "--lock" in caught.value.hint
