@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::arm::{branches, BESIDE, DOF, FREE_JOINTS, LOWER, MAX_SOLUTIONS, ORIENTATION, READ, REVOLUTE, UPPER, WHOLE_POSE};
+use crate::arm::{branches, BESIDE, DOF, FREE_DEFAULTS, FREE_JOINTS, LOWER, MAX_SOLUTIONS, ORIENTATION, READ, REVOLUTE, UPPER, WHOLE_POSE};
 use crate::chain::product;
 use crate::newton::{loses_rank, polish};
 use crate::{Joints, Options, Pose, Row, Solutions, Status};
