@@ -487,7 +487,10 @@ def _held_values(
             raise ValueError(f"no free joint named {sorted(unknown)}; there is {list(names)}")
         values = tuple(float(free.get(n, x)) for n, x in zip(names, others))
     else:
-        values = tuple(float(x) for x in free)
+        given = _real_array(free, "free")
+        if given.ndim > 1:
+            raise ValueError(f"free has shape {given.shape}, expected ({len(names)},)")
+        values = tuple(given.reshape(-1).tolist())
     if len(values) != len(names):
         raise ValueError(f"free has {len(values)} values, expected {len(names)}")
     if not all(map(isfinite, values)):
@@ -498,8 +501,8 @@ def _held_values(
 def _held_rows(
     arm: _Arm, free: ArrayLike | Mapping[str, float] | None, near: Array | None, count: int
 ) -> Array:
-    """`_held_values` for many poses: one row for all of them, or one each; (count, held joints). `near`:
-    the seeds (count, dof)."""
+    """`_held_values` for many poses: one row for all of them, or one each (of one joint: one value each);
+    (count, held joints). `near`: the seeds (count, dof)."""
     shape = (count, len(arm.free_joints))
     if free is None or isinstance(free, Mapping):
         values = np.tile(_held_values(arm, free, None), (count, 1)).reshape(shape)
@@ -508,10 +511,12 @@ def _held_rows(
             if near is not None and name not in given:
                 values[:, k] = near[:, j]
         return values
-    if np.ndim(free) < 2:
+    single = len(arm.free_joints) == 1 and np.shape(free) == (count,)
+    if np.ndim(free) < 2 and not single:
         one: list[float] = _real_array(free, "free").tolist()
         return np.broadcast_to(_held_values(arm, one, None), shape)
     held = _real_array(free, "free")
+    held = held[:, None] if single else held
     if held.shape != shape:
         raise ValueError(f"free has shape {held.shape}, expected {shape}")
     if not np.isfinite(held).all():
@@ -519,15 +524,15 @@ def _held_rows(
     return held
 
 
-def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...]) -> Array:
-    """The seed as an array of one of the shapes; raises ValueError for others. Turns of a revolute joint
-    that doubles cannot tell apart to 1e-10 rad are left out."""
-    values = _real_array(seed, "seed")
+def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...], name: str = "seed") -> Array:
+    """The seed, called `name`, as an array of one of the shapes; raises ValueError for others. Turns of a
+    revolute joint that doubles cannot tell apart to 1e-10 rad are left out."""
+    values = _real_array(seed, name)
     if values.shape not in shapes:
         expected = " or ".join(map(str, shapes))
-        raise ValueError(f"seed has shape {values.shape}, expected {expected}")
+        raise ValueError(f"{name} has shape {values.shape}, expected {expected}")
     if not np.isfinite(values).all():
-        raise ValueError(f"seed {values.tolist()} has values that are not finite")
+        raise ValueError(f"{name} {values.tolist()} has values that are not finite")
     far = np.array(arm.turning) & (np.abs(values) > _FARTHEST)
     return np.where(far, np.fmod(values, 2.0 * pi), values) if far.any() else values
 
@@ -1454,7 +1459,7 @@ def _follow_poses(
     T, dof = _pose_matrices(poses, arm.task.alone), len(arm.lower)
     if T.ndim != 3 or T.shape[1:] != (4, 4):
         raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
-    row = _seed_rows(arm, start, (dof,))
+    row = _seed_rows(arm, start, (dof,), name="start")
     q, singular = np.full((len(T), dof), np.nan), np.zeros(len(T), dtype=bool)
     walk, before = _Walk(arm, limits), np.eye(4)
     for i, lines in enumerate(T.tolist()):

@@ -48,7 +48,10 @@ def _counted(dh: DHChain, task: Task) -> tuple[str, str]:
     if moving < task.freedoms:
         cause = f"{move} and the task fixes {task.freedoms} freedoms: more than the arm can do"
         return cause, "--task TASK, with a smaller task"
-    return "the rules and the elimination leave joints open", "--free JOINT, or --task TASK"
+    return (
+        "the rules and the elimination leave joints open",
+        "--free JOINT, or --task TASK; `ikgen report` shows what is left",
+    )
 
 
 def _same_line(dh: DHChain) -> tuple[str, str] | None:

@@ -15,4 +15,5 @@ def is_module_name(name: str) -> bool:
 def identifier(name: str) -> str:
     """A robot's name as a module name: lower case, letters, digits and underscores."""
     text = "".join(ch if ch.isascii() and ch.isalnum() else "_" for ch in name).strip("_").lower()
-    return text if text and not text[0].isdigit() else f"robot_{text}".rstrip("_")
+    text = text if text and not text[0].isdigit() else f"robot_{text}".rstrip("_")
+    return f"{text}_arm" if keyword.iskeyword(text) else text

@@ -144,7 +144,8 @@ def _tables(path: Path, text: str) -> dict[str, Any]:
     except tomllib.TOMLDecodeError as error:
         place = re.search(r"line (\d+)", str(error))
         line = int(place.group(1)) if place else text.count("\n") + 1  # at the end
-        raise _error(path, f"not TOML: {error}", line=line) from None
+        hint = "name an ikgen.toml, a pyproject.toml, or the folder that holds the outputs"
+        raise _error(path, f"not TOML: {error}", line=line, hint=hint) from None
     if path.name != _PYPROJECT:
         return data
     tool = data.get("tool", {}).get("ikgen")

@@ -123,8 +123,11 @@ class VerificationReport:
     @property
     def missed_words(self) -> str:
         """How many are missed, and whether all of them are singular enough not to fail."""
-        singular = self.missed and all(check.passed for check in self.checks)
-        return f"{self.missed} missed" + (", all of them near singularities" if singular else "")
+        words = f"{self.missed} missed"
+        if not self.missed or not self.passed:
+            return words
+        near = sum(band.poses for band in self.bands if math.isfinite(band.high))
+        return f"{words}, all of them among {near} poses put next to singularities"
 
     @property
     def solutions(self) -> tuple[int, float, int]:

@@ -33,7 +33,10 @@ def held_values(
             raise ValueError(f"no free joint named {sorted(unknown)}; there is {list(names)}")
         values = tuple(float(free.get(n, x)) for n, x in zip(names, others))
     else:
-        values = tuple(float(x) for x in free)
+        given = real_array(free, "free")
+        if given.ndim > 1:
+            raise ValueError(f"free has shape {given.shape}, expected ({len(names)},)")
+        values = tuple(given.reshape(-1).tolist())
     if len(values) != len(names):
         raise ValueError(f"free has {len(values)} values, expected {len(names)}")
     if not all(map(isfinite, values)):
@@ -44,8 +47,8 @@ def held_values(
 def held_rows(
     arm: Arm, free: ArrayLike | Mapping[str, float] | None, near: Array | None, count: int
 ) -> Array:
-    """`held_values` for many poses: one row for all of them, or one each; (count, held joints). `near`:
-    the seeds (count, dof)."""
+    """`held_values` for many poses: one row for all of them, or one each (of one joint: one value each);
+    (count, held joints). `near`: the seeds (count, dof)."""
     shape = (count, len(arm.free_joints))
     if free is None or isinstance(free, Mapping):
         values = np.tile(held_values(arm, free, None), (count, 1)).reshape(shape)
@@ -54,10 +57,12 @@ def held_rows(
             if near is not None and name not in given:
                 values[:, k] = near[:, j]
         return values
-    if np.ndim(free) < 2:
+    single = len(arm.free_joints) == 1 and np.shape(free) == (count,)
+    if np.ndim(free) < 2 and not single:
         one: list[float] = real_array(free, "free").tolist()
         return np.broadcast_to(held_values(arm, one, None), shape)
     held = real_array(free, "free")
+    held = held[:, None] if single else held
     if held.shape != shape:
         raise ValueError(f"free has shape {held.shape}, expected {shape}")
     if not np.isfinite(held).all():
@@ -65,14 +70,14 @@ def held_rows(
     return held
 
 
-def seed_rows(arm: Arm, seed: ArrayLike, *shapes: tuple[int, ...]) -> Array:
-    """The seed as an array of one of the shapes; raises ValueError for others. Turns of a revolute joint
-    that doubles cannot tell apart to 1e-10 rad are left out."""
-    values = real_array(seed, "seed")
+def seed_rows(arm: Arm, seed: ArrayLike, *shapes: tuple[int, ...], name: str = "seed") -> Array:
+    """The seed, called `name`, as an array of one of the shapes; raises ValueError for others. Turns of a
+    revolute joint that doubles cannot tell apart to 1e-10 rad are left out."""
+    values = real_array(seed, name)
     if values.shape not in shapes:
         expected = " or ".join(map(str, shapes))
-        raise ValueError(f"seed has shape {values.shape}, expected {expected}")
+        raise ValueError(f"{name} has shape {values.shape}, expected {expected}")
     if not np.isfinite(values).all():
-        raise ValueError(f"seed {values.tolist()} has values that are not finite")
+        raise ValueError(f"{name} {values.tolist()} has values that are not finite")
     far = np.array(arm.turning) & (np.abs(values) > _FARTHEST)
     return np.where(far, np.fmod(values, 2.0 * pi), values) if far.any() else values

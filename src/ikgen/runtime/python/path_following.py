@@ -57,7 +57,7 @@ def follow_poses(
     T, dof = pose_matrices(poses, arm.task.alone), len(arm.lower)
     if T.ndim != 3 or T.shape[1:] != (4, 4):
         raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
-    row = seed_rows(arm, start, (dof,))
+    row = seed_rows(arm, start, (dof,), name="start")
     q, singular = np.full((len(T), dof), np.nan), np.zeros(len(T), dtype=bool)
     walk, before = _Walk(arm, limits), np.eye(4)
     for i, lines in enumerate(T.tolist()):
