@@ -98,8 +98,9 @@ class EquationSet(ChainProducts):
         return out
 
     def _splits_at(self, i: int) -> bool:
-        """Whether the chain is split at row i: a held joint's splits turn a moving one's by what is known,
-        and are left out where their number would grow with every joint held."""
+        """Whether the chain is split at row i. Those at held joints say what the moving ones' do, turned by
+        what is known, in other forms: some arms need them. Long chains, where their number would grow with
+        every joint held, do without."""
         dh = self.dh
         return self.n <= _LONGEST or dh.joints[dh.rows[i].driver].name not in dh.free
 
