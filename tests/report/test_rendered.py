@@ -137,7 +137,7 @@ def typeset(text: str, folder: Path) -> str:
     return log
 
 
-ODD = "a<b>c|d 'e' --f ?`g !`h ''i \\j {k} ~l ^m °±·×"
+ODD = "a<b>c|d 'e' --f ?`g !`h ''i \\j {k} ~l ^m °±·× θαπσ ≤≥"
 LETTERS = "".join(ch for ch in map(chr, range(0xA1, 0x250)) if ch.isprintable())
 
 
@@ -150,7 +150,7 @@ def test_names_on_paper(tmp_path: Path) -> None:
     assert "Missing character" not in log and "pk>" not in log
     done = subprocess.run(["pdftotext", "report.pdf", "-"], cwd=tmp_path, capture_output=True)
     text = done.stdout.decode("utf-8")
-    for part in ("a<b>c|d", "?‘g", "!‘h", "’’i", "\\j", "{k}"):
+    for part in ("a<b>c|d", "?‘g", "!‘h", "’’i", "\\j", "{k}", "θαπσ"):
         assert text.count(part) == 2, (part, text)
     assert "--f" in text or "-‐f" in text, text
 

@@ -29,6 +29,8 @@ _ESCAPES = {
     "{": "\\{", "}": "\\}", "~": "\\textasciitilde{}", "^": "\\textasciicircum{}", "–": "--",
     "°": "\\ensuremath{^\\circ}", "±": "\\ensuremath{\\pm}",
     "·": "\\ensuremath{\\cdot}", "×": "\\ensuremath{\\times}", "−": "\\ensuremath{-}",
+    "θ": "\\ensuremath{\\theta}", "α": "\\ensuremath{\\alpha}", "σ": "\\ensuremath{\\sigma}",
+    "π": "\\ensuremath{\\pi}", "≤": "\\ensuremath{\\leq}", "≥": "\\ensuremath{\\geq}",
     "<": "\\textless{}", ">": "\\textgreater{}", "|": "\\textbar{}", "`": "{}`",
     "\u2003": "\\quad{}", "-": "-{}",
 }  # fmt: skip
