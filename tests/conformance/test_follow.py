@@ -119,7 +119,7 @@ def test_out_of_reach_and_bad_poses(redundant: ModuleType) -> None:
     poses[5, 0, 0] = np.nan
     path = redundant.follow(poses, start=start)
     assert path.status is redundant.Status.INVALID and path.reached == 5
-    with pytest.raises(ValueError, match="seed"):
+    with pytest.raises(ValueError, match="start"):
         redundant.follow(poses, start=[0.0])
     with pytest.raises(ValueError, match="shape"):
         redundant.follow(np.zeros((3, 2)), start=start)

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import pinocchio
 import pytest
-from scipy.spatial.transform import Rotation
 
 from ikgen.elimination.routine import runtime_policy
 from ikgen.program.policy import SolvePolicy
@@ -17,12 +17,11 @@ from ikgen.runtime.python.pose_faults import nearest_pose, nearest_poses, pose_f
 from ikgen.runtime.python.whole_pose import PoseTask
 
 POLICY = runtime_policy(SolvePolicy())
-TURN = Rotation.from_rotvec([0.3, -1.1, 0.7])
-R, P = TURN.as_matrix(), np.array([0.1, -0.2, 0.3])
+R, P = pinocchio.exp3(np.array([0.3, -1.1, 0.7])), np.array([0.1, -0.2, 0.3])
 T = np.eye(4)
 T[:3, :3], T[:3, 3] = R, P
 MANY = np.stack([T, np.eye(4), T @ T])
-QUATERNION = TURN.as_quat()  # x y z w
+QUATERNION = pinocchio.Quaternion(R).coeffs()  # x y z w
 
 
 class Spatial:
@@ -42,7 +41,7 @@ SINGLE = {
     "rotation and position as lists": [R.tolist(), P.tolist()],
     "position and quaternion": (P, QUATERNION),
     "position and the other quaternion": (P.tolist(), (-QUATERNION).tolist()),
-    "homogeneous": SimpleNamespace(homogeneous=T),
+    "homogeneous": pinocchio.SE3(T),
     "as_matrix": SimpleNamespace(as_matrix=lambda: T),
     "A": Spatial(T),
     "np.matrix": np.asmatrix(T),
@@ -63,7 +62,7 @@ BATCH = {
     "rotations and positions": (MANY[:, :3, :3], MANY[:, :3, 3]),
     "positions and quaternions": (
         MANY[:, :3, 3],
-        Rotation.from_matrix(MANY[:, :3, :3]).as_quat(),
+        np.array([pinocchio.Quaternion(M[:3, :3]).coeffs() for M in MANY]),
     ),
     "objects": [SimpleNamespace(homogeneous=one) for one in MANY],
     "one object of several": Spatial(list(MANY)),
@@ -84,7 +83,7 @@ def test_two_poses_are_no_pair() -> None:
 
 def test_parts_alone_do_where_the_task_reads_no_other() -> None:
     assert np.allclose(pose_matrices(R, "rotation")[:3, :3], R)
-    assert np.allclose(pose_matrices(TURN, "rotation")[:3, :3], R)
+    assert np.allclose(pose_matrices(SimpleNamespace(as_matrix=lambda: R), "rotation")[:3, :3], R)
     assert np.allclose(pose_matrices(P.tolist(), "position")[:3, 3], P)
     assert pose_matrices(np.zeros((5, 3)), "position").shape == (5, 4, 4)
     assert pose_matrices(np.zeros((5, 3, 3)), "rotation").shape == (5, 4, 4)

@@ -215,6 +215,7 @@ class Arm:
         words = {
             "free": f"the held joints are: {held}",
             "seed": f"seed has {dof} finite values: {', '.join(self.joint_names)}",
+            "start": f"start has {dof} finite values: {', '.join(self.joint_names)}",
             "q has": f"q has {dof} values: {', '.join(self.joint_names)}",
             "pose": "a pose is a 4x4 matrix, or one of docs/reference/library.md#poses",
         }
