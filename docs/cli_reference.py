@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from html import escape
 from pathlib import Path
 
 import click
@@ -14,6 +15,7 @@ __all__ = ["PAGE", "filled_in"]
 
 PAGE = Path(__file__).parent / "reference/cli.md"
 _MARK = "<!-- made by docs/cli_reference.py -->"
+_PIPE = "&#124;"
 
 
 def filled_in(text: str) -> str:
@@ -48,8 +50,14 @@ def _row(context: click.Context, option: click.Option) -> str:
     names, words = record
     words = re.sub(r"\s*\[x>=\d+\]|; x>=\d+", "", words)  # not in all versions of click
     several = " May be given several times." if option.multiple else ""
-    cells = re.sub(r"\s+", " ", f"`{names}` | {words}{several}".replace("...|", "...\\|"))
-    return f"| {cells} |"
+    cells = [_code(names), f"{words}{several}".replace("|", _PIPE)]
+    return re.sub(r"\s+", " ", f"| {' | '.join(cells)} |")
+
+
+def _code(text: str) -> str:
+    """Code in a cell of a table: GitHub ends a cell at a pipe inside backticks, Python-Markdown shows the
+    backslash before an escaped one; the reference of the character is a pipe to both."""
+    return f"<code>{escape(text).replace('|', _PIPE)}</code>" if "|" in text else f"`{text}`"
 
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ from ikgen.tasks import TASKS
 
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "docs/reference"
+PAGES = [*sorted(ROOT.glob("*.md")), *sorted(ROOT.glob("docs/**/*.md"))]
 
 
 def script(path: Path) -> ModuleType:
@@ -42,6 +43,15 @@ def test_commands_and_options_are_those_of_the_program() -> None:
     reference = script(ROOT / "docs/cli_reference.py")
     text = reference.PAGE.read_text(encoding="utf-8")
     assert reference.filled_in(text) == text, "run python docs/cli_reference.py"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_rows_of_tables_have_the_columns_of_their_head(page: Path) -> None:
+    text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+    tables = re.findall(r"(?:^\|.*\n)+", text, re.M)
+    for table in tables:
+        pipes = {len(re.findall(r"(?<!\\)\|", line)) for line in table.splitlines()}
+        assert len(pipes) == 1, table
 
 
 def test_tasks_and_their_aliases_are_listed() -> None:
