@@ -31,7 +31,7 @@ inline void hessenberg(Mat<N, N>& a) noexcept {
       const double y = a(i, m - 1) / x;
       if (y == 0.0) continue;
       for (Index j = m; j < N; ++j) a(i, j) -= y * a(m, j);
-      for (Index k = 0; k < 16; ++k) a(k, m) += y * a(k, i);
+      for (Index k = 0; k < N; ++k) a(k, m) += y * a(k, i);
     }
   }
 }
