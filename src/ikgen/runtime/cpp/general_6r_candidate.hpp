@@ -47,6 +47,11 @@ inline std::array<double, 14> inner_invariants(const Mat<14, 12>& left, const Ma
   return u;
 }
 
+// The angle about z that takes a rotation about z back.
+inline double angle_back(const Frame& X) noexcept {
+  return std::atan2(X.R(0, 1) - X.R(1, 0), X.R(0, 0) + X.R(1, 1));
+}
+
 // All loop angles from three: theta_1 and theta_2 linearly, theta_6 from the rotation left over.
 inline std::array<double, 6> complete(const Loop& loop, const Equations& eq, double t3, Complex z4,
                                       Complex z5) noexcept {
@@ -56,8 +61,7 @@ inline std::array<double, 6> complete(const Loop& loop, const Equations& eq, dou
   const Complex z[5] = {outer[0], outer[1], z3, z4, z5};
   Frame X = loop.C[5];
   for (Index i = 0; i < 5; ++i) X = compose(turn(X, z[i].real(), z[i].imag()), loop.C[i]);
-  return {std::arg(z[0]), std::arg(z[1]), t3, std::arg(z4), std::arg(z5),
-          std::atan2(X.R(0, 1) - X.R(1, 0), X.R(0, 0) + X.R(1, 1))};
+  return {std::arg(z[0]), std::arg(z[1]), t3, std::arg(z4), std::arg(z5), angle_back(X)};
 }
 
 using Vector = std::array<double, 6>;

@@ -49,13 +49,13 @@ inline Frame displacement() noexcept {
   return out;
 }
 
-// Adds all solutions of a pose to those that are known: `run` gives those of a plan, with the roots of the pose
-// `aim` beside. One run of the first plan is enough where its roots are real, apart and each a solution to many
+// Adds all solutions of a pose to those that are known: Run(F, T, aim, turning, plan, found) gives those of a plan,
+// with the roots of the pose `aim` beside. One run of the first plan is enough where its roots are real, apart and each a solution to many
 // digits. Otherwise more runs follow, with the pose displaced to either side and by the next elimination, until one
 // finds all that is known and no more.
-template <std::size_t N, class Run>
-inline void solve_in_runs(const Frame& T, const std::array<std::array<int, 3>, N>& plans, const Run& run,
-                          Solutions& out) noexcept {
+template <auto Run, std::size_t N>
+inline void solve_in_runs(const Chain& F, const Frame& T, const Turning& turning,
+                          const std::array<std::array<int, 3>, N>& plans, Solutions& out) noexcept {
   const Frame there = displacement(), back = inverse(there);
   const int given = out.count;
   int least = 0, number = 0;
@@ -63,7 +63,7 @@ inline void solve_in_runs(const Frame& T, const std::array<std::array<int, 3>, N
     for (const Frame* shift : {static_cast<const Frame*>(nullptr), &there, &back}) {
       Solutions mine;
       const Frame aim = shift ? compose(T, *shift) : T;
-      const Spectrum roots = run(aim, plan, mine);
+      const Spectrum roots = Run(F, T, aim, turning, plan, mine);
       if (!shift) least = std::max(least, roots.real);
       const int known = out.count;
       for (int k = 0; k < mine.count; ++k) keep(mine.rows[static_cast<Index>(k)], out);

@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "general_6r_pairs.hpp"
-#include "general_6r_runs.hpp"
+#include "hidden_angle_run.hpp"
+#include "method_in_runs.hpp"
 #include "pivoted_qr.hpp"
 #include "six_joint_arm.hpp"
 
@@ -86,47 +86,24 @@ inline Vector complete_with_slide(const Loop& loop, const SlideEquations& eq, bo
   Vector out = {first ? length : angle, first ? angle : length, t3, std::arg(z4), std::arg(z5), 0.0};
   Frame X = loop.C[5];
   for (Index i = 0; i < 5; ++i) X = compose(moved(X, i != (first ? 0 : 1), out[i]), loop.C[i]);
-  out[5] = std::atan2(X.R(0, 1) - X.R(1, 0), X.R(0, 0) + X.R(1, 1));
+  out[5] = angle_back(X);
   return out;
 }
 
 inline Spectrum run_one_slide(const Chain& F, const Frame& T, const Frame& aim, const Turning& turning,
                               const std::array<int, 3>& plan, Solutions& out) noexcept {
-  const bool reverse = plan[1] != 0, swap = plan[2] != 0;
-  const Loop loop = make_loop(F, aim, static_cast<Index>(plan[0]), reverse);
+  const Loop loop = make_loop(F, aim, static_cast<Index>(plan[0]), plan[1] != 0);
   const bool first = !turning[loop.order[0]];
   const SlideEquations eq(loop, first);
-  Mat<14, 12> left = eq.left;
-  if (swap)
-    for (Index r = 0; r < 14; ++r)
-      for (Index k = 0; k < 9; ++k) left(r, k) = eq.left(r, 3 * (k % 3) + k / 3);
-  const Resultant M = lift(make_pencil(eq.E, left));
-  Spectrum roots = find_roots(eq.E, left, M, 0.03);
-  for (int i = 0; i < roots.count; ++i) {
-    const double t3 = roots.theta[static_cast<Index>(i)];
-    const Pairs pairs = find_pairs(M.at(std::cos(t3), std::sin(t3)));
-    for (Index j = 0; j < pairs.count; ++j) {
-      const Complex z4 = swap ? pairs.z5[j] : pairs.z4[j], z5 = swap ? pairs.z4[j] : pairs.z5[j];
-      const Vector t = complete_with_slide(loop, eq, first, t3, z4, z5);
-      Vector q;
-      for (Index n = 0; n < 6; ++n) q[loop.order[n]] = reverse ? -t[n] : t[n];
-      add_refined(F, T, turning, q, roots, out);
-    }
-  }
-  return roots;
+  const auto all = [&](double t3, Complex z4, Complex z5) noexcept {
+    return complete_with_slide(loop, eq, first, t3, z4, z5);
+  };
+  return run_hidden_angle(F, T, turning, loop, plan, eq, all, out);
 }
 
 }  // namespace g6
 
-struct OneSlideMethod {
-  template <class Plan>
-  static void solve(const g6::Chain& F, const g6::Frame& T, const g6::Turning& turning, g6::Solutions& out) noexcept {
-    const auto run = [&](const g6::Frame& aim, const std::array<int, 3>& plan, g6::Solutions& mine) noexcept {
-      return g6::run_one_slide(F, T, aim, turning, plan, mine);
-    };
-    g6::solve_in_runs(T, Plan::kEigenproblems, run, out);
-  }
-};
+using OneSlideMethod = g6::InRuns<g6::run_one_slide>;
 
 // Arm: as for SixJointArm, its Plan with kEigenproblems (start, reverse, swap), in order of preference.
 template <class Arm> struct OneSlide : SixJointArm<Arm, OneSlideMethod> {};

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "general_6r_runs.hpp"
+#include "method_in_runs.hpp"
 #include "revolute_loop.hpp"
 #include "six_joint_arm.hpp"
 
@@ -37,15 +37,7 @@ inline Spectrum run_three_slides(const Chain& F, const Frame& T, const Frame& ai
 
 }  // namespace g6
 
-struct ThreeSlidesMethod {
-  template <class Plan>
-  static void solve(const g6::Chain& F, const g6::Frame& T, const g6::Turning& turning, g6::Solutions& out) noexcept {
-    const auto run = [&](const g6::Frame& aim, const std::array<int, 3>& plan, g6::Solutions& mine) noexcept {
-      return g6::run_three_slides(F, T, aim, turning, plan, mine);
-    };
-    g6::solve_in_runs(T, Plan::kEigenproblems, run, out);
-  }
-};
+using ThreeSlidesMethod = g6::InRuns<g6::run_three_slides>;
 
 // Arm: as for SixJointArm, its Plan with kEigenproblems, of which the first of each is a revolute joint.
 template <class Arm> struct ThreeSlides : SixJointArm<Arm, ThreeSlidesMethod> {};
