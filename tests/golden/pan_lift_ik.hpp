@@ -660,6 +660,10 @@ template <class Arm> struct SolutionRows {
     flag(out, to) = flag(out, from);
   }
 
+  static bool finite(const double* q) noexcept {
+    return std::all_of(q, q + Arm::kDof, [](double x) { return std::isfinite(x); });
+  }
+
   static bool same(const double* a, const double* b) noexcept {
     for (int j = 0; j < Arm::kDof; ++j) {
       double gap = std::abs(a[j] - b[j]);
@@ -707,20 +711,28 @@ template <class Arm> struct SolutionRows {
   }
 
   static void sort_by_distance(Solutions& out, const double* seed) noexcept {
-    double distance[Arm::kMaxSolutions];
+    sort(out, [seed](const double* q) noexcept {
+      double sum = 0.0;
+      for (int j = 0; j < Arm::kDof; ++j) sum += (q[j] - seed[j]) * (q[j] - seed[j]);
+      return sum;
+    });
+  }
+
+  template <class Cost> static void sort(Solutions& out, const Cost& cost) noexcept {
+    double costs[Arm::kMaxSolutions];
     for (int k = 0; k < out.count; ++k) {
-      double q[Arm::kDof], mine = 0.0;
+      double q[Arm::kDof];
       std::copy_n(row(out, k), Arm::kDof, q);
-      for (int j = 0; j < Arm::kDof; ++j) mine += (q[j] - seed[j]) * (q[j] - seed[j]);
+      const double mine = cost(q);
       const bool singular = flag(out, k);
       int at = k;
-      for (; at > 0 && distance[at - 1] > mine; --at) {
+      for (; at > 0 && costs[at - 1] > mine; --at) {
         move(out, at - 1, at);
-        distance[at] = distance[at - 1];
+        costs[at] = costs[at - 1];
       }
       std::copy_n(q, Arm::kDof, row(out, at));
       flag(out, at) = singular;
-      distance[at] = mine;
+      costs[at] = mine;
     }
   }
 };
@@ -1055,22 +1067,21 @@ template <class Arm, template <class> class Way> struct PoseSolver {
 
 // --- projection ----------------------------------------------------------------------------------
 template <class Arm> struct PoseChords {
-  static constexpr int kCount = sizeof(Arm::kRead) / sizeof(Arm::kRead[0]);
+  static constexpr int kCount = PoseEntries<Arm>::kCount;
   double error[kCount], slope[kCount][Arm::kDof], cost = 0.0;
 
   PoseChords(const double* q, const double* t) noexcept {
-    double J[6][Arm::kDof], f[16];
-    by_columns(MotionChain<Arm>::forward(q, J), f);
+    double J[6][Arm::kDof], rows[3][4];
+    const Frame T = MotionChain<Arm>::forward(q, J);
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 4; ++c) rows[r][c] = t[4 * c + r];
+    PoseEntries<Arm>::error(rows, T, error);
+    PoseEntries<Arm>::slope(T, J, slope);
     for (int i = 0; i < kCount; ++i) {
-      const auto [r, c] = Arm::kRead[i];
-      const int u = (r + 1) % 3, v = (r + 2) % 3;
-      const double weight = c == 3 ? 1.0 / Arm::kSize : turn();
-      error[i] = weight * (t[4 * c + r] - f[4 * c + r]);
+      const double weight = Arm::kRead[i][1] == 3 ? 1.0 : turn();
+      error[i] *= weight;
       cost += error[i] * error[i];
-      for (int j = 0; j < Arm::kDof; ++j) {
-        const double turned = J[3 + u][j] * f[4 * c + v] - J[3 + v][j] * f[4 * c + u];
-        slope[i][j] = Arm::kHeld[j] ? 0.0 : weight * (c == 3 ? J[r][j] : turned);
-      }
+      for (int j = 0; j < Arm::kDof; ++j) slope[i][j] *= Arm::kHeld[j] ? 0.0 : weight;
     }
   }
 
@@ -1097,14 +1108,12 @@ template <class Arm> struct PoseChords {
       const auto [r, c] = Arm::kRead[i];
       (c == 3 ? length : chord) += at.error[i] * at.error[i];
       if (c == 3 || Arm::Columns::has(c)) continue;
-      const double gap = std::asin(clipped(f[4 * c + r], -1.0, 1.0)) - std::asin(clipped(t[4 * c + r], -1.0, 1.0));
+      const double gap = std::asin(std::clamp(f[4 * c + r], -1.0, 1.0)) - std::asin(std::clamp(t[4 * c + r], -1.0, 1.0));
       angles += gap * gap;
     }
     off[0] = std::sqrt(length) * Arm::kSize;
     off[1] = angles > 0.0 ? std::sqrt(angles) : 2.0 * std::asin(std::min(0.5 * std::sqrt(chord), 1.0));
   }
-
-  static double clipped(double x, double low, double high) noexcept { return std::min(std::max(x, low), high); }
 };
 
 template <class Arm, template <class> class Way> struct Projection {
@@ -1127,8 +1136,7 @@ template <class Arm, template <class> class Way> struct Projection {
 
  private:
   static void solve_nearest(const double* t, Options options, Solutions& out) noexcept {
-    for (int j = 0; j < Arm::kDof && options.seed; ++j)
-      if (!(std::abs(options.seed->data()[j]) < kInfinity)) options.seed = nullptr;
+    if (options.seed && !SolutionRows<Arm>::finite(options.seed->data())) options.seed = nullptr;
     double q[Arm::kDof];
     nearest(t, options, q);
     Eigen::Isometry3d pose;
@@ -1150,7 +1158,7 @@ template <class Arm, template <class> class Way> struct Projection {
       double low, high, whole;
       bounds(j, options.limits, &low, &high);
       const double half = Arm::kRevolute[j] ? kPi : Arm::kSize;
-      const double centre = Chords::clipped(0.0, low + half, std::max(high - half, low + half));
+      const double centre = std::clamp(0.0, low + half, std::max(high - half, low + half));
       low = std::max(low, centre - half);
       high = std::min(high, centre + half);
       q[j] = low + std::modf(0.5 + (i + 1) * step, &whole) * (high - low);
@@ -1171,7 +1179,7 @@ template <class Arm, template <class> class Way> struct Projection {
       for (int j = 0; i < 0 && j < Arm::kDof; ++j) {
         double low, high;
         bounds(j, options.limits, &low, &high);
-        q[j] = Chords::clipped(options.seed ? options.seed->data()[j] : 0.0, low, high);
+        q[j] = std::clamp(options.seed ? options.seed->data()[j] : 0.0, low, high);
       }
       hold(options, q);
       const double cost = Chords(q, t).cost;
@@ -1203,7 +1211,7 @@ template <class Arm, template <class> class Way> struct Projection {
       step(at, limits, damping, trial);
       const Chords there(trial, t);
       const bool better = there.cost < at.cost;
-      damping = Chords::clipped(damping * (better ? 0.2 : 8.0), kLeast, kMost);
+      damping = std::clamp(damping * (better ? 0.2 : 8.0), kLeast, kMost);
       if (!better) continue;
       at = there;
       std::copy_n(trial, Arm::kDof, q);
@@ -1229,7 +1237,7 @@ template <class Arm, template <class> class Way> struct Projection {
     factor(A);
     substitute(A, x);
     for (int j = 0; j < Arm::kDof; ++j)
-      if (!stuck[j]) q[j] = Chords::clipped(q[j] + Chords::clipped(x[j], -kLongest, kLongest), low[j], high[j]);
+      if (!stuck[j]) q[j] = std::clamp(q[j] + std::clamp(x[j], -kLongest, kLongest), low[j], high[j]);
   }
 };
 
@@ -1432,8 +1440,7 @@ template <class A> struct RowPreference {
   Prefer prefer;
 
   RowPreference(const double* seed, Prefer kind, bool limits) noexcept : prefer(kind) {
-    for (int j = 0; j < A::kDof && seed; ++j)
-      if (!(std::abs(seed[j]) < kInfinity)) seed = nullptr;
+    if (seed && !SolutionRows<A>::finite(seed)) seed = nullptr;
     for (int j = 0; j < A::kDof; ++j) {
       const double low = A::kLower.data()[j], high = A::kUpper.data()[j];
       const bool bounded = high - low < kInfinity, near = kind == Prefer::Near && seed;
@@ -1503,17 +1510,8 @@ inline void order_rows(const Eigen::Isometry3d& pose, const double* seed, typena
   }
   options.limits = limits;
   Solver::solve(pose, options, out);
-  for (int k = 0; k < out.count; ++k) {
-    preference.place(SolutionRows<A>::row(out, k));
-    double q[A::kDof];
-    std::copy_n(SolutionRows<A>::row(out, k), A::kDof, q);
-    const bool singular = out.singular.data()[k];
-    const double mine = preference.cost(q);
-    int at = k;
-    for (; at > 0 && preference.cost(SolutionRows<A>::row(out, at - 1)) > mine; --at) SolutionRows<A>::move(out, at - 1, at);
-    std::copy_n(q, A::kDof, SolutionRows<A>::row(out, at));
-    out.singular.data()[at] = singular;
-  }
+  for (int k = 0; k < out.count; ++k) preference.place(SolutionRows<A>::row(out, k));
+  SolutionRows<A>::sort(out, [&](const double* q) noexcept { return preference.cost(q); });
 }
 
 // --- this arm -------------------------------------------------------------------------------------

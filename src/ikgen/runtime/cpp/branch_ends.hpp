@@ -27,7 +27,7 @@ template <class Arm> struct BranchEnd {
   BranchEnd(const Sample& a, int lane_a, const Sample& b, int lane_b) noexcept
       : inner(a.held), outer(b.held), at_fold(lane_b < 0), lane(lane_a) {
     a.row(lane_a, q);
-    set(0, a, at_fold ? lane_a : lane_a, true);
+    set(0, a, lane_a, true);
     set(1, b, at_fold ? lane_a : lane_b, !at_fold);
   }
 
@@ -37,8 +37,8 @@ template <class Arm> struct BranchEnd {
     for (int step = 0; step < kSteps && std::abs(outer - inner) > kEnough; ++step) {
       const Sample s = sweep.at(trial(step));
       int row = lane;
-      if (!at_fold || !Arm::kGuarded) row = nearest(s);
-      const bool seen = row >= 0 && s.real[row] && distance(s, row) < 1.0, good = seen && s.off[row] <= 0.0;
+      if (!at_fold || !Arm::kGuarded) row = s.nearest(q);
+      const bool seen = row >= 0 && s.real[row] && s.distance(row, q) < 1.0, good = seen && s.off[row] <= 0.0;
       (good ? inner : outer) = s.held;
       if (at_fold && seen && !good) {
         at_fold = false;
@@ -61,9 +61,10 @@ template <class Arm> struct BranchEnd {
   // Whether the end lies between two samples that are close enough.
   bool found(const Sample& a, const Sample& b) noexcept {
     if (!(std::abs(a.held - b.held) <= kEnough) || (a.held - inner) * (a.held - outer) > 0.0) return false;
-    const int row = at_fold && Arm::kGuarded ? lane : nearest(a), other = at_fold && Arm::kGuarded ? lane : nearest(b);
-    if (row < 0 || !a.inside(row) || distance(a, row) > 1.0) return false;
-    if (other >= 0 && b.inside(other) && distance(b, other) < 1.0) return false;
+    const bool kept = at_fold && Arm::kGuarded;
+    const int row = kept ? lane : a.nearest(q), other = kept ? lane : b.nearest(q);
+    if (row < 0 || !a.inside(row) || a.distance(row, q) > 1.0) return false;
+    if (other >= 0 && b.inside(other) && b.distance(other, q) < 1.0) return false;
     inner = a.held;
     outer = b.held;
     a.row(row, q);
@@ -85,29 +86,6 @@ template <class Arm> struct BranchEnd {
     for (int k = 0; k < Arm::kFolds && known[side] && at_fold; ++k) values[side] = std::min(values[side], s.fold[k][row]);
     if (at_fold) values[side] = -values[side];
     known[side] = known[side] && std::abs(values[side]) < kInfinity;
-  }
-
-  double distance(const Sample& s, int row) const noexcept {
-    double most = 0.0;
-    for (int j = 0; j < Arm::kDof; ++j)
-      if (!Arm::kHeld[j]) {
-        const double d = s.q[j][row] - q[j];
-        most = std::max(most, std::abs(Arm::kRevolute[j] ? shortest(d) : d));
-      }
-    return most;
-  }
-
-  int nearest(const Sample& s) const noexcept {
-    int best = -1;
-    double least = kInfinity;
-    for (int l = 0; l < Sample::kLanes; ++l) {
-      const double here = s.real[l] ? distance(s, l) : kInfinity;
-      if (here < least) {
-        least = here;
-        best = l;
-      }
-    }
-    return best;
   }
 };
 

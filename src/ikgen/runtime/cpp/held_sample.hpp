@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "displacement.hpp"
 #include "fold_rows.hpp"
 #include "joint_range.hpp"
 #include "newton_refinement.hpp"
@@ -56,7 +57,7 @@ template <class Arm> struct HeldSample {
   HeldSample(const Eigen::Isometry3d& T, double value, const JointBounds<Arm>& bounds) noexcept : held(value) {
     bool again = take(T, T, 0);
     if constexpr (Arm::kBesides > 0)
-      for (int i = 0; i < Arm::kBesides; ++i) again = take(T, beside(T, Arm::kBeside[i]), i + 1) || again;
+      for (int i = 0; i < Arm::kBesides; ++i) again = take(T, displaced(T, Arm::kBeside[i]), i + 1) || again;
     if (again) remove_repetitions();
     for (int l = 0; l < kLanes; ++l) off[l] = -kInfinity;
     for (int i = 0; i < bounds.count; ++i)
@@ -70,18 +71,44 @@ template <class Arm> struct HeldSample {
     for (int j = 0; j < Arm::kDof; ++j) out[j] = q[j][lane];
   }
 
-  // The largest difference of two rows in a joint that moves.
+  // The change of a joint from one row to another.
+  static double change(int j, const HeldSample& a, int i, const HeldSample& b, int k) noexcept {
+    return between(j, a.q[j][i], b.q[j][k]);
+  }
+
+  // The largest change of a joint that moves, from one row to another.
   static double gap(const HeldSample& a, int i, const HeldSample& b, int k) noexcept {
     double most = 0.0;
     for (int j = 0; j < Arm::kDof; ++j)
-      if (!Arm::kHeld[j]) {
-        const double d = b.q[j][k] - a.q[j][i];
-        most = std::max(most, std::abs(Arm::kRevolute[j] ? shortest(d) : d));
-      }
+      if (!Arm::kHeld[j]) most = std::max(most, std::abs(change(j, a, i, b, k)));
+    return most;
+  }
+  double distance(int lane, const double* other) const noexcept {
+    double most = 0.0;
+    for (int j = 0; j < Arm::kDof; ++j)
+      if (!Arm::kHeld[j]) most = std::max(most, std::abs(between(j, other[j], q[j][lane])));
     return most;
   }
 
+  // The lane of the real row that is nearest to another; -1 without one.
+  int nearest(const double* other) const noexcept {
+    int best = -1;
+    double least = kInfinity;
+    for (int l = 0; l < kLanes; ++l) {
+      const double here = real[l] ? distance(l, other) : kInfinity;
+      if (here < least) {
+        least = here;
+        best = l;
+      }
+    }
+    return best;
+  }
+
  private:
+  static double between(int j, double from, double to) noexcept {
+    return Arm::kRevolute[j] ? shortest(to - from) : to - from;
+  }
+
   // Takes the rows of the pose, or of one beside it, refined where that is needed; whether some may be equal.
   bool take(const Eigen::Isometry3d& T, const Eigen::Isometry3d& near, int part) noexcept {
     constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
@@ -103,13 +130,6 @@ template <class Arm> struct HeldSample {
         q[j][l] = !Arm::kRevolute[j] || Arm::kHeld[j] ? refined[j] : refined[j] - kTurn * std::nearbyint(refined[j] / kTurn);
     }
     return again;
-  }
-
-  template <class Motion> static Eigen::Isometry3d beside(const Eigen::Isometry3d& T, const Motion& motion) noexcept {
-    Eigen::Isometry3d out = T;
-    out.translation() += T.linear() * Eigen::Map<const Eigen::Vector3d>(motion.p);
-    out.linear() = T.linear() * Eigen::Map<const Eigen::Matrix3d>(motion.R);
-    return out;
   }
 
   void remove_repetitions() noexcept {

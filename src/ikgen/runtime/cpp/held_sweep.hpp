@@ -96,16 +96,9 @@ template <class Arm> struct HeldSweep {
     }
 
     static int nearest(const Sample& a, int lane, const Sample& b) noexcept {
-      int best = -1;
-      double least = kInfinity;
-      for (int l = 0; l < kLanes && a.real[lane]; ++l) {
-        const double gap = b.real[l] ? Sample::gap(a, lane, b, l) : kInfinity;
-        if (gap < least) {
-          least = gap;
-          best = l;
-        }
-      }
-      return best;
+      double q[Arm::kDof];
+      a.row(lane, q);
+      return a.real[lane] ? b.nearest(q) : -1;
     }
   };
 
@@ -123,12 +116,6 @@ template <class Arm> struct HeldSweep {
     const Links up(a, middle), on(middle, b);
     cell(before, a, middle, up, {&b, &on}, visit);
     cell({&a, &up}, middle, b, on, after, visit);
-  }
-
-  // Change of a joint from one row to another.
-  static double change(int j, const Sample& a, int i, const Sample& b, int k) noexcept {
-    const double gap = b.q[j][k] - a.q[j][i];
-    return Arm::kRevolute[j] ? shortest(gap) : gap;
   }
 
   bool doubtful(const Beside& down, const Sample& a, const Sample& b, const Links& links, const Beside& up) const noexcept {
@@ -181,16 +168,16 @@ template <class Arm> struct HeldSweep {
     bool bent = false;
     for (int j = 0; j < Arm::kDof; ++j) {
       if (Arm::kHeld[j]) continue;
-      moved[j] = change(j, a, l, b, k);
+      moved[j] = Sample::change(j, a, l, b, k);
       const double slope = moved[j] / width;
       double second = 0.0;
       if (before) {
         const double beside = a.held - before->held;
-        second = std::abs(slope - change(j, *before, p, a, l) / beside) / (width + beside);
+        second = std::abs(slope - Sample::change(j, *before, p, a, l) / beside) / (width + beside);
       }
       if (after) {
         const double beside = after->held - b.held;
-        second = std::max(second, std::abs(change(j, b, k, *after, n) / beside - slope) / (width + beside));
+        second = std::max(second, std::abs(Sample::change(j, b, k, *after, n) / beside - slope) / (width + beside));
       }
       off[j] = before || after ? kSafety * second * width * width / 4.0 : std::abs(moved[j]);
       bent = bent || off[j] > kSmooth;

@@ -1,12 +1,9 @@
 #pragma once
 
 #include "careful_solve.hpp"
+#include "displacement.hpp"
 
 namespace ikgen_runtime {
-
-struct Displacement {
-  double R[9], p[3];  // columns first
-};
 
 // Rows of poses beside the one that is asked for: near folds those have rows that the pose has not.
 // Arm: as for CarefulSolve; kBeside, motions of the tool.
@@ -15,11 +12,8 @@ template <class Arm> struct PosesBeside {
   [[gnu::noinline]] static void add(const Eigen::Isometry3d& pose, const double* q0,
                                     const typename Arm::Options& options, typename Arm::Solutions& out) noexcept {
     for (const Displacement& motion : Arm::kBeside) {
-      Eigen::Isometry3d moved = pose;
-      moved.translation() += pose.linear() * Eigen::Map<const Eigen::Vector3d>(motion.p);
-      moved.linear() = pose.linear() * Eigen::Map<const Eigen::Matrix3d>(motion.R);
       typename Arm::template Rows<1> rows;
-      CarefulSolve<Arm>::find_lanes(moved, q0, options, rows);
+      CarefulSolve<Arm>::find_lanes(displaced(pose, motion), q0, options, rows);
       for (const int lane : Arm::kLaneOfRow)
         if ((static_cast<int>(rows.flags[lane]) & kReal) != 0) CarefulSolve<Arm>::add_refined(pose, rows, lane, out);
     }

@@ -8,6 +8,7 @@
 
 #include "constants.hpp"
 #include "motion_chain.hpp"
+#include "pose_entries.hpp"
 #include "pose_reading.hpp"
 #include "solution_rows.hpp"
 
@@ -15,22 +16,22 @@ namespace ikgen_runtime {
 
 // What a configuration's entries are off those of a pose, and their slope by the joints that move.
 template <class Arm> struct PoseChords {
-  static constexpr int kCount = sizeof(Arm::kRead) / sizeof(Arm::kRead[0]);
+  static constexpr int kCount = PoseEntries<Arm>::kCount;
   double error[kCount], slope[kCount][Arm::kDof], cost = 0.0;
 
+  // t: the pose's matrix, columns first.
   PoseChords(const double* q, const double* t) noexcept {
-    double J[6][Arm::kDof], f[16];
-    by_columns(MotionChain<Arm>::forward(q, J), f);
+    double J[6][Arm::kDof], rows[3][4];
+    const Frame T = MotionChain<Arm>::forward(q, J);
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 4; ++c) rows[r][c] = t[4 * c + r];
+    PoseEntries<Arm>::error(rows, T, error);
+    PoseEntries<Arm>::slope(T, J, slope);
     for (int i = 0; i < kCount; ++i) {
-      const auto [r, c] = Arm::kRead[i];
-      const int u = (r + 1) % 3, v = (r + 2) % 3;
-      const double weight = c == 3 ? 1.0 / Arm::kSize : turn();
-      error[i] = weight * (t[4 * c + r] - f[4 * c + r]);
+      const double weight = Arm::kRead[i][1] == 3 ? 1.0 : turn();
+      error[i] *= weight;
       cost += error[i] * error[i];
-      for (int j = 0; j < Arm::kDof; ++j) {
-        const double turned = J[3 + u][j] * f[4 * c + v] - J[3 + v][j] * f[4 * c + u];
-        slope[i][j] = Arm::kHeld[j] ? 0.0 : weight * (c == 3 ? J[r][j] : turned);
-      }
+      for (int j = 0; j < Arm::kDof; ++j) slope[i][j] *= Arm::kHeld[j] ? 0.0 : weight;
     }
   }
 
@@ -60,14 +61,12 @@ template <class Arm> struct PoseChords {
       const auto [r, c] = Arm::kRead[i];
       (c == 3 ? length : chord) += at.error[i] * at.error[i];
       if (c == 3 || Arm::Columns::has(c)) continue;
-      const double gap = std::asin(clipped(f[4 * c + r], -1.0, 1.0)) - std::asin(clipped(t[4 * c + r], -1.0, 1.0));
+      const double gap = std::asin(std::clamp(f[4 * c + r], -1.0, 1.0)) - std::asin(std::clamp(t[4 * c + r], -1.0, 1.0));
       angles += gap * gap;
     }
     off[0] = std::sqrt(length) * Arm::kSize;
     off[1] = angles > 0.0 ? std::sqrt(angles) : 2.0 * std::asin(std::min(0.5 * std::sqrt(chord), 1.0));
   }
-
-  static double clipped(double x, double low, double high) noexcept { return std::min(std::max(x, low), high); }
 };
 
 // Arm: as for PoseChords, PoseReading, SolutionRows and Way<Arm>, which solves an exact pose.
@@ -92,8 +91,7 @@ template <class Arm, template <class> class Way> struct Projection {
 
  private:
   static void solve_nearest(const double* t, Options options, Solutions& out) noexcept {
-    for (int j = 0; j < Arm::kDof && options.seed; ++j)
-      if (!(std::abs(options.seed->data()[j]) < kInfinity)) options.seed = nullptr;
+    if (options.seed && !SolutionRows<Arm>::finite(options.seed->data())) options.seed = nullptr;
     double q[Arm::kDof];
     nearest(t, options, q);
     Eigen::Isometry3d pose;
@@ -118,7 +116,7 @@ template <class Arm, template <class> class Way> struct Projection {
       double low, high, whole;
       bounds(j, options.limits, &low, &high);
       const double half = Arm::kRevolute[j] ? kPi : Arm::kSize;
-      const double centre = Chords::clipped(0.0, low + half, std::max(high - half, low + half));
+      const double centre = std::clamp(0.0, low + half, std::max(high - half, low + half));
       low = std::max(low, centre - half);
       high = std::min(high, centre + half);
       q[j] = low + std::modf(0.5 + (i + 1) * step, &whole) * (high - low);
@@ -139,7 +137,7 @@ template <class Arm, template <class> class Way> struct Projection {
       for (int j = 0; i < 0 && j < Arm::kDof; ++j) {
         double low, high;
         bounds(j, options.limits, &low, &high);
-        q[j] = Chords::clipped(options.seed ? options.seed->data()[j] : 0.0, low, high);
+        q[j] = std::clamp(options.seed ? options.seed->data()[j] : 0.0, low, high);
       }
       hold(options, q);
       const double cost = Chords(q, t).cost;
@@ -172,7 +170,7 @@ template <class Arm, template <class> class Way> struct Projection {
       step(at, limits, damping, trial);
       const Chords there(trial, t);
       const bool better = there.cost < at.cost;
-      damping = Chords::clipped(damping * (better ? 0.2 : 8.0), kLeast, kMost);
+      damping = std::clamp(damping * (better ? 0.2 : 8.0), kLeast, kMost);
       if (!better) continue;
       at = there;
       std::copy_n(trial, Arm::kDof, q);
@@ -199,7 +197,7 @@ template <class Arm, template <class> class Way> struct Projection {
     factor(A);
     substitute(A, x);
     for (int j = 0; j < Arm::kDof; ++j)
-      if (!stuck[j]) q[j] = Chords::clipped(q[j] + Chords::clipped(x[j], -kLongest, kLongest), low[j], high[j]);
+      if (!stuck[j]) q[j] = std::clamp(q[j] + std::clamp(x[j], -kLongest, kLongest), low[j], high[j]);
   }
 };
 

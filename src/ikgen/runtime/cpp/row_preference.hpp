@@ -16,8 +16,7 @@ template <class A> struct RowPreference {
 
   // Near to the seed, or the middle of the limits, without a seed too. The object must not be moved.
   RowPreference(const double* seed, Prefer kind, bool limits) noexcept : prefer(kind) {
-    for (int j = 0; j < A::kDof && seed; ++j)
-      if (!(std::abs(seed[j]) < kInfinity)) seed = nullptr;
+    if (seed && !SolutionRows<A>::finite(seed)) seed = nullptr;
     for (int j = 0; j < A::kDof; ++j) {
       const double low = A::kLower.data()[j], high = A::kUpper.data()[j];
       const bool bounded = high - low < kInfinity, near = kind == Prefer::Near && seed;
@@ -91,17 +90,8 @@ inline void order_rows(const Eigen::Isometry3d& pose, const double* seed, typena
   }
   options.limits = limits;
   Solver::solve(pose, options, out);
-  for (int k = 0; k < out.count; ++k) {
-    preference.place(SolutionRows<A>::row(out, k));
-    double q[A::kDof];
-    std::copy_n(SolutionRows<A>::row(out, k), A::kDof, q);
-    const bool singular = out.singular.data()[k];
-    const double mine = preference.cost(q);
-    int at = k;
-    for (; at > 0 && preference.cost(SolutionRows<A>::row(out, at - 1)) > mine; --at) SolutionRows<A>::move(out, at - 1, at);
-    std::copy_n(q, A::kDof, SolutionRows<A>::row(out, at));
-    out.singular.data()[at] = singular;
-  }
+  for (int k = 0; k < out.count; ++k) preference.place(SolutionRows<A>::row(out, k));
+  SolutionRows<A>::sort(out, [&](const double* q) noexcept { return preference.cost(q); });
 }
 
 }  // namespace ikgen_runtime

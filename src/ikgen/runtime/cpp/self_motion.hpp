@@ -6,7 +6,7 @@
 namespace ikgen_runtime {
 
 // Follows the branches of a sweep and tells `Record` of their runs inside the limits: open(lane, at, q, branch),
-// pass(lane, sample), swap(next), close(lane, at, q). Arm: as for HeldSweep.
+// pass(lane, sample), move(next), close(lane, at, q). Arm: as for HeldSweep.
 template <class Arm, class Record> struct BranchFollower {
   using Sample = HeldSample<Arm>;
   static constexpr int kLanes = Sample::kLanes;

@@ -21,6 +21,10 @@ template <class Arm> struct SolutionRows {
     flag(out, to) = flag(out, from);
   }
 
+  static bool finite(const double* q) noexcept {
+    return std::all_of(q, q + Arm::kDof, [](double x) { return std::isfinite(x); });
+  }
+
   // Whether two rows are the same, whole turns aside; long slides count relative to their length.
   static bool same(const double* a, const double* b) noexcept {
     for (int j = 0; j < Arm::kDof; ++j) {
@@ -72,20 +76,29 @@ template <class Arm> struct SolutionRows {
   }
 
   static void sort_by_distance(Solutions& out, const double* seed) noexcept {
-    double distance[Arm::kMaxSolutions];
+    sort(out, [seed](const double* q) noexcept {
+      double sum = 0.0;
+      for (int j = 0; j < Arm::kDof; ++j) sum += (q[j] - seed[j]) * (q[j] - seed[j]);
+      return sum;
+    });
+  }
+
+  // By cost(row), the least first, equal ones as they were.
+  template <class Cost> static void sort(Solutions& out, const Cost& cost) noexcept {
+    double costs[Arm::kMaxSolutions];
     for (int k = 0; k < out.count; ++k) {
-      double q[Arm::kDof], mine = 0.0;
+      double q[Arm::kDof];
       std::copy_n(row(out, k), Arm::kDof, q);
-      for (int j = 0; j < Arm::kDof; ++j) mine += (q[j] - seed[j]) * (q[j] - seed[j]);
+      const double mine = cost(q);
       const bool singular = flag(out, k);
       int at = k;
-      for (; at > 0 && distance[at - 1] > mine; --at) {
+      for (; at > 0 && costs[at - 1] > mine; --at) {
         move(out, at - 1, at);
-        distance[at] = distance[at - 1];
+        costs[at] = costs[at - 1];
       }
       std::copy_n(q, Arm::kDof, row(out, at));
       flag(out, at) = singular;
-      distance[at] = mine;
+      costs[at] = mine;
     }
   }
 };
