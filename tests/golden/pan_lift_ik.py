@@ -524,6 +524,11 @@ def _held_rows(
     return held
 
 
+def _seed_values(arm: _Arm, seed: ArrayLike | None) -> Row | None:
+    """`_seed_rows` of one seed, if there is one."""
+    return None if seed is None else tuple(_seed_rows(arm, seed, (len(arm.lower),)).tolist())
+
+
 def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...], name: str = "seed") -> Array:
     """The seed, called `name`, as an array of one of the shapes; raises ValueError for others. Turns of a
     revolute joint that doubles cannot tell apart to 1e-10 rad are left out."""
@@ -584,6 +589,22 @@ def _inverse(J: Array) -> tuple[Array, Array]:
 
 # of pin.SE3, RigidTransform of SciPy, SE3 of spatialmath
 _TRANSFORMS = ("homogeneous", "as_matrix", "A")
+
+
+def _one_pose(pose: Any, alone: str) -> Array:
+    """`_pose_matrices` of one, (4, 4); raises ValueError for another shape."""
+    T = _pose_matrices(pose, alone)
+    if T.shape != (4, 4):
+        raise ValueError(f"pose has shape {T.shape}, expected (4, 4)")
+    return T
+
+
+def _poses_in_line(poses: Any, alone: str) -> Array:
+    """`_pose_matrices` of many, (N, 4, 4); raises ValueError for another shape."""
+    T = _pose_matrices(poses, alone)
+    if T.ndim != 3 or T.shape[1:] != (4, 4):
+        raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
+    return T
 
 
 def _pose_matrices(pose: Any, alone: str) -> Array:
@@ -1096,6 +1117,11 @@ class Solutions:
         return rows
 
 
+def _no_solutions(dof: int, status: Status, reason: str = "") -> Solutions:
+    """What a pose without rows is answered with."""
+    return Solutions(np.empty((0, dof)), status, np.empty(0, dtype=bool), reason)
+
+
 # All solutions of one pose, the closed form's inner loop on floats.
 
 
@@ -1110,12 +1136,9 @@ def _solve_pose(
 ) -> Solutions:
     """All joint values that bring the tip to `pose`, or with `project` to the nearest pose that the arm
     can take; raises ValueError for bad arguments."""
-    matrix, dof = _pose_matrices(pose, arm.task.alone), len(arm.lower)
-    if matrix.shape != (4, 4):
-        raise ValueError(f"pose has shape {matrix.shape}, expected (4, 4)")
-    near = None if seed is None else tuple(_seed_rows(arm, seed, (dof,)).tolist())
+    lines = _one_pose(pose, arm.task.alone).tolist()
+    near = _seed_values(arm, seed)
     held = _held_values(arm, free, near)
-    lines = matrix.tolist()
     if orthonormalize:
         lines = _nearest_pose(arm.task, lines, arm.policy)
     T = arm.task.read(lines, arm.policy)
@@ -1125,7 +1148,7 @@ def _solve_pose(
     if not found:
         status = Status.INVALID if T is None else Status.LIMITS if real else Status.UNREACHABLE
         reason = _pose_fault(arm.task, lines, arm.policy) if T is None else ""
-        return Solutions(np.empty((0, dof)), status, np.empty(0, dtype=bool), reason)
+        return _no_solutions(len(arm.lower), status, reason)
     if near is not None:
         origin = near
         found.sort(key=lambda item: sum((a - b) * (a - b) for a, b in zip(item[0], origin)))
@@ -1262,10 +1285,8 @@ def _solve_poses(
     orthonormalize: bool = False,
 ) -> _Batch:
     """Rows (N, most, dof) padded with NaN, counts (N,) and names of Status (N,) for poses (N, 4, 4)."""
-    T, dof = _pose_matrices(poses, arm.task.alone), len(arm.lower)
-    if T.ndim != 3 or T.shape[1:] != (4, 4):
-        raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
-    count = len(T)
+    T = _poses_in_line(poses, arm.task.alone)
+    count, dof = len(T), len(arm.lower)
     near: Array | None = None
     if seed is not None:
         near = np.broadcast_to(_seed_rows(arm, seed, (dof,), (count, dof)), (count, dof))
@@ -1367,16 +1388,17 @@ def _careful_rows(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple
 _Preference = tuple[str, Row, Row]  # its name; what rows are wanted near to, and the joints' weights
 
 
-def _preference_of(arm: _Arm, prefer: str, seed: Row | None) -> _Preference:
+def _preference_of(arm: _Arm, prefer: str, seed: ArrayLike | None) -> _Preference:
     """ "near": to the seed, "centre": of the limits, as near without a seed, or "dexterous"."""
     if prefer not in ("near", "centre", "dexterous"):
         raise ValueError(f"prefer is {prefer!r}, expected 'near', 'centre' or 'dexterous'")
-    if prefer == "near" and seed is not None:
-        return prefer, seed, (1.0,) * len(seed)
+    near = _seed_values(arm, seed)
+    if prefer == "near" and near is not None:
+        return prefer, near, (1.0,) * len(near)
     bounded = [isfinite(b - a) for a, b in zip(arm.lower, arm.upper)]
     middle = [0.5 * (a + b) if ok else 0.0 for a, b, ok in zip(arm.lower, arm.upper, bounded)]
-    if seed is not None:
-        middle = [m if ok else s for m, s, ok in zip(middle, seed, bounded)]
+    if near is not None:
+        middle = [m if ok else s for m, s, ok in zip(middle, near, bounded)]
     halves = (
         max(0.5 * (b - a), 1e-6) if ok else inf for a, b, ok in zip(arm.lower, arm.upper, bounded)
     )
@@ -1410,8 +1432,7 @@ def _search_held(
     arm: _Arm, pose: Any, seed: ArrayLike | None, prefer: str, limits: bool
 ) -> Solutions:
     """All rows, best first. Raises ValueError for bad arguments."""
-    near = None if seed is None else tuple(_seed_rows(arm, seed, (len(arm.lower),)).tolist())
-    preference = _preference_of(arm, prefer, near)
+    preference = _preference_of(arm, prefer, seed)
     found = _solve_pose(arm, pose, None, seed, limits)
     if not len(found):
         return found
@@ -1456,9 +1477,7 @@ def _follow_poses(
 ) -> Path:
     """From the row of the first pose (N, 4, 4) that is nearest to `start` (dof,); `search(pose, start,
     limits)`: rows nearest to it first. Raises ValueError for bad arguments."""
-    T, dof = _pose_matrices(poses, arm.task.alone), len(arm.lower)
-    if T.ndim != 3 or T.shape[1:] != (4, 4):
-        raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
+    T, dof = _poses_in_line(poses, arm.task.alone), len(arm.lower)
     row = _seed_rows(arm, start, (dof,), name="start")
     q, singular = np.full((len(T), dof), np.nan), np.zeros(len(T), dtype=bool)
     walk, before = _Walk(arm, limits), np.eye(4)

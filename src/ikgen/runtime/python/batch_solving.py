@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.joint_arguments import held_rows, seed_rows
 from ikgen.runtime.python.joint_refinement import refine_together
-from ikgen.runtime.python.pose_arguments import pose_matrices
+from ikgen.runtime.python.pose_arguments import poses_in_line
 from ikgen.runtime.python.pose_faults import nearest_poses
 from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.refinement import refine
@@ -45,10 +45,8 @@ def solve_poses(
 
     Raises ValueError for bad arguments.
     """
-    T, dof = pose_matrices(poses, arm.task.alone), len(arm.lower)
-    if T.ndim != 3 or T.shape[1:] != (4, 4):
-        raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
-    count = len(T)
+    T = poses_in_line(poses, arm.task.alone)
+    count, dof = len(T), len(arm.lower)
     near: Array | None = None
     if seed is not None:
         near = np.broadcast_to(seed_rows(arm, seed, (dof,), (count, dof)), (count, dof))

@@ -11,11 +11,10 @@ from numpy.typing import ArrayLike
 from ikgen.runtime.python.array_types import Array
 from ikgen.runtime.python.batch_solving import rows_batch
 from ikgen.runtime.python.held_joint import pose_lines
-from ikgen.runtime.python.joint_arguments import seed_rows
 from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.row_preference import preference_costs, preference_of
 from ikgen.runtime.python.solution_search import Start, best_rows
-from ikgen.runtime.python.solutions import Solutions, Status
+from ikgen.runtime.python.solutions import Solutions, Status, no_solutions
 from ikgen.runtime.python.solved_arm import Arm
 
 __all__ = ["search_grid"]
@@ -30,11 +29,8 @@ def search_grid(
 ) -> Solutions:
     """Good rows over a grid of the held joints' values, each made better by a compass search. Raises
     ValueError for bad arguments."""
-    dof = len(arm.lower)
-    near = None if seed is None else tuple(seed_rows(arm, seed, (dof,)).tolist())
-    preference = preference_of(arm, prefer, near)
+    preference = preference_of(arm, prefer, seed)
     T = pose_lines(arm, pose)
-    empty = np.empty((0, dof)), np.empty(0, dtype=bool)
     if T is None:
         return solve_pose(arm, pose, None, None, limits)  # which says why it is none
     values, steps = _grid(arm, preference[1], limits)
@@ -54,7 +50,7 @@ def search_grid(
             held = tuple(values[point].tolist())
             starts.append((held, found[point, row], steps, len(starts)))
     if not starts:
-        return Solutions(empty[0], Status.LIMITS if any_real else Status.UNREACHABLE, empty[1])
+        return no_solutions(len(arm.lower), Status.LIMITS if any_real else Status.UNREACHABLE)
     return best_rows(arm, T, starts, preference, limits)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.batch_solving import careful_rows
-from ikgen.runtime.python.pose_arguments import pose_matrices
+from ikgen.runtime.python.pose_arguments import one_pose
 from ikgen.runtime.python.solved_arm import Arm
 
 __all__ = ["HeldJoint", "Rows", "held_range", "merged_rows", "pose_lines", "rows_at"]
@@ -85,8 +85,5 @@ def held_range(arm: Arm, T: Array, limits: bool) -> tuple[float, float]:
 
 def pose_lines(arm: Arm, pose: Any) -> Array | None:
     """A pose as it is read, (4, 4); None for what is no pose. Raises ValueError for a wrong shape."""
-    matrix = pose_matrices(pose, arm.task.alone)
-    if matrix.shape != (4, 4):
-        raise ValueError(f"pose has shape {matrix.shape}, expected (4, 4)")
-    T = arm.task.read(matrix.tolist(), arm.policy)
+    T = arm.task.read(one_pose(pose, arm.task.alone).tolist(), arm.policy)
     return None if T is None else np.array(T)

@@ -9,12 +9,11 @@ from numpy.typing import ArrayLike
 
 from ikgen.runtime.python.branch_tracks import Tracks, tracked
 from ikgen.runtime.python.held_joint import HeldJoint, held_range, pose_lines
-from ikgen.runtime.python.joint_arguments import seed_rows
 from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.row_preference import Preference, preference_costs, preference_of
 from ikgen.runtime.python.self_motion import Piece, pieces_of
 from ikgen.runtime.python.solution_search import Start, best_rows
-from ikgen.runtime.python.solutions import Solutions, Status
+from ikgen.runtime.python.solutions import Solutions, Status, no_solutions
 
 __all__ = ["search_interval"]
 
@@ -24,11 +23,9 @@ def search_interval(
 ) -> Solutions:
     """The best row of each interval of the held joint's values, best first. Raises ValueError for bad
     arguments."""
-    arm, dof = joint.arm, len(joint.arm.lower)
-    near = None if seed is None else tuple(seed_rows(arm, seed, (dof,)).tolist())
-    preference = preference_of(arm, prefer, near)
+    arm = joint.arm
+    preference = preference_of(arm, prefer, seed)
     T = pose_lines(arm, pose)
-    none = np.empty((0, dof)), np.empty(0, dtype=bool)
     if T is None:
         return solve_pose(arm, pose, None, None, limits)  # which says why it is none
     tracks = tracked(joint, T, *held_range(arm, T, limits), limits)
@@ -39,7 +36,7 @@ def search_interval(
     ]
     if not starts:
         status = Status.LIMITS if tracks.rows.real.any() else Status.UNREACHABLE
-        return Solutions(none[0], status, none[1])
+        return no_solutions(len(arm.lower), status)
     return best_rows(arm, T, starts, preference, limits)
 
 

@@ -12,7 +12,7 @@ from ikgen.runtime.python.array_types import Array, Row
 from ikgen.runtime.python.real_numbers import real_array
 from ikgen.runtime.python.solved_arm import Arm
 
-__all__ = ["held_rows", "held_values", "seed_rows"]
+__all__ = ["held_rows", "held_values", "seed_rows", "seed_values"]
 
 _FARTHEST = 1e6  # rad: neighbouring doubles are 1e-10 apart
 
@@ -68,6 +68,11 @@ def held_rows(
     if not np.isfinite(held).all():
         raise ValueError("free has values that are not finite")
     return held
+
+
+def seed_values(arm: Arm, seed: ArrayLike | None) -> Row | None:
+    """`seed_rows` of one seed, if there is one."""
+    return None if seed is None else tuple(seed_rows(arm, seed, (len(arm.lower),)).tolist())
 
 
 def seed_rows(arm: Arm, seed: ArrayLike, *shapes: tuple[int, ...], name: str = "seed") -> Array:

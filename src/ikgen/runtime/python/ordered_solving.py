@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ikgen.runtime.python.joint_arguments import seed_rows
 from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.row_preference import preference_costs, preference_of
 from ikgen.runtime.python.solutions import Solutions
@@ -20,8 +19,7 @@ def search_rows(
     arm: Arm, pose: Any, seed: ArrayLike | None, prefer: str, limits: bool
 ) -> Solutions:
     """All rows, best first. Raises ValueError for bad arguments."""
-    near = None if seed is None else tuple(seed_rows(arm, seed, (len(arm.lower),)).tolist())
-    preference = preference_of(arm, prefer, near)
+    preference = preference_of(arm, prefer, seed)
     found = solve_pose(arm, pose, None, seed, limits)
     if not len(found):
         return found

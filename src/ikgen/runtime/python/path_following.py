@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.chain_kinematics import tip_and_jacobian
 from ikgen.runtime.python.joint_arguments import seed_rows
-from ikgen.runtime.python.pose_arguments import pose_matrices
+from ikgen.runtime.python.pose_arguments import poses_in_line
 from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.refinement import rank_loss
 from ikgen.runtime.python.solutions import Solutions, Status
@@ -54,9 +54,7 @@ def follow_poses(
 ) -> Path:
     """From the row of the first pose (N, 4, 4) that is nearest to `start` (dof,); `search(pose, start,
     limits)`: rows nearest to it first. Raises ValueError for bad arguments."""
-    T, dof = pose_matrices(poses, arm.task.alone), len(arm.lower)
-    if T.ndim != 3 or T.shape[1:] != (4, 4):
-        raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
+    T, dof = poses_in_line(poses, arm.task.alone), len(arm.lower)
     row = seed_rows(arm, start, (dof,), name="start")
     q, singular = np.full((len(T), dof), np.nan), np.zeros(len(T), dtype=bool)
     walk, before = _Walk(arm, limits), np.eye(4)

@@ -9,10 +9,26 @@ import numpy as np
 from ikgen.runtime.python.array_types import Array
 from ikgen.runtime.python.real_numbers import real_array
 
-__all__ = ["pose_matrices"]
+__all__ = ["one_pose", "pose_matrices", "poses_in_line"]
 
 # of pin.SE3, RigidTransform of SciPy, SE3 of spatialmath
 _TRANSFORMS = ("homogeneous", "as_matrix", "A")
+
+
+def one_pose(pose: Any, alone: str) -> Array:
+    """`pose_matrices` of one, (4, 4); raises ValueError for another shape."""
+    T = pose_matrices(pose, alone)
+    if T.shape != (4, 4):
+        raise ValueError(f"pose has shape {T.shape}, expected (4, 4)")
+    return T
+
+
+def poses_in_line(poses: Any, alone: str) -> Array:
+    """`pose_matrices` of many, (N, 4, 4); raises ValueError for another shape."""
+    T = pose_matrices(poses, alone)
+    if T.ndim != 3 or T.shape[1:] != (4, 4):
+        raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
+    return T
 
 
 def pose_matrices(pose: Any, alone: str) -> Array:

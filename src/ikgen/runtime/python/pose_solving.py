@@ -11,15 +11,15 @@ from numpy.typing import ArrayLike
 
 from ikgen.runtime.python.array_types import Row
 from ikgen.runtime.python.chain_kinematics import forward
-from ikgen.runtime.python.joint_arguments import held_values, seed_rows
+from ikgen.runtime.python.joint_arguments import held_values, seed_values
 from ikgen.runtime.python.joint_refinement import refine_together
-from ikgen.runtime.python.pose_arguments import pose_matrices
+from ikgen.runtime.python.pose_arguments import one_pose
 from ikgen.runtime.python.pose_faults import nearest_pose, pose_fault
 from ikgen.runtime.python.projection import nearest_row, off_by
 from ikgen.runtime.python.refinement import rank_loss, refine
 from ikgen.runtime.python.row_branches import branch_names
 from ikgen.runtime.python.row_placement import is_new, place_rows
-from ikgen.runtime.python.solutions import Solutions, Status
+from ikgen.runtime.python.solutions import Solutions, Status, no_solutions
 from ikgen.runtime.python.solved_arm import Arm, Candidate, Found
 
 __all__ = ["solve_pose"]
@@ -36,12 +36,9 @@ def solve_pose(
 ) -> Solutions:
     """All joint values that bring the tip to `pose`, or with `project` to the nearest pose that the arm
     can take; raises ValueError for bad arguments."""
-    matrix, dof = pose_matrices(pose, arm.task.alone), len(arm.lower)
-    if matrix.shape != (4, 4):
-        raise ValueError(f"pose has shape {matrix.shape}, expected (4, 4)")
-    near = None if seed is None else tuple(seed_rows(arm, seed, (dof,)).tolist())
+    lines = one_pose(pose, arm.task.alone).tolist()
+    near = seed_values(arm, seed)
     held = held_values(arm, free, near)
-    lines = matrix.tolist()
     if orthonormalize:
         lines = nearest_pose(arm.task, lines, arm.policy)
     T = arm.task.read(lines, arm.policy)
@@ -51,7 +48,7 @@ def solve_pose(
     if not found:
         status = Status.INVALID if T is None else Status.LIMITS if real else Status.UNREACHABLE
         reason = pose_fault(arm.task, lines, arm.policy) if T is None else ""
-        return Solutions(np.empty((0, dof)), status, np.empty(0, dtype=bool), reason)
+        return no_solutions(len(arm.lower), status, reason)
     if near is not None:
         origin = near
         found.sort(key=lambda item: sum((a - b) * (a - b) for a, b in zip(item[0], origin)))

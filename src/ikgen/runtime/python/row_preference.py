@@ -5,9 +5,11 @@ from __future__ import annotations
 from math import inf, isfinite, pi
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ikgen.runtime.python.array_types import Array, Flags, Row
 from ikgen.runtime.python.chain_kinematics import tip_and_jacobian
+from ikgen.runtime.python.joint_arguments import seed_values
 from ikgen.runtime.python.row_placement import place_rows_batch
 from ikgen.runtime.python.solved_arm import Arm
 
@@ -16,19 +18,20 @@ __all__ = ["Preference", "preference_costs", "preference_of"]
 Preference = tuple[str, Row, Row]  # its name; what rows are wanted near to, and the joints' weights
 
 
-def preference_of(arm: Arm, prefer: str, seed: Row | None) -> Preference:
+def preference_of(arm: Arm, prefer: str, seed: ArrayLike | None) -> Preference:
     """ "near": to the seed, "centre": of the limits, as near without a seed, or "dexterous".
 
-    Raises ValueError for another word.
+    Raises ValueError for another word, and for a bad seed.
     """
     if prefer not in ("near", "centre", "dexterous"):
         raise ValueError(f"prefer is {prefer!r}, expected 'near', 'centre' or 'dexterous'")
-    if prefer == "near" and seed is not None:
-        return prefer, seed, (1.0,) * len(seed)
+    near = seed_values(arm, seed)
+    if prefer == "near" and near is not None:
+        return prefer, near, (1.0,) * len(near)
     bounded = [isfinite(b - a) for a, b in zip(arm.lower, arm.upper)]
     middle = [0.5 * (a + b) if ok else 0.0 for a, b, ok in zip(arm.lower, arm.upper, bounded)]
-    if seed is not None:
-        middle = [m if ok else s for m, s, ok in zip(middle, seed, bounded)]
+    if near is not None:
+        middle = [m if ok else s for m, s, ok in zip(middle, near, bounded)]
     halves = (
         max(0.5 * (b - a), 1e-6) if ok else inf for a, b, ok in zip(arm.lower, arm.upper, bounded)
     )

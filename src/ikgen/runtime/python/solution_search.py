@@ -13,7 +13,7 @@ from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.row_branches import branch_names
 from ikgen.runtime.python.row_links import differences
 from ikgen.runtime.python.row_preference import Preference, preference_costs
-from ikgen.runtime.python.solutions import Solutions, Status
+from ikgen.runtime.python.solutions import Solutions, Status, no_solutions
 from ikgen.runtime.python.solved_arm import Arm
 
 __all__ = ["Start", "best_rows"]
@@ -86,6 +86,6 @@ def _solutions(
             q.append(found.q[0])
             flags.append(bool(found.singular[0]))
     if not q:
-        return Solutions(np.empty((0, len(arm.lower))), Status.LIMITS, np.empty(0, dtype=bool))
+        return no_solutions(len(arm.lower), Status.LIMITS)
     names = partial(branch_names, arm)
     return Solutions(np.array(q), Status.OK, np.array(flags), names=names)

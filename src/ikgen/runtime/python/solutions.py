@@ -11,7 +11,7 @@ import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags
 
-__all__ = ["Solutions", "Status"]
+__all__ = ["Solutions", "Status", "no_solutions"]
 
 
 class Status(str, Enum):
@@ -59,3 +59,8 @@ class Solutions:
     def __getitem__(self, index: Any) -> Array:
         rows: Array = self.q[index]
         return rows
+
+
+def no_solutions(dof: int, status: Status, reason: str = "") -> Solutions:
+    """What a pose without rows is answered with."""
+    return Solutions(np.empty((0, dof)), status, np.empty(0, dtype=bool), reason)
