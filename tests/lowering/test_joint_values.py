@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.lowering.frames import operand_of
-from ikgen.lowering.joint_values import first_row, joint_value, variable_lets
+from ikgen.lowering.joint_values import joint_value, variable_lets
 from ikgen.model.chain import PRISMATIC, REVOLUTE
 from ikgen.model.dh import Angle, DHRow, Length
 from ikgen.program.interpret import evaluate
@@ -89,4 +89,4 @@ def test_the_first_row_that_a_joint_drives_is_its_own() -> None:
     from tests.support.tables import table
 
     dh = table(("R", "0", 0.0, 0.0), ("R", "1", 0.0, 0.0))
-    assert first_row(dh, 1) is dh.rows[1]
+    assert dh.first_row(1) is dh.rows[1]

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from ikgen.emit.derivation import Derivation
 from ikgen.kinematics.rigid import inverse
-from ikgen.lowering.joint_values import first_row
 from ikgen.model.dh import DHChain
 from ikgen.symbolic import solutions
 from ikgen.symbolic.joint_solutions import Branch
@@ -66,6 +65,6 @@ def _values(
 
 def _joint(dh: DHChain, joint: int, variable: Array) -> Array:
     """The joint's value: angles in (-pi, pi]."""
-    row = first_row(dh, joint)
+    row = dh.first_row(joint)
     value = (variable - row.offset.value) / row.scale
     return np.arctan2(np.sin(value), np.cos(value)) if row.revolute else value

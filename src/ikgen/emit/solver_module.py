@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ikgen.elimination.plan import EliminationPlan
 from ikgen.kinematics.displacement import displacements
 from ikgen.kinematics.whole_turns import turns_freely
-from ikgen.model.dh import DHChain, DHRow
+from ikgen.model.dh import DHChain
 from ikgen.program.policy import SolvePolicy
 from ikgen.program.statements import Program
 from ikgen.tasks import Task, find_task
@@ -97,10 +97,6 @@ class SolverModule:
     def size(self) -> float:
         """Length (m) that errors of position are taken relative to: the arm's largest, at least 1."""
         return max(1.0, *(float(np.abs(F[:3, 3]).max()) for F in self.dh.file_frames))
-
-    def first_row(self, joint: int) -> DHRow:
-        """The first row of the chain that a joint drives: its scale and offset."""
-        return next(row for row in self.dh.rows if row.driver == joint)
 
     def turns(self, joint: int) -> bool:
         """Whether values of the joint that differ by whole turns are the same configuration, and no

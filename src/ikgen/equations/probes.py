@@ -86,7 +86,7 @@ def smallest_singular(
         if dh.joints[j].name in dh.free:
             continue
         step = np.zeros(dh.dof)
-        step[j] = h * (1.0 if dh.rows[_first_row(dh, j)].revolute else size)
+        step[j] = h * (1.0 if dh.first_row(j).revolute else size)
         dT = product(dh_pose(dh, values + step) - dh_pose(dh, values - step), end) / (2 * h)
         dT = dT[:, :3, :] * read
         dT[:, :, 3] /= size
@@ -101,10 +101,6 @@ def _read(readable: Collection[str] | None) -> NDArray[np.float64]:
     return np.array(
         [[readable is None or name in readable for name in row] for row in names], float
     )
-
-
-def _first_row(dh: DHChain, joint: int) -> int:
-    return next(i for i, row in enumerate(dh.rows) if row.driver == joint)
 
 
 def arm_size(dh: DHChain) -> float:
@@ -127,7 +123,7 @@ def make_probes(
     """
     rng = np.random.default_rng(seed)
     size = arm_size(dh)
-    revolute = np.array([dh.rows[_first_row(dh, j)].revolute for j in range(dh.dof)])
+    revolute = np.array([dh.first_row(j).revolute for j in range(dh.dof)])
 
     def random(count: int) -> NDArray[np.float64]:
         angles = rng.uniform(-np.pi, np.pi, (count, dh.dof))

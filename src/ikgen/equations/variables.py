@@ -58,9 +58,7 @@ class JointVariables:
         self.values = values
         self.kept = kept
         self.count = dh.dof
-        self.primary: list[DHRow] = []
-        for j in range(dh.dof):
-            self.primary.append(next(row for row in dh.rows if row.driver == j))
+        self.primary = [dh.first_row(j) for j in range(dh.dof)]
         self._rows = [self._row_variable(row) for row in dh.rows]
         self.group = self._groups()
 

@@ -119,6 +119,12 @@ def interrupted(out: Path) -> tuple[str, ...]:
     return tuple(name for publishing in _begun(out) for name in publishing.put)
 
 
+def half_in_place(record: Path, out: Path | None = None) -> bool:
+    """Whether a killed run left the outputs of a record so, which it put into `out` (default: the record's
+    folder)."""
+    return record.name in {Path(name).name for name in interrupted(out or record.parent)}
+
+
 def complete(out: Path) -> None:
     """Put in place what killed runs had begun to put into the folder, and remove what else they left; for
     who publishes there alone."""

@@ -54,10 +54,10 @@ def twist_chain(dh: DHChain) -> TwistChain:
     links: list[TwistLink] = []
     turn = 0.0
     for row, F, height in zip(dh.rows, frames[1:], heights, strict=True):
-        before, twist, after = _euler(F[:3, :3]) if len(links) < len(dh.rows) - 1 else (0.0,) * 3
-        x, y = (
-            rotation_z(-before)[:2, :2] @ F[:2, 3] if len(links) < len(dh.rows) - 1 else (0.0, 0.0)
-        )
+        before = twist = after = x = y = 0.0
+        if len(links) < len(dh.rows) - 1:  # what follows the last joint is `last`
+            before, twist, after = _euler(F[:3, :3])
+            x, y = rotation_z(-before)[:2, :2] @ F[:2, 3]
         turn += before
         own, rest = (turn, 0.0) if row.revolute else (height, turn)
         offset = row.offset.value + own

@@ -33,11 +33,7 @@ def save(
     from ikgen.generation.generate import generate
 
     names = (emit,) if isinstance(emit, str) else emit
-    if not isinstance(names, Iterable):
-        raise ArgumentError(
-            f"emit: {emit!r} does not do", hint="give names of outputs: python, cpp"
-        )
-    asked = tuple(names)
+    asked = tuple(names) if isinstance(names, Iterable) else ()
     if not asked or not all(isinstance(name, str) for name in asked):
         raise ArgumentError(
             f"emit: {emit!r} does not do", hint="give names of outputs: python, cpp"

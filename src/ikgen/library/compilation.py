@@ -8,7 +8,6 @@ import os
 import platform
 import sys
 import sysconfig
-import tempfile
 from collections.abc import Mapping, Sequence
 from functools import cache, cached_property, partial
 from pathlib import Path
@@ -21,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from ikgen.errors import ArgumentError, MissingToolError, VerificationError
 from ikgen.library.loaded_arm import Arm, Array
 from ikgen.library.solver_cache import cache_folder
+from ikgen.processes.scratch_folder import ScratchFolder
 
 if TYPE_CHECKING:
     from ikgen.runtime.python.solutions import Solutions
@@ -140,8 +140,8 @@ def _build(texts: Mapping[str, str], package: str, folder: Path) -> None:
     from ikgen.verify.runners.cpp_toolchain import compile_extension
 
     nanobind = _nanobind()
-    with tempfile.TemporaryDirectory(dir=folder.parent, ignore_cleanup_errors=True) as name:
-        root = Path(name, "made")
+    with ScratchFolder("made-", folder.parent) as scratch:
+        root = scratch / "made"
         write_texts(root, texts)
         suffix = sysconfig.get_config_var("EXT_SUFFIX")
         made = root / package / package / f"_native{suffix}"

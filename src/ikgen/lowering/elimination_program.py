@@ -8,7 +8,7 @@ from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.kinematics.whole_turns import middle_of
 from ikgen.lowering.frames import file_frames, operand_of
-from ikgen.lowering.joint_values import first_row, joint_value, variable_lets
+from ikgen.lowering.joint_values import joint_value, variable_lets
 from ikgen.model.dh import DHChain
 from ikgen.program.inputs import HeldValue, PoseEntry
 from ikgen.program.liveness import trimmed
@@ -44,7 +44,7 @@ def elimination_program(dh: DHChain) -> Program:
     given: list[str] = []
     for one in held:
         names = _names(dh, one.joint)
-        prelude += variable_lets(first_row(dh, one.joint), one.name, names)
+        prelude += variable_lets(dh.first_row(one.joint), one.name, names)
         given += names
     moving = [j for j in range(dh.dof) if HeldValue(j) not in held]
     found = tuple(name for j in moving for name in _names(dh, j))
@@ -70,11 +70,11 @@ def elimination_program(dh: DHChain) -> Program:
 def _names(dh: DHChain, joint: int) -> tuple[str, ...]:
     """What the call gives of a joint: cosine and sine of its angle, or its length."""
     place = joint + 1
-    return (f"c{place}", f"s{place}") if first_row(dh, joint).revolute else (f"d{place}",)
+    return (f"c{place}", f"s{place}") if dh.first_row(joint).revolute else (f"d{place}",)
 
 
 def _value(dh: DHChain, joint: int) -> Expr:
     g = ExpressionGraph(1)
     names = _names(dh, joint)
     parts = tuple(g.atom("input", name, np.zeros(1), unknown=False) for name in names)
-    return joint_value(g, first_row(dh, joint), parts, middle_of(dh, joint))
+    return joint_value(g, dh.first_row(joint), parts, middle_of(dh, joint))

@@ -10,16 +10,11 @@ from __future__ import annotations
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.kinematics.rigid import exact_cos_sin
-from ikgen.model.dh import DHChain, DHRow
+from ikgen.model.dh import DHRow
 from ikgen.program.ops import Op, Operand
 from ikgen.program.statements import Let
 
-__all__ = ["first_row", "joint_value", "variable_lets"]
-
-
-def first_row(dh: DHChain, joint: int) -> DHRow:
-    """The first row of the chain that a joint drives: its scale and offset."""
-    return next(row for row in dh.rows if row.driver == joint)
+__all__ = ["joint_value", "variable_lets"]
 
 
 def joint_value(

@@ -11,7 +11,7 @@ from ikgen.forms.lowered_form import LoweredForm, LoweredRoutine
 from ikgen.kinematics.whole_turns import middle_of
 from ikgen.lowering.closure import require_closure
 from ikgen.lowering.fallbacks import choose_form
-from ikgen.lowering.joint_values import first_row, joint_value
+from ikgen.lowering.joint_values import joint_value
 from ikgen.lowering.placement import LoweredLevel, Placement, identifier
 from ikgen.lowering.program_inputs import bind_joints, bind_pose, seed_values
 from ikgen.lowering.serialize import serialize
@@ -145,4 +145,4 @@ def _labels(step: Step) -> str:
 def _value(work: Placement, joint: int, variable: tuple[Expr, ...]) -> Expr:
     """A joint's value from its DH variable."""
     middle = middle_of(work.dh, joint)
-    return joint_value(work.g, first_row(work.dh, joint), variable, middle)
+    return joint_value(work.g, work.dh.first_row(joint), variable, middle)

@@ -9,7 +9,7 @@ from ikgen.algebra.expression import Expr
 from ikgen.equations.knowledge import Variable
 from ikgen.equations.symbolic_transforms import Rigid, constant, inverse, multiply
 from ikgen.kinematics.fixed_order import product
-from ikgen.lowering.joint_values import first_row, variable_lets
+from ikgen.lowering.joint_values import variable_lets
 from ikgen.lowering.placement import Placement
 from ikgen.program.inputs import HeldValue, PoseEntry, SeedValue
 from ikgen.program.statements import Comment
@@ -47,7 +47,7 @@ def _entry(work: Placement, i: int, j: int, raw: NDArray[np.float64]) -> Expr:
 def bind_joints(work: Placement) -> None:
     """Values that joints take where a pose leaves them free, and those of held joints."""
     for j in range(work.dh.dof):
-        row = first_row(work.dh, j)
+        row = work.dh.first_row(j)
         seed = SeedValue(j)
         names = (f"seed_c{j + 1}", f"seed_s{j + 1}") if row.revolute else (f"seed_d{j + 1}",)
         for name in names:
@@ -65,7 +65,7 @@ def bind_joints(work: Placement) -> None:
         for atom, name in zip(atoms, names, strict=True):
             work.names[atom.id] = name
         work.inputs.append(held)
-        work.prelude += variable_lets(first_row(work.dh, j), held.name, names)
+        work.prelude += variable_lets(work.dh.first_row(j), held.name, names)
 
 
 def seed_values(work: Placement, variable: Variable) -> tuple[Expr, ...]:

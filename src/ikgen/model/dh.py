@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -128,6 +129,14 @@ class DHChain:
     @property
     def symbols(self) -> tuple[str, ...]:
         """Names of lengths and angles without numbers; such a chain can be derived, not emitted."""
-        parts = [x for r in self.rows for x in (r.alpha, r.a, r.d, r.theta, r.offset)]
-        names = {x.name: None for x in parts if x.symbolic and x.name is not None}
+        names = {x.name: None for x in self.constants() if x.symbolic and x.name is not None}
         return tuple(names)
+
+    def constants(self) -> Iterator[Angle | Length]:
+        """Those of all rows, base to tip, also zeros and multiples of pi, which have no names."""
+        for row in self.rows:
+            yield from (row.alpha, row.a, row.d, row.theta, row.offset)
+
+    def first_row(self, joint: int) -> DHRow:
+        """The first row that a joint drives: its kind, scale and offset."""
+        return next(row for row in self.rows if row.driver == joint)

@@ -14,7 +14,9 @@ if TYPE_CHECKING:
     from ikgen.symbolic.proof import Proof
     from ikgen.verify.verification_report import VerificationReport
 
-__all__ = ["Finding", "Recheck", "unchecked"]
+__all__ = ["HALF_IN_PLACE", "Finding", "Recheck", "unchecked"]
+
+HALF_IN_PLACE = "a killed run left its files half in place"
 
 
 @dataclass(frozen=True, slots=True)

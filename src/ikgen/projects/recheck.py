@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 from ikgen.errors import UnknownNameError, UsageError
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.publish import left_over
-from ikgen.generation.publishing import interrupted
+from ikgen.generation.publishing import half_in_place
 from ikgen.generation.read import read
 from ikgen.generation.record import Record, digest
 from ikgen.generation.request import Outputs
 from ikgen.importers.named_robots import is_named
-from ikgen.projects.check_findings import Finding, Recheck
+from ikgen.projects.check_findings import HALF_IN_PLACE, Finding, Recheck
 from ikgen.projects.output_checks import OutputChecks
 
 if TYPE_CHECKING:
@@ -56,8 +56,8 @@ def recheck(
 def _edited(record: Record, fix: str) -> list[Finding]:
     """Outputs that are gone, half in place, or differ from what was written."""
     found = []
-    if record.path.name in {Path(name).name for name in interrupted(record.out or record.folder)}:
-        found.append(Finding(record.path, "a killed run left the files half in place", fix))
+    if half_in_place(record.path, record.out):
+        found.append(Finding(record.path, HALF_IN_PLACE, fix))
     for name, expected in record.files.items():
         path = record.folder / name
         actual = digest(path)

@@ -9,7 +9,7 @@ from ikgen.errors import IkgenError, UsageError
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.publishing import interrupted
 from ikgen.generation.record import SUFFIX, find_records, read_record
-from ikgen.projects.check_findings import Finding, Recheck, unchecked
+from ikgen.projects.check_findings import HALF_IN_PLACE, Finding, Recheck, unchecked
 from ikgen.projects.config import default_config, load_config
 from ikgen.projects.proofs import proved
 from ikgen.projects.recheck import recheck
@@ -37,7 +37,7 @@ def recheck_all(
     for path, command in _records(target, robot):
         if not path.is_file() and interrupted(path.parent):
             command = command or f"ikgen build, or the command that wrote to '{path.parent}', again"
-            half = Finding(path, "a killed run left the files half in place", command)
+            half = Finding(path, HALF_IN_PLACE, command)
             results.append(Recheck(path, None, (half,)))
             continue
         record = None

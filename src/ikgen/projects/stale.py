@@ -7,13 +7,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 from ikgen import __version__
 from ikgen.errors import BadDescriptionError
 from ikgen.generation.codec import encode, entries_of
-from ikgen.generation.publishing import interrupted
+from ikgen.generation.publishing import half_in_place
 from ikgen.generation.record import (
     Record,
     digest,
@@ -23,6 +22,7 @@ from ikgen.generation.record import (
     seen,
 )
 from ikgen.generation.request import Request
+from ikgen.projects.check_findings import HALF_IN_PLACE
 from ikgen.projects.config import ArmConfig
 from ikgen.projects.recorded_inputs import Packages
 
@@ -39,8 +39,8 @@ def why_stale(arm: ArmConfig, packages: Packages | None = None, *, verify: bool 
     """The reason to generate the arm again; empty where its outputs are fresh. With `verify` outputs
     that were never verified are not."""
     paths = arm.records
-    if record_name(arm.name) in {Path(name).name for name in interrupted(arm.outputs.out)}:
-        return "a killed run left its files half in place"
+    if half_in_place(arm.outputs.out / record_name(arm.name)):
+        return HALF_IN_PLACE
     if not paths[0].is_file():
         return "not generated yet"
     try:

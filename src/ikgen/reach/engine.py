@@ -100,13 +100,8 @@ def _by_program(engine: Compiled, block: Block) -> MapRows:
         raise VerificationError(f"the program of the map {done.words}", hint=hint)
     n = len(block.positions) * len(turned)
     data = answer.read_bytes()
-    values = np.frombuffer(data, dtype=np.float32, offset=n) if n % 4 == 0 else _floats(data, n)
+    values = np.frombuffer(data, dtype=np.float32, offset=n)
     return MapRows(np.frombuffer(data, dtype=np.uint8, count=n), values[:n], values[n:])
-
-
-def _floats(data: bytes, start: int) -> NDArray[np.float32]:
-    """Floats that begin at a place which is no multiple of four."""
-    return np.frombuffer(data[start:], dtype=np.float32)
 
 
 @cache

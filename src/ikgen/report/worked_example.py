@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import tempfile
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +11,7 @@ from ikgen.emit.derivation import Derivation
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.kinematics.forward import dh_forward, file_jacobian
 from ikgen.model.dh import DHChain
+from ikgen.processes.scratch_folder import ScratchFolder
 from ikgen.report.skeleton_bones import skeleton
 from ikgen.verify.runners.python_module import PythonModule
 
@@ -57,8 +56,8 @@ def solver_of(derivation: Derivation) -> PythonModule | None:
     """The emitted Python module; None of a table whose lengths have no numbers."""
     if derivation.reading.dh.symbols:
         return None
-    with tempfile.TemporaryDirectory(prefix="ikgen-", ignore_cleanup_errors=True) as folder:
-        path = Path(folder, f"{derivation.module.name}_ik.py")
+    with ScratchFolder("ikgen-") as folder:
+        path = folder / f"{derivation.module.name}_ik.py"
         path.write_text(emit_module(derivation.module), encoding="utf-8")
         return PythonModule(path)
 

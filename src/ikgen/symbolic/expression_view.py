@@ -11,11 +11,11 @@ from ikgen.algebra.expression import Atom, Expr
 from ikgen.symbolic.exact_numbers import exact_number
 from ikgen.symbolic.symbol_names import SymbolNames
 
-__all__ = ["ExpressionView"]
+__all__ = ["ARITHMETIC", "ExpressionView"]
 
 AngleOf = Callable[[tuple[int, ...]], sympy.Expr]
 
-_OPERATIONS: Mapping[str, Callable[..., Any]] = {
+ARITHMETIC: Mapping[str, Callable[..., Any]] = {
     "add": lambda a, b: a + b,
     "sub": lambda a, b: a - b,
     "mul": lambda a, b: a * b,
@@ -23,6 +23,7 @@ _OPERATIONS: Mapping[str, Callable[..., Any]] = {
     "neg": lambda a: -a,
     "sqrt": sympy.sqrt,
 }
+"""Operations of algebraic expressions, by their names in the graph."""
 
 
 class ExpressionView:
@@ -48,7 +49,7 @@ class ExpressionView:
             return self._constant(node.name)
         if node.atom is not None:
             return self._atom(node.atom)
-        return _OPERATIONS[node.op](*(self(a) for a in node.args))
+        return ARITHMETIC[node.op](*(self(a) for a in node.args))
 
     def _constant(self, name: str) -> sympy.Expr:
         """A length, or the cosine or sine of a constant angle."""

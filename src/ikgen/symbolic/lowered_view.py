@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import fields
 from typing import Any
 
@@ -15,6 +15,7 @@ from ikgen.errors import IkgenError
 from ikgen.forms.form import Form
 from ikgen.forms.lowered_form import LoweredForm, LoweredRoutine, Tolerances
 from ikgen.symbolic.exact_numbers import exact_number
+from ikgen.symbolic.expression_view import ARITHMETIC
 
 __all__ = ["Kind", "LoweredView", "NotAlgebraicError"]
 
@@ -22,14 +23,6 @@ Kind = str
 """What is known of a coefficient: "zero", a "constant" of the arm other than zero, or "variable"."""
 
 _PROBES = 6
-_ARITHMETIC: Mapping[str, Callable[..., Any]] = {
-    "add": lambda a, b: a + b,
-    "sub": lambda a, b: a - b,
-    "mul": lambda a, b: a * b,
-    "div": lambda a, b: a / b,
-    "neg": lambda a: -a,
-    "sqrt": sympy.sqrt,
-}
 
 
 class NotAlgebraicError(IkgenError):
@@ -103,9 +96,9 @@ class LoweredView:
         inner = _guarded(node)
         if inner is not None:
             return self.convert(inner, sign)
-        if node.op not in _ARITHMETIC:
+        if node.op not in ARITHMETIC:
             raise NotAlgebraicError(f"it computes '{node.op}'")
-        return _ARITHMETIC[node.op](*(self.convert(a, sign) for a in node.args))
+        return ARITHMETIC[node.op](*(self.convert(a, sign) for a in node.args))
 
 
 def _guarded(node: Expr) -> Expr | None:

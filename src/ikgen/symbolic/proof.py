@@ -84,7 +84,7 @@ def prove(derivation: Derivation) -> Proof:
     s^2 = 1`."""
     if derivation.module.plan is not None:
         return Proof(
-            reason="the 6R elimination solves a polynomial in floating-point numbers; "
+            reason="the elimination solves a polynomial in floating-point numbers; "
             "its rows are checked by forward kinematics, one by one"
         )
     return prove_graph(derivation.graph)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import sympy
 
 from ikgen.algebra.polynomial import AngleCombination
@@ -20,7 +18,8 @@ class SymbolNames:
 
     def __init__(self, dh: DHChain) -> None:
         self.dh = dh
-        self._constants = {name: _real(name) for name in _constants(dh)}
+        names = (x.name for x in dh.constants() if x.name is not None)
+        self._constants = {name: _real(name) for name in names}
 
     def constant(self, name: str) -> sympy.Symbol:
         """A length or angle of the arm."""
@@ -42,7 +41,7 @@ class SymbolNames:
 
     def joint(self, joint: int) -> sympy.Symbol:
         """The DH variable of a joint (from 0)."""
-        row = next(row for row in self.dh.rows if row.driver == joint)
+        row = self.dh.first_row(joint)
         unit = tuple(int(j == joint) for j in range(self.dh.dof))
         return self.variable(Variable("angle" if row.revolute else "prismatic", unit))
 
@@ -62,8 +61,3 @@ class SymbolNames:
 
 def _real(name: str) -> sympy.Symbol:
     return sympy.Symbol(name, real=True)
-
-
-def _constants(dh: DHChain) -> Iterable[str]:
-    parts = (x for row in dh.rows for x in (row.alpha, row.a, row.d, row.theta, row.offset))
-    return dict.fromkeys(x.name for x in parts if x.name is not None)

@@ -36,7 +36,7 @@ def module_text(derivation: Derivation) -> str:
     formulas."""
     if derivation.module.plan is not None:
         raise UsageError(
-            "the 6R elimination solves this arm: there are no formulas to write",
+            "the elimination solves this arm: there are no formulas to write",
             hint="leave --emit sympy out; the report says what the elimination does",
         )
     dh, names = derivation.graph.dh, SymbolNames(derivation.graph.dh)
@@ -87,11 +87,10 @@ def _symbols(names: SymbolNames, found: Any, dh: DHChain) -> list[sympy.Symbol]:
 def _constants(names: SymbolNames, dh: DHChain) -> list[tuple[sympy.Symbol, str]]:
     """Lengths and angles with their numbers; none for those that the table leaves open."""
     values: dict[str, str] = {}
-    for row in dh.rows:
-        for x in (row.alpha, row.a, row.d, row.theta, row.offset):
-            if x.name is not None and not x.symbolic:
-                sign = x.sign if isinstance(x, Length) else 1
-                values.setdefault(x.name, _print(exact_number(sign * x.value).sympy))
+    for x in dh.constants():
+        if x.name is not None and not x.symbolic:
+            sign = x.sign if isinstance(x, Length) else 1
+            values.setdefault(x.name, _print(exact_number(sign * x.value).sympy))
     return [(names.constant(name), value) for name, value in values.items()]
 
 
@@ -99,14 +98,14 @@ def _held(derivation: Derivation, names: SymbolNames) -> list[tuple[sympy.Symbol
     """DH values of held joints by default."""
     out = []
     for joint, value in zip(derivation.module.free, derivation.module.free_defaults, strict=True):
-        row = next(row for row in derivation.graph.dh.rows if row.driver == joint)
+        row = derivation.graph.dh.first_row(joint)
         out.append((names.joint(joint), repr(row.scale * value + row.offset.value)))
     return out
 
 
 def _joint(dh: DHChain, names: SymbolNames, joint: int) -> str:
     """The joint's own value."""
-    row = next(row for row in dh.rows if row.driver == joint)
+    row = dh.first_row(joint)
     moved = names.joint(joint) - _value(row.offset, names)
     return str(_print(moved / exact_number(row.scale).sympy))
 
