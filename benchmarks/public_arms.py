@@ -6,14 +6,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from benchmarks.command_line import FIXTURES
 from ikgen.errors import IkgenError, MissingToolError
 from ikgen.generation.request import Request
 from ikgen.importers.named_robots import DATA, robot_names
 from ikgen.projects.new_config import robot_arms
 
 __all__ = ["public_arms"]
-
-FIXTURES = Path(__file__).resolve().parents[1] / "urdf_fixtures"
 
 
 def public_arms() -> list[dict[str, Any]]:

@@ -9,6 +9,7 @@ from fractions import Fraction
 import numpy as np
 
 from ikgen.equations.probes import arm_size, smallest_singular
+from ikgen.kinematics.rigid import dh_link
 from ikgen.model.chain import PRISMATIC, REVOLUTE, ActuatedJoint
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
 from ikgen.model.joint_tree import Limits
@@ -83,19 +84,11 @@ def _frames(rows: Sequence[DHRow]) -> tuple[np.ndarray, ...]:
     """`F_0 ... F_n` of the table itself."""
     frames = [np.eye(4)]
     for row in rows:
-        frames[-1] = frames[-1] @ _link(row)
+        frames[-1] = frames[-1] @ dh_link(row.alpha.value, row.a.value, 0.0, 0.0)
         after = np.eye(4)
         after[2, 3] = row.d.value
         frames.append(after)
     return tuple(frames)
-
-
-def _link(row: DHRow) -> np.ndarray:
-    T = np.eye(4)
-    c, s = np.cos(row.alpha.value), np.sin(row.alpha.value)
-    T[1:3, 1:3] = [[c, -s], [s, c]]
-    T[0, 3] = row.a.value
-    return T
 
 
 def table_text(dh: DHChain, name: str) -> str:
