@@ -218,6 +218,25 @@ def test_a_batch_has_the_rows_of_single_poses(name: str, folder: Path) -> None:
         assert np.array_equal(batch.q, single.q, equal_nan=True)
 
 
+@pytest.mark.parametrize("name", ROBOTS)
+def test_a_seed_turns_and_orders_the_rows_that_are_there_without(name: str, folder: Path) -> None:
+    arm = compiled(name, folder)
+    plain = arm.header.solve_many(arm.poses, limits=False)
+    random = np.random.default_rng(5)
+    seeds = random.uniform(-30.0, 30.0, arm.q.shape)
+    seeds[:, list(arm.module.free)] = [arm.module.free_defaults] * len(seeds)
+    found = arm.header.solve_many(arm.poses, seeds=seeds, limits=False)
+    turning = [arm.module.turns(j) and j not in arm.module.free for j in range(arm.module.dh.dof)]
+    for i, seed in enumerate(seeds):
+        if plain.singular[i].any() or found.singular[i].any():
+            continue  # their free values are the seed's
+        rows, mine = plain.q[i, : plain.count[i]], found.q[i, : found.count[i]]
+        assert len(mine) == len(rows)
+        rows = rows + np.where(turning, 2 * math.pi * np.rint((seed - rows) / (2 * math.pi)), 0.0)
+        order = np.argsort(np.linalg.norm(rows - seed, axis=1), kind="stable")
+        assert np.abs(mine - rows[order]).max(initial=0.0) < 1e-9
+
+
 def test_odd_seeds(folder: Path) -> None:
     arm = compiled("kuka_kr6r900sixx", folder)
     python = python_module(arm, folder)

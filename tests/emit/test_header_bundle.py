@@ -66,7 +66,7 @@ def test_an_emitted_header_takes_what_it_uses() -> None:
     assert (
         "TrigRoots" not in plain and "PosesBeside" not in plain and "struct WholePose" not in plain
     )
-    assert "TrigRoots" in quartic and "struct PoseEntries" not in quartic
+    assert "TrigRoots" in quartic and "struct SelfMotionFinder" not in quartic
 
 
 def compile_text(text: str, folder: Path, *flags: str) -> subprocess.CompletedProcess[str]:

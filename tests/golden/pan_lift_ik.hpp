@@ -719,20 +719,24 @@ template <class Arm> struct SolutionRows {
   }
 
   template <class Cost> static void sort(Solutions& out, const Cost& cost) noexcept {
-    double costs[Arm::kMaxSolutions];
-    for (int k = 0; k < out.count; ++k) {
-      double q[Arm::kDof];
-      std::copy_n(row(out, k), Arm::kDof, q);
-      const double mine = cost(q);
-      const bool singular = flag(out, k);
-      int at = k;
-      for (; at > 0 && costs[at - 1] > mine; --at) {
-        move(out, at - 1, at);
-        costs[at] = costs[at - 1];
+    const int count = out.count;
+    double costs[Arm::kMaxSolutions], rows[Arm::kMaxSolutions][Arm::kDof];
+    bool flags[Arm::kMaxSolutions];
+    int place[Arm::kMaxSolutions];
+    for (int k = 0; k < count; ++k) {
+      std::copy_n(row(out, k), Arm::kDof, rows[k]);
+      flags[k] = flag(out, k);
+      costs[k] = cost(rows[k]);
+      place[k] = 0;
+      for (int i = 0; i < k; ++i) {
+        const int before = costs[k] < costs[i] ? 1 : 0;
+        place[i] += before;
+        place[k] += 1 - before;
       }
-      std::copy_n(q, Arm::kDof, row(out, at));
-      flag(out, at) = singular;
-      costs[at] = mine;
+    }
+    for (int k = 0; k < count; ++k) {
+      std::copy_n(rows[k], Arm::kDof, row(out, place[k]));
+      flag(out, place[k]) = flags[k];
     }
   }
 };
@@ -811,6 +815,82 @@ template <class Arm> struct CarefulSolve {
   }
 };
 
+// --- lane sines ----------------------------------------------------------------------------------
+template <int N> struct Sines {
+  Lanes<N> cosine, sine;
+};
+
+template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> nearest(const LanesOf<N, H>& x) noexcept {
+  constexpr double kShift = 6755399441055744.0;  // 1.5 * 2^52
+  return (x + kShift) - kShift;
+}
+
+template <int N, bool H> [[gnu::always_inline]] inline Sines<N> sines(const LanesOf<N, H>& x) noexcept {
+  const Lanes<N> k = nearest(0.63661977236758134 * x);
+  const Lanes<N> r = ((x - k * 1.570796325802803) - k * 9.920935791635221e-10) - k * 5.170182981794105e-19;
+  const Lanes<N> z = r * r, z2 = z * z, z4 = z2 * z2;
+  const Lanes<N> s = r - r * z * ((1.0 / 6 - z * (1.0 / 120)) + z2 * (1.0 / 5040 - z * (1.0 / 362880)) +
+                                  z4 * ((1.0 / 39916800 - z * (1.0 / 6227020800)) + z2 * (1.0 / 1307674368000)));
+  const Lanes<N> c = (1.0 - 0.5 * z) + z2 * ((1.0 / 24 - z * (1.0 / 720)) + z2 * (1.0 / 40320 - z * (1.0 / 3628800)) +
+                                            z4 * ((1.0 / 479001600 - z * (1.0 / 87178291200)) + z2 * (1.0 / 20922789888000)));
+  const Lanes<N> quarter = k - 4.0 * nearest(0.25 * k);  // -2, -1, 0, 1 or 2
+  const auto odd = (abs(quarter) > 0.5) & (1.5 > abs(quarter));
+  const Lanes<N> a = select(odd, s, c), b = select(odd, c, s);
+  return {select((quarter > 0.5) | (-1.5 > quarter), -a, a), select((-0.5 > quarter) | (quarter > 1.5), -b, b)};
+}
+
+template <int N, bool H> [[gnu::always_inline]] inline Sines<N> turned(const Sines<N>& by, const LanesOf<N, H>& x) noexcept {
+  const Lanes<N> z = x * x;
+  const Lanes<N> s = x - x * z * ((1.0 / 6 - z * (1.0 / 120)) + z * z * (1.0 / 5040 - z * (1.0 / 362880)));
+  const Lanes<N> c = z * ((0.5 - z * (1.0 / 24)) + z * z * (1.0 / 720 - z * (1.0 / 40320)));  // 1 less it
+  return {by.cosine - (by.cosine * c + by.sine * s), by.sine - (by.sine * c - by.cosine * s)};
+}
+
+// --- lane placement ------------------------------------------------------------------------------
+template <class Arm> struct LanePlacement {
+  using Policy = typename Arm::Policy;
+
+  template <class Rows> static void apply(const typename Arm::Options& options, Rows& rows) noexcept {
+    constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;
+    for (int at = 0; at < Rows::kLanes; at += N) {
+      Mask<N> inside = spread<N>(1.0) > 0.0;
+      for (int j = 0; j < Arm::kDof; ++j) {
+        Lanes<N> q = load<N>(rows.q[j] + at);
+        if (Arm::kRevolute[j] && !Arm::kHeld[j]) q = turned(j, q, options);
+        if (options.limits) {
+          const Placed<N> placed = clamp<Policy>(j, q, {Arm::kLower.data(), Arm::kUpper.data()});
+          inside = inside & placed.inside;
+          q = placed.q;
+        }
+        store(q, rows.q[j] + at);
+      }
+      alignas(64) double kept[std::size_t{N}];
+      store(inside, kept);
+      for (int i = 0; i < N; ++i)
+        rows.flags[at + i] = static_cast<int>(rows.flags[at + i]) & (kept[i] > 0.5 ? ~0 : ~kFound);
+    }
+  }
+
+ private:
+  template <int N, bool H>
+  [[gnu::always_inline]] static Lanes<N> turned(int j, const LanesOf<N, H>& given, const typename Arm::Options& options) noexcept {
+    const double low = Arm::kLower.data()[j] - Policy::kLimitTolerance, high = Arm::kUpper.data()[j] + Policy::kLimitTolerance;
+    const Lanes<N> q = given + select(given > -kPi, select(given > kPi, -kTurn, 0.0), kTurn);
+    Lanes<N> shift = spread<N>(0.0);
+    if (options.seed) shift = kTurn * nearest((options.seed->data()[j] - q) / kTurn);
+    if (options.limits) {
+      shift = select(low > q + shift, kTurn * -below((q - low) / kTurn), shift);
+      shift = select(q + shift > high, kTurn * below((high - q) / kTurn), shift);
+    }
+    return q + shift;
+  }
+
+  template <int N, bool H> [[gnu::always_inline]] static Lanes<N> below(const LanesOf<N, H>& x) noexcept {
+    const Lanes<N> n = nearest(x);
+    return n - select(n > x, 1.0, 0.0);
+  }
+};
+
 // --- lane solve ----------------------------------------------------------------------------------
 template <class Arm> struct LaneSolve {
   static constexpr int kBatch = kNative > 2 ? kNative / 2 : 1;  // poses at once
@@ -830,6 +910,7 @@ template <class Arm> struct LaneSolve {
     } else {
       Arm::branches(pose, typename Arm::Seed(), options.free, range, rows);
     }
+    if (place_later(options)) LanePlacement<Arm>::apply(options, rows);
     for (int p = 0; p < P; ++p)
       if (!collect(rows, p, options, out[p])) fall_back(poses[p], options, out[p]);
   }
@@ -872,7 +953,6 @@ template <class Arm> struct LaneSolve {
       leave_distinct(out);
       if (Arm::kNewton && out.count < count) return false;  // another may lie there
     }
-    if (place_later(options)) Row::place_all(options, out);
     if (options.seed) Row::sort_by_distance(out, options.seed->data());
     out.status = out.count > 0 ? Arm::Status::Ok : (seen & kReal) != 0 ? Arm::Status::Limits : Arm::Status::Unreachable;
     return out.count > 0 || !options.seed;

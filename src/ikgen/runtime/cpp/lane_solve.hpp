@@ -3,6 +3,7 @@
 #pragma once
 
 #include "careful_solve.hpp"
+#include "lane_placement.hpp"
 
 namespace ikgen_runtime {
 
@@ -26,6 +27,7 @@ template <class Arm> struct LaneSolve {
     } else {
       Arm::branches(pose, typename Arm::Seed(), options.free, range, rows);
     }
+    if (place_later(options)) LanePlacement<Arm>::apply(options, rows);
     for (int p = 0; p < P; ++p)
       if (!collect(rows, p, options, out[p])) fall_back(poses[p], options, out[p]);
   }
@@ -40,7 +42,7 @@ template <class Arm> struct LaneSolve {
     CarefulSolve<Arm>::solve(pose, options, out);
   }
 
-  // Whether rows are placed one by one once they are found, not in the lanes.
+  // Whether rows are placed once they are all found.
   static bool place_later(const Options& options) noexcept { return Arm::kFarLimits || options.seed != nullptr; }
 
   static void leave_distinct(Solutions& out) noexcept {
@@ -71,7 +73,6 @@ template <class Arm> struct LaneSolve {
       leave_distinct(out);
       if (Arm::kNewton && out.count < count) return false;  // another may lie there
     }
-    if (place_later(options)) Row::place_all(options, out);
     if (options.seed) Row::sort_by_distance(out, options.seed->data());
     out.status = out.count > 0 ? Arm::Status::Ok : (seen & kReal) != 0 ? Arm::Status::Limits : Arm::Status::Unreachable;
     return out.count > 0 || !options.seed;

@@ -85,20 +85,24 @@ template <class Arm> struct SolutionRows {
 
   // By cost(row), the least first, equal ones as they were.
   template <class Cost> static void sort(Solutions& out, const Cost& cost) noexcept {
-    double costs[Arm::kMaxSolutions];
-    for (int k = 0; k < out.count; ++k) {
-      double q[Arm::kDof];
-      std::copy_n(row(out, k), Arm::kDof, q);
-      const double mine = cost(q);
-      const bool singular = flag(out, k);
-      int at = k;
-      for (; at > 0 && costs[at - 1] > mine; --at) {
-        move(out, at - 1, at);
-        costs[at] = costs[at - 1];
+    const int count = out.count;
+    double costs[Arm::kMaxSolutions], rows[Arm::kMaxSolutions][Arm::kDof];
+    bool flags[Arm::kMaxSolutions];
+    int place[Arm::kMaxSolutions];
+    for (int k = 0; k < count; ++k) {
+      std::copy_n(row(out, k), Arm::kDof, rows[k]);
+      flags[k] = flag(out, k);
+      costs[k] = cost(rows[k]);
+      place[k] = 0;
+      for (int i = 0; i < k; ++i) {
+        const int before = costs[k] < costs[i] ? 1 : 0;
+        place[i] += before;
+        place[k] += 1 - before;
       }
-      std::copy_n(q, Arm::kDof, row(out, at));
-      flag(out, at) = singular;
-      costs[at] = mine;
+    }
+    for (int k = 0; k < count; ++k) {
+      std::copy_n(rows[k], Arm::kDof, row(out, place[k]));
+      flag(out, place[k]) = flags[k];
     }
   }
 };
