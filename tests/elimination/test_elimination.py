@@ -22,8 +22,9 @@ from ikgen.elimination.loop_frames import forward, jacobian
 from ikgen.elimination.routine import runtime_policy
 from ikgen.kinematics.modified_dh import to_dh
 from ikgen.program.policy import SolvePolicy
-from ikgen.runtime.python.general_6r import distinct_rows, six_joints
+from ikgen.runtime.python.general_6r import six_joints
 from ikgen.runtime.python.refinement import newton
+from ikgen.runtime.python.solution_rows import distinct_rows
 from ikgen.runtime.python.whole_pose import PoseTask
 
 Array = NDArray[np.float64]
@@ -121,8 +122,10 @@ def test_no_more_solutions_than_a_multi_start_search_finds(name: str) -> None:
         starts = rng.uniform(-np.pi, np.pi, (600, 6))
         poses = np.broadcast_to(T, (600, 4, 4))
         chain, task = six_joints(scaled, (True,) * 6), PoseTask(1.0)
-        q, error, _ = newton(chain, task, range(6), starts, poses, 40, POLICY)
-        candidates = distinct_rows(q[error < POLICY.arrived], (True,) * 6, POLICY.coincident)
+        q, error, *_ = newton(chain, task, range(6), starts, poses, 40, POLICY)
+        ends = q[error < POLICY.arrived]
+        one = np.zeros(len(ends), dtype=np.intp)
+        candidates = distinct_rows(ends, one, (True,) * 6, POLICY.coincident)[0]
         assert len(candidates), "the search found nothing to compare"
         for candidate in candidates:
             assert apart(found, candidate).min() < 1e-5

@@ -13,8 +13,9 @@ from ikgen.elimination.loop_frames import forward, jacobian
 from ikgen.elimination.plan import eliminations
 from ikgen.elimination.routine import Plan, finder, runtime_policy, six_joints_batch
 from ikgen.program.policy import SolvePolicy
-from ikgen.runtime.python.general_6r import distinct_rows, six_joints
+from ikgen.runtime.python.general_6r import six_joints
 from ikgen.runtime.python.refinement import newton
+from ikgen.runtime.python.solution_rows import distinct_rows
 from ikgen.runtime.python.whole_pose import PoseTask
 
 Array = NDArray[np.float64]
@@ -93,8 +94,9 @@ def searched(frames: Array, plan: EliminationPlan, pose: Array, seed: int) -> Ar
     reach = np.where(plan.turning, np.pi, 4.0)
     starts = np.random.default_rng(seed).uniform(-reach, reach, (600, 6))
     poses, chain = np.broadcast_to(T, (600, 4, 4)), six_joints(F, plan.turning)
-    q, error, _ = newton(chain, PoseTask(1.0), range(6), starts, poses, 40, POLICY)
-    rows = distinct_rows(q[error < POLICY.arrived], plan.turning, 1e-5)
+    q, error, *_ = newton(chain, PoseTask(1.0), range(6), starts, poses, 40, POLICY)
+    ends = q[error < POLICY.arrived]
+    rows, *_ = distinct_rows(ends, np.zeros(len(ends), dtype=np.intp), plan.turning, 1e-5)
     return rows * np.where(plan.turning, 1.0, plan.length)
 
 
@@ -191,4 +193,4 @@ def test_slides_that_differ_by_a_turn_are_two() -> None:
     turning = turning_of("RRRPRR")
     rows = np.zeros((3, 6))
     rows[1, 3] = rows[2, 0] = 2.0 * np.pi
-    assert len(distinct_rows(rows, turning, 1e-6)) == 2
+    assert len(distinct_rows(rows, np.zeros(len(rows), dtype=np.intp), turning, 1e-6)[0]) == 2

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import partial
-from math import asin, atan2, ceil, floor, inf, isfinite, pi, sqrt
+from math import asin, atan2, ceil, copysign, floor, inf, isfinite, pi, sqrt
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
@@ -333,11 +333,15 @@ def _joint_axes(chain: _Chain, q: Array) -> tuple[Array, Array, Array]:
 def _tip_and_jacobian(chain: _Chain, q: Array) -> tuple[Array, Array]:
     """Tip poses (..., 4, 4) and geometric Jacobians (..., 6, dof), linear rows first."""
     z, p, T = _joint_axes(chain, q)
-    rows = np.concatenate([_cross(z, T[..., None, :3, 3] - p), z], axis=-1)
+    r = T[..., None, :3, 3] - p
+    J = np.empty((*z.shape[:-2], 6, z.shape[-2]))
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        J[..., i, :] = z[..., j] * r[..., k] - z[..., k] * r[..., j]
+        J[..., 3 + i, :] = z[..., i]
     if chain.slides:
-        slide = np.concatenate([z, np.zeros_like(z)], axis=-1)
-        rows = np.where(chain.turning, rows, slide)
-    return T, np.swapaxes(rows, -1, -2) @ chain.drive
+        slide = ~chain.turning[:, 0]
+        J[..., :3, slide], J[..., 3:, slide] = np.swapaxes(z, -1, -2)[..., slide], 0.0
+    return T, J @ chain.drive
 
 
 # Tolerances and counts of `solve`.
@@ -869,55 +873,62 @@ def _clipped_step(
 
 def _refine(
     chain: _Chain, task: _Task, moving: Sequence[int], q: Array, T: Array, policy: _Policy
-) -> tuple[Array, _Flags, Array]:
-    """Newton steps of the joints `moving` from q (k, dof) towards T (k, 4, 4); which rows arrived, and
-    the errors before (k,)."""
-    q = q.copy()
-    error, before = np.full(len(q), inf), np.zeros(len(q))
-    going = np.arange(len(q))
-    for steps, fine, promising in policy.refinement:
-        part = _newton(chain, task, moving, q[going], T[going], steps, policy)
-        q[going], error[going] = part[:2]
-        before[going] = np.maximum(before[going], part[2])
-        going = going[(error[going] >= fine) & (error[going] < promising)]
+) -> tuple[Array, _Flags, Array, Array]:
+    """Newton steps of the joints `moving` from q (k, dof) towards T (k, 4, 4); which rows arrived, the
+    errors before (k,), and the task's derivatives by the joints (k, m, n) where the rows end."""
+    (steps, fine, promising), *further = policy.refinement
+    q, error, before, slope = _newton(chain, task, moving, q, T, steps, policy)
+    for more, finer, less in further:
+        going = np.flatnonzero((error >= fine) & (error < promising))
         if not len(going):
             break
-    return q, error < policy.arrived, before
+        part = _newton(chain, task, moving, q[going], T[going], more, policy)
+        q[going], error[going], slope[going] = part[0], part[1], part[3]
+        before[going] = np.maximum(before[going], part[2])
+        fine, promising = finer, less
+    return q, error < policy.arrived, before, slope
 
 
 def _newton(
     chain: _Chain, task: _Task, moving: Sequence[int], q: Array, T: Array, steps: int, policy: _Policy
-) -> tuple[Array, Array, Array]:
-    """The best rows (k, dof) of at most `steps` damped steps, their errors and those of q (k,)."""
+) -> tuple[Array, Array, Array, Array]:
+    """The best rows (k, dof) of at most `steps` damped steps, their errors and those of q (k,), and the
+    derivatives (k, m, n) at them."""
     moving = list(moving)
     best = np.full(len(q), inf)
-    stalled = np.zeros(len(q), dtype=int)
-    result, before = q.copy(), best
+    result, going, stalled = q.copy(), np.arange(len(q)), np.zeros(len(q), dtype=int)
     for step in range(steps + 1):
         pose, J = _tip_and_jacobian(chain, q)
-        error = task.error(pose, T)
+        error, J = task.error(pose, T), task.rows(pose, J)[:, :, moving]
         worst = np.abs(error).max(axis=1)
-        before = before if step else worst
-        better = worst < best
-        stalled = np.where(worst < policy.progress * best, 0, stalled + 1)
-        result[better] = q[better]
-        best = np.minimum(best, worst)
-        going = (best > policy.converged) & (stalled < policy.patience)
-        if step == steps or not going.any():
+        if step == 0:
+            before, slope = worst, J.copy()
+        least = best[going]
+        better = worst < least
+        slope[going[better]] = J[better]
+        stalled = np.where(worst < policy.progress * least, 0, stalled + 1)
+        result[going[better]] = q[better]
+        best[going] = least = np.minimum(least, worst)
+        on = (least > policy.converged) & (stalled < policy.patience)
+        if step == steps or not on.any():
             break
-        J = task.rows(pose, J)[:, :, moving]
+        going, stalled, worst, q, T, J = (x[on] for x in (going, stalled, worst, q, T, J))
         Jt = J.transpose(0, 2, 1)
         damping = np.maximum(policy.least_damping, policy.damping * np.minimum(worst, 1.0) ** 2)
         normal = Jt @ J + damping[:, None, None] * np.eye(len(moving))
-        change = np.linalg.solve(normal, Jt @ error[:, :, None])[:, :, 0]
-        q[:, moving] += np.clip(change, -policy.largest_step, policy.largest_step) * going[:, None]
-    return result, best, before
+        change = np.linalg.solve(normal, Jt @ error[on, :, None])[:, :, 0]
+        q[:, moving] += np.clip(change, -policy.largest_step, policy.largest_step)
+    return result, best, before, slope
 
 
 def _rank_loss(chain: _Chain, task: _Task, moving: Sequence[int], q: Array) -> Array:
     """Smallest singular value (k,) of the task's derivatives by the joints `moving` at q (k, dof)."""
-    J = task.rows(*_tip_and_jacobian(chain, q))[:, :, list(moving)]
-    return np.asarray(np.linalg.svd(J, compute_uv=False)[:, -1])
+    return _least_singular(task.rows(*_tip_and_jacobian(chain, q))[:, :, list(moving)])
+
+
+def _least_singular(slope: Array) -> Array:
+    """Smallest singular value (k,) of derivatives (k, m, n)."""
+    return np.asarray(np.linalg.svd(slope, compute_uv=False)[:, -1])
 
 
 # What distinguishes the rows of a pose: names of their branches, from the geometry of each row alone.
@@ -1253,8 +1264,8 @@ def _refined(arm: _Arm, rows: list[_Found], T: list[list[float]]) -> list[_Found
         return []
     target = np.broadcast_to(np.array(T), (len(rows), 4, 4))
     start = np.array([row for row, _ in rows])
-    q, arrived, _ = _refine(arm.chain, arm.task, arm.moving, start, target, arm.policy)
-    loss = _rank_loss(arm.chain, arm.task, arm.moving, q)
+    q, arrived, _, slope = _refine(arm.chain, arm.task, arm.moving, start, target, arm.policy)
+    loss = _least_singular(slope)
     flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
     return [
         (tuple(row), (flag and x < continuum) or x < flat) if ok else None
@@ -1650,9 +1661,35 @@ class _EntriesTask:
 
     def read(self, T: list[list[float]], policy: _Policy) -> list[list[float]] | None:
         """Implements `Task`."""
-        poses, (good,) = self.read_batch(np.array([T]), policy)
-        lines: list[list[float]] = poses[0].tolist()
-        return lines if good else None
+        lines = T
+        for r, c in self.entries:
+            x = lines[r][c]
+            if not isfinite(x):
+                return None
+            if c != 3 and c not in self.unit and abs(x) > 1.0:
+                if abs(x) > 1.0 + policy.pose_tolerance:
+                    return None
+                lines = [list(line) for line in lines]
+                lines[r][c] = copysign(1.0, x)
+        return self._with_unit_columns(lines, policy) if self.unit else lines
+
+    def _with_unit_columns(self, T: list[list[float]], policy: _Policy) -> list[list[float]] | None:
+        """The pose with the nearest orthonormal columns; None where they are none."""
+        height = 2 if self.flat else 3
+        R = [(*line, 0.0)[:3] for line in zip(*T[:height])]
+        columns = tuple((x, y, z) for x, y, z in (R[j] for j in self.unit))
+        defect = _columns_defect(columns)
+        near = defect <= _most_defect(height * len(columns), policy.pose_tolerance)
+        if not near or (len(columns) == 3 and not _determinant(columns) > 0.0):
+            square = sum(x * x for column in columns for x in column)
+            return T if self.flat and 0.0 < square < 1.0 else None
+        if defect <= policy.orthonormal**2:
+            return T
+        lines = [list(line) for line in T]
+        for j, column in zip(self.unit, _nearest_columns(columns)):
+            for line, x in zip(lines[:height], column):
+                line[j] = x
+        return lines
 
     def read_batch(self, T: Array, policy: _Policy) -> tuple[Array, _Flags]:
         """Implements `Task`."""

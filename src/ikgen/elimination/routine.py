@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import fields
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ikgen.model.joint_tree import Matrix
 from ikgen.program.policy import SolvePolicy
@@ -13,13 +14,12 @@ from ikgen.runtime.python.general_6r import (
     Elimination,
     Finder,
     Plan,
-    Turning,
     candidates,
-    distinct_rows,
     refined_rows,
     six_joint_rows,
 )
 from ikgen.runtime.python.one_slide import one_slide_candidates
+from ikgen.runtime.python.solution_rows import Turning, distinct_rows
 from ikgen.runtime.python.solve_policy import Policy
 from ikgen.runtime.python.three_slides import three_slide_candidates
 from ikgen.runtime.python.two_slides import two_slide_candidates
@@ -62,7 +62,13 @@ def six_joints_batch(frames: Matrix, plan: Plan, poses: Matrix) -> list[Matrix]:
 
     frames (7, 4, 4): the chain as in `loop_frames.py`.
     """
-    return six_joint_rows(frames, plan, poses, runtime_policy(SolvePolicy()))
+    pose, rows = six_joint_rows(frames, plan, poses, runtime_policy(SolvePolicy()))
+    return _by_pose(rows, pose, len(poses))
+
+
+def _by_pose(rows: Matrix, pose: NDArray[np.intp], count: int) -> list[Matrix]:
+    """Rows (k, 6) of poses (k,) in order, those of each."""
+    return np.split(rows, np.searchsorted(pose, np.arange(1, count))) if count else []
 
 
 def general_6r_batch(
@@ -90,6 +96,5 @@ def initial_residuals(frames: Matrix, plan: Plan, poses: Matrix) -> tuple[list[M
     if not len(q):
         return [np.zeros((0, 6)) for _ in poses], np.zeros(0)
     q, good, before = refined_rows(F, plan.turning, T[index], q, policy)
-    near = policy.coincident
-    rows = [distinct_rows(q[good & (index == i)], plan.turning, near) for i in range(len(poses))]
-    return rows, before[good]
+    rows, pose, _ = distinct_rows(q[good], index[good], plan.turning, policy.coincident)
+    return _by_pose(rows, pose, len(poses)), before[good]

@@ -5,8 +5,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.runtime.python.array_types import Array
-from ikgen.runtime.python.loop_equations import XS, YS, ZS, loop_action
+from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.hidden_angle import solved
+from ikgen.runtime.python.loop_equations import (
+    XS,
+    YS,
+    ZS,
+    loop_action,
+    of_constants,
+    rows_of,
+)
 from ikgen.runtime.python.rigid_motion import rotations_z
 
 __all__ = ["complete_angles", "null_angles", "turned"]
@@ -37,13 +45,36 @@ def _split(N: Array) -> Array:
     return np.asarray(N @ np.stack(vectors, axis=-1), dtype=float)
 
 
+def _null_spaces(M: Array) -> tuple[Array, Flags]:
+    """Two orthogonal vectors (k, 12, 2) each that M (k, 12, 12) shrinks most, the first one most of all,
+    and which M have both of them in their null space: of the columns of an inverse, as inverse iteration
+    has it (Ipsen 1997)."""
+    W = solved(M, np.broadcast_to(np.eye(12), M.shape))
+    a, _ = _longest(W)
+    W = W - a * (np.swapaxes(a, 1, 2) @ W)
+    b, length = _longest(W)
+    scale = np.sqrt((M * M).sum(axis=(1, 2)))
+    return np.concatenate([a, b], axis=2), length * scale > 1e4
+
+
+def _longest(W: Array) -> tuple[Array, Array]:
+    """The longest column of each W (k, 12, 12) at unit length (k, 12, 1), and its length (k,)."""
+    size = np.maximum(np.abs(W).max(axis=(1, 2)), 1e-300)
+    squares: Array = ((W / size[:, None, None]) ** 2).sum(axis=1)
+    k, i = np.arange(len(W)), squares.argmax(axis=1)
+    length = np.sqrt(squares[k, i]) * size
+    return (W[k, :, i] / length[:, None])[:, :, None], length
+
+
 def null_angles(M: Array) -> tuple[NDArray[np.intp], Array]:
     """theta_4, theta_5 from the null vectors (cos h w, sin h w, cos 3h w, sin 3h w), with w = (1,
     c5, s5) and h half of theta_4, of M (k, 12, 12): indices into k, pairs of angles (m, 2)."""
-    ev, U = np.linalg.eigh(np.swapaxes(M, 1, 2) @ M)
-    two = np.nonzero(ev[:, 1] < 1e-8 * ev[:, -1])[0]
-    index = np.concatenate([np.arange(len(M)), np.repeat(two, 2)])
-    v = np.concatenate([U[:, :, 0], np.swapaxes(_split(U[two, :, :2]), 1, 2).reshape(-1, 12)])
+    U, double = _null_spaces(M)
+    index, v = np.arange(len(M)), U[:, :, 0]
+    if double.any():
+        two = np.flatnonzero(double)
+        index = np.concatenate([index, np.repeat(two, 2)])
+        v = np.concatenate([v, np.swapaxes(_split(U[two]), 1, 2).reshape(-1, 12)])
     u1, u3 = v[:, 0:3] + 1j * v[:, 3:6], v[:, 6:9] + 1j * v[:, 9:12]
     t4 = np.angle((u3 * np.conj(u1)).sum(axis=1))
     w = (u1 * np.exp(-0.5j * t4)[:, None]).real
@@ -60,19 +91,26 @@ def turned(left: Array, t: Array) -> Array:
     return np.concatenate([w.real, w.imag, v[:, ZS], one[:, None]], axis=1)
 
 
-def complete_angles(C: list[Array], left: Array, right: Array, t: Array) -> Array:
-    """The six loop angles (k, 6) from theta_3, theta_4, theta_5 in t (k, 3), one row of C, left and
-    right each: theta_1 and theta_2 linearly, theta_6 from the rotation left over."""
-    one = np.ones(len(t))
-    v = turned(left, t)
-    u = (loop_action(C[1]) @ v[..., None])[..., 0]
-    cs = np.linalg.pinv(right[:, ZS, 1:]) @ (u[:, ZS] - right[:, ZS, 0])[..., None]
-    t1 = np.arctan2(cs[:, 1, 0], cs[:, 0, 0])
-    z = (right @ np.stack([one, np.cos(t1), np.sin(t1)], axis=-1)[..., None])[..., 0]
+def complete_angles(
+    C: list[Array], left: Array, right: Array, pose: NDArray[np.intp], t: Array
+) -> Array:
+    """The six loop angles (k, 6) from theta_3, theta_4, theta_5 in t (k, 3) for the poses with indices
+    `pose` (k,): theta_1 and theta_2 linearly, theta_6 from the rotation left over."""
+    v = turned(rows_of(left, pose), t)
+    G = of_constants(loop_action, C[1])
+    flat = np.asarray(np.linalg.pinv(right[:, ZS, 1:]), dtype=float)
+    u = (rows_of(G, pose) @ v[..., None])[..., 0]
+    right = rows_of(right, pose)
+    cs = (rows_of(flat, pose) @ (u[:, ZS] - right[:, ZS, 0])[..., None])[..., 0]
+    t1 = np.arctan2(cs[:, 1], cs[:, 0])
+    z = (
+        right[..., 0]
+        + (right[..., 1:] @ np.stack([np.cos(t1), np.sin(t1)], axis=-1)[..., None])[..., 0]
+    )
     w = (z[:, XS] + 1j * z[:, YS]) * (u[:, XS] - 1j * u[:, YS])
     angles = np.concatenate([np.stack([t1, np.angle(w.sum(axis=1))], axis=-1), t], axis=1)
-    X = C[5]
-    for i in range(5):
-        X = X @ rotations_z(angles[:, i]) @ C[i]
+    X = rows_of(C[5], pose)
+    for turn, c in zip(rotations_z(angles.T), C):
+        X = X @ turn @ rows_of(c, pose)
     t6 = np.arctan2(X[:, 0, 1] - X[:, 1, 0], X[:, 0, 0] + X[:, 1, 1])
     return np.concatenate([angles, t6[:, None]], axis=1)

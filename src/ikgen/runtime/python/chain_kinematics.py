@@ -127,8 +127,12 @@ def joint_axes(chain: Chain, q: Array) -> tuple[Array, Array, Array]:
 def tip_and_jacobian(chain: Chain, q: Array) -> tuple[Array, Array]:
     """Tip poses (..., 4, 4) and geometric Jacobians (..., 6, dof), linear rows first."""
     z, p, T = joint_axes(chain, q)
-    rows = np.concatenate([cross(z, T[..., None, :3, 3] - p), z], axis=-1)
+    r = T[..., None, :3, 3] - p
+    J = np.empty((*z.shape[:-2], 6, z.shape[-2]))
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        J[..., i, :] = z[..., j] * r[..., k] - z[..., k] * r[..., j]
+        J[..., 3 + i, :] = z[..., i]
     if chain.slides:
-        slide = np.concatenate([z, np.zeros_like(z)], axis=-1)
-        rows = np.where(chain.turning, rows, slide)
-    return T, np.swapaxes(rows, -1, -2) @ chain.drive
+        slide = ~chain.turning[:, 0]
+        J[..., :3, slide], J[..., 3:, slide] = np.swapaxes(z, -1, -2)[..., slide], 0.0
+    return T, J @ chain.drive

@@ -9,6 +9,7 @@ import numpy as np
 from ikgen.runtime.python.array_types import Array, Row
 from ikgen.runtime.python.general_6r import Plan, six_joint_rows
 from ikgen.runtime.python.refinement import rank_loss
+from ikgen.runtime.python.solution_rows import places
 from ikgen.runtime.python.solved_arm import Arm
 
 __all__ = ["elimination_branches", "elimination_lanes"]
@@ -64,8 +65,8 @@ def elimination_branches(arm: Arm, plan: Plan, entries: Row) -> list[Row]:
     """
     T = np.vstack([np.array(entries[:12]).reshape(3, 4), [0.0, 0.0, 0.0, 1.0]])
     held = np.array(entries[12:])
-    found = six_joint_rows(_frames(arm, held), plan, T[None], arm.policy)
-    rows = _regular_first(arm, found[0], held).tolist()
+    _, found = six_joint_rows(_frames(arm, held), plan, T[None], arm.policy)
+    rows = _regular_first(arm, found, held).tolist()
     return [tuple(x for part in map(_named, row, plan.turning) for x in part) for row in rows]
 
 
@@ -87,15 +88,19 @@ def elimination_lanes(arm: Arm, plan: Plan, entries: tuple[Array, ...]) -> tuple
         T = np.tile(np.eye(4), (len(members), 1, 1))
         T[:, :3] = columns[:12, members].T.reshape(-1, 3, 4)
         held: Array = distinct[:, k] if len(columns) > 12 else np.empty(0)
-        frames = _frames(arm, held)
-        solved = six_joint_rows(frames, plan, T, arm.policy)
-        for i, angles in zip(members, solved):
-            rows = _regular_first(arm, angles, held)
-            lane = 0
-            for value, turns in zip(rows.T, plan.turning):
-                lanes[lane, : len(rows), i] = np.cos(value) if turns else value
-                if turns:
-                    lanes[lane + 1, : len(rows), i] = np.sin(value)
-                lane += 2 if turns else 1
-            found[: len(rows), i] = True
+        pose, angles = six_joint_rows(_frames(arm, held), plan, T, arm.policy)
+        many = np.flatnonzero(np.bincount(pose, minlength=1) > arm.most)
+        for i in many:
+            some = _regular_first(arm, angles[pose == i], held)
+            angles = np.concatenate([angles[pose != i], some])
+            pose = np.concatenate([pose[pose != i], np.full(len(some), i)])
+        order = np.argsort(pose, kind="stable")
+        pose, angles = pose[order], angles[order]
+        place, member, lane = places(pose), members[pose], 0
+        for value, turns in zip(angles.T, plan.turning):
+            lanes[lane, place, member] = np.cos(value) if turns else value
+            if turns:
+                lanes[lane + 1, place, member] = np.sin(value)
+            lane += 2 if turns else 1
+        found[place, member] = True
     return (*lanes, found)

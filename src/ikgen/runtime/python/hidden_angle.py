@@ -13,10 +13,12 @@ from numpy.typing import NDArray
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.loop_equations import XS, YS, ZS
 
-__all__ = ["Resultant", "hidden_angles", "loop_resultant", "real_angles"]
+__all__ = ["Resultant", "hidden_angles", "loop_resultant", "real_angles", "solved"]
 
 Resultant = tuple[Array, Array, Array]
 _NODES = 2.0 * np.pi / 7.0 * np.arange(7)
+_REAL = 1e-8  # imaginary part of a root that is real
+_DOUBTFUL = 1e-3  # below it, of one that may be half of a double root
 _JITTER = np.cos(np.outer(np.arange(1, 13), np.arange(1, 13)))
 
 
@@ -41,7 +43,7 @@ def hidden_angles(
     E: Array, left: Array, M: Resultant, accept: float
 ) -> tuple[NDArray[np.intp], Array, NDArray[np.intp], Flags]:
     """The roots theta_3 with an imaginary part below `accept`: rows (k,) and real parts (k,); per
-    row the number of those that are clearly real, and whether all are and lie apart.
+    row the number of those that are clearly real, and whether the others clearly are not.
 
     With `M(theta) = M0 + N Rot(theta) W`, Rot = c + s J on R^16, about a node where `M_pi = M0 - N
     W` is far from singular: tan(theta/2) are the eigenvalues of `-J (1 + 2 W M_pi^-1 N)`.
@@ -56,7 +58,7 @@ def hidden_angles(
     N[:, :6, 0:4] = N[:, 6:, 4:8] = c * x + s * y
     N[:, :6, 8:12] = N[:, 6:, 12:16] = c * y - s * x
     W = np.concatenate([_lift(left[:, XS]), _lift(left[:, YS])], axis=1)
-    K = np.eye(16) + 2.0 * W @ _solved(at_node[row, k], N)
+    K = np.eye(16) + 2.0 * W @ solved(at_node[row, k], N)
     t = np.linalg.eigvals(np.concatenate([K[:, 8:], -K[:, :8]], axis=1))
     return real_angles(t, _NODES[k], accept)
 
@@ -69,15 +71,12 @@ def real_angles(
     # angle and modulus of (1 + i t) / (1 - i t)
     z = (1.0 + 1j * t) / np.where(t == -1j, 1e-300, 1.0 - 1j * t)
     off = np.abs(np.log(np.maximum(np.abs(z), 1e-300)))
-    real = (off < 1e-8).sum(axis=1)
-    angle = np.where(off < accept, np.angle(z), np.nan)
-    gap = np.abs(np.remainder(angle[:, :, None] - angle[:, None] + np.pi, 2.0 * np.pi) - np.pi)
-    close = (gap + 4.0 * np.eye(t.shape[1]) < 1e-3).any(axis=(1, 2))
+    real = (off < _REAL).sum(axis=1)
     row, i = np.nonzero(off < accept)
-    return row, about[row] + angle[row, i], real, ~close & ((off < accept).sum(axis=1) == real)
+    return row, about[row] + np.angle(z[row, i]), real, (off < _DOUBTFUL).sum(axis=1) == real
 
 
-def _solved(pivot: Array, N: Array) -> Array:
+def solved(pivot: Array, N: Array) -> Array:
     """`pivot^-1 N`; a pivot is singular where M is for every angle: it is put off a little then."""
     try:
         return np.asarray(np.linalg.solve(pivot, N))

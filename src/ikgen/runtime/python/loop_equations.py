@@ -5,7 +5,11 @@ Elimination of Raghavan and Roth (1990, 1993), its fourteen functions of a trans
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import lru_cache
+
 import numpy as np
+from numpy.typing import NDArray
 
 from ikgen.runtime.python.array_types import Array
 from ikgen.runtime.python.chain_kinematics import cross
@@ -22,6 +26,8 @@ __all__ = [
     "loop_action",
     "loop_constants",
     "loop_equations",
+    "of_constants",
+    "rows_of",
 ]
 
 XS, YS = [0, 1, 2, 3], [4, 5, 6, 7]
@@ -41,6 +47,25 @@ def loop_constants(F: Array, T: Array, start: int, reverse: int) -> tuple[list[i
         return order, [C[i] for i in order]
     order = [(start - i) % 6 for i in range(6)]
     return order, [inverses(C[(i - 1) % 6]) for i in order]
+
+
+def rows_of(rows: Array, pose: NDArray[np.intp]) -> Array:
+    """Rows of poses, where they are not the same for all."""
+    return rows[pose] if len(rows) > 1 else rows
+
+
+def of_constants(function: Callable[..., Array], *C: Array) -> Array:
+    """`function` of transforms (n, 4, 4), kept where those are single: mostly they are the arm's own."""
+    if any(len(c) != 1 for c in C):
+        return function(*C)
+    return _kept(function, *(c.tobytes() for c in C))
+
+
+@lru_cache(maxsize=256)
+def _kept(function: Callable[..., Array], *C: bytes) -> Array:
+    out = function(*(np.frombuffer(c).reshape(1, 4, 4) for c in C))
+    out.flags.writeable = False
+    return out
 
 
 def invariants(X: Array) -> Array:
@@ -79,11 +104,9 @@ def loop_action(C: Array) -> Array:
     return G
 
 
-def left_invariants(C: list[Array]) -> Array:
+def left_invariants(C3: Array, C4: Array, C5: Array) -> Array:
     """The invariants of `C_3 R_4 C_4 R_5 C_5` (n, 14, 9) in (1, c4, s4) x (1, c5, s5)."""
-    D = (C[2][:, None] @ ROTATIONS)[:, :, None] @ (C[3][:, None] @ ROTATIONS @ C[4][:, None])[
-        :, None
-    ]
+    D = (C3[:, None] @ ROTATIONS)[:, :, None] @ (C4[:, None] @ ROTATIONS @ C5[:, None])[:, None]
     V = invariants(D)
     return np.asarray(np.swapaxes(_FIT_PAIR @ V.reshape(len(V), 9, 14), 1, 2), dtype=float)
 
@@ -93,10 +116,10 @@ def loop_equations(C: list[Array]) -> tuple[Array, Array, Array]:
     `R_3 C_3 R_4 C_4 R_5 C_5` and v_0 = 1: E (N, 6, 15) in the order (v, v_0). With it the
     invariants of `C_3 R_4 C_4 R_5 C_5` (n, 14, 9) in (1, c4, s4) x (1, c5, s5), and those of `R_2
     C_2 R_3 ... C_5 = C_1^-1 R_1^-1 C_6^-1 R_6^-1` (N, 14, 3) in (1, c1, s1)."""
-    left = left_invariants(C)
+    left = of_constants(left_invariants, *C[2:5])
     Y = inverses(C[0])[:, None] @ np.swapaxes(ROTATIONS, 1, 2) @ inverses(C[5])[:, None]
     right = np.swapaxes(FIT @ invariants(Y), 1, 2)
-    G = loop_action(C[1])
+    G = of_constants(loop_action, C[1])
     null_6 = np.linalg.qr(right[:, ZS, 1:], mode="complete")[0][..., 2:]
     top = np.swapaxes(null_6, 1, 2)
     first = top @ G[:, ZS]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.back_substitution import null_angles, turned
-from ikgen.runtime.python.general_6r import Elimination, rows_of
+from ikgen.runtime.python.general_6r import Elimination
 from ikgen.runtime.python.hidden_angle import hidden_angles, loop_resultant
 from ikgen.runtime.python.loop_equations import (
     FIT,
@@ -21,6 +21,8 @@ from ikgen.runtime.python.loop_equations import (
     left_invariants,
     loop_action,
     loop_constants,
+    of_constants,
+    rows_of,
 )
 from ikgen.runtime.python.rigid_motion import inverses, motions_z, rotations_z
 
@@ -40,17 +42,17 @@ def one_slide_candidates(
     start, reverse, swap = plan
     order, C = loop_constants(F, T, start, reverse)
     first = not turning[order[0]]
-    left = left_invariants(C)
+    left = of_constants(left_invariants, *C[2:5])
     right = _slide_side(C, first)
     basis = np.linalg.qr(right[..., 1:], mode="complete")[0][..., 8:]
     top = np.swapaxes(basis, 1, 2)
-    E = top @ loop_action(C[1])
+    E = top @ of_constants(loop_action, C[1])
     E[..., 14] -= (top @ right[..., :1])[..., 0]
     mono = left.reshape(-1, 14, 3, 3).swapaxes(2, 3).reshape(-1, 14, 9) if swap else left
     M = loop_resultant(E, mono)
-    pose, t3, least, simple = hidden_angles(E, mono, M, 0.03)
+    pose, t3, least, clear = hidden_angles(E, mono, M, 0.03)
     if not len(pose):
-        return pose, np.zeros((0, 6)), least, simple
+        return pose, np.zeros((0, 6)), least, clear
     c, s = np.cos(t3)[:, None, None], np.sin(t3)[:, None, None]
     M0, M1, M2 = (rows_of(m, pose) for m in M)
     k, t45 = null_angles(M0 + c * M1 + s * M2)
@@ -61,7 +63,7 @@ def one_slide_candidates(
     )
     q = np.empty_like(found)
     q[:, order] = -found if reverse else found
-    return pose, q, least, simple
+    return pose, q, least, clear
 
 
 def _slide_side(C: list[Array], first: bool) -> Array:

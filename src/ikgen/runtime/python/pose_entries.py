@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import copysign, isfinite
 
 import numpy as np
 
@@ -42,9 +43,35 @@ class EntriesTask:
 
     def read(self, T: list[list[float]], policy: Policy) -> list[list[float]] | None:
         """Implements `Task`."""
-        poses, (good,) = self.read_batch(np.array([T]), policy)
-        lines: list[list[float]] = poses[0].tolist()
-        return lines if good else None
+        lines = T
+        for r, c in self.entries:
+            x = lines[r][c]
+            if not isfinite(x):
+                return None
+            if c != 3 and c not in self.unit and abs(x) > 1.0:
+                if abs(x) > 1.0 + policy.pose_tolerance:
+                    return None
+                lines = [list(line) for line in lines]
+                lines[r][c] = copysign(1.0, x)
+        return self._with_unit_columns(lines, policy) if self.unit else lines
+
+    def _with_unit_columns(self, T: list[list[float]], policy: Policy) -> list[list[float]] | None:
+        """The pose with the nearest orthonormal columns; None where they are none."""
+        height = 2 if self.flat else 3
+        R = [(*line, 0.0)[:3] for line in zip(*T[:height])]
+        columns = tuple((x, y, z) for x, y, z in (R[j] for j in self.unit))
+        defect = columns_defect(columns)
+        near = defect <= most_defect(height * len(columns), policy.pose_tolerance)
+        if not near or (len(columns) == 3 and not determinant(columns) > 0.0):
+            square = sum(x * x for column in columns for x in column)
+            return T if self.flat and 0.0 < square < 1.0 else None
+        if defect <= policy.orthonormal**2:
+            return T
+        lines = [list(line) for line in T]
+        for j, column in zip(self.unit, nearest_columns(columns)):
+            for line, x in zip(lines[:height], column):
+                line[j] = x
+        return lines
 
     def read_batch(self, T: Array, policy: Policy) -> tuple[Array, Flags]:
         """Implements `Task`."""

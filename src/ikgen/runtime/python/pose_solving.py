@@ -16,7 +16,7 @@ from ikgen.runtime.python.joint_refinement import refine_together
 from ikgen.runtime.python.pose_arguments import one_pose
 from ikgen.runtime.python.pose_faults import nearest_pose, pose_fault
 from ikgen.runtime.python.projection import nearest_row, off_by
-from ikgen.runtime.python.refinement import rank_loss, refine
+from ikgen.runtime.python.refinement import least_singular, refine
 from ikgen.runtime.python.row_branches import branch_names
 from ikgen.runtime.python.row_placement import is_new, place_rows
 from ikgen.runtime.python.solutions import Solutions, Status, no_solutions
@@ -159,8 +159,8 @@ def _refined(arm: Arm, rows: list[Found], T: list[list[float]]) -> list[Found | 
         return []
     target = np.broadcast_to(np.array(T), (len(rows), 4, 4))
     start = np.array([row for row, _ in rows])
-    q, arrived, _ = refine(arm.chain, arm.task, arm.moving, start, target, arm.policy)
-    loss = rank_loss(arm.chain, arm.task, arm.moving, q)
+    q, arrived, _, slope = refine(arm.chain, arm.task, arm.moving, start, target, arm.policy)
+    loss = least_singular(slope)
     flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
     return [
         (tuple(row), (flag and x < continuum) or x < flat) if ok else None

@@ -8,9 +8,10 @@ from __future__ import annotations
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array
-from ikgen.runtime.python.general_6r import Candidates, Elimination, Turning
+from ikgen.runtime.python.general_6r import Candidates, Elimination
 from ikgen.runtime.python.loop_equations import loop_constants
 from ikgen.runtime.python.revolute_loop import displacement, revolute_loop, slide_lengths
+from ikgen.runtime.python.solution_rows import Turning
 from ikgen.runtime.python.spherical_triple import spherical_triple
 
 __all__ = ["three_slide_candidates"]

@@ -14,7 +14,7 @@ import numpy as np
 
 from ikgen.runtime.python.array_types import Array
 from ikgen.runtime.python.chain_kinematics import cross
-from ikgen.runtime.python.general_6r import Candidates, Elimination, Turning
+from ikgen.runtime.python.general_6r import Candidates, Elimination
 from ikgen.runtime.python.hidden_angle import real_angles
 from ikgen.runtime.python.loop_equations import loop_constants
 from ikgen.runtime.python.revolute_loop import (
@@ -23,6 +23,7 @@ from ikgen.runtime.python.revolute_loop import (
     revolute_loop,
     slide_lengths,
 )
+from ikgen.runtime.python.solution_rows import Turning
 from ikgen.runtime.python.spherical_triple import Complex, spherical_triple, turns_z
 
 __all__ = ["two_slide_candidates"]
