@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import signal
 import subprocess
@@ -57,3 +58,17 @@ def test_links_and_other_names_are_left_alone(tmp_path: Path) -> None:
 def test_no_room_for_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(UsageError, match="cannot write to"):
         ScratchFolder("x-", tmp_path / "not there")
+
+
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EROFS, errno.EIO])
+def test_a_full_disk_is_told_by_its_place(tmp_path: Path, number: int) -> None:
+    """The system's words do not say where."""
+    with pytest.raises(UsageError, match="cannot write to") as told, ScratchFolder("x-", tmp_path):
+        raise OSError(number, os.strerror(number))
+    assert str(tmp_path) in told.value.message and os.strerror(number) in told.value.message
+    assert not list(tmp_path.iterdir())
+
+
+def test_other_errors_stay_as_they_are(tmp_path: Path) -> None:
+    with pytest.raises(BrokenPipeError), ScratchFolder("x-", tmp_path):
+        raise BrokenPipeError(errno.EPIPE, "gone")

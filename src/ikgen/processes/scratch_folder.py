@@ -6,6 +6,7 @@ ends, so that a folder without a lock is nobody's.
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import shutil
@@ -31,11 +32,15 @@ _LOCKLESS = 3600.0
 """Age (s) from which a folder without a file to lock is one that a killed run left, whose process may
 not be looked for."""
 
+_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
+"""What says that a place takes no more files, rather than that one file is in the way."""
+
 
 class ScratchFolder:
     """A new folder `path` named `prefix` and more, in `place` (default: the system's for temporary
     files), removed at `close`, at the end of a `with` and of the process. Those that killed runs left
-    beside it are removed first."""
+    beside it are removed first. Where the disk is full, read-only or broken, `UsageError` says which
+    place that is."""
 
     def __init__(self, prefix: str, place: Path | None = None) -> None:
         remove_abandoned(prefix, place)
@@ -43,11 +48,8 @@ class ScratchFolder:
             self.path = Path(tempfile.mkdtemp(prefix=f"{prefix}{os.getpid()}-", dir=place))
             lock = _locked(self.path)
         except OSError as error:
-            where = place or os.environ.get("TMPDIR") or "/tmp"
-            raise UsageError(
-                f"cannot write to '{where}': {error.strerror or error}",
-                hint="make room there" if place else "make room there, or set TMPDIR",
-            ) from error
+            raise _unwritable(place, error) from error
+        self._place = place
         self._remove = weakref.finalize(self, _removed, self.path, lock)
 
     def close(self) -> None:
@@ -64,6 +66,15 @@ class ScratchFolder:
         trace: TracebackType | None,
     ) -> None:
         self.close()
+        if isinstance(error, OSError) and error.errno in _NO_ROOM:
+            raise _unwritable(self._place, error) from error
+
+
+def _unwritable(place: Path | None, error: OSError) -> UsageError:
+    """What to say where nothing more can be written to a place: the system's words name none."""
+    where = place or os.environ.get("TMPDIR") or "/tmp"
+    hint = "make room there" if place else "make room there, or set TMPDIR"
+    return UsageError(f"cannot write to '{where}': {error.strerror or error}", hint=hint)
 
 
 def _locked(folder: Path) -> IO[Any]:
