@@ -13,7 +13,6 @@ import numpy as np
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 from ikgen.report.graph_picture import draw
-from ikgen.report.posture_names import row_names
 from ikgen.report.skeleton import Style, skeleton_camera, skeleton_svg
 from ikgen.report.solution_sets import versions_of
 from ikgen.report.worked_example import solver_of, worked_example
@@ -147,10 +146,9 @@ def solutions() -> str:
     assert solver is not None
     example = worked_example(found, solver)
     dh, style = found.reading.dh, Style(190, 170, named=False)
-    names = row_names(dh, found.geometry, found.graph, example.rows)
     camera = skeleton_camera(dh, list(example.rows), style)
     parts = []
-    for i, (q, name) in enumerate(zip(example.rows, names, strict=True)):
+    for i, (q, name) in enumerate(zip(example.rows, example.names, strict=True)):
         x, y = i % 4 * 200.0, i // 4 * 210.0
         drawing = skeleton_svg(dh, q, style=style, camera=camera, title=name)
         parts.append(drawing.replace("<svg ", f'<svg x="{x:g}" y="{y:g}" ', 1).strip())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from functools import cache
+from html import escape
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,6 @@ from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 from ikgen.kinematics.forward import row_values
 from ikgen.report import emit_report
-from ikgen.report.posture_names import row_names
 from ikgen.report.roots_picture import hidden_roots
 from ikgen.report.worked_example import WorkedExample, solver_of, worked_example
 
@@ -55,8 +55,7 @@ def example(name: str) -> WorkedExample:
 
 
 def names(name: str) -> tuple[str, ...]:
-    d = derivation(name)
-    return row_names(d.reading.dh, d.geometry, d.graph, example(name).rows)
+    return example(name).names
 
 
 def test_the_papers_puma_has_the_papers_pose_and_rows() -> None:
@@ -88,7 +87,7 @@ def test_rows_are_right_and_told_apart(name: str) -> None:
     inside = np.all((found.rows > lower - 1e-6) & (found.rows < upper + 1e-6), axis=1)
     assert np.array_equal(inside, found.inside) and found.inside.any()
     assert np.abs(np.exp(1j * found.rows) - np.exp(1j * found.q)).max(axis=1).min() < 1e-6
-    assert len(set(names(name))) == len(found.rows)
+    assert len(names(name)) == len(found.rows)
 
 
 @pytest.mark.parametrize("name", ["puma", "ur5e", "kuka"])
@@ -107,9 +106,23 @@ def test_postures_have_their_usual_names(name: str) -> None:
     assert all(pair["elbow up"] > pair["elbow down"] for pair in heights.values())
 
 
-def test_branches_are_named_where_there_is_no_posture() -> None:
-    assert names("olson")[0] == "θ3 branch 1, θ4 branch 2"
-    assert names("eliminated")[0] == "solution 1"
+@pytest.mark.parametrize("name", ARMS)
+def test_rows_are_called_what_the_module_calls_them(name: str) -> None:
+    found, solver = example(name), solver_of(derivation(name))
+    assert solver is not None
+    free = found.q[list(derivation(name).module.free)]
+    solved = solver.module.solve(found.pose, free=free if len(free) else None, limits=False)
+    told = dict(zip(solved.branch, solved.q, strict=True))
+    if name == "eliminated":  # all rows are on one branch of the closed form
+        assert set(told) == set(names(name)) == {"det J > 0", "det J < 0"}
+    else:
+        assert set(told) == set(names(name)) and len(told) == len(found.rows)
+        for row, words in zip(found.rows, names(name), strict=True):
+            np.testing.assert_allclose(np.exp(1j * told[words]), np.exp(1j * row), atol=1e-6)
+    module = derivation(name).module.name
+    html = emit_report(derivation(name))[f"{module}_report.html"]
+    for number, words in enumerate(names(name), start=1):
+        assert f"{number}: {escape(words)}" in html
 
 
 def test_sixteen_roots_and_the_real_ones_are_the_solutions() -> None:

@@ -5,22 +5,16 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from ikgen.library.dh_text import constants, row_texts
 from ikgen.report.skeleton import Style, skeleton_svg
+from ikgen.report.worked_example import shown_configuration
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from ikgen.emit.derivation import Derivation
     from ikgen.model.dh import DHChain
     from ikgen.verify.verification_report import VerificationReport
 
 __all__ = ["card"]
-
-_BEND = 0.5
-"""Joints are bent so far (rad, or m) from zero: a stretched arm hides its lengths behind each other."""
 
 _HEADS = ("", "joint", "&alpha;", "a", "&theta;", "d")
 
@@ -34,7 +28,7 @@ def card(derivation: Derivation, report: VerificationReport | None) -> str:
         f"task: {derivation.task.words}" + _held(dh),
         f"at most {module.max_solutions} solutions; {_checked(report)}",
     ]
-    picture = skeleton_svg(dh, _bent(dh), style=Style(300.0, 260.0, named=False))
+    picture = skeleton_svg(dh, shown_configuration(dh), style=Style(300.0, 260.0, named=False))
     facts = "".join(f"<div>{escape(line)}</div>" for line in lines)
     return (
         '<div class="ikgen-arm" style="display:flex;flex-wrap:wrap;gap:1.5em;align-items:center">'
@@ -56,16 +50,6 @@ def _checked(report: VerificationReport | None) -> str:
     metres, radians = report.worst_closure
     closure = f"worst closure {metres:.0e} m, {radians:.0e} rad"
     return f"verified on {report.samples} poses: {closure}, {report.missed_words}"
-
-
-def _bent(dh: DHChain) -> NDArray[np.float64]:
-    """A configuration inside the limits at which the links can be told apart."""
-    lower = np.array([joint.limits.lower for joint in dh.joints])
-    upper = np.array([joint.limits.upper for joint in dh.joints])
-    signs = np.where(np.arange(dh.dof) % 2, 1.0, -1.0)
-    low, high = np.maximum(lower, -4.0), np.minimum(upper, 4.0)
-    centre = np.clip(0.0, low, high)
-    return np.asarray(np.clip(centre + _BEND * signs, low, high))
 
 
 def _table(dh: DHChain) -> str:

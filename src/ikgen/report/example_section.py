@@ -27,10 +27,8 @@ _SMALL = Style(210, 180, named=False)
 _MOST_DRAWN = 16
 
 
-def example_section(
-    dh: DHChain, example: WorkedExample, names: tuple[str, ...], module: str
-) -> list[Block]:
-    """`names` tell the rows apart; `module` is what the emitted code is called."""
+def example_section(dh: DHChain, example: WorkedExample, module: str) -> list[Block]:
+    """`module` is what the emitted code is called."""
     values = ", ".join(joint_value(dh, j, x) for j, x in enumerate(example.q))
     given = [joint_value(dh, j, example.q[j]) for j, x in enumerate(dh.joints) if x.name in dh.free]
     values_given = f", free=[{', '.join(given)}]" if given else ""
@@ -42,8 +40,8 @@ def example_section(
         Paragraph((
             f"of which {call} gives {_count(example)}.{_within(example.off)}",
         )),
-        _table(dh, example, names),
-        _drawings(dh, example, names),
+        _table(dh, example),
+        _drawings(dh, example),
     ]  # fmt: skip
 
 
@@ -78,25 +76,24 @@ def _entries(T: Array) -> tuple[tuple[Math, ...], ...]:
     return tuple(tuple(one(float(x)) for x in row) for row in T)
 
 
-def _table(dh: DHChain, example: WorkedExample, names: tuple[str, ...]) -> Rows:
+def _table(dh: DHChain, example: WorkedExample) -> Rows:
     header: list[Text] = [("solution",), *((joint.name,) for joint in dh.joints), ("which",)]
     rows = []
     for i, (q, inside) in enumerate(zip(example.rows, example.inside, strict=True)):
         cells: list[Text] = [(str(i + 1),)]
         cells += [(joint_value(dh, j, x),) for j, x in enumerate(q)]
-        cells.append((names[i] if inside else f"{names[i]}; outside the limits",))
+        name = example.names[i]
+        cells.append((name if inside else f"{name}; outside the limits",))
         rows.append(tuple(cells))
     return Rows(tuple(header), tuple(rows), "All solutions of the pose", small=True)
 
 
-def _drawings(dh: DHChain, example: WorkedExample, names: tuple[str, ...]) -> Pictures:
+def _drawings(dh: DHChain, example: WorkedExample) -> Pictures:
     rows = example.rows[:_MOST_DRAWN]
     camera = skeleton_camera(dh, [*rows], _SMALL) if len(rows) else None
     drawings = []
-    for i, q in enumerate(rows):
-        svg = skeleton_svg(
-            dh, q, style=_SMALL, camera=camera, title=f"solution {i + 1}: {names[i]}"
-        )
-        plain = names[i].startswith("solution ")
-        drawings.append(Picture(svg, "", names[i] if plain else f"{i + 1}: {names[i]}"))
+    for number, (q, name) in enumerate(zip(rows, example.names, strict=False), start=1):
+        title = f"solution {number}: {name}"
+        svg = skeleton_svg(dh, q, style=_SMALL, camera=camera, title=title)
+        drawings.append(Picture(svg, "", f"{number}: {name}"))
     return Pictures(tuple(drawings))

@@ -13,7 +13,6 @@ from ikgen.report.held_section import held_section
 from ikgen.report.leftover import leftover_section
 from ikgen.report.opening import forward_section, robot_section
 from ikgen.report.page import Page, SolvedPage, UnsolvedPage
-from ikgen.report.posture_names import row_names
 from ikgen.report.proof_section import proof_section
 from ikgen.report.results import graph_section, poses_section, verification_section
 from ikgen.report.roots_picture import roots_blocks
@@ -42,9 +41,7 @@ def _held(page: SolvedPage) -> list[Block]:
 def _example(page: SolvedPage) -> list[Block]:
     if page.example is None:
         return []
-    dh = page.reading.dh
-    names = row_names(dh, page.geometry, page.graph, page.example.rows)
-    return example_section(dh, page.example, names, f"{page.derivation.module.name}_ik")
+    return example_section(page.reading.dh, page.example, f"{page.derivation.module.name}_ik")
 
 
 def _robot(page: Page) -> list[Block]:

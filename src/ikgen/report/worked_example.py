@@ -25,13 +25,15 @@ _TRIED, _SEED, _WIDEST = 40, 7, 2.6
 
 @dataclass(frozen=True, slots=True)
 class WorkedExample:
-    """`q` (dof,) made the `pose` (4, 4); `rows` (k, dof) are all its solutions, `inside` (k,) those inside
-    the limits, `off` the largest entry (m, or of the rotation) by which a row's pose is another one in what
-    the task reads of a whole pose, None for smaller tasks. Values of joints in rad and m."""
+    """`q` (dof,) made the `pose` (4, 4); `rows` (k, dof) are all its solutions, `names` (k) what the module
+    tells them apart by, `inside` (k,) those inside the limits, `off` the largest entry (m, or of the
+    rotation) by which a row's pose is another one in what the task reads of a whole pose, None for smaller
+    tasks. Values of joints in rad and m."""
 
     q: Array
     pose: Array
     rows: Array
+    names: tuple[str, ...]
     inside: NDArray[np.bool_]
     off: float | None
 
@@ -49,7 +51,8 @@ def worked_example(derivation: Derivation, runner: PythonModule) -> WorkedExampl
     rows = np.array([r if i is None else inside[i] for r, i in zip(rows, places, strict=True)])
     flags = np.array([i is not None for i in places], dtype=bool)
     off = float(np.abs(runner.forward(rows) - pose).max()) if derivation.task.whole_pose else None
-    return WorkedExample(q, pose, rows, flags, off if len(rows) else None)
+    names = runner.branch_names(rows)
+    return WorkedExample(q, pose, rows, names, flags, off if len(rows) else None)
 
 
 def solver_of(derivation: Derivation) -> PythonModule | None:

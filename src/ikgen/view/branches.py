@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from ikgen.emit.derivation import Derivation
 from ikgen.kinematics.forward import file_jacobian
 from ikgen.report.example_section import joint_value
-from ikgen.report.posture_names import row_names
 from ikgen.verify.runners.python_module import PythonModule
 
 __all__ = ["Branch", "Solved", "solved"]
@@ -60,7 +59,7 @@ def solved(
     every, _, _ = runner.solve(pose, free=held, limits=False)
     rest = [q for q in every if not _among(q, inside)]
     rows = np.array([*inside, *rest]).reshape(-1, dh.dof)
-    names = row_names(dh, derivation.geometry, derivation.graph, rows)
+    names = runner.branch_names(rows)
     moving = [j for j in range(dh.dof) if j not in derivation.module.free]
     branches = []
     for i, (q, name) in enumerate(zip(rows, names, strict=True)):

@@ -95,6 +95,11 @@ class PythonModule:
         q = np.asarray(found.q, dtype=float).reshape(-1, self._constants.dof)
         return q, found.status.name, np.asarray(found.singular, dtype=bool).reshape(len(q))
 
+    def branch_names(self, q: Array) -> tuple[str, ...]:
+        """What tells rows (k, dof) of one pose apart, as the module's `Solutions.branch` does."""
+        names: tuple[str, ...] = self.module._branch_names(self.module._ARM, q)
+        return names
+
     def solve_many(
         self,
         poses: Array,
