@@ -225,11 +225,15 @@ Row = tuple[float, ...]
 
 
 def _real_array(values: ArrayLike, name: str) -> Array:
-    """The values as doubles; raises ValueError for complex ones, whose imaginary part would be lost."""
-    array = np.asarray(values)
-    if array.dtype.kind == "c":
-        raise ValueError(f"{name} has complex values")
-    return np.asarray(array, dtype=float)
+    """The values as doubles; raises ValueError for what is no array of numbers, and for complex ones, whose
+    imaginary part would be lost."""
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind != "c":
+            return np.asarray(array, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{name} is no array of numbers: {type(values).__name__}") from None
+    raise ValueError(f"{name} has complex values")
 
 
 # Forward kinematics and Jacobian of a serial chain, for any number of configurations at once.
@@ -489,7 +493,8 @@ def _held_values(
         unknown = set(free) - set(names)
         if unknown:
             raise ValueError(f"no free joint named {sorted(unknown)}; there is {list(names)}")
-        values = tuple(float(free.get(n, x)) for n, x in zip(names, others))
+        given = _real_array([free.get(n, x) for n, x in zip(names, others)], "free")
+        values = tuple(given.reshape(-1).tolist())
     else:
         given = _real_array(free, "free")
         if given.ndim > 1:
@@ -515,11 +520,11 @@ def _held_rows(
             if near is not None and name not in given:
                 values[:, k] = near[:, j]
         return values
-    single = len(arm.free_joints) == 1 and np.shape(free) == (count,)
-    if np.ndim(free) < 2 and not single:
-        one: list[float] = _real_array(free, "free").tolist()
-        return np.broadcast_to(_held_values(arm, one, None), shape)
     held = _real_array(free, "free")
+    single = len(arm.free_joints) == 1 and held.shape == (count,)
+    if held.ndim < 2 and not single:
+        one: list[float] = held.tolist()
+        return np.broadcast_to(_held_values(arm, one, None), shape)
     held = held[:, None] if single else held
     if held.shape != shape:
         raise ValueError(f"free has shape {held.shape}, expected {shape}")
@@ -619,7 +624,7 @@ def _pose_matrices(pose: Any, alone: str) -> Array:
     if isinstance(pose, (list, tuple)) and len(pose):
         if any(hasattr(pose[0], name) for name in _TRANSFORMS):
             return np.stack([_pose_matrices(one, alone) for one in pose])
-        pair = _of_pair(*map(_numbers, pose)) if len(pose) == 2 else None
+        pair = _of_pair(*(_real_array(part, "pose") for part in pose)) if len(pose) == 2 else None
         if pair is not None:
             return pair
     for name in _TRANSFORMS:
@@ -627,14 +632,7 @@ def _pose_matrices(pose: Any, alone: str) -> Array:
         if value is not None:
             pose = value() if callable(value) else value
             break
-    return _completed(_numbers(pose), alone)
-
-
-def _numbers(value: Any) -> Array:
-    try:
-        return _real_array(value, "pose")
-    except TypeError:
-        raise ValueError(f"pose is no array of numbers: {type(value).__name__}") from None
+    return _completed(_real_array(pose, "pose"), alone)
 
 
 def _of_pair(a: Array, b: Array) -> Array | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -138,7 +139,27 @@ WRONG: dict[str, tuple[Any, str]] = {
     "name": ("a-b", "name"),
     "trust": (1, "trust"),
     "cache": (None, "cache"),
+    "progress": (None, "progress"),
 }
+
+
+class Unspeakable:
+    """What cannot even be shown."""
+
+    def __repr__(self) -> str:
+        raise RuntimeError
+
+
+def test_every_argument_is_tried() -> None:
+    assert set(WRONG) == set(inspect.signature(ikgen.load).parameters)
+
+
+@pytest.mark.parametrize("value", [Unspeakable(), object(), 1j], ids=["odd", "object", "complex"])
+@pytest.mark.parametrize("argument", WRONG)
+def test_what_is_of_no_use_is_refused(argument: str, value: object) -> None:
+    with pytest.raises(ArgumentError, match=argument) as caught:
+        ikgen.load(**{"robot": ELBOW, "verify": False, argument: value})
+    assert caught.value.hint
 
 
 @pytest.mark.parametrize("argument", WRONG)
@@ -163,12 +184,40 @@ def test_every_wrong_argument_is_named(argument: str) -> None:
         ({"free": {"elbow": "45 apples"}}, "free"),
         ({"free": "elbow", "lock": {"elbow": 0.0}}, "both"),
         ({"args": {"a": "b"}}, "no arguments"),
+        ({"robot": "x" * 5000}, "no file"),
+        ({"robot": "a\0b"}, "no file"),
+        ({"calibration": "x" * 5000}, "no file"),
+        ({"package_paths": "x" * 5000}, "no file"),
+        ({"package_paths": ""}, "package_paths"),
+        ({"package_paths": [ELBOW]}, "no directory"),
+        ({"samples": 10**400}, "samples"),
+        ({"samples": np.array([1.0])}, "samples"),
+        ({"lock": {"elbow": 10**400}}, "finite"),
+        ({"lock": {"elbow": "45mm"}}, "'mm' is no unit of a joint that turns"),
+        ({"free": {"elbow": "0.1m"}}, "'m' is no unit of a joint that turns"),
+        ({"name": "x" * 101}, "100 characters"),
     ],
 )
 def test_arguments_that_do_not_fit(options: dict[str, Any], message: str) -> None:
     with pytest.raises(IkgenError, match=message) as caught:
         ikgen.load(**{"robot": ELBOW, **options})
     assert caught.value.hint
+
+
+def test_a_unit_that_does_not_fit_is_refused_with_a_cache_too() -> None:
+    ikgen.load(ELBOW, lock={"elbow": "0.045rad"}, verify=False)
+    ikgen.load(ELBOW, lock={"elbow": 0.045}, verify=False)
+    with pytest.raises(IkgenError, match="no unit"):
+        ikgen.load(ELBOW, lock={"elbow": "45mm"}, verify=False)
+
+
+def test_units_of_slides_and_tables() -> None:
+    scara = FIXTURES / "scara_standard.toml"
+    joints = ikgen.load(scara, verify=False).derivation.dh.joints
+    slide = next(joint.name for joint in joints if joint.kind == "prismatic")
+    assert ikgen.load(scara, lock={slide: "120mm"}, verify=False).dof == 3
+    with pytest.raises(IkgenError, match="slides"):
+        ikgen.load(scara, lock={slide: "5deg"}, verify=False)
 
 
 @pytest.mark.parametrize("option", ["base", "tip"])
@@ -193,12 +242,60 @@ def test_a_link_that_there_is_not_is_told_with_those_there_are(option: str) -> N
         lambda arm: arm.save("out", emit="cobol"),
         lambda arm: arm.report("arm.docx"),
         lambda arm: arm.report(None),
+        lambda arm: arm.save("a\0b"),
+        lambda arm: arm.save("x" * 5000),
+        lambda arm: arm.save("/proc/none/out"),
+        lambda arm: arm.report("x" * 5000 + ".html"),
+        lambda arm: arm.report("/proc/none/arm.html"),
+        lambda arm: arm.report("\ud800.html"),
+        lambda arm: arm.save(Unspeakable()),
+        lambda arm: arm.save("out", emit=Unspeakable()),
+        lambda arm: arm.self_motion(np.eye(4)),
+        lambda arm: ikgen.compile(Unspeakable()),
     ],
 )
 def test_wrong_arguments_of_an_arm_are_ikgens_errors(ur5e: ikgen.Arm, call: Any) -> None:
     with pytest.raises(IkgenError) as caught:
         call(ur5e)
     assert caught.value.hint
+
+
+NUMBERS = ("x", b"x", {1: 2}, set(), 10**400, [1j] * 6, [[1], [2, 3]], [{}] * 6, Unspeakable())
+FLAGS = ("no", 1, None, np.eye(2), Unspeakable())
+
+
+@pytest.mark.parametrize("value", NUMBERS, ids=lambda value: type(value).__name__)
+@pytest.mark.parametrize(
+    ("argument", "call"),
+    [
+        ("pose", lambda arm, T, x: arm.solve(x)),
+        ("pose", lambda arm, T, x: arm.solve(x, project=True, orthonormalize=True)),
+        ("pose", lambda arm, T, x: arm.solve_batch(x)),
+        ("pose", lambda arm, T, x: arm.follow(x, start=[0.0] * arm.dof)),
+        ("seed", lambda arm, T, x: arm.solve(T, seed=x)),
+        ("seed", lambda arm, T, x: arm.solve_batch(T[None], seed=x)),
+        ("free", lambda arm, T, x: arm.solve(T, free=x)),
+        ("free", lambda arm, T, x: arm.solve_batch(T[None], free=x)),
+        ("start", lambda arm, T, x: arm.follow(T[None], start=x)),
+        ("q", lambda arm, T, x: arm.forward(x)),
+        ("q", lambda arm, T, x: arm.jacobian(x)),
+    ],
+)
+def test_what_is_no_array_of_numbers_is_told_by_its_name(
+    ur5e: ikgen.Arm, argument: str, call: Any, value: object
+) -> None:
+    with pytest.raises(ArgumentError, match=f": .*{argument}") as caught:
+        call(ur5e, np.eye(4), value)
+    assert caught.value.hint and "help()" not in caught.value.hint
+
+
+@pytest.mark.parametrize("value", FLAGS, ids=lambda value: type(value).__name__)
+@pytest.mark.parametrize("flag", ["limits", "project", "orthonormalize"])
+def test_flags_are_true_or_false(ur5e: ikgen.Arm, flag: str, value: object) -> None:
+    with pytest.raises(ArgumentError, match=f"^{flag}") as caught:
+        ur5e.solve(np.eye(4), **{flag: value})
+    assert "True or False" in caught.value.hint
+    ur5e.solve(np.eye(4), **{flag: np.bool_(True)})
 
 
 def test_the_package_is_light() -> None:

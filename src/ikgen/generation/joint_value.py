@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 import numbers
 import re
+import reprlib
 
-__all__ = ["UNITS", "joint_value"]
+__all__ = ["UNITS", "JointValue", "joint_value"]
 
 UNITS = {
     "rad": 1.0,
@@ -18,31 +19,51 @@ UNITS = {
 }
 """What a unit is in rad or m."""
 
+_OF_ANGLES = ("rad", "deg", "°")
+_SHOWN = reprlib.Repr()
+_SHOWN.maxstring = _SHOWN.maxother = _SHOWN.maxlong = 60
 _WITH_UNIT = re.compile(r"(.*?)\s*(rad|deg|°|mm|cm|m)")
 
 
-def joint_value(value: object) -> float:
+class JointValue(float):
+    """A value in rad or m; `unit` is the one that it was written with, "" where there was none."""
+
+    unit = ""
+
+    def fits(self, revolute: bool) -> bool:
+        """Whether the unit is one of joints that turn, or of those that slide."""
+        return not self.unit or revolute == (self.unit in _OF_ANGLES)
+
+
+def joint_value(value: object) -> JointValue:
     """The value in rad or m of a number, or of a text of a number and perhaps a unit ("45deg").
 
     Raises ValueError for anything else, and for what is not finite.
     """
     if isinstance(value, numbers.Real) and not isinstance(value, bool):
-        number = float(value)
+        try:
+            number = JointValue(value)
+        except OverflowError:
+            number = JointValue("inf")
     elif isinstance(value, str):
         number = _of_text(value)
     else:
-        raise ValueError(f"{value!r} is not a number")
+        raise ValueError(f"a value of type {type(value).__name__} is not a number")
     if not math.isfinite(number):
-        raise ValueError(f"{value!r} is not a finite number")
+        raise ValueError(f"{_SHOWN.repr(value)} is not a finite number")
     return number
 
 
-def _of_text(text: str) -> float:
+def _of_text(text: str) -> JointValue:
     match = _WITH_UNIT.fullmatch(text.strip())
-    digits, unit = match.groups() if match else (text, "rad")
+    digits, unit = match.groups() if match else (text, "")
     try:
         number = float(digits)
     except ValueError:
-        raise ValueError(f"{text!r} is not a finite number") from None
+        raise ValueError(f"{_SHOWN.repr(text)} is not a finite number") from None
     # exact for the turns that people mean: 90deg is the nearest number to pi/2
-    return math.radians(number) if unit in ("deg", "°") else number * UNITS[unit]
+    found = JointValue(
+        math.radians(number) if unit in ("deg", "°") else number * UNITS.get(unit, 1)
+    )
+    found.unit = unit
+    return found

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 from ikgen.emit.derivation import Reading
 from ikgen.errors import BadDescriptionError, UsageError
+from ikgen.generation.joint_value import JointValue
+from ikgen.model.joint_tree import Joint
 from ikgen.model.module_name import identifier
 
 if TYPE_CHECKING:
@@ -13,7 +15,7 @@ if TYPE_CHECKING:
 
     from ikgen.generation.request import Request
     from ikgen.model.chain import ActuatedJoint
-    from ikgen.model.joint_tree import Joint, JointTree
+    from ikgen.model.joint_tree import JointTree
 
 __all__ = ["arm_name", "default_name", "read", "read_tree"]
 
@@ -30,6 +32,7 @@ def read(request: Request, tree: JointTree | None = None) -> Reading:
     from ikgen.kinematics.modified_dh import to_dh
 
     tree = tree or read_tree(request)
+    _check_units(request, tree.joints)
     _check_locks(request, tree.joints)
     chain = select_chain(tree, request.base, request.tip, dict(request.lock))
     reading = Reading(tree.source, tree, chain, to_dh(chain, free=free))
@@ -88,9 +91,26 @@ def _read_table(request: Request, free: tuple[str, ...]) -> Reading:
     from ikgen.importers.dh.dh_table import read_dh_table
 
     source, dh = read_dh_table(request.robot, free=free, locked=request.lock)
-    if request.lock:
-        _check_locks(request, read_dh_table(request.robot)[1].joints)
+    if request.lock or request.free:
+        joints = read_dh_table(request.robot)[1].joints
+        _check_units(request, joints)
+        _check_locks(request, joints)
     return Reading(source, None, None, dh)
+
+
+def _check_units(request: Request, joints: Iterable[Joint | ActuatedJoint]) -> None:
+    """Raises `UsageError` for a value with a length's unit of a joint that turns, or an angle's of one that
+    slides."""
+    for joint in joints:
+        revolute = "prismatic" not in (joint.type.value if isinstance(joint, Joint) else joint.kind)
+        for option, values in (("--lock", request.lock), ("--free", request.free)):
+            value = values.get(joint.name)
+            if isinstance(value, JointValue) and not value.fits(revolute):
+                raise UsageError(
+                    f"{option} {joint.name}: '{value.unit}' is no unit of a joint that "
+                    f"{'turns' if revolute else 'slides'}",
+                    hint=f"give a value in {'rad or deg' if revolute else 'm, cm or mm'}",
+                )
 
 
 def _check_locks(request: Request, joints: Iterable[Joint | ActuatedJoint]) -> None:

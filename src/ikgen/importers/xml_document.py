@@ -90,7 +90,8 @@ def read_text(path: Path, largest: int = LARGEST_FILE, *, may_be_empty: bool = F
         raise BadDescriptionError(reason, file=str(path)) from None
     text = _decode(data, path).replace("\r\n", "\n").replace("\r", "\n")
     if not text.strip() and not may_be_empty:
-        raise BadDescriptionError("the file is empty", file=str(path))
+        hint = "give a URDF or xacro file, or a DH table"
+        raise BadDescriptionError("the file is empty", file=str(path), hint=hint)
     return text
 
 

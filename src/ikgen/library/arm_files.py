@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ikgen.errors import ArgumentError, MissingToolError
 from ikgen.generation.publish import Content, check_folder, publish
+from ikgen.library.load_arguments import wrong
 
 if TYPE_CHECKING:
     from ikgen.generation.request import Outputs, Request
@@ -35,12 +37,11 @@ def save(
     names = (emit,) if isinstance(emit, str) else emit
     asked = tuple(names) if isinstance(names, Iterable) else ()
     if not asked or not all(isinstance(name, str) for name in asked):
-        raise ArgumentError(
-            f"emit: {emit!r} does not do", hint="give names of outputs: python, cpp"
-        )
+        raise wrong("emit", emit, "names of outputs: python, cpp")
     for name in asked:
         find_emitter(name)
-    return generate(request, replace(outputs, emit=asked, out=folder)).files
+    with _writing("folder", folder):
+        return generate(request, replace(outputs, emit=asked, out=folder)).files
 
 
 def write_page(arm: Arm, file: Path) -> Path:
@@ -60,7 +61,20 @@ def write_page(arm: Arm, file: Path) -> Path:
     content: Content = next(text for name, text in texts.items() if name.endswith(end))
     if file.suffix.lower() == ".pdf":
         content = _pdf(file.with_suffix(".tex").name, str(content))
-    return publish(file.parent, {file.name: content})[0]
+    with _writing("file", file):
+        return publish(file.parent, {file.name: content})[0]
+
+
+@contextmanager
+def _writing(argument: str, path: Path) -> Iterator[None]:
+    """What the system refuses to write is an argument that does not do."""
+    try:
+        yield
+    except OSError as error:
+        raise ArgumentError(
+            f"{argument}: '{path}' cannot be written: {error.strerror or error}",
+            hint="name another place",
+        ) from error
 
 
 def _pdf(name: str, text: str) -> bytes:

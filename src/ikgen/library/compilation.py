@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ikgen.errors import ArgumentError, MissingToolError, VerificationError
+from ikgen.errors import MissingToolError, VerificationError
+from ikgen.library.load_arguments import checked_flag, wrong
 from ikgen.library.loaded_arm import Arm, Array
 from ikgen.library.solver_cache import cache_folder
 from ikgen.processes.scratch_folder import ScratchFolder
@@ -51,6 +52,8 @@ class CompiledArm(Arm):
         orthonormalize: bool = False,
     ) -> Solutions:
         """As `Arm.solve`, by the compiled solver; by the Python module what only that knows."""
+        checked_flag("project", project)
+        checked_flag("orthonormalize", orthonormalize)
         plain = isinstance(pose, np.ndarray) and not (project or orthonormalize)
         T = pose if plain else self._matrices("solve", pose, orthonormalize)
         options: dict[str, Any] = {"free": free, "seed": seed, "limits": limits}
@@ -73,6 +76,7 @@ class CompiledArm(Arm):
         orthonormalize: bool = False,
     ) -> tuple[Array, NDArray[np.int64], NDArray[np.str_]]:
         """As `Arm.solve_batch`, by the compiled solver."""
+        checked_flag("orthonormalize", orthonormalize)
         T = self._matrices("solve_batch", poses, orthonormalize)
         options = {"free": free, "seed": seed, "limits": limits}
         found: tuple[Array, NDArray[np.int64], NDArray[np.str_]] = self._refusing(
@@ -114,9 +118,7 @@ def compile(arm: Arm) -> CompiledArm:
     from ikgen.emit.nanobind import emit
 
     if not isinstance(arm, Arm):
-        raise ArgumentError(
-            f"arm: {arm!r} does not do", hint="give what ikgen.load gives: ikgen.compile(arm)"
-        )
+        raise wrong("arm", arm, "what ikgen.load gives: ikgen.compile(arm)")
     texts = emit(arm.derivation.whole.module)
     package = f"{arm.name}_ik_ext"
     folder = cache_folder() / "compiled" / _key(texts)

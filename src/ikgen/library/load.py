@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.request import Outputs
-from ikgen.library.load_arguments import checked_count, checked_flag, checked_request
+from ikgen.library.load_arguments import checked_count, checked_flag, checked_request, wrong
 from ikgen.library.solver_cache import SolverCache, SolverEntry
 
 if TYPE_CHECKING:
@@ -62,6 +62,8 @@ def load(
     outputs = Outputs(
         samples=checked_count("samples", samples), verify=checked_flag("verify", verify)
     )
+    if not callable(progress):
+        raise wrong("progress", progress, "a function of a stage and a detail")
     store = SolverCache.default() if checked_flag("cache", cache) else None
     return _arm(request, outputs, store, progress)
 

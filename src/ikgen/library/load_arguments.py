@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import operator
 import os
+import reprlib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from ikgen.errors import ArgumentError, IkgenError
 from ikgen.generation.joint_value import joint_value
@@ -13,7 +17,11 @@ from ikgen.generation.request import Request
 from ikgen.importers.named_robots import is_named
 from ikgen.model.module_name import identifier, is_module_name
 
-__all__ = ["checked_count", "checked_flag", "checked_path", "checked_request"]
+__all__ = ["checked_count", "checked_flag", "checked_path", "checked_request", "wrong"]
+
+_MOST = 10**9
+_SHOWN = reprlib.Repr()
+_SHOWN.maxstring = _SHOWN.maxother = 60
 
 
 def checked_request(
@@ -59,18 +67,14 @@ def checked_request(
 def _robot(robot: object) -> Path:
     """The file that is meant."""
     if not isinstance(robot, str | os.PathLike):
-        raise _wrong("robot", robot, 'a path, or a name such as "example-robot-data:panda"')
+        raise wrong("robot", robot, 'a path, or a name such as "example-robot-data:panda"')
     path = Path(os.fsdecode(robot))
     if is_named(path):
         return path
     if not os.fsdecode(robot):
         raise ArgumentError("robot is empty", hint="name a URDF or xacro file, or a DH table")
-    if path.is_dir():
+    if _existing("robot", path).is_dir():
         raise ArgumentError(f"robot: '{path}' is a directory", hint="name the file in it")
-    if not path.exists():
-        raise ArgumentError(
-            f"robot: there is no file '{path}'", hint=f"paths are relative to {Path.cwd()}"
-        )
     return path
 
 
@@ -85,7 +89,7 @@ def _refuse_for_tables(request: Request) -> None:
 
 def _text(argument: str, value: object, what: str) -> str | None:
     if value is not None and (not isinstance(value, str) or not value):
-        raise _wrong(argument, value, what)
+        raise wrong(argument, value, what)
     return value
 
 
@@ -114,11 +118,11 @@ def _held(free: object) -> dict[str, float | None]:
     elif isinstance(free, Iterable):
         pairs = [(joint, None) for joint in free]
     else:
-        raise _wrong("free", free, what)
+        raise wrong("free", free, what)
     found: dict[str, float | None] = {}
     for joint, value in pairs:
         if not isinstance(joint, str) or not joint:
-            raise _wrong("free", joint, what)
+            raise wrong("free", joint, what)
         found[joint] = None if value is None else _value("free", joint, value)
     return found
 
@@ -128,7 +132,7 @@ def _locked(lock: object) -> dict[str, float]:
     if lock is None:
         return {}
     if not isinstance(lock, Mapping) or not all(isinstance(n, str) and n for n in lock):
-        raise _wrong("lock", lock, what)
+        raise wrong("lock", lock, what)
     return {joint: _value("lock", joint, value) for joint, value in lock.items()}
 
 
@@ -146,19 +150,27 @@ def _xacro_arguments(args: object) -> dict[str, str]:
     if args is None:
         return {}
     if not isinstance(args, Mapping) or not all(isinstance(n, str) and n for n in args):
-        raise _wrong("args", args, "a mapping of the xacro file's arguments to their values")
+        raise wrong("args", args, "a mapping of the xacro file's arguments to their values")
     return {n: str(x).lower() if isinstance(x, bool) else str(x) for n, x in args.items()}
 
 
 def _calibration(file: object) -> Path | None:
     if file is None:
         return None
-    path = checked_path("calibration", file)
-    if not path.is_file():
-        raise ArgumentError(
-            f"calibration: there is no file '{path}'", hint=f"paths are relative to {Path.cwd()}"
-        )
-    return path
+    return _existing("calibration", checked_path("calibration", file))
+
+
+def _existing(argument: str, path: Path) -> Path:
+    """A path that there is."""
+    try:
+        there = path.exists()
+    except (OSError, ValueError):  # names that no file can have
+        there = False
+    if there:
+        return path
+    raise ArgumentError(
+        f"{argument}: there is no file '{path}'", hint=f"paths are relative to {Path.cwd()}"
+    )
 
 
 def _folders(paths: object) -> tuple[Path, ...]:
@@ -166,14 +178,16 @@ def _folders(paths: object) -> tuple[Path, ...]:
     if isinstance(paths, str | os.PathLike):
         paths = [paths]
     if not isinstance(paths, Iterable):
-        raise _wrong("package_paths", paths, what)
+        raise wrong("package_paths", paths, what)
     found = []
     for one in paths:
-        if not isinstance(one, str | os.PathLike):
-            raise _wrong("package_paths", one, what)
-        found.append(Path(os.fsdecode(one)))
+        if not isinstance(one, str | os.PathLike) or not os.fsdecode(one):
+            raise wrong("package_paths", one, what)
+        found.append(_existing("package_paths", Path(os.fsdecode(one))))
         if not found[-1].is_dir():
-            raise ArgumentError(f"package_paths: there is no directory '{found[-1]}'", hint=what)
+            raise ArgumentError(
+                f"package_paths: '{found[-1]}' is no directory", hint=f"give {what}"
+            )
     return tuple(found)
 
 
@@ -181,38 +195,42 @@ def _name(name: object) -> str | None:
     text = _text("name", name, "an identifier, which begins the names of files")
     if text is not None and not is_module_name(text):
         raise ArgumentError(
-            f"name: '{text}' is not an identifier", hint=f'for example "{identifier(text)}"'
+            f"name: {_SHOWN.repr(text)} is not an identifier of at most 100 characters",
+            hint=f'for example "{identifier(text)}"',
         )
     return text
 
 
 def checked_path(argument: str, path: object) -> Path:
-    """A path to write to."""
-    if not isinstance(path, str | os.PathLike) or not os.fsdecode(path):
-        raise _wrong(argument, path, "a path")
-    return Path(os.fsdecode(path))
+    """A path that a file can have."""
+    try:
+        text = os.fsdecode(path)  # type: ignore[arg-type]
+        if isinstance(path, str | os.PathLike) and text and b"\0" not in os.fsencode(text):
+            return Path(text)
+    except (TypeError, UnicodeError):
+        pass
+    raise wrong(argument, path, "a path")
 
 
 def checked_count(argument: str, value: object) -> int:
     """A number of things, at least one."""
-    if isinstance(value, bool) or not hasattr(value, "__index__"):
-        raise _wrong(argument, value, "a whole number of 1 or more")
-    count = int(value.__index__())
-    if count < 1:
-        raise _wrong(argument, value, "a whole number of 1 or more")
+    try:
+        count = 0 if isinstance(value, bool) else operator.index(value)  # type: ignore[arg-type]
+    except TypeError:
+        count = 0
+    if not 1 <= count <= _MOST:
+        raise wrong(argument, value, f"a whole number from 1 to {_MOST}")
     return count
 
 
 def checked_flag(argument: str, value: Any) -> bool:
-    """True or false."""
-    if not isinstance(value, bool):
-        raise _wrong(argument, value, "True or False")
-    return value
+    """True or false, as Python or NumPy has them."""
+    if not isinstance(value, bool | np.bool_):
+        raise wrong(argument, value, "True or False")
+    return bool(value)
 
 
-def _wrong(argument: str, value: object, what: str) -> ArgumentError:
-    shown = repr(value)
-    shown = shown if len(shown) <= 60 else f"{shown[:57]}..."
-    return ArgumentError(
-        f"{argument}: {shown} ({type(value).__name__}) does not do", hint=f"give {what}"
-    )
+def wrong(argument: str, value: object, what: str) -> ArgumentError:
+    """The error for a value that is not `what` the argument takes."""
+    shown = f"{_SHOWN.repr(value)} ({type(value).__name__})"
+    return ArgumentError(f"{argument}: {shown} does not do", hint=f"give {what}")

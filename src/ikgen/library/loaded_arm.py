@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ikgen.errors import ArgumentError, UsageError
-from ikgen.library.load_arguments import checked_path
+from ikgen.library.load_arguments import checked_flag, checked_path, wrong
 from ikgen.library.memory_module import module_of
 
 if TYPE_CHECKING:
@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 __all__ = ["Arm"]
 
 Array = NDArray[np.float64]
+
+_FLAGS = {"limits", "project", "orthonormalize"}
+"""Arguments that are true or false."""
 
 
 class Arm:
@@ -178,6 +181,8 @@ class Arm:
     ) -> Solutions:
         """Rows over all values of the held joints, best first: near to the seed, in the centre of the
         limits, or dexterous."""
+        if not isinstance(prefer, str):
+            raise wrong("prefer", prefer, '"near", "centre" or "dexterous"')
         found: Solutions = self._call("search", pose, seed=seed, prefer=prefer, limits=limits)
         return found
 
@@ -198,6 +203,8 @@ class Arm:
         self, called: Callable[..., Any], function: str, *arguments: Any, **options: Any
     ) -> Any:
         """What it gives; a value that it refuses is an `ArgumentError`."""
+        for flag in _FLAGS & options.keys():
+            checked_flag(flag, options[flag])
         try:
             return called(*arguments, **options)
         except (ValueError, TypeError) as error:
@@ -214,9 +221,11 @@ class Arm:
         dof, held = self.dof, ", ".join(self.free_joints) or "none"
         words = {
             "free": f"the held joints are: {held}",
+            "no free joint": f"the held joints are: {held}",
+            "prefer": 'give "near", "centre" or "dexterous"',
             "seed": f"seed has {dof} finite values: {', '.join(self.joint_names)}",
             "start": f"start has {dof} finite values: {', '.join(self.joint_names)}",
-            "q has": f"q has {dof} values: {', '.join(self.joint_names)}",
+            "q ": f"q has {dof} values: {', '.join(self.joint_names)}",
             "pose": "a pose is a 4x4 matrix, or one of docs/reference/library.md#poses",
         }
         return next((hint for start, hint in words.items() if text.startswith(start)), "see help()")

@@ -11,7 +11,7 @@ import json
 import os
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from functools import cache
@@ -81,6 +81,7 @@ class SolverCache:
             "robot": [request.robot.name, _content(request)],
             "calibration": _digest(request.calibration),
             "options": encode(request, lambda path: path.name),
+            "units": [_units(request.free), _units(request.lock)],
             "verify": [outputs.verify, outputs.samples, outputs.seed],
         }
         return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
@@ -149,6 +150,11 @@ def cache_folder() -> Path:
 
 def _digest(file: Path | None) -> str | None:
     return None if file is None else hashlib.sha256(file.read_bytes()).hexdigest()
+
+
+def _units(values: Mapping[str, float | None]) -> list[str]:
+    """The units that values came with, which a robot may refuse."""
+    return [getattr(value, "unit", "") for value in values.values()]
 
 
 def _content(request: Request) -> str:

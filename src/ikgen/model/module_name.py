@@ -6,14 +6,23 @@ import keyword
 
 __all__ = ["identifier", "is_module_name"]
 
+_LONGEST = 100
+"""Characters: names of files, of which it is the beginning, have at most 255."""
+
 
 def is_module_name(name: str) -> bool:
-    """Whether a Python module and a C++ namespace can have that name."""
-    return name.isascii() and name.isidentifier() and not keyword.iskeyword(name)
+    """Whether a Python module, a C++ namespace and their files can have that name."""
+    return (
+        len(name) <= _LONGEST
+        and name.isascii()
+        and name.isidentifier()
+        and not keyword.iskeyword(name)
+    )
 
 
 def identifier(name: str) -> str:
-    """A robot's name as a module name: lower case, letters, digits and underscores."""
+    """A robot's name as a module name: lower case, letters, digits and underscores, not too long."""
     text = "".join(ch if ch.isascii() and ch.isalnum() else "_" for ch in name).strip("_").lower()
+    text = text[:_LONGEST].rstrip("_")
     text = text if text and not text[0].isdigit() else f"robot_{text}".rstrip("_")
     return f"{text}_arm" if keyword.iskeyword(text) else text

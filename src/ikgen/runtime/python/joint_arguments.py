@@ -31,7 +31,8 @@ def held_values(
         unknown = set(free) - set(names)
         if unknown:
             raise ValueError(f"no free joint named {sorted(unknown)}; there is {list(names)}")
-        values = tuple(float(free.get(n, x)) for n, x in zip(names, others))
+        given = real_array([free.get(n, x) for n, x in zip(names, others)], "free")
+        values = tuple(given.reshape(-1).tolist())
     else:
         given = real_array(free, "free")
         if given.ndim > 1:
@@ -57,11 +58,11 @@ def held_rows(
             if near is not None and name not in given:
                 values[:, k] = near[:, j]
         return values
-    single = len(arm.free_joints) == 1 and np.shape(free) == (count,)
-    if np.ndim(free) < 2 and not single:
-        one: list[float] = real_array(free, "free").tolist()
-        return np.broadcast_to(held_values(arm, one, None), shape)
     held = real_array(free, "free")
+    single = len(arm.free_joints) == 1 and held.shape == (count,)
+    if held.ndim < 2 and not single:
+        one: list[float] = held.tolist()
+        return np.broadcast_to(held_values(arm, one, None), shape)
     held = held[:, None] if single else held
     if held.shape != shape:
         raise ValueError(f"free has shape {held.shape}, expected {shape}")

@@ -43,7 +43,7 @@ def pose_matrices(pose: Any, alone: str) -> Array:
     if isinstance(pose, (list, tuple)) and len(pose):
         if any(hasattr(pose[0], name) for name in _TRANSFORMS):
             return np.stack([pose_matrices(one, alone) for one in pose])
-        pair = _of_pair(*map(_numbers, pose)) if len(pose) == 2 else None
+        pair = _of_pair(*(real_array(part, "pose") for part in pose)) if len(pose) == 2 else None
         if pair is not None:
             return pair
     for name in _TRANSFORMS:
@@ -51,14 +51,7 @@ def pose_matrices(pose: Any, alone: str) -> Array:
         if value is not None:
             pose = value() if callable(value) else value
             break
-    return _completed(_numbers(pose), alone)
-
-
-def _numbers(value: Any) -> Array:
-    try:
-        return real_array(value, "pose")
-    except TypeError:
-        raise ValueError(f"pose is no array of numbers: {type(value).__name__}") from None
+    return _completed(real_array(pose, "pose"), alone)
 
 
 def _of_pair(a: Array, b: Array) -> Array | None:

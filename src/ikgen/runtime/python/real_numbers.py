@@ -11,8 +11,12 @@ __all__ = ["real_array"]
 
 
 def real_array(values: ArrayLike, name: str) -> Array:
-    """The values as doubles; raises ValueError for complex ones, whose imaginary part would be lost."""
-    array = np.asarray(values)
-    if array.dtype.kind == "c":
-        raise ValueError(f"{name} has complex values")
-    return np.asarray(array, dtype=float)
+    """The values as doubles; raises ValueError for what is no array of numbers, and for complex ones, whose
+    imaginary part would be lost."""
+    try:
+        array = np.asarray(values)
+        if array.dtype.kind != "c":
+            return np.asarray(array, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{name} is no array of numbers: {type(values).__name__}") from None
+    raise ValueError(f"{name} has complex values")
