@@ -3,11 +3,12 @@
 #
 # Step by step, as in Zhang and Hannaford, *IKBT: solving closed-form inverse kinematics with
 # behavior tree*, 2017, with the numbers of its table "Puma 560 Numerical Solutions". Run it from
-# the repository's folder.
+# the repository's folder, after `pip install 'ikgen[notebooks]'`.
 
 # %%
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy as np
 import sympy
 
@@ -56,6 +57,26 @@ print(np.degrees(first))  # the paper has 29.99995 and -287.08771
 assert np.allclose(np.mod(np.degrees(first), 360.0), [29.99995, 72.91229], atol=1e-3)
 
 # %% [markdown]
+# Both are zeros of one equation, $p_y \cos\theta_1 - p_x \sin\theta_1 = d_3$. A pose nearer to the
+# first axis moves them together, until the arm can't reach it:
+
+# %%
+theta_1 = sympy.Symbol("theta_1", real=True)
+wanted = d_3 + p_x * sympy.sin(theta_1) - p_y * sympy.cos(theta_1)
+assert wanted in [equation.lhs - equation.rhs for equation in used]
+angles = np.linspace(-np.pi, np.pi, 400)
+figure, place = plt.subplots(figsize=(8, 4), layout="constrained")
+for nearer in (1.0, 0.95, 0.9):
+    left = wanted.subs({p_x: nearer * pose[0, 3], p_y: nearer * pose[1, 3], d_3: 2})
+    values = sympy.lambdify(theta_1, left)(angles)
+    place.plot(np.degrees(angles), values, label=f"{nearer:g} of the distance")
+place.plot(np.degrees(first), [0.0, 0.0], "o", color="black", label="the two branches")
+place.axhline(0.0, color="gray", linewidth=0.8)
+place.set(xlabel="theta_1, degrees", ylabel="left side minus right side")
+place.legend()
+plt.show()
+
+# %% [markdown]
 # The same formulas as code, which finds all eight rows of the table:
 
 # %%
@@ -80,6 +101,36 @@ clean, _, turned = np.linalg.svd(pose[:3, :3])  # the table has five digits
 pose[:3, :3] = clean @ turned
 rows = np.degrees(puma.solve(pose, limits=False).q)
 print(rows.round(3))
-assert len(rows) == 8
-own = np.array([30.0, 50.0, 40.0, 45.0, 120.0, 60.0])
-assert np.abs(rows - own).max(axis=1).min() < 1e-2
+
+# %% [markdown]
+# The paper's table, as it stands there; its digits are those of its pose:
+
+# %%
+paper = np.array(
+    [
+        [-287.08771, 130.00008, -191.92745, -6.78054, -66.24462, 4.13687],
+        [29.99995, 49.99992, 39.99994, -135.00007, -119.99981, -120.00010],
+        [29.99995, 148.48625, -191.92745, 142.01103, 95.78709, -151.06756],
+        [-287.08771, 31.51375, 39.99994, 18.00641, 159.53838, 18.33206],
+        [-287.08771, 130.00008, -191.92745, 173.21946, 66.24462, -175.86313],
+        [29.99995, 148.48625, -191.92745, -37.98897, -95.78709, 28.93244],
+        [29.99995, 49.99992, 39.99994, 44.99993, 119.99981, 59.99990],
+        [-287.08771, 31.51375, 39.99994, -161.99359, -159.53838, -161.66794],
+    ]
+)
+apart = np.abs((rows[:, None] - paper[None] + 180.0) % 360.0 - 180.0).max(axis=2)
+assert len(rows) == len(paper) == 8
+assert apart.min(axis=0).max() < 3e-3 and apart.min(axis=1).max() < 3e-3
+
+# %% [markdown]
+# Two values of $\theta_1$, two of $\theta_3$ for each, two of $\theta_4$ for each of those, all others
+# follow: a tree whose ends are the eight rows.
+
+# %%
+figure, place = plt.subplots(figsize=(8, 5), layout="constrained")
+order = [0, 2, 3]  # theta_1, theta_3, theta_4
+for row in (rows + 180.0) % 360.0 - 180.0:
+    place.plot(range(4), [0.0, *row[order]], "-o", color="tab:blue", alpha=0.6)
+place.set_xticks(range(4), ["pose", "theta_1", "theta_3", "theta_4"])
+place.set(ylabel="degrees, -180 to 180")
+plt.show()

@@ -1,10 +1,11 @@
-"""The notebooks run, cell after cell, and what they say about numbers holds."""
+"""The notebooks run, cell after cell, draw, and what they say about numbers holds."""
 
 from __future__ import annotations
 
 import runpy
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -25,5 +26,13 @@ def test_notebook_runs(
 ) -> None:
     monkeypatch.chdir(ROOT)
     monkeypatch.setenv("IKGEN_CACHE_DIR", str(tmp_path))
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    plt.close("all")
     runpy.run_path(str(path))
     assert len(capsys.readouterr().out.splitlines()) > 3
+    figures = [plt.figure(number) for number in plt.get_fignums()]
+    plt.close("all")
+    assert figures
+    for figure in figures:
+        assert all(place.lines for place in figure.axes)
+        figure.savefig(tmp_path / "figure.png")

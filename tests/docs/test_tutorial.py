@@ -16,11 +16,12 @@ TUTORIAL = Path(__file__).resolve().parents[2] / "docs/tutorial"
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """After the first page."""
     place = tmp_path_factory.mktemp("tutorial")
-    assert follow(TUTORIAL / "first-robot.md", place) == 4
+    assert follow(TUTORIAL / "first-robot.md", place) == 6
     return place
 
 
 def test_first_robot(folder: Path) -> None:
+    assert (folder / "generated/panda_ik.py").is_file()
     assert (folder / "generated/arm_ik.py").is_file()
 
 
