@@ -6,7 +6,8 @@
 Prints one row a robot: how it was solved, how many solutions each pose has by the emitted Python
 module and by an independent numerical search, how many rows were wrong and how many missed. A row
 is wrong if forward kinematics does not give the pose back; a generating configuration or a solution
-of the search is missed if no row equals it. Exits with 1 if any row was wrong or missed.
+of the search is missed if no row equals it. Below stand the paper's own tables beside what ikgen finds.
+Exits with 1 if any row was wrong or missed.
 
 With `--prove` the derivations are proved in exact arithmetic instead, for every pose. Exits with 1 if one
 of a table that rules solve is not proved.
@@ -29,6 +30,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.paper_tables import comparison
 from benchmarks.results import write_result
 from ikgen.emit.derivation import Derivation
 from ikgen.emit.python.python_emitter import emit_module
@@ -63,6 +65,7 @@ class Trial:
     wrong: int
     missed: int
     note: str
+    order: tuple[str, ...] = ()
 
 
 def tables(part: str = "") -> list[Path]:
@@ -130,6 +133,7 @@ def _check(
         wrong=wrong,
         missed=missed,
         note=derivation.geometry.name,
+        order=derivation.module.order,
     )
 
 
@@ -229,8 +233,10 @@ def _print(trials: Sequence[Trial]) -> None:
     print(
         f"\n{len(trials)} robots: {', '.join(f'{n} {s}' for s, n in states.items())}; "
         f"{sum(t.wrong for t in trials)} rows wrong, {sum(t.missed for t in trials)} missed; "
-        f"median {statistics.median(t.seconds for t in solved or trials):.2f} s"
+        f"median {statistics.median(t.seconds for t in solved or trials):.2f} s\n"
     )
+    facts = [(t.robot, t.dof, t.seconds if t in solved else None, t.order) for t in trials]
+    print("\n".join(comparison(facts)))
 
 
 def _recorded(trials: Sequence[Trial]) -> dict[str, Any]:
