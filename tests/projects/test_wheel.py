@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -81,6 +82,55 @@ def test_the_page_on_the_library_works(installed: Environment, tmp_path: Path) -
     assert "lock: elbow_joint: 'much' is not a finite number" in printed
     assert (tmp_path / "generated/ur5e_ik.py").is_file()
     assert (tmp_path / "robot.html").is_file()
+
+
+HELD = """
+import os; os.environ["IKGEN_CACHE_DIR"] = "cache"
+import ikgen
+import numpy as np
+import sympy
+
+arm = ikgen.load("robot.urdf")
+q = np.array([0.3, 0.4, -0.2, -1.6, 0.1, 2.0, 0.5])
+T = arm.forward(q)
+
+found = arm.solve(T, seed=q)
+assert np.allclose(found[0], q) and len(found.branch) == len(found) == len(found[:])
+rows, count, status = arm.solve_batch(np.stack([T, T]), seed=q)
+assert count.tolist() == [len(found)] * 2 and status.tolist() == ["OK", "OK"]
+assert arm.jacobian(q).shape == (6, 7)
+path = arm.follow(np.stack([T, arm.forward(q + 0.01)]), start=q)
+assert path.reached == 2
+held = q[arm.joint_names.index(arm.free_joints[0])]
+assert any(one.low <= held <= one.high for one in arm.self_motion(T))
+
+derivation = arm.derivation
+assert derivation.geometry.words and len(derivation.dh.rows) == 7
+assert len(derivation.order) == 6 and derivation.trace
+for variable, branches in derivation.solutions.items():
+    for branch in branches:
+        assert isinstance(branch.expression, sympy.Expr) and isinstance(branch.conditions, tuple)
+assert all(isinstance(equation, sympy.Eq) for equation in derivation.equations)
+assert derivation.equations
+assert arm.verification.passed and len(arm.verification.table()) > 5
+
+print(*(path.name for path in arm.save("out", emit=["python", "cpp"])))
+print(arm.report("arm.html"))
+card = arm._repr_html_()
+assert "<svg" in card and "<table" in card and "at most 8 solutions" in card
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not shutil.which("c++"), reason="needs a C++ compiler")
+def test_all_of_the_library_works_from_a_wheel(built: dict[str, Path], tmp_path: Path) -> None:
+    environment = without_ikgen(tmp_path / "env")
+    environment.install(built["wheel"])
+    shutil.copy(ROOT / "urdf_fixtures/franka_fr3.urdf", tmp_path / "robot.urdf")
+    (tmp_path / "use.py").write_text(HELD, encoding="utf-8")
+    printed = environment.call("python", "use.py", cwd=tmp_path).split()
+    assert printed[-1] == "arm.html" and (tmp_path / "arm.html").is_file()
+    assert {"fr3_ik.py", "fr3_ik.hpp"} <= set(printed)
 
 
 def test_smoke(installed: Environment, tmp_path: Path) -> None:
