@@ -3,8 +3,9 @@
     python -m benchmarks.mutants [--read N] [--run N] [--seed N] [--keep DIR] [--record]
 
 N mutants are read in this process (file, chains, DH form, geometry), another N go through the command line
-(`ikgen from-urdf`, Python and verification). Wrong is: an exception that is no `IkgenError`, an exit code
-other than 0, 2 or 3, a traceback, "please report it", more than two minutes. Exit code 1 where any is.
+(`ikgen from-urdf`, Python and verification). Wrong is: an exception that is no `IkgenError` with a way out,
+an exit code other than 0, 2 or 3, a traceback, "please report it", more than two minutes. Exit code 1 where
+any is.
 """
 
 from __future__ import annotations
@@ -12,8 +13,8 @@ from __future__ import annotations
 import argparse
 import itertools
 import random
+import shutil
 import signal
-import subprocess
 import sys
 import tempfile
 import traceback
@@ -21,6 +22,7 @@ from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
+from benchmarks import warm_runs
 from benchmarks.collection import CORPUS
 from benchmarks.command_line import FIXTURES
 from benchmarks.mutations import mutant
@@ -59,7 +61,7 @@ def read_one(path: Path) -> str:
             chain = found.candidates[0]
             inspect_robot(Request(path, base=chain.base, tip=chain.tip), advice=False)
     except IkgenError as error:
-        return "refused" if error.message and error.hint else "refused without a way out"
+        return "refused" if error.message and error.hint else "WRONG: refused without a way out"
     return "read"
 
 
@@ -95,10 +97,13 @@ def read_all(count: int, seed: int, keep: Path) -> Counter[str]:
 def run_all(count: int, seed: int, keep: Path) -> Counter[str]:
     """The mutants of the second kind."""
     counts = Counter[str]()
-    for name, data in mutants(count, seed + 1):
+    if count:
+        warm_runs.load("from-urdf", str(FIXTURES / "ur5e.urdf"), "-q", "--samples", "10")
+    links = [arm_of(path) for path in robot_files()]
+    for number, (name, data) in enumerate(mutants(count, seed + 1)):
         path = keep / f"{name}.urdf"
         path.write_bytes(data)
-        words = run_one(path)
+        words = run_one(path, links[number % len(links)])
         counts[words] += 1
         if words.startswith("WRONG"):
             print(f"{name}: {words}", flush=True)
@@ -107,18 +112,31 @@ def run_all(count: int, seed: int, keep: Path) -> Counter[str]:
     return counts
 
 
-def run_one(path: Path) -> str:
+def arm_of(path: Path) -> tuple[str, ...]:
+    """Options that name an arm of a file as it was, where it has several."""
+    from ikgen.generation.inspection import inspect_robot
+    from ikgen.generation.request import Request
+
+    found = inspect_robot(Request(path), advice=False)
+    if found.reading is not None or not found.candidates:
+        return ()
+    return "--base", found.candidates[0].base, "--tip", found.candidates[0].tip
+
+
+def run_one(path: Path, links: tuple[str, ...] = ()) -> str:
     """What the command line says to one file."""
-    with tempfile.TemporaryDirectory(prefix="mutants-") as out:
-        command = [sys.executable, "-m", "ikgen", "from-urdf", str(path), "-q", "--samples", "100"]
-        try:
-            done = subprocess.run([*command, "-o", out], capture_output=True, timeout=SECONDS)
-        except subprocess.TimeoutExpired:
-            return f"WRONG: more than {SECONDS} s"
-    said = done.stderr.decode("utf-8", "replace")
-    if done.returncode not in (0, 2, 3) or "Traceback" in said or "please report" in said:
-        return f"WRONG: exit code {done.returncode}: {' '.join(said.split())[:300]}"
-    return f"exit code {done.returncode}"
+    out = Path(tempfile.mkdtemp(prefix="mutants-"))
+    try:
+        command = ("from-urdf", str(path), *links, "-q", "--samples", "100", "-o", str(out / "out"))
+        run = warm_runs.start(command, out, out / "said")
+        code, said = run.wait(SECONDS), run.said
+    finally:
+        shutil.rmtree(out, ignore_errors=True)
+    if code == warm_runs.LATE:
+        return f"WRONG: more than {SECONDS} s"
+    if code not in (0, 2, 3) or "Traceback" in said or "please report" in said:
+        return f"WRONG: exit code {code}: {' '.join(said.split())[:300]}"
+    return f"exit code {code}"
 
 
 def main() -> int:

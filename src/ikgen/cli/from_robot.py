@@ -93,7 +93,8 @@ def from_dh(table: Path, **options: Any) -> int:
         raise UsageError(f"{table} is not a TOML file", hint=f"a robot? ikgen from-urdf {table}")
     for parameter, option in _NOT_OF_TABLES.items():
         if options[parameter]:
-            raise UsageError(f"a DH table is one chain without arguments: leave {option} out")
+            what = f"{option} is for robot files: a DH table is one chain without arguments"
+            raise UsageError(what, hint=f"leave {option} out")
     return _run(table, **options)
 
 

@@ -35,11 +35,13 @@ def make_request(
         task = find_task(task, tool_axis).stem if tool_axis else find_task(task).name
     for folder in package_paths:
         if not folder.is_dir():
-            raise UsageError(f"--package-path {folder}: no such directory")
+            hint = "name the folder that holds the package's folder"
+            raise UsageError(f"--package-path {folder}: no such directory", hint=hint)
     held, locked = parse_free(free), parse_locked(lock)
     for joint in held:
         if joint in locked:
-            raise UsageError(f"joint '{joint}' is given to both --free and --lock")
+            hint = "--free keeps it an argument of solve, --lock fixes it: leave one out"
+            raise UsageError(f"joint '{joint}' is given to both --free and --lock", hint=hint)
     return Request(
         robot=robot,
         base=base,
@@ -64,7 +66,10 @@ def parse_free(texts: Sequence[str]) -> dict[str, float | None]:
         if not equals:
             joint = value
         if not joint or joint in found:
-            raise UsageError(f"--free {text}: " + ("given twice" if joint else "no joint named"))
+            what = "given twice" if joint else "no joint named"
+            raise UsageError(
+                f"--free {text}: {what}", hint="write --free JOINT or JOINT=VALUE, once"
+            )
         found[joint] = _number("--free", text, value) if equals else None
     return found
 
@@ -80,7 +85,8 @@ def parse_locked(texts: Sequence[str]) -> dict[str, float]:
                 hint="write --lock JOINT=VALUE (rad or m, or 45deg, 120mm)",
             )
         if joint in found:
-            raise UsageError(f"--lock {text}: joint '{joint}' is given twice")
+            hint = "leave all but one of them out"
+            raise UsageError(f"--lock {text}: joint '{joint}' is given twice", hint=hint)
         found[joint] = _number("--lock", text, value)
     return found
 

@@ -132,7 +132,8 @@ def row_offsets(path: Path, rows: int) -> tuple[dict[str, float], ...]:
     try:
         data = tomllib.loads(_text(path))
     except tomllib.TOMLDecodeError as error:
-        raise BadDescriptionError(f"not TOML: {error}", file=str(path)) from None
+        hint = "write tables [[joints]]; calibrations in YAML end in .yaml"
+        raise BadDescriptionError(f"not TOML: {error}", file=str(path), hint=hint) from None
     joints = data.get("joints")
     if set(data) != {"joints"} or not isinstance(joints, list) or len(joints) != rows:
         raise BadDescriptionError(
@@ -162,7 +163,7 @@ def _number(value: Any, where: str, path: Path) -> float:
     if isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
         return float(value)
     problem = f"{where} of the calibration is {value!r}, not a finite number"
-    raise BadDescriptionError(problem, file=str(path))
+    raise BadDescriptionError(problem, file=str(path), hint="write it as a number, in m or rad")
 
 
 def _text(path: Path) -> str:
@@ -181,4 +182,5 @@ def _yaml(path: Path) -> Any:
         return parse_yaml(_text(path), str(path), {})
     except (yaml.YAMLError, ExpansionLimitError) as error:
         what = " ".join(str(error).split())
-        raise BadDescriptionError(f"not YAML: {what}", file=str(path)) from None
+        hint = "write it as ur_description's calibration.yaml: kinematics, links, their six numbers"
+        raise BadDescriptionError(f"not YAML: {what}", file=str(path), hint=hint) from None

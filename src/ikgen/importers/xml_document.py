@@ -87,7 +87,8 @@ def read_text(path: Path, largest: int = LARGEST_FILE, *, may_be_empty: bool = F
         ) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise BadDescriptionError(reason, file=str(path)) from None
+        hint = "check the path and its permissions"
+        raise BadDescriptionError(reason, file=str(path), hint=hint) from None
     text = _decode(data, path).replace("\r\n", "\n").replace("\r", "\n")
     if not text.strip() and not may_be_empty:
         hint = "give a URDF or xacro file, or a DH table"

@@ -38,7 +38,8 @@ def to_dh(
     Raises UsageError for a chain that does not move, UnknownNameError for a wrong name in `free`.
     """
     if not chain.axes:
-        raise UsageError(f"no moving joint between '{chain.base_link}' and '{chain.tip_link}'")
+        what = f"no moving joint between '{chain.base_link}' and '{chain.tip_link}'"
+        raise UsageError(what, hint="choose links further apart; ikgen inspect shows the tree")
     names = [joint.name for joint in chain.joints]
     for name in free:
         if name not in names:

@@ -134,7 +134,7 @@ def _text(path: Path) -> str:
         hint = "write one: `name`, `robot` under [[arm]]; ikgen init ROBOT does"
         raise _error(path, "no such file", hint=hint) from None
     except (OSError, UnicodeDecodeError) as error:
-        raise _error(path, str(error)) from None
+        raise _error(path, str(error), hint="save it as UTF-8 text that can be read") from None
 
 
 def _tables(path: Path, text: str) -> dict[str, Any]:

@@ -43,7 +43,10 @@ class IkgenBuildHook(BuildHookInterface):  # type: ignore[type-arg]
         named = self.config.get("config")
         config = root / str(named) if named else default_config(root)
         if config is None:
-            raise UsageError("the ikgen build hook finds no ikgen.toml and no [tool.ikgen]")
+            raise UsageError(
+                "the ikgen build hook finds no ikgen.toml and no [tool.ikgen]",
+                hint="write one (ikgen init ROBOT does), or take the hook out of pyproject.toml",
+            )
         arms = load_config(config)
         verify = bool(self.config.get("verify", True))
         for outcome in build_arms(arms, verify=verify, progress=self._say):

@@ -32,7 +32,9 @@ def _resolve(
             return None, 0.0, offset + multiplier * locked.get(name, 0.0)
         name, factor, shift = text.mimic[name]
         multiplier, offset = multiplier * factor, offset + multiplier * shift
-    raise BadDescriptionError(f"joint {name} mimics itself in a circle")
+    raise BadDescriptionError(
+        f"joint {name} mimics itself in a circle", hint="let one of them follow no other"
+    )
 
 
 class PinocchioOracle(Oracle):
@@ -56,7 +58,9 @@ class PinocchioOracle(Oracle):
             model = pin.buildModelFromXML(text.xml)
         except (ValueError, RuntimeError) as error:
             raise BadDescriptionError(
-                f"Pinocchio cannot read the description: {error}", file=str(tree.source.path)
+                f"Pinocchio cannot read the description: {error}",
+                file=str(tree.source.path),
+                hint="mend what it names; --no-verify writes code that was not checked",
             ) from error
         for joint in [*joint_names, *(locked or {})]:
             if joint not in text.ranges:

@@ -102,7 +102,10 @@ def read_kinematic_text(text: str, base_link: str, tip_link: str) -> KinematicTe
     try:
         robot = ET.fromstring(text)
     except ET.ParseError as error:
-        raise BadDescriptionError(f"the expanded description is not XML: {error}") from error
+        hint = "check what its macros expand to"
+        raise BadDescriptionError(
+            f"the expanded description is not XML: {error}", hint=hint
+        ) from error
     links = dict.fromkeys(link.get("name", "") for link in robot.findall("link"))
     for link in (base_link, tip_link):
         if link not in links:

@@ -54,7 +54,8 @@ def emit_header(module: SolverModule) -> str:
     program = module.program
     branches = [level.branches for level in program.levels[1:]]
     if any(n & (n - 1) for n in branches):
-        raise UsageError(f"the C++ emitter needs levels of 2, 4, ... branches, not {branches}")
+        what = f"the C++ emitter needs levels of 2, 4, ... branches, not {branches}"
+        raise UsageError(what, hint="emit Python alone, or have the leaf give 2, 4, ... branches")
     text = ProgramText(module)
     policy, runtime = SolvePolicy(), bundle(_headers(module), _SYSTEM)
     return render(

@@ -25,7 +25,8 @@ class CppHeader(ProgramRunner):
     def __init__(self, path: Path | str, constants: ArmConstants) -> None:
         self.path = Path(path).resolve()
         if not self.path.is_file():
-            raise BadDescriptionError("no such C++ header", file=str(path))
+            hint = "check the path, or generate it with --emit cpp"
+            raise BadDescriptionError("no such C++ header", file=str(path), hint=hint)
         self._folder = ScratchFolder("ikgen-")  # goes with this object
         work = self._folder.path
         source, program = work / "driver.cpp", work / "driver"

@@ -59,6 +59,7 @@ class ProgramRunner:
                 f"has {dof} joints, {free} of them free, instead of {constants.dof} and "
                 f"{len(constants.free_joints)}",
                 file=source,
+                hint="generate it anew: it is another arm's, or held joints have changed",
             )
         defaults = tuple(told[3:].tolist()) if len(told) > 3 else None
         self._constants = dataclasses.replace(constants, max_solutions=most, free_defaults=defaults)
@@ -78,7 +79,10 @@ class ProgramRunner:
         done = run_program([str(self._program), str(request), str(answer)])
         if done.late or done.code:
             said = f": {done.printed[:500]}" if done.printed.strip() else ""
-            raise VerificationError(f"the emitted {self.label} code's driver {done.words}{said}")
+            raise VerificationError(
+                f"the emitted {self.label} code's driver {done.words}{said}",
+                hint="generate it anew; where it takes too long, give more IKGEN_TOOL_SECONDS",
+            )
         return np.fromfile(answer)
 
     def solve(

@@ -31,7 +31,8 @@ def _load(path: Path) -> ModuleType:
     name = f"_ikgen_verified_{next(_serial)}_{path.stem}"
     spec = importlib.util.spec_from_file_location(name, path)
     if spec is None or spec.loader is None or not path.is_file():
-        raise BadDescriptionError("no such Python module", file=str(path))
+        hint = "check the path, or generate it with --emit python"
+        raise BadDescriptionError("no such Python module", file=str(path), hint=hint)
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module  # dataclasses look their module up here
     writes, sys.dont_write_bytecode = sys.dont_write_bytecode, True
@@ -39,7 +40,10 @@ def _load(path: Path) -> ModuleType:
         spec.loader.exec_module(module)
     except Exception as error:
         what = f"{type(error).__name__}: {error}"
-        raise BadDescriptionError(f"cannot be imported: {what}", file=str(path)) from error
+        hint = "generate it anew, with ikgen of this version"
+        raise BadDescriptionError(
+            f"cannot be imported: {what}", file=str(path), hint=hint
+        ) from error
     finally:
         sys.dont_write_bytecode = writes
         sys.modules.pop(name, None)
