@@ -10,7 +10,7 @@ from ikgen.generation.request import Request
 from ikgen.lowering.lower import lower
 from ikgen.solver.solve import solve_chain
 
-__all__ = ["EXACT", "ROBOTS", "solver_module"]
+__all__ = ["EXACT", "ROBOTS", "robot_file", "solver_module"]
 
 TESTS = Path(__file__).resolve().parents[1]
 FIXTURES = TESTS.parent / "urdf_fixtures"

@@ -50,7 +50,7 @@ constexpr double binomial(int n, int r) noexcept {
 constexpr Bernstein make_bernstein(double width) noexcept {
   Turn half[kDegree * 2 + 1] = {};  // multiples of width/2
   half[0] = {1.0L, 0.0L};
-  half[1] = turn_by(0.5L * width);
+  half[1] = turn_by(0.5L * static_cast<long double>(width));
   for (int k = 2; k <= kDegree * 2; ++k) half[k] = times(half[k - 1], half[1]);
   Bernstein out{};
   for (int m = 0; m <= kDegree; ++m)
@@ -59,7 +59,8 @@ constexpr Bernstein make_bernstein(double width) noexcept {
       for (int j = 0; j <= q; ++j) {
         const int l = q - j, phase = j - l - m;
         if (l > kDegree - m) continue;
-        const long double w = binomial(kDegree + m, j) * binomial(kDegree - m, l) / binomial(2 * kDegree, q);
+        const double share = binomial(kDegree + m, j) * binomial(kDegree - m, l) / binomial(2 * kDegree, q);
+        const auto w = static_cast<long double>(share);
         even += w * half[phase < 0 ? -phase : phase].c;
         odd += w * (phase < 0 ? -half[-phase].s : half[phase].s);
       }
