@@ -6,11 +6,11 @@ Changes of `forms`, `solver`, `lowering`, `program`, `runtime` (Python), `emit` 
 (`benchmarks/code_mutations.py`) are drawn without regard to the package, so that however many are done
 are a fair sample. Each is made in a copy of this tree, and tests run till one fails: of those that take
 little, the ones of its package, then some that run emitted code of many arms; about ten seconds of them,
-and none that needs a compiler, so that the score is a lower bound of what all tests find. Golden files are
-left out, which would notice any change of text and say nothing of what it does. A change counts as found
-where a test fails, an import does, or the tests take more than four times the processor time that they
-take without it. What is done stands in FILE, one JSON object a line; a run with the same file goes on
-behind it. Changes that are not found are printed.
+then a minute, and none that needs a compiler, so that the score is a lower bound of what all tests find.
+Golden files are left out, which would notice any change of text and say nothing of what it does. A change
+counts as found where a test fails, an import does, or the tests take more than four times the processor
+time that they take without it. What is done stands in FILE, one JSON object a line; a run with the same file
+goes on behind it. Changes that are not found are printed.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from benchmarks.results import write_result
 if TYPE_CHECKING:
     import pytest
 
-__all__ = ["PACKAGES", "drawn", "main", "tests_of"]
+__all__ = ["PACKAGES", "drawn", "main", "files_for"]
 
 PACKAGES = ("forms", "solver", "lowering", "program", "runtime", "emit", "verify")
 _LOADED = ("numpy", "numpy.linalg", "pinocchio", "lxml.etree", "jinja2", "py_trees", "click", "pytest",
@@ -65,8 +65,13 @@ _NEAREST = (
     "tests/conformance/test_follow.py", "tests/conformance/test_noisy_poses.py",
     "tests/kinematics/test_*.py", "tests/equations/test_*.py", "tests/lowering/test_*.py",
 )  # fmt: skip
-_LONGEST = 4.0  # processor time (s) of a test
-_NEAR, _OTHER, _MOST = 6.0, 2.5, 10.0  # of those of a file, near or not, and of all for a change
+_LONGEST = 10.0  # processor time (s) of a test
+_FIRST = (
+    6.0,
+    2.5,
+    10.0,
+)  # of the tests of a file near the module, of another's, of all that run first
+_THEN = (40.0, 10.0, 60.0)  # of those that run where the first ones pass
 _LATE = 4.0
 _MEMORY = 6 << 30
 
@@ -99,7 +104,7 @@ def drawn(seed: int) -> list[tuple[str, CodeMutation]]:
     return found
 
 
-def tests_of(path: str) -> list[str]:
+def files_for(path: str) -> list[str]:
     """The files of tests that run for a module: those that share a word with its name, those of its
     package, others."""
     package = path.split("/")[0]
@@ -266,21 +271,29 @@ class Baseline:
     def __init__(self, tree: Tree, file: Path) -> None:
         if not file.is_file():
             paths = {path for path, _ in drawn(0)}
-            every = dict.fromkeys(test for path in sorted(paths) for test in tests_of(path))
+            every = dict.fromkeys(test for path in sorted(paths) for test in files_for(path))
             tree.run(list(every), 3600.0, times=file)
         self.seconds: dict[str, float] = json.loads(file.read_text(encoding="utf-8"))
 
-    def chosen(self, path: str) -> dict[str, float]:
-        """The tests to run for a module, with their times: those that take little, till the time is
-        used."""
-        of_file: dict[str, list[str]] = {file: [] for file in tests_of(path)}
+    def stages(self, path: str) -> list[dict[str, float]]:
+        """The tests to run for a module, with their times: some that take little, and more where those
+        pass."""
+        first = self._within(path, *_FIRST, set())
+        return [first, self._within(path, *_THEN, set(first))]
+
+    def _within(
+        self, path: str, near: float, other: float, most: float, done: set[str]
+    ) -> dict[str, float]:
+        """Tests that are not done, the shortest of each file, till these times (s) are used."""
+        of_file: dict[str, list[str]] = {file: [] for file in files_for(path)}
         for test, seconds in sorted(self.seconds.items(), key=lambda item: item[1]):
-            if test.split("::")[0] in of_file and seconds < _LONGEST:
-                of_file[test.split("::")[0]].append(test)
+            file = test.split("::")[0]
+            if file in of_file and seconds < _LONGEST and test not in done:
+                of_file[file].append(test)
         found: dict[str, float] = {}
         for file, tests in of_file.items():
-            near = _words(Path(path).stem) & _words(Path(file).stem)
-            left = min(_MOST - sum(found.values()), _NEAR if near else _OTHER)
+            alike = _words(Path(path).stem) & _words(Path(file).stem)
+            left = min(most - sum(found.values()), near if alike else other)
             for test in tests:
                 left -= self.seconds[test]
                 if left > 0.0:
@@ -314,9 +327,10 @@ def run(count: int, seed: int, log: Path) -> list[Done]:
         tree = Tree(folder)
         baseline = Baseline(tree, log.with_suffix(".times"))
         for path, mutation in todo[len(found) : count]:
-            tests, started = baseline.chosen(path), time.monotonic()
+            started = time.monotonic()
             with tree.changed(path, mutation):
-                said = tree.run(tests, _limit(tests))
+                runs = (tree.run(tests, _limit(tests)) for tests in baseline.stages(path) if tests)
+                said = next(filter(None, runs), "")
             done = Done(path, mutation, said, round(time.monotonic() - started, 1))
             found.append(done)
             with log.open("a", encoding="utf-8") as stream:

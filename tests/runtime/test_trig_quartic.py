@@ -9,7 +9,11 @@ import pytest
 from numpy.typing import NDArray
 from tests.support.routines import compiled_header, feed
 
-from ikgen.runtime.python.trig_quartic_roots import trig_quartic, trig_quartic_batch
+from ikgen.runtime.python.trig_quartic_roots import (
+    trig_quartic,
+    trig_quartic_batch,
+    trig_quartic_lanes,
+)
 
 Array = NDArray[np.float64]
 KINDS = ("simple", "double", "two doubles", "shared", "pi", "zero", "two real", "nearly linear")
@@ -143,3 +147,18 @@ def _compare(k: Array, roots: Array, other: list[tuple[int, list[tuple[float, fl
             slope = abs(2.0 * (b2 * (x - y) * (x + y) - 2.0 * a2 * x * y) + b1 * x - a1 * y)
             nearby = np.nanmin(np.maximum(np.abs(c[i] - x), np.abs(s[i] - y)))
             assert nearby < 1e-12 or nearby * slope < 3e-15
+
+
+def test_lanes_are_the_batch_along_an_axis() -> None:
+    """As the arrays of levels of branches call it: four roots a lane, those that are none marked."""
+    k = np.concatenate([planted(kind, 3)[0] for kind in ("simple", "two real", "shared")])
+    count, c, s = trig_quartic_batch(*k.T)
+    shape = (1, 1, len(k))
+    cosines, sines, real = trig_quartic_lanes(tuple(x.reshape(shape) for x in k.T), 1)
+    assert cosines.shape == sines.shape == real.shape == (1, 4, len(k))
+    assert set(count) >= {2, 4}
+    for i, n in enumerate(count):
+        assert real[0, :, i].tolist() == [j < n for j in range(4)]
+        np.testing.assert_array_equal(cosines[0, :n, i], c[i, :n])
+        np.testing.assert_array_equal(sines[0, :n, i], s[i, :n])
+    assert np.isfinite(cosines).all() and np.isfinite(sines).all()
