@@ -9,8 +9,8 @@ little, the ones of its package, then some that run emitted code of many arms; a
 then a minute, and none that needs a compiler, so that the score is a lower bound of what all tests find.
 Golden files are left out, which would notice any change of text and say nothing of what it does. A change
 counts as found where a test fails, an import does, or the tests take more than four times the processor
-time that they take without it. What is done stands in FILE, one JSON object a line; a run with the same file
-goes on behind it. Changes that are not found are printed.
+time that they take without it. What is done stands in FILE, one JSON object a line; a run with the same
+file goes on behind it. Changes that are not found are printed.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from benchmarks.results import write_result
 if TYPE_CHECKING:
     import pytest
 
-__all__ = ["PACKAGES", "drawn", "main", "files_for"]
+__all__ = ["PACKAGES", "drawn", "files_for", "main"]
 
 PACKAGES = ("forms", "solver", "lowering", "program", "runtime", "emit", "verify")
 _LOADED = ("numpy", "numpy.linalg", "pinocchio", "lxml.etree", "jinja2", "py_trees", "click", "pytest",

@@ -19,7 +19,9 @@ __all__ = ["COMMANDS", "PAGE", "filled_in", "main"]
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "explanation" / "trust.md"
 START, END = "<!-- figures: trust -->\n", "<!-- end of figures -->\n"
-COMMANDS = ("mutants", "kills", "determinism", "planted")
+COMMANDS = (
+    "mutants", "kills", "faults", "pairs", "determinism", "planted", "fuzz_readers", "fuzz_header"
+)  # fmt: skip
 
 
 def _mutants(found: dict[str, object]) -> list[tuple[str, str]]:
@@ -39,6 +41,30 @@ def _kills(found: dict[str, object]) -> list[tuple[str, str]]:
     return [(f"{found['kills']} kills over outputs that are there", f"{found['wrong']} wrong")]
 
 
+def _faults(found: dict[str, object]) -> list[tuple[str, str]]:
+    return [(f"{found['faults']} faults of the disk", f"{found['wrong']} wrong")]
+
+
+def _pairs(found: dict[str, object]) -> list[tuple[str, str]]:
+    return [(f"{found['pairs']} pairs of runs at once", f"{found['wrong']} wrong")]
+
+
+def _fuzzed(found: dict[str, object], what: str) -> list[tuple[str, str]]:
+    by_name, runs = found["found"], found["runs"]
+    assert isinstance(by_name, dict) and isinstance(runs, int)
+    wrong = sum(said != "nothing" for said in by_name.values())
+    words = f"{runs:,} runs of a fuzzer on each of {len(by_name)} {what}"
+    return [(words, "nothing" if not wrong else f"something in {wrong} of them")]
+
+
+def _fuzz_readers(found: dict[str, object]) -> list[tuple[str, str]]:
+    return _fuzzed(found, "readers")
+
+
+def _fuzz_header(found: dict[str, object]) -> list[tuple[str, str]]:
+    return _fuzzed(found, "headers, with sanitizers")
+
+
 def _determinism(found: dict[str, object]) -> list[tuple[str, str]]:
     rows = found["differing"]
     assert isinstance(rows, dict)
@@ -52,7 +78,11 @@ def _planted(found: dict[str, object]) -> list[tuple[str, str]]:
     return [(f"{found['planted']} defects planted in emitted code", f"{len(left)} not found")]
 
 
-_ROWS = {"mutants": _mutants, "kills": _kills, "determinism": _determinism, "planted": _planted}
+_ROWS = {
+    "mutants": _mutants, "kills": _kills, "faults": _faults, "pairs": _pairs,
+    "determinism": _determinism, "planted": _planted, "fuzz_readers": _fuzz_readers,
+    "fuzz_header": _fuzz_header,
+}  # fmt: skip
 
 
 def filled_in(text: str) -> str:

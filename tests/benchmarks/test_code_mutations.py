@@ -7,7 +7,7 @@ import ast
 import pytest
 from benchmarks.code_mutations import code_mutations
 from benchmarks.command_line import REPOSITORY
-from benchmarks.mutation_score import PACKAGES, Done, drawn, score, files_for
+from benchmarks.mutation_score import PACKAGES, Done, drawn, files_for, score
 
 TEXT = b'''"""Doc 1."""
 from typing import TYPE_CHECKING
