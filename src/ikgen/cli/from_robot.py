@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ikgen.cli.completion import RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.options import chain_options, console_options, emit_option, sampling_options
 from ikgen.cli.request_options import make_request, parse_emit
@@ -57,7 +58,7 @@ _NOT_OF_TABLES = {
 
 
 @click.command("from-urdf")
-@click.argument("robot", type=click.Path(path_type=Path))
+@click.argument("robot", type=RobotFile())
 @chain_options
 @emit_option
 @_only

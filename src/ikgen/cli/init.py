@@ -9,6 +9,7 @@ from typing import Any
 
 import click
 
+from ikgen.cli.completion import RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.options import (
     console_options,
@@ -21,7 +22,7 @@ __all__ = ["init"]
 
 
 @click.command()
-@click.argument("robot", type=click.Path(path_type=Path), metavar="ROBOT|TABLE")
+@click.argument("robot", type=RobotFile(), metavar="ROBOT|TABLE")
 @reading_options
 @emit_option
 @click.option(

@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from ikgen.cli.completion import RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.options import chain_options, console_options
 from ikgen.cli.request_options import make_request
@@ -16,7 +17,7 @@ __all__ = ["inspect"]
 
 
 @click.command()
-@click.argument("robot", type=click.Path(path_type=Path), metavar="ROBOT|TABLE")
+@click.argument("robot", type=RobotFile(), metavar="ROBOT|TABLE")
 @chain_options
 @click.option("--no-advice", is_flag=True, help="Try no derivation.")
 @console_options

@@ -36,6 +36,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "view": ("ikgen.cli.view_command:view", "Drag a target, see all solutions, in a browser."),
     "reach": ("ikgen.cli.reach_command:reach", "Map which poses an arm reaches."),
     "cmake-dir": ("ikgen.cli.cmake_dir:cmake_dir", "Print where the CMake package files lie."),
+    "completion": ("ikgen.cli.completion:completion", "Print completion for a shell."),
     "doctor": ("ikgen.cli.doctor:doctor", "Say which tools and plug-ins there are."),
 }
 """Command -> (where its function is, one line of help)."""

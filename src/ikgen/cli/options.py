@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 import click
 
+from ikgen.cli.completion import Emits, Joints, Links, Tasks
 from ikgen.generation.emitters import EMITTERS
 from ikgen.tasks import AXES
 
@@ -38,11 +39,12 @@ _READING_OPTIONS = (
 )
 
 _CHAIN_OPTIONS = (
-    click.option("--base", metavar="LINK", help="Link that poses are given in."),
-    click.option("--tip", metavar="LINK", help="Link to be placed."),
+    click.option("--base", metavar="LINK", type=Links(), help="Link that poses are given in."),
+    click.option("--tip", metavar="LINK", type=Links(), help="Link to be placed."),
     click.option(
         "--task",
         metavar="TASK",
+        type=Tasks(),
         help="pose (default), position-direction, position-pitch, position-yaw, position, rotation, "
         "direction.",
     ),
@@ -54,12 +56,14 @@ _CHAIN_OPTIONS = (
     click.option(
         "--free",
         multiple=True,
+        type=Joints(),
         metavar="JOINT[=VALUE]",
         help="Hold a joint: its value becomes an input, by default VALUE (rad, m, 45deg, 120mm).",
     ),
     click.option(
         "--lock",
         multiple=True,
+        type=Joints("="),
         metavar="JOINT=VALUE",
         help="Fix a joint for good (rad, m, 45deg, 120mm).",
     ),
@@ -88,6 +92,7 @@ emit_option = click.option(
     "--emit",
     multiple=True,
     metavar="NAME,...",
+    type=Emits(),
     help=f"Outputs (default: python): {', '.join(row.name for row in EMITTERS)}, and those of other "
     "packages (ikgen doctor). Those that were made here before are made again.",
 )

@@ -11,6 +11,7 @@ from typing import Any
 
 import click
 
+from ikgen.cli.completion import RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.options import chain_options, console_options, executor_options
 from ikgen.cli.request_options import make_request
@@ -19,7 +20,7 @@ __all__ = ["reach"]
 
 
 @click.command()
-@click.argument("robot", type=click.Path(path_type=Path), metavar="ROBOT|TABLE")
+@click.argument("robot", type=RobotFile(), metavar="ROBOT|TABLE")
 @chain_options
 @click.option(
     "--cells",

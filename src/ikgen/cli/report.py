@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from ikgen.cli.completion import RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.error_output import ResultError
 from ikgen.cli.options import chain_options, console_options, sampling_options
@@ -18,7 +19,7 @@ __all__ = ["report"]
 
 
 @click.command()
-@click.argument("robot", type=click.Path(path_type=Path), metavar="ROBOT|TABLE")
+@click.argument("robot", type=RobotFile(), metavar="ROBOT|TABLE")
 @chain_options
 @click.option(
     "-o",

@@ -9,6 +9,7 @@ from typing import Any
 
 import click
 
+from ikgen.cli.completion import RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.options import chain_options
 from ikgen.cli.request_options import make_request
@@ -18,7 +19,7 @@ __all__ = ["view"]
 
 
 @click.command()
-@click.argument("robot", type=click.Path(path_type=Path), metavar="ROBOT|TABLE")
+@click.argument("robot", type=RobotFile(), metavar="ROBOT|TABLE")
 @chain_options
 @click.option(
     "--port",

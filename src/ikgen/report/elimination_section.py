@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ikgen.formulas import mathtext as m
 from ikgen.formulas.mathtext import Math
 from ikgen.report.document import Block, Formulas, Paragraph
@@ -32,11 +34,14 @@ _THREE_SLIDES = (
 )
 
 
-def elimination_section(slides: int = 0) -> list[Block]:
-    """The elimination of six joints of which some slide, in words and equations."""
+def elimination_section(slides: int = 0, order: Sequence[str] = ()) -> list[Block]:
+    """The elimination of six joints of which some slide, in words and equations; `order` names the joints
+    as this arm's loop reads them."""
     if slides >= 2:
         return [Paragraph((_TWO_SLIDES if slides == 2 else _THREE_SLIDES,))]
-    return [*_revolute(slides), *([Paragraph((_SLIDE,))] if slides else [])]
+    read = f"The loop of this arm reads its joints in the order {', '.join(order)}."
+    words = [read] * bool(order) + [_SLIDE] * bool(slides)
+    return [*_revolute(slides), *(Paragraph((text,)) for text in words)]
 
 
 def _revolute(slides: int) -> list[Block]:

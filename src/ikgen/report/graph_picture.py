@@ -89,7 +89,7 @@ def _svg(
 ) -> str:
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {size[0]:g} {size[1]:g}" '
-        f'width="{size[0]:g}" height="{size[1]:g}" role="img" font-family="serif">',
+        f'width="{size[0]:g}" height="{size[1]:g}" role="group" font-family="serif">',
         f"<title>{title}</title>",
         '<defs><marker id="arrow" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" '
         'markerHeight="7" orient="auto"><path class="head" d="M0 1 L7 4 L0 7 z" fill="#345"/></marker>'

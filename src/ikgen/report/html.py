@@ -25,6 +25,9 @@ from ikgen.report.document import (
 
 __all__ = ["to_html"]
 
+_SCROLLS = 'tabindex="0" role="group" aria-label="formulas"'
+"""Of what may be wider than a phone, so that keys can scroll it too."""
+
 
 def to_html(title: str, subtitle: str, blocks: Sequence[Block]) -> str:
     """The text of the .html file; its contents are the headings that have an anchor."""
@@ -90,7 +93,7 @@ def _block(block: Block) -> str:
                 "<mtr>" + "".join(f"<mtd>{x.mathml}</mtd>" for x in row) + "</mtr>" for row in rows
             )
             return (
-                f'<div class="matrix"><math display="block"><mrow>{name.mathml}<mo>=</mo>'
+                f'<div class="matrix" {_SCROLLS}><math display="block"><mrow>{name.mathml}<mo>=</mo>'
                 f"<mo>[</mo><mtable>{cells}</mtable><mo>]</mo></mrow></math></div>"
             )
         case Rows():
@@ -127,7 +130,7 @@ def _formulas(block: Formulas) -> str:
         number = f"<span>({block.numbers[i]})</span>" if block.numbers else ""
         out.append(f"<div{place}><div>{_math(line)}</div>{number}</div>")
     inside = "\n".join(out)
-    return f'<div class="formulas">\n{inside}\n</div>'
+    return f'<div class="formulas" {_SCROLLS}>\n{inside}\n</div>'
 
 
 def _rows(block: Rows) -> str:

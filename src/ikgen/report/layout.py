@@ -31,8 +31,14 @@ def layout(graph: SolutionGraph) -> Layout:
     """Places for every unknown but the sums that the graph passes through."""
     parents = {v: above for v, above in graph.parents if v not in graph.passed}
     row: dict[Variable, int] = {}
-    for v, above in parents.items():
-        row[v] = 1 + max((row.get(p, -1) for p in above), default=-1)
+
+    def depth(v: Variable) -> int:
+        if v not in row:
+            row[v] = 1 + max((depth(p) for p in parents[v] if p in parents), default=-1)
+        return row[v]
+
+    for v in parents:
+        depth(v)
     chains: dict[tuple[Variable, Variable], tuple[_Node, ...]] = {
         (p, v): (p, *((p, v, r) for r in range(row[p] + 1, row[v])), v)
         for v, above in parents.items()

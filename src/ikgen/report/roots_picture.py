@@ -16,18 +16,31 @@ from ikgen.report.worked_example import Array, WorkedExample
 from ikgen.runtime.python.hidden_angle import loop_resultant
 from ikgen.runtime.python.loop_equations import loop_constants, loop_equations
 
-__all__ = ["hidden_roots", "roots_blocks"]
+__all__ = ["hidden_roots", "loop_order", "roots_blocks"]
 
 _SIZE, _UNIT = 360.0, 82.0
 _EXTRANEOUS = 8
 """Roots at z = 0 and infinity that writing angles as half angles adds."""
 
 
+def _hidden(plan: EliminationPlan) -> tuple[int, int]:
+    """Where the loop begins and whether it is reversed: the resultant's choice, else the eigenproblem's."""
+    return plan.resultants[0] if plan.resultants else plan.eliminations[0][:2]
+
+
+def loop_order(dh: DHChain, plan: EliminationPlan) -> list[str]:
+    """The names of the moving joints in the order in which the loop reads them."""
+    names = [dh.joints[row.driver].name for row in dh.rows]
+    moving = [name for name in names if name not in dh.free]
+    start, reverse = _hidden(plan)
+    return [moving[(start - i if reverse else start + i) % len(moving)] for i in range(len(moving))]
+
+
 def hidden_roots(plan: EliminationPlan, pose: Array) -> tuple[int, int, NDArray[np.complex128]]:
     """The hidden joint (from 0), the sign with which the loop reads it, and the 16 roots z of det M, z the
     exponential of its angle: `(M0 - Mc) t^2 + 2 Ms t + M0 + Mc` is singular at t = tan(angle / 2), a
     quadratic eigenproblem (Manocha and Canny, 1994), here about an angle where M is far from singular."""
-    start, reverse = plan.resultants[0] if plan.resultants else plan.eliminations[0][:2]
+    start, reverse = _hidden(plan)
     order, C = loop_constants(plan.frames, pose[None], start, reverse)
     E, left, _ = loop_equations(C)
     M0, Mc, Ms = (part[0] for part in loop_resultant(E, left))
@@ -51,9 +64,10 @@ def roots_blocks(dh: DHChain, plan: EliminationPlan, example: WorkedExample) -> 
     joint, sign, roots = hidden_roots(plan, example.pose)
     angles = np.unique(np.round(sign * row_values(dh, example.rows)[:, joint], 6))
     words = (
-        f"The roots for the pose of the example: z is the exponential of the angle of joint "
-        f"{joint + 1}. Those on the unit circle are angles; each leads to a solution ({len(example.rows)} "
-        "here). The others come in pairs mirrored at the circle, and belong to no real configuration."
+        "The roots for the pose of the example: z is the exponential of the hidden angle, that of "
+        f"{dh.joints[dh.rows[joint].driver].name}. Those on the unit circle are angles; each leads to a "
+        f"solution ({len(example.rows)} here). The others come in pairs mirrored at the circle, "
+        "and belong to no real configuration."
     )
     caption = "16 roots: dots on the circle are solutions, rings are not real"
     return [Paragraph((words,)), Picture(_drawing(roots, angles), "", caption)]

@@ -15,7 +15,7 @@ from ikgen.report.opening import forward_section, robot_section
 from ikgen.report.page import Page, SolvedPage, UnsolvedPage
 from ikgen.report.proof_section import proof_section
 from ikgen.report.results import graph_section, poses_section, verification_section
-from ikgen.report.roots_picture import roots_blocks
+from ikgen.report.roots_picture import loop_order, roots_blocks
 from ikgen.report.splits import splits_section
 from ikgen.report.steps import Writer, abbreviations, derived_section, step_section
 
@@ -69,7 +69,8 @@ def _solution(page: SolvedPage) -> list[Block]:
         return _inverse(page)
     blocks: list[Block] = [Heading(("Inverse kinematics",), anchor="inverse")]
     plan = page.derivation.module.plan
-    blocks += elimination_section(plan.turning.count(False) if plan is not None else 0)
+    slides = plan.turning.count(False) if plan is not None else 0
+    blocks += elimination_section(slides, loop_order(page.reading.dh, plan) if plan else ())
     if page.example is not None and plan is not None:
         blocks += roots_blocks(page.reading.dh, plan, page.example)
     return blocks

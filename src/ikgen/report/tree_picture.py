@@ -9,7 +9,7 @@ from ikgen.solver.session import Tick
 
 __all__ = ["mark", "tree_picture"]
 
-_ACROSS, _DOWN, _WIDE, _HIGH = 150.0, 25.0, 134.0, 20.0
+_ACROSS, _DOWN, _WIDE, _HIGH = 164.0, 25.0, 148.0, 20.0
 _SIGNS = {"sequence": "→", "selector": "?", "or": "∨"}
 
 Path = tuple[str, ...]
@@ -41,11 +41,21 @@ def tree_picture(outline: Sequence[Path], ticks: Sequence[Tick], told: Mapping[i
     svg = (
         f'<svg xmlns="http://www.w3.org/2000/svg" class="tree" viewBox="0 0 {width:g} {height:g}" '
         f'width="{width:g}" height="{height:g}" role="img" font-family="sans-serif">'
-        f"<title>The behaviour tree, round by round</title>{''.join(parts)}</svg>"
+        f"<title>The behaviour tree, round by round</title>{_shown(len(rounds))}{''.join(parts)}</svg>"
     )
     return (
         f'<div class="rounds">{_buttons(rounds)}<figure>{svg}</figure>{_lines(rounds, told)}</div>'
     )
+
+
+def _shown(rounds: int) -> str:
+    """Style: of every round's parts those are shown whose button is pressed."""
+    rules = (
+        f".rounds>input.r{k}:checked~figure g.r{k}{{display:inline}}"
+        f".rounds>input.r{k}:checked~p.r{k}{{display:block}}"
+        for k in range(1, rounds + 1)
+    )
+    return f"<style>{''.join(rules)}</style>"
 
 
 def _places(outline: Sequence[Path]) -> dict[Path, tuple[float, float]]:

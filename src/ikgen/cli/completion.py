@@ -1,0 +1,132 @@
+"""`ikgen completion`: completion of commands, options and names in a shell, and what the names are."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import click
+from click.shell_completion import CompletionItem, get_completion_class
+
+from ikgen.errors import IkgenError
+from ikgen.generation.emitters import EMITTERS, GROUP
+from ikgen.importers.named_robots import DATA, robot_names
+from ikgen.plugins import plug_ins
+from ikgen.tasks import TASKS
+
+__all__ = ["Emits", "Joints", "Links", "RobotFile", "Tasks", "completion"]
+
+_SHELLS = ("bash", "zsh", "fish")
+_VARIABLE = "_IKGEN_COMPLETE"
+
+
+class _Names(click.ParamType[str]):
+    """Text that is one of some names, for completion alone."""
+
+    name = "text"
+
+    def names(self, ctx: click.Context) -> list[str]:
+        """The names, given what was typed so far."""
+        raise NotImplementedError
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        """The names that begin as what is typed."""
+        return [CompletionItem(n) for n in self.names(ctx) if n.startswith(incomplete)]
+
+
+class Tasks(_Names):
+    """A task."""
+
+    def names(self, ctx: click.Context) -> list[str]:
+        """ikgen's own and those of other packages."""
+        return [*(task.name for task in TASKS), *(one.name for one in plug_ins("ikgen.tasks"))]
+
+
+class Emits(_Names):
+    """Outputs, separated by commas."""
+
+    def names(self, ctx: click.Context) -> list[str]:
+        """ikgen's own and those of other packages."""
+        return [*(emitter.name for emitter in EMITTERS), *(one.name for one in plug_ins(GROUP))]
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        """The last of several, those before it kept."""
+        before, comma, last = incomplete.rpartition(",")
+        return [
+            CompletionItem(before + comma + item.value)
+            for item in super().shell_complete(ctx, param, last)
+            if item.value not in before.split(",")
+        ]
+
+
+class Links(_Names):
+    """A link of the robot that stands before."""
+
+    def names(self, ctx: click.Context) -> list[str]:
+        """The links in the order of the file; none of a file that cannot be read."""
+        tree = _tree(ctx)
+        return list(tree.links) if tree is not None else []
+
+
+class Joints(_Names):
+    """A moving joint of the robot that stands before; `end` is what follows the name."""
+
+    def __init__(self, end: str = "") -> None:
+        self.end = end
+
+    def names(self, ctx: click.Context) -> list[str]:
+        """The joints in the order of the file; none of a file that cannot be read."""
+        tree = _tree(ctx)
+        joints = tree.joints if tree is not None else ()
+        return [f"{joint.name}{self.end}" for joint in joints if joint.type.moves_on_one_axis]
+
+
+class RobotFile(click.Path):
+    """A file, or a robot by its name in a package."""
+
+    def __init__(self) -> None:
+        super().__init__(path_type=Path)
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        """Files; after the name of a package its robots."""
+        if incomplete.startswith(f"{DATA}:"):
+            with suppress(IkgenError):
+                names = (f"{DATA}:{name}" for name in robot_names(DATA))
+                return [CompletionItem(name) for name in names if name.startswith(incomplete)]
+        return super().shell_complete(ctx, param, incomplete)
+
+
+def _tree(ctx: click.Context) -> Any | None:
+    """What the file says that was typed; what keeps it from being read is no matter of a completion."""
+    from ikgen.cli.request_options import make_request
+    from ikgen.generation.read import read_tree
+
+    # an option that still lacks its value leaves what stood before it among the rest
+    robot = ctx.params.get("robot") or next(iter(ctx.args), None)
+    if robot is None or str(robot).lower().endswith(".toml"):
+        return None
+    with suppress(IkgenError, OSError):
+        args = ctx.params.get("args") or ()
+        paths = ctx.params.get("package_paths") or ()
+        return read_tree(make_request(Path(robot), args=args, package_paths=paths))
+    return None
+
+
+@click.command()
+@click.argument("shell", type=click.Choice(_SHELLS))
+def completion(shell: str) -> None:
+    """Print what makes a shell complete commands, options, tasks, outputs, links and joints.
+
+    For bash: eval "$(ikgen completion bash)" in ~/.bashrc; for zsh the same in ~/.zshrc; for fish:
+    ikgen completion fish > ~/.config/fish/completions/ikgen.fish
+    """
+    kind = get_completion_class(shell)
+    assert kind is not None
+    click.echo(kind(click.Command("ikgen"), {}, "ikgen", _VARIABLE).source())
