@@ -50,9 +50,7 @@ def test_words(
     assert completed(words, monkeypatch, capsys) == expected
 
 
-def test_commands(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_commands(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     assert set(completed("", monkeypatch, capsys)) == set(COMMANDS)
 
 
@@ -60,7 +58,11 @@ def test_fixed_joints_cannot_be_held(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     held = completed(f"inspect {FR3} --free ", monkeypatch, capsys)
-    assert held == [*(f"fr3_joint{i}" for i in range(1, 8)), "fr3_finger_joint1", "fr3_finger_joint2"]
+    assert held == [
+        *(f"fr3_joint{i}" for i in range(1, 8)),
+        "fr3_finger_joint1",
+        "fr3_finger_joint2",
+    ]
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
