@@ -7,6 +7,9 @@ Prints one row a robot: how it was solved, how many solutions each pose has by t
 module and by an independent numerical search, how many rows were wrong and how many missed. A row
 is wrong if forward kinematics does not give the pose back; a generating configuration or a solution
 of the search is missed if no row equals it. Below stand the paper's own tables beside what ikgen finds.
+of the search is missed if no row equals it. Claimed is the number of solutions that the module claims,
+most the largest at as many random and as many special poses (with `--poses 10000` they are equal).
+Below stand the paper's own tables beside what ikgen finds.
 Exits with 1 if any row was wrong or missed.
 
 With `--prove` the derivations are proved in exact arithmetic instead, for every pose. Exits with 1 if one
@@ -52,7 +55,8 @@ WRONG = 1e-8
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """What came of one robot. `found` and `true` count solutions a pose; `true` is the search's."""
+    """What came of one robot. `found` and `true` count solutions a pose; `true` is the search's. `claimed`
+    is the number that the module claims, `most` the largest of any pose, special ones among them."""
 
     robot: str
     dof: int
@@ -66,6 +70,8 @@ class Trial:
     missed: int
     note: str
     order: tuple[str, ...] = ()
+    claimed: int = 0
+    most: int = 0
 
 
 def tables(part: str = "") -> list[Path]:
@@ -107,13 +113,13 @@ def _check(
     poses, searched, starts = sizes
     arm = _arm(derivation)
     rng = np.random.default_rng(20180513)
-    q = _regular(arm, rng, poses)
+    held = derivation.module.free_defaults
+    q = _regular(arm, rng, poses, held)
     T = arm.oracle.forward(q)
     rows, count, _ = module.solve_batch(T, limits=False)
     wrong, missed = _compare(arm, rows, count, T, q)
     true: Counter[int] = Counter()
-    held = q[:searched]
-    for i, found in enumerate(find_solutions(arm, T[:searched], held, starts, rng)):
+    for i, found in enumerate(find_solutions(arm, T[:searched], q[:searched], starts, rng)):
         distinct = _distinct(arm, found)
         true[len(distinct)] += 1
         missed += sum(not _present(arm, rows[i, : count[i]], one) for one in distinct)
@@ -134,7 +140,21 @@ def _check(
         missed=missed,
         note=derivation.geometry.name,
         order=derivation.module.order,
+        claimed=module.MAX_SOLUTIONS,
+        most=max(int(count.max()), _most_at_special_poses(arm, module, rng, poses, held)),
     )
+
+
+def _most_at_special_poses(
+    arm: ArmUnderTest, module: Any, rng: np.random.Generator, poses: int, held: tuple[float, ...]
+) -> int:
+    """The most solutions at a pose with some joints at multiples of 90 degrees and slides at 0: there the
+    poses of an arm with fewer than six joints cross, which are single elsewhere."""
+    q = arm.uniform(rng, poses)
+    quarters = np.where(arm.revolute, rng.integers(-1, 3, q.shape) * (np.pi / 2), 0.0)
+    q = np.where(rng.random(q.shape) < rng.random((poses, 1)), quarters, q)
+    q[:, list(arm.free)] = held
+    return int(module.solve_batch(arm.oracle.forward(q), limits=False)[1].max())
 
 
 def prove_robot(path: Path) -> tuple[str, str]:
@@ -179,9 +199,12 @@ def _arm(derivation: Derivation) -> ArmUnderTest:
     )
 
 
-def _regular(arm: ArmUnderTest, rng: np.random.Generator, poses: int) -> Array:
-    """Random configurations (poses, dof) away from singularities."""
+def _regular(
+    arm: ArmUnderTest, rng: np.random.Generator, poses: int, held: tuple[float, ...]
+) -> Array:
+    """Random configurations (poses, dof) away from singularities, held joints at their defaults."""
     q = arm.uniform(rng, 4 * poses)
+    q[:, list(arm.free)] = held
     return q[arm.sigma(q) > REGULAR_SIGMA][:poses]
 
 
@@ -222,11 +245,11 @@ def _histogram(counts: Counter[int]) -> str:
 
 def _print(trials: Sequence[Trial]) -> None:
     head = f"{'robot':16} {'joints':7} {'state':9} {'s':>5}  {'found':24} {'true':14}"
-    print(f"{head} wrong missed  leaves")
+    print(f"{head} wrong missed claimed most  leaves")
     for t in trials:
         print(
             f"{t.robot:16} {t.kinds:7} {t.state:9} {t.seconds:5.1f}  {t.found:24} {t.true:14} "
-            f"{t.wrong:5} {t.missed:6}  {t.leaves or t.note}"
+            f"{t.wrong:5} {t.missed:6} {t.claimed:7} {t.most:4}  {t.leaves or t.note}"
         )
     solved = [t for t in trials if t.state == "solved"]
     states = Counter(t.state for t in trials)

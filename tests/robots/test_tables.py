@@ -68,6 +68,19 @@ def test_every_table_has_its_facts() -> None:
     assert sum(facts["paper"] for facts in EXPECTED.values()) >= 19
 
 
+@pytest.mark.parametrize("name", [n for n in SOLVED if not EXPECTED[n].get("elimination")])
+def test_claims_as_many_solutions_as_some_pose_has(name: str, tmp_path: Path) -> None:
+    table = HERE / "tables" / f"{name}.toml"
+    module = module_of(table, tmp_path)
+    rng = np.random.default_rng(5)
+    revolute = np.array([j.kind == "revolute" for j in read(Request(table)).dh.joints])
+    q = rng.uniform(-np.pi, np.pi, (1000, module.DOF))
+    special = np.where(revolute, rng.integers(-1, 3, q.shape) * (np.pi / 2), 0.0)
+    q[500:] = np.where(rng.random(q.shape) < rng.random((1000, 1)), special, q)[500:]
+    _, count, _ = module.solve_batch(module.forward(q), limits=False)
+    assert count.max() == module.MAX_SOLUTIONS
+
+
 @pytest.mark.parametrize("name", SOLVED)
 def test_robot_is_solved(name: str, tmp_path: Path) -> None:
     table = HERE / "tables" / f"{name}.toml"

@@ -12,6 +12,7 @@ from ikgen.generation.progress import Progress
 
 if TYPE_CHECKING:
     from ikgen.elimination import EliminationPlan
+    from ikgen.equations.knowledge import Variable
     from ikgen.model.dh import DHChain
     from ikgen.solver.solution_graph import SolutionGraph
     from ikgen.tasks import Task
@@ -20,6 +21,7 @@ __all__ = [
     "RULE_TRIES",
     "ClosedForm",
     "Demand",
+    "by_rules",
     "closed_form",
     "forms_held",
     "preference",
@@ -179,7 +181,7 @@ def _as_written(form: ClosedForm, demand: Demand) -> ClosedForm:
     from ikgen.generation.as_written import solve_as_written
 
     dh, graph = solve_as_written(
-        form.reading.dh, form.graph, lambda dh: _by_rules(dh, form.task, demand.progress)
+        form.reading.dh, form.graph, lambda dh: by_rules(dh, form.task, demand.progress)
     )
     return replace(form, reading=replace(form.reading, dh=dh), graph=graph)
 
@@ -197,7 +199,7 @@ def _best_task(reading: Reading, demand: Demand) -> ClosedForm:
         tasks = [task for task in fitting if task.name not in demand.passed_over]
     first: ClosedForm | None = None
     for task in tasks:
-        form = ClosedForm(reading, task, _by_rules(dh, task, demand.progress))
+        form = ClosedForm(reading, task, by_rules(dh, task, demand.progress))
         if form.closed:
             return form
         first = first or form
@@ -205,7 +207,11 @@ def _best_task(reading: Reading, demand: Demand) -> ClosedForm:
     return first
 
 
-def _by_rules(dh: DHChain, task: Task, progress: Progress) -> SolutionGraph:
+def by_rules(
+    dh: DHChain, task: Task, progress: Progress, passed_over: Collection[Variable] = ()
+) -> SolutionGraph:
+    """What the rules make of a chain; unknowns that are `passed_over` are not to be the first that is
+    solved with branches."""
     from ikgen.solver.solve import solve_chain
 
     return solve_chain(
@@ -213,6 +219,7 @@ def _by_rules(dh: DHChain, task: Task, progress: Progress) -> SolutionGraph:
         readable=task.readable,
         tool_on_right=not task.whole_pose,
         progress=lambda text: progress("derive", text),
+        passed_over=passed_over,
     )
 
 

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ikgen import __version__
 from ikgen.emit.derivation import Derivation, Unsolved
-from ikgen.generation.closed_forms import ClosedForm, Demand, closed_form
+from ikgen.generation.closed_forms import ClosedForm, Demand, by_rules, closed_form
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.read import default_name, read
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Reading
     from ikgen.emit.solver_module import SolverModule
+    from ikgen.equations.knowledge import Variable
     from ikgen.generation.request import Request
+    from ikgen.program.statements import Program
+    from ikgen.solver.solution_graph import SolutionGraph
 
 __all__ = ["derive"]
 
@@ -54,29 +58,49 @@ def derive(
 
         stuck = Unsolved(found.reading, geometry, found.task, found.graph, name, request.robot.name)
         raise unsolved_error(stuck, request)
-    module = _module(name, request.robot.name, found, free_defaults(found.reading.dh, defaults))
+    found, program = _program(found, progress)
+    held = free_defaults(found.reading.dh, defaults)
+    module = _module(name, request.robot.name, found, program, held)
     unasked = request.task is None
     return Derivation(found.reading, geometry, found.task, found.graph, module, unasked, found.held)
+
+
+def _program(found: ClosedForm, progress: Progress) -> tuple[ClosedForm, Program]:
+    """The form that is emitted, and its lowered program."""
+    from ikgen.generation.fewest_sets import with_fewest_sets
+    from ikgen.lowering.elimination_program import elimination_program
+    from ikgen.lowering.lower import lower
+
+    dh = found.reading.dh
+    if found.plan:
+        return found, elimination_program(dh)
+
+    def solve(passed_over: tuple[Variable, ...]) -> SolutionGraph:
+        return by_rules(dh, found.task, progress, passed_over)
+
+    def lowered(graph: SolutionGraph) -> Program:
+        return lower(graph, model_error=2.0 * max(dh.deviation))
+
+    graph, program = with_fewest_sets(found.graph, lowered, solve)
+    return replace(found, graph=graph), program
 
 
 def _module(
     name: str,
     source_name: str,
     found: ClosedForm,
+    program: Program,
     held: tuple[float, ...],
 ) -> SolverModule:
     from ikgen.emit.solver_module import SolverModule
     from ikgen.kinematics.classify import classify
-    from ikgen.lowering.elimination_program import elimination_name, elimination_program
-    from ikgen.lowering.lower import lower
+    from ikgen.lowering.elimination_program import elimination_name
 
     reading, graph, plan = found.reading, found.graph, found.plan
     dh = reading.dh
     return SolverModule(
         name=name,
-        program=elimination_program(dh)
-        if plan
-        else lower(graph, model_error=2.0 * max(dh.deviation)),
+        program=program,
         dh=dh,
         task=found.task.name,
         free=tuple(j for j, joint in enumerate(dh.joints) if joint.name in dh.free),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
@@ -96,10 +97,10 @@ class Chooser:
 
     def _covered(self, ranked: list[Candidate]) -> Step | None:
         """A weak candidate and others of the same unknown that hold where it does not."""
-        tried: dict[Variable, int] = {}
+        tried: Counter[tuple[Variable, int]] = Counter()
         for best in ranked:
-            tried[best.unknown] = tried.get(best.unknown, 0) + 1
-            if best.branches > 2 or tried[best.unknown] > 2:
+            tried[best.unknown, best.branches] += 1
+            if best.branches > 2 or tried[best.unknown, best.branches] > 2:
                 continue
             same = [c for c in ranked if c.unknown == best.unknown and c.branches <= best.branches]
             fallbacks = self._fallbacks(best, same[:MOST_FALLBACKS])

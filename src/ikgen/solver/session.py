@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -18,7 +19,7 @@ from ikgen.solver.choice import Chooser, Step
 from ikgen.solver.leaves import Leaf
 from ikgen.solver.ranker import judge, rank_key
 
-__all__ = ["Session", "Tick"]
+__all__ = ["Session", "Tick", "first_fork"]
 
 MOST_UNKNOWNS = 2
 
@@ -43,12 +44,14 @@ class Tick:
 
 @dataclass
 class Session:
-    """State of a session. `equations` are those of the current round with few unknowns."""
+    """State of a session. `equations` are those of the current round with few unknowns; those that are
+    `passed_over` are not to be the first that is solved with branches."""
 
     system: EquationSet
     probes: Probes
     knowledge: Knowledge
     held: tuple[int, ...] = ()
+    passed_over: Collection[Variable] = ()
     round: int = 0
     equations: list[PolynomialEquation] = field(default_factory=list)
     candidates: list[Candidate] = field(default_factory=list)
@@ -140,11 +143,15 @@ class Session:
     def choose(self, *, anything: bool = False) -> Step | None:
         """Take the best candidate that holds at every regular configuration, alone or with fallbacks
         where its divisor vanishes; failing that, with `anything`, the best there is."""
-        ranked = sorted(self.candidates, key=rank_key)
+        ranked = sorted(filter(self._wanted, self.candidates), key=rank_key)
         step = self._chooser.choose(ranked, anything=anything)
         if step is not None:
             self._accept(step)
         return step
+
+    def _wanted(self, candidate: Candidate) -> bool:
+        passed = candidate.unknown in self.passed_over
+        return not passed or candidate.branches == 1 or first_fork(self.steps) is not None
 
     def _accept(self, step: Step) -> None:
         k = self.knowledge
@@ -178,6 +185,11 @@ class Session:
             if support & mask:
                 return level
         return 1.0
+
+
+def first_fork(steps: Sequence[Step]) -> Variable | None:
+    """The first unknown that was solved with branches."""
+    return next((s.candidate.unknown for s in steps if s.branches > 1), None)
 
 
 class _Weights(dict[int, float]):

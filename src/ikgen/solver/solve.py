@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.equation_set import EquationSet
-from ikgen.equations.knowledge import Knowledge
+from ikgen.equations.knowledge import Knowledge, Variable
 from ikgen.equations.probes import make_probes
 from ikgen.equations.products import ENTRY_NAMES
 from ikgen.equations.readable import readable_in_dh
@@ -28,12 +28,14 @@ def solve_chain(
     leaves: Sequence[Leaf] | None = None,
     tree: Tree | None = None,
     progress: Callable[[str], None] | None = None,
+    passed_over: Collection[Variable] = (),
 ) -> SolutionGraph:
     """Closed forms for every joint variable of `dh`; `graph.open_joints` lists what is left.
 
     `readable` names the pose entries that the task reads; with `tool_on_right` the tool transform is
     part of the chain (tasks that do not read the whole pose). `leaves` are by default ikgen's own and
-    those of other packages, `tree` ikgen's own or that of another package.
+    those of other packages, `tree` ikgen's own or that of another package. Unknowns that are
+    `passed_over` are not to be the first that is solved with branches.
     """
     readable = readable_in_dh(dh, readable)
     probes = make_probes(dh, tool=tool_on_right, readable=readable)
@@ -50,7 +52,7 @@ def solve_chain(
     knowledge = Knowledge(system)
     _ = system.equations
     held = tuple(i for i, joint in enumerate(dh.joints) if joint.name in dh.free)
-    session = Session(system, probes, knowledge, held=held)
+    session = Session(system, probes, knowledge, held=held, passed_over=passed_over)
     session.start()
     root = (tree or the_tree()).build(session, all_leaves() if leaves is None else leaves)
     while session.open_joints:
