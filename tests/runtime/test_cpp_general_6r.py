@@ -109,14 +109,17 @@ ISOLATE = r"""
 #include <cstdio>
 #include "general_6r_roots.hpp"
 using namespace ikgen_runtime;
-int main() {
+template <int D> int run(double shift) {
+  double shifts[g6::kNodes<D>];
+  std::fill(shifts, shifts + g6::kNodes<D>, shift);
   for (;;) {
-    double f[g6::kNodes];
+    double f[g6::kNodes<D>];
     for (double& x : f)
       if (std::scanf("%lf", &x) != 1) return 0;
-    const g6::Polynomial polynomial = g6::interpolate(f, 0.0);
-    const g6::Brackets found = g6::isolate(polynomial);
-    g6::Roots roots;
+    g6::Polynomial<D> polynomial = g6::interpolate<D>(f, 0.0);
+    if (shift > 0.0) g6::add_shift<D>(shifts, polynomial);
+    const g6::Brackets<D> found = g6::isolate(polynomial);
+    g6::Roots<D> roots;
     g6::refine_all(polynomial, found, roots);
     std::printf("%d %d", found.doubt ? 1 : 0, roots.count);
     for (int i = 0; i < roots.count; ++i) std::printf(" %.17g", std::atan2(roots.s[i], roots.c[i]));
@@ -124,6 +127,12 @@ int main() {
       std::printf(" %.17g %.17g", found.zone[i].low, found.zone[i].high);
     std::printf("\n");
   }
+}
+int main() {
+  int degree = 0;
+  double shift = 0.0;
+  if (std::scanf("%d %lf", &degree, &shift) != 2) return 1;
+  return degree == 4 ? run<4>(shift) : run<8>(shift);
 }
 """
 
@@ -225,22 +234,33 @@ def test_held_joints_take_their_values(tmp_path: Path) -> None:
         assert missing([np.array(line).reshape(-1, 6) for line in lines], q) == 0
 
 
+def isolated(program: Path, f: Array, shift: float = 0.0) -> list[list[float]]:
+    """What is found of polynomials of degree 4 or 8 with values f (N, n) at the nodes: doubt, count, roots
+    and zones; of all functions that differ by at most `shift`."""
+    return feed(program, [float((f.shape[1] - 8) // 2), shift, *f.ravel().tolist()])
+
+
+def nodes(degree: int) -> Array:
+    return np.linspace(0.0, 2.0 * np.pi, 2 * degree + 8, endpoint=False)
+
+
 def planted(roots: Array) -> Array:
-    """Values at the nodes of the polynomial with these 16 roots (N, 16)."""
-    nodes = 2.0 * np.pi / 24 * np.arange(24)
-    f = np.sin(0.5 * (nodes[None, :, None] - roots[:, None, :])).prod(axis=2)
+    """Values at the nodes of the polynomial with these roots (N, 2 * degree)."""
+    gaps = nodes(roots.shape[1] // 2)[None, :, None] - roots[:, None, :]
+    f = np.sin(0.5 * gaps).prod(axis=2)
     return np.asarray(f / np.abs(f).max(axis=1, keepdims=True))
 
 
+@pytest.mark.parametrize("degree", [4, 8])
 @pytest.mark.parametrize("gap", [None, 1e-2, 1e-4, 1e-9, 0.0])
-def test_no_root_of_a_polynomial_is_lost(isolator: Path, gap: float | None) -> None:
-    """Each of 16 real roots is found, or lies in a zone of which nothing is claimed."""
+def test_no_root_of_a_polynomial_is_lost(isolator: Path, gap: float | None, degree: int) -> None:
+    """Each of the real roots is found, or lies in a zone of which nothing is claimed."""
     rng = np.random.default_rng(4)
-    spread = np.linspace(-np.pi, np.pi, 16, endpoint=False) + rng.uniform(-0.15, 0.15, (60, 16))
+    spread = np.linspace(-np.pi, np.pi, 2 * degree, endpoint=False)
+    spread = spread + rng.uniform(-1.2, 1.2, (60, 2 * degree)) / degree
     if gap is not None:
         spread[:, 1] = spread[:, 0] + gap
-    lines = feed(isolator, planted(spread).ravel().tolist())
-    for line, wanted in zip(lines, spread, strict=True):
+    for line, wanted in zip(isolated(isolator, planted(spread)), spread, strict=True):
         doubt, count = line[:2]
         assert doubt == 0.0
         roots = np.array(line[2 : 2 + int(count)])
@@ -251,20 +271,37 @@ def test_no_root_of_a_polynomial_is_lost(isolator: Path, gap: float | None) -> N
             away = np.abs(np.remainder(middle - root + np.pi, 2 * np.pi) - np.pi) - half
             assert (off < 1e-7).any() or (away <= 0.0).any()
         if gap in (None, 1e-2):
-            assert count == 16 and not len(zones)
+            assert count == 2 * degree and not len(zones)
         if gap == 0.0:
             assert len(zones)
 
 
-def test_complex_roots_are_not_taken_for_real_ones(isolator: Path) -> None:
+@pytest.mark.parametrize("degree", [4, 8])
+def test_complex_roots_are_not_taken_for_real_ones(isolator: Path, degree: int) -> None:
     rng = np.random.default_rng(5)
-    angle, height = rng.uniform(-np.pi, np.pi, (60, 8)), rng.uniform(0.05, 1.0, (60, 8))
-    nodes = 2.0 * np.pi / 24 * np.arange(24)
-    f = (np.cosh(height)[:, None] - np.cos(nodes[None, :, None] - angle[:, None])).prod(axis=2)
-    assert all(
-        line == [0.0, 0.0]
-        for line in feed(isolator, (f / f.max(axis=1, keepdims=True)).ravel().tolist())
-    )
+    angle, height = rng.uniform(-np.pi, np.pi, (60, degree)), rng.uniform(0.05, 1.0, (60, degree))
+    gaps = nodes(degree)[None, :, None] - angle[:, None]
+    f = (np.cosh(height)[:, None] - np.cos(gaps)).prod(axis=2)
+    lines = isolated(isolator, f / f.max(axis=1, keepdims=True))
+    assert all(line == [0.0, 0.0] for line in lines)
+
+
+@pytest.mark.parametrize("degree", [4, 8])
+def test_roots_that_a_shift_may_bring_are_in_a_zone(isolator: Path, degree: int) -> None:
+    """A double root is lifted off zero by half of the shift; the single roots are found all the same."""
+    rng, shift = np.random.default_rng(6), 1e-5
+    spread = np.linspace(-np.pi, np.pi, 2 * degree, endpoint=False)
+    spread = spread + rng.uniform(-0.4, 0.4, (60, 2 * degree)) / degree
+    spread[:, 1] = spread[:, 0]
+    f = planted(spread)
+    middle = np.sin(0.5 * (spread[:, :1] - spread[:, 2:])).prod(
+        axis=1
+    )  # over the double root's square
+    lines = isolated(isolator, f + 0.5 * shift * np.sign(middle)[:, None], shift)
+    for line, wanted in zip(lines, spread[:, 0], strict=True):
+        zones = np.array(line[2 + int(line[1]) :]).reshape(-1, 2)
+        away = np.abs(np.remainder(zones.mean(axis=1) - wanted + np.pi, 2 * np.pi) - np.pi)
+        assert (away <= 0.5 * np.diff(zones, axis=1)[:, 0]).any()
 
 
 def test_resultants_of_double_roots_are_not_chosen() -> None:

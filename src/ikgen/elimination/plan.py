@@ -17,6 +17,7 @@ from itertools import product
 import numpy as np
 
 from ikgen.elimination.loop_frames import forward, jacobian, typical_length
+from ikgen.elimination.parallel_plans import ParallelPlan, choose_parallel
 from ikgen.elimination.resultant import RESULTANTS, Resultant, root_shifts
 from ikgen.elimination.routine import Elimination, Plan, Turning, finder, initial_residuals
 from ikgen.model.joint_tree import Matrix
@@ -41,7 +42,8 @@ class EliminationPlan:
     eliminations: (start, reverse, swap) in order of preference. recall: fraction of all solutions
     met in probing that the first of them finds alone. resultants: (start, reverse) of hidden angles
     whose polynomial has separate roots, in order of preference; may be none. turning: which of the six
-    joints turn, the others slide.
+    joints turn, the others slide. parallel: the elimination about two parallel axes, which is tried first;
+    None where they are not, or where it settles few poses.
     """
 
     frames: Matrix
@@ -50,6 +52,7 @@ class EliminationPlan:
     recall: float
     resultants: tuple[Resultant, ...] = ()
     turning: Turning = _REVOLUTE
+    parallel: ParallelPlan | None = None
 
     @property
     def usable(self) -> bool:
@@ -97,6 +100,7 @@ def choose_plan(
         recall=float(hits[order[0]].mean()) if hits.size else 0.0,
         resultants=tuple(RESULTANTS[k] for k in np.argsort(shifts)[:_KEPT] if shifts[k] < _BLURRED),
         turning=turning,
+        parallel=choose_parallel(family) if all(turning) else None,
     )
 
 

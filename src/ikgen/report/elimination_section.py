@@ -32,16 +32,26 @@ _THREE_SLIDES = (
     "middle one from its cosine. The position is linear in the lengths of the three slides. Newton "
     "steps sharpen each solution, and forward kinematics decides."
 )
+_PARALLEL = (
+    "Two axes of this arm are parallel. An elimination about these is tried first: the directions of the "
+    "axes beside, and the way from one to the other, turn with the two angles that are left. Products of "
+    "these with the parallel axes' direction are constants, as is the parallel axes' distance: two "
+    "equations in both angles, which meet in the roots of one polynomial, of degree 4 or 8. The other "
+    "angles follow in closed form. A pose whose roots are not clearly real or not is left to what follows."
+)
 
 
-def elimination_section(slides: int = 0, order: Sequence[str] = ()) -> list[Block]:
+def elimination_section(
+    slides: int = 0, order: Sequence[str] = (), *, parallel: bool = False
+) -> list[Block]:
     """The elimination of six joints of which some slide, in words and equations; `order` names the joints
-    as this arm's loop reads them."""
+    as this arm's loop reads them; `parallel`: an elimination about two parallel axes comes first."""
     if slides >= 2:
         return [Paragraph((_TWO_SLIDES if slides == 2 else _THREE_SLIDES,))]
+    first = [Paragraph((_PARALLEL,))] if parallel else []
     read = f"The loop of this arm reads its joints in the order {', '.join(order)}."
     words = [read] * bool(order) + [_SLIDE] * bool(slides)
-    return [*_revolute(slides), *(Paragraph((text,)) for text in words)]
+    return [*first, *_revolute(slides), *(Paragraph((text,)) for text in words)]
 
 
 def _revolute(slides: int) -> list[Block]:

@@ -69,8 +69,9 @@ def _solution(page: SolvedPage) -> list[Block]:
         return _inverse(page)
     blocks: list[Block] = [Heading(("Inverse kinematics",), anchor="inverse")]
     plan = page.derivation.module.plan
-    slides = plan.turning.count(False) if plan is not None else 0
-    blocks += elimination_section(slides, loop_order(page.reading.dh, plan) if plan else ())
+    if plan is not None:
+        slides, order = plan.turning.count(False), loop_order(page.reading.dh, plan)
+        blocks += elimination_section(slides, order, parallel=plan.parallel is not None)
     if page.example is not None and plan is not None:
         blocks += roots_blocks(page.reading.dh, plan, page.example)
     return blocks

@@ -109,6 +109,7 @@ def _headers(module: SolverModule) -> list[str]:
     needed = ["lane_angle.hpp", "single_solve.hpp" if _careful(module) else "lane_solve.hpp"]
     needed += ["routine_roots.hpp"] * bool(routines)
     needed += [_ROUTINES.get(name, f"{name}.hpp") for name in routines]
+    needed += ["parallel_6r.hpp"] * bool(_parallel_kind(module))
     needed += ["lane_newton.hpp"] * (module.refine == "all")
     needed += ["poses_beside.hpp"] * bool(module.beside)
     task = "whole_pose.hpp" if module.task == "pose" else "pose_entries.hpp"
@@ -119,6 +120,8 @@ def _headers(module: SolverModule) -> list[str]:
 
 _ROUTINES = {"general_6r": "general_6r_arm.hpp"}
 """Headers of routines that are not named after them."""
+
+_PARALLEL_KINDS = ("kPlain", "kUpright", "kMeeting")
 
 _ELIMINATIONS = {
     "general_6r": "General6r",
@@ -136,10 +139,18 @@ def _elimination(module: SolverModule) -> dict[str, object]:
         return {"routine": ""}
     return {
         "routine": calls[0].routine,
-        "elimination": _ELIMINATIONS[calls[0].routine],
+        "elimination": "Parallel6r" if _parallel_kind(module) else _ELIMINATIONS[calls[0].routine],
+        "parallel_kind": _parallel_kind(module),
         "numbers": len(calls[0].names),
         "all_turn": all(module.plan.turning),
     }
+
+
+def _parallel_kind(module: SolverModule) -> str:
+    """The kind of the elimination about two parallel axes that comes before the general one; empty where
+    there is none, or where its polynomial would leave most poses to that."""
+    plan = module.plan.parallel if module.plan is not None else None
+    return _PARALLEL_KINDS[plan.elimination[2]] if plan is not None and plan.bounded else ""
 
 
 def _size_text(module: SolverModule) -> str:

@@ -5,24 +5,23 @@
 namespace ikgen_runtime {
 
 // --- general_6r: tables for arcs of the circle ------------------------------------------------------
-// The circle is cut into 32 arcs, and an arc that needs it into eight, four times over. On an arc of width w about
-// 0, a trigonometric polynomial has Bernstein coefficients of degree 16 in
+// The circle is cut into 4 D arcs, and an arc that needs it into eight, four times over. On an arc of width w about
+// 0, a trigonometric polynomial has Bernstein coefficients of degree 2 D in
 // (sin((w/2 - t)/2), sin((t + w/2)/2)) / sin(w/2), for exp(i m t) is a product of (e, conj e)(exp(i t/2)).
 
 namespace g6 {
 
-inline constexpr int kArcs = 32;
 inline constexpr int kParts = 8;
 inline constexpr int kLevels = 4;  // of arcs cut from the first ones
-inline constexpr double kArcWidth = 6.283185307179586476925 / kArcs;
+template <int D> inline constexpr double kArcWidth = 6.283185307179586476925 / kArcs<D>;
 
-template <int N>
+template <int D, int N>
 struct Cut {  // cos and sin of m times the middles of N arcs side by side, about 0 but for the first
-  alignas(64) double c[kDegree + 1][N], s[kDegree + 1][N];
+  alignas(64) double c[D + 1][N], s[D + 1][N];
 };
 
-struct Bernstein {  // coefficients of cos(m t) and sin(m t), the other halves by symmetry
-  double even[kDegree + 1][kDegree + 1], odd[kDegree + 1][kDegree + 1];
+template <int D> struct Bernstein {  // coefficients of cos(m t) and sin(m t), the other halves by symmetry
+  double even[D + 1][D + 1], odd[D + 1][D + 1];
 };
 
 struct Turn {
@@ -47,19 +46,19 @@ constexpr double binomial(int n, int r) noexcept {
   return out;
 }
 
-constexpr Bernstein make_bernstein(double width) noexcept {
-  Turn half[kDegree * 2 + 1] = {};  // multiples of width/2
+template <int D> constexpr Bernstein<D> make_bernstein(double width) noexcept {
+  Turn half[D * 2 + 1] = {};  // multiples of width/2
   half[0] = {1.0L, 0.0L};
   half[1] = turn_by(0.5L * static_cast<long double>(width));
-  for (int k = 2; k <= kDegree * 2; ++k) half[k] = times(half[k - 1], half[1]);
-  Bernstein out{};
-  for (int m = 0; m <= kDegree; ++m)
-    for (int q = 0; q <= kDegree; ++q) {
+  for (int k = 2; k <= D * 2; ++k) half[k] = times(half[k - 1], half[1]);
+  Bernstein<D> out{};
+  for (int m = 0; m <= D; ++m)
+    for (int q = 0; q <= D; ++q) {
       long double even = 0.0L, odd = 0.0L;
       for (int j = 0; j <= q; ++j) {
         const int l = q - j, phase = j - l - m;
-        if (l > kDegree - m) continue;
-        const double share = binomial(kDegree + m, j) * binomial(kDegree - m, l) / binomial(2 * kDegree, q);
+        if (l > D - m) continue;
+        const double share = binomial(D + m, j) * binomial(D - m, l) / binomial(2 * D, q);
         const auto w = static_cast<long double>(share);
         even += w * half[phase < 0 ? -phase : phase].c;
         odd += w * (phase < 0 ? -half[-phase].s : half[phase].s);
@@ -70,15 +69,15 @@ constexpr Bernstein make_bernstein(double width) noexcept {
   return out;
 }
 
-template <int N>
-constexpr Cut<N> make_cut(double first, double width) noexcept {
-  Cut<N> out{};
+template <int D, int N>
+constexpr Cut<D, N> make_cut(double first, double width) noexcept {
+  Cut<D, N> out{};
   for (int a = 0; a < N; ++a) {
     const long double angle = static_cast<long double>(first) + a * static_cast<long double>(width);
     const Turn quarter = turn_by(angle / 8);  // small enough for the series
     const Turn two = times(quarter, quarter), four = times(two, two), one = times(four, four);
     Turn now = {1.0L, 0.0L};
-    for (int m = 0; m <= kDegree; ++m, now = times(now, one)) {
+    for (int m = 0; m <= D; ++m, now = times(now, one)) {
       out.c[m][a] = static_cast<double>(now.c);
       out.s[m][a] = static_cast<double>(now.s);
     }
@@ -86,23 +85,24 @@ constexpr Cut<N> make_cut(double first, double width) noexcept {
   return out;
 }
 
-constexpr double width_of(int level) noexcept {
-  double out = kArcWidth;
+template <int D> constexpr double width_of(int level) noexcept {
+  double out = kArcWidth<D>;
   for (; level > 0; --level) out /= kParts;
   return out;
 }
 
-inline constexpr Cut<kArcs> kFirstCut = make_cut<kArcs>(0.5 * kArcWidth, kArcWidth);
-inline constexpr Cut<kParts> kCuts[kLevels] = {
-    make_cut<kParts>(-0.5 * (kParts - 1) * width_of(1), width_of(1)),
-    make_cut<kParts>(-0.5 * (kParts - 1) * width_of(2), width_of(2)),
-    make_cut<kParts>(-0.5 * (kParts - 1) * width_of(3), width_of(3)),
-    make_cut<kParts>(-0.5 * (kParts - 1) * width_of(4), width_of(4)),
-};
-inline constexpr Bernstein kBernstein[kLevels + 1] = {make_bernstein(width_of(0)), make_bernstein(width_of(1)),
-                                                      make_bernstein(width_of(2)), make_bernstein(width_of(3)),
-                                                      make_bernstein(width_of(4))};
-inline constexpr double kWidths[kLevels + 1] = {width_of(0), width_of(1), width_of(2), width_of(3), width_of(4)};
+template <int D> constexpr Cut<D, kParts> part_cut(int level) noexcept {
+  return make_cut<D, kParts>(-0.5 * (kParts - 1) * width_of<D>(level), width_of<D>(level));
+}
+
+template <int D> inline constexpr Cut<D, kArcs<D>> kFirstCut = make_cut<D, kArcs<D>>(0.5 * kArcWidth<D>, kArcWidth<D>);
+template <int D> inline constexpr Cut<D, kParts> kCuts[kLevels] = {part_cut<D>(1), part_cut<D>(2), part_cut<D>(3),
+                                                                   part_cut<D>(4)};
+template <int D> inline constexpr Bernstein<D> kBernstein[kLevels + 1] = {
+    make_bernstein<D>(width_of<D>(0)), make_bernstein<D>(width_of<D>(1)), make_bernstein<D>(width_of<D>(2)),
+    make_bernstein<D>(width_of<D>(3)), make_bernstein<D>(width_of<D>(4))};
+template <int D> inline constexpr double kWidths[kLevels + 1] = {width_of<D>(0), width_of<D>(1), width_of<D>(2),
+                                                                 width_of<D>(3), width_of<D>(4)};
 
 }  // namespace g6
 }  // namespace ikgen_runtime

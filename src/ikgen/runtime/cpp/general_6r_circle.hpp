@@ -1,16 +1,18 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace ikgen_runtime {
 
-// --- general_6r: trigonometric polynomials of degree 8 ----------------------------------------------
+// --- general_6r: trigonometric polynomials of degree D ----------------------------------------------
 
 namespace g6 {
 
-inline constexpr int kDegree = 8;
-inline constexpr int kNodes = 24;
+inline constexpr int kDegree = 8;  // of the resultant of any arm
+template <int D> inline constexpr int kNodes = 2 * D + 8;
+template <int D> inline constexpr int kArcs = 4 * D;  // that the circle is cut into
 
 // Cosines of the multiples of a 384th of a turn, which all angles below are.
 inline constexpr int kTurnParts = 384;
@@ -40,54 +42,77 @@ constexpr double sine(int parts) noexcept { return cosine(parts - kTurnParts / 4
 inline constexpr double kStartAngle = 0.1;
 inline constexpr double kStart[2] = {0.99500416527802576610, 0.09983341664682815230};  // its cosine and sine
 
-struct Nodes {
-  alignas(64) double c[kNodes], s[kNodes];        // without that angle
-  alignas(64) double weight[kNodes][kNodes];      // value k -> a0, a1..a8, b1..b8, and seven that must vanish
+template <int D> struct Nodes {
+  static constexpr int kCount = kNodes<D>;
+  alignas(64) double c[kCount], s[kCount];    // without that angle
+  alignas(64) double weight[kCount][kCount];  // value k -> a0, a1..aD, b1..bD, and seven that must vanish
 };
-constexpr Nodes make_nodes() noexcept {
-  Nodes out{};
-  constexpr int step = kTurnParts / kNodes;
-  for (int n = 0; n < kNodes; ++n) {
+template <int D> constexpr Nodes<D> make_nodes() noexcept {
+  Nodes<D> out{};
+  constexpr int count = kNodes<D>, step = kTurnParts / count;
+  static_assert(kTurnParts % count == 0);
+  for (int n = 0; n < count; ++n) {
     out.c[n] = cosine(step * n);
     out.s[n] = sine(step * n);
-    for (int j = 0; j < kNodes; ++j) {  // a9, a10, a11, a12, b9, b10, b11 at the end
-      const bool odd = (j > kDegree && j <= 2 * kDegree) || j > 20;
-      const int m = j <= kDegree ? j : j <= 2 * kDegree ? j - kDegree : j <= 20 ? j - kDegree : j - 12;
-      const double scale = (m == 0 || m == 12 ? 1.0 : 2.0) / kNodes;
+    for (int j = 0; j < count; ++j) {  // of four more cosines and three more sines at the end
+      const bool odd = (j > D && j <= 2 * D) || j > 2 * D + 4;
+      const int m = j <= D ? j : j <= 2 * D + 4 ? j - D : j - D - 4;
+      const double scale = (m == 0 || m == D + 4 ? 1.0 : 2.0) / count;
       out.weight[n][j] = scale * (odd ? sine(step * n * m) : cosine(step * n * m));
     }
   }
   return out;
 }
-inline constexpr Nodes kNode = make_nodes();
+template <int D> inline constexpr Nodes<D> kNode = make_nodes<D>();
 
-struct Polynomial {
-  alignas(64) double c[kNodes];  // a0, a1..a8, b1..b8 of cos(m theta), sin(m theta); then what is noise
-  double noise;                  // values below are of unknown sign
+template <int D> struct Polynomial {
+  alignas(64) double c[kNodes<D>];  // a0, a1..aD, b1..bD of cos(m theta), sin(m theta); then what is noise
+  // On each of as many arcs: values below `noise` are of unknown sign, and a rise of neighbouring coefficients there by
+  // more than `wobble` is one.
+  alignas(64) double noise[kArcs<D>], wobble[kArcs<D>];
+  double hopeless;  // times the noise: below that smaller arcs do not make it clearer
 };
 
-// Coefficients of f from its values at the nodes, and how far they may be off. A polynomial of degree 8 has no
+// Coefficients of f from its values at the nodes, and how far they may be off. A polynomial of degree D has no
 // part in the seven frequencies above, so what is found there measures the error of the values. Were these errors
 // equally spread, the polynomial's error at a point would be 1.1 t times the norm of the seven coefficients, t of
 // Student's distribution with 7 degrees of freedom: beyond 10 once in 50,000, and that at a point where f itself
 // comes as close to 0. Were one node's error all, it would be 4.7 times the norm. Rounding in the sums here and
 // where the polynomial is evaluated comes on top.
-inline Polynomial interpolate(const double (&f)[kNodes], double blur) noexcept {
-  Polynomial out;
-  double sum[kNodes] = {};
-  for (int n = 0; n < kNodes; ++n)
-    for (int j = 0; j < kNodes; ++j) sum[j] += f[n] * kNode.weight[n][j];
+template <int D> inline Polynomial<D> interpolate(const double (&f)[kNodes<D>], double blur) noexcept {
+  constexpr int count = kNodes<D>;
+  Polynomial<D> out;
+  double sum[count] = {};
+  for (int n = 0; n < count; ++n)
+    for (int j = 0; j < count; ++j) sum[j] += f[n] * kNode<D>.weight[n][j];
   double noise = 0.0, size = 0.0;
-  for (int j = 0; j < kNodes; ++j) {
+  for (int j = 0; j < count; ++j) {
     out.c[j] = sum[j];
-    if (j <= 2 * kDegree)
+    if (j <= 2 * D)
       size += std::abs(sum[j]);
     else
       noise += sum[j] * sum[j];
   }
   constexpr double kNoise = 11.0, kRounding = 1e-15;
-  out.noise = kNoise * std::sqrt(noise) + kRounding * size + blur;
+  const double off = kNoise * std::sqrt(noise) + kRounding * size + blur;
+  std::fill(out.noise, out.noise + kArcs<D>, off);
+  std::fill(out.wobble, out.wobble + kArcs<D>, 2.0 * off);
+  out.hopeless = 100.0;
   return out;
+}
+
+// The roots of any smooth function are wanted that differs from f by at most `shift`, given at the nodes: on each arc
+// the most of the two nodes before it and the two behind it, and half as much again.
+template <int D> inline void add_shift(const double (&shift)[kNodes<D>], Polynomial<D>& f) noexcept {
+  constexpr int count = kNodes<D>;
+  for (int arc = 0; arc < kArcs<D>; ++arc) {
+    const int before = arc * count / kArcs<D>;
+    double most = 0.0;
+    for (int n = before + count - 1; n < before + count + 4; ++n) most = std::max(most, shift[n % count]);
+    f.noise[arc] += 1.5 * most;
+    f.wobble[arc] += 0.3 * most;  // of a function of degree D, between places a sixteenth of an arc apart
+  }
+  f.hopeless = 3.0;
 }
 
 }  // namespace g6

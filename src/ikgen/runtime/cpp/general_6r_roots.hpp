@@ -16,21 +16,22 @@ struct Pair {  // cosine and sine
 
 inline Pair times(const Pair& a, const Pair& b) noexcept { return {a.c * b.c - a.s * b.s, a.s * b.c + a.c * b.s}; }
 
-// Of small angles: to 1e-16 up to 0.1.
+// Of small angles: to 1e-16 up to 0.2.
 inline Pair small_pair(const Wide& t) noexcept {
   const Wide u = t * t;
   return {1.0 + u * (-0.5 + u * (1.0 / 24 + u * (-1.0 / 720 + u * (1.0 / 40320 - u * (1.0 / 3628800))))),
-          t * (1.0 + u * (-1.0 / 6 + u * (1.0 / 120 + u * (-1.0 / 5040 + u * (1.0 / 362880)))))};
+          t * (1.0 + u * (-1.0 / 6 + u * (1.0 / 120 + u * (-1.0 / 5040 + u * (1.0 / 362880 - u * (1.0 / 39916800))))))};
 }
 
 // f and its derivative.
-inline void evaluate(const Polynomial& f, const Pair& z, Wide& value, Wide& slope) noexcept {
-  Pair power[kDegree + 1];
+template <int D>
+inline void evaluate(const Polynomial<D>& f, const Pair& z, Wide& value, Wide& slope) noexcept {
+  Pair power[D + 1];
   power[1] = z;
-  for (int k = 2; k <= kDegree; ++k) power[k] = times(power[k / 2], power[k - k / 2]);
+  for (int k = 2; k <= D; ++k) power[k] = times(power[k / 2], power[k - k / 2]);
   Wide v[2] = {spread<kWide>(f.c[0]), spread<kWide>(0.0)}, d[2] = {spread<kWide>(0.0), spread<kWide>(0.0)};
-  for (int k = 1; k <= kDegree; ++k) {
-    const double a = f.c[k], b = f.c[kDegree + k];
+  for (int k = 1; k <= D; ++k) {
+    const double a = f.c[k], b = f.c[D + k];
     v[k % 2] = v[k % 2] + a * power[k].c + b * power[k].s;
     d[k % 2] = d[k % 2] + (k * b) * power[k].c - (k * a) * power[k].s;
   }
@@ -38,29 +39,29 @@ inline void evaluate(const Polynomial& f, const Pair& z, Wide& value, Wide& slop
   slope = d[0] + d[1];
 }
 
-struct Roots {
+template <int D> struct Roots {
   int count = 0;
-  alignas(64) double c[2 * kRoots + kWide], s[2 * kRoots + kWide];
+  alignas(64) double c[2 * kRoots<D> + kWide], s[2 * kRoots<D> + kWide];
 };
 
-inline void add_root(Roots& out, double c, double s) noexcept {
+template <int D> inline void add_root(Roots<D>& out, double c, double s) noexcept {
   out.c[out.count] = c;
   out.s[out.count++] = s;
 }
 
 // Newton's method kept within the brackets from `first` on; to the last digits, as nearly double roots want them.
-inline Pair refine(const Polynomial& f, const Brackets& in, int first) noexcept {
+template <int D> inline Pair refine(const Polynomial<D>& f, const Brackets<D>& in, int first) noexcept {
   double low[kWide], high[kWide], guess[kWide], rising[kWide], c[kWide], s[kWide];
   for (int l = 0; l < kWide; ++l) {
     const int i = std::min(first + l, in.count - 1);
-    const int arc = std::min(static_cast<int>(in.guess[i] * (1.0 / kArcWidth)), kArcs - 1);
-    const double centre = kArcWidth * (arc + 0.5);
+    const int arc = std::min(static_cast<int>(in.guess[i] * (1.0 / kArcWidth<D>)), kArcs<D> - 1);
+    const double centre = kArcWidth<D> * (arc + 0.5);
     low[l] = in.low[i] - centre;
     high[l] = in.high[i] - centre;
     guess[l] = in.guess[i] - centre;
     rising[l] = in.negative[i] ? 1.0 : -1.0;
-    c[l] = kFirstCut.c[1][arc];
-    s[l] = kFirstCut.s[1][arc];
+    c[l] = kFirstCut<D>.c[1][arc];
+    s[l] = kFirstCut<D>.s[1][arc];
   }
   const Pair centre = {load<kWide>(c), load<kWide>(s)};
   const Wide up = load<kWide>(rising);
@@ -81,7 +82,7 @@ inline Pair refine(const Polynomial& f, const Brackets& in, int first) noexcept 
 }
 
 // All roots in brackets, as pairs at the nodes' angle.
-inline void refine_all(const Polynomial& f, const Brackets& in, Roots& out) noexcept {
+template <int D> inline void refine_all(const Polynomial<D>& f, const Brackets<D>& in, Roots<D>& out) noexcept {
   out.count = in.count;
   for (int i = 0; i < in.count; i += kWide) {
     const Pair z = refine(f, in, i);

@@ -10,18 +10,20 @@ namespace ikgen_runtime {
 
 namespace g6 {
 
-struct Rotated {  // the nodes at the angle where they begin
-  alignas(64) double c[kNodes], s[kNodes];
+template <int D> struct Rotated {  // the nodes at the angle where they begin
+  alignas(64) double c[kNodes<D>], s[kNodes<D>];
 };
-constexpr Rotated rotate_nodes() noexcept {
-  Rotated out{};
-  for (int n = 0; n < kNodes; ++n) {
-    out.c[n] = kNode.c[n] * kStart[0] - kNode.s[n] * kStart[1];
-    out.s[n] = kNode.s[n] * kStart[0] + kNode.c[n] * kStart[1];
+template <int D> constexpr Rotated<D> rotate_nodes() noexcept {
+  Rotated<D> out{};
+  for (int n = 0; n < kNodes<D>; ++n) {
+    out.c[n] = kNode<D>.c[n] * kStart[0] - kNode<D>.s[n] * kStart[1];
+    out.s[n] = kNode<D>.s[n] * kStart[0] + kNode<D>.c[n] * kStart[1];
   }
   return out;
 }
-inline constexpr Rotated kRotated = rotate_nodes();
+template <int D> inline constexpr Rotated<D> kRotated = rotate_nodes<D>();
+
+constexpr double power(double x, int n) noexcept { return n == 0 ? 1.0 : x * power(x, n - 1); }
 
 inline bool inside(const Zone& zone, double angle) noexcept {
   const double middle = 0.5 * (zone.low + zone.high);
@@ -43,7 +45,8 @@ struct Lens {
 };
 
 // The roots of a polynomial that lie in none of the zones, as pairs at the nodes' angle.
-inline void clear_roots(const Polynomial& f, const Brackets& brackets, Roots& out) noexcept {
+template <int D>
+inline void clear_roots(const Polynomial<D>& f, const Brackets<D>& brackets, Roots<D>& out) noexcept {
   refine_all(f, brackets, out);
   int kept = 0;
   for (int i = 0; i < out.count && brackets.zones > 0; ++i) {
@@ -70,48 +73,55 @@ inline Zone seen_through(const Lens& lens, const Zone& phi, const Zone& zone) no
 
 inline constexpr double kScales[] = {0.03, 5e-4};  // of the first look and of the second
 
-// The roots inside a zone, from nodes crowded there, as pairs of theta. False where that leaves it open.
-inline bool look_closer(const Pencil& pencil, const Zone& zone, int look, Roots& out) noexcept {
+// The roots inside a zone, from nodes crowded there, as pairs of theta. False where that leaves it open. values(close,
+// c, s, f, blur, shift): of f at the nodes, and how far they may be off, tight where asked; false where roots of f
+// alone are wanted, otherwise those of all functions that differ from f by at most shift.
+template <int D, class Values>
+inline bool look_closer(const Values& values, const Zone& zone, int look, Roots<D>& out) noexcept {
   const double middle = 0.5 * (zone.low + zone.high), half = 0.5 * (zone.high - zone.low);
   const Lens lens = {std::cos(middle), std::sin(middle), std::max(kScales[look], std::tan(0.5 * half))};
-  alignas(64) double c[kNodes], s[kNodes], f[kNodes], blur[kNodes];
-  double weight[kNodes], worst = 0.0;
-  for (int n = 0; n < kNodes; ++n) {
-    c[n] = kNode.c[n];
-    s[n] = kNode.s[n];
-    const double r = lens.apply(c[n], s[n]), r2 = r * r, r4 = r2 * r2;
-    weight[n] = r4 * r4;
+  constexpr int count = kNodes<D>;
+  alignas(64) double c[count], s[count], f[count], blur[count], shift[count];
+  double weight[count], worst = 0.0;
+  for (int n = 0; n < count; ++n) {
+    c[n] = kNode<D>.c[n];
+    s[n] = kNode<D>.s[n];
+    weight[n] = power(lens.apply(c[n], s[n]), D);
   }
-  resultants(pencil, true, c, s, f, blur);
-  for (int n = 0; n < kNodes; ++n) {
+  const bool shifts = values(true, c, s, f, blur, shift);
+  for (int n = 0; n < count; ++n) {
+    if (shifts) shift[n] *= weight[n];
     f[n] *= weight[n];
     worst = std::max(worst, weight[n] * blur[n]);
   }
-  const Polynomial g = interpolate(f, worst);
-  const Brackets brackets = isolate(g);
-  Roots near;
+  Polynomial<D> g = interpolate<D>(f, worst);
+  if (shifts) add_shift<D>(shift, g);
+  const Brackets<D> brackets = isolate(g);
+  Roots<D> near;
   clear_roots(g, brackets, near);
   for (int i = 0; i < near.count; ++i) {
     lens.apply(near.c[i], near.s[i]);
     const double off = std::atan2(near.s[i] * lens.c - near.c[i] * lens.s, near.c[i] * lens.c + near.s[i] * lens.s);
     if (std::abs(off) > half) continue;
-    if (out.count == 2 * kRoots) return false;
+    if (out.count == 2 * kRoots<D>) return false;
     add_root(out, near.c[i], near.s[i]);
   }
   bool all = !brackets.doubt;
   for (int i = 0; i < brackets.zones && all; ++i) {
     const Zone open = seen_through(lens, brackets.zone[i], zone);
-    if (open.high >= open.low) all = look == 0 && look_closer(pencil, open, 1, out);
+    if (open.high >= open.low) all = look == 0 && look_closer<D>(values, open, 1, out);
   }
   return all;
 }
 
 // All roots; false where some may be missing.
-inline bool find_roots(const Pencil& pencil, Roots& out) noexcept {
-  alignas(64) double f[kNodes], blur[kNodes];
-  resultants(pencil, false, kRotated.c, kRotated.s, f, blur);
-  const Polynomial polynomial = interpolate(f, *std::max_element(blur, blur + kNodes));
-  const Brackets brackets = isolate(polynomial);
+template <int D, class Values>
+inline bool find_roots(const Values& values, Roots<D>& out) noexcept {
+  alignas(64) double f[kNodes<D>], blur[kNodes<D>], shift[kNodes<D>];
+  const bool shifts = values(false, kRotated<D>.c, kRotated<D>.s, f, blur, shift);
+  Polynomial<D> polynomial = interpolate<D>(f, *std::max_element(blur, blur + kNodes<D>));
+  if (shifts) add_shift<D>(shift, polynomial);
+  const Brackets<D> brackets = isolate(polynomial);
   if (brackets.doubt) return false;
   clear_roots(polynomial, brackets, out);
   for (int i = 0; i < out.count; ++i) {
@@ -122,9 +132,9 @@ inline bool find_roots(const Pencil& pencil, Roots& out) noexcept {
   bool all = true;
   for (int z = 0; z < brackets.zones && all; ++z) {
     const Zone zone = {brackets.zone[z].low + kStartAngle, brackets.zone[z].high + kStartAngle};
-    all = look_closer(pencil, zone, 0, out);
+    all = look_closer<D>(values, zone, 0, out);
   }
-  return all && out.count <= kRoots && out.count % 2 == 0;
+  return all && out.count <= kRoots<D> && out.count % 2 == 0;
 }
 
 // Adds the solutions of the roots from `first` on; whether each became one of its own.
@@ -158,8 +168,12 @@ inline bool run_resultant(const Chain& F, const Frame& T, const std::array<int, 
   const Loop loop = make_loop(F, T, static_cast<Index>(plan[0]), plan[1] != 0);
   const Equations eq = eliminate(loop);
   const Pencil pencil = make_pencil(eq.E, eq.left);
-  Roots roots;
-  bool all = find_roots(pencil, roots);
+  Roots<kDegree> roots;
+  const auto values = [&](bool close, const auto& c, const auto& s, auto& f, auto& blur, auto&) {
+    resultants(pencil, close, c, s, f, blur);
+    return false;
+  };
+  bool all = find_roots<kDegree>(values, roots);
   for (int i = roots.count; i < roots.count + kWide; ++i) {
     roots.c[i] = roots.count > 0 ? roots.c[0] : 1.0;
     roots.s[i] = roots.count > 0 ? roots.s[0] : 0.0;

@@ -30,6 +30,7 @@ __all__ = [
     "Elimination",
     "Finder",
     "Plan",
+    "Way",
     "candidates",
     "refined_rows",
     "six_joint_rows",
@@ -39,6 +40,7 @@ __all__ = [
 Elimination = tuple[int, int, int]  # joint that the loop begins at, whether reversed or swapped
 Candidates = tuple[Index, Array, Index, Flags]
 Finder = Callable[[Array, Array, Elimination, Turning], Candidates]
+Way = tuple[Finder, Elimination, float]  # and how far off the pose exact candidates may be
 _SIX = range(6)
 _DIRECT = (
     1e-7  # error of a candidate from a root that is exact: a double one is off by the square root
@@ -50,12 +52,14 @@ _THOROUGH = ((3, 1e-12, 0.1), (6, 1e-12, 1e-3), (30, 0.0, 0.0))
 @dataclass(frozen=True)
 class Plan:
     """How an arm is solved: its typical `length` (m), the `eliminations` that suit it, in order of
-    preference, and the function that finds candidates by one of them."""
+    preference, and the function that finds candidates by one of them. `direct`: ways that its geometry
+    allows besides, tried first."""
 
     length: float
     eliminations: tuple[Elimination, ...]
     turning: Turning
     find: Finder
+    direct: tuple[Way, ...] = ()
 
 
 def candidates(F: Array, T: Array, plan: Elimination, _: Turning) -> Candidates:
@@ -117,32 +121,35 @@ def six_joint_rows(F: Array, plan: Plan, T: Array, policy: Policy) -> tuple[Inde
     enough where each of its roots is clearly real, or clearly not, and there are as many solutions as real
     roots, each found to many digits. Otherwise more runs follow, with the pose displaced to either side
     (where right angles make roots coincide they come apart, and Newton's method takes them back) and by
-    the next elimination, until one finds all that is known and no more. Returns pose indices (k,) in order
-    and joint values (k, 6), angles in (-pi, pi], sorted.
+    the next elimination, until one finds all that is known and no more. What a direct way leaves open,
+    these runs confirm or complete. Returns pose indices (k,) in order and joint values (k, 6), angles in
+    (-pi, pi], sorted.
     """
     F, T = F.copy(), T.copy()
     F[:, :3, 3] /= plan.length
     T[:, :3, 3] /= plan.length
     found, of = np.zeros((0, 6)), np.zeros(0, dtype=np.intp)
-    near = np.abs(T[:, :3]).max(axis=(1, 2), initial=0.0) < 1e6  # false for NaN
-    todo = np.nonzero(near)[0]
+    inside = np.abs(T[:, :3]).max(axis=(1, 2), initial=0.0) < 1e6  # false for NaN
+    todo = np.nonzero(inside)[0]
     least, size = np.zeros(len(T), dtype=int), len(T)
     aside = _displaced()
-    runs = [(one, X) for one in plan.eliminations for X in (None, aside, inverses(aside))]
-    for number, (one, X) in enumerate(runs):
+    runs: list[tuple[Way, Array | None]] = [(way, None) for way in plan.direct]
+    for one in plan.eliminations:
+        runs += [((plan.find, one, _DIRECT), X) for X in (None, aside, inverses(aside))]
+    for number, ((find, one, near), X) in enumerate(runs):
         if not len(todo):
             break
         exact = T[todo]
-        pose, q, real, clear = plan.find(F, exact if X is None else exact @ X, one, plan.turning)
-        if X is None:
+        pose, q, real, clear = find(F, exact if X is None else exact @ X, one, plan.turning)
+        if X is None and number >= len(plan.direct):
             least[todo] = np.maximum(least[todo], real)
         q, arrived, before = refined_rows(F, plan.turning, exact[pose], q, policy)
         pose, q, before = todo[pose[arrived]], q[arrived], before[arrived]
-        best = np.lexsort((before >= _DIRECT, pose))
+        best = np.lexsort((before >= near, pose))
         q, pose, kept = distinct_rows(q[best], pose[best], plan.turning, policy.coincident)
         mine = np.bincount(pose, minlength=size)[todo]
         if number == 0:
-            direct = np.bincount(pose[before[best[kept]] < _DIRECT], minlength=size)[todo]
+            direct = np.bincount(pose[before[best[kept]] < near], minlength=size)[todo]
             settled = clear & (direct == real) & (mine == real) & (real > 0)
             found, of, count = q, pose, mine
         else:

@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.loop_equations import XS, YS, ZS
 
-__all__ = ["Resultant", "hidden_angles", "loop_resultant", "real_angles", "solved"]
+__all__ = ["DOUBTFUL", "Resultant", "hidden_angles", "loop_resultant", "real_angles", "solved"]
 
 Resultant = tuple[Array, Array, Array]
 _NODES = 2.0 * np.pi / 7.0 * np.arange(7)
 _REAL = 1e-8  # imaginary part of a root that is real
-_DOUBTFUL = 1e-3  # below it, of one that may be half of a double root
+DOUBTFUL = 1e-3  # below it, of one that may be half of a double root
 _JITTER = np.cos(np.outer(np.arange(1, 13), np.arange(1, 13)))
 
 
@@ -64,16 +64,16 @@ def hidden_angles(
 
 
 def real_angles(
-    t: Array | NDArray[np.complex128], about: Array, accept: float
+    t: Array | NDArray[np.complex128], about: Array, accept: float, doubtful: float = DOUBTFUL
 ) -> tuple[NDArray[np.intp], Array, NDArray[np.intp], Flags]:
     """Those angles `about + 2 atan(t)`, about (N,) and t (N, n) complex, of which the imaginary part is
-    below `accept`: as `hidden_angles` has them."""
+    below `accept`: as `hidden_angles` has them. With one below `doubtful` a root is not clearly complex."""
     # angle and modulus of (1 + i t) / (1 - i t)
     z = (1.0 + 1j * t) / np.where(t == -1j, 1e-300, 1.0 - 1j * t)
     off = np.abs(np.log(np.maximum(np.abs(z), 1e-300)))
     real = (off < _REAL).sum(axis=1)
     row, i = np.nonzero(off < accept)
-    return row, about[row] + np.angle(z[row, i]), real, (off < _DOUBTFUL).sum(axis=1) == real
+    return row, about[row] + np.angle(z[row, i]), real, (off < doubtful).sum(axis=1) == real
 
 
 def solved(pivot: Array, N: Array) -> Array:

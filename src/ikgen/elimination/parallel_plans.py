@@ -1,0 +1,125 @@
+"""Which loops of a chain have two parallel axes beside links of a kind that shrinks the elimination.
+
+The parallel axes are the second and the third of the loop; both angles that are left beside them and their
+neighbours' may be hidden, by running the loop backwards.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ikgen.elimination.loop_frames import forward, typical_length
+from ikgen.elimination.routine import Elimination, Plan, Turning, six_joints_batch
+from ikgen.model.joint_tree import Matrix
+from ikgen.runtime.python.general_6r import Candidates
+from ikgen.runtime.python.loop_equations import loop_constants
+from ikgen.runtime.python.parallel_axes import parallel_candidates
+from ikgen.runtime.python.parallel_links import (
+    MEETING,
+    PLAIN,
+    UPRIGHT,
+    deviation,
+    parallel_links,
+)
+
+__all__ = ["ParallelPlan", "choose_parallel", "parallel_plans", "settled_share", "with_parallel"]
+
+_MOST_DEVIATION = 2e-5
+"""Of a kind's links from the chain's (rad, lengths over the arm's): three right angles of four digits
+behind the point are within it. Candidates are as far off the pose, and take Newton steps."""
+
+_EXACT = 1e-8
+
+_APART = 1e-3
+"""Least sine between the axes beside and the parallel ones, and least distance of these over the arm's."""
+
+_LOOPS = ((0, 0), (1, 0), (2, 0), (3, 1), (4, 1), (5, 1))
+"""Those whose links beside the second and third axis do not contain the pose: joints 2 and 3 are parallel,
+3 and 4, or 4 and 5, forwards and backwards."""
+
+_PROBES = 200
+_WORTH = 0.3  # of the poses: with fewer solved at once the attempt costs more than it saves
+
+
+@dataclass(frozen=True, slots=True)
+class ParallelPlan:
+    """elimination: (start, reverse, kind), of a loop whose second and third axes are parallel. deviation:
+    how far the chain's links are from those of the kind (rad, lengths over the arm's)."""
+
+    elimination: Elimination
+    deviation: float
+
+    @property
+    def error(self) -> float:
+        """How far off the pose (rad, over the arm's length) exact roots' candidates may be."""
+        return 1e-7 + 5.0 * self.deviation
+
+    @property
+    def bounded(self) -> bool:
+        """Whether bounds of what the deviation does to the polynomial leave few poses in doubt."""
+        return self.elimination[2] == PLAIN or self.deviation < _EXACT
+
+
+def choose_parallel(family: Matrix) -> ParallelPlan | None:
+    """The one that settles most poses of a family of chains (m, 7, 4, 4), six revolute joints; None where
+    no two axes are parallel beside links of a kind."""
+    length, rng = typical_length(family[0]), np.random.default_rng(0)
+    every = parallel_plans(family)
+    if not every:
+        return None
+    shares = np.zeros(len(every))
+    for frames in family:
+        q = rng.uniform(-np.pi, np.pi, (_PROBES, 6))
+        poses = np.array([forward(frames, row) for row in q])
+        shares += [settled_share(frames, length, one, poses) for one in every]
+    best = int(shares.argmax())
+    return every[best] if shares[best] > _WORTH * len(family) else None
+
+
+def parallel_plans(family: Matrix) -> tuple[ParallelPlan, ...]:
+    """All that suit every chain of the family (m, 7, 4, 4), of each loop the one of the least degree."""
+    parts = [_deviations(member) for member in family]
+    every = {e: max(part[e] for part in parts) for e in parts[0] if all(e in p for p in parts)}
+    found = [min((e for e in every if e[:2] == loop), default=None) for loop in _LOOPS]
+    return tuple(ParallelPlan(e, every[e]) for e in found if e is not None)
+
+
+def _deviations(frames: Matrix) -> dict[Elimination, float]:
+    """Of one chain (7, 4, 4)."""
+    length = typical_length(frames)
+    scaled: Matrix = frames.copy()
+    scaled[:, :3, 3] /= length
+    out = {}
+    for start, reverse in _LOOPS:
+        _, C = loop_constants(scaled, np.eye(4)[None], start, reverse)
+        links = parallel_links(C)
+        if min(1.0 - links.c1**2, 1.0 - links.c3**2, links.a2**2) < _APART**2:
+            continue
+        for kind in (PLAIN, UPRIGHT, MEETING):
+            off = deviation(kind, links)
+            if off <= _MOST_DEVIATION:
+                out[start, reverse, kind] = off
+    return out
+
+
+def with_parallel(plan: Plan, parallel: ParallelPlan | None) -> Plan:
+    """The plan of six revolute joints with the parallel elimination before its own."""
+    if parallel is None:
+        return plan
+    return replace(plan, direct=((parallel_candidates, parallel.elimination, parallel.error),))
+
+
+def settled_share(frames: Matrix, length: float, parallel: ParallelPlan, poses: Matrix) -> float:
+    """The share of poses (N, 4, 4) that the parallel elimination solves alone; frames (7, 4, 4)."""
+    left = [0]
+
+    def rest(_: Matrix, T: Matrix, one: Elimination, turning: Turning) -> Candidates:
+        left.append(len(T))
+        nothing = np.zeros(len(T), dtype=np.intp)
+        return nothing[:0], np.zeros((0, 6)), nothing, nothing > 0
+
+    plan = Plan(length, ((0, 0, 0),), (True,) * 6, rest)
+    six_joints_batch(frames, with_parallel(plan, parallel), poses)
+    return 1.0 - max(left) / max(len(poses), 1)
