@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.rigid import rotation_x, rotation_z
 from ikgen.model.dh import DHChain
 from ikgen.model.joint_tree import Matrix
@@ -57,7 +58,7 @@ def twist_chain(dh: DHChain) -> TwistChain:
         before = twist = after = x = y = 0.0
         if len(links) < len(dh.rows) - 1:  # what follows the last joint is `last`
             before, twist, after = _euler(F[:3, :3])
-            x, y = rotation_z(-before)[:2, :2] @ F[:2, 3]
+            x, y = product(rotation_z(-before)[:2, :2], F[:2, 3])
         turn += before
         own, rest = (turn, 0.0) if row.revolute else (height, turn)
         offset = row.offset.value + own
@@ -88,5 +89,5 @@ def _euler(R: Matrix) -> tuple[float, float, float]:
     sine = math.hypot(x, y)
     before = math.atan2(x, -y) if sine > _PARALLEL else 0.0
     twist = math.atan2(sine if sine > _PARALLEL else 0.0, z)
-    left = (rotation_z(before) @ rotation_x(twist)).T @ R
+    left = product(product(rotation_z(before), rotation_x(twist)).T, R)
     return before, twist, math.atan2(left[1, 0], left[0, 0])
