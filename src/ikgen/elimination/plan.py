@@ -11,6 +11,7 @@ two slides one of the four angles is hidden; with three the rotation gives all a
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -31,6 +32,7 @@ _REVOLUTE: Turning = (True,) * 6
 _REGULAR = 1e-3
 _BLURRED = 1e-4  # rad; roots that move further are not worth a resultant
 _SAME = 1e-5
+_FINE = -8.0  # logarithm of errors below which they no longer count
 _KEPT = 2
 
 
@@ -98,7 +100,7 @@ def choose_plan(
         length=typical_length(first, turning),
         eliminations=tuple(eliminations(turning)[k] for k in order),
         recall=float(hits[order[0]].mean()) if hits.size else 0.0,
-        resultants=tuple(RESULTANTS[k] for k in np.argsort(shifts)[:_KEPT] if shifts[k] < _BLURRED),
+        resultants=tuple(RESULTANTS[k] for k in _separate(shifts)),
         turning=turning,
         parallel=choose_parallel(family) if all(turning) else None,
     )
@@ -112,9 +114,28 @@ def _ranking(hits: Matrix, rough: Matrix) -> list[int]:
     for _ in range(_KEPT):
         rest = [k for k in range(len(hits)) if k not in order]
         found = {k: int((covered | hits[k]).sum()) for k in rest}
-        penalty = {k: 0.005 * max(rough[k] + 8.0, 0.0) * hits.shape[1] for k in rest}
-        order.append(max(rest, key=lambda k: (found[k] - penalty[k], -rough[k])))
+        penalty = {k: 0.005 * max(rough[k] - _FINE, 0.0) * hits.shape[1] for k in rest}
+        best = max(rest, key=lambda k: (found[k] - penalty[k], -rough[k]))
+        as_many = [k for k in rest if found[k] >= found[best]]
+        order.append(_first_alike(max(float(rough[best]), _FINE), as_many, rough))
         covered |= hits[order[-1]]
+    return order
+
+
+def _first_alike(best: float, those: Sequence[int], rough: Matrix) -> int:
+    """The first of `those` that is as good as the best but for a digit of its errors, whose logarithms are
+    `rough`: rounding moves them by half a digit, and is another on every processor."""
+    return next(k for k in those if rough[k] < best + 1.0)
+
+
+def _separate(shifts: Matrix) -> list[int]:
+    """The resultants to keep, those first whose roots rounding moves least."""
+    order: list[int] = []
+    rough = np.log10(shifts + 1e-16)
+    for _ in range(_KEPT):
+        rest = [k for k in range(len(shifts)) if k not in order and shifts[k] < _BLURRED]
+        if rest:
+            order.append(_first_alike(float(rough[rest].min()), rest, rough))
     return order
 
 
