@@ -1,6 +1,6 @@
 """Runs that are killed at random moments over outputs that are there: what is lost, mixed or left behind.
 
-    python -m benchmarks.kills [--kills N] [--seed N] [--record]
+    python -m benchmarks.kills [--kills N] [--seed N] [--record [--add]]
 
 Two descriptions of an arm take turns, so that every run would replace all files. A run is killed
 (SIGKILL, as the system's memory killer does) at a moment drawn over its whole
@@ -25,7 +25,7 @@ from pathlib import Path
 
 from benchmarks import warm_runs
 from benchmarks.command_line import FIXTURES
-from benchmarks.results import write_result
+from benchmarks.results import added_counts, write_result
 from benchmarks.turns import BUILD, Project, verdict
 
 __all__ = ["main"]
@@ -75,13 +75,17 @@ def main() -> int:
     parser.add_argument("--kills", type=int, default=300)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--record", action="store_true", help="write benchmarks/results/kills.json")
+    parser.add_argument("--add", action="store_true", help="to what is recorded of this commit")
     options = parser.parse_args()
     counts = run(options.kills, options.seed)
     for words, count in counts.most_common():
         print(f"{count:5}  {words}")
     wrong = sum(count for words, count in counts.items() if words.startswith("WRONG"))
     if options.record:
-        found = {"kills": options.kills, "wrong": wrong, "left": dict(counts)}
+        left = added_counts("kills", "left", counts) if options.add else dict(counts)
+        kills = sum(left.values()) - left.get("finished before", 0)
+        wrong = sum(count for words, count in left.items() if words.startswith("WRONG"))
+        found = {"kills": kills, "wrong": wrong, "left": left}
         write_result("kills", "python -m benchmarks.kills", found)
     return 1 if wrong else 0
 

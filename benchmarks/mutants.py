@@ -1,6 +1,6 @@
 """Mutants of real robot files: whatever a file says, an answer or a refusal with its place, in time.
 
-    python -m benchmarks.mutants [--read N] [--run N] [--seed N] [--keep DIR] [--record]
+    python -m benchmarks.mutants [--read N] [--run N] [--seed N] [--keep DIR] [--record [--add]]
 
 N mutants are read in this process (file, chains, DH form, geometry), another N go through the command line
 (`ikgen from-urdf`, Python and verification). Wrong is: an exception that is no `IkgenError` with a way out,
@@ -26,7 +26,7 @@ from benchmarks import warm_runs
 from benchmarks.collection import CORPUS
 from benchmarks.command_line import FIXTURES
 from benchmarks.mutations import mutant
-from benchmarks.results import write_result
+from benchmarks.results import added_counts, write_result
 
 __all__ = ["main", "read_one", "robot_files"]
 
@@ -147,6 +147,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--keep", type=Path, default=None, help="where wrong ones are kept")
     parser.add_argument("--record", action="store_true", help="write the recorded result")
+    parser.add_argument("--add", action="store_true", help="to what is recorded of this commit")
     options = parser.parse_args()
     keep = options.keep or Path(tempfile.mkdtemp(prefix="mutants-"))
     keep.mkdir(parents=True, exist_ok=True)
@@ -158,7 +159,9 @@ def main() -> int:
     wrong = sum(n for c in found.values() for words, n in c.items() if words.startswith("WRONG"))
     if options.record:
         result = {kind: dict(counts) for kind, counts in found.items()}
-        write_result("mutants", "python -m benchmarks.mutants", {**result, "wrong": wrong})
+        if options.add:
+            result = {kind: added_counts("mutants", kind, counts) for kind, counts in found.items()}
+        write_result("mutants", "python -m benchmarks.mutants", result)
     return 1 if wrong else 0
 
 

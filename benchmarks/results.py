@@ -7,11 +7,13 @@ import json
 import os
 import platform
 import subprocess
+from collections import Counter
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-__all__ = ["FOLDER", "Measured", "read_result", "write_result"]
+__all__ = ["FOLDER", "Measured", "added_counts", "read_result", "write_result"]
 
 FOLDER = Path(__file__).resolve().parent / "results"
 
@@ -41,6 +43,16 @@ def write_result(name: str, command: str, found: dict[str, Any]) -> Path:
 def read_result(name: str) -> Measured:
     """A recorded run; raises `FileNotFoundError` where there is none."""
     return Measured(**json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8")))
+
+
+def added_counts(name: str, key: str, counts: Mapping[str, int]) -> dict[str, int]:
+    """Counts together with those recorded of this very commit under `key`, of runs with other seeds."""
+    try:
+        earlier = read_result(name)
+    except FileNotFoundError:
+        return dict(counts)
+    before = earlier.found[key] if earlier.commit == _commit() else {}
+    return dict(Counter(before) + Counter(counts))
 
 
 def _commit() -> str:
