@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 
 import pytest
 from tests.support.trees import serial_joints, tree_of
@@ -10,6 +11,7 @@ from tests.support.trees import serial_joints, tree_of
 from ikgen.chains.arms import candidate_chains
 from ikgen.chains.selection import select_chain
 from ikgen.errors import UsageError
+from ikgen.model.joint_tree import Mimic
 
 
 def ends(tree, base=None):
@@ -94,3 +96,11 @@ def test_joints_beyond_the_longest_chain_may_be_locked():
         select_chain(tree)
     assert "--lock" in caught.value.hint
     assert select_chain(tree, locked={"j3": 0.5}).dof == 16
+
+
+def test_an_arm_may_begin_with_a_joint_that_follows_one_behind_it():
+    arm = tree_of(*serial_joints("base", *(f"arm_{i}" for i in range(6))))
+    first, *others = arm.joints
+    coupled = replace(arm, joints=(replace(first, mimic=Mimic("arm_2", -0.5, 0.0)), *others))
+    assert ends(coupled) == {("base", "arm_5_link"): 6}
+    assert [chain.dof for chain in candidate_chains(coupled)] == [5]

@@ -130,4 +130,6 @@ def _is_finger_joint(joint: Joint, bodies: RigidBodies) -> bool:
     if deep and short and is_finger(joint.name, joint.child):
         return True
     # A mimic joint of an arm follows a joint of the same arm; a finger's follows the one beside it.
-    return joint.mimic is not None and not bodies.hangs_on(joint.parent, joint.mimic.joint)
+    if joint.mimic is None or bodies.hangs_on(joint.parent, joint.mimic.joint):
+        return False
+    return deep or not bodies.carries(joint.name, joint.mimic.joint)

@@ -37,6 +37,11 @@ class RigidBodies:
         first, last = self.reach.get(joint, (1, 0))
         return first <= self.place[link] <= last
 
+    def carries(self, joint: str, other: str) -> bool:
+        """Whether a joint moves another one."""
+        first, last = self.reach.get(joint, (1, 0))
+        return joint != other and first <= self.reach.get(other, (0, 0))[0] <= last
+
     @staticmethod
     def of(index: TreeIndex, root: str) -> RigidBodies:
         """The bodies of the tree below a link."""
