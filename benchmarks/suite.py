@@ -6,7 +6,6 @@
 Prints one row a robot: how it was solved, how many solutions each pose has by the emitted Python
 module and by an independent numerical search, how many rows were wrong and how many missed. A row
 is wrong if forward kinematics does not give the pose back; a generating configuration or a solution
-of the search is missed if no row equals it. Below stand the paper's own tables beside what ikgen finds.
 of the search is missed if no row equals it. Claimed is the number of solutions that the module claims,
 most the largest at as many random and as many special poses (with `--poses 10000` they are equal).
 Below stand the paper's own tables beside what ikgen finds.
