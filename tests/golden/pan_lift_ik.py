@@ -551,39 +551,149 @@ def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...], name: str =
     return np.where(far, np.fmod(values, 2.0 * pi), values) if far.any() else values
 
 
+# Newton's method on the chain: damped least squares (Levenberg 1944, Marquardt 1963).
+
+
+_BLOCK = 1024  # rows whose arrays fit into a processor's cache
+
+
+def _in_blocks(step: Callable[[Array, Array], Any], q: Array, T: Array) -> Any:
+    """What `step` makes of rows (k, dof) and poses (k, 4, 4), a part of them at a time."""
+    if len(q) <= _BLOCK:
+        return step(q, T)
+    cuts = range(0, len(q), _BLOCK)
+    parts = [step(q[i : i + _BLOCK], T[i : i + _BLOCK]) for i in cuts]
+    return tuple(np.concatenate(part) for part in zip(*parts))
+
+
+def _refine(
+    chain: _Chain, task: _Task, moving: Sequence[int], q: Array, T: Array, policy: _Policy
+) -> tuple[Array, _Flags, Array, Array]:
+    """Newton steps of the joints `moving` from q (k, dof) towards T (k, 4, 4); which rows arrived, the
+    errors before (k,), and the task's derivatives by the joints (k, m, n) where the rows end."""
+    (steps, fine, promising), *further = policy.refinement
+
+    def first(part: Array, aim: Array) -> tuple[Array, ...]:
+        return _newton(chain, task, moving, part, aim, steps, policy)
+
+    q, error, before, slope = _in_blocks(first, q, T)
+    for more, finer, less in further:
+        going = np.flatnonzero((error >= fine) & (error < promising))
+        if not len(going):
+            break
+        part = _newton(chain, task, moving, q[going], T[going], more, policy)
+        q[going], error[going], slope[going] = part[0], part[1], part[3]
+        before[going] = np.maximum(before[going], part[2])
+        fine, promising = finer, less
+    return q, error < policy.arrived, before, slope
+
+
+def _newton(
+    chain: _Chain, task: _Task, moving: Sequence[int], q: Array, T: Array, steps: int, policy: _Policy
+) -> tuple[Array, Array, Array, Array]:
+    """The best rows (k, dof) of at most `steps` damped steps, their errors and those of q (k,), and the
+    derivatives (k, m, n) at them."""
+    moving = list(moving)
+    best = np.full(len(q), inf)
+    result, going, stalled = q.copy(), np.arange(len(q)), np.zeros(len(q), dtype=int)
+    for step in range(steps + 1):
+        pose, J = _tip_and_jacobian(chain, q)
+        error, J = task.error(pose, T), task.rows(pose, J)[:, :, moving]
+        worst = np.abs(error).max(axis=1)
+        if step == 0:
+            before, slope = worst, J.copy()
+        least = best[going]
+        better = worst < least
+        slope[going[better]] = J[better]
+        stalled = np.where(worst < policy.progress * least, 0, stalled + 1)
+        result[going[better]] = q[better]
+        best[going] = least = np.minimum(least, worst)
+        on = (least > policy.converged) & (stalled < policy.patience)
+        if step == steps or not on.any():
+            break
+        going, stalled, worst, q, T, J = (x[on] for x in (going, stalled, worst, q, T, J))
+        Jt = J.transpose(0, 2, 1)
+        damping = np.maximum(policy.least_damping, policy.damping * np.minimum(worst, 1.0) ** 2)
+        normal = Jt @ J + damping[:, None, None] * np.eye(len(moving))
+        change = np.linalg.solve(normal, Jt @ error[on, :, None])[:, :, 0]
+        q[:, moving] += np.clip(change, -policy.largest_step, policy.largest_step)
+    return result, best, before, slope
+
+
+def _rank_loss(chain: _Chain, task: _Task, moving: Sequence[int], q: Array) -> Array:
+    """Smallest singular value (k,) of the task's derivatives by the joints `moving` at q (k, dof)."""
+    return _least_singular(task.rows(*_tip_and_jacobian(chain, q))[:, :, list(moving)])
+
+
+def _least_singular(slope: Array) -> Array:
+    """Smallest singular value (k,) of derivatives (k, m, n)."""
+    return np.asarray(np.linalg.svd(slope, compute_uv=False)[:, -1])
+
+
 # Undamped Newton steps of all rows at once, and which of them leave no doubt.
+
+
+_FEW = 64  # rows that together take hardly longer than one: it pays to treat them alike
 
 
 def _refine_together(arm: _Arm, q: Array, T: Array) -> tuple[Array, _Flags, _Flags]:
     """Rows (k, dof) after steps towards T (k, 4, 4); which arrived at the one solution near their start,
     and which at a least error that is not 0."""
-    policy, q, done = arm.policy, q.copy(), np.zeros(len(q), dtype=bool)
-    before, good = np.full(len(q), policy.farthest_start), ~done
-    slope = inverse = error = change = np.empty(0)
+    q, arrived, missed = _in_blocks(partial(_refined_block, arm), q, T)
+    return q, arrived, missed
+
+
+def _refined_block(arm: _Arm, q: Array, T: Array) -> tuple[Array, _Flags, _Flags]:
+    policy, row, moving = arm.policy, q.copy(), list(arm.moving)
+    q, arrived = row, np.zeros(len(q), dtype=bool)
+    missed, going, before = (
+        arrived.copy(),
+        np.arange(len(q)),
+        np.full(len(q), policy.farthest_start),
+    )
+    slope = inverse = np.empty(0)
     for step in range(policy.lane_steps):
-        if (
-            step in (1, 2) and before.max(initial=0.0) < policy.near
-        ):  # so close that the slope is the one before
-            error = arm.task.error(_forward(arm.chain, q), T)
+        near = before < policy.near  # so close that the slope is the one before
+        if step not in (1, 2) or (len(row) <= _FEW and not near.all()):
+            near[:] = False
+        if near.all():
+            error, good = arm.task.error(_forward(arm.chain, row), T), near
+        elif not near.any():
+            error, slope, inverse, good = _linearized(arm, row, T)
         else:
-            pose, J = _tip_and_jacobian(arm.chain, q)
-            error = arm.task.error(pose, T)
-            slope = arm.task.rows(pose, J)[:, :, list(arm.moving)]
-            inverse, pivot = _inverse(slope)
-            good &= pivot > policy.least_pivot
+            new, error, good = ~near, np.empty(slope.shape[:2]), near.copy()
+            error[near] = arm.task.error(_forward(arm.chain, row[near]), T[near])
+            error[new], slope[new], inverse[new], good[new] = _linearized(arm, row[new], T[new])
         change = (inverse @ error[:, :, None])[:, :, 0]
         size = np.abs(change).max(axis=1)
-        most = before if step == 0 else policy.contraction * before
-        good &= (size < most) | (size < policy.converged)
-        q[:, arm.moving] += change * good[:, None]
+        most = policy.contraction * before if step else before
+        good = good & ((size < most) | (size < policy.converged))
+        row[:, moving] += change
         if step:
-            done = ~good | (size * size < policy.converged * before) | (size < policy.converged)
-            if done.all():
-                break
+            done = (size * size < policy.converged * before) | (size < policy.converged)
+            done &= good
+            if done.any():
+                rest = np.abs(error - (slope @ change[:, :, None])[:, :, 0]).max(axis=1)
+                q[going[done]] = row[done]
+                arrived[going] = done & (rest < policy.arrived)
+                missed[going] = done & (rest > policy.least_miss)
+                good &= ~done
+        if not good.any():
+            break
         before = size
-    good &= done
-    rest = np.abs(error - (slope @ change[:, :, None])[:, :, 0]).max(axis=1)
-    return q, good & (rest < policy.arrived), good & (rest > policy.least_miss)
+        if not good.all():
+            going, before, row, T = going[good], before[good], row[good], T[good]
+            slope, inverse = slope[good], inverse[good]
+    return q, arrived, missed
+
+
+def _linearized(arm: _Arm, q: Array, T: Array) -> tuple[Array, Array, Array, _Flags]:
+    """Errors (k, m) at rows (k, dof), their derivatives (k, m, n), left inverses of these, and which rows
+    are far from a singularity."""
+    pose, J = _tip_and_jacobian(arm.chain, q)
+    slope = arm.task.rows(pose, J)[:, :, list(arm.moving)]
+    inverse, pivot = _inverse(slope)
+    return arm.task.error(pose, T), slope, inverse, pivot > arm.policy.least_pivot
 
 
 def _inverse(J: Array) -> tuple[Array, Array]:
@@ -864,69 +974,6 @@ def _clipped_step(
     normal = np.einsum("kmi,kmj->kij", slope, slope) + damping[:, None, None] * np.eye(q.shape[1])
     step = np.linalg.solve(normal, np.where(stuck, 0.0, push)[:, :, None])[:, :, 0]
     return np.asarray(np.clip(q + np.clip(step, -_LONGEST_STEP, _LONGEST_STEP), *bounds))
-
-
-# Newton's method on the chain: damped least squares (Levenberg 1944, Marquardt 1963).
-
-
-def _refine(
-    chain: _Chain, task: _Task, moving: Sequence[int], q: Array, T: Array, policy: _Policy
-) -> tuple[Array, _Flags, Array, Array]:
-    """Newton steps of the joints `moving` from q (k, dof) towards T (k, 4, 4); which rows arrived, the
-    errors before (k,), and the task's derivatives by the joints (k, m, n) where the rows end."""
-    (steps, fine, promising), *further = policy.refinement
-    q, error, before, slope = _newton(chain, task, moving, q, T, steps, policy)
-    for more, finer, less in further:
-        going = np.flatnonzero((error >= fine) & (error < promising))
-        if not len(going):
-            break
-        part = _newton(chain, task, moving, q[going], T[going], more, policy)
-        q[going], error[going], slope[going] = part[0], part[1], part[3]
-        before[going] = np.maximum(before[going], part[2])
-        fine, promising = finer, less
-    return q, error < policy.arrived, before, slope
-
-
-def _newton(
-    chain: _Chain, task: _Task, moving: Sequence[int], q: Array, T: Array, steps: int, policy: _Policy
-) -> tuple[Array, Array, Array, Array]:
-    """The best rows (k, dof) of at most `steps` damped steps, their errors and those of q (k,), and the
-    derivatives (k, m, n) at them."""
-    moving = list(moving)
-    best = np.full(len(q), inf)
-    result, going, stalled = q.copy(), np.arange(len(q)), np.zeros(len(q), dtype=int)
-    for step in range(steps + 1):
-        pose, J = _tip_and_jacobian(chain, q)
-        error, J = task.error(pose, T), task.rows(pose, J)[:, :, moving]
-        worst = np.abs(error).max(axis=1)
-        if step == 0:
-            before, slope = worst, J.copy()
-        least = best[going]
-        better = worst < least
-        slope[going[better]] = J[better]
-        stalled = np.where(worst < policy.progress * least, 0, stalled + 1)
-        result[going[better]] = q[better]
-        best[going] = least = np.minimum(least, worst)
-        on = (least > policy.converged) & (stalled < policy.patience)
-        if step == steps or not on.any():
-            break
-        going, stalled, worst, q, T, J = (x[on] for x in (going, stalled, worst, q, T, J))
-        Jt = J.transpose(0, 2, 1)
-        damping = np.maximum(policy.least_damping, policy.damping * np.minimum(worst, 1.0) ** 2)
-        normal = Jt @ J + damping[:, None, None] * np.eye(len(moving))
-        change = np.linalg.solve(normal, Jt @ error[on, :, None])[:, :, 0]
-        q[:, moving] += np.clip(change, -policy.largest_step, policy.largest_step)
-    return result, best, before, slope
-
-
-def _rank_loss(chain: _Chain, task: _Task, moving: Sequence[int], q: Array) -> Array:
-    """Smallest singular value (k,) of the task's derivatives by the joints `moving` at q (k, dof)."""
-    return _least_singular(task.rows(*_tip_and_jacobian(chain, q))[:, :, list(moving)])
-
-
-def _least_singular(slope: Array) -> Array:
-    """Smallest singular value (k,) of derivatives (k, m, n)."""
-    return np.asarray(np.linalg.svd(slope, compute_uv=False)[:, -1])
 
 
 # What distinguishes the rows of a pose: names of their branches, from the geometry of each row alone.

@@ -91,17 +91,21 @@ def solve(pose, *, free=None, seed=None, limits=True):
 
 def solve_batch(poses, *, free=None, seed=None, limits=True):
     q = np.full((len(poses), 2, 3), np.nan)
-    found = [solve(T) for T in poses]
+    held = [None] * len(poses) if free is None else free
+    found = [solve(T, free=one) for T, one in zip(poses, held)]
     for row, s in zip(q, found):
         row[: len(s.q)] = s.q
     return q, np.array([len(s.q) for s in found]), np.array([s.status.value for s in found])
 """
 
 
-@pytest.mark.parametrize("defect", ["", "if free is None else float(free[0])"])
+@pytest.mark.parametrize(
+    "defect", ["", "if free is None else float(free[0])", "if free is None else free\n"]
+)
 def test_free_joint(tmp_path: Path, defect: str) -> None:
     path = tmp_path / "planar_ik.py"
-    path.write_text(MODULE.replace(defect, "if True else 1.0") if defect else MODULE)
+    end = "\n" if defect.endswith("\n") else ""
+    path.write_text(MODULE.replace(defect, f"if True else 1.0{end}") if defect else MODULE)
     oracle = PinocchioOracle(tree_of(URDF), "l0", "tip", ["j1", "j2", "j3"])
     report = verify(PythonModule(path), oracle, samples=100)
     assert report.task == "position"

@@ -25,7 +25,8 @@ _UNREACHABLE = 12  # poses of each kind out of reach
 
 @dataclass(frozen=True, slots=True)
 class Answers:
-    """`limited`, `unlimited`: the random poses with and without limits, unseeded; `inside`: further
+    """`limited`, `unlimited`: the random poses with limits by `solve`, and without by `solve_batch` where
+    there is one, unseeded; `inside`: further
     sets with configurations inside the limits, unseeded; `outside`: a (with, without) limits pair
     of configurations outside; `seeded`: singular sets, seeded with the generating configuration;
     `ordered`: random poses with random `seeds`; `searched`: a slice of `unlimited`; `unreachable`:
@@ -82,11 +83,32 @@ def _unreachable(runner: Runner, arm: ArmUnderTest, seed: int) -> tuple[Trial, .
     return tuple(trials)
 
 
+def _in_batch(runner: Runner, arm: ArmUnderTest, limited: Trial) -> Trial:
+    """The poses of `limited` without limits, in one call: a miss of either function shows, and each
+    takes half of the poses. Batches flag no rows, so poses with flagged ones, or none, are solved one by
+    one."""
+    sample, free = limited.sample, list(arm.free)
+    held = sample.q[:, free] if free else None
+    try:
+        rows = runner.solve_batch(sample.poses, limits=False, free=held)
+    except Exception:  # the check of `solve_batch` tells
+        rows = None
+    if rows is None or rows.q.ndim != 3 or rows.q.shape[::2] != limited.rows.q.shape[::2]:
+        return run_trial(runner, arm, sample, limits=False)
+    alone = np.flatnonzero(limited.rows.singular.any(axis=1) | (limited.rows.count == 0))
+    if len(alone):
+        one = runner.solve_many(
+            sample.poses[alone], free=None if held is None else held[alone], limits=False
+        )
+        rows = rows.with_answers(alone, one)
+    return Trial(sample, rows, False, False)
+
+
 def collect_answers(runner: Runner, arm: ArmUnderTest, samples: int, seed: int) -> Answers:
     """Draw all sets and solve them; whatever the emitted code raises passes through."""
     sets = sample_sets(arm, samples, seed)
     limited = run_trial(runner, arm, sets["random"], limits=True)
-    unlimited = run_trial(runner, arm, sets["random"], limits=False)
+    unlimited = _in_batch(runner, arm, limited)
     some = _first(sets["random"], _ORDERED)
     seeds = arm.uniform(generator(seed, "seeds"), len(some))
     outside = sets["outside limits"]

@@ -50,7 +50,7 @@ inline Frame displacement() noexcept {
 }
 
 // Adds all solutions of a pose to those that are known: Run(F, T, aim, turning, plan, found) gives those of a plan,
-// with the roots of the pose `aim` beside. One run of the first plan is enough where its roots are real, apart and each a solution to many
+// with the roots of the pose `aim` beside. One run of the first plan is enough where its roots are real, as many as solutions, and each a solution to many
 // digits. Otherwise more runs follow, with the pose displaced to either side and by the next elimination, until one
 // finds all that is known and no more.
 template <auto Run, std::size_t N>

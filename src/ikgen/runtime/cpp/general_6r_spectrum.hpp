@@ -97,7 +97,7 @@ inline void add_product(double factor, const Mat<AR, AC>& A, Index ra, Index ca,
 struct Spectrum {
   int count = 0;  // roots theta_3 with imaginary parts below `accept`
   int real = 0;   // those that are clearly real; 16 where the eigenvalues failed
-  bool simple = false;  // all of them are, and lie apart
+  bool simple = false;  // all of them are
   std::array<double, 16> theta;
 };
 
@@ -130,8 +130,6 @@ inline void add_angles(const std::array<Complex, N>& t, double node, double acce
     out.real += off < 1e-8 ? 1 : 0;
   }
   out.simple = out.count == out.real;
-  for (Index i = 0; i < static_cast<Index>(out.count); ++i)
-    for (Index j = 0; j < i; ++j) out.simple = out.simple && !(std::abs(wrap(out.theta[i] - out.theta[j])) < 1e-3);
 }
 
 // With M(theta) = M0 + N Rot(theta) W, Rot = c + s J on R^16, about a node where M_pi = M0 - N W is far from

@@ -19,6 +19,8 @@ from ikgen.runtime.python.rigid_motion import rotations_z
 
 __all__ = ["complete_angles", "null_angles", "turned"]
 
+_ONE_ROOT = 1e-6  # rad: rounding moves roots with two solutions by less
+
 
 def _split(N: Array) -> Array:
     """The solutions (n, 12, 2) within null spaces of two dimensions N (n, 12, 2). Where theta_4
@@ -45,16 +47,16 @@ def _split(N: Array) -> Array:
     return np.asarray(N @ np.stack(vectors, axis=-1), dtype=float)
 
 
-def _null_spaces(M: Array) -> tuple[Array, Flags]:
-    """Two orthogonal vectors (k, 12, 2) each that M (k, 12, 12) shrinks most, the first one most of all,
-    and which M have both of them in their null space: of the columns of an inverse, as inverse iteration
-    has it (Ipsen 1997)."""
+def _null_spaces(M: Array) -> tuple[Array, Flags, Flags]:
+    """Two orthogonal vectors (k, 12, 2) each that M (k, 12, 12) shrinks most, the first one most of all;
+    which M may have both of them in their null space, and which the first one alone: of the columns of
+    an inverse, as inverse iteration has it (Ipsen 1997)."""
     W = solved(M, np.broadcast_to(np.eye(12), M.shape))
-    a, _ = _longest(W)
+    a, longest = _longest(W)
     W = W - a * (np.swapaxes(a, 1, 2) @ W)
     b, length = _longest(W)
     scale = np.sqrt((M * M).sum(axis=(1, 2)))
-    return np.concatenate([a, b], axis=2), length * scale > 1e4
+    return np.concatenate([a, b], axis=2), length * scale > 1e4, longest > 1e3 * length
 
 
 def _longest(W: Array) -> tuple[Array, Array]:
@@ -66,15 +68,18 @@ def _longest(W: Array) -> tuple[Array, Array]:
     return (W[k, :, i] / length[:, None])[:, :, None], length
 
 
-def null_angles(M: Array) -> tuple[NDArray[np.intp], Array]:
+def null_angles(M: Array, pose: NDArray[np.intp], t3: Array) -> tuple[NDArray[np.intp], Array]:
     """theta_4, theta_5 from the null vectors (cos h w, sin h w, cos 3h w, sin 3h w), with w = (1,
-    c5, s5) and h half of theta_4, of M (k, 12, 12): indices into k, pairs of angles (m, 2)."""
-    U, double = _null_spaces(M)
+    c5, s5) and h half of theta_4, of M (k, 12, 12) at roots theta_3 (k,) of poses (k,), both in order:
+    indices into k, pairs of angles (m, 2). A root with two solutions counts twice, and is taken once."""
+    U, double, single = _null_spaces(M)
     index, v = np.arange(len(M)), U[:, :, 0]
     if double.any():
-        two = np.flatnonzero(double)
-        index = np.concatenate([index, np.repeat(two, 2)])
-        v = np.concatenate([v, np.swapaxes(_split(U[two]), 1, 2).reshape(-1, 12)])
+        again = np.zeros(len(M), dtype=bool)
+        again[1:] = double[:-1] & (np.diff(pose) == 0) & (np.diff(t3) < _ONE_ROOT)
+        one, two = np.flatnonzero(single | ~double), np.flatnonzero(double & ~again)
+        index = np.concatenate([one, np.repeat(two, 2)])
+        v = np.concatenate([v[one], np.swapaxes(_split(U[two]), 1, 2).reshape(-1, 12)])
     u1, u3 = v[:, 0:3] + 1j * v[:, 3:6], v[:, 6:9] + 1j * v[:, 9:12]
     t4 = np.angle((u3 * np.conj(u1)).sum(axis=1))
     w = (u1 * np.exp(-0.5j * t4)[:, None]).real

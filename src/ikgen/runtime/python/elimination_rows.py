@@ -9,10 +9,12 @@ import numpy as np
 from ikgen.runtime.python.array_types import Array, Row
 from ikgen.runtime.python.general_6r import Plan, six_joint_rows
 from ikgen.runtime.python.refinement import rank_loss
-from ikgen.runtime.python.solution_rows import places
+from ikgen.runtime.python.solution_rows import Index, places
 from ikgen.runtime.python.solved_arm import Arm
 
 __all__ = ["elimination_branches", "elimination_lanes"]
+
+_POSES = 256  # whose arrays fit into a processor's cache
 
 
 def _frames(arm: Arm, held: Array) -> Array:
@@ -85,22 +87,28 @@ def elimination_lanes(arm: Arm, plan: Plan, entries: tuple[Array, ...]) -> tuple
     distinct, group = np.unique(columns[12:], axis=1, return_inverse=True)
     for k in range(max(distinct.shape[1], 1)):
         members = np.flatnonzero(group.reshape(-1) == k) if len(columns) > 12 else np.arange(count)
-        T = np.tile(np.eye(4), (len(members), 1, 1))
-        T[:, :3] = columns[:12, members].T.reshape(-1, 3, 4)
         held: Array = distinct[:, k] if len(columns) > 12 else np.empty(0)
-        pose, angles = six_joint_rows(_frames(arm, held), plan, T, arm.policy)
-        many = np.flatnonzero(np.bincount(pose, minlength=1) > arm.most)
-        for i in many:
-            some = _regular_first(arm, angles[pose == i], held)
-            angles = np.concatenate([angles[pose != i], some])
-            pose = np.concatenate([pose[pose != i], np.full(len(some), i)])
-        order = np.argsort(pose, kind="stable")
-        pose, angles = pose[order], angles[order]
-        place, member, lane = places(pose), members[pose], 0
-        for value, turns in zip(angles.T, plan.turning):
-            lanes[lane, place, member] = np.cos(value) if turns else value
-            if turns:
-                lanes[lane + 1, place, member] = np.sin(value)
-            lane += 2 if turns else 1
-        found[place, member] = True
+        for start in range(0, len(members), _POSES):
+            part = members[start : start + _POSES]
+            T = np.tile(np.eye(4), (len(part), 1, 1))
+            T[:, :3] = columns[:12, part].T.reshape(-1, 3, 4)
+            pose, values = _rows_of_poses(arm, plan, T, held)
+            place, member, lane = places(pose), part[pose], 0
+            for value, turns in zip(values.T, plan.turning):
+                lanes[lane, place, member] = np.cos(value) if turns else value
+                if turns:
+                    lanes[lane + 1, place, member] = np.sin(value)
+                lane += 2 if turns else 1
+            found[place, member] = True
     return (*lanes, found)
+
+
+def _rows_of_poses(arm: Arm, plan: Plan, T: Array, held: Array) -> tuple[Index, Array]:
+    """Pose indices (k,) in order, and at most `arm.most` rows (k, 6) for each of the poses T (N, 4, 4)."""
+    pose, values = six_joint_rows(_frames(arm, held), plan, T, arm.policy)
+    for i in np.flatnonzero(np.bincount(pose, minlength=1) > arm.most):
+        some = _regular_first(arm, values[pose == i], held)
+        before, after = pose < i, pose > i
+        values = np.concatenate([values[before], some, values[after]])
+        pose = np.concatenate([pose[before], np.full(len(some), i), pose[after]])
+    return pose, values

@@ -75,7 +75,7 @@ def candidates(F: Array, T: Array, plan: Elimination, _: Turning) -> Candidates:
         return pose, np.zeros((0, 6)), least, clear
     c, s = np.cos(t3)[:, None, None], np.sin(t3)[:, None, None]
     M0, M1, M2 = (rows_of(m, pose) for m in M)
-    k, t45 = null_angles(M0 + c * M1 + s * M2)
+    k, t45 = null_angles(M0 + c * M1 + s * M2, pose, t3)
     t = np.concatenate([t3[k, None], t45[:, ::-1] if swap else t45], axis=1)
     angles = complete_angles(C, left, right, pose[k], t)
     q = np.empty_like(angles)
@@ -114,6 +114,10 @@ def _displaced() -> Array:
     return X
 
 
+_ASIDE = _displaced()
+_OTHER_SIDE = inverses(_ASIDE)
+
+
 def six_joint_rows(F: Array, plan: Plan, T: Array, policy: Policy) -> tuple[Index, Array]:
     """All real solutions of `F_0 M_1 F_1 ... M_6 F_6 = T` for poses T (N, 4, 4).
 
@@ -132,10 +136,9 @@ def six_joint_rows(F: Array, plan: Plan, T: Array, policy: Policy) -> tuple[Inde
     inside = np.abs(T[:, :3]).max(axis=(1, 2), initial=0.0) < 1e6  # false for NaN
     todo = np.nonzero(inside)[0]
     least, size = np.zeros(len(T), dtype=int), len(T)
-    aside = _displaced()
     runs: list[tuple[Way, Array | None]] = [(way, None) for way in plan.direct]
     for one in plan.eliminations:
-        runs += [((plan.find, one, _DIRECT), X) for X in (None, aside, inverses(aside))]
+        runs += [((plan.find, one, _DIRECT), X) for X in (None, _ASIDE, _OTHER_SIDE)]
     for number, ((find, one, near), X) in enumerate(runs):
         if not len(todo):
             break

@@ -42,8 +42,9 @@ def loop_resultant(E: Array, left: Array) -> Resultant:
 def hidden_angles(
     E: Array, left: Array, M: Resultant, accept: float
 ) -> tuple[NDArray[np.intp], Array, NDArray[np.intp], Flags]:
-    """The roots theta_3 with an imaginary part below `accept`: rows (k,) and real parts (k,); per
-    row the number of those that are clearly real, and whether the others clearly are not.
+    """The roots theta_3 with an imaginary part below `accept`: rows (k,) in order and real parts (k,),
+    in order for each; per row the number of those that are clearly real, and whether the others clearly
+    are not.
 
     With `M(theta) = M0 + N Rot(theta) W`, Rot = c + s J on R^16, about a node where `M_pi = M0 - N
     W` is far from singular: tan(theta/2) are the eigenvalues of `-J (1 + 2 W M_pi^-1 N)`.
@@ -73,7 +74,9 @@ def real_angles(
     off = np.abs(np.log(np.maximum(np.abs(z), 1e-300)))
     real = (off < _REAL).sum(axis=1)
     row, i = np.nonzero(off < accept)
-    return row, about[row] + np.angle(z[row, i]), real, (off < doubtful).sum(axis=1) == real
+    angle = about[row] + np.angle(z[row, i])
+    order = np.lexsort((angle, row))
+    return row[order], angle[order], real, (off < doubtful).sum(axis=1) == real
 
 
 def solved(pivot: Array, N: Array) -> Array:

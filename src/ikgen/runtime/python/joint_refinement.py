@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.chain_kinematics import forward, tip_and_jacobian
+from ikgen.runtime.python.refinement import in_blocks
 from ikgen.runtime.python.solved_arm import Arm
 
 __all__ = ["refine_together"]
+
+_FEW = 64  # rows that together take hardly longer than one: it pays to treat them alike
 
 
 def refine_together(arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
@@ -18,33 +23,61 @@ def refine_together(arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
     Newton's method contracts by `policy.contraction` only near the one solution there (Deuflhard 2004,
     theorem 2.1).
     """
-    policy, q, done = arm.policy, q.copy(), np.zeros(len(q), dtype=bool)
-    before, good = np.full(len(q), policy.farthest_start), ~done
-    slope = inverse = error = change = np.empty(0)
+    q, arrived, missed = in_blocks(partial(_refined_block, arm), q, T)
+    return q, arrived, missed
+
+
+def _refined_block(arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
+    policy, row, moving = arm.policy, q.copy(), list(arm.moving)
+    q, arrived = row, np.zeros(len(q), dtype=bool)
+    missed, going, before = (
+        arrived.copy(),
+        np.arange(len(q)),
+        np.full(len(q), policy.farthest_start),
+    )
+    slope = inverse = np.empty(0)
     for step in range(policy.lane_steps):
-        if (
-            step in (1, 2) and before.max(initial=0.0) < policy.near
-        ):  # so close that the slope is the one before
-            error = arm.task.error(forward(arm.chain, q), T)
+        near = before < policy.near  # so close that the slope is the one before
+        if step not in (1, 2) or (len(row) <= _FEW and not near.all()):
+            near[:] = False
+        if near.all():
+            error, good = arm.task.error(forward(arm.chain, row), T), near
+        elif not near.any():
+            error, slope, inverse, good = _linearized(arm, row, T)
         else:
-            pose, J = tip_and_jacobian(arm.chain, q)
-            error = arm.task.error(pose, T)
-            slope = arm.task.rows(pose, J)[:, :, list(arm.moving)]
-            inverse, pivot = _inverse(slope)
-            good &= pivot > policy.least_pivot
+            new, error, good = ~near, np.empty(slope.shape[:2]), near.copy()
+            error[near] = arm.task.error(forward(arm.chain, row[near]), T[near])
+            error[new], slope[new], inverse[new], good[new] = _linearized(arm, row[new], T[new])
         change = (inverse @ error[:, :, None])[:, :, 0]
         size = np.abs(change).max(axis=1)
-        most = before if step == 0 else policy.contraction * before
-        good &= (size < most) | (size < policy.converged)
-        q[:, arm.moving] += change * good[:, None]
+        most = policy.contraction * before if step else before
+        good = good & ((size < most) | (size < policy.converged))
+        row[:, moving] += change
         if step:
-            done = ~good | (size * size < policy.converged * before) | (size < policy.converged)
-            if done.all():
-                break
+            done = (size * size < policy.converged * before) | (size < policy.converged)
+            done &= good
+            if done.any():
+                rest = np.abs(error - (slope @ change[:, :, None])[:, :, 0]).max(axis=1)
+                q[going[done]] = row[done]
+                arrived[going] = done & (rest < policy.arrived)
+                missed[going] = done & (rest > policy.least_miss)
+                good &= ~done
+        if not good.any():
+            break
         before = size
-    good &= done
-    rest = np.abs(error - (slope @ change[:, :, None])[:, :, 0]).max(axis=1)
-    return q, good & (rest < policy.arrived), good & (rest > policy.least_miss)
+        if not good.all():
+            going, before, row, T = going[good], before[good], row[good], T[good]
+            slope, inverse = slope[good], inverse[good]
+    return q, arrived, missed
+
+
+def _linearized(arm: Arm, q: Array, T: Array) -> tuple[Array, Array, Array, Flags]:
+    """Errors (k, m) at rows (k, dof), their derivatives (k, m, n), left inverses of these, and which rows
+    are far from a singularity."""
+    pose, J = tip_and_jacobian(arm.chain, q)
+    slope = arm.task.rows(pose, J)[:, :, list(arm.moving)]
+    inverse, pivot = _inverse(slope)
+    return arm.task.error(pose, T), slope, inverse, pivot > arm.policy.least_pivot
 
 
 def _inverse(J: Array) -> tuple[Array, Array]:

@@ -55,7 +55,7 @@ def one_slide_candidates(
         return pose, np.zeros((0, 6)), least, clear
     c, s = np.cos(t3)[:, None, None], np.sin(t3)[:, None, None]
     M0, M1, M2 = (rows_of(m, pose) for m in M)
-    k, t45 = null_angles(M0 + c * M1 + s * M2)
+    k, t45 = null_angles(M0 + c * M1 + s * M2, pose, t3)
     t = np.concatenate([t3[k, None], t45[:, ::-1] if swap else t45], axis=1)
     pose = pose[k]
     found = _with_slide(

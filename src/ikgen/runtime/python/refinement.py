@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import inf
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +13,19 @@ from ikgen.runtime.python.chain_kinematics import Chain, tip_and_jacobian
 from ikgen.runtime.python.solve_policy import Policy
 from ikgen.runtime.python.task_interface import Task
 
-__all__ = ["least_singular", "newton", "rank_loss", "refine"]
+__all__ = ["in_blocks", "least_singular", "newton", "rank_loss", "refine"]
+
+
+_BLOCK = 1024  # rows whose arrays fit into a processor's cache
+
+
+def in_blocks(step: Callable[[Array, Array], Any], q: Array, T: Array) -> Any:
+    """What `step` makes of rows (k, dof) and poses (k, 4, 4), a part of them at a time."""
+    if len(q) <= _BLOCK:
+        return step(q, T)
+    cuts = range(0, len(q), _BLOCK)
+    parts = [step(q[i : i + _BLOCK], T[i : i + _BLOCK]) for i in cuts]
+    return tuple(np.concatenate(part) for part in zip(*parts))
 
 
 def refine(
@@ -25,7 +38,11 @@ def refine(
     lie on a limit.
     """
     (steps, fine, promising), *further = policy.refinement
-    q, error, before, slope = newton(chain, task, moving, q, T, steps, policy)
+
+    def first(part: Array, aim: Array) -> tuple[Array, ...]:
+        return newton(chain, task, moving, part, aim, steps, policy)
+
+    q, error, before, slope = in_blocks(first, q, T)
     for more, finer, less in further:
         going = np.flatnonzero((error >= fine) & (error < promising))
         if not len(going):

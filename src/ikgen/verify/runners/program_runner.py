@@ -123,9 +123,11 @@ class ProgramRunner:
         status = tuple(_STATUS[int(s)] if s >= 0 else "UNKNOWN" for s in out[:, 0])
         return Rows(q, count, status, table[:, :, dof] != 0)
 
-    def solve_batch(self, poses: Array, limits: bool = True) -> Rows | None:
-        """The language's `solve_batch`; None where it has none."""
-        if not self._has_batch:
+    def solve_batch(
+        self, poses: Array, limits: bool = True, free: Array | None = None
+    ) -> Rows | None:
+        """The language's `solve_batch`; None where it has none, or for free values, which requests lack."""
+        if not self._has_batch or free is not None:
             return None
         n = len(poses)
         return self._rows(self._run(BATCH, n, [_by_columns(poses)], (False, False, limits)), n)

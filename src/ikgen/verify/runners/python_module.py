@@ -133,9 +133,11 @@ class PythonModule:
         count = np.array([len(rows) for rows, _, _ in answers], dtype=np.int64)
         return Rows(q, count, tuple(status for _, status, _ in answers), singular)
 
-    def solve_batch(self, poses: Array, limits: bool = True) -> Rows | None:
-        """The module's `solve_batch`, with its defaults for free joints; flags are all false."""
-        q, count, status = self.module.solve_batch(poses, limits=limits)
+    def solve_batch(
+        self, poses: Array, limits: bool = True, free: Array | None = None
+    ) -> Rows | None:
+        """The module's `solve_batch`, by default with its values for free joints; flags are all false."""
+        q, count, status = self.module.solve_batch(poses, free=free, limits=limits)
         q = np.asarray(q, dtype=float)
         names = tuple(getattr(s, "name", None) or self.module.Status(s).name for s in status)
         return Rows(q, np.asarray(count, dtype=np.int64), names, np.zeros(q.shape[:2], dtype=bool))

@@ -67,6 +67,21 @@ class Rows:
         mask = self.mask
         return np.nonzero(mask)[0], self.q[mask], self.singular[mask]
 
+    def with_answers(self, index: NDArray[np.int64], other: Rows) -> Rows:
+        """These with those of the poses `index` (k,) replaced by the `other` ones."""
+        width = max(self.q.shape[1], other.q.shape[1])
+        q = np.full((len(self), width, self.q.shape[2]), np.nan)
+        singular = np.zeros((len(self), width), dtype=bool)
+        q[:, : self.q.shape[1]], singular[:, : self.q.shape[1]] = self.q, self.singular
+        q[index], singular[index] = np.nan, False
+        q[index, : other.q.shape[1]] = other.q
+        singular[index, : other.q.shape[1]] = other.singular
+        count, status = self.count.copy(), list(self.status)
+        count[index] = other.count
+        for k, name in zip(index.tolist(), other.status, strict=True):
+            status[k] = name
+        return Rows(q, count, tuple(status), singular)
+
 
 class Runner(Protocol):
     """Emitted code that can be run. `label` is its language; `dynamic_shapes` says whether a
@@ -98,8 +113,11 @@ class Runner(Protocol):
     ) -> Rows:
         """`solve` for each of the poses (N, 4, 4) with free values (N, f) and seeds (N, dof)."""
 
-    def solve_batch(self, poses: Array, limits: bool = True) -> Rows | None:
-        """The module's own batch function, flags all false; None where the language has none."""
+    def solve_batch(
+        self, poses: Array, limits: bool = True, free: Array | None = None
+    ) -> Rows | None:
+        """The module's own batch function for poses (N, 4, 4) with free values (N, f), flags all false;
+        None where the language has none that takes these."""
 
     def forward(self, q: Array) -> Array:
         """Poses (N, 4, 4) for q (N, dof)."""
