@@ -4,6 +4,7 @@
 #   ikgen_generate(<target> ROBOT <urdf-or-xacro>
 #     [NAME <name>] [BASE <link>] [TIP <link>] [TASK <task>] [ARGS <name>:=<value>...]
 #     [PACKAGE_PATH <dir>...] [FREE <joint>[=<value>]...] [LOCK <joint>=<value>...]
+#     [COUPLE <joint>=<source>*k+c...]
 #     [EMIT cpp python ...] [SAMPLES <n>] [DEPENDS <file>...] [VERIFY])
 #
 # makes the INTERFACE library <target> (alias ikgen::<target>) with the emitted header

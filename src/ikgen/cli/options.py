@@ -67,6 +67,12 @@ _CHAIN_OPTIONS = (
         metavar="JOINT=VALUE",
         help="Fix a joint for good (rad, m, 45deg, 120mm).",
     ),
+    click.option(
+        "--couple",
+        multiple=True,
+        metavar="JOINT=SOURCE*k+c",
+        help="Make a joint follow another: its value is k times the other's plus c (rad, m).",
+    ),
     *_READING_OPTIONS,
     click.option(
         "--calibration",

@@ -10,7 +10,7 @@ from ikgen.generation.joint_value import joint_value
 from ikgen.generation.request import Request
 from ikgen.model.module_name import identifier, is_module_name
 
-__all__ = ["make_request", "parse_emit", "parse_free", "parse_locked"]
+__all__ = ["make_request", "parse_coupled", "parse_emit", "parse_free", "parse_locked"]
 
 
 def make_request(
@@ -22,6 +22,7 @@ def make_request(
     tool_axis: str | None = None,
     free: Sequence[str] = (),
     lock: Sequence[str] = (),
+    couple: Sequence[str] = (),
     args: Sequence[str] = (),
     package_paths: Sequence[Path] = (),
     calibration: Path | None = None,
@@ -50,6 +51,7 @@ def make_request(
         tool_axis=tool_axis,
         free=held,
         lock=locked,
+        couple=parse_coupled(couple),
         args=_arguments(args),
         package_paths=tuple(package_paths),
         calibration=calibration,
@@ -88,6 +90,25 @@ def parse_locked(texts: Sequence[str]) -> dict[str, float]:
             hint = "leave all but one of them out"
             raise UsageError(f"--lock {text}: joint '{joint}' is given twice", hint=hint)
         found[joint] = _number("--lock", text, value)
+    return found
+
+
+def parse_coupled(texts: Sequence[str]) -> dict[str, str]:
+    """Joint -> relation of each --couple JOINT=SOURCE*k+c."""
+    from ikgen.model.joint_relation import read_relation
+
+    found: dict[str, str] = {}
+    for text in texts:
+        joint, _, relation = text.partition("=")
+        try:
+            read_relation(relation)
+        except ValueError as error:
+            raise UsageError(
+                f"--couple {text}: {error}", hint="for example --couple stage_2=stage_1*1+0"
+            ) from None
+        if not joint or joint in found:
+            raise UsageError(f"--couple {text}: " + ("given twice" if joint else "no joint named"))
+        found[joint] = relation
     return found
 
 

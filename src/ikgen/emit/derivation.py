@@ -19,12 +19,14 @@ __all__ = ["Derivation", "Held", "Reading", "Unsolved"]
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """A description as read: its tree and chain (none for a DH table) and the chain in DH form."""
+    """A description as read: its tree and chain (none for a DH table) and the chain in DH form. `coupled`
+    are the relations between joints that were chosen, not asked for (`JOINT=SOURCE*k+c`)."""
 
     source: Source
     tree: JointTree | None
     chain: Chain | None
     dh: DHChain
+    coupled: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

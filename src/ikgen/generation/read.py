@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ikgen.emit.derivation import Reading
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from ikgen.generation.request import Request
-    from ikgen.model.chain import ActuatedJoint
+    from ikgen.model.chain import ActuatedJoint, Chain
     from ikgen.model.joint_tree import JointTree
 
 __all__ = ["arm_name", "default_name", "read", "read_tree"]
@@ -34,13 +35,37 @@ def read(request: Request, tree: JointTree | None = None) -> Reading:
     tree = tree or read_tree(request)
     _check_units(request, tree.joints)
     _check_locks(request, tree.joints)
-    chain = select_chain(tree, request.base, request.tip, dict(request.lock))
-    reading = Reading(tree.source, tree, chain, to_dh(chain, free=free))
+    tree, chain, coupled = _coupled_chain(request, tree)
+    reading = Reading(tree.source, tree, chain, to_dh(chain, free=free), coupled)
     if request.calibration is None or is_offsets(request.calibration):
         return _with_offsets(reading, request)
     own = calibrated_tree(tree, request.calibration)
     calibrated = select_chain(own, chain.base_link, chain.tip_link, dict(request.lock))
-    return Reading(own.source, own, calibrated, calibrated_dh(reading.dh, calibrated))
+    return Reading(own.source, own, calibrated, calibrated_dh(reading.dh, calibrated), coupled)
+
+
+def _coupled_chain(request: Request, tree: JointTree) -> tuple[JointTree, Chain, tuple[str, ...]]:
+    """The tree with the relations between its joints, the chain that is meant, and the relations that were
+    chosen: where none is asked for, the stages of a telescope take equal shares, unless one is held."""
+    from ikgen.chains.related_joints import equal_stages, related_tree
+    from ikgen.chains.selection import select_chain
+    from ikgen.model.joint_relation import read_relation
+
+    locked = dict(request.lock)
+    chain = select_chain(tree, request.base, request.tip, locked)
+    relations = {joint: read_relation(text) for joint, text in request.couple.items()}
+    stages = {} if relations else equal_stages(chain)
+    named = {*stages, *(stage.source for stage in stages.values())}
+    if named & {*request.free}:
+        stages = {}
+    if not relations and not stages:
+        return tree, chain, ()
+    tree = related_tree(tree, relations or stages)
+    words = tuple(f"{joint}={stage.words}" for joint, stage in stages.items())
+    if stages:
+        note = f"stages of a telescope take equal shares: --couple {' --couple '.join(words)}"
+        tree = replace(tree, source=replace(tree.source, warnings=(*tree.source.warnings, note)))
+    return tree, select_chain(tree, chain.base_link, chain.tip_link, locked), words
 
 
 def _with_offsets(reading: Reading, request: Request) -> Reading:
@@ -88,9 +113,12 @@ def _taken_arguments(request: Request) -> str:
 
 
 def _read_table(request: Request, free: tuple[str, ...]) -> Reading:
+    from ikgen.chains.related_rows import related_dh
     from ikgen.importers.dh.dh_table import read_dh_table
+    from ikgen.model.joint_relation import read_relation
 
     source, dh = read_dh_table(request.robot, free=free, locked=request.lock)
+    dh = related_dh(dh, {joint: read_relation(text) for joint, text in request.couple.items()})
     if request.lock or request.free:
         joints = read_dh_table(request.robot)[1].joints
         _check_units(request, joints)

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from ikgen.generation.codec import CodecError, coded, read_free, uncoded
+from ikgen.model.joint_relation import read_relation
 from ikgen.model.module_name import is_module_name
 from ikgen.tasks import AXES
 
@@ -43,6 +44,16 @@ def _axis(value: Any, where: str) -> Any:
     return value
 
 
+def _relations(value: Any, where: str) -> Any:
+    """Relations between joints, each a text that can be read."""
+    for joint, text in value.items() if isinstance(value, Mapping) else ():
+        try:
+            read_relation(text if isinstance(text, str) else repr(text))
+        except ValueError as error:
+            raise CodecError(f"{where}.{joint}", str(error)) from None
+    return value
+
+
 def _positive(value: Any, where: str) -> Any:
     if isinstance(value, int) and value < 1:
         raise CodecError(where, f"{value} is less than 1")
@@ -53,7 +64,8 @@ def _positive(value: Any, where: str) -> Any:
 class Request:
     """One robot file or DH table, one chain, one task, by the tool's axis `tool_axis` where it is one with
     a direction (None: the one that suits). `free` maps held joints to their default value
-    (None: chosen), `lock` fixed joints to their value (rad or m), `args` are xacro's, `calibration` is a
+    (None: chosen), `lock` fixed joints to their value (rad or m), `couple` joints to what
+    they follow (`SOURCE*k+c`, rad or m), `args` are xacro's, `calibration` is a
     file of the one arm's own kinematics; `name` is the prefix of the files (None: made from the robot's);
     `trust` lets the file do whatever xacro can."""
 
@@ -64,6 +76,7 @@ class Request:
     tool_axis: str | None = field(default=None, metadata=coded(_axis))
     free: Mapping[str, float | None] = field(default_factory=dict, metadata=coded(read_free))
     lock: Mapping[str, float] = field(default_factory=dict)
+    couple: Mapping[str, str] = field(default_factory=dict, metadata=coded(_relations))
     args: Mapping[str, str] = field(default_factory=dict, metadata=coded(_arguments))
     package_paths: tuple[Path, ...] = ()
     calibration: Path | None = None
@@ -94,6 +107,8 @@ class Request:
             words += ["--free", joint if held is None else f"{joint}={held!r}"]
         for joint, locked in self.lock.items():
             words += ["--lock", f"{joint}={locked!r}"]
+        for joint, relation in self.couple.items():
+            words += ["--couple", f"{joint}={relation}"]
         for name, text in self.args.items():
             words += ["--arg", f"{name}:={text}"]
         if self.calibration is not None:

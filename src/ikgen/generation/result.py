@@ -51,10 +51,13 @@ def as_dict(generation: Generation) -> dict[str, Any]:
 
 
 def _chosen(derivation: Derivation) -> dict[str, Any]:
-    """What was left to ikgen and what it took: the task, the joints to hold, and why."""
+    """What was left to ikgen and what it took: the task, relations between joints, the joints to hold, and
+    why."""
     chosen: dict[str, Any] = {}
     if derivation.chosen:
         chosen["task"] = derivation.task.name
+    if derivation.reading.coupled:
+        chosen["coupled"] = list(derivation.reading.coupled)
     held = derivation.held
     if held is not None:
         chosen |= {"held": list(held.joints), "why": held.why}

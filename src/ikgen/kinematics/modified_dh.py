@@ -70,7 +70,7 @@ def _derive(chain: Chain, tolerance: Tolerance, free: Sequence[str]) -> DHChain:
         tip_link=chain.tip_link,
         joints=chain.joints,
         rows=tuple(
-            drive_row(row, axis, i)
+            drive_row(row, axis.multiplier, axis.offset, i)
             for i, (row, axis) in enumerate(zip(rows, chain.axes, strict=True), start=1)
         ),
         X_base=X_base,

@@ -87,18 +87,18 @@ def _prismatic_row(
     )
 
 
-def drive_row(row: DHRow, axis: ChainAxis, number: int) -> DHRow:
-    """`row` of the axis' own value turned into one of its driver: a mimic's multiplier, offset."""
-    sign, moved = row.scale, row.scale * axis.offset
-    if axis.offset == 0.0:
-        return replace(row, scale=sign * axis.multiplier)
+def drive_row(row: DHRow, multiplier: float, offset: float, number: int) -> DHRow:
+    """`row` of a value turned into one of another: `value = multiplier * other + offset`."""
+    scale, moved = row.scale * multiplier, row.scale * offset
+    if offset == 0.0:
+        return replace(row, scale=scale)
     value = row.offset.value + moved
-    offset: Angle | Length
+    shifted: Angle | Length
     if row.revolute:
-        offset = exact_angle(value, 1e-12, f"theta_offset_{number}")
+        shifted = exact_angle(value, 1e-12, f"theta_offset_{number}")
     else:
-        offset = LengthBook(0.0, SnapLog()).enter(tidy(value), f"d_offset_{number}")
-    return replace(row, scale=sign * axis.multiplier, offset=offset)
+        shifted = LengthBook(0.0, SnapLog()).enter(tidy(value), f"d_offset_{number}")
+    return replace(row, scale=scale, offset=shifted)
 
 
 def _twist(

@@ -28,6 +28,7 @@ def load(
     tool_axis: str | None = None,
     free: str | Iterable[str] | Mapping[str, float | str | None] | None = None,
     lock: Mapping[str, float | str] | None = None,
+    couple: Mapping[str, str] | None = None,
     args: Mapping[str, object] | None = None,
     calibration: str | os.PathLike[str] | None = None,
     verify: bool = True,
@@ -43,7 +44,8 @@ def load(
     `base` and `tip` are links (poses are those of the tip in the base), `task` says what of a pose
     counts, `tool_axis` by which of the tool's axes where that is a direction. `free` names joints whose
     values become an input of `solve`, with default values or without, `lock` fixes joints; values are in
-    rad or m, or texts with a unit ("45deg"). `args` are xacro's arguments, `calibration` is the file of
+    rad or m, or texts with a unit ("45deg"). `couple` makes joints follow others ({"JOINT": "SOURCE*k+c"}).
+    `args` are xacro's arguments, `calibration` is the file of
     the one arm's own kinematics, `package_paths` are where packages are found. What is left out is
     chosen: the one chain that there is, a task that fits it, joints to hold.
 
@@ -56,8 +58,9 @@ def load(
     where a check fails.
     """
     request = checked_request(
-        robot, base=base, tip=tip, task=task, tool_axis=tool_axis, free=free, lock=lock, args=args,
-        calibration=calibration, package_paths=package_paths, name=name, trust=trust,
+        robot, base=base, tip=tip, task=task, tool_axis=tool_axis, free=free, lock=lock,
+        couple=couple, args=args, calibration=calibration, package_paths=package_paths,
+        name=name, trust=trust,
     )  # fmt: skip
     outputs = Outputs(
         samples=checked_count("samples", samples), verify=checked_flag("verify", verify)

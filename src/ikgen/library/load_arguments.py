@@ -15,6 +15,7 @@ from ikgen.errors import ArgumentError, IkgenError
 from ikgen.generation.joint_value import joint_value
 from ikgen.generation.request import Request
 from ikgen.importers.named_robots import is_named
+from ikgen.model.joint_relation import read_relation
 from ikgen.model.module_name import identifier, is_module_name
 
 __all__ = ["checked_count", "checked_flag", "checked_path", "checked_request", "wrong"]
@@ -32,6 +33,7 @@ def checked_request(
     task: object,
     free: object,
     lock: object,
+    couple: object,
     args: object,
     calibration: object,
     tool_axis: object,
@@ -54,6 +56,7 @@ def checked_request(
         tool_axis=axis,
         free=held,
         lock=locked,
+        couple=_coupled(couple),
         args=_xacro_arguments(args),
         calibration=_calibration(calibration),
         package_paths=_folders(package_paths),
@@ -134,6 +137,20 @@ def _locked(lock: object) -> dict[str, float]:
     if not isinstance(lock, Mapping) or not all(isinstance(n, str) and n for n in lock):
         raise wrong("lock", lock, what)
     return {joint: _value("lock", joint, value) for joint, value in lock.items()}
+
+
+def _coupled(couple: object) -> dict[str, str]:
+    what = 'a mapping of joints\' names to what they follow, {"JOINT": "SOURCE*k+c"}'
+    if couple is None:
+        return {}
+    if not isinstance(couple, Mapping) or not all(isinstance(n, str) and n for n in couple):
+        raise wrong("couple", couple, what)
+    for joint, relation in couple.items():
+        try:
+            read_relation(relation if isinstance(relation, str) else repr(relation))
+        except ValueError as error:
+            raise ArgumentError(f"couple: {joint}: {error}", hint=f"give {what}") from None
+    return dict(couple)
 
 
 def _value(argument: str, joint: str, value: object) -> float:

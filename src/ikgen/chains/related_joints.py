@@ -1,0 +1,119 @@
+"""Joints that follow others although the file does not say so, and the stages of telescopes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from lxml import etree
+
+from ikgen.errors import UnknownNameError, UsageError
+from ikgen.importers.urdf.urdf_tree import parse_urdf
+from ikgen.importers.xml_document import children, parse_xml, shown_file
+from ikgen.model.chain import PRISMATIC, ActuatedJoint, Chain, ChainAxis
+from ikgen.model.joint_relation import Relation
+from ikgen.model.joint_tree import JointTree, Limits
+
+__all__ = ["equal_stages", "related_tree", "shared_limits"]
+
+_SAME = 1e-9
+"""Relative difference of the travels of two telescope stages that are equal."""
+
+_SAME_DIRECTION = 1e-9
+
+
+def related_tree(tree: JointTree, relations: Mapping[str, Relation]) -> JointTree:
+    """The tree of the same text with the relations as `<mimic>` elements; the limits of a source are what
+    its followers leave of them.
+
+    The digest stays that of the file. Raises `UnknownNameError` for a joint that is not there, `UsageError`
+    where no value is left.
+    """
+    source = tree.source
+    root = parse_xml(source.text, shown_file(source))
+    elements: dict[str, Any] = {e.get("name") or "": e for e in children(root, "joint")}
+    limits = {j.name: j.limits for j in tree.joints if j.type.moves_on_one_axis}
+    for joint, relation in relations.items():
+        for name in (joint, relation.source):
+            if name not in limits:
+                raise UnknownNameError("joint", name, list(limits))
+        for old in list(children(elements[joint], "mimic")):
+            elements[joint].remove(old)
+        numbers = {"multiplier": repr(relation.multiplier), "offset": repr(relation.offset)}
+        etree.SubElement(elements[joint], "mimic", joint=relation.source, **numbers)
+        limits[relation.source] = shared_limits(
+            relation, joint, limits[joint], limits[relation.source]
+        )
+    for name in {relation.source: None for relation in relations.values()}:
+        _limit(elements[name], limits[name])
+    made = parse_urdf(
+        etree.tostring(root, encoding="unicode"),
+        path=source.path,
+        kind=source.kind,
+        dependencies=source.dependencies,
+        package_urls=source.package_urls,
+        arguments=dict(source.arguments),
+        warnings=source.warnings,
+    )
+    warnings = tuple(dict.fromkeys(made.source.warnings))
+    kept = replace(source, text=made.source.text, warnings=warnings)
+    return replace(made, source=kept)
+
+
+def _limit(element: Any, limits: Limits) -> None:
+    """Give a joint's element limits; one that was continuous is so no more where they are finite."""
+    if not (math.isfinite(limits.lower) and math.isfinite(limits.upper)):
+        return
+    if element.get("type") == "continuous":
+        element.set("type", "revolute")
+    found = next(iter(children(element, "limit")), None)
+    if found is None:
+        found = etree.SubElement(element, "limit", effort="0", velocity="0")
+    found.set("lower", repr(limits.lower))
+    found.set("upper", repr(limits.upper))
+
+
+def shared_limits(relation: Relation, joint: str, own: Limits, of_source: Limits) -> Limits:
+    """The values of the source at which it and the joint are inside their limits."""
+    ends = sorted((x - relation.offset) / relation.multiplier for x in (own.lower, own.upper))
+    both = type(own)(max(of_source.lower, ends[0]), min(of_source.upper, ends[1]))
+    if both.lower > both.upper:
+        raise UsageError(
+            f"--couple {joint}={relation.words}: no value of '{relation.source}' keeps both inside "
+            "their limits",
+            hint=f"'{joint}' may take {own.lower:.9g} to {own.upper:.9g}",
+        )
+    return both
+
+
+def equal_stages(chain: Chain) -> dict[str, Relation]:
+    """Joints of a telescope, each with the same share as its first stage: neighbours that slide in one
+    direction with the same travel. By joint; empty where the chain has none."""
+    found: dict[str, Relation] = {}
+    first = before = None
+    for axis in chain.axes:
+        joint = chain.joints[axis.driver]
+        slides = axis.kind == PRISMATIC and joint.name == axis.name
+        if slides and first is not None and before is not None:
+            lead = chain.joints[first.driver]
+            if _goes_on(before, axis) and _same_travel(lead, joint):
+                found[joint.name] = Relation(lead.name, 1.0, joint.limits.lower - lead.limits.lower)
+                before = axis
+                continue
+        first = before = axis if slides else None
+    return found
+
+
+def _goes_on(before: ChainAxis, axis: ChainAxis) -> bool:
+    """Whether a slide moves as the one before it does."""
+    along = axis.T_prev_axis[:3, :3] @ axis.axis
+    return bool(np.allclose(along, before.axis, atol=_SAME_DIRECTION))
+
+
+def _same_travel(one: ActuatedJoint, other: ActuatedJoint) -> bool:
+    """Whether two joints have limits equally far apart."""
+    travels = [joint.limits.upper - joint.limits.lower for joint in (one, other)]
+    return math.isfinite(travels[0]) and abs(travels[1] - travels[0]) <= _SAME * travels[0]

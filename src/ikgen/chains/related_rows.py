@@ -1,0 +1,50 @@
+"""Rows of a DH table whose joints follow others."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from ikgen.chains.related_joints import shared_limits
+from ikgen.errors import UnknownNameError, UsageError
+from ikgen.kinematics.rows import drive_row
+from ikgen.model.dh import DHChain
+from ikgen.model.joint_relation import Relation
+
+__all__ = ["related_dh"]
+
+
+def related_dh(dh: DHChain, relations: Mapping[str, Relation]) -> DHChain:
+    """The chain with the relations; what follows another is no joint of its own any more.
+
+    Raises `UnknownNameError` for a joint that is not there, `UsageError` for one that is held, that follows
+    itself, or whose source cannot move it inside the limits.
+    """
+    for joint, relation in relations.items():
+        dh = _related(dh, joint, relation)
+    return dh
+
+
+def _related(dh: DHChain, name: str, relation: Relation) -> DHChain:
+    names = [joint.name for joint in dh.joints]
+    for one in (name, relation.source):
+        if one not in names:
+            raise UnknownNameError("joint", one, names)
+    if name == relation.source or name in dh.free:
+        why = "is held" if name in dh.free else "follows itself"
+        raise UsageError(f"--couple {name}={relation.words}: joint '{name}' {why}")
+    follower, source = names.index(name), names.index(relation.source)
+    kept = [joint for joint in dh.joints if joint.name != name]
+    limits = shared_limits(relation, name, dh.joints[follower].limits, dh.joints[source].limits)
+    joints = tuple(
+        replace(j, limits=limits, continuous=False) if j.name == relation.source else j
+        for j in kept
+    )
+    places = {names.index(joint.name): place for place, joint in enumerate(joints)}
+    rows = []
+    for number, row in enumerate(dh.rows, start=1):
+        if row.driver == follower:
+            row = drive_row(row, relation.multiplier, relation.offset, number)
+            row = replace(row, driver=source)
+        rows.append(replace(row, driver=places[row.driver]))
+    return replace(dh, rows=tuple(rows), joints=joints)

@@ -1,0 +1,80 @@
+"""Joints that follow others by request, and the stages of telescopes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.support.telescopes import STAGES, telescope_robot
+
+from ikgen.chains.related_joints import equal_stages, related_tree, shared_limits
+from ikgen.chains.selection import select_chain
+from ikgen.errors import UnknownNameError, UsageError
+from ikgen.generation.emitted_checks import oracle_for
+from ikgen.generation.read import read
+from ikgen.generation.request import Request
+from ikgen.importers import load_tree
+from ikgen.model.joint_relation import Relation
+from ikgen.model.joint_tree import Limits
+
+
+def test_a_relation_moves_the_follower_and_takes_its_limits(tmp_path: Path) -> None:
+    tree = load_tree(telescope_robot(tmp_path))
+    related = related_tree(tree, {"stage_2": Relation("stage_1", -2.0, 0.1)})
+    chain = select_chain(related)
+    axis = next(axis for axis in chain.axes if axis.name == "stage_2")
+    assert (axis.multiplier, axis.offset) == (-2.0, 0.1)
+    joint = chain.joints[axis.driver]
+    assert joint.name == "stage_1"
+    # 0.01 <= 0.1 - 2 q <= 0.14 and 0 <= q <= 0.13
+    assert (joint.limits.lower, joint.limits.upper) == pytest.approx((0.0, 0.045))
+    assert related.source.sha256 == tree.source.sha256
+
+
+def test_the_oracle_follows_the_relation(tmp_path: Path) -> None:
+    path = telescope_robot(tmp_path)
+    reading = read(Request(path, couple={"stage_2": "stage_1*-2+0.1", "yaw": "pitch*2"}))
+    whole = read(Request(path, free=dict.fromkeys(STAGES)))
+    names = [joint.name for joint in reading.dh.joints]
+    assert names == ["lift", "stage_1", "stage_3", "stage_4", "pitch"]
+    q = np.array([0.3, 0.02, 0.05, 0.07, 0.2])
+    full = np.array([0.3, 0.02, 0.1 - 2 * 0.02, 0.05, 0.07, 0.4, 0.2])
+    np.testing.assert_allclose(
+        oracle_for(reading).forward(q[None]), oracle_for(whole).forward(full[None]), atol=1e-15
+    )
+
+
+def test_unknown_joints_are_refused_with_those_that_there_are(tmp_path: Path) -> None:
+    tree = load_tree(telescope_robot(tmp_path))
+    with pytest.raises(UnknownNameError, match="stage_9"):
+        related_tree(tree, {"stage_2": Relation("stage_9", 1.0, 0.0)})
+
+
+def test_limits_that_leave_nothing_are_refused() -> None:
+    with pytest.raises(UsageError, match="no value of 'a'"):
+        shared_limits(Relation("a", 1.0, 5.0), "b", Limits(0.0, 1.0), Limits(0.0, 1.0))
+
+
+def test_equal_stages_share_equally_from_their_lower_limits(tmp_path: Path) -> None:
+    chain = select_chain(load_tree(telescope_robot(tmp_path)))
+    stages = equal_stages(chain)
+    assert tuple(stages) == STAGES[1:]
+    assert {one.source for one in stages.values()} == {"stage_1"}
+    assert [one.offset for one in stages.values()] == pytest.approx([0.01, 0.02, 0.03])
+
+
+def test_other_slides_are_no_telescope(tmp_path: Path) -> None:
+    chain = select_chain(load_tree(telescope_robot(tmp_path, (0.1, 0.2, 0.3, 0.3))))
+    assert tuple(equal_stages(chain)) == ("stage_4",)  # stages 3 and 4; the lift is across
+
+
+def test_held_stages_are_left_alone_and_a_locked_one_leaves_the_others_a_telescope(
+    tmp_path: Path,
+) -> None:
+    path = telescope_robot(tmp_path)
+    assert len(read(Request(path)).dh.joints) == 4
+    assert len(read(Request(path, free={"stage_3": None})).dh.joints) == 7
+    locked = read(Request(path, lock={"stage_3": 0.05}))
+    assert len(locked.dh.joints) == 4
+    assert len(locked.dh.rows) == 6

@@ -1,0 +1,84 @@
+"""Joints of DH tables that follow others."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ikgen.errors import UnknownNameError, UsageError
+from ikgen.generation.emitted_checks import oracle_for
+from ikgen.generation.read import read
+from ikgen.generation.request import Request
+
+TABLE = """
+name = "stages"
+convention = "modified"
+[[joints]]
+type = "revolute"
+name = "turn"
+alpha = 0
+a = 0
+d = 0.3
+theta = 0
+limits = [-3, 3]
+[[joints]]
+type = "revolute"
+name = "tilt"
+alpha = "pi/2"
+a = 0.1
+d = 0
+theta = "pi/2"
+limits = [-1, 2]
+[[joints]]
+type = "prismatic"
+name = "reach"
+alpha = "pi/2"
+a = 0
+d = 0
+theta = 0
+limits = [0, 0.5]
+"""
+
+
+@pytest.fixture
+def table(tmp_path: Path) -> Path:
+    path = tmp_path / "stages.toml"
+    path.write_text(TABLE)
+    return path
+
+
+@pytest.mark.parametrize(("follower", "source"), [("tilt", "turn"), ("turn", "tilt")])
+def test_the_follower_moves_with_its_source(table: Path, follower: str, source: str) -> None:
+    related = read(Request(table, couple={follower: f"{source}*-2+0.25"}))
+    whole = read(Request(table))
+    assert [j.name for j in related.dh.joints] == [source, "reach"]
+    values = {source: 0.3, follower: -2 * 0.3 + 0.25, "reach": 0.2}
+    q = np.array([[values[j.name] for j in whole.dh.joints]])
+    np.testing.assert_allclose(
+        oracle_for(related).forward(np.array([[0.3, 0.2]])),
+        oracle_for(whole).forward(q),
+        atol=1e-15,
+    )
+
+
+def test_the_source_keeps_to_the_followers_limits(table: Path) -> None:
+    limits = read(Request(table, couple={"tilt": "turn*0.5"})).dh.joints[0].limits
+    assert (limits.lower, limits.upper) == (-2.0, 3.0)
+
+
+@pytest.mark.parametrize(
+    ("relation", "free", "error", "words"),
+    [
+        ("sideways", {}, UnknownNameError, "sideways"),
+        ("tilt", {}, UsageError, "follows itself"),
+        ("turn", {"tilt": None}, UsageError, "is held"),
+        ("turn*1+9", {}, UsageError, "no value of 'turn'"),
+    ],
+)
+def test_what_cannot_be_is_refused(
+    table: Path, relation: str, free: dict[str, None], error: type, words: str
+) -> None:
+    with pytest.raises(error, match=words):
+        read(Request(table, couple={"tilt": relation}, free=dict(free)))

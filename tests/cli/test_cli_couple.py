@@ -1,0 +1,85 @@
+"""`--couple`, its entry in a config and its argument: one relation, and what was made is checked by it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.support.telescopes import telescope_robot
+
+import ikgen
+from ikgen.cli.main import run
+from ikgen.errors import ArgumentError
+from ikgen.verify.runners.python_module import PythonModule
+
+QUICK = ["--samples", "40", "-q"]
+RELATIONS = {
+    "stage_2": "stage_1*1+0.01",
+    "stage_3": "stage_1*1+0.02",
+    "stage_4": "stage_1*0.5+0.03",
+}
+
+
+def couple(relations: dict[str, str]) -> list[str]:
+    return [x for joint, text in relations.items() for x in ("--couple", f"{joint}={text}")]
+
+
+def test_a_coupled_arm_is_generated_and_checked_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    robot = telescope_robot(tmp_path)
+    made = run(["from-urdf", str(robot), "--task", "position", *couple(RELATIONS), *QUICK])
+    assert made == 0
+    module = PythonModule(tmp_path / "telescope_ik.py").module
+    assert module.JOINT_NAMES == ("lift", "stage_1", "yaw", "pitch")
+    record = json.loads((tmp_path / "telescope_ik.json").read_text())
+    assert RELATIONS.items() <= json.loads(json.dumps(record))["couple"].items()
+    assert run(["verify", ".", "--samples", "20"]) == 0
+
+
+def test_a_telescope_takes_equal_shares_unasked(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    robot = telescope_robot(tmp_path)
+    out = ["-o", str(tmp_path), "--task", "position"]
+    assert run(["from-urdf", str(robot), *out, "--samples", "40"]) == 0
+    assert "take equal shares: --couple stage_2=stage_1*1.0+0.01" in capsys.readouterr().err
+    module = PythonModule(tmp_path / "telescope_ik.py").module
+    assert module.JOINT_NAMES == ("lift", "stage_1", "yaw", "pitch")
+    np.testing.assert_allclose(module.UPPER[:2], [1.1, 0.13])
+
+
+@pytest.mark.parametrize(
+    "text", ["stage_2", "=stage_1", "stage_2=", "stage_2=stage_1*", "stage_2=stage_1*0"]
+)
+def test_what_is_no_relation_is_refused(
+    text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    robot = telescope_robot(tmp_path)
+    assert run(["from-urdf", str(robot), "--couple", text, "-o", str(tmp_path)]) == 2
+    assert f"--couple {text}" in capsys.readouterr().err
+
+
+def test_a_config_and_the_library_take_the_same_relations(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    telescope_robot(tmp_path)
+    table = ", ".join(f'{joint} = "{text}"' for joint, text in RELATIONS.items())
+    head = '[[arm]]\nname = "tele"\nrobot = "telescope.urdf"\ntask = "position"\nsamples = 40\n'
+    config = f"{head}couple = {{ {table} }}\n"
+    (tmp_path / "ikgen.toml").write_text(config)
+    assert run(["build", "-q"]) == 0
+    assert run(["build", "--check"]) == 0
+    module = PythonModule(tmp_path / "tele_ik.py").module
+    arm = ikgen.load("telescope.urdf", task="position", couple=RELATIONS, samples=40, cache=False)
+    assert tuple(arm.joint_names) == module.JOINT_NAMES
+    q = np.array([0.4, 0.05, 0.3, -0.4])
+    np.testing.assert_allclose(arm.forward(q), module.forward(q), atol=1e-15)
+    with pytest.raises(ArgumentError, match="stage_2"):
+        ikgen.load("telescope.urdf", couple={"stage_2": "stage_1*"})
+    (tmp_path / "ikgen.toml").write_text(config.replace("*0.5+0.03", "*"))
+    assert run(["build", "--check"]) == 2
