@@ -34,7 +34,7 @@ class Expr:
     """A node: operation, arguments, probe values. Compare by identity; made by `NodeTable` only."""
 
     __slots__ = (
-        "args", "atom", "id", "is_fixed", "name", "op", "probe", "scale", "support", "value",
+        "_vanishes", "args", "atom", "id", "is_fixed", "name", "op", "probe", "scale", "support", "value",
     )  # fmt: skip
 
     def __init__(
@@ -49,6 +49,7 @@ class Expr:
         self.name = ""
         self.atom: Atom | None = None
         self.id = -1
+        self._vanishes: bool | None = None  # not yet asked
         self.is_fixed: bool = op != "atom" and all(a.is_fixed for a in args)
         """Whether the node depends on parameters and numbers only."""
 
@@ -60,7 +61,9 @@ class Expr:
     @property
     def vanishes(self) -> bool:
         """Whether the node is zero at every probe configuration."""
-        return bool(np.max(np.abs(self.probe)) <= ZERO_TOLERANCE * self.scale)
+        if self._vanishes is None:
+            self._vanishes = bool(np.abs(self.probe).max() <= ZERO_TOLERANCE * self.scale)
+        return self._vanishes
 
     def __repr__(self) -> str:
         return f"<{self.op} {self.name or self.value or [a.id for a in self.args]}>"

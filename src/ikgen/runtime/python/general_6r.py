@@ -118,14 +118,22 @@ _ASIDE = _displaced()
 _OTHER_SIDE = inverses(_ASIDE)
 
 
+def _runs(plan: Plan) -> list[tuple[Way, tuple[Array | None, ...]]]:
+    """One after the other what is tried, and the motions of the tool to the poses that it is tried at."""
+    ways = [(plan.find, one, _DIRECT) for one in plan.eliminations]
+    runs: list[tuple[Way, tuple[Array | None, ...]]] = [(way, (None,)) for way in plan.direct]
+    runs += [(ways[0], (None,)), (ways[0], (_ASIDE, _OTHER_SIDE))]
+    return runs + [(way, (None, _ASIDE, _OTHER_SIDE)) for way in ways[1:]]
+
+
 def six_joint_rows(F: Array, plan: Plan, T: Array, policy: Policy) -> tuple[Index, Array]:
     """All real solutions of `F_0 M_1 F_1 ... M_6 F_6 = T` for poses T (N, 4, 4).
 
     F (7, 4, 4) constant rigid transforms; M_i turns about z or moves along it. One run of the first is
     enough where each of its roots is clearly real, or clearly not, and there are as many solutions as real
-    roots, each found to many digits. Otherwise more runs follow, with the pose displaced to either side
+    roots, each found to many digits. Otherwise more runs follow, with the pose displaced to both sides
     (where right angles make roots coincide they come apart, and Newton's method takes them back) and by
-    the next elimination, until one finds all that is known and no more. What a direct way leaves open,
+    the next elimination, until they find all that is known and no more. What a direct way leaves open,
     these runs confirm or complete. Returns pose indices (k,) in order and joint values (k, 6), angles in
     (-pi, pi], sorted.
     """
@@ -136,18 +144,17 @@ def six_joint_rows(F: Array, plan: Plan, T: Array, policy: Policy) -> tuple[Inde
     inside = np.abs(T[:, :3]).max(axis=(1, 2), initial=0.0) < 1e6  # false for NaN
     todo = np.nonzero(inside)[0]
     least, size = np.zeros(len(T), dtype=int), len(T)
-    runs: list[tuple[Way, Array | None]] = [(way, None) for way in plan.direct]
-    for one in plan.eliminations:
-        runs += [((plan.find, one, _DIRECT), X) for X in (None, _ASIDE, _OTHER_SIDE)]
-    for number, ((find, one, near), X) in enumerate(runs):
+    for number, ((find, one, near), moves) in enumerate(_runs(plan)):
         if not len(todo):
             break
         exact = T[todo]
-        pose, q, real, clear = find(F, exact if X is None else exact @ X, one, plan.turning)
-        if X is None and number >= len(plan.direct):
+        aims = np.concatenate([exact if X is None else exact @ X for X in moves])
+        run, q, real, clear = find(F, aims, one, plan.turning)
+        which, real = run % len(todo), real[: len(todo)]
+        if moves[0] is None and number >= len(plan.direct):
             least[todo] = np.maximum(least[todo], real)
-        q, arrived, before = refined_rows(F, plan.turning, exact[pose], q, policy)
-        pose, q, before = todo[pose[arrived]], q[arrived], before[arrived]
+        q, arrived, before = refined_rows(F, plan.turning, exact[which], q, policy)
+        pose, q, before = todo[which[arrived]], q[arrived], before[arrived]
         best = np.lexsort((before >= near, pose))
         q, pose, kept = distinct_rows(q[best], pose[best], plan.turning, policy.coincident)
         mine = np.bincount(pose, minlength=size)[todo]
