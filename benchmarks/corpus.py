@@ -3,7 +3,8 @@
     python -m benchmarks.corpus [--family TEXT] [--arm NAME] [--samples N] [--jobs N] [--record] [--public]
 
 The corpus is not part of the package (see benchmarks/README.md). Without it, or with --public, the arms are
-those of files that anybody has: `urdf_fixtures/`, and example-robot-data where it is installed.
+those of files that anybody has: `urdf_fixtures/`, and example-robot-data where it is installed. Seconds are
+processor time. --record writes results/corpus.json or results/public.json.
 """
 
 from __future__ import annotations
@@ -11,18 +12,18 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import os
 import statistics
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from benchmarks.collection import ABSENT, CORPUS, load_arms, urdf_of
+from benchmarks.collection import CORPUS, load_arms, urdf_of
 from benchmarks.public_arms import public_arms
 from benchmarks.results import write_result
 from ikgen.importers.named_robots import is_named
@@ -53,11 +54,19 @@ def run_arm(arm: dict[str, Any], samples: int) -> Outcome:
             "--base", arm["base_link"], "--tip", arm["tip_link"], "-o", folder,
             "--samples", str(samples),
         ]  # fmt: skip
-        started = time.perf_counter()
-        done = subprocess.run(command, capture_output=True, text=True)
-        seconds = time.perf_counter() - started
-        result = {**_parse(done), "code": done.returncode}
-        return _outcome(arm, result, seconds)
+        code, out, err, seconds = _run(command, Path(folder))
+        return _outcome(arm, {**_parse(out, err), "code": code}, seconds)
+
+
+def _run(command: Sequence[str], folder: Path) -> tuple[int, str, str, float]:
+    """Exit code, stdout, stderr and seconds of processor time, which a busy machine changes little."""
+    places = folder / "stdout.txt", folder / "stderr.txt"
+    with places[0].open("w") as out, places[1].open("w") as err:
+        process = subprocess.Popen(command, stdout=out, stderr=err)
+        _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    texts = [place.read_text(encoding="utf-8") for place in places]
+    return process.returncode, texts[0], texts[1], usage.ru_utime + usage.ru_stime
 
 
 def _robot(arm: dict[str, Any], folder: Path) -> str:
@@ -70,11 +79,11 @@ def _robot(arm: dict[str, Any], folder: Path) -> str:
     return str(path)
 
 
-def _parse(done: subprocess.CompletedProcess[str]) -> dict[str, Any]:
+def _parse(out: str, err: str) -> dict[str, Any]:
     try:
-        parsed: dict[str, Any] = json.loads(done.stdout)
+        parsed: dict[str, Any] = json.loads(out)
     except json.JSONDecodeError:
-        lines = done.stderr.strip().splitlines()
+        lines = err.strip().splitlines()
         parsed = {"error": lines[-1] if lines else ""}
         if len(lines) > 1:
             parsed["error"] = " ".join(lines)
@@ -132,14 +141,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--json", type=Path, help="write the outcomes here")
     parser.add_argument("--public", action="store_true", help="arms that anybody has")
-    parser.add_argument("--record", action="store_true", help="write results/corpus.json")
+    parser.add_argument("--record", action="store_true", help="write results/")
     options = parser.parse_args(arguments)
     if options.record and (options.family or options.arm):
         parser.error("--record is for the whole collection")
-    arms = [] if options.public else load_arms()
-    if options.record and not arms:
-        parser.error(f"--record is for the collection; {ABSENT}")
-    arms = arms or public_arms()
+    collection = [] if options.public else load_arms()
+    arms = collection or public_arms()
     arms = [a for a in arms if options.family in a["family"]]
     arms = [a for a in arms if not options.arm or a["name"] in options.arm]
     with ThreadPoolExecutor(options.jobs) as pool:
@@ -157,7 +164,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if options.json:
         options.json.write_text(json.dumps([asdict(o) for o in outcomes], indent=1))
     if options.record:
-        write_result("corpus", "python -m benchmarks.corpus", _recorded(outcomes, options.samples))
+        name, extra = ("corpus", "") if collection else ("public", " --public")
+        found = _recorded(outcomes, options.samples)
+        write_result(name, f"python -m benchmarks.corpus{extra}", found)
     return int(any(o.state in ("WRONG", "CRASH", "ERROR") for o in outcomes))
 
 

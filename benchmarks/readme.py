@@ -14,6 +14,7 @@ import argparse
 import re
 import sys
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -95,8 +96,8 @@ def _class(family: str) -> str:
     return re.sub(r"^(\dR) (?!,)", r"\1, ", name)
 
 
-def _corpus(read: Callable[[str], Measured]) -> str:
-    measured = read("corpus")
+def _classes(name: str, read: Callable[[str], Measured]) -> str:
+    measured = read(name)
     rows = [
         [_class(c["family"]), str(c["arms"]), str(c["solved"]), f"{c['median']:.1f} s",
          f"{c['longest']:.1f} s"]
@@ -157,7 +158,8 @@ def _short(value: Any) -> str:
 
 
 BLOCKS: dict[str, Callable[[Callable[[str], Measured]], str]] = {
-    "corpus": _corpus,
+    "public": partial(_classes, "public"),
+    "corpus": partial(_classes, "corpus"),
     "tables": _tables,
     "peers": _peers,
 }
