@@ -185,3 +185,11 @@ def test_bad_entries_are_named_with_their_line(tmp_path: Path, text: str, place:
 def test_check_says_how_to_mend(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["build", "--check"]) == 1
     assert capsys.readouterr().err == "hint: ikgen build ikgen.toml\n"
+
+
+@pytest.mark.parametrize("text", ['[[arm]]\nname = "arm"', '[[arm]]\nname = 3\nrobot = "a"'])
+def test_what_an_entry_should_be_is_hinted_at(tmp_path: Path, text: str) -> None:
+    (tmp_path / "ikgen.toml").write_text(text)
+    with pytest.raises(BadDescriptionError) as told:
+        load_config(tmp_path / "ikgen.toml")
+    assert told.value.line and told.value.hint

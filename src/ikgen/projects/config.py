@@ -85,7 +85,11 @@ def load_config(path: Path) -> tuple[ArmConfig, ...]:
         _check_places(arms)
     except CodecError as error:
         line = line_of(text, error.where)
-        raise _error(path, str(error), line=line, hint=error.hint) from None
+        hint = (
+            error.hint
+            or "the reference of ikgen.toml says what each entry is; ikgen init writes one"
+        )
+        raise _error(path, str(error), line=line, hint=hint) from None
     return tuple(arms)
 
 
@@ -154,7 +158,5 @@ def _tables(path: Path, text: str) -> dict[str, Any]:
     return tool
 
 
-def _error(
-    path: Path, message: str, *, line: int | None = None, hint: str = ""
-) -> BadDescriptionError:
+def _error(path: Path, message: str, *, line: int | None = None, hint: str) -> BadDescriptionError:
     return BadDescriptionError(message, file=str(path), line=line, hint=hint)
