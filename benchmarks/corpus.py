@@ -1,6 +1,7 @@
 """Generate and verify every arm of the corpus; print a table by class.
 
-    python -m benchmarks.corpus [--family TEXT] [--arm NAME] [--samples N] [--jobs N] [--record] [--public]
+    python -m benchmarks.corpus [--family TEXT] [--arm NAME] [--samples N] [--jobs N]
+        [--executor process|dask] [--record] [--public]
 
 The corpus is not part of the package (see benchmarks/README.md). Without it, or with --public, the arms are
 those of files that anybody has: `urdf_fixtures/`, and example-robot-data where it is installed. Seconds are
@@ -18,7 +19,6 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -27,6 +27,7 @@ from benchmarks.collection import CORPUS, load_arms, urdf_of
 from benchmarks.public_arms import public_arms
 from benchmarks.results import write_result
 from ikgen.importers.named_robots import is_named
+from ikgen.processes.executors import EXECUTORS, Workers
 
 WIDTHS = (4, 6, 8, 6, 8, 6)
 
@@ -139,6 +140,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--arm", action="append", default=[], help="only this arm (repeatable)")
     parser.add_argument("--samples", type=int, default=1000)
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--executor", choices=EXECUTORS, default="process")
+    parser.add_argument("--scheduler", help="the Dask scheduler that runs already")
     parser.add_argument("--json", type=Path, help="write the outcomes here")
     parser.add_argument("--public", action="store_true", help="arms that anybody has")
     parser.add_argument("--record", action="store_true", help="write results/")
@@ -149,9 +152,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     arms = collection or public_arms()
     arms = [a for a in arms if options.family in a["family"]]
     arms = [a for a in arms if not options.arm or a["name"] in options.arm]
-    with ThreadPoolExecutor(options.jobs) as pool:
+    workers = Workers(options.executor, options.jobs, options.scheduler)
+    with workers.open() as pool:
         outcomes = []
-        for o in pool.map(lambda a: run_arm(a, options.samples), arms):
+        for o in pool.map(run_arm, arms, [options.samples] * len(arms)):
             outcomes.append(o)
             print(
                 f"{o.name:30} {o.state:9} {o.seconds:6.1f} s  {o.task:18} {o.solutions:6} "

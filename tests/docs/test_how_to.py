@@ -22,6 +22,12 @@ def test_mapping_works_as_it_says(tmp_path: Path) -> None:
     assert follow(DOCS / "how-to/reach.md", tmp_path) == 2
 
 
+def test_a_report_is_written_as_it_says(tmp_path: Path) -> None:
+    (tmp_path / "urdf_fixtures").mkdir()
+    shutil.copy(ROOT / "urdf_fixtures/ur5e.urdf", tmp_path / "urdf_fixtures")
+    assert follow(DOCS / "how-to/report.md", tmp_path) == 1
+
+
 def test_messages_are_those_of_the_program() -> None:
     """Every line that the page on messages quotes is in the source."""
     source = "\n".join(p.read_text(encoding="utf-8") for p in (ROOT / "src").rglob("*.py"))

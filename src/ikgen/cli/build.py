@@ -12,7 +12,7 @@ import click
 
 from ikgen.cli.console import Console
 from ikgen.cli.error_output import as_object, say
-from ikgen.cli.options import console_options, trust_option
+from ikgen.cli.options import console_options, executor_option, trust_option
 from ikgen.projects.config import ArmConfig, load_config, named_config
 
 if TYPE_CHECKING:
@@ -45,6 +45,7 @@ __all__ = ["build"]
     is_flag=True,
     help="Leave the verification out (and Pinocchio with it); unverified outputs count as fresh.",
 )
+@executor_option
 @trust_option
 @console_options
 def build(
@@ -55,6 +56,8 @@ def build(
     depfile: Path | None,
     jobs: int | None,
     no_verify: bool,
+    executor: str,
+    scheduler: str | None,
     trust: bool,
     as_json: bool,
     quiet: bool,
@@ -68,12 +71,19 @@ def build(
     arms = load_config(path)
     if check:
         return _check(path, arms, verify=not no_verify, as_json=as_json, quiet=quiet)
+    from ikgen.processes.executors import Workers
     from ikgen.projects.project_build import build_arms
 
     arms = tuple(replace(arm, request=replace(arm.request, trust=trust)) for arm in arms)
     with Console(quiet=quiet, verbose=verbose) as console:
         outcomes = list(
-            build_arms(arms, force=force, verify=not no_verify, jobs=jobs, progress=console)
+            build_arms(
+                arms,
+                force=force,
+                verify=not no_verify,
+                workers=Workers(executor, jobs, scheduler),
+                progress=console,
+            )
         )
     code = max(outcome.exit_code for outcome in outcomes)
     _print(outcomes, code, as_json=as_json, quiet=quiet, verbose=verbose)

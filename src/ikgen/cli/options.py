@@ -16,6 +16,7 @@ __all__ = [
     "chain_options",
     "console_options",
     "emit_option",
+    "executor_option",
     "executor_options",
     "reading_options",
     "sampling_options",
@@ -160,26 +161,27 @@ def console_options(function: F) -> F:
     )
 
 
+_EXECUTOR_OPTIONS = (
+    click.option(
+        "--executor",
+        type=click.Choice(["process", "dask"]),
+        default="process",
+        show_default=True,
+        help="Processes of this machine, or Dask (a local cluster without --scheduler).",
+    ),
+    click.option("--scheduler", metavar="ADDRESS", help="The Dask scheduler that runs already."),
+)
+
+_WORKERS_OPTION = click.option(
+    "--workers", metavar="N", type=click.IntRange(min=1), help="How many (default: one a core)."
+)
+
+
 def executor_options(function: F) -> F:
+    """Who computes, and how many of them."""
+    return _apply([*_EXECUTOR_OPTIONS, _WORKERS_OPTION], function)
+
+
+def executor_option(function: F) -> F:
     """Who computes."""
-    return _apply(
-        [
-            click.option(
-                "--executor",
-                type=click.Choice(["process", "dask"]),
-                default="process",
-                show_default=True,
-                help="Processes of this machine, or Dask (a local cluster without --scheduler).",
-            ),
-            click.option(
-                "--scheduler", metavar="ADDRESS", help="The Dask scheduler that runs already."
-            ),
-            click.option(
-                "--workers",
-                metavar="N",
-                type=click.IntRange(min=1),
-                help="How many (default: one a core).",
-            ),
-        ],
-        function,
-    )
+    return _apply(_EXECUTOR_OPTIONS, function)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,7 @@ import click
 
 from ikgen.cli.annotations import annotate, annotate_error
 from ikgen.cli.console import Console
-from ikgen.cli.options import console_options, sampling_options, trust_option
+from ikgen.cli.options import console_options, executor_options, sampling_options, trust_option
 from ikgen.cli.recheck_json import as_dict
 from ikgen.errors import IkgenError
 
@@ -36,6 +37,7 @@ __all__ = ["verify"]
     help="Also write the results as JUnit XML.",
 )
 @sampling_options
+@executor_options
 @click.option(
     "--prove",
     is_flag=True,
@@ -50,6 +52,9 @@ def verify(
     junit_xml: Path | None,
     samples: int,
     seed: int,
+    executor: str,
+    scheduler: str | None,
+    workers: int | None,
     prove: bool,
     trust: bool,
     as_json: bool,
@@ -62,6 +67,7 @@ def verify(
     else this folder). Exit code 0: all right; 1: wrong, edited or made from another geometry; 2:
     something could not be checked.
     """
+    from ikgen.processes.executors import Workers
     from ikgen.projects.recheck_all import recheck_all, write_junit
 
     with Console(quiet=quiet, verbose=verbose) as console:
@@ -73,7 +79,9 @@ def verify(
                 seed=seed,
                 trust=trust,
                 prove=prove,
+                workers=Workers(executor, workers, scheduler),
                 progress=console,
+                done=partial(console.share, "verify"),
             )
         except IkgenError as error:
             annotate_error(error)

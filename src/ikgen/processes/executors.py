@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from ikgen.errors import MissingToolError, UsageError
-from ikgen.processes.termination import end_with_parent
+from ikgen.processes.termination import end_with_parent, end_workers
 
 __all__ = ["EXECUTORS", "Workers", "run_pieces"]
 
@@ -49,15 +49,21 @@ class Workers:
 
     @contextlib.contextmanager
     def open(self) -> Iterator[Executor]:
-        """The executor, closed at the end."""
+        """The executor, closed at the end; where the work is broken off its processes are ended."""
         if self.executor == "dask":
             with _dask(self) as executor:
                 yield executor
             return
         context = multiprocessing.get_context("spawn")
         count = self.count or os.cpu_count() or 1
+        others = multiprocessing.active_children()
         with ProcessPoolExecutor(count, context, end_with_parent) as pool:
-            yield pool
+            try:
+                yield pool
+            except BaseException:  # whoever stops asking, or is ended, does not wait for the rest
+                pool.shutdown(wait=False, cancel_futures=True)
+                end_workers(others)
+                raise
 
 
 @contextlib.contextmanager

@@ -13,7 +13,8 @@ from ikgen.errors import IkgenError
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.publishing import complete_folder
 from ikgen.generation.record import read_record
-from ikgen.processes.termination import Terminated, end_now, end_with_parent, end_workers
+from ikgen.processes.executors import Workers
+from ikgen.processes.termination import Terminated, end_now
 from ikgen.projects.config import ArmConfig
 from ikgen.projects.stale import stale_reasons
 
@@ -48,10 +49,11 @@ def build_arms(
     *,
     force: bool = False,
     verify: bool = True,
-    jobs: int | None = None,
+    workers: Workers | None = None,
     progress: Progress = silent,
 ) -> Iterator[Outcome]:
-    """Bring every arm up to date; outcomes in the order of the config."""
+    """Bring every arm up to date by `workers` (None: a process a core); outcomes in the order of the
+    config."""
     for out in {arm.outputs.out for arm in arms}:
         complete_folder(out)
     reasons = [
@@ -60,36 +62,24 @@ def build_arms(
     work = [(arm, reason, verify) for arm, reason in zip(arms, reasons, strict=True) if reason]
     for arm, reason in zip(arms, reasons, strict=True):
         progress("build", f"{arm.name}: {reason or 'up to date'}")
-    made = _run(work, jobs)
+    made = _run(work, workers or Workers())
     for arm, reason in zip(arms, reasons, strict=True):
         yield next(made) if reason else Outcome(arm.name, "", _files(arm))
 
 
-def _run(work: Sequence[tuple[ArmConfig, str, bool]], jobs: int | None) -> Iterator[Outcome]:
+def _run(work: Sequence[tuple[ArmConfig, str, bool]], workers: Workers) -> Iterator[Outcome]:
     """The outcomes in the order of the work."""
-    workers = min(len(work), jobs or os.cpu_count() or 1)
-    if workers <= 1:
+    count = min(len(work), workers.count or os.cpu_count() or 1)
+    if count <= 1 and workers.executor == "process":
         yield from map(_build_one, work)
         return
-    import multiprocessing
-    from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
-
-    context = multiprocessing.get_context("spawn")
-    others = multiprocessing.active_children()
-    with ProcessPoolExecutor(workers, mp_context=context, initializer=end_with_parent) as pool:
-        waiting: list[tuple[tuple[ArmConfig, str, bool], Future[Outcome]]] = []
-        try:
-            waiting += [(job, _submit(pool, job)) for job in work]
-            for (arm, reason, _), answer in waiting:
-                try:
-                    yield answer.result()
-                except BrokenExecutor:
-                    yield _killed(arm.name, reason)
-        except BaseException:  # whoever stops asking, or is ended, does not wait for the rest
-            if not all(answer.done() for _, answer in waiting):
-                pool.shutdown(wait=False, cancel_futures=True)
-                end_workers(others)
-            raise
+    with replace(workers, count=max(count, 1)).open() as pool:
+        waiting = [(job, _submit(pool, job)) for job in work]
+        for (arm, reason, _), answer in waiting:
+            try:
+                yield answer.result()
+            except Exception:  # what goes wrong in the work is in its outcome: the worker was lost
+                yield _killed(arm.name, reason)
 
 
 def _submit(pool: Executor, job: tuple[ArmConfig, str, bool]) -> Future[Outcome]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,8 +15,10 @@ from ikgen.generation.read import read
 from ikgen.generation.record import Record, digest
 from ikgen.generation.request import Outputs
 from ikgen.importers.named_robots import is_named
+from ikgen.processes.executors import Workers
 from ikgen.projects.check_findings import HALF_IN_PLACE, Finding, Recheck
-from ikgen.projects.output_checks import OutputChecks
+from ikgen.projects.output_checks import Checked, OutputChecks
+from ikgen.projects.sample_blocks import BLOCK, SampleBlock, blocks_checked
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Reading
@@ -31,11 +34,14 @@ def recheck(
     samples: int = 1000,
     seed: int = 0,
     trust: bool = False,
+    workers: Workers | None = None,
     progress: Progress = silent,
+    done: Callable[[int, int], None] = lambda ready, total: None,
 ) -> Recheck:
     """Expand the description again and check every output against it.
 
-    `command` is what to type to put things right (default: the command that made the outputs).
+    `command` is what to type to put things right (default: the command that made the outputs); `workers`
+    take part where there are many samples, and `done` is told how many of their blocks are ready.
     Raises `IkgenError` where the description cannot be read.
     """
     fix = command or record.command(robot)
@@ -49,7 +55,9 @@ def recheck(
             raise
         message = f"made from another description: {error.message}"
         return Recheck(record.path, record, (*findings, Finding(record.path, message, fix)))
-    found = _checked(record, reading, fix, Outputs(samples=samples, seed=seed), progress)
+    block = SampleBlock(record.path, robot, trust, fix, samples, seed)
+    run = _Run(block, workers or Workers(), progress, done)
+    found = _checked(record, reading, run)
     return replace(found, findings=(*findings, *found.findings))
 
 
@@ -76,11 +84,26 @@ def _left_over(record: Record) -> list[Finding]:
     return [Finding(path, message, fix) for path in found]
 
 
-def _checked(
-    record: Record, reading: Reading, fix: str, outputs: Outputs, progress: Progress
-) -> Recheck:
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """What is to be run, and by whom."""
+
+    block: SampleBlock
+    workers: Workers
+    progress: Progress
+    done: Callable[[int, int], None]
+
+    def checked(self, record: Record, reading: Reading) -> Checked:
+        """All samples of the outputs."""
+        block = self.block
+        outputs = Outputs(samples=min(block.samples, BLOCK), seed=block.seed)
+        first = OutputChecks(record, reading, block.fix, outputs, self.progress).run()
+        return blocks_checked(first, block, self.workers, self.done)
+
+
+def _checked(record: Record, reading: Reading, run: _Run) -> Recheck:
     """One record against what was read now."""
-    dh = reading.dh
+    dh, fix = reading.dh, run.block.fix
     changed = reading.source.sha256 != record.source_sha256
     notes = ("the text of the description has changed since",) if changed else ()
     joints = tuple(joint.name for joint in dh.joints)
@@ -94,5 +117,5 @@ def _checked(
         # what cannot run cannot show that only a remark changed
         old = Finding(record.path, "made from an earlier description", fix)
         return Recheck(record.path, record, (old,) if changed else (), (*notes, note))
-    found = OutputChecks(record, reading, fix, outputs, progress).run()
+    found = run.checked(record, reading)
     return Recheck(record.path, record, found.findings, notes, found.reports)

@@ -15,7 +15,9 @@ from ikgen.projects.proofs import proved
 from ikgen.projects.recheck import recheck
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
+
+    from ikgen.processes.executors import Workers
 
 __all__ = ["recheck_all", "write_junit"]
 
@@ -28,11 +30,13 @@ def recheck_all(
     seed: int = 0,
     trust: bool = False,
     prove: bool = False,
+    workers: Workers | None = None,
     progress: Progress = silent,
+    done: Callable[[int, int], None] = lambda ready, total: None,
 ) -> list[Recheck]:
     """Check everything that is meant, in order: the outputs of a config, those below a folder, or those of
     one record; with `prove` also prove their derivations. What keeps one from being checked is its finding,
-    so that the others are checked too."""
+    so that the others are checked too. `workers` and `done` are for many samples, as in `recheck`."""
     results = []
     for path, command in _records(target, robot):
         if not path.is_file() and interrupted(path.parent):
@@ -50,7 +54,9 @@ def recheck_all(
                 samples=samples,
                 seed=seed,
                 trust=trust,
+                workers=workers,
                 progress=progress,
+                done=done,
             )
             results.append(proved(result, robot, progress) if prove else result)
         except IkgenError as error:

@@ -23,6 +23,7 @@ from setuptools.command.build_py import build_py
 from setuptools.errors import ExecError
 
 from ikgen.errors import IkgenError
+from ikgen.processes.executors import Workers
 from ikgen.projects.config import default_config, load_config
 from ikgen.projects.project_build import build_arms
 
@@ -46,7 +47,7 @@ def generate_arms(root: Path) -> None:
         raise ExecError("the ikgen build hook finds no ikgen.toml and no [tool.ikgen]")
     try:
         # One job: a worker process would run a setup.py without a main guard once more.
-        outcomes = list(build_arms(load_config(config), jobs=1))
+        outcomes = list(build_arms(load_config(config), workers=Workers(count=1)))
     except IkgenError as error:
         raise ExecError(f"ikgen: {error.message}; {error.hint}") from None
     for outcome in outcomes:

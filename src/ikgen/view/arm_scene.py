@@ -46,8 +46,9 @@ class ArmScene:
         start = worked_example(derivation, runner)
         self._size = skeleton(derivation.reading.dh, start.q).size
         server.scene.set_up_direction("+z")
-        server.initial_camera.position = tuple(1.3 * self._size * np.array([1.2, -1.2, 0.9]))
-        server.initial_camera.look_at = (0.0, 0.0, 0.4 * self._size)
+        middle = np.array([*start.pose[:2, 3] / 2, 0.4 * self._size])
+        server.initial_camera.look_at = tuple(middle)
+        server.initial_camera.position = tuple(middle + self._size * np.array([1.5, -1.5, 0.8]))
         server.scene.add_grid("/floor", width=3 * self._size, height=3 * self._size)
         self._panel(start.q)
         self._target = server.scene.add_transform_controls(
