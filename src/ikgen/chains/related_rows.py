@@ -32,7 +32,12 @@ def _related(dh: DHChain, name: str, relation: Relation) -> DHChain:
             raise UnknownNameError("joint", one, names)
     if name == relation.source or name in dh.free:
         why = "is held" if name in dh.free else "follows itself"
-        raise UsageError(f"--couple {name}={relation.words}: joint '{name}' {why}")
+        raise UsageError(
+            f"--couple {name}={relation.words}: joint '{name}' {why}",
+            hint="leave out --free for it"
+            if name in dh.free
+            else "name another joint that it follows",
+        )
     follower, source = names.index(name), names.index(relation.source)
     kept = [joint for joint in dh.joints if joint.name != name]
     limits = shared_limits(relation, name, dh.joints[follower].limits, dh.joints[source].limits)

@@ -107,7 +107,10 @@ def parse_coupled(texts: Sequence[str]) -> dict[str, str]:
                 f"--couple {text}: {error}", hint="for example --couple stage_2=stage_1*1+0"
             ) from None
         if not joint or joint in found:
-            raise UsageError(f"--couple {text}: " + ("given twice" if joint else "no joint named"))
+            what = "given twice" if joint else "no joint named"
+            raise UsageError(
+                f"--couple {text}: {what}", hint="write --couple JOINT=SOURCE*k+c, once a joint"
+            )
         found[joint] = relation
     return found
 
