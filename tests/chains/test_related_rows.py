@@ -9,8 +9,9 @@ import pytest
 
 from ikgen.errors import UnknownNameError, UsageError
 from ikgen.generation.emitted_checks import oracle_for
+from ikgen.generation.generate import generate
 from ikgen.generation.read import read
-from ikgen.generation.request import Request
+from ikgen.generation.request import Outputs, Request
 
 TABLE = """
 name = "stages"
@@ -82,3 +83,10 @@ def test_what_cannot_be_is_refused(
 ) -> None:
     with pytest.raises(error, match=words):
         read(Request(table, couple={"tilt": relation}, free=dict(free)))
+
+
+@pytest.mark.parametrize("relation", ["turn*0.5", "turn*-0.5+0.2", "turn*2"])
+def test_the_axis_that_turns_least_leads(table: Path, relation: str, tmp_path: Path) -> None:
+    """A half ratio closes on the follower's variable, a whole one on the source's."""
+    made = generate(Request(table, couple={"tilt": relation}), Outputs(out=tmp_path, samples=200))
+    assert made.reports["python"].passed

@@ -94,7 +94,9 @@ def test_ratios_that_are_not_whole_are_refused(tmp_path: Path) -> None:
         '<joint name="elbow" type="revolute"><mimic joint="waist" multiplier="0.007"/>',
     )
     robot.write_text(text)
-    with pytest.raises(UnsolvedChainError, match=r"turn in the ratio 0\.007, which is no whole"):
+    with pytest.raises(
+        UnsolvedChainError, match=r"turn in the ratio 0\.007, which is one over no whole"
+    ):
         derive(request(robot))
     robot.write_text(text.replace('"elbow" type="revolute"', '"elbow" type="prismatic"'))
     slides = read(request(robot)).dh

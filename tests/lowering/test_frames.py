@@ -47,7 +47,7 @@ def test_a_row_without_numbers_is_its_link_in_names(sign: int) -> None:
     np.testing.assert_array_equal(numbers(found[2], {}), DH.file_frames[2][:3])
 
 
-def test_the_base_stands_before_the_first_row() -> None:
+def test_the_base_stands_before_the_lead_row() -> None:
     base = np.eye(4)
     base[:3, :3], base[:3, 3] = rotation_z(0.4), (0.1, 0.2, 0.3)
     rows = (replace(DH.rows[0], d=Length(0.1, "d_1", symbolic=True)), *DH.rows[1:])

@@ -89,4 +89,4 @@ def test_the_first_row_that_a_joint_drives_is_its_own() -> None:
     from tests.support.tables import table
 
     dh = table(("R", "0", 0.0, 0.0), ("R", "1", 0.0, 0.0))
-    assert dh.first_row(1) is dh.rows[1]
+    assert dh.lead_row(1) is dh.rows[1]

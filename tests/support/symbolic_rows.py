@@ -65,6 +65,6 @@ def _values(
 
 def _joint(dh: DHChain, joint: int, variable: Array) -> Array:
     """The joint's value: angles in (-pi, pi]."""
-    row = dh.first_row(joint)
+    row = dh.lead_row(joint)
     value = (variable - row.offset.value) / row.scale
     return np.arctan2(np.sin(value), np.cos(value)) if row.revolute else value

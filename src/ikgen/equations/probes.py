@@ -30,7 +30,7 @@ SINGULAR = 16
 
 @dataclass(frozen=True, slots=True)
 class Probes:
-    """`values` (N, dof) DH variables (of each joint's first row), `pose` (N, 4, 4) of the last DH frame
+    """`values` (N, dof) DH variables (of each joint's leading row), `pose` (N, 4, 4) of the last DH frame
     in frame 0. The first `generic` are random, up to `regular` they have joints at multiples of 90
     degrees but are regular, the rest are singular. `kept` are the values (N,) of rounded constants."""
 
@@ -53,9 +53,8 @@ def dh_pose(dh: DHChain, values: NDArray[np.float64], kept: Kept = _NONE) -> NDA
     `kept` (N,) by name, else those that were meant."""
     count = len(values)
     T = np.broadcast_to(np.eye(4), (count, 4, 4))
-    first: dict[int, int] = {}
-    for i, row in enumerate(dh.rows):
-        lead = dh.rows[first.setdefault(row.driver, i)]
+    for row in dh.rows:
+        lead = dh.lead_row(row.driver)
         ratio = row.scale / lead.scale
         v = ratio * (values[:, row.driver] - lead.offset.value) + row.offset.value
         theta = v if row.revolute else np.full(count, row.theta.value)
@@ -86,7 +85,7 @@ def smallest_singular(
         if dh.joints[j].name in dh.free:
             continue
         step = np.zeros(dh.dof)
-        step[j] = h * (1.0 if dh.first_row(j).revolute else size)
+        step[j] = h * (1.0 if dh.lead_row(j).revolute else size)
         dT = product(dh_pose(dh, values + step) - dh_pose(dh, values - step), end) / (2 * h)
         dT = dT[:, :3, :] * read
         dT[:, :, 3] /= size
@@ -123,7 +122,7 @@ def make_probes(
     """
     rng = np.random.default_rng(seed)
     size = arm_size(dh)
-    revolute = np.array([dh.first_row(j).revolute for j in range(dh.dof)])
+    revolute = np.array([dh.lead_row(j).revolute for j in range(dh.dof)])
 
     def random(count: int) -> NDArray[np.float64]:
         angles = rng.uniform(-np.pi, np.pi, (count, dh.dof))

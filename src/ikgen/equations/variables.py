@@ -1,6 +1,6 @@
 """Joint variables of a DH chain as atoms of the expression graph.
 
-A revolute variable is the DH angle of the row that its joint drives first; a combination is an integer
+A revolute variable is the DH angle of the row that its joint turns least; a combination is an integer
 combination of such angles, one entry a variable. Angles of parallel consecutive axes share a group:
 their sums ("sum of angles") appear as combinations of their own when the matrices are built.
 """
@@ -58,7 +58,7 @@ class JointVariables:
         self.values = values
         self.kept = kept
         self.count = dh.dof
-        self.primary = [dh.first_row(j) for j in range(dh.dof)]
+        self.primary = [dh.lead_row(j) for j in range(dh.dof)]
         self._rows = [self._row_variable(row) for row in dh.rows]
         self.group = self._groups()
 

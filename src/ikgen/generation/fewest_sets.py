@@ -74,7 +74,7 @@ def _counts(dh: DHChain, program: Program) -> Iterator[int]:
     from ikgen.program.interpret import run
 
     rng, size = np.random.default_rng(_SEED), arm_size(dh)
-    revolute = np.array([dh.first_row(j).revolute for j in range(dh.dof)])
+    revolute = np.array([dh.lead_row(j).revolute for j in range(dh.dof)])
     turns = rng.uniform(-np.pi, np.pi, (_POSES, dh.dof))
     values = np.where(revolute, turns, size * rng.uniform(0.3, 1.5, turns.shape))
     quarters = np.where(revolute, rng.integers(-1, 3, values.shape) * (np.pi / 2), 0.0)
@@ -93,7 +93,7 @@ def _inputs(
 
     inputs = {PoseEntry(i, j).name: float(pose[i, j]) for i in range(3) for j in range(4)}
     for j, value in enumerate(values):
-        row = dh.first_row(j)
+        row = dh.lead_row(j)
         inputs[HeldValue(j).name] = float(value - row.offset.value) / row.scale
         inputs[SeedValue(j).name] = 0.0
     return inputs

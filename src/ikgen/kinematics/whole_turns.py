@@ -1,6 +1,6 @@
 """What whole turns of a joint do where mimic joints follow it.
 
-A row's angle is `scale * q + offset` and counts modulo 2 pi. Where the first row of a joint has the scale
+A row's angle is `scale * q + offset` and counts modulo 2 pi. Where the leading row of a joint has the scale
 ±1 and all others whole multiples of it, `q + 2 pi` is the same configuration, and no smaller step is. With
 another scale the step is `2 pi / |scale|`: a whole turn of the joint is then another configuration, or one
 of several that are the same.
@@ -22,13 +22,14 @@ def turns_freely(dh: DHChain, joint: int) -> bool:
     """Whether two values of the joint are the same configuration exactly where whole turns are between."""
     rows = _rows(dh, joint)
     whole = all(abs(row.scale - round(row.scale)) <= _WHOLE for row in rows)
-    return rows[0].revolute and abs(rows[0].scale) == 1.0 and whole
+    lead = dh.lead_row(joint)
+    return lead.revolute and abs(lead.scale) == 1.0 and whole
 
 
 def middle_of(dh: DHChain, joint: int) -> float:
     """The value (rad or m) that an arctangent's value is counted from: 0 where turns place it, else the
     middle of the limits, since they span one period at most (`check_couplings`)."""
-    row, limits = _rows(dh, joint)[0], dh.joints[joint].limits
+    row, limits = dh.lead_row(joint), dh.joints[joint].limits
     span = limits.upper - limits.lower
     if not row.revolute or turns_freely(dh, joint) or not math.isfinite(span):
         return 0.0
@@ -51,15 +52,17 @@ def check_couplings(dh: DHChain) -> None:
 
 def _cause(dh: DHChain, joint: int, rows: tuple[DHRow, ...]) -> tuple[str, str] | None:
     """Why the joint has no closed form, and what else than locking it would help."""
-    first = rows[0]
-    for row in rows[1:]:
-        names = f"'{row.name}' and '{first.name}'"
+    first = dh.lead_row(joint)
+    for row in rows:
+        names = f"'{first.name}' and '{row.name}'"
         if row.revolute != first.revolute:
             text = f"of {names} one turns and the other slides, so the equations are not algebraic"
             return text, ""
         ratio = row.scale / first.scale
         if row.revolute and abs(ratio - round(ratio)) > _WHOLE:
-            text = f"{names} turn in the ratio {abs(ratio):g}, which is no whole number"
+            text = (
+                f"{names} turn in the ratio {1 / abs(ratio):g}, which is one over no whole number"
+            )
             return text, "; so do --base and --tip with one of the two between them"
     limits, held = dh.joints[joint].limits, dh.joints[joint].name in dh.free
     if not first.revolute or held or turns_freely(dh, joint):

@@ -44,7 +44,7 @@ def elimination_program(dh: DHChain) -> Program:
     given: list[str] = []
     for one in held:
         names = _names(dh, one.joint)
-        prelude += variable_lets(dh.first_row(one.joint), one.name, names)
+        prelude += variable_lets(dh.lead_row(one.joint), one.name, names)
         given += names
     moving = [j for j in range(dh.dof) if HeldValue(j) not in held]
     found = tuple(name for j in moving for name in _names(dh, j))
@@ -70,11 +70,11 @@ def elimination_program(dh: DHChain) -> Program:
 def _names(dh: DHChain, joint: int) -> tuple[str, ...]:
     """What the call gives of a joint: cosine and sine of its angle, or its length."""
     place = joint + 1
-    return (f"c{place}", f"s{place}") if dh.first_row(joint).revolute else (f"d{place}",)
+    return (f"c{place}", f"s{place}") if dh.lead_row(joint).revolute else (f"d{place}",)
 
 
 def _value(dh: DHChain, joint: int) -> Expr:
     g = ExpressionGraph(1)
     names = _names(dh, joint)
     parts = tuple(g.atom("input", name, np.zeros(1), unknown=False) for name in names)
-    return joint_value(g, dh.first_row(joint), parts, middle_of(dh, joint))
+    return joint_value(g, dh.lead_row(joint), parts, middle_of(dh, joint))

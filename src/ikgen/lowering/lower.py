@@ -145,4 +145,4 @@ def _labels(step: Step) -> str:
 def _value(work: Placement, joint: int, variable: tuple[Expr, ...]) -> Expr:
     """A joint's value from its DH variable."""
     middle = middle_of(work.dh, joint)
-    return joint_value(work.g, work.dh.first_row(joint), variable, middle)
+    return joint_value(work.g, work.dh.lead_row(joint), variable, middle)

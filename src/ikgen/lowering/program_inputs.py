@@ -47,7 +47,7 @@ def _entry(work: Placement, i: int, j: int, raw: NDArray[np.float64]) -> Expr:
 def bind_joints(work: Placement) -> None:
     """Values that joints take where a pose leaves them free, and those of held joints."""
     for j in range(work.dh.dof):
-        row = work.dh.first_row(j)
+        row = work.dh.lead_row(j)
         seed = SeedValue(j)
         names = (f"seed_c{j + 1}", f"seed_s{j + 1}") if row.revolute else (f"seed_d{j + 1}",)
         for name in names:
@@ -65,7 +65,7 @@ def bind_joints(work: Placement) -> None:
         for atom, name in zip(atoms, names, strict=True):
             work.names[atom.id] = name
         work.inputs.append(held)
-        work.prelude += variable_lets(work.dh.first_row(j), held.name, names)
+        work.prelude += variable_lets(work.dh.lead_row(j), held.name, names)
 
 
 def seed_values(work: Placement, variable: Variable) -> tuple[Expr, ...]:

@@ -137,6 +137,9 @@ class DHChain:
         for row in self.rows:
             yield from (row.alpha, row.a, row.d, row.theta, row.offset)
 
-    def first_row(self, joint: int) -> DHRow:
-        """The first row that a joint drives: its kind, scale and offset."""
-        return next(row for row in self.rows if row.driver == joint)
+    def lead_row(self, joint: int) -> DHRow:
+        """The row whose variable stands for a joint: the first of those that it moves least, so that the
+        others turn a whole number of times as far where closed forms are to be had."""
+        return min(
+            (row for row in self.rows if row.driver == joint), key=lambda row: abs(row.scale)
+        )

@@ -41,7 +41,7 @@ class SymbolNames:
 
     def joint(self, joint: int) -> sympy.Symbol:
         """The DH variable of a joint (from 0)."""
-        row = self.dh.first_row(joint)
+        row = self.dh.lead_row(joint)
         unit = tuple(int(j == joint) for j in range(self.dh.dof))
         return self.variable(Variable("angle" if row.revolute else "prismatic", unit))
 

@@ -98,20 +98,20 @@ def _held(derivation: Derivation, names: SymbolNames) -> list[tuple[sympy.Symbol
     """DH values of held joints by default."""
     out = []
     for joint, value in zip(derivation.module.free, derivation.module.free_defaults, strict=True):
-        row = derivation.graph.dh.first_row(joint)
+        row = derivation.graph.dh.lead_row(joint)
         out.append((names.joint(joint), repr(row.scale * value + row.offset.value)))
     return out
 
 
 def _joint(dh: DHChain, names: SymbolNames, joint: int) -> str:
     """The joint's own value."""
-    row = dh.first_row(joint)
+    row = dh.lead_row(joint)
     moved = names.joint(joint) - _value(row.offset, names)
     return str(_print(moved / exact_number(row.scale).sympy))
 
 
 def _row(row: DHRow, dh: DHChain, names: SymbolNames) -> str:
-    first = next(other for other in dh.rows if other.driver == row.driver)
+    first = dh.lead_row(row.driver)
     ratio = exact_number(row.scale / first.scale).sympy
     shift = _value(row.offset, names) - ratio * _value(first.offset, names)
     variable = ratio * names.joint(row.driver) + shift

@@ -56,7 +56,7 @@ def emit_module(module: SolverModule) -> str:
         words=words,
         held=len(module.free),
         held_name=words(module.dh.joints[module.free[0]].name) if module.free else "",
-        held_turns=bool(module.free) and module.dh.first_row(module.free[0]).revolute,
+        held_turns=bool(module.free) and module.dh.lead_row(module.free[0]).revolute,
         guarded=module.guarded,
         beside=[[[number(float(x)) for x in row] for row in D] for D in module.beside],
         orientation=module.reads.orientation,
@@ -102,9 +102,9 @@ def _parameters(module: SolverModule) -> list[tuple[str, str]]:
 
 
 def _seed_rows(module: SolverModule) -> list[tuple[int, bool, float, float]]:
-    """Per joint: index, revolute, scale and offset of its first row."""
+    """Per joint: index, revolute, scale and offset of its leading row."""
     out = []
     for j in range(module.dh.dof):
-        row = module.dh.first_row(j)
+        row = module.dh.lead_row(j)
         out.append((j, row.revolute, row.scale, row.offset.value))
     return out
