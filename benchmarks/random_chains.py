@@ -42,6 +42,8 @@ from ikgen.lowering.elimination_program import elimination_program
 from ikgen.lowering.lower import lower
 from ikgen.model.dh import DHChain
 from ikgen.solver.solve import solve_chain
+from ikgen.tasks import find_task
+from ikgen.verify.task_space import task_space
 
 RULES, ELIMINATION, NEITHER = "rules", "elimination", "nothing"
 _count = itertools.count()
@@ -104,14 +106,16 @@ def through_command_line(dh: DHChain, folder: Path, emit: str) -> tuple[str, Pat
 
 
 def check(dh: DHChain, module: ModuleType, poses: int, rng: np.random.Generator) -> tuple[int, int]:
-    """Wrong rows and missed configurations over random regular poses."""
+    """Wrong rows, by what the module's task reads, and missed configurations over random regular poses."""
     q = rng.uniform(-2.5, 2.5, (poses, dh.dof))
     regular = smallest_singular(dh, q, arm_size(dh)) > 1e-3
-    turning = revolute(module)
+    turning, space = revolute(module), task_space(find_task(module.TASK))
     wrong = missed = 0
     for at, pose in zip(q[regular], dh_pose(dh, q[regular]), strict=True):
         rows = module.solve(pose, limits=False).q
-        wrong += int((np.abs(module.forward(rows) - pose).max(axis=(1, 2)) > 1e-8).sum())
+        back = module.forward(rows).reshape(-1, 4, 4)
+        error = np.abs(space.residual(back, np.broadcast_to(pose, back.shape)))
+        wrong += int((error.max(axis=-1, initial=0.0) > 1e-8).sum())
         missed += int(not len(rows) or apart(at, rows, turning).min() > 1e-6)
     return wrong, missed
 
@@ -159,7 +163,8 @@ def one_table(
     if module is None:
         return
     bad, lost = check(dh, module, options.poses, rng)
-    lost += compare(dh, module, options.search, rng)
+    if module.TASK == "pose":
+        lost += compare(dh, module, options.search, rng)
     if bad or lost:
         print(f"{pattern(dh)}: {bad} wrong, {lost} missed ({way})", flush=True)
     tally.wrong, tally.missed = tally.wrong + bad, tally.missed + lost

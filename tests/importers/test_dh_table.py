@@ -194,6 +194,8 @@ def test_redundant_axes_are_told(tmp_path: Path) -> None:
     source, _ = read_dh_table(path)
     assert "'theta_1' and 'theta_2'" in source.warnings[0]
     assert "'d_3' and 'd_4'" in source.warnings[1]
+    held, _ = read_dh_table(path, free=("theta_2", "d_3"))
+    assert not held.warnings
 
 
 def test_other_convention_is_pointed_out(tmp_path: Path) -> None:

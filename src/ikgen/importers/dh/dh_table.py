@@ -104,12 +104,14 @@ def _check_convention(document: TableDocument, entries: tuple[Entry, ...]) -> No
 
 
 def _redundant(dh: DHChain) -> list[str]:
-    """Neighbouring axes of which one is enough: the pose then has a continuum of solutions."""
+    """Neighbouring axes of which one is enough and neither is held: a continuum of solutions."""
     notes = []
     for i in range(1, len(dh.rows)):
         one, two = dh.rows[i - 1 : i + 1]
         names = f"joints '{one.name}' and '{two.name}' (rows {i} and {i + 1})"
-        advice = "infinitely many solutions for every pose: hold one of them free or lock it"
+        if dh.joints[one.driver].name in dh.free or dh.joints[two.driver].name in dh.free:
+            continue
+        advice = "a pose has infinitely many solutions unless one of them is held or locked"
         if one.revolute and two.revolute and same_line_as_previous(two):
             notes.append(f"{names} turn about one line: {advice}")
         if not one.revolute and not two.revolute and parallel_to_previous(two):
