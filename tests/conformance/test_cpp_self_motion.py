@@ -126,6 +126,18 @@ def test_intervals(both: Both) -> None:
         assert np.abs(wide[0][:, :2] - wide[1][:, :2]).max() < 1e-9
 
 
+def test_poses_at_which_a_joint_stays_on_its_limit_or_the_arm_is_stretched(both: Both) -> None:
+    arm = both.arm
+    if len(arm.FREE_JOINTS) != 1:
+        return
+    j = arm.JOINT_NAMES.index(arm.FREE_JOINTS[0])
+    for q in (np.zeros(arm.DOF), arm.UPPER, np.where(np.arange(arm.DOF) % 2, arm.LOWER, 0.0)):
+        row = np.clip(q, arm.LOWER, arm.UPPER)
+        _, numbers = both.run(0, np.zeros(arm.DOF), arm.forward(row)[None])
+        low, high, _ = numbers.reshape(-1, 3).T
+        assert ((low - 1e-4 <= row[j]) & (row[j] <= high + 1e-4)).any()
+
+
 def cost(arm: ModuleType, mode: int, q: Array, seed: Array) -> float:
     if mode == 1:
         return float(np.linalg.norm(q - seed))

@@ -71,12 +71,26 @@ def test_poses_without_intervals(arm: ModuleType) -> None:
     far[0, 3] = 9.0
     assert arm.self_motion(far) == ()
     assert arm.search(far).status is arm.Status.UNREACHABLE
+    (name,) = arm.FREE_JOINTS
+    assert name in arm.search(far).reason
+    assert f"{name} = 0.25 held" in arm.solve(far, free=[0.25]).reason
     assert arm.self_motion(np.full((4, 4), np.nan)) == ()
     assert arm.search(np.zeros((4, 4))).status is arm.Status.INVALID
     with pytest.raises(ValueError, match="shape"):
         arm.self_motion(np.eye(3))
     with pytest.raises(ValueError, match="prefer"):
         arm.search(far, prefer="best")
+
+
+def test_poses_at_which_a_joint_stays_on_its_limit_or_the_arm_is_stretched(
+    arm: ModuleType,
+) -> None:
+    """Where branches meet, or touch a limit, all over the range."""
+    for q in (np.zeros(arm.DOF), arm.UPPER, np.where(np.arange(arm.DOF) % 2, arm.LOWER, 0.0)):
+        row = np.clip(q, arm.LOWER, arm.UPPER)
+        found = arm.self_motion(arm.forward(row))
+        j = arm.JOINT_NAMES.index(arm.FREE_JOINTS[0])
+        assert any(one.low - 1e-4 <= row[j] <= one.high + 1e-4 for one in found)
 
 
 def cost(arm: ModuleType, prefer: str, q: Array, seed: Array) -> Array:

@@ -1140,8 +1140,8 @@ class Status(str, Enum):
 @dataclass(frozen=True)
 class Solutions:
     """Solutions of one pose: `q` (k, DOF), `status`, and `singular` (k,): rows of a continuum; `reason`
-    says why a pose is INVALID. As a sequence: its rows. `projected` (k, 2), where it was asked for: m and
-    rad by which rows miss the pose."""
+    says why a pose is INVALID, or which values of held joints led to no row. As a sequence: its rows.
+    `projected` (k, 2), where it was asked for: m and rad by which rows miss the pose."""
 
     q: Array
     status: Status
@@ -1202,9 +1202,11 @@ def _solve_pose(
     if project and T is not None and not found:
         found = _projected(arm, T, near, held, limits)
     if not found:
-        status = Status.INVALID if T is None else Status.LIMITS if real else Status.UNREACHABLE
-        reason = _pose_fault(arm.task, lines, arm.policy) if T is None else ""
-        return _no_solutions(len(arm.lower), status, reason)
+        if T is None:
+            reason = _pose_fault(arm.task, lines, arm.policy)
+            return _no_solutions(len(arm.lower), Status.INVALID, reason)
+        status = Status.LIMITS if real else Status.UNREACHABLE
+        return _no_solutions(len(arm.lower), status, _held_reason(arm, held, real))
     if near is not None:
         origin = near
         found.sort(key=lambda item: sum((a - b) * (a - b) for a, b in zip(item[0], origin)))
@@ -1213,6 +1215,18 @@ def _solve_pose(
     off = _off_by(arm.task, _forward(arm.chain, q), np.array(T)) if project else None
     names = partial(_branch_names, arm)
     return Solutions(q, Status.OK, flags, names=names, projected=off)
+
+
+def _held_reason(arm: _Arm, held: Row, real: bool) -> str:
+    """What holding joints has to do with it; nothing where none is held."""
+    if not arm.free:
+        return ""
+    values = ", ".join(f"{name} = {x:.6g}" for name, x in zip(arm.free_joints, held))
+    what = "all solutions are outside the limits" if real else "no solution"
+    tells = (
+        "self_motion(pose) has the values that do" if len(held) == 1 else "search(pose) tries them"
+    )
+    return f"{what} with {values} held; other values may reach the pose: {tells}"
 
 
 def _projected(
@@ -1266,7 +1280,7 @@ def _rows(
     for i, q0 in enumerate(starts):
         answers, hit = arm.branches(T, q0, held)
         if arm.rounded and len(starts) == 1 and not hit:
-            found = _certain_rows(arm, answers, T)
+            found = _pose_solving_certain_rows(arm, answers, T)
             if found is not None:
                 return [(found, False)]
         hits.append(hit)
@@ -1285,7 +1299,7 @@ def _rows(
     return list(zip(kept, hits))
 
 
-def _certain_rows(arm: _Arm, answers: list[_Candidate], T: list[list[float]]) -> list[_Found] | None:
+def _pose_solving_certain_rows(arm: _Arm, answers: list[_Candidate], T: list[list[float]]) -> list[_Found] | None:
     """The rows refined all at once; None where that leaves a doubt."""
     if not answers or any(flag for _, flag, _ in answers):
         return None if answers or len(arm.beside) else []
@@ -1390,12 +1404,7 @@ def _rows_batch(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[A
     """Rows (N, M, dof) on no turn in particular; which are distinct solutions, which of a continuum."""
     if not arm.rounded:
         return _careful_rows(arm, T, held, near)
-    start = np.zeros((len(T), len(arm.lower))) if near is None else near
-    with np.errstate(all="ignore"):
-        q, valid, singular, _ = arm.branches_batch(T, start, held)
-    q[:, :, arm.free] = held[:, None, :]
-    q, valid, doubt = _certain_batch(arm, T, q, valid)
-    doubt |= singular.any(axis=1) | ~valid.any(axis=1)
+    q, valid, singular, doubt = _certain_rows(arm, T, held, near)
     if doubt.any():
         seeds = None if near is None else near[doubt]
         more, fine, flags = _careful_rows(arm, T[doubt], held[doubt], seeds)
@@ -1407,16 +1416,23 @@ def _rows_batch(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[A
     return q, valid, singular
 
 
-def _certain_batch(arm: _Arm, T: Array, q: Array, valid: _Flags) -> tuple[Array, _Flags, _Flags]:
-    """Rows (N, M, dof) refined all at once, which are solutions, and for which poses (N,) that leaves a
-    doubt."""
+def _certain_rows(
+    arm: _Arm, T: Array, held: Array, near: Array | None
+) -> tuple[Array, _Flags, _Flags, _Flags]:
+    """Rows (N, M, dof) of a rounded arm refined all at once, which of them are solutions, which of a
+    continuum, and for which poses (N,) that leaves a doubt."""
+    start = np.zeros((len(T), len(arm.lower))) if near is None else near
+    with np.errstate(all="ignore"):
+        q, valid, singular, _ = arm.branches_batch(T, start, held)
+    q[:, :, arm.free] = held[:, None, :]
     pose, row = np.nonzero(valid)
-    done, arrived, missed = _refine_together(arm, q[pose, row], T[pose])
-    q, found, doubt = q.copy(), valid.copy(), np.zeros(len(T), dtype=bool)
-    q[pose, row], found[pose, row] = done, arrived
+    q[pose, row], arrived, missed = _refine_together(arm, q[pose, row], T[pose])
+    found, doubt = valid.copy(), np.zeros(len(T), dtype=bool)
+    found[pose, row] = arrived
     doubt[pose[~(arrived | missed)]] = True
     doubt |= (_distinct(arm, q, found) != found).any(axis=1)
-    return q, found, doubt
+    doubt |= singular.any(axis=1) | ~found.any(axis=1)
+    return q, found, singular, doubt
 
 
 def _careful_rows(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, _Flags, _Flags]:

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "displacement.hpp"
 #include "fold_rows.hpp"
@@ -47,6 +48,7 @@ template <class Arm> struct JointBounds {
 template <class Arm> struct HeldSample {
   static constexpr int kLanes = Arm::kMaxSolutions * (1 + Arm::kBesides), kMargins = Arm::kFolds > 0 ? Arm::kFolds : 1;
   double held = 0.0;
+  int lanes = Arm::kMaxSolutions;  // which may be real
   double q[Arm::kDof][kLanes], off[kLanes], fold[kMargins][Arm::kMaxSolutions];
   bool real[kLanes];
 
@@ -55,13 +57,10 @@ template <class Arm> struct HeldSample {
 
   // The rows at a value; T: the pose as it is read.
   HeldSample(const Eigen::Isometry3d& T, double value, const JointBounds<Arm>& bounds) noexcept : held(value) {
-    bool again = take(T, T, 0);
-    if constexpr (Arm::kBesides > 0)
-      for (int i = 0; i < Arm::kBesides; ++i) again = take(T, displaced(T, Arm::kBeside[i]), i + 1) || again;
-    if (again) remove_repetitions();
-    for (int l = 0; l < kLanes; ++l) off[l] = -kInfinity;
+    if (!take_certain(T)) take_carefully(T);
+    for (int l = 0; l < lanes; ++l) off[l] = -kInfinity;
     for (int i = 0; i < bounds.count; ++i)
-      for (int l = 0; l < kLanes; ++l)
+      for (int l = 0; l < lanes; ++l)
         off[l] = std::max(off[l], std::abs(bounds.offset(i, q[bounds.joint[i]][l])) - bounds.half[i] - Arm::Policy::kLimitTolerance);
   }
 
@@ -90,11 +89,19 @@ template <class Arm> struct HeldSample {
     return most;
   }
 
+  // The squared distance of a row from the nearest other: linear in the held joint's value where the two meet.
+  double separation(int lane) const noexcept {
+    double least = kInfinity;
+    for (int l = 0; l < lanes; ++l)
+      if (real[l] && l != lane) least = std::min(least, gap(*this, lane, *this, l));
+    return least * least;
+  }
+
   // The lane of the real row that is nearest to another; -1 without one.
   int nearest(const double* other) const noexcept {
     int best = -1;
     double least = kInfinity;
-    for (int l = 0; l < kLanes; ++l) {
+    for (int l = 0; l < lanes; ++l) {
       const double here = real[l] ? distance(l, other) : kInfinity;
       if (here < least) {
         least = here;
@@ -109,18 +116,61 @@ template <class Arm> struct HeldSample {
     return Arm::kRevolute[j] ? shortest(to - from) : to - from;
   }
 
+  static constexpr Range kAnywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
+  using Rows = FoldRows<Arm::kDof, Arm::kMaxSolutions, Arm::kFolds>;
+
+  // Takes the rows of a rounded arm refined all at once, if that leaves no doubt.
+  bool take_certain(const Eigen::Isometry3d& T) noexcept {
+    if constexpr (Arm::kNewton) {
+      Rows rows;
+      typename Arm::template Rows<1> fine;
+      const Pose<1> pose = gather<1>(&T);
+      Arm::branches(pose, typename Arm::Seed(), std::array<double, 1>{held}, kAnywhere, rows);
+      std::memcpy(fine.q, rows.q, sizeof(fine.q));
+      std::memcpy(fine.flags, rows.flags, sizeof(fine.flags));
+      Arm::refine(pose, kAnywhere, fine);
+      int seen = 0;
+      for (int r = 0; r < Arm::kMaxSolutions; ++r) seen |= keep(rows, fine, r);
+      return (seen & kReal) != 0 && (seen & (kRough | kHit)) == 0 && !remove_repetitions();
+    }
+    return false;
+  }
+
+  // Takes the rows of the pose and those beside it, each refined for as long as that takes; no more than solve gives.
+  void take_carefully(const Eigen::Isometry3d& T) noexcept {
+    bool again = take(T, T, 0);
+    if constexpr (Arm::kBesides > 0)
+      for (int i = 0; i < Arm::kBesides; ++i) again = take(T, displaced(T, Arm::kBeside[i]), i + 1) || again;
+    lanes = kLanes;
+    if (again) remove_repetitions();
+    int count = 0, used = Arm::kMaxSolutions;
+    for (int l = 0; l < kLanes; ++l) {
+      count += real[l] ? 1 : 0;
+      real[l] = real[l] && count <= Arm::kMaxSolutions;
+      if (real[l]) used = std::max(used, l + 1);
+    }
+    lanes = used;
+  }
+
+  // Copies a row of the pose itself and its margins; its bits.
+  template <class Found> int keep(const Rows& rows, const Found& fine, int r) noexcept {
+    const int lane = Arm::kLaneOfRow[r], bits = static_cast<int>(fine.flags[lane]);
+    real[r] = (bits & kReal) != 0;
+    for (int j = 0; j < Arm::kDof; ++j) q[j][r] = Arm::kHeld[j] ? held : fine.q[j][lane];
+    for (int k = 0; k < Arm::kFolds; ++k) fold[k][r] = rows.margin[k][lane];
+    return bits;
+  }
+
   // Takes the rows of the pose, or of one beside it, refined where that is needed; whether some may be equal.
   bool take(const Eigen::Isometry3d& T, const Eigen::Isometry3d& near, int part) noexcept {
-    constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
-    FoldRows<Arm::kDof, Arm::kMaxSolutions, Arm::kFolds> rows;
-    Arm::branches(gather<1>(&near), typename Arm::Seed(), std::array<double, 1>{held}, anywhere, rows);
+    Rows rows;
+    Arm::branches(gather<1>(&near), typename Arm::Seed(), std::array<double, 1>{held}, kAnywhere, rows);
     bool again = part > 0;
     for (int r = 0; r < Arm::kMaxSolutions; ++r) {
       const int lane = Arm::kLaneOfRow[r], l = part * Arm::kMaxSolutions + r, bits = static_cast<int>(rows.flags[lane]);
+      if (part == 0) keep(rows, rows, r);
       real[l] = (bits & kReal) != 0;
-      for (int j = 0; j < Arm::kDof; ++j) q[j][l] = Arm::kHeld[j] ? held : rows.q[j][lane];
-      if (part == 0)
-        for (int k = 0; k < Arm::kFolds; ++k) fold[k][r] = rows.margin[k][lane];
+      for (int j = 0; j < Arm::kDof && part > 0; ++j) q[j][l] = Arm::kHeld[j] ? held : rows.q[j][lane];
       again = again || (real[l] && (bits & (kRough | kMeeting)) != 0);
       if (!real[l] || (bits & kRough) == 0 || Arm::kRefined) continue;
       double refined[Arm::kDof];
@@ -132,10 +182,16 @@ template <class Arm> struct HeldSample {
     return again;
   }
 
-  void remove_repetitions() noexcept {
-    for (int l = 1; l < kLanes; ++l)
+  // Whether there were any.
+  bool remove_repetitions() noexcept {
+    bool any = false;
+    for (int l = 1; l < lanes; ++l)
       for (int k = 0; k < l; ++k)
-        if (real[l] && real[k] && gap(*this, l, *this, k) <= Arm::Policy::kCoincident) real[l] = false;
+        if (real[l] && real[k] && gap(*this, l, *this, k) <= Arm::Policy::kCoincident) {
+          real[l] = false;
+          any = true;
+        }
+    return any;
   }
 };
 

@@ -9,13 +9,15 @@ namespace ikgen_runtime {
 // Arm: as for BranchFollower and RowPreference.
 template <class Arm> struct HeldSearch {
   using Sample = HeldSample<Arm>;
-  static constexpr int kMost = 4;  // minima of an interval that are looked at
+  static constexpr int kMost = 4;         // minima of an interval that are looked at
+  // How near to a minimum is enough: costs of distances differ by the square, singular values have kinks.
+  static constexpr double kNear = 1e-5, kNearKink = 1e-6;
 
   struct Point {
     double at, cost, q[Arm::kDof];
   };
   struct Minimum {
-    double low, high;
+    double low, high, low_cost, high_cost;
     Point best;
   };
   struct Run {
@@ -52,10 +54,10 @@ template <class Arm> struct HeldSearch {
     Run& run = runs[lane];
     if (at > run.last[0].at) add(run, at, q);
     const Point& end = run.last[0];
-    if (run.points < 2 || end.cost <= run.last[1].cost) keep(run, run.points < 2 ? end.at : run.last[1].at, end.at, end);
+    if (run.points < 2 || end.cost <= run.last[1].cost) keep(run, run.points < 2 ? end : run.last[1], end, end);
     int best = 0;
     for (int k = 0; k < run.count; ++k) {
-      refine(run.minima[k]);
+      if (!hopeless(run.minima[k])) refine(run.minima[k]);
       if (run.minima[k].best.cost < run.minima[best].best.cost) best = k;
     }
     insert(run.minima[best].best);
@@ -66,7 +68,7 @@ template <class Arm> struct HeldSearch {
     out.count = 0;
     const HeldSweep<Arm> sweep(pose, limits);
     HeldSearch search{sweep, preference, out, {}, {}};
-    BranchFollower<Arm, HeldSearch> follower{sweep, search, {}};
+    BranchFollower<Arm, HeldSearch> follower(sweep, search);
     sweep.run(follower);
     out.status = out.count > 0 ? Arm::Status::Ok : follower.any ? Arm::Status::Limits : Arm::Status::Unreachable;
     for (int k = 0; k < out.count; ++k)
@@ -85,22 +87,22 @@ template <class Arm> struct HeldSearch {
   void add(Run& run, double at, const double* q) noexcept {
     const Point p = point(at, q);
     const Point &b = run.last[0], &a = run.last[1];
-    if (run.points == 1 && b.cost <= p.cost) keep(run, b.at, p.at, b);
-    if (run.points > 1 && b.cost <= a.cost && b.cost <= p.cost) keep(run, a.at, p.at, b);
+    if (run.points == 1 && b.cost <= p.cost) keep(run, b, p, b);
+    if (run.points > 1 && b.cost <= a.cost && b.cost <= p.cost) keep(run, a, p, b);
     run.last[1] = run.last[0];
     run.last[0] = p;
     ++run.points;
   }
 
   // Keeps a minimum, of too many the lowest.
-  static void keep(Run& run, double low, double high, const Point& best) noexcept {
+  static void keep(Run& run, const Point& low, const Point& high, const Point& best) noexcept {
     int at = run.count < kMost ? run.count++ : 0;
     if (run.count == kMost && at == 0) {
       for (int k = 1; k < kMost; ++k)
         if (run.minima[k].best.cost > run.minima[at].best.cost) at = k;
       if (run.minima[at].best.cost < best.cost) return;
     }
-    run.minima[at] = {low, high, best};
+    run.minima[at] = {low.at, high.at, low.cost, high.cost, best};
   }
 
   // The branch's row at a value next to a point; its cost is infinite where there is none inside the limits.
@@ -108,7 +110,7 @@ template <class Arm> struct HeldSearch {
     const Sample s = sweep.at(at);
     int best = -1;
     double least = 0.5;
-    for (int l = 0; l < Sample::kLanes; ++l) {
+    for (int l = 0; l < s.lanes; ++l) {
       double gap = s.inside(l) ? 0.0 : kInfinity;
       for (int j = 0; j < Arm::kDof && gap < least; ++j) {
         if (Arm::kHeld[j]) continue;
@@ -129,13 +131,25 @@ template <class Arm> struct HeldSearch {
     return point(at, q);
   }
 
+  // Whether a minimum cannot be among those that are returned: a parabola's is no deeper below its three points.
+  bool hopeless(const Minimum& m) const noexcept {
+    if (out.count < Arm::kMaxSolutions || !(m.low_cost < kInfinity) || !(m.high_cost < kInfinity)) return false;
+    const double depth = 0.5 * (std::max(m.low_cost, m.high_cost) - m.best.cost);
+    return m.best.cost - depth > costs[Arm::kMaxSolutions - 1];
+  }
+
   // Parabolic interpolation guarded by the golden section (Brent 1973).
   void refine(Minimum& m) const noexcept {
     constexpr double kGolden = 0.3819660112501051;
-    double low = m.low, high = m.high, step = 0.0, before = 0.0;
-    double second = m.best.at, third = m.best.at, second_cost = kInfinity, third_cost = kInfinity;
+    double low = m.low, high = m.high, step = 0.5 * (high - low), before = high - low;
+    const bool smooth = preference.prefer != Arm::Prefer::Dexterous;
+    double second = low, third = high, second_cost = m.low_cost, third_cost = m.high_cost;
+    if (third_cost < second_cost) {
+      std::swap(second, third);
+      std::swap(second_cost, third_cost);
+    }
     for (int i = 0; i < 40; ++i) {
-      const double x = m.best.at, middle = 0.5 * (low + high), least = 1e-9 * (1.0 + std::abs(x));
+      const double x = m.best.at, middle = 0.5 * (low + high), least = (smooth ? kNear : kNearKink) * (1.0 + std::abs(x));
       if (std::abs(x - middle) <= 2.0 * least - 0.5 * (high - low)) return;
       double golden = x < middle ? high - x : low - x;
       bool parabolic = false;
@@ -149,6 +163,7 @@ template <class Arm> struct HeldSearch {
         if (parabolic) {
           before = step;
           step = p / t;
+          if (i > 1 && std::abs(step) < least) return;
         }
       }
       if (!parabolic) {

@@ -8,11 +8,57 @@
 namespace ikgen_runtime {
 
 // Arm: as for HeldSample; kGuarded, whether its margins are all that makes rows come and go. Visit: first(sample),
-// cell(a, b, next): next[lane], the lane of b that each of a goes on as, -1 for none.
+// cell(before, a, b, links, after): links.next[lane], the lane of b that each of a goes on as, -1 for none; before and
+// after, the samples beyond.
 template <class Arm> struct HeldSweep {
   using Sample = HeldSample<Arm>;
   static constexpr int kLanes = Sample::kLanes, kCells = Arm::kGuarded ? 64 : 512;
-  static constexpr double kSafety = 4.0, kSmooth = 0.05, kLeast = 1e-5, kNarrow = 1e-3;
+  static constexpr double kSafety = 4.0, kSmooth = 0.05, kLeast = 1e-5, kNarrow = 1e-3, kRoundOff = 1e-12;
+
+  // The rows that are nearest to each other at two values: next[lane], origin[lane], -1 for none.
+  struct Links {
+    int next[kLanes], origin[kLanes];
+
+    Links() = default;
+    Links(const Sample& a, const Sample& b) noexcept {
+      bool plain = Arm::kGuarded;
+      lanes = std::max(a.lanes, b.lanes);
+      std::fill(next + lanes, next + kLanes, -1);
+      std::fill(origin + lanes, origin + kLanes, -1);
+      for (int l = 0; l < lanes; ++l) {
+        next[l] = a.real[l] && b.real[l] && Sample::gap(a, l, b, l) < 0.3 ? l : -1;
+        origin[l] = next[l];
+        plain = plain && (next[l] >= 0 || (!a.real[l] && !b.real[l]));
+      }
+      if (!plain) search(a, b);
+    }
+
+   private:
+    int lanes;
+
+    [[gnu::cold, gnu::noinline]] void search(const Sample& a, const Sample& b) noexcept {
+      for (int l = 0; l < lanes; ++l) {
+        origin[l] = -1;
+        next[l] = nearest(a, l, b);
+      }
+      for (int l = 0; l < lanes; ++l)
+        if (next[l] >= 0 && nearest(b, next[l], a) != l) next[l] = -1;
+      for (int l = 0; l < lanes; ++l)
+        if (next[l] >= 0) origin[next[l]] = l;
+    }
+
+    static int nearest(const Sample& a, int lane, const Sample& b) noexcept {
+      double q[Arm::kDof];
+      a.row(lane, q);
+      return a.real[lane] ? b.nearest(q) : -1;
+    }
+  };
+
+  // The sample beyond an end of a cell, if there is one, and the links between.
+  struct Beside {
+    const Sample* sample;
+    const Links* links;
+  };
 
   const Eigen::Isometry3d& pose;
   JointBounds<Arm> bounds;
@@ -68,50 +114,10 @@ template <class Arm> struct HeldSweep {
     return far;
   }
 
-  // The rows that are nearest to each other at two values: next[lane], origin[lane], -1 for none.
-  struct Links {
-    int next[kLanes], origin[kLanes];
-
-    Links() = default;
-    Links(const Sample& a, const Sample& b) noexcept {
-      bool plain = Arm::kGuarded;
-      for (int l = 0; l < kLanes; ++l) {
-        next[l] = a.real[l] && b.real[l] && Sample::gap(a, l, b, l) < 0.3 ? l : -1;
-        origin[l] = next[l];
-        plain = plain && (next[l] >= 0 || (!a.real[l] && !b.real[l]));
-      }
-      if (!plain) search(a, b);
-    }
-
-   private:
-    [[gnu::cold, gnu::noinline]] void search(const Sample& a, const Sample& b) noexcept {
-      for (int l = 0; l < kLanes; ++l) {
-        origin[l] = -1;
-        next[l] = nearest(a, l, b);
-      }
-      for (int l = 0; l < kLanes; ++l)
-        if (next[l] >= 0 && nearest(b, next[l], a) != l) next[l] = -1;
-      for (int l = 0; l < kLanes; ++l)
-        if (next[l] >= 0) origin[next[l]] = l;
-    }
-
-    static int nearest(const Sample& a, int lane, const Sample& b) noexcept {
-      double q[Arm::kDof];
-      a.row(lane, q);
-      return a.real[lane] ? b.nearest(q) : -1;
-    }
-  };
-
-  // The sample beyond an end of a cell, if there is one, and the links between.
-  struct Beside {
-    const Sample* sample;
-    const Links* links;
-  };
-
   template <class Visit>
   void cell(const Beside& before, const Sample& a, const Sample& b, const Links& links, const Beside& after,
             Visit& visit) const noexcept {
-    if (!doubtful(before, a, b, links, after)) return visit.cell(a, b, links.next);
+    if (!doubtful(before, a, b, links, after)) return visit.cell(before, a, b, links, after);
     const Sample middle = at(0.5 * (a.held + b.held));
     const Links up(a, middle), on(middle, b);
     cell(before, a, middle, up, {&b, &on}, visit);
@@ -125,7 +131,8 @@ template <class Arm> struct HeldSweep {
     const bool narrow = width > kLeast * (high - low), wide = width > kNarrow * (high - low);
     if (!narrow) return false;
     bool ending = false, beginning = false;
-    for (int l = 0; l < kLanes; ++l) {
+    const int lanes = std::max(a.lanes, b.lanes);
+    for (int l = 0; l < lanes; ++l) {
       if (a.real[l] && next[l] < 0) {
         ending = true;
         const int p = before ? down.links->origin[l] : -1;
@@ -140,7 +147,7 @@ template <class Arm> struct HeldSweep {
       }
     }
     if ((ending || beginning) && (wide || (ending && beginning))) return true;
-    for (int l = 0; l < kLanes; ++l) {
+    for (int l = 0; l < lanes; ++l) {
       const int k = next[l];
       bool dead = false;
       if (k >= 0) {
@@ -187,8 +194,8 @@ template <class Arm> struct HeldSweep {
     for (int i = 0; i < bounds.count; ++i) {
       const int j = bounds.joint[i];
       const double x = bounds.offset(i, a.q[j][l]), y = Arm::kRevolute[j] ? shortest(x + moved[j]) : x + moved[j];
-      const double left = bounds.half[i] - std::abs(x), right = bounds.half[i] - std::abs(y);
-      const double slack = off[j] + Arm::Policy::kLimitTolerance;
+      const double reach = bounds.half[i] + Arm::Policy::kLimitTolerance;  // of rows that are taken as inside
+      const double left = reach - std::abs(x), right = reach - std::abs(y), slack = off[j] + kRoundOff;
       const bool opposite = x * y < 0.0, far = Arm::kRevolute[j] && std::abs(x) + std::abs(y) > kPi;
       dead = dead || (left < -slack && right < -slack && (!opposite || far));
       if (left > slack && right > slack && !(opposite && far)) continue;

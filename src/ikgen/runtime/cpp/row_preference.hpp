@@ -45,35 +45,57 @@ template <class A> struct RowPreference {
     return sum;
   }
 
-  // By inverse iteration on J J^T, or J^T J where that is smaller; rows of lengths are not over the arm's size.
+  // From the largest eigenvalue of (J J^T)^-1, or (J^T J)^-1 where that is smaller: squared again and again it becomes the
+  // projection onto its vector. Rows of lengths are not over the arm's size.
   static double smallest_singular_value(const double* q) noexcept {
     constexpr int e = PoseError<AllMoving<A>>::kCount, n = A::kDof < e ? A::kDof : e;
     PoseError<AllMoving<A>> at(q, Eigen::Isometry3d::Identity());
     for (int a = 0; a < e; ++a)
       if (A::kWholePose ? a < 3 : A::kRead[a][1] == 3)
         for (double& x : at.slope[a]) x *= A::kSize;
-    double N[n][n], v[n];
-    for (int a = 0; a < n; ++a) {
+    double N[n][n], M[n][n], v[n];
+    for (int a = 0; a < n; ++a)
       for (int b = 0; b <= a; ++b) {
         N[a][b] = 0.0;
         for (int k = 0; k < (n == e ? A::kDof : e); ++k)
           N[a][b] += n == e ? at.slope[a][k] * at.slope[b][k] : at.slope[k][a] * at.slope[k][b];
       }
-      v[a] = 1.0 + 0.1 * a;
-    }
     factor(N);
-    double value = kInfinity;
-    for (int i = 0; i < 300; ++i) {
-      double length = 0.0, growth = 0.0, old[n];
-      for (const double x : v) length += x * x;
-      for (int a = 0; a < n; ++a) old[a] = v[a] /= std::sqrt(length);
-      substitute(N, v);
-      for (int a = 0; a < n; ++a) growth += old[a] * v[a];
-      const double here = 1.0 / growth;
-      if (std::abs(value - here) <= 1e-14 * here) break;
-      value = here;
+    double trace = 0.0;
+    for (int a = 0; a < n; ++a) {
+      for (int b = 0; b < n; ++b) M[a][b] = a == b ? 1.0 : 0.0;
+      substitute(N, M[a]);
+      trace += M[a][a];
     }
-    return std::sqrt(std::max(value, 0.0));
+    for (int i = 0; i < kSquarings && !(i > 0 && trace > 1.0 - 1e-14); ++i) trace = square(M, 1.0 / trace);
+    int best = 0;
+    for (int a = 1; a < n; ++a)
+      if (M[a][a] > M[best][best]) best = a;
+    double length = 0.0, growth = 0.0;
+    std::copy_n(M[best], n, v);
+    for (const double x : v) length += x * x;
+    substitute(N, v);
+    for (int a = 0; a < n; ++a) growth += M[best][a] * v[a];
+    return std::sqrt(std::max(length / growth, 0.0));
+  }
+
+ private:
+  static constexpr int kSquarings = 24;  // or fewer: until nothing else is left
+
+  // M = (scale M)^2, of a symmetric M; its trace, 1 once M is the projection onto one vector.
+  template <int N> static double square(double (&M)[N][N], double scale) noexcept {
+    double S[N][N], trace = 0.0;
+    for (auto& row : M)
+      for (double& x : row) x *= scale;
+    for (int a = 0; a < N; ++a)
+      for (int b = 0; b <= a; ++b) {
+        S[a][b] = 0.0;
+        for (int k = 0; k < N; ++k) S[a][b] += M[a][k] * M[b][k];
+        S[b][a] = S[a][b];
+      }
+    for (int a = 0; a < N; ++a) trace += S[a][a];
+    std::copy_n(&S[0][0], N * N, &M[0][0]);
+    return trace;
   }
 };
 

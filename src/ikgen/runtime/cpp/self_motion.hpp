@@ -9,14 +9,19 @@ namespace ikgen_runtime {
 // pass(lane, sample), move(next), close(lane, at, q). Arm: as for HeldSweep.
 template <class Arm, class Record> struct BranchFollower {
   using Sample = HeldSample<Arm>;
+  using End = BranchEnd<Arm>;
+  using Links = typename HeldSweep<Arm>::Links;
+  using Beside = typename HeldSweep<Arm>::Beside;
   static constexpr int kLanes = Sample::kLanes;
   const HeldSweep<Arm>& sweep;
   Record& record;
   int branch[kLanes], branches = 0;
   bool any = false;
 
+  BranchFollower(const HeldSweep<Arm>& values, Record& to) noexcept : sweep(values), record(to) {}
+
   void first(const Sample& s) noexcept {
-    for (int l = 0; l < kLanes; ++l) {
+    for (int l = 0; l < s.lanes; ++l) {
       if (!s.real[l]) continue;
       any = true;
       branch[l] = branches++;
@@ -24,47 +29,96 @@ template <class Arm, class Record> struct BranchFollower {
     }
   }
 
-  void cell(const Sample& a, const Sample& b, const int* next) noexcept {
+  void cell(const Beside& before, const Sample& a, const Sample& b, const Links& links, const Beside& after) noexcept {
+    const int* next = links.next;
     LastEnd<Arm> last;
-    int carried[kLanes];
-    bool begun[kLanes];
-    for (int l = 0; l < kLanes; ++l) {
-      carried[l] = -1;
-      begun[l] = false;
-    }
-    for (int l = 0; l < kLanes; ++l) {
+    for (int l = 0; l < a.lanes; ++l) {
       if (!a.real[l] || !a.inside(l) || (next[l] >= 0 && b.inside(next[l]))) continue;
-      BranchEnd<Arm> end(a, l, b, next[l]);
-      end.find(sweep, last);
+      End end(a, l, b, next[l], after.sample, next[l] >= 0 && after.sample ? after.links->next[next[l]] : -1, before.sample,
+              before.sample ? before.links->origin[l] : -1);
+      const bool rough = late[l].waits && ++slivers > kSlivers;
+      if (late[l].waits) begin(l, a, rough);
+      if (!rough) end.find(sweep, last);
       record.close(l, end.inner, end.q);
     }
     record.move(next);
-    for (int l = 0; l < kLanes; ++l)
-      if (next[l] >= 0) carried[next[l]] = l;
-    int before[kLanes];
-    std::copy_n(branch, kLanes, before);
-    for (int k = 0; k < kLanes; ++k) {
+    move(a, links, b);
+    for (int k = 0; k < b.lanes; ++k) {
       if (!b.real[k]) continue;
+      const int l = links.origin[k];
       any = true;
-      branch[k] = carried[k] >= 0 ? before[carried[k]] : branches++;
-      begun[k] = b.inside(k) && !(carried[k] >= 0 && a.inside(carried[k]));
-      if (!begun[k]) continue;
-      BranchEnd<Arm> end(b, k, a, carried[k]);
-      end.find(sweep, last);
-      open(k, b, k, end.inner, end.q);
-    }
-    for (int k = 0; k < kLanes; ++k)
-      if (b.inside(k) && !begun[k]) record.pass(k, b);
-    if (b.held == sweep.high)
-      for (int k = 0; k < kLanes; ++k)
-        if (b.inside(k)) {
-          double q[Arm::kDof];
-          b.row(k, q);
-          record.close(k, b.held, q);
+      if (b.inside(k) && !(l >= 0 && a.inside(l))) {
+        End end(b, k, a, l, before.sample, l >= 0 && before.sample ? before.links->origin[l] : -1, after.sample,
+                after.sample ? after.links->next[k] : -1);
+        late[k].waits = narrow(end.outer, b.held);
+        if (late[k].waits) {
+          static_cast<End&>(late[k]) = end;
+        } else {
+          end.find(sweep, last);
+          open(k, b, k, end.inner, end.q);
         }
+      } else if (b.inside(k)) {
+        if (late[k].waits && !narrow(late[k].outer, b.held)) {
+          begin(k, b, false);
+        } else if (!late[k].waits) {
+          record.pass(k, b);
+        }
+      }
+    }
+    if (b.held == sweep.high) finish(b);
   }
 
  private:
+  // A beginning that is looked for once the interval is wider than what may be missed.
+  struct Late : End {
+    bool waits = false;
+  };
+  Late late[kLanes];
+  static constexpr int kSlivers = 2 * Arm::kMaxSolutions;
+  int slivers = 0;  // intervals that are that narrow; beyond kSlivers their ends are left where they were seen
+
+  void begin(int lane, const Sample& s, bool rough) noexcept {
+    LastEnd<Arm> none;
+    if (!rough) late[lane].find(sweep, none);
+    late[lane].waits = false;
+    open(lane, s, lane, late[lane].inner, late[lane].q);
+  }
+
+  bool narrow(double low, double high) const noexcept {
+    return high - low < 4.0 * HeldSweep<Arm>::kLeast * (sweep.high - sweep.low);
+  }
+
+  // Branches and beginnings to the lanes in which they go on; rows without one begin branches.
+  void move(const Sample& a, const Links& links, const Sample& b) noexcept {
+    bool plain = true;
+    for (int k = 0; k < b.lanes; ++k) plain = plain && (links.origin[k] == k || !b.real[k]);
+    if (plain) return;
+    int before[kLanes];
+    std::copy_n(branch, kLanes, before);
+    bool waiting = false;
+    for (int l = 0; l < a.lanes; ++l) waiting = waiting || late[l].waits;
+    if (waiting) {
+      Late old[kLanes];
+      std::copy_n(late, kLanes, old);
+      for (int k = 0; k < b.lanes; ++k)
+        if (links.origin[k] >= 0) late[k] = old[links.origin[k]];
+    }
+    for (int k = 0; k < b.lanes; ++k) {
+      if (links.origin[k] < 0) late[k].waits = false;
+      if (b.real[k]) branch[k] = links.origin[k] >= 0 ? before[links.origin[k]] : branches++;
+    }
+  }
+
+  void finish(const Sample& s) noexcept {
+    for (int k = 0; k < s.lanes; ++k)
+      if (s.inside(k)) {
+        double q[Arm::kDof];
+        s.row(k, q);
+        if (late[k].waits) begin(k, s, false);
+        record.close(k, s.held, q);
+      }
+  }
+
   void open(int lane, const Sample& s, int row, double at, const double* q) noexcept {
     double own[Arm::kDof];
     s.row(row, own);
@@ -123,7 +177,7 @@ template <class Arm> struct SelfMotionFinder {
     out.complete = true;
     const HeldSweep<Arm> sweep(pose, limits);
     SelfMotionFinder finder{out, {}, {}};
-    BranchFollower<Arm, SelfMotionFinder> follower{sweep, finder, {}};
+    BranchFollower<Arm, SelfMotionFinder> follower(sweep, finder);
     sweep.run(follower);
     number(out);
     out.status = out.count > 0 ? Arm::Status::Ok : follower.any ? Arm::Status::Limits : Arm::Status::Unreachable;

@@ -20,7 +20,7 @@ from ikgen.runtime.python.row_placement import distinct, place_rows_batch
 from ikgen.runtime.python.solutions import Status
 from ikgen.runtime.python.solved_arm import Arm
 
-__all__ = ["branch_axis", "careful_rows", "rows_batch", "solve_poses"]
+__all__ = ["branch_axis", "careful_rows", "certain_rows", "rows_batch", "solve_poses"]
 
 _CHUNK = 2048  # closed forms solved at a time
 _Batch = tuple[Array, NDArray[np.int64], NDArray[np.str_]]
@@ -94,12 +94,7 @@ def rows_batch(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[Arr
     """Rows (N, M, dof) on no turn in particular; which are distinct solutions, which of a continuum."""
     if not arm.rounded:
         return careful_rows(arm, T, held, near)
-    start = np.zeros((len(T), len(arm.lower))) if near is None else near
-    with np.errstate(all="ignore"):
-        q, valid, singular, _ = arm.branches_batch(T, start, held)
-    q[:, :, arm.free] = held[:, None, :]
-    q, valid, doubt = _certain_batch(arm, T, q, valid)
-    doubt |= singular.any(axis=1) | ~valid.any(axis=1)
+    q, valid, singular, doubt = certain_rows(arm, T, held, near)
     if doubt.any():
         seeds = None if near is None else near[doubt]
         more, fine, flags = careful_rows(arm, T[doubt], held[doubt], seeds)
@@ -111,16 +106,23 @@ def rows_batch(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[Arr
     return q, valid, singular
 
 
-def _certain_batch(arm: Arm, T: Array, q: Array, valid: Flags) -> tuple[Array, Flags, Flags]:
-    """Rows (N, M, dof) refined all at once, which are solutions, and for which poses (N,) that leaves a
-    doubt."""
+def certain_rows(
+    arm: Arm, T: Array, held: Array, near: Array | None
+) -> tuple[Array, Flags, Flags, Flags]:
+    """Rows (N, M, dof) of a rounded arm refined all at once, which of them are solutions, which of a
+    continuum, and for which poses (N,) that leaves a doubt."""
+    start = np.zeros((len(T), len(arm.lower))) if near is None else near
+    with np.errstate(all="ignore"):
+        q, valid, singular, _ = arm.branches_batch(T, start, held)
+    q[:, :, arm.free] = held[:, None, :]
     pose, row = np.nonzero(valid)
-    done, arrived, missed = refine_together(arm, q[pose, row], T[pose])
-    q, found, doubt = q.copy(), valid.copy(), np.zeros(len(T), dtype=bool)
-    q[pose, row], found[pose, row] = done, arrived
+    q[pose, row], arrived, missed = refine_together(arm, q[pose, row], T[pose])
+    found, doubt = valid.copy(), np.zeros(len(T), dtype=bool)
+    found[pose, row] = arrived
     doubt[pose[~(arrived | missed)]] = True
     doubt |= (distinct(arm, q, found) != found).any(axis=1)
-    return q, found, doubt
+    doubt |= singular.any(axis=1) | ~found.any(axis=1)
+    return q, found, singular, doubt
 
 
 def careful_rows(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, Flags, Flags]:

@@ -17,13 +17,14 @@ from ikgen.runtime.python.limit_margins import bounded_joints, offsets, outside
 from ikgen.runtime.python.row_links import Links, differences, linked_rows, origins
 from ikgen.runtime.python.solved_arm import Arm
 
-__all__ = ["Tracks", "tracked"]
+__all__ = ["LEAST", "Tracks", "tracked"]
 
 _CELLS = 64  # cells to begin with
 _UNGUARDED_CELLS = 512  # the same where nothing tells of folds between samples
 _SAFETY = 4.0  # bounds of what second differences tell are taken that many times
 _SMOOTH = 0.05  # rad or m by which a row may bend between samples
-_LEAST = 1e-5  # of the range: cells that narrow are not halved
+_ROUND_OFF = 1e-12  # rad or m, of joint values
+LEAST = 1e-5  # of the range: cells that narrow are not halved
 _NARROW = 1e-3  # the same where rows begin or end
 
 
@@ -59,7 +60,7 @@ def _doubtful(joint: HeldJoint, rows: Rows, following: Links, limits: bool) -> F
     arm = joint.arm
     width = np.diff(rows.held)
     span = rows.held[-1] - rows.held[0]
-    wide, narrow = width > _NARROW * span, width > _LEAST * span
+    wide, narrow = width > _NARROW * span, width > LEAST * span
     q, slope, bend = _row_bends(arm, rows, following)
     linked = following >= 0
     out = (linked & (bend.max(axis=2) > _SMOOTH)).any(axis=1) & narrow
@@ -109,8 +110,9 @@ def _limit_crossings(
     for j, middle, half, turns in bounded_joints(arm) if limits else ():
         a = offsets(q[..., j], middle, turns)
         b = offsets(a + change[..., j], 0.0, turns)
-        off = bend[..., j] + arm.policy.limit_tolerance
-        left, right = half - np.abs(a), half - np.abs(b)
+        off = bend[..., j] + _ROUND_OFF
+        reach = half + arm.policy.limit_tolerance  # of rows that are taken as inside
+        left, right = reach - np.abs(a), reach - np.abs(b)
         opposite, far = a * b < 0.0, turns & (np.abs(a) + np.abs(b) > pi)
         dead |= (left < -off) & (right < -off) & (~opposite | far)
         sure = (left > off) & (right > off) & ~(opposite & far)

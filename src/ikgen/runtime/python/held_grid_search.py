@@ -14,7 +14,7 @@ from ikgen.runtime.python.held_joint import pose_lines
 from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.row_preference import preference_costs, preference_of
 from ikgen.runtime.python.solution_search import Start, best_rows
-from ikgen.runtime.python.solutions import Solutions, Status, no_solutions
+from ikgen.runtime.python.solutions import Solutions, no_held_values
 from ikgen.runtime.python.solved_arm import Arm
 
 __all__ = ["search_grid"]
@@ -50,7 +50,7 @@ def search_grid(
             held = tuple(values[point].tolist())
             starts.append((held, found[point, row], steps, len(starts)))
     if not starts:
-        return no_solutions(len(arm.lower), Status.LIMITS if any_real else Status.UNREACHABLE)
+        return no_held_values(len(arm.lower), arm.free_joints, any_real)
     return best_rows(arm, T, starts, preference, limits)
 
 

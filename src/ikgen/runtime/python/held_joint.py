@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags
-from ikgen.runtime.python.batch_solving import careful_rows
+from ikgen.runtime.python.batch_solving import careful_rows, certain_rows
 from ikgen.runtime.python.pose_arguments import one_pose
 from ikgen.runtime.python.solved_arm import Arm
 
@@ -27,6 +27,11 @@ class HeldJoint:
     arm: Arm
     branches_and_folds: BranchesAndFolds
     guarded: bool
+
+    @property
+    def margins_tell(self) -> bool:
+        """Whether rows come and go where those are 0: a rounded arm's do so beside."""
+        return self.guarded and not self.arm.rounded
 
 
 @dataclass(frozen=True)
@@ -45,15 +50,33 @@ def rows_at(joint: HeldJoint, T: Array, held: Array) -> Rows:
     margins: list[Array] = []
 
     def branches(poses: Array, q0: Array, values: Array) -> tuple[Array, Flags, Flags, Flags]:
-        return joint.branches_and_folds(poses, q0, values, margins)
+        first: list[Array] = []
+        found = joint.branches_and_folds(poses, q0, values, first)
+        margins.extend(first if not margins else ())
+        return found
 
     arm, count = replace(joint.arm, branches_batch=branches), len(held)
-    q, real, _ = careful_rows(arm, np.broadcast_to(T, (count, 4, 4)), held[:, None], None)
-    own = margins[: len(margins) // (1 + len(arm.beside))]
-    folds = np.full((*real.shape, len(own)), inf)
-    for k, values in enumerate(own):
+    q, real = _all_rows(arm, np.broadcast_to(T, (count, 4, 4)), held[:, None])
+    folds = np.full((*real.shape, len(margins)), inf)
+    for k, values in enumerate(margins):
         folds[:, : values.shape[1], k] = values
     return Rows(held, q, real, folds)
+
+
+def _all_rows(arm: Arm, T: Array, held: Array) -> tuple[Array, Flags]:
+    """Rows (n, m, dof), and which of them are solutions: those of the closed form first, then those of
+    poses beside; no more than `solve` gives."""
+    if not arm.rounded:
+        q, real, _ = careful_rows(arm, T, held, None)
+    else:
+        some, sure, _, doubt = certain_rows(arm, T, held, None)
+        size = some.shape[1] * (1 + len(arm.beside))
+        q = np.zeros((len(T), size, some.shape[2]))
+        real = np.zeros(q.shape[:2], dtype=bool)
+        q[:, : some.shape[1]], real[:, : some.shape[1]] = some, sure
+        if doubt.any():
+            q[doubt], real[doubt], _ = careful_rows(arm, T[doubt], held[doubt], None)
+    return q, real & (np.cumsum(real, axis=1) <= arm.most)
 
 
 def merged_rows(one: Rows, other: Rows) -> Rows:

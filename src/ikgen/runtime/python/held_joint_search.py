@@ -13,7 +13,7 @@ from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.row_preference import Preference, preference_costs, preference_of
 from ikgen.runtime.python.self_motion import Piece, pieces_of
 from ikgen.runtime.python.solution_search import Start, best_rows
-from ikgen.runtime.python.solutions import Solutions, Status, no_solutions
+from ikgen.runtime.python.solutions import Solutions, no_held_values
 
 __all__ = ["search_interval"]
 
@@ -35,8 +35,7 @@ def search_interval(
         for start in _starts(tracks, piece, group, preference, joint, limits)
     ]
     if not starts:
-        status = Status.LIMITS if tracks.rows.real.any() else Status.UNREACHABLE
-        return no_solutions(len(arm.lower), status)
+        return no_held_values(len(arm.lower), arm.free_joints, bool(tracks.rows.real.any()))
     return best_rows(arm, T, starts, preference, limits)
 
 

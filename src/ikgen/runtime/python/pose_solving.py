@@ -46,9 +46,11 @@ def solve_pose(
     if project and T is not None and not found:
         found = _projected(arm, T, near, held, limits)
     if not found:
-        status = Status.INVALID if T is None else Status.LIMITS if real else Status.UNREACHABLE
-        reason = pose_fault(arm.task, lines, arm.policy) if T is None else ""
-        return no_solutions(len(arm.lower), status, reason)
+        if T is None:
+            reason = pose_fault(arm.task, lines, arm.policy)
+            return no_solutions(len(arm.lower), Status.INVALID, reason)
+        status = Status.LIMITS if real else Status.UNREACHABLE
+        return no_solutions(len(arm.lower), status, _held_reason(arm, held, real))
     if near is not None:
         origin = near
         found.sort(key=lambda item: sum((a - b) * (a - b) for a, b in zip(item[0], origin)))
@@ -57,6 +59,18 @@ def solve_pose(
     off = off_by(arm.task, forward(arm.chain, q), np.array(T)) if project else None
     names = partial(branch_names, arm)
     return Solutions(q, Status.OK, flags, names=names, projected=off)
+
+
+def _held_reason(arm: Arm, held: Row, real: bool) -> str:
+    """What holding joints has to do with it; nothing where none is held."""
+    if not arm.free:
+        return ""
+    values = ", ".join(f"{name} = {x:.6g}" for name, x in zip(arm.free_joints, held))
+    what = "all solutions are outside the limits" if real else "no solution"
+    tells = (
+        "self_motion(pose) has the values that do" if len(held) == 1 else "search(pose) tries them"
+    )
+    return f"{what} with {values} held; other values may reach the pose: {tells}"
 
 
 def _projected(

@@ -11,7 +11,7 @@ import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags
 
-__all__ = ["Solutions", "Status", "no_solutions"]
+__all__ = ["Solutions", "Status", "no_held_values", "no_solutions"]
 
 
 class Status(str, Enum):
@@ -28,8 +28,8 @@ class Status(str, Enum):
 @dataclass(frozen=True)
 class Solutions:
     """Solutions of one pose: `q` (k, DOF), `status`, and `singular` (k,): rows of a continuum; `reason`
-    says why a pose is INVALID. As a sequence: its rows. `projected` (k, 2), where it was asked for: m and
-    rad by which rows miss the pose."""
+    says why a pose is INVALID, or which values of held joints led to no row. As a sequence: its rows.
+    `projected` (k, 2), where it was asked for: m and rad by which rows miss the pose."""
 
     q: Array
     status: Status
@@ -59,6 +59,14 @@ class Solutions:
     def __getitem__(self, index: Any) -> Array:
         rows: Array = self.q[index]
         return rows
+
+
+def no_held_values(dof: int, names: tuple[str, ...], real: bool) -> Solutions:
+    """What a search over all values of held joints is answered with that found none inside the limits."""
+    joints = " and ".join(names)
+    if real:
+        return no_solutions(dof, Status.LIMITS, f"outside the limits at all values of {joints}")
+    return no_solutions(dof, Status.UNREACHABLE, f"no value looked at of {joints} reaches the pose")
 
 
 def no_solutions(dof: int, status: Status, reason: str = "") -> Solutions:
