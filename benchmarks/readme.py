@@ -39,6 +39,7 @@ CLASSES = {
     "6R spherical wrist + ortho-parallel base (OPW)": "6R, spherical wrist and ortho-parallel base",
     "6R three parallel 2-4, offset wrist": "6R, axes 2-4 parallel, offset wrist",
     "6R three parallel 2-4, orthogonal wrist (UR)": "6R, axes 2-4 parallel, orthogonal wrist",
+    "6R three parallel 2-4, orthogonal wrist": "6R, axes 2-4 parallel, orthogonal wrist",
     "coupled: mimic joints inside the chain": "coupled by mimic joints",
     "gantry (P P ..)": "gantry",
     "redundant >7R": "more than 7R",
