@@ -146,8 +146,10 @@ def _coupled(couple: object) -> dict[str, str]:
     if not isinstance(couple, Mapping) or not all(isinstance(n, str) and n for n in couple):
         raise wrong("couple", couple, what)
     for joint, relation in couple.items():
+        if not isinstance(relation, str):
+            raise wrong(f"couple: {joint}", relation, what)
         try:
-            read_relation(relation if isinstance(relation, str) else repr(relation))
+            read_relation(relation)
         except ValueError as error:
             raise ArgumentError(f"couple: {joint}: {error}", hint=f"give {what}") from None
     return dict(couple)
