@@ -15,6 +15,8 @@ else:
 
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+OTHERS = {"test", "docs", "dev", "browser", "view", "dask"}
+"""Extras of developers, and those that pages of their own tell of."""
 PAGE = (ROOT / "docs/reference/library.md").read_text(encoding="utf-8")
 
 
@@ -32,7 +34,7 @@ def test_the_page_names_every_package_and_what_users_may_add() -> None:
     named = {name for cell, _, _ in rows for name in re.findall(r"[\w-]+", cell)}
     needed = {re.split(r"[>=;]", text)[0].strip() for text in PROJECT["dependencies"]} - {"tomli"}
     assert needed <= named, needed - named
-    extras = set(PROJECT["optional-dependencies"]) - {"test", "docs", "dev", "view", "dask"}
+    extras = set(PROJECT["optional-dependencies"]) - OTHERS
     assert extras <= named, extras - named
     total = re.search(r"26 packages of (\d+) MB", section)
     assert total is not None
