@@ -41,11 +41,11 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Any]]:
 
 
 @pytest.mark.parametrize(
-    "page", [pytest.param(p, marks=() if p in FEW else pytest.mark.slow) for p in PAGES]
+    "page", [pytest.param(p, marks=() if p in FEW else pytest.mark.long) for p in PAGES]
 )
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_page(page: str, scheme: str, site: tuple[str, Any]) -> None:
-    """`python -m pytest -m slow tests/docs/test_site.py` looks at all of them."""
+    """`python -m pytest -m long tests/docs/test_site.py` looks at all of them."""
     address, opened = site
     place = page.removesuffix("index")
     seen = look_at(opened, f"{address}/{place.rstrip('/')}" + "/" * bool(place), 390, scheme)

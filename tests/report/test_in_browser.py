@@ -49,10 +49,10 @@ def test_there_are_enough_of_them() -> None:
     assert sum(len(robot_arms(Request(path))) for path in URDFS) >= 10
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("robot", arms())
 def test_report(robot: Path, opened: Any, tmp_path: Path) -> None:
-    """`python -m pytest -m slow tests/report/test_in_browser.py`"""
+    """`python -m pytest -m long tests/report/test_in_browser.py`"""
     for text in pages(robot):
         assert len(text.encode()) < LARGEST
         page = tmp_path / "report.html"

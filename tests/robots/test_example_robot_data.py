@@ -20,7 +20,7 @@ except MissingToolError:
 ARMLESS = {"hector", "iris"}  # flying bodies
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.skipif(not NAMES, reason="needs example-robot-data")
 @pytest.mark.parametrize("name", NAMES)
 def test_all_arms_are_generated_and_verified(name: str) -> None:
