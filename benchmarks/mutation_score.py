@@ -170,7 +170,14 @@ class Tree:
             files = dict.fromkeys(test.split("::")[0] for test in tests)
             if times is None:
                 resource.setrlimit(resource.RLIMIT_CPU, (int(seconds), int(seconds)))
-            options = ["-q", "-p", "no:cacheprovider", "--hypothesis-seed=0", "-m", "not slow and not long"]
+            options = [
+                "-q",
+                "-p",
+                "no:cacheprovider",
+                "--hypothesis-seed=0",
+                "-m",
+                "not slow and not long",
+            ]
             options += ["-x"] if times is None else ["--continue-on-collection-errors"]
             if times is None:
                 notes.wanted = set(tests)
