@@ -12,6 +12,7 @@ import pytest
 from tests.support.solving import NO_COMPILER
 
 from ikgen.emit.python.python_emitter import emit_module
+from ikgen.equations.probes import arm_size
 from ikgen.generation.derive import derive
 from ikgen.generation.emitted_checks import oracle_for
 from ikgen.generation.generate import generate
@@ -50,9 +51,9 @@ PAPER_SOLUTIONS = (
 """Table "Puma 560 Numerical Solutions" of the paper, in degrees."""
 
 
-def module_of(table: Path, folder: Path) -> ModuleType:
-    """The emitted Python module of a table for the whole pose, imported."""
-    derivation = derive(Request(table, task="pose"))
+def module_of(table: Path, folder: Path, task: str | None = "pose") -> ModuleType:
+    """The emitted Python module of a table, imported; for no task in particular it is the arm's own."""
+    derivation = derive(Request(table, task=task))
     file = folder / f"{derivation.module.name}_ik.py"
     file.write_text(emit_module(derivation.module), encoding="utf-8")
     return PythonModule(file).module
@@ -71,10 +72,10 @@ def test_every_table_has_its_facts() -> None:
 @pytest.mark.parametrize("name", [n for n in SOLVED if not EXPECTED[n].get("elimination")])
 def test_claims_as_many_solutions_as_some_pose_has(name: str, tmp_path: Path) -> None:
     table = HERE / "tables" / f"{name}.toml"
-    module = module_of(table, tmp_path)
-    rng = np.random.default_rng(5)
-    revolute = np.array([j.kind == "revolute" for j in read(Request(table)).dh.joints])
-    q = rng.uniform(-np.pi, np.pi, (1000, module.DOF))
+    module = module_of(table, tmp_path, None)
+    rng, dh = np.random.default_rng(5), read(Request(table)).dh
+    revolute = np.array([j.kind == "revolute" for j in dh.joints])
+    q = rng.uniform(-np.pi, np.pi, (1000, module.DOF)) * np.where(revolute, 1.0, arm_size(dh))
     special = np.where(revolute, rng.integers(-1, 3, q.shape) * (np.pi / 2), 0.0)
     q[500:] = np.where(rng.random(q.shape) < rng.random((1000, 1)), special, q)[500:]
     _, count, _ = module.solve_batch(module.forward(q), limits=False)
