@@ -75,7 +75,7 @@ def test_divisors_may_vanish_where_the_task_is_singular() -> None:
 
 
 def test_the_elimination_is_taken_where_a_step_is_unsound(monkeypatch: pytest.MonkeyPatch) -> None:
-    by_rules = closed_forms._by_rules
+    by_rules = closed_forms.by_rules
 
     def unsound(*arguments: object) -> object:
         graph = by_rules(*arguments)  # type: ignore[arg-type]
@@ -83,7 +83,7 @@ def test_the_elimination_is_taken_where_a_step_is_unsound(monkeypatch: pytest.Mo
         return dataclasses.replace(graph, steps=(first, *graph.steps[1:]))
 
     assert derivation.derive(Request(PUMA)).module.plan is None
-    monkeypatch.setattr(closed_forms, "_by_rules", unsound)
+    monkeypatch.setattr(closed_forms, "by_rules", unsound)
     found = derivation.derive(Request(PUMA))
     assert not found.graph.sound
     assert found.module.plan is not None
