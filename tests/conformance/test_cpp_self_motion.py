@@ -178,7 +178,7 @@ def test_seeds_hold_their_own_values(both: Both) -> None:
 def test_paths(both: Both) -> None:
     arm, rng = both.arm, np.random.default_rng(4)
     seen = 0
-    for _ in range(6):
+    for _ in range(3):
         q = drawn(arm, rng)
         poses = np.repeat(arm.forward(q)[None], 30, axis=0)
         poses[:, :3, 3] += np.linspace(0.0, 0.3, 30)[:, None] * rng.normal(size=3) / 1.7
@@ -188,4 +188,4 @@ def test_paths(both: Both) -> None:
         assert (status, len(rows)) == (path.status.value, path.reached)
         assert np.abs(rows - path.q[: path.reached]).max() < 1e-6
         seen += path.reached
-    assert seen > 60
+    assert seen > 30
