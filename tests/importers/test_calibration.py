@@ -56,6 +56,16 @@ def test_the_origins_are_those_of_the_file(tmp_path: Path) -> None:
     assert wrist.T_parent_child[2, 1] == pytest.approx(math.sin(-0.00118) * math.cos(0.0006))
 
 
+def test_what_the_description_asked_of_its_environment_is_kept(tmp_path: Path) -> None:
+    text = UR5E.robot.read_text().replace('<robot name="ur5e"', '<robot name="$(optenv ARM ur5e)"')
+    robot = tmp_path / "ur5e.urdf.xacro"
+    robot.write_text(text)
+    request = Request(robot, base="base_link", tip="tool0")
+    assert [name for name, _ in read(request).source.environment] == ["ARM"]
+    own = read(calibrated(OWN, tmp_path, request))
+    assert own.source.environment == read(request).source.environment
+
+
 def test_offsets_of_rows_are_added(tmp_path: Path) -> None:
     rows = "".join(
         f"[[joints]]\nalpha = {k}e-4\na = 2e-4\ntheta = -1e-3\nd = 3e-4\n" for k in range(6)

@@ -11,7 +11,7 @@ import numpy as np
 from lxml import etree
 
 from ikgen.errors import UnknownNameError, UsageError
-from ikgen.importers.urdf.urdf_tree import parse_urdf
+from ikgen.importers.urdf.urdf_tree import changed_tree
 from ikgen.importers.xml_document import children, parse_xml, shown_file
 from ikgen.model.chain import PRISMATIC, ActuatedJoint, Chain, ChainAxis
 from ikgen.model.joint_relation import Relation
@@ -49,18 +49,8 @@ def related_tree(tree: JointTree, relations: Mapping[str, Relation]) -> JointTre
         )
     for name in {relation.source: None for relation in relations.values()}:
         _limit(elements[name], limits[name])
-    made = parse_urdf(
-        etree.tostring(root, encoding="unicode"),
-        path=source.path,
-        kind=source.kind,
-        dependencies=source.dependencies,
-        package_urls=source.package_urls,
-        arguments=dict(source.arguments),
-        warnings=source.warnings,
-    )
-    warnings = tuple(dict.fromkeys(made.source.warnings))
-    kept = replace(source, text=made.source.text, warnings=warnings)
-    return replace(made, source=kept)
+    made = changed_tree(source, root)
+    return replace(made, source=replace(made.source, sha256=source.sha256))
 
 
 def _limit(element: Any, limits: Limits) -> None:
@@ -79,7 +69,7 @@ def _limit(element: Any, limits: Limits) -> None:
 def shared_limits(relation: Relation, joint: str, own: Limits, of_source: Limits) -> Limits:
     """The values of the source at which it and the joint are inside their limits."""
     ends = sorted((x - relation.offset) / relation.multiplier for x in (own.lower, own.upper))
-    both = type(own)(max(of_source.lower, ends[0]), min(of_source.upper, ends[1]))
+    both = Limits(max(of_source.lower, ends[0]), min(of_source.upper, ends[1]))
     if both.lower > both.upper:
         raise UsageError(
             f"--couple {joint}={relation.words}: no value of '{relation.source}' keeps both inside "

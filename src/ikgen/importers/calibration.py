@@ -57,7 +57,7 @@ def calibrated_tree(tree: JointTree, path: Path) -> JointTree:
 
     from lxml import etree
 
-    from ikgen.importers.urdf.urdf_tree import parse_urdf
+    from ikgen.importers.urdf.urdf_tree import changed_tree
     from ikgen.importers.xml_document import children, parse_xml, shown_file
 
     source = tree.source
@@ -71,18 +71,8 @@ def calibrated_tree(tree: JointTree, path: Path) -> JointTree:
             element.remove(old)
         numbers = [f"{origin[name]!r}" for name in _ORIGIN]
         etree.SubElement(element, "origin", xyz=" ".join(numbers[:3]), rpy=" ".join(numbers[3:]))
-    text = etree.tostring(root, encoding="unicode")
-    made = parse_urdf(
-        text,
-        path=source.path,
-        kind=source.kind,
-        dependencies=source.dependencies,
-        package_urls=source.package_urls,
-        arguments=dict(source.arguments),
-        warnings=source.warnings,
-    )
-    merged = replace(made.source, warnings=tuple(dict.fromkeys(made.source.warnings)))
-    return replace(made, source=calibrated_source(merged, path))
+    made = changed_tree(source, root)
+    return replace(made, source=calibrated_source(made.source, path))
 
 
 def _carrier(tree: JointTree, key: str, path: Path) -> str:

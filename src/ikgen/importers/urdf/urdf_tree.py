@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from lxml import etree
+
 from ikgen.errors import UsageError
 from ikgen.importers.urdf.joint_list import read_joints, unique_names
 from ikgen.importers.urdf.topology import check_joints, find_roots
@@ -21,7 +23,7 @@ from ikgen.importers.xml_document import (
 )
 from ikgen.model.joint_tree import JointTree, Source
 
-__all__ = ["parse_urdf", "read"]
+__all__ = ["changed_tree", "parse_urdf", "read"]
 
 _XACRO_HINT = "this is a xacro file: rename it to .urdf.xacro, or expand it with xacro first"
 _OTHER_FORMATS = {"sdf": "SDF", "mujoco": "MuJoCo MJCF", "COLLADA": "COLLADA", "launch": "launch"}
@@ -78,6 +80,23 @@ def parse_urdf(
     return JointTree(
         name, links, joints, roots[0][0], replace(source, warnings=tuple(place.warnings))
     )
+
+
+def changed_tree(source: Source, root: Element) -> JointTree:
+    """The tree of a description whose document was changed to `root`: of what else is known of the source
+    only the digest is another one."""
+    made = parse_urdf(
+        etree.tostring(root, encoding="unicode"),
+        path=source.path,
+        kind=source.kind,
+        dependencies=source.dependencies,
+        package_urls=source.package_urls,
+        environment=source.environment,
+        arguments=dict(source.arguments),
+        warnings=source.warnings,
+    )
+    warnings = tuple(dict.fromkeys(made.source.warnings))
+    return replace(made, source=replace(made.source, warnings=warnings))
 
 
 def _check_root(root: Element, place: Place) -> None:
