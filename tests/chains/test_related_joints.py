@@ -15,13 +15,13 @@ from ikgen.generation.emitted_checks import oracle_for
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
 from ikgen.importers import load_tree
-from ikgen.model.joint_relation import Relation
+from ikgen.model.joint_relation import Mimic
 from ikgen.model.joint_tree import Limits
 
 
 def test_a_relation_moves_the_follower_and_takes_its_limits(tmp_path: Path) -> None:
     tree = load_tree(telescope_robot(tmp_path))
-    related = related_tree(tree, {"stage_2": Relation("stage_1", -2.0, 0.1)})
+    related = related_tree(tree, {"stage_2": Mimic("stage_1", -2.0, 0.1)})
     chain = select_chain(related)
     axis = next(axis for axis in chain.axes if axis.name == "stage_2")
     assert (axis.multiplier, axis.offset) == (-2.0, 0.1)
@@ -48,19 +48,19 @@ def test_the_oracle_follows_the_relation(tmp_path: Path) -> None:
 def test_unknown_joints_are_refused_with_those_that_there_are(tmp_path: Path) -> None:
     tree = load_tree(telescope_robot(tmp_path))
     with pytest.raises(UnknownNameError, match="stage_9"):
-        related_tree(tree, {"stage_2": Relation("stage_9", 1.0, 0.0)})
+        related_tree(tree, {"stage_2": Mimic("stage_9", 1.0, 0.0)})
 
 
 def test_limits_that_leave_nothing_are_refused() -> None:
     with pytest.raises(UsageError, match="no value of 'a'"):
-        shared_limits(Relation("a", 1.0, 5.0), "b", Limits(0.0, 1.0), Limits(0.0, 1.0))
+        shared_limits(Mimic("a", 1.0, 5.0), "b", Limits(0.0, 1.0), Limits(0.0, 1.0))
 
 
 def test_equal_stages_share_equally_from_their_lower_limits(tmp_path: Path) -> None:
     chain = select_chain(load_tree(telescope_robot(tmp_path)))
     stages = equal_stages(chain)
     assert tuple(stages) == STAGES[1:]
-    assert {one.source for one in stages.values()} == {"stage_1"}
+    assert {one.joint for one in stages.values()} == {"stage_1"}
     assert [one.offset for one in stages.values()] == pytest.approx([0.01, 0.02, 0.03])
 
 

@@ -14,7 +14,7 @@ from ikgen.errors import UnknownNameError, UsageError
 from ikgen.importers.urdf.urdf_tree import changed_tree
 from ikgen.importers.xml_document import children, parse_xml, shown_file
 from ikgen.model.chain import PRISMATIC, ActuatedJoint, Chain, ChainAxis
-from ikgen.model.joint_relation import Relation
+from ikgen.model.joint_relation import Mimic
 from ikgen.model.joint_tree import JointTree, Limits
 
 __all__ = ["equal_stages", "related_tree", "shared_limits"]
@@ -25,7 +25,7 @@ _SAME = 1e-9
 _SAME_DIRECTION = 1e-9
 
 
-def related_tree(tree: JointTree, relations: Mapping[str, Relation]) -> JointTree:
+def related_tree(tree: JointTree, relations: Mapping[str, Mimic]) -> JointTree:
     """The tree of the same text with the relations as `<mimic>` elements; the limits of a source are what
     its followers leave of them.
 
@@ -37,17 +37,17 @@ def related_tree(tree: JointTree, relations: Mapping[str, Relation]) -> JointTre
     elements: dict[str, Any] = {e.get("name") or "": e for e in children(root, "joint")}
     limits = {j.name: j.limits for j in tree.joints if j.type.moves_on_one_axis}
     for joint, relation in relations.items():
-        for name in (joint, relation.source):
+        for name in (joint, relation.joint):
             if name not in limits:
                 raise UnknownNameError("joint", name, list(limits))
         for old in list(children(elements[joint], "mimic")):
             elements[joint].remove(old)
         numbers = {"multiplier": repr(relation.multiplier), "offset": repr(relation.offset)}
-        etree.SubElement(elements[joint], "mimic", joint=relation.source, **numbers)
-        limits[relation.source] = shared_limits(
-            relation, joint, limits[joint], limits[relation.source]
+        etree.SubElement(elements[joint], "mimic", joint=relation.joint, **numbers)
+        limits[relation.joint] = shared_limits(
+            relation, joint, limits[joint], limits[relation.joint]
         )
-    for name in {relation.source: None for relation in relations.values()}:
+    for name in {relation.joint: None for relation in relations.values()}:
         _limit(elements[name], limits[name])
     made = changed_tree(source, root)
     return replace(made, source=replace(made.source, sha256=source.sha256))
@@ -66,23 +66,23 @@ def _limit(element: Any, limits: Limits) -> None:
     found.set("upper", repr(limits.upper))
 
 
-def shared_limits(relation: Relation, joint: str, own: Limits, of_source: Limits) -> Limits:
+def shared_limits(relation: Mimic, joint: str, own: Limits, of_source: Limits) -> Limits:
     """The values of the source at which it and the joint are inside their limits."""
     ends = sorted((x - relation.offset) / relation.multiplier for x in (own.lower, own.upper))
     both = Limits(max(of_source.lower, ends[0]), min(of_source.upper, ends[1]))
     if both.lower > both.upper:
         raise UsageError(
-            f"--couple {joint}={relation.words}: no value of '{relation.source}' keeps both inside "
+            f"--couple {joint}={relation.words}: no value of '{relation.joint}' keeps both inside "
             "their limits",
             hint=f"'{joint}' may take {own.lower:.9g} to {own.upper:.9g}",
         )
     return both
 
 
-def equal_stages(chain: Chain) -> dict[str, Relation]:
+def equal_stages(chain: Chain) -> dict[str, Mimic]:
     """Joints of a telescope, each with the same share as its first stage: neighbours that slide in one
     direction with the same travel. By joint; empty where the chain has none."""
-    found: dict[str, Relation] = {}
+    found: dict[str, Mimic] = {}
     first = before = None
     for axis in chain.axes:
         joint = chain.joints[axis.driver]
@@ -90,7 +90,7 @@ def equal_stages(chain: Chain) -> dict[str, Relation]:
         if slides and first is not None and before is not None:
             lead = chain.joints[first.driver]
             if _goes_on(before, axis) and _same_travel(lead, joint):
-                found[joint.name] = Relation(lead.name, 1.0, joint.limits.lower - lead.limits.lower)
+                found[joint.name] = Mimic(lead.name, 1.0, joint.limits.lower - lead.limits.lower)
                 before = axis
                 continue
         first = before = axis if slides else None

@@ -9,12 +9,12 @@ from ikgen.chains.related_joints import shared_limits
 from ikgen.errors import UnknownNameError, UsageError
 from ikgen.kinematics.rows import drive_row
 from ikgen.model.dh import DHChain
-from ikgen.model.joint_relation import Relation
+from ikgen.model.joint_relation import Mimic
 
 __all__ = ["related_dh"]
 
 
-def related_dh(dh: DHChain, relations: Mapping[str, Relation]) -> DHChain:
+def related_dh(dh: DHChain, relations: Mapping[str, Mimic]) -> DHChain:
     """The chain with the relations; what follows another is no joint of its own any more.
 
     Raises `UnknownNameError` for a joint that is not there, `UsageError` for one that is held, that follows
@@ -25,12 +25,12 @@ def related_dh(dh: DHChain, relations: Mapping[str, Relation]) -> DHChain:
     return dh
 
 
-def _related(dh: DHChain, name: str, relation: Relation) -> DHChain:
+def _related(dh: DHChain, name: str, relation: Mimic) -> DHChain:
     names = [joint.name for joint in dh.joints]
-    for one in (name, relation.source):
+    for one in (name, relation.joint):
         if one not in names:
             raise UnknownNameError("joint", one, names)
-    if name == relation.source or name in dh.free:
+    if name == relation.joint or name in dh.free:
         why = "is held" if name in dh.free else "follows itself"
         raise UsageError(
             f"--couple {name}={relation.words}: joint '{name}' {why}",
@@ -38,12 +38,11 @@ def _related(dh: DHChain, name: str, relation: Relation) -> DHChain:
             if name in dh.free
             else "name another joint that it follows",
         )
-    follower, source = names.index(name), names.index(relation.source)
+    follower, source = names.index(name), names.index(relation.joint)
     kept = [joint for joint in dh.joints if joint.name != name]
     limits = shared_limits(relation, name, dh.joints[follower].limits, dh.joints[source].limits)
     joints = tuple(
-        replace(j, limits=limits, continuous=False) if j.name == relation.source else j
-        for j in kept
+        replace(j, limits=limits, continuous=False) if j.name == relation.joint else j for j in kept
     )
     places = {names.index(joint.name): place for place, joint in enumerate(joints)}
     rows = []

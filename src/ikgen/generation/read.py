@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from ikgen.emit.derivation import Reading
 from ikgen.errors import BadDescriptionError, UsageError
 from ikgen.generation.joint_value import JointValue
+from ikgen.model.chain import PRISMATIC
 from ikgen.model.joint_tree import Joint
 from ikgen.model.module_name import identifier
 
@@ -49,13 +50,12 @@ def _coupled_chain(request: Request, tree: JointTree) -> tuple[JointTree, Chain,
     chosen: where none is asked for, the stages of a telescope take equal shares, unless one is held."""
     from ikgen.chains.related_joints import equal_stages, related_tree
     from ikgen.chains.selection import select_chain
-    from ikgen.model.joint_relation import read_relation
 
     locked = dict(request.lock)
     chain = select_chain(tree, request.base, request.tip, locked)
-    relations = {joint: read_relation(text) for joint, text in request.couple.items()}
+    relations = request.relations
     stages = {} if relations else equal_stages(chain)
-    named = {*stages, *(stage.source for stage in stages.values())}
+    named = {*stages, *(stage.joint for stage in stages.values())}
     if named & {*request.free}:
         stages = {}
     if not relations and not stages:
@@ -115,14 +115,12 @@ def _taken_arguments(request: Request) -> str:
 def _read_table(request: Request, free: tuple[str, ...]) -> Reading:
     from ikgen.chains.related_rows import related_dh
     from ikgen.importers.dh.dh_table import read_dh_table
-    from ikgen.model.joint_relation import read_relation
 
     source, dh = read_dh_table(request.robot, free=free, locked=request.lock)
-    dh = related_dh(dh, {joint: read_relation(text) for joint, text in request.couple.items()})
-    if request.lock or request.free:
-        joints = read_dh_table(request.robot)[1].joints
-        _check_units(request, joints)
-        _check_locks(request, joints)
+    joints = read_dh_table(request.robot)[1].joints if request.lock else dh.joints
+    dh = related_dh(dh, request.relations)
+    _check_units(request, joints)
+    _check_locks(request, joints)
     return Reading(source, None, None, dh)
 
 
@@ -130,7 +128,8 @@ def _check_units(request: Request, joints: Iterable[Joint | ActuatedJoint]) -> N
     """Raises `UsageError` for a value with a length's unit of a joint that turns, or an angle's of one that
     slides."""
     for joint in joints:
-        revolute = "prismatic" not in (joint.type.value if isinstance(joint, Joint) else joint.kind)
+        kind = joint.type.value if isinstance(joint, Joint) else joint.kind
+        revolute = kind != PRISMATIC
         for option, values in (("--lock", request.lock), ("--free", request.free)):
             value = values.get(joint.name)
             if isinstance(value, JointValue) and not value.fits(revolute):

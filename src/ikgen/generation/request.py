@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from ikgen.generation.codec import CodecError, coded, read_free, uncoded
-from ikgen.model.joint_relation import read_relation
+from ikgen.model.joint_relation import Mimic, read_relation
 from ikgen.model.module_name import is_module_name
 from ikgen.tasks import AXES
 
@@ -88,6 +88,11 @@ class Request:
     def table(self) -> bool:
         """Whether the robot is a DH table."""
         return is_table(self.robot)
+
+    @property
+    def relations(self) -> dict[str, Mimic]:
+        """What the coupled joints follow."""
+        return {joint: read_relation(text) for joint, text in self.couple.items()}
 
     @property
     def named_task(self) -> str | None:

@@ -6,7 +6,7 @@ import math
 import re
 from dataclasses import dataclass
 
-__all__ = ["Relation", "read_relation"]
+__all__ = ["Mimic", "read_relation"]
 
 _NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _RELATION = re.compile(
@@ -15,25 +15,25 @@ _RELATION = re.compile(
 
 
 @dataclass(frozen=True, slots=True)
-class Relation:
-    """`value = multiplier * value(source) + offset`, in rad or m."""
+class Mimic:
+    """`value = multiplier * value(joint) + offset` (URDF `<mimic>`), in rad or m."""
 
-    source: str
+    joint: str
     multiplier: float
     offset: float
 
     @property
     def words(self) -> str:
         """As `read_relation` reads it."""
-        return f"{self.source}*{self.multiplier!r}{self.offset:+}"
+        return f"{self.joint}*{self.multiplier!r}{self.offset:+}"
 
 
-def read_relation(text: str) -> Relation:
+def read_relation(text: str) -> Mimic:
     """The relation of a text `SOURCE`, `SOURCE*k` or `SOURCE*k+c`; raises `ValueError` for another."""
     found = _RELATION.fullmatch(text.strip())
     if found is None:
         raise ValueError(f"'{text}' is not SOURCE*k+c with numbers k and c")
-    relation = Relation(found["source"].strip(), float(found["k"] or 1), float(found["c"] or 0))
+    relation = Mimic(found["source"].strip(), float(found["k"] or 1), float(found["c"] or 0))
     if not math.isfinite(relation.multiplier) or not math.isfinite(relation.offset):
         raise ValueError(f"'{text}' holds no finite number")
     if relation.multiplier == 0.0:

@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.model.joint_relation import Mimic
+
 __all__ = ["Joint", "JointTree", "JointType", "Limits", "Mimic", "Source"]
 
 Matrix = NDArray[np.float64]
@@ -36,15 +38,6 @@ class Limits:
 
     lower: float
     upper: float
-
-
-@dataclass(frozen=True, slots=True)
-class Mimic:
-    """`value = multiplier * value(joint) + offset` (URDF `<mimic>`)."""
-
-    joint: str
-    multiplier: float
-    offset: float
 
 
 @dataclass(frozen=True, slots=True)
