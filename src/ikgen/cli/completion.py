@@ -10,10 +10,9 @@ import click
 from click.shell_completion import CompletionItem, get_completion_class
 
 from ikgen.errors import IkgenError
-from ikgen.generation.emitters import EMITTERS, GROUP
+from ikgen.generation.emitters import emitter_names
 from ikgen.importers.named_robots import DATA, robot_names
-from ikgen.plugins import plug_ins
-from ikgen.tasks import TASKS
+from ikgen.tasks import task_names
 
 __all__ = ["Emits", "Joints", "Links", "RobotFile", "Tasks", "completion"]
 
@@ -42,7 +41,7 @@ class Tasks(_Names):
 
     def names(self, ctx: click.Context) -> list[str]:
         """ikgen's own and those of other packages."""
-        return [*(task.name for task in TASKS), *(one.name for one in plug_ins("ikgen.tasks"))]
+        return task_names()
 
 
 class Emits(_Names):
@@ -50,7 +49,7 @@ class Emits(_Names):
 
     def names(self, ctx: click.Context) -> list[str]:
         """ikgen's own and those of other packages."""
-        return [*(emitter.name for emitter in EMITTERS), *(one.name for one in plug_ins(GROUP))]
+        return emitter_names()
 
     def shell_complete(
         self, ctx: click.Context, param: click.Parameter, incomplete: str

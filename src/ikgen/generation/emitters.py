@@ -115,5 +115,9 @@ def find_emitter(name: str) -> Emitter:
     plug_in = find_plug_in(GROUP, name)
     if plug_in is not None:
         return replace(plug_in.load(Emitter), plug_in=plug_in)
-    others = (one.name for one in plug_ins(GROUP))
-    raise UnknownNameError("emitter", name, [*(e.name for e in EMITTERS), *others])
+    raise UnknownNameError("emitter", name, emitter_names())
+
+
+def emitter_names() -> list[str]:
+    """Of ikgen's own emitters and those of other packages."""
+    return [*(emitter.name for emitter in EMITTERS), *(one.name for one in plug_ins(GROUP))]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from ikgen.errors import UnknownNameError, UsageError
 from ikgen.plugins import find_plug_in, plug_ins
 
-__all__ = ["AXES", "TASKS", "Task", "find_task"]
+__all__ = ["AXES", "TASKS", "Task", "find_task", "task_names"]
 
 AXES = ("x", "y", "z")
 """The tool's axes, by which a task with a direction goes."""
@@ -149,5 +149,9 @@ def _named(name: str) -> Task:
     plug_in = find_plug_in("ikgen.tasks", name)
     if plug_in is not None:
         return plug_in.load(Task)
-    others = (one.name for one in plug_ins("ikgen.tasks"))
-    raise UnknownNameError("task", name, [*(task.name for task in TASKS), *others])
+    raise UnknownNameError("task", name, task_names())
+
+
+def task_names() -> list[str]:
+    """Of ikgen's own tasks and those of other packages."""
+    return [*(task.name for task in TASKS), *(one.name for one in plug_ins("ikgen.tasks"))]
