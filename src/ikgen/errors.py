@@ -7,6 +7,7 @@ command line (`docs/reference/exit-codes.md`).
 from __future__ import annotations
 
 import difflib
+import reprlib
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import Any
@@ -22,9 +23,17 @@ __all__ = [
     "UnsupportedJointError",
     "UsageError",
     "VerificationError",
+    "shown",
 ]
 
 _MOST_LISTED = 100
+_SHORT = reprlib.Repr()
+_SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 60
+
+
+def shown(value: object) -> str:
+    """A value in a message: as Python writes it, cut where it is long."""
+    return _SHORT.repr(value)
 
 
 class IkgenError(Exception):

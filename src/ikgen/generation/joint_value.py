@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import numbers
 import re
-import reprlib
+
+from ikgen.errors import shown
 
 __all__ = ["UNITS", "JointValue", "joint_value"]
 
@@ -20,8 +21,6 @@ UNITS = {
 """What a unit is in rad or m."""
 
 _OF_ANGLES = ("rad", "deg", "°")
-_SHOWN = reprlib.Repr()
-_SHOWN.maxstring = _SHOWN.maxother = _SHOWN.maxlong = 60
 _WITH_UNIT = re.compile(r"(.*?)\s*(rad|deg|°|mm|cm|m)")
 
 
@@ -50,7 +49,7 @@ def joint_value(value: object) -> JointValue:
     else:
         raise ValueError(f"a value of type {type(value).__name__} is not a number")
     if not math.isfinite(number):
-        raise ValueError(f"{_SHOWN.repr(value)} is not a finite number")
+        raise ValueError(f"{shown(value)} is not a finite number")
     return number
 
 
@@ -60,7 +59,7 @@ def _of_text(text: str) -> JointValue:
     try:
         number = float(digits)
     except ValueError:
-        raise ValueError(f"{_SHOWN.repr(text)} is not a finite number") from None
+        raise ValueError(f"{shown(text)} is not a finite number") from None
     # exact for the turns that people mean: 90deg is the nearest number to pi/2
     found = JointValue(
         math.radians(number) if unit in ("deg", "°") else number * UNITS.get(unit, 1)

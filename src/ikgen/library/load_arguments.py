@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import operator
 import os
-import reprlib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ikgen.errors import ArgumentError, IkgenError
+from ikgen.errors import ArgumentError, IkgenError, shown
 from ikgen.generation.joint_value import joint_value
 from ikgen.generation.request import Request
 from ikgen.importers.named_robots import is_named
@@ -21,8 +20,6 @@ from ikgen.model.module_name import identifier, is_module_name
 __all__ = ["checked_count", "checked_flag", "checked_path", "checked_request", "wrong"]
 
 _MOST = 10**9
-_SHOWN = reprlib.Repr()
-_SHOWN.maxstring = _SHOWN.maxother = 60
 
 
 def checked_request(
@@ -214,7 +211,7 @@ def _name(name: object) -> str | None:
     text = _text("name", name, "an identifier, which begins the names of files")
     if text is not None and not is_module_name(text):
         raise ArgumentError(
-            f"name: {_SHOWN.repr(text)} is not an identifier of at most 100 characters",
+            f"name: {shown(text)} is not an identifier of at most 100 characters",
             hint=f'for example "{identifier(text)}"',
         )
     return text
@@ -251,5 +248,5 @@ def checked_flag(argument: str, value: Any) -> bool:
 
 def wrong(argument: str, value: object, what: str) -> ArgumentError:
     """The error for a value that is not `what` the argument takes."""
-    shown = f"{_SHOWN.repr(value)} ({type(value).__name__})"
-    return ArgumentError(f"{argument}: {shown} does not do", hint=f"give {what}")
+    given = f"{shown(value)} ({type(value).__name__})"
+    return ArgumentError(f"{argument}: {given} does not do", hint=f"give {what}")
