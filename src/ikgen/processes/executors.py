@@ -47,6 +47,11 @@ class Workers:
         if self.scheduler is not None and self.executor != "dask":
             raise UsageError("--scheduler needs --executor dask", hint="add it")
 
+    @property
+    def processes(self) -> int:
+        """How many there are to be."""
+        return self.count or os.cpu_count() or 1
+
     @contextlib.contextmanager
     def open(self) -> Iterator[Executor]:
         """The executor, closed at the end; where the work is broken off its processes are ended."""
@@ -55,9 +60,8 @@ class Workers:
                 yield executor
             return
         context = multiprocessing.get_context("spawn")
-        count = self.count or os.cpu_count() or 1
         others = multiprocessing.active_children()
-        with ProcessPoolExecutor(count, context, end_with_parent) as pool:
+        with ProcessPoolExecutor(self.processes, context, end_with_parent) as pool:
             try:
                 yield pool
             except BaseException:  # whoever stops asking, or is ended, does not wait for the rest
@@ -78,8 +82,9 @@ def _dask(workers: Workers) -> Iterator[Executor]:
     with contextlib.ExitStack() as stack:
         address = workers.scheduler
         if address is None:
-            count = workers.count or os.cpu_count() or 1
-            cluster = LocalCluster(n_workers=count, threads_per_worker=1, dashboard_address=None)
+            cluster = LocalCluster(
+                n_workers=workers.processes, threads_per_worker=1, dashboard_address=None
+            )
             address = stack.enter_context(cluster)
         try:
             client = stack.enter_context(Client(address, timeout="20s"))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import traceback
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -69,7 +68,7 @@ def build_arms(
 
 def _run(work: Sequence[tuple[ArmConfig, str, bool]], workers: Workers) -> Iterator[Outcome]:
     """The outcomes in the order of the work."""
-    count = min(len(work), workers.count or os.cpu_count() or 1)
+    count = min(len(work), workers.processes)
     if count <= 1 and workers.executor == "process":
         yield from map(_build_one, work)
         return
