@@ -52,26 +52,26 @@ def check_couplings(dh: DHChain) -> None:
 
 def _cause(dh: DHChain, joint: int, rows: tuple[DHRow, ...]) -> tuple[str, str] | None:
     """Why the joint has no closed form, and what else than locking it would help."""
-    first = dh.lead_row(joint)
+    lead = dh.lead_row(joint)
     for row in rows:
-        names = f"'{first.name}' and '{row.name}'"
-        if row.revolute != first.revolute:
+        names = f"'{lead.name}' and '{row.name}'"
+        if row.revolute != lead.revolute:
             text = f"of {names} one turns and the other slides, so the equations are not algebraic"
             return text, ""
-        ratio = row.scale / first.scale
+        ratio = row.scale / lead.scale
         if row.revolute and abs(ratio - round(ratio)) > _WHOLE:
             text = (
                 f"{names} turn in the ratio {1 / abs(ratio):g}, which is one over no whole number"
             )
             return text, "; so do --base and --tip with one of the two between them"
     limits, held = dh.joints[joint].limits, dh.joints[joint].name in dh.free
-    if not first.revolute or held or turns_freely(dh, joint):
+    if not lead.revolute or held or turns_freely(dh, joint):
         return None
-    period = 2.0 * math.pi / abs(first.scale)
+    period = 2.0 * math.pi / abs(lead.scale)
     if limits.upper - limits.lower <= period * (1.0 + _WHOLE):
         return None
     text = (
-        f"'{first.name}' turns {abs(first.scale):g} times as far, so a pose has solutions every "
+        f"'{lead.name}' turns {abs(lead.scale):g} times as far, so a pose has solutions every "
         f"{period:.6g} of '{dh.joints[joint].name}', and the limits span "
         f"{limits.upper - limits.lower:.6g}"
     )

@@ -72,8 +72,8 @@ def _solution(page: SolvedPage) -> list[Block]:
     if plan is not None:
         slides, order = plan.turning.count(False), loop_order(page.reading.dh, plan)
         blocks += elimination_section(slides, order, parallel=plan.parallel is not None)
-    if page.example is not None and plan is not None:
-        blocks += roots_blocks(page.reading.dh, plan, page.example)
+        if page.example is not None:
+            blocks += roots_blocks(page.reading.dh, plan, page.example)
     return blocks
 
 

@@ -26,13 +26,12 @@ class ExactKinematics:
 
     def __init__(self, dh: DHChain, *, tool_on_right: bool = False) -> None:
         self.dh = dh
-        self._lead: dict[int, DHRow] = {j: dh.lead_row(j) for j in range(dh.dof)}
         constants = [x for row in dh.rows for x in (row.alpha, row.a, row.d) if x.name]
         lengths = dict.fromkeys(str(x.name) for x in constants if isinstance(x, Length))
         twists = dict.fromkeys(str(x.name) for x in constants if isinstance(x, Angle))
         joints = range(dh.dof)
-        turning = [f"theta{j}" for j in joints if self._lead[j].revolute]
-        sliding = [f"slide{j}" for j in joints if not self._lead[j].revolute]
+        turning = [f"theta{j}" for j in joints if dh.lead_row(j).revolute]
+        sliding = [f"slide{j}" for j in joints if not dh.lead_row(j).revolute]
         self.ring = ExactRing([*turning, *twists], [*sliding, *lengths])
         self._lengths = frozenset(lengths)
         self.pose = self._pose(tool_on_right)
@@ -76,9 +75,9 @@ class ExactKinematics:
 
     def _motion(self, row: DHRow) -> Rows:
         """`Rz(theta) Tz(d)`"""
-        r, first = self.ring, self._lead[row.driver]
-        ratio = row.scale / first.scale
-        shift = row.offset.value - ratio * first.offset.value
+        r, lead = self.ring, self.dh.lead_row(row.driver)
+        ratio = row.scale / lead.scale
+        shift = row.offset.value - ratio * lead.offset.value
         if row.revolute:
             start = self._numbers(shift)
             c, s = r.turned(start, r.pair(f"theta{row.driver}"), round(ratio))

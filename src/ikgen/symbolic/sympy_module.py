@@ -111,9 +111,9 @@ def _joint(dh: DHChain, names: SymbolNames, joint: int) -> str:
 
 
 def _row(row: DHRow, dh: DHChain, names: SymbolNames) -> str:
-    first = dh.lead_row(row.driver)
-    ratio = exact_number(row.scale / first.scale).sympy
-    shift = _value(row.offset, names) - ratio * _value(first.offset, names)
+    lead = dh.lead_row(row.driver)
+    ratio = exact_number(row.scale / lead.scale).sympy
+    shift = _value(row.offset, names) - ratio * _value(lead.offset, names)
     variable = ratio * names.joint(row.driver) + shift
     theta, d = (variable, _value(row.d, names)), (_value(row.theta, names), variable)
     entries = (_value(row.alpha, names), _value(row.a, names), *(theta if row.revolute else d))

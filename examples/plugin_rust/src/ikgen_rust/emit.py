@@ -33,7 +33,7 @@ def emit_derivation(derivation: Derivation) -> dict[str, str]:
         "body": body,
         "constants": _constants(module.program, body),
         "entries": _weighted_entries(module),
-        "first_rows": [module.dh.lead_row(j) for j in range(module.dh.dof)],
+        "lead_rows": [module.dh.lead_row(j) for j in range(module.dh.dof)],
         "number": number,
         "text": text_literal,
     }

@@ -73,7 +73,6 @@ def emit_header(module: SolverModule) -> str:
         lower=[number(j.limits.lower) for j in module.dh.joints],
         upper=[number(j.limits.upper) for j in module.dh.joints],
         far=any(j.limits.lower > math.pi or j.limits.upper < -math.pi for j in module.dh.joints),
-        first_rows=[module.dh.lead_row(j) for j in range(module.dh.dof)],
         text=text,
         values=text.joint_values(),
         rough=_rough(module, policy),
