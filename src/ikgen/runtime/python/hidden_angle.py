@@ -80,9 +80,12 @@ def real_angles(
 
 
 def solved(pivot: Array, N: Array) -> Array:
-    """`pivot^-1 N`; a pivot is singular where M is for every angle: it is put off a little then."""
+    """`pivot^-1 N`; a pivot that is singular is put off a little, and no other beside it: what is found of
+    a pose does not hang on those that are solved with it."""
     try:
         return np.asarray(np.linalg.solve(pivot, N))
     except np.linalg.LinAlgError:
+        if len(pivot) > 1:
+            return np.concatenate([solved(p, n) for p, n in zip(pivot[:, None], N[:, None])])
         size = np.abs(pivot).max(axis=(1, 2))[:, None, None] + 1e-30
         return np.asarray(np.linalg.solve(pivot + 1e-10 * size * _JITTER, N))
