@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.runtime.python.array_types import Array, Flags
-from ikgen.runtime.python.hidden_angle import solved
+from ikgen.runtime.python.hidden_angle import hidden_angles, loop_resultant, solved
 from ikgen.runtime.python.loop_equations import (
     XS,
     YS,
@@ -17,7 +17,7 @@ from ikgen.runtime.python.loop_equations import (
 )
 from ikgen.runtime.python.rigid_motion import rotations_z
 
-__all__ = ["complete_angles", "null_angles", "turned"]
+__all__ = ["complete_angles", "middle_angles", "null_angles", "turned"]
 
 _ONE_ROOT = 1e-6  # rad: rounding moves roots with two solutions by less
 
@@ -85,6 +85,24 @@ def null_angles(M: Array, pose: NDArray[np.intp], t3: Array) -> tuple[NDArray[np
     w = (u1 * np.exp(-0.5j * t4)[:, None]).real
     w = np.where(w[:, :1] < 0.0, -w, w)
     return index, np.stack([t4, np.arctan2(w[:, 2], w[:, 1])], axis=-1)
+
+
+def middle_angles(
+    E: Array, left: Array, swap: int
+) -> tuple[NDArray[np.intp], Array, NDArray[np.intp], Flags]:
+    """theta_3, theta_4, theta_5 (k, 3) from the equations E (N, 6, 15) and the invariants of their left.
+
+    `swap` exchanges theta_4 and theta_5 in these on the way; the rest as `hidden_angles` has it."""
+    mono = left.reshape(-1, 14, 3, 3).swapaxes(2, 3).reshape(-1, 14, 9) if swap else left
+    M = loop_resultant(E, mono)
+    pose, t3, least, clear = hidden_angles(E, mono, M, 0.03)
+    if not len(pose):
+        return pose, np.zeros((0, 3)), least, clear
+    c, s = np.cos(t3)[:, None, None], np.sin(t3)[:, None, None]
+    M0, M1, M2 = (rows_of(m, pose) for m in M)
+    k, t45 = null_angles(M0 + c * M1 + s * M2, pose, t3)
+    t = np.concatenate([t3[k, None], t45[:, ::-1] if swap else t45], axis=1)
+    return pose[k], t, least, clear
 
 
 def turned(left: Array, t: Array) -> Array:

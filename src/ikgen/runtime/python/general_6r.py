@@ -9,10 +9,9 @@ from functools import lru_cache
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags
-from ikgen.runtime.python.back_substitution import complete_angles, null_angles
+from ikgen.runtime.python.back_substitution import complete_angles, middle_angles
 from ikgen.runtime.python.chain_kinematics import Chain, chain_of
-from ikgen.runtime.python.hidden_angle import hidden_angles, loop_resultant
-from ikgen.runtime.python.loop_equations import loop_constants, loop_equations, rows_of
+from ikgen.runtime.python.loop_equations import joint_values, loop_constants, loop_equations
 from ikgen.runtime.python.refinement import refine
 from ikgen.runtime.python.rigid_motion import inverses, rotations_z
 from ikgen.runtime.python.solution_rows import (
@@ -42,9 +41,8 @@ Candidates = tuple[Index, Array, Index, Flags]
 Finder = Callable[[Array, Array, Elimination, Turning], Candidates]
 Way = tuple[Finder, Elimination, float]  # and how far off the pose exact candidates may be
 _SIX = range(6)
-_DIRECT = (
-    1e-7  # error of a candidate from a root that is exact: a double one is off by the square root
-)
+# Error of a candidate from a root that is exact: a double one is off by the square root.
+_DIRECT = 1e-7
 # Beside a fold rows of several runs are one only where all have all their digits.
 _THOROUGH = ((3, 1e-12, 0.1), (6, 1e-12, 1e-3), (30, 0.0, 0.0))
 
@@ -68,19 +66,11 @@ def candidates(F: Array, T: Array, plan: Elimination, _: Turning) -> Candidates:
     start, reverse, swap = plan
     order, C = loop_constants(F, T, start, reverse)
     E, left, right = loop_equations(C)
-    mono = left.reshape(-1, 14, 3, 3).swapaxes(2, 3).reshape(-1, 14, 9) if swap else left
-    M = loop_resultant(E, mono)
-    pose, t3, least, clear = hidden_angles(E, mono, M, 0.03)
+    pose, t, least, clear = middle_angles(E, left, swap)
     if not len(pose):
         return pose, np.zeros((0, 6)), least, clear
-    c, s = np.cos(t3)[:, None, None], np.sin(t3)[:, None, None]
-    M0, M1, M2 = (rows_of(m, pose) for m in M)
-    k, t45 = null_angles(M0 + c * M1 + s * M2, pose, t3)
-    t = np.concatenate([t3[k, None], t45[:, ::-1] if swap else t45], axis=1)
-    angles = complete_angles(C, left, right, pose[k], t)
-    q = np.empty_like(angles)
-    q[:, order] = -angles if reverse else angles
-    return pose[k], q, least, clear
+    angles = complete_angles(C, left, right, pose, t)
+    return pose, joint_values(angles, order, reverse), least, clear
 
 
 def refined_rows(

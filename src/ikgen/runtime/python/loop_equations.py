@@ -22,6 +22,7 @@ __all__ = [
     "YS",
     "ZS",
     "invariants",
+    "joint_values",
     "left_invariants",
     "loop_action",
     "loop_constants",
@@ -47,6 +48,13 @@ def loop_constants(F: Array, T: Array, start: int, reverse: int) -> tuple[list[i
         return order, [C[i] for i in order]
     order = [(start - i) % 6 for i in range(6)]
     return order, [inverses(C[(i - 1) % 6]) for i in order]
+
+
+def joint_values(values: Array, order: list[int], reverse: int = 0) -> Array:
+    """The loop's values (k, 6) in the order of the joints, turned back where the loop runs backwards."""
+    q = np.empty_like(values)
+    q[:, order] = -values if reverse else values
+    return q
 
 
 def rows_of(rows: Array, pose: NDArray[np.intp]) -> Array:

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.runtime.python.array_types import Array, Flags
-from ikgen.runtime.python.back_substitution import null_angles, turned
+from ikgen.runtime.python.back_substitution import middle_angles, turned
 from ikgen.runtime.python.general_6r import Elimination
-from ikgen.runtime.python.hidden_angle import hidden_angles, loop_resultant
 from ikgen.runtime.python.loop_equations import (
     FIT,
     ROTATIONS,
     invariants,
+    joint_values,
     left_invariants,
     loop_action,
     loop_constants,
@@ -48,22 +48,13 @@ def one_slide_candidates(
     top = np.swapaxes(basis, 1, 2)
     E = top @ of_constants(loop_action, C[1])
     E[..., 14] -= (top @ right[..., :1])[..., 0]
-    mono = left.reshape(-1, 14, 3, 3).swapaxes(2, 3).reshape(-1, 14, 9) if swap else left
-    M = loop_resultant(E, mono)
-    pose, t3, least, clear = hidden_angles(E, mono, M, 0.03)
+    pose, t, least, clear = middle_angles(E, left, swap)
     if not len(pose):
         return pose, np.zeros((0, 6)), least, clear
-    c, s = np.cos(t3)[:, None, None], np.sin(t3)[:, None, None]
-    M0, M1, M2 = (rows_of(m, pose) for m in M)
-    k, t45 = null_angles(M0 + c * M1 + s * M2, pose, t3)
-    t = np.concatenate([t3[k, None], t45[:, ::-1] if swap else t45], axis=1)
-    pose = pose[k]
     found = _with_slide(
         [rows_of(c, pose) for c in C], rows_of(left, pose), rows_of(right, pose), t, first
     )
-    q = np.empty_like(found)
-    q[:, order] = -found if reverse else found
-    return pose, q, least, clear
+    return pose, joint_values(found, order, reverse), least, clear
 
 
 def _slide_side(C: list[Array], first: bool) -> Array:

@@ -17,7 +17,7 @@ from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.chain_kinematics import cross
 from ikgen.runtime.python.general_6r import Candidates, Elimination
 from ikgen.runtime.python.hidden_angle import DOUBTFUL, real_angles
-from ikgen.runtime.python.loop_equations import loop_constants, rows_of
+from ikgen.runtime.python.loop_equations import joint_values, loop_constants, rows_of
 from ikgen.runtime.python.parallel_links import (
     MEETING,
     PLAIN,
@@ -109,13 +109,10 @@ def _curves(kind: int, of: ParallelLinks) -> tuple[Array, Array]:
         return line, np.outer(k, k) - 4.0 * _square_of_normals(of.a3, of.a1)
     line[[0, 4]] = -(of.a2**2) - of.d**2, 1.0  # r = a2^2 + d^2
     conic[5, 5] = 1.0  # e^2 = |c1 z_4 x D + c3 D x z_1 + d z_1 x z_4|^2
+    conic[0, 0], conic[1, 1] = -(of.d**2), of.d**2
     first, third = of.c1 * of.d, of.c3 * of.d
-    for i, j, x in ((0, 0, of.d**2), (1, 1, -(of.d**2)), (1, 3, first), (0, 2, -first)):
-        conic[i, j] -= x
-        conic[j, i] -= x * (i != j)
-    for i, j, x in ((1, 2, third), (0, 3, -third)):
-        conic[i, j] -= x
-        conic[j, i] -= x
+    for i, j, x in ((0, 2, first), (1, 3, -first), (0, 3, third), (1, 2, -third)):
+        conic[i, j] = conic[j, i] = x
     return line, conic - _square_of_normals(of.c1, of.c3)
 
 
@@ -217,6 +214,4 @@ def parallel_candidates(F: Array, T: Array, plan: Elimination, _: Turning) -> Ca
     pose, t6 = np.tile(pose, each), np.tile(t6, each)
     t5 = np.tile(np.arctan2(five[:, 2], five[:, 1]), each)
     angles = parallel_turns([rows_of(c, pose) for c in C], links.side, n, t5, t6)
-    q = np.empty_like(angles)
-    q[:, order] = -angles if reverse else angles
-    return pose, q, each * least, clear
+    return pose, joint_values(angles, order, reverse), each * least, clear

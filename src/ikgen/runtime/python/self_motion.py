@@ -17,9 +17,8 @@ from ikgen.runtime.python.row_links import Links, origins
 __all__ = ["Interval", "Piece", "pieces_of", "self_motion_of"]
 
 _FEW = 4  # least cells
-_SLIVERS = (
-    2  # times the rows of a pose: ends of more that are narrower are left where they were seen
-)
+# Times the rows of a pose: ends of more that are narrower are left where they were seen.
+_SLIVERS = 2
 
 
 @dataclass(frozen=True)

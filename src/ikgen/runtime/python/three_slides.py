@@ -9,7 +9,7 @@ import numpy as np
 
 from ikgen.runtime.python.array_types import Array
 from ikgen.runtime.python.general_6r import Candidates, Elimination
-from ikgen.runtime.python.loop_equations import loop_constants
+from ikgen.runtime.python.loop_equations import joint_values, loop_constants
 from ikgen.runtime.python.revolute_loop import displacement, revolute_loop, slide_lengths
 from ikgen.runtime.python.solution_rows import Turning
 from ikgen.runtime.python.spherical_triple import spherical_triple
@@ -38,9 +38,7 @@ def three_slide_candidates(F: Array, T: Array, plan: Elimination, turning: Turni
     )
     slides = slide_lengths(p[branch, twice], u[:, branch, twice])
     values[:, np.flatnonzero(~np.array(turns))] = slides
-    q = np.empty_like(values)
-    q[:, order] = values
     simple = (np.abs(s[0, 1] - s[1, 1]) + np.abs(c[0, 1] - c[1, 1]) > _SLIDES_APART) & (
         h > _SLIDES_APART
     )
-    return twice, q, np.where(off < 1e-12, 2, 0).astype(np.intp), simple
+    return twice, joint_values(values, order), np.where(off < 1e-12, 2, 0).astype(np.intp), simple

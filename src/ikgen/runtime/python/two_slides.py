@@ -16,7 +16,7 @@ from ikgen.runtime.python.array_types import Array
 from ikgen.runtime.python.chain_kinematics import cross
 from ikgen.runtime.python.general_6r import Candidates, Elimination
 from ikgen.runtime.python.hidden_angle import real_angles
-from ikgen.runtime.python.loop_equations import loop_constants
+from ikgen.runtime.python.loop_equations import joint_values, loop_constants
 from ikgen.runtime.python.revolute_loop import (
     RevoluteLoop,
     displacement,
@@ -119,6 +119,4 @@ def two_slide_candidates(F: Array, T: Array, plan: Elimination, turning: Turning
     values = np.empty((len(k), 6))
     values[:, np.flatnonzero(turns)] = np.arctan2(s[branch, :, k].real, c[branch, :, k].real)
     values[:, np.flatnonzero(~np.array(turns))] = slide_lengths(p[branch, k], u[:, branch, k])
-    q = np.empty_like(values)
-    q[:, order] = values
-    return pose[k], q, least, simple
+    return pose[k], joint_values(values, order), least, simple
