@@ -88,10 +88,6 @@ def configurations(module: SolverModule) -> Array:
     return np.asarray(q)
 
 
-def first_rows(module: SolverModule) -> list:
-    return [next(r for r in module.dh.rows if r.driver == j) for j in range(module.dh.dof)]
-
-
 def interpreted(module: SolverModule, pose: Array) -> tuple[Array, NDArray[np.bool_], bool]:
     """Joint values of the interpreter's rows, repeated ones left out, and their flags."""
     inputs = {f"t{i}{j}": float(pose[i, j]) for i in range(3) for j in range(4)}
@@ -108,7 +104,7 @@ def interpreted(module: SolverModule, pose: Array) -> tuple[Array, NDArray[np.bo
 
 def gap(module: SolverModule, a: Array, b: Array) -> Array:
     """Absolute differences of joint values, whole turns aside."""
-    turns = np.array([r.revolute for r in first_rows(module)])
+    turns = np.array([module.dh.lead_row(j).revolute for j in range(module.dh.dof)])
     wrapped = np.abs((a - b + math.pi) % (2 * math.pi) - math.pi)
     return np.where(turns, wrapped, np.abs(a - b))
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,18 +14,6 @@ from ikgen.projects import recheck, sample_blocks
 from ikgen.projects.check_findings import Finding
 from ikgen.verify.merged_reports import merged_reports
 from ikgen.verify.verification_report import CheckResult, SigmaBand, VerificationReport
-
-ROBOT = Path(__file__).resolve().parents[2] / "examples/setuptools_robot/urdf/elbow.urdf"
-ARM = '[[arm]]\nname = "{}"\nrobot = "elbow.urdf"\ntask = "position"\nsamples = 20\n'
-
-
-@pytest.fixture
-def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Two arms, as the current directory."""
-    shutil.copy(ROBOT, tmp_path)
-    (tmp_path / "ikgen.toml").write_text(ARM.format("first") + ARM.format("second"))
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
 
 
 def verified(

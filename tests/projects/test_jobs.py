@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -14,18 +13,6 @@ import pytest
 from ikgen.cli.main import run
 from ikgen.projects.config import ArmConfig
 from ikgen.projects.project_build import Outcome
-
-ROBOT = Path(__file__).resolve().parents[2] / "examples/setuptools_robot/urdf/elbow.urdf"
-ARM = '[[arm]]\nname = "{}"\nrobot = "elbow.urdf"\ntask = "position"\nsamples = 20\n'
-
-
-@pytest.fixture
-def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Two arms, as the current directory."""
-    shutil.copy(ROBOT, tmp_path)
-    (tmp_path / "ikgen.toml").write_text(ARM.format("first") + ARM.format("second"))
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
 
 
 def killed(job: tuple[ArmConfig, str, bool]) -> Outcome:

@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-import shutil
-import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.elimination.test_elimination import apart, arm_frames, configurations, missing
-from tests.support.routines import FLAGS, feed
+from tests.support.routines import compiled_header, feed
 
 from ikgen.elimination import EliminationPlan, choose_plan, hold_joint
 from ikgen.elimination.loop_frames import forward
 from ikgen.elimination.resultant import RESULTANTS, root_shifts
 
 Array = NDArray[np.float64]
-RUNTIME = Path(__file__).resolve().parents[2] / "src/ikgen/runtime/cpp"
 MACHINES = ([], ["-march=native"])
+OLD_CASTS = "-Wold-style-cast"
 NAMES = ["random 1", "random 2", "Issue4", "KawasakiRS05L", "bravo7", "fanuc_crx10ia", "xarm6"]
 SOLVE = r"""
-#include <cstdio>
 #include "general_6r.hpp"
+#include "numbers.hpp"
 using namespace ikgen_runtime;
 struct Plan {
   static constexpr double kLength = 1.0;
@@ -34,12 +32,6 @@ struct OnlyEigenproblems {
   static constexpr std::array<std::array<int, 2>, 0> kResultants = {};
   static inline std::array<std::array<int, 3>, 2> kEigenproblems;
 };
-template <class T>
-bool read(T* to, int count, const char* format) {
-  for (int i = 0; i < count; ++i)
-    if (std::scanf(format, to + i) != 1) return false;
-  return true;
-}
 int main() {
   static double F[7][12], T[12];
   static g6::Solutions all;
@@ -137,26 +129,14 @@ int main() {
 """
 
 
-def compiled(name: str, text: str, machine: list[str], folder: Path) -> Path:
-    compiler = shutil.which("g++") or shutil.which("clang++")
-    if compiler is None:
-        pytest.skip("no C++ compiler on this machine")
-    source, program = folder / f"{name}.cpp", folder / name
-    source.write_text(text)
-    command = [compiler, *FLAGS, "-Wold-style-cast", *machine, f"-I{RUNTIME}", str(source)]
-    done = subprocess.run([*command, "-o", str(program)], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    return program
-
-
 @pytest.fixture(scope="module", params=MACHINES, ids=["portable", "native"])
 def solver(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return compiled("solve", SOLVE, request.param, tmp_path_factory.mktemp("solve"))
+    return compiled_header(SOLVE, tmp_path_factory.mktemp("solve"), OLD_CASTS, *request.param)
 
 
 @pytest.fixture(scope="module", params=MACHINES, ids=["portable", "native"])
 def isolator(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return compiled("isolate", ISOLATE, request.param, tmp_path_factory.mktemp("isolate"))
+    return compiled_header(ISOLATE, tmp_path_factory.mktemp("isolate"), OLD_CASTS, *request.param)
 
 
 def solutions(
@@ -216,7 +196,7 @@ def test_held_joints_take_their_values(tmp_path: Path) -> None:
     """A turning joint and a slide held in an arm of eight joints, at other values for every pose."""
     rng = np.random.default_rng(9)
     frames = np.concatenate([arm_frames("random 1")[:5], arm_frames("random 2")[3:]])
-    program = compiled("held", HELD, [], tmp_path)
+    program = compiled_header(HELD, tmp_path, OLD_CASTS)
     for _ in range(5):
         turn, slide = rng.uniform(-2.0, 2.0), rng.uniform(-0.5, 0.5)
         six = hold_joint(hold_joint(frames, 7, slide, revolute=False), 2, turn)

@@ -31,7 +31,7 @@ CHAINS = {
     "rounded, upright": rounded_frames(UPRIGHT),
 }
 SOLVE = r"""
-#include <cstdio>
+#include "numbers.hpp"
 #include "parallel_6r.hpp"
 using namespace ikgen_runtime;
 template <int Kind> struct Plan {
@@ -41,12 +41,6 @@ template <int Kind> struct Plan {
   static inline std::array<std::array<int, 2>, 2> kResultants;
   static inline std::array<std::array<int, 3>, 2> kEigenproblems;
 };
-template <class T>
-bool read(T* to, int count, const char* format) {
-  for (int i = 0; i < count; ++i)
-    if (std::scanf(format, to + i) != 1) return false;
-  return true;
-}
 template <class Plan> int run() {
   static double F[7][12], T[12];
   static g6::Solutions all;

@@ -25,7 +25,7 @@ from ikgen.elimination.routine import six_joints_batch
 Array = NDArray[np.float64]
 
 SOLVE = r"""
-#include <cstdio>
+#include "numbers.hpp"
 #include "one_slide.hpp"
 #include "three_slides.hpp"
 #include "two_slides.hpp"
@@ -34,12 +34,6 @@ struct Plan {
   static constexpr double kLength = 1.0;
   static inline std::array<std::array<int, 3>, 2> kEigenproblems;
 };
-template <class T>
-bool read(T* to, int count, const char* format) {
-  for (int i = 0; i < count; ++i)
-    if (std::scanf(format, to + i) != 1) return false;
-  return true;
-}
 int main() {
   static double F[7][12], T[12];
   int turns[6], slides = 0, n = 0;
