@@ -88,24 +88,34 @@ Task task_jacobian(const Arm& arm, const ik::Joints& q) {
   return out;
 }
 
+// Zeros make it square: a QR decomposition before would take most of the time to compile.
+using Decomposition = Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::NoQRPreconditioner>;
+
+Eigen::MatrixXd squared(const Task& J) {
+  const Eigen::Index size = std::max(J.rows(), J.cols());
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(size, size);
+  out.topLeftCorner(J.rows(), J.cols()) = J;
+  return out;
+}
+
 struct Singular {
   double sigma = 1.0, kappa = 0.0;
   Eigen::VectorXd left, null;
 };
 
 Singular singular_of(const Arm& arm, const ik::Joints& q) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(task_jacobian(arm, q), Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Decomposition svd(squared(task_jacobian(arm, q)), Eigen::ComputeFullU | Eigen::ComputeFullV);
   const int last = std::min(kRank, arm.moving) - 1;
   Singular out;
   out.sigma = svd.singularValues()[last];
-  out.left = svd.matrixU().col(last);
-  out.null = svd.matrixV().col(last);
+  out.left = svd.matrixU().col(last).head(kRows);
+  out.null = svd.matrixV().col(last).head(arm.moving);
   if (last > 0 && svd.singularValues()[last - 1] <= kAlone) out.kappa = -1.0;  // another direction is free too
   return out;
 }
 
 double smallest(const Arm& arm, const ik::Joints& q) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(task_jacobian(arm, q));
+  const Decomposition svd(squared(task_jacobian(arm, q)));
   return svd.singularValues()[std::min(kRank, arm.moving) - 1];
 }
 
