@@ -30,12 +30,18 @@ ARMS: dict[str, tuple[str, tuple[tuple[str, float], ...], dict[str, Any], str]] 
     "KR 6 R900": ("kuka_kr6r900sixx", (), OPW_KR6, "kuka_kr_6_r900_sixx.yaml"),
     "UR5e": ("ur5e", (), {}, "ur5e.yaml"),
     "Panda": ("franka_panda_erd", (("panda_joint7", 0.4),), {}, ""),
+    "WAM": ("wam", (("/j3", 0.4),), {}, ""),
+    "M1013": ("doosan_m1013", (), {}, ""),
+    "CRX-10iA": ("fanuc_crx10ia", (), {}, ""),
 }
+"""Name -> file, held joints with their values, OPW's parameters, ikdh's table."""
 
 
 def make_arm(name: str, robots: Path, out: Path) -> tuple[Arm, Path]:
-    """The arm's modules, freshly generated; the path of its header."""
+    """The arm's modules, freshly generated; the path of its header. Raises AbsentError without its file."""
     file, free, opw, table = ARMS[name]
+    if not (robots / f"{file}.urdf").is_file():
+        raise AbsentError(f"no {file}.urdf in {robots}")
     request = Request(robots / f"{file}.urdf", free=dict(free), name=file)
     generate(request, Outputs(emit=("python", "cpp", "nanobind"), out=out, verify=False))
     sys.path.insert(0, str(out))

@@ -3,7 +3,9 @@
     python -m benchmarks.peers ROBOTS_FOLDER [--poses N] [--record]
         [--opw-kinematics INCLUDE] [--ikfast ARM=FILE.cpp]
 
-ROBOTS_FOLDER holds abb_irb2400.urdf, kuka_kr6r900sixx.urdf, ur5e.urdf and franka_panda_erd.urdf.
+ROBOTS_FOLDER holds abb_irb2400.urdf, kuka_kr6r900sixx.urdf, ur5e.urdf, franka_panda_erd.urdf, wam.urdf,
+doosan_m1013.urdf and fanuc_crx10ia.urdf; an arm whose file is missing is left out. DART's sources hold
+wam.urdf and what IKFast wrote of it (joint 3 held), to be given as --ikfast WAM=FILE.
 Peers are optional: pip install EAIK py-opw-kinematics ssik ikdh pin, of which missing ones are named;
 with the sources of opw_kinematics (C++) and of IKFast at hand, their paths add them to the table;
 the compiled package needs pip, a C++ compiler and network access for its build tools.
@@ -195,7 +197,11 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         for name in options.arms:
             print(name)
-            arm, header = make_arm(name, options.robots, Path(folder))
+            try:
+                arm, header = make_arm(name, options.robots, Path(folder))
+            except AbsentError as reason:
+                print(f"  left out, {reason}")
+                continue
             q = configurations(arm, options.poses, np.random.default_rng(2))
             results += run(arm, solvers(arm, Path(folder)), q)
             results.append(batched(arm, q))

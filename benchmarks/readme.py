@@ -47,7 +47,14 @@ CLASSES = {
 }
 """What the collection calls a class -> what the README calls it, where that is not the same with a comma
 after the kinds of joints."""
-ARMS = {"IRB 2400": "ABB IRB 2400", "UR5e": "UR5e", "Panda": "Panda, joint 7 held"}
+ARMS = {
+    "IRB 2400": "ABB IRB 2400",
+    "UR5e": "UR5e",
+    "Panda": "Panda, joint 7 held",
+    "WAM": "Barrett WAM, joint 3 held",
+    "M1013": "Doosan M1013",
+    "CRX-10iA": "FANUC CRX-10iA",
+}
 """The arms of the comparison that the README shows, with its names for them."""
 
 
@@ -139,8 +146,9 @@ def _peers(read: Callable[[str], Measured]) -> str:
     own_first = sorted(
         times, key=lambda solver: (not solver.startswith("ikgen"), min(times[solver].values()))
     )
-    rows = [[solver, *(_short(times[solver].get(arm)) for arm in ARMS)] for solver in own_first]
-    return _table(("solver", *ARMS.values()), rows) + _source(measured)
+    arms = [arm for arm in ARMS if any(arm in row for row in times.values())]
+    rows = [[solver, *(_short(times[solver].get(arm)) for arm in arms)] for solver in own_first]
+    return _table(("solver", *(ARMS[arm] for arm in arms)), rows) + _source(measured)
 
 
 def drawn(read: Callable[[str], Measured] = read_result) -> str:
