@@ -8,8 +8,15 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from tests.support.moveit_arms import FRANKA, KUKA, missing_tools, module_of, write_package
-from tests.support.moveit_driver import warnings_of
+from tests.support.moveit_arms import (
+    FRANKA,
+    KUKA,
+    MANIPULATOR,
+    missing_tools,
+    module_of,
+    write_package,
+)
+from tests.support.moveit_driver import own_test, warnings_of
 
 from ikgen.emit.moveit import emit, package_name
 from ikgen.errors import UsageError
@@ -36,17 +43,21 @@ def test_the_files_fit_together(name: str) -> None:
     assert exported["name"] in files[f"{package}/README.md"]
     cmake = files[f"{package}/CMakeLists.txt"]
     sources = [word.rstrip(")") for word in cmake.split() if ".cpp" in word]
-    assert len(sources) == 2 and all(f"{package}/{path}" in files for path in sources)
+    assert len(sources) == 3 and all(f"{package}/{path}" in files for path in sources)
 
 
 def test_odd_names_stay_inside_their_files(tmp_path: Path) -> None:
     odd = 'tool <0> & "--" \n é'
     module = module_of(KUKA)
+    module = dataclasses.replace(module, maintainer="A & B <a@b.c>", license="<&>")
     dh = dataclasses.replace(module.dh, tip_link=odd, robot=odd)
     files = emit(dataclasses.replace(module, dh=dh, name="My__Arm", generator_version="1.2.3.dev4"))
     manifest = ElementTree.fromstring(files["my_arm_ik_moveit/package.xml"])
     assert f"of {odd}, {dh.base_link} to {odd}, as" in manifest.findtext("description", "")
-    assert manifest.findtext("version") == "1.2.3"
+    assert manifest.findtext("version") == "1.2.3" and manifest.findtext("license") == "<&>"
+    maintainer = manifest.find("maintainer")
+    assert maintainer is not None
+    assert (maintainer.text, maintainer.get("email")) == ("A & B", "a@b.c")
     ElementTree.fromstring(files["my_arm_ik_moveit/plugin.xml"])
 
 
@@ -66,6 +77,24 @@ def test_chains_with_mimic_joints_are_refused() -> None:
     dh = dataclasses.replace(module.dh, rows=(*module.dh.rows, module.dh.rows[-1]))
     with pytest.raises(UsageError, match="mimic"):
         emit(dataclasses.replace(module, dh=dh))
+
+
+@pytest.mark.skipif(bool(missing_tools("g++")), reason=missing_tools("g++"))
+@pytest.mark.parametrize("name", [FRANKA, MANIPULATOR])
+def test_its_own_test_passes(name: str, tmp_path: Path) -> None:
+    done = own_test(write_package(module_of(name), tmp_path), tmp_path / "own")
+    assert done.returncode == 0 and " 0 of them wrong" in done.stdout, done.stdout
+
+
+@pytest.mark.skipif(bool(missing_tools("g++")), reason=missing_tools("g++"))
+def test_its_own_test_tells_missing_solutions(tmp_path: Path) -> None:
+    package = write_package(module_of(MANIPULATOR), tmp_path)
+    candidates = package / "include" / package.name / "candidates.hpp"
+    text = candidates.read_text()
+    broken = text.replace("&& within_reach(q, query)", "&& rows.size() > 1000")
+    assert broken != text
+    candidates.write_text(broken)
+    assert own_test(package, tmp_path / "own").returncode == 1
 
 
 @pytest.mark.skipif(bool(NO_CLANG), reason=NO_CLANG)

@@ -91,6 +91,10 @@ def test_ament_builds_and_registers_the_plugin(workspace: Path) -> None:
     configure(workspace, f"-DPython3_EXECUTABLE={python}", f"-DCMAKE_INSTALL_PREFIX={out}")
     cmake("--build", "build", cwd=workspace)
     cmake("--install", "build", cwd=workspace)
+    tested = ["ctest", "--test-dir", "build", "--output-on-failure", "-R", "^solver$"]
+    done = subprocess.run(tested, cwd=workspace, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+    assert "100% tests passed, 0 tests failed out of 1" in done.stdout
     resources = out / "share/ament_index/resource_index"
     listed = (resources / "moveit_core__pluginlib__plugin" / PACKAGE).read_text().strip()
     assert (out / listed).is_file() and (resources / "packages" / PACKAGE).is_file()

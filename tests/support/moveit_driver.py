@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from ikgen.model.joint_tree import JointTree
 from ikgen.verify.runners.cpp_toolchain import find_eigen
 
-__all__ = ["Answer", "Plugin", "Search", "compile_driver", "warnings_of"]
+__all__ = ["Answer", "Plugin", "Search", "compile_driver", "own_test", "warnings_of"]
 
 Array = NDArray[np.float64]
 
@@ -45,6 +45,15 @@ def compile_driver(package: Path, style: str, program: Path) -> None:
     command = [*_command("g++", package, style), "-O1", *sources, "-o", str(program)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[:4000]
+
+
+def own_test(package: Path, program: Path) -> subprocess.CompletedProcess[str]:
+    """What came of the program that the package tests its solver with; warnings are errors."""
+    source = str(package / "test/solver_test.cpp")
+    command = [*_command("g++", package, "hpp"), "-O1", source, "-o", str(program)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[:4000]
+    return subprocess.run([program], capture_output=True, text=True, check=False)
 
 
 def _sources(package: Path) -> list[str]:

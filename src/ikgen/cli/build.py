@@ -13,7 +13,8 @@ import click
 from ikgen.cli.console import Console
 from ikgen.cli.error_output import as_object, say
 from ikgen.cli.options import console_options, executor_option, trust_option
-from ikgen.projects.config import ArmConfig, load_config, named_config
+from ikgen.projects.config import ArmConfig, named_config
+from ikgen.projects.recorded_arms import listed_arms
 
 if TYPE_CHECKING:
     from ikgen.projects.project_build import Outcome
@@ -22,7 +23,7 @@ __all__ = ["build"]
 
 
 @click.command()
-@click.argument("config", type=click.Path(path_type=Path), metavar="[CONFIG]", required=False)
+@click.argument("config", type=click.Path(path_type=Path), metavar="[CONFIG|DIR]", required=False)
 @click.option(
     "--check", is_flag=True, help="Only say what is stale and why; exit code 1 if anything is."
 )
@@ -65,10 +66,11 @@ def build(
 ) -> int:
     """Generate every arm that CONFIG lists and that is not up to date.
 
-    CONFIG is an ikgen.toml, or a pyproject.toml with [tool.ikgen]; by default the one here.
+    CONFIG is an ikgen.toml, or a pyproject.toml with [tool.ikgen]; by default the one here. Of a folder DIR
+    without one those that were generated into it are made again.
     """
     path = named_config(config)
-    arms = load_config(path)
+    arms = listed_arms(path)
     if check:
         return _check(path, arms, verify=not no_verify, as_json=as_json, quiet=quiet)
     from ikgen.processes.executors import Workers

@@ -10,7 +10,13 @@ import click
 
 from ikgen.cli.completion import RobotFile
 from ikgen.cli.console import Console
-from ikgen.cli.options import chain_options, console_options, emit_option, sampling_options
+from ikgen.cli.options import (
+    chain_options,
+    console_options,
+    emit_option,
+    package_options,
+    sampling_options,
+)
 from ikgen.cli.request_options import make_request, parse_emit
 from ikgen.errors import UsageError
 from ikgen.generation.request import Outputs, is_table
@@ -61,6 +67,7 @@ _NOT_OF_TABLES = {
 @click.argument("robot", type=RobotFile())
 @chain_options
 @emit_option
+@package_options
 @_only
 @_output
 @_force
@@ -80,6 +87,7 @@ def from_urdf(robot: Path, **options: Any) -> int:
 @click.argument("table", type=click.Path(path_type=Path))
 @chain_options
 @emit_option
+@package_options
 @_only
 @_output
 @_force

@@ -18,6 +18,7 @@ __all__ = [
     "emit_option",
     "executor_option",
     "executor_options",
+    "package_options",
     "reading_options",
     "sampling_options",
     "trust_option",
@@ -88,6 +89,15 @@ _CHAIN_OPTIONS = (
     ),
 )
 
+_PACKAGE_OPTIONS = (
+    click.option(
+        "--maintainer", metavar="'NAME <EMAIL>'", help="Who maintains an emitted ROS package."
+    ),
+    click.option(
+        "--license", metavar="NAME", help="Licence of an emitted ROS package, as SPDX names it."
+    ),
+)
+
 trust_option = click.option(
     "--trust",
     is_flag=True,
@@ -115,6 +125,11 @@ def _apply(options: Sequence[Callable[[Any], Any]], function: F) -> F:
 def chain_options(function: F) -> F:
     """Which chain of the robot, which task, and how to read the file."""
     return _apply([*_CHAIN_OPTIONS, trust_option], function)
+
+
+def package_options(function: F) -> F:
+    """What a ROS package says of itself."""
+    return _apply(_PACKAGE_OPTIONS, function)
 
 
 def reading_options(function: F) -> F:

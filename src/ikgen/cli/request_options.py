@@ -8,6 +8,7 @@ from pathlib import Path
 from ikgen.errors import UsageError
 from ikgen.generation.joint_value import joint_value
 from ikgen.generation.request import Request
+from ikgen.model.maintainer import is_maintainer
 from ikgen.model.module_name import identifier, is_module_name
 
 __all__ = ["make_request", "parse_coupled", "parse_emit", "parse_free", "parse_locked"]
@@ -27,6 +28,8 @@ def make_request(
     package_paths: Sequence[Path] = (),
     calibration: Path | None = None,
     name: str | None = None,
+    maintainer: str | None = None,
+    license: str | None = None,
     trust: bool = False,
 ) -> Request:
     """The request that the options make; raises `UsageError` for text that does not parse."""
@@ -56,6 +59,8 @@ def make_request(
         package_paths=tuple(package_paths),
         calibration=calibration,
         name=_module_name(name),
+        maintainer=_maintainer(maintainer),
+        license=license,
         trust=trust,
     )
 
@@ -154,3 +159,13 @@ def _module_name(name: str | None) -> str | None:
             f"--name {name}: not an identifier", hint=f"for example --name {identifier(name)}"
         )
     return name
+
+
+def _maintainer(text: str | None) -> str | None:
+    """The maintainer if a manifest can say so."""
+    if text is not None and not is_maintainer(text):
+        raise UsageError(
+            f"--maintainer {text}: not written NAME <EMAIL>",
+            hint="for example --maintainer 'Ada Lovelace <ada@example.com>'",
+        )
+    return text

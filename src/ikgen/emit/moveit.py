@@ -11,6 +11,7 @@ from ikgen.emit.cpp.cpp_language import comment
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
 from ikgen.errors import UsageError
+from ikgen.model.maintainer import name_and_email
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -21,6 +22,8 @@ _FILES = {
     "package.xml": "package.xml",
     "CMakeLists.txt": "CMakeLists.txt",
     "README.md": "README.md",
+    "regenerate.sh": "regenerate.sh",
+    "test/solver_test.cpp": "solver_test.cpp",
     "plugin.xml": "plugin.xml",
     "config/kinematics.yaml": "kinematics.yaml",
     "src/kinematics_plugin.cpp": "kinematics_plugin.cpp",
@@ -69,8 +72,11 @@ def package_name(name: str) -> str:
 def _values(module: SolverModule, package: str) -> dict[str, object]:
     """What the templates name."""
     turning = [module.turns(j) and j not in module.free for j in range(module.dh.dof)]
+    who, email = name_and_email(module.maintainer or "user <user@todo.todo>")
     return {
         "m": module,
+        "who": who,
+        "email": email,
         "package": package,
         "namespace": f"{module.name}_ik",
         "joint_names": tuple(joint.name for joint in module.dh.joints),

@@ -35,7 +35,7 @@ class SolverModule:
     `source_sha256` tell what it was made from, `geometry` is the geometry class in words,
     `plan` what an elimination needs where the rules did not solve the arm. Of a table
     without numbers the constants are left to be filled in, or with `sample` those that its derivation
-    was checked with.
+    was checked with. `maintainer` (`NAME <EMAIL>`) and `license` are for manifests of packages.
     """
 
     name: str
@@ -51,6 +51,8 @@ class SolverModule:
     order: tuple[str, ...] = ()
     plan: EliminationPlan | None = None
     sample: bool = False
+    maintainer: str | None = None
+    license: str | None = None
 
     @property
     def refine(self) -> str:

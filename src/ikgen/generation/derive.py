@@ -60,7 +60,11 @@ def derive(
         raise unsolved_error(stuck, request)
     found, program = _program(found, progress)
     held = free_defaults(found.reading.dh, defaults)
-    module = _module(name, request.robot.name, found, program, held)
+    module = replace(
+        _module(name, request.robot.name, found, program, held),
+        maintainer=request.maintainer,
+        license=request.license,
+    )
     unasked = request.task is None
     return Derivation(found.reading, geometry, found.task, found.graph, module, unasked, found.held)
 

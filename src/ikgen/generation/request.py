@@ -14,6 +14,7 @@ from typing import Any
 
 from ikgen.generation.codec import CodecError, coded, read_free, uncoded
 from ikgen.model.joint_relation import Mimic, read_relation
+from ikgen.model.maintainer import is_maintainer
 from ikgen.model.module_name import is_module_name
 from ikgen.tasks import AXES
 
@@ -54,6 +55,12 @@ def _relations(value: Any, where: str) -> Any:
     return value
 
 
+def _maintainer(value: Any, where: str) -> Any:
+    if isinstance(value, str) and not is_maintainer(value):
+        raise CodecError(where, f"the maintainer '{value}' is not written NAME <EMAIL>")
+    return value
+
+
 def _positive(value: Any, where: str) -> Any:
     if isinstance(value, int) and value < 1:
         raise CodecError(where, f"{value} is less than 1")
@@ -67,7 +74,8 @@ class Request:
     (None: chosen), `lock` fixed joints to their value (rad or m), `couple` joints to what
     they follow (`SOURCE*k+c`, rad or m), `args` are xacro's, `calibration` is a
     file of the one arm's own kinematics; `name` is the prefix of the files (None: made from the robot's);
-    `trust` lets the file do whatever xacro can."""
+    `maintainer` (`NAME <EMAIL>`) and `license` go into the manifest of a ROS package; `trust` lets the
+    file do whatever xacro can."""
 
     robot: Path
     base: str | None = None
@@ -81,6 +89,8 @@ class Request:
     package_paths: tuple[Path, ...] = ()
     calibration: Path | None = None
     name: str | None = field(default=None, metadata=coded(_name))
+    maintainer: str | None = field(default=None, metadata=coded(_maintainer))
+    license: str | None = None
     # Only who runs ikgen may trust a file: neither a config nor a record says so.
     trust: bool = field(default=False, metadata=uncoded())
 
@@ -104,7 +114,7 @@ class Request:
     def command(self, *more: str) -> str:
         """The command that generates what is asked for, with `more` options."""
         words = ["ikgen", "from-dh" if self.table else "from-urdf", str(self.robot)]
-        for option in ("base", "tip", "task", "tool_axis", "name"):
+        for option in ("base", "tip", "task", "tool_axis", "name", "maintainer", "license"):
             value = getattr(self, option)
             if value is not None:
                 words += [f"--{option.replace('_', '-')}", value]

@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ikgen.errors import IkgenError
-from ikgen.projects.config import load_config, named_config
+from ikgen.projects.config import named_config
+from ikgen.projects.recorded_arms import listed_arms
 from ikgen.projects.stale import stale_reasons
 
 __all__ = ["main", "mending", "stale_lines"]
@@ -31,7 +32,7 @@ def main(configs: Sequence[str]) -> int:
     for config in named or [None]:
         try:
             path = named_config(config)
-            arms = load_config(path)
+            arms = listed_arms(path)
             reasons = [
                 (arm.name, reason) for arm, reason in zip(arms, stale_reasons(arms), strict=True)
             ]

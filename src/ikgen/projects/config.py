@@ -60,13 +60,13 @@ def default_config(folder: Path) -> Path | None:
 
 
 def named_config(path: Path | None) -> Path:
-    """The config that a command means: a file, that of a folder, or the one here."""
+    """The config that a command means: a file, that of a folder, or the one here; a folder that is named
+    and has none is meant itself."""
     if path is not None and not path.is_dir():
         return path
-    found = default_config(path or Path())
+    found = default_config(path or Path()) or path
     if found is None:
-        where = f"in {path}" if path is not None else "here"
-        raise UsageError(f"no ikgen.toml {where}", hint="name the config: ikgen build CONFIG")
+        raise UsageError("no ikgen.toml here", hint="name the config: ikgen build CONFIG")
     return found
 
 

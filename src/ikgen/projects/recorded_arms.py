@@ -1,0 +1,34 @@
+"""The arms whose outputs lie in a folder without a config: their records say what was asked for."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from ikgen.generation.record import find_records, read_record, records_of
+from ikgen.generation.request import Outputs
+from ikgen.projects.config import ArmConfig, default_config, load_config
+
+__all__ = ["arms_below", "listed_arms"]
+
+
+def arms_below(folder: Path) -> tuple[ArmConfig, ...]:
+    """Every arm that was generated into a folder or one below it, in the order of the records' paths;
+    raises `UsageError` where there is none."""
+    arms: dict[tuple[Path, str], ArmConfig] = {}
+    for path in find_records(folder):
+        record = read_record(path)
+        out = record.out or record.folder
+        if (out, record.name) not in arms:
+            names = [name for one in records_of(out, record.name) for name in read_record(one).emit]
+            arms[out, record.name] = ArmConfig(
+                replace(record.given, name=record.name), Outputs(emit=tuple(names), out=out)
+            )
+    return tuple(arms.values())
+
+
+def listed_arms(path: Path) -> tuple[ArmConfig, ...]:
+    """The arms of a config, or of a folder that has records and no config."""
+    if path.is_dir() and default_config(path) is None:
+        return arms_below(path)
+    return load_config(path)

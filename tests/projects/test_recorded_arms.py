@@ -1,0 +1,90 @@
+"""Outputs in a folder without a config are made again from their records."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from ikgen.cli.main import run
+from ikgen.generation.codec import CodecError, Decoder
+from ikgen.generation.request import Request
+from ikgen.model.maintainer import is_maintainer, name_and_email
+from ikgen.projects.recorded_arms import arms_below
+
+FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
+ADA = "Ada Lovelace <ada@example.com>"
+
+
+@pytest.fixture
+def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A description and two outputs of it in `src`, one of them a package."""
+    shutil.copy(FIXTURES / "scara_standard.toml", tmp_path)
+    monkeypatch.chdir(tmp_path)
+    command = ["from-dh", "scara_standard.toml", "--emit", "python,moveit", "-o", "src", "-q"]
+    who = ["--maintainer", ADA, "--license", "BSD-3-Clause"]
+    assert run([*command, *who, "--no-verify"]) == 0
+    return tmp_path
+
+
+def test_the_package_says_whose_it_is(workspace: Path) -> None:
+    (manifest,) = workspace.rglob("package.xml")
+    read = ElementTree.parse(manifest)
+    maintainer = read.find("maintainer")
+    assert maintainer is not None
+    assert (maintainer.text, maintainer.get("email")) == ("Ada Lovelace", "ada@example.com")
+    assert read.findtext("license") == "BSD-3-Clause"
+
+
+def test_all_outputs_of_an_arm_are_made_again(
+    workspace: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (arm,) = arms_below(workspace / "src")
+    assert set(arm.outputs.emit) == {"python", "moveit"} and arm.request.maintainer == ADA
+    assert run(["build", "src", "--check", "--no-verify"]) == 0
+    table = workspace / "scara_standard.toml"
+    table.write_text(table.read_text().replace("l_1 = ", "l_1 = 1"))
+    assert run(["build", "src", "--check", "--no-verify"]) == 1
+    assert "hint: ikgen build src" in capsys.readouterr().err
+    assert run(["build", "src", "--no-verify", "-q"]) == 0
+    assert run(["build", "src", "--check", "--no-verify"]) == 0
+    (manifest,) = workspace.rglob("package.xml")
+    assert "ada@example.com" in manifest.read_text()
+
+
+def test_a_package_regenerates_itself_from_anywhere(workspace: Path) -> None:
+    (script,) = workspace.rglob("regenerate.sh")
+    command = ["sh", str(script), "--no-verify"]
+    before = script.with_name("package.xml").read_text()
+    script.with_name("package.xml").write_text("")
+    told = subprocess.run([*command, "--check"], cwd="/", capture_output=True, text=True)
+    assert told.returncode == 1 and "package.xml was edited" in told.stdout
+    assert subprocess.run([*command, "--force"], cwd="/", capture_output=True).returncode == 0
+    assert script.with_name("package.xml").read_text() == before
+
+
+def test_a_folder_without_outputs_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["build", str(tmp_path)]) == 2
+    assert "no outputs of ikgen below" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "text", ["ada", "<a@b.c>", "Ada <ada>", "Ada <a@b.c", 'A <"a@b.c>', "A\n<a@b.c>"]
+)
+def test_maintainers_that_no_manifest_takes_are_refused(
+    text: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert not is_maintainer(text)
+    with pytest.raises(CodecError, match="NAME <EMAIL>"):
+        Decoder().table(Request, {"robot": "a.urdf", "maintainer": text}, "arm[0]")
+    assert run(["from-urdf", "a.urdf", "--maintainer", text]) == 2
+    assert "ada@example.com" in capsys.readouterr().err
+
+
+def test_a_maintainer_is_taken_apart() -> None:
+    assert name_and_email(" Ada L. <ada@example.com> ") == ("Ada L.", "ada@example.com")
