@@ -22,6 +22,8 @@ hide: [navigation, toc]
 
 # Gallery
 
+<!-- page not run: python -m benchmarks.gallery has run each command before it wrote it here -->
+
 {count} robots as ikgen reads them: the class of the geometry, how many solutions a pose has, which joint
 is held where there are more joints than the task fixes, the time to derive the solver, and that of the
 emitted Python module in batches, for all solutions of a pose. The drawings are made from the joint tree

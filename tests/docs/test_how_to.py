@@ -1,31 +1,17 @@
-"""What the pages on maps, on messages and on the comparison say holds."""
+"""What pages say of messages, commands and extras holds."""
 
 from __future__ import annotations
 
 import re
-import shutil
 from pathlib import Path
 
 import pytest
-from tests.support.snippets import blocks, follow
+from tests.support.snippets import blocks
 
 from ikgen.cli.main import COMMANDS
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
-
-
-@pytest.mark.skipif(shutil.which("c++") is None, reason="takes long without a C++ compiler")
-def test_mapping_works_as_it_says(tmp_path: Path) -> None:
-    (tmp_path / "urdf_fixtures").mkdir()
-    shutil.copy(ROOT / "urdf_fixtures/ur5e.urdf", tmp_path / "urdf_fixtures")
-    assert follow(DOCS / "how-to/reach.md", tmp_path) == 2
-
-
-def test_a_report_is_written_as_it_says(tmp_path: Path) -> None:
-    (tmp_path / "urdf_fixtures").mkdir()
-    shutil.copy(ROOT / "urdf_fixtures/ur5e.urdf", tmp_path / "urdf_fixtures")
-    assert follow(DOCS / "how-to/report.md", tmp_path) == 1
 
 
 def test_messages_are_those_of_the_program() -> None:

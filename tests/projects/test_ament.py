@@ -17,7 +17,7 @@ from pathlib import Path
 
 import junitparser
 import pytest
-from tests.support.markdown_steps import blocks
+from tests.support.snippets import blocks
 from tests.support.tools import environment, needs_colcon
 
 ROOT = Path(__file__).resolve().parents[2]

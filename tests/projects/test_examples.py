@@ -8,7 +8,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from tests.support.markdown_steps import blocks
+from tests.support.snippets import blocks
 from tests.support.tools import environment, needs_cmake, needs_colcon
 
 ROOT = Path(__file__).resolve().parents[2]

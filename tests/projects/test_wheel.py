@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from tests.support.environments import Environment, without_ikgen
-from tests.support.markdown_steps import blocks
+from tests.support.snippets import blocks
 
 pytest.importorskip("hatchling")
 ROOT = Path(__file__).resolve().parents[2]
