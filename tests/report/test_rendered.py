@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.support.sampled import sampled
 
 from ikgen.errors import UnsolvedChainError
 from ikgen.generation.derive import derive
@@ -117,10 +118,10 @@ def test_page_in_a_browser(name: str, width: int, tmp_path: Path) -> None:
     assert check_page(report_of(name, ".html"), width, tmp_path)["maths"] > 50
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("name", SUITE)
 def test_page_of_the_whole_suite_on_a_phone(name: str, tmp_path: Path) -> None:
-    """`python -m pytest -m slow tests/report/test_rendered.py`"""
+    """`python -m pytest -m long tests/report/test_rendered.py`"""
     check_page(report_of(name, ".html"), 390, tmp_path)
 
 
@@ -156,9 +157,9 @@ def test_names_on_paper(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", SUITE)
-def test_latex_of_the_whole_suite(name: str, tmp_path: Path) -> None:
-    """`python -m pytest -m slow tests/report/test_rendered.py`"""
+@pytest.mark.parametrize("name", sampled(SUITE, IN_BROWSER))
+def test_latex(name: str, tmp_path: Path) -> None:
+    """`python -m pytest -m long tests/report/test_rendered.py` looks at the whole suite."""
     log = typeset(report_of(name, ".tex"), tmp_path)
     wide = [float(w) for w in re.findall(r"Overfull \\hbox \(([\d.]+)pt", log)]
     assert max(wide, default=0.0) < STICKS_OUT

@@ -60,7 +60,7 @@ OK, UNREACHABLE, LIMITS, INVALID = range(4)
 
 @pytest.mark.parametrize("header", HEADERS)
 def test_a_header_compiles_alone(header: str, tmp_path: Path) -> None:
-    compiled_header(f'#include "{header}"\n#include "{header}"\nint main() {{}}\n', tmp_path, "-O0")
+    compiled_header(f'#include "{header}"\n#include "{header}"\n', tmp_path, "-fsyntax-only")
 
 
 @pytest.mark.parametrize("header", HEADERS)
