@@ -84,7 +84,7 @@ def derived(dh: DHChain, folder: Path) -> tuple[str, Path | None]:
     plan = elimination_plan(dh)
     if plan is None:
         return NEITHER, None
-    module = SolverModule("random", elimination_program(dh), dh, *facts, plan=plan)
+    module = SolverModule("random", elimination_program(dh, plan.most), dh, *facts, plan=plan)
     path.write_text(emit_module(module))
     return ELIMINATION, path
 
@@ -109,7 +109,7 @@ def check(dh: DHChain, module: ModuleType, poses: int, rng: np.random.Generator)
     """Wrong rows, by what the module's task reads, and missed configurations over random regular poses."""
     q = rng.uniform(-2.5, 2.5, (poses, dh.dof))
     regular = smallest_singular(dh, q, arm_size(dh)) > 1e-3
-    turning, space = revolute(module), task_space(find_task(module.TASK))
+    turning, space = revolute(module), task_space(find_task(module.TASK, module.TOOL_AXIS or None))
     wrong = missed = 0
     for at, pose in zip(q[regular], dh_pose(dh, q[regular]), strict=True):
         rows = module.solve(pose, limits=False).q

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ikgen.elimination.plan import _ranking, _separate
+from ikgen.elimination.plan import _separate, ranking
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -15,8 +15,8 @@ def test_half_a_digit_of_noise_changes_no_order(seed: int) -> None:
     rough = np.array([-3.0, -6.4, -6.5, -9.3, -6.2, -9.9, -12.0]) + noise
     hits = np.ones((7, 200), dtype=bool)
     hits[6, :20] = False
-    assert _ranking(hits, rough)[:2] == [3, 5]
-    assert _ranking(hits[:5], rough[:5]) == [3, 1]
+    assert ranking(hits, rough)[:2] == [3, 5]
+    assert ranking(hits[:5], rough[:5]) == [3, 1]
     shifts = 10.0 ** np.array([-2.0, -11.6, -8.0, -11.9, -11.8, -3.0]) * 10.0 ** noise[:6]
     assert _separate(shifts) == [1, 3]
 

@@ -22,7 +22,8 @@ from ikgen.elimination.loop_frames import forward, jacobian
 from ikgen.elimination.routine import runtime_policy
 from ikgen.kinematics.modified_dh import to_dh
 from ikgen.program.policy import SolvePolicy
-from ikgen.runtime.python.general_6r import six_joints
+from ikgen.runtime.python.chain_kinematics import chain_of
+from ikgen.runtime.python.general_6r import one_axis_each
 from ikgen.runtime.python.refinement import newton
 from ikgen.runtime.python.solution_rows import distinct_rows
 from ikgen.runtime.python.whole_pose import PoseTask
@@ -121,7 +122,7 @@ def test_no_more_solutions_than_a_multi_start_search_finds(name: str) -> None:
         T[:3, 3] /= plan.length
         starts = rng.uniform(-np.pi, np.pi, (600, 6))
         poses = np.broadcast_to(T, (600, 4, 4))
-        chain, task = six_joints(scaled, (True,) * 6), PoseTask(1.0)
+        chain, task = chain_of(scaled, one_axis_each((True,) * 6), 6), PoseTask(1.0)
         q, error, *_ = newton(chain, task, range(6), starts, poses, 40, POLICY)
         ends = q[error < POLICY.arrived]
         one = np.zeros(len(ends), dtype=np.intp)

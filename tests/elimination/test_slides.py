@@ -13,7 +13,8 @@ from ikgen.elimination.loop_frames import forward, jacobian
 from ikgen.elimination.plan import eliminations
 from ikgen.elimination.routine import Plan, finder, runtime_policy, six_joints_batch
 from ikgen.program.policy import SolvePolicy
-from ikgen.runtime.python.general_6r import six_joints
+from ikgen.runtime.python.chain_kinematics import chain_of
+from ikgen.runtime.python.general_6r import one_axis_each
 from ikgen.runtime.python.refinement import newton
 from ikgen.runtime.python.solution_rows import distinct_rows
 from ikgen.runtime.python.whole_pose import PoseTask
@@ -93,7 +94,7 @@ def searched(frames: Array, plan: EliminationPlan, pose: Array, seed: int) -> Ar
     T[:3, 3] /= plan.length
     reach = np.where(plan.turning, np.pi, 4.0)
     starts = np.random.default_rng(seed).uniform(-reach, reach, (600, 6))
-    poses, chain = np.broadcast_to(T, (600, 4, 4)), six_joints(F, plan.turning)
+    poses, chain = np.broadcast_to(T, (600, 4, 4)), chain_of(F, one_axis_each(plan.turning), 6)
     q, error, *_ = newton(chain, PoseTask(1.0), range(6), starts, poses, 40, POLICY)
     ends = q[error < POLICY.arrived]
     rows, *_ = distinct_rows(ends, np.zeros(len(ends), dtype=np.intp), plan.turning, 1e-5)

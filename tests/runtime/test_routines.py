@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from ikgen.emit.cpp.header_bundle import bundle
+from ikgen.runtime.python.coupled_angle import CoupledAngle
 from ikgen.runtime.python.general_6r import candidates
 from ikgen.runtime.python.one_slide import one_slide_candidates
 from ikgen.runtime.python.three_slides import three_slide_candidates
@@ -16,6 +17,7 @@ ROUTINES = {
     "general_6r": (candidates, "general_6r_arm.hpp", "struct General6r"),
     "one_slide": (one_slide_candidates, "one_slide.hpp", "struct OneSlide"),
     "two_slides": (two_slide_candidates, "two_slides.hpp", "struct TwoSlides"),
+    "coupled_6r": (CoupledAngle(()), "coupled_6r.hpp", "struct Coupled6r"),
     "three_slides": (three_slide_candidates, "three_slides.hpp", "struct ThreeSlides"),
 }
 

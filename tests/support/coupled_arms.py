@@ -1,12 +1,14 @@
-"""The elbow arm with a crank beside it that drives its waist."""
+"""The elbow arm with a crank beside it that drives its waist, and tables whose joints are coupled."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from pathlib import Path
 
 from tests.support.small_robots import elbow_robot
 
-__all__ = ["crank_robot"]
+__all__ = ["coupled_table", "crank_robot", "hollow_wrist"]
 
 _CRANK = (
     '<joint name="crank" type="{kind}"><parent link="base_link"/><child link="wheel"/><axis xyz="0 0 1"/>'
@@ -33,3 +35,26 @@ def crank_robot(
     path = folder / "cranked.urdf"
     path.write_text(text.replace("</robot>", f"{crank}</robot>"))
     return path
+
+
+def coupled_table(
+    folder: Path, alpha: Sequence[float], a: Sequence[float], d: Sequence[float]
+) -> Path:
+    """A DH table (modified) of as many revolute joints as there are twists (rad) and lengths (m)."""
+    lines = ['name = "coupled"', 'convention = "modified"']
+    for twist, length, offset in zip(alpha, a, d, strict=True):
+        lines += ["[[joints]]", 'type = "revolute"', f"alpha = {twist!r}"]
+        lines += [f"a = {length!r}", f"d = {offset!r}", "theta = 0"]
+    path = folder / "coupled.toml"
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def hollow_wrist(folder: Path) -> Path:
+    """An elbow arm with a hollow wrist: axes 4 to 7 at 35, 70 and 35 degrees, of which joint 6 is to turn
+    back what joint 5 turns."""
+    tilt = math.radians(35.0)
+    alpha = [0.0, math.pi / 2, 0.0, math.pi / 2, tilt, -2.0 * tilt, tilt]
+    return coupled_table(
+        folder, alpha, [0.0, 0.3, 1.2, 0.2, 0, 0, 0], [0, 0, 0, 1.4, 0.08, 0.08, 0]
+    )

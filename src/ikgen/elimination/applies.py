@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
+
 import numpy as np
 
+from ikgen.elimination.coupled_plans import choose_coupled
 from ikgen.elimination.loop_frames import held_frames
 from ikgen.elimination.plan import EliminationPlan, choose_plan
-from ikgen.model.dh import DHChain
+from ikgen.model.dh import DHChain, DHRow
+from ikgen.runtime.python.chain_kinematics import Motion
 
-__all__ = ["elimination_plan"]
+__all__ = ["axis_motions", "elimination_plan"]
 
 _HELD_VALUES = (0.4, -1.1, 2.2)
 """Values of held joints (rad or m) at which plans are tried."""
@@ -19,12 +24,33 @@ _MOST_SLIDES = 3
 
 
 def elimination_plan(dh: DHChain) -> EliminationPlan | None:
-    """The plan for a whole pose; None unless six joints move, at most three of them slides, or
-    where no plan finds all."""
+    """The plan for a whole pose; None unless six joints move, at most three of them slides, or all
+    turning where one of them, and no other, turns several axes; or where no plan finds all."""
     moving = [row for row in dh.rows if dh.joints[row.driver].name not in dh.free]
-    turning = tuple(row.revolute for row in moving)
-    if len(moving) != 6 or len(dh.rows) != dh.dof or turning.count(False) > _MOST_SLIDES:
+    drivers = Counter(row.driver for row in moving)
+    several = sum(count > 1 for count in drivers.values())
+    if len(drivers) != 6 or len(dh.rows) - len(moving) != len(dh.free) or several > 1:
         return None
+    turning = tuple(row.revolute for row in moving)
     values = _HELD_VALUES if dh.free else (0.0,)
-    plan = choose_plan(np.array([held_frames(dh, value) for value in values]), turning)
-    return plan if plan.usable else None
+    if several and all(turning):
+        family = np.array([held_frames(dh, value) for value in values])
+        plan = choose_coupled(family, axis_motions(dh, moving))
+    elif not several and turning.count(False) <= _MOST_SLIDES:
+        plan = choose_plan(np.array([held_frames(dh, value) for value in values]), turning)
+    else:
+        return None
+    return plan if plan is not None and plan.usable else None
+
+
+def axis_motions(dh: DHChain, moving: Sequence[DHRow]) -> tuple[Motion, ...]:
+    """How the DH variables of rows follow those of their joints' leading rows, joints counted among those
+    that move."""
+    joints = sorted({row.driver for row in moving})
+    out = []
+    for row in moving:
+        lead = dh.lead_row(row.driver)
+        ratio = float(round(row.scale / lead.scale))
+        shift = row.offset.value - ratio * lead.offset.value
+        out.append((joints.index(row.driver), row.revolute, ratio, shift))
+    return tuple(out)

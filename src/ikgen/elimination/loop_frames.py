@@ -17,14 +17,14 @@ _LEAST_WITH_SLIDES = 0.1  # m
 
 
 def held_frames(dh: DHChain, value: float = 0.0) -> Matrix:
-    """The file's own chain (n + 1, 4, 4) between the DH variables (rad or m) of its n moving joints, the
-    free ones held at `value` (rad or m).
+    """The file's own chain (n + 1, 4, 4) between the DH variables (rad or m) of its n moving rows, the
+    free joints held at `value` (rad or m).
 
-    Raises ValueError where a joint drives several rows.
+    Raises ValueError where a held joint drives several rows.
     """
     held = [dh.joints[row.driver].name in dh.free for row in dh.rows]
-    if len(dh.rows) != dh.dof:
-        raise ValueError("the eliminations are for joints that drive one row each")
+    if sum(held) != len(dh.free):
+        raise ValueError("the eliminations are for held joints that drive one row each")
     frames = np.array(dh.file_frames, dtype=np.float64)
     for j in reversed([j for j, still in enumerate(held) if still]):
         frames = hold_joint(frames, j, value, revolute=dh.rows[j].revolute)

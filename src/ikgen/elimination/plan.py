@@ -22,8 +22,9 @@ from ikgen.elimination.parallel_plans import ParallelPlan, choose_parallel
 from ikgen.elimination.resultant import RESULTANTS, Resultant, root_shifts
 from ikgen.elimination.routine import Elimination, Plan, Turning, finder, initial_residuals
 from ikgen.model.joint_tree import Matrix
+from ikgen.runtime.python.chain_kinematics import Motion
 
-__all__ = ["EliminationPlan", "choose_plan", "eliminations"]
+__all__ = ["EliminationPlan", "choose_plan", "distinct_of_runs", "eliminations", "ranking"]
 
 _ALL: tuple[Elimination, ...] = tuple(
     (start, reverse, swap) for swap, reverse, start in product((0, 1), (0, 1), range(6))
@@ -34,6 +35,8 @@ _BLURRED = 1e-4  # rad; roots that move further are not worth a resultant
 _SAME = 1e-5
 _FINE = -8.0  # logarithm of errors below which they no longer count
 _KEPT = 2
+_MOST = (16, 16, 8, 2)
+"""Solutions by the number of slides (Raghavan and Roth 1993)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +48,9 @@ class EliminationPlan:
     met in probing that the first of them finds alone. resultants: (start, reverse) of hidden angles
     whose polynomial has separate roots, in order of preference; may be none. turning: which of the six
     joints turn, the others slide. parallel: the elimination about two parallel axes, which is tried first;
-    None where they are not, or where it settles few poses.
+    None where they are not, or where it settles few poses. motions: those of the axes in their order along
+    the chain where a joint turns several; frames is then (n + 1, 4, 4), and the third number of an
+    elimination its degree in that joint's angle.
     """
 
     frames: Matrix
@@ -55,6 +60,20 @@ class EliminationPlan:
     resultants: tuple[Resultant, ...] = ()
     turning: Turning = _REVOLUTE
     parallel: ParallelPlan | None = None
+    motions: tuple[Motion, ...] = ()
+
+    @property
+    def coupled(self) -> int:
+        """The joint that turns several axes, among those that move."""
+        joints = [motion[0] for motion in self.motions]
+        return max(joints, key=joints.count)
+
+    @property
+    def most(self) -> int:
+        """Solutions at most, a power of two."""
+        if self.motions:
+            return 1 << (2 * self.eliminations[0][2] - 1).bit_length()
+        return _MOST[self.turning.count(False)]
 
     @property
     def usable(self) -> bool:
@@ -92,7 +111,7 @@ def choose_plan(
     hits = np.concatenate([probe.hits for probe in parts], axis=1)
     rough = np.max([probe.rough for probe in parts], axis=0)
     shifts = np.max([probe.shifts for probe in parts], axis=0)
-    order = _ranking(hits, rough)
+    order = ranking(hits, rough)
     first = family[0].copy()
     first.setflags(write=False)
     return EliminationPlan(
@@ -106,12 +125,12 @@ def choose_plan(
     )
 
 
-def _ranking(hits: Matrix, rough: Matrix) -> list[int]:
+def ranking(hits: Matrix, rough: Matrix) -> list[int]:
     """The eliminations to keep: most solutions together with those before, then best conditioned. A
     badly conditioned one counts as if it had lost one solution in a hundred per two digits."""
     order: list[int] = []
     covered = np.zeros(hits.shape[1], dtype=bool)
-    for _ in range(_KEPT):
+    for _ in range(min(_KEPT, len(hits))):
         rest = [k for k in range(len(hits)) if k not in order]
         found = {k: int((covered | hits[k]).sum()) for k in rest}
         penalty = {k: 0.005 * max(rough[k] - _FINE, 0.0) * hits.shape[1] for k in rest}
@@ -159,7 +178,7 @@ def _probe(frames: Matrix, turning: Turning, count: int, rng: np.random.Generato
     find = finder(turning)
     runs = [initial_residuals(frames, Plan(length, (e,), turning, find), poses) for e in plans]
     rough = [np.quantile(np.log10(e + 1e-16), 0.9) if len(e) else 0.0 for _, e in runs]
-    unions = [_found([rows[i] for rows, _ in runs], turning) for i in range(len(poses))]
+    unions = [distinct_of_runs([rows[i] for rows, _ in runs], turning) for i in range(len(poses))]
     shifts = np.ones((len(RESULTANTS), 1))
     if all(turning):
         shifts = root_shifts(_over(frames, length), _over(poses, length), np.array(q))
@@ -173,7 +192,7 @@ def _over(frames: Matrix, length: float) -> Matrix:
     return scaled
 
 
-def _found(runs: list[Matrix], turning: Turning) -> Matrix:
+def distinct_of_runs(runs: list[Matrix], turning: Turning) -> Matrix:
     """Which of the runs' rows (k, 6) has which of all distinct rows: (24, n) bool."""
     union = np.concatenate(runs)
     fresh = [k for k in range(len(union)) if not _among(union[k], union[:k], turning)]

@@ -124,14 +124,15 @@ def _held_chains(reading: Reading, task: Task) -> list[DHChain]:
 def eliminations(failed: list[Attempt], dh: DHChain, progress: Progress) -> list[Attempt]:
     """The first of the failed attempts that an elimination solves; empty if none does."""
     from ikgen.elimination import elimination_plan
-    from ikgen.lowering.elimination_program import elimination_name, most_solutions
+    from ikgen.lowering.elimination_program import elimination_name
 
     for one in failed:
         progress("derive", " ".join(["elimination", *one.free]))
         held = replace(dh, free=one.free)
-        if elimination_plan(held) is not None:
+        plan = elimination_plan(held)
+        if plan is not None:
             order = (f"all joints at once (general {elimination_name(held)} elimination)",)
-            solved = replace(one, closed=True, max_solutions=most_solutions(held), order=order)
+            solved = replace(one, closed=True, max_solutions=plan.most, order=order)
             return [replace(solved, left=(), weak=())]
     return []
 

@@ -77,7 +77,7 @@ def _program(found: ClosedForm, progress: Progress) -> tuple[ClosedForm, Program
 
     dh = found.reading.dh
     if found.plan:
-        return found, elimination_program(dh)
+        return found, elimination_program(dh, found.plan.most)
 
     def solve(passed_over: tuple[Variable, ...]) -> SolutionGraph:
         return by_rules(dh, found.task, progress, passed_over)

@@ -14,12 +14,10 @@ from ikgen.program.inputs import HeldValue, PoseEntry
 from ikgen.program.liveness import trimmed
 from ikgen.program.statements import Call, Comment, JointOutput, Let, Level, Program, Statement
 
-__all__ = ["elimination_name", "elimination_program", "most_solutions"]
+__all__ = ["elimination_name", "elimination_program"]
 
 _ROUTINES = ("general_6r", "one_slide", "two_slides", "three_slides")
 _NAMES = ("6R", "5R1P", "4R2P", "3R3P")
-_MOST = (16, 16, 8, 2)
-"""By the number of slides (Raghavan and Roth 1993)."""
 
 
 def _slides(dh: DHChain) -> int:
@@ -28,16 +26,17 @@ def _slides(dh: DHChain) -> int:
 
 def elimination_name(dh: DHChain) -> str:
     """The elimination's class: how many of the moving joints turn and slide."""
-    return _NAMES[_slides(dh)]
+    return "coupled 6R" if _coupled(dh) else _NAMES[_slides(dh)]
 
 
-def most_solutions(dh: DHChain) -> int:
-    """Solutions at most."""
-    return _MOST[_slides(dh)]
+def _coupled(dh: DHChain) -> bool:
+    """Whether a joint moves several axes."""
+    return len(dh.rows) > dh.dof
 
 
-def elimination_program(dh: DHChain) -> Program:
-    """All joints that are not held from one call of an elimination (Raghavan and Roth 1993)."""
+def elimination_program(dh: DHChain, most: int) -> Program:
+    """All joints that are not held from one call of an elimination (Raghavan and Roth 1993), which has at
+    `most` so many solutions."""
     pose = tuple(PoseEntry(i, j) for i in range(3) for j in range(4))
     held = tuple(HeldValue(j) for j, joint in enumerate(dh.joints) if joint.name in dh.free)
     prelude: list[Let] = []
@@ -48,13 +47,14 @@ def elimination_program(dh: DHChain) -> Program:
         given += names
     moving = [j for j in range(dh.dof) if HeldValue(j) not in held]
     found = tuple(name for j in moving for name in _names(dh, j))
-    call = Call(_ROUTINES[_slides(dh)], (*(entry.name for entry in pose), *given), found)
+    routine = "coupled_6r" if _coupled(dh) else _ROUTINES[_slides(dh)]
+    call = Call(routine, (*(entry.name for entry in pose), *given), found)
     values = [_value(dh, j) for j in moving]
     body: tuple[Statement, ...] = (
         Comment(f"all joints at once: the general {elimination_name(dh)} elimination"),
         *(Let(f"q{j + 1}", operand_of(e)) for j, e in zip(moving, values, strict=True)),
     )
-    levels = (Level(1, None, None, ()), Level(most_solutions(dh), None, call, body))
+    levels = (Level(1, None, None, ()), Level(most, None, call, body))
     outputs = tuple(
         JointOutput(j, HeldValue(j).name if HeldValue(j) in held else f"q{j + 1}")
         for j in range(dh.dof)

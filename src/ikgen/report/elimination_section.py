@@ -32,6 +32,16 @@ _THREE_SLIDES = (
     "middle one from its cosine. The position is linear in the lengths of the three slides. Newton "
     "steps sharpen each solution, and forward kinematics decides."
 )
+_COUPLED = (
+    "One joint of this arm turns several axes. Its angle is hidden: for a value of it the loop of the"
+    " other five joints closes only where twelve equations without three of their angles are "
+    "singular, those of Raghavan and Roth (1990), with the coupled axes in the links behind the "
+    "second, third and fourth of the five. The determinant is a trigonometric polynomial of degree "
+    "{degree} in that angle, which was measured on this arm; its roots on the unit circle are real. "
+    "The null vector gives two of the other angles, linear equations two more, the pose the last; "
+    "Newton steps sharpen each solution, and forward kinematics decides. Where the loop begins, and "
+    "in which direction it is read, was chosen by trying all ways on configurations of this arm."
+)
 _PARALLEL = (
     "Two axes of this arm are parallel. An elimination about these is tried first: the directions of the "
     "axes beside, and the way from one to the other, turn with the two angles that are left. Products of "
@@ -42,10 +52,13 @@ _PARALLEL = (
 
 
 def elimination_section(
-    slides: int = 0, order: Sequence[str] = (), *, parallel: bool = False
+    slides: int = 0, order: Sequence[str] = (), *, parallel: bool = False, coupled: int = 0
 ) -> list[Block]:
     """The elimination of six joints of which some slide, in words and equations; `order` names the joints
-    as this arm's loop reads them; `parallel`: an elimination about two parallel axes comes first."""
+    as this arm's loop reads them; `parallel`: an elimination about two parallel axes comes first;
+    `coupled`: the degree in the angle of a joint that turns several axes, 0 where none does."""
+    if coupled:
+        return [Paragraph((_COUPLED.format(degree=coupled),))]
     if slides >= 2:
         return [Paragraph((_TWO_SLIDES if slides == 2 else _THREE_SLIDES,))]
     first = [Paragraph((_PARALLEL,))] if parallel else []

@@ -127,6 +127,7 @@ _ELIMINATIONS = {
     "one_slide": "OneSlide",
     "two_slides": "TwoSlides",
     "three_slides": "ThreeSlides",
+    "coupled_6r": "Coupled6r",
 }
 """The class of each elimination."""
 

@@ -72,16 +72,28 @@ struct State {
   double r, square;
 };
 
-inline State residual(const Chain& F, const Frame& T, const Vector& q, const Turning& turning) noexcept {
+// A joint that moves an axis of a chain, and the axis' value by the joint's: ratio times it, and shift.
+struct Axis {
+  Index joint;
+  double ratio, shift;
+};
+
+constexpr Axis axis_of(const Chain&, Index i) noexcept { return {i, 1.0, 0.0}; }
+
+// F: a Chain, or another of frames with axis_of.
+template <class Frames>
+inline State residual(const Frames& F, const Frame& T, const Vector& q, const Turning& turning) noexcept {
+  constexpr Index axes = sizeof(Frames) / sizeof(Frame) - 1;
   State out;
   Frame X = F[0];
-  Mat<6, 3> p;
-  for (Index i = 0; i < 6; ++i) {
+  Mat<axes, 3> p, z;
+  for (Index i = 0; i < axes; ++i) {
     for (Index k = 0; k < 3; ++k) {
-      out.J(3 + k, i) = X.R(k, 2);
+      z(i, k) = X.R(k, 2);
       p(i, k) = X.p[k];
     }
-    X = compose(moved(X, turning[i], q[i]), F[i + 1]);
+    const Axis axis = axis_of(F, i);
+    X = compose(moved(X, turning[axis.joint], axis.ratio * q[axis.joint] + axis.shift), F[i + 1]);
   }
   Mat<3, 3> S{};
   out.r = out.square = 0.0;
@@ -93,17 +105,18 @@ inline State residual(const Chain& F, const Frame& T, const Vector& q, const Tur
     out.e[i] = T.p[i] - X.p[i];
     out.r = std::max(out.r, std::abs(out.e[i]));
   }
+  out.J = {};
   for (Index k = 0; k < 3; ++k) {
     const Index m = (k + 1) % 3, n = (k + 2) % 3;
     out.e[3 + k] = 0.5 * (S(n, m) - S(m, n));
-    for (Index i = 0; i < 6; ++i)
-      out.J(k, i) = out.J(3 + m, i) * (X.p[n] - p(i, n)) - out.J(3 + n, i) * (X.p[m] - p(i, m));
-  }
-  for (Index i = 0; i < 6; ++i)
-    for (Index k = 0; k < 3 && !turning[i]; ++k) {
-      out.J(k, i) = out.J(3 + k, i);
-      out.J(3 + k, i) = 0.0;
+    for (Index i = 0; i < axes; ++i) {
+      const Axis axis = axis_of(F, i);
+      const bool turns = turning[axis.joint];
+      const double arm = z(i, m) * (X.p[n] - p(i, n)) - z(i, n) * (X.p[m] - p(i, m));
+      out.J(k, axis.joint) += axis.ratio * (turns ? arm : z(i, k));
+      if (turns) out.J(3 + k, axis.joint) += axis.ratio * z(i, k);
     }
+  }
   for (const double x : out.e) out.square += x * x;
   return out;
 }
@@ -140,7 +153,8 @@ inline Vector damped_step(const State& at, double mu) noexcept {
 
 // Damped Newton (Levenberg-Marquardt) on the chain; returns the residual, and in `before` that of the start. Beside a
 // fold steps halve the error: what has come near takes as many as rows need that are to be told apart.
-inline double refine_one(const Chain& F, const Frame& T, const Turning& turning, Vector& q, double& before) noexcept {
+template <class Frames>
+inline double refine_one(const Frames& F, const Frame& T, const Turning& turning, Vector& q, double& before) noexcept {
   State now = residual(F, T, q, turning);
   before = now.r;
   double damp = 1e-3, bound = 1e4;

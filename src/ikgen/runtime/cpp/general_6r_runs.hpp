@@ -28,7 +28,8 @@ inline Solution solution_of(const Turning& turning, const Vector& q) noexcept {
 }
 
 // Adds a candidate of a run if it can be refined; one that is far off shows that the run's roots are not all sharp.
-inline void add_refined(const Chain& F, const Frame& T, const Turning& turning, Vector q, Spectrum& roots,
+template <class Frames>
+inline void add_refined(const Frames& F, const Frame& T, const Turning& turning, Vector q, Spectrum& roots,
                         Solutions& out) noexcept {
   double before = 0.0, farthest = 0.0;
   const bool arrived = refine_one(F, T, turning, q, before) < kVerified;
@@ -53,8 +54,8 @@ inline Frame displacement() noexcept {
 // with the roots of the pose `aim` beside. One run of the first plan is enough where its roots are real, as many as solutions, and each a solution to many
 // digits. Otherwise more runs follow, with the pose displaced to either side and by the next elimination, until one
 // finds all that is known and no more.
-template <auto Run, std::size_t N>
-inline void solve_in_runs(const Chain& F, const Frame& T, const Turning& turning,
+template <auto Run, class Frames, std::size_t N>
+inline void solve_in_runs(const Frames& F, const Frame& T, const Turning& turning,
                           const std::array<std::array<int, 3>, N>& plans, Solutions& out) noexcept {
   const Frame there = displacement(), back = inverse(there);
   const int given = out.count;

@@ -14,7 +14,8 @@ namespace g6 {
 inline constexpr double kNearlySingular = 1e-3;  // smallest singular value of the slope, lengths over the arm's
 
 // The least singular value of the chain's slope, from above: inverse iteration.
-inline double least_singular(const Chain& F, const Turning& turning, const double (&values)[6]) noexcept {
+template <class Frames>
+inline double least_singular(const Frames& F, const Turning& turning, const double (&values)[6]) noexcept {
   Vector q;
   for (Index i = 0; i < 6; ++i) q[i] = values[i];
   const State at = residual(F, F[0], q, turning);
@@ -45,25 +46,27 @@ inline Frame scaled_frame(const double (&x)[12]) noexcept {
   return out;
 }
 
-template <class Plan>
-inline Chain chain_of(const double (&F)[7][12]) noexcept {
-  Chain out;
-  for (std::size_t n = 0; n < 7; ++n) out[n] = scaled_frame<Plan>(F[n]);
+template <class Plan, class Frames = Chain, int N>
+inline Frames chain_of(const double (&F)[N][12]) noexcept {
+  Frames out;
+  for (std::size_t n = 0; n < std::size_t{N}; ++n) out[n] = scaled_frame<Plan>(F[n]);
   return out;
 }
 
 }  // namespace g6
 
 // Arm: kMotions, in order along the chain, each with `joint` and `revolute`; kFrames, the upper rows of the
-// constants around them; kHeld by joint; kMaxSolutions; Plan, with kLength (m), a typical size of the arm. Six of the
-// motions are not held. Method::solve<Plan>(chain, pose, turning, found): the elimination.
-template <class Arm, class Method>
+// constants around them; kHeld by joint; kMaxSolutions; Plan, with kLength (m), a typical size of the arm. Six
+// joints are not held. Method::solve<Plan>(chain, pose, turning, found): the elimination, for the chain of their axes,
+// which are six unless Frames has room for more.
+template <class Arm, class Method, class Frames = g6::Chain>
 struct SixJointArm {
   static constexpr int kCount = sizeof(Arm::kMotions) / sizeof(Arm::kMotions[0]);
+  static constexpr int kFrames = sizeof(Frames) / sizeof(g6::Frame);
   using Plan = typename Arm::Plan;
 
-  // The chain of the six moving joints, the held ones' values (cosine and sine, or a distance) merged into it.
-  static void merge(const double* held, double (&F)[7][12]) noexcept {
+  // The chain of the moving axes, the held joints' values (cosine and sine, or a distance) merged into it.
+  static void merge(const double* held, double (&F)[kFrames][12]) noexcept {
     g6::Frame frame = constant(0);
     int n = 0;
     for (int i = 0; i < kCount; ++i) {
@@ -84,13 +87,13 @@ struct SixJointArm {
   // the held values.
   template <std::size_t N>
   static int branches(const double* x, double (&roots)[Arm::kMaxSolutions][N]) noexcept {
-    double F[7][12], T[12];
+    double F[kFrames][12], T[12];
     merge(x + 12, F);
     for (int i = 0; i < 12; ++i) T[i] = x[i];
     g6::Solutions found;
     found.count = 0;
     const g6::Turning turns = turning();
-    const g6::Chain chain = g6::chain_of<Plan>(F);
+    const Frames chain = g6::chain_of<Plan, Frames>(F);
     Method::template solve<Plan>(chain, g6::scaled_frame<Plan>(T), turns, found);
     g6::sort_rows(turns, found);
     const bool crowded = found.count > Arm::kMaxSolutions;  // samples of a continuum go first
@@ -107,9 +110,13 @@ struct SixJointArm {
  private:
   static g6::Turning turning() noexcept {
     g6::Turning out{};
-    std::size_t n = 0;
+    std::size_t place[sizeof(Arm::kHeld)] = {}, n = 0;  // of each joint among those that move
+    for (std::size_t j = 0; j < sizeof(Arm::kHeld); ++j) {
+      place[j] = n;
+      n += Arm::kHeld[j] ? 0 : 1;
+    }
     for (const auto& motion : Arm::kMotions)
-      if (!Arm::kHeld[motion.joint]) out[n++] = motion.revolute;
+      if (!Arm::kHeld[motion.joint]) out[place[motion.joint]] = motion.revolute;
     return out;
   }
 

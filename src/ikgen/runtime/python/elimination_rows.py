@@ -18,7 +18,7 @@ _POSES = 256  # whose arrays fit into a processor's cache
 
 
 def _frames(arm: Arm, held: Array) -> Array:
-    """The chain of the six moving joints (7, 4, 4), the held ones' values merged into it.
+    """The chain of the axes that move, (7, 4, 4) unless a joint moves several, held joints merged into it.
 
     held: cosine and sine of a held angle, or a held distance, base to tip.
     """
@@ -43,18 +43,19 @@ def _regular_first(arm: Arm, angles: Array, held: Array) -> Array:
     """At most `arm.most` rows of DH variables (k, 6): where a continuum gives more, its samples go."""
     if len(angles) <= arm.most:
         return angles
-    v = np.empty((len(angles), len(arm.chain.motions)))
-    values, columns = iter(held.tolist()), iter(angles.T)
-    for i, (joint, revolute, _, _) in enumerate(arm.chain.motions):
-        if joint not in arm.free:
-            v[:, i] = next(columns)
-        elif revolute:
-            c, s = next(values), next(values)
-            v[:, i] = atan2(s, c)
-        else:
-            v[:, i] = next(values)
     q = np.empty((len(angles), len(arm.lower)))
-    q[:, arm.chain.joint] = (v - arm.chain.offset) / arm.chain.scale
+    values, columns = iter(held.tolist()), iter(angles.T)
+    motions = arm.chain.motions
+    for joint in range(len(arm.lower)):
+        lead = min((m for m in motions if m[0] == joint), key=lambda m: abs(m[2]))
+        if joint not in arm.free:
+            value = next(columns)
+        elif lead[1]:
+            c, s = next(values), next(values)
+            value = np.array(atan2(s, c))
+        else:
+            value = np.array(next(values))
+        q[:, joint] = (value - lead[3]) / lead[2]
     loss = rank_loss(arm.chain, arm.task, arm.moving, q)
     order = np.argsort(loss < arm.policy.continuum_rank_loss, kind="stable")
     return np.asarray(angles[order][: arm.most])

@@ -10,7 +10,7 @@ import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.back_substitution import complete_angles, middle_angles
-from ikgen.runtime.python.chain_kinematics import Chain, chain_of
+from ikgen.runtime.python.chain_kinematics import Chain, Motion, chain_of
 from ikgen.runtime.python.loop_equations import joint_values, loop_constants, loop_equations
 from ikgen.runtime.python.refinement import refine
 from ikgen.runtime.python.rigid_motion import inverses, rotations_z
@@ -31,9 +31,9 @@ __all__ = [
     "Plan",
     "Way",
     "candidates",
+    "one_axis_each",
     "refined_rows",
     "six_joint_rows",
-    "six_joints",
 ]
 
 Elimination = tuple[int, int, int]  # joint that the loop begins at, whether reversed or swapped
@@ -51,13 +51,15 @@ _THOROUGH = ((3, 1e-12, 0.1), (6, 1e-12, 1e-3), (30, 0.0, 0.0))
 class Plan:
     """How an arm is solved: its typical `length` (m), the `eliminations` that suit it, in order of
     preference, and the function that finds candidates by one of them. `direct`: ways that its geometry
-    allows besides, tried first."""
+    allows besides, tried first. `motions`: those of the axes in their order along the chain where they are
+    more than the six joints."""
 
     length: float
     eliminations: tuple[Elimination, ...]
     turning: Turning
     find: Finder
     direct: tuple[Way, ...] = ()
+    motions: tuple[Motion, ...] = ()
 
 
 def candidates(F: Array, T: Array, plan: Elimination, _: Turning) -> Candidates:
@@ -74,24 +76,26 @@ def candidates(F: Array, T: Array, plan: Elimination, _: Turning) -> Candidates:
 
 
 def refined_rows(
-    F: Array, turning: Turning, T: Array, q: Array, policy: Policy
+    F: Array, plan: Plan, T: Array, q: Array, policy: Policy
 ) -> tuple[Array, Flags, Array]:
     """Newton steps from q (k, 6) to T (k, 4, 4): q, which arrived, and the errors before (k,)."""
-    near = slides_near(q, turning)
-    chain, start = _kept_chain(F.tobytes(), turning), np.where(near[:, None], q, 0.0)
-    thorough = replace(policy, refinement=_THOROUGH)
+    near, motions = slides_near(q, plan.turning), plan.motions or one_axis_each(plan.turning)
+    chain, start = _kept_chain(F.tobytes(), motions), np.where(near[:, None], q, 0.0)
+    # Roots of a high degree come from farther off: of their rows all digits are wanted.
+    converged = 0.0 if plan.motions else policy.converged
+    thorough = replace(policy, refinement=_THOROUGH, converged=converged)
     q, arrived, before, _ = refine(chain, PoseTask(1.0), _SIX, start, T, thorough)
     return q, arrived & near, np.where(near, before, np.inf)
 
 
 @lru_cache(maxsize=64)
-def _kept_chain(frames: bytes, turning: Turning) -> Chain:
-    return six_joints(np.frombuffer(frames).reshape(7, 4, 4), turning)
+def _kept_chain(frames: bytes, motions: tuple[Motion, ...]) -> Chain:
+    return chain_of(np.frombuffer(frames).reshape(-1, 4, 4), motions, 6)
 
 
-def six_joints(F: Array, turning: Turning) -> Chain:
-    """The chain of frames F (7, 4, 4), each joint turning or sliding."""
-    return chain_of(F, tuple((i, turns, 1.0, 0.0) for i, turns in enumerate(turning)), 6)
+def one_axis_each(turning: Turning) -> tuple[Motion, ...]:
+    """The motions of six joints, each turning about or sliding along an axis of its own."""
+    return tuple((i, turns, 1.0, 0.0) for i, turns in enumerate(turning))
 
 
 def _displaced() -> Array:
@@ -117,15 +121,15 @@ def _runs(plan: Plan) -> list[tuple[Way, tuple[Array | None, ...]]]:
 
 
 def six_joint_rows(F: Array, plan: Plan, T: Array, policy: Policy) -> tuple[Index, Array]:
-    """All real solutions of `F_0 M_1 F_1 ... M_6 F_6 = T` for poses T (N, 4, 4).
+    """All real solutions of `F_0 M_1 F_1 ... M_n F_n = T` for poses T (N, 4, 4).
 
-    F (7, 4, 4) constant rigid transforms; M_i turns about z or moves along it. One run of the first is
-    enough where each of its roots is clearly real, or clearly not, and there are as many solutions as real
-    roots, each found to many digits. Otherwise more runs follow, with the pose displaced to both sides
-    (where right angles make roots coincide they come apart, and Newton's method takes them back) and by
-    the next elimination, until they find all that is known and no more. What a direct way leaves open,
-    these runs confirm or complete. Returns pose indices (k,) in order and joint values (k, 6), angles in
-    (-pi, pi], sorted.
+    F (n + 1, 4, 4) constant rigid transforms, n = 6 unless a joint moves several axes; M_i turns about z
+    or moves along it. One run of the first is enough where each of its roots is clearly real, or clearly
+    not, and there are as many solutions as real roots, each found to many digits. Otherwise more runs
+    follow, with the pose displaced to both sides (where right angles make roots coincide they come apart,
+    and Newton's method takes them back) and by the next elimination, until they find all that is known
+    and no more. What a direct way leaves open, these runs confirm or complete. Returns pose indices (k,)
+    in order and joint values (k, 6), angles in (-pi, pi], sorted.
     """
     F, T = F.copy(), T.copy()
     F[:, :3, 3] /= plan.length
@@ -143,7 +147,7 @@ def six_joint_rows(F: Array, plan: Plan, T: Array, policy: Policy) -> tuple[Inde
         which, real = run % len(todo), real[: len(todo)]
         if moves[0] is None and number >= len(plan.direct):
             least[todo] = np.maximum(least[todo], real)
-        q, arrived, before = refined_rows(F, plan.turning, exact[which], q, policy)
+        q, arrived, before = refined_rows(F, plan, exact[which], q, policy)
         pose, q, before = todo[which[arrived]], q[arrived], before[arrived]
         best = np.lexsort((before >= near, pose))
         q, pose, kept = distinct_rows(q[best], pose[best], plan.turning, policy.coincident)

@@ -13,7 +13,15 @@ from numpy.typing import NDArray
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.loop_equations import XS, YS, ZS
 
-__all__ = ["DOUBTFUL", "Resultant", "hidden_angles", "loop_resultant", "real_angles", "solved"]
+__all__ = [
+    "DOUBTFUL",
+    "Resultant",
+    "hidden_angles",
+    "lift",
+    "loop_resultant",
+    "real_angles",
+    "solved",
+]
 
 Resultant = tuple[Array, Array, Array]
 _NODES = 2.0 * np.pi / 7.0 * np.arange(7)
@@ -22,7 +30,7 @@ DOUBTFUL = 1e-3  # below it, of one that may be half of a double root
 _JITTER = np.cos(np.outer(np.arange(1, 13), np.arange(1, 13)))
 
 
-def _lift(A: Array) -> Array:
+def lift(A: Array) -> Array:
     """Rows (..., r, 9) in (1, c, s) x (1, c', s') times cos h and sin h, h half the first angle:
     (..., 2r, 12) in (cos h, sin h, cos 3h, sin 3h) x (1, c', s')."""
     A0, A1, A2 = A[..., 0:3], 0.5 * A[..., 3:6], 0.5 * A[..., 6:9]
@@ -36,7 +44,7 @@ def loop_resultant(E: Array, left: Array) -> Resultant:
     F0[..., 0] += E[..., 14]
     x, y = E[..., XS], E[..., YS]
     X, Y = left[:, XS], left[:, YS]
-    return _lift(F0), _lift(x @ X + y @ Y), _lift(y @ X - x @ Y)
+    return lift(F0), lift(x @ X + y @ Y), lift(y @ X - x @ Y)
 
 
 def hidden_angles(
@@ -58,7 +66,7 @@ def hidden_angles(
     N = np.zeros((len(row), 12, 16))
     N[:, :6, 0:4] = N[:, 6:, 4:8] = c * x + s * y
     N[:, :6, 8:12] = N[:, 6:, 12:16] = c * y - s * x
-    W = np.concatenate([_lift(left[:, XS]), _lift(left[:, YS])], axis=1)
+    W = np.concatenate([lift(left[:, XS]), lift(left[:, YS])], axis=1)
     K = np.eye(16) + 2.0 * W @ solved(at_node[row, k], N)
     t = np.linalg.eigvals(np.concatenate([K[:, 8:], -K[:, :8]], axis=1))
     return real_angles(t, _NODES[k], accept)

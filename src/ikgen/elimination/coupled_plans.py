@@ -1,0 +1,114 @@
+"""Which eliminations suit a chain of six revolute joints of which one turns several axes.
+
+The loop of the other five may be begun at any of them and run backwards. What is coupled must not lie in
+the loop's first or last link. The degree of the determinant in the coupled joint's angle follows from
+ratios and geometry, and is measured: what rounding leaves of higher harmonics is far below the others.
+Where it vanishes at every angle, two solutions share their angles with others, and the elimination is
+none.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.elimination.loop_frames import typical_length
+from ikgen.elimination.plan import EliminationPlan, distinct_of_runs, ranking
+from ikgen.elimination.routine import Elimination, Plan, initial_residuals
+from ikgen.model.joint_tree import Matrix
+from ikgen.runtime.python.chain_kinematics import Chain, Motion, chain_of, forward, jacobian
+from ikgen.runtime.python.coupled_angle import CoupledAngle, coupled_determinants
+
+__all__ = ["choose_coupled"]
+
+_ALL_TURN = (True,) * 6
+_MOST_DEGREE = 32
+_NODES = 128
+_POSES = 8
+_PROBES = 24
+_ROUNDING = 1e-12
+"""Harmonics below it, of the largest, are none."""
+
+_REGULAR = 1e-3
+
+
+def choose_coupled(frames: Matrix, motions: tuple[Motion, ...]) -> EliminationPlan | None:
+    """The best eliminations for a chain of six revolute joints, frames (n + 1, 4, 4) with n > 6 motions, or
+    for all of a family (m, n + 1, 4, 4): those of the least degree that find all solutions, else those that
+    find most. None where no elimination applies."""
+    family = frames[None] if frames.ndim == 3 else frames
+    rng, length = np.random.default_rng(0), typical_length(family[0])
+    scaled = family.copy()
+    scaled[..., :3, 3] /= length
+    chains = [chain_of(member, motions, 6) for member in scaled]
+    probes = [_configurations(chain, max(_PROBES // len(family), 4), rng) for chain in chains]
+    first = family[0].copy()
+    first.setflags(write=False)
+    best: EliminationPlan | None = None
+    for group in _eliminations(chains[0], rng):
+        plans = [
+            Plan(length, (e,), _ALL_TURN, CoupledAngle(motions), motions=motions) for e in group
+        ]
+        parts = [_probe(*known, plans) for known in zip(family, chains, probes, strict=True)]
+        hits = np.concatenate([part[0] for part in parts], axis=1)
+        order = ranking(hits, np.max([part[1] for part in parts], axis=0))
+        recall = float(hits[order[0]].mean()) if hits.size else 0.0
+        if best is None or recall > best.recall:
+            chosen = tuple(group[k] for k in order)
+            best = EliminationPlan(first, length, chosen, recall, motions=motions)
+        if best.usable:
+            break
+    return best
+
+
+def _probe(frames: Matrix, chain: Chain, q: Matrix, plans: list[Plan]) -> tuple[Matrix, Matrix]:
+    """Which plan finds which solution of the poses of configurations q (n, 6), and the logarithms of the
+    plans' errors; the chain is the frames' in lengths over the plans'."""
+    poses = forward(chain, q)
+    poses[:, :3, 3] *= plans[0].length
+    runs = [initial_residuals(frames, plan, poses) for plan in plans]
+    rough = [np.quantile(np.log10(e + 1e-16), 0.9) if len(e) else 0.0 for _, e in runs]
+    every = [[*(rows[i] for rows, _ in runs), row[None]] for i, row in enumerate(q)]
+    hits = [distinct_of_runs(rows, _ALL_TURN)[:-1] for rows in every]
+    return np.concatenate([np.zeros((len(plans), 0), dtype=bool), *hits], axis=1), np.array(rough)
+
+
+def _eliminations(chain: Chain, rng: np.random.Generator) -> list[list[Elimination]]:
+    """Those that apply, each with its degree, in groups of one degree, the least first."""
+    nodes: Matrix = 2.0 * np.pi / _NODES * np.arange(_NODES, dtype=float)
+    poses = forward(chain, rng.uniform(-np.pi, np.pi, (_POSES, 6)))
+    joints = [motion[0] for motion in chain.motions]
+    coupled = max(joints, key=joints.count)
+    singles = [joint for joint in joints if joint != coupled]
+    found: list[Elimination] = []
+    for reverse, start in product((0, 1), range(5)):
+        at = joints.index(singles[start])
+        if coupled in (joints[at - 1], joints[(at + 1) % len(joints)]):
+            continue
+        values = coupled_determinants(
+            chain.motions, chain.frames, poses, (start, reverse, 0), nodes
+        )
+        degree = _degree(values)
+        if 0 < degree <= _MOST_DEGREE:
+            found.append((start, reverse, degree))
+    return [[one for one in found if one[2] == d] for d in sorted({one[2] for one in found})]
+
+
+def _degree(values: NDArray[np.float64]) -> int:
+    """The degree of trigonometric polynomials with values (N, n) at equidistant nodes."""
+    spectrum = np.abs(np.fft.fft(values, axis=1))
+    relative = (spectrum / np.maximum(spectrum.max(axis=1, keepdims=True), 1e-300)).max(axis=0)
+    large = np.flatnonzero(relative[: _NODES // 2] > _ROUNDING)
+    return int(large[-1]) if len(large) else 0
+
+
+def _configurations(chain: Chain, count: int, rng: np.random.Generator) -> Matrix:
+    """Regular configurations (count, 6): half at random, half the nearest to singular ones of many."""
+    drawn = rng.uniform(-np.pi, np.pi, (12 * count, 6))
+    size = np.linalg.svd(jacobian(chain, drawn), compute_uv=False)[:, -1]
+    regular = np.flatnonzero(size > _REGULAR)
+    hard = regular[np.argsort(size[regular])][: count // 2]
+    plain = np.setdiff1d(regular, hard)[: count - len(hard)]
+    return np.asarray(drawn[np.concatenate([plain, hard])])

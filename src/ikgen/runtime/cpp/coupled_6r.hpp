@@ -1,0 +1,119 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "general_6r_pairs.hpp"
+#include "general_6r_runs.hpp"
+#include "general_6r_spectrum.hpp"
+#include "six_joint_arm.hpp"
+#include "unit_circle_roots.hpp"
+
+namespace ikgen_runtime {
+
+// --- coupled_6r: six revolute joints of which one turns several axes --------------------------------------
+// The angle of that joint is hidden in the elimination of Raghavan & Roth (1990). At an angle of it five joints are
+// left, whose loop closes where the twelve equations without three of them are singular. What is coupled lies in the
+// links behind the second, third and fourth of the five, so that the null spaces by which the three are eliminated are
+// the same for all angles, and the determinant is a trigonometric polynomial.
+
+namespace g6 {
+
+// Plan: kAxes, of the axes in their order along the chain; kCoupled, the joint that turns several; kDegree, of the
+// determinant; kEigenproblems (start, reverse, degree).
+template <class Plan> struct CoupledChain : std::array<Frame, Plan::kAxes.size() + 1> {};
+
+template <class Plan>
+constexpr Axis axis_of(const CoupledChain<Plan>&, Index i) noexcept {
+  return Plan::kAxes[i];
+}
+
+// The loop of the other five as one of six whose third angle is 0: what the coupled joint turns lies behind it.
+template <class Plan>
+inline Loop coupled_loop(const CoupledChain<Plan>& F, const Frame& T, const std::array<int, 3>& plan,
+                         double angle) noexcept {
+  std::array<Index, 5> joints{};
+  std::array<Frame, 6> link{};  // before the first of the five, then behind each
+  Index n = 0;
+  link[0] = F[0];
+  for (Index i = 0; i < Plan::kAxes.size(); ++i) {
+    const Axis axis = Plan::kAxes[i];
+    if (axis.joint == Plan::kCoupled) {
+      link[n] = compose(moved(link[n], true, axis.ratio * angle + axis.shift), F[i + 1]);
+    } else {
+      joints[n++] = axis.joint;
+      link[n] = F[i + 1];
+    }
+  }
+  link[5] = compose(link[5], compose(inverse(T), link[0]));
+  Loop out{};
+  out.reverse = plan[1] != 0;
+  const Index start = static_cast<Index>(plan[0]);
+  for (Index i = 0; i < 5; ++i) {
+    const Index k = out.reverse ? (start + 5 - i) % 5 : (start + i) % 5, at = i < 2 ? i : i + 1;
+    out.order[at] = joints[k];
+    out.C[i < 1 ? i : i + 1] = out.reverse ? inverse(link[(k + 4) % 5 + 1]) : link[k + 1];
+  }
+  out.order[2] = Plan::kCoupled;
+  out.C[1] = {{{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}}, {}};
+  return out;
+}
+
+// The twelve equations.
+inline Square coupled_matrix(const Equations& eq) noexcept { return lift(make_pencil(eq.E, eq.left)).at(1.0, 0.0); }
+
+inline double signed_determinant(Square& A) noexcept {
+  std::array<Index, 12> pivot;
+  double det = factor(A, pivot);
+  for (Index k = 0; k < 12; ++k) {
+    if (pivot[k] != k) det = -det;
+    if (A(k, k) < 0.0) det = -det;
+  }
+  return det;
+}
+
+template <class Plan>
+inline Spectrum run_coupled(const CoupledChain<Plan>& F, const Frame& T, const Frame& aim, const Turning& turning,
+                            const std::array<int, 3>& plan, Solutions& out) noexcept {
+  constexpr Index degree = Plan::kDegree, nodes = 2 * degree + 2;
+  constexpr double first = 0.05;  // rad, an angle that no right angle shares
+  std::array<double, nodes> values;
+  for (Index i = 0; i < nodes; ++i) {
+    const double angle = first + 2.0 * kPi * static_cast<double>(i) / static_cast<double>(nodes);
+    Square M = coupled_matrix(eliminate(coupled_loop(F, aim, plan, angle)));
+    values[i] = signed_determinant(M);
+  }
+  std::array<double, 2 * degree> angles;
+  const int count = circle_roots<degree>(values, first, 0.03, angles);
+  Spectrum roots;  // none is known to be all of the pose
+  for (int i = 0; i < count; ++i) {
+    const double angle = angles[static_cast<Index>(i)];
+    const Loop loop = coupled_loop(F, aim, plan, angle);
+    const Equations eq = eliminate(loop);
+    const Pairs pairs = find_pairs(coupled_matrix(eq));
+    for (Index j = 0; j < pairs.count; ++j) {
+      const Vector t = complete(loop, eq, 0.0, pairs.z4[j], pairs.z5[j]);
+      Vector q;
+      for (Index n = 0; n < 6; ++n) q[loop.order[n]] = loop.reverse ? -t[n] : t[n];
+      q[Plan::kCoupled] = angle;
+      add_refined(F, T, turning, q, roots, out);
+    }
+  }
+  roots.simple = false;
+  return roots;
+}
+
+}  // namespace g6
+
+struct CoupledMethod {
+  template <class Plan>
+  static void solve(const g6::CoupledChain<Plan>& F, const g6::Frame& T, const g6::Turning& turning,
+                    g6::Solutions& out) noexcept {
+    g6::solve_in_runs<g6::run_coupled<Plan>>(F, T, turning, Plan::kEigenproblems, out);
+  }
+};
+
+// Arm: as for SixJointArm, its Plan as for CoupledChain.
+template <class Arm> struct Coupled6r : SixJointArm<Arm, CoupledMethod, g6::CoupledChain<typename Arm::Plan>> {};
+
+}  // namespace ikgen_runtime

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+
+#include "general_6r_equations.hpp"
+
+namespace ikgen_runtime {
+
+// --- roots of a trigonometric polynomial of any degree ---------------------------------------------------
+// All roots z of sum c_k z^k at once, by the iteration of Ehrlich (1967) and Aberth (1973).
+
+namespace g6 {
+
+// p(z) / p'(z), by powers of 1 / z outside the unit circle so that nothing overflows.
+template <Index N>
+inline Complex newton_ratio(const std::array<Complex, N>& c, Complex z) noexcept {
+  const bool outside = std::norm(z) > 1.0;
+  const Complex w = outside ? 1.0 / z : z;
+  Complex value = outside ? c[0] : c[N - 1], slope = 0.0;
+  for (Index k = 1; k < N; ++k) {
+    slope = slope * w + value;
+    value = value * w + (outside ? c[k] : c[N - 1 - k]);
+  }
+  if (!outside) return value / slope;
+  return value / (w * (static_cast<double>(N - 1) * value - w * slope));
+}
+
+template <Index N>
+inline std::array<Complex, N - 1> polynomial_roots(const std::array<Complex, N>& c) noexcept {
+  std::array<Complex, N - 1> z;
+  for (Index i = 0; i + 1 < N; ++i) {  // radii on both sides, lest roots on the circle be met in pairs
+    const double angle = 2.0 * kPi * static_cast<double>(i) / static_cast<double>(N - 1) + 0.4;
+    z[i] = std::polar(i % 3 == 0 ? 1.1 : i % 3 == 1 ? 0.95 : 0.8, angle);
+  }
+  for (int round = 0; round < 60; ++round) {
+    double largest = 0.0;
+    for (Index i = 0; i + 1 < N; ++i) {
+      const Complex ratio = newton_ratio(c, z[i]);
+      if (!(std::norm(ratio) < 1e300)) continue;
+      Complex sum = 0.0;
+      for (Index j = 0; j + 1 < N; ++j)
+        if (j != i && z[j] != z[i]) sum += 1.0 / (z[i] - z[j]);
+      const Complex step = ratio / (1.0 - ratio * sum);
+      if (!(std::norm(step) < 1e300)) continue;
+      z[i] -= step;
+      largest = std::max(largest, std::norm(step) / (std::norm(z[i]) + 1e-300));
+    }
+    if (largest < 1e-30) break;
+  }
+  return z;
+}
+
+// The angles of roots near the unit circle, of a polynomial of degree D with these values at n equidistant nodes from
+// `first` on; how many.
+template <Index D, Index n>
+inline int circle_roots(const std::array<double, n>& values, double first, double accept,
+                        std::array<double, 2 * D>& angles) noexcept {
+  std::array<Complex, 2 * D + 1> c{};
+  for (Index k = 0; k <= D; ++k) {
+    for (Index i = 0; i < n; ++i) {
+      const double angle = 2.0 * kPi * static_cast<double>(k * i % n) / static_cast<double>(n);
+      c[D + k] += values[i] * Complex(std::cos(angle), -std::sin(angle));
+    }
+    c[D - k] = std::conj(c[D + k]);
+  }
+  int count = 0;
+  for (const Complex& z : polynomial_roots(c))
+    if (std::abs(0.5 * std::log(std::norm(z) + 1e-300)) < accept)
+      angles[static_cast<Index>(count++)] = first + std::arg(z);
+  return count;
+}
+
+}  // namespace g6
+}  // namespace ikgen_runtime

@@ -1,0 +1,140 @@
+"""Approximate solutions of six revolute joints of which one turns several axes, as in hollow wrists.
+
+The angle of that joint is hidden in the elimination of Raghavan and Roth (1990). At an angle of it five
+joints are left, whose loop closes where the twelve equations without three of them are singular. Their
+determinant is a trigonometric polynomial, of a degree that ratios and geometry make; its roots are
+eigenvalues of a companion matrix. What is coupled may lie in any of three neighbouring links of the five
+joints' loop, so that the null spaces by which the three are eliminated stay the same for all angles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.runtime.python.array_types import Array
+from ikgen.runtime.python.back_substitution import complete_angles, null_angles
+from ikgen.runtime.python.chain_kinematics import Motion
+from ikgen.runtime.python.general_6r import Candidates, Elimination
+from ikgen.runtime.python.hidden_angle import lift, real_angles
+from ikgen.runtime.python.loop_equations import left_invariants, loop_equations, rows_of
+from ikgen.runtime.python.rigid_motion import inverses, rotations_z
+from ikgen.runtime.python.solution_rows import Index
+
+__all__ = ["CoupledAngle", "coupled_determinants"]
+
+_ONE = np.eye(4)[None]
+_FIRST_NODE = 0.05  # rad, an angle that no right angle shares
+
+
+@dataclass(frozen=True)
+class CoupledAngle:
+    """Finds candidates of a chain in which one joint, and no other, turns several axes: `motions` in their
+    order along the chain. The plan's third number is the degree in that joint's angle."""
+
+    motions: tuple[Motion, ...]
+
+    def __call__(self, F: Array, T: Array, plan: Elimination, _: tuple[bool, ...]) -> Candidates:
+        """As `candidates`, of frames F (rows + 1, 4, 4); none is known to be all of a pose."""
+        count, degree = len(T), plan[2]
+        step = 2.0 * np.pi / (2 * degree + 2)
+        nodes: Array = _FIRST_NODE + step * np.arange(2 * degree + 2, dtype=float)
+        pose, angle = _roots(coupled_determinants(self.motions, F, T, plan, nodes), degree)
+        none, unclear = np.zeros(count, dtype=np.intp), np.zeros(count, dtype=bool)
+        if not len(pose):
+            return pose, np.zeros((0, 6)), none, unclear
+        k, q = _completed(self.motions, F, T[pose], plan, pose, angle)
+        return pose[k], q, none, unclear
+
+
+def coupled_determinants(
+    motions: Sequence[Motion], F: Array, T: Array, plan: Elimination, nodes: Array
+) -> Array:
+    """The determinants (N, n) of the twelve equations at the coupled joint's angles `nodes` (n,)."""
+    loop = _Loop(motions, F, *plan[:2])
+    links = loop.links(T[:, None], nodes[None])
+    E, _ = _equations([link[:, 0] for link in links])
+    shape = np.broadcast_shapes(*(link.shape[:2] for link in links[1:4]))
+    inner = (np.broadcast_to(link, (*shape, 4, 4)).reshape(-1, 4, 4) for link in links[1:4])
+    left = left_invariants(*inner).reshape(*shape, 14, 9)
+    return np.asarray(np.linalg.det(_singular(E[:, None], left)))
+
+
+class _Loop:
+    """The loop of the five joints that turn one axis each, begun at `start`, `reverse`d or not."""
+
+    def __init__(self, motions: Sequence[Motion], F: Array, start: int, reverse: int) -> None:
+        joints = [motion[0] for motion in motions]
+        self.coupled = max(joints, key=joints.count)
+        singles = [joint for joint in joints if joint != self.coupled]
+        step = -1 if reverse else 1
+        self.places = [(start + step * i) % 5 for i in range(5)]
+        self.joints = [singles[place] for place in self.places]
+        self.reverse, self.motions, self.F = reverse, motions, F
+
+    def links(self, T: Array, angle: Array) -> list[Array]:
+        """What is behind each joint in the loop's order, (n, m, 4, 4) or 1 in place of n or m, at poses T
+        (n, m, 4, 4) and angles (n, m) of the coupled joint."""
+        behind, link = [], self.F[:1][None]
+        for (joint, _, ratio, shift), frame in zip(self.motions, self.F[1:]):
+            if joint == self.coupled:
+                link = link @ rotations_z(ratio * angle + shift) @ frame
+            else:
+                behind.append(link)
+                link = frame[None, None]
+        behind = [*behind[1:], link @ inverses(T) @ behind[0]]
+        if self.reverse:
+            return [inverses(behind[place - 1]) for place in self.places]
+        return [behind[place] for place in self.places]
+
+
+def _equations(links: list[Array]) -> tuple[Array, Array]:
+    """Equations E (n, 6, 15) and the invariants of the other side, as `loop_equations` has them: no angle
+    of the coupled joint changes them."""
+    E, _, right = loop_equations([links[0], _ONE, _ONE, _ONE, _ONE, links[4]])
+    return E, right
+
+
+def _singular(E: Array, left: Array) -> Array:
+    """The twelve equations (..., 12, 12) from E (..., 6, 15) and the left's invariants (..., 14, 9)."""
+    A = E[..., :14] @ left
+    A[..., 0] += E[..., 14]
+    return lift(A)
+
+
+def _roots(values: Array, degree: int) -> tuple[Index, Array]:
+    """Poses (k,) in order and the real roots (k,), in order for each, of trigonometric polynomials with
+    `values` (N, n) at the nodes."""
+    harmonics = np.arange(-degree, degree + 1)
+    c = np.fft.fft(values, axis=1)[:, harmonics]
+    c = c / np.maximum(np.abs(c).max(axis=1, keepdims=True), 1e-300)
+    lead = np.where(np.abs(c[:, -1:]) < 1e-300, 1e-300, c[:, -1:])
+    companion = np.zeros((len(c), 2 * degree, 2 * degree), dtype=complex)
+    companion[:, 1:, :-1] = np.eye(2 * degree - 1)
+    companion[:, :, -1] = -c[:, :-1] / lead
+    z = np.linalg.eigvals(companion)
+    t: NDArray[np.complex128] = -1j * (z - 1.0) / np.where(z == -1.0, 1e-300, z + 1.0)
+    pose, angle, _, _ = real_angles(t, np.full(len(z), _FIRST_NODE), 0.03)
+    return pose, angle
+
+
+def _completed(
+    motions: Sequence[Motion], F: Array, T: Array, plan: Elimination, pose: Index, angle: Array
+) -> tuple[Index, Array]:
+    """Indices (m,) into the roots, `angle` (k,) of poses T (k, 4, 4), and values (m, 6) of all joints."""
+    loop, count = _Loop(motions, F, *plan[:2]), len(angle)
+    links = [link[:, 0] for link in loop.links(T[:, None], angle[:, None])]
+    E, right = _equations(links)
+    left = left_invariants(*(np.broadcast_to(link, (count, 4, 4)) for link in links[1:4]))
+    k, pair = null_angles(_singular(E, left), pose, angle)
+    C = [rows_of(link, k) for link in links]
+    t = np.concatenate([np.zeros((len(k), 1)), pair], axis=1)
+    each = np.arange(len(k))
+    found = complete_angles([C[0], _ONE, *C[1:]], left[k], rows_of(right, k), each, t)
+    q = np.empty((len(k), 6))
+    q[:, loop.joints] = (-1.0 if plan[1] else 1.0) * found[:, [0, 1, 3, 4, 5]]
+    q[:, loop.coupled] = angle[k]
+    return k, q
