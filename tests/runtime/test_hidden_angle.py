@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ikgen.runtime.python.hidden_angle import solved
+from ikgen.runtime.python.hidden_angle import _JITTER, solved
 
 
 def test_a_singular_matrix_changes_nothing_beside_it() -> None:
@@ -17,3 +17,14 @@ def test_a_singular_matrix_changes_nothing_beside_it() -> None:
         np.testing.assert_array_equal(found[i], solved(pivot[i : i + 1], N[i : i + 1])[0])
     regular = [0, 1, 3, 4]
     assert np.abs(pivot[regular] @ found[regular] - N[regular]).max() < 1e-12
+
+
+def test_a_matrix_that_is_singular_with_what_is_added_is_put_off_further() -> None:
+    """As the matrix of a pencil that was put off is at the pencil's own roots."""
+    pivot = np.random.default_rng(4).uniform(-0.5, 0.5, (1, 12, 12))
+    pivot[0, 0], pivot[0, 1] = 0.0, -(1e-10 * 1.0 * _JITTER[1])
+    pivot[0, 2, 0] = 1.0  # the largest
+    put_off = pivot + 1e-10 * _JITTER
+    assert not put_off[0, 1].any()
+    found = solved(pivot, np.eye(12)[None])
+    assert np.isfinite(found).all() and np.abs(found).max() > 1e6

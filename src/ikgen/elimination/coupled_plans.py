@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.elimination.loop_frames import typical_length
-from ikgen.elimination.plan import EliminationPlan, distinct_of_runs, ranking
+from ikgen.elimination.plan import EliminationPlan, digits_lost, distinct_of_runs, ranking
 from ikgen.elimination.routine import Elimination, Plan, initial_residuals
 from ikgen.model.joint_tree import Matrix
 from ikgen.runtime.python.chain_kinematics import Chain, Motion, chain_of, forward, jacobian
@@ -64,15 +64,15 @@ def choose_coupled(frames: Matrix, motions: tuple[Motion, ...]) -> EliminationPl
 
 
 def _probe(frames: Matrix, chain: Chain, q: Matrix, plans: list[Plan]) -> tuple[Matrix, Matrix]:
-    """Which plan finds which solution of the poses of configurations q (n, 6), and the logarithms of the
-    plans' errors; the chain is the frames' in lengths over the plans'."""
+    """Which plan finds which solution of the poses of configurations q (n, 6), and the digits that each
+    loses; the chain is the frames' in lengths over the plans'."""
     poses = forward(chain, q)
     poses[:, :3, 3] *= plans[0].length
     runs = [initial_residuals(frames, plan, poses) for plan in plans]
-    rough = [np.quantile(np.log10(e + 1e-16), 0.9) if len(e) else 0.0 for _, e in runs]
+    rough = np.array([digits_lost(errors) for _, errors in runs])
     every = [[*(rows[i] for rows, _ in runs), row[None]] for i, row in enumerate(q)]
     hits = [distinct_of_runs(rows, _ALL_TURN)[:-1] for rows in every]
-    return np.concatenate([np.zeros((len(plans), 0), dtype=bool), *hits], axis=1), np.array(rough)
+    return np.concatenate([np.zeros((len(plans), 0), dtype=bool), *hits], axis=1), rough
 
 
 def _eliminations(chain: Chain, rng: np.random.Generator) -> list[list[Elimination]]:

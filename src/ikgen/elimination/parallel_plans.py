@@ -40,7 +40,7 @@ _LOOPS = ((0, 0), (1, 0), (2, 0), (3, 1), (4, 1), (5, 1))
 3 and 4, or 4 and 5, forwards and backwards."""
 
 _PROBES = 200
-_ALIKE = 0.03  # shares that differ by less are the same: rounding is another on every processor
+_NEARLY = 0.1  # shares that differ by less are the same: rounding is another on every processor
 _WORTH = 0.3  # of the poses: with fewer solved at once the attempt costs more than it saves
 
 
@@ -76,7 +76,7 @@ def choose_parallel(family: Matrix) -> ParallelPlan | None:
         poses = np.array([forward(frames, row) for row in q])
         shares += [settled_share(frames, length, one, poses) for one in every]
     best = float(shares.max())
-    first = next(k for k, share in enumerate(shares) if share > best - _ALIKE * len(family))
+    first = next(k for k, share in enumerate(shares) if share > best - _NEARLY * len(family))
     return every[first] if best > _WORTH * len(family) else None
 
 

@@ -11,7 +11,6 @@ two slides one of the four angles is hidden; with three the rotation gives all a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -24,16 +23,24 @@ from ikgen.elimination.routine import Elimination, Plan, Turning, finder, initia
 from ikgen.model.joint_tree import Matrix
 from ikgen.runtime.python.chain_kinematics import Motion
 
-__all__ = ["EliminationPlan", "choose_plan", "distinct_of_runs", "eliminations", "ranking"]
+__all__ = [
+    "EliminationPlan",
+    "choose_plan",
+    "digits_lost",
+    "distinct_of_runs",
+    "eliminations",
+    "ranking",
+]
 
 _ALL: tuple[Elimination, ...] = tuple(
     (start, reverse, swap) for swap, reverse, start in product((0, 1), (0, 1), range(6))
 )
 _REVOLUTE: Turning = (True,) * 6
 _REGULAR = 1e-3
-_BLURRED = 1e-4  # rad; roots that move further are not worth a resultant
+_BLURRED = 1.5e-2  # rad; roots that move further are not worth a resultant
 _SAME = 1e-5
 _FINE = -8.0  # logarithm of errors below which they no longer count
+_ALIKE = 0.3  # digits lost on average: rounding, another on every processor, moves them by less than a tenth
 _KEPT = 2
 _MOST = (16, 16, 8, 2)
 """Solutions by the number of slides (Raghavan and Roth 1993)."""
@@ -126,42 +133,34 @@ def choose_plan(
 
 
 def ranking(hits: Matrix, rough: Matrix) -> list[int]:
-    """The eliminations to keep: most solutions together with those before, then best conditioned. A
-    badly conditioned one counts as if it had lost one solution in a hundred per two digits."""
+    """The eliminations to keep: most solutions together with those before, then the first of the best
+    conditioned. One that loses a digit counts as if it had lost one solution in a hundred."""
     order: list[int] = []
     covered = np.zeros(hits.shape[1], dtype=bool)
     for _ in range(min(_KEPT, len(hits))):
         rest = [k for k in range(len(hits)) if k not in order]
         found = {k: int((covered | hits[k]).sum()) for k in rest}
-        penalty = {k: 0.005 * max(rough[k] - _FINE, 0.0) * hits.shape[1] for k in rest}
-        best = max(rest, key=lambda k: (found[k] - penalty[k], -rough[k]))
+        best = max(rest, key=lambda k: found[k] - 0.01 * rough[k] * hits.shape[1])
         as_many = [k for k in rest if found[k] >= found[best]]
-        order.append(_first_alike(max(float(rough[best]), _FINE), as_many, rough))
+        order.append(next(k for k in as_many if rough[k] < rough[best] + _ALIKE))
         covered |= hits[order[-1]]
     return order
 
 
-def _first_alike(best: float, those: Sequence[int], rough: Matrix) -> int:
-    """The first of `those` that is as good as the best but for a digit of its errors, whose logarithms are
-    `rough`: rounding moves them by half a digit, and is another on every processor."""
-    return next(k for k in those if rough[k] < best + 1.0)
-
-
 def _separate(shifts: Matrix) -> list[int]:
-    """The resultants to keep, those first whose roots rounding moves least."""
+    """The resultants to keep: the first of those whose roots rounding moves least, but for a digit."""
     order: list[int] = []
-    rough = np.log10(shifts + 1e-16)
     for _ in range(_KEPT):
         rest = [k for k in range(len(shifts)) if k not in order and shifts[k] < _BLURRED]
         if rest:
-            order.append(_first_alike(float(rough[rest].min()), rest, rough))
+            order.append(next(k for k in rest if shifts[k] < 10.0 * shifts[rest].min()))
     return order
 
 
 @dataclass(frozen=True, slots=True)
 class _Probe:
-    """hits (n_e, n) bool: which elimination finds which solution. rough (n_e,): the logarithm of its
-    candidates' errors. shifts (n_r,) in rad: how far rounding moves the roots of the resultants."""
+    """hits (n_e, n) bool: which elimination finds which solution. rough (n_e,): how many digits more than
+    need be its candidates' errors have, on average. shifts (n_r,) in rad: how far rounding moves the roots of the resultants."""
 
     hits: Matrix
     rough: Matrix
@@ -177,13 +176,20 @@ def _probe(frames: Matrix, turning: Turning, count: int, rng: np.random.Generato
         return _Probe(hits, np.zeros(len(plans)), np.ones(len(RESULTANTS)))
     find = finder(turning)
     runs = [initial_residuals(frames, Plan(length, (e,), turning, find), poses) for e in plans]
-    rough = [np.quantile(np.log10(e + 1e-16), 0.9) if len(e) else 0.0 for _, e in runs]
+    rough = np.array([digits_lost(errors) for _, errors in runs])
     unions = [distinct_of_runs([rows[i] for rows, _ in runs], turning) for i in range(len(poses))]
     shifts = np.ones((len(RESULTANTS), 1))
     if all(turning):
         shifts = root_shifts(_over(frames, length), _over(poses, length), np.array(q))
     hits = np.concatenate(unions, axis=1)
-    return _Probe(hits, np.array(rough), np.quantile(shifts, 0.75, axis=1))
+    return _Probe(hits, rough, np.quantile(shifts, 0.75, axis=1))
+
+
+def digits_lost(errors: Matrix) -> float:
+    """How many digits more than need be the errors (n,) have, on average; all where there are none."""
+    return (
+        float(np.maximum(np.log10(errors + 1e-16) - _FINE, 0.0).mean()) if len(errors) else -_FINE
+    )
 
 
 def _over(frames: Matrix, length: float) -> Matrix:

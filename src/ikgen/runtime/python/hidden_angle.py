@@ -87,13 +87,14 @@ def real_angles(
     return row[order], angle[order], real, (off < doubtful).sum(axis=1) == real
 
 
-def solved(pivot: Array, N: Array) -> Array:
+def solved(pivot: Array, N: Array, off: float = 0.0) -> Array:
     """`pivot^-1 N`; a pivot that is singular is put off a little, and no other beside it: what is found of
-    a pose does not hang on those that are solved with it."""
+    a pose does not hang on those that are solved with it. Where that is singular too, as at roots of a
+    pencil that was put off itself, it is put off by twice as much."""
+    size = np.abs(pivot).max(axis=(1, 2))[:, None, None] + 1e-30 if off else 0.0
     try:
-        return np.asarray(np.linalg.solve(pivot, N))
+        return np.asarray(np.linalg.solve(pivot + off * size * _JITTER, N))
     except np.linalg.LinAlgError:
         if len(pivot) > 1:
             return np.concatenate([solved(p, n) for p, n in zip(pivot[:, None], N[:, None])])
-        size = np.abs(pivot).max(axis=(1, 2))[:, None, None] + 1e-30
-        return np.asarray(np.linalg.solve(pivot + 1e-10 * size * _JITTER, N))
+        return solved(pivot, N, 2.0 * off or 1e-10)
