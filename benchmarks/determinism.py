@@ -1,10 +1,11 @@
 """The same bytes whatever the surroundings: a matrix of builds that are compared with a first one.
 
-    python -m benchmarks.determinism [--arms FILE ...] [--record]
+    python -m benchmarks.determinism [--arms FILE ...] [--only WORDS ...] [--record [--add]]
 
 Each row changes one thing: the kernels that OpenBLAS chooses, the vector instructions that NumPy and the C
 library may use, hash seed, locale, time zone, working directory, spelling of the path, number of processes.
-Exit code 1 where a file differs.
+The arms are solved by rules, from exact and from rounded files, and by eliminations, which are chosen by
+probing. With `--add` rows are added to what is recorded of the same arms. Exit code 1 where a file differs.
 """
 
 from __future__ import annotations
@@ -20,9 +21,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from benchmarks.collection import CORPUS
+from benchmarks.collection import CORPUS, load_arms
 from benchmarks.command_line import FIXTURES
-from benchmarks.results import write_result
+from benchmarks.results import read_result, write_result
 
 __all__ = ["Row", "main", "rows"]
 
@@ -43,7 +44,7 @@ class Row:
 
 def rows() -> list[Row]:
     """The matrix; its first row is what the others are compared with."""
-    kernels = ("SkylakeX", "Haswell", "Sandybridge", "Zen")
+    kernels = ("SkylakeX", "Haswell", "Sandybridge", "Zen", "Prescott")
     found = [Row("as it is")]
     found += [Row(f"OpenBLAS for {name}", {"OPENBLAS_CORETYPE": name}) for name in kernels]
     found += [
@@ -76,17 +77,33 @@ def _wide(*more: str) -> str:
     return " ".join(n for n in __cpu_dispatch__ if n in wanted and __cpu_features__.get(n))
 
 
-def built(row: Row, arms: Sequence[Path]) -> dict[str, str]:
+@dataclass(frozen=True, slots=True)
+class Arm:
+    """A description, and the chain that is meant; empty where it has one only."""
+
+    file: Path
+    base: str = ""
+    tip: str = ""
+
+    @property
+    def table(self) -> str:
+        """Its part of a config beside which the file lies."""
+        ends = f'base = "{self.base}"\ntip = "{self.tip}"\n' if self.base else ""
+        text = (
+            f'[[arm]]\nname = "{self.file.stem}"\nrobot = "{self.file.name}"\nout = "out"\n{ends}'
+        )
+        return text + 'emit = ["python", "cpp"]\n'
+
+
+def built(row: Row, arms: Sequence[Arm]) -> dict[str, str]:
     """Digests of what a build in a new folder gives, by name."""
     place = Path(tempfile.mkdtemp(prefix="determinism-"))
     try:
         project = place / "up" / "project"
         project.mkdir(parents=True)
-        text = ""
         for arm in arms:
-            shutil.copy(arm, project)
-            text += f'[[arm]]\nname = "{arm.stem}"\nrobot = "{arm.name}"\nout = "out"\n'
-            text += 'emit = ["python", "cpp"]\n'
+            shutil.copy(arm.file, project)
+        text = "".join(arm.table for arm in arms)
         (project / "ikgen.toml").write_text(text, encoding="utf-8")
         here = (project, place / "up", place)[row.above]
         config = row.config.format(up="up", absolute=project / "ikgen.toml")
@@ -100,13 +117,18 @@ def built(row: Row, arms: Sequence[Path]) -> dict[str, str]:
         shutil.rmtree(place, ignore_errors=True)
 
 
-def default_arms() -> list[Path]:
-    """Arms of exact and of rounded files, solved by rules and by elimination."""
-    found = [FIXTURES / f"{name}.urdf" for name in ("kuka_kr6r900sixx",)]
-    found += [
-        CORPUS / "urdf" / f"{n}.urdf" for n in ("doosan_m1013", "ur5e", "franka_fr3", "xarm6")
-    ]
-    return [path for path in found if path.is_file()]
+_NAMES = (
+    "doosan_m1013", "ur5e", "franka_fr3",  # by rules
+    "xarm6", "bravo7", "pm01_left_arm", "fanuc_crx30ia", "schunk_lwa4p",  # by eliminations
+)  # fmt: skip
+
+
+def default_arms() -> list[Arm]:
+    """Arms of exact and of rounded files, solved by rules and by eliminations."""
+    of_name = {row["name"]: row for row in load_arms()}
+    rows = [of_name[name] for name in _NAMES if name in of_name]
+    found = [Arm(CORPUS / row["file"], row["base_link"], row["tip_link"]) for row in rows]
+    return [Arm(FIXTURES / "kuka_kr6r900sixx.urdf"), *found]
 
 
 def main() -> int:
@@ -117,13 +139,19 @@ def main() -> int:
         "--only", nargs="+", default=None, help="rows whose words have one of these"
     )
     parser.add_argument("--record", action="store_true", help="write the recorded result")
+    parser.add_argument("--add", action="store_true", help="to what is recorded")
     options = parser.parse_args()
-    arms = options.arms or default_arms()
+    arms = [Arm(file) for file in options.arms] if options.arms else default_arms()
     first, *others = rows()
     expected = built(first, arms)
     others = [r for r in others if not options.only or any(o in r.words for o in options.only)]
     print(f"{len(expected)} files of {len(arms)} arms")
     differing: dict[str, int] = {}
+    if options.add:
+        before = read_result("determinism").found
+        if (before["files"], before["arms"]) != (len(expected), len(arms)):
+            raise SystemExit("what is recorded is of other arms")
+        differing.update(before["differing"])
     for row in others:
         found = built(row, arms)
         names = [n for n in {**expected, **found} if expected.get(n) != found.get(n)]
