@@ -7,7 +7,7 @@ import pytest
 from tests.elimination.test_elimination import arm_frames
 
 from ikgen.elimination.loop_frames import forward, typical_length
-from ikgen.elimination.plan import digits_lost, ranking, _separate
+from ikgen.elimination.plan import _separate, digits_lost, ranking
 from ikgen.elimination.resultant import root_shifts
 
 
@@ -40,8 +40,8 @@ def test_one_bad_solution_of_many_counts_little_and_no_solution_as_all_bad() -> 
 
 
 def test_how_far_roots_move_is_the_same_whatever_the_last_bits() -> None:
-    """A hidden angle whose roots nearly meet: rounding, played by noise of one bit, moves what is measured of
-    them by a hundredth."""
+    """A hidden angle whose roots nearly meet: rounding, played by noise of one bit, moves what is measured
+    of them by a hundredth."""
     frames = arm_frames("fanuc_crx30ia")
     frames[:, :3, 3] /= typical_length(frames)
     random = np.random.default_rng(0)

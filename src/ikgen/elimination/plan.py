@@ -40,7 +40,7 @@ _REGULAR = 1e-3
 _BLURRED = 1.5e-2  # rad; roots that move further are not worth a resultant
 _SAME = 1e-5
 _FINE = -8.0  # logarithm of errors below which they no longer count
-_ALIKE = 0.3  # digits lost on average: rounding, another on every processor, moves them by less than a tenth
+_ALIKE = 0.3  # digits lost on average, which rounding moves by less than a tenth
 _KEPT = 2
 _MOST = (16, 16, 8, 2)
 """Solutions by the number of slides (Raghavan and Roth 1993)."""
@@ -160,7 +160,8 @@ def _separate(shifts: Matrix) -> list[int]:
 @dataclass(frozen=True, slots=True)
 class _Probe:
     """hits (n_e, n) bool: which elimination finds which solution. rough (n_e,): how many digits more than
-    need be its candidates' errors have, on average. shifts (n_r,) in rad: how far rounding moves the roots of the resultants."""
+    need be its candidates' errors have, on average. shifts (n_r,) in rad: how far rounding moves the
+    roots of the resultants."""
 
     hits: Matrix
     rough: Matrix
