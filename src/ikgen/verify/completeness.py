@@ -23,7 +23,7 @@ from ikgen.verify.trials import Trial, result, spell
 from ikgen.verify.verification_report import CheckResult, SigmaBand
 
 __all__ = [
-    "BAND_EDGES", "FAILS_ABOVE", "FOUND_TOLERANCE", "Sensitivity", "Survey", "check_answered",
+    "BAND_EDGES", "FAILS_ABOVE", "FOUND_TOLERANCE", "POSE_NOISE", "Sensitivity", "Survey", "check_answered",
     "check_completeness", "sensitivity", "survey",
 ]  # fmt: skip
 
@@ -58,12 +58,15 @@ class Sensitivity:
     sigma: Array
     kappa: Array
 
-    def within(self, error: Array | float) -> Array:
-        """How close (N,) a row must come, if the pose may be off by `error` (rad, lengths of the
-        arm)."""
+    def moved(self, error: Array | float) -> Array:
+        """How far (N,) an `error` of the pose (rad, lengths of the arm) moves a row."""
         with np.errstate(divide="ignore"):
             moved = np.minimum(error / self.sigma, np.sqrt(2.0 * error / self.kappa))
-        return np.asarray(FOUND_TOLERANCE + np.minimum(moved, FARTHEST))
+        return np.asarray(np.minimum(moved, FARTHEST))
+
+    def within(self, error: Array | float) -> Array:
+        """How close (N,) a row must come, if the pose may be off by `error`, as `moved` has it."""
+        return np.asarray(FOUND_TOLERANCE + self.moved(error))
 
 
 def sensitivity(arm: ArmUnderTest, q: Array) -> Sensitivity:

@@ -45,6 +45,7 @@ _SIX = range(6)
 _DIRECT = 1e-7
 # Beside a fold rows of several runs are one only where all have all their digits.
 _THOROUGH = ((3, 1e-12, 0.1), (6, 1e-12, 1e-3), (30, 0.0, 0.0))
+_FINEST = ((3, 1e-13, 0.1), (6, 1e-13, 1e-3), (30, 0.0, 0.0))
 
 
 @dataclass(frozen=True)
@@ -82,8 +83,8 @@ def refined_rows(
     near, motions = slides_near(q, plan.turning), plan.motions or one_axis_each(plan.turning)
     chain, start = _kept_chain(F.tobytes(), motions), np.where(near[:, None], q, 0.0)
     # Roots of a high degree come from farther off: of their rows all digits are wanted.
-    converged = 0.0 if plan.motions else policy.converged
-    thorough = replace(policy, refinement=_THOROUGH, converged=converged)
+    converged, steps = (0.0, _FINEST) if plan.motions else (policy.converged, _THOROUGH)
+    thorough = replace(policy, refinement=steps, converged=converged)
     q, arrived, before, _ = refine(chain, PoseTask(1.0), _SIX, start, T, thorough)
     return q, arrived & near, np.where(near, before, np.inf)
 

@@ -131,7 +131,7 @@ def loop_equations(C: list[Array]) -> tuple[Array, Array, Array]:
     null_6 = np.linalg.qr(right[:, ZS, 1:], mode="complete")[0][..., 2:]
     top = np.swapaxes(null_6, 1, 2)
     first = top @ G[:, ZS]
-    first[..., 14:] -= top @ right[:, ZS, :1]
+    first[..., 14] -= (top * right[:, ZS, 0][:, None]).sum(axis=-1)  # bits do not depend on N
     pairs = right[:, XS] + 1j * right[:, YS]
     null_4 = np.linalg.qr(np.conj(pairs), mode="complete")[0][..., 3:]
     w = np.swapaxes(null_4, 1, 2) @ (G[:, XS] + 1j * G[:, YS])
