@@ -35,6 +35,33 @@ FOLDS = (
     [0.0, 1.5094153249861169, pi / 2, -pi, pi],
 )
 
+QUARTICS = (
+    [
+        ("revolute", 0, 0.0, 0.0),
+        ("revolute", 0, 0.3084523523618435, 0.615170442483001),
+        ("revolute", -1, 0.4145408166397275, 0.0),
+        ("revolute", -1, 0.3181643724869212, 0.0),
+        ("revolute", -1, 0.5746268653713172, 0.0),
+    ],
+    [pi, -pi, pi / 2, -0.43461341559486044, 0.13840886864980817],
+)
+BEHIND_A_QUARTIC = (
+    [
+        ("prismatic", 0, 0.0, 0.0),
+        ("revolute", 0, 0.0, 0.0),
+        ("revolute", -1, 0.0, 0.0),
+        ("revolute", 1, 0.44708589017540884, 0.0),
+        ("revolute", -1, 0.905045738190152, 0.0),
+    ],
+    [-0.7296057862685923, 0.4262236538833992, -pi / 2, 2.081041988664359, -pi / 2],
+)
+SPECIAL = {
+    "slide at 0": SLIDE,
+    "fold behind a fold": FOLDS,
+    "quartic behind a quartic": QUARTICS,
+    "fold behind a quartic": BEHIND_A_QUARTIC,
+}
+
 
 def table(rows: list[tuple[str, int, float, float]], folder: Path) -> Path:
     text = 'name = "special"\nconvention = "modified"\n'
@@ -47,7 +74,7 @@ def table(rows: list[tuple[str, int, float, float]], folder: Path) -> Path:
     return path
 
 
-@pytest.mark.parametrize(("rows", "q"), [SLIDE, FOLDS], ids=["slide at 0", "fold behind a fold"])
+@pytest.mark.parametrize(("rows", "q"), SPECIAL.values(), ids=SPECIAL)
 def test_the_generating_configuration_is_found(
     rows: list[tuple[str, int, float, float]], q: list[float], tmp_path: Path
 ) -> None:

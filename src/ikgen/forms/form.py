@@ -79,6 +79,10 @@ class Form(ABC):
         where it vanishes. None for forms without one."""
         return None
 
+    def slope(self, g: ExpressionGraph, unknown: tuple[Expr, ...]) -> Expr | None:
+        """What vanishes at a root (cosine, sine) that is a double one, of forms that a routine solves."""
+        return None
+
     @abstractmethod
     def values(self, c: Sequence[Array]) -> list[tuple[Array, ...]]:
         """Per branch the unknown for coefficients c, (cosine, sine) or (length,), each (N,); NaN where

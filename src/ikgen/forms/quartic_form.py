@@ -65,6 +65,13 @@ class TrigQuartic(Form):
         double = [g.sub(g.square(c), g.square(s)), g.mul(g.const(2.0), g.mul(c, s))]
         return (g.add(g.dot([*self.coefficients[:4]], [*double, c, s]), self.a0),)
 
+    def slope(self, g: ExpressionGraph, unknown: tuple[Expr, ...]) -> Expr | None:
+        """The polynomial's derivative at the root."""
+        c, s = unknown
+        double = [g.mul(g.const(-4.0), g.mul(c, s)), g.sub(g.square(c), g.square(s))]
+        double[1] = g.mul(g.const(2.0), double[1])
+        return g.dot([*self.coefficients[:4]], [*double, g.neg(s), c])
+
     def lower(self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances) -> LoweredRoutine:
         """A call of the routine `trig_quartic`."""
         divisor = leading(g, self.divisor_parts, tolerances)

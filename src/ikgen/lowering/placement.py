@@ -11,7 +11,8 @@ from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import Variable
 from ikgen.equations.products import ENTRY_NAMES
-from ikgen.forms.lowered_form import Tolerances
+from ikgen.forms.form import Form
+from ikgen.forms.lowered_form import Tolerances, natural_size
 from ikgen.program.inputs import Input
 from ikgen.program.statements import Comment, Let
 from ikgen.solver.choice import Step
@@ -58,7 +59,7 @@ class Placement:
         self.g: ExpressionGraph = self.knowledge.graph
         self.model_error = model_error
         self._tolerances = Tolerances.for_model_error(model_error)
-        self.loses_digits = bool(graph.probes.kept) or any(map(_folds, graph.steps))
+        self.loses_digits = bool(graph.probes.kept) or any(map(self._folds, graph.steps))
         self.residuals: list[Expr] = []
         self.norms: list[Expr] = []
         self.folds: list[Expr] = []
@@ -145,6 +146,21 @@ class Placement:
         if item.args or item.id in self.definition:
             self.levels[self.level(item)].items.append(item)
 
+    def slope(self, v: Variable, form: Form) -> Expr | None:
+        """What vanishes where the root of a routine's form is a double one."""
+        return form.slope(self.g, self.atoms_of(v)) if v.kind == "angle" else None
+
+    def _folds(self, step: Step) -> bool:
+        """Whether branches of a step meet at a regular configuration."""
+        forms = (step.candidate, *step.fallbacks)
+        if any(c.judgement is not None and c.judgement.folds for c in forms):
+            return True
+        slopes = [self.slope(c.unknown, c.form) for c in forms]
+        seen = slice(self.probes.regular)
+        return any(
+            bool((np.abs(e.probe[seen]) < FOLDED * natural_size(e)).any()) for e in slopes if e
+        )
+
     def require(self, condition: Expr, *, fold: bool = False) -> None:
         """Schedule a guard."""
         self.place(condition)
@@ -186,12 +202,6 @@ class Placement:
                 total += counts[self.level(node)]
             stack.extend(node.args)
         return total
-
-
-def _folds(step: Step) -> bool:
-    """Whether branches of a step meet at a regular configuration."""
-    forms = (step.candidate, *step.fallbacks)
-    return any(c.judgement is not None and c.judgement.folds for c in forms)
 
 
 def identifier(name: str) -> str:

@@ -149,7 +149,7 @@ inline int tangent(const Coefficients& f, Point t, double reach, double tol, Poi
 
 // Real roots as (cos t, sin t). Coefficients all below `zero`: count -1. Complex pairs of roots with imaginary
 // parts up to `tol` rad count as one, at the extremum.
-inline TrigRoots trig_quartic(double a2, double b2, double a1, double b1, double a0, double tol = 1e-6,
+inline TrigRoots trig_quartic(double a2, double b2, double a1, double b1, double a0, double tol = 1e-3,
                               double zero = 1e-13) noexcept {
   TrigRoots out{};
   const double size =

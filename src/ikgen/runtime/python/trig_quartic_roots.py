@@ -25,7 +25,7 @@ _Pair = tuple[float, float]
 
 
 def trig_quartic(
-    a2: float, b2: float, a1: float, b1: float, a0: float, tol: float = 1e-6, zero: float = 1e-13
+    a2: float, b2: float, a1: float, b1: float, a0: float, tol: float = 1e-3, zero: float = 1e-13
 ) -> tuple[int, list[_Pair]]:
     """Real roots t as (cos t, sin t): how many (0 to 4) and the pairs.
 
@@ -105,7 +105,7 @@ def _tangent(
 
 
 def trig_quartic_batch(
-    a2: Array, b2: Array, a1: Array, b1: Array, a0: Array, tol: float = 1e-6, zero: float = 1e-13
+    a2: Array, b2: Array, a1: Array, b1: Array, a0: Array, tol: float = 1e-3, zero: float = 1e-13
 ) -> tuple[NDArray[np.int64], Array, Array]:
     """`trig_quartic` on arrays (N,): counts (N,), cosines and sines (N, 4), NaN beyond the count.
     Rows that are not finite count as free ones (-1).
