@@ -60,7 +60,7 @@ def words_of(table: Path, relation: str) -> str:
 
 
 def solved(plan: EliminationPlan, poses: Array) -> list[Array]:
-    find = CoupledAngle(plan.motions)
+    find = CoupledAngle(plan.motions, plan.crowded)
     made = Plan(plan.length, plan.eliminations, TURNS, find, motions=plan.motions)
     return six_joints_batch(plan.frames, made, poses)
 
@@ -95,6 +95,20 @@ def test_every_row_is_right_and_every_configuration_found(words: str, tmp_path: 
         assert np.abs(forward(chain, rows) - pose).max() < 1e-9
         assert apart(rows, row).min() < 1e-5
         assert len(rows) <= plan.most
+
+
+def test_a_wrist_held_nearly_straight(tmp_path: Path) -> None:
+    """Two axes are nearly in line there, and the determinant is small whatever the pose."""
+    plan, chain = coupled_arm(tmp_path, "q5*-1")
+    assert plan.crowded
+    q = np.random.default_rng(7).uniform(-np.pi, np.pi, (80, 6))
+    q[:, plan.coupled] = plan.crowded[0] + np.random.default_rng(8).uniform(-0.1, 0.1, 80)
+    q = q[np.linalg.svd(jacobian(chain, q), compute_uv=False)[:, -1] > 1e-3]
+    assert len(q) > 40
+    for rows, row in zip(solved(plan, forward(chain, q)), q, strict=True):
+        assert apart(rows, row).min() < 1e-6
+    general, _ = coupled_arm(tmp_path, "q1*2 q3")
+    assert not general.crowded
 
 
 @pytest.mark.parametrize("words", ["q5*-1", "q1*2 q3"])

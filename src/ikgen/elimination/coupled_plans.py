@@ -9,17 +9,19 @@ none.
 
 from __future__ import annotations
 
+from functools import partial
 from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.elimination.crowded_angles import crowded_angles
 from ikgen.elimination.loop_frames import typical_length
 from ikgen.elimination.plan import EliminationPlan, digits_lost, distinct_of_runs, ranking
 from ikgen.elimination.routine import Elimination, Plan, initial_residuals
 from ikgen.model.joint_tree import Matrix
 from ikgen.runtime.python.chain_kinematics import Chain, Motion, chain_of, forward, jacobian
-from ikgen.runtime.python.coupled_angle import CoupledAngle, coupled_determinants
+from ikgen.runtime.python.coupled_angle import CoupledAngle, coupled_determinants, neighbours
 
 __all__ = ["choose_coupled"]
 
@@ -47,17 +49,16 @@ def choose_coupled(frames: Matrix, motions: tuple[Motion, ...]) -> EliminationPl
     first = family[0].copy()
     first.setflags(write=False)
     best: EliminationPlan | None = None
-    for group in _eliminations(chains[0], rng):
-        plans = [
-            Plan(length, (e,), _ALL_TURN, CoupledAngle(motions), motions=motions) for e in group
-        ]
+    for crowded, group in _eliminations(chains[0], rng):
+        find = CoupledAngle(motions, crowded)
+        plans = [Plan(length, (e,), _ALL_TURN, find, motions=motions) for e in group]
         parts = [_probe(*known, plans) for known in zip(family, chains, probes, strict=True)]
         hits = np.concatenate([part[0] for part in parts], axis=1)
         order = ranking(hits, np.max([part[1] for part in parts], axis=0))
         recall = float(hits[order[0]].mean()) if hits.size else 0.0
         if best is None or recall > best.recall:
             chosen = tuple(group[k] for k in order)
-            best = EliminationPlan(first, length, chosen, recall, motions=motions)
+            best = EliminationPlan(first, length, chosen, recall, motions=motions, crowded=crowded)
         if best.usable:
             break
     return best
@@ -75,25 +76,29 @@ def _probe(frames: Matrix, chain: Chain, q: Matrix, plans: list[Plan]) -> tuple[
     return np.concatenate([np.zeros((len(plans), 0), dtype=bool), *hits], axis=1), rough
 
 
-def _eliminations(chain: Chain, rng: np.random.Generator) -> list[list[Elimination]]:
-    """Those that apply, each with its degree, in groups of one degree, the least first."""
+_Group = tuple[tuple[float, ...], list[Elimination]]
+
+
+def _eliminations(chain: Chain, rng: np.random.Generator) -> list[_Group]:
+    """Those that apply, each with its degree, in groups of one degree and the same crowded angles, the
+    least degree first."""
     nodes: Matrix = 2.0 * np.pi / _NODES * np.arange(_NODES, dtype=float)
     poses = forward(chain, rng.uniform(-np.pi, np.pi, (_POSES, 6)))
     joints = [motion[0] for motion in chain.motions]
     coupled = max(joints, key=joints.count)
     singles = [joint for joint in joints if joint != coupled]
-    found: list[Elimination] = []
+    found: dict[tuple[int, tuple[float, ...]], list[Elimination]] = {}
     for reverse, start in product((0, 1), range(5)):
         at = joints.index(singles[start])
         if coupled in (joints[at - 1], joints[(at + 1) % len(joints)]):
             continue
-        values = coupled_determinants(
-            chain.motions, chain.frames, poses, (start, reverse, 0), nodes
-        )
-        degree = _degree(values)
+        one = chain.motions, chain.frames
+        determinants = partial(coupled_determinants, *one, poses, (start, reverse, 0))
+        degree = _degree(determinants(nodes))
         if 0 < degree <= _MOST_DEGREE:
-            found.append((start, reverse, degree))
-    return [[one for one in found if one[2] == d] for d in sorted({one[2] for one in found})]
+            crowded = crowded_angles(partial(neighbours, *one, (start, reverse, 0)), determinants)
+            found.setdefault((degree, crowded), []).append((start, reverse, degree))
+    return [(crowded, found[degree, crowded]) for degree, crowded in sorted(found)]
 
 
 def _degree(values: NDArray[np.float64]) -> int:

@@ -57,7 +57,7 @@ class EliminationPlan:
     joints turn, the others slide. parallel: the elimination about two parallel axes, which is tried first;
     None where they are not, or where it settles few poses. motions: those of the axes in their order along
     the chain where a joint turns several; frames is then (n + 1, 4, 4), and the third number of an
-    elimination its degree in that joint's angle.
+    elimination its degree in that joint's angle; near `crowded` angles (rad) that is looked at closely.
     """
 
     frames: Matrix
@@ -68,6 +68,7 @@ class EliminationPlan:
     turning: Turning = _REVOLUTE
     parallel: ParallelPlan | None = None
     motions: tuple[Motion, ...] = ()
+    crowded: tuple[float, ...] = ()
 
     @property
     def coupled(self) -> int:

@@ -20,7 +20,7 @@ namespace ikgen_runtime {
 namespace g6 {
 
 // Plan: kAxes, of the axes in their order along the chain; kCoupled, the joint that turns several; kDegree, of the
-// determinant; kEigenproblems (start, reverse, degree).
+// determinant; kCrowded, angles near which that is small at every pose; kEigenproblems (start, reverse, degree).
 template <class Plan> struct CoupledChain : std::array<Frame, Plan::kAxes.size() + 1> {};
 
 template <class Plan>
@@ -77,14 +77,17 @@ inline Spectrum run_coupled(const CoupledChain<Plan>& F, const Frame& T, const F
                             const std::array<int, 3>& plan, Solutions& out) noexcept {
   constexpr Index degree = Plan::kDegree, nodes = 2 * degree + 2;
   constexpr double first = 0.05;  // rad, an angle that no right angle shares
-  std::array<double, nodes> values;
-  for (Index i = 0; i < nodes; ++i) {
-    const double angle = first + 2.0 * kPi * static_cast<double>(i) / static_cast<double>(nodes);
+  constexpr double real = 0.03;   // rad, the imaginary part of an angle that may be real
+  const auto determinant = [&](double angle) {
     Square M = coupled_matrix(eliminate(coupled_loop(F, aim, plan, angle)));
-    values[i] = signed_determinant(M);
-  }
-  std::array<double, 2 * degree> angles;
-  const int count = circle_roots<degree>(values, first, 0.03, angles);
+    return signed_determinant(M);
+  };
+  std::array<double, nodes> values;
+  for (Index i = 0; i < nodes; ++i)
+    values[i] = determinant(first + 2.0 * kPi * static_cast<double>(i) / static_cast<double>(nodes));
+  std::array<double, 2 * degree + kClose * Plan::kCrowded.size()> angles;
+  int count = circle_roots<degree>(values, first, real, angles);
+  for (const double place : Plan::kCrowded) count = look_closely(determinant, place, real, angles, count);
   Spectrum roots;  // none is known to be all of the pose
   for (int i = 0; i < count; ++i) {
     const double angle = angles[static_cast<Index>(i)];

@@ -55,9 +55,9 @@ inline std::array<Complex, N - 1> polynomial_roots(const std::array<Complex, N>&
 
 // The angles of roots near the unit circle, of a polynomial of degree D with these values at n equidistant nodes from
 // `first` on; how many.
-template <Index D, Index n>
+template <Index D, Index n, std::size_t most>
 inline int circle_roots(const std::array<double, n>& values, double first, double accept,
-                        std::array<double, 2 * D>& angles) noexcept {
+                        std::array<double, most>& angles) noexcept {
   std::array<Complex, 2 * D + 1> c{};
   for (Index k = 0; k <= D; ++k) {
     for (Index i = 0; i < n; ++i) {
@@ -71,6 +71,40 @@ inline int circle_roots(const std::array<double, n>& values, double first, doubl
     if (std::abs(0.5 * std::log(std::norm(z) + 1e-300)) < accept)
       angles[static_cast<Index>(count++)] = first + std::arg(z);
   return count;
+}
+
+// Near a crowded angle: how far (rad), and the degree of polynomials of sines and cosines there.
+constexpr double kNear = 0.2;
+constexpr Index kClose = 20;
+
+// Puts the roots of a function of an angle that lie near `place` in place of those among the first `count` angles; how
+// many there are then. From its values at Chebyshev's nodes.
+template <class Function, std::size_t most>
+inline int look_closely(const Function& of, double place, double accept, std::array<double, most>& angles,
+                        int count) noexcept {
+  int kept = 0;
+  for (int i = 0; i < count; ++i) {
+    const double x = angles[static_cast<Index>(i)];
+    if (std::abs(std::remainder(x - place, 2.0 * kPi)) > 0.9 * kNear) angles[static_cast<Index>(kept++)] = x;
+  }
+  constexpr Index n = kClose + 1;
+  std::array<double, n> waves{}, last{}, next{}, now{};
+  for (Index i = 0; i < n; ++i) {
+    const double angle = kPi / static_cast<double>(n) * (static_cast<double>(i) + 0.5);
+    const double value = of(place + kNear * std::cos(angle)) / static_cast<double>(n);
+    for (Index k = 0; k < n; ++k) waves[k] += (k == 0 ? 1.0 : 2.0) * value * std::cos(static_cast<double>(k) * angle);
+  }
+  std::array<Complex, n> c{};
+  now[0] = 1.0;  // Chebyshev's polynomials by powers, one after the other
+  for (Index k = 0; k < n; ++k) {
+    for (Index j = 0; j <= k; ++j) c[j] += waves[k] * now[j];
+    for (Index j = 0; j < n; ++j) next[j] = (k == 0 ? 1.0 : 2.0) * (j == 0 ? 0.0 : now[j - 1]) - last[j];
+    last = now, now = next;
+  }
+  for (const Complex& x : polynomial_roots(c))
+    if (std::abs(x.imag()) < accept / kNear && std::abs(x.real()) <= 1.0)
+      angles[static_cast<Index>(kept++)] = place + kNear * x.real();
+  return kept;
 }
 
 }  // namespace g6

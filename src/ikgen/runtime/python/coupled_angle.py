@@ -24,18 +24,26 @@ from ikgen.runtime.python.loop_equations import left_invariants, loop_equations,
 from ikgen.runtime.python.rigid_motion import inverses, rotations_z
 from ikgen.runtime.python.solution_rows import Index
 
-__all__ = ["CoupledAngle", "coupled_determinants"]
+__all__ = ["CoupledAngle", "coupled_determinants", "neighbours"]
 
 _ONE = np.eye(4)[None]
 _FIRST_NODE = 0.05  # rad, an angle that no right angle shares
+_REAL = 0.03  # rad, the imaginary part of an angle that may be real
+
+# Near a crowded angle (rad): how far, and the degree of polynomials of sines and cosines there.
+_NEAR, _CLOSE = 0.2, 20
+_NODES: Array = np.cos(np.pi / (_CLOSE + 1) * (np.arange(_CLOSE + 1, dtype=float) + 0.5))
+_CHEBYSHEV = np.linalg.inv(np.polynomial.chebyshev.chebvander(_NODES, _CLOSE))
 
 
 @dataclass(frozen=True)
 class CoupledAngle:
     """Finds candidates of a chain in which one joint, and no other, turns several axes: `motions` in their
-    order along the chain. The plan's third number is the degree in that joint's angle."""
+    order along the chain. The plan's third number is the degree in that joint's angle. Near `crowded`
+    angles (rad) the determinant is small at every pose; it is looked at there by itself."""
 
     motions: tuple[Motion, ...]
+    crowded: tuple[float, ...] = ()
 
     def __call__(self, F: Array, T: Array, plan: Elimination, _: tuple[bool, ...]) -> Candidates:
         """As `candidates`, of frames F (rows + 1, 4, 4); none is known to be all of a pose."""
@@ -43,6 +51,13 @@ class CoupledAngle:
         step = 2.0 * np.pi / (2 * degree + 2)
         nodes: Array = _FIRST_NODE + step * np.arange(2 * degree + 2, dtype=float)
         pose, angle = _roots(coupled_determinants(self.motions, F, T, plan, nodes), degree)
+        for place in self.crowded:
+            close = coupled_determinants(self.motions, F, T, plan, place + _NEAR * _NODES)
+            apart = np.abs(np.remainder(angle - place + np.pi, 2.0 * np.pi) - np.pi) > 0.9 * _NEAR
+            more, near = _close_roots(close)
+            pose, angle = np.append(pose[apart], more), np.append(angle[apart], place + near)
+        order = np.argsort(pose, kind="stable")
+        pose, angle = pose[order], angle[order]
         none, unclear = np.zeros(count, dtype=np.intp), np.zeros(count, dtype=bool)
         if not len(pose):
             return pose, np.zeros((0, 6)), none, unclear
@@ -61,6 +76,13 @@ def coupled_determinants(
     inner = (np.broadcast_to(link, (*shape, 4, 4)).reshape(-1, 4, 4) for link in links[1:4])
     left = left_invariants(*inner).reshape(*shape, 14, 9)
     return np.asarray(np.linalg.det(_singular(E[:, None], left)))
+
+
+def neighbours(motions: Sequence[Motion], F: Array, plan: Elimination, nodes: Array) -> Array:
+    """Cosines (3, n) between the axes beside the links in which the coupled joint may lie, at its angles
+    `nodes` (n,)."""
+    links = _Loop(motions, F, *plan[:2]).links(np.eye(4)[None, None], nodes[None])
+    return np.array([np.broadcast_to(link[0, :, 2, 2], nodes.shape) for link in links[1:4]])
 
 
 class _Loop:
@@ -117,8 +139,23 @@ def _roots(values: Array, degree: int) -> tuple[Index, Array]:
     companion[:, :, -1] = -c[:, :-1] / lead
     z = np.linalg.eigvals(companion)
     t: NDArray[np.complex128] = -1j * (z - 1.0) / np.where(z == -1.0, 1e-300, z + 1.0)
-    pose, angle, _, _ = real_angles(t, np.full(len(z), _FIRST_NODE), 0.03)
+    pose, angle, _, _ = real_angles(t, np.full(len(z), _FIRST_NODE), _REAL)
     return pose, angle
+
+
+def _close_roots(values: Array) -> tuple[Index, Array]:
+    """Poses (k,) and the real roots (k,), from a crowded angle, of determinants with `values` (N, n) at the
+    nodes near it: eigenvalues of the colleague matrix (Good 1961)."""
+    c = values @ _CHEBYSHEV.T
+    lead = np.where(np.abs(c[:, -1:]) < 1e-300, 1e-300, c[:, -1:])
+    colleague = np.zeros((len(c), _CLOSE, _CLOSE))
+    k = np.arange(_CLOSE - 1)
+    colleague[:, k, k + 1] = colleague[:, k + 1, k] = 0.5
+    colleague[:, 0, 1] = 1.0
+    colleague[:, -1] -= 0.5 * c[:, :-1] / lead
+    x = np.linalg.eigvals(colleague)
+    pose, i = np.nonzero((np.abs(x.imag) < _REAL / _NEAR) & (np.abs(x.real) <= 1.0))
+    return pose, np.asarray(_NEAR * x.real[pose, i], dtype=float)
 
 
 def _completed(
