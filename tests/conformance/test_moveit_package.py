@@ -19,7 +19,6 @@ from tests.support.moveit_arms import (
 from tests.support.moveit_driver import own_test, warnings_of
 
 from ikgen.emit.moveit import emit, package_name
-from ikgen.errors import UsageError
 
 NO_CLANG = missing_tools("clang++")
 
@@ -70,13 +69,6 @@ def test_ros_accepts_the_manifest(tmp_path: Path) -> None:
         parsed = catkin.parse_package(str(package), warnings=problems)
     assert not problems and parsed.get_build_type() == "ament_cmake"
     assert {d.name for d in parsed.build_depends} >= {"moveit_core", "pluginlib", "rclcpp"}
-
-
-def test_chains_with_mimic_joints_are_refused() -> None:
-    module = module_of(KUKA)
-    dh = dataclasses.replace(module.dh, rows=(*module.dh.rows, module.dh.rows[-1]))
-    with pytest.raises(UsageError, match="mimic"):
-        emit(dataclasses.replace(module, dh=dh))
 
 
 @pytest.mark.skipif(bool(missing_tools("g++")), reason=missing_tools("g++"))

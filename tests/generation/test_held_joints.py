@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, TORSO, Joint, serial_urdf
+from tests.support.telescopes import telescope_robot
 
 from ikgen.emit.derivation import Derivation
 from ikgen.errors import VerificationError
@@ -145,3 +146,9 @@ def test_slide_is_held_where_no_axes_are_special(tmp_path: Path) -> None:
     choices = held_choices(read(arm(tmp_path, TORSO, *skew)), POSE)
     assert all("torso" in choice.held for choice in choices[:7])
     assert all("torso" not in choice.held for choice in choices[7:])
+
+
+def test_slides_and_the_tool_measure_an_arm_without_links(tmp_path: Path) -> None:
+    reading = read(Request(telescope_robot(tmp_path), task="position"))
+    choices = held_choices(reading, find_task("position"))
+    assert choices[0].held == ("pitch",) and all(len(choice.held) == 1 for choice in choices)

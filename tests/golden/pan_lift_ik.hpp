@@ -721,8 +721,8 @@ template <class Arm> struct SolutionRows {
   template <class Cost> static void sort(Solutions& out, const Cost& cost) noexcept {
     const int count = out.count;
     double costs[Arm::kMaxSolutions], rows[Arm::kMaxSolutions][Arm::kDof];
-    bool flags[Arm::kMaxSolutions];
-    int place[Arm::kMaxSolutions];
+    bool flags[Arm::kMaxSolutions] = {};
+    int place[Arm::kMaxSolutions] = {};
     for (int k = 0; k < count; ++k) {
       std::copy_n(row(out, k), Arm::kDof, rows[k]);
       flags[k] = flag(out, k);

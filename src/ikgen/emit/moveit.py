@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape
 
 from ikgen.emit.cpp.cpp_emitter import emit_header
-from ikgen.emit.cpp.cpp_language import comment
+from ikgen.emit.cpp.cpp_language import comment, literal, number
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
 from ikgen.errors import UsageError
@@ -15,6 +15,7 @@ from ikgen.model.maintainer import name_and_email
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
+    from ikgen.model.chain import Chain
 
 __all__ = ["emit", "emit_derivation", "package_name"]
 
@@ -31,6 +32,7 @@ _FILES = {
 }
 _HEADERS = (
     "candidates",
+    "group_joints",
     "search",
     "messages",
     "moveit_headers",
@@ -41,27 +43,48 @@ _HEADERS = (
 
 def emit_derivation(derivation: Derivation) -> dict[str, str]:
     """Relative path -> text of the package's folder, `<name>_ik_moveit/`."""
-    return emit(derivation.module)
+    return emit(derivation.module, derivation.reading.chain)
 
 
-def emit(module: SolverModule) -> dict[str, str]:
+def emit(module: SolverModule, chain: Chain | None = None) -> dict[str, str]:
     """Relative path -> text: a whole ament package, the solver's header included.
 
-    Raises UsageError for a chain with mimic joints, whose values MoveIt wants as well.
+    MoveIt wants the values of joints that follow others as well, which are those of `chain` (None: there
+    are none). Raises UsageError where a joint of the solver is not between base and tip, or where DH rows
+    follow others: MoveIt has no model of them.
     """
-    if len(module.dh.rows) > module.dh.dof:
-        raise UsageError(
-            f"{module.dh.robot}: the chain has mimic joints, and the MoveIt plugin does not serve these",
-            hint="use the Python or C++ output",
-        )
+    group = _group(module, chain)
     package = package_name(module.name)
     include = f"{package}/include/{package}"
     headers = (*_HEADERS, "free_joints") if module.free else _HEADERS
     paths = {f"{package}/{path}": file for path, file in _FILES.items()}
     paths |= {f"{include}/{header}.hpp": f"{header}.hpp" for header in headers}
-    values = _values(module, package)
+    values = _values(module, package) | group
     out = {path: render("moveit", f"{file}.jinja", **values) for path, file in paths.items()}
     return out | {f"{include}/{module.name}_ik.hpp": emit_header(module)}
+
+
+def _group(module: SolverModule, chain: Chain | None) -> dict[str, object]:
+    """The joints between base and tip by name, with what moves them, and where the solver's joints are."""
+    names = [joint.name for joint in module.dh.joints]
+    if chain is not None:
+        group = [(a.name, a.driver, a.multiplier, a.offset) for a in chain.axes]
+    elif len(module.dh.rows) == module.dh.dof:
+        group = [(name, j, 1.0, 0.0) for j, name in enumerate(names)]
+    else:
+        raise UsageError(
+            f"{module.dh.robot}: rows of a DH table follow others, and MoveIt has no model of these",
+            hint="give the robot's URDF, or use the Python or C++ output",
+        )
+    between = [name for name, *_ in group]
+    outside = [name for name in names if name not in between]
+    if outside:
+        raise UsageError(
+            f"{module.dh.robot}: the joint '{outside[0]}' moves the chain from outside of it, and the "
+            "MoveIt plugin does not serve that: a planning group has the joints between base and tip",
+            hint="use the Python or C++ output",
+        )
+    return {"group": group, "places": [between.index(name) for name in names]}
 
 
 def package_name(name: str) -> str:
@@ -84,6 +107,8 @@ def _values(module: SolverModule, package: str) -> dict[str, object]:
         "turning": ["true" if turns else "false" for turns in turning],
         "version": _version(module.generator_version),
         "comment": comment,
+        "number": number,
+        "quoted": literal,
         "xml": escape,
     }
 

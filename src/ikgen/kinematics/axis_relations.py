@@ -15,6 +15,7 @@ import numpy as np
 from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.forward import row_values
 from ikgen.kinematics.rigid import dh_link, z_motion
+from ikgen.model.chain import PRISMATIC
 from ikgen.model.dh import DHChain
 from ikgen.model.joint_tree import Matrix
 
@@ -35,9 +36,13 @@ class AxisRelations:
 
 
 def reach(dh: DHChain) -> float:
-    """A length (m) to measure others of the chain by: its link lengths and offsets added up, at least
-    1e-9."""
-    return max(sum(abs(x.nominal) for row in dh.rows for x in (row.a, row.d)), 1e-9)
+    """A length (m) to measure others of the chain by: its link lengths and offsets added up, or where they
+    are shorter the way from the last axis' origin to the tip, or the longest travel of a slide, 1 m at
+    most; at least 1e-9."""
+    links = sum(abs(x.nominal) for row in dh.rows for x in (row.a, row.d))
+    travels = [j.limits.upper - j.limits.lower for j in dh.joints if j.kind == PRISMATIC]
+    tool = float(np.linalg.norm(dh.X_tip[:3, 3]))
+    return max(links, tool, *(min(x, 1.0) for x in travels), 1e-9)
 
 
 def axis_relations(dh: DHChain) -> AxisRelations:
