@@ -109,7 +109,8 @@ def check(dh: DHChain, module: ModuleType, poses: int, rng: np.random.Generator)
     """Wrong rows, by what the module's task reads, and missed configurations over random regular poses."""
     q = rng.uniform(-2.5, 2.5, (poses, dh.dof))
     regular = smallest_singular(dh, q, arm_size(dh)) > 1e-3
-    turning, space = revolute(module), task_space(find_task(module.TASK, module.TOOL_AXIS or None))
+    task = find_task(module.TASK, getattr(module, "TOOL_AXIS", None))
+    turning, space = revolute(module), task_space(task)
     wrong = missed = 0
     for at, pose in zip(q[regular], dh_pose(dh, q[regular]), strict=True):
         rows = module.solve(pose, limits=False).q
