@@ -1,16 +1,17 @@
 """Tests of the tests: how many small changes of the code, drawn by a seed, some test notices.
 
-    python -m benchmarks.mutation_score [--count N] [--seed N] [--log FILE] [--record]
+    python -m benchmarks.mutation_score [--count N] [--seed N] [--log FILE] [--again] [--record]
 
 Changes of `forms`, `solver`, `lowering`, `program`, `runtime` (Python), `emit` and `verify`
 (`benchmarks/code_mutations.py`) are drawn without regard to the package, so that however many are done
-are a fair sample. Each is made in a copy of this tree, and tests run till one fails: of those that take
-little, the ones of its package, then some that run emitted code of many arms; about ten seconds of them,
-then a minute, and none that needs a compiler, so that the score is a lower bound of what all tests find.
-Golden files are left out, which would notice any change of text and say nothing of what it does. A change
-counts as found where a test fails, an import does, or the tests take more than four times the processor
-time that they take without it. What is done stands in FILE, one JSON object a line; a run with the same
-file goes on behind it. Changes that are not found are printed.
+are a fair sample. Each is made in a copy of this tree, and tests that reach the changed function run till
+one fails: first those of files that share a word with the module's name, then of others, the shortest of
+each, together about ten seconds of processor time. None takes more than four seconds or needs a compiler,
+so that the score is a lower bound of what all tests find. Golden files do not count for changes of
+`runtime`, whose text they contain: they would notice any change and say nothing of what it does. A change
+counts as found where a test fails, an import does, or a test takes more than four times the time that it
+takes without it. What is done stands in FILE, one JSON object a line; a run with the same file goes on
+behind it, with `--again` after those that no test found were tried anew. Changes not found are printed.
 """
 
 from __future__ import annotations
@@ -18,62 +19,34 @@ from __future__ import annotations
 import argparse
 import contextlib
 import json
-import os
 import random
-import resource
 import shutil
-import signal
 import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from benchmarks.changed_tree import Reach, Server, Tree, recorded, surrounding
 from benchmarks.code_mutations import CodeMutation, code_mutations
-from benchmarks.collection import CORPUS
 from benchmarks.command_line import REPOSITORY
 from benchmarks.results import write_result
 
-if TYPE_CHECKING:
-    import pytest
-
-__all__ = ["PACKAGES", "drawn", "files_for", "main"]
+__all__ = ["PACKAGES", "chosen", "drawn", "main", "score"]
 
 PACKAGES = ("forms", "solver", "lowering", "program", "runtime", "emit", "verify")
 _LOADED = ("numpy", "numpy.linalg", "pinocchio", "lxml.etree", "jinja2", "py_trees", "click", "pytest",
            "hypothesis", "multiprocessing", "concurrent.futures", "jsonschema", "sympy")  # fmt: skip
-_NEEDED = (
-    "src",
-    "templates",
-    "tests",
-    "benchmarks",
-    "urdf_fixtures",
-    "examples",
-    "docs",
-    "pyproject.toml",
-)
-_FURTHER = (
-    "tests/conformance/test_python.py", "tests/robots/test_tables.py", "tests/elimination/test_*.py",
-    "tests/conformance/test_special_poses.py",
+_FOLDERS = (
+    "forms", "program", "lowering", "solver", "runtime", "verify", "emit", "golden", "elimination",
+    "conformance", "equations", "robots",
 )  # fmt: skip
-_NEAREST = (
-    "tests/conformance/test_projection.py", "tests/conformance/test_self_motion.py",
-    "tests/conformance/test_follow.py", "tests/conformance/test_noisy_poses.py",
-    "tests/kinematics/test_*.py", "tests/equations/test_*.py", "tests/lowering/test_*.py",
-)  # fmt: skip
-_LONGEST = 10.0  # processor time (s) of a test
-_FIRST = (
-    6.0,
-    2.5,
-    10.0,
-)  # of the tests of a file near the module, of another's, of all that run first
-_THEN = (40.0, 10.0, 60.0)  # of those that run where the first ones pass
-_LATE = 4.0
-_MEMORY = 6 << 30
+"""Folders of tests that are run: others start processes, or test other packages."""
+_NEAR = (3.0, 6.0)  # times (s) of tests of a file near the module, and of all such
+_OTHER = (1.0, 8.0)  # of another file, and of all
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,213 +77,31 @@ def drawn(seed: int) -> list[tuple[str, CodeMutation]]:
     return found
 
 
-def files_for(path: str) -> list[str]:
-    """The files of tests that run for a module: those that share a word with its name, those of its
-    package, others."""
-    package = path.split("/")[0]
-    usual = (f"tests/{package}/test_*.py", *_FURTHER)
-    files = [p for pattern in usual for p in sorted(REPOSITORY.glob(pattern))]
-    named = [p for pattern in _NEAREST for p in sorted(REPOSITORY.glob(pattern))]
-    near = [p for p in (*files, *named) if _words(Path(path).stem) & _words(p.stem)]
-    return list(dict.fromkeys(p.relative_to(REPOSITORY).as_posix() for p in (*near, *files)))
+def chosen(path: str, function: str | None, every: Mapping[str, Reach]) -> dict[str, float]:
+    """The tests to run for a change in a function of the module at `path` (None: outside of all), in their
+    order, with their times (s)."""
+    of_file: dict[str, dict[str, float]] = {}
+    for test, reach in sorted(every.items(), key=lambda item: item[1].seconds):
+        file = test.split("::")[0]
+        golden = path.startswith("runtime/") and file.startswith("tests/golden/")
+        if not golden and reach.of(path, function):
+            of_file.setdefault(file, {})[test] = reach.seconds
+    words = _words(Path(path).stem)
+    files = sorted(of_file, key=lambda file: not words & _words(Path(file).stem))
+    found: dict[str, float] = {}
+    for file in files:
+        each, most = _NEAR if words & _words(Path(file).stem) else _OTHER
+        left = min(most - sum(found.values()), each)
+        for test, seconds in of_file[file].items():
+            left -= seconds
+            if left > 0.0:
+                found[test] = seconds
+    return found
 
 
 def _words(name: str) -> set[str]:
     """Words of a module's name, by their beginnings: "slide" and "slides" are one."""
     return {word[:5] for word in name.split("_")} - {"test", "cpp", "python", "row", "form"}
-
-
-class Tree:
-    """A copy of this repository's files, in which one module at a time is changed."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        for name in _NEEDED:
-            place = REPOSITORY / name
-            ignored = shutil.ignore_patterns("__pycache__", "results", "build")
-            if place.is_dir():
-                shutil.copytree(place, folder / name, ignore=ignored, symlinks=True)
-            else:
-                shutil.copy2(place, folder / name)
-
-    @contextlib.contextmanager
-    def changed(self, path: str, mutation: CodeMutation) -> Iterator[None]:
-        """The module with the change."""
-        file = self.folder / "src" / "ikgen" / path
-        text, was = file.read_bytes(), file.stat()
-        file.write_bytes(mutation.applied(text))
-        try:
-            yield
-        finally:  # with its time, so that what Python compiled of it counts again
-            file.write_bytes(text)
-            os.utime(file, ns=(was.st_atime_ns, was.st_mtime_ns))
-
-    def run(self, tests: Iterable[str], seconds: float, times: Path | None = None) -> str:
-        """The first test that fails, "too late" (seconds of processor time), or nothing where all pass.
-        Where `times` is given all are run, and the time of those that pass is written there."""
-        reading, writing = os.pipe()
-        child = os.fork()
-        if child == 0:
-            self._run_here(tests, writing, seconds, times)
-        os.close(writing)
-        try:
-            return _awaited(child, reading, seconds)
-        finally:
-            os.close(reading)
-
-    def _run_here(
-        self, tests: Iterable[str], writing: int, seconds: float, times: Path | None
-    ) -> None:
-        """In a process of its own, that ends here."""
-        try:
-            _settle(self.folder, keep=times is not None)
-            import pytest
-
-            notes = _Notes()
-            files = dict.fromkeys(test.split("::")[0] for test in tests)
-            if times is None:
-                resource.setrlimit(resource.RLIMIT_CPU, (int(seconds), int(seconds)))
-            options = [
-                "-q",
-                "-p",
-                "no:cacheprovider",
-                "--hypothesis-seed=0",
-                "-m",
-                "not slow and not long",
-            ]
-            options += ["-x"] if times is None else ["--continue-on-collection-errors"]
-            if times is None:
-                notes.wanted = set(tests)
-            code = int(pytest.main([*options, *files], plugins=[notes]))
-            if times is not None:
-                times.write_text(json.dumps(notes.seconds, indent=0), encoding="utf-8")
-            os.write(writing, (notes.failed or ("" if code == 0 else f"exit code {code}")).encode())
-        except BaseException as error:
-            os.write(writing, f"not run: {error!r}".encode())
-        finally:
-            os._exit(0)
-
-
-def _settle(folder: Path, *, keep: bool) -> None:
-    """Make this process one that works in the copy of the tree, prints nothing and finds no compiler (what
-    needs one takes too long)."""
-    os.setsid()
-    resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
-    os.chdir(folder)
-    silent = os.open(os.devnull, os.O_RDWR)
-    for stream in (0, 1, 2):
-        os.dup2(silent, stream)
-    ours = (REPOSITORY, REPOSITORY / "src")
-    here = [str(folder / "src"), str(folder)]
-    sys.path[:] = here + [p for p in sys.path if p and Path(p).resolve() not in ours]
-    for name in [n for n in sys.modules if n.split(".")[0] in ("ikgen", "benchmarks", "tests")]:
-        del sys.modules[name]
-    sys.dont_write_bytecode = not keep
-    os.environ.update(
-        PYTHONPATH=os.pathsep.join(here),
-        IKGEN_CORPUS=str(CORPUS),
-        PATH=str(Path(sys.executable).parent),
-        PYTHONDONTWRITEBYTECODE="" if keep else "1",
-    )
-
-
-class _Notes:
-    """A plug-in of pytest: runs the tests that are wanted (None: all), notes the times of those that pass
-    and what failed first."""
-
-    def __init__(self) -> None:
-        self.failed = ""
-        self.wanted: set[str] | None = None
-        self.seconds: dict[str, float] = {}
-        self._started = 0.0
-
-    def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        if self.wanted is not None:
-            items[:] = [item for item in items if item.nodeid in self.wanted]
-
-    def pytest_runtest_logstart(self, nodeid: str) -> None:
-        self._started = _processor_time()
-        if self.wanted is None:
-            signal.signal(signal.SIGPROF, _late)
-            signal.setitimer(signal.ITIMER_PROF, 2.0 * _LONGEST)
-
-    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        if report.failed and not self.failed:
-            self.failed = report.nodeid
-        if report.when == "call" and report.passed:
-            self.seconds[report.nodeid] = round(_processor_time() - self._started, 3)
-
-    def pytest_collectreport(self, report: pytest.CollectReport) -> None:
-        if report.failed and not self.failed:
-            self.failed = f"import of {report.nodeid}"
-
-
-def _processor_time() -> float:
-    """Of this process and those that it started (s)."""
-    times = os.times()
-    return times.user + times.system + times.children_user + times.children_system
-
-
-def _late(*_: object) -> None:
-    raise TimeoutError
-
-
-def _awaited(child: int, reading: int, seconds: float) -> str:
-    """What the child wrote; it and all that it started are ended."""
-    deadline = time.monotonic() + 20.0 * seconds
-    ended, status = 0, 0
-    while not ended and time.monotonic() < deadline:
-        time.sleep(0.02)
-        ended, status = os.waitpid(child, os.WNOHANG)
-    with contextlib.suppress(ProcessLookupError, PermissionError):
-        os.killpg(child, signal.SIGKILL)
-    if not ended:
-        os.waitpid(child, 0)
-        return "too late"
-    if os.WIFSIGNALED(status):
-        return "too late" if os.WTERMSIG(status) in (signal.SIGXCPU, signal.SIGKILL) else "crashed"
-    return os.read(reading, 4096).decode("utf-8", "replace")
-
-
-class Baseline:
-    """How long each test takes without a change (s), of those that pass; kept in `file`."""
-
-    def __init__(self, tree: Tree, file: Path) -> None:
-        if not file.is_file():
-            paths = {path for path, _ in drawn(0)}
-            every = dict.fromkeys(test for path in sorted(paths) for test in files_for(path))
-            tree.run(list(every), 3600.0, times=file)
-        self.seconds: dict[str, float] = json.loads(file.read_text(encoding="utf-8"))
-
-    def stages(self, path: str) -> list[dict[str, float]]:
-        """The tests to run for a module, with their times: some that take little, and more where those
-        pass."""
-        first = self._within(path, *_FIRST, set())
-        return [first, self._within(path, *_THEN, set(first))]
-
-    def _within(
-        self, path: str, near: float, other: float, most: float, done: set[str]
-    ) -> dict[str, float]:
-        """Tests that are not done, the shortest of each file, till these times (s) are used."""
-        of_file: dict[str, list[str]] = {file: [] for file in files_for(path)}
-        for test, seconds in sorted(self.seconds.items(), key=lambda item: item[1]):
-            file = test.split("::")[0]
-            if file in of_file and seconds < _LONGEST and test not in done:
-                of_file[file].append(test)
-        found: dict[str, float] = {}
-        for file, tests in of_file.items():
-            alike = _words(Path(path).stem) & _words(Path(file).stem)
-            left = min(most - sum(found.values()), near if alike else other)
-            for test in tests:
-                left -= self.seconds[test]
-                if left > 0.0:
-                    found[test] = self.seconds[test]
-        return found
-
-
-def _limit(tests: Mapping[str, float]) -> float:
-    """The time (s) that tests may take, their imports too."""
-    return 30.0 + _LATE * sum(tests.values())
 
 
 def done_so_far(log: Path) -> list[Done]:
@@ -320,8 +111,47 @@ def done_so_far(log: Path) -> list[Done]:
     return [Done(**{**row, "mutation": CodeMutation(**row["mutation"])}) for row in rows]
 
 
-def run(count: int, seed: int, log: Path) -> list[Done]:
-    """The first `count` of those that the seed draws, but those that stand in the file."""
+class Trial:
+    """Changes of a copy of the tree, and the tests that are run for them."""
+
+    def __init__(self, folder: Path, reached: Path) -> None:
+        self.tree = Tree(folder)
+        tests = [p for f in _FOLDERS for p in sorted((REPOSITORY / "tests" / f).glob("test_*.py"))]
+        files = [p.relative_to(REPOSITORY).as_posix() for p in tests]
+        known = {test.split("::")[0] for test in recorded(reached)}
+        new = [file for file in files if file not in known]
+        if new:
+            self.tree.record(new, reached)
+        self.reached = recorded(reached)
+        self._files = files
+        self._server: Server | None = None
+
+    @property
+    def server(self) -> Server:
+        """Started where it is needed first."""
+        if self._server is None:
+            self._server = Server(self.tree, self._files)
+        return self._server
+
+    def close(self) -> None:
+        if self._server is not None:
+            self._server.close()
+
+    def __call__(self, path: str, mutation: CodeMutation) -> Done:
+        started = time.monotonic()
+        file = self.tree.folder / "src" / "ikgen" / path
+        function = surrounding(file.read_bytes(), mutation)
+        tests = chosen(path, function, self.reached)
+        with self.tree.changed(path, mutation):
+            said = None if function is None else self.server.run(path, function, tests)
+            if said is None:
+                said = self.tree.run_anew(tests) if tests else ""
+        return Done(path, mutation, said, round(time.monotonic() - started, 1))
+
+
+def run(count: int, seed: int, log: Path, *, again: bool = False) -> list[Done]:
+    """The first `count` of those that the seed draws, but those that stand in the file; those of it that
+    were not found too, where `again` is set."""
     found = done_so_far(log)
     todo = drawn(seed)
     if [(d.path, d.mutation) for d in found] != todo[: len(found)]:
@@ -331,20 +161,24 @@ def run(count: int, seed: int, log: Path) -> list[Done]:
             import_module(name)
     folder = Path(tempfile.mkdtemp(prefix="mutation-score-"))
     try:
-        tree = Tree(folder)
-        baseline = Baseline(tree, log.with_suffix(".times"))
+        trial = Trial(folder, log.with_suffix(".reached"))
+        for k, done in enumerate(found):
+            if again and not done.found_by:
+                found[k] = trial(done.path, done.mutation)
+                _write(log, found)
         for path, mutation in todo[len(found) : count]:
-            started = time.monotonic()
-            with tree.changed(path, mutation):
-                runs = (tree.run(tests, _limit(tests)) for tests in baseline.stages(path) if tests)
-                said = next(filter(None, runs), "")
-            done = Done(path, mutation, said, round(time.monotonic() - started, 1))
-            found.append(done)
-            with log.open("a", encoding="utf-8") as stream:
-                stream.write(json.dumps(asdict(done)) + "\n")
+            found.append(trial(path, mutation))
+            _write(log, found)
+        trial.close()
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     return found[:count]
+
+
+def _write(log: Path, found: Sequence[Done]) -> None:
+    new = log.with_suffix(".new")
+    new.write_text("".join(json.dumps(asdict(d)) + "\n" for d in found), encoding="utf-8")
+    new.replace(log)
 
 
 def score(found: Sequence[Done]) -> dict[str, tuple[int, int]]:
@@ -360,9 +194,12 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--log", type=Path, default=Path("mutation_score.log"))
+    parser.add_argument("--again", action="store_true", help="try anew those that were not found")
     parser.add_argument("--record", action="store_true", help="write the recorded result")
     options = parser.parse_args()
-    found = run(options.count, options.seed, options.log)
+    found = run(options.count, options.seed, options.log, again=options.again)
+    if not found:
+        return 0
     for done in found:
         if not done.found_by:
             m = done.mutation

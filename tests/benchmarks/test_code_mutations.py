@@ -5,9 +5,10 @@ from __future__ import annotations
 import ast
 
 import pytest
+from benchmarks.changed_tree import Reach, surrounding
 from benchmarks.code_mutations import code_mutations
 from benchmarks.command_line import REPOSITORY
-from benchmarks.mutation_score import PACKAGES, Done, drawn, files_for, score
+from benchmarks.mutation_score import PACKAGES, Done, chosen, drawn, score
 
 TEXT = b'''"""Doc 1."""
 from typing import TYPE_CHECKING
@@ -51,12 +52,48 @@ def test_a_seed_draws_the_same_of_all_packages() -> None:
     assert {path.split("/")[0] for path, _ in first} == set(PACKAGES)
 
 
-def test_tests_near_a_module_come_first() -> None:
-    files = files_for("runtime/python/path_following.py")
-    assert files.index("tests/conformance/test_follow.py") < files.index(
-        "tests/robots/test_tables.py"
-    )
-    assert not any("golden" in file for file in files)
+def test_the_function_around_a_change_is_found() -> None:
+    text = b"""LIMIT = 3
+class A:
+    size = 4
+    def f(self, x=5):
+        def g(): return 6
+        return g()
+def h(x): return x + 7
+TABLE = [lambda: 8]
+"""
+    found = {m.old: surrounding(text, m) for m in code_mutations(text) if m.old in "345678"}
+    assert found == {"3": None, "4": None, "5": None, "6": "A.f", "7": "h", "8": None}
+
+
+def test_tests_that_reach_a_function_run_those_of_its_module_first() -> None:
+    def reach(seconds: float, *functions: str) -> Reach:
+        return Reach(seconds, frozenset(functions))
+
+    every = {
+        "tests/runtime/test_rows.py::late": reach(0.7, "emitted::follow"),
+        "tests/runtime/test_rows.py::soon": reach(0.1, "emitted::follow"),
+        "tests/conformance/test_follow.py::near": reach(
+            2.0, "runtime/python/path_following.py::_follow"
+        ),
+        "tests/conformance/test_follow.py::other": reach(
+            0.1, "runtime/python/path_following.py::start"
+        ),
+        "tests/golden/test_python_module.py::golden": reach(0.1, "emitted::follow"),
+        "tests/forms/test_form.py::none": reach(0.1, "forms/form.py::follow"),
+        "tests/forms/test_form.py::long": reach(90.0, "emitted::follow"),
+    }
+    path = "runtime/python/path_following.py"
+    assert list(chosen(path, "_follow", every)) == [
+        "tests/conformance/test_follow.py::near",
+        "tests/runtime/test_rows.py::soon",
+        "tests/runtime/test_rows.py::late",
+    ]
+    assert list(chosen(path, None, every)) == [
+        "tests/conformance/test_follow.py::other",
+        "tests/conformance/test_follow.py::near",
+    ]
+    assert chosen("forms/form.py", "follow", every) == {"tests/forms/test_form.py::none": 0.1}
 
 
 def test_the_score_is_by_package() -> None:
