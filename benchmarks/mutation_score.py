@@ -42,7 +42,7 @@ _LOADED = ("numpy", "numpy.linalg", "pinocchio", "lxml.etree", "jinja2", "py_tre
            "hypothesis", "multiprocessing", "concurrent.futures", "jsonschema", "sympy")  # fmt: skip
 _FOLDERS = (
     "forms", "program", "lowering", "solver", "runtime", "verify", "emit", "golden", "elimination",
-    "conformance", "equations", "robots",
+    "conformance", "equations", "robots", "report",
 )  # fmt: skip
 """Folders of tests that are run: others start processes, or test other packages."""
 _NEAR = (3.0, 6.0)  # times (s) of tests of a file near the module, and of all such
@@ -78,13 +78,14 @@ def drawn(seed: int) -> list[tuple[str, CodeMutation]]:
 
 
 def chosen(path: str, function: str | None, every: Mapping[str, Reach]) -> dict[str, float]:
-    """The tests to run for a change in a function of the module at `path` (None: outside of all), in their
-    order, with their times (s)."""
+    """The tests to run for a change in a function of the module at `path` (None: outside of all; then any
+    where none reaches the module), in their order, with their times (s)."""
+    anywhere = function is None and not any(reach.of(path, None) for reach in every.values())
     of_file: dict[str, dict[str, float]] = {}
     for test, reach in sorted(every.items(), key=lambda item: item[1].seconds):
         file = test.split("::")[0]
         golden = path.startswith("runtime/") and file.startswith("tests/golden/")
-        if not golden and reach.of(path, function):
+        if not golden and (anywhere or reach.of(path, function)):
             of_file.setdefault(file, {})[test] = reach.seconds
     words = _words(Path(path).stem)
     files = sorted(of_file, key=lambda file: not words & _words(Path(file).stem))
@@ -142,6 +143,8 @@ class Trial:
         file = self.tree.folder / "src" / "ikgen" / path
         function = surrounding(file.read_bytes(), mutation)
         tests = chosen(path, function, self.reached)
+        if not tests:  # a function that imports call, say
+            function, tests = None, chosen(path, None, self.reached)
         with self.tree.changed(path, mutation):
             said = None if function is None else self.server.run(path, function, tests)
             if said is None:

@@ -143,3 +143,29 @@ def test_a_guard_holds_where_its_form_is_taken_alone(solved: SolutionGraph) -> N
     b.taken(b.length, first, never)
     guards = np.logical_and.reduce(b.requirements)
     assert list(guards) == [share > 1e-3 for share in SHARES]
+
+
+def test_a_small_square_is_noted_relative_to_its_size_where_digits_are_lost(
+    solved: SolutionGraph,
+) -> None:
+    bench = Bench(solved)
+    under = bench.given((1e-3, 3e-6, 1e-7, 0.0))
+    bench.work.note_fold(under, 4.0)
+    assert bench.work.folds == []
+    bench.work.loses_digits = True
+    bench.work.note_fold(under, 4.0)
+    (flag,) = bench.work.folds
+    assert flag.probe[:4].tolist() == [0.0, 1.0, 1.0, 1.0]
+    assert bench.work.rough is flag
+
+
+def test_a_guard_bounds_where_the_solution_is_real_where_that_is_said_alone(
+    solved: SolutionGraph,
+) -> None:
+    bench = Bench(solved)
+    one, other = (bench.g.binary("gt", bench.share, bench.g.const(c)) for c in (0.1, 0.2))
+    bench.work.require(one)
+    bench.work.require(other, fold=True)
+    found = [item for level in bench.work.levels for item in level.items]
+    assert [item.fold for item in found if isinstance(item, Requirement)] == [False, True]
+    assert not Requirement(one).fold

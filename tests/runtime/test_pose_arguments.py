@@ -145,3 +145,16 @@ def test_a_task_of_some_entries_tells_of_those() -> None:
     assert "orthonormalize=True" in pose_fault(direction, bad.tolist(), POLICY)
     assert EntriesTask(1.0, (0, 1, 2), (3, 3, 3), (), False).alone == "position"
     assert EntriesTask(1.0, (0, 1), (3, 0), (0,), True).alone == ""
+
+
+@pytest.mark.parametrize("over", [0.5, -0.5, 1.0 + 1e-9, -1.0 - 1e-9, 1.001, -1.9])
+def test_an_entry_that_is_a_cosine_is_one_or_is_put_right(over: float) -> None:
+    """One entry of the rotation read alone: beyond 1 by rounding it counts as 1, further it is no pose."""
+    task, pose = EntriesTask(1.0, (2, 0), (2, 3), (), False), np.eye(4)
+    pose[2, 2] = over
+    single = task.read(pose.tolist(), POLICY)
+    many, good = task.read_batch(np.stack([pose, np.eye(4)]), POLICY)
+    assert (single is not None) == good[0] == (abs(over) < 1.0 + 1e-6) and good[1]
+    if single is not None:
+        assert single[2][2] == many[0, 2, 2] == np.clip(over, -1.0, 1.0)
+    assert many[1, 2, 2] == 1.0

@@ -93,8 +93,8 @@ _Residual = Callable[[Array, Array, int], Array]
 class TaskSpace:
     """One task. `rank` is its number of independent equations; `position` says whether it reads the
     tip's position; `orientation` names what it reads of the rotation ("", rotation, direction,
-    yaw, pitch), of direction and pitch by the tool's `axis` (0 to 2); `entries` are entries of the pose
-    (row, column) that count each for itself."""
+    yaw, pitch), of direction and pitch by the tool's `axis` (0 to 2); or else `entries` of the pose
+    (row, column) count each for itself."""
 
     name: str
     rank: int
@@ -106,9 +106,8 @@ class TaskSpace:
     @property
     def lengths(self) -> list[int]:
         """Which components of the residual are in m."""
-        before = 3 * self.position + (_ROWS[self.orientation] if self.orientation else 0)
-        own = [before + i for i, (_, column) in enumerate(self.entries) if column == 3]
-        return [*range(3 * self.position), *own]
+        own = [i for i, (_, column) in enumerate(self.entries) if column == 3]
+        return [*range(3), *own] if self.position else own
 
     def residual(self, T: Array, target: Array) -> Array:
         """Target minus tip, (N, m): position in m, then orientation as a rotation vector in rad."""
@@ -153,9 +152,6 @@ _ORIENTATIONS: dict[str, tuple[_Residual, _Residual]] = {
     "yaw": (_yaw, _yaw_rows),
     "pitch": (_pitch, _pitch_rows),
 }
-
-_ROWS = {"rotation": 3, "direction": 3, "yaw": 1, "pitch": 1}
-"""Components of each residual."""
 
 
 def task_space(task: Task) -> TaskSpace:
