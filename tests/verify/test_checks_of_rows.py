@@ -13,6 +13,7 @@ from ikgen.tasks import find_task
 from ikgen.verify.agreement import disagreements
 from ikgen.verify.arm import ArmUnderTest, arm_under_test
 from ikgen.verify.checks import check_distinct, check_inside_limits
+from ikgen.verify.coverage import check_singular_answers
 from ikgen.verify.oracle import PinocchioOracle
 from ikgen.verify.runners.runner import Rows
 from ikgen.verify.sampling import SampleSet
@@ -96,3 +97,12 @@ def test_the_length_of_a_small_arm_is_its_own() -> None:
         limits = (oracle.lower, oracle.upper)
         small = arm_under_test(oracle, task_space(find_task("pose")), limits, ())
         assert low <= small.length <= high
+
+
+def test_poses_without_a_row_are_counted_and_so_are_seeds_found(arm: ArmUnderTest) -> None:
+    zero = [0.0] * 6
+    trials = [trial_of(arm, rows_of([zero], [], [row(1.0)])), trial_of(arm, rows_of([zero]))]
+    found = check_singular_answers(arm, trials)
+    assert (found.count, found.failures, found.passed) == (4, 1, False)
+    assert "in 2 of 4" in found.detail and "made #1" in found.worst_case
+    assert check_singular_answers(arm, trials[1:]).passed
