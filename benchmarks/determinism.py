@@ -1,11 +1,14 @@
 """The same bytes whatever the surroundings: a matrix of builds that are compared with a first one.
 
-    python -m benchmarks.determinism [--arms FILE ...] [--only WORDS ...] [--record [--add]]
+    python -m benchmarks.determinism [--arms FILE ...] [--only WORDS ...] [--pythons PATH ...]
+                                     [--record [--add]]
 
 Each row changes one thing: the kernels that OpenBLAS chooses, the vector instructions that NumPy and the C
 library may use, hash seed, locale, time zone, working directory, spelling of the path, number of processes.
 The arms are solved by rules, from exact and from rounded files, and by eliminations, which are chosen by
-probing. With `--add` rows are added to what is recorded of the same arms. Exit code 1 where a file differs.
+probing. `--pythons` adds a row for each interpreter named, with the NumPy that it has; it needs what ikgen
+imports to generate. With `--add` rows are added to what is recorded of the same arms. Exit code 1 where a
+file differs.
 """
 
 from __future__ import annotations
@@ -22,7 +25,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from benchmarks.collection import CORPUS, load_arms
-from benchmarks.command_line import FIXTURES
+from benchmarks.command_line import FIXTURES, REPOSITORY
 from benchmarks.results import read_result, write_result
 
 __all__ = ["Row", "main", "rows"]
@@ -33,13 +36,25 @@ _WIDE = "AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL X86_V4 AVX
 @dataclass(frozen=True, slots=True)
 class Row:
     """One build: what is changed, in words, and how: environment, options of `ikgen build`, the working
-    directory (by its place above the project) and how the config is named from there."""
+    directory (by its place above the project) and how the config is named from there, the interpreter."""
 
     words: str
     environment: Mapping[str, str] = field(default_factory=dict)
     options: tuple[str, ...] = ("-j", "1")
     above: int = 0
     config: str = "ikgen.toml"
+    python: str = sys.executable
+
+
+_VERSIONS = (
+    "import platform as p, numpy; print(f'Python {p.python_version()}, NumPy {numpy.__version__}')"
+)
+
+
+def row_of(python: str) -> Row:
+    """A build by another interpreter, which takes ikgen from where this one has it."""
+    words = subprocess.run([python, "-c", _VERSIONS], capture_output=True, text=True, check=True)
+    return Row(words.stdout.strip(), {"PYTHONPATH": str(REPOSITORY / "src")}, python=python)
 
 
 def rows() -> list[Row]:
@@ -107,7 +122,7 @@ def built(row: Row, arms: Sequence[Arm]) -> dict[str, str]:
         (project / "ikgen.toml").write_text(text, encoding="utf-8")
         here = (project, place / "up", place)[row.above]
         config = row.config.format(up="up", absolute=project / "ikgen.toml")
-        command = [sys.executable, "-m", "ikgen", "build", config, "-q", "--no-verify"]
+        command = [row.python, "-m", "ikgen", "build", config, "-q", "--no-verify"]
         subprocess.run(
             [*command, *row.options], cwd=here, env={**os.environ, **row.environment}, check=True
         )
@@ -138,6 +153,7 @@ def main() -> int:
     parser.add_argument(
         "--only", nargs="+", default=None, help="rows whose words have one of these"
     )
+    parser.add_argument("--pythons", nargs="+", default=[], help="interpreters to build with too")
     parser.add_argument("--record", action="store_true", help="write the recorded result")
     parser.add_argument("--add", action="store_true", help="to what is recorded")
     options = parser.parse_args()
@@ -145,6 +161,7 @@ def main() -> int:
     first, *others = rows()
     expected = built(first, arms)
     others = [r for r in others if not options.only or any(o in r.words for o in options.only)]
+    others += [row_of(python) for python in options.pythons]
     print(f"{len(expected)} files of {len(arms)} arms")
     differing: dict[str, int] = {}
     if options.add:
