@@ -76,7 +76,7 @@ def test_emitted_names_are_listed() -> None:
 
 
 def test_config_example_is_one_and_all_entries_are_listed(tmp_path: Path) -> None:
-    example = next(blocks(REFERENCE / "config.md"))
+    example = blocks(REFERENCE / "config.md")[0]
     (tmp_path / "ikgen.toml").write_text(example.text)
     assert load_config(tmp_path / "ikgen.toml")[0].name == "ur5e"
     (tmp_path / "ikgen.toml").write_text("[[arm]]\nnonsense = 1\n")
@@ -88,7 +88,7 @@ def test_config_example_is_one_and_all_entries_are_listed(tmp_path: Path) -> Non
 
 def test_dh_example_is_one(tmp_path: Path) -> None:
     table = tmp_path / "table.toml"
-    table.write_text(next(blocks(REFERENCE / "dh-table.md")).text)
+    table.write_text(blocks(REFERENCE / "dh-table.md")[0].text)
     assert output("inspect", str(table), "--no-advice")["chain"]["dof"] == 1
 
 
