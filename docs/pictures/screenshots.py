@@ -64,7 +64,7 @@ class Camera:
             page.get_by_text(wait).first.wait_for(timeout=60_000)
             page.add_style_tag(content=".mantine-Notification-root { display: none }")
             page.wait_for_timeout(4000)
-        self.save(page.screenshot(), name)
+        self.save(_at_rest(page), name)
         page.close()
 
     def save(self, image: bytes, name: str) -> None:
@@ -79,6 +79,17 @@ class Camera:
         """Light and dark."""
         for scheme, ending in _LIGHT_AND_DARK:
             self.take(address, f"{name}{ending}", height, scheme)
+
+
+def _at_rest(page: Any) -> bytes:
+    """The picture that does not change any more: scenes fade in."""
+    before, image = b"", page.screenshot()
+    for _ in range(12):
+        if image == before:
+            break
+        page.wait_for_timeout(1500)
+        before, image = image, page.screenshot()
+    return bytes(image)
 
 
 class _Quiet(http.server.SimpleHTTPRequestHandler):
@@ -116,15 +127,33 @@ def reach(camera: Camera, work: Path) -> None:
 
 
 def view(camera: Camera, work: Path) -> None:
-    """The viewer."""
-    derivation = derive(UR5E)
-    solver = solver_of(derivation)
-    assert solver is not None
-    server = open_server(0)
-    ArmScene(server, derivation, solver)
-    address = f"http://127.0.0.1:{server.get_port()}"
-    camera.take(address, "view_ur5e", 750, wait="solutions inside the limits")
-    server.stop()
+    """The viewer: solutions, and a robot with meshes, a path and a map."""
+    for name, request in (
+        ("view_ur5e", UR5E),
+        ("view_panda", Request(Path("example-robot-data:panda"))),
+    ):
+        derivation = derive(request)
+        solver = solver_of(derivation)
+        assert solver is not None
+        server = open_server(0)
+        scene = ArmScene(server, derivation, solver)
+        if name == "view_panda":
+            _with_path_and_map(scene)
+        address = f"http://127.0.0.1:{server.get_port()}"
+        camera.take(address, name, 750, wait="solutions inside the limits")
+        server.stop()
+
+
+def _with_path_and_map(scene: ArmScene) -> None:
+    """A path that leaves the reach, followed, and what is reached behind the arm."""
+    scene.choose(5)
+    scene.path_panel.mark(scene.pose)
+    for way in ((0.0, -0.3, -0.3), (0.3, 0.35, 0.45)):
+        mark = scene.pose
+        mark[:3, 3] += way
+        scene.path_panel.mark(mark)
+    scene.path_panel.follow()
+    scene.reach_panel.show(from_y=0.2)
 
 
 def site(camera: Camera, work: Path) -> None:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import io
 import os
 import shutil
 import signal
-import subprocess
 import sys
 import zlib
 from functools import cache
@@ -25,6 +23,7 @@ from ikgen.reach.grid import Grid, grid_over, orientations
 from ikgen.reach.png_image import png
 from ikgen.reach.reach_map import ReachMap, engine_of, reach_map
 from ikgen.reach.slices_page import slices_page
+from ikgen.reach.stored_map import archive
 from ikgen.report.worked_example import solver_of
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -110,19 +109,11 @@ def test_compiled_and_interpreted_maps_agree_and_workers_do_not_matter() -> None
     engine, size = engine_of(derivation(), portable=True, warn=pytest.fail)
     one = reach_map(derivation(), grid(), engine, size, Workers(count=1))
     two = reach_map(derivation(), grid(), engine, size, Workers(count=2))
-    assert one.archive() == two.archive()
+    assert archive(one) == archive(two)
     assert (one.count != by_numpy().count).mean() < 2e-3  # poses on the boundary of the reach
     same = one.count == by_numpy().count
     np.testing.assert_allclose(one.sigma[same], by_numpy().sigma[same], rtol=2e-3, atol=2e-4)
     np.testing.assert_allclose(one.margin[same], by_numpy().margin[same], atol=1e-5)
-
-
-def test_the_archive_has_arrays_with_coordinates() -> None:
-    found = by_numpy()
-    with np.load(io.BytesIO(found.archive())) as data:
-        assert data["count"].shape == tuple(len(data[n]) for n in ("x", "y", "z", "rotations"))
-        assert str(data["tip"]) == "tool0" and float(data["size"]) == found.size
-        assert data["sigma"].dtype == np.float32
 
 
 def once_killed(job: tuple[str, int]) -> int:
@@ -151,7 +142,7 @@ def test_dask_gives_the_same_and_survives_a_lost_worker(tmp_path: Path) -> None:
     engine, size = interpreted()
     coarse = grid_over(derivation().reading.dh, 4, 3, 1)
     one = reach_map(derivation(), coarse, engine, size, Workers(count=1))
-    assert reach_map(derivation(), coarse, engine, size, workers).archive() == one.archive()
+    assert archive(reach_map(derivation(), coarse, engine, size, workers)) == archive(one)
 
 
 def test_blocks_of_any_size_are_read_right() -> None:
@@ -179,15 +170,3 @@ def test_the_page_is_one_file() -> None:
     assert page.count("<img") > 12 and len(page) < 1.5e6
     share = f"{100 * by_numpy().solved:.1f} % with a solution"
     assert share in page
-
-
-def test_the_command_writes_both_files(tmp_path: Path) -> None:
-    table = ROOT / "urdf_fixtures/scara_standard.toml"
-    command = [
-        sys.executable, "-m", "ikgen", "reach", str(table), "--cells", "6", "--directions", "2",
-        "--workers", "1", "-q", "-o", str(tmp_path),
-    ]  # fmt: skip
-    done = subprocess.run(command, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    names = sorted(p.suffix for p in tmp_path.iterdir())
-    assert names == [".html", ".npz"]

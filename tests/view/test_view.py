@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import shutil
-import socket
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from tests.support.browser import browser
+from tests.support.viewer import drag_target, on_page, served
 
 from ikgen.cli.main import run
 from ikgen.emit.derivation import Derivation
@@ -18,7 +18,6 @@ from ikgen.generation.request import Request
 from ikgen.kinematics.quaternion_rotation import quaternion, rotation
 from ikgen.report.worked_example import solver_of
 from ikgen.verify.runners.python_module import PythonModule
-from ikgen.view.arm_scene import ArmScene, open_server
 from ikgen.view.branches import solved
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -82,12 +81,8 @@ def test_viser_is_asked_for_where_it_lacks(
 def scene() -> Any:
     """A scene with a server of its own."""
     pytest.importorskip("viser")
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    server = open_server(port)
-    yield ArmScene(server, *arm())
-    server.stop()
+    with served(*arm()) as found:
+        yield found
 
 
 def test_moving_the_target_draws_its_solutions(scene: Any) -> None:
@@ -99,25 +94,34 @@ def test_moving_the_target_draws_its_solutions(scene: Any) -> None:
         assert scene.ghosts == len(runner.solve(scene.pose, limits=False)[0])
 
 
-def test_the_page_in_a_browser(scene: Any) -> None:
-    sync_api = pytest.importorskip("playwright.sync_api")
-    chromium = shutil.which("chromium")
-    if chromium is None:
-        pytest.skip("no chromium here")
+def test_the_target_is_dragged_in_a_browser(scene: Any) -> None:
     runner = arm()[1]
-    with sync_api.sync_playwright() as playwright:
-        options = ["--no-sandbox", "--enable-unsafe-swiftshader"]
-        browser = playwright.chromium.launch(executable_path=chromium, args=options)
-        page = browser.new_page(viewport={"width": 1100, "height": 750})
-        wrong: list[str] = []
-        page.on("pageerror", lambda error: wrong.append(str(error)))
-        page.goto(f"http://127.0.0.1:{scene.server.get_port()}")
-        for pose in poses(3):
-            scene.move(pose)
+    with browser() as opened, on_page(scene, opened) as (page, wrong):
+        for axis, way in ((0, 0.5), (1, -0.4)):
+            before = scene.pose
+            drag_target(page, scene, axis, way)
+            moved = before[:3, :3].T @ (scene.pose - before)[:3, 3]
+            assert np.argmax(np.abs(moved)) == axis and np.sign(moved[axis]) == np.sign(way)
+            assert abs(moved[axis]) > 0.02
             inside = len(runner.solve(scene.pose)[0])
             every = len(runner.solve(scene.pose, limits=False)[0])
             assert scene.ghosts == every
             told = f"{inside} solutions inside the limits of {every}"
             page.get_by_text(told).wait_for(timeout=60_000)
         assert page.locator("canvas").count() >= 1 and wrong == []
-        browser.close()
+
+
+def test_a_path_is_clicked_and_followed_in_a_browser(scene: Any) -> None:
+    with browser() as opened, on_page(scene, opened) as (page, wrong):
+        page.get_by_role("button", name="path").or_(
+            page.get_by_text("path", exact=True)
+        ).first.click()
+        page.get_by_role("button", name="mark the target").click()
+        page.get_by_text("poses marked: 1").wait_for(timeout=60_000)
+        page.keyboard.down("Shift")
+        page.mouse.click(480, 300)
+        page.keyboard.up("Shift")
+        page.get_by_text("poses marked: 2").wait_for(timeout=60_000)
+        page.get_by_role("button", name="follow").click()
+        page.get_by_text("poses followed").wait_for(timeout=60_000)
+        assert scene.path_panel.followed is not None and wrong == []

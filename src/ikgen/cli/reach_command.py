@@ -50,10 +50,10 @@ __all__ = ["reach"]
     "-o",
     "--output",
     "out",
-    metavar="DIR",
+    metavar="DIR|FILE",
     type=click.Path(path_type=Path),
     default=Path(),
-    help="Where the map goes (default: here).",
+    help="Where the map goes (default: here); a file ends in .npz or .zarr.",
 )
 @executor_options
 @click.option(
@@ -78,7 +78,8 @@ def reach(
 ) -> None:
     """Map how many solutions each pose of a grid has inside the limits, and how good the best one is.
 
-    Writes NAME_reach.npz, the arrays with their coordinates, and NAME_reach.html, slices of them.
+    Writes NAME_reach.npz, the arrays with their coordinates, and NAME_reach.html, slices of them; with
+    -o FILE.zarr a zarr group in place of the .npz.
     """
     from ikgen.processes.executors import Workers
     from ikgen.reach.map_files import MapOrder, write_map

@@ -29,26 +29,43 @@ __all__ = ["view"]
     show_default=True,
     help="Port of this machine that the page is served on.",
 )
+@click.option(
+    "--map",
+    "map_file",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="A map that ikgen reach made of the arm, .npz or .zarr, to show.",
+)
 @click.option("--no-browser", is_flag=True, help="Serve the page, open none.")
 @click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
 @click.option("-v", "--verbose", is_flag=True, help="Print every step.")
 def view(
-    robot: Path, *, port: int, no_browser: bool, quiet: bool, verbose: bool, **chain: Any
+    robot: Path,
+    *,
+    port: int,
+    map_file: Path | None,
+    no_browser: bool,
+    quiet: bool,
+    verbose: bool,
+    **chain: Any,
 ) -> None:
     """Show all solutions of a target that is dragged in a browser, until interrupted."""
     from ikgen.generation.derive import derive
+    from ikgen.reach.stored_map import read_map
     from ikgen.report.worked_example import solver_of
     from ikgen.view.arm_scene import ArmScene, open_server
 
+    found = None if map_file is None else read_map(map_file)
+    request = make_request(robot, **chain)
     with Console(quiet=quiet, verbose=verbose) as console:
-        derivation = derive(make_request(robot, **chain), console)
+        derivation = derive(request, console)
         runner = solver_of(derivation)
         if runner is None:
             raise UsageError(
                 "a table without numbers has no poses", hint="give [parameters] values"
             )
         server = open_server(port)
-        ArmScene(server, derivation, runner)
+        ArmScene(server, derivation, runner, request.package_paths, found)
     address = f"http://127.0.0.1:{server.get_port()}"
     if not quiet:
         click.echo(f"showing {derivation.reading.dh.robot} at {address} until interrupted (Ctrl-C)")

@@ -8,12 +8,13 @@ from pathlib import Path
 
 from ikgen.generation.derive import derive
 from ikgen.generation.progress import Progress, silent
-from ikgen.generation.publish import Content, check_folder, publish
+from ikgen.generation.publish import check_folder, publish
 from ikgen.generation.request import Request
 from ikgen.processes.executors import Workers
 from ikgen.reach.grid import grid_over
 from ikgen.reach.reach_map import ReachMap, engine_of, reach_map
 from ikgen.reach.slices_page import slices_page
+from ikgen.reach.stored_map import FORMATS, map_contents
 
 __all__ = ["MapOrder", "write_map"]
 
@@ -38,15 +39,26 @@ def write_map(
     warn: Callable[[str], None] = lambda text: None,
     done: Callable[[int, int], None] = lambda ready, total: None,
 ) -> tuple[ReachMap, tuple[Path, ...]]:
-    """The map and its files: the archive and the page."""
-    check_folder(out)
+    """The map and its files: the arrays and the page. `out` is a folder, or names the file (`FORMATS`)."""
+    check_folder(out.parent if out.suffix in FORMATS else out)
     derivation = derive(request, progress)
     grid = grid_over(derivation.reading.dh, order.cells, order.directions, order.rolls)
     progress("compile", derivation.module.name)
     engine, size = engine_of(derivation, portable=order.portable, warn=warn)
     progress("map", f"{grid.poses:,} poses")
     found = reach_map(derivation, grid, engine, size, order.workers, done)
-    name = derivation.module.name
-    page = slices_page(found, order.command)
-    files: dict[str, Content] = {f"{name}_reach.npz": found.archive(), f"{name}_reach.html": page}
-    return found, publish(out, files)
+    return found, _written(found, out, f"{derivation.module.name}_reach", order.command)
+
+
+def _written(found: ReachMap, out: Path, name: str, command: str) -> tuple[Path, ...]:
+    """The map and its page: in a folder by `name`, or as a file that `out` names, its page beside it."""
+    folder, suffix = out, ".npz"
+    if out.suffix in FORMATS:
+        folder, name, suffix = out.parent, out.stem, out.suffix
+    files = map_contents(found, name, suffix)
+    files[f"{name}.html"] = slices_page(found, command)
+    store = folder / f"{name}{suffix}"
+    earlier = [path for path in store.rglob("*") if path.is_file()] if store.is_dir() else []
+    new = {folder / path for path in files}
+    publish(folder, files, [path for path in earlier if path not in new])
+    return store, folder / f"{name}.html"

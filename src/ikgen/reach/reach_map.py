@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +16,7 @@ from ikgen.reach.compiled_engine import compiled_engine
 from ikgen.reach.engine import Block, Engine, Interpreted, MapRows, solve_block
 from ikgen.reach.grid import Grid
 
-__all__ = ["ReachMap", "engine_of", "reach_map"]
+__all__ = ["ReachMap", "engine_of", "interpreted_engine", "reach_map"]
 
 _POSES = 60000
 """Poses of a block, about."""
@@ -49,36 +47,31 @@ class ReachMap:
         """(nx, ny, nz): share of the rotations that have a solution."""
         return np.asarray((self.count > 0).mean(axis=3))
 
-    def archive(self) -> bytes:
-        """An .npz: the arrays and their coordinates; equal maps give equal bytes."""
-        stream = io.BytesIO()
-        texts: dict[str, Any] = {
-            n: np.array(getattr(self, n)) for n in ("robot", "base", "tip", "task", "size")
-        }
-        grid: dict[str, Any] = {n: getattr(self.grid, n) for n in ("x", "y", "z", "rotations")}
-        arrays: dict[str, Any] = {n: getattr(self, n) for n in ("count", "sigma", "margin")}
-        np.savez(stream, **arrays, **grid, **texts)
-        return stream.getvalue()
-
 
 def engine_of(
     derivation: Derivation, *, portable: bool, warn: Callable[[str], None]
 ) -> tuple[Engine, float]:
     """The compiled engine, or where there is no compiler the NumPy one, with a warning; and the length
     (m) that singular values are relative to. Raises `UsageError` for an arm without numbers."""
-    module = derivation.module
     if derivation.reading.dh.symbols:
         raise UsageError("a table without numbers reaches nothing", hint="give [parameters] values")
-    orientation = derivation.task.orientation
-    turning = not derivation.task.position
-    rows = (3, 3) if turning else (0, 6) if orientation else (0, 3)
-    moving = [j for j in range(module.dh.dof) if j not in module.free]
-    size = float(sum(np.linalg.norm(F[:3, 3]) for F in module.dh.file_frames)) or 1.0
+    by_numpy = interpreted_engine(derivation)
+    rows, moving, size = by_numpy.rows, list(by_numpy.moving), by_numpy.size
     try:
-        return compiled_engine(module, rows, moving, size, portable=portable), size
+        return compiled_engine(derivation.module, rows, moving, size, portable=portable), size
     except MissingToolError as error:
         warn(f"slower, by NumPy: {error.message}; {error.hint}")
-    return Interpreted(emit_module(module), module.dh, rows, tuple(moving), size), size
+    return by_numpy, size
+
+
+def interpreted_engine(derivation: Derivation) -> Interpreted:
+    """The NumPy engine of an arm with numbers."""
+    module = derivation.module
+    turning = not derivation.task.position
+    rows = (3, 3) if turning else (0, 6) if derivation.task.orientation else (0, 3)
+    moving = tuple(j for j in range(module.dh.dof) if j not in module.free)
+    size = float(sum(np.linalg.norm(F[:3, 3]) for F in module.dh.file_frames)) or 1.0
+    return Interpreted(emit_module(module), module.dh, rows, moving, size)
 
 
 def reach_map(
@@ -86,17 +79,21 @@ def reach_map(
     grid: Grid,
     engine: Engine,
     size: float,
-    workers: Workers,
+    workers: Workers | None,
     done: Callable[[int, int], None] = lambda ready, total: None,
 ) -> ReachMap:
-    """Solve the whole grid; the same arrays whatever the workers are and however many."""
+    """Solve the whole grid; the same arrays whatever the workers are (None: this process)."""
     positions = grid.positions
     each = max(1, _POSES // len(grid.rotations))
     pieces = [
         Block(engine, positions[i : i + each], grid.rotations)
         for i in range(0, len(positions), each)
     ]
-    found: list[MapRows] = run_pieces(workers, solve_block, pieces, done)
+    found: list[MapRows]
+    if workers is None:
+        found = [solve_block(piece) for piece in pieces]
+    else:
+        found = run_pieces(workers, solve_block, pieces, done)
     count, sigma, margin = (
         np.concatenate([getattr(rows, name) for rows in found]).reshape(grid.shape)
         for name in ("count", "sigma", "margin")

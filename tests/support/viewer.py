@@ -1,0 +1,72 @@
+"""A viewer's scene with a server of its own, and hands on its page."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.emit.derivation import Derivation
+from ikgen.verify.runners.python_module import PythonModule
+from ikgen.view.arm_scene import ArmScene, open_server
+
+__all__ = ["drag_target", "on_page", "served"]
+
+
+@contextmanager
+def served(derivation: Derivation, runner: PythonModule, **more: Any) -> Iterator[ArmScene]:
+    """The scene of an arm."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    server = open_server(port)
+    try:
+        yield ArmScene(server, derivation, runner, **more)
+    finally:
+        server.stop()
+
+
+@contextmanager
+def on_page(scene: ArmScene, browser: Any) -> Iterator[tuple[Any, list[str]]]:
+    """The scene's page, and the errors that it reports."""
+    page = browser.new_page(viewport={"width": 1100, "height": 750})
+    wrong: list[str] = []
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    page.goto(f"http://127.0.0.1:{scene.server.get_port()}")
+    page.get_by_text("solutions inside the limits").wait_for(timeout=60_000)
+    yield page, wrong
+    page.close()
+
+
+def drag_target(page: Any, scene: ArmScene, axis: int, way: float) -> None:
+    """Take the arrow of the target along one of its axes (0 to 2) by `way`, in lengths of the arrow, with
+    the mouse."""
+    arrow = 0.25 * scene.size * scene.pose[:3, axis]
+    start = _pixel(page, scene, scene.pose[:3, 3] + 0.6 * arrow)
+    end = _pixel(page, scene, scene.pose[:3, 3] + (0.6 + way) * arrow)
+    page.mouse.move(*start)
+    page.wait_for_timeout(400)
+    page.mouse.down()
+    page.mouse.move(*end, steps=6)
+    page.wait_for_timeout(400)
+    page.mouse.up()
+    page.wait_for_timeout(400)
+
+
+def _pixel(page: Any, scene: ArmScene, point: NDArray[np.float64]) -> tuple[float, float]:
+    """Where a point (3,) is seen: a pinhole camera that stands upright."""
+    (client,) = scene.server.get_clients().values()
+    camera, size = client.camera, page.viewport_size
+    eye = np.asarray(camera.position)
+    forward = np.asarray(camera.look_at) - eye
+    forward = forward / np.linalg.norm(forward)
+    right = np.cross(forward, [0.0, 0.0, 1.0])
+    right = right / np.linalg.norm(right)
+    seen = point - eye
+    scale = size["height"] / 2 / np.tan(camera.fov / 2) / (seen @ forward)
+    up = np.cross(right, forward)
+    return size["width"] / 2 + scale * seen @ right, size["height"] / 2 - scale * seen @ up

@@ -1,0 +1,198 @@
+"""The panels beside the scene: paths that are followed, sweeps of held joints, maps, meshes."""
+
+from __future__ import annotations
+
+import threading
+import xml.etree.ElementTree as ElementTree
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.support.viewer import served
+
+from ikgen.emit.derivation import Derivation
+from ikgen.errors import MissingToolError
+from ikgen.generation.derive import derive
+from ikgen.generation.read import read
+from ikgen.generation.request import Request
+from ikgen.kinematics.forward import file_forward
+from ikgen.reach.grid import grid_over
+from ikgen.reach.reach_map import interpreted_engine, reach_map
+from ikgen.report.worked_example import solver_of
+from ikgen.verify.runners.python_module import PythonModule
+from ikgen.view.followed_path import between, followed
+from ikgen.view.robot_meshes import robot_meshes
+
+ROOT = Path(__file__).resolve().parents[2]
+pytest.importorskip("viser")
+
+
+@cache
+def arm(name: str) -> tuple[Derivation, PythonModule]:
+    derivation = derive(Request(ROOT / f"urdf_fixtures/{name}.urdf"))
+    runner = solver_of(derivation)
+    assert runner is not None
+    return derivation, runner
+
+
+KUKA, FRANKA = "kuka_kr6r900sixx", "franka_fr3"
+
+
+def moved(pose: np.ndarray, *way: float) -> np.ndarray:
+    """A pose further by so much (m) in the base link."""
+    out = pose.copy()
+    out[:3, 3] += way
+    return out
+
+
+def test_poses_between_marks_are_near_each_other_and_lead_through_the_marks() -> None:
+    runner = arm(KUKA)[1]
+    q = np.random.default_rng(4).uniform(-1, 1, (4, 6))
+    marks = list(runner.forward(q))
+    poses = between(marks, 1.0)
+    for mark in marks:
+        assert np.abs(poses - mark).max(axis=(1, 2)).min() < 1e-9
+    assert np.linalg.norm(np.diff(poses[:, :3, 3], axis=0), axis=1).max() < 0.021
+    turns = np.einsum("nji,njk->nik", poses[:-1, :3, :3], poses[1:, :3, :3])
+    assert np.arccos(np.clip((np.trace(turns, axis1=1, axis2=2) - 1) / 2, -1, 1)).max() < 0.021
+    np.testing.assert_allclose(
+        poses[:, :3, :3] @ poses[:, :3, :3].transpose(0, 2, 1), np.tile(np.eye(3), (len(poses), 1, 1)),
+        atol=1e-12,
+    )  # fmt: skip
+
+
+def test_a_path_out_of_reach_says_where_the_status_changes() -> None:
+    runner = arm(KUKA)[1]
+    q = np.array([0.2, -0.9, 1.1, 0.3, 0.6, -0.4])
+    start = runner.forward(q[None])[0]
+    poses = between([start, moved(start, 0.05, 0, 0.02), moved(start, 2.0, 0, 0.02)], 1.0)
+    found = followed(runner, poses, q, None)
+    assert 2 < len(found.q) < len(poses) and found.status != "OK"
+    np.testing.assert_allclose(runner.forward(found.q), poses[: len(found.q)], atol=1e-9)
+    assert np.abs(np.diff(found.q, axis=0)).max() < 0.3
+    assert found.changes and found.alone[0] == "OK" and found.alone[-1] == "UNREACHABLE"
+    assert found.status in found.words and f"**{len(found.q)} of {len(poses)}**" in found.words
+
+
+def test_marked_poses_are_followed_and_looked_at() -> None:
+    derivation, runner = arm(KUKA)
+    with served(derivation, runner) as scene:
+        panel = scene.path_panel
+        panel.follow()
+        assert panel.followed is None
+        start = scene.pose
+        panel.mark(start)
+        panel.mark(moved(start, -0.05, 0.02, 0.0))
+        panel.follow()
+        assert panel.followed is not None and panel.followed.status == "OK"
+        np.testing.assert_allclose(panel.followed.q[0], scene.chosen, atol=1e-6)
+        scene.show(panel.followed.q[-1])
+        assert scene.ghosts == 0
+        np.testing.assert_allclose(
+            runner.forward(scene.chosen[None])[0], panel.marks[-1], atol=1e-9
+        )
+        panel.clear()
+        assert panel.followed is None and scene.ghosts > 1
+        scene.choose(2)
+        np.testing.assert_allclose(scene.chosen, scene.answer.branches[1].q)
+
+
+def test_a_sweep_goes_over_the_range_of_the_held_joint_and_can_be_ended() -> None:
+    derivation, runner = arm(FRANKA)
+    with served(derivation, runner) as scene:
+        panel = scene.held_panel
+        (slider,) = panel._sliders
+        assert panel.values is not None
+        j = derivation.module.free[0]
+        limits = derivation.reading.dh.joints[j].limits
+        start, seen = slider.value, []
+        slider.on_update(lambda _: seen.append(slider.value))
+        drawn = panel.sweep(slider, seconds=0.0)
+        assert drawn > 100 and abs(slider.value - start) < 1e-6
+        assert min(seen) < limits.lower + 0.2 and max(seen) > limits.upper - 0.2
+        motion = runner.module.self_motion(scene.pose)
+        assert f"{min(one.low for one in motion):.2f} to" in panel.words
+        threading.Timer(0.2, panel.stop).start()
+        assert panel.sweep(slider, seconds=60.0) < 100
+
+
+def test_the_map_is_drawn_as_points() -> None:
+    derivation, runner = arm(KUKA)
+    grid = grid_over(derivation.reading.dh, 6, 4, 1)
+    engine = interpreted_engine(derivation)
+    found = reach_map(derivation, grid, engine, engine.size, None)
+    with served(derivation, runner, reach=found) as scene:
+        panel = scene.reach_panel
+        reached = found.by_position.ravel() > 0
+        assert panel.points == reached.sum() > 10
+        panel.show(from_y=0.0)
+        assert panel.points == (reached & (grid.positions[:, 1] >= 0)).sum()
+        panel._shown.value = False
+        panel.draw()
+        assert panel.points == 0
+    with served(derivation, runner) as scene:
+        assert scene.reach_panel.points == 0
+        scene.reach_panel.show(from_y=-9.0)
+        assert scene.reach_panel.points > 500
+
+
+def with_visuals(folder: Path, base: str = "base_link") -> Path:
+    """The KUKA with a mesh, a box and one mesh that no description may read."""
+    import trimesh
+
+    (folder / "meshes").mkdir()
+    trimesh.creation.icosphere(radius=0.05).export(folder / "meshes/tip.stl")
+    trimesh.creation.icosphere(radius=0.05).export(folder.parent / f"{folder.name}.stl")
+    robot = ElementTree.parse(ROOT / f"urdf_fixtures/{KUKA}.urdf")
+    shapes = {
+        "link_6": '<mesh filename="meshes/tip.stl"/>',
+        base: '<box size="0.3 0.3 0.1"/>',
+        "link_1": f'<mesh filename="../{folder.name}.stl"/>',
+        "link_2": '<mesh filename="package://nowhere/at/all.dae"/>',
+    }
+    for link, shape in shapes.items():
+        (element,) = robot.findall(f"link[@name='{link}']")
+        element.append(ElementTree.fromstring(f"<visual><geometry>{shape}</geometry></visual>"))
+    path = folder / "robot.urdf"
+    robot.write(path)
+    return path
+
+
+def test_meshes_follow_the_chain_and_are_read_inside_the_package_alone(tmp_path: Path) -> None:
+    folder = tmp_path / "package"
+    folder.mkdir()
+    derivation = derive(Request(with_visuals(folder)))
+    runner = solver_of(derivation)
+    assert runner is not None
+    with served(derivation, runner) as scene:
+        assert scene.meshes is not None
+        urdf = scene.meshes._urdf
+        assert len(urdf.scene.geometry) == 2
+        q = np.array([0.2, -0.9, 1.1, 0.3, 0.6, -0.4])
+        scene.show(q)
+        T = urdf.get_transform("tool0", "base_link")
+        np.testing.assert_allclose(T, file_forward(derivation.reading.dh, q), atol=1e-6)
+        scene._show_meshes(False)
+        assert not scene.meshes.visible
+
+
+def test_a_robot_without_meshes_has_none() -> None:
+    class NoScene:
+        """Nothing may be drawn."""
+
+    assert robot_meshes(NoScene(), arm(KUKA)[0].reading) is None
+    assert (
+        robot_meshes(NoScene(), read(Request(ROOT / "urdf_fixtures/scara_standard.toml"))) is None
+    )
+
+
+def test_meshes_of_a_robot_by_name_are_found() -> None:
+    try:
+        derivation = derive(Request(Path("example-robot-data:ur5")))
+    except MissingToolError:
+        pytest.skip("needs example-robot-data")
+    runner = solver_of(derivation)
+    assert runner is not None
+    with served(derivation, runner) as scene:
+        assert scene.meshes is not None and len(scene.meshes._urdf.scene.geometry) >= 6
