@@ -64,7 +64,9 @@ def test_only_the_policy_that_is_read_is_written() -> None:
 def test_an_emitted_header_takes_what_it_uses() -> None:
     plain, quartic = emit_header(pan_lift()), emit_header(solver_module("ArmRobo"))
     assert (
-        "TrigRoots" not in plain and "PosesBeside" not in plain and "struct WholePose" not in plain
+        "TrigRoots" not in plain
+        and "struct Displacement" not in plain
+        and "struct WholePose" not in plain
     )
     assert "TrigRoots" in quartic and "struct SelfMotionFinder" not in quartic
 

@@ -24,6 +24,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <tuple>
 #include <type_traits>
 
 #include <Eigen/Core>
@@ -366,84 +367,6 @@ template <class Y, class X, int N = kCommon<Y, X>>
   return select(-1.2e-16 * ax > y, -third, third);  // an angle that rounds to -pi is pi
 }
 
-// --- joint range ---------------------------------------------------------------------------------
-struct Range {
-  const double* lower;
-  const double* upper;
-};
-
-template <int N> struct Unbounded {
-  double lower[N], upper[N];
-  constexpr Unbounded() noexcept : lower(), upper() {
-    for (int i = 0; i < N; ++i) {
-      lower[i] = -kInfinity;
-      upper[i] = kInfinity;
-    }
-  }
-};
-template <int N> inline constexpr Unbounded<N> kUnbounded{};
-
-template <int N> struct Placed {
-  Lanes<N> q;
-  Mask<N> inside;
-};
-
-template <class Policy, int N, bool H>
-[[gnu::always_inline]] inline Placed<N> clamp(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
-  const auto outside =
-      (range.lower[j] - Policy::kLimitTolerance > q) | (q > range.upper[j] + Policy::kLimitTolerance);
-  return {max(min(q, range.upper[j]), range.lower[j]), !outside};
-}
-
-template <class Policy, int N, bool H>
-[[gnu::always_inline]] inline Placed<N> place(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
-  const auto up = select(range.lower[j] - Policy::kLimitTolerance > q, kTurn, 0.0);
-  const auto down = select(q > range.upper[j] + Policy::kLimitTolerance, kTurn, 0.0);
-  return clamp<Policy>(j, q + (up - down), range);
-}
-
-// --- lane rows -----------------------------------------------------------------------------------
-template <int P> struct Pose {
-  Lanes<P> t[3][4];
-};
-
-template <int P> [[gnu::always_inline]] inline Pose<P> gather(const Eigen::Isometry3d* poses) noexcept {
-  Pose<P> out;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 4; ++j) {
-      double entries[std::size_t{P}];
-      for (int p = 0; p < P; ++p) entries[p] = poses[p].matrix().data()[4 * j + i];
-      out.t[i][j] = load<P>(entries);
-    }
-  return out;
-}
-
-enum Bit { kFound = 1, kReal = 2, kSingular = 4, kRough = 8, kMeeting = 16, kHit = 32 };
-
-template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> bit(const MaskOf<N, H>& mask, Bit value) noexcept {
-  return select(mask, static_cast<double>(value), 0.0);
-}
-
-template <int Dof, int Most, int P> struct LaneRows {
-  static constexpr int kLanes = Most * P;
-  alignas(64) double q[Dof][std::size_t{kLanes}];
-  alignas(64) double flags[std::size_t{kLanes}];
-};
-
-template <int N, bool H> [[gnu::always_inline]] inline Lanes<N / 2> gap(const LanesOf<N, H>& x) noexcept {
-  if constexpr (H) {
-    return abs(x.lo - x.hi);
-  } else {
-    Lanes<N / 2> lo, hi;
-    std::memcpy(&lo.v, &x.v, sizeof(lo.v));
-    std::memcpy(&hi.v, reinterpret_cast<const char*>(&x.v) + sizeof(lo.v), sizeof(hi.v));
-    return abs(lo - hi);
-  }
-}
-template <class Policy, int N, class... X> [[gnu::always_inline]] inline auto meeting(const X&... x) noexcept {
-  return Policy::kMeeting > (gap(spread<N>(x)) + ...);
-}
-
 // --- small matrix --------------------------------------------------------------------------------
 inline void cross(const double* a, const double* b, double* out) noexcept {
   out[0] = a[1] * b[2] - a[2] * b[1];
@@ -569,6 +492,211 @@ template <class Arm> struct PoseError {
   }
 };
 
+// --- fold pair -----------------------------------------------------------------------------------
+template <class Arm> struct FoldPair {
+  static constexpr int kMoving = Arm::kDof - Arm::kFree, kEquations = PoseError<Arm>::kCount;
+  using Vector = double[kMoving];
+
+  Eigen::Isometry3d pose;
+  int moving[kMoving];
+  Vector still;  // unit direction in which the pose moves least
+  double size;   // the pose's error
+
+  explicit FoldPair(const Eigen::Isometry3d& goal) noexcept : pose(goal) {
+    for (int j = 0, k = 0; j < Arm::kDof; ++j)
+      if (!Arm::kHeld[j]) moving[k++] = j;
+    for (int k = 0; k < kMoving; ++k) still[k] = 1.0 + 0.1 * k;
+  }
+
+  void approach(double side, double* q) noexcept {
+    for (int i = 0; i < kSteps; ++i)
+      if (!(std::abs(step(side, q)) > kClose)) break;
+  }
+
+  template <int N> double walk(const double* q, double (&out)[N][Arm::kDof]) noexcept {
+    double worst = 0.0, at[Arm::kDof];
+    std::copy_n(q, Arm::kDof, at);
+    step(0.0, at);
+    for (auto& sample : out) {
+      for (int i = 0; i < 2; ++i) step(0.0, at);
+      worst = std::max(worst, size);
+      std::copy_n(at, Arm::kDof, sample);
+      double largest = 0.0;
+      for (const double x : still) largest = std::max(largest, std::abs(x));
+      for (int k = 0; k < kMoving; ++k) at[moving[k]] += Arm::Policy::kTryStep / largest * still[k];
+    }
+    return worst;
+  }
+
+  double step(double side, double* q) noexcept {
+    const PoseError<Arm> at(q, pose);
+    size = at.largest();
+    find_still(at);
+    double flow[kEquations], bend[kEquations], rest[kEquations];
+    Vector ignored, across;
+    for (int e = 0; e < kEquations; ++e) {
+      flow[e] = bend[e] = 0.0;
+      rest[e] = at.error[e];
+      for (int k = 0; k < kMoving; ++k) flow[e] += at.slope[e][moving[k]] * still[k];
+    }
+    const Others others(*this, at, flow);
+    others.take_away(rest, across);
+    double x = 0.0;
+    if (side != 0.0) {
+      double there[Arm::kDof];
+      std::copy_n(q, Arm::kDof, there);
+      for (int k = 0; k < kMoving; ++k) there[moving[k]] += kAlong * still[k];
+      const PoseError<Arm> beyond(there, pose);
+      for (int e = 0; e < kEquations; ++e)
+        for (int k = 0; k < kMoving; ++k)
+          bend[e] += (beyond.slope[e][moving[k]] - at.slope[e][moving[k]]) * still[k] / kAlong;
+      others.take_away(bend, ignored);
+      others.take_away(flow, ignored);
+      x = root(side, bend, flow, rest);
+    }
+    for (int k = 0; k < kMoving; ++k)
+      q[moving[k]] += std::min(std::max(across[k], -kFar), kFar) + x * still[k];
+    return x;
+  }
+
+ private:
+  static constexpr double kAlong = 1e-4, kClose = 1e-9, kFar = 0.3;
+  static constexpr int kSteps = 8;
+
+  static double root(double side, const double (&bend)[kEquations], const double (&flow)[kEquations],
+                     const double (&rest)[kEquations]) noexcept {
+    double k = 0.0, s = 0.0, e = 0.0;
+    for (int i = 0; i < kEquations; ++i) {
+      k += bend[i] * bend[i];
+      s += bend[i] * flow[i];
+      e += bend[i] * rest[i];
+    }
+    if (!(k > 0.0)) return 0.0;
+    const double w = std::sqrt(std::max(s * s + 2.0 * k * e, 0.0)), p = s + std::copysign(w, s);
+    const double x = (s > 0.0) == (side > 0.0) && p != 0.0 ? 2.0 * e / p : -p / k;
+    return std::min(std::max(x, -kFar), kFar);
+  }
+
+  struct Others {
+    double V[kEquations][kMoving], A[kMoving][kMoving];
+
+    Others(const FoldPair& fold, const PoseError<Arm>& at, const double (&flow)[kEquations]) noexcept {
+      for (int e = 0; e < kEquations; ++e)
+        for (int k = 0; k < kMoving; ++k) V[e][k] = at.slope[e][fold.moving[k]] - flow[e] * fold.still[k];
+      for (int a = 0; a < kMoving; ++a)
+        for (int b = 0; b <= a; ++b) {
+          A[a][b] = fold.still[a] * fold.still[b] + (a == b ? Arm::Policy::kLeastDamping : 0.0);
+          for (int e = 0; e < kEquations; ++e) A[a][b] += V[e][a] * V[e][b];
+        }
+      factor(A);
+    }
+
+    void take_away(double (&z)[kEquations], Vector& y) const noexcept {
+      for (int k = 0; k < kMoving; ++k) {
+        y[k] = 0.0;
+        for (int e = 0; e < kEquations; ++e) y[k] += V[e][k] * z[e];
+      }
+      substitute(A, y);
+      for (int e = 0; e < kEquations; ++e)
+        for (int k = 0; k < kMoving; ++k) z[e] -= V[e][k] * y[k];
+    }
+  };
+
+  void find_still(const PoseError<Arm>& at) noexcept {
+    double N[kMoving][kMoving];
+    for (int a = 0; a < kMoving; ++a)
+      for (int b = 0; b <= a; ++b) {
+        N[a][b] = a == b ? Arm::Policy::kLeastDamping : 0.0;
+        for (int e = 0; e < kEquations; ++e) N[a][b] += at.slope[e][moving[a]] * at.slope[e][moving[b]];
+      }
+    factor(N);
+    for (int i = 0; i < 4; ++i) {
+      substitute(N, still);
+      double square = 0.0;
+      for (const double x : still) square += x * x;
+      for (double& x : still) x /= std::sqrt(square);
+    }
+  }
+};
+
+// --- joint range ---------------------------------------------------------------------------------
+struct Range {
+  const double* lower;
+  const double* upper;
+};
+
+template <int N> struct Unbounded {
+  double lower[N], upper[N];
+  constexpr Unbounded() noexcept : lower(), upper() {
+    for (int i = 0; i < N; ++i) {
+      lower[i] = -kInfinity;
+      upper[i] = kInfinity;
+    }
+  }
+};
+template <int N> inline constexpr Unbounded<N> kUnbounded{};
+
+template <int N> struct Placed {
+  Lanes<N> q;
+  Mask<N> inside;
+};
+
+template <class Policy, int N, bool H>
+[[gnu::always_inline]] inline Placed<N> clamp(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
+  const auto outside =
+      (range.lower[j] - Policy::kLimitTolerance > q) | (q > range.upper[j] + Policy::kLimitTolerance);
+  return {max(min(q, range.upper[j]), range.lower[j]), !outside};
+}
+
+template <class Policy, int N, bool H>
+[[gnu::always_inline]] inline Placed<N> place(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
+  const auto up = select(range.lower[j] - Policy::kLimitTolerance > q, kTurn, 0.0);
+  const auto down = select(q > range.upper[j] + Policy::kLimitTolerance, kTurn, 0.0);
+  return clamp<Policy>(j, q + (up - down), range);
+}
+
+// --- lane rows -----------------------------------------------------------------------------------
+template <int P> struct Pose {
+  Lanes<P> t[3][4];
+};
+
+template <int P> [[gnu::always_inline]] inline Pose<P> gather(const Eigen::Isometry3d* poses) noexcept {
+  Pose<P> out;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 4; ++j) {
+      double entries[std::size_t{P}];
+      for (int p = 0; p < P; ++p) entries[p] = poses[p].matrix().data()[4 * j + i];
+      out.t[i][j] = load<P>(entries);
+    }
+  return out;
+}
+
+enum Bit { kFound = 1, kReal = 2, kSingular = 4, kRough = 8, kMeeting = 16, kHit = 32 };
+
+template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> bit(const MaskOf<N, H>& mask, Bit value) noexcept {
+  return select(mask, static_cast<double>(value), 0.0);
+}
+
+template <int Dof, int Most, int P> struct LaneRows {
+  static constexpr int kLanes = Most * P;
+  alignas(64) double q[Dof][std::size_t{kLanes}];
+  alignas(64) double flags[std::size_t{kLanes}];
+};
+
+template <int N, bool H> [[gnu::always_inline]] inline Lanes<N / 2> gap(const LanesOf<N, H>& x) noexcept {
+  if constexpr (H) {
+    return abs(x.lo - x.hi);
+  } else {
+    Lanes<N / 2> lo, hi;
+    std::memcpy(&lo.v, &x.v, sizeof(lo.v));
+    std::memcpy(&hi.v, reinterpret_cast<const char*>(&x.v) + sizeof(lo.v), sizeof(hi.v));
+    return abs(lo - hi);
+  }
+}
+template <class Policy, int N, class... X> [[gnu::always_inline]] inline auto meeting(const X&... x) noexcept {
+  return Policy::kMeeting > (gap(spread<N>(x)) + ...);
+}
+
 // --- newton refinement ---------------------------------------------------------------------------
 struct RefineStage {
   int steps;
@@ -611,13 +739,17 @@ template <class Arm> struct NewtonRefinement {
     }
   }
 
-  static bool refine(double* q, const Eigen::Isometry3d& pose) noexcept {
+  static double error_after(double* q, const Eigen::Isometry3d& pose) noexcept {
     double error = kInfinity;
     for (const RefineStage& stage : Policy::kRefinement) {
       error = run(q, pose, stage.steps);
       if (!(error >= stage.fine && error < stage.promising)) break;
     }
-    return error < Policy::kArrived;
+    return error;
+  }
+
+  static bool refine(double* q, const Eigen::Isometry3d& pose) noexcept {
+    return error_after(q, pose) < Policy::kArrived;
   }
 };
 
@@ -651,11 +783,11 @@ template <class Arm> struct RankLoss {
 template <class Arm> struct SolutionRows {
   using Options = typename Arm::Options;
   using Policy = typename Arm::Policy;
-  using Solutions = typename Arm::Solutions;
+  template <class Out> static constexpr int kRoom = static_cast<int>(std::tuple_size<decltype(Out::q)>::value);
 
-  static double* row(Solutions& out, int k) noexcept { return out.q.data()[k].data(); }
-  static bool& flag(Solutions& out, int k) noexcept { return out.singular.data()[k]; }
-  static void move(Solutions& out, int from, int to) noexcept {
+  template <class Out> static double* row(Out& out, int k) noexcept { return out.q.data()[k].data(); }
+  template <class Out> static bool& flag(Out& out, int k) noexcept { return out.singular.data()[k]; }
+  template <class Out> static void move(Out& out, int from, int to) noexcept {
     std::copy_n(row(out, from), Arm::kDof, row(out, to));
     flag(out, to) = flag(out, from);
   }
@@ -674,8 +806,8 @@ template <class Arm> struct SolutionRows {
     return true;
   }
 
-  static void add(Solutions& out, const double* q, bool singular) noexcept {
-    if (out.count == Arm::kMaxSolutions) return;
+  template <class Out> static void add(Out& out, const double* q, bool singular) noexcept {
+    if (out.count == kRoom<Out>) return;
     for (int k = 0; k < out.count; ++k)
       if (same(q, row(out, k))) return;
     std::copy_n(q, Arm::kDof, row(out, out.count));
@@ -701,7 +833,7 @@ template <class Arm> struct SolutionRows {
     return true;
   }
 
-  static void place_all(const Options& options, Solutions& out) noexcept {
+  template <class Out> static void place_all(const Options& options, Out& out) noexcept {
     int kept = 0;
     for (int k = 0; k < out.count; ++k) {
       if (kept < k) move(out, k, kept);
@@ -710,7 +842,7 @@ template <class Arm> struct SolutionRows {
     out.count = kept;
   }
 
-  static void sort_by_distance(Solutions& out, const double* seed) noexcept {
+  template <class Out> static void sort_by_distance(Out& out, const double* seed) noexcept {
     sort(out, [seed](const double* q) noexcept {
       double sum = 0.0;
       for (int j = 0; j < Arm::kDof; ++j) sum += (q[j] - seed[j]) * (q[j] - seed[j]);
@@ -718,11 +850,11 @@ template <class Arm> struct SolutionRows {
     });
   }
 
-  template <class Cost> static void sort(Solutions& out, const Cost& cost) noexcept {
+  template <class Out, class Cost> static void sort(Out& out, const Cost& cost) noexcept {
     const int count = out.count;
-    double costs[Arm::kMaxSolutions], rows[Arm::kMaxSolutions][Arm::kDof];
-    bool flags[Arm::kMaxSolutions] = {};
-    int place[Arm::kMaxSolutions] = {};
+    double costs[std::size_t{kRoom<Out>}], rows[std::size_t{kRoom<Out>}][Arm::kDof];
+    bool flags[std::size_t{kRoom<Out>}] = {};
+    int place[std::size_t{kRoom<Out>}] = {};
     for (int k = 0; k < count; ++k) {
       std::copy_n(row(out, k), Arm::kDof, rows[k]);
       flags[k] = flag(out, k);
@@ -753,23 +885,28 @@ template <class Arm> struct CarefulSolve {
   [[gnu::always_inline]] static void solve(const Eigen::Isometry3d& pose, const Options& options,
                                            Solutions& out) noexcept {
     bool real = false;
+    Places found;
+    found.count = 0;
     for (int turn = 0; turn < Policy::kTries; ++turn) {
       double start[Arm::kDof];
       for (int j = 0; j < Arm::kDof; ++j)
         start[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kRevolute[j] ? turn * Policy::kTryStep : 0.0);
       for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) start[Arm::kFreeJoints[k]] = options.free[k];
-      const bool hit = find_rows(pose, start, options, out);
-      if constexpr (Arm::kSolvesBeside)
-        if (turn == 0) Arm::add_rows_beside(pose, start, options, out);
-      real = real || out.count > 0;
-      Row::place_all(options, out);
-      if (out.count == 0 && options.seed && Refinement::refine(start, pose)) {
-        add(out, start, true);
-        Row::place_all(options, out);
+      Left left = find_rows(pose, start, options, turn == 0, found);
+      if (options.seed && !left.free && any_singular(found)) add_from(pose, start, found);
+      real = real || found.count > 0;
+      Row::place_all(options, found);
+      if (found.count == 0 && options.seed && Refinement::refine(start, pose)) {
+        add(pose, found, start, true);
+        Row::place_all(options, found);
       }
-      if (out.count > 0 || !hit) break;
+      if (!Arm::kNewton) left.led = any_singular(found);
+      if (!left.free || (left.led && found.count > 0)) break;
     }
-    if (options.seed) Row::sort_by_distance(out, options.seed->data());
+    if (options.seed) Row::sort_by_distance(found, options.seed->data());
+    out.count = std::min(found.count, Arm::kMaxSolutions);
+    std::copy_n(found.q.begin(), out.count, out.q.begin());
+    std::copy_n(found.singular.begin(), out.count, out.singular.begin());
     out.status = out.count > 0 ? Arm::Status::Ok : real ? Arm::Status::Limits : Arm::Status::Unreachable;
   }
 
@@ -778,40 +915,158 @@ template <class Arm> struct CarefulSolve {
     Arm::branches(gather<1>(&pose), typename Arm::Seed(q0), options.free, anywhere, out);
   }
 
-  static void add_refined(const Eigen::Isometry3d& pose, const Rows& rows, int lane, Solutions& out) noexcept {
-    double q[Arm::kDof];
-    for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
-    if (Arm::kRefined || Refinement::refine(q, pose)) add(out, q, (bits(rows, lane) & kSingular) != 0);
-  }
-
  private:
+  struct Places {
+    static constexpr std::size_t kRoom = 2 * Arm::kMaxSolutions;
+    int count;
+    std::array<typename Arm::Joints, kRoom> q;
+    std::array<bool, kRoom> singular;
+  };
+
+  struct Left {
+    bool free = false, led = false;
+  };
+
   static int bits(const Rows& rows, int lane) noexcept { return static_cast<int>(rows.flags[lane]); }
 
-  static void add(Solutions& out, const double* q, bool marked) noexcept {
-    Row::add(out, q, RankLoss<Arm>::below(q, marked ? Policy::kContinuumRankLoss : Policy::kRankLoss));
+  struct Nearest {
+    bool marked = false, near = false, settled = false, exact = false;  // settled: a solution, whatever else there is
+    double error = 0.0, start[Arm::kDof], q[Arm::kDof];
+
+    Nearest() = default;
+    Nearest(const Eigen::Isometry3d& pose, const Rows& rows, int lane, bool singular) noexcept : marked(singular) {
+      for (int j = 0; j < Arm::kDof; ++j) start[j] = q[j] = rows.q[j][lane];
+      if (!Arm::kRefined) error = Refinement::error_after(q, pose);
+    }
+
+    void judge() noexcept {
+      near = broken() || (!marked && RankLoss<Arm>::below(q, Policy::kFoldReach));
+      settled = near ? error < Policy::kConverged && !broken() : error < Policy::kArrived;
+    }
+
+    bool broken() const noexcept { return marked && (Arm::kNewton || !(error < Policy::kArrived)); }
+
+    void take_pair(const FoldPair<Arm>& fold, const double* from, Places& out) noexcept {
+      for (const double side : {1.0, -1.0}) {
+        double trial[Arm::kDof];
+        std::copy_n(from, Arm::kDof, trial);
+        FoldPair<Arm>(fold).approach(side, trial);
+        const double left = Refinement::error_after(trial, fold.pose);
+        if (left < Policy::kExact) {
+          exact = true;
+          add(fold.pose, out, trial, marked);
+        } else if (left < error) {
+          error = left;
+          std::copy_n(trial, Arm::kDof, q);
+        }
+      }
+    }
+
+    void add_nearby(const Eigen::Isometry3d& pose, Places& out) noexcept {
+      FoldPair<Arm> fold(pose);
+      if (broken()) {
+        double around[Policy::kTries][Arm::kDof];
+        if (fold.walk(start, around) >= Policy::kArrived)
+          for (const auto& from : around) take_pair(fold, from, out);
+      } else {
+        std::copy_n(q, Arm::kDof, start);
+        take_pair(fold, start, out);
+      }
+      if (!exact && !settled && error < Policy::kArrived) add(pose, out, q, marked);
+    }
+  };
+
+  struct Starts {
+    int count = 0;
+    std::array<Nearest, std::size_t{Arm::kLanes} * (1 + Arm::kBesides)> all;
+
+    void take(const Nearest& start, bool beside, const Eigen::Isometry3d& pose, Places& out) noexcept {
+      for (int k = 0; k < count && beside; ++k)
+        if (Row::same(start.q, all[k].q)) return;
+      Nearest& one = all[count] = start;
+      one.judge();
+      for (int k = 0; k < count && beside && one.near && !one.settled; ++k)
+        if (all[k].near && alike(one.q, all[k].q)) return;
+      ++count;
+      if (!one.settled) return;
+      if (one.near || one.marked)
+        add(pose, out, one.q, one.marked);
+      else
+        Row::add(out, one.q, false);
+    }
+  };
+
+  static bool any_singular(const Places& rows) noexcept {
+    const auto end = rows.singular.begin() + rows.count;
+    return std::find(rows.singular.begin(), end, true) != end;
   }
 
-  [[gnu::always_inline]] static bool find_rows(const Eigen::Isometry3d& pose, const double* q0, const Options& options,
-                                               Solutions& out) noexcept {
+  static void add_from(const Eigen::Isometry3d& pose, const double* q0, Places& out) noexcept {
+    double q[Arm::kDof];
+    std::copy_n(q0, Arm::kDof, q);
+    if (Refinement::refine(q, pose)) add(pose, out, q, true);
+  }
+
+  static void add(const Eigen::Isometry3d& pose, Places& out, const double* q, bool marked) noexcept {
+    const bool singular = RankLoss<Arm>::below(q, marked ? Policy::kContinuumRankLoss : Policy::kRankLoss);
+    for (int k = 0; k < out.count && singular; ++k)
+      if (Row::flag(out, k) && between(pose, q, Row::row(out, k))) return;
+    Row::add(out, q, singular);
+  }
+
+  static double change(int j, const double* a, const double* b) noexcept {
+    const double gap = b[j] - a[j];
+    return Arm::kRevolute[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap;
+  }
+
+  static bool alike(const double* a, const double* b) noexcept {
+    for (int j = 0; j < Arm::kDof; ++j)
+      if (!(std::abs(change(j, a, b)) < Policy::kAlike)) return false;
+    return true;
+  }
+
+  static bool between(const Eigen::Isometry3d& pose, const double* a, const double* b) noexcept {
+    if (!alike(a, b)) return false;
+    double middle[Arm::kDof];
+    for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * change(j, a, b);
+    return PoseError<Arm>(middle, pose).largest() < Policy::kConverged;
+  }
+
+  [[gnu::always_inline]] static Left find_rows(const Eigen::Isometry3d& pose, const double* q0, const Options& options,
+                                               bool beside, Places& out) noexcept {
     Rows rows;
     find_lanes(pose, q0, options, rows);
-    out.count = 0;
     double q[Arm::kDof];
-    bool hit = false;
-    for (const int lane : Arm::kLaneOfRow) hit = hit || (bits(rows, lane) & kHit) != 0;
-    if (hit) {
-      std::copy_n(q0, Arm::kDof, q);
-      if (Refinement::refine(q, pose)) add(out, q, true);
+    Left left;
+    for (const int lane : Arm::kLaneOfRow) {
+      left.free = left.free || (bits(rows, lane) & kHit) != 0;
+      left.led = left.led || (bits(rows, lane) & (kSingular | kReal)) == (kSingular | kReal);
     }
+    if (left.free) add_from(pose, q0, out);
+    Starts starts;
     for (const int lane : Arm::kLaneOfRow)
       if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
-        add_refined(pose, rows, lane, out);
+        starts.take({pose, rows, lane, (bits(rows, lane) & kSingular) != 0}, false, pose, out);
+    if (Arm::kBesides > 0 && beside) take_beside(pose, q0, options, starts, out);
+    for (int k = 0; k < starts.count; ++k)
+      if (starts.all[k].near) starts.all[k].add_nearby(pose, out);
     for (const int lane : Arm::kLaneOfRow) {
       if (Arm::kRefined || (bits(rows, lane) & (kReal | kRough)) != kReal) continue;
       for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
       Row::add(out, q, false);
     }
-    return hit;
+    return left;
+  }
+
+  static void take_beside(const Eigen::Isometry3d& pose, const double* q0, const Options& options, Starts& starts,
+                          Places& out) noexcept {
+    if constexpr (Arm::kBesides > 0)
+      for (const auto& motion : Arm::kBeside) {
+        Rows rows;
+        find_lanes(displaced(pose, motion), q0, options, rows);
+        for (const int lane : Arm::kLaneOfRow)
+          if ((bits(rows, lane) & kReal) != 0) starts.take({pose, rows, lane, false}, true, pose, out);
+      }
   }
 };
 
@@ -947,7 +1202,7 @@ template <class Arm> struct LaneSolve {
       count += bits & kFound;
       seen |= bits;
     }
-    if ((seen & (kRough | kHit)) != 0) return false;
+    if ((seen & (kRough | kHit)) != 0 || (Arm::kBesides > 0 && (seen & kReal) == 0)) return false;
     out.count = count;
     if (Arm::kNewton || (seen & kMeeting) != 0) {
       leave_distinct(out);
@@ -1618,11 +1873,11 @@ inline void order_rows(const Eigen::Isometry3d& pose, const double* seed, typena
 
 struct Policy {
   static constexpr int kTries = 16, kPatience = 5;
-  static constexpr double kArrived = 5e-10, kPoseTolerance = 1e-06, kOrthonormal = 1e-14, kCoincident = 1e-06,
-      kMeeting = 2e-05, kLimitTolerance = 1e-09, kTryStep = 0.39269908169872414, kRankLoss = 1e-07,
-      kContinuumRankLoss = 0.001, kLeastDamping = 1e-12, kDamping = 0.001, kLargestStep = 0.3, kConverged =
-      1e-13, kProgress = 0.8;
-  static constexpr RefineStage kRefinement[] = {{3, 1e-12, 0.1}, {6, 5e-10, 0.001}, {30, 0.0, 0.0}};
+  static constexpr double kArrived = 5e-10, kExact = 1e-12, kPoseTolerance = 1e-06, kOrthonormal = 1e-14,
+      kCoincident = 1e-06, kAlike = 0.01, kMeeting = 2e-05, kLimitTolerance = 1e-09, kTryStep =
+      0.39269908169872414, kRankLoss = 1e-07, kContinuumRankLoss = 0.001, kFoldReach = 0.0001, kLeastDamping =
+      1e-14, kDamping = 0.001, kLargestStep = 0.3, kConverged = 1e-13, kProgress = 0.8;
+  static constexpr RefineStage kRefinement[] = {{3, 1e-12, 0.1}, {6, 1e-12, 0.001}, {30, 0.0, 0.0}};
 };
 
 struct Seed;
@@ -1638,7 +1893,8 @@ struct Arm {
   using Status = pan_lift_ik::Status;
   template <int P> using Rows = LaneRows<2, 2, P>;
 
-  static constexpr int kDof = 2, kFree = 0, kMaxSolutions = 2;
+  static constexpr int kDof = 2, kFree = 0, kLanes = 2;
+  static constexpr int kMaxSolutions = pan_lift_ik::kMaxSolutions;
   static constexpr auto& kLower = pan_lift_ik::kLower;
   static constexpr auto& kUpper = pan_lift_ik::kUpper;
   static constexpr std::array<int, kFree> kFreeJoints = {};
@@ -1666,9 +1922,9 @@ struct Arm {
   static constexpr bool kFarLimits = false;
   static constexpr bool kNewton = false;
   static constexpr bool kRefined = false;
-  static constexpr bool kSolvesBeside = false;
+  static constexpr int kBesides = 0;
   // Lane of each row, depth first.
-  static constexpr int kLaneOfRow[kMaxSolutions] = {0, 1};
+  static constexpr int kLaneOfRow[kLanes] = {0, 1};
 
   // The closed form.
   template <int P>

@@ -11,7 +11,6 @@
 #include "lane_solve.hpp"
 #include "pose_entries.hpp"
 #include "pose_solver.hpp"
-#include "poses_beside.hpp"
 #include "single_solve.hpp"
 
 namespace elbow {
@@ -23,7 +22,7 @@ struct Policy {
   static constexpr double kArrived = 5e-10, kPoseTolerance = 1e-6, kOrthonormal = 1e-14, kCoincident = 1e-6;
   static constexpr double kMeeting = 2e-5, kLimitTolerance = 1e-9, kTryStep = 0.4, kRankLoss = 1e-7;
   static constexpr double kContinuumRankLoss = 1e-3, kLeastDamping = 1e-12, kDamping = 1e-3, kLargestStep = 0.3;
-  static constexpr double kConverged = 1e-13, kProgress = 0.8;
+  static constexpr double kConverged = 1e-13, kProgress = 0.8, kExact = 1e-12, kAlike = 1e-2, kFoldReach = 1e-4;
   static constexpr RefineStage kRefinement[] = {{3, 1e-12, 0.1}, {30, 0.0, 0.0}};
 };
 
@@ -51,11 +50,11 @@ struct Arm {
   using Columns = UnitColumns<0, 0, 3>;
   template <int P> using Rows = LaneRows<2, 2, P>;
 
-  static constexpr int kDof = 2, kFree = 0, kMaxSolutions = 2;
+  static constexpr int kDof = 2, kFree = 0, kMaxSolutions = 2, kLanes = 2, kBesides = 0;
   static constexpr std::array<double, 2> kLower = {-3.0, -2.5}, kUpper = {3.0, 7.0};
   static constexpr std::array<int, 0> kFreeJoints = {};
   static constexpr bool kRevolute[] = {true, true}, kHeld[] = {false, false};
-  static constexpr bool kWholePose = false, kFarLimits = false, kRefined = false, kSolvesBeside = false;
+  static constexpr bool kWholePose = false, kFarLimits = false, kRefined = false;
   static constexpr bool kNewton = false;
   static constexpr int kRead[][2] = {{0, 3}, {1, 3}};
   static constexpr double kSize = 1.0;

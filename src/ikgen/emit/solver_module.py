@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,11 +63,18 @@ class SolverModule:
         return "some" if max(self.dh.deviation) <= CLOSE else "all"
 
     @property
-    def least_pivot(self) -> float:
-        """How far the derivatives by each joint must be from the others' span where rows are refined
-        together: nearer to a singularity the file's solutions may be others in number."""
-        policy = SolvePolicy()
-        return max(policy.least_pivot, policy.reach * math.sqrt(max(self.dh.deviation)))
+    def policy(self) -> SolvePolicy:
+        """The tolerances of `solve`, two of them as far as the file is off what was solved.
+
+        `least_pivot`: nearer to a singularity the file's solutions may be others in number; `fold_reach`:
+        there two of them may start from one row; with those of poses beside, hardly ever far from it.
+        """
+        plain, root = SolvePolicy(), math.sqrt(max(self.dh.deviation))
+        return replace(
+            plain,
+            least_pivot=max(plain.least_pivot, plain.reach * root),
+            fold_reach=max(plain.fold_reach, (0.2 if self.beside else 4.0) * root),
+        )
 
     @property
     def beside(self) -> tuple[NDArray[np.float64], ...]:
@@ -87,7 +94,13 @@ class SolverModule:
 
     @property
     def max_solutions(self) -> int:
-        """Rows of the solution at most (two whole turns of a joint count once)."""
+        """Rows of the solution at most (two whole turns of a joint count once). Where a rounded file is far
+        from what was solved, each row may lead to two near folds; six joints have sixteen at most."""
+        return min(2 * self.lanes, max(self.lanes, 16)) if self.beside else self.lanes
+
+    @property
+    def lanes(self) -> int:
+        """Rows of the closed form at most."""
         return self.program.max_solutions
 
     @property

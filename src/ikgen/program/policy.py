@@ -19,7 +19,7 @@ class RefineStage:
 
 REFINEMENT: tuple[RefineStage, ...] = (
     RefineStage(3, 1e-12, 0.1),
-    RefineStage(6, 0.5e-9, 1e-3),
+    RefineStage(6, 1e-12, 1e-3),
     RefineStage(30, 0.0, 0.0),
 )
 """Only what is promising takes many steps; elsewhere all digits are wanted, as rows may lie on a limit."""
@@ -30,14 +30,18 @@ class SolvePolicy:
     """Tolerances and counts of `solve`, the same in every language.
 
     - `tolerance`: error (rad, or m over the arm's size) that a returned row may have; `arrived`: error
-      below which refined rows are solutions; `rough_square`: squared error above which a row is refined.
+      below which refined rows are solutions, `exact`: below which they give way to no better ones nearby;
+      `rough_square`: squared error above which a row is refined.
     - `pose_tolerance`: how far a rotation's entries may be off; nearer ones are replaced by the nearest
       rotation; `orthonormal`: what is round-off of them.
-    - `coincident`: rows closer than that (rad or m) are one; `meeting`: how close branches are where their
-      rows are compared. `limit_tolerance`: a row that far (rad or m) outside a limit is put back on it.
+    - `coincident`: rows closer than that (rad or m) are one, singular ones closer than `alike` where the
+      pose is theirs to `converged` halfway too; `meeting`: how close branches are where their rows are
+      compared. `limit_tolerance`: a row that far (rad or m) outside a limit is put back on it.
     - `tries`: how many values of a joint that a pose leaves free are tried, `try_step` (rad) apart.
     - `rank_loss`: smallest singular value below which a refined row is singular; `continuum_rank_loss`
       where the Program marked it already.
+    - `fold_reach`: smallest singular value below which another solution may be so near that the closed form
+      does not find it for itself.
     - `farthest_start`: the largest first step (rad, m) of rows that are refined together, `contraction`:
       the most that a step of theirs may be of the one before, `least_pivot`: the least entry of the
       diagonal of their derivatives' triangular factor, `reach`: the same over the root of how far the file
@@ -51,16 +55,19 @@ class SolvePolicy:
 
     tolerance: float = 1e-9
     arrived: float = 0.5e-9
+    exact: float = 1e-12
     rough_square: float = 1e-20
     pose_tolerance: float = 1e-6
     orthonormal: float = 1e-14
     coincident: float = 1e-6
+    alike: float = 1e-2
     meeting: float = 2e-5
     limit_tolerance: float = 1e-9
     tries: int = 16
     try_step: float = 0.39269908169872414
     rank_loss: float = 1e-7
     continuum_rank_loss: float = 1e-3
+    fold_reach: float = 1e-4
     farthest_start: float = 0.05
     contraction: float = 0.25
     least_pivot: float = 1e-5
@@ -68,7 +75,7 @@ class SolvePolicy:
     least_miss: float = 1e-8
     near: float = 1e-4
     lane_steps: int = 7
-    least_damping: float = 1e-12
+    least_damping: float = 1e-14
     damping: float = 1e-3
     largest_step: float = 0.3
     converged: float = 1e-13

@@ -57,7 +57,7 @@ def emit_header(module: SolverModule) -> str:
         what = f"the C++ emitter needs levels of 2, 4, ... branches, not {branches}"
         raise UsageError(what, hint="emit Python alone, or have the leaf give 2, 4, ... branches")
     text = ProgramText(module)
-    policy, runtime = SolvePolicy(), bundle(_headers(module), _SYSTEM)
+    policy, runtime = module.policy, bundle(_headers(module), _SYSTEM)
     return render(
         "cpp",
         "header.hpp.jinja",
@@ -110,7 +110,7 @@ def _headers(module: SolverModule) -> list[str]:
     needed += [_ROUTINES.get(name, f"{name}.hpp") for name in routines]
     needed += ["parallel_6r.hpp"] * bool(_parallel_kind(module))
     needed += ["lane_newton.hpp"] * (module.refine == "all")
-    needed += ["poses_beside.hpp"] * bool(module.beside)
+    needed += ["displacement.hpp"] * bool(module.beside)
     task = "whole_pose.hpp" if module.task == "pose" else "pose_entries.hpp"
     needed += [task, "pose_solver.hpp", "projection.hpp"]
     searches = ("row_preference.hpp", "held_search.hpp", "held_grid_search.hpp")

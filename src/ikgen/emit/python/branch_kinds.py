@@ -30,7 +30,7 @@ def _has_sides(module: SolverModule) -> bool:
     parallel; then a spherical wrist, or a third parallel axis and two that meet at right angles."""
     dh, geometry = module.dh, classify(module.dh)
     plain = module.task == "pose" and not module.free and dh.dof == len(dh.rows) == 6
-    if not plain or geometry.kinds != "RRRRRR" or module.max_solutions != _SIDES:
+    if not plain or geometry.kinds != "RRRRRR" or module.lanes != _SIDES:
         return False
     shoulder = 1 in geometry.perpendicular_pairs and 2 in geometry.parallel_pairs
     return shoulder and (4 in geometry.spherical_triples or _three_parallel(geometry))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import fields
 from typing import TYPE_CHECKING
 
 from ikgen.elimination.routine import runtime_policy
@@ -15,7 +15,6 @@ from ikgen.emit.python.python_statements import batch_lines, scalar_lines
 from ikgen.emit.python.python_text import literal, words
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
-from ikgen.program.policy import SolvePolicy
 from ikgen.runtime.python.solve_policy import Policy
 from ikgen.tasks import AXES, Task
 
@@ -33,7 +32,7 @@ def emit_derivation(derivation: Derivation) -> dict[str, str]:
 
 def emit_module(module: SolverModule) -> str:
     """The text of `<name>_ik.py`."""
-    program, policy = module.program, replace(SolvePolicy(), least_pivot=module.least_pivot)
+    program, policy = module.program, module.policy
     shell = render(
         "python",
         "module.py.jinja",

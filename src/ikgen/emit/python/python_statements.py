@@ -114,6 +114,6 @@ def _batch_flags(module: SolverModule) -> list[str]:
     flag = " | ".join(program.singular)
     lines = [f"singular: _Flags = {flag or 'np.zeros(1, dtype=bool)'}"]
     rough = "np.ones(1, dtype=bool)"
-    if module.refine == "some":
+    if module.refine == "some" and module.plan is None:
         rough = " | ".join([*program.singular, *(f"({r} > _ROUGH)" for r in program.residuals)])
     return [*lines, f"rough: _Flags = {rough or 'np.zeros(1, dtype=bool)'}"]

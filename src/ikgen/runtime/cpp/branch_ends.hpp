@@ -85,7 +85,7 @@ template <class Arm> struct BranchEnd {
     if (one_sided) return row < 0 ? kInfinity : -s.separation(row);
     if (!at_fold) return row < 0 ? kInfinity : s.off[row];
     double least = kInfinity;
-    for (int k = 0; k < Arm::kFolds && lane < Arm::kMaxSolutions; ++k) least = std::min(least, s.fold[k][lane]);
+    for (int k = 0; k < Arm::kFolds && lane < Arm::kLanes; ++k) least = std::min(least, s.fold[k][lane]);
     return -least;
   }
 

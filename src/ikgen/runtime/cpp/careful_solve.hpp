@@ -1,6 +1,9 @@
 // Rows one by one, with care: on singularities, near them, of rounded geometry, and those of a seed alone.
 #pragma once
 
+#include <array>
+
+#include "fold_pair.hpp"
 #include "joint_range.hpp"
 #include "lane_rows.hpp"
 #include "newton_refinement.hpp"
@@ -9,8 +12,10 @@
 
 namespace ikgen_runtime {
 
-// Arm: as for NewtonRefinement, RankLoss and SolutionRows; Seed, Rows<P> and branches<P>, the closed form;
-// kLaneOfRow; kRefined, whether its rows are right already; kSolvesBeside, whether add_rows_beside has more.
+// Arm: as for NewtonRefinement, RankLoss and SolutionRows; Seed, Rows<P> and branches<P>, the closed form, of kLanes
+// rows; kLaneOfRow; kRefined, whether its rows are right already; kNewton, whether it is of another geometry than the
+// file, and kBesides, kBeside, the motions of the tool to poses that are solved as well then: near folds those have
+// rows that the pose has not.
 template <class Arm> struct CarefulSolve {
   using Options = typename Arm::Options;
   using Policy = typename Arm::Policy;
@@ -20,27 +25,32 @@ template <class Arm> struct CarefulSolve {
   using Solutions = typename Arm::Solutions;
 
   // All solutions. Where the pose leaves a joint free and the seed's value of it leads nowhere, others are tried;
-  // where no row fits, the seed is taken as a Newton start.
+  // where no row fits, or one is of a continuum, the seed is taken as a Newton start.
   [[gnu::always_inline]] static void solve(const Eigen::Isometry3d& pose, const Options& options,
                                            Solutions& out) noexcept {
     bool real = false;
+    Places found;
+    found.count = 0;
     for (int turn = 0; turn < Policy::kTries; ++turn) {
       double start[Arm::kDof];
       for (int j = 0; j < Arm::kDof; ++j)
         start[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kRevolute[j] ? turn * Policy::kTryStep : 0.0);
       for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) start[Arm::kFreeJoints[k]] = options.free[k];
-      const bool hit = find_rows(pose, start, options, out);
-      if constexpr (Arm::kSolvesBeside)
-        if (turn == 0) Arm::add_rows_beside(pose, start, options, out);
-      real = real || out.count > 0;
-      Row::place_all(options, out);
-      if (out.count == 0 && options.seed && Refinement::refine(start, pose)) {
-        add(out, start, true);
-        Row::place_all(options, out);
+      Left left = find_rows(pose, start, options, turn == 0, found);
+      if (options.seed && !left.free && any_singular(found)) add_from(pose, start, found);
+      real = real || found.count > 0;
+      Row::place_all(options, found);
+      if (found.count == 0 && options.seed && Refinement::refine(start, pose)) {
+        add(pose, found, start, true);
+        Row::place_all(options, found);
       }
-      if (out.count > 0 || !hit) break;
+      if (!Arm::kNewton) left.led = any_singular(found);
+      if (!left.free || (left.led && found.count > 0)) break;
     }
-    if (options.seed) Row::sort_by_distance(out, options.seed->data());
+    if (options.seed) Row::sort_by_distance(found, options.seed->data());
+    out.count = std::min(found.count, Arm::kMaxSolutions);
+    std::copy_n(found.q.begin(), out.count, out.q.begin());
+    std::copy_n(found.singular.begin(), out.count, out.singular.begin());
     out.status = out.count > 0 ? Arm::Status::Ok : real ? Arm::Status::Limits : Arm::Status::Unreachable;
   }
 
@@ -50,43 +60,173 @@ template <class Arm> struct CarefulSolve {
     Arm::branches(gather<1>(&pose), typename Arm::Seed(q0), options.free, anywhere, out);
   }
 
-  // Adds the row of a lane, refined if that leads to the pose.
-  static void add_refined(const Eigen::Isometry3d& pose, const Rows& rows, int lane, Solutions& out) noexcept {
-    double q[Arm::kDof];
-    for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
-    if (Arm::kRefined || Refinement::refine(q, pose)) add(out, q, (bits(rows, lane) & kSingular) != 0);
-  }
-
  private:
+  // As Solutions, with room for rows that are outside the limits, or farther from a seed than others.
+  struct Places {
+    static constexpr std::size_t kRoom = 2 * Arm::kMaxSolutions;
+    int count;
+    std::array<typename Arm::Joints, kRoom> q;
+    std::array<bool, kRoom> singular;
+  };
+
+  // Whether the closed form left a joint free, and found rows with the given value of it.
+  struct Left {
+    bool free = false, led = false;
+  };
+
   static int bits(const Rows& rows, int lane) noexcept { return static_cast<int>(rows.flags[lane]); }
 
-  // Adds a right row, as singular where it is one of a continuum or next to it.
-  static void add(Solutions& out, const double* q, bool marked) noexcept {
-    Row::add(out, q, RankLoss<Arm>::below(q, marked ? Policy::kContinuumRankLoss : Policy::kRankLoss));
+  // What Newton steps from a lane led to. Rows that are right to round-off are added; of the others the nearest is kept.
+  struct Nearest {
+    bool marked = false, near = false, settled = false, exact = false;  // settled: a solution, whatever else there is
+    double error = 0.0, start[Arm::kDof], q[Arm::kDof];
+
+    Nearest() = default;
+    Nearest(const Eigen::Isometry3d& pose, const Rows& rows, int lane, bool singular) noexcept : marked(singular) {
+      for (int j = 0; j < Arm::kDof; ++j) start[j] = q[j] = rows.q[j][lane];
+      if (!Arm::kRefined) error = Refinement::error_after(q, pose);
+    }
+
+    void judge() noexcept {
+      near = broken() || (!marked && RankLoss<Arm>::below(q, Policy::kFoldReach));
+      settled = near ? error < Policy::kConverged && !broken() : error < Policy::kArrived;
+    }
+
+    // Whether it stands for a continuum that the file's arm may not have.
+    bool broken() const noexcept { return marked && (Arm::kNewton || !(error < Policy::kArrived)); }
+
+    // The solutions that meet near a configuration.
+    void take_pair(const FoldPair<Arm>& fold, const double* from, Places& out) noexcept {
+      for (const double side : {1.0, -1.0}) {
+        double trial[Arm::kDof];
+        std::copy_n(from, Arm::kDof, trial);
+        FoldPair<Arm>(fold).approach(side, trial);
+        const double left = Refinement::error_after(trial, fold.pose);
+        if (left < Policy::kExact) {
+          exact = true;
+          add(fold.pose, out, trial, marked);
+        } else if (left < error) {
+          error = left;
+          std::copy_n(trial, Arm::kDof, q);
+        }
+      }
+    }
+
+    // Adds the solutions that meet near the one that a lane led to, or all around a continuum of the solved geometry
+    // that the file's has not.
+    void add_nearby(const Eigen::Isometry3d& pose, Places& out) noexcept {
+      FoldPair<Arm> fold(pose);
+      if (broken()) {
+        double around[Policy::kTries][Arm::kDof];
+        if (fold.walk(start, around) >= Policy::kArrived)
+          for (const auto& from : around) take_pair(fold, from, out);
+      } else {
+        std::copy_n(q, Arm::kDof, start);
+        take_pair(fold, start, out);
+      }
+      if (!exact && !settled && error < Policy::kArrived) add(pose, out, q, marked);
+    }
+  };
+
+  // Starts of Newton steps, in the order of their lanes; those of poses beside that led to the same as an earlier one,
+  // or stalled where that looks for two solutions, are left out.
+  struct Starts {
+    int count = 0;
+    std::array<Nearest, std::size_t{Arm::kLanes} * (1 + Arm::kBesides)> all;
+
+    void take(const Nearest& start, bool beside, const Eigen::Isometry3d& pose, Places& out) noexcept {
+      for (int k = 0; k < count && beside; ++k)
+        if (Row::same(start.q, all[k].q)) return;
+      Nearest& one = all[count] = start;
+      one.judge();
+      for (int k = 0; k < count && beside && one.near && !one.settled; ++k)
+        if (all[k].near && alike(one.q, all[k].q)) return;
+      ++count;
+      if (!one.settled) return;
+      if (one.near || one.marked)
+        add(pose, out, one.q, one.marked);
+      else
+        Row::add(out, one.q, false);
+    }
+  };
+
+  static bool any_singular(const Places& rows) noexcept {
+    const auto end = rows.singular.begin() + rows.count;
+    return std::find(rows.singular.begin(), end, true) != end;
   }
 
-  // The distinct solutions of a pose, refined where the closed form lost digits. Whether it left a joint free.
-  [[gnu::always_inline]] static bool find_rows(const Eigen::Isometry3d& pose, const double* q0, const Options& options,
-                                               Solutions& out) noexcept {
+  // Adds what Newton steps from given values lead to.
+  static void add_from(const Eigen::Isometry3d& pose, const double* q0, Places& out) noexcept {
+    double q[Arm::kDof];
+    std::copy_n(q0, Arm::kDof, q);
+    if (Refinement::refine(q, pose)) add(pose, out, q, true);
+  }
+
+  // Adds a right row, as singular where it is one of a continuum or next to it.
+  static void add(const Eigen::Isometry3d& pose, Places& out, const double* q, bool marked) noexcept {
+    const bool singular = RankLoss<Arm>::below(q, marked ? Policy::kContinuumRankLoss : Policy::kRankLoss);
+    for (int k = 0; k < out.count && singular; ++k)
+      if (Row::flag(out, k) && between(pose, q, Row::row(out, k))) return;
+    Row::add(out, q, singular);
+  }
+
+  // The change of a joint from one row to another.
+  static double change(int j, const double* a, const double* b) noexcept {
+    const double gap = b[j] - a[j];
+    return Arm::kRevolute[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap;
+  }
+
+  static bool alike(const double* a, const double* b) noexcept {
+    for (int j = 0; j < Arm::kDof; ++j)
+      if (!(std::abs(change(j, a, b)) < Policy::kAlike)) return false;
+    return true;
+  }
+
+  // Whether nothing tells two rows near each other apart: the pose is theirs between them too.
+  static bool between(const Eigen::Isometry3d& pose, const double* a, const double* b) noexcept {
+    if (!alike(a, b)) return false;
+    double middle[Arm::kDof];
+    for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * change(j, a, b);
+    return PoseError<Arm>(middle, pose).largest() < Policy::kConverged;
+  }
+
+  // Adds the distinct solutions of a pose, refined where the closed form lost digits.
+  [[gnu::always_inline]] static Left find_rows(const Eigen::Isometry3d& pose, const double* q0, const Options& options,
+                                               bool beside, Places& out) noexcept {
     Rows rows;
     find_lanes(pose, q0, options, rows);
-    out.count = 0;
     double q[Arm::kDof];
-    bool hit = false;
-    for (const int lane : Arm::kLaneOfRow) hit = hit || (bits(rows, lane) & kHit) != 0;
-    if (hit) {
-      std::copy_n(q0, Arm::kDof, q);
-      if (Refinement::refine(q, pose)) add(out, q, true);
+    Left left;
+    for (const int lane : Arm::kLaneOfRow) {
+      left.free = left.free || (bits(rows, lane) & kHit) != 0;
+      left.led = left.led || (bits(rows, lane) & (kSingular | kReal)) == (kSingular | kReal);
     }
+    if (left.free) add_from(pose, q0, out);
+    Starts starts;
     for (const int lane : Arm::kLaneOfRow)
       if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
-        add_refined(pose, rows, lane, out);
+        starts.take({pose, rows, lane, (bits(rows, lane) & kSingular) != 0}, false, pose, out);
+    if (Arm::kBesides > 0 && beside) take_beside(pose, q0, options, starts, out);
+    for (int k = 0; k < starts.count; ++k)
+      if (starts.all[k].near) starts.all[k].add_nearby(pose, out);
     for (const int lane : Arm::kLaneOfRow) {
       if (Arm::kRefined || (bits(rows, lane) & (kReal | kRough)) != kReal) continue;
       for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
       Row::add(out, q, false);
     }
-    return hit;
+    return left;
+  }
+
+  // The rows of poses beside this one.
+  static void take_beside(const Eigen::Isometry3d& pose, const double* q0, const Options& options, Starts& starts,
+                          Places& out) noexcept {
+    if constexpr (Arm::kBesides > 0)
+      for (const auto& motion : Arm::kBeside) {
+        Rows rows;
+        find_lanes(displaced(pose, motion), q0, options, rows);
+        for (const int lane : Arm::kLaneOfRow)
+          if ((bits(rows, lane) & kReal) != 0) starts.take({pose, rows, lane, false}, true, pose, out);
+      }
   }
 };
 

@@ -46,10 +46,10 @@ template <class Arm> struct JointBounds {
 
 // Arm: as for CarefulSolve; kFolds, how many margins its closed form has.
 template <class Arm> struct HeldSample {
-  static constexpr int kLanes = Arm::kMaxSolutions * (1 + Arm::kBesides), kMargins = Arm::kFolds > 0 ? Arm::kFolds : 1;
+  static constexpr int kLanes = Arm::kLanes * (1 + Arm::kBesides), kMargins = Arm::kFolds > 0 ? Arm::kFolds : 1;
   double held = 0.0;
-  int lanes = Arm::kMaxSolutions;  // which may be real
-  double q[Arm::kDof][kLanes], off[kLanes], fold[kMargins][Arm::kMaxSolutions];
+  int lanes = Arm::kLanes;  // which may be real
+  double q[Arm::kDof][kLanes], off[kLanes], fold[kMargins][Arm::kLanes];
   bool real[kLanes];
 
   // Whether a row is real and inside the limits.
@@ -117,7 +117,7 @@ template <class Arm> struct HeldSample {
   }
 
   static constexpr Range kAnywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
-  using Rows = FoldRows<Arm::kDof, Arm::kMaxSolutions, Arm::kFolds>;
+  using Rows = FoldRows<Arm::kDof, Arm::kLanes, Arm::kFolds>;
 
   // Takes the rows of a rounded arm refined all at once, if that leaves no doubt.
   bool take_certain(const Eigen::Isometry3d& T) noexcept {
@@ -130,7 +130,7 @@ template <class Arm> struct HeldSample {
       std::memcpy(fine.flags, rows.flags, sizeof(fine.flags));
       Arm::refine(pose, kAnywhere, fine);
       int seen = 0;
-      for (int r = 0; r < Arm::kMaxSolutions; ++r) seen |= keep(rows, fine, r);
+      for (int r = 0; r < Arm::kLanes; ++r) seen |= keep(rows, fine, r);
       return (seen & kReal) != 0 && (seen & (kRough | kHit)) == 0 && !remove_repetitions();
     }
     return false;
@@ -143,7 +143,7 @@ template <class Arm> struct HeldSample {
       for (int i = 0; i < Arm::kBesides; ++i) again = take(T, displaced(T, Arm::kBeside[i]), i + 1) || again;
     lanes = kLanes;
     if (again) remove_repetitions();
-    int count = 0, used = Arm::kMaxSolutions;
+    int count = 0, used = Arm::kLanes;
     for (int l = 0; l < kLanes; ++l) {
       count += real[l] ? 1 : 0;
       real[l] = real[l] && count <= Arm::kMaxSolutions;
@@ -166,8 +166,8 @@ template <class Arm> struct HeldSample {
     Rows rows;
     Arm::branches(gather<1>(&near), typename Arm::Seed(), std::array<double, 1>{held}, kAnywhere, rows);
     bool again = part > 0;
-    for (int r = 0; r < Arm::kMaxSolutions; ++r) {
-      const int lane = Arm::kLaneOfRow[r], l = part * Arm::kMaxSolutions + r, bits = static_cast<int>(rows.flags[lane]);
+    for (int r = 0; r < Arm::kLanes; ++r) {
+      const int lane = Arm::kLaneOfRow[r], l = part * Arm::kLanes + r, bits = static_cast<int>(rows.flags[lane]);
       if (part == 0) keep(rows, rows, r);
       real[l] = (bits & kReal) != 0;
       for (int j = 0; j < Arm::kDof && part > 0; ++j) q[j][l] = Arm::kHeld[j] ? held : rows.q[j][lane];

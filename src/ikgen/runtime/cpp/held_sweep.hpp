@@ -206,7 +206,7 @@ template <class Arm> struct HeldSweep {
 
   // Whether two rows may come and go in the cell, or go and come.
   static bool hides_fold(const Sample* before, const Sample& a, const Sample& b, const Sample* after, int lane, bool dead) noexcept {
-    if (Arm::kFolds == 0 || lane >= Arm::kMaxSolutions || a.real[lane] != b.real[lane] || dead) return false;
+    if (Arm::kFolds == 0 || lane >= Arm::kLanes || a.real[lane] != b.real[lane] || dead) return false;
     const double width = b.held - a.held;
     bool all = true, some = false, dips = false;
     for (int k = 0; k < Arm::kFolds; ++k) {

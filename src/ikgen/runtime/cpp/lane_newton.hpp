@@ -43,7 +43,7 @@ template <int Rows, int Columns, int N> struct LaneFactors {
   }
 };
 
-// Arm: as for LaneChain; Task; kSize; kHeld, a flag a joint, kFree, how many are; kLeastPivot; Rows<P>; Policy.
+// Arm: as for LaneChain; Task; kSize; kHeld, a flag a joint, kFree, how many are; Rows<P>; Policy.
 template <class Arm> struct LaneNewton {
   using Policy = typename Arm::Policy;
   template <int P> using Rows = typename Arm::template Rows<P>;
@@ -110,7 +110,7 @@ template <class Arm> struct LaneNewton {
       for (int i = 1; i < kMoving; ++i) size = max(size, abs(d[i]));
       // Newton's method contracts this fast only near the one solution there (Deuflhard 2004, theorem 2.1)
       good = good & (((k == 0 ? 1.0 : Policy::kContraction) * before > size) | (Policy::kConverged > size)) &
-             (factors.pivot > Arm::kLeastPivot);
+             (factors.pivot > Policy::kLeastPivot);
       for (int i = 0, j = 0; j < Arm::kDof; ++j) step[j] = Arm::kHeld[j] ? spread<N>(0.0) : select(good, d[i++], 0.0);
       chain.move(step);
       if (k > 0) done = (!good) | (Policy::kConverged * before > size * size) | (Policy::kConverged > size);

@@ -53,15 +53,20 @@ template <class Arm> struct NewtonRefinement {
     }
   }
 
-  // Whether steps lead from q to the pose: only what is promising takes many. All digits are wanted where they
+  // The error that steps from q leave: only what is promising takes many. All digits are wanted where they
   // come easily, as rows may lie on a limit.
-  static bool refine(double* q, const Eigen::Isometry3d& pose) noexcept {
+  static double error_after(double* q, const Eigen::Isometry3d& pose) noexcept {
     double error = kInfinity;
     for (const RefineStage& stage : Policy::kRefinement) {
       error = run(q, pose, stage.steps);
       if (!(error >= stage.fine && error < stage.promising)) break;
     }
-    return error < Policy::kArrived;
+    return error;
+  }
+
+  // Whether they lead to the pose.
+  static bool refine(double* q, const Eigen::Isometry3d& pose) noexcept {
+    return error_after(q, pose) < Policy::kArrived;
   }
 };
 

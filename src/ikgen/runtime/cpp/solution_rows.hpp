@@ -2,21 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "constants.hpp"
 
 namespace ikgen_runtime {
 
 // The rows of one answer. Arm: kDof, kMaxSolutions, kLower, kUpper; kRevolute and kHeld, a flag a joint; Options,
-// Solutions, Policy.
+// Solutions, Policy. Out: Solutions, or what has its members and more room.
 template <class Arm> struct SolutionRows {
   using Options = typename Arm::Options;
   using Policy = typename Arm::Policy;
-  using Solutions = typename Arm::Solutions;
+  template <class Out> static constexpr int kRoom = static_cast<int>(std::tuple_size<decltype(Out::q)>::value);
 
-  static double* row(Solutions& out, int k) noexcept { return out.q.data()[k].data(); }
-  static bool& flag(Solutions& out, int k) noexcept { return out.singular.data()[k]; }
-  static void move(Solutions& out, int from, int to) noexcept {
+  template <class Out> static double* row(Out& out, int k) noexcept { return out.q.data()[k].data(); }
+  template <class Out> static bool& flag(Out& out, int k) noexcept { return out.singular.data()[k]; }
+  template <class Out> static void move(Out& out, int from, int to) noexcept {
     std::copy_n(row(out, from), Arm::kDof, row(out, to));
     flag(out, to) = flag(out, from);
   }
@@ -37,8 +38,8 @@ template <class Arm> struct SolutionRows {
   }
 
   // Adds a row unless it is there already.
-  static void add(Solutions& out, const double* q, bool singular) noexcept {
-    if (out.count == Arm::kMaxSolutions) return;
+  template <class Out> static void add(Out& out, const double* q, bool singular) noexcept {
+    if (out.count == kRoom<Out>) return;
     for (int k = 0; k < out.count; ++k)
       if (same(q, row(out, k))) return;
     std::copy_n(q, Arm::kDof, row(out, out.count));
@@ -66,7 +67,7 @@ template <class Arm> struct SolutionRows {
   }
 
   // Leaves the rows that can be placed.
-  static void place_all(const Options& options, Solutions& out) noexcept {
+  template <class Out> static void place_all(const Options& options, Out& out) noexcept {
     int kept = 0;
     for (int k = 0; k < out.count; ++k) {
       if (kept < k) move(out, k, kept);
@@ -75,7 +76,7 @@ template <class Arm> struct SolutionRows {
     out.count = kept;
   }
 
-  static void sort_by_distance(Solutions& out, const double* seed) noexcept {
+  template <class Out> static void sort_by_distance(Out& out, const double* seed) noexcept {
     sort(out, [seed](const double* q) noexcept {
       double sum = 0.0;
       for (int j = 0; j < Arm::kDof; ++j) sum += (q[j] - seed[j]) * (q[j] - seed[j]);
@@ -84,11 +85,11 @@ template <class Arm> struct SolutionRows {
   }
 
   // By cost(row), the least first, equal ones as they were.
-  template <class Cost> static void sort(Solutions& out, const Cost& cost) noexcept {
+  template <class Out, class Cost> static void sort(Out& out, const Cost& cost) noexcept {
     const int count = out.count;
-    double costs[Arm::kMaxSolutions], rows[Arm::kMaxSolutions][Arm::kDof];
-    bool flags[Arm::kMaxSolutions] = {};
-    int place[Arm::kMaxSolutions] = {};
+    double costs[std::size_t{kRoom<Out>}], rows[std::size_t{kRoom<Out>}][Arm::kDof];
+    bool flags[std::size_t{kRoom<Out>}] = {};
+    int place[std::size_t{kRoom<Out>}] = {};
     for (int k = 0; k < count; ++k) {
       std::copy_n(row(out, k), Arm::kDof, rows[k]);
       flags[k] = flag(out, k);

@@ -12,10 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.joint_arguments import held_rows, seed_rows
 from ikgen.runtime.python.joint_refinement import refine_together
+from ikgen.runtime.python.meeting_rows import Starts, rows_nearby
 from ikgen.runtime.python.pose_arguments import poses_in_line
 from ikgen.runtime.python.pose_faults import nearest_poses
 from ikgen.runtime.python.pose_solving import solve_pose
-from ikgen.runtime.python.refinement import refine
+from ikgen.runtime.python.refinement import rank_loss, refine, steeper
 from ikgen.runtime.python.row_placement import distinct, place_rows_batch
 from ikgen.runtime.python.solutions import Status
 from ikgen.runtime.python.solved_arm import Arm
@@ -66,11 +67,11 @@ def solve_poses(
 
 
 def _solve_chunk(arm: Arm, T: Array, held: Array, near: Array | None, limits: bool) -> _Batch:
-    q, valid, singular = rows_batch(arm, T, held, near)
+    q, valid, alone = rows_batch(arm, T, held, near)
     real = valid.any(axis=1)
     q, inside = place_rows_batch(arm, q, near, limits)
     valid &= inside
-    again = np.flatnonzero(singular.any(axis=1) | ((near is not None) & ~valid.any(axis=1)))
+    again = np.flatnonzero(alone | ((near is not None) & ~valid.any(axis=1)))
     distance: Array | Flags = ~valid
     if near is not None:
         with np.errstate(over="ignore"):
@@ -79,8 +80,10 @@ def _solve_chunk(arm: Arm, T: Array, held: Array, near: Array | None, limits: bo
             distance = np.where(valid, distance, inf)
     order = np.argsort(distance, axis=1, kind="stable")[:, : arm.most, None]
     number = np.minimum(valid.sum(axis=1), arm.most)
-    q = np.take_along_axis(q, order, axis=1)
-    q[np.arange(q.shape[1]) >= number[:, None]] = np.nan
+    some = np.take_along_axis(q, order, axis=1)
+    q = np.full((len(T), arm.most, q.shape[2]), np.nan)
+    q[:, : some.shape[1]] = some
+    q[np.arange(arm.most) >= number[:, None]] = np.nan
     status = np.where(number > 0, "OK", np.where(real, "LIMITS", "UNREACHABLE"))
     for i in again:
         seed = None if near is None else near[i]
@@ -91,19 +94,51 @@ def _solve_chunk(arm: Arm, T: Array, held: Array, near: Array | None, limits: bo
 
 
 def rows_batch(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, Flags, Flags]:
-    """Rows (N, M, dof) on no turn in particular; which are distinct solutions, which of a continuum."""
+    """Rows (N, M, dof) on no turn in particular; which are distinct solutions, and which poses (N,) are to
+    be solved alone: those with a continuum, and of arms that are not rounded those near a singularity."""
     if not arm.rounded:
-        return careful_rows(arm, T, held, near)
+        q, valid, singular, steep = careful_rows(arm, T, held, near)
+        return q, valid, singular.any(axis=1) | ~steep
     q, valid, singular, doubt = certain_rows(arm, T, held, near)
-    if doubt.any():
-        seeds = None if near is None else near[doubt]
-        more, fine, flags = careful_rows(arm, T[doubt], held[doubt], seeds)
-        order = np.argsort(~fine, axis=1, kind="stable")[:, : q.shape[1]]
-        q[doubt] = np.take_along_axis(more, order[:, :, None], axis=1)
-        valid[doubt] = np.take_along_axis(fine, order, axis=1)
-        singular = singular.copy()
-        singular[doubt] = flags
-    return q, valid, singular
+    alone: Flags = np.asarray(singular.any(axis=1))
+    look = np.flatnonzero(doubt & ~alone)
+    if len(look):
+        more, real, flat = _nearby_rows(
+            arm, T[look], held[look], None if near is None else near[look]
+        )
+        alone[look] = flat
+        width = max(q.shape[1], more.shape[1])
+        q, valid = _widened(q, width), _widened(valid, width)
+        q[look], valid[look] = _widened(more, width), _widened(real, width)
+    return q, valid, alone
+
+
+def _widened(rows: Any, width: int) -> Any:
+    """Rows (N, M, ...) as (N, width, ...), the new ones 0."""
+    out = np.zeros((len(rows), width, *rows.shape[2:]), dtype=rows.dtype)
+    out[:, : rows.shape[1]] = rows
+    return out
+
+
+def _nearby_rows(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, Flags, Flags]:
+    """Distinct solutions (N, M, dof) that all rows of a rounded arm, and of poses beside, lead to, which
+    there are (N, M), and which poses (N,) have a singular one."""
+    q, valid = _starts(arm, T, held, near)[:2]
+    own = valid.shape[1] // (1 + len(arm.beside))
+    pose, column = np.nonzero(valid)
+    marked, source = np.zeros(len(pose), dtype=bool), (column >= own).astype(int)
+    owner, rows = rows_nearby(arm, Starts(q[pose, column], T[pose], pose, marked, source))
+    order = np.argsort(pose[owner], kind="stable")
+    of, rows = pose[owner][order], rows[order]
+    flat = np.zeros(len(T), dtype=bool)
+    if len(rows):
+        loss = rank_loss(arm.chain, arm.task, arm.moving, rows)
+        flat[of[loss < arm.policy.rank_loss]] = True
+    place = np.arange(len(of)) - np.searchsorted(of, of)
+    q = np.zeros((len(T), int(place.max(initial=-1)) + 1, q.shape[2]))
+    valid = np.zeros(q.shape[:2], dtype=bool)
+    q[of, place], valid[of, place] = rows, True
+    return q, distinct(arm, q, valid), flat
 
 
 def certain_rows(
@@ -125,8 +160,27 @@ def certain_rows(
     return q, found, singular, doubt
 
 
-def careful_rows(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, Flags, Flags]:
-    """Rows of which each is refined for as long as it takes, near folds with those of poses beside."""
+def careful_rows(
+    arm: Arm, T: Array, held: Array, near: Array | None
+) -> tuple[Array, Flags, Flags, Flags]:
+    """Rows (N, M, dof) of which each is refined for as long as it takes, near folds with those of poses
+    beside; which are distinct solutions, which of a continuum, and which poses (N,) have no refined one
+    near a singularity."""
+    q, valid, singular, rough = _starts(arm, T, held, near)
+    steep = np.ones(len(T), dtype=bool)
+    pose, row = np.nonzero(rough & valid)
+    if len(pose):
+        done = refine(arm.chain, arm.task, arm.moving, q[pose, row], T[pose], arm.policy)
+        q[pose, row], valid[pose, row] = done[0], done[1] < arm.policy.arrived
+        steep[pose[~steeper(done[3], arm.policy.fold_reach)]] = False
+    return q, distinct(arm, q, valid), singular, steep
+
+
+def _starts(
+    arm: Arm, T: Array, held: Array, near: Array | None
+) -> tuple[Array, Flags, Flags, Flags]:
+    """The closed form's rows (N, M, dof) of poses, and of those beside; valid and rough ones (N, M), and
+    those of a continuum."""
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
     with np.errstate(all="ignore"):
         q, valid, singular, rough = arm.branches_batch(T, start, held)
@@ -137,8 +191,4 @@ def careful_rows(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[A
                 for k, first in ((0, q), (1, valid), (3, rough))
             )
     q[:, :, arm.free] = held[:, None, :]
-    pose, row = np.nonzero(rough & valid)
-    if len(pose):
-        done = refine(arm.chain, arm.task, arm.moving, q[pose, row], T[pose], arm.policy)
-        q[pose, row], valid[pose, row] = done[:2]
-    return q, distinct(arm, q, valid), singular
+    return q, valid, singular, rough

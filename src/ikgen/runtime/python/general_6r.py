@@ -85,8 +85,8 @@ def refined_rows(
     # Roots of a high degree come from farther off: of their rows all digits are wanted.
     converged, steps = (0.0, _FINEST) if plan.motions else (policy.converged, _THOROUGH)
     thorough = replace(policy, refinement=steps, converged=converged)
-    q, arrived, before, _ = refine(chain, PoseTask(1.0), _SIX, start, T, thorough)
-    return q, arrived & near, np.where(near, before, np.inf)
+    q, error, before, _ = refine(chain, PoseTask(1.0), _SIX, start, T, thorough)
+    return q, (error < policy.arrived) & near, np.where(near, before, np.inf)
 
 
 @lru_cache(maxsize=64)

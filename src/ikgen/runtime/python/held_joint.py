@@ -67,7 +67,7 @@ def _all_rows(arm: Arm, T: Array, held: Array) -> tuple[Array, Flags]:
     """Rows (n, m, dof), and which of them are solutions: those of the closed form first, then those of
     poses beside; no more than `solve` gives."""
     if not arm.rounded:
-        q, real, _ = careful_rows(arm, T, held, None)
+        q, real, _, _ = careful_rows(arm, T, held, None)
     else:
         some, sure, _, doubt = certain_rows(arm, T, held, None)
         size = some.shape[1] * (1 + len(arm.beside))
@@ -75,7 +75,7 @@ def _all_rows(arm: Arm, T: Array, held: Array) -> tuple[Array, Flags]:
         real = np.zeros(q.shape[:2], dtype=bool)
         q[:, : some.shape[1]], real[:, : some.shape[1]] = some, sure
         if doubt.any():
-            q[doubt], real[doubt], _ = careful_rows(arm, T[doubt], held[doubt], None)
+            q[doubt], real[doubt], _, _ = careful_rows(arm, T[doubt], held[doubt], None)
     return q, real & (np.cumsum(real, axis=1) <= arm.most)
 
 

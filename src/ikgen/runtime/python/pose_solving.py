@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,10 +13,11 @@ from ikgen.runtime.python.array_types import Row
 from ikgen.runtime.python.chain_kinematics import forward
 from ikgen.runtime.python.joint_arguments import held_values, seed_values
 from ikgen.runtime.python.joint_refinement import refine_together
+from ikgen.runtime.python.meeting_rows import Starts, repeats, rows_nearby
 from ikgen.runtime.python.pose_arguments import one_pose
 from ikgen.runtime.python.pose_faults import nearest_pose, pose_fault
 from ikgen.runtime.python.projection import nearest_row, off_by
-from ikgen.runtime.python.refinement import least_singular, refine
+from ikgen.runtime.python.refinement import rank_loss
 from ikgen.runtime.python.row_branches import branch_names
 from ikgen.runtime.python.row_placement import is_new, place_rows
 from ikgen.runtime.python.solutions import Solutions, Status, no_solutions
@@ -54,6 +55,7 @@ def solve_pose(
     if near is not None:
         origin = near
         found.sort(key=lambda item: sum((a - b) * (a - b) for a, b in zip(item[0], origin)))
+    found = found[: arm.most]
     q = np.array([row for row, _ in found]) + 0.0
     flags = np.array([flag for _, flag in found], dtype=bool)
     off = off_by(arm.task, forward(arm.chain, q), np.array(T)) if project else None
@@ -85,6 +87,14 @@ def _projected(
     return found
 
 
+class _Rows(NamedTuple):
+    """Distinct solutions, whether the pose left a joint free, and the closed form led anywhere then."""
+
+    kept: list[Found]
+    free: bool
+    led: bool
+
+
 def _fitting(
     arm: Arm, T: list[list[float]], near: Row | None, held: Row, limits: bool
 ) -> tuple[list[Found], bool]:
@@ -92,18 +102,34 @@ def _fitting(
 
     Where the pose leaves a joint free and its given value leads nowhere, other values are tried.
     """
+    out: list[Found] = []
     real = False
     for tries in (range(1), range(1, arm.policy.tries)):
         starts = [_start(arm, near, held, n * arm.policy.try_step) for n in tries]
-        for start, (kept, hit) in zip(starts, _rows(arm, T, starts, held)):
-            real = real or bool(kept)
-            out = place_rows(arm, kept, near, limits)
+        for start, rows in zip(starts, _rows(arm, T, starts, held)):
+            if near is not None and not rows.free and any(flag for _, flag in rows.kept):
+                _add(arm, T, [row for _, row in _refined(arm, [(start, True)], T, [-1])], rows.kept)
+            real = real or bool(rows.kept)
+            placed = place_rows(arm, rows.kept, near, limits)
+            if out:
+                _add(arm, T, placed, out)
+            else:
+                out = placed
             if not out and near is not None:
-                steps = _refined(arm, [(start, True)], T)
-                out = place_rows(arm, [item for item in steps if item], near, limits)
-            if out or not hit:
+                steps = _refined(arm, [(start, True)], T, [-1])
+                out = place_rows(arm, [row for _, row in steps], near, limits)
+            if not rows.free:
                 return out, real
-    return [], real
+            if out and (rows.led if arm.rounded else any(flag for _, flag in out)):
+                return out, real
+    return out, real
+
+
+def _add(arm: Arm, T: list[list[float]], rows: list[Found], kept: list[Found]) -> None:
+    """Adds those of the rows that differ from all that are there."""
+    for row, singular in rows:
+        if is_new(arm, row, kept) and not (singular and repeats(arm, T, row, kept)):
+            kept.append((row, singular))
 
 
 def _start(arm: Arm, near: Row | None, held: Row, turn: float) -> Row:
@@ -116,37 +142,40 @@ def _start(arm: Arm, near: Row | None, held: Row, turn: float) -> Row:
     return tuple(q)
 
 
-def _rows(
-    arm: Arm, T: list[list[float]], starts: list[Row], held: Row
-) -> list[tuple[list[Found], bool]]:
-    """For each start, the distinct solutions (radians between -pi and pi) and whether it was read.
+def _rows(arm: Arm, T: list[list[float]], starts: list[Row], held: Row) -> list[_Rows]:
+    """For each start, the solutions (radians between -pi and pi).
 
     Newton steps are taken by all rough rows together: their price is that of the calls.
     """
     kept: list[list[Found]] = [[] for _ in starts]
     fine: list[tuple[int, Found]] = []
+    given: list[tuple[int, Found]] = []
     rough: list[tuple[int, Found]] = []
-    hits: list[bool] = []
+    beside: list[tuple[int, Found]] = []
+    free, led = [], []
     for i, q0 in enumerate(starts):
         answers, hit = arm.branches(T, q0, held)
         if arm.rounded and len(starts) == 1 and not hit:
-            found = _certain_rows(arm, answers, T)
-            if found is not None:
-                return [(found, False)]
-        hits.append(hit)
+            certain = _certain_rows(arm, answers, T)
+            if certain is not None:
+                return [_Rows(certain, False, False)]
+        free.append(hit)
+        led.append(hit and any(flag for _, flag, _ in answers))
         if hit:
-            rough.append((i, (q0, True)))
-        if len(starts) == 1 and len(arm.beside):
-            poses: list[list[list[float]]] = (np.array(T) @ arm.beside).tolist()
-            answers += [row for pose in poses for row in arm.branches(pose, q0, held)[0]]
+            given.append((i, (q0, True)))
         for row, flag, bent in answers:
             (rough if bent else fine).append((i, (row, flag)))
-    steps = _refined(arm, [row for _, row in rough], T)
-    arrived = [(i, row) for (i, _), row in zip(rough, steps) if row is not None]
-    for i, item in arrived + fine:
-        if len(kept[i]) < arm.most and is_new(arm, item[0], kept[i]):
-            kept[i].append(item)
-    return list(zip(kept, hits))
+        if len(starts) == 1 and len(arm.beside):
+            poses: list[list[list[float]]] = (np.array(T) @ arm.beside).tolist()
+            others = [row for pose in poses for row, _, _ in arm.branches(pose, q0, held)[0]]
+            beside += [(i, (row, False)) for row in others]
+    stepped = given + rough + beside
+    source = [-1] * len(given) + [0] * len(rough) + [1] * len(beside)
+    steps = _refined(arm, [row for _, row in stepped], T, source)
+    for i, (row, singular) in [(stepped[k][0], found) for k, found in steps] + fine:
+        if is_new(arm, row, kept[i]) and not (singular and repeats(arm, T, row, kept[i])):
+            kept[i].append((row, singular))
+    return [_Rows(*item) for item in zip(kept, free, led)]
 
 
 def _certain_rows(arm: Arm, answers: list[Candidate], T: list[list[float]]) -> list[Found] | None:
@@ -167,16 +196,19 @@ def _certain_rows(arm: Arm, answers: list[Candidate], T: list[list[float]]) -> l
     return kept
 
 
-def _refined(arm: Arm, rows: list[Found], T: list[list[float]]) -> list[Found | None]:
-    """The rows that Newton steps bring to the pose; None for those that they don't."""
+def _refined(
+    arm: Arm, rows: list[Found], T: list[list[float]], source: list[int]
+) -> list[tuple[int, Found]]:
+    """What Newton steps from the rows lead to, with the row's number: one solution, those that meet near a
+    singularity, or none. source (k,) as in `Starts`."""
     if not rows:
         return []
     target = np.broadcast_to(np.array(T), (len(rows), 4, 4))
-    start = np.array([row for row, _ in rows])
-    q, arrived, _, slope = refine(arm.chain, arm.task, arm.moving, start, target, arm.policy)
-    loss = least_singular(slope)
+    start, marked = np.array([row for row, _ in rows]), np.array([flag for _, flag in rows])
+    starts = Starts(start, target, np.zeros(len(rows), dtype=np.intp), marked, np.array(source))
+    owner, q = rows_nearby(arm, starts)
+    loss = rank_loss(arm.chain, arm.task, arm.moving, q)
     flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
-    return [
-        (tuple(row), (flag and x < continuum) or x < flat) if ok else None
-        for row, (_, flag), ok, x in zip(q.tolist(), rows, arrived.tolist(), loss.tolist())
-    ]
+    singular = (marked[owner] & (loss < continuum)) | (loss < flat)
+    found = zip(owner.tolist(), q.tolist(), singular.tolist())
+    return [(i, (tuple(row), flag)) for i, row, flag in found]

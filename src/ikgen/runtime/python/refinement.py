@@ -13,7 +13,7 @@ from ikgen.runtime.python.chain_kinematics import Chain, tip_and_jacobian
 from ikgen.runtime.python.solve_policy import Policy
 from ikgen.runtime.python.task_interface import Task
 
-__all__ = ["in_blocks", "least_singular", "newton", "rank_loss", "refine"]
+__all__ = ["in_blocks", "least_singular", "newton", "rank_loss", "refine", "steeper"]
 
 
 _BLOCK = 1024  # rows whose arrays fit into a processor's cache
@@ -30,9 +30,9 @@ def in_blocks(step: Callable[[Array, Array], Any], q: Array, T: Array) -> Any:
 
 def refine(
     chain: Chain, task: Task, moving: Sequence[int], q: Array, T: Array, policy: Policy
-) -> tuple[Array, Flags, Array, Array]:
-    """Newton steps of the joints `moving` from q (k, dof) towards T (k, 4, 4); which rows arrived, the
-    errors before (k,), and the task's derivatives by the joints (k, m, n) where the rows end.
+) -> tuple[Array, Array, Array, Array]:
+    """Newton steps of the joints `moving` from q (k, dof) towards T (k, 4, 4); the errors that they leave,
+    and those before (k,), and the task's derivatives by the joints (k, m, n) where the rows end.
 
     At a fold of the solution set the steps halve the error. Elsewhere all digits are wanted, as rows may
     lie on a limit.
@@ -51,7 +51,7 @@ def refine(
         q[going], error[going], slope[going] = part[0], part[1], part[3]
         before[going] = np.maximum(before[going], part[2])
         fine, promising = finer, less
-    return q, error < policy.arrived, before, slope
+    return q, error, before, slope
 
 
 def newton(
@@ -89,6 +89,16 @@ def newton(
 def rank_loss(chain: Chain, task: Task, moving: Sequence[int], q: Array) -> Array:
     """Smallest singular value (k,) of the task's derivatives by the joints `moving` at q (k, dof)."""
     return least_singular(task.rows(*tip_and_jacobian(chain, q))[:, :, list(moving)])
+
+
+def steeper(slope: Array, bound: float) -> Flags:
+    """Which derivatives (k, m, n) have no singular value below `bound`; of those near it some may not be
+    told. Each column is at least the smallest singular value away from what the others span, and the
+    nearest of n at most its sqrt(n)-fold."""
+    count = slope.shape[2]
+    inverse = np.linalg.inv(slope.transpose(0, 2, 1) @ slope + 1e-14 * np.eye(count))
+    nearest = 1.0 / np.sqrt(np.einsum("kii->ki", inverse).max(axis=1))
+    return np.asarray(nearest > bound * count**0.5)
 
 
 def least_singular(slope: Array) -> Array:

@@ -12,14 +12,17 @@ class Policy:
     """Errors are in rad, or m over the arm's size."""
 
     arrived: float  # error below which a refined row is a solution
+    exact: float  # and does not give way to better ones
     pose_tolerance: float  # how far a rotation's entries may be off
     orthonormal: float  # and what is round-off of them
     coincident: float  # rows closer than that (rad or m) are one
+    alike: float  # and singular ones, where the pose is theirs between them too
     limit_tolerance: float  # how far outside a limit a row is put back on it
     tries: int  # values tried for a joint that a pose leaves free
     try_step: float  # rad from one to the next
     rank_loss: float  # smallest singular value below which a refined row is singular
     continuum_rank_loss: float  # the same where the closed form says that it is
+    fold_reach: float  # smallest singular value below which another row may be near
     farthest_start: float  # first step (rad, m) of rows that are refined together
     contraction: float  # of each further one
     least_pivot: float  # how far the derivatives by each joint must be from the others' span

@@ -1,0 +1,106 @@
+"""Poses where solutions meet, or nearly do: none is lost, and C++ and Python have the same."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+from pathlib import Path
+
+import numpy as np
+import pytest
+from benchmarks.agreement import runner_of
+from numpy.typing import NDArray
+from tests.support.solving import FIXTURES, NO_COMPILER
+
+from ikgen.generation.derive import derive
+from ikgen.generation.emitted_checks import oracle_for
+from ikgen.generation.request import Request
+from ikgen.tasks import find_task
+from ikgen.verify.agreement import disagreements
+from ikgen.verify.arm import ArmUnderTest, arm_under_test
+from ikgen.verify.completeness import survey
+from ikgen.verify.runners.runner import Runner
+from ikgen.verify.sampling import SampleSet
+from ikgen.verify.task_space import task_space
+from ikgen.verify.trials import run_trial
+
+Array = NDArray[np.float64]
+
+pytestmark = pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")
+
+ARMS = ("ur5e", "doosan_m1013", "fanuc_crx10ia")
+"""A continuum at the wrist, one that a file with offsets breaks into isolated solutions, an elimination."""
+
+FOLDS = {
+    "ur5e": [
+        [-0.75 * pi, 0.0, 0.25 * pi, -0.75 * pi, -pi, -0.75 * pi],
+        [-2.35, 0.4, 1e-4, -2.2, -2.9, -2.4],
+        [-2.35, 0.4, -1e-4, -2.2, -2.9, -2.4],
+        [2.8924685876503107, 2.9751769627630787, 0.9650107445478333, -2.5947716037, 2.6e-11, 1.49624],
+    ],
+    "doosan_m1013": [
+        [0.5 * pi, 0.0, 0.0, 0.75 * pi, 0.0, 0.5 * pi],
+        [1.6046566726690148, -2.0223269709953118, -2.28257596917011, -2.28909350703481, 1.2395e-4, -1.67],
+        [-1.8760487350474973, -0.70900730592372, 1.59490233520665, -2.616762032884825, -2.6469e-5, 1.17],
+    ],
+    "fanuc_crx10ia": [
+        [-0.8402492929786658, -0.8327335483597, -0.0382845655676, 1.20801285863, 2.0957160413791, 0.64361],
+    ],
+}  # fmt: skip
+"""Configurations whose rows were once lost, or whose poses were not answered at all."""
+
+
+@dataclass(frozen=True)
+class Made:
+    """One arm in both languages, and configurations whose rows meet, or nearly do."""
+
+    q: Array
+    arm: ArmUnderTest
+    python: Runner
+    cpp: Runner
+
+    @property
+    def sample(self) -> SampleSet:
+        poses = self.arm.oracle.forward(self.q)
+        return SampleSet("folds", self.q, poses, self.arm.sigma(self.q))
+
+
+@pytest.fixture(scope="module", params=ARMS)
+def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Made:
+    derivation = derive(Request(FIXTURES / f"{request.param}.urdf"))
+    folder: Path = tmp_path_factory.mktemp(request.param)
+    python, cpp = (runner_of(derivation, language, folder) for language in ("python", "cpp"))
+    oracle, task = oracle_for(derivation.reading), task_space(find_task("pose"))
+    limits = [(j.limits.lower, j.limits.upper) for j in derivation.reading.dh.joints]
+    lower, upper = (np.array(bound) for bound in zip(*limits, strict=True))
+    q = np.vstack([FOLDS[request.param], np.clip(special(120), lower, upper)])
+    return Made(q, arm_under_test(oracle, task, (lower, upper), ()), python, cpp)
+
+
+def special(count: int) -> Array:
+    """Configurations (count, 6) with all joints at multiples of 45 degrees, every other one beside."""
+    random = np.random.default_rng(4)
+    q = random.integers(-4, 5, (count, 6)) * pi / 4
+    beside = 10.0 ** -random.uniform(1.0, 10.0, (count, 1)) * random.normal(size=(count, 6))
+    q[1::2] += beside[1::2]
+    return np.asarray(q)
+
+
+@pytest.mark.parametrize("language", ["python", "cpp"])
+@pytest.mark.parametrize("seeded", [False, True])
+def test_nothing_is_lost(made: Made, language: str, seeded: bool) -> None:
+    runner: Runner = getattr(made, language)
+    trial = run_trial(runner, made.arm, made.sample, limits=False, seeded=seeded)
+    found = survey(made.arm, runner, [trial])
+    lost = np.flatnonzero(found.missed | found.unanswered)
+    assert not len(lost), found.case(int(lost[0]))
+
+
+def test_rows_are_the_same_in_both_languages_and_in_batches(made: Made) -> None:
+    poses = made.sample.poses
+    python, cpp = (runner.solve_many(poses, limits=False) for runner in (made.python, made.cpp))
+    batch = made.python.solve_batch(poses, limits=False)
+    assert batch is not None
+    for other in (cpp, batch):
+        wrong, compared, _ = disagreements(made.arm, python, other)
+        assert compared.sum() > 60 and not wrong.any(), (other is cpp, np.flatnonzero(wrong))
