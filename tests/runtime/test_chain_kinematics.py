@@ -52,6 +52,11 @@ def test_jacobian_is_the_derivative(chain: Chain) -> None:
         assert np.abs(J[3:, j] - [W[2, 1], W[0, 2], W[1, 0]]).max() < 1e-8
 
 
+def test_no_configurations_have_no_poses(chain: Chain) -> None:
+    assert forward(chain, np.empty((0, 3))).shape == (0, 4, 4)
+    assert jacobian(chain, np.empty((0, 3))).shape == (0, 6, 3)
+
+
 def test_joints_that_turn(chain: Chain) -> None:
     assert chain.revolute == (True, False, True)
 

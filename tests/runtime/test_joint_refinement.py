@@ -29,14 +29,14 @@ def apart(a: Array, b: Array) -> Array:
 
 
 def steps(module: ModuleType, q: Array, T: Array) -> tuple[Array, Array, Array]:
-    return module._refine_together(module._ARM, q, np.broadcast_to(T, (len(q), 4, 4)))
+    return module._ARM.together(module._ARM, q, np.broadcast_to(T, (len(q), 4, 4)))
 
 
 def test_rows_close_and_none_is_lost(doosan: ModuleType) -> None:
     q = np.random.default_rng(6).uniform(-3, 3, (60, 6))
     T = doosan.forward(q)
     rows, count, _ = doosan.solve_batch(T, limits=False)
-    careful = replace(doosan._ARM, rounded=False)
+    careful = replace(doosan._ARM, together=None)
     for at, pose, many, n in zip(q, T, rows, count, strict=True):
         found = doosan.solve(pose, limits=False).q
         assert np.abs(doosan.forward(found) - pose).max() < 1e-11
@@ -49,24 +49,37 @@ def test_rows_close_and_none_is_lost(doosan: ModuleType) -> None:
 
 def test_a_row_near_a_solution_arrives(doosan: ModuleType) -> None:
     q = np.array([0.3, 0.4, 1.2, 0.2, 0.9, -0.4])
-    starts = q + 1e-4 * np.random.default_rng(6).normal(size=(5, 6))
-    done, arrived, missed = steps(doosan, starts, doosan.forward(q))
-    assert arrived.all() and not missed.any() and np.abs(done - q).max() < 1e-12
+    for count in (5, 3000):
+        starts = q + 1e-4 * np.random.default_rng(6).normal(size=(count, 6))
+        done, arrived, missed = steps(doosan, starts, doosan.forward(q))
+        assert arrived.all() and not missed.any() and np.abs(done - q).max() < 1e-12
+
+
+def test_rows_far_from_their_solution_take_more_steps(doosan: ModuleType) -> None:
+    q = np.array([0.3, 0.4, 1.2, 0.2, 0.9, -0.4])
+    for count in (5, 100):
+        starts = q + 0.01 * np.random.default_rng(6).normal(size=(count, 6))
+        done, arrived, _ = steps(doosan, starts, doosan.forward(q))
+        assert arrived.any() and np.abs(done[arrived] - q).max() < 1e-12
 
 
 def test_rows_beside_folds_or_far_away_are_in_doubt(doosan: ModuleType) -> None:
     folded = np.array([0.3, 0.4, 1.2, 0.2, 1e-3, -0.4])
-    _, arrived, missed = steps(doosan, folded[None], doosan.forward(folded))
-    assert not arrived.any() and not missed.any()
     regular = np.array([0.3, 0.4, 1.2, 0.2, 0.9, -0.4])
-    _, arrived, _ = steps(doosan, regular[None] + 0.3, doosan.forward(regular))
-    assert not arrived.any()
+    for count in (1, 100):
+        beside = folded + 0.02 * np.eye(6)[[3] * count]
+        _, arrived, missed = steps(doosan, beside, doosan.forward(folded))
+        assert not arrived.any() and not missed.any()
+        away = np.tile(regular + 0.3, (count, 1))
+        _, arrived, _ = steps(doosan, away, doosan.forward(regular))
+        assert not arrived.any()
 
 
 def test_a_least_error_above_zero_is_no_solution(doosan: ModuleType) -> None:
     q = np.array([0.3, 0.4, 1.2, 0.2, 0.9, -0.4])
     held = replace(doosan._ARM, moving=(0, 1, 2, 4, 5))
-    start = q + 1e-4 * np.eye(6)[3]
-    pose = doosan.forward(q)[None]
-    _, arrived, missed = doosan._refine_together(held, start[None], pose)
-    assert missed.all() and not arrived.any()
+    held = replace(held, free=(3,))
+    for count in (1, 100):
+        start = q + 1e-4 * np.eye(6)[[3] * count]
+        _, arrived, missed = held.together(held, start, np.tile(doosan.forward(q), (count, 1, 1)))
+        assert missed.all() and not arrived.any()

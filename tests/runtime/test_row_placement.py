@@ -37,7 +37,7 @@ def arm() -> Arm:
         beside=np.empty((0, 4, 4)),
         turning=(True, True, True, False, False),
         moving=(0, 1, 2, 3),
-        rounded=False,
+        together=None,
         branch_kind="number",
         elbow_end=0,
     )

@@ -45,9 +45,10 @@ class SolvePolicy:
     - `farthest_start`: the largest first step (rad, m) of rows that are refined together, `contraction`:
       the most that a step of theirs may be of the one before, `least_pivot`: the least entry of the
       diagonal of their derivatives' triangular factor, `reach`: the same over the root of how far the file
-      is off what was solved, `least_miss`: the error that shows that they end beside the pose,
-      `near`: the largest step behind which the derivatives stay, `lane_steps`: how many they take at most;
-      other rows are refined one by one.
+      is off what was solved, `pivot_share`: the most that a first step may be of that entry where its rows
+      are looked at in Python, `least_miss`: the error that shows that they end beside the pose,
+      `near`: the largest step in C++ behind which the derivatives stay, `lane_steps`: how many they take at
+      most; other rows are refined one by one.
     - `least_damping`, `damping`: a Newton step is damped by max(least, damping * error^2); `largest_step`
       (rad or m) bounds each joint's; `converged`: error at which steps end; `patience` steps may pass
       without the error falling to `progress` of what it was.
@@ -70,6 +71,7 @@ class SolvePolicy:
     fold_reach: float = 1e-4
     farthest_start: float = 0.05
     contraction: float = 0.25
+    pivot_share: float = 4.0
     least_pivot: float = 1e-5
     reach: float = 1.0
     least_miss: float = 1e-8

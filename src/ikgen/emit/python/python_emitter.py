@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import TYPE_CHECKING
 
 from ikgen.elimination.routine import runtime_policy
@@ -10,11 +10,13 @@ from ikgen.emit.blanks import blanks, pairs
 from ikgen.emit.printer import expression
 from ikgen.emit.python.branch_kinds import branch_kind, elbow_end
 from ikgen.emit.python.bundle import bundle
+from ikgen.emit.python.lane_text import lane_text
 from ikgen.emit.python.python_language import SCALAR, number
 from ikgen.emit.python.python_statements import batch_lines, scalar_lines
 from ikgen.emit.python.python_text import literal, words
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
+from ikgen.program.policy import SolvePolicy
 from ikgen.runtime.python.solve_policy import Policy
 from ikgen.tasks import AXES, Task
 
@@ -32,7 +34,8 @@ def emit_derivation(derivation: Derivation) -> dict[str, str]:
 
 def emit_module(module: SolverModule) -> str:
     """The text of `<name>_ik.py`."""
-    program, policy = module.program, module.policy
+    program = module.program
+    policy = replace(module.policy, least_pivot=SolvePolicy().least_pivot)
     shell = render(
         "python",
         "module.py.jinja",
@@ -50,6 +53,7 @@ def emit_module(module: SolverModule) -> str:
         shape=[level.branches for level in program.levels[1:]],
         frames=[[[expression(SCALAR, x) for x in row] for row in F] for F in program.frames],
         rows=[(row.driver, row.revolute, row.scale, row.offset.value) for row in module.dh.rows],
+        lanes=lane_text(module) if module.refine == "all" else None,
         number=number,
         literal=literal,
         words=words,

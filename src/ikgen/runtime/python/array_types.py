@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Array", "Flags", "Row"]
+__all__ = ["Array", "Flags", "Row", "Single"]
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Row = tuple[float, ...]
+Single = NDArray[np.float32]

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.joint_arguments import held_rows, seed_rows
-from ikgen.runtime.python.joint_refinement import refine_together
 from ikgen.runtime.python.meeting_rows import Starts, rows_nearby
 from ikgen.runtime.python.pose_arguments import poses_in_line
 from ikgen.runtime.python.pose_faults import nearest_poses
@@ -19,7 +18,7 @@ from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.refinement import rank_loss, refine, steeper
 from ikgen.runtime.python.row_placement import distinct, place_rows_batch
 from ikgen.runtime.python.solutions import Status
-from ikgen.runtime.python.solved_arm import Arm
+from ikgen.runtime.python.solved_arm import Arm, Together
 
 __all__ = ["branch_axis", "careful_rows", "certain_rows", "rows_batch", "solve_poses"]
 
@@ -96,10 +95,10 @@ def _solve_chunk(arm: Arm, T: Array, held: Array, near: Array | None, limits: bo
 def rows_batch(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, Flags, Flags]:
     """Rows (N, M, dof) on no turn in particular; which are distinct solutions, and which poses (N,) are to
     be solved alone: those with a continuum, and of arms that are not rounded those near a singularity."""
-    if not arm.rounded:
+    if arm.together is None:
         q, valid, singular, steep = careful_rows(arm, T, held, near)
         return q, valid, singular.any(axis=1) | ~steep
-    q, valid, singular, doubt = certain_rows(arm, T, held, near)
+    q, valid, singular, doubt = certain_rows(arm, arm.together, T, held, near)
     alone: Flags = np.asarray(singular.any(axis=1))
     look = np.flatnonzero(doubt & ~alone)
     if len(look):
@@ -142,7 +141,7 @@ def _nearby_rows(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[A
 
 
 def certain_rows(
-    arm: Arm, T: Array, held: Array, near: Array | None
+    arm: Arm, together: Together, T: Array, held: Array, near: Array | None
 ) -> tuple[Array, Flags, Flags, Flags]:
     """Rows (N, M, dof) of a rounded arm refined all at once, which of them are solutions, which of a
     continuum, and for which poses (N,) that leaves a doubt."""
@@ -151,7 +150,7 @@ def certain_rows(
         q, valid, singular, _ = arm.branches_batch(T, start, held)
     q[:, :, arm.free] = held[:, None, :]
     pose, row = np.nonzero(valid)
-    q[pose, row], arrived, missed = refine_together(arm, q[pose, row], T[pose])
+    q[pose, row], arrived, missed = together(arm, q[pose, row], T[pose])
     found, doubt = valid.copy(), np.zeros(len(T), dtype=bool)
     found[pose, row] = arrived
     doubt[pose[~(arrived | missed)]] = True

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.array_types import Array
 from ikgen.runtime.python.real_numbers import real_array
 
 __all__ = [
@@ -30,11 +30,11 @@ class Chain:
     """`T = F_0 M(v_1) F_1 ... M(v_n) F_n`, M a rotation about or a motion along z,
     `v_i = scale_i * q[joint_i] + offset_i`.
 
-    `frames` (n + 1, 4, 4) and `motions` say the same as `parts` (4, n, 4, 4), with which
-    `M(v) F = cos(v) parts[0] + sin(v) parts[1] + v parts[2] + parts[3]`, `joint`, `scale`, `offset` (n,),
-    `turning` (n, 1), whether M is a rotation, `slides`, whether one is not, and `drive` (n, dof), the
-    derivatives of v by q. `revolute` (dof): whose values are the same
-    configuration exactly where they differ by whole turns.
+    `frames` (n + 1, 4, 4) and `motions` say the same as `parts` (n, 3, 16), `joint`, `scale`, `offset`
+    (n,): of `M(v_i) F_i`, the first `F_0 M(v_1) F_1`, the entries in one line are `cos(v_i) parts[i, 0]
+    + sin(v_i) parts[i, 1] + parts[i, 2]`, with v_i in place of the cosine where i is one of `slides`.
+    `drive` (n, dof): the derivatives of v by q, None where they are 1. `revolute` (dof): whose values are
+    the same configuration exactly where they differ by whole turns.
     """
 
     frames: Array
@@ -43,31 +43,41 @@ class Chain:
     joint: NDArray[np.intp]
     scale: Array
     offset: Array
-    turning: Flags
-    slides: bool
-    drive: Array
+    slides: tuple[int, ...]
+    drive: Array | None
     revolute: tuple[bool, ...]
 
 
 def chain_of(frames: Array, motions: tuple[Motion, ...], dof: int) -> Chain:
     """The chain of constant frames (n + 1, 4, 4) and the motions between them (n)."""
-    parts = np.zeros((4, len(motions), 4, 4))
+    parts = np.zeros((len(motions), 3, 4, 4))
     for i, (_, turning, _, _) in enumerate(motions):
         F = frames[i + 1]
         if turning:
-            parts[0, i, :2] = F[:2]
-            parts[1, i, 0], parts[1, i, 1] = -F[1], F[0]
-            parts[3, i, 2:] = F[2:]
+            parts[i, 0, :2] = F[:2]
+            parts[i, 1, 0], parts[i, 1, 1] = -F[1], F[0]
+            parts[i, 2, 2:] = F[2:]
         else:
-            parts[2, i, 2] = F[3]
-            parts[3, i] = F
+            parts[i, 0, 2] = F[3]
+            parts[i, 2] = F
+    parts[0] = frames[0] @ parts[0]
     joint = np.array([m[0] for m in motions])
     scale, offset = (np.array([m[i] for m in motions]) for i in (2, 3))
-    turns = np.array([[m[1]] for m in motions])
+    slides = tuple(i for i, m in enumerate(motions) if not m[1])
     drive = scale[:, None] * (joint[:, None] == np.arange(dof))
+    alike = np.array_equal(drive, np.eye(dof))
     revolute = tuple(_turns_freely([m for m in motions if m[0] == j]) for j in range(dof))
-    slides = not turns.all()
-    return Chain(frames, motions, parts, joint, scale, offset, turns, slides, drive, revolute)
+    return Chain(
+        frames,
+        motions,
+        parts.reshape(-1, 3, 16),
+        joint,
+        scale,
+        offset,
+        slides,
+        None if alike else drive,
+        revolute,
+    )
 
 
 def _turns_freely(motions: Sequence[Motion]) -> bool:
@@ -78,32 +88,38 @@ def _turns_freely(motions: Sequence[Motion]) -> bool:
 
 
 def _steps(chain: Chain, q: Array) -> Array:
-    """The transforms `M(v_i) F_i` at q (..., dof): (..., n, 4, 4)."""
-    v = (q[..., chain.joint] * chain.scale + chain.offset)[..., None, None]
-    cosine, sine, value, rest = chain.parts
-    steps = np.cos(v) * cosine + np.sin(v) * sine + rest
-    return np.asarray(steps + v * value if chain.slides else steps)
+    """The transforms `M(v_i) F_i`, of the first `F_0 M(v_1) F_1`, at q (k, dof): (n, k, 4, 4)."""
+    v = (q if chain.drive is None else q[:, chain.joint] * chain.scale) + chain.offset
+    trig = np.ones((len(chain.motions), len(q), 3))
+    np.cos(v.T, out=trig[:, :, 0])
+    np.sin(v.T, out=trig[:, :, 1])
+    for i in chain.slides:
+        trig[i, :, 0], trig[i, :, 1] = v[:, i], 0.0
+    return np.asarray((trig @ chain.parts).reshape(*trig.shape[:2], 4, 4))
 
 
-def _joint_values(chain: Chain, q: ArrayLike) -> Array:
-    values, dof = real_array(q, "q"), chain.drive.shape[1]
+def _in_line(chain: Chain, q: ArrayLike) -> tuple[tuple[int, ...], Array]:
+    """The shape of what q (..., dof) are in front, and q (k, dof)."""
+    values, dof = real_array(q, "q"), len(chain.revolute)
     if values.ndim < 1 or values.shape[-1] != dof:
         raise ValueError(f"q has shape {values.shape}, expected (..., {dof})")
-    return values
+    return values.shape[:-1], values.reshape(-1, dof)
 
 
 def forward(chain: Chain, q: ArrayLike) -> Array:
     """Tip poses (..., 4, 4) at q (..., dof); raises ValueError for another shape."""
-    steps = _steps(chain, _joint_values(chain, q))
-    T: Array = chain.frames[0]
-    for i in range(len(chain.motions)):
-        T = T @ steps[..., i, :, :]
-    return T
+    shape, rows = _in_line(chain, q)
+    steps = _steps(chain, rows)
+    T: Array = steps[0]
+    for step in steps[1:]:
+        T = T @ step
+    return T.reshape(*shape, 4, 4)
 
 
 def jacobian(chain: Chain, q: ArrayLike) -> Array:
     """Geometric Jacobians (..., 6, dof) at q (..., dof); raises ValueError for another shape."""
-    return tip_and_jacobian(chain, _joint_values(chain, q))[1]
+    shape, rows = _in_line(chain, q)
+    return np.asarray(tip_and_jacobian(chain, rows)[1].reshape(*shape, 6, rows.shape[1]))
 
 
 def cross(a: Array, b: Array) -> Array:
@@ -113,26 +129,26 @@ def cross(a: Array, b: Array) -> Array:
     return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)
 
 
-def joint_axes(chain: Chain, q: Array) -> tuple[Array, Array, Array]:
-    """Directions (..., n, 3) of the axes, points (..., n, 3) on them, and tip poses (..., 4, 4)."""
-    steps, count = _steps(chain, q), len(chain.motions)
-    T = np.broadcast_to(chain.frames[0], (*q.shape[:-1], 4, 4))
-    axes = np.empty((*q.shape[:-1], count, 3, 2))
-    for i in range(count):
-        axes[..., i, :, :] = T[..., :3, 2:]
-        T = T @ steps[..., i, :, :]
-    return axes[..., 0], axes[..., 1], T
+def joint_axes(chain: Chain, q: Array) -> Array:
+    """Frames (n + 1, k, 4, 4) on the axes, z along them, and the tip's, at q (k, dof)."""
+    steps = _steps(chain, q)
+    T = np.empty((len(steps) + 1, *steps.shape[1:]))
+    T[0], T[1] = chain.frames[0], steps[0]
+    for i in range(1, len(steps)):
+        np.matmul(T[i], steps[i], out=T[i + 1])
+    return T
 
 
 def tip_and_jacobian(chain: Chain, q: Array) -> tuple[Array, Array]:
-    """Tip poses (..., 4, 4) and geometric Jacobians (..., 6, dof), linear rows first."""
-    z, p, T = joint_axes(chain, q)
-    r = T[..., None, :3, 3] - p
-    J = np.empty((*z.shape[:-2], 6, z.shape[-2]))
+    """Tip poses (k, 4, 4) and geometric Jacobians (k, 6, dof), linear rows first, at q (k, dof)."""
+    T = joint_axes(chain, q)
+    z, p = T[:-1, :, :3, 2:].transpose(3, 2, 0, 1).copy()
+    r = T[-1, :, :3, 3].T[:, None] - p
+    J = np.empty((6, *z.shape[1:]))
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        J[..., i, :] = z[..., j] * r[..., k] - z[..., k] * r[..., j]
-        J[..., 3 + i, :] = z[..., i]
-    if chain.slides:
-        slide = ~chain.turning[:, 0]
-        J[..., :3, slide], J[..., 3:, slide] = np.swapaxes(z, -1, -2)[..., slide], 0.0
-    return T, J @ chain.drive
+        np.subtract(z[j] * r[k], z[k] * r[j], out=J[i])
+    J[3:] = z
+    for i in chain.slides:
+        J[:3, i], J[3:, i] = z[:, i], 0.0
+    out = J.transpose(2, 0, 1)
+    return T[-1], out if chain.drive is None else out @ chain.drive

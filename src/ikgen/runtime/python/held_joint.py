@@ -66,10 +66,10 @@ def rows_at(joint: HeldJoint, T: Array, held: Array) -> Rows:
 def _all_rows(arm: Arm, T: Array, held: Array) -> tuple[Array, Flags]:
     """Rows (n, m, dof), and which of them are solutions: those of the closed form first, then those of
     poses beside; no more than `solve` gives."""
-    if not arm.rounded:
+    if arm.together is None:
         q, real, _, _ = careful_rows(arm, T, held, None)
     else:
-        some, sure, _, doubt = certain_rows(arm, T, held, None)
+        some, sure, _, doubt = certain_rows(arm, arm.together, T, held, None)
         size = some.shape[1] * (1 + len(arm.beside))
         q = np.zeros((len(T), size, some.shape[2]))
         real = np.zeros(q.shape[:2], dtype=bool)

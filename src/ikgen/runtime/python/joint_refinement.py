@@ -2,86 +2,90 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags
-from ikgen.runtime.python.chain_kinematics import forward, tip_and_jacobian
-from ikgen.runtime.python.refinement import in_blocks
+from ikgen.runtime.python.chain_kinematics import tip_and_jacobian
+from ikgen.runtime.python.lane_chain import LaneChain
+from ikgen.runtime.python.lane_newton import refine_lanes
 from ikgen.runtime.python.solved_arm import Arm
 
 __all__ = ["refine_together"]
 
-_FEW = 64  # rows that together take hardly longer than one: it pays to treat them alike
+_FEW = 64  # rows for which whole matrices are faster than long rows of each of their entries
 
 
-def refine_together(arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
+def refine_together(chain: LaneChain, arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
     """Rows (k, dof) after steps towards T (k, 4, 4); which arrived at the one solution near their start,
     and which at a least error that is not 0.
 
     Newton's method contracts by `policy.contraction` only near the one solution there (Deuflhard 2004,
-    theorem 2.1).
+    theorem 2.1). Where the solution set folds, the other solution is twice the pivot over the curvature
+    away: rows whose first step is more than `policy.pivot_share` of the pivot are left to others.
     """
-    q, arrived, missed = in_blocks(partial(_refined_block, arm), q, T)
-    return q, arrived, missed
+    return _refine_few(arm, q, T) if len(q) <= _FEW else refine_lanes(arm, chain, q, T)
 
 
-def _refined_block(arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
-    policy, row, moving = arm.policy, q.copy(), list(arm.moving)
-    q, arrived = row, np.zeros(len(q), dtype=bool)
-    missed, going, before = (
-        arrived.copy(),
-        np.arange(len(q)),
-        np.full(len(q), policy.farthest_start),
-    )
-    slope = inverse = np.empty(0)
-    for step in range(policy.lane_steps):
-        near = before < policy.near  # so close that the slope is the one before
-        if step not in (1, 2) or (len(row) <= _FEW and not near.all()):
-            near[:] = False
-        if near.all():
-            error, good = arm.task.error(forward(arm.chain, row), T), near
-        elif not near.any():
-            error, slope, inverse, good = _linearized(arm, row, T)
-        else:
-            new, error, good = ~near, np.empty(slope.shape[:2]), near.copy()
-            error[near] = arm.task.error(forward(arm.chain, row[near]), T[near])
-            error[new], slope[new], inverse[new], good[new] = _linearized(arm, row[new], T[new])
-        change = (inverse @ error[:, :, None])[:, :, 0]
-        size = np.abs(change).max(axis=1)
-        most = policy.contraction * before if step else before
-        good = good & ((size < most) | (size < policy.converged))
-        row[:, moving] += change
-        if step:
-            done = (size * size < policy.converged * before) | (size < policy.converged)
-            done &= good
-            if done.any():
-                rest = np.abs(error - (slope @ change[:, :, None])[:, :, 0]).max(axis=1)
-                q[going[done]] = row[done]
-                arrived[going] = done & (rest < policy.arrived)
-                missed[going] = done & (rest > policy.least_miss)
-                good &= ~done
-        if not good.any():
+def _refine_few(arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
+    """Every second step is solved with the inverse of the one before, and what that leaves of it once
+    more, as in `refine_lanes`."""
+    policy = arm.policy
+    good, before = np.ones(len(q), dtype=bool), np.full(len(q), policy.farthest_start)
+    for steps in range(0, policy.lane_steps, 2):
+        error, slope = _linearized(arm, q, T)
+        inverse = _left_inverse(slope)
+        change = inverse @ error
+        size = _largest(change[:, :, 0])
+        pivot = 1.0 / np.sqrt(_largest(np.add.reduce(inverse * inverse, axis=2)))
+        most = policy.contraction * before if steps else policy.pivot_share * pivot
+        good &= (size < np.minimum(before, most)) | (size < policy.converged)
+        good &= pivot > policy.least_pivot
+        q = _moved(arm, q, change)
+        rest, slope = _linearized(arm, q, T)
+        change = inverse @ rest
+        rest = rest - slope @ change
+        more = inverse @ rest
+        rest, change = rest - slope @ more, change + more
+        before, size = size, _largest(change[:, :, 0])
+        small = size < policy.converged
+        good &= (size < policy.contraction * before) | small
+        done = size**3 < policy.converged * before**2
+        done &= _largest(more[:, :, 0]) ** 2 < policy.converged * size
+        done |= small
+        q, before = _moved(arm, q, change), size
+        if (done | ~good).all():
             break
-        before = size
-        if not good.all():
-            going, before, row, T = going[good], before[good], row[good], T[good]
-            slope, inverse = slope[good], inverse[good]
-    return q, arrived, missed
+    done, off = done & good, _largest(rest[:, :, 0])
+    return q, done & (off < policy.arrived), done & (off > policy.least_miss)
 
 
-def _linearized(arm: Arm, q: Array, T: Array) -> tuple[Array, Array, Array, Flags]:
-    """Errors (k, m) at rows (k, dof), their derivatives (k, m, n), left inverses of these, and which rows
-    are far from a singularity."""
+def _largest(x: Array) -> Array:
+    return np.asarray(np.maximum.reduce(np.abs(x), axis=1))
+
+
+def _moved(arm: Arm, q: Array, change: Array) -> Array:
+    if not arm.free:
+        return q + change[:, :, 0]
+    q = q.copy()
+    q[:, list(arm.moving)] += change[:, :, 0]
+    return q
+
+
+def _linearized(arm: Arm, q: Array, T: Array) -> tuple[Array, Array]:
+    """Errors (k, m, 1) at rows (k, dof), and their derivatives (k, m, n)."""
     pose, J = tip_and_jacobian(arm.chain, q)
-    slope = arm.task.rows(pose, J)[:, :, list(arm.moving)]
-    inverse, pivot = _inverse(slope)
-    return arm.task.error(pose, T), slope, inverse, pivot > arm.policy.least_pivot
+    slope = arm.task.rows(pose, J)
+    if arm.free:
+        slope = slope[:, :, list(arm.moving)]
+    return arm.task.error(pose, T)[:, :, None], slope
 
 
-def _inverse(J: Array) -> tuple[Array, Array]:
-    """The left inverses of J (k, m, n), and how far the nearest column of each is from the others' span."""
-    Jt = J.transpose(0, 2, 1)
-    G = np.linalg.inv(Jt @ J + 1e-14 * np.eye(J.shape[2]))  # never singular
-    return G @ Jt, 1.0 / np.sqrt(np.einsum("kii->ki", G).max(axis=1))
+def _left_inverse(V: Array) -> Array:
+    """Of V (k, m, n): (k, n, m)."""
+    if V.shape[1] == V.shape[2]:
+        try:
+            return np.asarray(np.linalg.inv(V))
+        except np.linalg.LinAlgError:
+            pass
+    Vt = V.transpose(0, 2, 1)
+    return np.asarray(np.linalg.inv(Vt @ V + 1e-14 * np.eye(V.shape[2])) @ Vt)  # never singular

@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 from ikgen.runtime.python.array_types import Row
 from ikgen.runtime.python.chain_kinematics import forward
 from ikgen.runtime.python.joint_arguments import held_values, seed_values
-from ikgen.runtime.python.joint_refinement import refine_together
 from ikgen.runtime.python.meeting_rows import Starts, repeats, rows_nearby
 from ikgen.runtime.python.pose_arguments import one_pose
 from ikgen.runtime.python.pose_faults import nearest_pose, pose_fault
@@ -21,7 +20,7 @@ from ikgen.runtime.python.refinement import rank_loss
 from ikgen.runtime.python.row_branches import branch_names
 from ikgen.runtime.python.row_placement import is_new, place_rows
 from ikgen.runtime.python.solutions import Solutions, Status, no_solutions
-from ikgen.runtime.python.solved_arm import Arm, Candidate, Found
+from ikgen.runtime.python.solved_arm import Arm, Candidate, Found, Together
 
 __all__ = ["solve_pose"]
 
@@ -155,8 +154,8 @@ def _rows(arm: Arm, T: list[list[float]], starts: list[Row], held: Row) -> list[
     free, led = [], []
     for i, q0 in enumerate(starts):
         answers, hit = arm.branches(T, q0, held)
-        if arm.rounded and len(starts) == 1 and not hit:
-            certain = _certain_rows(arm, answers, T)
+        if arm.together and len(starts) == 1 and not hit:
+            certain = _certain_rows(arm, arm.together, answers, T)
             if certain is not None:
                 return [_Rows(certain, False, False)]
         free.append(hit)
@@ -178,14 +177,14 @@ def _rows(arm: Arm, T: list[list[float]], starts: list[Row], held: Row) -> list[
     return [_Rows(*item) for item in zip(kept, free, led)]
 
 
-def _certain_rows(arm: Arm, answers: list[Candidate], T: list[list[float]]) -> list[Found] | None:
+def _certain_rows(
+    arm: Arm, together: Together, answers: list[Candidate], T: list[list[float]]
+) -> list[Found] | None:
     """The rows refined all at once; None where that leaves a doubt."""
     if not answers or any(flag for _, flag, _ in answers):
         return None if answers or len(arm.beside) else []
     start = np.array([row for row, _, _ in answers])
-    q, arrived, missed = refine_together(
-        arm, start, np.broadcast_to(np.array(T), (len(start), 4, 4))
-    )
+    q, arrived, missed = together(arm, start, np.broadcast_to(np.array(T), (len(start), 4, 4)))
     if not (arrived | missed).all():
         return None
     kept: list[Found] = []

@@ -40,7 +40,8 @@ def _side_names(arm: Arm, q: Array) -> tuple[str, ...]:
     third axis turns, where up is along the first axis; the wrist is flipped where the sixth axis is turned
     from the fourth by a negative angle about the fifth.
     """
-    z, p, _ = joint_axes(arm.chain, q)
+    axes = joint_axes(arm.chain, q)[:-1].swapaxes(0, 1)
+    z, p = axes[:, :, :3, 2], axes[:, :, :3, 3]
     up = z[:, 0] * np.where(z[:, :1, 2] < 0.0, -1.0, 1.0)
     right = _inner(cross(up, z[:, 1]), p[:, 5] - p[:, 0]) >= 0.0
     elbow, end = p[:, 2] - p[:, 1], p[:, arm.elbow_end] - p[:, 1]

@@ -25,9 +25,9 @@ class Policy:
     fold_reach: float  # smallest singular value below which another row may be near
     farthest_start: float  # first step (rad, m) of rows that are refined together
     contraction: float  # of each further one
+    pivot_share: float  # of the pivot: the first step at most
     least_pivot: float  # how far the derivatives by each joint must be from the others' span
     least_miss: float  # error that shows that a row ends beside the pose
-    near: float  # largest step behind which the derivatives stay
     lane_steps: int  # at most
     least_damping: float
     damping: float  # of a Newton step, times the squared error

@@ -4,18 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 from ikgen.runtime.python.array_types import Array, Flags, Row
 from ikgen.runtime.python.chain_kinematics import Chain
 from ikgen.runtime.python.solve_policy import Policy
 from ikgen.runtime.python.task_interface import Task
 
-__all__ = ["Arm", "Branches", "BranchesBatch", "Candidate", "Found"]
+__all__ = ["Arm", "Branches", "BranchesBatch", "Candidate", "Found", "Together"]
 
 Found = tuple[Row, bool]  # a solution, and whether it is one of a continuum
 Candidate = tuple[Row, bool, bool]  # a closed-form row, whether it is one of a continuum, or rough
 Branches = Callable[[Sequence[Sequence[float]], Row, Row], tuple[list[Candidate], bool]]
 BranchesBatch = Callable[[Array, Array, Array], tuple[Array, Flags, Flags, Flags]]
+
+
+class Together(Protocol):
+    """`refine_together` with the arm's chain in lanes."""
+
+    def __call__(self, arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]: ...
 
 
 @dataclass(frozen=True)
@@ -25,7 +32,8 @@ class Arm:
     free, values of held joints, and whether it left one free; `branches_batch`: in arrays. `beside`
     (n, 4, 4): motions of the tool to poses that are solved as well. `turning`: which joints are
     revolute and not held; `moving`: indices of those not held.
-    `rounded`: whether the closed form is of another geometry than the file's, and all rows are rough.
+    `together`: `refine_together` where the closed form is of another geometry than the file's, and all rows
+    are rough.
     `branch_kind`, `elbow_end`: as in `branch_names`."""
 
     chain: Chain
@@ -42,6 +50,11 @@ class Arm:
     beside: Array
     turning: tuple[bool, ...]
     moving: tuple[int, ...]
-    rounded: bool
+    together: Together | None
     branch_kind: str
     elbow_end: int
+
+    @property
+    def rounded(self) -> bool:
+        """Whether the closed form is of another geometry than the file's."""
+        return self.together is not None

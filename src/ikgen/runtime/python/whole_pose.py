@@ -7,7 +7,7 @@ from math import inf
 
 import numpy as np
 
-from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.array_types import Array, Flags, Single
 from ikgen.runtime.python.entry_differences import Entries
 from ikgen.runtime.python.orthonormal_columns import (
     columns_defect,
@@ -18,6 +18,20 @@ from ikgen.runtime.python.orthonormal_columns import (
 from ikgen.runtime.python.solve_policy import Policy
 
 __all__ = ["PoseTask"]
+
+_TURN = np.array(  # of a rotation's entries: sine times axis, and the trace
+    [
+        [0.0, 0.0, 0.0, 1.0],
+        [0.0, 0.0, -0.5, 0.0],
+        [0.0, 0.5, 0.0, 0.0],
+        [0.0, 0.0, 0.5, 0.0],
+        [0.0, 0.0, 0.0, 1.0],
+        [-0.5, 0.0, 0.0, 0.0],
+        [0.0, -0.5, 0.0, 0.0],
+        [0.5, 0.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 1.0],
+    ]
+)
 
 
 @dataclass(frozen=True)
@@ -63,12 +77,34 @@ class PoseTask:
     def error(self, pose: Array, T: Array) -> Array:
         """Position over the size, then rotation."""
         R = T[:, :3, :3] @ pose[:, :3, :3].transpose(0, 2, 1)
+        turn = R.reshape(len(R), 9) @ _TURN
         error = np.empty((len(pose), 6))
         error[:, :3] = (T[:, :3, 3] - pose[:, :3, 3]) / self.size
-        error[:, 3:] = 0.5 * (R - R.transpose(0, 2, 1))[:, (2, 0, 1), (1, 2, 0)]
-        error[np.einsum("kii->k", R) < 1.0, 3:] += 1.0  # half turns have small sines
+        error[:, 3:] = turn[:, :3]
+        half = turn[:, 3] < 1.0
+        if half.any():
+            error[half, 3:] += 1.0  # half turns have small sines
         return error
 
     def rows(self, pose: Array, J: Array) -> Array:
         """The Jacobian in the same units."""
+        if self.size == 1.0:
+            return J
         return np.asarray(J / np.array([self.size] * 3 + [1.0] * 3)[:, None])
+
+    def lane_error(self, pose: Array, T: Array) -> Array:
+        """Implements `Task`."""
+        error = np.empty((6, pose.shape[2]))
+        error[:3] = (T[:3, 3] - pose[:3, 3]) / self.size
+        for i, j, k in ((3, 1, 2), (4, 2, 0), (5, 0, 1)):
+            x, y, z = pose[j, :3] * T[k, :3] - pose[k, :3] * T[j, :3]
+            error[i] = 0.5 * (x + y + z)
+        half = np.einsum("ijk,ijk->k", pose[:3, :3], T[:3, :3]) < 1.0
+        error[3:, half] += 1.0  # half turns have small sines
+        return error
+
+    def lane_rows(self, pose: Array, J: Single) -> Single:
+        """Implements `Task`."""
+        if self.size != 1.0:
+            J[:, :3] /= self.size
+        return J

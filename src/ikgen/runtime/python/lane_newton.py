@@ -1,0 +1,121 @@
+"""Newton steps of many rows at once, which are the last axis of all arrays."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ikgen.runtime.python.array_types import Array, Flags, Single
+from ikgen.runtime.python.lane_chain import (
+    LaneChain,
+    Sines,
+    lane_jacobian,
+    sines,
+    turned,
+    walk,
+)
+from ikgen.runtime.python.solved_arm import Arm
+
+__all__ = ["refine_lanes"]
+
+_BLOCK = 2048  # rows whose arrays fit into a processor's cache
+
+
+def refine_lanes(arm: Arm, chain: LaneChain, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
+    """Rows (k, dof) after steps towards T (k, 4, 4); which arrived, and which at a least error that is not
+    0, as of `refine_together`."""
+    q = q.T.copy()
+    arrived, missed = np.zeros((2, q.shape[1]), dtype=bool)
+    before = np.full(q.shape[1], arm.policy.farthest_start)
+    parts: list[Any] = [slice(i, i + _BLOCK) for i in range(0, q.shape[1], _BLOCK)]
+    for steps in range(0, arm.policy.lane_steps, 2):
+        left = []
+        for part in parts:
+            aim = np.ascontiguousarray(T[part].transpose(1, 2, 0)[:3])
+            with np.errstate(all="ignore"):
+                end = _two_steps(arm, chain, q[:, part], aim, before[part], steps == 0)
+            q[:, part], before[part], done, good, off = end
+            arrived[part] = done & (off < arm.policy.arrived)
+            missed[part] = done & (off > arm.policy.least_miss)
+            left.append(np.arange(q.shape[1])[part][good & ~done])
+        going = np.concatenate(left)
+        if not len(going):
+            break
+        parts = [going[i : i + _BLOCK] for i in range(0, len(going), _BLOCK)]
+    return q.T, arrived, missed
+
+
+def _two_steps(
+    arm: Arm, chain: LaneChain, q: Array, T: Array, before: Array, first: bool
+) -> tuple[Array, Array, Flags, Flags, Array]:
+    """Rows (dof, k) after two steps towards T (3, 4, k), the second's size (k,), which are at the end,
+    which may come there, and what is left of the errors.
+
+    The second is solved with the inverse of the first; what that leaves of it once more (iterative
+    refinement; Wilkinson 1963). `before`: what the first step is less than, where it is the
+    first of all; else what it is a part of.
+    """
+    policy = arm.policy
+    values = chain.changes(q) + chain.offset
+    angles = sines(values)
+    error, slope = _linearized(arm, chain, values, angles, T)
+    inverse, pivot = _left_inverse(slope)
+    change = np.einsum("imk,mk->ik", inverse, error)
+    size = np.abs(change).max(axis=0)
+    bound = policy.pivot_share * pivot if first else policy.contraction * before
+    good = (size < np.minimum(before, bound)) | (size < policy.converged)
+    good &= pivot > policy.least_pivot
+    turn = _of_joints(arm, change)
+    q, turns = q + turn, chain.changes(turn)
+    values, angles = values + turns, turned(angles, turns)
+    rest, slope = _linearized(arm, chain, values, angles, T)
+    change = np.einsum("imk,mk->ik", inverse, rest)
+    rest -= np.einsum("imk,ik->mk", slope, change)
+    more = np.einsum("imk,mk->ik", inverse, rest)
+    rest -= np.einsum("imk,ik->mk", slope, more)
+    change += more
+    before, size = size, np.abs(change).max(axis=0)
+    good &= (size < policy.contraction * before) | (size < policy.converged)
+    done = size**3 < policy.converged * before**2
+    done &= np.abs(more).max(axis=0) ** 2 < policy.converged * size
+    done |= size < policy.converged
+    return q + _of_joints(arm, change), size, good & done, good, np.abs(rest).max(axis=0)
+
+
+def _linearized(
+    arm: Arm, chain: LaneChain, values: Array, angles: Sines, T: Array
+) -> tuple[Single, Single]:
+    """Errors (m, k) at the links' values (n, k) and their derivatives (moving, m, k)."""
+    tip, axes = walk(chain, values, angles)
+    J = lane_jacobian(chain, tip, axes, len(arm.lower))
+    if arm.free:
+        J = J[list(arm.moving)]
+    error = arm.task.lane_error(tip, T).astype(np.float32)
+    return error, arm.task.lane_rows(tip, J)
+
+
+def _of_joints(arm: Arm, change: Single) -> Array:
+    """Changes (dof, k) of all joints."""
+    if not arm.free:
+        return change.astype(np.float64)
+    out = np.zeros((len(arm.lower), change.shape[1]))
+    out[list(arm.moving)] = change
+    return out
+
+
+def _left_inverse(V: Single) -> tuple[Single, Single]:
+    """The left inverses (n, m, k) of V (n, m, k), columns first, and how far the nearest column of each is
+    from the span of those before it: by `V = Q R` (modified Gram-Schmidt)."""
+    Q, out = V.copy(), np.empty_like(V)
+    above, lengths = [], []
+    for k, column in enumerate(Q):
+        length = np.sqrt(np.einsum("mk,mk->k", column, column))
+        column /= length
+        above.append(np.einsum("imk,mk->ik", Q[k + 1 :], column))
+        Q[k + 1 :] -= above[k][:, None] * column
+        lengths.append(length)
+    for k in reversed(range(len(V))):
+        rest = Q[k] - np.einsum("ik,imk->mk", above[k], out[k + 1 :])
+        np.divide(rest, lengths[k], out=out[k])
+    return out, np.min(lengths, axis=0)
