@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import partial
 from math import asin, atan2, ceil, copysign, floor, inf, isfinite, pi, sqrt
-from typing import Any, Protocol, TypeVar
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -373,14 +373,17 @@ class _Policy:
     """Errors are in rad, or m over the arm's size."""
 
     arrived: float  # error below which a refined row is a solution
+    exact: float  # and does not give way to better ones
     pose_tolerance: float  # how far a rotation's entries may be off
     orthonormal: float  # and what is round-off of them
     coincident: float  # rows closer than that (rad or m) are one
+    alike: float  # and singular ones, where the pose is theirs between them too
     limit_tolerance: float  # how far outside a limit a row is put back on it
     tries: int  # values tried for a joint that a pose leaves free
     try_step: float  # rad from one to the next
     rank_loss: float  # smallest singular value below which a refined row is singular
     continuum_rank_loss: float  # the same where the closed form says that it is
+    fold_reach: float  # smallest singular value below which another row may be near
     farthest_start: float  # first step (rad, m) of rows that are refined together
     contraction: float  # of each further one
     pivot_share: float  # of the pivot: the first step at most
@@ -597,6 +600,270 @@ def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...], name: str =
         raise ValueError(f"{name} {values.tolist()} has values that are not finite")
     far = np.array(arm.turning) & (np.abs(values) > _FARTHEST)
     return np.where(far, np.fmod(values, 2.0 * pi), values) if far.any() else values
+
+
+# Newton's method on the chain: damped least squares (Levenberg 1944, Marquardt 1963).
+
+
+_BLOCK = 1024  # rows whose arrays fit into a processor's cache
+
+
+def _in_blocks(step: Callable[[Array, Array], Any], q: Array, T: Array) -> Any:
+    """What `step` makes of rows (k, dof) and poses (k, 4, 4), a part of them at a time."""
+    if len(q) <= _BLOCK:
+        return step(q, T)
+    cuts = range(0, len(q), _BLOCK)
+    parts = [step(q[i : i + _BLOCK], T[i : i + _BLOCK]) for i in cuts]
+    return tuple(np.concatenate(part) for part in zip(*parts))
+
+
+def _refine(
+    chain: _Chain, task: _Task, moving: Sequence[int], q: Array, T: Array, policy: _Policy
+) -> tuple[Array, Array, Array, Array]:
+    """Newton steps of the joints `moving` from q (k, dof) towards T (k, 4, 4); the errors that they leave,
+    and those before (k,), and the task's derivatives by the joints (k, m, n) where the rows end."""
+    (steps, fine, promising), *further = policy.refinement
+
+    def first(part: Array, aim: Array) -> tuple[Array, ...]:
+        return _newton(chain, task, moving, part, aim, steps, policy)
+
+    q, error, before, slope = _in_blocks(first, q, T)
+    for more, finer, less in further:
+        going = np.flatnonzero((error >= fine) & (error < promising))
+        if not len(going):
+            break
+        part = _newton(chain, task, moving, q[going], T[going], more, policy)
+        q[going], error[going], slope[going] = part[0], part[1], part[3]
+        before[going] = np.maximum(before[going], part[2])
+        fine, promising = finer, less
+    return q, error, before, slope
+
+
+def _newton(
+    chain: _Chain, task: _Task, moving: Sequence[int], q: Array, T: Array, steps: int, policy: _Policy
+) -> tuple[Array, Array, Array, Array]:
+    """The best rows (k, dof) of at most `steps` damped steps, their errors and those of q (k,), and the
+    derivatives (k, m, n) at them."""
+    moving = list(moving)
+    best = np.full(len(q), inf)
+    result, going, stalled = q.copy(), np.arange(len(q)), np.zeros(len(q), dtype=int)
+    for step in range(steps + 1):
+        pose, J = _tip_and_jacobian(chain, q)
+        error, J = task.error(pose, T), task.rows(pose, J)[:, :, moving]
+        worst = np.abs(error).max(axis=1)
+        if step == 0:
+            before, slope = worst, J.copy()
+        least = best[going]
+        better = worst < least
+        slope[going[better]] = J[better]
+        stalled = np.where(worst < policy.progress * least, 0, stalled + 1)
+        result[going[better]] = q[better]
+        best[going] = least = np.minimum(least, worst)
+        on = (least > policy.converged) & (stalled < policy.patience)
+        if step == steps or not on.any():
+            break
+        going, stalled, worst, q, T, J = (x[on] for x in (going, stalled, worst, q, T, J))
+        Jt = J.transpose(0, 2, 1)
+        damping = np.maximum(policy.least_damping, policy.damping * np.minimum(worst, 1.0) ** 2)
+        normal = Jt @ J + damping[:, None, None] * np.eye(len(moving))
+        change = np.linalg.solve(normal, Jt @ error[on, :, None])[:, :, 0]
+        q[:, moving] += np.clip(change, -policy.largest_step, policy.largest_step)
+    return result, best, before, slope
+
+
+def _rank_loss(chain: _Chain, task: _Task, moving: Sequence[int], q: Array) -> Array:
+    """Smallest singular value (k,) of the task's derivatives by the joints `moving` at q (k, dof)."""
+    return _least_singular(task.rows(*_tip_and_jacobian(chain, q))[:, :, list(moving)])
+
+
+def _steeper(slope: Array, bound: float) -> _Flags:
+    """Which derivatives (k, m, n) have no singular value below `bound`; of those near it some may not be
+    told. Each column is at least the smallest singular value away from what the others span, and the
+    nearest of n at most its sqrt(n)-fold."""
+    count = slope.shape[2]
+    inverse = np.linalg.inv(slope.transpose(0, 2, 1) @ slope + 1e-14 * np.eye(count))
+    nearest = 1.0 / np.sqrt(np.einsum("kii->ki", inverse).max(axis=1))
+    return np.asarray(nearest > bound * count**0.5)
+
+
+def _least_singular(slope: Array) -> Array:
+    """Smallest singular value (k,) of derivatives (k, m, n)."""
+    return np.asarray(np.linalg.svd(slope, compute_uv=False)[:, -1])
+
+
+# Solutions near a singularity, where Newton's method stalls.
+
+
+_Index = NDArray[np.intp]
+
+_ALONG = 1e-4  # rad or m
+_CLOSE = 1e-9
+_FAR = 0.3
+_STEPS = 8
+
+
+@dataclass(frozen=True)
+class _Starts:
+    """Where Newton steps start: rows `q` (k, dof) for poses `T` (k, 4, 4), which rows are of the same pose,
+    `pose` (k,), which the closed form `marked` (k,) as of a continuum, and the `source` (k,) of each:
+    given (-1), the closed form for the pose (0), or for one beside it (1)."""
+
+    q: Array
+    T: Array
+    pose: _Index
+    marked: _Flags
+    source: NDArray[np.int64]
+
+
+def _rows_nearby(arm: _Arm, starts: _Starts) -> tuple[_Index, Array]:
+    """Which start (m,) each solution (m, dof) comes from that steps lead to, those that are sure first."""
+    T, own = starts.T, starts.source >= 0
+    q, error, _, slope = _refine(arm.chain, arm.task, arm.moving, starts.q, T, arm.policy)
+    arrived = error < arm.policy.arrived
+    broken = starts.marked & (arm.rounded | ~arrived) & own
+    near = own & ~starts.marked & (_least_singular(slope) < arm.policy.fold_reach)
+    settled = ~broken & np.where(near, error < arm.policy.converged, arrived)
+    fresh = _fresh(arm, q, starts, near, near & ~settled)
+    settled &= fresh
+    near &= fresh
+    owner, trial = np.flatnonzero(near), q[near]
+    if broken.any():
+        around, worst = _walk(arm, starts.q[broken], T[broken])
+        isolated = np.flatnonzero(broken)[worst >= arm.policy.arrived]
+        around = around[:, worst >= arm.policy.arrived]
+        owner = np.concatenate([owner, np.repeat(isolated, len(around))])
+        trial = np.concatenate([trial, around.transpose(1, 0, 2).reshape(-1, q.shape[1])])
+    first, own_rows = np.flatnonzero(settled), q[settled]
+    if not len(owner) and not (broken & arrived).any():
+        return first, own_rows
+    owner, side = np.repeat(owner, 2), np.tile([1.0, -1.0], len(owner))
+    pairs = _approach(arm, np.repeat(trial, 2, axis=0), T[owner], side)
+    pairs, left = _refine(arm.chain, arm.task, arm.moving, pairs, T[owner], arm.policy)[:2]
+    exact = left < arm.policy.exact
+    for i, row, e in zip(owner[~exact].tolist(), pairs[~exact], left[~exact].tolist()):
+        if e < error[i]:
+            q[i], error[i] = row, e
+    alone = np.flatnonzero((near | broken) & (error < arm.policy.arrived))
+    alone = np.setdiff1d(alone, [*owner[exact], *first])
+    source, rows = np.concatenate([owner[exact], alone]), np.concatenate([pairs[exact], q[alone]])
+    order = np.argsort(source, kind="stable")
+    return np.concatenate([first, source[order]]), np.concatenate([own_rows, rows[order]])
+
+
+def _fresh(arm: _Arm, q: Array, starts: _Starts, near: _Flags, stalled: _Flags) -> _Flags:
+    """Which rows (k, dof) are not of a pose beside, and led to the same as an earlier one of their pose or
+    stalled by one that is near another solution."""
+    beside = starts.source > 0
+    fresh = ~beside
+    for pose in np.unique(starts.pose[beside]).tolist():
+        some = np.flatnonzero((starts.pose == pose) & (starts.source >= 0))
+        rows = q[some]
+        size = np.where(arm.chain.revolute, 1.0, np.maximum(np.abs(rows), 1.0))
+        same = np.abs(_gap(arm, rows[:, None], rows)) <= arm.policy.coincident * size
+        fresh[some] |= ~np.tril(same.all(axis=2), -1).any(axis=1)
+        for k in some[(fresh & beside & stalled)[some]].tolist():
+            others = some[(fresh & near)[some] & (some < k)]
+            fresh[k] = not (np.abs(_gap(arm, q[others], q[k])).max(axis=1) < arm.policy.alike).any()
+    return fresh
+
+
+def _gap(arm: _Arm, a: Array, b: Array) -> Array:
+    """The changes of the joints from a (..., dof) to b (..., dof)."""
+    gap = b - a
+    return np.where(arm.chain.revolute, np.remainder(gap + pi, 2.0 * pi) - pi, gap)
+
+
+def _repeats(arm: _Arm, T: list[list[float]], row: Row, kept: Sequence[_Found]) -> bool:
+    """Whether nothing tells a singular row from one kept nearby: the pose is theirs between them too."""
+    for other, singular in kept:
+        gap = _gap(arm, np.array(row), np.array(other))
+        if singular and np.abs(gap).max() < arm.policy.alike:
+            middle = _forward(arm.chain, np.array(row) + 0.5 * gap)
+            if np.abs(arm.task.error(middle[None], np.array(T)[None])).max() < arm.policy.converged:
+                return True
+    return False
+
+
+def _approach(arm: _Arm, q: Array, T: Array, side: Array) -> Array:
+    """From q (k, dof) towards the solution on one `side` (k,), 1 or -1, of the place where two may meet, or
+    to where they nearly do; T (k, 4, 4)."""
+    q, still, going = q.copy(), _generic(arm, len(q)), np.arange(len(q))
+    for _ in range(_STEPS):
+        q[going], still[going], x, _ = _step(arm, q[going], T[going], side[going], still[going])
+        going = going[np.abs(x) > _CLOSE]
+        if not len(going):
+            break
+    return q
+
+
+def _walk(arm: _Arm, q: Array, T: Array) -> tuple[Array, Array]:
+    """Configurations (tries, k, dof) from q (k, dof) on, where the pose hardly moves, the fastest
+    joint by `policy.try_step` from one to the next, and the largest errors (k,) there."""
+    nowhere, moving = np.zeros(len(q)), list(arm.moving)
+    q, still, _, _ = _step(arm, q, T, nowhere, _generic(arm, len(q)))
+    worst, out = np.zeros(len(q)), []
+    for _ in range(arm.policy.tries):
+        for _ in range(2):
+            q, still, _, error = _step(arm, q, T, nowhere, still)
+        worst = np.maximum(worst, error)
+        out.append(q)
+        q = q.copy()
+        q[:, moving] += arm.policy.try_step * still / np.abs(still).max(axis=1)[:, None]
+    return np.array(out), worst
+
+
+def _generic(arm: _Arm, count: int) -> Array:
+    return np.tile(1.0 + 0.1 * np.arange(len(arm.moving)), (count, 1))
+
+
+def _step(
+    arm: _Arm, q: Array, T: Array, side: Array, still: Array
+) -> tuple[Array, Array, Array, Array]:
+    """q (k, dof) after a step, the unit directions (k, n) in which the pose moves least, in the sense of
+    `still`, how far the step goes along them (k,), not at all on side 0, and the errors before (k,)."""
+    columns = list(arm.moving)
+    pose, J = _tip_and_jacobian(arm.chain, q)
+    error, slope = arm.task.error(pose, T), arm.task.rows(pose, J)[:, :, columns]
+    still = _still(slope, still, arm.policy.least_damping)
+    flow = np.einsum("kej,kj->ke", slope, still)
+    there = q.copy()
+    there[:, columns] += _ALONG * still
+    beyond = arm.task.rows(*_tip_and_jacobian(arm.chain, there))[:, :, columns]
+    bend = np.einsum("kej,kj->ke", beyond - slope, still) / _ALONG
+    V = slope - flow[:, :, None] * still[:, None, :]
+    Vt = V.transpose(0, 2, 1)
+    A = (
+        Vt @ V
+        + still[:, :, None] * still[:, None, :]
+        + arm.policy.least_damping * np.eye(len(columns))
+    )
+    z = np.stack([error, bend, flow], axis=2)
+    across = np.linalg.solve(A, Vt @ z)
+    rest, bend, flow = np.moveaxis(z - V @ across, 2, 0)
+    x = np.where(side == 0.0, 0.0, _root(side, rest, bend, flow))
+    q = q.copy()
+    q[:, columns] += np.clip(across[:, :, 0], -_FAR, _FAR) + x[:, None] * still
+    return q, still, x, np.abs(error).max(axis=1)
+
+
+def _still(slope: Array, still: Array, damping: float) -> Array:
+    """By inverse iteration, from what it was, which keeps its sense."""
+    inverse = np.linalg.inv(slope.transpose(0, 2, 1) @ slope + damping * np.eye(slope.shape[2]))
+    for _ in range(4):
+        still = (inverse @ still[:, :, None])[:, :, 0]
+        still = still / np.linalg.norm(still, axis=1)[:, None]
+    return still
+
+
+def _root(side: Array, rest: Array, bend: Array, flow: Array) -> Array:
+    """The root (k,) of s x + k x^2 / 2 = e on this side of the least error, along the direction that the
+    others leave."""
+    k, s, e = (np.einsum("ke,ke->k", bend, v) for v in (bend, flow, rest))
+    w = np.sqrt(np.maximum(s * s + 2.0 * k * e, 0.0))
+    p = s + np.copysign(w, s)
+    with np.errstate(all="ignore"):
+        x = np.where(((s > 0.0) == (side > 0.0)) & (p != 0.0), 2.0 * e / p, -p / k)
+    return np.asarray(np.clip(np.nan_to_num(np.where(k > 0.0, x, 0.0)), -_FAR, _FAR))
 
 
 # Poses as people have them, as homogeneous matrices.
@@ -872,85 +1139,6 @@ def _clipped_step(
     return np.asarray(np.clip(q + np.clip(step, -_LONGEST_STEP, _LONGEST_STEP), *bounds))
 
 
-# Newton's method on the chain: damped least squares (Levenberg 1944, Marquardt 1963).
-
-
-_BLOCK = 1024  # rows whose arrays fit into a processor's cache
-
-
-def _in_blocks(step: Callable[[Array, Array], Any], q: Array, T: Array) -> Any:
-    """What `step` makes of rows (k, dof) and poses (k, 4, 4), a part of them at a time."""
-    if len(q) <= _BLOCK:
-        return step(q, T)
-    cuts = range(0, len(q), _BLOCK)
-    parts = [step(q[i : i + _BLOCK], T[i : i + _BLOCK]) for i in cuts]
-    return tuple(np.concatenate(part) for part in zip(*parts))
-
-
-def _refine(
-    chain: _Chain, task: _Task, moving: Sequence[int], q: Array, T: Array, policy: _Policy
-) -> tuple[Array, _Flags, Array, Array]:
-    """Newton steps of the joints `moving` from q (k, dof) towards T (k, 4, 4); which rows arrived, the
-    errors before (k,), and the task's derivatives by the joints (k, m, n) where the rows end."""
-    (steps, fine, promising), *further = policy.refinement
-
-    def first(part: Array, aim: Array) -> tuple[Array, ...]:
-        return _newton(chain, task, moving, part, aim, steps, policy)
-
-    q, error, before, slope = _in_blocks(first, q, T)
-    for more, finer, less in further:
-        going = np.flatnonzero((error >= fine) & (error < promising))
-        if not len(going):
-            break
-        part = _newton(chain, task, moving, q[going], T[going], more, policy)
-        q[going], error[going], slope[going] = part[0], part[1], part[3]
-        before[going] = np.maximum(before[going], part[2])
-        fine, promising = finer, less
-    return q, error < policy.arrived, before, slope
-
-
-def _newton(
-    chain: _Chain, task: _Task, moving: Sequence[int], q: Array, T: Array, steps: int, policy: _Policy
-) -> tuple[Array, Array, Array, Array]:
-    """The best rows (k, dof) of at most `steps` damped steps, their errors and those of q (k,), and the
-    derivatives (k, m, n) at them."""
-    moving = list(moving)
-    best = np.full(len(q), inf)
-    result, going, stalled = q.copy(), np.arange(len(q)), np.zeros(len(q), dtype=int)
-    for step in range(steps + 1):
-        pose, J = _tip_and_jacobian(chain, q)
-        error, J = task.error(pose, T), task.rows(pose, J)[:, :, moving]
-        worst = np.abs(error).max(axis=1)
-        if step == 0:
-            before, slope = worst, J.copy()
-        least = best[going]
-        better = worst < least
-        slope[going[better]] = J[better]
-        stalled = np.where(worst < policy.progress * least, 0, stalled + 1)
-        result[going[better]] = q[better]
-        best[going] = least = np.minimum(least, worst)
-        on = (least > policy.converged) & (stalled < policy.patience)
-        if step == steps or not on.any():
-            break
-        going, stalled, worst, q, T, J = (x[on] for x in (going, stalled, worst, q, T, J))
-        Jt = J.transpose(0, 2, 1)
-        damping = np.maximum(policy.least_damping, policy.damping * np.minimum(worst, 1.0) ** 2)
-        normal = Jt @ J + damping[:, None, None] * np.eye(len(moving))
-        change = np.linalg.solve(normal, Jt @ error[on, :, None])[:, :, 0]
-        q[:, moving] += np.clip(change, -policy.largest_step, policy.largest_step)
-    return result, best, before, slope
-
-
-def _rank_loss(chain: _Chain, task: _Task, moving: Sequence[int], q: Array) -> Array:
-    """Smallest singular value (k,) of the task's derivatives by the joints `moving` at q (k, dof)."""
-    return _least_singular(task.rows(*_tip_and_jacobian(chain, q))[:, :, list(moving)])
-
-
-def _least_singular(slope: Array) -> Array:
-    """Smallest singular value (k,) of derivatives (k, m, n)."""
-    return np.asarray(np.linalg.svd(slope, compute_uv=False)[:, -1])
-
-
 # What distinguishes the rows of a pose: names of their branches, from the geometry of each row alone.
 
 
@@ -1011,9 +1199,11 @@ _TURN = 2.0 * pi
 def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
     """Whether the row differs from all kept ones, whole turns aside; long slides count relative to their
     length."""
-    near = arm.policy.coincident
+    near, revolute = arm.policy.coincident, arm.chain.revolute[::-1]
     for other, _ in kept:
-        for a, b, turns in zip(row, other, arm.chain.revolute):
+        for a, b, turns in zip(
+            reversed(row), reversed(other), revolute
+        ):  # the last ones differ most
             gap = abs(a - b)
             if gap <= near:
                 continue
@@ -1186,6 +1376,7 @@ def _solve_pose(
     if near is not None:
         origin = near
         found.sort(key=lambda item: sum((a - b) * (a - b) for a, b in zip(item[0], origin)))
+    found = found[: arm.most]
     q = np.array([row for row, _ in found]) + 0.0
     flags = np.array([flag for _, flag in found], dtype=bool)
     off = _off_by(arm.task, _forward(arm.chain, q), np.array(T)) if project else None
@@ -1217,22 +1408,46 @@ def _projected(
     return found
 
 
+class _Rows(NamedTuple):
+    """Distinct solutions, whether the pose left a joint free, and the closed form led anywhere then."""
+
+    kept: list[_Found]
+    free: bool
+    led: bool
+
+
 def _fitting(
     arm: _Arm, T: list[list[float]], near: Row | None, held: Row, limits: bool
 ) -> tuple[list[_Found], bool]:
     """Solutions on the right turns, and whether there were any before limits."""
+    out: list[_Found] = []
     real = False
     for tries in (range(1), range(1, arm.policy.tries)):
         starts = [_start(arm, near, held, n * arm.policy.try_step) for n in tries]
-        for start, (kept, hit) in zip(starts, _rows(arm, T, starts, held)):
-            real = real or bool(kept)
-            out = _place_rows(arm, kept, near, limits)
+        for start, rows in zip(starts, _rows(arm, T, starts, held)):
+            if near is not None and not rows.free and any(flag for _, flag in rows.kept):
+                _add(arm, T, [row for _, row in _refined(arm, [(start, True)], T, [-1])], rows.kept)
+            real = real or bool(rows.kept)
+            placed = _place_rows(arm, rows.kept, near, limits)
+            if out:
+                _add(arm, T, placed, out)
+            else:
+                out = placed
             if not out and near is not None:
-                steps = _refined(arm, [(start, True)], T)
-                out = _place_rows(arm, [item for item in steps if item], near, limits)
-            if out or not hit:
+                steps = _refined(arm, [(start, True)], T, [-1])
+                out = _place_rows(arm, [row for _, row in steps], near, limits)
+            if not rows.free:
                 return out, real
-    return [], real
+            if out and (rows.led if arm.rounded else any(flag for _, flag in out)):
+                return out, real
+    return out, real
+
+
+def _add(arm: _Arm, T: list[list[float]], rows: list[_Found], kept: list[_Found]) -> None:
+    """Adds those of the rows that differ from all that are there."""
+    for row, singular in rows:
+        if _is_new(arm, row, kept) and not (singular and _repeats(arm, T, row, kept)):
+            kept.append((row, singular))
 
 
 def _start(arm: _Arm, near: Row | None, held: Row, turn: float) -> Row:
@@ -1245,34 +1460,37 @@ def _start(arm: _Arm, near: Row | None, held: Row, turn: float) -> Row:
     return tuple(q)
 
 
-def _rows(
-    arm: _Arm, T: list[list[float]], starts: list[Row], held: Row
-) -> list[tuple[list[_Found], bool]]:
-    """For each start, the distinct solutions (radians between -pi and pi) and whether it was read."""
+def _rows(arm: _Arm, T: list[list[float]], starts: list[Row], held: Row) -> list[_Rows]:
+    """For each start, the solutions (radians between -pi and pi)."""
     kept: list[list[_Found]] = [[] for _ in starts]
     fine: list[tuple[int, _Found]] = []
+    given: list[tuple[int, _Found]] = []
     rough: list[tuple[int, _Found]] = []
-    hits: list[bool] = []
+    beside: list[tuple[int, _Found]] = []
+    free, led = [], []
     for i, q0 in enumerate(starts):
         answers, hit = arm.branches(T, q0, held)
         if arm.together and len(starts) == 1 and not hit:
-            found = _pose_solving_certain_rows(arm, arm.together, answers, T)
-            if found is not None:
-                return [(found, False)]
-        hits.append(hit)
+            certain = _pose_solving_certain_rows(arm, arm.together, answers, T)
+            if certain is not None:
+                return [_Rows(certain, False, False)]
+        free.append(hit)
+        led.append(hit and any(flag for _, flag, _ in answers))
         if hit:
-            rough.append((i, (q0, True)))
-        if len(starts) == 1 and len(arm.beside):
-            poses: list[list[list[float]]] = (np.array(T) @ arm.beside).tolist()
-            answers += [row for pose in poses for row in arm.branches(pose, q0, held)[0]]
+            given.append((i, (q0, True)))
         for row, flag, bent in answers:
             (rough if bent else fine).append((i, (row, flag)))
-    steps = _refined(arm, [row for _, row in rough], T)
-    arrived = [(i, row) for (i, _), row in zip(rough, steps) if row is not None]
-    for i, item in arrived + fine:
-        if len(kept[i]) < arm.most and _is_new(arm, item[0], kept[i]):
-            kept[i].append(item)
-    return list(zip(kept, hits))
+        if len(starts) == 1 and len(arm.beside):
+            poses: list[list[list[float]]] = (np.array(T) @ arm.beside).tolist()
+            others = [row for pose in poses for row, _, _ in arm.branches(pose, q0, held)[0]]
+            beside += [(i, (row, False)) for row in others]
+    stepped = given + rough + beside
+    source = [-1] * len(given) + [0] * len(rough) + [1] * len(beside)
+    steps = _refined(arm, [row for _, row in stepped], T, source)
+    for i, (row, singular) in [(stepped[k][0], found) for k, found in steps] + fine:
+        if _is_new(arm, row, kept[i]) and not (singular and _repeats(arm, T, row, kept[i])):
+            kept[i].append((row, singular))
+    return [_Rows(*item) for item in zip(kept, free, led)]
 
 
 def _pose_solving_certain_rows(
@@ -1282,7 +1500,7 @@ def _pose_solving_certain_rows(
     if not answers or any(flag for _, flag, _ in answers):
         return None if answers or len(arm.beside) else []
     start = np.array([row for row, _, _ in answers])
-    q, arrived, missed = together(arm, start, np.broadcast_to(np.array(T), (len(start), 4, 4)))
+    q, arrived, missed = together(arm, start, np.array([T]))
     if not (arrived | missed).all():
         return None
     kept: list[_Found] = []
@@ -1293,19 +1511,22 @@ def _pose_solving_certain_rows(
     return kept
 
 
-def _refined(arm: _Arm, rows: list[_Found], T: list[list[float]]) -> list[_Found | None]:
-    """The rows that Newton steps bring to the pose; None for those that they don't."""
+def _refined(
+    arm: _Arm, rows: list[_Found], T: list[list[float]], source: list[int]
+) -> list[tuple[int, _Found]]:
+    """What Newton steps from the rows lead to, with the row's number: one solution, those that meet near a
+    singularity, or none. source (k,) as in `_Starts`."""
     if not rows:
         return []
     target = np.broadcast_to(np.array(T), (len(rows), 4, 4))
-    start = np.array([row for row, _ in rows])
-    q, arrived, _, slope = _refine(arm.chain, arm.task, arm.moving, start, target, arm.policy)
-    loss = _least_singular(slope)
+    start, marked = np.array([row for row, _ in rows]), np.array([flag for _, flag in rows])
+    starts = _Starts(start, target, np.zeros(len(rows), dtype=np.intp), marked, np.array(source))
+    owner, q = _rows_nearby(arm, starts)
+    loss = _rank_loss(arm.chain, arm.task, arm.moving, q)
     flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
-    return [
-        (tuple(row), (flag and x < continuum) or x < flat) if ok else None
-        for row, (_, flag), ok, x in zip(q.tolist(), rows, arrived.tolist(), loss.tolist())
-    ]
+    singular = (marked[owner] & (loss < continuum)) | (loss < flat)
+    found = zip(owner.tolist(), q.tolist(), singular.tolist())
+    return [(i, (tuple(row), flag)) for i, row, flag in found]
 
 
 # All solutions of many poses at once, in arrays.
@@ -1352,11 +1573,11 @@ def _solve_poses(
 
 
 def _solve_chunk(arm: _Arm, T: Array, held: Array, near: Array | None, limits: bool) -> _Batch:
-    q, valid, singular = _rows_batch(arm, T, held, near)
+    q, valid, alone = _rows_batch(arm, T, held, near)
     real = valid.any(axis=1)
     q, inside = _place_rows_batch(arm, q, near, limits)
     valid &= inside
-    again = np.flatnonzero(singular.any(axis=1) | ((near is not None) & ~valid.any(axis=1)))
+    again = np.flatnonzero(alone | ((near is not None) & ~valid.any(axis=1)))
     distance: Array | _Flags = ~valid
     if near is not None:
         with np.errstate(over="ignore"):
@@ -1365,8 +1586,10 @@ def _solve_chunk(arm: _Arm, T: Array, held: Array, near: Array | None, limits: b
             distance = np.where(valid, distance, inf)
     order = np.argsort(distance, axis=1, kind="stable")[:, : arm.most, None]
     number = np.minimum(valid.sum(axis=1), arm.most)
-    q = np.take_along_axis(q, order, axis=1)
-    q[np.arange(q.shape[1]) >= number[:, None]] = np.nan
+    some = np.take_along_axis(q, order, axis=1)
+    q = np.full((len(T), arm.most, q.shape[2]), np.nan)
+    q[:, : some.shape[1]] = some
+    q[np.arange(arm.most) >= number[:, None]] = np.nan
     status = np.where(number > 0, "OK", np.where(real, "LIMITS", "UNREACHABLE"))
     for i in again:
         seed = None if near is None else near[i]
@@ -1377,19 +1600,51 @@ def _solve_chunk(arm: _Arm, T: Array, held: Array, near: Array | None, limits: b
 
 
 def _rows_batch(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, _Flags, _Flags]:
-    """Rows (N, M, dof) on no turn in particular; which are distinct solutions, which of a continuum."""
+    """Rows (N, M, dof) on no turn in particular; which are distinct solutions, and which poses (N,) are to
+    be solved alone: those with a continuum, and of arms that are not rounded those near a singularity."""
     if arm.together is None:
-        return _careful_rows(arm, T, held, near)
+        q, valid, singular, steep = _careful_rows(arm, T, held, near)
+        return q, valid, singular.any(axis=1) | ~steep
     q, valid, singular, doubt = _certain_rows(arm, arm.together, T, held, near)
-    if doubt.any():
-        seeds = None if near is None else near[doubt]
-        more, fine, flags = _careful_rows(arm, T[doubt], held[doubt], seeds)
-        order = np.argsort(~fine, axis=1, kind="stable")[:, : q.shape[1]]
-        q[doubt] = np.take_along_axis(more, order[:, :, None], axis=1)
-        valid[doubt] = np.take_along_axis(fine, order, axis=1)
-        singular = singular.copy()
-        singular[doubt] = flags
-    return q, valid, singular
+    alone: _Flags = np.asarray(singular.any(axis=1))
+    look = np.flatnonzero(doubt & ~alone)
+    if len(look):
+        more, real, flat = _nearby_rows(
+            arm, T[look], held[look], None if near is None else near[look]
+        )
+        alone[look] = flat
+        width = max(q.shape[1], more.shape[1])
+        q, valid = _widened(q, width), _widened(valid, width)
+        q[look], valid[look] = _widened(more, width), _widened(real, width)
+    return q, valid, alone
+
+
+def _widened(rows: Any, width: int) -> Any:
+    """Rows (N, M, ...) as (N, width, ...), the new ones 0."""
+    out = np.zeros((len(rows), width, *rows.shape[2:]), dtype=rows.dtype)
+    out[:, : rows.shape[1]] = rows
+    return out
+
+
+def _nearby_rows(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, _Flags, _Flags]:
+    """Distinct solutions (N, M, dof) that all rows of a rounded arm, and of poses beside, lead to, which
+    there are (N, M), and which poses (N,) have a singular one."""
+    q, valid = _starts(arm, T, held, near)[:2]
+    own = valid.shape[1] // (1 + len(arm.beside))
+    pose, column = np.nonzero(valid)
+    marked, source = np.zeros(len(pose), dtype=bool), (column >= own).astype(int)
+    owner, rows = _rows_nearby(arm, _Starts(q[pose, column], T[pose], pose, marked, source))
+    order = np.argsort(pose[owner], kind="stable")
+    of, rows = pose[owner][order], rows[order]
+    flat = np.zeros(len(T), dtype=bool)
+    if len(rows):
+        loss = _rank_loss(arm.chain, arm.task, arm.moving, rows)
+        flat[of[loss < arm.policy.rank_loss]] = True
+    place = np.arange(len(of)) - np.searchsorted(of, of)
+    q = np.zeros((len(T), int(place.max(initial=-1)) + 1, q.shape[2]))
+    valid = np.zeros(q.shape[:2], dtype=bool)
+    q[of, place], valid[of, place] = rows, True
+    return q, _distinct(arm, q, valid), flat
 
 
 def _certain_rows(
@@ -1411,8 +1666,27 @@ def _certain_rows(
     return q, found, singular, doubt
 
 
-def _careful_rows(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, _Flags, _Flags]:
-    """Rows of which each is refined for as long as it takes, near folds with those of poses beside."""
+def _careful_rows(
+    arm: _Arm, T: Array, held: Array, near: Array | None
+) -> tuple[Array, _Flags, _Flags, _Flags]:
+    """Rows (N, M, dof) of which each is refined for as long as it takes, near folds with those of poses
+    beside; which are distinct solutions, which of a continuum, and which poses (N,) have no refined one
+    near a singularity."""
+    q, valid, singular, rough = _starts(arm, T, held, near)
+    steep = np.ones(len(T), dtype=bool)
+    pose, row = np.nonzero(rough & valid)
+    if len(pose):
+        done = _refine(arm.chain, arm.task, arm.moving, q[pose, row], T[pose], arm.policy)
+        q[pose, row], valid[pose, row] = done[0], done[1] < arm.policy.arrived
+        steep[pose[~_steeper(done[3], arm.policy.fold_reach)]] = False
+    return q, _distinct(arm, q, valid), singular, steep
+
+
+def _starts(
+    arm: _Arm, T: Array, held: Array, near: Array | None
+) -> tuple[Array, _Flags, _Flags, _Flags]:
+    """The closed form's rows (N, M, dof) of poses, and of those beside; valid and rough ones (N, M), and
+    those of a continuum."""
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
     with np.errstate(all="ignore"):
         q, valid, singular, rough = arm.branches_batch(T, start, held)
@@ -1423,11 +1697,7 @@ def _careful_rows(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple
                 for k, first in ((0, q), (1, valid), (3, rough))
             )
     q[:, :, arm.free] = held[:, None, :]
-    pose, row = np.nonzero(rough & valid)
-    if len(pose):
-        done = _refine(arm.chain, arm.task, arm.moving, q[pose, row], T[pose], arm.policy)
-        q[pose, row], valid[pose, row] = done[:2]
-    return q, _distinct(arm, q, valid), singular
+    return q, valid, singular, rough
 
 
 # Which rows are better than others.
@@ -1804,27 +2074,30 @@ _ARM = _Arm(
     ),
     policy=_Policy(
         arrived=5e-10,
+        exact=1e-12,
         pose_tolerance=1e-06,
         orthonormal=1e-14,
         coincident=1e-06,
+        alike=0.01,
         limit_tolerance=1e-09,
         tries=16,
         try_step=0.39269908169872414,
         rank_loss=1e-07,
         continuum_rank_loss=0.001,
+        fold_reach=0.0001,
         farthest_start=0.05,
         contraction=0.25,
         pivot_share=4.0,
         least_pivot=1e-05,
         least_miss=1e-08,
         lane_steps=7,
-        least_damping=1e-12,
+        least_damping=1e-14,
         damping=0.001,
         largest_step=0.3,
         converged=1e-13,
         patience=5,
         progress=0.8,
-        refinement=((3, 1e-12, 0.1), (6, 5e-10, 0.001), (30, 0.0, 0.0)),
+        refinement=((3, 1e-12, 0.1), (6, 1e-12, 0.001), (30, 0.0, 0.0)),
     ),
     lower=tuple(LOWER.tolist()),
     upper=tuple(UPPER.tolist()),

@@ -16,14 +16,16 @@ _FEW = 64  # rows for which whole matrices are faster than long rows of each of 
 
 
 def refine_together(chain: LaneChain, arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
-    """Rows (k, dof) after steps towards T (k, 4, 4); which arrived at the one solution near their start,
-    and which at a least error that is not 0.
+    """Rows (k, dof) after steps towards T (k, 4, 4) or (1, 4, 4); which arrived at the one solution near
+    their start, and which at a least error that is not 0.
 
     Newton's method contracts by `policy.contraction` only near the one solution there (Deuflhard 2004,
     theorem 2.1). Where the solution set folds, the other solution is twice the pivot over the curvature
     away: rows whose first step is more than `policy.pivot_share` of the pivot are left to others.
     """
-    return _refine_few(arm, q, T) if len(q) <= _FEW else refine_lanes(arm, chain, q, T)
+    if len(q) <= _FEW:
+        return _refine_few(arm, q, T)
+    return refine_lanes(arm, chain, q, np.broadcast_to(T, (len(q), 4, 4)))
 
 
 def _refine_few(arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:

@@ -184,7 +184,7 @@ def _certain_rows(
     if not answers or any(flag for _, flag, _ in answers):
         return None if answers or len(arm.beside) else []
     start = np.array([row for row, _, _ in answers])
-    q, arrived, missed = together(arm, start, np.broadcast_to(np.array(T), (len(start), 4, 4)))
+    q, arrived, missed = together(arm, start, np.array([T]))
     if not (arrived | missed).all():
         return None
     kept: list[Found] = []

@@ -18,9 +18,11 @@ _TURN = 2.0 * pi
 def is_new(arm: Arm, row: Row, kept: Sequence[Found]) -> bool:
     """Whether the row differs from all kept ones, whole turns aside; long slides count relative to their
     length."""
-    near = arm.policy.coincident
+    near, revolute = arm.policy.coincident, arm.chain.revolute[::-1]
     for other, _ in kept:
-        for a, b, turns in zip(row, other, arm.chain.revolute):
+        for a, b, turns in zip(
+            reversed(row), reversed(other), revolute
+        ):  # the last ones differ most
             gap = abs(a - b)
             if gap <= near:
                 continue
