@@ -1532,7 +1532,8 @@ def _refined(
 # All solutions of many poses at once, in arrays.
 
 
-_CHUNK = 2048  # closed forms solved at a time
+_CHUNK = 16384  # poses solved at a time,
+_PART = 2048  # and closed forms: their arrays fit into a processor's cache
 _Batch = tuple[Array, NDArray[np.int64], NDArray[np.str_]]
 
 
@@ -1647,14 +1648,24 @@ def _nearby_rows(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[
     return q, _distinct(arm, q, valid), flat
 
 
+def _closed_form(arm: _Arm, T: Array, start: Array, held: Array) -> tuple[Any, ...]:
+    """`arm.branches_batch`, a part of the poses at a time."""
+    with np.errstate(all="ignore"):
+        if len(T) <= _PART:
+            return arm.branches_batch(T, start, held)
+        cuts = [slice(i, i + _PART) for i in range(0, len(T), _PART)]
+        parts = [arm.branches_batch(T[cut], start[cut], held[cut]) for cut in cuts]
+    whole = [(q, *(np.broadcast_to(flag, q.shape[:2]) for flag in flags)) for q, *flags in parts]
+    return tuple(np.concatenate(arrays) for arrays in zip(*whole))
+
+
 def _certain_rows(
     arm: _Arm, together: _Together, T: Array, held: Array, near: Array | None
 ) -> tuple[Array, _Flags, _Flags, _Flags]:
     """Rows (N, M, dof) of a rounded arm refined all at once, which of them are solutions, which of a
     continuum, and for which poses (N,) that leaves a doubt."""
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
-    with np.errstate(all="ignore"):
-        q, valid, singular, _ = arm.branches_batch(T, start, held)
+    q, valid, singular, _ = _closed_form(arm, T, start, held)
     q[:, :, arm.free] = held[:, None, :]
     pose, row = np.nonzero(valid)
     q[pose, row], arrived, missed = together(arm, q[pose, row], T[pose])
@@ -1688,14 +1699,13 @@ def _starts(
     """The closed form's rows (N, M, dof) of poses, and of those beside; valid and rough ones (N, M), and
     those of a continuum."""
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
-    with np.errstate(all="ignore"):
-        q, valid, singular, rough = arm.branches_batch(T, start, held)
-        if len(arm.beside):
-            more = [arm.branches_batch(T @ D, start, held) for D in arm.beside]
-            q, valid, rough = (
-                np.concatenate([first, *(part[k] for part in more)], axis=1)
-                for k, first in ((0, q), (1, valid), (3, rough))
-            )
+    q, valid, singular, rough = _closed_form(arm, T, start, held)
+    if len(arm.beside):
+        more = [_closed_form(arm, T @ D, start, held) for D in arm.beside]
+        q, valid, rough = (
+            np.concatenate([first, *(part[k] for part in more)], axis=1)
+            for k, first in ((0, q), (1, valid), (3, rough))
+        )
     q[:, :, arm.free] = held[:, None, :]
     return q, valid, singular, rough
 

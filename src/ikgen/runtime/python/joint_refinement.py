@@ -23,15 +23,16 @@ def refine_together(chain: LaneChain, arm: Arm, q: Array, T: Array) -> tuple[Arr
     theorem 2.1). Where the solution set folds, the other solution is twice the pivot over the curvature
     away: rows whose first step is more than `policy.pivot_share` of the pivot are left to others.
     """
-    if len(q) <= _FEW:
-        return _refine_few(arm, q, T)
-    return refine_lanes(arm, chain, q, np.broadcast_to(T, (len(q), 4, 4)))
+    with np.errstate(all="ignore"):
+        if len(q) <= _FEW:
+            return _refine_few(arm, q, T)
+        return refine_lanes(arm, chain, q, np.broadcast_to(T, (len(q), 4, 4)))
 
 
 def _refine_few(arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
     """Every second step is solved with the inverse of the one before, and what that leaves of it once
     more, as in `refine_lanes`."""
-    policy = arm.policy
+    policy, start = arm.policy, q
     good, before = np.ones(len(q), dtype=bool), np.full(len(q), policy.farthest_start)
     for steps in range(0, policy.lane_steps, 2):
         error, slope = _linearized(arm, q, T)
@@ -58,7 +59,11 @@ def _refine_few(arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
         if (done | ~good).all():
             break
     done, off = done & good, _largest(rest[:, :, 0])
-    return q, done & (off < policy.arrived), done & (off > policy.least_miss)
+    return (
+        np.where(done[:, None], q, start),
+        done & (off < policy.arrived),
+        done & (off > policy.least_miss),
+    )
 
 
 def _largest(x: Array) -> Array:

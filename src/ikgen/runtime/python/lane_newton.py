@@ -33,9 +33,9 @@ def refine_lanes(arm: Arm, chain: LaneChain, q: Array, T: Array) -> tuple[Array,
         left = []
         for part in parts:
             aim = np.ascontiguousarray(T[part].transpose(1, 2, 0)[:3])
-            with np.errstate(all="ignore"):
-                end = _two_steps(arm, chain, q[:, part], aim, before[part], steps == 0)
-            q[:, part], before[part], done, good, off = end
+            end = _two_steps(arm, chain, q[:, part], aim, before[part], steps == 0)
+            moved, before[part], done, good, off = end
+            q[:, part] = np.where(good, moved, q[:, part])
             arrived[part] = done & (off < arm.policy.arrived)
             missed[part] = done & (off > arm.policy.least_miss)
             left.append(np.arange(q.shape[1])[part][good & ~done])
