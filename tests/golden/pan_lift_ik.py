@@ -219,7 +219,6 @@ def _branches_batch(T: Array, q0: Array, held: Array) -> tuple[Array, _Flags, _F
 Array = NDArray[np.float64]
 _Flags = NDArray[np.bool_]
 Row = tuple[float, ...]
-_Single = NDArray[np.float32]
 
 
 # Arguments as arrays of real numbers.
@@ -466,12 +465,6 @@ class _Task(Protocol):
 
     def rows(self, pose: Array, J: Array) -> Array:
         """Derivatives (k, m, dof) of what `error` compares by the joints, from the Jacobian."""
-
-    def lane_error(self, pose: Array, T: Array) -> Array:
-        """`error` (m, k) of upper rows (3, 4, k)."""
-
-    def lane_rows(self, pose: Array, J: _Single) -> _Single:
-        """`rows` (dof, m, k) of upper rows (3, 4, k) and Jacobians (dof, 6, k)."""
 
 
 # Everything that the runtime is told about one arm.
@@ -2058,15 +2051,6 @@ class _EntriesTask:
     def rows(self, pose: Array, J: Array) -> Array:
         """The entries' derivatives."""
         return _entry_rows(self.entries, self._weight(), pose, J)
-
-    def lane_error(self, pose: Array, T: Array) -> Array:
-        """Implements `Task`."""
-        return _entry_lane_errors(self.entries, self._weight(), pose, T)
-
-    def lane_rows(self, pose: Array, J: _Single) -> _Single:
-        """Implements `Task`."""
-        rows: _Single = _entry_lane_rows(self.entries, self._weight(), pose, J)
-        return rows
 
     def _weight(self) -> Array:
         return np.array([1.0 / self.size if c == 3 else 1.0 for c in self.column])

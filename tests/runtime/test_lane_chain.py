@@ -17,6 +17,7 @@ from ikgen.model.chain import Chain
 from ikgen.model.dh import DHChain
 from ikgen.runtime.python.chain_kinematics import chain_of, jacobian
 from ikgen.runtime.python.lane_chain import LaneChain, Link, lane_jacobian, sines, turned, walk
+from ikgen.runtime.python.lane_tasks import PoseLanes
 
 CHAINS = (three_parallel(skew=1e-4), spherical_wrist(), SLIDES)
 
@@ -25,6 +26,7 @@ def lanes(dh: DHChain, alike: bool) -> LaneChain:
     twisted = twist_chain(dh)
     links = twisted.links
     return LaneChain(
+        PoseLanes(1.0),
         twisted.first,
         tuple(one.driver for one in links),
         np.array([[one.scale] for one in links]),

@@ -11,6 +11,7 @@ from math import pi
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Single
+from ikgen.runtime.python.lane_tasks import LaneTask
 
 __all__ = ["LaneChain", "Sines", "lane_jacobian", "sines", "turned", "walk"]
 
@@ -22,10 +23,12 @@ Sines = tuple[Array, Array]  # cosines and sines
 class LaneChain:
     """A frame `first`, links `Rz(u) Tz(v) Tx(x) Ty(y) Rx(twist)`, and a frame `last` (4, 4).
 
-    A link: whether it turns, cosine and sine of a slide's u, x, y, cosine and sine of the twist. Its value,
-    u or of a slide v, is `scale * q[joint] + offset` (n, 1); `alike`: whether that is `q + offset`.
+    `task`: what counts of its tip's pose. A link: whether it turns, cosine and sine of a slide's u, x, y,
+    cosine and sine of the twist. Its value, u or of a slide v, is `scale * q[joint] + offset` (n, 1);
+    `alike`: whether that is `q + offset`.
     """
 
+    task: LaneTask
     first: Array
     joint: tuple[int, ...]
     scale: Array

@@ -91,8 +91,7 @@ def _linearized(
     J = lane_jacobian(chain, tip, axes, len(arm.lower))
     if arm.free:
         J = J[list(arm.moving)]
-    error = arm.task.lane_error(tip, T).astype(np.float32)
-    return error, arm.task.lane_rows(tip, J)
+    return chain.task.error(tip, T).astype(np.float32), chain.task.rows(tip, J)
 
 
 def _of_joints(arm: Arm, change: Single) -> Array:

@@ -7,12 +7,10 @@ from math import copysign, isfinite
 
 import numpy as np
 
-from ikgen.runtime.python.array_types import Array, Flags, Single
+from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.entry_differences import (
     Entries,
     entry_errors,
-    entry_lane_errors,
-    entry_lane_rows,
     entry_rows,
 )
 from ikgen.runtime.python.orthonormal_columns import (
@@ -129,15 +127,6 @@ class EntriesTask:
     def rows(self, pose: Array, J: Array) -> Array:
         """The entries' derivatives."""
         return entry_rows(self.entries, self._weight(), pose, J)
-
-    def lane_error(self, pose: Array, T: Array) -> Array:
-        """Implements `Task`."""
-        return entry_lane_errors(self.entries, self._weight(), pose, T)
-
-    def lane_rows(self, pose: Array, J: Single) -> Single:
-        """Implements `Task`."""
-        rows: Single = entry_lane_rows(self.entries, self._weight(), pose, J)
-        return rows
 
     def _weight(self) -> Array:
         return np.array([1.0 / self.size if c == 3 else 1.0 for c in self.column])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from ikgen.runtime.python.array_types import Array, Flags, Single
+from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.entry_differences import Entries
 from ikgen.runtime.python.solve_policy import Policy
 
@@ -39,9 +39,3 @@ class Task(Protocol):
 
     def rows(self, pose: Array, J: Array) -> Array:
         """Derivatives (k, m, dof) of what `error` compares by the joints, from the Jacobian."""
-
-    def lane_error(self, pose: Array, T: Array) -> Array:
-        """`error` (m, k) of upper rows (3, 4, k)."""
-
-    def lane_rows(self, pose: Array, J: Single) -> Single:
-        """`rows` (dof, m, k) of upper rows (3, 4, k) and Jacobians (dof, 6, k)."""

@@ -7,7 +7,7 @@ from math import inf
 
 import numpy as np
 
-from ikgen.runtime.python.array_types import Array, Flags, Single
+from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.entry_differences import Entries
 from ikgen.runtime.python.orthonormal_columns import (
     columns_defect,
@@ -91,20 +91,3 @@ class PoseTask:
         if self.size == 1.0:
             return J
         return np.asarray(J / np.array([self.size] * 3 + [1.0] * 3)[:, None])
-
-    def lane_error(self, pose: Array, T: Array) -> Array:
-        """Implements `Task`."""
-        error = np.empty((6, pose.shape[2]))
-        error[:3] = (T[:3, 3] - pose[:3, 3]) / self.size
-        for i, j, k in ((3, 1, 2), (4, 2, 0), (5, 0, 1)):
-            x, y, z = pose[j, :3] * T[k, :3] - pose[k, :3] * T[j, :3]
-            error[i] = 0.5 * (x + y + z)
-        half = np.einsum("ijk,ijk->k", pose[:3, :3], T[:3, :3]) < 1.0
-        error[3:, half] += 1.0  # half turns have small sines
-        return error
-
-    def lane_rows(self, pose: Array, J: Single) -> Single:
-        """Implements `Task`."""
-        if self.size != 1.0:
-            J[:, :3] /= self.size
-        return J
