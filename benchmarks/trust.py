@@ -2,8 +2,8 @@
 
     python -m benchmarks.trust [--fill]
 
-With `--fill` nothing is run: the table is made from what was recorded. Exit code 1 where a command found
-anything wrong.
+With `--fill` nothing is run: the table, and that of CONTRIBUTING.md, are made from what was recorded. The
+score of mutations takes hours, and is recorded by itself. Exit code 1 where a command found anything wrong.
 """
 
 from __future__ import annotations
@@ -11,14 +11,15 @@ from __future__ import annotations
 import argparse
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 from benchmarks.results import Measured, read_result
 
-__all__ = ["COMMANDS", "PAGE", "filled_in", "main"]
+__all__ = ["COMMANDS", "PAGES", "filled_in", "main"]
 
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "explanation" / "trust.md"
-START, END = "<!-- figures: trust -->\n", "<!-- end of figures -->\n"
+_ROOT = Path(__file__).resolve().parents[1]
+END = "<!-- end of figures -->\n"
 COMMANDS = (
     "mutants", "kills", "faults", "pairs", "determinism", "planted", "fuzz_readers", "fuzz_header"
 )  # fmt: skip
@@ -78,25 +79,60 @@ def _planted(found: dict[str, object]) -> list[tuple[str, str]]:
     return [(f"{found['planted']} defects planted in emitted code", f"{len(left)} not found")]
 
 
+def _mutation_score(found: dict[str, object]) -> list[tuple[str, str]]:
+    by_package = found["found"]
+    assert isinstance(by_package, dict)
+    noticed = sum(n for n, _ in by_package.values())
+    words = f"{found['mutations']} small changes of ikgen's own code, one at a time"
+    return [(words, f"{noticed} noticed by a short test")]
+
+
 _ROWS = {
     "mutants": _mutants, "kills": _kills, "faults": _faults, "pairs": _pairs,
     "determinism": _determinism, "planted": _planted, "fuzz_readers": _fuzz_readers,
-    "fuzz_header": _fuzz_header,
+    "fuzz_header": _fuzz_header, "mutation_score": _mutation_score,
 }  # fmt: skip
 
 
-def filled_in(text: str) -> str:
-    """The page's text with its table made from what was recorded."""
-    before, _, rest = text.partition(START)
-    _, mark, after = rest.partition(END)
-    if not mark:
-        raise ValueError(f"{PAGE.name} has no marks for its table")
+def trust_table() -> str:
+    """The table of all commands."""
     lines = ["| command | what | found |", "|---|---|---|"]
-    measured: list[Measured] = [read_result(name) for name in COMMANDS]
-    for name, one in zip(COMMANDS, measured, strict=True):
+    measured: list[Measured] = [read_result(name) for name in _ROWS]
+    for name, one in zip(_ROWS, measured, strict=True):
         lines += [f"| `{one.command}` | {a} | {b} |" for a, b in _ROWS[name](one.found)]
     said = ", ".join(dict.fromkeys(f"`{m.commit}` on {m.date}" for m in measured))
-    return before + START + "\n".join(lines) + f"\n\nMeasured at {said}.\n" + END + after
+    return "\n".join(lines) + f"\n\nMeasured at {said}.\n"
+
+
+def score_table() -> str:
+    """The table of mutations by package."""
+    one = read_result("mutation_score")
+    rows = {**one.found["found"]}
+    rows["all"] = [sum(row[k] for row in rows.values()) for k in (0, 1)]
+    lines = ["| package | changes tried | noticed | share |", "|---|---|---|---|"]
+    lines += [f"| {name} | {every} | {n} | {n / every:.0%} |" for name, (n, every) in rows.items()]
+    seed = one.found["seed"]
+    return (
+        "\n".join(lines)
+        + f"\n\nThe first {rows['all'][1]} of seed {seed}, at `{one.commit}` on {one.date}.\n"
+    )
+
+
+PAGES: dict[Path, tuple[str, Callable[[], str]]] = {
+    _ROOT / "docs" / "explanation" / "trust.md": ("<!-- figures: trust -->\n", trust_table),
+    _ROOT / "CONTRIBUTING.md": ("<!-- figures: mutation score -->\n", score_table),
+}
+"""Page -> the mark before its table, and what makes it."""
+
+
+def filled_in(page: Path, text: str) -> str:
+    """A page's text with its table made from what was recorded."""
+    start, table = PAGES[page]
+    before, _, rest = text.partition(start)
+    _, mark, after = rest.partition(END)
+    if not mark:
+        raise ValueError(f"{page.name} has no marks for its table")
+    return before + start + table() + END + after
 
 
 def main() -> int:
@@ -110,7 +146,8 @@ def main() -> int:
         codes.append(
             subprocess.run([sys.executable, "-m", f"benchmarks.{name}", "--record"]).returncode
         )
-    PAGE.write_text(filled_in(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+    for page in PAGES:
+        page.write_text(filled_in(page, page.read_text(encoding="utf-8")), encoding="utf-8")
     return max(codes)
 
 

@@ -1,10 +1,14 @@
-"""The figures of the page on trust are those that were recorded."""
+"""The figures of the pages on trust and on tests are those that were recorded."""
 
 from __future__ import annotations
 
-from benchmarks.trust import PAGE, filled_in
+from pathlib import Path
+
+import pytest
+from benchmarks.trust import PAGES, filled_in
 
 
-def test_figures_are_those_recorded() -> None:
-    text = PAGE.read_text(encoding="utf-8")
-    assert filled_in(text) == text, "run python -m benchmarks.trust --fill"
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_figures_are_those_recorded(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    assert filled_in(page, text) == text, "run python -m benchmarks.trust --fill"

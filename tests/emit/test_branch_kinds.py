@@ -1,0 +1,33 @@
+"""What rows are told apart by, for arms with sides and without."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+from tests.support.cpp_modules import robot_file
+
+from ikgen.emit.python.branch_kinds import branch_kind, elbow_end
+from ikgen.generation.read import read
+from ikgen.generation.request import Request
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "end"),
+    [
+        ("kuka_kr6r900sixx", "names", 5),
+        ("ur5e", "names", 3),
+        ("Raven-II", "number", 5),
+        ("Stanford", "number", 5),
+        ("scara_standard", "number", 3),
+    ],
+)
+def test_arms_with_a_shoulder_an_elbow_and_a_wrist(name: str, kind: str, end: int) -> None:
+    dh = read(Request(robot_file(name))).dh
+    module = SimpleNamespace(plan=None, dh=dh, task="pose", free=(), max_solutions=8)
+    assert branch_kind(module) == kind
+    if kind == "names":
+        assert elbow_end(module) == end
+    for other in ({"task": "position"}, {"free": (0,)}, {"max_solutions": 4}):
+        assert branch_kind(SimpleNamespace(**{**vars(module), **other})) == "number"
+    assert branch_kind(SimpleNamespace(**{**vars(module), "plan": object()})) == "orientation"
