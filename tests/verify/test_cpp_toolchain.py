@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from ikgen.errors import MissingToolError, VerificationError
-from ikgen.verify.runners.cpp_toolchain import compile_program, find_compiler
+from ikgen.verify.runners.cpp_toolchain import compile_program, find_compiler, find_eigen
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="needs sh")
 
@@ -64,3 +64,27 @@ def test_a_variable_that_is_no_command(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CXX", '"x')
     with pytest.raises(MissingToolError, match="CXX="):
         find_compiler()
+
+
+@pytest.mark.parametrize(
+    ("variable", "place"),
+    [
+        ("EIGEN3_INCLUDE_DIR", "prefix/include/eigen3"),
+        ("EIGEN3_ROOT", "prefix"),
+        ("Eigen3_DIR", "prefix/share/eigen3/cmake"),
+        ("Eigen3_DIR", "prefix/share/eigen3"),
+    ],
+)
+def test_eigen_where_a_variable_says(
+    variable: str, place: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("EIGEN3_INCLUDE_DIR", "EIGEN3_ROOT", "Eigen3_DIR"):
+        monkeypatch.delenv(name, raising=False)
+    headers = tmp_path / "prefix" / "include" / "eigen3"
+    (headers / "Eigen").mkdir(parents=True)
+    (headers / "Eigen" / "Dense").touch()
+    (tmp_path / place).mkdir(parents=True, exist_ok=True)
+    monkeypatch.setenv(variable, str(tmp_path / place))
+    assert find_eigen() == headers
+    monkeypatch.setenv(variable, str(tmp_path / "prefix/a/b/c/d"))
+    assert find_eigen() != headers
