@@ -1,0 +1,98 @@
+"""Formulas of forms as they are written: which coefficients stand where."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.equations.knowledge import Variable
+from ikgen.forms.formula import FormulaWriter
+from ikgen.forms.pair_form import LinearPair
+from ikgen.forms.quartic_form import _self_inversive
+from ikgen.formulas import mathtext as m
+from ikgen.formulas.mathtext import Math
+from ikgen.formulas.naming import Abbreviations
+from ikgen.formulas.normalizer import Normalizer
+
+NAMES = ("a1", "b1", "c1", "a2", "b2", "c2")
+
+
+def latex(text: Math | None) -> str:
+    assert text is not None
+    return "".join(token.latex for token in text.tokens).replace("\\penalty150", "")
+
+
+def writer(values: dict[str, list[float]]) -> FormulaWriter:
+    """Of coefficients with these values at three probes."""
+    g = ExpressionGraph(3)
+    e = [g.atom("pose", name, np.array(values[name]), unknown=False) for name in NAMES]
+    return FormulaWriter(Variable("angle", (1, 0)), e, g, Normalizer(), Abbreviations([]))
+
+
+PLAIN = {name: [1.0 + k, 2.0 - k, 0.5 * k] for k, name in enumerate(NAMES)}
+
+
+def test_a_minor_takes_its_four_coefficients() -> None:
+    w = writer(PLAIN)
+    values = [np.array(PLAIN[name]) for name in NAMES]
+    np.testing.assert_allclose(
+        w.minor(0, 4, 3, 1).probe, values[0] * values[4] - values[3] * values[1]
+    )
+    np.testing.assert_allclose(
+        w.minor(2, 5, 1, 0).probe, values[2] * values[5] - values[1] * values[0]
+    )
+
+
+def test_unknowns_have_the_numbers_of_their_joints() -> None:
+    g = ExpressionGraph(3)
+    slide, turn, both = (
+        FormulaWriter(Variable(kind, combination), (), g, Normalizer(), Abbreviations([]))
+        for kind, combination in (("prismatic", (0, 1)), ("angle", (0, 1)), ("angle", (1, 1)))
+    )
+    assert latex(slide.length()) == "d_{2}" and latex(turn.length()) == r"\theta_{2}"
+    assert latex(both.cosine()) == "c_{12}" and latex(turn.cosine("sin")) == "s_{2}"
+
+
+def test_a_divisor_that_is_a_constant_is_not_told() -> None:
+    w = writer(PLAIN)
+    assert w.divisor(w.g.const(2.0)) is None
+    assert latex(w.divisor(w.e[0])) == "a_{1}"
+
+
+@pytest.mark.parametrize(
+    ("diagonal", "solution"),
+    [
+        ([1.0, 2.0, 3.0], r"(a_{1}\,c_{2}-a_{2}\,c_{1},\,b_{2}\,c_{1}-b_{1}\,c_{2})"),
+        ([-1.0, -2.0, -3.0], r"(a_{2}\,c_{1}-a_{1}\,c_{2},\,b_{1}\,c_{2}-b_{2}\,c_{1})"),
+    ],
+)  # fmt: skip
+def test_a_pair_leaves_out_a_determinant_of_one_sign(diagonal: list[float], solution: str) -> None:
+    nothing = [0.0, 0.0, 0.0]
+    w = writer({**PLAIN, "a1": diagonal, "b2": [1.0, 1.0, 1.0], "b1": nothing, "a2": nothing})
+    formula = LinearPair(*w.e).formula(w)
+    found = latex(formula.branches[0]).replace("\\,\\,", "\\,")
+    assert found == rf"\operatorname{{atan2}}{solution}"
+    assert [latex(e) for e in formula.equations] == [
+        r"a_{1}\,c_{1}+b_{1}\,s_{1}=c_{1}", r"a_{2}\,c_{1}+b_{2}\,s_{1}=c_{2}"
+    ]  # fmt: skip
+    first, second = ("a_{1}\\,b_{2}", "a_{2}\\,b_{1}")[:: 1 if diagonal[0] > 0 else -1]
+    assert sorted(latex(formula.divisor).split("-")) == sorted([first, second])
+    assert latex(formula.divisor).startswith(first)
+
+
+def test_a_pair_divides_by_a_determinant_of_either_sign() -> None:
+    nothing = [0.0, 0.0, 0.0]
+    w = writer(
+        {**PLAIN, "a1": [1.0, -1.0, 2.0], "b2": [1.0, 1.0, 1.0], "b1": nothing, "a2": nothing}
+    )
+    (branch,) = LinearPair(*w.e).formula(w).branches
+    assert latex(branch).count("frac") == 2
+
+
+def test_the_polynomial_of_a_quartic_reads_the_same_from_both_ends() -> None:
+    letters = [m.name(name[0], name[1]) for name in ("a2", "b2", "a1", "b1", "a0")]
+    assert latex(_self_inversive(letters)) == (
+        r"(a_{2}-i\,b_{2}){z}^{4}+(a_{1}-i\,b_{1}){z}^{3}+2\,a_{0}\,{z}^{2}"
+        r"+(a_{1}+i\,b_{1})z+(a_{2}+i\,b_{2})=0"
+    )
