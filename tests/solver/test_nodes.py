@@ -25,8 +25,8 @@ def test_collecting_fails_without_an_equation(count: int) -> None:
 
 
 def found(monkeypatch: pytest.MonkeyPatch, double: bool, alike: bool) -> list[tuple[str, ...]]:
-    """Sources of the pairs out of three equations in one angle, the last with the double angle where that is
-    asked for, the first two multiples of each other where that is."""
+    """Sources of the pairs out of three equations in one angle, the last with the double angle too where
+    that is asked for, the first two multiples of each other where that is."""
     g = ExpressionGraph(4)
     rng = np.random.default_rng(0)
     rows = rng.uniform(0.5, 1.5, (3, 3, 4))

@@ -1,0 +1,26 @@
+"""Which rows are refined, by how the arm is solved and how far its file is off what was solved."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import pytest
+
+from ikgen.emit.solver_module import SolverModule
+from ikgen.program.policy import SolvePolicy
+
+
+@pytest.mark.parametrize(
+    ("deviation", "plan", "refine"),
+    [(0.0, None, "some"), (1e-3, None, "all"), (1e-3, object(), "some"), (0.0, object(), "some")],
+)
+def test_rows_of_rounded_files_are_refined(deviation: float, plan: object, refine: str) -> None:
+    module = SolverModule(
+        name="arm", program=None, dh=SimpleNamespace(deviation=(0.0, deviation)), task="pose", free=(),
+        free_defaults=(), source_name="", source_sha256="", generator_version="", plan=plan,
+    )  # fmt: skip
+    policy = SolvePolicy()
+    assert module.refine == refine
+    least = max(policy.least_pivot, policy.reach * math.sqrt(deviation))
+    assert module.least_pivot == pytest.approx(least)
