@@ -24,10 +24,10 @@ from ikgen.generation.request import Request
 )
 def test_arms_with_a_shoulder_an_elbow_and_a_wrist(name: str, kind: str, end: int) -> None:
     dh = read(Request(robot_file(name))).dh
-    module = SimpleNamespace(plan=None, dh=dh, task="pose", free=(), max_solutions=8)
+    module = SimpleNamespace(plan=None, dh=dh, task="pose", free=(), lanes=8)
     assert branch_kind(module) == kind
     if kind == "names":
         assert elbow_end(module) == end
-    for other in ({"task": "position"}, {"free": (0,)}, {"max_solutions": 4}):
+    for other in ({"task": "position"}, {"free": (0,)}, {"lanes": 4}):
         assert branch_kind(SimpleNamespace(**{**vars(module), **other})) == "number"
     assert branch_kind(SimpleNamespace(**{**vars(module), "plan": object()})) == "orientation"
