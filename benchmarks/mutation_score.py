@@ -123,7 +123,8 @@ class Trial:
         new = [file for file in files if file not in known]
         if new:
             self.tree.record(new, reached)
-        self.reached = recorded(reached)
+        every = recorded(reached)
+        self.reached = {test: every[test] for test in every if test.split("::")[0] in files}
         self._files = files
         self._server: Server | None = None
 
