@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from tests.support.browser import browser, look_at
+from tests.support.sampled import sampled
 
 from ikgen.errors import UnsolvedChainError
 from ikgen.generation.derive import derive
@@ -18,12 +19,10 @@ from ikgen.report import emit_report, emit_unsolved
 ROOT = Path(__file__).resolve().parents[2]
 TABLES = sorted((ROOT / "tests/robots/tables").glob("*.toml"))
 URDFS = sorted((ROOT / "urdf_fixtures").glob("*.urdf"))
+ROBOTS = {path.stem: path for path in (*TABLES, *URDFS)}
+"""The tables of the suite, and the URDF files with every arm that they have."""
+FEW = ("Puma_paper", "ur5e", "franka_fr3")
 LARGEST, SLOWEST = 1.5e6, 1.0
-
-
-def arms() -> list[Any]:
-    """The tables of the suite, and every arm of the URDF files."""
-    return [pytest.param(path, id=path.stem) for path in (*TABLES, *URDFS)]
 
 
 @pytest.fixture(scope="module")
@@ -49,11 +48,10 @@ def test_there_are_enough_of_them() -> None:
     assert sum(len(robot_arms(Request(path))) for path in URDFS) >= 10
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("robot", arms())
-def test_report(robot: Path, opened: Any, tmp_path: Path) -> None:
-    """`python -m pytest -m long tests/report/test_in_browser.py`"""
-    for text in pages(robot):
+@pytest.mark.parametrize("name", sampled(ROBOTS, FEW))
+def test_report(name: str, opened: Any, tmp_path: Path) -> None:
+    """`python -m pytest -m "long or not long" tests/report/test_in_browser.py` looks at all of them."""
+    for text in pages(ROBOTS[name]):
         assert len(text.encode()) < LARGEST
         page = tmp_path / "report.html"
         page.write_text(text, encoding="utf-8")
