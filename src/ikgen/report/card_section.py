@@ -10,11 +10,15 @@ from ikgen.kinematics.classify import GeometryClass
 from ikgen.model.chain import REVOLUTE, ActuatedJoint
 from ikgen.report.document import Block, Card, Heading, Picture, Text
 from ikgen.report.skeleton import Style, skeleton_svg
+from ikgen.report.svg_latex import svg_latex
 from ikgen.report.worked_example import Array
 from ikgen.tasks import Task
 from ikgen.verify.verification_report import VerificationReport
 
 __all__ = ["card_section", "command_again"]
+
+_ON_PAPER = 0.55
+"""Points a pixel."""
 
 
 def card_section(
@@ -43,7 +47,7 @@ def card_section(
     kept = tuple((name, text) for name, text in facts if text != ("",))
     return [
         Heading(("The arm",), anchor="arm"),
-        Card(Picture(drawing, "", "" if dh.symbols else caption), kept),
+        Card(Picture(drawing, svg_latex(drawing, _ON_PAPER), "" if dh.symbols else caption), kept),
     ]
 
 

@@ -19,12 +19,15 @@ from ikgen.report.document import (
     Text,
 )
 from ikgen.report.skeleton import Style, skeleton_camera, skeleton_svg
+from ikgen.report.svg_latex import svg_latex
 from ikgen.report.worked_example import Array, WorkedExample
 
 __all__ = ["example_section", "joint_value"]
 
 _SMALL = Style(210, 180, named=False)
 _MOST_DRAWN = 16
+_ON_PAPER = 0.52
+"""Points a pixel: four drawings in a line."""
 
 
 def example_section(dh: DHChain, example: WorkedExample, module: str) -> list[Block]:
@@ -95,5 +98,5 @@ def _drawings(dh: DHChain, example: WorkedExample) -> Pictures:
     for number, (q, name) in enumerate(zip(rows, example.names, strict=False), start=1):
         title = f"solution {number}: {name}"
         svg = skeleton_svg(dh, q, style=_SMALL, camera=camera, title=title)
-        drawings.append(Picture(svg, "", f"{number}: {name}"))
+        drawings.append(Picture(svg, svg_latex(svg, _ON_PAPER), f"{number}: {name}"))
     return Pictures(tuple(drawings))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections.abc import Sequence
 
 from ikgen.emit.rendering import render
 from ikgen.report.document import (
@@ -110,7 +111,7 @@ def _arranged(block: Picture | Pictures | Card | Fold) -> str:
         case Picture():
             return _picture(block)
         case Pictures(drawings):
-            return "\n".join(map(_picture, drawings))
+            return _side_by_side(drawings)
         case Card(picture, facts):
             rows = [f"\\textcolor{{soft}}{{{_words(n)}}} & {_text(t)} \\\\" for n, t in facts]
             inside = "\n".join(rows)
@@ -126,6 +127,18 @@ def _picture(picture: Picture) -> str:
         return ""
     below = f"\\smallskip{{\\small {_words(picture.caption)}}}" if picture.caption else ""
     return f"\\begin{{center}}\n{picture.latex}\n\n{below}\n\\end{{center}}"
+
+
+def _side_by_side(drawings: Sequence[Picture]) -> str:
+    """Small drawings, four in a line, what they show below each."""
+    cells = [
+        f"\\begin{{minipage}}[t]{{0.24\\linewidth}}\\centering\n{one.latex}\\par\n"
+        f"{{\\footnotesize {_words(one.caption)}\\par}}\\end{{minipage}}"
+        for one in drawings
+        if one.latex
+    ]
+    lines = [cells[i : i + 4] for i in range(0, len(cells), 4)]
+    return "\n\n".join("\\hfill\n".join(line) + "\\hfill\\null\\medskip" for line in lines)
 
 
 def _formulas(block: Formulas) -> str:
