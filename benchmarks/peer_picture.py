@@ -7,7 +7,7 @@ from html import escape
 
 __all__ = ["picture"]
 
-_ROW, _LEFT, _WIDTH, _TOP = 20, 170, 420, 34
+_ROW, _LEFT, _WIDTH, _TOP = 20, 240, 420, 34
 
 
 def picture(bars: list[tuple[str, str, float]]) -> str:
@@ -46,7 +46,7 @@ def _bar(solver: str, value: float, end: float, y: int) -> list[str]:
         f'<text x="{_LEFT - 8}" y="{y + 14}" text-anchor="end">{escape(solver)}</text>',
         f'<rect x="{_LEFT}" y="{y + 3}" width="{max(end - _LEFT, 1):.1f}" height="14" '
         f'fill="{fill}"/>',
-        f'<text x="{end + 5:.1f}" y="{y + 14}" fill="#456">{value:.3g}</text>',
+        f'<text x="{end + 5:.1f}" y="{y + 14}" fill="#456">{float(f"{value:.3g}"):,g}</text>',
     ]
 
 
@@ -57,6 +57,6 @@ def _grid(low: int, high: int, bottom: int) -> list[str]:
         x = _place(10.0**k, low, high)
         lines.append(f'<path d="M{x:.1f} {_TOP} V{bottom}" stroke="#dde3e7"/>')
         lines.append(
-            f'<text x="{x:.1f}" y="{bottom + 16}" text-anchor="middle" fill="#456">{10.0**k:g}</text>'
+            f'<text x="{x:.1f}" y="{bottom + 16}" text-anchor="middle" fill="#456">{10.0**k:,g}</text>'
         )
     return lines

@@ -21,12 +21,14 @@ from typing import Any
 from benchmarks.peer_picture import picture
 from benchmarks.results import Measured, read_result
 
-__all__ = ["BLOCKS", "COPY", "PAGE", "PICTURE", "MarkError", "copied", "drawn", "filled_in"]
+__all__ = ["BLOCKS", "COPY", "HOME", "PAGE", "PICTURE", "MarkError", "copied", "drawn", "filled_in"]
 
 COPY = Path(__file__).resolve().parents[1] / "docs/explanation/comparison.md"
 """A page that shows the README's block of other solvers."""
 PAGE = Path(__file__).resolve().parents[1] / "README.md"
 PICTURE = Path(__file__).with_name("peers.svg")
+HOME = COPY.parents[1] / "pictures/speed_ur5e.svg"
+"""The part of the picture that the documentation begins with."""
 _START = re.compile(r"<!-- figures: (\w+) -->\n")
 _END = "<!-- end of figures -->\n"
 CLASSES = {
@@ -151,10 +153,15 @@ def _peers(read: Callable[[str], Measured]) -> str:
     return _table(("solver", *(ARMS[arm] for arm in arms)), rows) + _source(measured)
 
 
-def drawn(read: Callable[[str], Measured] = read_result) -> str:
-    """The picture of the comparison with other solvers."""
-    times = read("peers").found["times"]
+def drawn(read: Callable[[str], Measured] = read_result, arm: str = "") -> str:
+    """The picture of the comparison with other solvers, of one arm where it is named."""
+    times = [row for row in read("peers").found["times"] if arm in ("", row["arm"])]
     return picture([(row["arm"], row["solver"], row["microseconds"]) for row in times])
+
+
+def _read(path: Path) -> str:
+    """A file's text; "" where there is none yet."""
+    return path.read_text(encoding="utf-8") if path.is_file() else ""
 
 
 def _short(value: Any) -> str:
@@ -182,8 +189,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     readme = filled_in(PAGE.read_text(encoding="utf-8"))
     copy = copied(COPY.read_text(encoding="utf-8"), readme)
-    made = {PAGE: readme, PICTURE: drawn(), COPY: copy}
-    old = {path for path, text in made.items() if path.read_text(encoding="utf-8") != text}
+    made = {PAGE: readme, PICTURE: drawn(), HOME: drawn(arm="UR5e"), COPY: copy}
+    old = {path for path, text in made.items() if _read(path) != text}
     for path in old:
         print(f"{path.name} is not what was recorded")
         if not options.check:

@@ -6,7 +6,7 @@ import re
 from dataclasses import replace
 
 import pytest
-from benchmarks.readme import BLOCKS, COPY, PAGE, PICTURE, MarkError, copied, drawn, filled_in
+from benchmarks.readme import BLOCKS, COPY, HOME, PAGE, PICTURE, MarkError, copied, drawn, filled_in
 from benchmarks.results import Measured, read_result
 
 from ikgen.cli.main import COMMANDS
@@ -18,6 +18,7 @@ START, END = "<!-- figures: corpus -->\n", "<!-- end of figures -->\n"
 def test_figures_are_those_recorded() -> None:
     assert filled_in(TEXT) == TEXT, "run python -m benchmarks.readme"
     assert drawn() == PICTURE.read_text(encoding="utf-8"), "run python -m benchmarks.readme"
+    assert drawn(arm="UR5e") == HOME.read_text(encoding="utf-8"), "run python -m benchmarks.readme"
 
 
 def test_the_comparison_shows_the_same_figures() -> None:
