@@ -43,6 +43,8 @@ REPORTS = {
 """Name -> the arm whose report is taken."""
 
 _COLOURS = 96
+_PATIENCE = 200_000
+"""Milliseconds that a scene may take to be drawn without a graphics processor."""
 _LIGHT_AND_DARK = (("light", ""), ("dark", "_dark"))
 
 
@@ -83,12 +85,12 @@ class Camera:
 
 def _at_rest(page: Any) -> bytes:
     """The picture that does not change any more: scenes fade in."""
-    before, image = b"", page.screenshot()
+    before, image = b"", page.screenshot(timeout=_PATIENCE)
     for _ in range(12):
         if image == before:
             break
         page.wait_for_timeout(1500)
-        before, image = image, page.screenshot()
+        before, image = image, page.screenshot(timeout=_PATIENCE)
     return bytes(image)
 
 
