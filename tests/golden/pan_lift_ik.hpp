@@ -910,6 +910,8 @@ template <class Arm> struct CarefulSolve {
     out.status = out.count > 0 ? Arm::Status::Ok : real ? Arm::Status::Limits : Arm::Status::Unreachable;
   }
 
+  static constexpr bool kBesideAnywhere = !(Policy::kBesideReach < Policy::kAnywhere);
+
   static void find_lanes(const Eigen::Isometry3d& pose, const double* q0, const Options& options, Rows& out) noexcept {
     constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
     Arm::branches(gather<1>(&pose), typename Arm::Seed(q0), options.free, anywhere, out);
@@ -980,6 +982,12 @@ template <class Arm> struct CarefulSolve {
     int count = 0;
     std::array<Nearest, std::size_t{Arm::kLanes} * (1 + Arm::kBesides)> all;
 
+    bool close() const noexcept {
+      return std::any_of(all.begin(), all.begin() + count, [](const Nearest& one) {
+        return one.near && RankLoss<Arm>::below(one.q, Policy::kBesideReach);
+      });
+    }
+
     void take(const Nearest& start, bool beside, const Eigen::Isometry3d& pose, Places& out) noexcept {
       for (int k = 0; k < count && beside; ++k)
         if (Row::same(start.q, all[k].q)) return;
@@ -1047,7 +1055,8 @@ template <class Arm> struct CarefulSolve {
     for (const int lane : Arm::kLaneOfRow)
       if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
         starts.take({pose, rows, lane, (bits(rows, lane) & kSingular) != 0}, false, pose, out);
-    if (Arm::kBesides > 0 && beside) take_beside(pose, q0, options, starts, out);
+    if (Arm::kBesides > 0 && beside && (kBesideAnywhere || left.free || starts.close()))
+      take_beside(pose, q0, options, starts, out);
     for (int k = 0; k < starts.count; ++k)
       if (starts.all[k].near) starts.all[k].add_nearby(pose, out);
     for (const int lane : Arm::kLaneOfRow) {
@@ -1202,7 +1211,7 @@ template <class Arm> struct LaneSolve {
       count += bits & kFound;
       seen |= bits;
     }
-    if ((seen & (kRough | kHit)) != 0 || (Arm::kBesides > 0 && (seen & kReal) == 0)) return false;
+    if ((seen & (kRough | kHit)) != 0 || (CarefulSolve<Arm>::kBesideAnywhere && (seen & kReal) == 0)) return false;
     out.count = count;
     if (Arm::kNewton || (seen & kMeeting) != 0) {
       leave_distinct(out);
@@ -1875,8 +1884,9 @@ struct Policy {
   static constexpr int kTries = 16, kPatience = 5;
   static constexpr double kArrived = 5e-10, kExact = 1e-12, kPoseTolerance = 1e-06, kOrthonormal = 1e-14,
       kCoincident = 1e-06, kAlike = 0.01, kMeeting = 2e-05, kLimitTolerance = 1e-09, kTryStep =
-      0.39269908169872414, kRankLoss = 1e-07, kContinuumRankLoss = 0.001, kFoldReach = 0.0001, kLeastDamping =
-      1e-14, kDamping = 0.001, kLargestStep = 0.3, kConverged = 1e-13, kProgress = 0.8;
+      0.39269908169872414, kRankLoss = 1e-07, kContinuumRankLoss = 0.001, kFoldReach = 0.0001, kBesideReach =
+      0.0, kAnywhere = 1000.0, kLeastDamping = 1e-14, kDamping = 0.001, kLargestStep = 0.3, kConverged = 1e-13,
+      kProgress = 0.8;
   static constexpr RefineStage kRefinement[] = {{3, 1e-12, 0.1}, {6, 1e-12, 0.001}, {30, 0.0, 0.0}};
 };
 

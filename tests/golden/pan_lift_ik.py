@@ -383,6 +383,8 @@ class _Policy:
     rank_loss: float  # smallest singular value below which a refined row is singular
     continuum_rank_loss: float  # the same where the closed form says that it is
     fold_reach: float  # smallest singular value below which another row may be near
+    beside_reach: float  # and below which poses beside are solved as well
+    anywhere: float  # the same where they always are
     farthest_start: float  # first step (rad, m) of rows that are refined together
     contraction: float  # of each further one
     pivot_share: float  # of the pivot: the first step at most
@@ -708,13 +710,16 @@ class _Starts:
     source: NDArray[np.int64]
 
 
-def _rows_nearby(arm: _Arm, starts: _Starts) -> tuple[_Index, Array]:
-    """Which start (m,) each solution (m, dof) comes from that steps lead to, those that are sure first."""
+def _rows_nearby(arm: _Arm, starts: _Starts) -> tuple[_Index, Array, _Flags]:
+    """Which start (m,) each solution (m, dof) comes from that steps lead to, those that are sure first; and
+    which starts (k,) are so near a singularity that other solutions may start from none of them."""
     T, own = starts.T, starts.source >= 0
     q, error, _, slope = _refine(arm.chain, arm.task, arm.moving, starts.q, T, arm.policy)
     arrived = error < arm.policy.arrived
     broken = starts.marked & (arm.rounded | ~arrived) & own
-    near = own & ~starts.marked & (_least_singular(slope) < arm.policy.fold_reach)
+    loss = _least_singular(slope)
+    near = own & ~starts.marked & (loss < arm.policy.fold_reach)
+    close = (near | broken) & (loss < arm.policy.beside_reach)
     settled = ~broken & np.where(near, error < arm.policy.converged, arrived)
     fresh = _fresh(arm, q, starts, near, near & ~settled)
     settled &= fresh
@@ -728,7 +733,7 @@ def _rows_nearby(arm: _Arm, starts: _Starts) -> tuple[_Index, Array]:
         trial = np.concatenate([trial, around.transpose(1, 0, 2).reshape(-1, q.shape[1])])
     first, own_rows = np.flatnonzero(settled), q[settled]
     if not len(owner) and not (broken & arrived).any():
-        return first, own_rows
+        return first, own_rows, close
     owner, side = np.repeat(owner, 2), np.tile([1.0, -1.0], len(owner))
     pairs = _approach(arm, np.repeat(trial, 2, axis=0), T[owner], side)
     pairs, left = _refine(arm.chain, arm.task, arm.moving, pairs, T[owner], arm.policy)[:2]
@@ -740,7 +745,8 @@ def _rows_nearby(arm: _Arm, starts: _Starts) -> tuple[_Index, Array]:
     alone = np.setdiff1d(alone, [*owner[exact], *first])
     source, rows = np.concatenate([owner[exact], alone]), np.concatenate([pairs[exact], q[alone]])
     order = np.argsort(source, kind="stable")
-    return np.concatenate([first, source[order]]), np.concatenate([own_rows, rows[order]])
+    rows = np.concatenate([own_rows, rows[order]])
+    return np.concatenate([first, source[order]]), rows, close
 
 
 def _fresh(arm: _Arm, q: Array, starts: _Starts, near: _Flags, stalled: _Flags) -> _Flags:
@@ -1419,7 +1425,7 @@ def _fitting(
         starts = [_start(arm, near, held, n * arm.policy.try_step) for n in tries]
         for start, rows in zip(starts, _rows(arm, T, starts, held)):
             if near is not None and not rows.free and any(flag for _, flag in rows.kept):
-                _add(arm, T, [row for _, row in _refined(arm, [(start, True)], T, [-1])], rows.kept)
+                _add(arm, T, _from_seed(arm, T, start), rows.kept)
             real = real or bool(rows.kept)
             placed = _place_rows(arm, rows.kept, near, limits)
             if out:
@@ -1427,13 +1433,17 @@ def _fitting(
             else:
                 out = placed
             if not out and near is not None:
-                steps = _refined(arm, [(start, True)], T, [-1])
-                out = _place_rows(arm, [row for _, row in steps], near, limits)
+                out = _place_rows(arm, _from_seed(arm, T, start), near, limits)
             if not rows.free:
                 return out, real
             if out and (rows.led if arm.rounded else any(flag for _, flag in out)):
                 return out, real
     return out, real
+
+
+def _from_seed(arm: _Arm, T: list[list[float]], start: Row) -> list[_Found]:
+    """What Newton steps from given values lead to."""
+    return [row for _, row in _refined(arm, [(start, True)], T, [-1])[0]]
 
 
 def _add(arm: _Arm, T: list[list[float]], rows: list[_Found], kept: list[_Found]) -> None:
@@ -1459,7 +1469,6 @@ def _rows(arm: _Arm, T: list[list[float]], starts: list[Row], held: Row) -> list
     fine: list[tuple[int, _Found]] = []
     given: list[tuple[int, _Found]] = []
     rough: list[tuple[int, _Found]] = []
-    beside: list[tuple[int, _Found]] = []
     free, led = [], []
     for i, q0 in enumerate(starts):
         answers, hit = arm.branches(T, q0, held)
@@ -1473,17 +1482,28 @@ def _rows(arm: _Arm, T: list[list[float]], starts: list[Row], held: Row) -> list
             given.append((i, (q0, True)))
         for row, flag, bent in answers:
             (rough if bent else fine).append((i, (row, flag)))
-        if len(starts) == 1 and len(arm.beside):
-            poses: list[list[list[float]]] = (np.array(T) @ arm.beside).tolist()
-            others = [row for pose in poses for row, _, _ in arm.branches(pose, q0, held)[0]]
-            beside += [(i, (row, False)) for row in others]
-    stepped = given + rough + beside
-    source = [-1] * len(given) + [0] * len(rough) + [1] * len(beside)
-    steps = _refined(arm, [row for _, row in stepped], T, source)
+    stepped = given + rough
+    own = [row for _, row in stepped]
+    source = [-1] * len(given) + [0] * len(rough)
+    beside: list[_Found] = []
+    looks = len(starts) == 1 and len(arm.beside) > 0
+    if looks and (free[0] or arm.policy.beside_reach >= arm.policy.anywhere):
+        beside = _rows_beside(arm, T, starts[0], held)
+    steps, close = _refined(arm, own + beside, T, source + [1] * len(beside))
+    if close and looks and not beside:
+        beside = _rows_beside(arm, T, starts[0], held)
+        steps, _ = _refined(arm, own + beside, T, source + [1] * len(beside))
+    stepped += [(0, row) for row in beside]
     for i, (row, singular) in [(stepped[k][0], found) for k, found in steps] + fine:
         if _is_new(arm, row, kept[i]) and not (singular and _repeats(arm, T, row, kept[i])):
             kept[i].append((row, singular))
     return [_Rows(*item) for item in zip(kept, free, led)]
+
+
+def _rows_beside(arm: _Arm, T: list[list[float]], start: Row, held: Row) -> list[_Found]:
+    """The closed form's rows of poses beside."""
+    poses: list[list[list[float]]] = (np.array(T) @ arm.beside).tolist()
+    return [(row, False) for pose in poses for row, _, _ in arm.branches(pose, start, held)[0]]
 
 
 def _pose_solving_certain_rows(
@@ -1491,7 +1511,8 @@ def _pose_solving_certain_rows(
 ) -> list[_Found] | None:
     """The rows refined all at once; None where that leaves a doubt."""
     if not answers or any(flag for _, flag, _ in answers):
-        return None if answers or len(arm.beside) else []
+        anywhere = arm.policy.beside_reach >= arm.policy.anywhere
+        return None if answers or anywhere else []
     start = np.array([row for row, _, _ in answers])
     q, arrived, missed = together(arm, start, np.array([T]))
     if not (arrived | missed).all():
@@ -1506,20 +1527,20 @@ def _pose_solving_certain_rows(
 
 def _refined(
     arm: _Arm, rows: list[_Found], T: list[list[float]], source: list[int]
-) -> list[tuple[int, _Found]]:
+) -> tuple[list[tuple[int, _Found]], bool]:
     """What Newton steps from the rows lead to, with the row's number: one solution, those that meet near a
-    singularity, or none. source (k,) as in `_Starts`."""
+    singularity, or none; and whether others may start from none. source (k,) as in `_Starts`."""
     if not rows:
-        return []
+        return [], False
     target = np.broadcast_to(np.array(T), (len(rows), 4, 4))
     start, marked = np.array([row for row, _ in rows]), np.array([flag for _, flag in rows])
     starts = _Starts(start, target, np.zeros(len(rows), dtype=np.intp), marked, np.array(source))
-    owner, q = _rows_nearby(arm, starts)
+    owner, q, close = _rows_nearby(arm, starts)
     loss = _rank_loss(arm.chain, arm.task, arm.moving, q)
     flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
     singular = (marked[owner] & (loss < continuum)) | (loss < flat)
     found = zip(owner.tolist(), q.tolist(), singular.tolist())
-    return [(i, (tuple(row), flag)) for i, row, flag in found]
+    return [(i, (tuple(row), flag)) for i, row, flag in found], bool(close.any())
 
 
 # All solutions of many poses at once, in arrays.
@@ -1622,18 +1643,21 @@ def _widened(rows: Any, width: int) -> Any:
 
 def _nearby_rows(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, _Flags, _Flags]:
     """Distinct solutions (N, M, dof) that all rows of a rounded arm, and of poses beside, lead to, which
-    there are (N, M), and which poses (N,) have a singular one."""
+    there are (N, M), and which poses (N,) have a singular one, or want those of poses beside."""
     q, valid = _starts(arm, T, held, near)[:2]
-    own = valid.shape[1] // (1 + len(arm.beside))
+    anywhere = arm.policy.beside_reach >= arm.policy.anywhere
+    own = valid.shape[1] // (1 + len(arm.beside)) if anywhere else valid.shape[1]
     pose, column = np.nonzero(valid)
     marked, source = np.zeros(len(pose), dtype=bool), (column >= own).astype(int)
-    owner, rows = _rows_nearby(arm, _Starts(q[pose, column], T[pose], pose, marked, source))
+    owner, rows, close = _rows_nearby(arm, _Starts(q[pose, column], T[pose], pose, marked, source))
     order = np.argsort(pose[owner], kind="stable")
     of, rows = pose[owner][order], rows[order]
     flat = np.zeros(len(T), dtype=bool)
     if len(rows):
         loss = _rank_loss(arm.chain, arm.task, arm.moving, rows)
         flat[of[loss < arm.policy.rank_loss]] = True
+    if not anywhere:
+        flat[pose[close]] = True
     place = np.arange(len(of)) - np.searchsorted(of, of)
     q = np.zeros((len(T), int(place.max(initial=-1)) + 1, q.shape[2]))
     valid = np.zeros(q.shape[:2], dtype=bool)
@@ -1689,11 +1713,12 @@ def _careful_rows(
 def _starts(
     arm: _Arm, T: Array, held: Array, near: Array | None
 ) -> tuple[Array, _Flags, _Flags, _Flags]:
-    """The closed form's rows (N, M, dof) of poses, and of those beside; valid and rough ones (N, M), and
-    those of a continuum."""
+    """The closed form's rows (N, M, dof) of poses, and of those beside where they always count; valid and
+    rough ones (N, M), and those of a continuum."""
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
+    anywhere = arm.policy.beside_reach >= arm.policy.anywhere
     q, valid, singular, rough = _closed_form(arm, T, start, held)
-    if len(arm.beside):
+    if len(arm.beside) and anywhere:
         more = [_closed_form(arm, T @ D, start, held) for D in arm.beside]
         q, valid, rough = (
             np.concatenate([first, *(part[k] for part in more)], axis=1)
@@ -2079,6 +2104,8 @@ _ARM = _Arm(
         rank_loss=1e-07,
         continuum_rank_loss=0.001,
         fold_reach=0.0001,
+        beside_reach=0.0,
+        anywhere=1000.0,
         farthest_start=0.05,
         contraction=0.25,
         pivot_share=4.0,

@@ -64,16 +64,18 @@ class SolverModule:
 
     @property
     def policy(self) -> SolvePolicy:
-        """The tolerances of `solve`, two of them as far as the file is off what was solved.
+        """The tolerances of `solve`, three of them as far as the file is off what was solved.
 
         `least_pivot`: nearer to a singularity the file's solutions may be others in number; `fold_reach`:
         there two of them may start from one row; with those of poses beside, hardly ever far from it.
+        `beside_reach`: there, and where a divisor of the closed form vanishes, others may start from none.
         """
         plain, root = SolvePolicy(), math.sqrt(max(self.dh.deviation))
         return replace(
             plain,
             least_pivot=max(plain.least_pivot, plain.reach * root),
-            fold_reach=max(plain.fold_reach, (0.2 if self.beside else 4.0) * root),
+            fold_reach=max(plain.fold_reach, plain.fold * root),
+            beside_reach=plain.anywhere if self.far else plain.fold * root,
         )
 
     @property
@@ -81,11 +83,13 @@ class SolverModule:
         """Small motions (4, 4) of the tool: the poses that they lead to are solved as well as the asked
         one, and all rows take Newton steps to the asked one. Near a fold two solutions of the file's
         geometry may start from one of the solved geometry or from none, but not at all these poses.
-        Empty where the file is close to what was solved."""
-        deviation = max(self.dh.deviation)
-        if self.refine == "some" or deviation <= FAR:
-            return ()
-        return displacements(4.0 * deviation)
+        Empty where the closed form is the file's."""
+        return () if self.refine == "some" else displacements(4.0 * max(self.dh.deviation))
+
+    @property
+    def far(self) -> bool:
+        """Whether the file is so far from what was solved that poses beside are solved near no fold too."""
+        return self.refine == "all" and max(self.dh.deviation) > FAR
 
     @property
     def guarded(self) -> bool:
@@ -94,9 +98,9 @@ class SolverModule:
 
     @property
     def max_solutions(self) -> int:
-        """Rows of the solution at most (two whole turns of a joint count once). Where a rounded file is far
-        from what was solved, each row may lead to two near folds; six joints have sixteen at most."""
-        return min(2 * self.lanes, max(self.lanes, 16)) if self.beside else self.lanes
+        """Rows of the solution at most (two whole turns of a joint count once). Of a rounded
+        file each row of what was solved may lead to two near folds; six joints have sixteen at most."""
+        return min(2 * self.lanes, max(self.lanes, 16)) if self.refine == "all" else self.lanes
 
     @property
     def lanes(self) -> int:

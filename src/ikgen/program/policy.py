@@ -42,6 +42,8 @@ class SolvePolicy:
       where the Program marked it already.
     - `fold_reach`: smallest singular value below which another solution may be so near that the closed form
       does not find it for itself.
+    - `beside_reach`: smallest singular value below which poses beside are solved as well, `anywhere` where
+      they always are; `fold`: these two over the root of how far the file is off.
     - `farthest_start`: the largest first step (rad, m) of rows that are refined together, `contraction`:
       the most that a step of theirs may be of the one before, `least_pivot`: the least entry of the
       diagonal of their derivatives' triangular factor, `reach`: the same over the root of how far the file
@@ -69,6 +71,9 @@ class SolvePolicy:
     rank_loss: float = 1e-7
     continuum_rank_loss: float = 1e-3
     fold_reach: float = 1e-4
+    beside_reach: float = 0.0
+    fold: float = 0.3
+    anywhere: float = 1e3
     farthest_start: float = 0.05
     contraction: float = 0.25
     pivot_share: float = 4.0

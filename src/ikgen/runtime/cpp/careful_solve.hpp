@@ -54,6 +54,9 @@ template <class Arm> struct CarefulSolve {
     out.status = out.count > 0 ? Arm::Status::Ok : real ? Arm::Status::Limits : Arm::Status::Unreachable;
   }
 
+  // Whether poses beside are solved near no singularity too.
+  static constexpr bool kBesideAnywhere = !(Policy::kBesideReach < Policy::kAnywhere);
+
   // The closed form's rows without limits; q0 gives the values of joints that the pose leaves free.
   static void find_lanes(const Eigen::Isometry3d& pose, const double* q0, const Options& options, Rows& out) noexcept {
     constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
@@ -134,6 +137,13 @@ template <class Arm> struct CarefulSolve {
     int count = 0;
     std::array<Nearest, std::size_t{Arm::kLanes} * (1 + Arm::kBesides)> all;
 
+    // Whether one is so near a singularity that other solutions may start from none of them.
+    bool close() const noexcept {
+      return std::any_of(all.begin(), all.begin() + count, [](const Nearest& one) {
+        return one.near && RankLoss<Arm>::below(one.q, Policy::kBesideReach);
+      });
+    }
+
     void take(const Nearest& start, bool beside, const Eigen::Isometry3d& pose, Places& out) noexcept {
       for (int k = 0; k < count && beside; ++k)
         if (Row::same(start.q, all[k].q)) return;
@@ -206,7 +216,8 @@ template <class Arm> struct CarefulSolve {
     for (const int lane : Arm::kLaneOfRow)
       if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
         starts.take({pose, rows, lane, (bits(rows, lane) & kSingular) != 0}, false, pose, out);
-    if (Arm::kBesides > 0 && beside) take_beside(pose, q0, options, starts, out);
+    if (Arm::kBesides > 0 && beside && (kBesideAnywhere || left.free || starts.close()))
+      take_beside(pose, q0, options, starts, out);
     for (int k = 0; k < starts.count; ++k)
       if (starts.all[k].near) starts.all[k].add_nearby(pose, out);
     for (const int lane : Arm::kLaneOfRow) {

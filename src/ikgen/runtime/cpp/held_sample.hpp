@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "careful_solve.hpp"
 #include "displacement.hpp"
 #include "fold_rows.hpp"
 #include "joint_range.hpp"
@@ -46,7 +47,8 @@ template <class Arm> struct JointBounds {
 
 // Arm: as for CarefulSolve; kFolds, how many margins its closed form has.
 template <class Arm> struct HeldSample {
-  static constexpr int kLanes = Arm::kLanes * (1 + Arm::kBesides), kMargins = Arm::kFolds > 0 ? Arm::kFolds : 1;
+  static constexpr int kBesides = CarefulSolve<Arm>::kBesideAnywhere ? Arm::kBesides : 0;
+  static constexpr int kLanes = Arm::kLanes * (1 + kBesides), kMargins = Arm::kFolds > 0 ? Arm::kFolds : 1;
   double held = 0.0;
   int lanes = Arm::kLanes;  // which may be real
   double q[Arm::kDof][kLanes], off[kLanes], fold[kMargins][Arm::kLanes];
@@ -139,8 +141,8 @@ template <class Arm> struct HeldSample {
   // Takes the rows of the pose and those beside it, each refined for as long as that takes; no more than solve gives.
   void take_carefully(const Eigen::Isometry3d& T) noexcept {
     bool again = take(T, T, 0);
-    if constexpr (Arm::kBesides > 0)
-      for (int i = 0; i < Arm::kBesides; ++i) again = take(T, displaced(T, Arm::kBeside[i]), i + 1) || again;
+    if constexpr (kBesides > 0)
+      for (int i = 0; i < kBesides; ++i) again = take(T, displaced(T, Arm::kBeside[i]), i + 1) || again;
     lanes = kLanes;
     if (again) remove_repetitions();
     int count = 0, used = Arm::kLanes;

@@ -122,18 +122,21 @@ def _widened(rows: Any, width: int) -> Any:
 
 def _nearby_rows(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, Flags, Flags]:
     """Distinct solutions (N, M, dof) that all rows of a rounded arm, and of poses beside, lead to, which
-    there are (N, M), and which poses (N,) have a singular one."""
+    there are (N, M), and which poses (N,) have a singular one, or want those of poses beside."""
     q, valid = _starts(arm, T, held, near)[:2]
-    own = valid.shape[1] // (1 + len(arm.beside))
+    anywhere = arm.policy.beside_reach >= arm.policy.anywhere
+    own = valid.shape[1] // (1 + len(arm.beside)) if anywhere else valid.shape[1]
     pose, column = np.nonzero(valid)
     marked, source = np.zeros(len(pose), dtype=bool), (column >= own).astype(int)
-    owner, rows = rows_nearby(arm, Starts(q[pose, column], T[pose], pose, marked, source))
+    owner, rows, close = rows_nearby(arm, Starts(q[pose, column], T[pose], pose, marked, source))
     order = np.argsort(pose[owner], kind="stable")
     of, rows = pose[owner][order], rows[order]
     flat = np.zeros(len(T), dtype=bool)
     if len(rows):
         loss = rank_loss(arm.chain, arm.task, arm.moving, rows)
         flat[of[loss < arm.policy.rank_loss]] = True
+    if not anywhere:
+        flat[pose[close]] = True
     place = np.arange(len(of)) - np.searchsorted(of, of)
     q = np.zeros((len(T), int(place.max(initial=-1)) + 1, q.shape[2]))
     valid = np.zeros(q.shape[:2], dtype=bool)
@@ -189,11 +192,12 @@ def careful_rows(
 def _starts(
     arm: Arm, T: Array, held: Array, near: Array | None
 ) -> tuple[Array, Flags, Flags, Flags]:
-    """The closed form's rows (N, M, dof) of poses, and of those beside; valid and rough ones (N, M), and
-    those of a continuum."""
+    """The closed form's rows (N, M, dof) of poses, and of those beside where they always count; valid and
+    rough ones (N, M), and those of a continuum."""
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
+    anywhere = arm.policy.beside_reach >= arm.policy.anywhere
     q, valid, singular, rough = _closed_form(arm, T, start, held)
-    if len(arm.beside):
+    if len(arm.beside) and anywhere:
         more = [_closed_form(arm, T @ D, start, held) for D in arm.beside]
         q, valid, rough = (
             np.concatenate([first, *(part[k] for part in more)], axis=1)

@@ -70,7 +70,8 @@ def _all_rows(arm: Arm, T: Array, held: Array) -> tuple[Array, Flags]:
         q, real, _, _ = careful_rows(arm, T, held, None)
     else:
         some, sure, _, doubt = certain_rows(arm, arm.together, T, held, None)
-        size = some.shape[1] * (1 + len(arm.beside))
+        anywhere = arm.policy.beside_reach >= arm.policy.anywhere
+        size = some.shape[1] * (1 + len(arm.beside) * anywhere)
         q = np.zeros((len(T), size, some.shape[2]))
         real = np.zeros(q.shape[:2], dtype=bool)
         q[:, : some.shape[1]], real[:, : some.shape[1]] = some, sure

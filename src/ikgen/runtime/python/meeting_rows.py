@@ -40,8 +40,9 @@ class Starts:
     source: NDArray[np.int64]
 
 
-def rows_nearby(arm: Arm, starts: Starts) -> tuple[Index, Array]:
-    """Which start (m,) each solution (m, dof) comes from that steps lead to, those that are sure first.
+def rows_nearby(arm: Arm, starts: Starts) -> tuple[Index, Array, Flags]:
+    """Which start (m,) each solution (m, dof) comes from that steps lead to, those that are sure first; and
+    which starts (k,) are so near a singularity that other solutions may start from none of them.
 
     Where two may meet near a singularity both are found, and all around a continuum that the closed form
     has, where it marked a row, and the file's arm has not. What is given leads only to its own.
@@ -50,7 +51,9 @@ def rows_nearby(arm: Arm, starts: Starts) -> tuple[Index, Array]:
     q, error, _, slope = refine(arm.chain, arm.task, arm.moving, starts.q, T, arm.policy)
     arrived = error < arm.policy.arrived
     broken = starts.marked & (arm.rounded | ~arrived) & own
-    near = own & ~starts.marked & (least_singular(slope) < arm.policy.fold_reach)
+    loss = least_singular(slope)
+    near = own & ~starts.marked & (loss < arm.policy.fold_reach)
+    close = (near | broken) & (loss < arm.policy.beside_reach)
     settled = ~broken & np.where(near, error < arm.policy.converged, arrived)
     fresh = _fresh(arm, q, starts, near, near & ~settled)
     settled &= fresh
@@ -64,7 +67,7 @@ def rows_nearby(arm: Arm, starts: Starts) -> tuple[Index, Array]:
         trial = np.concatenate([trial, around.transpose(1, 0, 2).reshape(-1, q.shape[1])])
     first, own_rows = np.flatnonzero(settled), q[settled]
     if not len(owner) and not (broken & arrived).any():
-        return first, own_rows
+        return first, own_rows, close
     owner, side = np.repeat(owner, 2), np.tile([1.0, -1.0], len(owner))
     pairs = _approach(arm, np.repeat(trial, 2, axis=0), T[owner], side)
     pairs, left = refine(arm.chain, arm.task, arm.moving, pairs, T[owner], arm.policy)[:2]
@@ -76,7 +79,8 @@ def rows_nearby(arm: Arm, starts: Starts) -> tuple[Index, Array]:
     alone = np.setdiff1d(alone, [*owner[exact], *first])
     source, rows = np.concatenate([owner[exact], alone]), np.concatenate([pairs[exact], q[alone]])
     order = np.argsort(source, kind="stable")
-    return np.concatenate([first, source[order]]), np.concatenate([own_rows, rows[order]])
+    rows = np.concatenate([own_rows, rows[order]])
+    return np.concatenate([first, source[order]]), rows, close
 
 
 def _fresh(arm: Arm, q: Array, starts: Starts, near: Flags, stalled: Flags) -> Flags:

@@ -107,7 +107,7 @@ def _fitting(
         starts = [_start(arm, near, held, n * arm.policy.try_step) for n in tries]
         for start, rows in zip(starts, _rows(arm, T, starts, held)):
             if near is not None and not rows.free and any(flag for _, flag in rows.kept):
-                _add(arm, T, [row for _, row in _refined(arm, [(start, True)], T, [-1])], rows.kept)
+                _add(arm, T, _from_seed(arm, T, start), rows.kept)
             real = real or bool(rows.kept)
             placed = place_rows(arm, rows.kept, near, limits)
             if out:
@@ -115,13 +115,17 @@ def _fitting(
             else:
                 out = placed
             if not out and near is not None:
-                steps = _refined(arm, [(start, True)], T, [-1])
-                out = place_rows(arm, [row for _, row in steps], near, limits)
+                out = place_rows(arm, _from_seed(arm, T, start), near, limits)
             if not rows.free:
                 return out, real
             if out and (rows.led if arm.rounded else any(flag for _, flag in out)):
                 return out, real
     return out, real
+
+
+def _from_seed(arm: Arm, T: list[list[float]], start: Row) -> list[Found]:
+    """What Newton steps from given values lead to."""
+    return [row for _, row in _refined(arm, [(start, True)], T, [-1])[0]]
 
 
 def _add(arm: Arm, T: list[list[float]], rows: list[Found], kept: list[Found]) -> None:
@@ -150,7 +154,6 @@ def _rows(arm: Arm, T: list[list[float]], starts: list[Row], held: Row) -> list[
     fine: list[tuple[int, Found]] = []
     given: list[tuple[int, Found]] = []
     rough: list[tuple[int, Found]] = []
-    beside: list[tuple[int, Found]] = []
     free, led = [], []
     for i, q0 in enumerate(starts):
         answers, hit = arm.branches(T, q0, held)
@@ -164,17 +167,28 @@ def _rows(arm: Arm, T: list[list[float]], starts: list[Row], held: Row) -> list[
             given.append((i, (q0, True)))
         for row, flag, bent in answers:
             (rough if bent else fine).append((i, (row, flag)))
-        if len(starts) == 1 and len(arm.beside):
-            poses: list[list[list[float]]] = (np.array(T) @ arm.beside).tolist()
-            others = [row for pose in poses for row, _, _ in arm.branches(pose, q0, held)[0]]
-            beside += [(i, (row, False)) for row in others]
-    stepped = given + rough + beside
-    source = [-1] * len(given) + [0] * len(rough) + [1] * len(beside)
-    steps = _refined(arm, [row for _, row in stepped], T, source)
+    stepped = given + rough
+    own = [row for _, row in stepped]
+    source = [-1] * len(given) + [0] * len(rough)
+    beside: list[Found] = []
+    looks = len(starts) == 1 and len(arm.beside) > 0
+    if looks and (free[0] or arm.policy.beside_reach >= arm.policy.anywhere):
+        beside = _rows_beside(arm, T, starts[0], held)
+    steps, close = _refined(arm, own + beside, T, source + [1] * len(beside))
+    if close and looks and not beside:
+        beside = _rows_beside(arm, T, starts[0], held)
+        steps, _ = _refined(arm, own + beside, T, source + [1] * len(beside))
+    stepped += [(0, row) for row in beside]
     for i, (row, singular) in [(stepped[k][0], found) for k, found in steps] + fine:
         if is_new(arm, row, kept[i]) and not (singular and repeats(arm, T, row, kept[i])):
             kept[i].append((row, singular))
     return [_Rows(*item) for item in zip(kept, free, led)]
+
+
+def _rows_beside(arm: Arm, T: list[list[float]], start: Row, held: Row) -> list[Found]:
+    """The closed form's rows of poses beside."""
+    poses: list[list[list[float]]] = (np.array(T) @ arm.beside).tolist()
+    return [(row, False) for pose in poses for row, _, _ in arm.branches(pose, start, held)[0]]
 
 
 def _certain_rows(
@@ -182,7 +196,8 @@ def _certain_rows(
 ) -> list[Found] | None:
     """The rows refined all at once; None where that leaves a doubt."""
     if not answers or any(flag for _, flag, _ in answers):
-        return None if answers or len(arm.beside) else []
+        anywhere = arm.policy.beside_reach >= arm.policy.anywhere
+        return None if answers or anywhere else []
     start = np.array([row for row, _, _ in answers])
     q, arrived, missed = together(arm, start, np.array([T]))
     if not (arrived | missed).all():
@@ -197,17 +212,17 @@ def _certain_rows(
 
 def _refined(
     arm: Arm, rows: list[Found], T: list[list[float]], source: list[int]
-) -> list[tuple[int, Found]]:
+) -> tuple[list[tuple[int, Found]], bool]:
     """What Newton steps from the rows lead to, with the row's number: one solution, those that meet near a
-    singularity, or none. source (k,) as in `Starts`."""
+    singularity, or none; and whether others may start from none. source (k,) as in `Starts`."""
     if not rows:
-        return []
+        return [], False
     target = np.broadcast_to(np.array(T), (len(rows), 4, 4))
     start, marked = np.array([row for row, _ in rows]), np.array([flag for _, flag in rows])
     starts = Starts(start, target, np.zeros(len(rows), dtype=np.intp), marked, np.array(source))
-    owner, q = rows_nearby(arm, starts)
+    owner, q, close = rows_nearby(arm, starts)
     loss = rank_loss(arm.chain, arm.task, arm.moving, q)
     flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
     singular = (marked[owner] & (loss < continuum)) | (loss < flat)
     found = zip(owner.tolist(), q.tolist(), singular.tolist())
-    return [(i, (tuple(row), flag)) for i, row, flag in found]
+    return [(i, (tuple(row), flag)) for i, row, flag in found], bool(close.any())

@@ -23,6 +23,8 @@ class Policy:
     rank_loss: float  # smallest singular value below which a refined row is singular
     continuum_rank_loss: float  # the same where the closed form says that it is
     fold_reach: float  # smallest singular value below which another row may be near
+    beside_reach: float  # and below which poses beside are solved as well
+    anywhere: float  # the same where they always are
     farthest_start: float  # first step (rad, m) of rows that are refined together
     contraction: float  # of each further one
     pivot_share: float  # of the pivot: the first step at most
