@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -121,6 +122,18 @@ def test_a_fold_bounds_the_distance_and_a_continuum_does_not() -> None:
     assert fold.kappa[0] > 0.01 and continuum.kappa[0] < 1e-4
     assert fold.within(1e-13)[0] < 1e-5
     assert continuum.within(1e-13)[0] > 1e-3
+
+
+def test_a_singular_value_of_minus_zero_bounds_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As LAPACK gives it at configurations that are singular to the last bit."""
+    svd = np.linalg.svd
+
+    def signed(*arguments: Any, **options: Any) -> Any:
+        u, s, vt = svd(*arguments, **options)
+        return u, np.where(s < 1e-9, -0.0, s), vt
+
+    monkeypatch.setattr(np.linalg, "svd", signed)
+    assert sensitivity(arm(), ALIGNED[None]).within(1e-13)[0] > 1e-3
 
 
 def test_the_distance_follows_the_singular_value() -> None:

@@ -83,7 +83,8 @@ def sensitivity(arm: ArmUnderTest, q: Array) -> Sensitivity:
     turned = (arm.scaled_jacobian(q + step)[1] - J) / _ALONG
     kappa = np.abs(np.einsum("ni,nij,nj->n", left, turned, null))
     alone = s[:, last - 1] > FAILS_ABOVE if last else np.ones(len(q), dtype=bool)
-    return Sensitivity(s[:, last], np.where(alone, kappa, 0.0))
+    # LAPACK's singular values may be -0.0, by which an error over them would be -inf
+    return Sensitivity(np.abs(s[:, last]), np.where(alone, kappa, 0.0))
 
 
 @dataclass(frozen=True, slots=True)
