@@ -1,9 +1,10 @@
 """Millions of poses through the emitted C++ header of one arm: wrong rows, missed solutions.
 
-    python -m benchmarks.soak ARM [--poses 10000000] [--near 1000000] [--above 1e-3] [--jobs 2]
-        [--option=--free --option=JOINT]
+    python -m benchmarks.soak [ARM ...] [--record] [--poses 10000000] [--near 1000000] [--above 1e-5]
+        [--jobs 2] [--option=--free --option=JOINT]
 
-ARM is the name of an arm of the collection, or a URDF file or DH table (`--option` hands options to ikgen).
+ARM is the name of an arm of the collection, or a URDF file or DH table (`--option` hands options to ikgen);
+without any, ten of the collection: exact, rounded, off by small offsets, elimination, redundant.
 Random poses, and poses 10^-1 to 10^-12 beside singular configurations, joints inside their limits. Prints,
 by decade of the smallest singular value of the configuration that made the pose: how many poses, at how
 many that configuration is missed among the rows, how many got no row at all. How close a row must come is
@@ -19,14 +20,19 @@ import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from benchmarks.command_line import Emitted, Source, emit, sources
 from benchmarks.cpp_speed import FLAGS, compiled_program
+from benchmarks.results import write_result
 
+ARMS = (
+    "kuka_kr6r900sixx", "staubli_tx60", "ur5e", "realman_rm65", "agilex_piper", "doosan_m1013",
+    "fanuc_crx10ia", "xarm6", "kuka_iiwa7", "franka_fr3",
+)  # fmt: skip
 SOURCE = Path(__file__).resolve().parent / "cpp" / "soak.cpp"
-ABOVE = 1e-3
+ABOVE = 1e-5
 """As `FAILS_ABOVE` of `ikgen.verify.completeness`, by default."""
 TASKS = {
     "pose": (1, 3), "position": (1, 0), "position-direction": (1, 1), "position-yaw": (1, 2),
@@ -134,7 +140,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table; 1 where something failed."""
     layout = argparse.RawTextHelpFormatter
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=layout)
-    parser.add_argument("arm")
+    parser.add_argument("arms", nargs="*", default=ARMS)
+    parser.add_argument("--record", action="store_true", help="write benchmarks/results/soak.json")
     parser.add_argument("--poses", type=int, default=10_000_000)
     parser.add_argument("--near", type=int, default=1_000_000, help="poses beside singularities")
     parser.add_argument("--above", type=float, default=ABOVE)
@@ -142,15 +149,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--option", action="append", default=[], help="handed to ikgen")
     options = parser.parse_args(arguments)
-    with tempfile.TemporaryDirectory(prefix="ikgen-soak-") as folder:
-        made = emit(found_source(options.arm, options.option), Path(folder), "python,cpp")
-        if made.header is None:
-            print(f"ikgen ended with {made.code}: {made.answer.get('error', '')}", file=sys.stderr)
-            return 2
-        found = soak(made, options.poses, options.near, jobs=options.jobs, seed=options.seed)
-    for line in table(found):
-        print(line)
-    return int(found.failures(options.above) > 0)
+    results: dict[str, Soak] = {}
+    for arm in options.arms:
+        with tempfile.TemporaryDirectory(prefix="ikgen-soak-") as folder:
+            made = emit(found_source(arm, options.option), Path(folder), "python,cpp")
+            if made.header is None:
+                message = made.answer.get("error", "")
+                print(f"{arm}: ikgen ended with {made.code}: {message}", file=sys.stderr)
+                return 2
+            found = soak(made, options.poses, options.near, jobs=options.jobs, seed=options.seed)
+        results[arm] = found
+        print(f"== {arm}")
+        print("\n".join(table(found)), flush=True)
+        if options.record:
+            arms = {name: asdict(one) for name, one in results.items()}
+            write_result(
+                "soak", "python -m benchmarks.soak", {"above": options.above, "arms": arms}
+            )
+    return int(any(found.failures(options.above) for found in results.values()))
 
 
 if __name__ == "__main__":

@@ -29,7 +29,7 @@ __all__ = [
 
 Array = NDArray[np.float64]
 
-FAILS_ABOVE = 1e-3
+FAILS_ABOVE = 1e-5
 """Smallest singular value from which on a miss, or a pose without any row, fails the verification.
 Those below are counted and reported. To be lowered as solvers improve."""
 
@@ -47,6 +47,7 @@ the arm)."""
 FARTHEST = 1e-2
 """rad or m: a row farther off than this never counts, however singular the configuration."""
 
+_ALONE = 1e-3  # another singular value below that makes another direction free too
 _ALONG = 1e-5  # step (rad, lengths of the arm) of the derivative along the null direction
 
 
@@ -82,7 +83,7 @@ def sensitivity(arm: ArmUnderTest, q: Array) -> Sensitivity:
     step[:, active] = _ALONG * null * np.where(arm.revolute[active], 1.0, arm.length)
     turned = (arm.scaled_jacobian(q + step)[1] - J) / _ALONG
     kappa = np.abs(np.einsum("ni,nij,nj->n", left, turned, null))
-    alone = s[:, last - 1] > FAILS_ABOVE if last else np.ones(len(q), dtype=bool)
+    alone = s[:, last - 1] > _ALONE if last else np.ones(len(q), dtype=bool)
     # LAPACK's singular values may be -0.0, by which an error over them would be -inf
     return Sensitivity(np.abs(s[:, last]), np.where(alone, kappa, 0.0))
 
