@@ -10,7 +10,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tests.support.held_arms import HELD, held_module
+from tests.support.held_arms import HELD, held_module, held_of, on_limits
 from tests.support.solving import NO_COMPILER, import_text
 
 from ikgen.emit.cpp.cpp_emitter import emit_header
@@ -98,7 +98,7 @@ def both(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     folder = tmp_path_factory.mktemp("both")
     module = held_module(request.param, folder)
     (folder / f"{module.name}_ik.hpp").write_text(emit_header(module))
-    define = "#define ONE_HELD\n" if len(module.free) == 1 else ""
+    define = "#define ONE_HELD\n" if len(module.held) == 1 else ""
     source = folder / "main.cpp"
     source.write_text(define + PROGRAM.replace("@", module.name))
     compile_program(source, folder / "main", [folder, find_eigen()])
@@ -130,12 +130,11 @@ def test_poses_at_which_a_joint_stays_on_its_limit_or_the_arm_is_stretched(both:
     arm = both.arm
     if len(arm.FREE_JOINTS) != 1:
         return
-    j = arm.JOINT_NAMES.index(arm.FREE_JOINTS[0])
-    for q in (np.zeros(arm.DOF), arm.UPPER, np.where(np.arange(arm.DOF) % 2, arm.LOWER, 0.0)):
-        row = np.clip(q, arm.LOWER, arm.UPPER)
+    for row in on_limits(arm):
         _, numbers = both.run(0, np.zeros(arm.DOF), arm.forward(row)[None])
         low, high, _ = numbers.reshape(-1, 3).T
-        assert ((low - 1e-4 <= row[j]) & (row[j] <= high + 1e-4)).any()
+        value = held_of(arm, row)
+        assert ((low - 1e-4 <= value) & (value <= high + 1e-4)).any()
 
 
 def cost(arm: ModuleType, mode: int, q: Array, seed: Array) -> float:

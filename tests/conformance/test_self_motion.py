@@ -8,12 +8,12 @@ from types import ModuleType
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tests.support.held_arms import imported
+from tests.support.held_arms import held_limits, held_of, imported, on_limits
 
 Array = NDArray[np.float64]
 
 
-@pytest.fixture(scope="module", params=["shoulder_elbow_wrist", "franka_fr3"])
+@pytest.fixture(scope="module", params=["shoulder_elbow_wrist", "franka_fr3", "arm_angle"])
 def arm(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
     return imported(request.param, tmp_path_factory.mktemp("arm"))
 
@@ -29,15 +29,15 @@ def rows_on(arm: ModuleType, pose: Array, held: Array) -> tuple[Array, Array]:
 
 
 def test_intervals_are_those_of_a_grid(arm: ModuleType) -> None:
-    j = arm.JOINT_NAMES.index(arm.FREE_JOINTS[0])
-    held = np.arange(arm.LOWER[j], arm.UPPER[j], 1e-3)
+    low, high = held_limits(arm)
+    held = np.arange(low, high, 1e-3)
     seen = 0
     for pose in poses(arm, 12, 3):
         found = arm.self_motion(pose)
         said = np.zeros(len(held), dtype=int)
         beside = np.zeros(len(held), dtype=bool)
         for one in found:
-            assert arm.LOWER[j] <= one.low < one.high <= arm.UPPER[j]
+            assert low <= one.low < one.high <= high
             said += (one.low <= held) & (held <= one.high)
             beside |= (np.abs(held - one.low) < 1e-6) | (np.abs(held - one.high) < 1e-6)
         count = rows_on(arm, pose, held)[1]
@@ -86,11 +86,10 @@ def test_poses_at_which_a_joint_stays_on_its_limit_or_the_arm_is_stretched(
     arm: ModuleType,
 ) -> None:
     """Where branches meet, or touch a limit, all over the range."""
-    for q in (np.zeros(arm.DOF), arm.UPPER, np.where(np.arange(arm.DOF) % 2, arm.LOWER, 0.0)):
-        row = np.clip(q, arm.LOWER, arm.UPPER)
+    for row in on_limits(arm):
         found = arm.self_motion(arm.forward(row))
-        j = arm.JOINT_NAMES.index(arm.FREE_JOINTS[0])
-        assert any(one.low - 1e-4 <= row[j] <= one.high + 1e-4 for one in found)
+        value = held_of(arm, row)
+        assert any(one.low - 1e-4 <= value <= one.high + 1e-4 for one in found)
 
 
 def cost(arm: ModuleType, prefer: str, q: Array, seed: Array) -> Array:
@@ -106,7 +105,6 @@ def cost(arm: ModuleType, prefer: str, q: Array, seed: Array) -> Array:
 @pytest.mark.parametrize("prefer", ["near", "centre", "dexterous"])
 def test_no_random_value_is_better_than_the_search(arm: ModuleType, prefer: str) -> None:
     rng = np.random.default_rng(6)
-    (j,) = [arm.JOINT_NAMES.index(name) for name in arm.FREE_JOINTS]
     for pose in poses(arm, 3, 7):
         seed = rng.uniform(arm.LOWER, arm.UPPER)
         found = arm.search(pose, seed=seed, prefer=prefer)
@@ -114,7 +112,7 @@ def test_no_random_value_is_better_than_the_search(arm: ModuleType, prefer: str)
         assert (np.diff(costs) > -1e-9).all()
         assert np.abs(arm.forward(found.q) - pose).max() < 1e-9
         assert ((found.q >= arm.LOWER) & (found.q <= arm.UPPER)).all()
-        held = rng.uniform(arm.LOWER[j], arm.UPPER[j], 2000)
+        held = rng.uniform(*held_limits(arm), 2000)
         rows = rows_on(arm, pose, held)[0].reshape(-1, arm.DOF)
         rows = rows[~np.isnan(rows[:, 0])]
         assert costs[0] <= cost(arm, prefer, rows, seed).min() + 1e-9
@@ -122,16 +120,17 @@ def test_no_random_value_is_better_than_the_search(arm: ModuleType, prefer: str)
 
 def test_a_seed_without_free_values_holds_its_own(arm: ModuleType) -> None:
     rng = np.random.default_rng(8)
-    (j,) = [arm.JOINT_NAMES.index(name) for name in arm.FREE_JOINTS]
+    rounding = 1e-9 if arm.FREE_JOINTS == ("arm_angle",) else 0.0
     for _ in range(5):
         q = rng.uniform(arm.LOWER, arm.UPPER)
         pose = arm.forward(q)
         found = arm.solve(pose, seed=q)
         assert np.abs(found.q[0] - q).max() < 1e-6
-        assert (found.q[:, j] == q[j]).all()
+        assert (np.abs(held_of(arm, found.q) - held_of(arm, q)) <= rounding).all()
         batch, _, _ = arm.solve_batch(pose[None], seed=q)
         assert np.abs(batch[0, 0] - q).max() < 1e-6
-        assert (arm.solve(pose, seed=q, free=[0.25]).q[:, j] == 0.25).all()
+        rows = arm.solve(pose, seed=q, free=[0.25]).q
+        assert (np.abs(held_of(arm, rows) - 0.25) <= rounding).all()
 
 
 def test_several_held_joints_are_searched_on_a_grid(tmp_path: Path) -> None:

@@ -367,6 +367,21 @@ template <class Y, class X, int N = kCommon<Y, X>>
   return select(-1.2e-16 * ax > y, -third, third);  // an angle that rounds to -pi is pi
 }
 
+// --- held aim ------------------------------------------------------------------------------------
+template <class Arm, bool kAngle = Arm::kArmAngle> struct HeldAim {
+  static constexpr int kCount = 0;  // errors beside the pose's
+  Eigen::Isometry3d pose;
+
+  HeldAim(const Eigen::Isometry3d& T, const std::array<double, Arm::kFree>&) noexcept : pose(T) {}
+  explicit HeldAim(const Eigen::Isometry3d& T) noexcept : pose(T) {}
+
+  static HeldAim own(const double*) noexcept { return HeldAim(Eigen::Isometry3d::Identity()); }
+
+  static void values(const double* q, std::array<double, Arm::kFree>& held) noexcept {
+    for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) held.data()[k] = q[Arm::kFreeJoints.data()[k]];
+  }
+};
+
 // --- small matrix --------------------------------------------------------------------------------
 inline void cross(const double* a, const double* b, double* out) noexcept {
   out[0] = a[1] * b[2] - a[2] * b[1];
@@ -470,17 +485,27 @@ template <class Arm> struct MotionChain {
 
 // --- pose error ----------------------------------------------------------------------------------
 template <class Arm> struct PoseError {
-  static constexpr int kCount = Arm::Task::kCount;
+  using Aim = HeldAim<Arm>;
+  static constexpr int kTask = Arm::Task::kCount, kCount = kTask + Aim::kCount;
   double error[kCount], slope[kCount][Arm::kDof];
 
-  PoseError(const double* q, const Eigen::Isometry3d& pose) noexcept {
+  PoseError(const double* q, const Aim& aim) noexcept {
     double J[6][Arm::kDof];
     const Frame T = MotionChain<Arm>::forward(q, J);
     double t[3][4];
     for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 4; ++c) t[r][c] = pose.matrix().data()[4 * c + r];
-    Arm::Task::error(t, T, error);
-    Arm::Task::slope(T, J, slope);
+      for (int c = 0; c < 4; ++c) t[r][c] = aim.pose.matrix().data()[4 * c + r];
+    if constexpr (Aim::kCount == 0) {
+      Arm::Task::error(t, T, error);
+      Arm::Task::slope(T, J, slope);
+    } else {
+      double missed[kTask], rows[kTask][Arm::kDof];
+      Arm::Task::error(t, T, missed);
+      Arm::Task::slope(T, J, rows);
+      std::copy_n(missed, kTask, error);
+      std::copy_n(rows[0], kTask * Arm::kDof, slope[0]);
+      aim.compare(q, error[kTask], slope[kTask]);
+    }
     for (const int j : Arm::kFreeJoints)
       for (auto& row : slope) row[j] = 0.0;
   }
@@ -494,15 +519,15 @@ template <class Arm> struct PoseError {
 
 // --- fold pair -----------------------------------------------------------------------------------
 template <class Arm> struct FoldPair {
-  static constexpr int kMoving = Arm::kDof - Arm::kFree, kEquations = PoseError<Arm>::kCount;
+  static constexpr int kMoving = Arm::kDof - static_cast<int>(Arm::kFreeJoints.size()), kEquations = PoseError<Arm>::kCount;
   using Vector = double[kMoving];
 
-  Eigen::Isometry3d pose;
+  HeldAim<Arm> aim;
   int moving[kMoving];
   Vector still;  // unit direction in which the pose moves least
   double size;   // the pose's error
 
-  explicit FoldPair(const Eigen::Isometry3d& goal) noexcept : pose(goal) {
+  explicit FoldPair(const HeldAim<Arm>& goal) noexcept : aim(goal) {
     for (int j = 0, k = 0; j < Arm::kDof; ++j)
       if (!Arm::kHeld[j]) moving[k++] = j;
     for (int k = 0; k < kMoving; ++k) still[k] = 1.0 + 0.1 * k;
@@ -529,7 +554,7 @@ template <class Arm> struct FoldPair {
   }
 
   double step(double side, double* q) noexcept {
-    const PoseError<Arm> at(q, pose);
+    const PoseError<Arm> at(q, aim);
     size = at.largest();
     find_still(at);
     double flow[kEquations], bend[kEquations], rest[kEquations];
@@ -546,7 +571,7 @@ template <class Arm> struct FoldPair {
       double there[Arm::kDof];
       std::copy_n(q, Arm::kDof, there);
       for (int k = 0; k < kMoving; ++k) there[moving[k]] += kAlong * still[k];
-      const PoseError<Arm> beyond(there, pose);
+      const PoseError<Arm> beyond(there, aim);
       for (int e = 0; e < kEquations; ++e)
         for (int k = 0; k < kMoving; ++k)
           bend[e] += (beyond.slope[e][moving[k]] - at.slope[e][moving[k]]) * still[k] / kAlong;
@@ -704,6 +729,7 @@ struct RefineStage {
 };
 
 template <class Arm> struct NewtonRefinement {
+  using Aim = HeldAim<Arm>;
   using Policy = typename Arm::Policy;
 
   static void step(const PoseError<Arm>& at, double worst, double (&q)[Arm::kDof]) noexcept {
@@ -723,11 +749,11 @@ template <class Arm> struct NewtonRefinement {
     for (int j = 0; j < Arm::kDof; ++j) q[j] += std::min(std::max(x[j], -Policy::kLargestStep), Policy::kLargestStep);
   }
 
-  static double run(double* q, const Eigen::Isometry3d& pose, int steps) noexcept {
+  static double run(double* q, const Aim& aim, int steps) noexcept {
     double trial[Arm::kDof], best = kInfinity;
     std::copy_n(q, Arm::kDof, trial);
     for (int i = 0, stalled = 0;; ++i) {
-      const PoseError<Arm> at(trial, pose);
+      const PoseError<Arm> at(trial, aim);
       const double worst = at.largest();
       stalled = worst < Policy::kProgress * best && worst > Policy::kConverged ? 0 : stalled + 1;
       if (worst < best) {
@@ -739,27 +765,27 @@ template <class Arm> struct NewtonRefinement {
     }
   }
 
-  static double error_after(double* q, const Eigen::Isometry3d& pose) noexcept {
+  static double error_after(double* q, const Aim& aim) noexcept {
     double error = kInfinity;
     for (const RefineStage& stage : Policy::kRefinement) {
-      error = run(q, pose, stage.steps);
+      error = run(q, aim, stage.steps);
       if (!(error >= stage.fine && error < stage.promising)) break;
     }
     return error;
   }
 
-  static bool refine(double* q, const Eigen::Isometry3d& pose) noexcept {
-    return error_after(q, pose) < Policy::kArrived;
+  static bool refine(double* q, const Aim& aim) noexcept {
+    return error_after(q, aim) < Policy::kArrived;
   }
 };
 
 // --- rank loss -----------------------------------------------------------------------------------
 template <class Arm> struct RankLoss {
-  static constexpr int kMoving = Arm::kDof - Arm::kFree, kEquations = PoseError<Arm>::kCount;
+  static constexpr int kMoving = Arm::kDof - static_cast<int>(Arm::kFreeJoints.size()), kEquations = PoseError<Arm>::kCount;
   static constexpr int kRank = kMoving < kEquations ? kMoving : kEquations;
 
   static bool below(const double* q, double bound) noexcept {
-    const PoseError<Arm> at(q, Eigen::Isometry3d::Identity());
+    const PoseError<Arm> at(q, HeldAim<Arm>::own(q));
     int moving[kMoving];
     for (int j = 0, k = 0; j < Arm::kDof; ++j)
       if (!Arm::kHeld[j]) moving[k++] = j;
@@ -875,6 +901,7 @@ template <class Arm> struct SolutionRows {
 
 // --- careful solve -------------------------------------------------------------------------------
 template <class Arm> struct CarefulSolve {
+  using Aim = HeldAim<Arm>;
   using Options = typename Arm::Options;
   using Policy = typename Arm::Policy;
   using Refinement = NewtonRefinement<Arm>;
@@ -884,6 +911,7 @@ template <class Arm> struct CarefulSolve {
 
   [[gnu::always_inline]] static void solve(const Eigen::Isometry3d& pose, const Options& options,
                                            Solutions& out) noexcept {
+    const Aim aim(pose, options.free);
     bool real = false;
     Places found;
     found.count = 0;
@@ -892,12 +920,12 @@ template <class Arm> struct CarefulSolve {
       for (int j = 0; j < Arm::kDof; ++j)
         start[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kRevolute[j] ? turn * Policy::kTryStep : 0.0);
       for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) start[Arm::kFreeJoints[k]] = options.free[k];
-      Left left = find_rows(pose, start, options, turn == 0, found);
-      if (options.seed && !left.free && any_singular(found)) add_from(pose, start, found);
+      Left left = find_rows(aim, start, options, turn == 0, found);
+      if (options.seed && !left.free && any_singular(found)) add_from(aim, start, found);
       real = real || found.count > 0;
       Row::place_all(options, found);
-      if (found.count == 0 && options.seed && Refinement::refine(start, pose)) {
-        add(pose, found, start, true);
+      if (found.count == 0 && options.seed && Refinement::refine(start, aim)) {
+        add(aim, found, start, true);
         Row::place_all(options, found);
       }
       if (!Arm::kNewton) left.led = any_singular(found);
@@ -936,9 +964,9 @@ template <class Arm> struct CarefulSolve {
     double error = 0.0, start[Arm::kDof], q[Arm::kDof];
 
     Nearest() = default;
-    Nearest(const Eigen::Isometry3d& pose, const Rows& rows, int lane, bool singular) noexcept : marked(singular) {
+    Nearest(const Aim& aim, const Rows& rows, int lane, bool singular) noexcept : marked(singular) {
       for (int j = 0; j < Arm::kDof; ++j) start[j] = q[j] = rows.q[j][lane];
-      if (!Arm::kRefined) error = Refinement::error_after(q, pose);
+      if (!Arm::kRefined) error = Refinement::error_after(q, aim);
     }
 
     void judge() noexcept {
@@ -953,10 +981,10 @@ template <class Arm> struct CarefulSolve {
         double trial[Arm::kDof];
         std::copy_n(from, Arm::kDof, trial);
         FoldPair<Arm>(fold).approach(side, trial);
-        const double left = Refinement::error_after(trial, fold.pose);
+        const double left = Refinement::error_after(trial, fold.aim);
         if (left < Policy::kExact) {
           exact = true;
-          add(fold.pose, out, trial, marked);
+          add(fold.aim, out, trial, marked);
         } else if (left < error) {
           error = left;
           std::copy_n(trial, Arm::kDof, q);
@@ -964,8 +992,8 @@ template <class Arm> struct CarefulSolve {
       }
     }
 
-    void add_nearby(const Eigen::Isometry3d& pose, Places& out) noexcept {
-      FoldPair<Arm> fold(pose);
+    void add_nearby(const Aim& aim, Places& out) noexcept {
+      FoldPair<Arm> fold(aim);
       if (broken()) {
         double around[Policy::kTries][Arm::kDof];
         if (fold.walk(start, around) >= Policy::kArrived)
@@ -974,7 +1002,7 @@ template <class Arm> struct CarefulSolve {
         std::copy_n(q, Arm::kDof, start);
         take_pair(fold, start, out);
       }
-      if (!exact && !settled && error < Policy::kArrived) add(pose, out, q, marked);
+      if (!exact && !settled && error < Policy::kArrived) add(aim, out, q, marked);
     }
   };
 
@@ -988,7 +1016,7 @@ template <class Arm> struct CarefulSolve {
       });
     }
 
-    void take(const Nearest& start, bool beside, const Eigen::Isometry3d& pose, Places& out) noexcept {
+    void take(const Nearest& start, bool beside, const Aim& aim, Places& out) noexcept {
       for (int k = 0; k < count && beside; ++k)
         if (Row::same(start.q, all[k].q)) return;
       Nearest& one = all[count] = start;
@@ -998,7 +1026,7 @@ template <class Arm> struct CarefulSolve {
       ++count;
       if (!one.settled) return;
       if (one.near || one.marked)
-        add(pose, out, one.q, one.marked);
+        add(aim, out, one.q, one.marked);
       else
         Row::add(out, one.q, false);
     }
@@ -1009,16 +1037,16 @@ template <class Arm> struct CarefulSolve {
     return std::find(rows.singular.begin(), end, true) != end;
   }
 
-  static void add_from(const Eigen::Isometry3d& pose, const double* q0, Places& out) noexcept {
+  static void add_from(const Aim& aim, const double* q0, Places& out) noexcept {
     double q[Arm::kDof];
     std::copy_n(q0, Arm::kDof, q);
-    if (Refinement::refine(q, pose)) add(pose, out, q, true);
+    if (Refinement::refine(q, aim)) add(aim, out, q, true);
   }
 
-  static void add(const Eigen::Isometry3d& pose, Places& out, const double* q, bool marked) noexcept {
+  static void add(const Aim& aim, Places& out, const double* q, bool marked) noexcept {
     const bool singular = RankLoss<Arm>::below(q, marked ? Policy::kContinuumRankLoss : Policy::kRankLoss);
     for (int k = 0; k < out.count && singular; ++k)
-      if (Row::flag(out, k) && between(pose, q, Row::row(out, k))) return;
+      if (Row::flag(out, k) && between(aim, q, Row::row(out, k))) return;
     Row::add(out, q, singular);
   }
 
@@ -1033,32 +1061,32 @@ template <class Arm> struct CarefulSolve {
     return true;
   }
 
-  static bool between(const Eigen::Isometry3d& pose, const double* a, const double* b) noexcept {
+  static bool between(const Aim& aim, const double* a, const double* b) noexcept {
     if (!alike(a, b)) return false;
     double middle[Arm::kDof];
     for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * change(j, a, b);
-    return PoseError<Arm>(middle, pose).largest() < Policy::kConverged;
+    return PoseError<Arm>(middle, aim).largest() < Policy::kConverged;
   }
 
-  [[gnu::always_inline]] static Left find_rows(const Eigen::Isometry3d& pose, const double* q0, const Options& options,
+  [[gnu::always_inline]] static Left find_rows(const Aim& aim, const double* q0, const Options& options,
                                                bool beside, Places& out) noexcept {
     Rows rows;
-    find_lanes(pose, q0, options, rows);
+    find_lanes(aim.pose, q0, options, rows);
     double q[Arm::kDof];
     Left left;
     for (const int lane : Arm::kLaneOfRow) {
       left.free = left.free || (bits(rows, lane) & kHit) != 0;
       left.led = left.led || (bits(rows, lane) & (kSingular | kReal)) == (kSingular | kReal);
     }
-    if (left.free) add_from(pose, q0, out);
+    if (left.free) add_from(aim, q0, out);
     Starts starts;
     for (const int lane : Arm::kLaneOfRow)
       if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
-        starts.take({pose, rows, lane, (bits(rows, lane) & kSingular) != 0}, false, pose, out);
+        starts.take({aim, rows, lane, (bits(rows, lane) & kSingular) != 0}, false, aim, out);
     if (Arm::kBesides > 0 && beside && (kBesideAnywhere || left.free || starts.close()))
-      take_beside(pose, q0, options, starts, out);
+      take_beside(aim, q0, options, starts, out);
     for (int k = 0; k < starts.count; ++k)
-      if (starts.all[k].near) starts.all[k].add_nearby(pose, out);
+      if (starts.all[k].near) starts.all[k].add_nearby(aim, out);
     for (const int lane : Arm::kLaneOfRow) {
       if (Arm::kRefined || (bits(rows, lane) & (kReal | kRough)) != kReal) continue;
       for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
@@ -1067,14 +1095,14 @@ template <class Arm> struct CarefulSolve {
     return left;
   }
 
-  static void take_beside(const Eigen::Isometry3d& pose, const double* q0, const Options& options, Starts& starts,
+  static void take_beside(const Aim& aim, const double* q0, const Options& options, Starts& starts,
                           Places& out) noexcept {
     if constexpr (Arm::kBesides > 0)
       for (const auto& motion : Arm::kBeside) {
         Rows rows;
-        find_lanes(displaced(pose, motion), q0, options, rows);
+        find_lanes(displaced(aim.pose, motion), q0, options, rows);
         for (const int lane : Arm::kLaneOfRow)
-          if ((bits(rows, lane) & kReal) != 0) starts.take({pose, rows, lane, false}, true, pose, out);
+          if ((bits(rows, lane) & kReal) != 0) starts.take({aim, rows, lane, false}, true, aim, out);
       }
   }
 };
@@ -1371,8 +1399,10 @@ template <class Arm, template <class> class Way> struct PoseSolver {
       if (far && options.seed) without_turns();
       if constexpr (Arm::kFree > 0) {
         const Options plain;
-        for (std::size_t k = 0; k < Arm::kFree && options.seed && options.hold_seed; ++k)
-          if (options.free[k] == plain.free[k]) options.free[k] = options.seed->data()[Arm::kFreeJoints[k]];
+        auto own = plain.free;
+        if (options.seed && options.hold_seed) HeldAim<Arm>::values(options.seed->data(), own);
+        for (std::size_t k = 0; k < Arm::kFree; ++k)
+          if (options.free[k] == plain.free[k]) options.free[k] = own[k];
       }
     }
     Checked(const Checked&) = delete;
@@ -1485,6 +1515,7 @@ template <class Arm, template <class> class Way> struct Projection {
     nearest(t, options, q);
     Eigen::Isometry3d pose;
     Chords::by_columns(MotionChain<Arm>::forward(q), pose.matrix().data());
+    HeldAim<Arm>::values(q, options.free);
     Way<Arm>::template solve<1>(&pose, options, &out);
     if (SolutionRows<Arm>::place(q, options)) SolutionRows<Arm>::add(out, q, false);
     if (out.count > 0) out.status = Arm::Status::Ok;
@@ -1589,7 +1620,7 @@ template <class Arm, template <class> class Way> struct Projection {
 template <class A> struct AllMoving : A {
   static constexpr int kFree = 0;
   static constexpr std::array<int, 0> kFreeJoints = {};
-  static constexpr bool kHeld[A::kDof] = {};
+  static constexpr bool kHeld[A::kDof] = {}, kArmAngle = false;
 };
 
 template <class A, class Solver> struct PathStep {
@@ -1647,7 +1678,7 @@ template <class A, class Solver> struct PathStep {
   }
 
   static double move(double* at, const Eigen::Isometry3d& pose, const bool* stopped) noexcept {
-    PoseError<AllMoving<A>> here(at, pose);
+    PoseError<AllMoving<A>> here(at, HeldAim<AllMoving<A>>(pose));
     constexpr int n = PoseError<AllMoving<A>>::kCount;
     const double worst = here.largest();
     double N[n][n];
@@ -1813,7 +1844,7 @@ template <class A> struct RowPreference {
 
   static double smallest_singular_value(const double* q) noexcept {
     constexpr int e = PoseError<AllMoving<A>>::kCount, n = A::kDof < e ? A::kDof : e;
-    PoseError<AllMoving<A>> at(q, Eigen::Isometry3d::Identity());
+    PoseError<AllMoving<A>> at(q, HeldAim<AllMoving<A>>::own(q));
     for (int a = 0; a < e; ++a)
       if (A::kWholePose ? a < 3 : A::kRead[a][1] == 3)
         for (double& x : at.slope[a]) x *= A::kSize;
@@ -1907,9 +1938,10 @@ struct Arm {
   static constexpr int kMaxSolutions = pan_lift_ik::kMaxSolutions;
   static constexpr auto& kLower = pan_lift_ik::kLower;
   static constexpr auto& kUpper = pan_lift_ik::kUpper;
-  static constexpr std::array<int, kFree> kFreeJoints = {};
+  static constexpr std::array<int, 0> kFreeJoints = {};
   static constexpr bool kRevolute[kDof] = {true, false};
   static constexpr bool kHeld[kDof] = {false, false};
+  static constexpr bool kArmAngle = false;
 
   // what the task reads
   using Task = PoseEntries<Arm>;

@@ -484,6 +484,25 @@ class _Together(Protocol):
     def __call__(self, arm: _Arm, q: Array, T: Array) -> tuple[Array, _Flags, _Flags]: ...
 
 
+class _HeldAngle(Protocol):
+    """An angle that is held in place of a joint, of rows (..., dof) and their poses (..., 4, 4)."""
+
+    def of_rows(self, q: Array, pose: Array) -> Array:
+        """The angles (...)."""
+
+    def beside_line(self, q: Array, pose: Array) -> Array:
+        """Where elbows are beside the line that the angle is counted about (..., 2), m."""
+
+    def plane(self, T: Array) -> tuple[Array, Array]:
+        """Directions (..., 3) from the line: where the angle is 0, and a quarter turn on."""
+
+    def aims(self, T: Array, held: Array) -> Array:
+        """Poses T (k, 4, 4) and angles `held` (k, 1) to be reached, as `errors` takes them."""
+
+    def errors(self, q: Array, aim: Array) -> tuple[Array, Array]:
+        """By how much rows (k, dof) miss them (k,), and the derivatives (k, dof)."""
+
+
 @dataclass(frozen=True)
 class _Arm:
     """`free`, `free_joints`, `free_defaults`: indices, names and values of held joints. `most`: rows at
@@ -493,7 +512,8 @@ class _Arm:
     revolute and not held; `moving`: indices of those not held.
     `together`: `refine_together` where the closed form is of another geometry than the file's, and all rows
     are rough.
-    `branch_kind`, `elbow_end`: as in `branch_names`."""
+    `branch_kind`, `elbow_end`: as in `branch_names`. `angle`: the arm angle, where that is held after
+    the joints."""
 
     chain: _Chain
     task: _Task
@@ -512,11 +532,159 @@ class _Arm:
     together: _Together | None
     branch_kind: str
     elbow_end: int
+    angle: _HeldAngle | None = None
 
     @property
     def rounded(self) -> bool:
         """Whether the closed form is of another geometry than the file's."""
         return self.together is not None
+
+
+# Newton's method on the chain: damped least squares (Levenberg 1944, Marquardt 1963).
+
+
+_BLOCK = 1024  # rows whose arrays fit into a processor's cache
+
+
+def _in_blocks(step: Callable[[Array, Array], Any], q: Array, T: Array) -> Any:
+    """What `step` makes of rows (k, dof) and poses (k, 4, 4), a part of them at a time."""
+    if len(q) <= _BLOCK:
+        return step(q, T)
+    cuts = range(0, len(q), _BLOCK)
+    parts = [step(q[i : i + _BLOCK], T[i : i + _BLOCK]) for i in cuts]
+    return tuple(np.concatenate(part) for part in zip(*parts))
+
+
+def _refine(
+    chain: _Chain,
+    task: _Task,
+    moving: Sequence[int],
+    q: Array,
+    T: Array,
+    policy: _Policy,
+    angle: _HeldAngle | None = None,
+) -> tuple[Array, Array, Array, Array]:
+    """Newton steps of the joints `moving` from q (k, dof) towards T (k, 4, 4); the errors that they leave,
+    and those before (k,), and the task's derivatives by the joints (k, m, n) where the rows end. With an
+    `angle` that is held T are its aims."""
+    (steps, fine, promising), *further = policy.refinement
+
+    def first(part: Array, aim: Array) -> tuple[Array, ...]:
+        return _newton(chain, task, moving, part, aim, steps, policy, angle)
+
+    q, error, before, slope = _in_blocks(first, q, T)
+    for more, finer, less in further:
+        going = np.flatnonzero((error >= fine) & (error < promising))
+        if not len(going):
+            break
+        part = _newton(chain, task, moving, q[going], T[going], more, policy, angle)
+        q[going], error[going], slope[going] = part[0], part[1], part[3]
+        before[going] = np.maximum(before[going], part[2])
+        fine, promising = finer, less
+    return q, error, before, slope
+
+
+def _newton(
+    chain: _Chain,
+    task: _Task,
+    moving: Sequence[int],
+    q: Array,
+    T: Array,
+    steps: int,
+    policy: _Policy,
+    angle: _HeldAngle | None = None,
+) -> tuple[Array, Array, Array, Array]:
+    """The best rows (k, dof) of at most `steps` damped steps, their errors and those of q (k,), and the
+    derivatives (k, m, n) at them."""
+    moving = list(moving)
+    best = np.full(len(q), inf)
+    result, going, stalled = q.copy(), np.arange(len(q)), np.zeros(len(q), dtype=int)
+    for step in range(steps + 1):
+        error, J = _errors_and_slopes(chain, task, moving, q, T, angle)
+        worst = np.abs(error).max(axis=1)
+        if step == 0:
+            before, slope = worst, J.copy()
+        least = best[going]
+        better = worst < least
+        slope[going[better]] = J[better]
+        stalled = np.where(worst < policy.progress * least, 0, stalled + 1)
+        result[going[better]] = q[better]
+        best[going] = least = np.minimum(least, worst)
+        on = (least > policy.converged) & (stalled < policy.patience)
+        if step == steps or not on.any():
+            break
+        going, stalled, worst, q, T, J = (x[on] for x in (going, stalled, worst, q, T, J))
+        Jt = J.transpose(0, 2, 1)
+        damping = np.maximum(policy.least_damping, policy.damping * np.minimum(worst, 1.0) ** 2)
+        normal = Jt @ J + damping[:, None, None] * np.eye(len(moving))
+        change = np.linalg.solve(normal, Jt @ error[on, :, None])[:, :, 0]
+        q[:, moving] += np.clip(change, -policy.largest_step, policy.largest_step)
+    return result, best, before, slope
+
+
+def _errors_and_slopes(
+    chain: _Chain,
+    task: _Task,
+    moving: Sequence[int],
+    q: Array,
+    T: Array,
+    angle: _HeldAngle | None,
+) -> tuple[Array, Array]:
+    """Errors (k, m) of rows (k, dof), and their derivatives (k, m, n) by the joints `moving`."""
+    pose, J = _tip_and_jacobian(chain, q)
+    error, slope = task.error(pose, T), task.rows(pose, J)[:, :, list(moving)]
+    if angle is None:
+        return error, slope
+    more, line = angle.errors(q, T)
+    parts = error, more[:, None], slope, line[:, None, list(moving)]
+    return np.concatenate(parts[:2], axis=1), np.concatenate(parts[2:], axis=1)
+
+
+def _rank_loss(chain: _Chain, task: _Task, moving: Sequence[int], q: Array) -> Array:
+    """Smallest singular value (k,) of the task's derivatives by the joints `moving` at q (k, dof)."""
+    return _least_singular(task.rows(*_tip_and_jacobian(chain, q))[:, :, list(moving)])
+
+
+def _steeper(slope: Array, bound: float) -> _Flags:
+    """Which derivatives (k, m, n) have no singular value below `bound`; of those near it some may not be
+    told. Each column is at least the smallest singular value away from what the others span, and the
+    nearest of n at most its sqrt(n)-fold."""
+    count = slope.shape[2]
+    inverse = np.linalg.inv(slope.transpose(0, 2, 1) @ slope + 1e-14 * np.eye(count))
+    nearest = 1.0 / np.sqrt(np.einsum("kii->ki", inverse).max(axis=1))
+    return np.asarray(nearest > bound * count**0.5)
+
+
+def _least_singular(slope: Array) -> Array:
+    """Smallest singular value (k,) of derivatives (k, m, n)."""
+    return np.asarray(np.linalg.svd(slope, compute_uv=False)[:, -1])
+
+
+# Values of what is held: of joints, and of the arm angle.
+
+
+def _held_of(arm: _Arm, q: Array) -> Array:
+    """What rows (..., dof) have of it: (..., held)."""
+    values = q[..., list(arm.free)]
+    if arm.angle is None:
+        return values
+    angle = arm.angle.of_rows(q, _forward(arm.chain, q))
+    return np.concatenate([values, angle[..., None]], axis=-1)
+
+
+def _aims(arm: _Arm, T: Array, held: Array) -> Array:
+    """What rows are refined towards: poses (k, 4, 4), and angles that are held (k, held)."""
+    return T if arm.angle is None else arm.angle.aims(T, held[:, len(arm.free) :])
+
+
+def _row_rank_loss(arm: _Arm, q: Array) -> Array:
+    """Smallest singular value (k,) of the derivatives of pose, and angle that is held, at q (k, dof)."""
+    if arm.angle is None:
+        return _rank_loss(arm.chain, arm.task, arm.moving, q)
+    pose = _forward(arm.chain, q)
+    aim = _aims(arm, pose, _held_of(arm, q))
+    slope = _errors_and_slopes(arm.chain, arm.task, arm.moving, q, aim, arm.angle)[1]
+    return _least_singular(slope)
 
 
 # The arguments `free` and `seed` as joint values.
@@ -532,7 +700,7 @@ def _held_values(
     where `free` gives none. Raises ValueError where they are no such values."""
     names, others = arm.free_joints, arm.free_defaults
     if near is not None:
-        others = tuple(near[j] for j in arm.free)
+        others = tuple(_held_of(arm, np.array(near)).tolist())
     if free is None:
         return others
     if isinstance(free, Mapping):
@@ -562,9 +730,9 @@ def _held_rows(
     if free is None or isinstance(free, Mapping):
         values = np.tile(_held_values(arm, free, None), (count, 1)).reshape(shape)
         given = () if free is None else free
-        for k, (j, name) in enumerate(zip(arm.free, arm.free_joints)):
-            if near is not None and name not in given:
-                values[:, k] = near[:, j]
+        if near is not None:
+            own = [k for k, name in enumerate(arm.free_joints) if name not in given]
+            values[:, own] = _held_of(arm, near)[:, own]
         return values
     held = _real_array(free, "free")
     single = len(arm.free_joints) == 1 and held.shape == (count,)
@@ -597,95 +765,6 @@ def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...], name: str =
     return np.where(far, np.fmod(values, 2.0 * pi), values) if far.any() else values
 
 
-# Newton's method on the chain: damped least squares (Levenberg 1944, Marquardt 1963).
-
-
-_BLOCK = 1024  # rows whose arrays fit into a processor's cache
-
-
-def _in_blocks(step: Callable[[Array, Array], Any], q: Array, T: Array) -> Any:
-    """What `step` makes of rows (k, dof) and poses (k, 4, 4), a part of them at a time."""
-    if len(q) <= _BLOCK:
-        return step(q, T)
-    cuts = range(0, len(q), _BLOCK)
-    parts = [step(q[i : i + _BLOCK], T[i : i + _BLOCK]) for i in cuts]
-    return tuple(np.concatenate(part) for part in zip(*parts))
-
-
-def _refine(
-    chain: _Chain, task: _Task, moving: Sequence[int], q: Array, T: Array, policy: _Policy
-) -> tuple[Array, Array, Array, Array]:
-    """Newton steps of the joints `moving` from q (k, dof) towards T (k, 4, 4); the errors that they leave,
-    and those before (k,), and the task's derivatives by the joints (k, m, n) where the rows end."""
-    (steps, fine, promising), *further = policy.refinement
-
-    def first(part: Array, aim: Array) -> tuple[Array, ...]:
-        return _newton(chain, task, moving, part, aim, steps, policy)
-
-    q, error, before, slope = _in_blocks(first, q, T)
-    for more, finer, less in further:
-        going = np.flatnonzero((error >= fine) & (error < promising))
-        if not len(going):
-            break
-        part = _newton(chain, task, moving, q[going], T[going], more, policy)
-        q[going], error[going], slope[going] = part[0], part[1], part[3]
-        before[going] = np.maximum(before[going], part[2])
-        fine, promising = finer, less
-    return q, error, before, slope
-
-
-def _newton(
-    chain: _Chain, task: _Task, moving: Sequence[int], q: Array, T: Array, steps: int, policy: _Policy
-) -> tuple[Array, Array, Array, Array]:
-    """The best rows (k, dof) of at most `steps` damped steps, their errors and those of q (k,), and the
-    derivatives (k, m, n) at them."""
-    moving = list(moving)
-    best = np.full(len(q), inf)
-    result, going, stalled = q.copy(), np.arange(len(q)), np.zeros(len(q), dtype=int)
-    for step in range(steps + 1):
-        pose, J = _tip_and_jacobian(chain, q)
-        error, J = task.error(pose, T), task.rows(pose, J)[:, :, moving]
-        worst = np.abs(error).max(axis=1)
-        if step == 0:
-            before, slope = worst, J.copy()
-        least = best[going]
-        better = worst < least
-        slope[going[better]] = J[better]
-        stalled = np.where(worst < policy.progress * least, 0, stalled + 1)
-        result[going[better]] = q[better]
-        best[going] = least = np.minimum(least, worst)
-        on = (least > policy.converged) & (stalled < policy.patience)
-        if step == steps or not on.any():
-            break
-        going, stalled, worst, q, T, J = (x[on] for x in (going, stalled, worst, q, T, J))
-        Jt = J.transpose(0, 2, 1)
-        damping = np.maximum(policy.least_damping, policy.damping * np.minimum(worst, 1.0) ** 2)
-        normal = Jt @ J + damping[:, None, None] * np.eye(len(moving))
-        change = np.linalg.solve(normal, Jt @ error[on, :, None])[:, :, 0]
-        q[:, moving] += np.clip(change, -policy.largest_step, policy.largest_step)
-    return result, best, before, slope
-
-
-def _rank_loss(chain: _Chain, task: _Task, moving: Sequence[int], q: Array) -> Array:
-    """Smallest singular value (k,) of the task's derivatives by the joints `moving` at q (k, dof)."""
-    return _least_singular(task.rows(*_tip_and_jacobian(chain, q))[:, :, list(moving)])
-
-
-def _steeper(slope: Array, bound: float) -> _Flags:
-    """Which derivatives (k, m, n) have no singular value below `bound`; of those near it some may not be
-    told. Each column is at least the smallest singular value away from what the others span, and the
-    nearest of n at most its sqrt(n)-fold."""
-    count = slope.shape[2]
-    inverse = np.linalg.inv(slope.transpose(0, 2, 1) @ slope + 1e-14 * np.eye(count))
-    nearest = 1.0 / np.sqrt(np.einsum("kii->ki", inverse).max(axis=1))
-    return np.asarray(nearest > bound * count**0.5)
-
-
-def _least_singular(slope: Array) -> Array:
-    """Smallest singular value (k,) of derivatives (k, m, n)."""
-    return np.asarray(np.linalg.svd(slope, compute_uv=False)[:, -1])
-
-
 # Solutions near a singularity, where Newton's method stalls.
 
 
@@ -714,7 +793,7 @@ def _rows_nearby(arm: _Arm, starts: _Starts) -> tuple[_Index, Array, _Flags]:
     """Which start (m,) each solution (m, dof) comes from that steps lead to, those that are sure first; and
     which starts (k,) are so near a singularity that other solutions may start from none of them."""
     T, own = starts.T, starts.source >= 0
-    q, error, _, slope = _refine(arm.chain, arm.task, arm.moving, starts.q, T, arm.policy)
+    q, error, _, slope = _refine(arm.chain, arm.task, arm.moving, starts.q, T, arm.policy, arm.angle)
     arrived = error < arm.policy.arrived
     broken = starts.marked & (arm.rounded | ~arrived) & own
     loss = _least_singular(slope)
@@ -736,7 +815,9 @@ def _rows_nearby(arm: _Arm, starts: _Starts) -> tuple[_Index, Array, _Flags]:
         return first, own_rows, close
     owner, side = np.repeat(owner, 2), np.tile([1.0, -1.0], len(owner))
     pairs = _approach(arm, np.repeat(trial, 2, axis=0), T[owner], side)
-    pairs, left = _refine(arm.chain, arm.task, arm.moving, pairs, T[owner], arm.policy)[:2]
+    pairs, left = _refine(arm.chain, arm.task, arm.moving, pairs, T[owner], arm.policy, arm.angle)[
+        :2
+    ]
     exact = left < arm.policy.exact
     for i, row, e in zip(owner[~exact].tolist(), pairs[~exact], left[~exact].tolist()):
         if e < error[i]:
@@ -821,13 +902,12 @@ def _step(
     """q (k, dof) after a step, the unit directions (k, n) in which the pose moves least, in the sense of
     `still`, how far the step goes along them (k,), not at all on side 0, and the errors before (k,)."""
     columns = list(arm.moving)
-    pose, J = _tip_and_jacobian(arm.chain, q)
-    error, slope = arm.task.error(pose, T), arm.task.rows(pose, J)[:, :, columns]
+    error, slope = _errors_and_slopes(arm.chain, arm.task, columns, q, T, arm.angle)
     still = _still(slope, still, arm.policy.least_damping)
     flow = np.einsum("kej,kj->ke", slope, still)
     there = q.copy()
     there[:, columns] += _ALONG * still
-    beyond = arm.task.rows(*_tip_and_jacobian(arm.chain, there))[:, :, columns]
+    _, beyond = _errors_and_slopes(arm.chain, arm.task, columns, there, T, arm.angle)
     bend = np.einsum("kej,kj->ke", beyond - slope, still) / _ALONG
     V = slope - flow[:, :, None] * still[:, None, :]
     Vt = V.transpose(0, 2, 1)
@@ -1178,11 +1258,11 @@ def _branch_numbers(arm: _Arm, q: Array) -> list[int]:
     """For each row the closed form's branch, of those for the row's own pose, that is nearest to it."""
     poses = _forward(arm.chain, q)
     with np.errstate(all="ignore"):
-        rows, valid, _, _ = arm.branches_batch(poses, q, q[:, arm.free])
+        rows, valid, _, _ = arm.branches_batch(poses, q, _held_of(arm, q))
         gap = rows - q[:, None, :]
         turned = np.abs((gap + np.pi) % (2.0 * np.pi) - np.pi)
         gap = np.where(arm.chain.revolute, turned, np.abs(gap))
-        gap[:, :, arm.free] = 0.0
+        gap[:, :, list(arm.free)] = 0.0
         distance = np.where(valid, gap.max(axis=2), np.inf)
     distance[np.isnan(distance)] = np.inf
     nearest: list[int] = distance.argmin(axis=1).tolist()
@@ -1385,7 +1465,7 @@ def _solve_pose(
 
 def _held_reason(arm: _Arm, held: Row, real: bool) -> str:
     """What holding joints has to do with it; nothing where none is held."""
-    if not arm.free:
+    if not held:
         return ""
     values = ", ".join(f"{name} = {x:.6g}" for name, x in zip(arm.free_joints, held))
     what = "all solutions are outside the limits" if real else "no solution"
@@ -1401,6 +1481,7 @@ def _projected(
     """Solutions of the nearest pose that the arm can take."""
     row = _nearest_row(arm, np.array(T), _start(arm, near, held, 0.0), limits)
     pose: list[list[float]] = _forward(arm.chain, row).tolist()
+    held = tuple(_held_of(arm, np.array(row)).tolist())
     found, _ = _fitting(arm, pose, near, held, limits)
     if len(found) < arm.most and _is_new(arm, row, found):
         found += _place_rows(arm, [(row, False)], near, limits)
@@ -1425,7 +1506,7 @@ def _fitting(
         starts = [_start(arm, near, held, n * arm.policy.try_step) for n in tries]
         for start, rows in zip(starts, _rows(arm, T, starts, held)):
             if near is not None and not rows.free and any(flag for _, flag in rows.kept):
-                _add(arm, T, _from_seed(arm, T, start), rows.kept)
+                _add(arm, T, _from_seed(arm, T, start, held), rows.kept)
             real = real or bool(rows.kept)
             placed = _place_rows(arm, rows.kept, near, limits)
             if out:
@@ -1433,7 +1514,7 @@ def _fitting(
             else:
                 out = placed
             if not out and near is not None:
-                out = _place_rows(arm, _from_seed(arm, T, start), near, limits)
+                out = _place_rows(arm, _from_seed(arm, T, start, held), near, limits)
             if not rows.free:
                 return out, real
             if out and (rows.led if arm.rounded else any(flag for _, flag in out)):
@@ -1441,9 +1522,9 @@ def _fitting(
     return out, real
 
 
-def _from_seed(arm: _Arm, T: list[list[float]], start: Row) -> list[_Found]:
+def _from_seed(arm: _Arm, T: list[list[float]], start: Row, held: Row) -> list[_Found]:
     """What Newton steps from given values lead to."""
-    return [row for _, row in _refined(arm, [(start, True)], T, [-1])[0]]
+    return [row for _, row in _refined(arm, [(start, True)], T, held, [-1])[0]]
 
 
 def _add(arm: _Arm, T: list[list[float]], rows: list[_Found], kept: list[_Found]) -> None:
@@ -1473,7 +1554,7 @@ def _rows(arm: _Arm, T: list[list[float]], starts: list[Row], held: Row) -> list
     for i, q0 in enumerate(starts):
         answers, hit = arm.branches(T, q0, held)
         if arm.together and len(starts) == 1 and not hit:
-            certain = _pose_solving_certain_rows(arm, arm.together, answers, T)
+            certain = _pose_solving_certain_rows(arm, arm.together, answers, T, held)
             if certain is not None:
                 return [_Rows(certain, False, False)]
         free.append(hit)
@@ -1489,10 +1570,10 @@ def _rows(arm: _Arm, T: list[list[float]], starts: list[Row], held: Row) -> list
     looks = len(starts) == 1 and len(arm.beside) > 0
     if looks and (free[0] or arm.policy.beside_reach >= arm.policy.anywhere):
         beside = _rows_beside(arm, T, starts[0], held)
-    steps, close = _refined(arm, own + beside, T, source + [1] * len(beside))
+    steps, close = _refined(arm, own + beside, T, held, source + [1] * len(beside))
     if close and looks and not beside:
         beside = _rows_beside(arm, T, starts[0], held)
-        steps, _ = _refined(arm, own + beside, T, source + [1] * len(beside))
+        steps, _ = _refined(arm, own + beside, T, held, source + [1] * len(beside))
     stepped += [(0, row) for row in beside]
     for i, (row, singular) in [(stepped[k][0], found) for k, found in steps] + fine:
         if _is_new(arm, row, kept[i]) and not (singular and _repeats(arm, T, row, kept[i])):
@@ -1507,14 +1588,14 @@ def _rows_beside(arm: _Arm, T: list[list[float]], start: Row, held: Row) -> list
 
 
 def _pose_solving_certain_rows(
-    arm: _Arm, together: _Together, answers: list[_Candidate], T: list[list[float]]
+    arm: _Arm, together: _Together, answers: list[_Candidate], T: list[list[float]], held: Row
 ) -> list[_Found] | None:
     """The rows refined all at once; None where that leaves a doubt."""
     if not answers or any(flag for _, flag, _ in answers):
         anywhere = arm.policy.beside_reach >= arm.policy.anywhere
         return None if answers or anywhere else []
     start = np.array([row for row, _, _ in answers])
-    q, arrived, missed = together(arm, start, np.array([T]))
+    q, arrived, missed = together(arm, start, _aim(arm, T, held))
     if not (arrived | missed).all():
         return None
     kept: list[_Found] = []
@@ -1525,18 +1606,23 @@ def _pose_solving_certain_rows(
     return kept
 
 
+def _aim(arm: _Arm, T: list[list[float]], held: Row) -> Array:
+    """The pose and what is held: (1, ...)."""
+    return _aims(arm, np.array([T]), np.array([held]))
+
+
 def _refined(
-    arm: _Arm, rows: list[_Found], T: list[list[float]], source: list[int]
+    arm: _Arm, rows: list[_Found], T: list[list[float]], held: Row, source: list[int]
 ) -> tuple[list[tuple[int, _Found]], bool]:
     """What Newton steps from the rows lead to, with the row's number: one solution, those that meet near a
     singularity, or none; and whether others may start from none. source (k,) as in `_Starts`."""
     if not rows:
         return [], False
-    target = np.broadcast_to(np.array(T), (len(rows), 4, 4))
+    target = np.repeat(_aim(arm, T, held), len(rows), axis=0)
     start, marked = np.array([row for row, _ in rows]), np.array([flag for _, flag in rows])
     starts = _Starts(start, target, np.zeros(len(rows), dtype=np.intp), marked, np.array(source))
     owner, q, close = _rows_nearby(arm, starts)
-    loss = _rank_loss(arm.chain, arm.task, arm.moving, q)
+    loss = _row_rank_loss(arm, q)
     flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
     singular = (marked[owner] & (loss < continuum)) | (loss < flat)
     found = zip(owner.tolist(), q.tolist(), singular.tolist())
@@ -1649,12 +1735,13 @@ def _nearby_rows(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[
     own = valid.shape[1] // (1 + len(arm.beside)) if anywhere else valid.shape[1]
     pose, column = np.nonzero(valid)
     marked, source = np.zeros(len(pose), dtype=bool), (column >= own).astype(int)
-    owner, rows, close = _rows_nearby(arm, _Starts(q[pose, column], T[pose], pose, marked, source))
+    starts = _Starts(q[pose, column], _aims(arm, T, held)[pose], pose, marked, source)
+    owner, rows, close = _rows_nearby(arm, starts)
     order = np.argsort(pose[owner], kind="stable")
     of, rows = pose[owner][order], rows[order]
     flat = np.zeros(len(T), dtype=bool)
     if len(rows):
-        loss = _rank_loss(arm.chain, arm.task, arm.moving, rows)
+        loss = _row_rank_loss(arm, rows)
         flat[of[loss < arm.policy.rank_loss]] = True
     if not anywhere:
         flat[pose[close]] = True
@@ -1683,9 +1770,9 @@ def _certain_rows(
     continuum, and for which poses (N,) that leaves a doubt."""
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
     q, valid, singular, _ = _closed_form(arm, T, start, held)
-    q[:, :, arm.free] = held[:, None, :]
+    q[:, :, list(arm.free)] = held[:, None, : len(arm.free)]
     pose, row = np.nonzero(valid)
-    q[pose, row], arrived, missed = together(arm, q[pose, row], T[pose])
+    q[pose, row], arrived, missed = together(arm, q[pose, row], _aims(arm, T, held)[pose])
     found, doubt = valid.copy(), np.zeros(len(T), dtype=bool)
     found[pose, row] = arrived
     doubt[pose[~(arrived | missed)]] = True
@@ -1704,7 +1791,8 @@ def _careful_rows(
     steep = np.ones(len(T), dtype=bool)
     pose, row = np.nonzero(rough & valid)
     if len(pose):
-        done = _refine(arm.chain, arm.task, arm.moving, q[pose, row], T[pose], arm.policy)
+        aim, found = _aims(arm, T, held)[pose], q[pose, row]
+        done = _refine(arm.chain, arm.task, arm.moving, found, aim, arm.policy, arm.angle)
         q[pose, row], valid[pose, row] = done[0], done[1] < arm.policy.arrived
         steep[pose[~_steeper(done[3], arm.policy.fold_reach)]] = False
     return q, _distinct(arm, q, valid), singular, steep
@@ -1724,7 +1812,7 @@ def _starts(
             np.concatenate([first, *(part[k] for part in more)], axis=1)
             for k, first in ((0, q), (1, valid), (3, rough))
         )
-    q[:, :, arm.free] = held[:, None, :]
+    q[:, :, list(arm.free)] = held[:, None, : len(arm.free)]
     return q, valid, singular, rough
 
 
@@ -1856,7 +1944,7 @@ class _Walk:
     ) -> Status:
         """To the row next to the start, or the best that a search finds."""
         self.q = start
-        if self.arm.free:
+        if self.arm.free_joints:
             rows, flags, _ = self._unstopped(pose)
             if len(rows) and np.abs(rows[0] - start).max() < _BESIDE_START:
                 self.crossed = bool(flags[0])
@@ -1912,7 +2000,7 @@ class _Walk:
 
     def _rows(self, pose: Array, expected: Array) -> tuple[Array, _Flags, Status]:
         """All rows without limits; with held joints the one that those lead to which no limit stops."""
-        if self.arm.free:
+        if self.arm.free_joints:
             return self._unstopped(pose)
         found = _solve_pose(self.arm, pose, None, self.q, False)
         return found.q, found.singular, found.status

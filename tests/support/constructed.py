@@ -7,7 +7,8 @@ from tests.support.tables import table
 
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
-from ikgen.equations.equation_set import Equation, EquationSet
+from ikgen.equations.equation import Equation
+from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.knowledge import Variable
 from ikgen.equations.probes import make_probes
 from ikgen.forms.form import Form

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-__all__ = ["SHOULDER_ELBOW_WRIST", "TORSO", "serial_urdf"]
+__all__ = ["OFFSET_ELBOW", "SHOULDER_ELBOW_WRIST", "TORSO", "serial_urdf"]
 
 Joint = tuple[str, str, str, str, tuple[float, float]]
 """Name, type, axis, origin and limits."""
@@ -21,6 +21,16 @@ SHOULDER_ELBOW_WRIST: tuple[Joint, ...] = (
     ("wrist_roll", "revolute", "0 0 1", "0 0 0", _TURN),
 )
 """Two spherical joints with an elbow between them: the class of most arms with seven joints."""
+
+OFFSET_ELBOW: tuple[Joint, ...] = (
+    ("shoulder_yaw", "revolute", "0 0 -1", "0 0 0.3", _TURN),
+    *SHOULDER_ELBOW_WRIST[1:3],
+    ("elbow", "revolute", "0 1 0", "0.08 0 0.4", (-2.1, 2.1)),
+    ("wrist_yaw", "revolute", "0 0 1", "-0.05 0 0.35", _TURN),
+    *SHOULDER_ELBOW_WRIST[5:],
+)
+"""The same with the elbow's axis beside the links, as barrett's and yaskawa's arms have it, and the first
+joint's axis downwards."""
 
 TORSO: Joint = ("torso", "prismatic", "0 0 1", "0 0 0.5", (0.0, 0.4))
 

@@ -38,7 +38,9 @@ def module_of(dh: DHChain, graph: SolutionGraph, *, name: str = "arm") -> Solver
     assert not graph.open_joints
     free = tuple(j for j, joint in enumerate(dh.joints) if joint.name in dh.free)
     program = lower(graph, model_error=2.0 * max(dh.deviation))
-    return SolverModule(name, program, dh, "pose", free, (0.0,) * len(free), "test", "0" * 64, "0")
+    return SolverModule(
+        name, program, dh, "pose", free, (0.0,) * len(dh.held), "test", "0" * 64, "0"
+    )
 
 
 def import_text(text: str, folder: Path) -> ModuleType:

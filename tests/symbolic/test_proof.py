@@ -12,7 +12,7 @@ from tests.support.solving import FIXTURES
 from tests.support.tables import table
 
 from ikgen.emit.derivation import Derivation
-from ikgen.equations.equation_set import Equation
+from ikgen.equations.equation import Equation
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 from ikgen.solver.solution_graph import SolutionGraph

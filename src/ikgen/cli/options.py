@@ -60,7 +60,8 @@ _CHAIN_OPTIONS = (
         multiple=True,
         type=Joints(),
         metavar="JOINT[=VALUE]",
-        help="Hold a joint: its value becomes an input, by default VALUE (rad, m, 45deg, 120mm).",
+        help="Hold a joint: its value becomes an input, by default VALUE (rad, m, 45deg, 120mm). "
+        "JOINT may be arm-angle.",
     ),
     click.option(
         "--lock",

@@ -19,7 +19,7 @@ def summary(generation: Generation) -> str:
     """The result in a few lines."""
     derivation = generation.derivation
     module, dh = derivation.module, derivation.reading.dh
-    held = [dh.joints[j].name for j in module.free]
+    held = dh.held
     lines = [
         ("robot", f"{dh.robot}, {dh.base_link} -> {dh.tip_link}, {dh.dof} joints"),
         ("task", _task(derivation) + (f", held: {', '.join(held)}" if held else "")),

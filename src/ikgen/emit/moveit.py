@@ -56,7 +56,7 @@ def emit(module: SolverModule, chain: Chain | None = None) -> dict[str, str]:
     group = _group(module, chain)
     package = package_name(module.name)
     include = f"{package}/include/{package}"
-    headers = (*_HEADERS, "free_joints") if module.free else _HEADERS
+    headers = (*_HEADERS, "free_joints") if module.held else _HEADERS
     paths = {f"{package}/{path}": file for path, file in _FILES.items()}
     paths |= {f"{include}/{header}.hpp": f"{header}.hpp" for header in headers}
     values = _values(module, package) | group
@@ -103,7 +103,7 @@ def _values(module: SolverModule, package: str) -> dict[str, object]:
         "package": package,
         "namespace": f"{module.name}_ik",
         "joint_names": tuple(joint.name for joint in module.dh.joints),
-        "free_names": tuple(module.dh.joints[j].name for j in module.free),
+        "free_names": module.held,
         "turning": ["true" if turns else "false" for turns in turning],
         "version": _version(module.generator_version),
         "comment": comment,

@@ -34,7 +34,7 @@ def emit(module: SolverModule) -> dict[str, str]:
         "package": package,
         "namespace": f"{module.name}_ik",
         "joint_names": tuple(joint.name for joint in module.dh.joints),
-        "free_joints": tuple(module.dh.joints[j].name for j in module.free),
+        "free_joints": module.held,
         "literal": literal,
         "lower": [_number(joint.limits.lower) for joint in module.dh.joints],
         "version": _version(module.generator_version),

@@ -31,7 +31,7 @@ class SolverModule:
     """One solver to emit.
 
     `name` is the prefix of the emitted files (`<name>_ik.py`), `free` the indices of joints held free,
-    `free_defaults` their default values inside the limits (rad or m). `source_name` and
+    `free_defaults` the default values of what is `held` inside the limits (rad or m). `source_name` and
     `source_sha256` tell what it was made from, `geometry` is the geometry class in words,
     `plan` what an elimination needs where the rules did not solve the arm. Of a table
     without numbers the constants are left to be filled in, or with `sample` those that its derivation
@@ -53,6 +53,11 @@ class SolverModule:
     sample: bool = False
     maintainer: str | None = None
     license: str | None = None
+
+    @property
+    def held(self) -> tuple[str, ...]:
+        """Names of what is held: joints, base to tip, then the arm angle."""
+        return self.dh.held
 
     @property
     def refine(self) -> str:

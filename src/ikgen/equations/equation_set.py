@@ -9,11 +9,13 @@ x^2 y^2). Long chains are split at their moving joints only.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 
 from ikgen.algebra.expression import Expr
+from ikgen.equations.elbow_equations import elbow_equations
+from ikgen.equations.equation import Equation
 from ikgen.equations.products import ChainProducts
 from ikgen.equations.symbolic_transforms import (
     Rigid,
@@ -23,32 +25,10 @@ from ikgen.equations.symbolic_transforms import (
     multiply,
 )
 
-__all__ = ["Equation", "EquationSet"]
+__all__ = ["EquationSet"]
 
 _LONGEST = 8
 """A chain with more rows is split at its moving joints only."""
-
-
-@dataclass(frozen=True, slots=True)
-class Equation:
-    """`left = right`: entry `entry` of the matrix equation that moves k joints to the left and keeps
-    joints k+1..m on the right. Norms carry the entry names "p.p", "px2+py2", "qx2+qy2"."""
-
-    left: Expr
-    right: Expr
-    k: int
-    m: int
-    entry: str
-
-    @property
-    def label(self) -> str:
-        """Where the equation comes from, as the report prints it."""
-        return f"({self.k},{self.m}) {self.entry}"
-
-    @property
-    def squared(self) -> bool:
-        """Whether the equation is a sum of squares."""
-        return "+" in self.entry or "." in self.entry
 
 
 class EquationSet(ChainProducts):
@@ -128,11 +108,11 @@ class EquationSet(ChainProducts):
         seen: set[tuple[int, int]] = set()
         out: list[Equation] = []
         rows = [i for i in range(self.n) if self._splits_at(i)]
-        for k in rows:
-            for m in (i + 1 for i in rows if i >= k):
-                for e in self.split(k, m):
-                    sides = (e.left.id, e.right.id)
-                    if e.left is not e.right and sides not in seen:
-                        seen.add(sides)
-                        out.append(e)
+        splits = (self.split(k, i + 1) for k in rows for i in rows if i >= k)
+        more = elbow_equations(self) if self.elbow else ()
+        for e in itertools.chain(itertools.chain.from_iterable(splits), more):
+            sides = (e.left.id, e.right.id)
+            if e.left is not e.right and sides not in seen:
+                seen.add(sides)
+                out.append(e)
         return tuple(out)

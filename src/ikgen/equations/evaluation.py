@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ikgen.algebra.expression import BINARY, UNARY, Expr
 from ikgen.equations.equation_set import EquationSet
-from ikgen.equations.probes import dh_pose
+from ikgen.equations.probes import dh_pose, elbow_position
 from ikgen.kinematics.fixed_order import cosines, product, sines
 
 __all__ = ["evaluate"]
@@ -29,6 +29,8 @@ def evaluate(
         kind, key = node.atom.kind, node.atom.key
         if kind == "pose":
             assert isinstance(key, str)
+            if key[0] == "e":
+                return elbow_position(system.dh, values)[:, "xyz".index(key[1])]
             row = "xyz".index(key[1]) if key[0] == "p" else int(key[1]) - 1
             column = 3 if key[0] == "p" else int(key[2]) - 1
             return np.asarray(pose[:, row, column])

@@ -16,7 +16,8 @@ from ikgen.algebra import polynomial as poly
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.polynomial import AngleCombination, Monomial, Polynomial, canonical
 from ikgen.equations.angle_lattice import AngleLattice
-from ikgen.equations.equation_set import Equation, EquationSet
+from ikgen.equations.equation import Equation
+from ikgen.equations.equation_set import EquationSet
 
 __all__ = ["Knowledge", "PolynomialEquation", "Variable"]
 

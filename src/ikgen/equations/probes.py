@@ -18,7 +18,9 @@ from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.rigid import dh_link
 from ikgen.model.dh import Angle, DHChain, Length
 
-__all__ = ["Probes", "arm_size", "dh_pose", "make_probes", "smallest_singular"]
+__all__ = [
+    "Probes", "arm_size", "dh_pose", "elbow_position", "make_probes", "smallest_singular",
+]  # fmt: skip
 
 Kept = Mapping[str, NDArray[np.float64]]
 _NONE: Kept = MappingProxyType({})
@@ -48,12 +50,14 @@ def _constant(x: Angle | Length, kept: Kept) -> float | NDArray[np.float64]:
     return x.sign * kept[x.name] if isinstance(x, Length) else kept[x.name]
 
 
-def dh_pose(dh: DHChain, values: NDArray[np.float64], kept: Kept = _NONE) -> NDArray[np.float64]:
-    """`A_1 ... A_n` (N, 4, 4) at DH variables `values` (N, dof); rounded constants have the values
-    `kept` (N,) by name, else those that were meant."""
+def dh_pose(
+    dh: DHChain, values: NDArray[np.float64], kept: Kept = _NONE, rows: int | None = None
+) -> NDArray[np.float64]:
+    """`A_1 ... A_n` (N, 4, 4) at DH variables `values` (N, dof), by default of all rows; rounded constants
+    have the values `kept` (N,) by name, else those that were meant."""
     count = len(values)
     T = np.broadcast_to(np.eye(4), (count, 4, 4))
-    for row in dh.rows:
+    for row in dh.rows[:rows]:
         lead = dh.lead_row(row.driver)
         ratio = row.scale / lead.scale
         v = ratio * (values[:, row.driver] - lead.offset.value) + row.offset.value
@@ -61,6 +65,14 @@ def dh_pose(dh: DHChain, values: NDArray[np.float64], kept: Kept = _NONE) -> NDA
         d = np.zeros(count) + _constant(row.d, kept) if row.revolute else v
         T = product(T, dh_link(_constant(row.alpha, kept), _constant(row.a, kept), theta, d))
     return T
+
+
+def elbow_position(
+    dh: DHChain, values: NDArray[np.float64], kept: Kept = _NONE
+) -> NDArray[np.float64]:
+    """The point (N, 3) in frame 0 at which the fourth axis of seven is nearest to the third."""
+    link = dh_link(_constant(dh.rows[3].alpha, kept), _constant(dh.rows[3].a, kept), 0.0, 0.0)
+    return np.asarray(product(dh_pose(dh, values, kept, rows=3), link)[:, :3, 3])
 
 
 def smallest_singular(
@@ -89,7 +101,11 @@ def smallest_singular(
         dT = product(dh_pose(dh, values + step) - dh_pose(dh, values - step), end) / (2 * h)
         dT = dT[:, :3, :] * read
         dT[:, :, 3] /= size
-        columns.append(dT.reshape(len(values), 12))
+        parts = [dT.reshape(len(values), 12)]
+        if dh.arm_angle:
+            moved = elbow_position(dh, values + step) - elbow_position(dh, values - step)
+            parts.append(moved / (2 * h * size))
+        columns.append(np.concatenate(parts, axis=1))
     J = np.stack(columns, axis=-1)
     return np.asarray(np.linalg.svd(J, compute_uv=False)[:, -1])
 

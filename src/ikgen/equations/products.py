@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
+from ikgen.equations.probes import elbow_position
 from ikgen.equations.symbolic_transforms import (
     Rigid,
     constant,
@@ -66,6 +67,7 @@ class ChainProducts:
         self._left: dict[int, Rigid] = {}
         self._targets: dict[tuple[int, int], Rigid] = {}
         self.pose = self._pose(pose)
+        self.elbow = self._elbow(values, kept) if dh.arm_angle else ()
 
     def over(self: Products, graph: ExpressionGraph) -> Products:
         """The same products over a graph that has all nodes of this one's."""
@@ -86,6 +88,17 @@ class ChainProducts:
         )
         p = tuple(entry(f"p{'xyz'[i]}", values[:, i, 3]) for i in range(3))
         return Rigid(rows, p)
+
+    def _elbow(
+        self, values: NDArray[np.float64], kept: Mapping[str, NDArray[np.float64]]
+    ) -> tuple[Expr, ...]:
+        """Position of the elbow in frame 0: known where the arm angle is given with the pose."""
+        probes = elbow_position(self.dh, values, kept)
+        names = ("ex", "ey", "ez")
+        return tuple(
+            self.graph.atom("pose", n, x, unknown=False)
+            for n, x in zip(names, probes.T, strict=True)
+        )
 
     def _run_end(self, i: int) -> int:
         while i + 1 < self.n and self.runs[i + 1] == self.runs[i]:

@@ -7,8 +7,10 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ikgen.emit.derivation import Held, Reading
+from ikgen.errors import UsageError
 from ikgen.generation.held_joints import HeldChoice, held_choices, nearby
 from ikgen.generation.progress import Progress
+from ikgen.model.dh import ARM_ANGLE
 
 if TYPE_CHECKING:
     from ikgen.elimination import EliminationPlan
@@ -83,6 +85,8 @@ def closed_form(reading: Reading, demand: Demand) -> ClosedForm:
     `held_choices`."""
     from ikgen.tasks import find_task
 
+    if reading.dh.arm_angle:
+        return _with_arm_angle(reading, demand)
     choices = held_choices(reading, find_task(demand.task or "pose"))
     choices = tuple(choice for choice in choices if choice.held not in demand.refused)
     if choices:
@@ -90,6 +94,17 @@ def closed_form(reading: Reading, demand: Demand) -> ClosedForm:
     found = _by_rules_somewhere(reading, demand)
     found = _as_written(found, demand) if found.closed else found
     return found if found.sound else _by_elimination(found, demand)
+
+
+def _with_arm_angle(reading: Reading, demand: Demand) -> ClosedForm:
+    """What the rules make of an arm whose arm angle is held. Raises UsageError for a task that is not the
+    pose. The rows stay as they were read: the arm angle is theirs."""
+    if demand.task not in (None, "pose"):
+        raise UsageError(
+            f"--free {ARM_ANGLE}: the task '{demand.task}' does not fix the whole pose",
+            hint="leave out --task, or --free",
+        )
+    return _best_task(reading, demand)
 
 
 def _by_rules_somewhere(reading: Reading, demand: Demand) -> ClosedForm:

@@ -126,6 +126,7 @@ def verify_one(
     solver in another language."""
     import numpy as np
 
+    from ikgen.lowering.held_angle import held_angle
     from ikgen.verify.verification import verify
 
     dh = arm.dh
@@ -136,7 +137,8 @@ def verify_one(
         samples=outputs.samples,
         seed=outputs.seed,
         locked=dict(dh.locked) or None,
-        free_joints=[dh.joints[j].name for j in arm.free],
+        free_joints=dh.held,
+        angle=held_angle(dh),
         limits=(
             np.array([j.limits.lower for j in dh.joints]),
             np.array([j.limits.upper for j in dh.joints]),

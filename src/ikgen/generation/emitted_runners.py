@@ -36,7 +36,7 @@ def arm_constants(arm: EmittedArm) -> ArmConstants:
         dh.tip_link,
         arm.max_solutions,
         arm.task,
-        tuple(dh.joints[j].name for j in arm.free),
+        dh.held,
     )
 
 

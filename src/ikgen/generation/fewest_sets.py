@@ -89,13 +89,18 @@ def _inputs(
     dh: DHChain, values: NDArray[np.float64], pose: NDArray[np.float64]
 ) -> dict[str, float]:
     """What a program is handed at DH variables (dof,) and their pose (4, 4)."""
-    from ikgen.program.inputs import HeldValue, PoseEntry, SeedValue
+    from ikgen.lowering.held_angle import held_angle
+    from ikgen.program.inputs import ArmAngle, HeldValue, PoseEntry, SeedValue
 
     inputs = {PoseEntry(i, j).name: float(pose[i, j]) for i in range(3) for j in range(4)}
     for j, value in enumerate(values):
         row = dh.lead_row(j)
         inputs[HeldValue(j).name] = float(value - row.offset.value) / row.scale
         inputs[SeedValue(j).name] = 0.0
+    angle = held_angle(dh)
+    if angle is not None:
+        q = np.array([inputs[HeldValue(j).name] for j in range(dh.dof)])
+        inputs[ArmAngle().name] = float(angle.of_rows(q, pose))
     return inputs
 
 

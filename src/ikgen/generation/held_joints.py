@@ -76,7 +76,7 @@ def held_choices(reading: Reading, task: Task) -> tuple[HeldChoice, ...]:
     dh = reading.dh
     motion, moving = scaled_motion(dh, task), _moving(dh)
     rank = _rank(_singular(motion, [moving])[0])
-    spare = len(moving) - rank
+    spare = len(moving) - rank - int(dh.arm_angle)
     if not spare or not rank:
         return ()
     subsets = [list(kept) for kept in itertools.combinations(moving, rank)]

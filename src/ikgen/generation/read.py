@@ -25,6 +25,24 @@ __all__ = ["arm_name", "default_name", "read", "read_tree"]
 def read(request: Request, tree: JointTree | None = None) -> Reading:
     """Read the file, choose the chain and convert it to modified DH form. `tree` is the file's where it was
     read before."""
+    reading = _read(request, tree)
+    return _with_elbow(reading) if reading.dh.arm_angle else reading
+
+
+def _with_elbow(reading: Reading) -> Reading:
+    """With rows that have an arm angle: those of the file, or of geometry nearby. Raises UsageError
+    for an arm that has none."""
+    from ikgen.generation.held_joints import nearby
+    from ikgen.kinematics.elbow_geometry import elbow_geometry, without_arm_angle
+
+    near = nearby(reading) if without_arm_angle(reading.dh) else None
+    if near is not None and not without_arm_angle(near):
+        return replace(reading, dh=near)
+    elbow_geometry(reading.dh)
+    return reading
+
+
+def _read(request: Request, tree: JointTree | None) -> Reading:
     free = tuple(request.free)
     if request.table:
         return _with_offsets(_read_table(request, free), request)

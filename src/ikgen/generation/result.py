@@ -32,7 +32,7 @@ def as_dict(generation: Generation) -> dict[str, Any]:
         "tip": dh.tip_link,
         "task": module.task,
         "joints": [joint.name for joint in dh.joints],
-        "free": [dh.joints[j].name for j in module.free],
+        "free": list(dh.held),
         "locked": dict(dh.locked),
         "chosen": _chosen(derivation),
         "symbols": list(dh.symbols),

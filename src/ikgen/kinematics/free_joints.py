@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from ikgen.errors import UsageError
 from ikgen.model.chain import ActuatedJoint
-from ikgen.model.dh import DHChain
+from ikgen.model.dh import ARM_ANGLE, DHChain
 
 __all__ = ["free_defaults"]
 
@@ -17,7 +17,18 @@ def free_defaults(dh: DHChain, given: Iterable[tuple[str, float | None]]) -> tup
     brought inside the limits. Raises UsageError for a given value outside them."""
     values = dict(given)
     held = (joint for joint in dh.joints if joint.name in dh.free)
-    return tuple(_default(joint, values.get(joint.name)) for joint in held)
+    angle = (_turn(values.get(ARM_ANGLE)),) if dh.arm_angle else ()
+    return (*(_default(joint, values.get(joint.name)) for joint in held), *angle)
+
+
+def _turn(value: float | None) -> float:
+    """The default arm angle."""
+    if value is not None and not -math.pi <= value <= math.pi:
+        raise UsageError(
+            f"--free {ARM_ANGLE}={value:.9g}: outside of one turn, -pi to pi",
+            hint="give a value inside it (rad), or none",
+        )
+    return 0.0 if value is None else value
 
 
 def _default(joint: ActuatedJoint, value: float | None) -> float:

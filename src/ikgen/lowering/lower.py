@@ -10,6 +10,7 @@ from ikgen.forms.form import Form
 from ikgen.forms.lowered_form import LoweredForm, LoweredRoutine, natural_size
 from ikgen.kinematics.whole_turns import middle_of
 from ikgen.lowering.closure import require_closure
+from ikgen.lowering.elbow_position import bind_elbow
 from ikgen.lowering.fallbacks import choose_form
 from ikgen.lowering.joint_values import joint_value
 from ikgen.lowering.placement import LoweredLevel, Placement, identifier
@@ -33,6 +34,7 @@ def lower(graph: SolutionGraph, *, model_error: float = 0.0) -> Program:
     work = Placement(graph, model_error)
     bind_pose(work)
     bind_joints(work)
+    bind_elbow(work)
     for index, step in enumerate(graph.steps):
         _step(work, index, step)
     values = _joint_values(work)

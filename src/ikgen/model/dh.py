@@ -14,7 +14,13 @@ from fractions import Fraction
 from ikgen.model.chain import REVOLUTE, ActuatedJoint
 from ikgen.model.joint_tree import Matrix
 
-__all__ = ["Angle", "DHChain", "DHRow", "Length", "Snap"]
+__all__ = ["ARM_ANGLE", "HELD_ANGLE", "Angle", "DHChain", "DHRow", "Length", "Snap"]
+
+ARM_ANGLE = "arm-angle"
+"""What is held in place of a joint of an arm with a spherical shoulder and a spherical wrist."""
+
+HELD_ANGLE = "arm_angle"
+"""What emitted code calls it among the names of held joints."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,6 +131,17 @@ class DHChain:
     def dof(self) -> int:
         """Number of independent joint variables."""
         return len(self.joints)
+
+    @property
+    def arm_angle(self) -> bool:
+        """Whether the arm angle is held, in place of a joint."""
+        return ARM_ANGLE in self.free and all(j.name != ARM_ANGLE for j in self.joints)
+
+    @property
+    def held(self) -> tuple[str, ...]:
+        """Names of what is held, in the order in which emitted code takes the values."""
+        joints = tuple(j.name for j in self.joints if j.name in self.free)
+        return (*joints, HELD_ANGLE) if self.arm_angle else joints
 
     @property
     def symbols(self) -> tuple[str, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["HeldValue", "Input", "PoseEntry", "SeedValue"]
+__all__ = ["ArmAngle", "HeldValue", "Input", "PoseEntry", "SeedValue"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,4 +44,14 @@ class HeldValue:
         return f"held_q{self.joint + 1}"
 
 
-Input = PoseEntry | SeedValue | HeldValue
+@dataclass(frozen=True, slots=True)
+class ArmAngle:
+    """The arm angle (rad) where that is held; it comes after the held joints."""
+
+    @property
+    def name(self) -> str:
+        """arm_angle"""
+        return "arm_angle"
+
+
+Input = PoseEntry | SeedValue | HeldValue | ArmAngle

@@ -6,6 +6,7 @@ import math
 
 from ikgen.formulas import mathtext as m
 from ikgen.formulas.mathtext import Math
+from ikgen.lowering.held_angle import held_values
 from ikgen.model.chain import REVOLUTE
 from ikgen.model.dh import DHChain
 from ikgen.report.document import (
@@ -33,7 +34,7 @@ _ON_PAPER = 0.52
 def example_section(dh: DHChain, example: WorkedExample, module: str) -> list[Block]:
     """`module` is what the emitted code is called."""
     values = ", ".join(joint_value(dh, j, x) for j, x in enumerate(example.q))
-    given = [joint_value(dh, j, example.q[j]) for j, x in enumerate(dh.joints) if x.name in dh.free]
+    given = _held(dh, example)
     values_given = f", free=[{', '.join(given)}]" if given else ""
     call = f"{module}.solve(T{values_given})"
     return [
@@ -46,6 +47,13 @@ def example_section(dh: DHChain, example: WorkedExample, module: str) -> list[Bl
         _table(dh, example),
         _drawings(dh, example),
     ]  # fmt: skip
+
+
+def _held(dh: DHChain, example: WorkedExample) -> list[str]:
+    """The example's values of what is held."""
+    given = [joint_value(dh, j, example.q[j]) for j, x in enumerate(dh.joints) if x.name in dh.free]
+    values = held_values(dh, example.q, example.pose) if dh.arm_angle else None
+    return given if values is None else [*given, f"{math.degrees(values[-1]):.3f}°"]
 
 
 def joint_value(dh: DHChain, joint: int, value: float) -> str:

@@ -8,13 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from ikgen.emit.derivation import Derivation
+from ikgen.lowering.held_angle import held_values
 from ikgen.model.chain import REVOLUTE
+from ikgen.model.dh import HELD_ANGLE, DHChain
 from ikgen.report.document import Block, Heading, Paragraph, Picture
 from ikgen.report.worked_example import Array, WorkedExample
 from ikgen.verify.runners.python_module import PythonModule
 
 __all__ = ["held_section"]
 
+_IN_WORDS = {HELD_ANGLE: "the arm angle"}
 _VALUES = 145
 _WIDTH, _HEIGHT, _LEFT, _TOP, _BOTTOM = 560.0, 190.0, 46.0, 16.0, 44.0
 
@@ -43,13 +46,13 @@ def held_section(
         return []
     several = len(dh.free) > 1
     lead = (
-        f"The arm has more joints than its task asks for. {' and '.join(dh.free)} "
+        f"The arm has more joints than its task asks for. {' and '.join(_held_names(dh))} "
         f"{'are' if several else 'is'} held: solve takes {'their values' if several else 'its value'} "
         "with the pose, and every value gives solutions of its own."
     )
     why = f" ikgen chose so: {derivation.held.words}." if derivation.held is not None else ""
     sweep = _sweep(derivation, example, runner)
-    name = dh.free[0]
+    name = _held_names(dh)[0]
     words = _spans(sweep)
     shown = (
         f"With the pose of the example below and {name} swept, there are solutions inside the limits "
@@ -65,18 +68,27 @@ def held_section(
     ]
 
 
+def _held_names(dh: DHChain) -> list[str]:
+    """What is held, in words, in the order in which the solver takes the values."""
+    return [_IN_WORDS.get(name, name) for name in dh.held]
+
+
 def _sweep(derivation: Derivation, example: WorkedExample, runner: PythonModule) -> _Sweep:
-    free = list(derivation.module.free)
-    joint = derivation.reading.dh.joints[free[0]]
-    revolute = joint.kind == REVOLUTE
-    wide = math.pi if revolute else 1.0
-    low, high = max(joint.limits.lower, -wide), min(joint.limits.upper, wide)
+    dh = derivation.reading.dh
+    now = held_values(dh, example.q, example.pose)
+    assert now is not None
+    low, high, revolute = -math.pi, math.pi, True
+    if derivation.module.free:
+        joint = dh.joints[derivation.module.free[0]]
+        revolute = joint.kind == REVOLUTE
+        wide = math.pi if revolute else 1.0
+        low, high = max(joint.limits.lower, -wide), min(joint.limits.upper, wide)
     values = np.linspace(low, high, _VALUES)
-    held = np.tile(example.q[free], (_VALUES, 1))
+    held = np.tile(now, (_VALUES, 1))
     held[:, 0] = values
     poses = np.broadcast_to(example.pose, (_VALUES, 4, 4))
     count = runner.solve_many(poses, free=held).count.astype(float)
-    return _Sweep(values, count, float(example.q[free[0]]), revolute)
+    return _Sweep(values, count, float(now[0]), revolute)
 
 
 def _spans(sweep: _Sweep) -> str:

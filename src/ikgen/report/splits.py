@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ikgen.equations.equation_set import Equation, EquationSet
+from ikgen.equations.equation import Equation
+from ikgen.equations.equation_set import EquationSet
 from ikgen.formulas import mathtext as m
 from ikgen.formulas.mathtext import Math
 from ikgen.report.document import Block, Formulas, Inline, Paragraph

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ikgen.equations.equation_set import Equation
+from ikgen.equations.equation import Equation
 from ikgen.equations.knowledge import Knowledge, Variable
 from ikgen.forms.formula import Formula, FormulaWriter
 from ikgen.formulas import mathtext as m

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ikgen.emit.derivation import Derivation
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.kinematics.forward import dh_forward, file_jacobian
+from ikgen.lowering.held_angle import held_values
 from ikgen.model.dh import DHChain
 from ikgen.processes.scratch_folder import ScratchFolder
 from ikgen.report.skeleton_bones import skeleton
@@ -44,8 +45,9 @@ def worked_example(derivation: Derivation, runner: PythonModule) -> WorkedExampl
     given = derivation.reading.source.example
     q = np.array(given) if given else _chosen(dh, runner)
     pose = runner.forward(q[None])[0]
-    rows, _, _ = runner.solve(pose, free=_free(derivation, q), limits=False)
-    inside, _, _ = runner.solve(pose, free=_free(derivation, q), limits=True)
+    held = held_values(dh, q, pose)
+    rows, _, _ = runner.solve(pose, free=held, limits=False)
+    inside, _, _ = runner.solve(pose, free=held, limits=True)
     rows = rows[np.lexsort(np.round(rows, 6).T[::-1])] if len(rows) else rows
     places = [_place(row, inside) for row in rows]
     rows = np.array([r if i is None else inside[i] for r, i in zip(rows, places, strict=True)])
@@ -63,11 +65,6 @@ def solver_of(derivation: Derivation) -> PythonModule | None:
         path = folder / f"{derivation.module.name}_ik.py"
         path.write_text(emit_module(derivation.module), encoding="utf-8")
         return PythonModule(path)
-
-
-def _free(derivation: Derivation, q: Array) -> Array | None:
-    free = list(derivation.module.free)
-    return q[free] if free else None
 
 
 def _place(row: Array, rows: Array) -> int | None:
@@ -104,7 +101,6 @@ def _chosen(dh: DHChain, runner: PythonModule) -> Array:
     """The configuration of the drawn ones whose pose has the most solutions inside the limits."""
     rows = _drawn(dh)
     poses = runner.forward(rows)
-    free = [runner.constants.joint_names.index(n) for n in runner.constants.free_joints]
-    counts = runner.solve_many(poses, free=rows[:, free] if free else None).count
+    counts = runner.solve_many(poses, free=held_values(dh, rows, poses)).count
     scores = [(int(n), _standing(dh, q)) for n, q in zip(counts, rows, strict=True)]
     return np.asarray(rows[scores.index(max(scores))])

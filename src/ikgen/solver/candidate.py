@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ikgen.algebra.expression import Expr
-from ikgen.equations.equation_set import Equation
+from ikgen.equations.equation import Equation
 from ikgen.equations.knowledge import Variable
 from ikgen.forms.form import Array, Form, scales
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from ikgen.algebra.expression import Expr
-from ikgen.equations.equation_set import Equation
+from ikgen.equations.equation import Equation
 from ikgen.equations.knowledge import PolynomialEquation, Variable
 from ikgen.solver.solution_graph import SolutionGraph
 

@@ -51,14 +51,24 @@ class ExactKinematics:
 
     def _pose(self, tool_on_right: bool) -> Rows:
         r = self.ring
-        T: Rows = tuple(tuple(r.number(float(i == j)) for j in range(4)) for i in range(3))
-        for row in self.dh.rows:
-            T = self._product(T, self._twist(row))
-            T = self._product(T, self._motion(row))
+        T = self._frame(len(self.dh.rows))
         if tool_on_right:
             tool = tuple(tuple(r.number(float(x)) for x in line) for line in self.dh.X_tip[:3])
             T = self._product(T, tool)
         return T
+
+    def _frame(self, rows: int) -> Rows:
+        """The frame of so many rows."""
+        r = self.ring
+        T: Rows = tuple(tuple(r.number(float(i == j)) for j in range(4)) for i in range(3))
+        for row in self.dh.rows[:rows]:
+            T = self._product(T, self._twist(row))
+            T = self._product(T, self._motion(row))
+        return T
+
+    def _elbow(self) -> tuple[Any, ...]:
+        """The point of the fourth axis that is nearest to the third."""
+        return tuple(row[3] for row in self._product(self._frame(3), self._twist(self.dh.rows[3])))
 
     def _product(self, a: Rows, b: Rows) -> Rows:
         def entry(i: int, j: int) -> Any:
@@ -138,6 +148,8 @@ class ExactKinematics:
     def _atom(self, atom: Atom) -> Any:
         r, key = self.ring, atom.key
         if isinstance(key, str):
+            if key[0] == "e":
+                return self._elbow()["xyz".index(key[1])]
             row = "xyz".index(key[1]) if key[0] == "p" else int(key[1]) - 1
             return self.pose[row][3 if key[0] == "p" else int(key[2]) - 1]
         if atom.kind == "prismatic":

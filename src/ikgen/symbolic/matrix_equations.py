@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import sympy
 
-from ikgen.equations.equation_set import Equation
+from ikgen.equations.equation import Equation
 from ikgen.solver.solution_graph import SolutionGraph
 from ikgen.symbolic.expression_view import ExpressionView
 from ikgen.symbolic.symbol_names import SymbolNames

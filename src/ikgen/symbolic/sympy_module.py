@@ -33,7 +33,12 @@ def emit_derivation(derivation: Derivation) -> dict[str, str]:
 
 def module_text(derivation: Derivation) -> str:
     """The text of `<name>_sympy.py`. Raises `UsageError` for an arm that the elimination solves: it has no
-    formulas."""
+    formulas; and for one whose arm angle is held."""
+    if derivation.graph.dh.arm_angle:
+        raise UsageError(
+            "the elbow's position at an arm angle is no expression of this output",
+            hint="leave --emit sympy out, or hold a joint: --free JOINT",
+        )
     if derivation.module.plan is not None:
         raise UsageError(
             "the elimination solves this arm: there are no formulas to write",

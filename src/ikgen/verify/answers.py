@@ -68,7 +68,7 @@ def _slice(trial: Trial, n: int) -> Trial:
 
 
 def _with_seeds(runner: Runner, arm: ArmUnderTest, sample: SampleSet, seeds: Array) -> Trial:
-    free = sample.q[:, list(arm.free)] if arm.free else None
+    free = arm.held_values(sample.q, sample.poses)
     rows = runner.solve_many(sample.poses, free=free, seeds=seeds, limits=True)
     return Trial(sample, rows, True, True)
 
@@ -87,8 +87,8 @@ def _in_batch(runner: Runner, arm: ArmUnderTest, limited: Trial) -> Trial:
     """The poses of `limited` without limits, in one call: a miss of either function shows, and each
     takes half of the poses. Batches flag no rows, so poses with flagged ones, or none, are solved one by
     one."""
-    sample, free = limited.sample, list(arm.free)
-    held = sample.q[:, free] if free else None
+    sample = limited.sample
+    held = arm.held_values(sample.q, sample.poses)
     try:
         rows = runner.solve_batch(sample.poses, limits=False, free=held)
     except Exception:  # the check of `solve_batch` tells

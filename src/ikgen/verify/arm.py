@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.runtime.python.arm_angle import ArmAngle
 from ikgen.verify.oracle import Oracle
 from ikgen.verify.screws import ScrewChain
 from ikgen.verify.task_space import TaskSpace
@@ -32,7 +33,8 @@ class ArmUnderTest:
     """`lower`, `upper` (dof,): limits in rad or m; `low`, `high`: the part of them that is sampled
     (at most one turn); `free`: indices of held joints; `active`: the others; `length` (m) scales
     metres against radians: the largest distance of the tip from the base that a random sample
-    reached; `period` (dof,): as of the oracle, by which values are compared."""
+    reached; `period` (dof,): as of the oracle, by which values are compared; `held`: names of what is
+    held; `angle`: the arm angle, where that is held after the joints."""
 
     oracle: Oracle
     task: TaskSpace
@@ -46,25 +48,77 @@ class ArmUnderTest:
     period: Array
     screws: ScrewChain
     length: float
+    held: tuple[str, ...] = ()
+    angle: ArmAngle | None = None
+
+    @property
+    def rank(self) -> int:
+        """How many freedoms the task fixes, the arm angle that is held among them."""
+        return self.task.rank + int(self.angle is not None)
 
     @property
     def dof(self) -> int:
         """Number of actuated joints."""
         return len(self.lower)
 
-    def scaled_jacobian(self, q: Array) -> tuple[Array, Array]:
-        """Tip poses (N, 4, 4) and the dimensionless task Jacobian (N, m, active joints)."""
+    def held_values(self, q: Array, poses: Array) -> Array | None:
+        """What configurations (N, dof) at `poses` (N, 4, 4) have of it: (N, held); None where nothing is
+        held."""
+        if not self.held:
+            return None
+        values = q[:, list(self.free)]
+        if self.angle is None:
+            return values
+        return np.concatenate([values, self.angle.of_rows(q, poses)[:, None]], axis=1)
+
+    def held_off(self, q: Array, wanted: Array, poses: Array) -> Array:
+        """How far rows (N, dof) are off what `wanted` (N, dof) have of it, both at `poses` (N, 4, 4): (N,),
+        rad or m; of the arm angle what the elbow is off times its distance from the line to the wrist, over
+        the square of the upper arm: near the line that is of the order of the pose's error."""
+        off = np.abs(self.difference(q, wanted)[:, list(self.free)]).max(axis=1, initial=0.0)
+        if self.angle is None:
+            return np.asarray(off)
+        angle = self.angle.of_rows(wanted, poses)
+        apart = self.angle.beside_line(q, poses)
+        radius = np.linalg.norm(apart, axis=1)
+        there = radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        missed = radius * np.linalg.norm(apart - there, axis=1) / self.angle.upper**2
+        return np.asarray(np.maximum(off, missed))
+
+    def aims(self, q: Array, poses: Array) -> Array:
+        """Poses (N, 4, 4), and what is held with them as q (N, dof) have it."""
+        if self.angle is None:
+            return poses
+        return self.angle.aims(poses, self.angle.of_rows(q, poses)[:, None])
+
+    def residual(self, q: Array, T: Array, aims: Array) -> Array:
+        """Scaled errors (N, m) of configurations (N, dof), T their poses (N, 4, 4), from `aims`."""
+        e = self.task.residual(T, aims)
+        e[:, self.task.lengths] /= self.length
+        if self.angle is None:
+            return e
+        more = self.angle.errors(q, aims)[0] * (self.angle.upper / self.length)
+        return np.concatenate([e, more[:, None]], axis=1)
+
+    def scaled_jacobian(self, q: Array, aims: Array | None = None) -> tuple[Array, Array]:
+        """Tip poses (N, 4, 4) and the dimensionless task Jacobian (N, m, active joints), the arm angle's
+        line at `aims`, by default at the poses."""
         T, J = self.screws.forward_and_jacobian(q)
         J[:, :3] /= self.length
         J *= np.where(self.revolute, 1.0, self.length)
-        return T, self.task.jacobian(T, J)[:, :, list(self.active)]
+        J = self.task.jacobian(T, J)[:, :, list(self.active)]
+        if self.angle is None:
+            return T, J
+        line = self.angle.errors(q, self.aims(q, T) if aims is None else aims)[1]
+        line = line[:, None, list(self.active)] * (self.angle.upper / self.length)
+        return T, np.concatenate([J, line], axis=1)
 
     def sigma(self, q: Array) -> Array:
         """Smallest singular value (N,) of the scaled task Jacobian: 0 where the arm is singular."""
         if not len(q) or not self.active:
             return np.ones(len(q))
         values = np.linalg.svd(self.scaled_jacobian(q)[1], compute_uv=False)
-        return np.asarray(values[:, min(self.task.rank, len(self.active)) - 1])
+        return np.asarray(values[:, min(self.rank, len(self.active)) - 1])
 
     def difference(self, a: Array, b: Array) -> Array:
         """Joint-wise a - b, modulo the joints' periods."""
@@ -113,17 +167,23 @@ def _sampled_range(lower: Array, upper: Array, period: Array) -> tuple[Array, Ar
 
 
 def arm_under_test(
-    oracle: Oracle, task: TaskSpace, limits: tuple[Array, Array], free_joints: tuple[str, ...]
+    oracle: Oracle,
+    task: TaskSpace,
+    limits: tuple[Array, Array],
+    held: tuple[str, ...],
+    angle: ArmAngle | None = None,
 ) -> ArmUnderTest:
-    """Gather what the checks need; `limits` are (lower, upper), each (dof,), in rad or m."""
+    """Gather what the checks need; `limits` are (lower, upper), each (dof,), in rad or m. `held` names what
+    is held: joints, and last the arm `angle` where there is one."""
     lower, upper = (np.asarray(bound, dtype=float) for bound in limits)
     screws, period = oracle.screws, oracle.period
     low, high = _sampled_range(lower, upper, period)
-    free = tuple(oracle.joint_names.index(name) for name in free_joints)
+    free = tuple(oracle.joint_names.index(name) for name in held if name in oracle.joint_names)
     active = tuple(i for i in range(oracle.dof) if i not in free)
     probe = np.random.default_rng(0).uniform(low, high, size=(64, oracle.dof))
     tips = screws.forward(probe)[:, :3, 3]
     length = max(float(np.max(np.linalg.norm(tips, axis=1))), 1e-3)
     return ArmUnderTest(
         oracle, task, lower, upper, low, high, free, active, oracle.revolute, period, screws, length,
+        held, angle,
     )  # fmt: skip

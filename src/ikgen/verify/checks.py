@@ -139,15 +139,14 @@ def check_free_joints(arm: ArmUnderTest, trials: Sequence[Trial]) -> CheckResult
     """Free joints have the values that were handed over, in every row."""
     count = failures = 0
     worst, case = 0.0, ""
-    free = list(arm.free)
-    for trial in trials if free else ():
+    for trial in trials if arm.held else ():
         index, q, _ = trial.rows.flat()
-        off = np.abs(arm.difference(q, trial.sample.q[index])[:, free]).max(axis=1, initial=0.0)
+        off = arm.held_off(q, trial.sample.q[index], trial.sample.poses[index])
         count, failures = count + len(q), failures + int(np.sum(~(off <= CLOSURE_TOLERANCE)))
         if len(q) and np.max(off) > worst:
             k = int(np.argmax(off))
             worst = float(off[k])
             case = spell(trial.sample.label, index[k], row=q[k], wanted=trial.sample.q[index[k]])
-    numbers = (("off rad or m", worst),) if free else ()
-    detail = "" if free else "no joint is held free"
+    numbers = (("off rad or m", worst),) if arm.held else ()
+    detail = "" if arm.held else "no joint is held free"
     return result("free joints", count, failures, numbers, detail, case)

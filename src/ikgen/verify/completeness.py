@@ -77,7 +77,7 @@ def sensitivity(arm: ArmUnderTest, q: Array) -> Sensitivity:
     active = list(arm.active)
     J = arm.scaled_jacobian(q)[1]
     u, s, vt = np.linalg.svd(J, full_matrices=False)
-    last = min(arm.task.rank, len(active)) - 1
+    last = min(arm.rank, len(active)) - 1
     left, null = u[:, :, last], vt[:, last]
     step = np.zeros_like(q)
     step[:, active] = _ALONG * null * np.where(arm.revolute[active], 1.0, arm.length)
@@ -154,7 +154,7 @@ def _look(
     missed = ~(off <= sensitive.within(POSE_NOISE + error))
     again = np.flatnonzero(missed & trial.rows.singular.any(axis=1))
     if len(again) and not trial.seeded:
-        free = q[again][:, list(arm.free)] if arm.free else None
+        free = arm.held_values(q[again], poses[again])
         rows = runner.solve_many(poses[again], free=free, seeds=q[again], limits=trial.limits)
         off[again], error[again] = _nearest_row(arm, rows, q[again], poses[again])
         missed = ~(off <= sensitive.within(POSE_NOISE + error))

@@ -37,9 +37,11 @@ def _allowed(arm: ArmUnderTest, defaults: tuple[float, ...] | None) -> bool:
     if defaults is None:
         return True
     values, held = np.array(defaults, dtype=float), list(arm.free)
-    if values.shape != (len(held),):
+    if values.shape != (len(arm.held),):
         return False
-    inside = (arm.lower[held] <= values) & (values <= arm.upper[held])
+    turn = [np.pi] * (len(arm.held) - len(held))
+    low, high = np.append(arm.lower[held], np.negative(turn)), np.append(arm.upper[held], turn)
+    inside = (low <= values) & (values <= high)
     return bool(np.all(inside & np.isfinite(values)))
 
 
@@ -50,7 +52,7 @@ def check_constants(arm: ArmUnderTest, runner: Runner, rows: Rows) -> CheckResul
         "joint names": constants.joint_names == oracle.joint_names,
         "links": (constants.base_link, constants.tip_link) == (oracle.base_link, oracle.tip_link),
         "task": constants.task == arm.task.name,
-        "free joints": constants.free_indices == list(arm.free),
+        "free joints": constants.free_joints == arm.held,
         "defaults of free joints": _allowed(arm, constants.free_defaults),
         "shape of limits": constants.lower.shape == constants.upper.shape == (oracle.dof,),
         "most solutions": int(np.max(rows.count, initial=0)) <= constants.max_solutions,

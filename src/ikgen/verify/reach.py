@@ -84,7 +84,7 @@ def unreachable_poses(arm: ArmUnderTest, count: int, rng: np.random.Generator) -
         sets = {"far outside": far}
         if radius > _POINT * arm.length:
             sets["slightly outside"] = slight
-    if len(arm.active) < arm.task.rank:
+    if len(arm.active) < arm.rank:
         poses = arm.screws.forward(arm.uniform(rng, count))
         poses[:, :3, :3] = poses[:, :3, :3] @ _turn(0.3, 0.5)
         poses[:, :3, 3] += 0.1 * arm.length * rng.standard_normal((count, 3))

@@ -19,14 +19,16 @@ Array = NDArray[np.float64]
 CONVERGED = 1e-11
 """Scaled residual below which a start counts as converged."""
 
+_HELD = 1e-8
+"""How far rows may be off what is held (as `ArmUnderTest.held_off` says): the other half plane is out."""
+
 _LONGEST_STEP = 0.6  # rad, or lengths of the arm
 
 
 def _step(arm: ArmUnderTest, q: Array, targets: Array) -> tuple[Array, Array]:
     """Scaled residual norms (N,) at q, and the next q (N, dof)."""
-    T, J = arm.scaled_jacobian(q)
-    e = arm.task.residual(T, targets)
-    e[:, arm.task.lengths] /= arm.length
+    T, J = arm.scaled_jacobian(q, targets)
+    e = arm.residual(q, T, targets)
     squared = np.einsum("ni,ni->n", e, e)
     Jt = J.transpose(0, 2, 1)
     H = Jt @ J + (0.02 * squared + 1e-14)[:, None, None] * np.eye(J.shape[2])
@@ -42,8 +44,8 @@ def _step(arm: ArmUnderTest, q: Array, targets: Array) -> tuple[Array, Array]:
 def converge(
     arm: ArmUnderTest, q: Array, targets: Array, iterations: int = 40
 ) -> tuple[Array, NDArray[np.bool_]]:
-    """Run Newton from each q (N, dof) to its target (N, 4, 4); free joints stay. Returns the end
-    points and which of them reach the target."""
+    """Run Newton from each q (N, dof) to its target (N, 4, 4), or its aim; free joints stay. Returns
+    the end points and which of them reach the target."""
     q, done = q.copy(), np.zeros(len(q), dtype=bool)
     alive = np.arange(len(q))
     for _ in range(iterations):
@@ -70,5 +72,6 @@ def find_solutions(
     owner = np.repeat(np.arange(len(targets)), starts)
     free = list(arm.free)
     q[:, free] = held[owner][:, free]
-    q, done = converge(arm, q, targets[owner])
+    q, done = converge(arm, q, arm.aims(held, targets)[owner])
+    done &= arm.held_off(q, held[owner], targets[owner]) < _HELD
     return [q[done & (owner == i)] for i in range(len(targets))]

@@ -29,7 +29,7 @@ def _descend(arm: ArmUnderTest, q: Array) -> Array:
     """One Newton step on the smallest singular value s: its derivative is `u' dJ v`, which keeps
     its sign through s = 0, so the step converges fast although s itself has a kink there."""
     active, n = list(arm.active), len(q)
-    r = min(arm.task.rank, len(active)) - 1
+    r = min(arm.rank, len(active)) - 1
     J = arm.scaled_jacobian(q)[1]
     u, s, vt = np.linalg.svd(J, full_matrices=False)
     moved = np.repeat(q[:, None], len(active), axis=1)
@@ -75,9 +75,10 @@ def on_continuum(arm: ArmUnderTest, q: Array, targets: Array) -> NDArray[np.bool
     step = np.zeros((len(candidates), arm.dof))
     step[:, active] = null * np.where(arm.revolute[active], 1.0, arm.length)
     flags[candidates] = True
+    aims = arm.aims(q[candidates], targets[candidates])
     passed = [q[candidates]]  # where the steps before came from and went
     for size in STEPS_ALONG:
-        ends, reached = converge(arm, q[candidates] + size * step, targets[candidates])
+        ends, reached = converge(arm, q[candidates] + size * step, aims)
         away = [np.max(np.abs(ends - one), axis=1, initial=0.0) > size / 4 for one in passed]
         flags[candidates] &= reached & np.all(away, axis=0) & (arm.sigma(ends) < 1e-5)
         passed.append(ends)

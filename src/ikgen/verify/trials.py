@@ -34,7 +34,7 @@ def run_trial(
     runner: Runner, arm: ArmUnderTest, sample: SampleSet, *, limits: bool, seeded: bool = False
 ) -> Trial:
     """Solve all poses of the set, free joints held where the generating configuration has them."""
-    free = sample.q[:, list(arm.free)] if arm.free else None
+    free = arm.held_values(sample.q, sample.poses)
     seeds = sample.q if seeded else None
     rows = runner.solve_many(sample.poses, free=free, seeds=seeds, limits=limits)
     return Trial(sample, rows, limits, seeded)

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.model.dh import HELD_ANGLE
+from ikgen.runtime.python.arm_angle import ArmAngle
 from ikgen.tasks import find_task
 from ikgen.verify import checks, completeness, coverage, interface_checks
 from ikgen.verify.agreement import check_agreement
@@ -126,6 +128,7 @@ def verify(
     seed: int = 0,
     locked: Mapping[str, float] | None = None,
     free_joints: Sequence[str] | None = None,
+    angle: ArmAngle | None = None,
     limits: tuple[Array, Array] | None = None,
     peer: Runner | None = None,
     progress: Progress | None = None,
@@ -134,16 +137,17 @@ def verify(
 
     `samples` random poses (and smaller special sets in proportion) drawn from `seed`. `task`,
     `free_joints` and `limits` (lower, upper; rad or m) are what the arm was generated for: by
-    default what the module itself says. `peer` is the same solver in another language, which must
-    answer alike. `locked` (already in the oracle) is recorded. Raises
-    `UnknownNameError` for an unknown task; whatever the emitted code does wrong is in the report.
+    default what the module itself says; `angle` is the arm angle where the last of them is that.
+    `peer` is the same solver in another language, which must answer alike. `locked` (already in the
+    oracle) is recorded. Raises `UnknownNameError` for an unknown task; whatever the emitted code does
+    wrong is in the report.
     """
     start = time.perf_counter()
     name = runner.constants.task if task is None else task
     space = task_space(find_task(name))
-    found = _Findings(_mismatch(runner, oracle))
+    found = _Findings(_mismatch(runner, oracle, angle))
     if not found.results:
-        arm = _arm(runner, oracle, space, free_joints, limits)
+        arm = _arm(runner, oracle, space, free_joints, angle, limits)
         found = _run_checks(runner, arm, samples, seed, peer, progress)
     links, held = (oracle.base_link, oracle.tip_link), tuple((locked or {}).items())
     seconds = time.perf_counter() - start
@@ -158,21 +162,22 @@ def _arm(
     oracle: Oracle,
     task: TaskSpace,
     free_joints: Sequence[str] | None,
+    angle: ArmAngle | None,
     limits: tuple[Array, Array] | None,
 ) -> ArmUnderTest:
     """The arm as asked for, and where nothing was, as the module itself says."""
     constants = runner.constants
     held = constants.free_joints if free_joints is None else tuple(free_joints)
     bounds = (constants.lower, constants.upper) if limits is None else limits
-    return arm_under_test(oracle, task, bounds, held)
+    return arm_under_test(oracle, task, bounds, held, angle)
 
 
-def _mismatch(runner: Runner, oracle: Oracle) -> tuple[CheckResult, ...]:
+def _mismatch(runner: Runner, oracle: Oracle, angle: ArmAngle | None) -> tuple[CheckResult, ...]:
     """A failed check of the constants where the module is of another chain, so nothing can be
     run."""
     ours, theirs = runner.constants.joint_names, oracle.joint_names
     bounds = runner.constants.lower.shape == runner.constants.upper.shape == (len(ours),)
-    known = set(runner.constants.free_joints) <= set(ours)
+    known = set(runner.constants.free_joints) <= {*ours, *(() if angle is None else (HELD_ANGLE,))}
     if len(ours) == len(theirs) and bounds and known:
         return ()
     detail = f"joints {', '.join(ours)} instead of {', '.join(theirs)}"

@@ -11,6 +11,7 @@ from ikgen.emit.cpp.cpp_policy import policy_lines
 from ikgen.emit.cpp.cpp_statements import ProgramText
 from ikgen.emit.cpp.cpp_twist_chain import twist_lines
 from ikgen.emit.cpp.header_bundle import bundle
+from ikgen.emit.elbow_text import elbow_text
 from ikgen.emit.printer import expression
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
@@ -78,12 +79,13 @@ def emit_header(module: SolverModule) -> str:
         rough=_rough(module, policy),
         order=_depth_first(branches),
         frames=[[[expression(CONSTANT, x) for x in row] for row in F] for F in program.frames],
-        twisted=twist_lines(module) if module.refine == "all" else None,
-        held=len(module.free),
+        twisted=twist_lines(module) if _newton(module) else None,
+        held=len(module.held),
+        elbow=elbow_text(module, number),
         folds=fold_margins(program),
         guarded=module.guarded,
-        closed_form="int P, class Out" if len(module.free) == 1 else "int P",
-        rows="Out" if len(module.free) == 1 else "Rows<P>",
+        closed_form="int P, class Out" if len(module.held) == 1 else "int P",
+        rows="Out" if len(module.held) == 1 else "Rows<P>",
         beside=[[number(float(x)) for x in D.T[:, :3].ravel()] for D in module.beside],
         size=_size_text(module),
         blanks=blanks(module),
@@ -102,6 +104,11 @@ def _careful(module: SolverModule) -> bool:
     return module.plan is not None
 
 
+def _newton(module: SolverModule) -> bool:
+    """Whether all rows are refined at once: those at an arm angle are, one by one."""
+    return module.refine == "all" and not module.dh.arm_angle
+
+
 def _headers(module: SolverModule) -> list[str]:
     """The runtime's headers that the module needs, without those that they include."""
     routines = sorted({lv.call.routine for lv in module.program.levels if lv.call is not None})
@@ -109,12 +116,14 @@ def _headers(module: SolverModule) -> list[str]:
     needed += ["routine_roots.hpp"] * bool(routines)
     needed += [_ROUTINES.get(name, f"{name}.hpp") for name in routines]
     needed += ["parallel_6r.hpp"] * bool(_parallel_kind(module))
-    needed += ["lane_newton.hpp"] * (module.refine == "all")
+    needed += ["lane_newton.hpp"] * _newton(module)
+    if module.dh.arm_angle:
+        needed += ["arm_angle.hpp" if module.refine == "all" else "arm_angle_motion.hpp"]
     needed += ["displacement.hpp"] * bool(module.beside)
     task = "whole_pose.hpp" if module.task == "pose" else "pose_entries.hpp"
     needed += [task, "pose_solver.hpp", "projection.hpp"]
     searches = ("row_preference.hpp", "held_search.hpp", "held_grid_search.hpp")
-    return [*needed, searches[min(len(module.free), 2)]]
+    return [*needed, searches[min(len(module.held), 2)]]
 
 
 _ROUTINES = {"general_6r": "general_6r_arm.hpp"}

@@ -13,7 +13,7 @@ from ikgen.emit.blanks import pairs
 from ikgen.emit.cpp.cpp_language import CONSTANT, CPP, LINE, comment, number
 from ikgen.emit.printer import expression
 from ikgen.emit.solver_module import SolverModule
-from ikgen.program.inputs import HeldValue, PoseEntry, SeedValue
+from ikgen.program.inputs import ArmAngle, HeldValue, PoseEntry, SeedValue
 from ikgen.program.interpret import evaluate
 from ikgen.program.liveness import live_names
 from ikgen.program.margins import margin
@@ -111,7 +111,7 @@ class ProgramText:
                 )
             elif isinstance(s, Require):
                 self._require(index, expression(CPP, s.condition, 3))
-                if s.fold and len(self.module.free) == 1:
+                if s.fold and len(self.module.held) == 1:
                     text = expression(CPP, margin(s.condition))
                     self._statement(f"rows.template fold<{self._folds}>({text});")
                     self._folds += 1
@@ -167,6 +167,8 @@ class ProgramText:
         for one in program.inputs_of(HeldValue):
             index = self.module.free.index(one.joint)
             lines.append(f"const double {one.name} = held[{index}];")
+        for angle in program.inputs_of(ArmAngle):
+            lines.append(f"const double {angle.name} = held[{len(self.module.free)}];")
         for let in program.prelude:
             if let not in self.seed_lets():
                 text = expression(CONSTANT, let.value)

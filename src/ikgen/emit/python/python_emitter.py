@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ikgen.elimination.routine import runtime_policy
 from ikgen.emit.blanks import blanks, pairs
+from ikgen.emit.elbow_text import elbow_text
 from ikgen.emit.printer import expression
 from ikgen.emit.python.branch_kinds import branch_kind, elbow_end
 from ikgen.emit.python.bundle import bundle
@@ -57,9 +58,10 @@ def emit_module(module: SolverModule) -> str:
         number=number,
         literal=literal,
         words=words,
-        held=len(module.free),
-        held_name=words(module.dh.joints[module.free[0]].name) if module.free else "",
-        held_turns=bool(module.free) and module.dh.lead_row(module.free[0]).revolute,
+        held=len(module.held),
+        held_name=words(_held_name(module)),
+        held_turns=module.dh.arm_angle or _held_turns(module),
+        elbow=elbow_text(module, number),
         guarded=module.guarded,
         beside=[[[number(float(x)) for x in row] for row in D] for D in module.beside],
         orientation=module.reads.orientation,
@@ -72,6 +74,17 @@ def emit_module(module: SolverModule) -> str:
         policy_values=_policy_values(runtime_policy(policy)),
     )
     return bundle(shell)
+
+
+def _held_name(module: SolverModule) -> str:
+    """What is held first, as the text of the module calls it; empty where nothing is."""
+    if module.dh.arm_angle and not module.free:
+        return "the arm angle"
+    return module.held[0] if module.held else ""
+
+
+def _held_turns(module: SolverModule) -> bool:
+    return bool(module.free) and module.dh.lead_row(module.free[0]).revolute
 
 
 def _unit_columns(task: Task) -> tuple[int, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ikgen.emit.printer import expression
 from ikgen.emit.python.python_language import BATCH, SCALAR
 from ikgen.emit.solver_module import SolverModule
-from ikgen.program.inputs import HeldValue, PoseEntry, SeedValue
+from ikgen.program.inputs import ArmAngle, HeldValue, PoseEntry, SeedValue
 from ikgen.program.margins import margin
 from ikgen.program.ops import renamed
 from ikgen.program.statements import Comment, Let, Level, Program, Require, Statement
@@ -21,6 +21,8 @@ def scalar_lines(module: SolverModule) -> list[str]:
     lines = []
     for one in program.inputs_of(HeldValue):
         lines.append(f"{one.name} = held[{module.free.index(one.joint)}]")
+    for angle in program.inputs_of(ArmAngle):
+        lines.append(f"{angle.name} = held[{len(module.free)}]")
     for let in program.prelude:
         lines.append(f"{let.name} = {expression(SCALAR, renamed(let.value, given))}")
     for index, level in enumerate(program.levels):
@@ -85,7 +87,7 @@ def batch_lines(module: SolverModule) -> list[str]:
                 lines.append(f"{statement.name} = {expression(BATCH, statement.value)}")
             else:
                 lines.append(f"valid = valid & {expression(BATCH, statement.condition, 9)}")
-                if statement.fold and len(module.free) == 1:
+                if statement.fold and len(module.held) == 1:
                     text = expression(BATCH, margin(statement.condition))
                     lines.append(
                         f"folds.append(np.broadcast_to({text}, full).reshape(-1, count).T)"
@@ -105,6 +107,8 @@ def _batch_inputs(module: SolverModule) -> list[str]:
         lines.append(f"{seed.name} = q0[:, {seed.joint}].reshape(lane)")
     for one in program.inputs_of(HeldValue):
         lines.append(f"{one.name} = held[:, {module.free.index(one.joint)}].reshape(lane)")
+    for angle in program.inputs_of(ArmAngle):
+        lines.append(f"{angle.name} = held[:, {len(module.free)}].reshape(lane)")
     lines += [f"{let.name} = {expression(BATCH, let.value)}" for let in program.prelude]
     return [*lines, "valid: _Flags = np.ones(lane, dtype=bool)"]
 

@@ -17,6 +17,7 @@ namespace ikgen_runtime {
 // file, and kBesides, kBeside, the motions of the tool to poses that are solved as well then: near folds those have
 // rows that the pose has not.
 template <class Arm> struct CarefulSolve {
+  using Aim = HeldAim<Arm>;
   using Options = typename Arm::Options;
   using Policy = typename Arm::Policy;
   using Refinement = NewtonRefinement<Arm>;
@@ -28,6 +29,7 @@ template <class Arm> struct CarefulSolve {
   // where no row fits, or one is of a continuum, the seed is taken as a Newton start.
   [[gnu::always_inline]] static void solve(const Eigen::Isometry3d& pose, const Options& options,
                                            Solutions& out) noexcept {
+    const Aim aim(pose, options.free);
     bool real = false;
     Places found;
     found.count = 0;
@@ -36,12 +38,12 @@ template <class Arm> struct CarefulSolve {
       for (int j = 0; j < Arm::kDof; ++j)
         start[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kRevolute[j] ? turn * Policy::kTryStep : 0.0);
       for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) start[Arm::kFreeJoints[k]] = options.free[k];
-      Left left = find_rows(pose, start, options, turn == 0, found);
-      if (options.seed && !left.free && any_singular(found)) add_from(pose, start, found);
+      Left left = find_rows(aim, start, options, turn == 0, found);
+      if (options.seed && !left.free && any_singular(found)) add_from(aim, start, found);
       real = real || found.count > 0;
       Row::place_all(options, found);
-      if (found.count == 0 && options.seed && Refinement::refine(start, pose)) {
-        add(pose, found, start, true);
+      if (found.count == 0 && options.seed && Refinement::refine(start, aim)) {
+        add(aim, found, start, true);
         Row::place_all(options, found);
       }
       if (!Arm::kNewton) left.led = any_singular(found);
@@ -85,9 +87,9 @@ template <class Arm> struct CarefulSolve {
     double error = 0.0, start[Arm::kDof], q[Arm::kDof];
 
     Nearest() = default;
-    Nearest(const Eigen::Isometry3d& pose, const Rows& rows, int lane, bool singular) noexcept : marked(singular) {
+    Nearest(const Aim& aim, const Rows& rows, int lane, bool singular) noexcept : marked(singular) {
       for (int j = 0; j < Arm::kDof; ++j) start[j] = q[j] = rows.q[j][lane];
-      if (!Arm::kRefined) error = Refinement::error_after(q, pose);
+      if (!Arm::kRefined) error = Refinement::error_after(q, aim);
     }
 
     void judge() noexcept {
@@ -104,10 +106,10 @@ template <class Arm> struct CarefulSolve {
         double trial[Arm::kDof];
         std::copy_n(from, Arm::kDof, trial);
         FoldPair<Arm>(fold).approach(side, trial);
-        const double left = Refinement::error_after(trial, fold.pose);
+        const double left = Refinement::error_after(trial, fold.aim);
         if (left < Policy::kExact) {
           exact = true;
-          add(fold.pose, out, trial, marked);
+          add(fold.aim, out, trial, marked);
         } else if (left < error) {
           error = left;
           std::copy_n(trial, Arm::kDof, q);
@@ -117,8 +119,8 @@ template <class Arm> struct CarefulSolve {
 
     // Adds the solutions that meet near the one that a lane led to, or all around a continuum of the solved geometry
     // that the file's has not.
-    void add_nearby(const Eigen::Isometry3d& pose, Places& out) noexcept {
-      FoldPair<Arm> fold(pose);
+    void add_nearby(const Aim& aim, Places& out) noexcept {
+      FoldPair<Arm> fold(aim);
       if (broken()) {
         double around[Policy::kTries][Arm::kDof];
         if (fold.walk(start, around) >= Policy::kArrived)
@@ -127,7 +129,7 @@ template <class Arm> struct CarefulSolve {
         std::copy_n(q, Arm::kDof, start);
         take_pair(fold, start, out);
       }
-      if (!exact && !settled && error < Policy::kArrived) add(pose, out, q, marked);
+      if (!exact && !settled && error < Policy::kArrived) add(aim, out, q, marked);
     }
   };
 
@@ -144,7 +146,7 @@ template <class Arm> struct CarefulSolve {
       });
     }
 
-    void take(const Nearest& start, bool beside, const Eigen::Isometry3d& pose, Places& out) noexcept {
+    void take(const Nearest& start, bool beside, const Aim& aim, Places& out) noexcept {
       for (int k = 0; k < count && beside; ++k)
         if (Row::same(start.q, all[k].q)) return;
       Nearest& one = all[count] = start;
@@ -154,7 +156,7 @@ template <class Arm> struct CarefulSolve {
       ++count;
       if (!one.settled) return;
       if (one.near || one.marked)
-        add(pose, out, one.q, one.marked);
+        add(aim, out, one.q, one.marked);
       else
         Row::add(out, one.q, false);
     }
@@ -166,17 +168,17 @@ template <class Arm> struct CarefulSolve {
   }
 
   // Adds what Newton steps from given values lead to.
-  static void add_from(const Eigen::Isometry3d& pose, const double* q0, Places& out) noexcept {
+  static void add_from(const Aim& aim, const double* q0, Places& out) noexcept {
     double q[Arm::kDof];
     std::copy_n(q0, Arm::kDof, q);
-    if (Refinement::refine(q, pose)) add(pose, out, q, true);
+    if (Refinement::refine(q, aim)) add(aim, out, q, true);
   }
 
   // Adds a right row, as singular where it is one of a continuum or next to it.
-  static void add(const Eigen::Isometry3d& pose, Places& out, const double* q, bool marked) noexcept {
+  static void add(const Aim& aim, Places& out, const double* q, bool marked) noexcept {
     const bool singular = RankLoss<Arm>::below(q, marked ? Policy::kContinuumRankLoss : Policy::kRankLoss);
     for (int k = 0; k < out.count && singular; ++k)
-      if (Row::flag(out, k) && between(pose, q, Row::row(out, k))) return;
+      if (Row::flag(out, k) && between(aim, q, Row::row(out, k))) return;
     Row::add(out, q, singular);
   }
 
@@ -193,33 +195,33 @@ template <class Arm> struct CarefulSolve {
   }
 
   // Whether nothing tells two rows near each other apart: the pose is theirs between them too.
-  static bool between(const Eigen::Isometry3d& pose, const double* a, const double* b) noexcept {
+  static bool between(const Aim& aim, const double* a, const double* b) noexcept {
     if (!alike(a, b)) return false;
     double middle[Arm::kDof];
     for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * change(j, a, b);
-    return PoseError<Arm>(middle, pose).largest() < Policy::kConverged;
+    return PoseError<Arm>(middle, aim).largest() < Policy::kConverged;
   }
 
   // Adds the distinct solutions of a pose, refined where the closed form lost digits.
-  [[gnu::always_inline]] static Left find_rows(const Eigen::Isometry3d& pose, const double* q0, const Options& options,
+  [[gnu::always_inline]] static Left find_rows(const Aim& aim, const double* q0, const Options& options,
                                                bool beside, Places& out) noexcept {
     Rows rows;
-    find_lanes(pose, q0, options, rows);
+    find_lanes(aim.pose, q0, options, rows);
     double q[Arm::kDof];
     Left left;
     for (const int lane : Arm::kLaneOfRow) {
       left.free = left.free || (bits(rows, lane) & kHit) != 0;
       left.led = left.led || (bits(rows, lane) & (kSingular | kReal)) == (kSingular | kReal);
     }
-    if (left.free) add_from(pose, q0, out);
+    if (left.free) add_from(aim, q0, out);
     Starts starts;
     for (const int lane : Arm::kLaneOfRow)
       if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
-        starts.take({pose, rows, lane, (bits(rows, lane) & kSingular) != 0}, false, pose, out);
+        starts.take({aim, rows, lane, (bits(rows, lane) & kSingular) != 0}, false, aim, out);
     if (Arm::kBesides > 0 && beside && (kBesideAnywhere || left.free || starts.close()))
-      take_beside(pose, q0, options, starts, out);
+      take_beside(aim, q0, options, starts, out);
     for (int k = 0; k < starts.count; ++k)
-      if (starts.all[k].near) starts.all[k].add_nearby(pose, out);
+      if (starts.all[k].near) starts.all[k].add_nearby(aim, out);
     for (const int lane : Arm::kLaneOfRow) {
       if (Arm::kRefined || (bits(rows, lane) & (kReal | kRough)) != kReal) continue;
       for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
@@ -229,14 +231,14 @@ template <class Arm> struct CarefulSolve {
   }
 
   // The rows of poses beside this one.
-  static void take_beside(const Eigen::Isometry3d& pose, const double* q0, const Options& options, Starts& starts,
+  static void take_beside(const Aim& aim, const double* q0, const Options& options, Starts& starts,
                           Places& out) noexcept {
     if constexpr (Arm::kBesides > 0)
       for (const auto& motion : Arm::kBeside) {
         Rows rows;
-        find_lanes(displaced(pose, motion), q0, options, rows);
+        find_lanes(displaced(aim.pose, motion), q0, options, rows);
         for (const int lane : Arm::kLaneOfRow)
-          if ((bits(rows, lane) & kReal) != 0) starts.take({pose, rows, lane, false}, true, pose, out);
+          if ((bits(rows, lane) & kReal) != 0) starts.take({aim, rows, lane, false}, true, aim, out);
       }
   }
 };

@@ -6,17 +6,17 @@
 
 namespace ikgen_runtime {
 
-// Arm: as for PoseError, and kFree, how many joints are held; kHeld, a flag a joint; Policy.
+// Arm: as for PoseError; kHeld, a flag a joint; Policy.
 template <class Arm> struct FoldPair {
-  static constexpr int kMoving = Arm::kDof - Arm::kFree, kEquations = PoseError<Arm>::kCount;
+  static constexpr int kMoving = Arm::kDof - static_cast<int>(Arm::kFreeJoints.size()), kEquations = PoseError<Arm>::kCount;
   using Vector = double[kMoving];
 
-  Eigen::Isometry3d pose;
+  HeldAim<Arm> aim;
   int moving[kMoving];
   Vector still;  // unit direction in which the pose moves least
   double size;   // the pose's error
 
-  explicit FoldPair(const Eigen::Isometry3d& goal) noexcept : pose(goal) {
+  explicit FoldPair(const HeldAim<Arm>& goal) noexcept : aim(goal) {
     for (int j = 0, k = 0; j < Arm::kDof; ++j)
       if (!Arm::kHeld[j]) moving[k++] = j;
     for (int k = 0; k < kMoving; ++k) still[k] = 1.0 + 0.1 * k;
@@ -47,7 +47,7 @@ template <class Arm> struct FoldPair {
 
   // One step; how far it goes in the direction that hardly matters, which for side 0 it does not.
   double step(double side, double* q) noexcept {
-    const PoseError<Arm> at(q, pose);
+    const PoseError<Arm> at(q, aim);
     size = at.largest();
     find_still(at);
     double flow[kEquations], bend[kEquations], rest[kEquations];
@@ -64,7 +64,7 @@ template <class Arm> struct FoldPair {
       double there[Arm::kDof];
       std::copy_n(q, Arm::kDof, there);
       for (int k = 0; k < kMoving; ++k) there[moving[k]] += kAlong * still[k];
-      const PoseError<Arm> beyond(there, pose);
+      const PoseError<Arm> beyond(there, aim);
       for (int e = 0; e < kEquations; ++e)
         for (int k = 0; k < kMoving; ++k)
           bend[e] += (beyond.slope[e][moving[k]] - at.slope[e][moving[k]]) * still[k] / kAlong;

@@ -177,7 +177,7 @@ template <class Arm> struct HeldSample {
       if (!real[l] || (bits & kRough) == 0 || Arm::kRefined) continue;
       double refined[Arm::kDof];
       row(l, refined);
-      real[l] = NewtonRefinement<Arm>::refine(refined, T);
+      real[l] = NewtonRefinement<Arm>::refine(refined, HeldAim<Arm>(T, {held}));
       for (int j = 0; j < Arm::kDof; ++j)
         q[j][l] = !Arm::kRevolute[j] || Arm::kHeld[j] ? refined[j] : refined[j] - kTurn * std::nearbyint(refined[j] / kTurn);
     }

@@ -65,18 +65,9 @@ template <class Arm> struct HeldSweep {
   double low, high;
 
   HeldSweep(const Eigen::Isometry3d& T, bool limits) noexcept : pose(T), bounds(limits) {
-    constexpr int j = Arm::kFreeJoints[0];
-    low = Arm::kLower.data()[j];
-    high = Arm::kUpper.data()[j];
-    if (Arm::kRevolute[j]) {
-      if (limits && high - low < kInfinity) return;
-      low = -kPi;
-      high = kPi;
-    } else if (!(high - low < kInfinity)) {
-      const double far = reach();
-      low = std::max(low, -far);
-      high = std::min(high, far);
-    }
+    low = -kPi;
+    high = kPi;
+    if constexpr (!Arm::kArmAngle) hold_joint(limits);
   }
 
   Sample at(double held) const noexcept { return Sample(pose, held, bounds); }
@@ -103,6 +94,22 @@ template <class Arm> struct HeldSweep {
 
  private:
   double value(int k) const noexcept { return k == kCells ? high : low + (high - low) * k / kCells; }
+
+  // The range of the held joint.
+  void hold_joint(bool limits) noexcept {
+    constexpr int j = Arm::kFreeJoints[0];
+    low = Arm::kLower.data()[j];
+    high = Arm::kUpper.data()[j];
+    if (Arm::kRevolute[j]) {
+      if (limits && high - low < kInfinity) return;
+      low = -kPi;
+      high = kPi;
+    } else if (!(high - low < kInfinity)) {
+      const double far = reach();
+      low = std::max(low, -far);
+      high = std::min(high, far);
+    }
+  }
 
   // How far a slide without limits is looked at: the arm's lengths from the pose.
   double reach() const noexcept {

@@ -16,6 +16,7 @@ struct RefineStage {
 
 // Arm: as for PoseError, and its Policy.
 template <class Arm> struct NewtonRefinement {
+  using Aim = HeldAim<Arm>;
   using Policy = typename Arm::Policy;
 
   // At a fold of the solution set damped steps halve the error.
@@ -37,11 +38,11 @@ template <class Arm> struct NewtonRefinement {
   }
 
   // At most `steps` of them; the error that is left.
-  static double run(double* q, const Eigen::Isometry3d& pose, int steps) noexcept {
+  static double run(double* q, const Aim& aim, int steps) noexcept {
     double trial[Arm::kDof], best = kInfinity;
     std::copy_n(q, Arm::kDof, trial);
     for (int i = 0, stalled = 0;; ++i) {
-      const PoseError<Arm> at(trial, pose);
+      const PoseError<Arm> at(trial, aim);
       const double worst = at.largest();
       stalled = worst < Policy::kProgress * best && worst > Policy::kConverged ? 0 : stalled + 1;
       if (worst < best) {
@@ -55,18 +56,18 @@ template <class Arm> struct NewtonRefinement {
 
   // The error that steps from q leave: only what is promising takes many. All digits are wanted where they
   // come easily, as rows may lie on a limit.
-  static double error_after(double* q, const Eigen::Isometry3d& pose) noexcept {
+  static double error_after(double* q, const Aim& aim) noexcept {
     double error = kInfinity;
     for (const RefineStage& stage : Policy::kRefinement) {
-      error = run(q, pose, stage.steps);
+      error = run(q, aim, stage.steps);
       if (!(error >= stage.fine && error < stage.promising)) break;
     }
     return error;
   }
 
-  // Whether they lead to the pose.
-  static bool refine(double* q, const Eigen::Isometry3d& pose) noexcept {
-    return error_after(q, pose) < Policy::kArrived;
+  // Whether they lead to the aim.
+  static bool refine(double* q, const Aim& aim) noexcept {
+    return error_after(q, aim) < Policy::kArrived;
   }
 };
 

@@ -16,7 +16,7 @@ namespace ikgen_runtime {
 template <class A> struct AllMoving : A {
   static constexpr int kFree = 0;
   static constexpr std::array<int, 0> kFreeJoints = {};
-  static constexpr bool kHeld[A::kDof] = {};
+  static constexpr bool kHeld[A::kDof] = {}, kArmAngle = false;
 };
 
 // A: as for PoseError and RankLoss; Solver: solve(pose, options, out), search(pose, seed, limits, out).
@@ -79,7 +79,7 @@ template <class A, class Solver> struct PathStep {
 
   // The shortest motion by the Jacobian, of joints that are not stopped; the error before it.
   static double move(double* at, const Eigen::Isometry3d& pose, const bool* stopped) noexcept {
-    PoseError<AllMoving<A>> here(at, pose);
+    PoseError<AllMoving<A>> here(at, HeldAim<AllMoving<A>>(pose));
     constexpr int n = PoseError<AllMoving<A>>::kCount;
     const double worst = here.largest();
     double N[n][n];

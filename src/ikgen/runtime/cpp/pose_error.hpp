@@ -3,26 +3,35 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Geometry>
-
+#include "held_aim.hpp"
 #include "motion_chain.hpp"
 
 namespace ikgen_runtime {
 
 // Error of a configuration, lengths over the arm's size, and its slope by the joints that move.
-// Arm: as for MotionChain; Task, WholePose or PoseEntries; kFreeJoints, which are held; kSize (m).
+// Arm: as for MotionChain and HeldAim; Task, WholePose or PoseEntries; kSize (m).
 template <class Arm> struct PoseError {
-  static constexpr int kCount = Arm::Task::kCount;
+  using Aim = HeldAim<Arm>;
+  static constexpr int kTask = Arm::Task::kCount, kCount = kTask + Aim::kCount;
   double error[kCount], slope[kCount][Arm::kDof];
 
-  PoseError(const double* q, const Eigen::Isometry3d& pose) noexcept {
+  PoseError(const double* q, const Aim& aim) noexcept {
     double J[6][Arm::kDof];
     const Frame T = MotionChain<Arm>::forward(q, J);
     double t[3][4];
     for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 4; ++c) t[r][c] = pose.matrix().data()[4 * c + r];
-    Arm::Task::error(t, T, error);
-    Arm::Task::slope(T, J, slope);
+      for (int c = 0; c < 4; ++c) t[r][c] = aim.pose.matrix().data()[4 * c + r];
+    if constexpr (Aim::kCount == 0) {
+      Arm::Task::error(t, T, error);
+      Arm::Task::slope(T, J, slope);
+    } else {
+      double missed[kTask], rows[kTask][Arm::kDof];
+      Arm::Task::error(t, T, missed);
+      Arm::Task::slope(T, J, rows);
+      std::copy_n(missed, kTask, error);
+      std::copy_n(rows[0], kTask * Arm::kDof, slope[0]);
+      aim.compare(q, error[kTask], slope[kTask]);
+    }
     for (const int j : Arm::kFreeJoints)
       for (auto& row : slope) row[j] = 0.0;
   }

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "constants.hpp"
+#include "held_aim.hpp"
 #include "pose_reading.hpp"
 
 namespace ikgen_runtime {
@@ -45,8 +46,10 @@ template <class Arm, template <class> class Way> struct PoseSolver {
       if (far && options.seed) without_turns();
       if constexpr (Arm::kFree > 0) {
         const Options plain;
-        for (std::size_t k = 0; k < Arm::kFree && options.seed && options.hold_seed; ++k)
-          if (options.free[k] == plain.free[k]) options.free[k] = options.seed->data()[Arm::kFreeJoints[k]];
+        auto own = plain.free;
+        if (options.seed && options.hold_seed) HeldAim<Arm>::values(options.seed->data(), own);
+        for (std::size_t k = 0; k < Arm::kFree; ++k)
+          if (options.free[k] == plain.free[k]) options.free[k] = own[k];
       }
     }
     Checked(const Checked&) = delete;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "constants.hpp"
+#include "held_aim.hpp"
 #include "motion_chain.hpp"
 #include "pose_entries.hpp"
 #include "pose_reading.hpp"
@@ -96,6 +97,7 @@ template <class Arm, template <class> class Way> struct Projection {
     nearest(t, options, q);
     Eigen::Isometry3d pose;
     Chords::by_columns(MotionChain<Arm>::forward(q), pose.matrix().data());
+    HeldAim<Arm>::values(q, options.free);
     Way<Arm>::template solve<1>(&pose, options, &out);
     if (SolutionRows<Arm>::place(q, options)) SolutionRows<Arm>::add(out, q, false);
     if (out.count > 0) out.status = Arm::Status::Ok;

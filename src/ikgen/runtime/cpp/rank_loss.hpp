@@ -4,15 +4,15 @@
 
 namespace ikgen_runtime {
 
-// Arm: as for PoseError, and kFree, how many joints are held; kHeld, a flag a joint.
+// Arm: as for PoseError; kHeld, a flag a joint.
 template <class Arm> struct RankLoss {
-  static constexpr int kMoving = Arm::kDof - Arm::kFree, kEquations = PoseError<Arm>::kCount;
+  static constexpr int kMoving = Arm::kDof - static_cast<int>(Arm::kFreeJoints.size()), kEquations = PoseError<Arm>::kCount;
   static constexpr int kRank = kMoving < kEquations ? kMoving : kEquations;
 
   // Whether the slope V at q has a singular value below `bound`: V V^T - bound^2, or V^T V - bound^2 where that is
   // smaller, is not positive definite then.
   static bool below(const double* q, double bound) noexcept {
-    const PoseError<Arm> at(q, Eigen::Isometry3d::Identity());
+    const PoseError<Arm> at(q, HeldAim<Arm>::own(q));
     int moving[kMoving];
     for (int j = 0, k = 0; j < Arm::kDof; ++j)
       if (!Arm::kHeld[j]) moving[k++] = j;

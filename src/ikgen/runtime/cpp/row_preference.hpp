@@ -49,7 +49,7 @@ template <class A> struct RowPreference {
   // projection onto its vector. Rows of lengths are not over the arm's size.
   static double smallest_singular_value(const double* q) noexcept {
     constexpr int e = PoseError<AllMoving<A>>::kCount, n = A::kDof < e ? A::kDof : e;
-    PoseError<AllMoving<A>> at(q, Eigen::Isometry3d::Identity());
+    PoseError<AllMoving<A>> at(q, HeldAim<AllMoving<A>>::own(q));
     for (int a = 0; a < e; ++a)
       if (A::kWholePose ? a < 3 : A::kRead[a][1] == 3)
         for (double& x : at.slope[a]) x *= A::kSize;

@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.held_parameters import aims, row_rank_loss
 from ikgen.runtime.python.joint_arguments import held_rows, seed_rows
 from ikgen.runtime.python.meeting_rows import Starts, rows_nearby
 from ikgen.runtime.python.pose_arguments import poses_in_line
 from ikgen.runtime.python.pose_faults import nearest_poses
 from ikgen.runtime.python.pose_solving import solve_pose
-from ikgen.runtime.python.refinement import rank_loss, refine, steeper
+from ikgen.runtime.python.refinement import refine, steeper
 from ikgen.runtime.python.row_placement import distinct, place_rows_batch
 from ikgen.runtime.python.solutions import Status
 from ikgen.runtime.python.solved_arm import Arm, Together
@@ -128,12 +129,13 @@ def _nearby_rows(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[A
     own = valid.shape[1] // (1 + len(arm.beside)) if anywhere else valid.shape[1]
     pose, column = np.nonzero(valid)
     marked, source = np.zeros(len(pose), dtype=bool), (column >= own).astype(int)
-    owner, rows, close = rows_nearby(arm, Starts(q[pose, column], T[pose], pose, marked, source))
+    starts = Starts(q[pose, column], aims(arm, T, held)[pose], pose, marked, source)
+    owner, rows, close = rows_nearby(arm, starts)
     order = np.argsort(pose[owner], kind="stable")
     of, rows = pose[owner][order], rows[order]
     flat = np.zeros(len(T), dtype=bool)
     if len(rows):
-        loss = rank_loss(arm.chain, arm.task, arm.moving, rows)
+        loss = row_rank_loss(arm, rows)
         flat[of[loss < arm.policy.rank_loss]] = True
     if not anywhere:
         flat[pose[close]] = True
@@ -162,9 +164,9 @@ def certain_rows(
     continuum, and for which poses (N,) that leaves a doubt."""
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
     q, valid, singular, _ = _closed_form(arm, T, start, held)
-    q[:, :, arm.free] = held[:, None, :]
+    q[:, :, list(arm.free)] = held[:, None, : len(arm.free)]
     pose, row = np.nonzero(valid)
-    q[pose, row], arrived, missed = together(arm, q[pose, row], T[pose])
+    q[pose, row], arrived, missed = together(arm, q[pose, row], aims(arm, T, held)[pose])
     found, doubt = valid.copy(), np.zeros(len(T), dtype=bool)
     found[pose, row] = arrived
     doubt[pose[~(arrived | missed)]] = True
@@ -183,7 +185,8 @@ def careful_rows(
     steep = np.ones(len(T), dtype=bool)
     pose, row = np.nonzero(rough & valid)
     if len(pose):
-        done = refine(arm.chain, arm.task, arm.moving, q[pose, row], T[pose], arm.policy)
+        aim, found = aims(arm, T, held)[pose], q[pose, row]
+        done = refine(arm.chain, arm.task, arm.moving, found, aim, arm.policy, arm.angle)
         q[pose, row], valid[pose, row] = done[0], done[1] < arm.policy.arrived
         steep[pose[~steeper(done[3], arm.policy.fold_reach)]] = False
     return q, distinct(arm, q, valid), singular, steep
@@ -203,5 +206,5 @@ def _starts(
             np.concatenate([first, *(part[k] for part in more)], axis=1)
             for k, first in ((0, q), (1, valid), (3, rough))
         )
-    q[:, :, arm.free] = held[:, None, :]
+    q[:, :, list(arm.free)] = held[:, None, : len(arm.free)]
     return q, valid, singular, rough

@@ -93,6 +93,8 @@ def merged_rows(one: Rows, other: Rows) -> Rows:
 def held_range(arm: Arm, T: Array, limits: bool) -> tuple[float, float]:
     """Values of the held joint that count: its limits; one turn where it turns without any, or none are
     asked for. A slide without limits is looked at as far as the arm's lengths reach from the pose."""
+    if not arm.free:
+        return -pi, pi
     (j,) = arm.free
     low, high = arm.lower[j], arm.upper[j]
     if arm.chain.revolute[j]:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ikgen.runtime.python.array_types import Array, Row
+from ikgen.runtime.python.held_parameters import held_of
 from ikgen.runtime.python.real_numbers import real_array
 from ikgen.runtime.python.solved_arm import Arm
 
@@ -24,7 +25,7 @@ def held_values(
     where `free` gives none. Raises ValueError where they are no such values."""
     names, others = arm.free_joints, arm.free_defaults
     if near is not None:
-        others = tuple(near[j] for j in arm.free)
+        others = tuple(held_of(arm, np.array(near)).tolist())
     if free is None:
         return others
     if isinstance(free, Mapping):
@@ -54,9 +55,9 @@ def held_rows(
     if free is None or isinstance(free, Mapping):
         values = np.tile(held_values(arm, free, None), (count, 1)).reshape(shape)
         given = () if free is None else free
-        for k, (j, name) in enumerate(zip(arm.free, arm.free_joints)):
-            if near is not None and name not in given:
-                values[:, k] = near[:, j]
+        if near is not None:
+            own = [k for k, name in enumerate(arm.free_joints) if name not in given]
+            values[:, own] = held_of(arm, near)[:, own]
         return values
     held = real_array(free, "free")
     single = len(arm.free_joints) == 1 and held.shape == (count,)

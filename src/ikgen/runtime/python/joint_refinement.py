@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags
-from ikgen.runtime.python.chain_kinematics import tip_and_jacobian
 from ikgen.runtime.python.lane_chain import LaneChain
 from ikgen.runtime.python.lane_newton import refine_lanes
+from ikgen.runtime.python.refinement import errors_and_slopes
 from ikgen.runtime.python.solved_arm import Arm
 
 __all__ = ["refine_together"]
@@ -16,7 +16,7 @@ _FEW = 64  # rows for which whole matrices are faster than long rows of each of 
 
 
 def refine_together(chain: LaneChain, arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
-    """Rows (k, dof) after steps towards T (k, 4, 4) or (1, 4, 4); which arrived at the one solution near
+    """Rows (k, dof) after steps towards aims T (k, ...) or (1, ...); which arrived at the one solution near
     their start, and which at a least error that is not 0.
 
     Newton's method contracts by `policy.contraction` only near the one solution there (Deuflhard 2004,
@@ -24,7 +24,7 @@ def refine_together(chain: LaneChain, arm: Arm, q: Array, T: Array) -> tuple[Arr
     away: rows whose first step is more than `policy.pivot_share` of the pivot are left to others.
     """
     with np.errstate(all="ignore"):
-        if len(q) <= _FEW:
+        if len(q) <= _FEW or arm.angle is not None:
             return _refine_few(arm, q, T)
         return refine_lanes(arm, chain, q, np.broadcast_to(T, (len(q), 4, 4)))
 
@@ -80,11 +80,8 @@ def _moved(arm: Arm, q: Array, change: Array) -> Array:
 
 def _linearized(arm: Arm, q: Array, T: Array) -> tuple[Array, Array]:
     """Errors (k, m, 1) at rows (k, dof), and their derivatives (k, m, n)."""
-    pose, J = tip_and_jacobian(arm.chain, q)
-    slope = arm.task.rows(pose, J)
-    if arm.free:
-        slope = slope[:, :, list(arm.moving)]
-    return arm.task.error(pose, T)[:, :, None], slope
+    error, slope = errors_and_slopes(arm.chain, arm.task, arm.moving, q, T, arm.angle)
+    return error[:, :, None], slope
 
 
 def _left_inverse(V: Array) -> Array:

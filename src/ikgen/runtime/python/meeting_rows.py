@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.runtime.python.array_types import Array, Flags, Row
-from ikgen.runtime.python.chain_kinematics import forward, tip_and_jacobian
-from ikgen.runtime.python.refinement import least_singular, refine
+from ikgen.runtime.python.chain_kinematics import forward
+from ikgen.runtime.python.refinement import errors_and_slopes, least_singular, refine
 from ikgen.runtime.python.solved_arm import Arm, Found
 
 __all__ = ["Starts", "repeats", "rows_nearby"]
@@ -48,7 +48,7 @@ def rows_nearby(arm: Arm, starts: Starts) -> tuple[Index, Array, Flags]:
     has, where it marked a row, and the file's arm has not. What is given leads only to its own.
     """
     T, own = starts.T, starts.source >= 0
-    q, error, _, slope = refine(arm.chain, arm.task, arm.moving, starts.q, T, arm.policy)
+    q, error, _, slope = refine(arm.chain, arm.task, arm.moving, starts.q, T, arm.policy, arm.angle)
     arrived = error < arm.policy.arrived
     broken = starts.marked & (arm.rounded | ~arrived) & own
     loss = least_singular(slope)
@@ -70,7 +70,9 @@ def rows_nearby(arm: Arm, starts: Starts) -> tuple[Index, Array, Flags]:
         return first, own_rows, close
     owner, side = np.repeat(owner, 2), np.tile([1.0, -1.0], len(owner))
     pairs = _approach(arm, np.repeat(trial, 2, axis=0), T[owner], side)
-    pairs, left = refine(arm.chain, arm.task, arm.moving, pairs, T[owner], arm.policy)[:2]
+    pairs, left = refine(arm.chain, arm.task, arm.moving, pairs, T[owner], arm.policy, arm.angle)[
+        :2
+    ]
     exact = left < arm.policy.exact
     for i, row, e in zip(owner[~exact].tolist(), pairs[~exact], left[~exact].tolist()):
         if e < error[i]:
@@ -155,13 +157,12 @@ def _step(
     """q (k, dof) after a step, the unit directions (k, n) in which the pose moves least, in the sense of
     `still`, how far the step goes along them (k,), not at all on side 0, and the errors before (k,)."""
     columns = list(arm.moving)
-    pose, J = tip_and_jacobian(arm.chain, q)
-    error, slope = arm.task.error(pose, T), arm.task.rows(pose, J)[:, :, columns]
+    error, slope = errors_and_slopes(arm.chain, arm.task, columns, q, T, arm.angle)
     still = _still(slope, still, arm.policy.least_damping)
     flow = np.einsum("kej,kj->ke", slope, still)
     there = q.copy()
     there[:, columns] += _ALONG * still
-    beyond = arm.task.rows(*tip_and_jacobian(arm.chain, there))[:, :, columns]
+    _, beyond = errors_and_slopes(arm.chain, arm.task, columns, there, T, arm.angle)
     bend = np.einsum("kej,kj->ke", beyond - slope, still) / _ALONG
     V = slope - flow[:, :, None] * still[:, None, :]
     Vt = V.transpose(0, 2, 1)

@@ -87,7 +87,7 @@ class _Walk:
     ) -> Status:
         """To the row next to the start, or the best that a search finds."""
         self.q = start
-        if self.arm.free:
+        if self.arm.free_joints:
             rows, flags, _ = self._unstopped(pose)
             if len(rows) and np.abs(rows[0] - start).max() < _BESIDE_START:
                 self.crossed = bool(flags[0])
@@ -143,7 +143,7 @@ class _Walk:
 
     def _rows(self, pose: Array, expected: Array) -> tuple[Array, Flags, Status]:
         """All rows without limits; with held joints the one that those lead to which no limit stops."""
-        if self.arm.free:
+        if self.arm.free_joints:
             return self._unstopped(pose)
         found = solve_pose(self.arm, pose, None, self.q, False)
         return found.q, found.singular, found.status

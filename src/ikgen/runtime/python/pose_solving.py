@@ -9,14 +9,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ikgen.runtime.python.array_types import Row
+from ikgen.runtime.python.array_types import Array, Row
 from ikgen.runtime.python.chain_kinematics import forward
+from ikgen.runtime.python.held_parameters import aims, held_of, row_rank_loss
 from ikgen.runtime.python.joint_arguments import held_values, seed_values
 from ikgen.runtime.python.meeting_rows import Starts, repeats, rows_nearby
 from ikgen.runtime.python.pose_arguments import one_pose
 from ikgen.runtime.python.pose_faults import nearest_pose, pose_fault
 from ikgen.runtime.python.projection import nearest_row, off_by
-from ikgen.runtime.python.refinement import rank_loss
 from ikgen.runtime.python.row_branches import branch_names
 from ikgen.runtime.python.row_placement import is_new, place_rows
 from ikgen.runtime.python.solutions import Solutions, Status, no_solutions
@@ -64,7 +64,7 @@ def solve_pose(
 
 def _held_reason(arm: Arm, held: Row, real: bool) -> str:
     """What holding joints has to do with it; nothing where none is held."""
-    if not arm.free:
+    if not held:
         return ""
     values = ", ".join(f"{name} = {x:.6g}" for name, x in zip(arm.free_joints, held))
     what = "all solutions are outside the limits" if real else "no solution"
@@ -80,6 +80,7 @@ def _projected(
     """Solutions of the nearest pose that the arm can take."""
     row = nearest_row(arm, np.array(T), _start(arm, near, held, 0.0), limits)
     pose: list[list[float]] = forward(arm.chain, row).tolist()
+    held = tuple(held_of(arm, np.array(row)).tolist())
     found, _ = _fitting(arm, pose, near, held, limits)
     if len(found) < arm.most and is_new(arm, row, found):
         found += place_rows(arm, [(row, False)], near, limits)
@@ -107,7 +108,7 @@ def _fitting(
         starts = [_start(arm, near, held, n * arm.policy.try_step) for n in tries]
         for start, rows in zip(starts, _rows(arm, T, starts, held)):
             if near is not None and not rows.free and any(flag for _, flag in rows.kept):
-                _add(arm, T, _from_seed(arm, T, start), rows.kept)
+                _add(arm, T, _from_seed(arm, T, start, held), rows.kept)
             real = real or bool(rows.kept)
             placed = place_rows(arm, rows.kept, near, limits)
             if out:
@@ -115,7 +116,7 @@ def _fitting(
             else:
                 out = placed
             if not out and near is not None:
-                out = place_rows(arm, _from_seed(arm, T, start), near, limits)
+                out = place_rows(arm, _from_seed(arm, T, start, held), near, limits)
             if not rows.free:
                 return out, real
             if out and (rows.led if arm.rounded else any(flag for _, flag in out)):
@@ -123,9 +124,9 @@ def _fitting(
     return out, real
 
 
-def _from_seed(arm: Arm, T: list[list[float]], start: Row) -> list[Found]:
+def _from_seed(arm: Arm, T: list[list[float]], start: Row, held: Row) -> list[Found]:
     """What Newton steps from given values lead to."""
-    return [row for _, row in _refined(arm, [(start, True)], T, [-1])[0]]
+    return [row for _, row in _refined(arm, [(start, True)], T, held, [-1])[0]]
 
 
 def _add(arm: Arm, T: list[list[float]], rows: list[Found], kept: list[Found]) -> None:
@@ -158,7 +159,7 @@ def _rows(arm: Arm, T: list[list[float]], starts: list[Row], held: Row) -> list[
     for i, q0 in enumerate(starts):
         answers, hit = arm.branches(T, q0, held)
         if arm.together and len(starts) == 1 and not hit:
-            certain = _certain_rows(arm, arm.together, answers, T)
+            certain = _certain_rows(arm, arm.together, answers, T, held)
             if certain is not None:
                 return [_Rows(certain, False, False)]
         free.append(hit)
@@ -174,10 +175,10 @@ def _rows(arm: Arm, T: list[list[float]], starts: list[Row], held: Row) -> list[
     looks = len(starts) == 1 and len(arm.beside) > 0
     if looks and (free[0] or arm.policy.beside_reach >= arm.policy.anywhere):
         beside = _rows_beside(arm, T, starts[0], held)
-    steps, close = _refined(arm, own + beside, T, source + [1] * len(beside))
+    steps, close = _refined(arm, own + beside, T, held, source + [1] * len(beside))
     if close and looks and not beside:
         beside = _rows_beside(arm, T, starts[0], held)
-        steps, _ = _refined(arm, own + beside, T, source + [1] * len(beside))
+        steps, _ = _refined(arm, own + beside, T, held, source + [1] * len(beside))
     stepped += [(0, row) for row in beside]
     for i, (row, singular) in [(stepped[k][0], found) for k, found in steps] + fine:
         if is_new(arm, row, kept[i]) and not (singular and repeats(arm, T, row, kept[i])):
@@ -192,14 +193,14 @@ def _rows_beside(arm: Arm, T: list[list[float]], start: Row, held: Row) -> list[
 
 
 def _certain_rows(
-    arm: Arm, together: Together, answers: list[Candidate], T: list[list[float]]
+    arm: Arm, together: Together, answers: list[Candidate], T: list[list[float]], held: Row
 ) -> list[Found] | None:
     """The rows refined all at once; None where that leaves a doubt."""
     if not answers or any(flag for _, flag, _ in answers):
         anywhere = arm.policy.beside_reach >= arm.policy.anywhere
         return None if answers or anywhere else []
     start = np.array([row for row, _, _ in answers])
-    q, arrived, missed = together(arm, start, np.array([T]))
+    q, arrived, missed = together(arm, start, _aim(arm, T, held))
     if not (arrived | missed).all():
         return None
     kept: list[Found] = []
@@ -210,18 +211,23 @@ def _certain_rows(
     return kept
 
 
+def _aim(arm: Arm, T: list[list[float]], held: Row) -> Array:
+    """The pose and what is held: (1, ...)."""
+    return aims(arm, np.array([T]), np.array([held]))
+
+
 def _refined(
-    arm: Arm, rows: list[Found], T: list[list[float]], source: list[int]
+    arm: Arm, rows: list[Found], T: list[list[float]], held: Row, source: list[int]
 ) -> tuple[list[tuple[int, Found]], bool]:
     """What Newton steps from the rows lead to, with the row's number: one solution, those that meet near a
     singularity, or none; and whether others may start from none. source (k,) as in `Starts`."""
     if not rows:
         return [], False
-    target = np.broadcast_to(np.array(T), (len(rows), 4, 4))
+    target = np.repeat(_aim(arm, T, held), len(rows), axis=0)
     start, marked = np.array([row for row, _ in rows]), np.array([flag for _, flag in rows])
     starts = Starts(start, target, np.zeros(len(rows), dtype=np.intp), marked, np.array(source))
     owner, q, close = rows_nearby(arm, starts)
-    loss = rank_loss(arm.chain, arm.task, arm.moving, q)
+    loss = row_rank_loss(arm, q)
     flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
     singular = (marked[owner] & (loss < continuum)) | (loss < flat)
     found = zip(owner.tolist(), q.tolist(), singular.tolist())

@@ -11,9 +11,18 @@ import numpy as np
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.chain_kinematics import Chain, tip_and_jacobian
 from ikgen.runtime.python.solve_policy import Policy
+from ikgen.runtime.python.solved_arm import HeldAngle
 from ikgen.runtime.python.task_interface import Task
 
-__all__ = ["in_blocks", "least_singular", "newton", "rank_loss", "refine", "steeper"]
+__all__ = [
+    "errors_and_slopes",
+    "in_blocks",
+    "least_singular",
+    "newton",
+    "rank_loss",
+    "refine",
+    "steeper",
+]
 
 
 _BLOCK = 1024  # rows whose arrays fit into a processor's cache
@@ -29,10 +38,17 @@ def in_blocks(step: Callable[[Array, Array], Any], q: Array, T: Array) -> Any:
 
 
 def refine(
-    chain: Chain, task: Task, moving: Sequence[int], q: Array, T: Array, policy: Policy
+    chain: Chain,
+    task: Task,
+    moving: Sequence[int],
+    q: Array,
+    T: Array,
+    policy: Policy,
+    angle: HeldAngle | None = None,
 ) -> tuple[Array, Array, Array, Array]:
     """Newton steps of the joints `moving` from q (k, dof) towards T (k, 4, 4); the errors that they leave,
-    and those before (k,), and the task's derivatives by the joints (k, m, n) where the rows end.
+    and those before (k,), and the task's derivatives by the joints (k, m, n) where the rows end. With an
+    `angle` that is held T are its aims.
 
     At a fold of the solution set the steps halve the error. Elsewhere all digits are wanted, as rows may
     lie on a limit.
@@ -40,14 +56,14 @@ def refine(
     (steps, fine, promising), *further = policy.refinement
 
     def first(part: Array, aim: Array) -> tuple[Array, ...]:
-        return newton(chain, task, moving, part, aim, steps, policy)
+        return newton(chain, task, moving, part, aim, steps, policy, angle)
 
     q, error, before, slope = in_blocks(first, q, T)
     for more, finer, less in further:
         going = np.flatnonzero((error >= fine) & (error < promising))
         if not len(going):
             break
-        part = newton(chain, task, moving, q[going], T[going], more, policy)
+        part = newton(chain, task, moving, q[going], T[going], more, policy, angle)
         q[going], error[going], slope[going] = part[0], part[1], part[3]
         before[going] = np.maximum(before[going], part[2])
         fine, promising = finer, less
@@ -55,7 +71,14 @@ def refine(
 
 
 def newton(
-    chain: Chain, task: Task, moving: Sequence[int], q: Array, T: Array, steps: int, policy: Policy
+    chain: Chain,
+    task: Task,
+    moving: Sequence[int],
+    q: Array,
+    T: Array,
+    steps: int,
+    policy: Policy,
+    angle: HeldAngle | None = None,
 ) -> tuple[Array, Array, Array, Array]:
     """The best rows (k, dof) of at most `steps` damped steps, their errors and those of q (k,), and the
     derivatives (k, m, n) at them."""
@@ -63,8 +86,7 @@ def newton(
     best = np.full(len(q), inf)
     result, going, stalled = q.copy(), np.arange(len(q)), np.zeros(len(q), dtype=int)
     for step in range(steps + 1):
-        pose, J = tip_and_jacobian(chain, q)
-        error, J = task.error(pose, T), task.rows(pose, J)[:, :, moving]
+        error, J = errors_and_slopes(chain, task, moving, q, T, angle)
         worst = np.abs(error).max(axis=1)
         if step == 0:
             before, slope = worst, J.copy()
@@ -84,6 +106,24 @@ def newton(
         change = np.linalg.solve(normal, Jt @ error[on, :, None])[:, :, 0]
         q[:, moving] += np.clip(change, -policy.largest_step, policy.largest_step)
     return result, best, before, slope
+
+
+def errors_and_slopes(
+    chain: Chain,
+    task: Task,
+    moving: Sequence[int],
+    q: Array,
+    T: Array,
+    angle: HeldAngle | None,
+) -> tuple[Array, Array]:
+    """Errors (k, m) of rows (k, dof), and their derivatives (k, m, n) by the joints `moving`."""
+    pose, J = tip_and_jacobian(chain, q)
+    error, slope = task.error(pose, T), task.rows(pose, J)[:, :, list(moving)]
+    if angle is None:
+        return error, slope
+    more, line = angle.errors(q, T)
+    parts = error, more[:, None], slope, line[:, None, list(moving)]
+    return np.concatenate(parts[:2], axis=1), np.concatenate(parts[2:], axis=1)
 
 
 def rank_loss(chain: Chain, task: Task, moving: Sequence[int], q: Array) -> Array:

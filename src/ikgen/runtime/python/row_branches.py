@@ -6,6 +6,7 @@ import numpy as np
 
 from ikgen.runtime.python.array_types import Array
 from ikgen.runtime.python.chain_kinematics import cross, forward, joint_axes, tip_and_jacobian
+from ikgen.runtime.python.held_parameters import held_of
 from ikgen.runtime.python.solved_arm import Arm
 
 __all__ = ["branch_names"]
@@ -59,11 +60,11 @@ def _branch_numbers(arm: Arm, q: Array) -> list[int]:
     """For each row the closed form's branch, of those for the row's own pose, that is nearest to it."""
     poses = forward(arm.chain, q)
     with np.errstate(all="ignore"):
-        rows, valid, _, _ = arm.branches_batch(poses, q, q[:, arm.free])
+        rows, valid, _, _ = arm.branches_batch(poses, q, held_of(arm, q))
         gap = rows - q[:, None, :]
         turned = np.abs((gap + np.pi) % (2.0 * np.pi) - np.pi)
         gap = np.where(arm.chain.revolute, turned, np.abs(gap))
-        gap[:, :, arm.free] = 0.0
+        gap[:, :, list(arm.free)] = 0.0
         distance = np.where(valid, gap.max(axis=2), np.inf)
     distance[np.isnan(distance)] = np.inf
     nearest: list[int] = distance.argmin(axis=1).tolist()

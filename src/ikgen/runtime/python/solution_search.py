@@ -9,6 +9,7 @@ import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.batch_solving import rows_batch
+from ikgen.runtime.python.held_parameters import held_of
 from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.row_branches import branch_names
 from ikgen.runtime.python.row_links import differences
@@ -61,8 +62,9 @@ def _improved(
 ) -> Flags:
     """Takes trials (n, held joints) that are better, in place; which were."""
     held, rows, best = now
-    low, high = np.array(arm.lower)[list(arm.free)], np.array(arm.upper)[list(arm.free)]
-    trial = np.clip(trial, low, high) if limits else trial
+    if limits and arm.free:
+        low, high = np.array(arm.lower)[list(arm.free)], np.array(arm.upper)[list(arm.free)]
+        trial = np.clip(trial, low, high)
     q, real, _ = rows_batch(arm, np.broadcast_to(T, (len(trial), 4, 4)), trial, None)
     gap = np.abs(differences(arm, rows[:, None], q)).max(axis=2)
     gap = np.where(real, gap, inf)
@@ -80,7 +82,7 @@ def _solutions(
     """The rows as `solve` gives them for these values, in this order."""
     q, flags = [], []
     placed, _, _ = preference_costs(arm, preference, rows[:, None], limits)
-    for values, row in zip(placed[:, 0][:, list(arm.free)], placed[:, 0]):
+    for values, row in zip(held_of(arm, placed[:, 0]), placed[:, 0]):
         found = solve_pose(arm, T, values.tolist(), row, limits)
         if len(found):
             q.append(found.q[0])

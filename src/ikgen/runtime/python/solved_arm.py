@@ -11,7 +11,7 @@ from ikgen.runtime.python.chain_kinematics import Chain
 from ikgen.runtime.python.solve_policy import Policy
 from ikgen.runtime.python.task_interface import Task
 
-__all__ = ["Arm", "Branches", "BranchesBatch", "Candidate", "Found", "Together"]
+__all__ = ["Arm", "Branches", "BranchesBatch", "Candidate", "Found", "HeldAngle", "Together"]
 
 Found = tuple[Row, bool]  # a solution, and whether it is one of a continuum
 Candidate = tuple[Row, bool, bool]  # a closed-form row, whether it is one of a continuum, or rough
@@ -25,6 +25,25 @@ class Together(Protocol):
     def __call__(self, arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]: ...
 
 
+class HeldAngle(Protocol):
+    """An angle that is held in place of a joint, of rows (..., dof) and their poses (..., 4, 4)."""
+
+    def of_rows(self, q: Array, pose: Array) -> Array:
+        """The angles (...)."""
+
+    def beside_line(self, q: Array, pose: Array) -> Array:
+        """Where elbows are beside the line that the angle is counted about (..., 2), m."""
+
+    def plane(self, T: Array) -> tuple[Array, Array]:
+        """Directions (..., 3) from the line: where the angle is 0, and a quarter turn on."""
+
+    def aims(self, T: Array, held: Array) -> Array:
+        """Poses T (k, 4, 4) and angles `held` (k, 1) to be reached, as `errors` takes them."""
+
+    def errors(self, q: Array, aim: Array) -> tuple[Array, Array]:
+        """By how much rows (k, dof) miss them (k,), and the derivatives (k, dof)."""
+
+
 @dataclass(frozen=True)
 class Arm:
     """`free`, `free_joints`, `free_defaults`: indices, names and values of held joints. `most`: rows at
@@ -34,7 +53,8 @@ class Arm:
     revolute and not held; `moving`: indices of those not held.
     `together`: `refine_together` where the closed form is of another geometry than the file's, and all rows
     are rough.
-    `branch_kind`, `elbow_end`: as in `branch_names`."""
+    `branch_kind`, `elbow_end`: as in `branch_names`. `angle`: the arm angle, where that is held after
+    the joints."""
 
     chain: Chain
     task: Task
@@ -53,6 +73,7 @@ class Arm:
     together: Together | None
     branch_kind: str
     elbow_end: int
+    angle: HeldAngle | None = None
 
     @property
     def rounded(self) -> bool:
