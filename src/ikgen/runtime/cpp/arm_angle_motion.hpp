@@ -60,7 +60,8 @@ template <class Arm> struct ArmAngleMotion {
       for (int i = 0; i < bounds.count; ++i)
         for (const double side : {-1.0, 1.0}) {
           const int j = bounds.joint[i];
-          if (j != kElbow) add_roots(j, bounds.middle[i] + side * bounds.half[i] - q[j], ends, count);
+          const double limit = bounds.middle[i] + side * (bounds.half[i] + Arm::Policy::kLimitTolerance);
+          if (j != kElbow) add_roots(j, limit - q[j], ends, count);
         }
       return true;
     }

@@ -82,7 +82,8 @@ def _ends(arm: Arm, T: Array, q: Array, limits: bool) -> list[float] | None:
     for j, middle, half, _ in bounded_joints(arm) if limits else ():
         if j != _ELBOW:
             for side in (-1.0, 1.0):
-                out += _roots(line, axes, j, middle + side * half - q[j])
+                limit = middle + side * (half + arm.policy.limit_tolerance)
+                out += _roots(line, axes, j, limit - q[j])
     return out
 
 
