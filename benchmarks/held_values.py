@@ -1,7 +1,7 @@
 """self_motion and search of C++ headers with held joints: against grids and random values, and timed.
 
     python -m benchmarks.held_values [--arm NAME] [--poses 20] [--values 10000] [--joints 7]
-        [--flags native]
+        [--flags native] [--arm-angle]
 
 Takes every arm of the collection with so many joints that move or more, or ROBOT files by `--arm FILE`. For
 each, random poses inside the limits. Intervals of self_motion are compared with the rows of solve on a grid
@@ -9,7 +9,8 @@ of the held joint's values, step 1e-3, and 1e-6 to both sides of each end: "miss
 values and more at which they differ, "off" ends that are elsewhere. The best row of search, by each of its
 three preferences, is compared with the best at random values of the held joints: "worse" counts searches
 that were beaten. Times are the median and the largest over the poses, processor time in us, of the best
-of several runs. Exits with 1 if anything is missed, off or worse.
+of several runs. With --arm-angle the arms that have one hold that in place of a joint. Exits with 1 if
+anything is missed, off or worse.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from benchmarks.command_line import Source, emit, sources
@@ -56,9 +57,13 @@ def parsed(text: str) -> Held:
     return Held(numbers, found, missed, off, searched, worse, tuple(cases))
 
 
-def measure(header: Path, held: int, arguments: Sequence[int], flags: Sequence[str]) -> Held:
+def measure(
+    header: Path, held: Sequence[str], arguments: Sequence[int], flags: Sequence[str]
+) -> Held:
     """Compile the header and run the program with poses, random values a pose, and seed."""
-    with compiled_program(SOURCE, header, [*flags, f"-DHELD={int(held == 1)}"]) as program:
+    angle = int("arm_angle" in held)
+    flags = [*flags, f"-DHELD={int(len(held) == 1)}", f"-DARM_ANGLE={angle}"]
+    with compiled_program(SOURCE, header, flags) as program:
         command = [str(program), *map(str, arguments)]
         return parsed(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 
@@ -96,6 +101,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--values", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--flags", choices=FLAGS, default="native")
+    parser.add_argument("--arm-angle", action="store_true")
     options = parser.parse_args(arguments)
     found = chosen(options.arm, options.joints)
     if not found:
@@ -108,14 +114,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     failures = 0
     numbers = (options.poses, options.values, options.seed)
     for source in found:
+        if options.arm_angle:
+            source = replace(source, choices=(("--free", "arm-angle"),))
         with tempfile.TemporaryDirectory(prefix="ikgen-held-") as folder:
             made = emit(source, Path(folder), "cpp")
             name = source.key.split("/")[1]
-            joints = (made.answer.get("chosen") or {}).get("held") or ()
+            joints = made.answer.get("free") or ()
             if made.header is None or not joints:
                 print(f"{name:30} {made.answer.get('error', 'holds no joint')}", flush=True)
                 continue
-            held = measure(made.header, len(joints), numbers, FLAGS[options.flags])
+            held = measure(made.header, joints, numbers, FLAGS[options.flags])
         print(line(name, made.answer, held), flush=True)
         for case in held.cases[:5]:
             print("   ", case)

@@ -66,6 +66,21 @@ ik::Joints draw(Random& random) {
 
 using Free = std::array<double, ik::kFree>;
 
+// What is held: joints, or the arm angle.
+#if ARM_ANGLE
+double lowest() { return -kPi; }
+double highest() { return kPi; }
+Free held_of(const ik::Joints& q) { return {ik::arm_angle(q)}; }
+#else
+double lowest() { return low_of(ik::kFreeJoints[0]); }
+double highest() { return high_of(ik::kFreeJoints[0]); }
+Free held_of(const ik::Joints& q) {
+  Free free;
+  for (int k = 0; k < ik::kFree; ++k) free[std::size_t(k)] = q[ik::kFreeJoints[std::size_t(k)]];
+  return free;
+}
+#endif
+
 ik::Solutions rows_at(const Eigen::Isometry3d& pose, const Free& free, const ik::Joints* seed) {
   ik::Options options;
   options.free = free;
@@ -109,8 +124,7 @@ int said(const ik::SelfMotion& found, double at) {
 }
 
 void compare_with_grid(const Eigen::Isometry3d& pose, const ik::SelfMotion& found, int number) {
-  const int j = ik::kFreeJoints[0];
-  const double low = low_of(j), high = high_of(j);
+  const double low = lowest(), high = highest();
   int run = 0;
   for (double at = low; at < high; at += kStep) {
     run = rows_at(pose, {at}, nullptr).count != said(found, at) ? run + 1 : 0;
@@ -141,10 +155,7 @@ void compare_with_random(const Eigen::Isometry3d& pose, const ik::Joints& seed, 
   const ik::Prefer all[] = {ik::Prefer::Near, ik::Prefer::Centre, ik::Prefer::Dexterous};
   double best[3] = {1e300, 1e300, 1e300};
   for (int n = 0; n < values; ++n) {
-    Free free;
-    const ik::Joints q = draw(random);
-    for (int k = 0; k < ik::kFree; ++k) free[std::size_t(k)] = q[ik::kFreeJoints[std::size_t(k)]];
-    for (const ik::Joints& row : rows_at(pose, free, &seed))
+    for (const ik::Joints& row : rows_at(pose, held_of(draw(random)), &seed))
       for (int p = 0; p < 3; ++p) best[p] = std::min(best[p], cost(row, all[p], seed));
   }
   for (int p = 0; p < 3; ++p) {

@@ -8,33 +8,38 @@
 
 namespace ikgen_runtime {
 
-// Arm: as for SelfMotionFinder and ElbowPlane, with seven revolute joints, of exact geometry.
-template <class Arm> struct ArmAngleMotion {
+// Arm: as for BranchFollower and ElbowPlane, with seven revolute joints, of exact geometry.
+template <class Arm> struct BranchMotion<Arm, true> {
   using Sample = HeldSample<Arm>;
-  static constexpr int kElbow = 3, kMost = 2 * 2 * 2 * Arm::kDof;
+  static constexpr int kElbow = 3, kCuts = 64, kMost = 2 * 2 * 2 * Arm::kDof;
   static constexpr double kStretched = 1e-4;  // distance of the elbow from the line, over the upper arm
   static constexpr double kAligned = 1e-9;    // 1 less the cosine between the outer axes of shoulder or wrist
 
-  // False where joints come to a singularity on the way: samples tell more there.
-  static bool solve(const Eigen::Isometry3d& pose, bool limits, typename Arm::Intervals& out) noexcept {
-    const JointBounds<Arm> bounds(limits);
-    const Sample at(pose, 0.0, bounds);
-    double ends[kMost + 2] = {-kPi, kPi};
-    int count = 2;
+  // Passes a sample of every cell of as many as are asked for. Where joints come to a singularity on the way the branches
+  // are followed: samples tell more there.
+  template <class Record> static bool follow(const HeldSweep<Arm>& sweep, Record& record, int cells) noexcept {
+    double ends[kMost + kCuts];
+    int count = 0;
+    if (!find_ends(sweep, ends, count)) return BranchMotion<Arm, false>::follow(sweep, record, cells);
+    for (int k = 0; k <= std::max(cells, 1); ++k) ends[count++] = sweep.low + (sweep.high - sweep.low) * k / std::max(cells, 1);
+    std::sort(ends, ends + count);
+    return tell(sweep, ends, count, record);
+  }
+
+ private:
+  static bool find_ends(const HeldSweep<Arm>& sweep, double* ends, int& count) noexcept {
+    const Sample at = sweep.at(0.0);
     for (int l = 0; l < at.lanes; ++l) {
       bool seen = !at.real[l];
       for (int k = 0; k < l; ++k) seen = seen || (at.real[k] && std::abs(at.q[kElbow][k] - at.q[kElbow][l]) < 1e-6);
       if (seen) continue;
       double q[Arm::kDof];
       at.row(l, q);
-      if (count + 4 * Arm::kDof > kMost + 2 || !Turn(pose, q).add_ends(bounds, ends, count)) return false;
+      if (count + 4 * Arm::kDof > kMost || !Turn(sweep.pose, q).add_ends(sweep.bounds, ends, count)) return false;
     }
-    std::sort(ends, ends + count);
-    collect(pose, bounds, ends, count, out);
     return true;
   }
 
- private:
   // The axes of a row at arm angle 0, and the line.
   struct Turn {
     double axis[Arm::kDof][3], line[3], q[Arm::kDof];
@@ -119,39 +124,40 @@ template <class Arm> struct ArmAngleMotion {
     static double wrapped(double angle) noexcept { return angle - kTurn * std::nearbyint(angle / kTurn); }
   };
 
-  // Runs of cells between ends in the middle of which a lane is inside.
-  static void collect(const Eigen::Isometry3d& pose, const JointBounds<Arm>& bounds, const double* ends, int count,
-                      typename Arm::Intervals& out) noexcept {
+  // Runs of cells between ends in the middle of which a lane is inside; whether there are rows.
+  template <class Record>
+  static bool tell(const HeldSweep<Arm>& sweep, const double* ends, int count, Record& record) noexcept {
     bool open[Sample::kLanes] = {}, any = false;
-    double start[Sample::kLanes];
-    out.count = 0;
-    out.complete = true;
     for (int k = 0; k + 1 < count; ++k) {
       if (ends[k + 1] - ends[k] < 1e-12) continue;
-      const Sample s(pose, 0.5 * (ends[k] + ends[k + 1]), bounds);
+      const Sample s = sweep.at(0.5 * (ends[k] + ends[k + 1]));
+      bool begins = false, ends_here = false;
       for (int l = 0; l < Arm::kLanes; ++l) {
         any = any || s.real[l];
-        const bool inside = s.inside(l);
-        if (inside && !open[l]) start[l] = ends[k];
-        if (!inside && open[l]) add(start[l], ends[k], l, out);
-        open[l] = inside;
+        begins = begins || (s.inside(l) && !open[l]);
+        ends_here = ends_here || (!s.inside(l) && open[l]);
+      }
+      if (begins || ends_here) {
+        const Sample cut = sweep.at(ends[k]);
+        for (int l = 0; l < Arm::kLanes; ++l) {
+          double q[Arm::kDof];
+          cut.row(l, q);
+          if (s.inside(l) && !open[l]) record.open(l, ends[k], q, l);
+          if (!s.inside(l) && open[l]) record.close(l, ends[k], q);
+        }
+      }
+      for (int l = 0; l < Arm::kLanes; ++l) {
+        open[l] = s.inside(l);
+        if (open[l]) record.pass(l, s);
       }
     }
-    for (int l = 0; l < Arm::kLanes; ++l)
-      if (open[l]) add(start[l], ends[count - 1], l, out);
-    std::sort(out.intervals.data(), out.intervals.data() + out.count, [](const auto& a, const auto& b) noexcept {
-      return a.branch < b.branch || (a.branch == b.branch && a.low < b.low);
-    });
-    SelfMotionFinder<Arm>::number(out);
-    out.status = out.count > 0 ? Arm::Status::Ok : any ? Arm::Status::Limits : Arm::Status::Unreachable;
-  }
-
-  static void add(double low, double high, int lane, typename Arm::Intervals& out) noexcept {
-    if (out.count == Arm::kMaxIntervals) {
-      out.complete = false;
-      return;
+    const Sample last = sweep.at(sweep.high);
+    for (int l = 0; l < Arm::kLanes; ++l) {
+      double q[Arm::kDof];
+      last.row(l, q);
+      if (open[l]) record.close(l, sweep.high, q);
     }
-    out.intervals.data()[out.count++] = {low, high, lane};
+    return any;
   }
 };
 

@@ -10,6 +10,7 @@ namespace ikgen_runtime {
 template <class Arm> struct HeldSearch {
   using Sample = HeldSample<Arm>;
   static constexpr int kMost = 4;         // minima of an interval that are looked at
+  static constexpr int kCells = 48;       // of the range, where intervals are known without looking
   // How near to a minimum is enough: costs of distances differ by the square, singular values have kinks.
   static constexpr double kNear = 1e-5, kNearKink = 1e-6;
 
@@ -25,11 +26,19 @@ template <class Arm> struct HeldSearch {
     Point last[2];
     Minimum minima[kMost];
   };
+  // A minimum of an interval that is to be refined, if it can be among the best.
+  struct Waiting {
+    Minimum minimum;
+    int interval;
+  };
+  static constexpr int kWaiting = 64;
 
   const HeldSweep<Arm>& sweep;
   const RowPreference<Arm>& preference;
   typename Arm::Solutions& out;
-  double costs[Arm::kMaxSolutions];
+
+  HeldSearch(const HeldSweep<Arm>& values, const RowPreference<Arm>& wanted, typename Arm::Solutions& rows) noexcept
+      : sweep(values), preference(wanted), out(rows) {}
   Run runs[Sample::kLanes];
 
   void open(int lane, double at, const double* q, int) noexcept {
@@ -55,22 +64,18 @@ template <class Arm> struct HeldSearch {
     if (at > run.last[0].at) add(run, at, q);
     const Point& end = run.last[0];
     if (run.points < 2 || end.cost <= run.last[1].cost) keep(run, run.points < 2 ? end : run.last[1], end, end);
-    int best = 0;
-    for (int k = 0; k < run.count; ++k) {
-      if (!hopeless(run.minima[k])) refine(run.minima[k]);
-      if (run.minima[k].best.cost < run.minima[best].best.cost) best = k;
-    }
-    insert(run.minima[best].best);
+    for (int k = 0; k < run.count; ++k) wait(run.minima[k]);
+    ++intervals;
   }
 
   static void solve(const Eigen::Isometry3d& pose, const RowPreference<Arm>& preference, bool limits,
                     typename Arm::Solutions& out) noexcept {
     out.count = 0;
     const HeldSweep<Arm> sweep(pose, limits);
-    HeldSearch search{sweep, preference, out, {}, {}};
-    BranchFollower<Arm, HeldSearch> follower(sweep, search);
-    sweep.run(follower);
-    out.status = out.count > 0 ? Arm::Status::Ok : follower.any ? Arm::Status::Limits : Arm::Status::Unreachable;
+    HeldSearch search{sweep, preference, out};
+    const bool any = BranchMotion<Arm>::follow(sweep, search, kCells);
+    search.finish();
+    out.status = out.count > 0 ? Arm::Status::Ok : any ? Arm::Status::Limits : Arm::Status::Unreachable;
     for (int k = 0; k < out.count; ++k)
       out.singular.data()[k] = RankLoss<Arm>::below(SolutionRows<Arm>::row(out, k), Arm::Policy::kRankLoss);
   }
@@ -194,18 +199,45 @@ template <class Arm> struct HeldSearch {
     }
   }
 
-  void insert(const Point& p) noexcept {
-    int at = out.count;
-    while (at > 0 && costs[at - 1] > p.cost) --at;
+  // Keeps a minimum of the current interval, of too many the lowest, the lowest first.
+  void wait(const Minimum& m) noexcept {
+    int at = waits;
+    while (at > 0 && waiting[at - 1].minimum.best.cost > m.best.cost) --at;
+    if (at == kWaiting) return;
+    if (waits < kWaiting) ++waits;
+    for (int k = waits - 1; k > at; --k) waiting[k] = waiting[k - 1];
+    waiting[at] = {m, intervals};
+  }
+
+  void finish() noexcept {
+    for (int k = 0; k < waits; ++k) {
+      if (hopeless(waiting[k].minimum)) continue;
+      refine(waiting[k].minimum);
+      insert(waiting[k].minimum.best, waiting[k].interval);
+    }
+  }
+
+  // Takes a row, of an interval's the best.
+  void insert(const Point& p, int interval) noexcept {
+    int at = 0, last = 0;
+    while (last < out.count && owner[last] != interval) ++last;
+    if (last < out.count && costs[last] <= p.cost) return;
+    while (at < out.count && costs[at] <= p.cost) ++at;
     if (at == Arm::kMaxSolutions) return;
-    if (out.count < Arm::kMaxSolutions) ++out.count;
-    for (int k = out.count - 1; k > at; --k) {
+    if (last == out.count && out.count < Arm::kMaxSolutions) ++out.count;
+    for (int k = std::min(last, out.count - 1); k > at; --k) {
       SolutionRows<Arm>::move(out, k - 1, k);
       costs[k] = costs[k - 1];
+      owner[k] = owner[k - 1];
     }
     std::copy_n(p.q, Arm::kDof, SolutionRows<Arm>::row(out, at));
     costs[at] = p.cost;
+    owner[at] = interval;
   }
+
+  double costs[Arm::kMaxSolutions];
+  int owner[Arm::kMaxSolutions], waits = 0, intervals = 0;
+  Waiting waiting[kWaiting];
 };
 
 }  // namespace ikgen_runtime

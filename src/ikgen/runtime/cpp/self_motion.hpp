@@ -127,7 +127,17 @@ template <class Arm, class Record> struct BranchFollower {
   }
 };
 
-// Intervals of self_motion, by branch and value. Arm: as for BranchFollower; Intervals, its result.
+// Tells a record of all branches, whether there are any. Arm: as for BranchFollower; kFromLimits, whether the joint limits
+// alone tell where they are inside: then arm_angle_motion.hpp has it.
+template <class Arm, bool kFromLimits = Arm::kFromLimits> struct BranchMotion {
+  template <class Record> static bool follow(const HeldSweep<Arm>& sweep, Record& record, int) noexcept {
+    BranchFollower<Arm, Record> follower(sweep, record);
+    sweep.run(follower);
+    return follower.any;
+  }
+};
+
+// Intervals of self_motion, by branch and value. Arm: as for BranchMotion; Intervals, its result.
 template <class Arm> struct SelfMotionFinder {
   using Sample = HeldSample<Arm>;
   typename Arm::Intervals& out;
@@ -177,10 +187,9 @@ template <class Arm> struct SelfMotionFinder {
     out.complete = true;
     const HeldSweep<Arm> sweep(pose, limits);
     SelfMotionFinder finder{out, {}, {}};
-    BranchFollower<Arm, SelfMotionFinder> follower(sweep, finder);
-    sweep.run(follower);
+    const bool any = BranchMotion<Arm>::follow(sweep, finder, 0);
     number(out);
-    out.status = out.count > 0 ? Arm::Status::Ok : follower.any ? Arm::Status::Limits : Arm::Status::Unreachable;
+    out.status = out.count > 0 ? Arm::Status::Ok : any ? Arm::Status::Limits : Arm::Status::Unreachable;
   }
 };
 
