@@ -65,7 +65,7 @@ template <class Arm> struct BranchMotion<Arm, true> {
       for (int i = 0; i < bounds.count; ++i)
         for (const double side : {-1.0, 1.0}) {
           const int j = bounds.joint[i];
-          const double limit = bounds.middle[i] + side * (bounds.half[i] + Arm::Policy::kLimitTolerance);
+          const double limit = bounds.middle[i] + side * (bounds.half[i] + 0.5 * Arm::Policy::kLimitTolerance);
           if (j != kElbow) add_roots(j, limit - q[j], ends, count);
         }
       return true;

@@ -72,7 +72,8 @@ def _ends(arm: Arm, T: Array, q: Array, limits: bool) -> list[float] | None:
     assert arm.angle is not None
     x, y = arm.angle.plane(T)
     line, elbow = cross(x, y), arm.angle.beside_line(q, T)
-    axes = joint_axes(arm.chain, q)[0] * np.array([m[2] for m in arm.chain.motions])[:, None]
+    frames = joint_axes(arm.chain, q[None])[:-1, 0]
+    axes = frames[:, :3, 2] * np.array([m[2] for m in arm.chain.motions])[:, None]
     outer = (_harmonic(line, axes[a], axes[b]) for a, b in ((0, 2), (6, 4)))
     if hypot(*elbow) < _STRETCHED or any(
         hypot(a, b) + abs(c) > 1.0 - _ALIGNED for a, b, c in outer
@@ -82,7 +83,7 @@ def _ends(arm: Arm, T: Array, q: Array, limits: bool) -> list[float] | None:
     for j, middle, half, _ in bounded_joints(arm) if limits else ():
         if j != _ELBOW:
             for side in (-1.0, 1.0):
-                limit = middle + side * (half + arm.policy.limit_tolerance)
+                limit = middle + side * (half + 0.5 * arm.policy.limit_tolerance)
                 out += _roots(line, axes, j, limit - q[j])
     return out
 
