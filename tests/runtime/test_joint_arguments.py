@@ -17,6 +17,7 @@ def arm(*held: str) -> Arm:
     names = ("a", "b", "c")
     free = tuple(names.index(name) for name in held)
     parts: dict[str, Any] = {"free": free, "free_joints": held, "free_defaults": (0.5,) * len(held)}
+    parts["angle"] = None
     return cast(Arm, SimpleNamespace(**parts, turning=(True,) * 3, lower=(0.0,) * 3))
 
 
