@@ -24,6 +24,7 @@ def test_rows_of_rounded_files_are_refined(deviation: float, plan: object, refin
     assert module.refine == refine
     least = max(policy.least_pivot, policy.reach * math.sqrt(deviation))
     assert module.policy.least_pivot == pytest.approx(least)
-    share = 0.2 if refine == "all" else 4.0
-    reach = max(policy.fold_reach, share * math.sqrt(deviation))
-    assert module.policy.fold_reach == pytest.approx(reach)
+    near = policy.fold * math.sqrt(deviation)
+    assert module.policy.fold_reach == pytest.approx(max(policy.fold_reach, near))
+    beside = policy.anywhere if refine == "all" else near
+    assert module.policy.beside_reach == pytest.approx(beside)

@@ -139,6 +139,8 @@ template <class Arm> struct CarefulSolve {
     int count = 0;
     std::array<Nearest, std::size_t{Arm::kLanes} * (1 + Arm::kBesides)> all;
 
+    Nearest& at(int k) noexcept { return all[static_cast<std::size_t>(k)]; }
+
     // Whether one is so near a singularity that other solutions may start from none of them.
     bool close() const noexcept {
       return std::any_of(all.begin(), all.begin() + count, [](const Nearest& one) {
@@ -148,11 +150,11 @@ template <class Arm> struct CarefulSolve {
 
     void take(const Nearest& start, bool beside, const Aim& aim, Places& out) noexcept {
       for (int k = 0; k < count && beside; ++k)
-        if (Row::same(start.q, all[k].q)) return;
-      Nearest& one = all[count] = start;
+        if (Row::same(start.q, at(k).q)) return;
+      Nearest& one = at(count) = start;
       one.judge();
       for (int k = 0; k < count && beside && one.near && !one.settled; ++k)
-        if (all[k].near && alike(one.q, all[k].q)) return;
+        if (at(k).near && alike(one.q, at(k).q)) return;
       ++count;
       if (!one.settled) return;
       if (one.near || one.marked)
@@ -221,7 +223,7 @@ template <class Arm> struct CarefulSolve {
     if (Arm::kBesides > 0 && beside && (kBesideAnywhere || left.free || starts.close()))
       take_beside(aim, q0, options, starts, out);
     for (int k = 0; k < starts.count; ++k)
-      if (starts.all[k].near) starts.all[k].add_nearby(aim, out);
+      if (starts.at(k).near) starts.at(k).add_nearby(aim, out);
     for (const int lane : Arm::kLaneOfRow) {
       if (Arm::kRefined || (bits(rows, lane) & (kReal | kRough)) != kReal) continue;
       for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];

@@ -13,8 +13,8 @@ template <class Arm> struct FoldPair {
 
   HeldAim<Arm> aim;
   int moving[kMoving];
-  Vector still;  // unit direction in which the pose moves least
-  double size;   // the pose's error
+  Vector still;       // unit direction in which the pose moves least
+  double size = 0.0;  // the pose's error
 
   explicit FoldPair(const HeldAim<Arm>& goal) noexcept : aim(goal) {
     for (int j = 0, k = 0; j < Arm::kDof; ++j)
