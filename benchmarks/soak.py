@@ -1,6 +1,6 @@
 """Millions of poses through the emitted C++ header of one arm: wrong rows, missed solutions.
 
-    python -m benchmarks.soak [ARM ...] [--record] [--poses 10000000] [--near 1000000] [--above 1e-5]
+    python -m benchmarks.soak [ARM ...] [--record] [--poses 10000000] [--near 1000000] [--above 1e-3]
         [--jobs 2] [--option=--free --option=JOINT]
 
 ARM is the name of an arm of the collection, or a URDF file or DH table (`--option` hands options to ikgen);
@@ -32,7 +32,7 @@ ARMS = (
     "fanuc_crx10ia", "xarm6", "kuka_iiwa7", "franka_fr3",
 )  # fmt: skip
 SOURCE = Path(__file__).resolve().parent / "cpp" / "soak.cpp"
-ABOVE = 1e-5
+ABOVE = 1e-3
 """As `FAILS_ABOVE` of `ikgen.verify.completeness`, by default."""
 TASKS = {
     "pose": (1, 3), "position": (1, 0), "position-direction": (1, 1), "position-yaw": (1, 2),

@@ -29,7 +29,7 @@ __all__ = [
 
 Array = NDArray[np.float64]
 
-FAILS_ABOVE = 1e-5
+FAILS_ABOVE = 1e-3
 """Smallest singular value from which on a miss, or a pose without any row, fails the verification.
 Those below are counted and reported. To be lowered as solvers improve."""
 
