@@ -28,7 +28,7 @@ COPY = Path(__file__).resolve().parents[1] / "docs/explanation/comparison.md"
 PAGE = Path(__file__).resolve().parents[1] / "README.md"
 PICTURE = Path(__file__).with_name("peers.svg")
 HOME = COPY.parents[1] / "pictures/speed_ur5e.svg"
-"""The part of the picture that the documentation begins with."""
+"""The part of the picture that the home page of the documentation shows."""
 _START = re.compile(r"<!-- figures: (\w+) -->\n")
 _END = "<!-- end of figures -->\n"
 CLASSES = {
@@ -159,11 +159,6 @@ def drawn(read: Callable[[str], Measured] = read_result, arm: str = "") -> str:
     return picture([(row["arm"], row["solver"], row["microseconds"]) for row in times])
 
 
-def _read(path: Path) -> str:
-    """A file's text; "" where there is none yet."""
-    return path.read_text(encoding="utf-8") if path.is_file() else ""
-
-
 def _short(value: Any) -> str:
     """Two digits of a time in microseconds; a dash where there is none."""
     if value is None:
@@ -190,7 +185,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     readme = filled_in(PAGE.read_text(encoding="utf-8"))
     copy = copied(COPY.read_text(encoding="utf-8"), readme)
     made = {PAGE: readme, PICTURE: drawn(), HOME: drawn(arm="UR5e"), COPY: copy}
-    old = {path for path, text in made.items() if _read(path) != text}
+    old = {path for path, text in made.items() if path.read_text(encoding="utf-8") != text}
     for path in old:
         print(f"{path.name} is not what was recorded")
         if not options.check:
