@@ -55,5 +55,5 @@ def test_a_value_outside_is_refused_before_the_search(
     out = tmp_path / "out"
     assert run(["from-urdf", str(FR3), "--free", f"{HELD}=50", "-o", str(out)]) == 2
     message = capsys.readouterr().err
-    assert f"--free {HELD}=50: outside the joint's limits, -3.0159 to 3.0159" in message
+    assert f"--free {HELD}=50: outside its limits, -3.0159 to 3.0159" in message
     assert "derive" not in message and not out.exists()

@@ -9,7 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.support.viewer import served
+from tests.support.browser import browser
+from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
+from tests.support.viewer import on_page, served
 
 from ikgen.emit.derivation import Derivation
 from ikgen.errors import MissingToolError
@@ -115,6 +117,31 @@ def test_a_sweep_goes_over_the_range_of_the_held_joint_and_can_be_ended() -> Non
         assert f"{min(one.low for one in motion):.2f} to" in panel.words
         threading.Timer(0.2, panel.stop).start()
         assert panel.sweep(slider, seconds=60.0) < 100
+
+
+def test_the_arm_angle_has_a_slider(tmp_path: Path) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text(serial_urdf("arm", SHOULDER_ELBOW_WRIST))
+    derivation = derive(Request(path, free={"arm-angle": None}))
+    runner = solver_of(derivation)
+    assert runner is not None
+    with served(derivation, runner) as scene:
+        (slider,) = scene.held_panel._sliders
+        start = runner.module.arm_angle(scene.chosen)
+        assert slider.label == "arm-angle" and abs(slider.value - start) < 1e-9
+        assert (slider.min, slider.max) == (-np.pi, np.pi)
+        with browser() as opened, on_page(scene, opened) as (page, wrong):
+            with_box = "xpath=ancestor::div[.//input[@inputmode='decimal']][1]"
+            line = page.get_by_text(slider.label, exact=True).locator(with_box)
+            box = line.locator("input[inputmode=decimal]")
+            box.fill("0.7")
+            box.press("Enter")
+            page.wait_for_timeout(1000)
+            assert abs(slider.value - 0.7) < 1e-9 and wrong == []
+        rows = np.array([branch.q for branch in scene.answer.branches])
+        assert len(rows) == scene.ghosts > 1
+        np.testing.assert_allclose(runner.module.arm_angle(rows), 0.7, atol=1e-8)
+        assert "solutions for arm-angle at" in scene.held_panel.words
 
 
 def test_the_map_is_drawn_as_points() -> None:

@@ -26,6 +26,7 @@ def read(request: Request, tree: JointTree | None = None) -> Reading:
     """Read the file, choose the chain and convert it to modified DH form. `tree` is the file's where it was
     read before."""
     reading = _read(request, tree)
+    _check_units(request, reading.dh.held_inputs)
     return _with_elbow(reading) if reading.dh.arm_angle else reading
 
 

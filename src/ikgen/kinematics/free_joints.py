@@ -1,4 +1,4 @@
-"""Values that held joints take where none are given."""
+"""Values that what is held takes where none are given."""
 
 from __future__ import annotations
 
@@ -7,28 +7,16 @@ from collections.abc import Iterable
 
 from ikgen.errors import UsageError
 from ikgen.model.chain import ActuatedJoint
-from ikgen.model.dh import ARM_ANGLE, DHChain
+from ikgen.model.dh import DHChain
 
 __all__ = ["free_defaults"]
 
 
 def free_defaults(dh: DHChain, given: Iterable[tuple[str, float | None]]) -> tuple[float, ...]:
-    """Default values (rad or m) of the held joints, base to tip: those `given` by name, else 0
+    """Default values (rad or m) of what is held, in that order: those `given` by name, else 0
     brought inside the limits. Raises UsageError for a given value outside them."""
     values = dict(given)
-    held = (joint for joint in dh.joints if joint.name in dh.free)
-    angle = (_turn(values.get(ARM_ANGLE)),) if dh.arm_angle else ()
-    return (*(_default(joint, values.get(joint.name)) for joint in held), *angle)
-
-
-def _turn(value: float | None) -> float:
-    """The default arm angle."""
-    if value is not None and not -math.pi <= value <= math.pi:
-        raise UsageError(
-            f"--free {ARM_ANGLE}={value:.9g}: outside of one turn, -pi to pi",
-            hint="give a value inside it (rad), or none",
-        )
-    return 0.0 if value is None else value
+    return tuple(_default(held, values.get(held.name)) for held in dh.held_inputs)
 
 
 def _default(joint: ActuatedJoint, value: float | None) -> float:
@@ -38,7 +26,7 @@ def _default(joint: ActuatedJoint, value: float | None) -> float:
         if low <= value <= high:
             return value
         raise UsageError(
-            f"--free {joint.name}={value:.9g}: outside the joint's limits, {low:.9g} to {high:.9g}",
+            f"--free {joint.name}={value:.9g}: outside its limits, {low:.9g} to {high:.9g}",
             hint="give a value inside them (rad or m), or none",
         )
     if low <= 0.0 <= high:

@@ -38,7 +38,7 @@ def elimination_program(dh: DHChain, most: int) -> Program:
     """All joints that are not held from one call of an elimination (Raghavan and Roth 1993), which has at
     `most` so many solutions."""
     pose = tuple(PoseEntry(i, j) for i in range(3) for j in range(4))
-    held = tuple(HeldValue(j) for j, joint in enumerate(dh.joints) if joint.name in dh.free)
+    held = tuple(HeldValue(j) for j in dh.free_indices)
     prelude: list[Let] = []
     given: list[str] = []
     for one in held:

@@ -31,7 +31,7 @@ def held_values(
     order of `DHChain.held`; None where nothing is."""
     if not dh.held:
         return None
-    values = q[..., [j for j, joint in enumerate(dh.joints) if joint.name in dh.free]]
+    values = q[..., dh.free_indices]
     angle = held_angle(dh)
     if angle is None:
         return np.asarray(values)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from ikgen.model.chain import REVOLUTE, ActuatedJoint
-from ikgen.model.joint_tree import Matrix
+from ikgen.model.joint_tree import Limits, Matrix
 
 __all__ = ["ARM_ANGLE", "HELD_ANGLE", "Angle", "DHChain", "DHRow", "Length", "Snap"]
 
@@ -21,6 +21,9 @@ ARM_ANGLE = "arm-angle"
 
 HELD_ANGLE = "arm_angle"
 """What emitted code calls it among the names of held joints."""
+
+_ANGLE = ActuatedJoint(ARM_ANGLE, REVOLUTE, Limits(-math.pi, math.pi))
+"""It as something that turns."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,10 +141,21 @@ class DHChain:
         return ARM_ANGLE in self.free and all(j.name != ARM_ANGLE for j in self.joints)
 
     @property
+    def free_indices(self) -> tuple[int, ...]:
+        """Places among `joints` of those that are held."""
+        return tuple(j for j, joint in enumerate(self.joints) if joint.name in self.free)
+
+    @property
+    def held_inputs(self) -> tuple[ActuatedJoint, ...]:
+        """What is held, in the order in which emitted code takes the values: joints, and after them the
+        arm angle, which turns once around."""
+        joints = tuple(self.joints[j] for j in self.free_indices)
+        return (*joints, _ANGLE) if self.arm_angle else joints
+
+    @property
     def held(self) -> tuple[str, ...]:
-        """Names of what is held, in the order in which emitted code takes the values."""
-        joints = tuple(j.name for j in self.joints if j.name in self.free)
-        return (*joints, HELD_ANGLE) if self.arm_angle else joints
+        """Names of `held_inputs` in emitted code."""
+        return tuple(HELD_ANGLE if x is _ANGLE else x.name for x in self.held_inputs)
 
     @property
     def symbols(self) -> tuple[str, ...]:

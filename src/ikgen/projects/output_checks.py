@@ -89,9 +89,8 @@ class OutputChecks:
 
     def _arm(self) -> EmittedArm:
         dh, request = self.reading.dh, self.record.request
-        free = tuple(i for i, joint in enumerate(dh.joints) if joint.name in dh.free)
-        task = request.task or "pose"
-        return EmittedArm(self.record.name, dh, task, free, self.record.max_solutions)
+        task, most = request.task or "pose", self.record.max_solutions
+        return EmittedArm(self.record.name, dh, task, dh.free_indices, most)
 
     def _failed(self, name: str, error: IkgenError) -> Finding:
         if isinstance(error, BadDescriptionError | VerificationError):

@@ -10,21 +10,21 @@ import numpy as np
 from ikgen.emit.derivation import Derivation
 from ikgen.lowering.held_angle import held_values
 from ikgen.model.chain import REVOLUTE
-from ikgen.model.dh import HELD_ANGLE, DHChain
+from ikgen.model.dh import ARM_ANGLE, DHChain
 from ikgen.report.document import Block, Heading, Paragraph, Picture
 from ikgen.report.worked_example import Array, WorkedExample
 from ikgen.verify.runners.python_module import PythonModule
 
 __all__ = ["held_section"]
 
-_IN_WORDS = {HELD_ANGLE: "the arm angle"}
+_IN_WORDS = {ARM_ANGLE: "the arm angle"}
 _VALUES = 145
 _WIDTH, _HEIGHT, _LEFT, _TOP, _BOTTOM = 560.0, 190.0, 46.0, 16.0, 44.0
 
 
 @dataclass(frozen=True, slots=True)
 class _Sweep:
-    """`count` (n,) solutions inside the limits at each of the `values` (n,), rad or m, of a joint."""
+    """`count` (n,) solutions inside the limits at each of the `values` (n,), rad or m, of what is held."""
 
     values: Array
     count: Array
@@ -70,19 +70,17 @@ def held_section(
 
 def _held_names(dh: DHChain) -> list[str]:
     """What is held, in words, in the order in which the solver takes the values."""
-    return [_IN_WORDS.get(name, name) for name in dh.held]
+    return [_IN_WORDS.get(held.name, held.name) for held in dh.held_inputs]
 
 
 def _sweep(derivation: Derivation, example: WorkedExample, runner: PythonModule) -> _Sweep:
     dh = derivation.reading.dh
     now = held_values(dh, example.q, example.pose)
     assert now is not None
-    low, high, revolute = -math.pi, math.pi, True
-    if derivation.module.free:
-        joint = dh.joints[derivation.module.free[0]]
-        revolute = joint.kind == REVOLUTE
-        wide = math.pi if revolute else 1.0
-        low, high = max(joint.limits.lower, -wide), min(joint.limits.upper, wide)
+    swept = dh.held_inputs[0]
+    revolute = swept.kind == REVOLUTE
+    wide = math.pi if revolute else 1.0
+    low, high = max(swept.limits.lower, -wide), min(swept.limits.upper, wide)
     values = np.linspace(low, high, _VALUES)
     held = np.tile(now, (_VALUES, 1))
     held[:, 0] = values

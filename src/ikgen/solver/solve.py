@@ -51,8 +51,7 @@ def solve_chain(
     )
     knowledge = Knowledge(system)
     _ = system.equations
-    held = tuple(i for i, joint in enumerate(dh.joints) if joint.name in dh.free)
-    session = Session(system, probes, knowledge, held=held, passed_over=passed_over)
+    session = Session(system, probes, knowledge, held=dh.free_indices, passed_over=passed_over)
     session.start()
     root = (tree or the_tree()).build(session, all_leaves() if leaves is None else leaves)
     while session.open_joints:

@@ -68,7 +68,7 @@ class ArmScene:
         self.meshes = robot_meshes(server, derivation.reading, package_paths)
         dh = derivation.reading.dh
         server.gui.add_markdown(f"### {dh.robot}\n{dh.base_link} to {dh.tip_link}; drag the target")
-        self.held_panel = HeldPanel(self, start.q)
+        self.held_panel = HeldPanel(self, start)
         self._chosen = server.gui.add_slider("solution", 1, derivation.module.max_solutions, 1, 1)
         self._chosen.on_update(lambda _: self.draw())
         if self.meshes is not None:
@@ -105,7 +105,7 @@ class ArmScene:
 
     @property
     def held(self) -> Array | None:
-        """Values of the held joints; None for an arm without."""
+        """Values of what is held; None for an arm that holds nothing."""
         return self.held_panel.values
 
     @property

@@ -1,4 +1,4 @@
-"""Sliders of held joints, and the sweep of one over its range."""
+"""Sliders of what is held, and the sweep of one over its range."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.lowering.held_angle import held_values
+
 if TYPE_CHECKING:
+    from ikgen.report.worked_example import WorkedExample
     from ikgen.view.arm_scene import ArmScene
 
 __all__ = ["HeldPanel"]
@@ -22,20 +25,20 @@ _STEPS, _SECONDS = 120, 6.0
 
 
 class HeldPanel:
-    """`values` are those of the held joints (rad or m); None for an arm without."""
+    """`values` are those of what is held (rad or m), joints or the arm angle, at first `start`'s; None
+    for an arm that holds nothing."""
 
-    def __init__(self, scene: ArmScene, q: Array) -> None:
+    def __init__(self, scene: ArmScene, start: WorkedExample) -> None:
         self._scene = scene
-        dh, free = scene.derivation.reading.dh, scene.derivation.module.free
-        gui = scene.server.gui
+        dh, gui = scene.derivation.reading.dh, scene.server.gui
+        values = held_values(dh, start.q, start.pose)
         self._sliders: list[Any] = []
         self._stop = threading.Event()
         self._sweeping = threading.Lock()
-        for j in free:
-            limits = dh.joints[j].limits
-            low, high = max(-_WIDEST, limits.lower), min(_WIDEST, limits.upper)
-            start = float(np.clip(q[j], low, high))
-            slider = gui.add_slider(dh.joints[j].name, low, high, 0.01, start)
+        for held, value in zip(dh.held_inputs, () if values is None else values, strict=True):
+            low, high = max(-_WIDEST, held.limits.lower), min(_WIDEST, held.limits.upper)
+            first = float(np.clip(value, low, high))
+            slider = gui.add_slider(held.name, low, high, 0.01, first)
             slider.on_update(lambda _: scene.draw())
             self._sliders.append(slider)
         for slider in self._sliders:
@@ -50,7 +53,7 @@ class HeldPanel:
         return np.array([slider.value for slider in self._sliders]) if self._sliders else None
 
     def describe(self, pose: Array) -> None:
-        """For which values of the one held joint the pose (4, 4) has solutions."""
+        """For which values of the one thing held the pose (4, 4) has solutions."""
         if self._words is None or len(self._sliders) != 1:
             return
         if self._described is not None and np.array_equal(pose, self._described):
