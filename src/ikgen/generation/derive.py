@@ -44,8 +44,7 @@ def derive(
         progress("read", request.robot.name)
         reading = read(request)
     check_couplings(reading.dh)
-    defaults = request.free.items()
-    free_defaults(reading.dh, defaults)  # first: some values are refused
+    free_defaults(reading.dh, request.free.items())  # first: some values are refused
     progress("derive", classify(reading.dh).name)
     demand = Demand(request.named_task, passed_over, progress, tuple(refused), request.tool_axis)
     found = closed_form(reading, demand)
@@ -59,12 +58,7 @@ def derive(
         stuck = Unsolved(found.reading, geometry, found.task, found.graph, name, request.robot.name)
         raise unsolved_error(stuck, request)
     found, program = _program(found, progress)
-    held = free_defaults(found.reading.dh, defaults)
-    module = replace(
-        _module(name, request.robot.name, found, program, held),
-        maintainer=request.maintainer,
-        license=request.license,
-    )
+    module = _module(name, request, found, program)
     unasked = request.task is None
     return Derivation(found.reading, geometry, found.task, found.graph, module, unasked, found.held)
 
@@ -89,15 +83,10 @@ def _program(found: ClosedForm, progress: Progress) -> tuple[ClosedForm, Program
     return replace(found, graph=graph), program
 
 
-def _module(
-    name: str,
-    source_name: str,
-    found: ClosedForm,
-    program: Program,
-    held: tuple[float, ...],
-) -> SolverModule:
+def _module(name: str, request: Request, found: ClosedForm, program: Program) -> SolverModule:
     from ikgen.emit.solver_module import SolverModule
     from ikgen.kinematics.classify import classify
+    from ikgen.kinematics.free_joints import free_defaults
     from ikgen.lowering.elimination_program import elimination_name
 
     reading, graph, plan = found.reading, found.graph, found.plan
@@ -107,12 +96,14 @@ def _module(
         program=program,
         dh=dh,
         task=found.task.name,
-        free=tuple(j for j, joint in enumerate(dh.joints) if joint.name in dh.free),
-        free_defaults=held,
-        source_name=source_name,
+        free=dh.free_indices,
+        free_defaults=free_defaults(dh, request.free.items()),
+        source_name=request.robot.name,
         source_sha256=reading.source.sha256,
         generator_version=__version__,
         geometry=classify(dh).words,
         order=(f"all joints ({elimination_name(dh)} elimination)",) if plan else graph.order,
         plan=plan,
+        maintainer=request.maintainer,
+        license=request.license,
     )

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from ikgen.equations.knowledge import Variable
     from ikgen.model.dh import DHChain
     from ikgen.program.statements import Program
+    from ikgen.runtime.python.arm_angle import ArmAngle as HeldAngle
     from ikgen.solver.solution_graph import SolutionGraph
 
 __all__ = ["with_fewest_sets"]
@@ -71,6 +72,7 @@ def _counts(dh: DHChain, program: Program) -> Iterator[int]:
     where solutions of an arm with fewer than six joints meet that are apart elsewhere."""
     from ikgen.equations.probes import arm_size, dh_pose
     from ikgen.kinematics.fixed_order import product
+    from ikgen.lowering.held_angle import held_angle
     from ikgen.program.interpret import run
 
     rng, size = np.random.default_rng(_SEED), arm_size(dh)
@@ -80,16 +82,16 @@ def _counts(dh: DHChain, program: Program) -> Iterator[int]:
     quarters = np.where(revolute, rng.integers(-1, 3, values.shape) * (np.pi / 2), 0.0)
     values = np.where(rng.random(values.shape) < rng.random((_POSES, 1)), quarters, values)
     poses = product(product(dh.X_base, dh_pose(dh, values)), dh.X_tip)
+    angle = held_angle(dh)
     for value, pose in zip(values, poses, strict=True):
-        rows = run(program, _inputs(dh, value, pose))
+        rows = run(program, _inputs(dh, angle, value, pose))
         yield _distinct(np.array([row.q for row in rows]).reshape(-1, dh.dof), revolute, size)
 
 
 def _inputs(
-    dh: DHChain, values: NDArray[np.float64], pose: NDArray[np.float64]
+    dh: DHChain, angle: HeldAngle | None, values: NDArray[np.float64], pose: NDArray[np.float64]
 ) -> dict[str, float]:
     """What a program is handed at DH variables (dof,) and their pose (4, 4)."""
-    from ikgen.lowering.held_angle import held_angle
     from ikgen.program.inputs import ArmAngle, HeldValue, PoseEntry, SeedValue
 
     inputs = {PoseEntry(i, j).name: float(pose[i, j]) for i in range(3) for j in range(4)}
@@ -97,7 +99,6 @@ def _inputs(
         row = dh.lead_row(j)
         inputs[HeldValue(j).name] = float(value - row.offset.value) / row.scale
         inputs[SeedValue(j).name] = 0.0
-    angle = held_angle(dh)
     if angle is not None:
         q = np.array([inputs[HeldValue(j).name] for j in range(dh.dof)])
         inputs[ArmAngle().name] = float(angle.of_rows(q, pose))

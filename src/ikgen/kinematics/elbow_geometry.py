@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ikgen.errors import UsageError
+from ikgen.kinematics.classify import parallel_to_previous
 from ikgen.kinematics.fixed_order import length, product
 from ikgen.kinematics.forward import row_constant
 from ikgen.kinematics.rigid import dh_link, inverse, z_motion
@@ -42,20 +43,19 @@ class ElbowGeometry:
 
 def without_arm_angle(dh: DHChain) -> str:
     """What an arm lacks to have an arm angle, in words; empty where it has one."""
-    rows, moving = dh.rows, [joint.name for joint in dh.joints if joint.name not in dh.free]
-    if len(moving) < dh.dof:
-        return (
-            f"a joint to spare: with {' and '.join(set(dh.free) - {ARM_ANGLE})} held there is none"
-        )
+    rows = dh.rows
+    if dh.free_indices:
+        held = " and ".join(dh.joints[j].name for j in dh.free_indices)
+        return f"a joint to spare: with {held} held there is none"
     if len(rows) != _JOINTS or dh.dof != _JOINTS or any(row.kind != REVOLUTE for row in rows):
-        return (
-            f"seven joints that turn: {len(moving)} joints move it, about or along {len(rows)} axes"
-        )
+        return f"seven joints that turn: {dh.dof} joints move it, about or along {len(rows)} axes"
     for first, place in ((1, "shoulder"), (5, "wrist")):
         parts = (rows[first].a, rows[first].d, rows[first + 1].a)
-        if any(not _zero(x) for x in parts) or any(_parallel(dh, i) for i in (first, first + 1)):
+        if any(not _zero(x) for x in parts) or any(
+            map(parallel_to_previous, rows[first : first + 2])
+        ):
             return f"a spherical {place}: axes {first}, {first + 1} and {first + 2} do not meet in a point"
-    if _parallel(dh, 3) or _parallel(dh, 4):
+    if any(map(parallel_to_previous, rows[3:5])):
         return "an elbow: axis 4 is parallel to one beside it"
     found = _geometry(dh)
     return "" if min(found.upper, found.fore) > 0.0 else "links between shoulder, elbow and wrist"
@@ -66,7 +66,7 @@ def elbow_geometry(dh: DHChain) -> ElbowGeometry:
     lack = without_arm_angle(dh)
     if lack:
         raise UsageError(
-            f"--free arm-angle: the arm lacks {lack}",
+            f"--free {ARM_ANGLE}: the arm lacks {lack}",
             hint="leave it out, and ikgen chooses joints to hold; of more than seven joints --lock "
             "JOINT=VALUE makes constants",
         )
@@ -99,7 +99,3 @@ def _along(d: float) -> Matrix:
 
 def _zero(x: Length) -> bool:
     return x.name is None
-
-
-def _parallel(dh: DHChain, row: int) -> bool:
-    return dh.rows[row].alpha.exact == 0

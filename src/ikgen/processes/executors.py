@@ -95,17 +95,20 @@ def _dask(workers: Workers) -> Iterator[Executor]:
 
 
 def run_pieces(
-    workers: Workers,
+    workers: Workers | None,
     work: Callable[[P], R],
     pieces: Sequence[P],
     done: Callable[[int, int], None] = lambda ready, total: None,
 ) -> list[R]:
-    """`work` of each piece, in their order whoever ends first; `done` is told how many are ready.
+    """`work` of each piece, in their order whoever ends first; `done` is told how many are ready. Without
+    `workers` this process does it.
 
     Where a worker is lost its pieces are begun again, by Dask or in a new pool. Raises what `work` raises,
     and `MissingToolError` where pool after pool loses a worker.
     """
     results: dict[int, R] = {}
+    if workers is None:
+        return [work(piece) for piece in pieces]
     for _ in range(_ATTEMPTS):
         with contextlib.suppress(BrokenExecutor), workers.open() as executor:
             left = [i for i in range(len(pieces)) if i not in results]

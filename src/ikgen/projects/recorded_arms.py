@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 from ikgen.generation.record import find_records, read_record, records_of
 from ikgen.generation.request import Outputs
-from ikgen.projects.config import ArmConfig, default_config, load_config
+from ikgen.projects.config import ArmConfig, load_config
 
 __all__ = ["arms_below", "listed_arms"]
 
@@ -21,14 +20,11 @@ def arms_below(folder: Path) -> tuple[ArmConfig, ...]:
         out = record.out or record.folder
         if (out, record.name) not in arms:
             names = [name for one in records_of(out, record.name) for name in read_record(one).emit]
-            arms[out, record.name] = ArmConfig(
-                replace(record.given, name=record.name), Outputs(emit=tuple(names), out=out)
-            )
+            outputs = Outputs(emit=tuple(names), out=out)
+            arms[out, record.name] = ArmConfig(record.given, outputs)
     return tuple(arms.values())
 
 
 def listed_arms(path: Path) -> tuple[ArmConfig, ...]:
-    """The arms of a config, or of a folder that has records and no config."""
-    if path.is_dir() and default_config(path) is None:
-        return arms_below(path)
-    return load_config(path)
+    """The arms of a config, or of the records below a folder, as `named_config` gives them."""
+    return arms_below(path) if path.is_dir() else load_config(path)

@@ -15,7 +15,12 @@ _FAST = ("-O3", "-ffp-contract=off")
 
 
 def compiled_engine(
-    module: SolverModule, rows: tuple[int, int], moving: list[int], size: float, *, portable: bool
+    module: SolverModule,
+    rows: tuple[int, int],
+    moving: tuple[int, ...],
+    size: float,
+    *,
+    portable: bool,
 ) -> Compiled:
     """`portable`: for any processor of this kind, not this one alone. Raises `MissingToolError` without a
     compiler or Eigen."""

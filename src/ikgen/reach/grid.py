@@ -44,6 +44,11 @@ class Grid:
         return math.prod(self.shape)
 
     @property
+    def step(self) -> float:
+        """From one position to the next (m); 0 where there is one alone."""
+        return max(float(np.diff(axis).max(initial=0.0)) for axis in (self.x, self.y, self.z))
+
+    @property
     def positions(self) -> Array:
         """(k, 3), z fastest."""
         return np.stack(np.meshgrid(self.x, self.y, self.z, indexing="ij"), axis=-1).reshape(-1, 3)

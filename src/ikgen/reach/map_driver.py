@@ -107,7 +107,7 @@ int main(int argc, char** argv) {
 
 
 def map_driver(
-    header: str, namespace: str, *, rows: tuple[int, int], moving: list[int], size: float
+    header: str, namespace: str, *, rows: tuple[int, int], moving: tuple[int, ...], size: float
 ) -> str:
     """Text of the program for a header (file name): `rows` are the first row of the Jacobian and how many,
     `moving` its columns, `size` (m) what lengths are relative to."""

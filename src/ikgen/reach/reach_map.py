@@ -13,7 +13,7 @@ from ikgen.emit.python.python_emitter import emit_module
 from ikgen.errors import MissingToolError, UsageError
 from ikgen.processes.executors import Workers, run_pieces
 from ikgen.reach.compiled_engine import compiled_engine
-from ikgen.reach.engine import Block, Engine, Interpreted, MapRows, solve_block
+from ikgen.reach.engine import Block, Engine, Interpreted, solve_block
 from ikgen.reach.grid import Grid
 
 __all__ = ["ReachMap", "engine_of", "interpreted_engine", "reach_map"]
@@ -55,23 +55,28 @@ def engine_of(
     (m) that singular values are relative to. Raises `UsageError` for an arm without numbers."""
     if derivation.reading.dh.symbols:
         raise UsageError("a table without numbers reaches nothing", hint="give [parameters] values")
-    by_numpy = interpreted_engine(derivation)
-    rows, moving, size = by_numpy.rows, list(by_numpy.moving), by_numpy.size
+    rows, moving, size = _measure(derivation)
     try:
         return compiled_engine(derivation.module, rows, moving, size, portable=portable), size
     except MissingToolError as error:
         warn(f"slower, by NumPy: {error.message}; {error.hint}")
-    return by_numpy, size
+    return interpreted_engine(derivation), size
 
 
 def interpreted_engine(derivation: Derivation) -> Interpreted:
     """The NumPy engine of an arm with numbers."""
     module = derivation.module
-    turning = not derivation.task.position
-    rows = (3, 3) if turning else (0, 6) if derivation.task.orientation else (0, 3)
-    moving = tuple(j for j in range(module.dh.dof) if j not in module.free)
-    size = float(sum(np.linalg.norm(F[:3, 3]) for F in module.dh.file_frames)) or 1.0
-    return Interpreted(emit_module(module), module.dh, rows, moving, size)
+    return Interpreted(emit_module(module), module.dh, *_measure(derivation))
+
+
+def _measure(derivation: Derivation) -> tuple[tuple[int, int], tuple[int, ...], float]:
+    """What singular values are of: rows of the Jacobian (first, how many), columns, and the length (m)
+    that they are relative to."""
+    task, dh = derivation.task, derivation.module.dh
+    rows = (3, 3) if not task.position else (0, 6) if task.orientation else (0, 3)
+    moving = tuple(j for j in range(dh.dof) if j not in derivation.module.free)
+    size = float(sum(np.linalg.norm(F[:3, 3]) for F in dh.file_frames)) or 1.0
+    return rows, moving, size
 
 
 def reach_map(
@@ -89,11 +94,7 @@ def reach_map(
         Block(engine, positions[i : i + each], grid.rotations)
         for i in range(0, len(positions), each)
     ]
-    found: list[MapRows]
-    if workers is None:
-        found = [solve_block(piece) for piece in pieces]
-    else:
-        found = run_pieces(workers, solve_block, pieces, done)
+    found = run_pieces(workers, solve_block, pieces, done)
     count, sigma, margin = (
         np.concatenate([getattr(rows, name) for rows in found]).reshape(grid.shape)
         for name in ("count", "sigma", "margin")

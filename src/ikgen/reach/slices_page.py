@@ -45,10 +45,10 @@ def _scaled(values: NDArray[np.generic]) -> Array:
 
 def _facts(found: ReachMap, command: str) -> list[tuple[str, str]]:
     nx, ny, nz, n = found.grid.shape
-    step = found.grid.x[1] - found.grid.x[0] if nx > 1 else 0.0
+    step = 1e3 * found.grid.step
     return [
         ("chain", f"{found.base} to {found.tip}, task {found.task}"),
-        ("grid", f"{nx} by {ny} by {nz} positions, {1e3 * step:.3g} mm apart; {n} orientations each"),
+        ("grid", f"{nx} by {ny} by {nz} positions, {step:.3g} mm apart; {n} orientations each"),
         ("poses", f"{found.grid.poses:,}, {100 * found.solved:.1f} % with a solution inside the limits"),
         ("positions", f"{100 * (found.by_position > 0).mean():.1f} % reached in some direction, "
          f"{100 * (found.by_position == 1).mean():.1f} % in all of them"),

@@ -70,8 +70,6 @@ def read_map(path: Path) -> ReachMap:
     """The map of an .npz or a zarr group; raises `BadDescriptionError` for what is none."""
     try:
         return _by_zarr(path) if path.is_dir() else _by_numpy(path)
-    except MissingToolError:
-        raise
     except (OSError, EOFError, KeyError, ValueError, zipfile.BadZipFile) as error:
         raise BadDescriptionError(
             f"not a map: {error}", file=str(path), hint="make one by ikgen reach"

@@ -10,8 +10,7 @@ from ikgen.formulas.mathtext import GREEK
 __all__ = ["svg_latex"]
 
 _SPACE = "{http://www.w3.org/2000/svg}"
-_COMMANDS = {"th": "theta", "al": "alpha"}
-_LETTERS = {shown: _COMMANDS.get(name, name) for name, shown in reversed(GREEK.items())}
+_LETTERS = {shown: name for name, shown in reversed(GREEK.items())}
 
 
 def svg_latex(svg: str, scale: float) -> str:

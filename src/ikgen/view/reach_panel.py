@@ -56,12 +56,11 @@ class ReachPanel:
         share = self.found.by_position.ravel()
         at = self.found.grid.positions
         kept = (share > 0) & (at[:, 1] >= self._cut.value - 1e-9)
-        step = float(np.ptp(self.found.grid.x)) / max(1, len(self.found.grid.x) - 1)
         self._handle = self._scene.server.scene.add_point_cloud(
             "/reach",
             at[kept].astype(np.float32),
             colours(share[kept]),
-            point_size=0.25 * (step or 0.02),
+            point_size=0.25 * (self.found.grid.step or 0.02),
             point_shape="circle",
             precision="float32",
         )

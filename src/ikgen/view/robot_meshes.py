@@ -53,12 +53,8 @@ class RobotMeshes:
 
     def _configuration(self, q: Array) -> Array:
         """Values of yourdfpy's actuated joints."""
-        dh, tree = self._reading.dh, self._reading.tree
+        dh = self._reading.dh
         values = dict(dh.locked) | dict(zip((j.name for j in dh.joints), q.tolist(), strict=True))
-        for joint in tree.joints if tree else ():
-            if joint.mimic is not None and joint.mimic.joint in values:
-                followed = values[joint.mimic.joint]
-                values[joint.name] = joint.mimic.multiplier * followed + joint.mimic.offset
         return np.array([values.get(name, 0.0) for name in self._urdf.actuated_joint_names])
 
 

@@ -35,11 +35,6 @@ class ArmConstants:
         """Number of actuated joints."""
         return len(self.joint_names)
 
-    @property
-    def free_indices(self) -> list[int]:
-        """Where the free joints stand among the actuated ones."""
-        return [self.joint_names.index(name) for name in self.free_joints]
-
 
 @dataclass(frozen=True, slots=True)
 class Rows:
