@@ -7,7 +7,7 @@ is the number of branches: a constant that a two-branch form cannot do with is m
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from typing import TYPE_CHECKING
 
 from ikgen.emit.solver_module import CLOSE
@@ -18,21 +18,34 @@ if TYPE_CHECKING:
 
 __all__ = ["solve_as_written"]
 
+Attempt = Callable[["DHChain", Collection[str] | None], "SolutionGraph"]
+
 _WORTH = 0.5
 """Where Newton steps follow all the same, the rows must come nearer to the file's by this factor."""
 
 
 def solve_as_written(
-    dh: DHChain, graph: SolutionGraph, attempt: Callable[[DHChain], SolutionGraph]
+    dh: DHChain, graph: SolutionGraph, attempt: Attempt
 ) -> tuple[DHChain, SolutionGraph]:
-    """Rows nearer to the file's chain than `dh` and their solution, if it is as good as `graph`."""
+    """Rows nearer to the file's chain than `dh` and their solution, if it is as good as `graph`.
+
+    `attempt` solves a chain among the equations of some labels, or among all. What solved the exact
+    geometry mostly solves the file's too, and one equation in ten is soon looked through.
+    """
     if max(dh.deviation) <= CLOSE:
         return dh, graph
     for written in _written(dh):
-        other = attempt(written)
-        if not other.open_joints and _as_good(other, graph):
-            return written, other
+        for among in (_labels(graph), None):
+            other = attempt(written, among)
+            if not other.open_joints and _as_good(other, graph):
+                return written, other
     return dh, graph
+
+
+def _labels(graph: SolutionGraph) -> frozenset[str]:
+    """Of the equations that the solution was chosen from."""
+    candidates = (c for s in graph.steps for c in (s.candidate, *s.fallbacks, *s.rejected))
+    return frozenset(e.label for c in candidates for e in c.sources)
 
 
 def _written(dh: DHChain) -> Iterator[DHChain]:

@@ -196,7 +196,9 @@ def _as_written(form: ClosedForm, demand: Demand) -> ClosedForm:
     from ikgen.generation.as_written import solve_as_written
 
     dh, graph = solve_as_written(
-        form.reading.dh, form.graph, lambda dh: by_rules(dh, form.task, demand.progress)
+        form.reading.dh,
+        form.graph,
+        lambda dh, among: by_rules(dh, form.task, demand.progress, among=among),
     )
     return replace(form, reading=replace(form.reading, dh=dh), graph=graph)
 
@@ -223,10 +225,14 @@ def _best_task(reading: Reading, demand: Demand) -> ClosedForm:
 
 
 def by_rules(
-    dh: DHChain, task: Task, progress: Progress, passed_over: Collection[Variable] = ()
+    dh: DHChain,
+    task: Task,
+    progress: Progress,
+    passed_over: Collection[Variable] = (),
+    among: Collection[str] | None = None,
 ) -> SolutionGraph:
     """What the rules make of a chain; unknowns that are `passed_over` are not to be the first that is
-    solved with branches."""
+    solved with branches, `among` are the labels of the only equations to look at."""
     from ikgen.solver.solve import solve_chain
 
     return solve_chain(
@@ -235,6 +241,7 @@ def by_rules(
         tool_on_right=not task.whole_pose,
         progress=lambda text: progress("derive", text),
         passed_over=passed_over,
+        among=among,
     )
 
 

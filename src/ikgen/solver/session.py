@@ -44,14 +44,16 @@ class Tick:
 
 @dataclass
 class Session:
-    """State of a session. `equations` are those of the current round with few unknowns; those that are
-    `passed_over` are not to be the first that is solved with branches."""
+    """State of a session. `equations` are those of the current round with few unknowns; unknowns that are
+    `passed_over` are not to be the first that is solved with branches; `among` are the labels of the only
+    equations to look at, if not at all."""
 
     system: EquationSet
     probes: Probes
     knowledge: Knowledge
     held: tuple[int, ...] = ()
     passed_over: Collection[Variable] = ()
+    among: Collection[str] | None = None
     round: int = 0
     equations: list[PolynomialEquation] = field(default_factory=list)
     candidates: list[Candidate] = field(default_factory=list)
@@ -112,6 +114,8 @@ class Session:
         k = self.knowledge
         out: list[PolynomialEquation] = []
         for e in self.system.equations:
+            if self.among is not None and e.label not in self.among:
+                continue
             if not 1 <= k.unknown_rank(e.left.support | e.right.support) <= MOST_UNKNOWNS:
                 continue
             p = k.polynomial_equation(e)

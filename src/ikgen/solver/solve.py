@@ -29,13 +29,15 @@ def solve_chain(
     tree: Tree | None = None,
     progress: Callable[[str], None] | None = None,
     passed_over: Collection[Variable] = (),
+    among: Collection[str] | None = None,
 ) -> SolutionGraph:
     """Closed forms for every joint variable of `dh`; `graph.open_joints` lists what is left.
 
     `readable` names the pose entries that the task reads; with `tool_on_right` the tool transform is
     part of the chain (tasks that do not read the whole pose). `leaves` are by default ikgen's own and
     those of other packages, `tree` ikgen's own or that of another package. Unknowns that are
-    `passed_over` are not to be the first that is solved with branches.
+    `passed_over` are not to be the first that is solved with branches. `among` are the labels of the only
+    equations to look at, where a derivation of nearly the same chain tells which lead somewhere.
     """
     readable = readable_in_dh(dh, readable)
     probes = make_probes(dh, tool=tool_on_right, readable=readable)
@@ -51,7 +53,7 @@ def solve_chain(
     )
     knowledge = Knowledge(system)
     _ = system.equations
-    session = Session(system, probes, knowledge, held=dh.free_indices, passed_over=passed_over)
+    session = Session(system, probes, knowledge, dh.free_indices, passed_over, among)
     session.start()
     root = (tree or the_tree()).build(session, all_leaves() if leaves is None else leaves)
     while session.open_joints:
