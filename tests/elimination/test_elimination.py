@@ -9,6 +9,7 @@ import pytest
 from benchmarks.collection import load_arms
 from numpy.typing import NDArray
 from tests.support.arms import arm_chain
+from tests.support.multi_start import apart, searched
 
 from ikgen.elimination import (
     EliminationPlan,
@@ -19,17 +20,10 @@ from ikgen.elimination import (
     hold_joint,
 )
 from ikgen.elimination.loop_frames import forward, jacobian
-from ikgen.elimination.routine import runtime_policy
 from ikgen.kinematics.modified_dh import to_dh
-from ikgen.program.policy import SolvePolicy
-from ikgen.runtime.python.chain_kinematics import chain_of
 from ikgen.runtime.python.general_6r import one_axis_each
-from ikgen.runtime.python.refinement import newton
-from ikgen.runtime.python.solution_rows import distinct_rows
-from ikgen.runtime.python.whole_pose import PoseTask
 
 Array = NDArray[np.float64]
-POLICY = runtime_policy(SolvePolicy())
 ARMS = {a["name"]: a for a in load_arms()}
 NAMES = [
     *("bravo7", "icub_left_leg", "fanuc_crx10ia", "kinova_j2n6s300", "xarm6", "niryo_ned2"),
@@ -77,11 +71,6 @@ def configurations(frames: Array, n: int, seed: int = 5) -> Array:
     return np.array(rows)
 
 
-def apart(rows: Array, q: Array) -> Array:
-    """Largest angle between q (6,) and each of rows (k, 6)."""
-    return np.abs(np.remainder(rows - q + np.pi, 2.0 * np.pi) - np.pi).max(axis=1)
-
-
 def missing(found: list[Array], wanted: Array) -> int:
     """How many of wanted (n, 6) are not among the solutions of their poses."""
     return sum(not (apart(rows, q) < 1e-5).any() for rows, q in zip(found, wanted, strict=True))
@@ -110,26 +99,14 @@ def test_every_generating_configuration_is_found(arm: tuple[EliminationPlan, Arr
 
 @pytest.mark.parametrize("name", ["random 3", "Issue4", "fanuc_crx10ia"])
 def test_no_more_solutions_than_a_multi_start_search_finds(name: str) -> None:
-    """An independent search: Newton's method from 600 random starts for each pose."""
     frames = arm_frames(name)
     plan = choose_plan(frames)
-    scaled = frames.copy()
-    scaled[:, :3, 3] /= plan.length
-    rng = np.random.default_rng(6)
-    for row in configurations(frames, 4, seed=8):
+    turning = (True,) * 6
+    for k, row in enumerate(configurations(frames, 4, seed=8)):
         T = forward(frames, row)
         found = general_6r(plan.frames, plan.length, plan.eliminations, T)
-        T[:3, 3] /= plan.length
-        starts = rng.uniform(-np.pi, np.pi, (600, 6))
-        poses = np.broadcast_to(T, (600, 4, 4))
-        chain, task = chain_of(scaled, one_axis_each((True,) * 6), 6), PoseTask(1.0)
-        q, error, *_ = newton(chain, task, range(6), starts, poses, 40, POLICY)
-        ends = q[error < POLICY.arrived]
-        one = np.zeros(len(ends), dtype=np.intp)
-        candidates = distinct_rows(ends, one, (True,) * 6, POLICY.coincident)[0]
-        assert len(candidates), "the search found nothing to compare"
-        for candidate in candidates:
-            assert apart(found, candidate).min() < 1e-5
+        for other in searched(frames, one_axis_each(turning), turning, plan.length, T, seed=k):
+            assert apart(found, other).min() < 1e-5
 
 
 def test_unreachable_pose_has_no_solution() -> None:

@@ -7,21 +7,17 @@ import math
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from tests.support.multi_start import apart, searched
 
 from ikgen.elimination import EliminationPlan, choose_plan
 from ikgen.elimination.loop_frames import forward, jacobian
 from ikgen.elimination.plan import eliminations
-from ikgen.elimination.routine import Plan, finder, runtime_policy, six_joints_batch
-from ikgen.program.policy import SolvePolicy
-from ikgen.runtime.python.chain_kinematics import chain_of
+from ikgen.elimination.routine import Plan, finder, six_joints_batch
 from ikgen.runtime.python.general_6r import one_axis_each
-from ikgen.runtime.python.refinement import newton
 from ikgen.runtime.python.solution_rows import distinct_rows
-from ikgen.runtime.python.whole_pose import PoseTask
 
 Array = NDArray[np.float64]
 Turning = tuple[bool, ...]
-POLICY = runtime_policy(SolvePolicy())
 MOST = {1: 16, 2: 8, 3: 2}
 MIXES = ["RRRPRR", "PRRRRR", "RPRRRR", "RRPPRR", "RPRPRR", "PRRPRR", "RPRPRP", "RPPRPR"]
 
@@ -68,13 +64,6 @@ def configurations(frames: Array, turning: Turning, count: int, seed: int = 5) -
     return regular(frames, turning, drawn)[:count]
 
 
-def apart(rows: Array, q: Array, turning: Turning) -> Array:
-    """Largest difference between q (6,) and each of rows (k, 6)."""
-    gap = rows - q
-    turned = np.remainder(gap + np.pi, 2.0 * np.pi) - np.pi
-    return np.asarray(np.abs(np.where(turning, turned, gap)).max(axis=1))
-
-
 def missing(found: list[Array], wanted: Array, turning: Turning) -> int:
     """How many of wanted (n, 6) are not among the solutions of their poses."""
     pairs = zip(found, wanted, strict=True)
@@ -85,20 +74,6 @@ def assert_closed(frames: Array, turning: Turning, found: list[Array], poses: Ar
     for rows, pose in zip(found, poses, strict=True):
         for row in rows:
             assert np.abs(forward(frames, row, turning) - pose).max() < 1e-9
-
-
-def searched(frames: Array, plan: EliminationPlan, pose: Array, seed: int) -> Array:
-    """An independent search: Newton's method from 600 random starts."""
-    F, T = frames.copy(), pose.copy()
-    F[:, :3, 3] /= plan.length
-    T[:3, 3] /= plan.length
-    reach = np.where(plan.turning, np.pi, 4.0)
-    starts = np.random.default_rng(seed).uniform(-reach, reach, (600, 6))
-    poses, chain = np.broadcast_to(T, (600, 4, 4)), chain_of(F, one_axis_each(plan.turning), 6)
-    q, error, *_ = newton(chain, PoseTask(1.0), range(6), starts, poses, 40, POLICY)
-    ends = q[error < POLICY.arrived]
-    rows, *_ = distinct_rows(ends, np.zeros(len(ends), dtype=np.intp), plan.turning, 1e-5)
-    return rows * np.where(plan.turning, 1.0, plan.length)
 
 
 @pytest.mark.parametrize("kinds", MIXES)
@@ -121,9 +96,8 @@ def test_as_many_solutions_as_a_multi_start_search_finds(kinds: str) -> None:
     for k, row in enumerate(configurations(frames, turning, 3, seed=8)):
         pose = forward(frames, row, turning)
         found = six_joints_batch(frames, solver(plan), pose[None])[0]
-        others = searched(frames, plan, pose, seed=k)
-        assert len(others), "the search found nothing to compare"
-        for other in others:
+        axes = one_axis_each(turning)
+        for other in searched(frames, axes, turning, plan.length, pose, seed=k):
             assert apart(found, other, turning).min() < 1e-4
 
 

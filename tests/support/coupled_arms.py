@@ -40,10 +40,10 @@ def crank_robot(
 def coupled_table(
     folder: Path, alpha: Sequence[float], a: Sequence[float], d: Sequence[float]
 ) -> Path:
-    """A DH table (modified) of as many revolute joints as there are twists (rad) and lengths (m)."""
+    """A DH table (modified) of revolute joints q1, q2, ... with these twists (rad) and lengths (m)."""
     lines = ['name = "coupled"', 'convention = "modified"']
-    for twist, length, offset in zip(alpha, a, d, strict=True):
-        lines += ["[[joints]]", 'type = "revolute"', f"alpha = {twist!r}"]
+    for k, (twist, length, offset) in enumerate(zip(alpha, a, d, strict=True), start=1):
+        lines += ["[[joints]]", f'name = "q{k}"', 'type = "revolute"', f"alpha = {twist!r}"]
         lines += [f"a = {length!r}", f"d = {offset!r}", "theta = 0"]
     path = folder / "coupled.toml"
     path.write_text("\n".join(lines) + "\n")
