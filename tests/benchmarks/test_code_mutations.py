@@ -5,10 +5,11 @@ from __future__ import annotations
 import ast
 
 import pytest
-from benchmarks.changed_tree import Reach, surrounding
 from benchmarks.code_mutations import code_mutations
 from benchmarks.command_line import REPOSITORY
+from benchmarks.function_codes import surrounding
 from benchmarks.mutation_score import PACKAGES, Done, chosen, drawn, score
+from benchmarks.reached_functions import Reach
 
 TEXT = b'''"""Doc 1."""
 from typing import TYPE_CHECKING
