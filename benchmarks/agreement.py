@@ -82,8 +82,18 @@ def runner_of(derivation: Derivation, language: str, folder: Path) -> Runner:
     return runner
 
 
+def arm_of(derivation: Derivation) -> ArmUnderTest:
+    """The arm of a derivation, with its oracle."""
+    dh, module = derivation.reading.dh, derivation.module
+    limits = [(j.limits.lower, j.limits.upper) for j in dh.joints]
+    lower, upper = (np.array(x) for x in zip(*limits, strict=True))
+    held = tuple(dh.joints[j].name for j in module.free)
+    oracle = oracle_for(derivation.reading)
+    return arm_under_test(oracle, task_space(find_task(module.task)), (lower, upper), held)
+
+
 def _compare(name: str, derivation: Derivation, runners: Sequence[Runner], poses: int) -> Outcome:
-    arm = _arm(derivation)
+    arm = arm_of(derivation)
     rng = np.random.default_rng(100)
     q = arm.uniform(rng, poses)
     q[:, list(arm.free)] = derivation.module.free_defaults
@@ -103,15 +113,6 @@ def _batch(runner: Runner, T: np.ndarray) -> Rows:
     rows = runner.solve_batch(T, limits=False)
     assert rows is not None
     return rows
-
-
-def _arm(derivation: Derivation) -> ArmUnderTest:
-    dh, module = derivation.reading.dh, derivation.module
-    limits = [(j.limits.lower, j.limits.upper) for j in dh.joints]
-    lower, upper = (np.array(x) for x in zip(*limits, strict=True))
-    held = tuple(dh.joints[j].name for j in module.free)
-    oracle = oracle_for(derivation.reading)
-    return arm_under_test(oracle, task_space(find_task(module.task)), (lower, upper), held)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tempfile
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
@@ -130,17 +130,13 @@ def reach(camera: Camera, work: Path) -> None:
 
 def view(camera: Camera, work: Path) -> None:
     """The viewer: solutions, and a robot with meshes, a path and a map."""
-    for name, request in (
-        ("view_ur5e", UR5E),
-        ("view_panda", Request(Path("example-robot-data:panda"))),
-    ):
+    for name, (request, prepare) in VIEWED.items():
         derivation = derive(request)
         solver = solver_of(derivation)
         assert solver is not None
         server = open_server(0)
         scene = ArmScene(server, derivation, solver)
-        if name == "view_panda":
-            _with_path_and_map(scene)
+        prepare(scene)
         address = f"http://127.0.0.1:{server.get_port()}"
         camera.take(address, name, 750, wait="solutions inside the limits")
         server.stop()
@@ -167,6 +163,11 @@ def site(camera: Camera, work: Path) -> None:
         camera.take(f"{address}/gallery/index.html", "gallery", 1000)
 
 
+VIEWED: dict[str, tuple[Request, Callable[[ArmScene], None]]] = {
+    "view_ur5e": (UR5E, lambda scene: None),
+    "view_panda": (Request(Path("example-robot-data:panda")), _with_path_and_map),
+}
+"""Name -> the arm that is viewed, and what is done in its scene first."""
 TAKEN = {"reports": reports, "reach": reach, "view": view, "site": site}
 
 

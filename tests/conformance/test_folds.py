@@ -8,20 +8,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from benchmarks.agreement import runner_of
+from benchmarks.agreement import arm_of, runner_of
 from numpy.typing import NDArray
 from tests.support.solving import FIXTURES, NO_COMPILER
 
 from ikgen.generation.derive import derive
-from ikgen.generation.emitted_checks import oracle_for
 from ikgen.generation.request import Request
-from ikgen.tasks import find_task
 from ikgen.verify.agreement import disagreements
-from ikgen.verify.arm import ArmUnderTest, arm_under_test
+from ikgen.verify.arm import ArmUnderTest
 from ikgen.verify.completeness import survey
 from ikgen.verify.runners.runner import Runner
 from ikgen.verify.sampling import SampleSet
-from ikgen.verify.task_space import task_space
 from ikgen.verify.trials import run_trial
 
 Array = NDArray[np.float64]
@@ -70,11 +67,9 @@ def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     derivation = derive(Request(FIXTURES / f"{request.param}.urdf"))
     folder: Path = tmp_path_factory.mktemp(request.param)
     python, cpp = (runner_of(derivation, language, folder) for language in ("python", "cpp"))
-    oracle, task = oracle_for(derivation.reading), task_space(find_task("pose"))
-    limits = [(j.limits.lower, j.limits.upper) for j in derivation.reading.dh.joints]
-    lower, upper = (np.array(bound) for bound in zip(*limits, strict=True))
-    q = np.vstack([FOLDS[request.param], np.clip(special(120), lower, upper)])
-    return Made(q, arm_under_test(oracle, task, (lower, upper), ()), python, cpp)
+    arm = arm_of(derivation)
+    q = np.vstack([FOLDS[request.param], np.clip(special(120), arm.lower, arm.upper)])
+    return Made(q, arm, python, cpp)
 
 
 def special(count: int) -> Array:

@@ -18,10 +18,10 @@ from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 from ikgen.kinematics.forward import file_jacobian
 from ikgen.processes.executors import Workers, run_pieces
-from ikgen.reach.engine import Block, Interpreted, solve_block
+from ikgen.reach.engine import Block, solve_block
 from ikgen.reach.grid import Grid, grid_over, orientations
 from ikgen.reach.png_image import png
-from ikgen.reach.reach_map import ReachMap, engine_of, reach_map
+from ikgen.reach.reach_map import ReachMap, engine_of, interpreted_engine, reach_map
 from ikgen.reach.slices_page import slices_page
 from ikgen.reach.stored_map import archive
 from ikgen.report.worked_example import solver_of
@@ -40,19 +40,11 @@ def grid() -> Grid:
     return grid_over(derivation().reading.dh, 8, 5, 2)
 
 
-def interpreted() -> tuple[Interpreted, float]:
-    """The NumPy engine, as where there is no compiler."""
-    from ikgen.emit.python.python_emitter import emit_module
-
-    module = derivation().module
-    size = float(sum(np.linalg.norm(F[:3, 3]) for F in module.dh.file_frames))
-    return Interpreted(emit_module(module), module.dh, (0, 6), tuple(range(6)), size), size
-
-
 @cache
 def by_numpy() -> ReachMap:
-    engine, size = interpreted()
-    return reach_map(derivation(), grid(), engine, size, Workers(count=1))
+    """The map of the NumPy engine, as where there is no compiler."""
+    engine = interpreted_engine(derivation())
+    return reach_map(derivation(), grid(), engine, engine.size, Workers(count=1))
 
 
 def test_orientations_are_rotations_spread_over_the_sphere() -> None:
@@ -139,15 +131,15 @@ def test_dask_gives_the_same_and_survives_a_lost_worker(tmp_path: Path) -> None:
     workers = Workers("dask", 2)
     assert run_pieces(workers, once_killed, jobs) == [n * n for n in range(8)]
     assert (tmp_path / "killed").exists()
-    engine, size = interpreted()
+    engine = interpreted_engine(derivation())
     coarse = grid_over(derivation().reading.dh, 4, 3, 1)
-    one = reach_map(derivation(), coarse, engine, size, Workers(count=1))
-    assert archive(reach_map(derivation(), coarse, engine, size, workers)) == archive(one)
+    one = reach_map(derivation(), coarse, engine, engine.size, Workers(count=1))
+    assert archive(reach_map(derivation(), coarse, engine, engine.size, workers)) == archive(one)
 
 
 def test_blocks_of_any_size_are_read_right() -> None:
     """A number of poses that is no multiple of four."""
-    engine, _ = interpreted()
+    engine = interpreted_engine(derivation())
     g = grid()
     one = solve_block(Block(engine, g.positions[:3], g.rotations[:1]))
     assert [len(one.count), len(one.sigma), len(one.margin)] == [3, 3, 3]

@@ -5,16 +5,30 @@ from __future__ import annotations
 import socket
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from tests.support.solving import FIXTURES
 
 from ikgen.emit.derivation import Derivation
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
+from ikgen.report.worked_example import solver_of
 from ikgen.verify.runners.python_module import PythonModule
 from ikgen.view.arm_scene import ArmScene, open_server
 
-__all__ = ["drag_target", "on_page", "served"]
+__all__ = ["drag_target", "on_page", "served", "viewed"]
+
+
+@cache
+def viewed(name: str) -> tuple[Derivation, PythonModule]:
+    """An arm of the fixtures, and its solver."""
+    derivation = derive(Request(FIXTURES / f"{name}.urdf"))
+    runner = solver_of(derivation)
+    assert runner is not None
+    return derivation, runner
 
 
 @contextmanager

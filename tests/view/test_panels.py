@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import threading
 import xml.etree.ElementTree as ElementTree
-from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 from tests.support.browser import browser
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
-from tests.support.viewer import on_page, served
+from tests.support.viewer import on_page, served, viewed
 
-from ikgen.emit.derivation import Derivation
 from ikgen.errors import MissingToolError
 from ikgen.generation.derive import derive
 from ikgen.generation.read import read
@@ -22,20 +20,11 @@ from ikgen.kinematics.forward import file_forward
 from ikgen.reach.grid import grid_over
 from ikgen.reach.reach_map import interpreted_engine, reach_map
 from ikgen.report.worked_example import solver_of
-from ikgen.verify.runners.python_module import PythonModule
 from ikgen.view.followed_path import between, followed
 from ikgen.view.robot_meshes import robot_meshes
 
 ROOT = Path(__file__).resolve().parents[2]
 pytest.importorskip("viser")
-
-
-@cache
-def arm(name: str) -> tuple[Derivation, PythonModule]:
-    derivation = derive(Request(ROOT / f"urdf_fixtures/{name}.urdf"))
-    runner = solver_of(derivation)
-    assert runner is not None
-    return derivation, runner
 
 
 KUKA, FRANKA = "kuka_kr6r900sixx", "franka_fr3"
@@ -49,7 +38,7 @@ def moved(pose: np.ndarray, *way: float) -> np.ndarray:
 
 
 def test_poses_between_marks_are_near_each_other_and_lead_through_the_marks() -> None:
-    runner = arm(KUKA)[1]
+    runner = viewed(KUKA)[1]
     q = np.random.default_rng(4).uniform(-1, 1, (4, 6))
     marks = list(runner.forward(q))
     poses = between(marks, 1.0)
@@ -65,7 +54,7 @@ def test_poses_between_marks_are_near_each_other_and_lead_through_the_marks() ->
 
 
 def test_a_path_out_of_reach_says_where_the_status_changes() -> None:
-    runner = arm(KUKA)[1]
+    runner = viewed(KUKA)[1]
     q = np.array([0.2, -0.9, 1.1, 0.3, 0.6, -0.4])
     start = runner.forward(q[None])[0]
     poses = between([start, moved(start, 0.05, 0, 0.02), moved(start, 2.0, 0, 0.02)], 1.0)
@@ -78,7 +67,7 @@ def test_a_path_out_of_reach_says_where_the_status_changes() -> None:
 
 
 def test_marked_poses_are_followed_and_looked_at() -> None:
-    derivation, runner = arm(KUKA)
+    derivation, runner = viewed(KUKA)
     with served(derivation, runner) as scene:
         panel = scene.path_panel
         panel.follow()
@@ -101,7 +90,7 @@ def test_marked_poses_are_followed_and_looked_at() -> None:
 
 
 def test_a_sweep_goes_over_the_range_of_the_held_joint_and_can_be_ended() -> None:
-    derivation, runner = arm(FRANKA)
+    derivation, runner = viewed(FRANKA)
     with served(derivation, runner) as scene:
         panel = scene.held_panel
         (slider,) = panel._sliders
@@ -145,7 +134,7 @@ def test_the_arm_angle_has_a_slider(tmp_path: Path) -> None:
 
 
 def test_the_map_is_drawn_as_points() -> None:
-    derivation, runner = arm(KUKA)
+    derivation, runner = viewed(KUKA)
     grid = grid_over(derivation.reading.dh, 6, 4, 1)
     engine = interpreted_engine(derivation)
     found = reach_map(derivation, grid, engine, engine.size, None)
@@ -208,7 +197,7 @@ def test_a_robot_without_meshes_has_none() -> None:
     class NoScene:
         """Nothing may be drawn."""
 
-    assert robot_meshes(NoScene(), arm(KUKA)[0].reading) is None
+    assert robot_meshes(NoScene(), viewed(KUKA)[0].reading) is None
     assert (
         robot_meshes(NoScene(), read(Request(ROOT / "urdf_fixtures/scara_standard.toml"))) is None
     )

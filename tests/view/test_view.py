@@ -2,39 +2,25 @@
 
 from __future__ import annotations
 
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from tests.support.browser import browser
-from tests.support.viewer import drag_target, on_page, served
+from tests.support.viewer import drag_target, on_page, served, viewed
 
 from ikgen.cli.main import run
-from ikgen.emit.derivation import Derivation
-from ikgen.generation.derive import derive
-from ikgen.generation.request import Request
 from ikgen.kinematics.quaternion_rotation import quaternion, rotation
-from ikgen.report.worked_example import solver_of
-from ikgen.verify.runners.python_module import PythonModule
 from ikgen.view.branches import solved
 
 ROOT = Path(__file__).resolve().parents[2]
-KUKA = ROOT / "urdf_fixtures/kuka_kr6r900sixx.urdf"
-
-
-@cache
-def arm() -> tuple[Derivation, PythonModule]:
-    derivation = derive(Request(KUKA))
-    runner = solver_of(derivation)
-    assert runner is not None
-    return derivation, runner
+KUKA = "kuka_kr6r900sixx"
 
 
 def poses(n: int) -> np.ndarray:
     """Poses of random configurations inside the limits, and one out of reach."""
-    runner = arm()[1]
+    runner = viewed(KUKA)[1]
     lower, upper = runner.constants.lower, runner.constants.upper
     q = np.random.default_rng(2).uniform(lower, upper, (n, len(lower)))
     far = np.eye(4)
@@ -53,7 +39,7 @@ def test_quaternions_and_rotations() -> None:
 
 
 def test_branches_are_those_of_solve() -> None:
-    derivation, runner = arm()
+    derivation, runner = viewed(KUKA)
     for pose in poses(10):
         answer = solved(derivation, runner, pose)
         inside, status, _ = runner.solve(pose)
@@ -81,12 +67,12 @@ def test_viser_is_asked_for_where_it_lacks(
 def scene() -> Any:
     """A scene with a server of its own."""
     pytest.importorskip("viser")
-    with served(*arm()) as found:
+    with served(*viewed(KUKA)) as found:
         yield found
 
 
 def test_moving_the_target_draws_its_solutions(scene: Any) -> None:
-    runner = arm()[1]
+    runner = viewed(KUKA)[1]
     assert scene.ghosts > 1
     for pose in poses(5):
         scene.move(pose)
@@ -95,7 +81,7 @@ def test_moving_the_target_draws_its_solutions(scene: Any) -> None:
 
 
 def test_the_target_is_dragged_in_a_browser(scene: Any) -> None:
-    runner = arm()[1]
+    runner = viewed(KUKA)[1]
     with browser() as opened, on_page(scene, opened) as (page, wrong):
         for axis, way in ((0, 0.5), (1, -0.4)):
             before = scene.pose
