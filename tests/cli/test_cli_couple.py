@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.support.telescopes import telescope_robot
+from tests.support.telescopes import RELATIONS, telescope_robot
 
 import ikgen
 from ikgen.cli.main import run
@@ -15,11 +15,6 @@ from ikgen.errors import ArgumentError
 from ikgen.verify.runners.python_module import PythonModule
 
 QUICK = ["--samples", "40", "-q"]
-RELATIONS = {
-    "stage_2": "stage_1*1+0.01",
-    "stage_3": "stage_1*1+0.02",
-    "stage_4": "stage_1*0.5+0.03",
-}
 
 
 def couple(relations: dict[str, str]) -> list[str]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tests.support.coupled_arms import crank_robot
 from tests.support.moveit_arms import missing_tools, with_joint
 from tests.support.moveit_driver import Plugin, compile_driver, warnings_of
-from tests.support.telescopes import telescope_robot
+from tests.support.telescopes import RELATIONS, telescope_robot
 
 from ikgen.emit.derivation import Derivation
 from ikgen.emit.moveit import emit_derivation, package_name
@@ -24,11 +24,6 @@ from ikgen.kinematics.forward import file_forward
 from ikgen.model.joint_tree import JointTree, Limits
 
 Array = NDArray[np.float64]
-RELATIONS = {
-    "stage_2": "stage_1*1+0.01",
-    "stage_3": "stage_1*1+0.02",
-    "stage_4": "stage_1*0.5+0.03",
-}
 GROUP = ["lift", "stage_1", "stage_2", "stage_3", "stage_4", "yaw", "pitch"]
 MOVING = [0, 1, 5, 6]  # places in the group of those that move the others
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import subprocess
 from pathlib import Path
 
 import pytest
-from tests.support.tools import needs_cmake
+from tests.support.tools import needs_cmake, printed
 
 from ikgen.generation.generate import generate
 from ikgen.generation.request import Outputs, Request
@@ -27,13 +26,6 @@ int main() {{
 """
 
 
-def sh(*command: object) -> str:
-    """Run a command that has to succeed."""
-    done = subprocess.run([str(c) for c in command], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
-
-
 @needs_cmake
 @pytest.mark.parametrize(
     ("robot", "free"), [("kuka_kr6r900sixx", {}), ("franka_fr3", {"fr3_joint7": 0.3})]
@@ -45,15 +37,15 @@ def test_package_builds_installs_and_is_found(
     made = generate(request, Outputs(emit=("cpp-package",), out=tmp_path, samples=60))
     assert made.reports["cpp-package"].passed
     package, build, prefix = tmp_path / "arm_ik_cpp", tmp_path / "build", tmp_path / "prefix"
-    sh("cmake", "-S", package, "-B", build, f"-DCMAKE_CXX_FLAGS={STRICT}")
-    sh("cmake", "--build", build)
-    rows = sh(build / "example").splitlines()
+    printed("cmake", "-S", package, "-B", build, f"-DCMAKE_CXX_FLAGS={STRICT}")
+    printed("cmake", "--build", build)
+    rows = printed(build / "example").splitlines()
     assert rows and all("off by" in row for row in rows)
-    sh("cmake", "--install", build, "--prefix", prefix)
+    printed("cmake", "--install", build, "--prefix", prefix)
     user = tmp_path / "user"
     user.mkdir()
     (user / "CMakeLists.txt").write_text(USER.format(name="arm_ik"))
     (user / "user.cpp").write_text(PROGRAM.format(name="arm_ik"))
-    sh("cmake", "-S", user, "-B", user / "build", f"-DCMAKE_PREFIX_PATH={prefix}")
-    sh("cmake", "--build", user / "build")
-    sh(user / "build/user")
+    printed("cmake", "-S", user, "-B", user / "build", f"-DCMAKE_PREFIX_PATH={prefix}")
+    printed("cmake", "--build", user / "build")
+    printed(user / "build/user")

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from tests.support.solving import FIXTURES
+from tests.support.tools import printed
 
 from ikgen.emit.moveit import emit
 from ikgen.generation.derive import derive
@@ -69,17 +70,10 @@ def config(workspace: Path, name: str, text: str) -> None:
         file.write(text)
 
 
-def cmake(*words: object, cwd: Path) -> None:
-    done = subprocess.run(
-        ["cmake", *map(str, words)], cwd=cwd, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-
-
 def configure(workspace: Path, *words: str) -> None:
     prefix = f"-DCMAKE_PREFIX_PATH={workspace / 'stub'}"
     debug = "-DCMAKE_BUILD_TYPE=Debug"
-    cmake("-S", f"src/{PACKAGE}", "-B", "build", prefix, debug, *words, cwd=workspace)
+    printed("cmake", "-S", f"src/{PACKAGE}", "-B", "build", prefix, debug, *words, cwd=workspace)
 
 
 @pytest.mark.slow
@@ -89,12 +83,10 @@ def test_ament_builds_and_registers_the_plugin(workspace: Path) -> None:
         pytest.skip("needs ament_cmake")
     out = workspace / "out"
     configure(workspace, f"-DPython3_EXECUTABLE={python}", f"-DCMAKE_INSTALL_PREFIX={out}")
-    cmake("--build", "build", cwd=workspace)
-    cmake("--install", "build", cwd=workspace)
-    tested = ["ctest", "--test-dir", "build", "--output-on-failure", "-R", "^solver$"]
-    done = subprocess.run(tested, cwd=workspace, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout
-    assert "100% tests passed, 0 tests failed out of 1" in done.stdout
+    printed("cmake", "--build", "build", cwd=workspace)
+    printed("cmake", "--install", "build", cwd=workspace)
+    tested = ("ctest", "--test-dir", "build", "--output-on-failure", "-R", "^solver$")
+    assert "100% tests passed, 0 tests failed out of 1" in printed(*tested, cwd=workspace)
     resources = out / "share/ament_index/resource_index"
     listed = (resources / "moveit_core__pluginlib__plugin" / PACKAGE).read_text().strip()
     assert (out / listed).is_file() and (resources / "packages" / PACKAGE).is_file()

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
 from tests.support.sampled import sampled
-from tests.support.tools import environment, needs_cmake
+from tests.support.tools import finished, needs_cmake, printed
 
 from ikgen import __version__
 from ikgen.errors import MissingToolError
@@ -29,19 +28,6 @@ def test_the_package_files_agree_on_the_version() -> None:
     assert f"<version>{__version__}</version>" in (ament_directory() / "package.xml").read_text()
 
 
-def call(*command: object, cwd: Path) -> subprocess.CompletedProcess[str]:
-    """Run a command with the tools of this environment first on PATH."""
-    return subprocess.run(
-        [str(word) for word in command], cwd=cwd, env=environment(), text=True, capture_output=True
-    )
-
-
-def build(*command: object, cwd: Path) -> str:
-    done = call(*command, cwd=cwd)
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout + done.stderr
-
-
 @needs_cmake
 @pytest.mark.skipif(
     "cpp" not in [emitter.name for emitter in EMITTERS], reason="needs the emitter of C++"
@@ -54,20 +40,20 @@ def test_regenerates_when_an_included_file_changes(tmp_path: Path, generator: st
     listing = tmp_path / "p/CMakeLists.txt"
     listing.write_text(listing.read_text().replace("VERIFY)", "SAMPLES 50 VERIFY)"))
     out = tmp_path / "p" / "b"
-    build(
+    printed(
         "cmake", "-S", ".", "-B", out, "-G", generator, f"-Dikgen_DIR={cmake_directory()}",
         *_eigen(), cwd=tmp_path / "p",
     )  # fmt: skip
     made = "Generating inverse kinematics"
-    assert made in build("cmake", "--build", out, cwd=tmp_path)
-    assert made not in build("cmake", "--build", out, cwd=tmp_path)
+    assert made in printed("cmake", "--build", out, cwd=tmp_path)
+    assert made not in printed("cmake", "--build", out, cwd=tmp_path)
     wrist = tmp_path / "p/urdf/wrist.xacro"
     wrist.write_text(wrist.read_text().replace("0.38", "0.39"))
-    text = build("cmake", "--build", out, cwd=tmp_path)
+    text = printed("cmake", "--build", out, cwd=tmp_path)
     assert made in text and "reach" in text
-    assert made not in build("cmake", "--build", out, cwd=tmp_path)
+    assert made not in printed("cmake", "--build", out, cwd=tmp_path)
     if generator == "Ninja":
-        build("ctest", "--output-on-failure", cwd=out)
+        printed("ctest", "--output-on-failure", cwd=out)
 
 
 def _eigen() -> list[str]:
@@ -116,7 +102,7 @@ def two_arms(tmp_path: Path) -> Path:
     shutil.copy(ROOT / "examples/hatch_robot/urdf/scara.urdf", tmp_path)
     (tmp_path / "CMakeLists.txt").write_text(_TWO_ARMS)
     (tmp_path / "ikgen.toml").write_text(_CONFIG)
-    build("ikgen", "build", "--no-verify", "-q", cwd=tmp_path)
+    printed("ikgen", "build", "--no-verify", "-q", cwd=tmp_path)
     return tmp_path
 
 
@@ -126,27 +112,27 @@ def test_only_the_affected_arm_is_generated_again(two_arms: Path, generator: str
     if generator == "Ninja" and shutil.which("ninja") is None:
         pytest.skip("needs ninja")
     directory = f"-Dikgen_DIR={cmake_directory()}"
-    build("cmake", "-S", ".", "-B", "b", "-G", generator, directory, cwd=two_arms)
+    printed("cmake", "-S", ".", "-B", "b", "-G", generator, directory, cwd=two_arms)
     left, right = "inverse kinematics left_ik", "inverse kinematics right_ik"
-    first = build("cmake", "--build", "b", cwd=two_arms)
+    first = printed("cmake", "--build", "b", cwd=two_arms)
     assert left in first and right in first
     (two_arms / "wrist.xacro").touch()
-    again = build("cmake", "--build", "b", cwd=two_arms)
+    again = printed("cmake", "--build", "b", cwd=two_arms)
     assert left in again and right not in again
     (two_arms / "scara.urdf").touch()
-    again = build("cmake", "--build", "b", cwd=two_arms)
+    again = printed("cmake", "--build", "b", cwd=two_arms)
     assert right in again and left not in again
-    nothing = build("cmake", "--build", "b", cwd=two_arms)
+    nothing = printed("cmake", "--build", "b", cwd=two_arms)
     assert left not in nothing and right not in nothing
 
 
 @needs_cmake
 def test_committed_outputs_fail_when_the_description_changes(two_arms: Path) -> None:
-    build("cmake", "-S", ".", "-B", "b", f"-Dikgen_DIR={cmake_directory()}", cwd=two_arms)
-    build("ctest", "--output-on-failure", cwd=two_arms / "b")
+    printed("cmake", "-S", ".", "-B", "b", f"-Dikgen_DIR={cmake_directory()}", cwd=two_arms)
+    printed("ctest", "--output-on-failure", cwd=two_arms / "b")
     wrist = two_arms / "wrist.xacro"
     wrist.write_text(wrist.read_text().replace("0.38", "0.379"))
-    done = call("ctest", "--output-on-failure", cwd=two_arms / "b")
+    done = finished("ctest", "--output-on-failure", cwd=two_arms / "b")
     assert done.returncode != 0
     assert "by up to 1 mm and 0 rad" in done.stdout and "ikgen build ikgen.toml" in done.stdout
     assert list((two_arms / "b/ikgen/third").glob("*.xunit.xml"))
@@ -155,12 +141,12 @@ def test_committed_outputs_fail_when_the_description_changes(two_arms: Path) -> 
 @needs_cmake
 def test_a_toolchain_file_does_not_hide_the_command(two_arms: Path) -> None:
     (two_arms / "cross.cmake").write_text(_TOOLCHAIN)
-    build(
+    printed(
         "cmake", "-S", ".", "-B", "b", "-G", "Unix Makefiles",
         "-DCMAKE_TOOLCHAIN_FILE=cross.cmake", f"-DCMAKE_MAKE_PROGRAM={shutil.which('make')}",
         f"-Dikgen_DIR={cmake_directory()}", cwd=two_arms,
     )  # fmt: skip
-    assert "left_ik" in build("cmake", "--build", "b", cwd=two_arms)
+    assert "left_ik" in printed("cmake", "--build", "b", cwd=two_arms)
     cache = (two_arms / "b/CMakeCache.txt").read_text()
     program = re.search(r"IKGEN_EXECUTABLE:FILEPATH=(.+)", cache)
     assert program is not None and Path(program.group(1)).is_file()
@@ -184,6 +170,6 @@ def test_wrong_calls(tmp_path: Path, line: str, said: str) -> None:
     text = "cmake_minimum_required(VERSION 3.16)\nproject(p NONE)\nfind_package(ikgen REQUIRED)\n"
     (tmp_path / "CMakeLists.txt").write_text(text + line + "\n")
     directory = f"-Dikgen_DIR={cmake_directory()}"
-    done = call("cmake", "-S", ".", "-B", "b", directory, cwd=tmp_path)
+    done = finished("cmake", "-S", ".", "-B", "b", directory, cwd=tmp_path)
     said_there = " ".join(done.stderr.split())
     assert done.returncode != 0 and said in said_there and "hint: " in said_there

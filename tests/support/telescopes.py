@@ -4,9 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-__all__ = ["STAGES", "telescope_robot"]
+__all__ = ["RELATIONS", "STAGES", "telescope_robot"]
 
 STAGES = ("stage_1", "stage_2", "stage_3", "stage_4")
+RELATIONS = {
+    "stage_2": "stage_1*1+0.01",
+    "stage_3": "stage_1*1+0.02",
+    "stage_4": "stage_1*0.5+0.03",
+}
+"""What the other stages are to do, so that the first moves 3.5 times as far in all."""
 _SQUARE = "1.5707963267948966 0 0"
 
 

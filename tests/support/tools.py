@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-__all__ = ["environment", "needs_cmake", "needs_colcon"]
+__all__ = ["environment", "finished", "needs_cmake", "needs_colcon", "printed"]
 
 _OURS = str(Path(sys.executable).parent)
 _COLCON = os.environ.get("COLCON") or shutil.which("colcon")
@@ -35,3 +36,16 @@ def environment(*, ament: bool = False) -> dict[str, str]:
     path = last if ament else [_OURS, *path]
     kept = {name: value for name, value in os.environ.items() if name not in _HIDDEN}
     return kept | {"PATH": os.pathsep.join(path)}
+
+
+def finished(*command: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """What became of a command, run with those of this environment first on PATH."""
+    words = [str(word) for word in command]
+    return subprocess.run(words, cwd=cwd, env=environment(), text=True, capture_output=True)
+
+
+def printed(*command: object, cwd: Path | None = None) -> str:
+    """What a command that has to succeed prints."""
+    done = finished(*command, cwd=cwd)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout + done.stderr
