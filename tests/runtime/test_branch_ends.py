@@ -1,12 +1,20 @@
-"""Where an interval of a held joint is expected to end."""
+"""Where intervals of a held joint end, and in how many rounds that is found."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
 
+import numpy as np
 import pytest
+from numpy.typing import NDArray
 
-from ikgen.runtime.python.branch_ends import _interpolated
+from ikgen.runtime.python import branch_ends
+from ikgen.runtime.python.branch_ends import BranchEnd, _interpolated, find_ends
+from ikgen.runtime.python.held_joint import Rows
 
 
 @pytest.mark.parametrize("count", [2, 3, 4])
@@ -20,3 +28,145 @@ def test_a_zero_of_values_of_an_inverse_polynomial_is_found(count: int) -> None:
 def test_values_that_are_alike_tell_nothing() -> None:
     assert _interpolated([(0.1, 0.5), (0.2, 0.5)]) == math.inf
     assert _interpolated([(0.3, 0.5)]) == 0.3
+
+
+Function = Callable[[float], float]
+
+
+@dataclass
+class Branches:
+    """In place of an arm with a held joint h: rows of one joint, each (value, how far outside its limits,
+    what is positive where it is real), as functions of h."""
+
+    rows: list[tuple[Function, Function, Function]]
+    guarded: bool = True
+    rounds: int = 0
+    tolerance: float = 0.25
+
+    @property
+    def arm(self) -> Any:
+        return SimpleNamespace(
+            chain=SimpleNamespace(revolute=(False,)),
+            policy=SimpleNamespace(limit_tolerance=self.tolerance),
+        )
+
+    def at(self, _: object, T: object, held: NDArray[np.float64]) -> Rows:
+        self.rounds += 1
+        self.held = held
+        q, _, folds = (np.array([[row[k](h) for row in self.rows] for h in held]) for k in range(3))
+        return Rows(held, q[:, :, None], folds > 0.0, folds[:, :, None])
+
+    def outside(self, *_: object) -> NDArray[np.float64]:
+        return np.array([[off(h) for _, off, _ in self.rows] for h in self.held])
+
+
+def found(
+    branches: Branches, monkeypatch: pytest.MonkeyPatch, *ends: BranchEnd
+) -> tuple[BranchEnd, ...]:
+    monkeypatch.setattr(branch_ends, "rows_at", branches.at)
+    monkeypatch.setattr(branch_ends, "outside", branches.outside)
+    find_ends(branches, np.eye(4), list(ends), True)  # type: ignore[arg-type]
+    for end in ends:
+        assert 0.0 < abs(end.outer - end.inner) <= 1e-10
+    return ends
+
+
+def limit(branches: Branches, inner: float, outer: float, lane: int = 0) -> BranchEnd:
+    """Where the limits end a row, as the samples on both sides tell it."""
+    value, off, _ = branches.rows[lane]
+    known = [(h, off(h) - branches.tolerance) for h in (outer, inner)]
+    return BranchEnd(inner, outer, np.array([value(inner)]), lane, known, False, False, inner)
+
+
+@pytest.mark.parametrize(("inner", "outer"), [(0.0, 0.8), (2.2, 1.1)])
+def test_the_end_at_a_limit_is_found_from_either_side(
+    inner: float, outer: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where the row is the tolerance outside."""
+    off: Function = lambda h: math.sin(2.0 * h) - 0.1  # noqa: E731
+    branches = Branches(
+        [(lambda h: 4.0 + h, lambda h: -1.0, lambda h: 1.0), (math.cos, off, lambda h: 1.0)]
+    )
+    (end,) = found(branches, monkeypatch, limit(branches, inner, outer, 1))
+    root = 0.5 * math.asin(0.35)
+    root = root if inner < 1.0 else 0.5 * math.pi - root
+    assert end.inner == pytest.approx(root, abs=1e-10) and off(end.inner) <= 0.25 < off(end.outer)
+    assert end.lane == 1 and end.q[0] == math.cos(end.inner)
+    assert branches.rounds <= 7
+
+
+def test_many_ends_are_found_at_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    bent: Function = lambda h: math.expm1(12.0 * (h - 0.4))  # noqa: E731
+    steep: Function = lambda h: 1e5 * (h - 0.7)  # noqa: E731
+    row: Function = lambda h: 0.5 * h  # noqa: E731
+    branches = Branches(
+        [(row, bent, lambda h: 1.0), (lambda h: 9.0 + row(h), steep, lambda h: 1.0)], tolerance=0.0
+    )
+    ends = limit(branches, 0.0, 1.0), limit(branches, 0.0, 1.0, 1)
+    found(branches, monkeypatch, *ends)
+    assert [end.inner for end in ends] == pytest.approx([0.4, 0.7], abs=1e-10)
+    assert branches.rounds <= 35
+
+
+@pytest.mark.parametrize("guarded", [True, False])
+def test_a_row_that_jumps_away_is_no_longer_the_branch_s(
+    guarded: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    row: Function = lambda h: h if h < 0.6 else 5.0  # noqa: E731
+    branches = Branches([(row, lambda h: -1.0, lambda h: 1.0)], guarded)
+    (end,) = found(branches, monkeypatch, limit(branches, 0.0, 1.0))
+    assert end.inner == pytest.approx(0.6, abs=1e-10) and end.inner < 0.6 <= end.outer
+    assert branches.rounds <= 36
+
+
+def folding(h: float) -> float:
+    """What is positive where two rows are real."""
+    return 0.5 - math.sinh(0.4 * h)
+
+
+FOLD = math.asinh(0.5) / 0.4
+
+
+def pair(guarded: bool, off: Function = lambda h: -1.0) -> Branches:
+    """Two rows that meet at the fold; beyond it their real parts go on."""
+    lift: Function = lambda h: 0.3 * math.sqrt(max(FOLD - h, 0.0)) * (1.0 + h * h)  # noqa: E731
+    rows = [(lambda h, s=s: 0.4 + s * lift(h), off, folding) for s in (1.0, -1.0)]
+    return Branches(rows, guarded)  # type: ignore[arg-type]
+
+
+def fold(branches: Branches, one_sided: bool) -> BranchEnd:
+    value, _, margin = branches.rows[0]
+    known = [(h, -margin(h)) for h in (2.0, -0.5, 0.5)]
+    if one_sided:
+        other = branches.rows[1][0]
+        known = [(h, -((value(h) - other(h)) ** 2)) for h in (-0.5, 0.5)]
+    return BranchEnd(0.5, 2.0, np.array([value(0.5)]), 0, known, True, one_sided, 0.5)
+
+
+def test_a_fold_is_found_by_what_is_positive_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    branches = pair(guarded=True)
+    (end,) = found(branches, monkeypatch, fold(branches, one_sided=False))
+    assert end.inner == pytest.approx(FOLD, abs=1e-10) and folding(end.inner) > 0 >= folding(
+        end.outer
+    )
+    assert branches.rounds <= 7
+
+
+def test_a_fold_is_found_by_how_near_rows_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    branches = pair(guarded=False)
+    (end,) = found(branches, monkeypatch, fold(branches, one_sided=True))
+    assert end.inner == pytest.approx(FOLD, abs=1e-10) and folding(end.inner) > 0 >= folding(
+        end.outer
+    )
+    assert branches.rounds <= 6
+
+
+@pytest.mark.parametrize("one_sided", [False, True])
+def test_a_limit_may_come_before_the_fold(one_sided: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    off: Function = lambda h: math.exp(h) - 2.0  # noqa: E731
+    branches = pair(not one_sided, off)
+    (end,) = found(branches, monkeypatch, fold(branches, one_sided))
+    assert end.inner == pytest.approx(math.log(2.25), abs=1e-10) and not end.at_fold
+    assert off(end.inner) <= 0.25 < off(end.outer) and branches.rounds <= 14
