@@ -8,7 +8,14 @@ from types import ModuleType
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tests.support.held_arms import held_module, imported
+from tests.support.held_arms import imported
+from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
+from tests.support.solving import import_text
+
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.errors import UsageError
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
 
 Array = NDArray[np.float64]
 
@@ -106,5 +113,11 @@ def test_poses_out_of_reach_are_projected_onto_rows_of_any_angle(arm: ModuleType
 
 
 def test_the_default_is_the_one_asked_for(tmp_path: Path) -> None:
-    module = held_module("arm_angle", tmp_path)
-    assert module.held == ("arm_angle",) and module.free == () and module.free_defaults == (0.0,)
+    path = tmp_path / "arm.urdf"
+    path.write_text(serial_urdf("arm", SHOULDER_ELBOW_WRIST))
+    module = derive(Request(path, free={"arm-angle": 0.4})).module
+    arm = import_text(emit_module(module), tmp_path)
+    found = arm.solve(arm.forward([0.3, 0.5, -0.2, 0.9, 0.1, 0.6, 0.25]))
+    assert len(found) and np.abs(arm.arm_angle(found.q) - 0.4).max() < 1e-8
+    with pytest.raises(UsageError, match="outside of one turn"):
+        derive(Request(path, free={"arm-angle": 4.0}))

@@ -12,19 +12,27 @@ from ikgen.program.policy import SolvePolicy
 
 
 @pytest.mark.parametrize(
-    ("deviation", "plan", "refine"),
-    [(0.0, None, "some"), (1e-3, None, "all"), (1e-3, object(), "some"), (0.0, object(), "some")],
+    ("deviation", "plan", "refine", "far"),
+    [
+        (0.0, None, "some", False),
+        (1e-5, None, "all", False),
+        (1e-3, None, "all", True),
+        (1e-3, object(), "some", False),
+        (0.0, object(), "some", False),
+    ],
 )
-def test_rows_of_rounded_files_are_refined(deviation: float, plan: object, refine: str) -> None:
+def test_rows_of_rounded_files_are_refined(
+    deviation: float, plan: object, refine: str, far: bool
+) -> None:
     module = SolverModule(
         name="arm", program=None, dh=SimpleNamespace(deviation=(0.0, deviation)), task="pose", free=(),
         free_defaults=(), source_name="", source_sha256="", generator_version="", plan=plan,
     )  # fmt: skip
     policy = SolvePolicy()
-    assert module.refine == refine
+    assert (module.refine, module.far) == (refine, far)
     least = max(policy.least_pivot, policy.reach * math.sqrt(deviation))
     assert module.policy.least_pivot == pytest.approx(least)
     near = policy.fold * math.sqrt(deviation)
     assert module.policy.fold_reach == pytest.approx(max(policy.fold_reach, near))
-    beside = policy.anywhere if refine == "all" else near
+    beside = policy.anywhere if far else near
     assert module.policy.beside_reach == pytest.approx(beside)

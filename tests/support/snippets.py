@@ -97,26 +97,23 @@ def page_marks(page: Path) -> list[str]:
     return _PAGE_MARK.findall(page.read_text(encoding="utf-8"))
 
 
-def follow(page: Path, folder: Path, root: Path) -> int:
-    """Do in `folder` what the page says; how many blocks of commands ran. `root` is the repository."""
+def follow(page: Path, folder: Path, root: Path) -> None:
+    """Do in `folder` what the page says. `root` is the repository."""
     for mark in page_marks(page):
         if mark.startswith("with "):
             _, name, _, place = mark.split()
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(root / place, folder / name)
     output: str | None = None
-    ran = 0
     for block in blocks(page):
         if block.is_file:
             (folder / block.title).parent.mkdir(parents=True, exist_ok=True)
             (folder / block.title).write_text(block.text, encoding="utf-8")
         elif block.language in _COMMANDS:
             output = _run(block.command, folder) if block.command else None
-            ran += bool(block.command)
         elif block.language == "text" and output is not None:
             missing = differing(block.text, output)
             assert not missing, f"{page.name}: {missing!r} is not in its place in\n{output}"
-    return ran
 
 
 def differing(shown: str, printed: str) -> str:
