@@ -119,5 +119,5 @@ def test_the_default_is_the_one_asked_for(tmp_path: Path) -> None:
     arm = import_text(emit_module(module), tmp_path)
     found = arm.solve(arm.forward([0.3, 0.5, -0.2, 0.9, 0.1, 0.6, 0.25]))
     assert len(found) and np.abs(arm.arm_angle(found.q) - 0.4).max() < 1e-8
-    with pytest.raises(UsageError, match="outside of one turn"):
+    with pytest.raises(UsageError, match="outside its limits"):
         derive(Request(path, free={"arm-angle": 4.0}))
