@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.held_arms import HELD, held_module, held_of, on_limits
+from tests.support.sampled import sampled
 from tests.support.solving import NO_COMPILER, import_text
 
 from ikgen.emit.cpp.cpp_emitter import emit_header
@@ -93,7 +94,10 @@ class Both:
         return STATUS[int(values[0])], values[2:]
 
 
-@pytest.fixture(scope="module", params=list(HELD))
+OFTEN = ("shoulder_elbow_wrist", "torso", "arm_angle", "rounded_arm_angle", "ur5e")
+
+
+@pytest.fixture(scope="module", params=sampled(HELD, OFTEN))
 def both(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Both:
     folder = tmp_path_factory.mktemp("both")
     module = held_module(request.param, folder)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from tests.support.environments import Environment, without_ikgen
+from tests.support.sampled import sampled
 from tests.support.snippets import blocks
 
 pytest.importorskip("hatchling")
@@ -67,6 +68,7 @@ def installed(
     return environment
 
 
+@pytest.mark.parametrize("installed", sampled(KINDS, ["wheel"]), indirect=True)
 def test_the_page_on_the_library_works(installed: Environment, tmp_path: Path) -> None:
     """Its snippets, one after the other, in one program beside a robot.urdf."""
     shown = [block.text for block in blocks(ROOT / "docs/reference/library.md")]
