@@ -364,6 +364,17 @@ def _tip_and_jacobian(chain: _Chain, q: Array) -> tuple[Array, Array]:
     return T[-1], out if chain.drive is None else out @ chain.drive
 
 
+# Rows a part at a time, so that their arrays fit into a processor's cache.
+
+
+def _in_blocks(step: Callable[..., Any], size: int, *rows: Array) -> Any:
+    """The arrays that `step` makes of `rows`, arrays (k, ...), `size` of them at a time."""
+    if len(rows[0]) <= size:
+        return step(*rows)
+    parts = [step(*(x[i : i + size] for x in rows)) for i in range(0, len(rows[0]), size)]
+    return tuple(np.concatenate(part) for part in zip(*parts))
+
+
 # Tolerances and counts of `solve`.
 
 
@@ -546,15 +557,6 @@ class _Arm:
 _BLOCK = 1024  # rows whose arrays fit into a processor's cache
 
 
-def _in_blocks(step: Callable[[Array, Array], Any], q: Array, T: Array) -> Any:
-    """What `step` makes of rows (k, dof) and poses (k, 4, 4), a part of them at a time."""
-    if len(q) <= _BLOCK:
-        return step(q, T)
-    cuts = range(0, len(q), _BLOCK)
-    parts = [step(q[i : i + _BLOCK], T[i : i + _BLOCK]) for i in cuts]
-    return tuple(np.concatenate(part) for part in zip(*parts))
-
-
 def _refine(
     chain: _Chain,
     task: _Task,
@@ -572,7 +574,7 @@ def _refine(
     def first(part: Array, aim: Array) -> tuple[Array, ...]:
         return _newton(chain, task, moving, part, aim, steps, policy, angle)
 
-    q, error, before, slope = _in_blocks(first, q, T)
+    q, error, before, slope = _in_blocks(first, _BLOCK, q, T)
     for more, finer, less in further:
         going = np.flatnonzero((error >= fine) & (error < promising))
         if not len(going):
@@ -1755,12 +1757,8 @@ def _nearby_rows(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[
 def _closed_form(arm: _Arm, T: Array, start: Array, held: Array) -> tuple[Any, ...]:
     """`arm.branches_batch`, a part of the poses at a time."""
     with np.errstate(all="ignore"):
-        if len(T) <= _PART:
-            return arm.branches_batch(T, start, held)
-        cuts = [slice(i, i + _PART) for i in range(0, len(T), _PART)]
-        parts = [arm.branches_batch(T[cut], start[cut], held[cut]) for cut in cuts]
-    whole = [(q, *(np.broadcast_to(flag, q.shape[:2]) for flag in flags)) for q, *flags in parts]
-    return tuple(np.concatenate(arrays) for arrays in zip(*whole))
+        found: tuple[Any, ...] = _in_blocks(arm.branches_batch, _PART, T, start, held)
+    return found
 
 
 def _certain_rows(

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.cpp_modules import solver_module
+from tests.support.held_arms import imported
 from tests.support.solving import import_text
 
 from ikgen.emit.python.python_emitter import emit_module
@@ -83,3 +85,21 @@ def test_a_least_error_above_zero_is_no_solution(doosan: ModuleType) -> None:
         start = q + 1e-4 * np.eye(6)[[3] * count]
         _, arrived, missed = held.together(held, start, np.tile(doosan.forward(q), (count, 1, 1)))
         assert missed.all() and not arrived.any()
+
+
+def test_rows_at_arm_angles_are_refined_a_part_at_a_time(tmp_path: Path) -> None:
+    module = imported("rounded_arm_angle", tmp_path)
+    q = np.random.default_rng(7).uniform(module.LOWER, module.UPPER, (3000, 7))
+    T, held = module.forward(q), module.arm_angle(q)[:, None]
+    sizes: list[int] = []
+
+    class Seen:
+        def errors(self, rows: Array, aim: Array) -> tuple[Array, Array]:
+            sizes.append(len(rows))
+            error, slope = module._ANGLE.errors(rows, aim)
+            return np.asarray(error), np.asarray(slope)
+
+    arm = replace(module._ARM, angle=Seen())
+    done, arrived, _ = arm.together(arm, q + 1e-6, module._ANGLE.aims(T, held))
+    assert max(sizes) < 2000
+    assert arrived.mean() > 0.9 and apart(done, q)[arrived].max() < 1e-8

@@ -17,6 +17,7 @@ from ikgen.runtime.python.pose_arguments import poses_in_line
 from ikgen.runtime.python.pose_faults import nearest_poses
 from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.refinement import refine, steeper
+from ikgen.runtime.python.row_blocks import in_blocks
 from ikgen.runtime.python.row_placement import distinct, place_rows_batch
 from ikgen.runtime.python.solutions import Status
 from ikgen.runtime.python.solved_arm import Arm, Together
@@ -149,12 +150,8 @@ def _nearby_rows(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[A
 def _closed_form(arm: Arm, T: Array, start: Array, held: Array) -> tuple[Any, ...]:
     """`arm.branches_batch`, a part of the poses at a time."""
     with np.errstate(all="ignore"):
-        if len(T) <= _PART:
-            return arm.branches_batch(T, start, held)
-        cuts = [slice(i, i + _PART) for i in range(0, len(T), _PART)]
-        parts = [arm.branches_batch(T[cut], start[cut], held[cut]) for cut in cuts]
-    whole = [(q, *(np.broadcast_to(flag, q.shape[:2]) for flag in flags)) for q, *flags in parts]
-    return tuple(np.concatenate(arrays) for arrays in zip(*whole))
+        found: tuple[Any, ...] = in_blocks(arm.branches_batch, _PART, T, start, held)
+    return found
 
 
 def certain_rows(

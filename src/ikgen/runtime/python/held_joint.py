@@ -47,18 +47,17 @@ class Rows:
 
 def rows_at(joint: HeldJoint, T: Array, held: Array) -> Rows:
     """The rows of a pose T (4, 4) at values of the held joint, without limits."""
-    margins: list[Array] = []
+    count, parts = len(held), list[list[Array]]()
 
     def branches(poses: Array, q0: Array, values: Array) -> tuple[Array, Flags, Flags, Flags]:
-        first: list[Array] = []
-        found = joint.branches_and_folds(poses, q0, values, first)
-        margins.extend(first if not margins else ())
-        return found
+        parts.append([])
+        return joint.branches_and_folds(poses, q0, values, parts[-1])
 
-    arm, count = replace(joint.arm, branches_batch=branches), len(held)
+    arm = replace(joint.arm, branches_batch=branches)
     q, real = _all_rows(arm, np.broadcast_to(T, (count, 4, 4)), held[:, None])
-    folds = np.full((*real.shape, len(margins)), inf)
-    for k, values in enumerate(margins):
+    folds = np.full((*real.shape, len(parts[0])), inf)
+    for k, margins in enumerate(zip(*parts)):
+        values = np.concatenate(margins)[:count]  # what follows is of poses beside
         folds[:, : values.shape[1], k] = values
     return Rows(held, q, real, folds)
 

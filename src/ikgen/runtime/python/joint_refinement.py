@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.lane_chain import LaneChain
 from ikgen.runtime.python.lane_newton import refine_lanes
 from ikgen.runtime.python.refinement import errors_and_slopes
+from ikgen.runtime.python.row_blocks import in_blocks
 from ikgen.runtime.python.solved_arm import Arm
 
 __all__ = ["refine_together"]
 
+_BLOCK = 1024
 _FEW = 64  # rows for which whole matrices are faster than long rows of each of their entries
 
 
@@ -24,9 +28,13 @@ def refine_together(chain: LaneChain, arm: Arm, q: Array, T: Array) -> tuple[Arr
     away: rows whose first step is more than `policy.pivot_share` of the pivot are left to others.
     """
     with np.errstate(all="ignore"):
-        if len(q) <= _FEW or arm.angle is not None:
+        if len(q) <= _FEW:
             return _refine_few(arm, q, T)
-        return refine_lanes(arm, chain, q, np.broadcast_to(T, (len(q), 4, 4)))
+        T = np.broadcast_to(T, (len(q), *T.shape[1:]))
+        if arm.angle is None:
+            return refine_lanes(arm, chain, q, T)
+        done: tuple[Array, Flags, Flags] = in_blocks(partial(_refine_few, arm), _BLOCK, q, T)
+        return done
 
 
 def _refine_few(arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:

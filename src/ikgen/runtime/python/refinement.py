@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from math import inf
-from typing import Any
 
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.chain_kinematics import Chain, tip_and_jacobian
+from ikgen.runtime.python.row_blocks import in_blocks
 from ikgen.runtime.python.solve_policy import Policy
 from ikgen.runtime.python.solved_arm import HeldAngle
 from ikgen.runtime.python.task_interface import Task
 
 __all__ = [
     "errors_and_slopes",
-    "in_blocks",
     "least_singular",
     "newton",
     "rank_loss",
@@ -26,15 +25,6 @@ __all__ = [
 
 
 _BLOCK = 1024  # rows whose arrays fit into a processor's cache
-
-
-def in_blocks(step: Callable[[Array, Array], Any], q: Array, T: Array) -> Any:
-    """What `step` makes of rows (k, dof) and poses (k, 4, 4), a part of them at a time."""
-    if len(q) <= _BLOCK:
-        return step(q, T)
-    cuts = range(0, len(q), _BLOCK)
-    parts = [step(q[i : i + _BLOCK], T[i : i + _BLOCK]) for i in cuts]
-    return tuple(np.concatenate(part) for part in zip(*parts))
 
 
 def refine(
@@ -58,7 +48,7 @@ def refine(
     def first(part: Array, aim: Array) -> tuple[Array, ...]:
         return newton(chain, task, moving, part, aim, steps, policy, angle)
 
-    q, error, before, slope = in_blocks(first, q, T)
+    q, error, before, slope = in_blocks(first, _BLOCK, q, T)
     for more, finer, less in further:
         going = np.flatnonzero((error >= fine) & (error < promising))
         if not len(going):
