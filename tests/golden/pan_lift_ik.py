@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import partial
 from math import asin, atan2, ceil, copysign, floor, inf, isfinite, pi, sqrt
+from operator import or_
 from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
@@ -158,14 +159,13 @@ def follow(poses: Any, *, start: ArrayLike, limits: bool = True) -> Path:
     return _follow_poses(_ARM, nearest, poses, start, limits)
 
 
-def _branches(T: Sequence[Sequence[float]], q0: Row, held: Row) -> tuple[list[_Candidate], bool]:
-    """All closed-form solutions: rows, whether each is one of a continuum and whether it needs Newton
-    steps; whether a joint was left free.
+def _branches(T: Sequence[Sequence[float]], q0: Row, held: Row) -> tuple[list[tuple[Row, bool]], bool]:
+    """All closed-form solutions: rows, and whether each needs Newton steps; whether a joint was left free.
 
     T: pose as nested lists; q0: joint values taken where a pose leaves a joint free; held: values of
     the held joints.
     """
-    rows: list[_Candidate] = []
+    rows: list[tuple[Row, bool]] = []
     hit = False
     (t00, t01, t02, t03), (t10, t11, t12, t13), (t20, t21, t22, t23), _ = T
     # the radius
@@ -175,13 +175,13 @@ def _branches(T: Sequence[Sequence[float]], q0: Row, held: Row) -> tuple[list[_C
         error = a_2 * s1 - t13
         if not (1e-09 > abs(error)):
             continue
-        rows.append(((atan2(s1, c1), t23), False, False))
+        rows.append(((atan2(s1, c1), t23), False))
     return rows, hit
 
 
 def _branches_batch(T: Array, q0: Array, held: Array) -> tuple[Array, _Flags, _Flags, _Flags]:
-    """Closed-form rows of T (N, 4, 4): q (N, MAX_SOLUTIONS, DOF); valid, singular, in need of Newton steps
-    (N, MAX_SOLUTIONS).
+    """Closed-form rows of T (N, 4, 4): q (N, MAX_SOLUTIONS, DOF); valid, singular (or led to one that is, where
+    not valid), in need of Newton steps (N, MAX_SOLUTIONS).
 
     q0 (N, DOF) are the values of joints that a pose leaves free, held (N, len(FREE_JOINTS)).
     """
@@ -192,6 +192,7 @@ def _branches_batch(T: Array, q0: Array, held: Array) -> tuple[Array, _Flags, _F
     t13 = T[:, 1, 3].reshape(lane)
     t23 = T[:, 2, 3].reshape(lane)
     valid: _Flags = np.ones(lane, dtype=bool)
+    singular: _Flags = np.zeros(lane, dtype=bool)
     # the radius
     c1 = t03 / a_2
     sigma_1 = _branch_axis(0, 1)
@@ -202,8 +203,7 @@ def _branches_batch(T: Array, q0: Array, held: Array) -> tuple[Array, _Flags, _F
         np.arctan2(s1, c1),
         t23,
     )
-    singular: _Flags = np.zeros(1, dtype=bool)
-    rough: _Flags = np.zeros(1, dtype=bool)
+    rough: _Flags = singular
     rows = np.empty((DOF, *full))
     for j, value in enumerate(q):
         rows[j] = value
@@ -218,6 +218,7 @@ def _branches_batch(T: Array, q0: Array, held: Array) -> tuple[Array, _Flags, _F
 
 Array = NDArray[np.float64]
 _Flags = NDArray[np.bool_]
+_Index = NDArray[np.intp]
 Row = tuple[float, ...]
 
 
@@ -250,7 +251,7 @@ class _Chain:
     frames: Array
     motions: tuple[_Motion, ...]
     parts: Array
-    joint: NDArray[np.intp]
+    joint: _Index
     scale: Array
     offset: Array
     slides: tuple[int, ...]
@@ -410,6 +411,11 @@ class _Policy:
     progress: float  # of a step: the factor by which the error falls
     refinement: tuple[tuple[int, float, float], ...]  # steps; errors between which more follow
 
+    @property
+    def beside_anywhere(self) -> bool:
+        """Whether poses beside are always solved as well."""
+        return self.beside_reach >= self.anywhere
+
 
 # Differences of single entries of poses, and their derivatives by the joints.
 
@@ -484,8 +490,7 @@ class _Task(Protocol):
 
 
 _Found = tuple[Row, bool]  # a solution, and whether it is one of a continuum
-_Candidate = tuple[Row, bool, bool]  # a closed-form row, whether it is one of a continuum, or rough
-_Branches = Callable[[Sequence[Sequence[float]], Row, Row], tuple[list[_Candidate], bool]]
+_Branches = Callable[[Sequence[Sequence[float]], Row, Row], tuple[list[tuple[Row, bool]], bool]]
 _BranchesBatch = Callable[[Array, Array, Array], tuple[Array, _Flags, _Flags, _Flags]]
 
 
@@ -518,7 +523,8 @@ class _HeldAngle(Protocol):
 class _Arm:
     """`free`, `free_joints`, `free_defaults`: indices, names and values of held joints. `most`: rows at
     most. `branches(T, q0, held)`: the closed form's rows for a pose, values of joints that it leaves
-    free, values of held joints, and whether it left one free; `branches_batch`: in arrays. `beside`
+    free, values of held joints, each with whether it is rough, and whether the pose left a joint free;
+    None for an elimination; `branches_batch`: in arrays. `beside`
     (n, 4, 4): motions of the tool to poses that are solved as well. `turning`: which joints are
     revolute and not held; `moving`: indices of those not held.
     `together`: `refine_together` where the closed form is of another geometry than the file's, and all rows
@@ -535,7 +541,7 @@ class _Arm:
     free_joints: tuple[str, ...]
     free_defaults: Row
     most: int
-    branches: _Branches
+    branches: _Branches | None
     branches_batch: _BranchesBatch
     beside: Array
     turning: tuple[bool, ...]
@@ -651,15 +657,32 @@ def _steeper(slope: Array, bound: float) -> _Flags:
     """Which derivatives (k, m, n) have no singular value below `bound`; of those near it some may not be
     told. Each column is at least the smallest singular value away from what the others span, and the
     nearest of n at most its sqrt(n)-fold."""
-    count = slope.shape[2]
-    inverse = np.linalg.inv(slope.transpose(0, 2, 1) @ slope + 1e-14 * np.eye(count))
-    nearest = 1.0 / np.sqrt(np.einsum("kii->ki", inverse).max(axis=1))
-    return np.asarray(nearest > bound * count**0.5)
+    nearest = 1.0 / np.sqrt(np.einsum("kii->ki", _normal_inverse(slope)).max(axis=1))
+    return np.asarray(nearest > bound * slope.shape[2] ** 0.5)
+
+
+def _normal_inverse(slope: Array, damping: float = 1e-14) -> Array:
+    """Inverses (k, n, n) of the normal equations of derivatives (k, m, n); never singular."""
+    square = slope.transpose(0, 2, 1) @ slope
+    return np.asarray(np.linalg.inv(square + damping * np.eye(slope.shape[2])))
 
 
 def _least_singular(slope: Array) -> Array:
     """Smallest singular value (k,) of derivatives (k, m, n)."""
     return np.asarray(np.linalg.svd(slope, compute_uv=False)[:, -1])
+
+
+# Newton's method on all of what an arm's rows are refined towards.
+
+
+def _linearized(arm: _Arm, q: Array, aim: Array) -> tuple[Array, Array]:
+    """`_errors_and_slopes` of rows (k, dof) towards `aims`."""
+    return _errors_and_slopes(arm.chain, arm.task, arm.moving, q, aim, arm.angle)
+
+
+def _refined(arm: _Arm, q: Array, aim: Array) -> tuple[Array, Array, Array, Array]:
+    """`_refine` of rows (k, dof) towards `aims`."""
+    return _refine(arm.chain, arm.task, arm.moving, q, aim, arm.policy, arm.angle)
 
 
 # Values of what is held: of joints, and of the arm angle.
@@ -679,14 +702,556 @@ def _aims(arm: _Arm, T: Array, held: Array) -> Array:
     return T if arm.angle is None else arm.angle.aims(T, held[:, len(arm.free) :])
 
 
-def _row_rank_loss(arm: _Arm, q: Array) -> Array:
-    """Smallest singular value (k,) of the derivatives of pose, and angle that is held, at q (k, dof)."""
-    if arm.angle is None:
-        return _rank_loss(arm.chain, arm.task, arm.moving, q)
-    pose = _forward(arm.chain, q)
-    aim = _aims(arm, pose, _held_of(arm, q))
-    slope = _errors_and_slopes(arm.chain, arm.task, arm.moving, q, aim, arm.angle)[1]
-    return _least_singular(slope)
+# Rows on the whole turns that limits and seed ask for, and without repetitions: for floats and arrays.
+
+
+_TURN = 2.0 * pi
+
+
+def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
+    """Whether the row differs from all kept ones, whole turns aside; long slides count relative to their
+    length."""
+    near, revolute = arm.policy.coincident, arm.chain.revolute[::-1]
+    for other, _ in kept:
+        for a, b, turns in zip(
+            reversed(row), reversed(other), revolute
+        ):  # the last ones differ most
+            gap = abs(a - b)
+            if gap <= near:
+                continue
+            if abs((gap + pi) % _TURN - pi) > near if turns else gap > near * abs(a):
+                break
+        else:
+            return False
+    return True
+
+
+def _distinct(arm: _Arm, q: Array, valid: _Flags) -> _Flags:
+    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside; long
+    slides count relative to their length."""
+    near = arm.policy.coincident
+    later, earlier = np.tril_indices(q.shape[1], -1)
+    same = valid.T[later] & valid.T[earlier]
+    for j in reversed(range(q.shape[2])):  # the last joints differ between most rows
+        value = q[:, :, j].T
+        gap = np.abs(value[later] - value[earlier])
+        bound = near if arm.chain.revolute[j] else near * np.abs(value[later])
+        far = np.abs(gap - _TURN) if arm.chain.revolute[j] else gap
+        same &= (gap <= near) | (far <= bound)
+        if not same.any():
+            return valid
+    valid = valid.copy()
+    for i, k, equal in zip(later.tolist(), earlier.tolist(), same):
+        valid[:, i] &= ~(equal & valid[:, k])
+    return valid
+
+
+def _place_rows(arm: _Arm, rows: list[_Found], near: Row | None, limits: bool) -> list[_Found]:
+    """The rows on the right turns; those that no turn brings inside the limits are dropped."""
+    placed = [(_place(arm, row, near, limits), flag) for row, flag in rows]
+    return [(row, flag) for row, flag in placed if row is not None]
+
+
+def _place(arm: _Arm, row: Row, near: Row | None, limits: bool) -> Row | None:
+    out = []
+    for j, (q, turning, low, high) in enumerate(zip(row, arm.turning, arm.lower, arm.upper)):
+        shift = 0.0
+        if turning:
+            if q <= -pi:
+                q += _TURN
+            elif q > pi:
+                q -= _TURN
+            if near is not None:
+                shift = _TURN * round((near[j] - q) / _TURN)
+        if limits and not low <= q + shift <= high:
+            least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
+            if turning and q + shift < least:
+                shift = _TURN * ceil((least - q) / _TURN)
+            if turning and q + shift > most:
+                shift = _TURN * floor((most - q) / _TURN)
+            if not least <= q + shift <= most:
+                return None
+            out.append(min(max(q + shift, low), high))
+        else:
+            out.append(q + shift)
+    return tuple(out)
+
+
+def _in_order(arm: _Arm, rows: list[_Found], near: Row | None) -> list[_Found]:
+    """The rows, no more than the arm has, nearest to a seed first."""
+    if near is not None:
+        rows = sorted(rows, key=lambda item: sum((a - b) * (a - b) for a, b in zip(item[0], near)))
+    return rows[: arm.most]
+
+
+def _place_rows_batch(arm: _Arm, q: Array, near: Array | None, limits: bool) -> tuple[Array, _Flags]:
+    """Rows (N, M, dof) on the right turns, in place, and which of them lie inside the limits."""
+    inside = np.ones(q.shape[:2], dtype=bool)
+    for j, (turning, low, high) in enumerate(zip(arm.turning, arm.lower, arm.upper)):
+        value = q[..., j]
+        least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
+        if turning:
+            value = np.where(value <= -pi, value + _TURN, value)
+            value = np.where(value > pi, value - _TURN, value)
+            turns: Array = np.zeros(1)
+            if near is not None:
+                turns = np.round((near[:, None, j] - value) / _TURN)
+            if limits and least > -inf:
+                turns = np.maximum(turns, np.ceil((least - value) / _TURN))
+            if limits and most < inf:
+                turns = np.minimum(turns, np.floor((most - value) / _TURN))
+            value = value + _TURN * turns
+        if limits:
+            inside &= (value >= least) & (value <= most)
+            value = np.minimum(np.maximum(value, low), high)
+        q[..., j] = value
+    return q, inside
+
+
+# The closed form's rows of many poses, and what Newton steps make of them.
+
+
+_PART = 2048  # poses whose arrays fit into a processor's cache
+
+
+class _ClosedForm(NamedTuple):
+    """Rows `q` (N, M, dof); which are `valid`, which `singular`, of a continuum, or not valid, but behind
+    a joint that the pose leaves free, and which are `rough` (N, M)."""
+
+    q: Array
+    valid: _Flags
+    singular: _Flags
+    rough: _Flags
+
+    @property
+    def free(self) -> _Flags:
+        """Which poses (N,) leave a joint free."""
+        return np.asarray(self.singular.any(axis=1))
+
+
+def _closed_form(arm: _Arm, T: Array, near: Array | None, held: Array) -> _ClosedForm:
+    """Of poses T (N, 4, 4) with the values `near` (N, dof) of joints that they leave free."""
+    start = np.zeros((len(T), len(arm.lower))) if near is None else near
+    with np.errstate(all="ignore"):
+        found = _ClosedForm(*_in_blocks(arm.branches_batch, _PART, T, start, held))
+    found.q[:, :, list(arm.free)] = held[:, None, : len(arm.free)]
+    return found
+
+
+def _rows_beside(arm: _Arm, T: Array, near: Array | None, held: Array) -> tuple[Array, _Flags]:
+    """The closed form's rows (N, M, dof) of poses beside T (N, 4, 4), one after the other, and which are
+    valid (N, M)."""
+    each = len(arm.beside)
+    poses = (T[:, None] @ arm.beside).reshape(-1, 4, 4)
+    starts = None if near is None else np.repeat(near, each, axis=0)
+    q, valid, _, _ = _closed_form(arm, poses, starts, np.repeat(held, each, axis=0))
+    return q.reshape(len(T), -1, q.shape[2]), valid.reshape(len(T), -1)
+
+
+def _closed_form_rows_certain_rows(
+    arm: _Arm, together: _Together, T: Array, held: Array, near: Array | None
+) -> tuple[Array, _Flags, _Flags]:
+    """Rows (N, M, dof) of a rounded arm refined all at once, which of them are solutions, and for which
+    poses (N,) that leaves a doubt."""
+    closed = _closed_form(arm, T, near, held)
+    q, valid, doubt = closed.q, closed.valid, closed.free
+    pose, row = np.nonzero(valid)
+    q[pose, row], arrived, missed = together(arm, q[pose, row], _aims(arm, T, held)[pose])
+    found = valid.copy()
+    found[pose, row] = arrived
+    doubt[pose[~(arrived | missed)]] = True
+    doubt |= (_distinct(arm, q, found) != found).any(axis=1) | ~found.any(axis=1)
+    return q, found, doubt
+
+
+def _careful_rows(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, _Flags, _Flags]:
+    """Rows (N, M, dof) of which each is refined for as long as it takes, with those of poses beside where
+    they always count; which are distinct solutions, and which poses (N,) have rows of a continuum or near
+    a singularity."""
+    closed = _closed_form(arm, T, near, held)
+    q, valid, rough, doubt = closed.q, closed.valid, closed.rough, closed.free
+    if len(arm.beside) and arm.policy.beside_anywhere:
+        more, real = _rows_beside(arm, T, near, held)
+        q, valid = np.concatenate([q, more], axis=1), np.concatenate([valid, real], axis=1)
+        rough = np.ones_like(valid)
+    pose, row = np.nonzero(rough & valid)
+    if len(pose):
+        found, error, _, slope = _refined(arm, q[pose, row], _aims(arm, T, held)[pose])
+        q[pose, row], valid[pose, row] = found, error < arm.policy.arrived
+        doubt[pose[~_steeper(slope, arm.policy.fold_reach)]] = True
+    return q, _distinct(arm, q, valid), doubt
+
+
+# Which rows at one value of a held joint go on as which at the next.
+
+
+_WHOLE_TURN = 2.0 * pi
+
+
+def _differences(arm: _Arm, a: Array, b: Array) -> Array:
+    """b - a (..., dof), of turning joints on the shortest way."""
+    gap = b - a
+    turning = np.array(arm.chain.revolute)
+    return np.where(turning, gap - _WHOLE_TURN * np.round(gap / _WHOLE_TURN), gap)
+
+
+# Rows of several poses in one array: without repetitions, and in order.
+
+
+def _places(pose: _Index) -> _Index:
+    """The number of each row among those of its pose, pose (k,) in order."""
+    first = np.searchsorted(pose, pose)
+    return np.asarray(np.arange(len(pose)) - first)
+
+
+# Solutions near a singularity, where Newton's method stalls.
+
+
+_ALONG = 1e-4  # rad or m
+_CLOSE = 1e-9
+_FAR = 0.3
+_STEPS = 8
+
+
+class _Starts(NamedTuple):
+    """Where Newton steps start: rows `q` (k, dof) for poses `T` (k, 4, 4), which rows are of the same pose,
+    `pose` (k,), which the closed form `marked` (k,) as of a continuum, and the `source` (k,) of each:
+    given (-1), the closed form for the pose (0), or for one beside it (1)."""
+
+    q: Array
+    T: Array
+    pose: _Index
+    marked: _Flags
+    source: NDArray[np.int64]
+
+
+def _joined(one: Any, other: Any) -> Any:
+    """Two tuples of arrays as one."""
+    return type(one)(*map(np.concatenate, zip(one, other)))
+
+
+class _Ends(NamedTuple):
+    """Where Newton steps end: rows `q` (k, dof), their `error` and the smallest singular value `loss` of
+    the derivatives (k,)."""
+
+    q: Array
+    error: Array
+    loss: Array
+
+
+def _ends_of(arm: _Arm, q: Array, T: Array) -> _Ends:
+    """Where steps from rows q (k, dof) towards aims T end."""
+    q, error, _, slope = _refined(arm, q, T)
+    return _Ends(q, error, _least_singular(slope))
+
+
+def _rows_nearby(arm: _Arm, starts: _Starts, ends: _Ends) -> tuple[_Index, Array, Array]:
+    """Which start (m,) each solution (m, dof) comes from that steps lead to, those that are sure first, and
+    the smallest singular values (m,) there."""
+    T, (q, error, loss) = starts.T, (x.copy() for x in ends)
+    arrived, own = error < arm.policy.arrived, starts.source >= 0
+    broken = starts.marked & (arm.rounded | ~arrived) & own
+    near = own & ~starts.marked & (loss < arm.policy.fold_reach)
+    settled = ~broken & np.where(near, error < arm.policy.converged, arrived)
+    fresh = _fresh(arm, q, starts, near, near & ~settled)
+    settled &= fresh
+    near &= fresh
+    owner, trial = np.flatnonzero(near), q[near]
+    if broken.any():
+        around, worst = _walk(arm, starts.q[broken], T[broken])
+        isolated = np.flatnonzero(broken)[worst >= arm.policy.arrived]
+        around = around[:, worst >= arm.policy.arrived]
+        owner = np.concatenate([owner, np.repeat(isolated, len(around))])
+        trial = np.concatenate([trial, around.transpose(1, 0, 2).reshape(-1, q.shape[1])])
+    first, own_rows = np.flatnonzero(settled), q[settled]
+    if not len(owner) and not (broken & arrived).any():
+        return first, own_rows, loss[first]
+    owner, side = np.repeat(owner, 2), np.tile([1.0, -1.0], len(owner))
+    pairs = _approach(arm, np.repeat(trial, 2, axis=0), T[owner], side)
+    pairs, left, there = _ends_of(arm, pairs, T[owner])
+    exact = left < arm.policy.exact
+    for k, i in zip(np.flatnonzero(~exact).tolist(), owner[~exact].tolist()):
+        if left[k] < error[i]:
+            q[i], error[i], loss[i] = pairs[k], left[k], there[k]
+    alone = np.flatnonzero((near | broken) & (error < arm.policy.arrived))
+    alone = np.setdiff1d(alone, [*owner[exact], *first])
+    source, rows = np.concatenate([owner[exact], alone]), np.concatenate([pairs[exact], q[alone]])
+    order = np.argsort(source, kind="stable")
+    rows = np.concatenate([own_rows, rows[order]])
+    losses = np.concatenate([loss[first], np.concatenate([there[exact], loss[alone]])[order]])
+    return np.concatenate([first, source[order]]), rows, losses
+
+
+def _fresh(arm: _Arm, q: Array, starts: _Starts, near: _Flags, stalled: _Flags) -> _Flags:
+    """Which rows (k, dof) are not of a pose beside, and led to the same as an earlier one of their pose or
+    stalled by one that is near another solution."""
+    beside = starts.source > 0
+    fresh = ~beside
+    own = np.flatnonzero(np.isin(starts.pose, starts.pose[beside]) & (starts.source >= 0))
+    if not len(own):
+        return fresh
+    own = own[np.argsort(starts.pose[own], kind="stable")]
+    _, pose = np.unique(starts.pose[own], return_inverse=True)
+    place = _places(pose)
+    rows = np.zeros((int(pose[-1]) + 1, int(place.max()) + 1, q.shape[1]))
+    valid = np.zeros(rows.shape[:2], dtype=bool)
+    rows[pose, place], valid[pose, place] = q[own], True
+    fresh[own] |= _distinct(arm, rows, valid)[pose, place]
+    for k in np.flatnonzero(fresh & beside & stalled).tolist():
+        others = q[:k][(fresh & near & (starts.pose == starts.pose[k]))[:k]]
+        fresh[k] = not (np.abs(_differences(arm, others, q[k])).max(axis=1) < arm.policy.alike).any()
+    return fresh
+
+
+def _repeats(arm: _Arm, T: Array, row: Row, kept: Sequence[_Found]) -> bool:
+    """Whether nothing tells a singular row from one kept nearby: the pose is theirs between them too."""
+    for other, singular in kept:
+        gap = _differences(arm, np.array(row), np.array(other))
+        if singular and np.abs(gap).max() < arm.policy.alike:
+            middle = _forward(arm.chain, np.array(row) + 0.5 * gap)
+            if np.abs(arm.task.error(middle[None], T[None])).max() < arm.policy.converged:
+                return True
+    return False
+
+
+def _approach(arm: _Arm, q: Array, T: Array, side: Array) -> Array:
+    """From q (k, dof) towards the solution on one `side` (k,), 1 or -1, of the place where two may meet, or
+    to where they nearly do; T (k, 4, 4)."""
+    q, still, going = q.copy(), _generic(arm, len(q)), np.arange(len(q))
+    for _ in range(_STEPS):
+        q[going], still[going], x, _ = _step(arm, q[going], T[going], side[going], still[going])
+        going = going[np.abs(x) > _CLOSE]
+        if not len(going):
+            break
+    return q
+
+
+def _walk(arm: _Arm, q: Array, T: Array) -> tuple[Array, Array]:
+    """Configurations (tries, k, dof) from q (k, dof) on, where the pose hardly moves, the fastest
+    joint by `policy.try_step` from one to the next, and the largest errors (k,) there."""
+    nowhere, moving = np.zeros(len(q)), list(arm.moving)
+    q, still, _, _ = _step(arm, q, T, nowhere, _generic(arm, len(q)))
+    worst, out = np.zeros(len(q)), []
+    for _ in range(arm.policy.tries):
+        for _ in range(2):
+            q, still, _, error = _step(arm, q, T, nowhere, still)
+        worst = np.maximum(worst, error)
+        out.append(q)
+        q = q.copy()
+        q[:, moving] += arm.policy.try_step * still / np.abs(still).max(axis=1)[:, None]
+    return np.array(out), worst
+
+
+def _generic(arm: _Arm, count: int) -> Array:
+    return np.tile(1.0 + 0.1 * np.arange(len(arm.moving)), (count, 1))
+
+
+def _step(
+    arm: _Arm, q: Array, T: Array, side: Array, still: Array
+) -> tuple[Array, Array, Array, Array]:
+    """q (k, dof) after a step, the unit directions (k, n) in which the pose moves least, in the sense of
+    `still`, how far the step goes along them (k,), not at all on side 0, and the errors before (k,)."""
+    columns = list(arm.moving)
+    error, slope = _linearized(arm, q, T)
+    still = _still(slope, still, arm.policy.least_damping)
+    flow = np.einsum("kej,kj->ke", slope, still)
+    there = q.copy()
+    there[:, columns] += _ALONG * still
+    _, beyond = _linearized(arm, there, T)
+    bend = np.einsum("kej,kj->ke", beyond - slope, still) / _ALONG
+    V = slope - flow[:, :, None] * still[:, None, :]
+    Vt = V.transpose(0, 2, 1)
+    A = (
+        Vt @ V
+        + still[:, :, None] * still[:, None, :]
+        + arm.policy.least_damping * np.eye(len(columns))
+    )
+    z = np.stack([error, bend, flow], axis=2)
+    across = np.linalg.solve(A, Vt @ z)
+    rest, bend, flow = np.moveaxis(z - V @ across, 2, 0)
+    x = np.where(side == 0.0, 0.0, _root(side, rest, bend, flow))
+    q = q.copy()
+    q[:, columns] += np.clip(across[:, :, 0], -_FAR, _FAR) + x[:, None] * still
+    return q, still, x, np.abs(error).max(axis=1)
+
+
+def _still(slope: Array, still: Array, damping: float) -> Array:
+    """By inverse iteration, from what it was, which keeps its sense."""
+    inverse = _normal_inverse(slope, damping)
+    for _ in range(4):
+        still = (inverse @ still[:, :, None])[:, :, 0]
+        still = still / np.linalg.norm(still, axis=1)[:, None]
+    return still
+
+
+def _root(side: Array, rest: Array, bend: Array, flow: Array) -> Array:
+    """The root (k,) of s x + k x^2 / 2 = e on this side of the least error, along the direction that the
+    others leave."""
+    k, s, e = (np.einsum("ke,ke->k", bend, v) for v in (bend, flow, rest))
+    w = np.sqrt(np.maximum(s * s + 2.0 * k * e, 0.0))
+    p = s + np.copysign(w, s)
+    with np.errstate(all="ignore"):
+        x = np.where(((s > 0.0) == (side > 0.0)) & (p != 0.0), 2.0 * e / p, -p / k)
+    return np.asarray(np.clip(np.nan_to_num(np.where(k > 0.0, x, 0.0)), -_FAR, _FAR))
+
+
+# All solutions of poses near singularities, and of those that leave joints free: of many poses at once, as
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """Poses `T` (n, 4, 4), seeds `near` (n, dof) if there are any, and values `held` (n, held)."""
+
+    T: Array
+    near: Array | None
+    held: Array
+
+    def at(self, index: _Index) -> _Asked:
+        """Some of them."""
+        near = None if self.near is None else self.near[index]
+        return _Asked(self.T[index], near, self.held[index])
+
+    def seed(self, k: int) -> Row | None:
+        """Of one pose."""
+        return None if self.near is None else tuple(self.near[k].tolist())
+
+    def starts(self, arm: _Arm, turn: Array | None = None) -> Array:
+        """Values (n, dof) for joints that the poses leave free, those of revolute ones turned by `turn`
+        (n,); held ones as they are."""
+        q = np.zeros((len(self.T), len(arm.lower))) if self.near is None else self.near.copy()
+        if turn is not None:
+            q[:, arm.chain.revolute] += turn[:, None]
+        q[:, list(arm.free)] = self.held[:, : len(arm.free)]
+        return q
+
+
+@dataclass
+class _Answer:
+    """Solutions on the right turns, and whether there were any before limits."""
+
+    rows: list[_Found] = field(default_factory=list)
+    real: bool = False
+
+
+_Rows = tuple[list[_Found], bool, bool]
+
+
+def _placed_rows(arm: _Arm, asked: _Asked, limits: bool) -> list[_Answer]:
+    """Of each pose. Where it leaves a joint free and the given value leads nowhere, others are tried."""
+    out = [_Answer() for _ in asked.T]
+    left = np.arange(len(out))
+    for tries in (range(1), range(1, arm.policy.tries)):
+        if not len(left):
+            break
+        which = np.repeat(left, len(tries))
+        some = asked.at(which)
+        start = some.starts(arm, np.tile(tries, len(left)) * arm.policy.try_step)
+        rows = _rows(arm, some, start, len(tries) == 1)
+        seeded = _seeded(arm, some, start, rows, limits) if asked.near is not None else {}
+        going = np.ones(len(out), dtype=bool)
+        for k, i in enumerate(which.tolist()):
+            if going[i]:
+                going[i] = _goes_on(arm, some, k, rows[k], seeded.get(k, []), limits, out[i])
+        left = left[going[left]]
+    return out
+
+
+def _goes_on(
+    arm: _Arm,
+    asked: _Asked,
+    k: int,
+    rows: _Rows,
+    seeded: list[_Found],
+    limits: bool,
+    answer: _Answer,
+) -> bool:
+    """Adds rows to an answer, and says whether other values have to be tried."""
+    (kept, free, led), T, near = rows, asked.T[k], asked.seed(k)
+    if not free and any(flag for _, flag in kept):
+        _add(arm, T, seeded, kept)
+    answer.real = answer.real or bool(kept)
+    _add(arm, T, _place_rows(arm, kept, near, limits), answer.rows)
+    if not answer.rows:
+        answer.rows = _place_rows(arm, seeded, near, limits)
+    led = led if arm.rounded else any(flag for _, flag in answer.rows)
+    return free and not (answer.rows and led)
+
+
+def _seeded(
+    arm: _Arm, asked: _Asked, start: Array, rows: list[_Rows], limits: bool
+) -> dict[int, list[_Found]]:
+    """What Newton steps from the seeds lead to, where no row is inside the limits, or one is singular."""
+    some = [
+        k
+        for k, (kept, free, _) in enumerate(rows)
+        if (not free and any(flag for _, flag in kept))
+        or not _place_rows(arm, kept, asked.seed(k), limits)
+    ]
+    return dict(zip(some, _led_to(arm, asked.at(np.array(some, dtype=np.intp)), start[some])))
+
+
+def _seeded_rows(arm: _Arm, asked: _Asked) -> list[list[_Found]]:
+    """What Newton steps from the seeds lead to."""
+    return _led_to(arm, asked, asked.starts(arm))
+
+
+def _led_to(arm: _Arm, asked: _Asked, start: Array) -> list[list[_Found]]:
+    if not len(start):
+        return []
+    starts = _given(arm, asked, start, np.arange(len(start)))
+    return _meeting(arm, asked, starts, _ends_of(arm, starts.q, starts.T))
+
+
+def _rows(arm: _Arm, asked: _Asked, start: Array, first: bool) -> list[_Rows]:
+    """For each pose the solutions (radians between -pi and pi), of a rounded arm and its `first` start with
+    those that poses beside lead to, where they count."""
+    closed = _closed_form(arm, asked.T, start, asked.held)
+    free, marked = closed.free, closed.singular & closed.valid
+    pose, lane = np.nonzero(closed.valid & closed.rough)
+    own = _starts(arm, asked, closed.q[pose, lane], pose, marked[pose, lane], 0)
+    starts = _joined(_given(arm, asked, start, np.flatnonzero(free)), own)
+    ends = _ends_of(arm, starts.q, starts.T)
+    near = free | arm.policy.beside_anywhere
+    near[pose[ends.loss[len(ends.loss) - len(pose) :] < arm.policy.beside_reach]] = True
+    some = np.flatnonzero(near & first)
+    if len(arm.beside) and len(some):
+        q, valid = _rows_beside(arm, asked.T[some], start[some], asked.held[some])
+        pose, lane = np.nonzero(valid)
+        plain = np.zeros(len(pose), dtype=bool)
+        more = _starts(arm, asked, q[pose, lane], some[pose], plain, 1)
+        starts, ends = _joined(starts, more), _joined(ends, _ends_of(arm, more.q, more.T))
+    kept = _meeting(arm, asked, starts, ends)
+    for i, k in np.argwhere(closed.valid & ~closed.rough).tolist():
+        _add(arm, asked.T[i], [(tuple(closed.q[i, k].tolist()), bool(marked[i, k]))], kept[i])
+    led: _Flags = np.asarray(marked.any(axis=1))
+    return list(zip(kept, free.tolist(), led.tolist()))
+
+
+def _starts(arm: _Arm, asked: _Asked, q: Array, pose: _Index, marked: _Flags, source: int) -> _Starts:
+    aim = _aims(arm, asked.T, asked.held)[pose]
+    return _Starts(q, aim, pose, marked, np.full(len(q), source))
+
+
+def _given(arm: _Arm, asked: _Asked, start: Array, pose: _Index) -> _Starts:
+    return _starts(arm, asked, start[pose], pose, np.ones(len(pose), dtype=bool), -1)
+
+
+def _meeting(arm: _Arm, asked: _Asked, starts: _Starts, ends: _Ends) -> list[list[_Found]]:
+    """For each pose the distinct rows that Newton steps lead to."""
+    out: list[list[_Found]] = [[] for _ in asked.T]
+    owner, q, loss = _rows_nearby(arm, starts, ends)
+    flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
+    flags = (starts.marked[owner] & (loss < continuum)) | (loss < flat)
+    for i, row, flag in zip(starts.pose[owner].tolist(), q.tolist(), flags.tolist()):
+        _add(arm, asked.T[i], [(tuple(row), flag)], out[i])
+    return out
+
+
+def _add(arm: _Arm, T: Array, rows: list[_Found], kept: list[_Found]) -> None:
+    """Adds those of the rows that differ from all that are there."""
+    for row, singular in rows:
+        if _is_new(arm, row, kept) and not (singular and _repeats(arm, T, row, kept)):
+            kept.append((row, singular))
 
 
 # The arguments `free` and `seed` as joint values.
@@ -765,186 +1330,6 @@ def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...], name: str =
         raise ValueError(f"{name} {values.tolist()} has values that are not finite")
     far = np.array(arm.turning) & (np.abs(values) > _FARTHEST)
     return np.where(far, np.fmod(values, 2.0 * pi), values) if far.any() else values
-
-
-# Solutions near a singularity, where Newton's method stalls.
-
-
-_Index = NDArray[np.intp]
-
-_ALONG = 1e-4  # rad or m
-_CLOSE = 1e-9
-_FAR = 0.3
-_STEPS = 8
-
-
-@dataclass(frozen=True)
-class _Starts:
-    """Where Newton steps start: rows `q` (k, dof) for poses `T` (k, 4, 4), which rows are of the same pose,
-    `pose` (k,), which the closed form `marked` (k,) as of a continuum, and the `source` (k,) of each:
-    given (-1), the closed form for the pose (0), or for one beside it (1)."""
-
-    q: Array
-    T: Array
-    pose: _Index
-    marked: _Flags
-    source: NDArray[np.int64]
-
-
-def _rows_nearby(arm: _Arm, starts: _Starts) -> tuple[_Index, Array, _Flags]:
-    """Which start (m,) each solution (m, dof) comes from that steps lead to, those that are sure first; and
-    which starts (k,) are so near a singularity that other solutions may start from none of them."""
-    T, own = starts.T, starts.source >= 0
-    q, error, _, slope = _refine(arm.chain, arm.task, arm.moving, starts.q, T, arm.policy, arm.angle)
-    arrived = error < arm.policy.arrived
-    broken = starts.marked & (arm.rounded | ~arrived) & own
-    loss = _least_singular(slope)
-    near = own & ~starts.marked & (loss < arm.policy.fold_reach)
-    close = (near | broken) & (loss < arm.policy.beside_reach)
-    settled = ~broken & np.where(near, error < arm.policy.converged, arrived)
-    fresh = _fresh(arm, q, starts, near, near & ~settled)
-    settled &= fresh
-    near &= fresh
-    owner, trial = np.flatnonzero(near), q[near]
-    if broken.any():
-        around, worst = _walk(arm, starts.q[broken], T[broken])
-        isolated = np.flatnonzero(broken)[worst >= arm.policy.arrived]
-        around = around[:, worst >= arm.policy.arrived]
-        owner = np.concatenate([owner, np.repeat(isolated, len(around))])
-        trial = np.concatenate([trial, around.transpose(1, 0, 2).reshape(-1, q.shape[1])])
-    first, own_rows = np.flatnonzero(settled), q[settled]
-    if not len(owner) and not (broken & arrived).any():
-        return first, own_rows, close
-    owner, side = np.repeat(owner, 2), np.tile([1.0, -1.0], len(owner))
-    pairs = _approach(arm, np.repeat(trial, 2, axis=0), T[owner], side)
-    pairs, left = _refine(arm.chain, arm.task, arm.moving, pairs, T[owner], arm.policy, arm.angle)[
-        :2
-    ]
-    exact = left < arm.policy.exact
-    for i, row, e in zip(owner[~exact].tolist(), pairs[~exact], left[~exact].tolist()):
-        if e < error[i]:
-            q[i], error[i] = row, e
-    alone = np.flatnonzero((near | broken) & (error < arm.policy.arrived))
-    alone = np.setdiff1d(alone, [*owner[exact], *first])
-    source, rows = np.concatenate([owner[exact], alone]), np.concatenate([pairs[exact], q[alone]])
-    order = np.argsort(source, kind="stable")
-    rows = np.concatenate([own_rows, rows[order]])
-    return np.concatenate([first, source[order]]), rows, close
-
-
-def _fresh(arm: _Arm, q: Array, starts: _Starts, near: _Flags, stalled: _Flags) -> _Flags:
-    """Which rows (k, dof) are not of a pose beside, and led to the same as an earlier one of their pose or
-    stalled by one that is near another solution."""
-    beside = starts.source > 0
-    fresh = ~beside
-    for pose in np.unique(starts.pose[beside]).tolist():
-        some = np.flatnonzero((starts.pose == pose) & (starts.source >= 0))
-        rows = q[some]
-        size = np.where(arm.chain.revolute, 1.0, np.maximum(np.abs(rows), 1.0))
-        same = np.abs(_gap(arm, rows[:, None], rows)) <= arm.policy.coincident * size
-        fresh[some] |= ~np.tril(same.all(axis=2), -1).any(axis=1)
-        for k in some[(fresh & beside & stalled)[some]].tolist():
-            others = some[(fresh & near)[some] & (some < k)]
-            fresh[k] = not (np.abs(_gap(arm, q[others], q[k])).max(axis=1) < arm.policy.alike).any()
-    return fresh
-
-
-def _gap(arm: _Arm, a: Array, b: Array) -> Array:
-    """The changes of the joints from a (..., dof) to b (..., dof)."""
-    gap = b - a
-    return np.where(arm.chain.revolute, np.remainder(gap + pi, 2.0 * pi) - pi, gap)
-
-
-def _repeats(arm: _Arm, T: list[list[float]], row: Row, kept: Sequence[_Found]) -> bool:
-    """Whether nothing tells a singular row from one kept nearby: the pose is theirs between them too."""
-    for other, singular in kept:
-        gap = _gap(arm, np.array(row), np.array(other))
-        if singular and np.abs(gap).max() < arm.policy.alike:
-            middle = _forward(arm.chain, np.array(row) + 0.5 * gap)
-            if np.abs(arm.task.error(middle[None], np.array(T)[None])).max() < arm.policy.converged:
-                return True
-    return False
-
-
-def _approach(arm: _Arm, q: Array, T: Array, side: Array) -> Array:
-    """From q (k, dof) towards the solution on one `side` (k,), 1 or -1, of the place where two may meet, or
-    to where they nearly do; T (k, 4, 4)."""
-    q, still, going = q.copy(), _generic(arm, len(q)), np.arange(len(q))
-    for _ in range(_STEPS):
-        q[going], still[going], x, _ = _step(arm, q[going], T[going], side[going], still[going])
-        going = going[np.abs(x) > _CLOSE]
-        if not len(going):
-            break
-    return q
-
-
-def _walk(arm: _Arm, q: Array, T: Array) -> tuple[Array, Array]:
-    """Configurations (tries, k, dof) from q (k, dof) on, where the pose hardly moves, the fastest
-    joint by `policy.try_step` from one to the next, and the largest errors (k,) there."""
-    nowhere, moving = np.zeros(len(q)), list(arm.moving)
-    q, still, _, _ = _step(arm, q, T, nowhere, _generic(arm, len(q)))
-    worst, out = np.zeros(len(q)), []
-    for _ in range(arm.policy.tries):
-        for _ in range(2):
-            q, still, _, error = _step(arm, q, T, nowhere, still)
-        worst = np.maximum(worst, error)
-        out.append(q)
-        q = q.copy()
-        q[:, moving] += arm.policy.try_step * still / np.abs(still).max(axis=1)[:, None]
-    return np.array(out), worst
-
-
-def _generic(arm: _Arm, count: int) -> Array:
-    return np.tile(1.0 + 0.1 * np.arange(len(arm.moving)), (count, 1))
-
-
-def _step(
-    arm: _Arm, q: Array, T: Array, side: Array, still: Array
-) -> tuple[Array, Array, Array, Array]:
-    """q (k, dof) after a step, the unit directions (k, n) in which the pose moves least, in the sense of
-    `still`, how far the step goes along them (k,), not at all on side 0, and the errors before (k,)."""
-    columns = list(arm.moving)
-    error, slope = _errors_and_slopes(arm.chain, arm.task, columns, q, T, arm.angle)
-    still = _still(slope, still, arm.policy.least_damping)
-    flow = np.einsum("kej,kj->ke", slope, still)
-    there = q.copy()
-    there[:, columns] += _ALONG * still
-    _, beyond = _errors_and_slopes(arm.chain, arm.task, columns, there, T, arm.angle)
-    bend = np.einsum("kej,kj->ke", beyond - slope, still) / _ALONG
-    V = slope - flow[:, :, None] * still[:, None, :]
-    Vt = V.transpose(0, 2, 1)
-    A = (
-        Vt @ V
-        + still[:, :, None] * still[:, None, :]
-        + arm.policy.least_damping * np.eye(len(columns))
-    )
-    z = np.stack([error, bend, flow], axis=2)
-    across = np.linalg.solve(A, Vt @ z)
-    rest, bend, flow = np.moveaxis(z - V @ across, 2, 0)
-    x = np.where(side == 0.0, 0.0, _root(side, rest, bend, flow))
-    q = q.copy()
-    q[:, columns] += np.clip(across[:, :, 0], -_FAR, _FAR) + x[:, None] * still
-    return q, still, x, np.abs(error).max(axis=1)
-
-
-def _still(slope: Array, still: Array, damping: float) -> Array:
-    """By inverse iteration, from what it was, which keeps its sense."""
-    inverse = np.linalg.inv(slope.transpose(0, 2, 1) @ slope + damping * np.eye(slope.shape[2]))
-    for _ in range(4):
-        still = (inverse @ still[:, :, None])[:, :, 0]
-        still = still / np.linalg.norm(still, axis=1)[:, None]
-    return still
-
-
-def _root(side: Array, rest: Array, bend: Array, flow: Array) -> Array:
-    """The root (k,) of s x + k x^2 / 2 = e on this side of the least error, along the direction that the
-    others leave."""
-    k, s, e = (np.einsum("ke,ke->k", bend, v) for v in (bend, flow, rest))
-    w = np.sqrt(np.maximum(s * s + 2.0 * k * e, 0.0))
-    p = s + np.copysign(w, s)
-    with np.errstate(all="ignore"):
-        x = np.where(((s > 0.0) == (side > 0.0)) & (p != 0.0), 2.0 * e / p, -p / k)
-    return np.asarray(np.clip(np.nan_to_num(np.where(k > 0.0, x, 0.0)), -_FAR, _FAR))
 
 
 # Poses as people have them, as homogeneous matrices.
@@ -1113,6 +1498,159 @@ def _pose_fault(task: _Task, T: list[list[float]], policy: _Policy) -> str:
     return f"{text}: orthonormalize=True takes the nearest one"
 
 
+# What a solve gives back.
+
+
+class Status(str, Enum):
+    """How a solve ended; equal to its name as text, of which `solve_batch` gives arrays."""
+
+    OK = "OK"
+    UNREACHABLE = "UNREACHABLE"
+    LIMITS = "LIMITS"
+    INVALID = "INVALID"
+    SINGULAR = "SINGULAR"  # of a path alone
+    __str__ = str.__str__  # NumPy compares by it
+
+
+@dataclass(frozen=True)
+class Solutions:
+    """Solutions of one pose: `q` (k, DOF), `status`, and `singular` (k,): rows of a continuum; `reason`
+    says why a pose is INVALID, or which values of held joints led to no row. As a sequence: its rows.
+    `projected` (k, 2), where it was asked for: m and rad by which rows miss the pose."""
+
+    q: Array
+    status: Status
+    singular: _Flags
+    reason: str = ""
+    names: Callable[[Array], tuple[str, ...]] | None = field(
+        default=None, repr=False, compare=False
+    )
+    projected: Array | None = None
+
+    @property
+    def branch(self) -> tuple[str, ...]:
+        """What distinguishes each row: sides of shoulder, elbow and wrist where the arm has those."""
+        return () if self.names is None else self.names(self.q)
+
+    @property
+    def off(self) -> Array:
+        """How far each row's pose is from the one asked for, (k, 2): m, rad; zeros without `project`."""
+        return np.zeros((len(self.q), 2)) if self.projected is None else self.projected
+
+    def __len__(self) -> int:
+        return len(self.q)
+
+    def __iter__(self) -> Iterator[Array]:
+        return iter(self.q)
+
+    def __getitem__(self, index: Any) -> Array:
+        rows: Array = self.q[index]
+        return rows
+
+
+def _no_solutions(dof: int, status: Status, reason: str = "") -> Solutions:
+    """What a pose without rows is answered with."""
+    return Solutions(np.empty((0, dof)), status, np.empty(0, dtype=bool), reason)
+
+
+# All solutions of many poses at once, in arrays.
+
+
+_CHUNK = 16384  # poses solved at a time,
+_DOUBTS = 128  # and those that leave doubts
+_Batch = tuple[Array, NDArray[np.int64], NDArray[np.str_]]
+
+
+def _branch_axis(level: int, depth: int) -> Array:
+    """+1 and -1 along the axis of a level."""
+    shape = [1] * (depth + 1)
+    shape[level] = 2
+    return np.array([1.0, -1.0]).reshape(shape)
+
+
+def _solve_poses(
+    arm: _Arm,
+    poses: Any,
+    free: ArrayLike | Mapping[str, float] | None,
+    seed: ArrayLike | None,
+    limits: bool,
+    orthonormalize: bool = False,
+) -> _Batch:
+    """Rows (N, most, dof) padded with NaN, counts (N,) and names of Status (N,) for poses (N, 4, 4)."""
+    T = _poses_in_line(poses, arm.task.alone)
+    count, dof = len(T), len(arm.lower)
+    near: Array | None = None
+    if seed is not None:
+        near = np.broadcast_to(_seed_rows(arm, seed, (dof,), (count, dof)), (count, dof))
+    held = _held_rows(arm, free, near, count)
+    q = np.full((count, arm.most, dof), np.nan)
+    number = np.zeros(count, dtype=np.int64)
+    status = np.full(count, Status.INVALID.value, dtype="<U11")
+    if orthonormalize:
+        T = _nearest_poses(arm.task, T, arm.policy)
+    T, good = arm.task.read_batch(T, arm.policy)
+    usable, size = np.flatnonzero(good), _CHUNK
+    for start in range(0, len(usable), size):
+        part = usable[start : start + size]
+        seeds = None if near is None else near[part]
+        q[part], number[part], status[part] = _solve_chunk(arm, T[part], held[part], seeds, limits)
+    return q, number, status
+
+
+def _solve_chunk(arm: _Arm, T: Array, held: Array, near: Array | None, limits: bool) -> _Batch:
+    q, valid, doubt = _rows_and_doubts(arm, T, held, near)
+    real: _Flags = np.asarray(valid.any(axis=1))
+    q, inside = _place_rows_batch(arm, q, near, limits)
+    valid &= inside
+    distance: Array | _Flags = ~valid
+    if near is not None:
+        with np.errstate(over="ignore"):
+            far = float(np.finfo(float).max)
+            distance = np.minimum(((q - near[:, None, :]) ** 2).sum(axis=2), far)
+            distance = np.where(valid, distance, inf)
+    order = np.argsort(distance, axis=1, kind="stable")[:, : arm.most, None]
+    number = np.minimum(valid.sum(axis=1), arm.most)
+    some = np.take_along_axis(q, order, axis=1)
+    q = np.full((len(T), arm.most, q.shape[2]), np.nan)
+    q[:, : some.shape[1]] = some
+    q[np.arange(arm.most) >= number[:, None]] = np.nan
+    asked = _Asked(T, near, held)
+    for i, rows, some_real in _doubtful(arm, asked, limits, doubt, real, number):
+        found = _in_order(arm, rows, asked.seed(i))
+        number[i], real[i], q[i] = len(found), some_real, np.nan
+        q[i, : len(found)] = np.array([row for row, _ in found]).reshape(-1, q.shape[2]) + 0.0
+    status = np.where(number > 0, "OK", np.where(real, "LIMITS", "UNREACHABLE"))
+    return q, number, status
+
+
+def _doubtful(
+    arm: _Arm, asked: _Asked, limits: bool, doubt: _Flags, real: _Flags, number: Array
+) -> Iterator[tuple[int, list[_Found], bool]]:
+    """Poses, their rows and whether they have any before limits: of those that leave a doubt, and of others
+    without a row what their seeds lead to."""
+    for some in _parts(doubt):
+        for i, answer in zip(some.tolist(), _placed_rows(arm, asked.at(some), limits)):
+            yield i, answer.rows, answer.real
+    for some in _parts(~doubt & (number == 0)) if asked.near is not None else ():
+        for i, rows in zip(some.tolist(), _seeded_rows(arm, asked.at(some))):
+            yield i, _place_rows(arm, rows, asked.seed(i), limits), bool(real[i])
+
+
+def _parts(poses: _Flags) -> list[_Index]:
+    index = np.flatnonzero(poses)
+    return [index[i : i + _DOUBTS] for i in range(0, len(index), _DOUBTS)]
+
+
+def _rows_and_doubts(
+    arm: _Arm, T: Array, held: Array, near: Array | None
+) -> tuple[Array, _Flags, _Flags]:
+    """Rows (N, M, dof) on no turn in particular; which are distinct solutions, and which poses (N,) are
+    near a singularity, or leave a joint free."""
+    if arm.together is None:
+        return _careful_rows(arm, T, held, near)
+    return _closed_form_rows_certain_rows(arm, arm.together, T, held, near)
+
+
 # The nearest pose that the arm can take, of one that it cannot.
 
 
@@ -1271,161 +1809,7 @@ def _branch_numbers(arm: _Arm, q: Array) -> list[int]:
     return nearest
 
 
-# Rows on the whole turns that limits and seed ask for, and without repetitions: for floats and arrays.
-
-
-_TURN = 2.0 * pi
-
-
-def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
-    """Whether the row differs from all kept ones, whole turns aside; long slides count relative to their
-    length."""
-    near, revolute = arm.policy.coincident, arm.chain.revolute[::-1]
-    for other, _ in kept:
-        for a, b, turns in zip(
-            reversed(row), reversed(other), revolute
-        ):  # the last ones differ most
-            gap = abs(a - b)
-            if gap <= near:
-                continue
-            if abs((gap + pi) % _TURN - pi) > near if turns else gap > near * abs(a):
-                break
-        else:
-            return False
-    return True
-
-
-def _distinct(arm: _Arm, q: Array, valid: _Flags) -> _Flags:
-    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside; long
-    slides count relative to their length."""
-    near = arm.policy.coincident
-    later, earlier = np.tril_indices(q.shape[1], -1)
-    same = valid.T[later] & valid.T[earlier]
-    for j in reversed(range(q.shape[2])):  # the last joints differ between most rows
-        value = q[:, :, j].T
-        gap = np.abs(value[later] - value[earlier])
-        bound = near if arm.chain.revolute[j] else near * np.abs(value[later])
-        far = np.abs(gap - _TURN) if arm.chain.revolute[j] else gap
-        same &= (gap <= near) | (far <= bound)
-        if not same.any():
-            return valid
-    valid = valid.copy()
-    for i, k, equal in zip(later.tolist(), earlier.tolist(), same):
-        valid[:, i] &= ~(equal & valid[:, k])
-    return valid
-
-
-def _place_rows(arm: _Arm, rows: list[_Found], near: Row | None, limits: bool) -> list[_Found]:
-    """The rows on the right turns; those that no turn brings inside the limits are dropped."""
-    placed = [(_place(arm, row, near, limits), flag) for row, flag in rows]
-    return [(row, flag) for row, flag in placed if row is not None]
-
-
-def _place(arm: _Arm, row: Row, near: Row | None, limits: bool) -> Row | None:
-    out = []
-    for j, (q, turning, low, high) in enumerate(zip(row, arm.turning, arm.lower, arm.upper)):
-        shift = 0.0
-        if turning:
-            if q <= -pi:
-                q += _TURN
-            elif q > pi:
-                q -= _TURN
-            if near is not None:
-                shift = _TURN * round((near[j] - q) / _TURN)
-        if limits and not low <= q + shift <= high:
-            least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
-            if turning and q + shift < least:
-                shift = _TURN * ceil((least - q) / _TURN)
-            if turning and q + shift > most:
-                shift = _TURN * floor((most - q) / _TURN)
-            if not least <= q + shift <= most:
-                return None
-            out.append(min(max(q + shift, low), high))
-        else:
-            out.append(q + shift)
-    return tuple(out)
-
-
-def _place_rows_batch(arm: _Arm, q: Array, near: Array | None, limits: bool) -> tuple[Array, _Flags]:
-    """Rows (N, M, dof) on the right turns, in place, and which of them lie inside the limits."""
-    inside = np.ones(q.shape[:2], dtype=bool)
-    for j, (turning, low, high) in enumerate(zip(arm.turning, arm.lower, arm.upper)):
-        value = q[..., j]
-        least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
-        if turning:
-            value = np.where(value <= -pi, value + _TURN, value)
-            value = np.where(value > pi, value - _TURN, value)
-            turns: Array = np.zeros(1)
-            if near is not None:
-                turns = np.round((near[:, None, j] - value) / _TURN)
-            if limits and least > -inf:
-                turns = np.maximum(turns, np.ceil((least - value) / _TURN))
-            if limits and most < inf:
-                turns = np.minimum(turns, np.floor((most - value) / _TURN))
-            value = value + _TURN * turns
-        if limits:
-            inside &= (value >= least) & (value <= most)
-            value = np.minimum(np.maximum(value, low), high)
-        q[..., j] = value
-    return q, inside
-
-
-# What a solve gives back.
-
-
-class Status(str, Enum):
-    """How a solve ended; equal to its name as text, of which `solve_batch` gives arrays."""
-
-    OK = "OK"
-    UNREACHABLE = "UNREACHABLE"
-    LIMITS = "LIMITS"
-    INVALID = "INVALID"
-    SINGULAR = "SINGULAR"  # of a path alone
-    __str__ = str.__str__  # NumPy compares by it
-
-
-@dataclass(frozen=True)
-class Solutions:
-    """Solutions of one pose: `q` (k, DOF), `status`, and `singular` (k,): rows of a continuum; `reason`
-    says why a pose is INVALID, or which values of held joints led to no row. As a sequence: its rows.
-    `projected` (k, 2), where it was asked for: m and rad by which rows miss the pose."""
-
-    q: Array
-    status: Status
-    singular: _Flags
-    reason: str = ""
-    names: Callable[[Array], tuple[str, ...]] | None = field(
-        default=None, repr=False, compare=False
-    )
-    projected: Array | None = None
-
-    @property
-    def branch(self) -> tuple[str, ...]:
-        """What distinguishes each row: sides of shoulder, elbow and wrist where the arm has those."""
-        return () if self.names is None else self.names(self.q)
-
-    @property
-    def off(self) -> Array:
-        """How far each row's pose is from the one asked for, (k, 2): m, rad; zeros without `project`."""
-        return np.zeros((len(self.q), 2)) if self.projected is None else self.projected
-
-    def __len__(self) -> int:
-        return len(self.q)
-
-    def __iter__(self) -> Iterator[Array]:
-        return iter(self.q)
-
-    def __getitem__(self, index: Any) -> Array:
-        rows: Array = self.q[index]
-        return rows
-
-
-def _no_solutions(dof: int, status: Status, reason: str = "") -> Solutions:
-    """What a pose without rows is answered with."""
-    return Solutions(np.empty((0, dof)), status, np.empty(0, dtype=bool), reason)
-
-
-# All solutions of one pose, the closed form's inner loop on floats.
+# All solutions of one pose.
 
 
 def _solve_pose(
@@ -1445,19 +1829,17 @@ def _solve_pose(
     if orthonormalize:
         lines = _nearest_pose(arm.task, lines, arm.policy)
     T = arm.task.read(lines, arm.policy)
-    found, real = ([], False) if T is None else _fitting(arm, T, near, held, limits)
-    if project and T is not None and not found:
+    if T is None:
+        reason = _pose_fault(arm.task, lines, arm.policy)
+        return _no_solutions(len(arm.lower), Status.INVALID, reason)
+    answer = _fitting(arm, T, near, held, limits)
+    found = answer.rows
+    if project and not found:
         found = _projected(arm, T, near, held, limits)
     if not found:
-        if T is None:
-            reason = _pose_fault(arm.task, lines, arm.policy)
-            return _no_solutions(len(arm.lower), Status.INVALID, reason)
-        status = Status.LIMITS if real else Status.UNREACHABLE
-        return _no_solutions(len(arm.lower), status, _held_reason(arm, held, real))
-    if near is not None:
-        origin = near
-        found.sort(key=lambda item: sum((a - b) * (a - b) for a, b in zip(item[0], origin)))
-    found = found[: arm.most]
+        status = Status.LIMITS if answer.real else Status.UNREACHABLE
+        return _no_solutions(len(arm.lower), status, _held_reason(arm, held, answer.real))
+    found = _in_order(arm, found, near)
     q = np.array([row for row, _ in found]) + 0.0
     flags = np.array([flag for _, flag in found], dtype=bool)
     off = _off_by(arm.task, _forward(arm.chain, q), np.array(T)) if project else None
@@ -1481,337 +1863,58 @@ def _projected(
     arm: _Arm, T: list[list[float]], near: Row | None, held: Row, limits: bool
 ) -> list[_Found]:
     """Solutions of the nearest pose that the arm can take."""
-    row = _nearest_row(arm, np.array(T), _start(arm, near, held, 0.0), limits)
+    start = _asked(T, near, held).starts(arm)[0]
+    row = _nearest_row(arm, np.array(T), tuple(start.tolist()), limits)
     pose: list[list[float]] = _forward(arm.chain, row).tolist()
-    held = tuple(_held_of(arm, np.array(row)).tolist())
-    found, _ = _fitting(arm, pose, near, held, limits)
+    found = _fitting(arm, pose, near, tuple(_held_of(arm, np.array(row)).tolist()), limits).rows
     if len(found) < arm.most and _is_new(arm, row, found):
         found += _place_rows(arm, [(row, False)], near, limits)
     return found
 
 
-class _Rows(NamedTuple):
-    """Distinct solutions, whether the pose left a joint free, and the closed form led anywhere then."""
-
-    kept: list[_Found]
-    free: bool
-    led: bool
+def _asked(T: list[list[float]], near: Row | None, held: Row) -> _Asked:
+    return _Asked(np.array([T]), None if near is None else np.array([near]), np.array([held]))
 
 
-def _fitting(
-    arm: _Arm, T: list[list[float]], near: Row | None, held: Row, limits: bool
-) -> tuple[list[_Found], bool]:
-    """Solutions on the right turns, and whether there were any before limits."""
-    out: list[_Found] = []
-    real = False
-    for tries in (range(1), range(1, arm.policy.tries)):
-        starts = [_start(arm, near, held, n * arm.policy.try_step) for n in tries]
-        for start, rows in zip(starts, _rows(arm, T, starts, held)):
-            if near is not None and not rows.free and any(flag for _, flag in rows.kept):
-                _add(arm, T, _from_seed(arm, T, start, held), rows.kept)
-            real = real or bool(rows.kept)
-            placed = _place_rows(arm, rows.kept, near, limits)
-            if out:
-                _add(arm, T, placed, out)
-            else:
-                out = placed
-            if not out and near is not None:
-                out = _place_rows(arm, _from_seed(arm, T, start, held), near, limits)
-            if not rows.free:
-                return out, real
-            if out and (rows.led if arm.rounded else any(flag for _, flag in out)):
-                return out, real
-    return out, real
-
-
-def _from_seed(arm: _Arm, T: list[list[float]], start: Row, held: Row) -> list[_Found]:
-    """What Newton steps from given values lead to."""
-    return [row for _, row in _refined(arm, [(start, True)], T, held, [-1])[0]]
-
-
-def _add(arm: _Arm, T: list[list[float]], rows: list[_Found], kept: list[_Found]) -> None:
-    """Adds those of the rows that differ from all that are there."""
-    for row, singular in rows:
-        if _is_new(arm, row, kept) and not (singular and _repeats(arm, T, row, kept)):
-            kept.append((row, singular))
-
-
-def _start(arm: _Arm, near: Row | None, held: Row, turn: float) -> Row:
-    """Values for joints that the pose leaves free, those of revolute ones turned; held ones as they are."""
-    q = list(near) if near is not None else [0.0] * len(arm.lower)
-    if turn:
-        q = [x + turn if revolute else x for x, revolute in zip(q, arm.chain.revolute)]
-    for j, value in zip(arm.free, held):
-        q[j] = value
-    return tuple(q)
-
-
-def _rows(arm: _Arm, T: list[list[float]], starts: list[Row], held: Row) -> list[_Rows]:
-    """For each start, the solutions (radians between -pi and pi)."""
-    kept: list[list[_Found]] = [[] for _ in starts]
-    fine: list[tuple[int, _Found]] = []
-    given: list[tuple[int, _Found]] = []
-    rough: list[tuple[int, _Found]] = []
-    free, led = [], []
-    for i, q0 in enumerate(starts):
-        answers, hit = arm.branches(T, q0, held)
-        if arm.together and len(starts) == 1 and not hit:
-            certain = _pose_solving_certain_rows(arm, arm.together, answers, T, held)
-            if certain is not None:
-                return [_Rows(certain, False, False)]
-        free.append(hit)
-        led.append(hit and any(flag for _, flag, _ in answers))
-        if hit:
-            given.append((i, (q0, True)))
-        for row, flag, bent in answers:
-            (rough if bent else fine).append((i, (row, flag)))
-    stepped = given + rough
-    own = [row for _, row in stepped]
-    source = [-1] * len(given) + [0] * len(rough)
-    beside: list[_Found] = []
-    looks = len(starts) == 1 and len(arm.beside) > 0
-    if looks and (free[0] or arm.policy.beside_reach >= arm.policy.anywhere):
-        beside = _rows_beside(arm, T, starts[0], held)
-    steps, close = _refined(arm, own + beside, T, held, source + [1] * len(beside))
-    if close and looks and not beside:
-        beside = _rows_beside(arm, T, starts[0], held)
-        steps, _ = _refined(arm, own + beside, T, held, source + [1] * len(beside))
-    stepped += [(0, row) for row in beside]
-    for i, (row, singular) in [(stepped[k][0], found) for k, found in steps] + fine:
-        if _is_new(arm, row, kept[i]) and not (singular and _repeats(arm, T, row, kept[i])):
-            kept[i].append((row, singular))
-    return [_Rows(*item) for item in zip(kept, free, led)]
-
-
-def _rows_beside(arm: _Arm, T: list[list[float]], start: Row, held: Row) -> list[_Found]:
-    """The closed form's rows of poses beside."""
-    poses: list[list[list[float]]] = (np.array(T) @ arm.beside).tolist()
-    return [(row, False) for pose in poses for row, _, _ in arm.branches(pose, start, held)[0]]
-
-
-def _pose_solving_certain_rows(
-    arm: _Arm, together: _Together, answers: list[_Candidate], T: list[list[float]], held: Row
-) -> list[_Found] | None:
-    """The rows refined all at once; None where that leaves a doubt."""
-    if not answers or any(flag for _, flag, _ in answers):
-        anywhere = arm.policy.beside_reach >= arm.policy.anywhere
-        return None if answers or anywhere else []
-    start = np.array([row for row, _, _ in answers])
-    q, arrived, missed = together(arm, start, _aim(arm, T, held))
-    if not (arrived | missed).all():
-        return None
-    kept: list[_Found] = []
-    for row in q[arrived].tolist():
-        if not _is_new(arm, row, kept):  # another may lie there
-            return None
-        kept.append((tuple(row), False))
-    return kept
-
-
-def _aim(arm: _Arm, T: list[list[float]], held: Row) -> Array:
-    """The pose and what is held: (1, ...)."""
-    return _aims(arm, np.array([T]), np.array([held]))
-
-
-def _refined(
-    arm: _Arm, rows: list[_Found], T: list[list[float]], held: Row, source: list[int]
-) -> tuple[list[tuple[int, _Found]], bool]:
-    """What Newton steps from the rows lead to, with the row's number: one solution, those that meet near a
-    singularity, or none; and whether others may start from none. source (k,) as in `_Starts`."""
-    if not rows:
-        return [], False
-    target = np.repeat(_aim(arm, T, held), len(rows), axis=0)
-    start, marked = np.array([row for row, _ in rows]), np.array([flag for _, flag in rows])
-    starts = _Starts(start, target, np.zeros(len(rows), dtype=np.intp), marked, np.array(source))
-    owner, q, close = _rows_nearby(arm, starts)
-    loss = _row_rank_loss(arm, q)
-    flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
-    singular = (marked[owner] & (loss < continuum)) | (loss < flat)
-    found = zip(owner.tolist(), q.tolist(), singular.tolist())
-    return [(i, (tuple(row), flag)) for i, row, flag in found], bool(close.any())
-
-
-# All solutions of many poses at once, in arrays.
-
-
-_CHUNK = 16384  # poses solved at a time,
-_PART = 2048  # and closed forms: their arrays fit into a processor's cache
-_Batch = tuple[Array, NDArray[np.int64], NDArray[np.str_]]
-
-
-def _branch_axis(level: int, depth: int) -> Array:
-    """+1 and -1 along the axis of a level."""
-    shape = [1] * (depth + 1)
-    shape[level] = 2
-    return np.array([1.0, -1.0]).reshape(shape)
-
-
-def _solve_poses(
-    arm: _Arm,
-    poses: Any,
-    free: ArrayLike | Mapping[str, float] | None,
-    seed: ArrayLike | None,
-    limits: bool,
-    orthonormalize: bool = False,
-) -> _Batch:
-    """Rows (N, most, dof) padded with NaN, counts (N,) and names of Status (N,) for poses (N, 4, 4)."""
-    T = _poses_in_line(poses, arm.task.alone)
-    count, dof = len(T), len(arm.lower)
-    near: Array | None = None
-    if seed is not None:
-        near = np.broadcast_to(_seed_rows(arm, seed, (dof,), (count, dof)), (count, dof))
-    held = _held_rows(arm, free, near, count)
-    q = np.full((count, arm.most, dof), np.nan)
-    number = np.zeros(count, dtype=np.int64)
-    status = np.full(count, Status.INVALID.value, dtype="<U11")
-    if orthonormalize:
-        T = _nearest_poses(arm.task, T, arm.policy)
-    T, good = arm.task.read_batch(T, arm.policy)
-    usable, size = np.flatnonzero(good), _CHUNK
-    for start in range(0, len(usable), size):
-        part = usable[start : start + size]
-        seeds = None if near is None else near[part]
-        q[part], number[part], status[part] = _solve_chunk(arm, T[part], held[part], seeds, limits)
-    return q, number, status
-
-
-def _solve_chunk(arm: _Arm, T: Array, held: Array, near: Array | None, limits: bool) -> _Batch:
-    q, valid, alone = _rows_batch(arm, T, held, near)
-    real = valid.any(axis=1)
-    q, inside = _place_rows_batch(arm, q, near, limits)
-    valid &= inside
-    again = np.flatnonzero(alone | ((near is not None) & ~valid.any(axis=1)))
-    distance: Array | _Flags = ~valid
-    if near is not None:
-        with np.errstate(over="ignore"):
-            far = float(np.finfo(float).max)
-            distance = np.minimum(((q - near[:, None, :]) ** 2).sum(axis=2), far)
-            distance = np.where(valid, distance, inf)
-    order = np.argsort(distance, axis=1, kind="stable")[:, : arm.most, None]
-    number = np.minimum(valid.sum(axis=1), arm.most)
-    some = np.take_along_axis(q, order, axis=1)
-    q = np.full((len(T), arm.most, q.shape[2]), np.nan)
-    q[:, : some.shape[1]] = some
-    q[np.arange(arm.most) >= number[:, None]] = np.nan
-    status = np.where(number > 0, "OK", np.where(real, "LIMITS", "UNREACHABLE"))
-    for i in again:
-        seed = None if near is None else near[i]
-        one = _solve_pose(arm, T[i], held[i].tolist(), seed, limits)
-        number[i], status[i], q[i] = len(one), one.status.value, np.nan
-        q[i, : len(one)] = one.q
-    return q, number, status
-
-
-def _rows_batch(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, _Flags, _Flags]:
-    """Rows (N, M, dof) on no turn in particular; which are distinct solutions, and which poses (N,) are to
-    be solved alone: those with a continuum, and of arms that are not rounded those near a singularity."""
-    if arm.together is None:
-        q, valid, singular, steep = _careful_rows(arm, T, held, near)
-        return q, valid, singular.any(axis=1) | ~steep
-    q, valid, singular, doubt = _certain_rows(arm, arm.together, T, held, near)
-    alone: _Flags = np.asarray(singular.any(axis=1))
-    look = np.flatnonzero(doubt & ~alone)
-    if len(look):
-        more, real, flat = _nearby_rows(
-            arm, T[look], held[look], None if near is None else near[look]
-        )
-        alone[look] = flat
-        width = max(q.shape[1], more.shape[1])
-        q, valid = _widened(q, width), _widened(valid, width)
-        q[look], valid[look] = _widened(more, width), _widened(real, width)
-    return q, valid, alone
-
-
-def _widened(rows: Any, width: int) -> Any:
-    """Rows (N, M, ...) as (N, width, ...), the new ones 0."""
-    out = np.zeros((len(rows), width, *rows.shape[2:]), dtype=rows.dtype)
-    out[:, : rows.shape[1]] = rows
-    return out
-
-
-def _nearby_rows(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, _Flags, _Flags]:
-    """Distinct solutions (N, M, dof) that all rows of a rounded arm, and of poses beside, lead to, which
-    there are (N, M), and which poses (N,) have a singular one, or want those of poses beside."""
-    q, valid = _starts(arm, T, held, near)[:2]
-    anywhere = arm.policy.beside_reach >= arm.policy.anywhere
-    own = valid.shape[1] // (1 + len(arm.beside)) if anywhere else valid.shape[1]
-    pose, column = np.nonzero(valid)
-    marked, source = np.zeros(len(pose), dtype=bool), (column >= own).astype(int)
-    starts = _Starts(q[pose, column], _aims(arm, T, held)[pose], pose, marked, source)
-    owner, rows, close = _rows_nearby(arm, starts)
-    order = np.argsort(pose[owner], kind="stable")
-    of, rows = pose[owner][order], rows[order]
-    flat = np.zeros(len(T), dtype=bool)
-    if len(rows):
-        loss = _row_rank_loss(arm, rows)
-        flat[of[loss < arm.policy.rank_loss]] = True
-    if not anywhere:
-        flat[pose[close]] = True
-    place = np.arange(len(of)) - np.searchsorted(of, of)
-    q = np.zeros((len(T), int(place.max(initial=-1)) + 1, q.shape[2]))
-    valid = np.zeros(q.shape[:2], dtype=bool)
-    q[of, place], valid[of, place] = rows, True
-    return q, _distinct(arm, q, valid), flat
-
-
-def _closed_form(arm: _Arm, T: Array, start: Array, held: Array) -> tuple[Any, ...]:
-    """`arm.branches_batch`, a part of the poses at a time."""
-    with np.errstate(all="ignore"):
-        found: tuple[Any, ...] = _in_blocks(arm.branches_batch, _PART, T, start, held)
-    return found
+def _fitting(arm: _Arm, T: list[list[float]], near: Row | None, held: Row, limits: bool) -> _Answer:
+    """From the closed form on floats, where that leaves no doubt."""
+    kept = _certain_rows(arm, T, near, held)
+    if kept is None:
+        return _placed_rows(arm, _asked(T, near, held), limits)[0]
+    placed = _place_rows(arm, kept, near, limits)
+    if near is not None and not placed:
+        placed = _place_rows(arm, _seeded_rows(arm, _asked(T, near, held))[0], near, limits)
+    return _Answer(placed, bool(kept))
 
 
 def _certain_rows(
-    arm: _Arm, together: _Together, T: Array, held: Array, near: Array | None
-) -> tuple[Array, _Flags, _Flags, _Flags]:
-    """Rows (N, M, dof) of a rounded arm refined all at once, which of them are solutions, which of a
-    continuum, and for which poses (N,) that leaves a doubt."""
-    start = np.zeros((len(T), len(arm.lower))) if near is None else near
-    q, valid, singular, _ = _closed_form(arm, T, start, held)
-    q[:, :, list(arm.free)] = held[:, None, : len(arm.free)]
-    pose, row = np.nonzero(valid)
-    q[pose, row], arrived, missed = together(arm, q[pose, row], _aims(arm, T, held)[pose])
-    found, doubt = valid.copy(), np.zeros(len(T), dtype=bool)
-    found[pose, row] = arrived
-    doubt[pose[~(arrived | missed)]] = True
-    doubt |= (_distinct(arm, q, found) != found).any(axis=1)
-    doubt |= singular.any(axis=1) | ~found.any(axis=1)
-    return q, found, singular, doubt
-
-
-def _careful_rows(
-    arm: _Arm, T: Array, held: Array, near: Array | None
-) -> tuple[Array, _Flags, _Flags, _Flags]:
-    """Rows (N, M, dof) of which each is refined for as long as it takes, near folds with those of poses
-    beside; which are distinct solutions, which of a continuum, and which poses (N,) have no refined one
-    near a singularity."""
-    q, valid, singular, rough = _starts(arm, T, held, near)
-    steep = np.ones(len(T), dtype=bool)
-    pose, row = np.nonzero(rough & valid)
-    if len(pose):
-        aim, found = _aims(arm, T, held)[pose], q[pose, row]
-        done = _refine(arm.chain, arm.task, arm.moving, found, aim, arm.policy, arm.angle)
-        q[pose, row], valid[pose, row] = done[0], done[1] < arm.policy.arrived
-        steep[pose[~_steeper(done[3], arm.policy.fold_reach)]] = False
-    return q, _distinct(arm, q, valid), singular, steep
-
-
-def _starts(
-    arm: _Arm, T: Array, held: Array, near: Array | None
-) -> tuple[Array, _Flags, _Flags, _Flags]:
-    """The closed form's rows (N, M, dof) of poses, and of those beside where they always count; valid and
-    rough ones (N, M), and those of a continuum."""
-    start = np.zeros((len(T), len(arm.lower))) if near is None else near
-    anywhere = arm.policy.beside_reach >= arm.policy.anywhere
-    q, valid, singular, rough = _closed_form(arm, T, start, held)
-    if len(arm.beside) and anywhere:
-        more = [_closed_form(arm, T @ D, start, held) for D in arm.beside]
-        q, valid, rough = (
-            np.concatenate([first, *(part[k] for part in more)], axis=1)
-            for k, first in ((0, q), (1, valid), (3, rough))
-        )
-    q[:, :, list(arm.free)] = held[:, None, : len(arm.free)]
-    return q, valid, singular, rough
+    arm: _Arm, T: list[list[float]], near: Row | None, held: Row
+) -> list[_Found] | None:
+    """Distinct rows, of a rounded arm refined all at once; None where that leaves a doubt."""
+    if arm.branches is None:
+        return None
+    start = list(near) if near is not None else [0.0] * len(arm.lower)
+    for j, value in zip(arm.free, held):
+        start[j] = value
+    answers, hit = arm.branches(T, tuple(start), held)
+    if hit or (arm.together is None and any(rough for _, rough in answers)):
+        return None
+    rows: list[Row] = [row for row, _ in answers]
+    if arm.together is not None and not rows:
+        return None if arm.policy.beside_anywhere else []
+    if arm.together is not None:
+        aim = _aims(arm, np.array([T]), np.array([held]))
+        q, arrived, missed = (x.tolist() for x in arm.together(arm, np.array(rows), aim))
+        if not all(map(or_, arrived, missed)):
+            return None
+        rows = [tuple(row) for row, there in zip(q, arrived) if there]
+    kept: list[_Found] = []
+    for row in rows:
+        if _is_new(arm, row, kept):
+            kept.append((row, False))
+        elif arm.rounded:  # another may lie there
+            return None
+    return kept
 
 
 # Which rows are better than others.

@@ -51,11 +51,10 @@ def _scalar_row(module: SolverModule) -> str:
     program = module.program
     values = [expression(SCALAR, one.value) for one in program.outputs]
     row = ", ".join(values) + ("," if len(values) == 1 else "")
-    flag = " or ".join(program.singular) or "False"
     rough = "True"
-    if module.refine == "some" and module.plan is None:
+    if module.refine == "some":
         rough = " or ".join([*program.singular, *(f"{r} > _ROUGH" for r in program.residuals)])
-    return f"rows.append((({row}), {flag}, {rough or 'False'}))"
+    return f"rows.append((({row}), {rough or 'False'}))"
 
 
 def _loop(level: Level) -> str:
@@ -85,6 +84,8 @@ def batch_lines(module: SolverModule) -> list[str]:
                 lines.append(f"# {statement.text}")
             elif isinstance(statement, Let):
                 lines.append(f"{statement.name} = {expression(BATCH, statement.value)}")
+                if statement.name in program.singular:
+                    lines.append(f"singular = singular | valid & {statement.name}")
             else:
                 lines.append(f"valid = valid & {expression(BATCH, statement.condition, 9)}")
                 if statement.fold and len(module.held) == 1:
@@ -110,14 +111,16 @@ def _batch_inputs(module: SolverModule) -> list[str]:
     for angle in program.inputs_of(ArmAngle):
         lines.append(f"{angle.name} = held[:, {len(module.free)}].reshape(lane)")
     lines += [f"{let.name} = {expression(BATCH, let.value)}" for let in program.prelude]
-    return [*lines, "valid: _Flags = np.ones(lane, dtype=bool)"]
+    return [
+        *lines,
+        "valid: _Flags = np.ones(lane, dtype=bool)",
+        "singular: _Flags = np.zeros(lane, dtype=bool)",
+    ]
 
 
 def _batch_flags(module: SolverModule) -> list[str]:
     program = module.program
-    flag = " | ".join(program.singular)
-    lines = [f"singular: _Flags = {flag or 'np.zeros(1, dtype=bool)'}"]
     rough = "np.ones(1, dtype=bool)"
     if module.refine == "some" and module.plan is None:
-        rough = " | ".join([*program.singular, *(f"({r} > _ROUGH)" for r in program.residuals)])
-    return [*lines, f"rough: _Flags = {rough or 'np.zeros(1, dtype=bool)'}"]
+        rough = " | ".join(["singular", *(f"({r} > _ROUGH)" for r in program.residuals)])
+    return [f"rough: _Flags = {rough}"]

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.array_types import Array, Flags, Index
 from ikgen.runtime.python.hidden_angle import hidden_angles, loop_resultant, solved
 from ikgen.runtime.python.loop_equations import (
     XS,
@@ -68,7 +67,7 @@ def _longest(W: Array) -> tuple[Array, Array]:
     return (W[k, :, i] / length[:, None])[:, :, None], length
 
 
-def null_angles(M: Array, pose: NDArray[np.intp], t3: Array) -> tuple[NDArray[np.intp], Array]:
+def null_angles(M: Array, pose: Index, t3: Array) -> tuple[Index, Array]:
     """theta_4, theta_5 from the null vectors (cos h w, sin h w, cos 3h w, sin 3h w), with w = (1,
     c5, s5) and h half of theta_4, of M (k, 12, 12) at roots theta_3 (k,) of poses (k,), both in order:
     indices into k, pairs of angles (m, 2). A root with two solutions counts twice, and is taken once."""
@@ -87,9 +86,7 @@ def null_angles(M: Array, pose: NDArray[np.intp], t3: Array) -> tuple[NDArray[np
     return index, np.stack([t4, np.arctan2(w[:, 2], w[:, 1])], axis=-1)
 
 
-def middle_angles(
-    E: Array, left: Array, swap: int
-) -> tuple[NDArray[np.intp], Array, NDArray[np.intp], Flags]:
+def middle_angles(E: Array, left: Array, swap: int) -> tuple[Index, Array, Index, Flags]:
     """theta_3, theta_4, theta_5 (k, 3) from the equations E (N, 6, 15) and the invariants of their left.
 
     `swap` exchanges theta_4 and theta_5 in these on the way; the rest as `hidden_angles` has it."""
@@ -114,9 +111,7 @@ def turned(left: Array, t: Array) -> Array:
     return np.concatenate([w.real, w.imag, v[:, ZS], one[:, None]], axis=1)
 
 
-def complete_angles(
-    C: list[Array], left: Array, right: Array, pose: NDArray[np.intp], t: Array
-) -> Array:
+def complete_angles(C: list[Array], left: Array, right: Array, pose: Index, t: Array) -> Array:
     """The six loop angles (k, 6) from theta_3, theta_4, theta_5 in t (k, 3) for the poses with indices
     `pose` (k,): theta_1 and theta_2 linearly, theta_6 from the rotation left over."""
     v = turned(rows_of(left, pose), t)

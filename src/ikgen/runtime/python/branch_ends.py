@@ -7,11 +7,11 @@ from math import inf, isfinite
 
 import numpy as np
 
-from ikgen.runtime.python.array_types import Array
+from ikgen.runtime.python.array_types import Array, Index
 from ikgen.runtime.python.branch_tracks import Tracks
 from ikgen.runtime.python.held_joint import HeldJoint, Rows, rows_at
 from ikgen.runtime.python.limit_margins import outside
-from ikgen.runtime.python.row_links import Links, differences
+from ikgen.runtime.python.row_links import differences
 from ikgen.runtime.python.solved_arm import Arm
 
 __all__ = ["BranchEnd", "branch_end", "find_ends"]
@@ -45,7 +45,7 @@ class BranchEnd:
 def branch_end(
     joint: HeldJoint,
     tracks: Tracks,
-    before: Links,
+    before: Index,
     inside: tuple[int, int],
     beyond: tuple[int, int],
 ) -> BranchEnd:
@@ -71,7 +71,7 @@ def branch_end(
     return BranchEnd(a, b, rows.q[at, row], row, values, at_fold, one_sided, a)
 
 
-def _followed(tracks: Tracks, before: Links, at: int, row: int, to: int) -> tuple[int, int]:
+def _followed(tracks: Tracks, before: Index, at: int, row: int, to: int) -> tuple[int, int]:
     """The sample `to` beside `at`, and the row there that is the same branch's; -1 without one."""
     if row < 0 or not 0 <= to < len(tracks.rows.held):
         return to, -1

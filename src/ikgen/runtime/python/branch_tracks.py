@@ -11,10 +11,10 @@ from math import inf, pi
 
 import numpy as np
 
-from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.array_types import Array, Flags, Index
 from ikgen.runtime.python.held_joint import HeldJoint, Rows, merged_rows, rows_at
 from ikgen.runtime.python.limit_margins import bounded_joints, offsets, outside
-from ikgen.runtime.python.row_links import Links, differences, linked_rows, origins
+from ikgen.runtime.python.row_links import differences, linked_rows, origins
 from ikgen.runtime.python.solved_arm import Arm
 
 __all__ = ["LEAST", "Tracks", "tracked"]
@@ -34,7 +34,7 @@ class Tracks:
     real and inside, `inside` (n, m)."""
 
     rows: Rows
-    links: Links
+    links: Index
     off: Array
     inside: Flags
 
@@ -55,7 +55,7 @@ def tracked(joint: HeldJoint, T: Array, low: float, high: float, limits: bool) -
         rows = merged_rows(rows, rows_at(joint, T, middle))
 
 
-def _doubtful(joint: HeldJoint, rows: Rows, following: Links, limits: bool) -> Flags:
+def _doubtful(joint: HeldJoint, rows: Rows, following: Index, limits: bool) -> Flags:
     """Cells (n - 1,) that have to be halved."""
     arm = joint.arm
     width = np.diff(rows.held)
@@ -72,7 +72,7 @@ def _doubtful(joint: HeldJoint, rows: Rows, following: Links, limits: bool) -> F
     return np.asarray(out | (_hidden_folds(rows, following, linked & dead).any(axis=1) & narrow))
 
 
-def _row_bends(arm: Arm, rows: Rows, following: Links) -> tuple[Array, Array, Array]:
+def _row_bends(arm: Arm, rows: Rows, following: Index) -> tuple[Array, Array, Array]:
     """Per cell and row at its lower end: joint values, their change over the cell, and a bound of how
     far they are off the straight line between; (n - 1, m, dof) each."""
     cells, m = following.shape
@@ -122,7 +122,7 @@ def _limit_crossings(
 
 
 def _ending(
-    arm: Arm, rows: Rows, following: Links, change: Array, limits: bool, wide: Flags, narrow: Flags
+    arm: Arm, rows: Rows, following: Index, change: Array, limits: bool, wide: Flags, narrow: Flags
 ) -> Flags:
     """Cells to be halved for rows of one end that do not go on to the other: the narrower ones where
     rows of both ends don't, or where such a row may cross a limit on its way to the fold."""
@@ -151,7 +151,7 @@ def _reach(own: Array, beside: Array, where: int) -> Array:
     return np.concatenate([share, [1.0]] if where else [[1.0], share])
 
 
-def _hidden_folds(rows: Rows, following: Links, dead: Flags) -> Flags:
+def _hidden_folds(rows: Rows, following: Index, dead: Flags) -> Flags:
     """Per cell and row: two rows may come and go between its ends, or go and come."""
     f, width = rows.folds, np.diff(rows.held)[:, None, None]
     if not f.shape[2]:

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ikgen.runtime.python.array_types import Array
+from ikgen.runtime.python.array_types import Array, Index
 from ikgen.runtime.python.real_numbers import real_array
 
 __all__ = [
@@ -40,7 +40,7 @@ class Chain:
     frames: Array
     motions: tuple[Motion, ...]
     parts: Array
-    joint: NDArray[np.intp]
+    joint: Index
     scale: Array
     offset: Array
     slides: tuple[int, ...]

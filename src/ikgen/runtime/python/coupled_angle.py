@@ -15,16 +15,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.runtime.python.array_types import Array
+from ikgen.runtime.python.array_types import Array, Index
 from ikgen.runtime.python.back_substitution import complete_angles, null_angles
 from ikgen.runtime.python.chain_kinematics import Motion
 from ikgen.runtime.python.general_6r import Candidates, Elimination
 from ikgen.runtime.python.hidden_angle import lift, real_angles
 from ikgen.runtime.python.loop_equations import left_invariants, loop_equations, rows_of
 from ikgen.runtime.python.rigid_motion import inverses, rotations_z
-from ikgen.runtime.python.solution_rows import Index
 
-__all__ = ["CoupledAngle", "coupled_determinants", "neighbours"]
+__all__ = ["CoupledAngle", "coupled_and_others", "coupled_determinants", "neighbours"]
 
 _ONE = np.eye(4)[None]
 _FIRST_NODE = 0.05  # rad, an angle that no right angle shares
@@ -85,13 +84,18 @@ def neighbours(motions: Sequence[Motion], F: Array, plan: Elimination, nodes: Ar
     return np.array([np.broadcast_to(link[0, :, 2, 2], nodes.shape) for link in links[1:4]])
 
 
+def coupled_and_others(motions: Sequence[Motion]) -> tuple[int, list[int]]:
+    """The joint that turns several axes, and the others in their order along the chain."""
+    joints = [motion[0] for motion in motions]
+    coupled = max(joints, key=joints.count)
+    return coupled, [joint for joint in joints if joint != coupled]
+
+
 class _Loop:
     """The loop of the five joints that turn one axis each, begun at `start`, `reverse`d or not."""
 
     def __init__(self, motions: Sequence[Motion], F: Array, start: int, reverse: int) -> None:
-        joints = [motion[0] for motion in motions]
-        self.coupled = max(joints, key=joints.count)
-        singles = [joint for joint in joints if joint != self.coupled]
+        self.coupled, singles = coupled_and_others(motions)
         step = -1 if reverse else 1
         self.places = [(start + step * i) % 5 for i in range(5)]
         self.joints = [singles[place] for place in self.places]

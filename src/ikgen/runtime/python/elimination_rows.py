@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, sin
+from math import atan2
 
 import numpy as np
 
-from ikgen.runtime.python.array_types import Array, Row
+from ikgen.runtime.python.array_types import Array, Index
 from ikgen.runtime.python.general_6r import Plan, six_joint_rows
 from ikgen.runtime.python.refinement import rank_loss
-from ikgen.runtime.python.solution_rows import Index, places
+from ikgen.runtime.python.solution_rows import places
 from ikgen.runtime.python.solved_arm import Arm
 
-__all__ = ["elimination_branches", "elimination_lanes"]
+__all__ = ["elimination_lanes"]
 
 _POSES = 256  # whose arrays fit into a processor's cache
 
@@ -61,34 +61,21 @@ def _regular_first(arm: Arm, angles: Array, held: Array) -> Array:
     return np.asarray(angles[order][: arm.most])
 
 
-def elimination_branches(arm: Arm, plan: Plan, entries: Row) -> list[Row]:
-    """Per solution the cosine and sine of every moving joint's angle, and the lengths of slides.
+def elimination_lanes(arm: Arm, plan: Plan, entries: tuple[Array, ...]) -> tuple[Array, ...]:
+    """Of many poses the cosine and sine of every moving joint's angle, and the lengths of slides (most, N),
+    and which there are.
 
     entries: the pose's first three rows, then cosines, sines and distances of held joints.
     """
-    T = np.vstack([np.array(entries[:12]).reshape(3, 4), [0.0, 0.0, 0.0, 1.0]])
-    held = np.array(entries[12:])
-    _, found = six_joint_rows(_frames(arm, held), plan, T[None], arm.policy)
-    rows = _regular_first(arm, found, held).tolist()
-    return [tuple(x for part in map(_named, row, plan.turning) for x in part) for row in rows]
-
-
-def _named(value: float, turns: bool) -> Row:
-    """What the program calls for: cosine and sine of an angle, or a length."""
-    return (cos(value), sin(value)) if turns else (value,)
-
-
-def elimination_lanes(arm: Arm, plan: Plan, entries: tuple[Array, ...]) -> tuple[Array, ...]:
-    """`elimination_branches` for many poses: cosines, sines and lengths (most, N), and which there are."""
     columns = np.array([e.reshape(-1) for e in np.broadcast_arrays(*entries)])
     count = columns.shape[1]
     lanes = np.ones((6 + sum(plan.turning), arm.most, count))
     found = np.zeros((arm.most, count), dtype=bool)
-    distinct: Array
-    distinct, group = np.unique(columns[12:], axis=1, return_inverse=True)
-    for k in range(max(distinct.shape[1], 1)):
-        members = np.flatnonzero(group.reshape(-1) == k) if len(columns) > 12 else np.arange(count)
-        held: Array = distinct[:, k] if len(columns) > 12 else np.empty(0)
+    groups = [(np.arange(count), np.empty(0))]
+    if len(columns) > 12:
+        distinct, group = np.unique(columns[12:], axis=1, return_inverse=True)
+        groups = [(np.flatnonzero(group.reshape(-1) == k), x) for k, x in enumerate(distinct.T)]
+    for members, held in groups:
         for start in range(0, len(members), _POSES):
             part = members[start : start + _POSES]
             T = np.tile(np.eye(4), (len(part), 1, 1))

@@ -8,14 +8,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.array_types import Array, Flags, Index
 from ikgen.runtime.python.back_substitution import complete_angles, middle_angles
 from ikgen.runtime.python.chain_kinematics import Chain, Motion, chain_of
 from ikgen.runtime.python.loop_equations import joint_values, loop_constants, loop_equations
 from ikgen.runtime.python.refinement import refine
 from ikgen.runtime.python.rigid_motion import inverses, rotations_z
 from ikgen.runtime.python.solution_rows import (
-    Index,
     Turning,
     distinct_rows,
     slides_near,

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ikgen.runtime.python.array_types import Array
+from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.batch_solving import rows_batch
 from ikgen.runtime.python.held_joint import pose_lines
 from ikgen.runtime.python.pose_solving import solve_pose
+from ikgen.runtime.python.row_blocks import in_blocks
 from ikgen.runtime.python.row_preference import preference_costs, preference_of
 from ikgen.runtime.python.solution_search import Start, best_rows
 from ikgen.runtime.python.solutions import Solutions, no_held_values
@@ -34,15 +35,13 @@ def search_grid(
     if T is None:
         return solve_pose(arm, pose, None, None, limits)  # which says why it is none
     values, steps = _grid(arm, preference[1], limits)
-    q, cost, any_real = [], [], False
-    for k in range(0, len(values), _PART):
-        part = values[k : k + _PART]
-        rows, real, _ = rows_batch(arm, np.broadcast_to(T, (len(part), 4, 4)), part, None)
-        any_real = any_real or bool(real.any())
-        rows, costs, inside = preference_costs(arm, preference, rows, limits)
-        q.append(rows)
-        cost.append(np.where(real & inside, costs, inf))
-    found, costs = np.concatenate(q), np.concatenate(cost)
+
+    def rows_at(part: Array) -> tuple[Array, Array, Flags]:
+        rows, real = rows_batch(arm, np.broadcast_to(T, (len(part), 4, 4)), part)
+        rows, cost, inside = preference_costs(arm, preference, rows, limits)
+        return rows, np.where(real & inside, cost, inf), real
+
+    found, costs, real = in_blocks(rows_at, _PART, values)
     starts: list[Start] = []
     for flat in np.argsort(costs, axis=None, kind="stable")[:_BEGINNINGS].tolist():
         point, row = divmod(flat, costs.shape[1])
@@ -50,7 +49,7 @@ def search_grid(
             held = tuple(values[point].tolist())
             starts.append((held, found[point, row], steps, len(starts)))
     if not starts:
-        return no_held_values(len(arm.lower), arm.free_joints, any_real)
+        return no_held_values(len(arm.lower), arm.free_joints, bool(real.any()))
     return best_rows(arm, T, starts, preference, limits)
 
 

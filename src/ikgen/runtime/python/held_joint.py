@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags
-from ikgen.runtime.python.batch_solving import careful_rows, certain_rows
+from ikgen.runtime.python.closed_form_rows import careful_rows, certain_rows
 from ikgen.runtime.python.pose_arguments import one_pose
 from ikgen.runtime.python.solved_arm import Arm
 
@@ -66,16 +66,15 @@ def _all_rows(arm: Arm, T: Array, held: Array) -> tuple[Array, Flags]:
     """Rows (n, m, dof), and which of them are solutions: those of the closed form first, then those of
     poses beside; no more than `solve` gives."""
     if arm.together is None:
-        q, real, _, _ = careful_rows(arm, T, held, None)
+        q, real, _ = careful_rows(arm, T, held, None)
     else:
-        some, sure, _, doubt = certain_rows(arm, arm.together, T, held, None)
-        anywhere = arm.policy.beside_reach >= arm.policy.anywhere
-        size = some.shape[1] * (1 + len(arm.beside) * anywhere)
+        some, sure, doubt = certain_rows(arm, arm.together, T, held, None)
+        size = some.shape[1] * (1 + len(arm.beside) * arm.policy.beside_anywhere)
         q = np.zeros((len(T), size, some.shape[2]))
         real = np.zeros(q.shape[:2], dtype=bool)
         q[:, : some.shape[1]], real[:, : some.shape[1]] = some, sure
         if doubt.any():
-            q[doubt], real[doubt], _, _ = careful_rows(arm, T[doubt], held[doubt], None)
+            q[doubt], real[doubt], _ = careful_rows(arm, T[doubt], held[doubt], None)
     return q, real & (np.cumsum(real, axis=1) <= arm.most)
 
 

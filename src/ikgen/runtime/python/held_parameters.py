@@ -6,10 +6,9 @@ import numpy as np
 
 from ikgen.runtime.python.array_types import Array
 from ikgen.runtime.python.chain_kinematics import forward
-from ikgen.runtime.python.refinement import errors_and_slopes, least_singular, rank_loss
 from ikgen.runtime.python.solved_arm import Arm
 
-__all__ = ["aims", "held_of", "row_rank_loss"]
+__all__ = ["aims", "held_of"]
 
 
 def held_of(arm: Arm, q: Array) -> Array:
@@ -24,13 +23,3 @@ def held_of(arm: Arm, q: Array) -> Array:
 def aims(arm: Arm, T: Array, held: Array) -> Array:
     """What rows are refined towards: poses (k, 4, 4), and angles that are held (k, held)."""
     return T if arm.angle is None else arm.angle.aims(T, held[:, len(arm.free) :])
-
-
-def row_rank_loss(arm: Arm, q: Array) -> Array:
-    """Smallest singular value (k,) of the derivatives of pose, and angle that is held, at q (k, dof)."""
-    if arm.angle is None:
-        return rank_loss(arm.chain, arm.task, arm.moving, q)
-    pose = forward(arm.chain, q)
-    aim = aims(arm, pose, held_of(arm, q))
-    slope = errors_and_slopes(arm.chain, arm.task, arm.moving, q, aim, arm.angle)[1]
-    return least_singular(slope)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.array_types import Array, Flags, Index
 from ikgen.runtime.python.loop_equations import XS, YS, ZS
 
 __all__ = [
@@ -49,7 +49,7 @@ def loop_resultant(E: Array, left: Array) -> Resultant:
 
 def hidden_angles(
     E: Array, left: Array, M: Resultant, accept: float
-) -> tuple[NDArray[np.intp], Array, NDArray[np.intp], Flags]:
+) -> tuple[Index, Array, Index, Flags]:
     """The roots theta_3 with an imaginary part below `accept`: rows (k,) in order and real parts (k,),
     in order for each; per row the number of those that are clearly real, and whether the others clearly
     are not.
@@ -74,7 +74,7 @@ def hidden_angles(
 
 def real_angles(
     t: Array | NDArray[np.complex128], about: Array, accept: float, doubtful: float = DOUBTFUL
-) -> tuple[NDArray[np.intp], Array, NDArray[np.intp], Flags]:
+) -> tuple[Index, Array, Index, Flags]:
     """Those angles `about + 2 atan(t)`, about (N,) and t (N, n) complex, of which the imaginary part is
     below `accept`: as `hidden_angles` has them. With one below `doubtful` a root is not clearly complex."""
     # angle and modulus of (1 + i t) / (1 - i t)

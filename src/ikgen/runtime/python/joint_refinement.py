@@ -6,10 +6,11 @@ from functools import partial
 
 import numpy as np
 
+from ikgen.runtime.python.arm_newton import linearized
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.lane_chain import LaneChain
-from ikgen.runtime.python.lane_newton import refine_lanes
-from ikgen.runtime.python.refinement import errors_and_slopes
+from ikgen.runtime.python.lane_newton import begins, ends, refine_lanes
+from ikgen.runtime.python.refinement import normal_inverse
 from ikgen.runtime.python.row_blocks import in_blocks
 from ikgen.runtime.python.solved_arm import Arm
 
@@ -48,9 +49,7 @@ def _refine_few(arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
         change = inverse @ error
         size = _largest(change[:, :, 0])
         pivot = 1.0 / np.sqrt(_largest(np.add.reduce(inverse * inverse, axis=2)))
-        most = policy.contraction * before if steps else policy.pivot_share * pivot
-        good &= (size < np.minimum(before, most)) | (size < policy.converged)
-        good &= pivot > policy.least_pivot
+        good &= begins(policy, size, before, pivot, not steps)
         q = _moved(arm, q, change)
         rest, slope = _linearized(arm, q, T)
         change = inverse @ rest
@@ -58,11 +57,8 @@ def _refine_few(arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
         more = inverse @ rest
         rest, change = rest - slope @ more, change + more
         before, size = size, _largest(change[:, :, 0])
-        small = size < policy.converged
-        good &= (size < policy.contraction * before) | small
-        done = size**3 < policy.converged * before**2
-        done &= _largest(more[:, :, 0]) ** 2 < policy.converged * size
-        done |= small
+        near, done = ends(policy, before, size, _largest(more[:, :, 0]))
+        good &= near
         q, before = _moved(arm, q, change), size
         if (done | ~good).all():
             break
@@ -88,7 +84,7 @@ def _moved(arm: Arm, q: Array, change: Array) -> Array:
 
 def _linearized(arm: Arm, q: Array, T: Array) -> tuple[Array, Array]:
     """Errors (k, m, 1) at rows (k, dof), and their derivatives (k, m, n)."""
-    error, slope = errors_and_slopes(arm.chain, arm.task, arm.moving, q, T, arm.angle)
+    error, slope = linearized(arm, q, T)
     return error[:, :, None], slope
 
 
@@ -99,5 +95,4 @@ def _left_inverse(V: Array) -> Array:
             return np.asarray(np.linalg.inv(V))
         except np.linalg.LinAlgError:
             pass
-    Vt = V.transpose(0, 2, 1)
-    return np.asarray(np.linalg.inv(Vt @ V + 1e-14 * np.eye(V.shape[2])) @ Vt)  # never singular
+    return np.asarray(normal_inverse(V) @ V.transpose(0, 2, 1))

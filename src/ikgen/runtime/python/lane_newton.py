@@ -15,9 +15,10 @@ from ikgen.runtime.python.lane_chain import (
     turned,
     walk,
 )
+from ikgen.runtime.python.solve_policy import Policy
 from ikgen.runtime.python.solved_arm import Arm
 
-__all__ = ["refine_lanes"]
+__all__ = ["begins", "ends", "refine_lanes"]
 
 _BLOCK = 2048  # rows whose arrays fit into a processor's cache
 
@@ -63,9 +64,7 @@ def _two_steps(
     inverse, pivot = _left_inverse(slope)
     change = np.einsum("imk,mk->ik", inverse, error)
     size = np.abs(change).max(axis=0)
-    bound = policy.pivot_share * pivot if first else policy.contraction * before
-    good = (size < np.minimum(before, bound)) | (size < policy.converged)
-    good &= pivot > policy.least_pivot
+    good = begins(policy, size, before, pivot, first)
     turn = _of_joints(arm, change)
     q, turns = q + turn, chain.changes(turn)
     values, angles = values + turns, turned(angles, turns)
@@ -76,11 +75,24 @@ def _two_steps(
     rest -= np.einsum("imk,ik->mk", slope, more)
     change += more
     before, size = size, np.abs(change).max(axis=0)
-    good &= (size < policy.contraction * before) | (size < policy.converged)
-    done = size**3 < policy.converged * before**2
-    done &= np.abs(more).max(axis=0) ** 2 < policy.converged * size
-    done |= size < policy.converged
+    near, done = ends(policy, before, size, np.abs(more).max(axis=0))
+    good &= near
     return q + _of_joints(arm, change), size, good & done, good, np.abs(rest).max(axis=0)
+
+
+def begins(policy: Policy, size: Array, before: Array, pivot: Array | Single, first: bool) -> Flags:
+    """Which first steps of two, of this `size` (k,), may lead to the solution near their start."""
+    bound = policy.pivot_share * pivot if first else policy.contraction * before
+    small = (size < np.minimum(before, bound)) | (size < policy.converged)
+    return np.asarray(small & (pivot > policy.least_pivot))
+
+
+def ends(policy: Policy, before: Array, size: Array, more: Array) -> tuple[Flags, Flags]:
+    """The same of second steps, `more` the size of what was left of them; and which are the last."""
+    small = size < policy.converged
+    done = size**3 < policy.converged * before**2
+    done &= more**2 < policy.converged * size
+    return (size < policy.contraction * before) | small, done | small
 
 
 def _linearized(

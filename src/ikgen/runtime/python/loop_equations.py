@@ -9,9 +9,8 @@ from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ikgen.runtime.python.array_types import Array
+from ikgen.runtime.python.array_types import Array, Index
 from ikgen.runtime.python.chain_kinematics import cross
 from ikgen.runtime.python.rigid_motion import inverses, rotations_z
 
@@ -57,7 +56,7 @@ def joint_values(values: Array, order: list[int], reverse: int = 0) -> Array:
     return q
 
 
-def rows_of(rows: Array, pose: NDArray[np.intp]) -> Array:
+def rows_of(rows: Array, pose: Index) -> Array:
     """Rows of poses, where they are not the same for all."""
     return rows[pose] if len(rows) > 1 else rows
 

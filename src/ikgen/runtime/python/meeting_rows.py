@@ -6,20 +6,28 @@ others (Lyapunov and Schmidt's reduction; Golubitsky & Schaeffer 1985, I.3)."""
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from math import pi
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.runtime.python.array_types import Array, Flags, Row
+from ikgen.runtime.python.arm_newton import linearized, refined
+from ikgen.runtime.python.array_types import Array, Flags, Index, Row
 from ikgen.runtime.python.chain_kinematics import forward
-from ikgen.runtime.python.refinement import errors_and_slopes, least_singular, refine
+from ikgen.runtime.python.refinement import least_singular, normal_inverse
+from ikgen.runtime.python.row_links import differences
+from ikgen.runtime.python.row_placement import distinct
+from ikgen.runtime.python.solution_rows import places
 from ikgen.runtime.python.solved_arm import Arm, Found
 
-__all__ = ["Starts", "repeats", "rows_nearby"]
-
-Index = NDArray[np.intp]
+__all__ = [
+    "Ends",
+    "Starts",
+    "ends_of",
+    "joined",
+    "repeats",
+    "rows_nearby",
+]
 
 _ALONG = 1e-4  # rad or m
 _CLOSE = 1e-9
@@ -27,8 +35,7 @@ _FAR = 0.3
 _STEPS = 8
 
 
-@dataclass(frozen=True)
-class Starts:
+class Starts(NamedTuple):
     """Where Newton steps start: rows `q` (k, dof) for poses `T` (k, 4, 4), which rows are of the same pose,
     `pose` (k,), which the closed form `marked` (k,) as of a continuum, and the `source` (k,) of each:
     given (-1), the closed form for the pose (0), or for one beside it (1)."""
@@ -40,20 +47,37 @@ class Starts:
     source: NDArray[np.int64]
 
 
-def rows_nearby(arm: Arm, starts: Starts) -> tuple[Index, Array, Flags]:
-    """Which start (m,) each solution (m, dof) comes from that steps lead to, those that are sure first; and
-    which starts (k,) are so near a singularity that other solutions may start from none of them.
+def joined(one: Any, other: Any) -> Any:
+    """Two tuples of arrays as one."""
+    return type(one)(*map(np.concatenate, zip(one, other)))
+
+
+class Ends(NamedTuple):
+    """Where Newton steps end: rows `q` (k, dof), their `error` and the smallest singular value `loss` of
+    the derivatives (k,)."""
+
+    q: Array
+    error: Array
+    loss: Array
+
+
+def ends_of(arm: Arm, q: Array, T: Array) -> Ends:
+    """Where steps from rows q (k, dof) towards aims T end."""
+    q, error, _, slope = refined(arm, q, T)
+    return Ends(q, error, least_singular(slope))
+
+
+def rows_nearby(arm: Arm, starts: Starts, ends: Ends) -> tuple[Index, Array, Array]:
+    """Which start (m,) each solution (m, dof) comes from that steps lead to, those that are sure first, and
+    the smallest singular values (m,) there.
 
     Where two may meet near a singularity both are found, and all around a continuum that the closed form
     has, where it marked a row, and the file's arm has not. What is given leads only to its own.
     """
-    T, own = starts.T, starts.source >= 0
-    q, error, _, slope = refine(arm.chain, arm.task, arm.moving, starts.q, T, arm.policy, arm.angle)
-    arrived = error < arm.policy.arrived
+    T, (q, error, loss) = starts.T, (x.copy() for x in ends)
+    arrived, own = error < arm.policy.arrived, starts.source >= 0
     broken = starts.marked & (arm.rounded | ~arrived) & own
-    loss = least_singular(slope)
     near = own & ~starts.marked & (loss < arm.policy.fold_reach)
-    close = (near | broken) & (loss < arm.policy.beside_reach)
     settled = ~broken & np.where(near, error < arm.policy.converged, arrived)
     fresh = _fresh(arm, q, starts, near, near & ~settled)
     settled &= fresh
@@ -67,22 +91,21 @@ def rows_nearby(arm: Arm, starts: Starts) -> tuple[Index, Array, Flags]:
         trial = np.concatenate([trial, around.transpose(1, 0, 2).reshape(-1, q.shape[1])])
     first, own_rows = np.flatnonzero(settled), q[settled]
     if not len(owner) and not (broken & arrived).any():
-        return first, own_rows, close
+        return first, own_rows, loss[first]
     owner, side = np.repeat(owner, 2), np.tile([1.0, -1.0], len(owner))
     pairs = _approach(arm, np.repeat(trial, 2, axis=0), T[owner], side)
-    pairs, left = refine(arm.chain, arm.task, arm.moving, pairs, T[owner], arm.policy, arm.angle)[
-        :2
-    ]
+    pairs, left, there = ends_of(arm, pairs, T[owner])
     exact = left < arm.policy.exact
-    for i, row, e in zip(owner[~exact].tolist(), pairs[~exact], left[~exact].tolist()):
-        if e < error[i]:
-            q[i], error[i] = row, e
+    for k, i in zip(np.flatnonzero(~exact).tolist(), owner[~exact].tolist()):
+        if left[k] < error[i]:
+            q[i], error[i], loss[i] = pairs[k], left[k], there[k]
     alone = np.flatnonzero((near | broken) & (error < arm.policy.arrived))
     alone = np.setdiff1d(alone, [*owner[exact], *first])
     source, rows = np.concatenate([owner[exact], alone]), np.concatenate([pairs[exact], q[alone]])
     order = np.argsort(source, kind="stable")
     rows = np.concatenate([own_rows, rows[order]])
-    return np.concatenate([first, source[order]]), rows, close
+    losses = np.concatenate([loss[first], np.concatenate([there[exact], loss[alone]])[order]])
+    return np.concatenate([first, source[order]]), rows, losses
 
 
 def _fresh(arm: Arm, q: Array, starts: Starts, near: Flags, stalled: Flags) -> Flags:
@@ -90,31 +113,29 @@ def _fresh(arm: Arm, q: Array, starts: Starts, near: Flags, stalled: Flags) -> F
     stalled by one that is near another solution."""
     beside = starts.source > 0
     fresh = ~beside
-    for pose in np.unique(starts.pose[beside]).tolist():
-        some = np.flatnonzero((starts.pose == pose) & (starts.source >= 0))
-        rows = q[some]
-        size = np.where(arm.chain.revolute, 1.0, np.maximum(np.abs(rows), 1.0))
-        same = np.abs(_gap(arm, rows[:, None], rows)) <= arm.policy.coincident * size
-        fresh[some] |= ~np.tril(same.all(axis=2), -1).any(axis=1)
-        for k in some[(fresh & beside & stalled)[some]].tolist():
-            others = some[(fresh & near)[some] & (some < k)]
-            fresh[k] = not (np.abs(_gap(arm, q[others], q[k])).max(axis=1) < arm.policy.alike).any()
+    own = np.flatnonzero(np.isin(starts.pose, starts.pose[beside]) & (starts.source >= 0))
+    if not len(own):
+        return fresh
+    own = own[np.argsort(starts.pose[own], kind="stable")]
+    _, pose = np.unique(starts.pose[own], return_inverse=True)
+    place = places(pose)
+    rows = np.zeros((int(pose[-1]) + 1, int(place.max()) + 1, q.shape[1]))
+    valid = np.zeros(rows.shape[:2], dtype=bool)
+    rows[pose, place], valid[pose, place] = q[own], True
+    fresh[own] |= distinct(arm, rows, valid)[pose, place]
+    for k in np.flatnonzero(fresh & beside & stalled).tolist():
+        others = q[:k][(fresh & near & (starts.pose == starts.pose[k]))[:k]]
+        fresh[k] = not (np.abs(differences(arm, others, q[k])).max(axis=1) < arm.policy.alike).any()
     return fresh
 
 
-def _gap(arm: Arm, a: Array, b: Array) -> Array:
-    """The changes of the joints from a (..., dof) to b (..., dof)."""
-    gap = b - a
-    return np.where(arm.chain.revolute, np.remainder(gap + pi, 2.0 * pi) - pi, gap)
-
-
-def repeats(arm: Arm, T: list[list[float]], row: Row, kept: Sequence[Found]) -> bool:
+def repeats(arm: Arm, T: Array, row: Row, kept: Sequence[Found]) -> bool:
     """Whether nothing tells a singular row from one kept nearby: the pose is theirs between them too."""
     for other, singular in kept:
-        gap = _gap(arm, np.array(row), np.array(other))
+        gap = differences(arm, np.array(row), np.array(other))
         if singular and np.abs(gap).max() < arm.policy.alike:
             middle = forward(arm.chain, np.array(row) + 0.5 * gap)
-            if np.abs(arm.task.error(middle[None], np.array(T)[None])).max() < arm.policy.converged:
+            if np.abs(arm.task.error(middle[None], T[None])).max() < arm.policy.converged:
                 return True
     return False
 
@@ -157,12 +178,12 @@ def _step(
     """q (k, dof) after a step, the unit directions (k, n) in which the pose moves least, in the sense of
     `still`, how far the step goes along them (k,), not at all on side 0, and the errors before (k,)."""
     columns = list(arm.moving)
-    error, slope = errors_and_slopes(arm.chain, arm.task, columns, q, T, arm.angle)
+    error, slope = linearized(arm, q, T)
     still = _still(slope, still, arm.policy.least_damping)
     flow = np.einsum("kej,kj->ke", slope, still)
     there = q.copy()
     there[:, columns] += _ALONG * still
-    _, beyond = errors_and_slopes(arm.chain, arm.task, columns, there, T, arm.angle)
+    _, beyond = linearized(arm, there, T)
     bend = np.einsum("kej,kj->ke", beyond - slope, still) / _ALONG
     V = slope - flow[:, :, None] * still[:, None, :]
     Vt = V.transpose(0, 2, 1)
@@ -182,7 +203,7 @@ def _step(
 
 def _still(slope: Array, still: Array, damping: float) -> Array:
     """By inverse iteration, from what it was, which keeps its sense."""
-    inverse = np.linalg.inv(slope.transpose(0, 2, 1) @ slope + damping * np.eye(slope.shape[2]))
+    inverse = normal_inverse(slope, damping)
     for _ in range(4):
         still = (inverse @ still[:, :, None])[:, :, 0]
         still = still / np.linalg.norm(still, axis=1)[:, None]

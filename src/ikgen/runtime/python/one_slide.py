@@ -8,9 +8,8 @@ angles, the same as those of six revolute joints.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.array_types import Array, Flags, Index
 from ikgen.runtime.python.back_substitution import middle_angles, turned
 from ikgen.runtime.python.general_6r import Elimination
 from ikgen.runtime.python.loop_equations import (
@@ -37,7 +36,7 @@ _PARABOLA = np.array(
 
 def one_slide_candidates(
     F: Array, T: Array, plan: Elimination, turning: tuple[bool, ...]
-) -> tuple[NDArray[np.intp], Array, NDArray[np.intp], Flags]:
+) -> tuple[Index, Array, Index, Flags]:
     """As `candidates`, of a chain whose joint that is not `turning` the plan puts first or second."""
     start, reverse, swap = plan
     order, C = loop_constants(F, T, start, reverse)

@@ -13,7 +13,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.array_types import Array, Flags, Index
 from ikgen.runtime.python.chain_kinematics import cross
 from ikgen.runtime.python.general_6r import Candidates, Elimination
 from ikgen.runtime.python.hidden_angle import DOUBTFUL, real_angles
@@ -28,7 +28,7 @@ from ikgen.runtime.python.parallel_links import (
 )
 from ikgen.runtime.python.parallel_turns import parallel_turns
 from ikgen.runtime.python.rigid_motion import inverses
-from ikgen.runtime.python.solution_rows import Index, Turning
+from ikgen.runtime.python.solution_rows import Turning
 
 __all__ = ["parallel_candidates"]
 

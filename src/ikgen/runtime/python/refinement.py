@@ -18,6 +18,7 @@ __all__ = [
     "errors_and_slopes",
     "least_singular",
     "newton",
+    "normal_inverse",
     "rank_loss",
     "refine",
     "steeper",
@@ -125,10 +126,14 @@ def steeper(slope: Array, bound: float) -> Flags:
     """Which derivatives (k, m, n) have no singular value below `bound`; of those near it some may not be
     told. Each column is at least the smallest singular value away from what the others span, and the
     nearest of n at most its sqrt(n)-fold."""
-    count = slope.shape[2]
-    inverse = np.linalg.inv(slope.transpose(0, 2, 1) @ slope + 1e-14 * np.eye(count))
-    nearest = 1.0 / np.sqrt(np.einsum("kii->ki", inverse).max(axis=1))
-    return np.asarray(nearest > bound * count**0.5)
+    nearest = 1.0 / np.sqrt(np.einsum("kii->ki", normal_inverse(slope)).max(axis=1))
+    return np.asarray(nearest > bound * slope.shape[2] ** 0.5)
+
+
+def normal_inverse(slope: Array, damping: float = 1e-14) -> Array:
+    """Inverses (k, n, n) of the normal equations of derivatives (k, m, n); never singular."""
+    square = slope.transpose(0, 2, 1) @ slope
+    return np.asarray(np.linalg.inv(square + damping * np.eye(slope.shape[2])))
 
 
 def least_singular(slope: Array) -> Array:

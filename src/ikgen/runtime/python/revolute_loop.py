@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ikgen.runtime.python.array_types import Array
+from ikgen.runtime.python.array_types import Array, Index
 from ikgen.runtime.python.spherical_triple import Complex, turns_z
 
 __all__ = ["RevoluteLoop", "displacement", "revolute_loop", "slide_lengths"]
@@ -24,7 +23,7 @@ class RevoluteLoop:
     u: Array
     at: tuple[int, ...]
 
-    def of(self, pose: NDArray[np.intp]) -> RevoluteLoop:
+    def of(self, pose: Index) -> RevoluteLoop:
         """Those of some poses."""
         return RevoluteLoop(self.K[:, pose], self.k[:, pose], self.u[:, pose], self.at)
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 from math import inf, pi
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.array_types import Array, Flags, Index
 from ikgen.runtime.python.solved_arm import Arm
 
-__all__ = ["Links", "differences", "linked_rows", "origins"]
+__all__ = ["differences", "linked_rows", "origins"]
 
-Links = NDArray[np.intp]
 _WHOLE_TURN = 2.0 * pi
 
 
@@ -23,7 +21,7 @@ def differences(arm: Arm, a: Array, b: Array) -> Array:
     return np.where(turning, gap - _WHOLE_TURN * np.round(gap / _WHOLE_TURN), gap)
 
 
-def linked_rows(arm: Arm, q: Array, real: Flags) -> Links:
+def linked_rows(arm: Arm, q: Array, real: Flags) -> Index:
     """For rows (n, m, dof) of which some are real (n, m): the index (n - 1, m) of the row at the next value
     that each is nearest to and that is nearest to it; -1 where there is none."""
     gap = np.abs(differences(arm, q[:-1, :, None], q[1:, None])).max(axis=3)
@@ -34,7 +32,7 @@ def linked_rows(arm: Arm, q: Array, real: Flags) -> Links:
     return np.where(mutual & near, there, -1)
 
 
-def origins(following: Links) -> Links:
+def origins(following: Index) -> Index:
     """For each row at the upper end of a cell, the row at its lower end that goes on as it; -1 for none."""
     out = np.full_like(following, -1)
     cell, row = np.nonzero(following >= 0)

@@ -10,7 +10,7 @@ import numpy as np
 from ikgen.runtime.python.array_types import Array, Flags, Row
 from ikgen.runtime.python.solved_arm import Arm, Found
 
-__all__ = ["distinct", "is_new", "place_rows", "place_rows_batch"]
+__all__ = ["distinct", "in_order", "is_new", "place_rows", "place_rows_batch"]
 
 _TURN = 2.0 * pi
 
@@ -82,6 +82,13 @@ def _place(arm: Arm, row: Row, near: Row | None, limits: bool) -> Row | None:
         else:
             out.append(q + shift)
     return tuple(out)
+
+
+def in_order(arm: Arm, rows: list[Found], near: Row | None) -> list[Found]:
+    """The rows, no more than the arm has, nearest to a seed first."""
+    if near is not None:
+        rows = sorted(rows, key=lambda item: sum((a - b) * (a - b) for a, b in zip(item[0], near)))
+    return rows[: arm.most]
 
 
 def place_rows_batch(arm: Arm, q: Array, near: Array | None, limits: bool) -> tuple[Array, Flags]:

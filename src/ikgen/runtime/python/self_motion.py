@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from ikgen.runtime.python.array_types import Array
+from ikgen.runtime.python.array_types import Array, Index
 from ikgen.runtime.python.branch_ends import BranchEnd, branch_end, find_ends
 from ikgen.runtime.python.branch_tracks import LEAST, Tracks, tracked
 from ikgen.runtime.python.held_joint import HeldJoint, held_range, pose_lines
-from ikgen.runtime.python.row_links import Links, origins
+from ikgen.runtime.python.row_links import origins
 
 __all__ = ["Interval", "Piece", "pieces_of", "self_motion_of"]
 
@@ -94,7 +94,7 @@ def _piece(
     tracks: Tracks,
     branch: int,
     run: list[tuple[int, int]],
-    before: Links,
+    before: Index,
     following: int,
 ) -> Piece:
     (first, row), last = run[0], run[-1][0]

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ikgen.runtime.python.array_types import Array, Flags
+from ikgen.runtime.python.array_types import Array, Flags, Index
 
 __all__ = [
-    "Index",
     "Turning",
     "distinct_rows",
     "first_of_equals",
@@ -17,7 +15,6 @@ __all__ = [
     "sorted_rows",
 ]
 
-Index = NDArray[np.intp]
 Turning = tuple[bool, ...]  # which of the six joints turn; the others slide
 _FARTHEST = 1e4  # of a slide, in arm lengths
 _SAME_KEY = 1e-7  # rad or arm lengths: values that do not decide which row comes first

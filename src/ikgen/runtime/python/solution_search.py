@@ -65,7 +65,7 @@ def _improved(
     if limits and arm.free:
         low, high = np.array(arm.lower)[list(arm.free)], np.array(arm.upper)[list(arm.free)]
         trial = np.clip(trial, low, high)
-    q, real, _ = rows_batch(arm, np.broadcast_to(T, (len(trial), 4, 4)), trial, None)
+    q, real = rows_batch(arm, np.broadcast_to(T, (len(trial), 4, 4)), trial)
     gap = np.abs(differences(arm, rows[:, None], q)).max(axis=2)
     gap = np.where(real, gap, inf)
     which, nearest = np.arange(len(trial)), gap.argmin(axis=1)

@@ -38,3 +38,8 @@ class Policy:
     patience: int  # steps without progress after which they end
     progress: float  # of a step: the factor by which the error falls
     refinement: tuple[tuple[int, float, float], ...]  # steps; errors between which more follow
+
+    @property
+    def beside_anywhere(self) -> bool:
+        """Whether poses beside are always solved as well."""
+        return self.beside_reach >= self.anywhere

@@ -11,11 +11,10 @@ from ikgen.runtime.python.chain_kinematics import Chain
 from ikgen.runtime.python.solve_policy import Policy
 from ikgen.runtime.python.task_interface import Task
 
-__all__ = ["Arm", "Branches", "BranchesBatch", "Candidate", "Found", "HeldAngle", "Together"]
+__all__ = ["Arm", "Branches", "BranchesBatch", "Found", "HeldAngle", "Together"]
 
 Found = tuple[Row, bool]  # a solution, and whether it is one of a continuum
-Candidate = tuple[Row, bool, bool]  # a closed-form row, whether it is one of a continuum, or rough
-Branches = Callable[[Sequence[Sequence[float]], Row, Row], tuple[list[Candidate], bool]]
+Branches = Callable[[Sequence[Sequence[float]], Row, Row], tuple[list[tuple[Row, bool]], bool]]
 BranchesBatch = Callable[[Array, Array, Array], tuple[Array, Flags, Flags, Flags]]
 
 
@@ -48,7 +47,8 @@ class HeldAngle(Protocol):
 class Arm:
     """`free`, `free_joints`, `free_defaults`: indices, names and values of held joints. `most`: rows at
     most. `branches(T, q0, held)`: the closed form's rows for a pose, values of joints that it leaves
-    free, values of held joints, and whether it left one free; `branches_batch`: in arrays. `beside`
+    free, values of held joints, each with whether it is rough, and whether the pose left a joint free;
+    None for an elimination; `branches_batch`: in arrays. `beside`
     (n, 4, 4): motions of the tool to poses that are solved as well. `turning`: which joints are
     revolute and not held; `moving`: indices of those not held.
     `together`: `refine_together` where the closed form is of another geometry than the file's, and all rows
@@ -65,7 +65,7 @@ class Arm:
     free_joints: tuple[str, ...]
     free_defaults: Row
     most: int
-    branches: Branches
+    branches: Branches | None
     branches_batch: BranchesBatch
     beside: Array
     turning: tuple[bool, ...]

@@ -1,0 +1,187 @@
+"""All solutions of poses near singularities, and of those that leave joints free: of many poses at once, as
+the price of Newton steps is that of the calls."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ikgen.runtime.python.array_types import Array, Flags, Index, Row
+from ikgen.runtime.python.closed_form_rows import closed_form, rows_beside
+from ikgen.runtime.python.held_parameters import aims
+from ikgen.runtime.python.meeting_rows import (
+    Ends,
+    Starts,
+    ends_of,
+    joined,
+    repeats,
+    rows_nearby,
+)
+from ikgen.runtime.python.row_placement import is_new, place_rows
+from ikgen.runtime.python.solved_arm import Arm, Found
+
+__all__ = ["Answer", "Asked", "placed_rows", "seeded_rows", "unplaced_rows"]
+
+
+@dataclass(frozen=True)
+class Asked:
+    """Poses `T` (n, 4, 4), seeds `near` (n, dof) if there are any, and values `held` (n, held)."""
+
+    T: Array
+    near: Array | None
+    held: Array
+
+    def at(self, index: Index) -> Asked:
+        """Some of them."""
+        near = None if self.near is None else self.near[index]
+        return Asked(self.T[index], near, self.held[index])
+
+    def seed(self, k: int) -> Row | None:
+        """Of one pose."""
+        return None if self.near is None else tuple(self.near[k].tolist())
+
+    def starts(self, arm: Arm, turn: Array | None = None) -> Array:
+        """Values (n, dof) for joints that the poses leave free, those of revolute ones turned by `turn`
+        (n,); held ones as they are."""
+        q = np.zeros((len(self.T), len(arm.lower))) if self.near is None else self.near.copy()
+        if turn is not None:
+            q[:, arm.chain.revolute] += turn[:, None]
+        q[:, list(arm.free)] = self.held[:, : len(arm.free)]
+        return q
+
+
+@dataclass
+class Answer:
+    """Solutions on the right turns, and whether there were any before limits."""
+
+    rows: list[Found] = field(default_factory=list)
+    real: bool = False
+
+
+_Rows = tuple[list[Found], bool, bool]
+"""Distinct solutions of a pose, whether it left a joint free, and the closed form led anywhere then."""
+
+
+def placed_rows(arm: Arm, asked: Asked, limits: bool) -> list[Answer]:
+    """Of each pose. Where it leaves a joint free and the given value leads nowhere, others are tried."""
+    out = [Answer() for _ in asked.T]
+    left = np.arange(len(out))
+    for tries in (range(1), range(1, arm.policy.tries)):
+        if not len(left):
+            break
+        which = np.repeat(left, len(tries))
+        some = asked.at(which)
+        start = some.starts(arm, np.tile(tries, len(left)) * arm.policy.try_step)
+        rows = _rows(arm, some, start, len(tries) == 1)
+        seeded = _seeded(arm, some, start, rows, limits) if asked.near is not None else {}
+        going = np.ones(len(out), dtype=bool)
+        for k, i in enumerate(which.tolist()):
+            if going[i]:
+                going[i] = _goes_on(arm, some, k, rows[k], seeded.get(k, []), limits, out[i])
+        left = left[going[left]]
+    return out
+
+
+def _goes_on(
+    arm: Arm,
+    asked: Asked,
+    k: int,
+    rows: _Rows,
+    seeded: list[Found],
+    limits: bool,
+    answer: Answer,
+) -> bool:
+    """Adds rows to an answer, and says whether other values have to be tried."""
+    (kept, free, led), T, near = rows, asked.T[k], asked.seed(k)
+    if not free and any(flag for _, flag in kept):
+        _add(arm, T, seeded, kept)
+    answer.real = answer.real or bool(kept)
+    _add(arm, T, place_rows(arm, kept, near, limits), answer.rows)
+    if not answer.rows:
+        answer.rows = place_rows(arm, seeded, near, limits)
+    led = led if arm.rounded else any(flag for _, flag in answer.rows)
+    return free and not (answer.rows and led)
+
+
+def _seeded(
+    arm: Arm, asked: Asked, start: Array, rows: list[_Rows], limits: bool
+) -> dict[int, list[Found]]:
+    """What Newton steps from the seeds lead to, where no row is inside the limits, or one is singular."""
+    some = [
+        k
+        for k, (kept, free, _) in enumerate(rows)
+        if (not free and any(flag for _, flag in kept))
+        or not place_rows(arm, kept, asked.seed(k), limits)
+    ]
+    return dict(zip(some, _led_to(arm, asked.at(np.array(some, dtype=np.intp)), start[some])))
+
+
+def seeded_rows(arm: Arm, asked: Asked) -> list[list[Found]]:
+    """What Newton steps from the seeds lead to."""
+    return _led_to(arm, asked, asked.starts(arm))
+
+
+def _led_to(arm: Arm, asked: Asked, start: Array) -> list[list[Found]]:
+    if not len(start):
+        return []
+    starts = _given(arm, asked, start, np.arange(len(start)))
+    return _meeting(arm, asked, starts, ends_of(arm, starts.q, starts.T))
+
+
+def unplaced_rows(arm: Arm, T: Array, held: Array) -> list[list[Found]]:
+    """Distinct solutions of poses T (n, 4, 4), on no turns in particular."""
+    asked = Asked(T, None, held)
+    return [kept for kept, _, _ in _rows(arm, asked, asked.starts(arm), True)]
+
+
+def _rows(arm: Arm, asked: Asked, start: Array, first: bool) -> list[_Rows]:
+    """For each pose the solutions (radians between -pi and pi), of a rounded arm and its `first` start with
+    those that poses beside lead to, where they count."""
+    closed = closed_form(arm, asked.T, start, asked.held)
+    free, marked = closed.free, closed.singular & closed.valid
+    pose, lane = np.nonzero(closed.valid & closed.rough)
+    own = _starts(arm, asked, closed.q[pose, lane], pose, marked[pose, lane], 0)
+    starts = joined(_given(arm, asked, start, np.flatnonzero(free)), own)
+    ends = ends_of(arm, starts.q, starts.T)
+    near = free | arm.policy.beside_anywhere
+    near[pose[ends.loss[len(ends.loss) - len(pose) :] < arm.policy.beside_reach]] = True
+    some = np.flatnonzero(near & first)
+    if len(arm.beside) and len(some):
+        q, valid = rows_beside(arm, asked.T[some], start[some], asked.held[some])
+        pose, lane = np.nonzero(valid)
+        plain = np.zeros(len(pose), dtype=bool)
+        more = _starts(arm, asked, q[pose, lane], some[pose], plain, 1)
+        starts, ends = joined(starts, more), joined(ends, ends_of(arm, more.q, more.T))
+    kept = _meeting(arm, asked, starts, ends)
+    for i, k in np.argwhere(closed.valid & ~closed.rough).tolist():
+        _add(arm, asked.T[i], [(tuple(closed.q[i, k].tolist()), bool(marked[i, k]))], kept[i])
+    led: Flags = np.asarray(marked.any(axis=1))
+    return list(zip(kept, free.tolist(), led.tolist()))
+
+
+def _starts(arm: Arm, asked: Asked, q: Array, pose: Index, marked: Flags, source: int) -> Starts:
+    aim = aims(arm, asked.T, asked.held)[pose]
+    return Starts(q, aim, pose, marked, np.full(len(q), source))
+
+
+def _given(arm: Arm, asked: Asked, start: Array, pose: Index) -> Starts:
+    return _starts(arm, asked, start[pose], pose, np.ones(len(pose), dtype=bool), -1)
+
+
+def _meeting(arm: Arm, asked: Asked, starts: Starts, ends: Ends) -> list[list[Found]]:
+    """For each pose the distinct rows that Newton steps lead to."""
+    out: list[list[Found]] = [[] for _ in asked.T]
+    owner, q, loss = rows_nearby(arm, starts, ends)
+    flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
+    flags = (starts.marked[owner] & (loss < continuum)) | (loss < flat)
+    for i, row, flag in zip(starts.pose[owner].tolist(), q.tolist(), flags.tolist()):
+        _add(arm, asked.T[i], [(tuple(row), flag)], out[i])
+    return out
+
+
+def _add(arm: Arm, T: Array, rows: list[Found], kept: list[Found]) -> None:
+    """Adds those of the rows that differ from all that are there."""
+    for row, singular in rows:
+        if is_new(arm, row, kept) and not (singular and repeats(arm, T, row, kept)):
+            kept.append((row, singular))
