@@ -29,9 +29,9 @@ REFINEMENT: tuple[RefineStage, ...] = (
 class SolvePolicy:
     """Tolerances and counts of `solve`, the same in every language.
 
-    - `tolerance`: error (rad, or m over the arm's size) that a returned row may have; `arrived`: error
-      below which refined rows are solutions, `exact`: below which they give way to no better ones nearby;
-      `rough_square`: squared error above which a row is refined.
+    - `arrived`: error (rad, or m over the arm's size) below which refined rows are solutions, `exact`:
+      below which they give way to no better ones nearby; `rough_square`: squared error above which a row
+      is refined.
     - `pose_tolerance`: how far a rotation's entries may be off; nearer ones are replaced by the nearest
       rotation; `orthonormal`: what is round-off of them.
     - `coincident`: rows closer than that (rad or m) are one, singular ones closer than `alike` where the
@@ -56,7 +56,6 @@ class SolvePolicy:
       without the error falling to `progress` of what it was.
     """
 
-    tolerance: float = 1e-9
     arrived: float = 0.5e-9
     exact: float = 1e-12
     rough_square: float = 1e-20
