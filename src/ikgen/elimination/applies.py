@@ -29,17 +29,16 @@ def elimination_plan(dh: DHChain) -> EliminationPlan | None:
     moving = [row for row in dh.rows if dh.joints[row.driver].name not in dh.free]
     drivers = Counter(row.driver for row in moving)
     several = sum(count > 1 for count in drivers.values())
-    if len(drivers) != 6 or len(dh.rows) - len(moving) != len(dh.free) or several > 1:
-        return None
     turning = tuple(row.revolute for row in moving)
-    values = _HELD_VALUES if dh.free else (0.0,)
-    if several and all(turning):
-        family = np.array([held_frames(dh, value) for value in values])
-        plan = choose_coupled(family, axis_motions(dh, moving))
-    elif not several and turning.count(False) <= _MOST_SLIDES:
-        plan = choose_plan(np.array([held_frames(dh, value) for value in values]), turning)
-    else:
+    slides = turning.count(False)
+    if len(drivers) != 6 or len(dh.rows) - len(moving) != len(dh.free):
         return None
+    if several > 1 or slides > (0 if several else _MOST_SLIDES):
+        return None
+    values = _HELD_VALUES if dh.free else (0.0,)
+    family = np.array([held_frames(dh, value) for value in values])
+    motions = axis_motions(dh, moving)
+    plan = choose_coupled(family, motions) if several else choose_plan(family, turning)
     return plan if plan is not None and plan.usable else None
 
 

@@ -16,12 +16,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.elimination.crowded_angles import crowded_angles
-from ikgen.elimination.loop_frames import typical_length
-from ikgen.elimination.plan import EliminationPlan, digits_lost, distinct_of_runs, ranking
+from ikgen.elimination.loop_frames import over, typical_length
+from ikgen.elimination.plan import (
+    EliminationPlan,
+    digits_lost,
+    distinct_of_runs,
+    half_hard,
+    ranking,
+)
 from ikgen.elimination.routine import Elimination, Plan, initial_residuals
+from ikgen.kinematics.rigid import read_only
 from ikgen.model.joint_tree import Matrix
 from ikgen.runtime.python.chain_kinematics import Chain, Motion, chain_of, forward, jacobian
-from ikgen.runtime.python.coupled_angle import CoupledAngle, coupled_determinants, neighbours
+from ikgen.runtime.python.coupled_angle import (
+    CoupledAngle,
+    coupled_and_others,
+    coupled_determinants,
+    neighbours,
+)
 
 __all__ = ["choose_coupled"]
 
@@ -33,8 +45,6 @@ _PROBES = 24
 _ROUNDING = 1e-12
 """Harmonics below it, of the largest, are none."""
 
-_REGULAR = 1e-3
-
 
 def choose_coupled(frames: Matrix, motions: tuple[Motion, ...]) -> EliminationPlan | None:
     """The best eliminations for a chain of six revolute joints, frames (n + 1, 4, 4) with n > 6 motions, or
@@ -42,12 +52,9 @@ def choose_coupled(frames: Matrix, motions: tuple[Motion, ...]) -> EliminationPl
     find most. None where no elimination applies."""
     family = frames[None] if frames.ndim == 3 else frames
     rng, length = np.random.default_rng(0), typical_length(family[0])
-    scaled = family.copy()
-    scaled[..., :3, 3] /= length
-    chains = [chain_of(member, motions, 6) for member in scaled]
+    chains = [chain_of(member, motions, 6) for member in over(family, length)]
     probes = [_configurations(chain, max(_PROBES // len(family), 4), rng) for chain in chains]
-    first = family[0].copy()
-    first.setflags(write=False)
+    first = read_only(family[0])
     best: EliminationPlan | None = None
     for crowded, group in _eliminations(chains[0], rng):
         find = CoupledAngle(motions, crowded)
@@ -85,8 +92,7 @@ def _eliminations(chain: Chain, rng: np.random.Generator) -> list[_Group]:
     nodes: Matrix = 2.0 * np.pi / _NODES * np.arange(_NODES, dtype=float)
     poses = forward(chain, rng.uniform(-np.pi, np.pi, (_POSES, 6)))
     joints = [motion[0] for motion in chain.motions]
-    coupled = max(joints, key=joints.count)
-    singles = [joint for joint in joints if joint != coupled]
+    coupled, singles = coupled_and_others(chain.motions)
     found: dict[tuple[int, tuple[float, ...]], list[Elimination]] = {}
     for reverse, start in product((0, 1), range(5)):
         at = joints.index(singles[start])
@@ -110,10 +116,7 @@ def _degree(values: NDArray[np.float64]) -> int:
 
 
 def _configurations(chain: Chain, count: int, rng: np.random.Generator) -> Matrix:
-    """Regular configurations (count, 6): half at random, half the nearest to singular ones of many."""
+    """`half_hard` of many."""
     drawn = rng.uniform(-np.pi, np.pi, (12 * count, 6))
-    size = np.linalg.svd(jacobian(chain, drawn), compute_uv=False)[:, -1]
-    regular = np.flatnonzero(size > _REGULAR)
-    hard = regular[np.argsort(size[regular])][: count // 2]
-    plain = np.setdiff1d(regular, hard)[: count - len(hard)]
-    return np.asarray(drawn[np.concatenate([plain, hard])])
+    size = np.asarray(np.linalg.svd(jacobian(chain, drawn), compute_uv=False)[:, -1], dtype=float)
+    return half_hard(drawn, size, count)

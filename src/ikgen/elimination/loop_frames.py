@@ -11,7 +11,7 @@ from ikgen.kinematics.rigid import z_motion
 from ikgen.model.dh import DHChain
 from ikgen.model.joint_tree import Matrix
 
-__all__ = ["forward", "held_frames", "hold_joint", "jacobian", "typical_length"]
+__all__ = ["forward", "held_frames", "hold_joint", "jacobian", "over", "typical_length"]
 
 _LEAST_WITH_SLIDES = 0.1  # m
 
@@ -43,6 +43,13 @@ def typical_length(frames: Matrix, turning: Sequence[bool] | None = None) -> flo
     joint slides, as slides alone may give an arm its size."""
     least = 1e-9 if turning is None or all(turning) else _LEAST_WITH_SLIDES
     return max(float(np.linalg.norm(frames[1:-1, :3, 3], axis=1).sum()), least)
+
+
+def over(frames: Matrix, length: float) -> Matrix:
+    """Transforms (..., 4, 4) with lengths over one (m)."""
+    scaled: Matrix = frames.copy()
+    scaled[..., :3, 3] /= length
+    return scaled
 
 
 def forward(frames: Matrix, values: Matrix, turning: Sequence[bool] | None = None) -> Matrix:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ikgen.elimination.loop_frames import forward, typical_length
+from ikgen.elimination.loop_frames import forward, over, typical_length
 from ikgen.elimination.routine import Elimination, Plan, Turning, six_joints_batch
 from ikgen.model.joint_tree import Matrix
 from ikgen.runtime.python.general_6r import Candidates
@@ -91,8 +91,7 @@ def parallel_plans(family: Matrix) -> tuple[ParallelPlan, ...]:
 def _deviations(frames: Matrix) -> dict[Elimination, float]:
     """Of one chain (7, 4, 4)."""
     length = typical_length(frames)
-    scaled: Matrix = frames.copy()
-    scaled[:, :3, 3] /= length
+    scaled = over(frames, length)
     out = {}
     for start, reverse in _LOOPS:
         _, C = loop_constants(scaled, np.eye(4)[None], start, reverse)

@@ -16,12 +16,14 @@ from itertools import product
 
 import numpy as np
 
-from ikgen.elimination.loop_frames import forward, jacobian, typical_length
+from ikgen.elimination.loop_frames import forward, jacobian, over, typical_length
 from ikgen.elimination.parallel_plans import ParallelPlan, choose_parallel
 from ikgen.elimination.resultant import RESULTANTS, Resultant, root_shifts
 from ikgen.elimination.routine import Elimination, Plan, Turning, finder, initial_residuals
+from ikgen.kinematics.rigid import read_only
 from ikgen.model.joint_tree import Matrix
 from ikgen.runtime.python.chain_kinematics import Motion
+from ikgen.runtime.python.coupled_angle import coupled_and_others
 
 __all__ = [
     "EliminationPlan",
@@ -29,6 +31,7 @@ __all__ = [
     "digits_lost",
     "distinct_of_runs",
     "eliminations",
+    "half_hard",
     "ranking",
 ]
 
@@ -73,14 +76,18 @@ class EliminationPlan:
     @property
     def coupled(self) -> int:
         """The joint that turns several axes, among those that move."""
-        joints = [motion[0] for motion in self.motions]
-        return max(joints, key=joints.count)
+        return coupled_and_others(self.motions)[0]
+
+    @property
+    def degree(self) -> int:
+        """In the angle of a joint that turns several axes; 0 where none does."""
+        return self.eliminations[0][2] if self.motions else 0
 
     @property
     def most(self) -> int:
         """Solutions at most, a power of two."""
         if self.motions:
-            return 1 << (2 * self.eliminations[0][2] - 1).bit_length()
+            return 1 << (2 * self.degree - 1).bit_length()
         return _MOST[self.turning.count(False)]
 
     @property
@@ -120,8 +127,7 @@ def choose_plan(
     rough = np.max([probe.rough for probe in parts], axis=0)
     shifts = np.max([probe.shifts for probe in parts], axis=0)
     order = ranking(hits, rough)
-    first = family[0].copy()
-    first.setflags(write=False)
+    first = read_only(family[0])
     return EliminationPlan(
         frames=first,
         length=typical_length(first, turning),
@@ -182,7 +188,7 @@ def _probe(frames: Matrix, turning: Turning, count: int, rng: np.random.Generato
     unions = [distinct_of_runs([rows[i] for rows, _ in runs], turning) for i in range(len(poses))]
     shifts = np.ones((len(RESULTANTS), 1))
     if all(turning):
-        shifts = root_shifts(_over(frames, length), _over(poses, length), np.array(q))
+        shifts = root_shifts(over(frames, length), over(poses, length), q)
     hits = np.concatenate(unions, axis=1)
     return _Probe(hits, rough, np.quantile(shifts, 0.75, axis=1))
 
@@ -192,12 +198,6 @@ def digits_lost(errors: Matrix) -> float:
     return (
         float(np.maximum(np.log10(errors + 1e-16) - _FINE, 0.0).mean()) if len(errors) else -_FINE
     )
-
-
-def _over(frames: Matrix, length: float) -> Matrix:
-    scaled: Matrix = frames.copy()
-    scaled[:, :3, 3] /= length
-    return scaled
 
 
 def distinct_of_runs(runs: list[Matrix], turning: Turning) -> Matrix:
@@ -216,14 +216,19 @@ def _among(q: Matrix, rows: Matrix, turning: Turning) -> bool:
 
 def _configurations(
     frames: Matrix, turning: Turning, count: int, rng: np.random.Generator
-) -> list[Matrix]:
-    """Regular configurations (count, 6): half at random, half the nearest to singular ones of
-    many. Slides are drawn within the typical length."""
+) -> Matrix:
+    """`half_hard` of many; slides are drawn within the typical length."""
     reach = np.where(turning, np.pi, typical_length(frames, turning))
     drawn = rng.uniform(-reach, reach, (12 * count, 6))
     slopes = [jacobian(frames, q, turning) for q in drawn]
     size = np.array([np.linalg.svd(J, compute_uv=False)[-1] for J in slopes])
-    regular = np.nonzero(size > _REGULAR)[0]
+    return half_hard(drawn, size, count)
+
+
+def half_hard(drawn: Matrix, size: Matrix, count: int) -> Matrix:
+    """Of configurations (n, 6) with these smallest singular values (n,), `count` regular ones: half of them
+    the first, half the nearest to singular ones."""
+    regular = np.flatnonzero(size > _REGULAR)
     hard = regular[np.argsort(size[regular])][: count // 2]
-    plain = [k for k in regular if k not in set(hard.tolist())][: count - len(hard)]
-    return [drawn[k] for k in (*plain, *hard)]
+    plain = np.setdiff1d(regular, hard)[: count - len(hard)]
+    return np.asarray(drawn[np.concatenate([plain, hard])])

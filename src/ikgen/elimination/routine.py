@@ -8,6 +8,7 @@ from dataclasses import fields
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.elimination.loop_frames import over
 from ikgen.model.joint_tree import Matrix
 from ikgen.program.policy import SolvePolicy
 from ikgen.runtime.python.general_6r import (
@@ -89,9 +90,7 @@ def initial_residuals(frames: Matrix, plan: Plan, poses: Matrix) -> tuple[list[M
     (m,) of those candidates that became solutions, before Newton's method: how well conditioned the
     elimination is."""
     policy = runtime_policy(SolvePolicy())
-    F, T = frames.copy(), poses.copy()
-    F[:, :3, 3] /= plan.length
-    T[:, :3, 3] /= plan.length
+    F, T = over(frames, plan.length), over(poses, plan.length)
     index, q, *_ = plan.find(F, T, plan.eliminations[0], plan.turning)
     if not len(q):
         return [np.zeros((0, 6)) for _ in poses], np.zeros(0)

@@ -71,9 +71,8 @@ def _solution(page: SolvedPage) -> list[Block]:
     plan = page.derivation.module.plan
     if plan is not None:
         slides, order = plan.turning.count(False), loop_order(page.reading.dh, plan)
-        degree = plan.eliminations[0][2] if plan.motions else 0
         parallel = plan.parallel is not None
-        blocks += elimination_section(slides, order, parallel=parallel, coupled=degree)
+        blocks += elimination_section(slides, order, parallel=parallel, coupled=plan.degree)
         if page.example is not None:
             blocks += roots_blocks(page.reading.dh, plan, page.example)
     return blocks
