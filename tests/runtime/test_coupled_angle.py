@@ -51,6 +51,15 @@ def test_roots_near_an_angle_are_found_by_the_values_there() -> None:
     np.testing.assert_allclose(np.sort(x[4:]), wanted[1, :2], atol=1e-9)
 
 
+def test_as_many_roots_as_there_are_nodes_but_one_are_found() -> None:
+    """Of Chebyshev's polynomial of degree 20, moved up."""
+    pose, x = _close_roots((np.cos(20.0 * np.arccos(_NODES)) + 0.3)[None])
+    both = [sign * np.arccos(-0.3) + 2.0 * np.pi * np.arange(20) for sign in (1.0, -1.0)]
+    wanted = np.unique(np.round(np.cos(np.concatenate(both) / 20.0), 12))
+    np.testing.assert_allclose(np.sort(x), _NEAR * wanted, atol=1e-9)
+    assert not pose.any() and len(wanted) == 20
+
+
 def test_roots_far_from_the_real_axis_are_left_out() -> None:
     at = _NEAR * _NODES
     for part, count in ((0.02, 2), (0.04, 0)):
