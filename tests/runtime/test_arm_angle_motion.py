@@ -81,3 +81,10 @@ def test_ends_are_where_some_joint_is_the_tolerance_outside(arm: ModuleType) -> 
             gap[:, ELBOW] = np.inf
             count += gap.min() < 1e-6
     assert count > 8
+
+
+def test_what_is_no_pose_has_no_intervals_and_a_pose_has_some(arm: ModuleType) -> None:
+    pose, _ = at_zero(arm, 2)
+    found = arm.self_motion(pose)
+    assert found and all(-np.pi <= one.low < one.high <= np.pi for one in found)
+    assert tuple(arm.self_motion(np.full((4, 4), np.nan))) == ()

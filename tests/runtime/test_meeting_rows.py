@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from tests.support.cpp_modules import solver_module
+from tests.support.solving import import_text
 
-from ikgen.runtime.python.meeting_rows import Starts, _fresh, _gap, _root, _still
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.runtime.python.meeting_rows import Starts, _fresh, _gap, _root, _still, rows_nearby
 
 Array = NDArray[np.float64]
 ARM: Any = SimpleNamespace(
@@ -91,3 +95,25 @@ def test_a_row_that_stalled_near_another_solution_is_not_fresh() -> None:
     assert fresh([a, near], [0, 1], near=".x", stalled=".x") == [True, True]
     assert fresh([a, far], [0, 1], near="xx", stalled=".x") == [True, True]
     assert fresh([near, a], [1, 0], near="xx", stalled="x.") == [True, True]
+
+
+@pytest.mark.parametrize("off", [1e-4, 1e-5])
+def test_both_rows_beside_a_fold_are_found_from_it(off: float, tmp_path: Path) -> None:
+    """The stretched arm stands between the two rows of a pose at which it is a little bent."""
+    arm = import_text(emit_module(solver_module("kuka_kr6r900sixx")), tmp_path)
+    straight = np.array([0.2, -0.9, -1.0, 0.3, 0.6, -0.4])
+
+    def bent(by: float) -> Array:
+        return straight + by * np.eye(6)[2]
+
+    low, high = 0.0, 2.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        turned = np.linalg.det(arm.jacobian(bent(low))) * np.linalg.det(arm.jacobian(bent(middle)))
+        low, high = (low, middle) if turned < 0.0 else (middle, high)
+    pose = arm.forward(bent(low + off))
+    given = np.zeros(1, np.intp), np.zeros(1, bool), np.zeros(1, int)
+    of, rows, _ = rows_nearby(arm._ARM, Starts(bent(low)[None], pose[None], *given))
+    assert not of.any() and np.abs(arm.forward(rows) - pose).max() < 1e-9
+    assert np.abs(rows - bent(low + off)).max(axis=1).min() < 1e-8
+    assert rows[:, 2].min() - bent(low)[2] == pytest.approx(-off, rel=1e-2)
