@@ -180,3 +180,13 @@ def test_the_tolerance_is_of_each_entry_that_is_read(columns: tuple[int, ...]) -
             np.testing.assert_array_equal(
                 task.read_batch(pose[None], POLICY)[0][0][:3, columns], near[:3, columns]
             )
+
+
+def test_a_rotation_that_is_one_but_for_rounding_stays_to_the_bit() -> None:
+    task = PoseTask(1.0)
+    turns = np.tile(np.eye(4), (50, 1, 1))
+    for pose, vector in zip(turns, np.random.default_rng(6).normal(size=(50, 3)), strict=True):
+        pose[:3, :3] = pinocchio.exp3(vector)
+    found, good = task.read_batch(turns, POLICY)
+    assert good.all() and np.array_equal(found, turns)
+    assert [task.read(pose.tolist(), POLICY) for pose in turns] == turns.tolist()
