@@ -1,14 +1,17 @@
-"""Poses halfway between two, which paths are halved by."""
+"""Poses halfway between two, which paths are halved by; and where a walk may end."""
 
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from ikgen.runtime.python.path_following import _between
+from ikgen.runtime.python.path_following import _between, _Walk
+from ikgen.runtime.python.solutions import Status
 
 Array = NDArray[np.float64]
 
@@ -37,3 +40,17 @@ def test_the_pose_halfway_has_half_of_the_turn(angle: float) -> None:
         np.testing.assert_allclose(half @ half.T, np.eye(3), atol=1e-9)
         np.testing.assert_allclose(half @ half, a[:3, :3].T @ b[:3, :3], atol=2e-8)
         assert np.trace(half) >= 1.0 - 1e-6  # at most a quarter of a turn
+
+
+def test_a_walk_arrives_inside_the_limits_or_not_at_all() -> None:
+    arm: Any = SimpleNamespace(
+        lower=(-1.0, 0.0), upper=(1.0, 2.0), policy=SimpleNamespace(limit_tolerance=1e-9)
+    )
+    for limits in (True, False):
+        walk = _Walk(arm, limits)
+        assert walk._arrive(np.array([0.5, 1.5])) is Status.OK and walk.q.tolist() == [0.5, 1.5]
+        told = walk._arrive(np.array([0.5, 2.0 + 3e-9]))
+        assert told is (Status.LIMITS if limits else Status.OK)
+        assert walk.q.tolist() == ([0.5, 1.5] if limits else [0.5, 2.0 + 3e-9])
+        assert walk._arrive(np.array([-1.0 - 5e-10, 0.0])) is Status.OK
+        assert walk.q[0] == (-1.0 if limits else -1.0 - 5e-10)
