@@ -12,7 +12,8 @@ so that the score is a lower bound of what all tests find. Golden files do not c
 counts as found where a test fails, an import does, or a test takes more than four times the time that it
 takes without it. What is done stands in FILE, one JSON object a line; a run with the same file goes on
 behind it, with `--again` after those that no test found were tried anew. Changes not found are
-printed. Exit code 1 where fewer than 85 of 100 are found.
+printed, with the reason where none should be (`benchmarks/harmless_changes.py`). Exit code 1 where
+fewer than 85 of 100 are found.
 """
 
 from __future__ import annotations
@@ -36,6 +37,7 @@ from benchmarks.code_mutations import CodeMutation, code_mutations
 from benchmarks.command_line import REPOSITORY
 from benchmarks.forked_tests import Server
 from benchmarks.function_codes import surrounding
+from benchmarks.harmless_changes import why_harmless
 from benchmarks.reached_functions import Reach, recorded
 from benchmarks.results import write_result
 
@@ -67,6 +69,12 @@ class Done:
     @property
     def package(self) -> str:
         return self.path.split("/")[0]
+
+    @property
+    def harmless(self) -> str:
+        """Why no test should notice it, where none does and that is known."""
+        text = (REPOSITORY / "src" / "ikgen" / self.path).read_bytes()
+        return "" if self.found_by else why_harmless(self.path, text, self.mutation)
 
 
 def drawn(seed: int) -> list[tuple[str, CodeMutation]]:
@@ -190,11 +198,12 @@ def _write(log: Path, found: Sequence[Done]) -> None:
     new.replace(log)
 
 
-def score(found: Sequence[Done]) -> dict[str, tuple[int, int]]:
-    """Package -> (found by a test, all)."""
+def score(found: Sequence[Done]) -> dict[str, tuple[int, int, int]]:
+    """Package -> (found by a test, all, those that change nothing)."""
     every = Counter(d.package for d in found)
     noticed = Counter(d.package for d in found if d.found_by)
-    return {package: (noticed[package], every[package]) for package in PACKAGES if every[package]}
+    same = Counter(d.package for d in found if d.harmless)
+    return {p: (noticed[p], every[p], same[p]) for p in PACKAGES if every[p]}
 
 
 def main() -> int:
@@ -212,12 +221,14 @@ def main() -> int:
     for done in found:
         if not done.found_by:
             m = done.mutation
-            print(f"src/ikgen/{done.path}:{m.line}: {' '.join(m.old.split())} -> {m.new}")
+            why = f"  ({done.harmless})" if done.harmless else ""
+            print(f"src/ikgen/{done.path}:{m.line}: {' '.join(m.old.split())} -> {m.new}{why}")
     by_package = score(found)
-    for package, (noticed, every) in by_package.items():
-        print(f"{package:10} {noticed:4} of {every:4}  {noticed / every:6.1%}")
-    noticed = sum(n for n, _ in by_package.values())
-    print(f"{'all':10} {noticed:4} of {len(found):4}  {noticed / len(found):6.1%}")
+    noticed, every, same = (sum(row[k] for row in by_package.values()) for k in range(3))
+    for name, row in {**by_package, "all": (noticed, every, same)}.items():
+        print(
+            f"{name:10} {row[0]:4} of {row[1]:4}  {row[0] / row[1]:6.1%}  {row[2]:3} change nothing"
+        )
     if options.record:
         shown = {"seed": options.seed, "mutations": len(found), "found": by_package}
         write_result("mutation_score", "python -m benchmarks.mutation_score", shown)

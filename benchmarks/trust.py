@@ -79,7 +79,7 @@ def _planted(found: dict[str, object]) -> list[tuple[str, str]]:
 def _mutation_score(found: dict[str, object]) -> list[tuple[str, str]]:
     by_package = found["found"]
     assert isinstance(by_package, dict)
-    noticed = sum(n for n, _ in by_package.values())
+    noticed = sum(row[0] for row in by_package.values())
     words = f"{found['mutations']} small changes of ikgen's own code, one at a time"
     return [(words, f"{noticed} noticed by a short test")]
 
@@ -107,9 +107,11 @@ def score_table() -> str:
     """The table of mutations by package."""
     one = read_result("mutation_score")
     rows = {**one.found["found"]}
-    rows["all"] = [sum(row[k] for row in rows.values()) for k in (0, 1)]
-    lines = ["| package | changes tried | noticed | share |", "|---|---|---|---|"]
-    lines += [f"| {name} | {every} | {n} | {n / every:.0%} |" for name, (n, every) in rows.items()]
+    rows["all"] = [sum(row[k] for row in rows.values()) for k in (0, 1, 2)]
+    head = "| package | changes tried | noticed | share | change nothing, as looked at |"
+    lines = [head, "|---|---|---|---|---|"]
+    for name, (n, every, same) in rows.items():
+        lines.append(f"| {name} | {every} | {n} | {n / every:.0%} | {same} |")
     seed = one.found["seed"]
     return (
         "\n".join(lines)

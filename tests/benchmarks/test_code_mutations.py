@@ -8,6 +8,7 @@ import pytest
 from benchmarks.code_mutations import code_mutations
 from benchmarks.command_line import REPOSITORY
 from benchmarks.function_codes import surrounding
+from benchmarks.harmless_changes import HARMLESS, HarmlessChange, why_harmless
 from benchmarks.mutation_score import PACKAGES, Done, chosen, drawn, score
 from benchmarks.reached_functions import Reach
 
@@ -99,8 +100,14 @@ def test_tests_that_reach_a_function_run_those_of_its_module_first() -> None:
 
 def test_the_score_is_by_package() -> None:
     mutation = code_mutations(b"x = 1\n")[0]
-    rows = [("forms/a.py", "t"), ("forms/a.py", ""), ("emit/b.py", "too late")]
+    rows = [("forms/form.py", "t"), ("forms/form.py", ""), ("emit/printer.py", "too late")]
     assert score([Done(path, mutation, by, 1.0) for path, by in rows]) == {
-        "forms": (1, 2),
-        "emit": (1, 1),
+        "forms": (1, 2, 0),
+        "emit": (1, 1, 0),
     }
+
+
+@pytest.mark.parametrize("one", HARMLESS, ids=lambda one: f"{one.path}: {one.old} to {one.new}")
+def test_changes_that_are_said_to_be_harmless_are_there(one: HarmlessChange) -> None:
+    text = (REPOSITORY / "src" / "ikgen" / one.path).read_bytes()
+    assert one.why and one.why in {why_harmless(one.path, text, m) for m in code_mutations(text)}

@@ -62,6 +62,15 @@ def test_a_motion_through_the_wrist_singularity_comes_back(ur5e: ModuleType) -> 
         assert bool(path.singular.any()) == (count == 41)
 
 
+def test_few_poses_far_apart_are_followed_by_halved_steps(ur5e: ModuleType) -> None:
+    start, rng = np.array([0.3, -1.2, 1.4, -0.8, 0.9, 0.2]), np.random.default_rng(0)
+    for _ in range(20):
+        motion = start + np.linspace(0.0, 1.0, 4)[:, None] * rng.uniform(-0.5, 0.5, 6)
+        path = ur5e.follow(along(ur5e, motion), start=start)
+        assert path.status is ur5e.Status.OK
+        assert np.abs(path.q - motion).max() < 1e-6
+
+
 def test_whole_turns_are_unwound(ur5e: ModuleType) -> None:
     start = np.array([2.5, -1.2, 1.4, -0.8, 1.0, -4.0])
     motion = np.repeat(start[None], 60, axis=0)

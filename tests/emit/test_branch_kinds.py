@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import pytest
 from tests.support.cpp_modules import robot_file
 
+from ikgen.emit.python import branch_kinds
 from ikgen.emit.python.branch_kinds import branch_kind, elbow_end
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
@@ -31,3 +32,33 @@ def test_arms_with_a_shoulder_an_elbow_and_a_wrist(name: str, kind: str, end: in
     for other in ({"task": "position"}, {"free": (0,)}, {"lanes": 4}):
         assert branch_kind(SimpleNamespace(**{**vars(module), **other})) == "number"
     assert branch_kind(SimpleNamespace(**{**vars(module), "plan": object()})) == "orientation"
+
+
+ELBOW = {
+    "kinds": "RRRRRR", "perpendicular_pairs": (1,), "parallel_pairs": (2,),
+    "parallel_triples": (), "spherical_triples": (4,), "intersecting_pairs": (),
+}  # fmt: skip
+PARALLEL = {
+    **ELBOW, "spherical_triples": (), "parallel_triples": (2,), "intersecting_pairs": (4, 5),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("whole", [ELBOW, PARALLEL], ids=["spherical wrist", "three parallel axes"])
+def test_each_trait_of_an_elbow_arm_is_needed(
+    whole: dict[str, object], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    dh = SimpleNamespace(dof=6, rows=(None,) * 6)
+    module = SimpleNamespace(plan=None, dh=dh, task="pose", free=(), lanes=8)
+
+    def kind(**other: object) -> str:
+        geometry = SimpleNamespace(**{**whole, **other})
+        monkeypatch.setattr(branch_kinds, "classify", lambda _: geometry)
+        return branch_kind(module)
+
+    assert kind() == "names"
+    for trait, value in whole.items():
+        if value and trait != "kinds":
+            assert kind(**{trait: ()}) == "number", trait
+    assert kind(kinds="RRRRRP") == "number"
+    if whole is PARALLEL:
+        assert kind(intersecting_pairs=(4,)) == kind(intersecting_pairs=(5,)) == "number"

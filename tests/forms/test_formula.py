@@ -7,9 +7,14 @@ import pytest
 
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import Variable
+from ikgen.forms.form import Form
 from ikgen.forms.formula import FormulaWriter
+from ikgen.forms.linear_form import Linear
 from ikgen.forms.pair_form import LinearPair
-from ikgen.forms.quartic_form import _self_inversive
+from ikgen.forms.quadratic_form import Quadratic
+from ikgen.forms.quartic_form import TrigQuartic, _self_inversive
+from ikgen.forms.sine_cosine_form import SineCosine
+from ikgen.forms.tangent_form import Tangent
 from ikgen.formulas import mathtext as m
 from ikgen.formulas.mathtext import Math
 from ikgen.formulas.naming import Abbreviations
@@ -96,3 +101,86 @@ def test_the_polynomial_of_a_quartic_reads_the_same_from_both_ends() -> None:
         r"(a_{2}-i\,b_{2}){z}^{4}+(a_{1}-i\,b_{1}){z}^{3}+2\,a_{0}\,{z}^{2}"
         r"+(a_{1}+i\,b_{1})z+(a_{2}+i\,b_{2})=0"
     )
+
+
+WRITTEN: list[tuple[type[Form], str, tuple[str, ...], tuple[str, ...], str, str]] = [
+    (Linear, "a b", (r"a\,d_{1}=-b",), (r"-\frac{b}{a}",), "", "a"),
+    (Linear, "2 b", (r"2\,d_{1}=-b",), (r"-\tfrac{1}{2}\,b",), "", ""),
+    (
+        Quadratic, "a b c", (r"a\,d_{1}^{2}+b\,d_{1}=-c",),
+        (
+            r"\frac{-b+\sqrt{{b}^{2}-4\,a\,c}}{2\,a}",
+            r"\frac{-b-\sqrt{{b}^{2}-4\,a\,c}}{2\,a}",
+        ), r"{b}^{2}-4\,a\,c", "a",
+    ),
+    (
+        Quadratic, "a 0 c", (r"a\,d_{1}^{2}=-c",),
+        (r"\sqrt{-\frac{c}{a}}", r"-\sqrt{-\frac{c}{a}}"), r"-\frac{c}{a}", "a",
+    ),
+    (
+        Quadratic, "2 b c", (r"2\,d_{1}^{2}+b\,d_{1}=-c",),
+        (
+            r"-\tfrac{1}{4}\,b+\sqrt{0.0625\,{b}^{2}-\tfrac{1}{2}\,c}",
+            r"-\tfrac{1}{4}\,b-\sqrt{0.0625\,{b}^{2}-\tfrac{1}{2}\,c}",
+        ), r"0.0625\,{b}^{2}-\tfrac{1}{2}\,c", "",
+    ),
+    (
+        SineCosine, "a b c", (r"a\,c_{1}+b\,s_{1}=c",),
+        tuple(
+            rf"\operatorname{{atan2}}(b,\,a){sign}"
+            r"\operatorname{atan2}(\sqrt{{a}^{2}+{b}^{2}-{c}^{2}},\,c)"
+            for sign in "+-"
+        ), r"{a}^{2}+{b}^{2}-{c}^{2}\ge 0", "{a}^{2}+{b}^{2}",
+    ),
+    (
+        SineCosine, "a 0 c", (r"a\,c_{1}=c",),
+        tuple(sign + r"\operatorname{acos}\Bigl(\frac{c}{a}\Bigr)" for sign in ("", "-")),
+        r"|c|\le |a|", "a",
+    ),
+    (
+        SineCosine, "0 b c", (r"b\,s_{1}=c",),
+        tuple(sign + r"\operatorname{asin}\Bigl(\frac{c}{b}\Bigr)" for sign in ("", r"\pi -")),
+        r"|c|\le |b|", "b",
+    ),
+    (
+        SineCosine, "2 0 c", (r"2\,c_{1}=c",),
+        tuple(sign + r"\operatorname{acos}(\tfrac{1}{2}\,c)" for sign in ("", "-")),
+        r"|c|\le 2", "",
+    ),
+    (
+        Tangent, "a b", (r"K\,c_{1}=a", r"K\,s_{1}=b"),
+        (r"\operatorname{atan2}(b,\,a)", r"\operatorname{atan2}(-b,\,-a)"), "", "{a}^{2}+{b}^{2}",
+    ),
+    (
+        TrigQuartic, "a b c d f",
+        (
+            r"a_{2}\,\operatorname{cos}(2\,\theta_{1})+b_{2}\,\operatorname{sin}(2\,\theta_{1})"
+            r"+a_{1}\,\operatorname{cos}(\theta_{1})+b_{1}\,\operatorname{sin}(\theta_{1})+a_{0}\,=0",
+            "a_{2}=a", "b_{2}=b", "a_{1}=c", "b_{1}=d", "a_{0}=f",
+            r"(a_{2}-i\,b_{2}){z}^{4}+(a_{1}-i\,b_{1}){z}^{3}+2\,a_{0}\,{z}^{2}"
+            r"+(a_{1}+i\,b_{1})z+(a_{2}+i\,b_{2})=0",
+        ),
+        tuple(rf"\operatorname{{arg}}(z_{{{k}}})" for k in (1, 2, 3, 4)), "", "",
+    ),
+]  # fmt: skip
+"""Form, its coefficients, its equations, its branches, where there are any, and what must not vanish."""
+
+
+@pytest.mark.parametrize("case", WRITTEN, ids=lambda case: f"{case[0].__name__} {case[1]}")
+def test_each_form_reads_as_it_is_solved(
+    case: tuple[type[Form], str, tuple[str, ...], tuple[str, ...], str, str],
+) -> None:
+    form, coefficients, equations, branches, reach, divisor = case
+    g = ExpressionGraph(3)
+    atoms = {
+        name: g.atom("pose", name, np.array(PLAIN[like]), unknown=False)
+        for name, like in zip("abcdfh", NAMES, strict=True)
+    }
+    e = [atoms[c] if c in atoms else g.const(float(c)) for c in coefficients.split()]
+    kind = "prismatic" if form in (Linear, Quadratic) else "angle"
+    w = FormulaWriter(Variable(kind, (1, 0)), e, g, Normalizer(), Abbreviations([]))
+    found = form(*e).formula(w)
+    assert tuple(map(latex, found.equations)) == equations
+    assert tuple(map(latex, found.branches)) == branches
+    assert ("" if found.reach is None else latex(found.reach)) == reach
+    assert ("" if found.divisor is None else latex(found.divisor)) == divisor

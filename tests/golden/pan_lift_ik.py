@@ -2157,7 +2157,7 @@ def _between(a: Array, b: Array) -> Array:
         S = R + np.eye(3)
         column = S[:, int(np.argmax(np.diag(S)))]
         axis = column / np.linalg.norm(column)
-    K = np.cross(np.eye(3), -axis)
+    K = np.cross(np.eye(3), axis)
     half = 0.5 * angle
     T[:3, :3] = a[:3, :3] @ (np.eye(3) + np.sin(half) * K + (1.0 - np.cos(half)) * K @ K)
     return T

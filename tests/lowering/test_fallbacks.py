@@ -15,7 +15,7 @@ from ikgen.forms.lowered_form import LoweredForm, Tolerances
 from ikgen.forms.quadratic_form import Quadratic
 from ikgen.forms.sine_cosine_form import SineCosine
 from ikgen.forms.tangent_form import Tangent
-from ikgen.lowering.fallbacks import choose_form
+from ikgen.lowering.fallbacks import _pick, choose_form
 from ikgen.lowering.placement import Placement, Requirement
 from ikgen.solver.solution_graph import SolutionGraph
 from ikgen.solver.solve import solve_chain
@@ -169,3 +169,25 @@ def test_a_guard_bounds_where_the_solution_is_real_where_that_is_said_alone(
     found = [item for level in bench.work.levels for item in level.items]
     assert [item.fold for item in found if isinstance(item, Requirement)] == [False, True]
     assert not Requirement(one).fold
+
+
+FLAGS = {"always": True, "never": False, "one": (1.0, 1.0, 0.0, 0.0), "other": (0.0, 1.0, 1.0, 0.0)}
+
+
+@pytest.mark.parametrize("mine", FLAGS)
+@pytest.mark.parametrize("other", FLAGS)
+def test_of_two_conditions_one_is_taken_where_a_third_holds(
+    mine: str, other: str, solved: SolutionGraph
+) -> None:
+    b = Bench(solved)
+    flags = {
+        name: value if isinstance(value, bool) else b.g.binary("gt", b.given(value), b.g.const(0.5))
+        for name, value in FLAGS.items()
+    }
+    here = (1.0, 0.0, 1.0, 0.0)
+    condition = b.g.binary("gt", b.given(here), b.g.const(0.5))
+    assert _pick(b.g, None, flags[mine], flags[other]) is flags[mine]
+    found = _pick(b.g, condition, flags[mine], flags[other])
+    one, two = (np.broadcast_to(FLAGS[name], 4).astype(bool) for name in (mine, other))
+    shown = np.full(4, found) if isinstance(found, bool) else found.probe[:4] > 0.5
+    assert shown.tolist() == np.where(np.array(here) > 0.5, one, two).tolist()

@@ -12,8 +12,7 @@ import pytest
 from ikgen.cli.main import run
 from ikgen.projects import recheck, sample_blocks
 from ikgen.projects.check_findings import Finding
-from ikgen.verify.merged_reports import merged_reports
-from ikgen.verify.verification_report import CheckResult, SigmaBand, VerificationReport
+from ikgen.verify.verification_report import CheckResult
 
 
 def verified(
@@ -77,22 +76,3 @@ def test_dask_builds_and_verifies(
 def test_a_scheduler_needs_dask(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["build", "--scheduler", "tcp://127.0.0.1:1"]) == 2
     assert "--scheduler needs --executor dask" in capsys.readouterr().err
-
-
-def test_merged_reports_add_up() -> None:
-    good = CheckResult("closure", True, 10, 0, (("m", 1e-9), ("rad", 3e-9)), "all")
-    bad = CheckResult("closure", False, 5, 2, (("m", 4e-3), ("rad", 1e-9)), "two", "here")
-    one = VerificationReport(
-        "python", "a", "b", "pose", 10, 0, (good,), ((2, 4), (8, 6)), seconds=1.0,
-        bands=(SigmaBand(0.0, 0.1, 3, 1, case="near"), SigmaBand(0.1, 1.0, 7)),
-    )  # fmt: skip
-    two = replace(
-        one, samples=5, checks=(bad,), histogram=((8, 5),), bands=(SigmaBand(0.1, 1.0, 5, 2),)
-    )
-    both = merged_reports([one, two])
-    assert both.samples == 15 and both.histogram == ((2, 4), (8, 11)) and both.seconds == 2.0
-    assert both.checks == (
-        CheckResult("closure", False, 15, 2, (("m", 4e-3), ("rad", 3e-9)), "two", "here"),
-    )
-    assert [(b.poses, b.missed, b.case) for b in both.bands] == [(3, 1, "near"), (12, 2, "")]
-    assert merged_reports([one]) == one

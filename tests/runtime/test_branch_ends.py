@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 from ikgen.runtime.python import branch_ends
-from ikgen.runtime.python.branch_ends import BranchEnd, _interpolated, find_ends
+from ikgen.runtime.python.branch_ends import BranchEnd, _interpolated, branch_end, find_ends
 from ikgen.runtime.python.held_joint import Rows
 
 
@@ -170,3 +170,32 @@ def test_a_limit_may_come_before_the_fold(one_sided: bool, monkeypatch: pytest.M
     (end,) = found(branches, monkeypatch, fold(branches, one_sided))
     assert end.inner == pytest.approx(math.log(2.25), abs=1e-10) and not end.at_fold
     assert off(end.inner) <= 0.25 < off(end.outer) and branches.rounds <= 14
+
+
+def tracks_of(branches: Branches, held: list[float], links: list[list[int]]) -> Any:
+    rows = branches.at(None, None, np.array(held))
+    off = branches.outside() - branches.tolerance
+    return SimpleNamespace(rows=rows, links=np.array(links), off=off)
+
+
+def test_what_is_known_of_an_end_is_of_the_samples_around_it() -> None:
+    """A limit: how far the row is outside; a fold: what is positive before it; or how near rows are."""
+    held, on = [0.0, 0.5, 1.0, 1.5], [[0, 1], [0, 1], [0, 1]]
+    branches = pair(guarded=True, off=lambda h: h - 0.6)
+    tracks, before = tracks_of(branches, held, on), np.array(on)
+    joint: Any = SimpleNamespace(arm=branches.arm, margins_tell=True)
+    end = branch_end(joint, tracks, before, (1, 0), (2, 0))
+    assert (end.inner, end.outer, end.lane, end.guess) == (0.5, 1.0, 0, 0.5)
+    assert not end.at_fold and not end.one_sided
+    assert end.known == [(h, pytest.approx(h - 0.85)) for h in (1.5, 0.0, 1.0, 0.5)]
+    back = branch_end(joint, tracks, before, (2, 0), (1, 0))
+    assert [h for h, _ in back.known] == [0.0, 1.5, 0.5, 1.0] and back.outer == 0.5
+
+    end = branch_end(joint, tracks, before, (2, 1), (3, -1))
+    assert end.at_fold and not end.one_sided and end.q[0] == branches.rows[1][0](1.0)
+    assert end.known == [(h, pytest.approx(-folding(h))) for h in (0.5, 1.5, 1.0)]
+    joint.margins_tell = False
+    end = branch_end(joint, tracks, before, (2, 1), (3, -1))
+    upper, lower = (row[0] for row in branches.rows)
+    assert end.at_fold and end.one_sided
+    assert end.known == [(h, pytest.approx(-((upper(h) - lower(h)) ** 2))) for h in (0.5, 1.0)]

@@ -158,3 +158,35 @@ def test_an_entry_that_is_a_cosine_is_one_or_is_put_right(over: float) -> None:
     if single is not None:
         assert single[2][2] == many[0, 2, 2] == np.clip(over, -1.0, 1.0)
     assert many[1, 2, 2] == 1.0
+
+
+@pytest.mark.parametrize("columns", [(0, 1, 2), (2,), (0,)])
+def test_the_tolerance_is_of_each_entry_that_is_read(columns: tuple[int, ...]) -> None:
+    """Columns `C (1 + e J)`, J all ones, are as far off as those with each entry off by e, to first
+    order."""
+    n = len(columns)
+    task: Any = PoseTask(1.0)
+    if n < 3:
+        task = EntriesTask(1.0, (0, 1, 2), columns * 3, columns, False)
+    for share, good in ((0.98, True), (1.02, False)):
+        off = share * POLICY.pose_tolerance * np.sqrt(3.0 / n)
+        pose = T.copy()
+        pose[:3, columns] = R[:, columns] @ (np.eye(n) + off * np.ones((n, n)))
+        assert (task.read(pose.tolist(), POLICY) is not None) == good
+        assert task.read_batch(pose[None], POLICY)[1].tolist() == [good]
+        if good:
+            near = np.array(task.read(pose.tolist(), POLICY))
+            np.testing.assert_allclose(near[:3, columns], R[:, columns], atol=1e-12)
+            np.testing.assert_array_equal(
+                task.read_batch(pose[None], POLICY)[0][0][:3, columns], near[:3, columns]
+            )
+
+
+def test_a_rotation_that_is_one_but_for_rounding_stays_to_the_bit() -> None:
+    task = PoseTask(1.0)
+    turns = np.tile(np.eye(4), (50, 1, 1))
+    for pose, vector in zip(turns, np.random.default_rng(6).normal(size=(50, 3)), strict=True):
+        pose[:3, :3] = pinocchio.exp3(vector)
+    found, good = task.read_batch(turns, POLICY)
+    assert good.all() and np.array_equal(found, turns)
+    assert [task.read(pose.tolist(), POLICY) for pose in turns] == turns.tolist()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,8 +13,20 @@ from tests.support.fake_arms import six_axis_oracle, six_axis_urdf, tree_of
 from ikgen.tasks import find_task
 from ikgen.verify.agreement import disagreements
 from ikgen.verify.arm import ArmUnderTest, arm_under_test
-from ikgen.verify.checks import check_distinct, check_inside_limits
-from ikgen.verify.coverage import check_singular_answers
+from ikgen.verify.checks import (
+    check_closure,
+    check_distinct,
+    check_free_joints,
+    check_inside_limits,
+    check_seed_order,
+    check_singular_flags,
+)
+from ikgen.verify.coverage import (
+    check_limit_choice,
+    check_singular_answers,
+    check_status,
+    check_unreachable,
+)
 from ikgen.verify.oracle import PinocchioOracle
 from ikgen.verify.runners.runner import Rows
 from ikgen.verify.sampling import SampleSet
@@ -73,7 +86,8 @@ def test_what_two_languages_may_not_differ_in(arm: ArmUnderTest) -> None:
 
 def test_rows_outside_the_limits_are_told_with_the_worst(arm: ArmUnderTest) -> None:
     rows = rows_of([row(0.5), row(2.9 + 0.3)], [row(-2.9 - 0.5)], [row(2.9 + 5e-7)])
-    found = check_inside_limits(arm, [trial_of(arm, rows), trial_of(arm, rows, limits=False)])
+    free = rows_of([row(9.0)])
+    found = check_inside_limits(arm, [trial_of(arm, rows), trial_of(arm, free, limits=False)])
     assert (found.count, found.failures, found.passed) == (4, 2, False)
     assert dict(found.worst)["beyond rad or m"] == pytest.approx(0.5)
     assert "made #1" in found.worst_case and "-3.4" in found.worst_case
@@ -106,3 +120,136 @@ def test_poses_without_a_row_are_counted_and_so_are_seeds_found(arm: ArmUnderTes
     assert (found.count, found.failures, found.passed) == (4, 1, False)
     assert "in 2 of 4" in found.detail and "made #1" in found.worst_case
     assert check_singular_answers(arm, trials[1:]).passed
+
+
+def reached(arm: ArmUnderTest, q: Array, off: Array | None = None, *, label: str = "made") -> Trial:
+    """Poses of configurations (N, 6), each answered with its own, moved by `off` (N, 6)."""
+    moved = q if off is None else q + off
+    answer = Rows(
+        moved[:, None], np.ones(len(q), int), ("OK",) * len(q), np.zeros((len(q), 1), bool)
+    )
+    return Trial(SampleSet(label, q, arm.oracle.forward(q), arm.sigma(q)), answer, True, False)
+
+
+def drawn(count: int) -> Array:
+    return np.random.default_rng(2).uniform(0.3, 1.2, (count, 6))
+
+
+def test_rows_off_their_pose_are_told_with_the_worst(arm: ArmUnderTest) -> None:
+    q, off = drawn(4), np.zeros((4, 6))
+    assert check_closure(arm, [reached(arm, q)]).passed
+    off[1, 5], off[2, 1] = 1e-6, 3e-6  # the last joint turns the tip where it is
+    found = check_closure(arm, [reached(arm, q), reached(arm, q, off, label="moved")])
+    assert (found.count, found.failures, found.passed) == (8, 2, False)
+    worst = dict(found.worst)
+    assert worst["rotation rad"] == pytest.approx(3e-6, rel=1e-3)
+    assert 5e-7 < worst["position m"] < 3e-6
+    assert "moved #2" in found.worst_case
+    nan = np.where(off > 0.0, np.nan, 0.0)
+    assert check_closure(arm, [reached(arm, q, nan)]).failures == 2
+    none = check_closure(arm, [trial_of(arm, rows_of([], []))])
+    assert not none.passed and none.worst_case == "no pose was answered with a row"
+
+
+def test_a_row_that_was_put_on_its_limit_may_be_off_by_as_much(arm: ArmUnderTest) -> None:
+    for joint, limit in ((0, arm.lower[0]), (1, arm.upper[1])):
+        q, off = drawn(1), np.zeros((1, 6))
+        q[0, 5] = 0.4
+        off[0, 5] = 1.5e-9
+        assert not check_closure(arm, [reached(arm, q, off)]).passed
+        q[0, joint] = limit
+        assert check_closure(arm, [reached(arm, q, off)]).passed
+        off[0, 5] = 2.5e-9
+        assert not check_closure(arm, [reached(arm, q, off)]).passed
+
+
+def test_flags_belong_to_continua(arm: ArmUnderTest) -> None:
+    q = drawn(3)
+    q[0, 4] = 0.0  # axes 4 and 6 in line
+    trial = reached(arm, q)
+
+    def told(*flags: bool) -> tuple[int, int, str]:
+        answer = replace(trial.rows, singular=np.array(flags)[:, None])
+        found = check_singular_flags(arm, [replace(trial, rows=answer)])
+        assert ("made #" in found.worst_case) == (not found.passed)
+        return found.count, found.failures, found.detail
+
+    assert told(True, False, False) == (3, 0, "")
+    assert told(False, False, False) == (3, 1, "1 rows of a continuum not flagged")
+    assert told(True, True, False) == (3, 1, "0 rows of a continuum not flagged")
+    assert told(False, True, True) == (3, 3, "1 rows of a continuum not flagged")
+
+
+def test_rows_come_in_the_order_of_some_distance_to_the_seed(arm: ArmUnderTest) -> None:
+    seeds = np.zeros((3, 6))
+    near, far = row(0.2, 0.2, 0.2), row(0.5)  # farther by the sum alone: 0.6 + 0.3 and 0.5 + 0.5
+
+    def told(*answers: list[list[float]]) -> tuple[int, int]:
+        found = check_seed_order(arm, trial_of(arm, rows_of(*answers)), seeds)
+        assert found.name == "seed order" and bool(found.worst_case) == (found.failures > 0)
+        return found.count, found.failures
+
+    assert told([near, far], [near], []) == (1, 0)
+    assert told([far, near], [near, far], [near]) == (2, 1)
+    one, other = row(0.4), [0.0, 0.3, 0.3, 0.1, 0.1, 0.1]
+    assert told([one, other], [one, other], []) == (2, 0)
+    swapped = [[other, one]] * 3  # nearer by the largest difference
+    assert told(*swapped) == (3, 0)
+
+
+def test_held_joints_stay(arm: ArmUnderTest) -> None:
+    names = arm.oracle.joint_names
+    held = arm_under_test(arm.oracle, arm.task, (arm.lower, arm.upper), (names[2], names[3]))
+    q, off = drawn(3), np.zeros((3, 6))
+    off[:, 1] = 0.1
+    assert check_free_joints(held, [reached(held, q, off)]).passed
+    off[1, 3] = 1e-6
+    found = check_free_joints(held, [reached(held, q), reached(held, q, off)])
+    assert (found.count, found.failures) == (6, 1) and "made #1" in found.worst_case
+
+
+def test_limits_choose_among_the_rows_without_them(arm: ArmUnderTest) -> None:
+    inside, beyond, turned = row(0.5), row(3.0), row(0.7 + 2.0 * math.pi)
+
+    def told(limited: Rows, unlimited: Rows) -> tuple[int, int, str]:
+        found = check_limit_choice(
+            arm, trial_of(arm, limited), trial_of(arm, unlimited, limits=False)
+        )
+        return found.count, found.failures, found.worst_case
+
+    every = rows_of([inside, beyond, turned])
+    assert told(rows_of([inside, row(0.7)]), every) == (4, 0, "")
+    count, failures, case = told(rows_of([inside]), every)
+    assert (count, failures) == (3, 1) and "dropped #0" in case
+    count, failures, case = told(rows_of([inside, row(0.7), row(0.9)]), every)
+    assert (count, failures) == (5, 1) and "not without limits #0" in case
+    flagged = rows_of([inside, beyond, turned], singular=(0, 1))
+    assert told(rows_of([inside]), flagged) == (0, 0, "")
+    assert told(rows_of([inside], singular=(0, 0)), every) == (0, 0, "")
+
+
+def test_the_status_says_what_limits_leave(arm: ArmUnderTest) -> None:
+    some, none = [row(0.5)], list[list[float]]()
+    with_, without = rows_of(some, none, none), rows_of(some, some, none)
+    with_ = replace(with_, status=("OK", "LIMITS", "UNREACHABLE"))
+
+    def told(limited: Rows, unlimited: Rows) -> int:
+        pair = trial_of(arm, limited), trial_of(arm, unlimited, limits=False)
+        found = check_status(arm, [pair])
+        assert found.count == 3 and bool(found.worst_case) == (found.failures > 0)
+        return found.failures
+
+    assert told(with_, without) == 0
+    assert told(replace(with_, status=("OK", "UNREACHABLE", "UNREACHABLE")), without) == 1
+    assert told(replace(with_, status=("LIMITS", "LIMITS", "LIMITS")), without) == 2
+    assert told(with_, replace(without, status=("UNREACHABLE", "OK", "OK"))) == 2
+
+
+def test_poses_out_of_reach_have_neither_rows_nor_another_status(arm: ArmUnderTest) -> None:
+    none = rows_of([], [])
+    assert check_unreachable(arm, [trial_of(arm, none)]).passed
+    wrong = replace(none, status=("UNREACHABLE", "LIMITS"))
+    found = check_unreachable(arm, [trial_of(arm, none), trial_of(arm, wrong)])
+    assert (found.count, found.failures) == (4, 1) and "made" in found.worst_case
+    rows = rows_of([row(0.5)], [])
+    assert check_unreachable(arm, [trial_of(arm, rows)]).failures == 1
