@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import subprocess
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
 
@@ -11,11 +11,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.held_arms import HELD, held_module, held_of, on_limits
+from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
 from tests.support.sampled import sampled
-from tests.support.solving import NO_COMPILER, import_text
+from tests.support.solving import NO_COMPILER, import_text, solver_module
 
 from ikgen.emit.cpp.cpp_emitter import emit_header
 from ikgen.emit.python.python_emitter import emit_module
+from ikgen.emit.solver_module import SolverModule
+from ikgen.generation.read import read
+from ikgen.generation.request import Request
 from ikgen.verify.runners.cpp_toolchain import compile_program, find_eigen
 
 pytestmark = pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
@@ -100,7 +104,10 @@ OFTEN = ("shoulder_elbow_wrist", "torso", "arm_angle", "rounded_arm_angle", "ur5
 @pytest.fixture(scope="module", params=sampled(HELD, OFTEN))
 def both(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Both:
     folder = tmp_path_factory.mktemp("both")
-    module = held_module(request.param, folder)
+    return in_both(held_module(request.param, folder), folder)
+
+
+def in_both(module: SolverModule, folder: Path) -> Both:
     (folder / f"{module.name}_ik.hpp").write_text(emit_header(module))
     define = "#define ONE_HELD\n" if len(module.held) == 1 else ""
     source = folder / "main.cpp"
@@ -128,6 +135,30 @@ def test_intervals(both: Both) -> None:
         wide = [x[x[:, 1] - x[:, 0] > 1e-3] for x in (mine, theirs)]
         assert len(wide[0]) == len(wide[1])
         assert np.abs(wide[0][:, :2] - wide[1][:, :2]).max() < 1e-9
+
+
+def test_branches_that_come_near_each_other_end_where_each_does(tmp_path: Path) -> None:
+    narrow = {"elbow": (-2.1, 0.1), "wrist_pitch": (-0.6, 0.6), "wrist_roll": (-0.4, 0.4)}
+    path = tmp_path / "narrow.urdf"
+    path.write_text(
+        serial_urdf("narrow", [(*j[:4], narrow.get(j[0], j[4])) for j in SHOULDER_ELBOW_WRIST])
+    )
+    dh = read(Request(path, free={"shoulder_roll": None})).dh
+    both = in_both(replace(solver_module(dh), name="narrow"), tmp_path)
+    for row in (
+        (1.02924, 1.7831, -2.13867, 0.02822, -1.58641, -0.1504, -0.28535),
+        (0.16952, 0.75965, 1.25799, -0.00999, 2.13671, -0.45608, -0.3702),
+        (-0.19588, 1.00576, -0.51975, 0.02367, 1.91753, 0.39581, -0.17747),
+    ):
+        pose = both.arm.forward(np.array(row))
+        _, numbers = both.run(0, np.zeros(7), pose[None])
+        own = [(one.low, one.high) for one in both.arm.self_motion(pose)]
+        for intervals in (numbers.reshape(-1, 3)[:, :2], np.array(own)):
+            for sign, ends in zip((1.0, -1.0), intervals.T, strict=True):
+                for end in ends[np.abs(ends) < 2.999]:
+                    beside = [end + sign * by for by in (1e-6, -1e-6)]
+                    inside, outside = (len(both.arm.solve(pose, free=[x])) for x in beside)
+                    assert inside > outside
 
 
 def test_poses_at_which_a_joint_stays_on_its_limit_or_the_arm_is_stretched(both: Both) -> None:

@@ -1256,6 +1256,7 @@ template <class Arm> struct LaneSolve {
 // --- pose entries --------------------------------------------------------------------------------
 template <class Arm> struct PoseEntries {
   static constexpr int kCount = sizeof(Arm::kRead) / sizeof(Arm::kRead[0]);
+  static constexpr bool kPosition = Arm::kRead[0][1] == 3;  // is read
 
   template <class X, class Tip>
   static void error(const X (&t)[3][4], const Tip& T, X (&error)[kCount]) noexcept {

@@ -75,7 +75,9 @@ def limit(branches: Branches, inner: float, outer: float, lane: int = 0) -> Bran
     """Where the limits end a row, as the samples on both sides tell it."""
     value, off, _ = branches.rows[lane]
     known = [(h, off(h) - branches.tolerance) for h in (outer, inner)]
-    return BranchEnd(inner, outer, np.array([value(inner)]), lane, known, False, False, inner)
+    return BranchEnd(
+        inner, outer, np.array([value(inner)]), lane, known, False, False, inner, branches.guarded
+    )
 
 
 @pytest.mark.parametrize(("inner", "outer"), [(0.0, 0.8), (2.2, 1.1)])
@@ -142,7 +144,9 @@ def fold(branches: Branches, one_sided: bool) -> BranchEnd:
     if one_sided:
         other = branches.rows[1][0]
         known = [(h, -((value(h) - other(h)) ** 2)) for h in (-0.5, 0.5)]
-    return BranchEnd(0.5, 2.0, np.array([value(0.5)]), 0, known, True, one_sided, 0.5)
+    return BranchEnd(
+        0.5, 2.0, np.array([value(0.5)]), 0, known, True, one_sided, 0.5, branches.guarded
+    )
 
 
 def test_a_fold_is_found_by_what_is_positive_before_it(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -50,20 +50,15 @@ def example_section(dh: DHChain, example: WorkedExample, module: str) -> list[Bl
 
 
 def _held(dh: DHChain, example: WorkedExample) -> list[str]:
-    """The example's values of what is held."""
+    """The example's values of what is held, rad or m, as a program writes them."""
     values = held_values(dh, example.q, example.pose)
     given = [] if values is None else values.tolist()
-    return [_shown(held.kind, x) for held, x in zip(dh.held_inputs, given, strict=True)]
+    return [f"{x:.6g}" for x in given]
 
 
 def joint_value(dh: DHChain, joint: int, value: float) -> str:
     """A value of a joint in degrees or m, without signs of zero and with 180 for -180 degrees."""
-    return _shown(dh.joints[joint].kind, value)
-
-
-def _shown(kind: str, value: float) -> str:
-    """A value of what turns or slides."""
-    if kind != REVOLUTE:
+    if dh.joints[joint].kind != REVOLUTE:
         return f"{value + 0.0:.4f} m".replace("-0.0000", "0.0000")
     text = f"{math.degrees(value):.3f}"
     return {"-0.000": "0.000", "-180.000": "180.000"}.get(text, text) + "°"

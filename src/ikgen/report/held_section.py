@@ -84,6 +84,7 @@ def _sweep(derivation: Derivation, example: WorkedExample, runner: PythonModule)
     values = np.linspace(low, high, _VALUES)
     held = np.tile(now, (_VALUES, 1))
     held[:, 0] = values
+    held[np.abs(values - now[0]).argmin(), 0] = now[0]  # where there are solutions for sure
     poses = np.broadcast_to(example.pose, (_VALUES, 4, 4))
     count = runner.solve_many(poses, free=held).count.astype(float)
     return _Sweep(values, count, float(now[0]), revolute)

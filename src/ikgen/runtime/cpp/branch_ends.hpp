@@ -28,6 +28,7 @@ template <class Arm> struct BranchEnd {
             const Sample* behind, int lane_behind) noexcept
       : inner(a.held), outer(b.held), lane(lane_a), at_fold(lane_b < 0), guess(a.held) {
     one_sided = at_fold && !Arm::kMarginsTell;
+    stays = Arm::kMarginsTell && (at_fold || lane_b == lane_a);
     a.row(lane_a, q);
     if (ahead) take(*ahead, lane_ahead);
     if (behind) take(*behind, lane_behind);
@@ -40,8 +41,7 @@ template <class Arm> struct BranchEnd {
     last.inside.held = last.outside.held = kInfinity;
     for (int step = 0; step < kSteps && std::abs(outer - inner) > kEnough; ++step) {
       const Sample s = sweep.at(trial(step));
-      int row = lane;
-      if (!at_fold || !Arm::kGuarded) row = s.nearest(q);
+      const int row = row_in(s);
       const bool seen = row >= 0 && s.real[row] && s.distance(row, q) < 1.0, good = seen && s.off[row] <= 0.0;
       const double far = good ? outer : inner;
       (good ? inner : outer) = s.held;
@@ -61,6 +61,7 @@ template <class Arm> struct BranchEnd {
 
  private:
   bool at_fold, one_sided = false;
+  bool stays;  // in its lane, however near others come
   double guess;  // where the end was expected before
   int count = 0;
   double at[kKnown + 1], value[kKnown + 1];  // the nearest last
@@ -68,8 +69,7 @@ template <class Arm> struct BranchEnd {
   // Whether the end lies between two samples that are close enough.
   bool found(const Sample& a, const Sample& b) noexcept {
     if (!(std::abs(a.held - b.held) <= kEnough) || (a.held - inner) * (a.held - outer) > 0.0) return false;
-    const bool kept = at_fold && Arm::kGuarded;
-    const int row = kept ? lane : a.nearest(q), other = kept ? lane : b.nearest(q);
+    const int row = row_in(a), other = row_in(b);
     if (row < 0 || !a.inside(row) || a.distance(row, q) > 1.0) return false;
     if (other >= 0 && b.inside(other) && b.distance(other, q) < 1.0) return false;
     inner = a.held;
@@ -78,6 +78,9 @@ template <class Arm> struct BranchEnd {
     lane = row;
     return true;
   }
+
+  // The branch's row; -1 without one.
+  int row_in(const Sample& s) const noexcept { return stays || (at_fold && Arm::kGuarded) ? lane : s.nearest(q); }
 
   // What is negative inside, positive outside and smooth between: how far the row is out of the limits, its lane from
   // real rows, or, known inside alone, the squared distance from the row that it meets.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "row_preference.hpp"
+#include "slide_range.hpp"
 
 namespace ikgen_runtime {
 
@@ -33,7 +34,7 @@ template <class Arm, class Solver> struct HeldGridSearch {
 
  private:
   // The ranges of the held joints, and how many values each takes. A turn, or a metre to either side, is looked at where
-  // there are no limits.
+  // there are no limits; a slide as far as the pose can be reached from.
   int bound() noexcept {
     for (int k = 0; k < Arm::kFree; ++k) {
       const int j = Arm::kFreeJoints[k];
@@ -44,6 +45,10 @@ template <class Arm, class Solver> struct HeldGridSearch {
         low[k] = -kPi;
         high[k] = kPi;
       }
+      const SlideRange<Arm> range(pose.translation().data(), j);
+      const double near = std::min(std::max(range.low, low[k]), high[k]), far = std::min(std::max(range.high, low[k]), high[k]);
+      low[k] = near;
+      high[k] = far;
       if (!(low[k] > -kInfinity)) low[k] = std::min(high[k], middle) - 1.0;
       if (!(high[k] < kInfinity)) high[k] = std::max(low[k], middle) + 1.0;
     }

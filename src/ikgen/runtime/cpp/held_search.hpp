@@ -16,6 +16,7 @@ template <class Arm> struct HeldSearch {
 
   struct Point {
     double at, cost, q[Arm::kDof];
+    int lane;
   };
   struct Minimum {
     double low, high, low_cost, high_cost;
@@ -43,12 +44,12 @@ template <class Arm> struct HeldSearch {
 
   void open(int lane, double at, const double* q, int) noexcept {
     runs[lane].points = runs[lane].count = 0;
-    add(runs[lane], at, q);
+    add(runs[lane], at, q, lane);
   }
   void pass(int lane, const Sample& s) noexcept {
     double q[Arm::kDof];
     s.row(lane, q);
-    if (s.held > runs[lane].last[0].at) add(runs[lane], s.held, q);
+    if (s.held > runs[lane].last[0].at) add(runs[lane], s.held, q, lane);
   }
   void move(const int* next) noexcept {
     bool plain = true;
@@ -61,7 +62,7 @@ template <class Arm> struct HeldSearch {
   }
   void close(int lane, double at, const double* q) noexcept {
     Run& run = runs[lane];
-    if (at > run.last[0].at) add(run, at, q);
+    if (at > run.last[0].at) add(run, at, q, lane);
     const Point& end = run.last[0];
     if (run.points < 2 || end.cost <= run.last[1].cost) keep(run, run.points < 2 ? end : run.last[1], end, end);
     for (int k = 0; k < run.count; ++k) wait(run.minima[k]);
@@ -81,16 +82,17 @@ template <class Arm> struct HeldSearch {
   }
 
  private:
-  Point point(double at, const double* q) const noexcept {
+  Point point(double at, const double* q, int lane) const noexcept {
     Point p;
     p.at = at;
+    p.lane = lane;
     std::copy_n(q, Arm::kDof, p.q);
     p.cost = preference.place(p.q) ? preference.cost(p.q) : kInfinity;
     return p;
   }
 
-  void add(Run& run, double at, const double* q) noexcept {
-    const Point p = point(at, q);
+  void add(Run& run, double at, const double* q, int lane) noexcept {
+    const Point p = point(at, q, lane);
     const Point &b = run.last[0], &a = run.last[1];
     if (run.points == 1 && b.cost <= p.cost) keep(run, b, p, b);
     if (run.points > 1 && b.cost <= a.cost && b.cost <= p.cost) keep(run, a, p, b);
@@ -110,12 +112,13 @@ template <class Arm> struct HeldSearch {
     run.minima[at] = {low.at, high.at, low.cost, high.cost, best};
   }
 
-  // The branch's row at a value next to a point; its cost is infinite where there is none inside the limits.
+  // The branch's row at a value next to a point; its cost is infinite where there is none inside the limits. Where lanes
+  // tell branches apart it is that of the point's: near a fold two are as near to it.
   Point beside(double at, const Point& near) const noexcept {
     const Sample s = sweep.at(at);
-    int best = -1;
+    int best = Arm::kMarginsTell && s.inside(near.lane) ? near.lane : -1;
     double least = 0.5;
-    for (int l = 0; l < s.lanes; ++l) {
+    for (int l = 0; l < s.lanes && !Arm::kMarginsTell; ++l) {
       double gap = s.inside(l) ? 0.0 : kInfinity;
       for (int j = 0; j < Arm::kDof && gap < least; ++j) {
         if (Arm::kHeld[j]) continue;
@@ -133,7 +136,7 @@ template <class Arm> struct HeldSearch {
     if (best < 0) return p;
     double q[Arm::kDof];
     s.row(best, q);
-    return point(at, q);
+    return point(at, q, best);
   }
 
   // Whether a minimum cannot be among those that are returned: a parabola's is no deeper below its three points.

@@ -5,6 +5,7 @@ namespace ikgen_runtime {
 // A task that reads some entries of the pose, Arm::kRead; of one configuration (X: double), or of those in lanes.
 template <class Arm> struct PoseEntries {
   static constexpr int kCount = sizeof(Arm::kRead) / sizeof(Arm::kRead[0]);
+  static constexpr bool kPosition = Arm::kRead[0][1] == 3;  // is read
 
   // t: the rows of the pose; T: the tip's frame.
   template <class X, class Tip>

@@ -9,6 +9,7 @@ namespace ikgen_runtime {
 // The task of the whole pose: position, then rotation; of one configuration (X: double), or of those in lanes.
 template <class Arm> struct WholePose {
   static constexpr int kCount = 6;
+  static constexpr bool kPosition = true;  // is read
 
   // t: the rows of the pose; T: the tip's frame.
   template <class X, class Tip>

@@ -30,7 +30,7 @@ class BranchEnd:
 
     `known`: values of the held joint near by, each with what is negative inside, positive outside and
     smooth between, the nearest last. `one_sided`: that is known inside alone; `guess`: where the end was
-    expected before."""
+    expected before; `stays`: in its lane, however near others come."""
 
     inner: float
     outer: float
@@ -40,6 +40,7 @@ class BranchEnd:
     at_fold: bool
     one_sided: bool
     guess: float
+    stays: bool
 
 
 def branch_end(
@@ -68,7 +69,8 @@ def branch_end(
         known = [(k, float(off[k, r])) for k, r in samples if r >= 0]
     values = [(float(rows.held[k]), value) for k, value in known if isfinite(value)]
     a, b = float(rows.held[at]), float(rows.held[to])
-    return BranchEnd(a, b, rows.q[at, row], row, values, at_fold, one_sided, a)
+    stays = joint.guarded if at_fold else joint.margins_tell and other == row
+    return BranchEnd(a, b, rows.q[at, row], row, values, at_fold, one_sided, a, stays)
 
 
 def _followed(tracks: Tracks, before: Index, at: int, row: int, to: int) -> tuple[int, int]:
@@ -101,7 +103,7 @@ def find_ends(joint: HeldJoint, T: Array, ends: list[BranchEnd], limits: bool) -
         gap = np.abs(differences(joint.arm, last[:, None], rows.q)).max(axis=2)
         gap = np.where(rows.real, gap, inf)
         for k, e in enumerate(going):
-            row = e.lane if e.at_fold and joint.guarded else int(gap[k].argmin())
+            row = e.lane if e.stays else int(gap[k].argmin())
             seen = bool(gap[k, row] < _REACH)
             here = float(off[k, row]) - joint.arm.policy.limit_tolerance
             value = here if seen else None

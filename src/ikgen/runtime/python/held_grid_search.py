@@ -14,6 +14,7 @@ from ikgen.runtime.python.held_joint import pose_lines
 from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.row_blocks import in_blocks
 from ikgen.runtime.python.row_preference import preference_costs, preference_of
+from ikgen.runtime.python.slide_range import slide_range
 from ikgen.runtime.python.solution_search import Start, best_rows
 from ikgen.runtime.python.solutions import Solutions, no_held_values
 from ikgen.runtime.python.solved_arm import Arm
@@ -34,7 +35,7 @@ def search_grid(
     T = pose_lines(arm, pose)
     if T is None:
         return solve_pose(arm, pose, None, None, limits)  # which says why it is none
-    values, steps = _grid(arm, preference[1], limits)
+    values, steps = _grid(arm, T, preference[1], limits)
 
     def rows_at(part: Array) -> tuple[Array, Array, Flags]:
         rows, real = rows_batch(arm, np.broadcast_to(T, (len(part), 4, 4)), part)
@@ -53,16 +54,20 @@ def search_grid(
     return best_rows(arm, T, starts, preference, limits)
 
 
-def _grid(arm: Arm, middle: tuple[float, ...], limits: bool) -> tuple[Array, tuple[float, ...]]:
+def _grid(
+    arm: Arm, T: Array, middle: tuple[float, ...], limits: bool
+) -> tuple[Array, tuple[float, ...]]:
     """Values of the held joints (n, k), evenly spread over their ranges and those nearest to what is
     wanted, and half the steps between them. A turn, or a metre to either side, is looked at where there
-    are no limits."""
+    are no limits; a slide as far as the pose can be reached from."""
     count = max(3, int(_POINTS ** (1.0 / len(arm.free)) + 1e-9))
     axes, steps = [], []
     for j in arm.free:
         low, high = arm.lower[j], arm.upper[j]
         if arm.chain.revolute[j] and not (limits and high - low < inf):
             low, high = -pi, pi
+        near, far = (min(max(x, low), high) for x in slide_range(arm, T, j))
+        low, high = near, far
         low, high = max(low, middle[j] - 1.0) if low == -inf else low, high
         high = min(high, max(low, middle[j]) + 1.0) if high == inf else high
         axis = np.linspace(low, high, count)
