@@ -6,8 +6,10 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from tests.support.held_arms import held_module
 from tests.support.tools import needs_cmake
 
+from ikgen.emit.cpp.cpp_package import emit
 from ikgen.generation.generate import generate
 from ikgen.generation.request import Outputs, Request
 
@@ -57,3 +59,9 @@ def test_package_builds_installs_and_is_found(
     sh("cmake", "-S", user, "-B", user / "build", f"-DCMAKE_PREFIX_PATH={prefix}")
     sh("cmake", "--build", user / "build")
     sh(user / "build/user")
+
+
+def test_the_page_says_what_is_held(tmp_path: Path) -> None:
+    for name, held in {"arm_angle": "arm_angle", "franka_fr3": "fr3_joint7"}.items():
+        page = emit(held_module(name, tmp_path))[f"{name}_ik_cpp/README.md"]
+        assert f"`Options::free`: `{held}`." in page
