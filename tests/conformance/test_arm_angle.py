@@ -10,10 +10,14 @@ import pytest
 from numpy.typing import NDArray
 from tests.support.held_arms import held_module, imported
 
+from ikgen.emit.cpp.cpp_emitter import emit_header
+
 Array = NDArray[np.float64]
 
 ELBOWS = {"arm_angle": (0.0, 1.0), "offset_elbow": (0.08, -1.0)}
 """How far the elbow's axis is beside the upper arm (m), and the way that the first axis points."""
+
+FLAGS = ("kRounded", "kNewton")
 
 
 @pytest.fixture(scope="module", params=["arm_angle", "offset_elbow", "rounded_arm_angle"])
@@ -108,3 +112,14 @@ def test_poses_out_of_reach_are_projected_onto_rows_of_any_angle(arm: ModuleType
 def test_the_default_is_the_one_asked_for(tmp_path: Path) -> None:
     module = held_module("arm_angle", tmp_path)
     assert module.held == ("arm_angle",) and module.free == () and module.free_defaults == (0.0,)
+
+
+def test_a_header_knows_that_its_file_is_rounded_where_rows_are_refined_one_by_one(
+    tmp_path: Path,
+) -> None:
+    """Continua of what was solved are judged by that, not by how rows are refined."""
+    said = {
+        name: [f"{flag} = true" in emit_header(held_module(name, tmp_path)) for flag in FLAGS]
+        for name in ("arm_angle", "rounded_arm_angle")
+    }
+    assert said == {"arm_angle": [False, False], "rounded_arm_angle": [True, False]}

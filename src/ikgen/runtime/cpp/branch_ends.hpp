@@ -27,7 +27,7 @@ template <class Arm> struct BranchEnd {
   BranchEnd(const Sample& a, int lane_a, const Sample& b, int lane_b, const Sample* ahead, int lane_ahead,
             const Sample* behind, int lane_behind) noexcept
       : inner(a.held), outer(b.held), lane(lane_a), at_fold(lane_b < 0), guess(a.held) {
-    one_sided = at_fold && !Arm::kMarginsTell;
+    one_sided = at_fold && (Arm::kRounded || !Arm::kGuarded);
     a.row(lane_a, q);
     if (ahead) take(*ahead, lane_ahead);
     if (behind) take(*behind, lane_behind);
