@@ -8,10 +8,11 @@ from types import ModuleType
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tests.support.held_arms import imported
+from tests.support.held_arms import held_module, imported
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
 from tests.support.solving import import_text
 
+from ikgen.emit.cpp.cpp_emitter import emit_header
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.errors import UsageError
 from ikgen.generation.derive import derive
@@ -21,6 +22,8 @@ Array = NDArray[np.float64]
 
 ELBOWS = {"arm_angle": (0.0, 1.0), "offset_elbow": (0.08, -1.0)}
 """How far the elbow's axis is beside the upper arm (m), and the way that the first axis points."""
+
+FLAGS = ("kRounded", "kNewton")
 
 
 @pytest.fixture(scope="module", params=["arm_angle", "offset_elbow", "rounded_arm_angle"])
@@ -121,3 +124,14 @@ def test_the_default_is_the_one_asked_for(tmp_path: Path) -> None:
     assert len(found) and np.abs(arm.arm_angle(found.q) - 0.4).max() < 1e-8
     with pytest.raises(UsageError, match="outside its limits"):
         derive(Request(path, free={"arm-angle": 4.0}))
+
+
+def test_a_header_knows_that_its_file_is_rounded_where_rows_are_refined_one_by_one(
+    tmp_path: Path,
+) -> None:
+    """Continua of what was solved are judged by that, not by how rows are refined."""
+    said = {
+        name: [f"{flag} = true" in emit_header(held_module(name, tmp_path)) for flag in FLAGS]
+        for name in ("arm_angle", "rounded_arm_angle")
+    }
+    assert said == {"arm_angle": [False, False], "rounded_arm_angle": [True, False]}

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import importlib
-import importlib.util
 import subprocess
 import sys
 import venv
+from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
 from tests.support.cpp_modules import ROBOTS, solver_module
+from tests.support.held_arms import held_module
+from tests.support.solving import import_text
 
 from ikgen.emit.nanobind import emit
 from ikgen.emit.python.python_emitter import emit_module
+from ikgen.emit.solver_module import SolverModule
 
 
 def test_the_folder_stands_alone() -> None:
@@ -28,28 +31,23 @@ def test_the_folder_stands_alone() -> None:
     assert f'#include "{module.name}_ik.hpp"' in files[f"{name}/native.cpp"]
 
 
-@pytest.fixture(scope="module")
-def both(tmp_path_factory: pytest.TempPathFactory) -> tuple[ModuleType, ModuleType]:
+def installed(module: SolverModule, folder: Path) -> tuple[ModuleType, ModuleType]:
     """The installed package, and the Python module of the same arm."""
-    folder = tmp_path_factory.mktemp("nanobind")
-    module = solver_module("ur5e")
+    name = f"{module.name}_ik_ext"
     for path, text in emit(module).items():
         (folder / path).parent.mkdir(parents=True, exist_ok=True)
         (folder / path).write_text(text)
     target = folder / "site"
     venv.create(folder / "venv", with_pip=True)
     pip = [folder / "venv" / "bin" / "python", "-m", "pip", "install", "--no-deps"]
-    subprocess.run([*pip, "--target", target, folder / "ur5e_ik_ext"], check=True)
+    subprocess.run([*pip, "--target", target, folder / name], check=True)
     sys.path.insert(0, str(target))
-    native = importlib.import_module("ur5e_ik_ext")
-    path = folder / "ur5e_ik.py"
-    path.write_text(emit_module(module))
-    spec = importlib.util.spec_from_file_location("ur5e_plain_ik", path)
-    assert spec is not None and spec.loader is not None
-    python = importlib.util.module_from_spec(spec)
-    sys.modules["ur5e_plain_ik"] = python
-    spec.loader.exec_module(python)
-    return native, python
+    return importlib.import_module(name), import_text(emit_module(module), folder)
+
+
+@pytest.fixture(scope="module")
+def both(tmp_path_factory: pytest.TempPathFactory) -> tuple[ModuleType, ModuleType]:
+    return installed(solver_module("ur5e"), tmp_path_factory.mktemp("nanobind"))
 
 
 @pytest.mark.slow
@@ -96,3 +94,17 @@ def test_constants_and_errors_are_the_python_modules(both: tuple[ModuleType, Mod
                 call(m)
     pose[0, 3] = np.nan
     assert native.solve(pose.tolist()).status is native.Status.INVALID
+
+
+@pytest.mark.slow
+def test_an_arm_angle_is_held_by_its_name(tmp_path: Path) -> None:
+    native, python = installed(held_module("arm_angle", tmp_path), tmp_path)
+    assert native.FREE_JOINTS == python.FREE_JOINTS == ("arm_angle",)
+    for q in np.random.default_rng(1).uniform(python.LOWER, python.UPPER, (20, 7)):
+        pose, angle = python.forward(q), float(python.arm_angle(q))
+        for options in ({"free": {"arm_angle": angle}}, {"free": [angle]}, {"seed": q}, {}):
+            mine, its = native.solve(pose, **options), python.solve(pose, **options)
+            assert mine.status.value == its.status.value and len(mine) == len(its)
+            assert np.allclose(mine.q, its.q, atol=1e-9)
+    with pytest.raises(ValueError, match="elbow"):
+        native.solve(pose, free={"elbow": 1.0})

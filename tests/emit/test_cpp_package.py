@@ -5,9 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from tests.support.held_arms import held_module
 from tests.support.sampled import sampled
 from tests.support.tools import needs_cmake, printed
 
+from ikgen.emit.cpp.cpp_package import emit
 from ikgen.generation.generate import generate
 from ikgen.generation.request import Outputs, Request
 
@@ -49,3 +51,9 @@ def test_package_builds_installs_and_is_found(robot: str, tmp_path: Path) -> Non
     printed("cmake", "-S", user, "-B", user / "build", f"-DCMAKE_PREFIX_PATH={prefix}")
     printed("cmake", "--build", user / "build")
     printed(user / "build/user")
+
+
+def test_the_page_says_what_is_held(tmp_path: Path) -> None:
+    for name, held in {"arm_angle": "arm_angle", "franka_fr3": "fr3_joint7"}.items():
+        page = emit(held_module(name, tmp_path))[f"{name}_ik_cpp/README.md"]
+        assert f"`Options::free`: `{held}`." in page

@@ -367,6 +367,18 @@ template <class Y, class X, int N = kCommon<Y, X>>
   return select(-1.2e-16 * ax > y, -third, third);  // an angle that rounds to -pi is pi
 }
 
+// --- moving joints -------------------------------------------------------------------------------
+template <class Arm> struct MovingJoints {
+  static constexpr int kCount = Arm::kDof - static_cast<int>(Arm::kFreeJoints.size());
+  int joint[kCount] = {};
+
+  constexpr MovingJoints() noexcept {
+    for (int j = 0, k = 0; j < Arm::kDof; ++j)
+      if (!Arm::kHeld[j]) joint[k++] = j;
+  }
+  constexpr int operator[](int k) const noexcept { return joint[k]; }
+};
+
 // --- held aim ------------------------------------------------------------------------------------
 template <class Arm, bool kAngle = Arm::kArmAngle> struct HeldAim {
   static constexpr int kCount = 0;  // errors beside the pose's
@@ -425,6 +437,15 @@ struct Motion {
 struct Frame {
   double R[3][3], p[3];
 };
+
+inline void by_columns(const Frame& T, double* t) noexcept {
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) t[4 * c + r] = T.R[r][c];
+    t[12 + r] = T.p[r];
+    t[4 * r + 3] = 0.0;
+  }
+  t[15] = 1.0;
+}
 
 template <class Arm> struct MotionChain {
   static constexpr int kCount = sizeof(Arm::kMotions) / sizeof(Motion);
@@ -495,17 +516,9 @@ template <class Arm> struct PoseError {
     double t[3][4];
     for (int r = 0; r < 3; ++r)
       for (int c = 0; c < 4; ++c) t[r][c] = aim.pose.matrix().data()[4 * c + r];
-    if constexpr (Aim::kCount == 0) {
-      Arm::Task::error(t, T, error);
-      Arm::Task::slope(T, J, slope);
-    } else {
-      double missed[kTask], rows[kTask][Arm::kDof];
-      Arm::Task::error(t, T, missed);
-      Arm::Task::slope(T, J, rows);
-      std::copy_n(missed, kTask, error);
-      std::copy_n(rows[0], kTask * Arm::kDof, slope[0]);
-      aim.compare(q, error[kTask], slope[kTask]);
-    }
+    Arm::Task::error(t, T, error);
+    Arm::Task::slope(T, J, slope);
+    if constexpr (Aim::kCount > 0) aim.compare(q, error[kTask], slope[kTask]);
     for (const int j : Arm::kFreeJoints)
       for (auto& row : slope) row[j] = 0.0;
   }
@@ -519,17 +532,15 @@ template <class Arm> struct PoseError {
 
 // --- fold pair -----------------------------------------------------------------------------------
 template <class Arm> struct FoldPair {
-  static constexpr int kMoving = Arm::kDof - static_cast<int>(Arm::kFreeJoints.size()), kEquations = PoseError<Arm>::kCount;
+  static constexpr MovingJoints<Arm> kJoints{};
+  static constexpr int kMoving = MovingJoints<Arm>::kCount, kEquations = PoseError<Arm>::kCount;
   using Vector = double[kMoving];
 
   HeldAim<Arm> aim;
-  int moving[kMoving];
   Vector still;       // unit direction in which the pose moves least
   double size = 0.0;  // the pose's error
 
   explicit FoldPair(const HeldAim<Arm>& goal) noexcept : aim(goal) {
-    for (int j = 0, k = 0; j < Arm::kDof; ++j)
-      if (!Arm::kHeld[j]) moving[k++] = j;
     for (int k = 0; k < kMoving; ++k) still[k] = 1.0 + 0.1 * k;
   }
 
@@ -548,7 +559,7 @@ template <class Arm> struct FoldPair {
       std::copy_n(at, Arm::kDof, sample);
       double largest = 0.0;
       for (const double x : still) largest = std::max(largest, std::abs(x));
-      for (int k = 0; k < kMoving; ++k) at[moving[k]] += Arm::Policy::kTryStep / largest * still[k];
+      for (int k = 0; k < kMoving; ++k) at[kJoints[k]] += Arm::Policy::kTryStep / largest * still[k];
     }
     return worst;
   }
@@ -562,7 +573,7 @@ template <class Arm> struct FoldPair {
     for (int e = 0; e < kEquations; ++e) {
       flow[e] = bend[e] = 0.0;
       rest[e] = at.error[e];
-      for (int k = 0; k < kMoving; ++k) flow[e] += at.slope[e][moving[k]] * still[k];
+      for (int k = 0; k < kMoving; ++k) flow[e] += at.slope[e][kJoints[k]] * still[k];
     }
     const Others others(*this, at, flow);
     others.take_away(rest, across);
@@ -570,17 +581,17 @@ template <class Arm> struct FoldPair {
     if (side != 0.0) {
       double there[Arm::kDof];
       std::copy_n(q, Arm::kDof, there);
-      for (int k = 0; k < kMoving; ++k) there[moving[k]] += kAlong * still[k];
+      for (int k = 0; k < kMoving; ++k) there[kJoints[k]] += kAlong * still[k];
       const PoseError<Arm> beyond(there, aim);
       for (int e = 0; e < kEquations; ++e)
         for (int k = 0; k < kMoving; ++k)
-          bend[e] += (beyond.slope[e][moving[k]] - at.slope[e][moving[k]]) * still[k] / kAlong;
+          bend[e] += (beyond.slope[e][kJoints[k]] - at.slope[e][kJoints[k]]) * still[k] / kAlong;
       others.take_away(bend, ignored);
       others.take_away(flow, ignored);
       x = root(side, bend, flow, rest);
     }
     for (int k = 0; k < kMoving; ++k)
-      q[moving[k]] += std::min(std::max(across[k], -kFar), kFar) + x * still[k];
+      q[kJoints[k]] += std::min(std::max(across[k], -kFar), kFar) + x * still[k];
     return x;
   }
 
@@ -607,7 +618,7 @@ template <class Arm> struct FoldPair {
 
     Others(const FoldPair& fold, const PoseError<Arm>& at, const double (&flow)[kEquations]) noexcept {
       for (int e = 0; e < kEquations; ++e)
-        for (int k = 0; k < kMoving; ++k) V[e][k] = at.slope[e][fold.moving[k]] - flow[e] * fold.still[k];
+        for (int k = 0; k < kMoving; ++k) V[e][k] = at.slope[e][kJoints[k]] - flow[e] * fold.still[k];
       for (int a = 0; a < kMoving; ++a)
         for (int b = 0; b <= a; ++b) {
           A[a][b] = fold.still[a] * fold.still[b] + (a == b ? Arm::Policy::kLeastDamping : 0.0);
@@ -632,7 +643,7 @@ template <class Arm> struct FoldPair {
     for (int a = 0; a < kMoving; ++a)
       for (int b = 0; b <= a; ++b) {
         N[a][b] = a == b ? Arm::Policy::kLeastDamping : 0.0;
-        for (int e = 0; e < kEquations; ++e) N[a][b] += at.slope[e][moving[a]] * at.slope[e][moving[b]];
+        for (int e = 0; e < kEquations; ++e) N[a][b] += at.slope[e][kJoints[a]] * at.slope[e][kJoints[b]];
       }
     factor(N);
     for (int i = 0; i < 4; ++i) {
@@ -781,22 +792,20 @@ template <class Arm> struct NewtonRefinement {
 
 // --- rank loss -----------------------------------------------------------------------------------
 template <class Arm> struct RankLoss {
-  static constexpr int kMoving = Arm::kDof - static_cast<int>(Arm::kFreeJoints.size()), kEquations = PoseError<Arm>::kCount;
+  static constexpr MovingJoints<Arm> kJoints{};
+  static constexpr int kMoving = MovingJoints<Arm>::kCount, kEquations = PoseError<Arm>::kCount;
   static constexpr int kRank = kMoving < kEquations ? kMoving : kEquations;
 
   static bool below(const double* q, double bound) noexcept {
     const PoseError<Arm> at(q, HeldAim<Arm>::own(q));
-    int moving[kMoving];
-    for (int j = 0, k = 0; j < Arm::kDof; ++j)
-      if (!Arm::kHeld[j]) moving[k++] = j;
     double A[kRank][kRank];
     for (int a = 0; a < kRank; ++a)
       for (int b = 0; b <= a; ++b) {
         double sum = a == b ? -bound * bound : 0.0;
         if constexpr (kMoving < kEquations) {
-          for (const auto& row : at.slope) sum += row[moving[a]] * row[moving[b]];
+          for (const auto& row : at.slope) sum += row[kJoints[a]] * row[kJoints[b]];
         } else {
-          for (const int j : moving) sum += at.slope[a][j] * at.slope[b][j];
+          for (const int j : kJoints.joint) sum += at.slope[a][j] * at.slope[b][j];
         }
         A[a][b] = sum;
       }
@@ -820,6 +829,11 @@ template <class Arm> struct SolutionRows {
 
   static bool finite(const double* q) noexcept {
     return std::all_of(q, q + Arm::kDof, [](double x) { return std::isfinite(x); });
+  }
+
+  static double change(int j, const double* a, const double* b) noexcept {
+    const double gap = b[j] - a[j];
+    return Arm::kRevolute[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap;
   }
 
   static bool same(const double* a, const double* b) noexcept {
@@ -914,7 +928,6 @@ template <class Arm> struct CarefulSolve {
     const Aim aim(pose, options.free);
     bool real = false;
     Places found;
-    found.count = 0;
     for (int turn = 0; turn < Policy::kTries; ++turn) {
       double start[Arm::kDof];
       for (int j = 0; j < Arm::kDof; ++j)
@@ -928,7 +941,7 @@ template <class Arm> struct CarefulSolve {
         add(aim, found, start, true);
         Row::place_all(options, found);
       }
-      if (!Arm::kNewton) left.led = any_singular(found);
+      if (!Arm::kRounded) left.led = any_singular(found);
       if (!left.free || (left.led && found.count > 0)) break;
     }
     if (options.seed) Row::sort_by_distance(found, options.seed->data());
@@ -948,7 +961,7 @@ template <class Arm> struct CarefulSolve {
  private:
   struct Places {
     static constexpr std::size_t kRoom = 2 * Arm::kMaxSolutions;
-    int count;
+    int count = 0;
     std::array<typename Arm::Joints, kRoom> q;
     std::array<bool, kRoom> singular;
   };
@@ -974,7 +987,7 @@ template <class Arm> struct CarefulSolve {
       settled = near ? error < Policy::kConverged && !broken() : error < Policy::kArrived;
     }
 
-    bool broken() const noexcept { return marked && (Arm::kNewton || !(error < Policy::kArrived)); }
+    bool broken() const noexcept { return marked && (Arm::kRounded || !(error < Policy::kArrived)); }
 
     void take_pair(const FoldPair<Arm>& fold, const double* from, Places& out) noexcept {
       for (const double side : {1.0, -1.0}) {
@@ -1052,21 +1065,16 @@ template <class Arm> struct CarefulSolve {
     Row::add(out, q, singular);
   }
 
-  static double change(int j, const double* a, const double* b) noexcept {
-    const double gap = b[j] - a[j];
-    return Arm::kRevolute[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap;
-  }
-
   static bool alike(const double* a, const double* b) noexcept {
     for (int j = 0; j < Arm::kDof; ++j)
-      if (!(std::abs(change(j, a, b)) < Policy::kAlike)) return false;
+      if (!(std::abs(Row::change(j, a, b)) < Policy::kAlike)) return false;
     return true;
   }
 
   static bool between(const Aim& aim, const double* a, const double* b) noexcept {
     if (!alike(a, b)) return false;
     double middle[Arm::kDof];
-    for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * change(j, a, b);
+    for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * Row::change(j, a, b);
     return PoseError<Arm>(middle, aim).largest() < Policy::kConverged;
   }
 
@@ -1259,7 +1267,7 @@ template <class Arm> struct PoseEntries {
   static constexpr bool kPosition = Arm::kRead[0][1] == 3;  // is read
 
   template <class X, class Tip>
-  static void error(const X (&t)[3][4], const Tip& T, X (&error)[kCount]) noexcept {
+  static void error(const X (&t)[3][4], const Tip& T, X* error) noexcept {
     for (int i = 0; i < kCount; ++i) {
       const auto [r, c] = Arm::kRead[i];
       if (c == 3) {
@@ -1271,7 +1279,7 @@ template <class Arm> struct PoseEntries {
   }
 
   template <class X, class Tip>
-  static void slope(const Tip& T, const X (&J)[6][Arm::kDof], X (&slope)[kCount][Arm::kDof]) noexcept {
+  static void slope(const Tip& T, const X (&J)[6][Arm::kDof], X (*slope)[Arm::kDof]) noexcept {
     for (int i = 0; i < kCount; ++i) {
       const auto [r, c] = Arm::kRead[i];
       const int u = (r + 1) % 3, v = (r + 2) % 3;
@@ -1400,16 +1408,19 @@ template <class Arm, template <class> class Way> struct PoseSolver {
         if (!(value < kInfinity)) options.seed = nullptr;
       }
       if (far && options.seed) without_turns();
-      if constexpr (Arm::kFree > 0) {
-        const Options plain;
-        auto own = plain.free;
-        if (options.seed && options.hold_seed) HeldAim<Arm>::values(options.seed->data(), own);
-        for (std::size_t k = 0; k < Arm::kFree; ++k)
-          if (options.free[k] == plain.free[k]) options.free[k] = own[k];
-      }
+      if constexpr (Arm::kFree > 0)
+        if (options.seed && options.hold_seed) hold_the_seed();
     }
     Checked(const Checked&) = delete;
     Checked& operator=(const Checked&) = delete;
+
+    void hold_the_seed() noexcept {
+      const auto plain = Options().free;
+      auto own = plain;
+      HeldAim<Arm>::values(options.seed->data(), own);
+      for (std::size_t k = 0; k < Arm::kFree; ++k)
+        if (options.free[k] == plain[k]) options.free[k] = own[k];
+    }
 
     void without_turns() noexcept {
       near = *options.seed;
@@ -1462,15 +1473,6 @@ template <class Arm> struct PoseChords {
     }
   }
 
-  static void by_columns(const Frame& T, double* f) noexcept {
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) f[4 * c + r] = T.R[r][c];
-      f[12 + r] = T.p[r];
-      f[4 * r + 3] = 0.0;
-    }
-    f[15] = 1.0;
-  }
-
   static double turn() noexcept {
     int turned = 0;
     for (const auto& entry : Arm::kRead) turned += entry[1] < 3 ? 1 : 0;
@@ -1517,7 +1519,7 @@ template <class Arm, template <class> class Way> struct Projection {
     double q[Arm::kDof];
     nearest(t, options, q);
     Eigen::Isometry3d pose;
-    Chords::by_columns(MotionChain<Arm>::forward(q), pose.matrix().data());
+    by_columns(MotionChain<Arm>::forward(q), pose.matrix().data());
     HeldAim<Arm>::values(q, options.free);
     Way<Arm>::template solve<1>(&pose, options, &out);
     if (SolutionRows<Arm>::place(q, options)) SolutionRows<Arm>::add(out, q, false);
@@ -1965,7 +1967,8 @@ struct Arm {
   };
 
   static constexpr bool kFarLimits = false;
-  static constexpr bool kNewton = false;
+  static constexpr bool kRounded = false;  // solved for another geometry than the file's
+  static constexpr bool kNewton = false;  // rows are refined all at once
   static constexpr bool kRefined = false;
   static constexpr int kBesides = 0;
   // Lane of each row, depth first.
@@ -2025,15 +2028,8 @@ inline void Arm::branches(const Pose<P>& pose, [[maybe_unused]] const Seed& seed
 
 // Pose of kTipLink in kBaseLink.
 inline Eigen::Isometry3d forward(const Joints& q) noexcept {
-  const detail::Frame T = detail::MotionChain<detail::Arm>::forward(q.data());
   Eigen::Isometry3d out;
-  double* t = out.matrix().data();  // columns first
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) t[4 * c + r] = T.R[r][c];
-    t[12 + r] = T.p[r];
-    t[4 * r + 3] = 0.0;
-  }
-  t[15] = 1.0;
+  detail::by_columns(detail::MotionChain<detail::Arm>::forward(q.data()), out.matrix().data());
   return out;
 }
 

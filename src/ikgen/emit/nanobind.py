@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from ikgen.emit.cpp.cpp_emitter import emit_header
+from ikgen.emit.cpp.cpp_language import literal as quoted
 from ikgen.emit.python.python_text import literal
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
@@ -36,6 +37,7 @@ def emit(module: SolverModule) -> dict[str, str]:
         "joint_names": tuple(joint.name for joint in module.dh.joints),
         "free_joints": module.held,
         "literal": literal,
+        "quoted": quoted,
         "lower": [_number(joint.limits.lower) for joint in module.dh.joints],
         "version": _version(module.generator_version),
         "upper": [_number(joint.limits.upper) for joint in module.dh.joints],

@@ -100,13 +100,8 @@ template <class Arm> struct HeldAim<Arm, true> {
 
  private:
   static Eigen::Isometry3d pose_of(const double* q) noexcept {
-    const Frame T = MotionChain<Arm>::forward(q);
-    Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
-    double* t = out.matrix().data();
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) t[4 * c + r] = T.R[r][c];
-      t[12 + r] = T.p[r];
-    }
+    Eigen::Isometry3d out;
+    by_columns(MotionChain<Arm>::forward(q), out.matrix().data());
     return out;
   }
 };

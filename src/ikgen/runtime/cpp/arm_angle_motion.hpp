@@ -11,17 +11,17 @@ namespace ikgen_runtime {
 // Arm: as for BranchFollower and ElbowPlane, with seven revolute joints, of exact geometry.
 template <class Arm> struct BranchMotion<Arm, true> {
   using Sample = HeldSample<Arm>;
-  static constexpr int kElbow = 3, kCuts = 64, kMost = 2 * 2 * 2 * Arm::kDof;
+  static constexpr int kElbow = 3, kMost = 2 * 2 * 2 * Arm::kDof;
   static constexpr double kStretched = 1e-4;  // distance of the elbow from the line, over the upper arm
   static constexpr double kAligned = 1e-9;    // 1 less the cosine between the outer axes of shoulder or wrist
 
-  // Passes a sample of every cell of as many as are asked for. Where joints come to a singularity on the way the branches
+  // Passes a sample of each of Record::kCells cells. Where joints come to a singularity on the way the branches
   // are followed: samples tell more there.
-  template <class Record> static bool follow(const HeldSweep<Arm>& sweep, Record& record, int cells) noexcept {
-    double ends[kMost + kCuts];
+  template <class Record> static bool follow(const HeldSweep<Arm>& sweep, Record& record) noexcept {
+    double ends[kMost + Record::kCells + 1];
     int count = 0;
-    if (!find_ends(sweep, ends, count)) return BranchMotion<Arm, false>::follow(sweep, record, cells);
-    for (int k = 0; k <= std::max(cells, 1); ++k) ends[count++] = sweep.low + (sweep.high - sweep.low) * k / std::max(cells, 1);
+    if (!find_ends(sweep, ends, count)) return BranchMotion<Arm, false>::follow(sweep, record);
+    for (int k = 0; k <= Record::kCells; ++k) ends[count++] = sweep.low + (sweep.high - sweep.low) * k / Record::kCells;
     std::sort(ends, ends + count);
     return tell(sweep, ends, count, record);
   }
@@ -47,11 +47,10 @@ template <class Arm> struct BranchMotion<Arm, true> {
 
     Turn(const Eigen::Isometry3d& pose, const double* row) noexcept {
       std::copy_n(row, Arm::kDof, q);
-      Frame T = MotionChain<Arm>::first();
-      for (int i = 0; i < Arm::kDof; ++i) {
-        for (int r = 0; r < 3; ++r) axis[i][r] = Arm::kMotions[i].scale * T.R[r][2];
-        MotionChain<Arm>::advance(T, i, q);
-      }
+      double J[6][Arm::kDof];
+      MotionChain<Arm>::forward(q, J);
+      for (int j = 0; j < Arm::kDof; ++j)
+        for (int r = 0; r < 3; ++r) axis[j][r] = J[3 + r][j];
       const ElbowPlane<Arm> plane(pose);
       double x, y;
       plane.beside(MotionChain<typename Arm::Elbow>::forward(q).p, x, y);
@@ -115,13 +114,11 @@ template <class Arm> struct BranchMotion<Arm, true> {
         harmonic(axis[still], v, a, b, c);
       }
       const double size = std::hypot(a, b), at = std::atan2(b, a);
-      if (!(std::abs(wanted - c) <= size)) return;
+      if (!(size > 0.0 && std::abs(wanted - c) <= size)) return;
       const double half = std::acos((wanted - c) / size);
-      ends[count++] = wrapped(at + half);
-      ends[count++] = wrapped(at - half);
+      ends[count++] = shortest(at + half);
+      ends[count++] = shortest(at - half);
     }
-
-    static double wrapped(double angle) noexcept { return angle - kTurn * std::nearbyint(angle / kTurn); }
   };
 
   // Runs of cells between ends in the middle of which a lane is inside; whether there are rows.
@@ -131,13 +128,12 @@ template <class Arm> struct BranchMotion<Arm, true> {
     for (int k = 0; k + 1 < count; ++k) {
       if (ends[k + 1] - ends[k] < 1e-12) continue;
       const Sample s = sweep.at(0.5 * (ends[k] + ends[k + 1]));
-      bool begins = false, ends_here = false;
+      bool changes = false;
       for (int l = 0; l < Arm::kLanes; ++l) {
         any = any || s.real[l];
-        begins = begins || (s.inside(l) && !open[l]);
-        ends_here = ends_here || (!s.inside(l) && open[l]);
+        changes = changes || s.inside(l) != open[l];
       }
-      if (begins || ends_here) {
+      if (changes) {
         const Sample cut = sweep.at(ends[k]);
         for (int l = 0; l < Arm::kLanes; ++l) {
           double q[Arm::kDof];

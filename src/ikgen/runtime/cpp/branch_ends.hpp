@@ -27,8 +27,8 @@ template <class Arm> struct BranchEnd {
   BranchEnd(const Sample& a, int lane_a, const Sample& b, int lane_b, const Sample* ahead, int lane_ahead,
             const Sample* behind, int lane_behind) noexcept
       : inner(a.held), outer(b.held), lane(lane_a), at_fold(lane_b < 0), guess(a.held) {
-    one_sided = at_fold && !Arm::kMarginsTell;
-    stays = Arm::kMarginsTell && (at_fold || lane_b == lane_a);
+    one_sided = at_fold && !Sample::kMarginsTell;
+    stays = Sample::kMarginsTell && (at_fold || lane_b == lane_a);
     a.row(lane_a, q);
     if (ahead) take(*ahead, lane_ahead);
     if (behind) take(*behind, lane_behind);

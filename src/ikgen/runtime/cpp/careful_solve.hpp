@@ -13,7 +13,7 @@
 namespace ikgen_runtime {
 
 // Arm: as for NewtonRefinement, RankLoss and SolutionRows; Seed, Rows<P> and branches<P>, the closed form, of kLanes
-// rows; kLaneOfRow; kRefined, whether its rows are right already; kNewton, whether it is of another geometry than the
+// rows; kLaneOfRow; kRefined, whether its rows are right already; kRounded, whether it is of another geometry than the
 // file, and kBesides, kBeside, the motions of the tool to poses that are solved as well then: near folds those have
 // rows that the pose has not.
 template <class Arm> struct CarefulSolve {
@@ -32,7 +32,6 @@ template <class Arm> struct CarefulSolve {
     const Aim aim(pose, options.free);
     bool real = false;
     Places found;
-    found.count = 0;
     for (int turn = 0; turn < Policy::kTries; ++turn) {
       double start[Arm::kDof];
       for (int j = 0; j < Arm::kDof; ++j)
@@ -46,7 +45,7 @@ template <class Arm> struct CarefulSolve {
         add(aim, found, start, true);
         Row::place_all(options, found);
       }
-      if (!Arm::kNewton) left.led = any_singular(found);
+      if (!Arm::kRounded) left.led = any_singular(found);
       if (!left.free || (left.led && found.count > 0)) break;
     }
     if (options.seed) Row::sort_by_distance(found, options.seed->data());
@@ -69,7 +68,7 @@ template <class Arm> struct CarefulSolve {
   // As Solutions, with room for rows that are outside the limits, or farther from a seed than others.
   struct Places {
     static constexpr std::size_t kRoom = 2 * Arm::kMaxSolutions;
-    int count;
+    int count = 0;
     std::array<typename Arm::Joints, kRoom> q;
     std::array<bool, kRoom> singular;
   };
@@ -98,7 +97,7 @@ template <class Arm> struct CarefulSolve {
     }
 
     // Whether it stands for a continuum that the file's arm may not have.
-    bool broken() const noexcept { return marked && (Arm::kNewton || !(error < Policy::kArrived)); }
+    bool broken() const noexcept { return marked && (Arm::kRounded || !(error < Policy::kArrived)); }
 
     // The solutions that meet near a configuration.
     void take_pair(const FoldPair<Arm>& fold, const double* from, Places& out) noexcept {
@@ -184,15 +183,9 @@ template <class Arm> struct CarefulSolve {
     Row::add(out, q, singular);
   }
 
-  // The change of a joint from one row to another.
-  static double change(int j, const double* a, const double* b) noexcept {
-    const double gap = b[j] - a[j];
-    return Arm::kRevolute[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap;
-  }
-
   static bool alike(const double* a, const double* b) noexcept {
     for (int j = 0; j < Arm::kDof; ++j)
-      if (!(std::abs(change(j, a, b)) < Policy::kAlike)) return false;
+      if (!(std::abs(Row::change(j, a, b)) < Policy::kAlike)) return false;
     return true;
   }
 
@@ -200,7 +193,7 @@ template <class Arm> struct CarefulSolve {
   static bool between(const Aim& aim, const double* a, const double* b) noexcept {
     if (!alike(a, b)) return false;
     double middle[Arm::kDof];
-    for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * change(j, a, b);
+    for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * Row::change(j, a, b);
     return PoseError<Arm>(middle, aim).largest() < Policy::kConverged;
   }
 

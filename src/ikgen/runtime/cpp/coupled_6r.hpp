@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "general_6r_pairs.hpp"
-#include "general_6r_runs.hpp"
 #include "general_6r_spectrum.hpp"
+#include "method_in_runs.hpp"
 #include "six_joint_arm.hpp"
 #include "unit_circle_roots.hpp"
 
@@ -63,7 +63,7 @@ inline Loop coupled_loop(const CoupledChain<Plan>& F, const Frame& T, const std:
 inline Square coupled_matrix(const Equations& eq) noexcept { return lift(make_pencil(eq.E, eq.left)).at(1.0, 0.0); }
 
 inline double signed_determinant(Square& A) noexcept {
-  std::array<Index, 12> pivot;
+  std::array<Index, 12> pivot{};  // not all is written of a matrix that is singular
   double det = factor(A, pivot);
   for (Index k = 0; k < 12; ++k) {
     if (pivot[k] != k) det = -det;
@@ -78,8 +78,15 @@ inline Spectrum run_coupled(const CoupledChain<Plan>& F, const Frame& T, const F
   constexpr Index degree = Plan::kDegree, nodes = 2 * degree + 2;
   constexpr double first = 0.05;  // rad, an angle that no right angle shares
   constexpr double real = 0.03;   // rad, the imaginary part of an angle that may be real
+  Equations eq = eliminate(coupled_loop(F, aim, plan, first));
+  const auto loop_at = [&](double angle) {  // of the equations the left sides alone change
+    const Loop loop = coupled_loop(F, aim, plan, angle);
+    sample_left(loop, eq.left);
+    return loop;
+  };
   const auto determinant = [&](double angle) {
-    Square M = coupled_matrix(eliminate(coupled_loop(F, aim, plan, angle)));
+    loop_at(angle);
+    Square M = coupled_matrix(eq);
     return signed_determinant(M);
   };
   std::array<double, nodes> values;
@@ -91,8 +98,7 @@ inline Spectrum run_coupled(const CoupledChain<Plan>& F, const Frame& T, const F
   Spectrum roots;  // none is known to be all of the pose
   for (int i = 0; i < count; ++i) {
     const double angle = angles[static_cast<Index>(i)];
-    const Loop loop = coupled_loop(F, aim, plan, angle);
-    const Equations eq = eliminate(loop);
+    const Loop loop = loop_at(angle);
     const Pairs pairs = find_pairs(coupled_matrix(eq));
     for (Index j = 0; j < pairs.count; ++j) {
       const Vector t = complete(loop, eq, 0.0, pairs.z4[j], pairs.z5[j]);
@@ -108,15 +114,8 @@ inline Spectrum run_coupled(const CoupledChain<Plan>& F, const Frame& T, const F
 
 }  // namespace g6
 
-struct CoupledMethod {
-  template <class Plan>
-  static void solve(const g6::CoupledChain<Plan>& F, const g6::Frame& T, const g6::Turning& turning,
-                    g6::Solutions& out) noexcept {
-    g6::solve_in_runs<g6::run_coupled<Plan>>(F, T, turning, Plan::kEigenproblems, out);
-  }
-};
-
 // Arm: as for SixJointArm, its Plan as for CoupledChain.
-template <class Arm> struct Coupled6r : SixJointArm<Arm, CoupledMethod, g6::CoupledChain<typename Arm::Plan>> {};
+template <class Arm, class Plan = typename Arm::Plan>
+struct Coupled6r : SixJointArm<Arm, g6::InRuns<g6::run_coupled<Plan>>, g6::CoupledChain<Plan>> {};
 
 }  // namespace ikgen_runtime

@@ -2,23 +2,22 @@
 // moves least, to first order along the others (Lyapunov and Schmidt's reduction; Golubitsky & Schaeffer 1985, I.3).
 #pragma once
 
+#include "moving_joints.hpp"
 #include "pose_error.hpp"
 
 namespace ikgen_runtime {
 
 // Arm: as for PoseError; kHeld, a flag a joint; Policy.
 template <class Arm> struct FoldPair {
-  static constexpr int kMoving = Arm::kDof - static_cast<int>(Arm::kFreeJoints.size()), kEquations = PoseError<Arm>::kCount;
+  static constexpr MovingJoints<Arm> kJoints{};
+  static constexpr int kMoving = MovingJoints<Arm>::kCount, kEquations = PoseError<Arm>::kCount;
   using Vector = double[kMoving];
 
   HeldAim<Arm> aim;
-  int moving[kMoving];
   Vector still;       // unit direction in which the pose moves least
   double size = 0.0;  // the pose's error
 
   explicit FoldPair(const HeldAim<Arm>& goal) noexcept : aim(goal) {
-    for (int j = 0, k = 0; j < Arm::kDof; ++j)
-      if (!Arm::kHeld[j]) moving[k++] = j;
     for (int k = 0; k < kMoving; ++k) still[k] = 1.0 + 0.1 * k;
   }
 
@@ -40,7 +39,7 @@ template <class Arm> struct FoldPair {
       std::copy_n(at, Arm::kDof, sample);
       double largest = 0.0;
       for (const double x : still) largest = std::max(largest, std::abs(x));
-      for (int k = 0; k < kMoving; ++k) at[moving[k]] += Arm::Policy::kTryStep / largest * still[k];
+      for (int k = 0; k < kMoving; ++k) at[kJoints[k]] += Arm::Policy::kTryStep / largest * still[k];
     }
     return worst;
   }
@@ -55,7 +54,7 @@ template <class Arm> struct FoldPair {
     for (int e = 0; e < kEquations; ++e) {
       flow[e] = bend[e] = 0.0;
       rest[e] = at.error[e];
-      for (int k = 0; k < kMoving; ++k) flow[e] += at.slope[e][moving[k]] * still[k];
+      for (int k = 0; k < kMoving; ++k) flow[e] += at.slope[e][kJoints[k]] * still[k];
     }
     const Others others(*this, at, flow);
     others.take_away(rest, across);
@@ -63,17 +62,17 @@ template <class Arm> struct FoldPair {
     if (side != 0.0) {
       double there[Arm::kDof];
       std::copy_n(q, Arm::kDof, there);
-      for (int k = 0; k < kMoving; ++k) there[moving[k]] += kAlong * still[k];
+      for (int k = 0; k < kMoving; ++k) there[kJoints[k]] += kAlong * still[k];
       const PoseError<Arm> beyond(there, aim);
       for (int e = 0; e < kEquations; ++e)
         for (int k = 0; k < kMoving; ++k)
-          bend[e] += (beyond.slope[e][moving[k]] - at.slope[e][moving[k]]) * still[k] / kAlong;
+          bend[e] += (beyond.slope[e][kJoints[k]] - at.slope[e][kJoints[k]]) * still[k] / kAlong;
       others.take_away(bend, ignored);
       others.take_away(flow, ignored);
       x = root(side, bend, flow, rest);
     }
     for (int k = 0; k < kMoving; ++k)
-      q[moving[k]] += std::min(std::max(across[k], -kFar), kFar) + x * still[k];
+      q[kJoints[k]] += std::min(std::max(across[k], -kFar), kFar) + x * still[k];
     return x;
   }
 
@@ -102,7 +101,7 @@ template <class Arm> struct FoldPair {
 
     Others(const FoldPair& fold, const PoseError<Arm>& at, const double (&flow)[kEquations]) noexcept {
       for (int e = 0; e < kEquations; ++e)
-        for (int k = 0; k < kMoving; ++k) V[e][k] = at.slope[e][fold.moving[k]] - flow[e] * fold.still[k];
+        for (int k = 0; k < kMoving; ++k) V[e][k] = at.slope[e][kJoints[k]] - flow[e] * fold.still[k];
       for (int a = 0; a < kMoving; ++a)
         for (int b = 0; b <= a; ++b) {
           A[a][b] = fold.still[a] * fold.still[b] + (a == b ? Arm::Policy::kLeastDamping : 0.0);
@@ -129,7 +128,7 @@ template <class Arm> struct FoldPair {
     for (int a = 0; a < kMoving; ++a)
       for (int b = 0; b <= a; ++b) {
         N[a][b] = a == b ? Arm::Policy::kLeastDamping : 0.0;
-        for (int e = 0; e < kEquations; ++e) N[a][b] += at.slope[e][moving[a]] * at.slope[e][moving[b]];
+        for (int e = 0; e < kEquations; ++e) N[a][b] += at.slope[e][kJoints[a]] * at.slope[e][kJoints[b]];
       }
     factor(N);
     for (int i = 0; i < 4; ++i) {

@@ -49,6 +49,7 @@ template <class Arm> struct JointBounds {
 template <class Arm> struct HeldSample {
   static constexpr int kBesides = CarefulSolve<Arm>::kBesideAnywhere ? Arm::kBesides : 0;
   static constexpr int kLanes = Arm::kLanes * (1 + kBesides), kMargins = Arm::kFolds > 0 ? Arm::kFolds : 1;
+  static constexpr bool kMarginsTell = Arm::kGuarded && !Arm::kRounded;  // where branches end: a rounded arm's do not
   double held = 0.0;
   int lanes = Arm::kLanes;  // which may be real
   double q[Arm::kDof][kLanes], off[kLanes], fold[kMargins][Arm::kLanes];

@@ -74,7 +74,7 @@ template <class Arm> struct HeldSearch {
     out.count = 0;
     const HeldSweep<Arm> sweep(pose, limits);
     HeldSearch search{sweep, preference, out};
-    const bool any = BranchMotion<Arm>::follow(sweep, search, kCells);
+    const bool any = BranchMotion<Arm>::follow(sweep, search);
     search.finish();
     out.status = out.count > 0 ? Arm::Status::Ok : any ? Arm::Status::Limits : Arm::Status::Unreachable;
     for (int k = 0; k < out.count; ++k)
@@ -116,15 +116,13 @@ template <class Arm> struct HeldSearch {
   // tell branches apart it is that of the point's: near a fold two are as near to it.
   Point beside(double at, const Point& near) const noexcept {
     const Sample s = sweep.at(at);
-    int best = Arm::kMarginsTell && s.inside(near.lane) ? near.lane : -1;
+    int best = Sample::kMarginsTell && s.inside(near.lane) ? near.lane : -1;
     double least = 0.5;
-    for (int l = 0; l < s.lanes && !Arm::kMarginsTell; ++l) {
-      double gap = s.inside(l) ? 0.0 : kInfinity;
-      for (int j = 0; j < Arm::kDof && gap < least; ++j) {
-        if (Arm::kHeld[j]) continue;
-        const double d = s.q[j][l] - near.q[j];
-        gap = std::max(gap, std::abs(Arm::kRevolute[j] ? d - kTurn * std::nearbyint(d / kTurn) : d));
-      }
+    for (int l = 0; l < s.lanes && !Sample::kMarginsTell; ++l) {
+      double gap = s.inside(l) ? 0.0 : kInfinity, q[Arm::kDof];
+      s.row(l, q);
+      for (int j = 0; j < Arm::kDof && gap < least; ++j)
+        if (!Arm::kHeld[j]) gap = std::max(gap, std::abs(SolutionRows<Arm>::change(j, near.q, q)));
       if (gap < least) {
         least = gap;
         best = l;

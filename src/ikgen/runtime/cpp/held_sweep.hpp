@@ -62,11 +62,9 @@ template <class Arm> struct HeldSweep {
 
   const Eigen::Isometry3d& pose;
   JointBounds<Arm> bounds;
-  double low, high;
+  double low = -kPi, high = kPi;
 
   HeldSweep(const Eigen::Isometry3d& T, bool limits) noexcept : pose(T), bounds(limits) {
-    low = -kPi;
-    high = kPi;
     if constexpr (!Arm::kArmAngle) hold_joint(limits);
   }
 
@@ -98,17 +96,12 @@ template <class Arm> struct HeldSweep {
   // The range of the held joint.
   void hold_joint(bool limits) noexcept {
     constexpr int j = Arm::kFreeJoints[0];
-    low = Arm::kLower.data()[j];
-    high = Arm::kUpper.data()[j];
-    if (Arm::kRevolute[j]) {
-      if (limits && high - low < kInfinity) return;
-      low = -kPi;
-      high = kPi;
-    } else if (!(high - low < kInfinity)) {
-      const double far = reach();
-      low = std::max(low, -far);
-      high = std::min(high, far);
-    }
+    const double lower = Arm::kLower.data()[j], upper = Arm::kUpper.data()[j];
+    const bool bounded = upper - lower < kInfinity;
+    if (Arm::kRevolute[j] && !(limits && bounded)) return;
+    const double far = bounded ? kInfinity : reach();
+    low = std::max(lower, -far);
+    high = std::min(upper, far);
   }
 
   // How far a slide without limits is looked at: the arm's lengths from the pose.

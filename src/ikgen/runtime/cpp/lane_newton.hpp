@@ -4,6 +4,7 @@
 #include "joint_range.hpp"
 #include "lane_chain.hpp"
 #include "lane_rows.hpp"
+#include "moving_joints.hpp"
 
 namespace ikgen_runtime {
 
@@ -43,11 +44,12 @@ template <int Rows, int Columns, int N> struct LaneFactors {
   }
 };
 
-// Arm: as for LaneChain; Task; kSize; kHeld, a flag a joint, kFree, how many are; Rows<P>; Policy.
+// Arm: as for LaneChain; MovingJoints; Task; kSize; Rows<P>; Policy.
 template <class Arm> struct LaneNewton {
   using Policy = typename Arm::Policy;
   template <int P> using Rows = typename Arm::template Rows<P>;
-  static constexpr int kEquations = Arm::Task::kCount, kMoving = Arm::kDof - Arm::kFree;
+  static constexpr MovingJoints<Arm> kJoints{};
+  static constexpr int kEquations = Arm::Task::kCount, kMoving = MovingJoints<Arm>::kCount;
   static_assert(kMoving <= kEquations);
 
   // Refines the rows that are real, and puts them into the range. What is not shown to be the one solution near its
@@ -111,7 +113,8 @@ template <class Arm> struct LaneNewton {
       // Newton's method contracts this fast only near the one solution there (Deuflhard 2004, theorem 2.1)
       good = good & (((k == 0 ? 1.0 : Policy::kContraction) * before > size) | (Policy::kConverged > size)) &
              (factors.pivot > Policy::kLeastPivot);
-      for (int i = 0, j = 0; j < Arm::kDof; ++j) step[j] = Arm::kHeld[j] ? spread<N>(0.0) : select(good, d[i++], 0.0);
+      for (auto& none : step) none = spread<N>(0.0);
+      for (int i = 0; i < kMoving; ++i) step[kJoints[i]] = select(good, d[i], 0.0);
       chain.move(step);
       if (k > 0) done = (!good) | (Policy::kConverged * before > size * size) | (Policy::kConverged > size);
       rest = abs(error[0]);
@@ -136,8 +139,7 @@ template <class Arm> struct LaneNewton {
     chain.jacobian(J);
     Arm::Task::slope(chain.tip, J, slope);
     for (int e = 0; e < kEquations; ++e)
-      for (int i = 0, j = 0; j < Arm::kDof; ++j)
-        if (!Arm::kHeld[j]) factors.Q[e][i++] = slope[e][j];
+      for (int i = 0; i < kMoving; ++i) factors.Q[e][i] = slope[e][kJoints[i]];
     factors.factor();
   }
 };

@@ -18,6 +18,16 @@ struct Frame {
   double R[3][3], p[3];
 };
 
+// A frame's matrix, columns first.
+inline void by_columns(const Frame& T, double* t) noexcept {
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) t[4 * c + r] = T.R[r][c];
+    t[12 + r] = T.p[r];
+    t[4 * r + 3] = 0.0;
+  }
+  t[15] = 1.0;
+}
+
 // Arm: kDof; kMotions, the M of the chain; kFrames, the upper rows of the F.
 template <class Arm> struct MotionChain {
   static constexpr int kCount = sizeof(Arm::kMotions) / sizeof(Motion);

@@ -9,7 +9,7 @@ template <class Arm> struct PoseEntries {
 
   // t: the rows of the pose; T: the tip's frame.
   template <class X, class Tip>
-  static void error(const X (&t)[3][4], const Tip& T, X (&error)[kCount]) noexcept {
+  static void error(const X (&t)[3][4], const Tip& T, X* error) noexcept {
     for (int i = 0; i < kCount; ++i) {
       const auto [r, c] = Arm::kRead[i];
       if (c == 3) {
@@ -22,7 +22,7 @@ template <class Arm> struct PoseEntries {
 
   // J: the tip's geometric Jacobian.
   template <class X, class Tip>
-  static void slope(const Tip& T, const X (&J)[6][Arm::kDof], X (&slope)[kCount][Arm::kDof]) noexcept {
+  static void slope(const Tip& T, const X (&J)[6][Arm::kDof], X (*slope)[Arm::kDof]) noexcept {
     for (int i = 0; i < kCount; ++i) {
       const auto [r, c] = Arm::kRead[i];
       const int u = (r + 1) % 3, v = (r + 2) % 3;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include "held_aim.hpp"
@@ -21,17 +20,9 @@ template <class Arm> struct PoseError {
     double t[3][4];
     for (int r = 0; r < 3; ++r)
       for (int c = 0; c < 4; ++c) t[r][c] = aim.pose.matrix().data()[4 * c + r];
-    if constexpr (Aim::kCount == 0) {
-      Arm::Task::error(t, T, error);
-      Arm::Task::slope(T, J, slope);
-    } else {
-      double missed[kTask], rows[kTask][Arm::kDof];
-      Arm::Task::error(t, T, missed);
-      Arm::Task::slope(T, J, rows);
-      std::copy_n(missed, kTask, error);
-      std::copy_n(rows[0], kTask * Arm::kDof, slope[0]);
-      aim.compare(q, error[kTask], slope[kTask]);
-    }
+    Arm::Task::error(t, T, error);
+    Arm::Task::slope(T, J, slope);
+    if constexpr (Aim::kCount > 0) aim.compare(q, error[kTask], slope[kTask]);
     for (const int j : Arm::kFreeJoints)
       for (auto& row : slope) row[j] = 0.0;
   }

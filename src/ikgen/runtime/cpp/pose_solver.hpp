@@ -44,16 +44,19 @@ template <class Arm, template <class> class Way> struct PoseSolver {
         if (!(value < kInfinity)) options.seed = nullptr;
       }
       if (far && options.seed) without_turns();
-      if constexpr (Arm::kFree > 0) {
-        const Options plain;
-        auto own = plain.free;
-        if (options.seed && options.hold_seed) HeldAim<Arm>::values(options.seed->data(), own);
-        for (std::size_t k = 0; k < Arm::kFree; ++k)
-          if (options.free[k] == plain.free[k]) options.free[k] = own[k];
-      }
+      if constexpr (Arm::kFree > 0)
+        if (options.seed && options.hold_seed) hold_the_seed();
     }
     Checked(const Checked&) = delete;
     Checked& operator=(const Checked&) = delete;
+
+    void hold_the_seed() noexcept {
+      const auto plain = Options().free;
+      auto own = plain;
+      HeldAim<Arm>::values(options.seed->data(), own);
+      for (std::size_t k = 0; k < Arm::kFree; ++k)
+        if (options.free[k] == plain[k]) options.free[k] = own[k];
+    }
 
     void without_turns() noexcept {
       near = *options.seed;

@@ -36,16 +36,6 @@ template <class Arm> struct PoseChords {
     }
   }
 
-  // A frame's matrix, columns first.
-  static void by_columns(const Frame& T, double* f) noexcept {
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) f[4 * c + r] = T.R[r][c];
-      f[12 + r] = T.p[r];
-      f[4 * r + 3] = 0.0;
-    }
-    f[15] = 1.0;
-  }
-
   // A turn by x moves the nine entries of a rotation by sqrt(8) sin(x / 2).
   static double turn() noexcept {
     int turned = 0;
@@ -96,7 +86,7 @@ template <class Arm, template <class> class Way> struct Projection {
     double q[Arm::kDof];
     nearest(t, options, q);
     Eigen::Isometry3d pose;
-    Chords::by_columns(MotionChain<Arm>::forward(q), pose.matrix().data());
+    by_columns(MotionChain<Arm>::forward(q), pose.matrix().data());
     HeldAim<Arm>::values(q, options.free);
     Way<Arm>::template solve<1>(&pose, options, &out);
     if (SolutionRows<Arm>::place(q, options)) SolutionRows<Arm>::add(out, q, false);

@@ -127,10 +127,10 @@ template <class Arm, class Record> struct BranchFollower {
   }
 };
 
-// Tells a record of all branches, whether there are any. Arm: as for BranchFollower; kFromLimits, whether the joint limits
-// alone tell where they are inside: then arm_angle_motion.hpp has it.
-template <class Arm, bool kFromLimits = Arm::kFromLimits> struct BranchMotion {
-  template <class Record> static bool follow(const HeldSweep<Arm>& sweep, Record& record, int) noexcept {
+// Tells a record of all branches, whether there are any. Arm: as for BranchFollower. Where the joint limits alone tell where
+// they are inside, at an arm angle of exact geometry, arm_angle_motion.hpp has it.
+template <class Arm, bool kFromLimits = Arm::kArmAngle && !Arm::kRounded> struct BranchMotion {
+  template <class Record> static bool follow(const HeldSweep<Arm>& sweep, Record& record) noexcept {
     BranchFollower<Arm, Record> follower(sweep, record);
     sweep.run(follower);
     return follower.any;
@@ -140,6 +140,7 @@ template <class Arm, bool kFromLimits = Arm::kFromLimits> struct BranchMotion {
 // Intervals of self_motion, by branch and value. Arm: as for BranchMotion; Intervals, its result.
 template <class Arm> struct SelfMotionFinder {
   using Sample = HeldSample<Arm>;
+  static constexpr int kCells = 1;
   typename Arm::Intervals& out;
   double start[Sample::kLanes];
   int branch[Sample::kLanes];
@@ -187,7 +188,7 @@ template <class Arm> struct SelfMotionFinder {
     out.complete = true;
     const HeldSweep<Arm> sweep(pose, limits);
     SelfMotionFinder finder{out, {}, {}};
-    const bool any = BranchMotion<Arm>::follow(sweep, finder, 0);
+    const bool any = BranchMotion<Arm>::follow(sweep, finder);
     number(out);
     out.status = out.count > 0 ? Arm::Status::Ok : any ? Arm::Status::Limits : Arm::Status::Unreachable;
   }

@@ -26,6 +26,12 @@ template <class Arm> struct SolutionRows {
     return std::all_of(q, q + Arm::kDof, [](double x) { return std::isfinite(x); });
   }
 
+  // The change of a joint from one row to another, the shortest way.
+  static double change(int j, const double* a, const double* b) noexcept {
+    const double gap = b[j] - a[j];
+    return Arm::kRevolute[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap;
+  }
+
   // Whether two rows are the same, whole turns aside; long slides count relative to their length.
   static bool same(const double* a, const double* b) noexcept {
     for (int j = 0; j < Arm::kDof; ++j) {

@@ -58,12 +58,14 @@ inline std::array<Complex, N - 1> polynomial_roots(const std::array<Complex, N>&
 template <Index D, Index n, std::size_t most>
 inline int circle_roots(const std::array<double, n>& values, double first, double accept,
                         std::array<double, most>& angles) noexcept {
+  std::array<Complex, n> turn;
+  for (Index i = 0; i < n; ++i) {
+    const double angle = 2.0 * kPi * static_cast<double>(i) / static_cast<double>(n);
+    turn[i] = {std::cos(angle), -std::sin(angle)};
+  }
   std::array<Complex, 2 * D + 1> c{};
   for (Index k = 0; k <= D; ++k) {
-    for (Index i = 0; i < n; ++i) {
-      const double angle = 2.0 * kPi * static_cast<double>(k * i % n) / static_cast<double>(n);
-      c[D + k] += values[i] * Complex(std::cos(angle), -std::sin(angle));
-    }
+    for (Index i = 0; i < n; ++i) c[D + k] += values[i] * turn[k * i % n];
     c[D - k] = std::conj(c[D + k]);
   }
   int count = 0;

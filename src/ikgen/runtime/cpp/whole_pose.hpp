@@ -13,7 +13,7 @@ template <class Arm> struct WholePose {
 
   // t: the rows of the pose; T: the tip's frame.
   template <class X, class Tip>
-  [[gnu::always_inline]] static void error(const X (&t)[3][4], const Tip& T, X (&error)[6]) noexcept {
+  [[gnu::always_inline]] static void error(const X (&t)[3][4], const Tip& T, X* error) noexcept {
     X S[3][3];
     for (int i = 0; i < 3; ++i) {
       error[i] = (t[i][3] - T.p[i]) / Arm::kSize;
@@ -27,7 +27,7 @@ template <class Arm> struct WholePose {
 
   // J: the tip's geometric Jacobian.
   template <class X, class Tip>
-  [[gnu::always_inline]] static void slope(const Tip&, const X (&J)[6][Arm::kDof], X (&slope)[6][Arm::kDof]) noexcept {
+  [[gnu::always_inline]] static void slope(const Tip&, const X (&J)[6][Arm::kDof], X (*slope)[Arm::kDof]) noexcept {
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < Arm::kDof; ++j) slope[i][j] = i < 3 ? J[i][j] / Arm::kSize : J[i][j];
   }

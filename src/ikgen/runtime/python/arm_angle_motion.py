@@ -23,7 +23,7 @@ from ikgen.runtime.python.solved_arm import Arm
 __all__ = ["arm_angle_motion_of"]
 
 _ELBOW = 3
-_STRETCHED = 1e-4  # distance of the elbow from the line (m)
+_STRETCHED = 1e-4  # distance of the elbow from the line, over the upper arm
 _ALIGNED = 1e-9  # 1 less the cosine between the outer axes of shoulder or wrist
 
 
@@ -75,7 +75,7 @@ def _ends(arm: Arm, T: Array, q: Array, limits: bool) -> list[float] | None:
     frames = joint_axes(arm.chain, q[None])[:-1, 0]
     axes = frames[:, :3, 2] * np.array([m[2] for m in arm.chain.motions])[:, None]
     outer = (_harmonic(line, axes[a], axes[b]) for a, b in ((0, 2), (6, 4)))
-    if hypot(*elbow) < _STRETCHED or any(
+    if hypot(*elbow) < _STRETCHED * arm.angle.upper or any(
         hypot(a, b) + abs(c) > 1.0 - _ALIGNED for a, b, c in outer
     ):
         return None

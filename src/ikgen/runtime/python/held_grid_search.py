@@ -66,8 +66,7 @@ def _grid(
         low, high = arm.lower[j], arm.upper[j]
         if arm.chain.revolute[j] and not (limits and high - low < inf):
             low, high = -pi, pi
-        near, far = (min(max(x, low), high) for x in slide_range(arm, T, j))
-        low, high = near, far
+        low, high = (min(max(x, low), high) for x in slide_range(arm, T, j))
         low, high = max(low, middle[j] - 1.0) if low == -inf else low, high
         high = min(high, max(low, middle[j]) + 1.0) if high == inf else high
         axis = np.linspace(low, high, count)

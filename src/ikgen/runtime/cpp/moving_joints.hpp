@@ -1,0 +1,17 @@
+#pragma once
+
+namespace ikgen_runtime {
+
+// The joints that are not held. Arm: kDof; kFreeJoints; kHeld, a flag a joint.
+template <class Arm> struct MovingJoints {
+  static constexpr int kCount = Arm::kDof - static_cast<int>(Arm::kFreeJoints.size());
+  int joint[kCount] = {};
+
+  constexpr MovingJoints() noexcept {
+    for (int j = 0, k = 0; j < Arm::kDof; ++j)
+      if (!Arm::kHeld[j]) joint[k++] = j;
+  }
+  constexpr int operator[](int k) const noexcept { return joint[k]; }
+};
+
+}  // namespace ikgen_runtime
