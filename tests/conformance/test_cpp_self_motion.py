@@ -20,6 +20,7 @@ from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.solver_module import SolverModule
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
+from ikgen.kinematics.rigid import rotation_about
 from ikgen.verify.runners.cpp_toolchain import compile_program, find_eigen
 
 pytestmark = pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
@@ -172,6 +173,14 @@ def test_poses_at_which_a_joint_stays_on_its_limit_or_the_arm_is_stretched(both:
         assert ((low - 1e-4 <= value) & (value <= high + 1e-4)).any()
 
 
+def regular(arm: ModuleType, rng: np.random.Generator) -> Array:
+    """A configuration that a path can lead away from."""
+    while True:
+        q = drawn(arm, rng)
+        if np.linalg.svd(arm.jacobian(q), compute_uv=False)[-1] > 0.05:
+            return q
+
+
 def cost(arm: ModuleType, mode: int, q: Array, seed: Array) -> float:
     if mode == 1:
         return float(np.linalg.norm(q - seed))
@@ -213,9 +222,12 @@ def test_paths(both: Both) -> None:
     arm, rng = both.arm, np.random.default_rng(4)
     seen = 0
     for _ in range(3):
-        q = drawn(arm, rng)
+        q = regular(arm, rng)
         poses = np.repeat(arm.forward(q)[None], 15, axis=0)
-        poses[:, :3, 3] += np.linspace(0.0, 0.3, 15)[:, None] * rng.normal(size=3) / 1.7
+        poses[:, :3, 3] += np.linspace(0.0, 0.15, 15)[:, None] * rng.normal(size=3) / 1.7
+        axis = rng.normal(size=3)
+        turns = rotation_about(axis / np.linalg.norm(axis), 0.03 * np.arange(15))
+        poses[:, :3, :3] = turns @ poses[0, :3, :3]
         status, numbers = both.run(4, q, poses)
         path = arm.follow(poses, start=q)
         rows = numbers.reshape(-1, arm.DOF)

@@ -62,13 +62,40 @@ def test_a_motion_through_the_wrist_singularity_comes_back(ur5e: ModuleType) -> 
         assert bool(path.singular.any()) == (count == 41)
 
 
-def test_few_poses_far_apart_are_followed_by_halved_steps(ur5e: ModuleType) -> None:
-    start, rng = np.array([0.3, -1.2, 1.4, -0.8, 0.9, 0.2]), np.random.default_rng(0)
-    for _ in range(20):
-        motion = start + np.linspace(0.0, 1.0, 4)[:, None] * rng.uniform(-0.5, 0.5, 6)
-        path = ur5e.follow(along(ur5e, motion), start=start)
-        assert path.status is ur5e.Status.OK
-        assert np.abs(path.q - motion).max() < 1e-6
+def test_a_coarse_motion_past_the_wrist_singularity_goes_on_as_it_was(ur5e: ModuleType) -> None:
+    """Poses half-way between two are beside it, on the side where the wrist would have to turn around."""
+    start = np.array([0.2, -0.9, 1.1, 0.3, 0.6, -0.4])
+    motion = start + np.linspace(0.0, 1.0, 20)[:, None] * np.array([1.0, 0.3, -0.5, 0.2, -1.2, 0.4])
+    poses = along(ur5e, motion)
+    path = ur5e.follow(poses, start=start)
+    q = check(ur5e, path, poses)
+    assert path.status is ur5e.Status.OK
+    assert np.abs(q - motion).max() < 1e-6
+    assert path.singular.any() and not path.singular[:8].any()
+
+
+@pytest.mark.parametrize("step", [0.1, 0.2, 0.4])
+def test_regular_motions_are_followed_however_far_apart_the_poses_are(
+    ur5e: ModuleType, redundant: ModuleType, step: float
+) -> None:
+    rng = np.random.default_rng(8)
+    for arm in (ur5e, redundant):
+        seen = 0
+        while seen < 25:
+            start = rng.uniform(np.maximum(arm.LOWER, -2.5), np.minimum(arm.UPPER, 2.5))
+            end = start + rng.uniform(-step, step, arm.DOF)
+            rows = start + np.linspace(0.0, 1.0, 9)[:, None] * (end - start)
+            least = min(np.linalg.svd(arm.jacobian(q), compute_uv=False)[-1] for q in rows)
+            if least < 0.05 or not ((rows > arm.LOWER) & (rows < arm.UPPER)).all():
+                continue
+            seen += 1
+            poses = along(arm, np.array([start, end]))
+            path = arm.follow(poses, start=start)
+            q = check(arm, path, poses)
+            assert path.status is arm.Status.OK
+            assert not path.singular.any()
+            if not arm.FREE_JOINTS:
+                assert np.abs(q[1] - end).max() < 1e-6
 
 
 def test_whole_turns_are_unwound(ur5e: ModuleType) -> None:

@@ -1630,25 +1630,39 @@ template <class A> struct AllMoving : A {
 
 template <class A, class Solver> struct PathStep {
   static constexpr int kDof = A::kDof, kDeepest = 24, kShallow = 9;
-  static constexpr double kFarthest = 0.3, kOff = 0.2, kLeastOff = 1e-4, kDamping = 1e-8, kJump = 0.05;
+  static constexpr double kFarthest = 0.3, kAway = 1.0, kOff = 0.2, kLeastOff = 1e-4, kJump = 0.05;
+  static constexpr double kDamping = 1e-8, kLeastDamping = 1e-14;  // where Newton steps arrive, and where they foretell
   using Status = typename A::Status;
 
   double q[kDof];
   bool limits, crossed = false;
+
+  Status go_on(const Eigen::Isometry3d& before, const Eigen::Isometry3d& pose) noexcept {
+    double here[kDof], there[kDof], row[kDof];
+    std::copy_n(q, kDof, here);
+    const Status status = step(before, pose, 0);
+    if (status == Status::Ok && farthest(q, here) < kAway) return status;
+    std::copy_n(q, kDof, there);
+    std::copy_n(here, kDof, q);
+    bool singular = false;
+    const Status why = next_row(pose, here, row, singular);
+    if (why == Status::Ok && farthest(row, here) < kFarthest && arrive(row) == Status::Ok) {
+      crossed = true;
+      return Status::Ok;
+    }
+    std::copy_n(there, kDof, q);
+    return status == Status::Singular && why != Status::Ok ? why : status;
+  }
 
   Status step(const Eigen::Isometry3d& before, const Eigen::Isometry3d& pose, int depth) noexcept {
     double expected[kDof], row[kDof];
     bool singular = false;
     const bool none[kDof] = {};
     std::copy_n(q, kDof, expected);
-    move(expected, pose, none);
+    move(expected, pose, none, kLeastDamping);
     Status status = next_row(pose, expected, row, singular);
     if (status == Status::Ok) {
-      double gap = 0.0, moved = 0.0;
-      for (int j = 0; j < kDof; ++j) {
-        gap = std::max(gap, std::abs(row[j] - expected[j]));
-        moved = std::max(moved, std::abs(row[j] - q[j]));
-      }
+      const double gap = farthest(row, expected), moved = farthest(row, q);
       const bool follows = moved < kFarthest && gap < kLeastOff + kOff * moved;
       if (follows || (depth == kDeepest && moved < kJump)) {
         crossed = crossed || singular || !follows;
@@ -1665,14 +1679,19 @@ template <class A, class Solver> struct PathStep {
   }
 
   Status begin(const Eigen::Isometry3d& pose, const typename A::Joints& start) noexcept {
-    double row[kDof], most = 0.0;
+    double row[kDof];
     std::copy_n(start.data(), kDof, q);
     if (A::kFree == 0 || unstopped(pose, row, crossed) != Status::Ok) return Status::Unreachable;
-    for (int j = 0; j < kDof; ++j) most = std::max(most, std::abs(row[j] - q[j]));
-    return most < 0.1 ? arrive(row) : Status::Unreachable;
+    return farthest(row, q) < 0.1 ? arrive(row) : Status::Unreachable;
   }
 
  private:
+  static double farthest(const double* a, const double* b) noexcept {
+    double most = 0.0;
+    for (int j = 0; j < kDof; ++j) most = std::max(most, std::abs(a[j] - b[j]));
+    return most;
+  }
+
   Status arrive(const double* row) noexcept {
     for (int j = 0; j < kDof && limits; ++j)
       if (!(row[j] >= A::kLower.data()[j] - A::Policy::kLimitTolerance && row[j] <= A::kUpper.data()[j] + A::Policy::kLimitTolerance))
@@ -1682,7 +1701,7 @@ template <class A, class Solver> struct PathStep {
     return Status::Ok;
   }
 
-  static double move(double* at, const Eigen::Isometry3d& pose, const bool* stopped) noexcept {
+  static double move(double* at, const Eigen::Isometry3d& pose, const bool* stopped, double damping) noexcept {
     PoseError<AllMoving<A>> here(at, HeldAim<AllMoving<A>>(pose));
     constexpr int n = PoseError<AllMoving<A>>::kCount;
     const double worst = here.largest();
@@ -1691,7 +1710,7 @@ template <class A, class Solver> struct PathStep {
       for (int j = 0; j < kDof; ++j) row[j] = stopped[j] ? 0.0 : row[j];
     for (int a = 0; a < n; ++a)
       for (int b = 0; b <= a; ++b) {
-        N[a][b] = a == b ? kDamping : 0.0;
+        N[a][b] = a == b ? damping : 0.0;
         for (int j = 0; j < kDof; ++j) N[a][b] += here.slope[a][j] * here.slope[b][j];
       }
     factor(N);
@@ -1717,8 +1736,7 @@ template <class A, class Solver> struct PathStep {
       Solver::solve(pose, options, found);
       double least = kInfinity;
       for (int k = 0; k < found.count; ++k) {
-        double gap = 0.0;
-        for (int j = 0; j < kDof; ++j) gap = std::max(gap, std::abs(found.q.data()[k].data()[j] - expected[j]));
+        const double gap = farthest(found.q.data()[k].data(), expected);
         if (!(gap < least)) continue;
         least = gap;
         std::copy_n(found.q.data()[k].data(), kDof, row);
@@ -1739,7 +1757,7 @@ template <class A, class Solver> struct PathStep {
       for (int i = 0; i < 30; ++i) {
         double before[kDof];
         std::copy_n(tried, kDof, before);
-        const double here = move(tried, pose, stopped);
+        const double here = move(tried, pose, stopped, kDamping);
         const bool slow = !(here < 0.5 * error);
         if (here < error) {
           error = here;
@@ -1788,7 +1806,7 @@ inline Walk follow_poses(const Eigen::Isometry3d* poses, std::ptrdiff_t count, c
     if (!PoseReading<A>::clean(pose)) {
       out.status = Status::Invalid;
     } else if (i > 0) {
-      out.status = walk.step(before, pose, 0);
+      out.status = walk.go_on(before, pose);
     } else if (out.status = walk.begin(pose, start); out.status != Status::Ok) {
       typename A::Solutions found;
       typename A::SearchOptions options;

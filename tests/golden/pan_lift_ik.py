@@ -1657,7 +1657,7 @@ def _rows_and_doubts(
 _START_COUNT = 128  # drawn; the best of them are followed
 _FOLLOWED = 16
 _STEP_COUNT = 80
-_LEAST_DAMPING, _FIRST_DAMPING, _MOST_DAMPING = 1e-10, 1e-3, 1e10  # damping of a step
+_projection_LEAST_DAMPING, _FIRST_DAMPING, _MOST_DAMPING = 1e-10, 1e-3, 1e10  # damping of a step
 _LONGEST_STEP = 0.5  # rad or m: step of a joint
 
 
@@ -1740,7 +1740,7 @@ def _descend_to(arm: _Arm, T: Array, q: Array, bounds: tuple[Array, Array]) -> t
         better = costs < cost
         q[better], error[better], cost[better] = trial[better], errors[better], costs[better]
         pose, J = (np.where(better[:, None, None], a, b) for a, b in zip(new[1:], (pose, J)))
-        damping = np.clip(damping * np.where(better, 0.2, 8.0), _LEAST_DAMPING, _MOST_DAMPING)
+        damping = np.clip(damping * np.where(better, 0.2, 8.0), _projection_LEAST_DAMPING, _MOST_DAMPING)
         if damping.min() == _MOST_DAMPING:
             break
     return q, cost
@@ -1982,11 +1982,15 @@ def _search_held(
 _DEEPEST = 24  # of the way from one pose to the next
 _SHALLOW = 9  # the same where there are no rows
 _path_following_FARTHEST = 0.3  # rad or m that a joint may move at once
+_AWAY = 1.0  # rad or m by which it turns around a singularity, where another row is next to the last one
 _OFF = 0.2  # of the motion, and
 _LEAST_OFF = 1e-4  # rad or m: how far a row may be from where the Jacobian leads
 _NEWTON_STEPS = 30
 _BESIDE_START = 0.1  # rad or m
-_DAMPING = 1e-8  # of directions that are all but lost
+_DAMPING = (
+    1e-8  # of directions that are all but lost, squared, where Newton steps shall arrive, and
+)
+_LEAST_DAMPING = 1e-14  # where they shall tell how far the next row is
 _JUMP = 0.05  # rad or m that a row may be from the last one where halving does not help
 
 
@@ -2023,7 +2027,7 @@ def _follow_poses(
         if read is None:
             status = Status.INVALID
         elif i:
-            status = walk.step(before, pose, 0)
+            status = walk.go_on(before, pose)
         else:
             status = walk.begin(pose, row, search)
         if status is not Status.OK:
@@ -2055,10 +2059,27 @@ class _Walk:
             self.q, self.crossed = found.q[0], bool(found.singular[0])
         return found.status
 
+    def go_on(self, before: Array, pose: Array) -> Status:
+        """From a pose to the next; where halved steps lead far away or nowhere, as beside a singularity,
+        to a row next to the last one if there is one."""
+        here = self.q
+        status = self.step(before, pose, 0)
+        if status is Status.OK and np.abs(self.q - here).max() < _AWAY:
+            return status
+        there, self.q = self.q, here
+        rows, _, why = self._rows(pose)
+        moved = np.abs(rows - here).max(axis=1)
+        near = len(rows) and moved.min() < _path_following_FARTHEST
+        if near and self._arrive(rows[int(moved.argmin())]) is Status.OK:
+            self.crossed = True
+            return Status.OK
+        self.q = there
+        return why if status is Status.SINGULAR and not len(rows) else status
+
     def step(self, before: Array, pose: Array, depth: int) -> Status:
         """From a pose to the next, with halved steps where the rows do not follow the Jacobian."""
         expected = self._expected(pose)
-        rows, flags, status = self._rows(pose, expected)
+        rows, flags, status = self._rows(pose)
         if len(rows):
             gap = np.abs(rows - expected).max(axis=1)
             k = int(gap.argmin())
@@ -2086,20 +2107,22 @@ class _Walk:
 
     def _expected(self, pose: Array) -> Array:
         """Where the shortest motion by the Jacobian leads from here."""
-        return self.q + self._motion(self.q, pose, list(range(len(self.q))))[0]
+        return self.q + self._motion(self.q, pose, list(range(len(self.q))), _LEAST_DAMPING)[0]
 
-    def _motion(self, q: Array, pose: Array, moving: list[int]) -> tuple[Array, float]:
+    def _motion(
+        self, q: Array, pose: Array, moving: list[int], damping: float
+    ) -> tuple[Array, float]:
         """The shortest motion (dof,) of some joints that the Jacobian asks for, at most a radian or metre
         each; the error that it shall make good."""
         arm = self.arm
         here, J = _tip_and_jacobian(arm.chain, q[None])
         error, rows = arm.task.error(here, pose[None])[0], arm.task.rows(here, J)[0][:, moving]
-        normal = rows @ rows.T + _DAMPING * np.eye(len(rows))
+        normal = rows @ rows.T + damping * np.eye(len(rows))
         step = np.zeros(len(q))
         step[moving] = np.clip(rows.T @ np.linalg.solve(normal, error), -1.0, 1.0)
         return step, float(np.abs(error).max())
 
-    def _rows(self, pose: Array, expected: Array) -> tuple[Array, _Flags, Status]:
+    def _rows(self, pose: Array) -> tuple[Array, _Flags, Status]:
         """All rows without limits; with held joints the one that those lead to which no limit stops."""
         if self.arm.free_joints:
             return self._unstopped(pose)
@@ -2131,7 +2154,7 @@ class _Walk:
         """The best row of shortest motions from q, and its error."""
         best, least = q, inf
         for i in range(_NEWTON_STEPS):
-            step, error = self._motion(q, pose, moving)
+            step, error = self._motion(q, pose, moving, _DAMPING)
             slow = not error < 0.5 * least
             if error < least:
                 best, least = q, error
