@@ -503,6 +503,10 @@ class _Together(Protocol):
 class _HeldAngle(Protocol):
     """An angle that is held in place of a joint, of rows (..., dof) and their poses (..., 4, 4)."""
 
+    @property
+    def upper(self) -> float:
+        """Length of the upper arm, m."""
+
     def of_rows(self, q: Array, pose: Array) -> Array:
         """The angles (...)."""
 

@@ -27,6 +27,10 @@ class Together(Protocol):
 class HeldAngle(Protocol):
     """An angle that is held in place of a joint, of rows (..., dof) and their poses (..., 4, 4)."""
 
+    @property
+    def upper(self) -> float:
+        """Length of the upper arm, m."""
+
     def of_rows(self, q: Array, pose: Array) -> Array:
         """The angles (...)."""
 
