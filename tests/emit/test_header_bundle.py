@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import subprocess
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -13,7 +12,7 @@ from tests.support.pan_lift import pan_lift
 from tests.support.routines import FLAGS
 from tests.support.solving import NO_COMPILER
 
-from ikgen.emit.cpp.cpp_emitter import _headers, emit_header
+from ikgen.emit.cpp.cpp_emitter import emit_header
 from ikgen.emit.cpp.cpp_policy import policy_lines
 from ikgen.emit.cpp.header_bundle import RUNTIME, bundle
 from ikgen.program.policy import SolvePolicy
@@ -70,30 +69,6 @@ def test_an_emitted_header_takes_what_it_uses() -> None:
         and "struct WholePose" not in plain
     )
     assert "TrigRoots" in quartic and "struct SelfMotionFinder" not in quartic
-
-
-@pytest.mark.parametrize(
-    ("name", "task", "held"),
-    [
-        ("kuka_kr6r900sixx", "WholePose", 0),
-        ("doosan_m1013", "WholePose", 0),
-        ("ur5e", "PoseEntries", 2),
-    ],
-)
-def test_a_header_has_what_its_arm_takes_and_no_more(name: str, task: str, held: int) -> None:
-    module = solver_module(name)
-    if held:
-        names = tuple(joint.name for joint in module.dh.joints[:held])
-        dh = replace(module.dh, free=names)
-        module = replace(module, dh=dh, task="position", free=(0, 1), free_defaults=(0.0,) * held)
-    found = _headers(module)
-    rounded = module.refine == "all"
-    assert ("lane_newton.hpp" in found) == ("displacement.hpp" in found) == rounded
-    assert rounded == (name == "doosan_m1013")
-    assert ("whole_pose.hpp" in found) == (task == "WholePose") != ("pose_entries.hpp" in found)
-    assert found[-1] == ("held_grid_search.hpp" if held else "row_preference.hpp")
-    assert found[0] == "lane_angle.hpp" and "lane_solve.hpp" in found and "projection.hpp" in found
-    assert not {"arm_angle.hpp", "arm_angle_motion.hpp", "single_solve.hpp"} & set(found)
 
 
 def compile_text(text: str, folder: Path, *flags: str) -> subprocess.CompletedProcess[str]:

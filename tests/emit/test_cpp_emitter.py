@@ -1,0 +1,43 @@
+"""Which headers of the runtime an arm takes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import pytest
+from tests.support.cpp_modules import solver_module
+
+from ikgen.emit.cpp.cpp_emitter import _headers
+from ikgen.emit.solver_module import SolverModule
+from ikgen.model.dh import ARM_ANGLE
+
+
+@cache
+def exact() -> SolverModule:
+    return solver_module("scara_standard")
+
+
+@pytest.mark.parametrize("rounded", [False, True])
+@pytest.mark.parametrize("task", ["pose", "position"])
+@pytest.mark.parametrize("held", [0, 1, 2])
+def test_a_header_has_what_its_arm_takes_and_no_more(rounded: bool, task: str, held: int) -> None:
+    dh = replace(
+        exact().dh,
+        free=tuple(joint.name for joint in exact().dh.joints[:held]),
+        deviation=(0.0, 1e-3 if rounded else 0.0),
+    )
+    module = replace(
+        exact(), dh=dh, task=task, free=tuple(range(held)), free_defaults=(0.0,) * held
+    )
+    found = _headers(module)
+    assert ("lane_newton.hpp" in found) == ("displacement.hpp" in found) == rounded
+    assert ("whole_pose.hpp" in found) == (task == "pose") != ("pose_entries.hpp" in found)
+    assert found[-1] == ("row_preference.hpp", "held_search.hpp", "held_grid_search.hpp")[held]
+    assert found[:2] == ["lane_angle.hpp", "lane_solve.hpp"] and "projection.hpp" in found
+    assert not {"arm_angle.hpp", "arm_angle_motion.hpp", "single_solve.hpp"} & set(found)
+    if held:
+        free = (*dh.free[1:], ARM_ANGLE)
+        angle = replace(module, dh=replace(dh, free=free))
+        assert ("arm_angle.hpp" if rounded else "arm_angle_motion.hpp") in _headers(angle)
+        assert "lane_newton.hpp" not in _headers(angle)
