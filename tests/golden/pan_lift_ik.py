@@ -744,8 +744,8 @@ def _distinct(arm: _Arm, q: Array, valid: _Flags) -> _Flags:
         same &= (gap <= near) | (far <= bound)
         if not same.any():
             return valid
-    valid = valid.copy()
-    for i, k, equal in zip(later.tolist(), earlier.tolist(), same):
+    valid, some = valid.copy(), same.any(axis=1)
+    for i, k, equal in zip(later[some].tolist(), earlier[some].tolist(), same[some]):
         valid[:, i] &= ~(equal & valid[:, k])
     return valid
 
@@ -1214,21 +1214,27 @@ def _rows(arm: _Arm, asked: _Asked, start: Array, first: bool) -> list[_Rows]:
     pose, lane = np.nonzero(closed.valid & closed.rough)
     own = _starts(arm, asked, closed.q[pose, lane], pose, marked[pose, lane], 0)
     starts = _joined(_given(arm, asked, start, np.flatnonzero(free)), own)
+    looks, anywhere = first and len(arm.beside) > 0, arm.policy.beside_anywhere
+    if looks and anywhere:
+        starts = _joined(starts, _beside(arm, asked, start, np.arange(len(start))))
     ends = _ends_of(arm, starts.q, starts.T)
-    near = free | arm.policy.beside_anywhere
-    near[pose[ends.loss[len(ends.loss) - len(pose) :] < arm.policy.beside_reach]] = True
-    some = np.flatnonzero(near & first)
-    if len(arm.beside) and len(some):
-        q, valid = _rows_beside(arm, asked.T[some], start[some], asked.held[some])
-        pose, lane = np.nonzero(valid)
-        plain = np.zeros(len(pose), dtype=bool)
-        more = _starts(arm, asked, q[pose, lane], some[pose], plain, 1)
+    near = free.copy()
+    near[starts.pose[(starts.source >= 0) & (ends.loss < arm.policy.beside_reach)]] = True
+    if looks and not anywhere and near.any():
+        more = _beside(arm, asked, start, np.flatnonzero(near))
         starts, ends = _joined(starts, more), _joined(ends, _ends_of(arm, more.q, more.T))
     kept = _meeting(arm, asked, starts, ends)
     for i, k in np.argwhere(closed.valid & ~closed.rough).tolist():
         _add(arm, asked.T[i], [(tuple(closed.q[i, k].tolist()), bool(marked[i, k]))], kept[i])
     led: _Flags = np.asarray(marked.any(axis=1))
     return list(zip(kept, free.tolist(), led.tolist()))
+
+
+def _beside(arm: _Arm, asked: _Asked, start: Array, some: _Index) -> _Starts:
+    """From poses beside some."""
+    q, valid = _rows_beside(arm, asked.T[some], start[some], asked.held[some])
+    pose, lane = np.nonzero(valid)
+    return _starts(arm, asked, q[pose, lane], some[pose], np.zeros(len(pose), dtype=bool), 1)
 
 
 def _starts(arm: _Arm, asked: _Asked, q: Array, pose: _Index, marked: _Flags, source: int) -> _Starts:
@@ -1905,7 +1911,8 @@ def _certain_rows(
         return None
     rows: list[Row] = [row for row, _ in answers]
     if arm.together is not None and not rows:
-        return None if arm.policy.beside_anywhere else []
+        beside = (np.array(T) @ arm.beside).tolist() if arm.policy.beside_anywhere else []
+        return None if any(arm.branches(pose, tuple(start), held)[0] for pose in beside) else []
     if arm.together is not None:
         aim = _aims(arm, np.array([T]), np.array([held]))
         q, arrived, missed = (x.tolist() for x in arm.together(arm, np.array(rows), aim))

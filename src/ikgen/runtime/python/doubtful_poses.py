@@ -143,21 +143,27 @@ def _rows(arm: Arm, asked: Asked, start: Array, first: bool) -> list[_Rows]:
     pose, lane = np.nonzero(closed.valid & closed.rough)
     own = _starts(arm, asked, closed.q[pose, lane], pose, marked[pose, lane], 0)
     starts = joined(_given(arm, asked, start, np.flatnonzero(free)), own)
+    looks, anywhere = first and len(arm.beside) > 0, arm.policy.beside_anywhere
+    if looks and anywhere:
+        starts = joined(starts, _beside(arm, asked, start, np.arange(len(start))))
     ends = ends_of(arm, starts.q, starts.T)
-    near = free | arm.policy.beside_anywhere
-    near[pose[ends.loss[len(ends.loss) - len(pose) :] < arm.policy.beside_reach]] = True
-    some = np.flatnonzero(near & first)
-    if len(arm.beside) and len(some):
-        q, valid = rows_beside(arm, asked.T[some], start[some], asked.held[some])
-        pose, lane = np.nonzero(valid)
-        plain = np.zeros(len(pose), dtype=bool)
-        more = _starts(arm, asked, q[pose, lane], some[pose], plain, 1)
+    near = free.copy()
+    near[starts.pose[(starts.source >= 0) & (ends.loss < arm.policy.beside_reach)]] = True
+    if looks and not anywhere and near.any():
+        more = _beside(arm, asked, start, np.flatnonzero(near))
         starts, ends = joined(starts, more), joined(ends, ends_of(arm, more.q, more.T))
     kept = _meeting(arm, asked, starts, ends)
     for i, k in np.argwhere(closed.valid & ~closed.rough).tolist():
         _add(arm, asked.T[i], [(tuple(closed.q[i, k].tolist()), bool(marked[i, k]))], kept[i])
     led: Flags = np.asarray(marked.any(axis=1))
     return list(zip(kept, free.tolist(), led.tolist()))
+
+
+def _beside(arm: Arm, asked: Asked, start: Array, some: Index) -> Starts:
+    """From poses beside some."""
+    q, valid = rows_beside(arm, asked.T[some], start[some], asked.held[some])
+    pose, lane = np.nonzero(valid)
+    return _starts(arm, asked, q[pose, lane], some[pose], np.zeros(len(pose), dtype=bool), 1)
 
 
 def _starts(arm: Arm, asked: Asked, q: Array, pose: Index, marked: Flags, source: int) -> Starts:

@@ -115,7 +115,8 @@ def _certain_rows(
         return None
     rows: list[Row] = [row for row, _ in answers]
     if arm.together is not None and not rows:
-        return None if arm.policy.beside_anywhere else []
+        beside = (np.array(T) @ arm.beside).tolist() if arm.policy.beside_anywhere else []
+        return None if any(arm.branches(pose, tuple(start), held)[0] for pose in beside) else []
     if arm.together is not None:
         aim = aims(arm, np.array([T]), np.array([held]))
         q, arrived, missed = (x.tolist() for x in arm.together(arm, np.array(rows), aim))

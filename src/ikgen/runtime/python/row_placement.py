@@ -47,8 +47,8 @@ def distinct(arm: Arm, q: Array, valid: Flags) -> Flags:
         same &= (gap <= near) | (far <= bound)
         if not same.any():
             return valid
-    valid = valid.copy()
-    for i, k, equal in zip(later.tolist(), earlier.tolist(), same):
+    valid, some = valid.copy(), same.any(axis=1)
+    for i, k, equal in zip(later[some].tolist(), earlier[some].tolist(), same[some]):
         valid[:, i] &= ~(equal & valid[:, k])
     return valid
 
