@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
 from tests.support.telescopes import RELATIONS, telescope_robot
 
 import ikgen
@@ -45,6 +46,23 @@ def test_a_telescope_takes_equal_shares_unasked(
     module = PythonModule(tmp_path / "telescope_ik.py").module
     assert module.JOINT_NAMES == ("lift", "stage_1", "yaw", "pitch")
     np.testing.assert_allclose(module.UPPER[:2], [1.1, 0.13])
+
+
+def test_a_parallelogram_keeps_the_forearm_s_direction(tmp_path: Path) -> None:
+    side = ("back", "revolute", "0 1 0", "0 0 0.5", (-2.5, 2.5))
+    yaw, pitch, *_, roll, bend, turn = SHOULDER_ELBOW_WRIST
+    elbow = ("elbow", "revolute", "0 1 0", "0 0 0", (-2.1, 2.1))
+    robot = tmp_path / "parallelogram.urdf"
+    robot.write_text(serial_urdf("parallelogram", (yaw, pitch, side, elbow, roll, bend, turn)))
+    out = ["-o", str(tmp_path), *QUICK]
+    assert run(["from-urdf", str(robot), "--couple", "back=shoulder_pitch*-1", *out]) == 0
+    arm = PythonModule(tmp_path / "parallelogram_ik.py").module
+    assert tuple(j[0] for j in (yaw, pitch, elbow, roll, bend, turn)) == arm.JOINT_NAMES
+    q = np.array([0.3, 0.7, -0.8, 0.4, 0.9, -0.2])
+    turned = arm.forward(q)[:3, :3]
+    np.testing.assert_allclose(arm.forward(q + np.eye(6)[1] * 0.4)[:3, :3], turned, atol=1e-12)
+    rows = arm.solve(arm.forward(q)).q
+    assert len(rows) > 1 and np.abs(rows - q).max(axis=1).min() < 1e-9
 
 
 @pytest.mark.parametrize(

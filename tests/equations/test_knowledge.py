@@ -130,3 +130,9 @@ def test_a_workspace_starts_with_what_is_known() -> None:
     assert [v for v in VARIABLES if work.is_known(v)] == list(VARIABLES[1:])
     assert work.graph is not k.graph
     assert work.variables.graph is work.equations.graph is work.graph
+
+
+def test_indices_of_sums_are_names_and_tell_them_apart() -> None:
+    sums = [(0, 1, 1, 0), (0, 1, -1, 0), (0, 2, -1, 0), (0, 1, 0, -3), (0, 0, 1, 0)]
+    names = [Variable("angle", one).index for one in sums]
+    assert names == ["23", "2_minus_3", "2x2_minus_3", "2_minus_3x4", "3"]

@@ -187,10 +187,11 @@ def test_what_is_known_of_an_end_is_of_the_samples_around_it() -> None:
     held, on = [0.0, 0.5, 1.0, 1.5], [[0, 1], [0, 1], [0, 1]]
     branches = pair(guarded=True, off=lambda h: h - 0.6)
     tracks, before = tracks_of(branches, held, on), np.array(on)
-    joint: Any = SimpleNamespace(arm=branches.arm, margins_tell=True)
+    joint: Any = SimpleNamespace(arm=branches.arm, margins_tell=True, guarded=True)
     end = branch_end(joint, tracks, before, (1, 0), (2, 0))
     assert (end.inner, end.outer, end.lane, end.guess) == (0.5, 1.0, 0, 0.5)
-    assert not end.at_fold and not end.one_sided
+    assert not end.at_fold and not end.one_sided and end.stays
+    assert not branch_end(joint, tracks, before, (1, 0), (2, 1)).stays  # another lane goes on
     assert end.known == [(h, pytest.approx(h - 0.85)) for h in (1.5, 0.0, 1.0, 0.5)]
     back = branch_end(joint, tracks, before, (2, 0), (1, 0))
     assert [h for h, _ in back.known] == [0.0, 1.5, 0.5, 1.0] and back.outer == 0.5

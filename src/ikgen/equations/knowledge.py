@@ -44,6 +44,19 @@ class Variable:
         parts = [f"{k:+d}*{letter}_{j + 1}" for j, k in enumerate(self.combination) if k]
         return "(" + "".join(parts) + ")"
 
+    @property
+    def index(self) -> str:
+        """What names in emitted code end in, such as 23, 4, or 2_minus_3 of a difference."""
+        if all(k in (0, 1) for k in self.combination):
+            return self.text.split("_", 1)[1]
+        signs = {True: "", False: "minus_"}
+        parts = [
+            f"{signs[k > 0]}{f'{abs(k)}x' if abs(k) > 1 else ''}{j + 1}"
+            for j, k in enumerate(self.combination)
+            if k
+        ]
+        return "_".join(parts)
+
 
 @dataclass(frozen=True, slots=True)
 class PolynomialEquation:

@@ -59,7 +59,7 @@ def _step(work: Placement, index: int, step: Step) -> None:
     if sigma is not g.one:
         work.levels.append(LoweredLevel(2, sigma))
         work.level_of[sigma.id] = len(work.levels) - 1
-        work.names[sigma.id] = f"sigma_{v.text.split('_', 1)[-1]}"
+        work.names[sigma.id] = f"sigma_{v.index}"
     work.place(Comment(text))
     alternatives = [one for one in lowered if isinstance(one, LoweredForm)]
     work.define(v, choose_form(work, v, alternatives, sigma))
@@ -91,9 +91,8 @@ def _routine(work: Placement, v: Variable, form: Form, lowered: LoweredRoutine, 
     atoms = work.knowledge.variables.pair(v.combination)
     work.levels.append(LoweredLevel(form.branches, None, (lowered.routine, arguments, atoms)))
     work.place(Comment(text))
-    suffix = v.text.split("_", 1)[1]
     for atom, x in zip(atoms, "cs", strict=True):
-        work.names[atom.id] = identifier(f"{x}{suffix}")
+        work.names[atom.id] = identifier(f"{x}{v.index}")
         work.level_of[atom.id] = len(work.levels) - 1
         work.placed.add(atom.id)
     slope = work.slope(v, form)

@@ -170,7 +170,7 @@ class Placement:
         """Give a solved variable its cosine and sine, or its distance."""
         atoms = self.atoms_of(v)
         letters = "cs" if v.kind == "angle" else "d"
-        names = [f"{x}{v.text.split('_', 1)[1]}" for x in letters]
+        names = [f"{x}{v.index}" for x in letters]
         for atom, name, value in zip(atoms, names, values, strict=True):
             self.definition[atom.id] = value
             self.names[atom.id] = identifier(name)
