@@ -16,8 +16,9 @@ from ikgen.verify import checks, completeness, coverage, interface_checks
 from ikgen.verify.agreement import check_agreement
 from ikgen.verify.answers import Answers, collect_answers
 from ikgen.verify.arm import ArmUnderTest, arm_under_test
+from ikgen.verify.motion_checks import motion_checks, regular_motions
 from ikgen.verify.oracle import Oracle
-from ikgen.verify.runners.runner import Runner
+from ikgen.verify.runners.runner import MovingRunner, Runner
 from ikgen.verify.sampling import generator
 from ikgen.verify.task_space import TaskSpace, task_space
 from ikgen.verify.verification_report import CheckResult, SigmaBand, VerificationReport
@@ -67,8 +68,18 @@ def _plan(
         "bad shapes": lambda: interface_checks.check_shapes(arm, runner, random.poses[0]),
         "solve_batch": lambda: interface_checks.check_batch(arm, runner, a.ordered.sample),
         "determinism": lambda: interface_checks.check_determinism(a.limited, a.repeated),
+        **_motion_checks(runner, arm, seed),
         **agreement,
     }
+
+
+def _motion_checks(
+    runner: Runner, arm: ArmUnderTest, seed: int
+) -> dict[str, Callable[[], CheckResult]]:
+    """Those of code that moves."""
+    if not isinstance(runner, MovingRunner) or not runner.moves:
+        return {}
+    return motion_checks(arm, runner, regular_motions(arm, generator(seed, "motions")))
 
 
 def _guarded(name: str, check: Callable[[], CheckResult]) -> CheckResult:

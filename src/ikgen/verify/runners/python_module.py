@@ -142,6 +142,36 @@ class PythonModule:
         names = tuple(getattr(s, "name", None) or self.module.Status(s).name for s in status)
         return Rows(q, np.asarray(count, dtype=np.int64), names, np.zeros(q.shape[:2], dtype=bool))
 
+    @property
+    def moves(self) -> bool:
+        """Whether the module follows paths and searches."""
+        return hasattr(self.module, "follow") and hasattr(self.module, "search")
+
+    @property
+    def has_self_motion(self) -> bool:
+        """Whether it tells the intervals of what is held."""
+        return hasattr(self.module, "self_motion")
+
+    def follow(self, poses: Array, start: Array) -> tuple[Array, str, NDArray[np.bool_]]:
+        """Rows (N, dof) along poses (N, 4, 4), NaN from the first that was not reached, the status, and
+        which are singular (N,)."""
+        path = self.module.follow(poses, start=start)
+        return (
+            np.asarray(path.q, dtype=float),
+            path.status.name,
+            np.asarray(path.singular, dtype=bool),
+        )
+
+    def search(self, pose: Array, seed: Array) -> Array:
+        """The best rows (k, dof) near a seed."""
+        found = self.module.search(pose, seed=seed, prefer="near")
+        return np.asarray(found.q, dtype=float).reshape(-1, self._constants.dof)
+
+    def self_motion(self, pose: Array) -> Array:
+        """Ends (k, 2) of the intervals of what is held."""
+        found = self.module.self_motion(pose)
+        return np.array([[one.low, one.high] for one in found], dtype=float).reshape(-1, 2)
+
     def forward(self, q: Array) -> Array:
         """Poses (N, 4, 4) for q (N, dof)."""
         return np.asarray(self.module.forward(q), dtype=float)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["ArmConstants", "Rows", "Runner"]
+__all__ = ["ArmConstants", "MovingRunner", "Rows", "Runner"]
 
 Array = NDArray[np.float64]
 
@@ -119,3 +119,29 @@ class Runner(Protocol):
 
     def jacobian(self, q: Array) -> Array:
         """Jacobians (N, 6, dof) for q (N, dof)."""
+
+
+@runtime_checkable
+class MovingRunner(Protocol):
+    """A runner of code that follows paths and chooses what it holds; `moves`: whether its code does."""
+
+    @property
+    def moves(self) -> bool: ...
+
+    @property
+    def has_self_motion(self) -> bool:
+        """Whether the code tells the intervals of what is held."""
+        ...
+
+    def follow(self, poses: Array, start: Array) -> tuple[Array, str, NDArray[np.bool_]]:
+        """Rows (N, dof) along poses (N, 4, 4), NaN from the first that was not reached, the status, and
+        which are singular (N,)."""
+        ...
+
+    def search(self, pose: Array, seed: Array) -> Array:
+        """The best rows (k, dof) near a seed (dof,)."""
+        ...
+
+    def self_motion(self, pose: Array) -> Array:
+        """Ends (k, 2), rad or m, of the intervals of what is held."""
+        ...

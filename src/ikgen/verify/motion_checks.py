@@ -1,0 +1,116 @@
+"""Checks of what emitted code does beyond a pose: paths, and what is held chosen by the solver."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.verify.arm import ArmUnderTest
+from ikgen.verify.checks import CLOSURE_TOLERANCE, PUT_ON_LIMIT
+from ikgen.verify.runners.runner import MovingRunner
+from ikgen.verify.trials import result, spell
+from ikgen.verify.verification_report import CheckResult
+
+__all__ = [
+    "Motions",
+    "check_follow",
+    "check_search",
+    "check_self_motion",
+    "motion_checks",
+    "regular_motions",
+]
+
+Array = NDArray[np.float64]
+
+CLEARLY_REGULAR = 0.05  # smallest singular value all the way
+FOUND = 1e-6  # rad or m
+_MOTIONS, _SEARCHES, _DRAWN = 15, 3, 600
+_FARTHEST = 0.2  # rad, or m and of the arm's length, that a joint moves between two poses
+_BETWEEN = 9  # configurations that are looked at
+
+
+@dataclass(frozen=True, slots=True)
+class Motions:
+    """Regular motions inside the limits: `start` and `end` (N, dof), and their `poses` (N, 2, 4, 4)."""
+
+    start: Array
+    end: Array
+    poses: Array
+
+
+def regular_motions(arm: ArmUnderTest, rng: np.random.Generator) -> Motions:
+    """A few random ones; none of an arm that is nowhere clearly regular."""
+    start = arm.uniform(rng, _DRAWN)
+    most = np.where(arm.revolute, _FARTHEST, _FARTHEST * min(1.0, arm.length))
+    end = np.clip(start + rng.uniform(-most, most, start.shape), arm.lower, arm.upper)
+    share = np.linspace(0.0, 1.0, _BETWEEN)[:, None, None]
+    sigma = arm.sigma((start + share * (end - start)).reshape(-1, arm.dof))
+    regular = np.flatnonzero(sigma.reshape(_BETWEEN, -1).min(axis=0) > CLEARLY_REGULAR)
+    start, end = start[regular[:_MOTIONS]], end[regular[:_MOTIONS]]
+    poses = np.stack([arm.oracle.forward(start), arm.oracle.forward(end)], axis=1)
+    return Motions(start, end, poses)
+
+
+def motion_checks(
+    arm: ArmUnderTest, runner: MovingRunner, motions: Motions
+) -> dict[str, Callable[[], CheckResult]]:
+    """The checks by name, of what the emitted code has."""
+    checks = {"paths": check_follow, "search": check_search}
+    if arm.held and runner.has_self_motion:
+        checks["self motion"] = check_self_motion
+    return {name: lambda check=check: check(arm, runner, motions) for name, check in checks.items()}  # type: ignore[misc]
+
+
+def check_follow(arm: ArmUnderTest, runner: MovingRunner, motions: Motions) -> CheckResult:
+    """A path from one end of a regular motion to the other is followed, by an arm without held joints as
+    the motion went, and nowhere across a singularity."""
+    failures, worst, case = 0, 0.0, ""
+    for i, (start, end, poses) in enumerate(
+        zip(motions.start, motions.end, motions.poses, strict=True)
+    ):
+        q, status, singular = runner.follow(poses, start)
+        off = 0.0 if arm.held else float(arm.distance(q[-1], end))
+        right = status == "OK" and off <= FOUND and not singular.any()
+        if not (right and _closes(arm, q, poses)):
+            failures += 1
+            case = case or spell("motion", i, start=start, end=end, followed=q)
+        worst = max(worst, off)
+    return result("paths", len(motions.start), failures, (("off rad or m", worst),), "", case)
+
+
+def check_search(arm: ArmUnderTest, runner: MovingRunner, motions: Motions) -> CheckResult:
+    """The best row near a configuration at its pose is that configuration."""
+    failures, worst, case = 0, 0.0, ""
+    some = list(zip(motions.start, motions.poses[:, 0], strict=True))[:_SEARCHES]
+    for i, (q, pose) in enumerate(some):
+        rows = runner.search(pose, q)
+        off = float(arm.distance(rows[0], q)) if len(rows) else np.inf
+        if not off <= FOUND or not _closes(arm, rows, np.repeat(pose[None], len(rows), axis=0)):
+            failures += 1
+            case = case or spell("motion", i, q=q, pose=pose, rows=rows)
+        worst = max(worst, off)
+    return result("search", len(some), failures, (("off rad or m", worst),), "", case)
+
+
+def check_self_motion(arm: ArmUnderTest, runner: MovingRunner, motions: Motions) -> CheckResult:
+    """A configuration's value of what is held lies in an interval of its pose."""
+    failures, case = 0, ""
+    q, poses = motions.start[:_SEARCHES], motions.poses[:_SEARCHES, 0]
+    held = arm.held_values(q, poses)
+    assert held is not None
+    for i, (pose, value) in enumerate(zip(poses, held[:, 0], strict=True)):
+        ends = runner.self_motion(pose)
+        if not ((ends[:, 0] - FOUND <= value) & (value <= ends[:, 1] + FOUND)).any():
+            failures += 1
+            case = case or spell("motion", i, q=q[i], pose=pose, intervals=ends)
+    return result("self motion", len(q), failures, (), "", case)
+
+
+def _closes(arm: ArmUnderTest, q: Array, poses: Array) -> bool:
+    """Whether rows (N, dof) have their poses (N, 4, 4)."""
+    position, rotation = arm.task.errors(arm.oracle.forward(q), poses)
+    error = np.maximum(position / arm.size_of(q), rotation)
+    return bool(np.all(error <= CLOSURE_TOLERANCE + PUT_ON_LIMIT))

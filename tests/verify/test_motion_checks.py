@@ -1,0 +1,121 @@
+"""Checks of paths, searches and intervals notice what is wrong with them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from tests.support.fake_arms import six_axis_oracle
+from tests.support.solving import FIXTURES
+
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
+from ikgen.tasks import find_task
+from ikgen.verify.arm import ArmUnderTest, arm_under_test
+from ikgen.verify.motion_checks import CLEARLY_REGULAR, motion_checks, regular_motions
+from ikgen.verify.oracle import oracle_from_dh
+from ikgen.verify.runners.python_module import PythonModule
+from ikgen.verify.sampling import generator
+from ikgen.verify.task_space import task_space
+
+Array = NDArray[np.float64]
+
+
+class Moving:
+    """A runner of one that knows the motions; told to be wrong in some way."""
+
+    moves = has_self_motion = True
+
+    def __init__(self, arm: ArmUnderTest, ends: Array, wrong: str = "") -> None:
+        self.arm, self.ends, self.wrong = arm, iter(ends), wrong
+
+    def follow(self, poses: Array, start: Array) -> tuple[Array, str, NDArray[np.bool_]]:
+        q = np.array([start, next(self.ends)])
+        if self.wrong == "stops":
+            q[1] = np.nan
+        if self.wrong == "leaves the pose":
+            q[1, 0] += 1e-7
+        if self.wrong == "other branch":
+            q[1, [3, 4, 5]] = q[1, 3] + np.pi, -q[1, 4], q[1, 5] + np.pi
+        status = "SINGULAR" if self.wrong in ("stops", "wrong status") else "OK"
+        return q, status, np.array([False, self.wrong == "across a singularity"])
+
+    def search(self, pose: Array, seed: Array) -> Array:
+        if self.wrong == "finds nothing":
+            return np.empty((0, 6))
+        return seed[None] + (2e-6 if self.wrong == "finds it nearly" else 0.0)
+
+    def self_motion(self, pose: Array) -> Array:
+        return np.array([[-4.0, -3.5], [-3.2, 3.2]])[: 1 if self.wrong == "too narrow" else 2]
+
+
+def arm(held: tuple[str, ...] = ()) -> ArmUnderTest:
+    free = np.full(6, np.inf)
+    return arm_under_test(six_axis_oracle(), task_space(find_task("pose")), (-free, free), held)
+
+
+def failures(a: ArmUnderTest, wrong: str) -> dict[str, tuple[int, int]]:
+    motions = regular_motions(a, generator(0, "motions"))
+    checks = motion_checks(a, Moving(a, motions.end, wrong), motions)
+    found = [check() for check in checks.values()]
+    assert all(bool(one.worst_case) == (one.failures > 0) for one in found)
+    return {one.name: (one.failures, one.count) for one in found}
+
+
+def test_motions_are_regular_and_inside_the_limits() -> None:
+    a = replace(arm(), lower=np.full(6, -1.0), upper=np.full(6, 1.0))
+    a = replace(a, low=a.lower, high=a.upper)
+    motions = regular_motions(a, generator(3, "motions"))
+    assert len(motions.start) == 15
+    middle = 0.5 * (motions.start + motions.end)
+    for q in (motions.start, middle, motions.end):
+        assert (a.sigma(q) > CLEARLY_REGULAR).all() and a.within(q).all()
+    moved = np.abs(motions.end - motions.start)
+    assert 0.15 < moved.max() <= 0.2
+    assert np.array_equal(motions.poses[:, 1], a.oracle.forward(motions.end))
+
+
+def test_what_is_right_passes() -> None:
+    a = arm((six_axis_oracle().joint_names[0],))
+    assert failures(a, "") == {"paths": (0, 15), "search": (0, 3), "self motion": (0, 3)}
+
+
+@pytest.mark.parametrize(
+    ("wrong", "check", "count"),
+    [
+        ("stops", "paths", 15),
+        ("wrong status", "paths", 15),
+        ("leaves the pose", "paths", 15),
+        ("across a singularity", "paths", 15),
+        ("other branch", "paths", 15),
+        ("finds nothing", "search", 3),
+        ("finds it nearly", "search", 3),
+        ("too narrow", "self motion", 3),
+    ],
+)
+def test_what_is_wrong_fails(wrong: str, check: str, count: int) -> None:
+    a = arm()
+    if check == "self motion":
+        a = arm((six_axis_oracle().joint_names[0],))
+    found = failures(a, wrong)
+    assert found.pop(check) == (count, count)
+    assert all(failed == 0 for failed, _ in found.values())
+
+
+def test_a_module_that_turns_the_wrong_way_between_poses_is_noticed(tmp_path: Path) -> None:
+    module = derive(Request(FIXTURES / "ur5e.urdf")).module
+    text = emit_module(module)
+    failed = []
+    for name, axis in (("right", "axis"), ("wrong", "-axis")):
+        path = tmp_path / f"{name}_ik.py"
+        path.write_text(text.replace("np.cross(np.eye(3), axis)", f"np.cross(np.eye(3), {axis})"))
+        runner = PythonModule(path)
+        limits = runner.constants.lower, runner.constants.upper
+        a = arm_under_test(oracle_from_dh(module.dh), task_space(find_task("pose")), limits, ())
+        checks = motion_checks(a, runner, regular_motions(a, generator(0, "motions")))
+        failed.append(checks["paths"]().failures)
+    assert failed[0] == 0 and failed[1] > 3
