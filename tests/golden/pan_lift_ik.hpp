@@ -367,6 +367,84 @@ template <class Y, class X, int N = kCommon<Y, X>>
   return select(-1.2e-16 * ax > y, -third, third);  // an angle that rounds to -pi is pi
 }
 
+// --- joint range ---------------------------------------------------------------------------------
+struct Range {
+  const double* lower;
+  const double* upper;
+};
+
+template <int N> struct Unbounded {
+  double lower[N], upper[N];
+  constexpr Unbounded() noexcept : lower(), upper() {
+    for (int i = 0; i < N; ++i) {
+      lower[i] = -kInfinity;
+      upper[i] = kInfinity;
+    }
+  }
+};
+template <int N> inline constexpr Unbounded<N> kUnbounded{};
+
+template <int N> struct Placed {
+  Lanes<N> q;
+  Mask<N> inside;
+};
+
+template <class Policy, int N, bool H>
+[[gnu::always_inline]] inline Placed<N> clamp(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
+  const auto outside =
+      (range.lower[j] - Policy::kLimitTolerance > q) | (q > range.upper[j] + Policy::kLimitTolerance);
+  return {max(min(q, range.upper[j]), range.lower[j]), !outside};
+}
+
+template <class Policy, int N, bool H>
+[[gnu::always_inline]] inline Placed<N> place(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
+  const auto up = select(range.lower[j] - Policy::kLimitTolerance > q, kTurn, 0.0);
+  const auto down = select(q > range.upper[j] + Policy::kLimitTolerance, kTurn, 0.0);
+  return clamp<Policy>(j, q + (up - down), range);
+}
+
+// --- lane rows -----------------------------------------------------------------------------------
+template <int P> struct Pose {
+  Lanes<P> t[3][4];
+};
+
+template <int P> [[gnu::always_inline]] inline Pose<P> gather(const Eigen::Isometry3d* poses) noexcept {
+  Pose<P> out;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 4; ++j) {
+      double entries[std::size_t{P}];
+      for (int p = 0; p < P; ++p) entries[p] = poses[p].matrix().data()[4 * j + i];
+      out.t[i][j] = load<P>(entries);
+    }
+  return out;
+}
+
+enum Bit { kFound = 1, kReal = 2, kSingular = 4, kRough = 8, kMeeting = 16, kHit = 32 };
+
+template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> bit(const MaskOf<N, H>& mask, Bit value) noexcept {
+  return select(mask, static_cast<double>(value), 0.0);
+}
+
+template <int Dof, int Most, int P> struct LaneRows {
+  static constexpr int kLanes = Most * P;
+  alignas(64) double q[Dof][std::size_t{kLanes}];
+  alignas(64) double flags[std::size_t{kLanes}];
+};
+
+template <int N, bool H> [[gnu::always_inline]] inline Lanes<N / 2> gap(const LanesOf<N, H>& x) noexcept {
+  if constexpr (H) {
+    return abs(x.lo - x.hi);
+  } else {
+    Lanes<N / 2> lo, hi;
+    std::memcpy(&lo.v, &x.v, sizeof(lo.v));
+    std::memcpy(&hi.v, reinterpret_cast<const char*>(&x.v) + sizeof(lo.v), sizeof(hi.v));
+    return abs(lo - hi);
+  }
+}
+template <class Policy, int N, class... X> [[gnu::always_inline]] inline auto meeting(const X&... x) noexcept {
+  return Policy::kMeeting > (gap(spread<N>(x)) + ...);
+}
+
 // --- moving joints -------------------------------------------------------------------------------
 template <class Arm> struct MovingJoints {
   static constexpr int kCount = Arm::kDof - static_cast<int>(Arm::kFreeJoints.size());
@@ -537,11 +615,12 @@ template <class Arm> struct FoldPair {
   using Vector = double[kMoving];
 
   HeldAim<Arm> aim;
-  Vector still;       // unit direction in which the pose moves least
-  double size = 0.0;  // the pose's error
+  Vector still;             // unit direction in which the pose moves least
+  double out[kEquations];  // unit direction of the error in which no other moves it
 
   explicit FoldPair(const HeldAim<Arm>& goal) noexcept : aim(goal) {
     for (int k = 0; k < kMoving; ++k) still[k] = 1.0 + 0.1 * k;
+    for (int e = 0; e < kEquations; ++e) out[e] = 1.0 + 0.1 * e;
   }
 
   void approach(double side, double* q) noexcept {
@@ -549,55 +628,56 @@ template <class Arm> struct FoldPair {
       if (!(std::abs(step(side, q)) > kClose)) break;
   }
 
-  template <int N> double walk(const double* q, double (&out)[N][Arm::kDof]) noexcept {
-    double worst = 0.0, at[Arm::kDof];
-    std::copy_n(q, Arm::kDof, at);
-    step(0.0, at);
-    for (auto& sample : out) {
-      for (int i = 0; i < 2; ++i) step(0.0, at);
-      worst = std::max(worst, size);
-      std::copy_n(at, Arm::kDof, sample);
-      double largest = 0.0;
-      for (const double x : still) largest = std::max(largest, std::abs(x));
-      for (int k = 0; k < kMoving; ++k) at[kJoints[k]] += Arm::Policy::kTryStep / largest * still[k];
-    }
-    return worst;
-  }
-
-  double step(double side, double* q) noexcept {
+  double correct(double* q, double& left, double& slope) noexcept {
     const PoseError<Arm> at(q, aim);
-    size = at.largest();
     find_still(at);
-    double flow[kEquations], bend[kEquations], rest[kEquations];
-    Vector ignored, across;
+    const Others others(*this, at);
+    Vector across, ignored;
+    double rest[kEquations], square = 0.0, farthest = 0.0;
+    others.take_away(at.error, rest, across);
+    others.take_away(out, out, ignored);
+    for (const double x : out) square += x * x;
+    left = slope = 0.0;
     for (int e = 0; e < kEquations; ++e) {
-      flow[e] = bend[e] = 0.0;
-      rest[e] = at.error[e];
-      for (int k = 0; k < kMoving; ++k) flow[e] += at.slope[e][kJoints[k]] * still[k];
+      out[e] /= std::sqrt(square);
+      left += out[e] * rest[e];
+      slope -= out[e] * others.flow[e];
     }
-    const Others others(*this, at, flow);
-    others.take_away(rest, across);
-    double x = 0.0;
-    if (side != 0.0) {
-      double there[Arm::kDof];
-      std::copy_n(q, Arm::kDof, there);
-      for (int k = 0; k < kMoving; ++k) there[kJoints[k]] += kAlong * still[k];
-      const PoseError<Arm> beyond(there, aim);
-      for (int e = 0; e < kEquations; ++e)
-        for (int k = 0; k < kMoving; ++k)
-          bend[e] += (beyond.slope[e][kJoints[k]] - at.slope[e][kJoints[k]]) * still[k] / kAlong;
-      others.take_away(bend, ignored);
-      others.take_away(flow, ignored);
-      x = root(side, bend, flow, rest);
-    }
-    for (int k = 0; k < kMoving; ++k)
-      q[kJoints[k]] += std::min(std::max(across[k], -kFar), kFar) + x * still[k];
-    return x;
+    move(across, 0.0, q);
+    for (const double x : across) farthest = std::max(farthest, std::abs(x));
+    return farthest;
   }
 
  private:
   static constexpr double kAlong = 1e-4, kClose = 1e-9, kFar = 0.3;
   static constexpr int kSteps = 8;
+
+  double step(double side, double* q) noexcept {
+    const PoseError<Arm> at(q, aim);
+    find_still(at);
+    const Others others(*this, at);
+    double bend[kEquations], bent[kEquations], flow[kEquations], rest[kEquations], there[Arm::kDof];
+    std::copy_n(q, Arm::kDof, there);
+    for (int k = 0; k < kMoving; ++k) there[kJoints[k]] += kAlong * still[k];
+    const PoseError<Arm> beyond(there, aim);
+    for (int e = 0; e < kEquations; ++e) {
+      bend[e] = 0.0;
+      for (int k = 0; k < kMoving; ++k)
+        bend[e] += (beyond.slope[e][kJoints[k]] - at.slope[e][kJoints[k]]) * still[k] / kAlong;
+    }
+    Vector ignored, across;
+    others.take_away(at.error, rest, across);
+    others.take_away(bend, bent, ignored);
+    others.take_away(others.flow, flow, ignored);
+    const double x = root(side, bent, flow, rest);
+    move(across, x, q);
+    return x;
+  }
+
+  void move(const Vector& across, double along, double* q) const noexcept {
+    for (int k = 0; k < kMoving; ++k)
+      q[kJoints[k]] += std::min(std::max(across[k], -kFar), kFar) + along * still[k];
+  }
 
   static double root(double side, const double (&bend)[kEquations], const double (&flow)[kEquations],
                      const double (&rest)[kEquations]) noexcept {
@@ -614,11 +694,14 @@ template <class Arm> struct FoldPair {
   }
 
   struct Others {
-    double V[kEquations][kMoving], A[kMoving][kMoving];
+    double V[kEquations][kMoving], A[kMoving][kMoving], flow[kEquations];
 
-    Others(const FoldPair& fold, const PoseError<Arm>& at, const double (&flow)[kEquations]) noexcept {
-      for (int e = 0; e < kEquations; ++e)
+    Others(const FoldPair& fold, const PoseError<Arm>& at) noexcept {
+      for (int e = 0; e < kEquations; ++e) {
+        flow[e] = 0.0;
+        for (int k = 0; k < kMoving; ++k) flow[e] += at.slope[e][kJoints[k]] * fold.still[k];
         for (int k = 0; k < kMoving; ++k) V[e][k] = at.slope[e][kJoints[k]] - flow[e] * fold.still[k];
+      }
       for (int a = 0; a < kMoving; ++a)
         for (int b = 0; b <= a; ++b) {
           A[a][b] = fold.still[a] * fold.still[b] + (a == b ? Arm::Policy::kLeastDamping : 0.0);
@@ -627,14 +710,15 @@ template <class Arm> struct FoldPair {
       factor(A);
     }
 
-    void take_away(double (&z)[kEquations], Vector& y) const noexcept {
+    void take_away(const double* z, double* rest, Vector& y) const noexcept {
       for (int k = 0; k < kMoving; ++k) {
         y[k] = 0.0;
         for (int e = 0; e < kEquations; ++e) y[k] += V[e][k] * z[e];
       }
       substitute(A, y);
+      std::copy_n(z, kEquations, rest);
       for (int e = 0; e < kEquations; ++e)
-        for (int k = 0; k < kMoving; ++k) z[e] -= V[e][k] * y[k];
+        for (int k = 0; k < kMoving; ++k) rest[e] -= V[e][k] * y[k];
     }
   };
 
@@ -652,165 +736,6 @@ template <class Arm> struct FoldPair {
       for (const double x : still) square += x * x;
       for (double& x : still) x /= std::sqrt(square);
     }
-  }
-};
-
-// --- joint range ---------------------------------------------------------------------------------
-struct Range {
-  const double* lower;
-  const double* upper;
-};
-
-template <int N> struct Unbounded {
-  double lower[N], upper[N];
-  constexpr Unbounded() noexcept : lower(), upper() {
-    for (int i = 0; i < N; ++i) {
-      lower[i] = -kInfinity;
-      upper[i] = kInfinity;
-    }
-  }
-};
-template <int N> inline constexpr Unbounded<N> kUnbounded{};
-
-template <int N> struct Placed {
-  Lanes<N> q;
-  Mask<N> inside;
-};
-
-template <class Policy, int N, bool H>
-[[gnu::always_inline]] inline Placed<N> clamp(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
-  const auto outside =
-      (range.lower[j] - Policy::kLimitTolerance > q) | (q > range.upper[j] + Policy::kLimitTolerance);
-  return {max(min(q, range.upper[j]), range.lower[j]), !outside};
-}
-
-template <class Policy, int N, bool H>
-[[gnu::always_inline]] inline Placed<N> place(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
-  const auto up = select(range.lower[j] - Policy::kLimitTolerance > q, kTurn, 0.0);
-  const auto down = select(q > range.upper[j] + Policy::kLimitTolerance, kTurn, 0.0);
-  return clamp<Policy>(j, q + (up - down), range);
-}
-
-// --- lane rows -----------------------------------------------------------------------------------
-template <int P> struct Pose {
-  Lanes<P> t[3][4];
-};
-
-template <int P> [[gnu::always_inline]] inline Pose<P> gather(const Eigen::Isometry3d* poses) noexcept {
-  Pose<P> out;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 4; ++j) {
-      double entries[std::size_t{P}];
-      for (int p = 0; p < P; ++p) entries[p] = poses[p].matrix().data()[4 * j + i];
-      out.t[i][j] = load<P>(entries);
-    }
-  return out;
-}
-
-enum Bit { kFound = 1, kReal = 2, kSingular = 4, kRough = 8, kMeeting = 16, kHit = 32 };
-
-template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> bit(const MaskOf<N, H>& mask, Bit value) noexcept {
-  return select(mask, static_cast<double>(value), 0.0);
-}
-
-template <int Dof, int Most, int P> struct LaneRows {
-  static constexpr int kLanes = Most * P;
-  alignas(64) double q[Dof][std::size_t{kLanes}];
-  alignas(64) double flags[std::size_t{kLanes}];
-};
-
-template <int N, bool H> [[gnu::always_inline]] inline Lanes<N / 2> gap(const LanesOf<N, H>& x) noexcept {
-  if constexpr (H) {
-    return abs(x.lo - x.hi);
-  } else {
-    Lanes<N / 2> lo, hi;
-    std::memcpy(&lo.v, &x.v, sizeof(lo.v));
-    std::memcpy(&hi.v, reinterpret_cast<const char*>(&x.v) + sizeof(lo.v), sizeof(hi.v));
-    return abs(lo - hi);
-  }
-}
-template <class Policy, int N, class... X> [[gnu::always_inline]] inline auto meeting(const X&... x) noexcept {
-  return Policy::kMeeting > (gap(spread<N>(x)) + ...);
-}
-
-// --- newton refinement ---------------------------------------------------------------------------
-struct RefineStage {
-  int steps;
-  double fine, promising;
-};
-
-template <class Arm> struct NewtonRefinement {
-  using Aim = HeldAim<Arm>;
-  using Policy = typename Arm::Policy;
-
-  static void step(const PoseError<Arm>& at, double worst, double (&q)[Arm::kDof]) noexcept {
-    const double bounded = std::min(worst, 1.0);
-    double A[Arm::kDof][Arm::kDof], x[Arm::kDof];
-    for (int i = 0; i < Arm::kDof; ++i) {
-      for (int j = 0; j <= i; ++j) {
-        A[i][j] = 0.0;
-        for (int e = 0; e < at.kCount; ++e) A[i][j] += at.slope[e][i] * at.slope[e][j];
-      }
-      A[i][i] += std::max(Policy::kLeastDamping, Policy::kDamping * bounded * bounded);
-      x[i] = 0.0;
-      for (int e = 0; e < at.kCount; ++e) x[i] += at.slope[e][i] * at.error[e];
-    }
-    factor(A);
-    substitute(A, x);
-    for (int j = 0; j < Arm::kDof; ++j) q[j] += std::min(std::max(x[j], -Policy::kLargestStep), Policy::kLargestStep);
-  }
-
-  static double run(double* q, const Aim& aim, int steps) noexcept {
-    double trial[Arm::kDof], best = kInfinity;
-    std::copy_n(q, Arm::kDof, trial);
-    for (int i = 0, stalled = 0;; ++i) {
-      const PoseError<Arm> at(trial, aim);
-      const double worst = at.largest();
-      stalled = worst < Policy::kProgress * best && worst > Policy::kConverged ? 0 : stalled + 1;
-      if (worst < best) {
-        best = worst;
-        std::copy_n(trial, Arm::kDof, q);
-      }
-      if (i == steps || stalled == Policy::kPatience || !(best > Policy::kConverged)) return best;
-      step(at, worst, trial);
-    }
-  }
-
-  static double error_after(double* q, const Aim& aim) noexcept {
-    double error = kInfinity;
-    for (const RefineStage& stage : Policy::kRefinement) {
-      error = run(q, aim, stage.steps);
-      if (!(error >= stage.fine && error < stage.promising)) break;
-    }
-    return error;
-  }
-
-  static bool refine(double* q, const Aim& aim) noexcept {
-    return error_after(q, aim) < Policy::kArrived;
-  }
-};
-
-// --- rank loss -----------------------------------------------------------------------------------
-template <class Arm> struct RankLoss {
-  static constexpr MovingJoints<Arm> kJoints{};
-  static constexpr int kMoving = MovingJoints<Arm>::kCount, kEquations = PoseError<Arm>::kCount;
-  static constexpr int kRank = kMoving < kEquations ? kMoving : kEquations;
-
-  static bool below(const double* q, double bound) noexcept {
-    const PoseError<Arm> at(q, HeldAim<Arm>::own(q));
-    double A[kRank][kRank];
-    for (int a = 0; a < kRank; ++a)
-      for (int b = 0; b <= a; ++b) {
-        double sum = a == b ? -bound * bound : 0.0;
-        if constexpr (kMoving < kEquations) {
-          for (const auto& row : at.slope) sum += row[kJoints[a]] * row[kJoints[b]];
-        } else {
-          for (const int j : kJoints.joint) sum += at.slope[a][j] * at.slope[b][j];
-        }
-        A[a][b] = sum;
-      }
-    factor(A);
-    return !definite(A);
   }
 };
 
@@ -913,6 +838,222 @@ template <class Arm> struct SolutionRows {
   }
 };
 
+// --- near continuum ------------------------------------------------------------------------------
+template <class Arm> struct NearContinuum {
+  using Fold = FoldPair<Arm>;
+  using Policy = typename Arm::Policy;
+  static constexpr int kRoom = 32;
+
+  int count = 0;  // solutions, nearly
+  double found[kRoom][Arm::kDof];
+
+  explicit NearContinuum(const HeldAim<Arm>& goal) noexcept : fold(goal) {}
+
+  enum class Kind { None, Broken, Whole };  // no continuum nearby, one of the solved geometry, one of the file's too
+
+  Kind trace(const double* start) noexcept {
+    const Sample first = at(start);
+    double worst = std::abs(first.left);
+    steps = 0;
+    if (!follow(first, 1.0, worst)) follow(first, -1.0, worst);
+    return steps < kLeast ? Kind::None : worst >= Policy::kArrived ? Kind::Broken : Kind::Whole;
+  }
+
+ private:
+  static constexpr int kMost = 96, kCorrections = 6, kSteps = 40, kDeep = 24, kLeast = 4;
+  static constexpr double kNear = 1e-8;  // rad or m: a correction whose square is round-off
+  static constexpr double kRoundOff = 1e-15, kSmall = 4e-15, kDoubt = 0.03, kBeside = 0.06, kSameWay = 0.9;
+
+  struct Sample {
+    double q[Arm::kDof], still[Fold::kMoving], out[Fold::kEquations], left, slope;
+  };
+
+  Fold fold;
+  int samples = 600;  // that are left to be taken
+  int steps = 0;
+
+  Sample at(const double* q) noexcept {
+    Sample s;
+    std::copy_n(q, Arm::kDof, s.q);
+    for (int i = 0; i < kCorrections; ++i)
+      if (fold.correct(s.q, s.left, s.slope) < kNear) break;
+    std::copy_n(fold.still, Fold::kMoving, s.still);
+    std::copy_n(fold.out, Fold::kEquations, s.out);
+    --samples;
+    return s;
+  }
+
+  Sample at(const double* q, const Sample& from, double sense) noexcept {
+    for (int k = 0; k < Fold::kMoving; ++k) fold.still[k] = sense * from.still[k];
+    std::copy_n(from.out, Fold::kEquations, fold.out);
+    return at(q);
+  }
+
+  bool follow(const Sample& first, double sense, double& worst) noexcept {
+    Sample b = first, origin = first;
+    for (double& x : origin.still) x *= sense;
+    for (int k = 0; k < kMost && samples > 0; ++k, sense = 1.0) {
+      double q[Arm::kDof], largest = 0.0;
+      std::copy_n(b.q, Arm::kDof, q);
+      for (const double x : b.still) largest = std::max(largest, std::abs(x));
+      for (int i = 0; i < Fold::kMoving; ++i) q[Fold::kJoints[i]] += sense * Policy::kTryStep / largest * b.still[i];
+      const Sample c = at(q, b, sense);
+      if (!(std::abs(c.left) < Policy::kFoldReach)) return false;
+      ++steps;
+      worst = std::max(worst, std::abs(c.left));
+      look(b, c, kDeep);
+      if (k > 1 && back(origin, b)) break;
+      b = c;
+    }
+    return true;
+  }
+
+  static bool back(const Sample& a, const Sample& b) noexcept {
+    double way[Fold::kMoving], along = 0.0, same = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      way[k] = SolutionRows<Arm>::change(Fold::kJoints[k], a.q, b.q);
+      along += way[k] * a.still[k];
+      same += a.still[k] * b.still[k];
+    }
+    for (int k = 0; k < Fold::kMoving; ++k)
+      if (!(std::abs(way[k] - along * a.still[k]) < kBeside && std::abs(way[k]) < 0.75 * Policy::kTryStep)) return false;
+    return same > kSameWay;
+  }
+
+  Sample part(const Sample& a, const Sample& b, double share) noexcept {
+    double q[Arm::kDof];
+    for (int j = 0; j < Arm::kDof; ++j) q[j] = a.q[j] + share * (b.q[j] - a.q[j]);
+    return at(q, a, 1.0);
+  }
+
+  void look(const Sample& a, const Sample& b, int deep) noexcept {
+    double rise = 0.0, fall = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      const double step = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
+      rise += a.slope * a.still[k] * step;
+      fall += b.slope * b.still[k] * step;
+    }
+    const double inner[2] = {a.left + rise / 3.0, b.left - fall / 3.0};
+    const double most = std::max({std::abs(a.left), std::abs(inner[0]), std::abs(inner[1]), std::abs(b.left)});
+    if (most < kSmall || deep == 0 || samples <= 0) return keep(std::abs(a.left) < std::abs(b.left) ? a : b);
+    const bool doubtful = std::min(std::abs(inner[0]), std::abs(inner[1])) < kDoubt * most;
+    const bool changes[3] = {a.left * inner[0] <= 0.0, inner[0] * inner[1] <= 0.0, inner[1] * b.left <= 0.0};
+    const int count_of = changes[0] + changes[1] + changes[2];
+    if (doubtful || count_of > 1) {
+      const Sample middle = part(a, b, 0.5);
+      look(a, middle, deep - 1);
+      look(middle, b, deep - 1);
+    } else if (count_of == 1) {
+      close_in(a, b);
+    }
+  }
+
+  void close_in(Sample a, Sample b) noexcept {
+    double x = a.left, y = b.left;
+    int kept = 0;
+    for (int i = 0; i < kSteps && std::min(std::abs(a.left), std::abs(b.left)) > kRoundOff; ++i) {
+      const Sample c = part(a, b, x / (x - y));
+      if (a.left * c.left < 0.0) {
+        b = c;
+        y = c.left;
+        if (kept == 1) x *= 0.5;
+        kept = 1;
+      } else {
+        a = c;
+        x = c.left;
+        if (kept == -1) y *= 0.5;
+        kept = -1;
+      }
+    }
+    keep(std::abs(a.left) < std::abs(b.left) ? a : b);
+  }
+
+  void keep(const Sample& s) noexcept {
+    if (count < kRoom && std::abs(s.left) < Policy::kArrived) std::copy_n(s.q, Arm::kDof, found[count++]);
+  }
+};
+
+// --- newton refinement ---------------------------------------------------------------------------
+struct RefineStage {
+  int steps;
+  double fine, promising;
+};
+
+template <class Arm> struct NewtonRefinement {
+  using Aim = HeldAim<Arm>;
+  using Policy = typename Arm::Policy;
+
+  static void step(const PoseError<Arm>& at, double worst, double (&q)[Arm::kDof]) noexcept {
+    const double bounded = std::min(worst, 1.0);
+    double A[Arm::kDof][Arm::kDof], x[Arm::kDof];
+    for (int i = 0; i < Arm::kDof; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        A[i][j] = 0.0;
+        for (int e = 0; e < at.kCount; ++e) A[i][j] += at.slope[e][i] * at.slope[e][j];
+      }
+      A[i][i] += std::max(Policy::kLeastDamping, Policy::kDamping * bounded * bounded);
+      x[i] = 0.0;
+      for (int e = 0; e < at.kCount; ++e) x[i] += at.slope[e][i] * at.error[e];
+    }
+    factor(A);
+    substitute(A, x);
+    for (int j = 0; j < Arm::kDof; ++j) q[j] += std::min(std::max(x[j], -Policy::kLargestStep), Policy::kLargestStep);
+  }
+
+  static double run(double* q, const Aim& aim, int steps) noexcept {
+    double trial[Arm::kDof], best = kInfinity;
+    std::copy_n(q, Arm::kDof, trial);
+    for (int i = 0, stalled = 0;; ++i) {
+      const PoseError<Arm> at(trial, aim);
+      const double worst = at.largest();
+      stalled = worst < Policy::kProgress * best && worst > Policy::kConverged ? 0 : stalled + 1;
+      if (worst < best) {
+        best = worst;
+        std::copy_n(trial, Arm::kDof, q);
+      }
+      if (i == steps || stalled == Policy::kPatience || !(best > Policy::kConverged)) return best;
+      step(at, worst, trial);
+    }
+  }
+
+  static double error_after(double* q, const Aim& aim) noexcept {
+    double error = kInfinity;
+    for (const RefineStage& stage : Policy::kRefinement) {
+      error = run(q, aim, stage.steps);
+      if (!(error >= stage.fine && error < stage.promising)) break;
+    }
+    return error;
+  }
+
+  static bool refine(double* q, const Aim& aim) noexcept {
+    return error_after(q, aim) < Policy::kArrived;
+  }
+};
+
+// --- rank loss -----------------------------------------------------------------------------------
+template <class Arm> struct RankLoss {
+  static constexpr MovingJoints<Arm> kJoints{};
+  static constexpr int kMoving = MovingJoints<Arm>::kCount, kEquations = PoseError<Arm>::kCount;
+  static constexpr int kRank = kMoving < kEquations ? kMoving : kEquations;
+
+  static bool below(const double* q, double bound) noexcept {
+    const PoseError<Arm> at(q, HeldAim<Arm>::own(q));
+    double A[kRank][kRank];
+    for (int a = 0; a < kRank; ++a)
+      for (int b = 0; b <= a; ++b) {
+        double sum = a == b ? -bound * bound : 0.0;
+        if constexpr (kMoving < kEquations) {
+          for (const auto& row : at.slope) sum += row[kJoints[a]] * row[kJoints[b]];
+        } else {
+          for (const int j : kJoints.joint) sum += at.slope[a][j] * at.slope[b][j];
+        }
+        A[a][b] = sum;
+      }
+    factor(A);
+    return !definite(A);
+  }
+};
+
 // --- careful solve -------------------------------------------------------------------------------
 template <class Arm> struct CarefulSolve {
   using Aim = HeldAim<Arm>;
@@ -974,53 +1115,67 @@ template <class Arm> struct CarefulSolve {
 
   struct Nearest {
     bool marked = false, near = false, settled = false, exact = false;  // settled: a solution, whatever else there is
+    int lane = 0;
     double error = 0.0, start[Arm::kDof], q[Arm::kDof];
 
     Nearest() = default;
-    Nearest(const Aim& aim, const Rows& rows, int lane, bool singular) noexcept : marked(singular) {
+    Nearest(const Rows& rows, int from, bool singular) noexcept : marked(singular), lane(from) {
       for (int j = 0; j < Arm::kDof; ++j) start[j] = q[j] = rows.q[j][lane];
+    }
+
+    void refine(const Aim& aim) noexcept {
       if (!Arm::kRefined) error = Refinement::error_after(q, aim);
     }
 
     void judge() noexcept {
-      near = broken() || (!marked && RankLoss<Arm>::below(q, Policy::kFoldReach));
-      settled = near ? error < Policy::kConverged && !broken() : error < Policy::kArrived;
+      near = !marked && RankLoss<Arm>::below(q, Policy::kFoldReach);
+      settled = error < (near ? Policy::kConverged : Policy::kArrived);
     }
 
-    bool broken() const noexcept { return marked && (Arm::kRounded || !(error < Policy::kArrived)); }
-
-    void take_pair(const FoldPair<Arm>& fold, const double* from, Places& out) noexcept {
-      for (const double side : {1.0, -1.0}) {
-        double trial[Arm::kDof];
-        std::copy_n(from, Arm::kDof, trial);
-        FoldPair<Arm>(fold).approach(side, trial);
-        const double left = Refinement::error_after(trial, fold.aim);
-        if (left < Policy::kExact) {
-          exact = true;
-          add(fold.aim, out, trial, marked);
-        } else if (left < error) {
-          error = left;
-          std::copy_n(trial, Arm::kDof, q);
-        }
+    void take(const Aim& aim, const double* from, Places& out) noexcept {
+      double trial[Arm::kDof];
+      std::copy_n(from, Arm::kDof, trial);
+      const double left = Refinement::error_after(trial, aim);
+      if (left < Policy::kExact) {
+        exact = true;
+        add(aim, out, trial, marked);
+      } else if (left < error) {
+        error = left;
+        std::copy_n(trial, Arm::kDof, q);
       }
+    }
+
+    void take_rest(const Aim& aim, Places& out) noexcept {
+      if (!exact && !settled && error < Policy::kArrived) add(aim, out, q, marked);
     }
 
     void add_nearby(const Aim& aim, Places& out) noexcept {
-      FoldPair<Arm> fold(aim);
-      if (broken()) {
-        double around[Policy::kTries][Arm::kDof];
-        if (fold.walk(start, around) >= Policy::kArrived)
-          for (const auto& from : around) take_pair(fold, from, out);
-      } else {
-        std::copy_n(q, Arm::kDof, start);
-        take_pair(fold, start, out);
+      std::copy_n(q, Arm::kDof, start);
+      for (const double side : {1.0, -1.0}) {
+        double trial[Arm::kDof];
+        std::copy_n(start, Arm::kDof, trial);
+        FoldPair<Arm>(aim).approach(side, trial);
+        take(aim, trial, out);
       }
-      if (!exact && !settled && error < Policy::kArrived) add(aim, out, q, marked);
+      take_rest(aim, out);
+    }
+
+    bool add_around(const Aim& aim, Places& out) noexcept {
+      using Curve = NearContinuum<Arm>;
+      Curve curve(aim);
+      const typename Curve::Kind kind = curve.trace(start);
+      if (kind == Curve::Kind::None) return false;
+      error = kInfinity;
+      for (int k = 0; k < curve.count && kind == Curve::Kind::Broken; ++k) take(aim, curve.found[k], out);
+      take(aim, start, out);
+      take_rest(aim, out);
+      return true;
     }
   };
 
   struct Starts {
     int count = 0;
+    bool traced[Arm::kLanes] = {};
     std::array<Nearest, std::size_t{Arm::kLanes} * (1 + Arm::kBesides)> all;
 
     Nearest& at(int k) noexcept { return all[static_cast<std::size_t>(k)]; }
@@ -1031,7 +1186,16 @@ template <class Arm> struct CarefulSolve {
       });
     }
 
-    void take(const Nearest& start, bool beside, const Aim& aim, Places& out) noexcept {
+    bool any_traced() const noexcept { return std::find(std::begin(traced), std::end(traced), true) != std::end(traced); }
+
+    void take(Nearest start, bool beside, const Aim& aim, Places& out) noexcept {
+      if (!(Arm::kRounded && start.marked)) start.refine(aim);
+      if (start.marked && (Arm::kRounded || !(start.error < Policy::kArrived))) {
+        if (!traced[start.lane]) traced[start.lane] = start.add_around(aim, out);
+        if (traced[start.lane]) return;
+        start.marked = false;
+        start.refine(aim);
+      }
       for (int k = 0; k < count && beside; ++k)
         if (Row::same(start.q, at(k).q)) return;
       Nearest& one = at(count) = start;
@@ -1092,9 +1256,11 @@ template <class Arm> struct CarefulSolve {
     Starts starts;
     for (const int lane : Arm::kLaneOfRow)
       if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
-        starts.take({aim, rows, lane, (bits(rows, lane) & kSingular) != 0}, false, aim, out);
+        starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, false, aim, out);
     if (Arm::kBesides > 0 && beside && (kBesideAnywhere || left.free || starts.close()))
       take_beside(aim, q0, options, starts, out);
+    if (Arm::kRounded && starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, starts, out);
+    left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
       if (starts.at(k).near) starts.at(k).add_nearby(aim, out);
     for (const int lane : Arm::kLaneOfRow) {
@@ -1105,6 +1271,11 @@ template <class Arm> struct CarefulSolve {
     return left;
   }
 
+  static void take_all(const Aim& aim, const Rows& rows, Starts& starts, Places& out) noexcept {
+    for (const int lane : Arm::kLaneOfRow)
+      if ((bits(rows, lane) & kSingular) != 0) starts.take({rows, lane, true}, false, aim, out);
+  }
+
   static void take_beside(const Aim& aim, const double* q0, const Options& options, Starts& starts,
                           Places& out) noexcept {
     if constexpr (Arm::kBesides > 0)
@@ -1112,7 +1283,8 @@ template <class Arm> struct CarefulSolve {
         Rows rows;
         find_lanes(displaced(aim.pose, motion), q0, options, rows);
         for (const int lane : Arm::kLaneOfRow)
-          if ((bits(rows, lane) & kReal) != 0) starts.take({aim, rows, lane, false}, true, aim, out);
+          if ((bits(rows, lane) & kReal) != 0)
+            starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, true, aim, out);
       }
   }
 };

@@ -45,4 +45,22 @@ def spherical_wrist(right: float = 1.5708, *, offset: float = 0.0) -> Chain:
     )
 
 
+def meeting_shoulder(right: float = 1.5708, *, offset: float = 1e-6) -> Chain:
+    """As `spherical_wrist`, axes 1 and 2 meet: with the wrist above them joint 1 is free, but for what the
+    file rounds."""
+    return make_chain(
+        "RRRRRR",
+        [
+            translation(0, 0, 0.24),
+            rotation(X, right),
+            translation(0.256, 0, 0),
+            rotation(X, right) @ translation(0, 0, 0.21),
+            rotation(X, -right) @ translation(0, 0, offset),
+            rotation(X, right),
+        ],
+        [Z] * 6,
+        translation(0, 0, 0.144),
+    )
+
+
 EXACT = math.pi / 2

@@ -3,9 +3,9 @@
 
 #include <array>
 
-#include "fold_pair.hpp"
 #include "joint_range.hpp"
 #include "lane_rows.hpp"
+#include "near_continuum.hpp"
 #include "newton_refinement.hpp"
 #include "rank_loss.hpp"
 #include "solution_rows.hpp"
@@ -83,59 +83,73 @@ template <class Arm> struct CarefulSolve {
   // What Newton steps from a lane led to. Rows that are right to round-off are added; of the others the nearest is kept.
   struct Nearest {
     bool marked = false, near = false, settled = false, exact = false;  // settled: a solution, whatever else there is
+    int lane = 0;
     double error = 0.0, start[Arm::kDof], q[Arm::kDof];
 
     Nearest() = default;
-    Nearest(const Aim& aim, const Rows& rows, int lane, bool singular) noexcept : marked(singular) {
+    Nearest(const Rows& rows, int from, bool singular) noexcept : marked(singular), lane(from) {
       for (int j = 0; j < Arm::kDof; ++j) start[j] = q[j] = rows.q[j][lane];
+    }
+
+    void refine(const Aim& aim) noexcept {
       if (!Arm::kRefined) error = Refinement::error_after(q, aim);
     }
 
     void judge() noexcept {
-      near = broken() || (!marked && RankLoss<Arm>::below(q, Policy::kFoldReach));
-      settled = near ? error < Policy::kConverged && !broken() : error < Policy::kArrived;
+      near = !marked && RankLoss<Arm>::below(q, Policy::kFoldReach);
+      settled = error < (near ? Policy::kConverged : Policy::kArrived);
     }
 
-    // Whether it stands for a continuum that the file's arm may not have.
-    bool broken() const noexcept { return marked && (Arm::kRounded || !(error < Policy::kArrived)); }
+    // Adds what Newton steps lead to.
+    void take(const Aim& aim, const double* from, Places& out) noexcept {
+      double trial[Arm::kDof];
+      std::copy_n(from, Arm::kDof, trial);
+      const double left = Refinement::error_after(trial, aim);
+      if (left < Policy::kExact) {
+        exact = true;
+        add(aim, out, trial, marked);
+      } else if (left < error) {
+        error = left;
+        std::copy_n(trial, Arm::kDof, q);
+      }
+    }
 
-    // The solutions that meet near a configuration.
-    void take_pair(const FoldPair<Arm>& fold, const double* from, Places& out) noexcept {
+    void take_rest(const Aim& aim, Places& out) noexcept {
+      if (!exact && !settled && error < Policy::kArrived) add(aim, out, q, marked);
+    }
+
+    // Adds the solutions that meet near the one that a lane led to.
+    void add_nearby(const Aim& aim, Places& out) noexcept {
+      std::copy_n(q, Arm::kDof, start);
       for (const double side : {1.0, -1.0}) {
         double trial[Arm::kDof];
-        std::copy_n(from, Arm::kDof, trial);
-        FoldPair<Arm>(fold).approach(side, trial);
-        const double left = Refinement::error_after(trial, fold.aim);
-        if (left < Policy::kExact) {
-          exact = true;
-          add(fold.aim, out, trial, marked);
-        } else if (left < error) {
-          error = left;
-          std::copy_n(trial, Arm::kDof, q);
-        }
+        std::copy_n(start, Arm::kDof, trial);
+        FoldPair<Arm>(aim).approach(side, trial);
+        take(aim, trial, out);
       }
+      take_rest(aim, out);
     }
 
-    // Adds the solutions that meet near the one that a lane led to, or all around a continuum of the solved geometry
-    // that the file's has not.
-    void add_nearby(const Aim& aim, Places& out) noexcept {
-      FoldPair<Arm> fold(aim);
-      if (broken()) {
-        double around[Policy::kTries][Arm::kDof];
-        if (fold.walk(start, around) >= Policy::kArrived)
-          for (const auto& from : around) take_pair(fold, from, out);
-      } else {
-        std::copy_n(q, Arm::kDof, start);
-        take_pair(fold, start, out);
-      }
-      if (!exact && !settled && error < Policy::kArrived) add(aim, out, q, marked);
+    // Adds the solutions all around a continuum of the solved geometry that the file's arm may not have, or one of it if
+    // the file's has it; whether there is one.
+    bool add_around(const Aim& aim, Places& out) noexcept {
+      using Curve = NearContinuum<Arm>;
+      Curve curve(aim);
+      const typename Curve::Kind kind = curve.trace(start);
+      if (kind == Curve::Kind::None) return false;
+      error = kInfinity;
+      for (int k = 0; k < curve.count && kind == Curve::Kind::Broken; ++k) take(aim, curve.found[k], out);
+      take(aim, start, out);
+      take_rest(aim, out);
+      return true;
     }
   };
 
   // Starts of Newton steps, in the order of their lanes; those of poses beside that led to the same as an earlier one,
-  // or stalled where that looks for two solutions, are left out.
+  // or stalled where that looks for two solutions, are left out, as are those on a continuum that is known.
   struct Starts {
     int count = 0;
+    bool traced[Arm::kLanes] = {};
     std::array<Nearest, std::size_t{Arm::kLanes} * (1 + Arm::kBesides)> all;
 
     Nearest& at(int k) noexcept { return all[static_cast<std::size_t>(k)]; }
@@ -147,7 +161,16 @@ template <class Arm> struct CarefulSolve {
       });
     }
 
-    void take(const Nearest& start, bool beside, const Aim& aim, Places& out) noexcept {
+    bool any_traced() const noexcept { return std::find(std::begin(traced), std::end(traced), true) != std::end(traced); }
+
+    void take(Nearest start, bool beside, const Aim& aim, Places& out) noexcept {
+      if (!(Arm::kRounded && start.marked)) start.refine(aim);
+      if (start.marked && (Arm::kRounded || !(start.error < Policy::kArrived))) {
+        if (!traced[start.lane]) traced[start.lane] = start.add_around(aim, out);
+        if (traced[start.lane]) return;
+        start.marked = false;
+        start.refine(aim);
+      }
       for (int k = 0; k < count && beside; ++k)
         if (Row::same(start.q, at(k).q)) return;
       Nearest& one = at(count) = start;
@@ -212,9 +235,11 @@ template <class Arm> struct CarefulSolve {
     Starts starts;
     for (const int lane : Arm::kLaneOfRow)
       if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
-        starts.take({aim, rows, lane, (bits(rows, lane) & kSingular) != 0}, false, aim, out);
+        starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, false, aim, out);
     if (Arm::kBesides > 0 && beside && (kBesideAnywhere || left.free || starts.close()))
       take_beside(aim, q0, options, starts, out);
+    if (Arm::kRounded && starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, starts, out);
+    left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
       if (starts.at(k).near) starts.at(k).add_nearby(aim, out);
     for (const int lane : Arm::kLaneOfRow) {
@@ -225,6 +250,12 @@ template <class Arm> struct CarefulSolve {
     return left;
   }
 
+  // Lanes that are not real where a divisor nearly vanishes: less than the file is off may be what is missing there.
+  static void take_all(const Aim& aim, const Rows& rows, Starts& starts, Places& out) noexcept {
+    for (const int lane : Arm::kLaneOfRow)
+      if ((bits(rows, lane) & kSingular) != 0) starts.take({rows, lane, true}, false, aim, out);
+  }
+
   // The rows of poses beside this one.
   static void take_beside(const Aim& aim, const double* q0, const Options& options, Starts& starts,
                           Places& out) noexcept {
@@ -233,7 +264,8 @@ template <class Arm> struct CarefulSolve {
         Rows rows;
         find_lanes(displaced(aim.pose, motion), q0, options, rows);
         for (const int lane : Arm::kLaneOfRow)
-          if ((bits(rows, lane) & kReal) != 0) starts.take({aim, rows, lane, false}, true, aim, out);
+          if ((bits(rows, lane) & kReal) != 0)
+            starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, true, aim, out);
       }
   }
 };

@@ -14,11 +14,12 @@ template <class Arm> struct FoldPair {
   using Vector = double[kMoving];
 
   HeldAim<Arm> aim;
-  Vector still;       // unit direction in which the pose moves least
-  double size = 0.0;  // the pose's error
+  Vector still;             // unit direction in which the pose moves least
+  double out[kEquations];  // unit direction of the error in which no other moves it
 
   explicit FoldPair(const HeldAim<Arm>& goal) noexcept : aim(goal) {
     for (int k = 0; k < kMoving; ++k) still[k] = 1.0 + 0.1 * k;
+    for (int e = 0; e < kEquations; ++e) out[e] = 1.0 + 0.1 * e;
   }
 
   // From q towards one of the two solutions that may meet nearby, or to the place where they nearly do.
@@ -27,58 +28,59 @@ template <class Arm> struct FoldPair {
       if (!(std::abs(step(side, q)) > kClose)) break;
   }
 
-  // Configurations from q on along those where the pose hardly moves, the fastest joint by Policy::kTryStep from one
-  // to the next; the largest error there.
-  template <int N> double walk(const double* q, double (&out)[N][Arm::kDof]) noexcept {
-    double worst = 0.0, at[Arm::kDof];
-    std::copy_n(q, Arm::kDof, at);
-    step(0.0, at);
-    for (auto& sample : out) {
-      for (int i = 0; i < 2; ++i) step(0.0, at);
-      worst = std::max(worst, size);
-      std::copy_n(at, Arm::kDof, sample);
-      double largest = 0.0;
-      for (const double x : still) largest = std::max(largest, std::abs(x));
-      for (int k = 0; k < kMoving; ++k) at[kJoints[k]] += Arm::Policy::kTryStep / largest * still[k];
-    }
-    return worst;
-  }
-
-  // One step; how far it goes in the direction that hardly matters, which for side 0 it does not.
-  double step(double side, double* q) noexcept {
+  // One step across the still direction; how far its fastest joint goes, what it leaves of the error, and how much more a
+  // step along the still direction does.
+  double correct(double* q, double& left, double& slope) noexcept {
     const PoseError<Arm> at(q, aim);
-    size = at.largest();
     find_still(at);
-    double flow[kEquations], bend[kEquations], rest[kEquations];
-    Vector ignored, across;
+    const Others others(*this, at);
+    Vector across, ignored;
+    double rest[kEquations], square = 0.0, farthest = 0.0;
+    others.take_away(at.error, rest, across);
+    others.take_away(out, out, ignored);
+    for (const double x : out) square += x * x;
+    left = slope = 0.0;
     for (int e = 0; e < kEquations; ++e) {
-      flow[e] = bend[e] = 0.0;
-      rest[e] = at.error[e];
-      for (int k = 0; k < kMoving; ++k) flow[e] += at.slope[e][kJoints[k]] * still[k];
+      out[e] /= std::sqrt(square);
+      left += out[e] * rest[e];
+      slope -= out[e] * others.flow[e];
     }
-    const Others others(*this, at, flow);
-    others.take_away(rest, across);
-    double x = 0.0;
-    if (side != 0.0) {
-      double there[Arm::kDof];
-      std::copy_n(q, Arm::kDof, there);
-      for (int k = 0; k < kMoving; ++k) there[kJoints[k]] += kAlong * still[k];
-      const PoseError<Arm> beyond(there, aim);
-      for (int e = 0; e < kEquations; ++e)
-        for (int k = 0; k < kMoving; ++k)
-          bend[e] += (beyond.slope[e][kJoints[k]] - at.slope[e][kJoints[k]]) * still[k] / kAlong;
-      others.take_away(bend, ignored);
-      others.take_away(flow, ignored);
-      x = root(side, bend, flow, rest);
-    }
-    for (int k = 0; k < kMoving; ++k)
-      q[kJoints[k]] += std::min(std::max(across[k], -kFar), kFar) + x * still[k];
-    return x;
+    move(across, 0.0, q);
+    for (const double x : across) farthest = std::max(farthest, std::abs(x));
+    return farthest;
   }
 
  private:
   static constexpr double kAlong = 1e-4, kClose = 1e-9, kFar = 0.3;
   static constexpr int kSteps = 8;
+
+  // One step; how far it goes in the still direction.
+  double step(double side, double* q) noexcept {
+    const PoseError<Arm> at(q, aim);
+    find_still(at);
+    const Others others(*this, at);
+    double bend[kEquations], bent[kEquations], flow[kEquations], rest[kEquations], there[Arm::kDof];
+    std::copy_n(q, Arm::kDof, there);
+    for (int k = 0; k < kMoving; ++k) there[kJoints[k]] += kAlong * still[k];
+    const PoseError<Arm> beyond(there, aim);
+    for (int e = 0; e < kEquations; ++e) {
+      bend[e] = 0.0;
+      for (int k = 0; k < kMoving; ++k)
+        bend[e] += (beyond.slope[e][kJoints[k]] - at.slope[e][kJoints[k]]) * still[k] / kAlong;
+    }
+    Vector ignored, across;
+    others.take_away(at.error, rest, across);
+    others.take_away(bend, bent, ignored);
+    others.take_away(others.flow, flow, ignored);
+    const double x = root(side, bent, flow, rest);
+    move(across, x, q);
+    return x;
+  }
+
+  void move(const Vector& across, double along, double* q) const noexcept {
+    for (int k = 0; k < kMoving; ++k)
+      q[kJoints[k]] += std::min(std::max(across[k], -kFar), kFar) + along * still[k];
+  }
 
   // The root of s x + k x^2 / 2 = e on this side of the least error, along the direction that the others leave.
   static double root(double side, const double (&bend)[kEquations], const double (&flow)[kEquations],
@@ -95,13 +97,16 @@ template <class Arm> struct FoldPair {
     return std::min(std::max(x, -kFar), kFar);
   }
 
-  // The directions across the still one.
+  // The directions across the still one, and what that does to the pose.
   struct Others {
-    double V[kEquations][kMoving], A[kMoving][kMoving];
+    double V[kEquations][kMoving], A[kMoving][kMoving], flow[kEquations];
 
-    Others(const FoldPair& fold, const PoseError<Arm>& at, const double (&flow)[kEquations]) noexcept {
-      for (int e = 0; e < kEquations; ++e)
+    Others(const FoldPair& fold, const PoseError<Arm>& at) noexcept {
+      for (int e = 0; e < kEquations; ++e) {
+        flow[e] = 0.0;
+        for (int k = 0; k < kMoving; ++k) flow[e] += at.slope[e][kJoints[k]] * fold.still[k];
         for (int k = 0; k < kMoving; ++k) V[e][k] = at.slope[e][kJoints[k]] - flow[e] * fold.still[k];
+      }
       for (int a = 0; a < kMoving; ++a)
         for (int b = 0; b <= a; ++b) {
           A[a][b] = fold.still[a] * fold.still[b] + (a == b ? Arm::Policy::kLeastDamping : 0.0);
@@ -110,15 +115,16 @@ template <class Arm> struct FoldPair {
       factor(A);
     }
 
-    // Takes from z what they can do, by y.
-    void take_away(double (&z)[kEquations], Vector& y) const noexcept {
+    // What they leave of z, by going y.
+    void take_away(const double* z, double* rest, Vector& y) const noexcept {
       for (int k = 0; k < kMoving; ++k) {
         y[k] = 0.0;
         for (int e = 0; e < kEquations; ++e) y[k] += V[e][k] * z[e];
       }
       substitute(A, y);
+      std::copy_n(z, kEquations, rest);
       for (int e = 0; e < kEquations; ++e)
-        for (int k = 0; k < kMoving; ++k) z[e] -= V[e][k] * y[k];
+        for (int k = 0; k < kMoving; ++k) rest[e] -= V[e][k] * y[k];
     }
   };
 
