@@ -78,10 +78,16 @@ def test_rows_agree_but_for_whole_turns_and_late_digits(arm: ArmUnderTest) -> No
 def test_what_two_languages_may_not_differ_in(arm: ArmUnderTest) -> None:
     base = [row(0.5), row(1.5)]
     ours = rows_of(base, base, base, base, singular=(3, 1))
-    theirs = rows_of([base[1], base[0]], [base[0]], [base[0], row(1.5 + 3e-6)], [base[0]])
+    theirs = rows_of([base[1], base[1]], [base[0]], [base[0], row(1.5 + 3e-6)], [base[0]])
     wrong, compared, largest = disagreements(arm, ours, theirs)
     assert wrong.tolist() == [True, True, True, False]
     assert compared.tolist() == [True, True, True, False] and largest == 0.0
+
+
+def test_without_a_seed_the_order_of_rows_is_not_promised(arm: ArmUnderTest) -> None:
+    ours, theirs = rows_of([row(0.5), row(1.5), row(2.5)]), rows_of([row(2.5), row(0.5), row(1.5)])
+    wrong, compared, largest = disagreements(arm, ours, theirs)
+    assert compared.all() and not wrong.any() and largest == 0.0
 
 
 def test_rows_outside_the_limits_are_told_with_the_worst(arm: ArmUnderTest) -> None:
