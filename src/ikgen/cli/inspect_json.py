@@ -57,6 +57,7 @@ def _attempt(attempt: Attempt) -> dict[str, Any]:
         "order": list(attempt.order),
         "left": list(attempt.left),
         "options": attempt.options,
+        "default": attempt.default,
     }
 
 

@@ -41,9 +41,12 @@ def summary(generation: Generation) -> str:
 def _task(derivation: Derivation) -> str:
     """The task, and that it was chosen where another might be expected."""
     task = derivation.task
+    passed = ", ".join(derivation.passed_over)
+    failed = f"failed verification: {passed}" if passed else ""
     if not derivation.chosen or task.whole_pose:
-        return task.words
-    return f"{task.words} (--task {task.name}: what fits {derivation.reading.dh.dof} joints)"
+        return task.words + (f" ({failed})" if failed else "")
+    why = f"what fits {derivation.reading.dh.dof} joints" + (f"; {failed}" if failed else "")
+    return f"{task.words} (--task {task.name}: {why})"
 
 
 def _rounding(derivation: Derivation) -> str:
