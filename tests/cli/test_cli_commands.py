@@ -254,7 +254,10 @@ def test_an_internal_error_is_one_line(monkeypatch: pytest.MonkeyPatch, capsys) 
 
 
 def test_doctor_and_cmake_dir() -> None:
-    assert json.loads(ikgen("doctor", "--json").stdout)["packages"]["numpy"]
+    found = json.loads(ikgen("doctor", "--json").stdout)
+    assert found["packages"]["numpy"] and {"viser", "distributed", "zarr"} <= found["tools"].keys()
+    lines = ikgen("doctor").stdout.splitlines()
+    assert max(len(line) - len(line.split("  ")[-1]) for line in lines) < 100  # no path pads others
     folder = Path(ikgen("cmake-dir").stdout.strip())
     assert (folder / "ikgenConfig.cmake").is_file()
 
