@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -37,6 +38,16 @@ def test_tasks_that_failed_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     (warning,) = (text for text in told["warnings"] if "failed its verification" in text)
     assert f"'{first}'" in warning and f"'{second}'" in warning
     assert f"failed verification: {first}" in summary(made)
+
+
+def test_what_holds_a_joint_that_the_task_needs_is_told_with_the_result(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("ikgen.generation.generate._emitted", lambda *_: ({}, {}))
+    held = replace(FIVE_JOINTS, task="pose")
+    made = generate(held, Outputs(out=tmp_path))
+    assert "OVER-CONSTRAINED" in summary(made)
+    assert "OVER-CONSTRAINED" not in summary(generate(FIVE_JOINTS, Outputs(out=tmp_path / "other")))
 
 
 def test_attempt_without_options_is_the_task_that_is_taken() -> None:

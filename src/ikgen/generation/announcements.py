@@ -39,7 +39,7 @@ def _over_constrained(derivation: Derivation) -> str:
     other = next((t.name for t in fitting_tasks(dh) if not t.whole_pose), "")
     smaller = f"--task {other} asks what the arm can do everywhere; " if other else ""
     if derivation.chosen:
-        smaller = "no smaller task has a verified closed form here; "
+        smaller = "No smaller task has a verified closed form here; "
     return (
         f"OVER-CONSTRAINED: the task '{task.name}' fixes {task.freedoms} freedoms and {moving} joints "
         f"move: solve() answers only poses that the arm can take to rounding, and no others. {smaller}"
