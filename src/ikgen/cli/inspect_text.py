@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from ikgen.cli.braille import skeleton_text
 from ikgen.cli.tables import table
 from ikgen.cli.tree_text import dh_table, joint_tree, transform_text
+from ikgen.model.dh import ARM_ANGLE
 
 if TYPE_CHECKING:
     from ikgen.generation.advice import Attempt
@@ -87,6 +88,10 @@ def _advice(found: Inspection) -> str:
     for k, attempt in enumerate(found.closed):
         if k < _PROPOSED or attempt.default:
             lines += _proposal(attempt)
+    if found.arm_angle:
+        lines.append(
+            f"  --free {ARM_ANGLE}: closed form, the angle of the elbow held in a joint's place"
+        )
     if found.attempts and not found.closed:
         best = max(found.attempts, key=lambda attempt: len(attempt.order))
         lines.append(
