@@ -14,13 +14,37 @@ macro(_ikgen_check_arguments call keywords)
   endif()
 endmacro()
 
-# Eigen as a target, if the project has found it or it can be found: linking it spares users a line.
+# Sets the cache variable IKGEN_EIGEN_INCLUDE_DIR: the headers that ikgen itself verifies with, "" where it has none.
+function(_ikgen_find_own_eigen)
+  if(IKGEN_EIGEN_INCLUDE_DIR)
+    return()
+  endif()
+  set(found "")
+  execute_process(COMMAND "${IKGEN_EXECUTABLE}" doctor --json OUTPUT_VARIABLE told ERROR_QUIET)
+  if(told MATCHES "\"Eigen\": \"([^\"]+)\"")
+    file(TO_CMAKE_PATH "${CMAKE_MATCH_1}" found)
+    message(STATUS "ikgen: CMake finds no Eigen3; using the headers in ${found}")
+  else()
+    message(WARNING
+      "ikgen: Eigen was not found, which the generated header includes\n"
+      "hint: apt-get install libeigen3-dev, or set CMAKE_PREFIX_PATH or IKGEN_EIGEN_INCLUDE_DIR to where it is")
+  endif()
+  set(IKGEN_EIGEN_INCLUDE_DIR "${found}" CACHE PATH "Eigen's headers, where CMake finds no Eigen3" FORCE)
+endfunction()
+
+# Eigen as a target, if the project has found it or it can be found, else the headers of ikgen's own: linking it
+# spares users a line.
 function(_ikgen_link_eigen target)
   if(NOT TARGET Eigen3::Eigen)
     find_package(Eigen3 QUIET NO_MODULE)
   endif()
   if(TARGET Eigen3::Eigen)
     target_link_libraries(${target} INTERFACE Eigen3::Eigen)
+    return()
+  endif()
+  _ikgen_find_own_eigen()
+  if(IKGEN_EIGEN_INCLUDE_DIR)
+    target_include_directories(${target} SYSTEM INTERFACE "$<BUILD_INTERFACE:${IKGEN_EIGEN_INCLUDE_DIR}>")
   endif()
 endfunction()
 

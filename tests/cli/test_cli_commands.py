@@ -202,7 +202,8 @@ def test_init_lists_every_arm(tmp_path: Path) -> None:
     assert [arm.name for arm in arms] == ["twin_left_tool0", "twin_right_tool0"]
     assert {arm.request.base for arm in arms} == {"base_link"}
     assert {arm.request.tip for arm in arms} == {"left_tool0", "right_tool0"}
-    assert "is there already" in refused(ikgen("init", "twin.urdf", cwd=tmp_path))
+    told = refused(ikgen("init", "twin.urdf", cwd=tmp_path))
+    assert "is there already" in told and "--add" in told
     assert ikgen("init", "twin.urdf", "--force", cwd=tmp_path).returncode == 0
     built = ikgen("build", "--no-verify", cwd=tmp_path)
     assert built.returncode == 0, built.stderr
@@ -253,7 +254,10 @@ def test_an_internal_error_is_one_line(monkeypatch: pytest.MonkeyPatch, capsys) 
 
 
 def test_doctor_and_cmake_dir() -> None:
-    assert json.loads(ikgen("doctor", "--json").stdout)["packages"]["numpy"]
+    found = json.loads(ikgen("doctor", "--json").stdout)
+    assert found["packages"]["numpy"] and {"viser", "distributed", "zarr"} <= found["tools"].keys()
+    lines = ikgen("doctor").stdout.splitlines()
+    assert max(len(line) - len(line.split("  ")[-1]) for line in lines) < 100  # no path pads others
     folder = Path(ikgen("cmake-dir").stdout.strip())
     assert (folder / "ikgenConfig.cmake").is_file()
 

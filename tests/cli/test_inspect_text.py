@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
 from tests.support.small_robots import write_robot
 from tests.support.solving import FIXTURES
 
@@ -80,3 +81,12 @@ def test_what_is_weak_is_not_called_closed(
     monkeypatch.setattr(SolutionGraph, "sound", property(lambda graph: False))
     said = as_text(inspect_robot(request))
     assert "closed form with a weak step, at most 4" in said and "weak: a step fails" in said
+
+
+def test_arm_angle_is_offered_to_arms_that_have_one(tmp_path: Path) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text(serial_urdf("arm", SHOULDER_ELBOW_WRIST))
+    with_one = inspect_robot(Request(path))
+    assert with_one.arm_angle and "--free arm-angle: closed form" in as_text(with_one)
+    without = inspect_robot(Request(FIXTURES / "franka_fr3.urdf"))
+    assert not without.arm_angle and "arm-angle" not in as_text(without)

@@ -1360,6 +1360,8 @@ def _one_pose(pose: Any, alone: str) -> Array:
 def _poses_in_line(poses: Any, alone: str) -> Array:
     """`_pose_matrices` of many, (N, 4, 4); raises ValueError for another shape."""
     T = _pose_matrices(poses, alone)
+    if T.shape == (0,):  # a sequence of none
+        return np.empty((0, 4, 4))
     if T.ndim != 3 or T.shape[1:] != (4, 4):
         raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
     return T
@@ -1504,7 +1506,7 @@ def _pose_fault(task: _Task, T: list[list[float]], policy: _Policy) -> str:
     off = (sqrt(1.0 + defect) - 1.0) / sqrt(3.0 * len(columns))
     text = f"the pose's rotation is off by {off:.1e}, more than {policy.pose_tolerance:.0e}"
     if task.read(T, replace(policy, pose_tolerance=_PRINTED)) is None:
-        return text
+        return f"{text} (a quaternion is to have norm 1)"
     return f"{text}: orthonormalize=True takes the nearest one"
 
 

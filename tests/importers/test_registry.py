@@ -59,3 +59,9 @@ def test_fixtures_are_read_without_complaint(file):
     assert tree.source.dependencies == (file.resolve(),)
     for joint in tree.joints:
         assert not joint.axis.flags.writeable and not joint.T_parent_child.flags.writeable
+
+
+def test_folder_is_told_as_one(tmp_path):
+    with pytest.raises(UsageError, match="is a folder") as told:
+        importer_of(tmp_path)
+    assert str(tmp_path) in told.value.hint

@@ -6,36 +6,56 @@ import numpy as np
 import pytest
 from tests.support.tables import table
 
-from ikgen.lowering.closure import _bounded, _differences
+from ikgen.lowering.closure import CHECK_TOLERANCE, _bounded, _differences, require_closure
 from ikgen.lowering.placement import Placement, Requirement
 from ikgen.solver.solve import solve_chain
 
 
-def test_squares_are_bounded_by_the_tolerance_s_and_wider_where_digits_are_lost() -> None:
-    work = Placement(solve_chain(table(("R", "0", 0.0, 0.0), ("P", "1", 0.0, 0.0))), 0.0)
+def two_joints() -> Placement:
+    return Placement(solve_chain(table(("R", "0", 0.0, 0.0), ("P", "1", 0.0, 0.0))), 0.0)
+
+
+def guards(work: Placement) -> list[Requirement]:
+    items = [item for level in work.levels for item in level.items]
+    return [item for item in items if isinstance(item, Requirement)]
+
+
+def test_squares_are_bounded_by_the_tolerance_s() -> None:
+    work = two_joints()
     g, part = work.g, work.g.add(work.g.const(0.5), work.system.equations[0].left)
-    for rough, tolerance in ((False, 1e-3), (True, 1e-5)):
-        if rough:
-            work.loses_digits = True
-            work.note_fold(part, 1.0)
-        _bounded(work, [part, part], tolerance)
-        items = [item for level in work.levels for item in level.items]
-        (guard,) = [item for item in items if isinstance(item, Requirement)][-1:]
-        most, total = guard.condition.args
-        assert guard.condition.op == "gt" and total is g.dot([part, part], [part, part])
-        assert work.residuals[-1] is total
-        if rough:
-            _, most, plain = most.args
-            assert plain.probe[0] == pytest.approx(tolerance**2)
-            assert most.probe[0] == pytest.approx((1000.0 * tolerance) ** 2)
-        else:
-            assert most.probe[0] == pytest.approx(tolerance**2)
-    _bounded(work, [], 1.0)
-    assert len(work.residuals) == 2
+    _bounded(work, [part, part], 1e-3, 1.0)
+    (guard,) = guards(work)
+    most, total = guard.condition.args
+    assert guard.condition.op == "gt" and total is g.dot([part, part], [part, part])
+    assert work.residuals == [total]
+    assert most.probe[0] == pytest.approx(1e-6)
+    _bounded(work, [], 1.0, 1.0)
+    assert len(work.residuals) == 1
+    work.loses_digits = True
+    work.note_fold(part, 1.0)
+    _bounded(work, [part, part], 1e-5, 1e-2)
+    _, wide, plain = guards(work)[-1].condition.args[0].args
+    assert wide.probe[0] == pytest.approx(1e-4) and plain.probe[0] == pytest.approx(1e-10)
+    _bounded(work, [part], 1e-2, 1e-2)
+    assert guards(work)[-1].condition.args[0].probe[0] == pytest.approx(1e-4)
+
+
+@pytest.mark.parametrize(("loses_digits", "times"), [(False, 1.0), (True, 1000.0)])
+def test_rows_may_be_off_more_where_an_unknown_may_have_lost_digits(
+    monkeypatch: pytest.MonkeyPatch, loses_digits: bool, times: float
+) -> None:
+    """No matter whether a step of this pose is seen to: those after it multiply what it is off."""
+    work = two_joints()
+    work.loses_digits = loses_digits
+    part = work.g.add(work.g.const(0.5), work.system.equations[0].left)
+    monkeypatch.setattr("ikgen.lowering.closure._residuals", lambda *_: ([part], [part]))
+    require_closure(work)
+    bounds = [guard.condition.args[0].probe[0] for guard in guards(work)]
+    assert bounds == pytest.approx([(times * CHECK_TOLERANCE) ** 2] * len(bounds)) and bounds
 
 
 def test_differences_that_vanish_or_are_not_read_are_left_out() -> None:
-    work = Placement(solve_chain(table(("R", "0", 0.0, 0.0), ("P", "1", 0.0, 0.0))), 0.0)
+    work = two_joints()
     g, equation = work.g, work.system.equations[0]
     pose = equation.left if work.knowledge.known_expr(equation.left) else equation.right
     unread = g.atom("angle", "nobody", np.linspace(0.1, 0.9, g.probes), unknown=True)

@@ -173,3 +173,45 @@ def test_wrong_calls(tmp_path: Path, line: str, said: str) -> None:
     done = finished("cmake", "-S", ".", "-B", "b", directory, cwd=tmp_path)
     said_there = " ".join(done.stderr.split())
     assert done.returncode != 0 and said in said_there and "hint: " in said_there
+
+
+_READER = """
+cmake_minimum_required(VERSION 3.16)
+project(reader CXX)
+find_package(ikgen REQUIRED)
+ikgen_committed(arm DIRECTORY committed)
+add_executable(reader main.cpp)
+target_link_libraries(reader PRIVATE ikgen::arm)
+"""
+
+
+@needs_cmake
+@pytest.mark.parametrize("found", [True, False])
+def test_headers_of_ikgen_s_own_stand_in_for_an_eigen_that_cmake_does_not_find(
+    tmp_path: Path, found: bool
+) -> None:
+    include = tmp_path / "own/include"
+    (include / "Eigen").mkdir(parents=True)
+    (include / "Eigen/Core").write_text("#define EIGEN_OF_IKGEN 1\n")
+    tool = tmp_path / "ikgen"
+    told = f'"Eigen": "{include}"' if found else '"Eigen": null'
+    tool.write_text(f"#!/bin/sh\ncat <<'END'\n{{ {told} }}\nEND\n")
+    tool.chmod(0o755)
+    (tmp_path / "committed").mkdir()
+    (tmp_path / "committed/arm_ik.hpp").write_text("#include <Eigen/Core>\n")
+    (tmp_path / "committed/arm_ik.json").write_text("{}")
+    (tmp_path / "CMakeLists.txt").write_text(_READER)
+    (tmp_path / "main.cpp").write_text(
+        '#include "arm_ik.hpp"\nint main() { return EIGEN_OF_IKGEN - 1; }\n'
+    )
+    configure = (
+        "cmake", "-S", ".", "-B", "b", f"-Dikgen_DIR={cmake_directory()}",
+        f"-DIKGEN_EXECUTABLE={tool}", "-DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON",
+    )  # fmt: skip
+    done = finished(*configure, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    if found:
+        assert f"using the headers in {include}" in done.stdout
+        printed("cmake", "--build", "b", cwd=tmp_path)
+    else:
+        assert "Eigen was not found" in done.stderr and "libeigen3-dev" in done.stderr

@@ -9,7 +9,7 @@ import pytest
 from ikgen.errors import UsageError
 from ikgen.generation.request import Request
 from ikgen.projects.config import load_config
-from ikgen.projects.new_config import config_path, robot_arms, write_config
+from ikgen.projects.new_config import add_to_config, config_path, robot_arms, write_config
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 AR4 = FIXTURES / "ar4_ros_driver/annin_ar4_description/urdf/ar.urdf.xacro"
@@ -97,6 +97,25 @@ def test_a_config_is_not_replaced(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="is there already"):
         written(request, path)
     assert path.read_text() == before
+
+
+def test_arms_are_added_to_a_config(tmp_path: Path) -> None:
+    table, path = Request(FIXTURES / "scara_standard.toml"), tmp_path / "ikgen.toml"
+    written(table, path)
+    path.write_text("# mine\n" + path.read_text().rstrip("\n"))
+    before = path.read_text()
+    other = tmp_path / "scara_standard.toml"
+    other.write_bytes(table.robot.read_bytes())
+    (first,) = load_config(path)
+    (added,) = add_to_config(path, Request(other), robot_arms(Request(other)), ["cpp"])
+    assert path.read_text().startswith(before + "\n\n[[arm]]\n")
+    assert [arm.name for arm in load_config(path)] == [first.name, added.name]
+    assert added.name == f"{first.name}_2"
+    assert load_config(path)[1].outputs.emit == ("cpp",)
+    with pytest.raises(UsageError, match=f"lists {first.name} already"):
+        add_to_config(path, table, robot_arms(table), ["python"])
+    with pytest.raises(UsageError, match="not of ikgen alone"):
+        add_to_config(tmp_path / "pyproject.toml", table, robot_arms(table), ["python"])
 
 
 def test_robot_without_an_arm_is_refused(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from ikgen.elimination.routine import runtime_policy
 from ikgen.program.policy import SolvePolicy
-from ikgen.runtime.python.pose_arguments import pose_matrices
+from ikgen.runtime.python.pose_arguments import pose_matrices, poses_in_line
 from ikgen.runtime.python.pose_entries import EntriesTask
 from ikgen.runtime.python.pose_faults import nearest_pose, nearest_poses, pose_fault
 from ikgen.runtime.python.whole_pose import PoseTask
@@ -118,6 +118,16 @@ def test_a_rotation_of_few_digits_is_refused_with_a_reason_and_a_way_out(digits:
     U, _, V = np.linalg.svd(rough[:3, :3])  # the nearest in the Frobenius norm
     assert np.abs(read - U @ V).max() < 1e-9
     assert np.allclose(nearest_poses(task, np.stack([rough, T]), POLICY)[0], near)
+
+
+def test_a_sequence_may_be_empty() -> None:
+    for none in ([], (), np.empty((0, 4, 4))):
+        assert poses_in_line(none, "").shape == (0, 4, 4)
+
+
+def test_a_quaternion_s_norm_is_told_of() -> None:
+    text = pose_fault(PoseTask(1.0), pose_matrices((P, 2.0 * QUATERNION), "").tolist(), POLICY)
+    assert "a quaternion is to have norm 1" in text
 
 
 FAULTS = {

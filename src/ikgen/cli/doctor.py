@@ -54,8 +54,8 @@ def _record(needed: list[Thing], optional: list[Thing], others: list[Offer]) -> 
 
 def _text(needed: list[Thing], optional: list[Thing], others: list[Offer]) -> str:
     rows: list[tuple[str, ...]] = [
-        ("ikgen", __version__, ""),
-        ("python", sys.version.split()[0], ""),
+        ("ikgen", "", __version__),
+        ("python", "", sys.version.split()[0]),
     ]
     rows += [_row(thing, "MISSING") for thing in needed]
     rows += [_row(thing, "not found") for thing in optional]
@@ -71,6 +71,6 @@ def _text(needed: list[Thing], optional: list[Thing], others: list[Offer]) -> st
 
 
 def _row(thing: Thing, missing: str) -> tuple[str, str, str]:
-    if thing.found is None:
-        return thing.name, missing, f"{thing.purpose}; {thing.remedy}"
-    return thing.name, thing.found, thing.purpose
+    """What was found comes last: paths are as long as they are."""
+    found = f"{missing}; {thing.remedy}" if thing.found is None else thing.found
+    return thing.name, thing.purpose, found

@@ -34,6 +34,7 @@ __all__ = ["init"]
     default=Path("ikgen.toml"),
     help="The config to write (default: ikgen.toml here).",
 )
+@click.option("--add", is_flag=True, help="Add the arms to a config that is there.")
 @click.option("--force", is_flag=True, help="Replace a config that is there.")
 @console_options
 def init(
@@ -41,6 +42,7 @@ def init(
     *,
     emit: tuple[str, ...],
     out: Path,
+    add: bool,
     force: bool,
     as_json: bool,
     quiet: bool,
@@ -48,14 +50,17 @@ def init(
     **reading: Any,
 ) -> None:
     """Write a config that lists every arm of ROBOT, for ikgen build."""
-    from ikgen.projects.new_config import config_path, robot_arms, write_config
+    from ikgen.projects.new_config import add_to_config, config_path, robot_arms, write_config
 
     request = make_request(robot, **reading)
     path, outputs = config_path(out), parse_emit(emit)
     with Console(quiet=quiet, verbose=verbose) as console:
         console("read", robot.name)
         arms = robot_arms(request)
-    write_config(path, request, arms, outputs, force=force)
+    if add and path.exists():
+        arms = add_to_config(path, request, arms, outputs)
+    else:
+        write_config(path, request, arms, outputs, force=force)
     command = ["ikgen", "build", *([] if path == Path("ikgen.toml") else [str(path)])]
     command += ["--trust"] if request.trust else []
     if as_json:
@@ -65,5 +70,10 @@ def init(
     elif not quiet:
         for arm in arms:
             ends = "" if arm.base is None else f"{arm.base} -> {arm.tip}, "
-            click.echo(f"{arm.name}: {ends}{arm.dof} joints")
+            click.echo(f"{arm.name}: {ends}{arm.dof} joints{_task(arm.dof)}")
         click.echo(f"wrote: {path}\nnext: {shlex.join(command)}")
+
+
+def _task(dof: int) -> str:
+    """Where the task is to be seen that an arm gets which cannot take every pose."""
+    return "" if dof >= 6 else "; the task that fits them: ikgen inspect"

@@ -27,6 +27,7 @@ def as_dict(found: Inspection) -> dict[str, Any]:
             for c in found.candidates
         ]
     if found.reading is not None and found.geometry is not None:
+        record["arm_angle"] = found.arm_angle
         record["chain"] = _chain(found.reading.dh, found.geometry)
     record["attempts"] = [_attempt(one) for one in found.attempts]
     return record
@@ -57,6 +58,7 @@ def _attempt(attempt: Attempt) -> dict[str, Any]:
         "order": list(attempt.order),
         "left": list(attempt.left),
         "options": attempt.options,
+        "default": attempt.default,
     }
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from ikgen.cli.braille import skeleton_text
 from ikgen.cli.tables import table
 from ikgen.cli.tree_text import dh_table, joint_tree, transform_text
+from ikgen.model.dh import ARM_ANGLE
 
 if TYPE_CHECKING:
     from ikgen.generation.advice import Attempt
@@ -84,8 +85,13 @@ def _advice(found: Inspection) -> str:
     lines = ["advice:"]
     if found.moving < 6:
         lines.append(f"  {found.moving} joints move, so a pose cannot be chosen freely: see --task")
-    for attempt in found.closed[:_PROPOSED]:
-        lines += _proposal(attempt, chosen=bool(attempt.held) and attempt is found.attempts[0])
+    for k, attempt in enumerate(found.closed):
+        if k < _PROPOSED or attempt.default:
+            lines += _proposal(attempt)
+    if found.arm_angle:
+        lines.append(
+            f"  --free {ARM_ANGLE}: closed form, the angle of the elbow held in a joint's place"
+        )
     if found.attempts and not found.closed:
         best = max(found.attempts, key=lambda attempt: len(attempt.order))
         lines.append(
@@ -94,10 +100,10 @@ def _advice(found: Inspection) -> str:
     return "\n".join(lines) if len(lines) > 1 else ""
 
 
-def _proposal(attempt: Attempt, chosen: bool) -> list[str]:
+def _proposal(attempt: Attempt) -> list[str]:
     """A closed form: the options to type, how many solutions, in which order, and what is weak in it."""
     options = attempt.options or "as it is"
-    if chosen:
+    if attempt.default:
         options = f"without options, which is {options}"
     closed = "closed form" if not attempt.weak else "closed form with a weak step"
     lines = [f"  {options}: {closed}, at most {attempt.max_solutions} solutions"]

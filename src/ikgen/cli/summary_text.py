@@ -19,10 +19,9 @@ def summary(generation: Generation) -> str:
     """The result in a few lines."""
     derivation = generation.derivation
     module, dh = derivation.module, derivation.reading.dh
-    held = dh.held
     lines = [
         ("robot", f"{dh.robot}, {dh.base_link} -> {dh.tip_link}, {dh.dof} joints"),
-        ("task", _task(derivation) + (f", held: {', '.join(held)}" if held else "")),
+        ("task", _task(derivation) + _held(derivation)),
         ("geometry", derivation.geometry.words + _rounding(derivation)),
         ("solved", "; ".join(module.order)),
         ("solutions", _solutions(generation)),
@@ -41,9 +40,23 @@ def summary(generation: Generation) -> str:
 def _task(derivation: Derivation) -> str:
     """The task, and that it was chosen where another might be expected."""
     task = derivation.task
+    passed = ", ".join(derivation.passed_over)
+    failed = f"failed verification: {passed}" if passed else ""
     if not derivation.chosen or task.whole_pose:
-        return task.words
-    return f"{task.words} (--task {task.name}: what fits {derivation.reading.dh.dof} joints)"
+        return task.words + (f" ({failed})" if failed else "")
+    why = f"what fits {derivation.reading.dh.dof} joints" + (f"; {failed}" if failed else "")
+    return f"{task.words} (--task {task.name}: {why})"
+
+
+def _held(derivation: Derivation) -> str:
+    """What is held, and that the rest cannot do all of the task."""
+    from ikgen.tasks.fitting import over_constrained
+
+    held = derivation.reading.dh.held
+    words = f", held: {', '.join(held)}" if held else ""
+    if not over_constrained(derivation.reading.dh, derivation.task):
+        return words
+    return f"{words}; OVER-CONSTRAINED, answers only poses that the arm can take to rounding"
 
 
 def _rounding(derivation: Derivation) -> str:

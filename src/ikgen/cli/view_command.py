@@ -53,8 +53,9 @@ def view(
     from ikgen.generation.derive import derive
     from ikgen.reach.stored_map import read_map
     from ikgen.report.worked_example import solver_of
-    from ikgen.view.arm_scene import ArmScene, open_server
+    from ikgen.view.arm_scene import ArmScene, open_server, require_viser
 
+    require_viser()  # first: a derivation may take long
     found = None if map_file is None else read_map(map_file)
     request = make_request(robot, **chain)
     with Console(quiet=quiet, verbose=verbose) as console:

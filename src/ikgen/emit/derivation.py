@@ -63,6 +63,8 @@ class Derivation:
     """Whether the task was chosen to fit the arm, not asked for."""
     held: Held | None = None
     """The joints that were chosen to be held; None where none was."""
+    passed_over: tuple[str, ...] = ()
+    """Tasks that came before the chosen one, and whose code failed its verification."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,7 +28,7 @@ class Attempt:
     """One derivation that was tried: which task, which joints held (`held`: beyond those that were
     asked for), and what came of it. `weak` says of each step that fails at some regular configurations
     which it is: such a closed form is verified before it is written, and may be refused then. `implied`
-    says whether the task is the one that is taken where none is asked for."""
+    says whether the task goes without saying, `default` whether this is what is made without options."""
 
     task: str
     free: tuple[str, ...]
@@ -39,6 +39,7 @@ class Attempt:
     held: tuple[str, ...] = ()
     weak: tuple[str, ...] = ()
     implied: bool = True
+    default: bool = False
 
     @property
     def rank(self) -> tuple[bool, bool, int, bool, int]:
@@ -90,7 +91,16 @@ def attempts(reading: Reading, asked: str | None, progress: Progress) -> list[At
             found.append(attempt(held_dh, task))
     if not any(a.closed for a in found):
         found += eliminations([a for a in found if a.task == "pose"], dh, progress)
+    if asked is None and moving < _POSE_FREEDOMS:
+        found = _with_default(found, [task.name for task in fitting_tasks(dh)])
     return sorted(found, key=lambda a: a.rank)
+
+
+def _with_default(found: Sequence[Attempt], fitting: Sequence[str]) -> list[Attempt]:
+    """The attempts, the first closed one of the tasks that fit marked as what is taken without options."""
+    fits = [a for a in found if a.closed and a.task in fitting]
+    first = min(fits, key=lambda a: fitting.index(a.task), default=None)
+    return [replace(a, default=a is first) for a in found]
 
 
 def _attempts_held(
@@ -109,7 +119,7 @@ def _attempts_held(
     if not tried[0][1].sound:
         failed = [a for a in found if a.task == "pose"]
         found = [*eliminations(failed, reading.dh, demand.progress), *found]
-    return found
+    return [replace(a, default=k == 0 and bool(a.held)) for k, a in enumerate(found)]
 
 
 def _held_chains(reading: Reading, task: Task) -> list[DHChain]:

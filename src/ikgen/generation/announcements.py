@@ -11,9 +11,21 @@ __all__ = ["announcements"]
 
 
 def announcements(derivation: Derivation) -> tuple[str, ...]:
-    """What was odd in the file, and that the task asks more than the arm can do."""
-    narrow = _over_constrained(derivation)
-    return (*derivation.reading.source.warnings, *([narrow] if narrow else []))
+    """What was odd in the file, that the task is not the first that fits, and that it asks more than the
+    arm can do."""
+    told = (_passed_over(derivation), _over_constrained(derivation))
+    return (*derivation.reading.source.warnings, *filter(None, told))
+
+
+def _passed_over(derivation: Derivation) -> str:
+    """In words, which tasks the chosen one stands in for; "" where it is the first."""
+    if not derivation.passed_over:
+        return ""
+    names = " and ".join(f"'{name}'" for name in derivation.passed_over)
+    return (
+        f"code for {names}, which fits the arm better, failed its verification: what was made is for "
+        f"the task '{derivation.task.name}'"
+    )
 
 
 def _over_constrained(derivation: Derivation) -> str:
@@ -27,7 +39,7 @@ def _over_constrained(derivation: Derivation) -> str:
     other = next((t.name for t in fitting_tasks(dh) if not t.whole_pose), "")
     smaller = f"--task {other} asks what the arm can do everywhere; " if other else ""
     if derivation.chosen:
-        smaller = "no smaller task has a verified closed form here; "
+        smaller = "No smaller task has a verified closed form here; "
     return (
         f"OVER-CONSTRAINED: the task '{task.name}' fixes {task.freedoms} freedoms and {moving} joints "
         f"move: solve() answers only poses that the arm can take to rounding, and no others. {smaller}"

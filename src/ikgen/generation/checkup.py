@@ -31,6 +31,9 @@ _EXTRAS = {
     "rich": ("a status line on terminals", "terminal"),
     "nanobind": ("ikgen.compile", "compile"),
     "example-robot-data": ("robots by name", "robots"),
+    "viser": ("ikgen view", "view"),
+    "distributed": ("reachability maps on a dask cluster", "dask"),
+    "zarr": ("reachability maps as .zarr, from Python 3.11 on", "zarr"),
 }
 """Packages that ikgen does without: what they are for, and the extra that brings them."""
 

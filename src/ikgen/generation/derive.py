@@ -60,7 +60,10 @@ def derive(
     found, program = _program(found, progress)
     module = _module(name, request, found, program)
     unasked = request.task is None
-    return Derivation(found.reading, geometry, found.task, found.graph, module, unasked, found.held)
+    passed = tuple(passed_over) if unasked else ()
+    return Derivation(
+        found.reading, geometry, found.task, found.graph, module, unasked, found.held, passed
+    )
 
 
 def _program(found: ClosedForm, progress: Progress) -> tuple[ClosedForm, Program]:

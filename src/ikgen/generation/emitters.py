@@ -95,7 +95,7 @@ EMITTERS: tuple[Emitter, ...] = (
     ),
     Emitter(
         "report",
-        "how it was derived, as LaTeX and HTML, with the solution graph",
+        "how it was derived, as LaTeX and HTML, with the solution graph (PDF: ikgen report)",
         "ikgen.report:emit_report",
         tells_verification=True,
     ),

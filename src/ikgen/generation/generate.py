@@ -116,7 +116,7 @@ def make_texts(
     Where what was chosen for the arm fails, the next choice is taken: of joints to hold, of the tool's
     axis, and in the end the whole pose.
     """
-    tasks: set[str] = set()
+    tasks: list[str] = []
     held: list[tuple[str, ...]] = []
     while True:
         derivation = derive(request, progress, tasks, reading, held)
@@ -127,14 +127,14 @@ def make_texts(
             if derivation.held is not None and len(held) < _REFUSED:
                 held.append(derivation.held.joints)
             elif derivation.chosen and not derivation.task.whole_pose:
-                tasks.add(derivation.task.name)
+                tasks.append(derivation.task.name)
             else:
                 raise
     for emitter in emitters:
         if emitter.tells_verification:
             progress("emit", emitter.name)
             made[emitter.name] = emitter.emit(derivation, reports)
-    return Made(made, derivation, reports, tuple(sorted(tasks)))
+    return Made(made, derivation, reports, tuple(tasks))
 
 
 def _emitted(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ikgen.generation.advice import attempts
 from ikgen.generation.progress import Progress, silent
-from ikgen.generation.read import read, read_tree
+from ikgen.generation.read import has_arm_angle, read, read_tree
 
 if TYPE_CHECKING:
     from ikgen.chains.arms import ChainCandidate
@@ -35,6 +35,12 @@ class Inspection:
     def closed(self) -> tuple[Attempt, ...]:
         """The attempts that found a closed form."""
         return tuple(attempt for attempt in self.attempts if attempt.closed)
+
+    @property
+    def arm_angle(self) -> bool:
+        """Whether the arm angle can be held in a joint's place: only poses are solved so."""
+        held = self.closed and self.closed[0].held and self.closed[0].task == "pose"
+        return bool(held) and self.reading is not None and has_arm_angle(self.reading)
 
     @property
     def moving(self) -> int:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ikgen.model.chain import ActuatedJoint, Chain
     from ikgen.model.joint_tree import JointTree
 
-__all__ = ["arm_name", "default_name", "read", "read_tree"]
+__all__ = ["arm_name", "default_name", "has_arm_angle", "read", "read_tree"]
 
 
 def read(request: Request, tree: JointTree | None = None) -> Reading:
@@ -33,14 +33,27 @@ def read(request: Request, tree: JointTree | None = None) -> Reading:
 def _with_elbow(reading: Reading) -> Reading:
     """With rows that have an arm angle: those of the file, or of geometry nearby. Raises UsageError
     for an arm that has none."""
+    from ikgen.kinematics.elbow_geometry import elbow_geometry
+
+    found = _elbow_nearby(reading)
+    elbow_geometry(found.dh)
+    return found
+
+
+def _elbow_nearby(reading: Reading) -> Reading:
+    """With rows of geometry nearby where those alone have an arm angle."""
     from ikgen.generation.held_joints import nearby
-    from ikgen.kinematics.elbow_geometry import elbow_geometry, without_arm_angle
+    from ikgen.kinematics.elbow_geometry import without_arm_angle
 
     near = nearby(reading) if without_arm_angle(reading.dh) else None
-    if near is not None and not without_arm_angle(near):
-        return replace(reading, dh=near)
-    elbow_geometry(reading.dh)
-    return reading
+    return reading if near is None or without_arm_angle(near) else replace(reading, dh=near)
+
+
+def has_arm_angle(reading: Reading) -> bool:
+    """Whether `--free arm-angle` can be asked for: no joint is held, and these rows or those nearby do."""
+    from ikgen.kinematics.elbow_geometry import without_arm_angle
+
+    return not reading.dh.free and not without_arm_angle(_elbow_nearby(reading).dh)
 
 
 def _read(request: Request, tree: JointTree | None) -> Reading:

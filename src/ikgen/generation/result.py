@@ -56,6 +56,7 @@ def _chosen(derivation: Derivation) -> dict[str, Any]:
     chosen: dict[str, Any] = {}
     if derivation.chosen:
         chosen["task"] = derivation.task.name
+        chosen["passed_over"] = list(derivation.passed_over)
     if derivation.reading.coupled:
         chosen["coupled"] = list(derivation.reading.coupled)
     held = derivation.held

@@ -112,6 +112,10 @@ def importer_of(path: Path) -> Importer:
             continue
         if others[-1].accepts(path):
             return others[-1]
+    if path.is_dir():
+        raise UsageError(
+            f"{path} is a folder", hint=f"name the robot's file in it: {path}/ROBOT.urdf"
+        )
     known = ", ".join(suffix for row in (*IMPORTERS, *others) for suffix in row.suffixes)
     raise UsageError(
         f"{path}: cannot tell the format of a robot description by the suffix '{path.suffix}'",

@@ -14,7 +14,8 @@ CHECK_TOLERANCE = 1e-6
 the closed form loses digits, which Newton steps win back."""
 
 _WIDER = 1000.0
-"""The same factor times as large where rounded constants keep a continuum from being one."""
+"""As many times as large where an unknown may have lost digits: each step that follows from it may multiply
+what it is off, and which does is known of no single one. Newton steps tell."""
 
 
 def require_closure(work: Placement) -> None:
@@ -30,20 +31,25 @@ def require_closure(work: Placement) -> None:
     residuals = min((_residuals(work, k, m) for k, m in splits), key=cost)
     work.place(Comment("does the row reproduce the pose?"))
     limit = max(CHECK_TOLERANCE, min(1000 * work.model_error, 0.2))
+    where_lost = _WIDER * limit
+    if work.loses_digits:
+        limit = max(limit, _WIDER * CHECK_TOLERANCE)
     size = max(arm_size(work.dh), 1.0)
     for level in range(len(work.levels)):
         norms = [e for e in work.norms if work.level(e) == level]
-        _bounded(work, norms, limit)
-    for parts, tolerance in zip(residuals, (limit * size, limit), strict=True):
-        _bounded(work, parts, tolerance)
+        _bounded(work, norms, limit, where_lost)
+    for parts, scale in zip(residuals, (size, 1.0), strict=True):
+        _bounded(work, parts, scale * limit, scale * where_lost)
 
 
-def _bounded(work: Placement, parts: list[Expr], tolerance: float) -> None:
+def _bounded(work: Placement, parts: list[Expr], tolerance: float, where_lost: float) -> None:
+    """Squared parts are bounded by the tolerance's square, and wider where a step is seen to have lost
+    digits."""
     if parts:
         g, rough = work.g, work.rough
         total, most = g.dot(parts, parts), g.const(tolerance**2)
-        if rough is not None:
-            most = g.select(rough, g.const((_WIDER * tolerance) ** 2), most)
+        if rough is not None and where_lost > tolerance:
+            most = g.select(rough, g.const(where_lost**2), most)
         work.require(g.binary("gt", most, total))
         work.residuals.append(total)
 

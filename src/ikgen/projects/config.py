@@ -25,7 +25,7 @@ else:
 __all__ = ["ArmConfig", "default_config", "load_config", "named_config"]
 
 CONFIG = "ikgen.toml"
-_PYPROJECT = "pyproject.toml"
+PYPROJECT = "pyproject.toml"
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +53,7 @@ def default_config(folder: Path) -> Path | None:
     """The config of a folder: its ikgen.toml, or a pyproject.toml with `[tool.ikgen]`."""
     if (folder / CONFIG).is_file():
         return folder / CONFIG
-    project = folder / _PYPROJECT
+    project = folder / PYPROJECT
     if project.is_file() and re.search(r"^\[+\s*tool\.ikgen", project.read_text("utf-8"), re.M):
         return project
     return None
@@ -150,7 +150,7 @@ def _tables(path: Path, text: str) -> dict[str, Any]:
         line = int(place.group(1)) if place else text.count("\n") + 1  # at the end
         hint = "name an ikgen.toml, a pyproject.toml, or the folder that holds the outputs"
         raise _error(path, f"not TOML: {error}", line=line, hint=hint) from None
-    if path.name != _PYPROJECT:
+    if path.name != PYPROJECT:
         return data
     tool = data.get("tool", {}).get("ikgen")
     if not isinstance(tool, dict):

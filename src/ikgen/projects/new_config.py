@@ -14,12 +14,12 @@ from ikgen.errors import UsageError
 from ikgen.generation.read import arm_name, read, read_tree
 from ikgen.generation.request import Request
 from ikgen.importers.named_robots import is_named
-from ikgen.projects.config import CONFIG
+from ikgen.projects.config import CONFIG, PYPROJECT, load_config
 
 if TYPE_CHECKING:
     from ikgen.chains.arms import ChainCandidate
 
-__all__ = ["ArmTable", "config_path", "robot_arms", "write_config"]
+__all__ = ["ArmTable", "add_to_config", "config_path", "robot_arms", "write_config"]
 
 _ESCAPED = {code: f"\\u{code:04x}" for code in (0x7F, *TURNING_MARKS)}
 _FOLDER = "generated"
@@ -74,13 +74,15 @@ def _arm(robot: str, tip: str, ways: Sequence[ChainCandidate], several: bool) ->
     return ArmTable(arm_name(robot, tip if several else ""), taken.base, tip, taken.dof, trunk)
 
 
-def _told_apart(arms: Iterable[ArmTable]) -> list[ArmTable]:
-    """The arms, those whose names an earlier one has numbered."""
+def _told_apart(arms: Iterable[ArmTable], taken: Iterable[str] = ()) -> list[ArmTable]:
+    """The arms, those whose names are taken, or an earlier one has, numbered."""
     found: list[ArmTable] = []
+    names = set(taken)
     for arm in arms:
-        names = {other.name for other in found}
         candidates = (arm.name, *(f"{arm.name}_{k}" for k in range(2, len(names) + 3)))
-        found.append(replace(arm, name=next(name for name in candidates if name not in names)))
+        name = next(name for name in candidates if name not in names)
+        names.add(name)
+        found.append(replace(arm, name=name))
     return found
 
 
@@ -90,10 +92,40 @@ def write_config(
     """Write the config of a robot's arms; raises `UsageError` for a file that is there already."""
     if path.exists() and not force:
         raise UsageError(
-            f"{path} is there already", hint="replace it with --force, or name another by -o"
+            f"{path} is there already",
+            hint="add to it with --add, replace it with --force, or name another by -o",
         )
     tables = [_table(arm, request, emit, path.parent) for arm in arms]
     path.write_text("\n".join(tables), encoding="utf-8")
+
+
+def add_to_config(
+    path: Path, request: Request, arms: Sequence[ArmTable], emit: Sequence[str]
+) -> tuple[ArmTable, ...]:
+    """Append a robot's arms to a config, as they are then named: apart from those that it has. Nothing else
+    of it changes. Raises `UsageError` where it lists one of them already, or is no list of arms alone."""
+    if path.name == PYPROJECT:
+        raise UsageError(
+            f"{path} is not of ikgen alone", hint="write its [[tool.ikgen.arm]] by hand"
+        )
+    there = load_config(path)
+    known = {(_place(one.request.robot), one.request.base, one.request.tip) for one in there}
+    for arm in arms:
+        if (_place(request.robot), arm.base, arm.tip) in known:
+            raise UsageError(
+                f"{path} lists {arm.name} already",
+                hint="change its entry there, or name another by -o",
+            )
+    arms = _told_apart(arms, [one.name for one in there])
+    tables = ["", *(_table(arm, request, emit, path.parent) for arm in arms)]
+    before = path.read_text(encoding="utf-8").rstrip("\n") + "\n"
+    path.write_text(before + "\n".join(tables), encoding="utf-8")
+    return tuple(arms)
+
+
+def _place(robot: Path) -> Path:
+    """A robot's file, however it is spelled; its name where it has one."""
+    return robot if is_named(robot) else robot.resolve()
 
 
 def _table(arm: ArmTable, request: Request, emit: Sequence[str], folder: Path) -> str:

@@ -24,7 +24,7 @@ from ikgen.view.path_panel import PathPanel
 from ikgen.view.reach_panel import ReachPanel
 from ikgen.view.robot_meshes import robot_meshes
 
-__all__ = ["ArmScene", "open_server"]
+__all__ = ["ArmScene", "open_server", "require_viser"]
 
 Array = NDArray[np.float64]
 
@@ -33,14 +33,19 @@ _LAST = (79, 79, 79)
 """In linear light, as lines are drawn."""
 
 
-def open_server(port: int) -> Any:
-    """A viser server on this machine alone; raises `MissingToolError` where viser is not installed."""
+def require_viser() -> Any:
+    """The package viser; raises `MissingToolError` where it is not installed."""
     try:
         import viser
     except ImportError as error:
         hint = "pip install 'ikgen[view]'"
         raise MissingToolError("ikgen view needs the package viser", hint=hint) from error
-    return viser.ViserServer(host="127.0.0.1", port=port, verbose=False)
+    return viser
+
+
+def open_server(port: int) -> Any:
+    """A viser server on this machine alone; raises `MissingToolError` where viser is not installed."""
+    return require_viser().ViserServer(host="127.0.0.1", port=port, verbose=False)
 
 
 class ArmScene:

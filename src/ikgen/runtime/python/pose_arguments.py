@@ -26,6 +26,8 @@ def one_pose(pose: Any, alone: str) -> Array:
 def poses_in_line(poses: Any, alone: str) -> Array:
     """`pose_matrices` of many, (N, 4, 4); raises ValueError for another shape."""
     T = pose_matrices(poses, alone)
+    if T.shape == (0,):  # a sequence of none
+        return np.empty((0, 4, 4))
     if T.ndim != 3 or T.shape[1:] != (4, 4):
         raise ValueError(f"poses have shape {T.shape}, expected (N, 4, 4)")
     return T
