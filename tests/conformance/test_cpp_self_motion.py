@@ -205,6 +205,16 @@ def test_searches(both: Both, mode: int) -> None:
         assert cost(arm, mode, rows[0], seed) == pytest.approx(best, abs=near)
 
 
+def test_searches_from_a_row_give_it_back(both: Both) -> None:
+    arm, rng = both.arm, np.random.default_rng(5)
+    if len(arm.FREE_JOINTS) != 1:
+        return
+    for _ in range(20):
+        q = drawn(arm, rng)
+        _, numbers = both.run(1, q, arm.forward(q)[None])
+        assert np.abs(numbers[: arm.DOF] - q).max() < 1e-6
+
+
 def test_seeds_hold_their_own_values(both: Both) -> None:
     arm, rng = both.arm, np.random.default_rng(3)
     for _ in range(4):
