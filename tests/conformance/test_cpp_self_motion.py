@@ -136,6 +136,7 @@ def test_intervals(both: Both) -> None:
         wide = [x[x[:, 1] - x[:, 0] > 1e-3] for x in (mine, theirs)]
         assert len(wide[0]) == len(wide[1])
         assert np.abs(wide[0][:, :2] - wide[1][:, :2]).max() < 1e-9
+        assert np.array_equal(wide[0][:, 2], wide[1][:, 2])
 
 
 def test_branches_that_come_near_each_other_end_where_each_does(tmp_path: Path) -> None:
