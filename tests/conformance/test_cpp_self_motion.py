@@ -136,6 +136,7 @@ def test_intervals(both: Both) -> None:
         wide = [x[x[:, 1] - x[:, 0] > 1e-3] for x in (mine, theirs)]
         assert len(wide[0]) == len(wide[1])
         assert np.abs(wide[0][:, :2] - wide[1][:, :2]).max() < 1e-9
+        assert np.array_equal(wide[0][:, 2], wide[1][:, 2])
 
 
 def test_branches_that_come_near_each_other_end_where_each_does(tmp_path: Path) -> None:
@@ -203,6 +204,16 @@ def test_searches(both: Both, mode: int) -> None:
         assert np.abs(arm.forward(rows) - pose).max() < 1e-9
         best = cost(arm, mode, found.q[0], seed)
         assert cost(arm, mode, rows[0], seed) == pytest.approx(best, abs=near)
+
+
+def test_searches_from_a_row_give_it_back(both: Both) -> None:
+    arm, rng = both.arm, np.random.default_rng(5)
+    if len(arm.FREE_JOINTS) != 1:
+        return
+    for _ in range(20):
+        q = drawn(arm, rng)
+        _, numbers = both.run(1, q, arm.forward(q)[None])
+        assert np.abs(numbers[: arm.DOF] - q).max() < 1e-6
 
 
 def test_seeds_hold_their_own_values(both: Both) -> None:

@@ -54,6 +54,8 @@ def test_a_branch_goes_on_all_over_its_interval_and_no_farther(arm: ModuleType) 
         for one in arm.self_motion(pose):
             held = np.linspace(one.low, one.high, 9)
             assert (rows_on(arm, pose, held)[1] > 0).all()
+            for value in held[1:-1]:
+                assert f"branch {one.branch}" in arm.solve(pose, free=value).branch
             checked += 1
         for one in arm.self_motion(pose, limits=False):
             assert one.low < one.high

@@ -135,3 +135,25 @@ def test_records_of_packages_lie_inside_them(
     assert run(["build", "--no-verify", "-q"]) == run(["build", "--check", "--no-verify"]) == 0
     assert not (out / "elbow_ik_ext").exists() and not (out / "elbow_ik_cpp").exists()
     assert run(["verify", "ikgen.toml", "--samples", "20", "--json"]) in (0, 2)  # 2: no compiler
+
+
+@pytest.mark.parametrize("recorded", [True, False])
+def test_files_of_others_are_not_replaced(
+    here: Path, capsys: pytest.CaptureFixture[str], recorded: bool
+) -> None:
+    module = here / "out/elbow_ik.py"
+    if recorded:
+        assert run(["from-urdf", "elbow.urdf", *QUICK]) == 0
+        assert run(["from-urdf", "elbow.urdf", *QUICK]) == 0  # as it was written
+    else:
+        module.parent.mkdir()
+        module.write_text("")
+    mine = module.read_text() + "print('mine')\n"
+    module.write_text(mine)
+    assert run(["from-urdf", "elbow.urdf", *QUICK]) == 2
+    said = capsys.readouterr().err
+    what = "was edited after it was generated" if recorded else "is in no record of ikgen"
+    assert f"out/elbow_ik.py {what}" in said and "--force" in said
+    assert module.read_text() == mine
+    assert run(["from-urdf", "elbow.urdf", *QUICK, "--force"]) == 0
+    assert module.read_text() != mine

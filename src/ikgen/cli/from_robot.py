@@ -51,7 +51,9 @@ _only = click.option(
     "--only", is_flag=True, help="Make the outputs of --emit alone, not those made here before too."
 )
 _force = click.option(
-    "--force", is_flag=True, help="Replace outputs of another robot, chain or task."
+    "--force",
+    is_flag=True,
+    help="Replace outputs of another robot, chain or task, and files that were edited.",
 )
 
 _NOT_OF_TABLES = {

@@ -3,7 +3,8 @@ hold."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
+import hashlib
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -51,6 +52,29 @@ class Earlier:
             f"{path} {what}",
             hint=f"write beside it with {new}, elsewhere with -o DIR, or replace it with --force",
         )
+
+    def check_files(self, out: Path, texts: Mapping[str, str]) -> None:
+        """Raises `UsageError` where a file that would be replaced is not as ikgen wrote it, or another's;
+        `texts`: what is to be written, by name in the folder `out`."""
+        wrote = {
+            (record.folder / name).resolve(): expected
+            for record in self.records
+            for name, expected in record.files.items()
+        }
+        records = {record.path.resolve() for record in self.records}
+        for name, text in texts.items():
+            path = (out / name).resolve()
+            found = digest(path)
+            new = hashlib.sha256(text.encode()).hexdigest()
+            if found is None or path in records or found in (wrote.get(path), new):
+                continue
+            what = (
+                "was edited after it was generated" if path in wrote else "is in no record of ikgen"
+            )
+            raise UsageError(
+                f"{out / name} {what}",
+                hint="keep it by another name, write elsewhere with -o DIR, or replace it with --force",
+            )
 
     def outdated(self, files: Collection[Path]) -> list[Path]:
         """Recorded files that are as they were written and not among the new ones (records included)."""

@@ -45,7 +45,7 @@ class Generation:
 
 def generate(request: Request, outputs: Outputs, progress: Progress = silent) -> Generation:
     """The main job. Raises `VerificationError` (and writes nothing) if a check fails, `UsageError` where
-    outputs of another robot, chain or task would be replaced."""
+    outputs of another robot, chain or task, or files that ikgen did not write, would be replaced."""
     started = time.perf_counter()
     check_folder(outputs.out)
     asked = [find_emitter(name) for name in outputs.emit]
@@ -62,6 +62,8 @@ def generate(request: Request, outputs: Outputs, progress: Progress = silent) ->
     if not outputs.force:
         earlier.check(request, reading, derivation.task.name)
     texts = made.files | record_texts(request, outputs, derivation, made.texts)
+    if not outputs.force:
+        earlier.check_files(outputs.out, texts)
     removed = tuple(earlier.outdated([outputs.out / name for name in texts]))
     files = publish(outputs.out, texts, removed)
     seconds = time.perf_counter() - started

@@ -46,7 +46,8 @@ def recheck(
     """
     fix = command or record.command(robot)
     request = replace(record.again(robot), trust=trust)
-    findings = [*_edited(record, fix), *_left_over(record)]
+    forced = command or f"{fix} --force"
+    findings = [*_edited(record, forced), *_left_over(record)]
     progress("read", str(request.robot))
     try:
         reading = read(request)

@@ -11,8 +11,9 @@ template <class Arm> struct HeldSearch {
   using Sample = HeldSample<Arm>;
   static constexpr int kMost = 4;         // minima of an interval that are looked at
   static constexpr int kCells = 48;       // of the range, where intervals are known without looking
-  // How near to a minimum is enough: costs of distances differ by the square, singular values have kinks.
-  static constexpr double kNear = 1e-5, kNearKink = 1e-6;
+  // How near to a minimum is enough, of distances and of singular values, which have kinks: beside a fold joint values
+  // change as the root of the held one's, up to 1e3 times as much.
+  static constexpr double kNear = 1e-11, kNearKink = 1e-9;
 
   struct Point {
     double at, cost, q[Arm::kDof];
@@ -154,7 +155,7 @@ template <class Arm> struct HeldSearch {
       std::swap(second, third);
       std::swap(second_cost, third_cost);
     }
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 60; ++i) {
       const double x = m.best.at, middle = 0.5 * (low + high), least = (smooth ? kNear : kNearKink) * (1.0 + std::abs(x));
       if (std::abs(x - middle) <= 2.0 * least - 0.5 * (high - low)) return;
       double golden = x < middle ? high - x : low - x;

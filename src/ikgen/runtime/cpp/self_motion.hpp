@@ -122,7 +122,7 @@ template <class Arm, class Record> struct BranchFollower {
   void open(int lane, const Sample& s, int row, double at, const double* q) noexcept {
     double own[Arm::kDof];
     s.row(row, own);
-    record.open(lane, at, q ? q : own, branch[lane]);
+    record.open(lane, at, q ? q : own, Arm::kGuarded ? row % Arm::kLanes : branch[lane]);
     record.pass(lane, s);
   }
 };
@@ -189,7 +189,7 @@ template <class Arm> struct SelfMotionFinder {
     const HeldSweep<Arm> sweep(pose, limits);
     SelfMotionFinder finder{out, {}, {}};
     const bool any = BranchMotion<Arm>::follow(sweep, finder);
-    number(out);
+    if (!Arm::kGuarded) number(out);  // else they are the closed form's
     out.status = out.count > 0 ? Arm::Status::Ok : any ? Arm::Status::Limits : Arm::Status::Unreachable;
   }
 };

@@ -57,9 +57,8 @@ def _runs(arm: Arm, rows: Rows, cuts: Array, limits: bool) -> tuple[Interval, ..
     inside = rows.real & (outside(arm, rows.q, limits) <= arm.policy.limit_tolerance)
     low = cuts[np.searchsorted(cuts, rows.held) - 1]
     found = []
-    lanes = [lane for lane in range(inside.shape[1]) if inside[:, lane].any()]
-    for branch, lane in enumerate(lanes):
-        change = np.diff(inside[:, lane].astype(int), prepend=0, append=0)
+    for branch in range(inside.shape[1]):
+        change = np.diff(inside[:, branch].astype(int), prepend=0, append=0)
         limits_of = np.append(low, cuts[-1])
         pairs = zip(limits_of[change == 1].tolist(), limits_of[change == -1].tolist())
         found += [Interval(a, b, branch) for a, b in pairs]

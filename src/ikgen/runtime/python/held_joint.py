@@ -29,6 +29,12 @@ class HeldJoint:
     guarded: bool
 
     @property
+    def poses(self) -> int:
+        """At how many poses the closed form gives rows: the one asked for, and those beside it."""
+        anywhere = self.arm.policy.beside_reach >= self.arm.policy.anywhere
+        return 1 + len(self.arm.beside) * anywhere
+
+    @property
     def margins_tell(self) -> bool:
         """Whether rows come and go where those are 0: a rounded arm's do so beside."""
         return self.guarded and not self.arm.rounded

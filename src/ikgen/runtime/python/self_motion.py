@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -24,7 +24,8 @@ _SLIVERS = 2
 @dataclass(frozen=True)
 class Interval:
     """For every value from `low` to `high` of the held joint `solve` has a row of the branch inside the
-    limits. Intervals of one `branch` are parts of one continuous motion."""
+    limits: `branch` is the closed form's, as in `Solutions.branch`. Where a quartic or the general 6R
+    elimination gives the rows it counts the continuous motions, of which limits leave parts."""
 
     low: float
     high: float
@@ -61,15 +62,23 @@ def self_motion_of(joint: HeldJoint, pose: Any, limits: bool) -> tuple[Interval,
 
 
 def pieces_of(joint: HeldJoint, T: Array, tracks: Tracks, limits: bool) -> list[Piece]:
-    """The intervals with their samples, ends found; branches are counted from 0 in their order."""
+    """The intervals with their samples, ends found, by branch and value."""
     pieces = list(_pieces(joint, tracks))
     least = _FEW * LEAST * (tracks.rows.held[-1] - tracks.rows.held[0])
     wide = [piece for piece in pieces if piece.width() > least]
     looked = pieces if len(pieces) - len(wide) <= _SLIVERS * joint.arm.most else wide
     ends = [x for piece in looked for x in (piece.low, piece.high) if isinstance(x, BranchEnd)]
     find_ends(joint, T, ends, limits)
-    number = {old: new for new, old in enumerate(dict.fromkeys(p.branch for p in pieces))}
-    return [Piece(p.low, p.high, number[p.branch], p.samples) for p in pieces]
+    if (
+        joint.guarded
+    ):  # a row stays on its branch, in its column or in that of the same branch of a pose beside
+        count = tracks.rows.real.shape[1] // joint.poses
+        numbers = [piece.samples[0][1] % count for piece in pieces]
+    else:
+        motions = list(dict.fromkeys(piece.branch for piece in pieces))
+        numbers = [motions.index(piece.branch) for piece in pieces]
+    found = [replace(piece, branch=number) for piece, number in zip(pieces, numbers)]
+    return sorted(found, key=lambda piece: (piece.branch, piece.samples[0][0]))
 
 
 def _pieces(joint: HeldJoint, tracks: Tracks) -> Iterator[Piece]:
