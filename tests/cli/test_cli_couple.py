@@ -65,6 +65,20 @@ def test_a_parallelogram_keeps_the_forearm_s_direction(tmp_path: Path) -> None:
     assert len(rows) > 1 and np.abs(rows - q).max(axis=1).min() < 1e-9
 
 
+@pytest.mark.parametrize("command", ["from-urdf", "report"])
+def test_a_ratio_that_leaves_no_closed_form_is_told_by_every_command(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    robot, out = tmp_path / "arm.urdf", tmp_path / "out"
+    robot.write_text(serial_urdf("arm", SHOULDER_ELBOW_WRIST))
+    name = SHOULDER_ELBOW_WRIST[1][0]
+    asked = [command, str(robot), "--couple", f"{SHOULDER_ELBOW_WRIST[2][0]}={name}*0.37"]
+    assert run([*asked, "-o", str(out), "-q"]) == 3
+    said = capsys.readouterr().err
+    assert f"no closed form for the mimic joints of '{name}'" in said and f"--lock {name}" in said
+    assert not list(out.glob("*"))
+
+
 @pytest.mark.parametrize(
     "text", ["stage_2", "=stage_1", "stage_2=", "stage_2=stage_1*", "stage_2=stage_1*0"]
 )
