@@ -133,7 +133,7 @@ def test_the_gitlab_job(package: Path) -> None:
     assert (package / job["artifacts"]["reports"]["junit"]).is_file()
     lengthen(package)
     done = shell(script, package)
-    assert done.returncode == 1 and "elbow.urdf has changed" in done.stdout
+    assert done.returncode == 1 and "WRONG; the text of the description has changed" in done.stdout
 
 
 def test_the_json_follows_its_schema(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -208,7 +208,7 @@ def test_pre_commit_runs_the_check_hook(package: Path) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
     lengthen(package)
     done = shell(tried, package)
-    assert done.returncode == 1 and "elbow.urdf has changed" in done.stdout
+    assert done.returncode == 1 and "WRONG; the text of the description has changed" in done.stdout
 
 
 def test_build_check_imports_nothing_heavy(package: Path) -> None:

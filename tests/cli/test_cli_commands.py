@@ -141,7 +141,7 @@ def test_a_xacro_file_and_its_arguments(tmp_path: Path) -> None:
         (["from-urdf", KUKA, "--samples", "0"], "samples"),
         (["from-urdf", KUKA, "--package-path", "nowhere"], "nowhere"),
         (["from-urdf", FIXTURES / "abb_yumi.urdf"], "gripper_l_base"),
-        (["from-urdf", FIXTURES], "suffix"),
+        (["from-urdf", FIXTURES], "is a folder"),
         (["from-dh", KUKA], "from-urdf"),
         (["from-dh", SCARA, "--base", "base"], "leave --base out"),
         (["from-dh", SCARA, "--arg", "a:=b"], "leave --arg out"),

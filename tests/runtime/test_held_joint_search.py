@@ -17,7 +17,7 @@ HELD = np.array([0.0, 0.2, 0.4, 0.6, 0.8])
 
 
 def end(inner: float) -> BranchEnd:
-    return BranchEnd(inner, inner + 1e-10, np.array([inner]), 0, [], False, False, inner)
+    return BranchEnd(inner, inner + 1e-10, np.array([inner]), 0, [], False, False, inner, False)
 
 
 def started(

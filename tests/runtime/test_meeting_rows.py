@@ -13,7 +13,8 @@ from tests.support.cpp_modules import solver_module
 from tests.support.solving import import_text
 
 from ikgen.emit.python.python_emitter import emit_module
-from ikgen.runtime.python.meeting_rows import Starts, _fresh, _gap, _root, _still, rows_nearby
+from ikgen.runtime.python.meeting_rows import Starts, _fresh, _root, _still, ends_of, rows_nearby
+from ikgen.runtime.python.row_links import differences
 
 Array = NDArray[np.float64]
 ARM: Any = SimpleNamespace(
@@ -58,8 +59,8 @@ def test_the_direction_of_least_motion_keeps_its_sense() -> None:
 
 def test_gaps_are_on_the_shortest_way_of_what_turns() -> None:
     a, b = np.array([3.0, 3.0]), np.array([-3.0, -3.0])
-    np.testing.assert_allclose(_gap(ARM, a, b), [2.0 * np.pi - 6.0, -6.0])
-    np.testing.assert_allclose(_gap(ARM, b, a), [6.0 - 2.0 * np.pi, 6.0])
+    np.testing.assert_allclose(differences(ARM, a, b), [2.0 * np.pi - 6.0, -6.0])
+    np.testing.assert_allclose(differences(ARM, b, a), [6.0 - 2.0 * np.pi, 6.0])
 
 
 def fresh(
@@ -113,7 +114,8 @@ def test_both_rows_beside_a_fold_are_found_from_it(off: float, tmp_path: Path) -
         low, high = (low, middle) if turned < 0.0 else (middle, high)
     pose = arm.forward(bent(low + off))
     given = np.zeros(1, np.intp), np.zeros(1, bool), np.zeros(1, int)
-    of, rows, _ = rows_nearby(arm._ARM, Starts(bent(low)[None], pose[None], *given))
+    starts = Starts(bent(low)[None], pose[None], *given)
+    of, rows, _ = rows_nearby(arm._ARM, starts, ends_of(arm._ARM, starts.q, starts.T))
     assert not of.any() and np.abs(arm.forward(rows) - pose).max() < 1e-9
     assert np.abs(rows - bent(low + off)).max(axis=1).min() < 1e-8
     assert rows[:, 2].min() - bent(low)[2] == pytest.approx(-off, rel=1e-2)

@@ -144,8 +144,8 @@ class ArmUnderTest:
         apart = np.abs(self.difference(a, b)) / self.unit_of(b)
         return np.asarray(np.max(apart, axis=-1, initial=0.0))
 
-    def within(self, q: Array, tolerance: float = 0.0) -> NDArray[np.bool_]:
-        """Which configurations (N,) lie inside the limits."""
+    def within(self, q: Array, tolerance: float | Array = 0.0) -> NDArray[np.bool_]:
+        """Which configurations (N,) lie inside the limits, but for a tolerance (of each joint)."""
         inside = (q >= self.lower - tolerance) & (q <= self.upper + tolerance)
         return np.asarray(np.all(inside, axis=-1))
 

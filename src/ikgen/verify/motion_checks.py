@@ -29,6 +29,7 @@ CLEARLY_REGULAR = 0.05  # smallest singular value all the way
 FOUND = 1e-6  # rad or m
 _MOTIONS, _SEARCHES, _DRAWN = 15, 3, 600
 _FARTHEST = 0.2  # rad, or m and of the arm's length, that a joint moves between two poses
+_MARGIN = 0.5  # of that, from the limits
 _BETWEEN = 9  # configurations that are looked at
 
 
@@ -42,13 +43,16 @@ class Motions:
 
 
 def regular_motions(arm: ArmUnderTest, rng: np.random.Generator) -> Motions:
-    """A few random ones; none of an arm that is nowhere clearly regular."""
+    """A few random ones, clear of the limits, as what lies between the poses is not the motion; none of an
+    arm that is nowhere clearly regular."""
     start = arm.uniform(rng, _DRAWN)
     most = np.where(arm.revolute, _FARTHEST, _FARTHEST * min(1.0, arm.length))
-    end = np.clip(start + rng.uniform(-most, most, start.shape), arm.lower, arm.upper)
+    end = start + rng.uniform(-most, most, start.shape)
     share = np.linspace(0.0, 1.0, _BETWEEN)[:, None, None]
     sigma = arm.sigma((start + share * (end - start)).reshape(-1, arm.dof))
-    regular = np.flatnonzero(sigma.reshape(_BETWEEN, -1).min(axis=0) > CLEARLY_REGULAR)
+    margin = np.minimum(_MARGIN * most, 0.1 * (arm.upper - arm.lower))
+    clear = arm.within(start, -margin) & arm.within(end, -margin)
+    regular = np.flatnonzero(clear & (sigma.reshape(_BETWEEN, -1).min(axis=0) > CLEARLY_REGULAR))
     start, end = start[regular[:_MOTIONS]], end[regular[:_MOTIONS]]
     poses = np.stack([arm.oracle.forward(start), arm.oracle.forward(end)], axis=1)
     return Motions(start, end, poses)
@@ -66,14 +70,15 @@ def motion_checks(
 
 def check_follow(arm: ArmUnderTest, runner: MovingRunner, motions: Motions) -> CheckResult:
     """A path from one end of a regular motion to the other is followed, by an arm without held joints as
-    the motion went, and nowhere across a singularity."""
+    the motion went, and nowhere across a singularity if its joints are as many as what the task fixes."""
     failures, worst, case = 0, 0.0, ""
+    square = len(arm.active) == arm.dof == arm.rank
     for i, (start, end, poses) in enumerate(
         zip(motions.start, motions.end, motions.poses, strict=True)
     ):
         q, status, singular = runner.follow(poses, start)
         off = 0.0 if arm.held else float(arm.distance(q[-1], end))
-        right = status == "OK" and off <= FOUND and not singular.any()
+        right = status == "OK" and off <= FOUND and not (square and singular.any())
         if not (right and _closes(arm, q, poses)):
             failures += 1
             case = case or spell("motion", i, start=start, end=end, followed=q)
