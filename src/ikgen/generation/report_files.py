@@ -57,9 +57,7 @@ def _texts(
         derivation = derive(request, progress)
     except UnsolvedChainError as error:
         stuck = helped(error, request, progress)
-        if (
-            stuck.unsolved is None
-        ):  # refused before anything was derived: there is nothing to report
+        if stuck.unsolved is None:  # refused before anything was derived
             raise stuck from None
         return emit_unsolved(stuck.unsolved, stuck.hint), stuck
     wrong = None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,7 +66,7 @@ def motion_checks(
     checks = {"paths": check_follow, "search": check_search}
     if arm.held and runner.has_self_motion:
         checks["self motion"] = check_self_motion
-    return {name: lambda check=check: check(arm, runner, motions) for name, check in checks.items()}  # type: ignore[misc]
+    return {name: partial(check, arm, runner, motions) for name, check in checks.items()}
 
 
 def check_follow(arm: ArmUnderTest, runner: MovingRunner, motions: Motions) -> CheckResult:

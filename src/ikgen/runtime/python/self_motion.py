@@ -69,9 +69,7 @@ def pieces_of(joint: HeldJoint, T: Array, tracks: Tracks, limits: bool) -> list[
     looked = pieces if len(pieces) - len(wide) <= _SLIVERS * joint.arm.most else wide
     ends = [x for piece in looked for x in (piece.low, piece.high) if isinstance(x, BranchEnd)]
     find_ends(joint, T, ends, limits)
-    if (
-        joint.guarded
-    ):  # a row stays on its branch, in its column or in that of the same branch of a pose beside
+    if joint.guarded:  # a row stays on its branch: in its column, or in that of a pose beside
         count = tracks.rows.real.shape[1] // joint.poses
         numbers = [piece.samples[0][1] % count for piece in pieces]
     else:
