@@ -58,17 +58,21 @@ def on_page(scene: ArmScene, browser: Any) -> Iterator[tuple[Any, list[str]]]:
 
 def drag_target(page: Any, scene: ArmScene, axis: int, way: float) -> None:
     """Take the arrow of the target along one of its axes (0 to 2) by `way`, in lengths of the arrow, with
-    the mouse."""
-    arrow = 0.25 * scene.size * scene.pose[:3, axis]
-    start = _pixel(page, scene, scene.pose[:3, 3] + 0.6 * arrow)
-    end = _pixel(page, scene, scene.pose[:3, 3] + (0.6 + way) * arrow)
-    page.mouse.move(*start)
-    page.wait_for_timeout(400)
-    page.mouse.down()
-    page.mouse.move(*end, steps=6)
-    page.wait_for_timeout(400)
-    page.mouse.up()
-    page.wait_for_timeout(400)
+    the mouse; once more where the page was not drawn yet."""
+    before = scene.pose
+    arrow = 0.25 * scene.size * before[:3, axis]
+    start = _pixel(page, scene, before[:3, 3] + 0.6 * arrow)
+    end = _pixel(page, scene, before[:3, 3] + (0.6 + way) * arrow)
+    for wait in (400, 1500, 4000):
+        page.mouse.move(*start)
+        page.wait_for_timeout(wait)
+        page.mouse.down()
+        page.mouse.move(*end, steps=6)
+        page.wait_for_timeout(wait)
+        page.mouse.up()
+        page.wait_for_timeout(wait)
+        if not np.array_equal(scene.pose, before):
+            return
 
 
 def _pixel(page: Any, scene: ArmScene, point: NDArray[np.float64]) -> tuple[float, float]:
