@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from ikgen.emit.rendering import TURNING_MARKS
 from ikgen.errors import UsageError
+from ikgen.generation.publish import publish
 from ikgen.generation.read import arm_name, read, read_tree
 from ikgen.generation.request import Request
 from ikgen.importers.named_robots import is_named
@@ -96,7 +97,7 @@ def write_config(
             hint="add to it with --add, replace it with --force, or name another by -o",
         )
     tables = [_table(arm, request, emit, path.parent) for arm in arms]
-    path.write_text("\n".join(tables), encoding="utf-8")
+    publish(path.parent, {path.name: "\n".join(tables)})
 
 
 def add_to_config(
@@ -119,7 +120,7 @@ def add_to_config(
     arms = _told_apart(arms, [one.name for one in there])
     tables = ["", *(_table(arm, request, emit, path.parent) for arm in arms)]
     before = path.read_text(encoding="utf-8").rstrip("\n") + "\n"
-    path.write_text(before + "\n".join(tables), encoding="utf-8")
+    publish(path.parent, {path.name: before + "\n".join(tables)})
     return tuple(arms)
 
 
