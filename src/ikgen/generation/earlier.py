@@ -3,14 +3,13 @@ hold."""
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ikgen.errors import BadDescriptionError, UsageError
-from ikgen.generation.record import Record, digest, read_record, records_of
+from ikgen.generation.record import Record, digest, read_record, records_of, text_digest
 from ikgen.model.module_name import identifier
 
 if TYPE_CHECKING:
@@ -65,8 +64,8 @@ class Earlier:
         for name, text in texts.items():
             path = (out / name).resolve()
             found = digest(path)
-            new = hashlib.sha256(text.encode()).hexdigest()
-            if found is None or path in records or found in (wrote.get(path), new):
+            known = (wrote.get(path), text_digest(text))
+            if found is None or path in records or found in known:
                 continue
             what = (
                 "was edited after it was generated" if path in wrote else "is in no record of ikgen"

@@ -16,6 +16,7 @@ from ikgen.generation.record import (
     environment_digest,
     record_name,
     record_text,
+    text_digest,
 )
 
 if TYPE_CHECKING:
@@ -54,10 +55,7 @@ def _package(texts: Mapping[str, str]) -> str:
 def _digests(texts: Mapping[str, str], package: str) -> dict[str, str]:
     """Path relative to the package -> SHA-256."""
     start = len(package) + 1 if package else 0
-    return {
-        path[start:]: hashlib.sha256(text.encode()).hexdigest()
-        for path, text in sorted(texts.items())
-    }
+    return {path[start:]: text_digest(text) for path, text in sorted(texts.items())}
 
 
 def _record(request: Request, outputs: Outputs, derivation: Derivation, folder: Path) -> Record:
