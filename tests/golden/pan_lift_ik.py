@@ -2000,10 +2000,8 @@ _OFF = 0.2  # of the motion, and
 _LEAST_OFF = 1e-4  # rad or m: how far a row may be from where the Jacobian leads
 _NEWTON_STEPS = 30
 _BESIDE_START = 0.1  # rad or m
-_DAMPING = (
-    1e-8  # of directions that are all but lost, squared, where Newton steps shall arrive, and
-)
-_LEAST_DAMPING = 1e-14  # where they shall tell how far the next row is
+_DAMPING = 1e-8  # of directions that are all but lost, squared, where steps shall arrive,
+_LEAST_DAMPING = 1e-14  # and where they shall tell how far the next row is
 _JUMP = 0.05  # rad or m that a row may be from the last one where halving does not help
 
 

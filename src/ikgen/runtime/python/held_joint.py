@@ -31,8 +31,7 @@ class HeldJoint:
     @property
     def poses(self) -> int:
         """At how many poses the closed form gives rows: the one asked for, and those beside it."""
-        anywhere = self.arm.policy.beside_reach >= self.arm.policy.anywhere
-        return 1 + len(self.arm.beside) * anywhere
+        return _poses(self.arm)
 
     @property
     def margins_tell(self) -> bool:
@@ -75,13 +74,17 @@ def _all_rows(arm: Arm, T: Array, held: Array) -> tuple[Array, Flags]:
         q, real, _ = careful_rows(arm, T, held, None)
     else:
         some, sure, doubt = certain_rows(arm, arm.together, T, held, None)
-        size = some.shape[1] * (1 + len(arm.beside) * arm.policy.beside_anywhere)
+        size = some.shape[1] * _poses(arm)
         q = np.zeros((len(T), size, some.shape[2]))
         real = np.zeros(q.shape[:2], dtype=bool)
         q[:, : some.shape[1]], real[:, : some.shape[1]] = some, sure
         if doubt.any():
             q[doubt], real[doubt], _ = careful_rows(arm, T[doubt], held[doubt], None)
     return q, real & (np.cumsum(real, axis=1) <= arm.most)
+
+
+def _poses(arm: Arm) -> int:
+    return 1 + len(arm.beside) * arm.policy.beside_anywhere
 
 
 def merged_rows(one: Rows, other: Rows) -> Rows:

@@ -41,9 +41,8 @@ def slide_range(arm: Arm, T: Array, joint: int) -> tuple[float, float]:
     if abs(slope) < _ACROSS:
         return everywhere
     at = float(along @ T[:3, 3])
-    return min((at - low) / slope, (at - high) / slope), max(
-        (at - low) / slope, (at - high) / slope
-    )
+    ends = (at - low) / slope, (at - high) / slope
+    return min(ends), max(ends)
 
 
 def _travel(arm: Arm, i: int) -> tuple[float, float]:
