@@ -23,6 +23,7 @@ namespace {
 
 constexpr int kDecades = 14;           // the last holds all below
 constexpr int kShown = 5;              // failures printed, of each kind
+constexpr int kBeside = 10;            // poses beside each singular configuration
 constexpr double kRight = 2e-9;        // closure: a row that was put on a limit may be off by twice 1e-9
 constexpr double kFound = 1e-6;        // as ikgen.verify.completeness, which says why
 constexpr double kNoise = 1e-13, kFarthest = 1e-2, kAlone = 1e-3;
@@ -262,7 +263,7 @@ int main(int argc, char** argv) {
   ik::Joints singular;
   bool known = false;
   for (long n = 0, tries = 0; n < near; ++n) {
-    for (; n % 100 == 0 && tries < 50 * (n / 100 + 20); ++tries) {
+    for (; n % kBeside == 0 && tries < 50 * (n / kBeside + 20); ++tries) {
       ik::Joints start = draw(arm, random);
       if (!find_singular(arm, start)) continue;
       singular = start, known = true;

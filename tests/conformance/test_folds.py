@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 from pathlib import Path
 
@@ -45,6 +45,13 @@ FOLDS = {
     ],
 }  # fmt: skip
 """Configurations whose rows were once lost, or whose poses were not answered at all."""
+BROKEN = [
+    [-2.31700465461, 0.95856555996, -2.07848037404, 0.44496802397, 3.624271174e-4, 1.20277422],
+    [-2.05400796922, 1.98194811986, 2.529082074551, 2.29050262631, 2.779734131e-5, 1.18474487],
+    [-1.05973731496, -1.0055438335, 2.160463692485, 0.01819697479, 3.446376335e-5, -2.48936046],
+    [-2.06148095647, -1.0564914756, 2.415564737814, -2.5238615926, -1.47082460e-4, -2.41890059],
+]
+"""Of doosan_m1013: two solutions meet far from all rows that start from the closed form's."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +96,14 @@ def test_nothing_is_lost(made: Made, language: str, seeded: bool) -> None:
     found = survey(made.arm, runner, [trial])
     lost = np.flatnonzero(found.missed | found.unanswered)
     assert not len(lost), found.case(int(lost[0]))
+
+
+@pytest.mark.parametrize("made", ["doosan_m1013"], indirect=True)
+def test_none_is_lost_where_two_meet_along_a_broken_continuum(made: Made) -> None:
+    lost = replace(made, q=np.array(BROKEN))
+    trial = run_trial(made.cpp, made.arm, lost.sample, limits=False)
+    found = survey(made.arm, made.cpp, [trial])
+    assert not (found.missed | found.unanswered).any(), found.case(0)
 
 
 def test_rows_are_the_same_in_both_languages_and_in_batches(made: Made) -> None:

@@ -861,7 +861,7 @@ template <class Arm> struct NearContinuum {
 
  private:
   static constexpr int kMost = 96, kCorrections = 6, kSteps = 40, kDeep = 24, kLeast = 4;
-  static constexpr double kNear = 1e-8;  // rad or m: a correction whose square is round-off
+  static constexpr double kNear = 1e-11;  // rad or m: how far off the curve slopes along it are the curve's
   static constexpr double kRoundOff = 1e-15, kSmall = 4e-15, kDoubt = 0.03, kBeside = 0.06, kSameWay = 0.9;
 
   struct Sample {
@@ -969,7 +969,9 @@ template <class Arm> struct NearContinuum {
   }
 
   void keep(const Sample& s) noexcept {
-    if (count < kRoom && std::abs(s.left) < Policy::kArrived) std::copy_n(s.q, Arm::kDof, found[count++]);
+    if (count == kRoom || !(std::abs(s.left) < Policy::kArrived)) return;
+    double* q = found[count++];
+    for (int j = 0; j < Arm::kDof; ++j) q[j] = s.q[j] - (Arm::kRevolute[j] ? kTurn * std::nearbyint(s.q[j] / kTurn) : 0.0);
   }
 };
 
@@ -1115,6 +1117,7 @@ template <class Arm> struct CarefulSolve {
 
   struct Nearest {
     bool marked = false, near = false, settled = false, exact = false;  // settled: a solution, whatever else there is
+    bool around = false;  // whether the solutions of the continuum that it lies on are known
     int lane = 0;
     double error = 0.0, start[Arm::kDof], q[Arm::kDof];
 
@@ -1131,6 +1134,8 @@ template <class Arm> struct CarefulSolve {
       near = !marked && RankLoss<Arm>::below(q, Policy::kFoldReach);
       settled = error < (near ? Policy::kConverged : Policy::kArrived);
     }
+
+    bool close() const noexcept { return near && RankLoss<Arm>::below(q, Policy::kBesideReach); }
 
     void take(const Aim& aim, const double* from, Places& out) noexcept {
       double trial[Arm::kDof];
@@ -1181,9 +1186,21 @@ template <class Arm> struct CarefulSolve {
     Nearest& at(int k) noexcept { return all[static_cast<std::size_t>(k)]; }
 
     bool close() const noexcept {
-      return std::any_of(all.begin(), all.begin() + count, [](const Nearest& one) {
-        return one.near && RankLoss<Arm>::below(one.q, Policy::kBesideReach);
-      });
+      return std::any_of(all.begin(), all.begin() + count, [](const Nearest& one) { return one.close() && !one.around; });
+    }
+
+    void trace_broken(const Aim& aim, Places& out) noexcept {
+      for (int k = 0; k < count; ++k) {
+        Nearest& one = at(k);
+        if (one.around || !one.near || !RankLoss<Arm>::below(one.q, Policy::kBrokenReach)) continue;
+        NearContinuum<Arm> curve(aim);
+        one.around = curve.trace(one.q) == NearContinuum<Arm>::Kind::Broken;
+        for (int i = 0; i < curve.count && one.around; ++i) {
+          Nearest(one).take(aim, curve.found[i], out);
+          for (int other = k + 1; other < count; ++other)
+            at(other).around = at(other).around || within(Policy::kMeeting, at(other).q, curve.found[i]);
+        }
+      }
     }
 
     bool any_traced() const noexcept { return std::find(std::begin(traced), std::end(traced), true) != std::end(traced); }
@@ -1201,7 +1218,7 @@ template <class Arm> struct CarefulSolve {
       Nearest& one = at(count) = start;
       one.judge();
       for (int k = 0; k < count && beside && one.near && !one.settled; ++k)
-        if (at(k).near && alike(one.q, at(k).q)) return;
+        if (at(k).near && within(Policy::kAlike, one.q, at(k).q)) return;
       ++count;
       if (!one.settled) return;
       if (one.near || one.marked)
@@ -1229,17 +1246,17 @@ template <class Arm> struct CarefulSolve {
     Row::add(out, q, singular);
   }
 
-  static bool alike(const double* a, const double* b) noexcept {
+  static bool within(double reach, const double* a, const double* b) noexcept {
     for (int j = 0; j < Arm::kDof; ++j)
-      if (!(std::abs(Row::change(j, a, b)) < Policy::kAlike)) return false;
+      if (!(std::abs(Row::change(j, a, b)) < reach)) return false;
     return true;
   }
 
   static bool between(const Aim& aim, const double* a, const double* b) noexcept {
-    if (!alike(a, b)) return false;
+    if (!within(Policy::kAlike, a, b)) return false;
     double middle[Arm::kDof];
     for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * Row::change(j, a, b);
-    return PoseError<Arm>(middle, aim).largest() < Policy::kConverged;
+    return PoseError<Arm>(middle, aim).largest() < Policy::kHalfway;
   }
 
   [[gnu::always_inline]] static Left find_rows(const Aim& aim, const double* q0, const Options& options,
@@ -1257,12 +1274,13 @@ template <class Arm> struct CarefulSolve {
     for (const int lane : Arm::kLaneOfRow)
       if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
         starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, false, aim, out);
+    if (Arm::kRounded && beside) starts.trace_broken(aim, out);
     if (Arm::kBesides > 0 && beside && (kBesideAnywhere || left.free || starts.close()))
       take_beside(aim, q0, options, starts, out);
     if (Arm::kRounded && starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, starts, out);
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
-      if (starts.at(k).near) starts.at(k).add_nearby(aim, out);
+      if (starts.at(k).near && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
     for (const int lane : Arm::kLaneOfRow) {
       if (Arm::kRefined || (bits(rows, lane) & (kReal | kRough)) != kReal) continue;
       for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
@@ -2109,10 +2127,10 @@ inline void order_rows(const Eigen::Isometry3d& pose, const double* seed, typena
 struct Policy {
   static constexpr int kTries = 16, kPatience = 5;
   static constexpr double kArrived = 5e-10, kExact = 1e-12, kPoseTolerance = 1e-06, kOrthonormal = 1e-14,
-      kCoincident = 1e-06, kAlike = 0.01, kMeeting = 2e-05, kLimitTolerance = 1e-09, kTryStep =
-      0.39269908169872414, kRankLoss = 1e-07, kContinuumRankLoss = 0.001, kFoldReach = 0.0001, kBesideReach =
-      0.0, kAnywhere = 1000.0, kLeastDamping = 1e-14, kDamping = 0.001, kLargestStep = 0.3, kConverged = 1e-13,
-      kProgress = 0.8;
+      kCoincident = 1e-06, kAlike = 0.01, kHalfway = 2e-14, kMeeting = 2e-05, kLimitTolerance = 1e-09, kTryStep
+      = 0.39269908169872414, kRankLoss = 1e-07, kContinuumRankLoss = 0.001, kFoldReach = 0.0001, kBesideReach =
+      0.0, kAnywhere = 1000.0, kBrokenReach = 0.0, kLeastDamping = 1e-14, kDamping = 0.001, kLargestStep = 0.3,
+      kConverged = 1e-13, kProgress = 0.8;
   static constexpr RefineStage kRefinement[] = {{3, 1e-12, 0.1}, {6, 1e-12, 0.001}, {30, 0.0, 0.0}};
 };
 

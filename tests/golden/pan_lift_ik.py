@@ -388,7 +388,8 @@ class _Policy:
     pose_tolerance: float  # how far a rotation's entries may be off
     orthonormal: float  # and what is round-off of them
     coincident: float  # rows closer than that (rad or m) are one
-    alike: float  # and singular ones, where the pose is theirs between them too
+    alike: float  # and singular ones, where the pose is theirs between them too:
+    halfway: float  # to this error
     limit_tolerance: float  # how far outside a limit a row is put back on it
     tries: int  # values tried for a joint that a pose leaves free
     try_step: float  # rad from one to the next
@@ -1013,7 +1014,7 @@ def _repeats(arm: _Arm, T: Array, row: Row, kept: Sequence[_Found]) -> bool:
         gap = _differences(arm, np.array(row), np.array(other))
         if singular and np.abs(gap).max() < arm.policy.alike:
             middle = _forward(arm.chain, np.array(row) + 0.5 * gap)
-            if np.abs(arm.task.error(middle[None], T[None])).max() < arm.policy.converged:
+            if np.abs(arm.task.error(middle[None], T[None])).max() < arm.policy.halfway:
                 return True
     return False
 
@@ -2321,6 +2322,7 @@ _ARM = _Arm(
         orthonormal=1e-14,
         coincident=1e-06,
         alike=0.01,
+        halfway=2e-14,
         limit_tolerance=1e-09,
         tries=16,
         try_step=0.39269908169872414,

@@ -35,7 +35,7 @@ class SolvePolicy:
     - `pose_tolerance`: how far a rotation's entries may be off; nearer ones are replaced by the nearest
       rotation; `orthonormal`: what is round-off of them.
     - `coincident`: rows closer than that (rad or m) are one, singular ones closer than `alike` where the
-      pose is theirs to `converged` halfway too; `meeting`: how close branches are where their rows are
+      pose is theirs to `halfway` between them too; `meeting`: how close branches are where their rows are
       compared. `limit_tolerance`: a row that far (rad or m) outside a limit is put back on it.
     - `tries`: how many values of a joint that a pose leaves free are tried, `try_step` (rad) apart.
     - `rank_loss`: smallest singular value below which a refined row is singular; `continuum_rank_loss`
@@ -43,7 +43,9 @@ class SolvePolicy:
     - `fold_reach`: smallest singular value below which another solution may be so near that the closed form
       does not find it for itself.
     - `beside_reach`: smallest singular value below which poses beside are solved as well, `anywhere` where
-      they always are; `fold`: these two over the root of how far the file is off.
+      they always are; `fold`: these two over the root of how far the file is off. `broken_reach`: smallest
+      singular value below which a row may lie on a continuum that rounding broke, over how far the file is
+      off: along it the error is as small as that, and so is its slope.
     - `farthest_start`: the largest first step (rad, m) of rows that are refined together, `contraction`:
       the most that a step of theirs may be of the one before, `least_pivot`: the least entry of the
       diagonal of their derivatives' triangular factor, `reach`: the same over the root of how far the file
@@ -63,6 +65,7 @@ class SolvePolicy:
     orthonormal: float = 1e-14
     coincident: float = 1e-6
     alike: float = 1e-2
+    halfway: float = 2e-14
     meeting: float = 2e-5
     limit_tolerance: float = 1e-9
     tries: int = 16
@@ -73,6 +76,7 @@ class SolvePolicy:
     beside_reach: float = 0.0
     fold: float = 0.3
     anywhere: float = 1e3
+    broken_reach: float = 15.0
     farthest_start: float = 0.05
     contraction: float = 0.25
     pivot_share: float = 4.0

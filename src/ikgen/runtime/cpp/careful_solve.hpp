@@ -83,6 +83,7 @@ template <class Arm> struct CarefulSolve {
   // What Newton steps from a lane led to. Rows that are right to round-off are added; of the others the nearest is kept.
   struct Nearest {
     bool marked = false, near = false, settled = false, exact = false;  // settled: a solution, whatever else there is
+    bool around = false;  // whether the solutions of the continuum that it lies on are known
     int lane = 0;
     double error = 0.0, start[Arm::kDof], q[Arm::kDof];
 
@@ -99,6 +100,9 @@ template <class Arm> struct CarefulSolve {
       near = !marked && RankLoss<Arm>::below(q, Policy::kFoldReach);
       settled = error < (near ? Policy::kConverged : Policy::kArrived);
     }
+
+    // Whether other solutions may start from no lane of this pose.
+    bool close() const noexcept { return near && RankLoss<Arm>::below(q, Policy::kBesideReach); }
 
     // Adds what Newton steps lead to.
     void take(const Aim& aim, const double* from, Places& out) noexcept {
@@ -156,9 +160,22 @@ template <class Arm> struct CarefulSolve {
 
     // Whether one is so near a singularity that other solutions may start from none of them.
     bool close() const noexcept {
-      return std::any_of(all.begin(), all.begin() + count, [](const Nearest& one) {
-        return one.near && RankLoss<Arm>::below(one.q, Policy::kBesideReach);
-      });
+      return std::any_of(all.begin(), all.begin() + count, [](const Nearest& one) { return one.close() && !one.around; });
+    }
+
+    // Adds the solutions all around the continua of the solved geometry that rows near singularities lie on.
+    void trace_broken(const Aim& aim, Places& out) noexcept {
+      for (int k = 0; k < count; ++k) {
+        Nearest& one = at(k);
+        if (one.around || !one.near || !RankLoss<Arm>::below(one.q, Policy::kBrokenReach)) continue;
+        NearContinuum<Arm> curve(aim);
+        one.around = curve.trace(one.q) == NearContinuum<Arm>::Kind::Broken;
+        for (int i = 0; i < curve.count && one.around; ++i) {
+          Nearest(one).take(aim, curve.found[i], out);
+          for (int other = k + 1; other < count; ++other)
+            at(other).around = at(other).around || within(Policy::kMeeting, at(other).q, curve.found[i]);
+        }
+      }
     }
 
     bool any_traced() const noexcept { return std::find(std::begin(traced), std::end(traced), true) != std::end(traced); }
@@ -176,7 +193,7 @@ template <class Arm> struct CarefulSolve {
       Nearest& one = at(count) = start;
       one.judge();
       for (int k = 0; k < count && beside && one.near && !one.settled; ++k)
-        if (at(k).near && alike(one.q, at(k).q)) return;
+        if (at(k).near && within(Policy::kAlike, one.q, at(k).q)) return;
       ++count;
       if (!one.settled) return;
       if (one.near || one.marked)
@@ -206,18 +223,18 @@ template <class Arm> struct CarefulSolve {
     Row::add(out, q, singular);
   }
 
-  static bool alike(const double* a, const double* b) noexcept {
+  static bool within(double reach, const double* a, const double* b) noexcept {
     for (int j = 0; j < Arm::kDof; ++j)
-      if (!(std::abs(Row::change(j, a, b)) < Policy::kAlike)) return false;
+      if (!(std::abs(Row::change(j, a, b)) < reach)) return false;
     return true;
   }
 
   // Whether nothing tells two rows near each other apart: the pose is theirs between them too.
   static bool between(const Aim& aim, const double* a, const double* b) noexcept {
-    if (!alike(a, b)) return false;
+    if (!within(Policy::kAlike, a, b)) return false;
     double middle[Arm::kDof];
     for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * Row::change(j, a, b);
-    return PoseError<Arm>(middle, aim).largest() < Policy::kConverged;
+    return PoseError<Arm>(middle, aim).largest() < Policy::kHalfway;
   }
 
   // Adds the distinct solutions of a pose, refined where the closed form lost digits.
@@ -236,12 +253,13 @@ template <class Arm> struct CarefulSolve {
     for (const int lane : Arm::kLaneOfRow)
       if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
         starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, false, aim, out);
+    if (Arm::kRounded && beside) starts.trace_broken(aim, out);
     if (Arm::kBesides > 0 && beside && (kBesideAnywhere || left.free || starts.close()))
       take_beside(aim, q0, options, starts, out);
     if (Arm::kRounded && starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, starts, out);
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
-      if (starts.at(k).near) starts.at(k).add_nearby(aim, out);
+      if (starts.at(k).near && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
     for (const int lane : Arm::kLaneOfRow) {
       if (Arm::kRefined || (bits(rows, lane) & (kReal | kRough)) != kReal) continue;
       for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];

@@ -32,7 +32,7 @@ template <class Arm> struct NearContinuum {
 
  private:
   static constexpr int kMost = 96, kCorrections = 6, kSteps = 40, kDeep = 24, kLeast = 4;
-  static constexpr double kNear = 1e-8;  // rad or m: a correction whose square is round-off
+  static constexpr double kNear = 1e-11;  // rad or m: how far off the curve slopes along it are the curve's
   static constexpr double kRoundOff = 1e-15, kSmall = 4e-15, kDoubt = 0.03, kBeside = 0.06, kSameWay = 0.9;
 
   // A configuration of which one direction of the error is left, and how that grows along the still direction.
@@ -146,7 +146,9 @@ template <class Arm> struct NearContinuum {
   }
 
   void keep(const Sample& s) noexcept {
-    if (count < kRoom && std::abs(s.left) < Policy::kArrived) std::copy_n(s.q, Arm::kDof, found[count++]);
+    if (count == kRoom || !(std::abs(s.left) < Policy::kArrived)) return;
+    double* q = found[count++];
+    for (int j = 0; j < Arm::kDof; ++j) q[j] = s.q[j] - (Arm::kRevolute[j] ? kTurn * std::nearbyint(s.q[j] / kTurn) : 0.0);
   }
 };
 

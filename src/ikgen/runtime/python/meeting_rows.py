@@ -135,7 +135,7 @@ def repeats(arm: Arm, T: Array, row: Row, kept: Sequence[Found]) -> bool:
         gap = differences(arm, np.array(row), np.array(other))
         if singular and np.abs(gap).max() < arm.policy.alike:
             middle = forward(arm.chain, np.array(row) + 0.5 * gap)
-            if np.abs(arm.task.error(middle[None], T[None])).max() < arm.policy.converged:
+            if np.abs(arm.task.error(middle[None], T[None])).max() < arm.policy.halfway:
                 return True
     return False
 

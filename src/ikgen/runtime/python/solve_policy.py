@@ -16,7 +16,8 @@ class Policy:
     pose_tolerance: float  # how far a rotation's entries may be off
     orthonormal: float  # and what is round-off of them
     coincident: float  # rows closer than that (rad or m) are one
-    alike: float  # and singular ones, where the pose is theirs between them too
+    alike: float  # and singular ones, where the pose is theirs between them too:
+    halfway: float  # to this error
     limit_tolerance: float  # how far outside a limit a row is put back on it
     tries: int  # values tried for a joint that a pose leaves free
     try_step: float  # rad from one to the next
