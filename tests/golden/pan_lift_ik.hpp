@@ -457,6 +457,12 @@ template <class Arm> struct MovingJoints {
   constexpr int operator[](int k) const noexcept { return joint[k]; }
 };
 
+template <class A> struct AllMoving : A {
+  static constexpr int kFree = 0;
+  static constexpr std::array<int, 0> kFreeJoints = {};
+  static constexpr bool kHeld[A::kDof] = {}, kArmAngle = false;
+};
+
 // --- held aim ------------------------------------------------------------------------------------
 template <class Arm, bool kAngle = Arm::kArmAngle> struct HeldAim {
   static constexpr int kCount = 0;  // errors beside the pose's
@@ -1812,12 +1818,6 @@ template <class Arm, template <class> class Way> struct Projection {
 };
 
 // --- path following ------------------------------------------------------------------------------
-template <class A> struct AllMoving : A {
-  static constexpr int kFree = 0;
-  static constexpr std::array<int, 0> kFreeJoints = {};
-  static constexpr bool kHeld[A::kDof] = {}, kArmAngle = false;
-};
-
 template <class A, class Solver> struct PathStep {
   static constexpr int kDof = A::kDof, kDeepest = 24, kShallow = 9;
   static constexpr double kFarthest = 0.3, kAway = 1.0, kOff = 0.2, kLeastOff = 1e-4, kJump = 0.05;

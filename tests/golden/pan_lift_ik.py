@@ -523,6 +523,9 @@ class _HeldAngle(Protocol):
     def errors(self, q: Array, aim: Array) -> tuple[Array, Array]:
         """By how much rows (k, dof) miss them (k,), and the derivatives (k, dof)."""
 
+    def turned(self, q: Array, aim: Array) -> Array:
+        """The derivatives (k,) of minus that by the angle."""
+
 
 @dataclass(frozen=True)
 class _Arm:

@@ -44,6 +44,10 @@ class Branches:
     tolerance: float = 0.25
 
     @property
+    def margins_tell(self) -> bool:
+        return self.guarded
+
+    @property
     def arm(self) -> Any:
         return SimpleNamespace(
             chain=SimpleNamespace(revolute=(False,)),
@@ -75,9 +79,7 @@ def limit(branches: Branches, inner: float, outer: float, lane: int = 0) -> Bran
     """Where the limits end a row, as the samples on both sides tell it."""
     value, off, _ = branches.rows[lane]
     known = [(h, off(h) - branches.tolerance) for h in (outer, inner)]
-    return BranchEnd(
-        inner, outer, np.array([value(inner)]), lane, known, False, False, inner, branches.guarded
-    )
+    return BranchEnd(inner, outer, np.array([value(inner)]), lane, known, False, branches.guarded)
 
 
 @pytest.mark.parametrize(("inner", "outer"), [(0.0, 0.8), (2.2, 1.1)])
@@ -138,40 +140,29 @@ def pair(guarded: bool, off: Function = lambda h: -1.0) -> Branches:
     return Branches(rows, guarded)  # type: ignore[arg-type]
 
 
-def fold(branches: Branches, one_sided: bool) -> BranchEnd:
+def fold(branches: Branches) -> BranchEnd:
     value, _, margin = branches.rows[0]
-    known = [(h, -margin(h)) for h in (2.0, -0.5, 0.5)]
-    if one_sided:
-        other = branches.rows[1][0]
-        known = [(h, -((value(h) - other(h)) ** 2)) for h in (-0.5, 0.5)]
-    return BranchEnd(
-        0.5, 2.0, np.array([value(0.5)]), 0, known, True, one_sided, 0.5, branches.guarded
-    )
+    known = [(h, -margin(h)) for h in (2.0, -0.5, 0.5)] if branches.guarded else []
+    return BranchEnd(0.5, 2.0, np.array([value(0.5)]), 0, known, True, branches.guarded)
 
 
-def test_a_fold_is_found_by_what_is_positive_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    branches = pair(guarded=True)
-    (end,) = found(branches, monkeypatch, fold(branches, one_sided=False))
+@pytest.mark.parametrize(("guarded", "rounds"), [(True, 7), (False, 35)])
+def test_a_fold_is_found_by_what_is_positive_before_it_or_by_halving(
+    guarded: bool, rounds: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    branches = pair(guarded)
+    (end,) = found(branches, monkeypatch, fold(branches))
     assert end.inner == pytest.approx(FOLD, abs=1e-10) and folding(end.inner) > 0 >= folding(
         end.outer
     )
-    assert branches.rounds <= 7
+    assert branches.rounds <= rounds
 
 
-def test_a_fold_is_found_by_how_near_rows_are(monkeypatch: pytest.MonkeyPatch) -> None:
-    branches = pair(guarded=False)
-    (end,) = found(branches, monkeypatch, fold(branches, one_sided=True))
-    assert end.inner == pytest.approx(FOLD, abs=1e-10) and folding(end.inner) > 0 >= folding(
-        end.outer
-    )
-    assert branches.rounds <= 6
-
-
-@pytest.mark.parametrize("one_sided", [False, True])
-def test_a_limit_may_come_before_the_fold(one_sided: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("guarded", [True, False])
+def test_a_limit_may_come_before_the_fold(guarded: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     off: Function = lambda h: math.exp(h) - 2.0  # noqa: E731
-    branches = pair(not one_sided, off)
-    (end,) = found(branches, monkeypatch, fold(branches, one_sided))
+    branches = pair(guarded, off)
+    (end,) = found(branches, monkeypatch, fold(branches))
     assert end.inner == pytest.approx(math.log(2.25), abs=1e-10) and not end.at_fold
     assert off(end.inner) <= 0.25 < off(end.outer) and branches.rounds <= 14
 
@@ -183,24 +174,40 @@ def tracks_of(branches: Branches, held: list[float], links: list[list[int]]) -> 
 
 
 def test_what_is_known_of_an_end_is_of_the_samples_around_it() -> None:
-    """A limit: how far the row is outside; a fold: what is positive before it; or how near rows are."""
+    """A limit: how far the row is outside; a fold: what is positive before it."""
     held, on = [0.0, 0.5, 1.0, 1.5], [[0, 1], [0, 1], [0, 1]]
     branches = pair(guarded=True, off=lambda h: h - 0.6)
     tracks, before = tracks_of(branches, held, on), np.array(on)
     joint: Any = SimpleNamespace(arm=branches.arm, margins_tell=True, guarded=True)
     end = branch_end(joint, tracks, before, (1, 0), (2, 0))
-    assert (end.inner, end.outer, end.lane, end.guess) == (0.5, 1.0, 0, 0.5)
-    assert not end.at_fold and not end.one_sided and end.stays
+    assert (end.inner, end.outer, end.lane, end.there) == (0.5, 1.0, 0, None)
+    assert not end.at_fold and end.stays
     assert not branch_end(joint, tracks, before, (1, 0), (2, 1)).stays  # another lane goes on
     assert end.known == [(h, pytest.approx(h - 0.85)) for h in (1.5, 0.0, 1.0, 0.5)]
     back = branch_end(joint, tracks, before, (2, 0), (1, 0))
     assert [h for h, _ in back.known] == [0.0, 1.5, 0.5, 1.0] and back.outer == 0.5
 
     end = branch_end(joint, tracks, before, (2, 1), (3, -1))
-    assert end.at_fold and not end.one_sided and end.q[0] == branches.rows[1][0](1.0)
+    assert end.at_fold and end.there is None and end.q[0] == branches.rows[1][0](1.0)
     assert end.known == [(h, pytest.approx(-folding(h))) for h in (0.5, 1.5, 1.0)]
-    joint.margins_tell = False
-    end = branch_end(joint, tracks, before, (2, 1), (3, -1))
-    upper, lower = (row[0] for row in branches.rows)
-    assert end.at_fold and end.one_sided
-    assert end.known == [(h, pytest.approx(-((upper(h) - lower(h)) ** 2))) for h in (0.5, 1.0)]
+
+
+def test_where_margins_do_not_tell_an_end_is_on_the_way_to_another_row() -> None:
+    """At a limit to the branch's own row beyond, at a fold to the nearest that ends there too."""
+    held, on = [0.0, 0.5, 1.0], [[0, 1, 2, 3], [-1, -1, 2, -1]]
+    branches = pair(guarded=False)
+    rows = [(lambda h, x=x: x + 0.01 * h, lambda h: -1.0, lambda h: 1.0) for x in (0.75, 0.9)]
+    branches.rows += rows  # type: ignore[arg-type]
+    tracks, before = tracks_of(branches, held, on), np.array(on)
+    joint: Any = SimpleNamespace(arm=branches.arm, margins_tell=False, guarded=False)
+    q = tracks.rows.q[:, :, 0]
+    end = branch_end(joint, tracks, before, (0, 2), (1, 2))
+    assert end.there is not None and end.then == 0.5 and not end.at_fold and end.known == []
+    assert end.there[0] == q[1, 2]
+    end = branch_end(joint, tracks, before, (1, 0), (2, -1))
+    assert end.there is not None and end.then == 0.5 and end.at_fold
+    assert abs(q[1, 2] - q[1, 0]) < abs(q[1, 3] - q[1, 0]) < abs(q[1, 1] - q[1, 0])
+    assert end.there[0] == q[1, 3]  # the nearest goes on
+    alone = np.array([[0, 1, 2, 3], [-1, 1, 2, 3]])
+    tracks.links = alone
+    assert branch_end(joint, tracks, alone, (1, 0), (2, -1)).there is None

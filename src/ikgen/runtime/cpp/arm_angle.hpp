@@ -98,6 +98,14 @@ template <class Arm> struct HeldAim<Arm, true> {
     }
   }
 
+  // The slope of minus that by the arm angle.
+  double turned(const double* q) const noexcept {
+    const Frame elbow = MotionChain<typename Arm::Elbow>::forward(q);
+    double behind = 0.0;
+    for (int r = 0; r < 3; ++r) behind += into[r] * (Arm::kShoulder[r][3] - elbow.p[r]);
+    return behind;
+  }
+
  private:
   static Eigen::Isometry3d pose_of(const double* q) noexcept {
     Eigen::Isometry3d out;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "held_sweep.hpp"
+#include "branch_arc.hpp"
 
 namespace ikgen_runtime {
 
@@ -11,8 +11,9 @@ template <class Arm> struct LastEnd {
 };
 
 // Between a value of the held joint at which a branch's row is inside and one at which it is not, the last at which
-// it is: by inverse interpolation (Brent 1973, section 4.2, of up to four values), and by halving where that leads out
-// of the bracket or is slow. Arm: as for HeldSweep.
+// it is. Where margins tell that: by inverse interpolation (Brent 1973, section 4.2, of up to four values), and by halving
+// where that leads out of the bracket or is slow. Else on the curve to the branch's row beyond, or to the row that it
+// meets; by halving where there is none. Arm: as for HeldSweep.
 template <class Arm> struct BranchEnd {
   using Sample = HeldSample<Arm>;
   static constexpr double kEnough = 1e-10;
@@ -22,14 +23,17 @@ template <class Arm> struct BranchEnd {
   int lane;
 
   BranchEnd() = default;
-  // a: the sample inside, b: the next one; ahead and behind: those beyond them, null without one. Of each the row of
-  // the branch, -1 without one.
-  BranchEnd(const Sample& a, int lane_a, const Sample& b, int lane_b, const Sample* ahead, int lane_ahead,
-            const Sample* behind, int lane_behind) noexcept
-      : inner(a.held), outer(b.held), lane(lane_a), at_fold(lane_b < 0), guess(a.held) {
-    one_sided = at_fold && !Sample::kMarginsTell;
+  // a: the sample inside, b: the next one, `links`: the row of b that each of a is; ahead and behind: the samples beyond
+  // them, null without one. Of each the row of the branch, -1 without one.
+  BranchEnd(const Sample& a, int lane_a, const Sample& b, int lane_b, const int* links, const Sample* ahead,
+            int lane_ahead, const Sample* behind, int lane_behind) noexcept
+      : inner(a.held), outer(b.held), lane(lane_a), at_fold(lane_b < 0) {
     stays = Sample::kMarginsTell && (at_fold || lane_b == lane_a);
     a.row(lane_a, q);
+    if (!Sample::kMarginsTell) {
+      go_to(at_fold ? a : b, at_fold ? met(a, links) : lane_b);
+      return;
+    }
     if (ahead) take(*ahead, lane_ahead);
     if (behind) take(*behind, lane_behind);
     take(b, lane_b);
@@ -37,6 +41,8 @@ template <class Arm> struct BranchEnd {
   }
 
   void find(const HeldSweep<Arm>& sweep, LastEnd<Arm>& last) noexcept {
+    if constexpr (!Sample::kMarginsTell)
+      if (goes && follow(sweep)) return;
     if (last.known && (found(last.inside, last.outside) || found(last.outside, last.inside))) return;
     last.inside.held = last.outside.held = kInfinity;
     for (int step = 0; step < kSteps && std::abs(outer - inner) > kEnough; ++step) {
@@ -46,10 +52,10 @@ template <class Arm> struct BranchEnd {
       const double far = good ? outer : inner;
       (good ? inner : outer) = s.held;
       if (at_fold && seen && !good) {  // a limit comes before the fold
-        at_fold = one_sided = false;
+        at_fold = false;
         count = 0;
       }
-      narrow(s, seen ? row : at_fold && !one_sided ? lane : -1, far);
+      narrow(s, seen ? row : at_fold && Sample::kMarginsTell ? lane : -1, far);
       (good ? last.inside : last.outside) = s;
       if (good) {
         s.row(row, q);
@@ -60,11 +66,45 @@ template <class Arm> struct BranchEnd {
   }
 
  private:
-  bool at_fold, one_sided = false;
-  bool stays;  // in its lane, however near others come
-  double guess;  // where the end was expected before
+  bool at_fold;
+  bool stays;         // in its lane, however near others come
+  bool goes = false;  // to the row `there` at the value `then`
+  double there[Arm::kDof], then;
   int count = 0;
   double at[kKnown + 1], value[kKnown + 1];  // the nearest last
+
+  // The nearest of the rows that end beside the branch's; -1 without one.
+  int met(const Sample& a, const int* links) const noexcept {
+    int best = -1;
+    double least = kInfinity;
+    for (int l = 0; l < a.lanes; ++l) {
+      const double gap = a.real[l] && l != lane && links[l] < 0 ? a.distance(l, q) : kInfinity;
+      if (gap < least) {
+        least = gap;
+        best = l;
+      }
+    }
+    return best;
+  }
+
+  void go_to(const Sample& s, int row) noexcept {
+    goes = row >= 0;
+    then = s.held;
+    if (goes) s.row(row, there);
+  }
+
+  // Along the curve; whether that has an end in the bracket.
+  bool follow(const HeldSweep<Arm>& sweep) noexcept {
+    BranchArc<Arm> arc(sweep, q, inner, there, then);
+    const double sense = outer > inner ? 1.0 : -1.0;
+    typename BranchArc<Arm>::Point end = arc.to;
+    if (at_fold && !(arc.fold(sense, end) && sense * (outer - end.held) > -kEnough)) return false;
+    if (end.off > 0.0 && !arc.limit(arc.from, end, end)) return false;
+    inner = end.held;
+    outer = inner + sense * kEnough;
+    std::copy_n(end.q, Arm::kDof, q);
+    return true;
+  }
 
   // Whether the end lies between two samples that are close enough.
   bool found(const Sample& a, const Sample& b) noexcept {
@@ -82,10 +122,9 @@ template <class Arm> struct BranchEnd {
   // The branch's row; -1 without one.
   int row_in(const Sample& s) const noexcept { return stays || (at_fold && Arm::kGuarded) ? lane : s.nearest(q); }
 
-  // What is negative inside, positive outside and smooth between: how far the row is out of the limits, its lane from
-  // real rows, or, known inside alone, the squared distance from the row that it meets.
+  // What is negative inside, positive outside and smooth between: how far the row is out of the limits, or its lane from
+  // real rows.
   double value_of(const Sample& s, int row) const noexcept {
-    if (one_sided) return row < 0 ? kInfinity : -s.separation(row);
     if (!at_fold) return row < 0 ? kInfinity : s.off[row];
     double least = kInfinity;
     for (int k = 0; k < Arm::kFolds && lane < Arm::kLanes; ++k) least = std::min(least, s.fold[k][lane]);
@@ -125,23 +164,16 @@ template <class Arm> struct BranchEnd {
   }
 
   // Where to look next.
-  double trial(int step) noexcept {
+  double trial(int step) const noexcept {
     const double width = outer - inner, least = 0.4 * kEnough / std::abs(width);
     double share = 0.5;
     for (int first = 0; first < count - 1 && step % kHalve != kHalve - 1; ++first) {
       const double end = interpolated(first), part = (end - inner) / width;
       if (!(part > 0.0 && part < 1.0)) continue;
-      share = one_sided ? shifted(end, part, step) : part;
+      share = part;
       break;
     }
     return inner + std::min(std::max(share, least), 1.0 - least) * width;
-  }
-
-  // To one side and the other of an end that is expected from inside alone, by how much that has changed.
-  double shifted(double end, double part, int step) noexcept {
-    const double width = std::abs(outer - inner), change = std::max(std::abs(end - guess), 0.4 * kEnough) / width;
-    guess = end;
-    return step % 2 == 1 ? part - std::min(change, 0.5 * part) : part + std::min(change, 0.5 * (1.0 - part));
   }
 
   // The value of the held joint at which the polynomial through all from `first` on is 0 (Neville).

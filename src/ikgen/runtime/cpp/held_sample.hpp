@@ -92,14 +92,6 @@ template <class Arm> struct HeldSample {
     return most;
   }
 
-  // The squared distance of a row from the nearest other: linear in the held joint's value where the two meet.
-  double separation(int lane) const noexcept {
-    double least = kInfinity;
-    for (int l = 0; l < lanes; ++l)
-      if (real[l] && l != lane) least = std::min(least, gap(*this, lane, *this, l));
-    return least * least;
-  }
-
   // The lane of the real row that is nearest to another; -1 without one.
   int nearest(const double* other) const noexcept {
     int best = -1;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 namespace ikgen_runtime {
 
 // The joints that are not held. Arm: kDof; kFreeJoints; kHeld, a flag a joint.
@@ -12,6 +14,13 @@ template <class Arm> struct MovingJoints {
       if (!Arm::kHeld[j]) joint[k++] = j;
   }
   constexpr int operator[](int k) const noexcept { return joint[k]; }
+};
+
+// An arm all of whose joints move.
+template <class A> struct AllMoving : A {
+  static constexpr int kFree = 0;
+  static constexpr std::array<int, 0> kFreeJoints = {};
+  static constexpr bool kHeld[A::kDof] = {}, kArmAngle = false;
 };
 
 }  // namespace ikgen_runtime

@@ -12,13 +12,6 @@
 
 namespace ikgen_runtime {
 
-// An arm all of whose joints move.
-template <class A> struct AllMoving : A {
-  static constexpr int kFree = 0;
-  static constexpr std::array<int, 0> kFreeJoints = {};
-  static constexpr bool kHeld[A::kDof] = {}, kArmAngle = false;
-};
-
 // A: as for PoseError and RankLoss; Solver: solve(pose, options, out), search(pose, seed, limits, out).
 template <class A, class Solver> struct PathStep {
   static constexpr int kDof = A::kDof, kDeepest = 24, kShallow = 9;

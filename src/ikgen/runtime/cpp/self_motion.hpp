@@ -34,7 +34,7 @@ template <class Arm, class Record> struct BranchFollower {
     LastEnd<Arm> last;
     for (int l = 0; l < a.lanes; ++l) {
       if (!a.real[l] || !a.inside(l) || (next[l] >= 0 && b.inside(next[l]))) continue;
-      End end(a, l, b, next[l], after.sample, next[l] >= 0 && after.sample ? after.links->next[next[l]] : -1, before.sample,
+      End end(a, l, b, next[l], next, after.sample, next[l] >= 0 && after.sample ? after.links->next[next[l]] : -1, before.sample,
               before.sample ? before.links->origin[l] : -1);
       const bool rough = late[l].waits && ++slivers > kSlivers;
       if (late[l].waits) begin(l, a, rough);
@@ -48,7 +48,7 @@ template <class Arm, class Record> struct BranchFollower {
       const int l = links.origin[k];
       any = true;
       if (b.inside(k) && !(l >= 0 && a.inside(l))) {
-        End end(b, k, a, l, before.sample, l >= 0 && before.sample ? before.links->origin[l] : -1, after.sample,
+        End end(b, k, a, l, links.origin, before.sample, l >= 0 && before.sample ? before.links->origin[l] : -1, after.sample,
                 after.sample ? after.links->next[k] : -1);
         late[k].waits = narrow(end.outer, b.held);
         if (late[k].waits) {

@@ -65,6 +65,12 @@ class ArmAngle:
         slope[:, :_SHOULDER_JOINTS] = (normal[:, :, None] * J[:, :3]).sum(axis=1)
         return error, slope
 
+    def turned(self, q: Array, aim: Array) -> Array:
+        """The derivatives (k,) of minus those errors by the arm angle."""
+        elbow = forward(self.elbow, q[:, :_SHOULDER_JOINTS])[:, :3, 3]
+        into = aim[:, 4, :3] / self.upper
+        return np.asarray((into * (self.shoulder[:3, 3] - elbow)).sum(axis=1))
+
     def plane(self, T: Array) -> tuple[Array, Array]:
         """Directions (..., 3) from the line to the wrist: where the arm angle is 0, and a quarter
         turn on."""

@@ -8,8 +8,9 @@ from math import inf, isfinite
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Index
+from ikgen.runtime.python.branch_arcs import Arcs
 from ikgen.runtime.python.branch_tracks import Tracks
-from ikgen.runtime.python.held_joint import HeldJoint, Rows, rows_at
+from ikgen.runtime.python.held_joint import HeldJoint, rows_at
 from ikgen.runtime.python.limit_margins import outside
 from ikgen.runtime.python.row_links import differences
 from ikgen.runtime.python.solved_arm import Arm
@@ -29,8 +30,9 @@ class BranchEnd:
     """A value of the held joint at which the row `lane`, `q`, is inside, and one at which it is not.
 
     `known`: values of the held joint near by, each with what is negative inside, positive outside and
-    smooth between, the nearest last. `one_sided`: that is known inside alone; `guess`: where the end was
-    expected before; `stays`: in its lane, however near others come."""
+    smooth between, the nearest last. `stays`: in its lane, however near others come. `there`: where
+    margins do not tell, the branch's row at the value `then` beyond, or before a fold the one that it
+    meets; None where there is none."""
 
     inner: float
     outer: float
@@ -38,9 +40,9 @@ class BranchEnd:
     lane: int
     known: list[_Known]
     at_fold: bool
-    one_sided: bool
-    guess: float
     stays: bool
+    there: Array | None = None
+    then: float = 0.0
 
 
 def branch_end(
@@ -52,25 +54,36 @@ def branch_end(
 ) -> BranchEnd:
     """Between a sample (index, row) inside and the next one, whose row is outside the limits, or which
     has none (-1). `before`: the rows that go on as each."""
+    rows = tracks.rows
+    (at, row), (to, other) = inside, beyond
+    at_fold, known = other < 0, list[_Known]()
+    stays = joint.guarded if at_fold else joint.margins_tell and other == row
+    there, then = None, to
+    if joint.margins_tell:
+        known = _known(tracks, before, inside, beyond)
+    elif at_fold:
+        other, then = _met(joint.arm, tracks, before, inside, to), at
+    if not joint.margins_tell and other >= 0:
+        there = rows.q[then, other]
+    a, b, c = (float(rows.held[k]) for k in (at, to, then))
+    return BranchEnd(a, b, rows.q[at, row], row, known, at_fold, stays, there, c)
+
+
+def _known(
+    tracks: Tracks, before: Index, inside: tuple[int, int], beyond: tuple[int, int]
+) -> list[_Known]:
+    """What the samples around an end tell of it."""
     rows, off = tracks.rows, tracks.off
     (at, row), (to, other) = inside, beyond
-    at_fold = other < 0
-    one_sided = at_fold and not joint.margins_tell
     behind = _followed(tracks, before, at, row, 2 * at - to)
     ahead = _followed(tracks, before, to, other, 2 * to - at)
     samples = (ahead, behind, beyond, inside)
-    if one_sided:
-        known = [(k, -_separation(joint.arm, rows, k, r)) for k, r in (behind, inside) if r >= 0]
-    elif at_fold:
-        last = len(rows.held) - 1
-        near = [k for k, _ in samples if 0 <= k <= last]
+    if other < 0:
+        near = [k for k, _ in samples if 0 <= k < len(rows.held)]
         known = [(k, -float(rows.folds[k, row].min(initial=inf))) for k in near]
     else:
         known = [(k, float(off[k, r])) for k, r in samples if r >= 0]
-    values = [(float(rows.held[k]), value) for k, value in known if isfinite(value)]
-    a, b = float(rows.held[at]), float(rows.held[to])
-    stays = joint.guarded if at_fold else joint.margins_tell and other == row
-    return BranchEnd(a, b, rows.q[at, row], row, values, at_fold, one_sided, a, stays)
+    return [(float(rows.held[k]), value) for k, value in known if isfinite(value)]
 
 
 def _followed(tracks: Tracks, before: Index, at: int, row: int, to: int) -> tuple[int, int]:
@@ -80,18 +93,22 @@ def _followed(tracks: Tracks, before: Index, at: int, row: int, to: int) -> tupl
     return to, int(tracks.links[at, row] if to > at else before[to, row])
 
 
-def _separation(arm: Arm, rows: Rows, at: int, row: int) -> float:
-    """The squared distance of a row from the nearest other: linear in the held joint's value where the
-    two meet."""
+def _met(arm: Arm, tracks: Tracks, before: Index, inside: tuple[int, int], to: int) -> int:
+    """Of the rows that end beside a row (index, row) towards sample `to` the nearest; -1 without one."""
+    at, row = inside
+    rows, links = tracks.rows, tracks.links[at] if to > at else before[to]
     gap = np.abs(differences(arm, rows.q[at, row], rows.q[at])).max(axis=1)
-    gap = np.where(rows.real[at], gap, inf)
+    gap = np.where(rows.real[at] & (links < 0), gap, inf)
     gap[row] = inf
-    return float(gap.min()) ** 2
+    nearest = int(gap.argmin())
+    return nearest if gap[nearest] < inf else -1
 
 
 def find_ends(joint: HeldJoint, T: Array, ends: list[BranchEnd], limits: bool) -> None:
-    """By inverse interpolation (Brent 1973, section 4.2, of up to four values), and by halving where that
+    """Along the curve to the row beyond, or to the one that is met; where margins tell, or there is none,
+    by inverse interpolation (Brent 1973, section 4.2, of up to four values), and by halving where that
     leads out of the bracket or is slow."""
+    follow_ends(joint, T, [e for e in ends if e.there is not None], limits)
     for step in range(_STEPS):
         going = [e for e in ends if abs(e.outer - e.inner) > _ENOUGH]
         if not going:
@@ -107,13 +124,36 @@ def find_ends(joint: HeldJoint, T: Array, ends: list[BranchEnd], limits: bool) -
             seen = bool(gap[k, row] < _REACH)
             here = float(off[k, row]) - joint.arm.policy.limit_tolerance
             value = here if seen else None
-            if e.one_sided:
-                value = -_separation(joint.arm, rows, k, row) if seen else None
-            elif e.at_fold:
-                value = -float(rows.folds[k, row if seen else e.lane].min(initial=inf))
+            if e.at_fold:
+                least = -float(rows.folds[k, row if seen else e.lane].min(initial=inf))
+                value = least if joint.margins_tell else None
             _narrow(e, float(held[k]), seen, here, value)
             if seen and here <= 0.0:
                 e.q, e.lane = rows.q[k, row], row
+
+
+def follow_ends(joint: HeldJoint, T: Array, ends: list[BranchEnd], limits: bool) -> None:
+    """Takes those that are found along the curves to other rows."""
+    if not ends:
+        return
+    inner, outer, then = (
+        np.array([getattr(e, x) for e in ends]) for x in ("inner", "outer", "then")
+    )
+    q, there = np.array([e.q for e in ends]), np.array([e.there for e in ends])
+    arcs = Arcs(joint.arm, T, limits, q, inner, there, then)
+    sense, at_fold = np.sign(outer - inner), np.array([e.at_fold for e in ends])
+    end, good = arcs.end, np.ones(len(ends), dtype=bool)
+    if at_fold.any():
+        fold, found = arcs.folds(sense)
+        end = fold.where(at_fold, end)
+        good = ~at_fold | (found & (sense * (outer - fold.held) > -_ENOUGH))
+    leaves = end.off > 0.0
+    if leaves.any():
+        last, found = arcs.limits(arcs.start, end)
+        end, good = last.where(leaves, end), good & (~leaves | found)
+    for k in np.flatnonzero(good).tolist():
+        ends[k].inner, ends[k].q = float(end.held[k]), end.q[k]
+        ends[k].outer = ends[k].inner + float(sense[k]) * _ENOUGH
 
 
 def _trial(end: BranchEnd, step: int) -> float:
@@ -124,21 +164,10 @@ def _trial(end: BranchEnd, step: int) -> float:
         for first in range(max(len(end.known) - _KNOWN, 0), len(end.known) - 1):
             guess = _interpolated(end.known[first:])
             if 0.0 < (guess - end.inner) / width < 1.0:
-                share = _shifted(end, guess, step) if end.one_sided else (guess - end.inner) / width
+                share = (guess - end.inner) / width
                 break
     least = 0.4 * _ENOUGH / abs(width)
     return end.inner + min(max(share, least), 1.0 - least) * width
-
-
-def _shifted(end: BranchEnd, guess: float, step: int) -> float:
-    """The share of the bracket to one side and the other of an end that is expected from inside alone, by
-    how much that has changed."""
-    width = end.outer - end.inner
-    change = max(abs(guess - end.guess) / abs(width), 0.4 * _ENOUGH / abs(width))
-    end.guess = guess
-    share = (guess - end.inner) / width
-    shift = min(change, 0.5 * share) if step % 2 else -min(change, 0.5 * (1.0 - share))
-    return share - shift
 
 
 def _interpolated(known: list[_Known]) -> float:
@@ -164,7 +193,7 @@ def _narrow(end: BranchEnd, held: float, seen: bool, off: float, value: float | 
     else:
         end.outer = held
     if end.at_fold and seen and not good:  # a limit comes before the fold
-        end.at_fold = end.one_sided = False
+        end.at_fold = False
         end.known = []
         value = off
     if value is None or not isfinite(value):

@@ -1,0 +1,165 @@
+"""Folds and limits on the curve of a planar arm whose first joint is held, against its closed form."""
+
+from __future__ import annotations
+
+from math import atan2, cos, hypot, inf, pi, sin
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from ikgen.runtime.python.arm_angle import ArmAngle
+from ikgen.runtime.python.branch_arcs import Arcs
+from ikgen.runtime.python.branch_ends import BranchEnd, follow_ends
+from ikgen.runtime.python.chain_kinematics import chain_of, forward
+
+Array = NDArray[np.float64]
+LENGTHS = (0.5, 0.4, 0.3)
+POINT = (0.9, 0.35)
+
+
+class Plane:
+    """The task of a position in the plane."""
+
+    @staticmethod
+    def error(pose: Array, T: Array) -> Array:
+        return T[:, :2, 3] - pose[:, :2, 3]
+
+    @staticmethod
+    def rows(_: Array, J: Array) -> Array:
+        return J[:, :2]
+
+
+def planar(lower: tuple[float, ...] = (-pi,) * 3, upper: tuple[float, ...] = (pi,) * 3) -> Any:
+    frames = np.tile(np.eye(4), (4, 1, 1))
+    frames[1:, 0, 3] = LENGTHS
+    chain = chain_of(frames, tuple((j, True, 1.0, 0.0) for j in range(3)), 3)
+    policy = SimpleNamespace(limit_tolerance=1e-9)
+    return SimpleNamespace(
+        chain=chain, task=Plane, policy=policy, lower=lower, upper=upper, moving=(1, 2), free=(0,),
+        angle=None,
+    )  # fmt: skip
+
+
+def aim() -> Array:
+    T = np.eye(4)
+    T[:2, 3] = POINT
+    return T
+
+
+def row(held: float, side: float) -> Array:
+    """Of the elbow on this side."""
+    x, y = POINT[0] - LENGTHS[0] * cos(held), POINT[1] - LENGTHS[0] * sin(held)
+    _, a, b = LENGTHS
+    elbow = side * np.arccos((x * x + y * y - a * a - b * b) / (2.0 * a * b))
+    shoulder = atan2(y, x) - held - atan2(b * sin(elbow), a + b * cos(elbow))
+    return np.array([held, shoulder - 2.0 * pi * round(shoulder / (2.0 * pi)), elbow])
+
+
+def turn_back(side: float) -> float:
+    """The values of the held joint at which the others are stretched."""
+    far, (base, a, b) = hypot(*POINT), LENGTHS
+    half = np.arccos((far * far + base * base - (a + b) ** 2) / (2.0 * far * base))
+    return float(atan2(POINT[1], POINT[0]) + side * half)
+
+
+def arcs(arm: Any, *ends: tuple[Array, Array]) -> Arcs:
+    q, there = (np.array([pair[k] for pair in ends]) for k in range(2))
+    return Arcs(arm, aim(), True, q, q[:, 0].copy(), there, there[:, 0].copy())
+
+
+def test_the_fold_between_two_rows_is_where_the_held_value_turns_back() -> None:
+    """At either end of the range, near it and far from it."""
+    sense = np.array([1.0, -1.0, 1.0, -1.0])
+    starts = [turn_back(s) - s * off for s, off in zip(sense, (0.02, 0.02, 0.5, 1e-7), strict=True)]
+    curves = arcs(planar(), *((row(h, 1.0), row(h, -1.0)) for h in starts))
+    at, good = curves.folds(sense)
+    assert good.all()
+    folds = [turn_back(s) for s in sense]
+    assert np.abs(at.held - folds).max() < 1e-10 and (sense * (folds - at.held) > -1e-13).all()
+    assert np.abs(at.q[:, 2]).max() < 1e-4 and (at.q[:, 0] == at.held).all()
+    assert np.abs(forward(planar().chain, at.q)[:, :2, 3] - POINT).max() < 1e-12
+
+
+def test_there_is_no_fold_on_the_other_side_nor_between_rows_of_one_branch() -> None:
+    high, low = (turn_back(s) for s in (1.0, -1.0))
+    middle = 0.5 * (high + low)
+    pair, beside = (
+        (row(high - 0.02, s) for s in (1.0, -1.0)),
+        (row(middle, 1.0), row(middle + 0.1, 1.0)),
+    )
+    curves = arcs(planar(), tuple(pair), beside)  # type: ignore[arg-type]
+    assert not curves.folds(np.array([-1.0, 1.0]))[1].any()
+
+
+def test_rows_that_touch_are_at_their_fold() -> None:
+    q = row(turn_back(1.0) - 1e-15, 1.0)
+    at, good = arcs(planar(), (q, q)).folds(np.ones(1))
+    assert good[0] and at.held[0] == q[0] and (at.q[0] == q).all()
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+@pytest.mark.parametrize("before", [1e-6, 0.01, 0.3])
+def test_the_limit_on_the_way_to_a_fold_is_found(sense: float, before: float) -> None:
+    fold = turn_back(sense)
+    cut, start = fold - sense * before, fold - sense * 0.4
+    limit = float(row(cut, 1.0)[2])
+    arm = planar((-pi, -inf, limit), (pi, inf, 3.0))  # the elbow straightens towards the fold
+    curves = arcs(arm, (row(start, 1.0), row(start, -1.0)))
+    back, good = curves.folds(np.array([sense]))
+    assert good[0] and back.off[0] > 0.0 > curves.start.off[0]
+    at, good = curves.limits(curves.start, back)
+    bent = float(row(cut, 1.0)[2] - row(cut + sense * 1e-9, 1.0)[2])
+    assert good[0] and abs(at.held[0] - cut) < 1e-10 + 1e-9 / bent * 1e-9  # the tolerance of limits
+    assert -1e-7 < at.off[0] <= 0.0
+
+
+def test_a_limit_between_two_rows_of_a_branch_is_found() -> None:
+    middle = 0.5 * (turn_back(1.0) + turn_back(-1.0))
+    cut = middle + 0.04
+    q, there = row(middle, -1.0), row(middle + 0.1, -1.0)
+    limit = float(row(cut, -1.0)[1])
+    low, high = sorted((limit, limit + np.sign(q[1] - limit) * 2.0))
+    arm = planar((-pi, low, -pi), (pi, high, pi))
+    curves = arcs(arm, (q, there))
+    at, good = curves.limits(curves.start, curves.end)
+    assert good[0] and abs(at.held[0] - cut) < 1e-8 and at.off[0] <= 0.0
+
+
+def test_ends_that_are_not_on_their_curve_are_left() -> None:
+    """A fold beyond the bracket; one in it, and the limit before it."""
+    high = turn_back(1.0)
+    q, other = row(high - 0.3, 1.0), row(high - 0.3, -1.0)
+    joint: Any = SimpleNamespace(arm=planar())
+    near, far = (
+        BranchEnd(q[0], x, q, 0, [], True, False, other, q[0]) for x in (high - 0.1, high + 0.1)
+    )
+    follow_ends(joint, aim(), [near, far], True)
+    assert (near.inner, near.outer) == (q[0], high - 0.1)
+    assert far.inner == pytest.approx(high, abs=1e-10) and far.outer - far.inner == pytest.approx(
+        1e-10, rel=1e-4
+    )
+    joint.arm = planar((-pi, -inf, 0.5), (pi, inf, 3.0))
+    end = BranchEnd(q[0], high + 0.1, q, 0, [], True, False, other, q[0])
+    follow_ends(joint, aim(), [end], True)
+    assert end.inner < high - 1e-3 and end.q[2] == pytest.approx(0.5, abs=2e-9)
+
+
+def test_the_slope_of_what_an_elbow_misses_by_the_arm_angle() -> None:
+    rng = np.random.default_rng(3)
+    frames = np.tile(np.eye(4), (4, 1, 1))
+    for k in range(1, 4):
+        frames[k, :3, :3], frames[k, :3, 3] = (
+            np.linalg.qr(rng.normal(size=(3, 3)))[0],
+            rng.normal(size=3),
+        )
+    elbow = chain_of(frames, tuple((j, True, 1.0, 0.0) for j in range(3)), 3)
+    angle = ArmAngle(elbow, np.eye(4), np.array([0.0, 0.0, 0.1]), 0.7)
+    T = np.tile(np.eye(4), (5, 1, 1))
+    T[:, :3, 3] = rng.normal(size=(5, 3))
+    q, held = rng.normal(size=(5, 7)), rng.normal(size=(5, 1))
+    beside = [angle.errors(q, angle.aims(T, held + by))[0] % 1.0 for by in (1e-6, -1e-6)]
+    slope = (beside[0] - beside[1] + 0.5) % 1.0 - 0.5  # what is beyond the line counts 1 more
+    np.testing.assert_allclose(angle.turned(q, angle.aims(T, held)), -slope / 2e-6, atol=1e-8)
