@@ -91,19 +91,20 @@ def real_angles(
     angle = about[row] + np.angle(z[row, i])
     order = np.lexsort((angle, row))
     clear = (off < doubtful).sum(axis=1) == real
-    some = np.nonzero(clear & ((off < _FOURFOLD) & (off >= doubtful)).any(axis=1))[0]
-    clear[some] = ~_crowded(np.angle(z[some]), off[some], doubtful).any(axis=1)
+    apart = (off < _FOURFOLD) & (off >= doubtful)
+    some = np.nonzero(clear & apart.any(axis=1))[0]
+    clear[some] = ~(apart[some] & _crowded(np.angle(z[some]), off[some])).any(axis=1)
     return row[order], angle[order], real, clear
 
 
-def _crowded(angle: Array, off: Array, doubtful: float) -> Flags:
+def _crowded(angle: Array, off: Array) -> Flags:
     """Which roots (N, n) of real and imaginary parts `angle` and `off` may be of a fourfold one: complex,
     with another pair about as near as their own halves are. Rounding takes those apart by its fourth root,
     where it takes halves of a double one apart by its square root."""
     across = np.exp(1j * (angle[:, :, None] - angle[:, None, :]))
     beside = np.hypot(np.abs(np.angle(across)), off[:, :, None] - off[:, None, :])
     near = (beside < _CROWD * off[:, :, None]).sum(axis=2)
-    return np.asarray((near >= 4) & (off >= doubtful) & (off < _FOURFOLD))
+    return np.asarray(near >= 4)
 
 
 def solved(pivot: Array, N: Array, off: float = 0.0) -> Array:
