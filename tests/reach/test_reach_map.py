@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import signal
 import sys
 import zlib
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -185,3 +187,19 @@ def test_the_page_is_one_file() -> None:
     assert page.count("<img") > 12 and len(page) < 1.5e6
     share = f"{100 * by_numpy().solved:.1f} % with a solution"
     assert share in page
+
+
+def marks(page: str) -> list[list[str]]:
+    """The numbers beside each bar of colours."""
+    return [re.findall(">([^<]+)</span>", bar) for bar in page.split('<div class="marks">')[1:]]
+
+
+def test_bars_of_colours_have_numbers() -> None:
+    shares, solutions, best, room = marks(slices_page(by_numpy(), ""))
+    assert shares == ["0 %", "25 %", "50 %", "75 %", "100 %"]
+    assert solutions == ["0", "2", "4", "6", "8"] and by_numpy().count.max() == 8
+    assert room == ["0", "0.25", "0.5", "0.75", "1"]
+    assert len(best) == 5 and best[0] == "0" and best[4] == f"{by_numpy().sigma.max():.3g}"
+    for most, expected in ((6, ["0", "2", "4", "6"]), (1, ["0", "1"]), (0, ["0"])):
+        fewer = replace(by_numpy(), count=np.minimum(by_numpy().count, most))
+        assert marks(slices_page(fewer, ""))[1] == expected
