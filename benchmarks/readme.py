@@ -1,9 +1,10 @@
-"""Fills the figures of README.md, between their marks, from the recorded results.
+"""Fills the figures of README.md and of the page of comparisons, between their marks, from the recorded
+results.
 
     python -m benchmarks.readme [--check]
 
 A block starts with `<!-- figures: NAME -->` and ends with `<!-- end of figures -->`. What lies between is
-made here, from `benchmarks/results/`; nothing else of the page is touched. The picture of the comparison is
+made here, from `benchmarks/results/`; nothing else of a page is touched. The picture of the comparison is
 drawn from there too. The commands write their results with `--record`. `--check` writes nothing and exits
 with 1 where a block or the picture is not what was recorded.
 """
@@ -13,7 +14,7 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -21,13 +22,14 @@ from typing import Any
 from benchmarks.peer_picture import picture
 from benchmarks.results import Measured, read_result
 
-__all__ = ["BLOCKS", "COPY", "HOME", "PAGE", "PICTURE", "MarkError", "copied", "drawn", "filled_in"]
+__all__ = [
+    "BLOCKS", "COMPARISON", "HOME", "PAGE", "PAGES", "PICTURE", "MarkError", "drawn", "filled_in",
+]  # fmt: skip
 
-COPY = Path(__file__).resolve().parents[1] / "docs/explanation/comparison.md"
-"""A page that shows the README's block of other solvers."""
+COMPARISON = Path(__file__).resolve().parents[1] / "docs/explanation/comparison.md"
 PAGE = Path(__file__).resolve().parents[1] / "README.md"
 PICTURE = Path(__file__).with_name("peers.svg")
-HOME = COPY.parents[1] / "pictures/speed_ur5e.svg"
+HOME = COMPARISON.parents[1] / "pictures/speed_ur5e.svg"
 """The part of the picture that the home page of the documentation shows."""
 _START = re.compile(r"<!-- figures: (\w+) -->\n")
 _END = "<!-- end of figures -->\n"
@@ -64,11 +66,14 @@ class MarkError(Exception):
     """A block without an end, an end without a block, a block twice, missing or not known."""
 
 
-def filled_in(text: str, read: Callable[[str], Measured] = read_result) -> str:
-    """The page's text with every block made anew; raises `MarkError` where the marks are not in order."""
+def filled_in(
+    text: str, blocks: Collection[str], read: Callable[[str], Measured] = read_result
+) -> str:
+    """The text of a page with these blocks, each made anew; raises `MarkError` where the marks are not in
+    order."""
     names = _START.findall(text)
-    if sorted(names) != sorted(BLOCKS) or text.count(_END) != len(names):
-        raise MarkError(f"blocks {names}, {text.count(_END)} ends; there must be {list(BLOCKS)}")
+    if sorted(names) != sorted(blocks) or text.count(_END) != len(names):
+        raise MarkError(f"blocks {names}, {text.count(_END)} ends; there must be {list(blocks)}")
     parts = _START.split(text)
     out = [parts[0]]
     for name, rest in zip(parts[1::2], parts[2::2], strict=True):
@@ -77,16 +82,6 @@ def filled_in(text: str, read: Callable[[str], Measured] = read_result) -> str:
             raise MarkError(f"the block {name} does not end before the next")
         out += [f"<!-- figures: {name} -->\n", BLOCKS[name](read), _END, after]
     return "".join(out)
-
-
-def copied(text: str, readme: str) -> str:
-    """A page's text with the README's block of other solvers in place of what is between its marks."""
-    start = "<!-- figures: peers -->\n"
-    before, mark, rest = text.partition(start)
-    _, end, after = rest.partition(_END)
-    if not mark or not end:
-        raise MarkError(f"{COPY.name} has no block peers")
-    return before + start + readme.partition(start)[2].partition(_END)[0] + _END + after
 
 
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
@@ -168,13 +163,31 @@ def _short(value: Any) -> str:
     return f"{10 * round(value / 10):,}" if value < 1000 else f"{100 * round(value / 100):,}"
 
 
+def _answers(read: Callable[[str], Measured]) -> str:
+    measured = read("peer_answers")
+    cells: dict[str, dict[str, str]] = {}
+    for row in measured.found["answers"]:
+        found = "" if row["found"] is None else f" ({_percent(row['found'])})"
+        cells.setdefault(row["solver"], {})[row["arm"]] = f"{_percent(row['answered'])}{found}"
+    arms = [arm for arm in ARMS if any(arm in row for row in cells.values())]
+    rows = [[solver, *(row.get(arm, "–") for arm in arms)] for solver, row in cells.items()]
+    return _table(("solver", *(ARMS[arm] for arm in arms)), rows) + _source(measured)
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.3g} %"
+
+
 BLOCKS: dict[str, Callable[[Callable[[str], Measured]], str]] = {
     "public": partial(_classes, "public"),
     "corpus": partial(_classes, "corpus"),
     "tables": _tables,
     "peers": _peers,
+    "answers": _answers,
 }
 """Block -> its text."""
+PAGES = {PAGE: ("public", "corpus", "tables", "peers"), COMPARISON: ("peers", "answers")}
+"""Page -> its blocks."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -182,9 +195,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--check", action="store_true")
     options = parser.parse_args(arguments)
-    readme = filled_in(PAGE.read_text(encoding="utf-8"))
-    copy = copied(COPY.read_text(encoding="utf-8"), readme)
-    made = {PAGE: readme, PICTURE: drawn(), HOME: drawn(arm="UR5e"), COPY: copy}
+    made = {page: filled_in(page.read_text(encoding="utf-8"), PAGES[page]) for page in PAGES}
+    made |= {PICTURE: drawn(), HOME: drawn(arm="UR5e")}
     old = {path for path, text in made.items() if path.read_text(encoding="utf-8") != text}
     for path in old:
         print(f"{path.name} is not what was recorded")

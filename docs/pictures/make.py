@@ -149,11 +149,12 @@ def solutions() -> str:
     camera = skeleton_camera(dh, list(example.rows), style)
     parts = []
     for i, (q, name) in enumerate(zip(example.rows, example.names, strict=True)):
-        x, y = i % 4 * 200.0, i // 4 * 210.0
+        x, y = i % 4 * 200.0, i // 4 * 220.0
         drawing = skeleton_svg(dh, q, style=style, camera=camera, title=name)
         parts.append(drawing.replace("<svg ", f'<svg x="{x:g}" y="{y:g}" ', 1).strip())
-        parts.append(text(x + 95, y + 188, name, 9, fill=SOFT))
-    return svg(800, 420, "The eight solutions of one pose of a UR5e", parts)
+        for line, words in enumerate(name.rsplit(", ", 1)):
+            parts.append(text(x + 95, y + 188 + 15 * line, words, 12, fill=SOFT))
+    return svg(800, 440, "The eight solutions of one pose of a UR5e", parts)
 
 
 Vector = np.ndarray

@@ -4,9 +4,20 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
-from benchmarks.readme import BLOCKS, COPY, HOME, PAGE, PICTURE, MarkError, copied, drawn, filled_in
+from benchmarks.readme import (
+    BLOCKS,
+    COMPARISON,
+    HOME,
+    PAGE,
+    PAGES,
+    PICTURE,
+    MarkError,
+    drawn,
+    filled_in,
+)
 from benchmarks.results import Measured, read_result
 
 from ikgen.cli.main import COMMANDS
@@ -16,15 +27,23 @@ START, END = "<!-- figures: corpus -->\n", "<!-- end of figures -->\n"
 
 
 def test_figures_are_those_recorded() -> None:
-    assert filled_in(TEXT) == TEXT, "run python -m benchmarks.readme"
+    for page, names in PAGES.items():
+        text = page.read_text(encoding="utf-8")
+        assert filled_in(text, names) == text, "run python -m benchmarks.readme"
     assert drawn() == PICTURE.read_text(encoding="utf-8"), "run python -m benchmarks.readme"
     assert drawn(arm="UR5e") == HOME.read_text(encoding="utf-8"), "run python -m benchmarks.readme"
 
 
+def block(page: Path, name: str) -> str:
+    """What is between the marks of a block."""
+    text = page.read_text(encoding="utf-8")
+    return text.partition(f"<!-- figures: {name} -->\n")[2].partition(END)[0]
+
+
 def test_the_comparison_shows_the_same_figures() -> None:
-    page = COPY.read_text(encoding="utf-8")
-    assert copied(page, TEXT) == page, "run python -m benchmarks.readme"
-    assert "| opw_kinematics, C++ (-O3) |" in page
+    assert block(COMPARISON, "peers") == block(PAGE, "peers")
+    assert "| opw_kinematics, C++ (-O3) |" in block(PAGE, "peers")
+    assert "| Pinocchio CLIK (one row) |" in block(COMPARISON, "answers")
 
 
 def test_another_record_changes_its_block_alone() -> None:
@@ -32,7 +51,7 @@ def test_another_record_changes_its_block_alone() -> None:
         measured = read_result(name)
         return replace(measured, date="2099-01-01") if name == "corpus" else measured
 
-    new = filled_in(TEXT, later)
+    new = filled_in(TEXT, PAGES[PAGE], later)
     assert new != TEXT
     before, _, rest = TEXT.partition(START)
     _, _, after = rest.partition(END)
@@ -40,7 +59,7 @@ def test_another_record_changes_its_block_alone() -> None:
 
 
 def test_what_is_not_recorded_is_replaced() -> None:
-    assert filled_in(TEXT.replace("| SCARA | 3 | 3 |", "| SCARA | 4 | 4 |")) == TEXT
+    assert filled_in(TEXT.replace("| SCARA | 3 | 3 |", "| SCARA | 4 | 4 |"), PAGES[PAGE]) == TEXT
 
 
 @pytest.mark.parametrize(
@@ -56,13 +75,14 @@ def test_what_is_not_recorded_is_replaced() -> None:
 )
 def test_marks_out_of_order_are_refused(broken: str) -> None:
     with pytest.raises(MarkError):
-        filled_in(broken)
+        filled_in(broken, PAGES[PAGE])
 
 
 def test_every_block_says_commit_and_date() -> None:
-    for name in BLOCKS:
-        block = TEXT.partition(f"<!-- figures: {name} -->\n")[2].partition(END)[0]
-        assert re.search(r"Measured at `[0-9a-f]{7}\+?` on \d{4}-\d\d-\d\d", block)
+    shown = [(page, name) for page, names in PAGES.items() for name in names]
+    assert {name for _, name in shown} == set(BLOCKS)
+    for page, name in shown:
+        assert re.search(r"Measured at `[0-9a-f]{7}\+?` on \d{4}-\d\d-\d\d", block(page, name))
 
 
 def test_the_table_of_commands_has_a_row_for_each() -> None:

@@ -123,6 +123,14 @@ def test_files_are_those_of_the_command_line(tmp_path: Path, ur5e: ikgen.Arm) ->
     assert ur5e.report(tmp_path / "graph.svg").read_text().startswith("<svg")
 
 
+def test_a_graph_that_there_is_none_of_is_refused(
+    tmp_path: Path, ur5e: ikgen.Arm, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("ikgen.report.emit_report", lambda *_: {"arm_report.html": "<html>"})
+    with pytest.raises(ikgen.errors.ArgumentError, match="none of this arm is solved alone"):
+        ur5e.report(tmp_path / "graph.svg")
+
+
 WRONG: dict[str, tuple[Any, str]] = {
     "robot": (3.5, "robot"),
     "base": (7, "base"),

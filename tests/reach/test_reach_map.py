@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import signal
 import sys
 import zlib
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -18,7 +20,7 @@ from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 from ikgen.kinematics.forward import file_jacobian
 from ikgen.processes.executors import Workers, run_pieces
-from ikgen.reach.engine import Block, solve_block
+from ikgen.reach.engine import Block, Compiled, solve_block
 from ikgen.reach.grid import Grid, grid_over, orientations
 from ikgen.reach.png_image import png
 from ikgen.reach.reach_map import ReachMap, engine_of, interpreted_engine, reach_map
@@ -38,6 +40,14 @@ def derivation() -> Derivation:
 @cache
 def grid() -> Grid:
     return grid_over(derivation().reading.dh, 8, 5, 2)
+
+
+@cache
+def compiled() -> Compiled:
+    """The program that solves blocks of it, for any processor."""
+    engine, _ = engine_of(derivation(), portable=True, warn=pytest.fail)
+    assert isinstance(engine, Compiled)
+    return engine
 
 
 @cache
@@ -98,9 +108,9 @@ def test_every_pose_is_what_solve_says() -> None:
 
 @pytest.mark.skipif(shutil.which("c++") is None, reason="needs a C++ compiler")
 def test_compiled_and_interpreted_maps_agree_and_workers_do_not_matter() -> None:
-    engine, size = engine_of(derivation(), portable=True, warn=pytest.fail)
-    one = reach_map(derivation(), grid(), engine, size, Workers(count=1))
-    two = reach_map(derivation(), grid(), engine, size, Workers(count=2))
+    size = by_numpy().size
+    one = reach_map(derivation(), grid(), compiled(), size, Workers(count=1))
+    two = reach_map(derivation(), grid(), compiled(), size, Workers(count=2))
     assert archive(one) == archive(two)
     assert (one.count != by_numpy().count).mean() < 2e-3  # poses on the boundary of the reach
     same = one.count == by_numpy().count
@@ -128,13 +138,28 @@ def test_a_lost_worker_costs_no_result(tmp_path: Path) -> None:
 def test_dask_gives_the_same_and_survives_a_lost_worker(tmp_path: Path) -> None:
     pytest.importorskip("distributed")
     jobs = [(str(tmp_path), n) for n in range(8)]
-    workers = Workers("dask", 2)
-    assert run_pieces(workers, once_killed, jobs) == [n * n for n in range(8)]
+    assert run_pieces(Workers("dask", 2), once_killed, jobs) == [n * n for n in range(8)]
     assert (tmp_path / "killed").exists()
-    engine = interpreted_engine(derivation())
-    coarse = grid_over(derivation().reading.dh, 4, 3, 1)
-    one = reach_map(derivation(), coarse, engine, engine.size, Workers(count=1))
-    assert archive(reach_map(derivation(), coarse, engine, engine.size, workers)) == archive(one)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs SIGKILL")
+@pytest.mark.skipif(shutil.which("c++") is None, reason="needs a C++ compiler")
+def test_dask_gives_the_same_map_when_a_worker_is_killed_half_way() -> None:
+    """One of two, by the address that Dask knows it by; more than half of the blocks are left then."""
+    distributed = pytest.importorskip("distributed")
+    fine, size = grid_over(derivation().reading.dh, 40, 20, 1), by_numpy().size
+    killed: list[tuple[int, int, int]] = []
+
+    def kill_one(ready: int, total: int) -> None:
+        if not killed and ready >= total // 3:
+            process = min(distributed.Client.current().run(os.getpid).values())
+            os.kill(process, signal.SIGKILL)
+            killed.append((process, ready, total))
+
+    by_dask = reach_map(derivation(), fine, compiled(), size, Workers("dask", 2), kill_one)
+    ((_, ready, total),) = killed
+    assert 1 <= ready <= total / 2
+    assert archive(by_dask) == archive(reach_map(derivation(), fine, compiled(), size, None))
 
 
 def test_blocks_of_any_size_are_read_right() -> None:
@@ -162,3 +187,19 @@ def test_the_page_is_one_file() -> None:
     assert page.count("<img") > 12 and len(page) < 1.5e6
     share = f"{100 * by_numpy().solved:.1f} % with a solution"
     assert share in page
+
+
+def marks(page: str) -> list[list[str]]:
+    """The numbers beside each bar of colours."""
+    return [re.findall(">([^<]+)</span>", bar) for bar in page.split('<div class="marks">')[1:]]
+
+
+def test_bars_of_colours_have_numbers() -> None:
+    shares, solutions, best, room = marks(slices_page(by_numpy(), ""))
+    assert shares == ["0 %", "25 %", "50 %", "75 %", "100 %"]
+    assert solutions == ["0", "2", "4", "6", "8"] and by_numpy().count.max() == 8
+    assert room == ["0", "0.25", "0.5", "0.75", "1"]
+    assert len(best) == 5 and best[0] == "0" and best[4] == f"{by_numpy().sigma.max():.3g}"
+    for most, expected in ((6, ["0", "2", "4", "6"]), (1, ["0", "1"]), (0, ["0"])):
+        fewer = replace(by_numpy(), count=np.minimum(by_numpy().count, most))
+        assert marks(slices_page(fewer, ""))[1] == expected

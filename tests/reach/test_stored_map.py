@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import shlex
 import sys
 from functools import cache
 from pathlib import Path
@@ -116,3 +117,15 @@ def test_the_command_writes_the_file_that_is_named(
     assert not (store / "notes.txt").exists()
     assert run([*command, "--cells", "6", "--json"]) == 0
     assert str(store) in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("chosen", [[], ["--task", "position", "--lock", "flange=0.5"]])
+def test_the_page_has_the_command_that_makes_it_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, chosen: list[str]
+) -> None:
+    monkeypatch.setattr("ikgen.reach.reach_map.compiled_engine", without_compiler)
+    assert run([*COMMAND, "--cells", "3", *chosen, "-o", str(tmp_path)]) == 0
+    page = (tmp_path / "scara_reach.html").read_text(encoding="utf-8")
+    fineness = "--cells 3 --directions 2 --rolls 1"
+    words = ["ikgen", "reach", TABLE.name, *chosen, *fineness.split()]
+    assert f"<dd>{shlex.join(words)}</dd>" in page

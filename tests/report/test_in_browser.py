@@ -55,6 +55,7 @@ def test_report(name: str, opened: Any, tmp_path: Path) -> None:
         assert len(text.encode()) < LARGEST
         page = tmp_path / "report.html"
         page.write_text(text, encoding="utf-8")
-        seen = look_at(opened, page.as_uri(), 390, "dark")
-        assert seen.seconds < SLOWEST
-        assert (seen.sticks_out, seen.messages, seen.faults) == ((), (), ())
+        for scheme in ("dark", "light"):
+            seen = look_at(opened, page.as_uri(), 390, scheme)
+            assert seen.seconds < SLOWEST
+            assert (seen.sticks_out, seen.messages, seen.faults) == ((), (), ())

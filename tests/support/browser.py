@@ -71,9 +71,7 @@ def look_at(opened: Any, address: str, width: int, scheme: str) -> Seen:
     seconds = next(m["value"] for m in metrics if m["name"] == "TaskDuration")
     out = page.evaluate(_STICKS_OUT)
     page.evaluate(_axe())
-    found = page.evaluate(
-        "axe.run({resultTypes: ['violations'], runOnly: ['wcag2a', 'wcag2aa', 'best-practice']})"
-    )["violations"]
+    found = page.evaluate(_RUN)["violations"]
     context.close()
     faults = [
         f"{fault['impact']} {fault['id']}: {node['html'][:160]}"

@@ -58,12 +58,12 @@ def on_page(scene: ArmScene, browser: Any) -> Iterator[tuple[Any, list[str]]]:
 
 def drag_target(page: Any, scene: ArmScene, axis: int, way: float) -> None:
     """Take the arrow of the target along one of its axes (0 to 2) by `way`, in lengths of the arrow, with
-    the mouse; once more where the page was not drawn yet."""
+    the mouse; once more where the page was not drawn yet, and the mouse took the camera."""
     before = scene.pose
     arrow = 0.25 * scene.size * before[:3, axis]
-    start = _pixel(page, scene, before[:3, 3] + 0.6 * arrow)
-    end = _pixel(page, scene, before[:3, 3] + (0.6 + way) * arrow)
     for wait in (400, 1500, 4000):
+        start = _pixel(page, scene, before[:3, 3] + 0.6 * arrow)
+        end = _pixel(page, scene, before[:3, 3] + (0.6 + way) * arrow)
         page.mouse.move(*start)
         page.wait_for_timeout(wait)
         page.mouse.down()

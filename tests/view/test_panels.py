@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from tests.support.browser import browser
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
+from tests.support.telescopes import RELATIONS, telescope_robot
 from tests.support.viewer import on_page, served, viewed
 
 from ikgen.errors import MissingToolError
@@ -191,6 +192,57 @@ def test_meshes_follow_the_chain_and_are_read_inside_the_package_alone(tmp_path:
         np.testing.assert_allclose(T, file_forward(derivation.reading.dh, q), atol=1e-6)
         scene._show_meshes(False)
         assert not scene.meshes.visible
+
+
+FLAPS = """<robot>
+<link name="flap"/><link name="flap_of_flap"/><link name="slider"/>
+<joint name="first" type="revolute"><parent link="link_3"/><child link="flap"/><axis xyz="0 0 1"/>
+  <limit lower="-9" upper="9" effort="1" velocity="1"/>
+  <mimic joint="joint_a2" multiplier="0.5" offset="0.1"/></joint>
+<joint name="second" type="continuous"><parent link="flap"/><child link="flap_of_flap"/><axis xyz="0 0 1"/>
+  <mimic joint="first" multiplier="-3" offset="0.2"/></joint>
+<joint name="third" type="prismatic"><parent link="flap_of_flap"/><child link="slider"/><axis xyz="1 0 0"/>
+  <limit lower="-9" upper="9" effort="1" velocity="1"/><mimic joint="second" multiplier="0.1"/></joint>
+</robot>"""
+
+
+def test_what_follows_a_follower_is_drawn_where_it_is(tmp_path: Path) -> None:
+    path = with_visuals(tmp_path)
+    robot = ElementTree.parse(path)
+    robot.getroot().extend(ElementTree.fromstring(FLAPS))
+    robot.write(path)
+    derivation = derive(Request(path, tip="tool0"))
+    runner = solver_of(derivation)
+    assert runner is not None
+    with served(derivation, runner) as scene:
+        assert scene.meshes is not None
+        urdf = scene.meshes._urdf
+        for lift in (-0.9, 0.4):
+            scene.show(np.array([0.2, lift, 1.1, 0.3, 0.6, -0.4]))
+            first = 0.5 * lift + 0.1
+            second = -3 * first + 0.2
+            turn = np.arctan2(*urdf.get_transform("flap_of_flap", "link_3")[1::-1, 0])
+            assert abs(np.sin(turn - first - second)) < 1e-9 < np.cos(turn - first - second)
+            T = urdf.get_transform("slider", "flap_of_flap")
+            np.testing.assert_allclose(T[:3, 3], [0.1 * second, 0, 0], atol=1e-9)
+
+
+def test_stages_that_follow_by_request_move_their_meshes(tmp_path: Path) -> None:
+    path = telescope_robot(tmp_path)
+    shape = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
+    path.write_text(
+        path.read_text().replace('<link name="link_4"/>', f'<link name="link_4">{shape}</link>')
+    )
+    derivation = derive(Request(path, couple=RELATIONS))
+    runner = solver_of(derivation)
+    assert runner is not None
+    with served(derivation, runner) as scene:
+        assert scene.meshes is not None
+        dh = derivation.reading.dh
+        q = np.array([j.limits.lower + 0.3 * (j.limits.upper - j.limits.lower) for j in dh.joints])
+        scene.show(q)
+        T = scene.meshes._urdf.get_transform(dh.tip_link, dh.base_link)
+        np.testing.assert_allclose(T, file_forward(dh, q), atol=1e-6)
 
 
 def test_a_robot_without_meshes_has_none() -> None:

@@ -92,13 +92,15 @@ def reach(
     from ikgen.reach.map_files import MapOrder, write_map
 
     started = time.perf_counter()
+    request = make_request(robot, **chain)
+    fineness = ("--cells", cells, "--directions", directions, "--rolls", rolls)
+    again = ["ikgen", "reach", robot.name, *request.options, *map(str, fineness)]
     order = MapOrder(
         cells, directions, rolls, Workers(executor, workers, scheduler),
-        portable=portable or scheduler is not None, command=_command(robot, cells, directions, rolls),
-        force=force,
+        portable=portable or scheduler is not None, command=shlex.join(again), force=force,
     )  # fmt: skip
     with Console(quiet=quiet, verbose=verbose) as console:
-        request, done = make_request(robot, **chain), partial(console.share, "map")
+        done = partial(console.share, "map")
         found, files = write_map(request, order, out, console, console.warn, done)
     seconds = time.perf_counter() - started
     if as_json:
@@ -110,9 +112,3 @@ def reach(
         click.echo(f"{found.grid.poses:,} poses in {seconds:.1f} s, {share}")
         for path in files:
             click.echo(f"wrote: {path}")
-
-
-def _command(robot: Path, cells: int, directions: int, rolls: int) -> str:
-    """What makes the map again, but for the options of the chain."""
-    words = f"--cells {cells} --directions {directions} --rolls {rolls}"
-    return f"ikgen reach {shlex.quote(robot.name)} {words}"

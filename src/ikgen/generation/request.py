@@ -114,6 +114,12 @@ class Request:
     def command(self, *more: str) -> str:
         """The command that generates what is asked for, with `more` options."""
         words = ["ikgen", "from-dh" if self.table else "from-urdf", str(self.robot)]
+        return shlex.join([*words, *self.options, *more])
+
+    @property
+    def options(self) -> list[str]:
+        """What a command line says behind the robot."""
+        words: list[str] = []
         for option in ("base", "tip", "task", "tool_axis", "name", "maintainer", "license"):
             value = getattr(self, option)
             if value is not None:
@@ -132,7 +138,7 @@ class Request:
             words += ["--package-path", str(folder)]
         if self.trust:
             words.append("--trust")
-        return shlex.join([*words, *more])
+        return words
 
 
 @dataclass(frozen=True, slots=True)

@@ -58,7 +58,11 @@ def write_page(arm: Arm, file: Path) -> Path:
     check_folder(file.parent)
     report = arm.verification
     texts = emit_report(arm.derivation.whole, {} if report is None else {"python": report})
-    content: Content = next(text for name, text in texts.items() if name.endswith(end))
+    found = next((text for name, text in texts.items() if name.endswith(end)), None)
+    if found is None:
+        what = f"file: '{file}' would be a graph of unknowns, and none of this arm is solved alone"
+        raise ArgumentError(what, hint="name a page: .html, .tex or .pdf")
+    content: Content = found
     if file.suffix.lower() == ".pdf":
         content = _pdf(file.with_suffix(".tex").name, str(content))
     with _writing("file", file):

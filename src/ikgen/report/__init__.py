@@ -21,7 +21,8 @@ __all__ = ["emit_report", "emit_unsolved"]
 def emit_report(
     derivation: Derivation, reports: Mapping[str, VerificationReport] | None = None
 ) -> dict[str, str]:
-    """File name -> text: `<name>_report.tex`, `<name>_report.html` and `<name>_graph.svg`.
+    """File name -> text: `<name>_report.tex`, `<name>_report.html` and, but for an elimination,
+    `<name>_graph.svg`.
 
     `reports` are verifications by language, for the card at the top and a table at the end.
     """
@@ -43,14 +44,14 @@ def emit_unsolved(found: Unsolved, advice: str = "") -> dict[str, str]:
 
 
 def _texts(
-    blocks: list[Block], robot: str, name: str, source: str, picture: Drawing
+    blocks: list[Block], robot: str, name: str, source: str, picture: Drawing | None
 ) -> dict[str, str]:
     """File name -> text."""
     title = f"Inverse kinematics of {robot}"
     subtitle = f"derived by ikgen {__version__} from {source}"
     whole = numbered(blocks)
-    return {
+    texts = {
         f"{name}_report.tex": to_latex(title, subtitle, whole),
         f"{name}_report.html": to_html(title, subtitle, whole),
-        f"{name}_graph.svg": picture.svg,
     }
+    return texts if picture is None else {**texts, f"{name}_graph.svg": picture.svg}

@@ -28,7 +28,7 @@ __all__ = ["Page", "SolvedPage", "UnsolvedPage"]
 @dataclass(frozen=True, slots=True)
 class Page:
     """What reports of solved and unsolved arms share; `shown` (dof,), rad and m, is the configuration
-    that the arm is drawn at."""
+    that the arm is drawn at; `picture` is that of the graph, None where no unknown was solved alone."""
 
     reading: Reading
     geometry: GeometryClass
@@ -36,7 +36,7 @@ class Page:
     graph: SolutionGraph
     normal: Normalizer
     versions: Versions
-    picture: Drawing
+    picture: Drawing | None
     shown: Array
 
 
@@ -48,7 +48,8 @@ class UnsolvedPage(Page):
     def of(cls, found: Unsolved) -> UnsolvedPage:
         """The page of what a derivation left."""
         versions = versions_of(found.graph)
-        picture = draw(found.graph, versions, f"Solution graph of {found.name}")
+        title = f"Solution graph of {found.name}"
+        picture = draw(found.graph, versions, title) if found.graph.steps else None
         reading, shown = found.reading, shown_configuration(found.reading.dh)
         parts = (Normalizer(), versions, picture, shown)
         return cls(reading, found.geometry, found.task, found.graph, *parts)
@@ -72,7 +73,8 @@ class SolvedPage(Page):
     def of(cls, found: Derivation, reports: Mapping[str, VerificationReport]) -> SolvedPage:
         """The page of a derivation with the verifications by language."""
         versions = versions_of(found.graph)
-        picture = draw(found.graph, versions, f"Solution graph of {found.module.name}")
+        title = f"Solution graph of {found.module.name}"
+        picture = None if found.graph.open_joints else draw(found.graph, versions, title)
         solver = solver_of(found)
         example = worked_example(found, solver) if solver is not None else None
         shown = shown_configuration(found.reading.dh) if example is None else example.q

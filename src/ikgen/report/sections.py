@@ -80,17 +80,13 @@ def _solution(page: SolvedPage) -> list[Block]:
 
 def _graph(page: Page) -> list[Block]:
     """Nothing where no unknown was solved alone."""
-    if not page.graph.steps:
+    if page.picture is None:
         return []
     return graph_section(page.versions, page.picture, page.graph.passed)
 
 
 def _sets(page: SolvedPage) -> list[Block]:
     return [] if page.eliminated else poses_section(page.graph, page.versions)
-
-
-def _drawn(page: SolvedPage) -> list[Block]:
-    return [] if page.eliminated else _graph(page)
 
 
 def _left(page: UnsolvedPage) -> list[Block]:
@@ -110,7 +106,7 @@ def _verification(page: SolvedPage) -> list[Block]:
 
 
 SOLVED: tuple[Callable[[SolvedPage], list[Block]], ...] = (
-    _card, _held, _example, _robot, _forward, _solution, _drawn, _sets, _tree, _proof,
+    _card, _held, _example, _robot, _forward, _solution, _graph, _sets, _tree, _proof,
     _verification,
 )  # fmt: skip
 """Of a solved arm; a section that does not apply is empty."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import logging
 import warnings
@@ -10,13 +11,18 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from lxml import etree
 from numpy.typing import NDArray
 
+from ikgen.chains.mimic import Coupling, couple
 from ikgen.emit.derivation import Reading
+from ikgen.errors import IkgenError
 from ikgen.importers.packages import PACKAGE_URL, PackageFinder, PackageNotFoundError
 from ikgen.importers.xacro.package_fence import PackageFence
 from ikgen.importers.xacro.refusals import RefusedFileError
+from ikgen.importers.xml_document import children, parse_xml, shown_file
 from ikgen.kinematics.quaternion_rotation import quaternion
+from ikgen.model.joint_tree import JointTree, Source
 
 __all__ = ["RobotMeshes", "robot_meshes"]
 
@@ -26,12 +32,15 @@ _NODE = "/robot"
 
 
 class RobotMeshes:
-    """The robot as viser draws it; `urdf` is yourdfpy's model of the same description."""
+    """The robot as viser draws it; `urdf` is yourdfpy's model of the same description, in which no joint
+    follows another: who follows whom is the tree's to say, through others too."""
 
-    def __init__(self, server: Any, reading: Reading, urdf: Any) -> None:
+    def __init__(
+        self, server: Any, reading: Reading, urdf: Any, couplings: dict[str, Coupling]
+    ) -> None:
         from viser.extras import ViserUrdf
 
-        self._reading, self._urdf = reading, urdf
+        self._reading, self._urdf, self._couplings = reading, urdf, couplings
         self._root = server.scene.add_frame(_NODE, show_axes=False)
         self._drawn = ViserUrdf(server, urdf, root_node_name=_NODE)
 
@@ -51,11 +60,24 @@ class RobotMeshes:
     def visible(self, shown: bool) -> None:
         self._root.visible = shown
 
-    def _configuration(self, q: Array) -> Array:
-        """Values of yourdfpy's actuated joints."""
+    def _configuration(self, q: Array) -> dict[str, float]:
+        """Values of all joints that have one."""
         dh = self._reading.dh
-        values = dict(dh.locked) | dict(zip((j.name for j in dh.joints), q.tolist(), strict=True))
-        return np.array([values.get(name, 0.0) for name in self._urdf.actuated_joint_names])
+        known = dict(dh.locked) | dict(zip((j.name for j in dh.joints), q.tolist(), strict=True))
+        values = {}
+        for name, coupling in self._couplings.items():
+            driver = known.get(coupling.driver.name, 0.0)
+            values[name] = known.get(name, coupling.multiplier * driver + coupling.offset)
+        return values
+
+
+def _couplings(tree: JointTree) -> dict[str, Coupling]:
+    """What each moving joint of the robot follows; one beside the chain may be wrong, and stays at 0."""
+    found: dict[str, Coupling] = {}
+    for joint in tree.joints:
+        with contextlib.suppress(IkgenError):
+            found |= couple(tree, [joint])
+    return found
 
 
 def robot_meshes(
@@ -74,14 +96,23 @@ def robot_meshes(
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            text = io.BytesIO(reading.source.text.encode())
+            text = io.BytesIO(_without_mimics(reading.source))
             urdf = yourdfpy.URDF.load(text, filename_handler=files.place)
             if urdf.scene is None or not urdf.scene.geometry:
                 return None
-            return RobotMeshes(server, reading, urdf)
+            return RobotMeshes(server, reading, urdf, _couplings(reading.tree))
     except Exception as error:  # of third-party readers of many formats: the skeleton is enough
         logging.getLogger(__name__).warning("no meshes: %s", error)
         return None
+
+
+def _without_mimics(source: Source) -> bytes:
+    """The description with joints of which each has a value of its own."""
+    root = parse_xml(source.text, shown_file(source))
+    for joint in children(root, "joint"):
+        for mimic in list(children(joint, "mimic")):
+            joint.remove(mimic)
+    return bytes(etree.tostring(root))
 
 
 class _Files:
