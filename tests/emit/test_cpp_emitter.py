@@ -35,9 +35,9 @@ def test_a_header_has_what_its_arm_takes_and_no_more(rounded: bool, task: str, h
     assert ("whole_pose.hpp" in found) == (task == "pose") != ("pose_entries.hpp" in found)
     assert found[-1] == ("row_preference.hpp", "held_search.hpp", "held_grid_search.hpp")[held]
     assert found[:2] == ["lane_angle.hpp", "lane_solve.hpp"] and "projection.hpp" in found
-    assert not {"arm_angle.hpp", "arm_angle_motion.hpp", "single_solve.hpp"} & set(found)
+    assert not {"lane_elbow.hpp", "arm_angle_motion.hpp", "single_solve.hpp"} & set(found)
     if held:
         free = (*dh.free[1:], ARM_ANGLE)
         angle = replace(module, dh=replace(dh, free=free))
-        assert ("arm_angle.hpp" if rounded else "arm_angle_motion.hpp") in _headers(angle)
-        assert "lane_newton.hpp" not in _headers(angle)
+        assert ("lane_elbow.hpp" if rounded else "arm_angle_motion.hpp") in _headers(angle)
+        assert ("lane_newton.hpp" in _headers(angle)) == rounded

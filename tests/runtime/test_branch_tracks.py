@@ -28,6 +28,7 @@ ARM = SimpleNamespace(
     upper=np.array([3.0]),
     chain=SimpleNamespace(revolute=(True,)),
     policy=SimpleNamespace(limit_tolerance=1e-9),
+    rounded=False,
 )
 
 
@@ -137,13 +138,23 @@ def test_rows_that_may_come_and_go_between_samples(
     zero: Callable[[float], float] = lambda h: 0.0  # noqa: E731
     folds = [[margin(h)] for h in HELD]
     rows = rows_of([zero, zero], real=np.full((6, 1), real), folds=folds)
-    none = np.zeros((5, 1), dtype=bool)
-    found = _hidden_folds(rows, np.zeros((5, 1), dtype=int), none)
+    none, nowhere = np.zeros((5, 1), dtype=bool), np.zeros(5, dtype=bool)
+    found = _hidden_folds(rows, none, nowhere)
     assert np.flatnonzero(found[:, 0]).tolist() == cells
     if real:
-        assert not _hidden_folds(rows, np.zeros((5, 1), dtype=int), ~none).any()
+        assert not _hidden_folds(rows, ~none, nowhere).any()
     nothing = Rows(HELD, rows.q, rows.real, rows.folds[:, :, :0])
-    assert not _hidden_folds(nothing, np.zeros((5, 1), dtype=int), none).any()
+    assert not _hidden_folds(nothing, none, nowhere).any()
+
+
+def test_rows_that_margins_promise_may_come_and_go_in_the_cells_that_are_named() -> None:
+    """Of a rounded arm: it has not what its closed form has, and may have it between two samples."""
+    zero: Callable[[float], float] = lambda h: 0.0  # noqa: E731
+    for margin, likely in ((1.0, True), (-1.0, False)):
+        rows = rows_of([zero], real=np.zeros((6, 1), dtype=bool), folds=[[margin] for _ in HELD])
+        for named in (np.arange(5) % 2 == 0, np.zeros(5, dtype=bool)):
+            found = _hidden_folds(rows, np.zeros((5, 1), dtype=bool), named)[:, 0]
+            assert found.tolist() == (named & likely).tolist()
 
 
 def curved(h: float) -> float:

@@ -11,6 +11,7 @@ import pytest
 from numpy.typing import NDArray
 from tests.support.chains import make_chain, rotation, translation
 from tests.support.cpp_modules import solver_module as published_module
+from tests.support.held_arms import held_module
 from tests.support.rounded_arms import EXACT, X, Z, meeting_shoulder, spherical_wrist
 from tests.support.routines import compiled_header, feed
 from tests.support.solving import solver_module
@@ -73,7 +74,7 @@ int main() {
     const auto pose = detail::gather<1>(&poses[i]);
     constexpr detail::Range anywhere = {detail::kUnbounded<kDof>.lower, detail::kUnbounded<kDof>.upper};
     detail::Arm::branches(pose, detail::Seed(), options.free, anywhere, rows);
-    detail::Arm::refine(pose, anywhere, rows);
+    detail::Arm::refine(pose, options.free, anywhere, rows);
     int rough = 0;
     for (const double flags : rows.flags)
       rough += (static_cast<int>(flags) & (detail::kRough | detail::kHit)) != 0;
@@ -169,6 +170,20 @@ def test_a_slide_and_fewer_joints_than_equations(tmp_path: Path) -> None:
     for at, ((rows, _, careful), _) in zip(q, found, strict=True):
         assert apart(rows, at).min() < 1e-9 and len(rows) == len(careful)
     assert sum(rough > 0 for _, rough in found) < 10
+
+
+def test_lanes_find_the_rows_at_an_arm_angle(tmp_path: Path) -> None:
+    """Elbows on the half plane that is asked for, as one by one."""
+    module = held_module("rounded_arm_angle", tmp_path)
+    assert module.refine == "all"
+    q = np.random.default_rng(4).uniform(-2, 2, (100, 7))
+    found = answers(module, q, tmp_path, "-march=native")
+    for (rows, batch, careful), rough in found:
+        assert rows.shape == batch.shape and len(rows) == len(careful)
+        assert apart(rows, batch).max(initial=0.0) < 1e-9  # joint 3 is at half a turn
+        assert all(apart(rows, row).min() < 1e-8 for row in careful) or rough
+    assert sum(len(rows) == 8 for (rows, _, _), _ in found) > 80
+    assert sum(rough > 0 for _, rough in found) < 40
 
 
 FOLDED = [

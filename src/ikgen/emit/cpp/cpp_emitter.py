@@ -105,8 +105,8 @@ def _careful(module: SolverModule) -> bool:
 
 
 def _newton(module: SolverModule) -> bool:
-    """Whether all rows are refined at once: those at an arm angle are, one by one."""
-    return module.refine == "all" and not module.dh.arm_angle
+    """Whether all rows are refined at once."""
+    return module.refine == "all"
 
 
 def _headers(module: SolverModule) -> list[str]:
@@ -118,7 +118,7 @@ def _headers(module: SolverModule) -> list[str]:
     needed += ["parallel_6r.hpp"] * bool(_parallel_kind(module))
     needed += ["lane_newton.hpp"] * _newton(module)
     if module.dh.arm_angle:
-        needed += ["arm_angle.hpp" if module.refine == "all" else "arm_angle_motion.hpp"]
+        needed += ["lane_elbow.hpp" if _newton(module) else "arm_angle_motion.hpp"]
     needed += ["displacement.hpp"] * bool(module.beside)
     task = "whole_pose.hpp" if module.task == "pose" else "pose_entries.hpp"
     needed += [task, "pose_solver.hpp", "projection.hpp"]

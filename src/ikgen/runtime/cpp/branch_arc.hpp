@@ -37,7 +37,7 @@ template <class Arm> struct BranchArc {
 
   // Where the held value, which goes up (`sense` 1) or down (-1) at the first of the ends, turns back; false where it
   // does not on the way to the other.
-  bool fold(double sense, Point& out) noexcept {
+  bool fold(double sense, Point& out) const noexcept {
     if (length < kTouching) {
       out = from;
       return true;
@@ -50,9 +50,16 @@ template <class Arm> struct BranchArc {
     return cross(a, b, a.rise(), b.rise(), [](const Point& p) noexcept { return p.rise(); }, before, close, out);
   }
 
-  // The last point inside the limits on the way from a point that is inside to one that is not.
-  bool limit(const Point& inside, const Point& outside, Point& out) noexcept {
+  // The last point inside the limits on the way from a point that is inside to one that is not: where the joint that is
+  // farthest outside comes to its limit, unless another does before.
+  bool limit(const Point& inside, Point outside, Point& out) const noexcept {
     const double slope = std::abs((outside.off - inside.off) / (outside.held - inside.held)), room = 0.25 * kEnough * slope;
+    for (int i = 0; i < sweep.bounds.count; ++i) {
+      if (!stop(inside, outside, room, out)) break;
+      if (!((out.held - inside.held) * (out.held - outside.held) <= 0.0)) break;
+      if (out.off <= 0.0) return true;
+      outside = out;
+    }
     const auto value = [&](const Point& p) noexcept { return p.off + room; };
     const auto before = [&](const Point& p) noexcept { return p.off <= -room; };
     const auto close = [&](const Point& p) noexcept { return p.off <= 0.0 && p.off > -2.0 * room; };
@@ -60,7 +67,7 @@ template <class Arm> struct BranchArc {
   }
 
  private:
-  static constexpr double kEnough = 1e-10, kTouching = 1e-6, kFar = 1.0, kArrived = 1e-9;
+  static constexpr double kEnough = 1e-10, kTouching = 1e-6, kFar = 1.0, kArrived = 1e-9, kNearly = 3e-6;
   static constexpr int kSteps = 10, kMost = 40;
   Vector chord;
   double length = 0.0;
@@ -78,10 +85,50 @@ template <class Arm> struct BranchArc {
 
   // How far a row is outside the limits at most.
   double outside(const double* q) const noexcept {
+    int bound;
+    return outside(q, bound);
+  }
+  double outside(const double* q, int& bound) const noexcept {
     double most = -kInfinity;
-    for (int i = 0; i < sweep.bounds.count; ++i)
-      most = std::max(most, std::abs(sweep.bounds.offset(i, q[sweep.bounds.joint[i]])) - sweep.bounds.half[i]);
+    for (int i = 0; i < sweep.bounds.count; ++i) {
+      const double off = std::abs(sweep.bounds.offset(i, q[sweep.bounds.joint[i]])) - sweep.bounds.half[i];
+      if (off > most) bound = i;
+      most = std::max(most, off);
+    }
     return most - Arm::Policy::kLimitTolerance;
+  }
+
+  // Where the joint that is farthest outside at `b` is `room` inside its limit; false where that is not near.
+  bool stop(const Point& a, const Point& b, double room, Point& out) const noexcept {
+    int bound = 0, place = 0;
+    outside(b.q, bound);
+    const int joint = sweep.bounds.joint[bound];
+    while (kJoints[place] != joint) ++place;
+    const double half = sweep.bounds.half[bound] + Arm::Policy::kLimitTolerance - room, at = sweep.bounds.offset(bound, b.q[joint]);
+    const double part = (a.off + room) / (a.off - b.off);
+    Vector along, row = {};
+    way(a, b, along);
+    row[place] = 1.0;
+    out = a;
+    for (int k = 0; k < kMoving; ++k) out.q[kJoints[k]] += part * along[k];
+    out.held += part * along[kMoving];
+    for (int i = 0; i < kSteps; ++i) {
+      const double left = std::copysign(half, at) - sweep.bounds.offset(bound, within(out.q[joint]));
+      const double size = step(out, row, left);
+      if (!(size < kFar)) return false;
+      if (size < kNearly) return finish(out);
+    }
+    return false;
+  }
+
+  static double within(double x) noexcept { return x - kTurn * std::nearbyint(x / kTurn); }
+
+  // Turns in (-pi, pi], and how far that is outside.
+  bool finish(Point& p) const noexcept {
+    for (int k = 0; k < kMoving; ++k)
+      if (Arm::kRevolute[kJoints[k]]) p.q[kJoints[k]] = within(p.q[kJoints[k]]);
+    p.off = outside(p.q);
+    return true;
   }
 
   // Where `value` of the points changes its sign: by false position, halving what an end keeps (Dowell & Jarratt 1971).
@@ -116,33 +163,33 @@ template <class Arm> struct BranchArc {
     out.held += (share - near.share) * near.flow[kMoving];
     double moved = 0.0;
     for (int i = 0; i < kSteps; ++i) {
-      const double size = step(out);
+      Vector done, row;
+      double left = share * length;
+      way(from, out, done);
+      for (int k = 0; k < kVariables; ++k) {
+        row[k] = chord[k] / length;
+        left -= row[k] * done[k];
+      }
+      const double size = step(out, row, left);
+      for (double& x : out.flow) x *= length;
       moved += size;
       if (!(moved < kFar)) return false;
-      if (size > kArrived) continue;
-      for (int k = 0; k < kMoving; ++k) {
-        double& x = out.q[kJoints[k]];
-        if (Arm::kRevolute[kJoints[k]]) x -= kTurn * std::nearbyint(x / kTurn);
-      }
-      out.off = outside(out.q);
-      return true;
+      if (size <= kArrived) return finish(out);
     }
     return false;
   }
 
-  // One step, and the flow before it; how far the fastest joint goes.
-  double step(Point& p) const noexcept {
+  // One step to what is `left` along `row`, and the flow by that before; how far the fastest joint goes.
+  double step(Point& p, const Vector& row, double left) const noexcept {
     const Curve at(sweep.pose, p.q, p.held);
-    Vector done, d;
-    double A[kVariables][kVariables], left = p.share * length, farthest = 0.0;
-    way(from, p, done);
-    for (int k = 0; k < kVariables; ++k) left -= chord[k] / length * done[k];
+    Vector d;
+    double A[kVariables][kVariables], farthest = 0.0;
     for (int a = 0; a < kVariables; ++a) {
-      d[a] = chord[a] / length * left;
-      p.flow[a] = chord[a];
+      d[a] = row[a] * left;
+      p.flow[a] = row[a];
       for (int e = 0; e < Curve::kCount; ++e) d[a] += at.slope[e][a] * at.error[e];
       for (int b = 0; b <= a; ++b) {
-        A[a][b] = chord[a] / length * (chord[b] / length);
+        A[a][b] = row[a] * row[b];
         for (int e = 0; e < Curve::kCount; ++e) A[a][b] += at.slope[e][a] * at.slope[e][b];
       }
     }

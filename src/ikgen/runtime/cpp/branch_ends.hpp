@@ -95,7 +95,7 @@ template <class Arm> struct BranchEnd {
 
   // Along the curve; whether that has an end in the bracket.
   bool follow(const HeldSweep<Arm>& sweep) noexcept {
-    BranchArc<Arm> arc(sweep, q, inner, there, then);
+    const BranchArc<Arm> arc(sweep, q, inner, there, then);
     const double sense = outer > inner ? 1.0 : -1.0;
     typename BranchArc<Arm>::Point end = arc.to;
     if (at_fold && !(arc.fold(sense, end) && sense * (outer - end.held) > -kEnough)) return false;

@@ -123,7 +123,7 @@ template <class Arm> struct HeldSample {
       Arm::branches(pose, typename Arm::Seed(), std::array<double, 1>{held}, kAnywhere, rows);
       std::memcpy(fine.q, rows.q, sizeof(fine.q));
       std::memcpy(fine.flags, rows.flags, sizeof(fine.flags));
-      Arm::refine(pose, kAnywhere, fine);
+      Arm::refine(pose, {held}, kAnywhere, fine);
       int seen = 0;
       for (int r = 0; r < Arm::kLanes; ++r) seen |= keep(rows, fine, r);
       return (seen & kReal) != 0 && (seen & (kRough | kHit)) == 0 && !remove_repetitions();
@@ -156,10 +156,17 @@ template <class Arm> struct HeldSample {
     return bits;
   }
 
-  // Takes the rows of the pose, or of one beside it, refined where that is needed; whether some may be equal.
+  // Takes the rows of the pose, or of one beside it, refined where that is needed: in lanes first where all are; whether
+  // some may be equal.
   bool take(const Eigen::Isometry3d& T, const Eigen::Isometry3d& near, int part) noexcept {
     Rows rows;
     Arm::branches(gather<1>(&near), typename Arm::Seed(), std::array<double, 1>{held}, kAnywhere, rows);
+    typename Arm::template Rows<1> fine;
+    if constexpr (Arm::kNewton) {
+      std::memcpy(fine.q, rows.q, sizeof(fine.q));
+      std::memcpy(fine.flags, rows.flags, sizeof(fine.flags));
+      Arm::refine(gather<1>(&T), {held}, kAnywhere, fine);
+    }
     bool again = part > 0;
     for (int r = 0; r < Arm::kLanes; ++r) {
       const int lane = Arm::kLaneOfRow[r], l = part * Arm::kLanes + r, bits = static_cast<int>(rows.flags[lane]);
@@ -168,6 +175,11 @@ template <class Arm> struct HeldSample {
       for (int j = 0; j < Arm::kDof && part > 0; ++j) q[j][l] = Arm::kHeld[j] ? held : rows.q[j][lane];
       again = again || (real[l] && (bits & (kRough | kMeeting)) != 0);
       if (!real[l] || (bits & kRough) == 0 || Arm::kRefined) continue;
+      if (Arm::kNewton && (static_cast<int>(fine.flags[lane]) & kRough) == 0) {
+        real[l] = (static_cast<int>(fine.flags[lane]) & kReal) != 0;
+        for (int j = 0; j < Arm::kDof; ++j) q[j][l] = Arm::kHeld[j] ? held : fine.q[j][lane];
+        continue;
+      }
       double refined[Arm::kDof];
       row(l, refined);
       real[l] = NewtonRefinement<Arm>::refine(refined, HeldAim<Arm>(T, {held}));

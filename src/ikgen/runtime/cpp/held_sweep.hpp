@@ -155,7 +155,7 @@ template <class Arm> struct HeldSweep {
         const int p = before ? down.links->origin[l] : -1, n = after ? up.links->next[k] : -1;
         if (bends(p >= 0 ? before : nullptr, p, a, l, b, k, n >= 0 ? after : nullptr, n, dead)) return true;
       }
-      if (hides_fold(before, a, b, after, l, dead)) return true;
+      if (hides_fold(before, a, b, after, l, dead, wide)) return true;
     }
     return false;
   }
@@ -204,11 +204,13 @@ template <class Arm> struct HeldSweep {
     return !dead && crossings > 1;
   }
 
-  // Whether two rows may come and go in the cell, or go and come.
-  static bool hides_fold(const Sample* before, const Sample& a, const Sample& b, const Sample* after, int lane, bool dead) noexcept {
+  // Whether two rows may come and go in the cell, or go and come: of a rounded arm, in a wide one, also where it is not
+  // margins that keep them away.
+  static bool hides_fold(const Sample* before, const Sample& a, const Sample& b, const Sample* after, int lane, bool dead,
+                         bool wide) noexcept {
     if (Arm::kFolds == 0 || lane >= Arm::kLanes || a.real[lane] != b.real[lane] || dead) return false;
     const double width = b.held - a.held;
-    bool all = true, some = false, dips = false;
+    bool all = true, some = wide && Arm::kRounded, dips = false;
     for (int k = 0; k < Arm::kFolds; ++k) {
       const double x = a.fold[k][lane], y = b.fold[k][lane], slope = (y - x) / width;
       double second = 0.0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "joint_range.hpp"
+#include "lane_aim.hpp"
 #include "lane_chain.hpp"
 #include "lane_rows.hpp"
 #include "moving_joints.hpp"
@@ -44,18 +45,22 @@ template <int Rows, int Columns, int N> struct LaneFactors {
   }
 };
 
-// Arm: as for LaneChain; MovingJoints; Task; kSize; Rows<P>; Policy.
+// Arm: as for LaneChain, LaneAim and MovingJoints; Task; kSize; Rows<P>; Policy.
 template <class Arm> struct LaneNewton {
   using Policy = typename Arm::Policy;
   template <int P> using Rows = typename Arm::template Rows<P>;
   static constexpr MovingJoints<Arm> kJoints{};
-  static constexpr int kEquations = Arm::Task::kCount, kMoving = MovingJoints<Arm>::kCount;
+  static constexpr int kTask = Arm::Task::kCount, kEquations = kTask + LaneAim<Arm, 1>::kCount;
+  static constexpr int kMoving = MovingJoints<Arm>::kCount;
   static_assert(kMoving <= kEquations);
 
   // Refines the rows that are real, and puts them into the range. What is not shown to be the one solution near its
   // start stays rough.
-  template <int P> static void refine(const Pose<P>& pose, const Range& range, Rows<P>& rows) noexcept {
+  template <int P>
+  static void refine(const Pose<P>& pose, const std::array<double, Arm::kFree>& held, const Range& range,
+                     Rows<P>& rows) noexcept {
     constexpr int N = Rows<P>::kLanes < kNative ? Rows<P>::kLanes : kNative;
+    const LaneAim<Arm, N> aim(pose, held);
     for (int at = 0; at < Rows<P>::kLanes; at += N) {
       alignas(64) double real[std::size_t{N}];
       int any = 0;
@@ -66,17 +71,17 @@ template <class Arm> struct LaneNewton {
       }
       if (any == 0) continue;
       const auto flags = bit((any & kHit) != 0 ? spread<N>(1.0) > 0.0 : spread<N>(-1.0) > 0.0, kHit);
-      refine_pack<P, N>(pose, range, at, load<N>(real) > 0.5, flags, rows);
+      refine_pack<P, N>(pose, aim, range, at, load<N>(real) > 0.5, flags, rows);
     }
   }
 
  private:
   template <int P, int N, bool H, bool F>
-  static void refine_pack(const Pose<P>& pose, const Range& range, int at, const MaskOf<N, H>& given,
-                          const LanesOf<N, F>& flags, Rows<P>& rows) noexcept {
+  static void refine_pack(const Pose<P>& pose, const LaneAim<Arm, N>& aim, const Range& range, int at,
+                          const MaskOf<N, H>& given, const LanesOf<N, F>& flags, Rows<P>& rows) noexcept {
     LaneChain<Arm, N> chain;
     for (int j = 0; j < Arm::kDof; ++j) chain.q[j] = load<N>(rows.q[j] + at);
-    const Arrival<N> at_end = steps<P, N>(pose, given, chain);
+    const Arrival<N> at_end = steps<P, N>(pose, aim, given, chain);
     const Mask<N> real = given & !at_end.beside, good = at_end.good;
     Mask<N> inside = real;
     for (int j = 0; j < Arm::kDof; ++j) {
@@ -97,16 +102,17 @@ template <class Arm> struct LaneNewton {
 
   // Steps until all lanes are done, or as many as there may be.
   template <int P, int N>
-  static Arrival<N> steps(const Pose<P>& pose, const Mask<N>& real, LaneChain<Arm, N>& chain) noexcept {
+  static Arrival<N> steps(const Pose<P>& pose, LaneAim<Arm, N> aim, const Mask<N>& real, LaneChain<Arm, N>& chain) noexcept {
     LaneFactors<kEquations, kMoving, N> factors;
     Lanes<N> before = spread<N>(Policy::kFarthestStart), rest = before;
     Mask<N> good = real, done = !real;
     chain.start();
+    aim.start(chain.q);
     for (int k = 0; k < Policy::kLaneSteps; ++k) {
       Lanes<N> error[kEquations], d[kMoving], step[Arm::kDof];
       chain.forward();
       const bool fresh = k == 0 || k > 2 || !all((!good) | (Policy::kNear > before));
-      compare<P, N>(pose, chain, fresh, error, factors);
+      compare<P, N>(pose, aim, chain, fresh, error, factors);
       factors.solve(error, d);
       Lanes<N> size = abs(d[0]);
       for (int i = 1; i < kMoving; ++i) size = max(size, abs(d[i]));
@@ -116,6 +122,7 @@ template <class Arm> struct LaneNewton {
       for (auto& none : step) none = spread<N>(0.0);
       for (int i = 0; i < kMoving; ++i) step[kJoints[i]] = select(good, d[i], 0.0);
       chain.move(step);
+      aim.move(step);
       if (k > 0) done = (!good) | (Policy::kConverged * before > size * size) | (Policy::kConverged > size);
       rest = abs(error[0]);
       for (int i = 1; i < kEquations; ++i) rest = max(rest, abs(error[i]));
@@ -128,14 +135,15 @@ template <class Arm> struct LaneNewton {
 
   // The error at the chain's tip, and with `fresh` its slope, factored.
   template <int P, int N>
-  static void compare(const Pose<P>& pose, const LaneChain<Arm, N>& chain, bool fresh, Lanes<N> (&error)[kEquations],
-                      LaneFactors<kEquations, kMoving, N>& factors) noexcept {
-    Lanes<N> t[3][4];
+  static void compare(const Pose<P>& pose, const LaneAim<Arm, N>& aim, const LaneChain<Arm, N>& chain, bool fresh,
+                      Lanes<N> (&error)[kEquations], LaneFactors<kEquations, kMoving, N>& factors) noexcept {
+    Lanes<N> t[3][4], slope[kEquations][Arm::kDof];
     for (int r = 0; r < 3; ++r)
       for (int c = 0; c < 4; ++c) t[r][c] = spread<N>(pose.t[r][c]);
     Arm::Task::error(t, chain.tip, error);
+    if constexpr (kEquations > kTask) aim.compare(error[kTask], slope[kTask]);
     if (!fresh) return;
-    Lanes<N> J[6][Arm::kDof], slope[kEquations][Arm::kDof];
+    Lanes<N> J[6][Arm::kDof];
     chain.jacobian(J);
     Arm::Task::slope(chain.tip, J, slope);
     for (int e = 0; e < kEquations; ++e)

@@ -23,7 +23,7 @@ template <class Arm> struct LaneSolve {
     Rows<P> rows;
     if constexpr (Arm::kNewton) {
       Arm::branches(pose, typename Arm::Seed(), options.free, kAnywhere, rows);
-      Arm::refine(pose, range, rows);
+      Arm::refine(pose, options.free, range, rows);
     } else {
       Arm::branches(pose, typename Arm::Seed(), options.free, range, rows);
     }

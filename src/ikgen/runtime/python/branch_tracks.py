@@ -69,7 +69,8 @@ def _doubtful(joint: HeldJoint, rows: Rows, following: Index, limits: bool) -> F
     dead, crossings = _limit_crossings(arm, q, slope, bend, linked, limits)
     out |= (linked & ~dead & (crossings > 1)).any(axis=1) & narrow
     out |= _ending(arm, rows, following, slope, limits, wide, narrow)
-    return np.asarray(out | (_hidden_folds(rows, following, linked & dead).any(axis=1) & narrow))
+    anyhow = wide & arm.rounded
+    return np.asarray(out | (_hidden_folds(rows, linked & dead, anyhow).any(axis=1) & narrow))
 
 
 def _row_bends(arm: Arm, rows: Rows, following: Index) -> tuple[Array, Array, Array]:
@@ -151,11 +152,12 @@ def _reach(own: Array, beside: Array, where: int) -> Array:
     return np.concatenate([share, [1.0]] if where else [[1.0], share])
 
 
-def _hidden_folds(rows: Rows, following: Index, dead: Flags) -> Flags:
-    """Per cell and row: two rows may come and go between its ends, or go and come."""
+def _hidden_folds(rows: Rows, dead: Flags, anyhow: Flags) -> Flags:
+    """Per cell and row: two rows may come and go between its ends, or go and come; in some cells (n - 1,)
+    also where it is not what `folds` tells that keeps them away, as of rounded arms."""
     f, width = rows.folds, np.diff(rows.held)[:, None, None]
     if not f.shape[2]:
-        return np.zeros(following.shape, dtype=bool)
+        return np.zeros(dead.shape, dtype=bool)
     with np.errstate(all="ignore"):
         slope = np.diff(f, axis=0) / width
         second = np.abs(np.diff(slope, axis=0)) / (width[1:] + width[:-1])
@@ -166,6 +168,7 @@ def _hidden_folds(rows: Rows, following: Index, dead: Flags) -> Flags:
     bend *= _SAFETY * width**2 / 4.0
     least, most = np.fmin(f[:-1], f[1:]) - bend, np.fmax(f[:-1], f[1:]) + bend
     none = ~rows.real[:-1] & ~rows.real[1:]
-    missing = none & (most > 0.0).all(axis=2) & ((f[:-1] <= 0.0) | (f[1:] <= 0.0)).any(axis=2)
+    some = ((f[:-1] <= 0.0) | (f[1:] <= 0.0)).any(axis=2) | anyhow[:, None]
+    missing = none & (most > 0.0).all(axis=2) & some
     both = rows.real[:-1] & rows.real[1:]
     return missing | (both & ~dead & (least < 0.0).any(axis=2))
