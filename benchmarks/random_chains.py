@@ -1,6 +1,6 @@
 """Random chains: the share solved, and whether what was solved is right and complete.
 
-    python -m benchmarks.random_chains [--count N] [--poses N] [--search N] [--seed N]
+    python -m benchmarks.random_chains [--count N] [--first N] [--poses N] [--search N] [--seed N]
         [--joints N] [--slides N] [--any-angle] [--command-line] [--emit python,cpp] [--record]
 
 Modified DH tables of 3 to 6 joints, revolute and prismatic mixed, twists of 0 and ±90 degrees, about
@@ -8,6 +8,7 @@ half of the lengths zero; or of `--joints` of which `--slides` are prismatic, `-
 twists. Arms whose joints are not independent (a smaller rank than joints) are drawn again: they have
 infinitely many solutions. What the rules leave goes on to the eliminations, where six joints move.
 `--command-line` takes each through `ikgen from-dh` with its whole verification, special poses included.
+`--first` starts at a later table of the same drawing, so that a long run may be done in pieces.
 `--search` compares the solutions of so many poses a table with those of an independent search: Newton's
 method from many random starts.
 """
@@ -175,6 +176,7 @@ def parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
     """The options."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--first", type=int, default=0, help="tables to draw and leave out")
     parser.add_argument("--poses", type=int, default=100)
     parser.add_argument("--search", type=int, default=0, help="poses to compare with a search")
     parser.add_argument("--seed", type=int, default=0)
@@ -194,7 +196,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     least, most = (options.joints, options.joints) if options.joints else (3, 6)
     drawn = Drawn(least, most, options.slides, options.any_angle)
     with tempfile.TemporaryDirectory() as folder:
-        for number in range(options.count):
+        for _ in range(options.first):
+            random_table(rng, drawn)
+        for number in range(options.first, options.first + options.count):
             one_table(random_table(rng, drawn), Path(folder), options, number, tally)
     for dof in sorted(tally.total):
         print(f"{dof} joints: {tally.solved[dof]} of {tally.total[dof]} solved")

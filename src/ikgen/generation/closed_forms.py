@@ -205,6 +205,7 @@ def _as_written(form: ClosedForm, demand: Demand) -> ClosedForm:
 
 def _best_task(reading: Reading, demand: Demand) -> ClosedForm:
     """The asked task; without one the task that fits the arm best and has a closed form."""
+    from ikgen.kinematics.exact_ends import with_exact_ends
     from ikgen.tasks import find_task
     from ikgen.tasks.fitting import fitting_tasks
 
@@ -216,7 +217,9 @@ def _best_task(reading: Reading, demand: Demand) -> ClosedForm:
         tasks = [task for task in fitting if task.name not in demand.passed_over]
     first: ClosedForm | None = None
     for task in tasks:
-        form = ClosedForm(reading, task, by_rules(dh, task, demand.progress))
+        rows = dh if task.whole_pose else with_exact_ends(dh)
+        graph = by_rules(rows, task, demand.progress)
+        form = ClosedForm(replace(reading, dh=rows), task, graph)
         if form.closed:
             return form
         first = first or form
