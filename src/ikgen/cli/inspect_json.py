@@ -26,9 +26,9 @@ def as_dict(found: Inspection) -> dict[str, Any]:
             {"base": c.base, "tip": c.tip, "dof": c.dof, "joints": list(c.joints), "why": c.why}
             for c in found.candidates
         ]
-    if found.reading is not None and found.geometry is not None:
+    if found.dh is not None and found.geometry is not None:
         record["arm_angle"] = found.arm_angle
-        record["chain"] = _chain(found.reading.dh, found.geometry)
+        record["chain"] = _chain(found.dh, found.geometry)
     record["attempts"] = [_attempt(one) for one in found.attempts]
     return record
 
@@ -63,9 +63,8 @@ def _attempt(attempt: Attempt) -> dict[str, Any]:
 
 
 def _chain(dh: DHChain, geometry: GeometryClass) -> dict[str, Any]:
-    from ikgen.kinematics.kept import keep_constants, kept_constants, stray_lengths
+    from ikgen.kinematics.kept import kept_constants
 
-    kept = kept_constants(keep_constants(dh, stray_lengths(dh))) if dh.snaps else ()
     return {
         "base": dh.base_link,
         "tip": dh.tip_link,
@@ -77,7 +76,7 @@ def _chain(dh: DHChain, geometry: GeometryClass) -> dict[str, Any]:
         "dh": [_row(row) for row in dh.rows],
         "constants": constants(dh),
         "snaps": [{"what": s.what, "before": s.before, "after": s.after} for s in dh.snaps],
-        "kept": [{"what": s.what, "value": s.before, "meant": s.after} for s in kept],
+        "kept": [{"what": s.what, "value": s.before, "meant": s.after} for s in kept_constants(dh)],
         "deviation": {"m": dh.deviation[0], "rad": dh.deviation[1]},
     }
 

@@ -26,8 +26,10 @@ def as_text(found: Inspection) -> str:
     if found.tree is not None:
         parts.append(f"robot '{found.tree.name}'\n{joint_tree(found.tree)}")
         parts.append(_chains(found))
-    if found.reading is not None and found.geometry is not None:
-        parts += _chain(found.reading.dh, found.geometry)
+    if found.dh is not None and found.geometry is not None:
+        parts += _chain(found.dh, found.geometry)
+        if found.taken is None and found.dh.snaps:
+            parts.append("a closed form may do with less: derivations tell")
         parts.append(_advice(found))
     return "\n\n".join(part for part in parts if part)
 
@@ -62,22 +64,17 @@ def _chain(dh: DHChain, geometry: GeometryClass) -> list[str]:
         rows = [(s.what, f"{s.before:.12g}", "->", f"{s.after:.12g}") for s in dh.snaps]
         cost = f"moves the tip by at most {1e3 * metres:.2g} mm and {radians:.2g} rad"
         parts.append(f"taken as exact ({cost}):\n{table(rows)}")
-        parts += _kept(dh)
     else:
         parts.append("taken as exact: nothing")
-    return parts
+    return parts + _kept(dh)
 
 
 def _kept(dh: DHChain) -> list[str]:
-    """Constants that a closed form may leave as they are."""
-    from ikgen.kinematics.kept import keep_constants, kept_constants, stray_lengths
+    """Constants that the closed form takes as they are."""
+    from ikgen.kinematics.kept import kept_constants
 
-    nearest = keep_constants(dh, stray_lengths(dh))
-    rows = [(s.what, f"{s.before:.12g}", "for", f"{s.after:.12g}") for s in kept_constants(nearest)]
-    metres, radians = nearest.deviation
-    cost = f"then the tip is within {1e3 * metres:.2g} mm and {radians:.2g} rad"
-    lead = f"kept as in the file where the closed form can do with them ({cost})"
-    return [f"{lead}:\n{table(rows)}"] if rows else []
+    rows = [(s.what, f"{s.before:.12g}", "for", f"{s.after:.12g}") for s in kept_constants(dh)]
+    return [f"kept as in the file:\n{table(rows)}"] if rows else []
 
 
 def _advice(found: Inspection) -> str:

@@ -16,7 +16,7 @@ from ikgen.program.policy import SolvePolicy
 from ikgen.program.statements import Program
 from ikgen.tasks import Task, find_task
 
-__all__ = ["CLOSE", "SolverModule"]
+__all__ = ["CLOSE", "SolverModule", "most_rows", "refines_all"]
 
 CLOSE = 8e-10
 """Deviation up to which a row that is exact for the solved geometry is right for the file (1e-9)."""
@@ -24,6 +24,17 @@ CLOSE = 8e-10
 FAR = 1.5e-5
 """Deviation (rad or m) above which a closed-form row may be too far from the file's solution for Newton
 steps near folds, at regular configurations too."""
+
+
+def refines_all(dh: DHChain, plan: EliminationPlan | None) -> bool:
+    """Whether all rows take Newton steps: the file is off what the rules solved."""
+    return plan is None and max(dh.deviation) > CLOSE
+
+
+def most_rows(lanes: int, refined: bool) -> int:
+    """Rows of a solution at most, `lanes` of the closed form. Of a rounded file each row of what was solved
+    may lead to two near folds; six joints have sixteen at most."""
+    return min(2 * lanes, max(lanes, 16)) if refined else lanes
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,9 +74,7 @@ class SolverModule:
     def refine(self) -> str:
         """Which rows take Newton steps on the file's own chain: "some" (those of a continuum or on the
         boundary, where the closed form lost digits) or "all" (the file rounds its geometry)."""
-        if self.plan is not None:
-            return "some"
-        return "some" if max(self.dh.deviation) <= CLOSE else "all"
+        return "all" if refines_all(self.dh, self.plan) else "some"
 
     @property
     def policy(self) -> SolvePolicy:
@@ -106,9 +115,8 @@ class SolverModule:
 
     @property
     def max_solutions(self) -> int:
-        """Rows of the solution at most (two whole turns of a joint count once). Of a rounded
-        file each row of what was solved may lead to two near folds; six joints have sixteen at most."""
-        return min(2 * self.lanes, max(self.lanes, 16)) if self.refine == "all" else self.lanes
+        """Rows of the solution at most (two whole turns of a joint count once)."""
+        return most_rows(self.lanes, self.refine == "all")
 
     @property
     def lanes(self) -> int:

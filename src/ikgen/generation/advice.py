@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from ikgen.generation.closed_forms import ClosedForm, Demand, forms_held, preference
+from ikgen.generation.closed_forms import (
+    ClosedForm,
+    Demand,
+    as_written,
+    closed_form,
+    forms_held,
+    preference,
+    taken_form,
+)
 from ikgen.generation.held_joints import HeldChoice, held_choices
 from ikgen.generation.progress import Progress
 
@@ -17,7 +25,7 @@ if TYPE_CHECKING:
     from ikgen.solver.solution_graph import SolutionGraph
     from ikgen.tasks import Task
 
-__all__ = ["Attempt", "attempt", "attempts", "eliminations"]
+__all__ = ["Attempt", "attempt", "attempts"]
 
 _POSE_FREEDOMS = 6
 _ENOUGH = 3
@@ -28,7 +36,8 @@ class Attempt:
     """One derivation that was tried: which task, which joints held (`held`: beyond those that were
     asked for), and what came of it. `weak` says of each step that fails at some regular configurations
     which it is: such a closed form is verified before it is written, and may be refused then. `implied`
-    says whether the task goes without saying, `default` whether this is what is made without options."""
+    says whether the task goes without saying, `default` whether this is what is made without options. `dh`
+    are the rows that it solves: the file's, or those of geometry nearby that a closed form needs."""
 
     task: str
     free: tuple[str, ...]
@@ -40,6 +49,7 @@ class Attempt:
     weak: tuple[str, ...] = ()
     implied: bool = True
     default: bool = False
+    dh: DHChain | None = field(default=None, compare=False, repr=False)
 
     @property
     def rank(self) -> tuple[bool, bool, int, bool, int]:
@@ -63,44 +73,47 @@ class Attempt:
         return replace(request, task=task, free=free)
 
 
-def attempts(reading: Reading, asked: str | None, progress: Progress) -> list[Attempt]:
-    """The derivations worth trying for a chain, best first; the asked task alone where one is.
+def attempts(
+    reading: Reading, asked: str | None, progress: Progress, axis: str | None = None
+) -> list[Attempt]:
+    """The derivations worth trying for a chain, best first; the asked task alone where one is, else by the
+    tool's `axis` where one is asked for.
 
-    Where joints are to be held, the choices in the order in which they are taken without options. An arm
-    with fewer joints than a pose has freedoms is tried with the tasks that fit, the whole pose among
-    them, and with smaller ones.
+    Each is what would be generated with its options. Where joints are to be held, the choices in the order
+    in which they are taken without options. An arm with fewer joints than a pose has freedoms is tried with
+    the tasks that fit, the whole pose among them, and with smaller ones.
     """
-    from ikgen.tasks import TASKS, find_task
-    from ikgen.tasks.fitting import fitting_tasks
+    from ikgen.tasks import find_task
 
-    demand = Demand(asked, (), progress)
+    demand = Demand(asked, (), progress, axis=axis)
     choices = held_choices(reading, find_task(asked or "pose"))
     if choices:
         return _attempts_held(reading, choices, demand)
-    dh = reading.dh
-    moving = dh.dof - len(dh.free)
-    if asked is not None or moving >= _POSE_FREEDOMS:
-        tasks = [find_task(asked or "pose")]
-    else:
-        less = [t for t in TASKS if t.freedoms == moving - 1 and t.name != "rotation"]
-        tasks = [*fitting_tasks(dh), *less]
-    found: list[Attempt] = []
-    for task in tasks:
-        for held_dh in _held_chains(reading, task):
-            progress("derive", " ".join([task.name, *(f"hold {name}" for name in held_dh.free)]))
-            found.append(attempt(held_dh, task))
-    if not any(a.closed for a in found):
-        found += eliminations([a for a in found if a.task == "pose"], dh, progress)
-    if asked is None and moving < _POSE_FREEDOMS:
-        found = _with_default(found, [task.name for task in fitting_tasks(dh)])
+    progress("derive", asked or "the task that fits")
+    taken = attempt(closed_form(reading, demand), progress)
+    if asked is not None or reading.dh.dof - len(reading.dh.free) >= _POSE_FREEDOMS:
+        return [taken]
+    found = [replace(taken, default=taken.closed), *_other_tasks(reading, taken.task, demand)]
     return sorted(found, key=lambda a: a.rank)
 
 
-def _with_default(found: Sequence[Attempt], fitting: Sequence[str]) -> list[Attempt]:
-    """The attempts, the first closed one of the tasks that fit marked as what is taken without options."""
-    fits = [a for a in found if a.closed and a.task in fitting]
-    first = min(fits, key=lambda a: fitting.index(a.task), default=None)
-    return [replace(a, default=a is first) for a in found]
+def _other_tasks(reading: Reading, taken: str, demand: Demand) -> list[Attempt]:
+    """What becomes of the other tasks that fit an arm, and of those with one freedom less."""
+    from ikgen.tasks import TASKS
+    from ikgen.tasks.fitting import fitting_tasks
+
+    moving = reading.dh.dof - len(reading.dh.free)
+    less = [t for t in TASKS if t.freedoms == moving - 1 and t.name != "rotation"]
+    found = []
+    for task in [*fitting_tasks(reading.dh, demand.axis), *less]:
+        if task.name != taken:
+            for dh in _held_chains(reading, task):
+                names = " ".join([task.name, *(f"hold {name}" for name in dh.free)])
+                demand.progress("derive", names)
+                asked = replace(demand, task=task.name)
+                form = closed_form(replace(reading, dh=dh), asked)
+                found.append(attempt(form, demand.progress))
+    return found
 
 
 def _attempts_held(
@@ -113,13 +126,15 @@ def _attempts_held(
         if sum(form.sound for _, form in tried) == _ENOUGH:
             break
     tried.sort(key=lambda pair: preference(*pair))
+    taken = taken_form(tried, demand)
+    others = [pair for pair in tried if taken is None or pair[0].held != taken[0].held]
+    forms = [(choice, as_written(form, demand)) for choice, form in others]
     found = [
-        replace(_attempt_of(form.graph, form.task), held=choice.held) for choice, form in tried
+        replace(attempt(form, demand.progress), held=choice.held)
+        for choice, form in (forms if taken is None else [taken, *forms])
     ]
-    if not tried[0][1].sound:
-        failed = [a for a in found if a.task == "pose"]
-        found = [*eliminations(failed, reading.dh, demand.progress), *found]
-    return [replace(a, default=k == 0 and bool(a.held)) for k, a in enumerate(found)]
+    first = replace(found[0], default=found[0].closed and bool(found[0].held))
+    return [first, *found[1:]]
 
 
 def _held_chains(reading: Reading, task: Task) -> list[DHChain]:
@@ -131,48 +146,30 @@ def _held_chains(reading: Reading, task: Task) -> list[DHChain]:
     return [choice.dh for choice in choices if len(choice.held) == spare == 1]
 
 
-def eliminations(failed: list[Attempt], dh: DHChain, progress: Progress) -> list[Attempt]:
-    """The first of the failed attempts that an elimination solves; empty if none does."""
-    from ikgen.elimination import elimination_plan
+def attempt(form: ClosedForm, progress: Progress) -> Attempt:
+    """What a derivation came to: what would be generated of it, where it is closed."""
+    from ikgen.emit.solver_module import most_rows, refines_all
+    from ikgen.generation.settled_form import settled_form
     from ikgen.lowering.elimination_program import elimination_name
 
-    for one in failed:
-        progress("derive", " ".join(["elimination", *one.free]))
-        held = replace(dh, free=one.free)
-        plan = elimination_plan(held)
-        if plan is not None:
-            order = (f"all joints at once (general {elimination_name(held)} elimination)",)
-            solved = replace(one, closed=True, max_solutions=plan.most, order=order)
-            return [replace(solved, left=(), weak=())]
-    return []
-
-
-def attempt(dh: DHChain, task: Task) -> Attempt:
-    """Try one derivation by the rules."""
-    from ikgen.solver.solve import solve_chain
-
-    graph = solve_chain(dh, readable=task.readable, tool_on_right=not task.whole_pose)
-    return _attempt_of(graph, task)
-
-
-def _attempt_of(graph: SolutionGraph, task: Task) -> Attempt:
-    """What a derivation by the rules came to."""
-    dh = graph.dh
-    closed = not graph.open_joints
-    most = 0
-    if closed:
-        from ikgen.lowering.lower import lower
-
-        most = lower(graph, model_error=0.0).max_solutions
+    most, order, left = 0, form.graph.order, form.graph.open_joints
+    if form.closed or form.plan is not None:
+        form, program = settled_form(form, progress)
+        refined = refines_all(form.reading.dh, form.plan)
+        most, order, left = most_rows(program.max_solutions, refined), form.graph.order, ()
+    graph, task, dh = form.graph, form.task, form.reading.dh
+    if form.plan is not None:
+        order = (f"all joints at once (general {elimination_name(dh)} elimination)",)
     return Attempt(
         task.name,
         dh.free,
-        closed,
+        not left,
         most,
-        graph.order,
-        tuple(dh.joints[j].name for j in graph.open_joints),
-        weak=_weak_steps(graph) if closed else (),
+        order,
+        tuple(dh.joints[j].name for j in left),
+        weak=_weak_steps(graph) if form.closed and form.plan is None else (),
         implied=task.whole_pose and dh.dof - len(dh.free) >= _POSE_FREEDOMS,
+        dh=dh,
     )
 
 

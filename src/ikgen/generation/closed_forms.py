@@ -23,11 +23,15 @@ __all__ = [
     "RULE_TRIES",
     "ClosedForm",
     "Demand",
+    "as_written",
+    "by_elimination",
     "by_rules",
     "closed_form",
     "forms_held",
     "preference",
     "rule_tries",
+    "taken_form",
+    "task_form",
 ]
 
 RULE_TRIES = 8
@@ -91,9 +95,8 @@ def closed_form(reading: Reading, demand: Demand) -> ClosedForm:
     choices = tuple(choice for choice in choices if choice.held not in demand.refused)
     if choices:
         return _with_joints_held(reading, choices, demand)
-    found = _by_rules_somewhere(reading, demand)
-    found = _as_written(found, demand) if found.closed else found
-    return found if found.sound else _by_elimination(found, demand)
+    found = as_written(_by_rules_somewhere(reading, demand), demand)
+    return found if found.sound else by_elimination(found, demand)
 
 
 def _with_arm_angle(reading: Reading, demand: Demand) -> ClosedForm:
@@ -129,16 +132,25 @@ def _with_joints_held(
         if not later or min(preference(*pair) for pair in tried) <= _hoped(later[0]):
             break
     tried.sort(key=lambda pair: preference(*pair))
+    taken = taken_form(tried, demand)
+    if taken is None:
+        return replace(tried[0][1], reading=reading)
+    choice, form = taken
+    return _explained(form, choice, choices, demand.refused)
+
+
+def taken_form(
+    tried: Sequence[tuple[HeldChoice, ClosedForm]], demand: Demand
+) -> tuple[HeldChoice, ClosedForm] | None:
+    """Which of the forms, best first, is taken, settled; None where no joint held gives one."""
     choice, form = tried[0]
     if form.sound:
-        return _explained(_as_written(form, demand), choice, choices, demand.refused)
+        return choice, as_written(form, demand)
     for other, open_form in tried:
-        solved = _by_elimination(open_form, demand)
+        solved = by_elimination(open_form, demand)
         if solved.plan is not None:
-            return _explained(solved, other, choices, demand.refused)
-    if form.closed:
-        return _explained(_as_written(form, demand), choice, choices, demand.refused)
-    return replace(form, reading=reading)
+            return other, solved
+    return (choice, as_written(form, demand)) if form.closed else None
 
 
 def forms_held(
@@ -191,10 +203,12 @@ def _explained(
     return replace(form, held=Held(taken.held, why, tuple(others)[:_OTHERS], refused))
 
 
-def _as_written(form: ClosedForm, demand: Demand) -> ClosedForm:
-    """The same of rows nearer to the file's."""
+def as_written(form: ClosedForm, demand: Demand) -> ClosedForm:
+    """The same of rows nearer to the file's, if it is closed."""
     from ikgen.generation.as_written import solve_as_written
 
+    if not form.closed:
+        return form
     dh, graph = solve_as_written(
         form.reading.dh,
         form.graph,
@@ -205,7 +219,6 @@ def _as_written(form: ClosedForm, demand: Demand) -> ClosedForm:
 
 def _best_task(reading: Reading, demand: Demand) -> ClosedForm:
     """The asked task; without one the task that fits the arm best and has a closed form."""
-    from ikgen.kinematics.exact_ends import with_exact_ends
     from ikgen.tasks import find_task
     from ikgen.tasks.fitting import fitting_tasks
 
@@ -217,14 +230,20 @@ def _best_task(reading: Reading, demand: Demand) -> ClosedForm:
         tasks = [task for task in fitting if task.name not in demand.passed_over]
     first: ClosedForm | None = None
     for task in tasks:
-        rows = dh if task.whole_pose else with_exact_ends(dh)
-        graph = by_rules(rows, task, demand.progress)
-        form = ClosedForm(replace(reading, dh=rows), task, graph)
+        form = task_form(reading, task, demand.progress)
         if form.closed:
             return form
         first = first or form
     assert first is not None
     return first
+
+
+def task_form(reading: Reading, task: Task, progress: Progress) -> ClosedForm:
+    """What the rules make of a task, closed or not."""
+    from ikgen.kinematics.exact_ends import with_exact_ends
+
+    dh = reading.dh if task.whole_pose else with_exact_ends(reading.dh)
+    return ClosedForm(replace(reading, dh=dh), task, by_rules(dh, task, progress))
 
 
 def by_rules(
@@ -248,7 +267,7 @@ def by_rules(
     )
 
 
-def _by_elimination(form: ClosedForm, demand: Demand) -> ClosedForm:
+def by_elimination(form: ClosedForm, demand: Demand) -> ClosedForm:
     """The form with the plan of an elimination where one applies."""
     if not form.task.whole_pose:
         return form

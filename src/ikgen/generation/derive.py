@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ikgen import __version__
 from ikgen.emit.derivation import Derivation, Unsolved
-from ikgen.generation.closed_forms import ClosedForm, Demand, by_rules, closed_form
+from ikgen.generation.closed_forms import Demand, closed_form
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.read import default_name, read
+from ikgen.generation.settled_form import settled_form
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Reading
     from ikgen.emit.solver_module import SolverModule
-    from ikgen.equations.knowledge import Variable
+    from ikgen.generation.closed_forms import ClosedForm
     from ikgen.generation.request import Request
     from ikgen.program.statements import Program
-    from ikgen.solver.solution_graph import SolutionGraph
 
 __all__ = ["derive"]
 
@@ -57,33 +56,13 @@ def derive(
 
         stuck = Unsolved(found.reading, geometry, found.task, found.graph, name, request.robot.name)
         raise unsolved_error(stuck, request)
-    found, program = _program(found, progress)
+    found, program = settled_form(found, progress)
     module = _module(name, request, found, program)
     unasked = request.task is None
     passed = tuple(passed_over) if unasked else ()
     return Derivation(
         found.reading, geometry, found.task, found.graph, module, unasked, found.held, passed
     )
-
-
-def _program(found: ClosedForm, progress: Progress) -> tuple[ClosedForm, Program]:
-    """The form that is emitted, and its lowered program."""
-    from ikgen.generation.fewest_sets import with_fewest_sets
-    from ikgen.lowering.elimination_program import elimination_program
-    from ikgen.lowering.lower import lower
-
-    dh = found.reading.dh
-    if found.plan:
-        return found, elimination_program(dh, found.plan.most)
-
-    def solve(passed_over: tuple[Variable, ...]) -> SolutionGraph:
-        return by_rules(dh, found.task, progress, passed_over)
-
-    def lowered(graph: SolutionGraph) -> Program:
-        return lower(graph, model_error=2.0 * max(dh.deviation))
-
-    graph, program = with_fewest_sets(found.graph, lowered, solve)
-    return replace(found, graph=graph), program
 
 
 def _module(name: str, request: Request, found: ClosedForm, program: Program) -> SolverModule:

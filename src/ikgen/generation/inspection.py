@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ikgen.generation.advice import attempts
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from ikgen.generation.advice import Attempt
     from ikgen.generation.request import Request
     from ikgen.kinematics.classify import GeometryClass
+    from ikgen.model.dh import DHChain
     from ikgen.model.joint_tree import JointTree
 
 __all__ = ["Inspection", "inspect_robot"]
@@ -23,13 +24,28 @@ __all__ = ["Inspection", "inspect_robot"]
 @dataclass(frozen=True, slots=True)
 class Inspection:
     """`reading` and its `geometry` are None where it is not clear which chain is meant, `tree` for a DH
-    table; `attempts` are derivations that were tried, best first."""
+    table; `attempts` are derivations that were tried, best first. The geometry is that of `dh`."""
 
     reading: Reading | None
     geometry: GeometryClass | None
     tree: JointTree | None
     candidates: tuple[ChainCandidate, ...]
     attempts: tuple[Attempt, ...]
+
+    @property
+    def taken(self) -> Attempt | None:
+        """The closed form that is generated where no other task or joint is asked for; None where none was
+        found."""
+        closed = self.closed
+        return next((one for one in closed if one.default), closed[0] if closed else None)
+
+    @property
+    def dh(self) -> DHChain | None:
+        """The rows that are generated from; before any derivation those of the exact geometry."""
+        taken = self.taken
+        if taken is not None and taken.dh is not None:
+            return taken.dh
+        return self.reading.dh if self.reading is not None else None
 
     @property
     def closed(self) -> tuple[Attempt, ...]:
@@ -73,6 +89,8 @@ def inspect_robot(
         candidates = candidate_chains(tree, request.base)
         if request.tip is not None or len(candidates) == 1:
             reading = read(request, tree)
-    tried = attempts(reading, request.named_task, progress) if advice and reading else []
-    geometry = classify(reading.dh) if reading else None
-    return Inspection(reading, geometry, tree, candidates, tuple(tried))
+    tried: list[Attempt] = []
+    if advice and reading:
+        tried = attempts(reading, request.named_task, progress, request.tool_axis)
+    found = Inspection(reading, None, tree, candidates, tuple(tried))
+    return replace(found, geometry=classify(found.dh) if found.dh else None)

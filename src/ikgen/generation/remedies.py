@@ -9,11 +9,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ikgen.errors import UnsolvedChainError
-from ikgen.generation.progress import Progress
+from ikgen.generation.progress import Progress, silent
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Unsolved
     from ikgen.generation.advice import Attempt
+    from ikgen.generation.closed_forms import ClosedForm
     from ikgen.generation.held_joints import HeldChoice
     from ikgen.generation.request import Request
     from ikgen.model.dh import DHChain
@@ -70,20 +71,25 @@ def _listed(tried: list[Attempt]) -> str:
 
 def remedies(unsolved: Unsolved, progress: Progress) -> list[Attempt]:
     """Derivations that were tried, up to three closed ones or the most attempts, in their order."""
-    from ikgen.generation.advice import attempt, eliminations
+    from ikgen.generation.advice import attempt
+    from ikgen.generation.closed_forms import Demand, by_elimination, task_form
 
+    reading = unsolved.reading
+    forms: list[ClosedForm] = []
     found: list[Attempt] = []
-    dh = unsolved.reading.dh
-    for task, choice in itertools.islice(_choices(unsolved), _most_attempts(dh)):
+    for task, choice in itertools.islice(_choices(unsolved), _most_attempts(reading.dh)):
         closed = [a for a in found if a.closed]
         if len(closed) == _ENOUGH or any(a.task != task.name for a in closed):
             break
         held = () if choice is None else choice.held
         progress("try", " ".join([task.name, *(f"--free {name}" for name in held)]))
-        one = attempt(dh if choice is None else choice.dh, task)
-        found.append(replace(one, held=held))
+        dh = reading.dh if choice is None else choice.dh
+        forms.append(task_form(replace(reading, dh=dh), task, silent))
+        found.append(replace(attempt(forms[-1], silent), held=held))
     if not any(a.closed for a in found):
-        found += eliminations([a for a in found if a.task == "pose"], dh, progress)
+        solved = (by_elimination(form, Demand(None, (), progress)) for form in forms)
+        first = next((form for form in solved if form.plan is not None), None)
+        found += [] if first is None else [attempt(first, progress)]
     return found
 
 

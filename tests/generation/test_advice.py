@@ -1,0 +1,32 @@
+"""What `ikgen inspect` says of a closed form is what is generated."""
+
+from __future__ import annotations
+
+import pytest
+from tests.support.solving import FIXTURES
+
+from ikgen.generation.derive import derive
+from ikgen.generation.inspection import inspect_robot
+from ikgen.generation.request import Request
+
+
+@pytest.mark.parametrize("robot", ["doosan_m1013", "ur5e", "igus_robolink_rl_dp_5", "franka_fr3"])
+def test_rows_steps_and_solutions_are_those_of_the_derivation(robot: str) -> None:
+    request = Request(FIXTURES / f"{robot}.urdf")
+    found, made = inspect_robot(request), derive(request)
+    taken = found.taken
+    assert taken is not None and found.dh is not None
+    assert found.dh.rows == made.reading.dh.rows
+    assert found.dh.deviation == made.reading.dh.deviation
+    assert found.geometry == made.geometry
+    assert taken.task == made.task.name
+    assert taken.order == made.module.order
+    assert taken.max_solutions == made.module.max_solutions
+
+
+def test_before_any_derivation_the_rows_are_exact() -> None:
+    request = Request(FIXTURES / "doosan_m1013.urdf")
+    found = inspect_robot(request, advice=False)
+    assert found.taken is None and found.reading is not None
+    assert found.dh is found.reading.dh
+    assert max(found.dh.deviation) > 1e-5
