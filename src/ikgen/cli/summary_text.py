@@ -44,7 +44,8 @@ def _task(derivation: Derivation) -> str:
     failed = f"failed verification: {passed}" if passed else ""
     if not derivation.chosen or task.whole_pose:
         return task.words + (f" ({failed})" if failed else "")
-    why = f"what fits {derivation.reading.dh.dof} joints" + (f"; {failed}" if failed else "")
+    dh = derivation.reading.dh
+    why = f"what fits {dh.dof - len(dh.free)} joints" + (f"; {failed}" if failed else "")
     return f"{task.words} (--task {task.name}: {why})"
 
 

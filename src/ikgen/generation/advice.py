@@ -16,6 +16,7 @@ from ikgen.generation.closed_forms import (
     taken_form,
 )
 from ikgen.generation.held_joints import HeldChoice, held_choices
+from ikgen.generation.held_needs import needs_held
 from ikgen.generation.progress import Progress
 
 if TYPE_CHECKING:
@@ -93,7 +94,8 @@ def attempts(
     taken = attempt(closed_form(reading, demand), progress)
     if asked is not None or reading.dh.dof - len(reading.dh.free) >= _POSE_FREEDOMS:
         return [taken]
-    found = [replace(taken, default=taken.closed), *_other_tasks(reading, taken.task, demand)]
+    default = taken.closed and not needs_held(reading.dh, find_task(taken.task))
+    found = [replace(taken, default=default), *_other_tasks(reading, taken.task, demand)]
     return sorted(found, key=lambda a: a.rank)
 
 

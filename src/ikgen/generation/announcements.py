@@ -30,6 +30,7 @@ def _passed_over(derivation: Derivation) -> str:
 
 def _over_constrained(derivation: Derivation) -> str:
     """In words, what a task that fixes more freedoms than the joints move means; "" where it does not."""
+    from ikgen.generation.held_needs import needs_held
     from ikgen.tasks.fitting import fitting_tasks, over_constrained
 
     dh, task = derivation.reading.dh, derivation.task
@@ -40,6 +41,9 @@ def _over_constrained(derivation: Derivation) -> str:
     smaller = f"--task {other} asks what the arm can do everywhere; " if other else ""
     if derivation.chosen:
         smaller = "No smaller task has a verified closed form here; "
+    elif needs_held(dh, task):
+        these = " ".join(f"--free {name}" for name in dh.free)
+        smaller += f"without {these} the arm can do it; "
     return (
         f"OVER-CONSTRAINED: the task '{task.name}' fixes {task.freedoms} freedoms and {moving} joints "
         f"move: solve() answers only poses that the arm can take to rounding, and no others. {smaller}"

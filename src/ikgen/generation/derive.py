@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from ikgen import __version__
 from ikgen.emit.derivation import Derivation, Unsolved
 from ikgen.generation.closed_forms import Demand, closed_form
+from ikgen.generation.held_needs import check_held
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.read import default_name, read
 from ikgen.generation.settled_form import settled_form
@@ -33,7 +34,7 @@ def derive(
 
     `passed_over` names tasks that are not to be chosen for the arm, `refused` joints that are not to be
     held together; `reading` is the request's where it was read before. Raises `UnsolvedChainError` where
-    there is no closed form.
+    there is no closed form, or none of a task that an arm can do whose joints the request holds.
     """
     from ikgen.kinematics.classify import classify
     from ikgen.kinematics.free_joints import free_defaults
@@ -56,6 +57,7 @@ def derive(
 
         stuck = Unsolved(found.reading, geometry, found.task, found.graph, name, request.robot.name)
         raise unsolved_error(stuck, request)
+    check_held(request, found.reading.dh, found.task, passed_over)
     found, program = settled_form(found, progress)
     module = _module(name, request, found, program)
     unasked = request.task is None

@@ -1,0 +1,54 @@
+"""Joints that are held by request, and that the arm would need for the task it is left with."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
+from tests.support.small_robots import write_robot
+
+from ikgen.cli.main import run
+from ikgen.generation.held_needs import needs_held
+from ikgen.generation.inspection import inspect_robot
+from ikgen.generation.read import read
+from ikgen.generation.request import Request
+from ikgen.tasks import find_task
+
+
+def test_pose_that_nobody_asked_for_is_refused_where_a_held_joint_is_needed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    robot, out = write_robot(tmp_path / "elbow.urdf"), tmp_path / "out"
+    command = ["from-urdf", str(robot), "--free", "waist", "-o", str(out), "--no-verify"]
+    assert run(command) == 3
+    said = capsys.readouterr().err
+    assert "a task that 2 joints can do, with 'waist' held" in said
+    assert f"hold none of them: ikgen from-urdf {robot}\n" in said
+    assert f"ikgen from-urdf {robot} --task pose --free waist" in said
+    assert not out.exists()
+    (attempt,) = inspect_robot(Request(robot, free={"waist": None})).closed
+    assert not attempt.default and attempt.options == "--free waist --task pose"
+    assert run([*command, "--task", "pose"]) == 0
+    said = capsys.readouterr()
+    assert "warning: OVER-CONSTRAINED" in said.err and "without --free waist" in said.err
+    assert "OVER-CONSTRAINED" in said.out
+
+
+def test_held_joint_that_leaves_a_task_to_do_is_no_matter(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    robot = write_robot(tmp_path / "elbow.urdf")
+    more = ["--free", "elbow", "-o", str(tmp_path), "--no-verify"]
+    assert run(["from-urdf", str(robot), *more]) == 0
+    assert "what fits 2 joints" in capsys.readouterr().out
+
+
+def test_spare_joint_is_not_needed(tmp_path: Path) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text(serial_urdf("arm", SHOULDER_ELBOW_WRIST))
+    pose = find_task("pose")
+    assert not needs_held(read(Request(path)).dh, pose)
+    assert not needs_held(read(Request(path, free={"shoulder_roll": None})).dh, pose)
+    two = {"shoulder_roll": None, "wrist_roll": None}
+    assert needs_held(read(Request(path, free=two)).dh, pose)
