@@ -20,8 +20,9 @@ pytestmark = pytest.mark.skipif(
 )
 
 
-def report(out: Path) -> int:
-    return run(["report", str(ROBOT), "--task", "position", "--no-verify", "-o", str(out)])
+def report(out: Path, *more: str) -> int:
+    asked = ["report", str(ROBOT), "--task", "position", "--no-verify", "-o", str(out)]
+    return run([*asked, *more])
 
 
 @pytest.fixture
@@ -41,12 +42,14 @@ def test_no_stale_pdf_beside_a_new_report(
     out.mkdir()
     (out / "elbow_report.tex").write_text("an earlier one")
     (out / "elbow_report.pdf").write_bytes(b"%PDF of the earlier one")
-    assert report(out) == 0
+    assert report(out) == 2
+    assert (out / "elbow_report.pdf").is_file()
+    assert report(out, "--force") == 0
     said = capsys.readouterr()
     assert "warning: no PDF of elbow_report.tex: pdflatex fails: Emergency stop." in said.err
     assert "warning: removed " in said.err
     assert sorted(p.name for p in out.iterdir()) == [
-        "elbow_graph.svg", "elbow_report.html", "elbow_report.tex"
+        "elbow_graph.svg", "elbow_report.html", "elbow_report.json", "elbow_report.tex"
     ]  # fmt: skip
     assert ".pdf" not in said.out
 

@@ -86,7 +86,7 @@ COMMAND = ["reach", str(TABLE), "--directions", "2", "--workers", "1", "-q"]
 
 def test_the_command_writes_both_files(tmp_path: Path) -> None:
     assert run([*COMMAND, "--cells", "6", "-o", str(tmp_path)]) == 0
-    assert sorted(p.suffix for p in tmp_path.iterdir()) == [".html", ".npz"]
+    assert sorted(p.suffix for p in tmp_path.iterdir()) == [".html", ".json", ".npz"]
 
 
 def without_compiler(*_: object, **__: object) -> None:
@@ -105,8 +105,14 @@ def test_the_command_writes_the_file_that_is_named(
     assert old.is_file()
     assert run([*command, "--cells", "6"]) == 0  # nothing of the larger one is left
     assert not old.exists() and sorted(p.name for p in store.parent.iterdir()) == [
-        "mine.html", "mine.zarr",
+        "mine.html", "mine.json", "mine.zarr",
     ]  # fmt: skip
     assert same(read_map(store), small())
+    (store / "notes.txt").write_text("mine")
+    capsys.readouterr()
+    assert run([*command, "--cells", "6"]) == 2
+    assert "notes.txt is in no record of ikgen" in capsys.readouterr().err
+    assert run([*command, "--cells", "6", "--force"]) == 0
+    assert not (store / "notes.txt").exists()
     assert run([*command, "--cells", "6", "--json"]) == 0
     assert str(store) in capsys.readouterr().out

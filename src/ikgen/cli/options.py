@@ -18,6 +18,7 @@ __all__ = [
     "emit_option",
     "executor_option",
     "executor_options",
+    "force_option",
     "package_options",
     "reading_options",
     "sampling_options",
@@ -113,6 +114,11 @@ emit_option = click.option(
     type=Emits(),
     help=f"Outputs (default: python): {', '.join(row.name for row in EMITTERS)}, and those of other "
     "packages (ikgen doctor). Those that were made here before are made again.",
+)
+
+
+force_option = click.option(
+    "--force", is_flag=True, help="Replace files that ikgen did not write, or that were edited."
 )
 
 

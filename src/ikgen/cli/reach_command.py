@@ -13,7 +13,12 @@ import click
 
 from ikgen.cli.completion import RobotFile
 from ikgen.cli.console import Console
-from ikgen.cli.options import chain_options, console_options, executor_options
+from ikgen.cli.options import (
+    chain_options,
+    console_options,
+    executor_options,
+    force_option,
+)
 from ikgen.cli.request_options import make_request
 
 __all__ = ["reach"]
@@ -55,6 +60,7 @@ __all__ = ["reach"]
     default=Path(),
     help="Where the map goes (default: here); a file ends in .npz or .zarr.",
 )
+@force_option
 @executor_options
 @click.option(
     "--portable", is_flag=True, help="Compile for any processor of this kind, not this one alone."
@@ -67,6 +73,7 @@ def reach(
     directions: int,
     rolls: int,
     out: Path,
+    force: bool,
     executor: str,
     scheduler: str | None,
     workers: int | None,
@@ -88,6 +95,7 @@ def reach(
     order = MapOrder(
         cells, directions, rolls, Workers(executor, workers, scheduler),
         portable=portable or scheduler is not None, command=_command(robot, cells, directions, rolls),
+        force=force,
     )  # fmt: skip
     with Console(quiet=quiet, verbose=verbose) as console:
         request, done = make_request(robot, **chain), partial(console.share, "map")

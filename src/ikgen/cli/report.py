@@ -11,7 +11,7 @@ import click
 from ikgen.cli.completion import RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.error_output import ResultError
-from ikgen.cli.options import chain_options, console_options, sampling_options
+from ikgen.cli.options import chain_options, console_options, force_option, sampling_options
 from ikgen.cli.request_options import make_request
 from ikgen.generation.request import Outputs
 
@@ -36,6 +36,7 @@ __all__ = ["report"]
     type=click.Choice(["sympy"]),
     help="Also write the solutions and equations as a module of SymPy expressions.",
 )
+@force_option
 @sampling_options
 @click.option("--no-verify", is_flag=True, help="Leave the table of verification out.")
 @console_options
@@ -44,6 +45,7 @@ def report(
     *,
     out: Path,
     emit: tuple[str, ...],
+    force: bool,
     samples: int,
     seed: int,
     no_verify: bool,
@@ -59,7 +61,9 @@ def report(
     """
     from ikgen.generation.report_files import write_report
 
-    outputs = Outputs(emit=emit, out=out, samples=samples, seed=seed, verify=not no_verify)
+    outputs = Outputs(
+        emit=emit, out=out, samples=samples, seed=seed, verify=not no_verify, force=force
+    )
     with Console(quiet=quiet, verbose=verbose) as console:
         made = write_report(make_request(robot, **chain), outputs, console)
         for text in made.warnings:

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ikgen.errors import BadDescriptionError, UsageError
-from ikgen.generation.record import Record, digest, read_record, records_of, text_digest
+from ikgen.generation.record import Record, digest, read_record, records_of
+from ikgen.generation.written_list import check_written, listed, recorded
 from ikgen.model.module_name import identifier
 
 if TYPE_CHECKING:
@@ -55,25 +56,10 @@ class Earlier:
     def check_files(self, out: Path, texts: Mapping[str, str]) -> None:
         """Raises `UsageError` where a file that would be replaced is not as ikgen wrote it, or another's;
         `texts`: what is to be written, by name in the folder `out`."""
-        wrote = {
-            (record.folder / name).resolve(): expected
-            for record in self.records
-            for name, expected in record.files.items()
-        }
-        records = {record.path.resolve() for record in self.records}
-        for name, text in texts.items():
-            path = (out / name).resolve()
-            found = digest(path)
-            known = (wrote.get(path), text_digest(text))
-            if found is None or path in records or found in known:
-                continue
-            what = (
-                "was edited after it was generated" if path in wrote else "is in no record of ikgen"
-            )
-            raise UsageError(
-                f"{out / name} {what}",
-                hint="keep it by another name, write elsewhere with -o DIR, or replace it with --force",
-            )
+        wrote: dict[Path, set[str]] = listed(out, f"{self.name}_report")
+        for path, digests in recorded(out, self.name).items():
+            wrote.setdefault(path, set()).update(digests)
+        check_written(out, texts, wrote, {record.path.resolve() for record in self.records})
 
     def outdated(self, files: Collection[Path]) -> list[Path]:
         """Recorded files that are as they were written and not among the new ones (records included)."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import hashlib
 import os
 from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
@@ -11,7 +12,7 @@ from ikgen.errors import UsageError
 from ikgen.generation.publishing import PREFIX, Publishing, complete, publishing_alone
 from ikgen.processes.scratch_folder import ScratchFolder
 
-__all__ = ["Content", "check_folder", "left_over", "publish", "write_texts"]
+__all__ = ["Content", "check_folder", "content_digest", "left_over", "publish", "write_texts"]
 
 Content = str | bytes
 """What a file holds: text (written as UTF-8, lines ended by a line feed) or bytes as they are."""
@@ -58,6 +59,11 @@ def write_texts(folder: Path, files: Mapping[str, Content]) -> None:
 def _holds(path: Path, content: Content) -> bool:
     """Whether a file has exactly this content."""
     return path.is_file() and path.read_bytes() == _bytes(content)
+
+
+def content_digest(content: Content) -> str:
+    """SHA-256 of the bytes of a file with this content."""
+    return hashlib.sha256(_bytes(content)).hexdigest()
 
 
 def _bytes(content: Content) -> bytes:

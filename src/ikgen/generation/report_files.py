@@ -11,7 +11,8 @@ from ikgen.errors import IkgenError, UnsolvedChainError, VerificationError
 from ikgen.generation.derive import derive
 from ikgen.generation.emitted_checks import verify_texts, with_samples
 from ikgen.generation.progress import Progress, silent
-from ikgen.generation.publish import Content, check_folder, publish
+from ikgen.generation.publish import Content, check_folder
+from ikgen.generation.written_list import publish_listed
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -32,23 +33,24 @@ class ReportFiles:
 
 
 def write_report(request: Request, outputs: Outputs, progress: Progress = silent) -> ReportFiles:
-    """Write how the inverse kinematics was derived into the outputs' folder, and what else they name."""
+    """Write how the inverse kinematics was derived into the outputs' folder, and what else they name.
+    Raises `UsageError` where files that ikgen did not write, or that were edited, would be replaced."""
     check_folder(outputs.out)
-    texts, wrong = _texts(request, outputs, progress)
+    name, texts, wrong = _texts(request, outputs, progress)
     pdfs, warnings = _pdfs(texts, progress)
     made: dict[str, Content] = {**texts, **pdfs}
     stale = _stale_pdfs(outputs.out, made)
-    files = publish(outputs.out, made)
-    for pdf in stale:
-        pdf.unlink()
-        warnings.append(f"removed {pdf}: it was made from an earlier report")
+    files = publish_listed(
+        outputs.out, f"{name}_report", made, stale, arm=name, force=outputs.force
+    )
+    warnings += [f"removed {pdf}: it was made from an earlier report" for pdf in stale]
     return ReportFiles(files, tuple(warnings), wrong)
 
 
 def _texts(
     request: Request, outputs: Outputs, progress: Progress
-) -> tuple[dict[str, str], IkgenError | None]:
-    """File name -> text of the report, and the error to end with."""
+) -> tuple[str, dict[str, str], IkgenError | None]:
+    """The arm's name, file name -> text of the report, and the error to end with."""
     from ikgen.generation.emitters import find_emitter
     from ikgen.generation.remedies import helped
     from ikgen.report import emit_report, emit_unsolved
@@ -59,7 +61,7 @@ def _texts(
         stuck = helped(error, request, progress)
         if stuck.unsolved is None:  # refused before anything was derived
             raise stuck from None
-        return emit_unsolved(stuck.unsolved, stuck.hint), stuck
+        return stuck.unsolved.name, emit_unsolved(stuck.unsolved, stuck.hint), stuck
     wrong = None
     try:
         reports = _verified(derivation, outputs, progress)
@@ -75,7 +77,7 @@ def _texts(
     texts = emit_report(derivation, reports)
     for name in dict.fromkeys(outputs.emit):
         texts |= find_emitter(name).emit(derivation)
-    return texts, wrong
+    return derivation.module.name, texts, wrong
 
 
 def _verified(

@@ -8,8 +8,9 @@ from pathlib import Path
 
 from ikgen.generation.derive import derive
 from ikgen.generation.progress import Progress, silent
-from ikgen.generation.publish import check_folder, publish
+from ikgen.generation.publish import check_folder
 from ikgen.generation.request import Request
+from ikgen.generation.written_list import publish_listed
 from ikgen.processes.executors import Workers
 from ikgen.reach.grid import grid_over
 from ikgen.reach.reach_map import ReachMap, engine_of, reach_map
@@ -21,7 +22,8 @@ __all__ = ["MapOrder", "write_map"]
 
 @dataclass(frozen=True, slots=True)
 class MapOrder:
-    """How fine the grid is, what computes it, and the command that the page names."""
+    """How fine the grid is, what computes it, the command that the page names, and whether files that
+    ikgen did not write, or that were edited, may be replaced."""
 
     cells: int
     directions: int
@@ -29,6 +31,7 @@ class MapOrder:
     workers: Workers
     portable: bool
     command: str
+    force: bool = False
 
 
 def write_map(
@@ -39,7 +42,8 @@ def write_map(
     warn: Callable[[str], None] = lambda text: None,
     done: Callable[[int, int], None] = lambda ready, total: None,
 ) -> tuple[ReachMap, tuple[Path, ...]]:
-    """The map and its files: the arrays and the page. `out` is a folder, or names the file (`FORMATS`)."""
+    """The map and its files: the arrays and the page. `out` is a folder, or names the file (`FORMATS`).
+    Raises `UsageError` where files that ikgen did not write, or that were edited, would be replaced."""
     check_folder(out.parent if out.suffix in FORMATS else out)
     derivation = derive(request, progress)
     grid = grid_over(derivation.reading.dh, order.cells, order.directions, order.rolls)
@@ -47,18 +51,19 @@ def write_map(
     engine, size = engine_of(derivation, portable=order.portable, warn=warn)
     progress("map", f"{grid.poses:,} poses")
     found = reach_map(derivation, grid, engine, size, order.workers, done)
-    return found, _written(found, out, f"{derivation.module.name}_reach", order.command)
+    return found, _written(found, out, f"{derivation.module.name}_reach", order)
 
 
-def _written(found: ReachMap, out: Path, name: str, command: str) -> tuple[Path, ...]:
+def _written(found: ReachMap, out: Path, name: str, order: MapOrder) -> tuple[Path, ...]:
     """The map and its page: in a folder by `name`, or as a file that `out` names, its page beside it."""
     folder, suffix = out, ".npz"
     if out.suffix in FORMATS:
         folder, name, suffix = out.parent, out.stem, out.suffix
     files = map_contents(found, name, suffix)
-    files[f"{name}.html"] = slices_page(found, command)
+    files[f"{name}.html"] = slices_page(found, order.command)
     store = folder / f"{name}{suffix}"
     earlier = [path for path in store.rglob("*") if path.is_file()] if store.is_dir() else []
     new = {folder / path for path in files}
-    publish(folder, files, [path for path in earlier if path not in new])
+    gone = [path for path in earlier if path not in new]
+    publish_listed(folder, name, files, gone, force=order.force)
     return store, folder / f"{name}.html"
