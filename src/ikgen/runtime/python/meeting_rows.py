@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ikgen.runtime.python.arm_newton import linearized, refined
 from ikgen.runtime.python.array_types import Array, Flags, Index, Row
 from ikgen.runtime.python.chain_kinematics import forward
-from ikgen.runtime.python.refinement import least_singular, normal_inverse
+from ikgen.runtime.python.refinement import damped, least_singular, normal_inverse
 from ikgen.runtime.python.row_links import differences
 from ikgen.runtime.python.row_placement import distinct
 from ikgen.runtime.python.solution_rows import places
@@ -187,11 +187,7 @@ def _step(
     bend = np.einsum("kej,kj->ke", beyond - slope, still) / _ALONG
     V = slope - flow[:, :, None] * still[:, None, :]
     Vt = V.transpose(0, 2, 1)
-    A = (
-        Vt @ V
-        + still[:, :, None] * still[:, None, :]
-        + arm.policy.least_damping * np.eye(len(columns))
-    )
+    A = damped(Vt @ V + still[:, :, None] * still[:, None, :], arm.policy.least_damping)
     z = np.stack([error, bend, flow], axis=2)
     across = np.linalg.solve(A, Vt @ z)
     rest, bend, flow = np.moveaxis(z - V @ across, 2, 0)

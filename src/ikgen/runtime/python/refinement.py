@@ -15,6 +15,7 @@ from ikgen.runtime.python.solved_arm import HeldAngle
 from ikgen.runtime.python.task_interface import Task
 
 __all__ = [
+    "damped",
     "errors_and_slopes",
     "least_singular",
     "newton",
@@ -25,6 +26,8 @@ __all__ = [
 ]
 
 
+_FAR_OUT = 1e4  # of the squared derivatives of a row: lever arms of some hundred metres
+_ROUNDING = 4e-15  # of the sum of as many products
 _BLOCK = 1024  # rows whose arrays fit into a processor's cache
 
 
@@ -93,7 +96,7 @@ def newton(
         going, stalled, worst, q, T, J = (x[on] for x in (going, stalled, worst, q, T, J))
         Jt = J.transpose(0, 2, 1)
         damping = np.maximum(policy.least_damping, policy.damping * np.minimum(worst, 1.0) ** 2)
-        normal = Jt @ J + damping[:, None, None] * np.eye(len(moving))
+        normal = damped(Jt @ J, damping)
         change = np.linalg.solve(normal, Jt @ error[on, :, None])[:, :, 0]
         q[:, moving] += np.clip(change, -policy.largest_step, policy.largest_step)
     return result, best, before, slope
@@ -132,8 +135,15 @@ def steeper(slope: Array, bound: float) -> Flags:
 
 def normal_inverse(slope: Array, damping: float = 1e-14) -> Array:
     """Inverses (k, n, n) of the normal equations of derivatives (k, m, n); never singular."""
-    square = slope.transpose(0, 2, 1) @ slope
-    return np.asarray(np.linalg.inv(square + damping * np.eye(slope.shape[2])))
+    return np.asarray(np.linalg.inv(damped(slope.transpose(0, 2, 1) @ slope, damping)))
+
+
+def damped(square: Array, damping: Array | float) -> Array:
+    """Matrices (k, n, n) of normal equations, damped. Beside a slide that is very far out the rounding of
+    the others is more than the damping: there as much is added as they may be off."""
+    size = np.einsum("kii->k", square)
+    enough = np.maximum(damping, np.where(size > _FAR_OUT, _ROUNDING * size, 0.0))
+    return np.asarray(square + enough[:, None, None] * np.eye(square.shape[2]))
 
 
 def least_singular(slope: Array) -> Array:
