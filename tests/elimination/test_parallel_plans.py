@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tests.elimination.test_elimination import apart, arm_frames, configurations, missing
+from tests.elimination.test_elimination import (
+    apart,
+    arm_frames,
+    configurations,
+    dh_frames,
+    missing,
+)
 from tests.support.parallel_arms import (
     KINDS,
     exchanged,
@@ -17,6 +25,7 @@ from tests.support.parallel_arms import (
 from ikgen.elimination import EliminationPlan, choose_plan, general_6r_batch, hold_joint
 from ikgen.elimination.loop_frames import forward
 from ikgen.elimination.parallel_plans import (
+    ParallelPlan,
     choose_parallel,
     parallel_plans,
     settled_share,
@@ -56,6 +65,19 @@ def test_solutions_are_those_of_the_general_elimination(name: str) -> None:
         for row in rows:
             assert np.abs(forward(frames, row) - pose).max() < 1e-9
             assert apart(reference, row).min() < 1e-6
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-7, 1e-5])
+def test_two_solutions_in_a_fourfold_root_are_found(off: float) -> None:
+    """With right angles they meet two complex roots where the first and the fifth angle are 0."""
+    h = 0.5 * np.pi
+    alpha, a = [0.0, -h, -h, 0.0, -h, h], [0.0, 0.85, 0.82, 0.53, 0.62, 0.63]
+    frames = dh_frames(alpha, a, [0.0, 0.78, 0.0, 0.0, 0.35, 0.9])
+    hidden = replace(choose_plan(frames), parallel=ParallelPlan((1, 0, UPRIGHT), 0.0))
+    q = np.random.default_rng(7).uniform(-np.pi, np.pi, (300, 6))
+    q[:, [0, 4]] = off
+    poses = np.array([forward(frames, row) for row in q])
+    assert missing(six_joints_batch(frames, way(hidden), poses), q) == 0
 
 
 @pytest.mark.parametrize("name", CHAINS)

@@ -565,6 +565,8 @@ class _Arm:
 # Newton's method on the chain: damped least squares (Levenberg 1944, Marquardt 1963).
 
 
+_FAR_OUT = 1e4  # of the squared derivatives of a row: lever arms of some hundred metres
+_ROUNDING = 4e-15  # of the sum of as many products
 _BLOCK = 1024  # rows whose arrays fit into a processor's cache
 
 
@@ -629,7 +631,7 @@ def _newton(
         going, stalled, worst, q, T, J = (x[on] for x in (going, stalled, worst, q, T, J))
         Jt = J.transpose(0, 2, 1)
         damping = np.maximum(policy.least_damping, policy.damping * np.minimum(worst, 1.0) ** 2)
-        normal = Jt @ J + damping[:, None, None] * np.eye(len(moving))
+        normal = _damped(Jt @ J, damping)
         change = np.linalg.solve(normal, Jt @ error[on, :, None])[:, :, 0]
         q[:, moving] += np.clip(change, -policy.largest_step, policy.largest_step)
     return result, best, before, slope
@@ -668,8 +670,15 @@ def _steeper(slope: Array, bound: float) -> _Flags:
 
 def _normal_inverse(slope: Array, damping: float = 1e-14) -> Array:
     """Inverses (k, n, n) of the normal equations of derivatives (k, m, n); never singular."""
-    square = slope.transpose(0, 2, 1) @ slope
-    return np.asarray(np.linalg.inv(square + damping * np.eye(slope.shape[2])))
+    return np.asarray(np.linalg.inv(_damped(slope.transpose(0, 2, 1) @ slope, damping)))
+
+
+def _damped(square: Array, damping: Array | float) -> Array:
+    """Matrices (k, n, n) of normal equations, damped. Beside a slide that is very far out the rounding of
+    the others is more than the damping: there as much is added as they may be off."""
+    size = np.einsum("kii->k", square)
+    enough = np.maximum(damping, np.where(size > _FAR_OUT, _ROUNDING * size, 0.0))
+    return np.asarray(square + enough[:, None, None] * np.eye(square.shape[2]))
 
 
 def _least_singular(slope: Array) -> Array:
@@ -1066,11 +1075,7 @@ def _step(
     bend = np.einsum("kej,kj->ke", beyond - slope, still) / _ALONG
     V = slope - flow[:, :, None] * still[:, None, :]
     Vt = V.transpose(0, 2, 1)
-    A = (
-        Vt @ V
-        + still[:, :, None] * still[:, None, :]
-        + arm.policy.least_damping * np.eye(len(columns))
-    )
+    A = _damped(Vt @ V + still[:, :, None] * still[:, None, :], arm.policy.least_damping)
     z = np.stack([error, bend, flow], axis=2)
     across = np.linalg.solve(A, Vt @ z)
     rest, bend, flow = np.moveaxis(z - V @ across, 2, 0)

@@ -27,6 +27,8 @@ Resultant = tuple[Array, Array, Array]
 _NODES = 2.0 * np.pi / 7.0 * np.arange(7)
 _REAL = 1e-8  # imaginary part of a root that is real
 DOUBTFUL = 1e-3  # below it, of one that may be half of a double root
+_FOURFOLD = 0.03  # the same of a fourfold root
+_CROWD = 8.0  # times the imaginary part: how far off the other pair is at most
 _JITTER = np.cos(np.outer(np.arange(1, 13), np.arange(1, 13)))
 
 
@@ -84,7 +86,20 @@ def real_angles(
     row, i = np.nonzero(off < accept)
     angle = about[row] + np.angle(z[row, i])
     order = np.lexsort((angle, row))
-    return row[order], angle[order], real, (off < doubtful).sum(axis=1) == real
+    clear = (off < doubtful).sum(axis=1) == real
+    some = np.nonzero(clear & ((off < _FOURFOLD) & (off >= doubtful)).any(axis=1))[0]
+    clear[some] = ~_crowded(np.angle(z[some]), off[some], doubtful).any(axis=1)
+    return row[order], angle[order], real, clear
+
+
+def _crowded(angle: Array, off: Array, doubtful: float) -> Flags:
+    """Which roots (N, n) of real and imaginary parts `angle` and `off` may be of a fourfold one: complex,
+    with another pair about as near as their own halves are. Rounding takes those apart by its fourth root,
+    where it takes halves of a double one apart by its square root."""
+    across = np.exp(1j * (angle[:, :, None] - angle[:, None, :]))
+    beside = np.hypot(np.abs(np.angle(across)), off[:, :, None] - off[:, None, :])
+    near = (beside < _CROWD * off[:, :, None]).sum(axis=2)
+    return np.asarray((near >= 4) & (off >= doubtful) & (off < _FOURFOLD))
 
 
 def solved(pivot: Array, N: Array, off: float = 0.0) -> Array:
