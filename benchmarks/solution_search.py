@@ -33,14 +33,18 @@ def apart(q: Array, rows: Array, turning: NDArray[np.bool_]) -> Array:
 
 
 def searched(module: ModuleType, pose: Array, rng: np.random.Generator, reach: float) -> Array:
-    """The distinct solutions (k, dof) that are found; slides start within `reach` (m)."""
+    """The distinct solutions (k, dof) that are found; slides start within `reach` (m), some up to a hundred
+    times as far."""
     turning = revolute(module)
     found = np.zeros((0, len(turning)))
     quiet = 0
     for _ in range(_MOST_ROUNDS):
         known = len(found)
         bound = np.where(turning, np.pi, reach)
-        for q in _refined(module, rng.uniform(-bound, bound, (_STARTS, len(turning))), pose):
+        starts = rng.uniform(-bound, bound, (_STARTS, len(turning)))
+        farther = 10.0 ** rng.uniform(-1.0, 2.0, (_STARTS // 2, 1))
+        starts[::2] *= np.where(turning, 1.0, farther)
+        for q in _refined(module, starts, pose):
             if not len(found) or apart(q, found, turning).min() > _SAME:
                 found = np.vstack([found, q])
         quiet = quiet + 1 if len(found) == known else 0
@@ -59,7 +63,7 @@ def _refined(module: ModuleType, q: Array, pose: Array) -> Array:
         damping = 1e-3 * np.minimum(worst, 1.0) ** 2 + 1e-14
         normal = Jt @ J + damping[:, None, None] * np.eye(q.shape[1])
         step = np.linalg.solve(normal, Jt @ error[..., None])[..., 0]
-        size = np.abs(step).max(axis=1)
+        size = np.abs(step[:, revolute(module)]).max(axis=1, initial=0.0)
         q = q + step * np.minimum(1.0, 0.6 / np.maximum(size, 1e-300))[:, None]
     return np.asarray(q[np.abs(_error(module, q, pose)).max(axis=1) < _CLOSED])
 
