@@ -218,7 +218,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
             "median": round(float(np.median(tally.times)), 2),
             "by_joints": {n: [tally.solved[n], tally.total[n]] for n in sorted(tally.total)},
         }  # fmt: skip
-        write_result("random_chains", "python -m benchmarks.random_chains", found)
+        given = [x for x in (arguments or sys.argv[1:]) if x != "--record"]
+        write_result(
+            "random_chains", " ".join(["python -m benchmarks.random_chains", *given]), found
+        )
     return int(tally.wrong + tally.missed + tally.refused > 0)
 
 
