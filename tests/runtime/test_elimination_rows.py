@@ -4,38 +4,98 @@ from __future__ import annotations
 
 import math
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.chains import rotation, translation
+from tests.support.parallel_arms import parallel_frames
 
-from ikgen.elimination.loop_frames import hold_joint
+from ikgen.elimination.loop_frames import forward as chain_forward
+from ikgen.elimination.loop_frames import hold_joint, over
+from ikgen.elimination.routine import runtime_policy
+from ikgen.program.policy import SolvePolicy
 from ikgen.runtime.python import elimination_rows
-from ikgen.runtime.python.elimination_rows import _frames
+from ikgen.runtime.python.chain_kinematics import forward
+from ikgen.runtime.python.elimination_rows import _six_joints
+from ikgen.runtime.python.general_6r import Plan, candidates, six_joint_rows
+from ikgen.runtime.python.parallel_axes import parallel_candidates
+from ikgen.runtime.python.parallel_links import MEETING, PLAIN, UPRIGHT
+from ikgen.runtime.python.six_joints import SixJoints, six_joints
 
+Array = NDArray[np.float64]
 FRAMES = np.array(
     [rotation([1.0, 0.2 * k, 0.0], 0.3 * k) @ translation(0.1 * k, -0.2, 0.05) for k in range(8)]
 )
 
 
+TURNS = (True,) * 6
+
+
+def merged(free: tuple[int, ...], slides: tuple[int, ...], held: Array) -> SixJoints:
+    """What is left of a chain of six joints and the `free` ones; lengths over 2 m."""
+    count = 6 + len(free)
+    motions = tuple((k, k not in slides, 1.0, 0.0) for k in range(count))
+    frames = np.concatenate([FRAMES, FRAMES])[: count + 1]
+    arm: Any = SimpleNamespace(chain=SimpleNamespace(frames=frames, motions=motions), free=free)
+    return _six_joints(arm, Plan(2.0, ((0, 0, 0),), TURNS, candidates), held)
+
+
 @pytest.mark.parametrize("joint", [0, 3, 6])
 @pytest.mark.parametrize("turns", [True, False])
 def test_a_held_joint_is_merged_into_the_chain(joint: int, turns: bool) -> None:
-    motions = tuple((k, turns if k == joint else True, 1.0, 0.0) for k in range(7))
-    arm = SimpleNamespace(chain=SimpleNamespace(frames=FRAMES, motions=motions), free=(joint,))
     held = [math.cos(0.7), math.sin(0.7)] if turns else [0.7]
-    merged: NDArray[np.float64] = _frames(arm, np.array(held))
-    np.testing.assert_allclose(merged, hold_joint(FRAMES, joint, 0.7, revolute=turns), atol=1e-15)
+    six = merged((joint,), () if turns else (joint,), np.array([held]))
+    expected = over(hold_joint(FRAMES, joint, 0.7, revolute=turns), 2.0)
+    np.testing.assert_allclose(np.concatenate(six.frames), expected, atol=1e-15)
 
 
 def test_two_held_joints_take_their_values_in_order() -> None:
-    motions = tuple((k, k != 5, 1.0, 0.0) for k in range(8))
+    six = merged((1, 5), (5,), np.array([[math.cos(0.4), math.sin(0.4), -0.2]]))
     frames = np.concatenate([FRAMES, FRAMES[:1]])
-    arm = SimpleNamespace(chain=SimpleNamespace(frames=frames, motions=motions), free=(1, 5))
-    merged = _frames(arm, np.array([math.cos(0.4), math.sin(0.4), -0.2]))
-    expected = hold_joint(hold_joint(frames, 5, -0.2, revolute=False), 1, 0.4)
-    np.testing.assert_allclose(merged, expected, atol=1e-15)
+    expected = over(hold_joint(hold_joint(frames, 5, -0.2, revolute=False), 1, 0.4), 2.0)
+    np.testing.assert_allclose(np.concatenate(six.frames), expected, atol=1e-15)
+
+
+def test_the_chain_that_rows_are_refined_on_has_the_held_joints_behind_the_six() -> None:
+    rng = np.random.default_rng(1)
+    q, values = rng.uniform(-1.0, 1.0, (5, 6)), rng.uniform(-1.0, 1.0, (5, 2))
+    c, s = np.cos(values[:, 0]), np.sin(values[:, 0])
+    six = merged((2, 6), (6,), np.stack([c, s, values[:, 1]], axis=1))
+    poses = forward(six.chain, np.concatenate([q, six.held], axis=1))
+    for k in range(5):
+        chain = np.concatenate([frame[k % len(frame)][None] for frame in six.frames])
+        np.testing.assert_allclose(chain_forward(chain, q[k]), poses[k], atol=1e-14)
+    some = six.of(np.array([3, 1]))
+    np.testing.assert_array_equal(some.held, six.held[[3, 1]])
+    np.testing.assert_array_equal(some.frames[2], six.frames[2][[3, 1]])
+    assert [len(frame) for frame in six.frames] == [1, 1, 5, 1, 1, 5, 1]
+
+
+@pytest.mark.parametrize("place", range(7))
+@pytest.mark.parametrize("kind", ["general", MEETING, UPRIGHT, PLAIN])
+def test_poses_with_values_of_their_own_are_solved_as_each_is_alone(
+    kind: str | int, place: int
+) -> None:
+    """A joint is put into the chain before each of its links."""
+    frames = FRAMES[:7] if isinstance(kind, str) else parallel_frames(kind)
+    direct = () if isinstance(kind, str) else ((parallel_candidates, (0, 0, kind), 1e-7),)
+    plan = Plan(1.0, ((0, 0, 0), (0, 1, 0)), TURNS, candidates, direct)
+    motions = [(k, True, 1.0, 0.0) for k in range(6)]
+    motions.insert(place, (6, True, 1.0, 0.0))
+    chain = np.insert(frames, place + 1, np.eye(4), axis=0)
+    rng = np.random.default_rng(place)
+    held = rng.uniform(-0.3, 0.3, (4, 1))
+    six = six_joints(chain, plan.length, tuple(motions), held)
+    T = forward(six.chain, np.concatenate([rng.uniform(-3.0, 3.0, (4, 6)), held], axis=1))
+    policy = runtime_policy(SolvePolicy())
+    pose, rows = six_joint_rows(six, plan, T, policy)
+    for k in range(4):
+        alone = six_joints(chain, plan.length, tuple(motions), held[k : k + 1])
+        _, expected = six_joint_rows(alone, plan, T[k : k + 1], policy)
+        assert len(expected) >= 1
+        np.testing.assert_allclose(rows[pose == k], expected, atol=1e-9)
 
 
 def test_samples_of_a_continuum_go_first_where_there_are_too_many_rows(

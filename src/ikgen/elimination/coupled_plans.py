@@ -98,7 +98,7 @@ def _eliminations(chain: Chain, rng: np.random.Generator) -> list[_Group]:
         at = joints.index(singles[start])
         if coupled in (joints[at - 1], joints[(at + 1) % len(joints)]):
             continue
-        one = chain.motions, chain.frames
+        one = chain.motions, [*chain.frames[:, None]]
         determinants = partial(coupled_determinants, *one, poses, (start, reverse, 0))
         degree = _degree(determinants(nodes))
         if 0 < degree <= _MOST_DEGREE:

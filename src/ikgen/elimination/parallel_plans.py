@@ -6,6 +6,7 @@ neighbours' may be hidden, by running the loop backwards.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,6 +22,7 @@ from ikgen.runtime.python.parallel_links import (
     PLAIN,
     UPRIGHT,
     deviation,
+    links_of,
     parallel_links,
 )
 
@@ -94,12 +96,12 @@ def _deviations(frames: Matrix) -> dict[Elimination, float]:
     scaled = over(frames, length)
     out = {}
     for start, reverse in _LOOPS:
-        _, C = loop_constants(scaled, np.eye(4)[None], start, reverse)
-        links = parallel_links(C)
+        _, C = loop_constants([*scaled[:, None]], np.eye(4)[None], start, reverse)
+        links = links_of(parallel_links(C))
         if min(1.0 - links.c1**2, 1.0 - links.c3**2, links.a2**2) < _APART**2:
             continue
         for kind in (PLAIN, UPRIGHT, MEETING):
-            off = deviation(kind, links)
+            off = float(deviation(kind, links)[0, 0])
             if off <= _MOST_DEVIATION:
                 out[start, reverse, kind] = off
     return out
@@ -116,7 +118,7 @@ def settled_share(frames: Matrix, length: float, parallel: ParallelPlan, poses: 
     """The share of poses (N, 4, 4) that the parallel elimination solves alone; frames (7, 4, 4)."""
     left = [0]
 
-    def rest(_: Matrix, T: Matrix, one: Elimination, turning: Turning) -> Candidates:
+    def rest(_: Sequence[Matrix], T: Matrix, one: Elimination, turning: Turning) -> Candidates:
         left.append(len(T))
         nothing = np.zeros(len(T), dtype=np.intp)
         return nothing[:0], np.zeros((0, 6)), nothing, nothing > 0

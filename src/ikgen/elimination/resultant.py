@@ -58,7 +58,7 @@ def _shifts(frames: Matrix, poses: Matrix, q: Matrix, plan: Resultant) -> Matrix
 def _pencil(frames: Matrix, poses: Matrix, plan: Resultant) -> tuple[list[int], Matrix]:
     """The order of the loop's joints, and the equations (3, N, 6, 9) in (1, c4, s4) x (1, c5, s5),
     their terms in 1, cos and sin of the hidden angle."""
-    order, C = loop_constants(frames, poses, *plan)
+    order, C = loop_constants([*frames[:, None]], poses, *plan)
     E, left, _ = loop_equations(C)
     plain = E[..., ZS] @ left[:, ZS]
     plain[..., 0] += E[..., 14]

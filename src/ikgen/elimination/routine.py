@@ -20,6 +20,7 @@ from ikgen.runtime.python.general_6r import (
     six_joint_rows,
 )
 from ikgen.runtime.python.one_slide import one_slide_candidates
+from ikgen.runtime.python.six_joints import six_joints
 from ikgen.runtime.python.solution_rows import Turning, distinct_rows
 from ikgen.runtime.python.solve_policy import Policy
 from ikgen.runtime.python.three_slides import three_slide_candidates
@@ -63,7 +64,8 @@ def six_joints_batch(frames: Matrix, plan: Plan, poses: Matrix) -> list[Matrix]:
 
     frames (7, 4, 4): the chain as in `loop_frames.py`.
     """
-    pose, rows = six_joint_rows(frames, plan, poses, runtime_policy(SolvePolicy()))
+    six = six_joints(frames, plan.length, plan.axes)
+    pose, rows = six_joint_rows(six, plan, poses, runtime_policy(SolvePolicy()))
     return _by_pose(rows, pose, len(poses))
 
 
@@ -90,10 +92,10 @@ def initial_residuals(frames: Matrix, plan: Plan, poses: Matrix) -> tuple[list[M
     (m,) of those candidates that became solutions, before Newton's method: how well conditioned the
     elimination is."""
     policy = runtime_policy(SolvePolicy())
-    F, T = over(frames, plan.length), over(poses, plan.length)
-    index, q, *_ = plan.find(F, T, plan.eliminations[0], plan.turning)
+    six, T = six_joints(frames, plan.length, plan.axes), over(poses, plan.length)
+    index, q, *_ = plan.find(six.frames, T, plan.eliminations[0], plan.turning)
     if not len(q):
         return [np.zeros((0, 6)) for _ in poses], np.zeros(0)
-    q, good, before = refined_rows(F, plan, T[index], q, policy)
+    q, good, before = refined_rows(six, plan, index, T[index], q, policy)
     rows, pose, _ = distinct_rows(q[good], index[good], plan.turning, policy.coincident)
     return _by_pose(rows, pose, len(poses)), before[good]

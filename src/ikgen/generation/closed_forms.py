@@ -111,7 +111,7 @@ def _by_rules_somewhere(reading: Reading, demand: Demand) -> ClosedForm:
     """What the rules make of the file's geometry, or of one nearby where its own has no closed form."""
     found = _best_task(reading, demand)
     other = None if found.closed else nearby(reading)
-    if other is None:
+    if other is None or other.rows == reading.dh.rows:
         return found
     near = _best_task(replace(reading, dh=other), demand)
     return near if near.closed else found

@@ -41,7 +41,7 @@ def hidden_roots(plan: EliminationPlan, pose: Array) -> tuple[int, int, NDArray[
     exponential of its angle: `(M0 - Mc) t^2 + 2 Ms t + M0 + Mc` is singular at t = tan(angle / 2), a
     quadratic eigenproblem (Manocha and Canny, 1994), here about an angle where M is far from singular."""
     start, reverse = _hidden(plan)
-    order, C = loop_constants(plan.frames, pose[None], start, reverse)
+    order, C = loop_constants([*plan.frames[:, None]], pose[None], start, reverse)
     E, left, _ = loop_equations(C)
     M0, Mc, Ms = (part[0] for part in loop_resultant(E, left))
     nodes = 2 * np.pi / 7 * np.arange(7)

@@ -12,9 +12,9 @@ from ikgen.runtime.python.loop_equations import (
     ZS,
     loop_action,
     of_constants,
-    rows_of,
 )
 from ikgen.runtime.python.rigid_motion import rotations_z
+from ikgen.runtime.python.solution_rows import rows_of
 
 __all__ = ["complete_angles", "middle_angles", "null_angles", "turned"]
 

@@ -20,8 +20,9 @@ from ikgen.runtime.python.back_substitution import complete_angles, null_angles
 from ikgen.runtime.python.chain_kinematics import Motion
 from ikgen.runtime.python.general_6r import Candidates, Elimination
 from ikgen.runtime.python.hidden_angle import lift, real_angles
-from ikgen.runtime.python.loop_equations import left_invariants, loop_equations, rows_of
+from ikgen.runtime.python.loop_equations import left_invariants, loop_equations
 from ikgen.runtime.python.rigid_motion import inverses, rotations_z
+from ikgen.runtime.python.solution_rows import rows_of
 
 __all__ = ["CoupledAngle", "coupled_and_others", "coupled_determinants", "neighbours"]
 
@@ -44,8 +45,10 @@ class CoupledAngle:
     motions: tuple[Motion, ...]
     crowded: tuple[float, ...] = ()
 
-    def __call__(self, F: Array, T: Array, plan: Elimination, _: tuple[bool, ...]) -> Candidates:
-        """As `candidates`, of frames F (rows + 1, 4, 4); none is known to be all of a pose."""
+    def __call__(
+        self, F: Sequence[Array], T: Array, plan: Elimination, _: tuple[bool, ...]
+    ) -> Candidates:
+        """As `candidates`, of as many frames F as rows and 1; none is known to be all of a pose."""
         count, degree = len(T), plan[2]
         step = 2.0 * np.pi / (2 * degree + 2)
         nodes: Array = _FIRST_NODE + step * np.arange(2 * degree + 2, dtype=float)
@@ -60,12 +63,13 @@ class CoupledAngle:
         none, unclear = np.zeros(count, dtype=np.intp), np.zeros(count, dtype=bool)
         if not len(pose):
             return pose, np.zeros((0, 6)), none, unclear
-        k, q = _completed(self.motions, F, T[pose], plan, pose, angle)
+        frames = [rows_of(frame, pose) for frame in F]
+        k, q = _completed(self.motions, frames, T[pose], plan, pose, angle)
         return pose[k], q, none, unclear
 
 
 def coupled_determinants(
-    motions: Sequence[Motion], F: Array, T: Array, plan: Elimination, nodes: Array
+    motions: Sequence[Motion], F: Sequence[Array], T: Array, plan: Elimination, nodes: Array
 ) -> Array:
     """The determinants (N, n) of the twelve equations at the coupled joint's angles `nodes` (n,)."""
     loop = _Loop(motions, F, *plan[:2])
@@ -77,7 +81,9 @@ def coupled_determinants(
     return np.asarray(np.linalg.det(_singular(E[:, None], left)))
 
 
-def neighbours(motions: Sequence[Motion], F: Array, plan: Elimination, nodes: Array) -> Array:
+def neighbours(
+    motions: Sequence[Motion], F: Sequence[Array], plan: Elimination, nodes: Array
+) -> Array:
     """Cosines (3, n) between the axes beside the links in which the coupled joint may lie, at its angles
     `nodes` (n,)."""
     links = _Loop(motions, F, *plan[:2]).links(np.eye(4)[None, None], nodes[None])
@@ -94,7 +100,9 @@ def coupled_and_others(motions: Sequence[Motion]) -> tuple[int, list[int]]:
 class _Loop:
     """The loop of the five joints that turn one axis each, begun at `start`, `reverse`d or not."""
 
-    def __init__(self, motions: Sequence[Motion], F: Array, start: int, reverse: int) -> None:
+    def __init__(
+        self, motions: Sequence[Motion], F: Sequence[Array], start: int, reverse: int
+    ) -> None:
         self.coupled, singles = coupled_and_others(motions)
         step = -1 if reverse else 1
         self.places = [(start + step * i) % 5 for i in range(5)]
@@ -104,13 +112,13 @@ class _Loop:
     def links(self, T: Array, angle: Array) -> list[Array]:
         """What is behind each joint in the loop's order, (n, m, 4, 4) or 1 in place of n or m, at poses T
         (n, m, 4, 4) and angles (n, m) of the coupled joint."""
-        behind, link = [], self.F[:1][None]
+        behind, link = [], self.F[0][:, None]
         for (joint, _, ratio, shift), frame in zip(self.motions, self.F[1:]):
             if joint == self.coupled:
-                link = link @ rotations_z(ratio * angle + shift) @ frame
+                link = link @ rotations_z(ratio * angle + shift) @ frame[:, None]
             else:
                 behind.append(link)
-                link = frame[None, None]
+                link = frame[:, None]
         behind = [*behind[1:], link @ inverses(T) @ behind[0]]
         if self.reverse:
             return [inverses(behind[place - 1]) for place in self.places]
@@ -163,7 +171,12 @@ def _close_roots(values: Array) -> tuple[Index, Array]:
 
 
 def _completed(
-    motions: Sequence[Motion], F: Array, T: Array, plan: Elimination, pose: Index, angle: Array
+    motions: Sequence[Motion],
+    F: Sequence[Array],
+    T: Array,
+    plan: Elimination,
+    pose: Index,
+    angle: Array,
 ) -> tuple[Index, Array]:
     """Indices (m,) into the roots, `angle` (k,) of poses T (k, 4, 4), and values (m, 6) of all joints."""
     loop, count = _Loop(motions, F, *plan[:2]), len(angle)

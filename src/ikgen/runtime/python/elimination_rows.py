@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from math import atan2
+from collections.abc import Iterator
 
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Index
+from ikgen.runtime.python.chain_kinematics import Motion
 from ikgen.runtime.python.general_6r import Plan, six_joint_rows
 from ikgen.runtime.python.refinement import rank_loss
+from ikgen.runtime.python.six_joints import SixJoints, six_joints
 from ikgen.runtime.python.solution_rows import places
 from ikgen.runtime.python.solved_arm import Arm
 
@@ -17,26 +19,26 @@ __all__ = ["elimination_lanes"]
 _POSES = 256  # whose arrays fit into a processor's cache
 
 
-def _frames(arm: Arm, held: Array) -> Array:
-    """The chain of the axes that move, (7, 4, 4) unless a joint moves several, held joints merged into it.
-
-    held: cosine and sine of a held angle, or a held distance, base to tip.
-    """
-    frames = [arm.chain.frames[0]]
-    values = iter(held.tolist())
-    for (joint, revolute, _, _), frame in zip(arm.chain.motions, arm.chain.frames[1:]):
+def _six_joints(arm: Arm, plan: Plan, held: Array) -> SixJoints:
+    """The joints that move, of the chain with the others `held` (N, c): at the cosine and sine of an angle,
+    or at a distance, base to tip."""
+    columns, moving = iter(held.T), iter(plan.axes)
+    motions: list[Motion] = []
+    values: list[Array] = []
+    for joint, turns, _, _ in arm.chain.motions:
         if joint not in arm.free:
-            frames.append(frame)
+            motions.append(next(moving))
             continue
-        motion = np.eye(4)
-        if revolute:
-            c, s = next(values), next(values)
-            motion[0, 0] = motion[1, 1] = c
-            motion[1, 0], motion[0, 1] = s, -s
-        else:
-            motion[2, 3] = next(values)
-        frames[-1] = frames[-1] @ motion @ frame
-    return np.array(frames)
+        motions.append((6 + len(values), turns, 1.0, 0.0))
+        values.append(_value(columns, turns))
+    at = np.stack(values, axis=1) if values else None
+    return six_joints(arm.chain.frames, plan.length, tuple(motions), at)
+
+
+def _value(columns: Iterator[Array], turns: bool) -> Array:
+    """An angle of its cosine and sine, or a distance."""
+    first = next(columns)
+    return np.asarray(np.arctan2(next(columns), first)) if turns else first
 
 
 def _regular_first(arm: Arm, angles: Array, held: Array) -> Array:
@@ -44,17 +46,11 @@ def _regular_first(arm: Arm, angles: Array, held: Array) -> Array:
     if len(angles) <= arm.most:
         return angles
     q = np.empty((len(angles), len(arm.lower)))
-    values, columns = iter(held.tolist()), iter(angles.T)
+    values, columns = iter(held), iter(angles.T)
     motions = arm.chain.motions
     for joint in range(len(arm.lower)):
         lead = min((m for m in motions if m[0] == joint), key=lambda m: abs(m[2]))
-        if joint not in arm.free:
-            value = next(columns)
-        elif lead[1]:
-            c, s = next(values), next(values)
-            value = np.array(atan2(s, c))
-        else:
-            value = np.array(next(values))
+        value = next(columns) if joint not in arm.free else _value(values, lead[1])
         q[:, joint] = (value - lead[3]) / lead[2]
     loss = rank_loss(arm.chain, arm.task, arm.moving, q)
     order = np.argsort(loss < arm.policy.continuum_rank_loss, kind="stable")
@@ -71,31 +67,29 @@ def elimination_lanes(arm: Arm, plan: Plan, entries: tuple[Array, ...]) -> tuple
     count = columns.shape[1]
     lanes = np.ones((6 + sum(plan.turning), arm.most, count))
     found = np.zeros((arm.most, count), dtype=bool)
-    groups = [(np.arange(count), np.empty(0))]
-    if len(columns) > 12:
-        distinct, group = np.unique(columns[12:], axis=1, return_inverse=True)
-        groups = [(np.flatnonzero(group.reshape(-1) == k), x) for k, x in enumerate(distinct.T)]
-    for members, held in groups:
-        for start in range(0, len(members), _POSES):
-            part = members[start : start + _POSES]
-            T = np.tile(np.eye(4), (len(part), 1, 1))
-            T[:, :3] = columns[:12, part].T.reshape(-1, 3, 4)
-            pose, values = _rows_of_poses(arm, plan, T, held)
-            place, member, lane = places(pose), part[pose], 0
-            for value, turns in zip(values.T, plan.turning):
-                lanes[lane, place, member] = np.cos(value) if turns else value
-                if turns:
-                    lanes[lane + 1, place, member] = np.sin(value)
-                lane += 2 if turns else 1
-            found[place, member] = True
+    T = np.tile(np.eye(4), (count, 1, 1))
+    T[:, :3] = columns[:12].T.reshape(-1, 3, 4)
+    held = columns[12:].T
+    alike = bool((held == held[:1]).all())
+    for start in range(0, count, _POSES):
+        part = slice(start, start + _POSES)
+        pose, values = _rows_of_poses(arm, plan, T[part], held[:1] if alike else held[part])
+        place, member, lane = places(pose), start + pose, 0
+        for value, turns in zip(values.T, plan.turning):
+            lanes[lane, place, member] = np.cos(value) if turns else value
+            if turns:
+                lanes[lane + 1, place, member] = np.sin(value)
+            lane += 2 if turns else 1
+        found[place, member] = True
     return (*lanes, found)
 
 
 def _rows_of_poses(arm: Arm, plan: Plan, T: Array, held: Array) -> tuple[Index, Array]:
-    """Pose indices (k,) in order, and at most `arm.most` rows (k, 6) for each of the poses T (N, 4, 4)."""
-    pose, values = six_joint_rows(_frames(arm, held), plan, T, arm.policy)
+    """Pose indices (k,) in order, and at most `arm.most` rows (k, 6) for each of the poses T (N, 4, 4) with
+    joints `held` (1 or N, c)."""
+    pose, values = six_joint_rows(_six_joints(arm, plan, held), plan, T, arm.policy)
     for i in np.flatnonzero(np.bincount(pose, minlength=1) > arm.most):
-        some = _regular_first(arm, values[pose == i], held)
+        some = _regular_first(arm, values[pose == i], held[i % len(held)])
         before, after = pose < i, pose > i
         values = np.concatenate([values[before], some, values[after]])
         pose = np.concatenate([pose[before], np.full(len(some), i), pose[after]])

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags, Index
 from ikgen.runtime.python.back_substitution import complete_angles, middle_angles
-from ikgen.runtime.python.chain_kinematics import Chain, Motion, chain_of
+from ikgen.runtime.python.chain_kinematics import Motion
 from ikgen.runtime.python.loop_equations import joint_values, loop_constants, loop_equations
 from ikgen.runtime.python.refinement import refine
 from ikgen.runtime.python.rigid_motion import inverses, rotations_z
+from ikgen.runtime.python.six_joints import SixJoints, one_axis_each
 from ikgen.runtime.python.solution_rows import (
     Turning,
     distinct_rows,
+    rows_of,
     slides_near,
     sorted_rows,
 )
@@ -30,14 +31,13 @@ __all__ = [
     "Plan",
     "Way",
     "candidates",
-    "one_axis_each",
     "refined_rows",
     "six_joint_rows",
 ]
 
 Elimination = tuple[int, int, int]  # joint that the loop begins at, whether reversed or swapped
 Candidates = tuple[Index, Array, Index, Flags]
-Finder = Callable[[Array, Array, Elimination, Turning], Candidates]
+Finder = Callable[[Sequence[Array], Array, Elimination, Turning], Candidates]
 Way = tuple[Finder, Elimination, float]  # and how far off the pose exact candidates may be
 _SIX = range(6)
 # Error of a candidate from a root that is exact: a double one is off by the square root.
@@ -61,8 +61,13 @@ class Plan:
     direct: tuple[Way, ...] = ()
     motions: tuple[Motion, ...] = ()
 
+    @property
+    def axes(self) -> tuple[Motion, ...]:
+        """The motions of all axes."""
+        return self.motions or one_axis_each(self.turning)
 
-def candidates(F: Array, T: Array, plan: Elimination, _: Turning) -> Candidates:
+
+def candidates(F: Sequence[Array], T: Array, plan: Elimination, _: Turning) -> Candidates:
     """Approximate solutions for the poses T (N, 4, 4) by one plan: pose index (k,), joint angles
     (k, 6); how many solutions each pose has at least, and whether those are all (N,)."""
     start, reverse, swap = plan
@@ -76,26 +81,18 @@ def candidates(F: Array, T: Array, plan: Elimination, _: Turning) -> Candidates:
 
 
 def refined_rows(
-    F: Array, plan: Plan, T: Array, q: Array, policy: Policy
+    six: SixJoints, plan: Plan, pose: Index, T: Array, q: Array, policy: Policy
 ) -> tuple[Array, Flags, Array]:
-    """Newton steps from q (k, 6) to T (k, 4, 4): q, which arrived, and the errors before (k,)."""
-    near, motions = slides_near(q, plan.turning), plan.motions or one_axis_each(plan.turning)
-    chain, start = _kept_chain(F.tobytes(), motions), np.where(near[:, None], q, 0.0)
+    """Newton steps from q (k, 6) to T (k, 4, 4) of the poses with indices `pose` (k,): q, which arrived,
+    and the errors before (k,)."""
+    near = slides_near(q, plan.turning)
+    held = np.broadcast_to(rows_of(six.held, pose), (len(q), six.held.shape[1]))
+    start = np.concatenate([np.where(near[:, None], q, 0.0), held], axis=1)
     # Roots of a high degree come from farther off: of their rows all digits are wanted.
     converged, steps = (0.0, _FINEST) if plan.motions else (policy.converged, _THOROUGH)
     thorough = replace(policy, refinement=steps, converged=converged)
-    q, error, before, _ = refine(chain, PoseTask(1.0), _SIX, start, T, thorough)
-    return q, (error < policy.arrived) & near, np.where(near, before, np.inf)
-
-
-@lru_cache(maxsize=64)
-def _kept_chain(frames: bytes, motions: tuple[Motion, ...]) -> Chain:
-    return chain_of(np.frombuffer(frames).reshape(-1, 4, 4), motions, 6)
-
-
-def one_axis_each(turning: Turning) -> tuple[Motion, ...]:
-    """The motions of six joints, each turning about or sliding along an axis of its own."""
-    return tuple((i, turns, 1.0, 0.0) for i, turns in enumerate(turning))
+    q, error, before, _ = refine(six.chain, PoseTask(1.0), _SIX, start, T, thorough)
+    return q[:, :6], (error < policy.arrived) & near, np.where(near, before, np.inf)
 
 
 def _displaced() -> Array:
@@ -120,19 +117,17 @@ def _runs(plan: Plan) -> list[tuple[Way, tuple[Array | None, ...]]]:
     return runs + [(way, (None, _ASIDE, _OTHER_SIDE)) for way in ways[1:]]
 
 
-def six_joint_rows(F: Array, plan: Plan, T: Array, policy: Policy) -> tuple[Index, Array]:
-    """All real solutions of `F_0 M_1 F_1 ... M_n F_n = T` for poses T (N, 4, 4).
+def six_joint_rows(six: SixJoints, plan: Plan, T: Array, policy: Policy) -> tuple[Index, Array]:
+    """All real solutions of the six joints for poses T (N, 4, 4).
 
-    F (n + 1, 4, 4) constant rigid transforms, n = 6 unless a joint moves several axes; M_i turns about z
-    or moves along it. One run of the first is enough where each of its roots is clearly real, or clearly
-    not, and there are as many solutions as real roots, each found to many digits. Otherwise more runs
-    follow, with the pose displaced to both sides (where right angles make roots coincide they come apart,
-    and Newton's method takes them back) and by the next elimination, until they find all that is known
-    and no more. What a direct way leaves open, these runs confirm or complete. Returns pose indices (k,)
-    in order and joint values (k, 6), angles in (-pi, pi], sorted.
+    One run of the first is enough where each of its roots is clearly real, or clearly not, and there are
+    as many solutions as real roots, each found to many digits. Otherwise more runs follow, with the pose
+    displaced to both sides (where right angles make roots coincide they come apart, and Newton's method
+    takes them back) and by the next elimination, until they find all that is known and no more. What a
+    direct way leaves open, these runs confirm or complete. Returns pose indices (k,) in order and joint
+    values (k, 6), angles in (-pi, pi], sorted.
     """
-    F, T = F.copy(), T.copy()
-    F[:, :3, 3] /= plan.length
+    T = T.copy()
     T[:, :3, 3] /= plan.length
     found, of = np.zeros((0, 6)), np.zeros(0, dtype=np.intp)
     inside = np.abs(T[:, :3]).max(axis=(1, 2), initial=0.0) < 1e6  # false for NaN
@@ -143,11 +138,12 @@ def six_joint_rows(F: Array, plan: Plan, T: Array, policy: Policy) -> tuple[Inde
             break
         exact = T[todo]
         aims = np.concatenate([exact if X is None else exact @ X for X in moves])
-        run, q, real, clear = find(F, aims, one, plan.turning)
+        some = six.of(np.tile(todo, len(moves)))
+        run, q, real, clear = find(some.frames, aims, one, plan.turning)
         which, real = run % len(todo), real[: len(todo)]
         if moves[0] is None and number >= len(plan.direct):
             least[todo] = np.maximum(least[todo], real)
-        q, arrived, before = refined_rows(F, plan, exact[which], q, policy)
+        q, arrived, before = refined_rows(some, plan, run, exact[which], q, policy)
         pose, q, before = todo[which[arrived]], q[arrived], before[arrived]
         best = np.lexsort((before >= near, pose))
         q, pose, kept = distinct_rows(q[best], pose[best], plan.turning, policy.coincident)

@@ -73,10 +73,14 @@ def hidden_angles(
 
 
 def real_angles(
-    t: Array | NDArray[np.complex128], about: Array, accept: float, doubtful: float = DOUBTFUL
+    t: Array | NDArray[np.complex128],
+    about: Array,
+    accept: float,
+    doubtful: float | Array = DOUBTFUL,
 ) -> tuple[Index, Array, Index, Flags]:
     """Those angles `about + 2 atan(t)`, about (N,) and t (N, n) complex, of which the imaginary part is
-    below `accept`: as `hidden_angles` has them. With one below `doubtful` a root is not clearly complex."""
+    below `accept`: as `hidden_angles` has them. With one below `doubtful` (or that of each, (N, 1)) a root
+    is not clearly complex."""
     # angle and modulus of (1 + i t) / (1 - i t)
     z = (1.0 + 1j * t) / np.where(t == -1j, 1e-300, 1.0 - 1j * t)
     off = np.abs(np.log(np.maximum(np.abs(z), 1e-300)))
@@ -95,6 +99,7 @@ def solved(pivot: Array, N: Array, off: float = 0.0) -> Array:
     try:
         return np.asarray(np.linalg.solve(pivot + off * size * _JITTER, N))
     except np.linalg.LinAlgError:
-        if len(pivot) > 1:
-            return np.concatenate([solved(p, n) for p, n in zip(pivot[:, None], N[:, None])])
+        if len(pivot) > 1:  # halves, until those that are singular are alone
+            half = len(pivot) // 2
+            return np.concatenate([solved(pivot[:half], N[:half]), solved(pivot[half:], N[half:])])
         return solved(pivot, N, 2.0 * off or 1e-10)

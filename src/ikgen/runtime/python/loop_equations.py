@@ -5,12 +5,12 @@ Elimination of Raghavan and Roth (1990, 1993), its fourteen functions of a trans
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 
 import numpy as np
 
-from ikgen.runtime.python.array_types import Array, Index
+from ikgen.runtime.python.array_types import Array
 from ikgen.runtime.python.chain_kinematics import cross
 from ikgen.runtime.python.rigid_motion import inverses, rotations_z
 
@@ -27,7 +27,6 @@ __all__ = [
     "loop_constants",
     "loop_equations",
     "of_constants",
-    "rows_of",
 ]
 
 XS, YS = [0, 1, 2, 3], [4, 5, 6, 7]
@@ -38,10 +37,12 @@ _FIT_PAIR = np.kron(FIT, FIT)
 ROTATIONS = rotations_z(_THIRDS)
 
 
-def loop_constants(F: Array, T: Array, start: int, reverse: int) -> tuple[list[int], list[Array]]:
-    """The loop of frames F (7, 4, 4) and poses T (N, 4, 4) begun at joint `start`, reversed with negated
-    angles: the order of the joints, and C (1 or N, 4, 4) each."""
-    C = [np.broadcast_to(F[i], (1, 4, 4)) for i in range(1, 6)] + [F[6] @ inverses(T) @ F[0]]
+def loop_constants(
+    F: Sequence[Array], T: Array, start: int, reverse: int
+) -> tuple[list[int], list[Array]]:
+    """The loop of seven frames F (1 or N, 4, 4) and poses T (N, 4, 4) begun at joint `start`, reversed with
+    negated angles: the order of the joints, and C (1 or N, 4, 4) each."""
+    C = [*F[1:6], F[6] @ inverses(T) @ F[0]]
     if not reverse:
         order = [(start + i) % 6 for i in range(6)]
         return order, [C[i] for i in order]
@@ -54,11 +55,6 @@ def joint_values(values: Array, order: list[int], reverse: int = 0) -> Array:
     q = np.empty_like(values)
     q[:, order] = -values if reverse else values
     return q
-
-
-def rows_of(rows: Array, pose: Index) -> Array:
-    """Rows of poses, where they are not the same for all."""
-    return rows[pose] if len(rows) > 1 else rows
 
 
 def of_constants(function: Callable[..., Array], *C: Array) -> Array:

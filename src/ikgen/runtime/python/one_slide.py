@@ -7,6 +7,8 @@ angles, the same as those of six revolute joints.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags, Index
@@ -21,9 +23,9 @@ from ikgen.runtime.python.loop_equations import (
     loop_action,
     loop_constants,
     of_constants,
-    rows_of,
 )
 from ikgen.runtime.python.rigid_motion import inverses, motions_z, rotations_z
+from ikgen.runtime.python.solution_rows import rows_of
 
 __all__ = ["one_slide_candidates"]
 
@@ -35,7 +37,7 @@ _PARABOLA = np.array(
 
 
 def one_slide_candidates(
-    F: Array, T: Array, plan: Elimination, turning: tuple[bool, ...]
+    F: Sequence[Array], T: Array, plan: Elimination, turning: tuple[bool, ...]
 ) -> tuple[Index, Array, Index, Flags]:
     """As `candidates`, of a chain whose joint that is not `turning` the plan puts first or second."""
     start, reverse, swap = plan

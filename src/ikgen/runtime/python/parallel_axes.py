@@ -9,7 +9,7 @@ direction n with z_1, z_4 and D: a line and a conic, or two lines, that (cos, si
 
 from __future__ import annotations
 
-from functools import lru_cache
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -17,18 +17,19 @@ from ikgen.runtime.python.array_types import Array, Flags, Index
 from ikgen.runtime.python.chain_kinematics import cross
 from ikgen.runtime.python.general_6r import Candidates, Elimination
 from ikgen.runtime.python.hidden_angle import DOUBTFUL, real_angles
-from ikgen.runtime.python.loop_equations import joint_values, loop_constants, rows_of
+from ikgen.runtime.python.loop_equations import joint_values, loop_constants, of_constants
 from ikgen.runtime.python.parallel_links import (
     MEETING,
     PLAIN,
     UPRIGHT,
     ParallelLinks,
     deviation,
+    links_of,
     parallel_links,
 )
 from ikgen.runtime.python.parallel_turns import parallel_turns
 from ikgen.runtime.python.rigid_motion import inverses
-from ikgen.runtime.python.solution_rows import Turning
+from ikgen.runtime.python.solution_rows import Turning, rows_of
 
 __all__ = ["parallel_candidates"]
 
@@ -74,9 +75,8 @@ def _beside(C: list[Array], links: ParallelLinks) -> tuple[Array, Array]:
     """z_1, O_1 (n, 3, 6) times (1, cos, sin) of theta_6, and z_4, O_4, z_4 x O_4 (n, 3, 9) times those of
     theta_5."""
     four = inverses(C[3])
-    z1, z4 = C[5][..., :3, 2], four[..., :3, 2]
-    o1 = C[5][..., :3, 3] + links.h1 * z1
-    o4 = four[..., :3, 3] + links.h4 * z4
+    z1, o1 = np.broadcast_arrays(C[5][..., :3, 2], C[5][..., :3, 3] + links.h1 * C[5][..., :3, 2])
+    z4, o4 = np.broadcast_arrays(four[..., :3, 2], four[..., :3, 3] + links.h4 * four[..., :3, 2])
     one = C[4][..., :3, :3] @ np.concatenate([_turning(z1, 1.0), _turning(o1, 1.0)], axis=-1)
     one[..., 3] += C[4][..., :3, 3]
     parts = [_turning(v, -1.0) for v in (z4, o4, cross(z4, o4))]
@@ -99,41 +99,55 @@ def _products(one: Array, four: Array, six: Array) -> Array:
     return out
 
 
-@lru_cache(maxsize=64)
-def _curves(kind: int, of: ParallelLinks) -> tuple[Array, Array]:
-    """The line (6,) and the conic (6, 6) as sums of the products and of these by each other."""
-    line, conic = np.zeros(6), np.zeros((6, 6))
-    if kind == UPRIGHT:  # e = 0, k^2 = 4 |a3 z_4 x D + a1 D x z_1|^2 with k as below
-        line[5] = 1.0
-        k = np.array([of.a1**2 + of.a3**2 - of.a2**2, -2.0 * of.a1 * of.a3, 0.0, 0.0, 1.0, 0.0])
-        return line, np.outer(k, k) - 4.0 * _square_of_normals(of.a3, of.a1)
-    line[[0, 4]] = -(of.a2**2) - of.d**2, 1.0  # r = a2^2 + d^2
-    conic[5, 5] = 1.0  # e^2 = |c1 z_4 x D + c3 D x z_1 + d z_1 x z_4|^2
-    conic[0, 0], conic[1, 1] = -(of.d**2), of.d**2
-    first, third = of.c1 * of.d, of.c3 * of.d
-    for i, j, x in ((0, 2, first), (1, 3, -first), (0, 3, third), (1, 2, -third)):
-        conic[i, j] = conic[j, i] = x
-    return line, conic - _square_of_normals(of.c1, of.c3)
+def _curves(kind: int, C: list[Array]) -> Array:
+    """The line and the conic (m, 7, 6) as sums of the products and of these by each other."""
+    return of_constants(_upright_curves if kind == UPRIGHT else _other_curves, *C[:3])
 
 
-def _square_of_normals(x: float, y: float) -> Array:
-    """|x z_4 x D + y D x z_1|^2 as a sum (6, 6) of the products by each other."""
-    out = np.zeros((6, 6))
-    out[0, 4] = out[4, 0] = 0.5 * (x * x + y * y)
-    out[3, 3], out[2, 2] = -x * x, -y * y
-    out[2, 3] = out[3, 2] = x * y
-    out[1, 4] = out[4, 1] = -x * y
+def _upright_curves(*C: Array) -> Array:
+    """e = 0, k^2 = 4 |a3 z_4 x D + a1 D x z_1|^2 with k a sum of products."""
+    of = links_of(parallel_links(C))
+    k = np.zeros((len(of.d), 6))
+    k[:, :1], k[:, 1:2], k[:, 4] = of.a1**2 + of.a3**2 - of.a2**2, -2.0 * of.a1 * of.a3, 1.0
+    out = np.zeros((len(k), 7, 6))
+    out[:, 0, 5] = 1.0
+    out[:, 1:] = k[:, :, None] * k[:, None] - 4.0 * _square_of_normals(of.a3, of.a1)
     return out
 
 
-def _resultant(kind: int, links: ParallelLinks, X: Array) -> Array:
+def _other_curves(*C: Array) -> Array:
+    """r = a2^2 + d^2, e^2 = |c1 z_4 x D + c3 D x z_1 + d z_1 x z_4|^2."""
+    of = links_of(parallel_links(C))
+    out = np.zeros((len(of.d), 7, 6))
+    line, conic = out[:, 0], out[:, 1:]
+    line[:, :1], line[:, 4] = -(of.a2**2) - of.d**2, 1.0
+    conic[:, 5, 5] = 1.0
+    conic[:, 0, :1], conic[:, 1, 1:2] = -(of.d**2), of.d**2
+    first, third = (of.c1 * of.d)[:, 0], (of.c3 * of.d)[:, 0]
+    for i, j, x in ((0, 2, first), (1, 3, -first), (0, 3, third), (1, 2, -third)):
+        conic[:, i, j] = conic[:, j, i] = x
+    conic -= _square_of_normals(of.c1, of.c3)
+    return out
+
+
+def _square_of_normals(x: Array, y: Array) -> Array:
+    """|x z_4 x D + y D x z_1|^2 as a sum (m, 6, 6) of the products by each other; x, y (m, 1)."""
+    x, y = x[:, 0], y[:, 0]
+    out = np.zeros((len(x), 6, 6))
+    out[:, 0, 4] = out[:, 4, 0] = 0.5 * (x * x + y * y)
+    out[:, 3, 3], out[:, 2, 2] = -x * x, -y * y
+    out[:, 2, 3] = out[:, 3, 2] = x * y
+    out[:, 1, 4] = out[:, 4, 1] = -x * y
+    return out
+
+
+def _resultant(kind: int, curves: Array, X: Array) -> Array:
     """What vanishes where line and conic, or both lines, meet on the circle: (n, m) of products X."""
-    line, conic = _curves(kind, links)
-    first = np.einsum("i,nmik->nmk", line, X)
+    first = np.einsum("ni,nmik->nmk", curves[:, 0], X)
     if kind == PLAIN:
         second = X[..., 5, :]
         return np.asarray((cross(first, second) ** 2 * _CONE).sum(axis=-1), dtype=float)
-    Q = np.swapaxes(X, -1, -2) @ conic @ X
+    Q = np.swapaxes(X, -1, -2) @ curves[:, None, 1:] @ X
     K = np.zeros((*first.shape, 3))
     K[..., (2, 0, 1), (1, 2, 0)] = first
     K[..., (1, 2, 0), (2, 0, 1)] = -first
@@ -142,10 +156,9 @@ def _resultant(kind: int, links: ParallelLinks, X: Array) -> Array:
     return np.asarray(2.0 * np.einsum("nmij,nmji->nm", G, G) - trace * trace, dtype=float)
 
 
-def _fifth(kind: int, links: ParallelLinks, X: Array) -> Array:
+def _fifth(kind: int, curves: Array, X: Array) -> Array:
     """(1, cos, sin) of theta_5 (k, 3) at roots of the resultant, of products X (k, 6, 3)."""
-    line, conic = _curves(kind, links)
-    first = line @ X
+    first = (curves[:, :1] @ X)[:, 0]
     if kind == PLAIN:
         both = cross(first, X[:, 5])
         both *= np.copysign(1.0, both[:, :1])
@@ -159,7 +172,7 @@ def _fifth(kind: int, links: ParallelLinks, X: Array) -> Array:
     ends[1, :, 1], ends[1, :, 2] = half * c - a * b, -half * b - a * c
     ends[..., 1:] /= square[:, None]
     at = (X @ ends[..., None])[..., 0]
-    off = np.abs(((at @ conic) * at).sum(axis=-1))
+    off = np.abs(((at[..., None, :] @ curves[:, 1:])[..., 0, :] * at).sum(axis=-1))
     return np.asarray(np.where((off[0] <= off[1])[:, None], ends[0], ends[1]))
 
 
@@ -173,14 +186,14 @@ def _directions(kind: int, of: ParallelLinks, z: Array, y: Array, D: Array) -> A
     if kind == PLAIN:
         return np.concatenate([n, -n])
     if kind == UPRIGHT:
-        k = (D * D).sum(axis=-1) - 2.0 * of.a1 * of.a3 * (z * y).sum(axis=-1)
-        k += of.a1**2 + of.a3**2 - of.a2**2
+        k = (D * D).sum(axis=-1) - (2.0 * of.a1 * of.a3)[:, 0] * (z * y).sum(axis=-1)
+        k += (of.a1**2 + of.a3**2 - of.a2**2)[:, 0]
         k *= (n * (of.a3 * cross(y, D) + of.a1 * cross(D, z))).sum(axis=-1)
         n *= np.copysign(1.0, k)[:, None]
     return np.asarray(n)
 
 
-def _real_roots(kind: int, f: Array, doubtful: float) -> tuple[Index, Array, Index, Flags]:
+def _real_roots(kind: int, f: Array, doubtful: Array) -> tuple[Index, Array, Index, Flags]:
     """As `real_angles`, of polynomials with values f (N, n) at the nodes: eigenvalues of companion
     matrices, in half angles about the opposite of the node where f is largest."""
     nodes, table = _TABLES[kind]
@@ -193,25 +206,27 @@ def _real_roots(kind: int, f: Array, doubtful: float) -> tuple[Index, Array, Ind
     return real_angles(np.linalg.eigvals(companion), nodes[k] - np.pi, _ACCEPT, doubtful)
 
 
-def parallel_candidates(F: Array, T: Array, plan: Elimination, _: Turning) -> Candidates:
+def parallel_candidates(F: Sequence[Array], T: Array, plan: Elimination, _: Turning) -> Candidates:
     """As `candidates`, of a loop whose second and third axes are parallel and whose links beside them are
     of a kind in `parallel_links`: the plan is (start, reverse, kind)."""
     start, reverse, kind = plan
     order, C = loop_constants(F, T, start, reverse)
-    links = parallel_links(C)
+    measures, curves = parallel_links(C), _curves(kind, C)
+    links = links_of(measures)
     one, four = _beside(C, links)
-    f = _resultant(kind, links, _products(one, four, _circle(_TABLES[kind][0])[None]))
-    doubtful = max(DOUBTFUL, _SPLIT * deviation(kind, links) ** 0.5)
+    f = _resultant(kind, curves, _products(one, four, _circle(_TABLES[kind][0])[None]))
+    doubtful = np.maximum(DOUBTFUL, _SPLIT * deviation(kind, links) ** 0.5)
     pose, t6, least, clear = _real_roots(kind, f, doubtful)
     if not len(pose):
         return pose, np.zeros((0, 6)), least, clear
     one, four, six = rows_of(one, pose), rows_of(four, pose), _circle(t6)
-    five = _fifth(kind, links, _products(one, four, six[:, None])[:, 0])
+    five = _fifth(kind, rows_of(curves, pose), _products(one, four, six[:, None])[:, 0])
     z, o = ((one[..., i : i + 3] @ six[..., None])[..., 0] for i in (0, 3))
     y, p = ((four[..., i : i + 3] @ five[..., None])[..., 0] for i in (0, 3))
-    n = _directions(kind, links, z, y, p - o)
+    n = _directions(kind, links_of(rows_of(measures, pose)), z, y, p - o)
     each = len(n) // len(pose)
     pose, t6 = np.tile(pose, each), np.tile(t6, each)
     t5 = np.tile(np.arctan2(five[:, 2], five[:, 1]), each)
-    angles = parallel_turns([rows_of(c, pose) for c in C], links.side, n, t5, t6)
+    side = links_of(rows_of(measures, pose)).side
+    angles = parallel_turns([rows_of(c, pose) for c in C], side, n, t5, t6)
     return pose, joint_values(angles, order, reverse), each * least, clear

@@ -10,9 +10,9 @@ from ikgen.runtime.python.rigid_motion import inverses, rotations_z
 __all__ = ["parallel_turns"]
 
 
-def parallel_turns(C: list[Array], side: float, n: Array, t5: Array, t6: Array) -> Array:
+def parallel_turns(C: list[Array], side: Array, n: Array, t5: Array, t6: Array) -> Array:
     """The loop's angles (k, 6) where the parallel axes have the direction n (k, 3) in the frame between
-    axes 5 and 6; `side`: 1 or -1, the direction of the third along it."""
+    axes 5 and 6; `side` (k, 1) or (1, 1): 1 or -1, the direction of the third along it."""
     one = C[4] @ rotations_z(t6) @ C[5]
     four = rotations_z(-t5) @ inverses(C[3])
     t1 = _heading(_seen(one, n)) - _heading(C[0][..., :3, 2])

@@ -11,6 +11,7 @@ __all__ = [
     "distinct_rows",
     "first_of_equals",
     "places",
+    "rows_of",
     "slides_near",
     "sorted_rows",
 ]
@@ -18,6 +19,11 @@ __all__ = [
 Turning = tuple[bool, ...]  # which of the six joints turn; the others slide
 _FARTHEST = 1e4  # of a slide, in arm lengths
 _SAME_KEY = 1e-7  # rad or arm lengths: values that do not decide which row comes first
+
+
+def rows_of(rows: Array, pose: Index) -> Array:
+    """Rows of poses, where they are not the same for all."""
+    return rows[pose] if len(rows) > 1 else rows
 
 
 def slides_near(q: Array, turning: Turning) -> Flags:

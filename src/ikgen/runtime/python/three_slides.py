@@ -5,6 +5,8 @@ The rotation gives the angles, the position the lengths, linearly.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array
@@ -20,7 +22,9 @@ _SLIDES_FOLD = 1e-3  # imaginary part of an angle that may be a fold's round-off
 _SLIDES_APART = 1e-6
 
 
-def three_slide_candidates(F: Array, T: Array, plan: Elimination, turning: Turning) -> Candidates:
+def three_slide_candidates(
+    F: Sequence[Array], T: Array, plan: Elimination, turning: Turning
+) -> Candidates:
     """As `candidates`, of a chain with three joints that are not `turning`; the plan begins at a revolute
     joint."""
     order, C = loop_constants(F, T, *plan[:2])

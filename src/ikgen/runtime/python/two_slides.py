@@ -10,6 +10,8 @@ eight solutions that Raghavan and Roth (1993) count, and none that is extraneous
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array
@@ -103,7 +105,9 @@ def _quartic_roots(value: Array, offset: Array) -> tuple[Complex, Array]:
     ]
 
 
-def two_slide_candidates(F: Array, T: Array, plan: Elimination, turning: Turning) -> Candidates:
+def two_slide_candidates(
+    F: Sequence[Array], T: Array, plan: Elimination, turning: Turning
+) -> Candidates:
     """As `candidates`, of a chain with two joints that are not `turning`; the plan begins at the angle that
     is hidden."""
     order, C = loop_constants(F, T, *plan[:2])
