@@ -202,9 +202,8 @@ def test_a_batch_has_no_fewer_and_no_other_rows() -> None:
 
 
 def test_the_same_poses_give_the_same_bits() -> None:
-    first = Trial(sample(), rows(), True, False)
     some = Rows(Q[:2, None], np.ones(2, int), ("OK", "OK"), np.zeros((2, 1), dtype=bool))
-    again = Trial(sample(), some, True, False)
+    first = again = Trial(sample(), some, True, False)
     assert check_determinism(first, again).count == 2 and check_determinism(first, again).passed
     late = Q[:2, None].copy()
     late[1, 0, 0] = np.nextafter(late[1, 0, 0], 9.0)

@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 
 _SINGULAR_SETS = ("singular", "near singular", "boundary", "special")
 _ORDERED = 100  # poses solved again with a random seed
+_REPEATED = 20
 _SEARCHED = 16  # poses that are searched numerically
 _UNREACHABLE = 12  # poses of each kind out of reach
 
@@ -30,7 +31,7 @@ class Answers:
     sets with configurations inside the limits, unseeded; `outside`: a (with, without) limits pair
     of configurations outside; `seeded`: singular sets, seeded with the generating configuration;
     `ordered`: random poses with random `seeds`; `searched`: a slice of `unlimited`; `unreachable`:
-    poses without solution; `repeated`: some of `limited` again."""
+    poses without solution; `repeated`: a few of `limited` twice again."""
 
     limited: Trial
     unlimited: Trial
@@ -41,7 +42,7 @@ class Answers:
     seeds: Array
     searched: Trial
     unreachable: tuple[Trial, ...]
-    repeated: Trial
+    repeated: tuple[Trial, Trial]
 
     @property
     def reachable(self) -> tuple[Trial, ...]:
@@ -109,7 +110,7 @@ def collect_answers(runner: Runner, arm: ArmUnderTest, samples: int, seed: int) 
     sets = sample_sets(arm, samples, seed)
     limited = run_trial(runner, arm, sets["random"], limits=True)
     unlimited = _in_batch(runner, arm, limited)
-    some = _first(sets["random"], _ORDERED)
+    some, few = (_first(sets["random"], n) for n in (_ORDERED, _REPEATED))
     seeds = arm.uniform(generator(seed, "seeds"), len(some))
     outside = sets["outside limits"]
     return Answers(
@@ -130,5 +131,8 @@ def collect_answers(runner: Runner, arm: ArmUnderTest, samples: int, seed: int) 
         seeds=seeds,
         searched=_slice(unlimited, _SEARCHED),
         unreachable=_unreachable(runner, arm, seed),
-        repeated=run_trial(runner, arm, _first(sets["random"], 20), limits=True),
+        repeated=(
+            run_trial(runner, arm, few, limits=True),
+            run_trial(runner, arm, few, limits=True),
+        ),
     )

@@ -67,7 +67,7 @@ def _plan(
         "invalid poses": lambda: interface_checks.check_invalid(arm, runner, random.poses[0]),
         "bad shapes": lambda: interface_checks.check_shapes(arm, runner, random.poses[0]),
         "solve_batch": lambda: interface_checks.check_batch(arm, runner, a.ordered.sample),
-        "determinism": lambda: interface_checks.check_determinism(a.limited, a.repeated),
+        "determinism": lambda: interface_checks.check_determinism(*a.repeated),
         **_motion_checks(runner, arm, seed),
         **agreement,
     }

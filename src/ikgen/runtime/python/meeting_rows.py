@@ -131,12 +131,12 @@ def _fresh(arm: Arm, q: Array, starts: Starts, near: Flags, stalled: Flags) -> F
 
 def repeats(arm: Arm, T: Array, row: Row, kept: Sequence[Found]) -> bool:
     """Whether nothing tells a singular row from one kept nearby: the pose is theirs between them too."""
-    for other, singular in kept:
-        gap = differences(arm, np.array(row), np.array(other))
-        if singular and np.abs(gap).max() < arm.policy.alike:
-            middle = forward(arm.chain, np.array(row) + 0.5 * gap)
-            if np.abs(arm.task.error(middle[None], T[None])).max() < arm.policy.halfway:
-                return True
+    others = [other for other, singular in kept if singular]
+    gaps = differences(arm, np.array(row), np.array(others)) if others else np.zeros((0, len(row)))
+    for gap in gaps[np.abs(gaps).max(axis=1) < arm.policy.alike]:
+        middle = forward(arm.chain, np.array(row) + 0.5 * gap)
+        if np.abs(arm.task.error(middle[None], T[None])).max() < arm.policy.halfway:
+            return True
     return False
 
 

@@ -23,7 +23,10 @@ from ikgen.runtime.python.row_placement import in_order, is_new, place_rows
 from ikgen.runtime.python.solutions import Solutions, Status, no_solutions
 from ikgen.runtime.python.solved_arm import Arm, Found
 
-__all__ = ["solve_pose"]
+__all__ = ["One", "solutions_of", "solve_pose", "sure_answer"]
+
+One = tuple[list[list[float]], Row | None, Row]
+"""A pose, its seed if there is one, and values of held joints."""
 
 
 def solve_pose(
@@ -46,10 +49,18 @@ def solve_pose(
     if T is None:
         reason = pose_fault(arm.task, lines, arm.policy)
         return no_solutions(len(arm.lower), Status.INVALID, reason)
-    answer = _fitting(arm, T, near, held, limits)
+    asked = T, near, held
+    return solutions_of(arm, asked, limits, _fitting(arm, asked, limits), project)
+
+
+def solutions_of(
+    arm: Arm, asked: One, limits: bool, answer: Answer, project: bool = False
+) -> Solutions:
+    """The answer in order, or why there is none; to a pose nearby where it is to `project`."""
+    T, near, held = asked
     found = answer.rows
     if project and not found:
-        found = _projected(arm, T, near, held, limits)
+        found = _projected(arm, asked, limits)
     if not found:
         status = Status.LIMITS if answer.real else Status.UNREACHABLE
         return no_solutions(len(arm.lower), status, _held_reason(arm, held, answer.real))
@@ -73,31 +84,38 @@ def _held_reason(arm: Arm, held: Row, real: bool) -> str:
     return f"{what} with {values} held; other values may reach the pose: {tells}"
 
 
-def _projected(
-    arm: Arm, T: list[list[float]], near: Row | None, held: Row, limits: bool
-) -> list[Found]:
+def _projected(arm: Arm, asked: One, limits: bool) -> list[Found]:
     """Solutions of the nearest pose that the arm can take."""
-    start = _asked(T, near, held).starts(arm)[0]
+    T, near, _ = asked
+    start = _asked(asked).starts(arm)[0]
     row = nearest_row(arm, np.array(T), tuple(start.tolist()), limits)
     pose: list[list[float]] = forward(arm.chain, row).tolist()
-    found = _fitting(arm, pose, near, tuple(held_of(arm, np.array(row)).tolist()), limits).rows
+    nearest = pose, near, tuple(held_of(arm, np.array(row)).tolist())
+    found = _fitting(arm, nearest, limits).rows
     if len(found) < arm.most and is_new(arm, row, found):
         found += place_rows(arm, [(row, False)], near, limits)
     return found
 
 
-def _asked(T: list[list[float]], near: Row | None, held: Row) -> Asked:
+def _asked(asked: One) -> Asked:
+    T, near, held = asked
     return Asked(np.array([T]), None if near is None else np.array([near]), np.array([held]))
 
 
-def _fitting(arm: Arm, T: list[list[float]], near: Row | None, held: Row, limits: bool) -> Answer:
+def _fitting(arm: Arm, asked: One, limits: bool) -> Answer:
+    sure = sure_answer(arm, asked, limits)
+    return placed_rows(arm, _asked(asked), limits)[0] if sure is None else sure
+
+
+def sure_answer(arm: Arm, asked: One, limits: bool) -> Answer | None:
     """From the closed form on floats, where that leaves no doubt."""
+    T, near, held = asked
     kept = _certain_rows(arm, T, near, held)
     if kept is None:
-        return placed_rows(arm, _asked(T, near, held), limits)[0]
+        return None
     placed = place_rows(arm, kept, near, limits)
     if near is not None and not placed:
-        placed = place_rows(arm, seeded_rows(arm, _asked(T, near, held))[0], near, limits)
+        placed = place_rows(arm, seeded_rows(arm, _asked(asked))[0], near, limits)
     return Answer(placed, bool(kept))
 
 

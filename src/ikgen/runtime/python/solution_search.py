@@ -23,6 +23,7 @@ Start = tuple[tuple[float, ...], Array, tuple[float, ...], int]
 """Values of the held joints, a row there, the first steps of each value, and the number of its group."""
 
 _HALVINGS = 30
+_LEAST_STEP = 1e-10  # rad or m
 _NEAR = 0.5  # rad or m that a row may be from the one that a step began at
 
 
@@ -37,13 +38,18 @@ def best_rows(
     _, cost, _ = preference_costs(arm, preference, rows[:, None], limits)
     best = cost[:, 0]
     for _ in range(_HALVINGS):
-        moved = np.zeros(len(starts), dtype=bool)
+        going = np.flatnonzero(step.max(axis=1) > _LEAST_STEP)
+        if not len(going):
+            break
+        moved = np.zeros(len(going), dtype=bool)
+        now = held[going], rows[going], best[going]
         for k in range(held.shape[1]):
             for sign in (1.0, -1.0):
-                trial = held.copy()
-                trial[:, k] += sign * step[:, k]
-                moved |= _improved(arm, T, preference, limits, (held, rows, best), trial)
-        step[~moved] *= 0.5 if held.shape[1] > 1 else 0.4
+                trial = now[0].copy()
+                trial[:, k] += sign * step[going, k]
+                moved |= _improved(arm, T, preference, limits, now, trial)
+        held[going], rows[going], best[going] = now
+        step[going[~moved]] *= 0.5 if held.shape[1] > 1 else 0.4
     groups = np.array([s[3] for s in starts])
     out: list[int] = []
     for i in np.argsort(best, kind="stable").tolist():

@@ -7,6 +7,7 @@ import itertools
 import sys
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,9 @@ from ikgen.verify.runners.runner import ArmConstants, Rows
 __all__ = ["PythonModule"]
 
 Array = NDArray[np.float64]
+_Answer = tuple[Array, str, NDArray[np.bool_]]
+
+_ALONE = 8  # one pose of so many is solved by itself
 
 _NAMES = (
     "JOINT_NAMES", "LOWER", "UPPER", "BASE_LINK", "TIP_LINK", "DOF", "MAX_SOLUTIONS", "TASK",
@@ -93,11 +97,9 @@ class PythonModule:
         free: Array | None = None,
         seed: Array | None = None,
         limits: bool = True,
-    ) -> tuple[Array, str, NDArray[np.bool_]]:
+    ) -> _Answer:
         """Rows (k, dof), status and singular flags (k,) for one pose (4, 4)."""
-        found = self.module.solve(pose, free=free, seed=seed, limits=limits)
-        q = np.asarray(found.q, dtype=float).reshape(-1, self._constants.dof)
-        return q, found.status.name, np.asarray(found.singular, dtype=bool).reshape(len(q))
+        return self._answer(self.module.solve(pose, free=free, seed=seed, limits=limits))
 
     def branch_names(self, q: Array) -> tuple[str, ...]:
         """What tells rows (k, dof) of one pose apart, as the module's `Solutions.branch` does."""
@@ -112,7 +114,12 @@ class PythonModule:
         seeds: Array | None = None,
         limits: bool = True,
     ) -> Rows:
-        """`solve` for each of the poses (N, 4, 4) with free values (N, f) and seeds (N, dof)."""
+        """`solve` for each of the poses (N, 4, 4) with free values (N, f) and seeds (N, dof): every eighth
+        by itself, of the others those that leave doubts in stacks."""
+        each = np.arange(len(poses))
+        alone = each % _ALONE == 0 if hasattr(self.module, "_solve_each") else each >= 0
+        frees, near = (None if x is None else x[~alone] for x in (free, seeds))
+        stacked = iter(() if alone.all() else self._stacked(poses[~alone], frees, near, limits))
         answers = [
             self.solve(
                 pose,
@@ -120,11 +127,24 @@ class PythonModule:
                 None if seeds is None else seeds[i],
                 limits,
             )
+            if alone[i]
+            else next(stacked)
             for i, pose in enumerate(poses)
         ]
         return self._rows(answers)
 
-    def _rows(self, answers: list[tuple[Array, str, NDArray[np.bool_]]]) -> Rows:
+    def _stacked(
+        self, poses: Array, free: Array | None, seeds: Array | None, limits: bool
+    ) -> list[_Answer]:
+        found = self.module._solve_each(self.module._ARM, poses, free, seeds, limits)
+        return [self._answer(one) for one in found]
+
+    def _answer(self, found: Any) -> _Answer:
+        """Of `Solutions`."""
+        q = np.asarray(found.q, dtype=float).reshape(-1, self._constants.dof)
+        return q, found.status.name, np.asarray(found.singular, dtype=bool).reshape(len(q))
+
+    def _rows(self, answers: list[_Answer]) -> Rows:
         width = max([self._constants.max_solutions, *(len(q) for q, _, _ in answers)])
         q = np.full((len(answers), width, self._constants.dof), np.nan)
         singular = np.zeros((len(answers), width), dtype=bool)
