@@ -853,7 +853,7 @@ def _rows_beside(arm: _Arm, T: Array, near: Array | None, held: Array) -> tuple[
     return q.reshape(len(T), -1, q.shape[2]), valid.reshape(len(T), -1)
 
 
-def _closed_form_rows_certain_rows(
+def _certain_rows(
     arm: _Arm, together: _Together, T: Array, held: Array, near: Array | None
 ) -> tuple[Array, _Flags, _Flags]:
     """Rows (N, M, dof) of a rounded arm refined all at once, which of them are solutions, and for which
@@ -1010,12 +1010,12 @@ def _fresh(arm: _Arm, q: Array, starts: _Starts, near: _Flags, stalled: _Flags) 
 
 def _repeats(arm: _Arm, T: Array, row: Row, kept: Sequence[_Found]) -> bool:
     """Whether nothing tells a singular row from one kept nearby: the pose is theirs between them too."""
-    for other, singular in kept:
-        gap = _differences(arm, np.array(row), np.array(other))
-        if singular and np.abs(gap).max() < arm.policy.alike:
-            middle = _forward(arm.chain, np.array(row) + 0.5 * gap)
-            if np.abs(arm.task.error(middle[None], T[None])).max() < arm.policy.halfway:
-                return True
+    others = [other for other, singular in kept if singular]
+    gaps = _differences(arm, np.array(row), np.array(others)) if others else np.zeros((0, len(row)))
+    for gap in gaps[np.abs(gaps).max(axis=1) < arm.policy.alike]:
+        middle = _forward(arm.chain, np.array(row) + 0.5 * gap)
+        if np.abs(arm.task.error(middle[None], T[None])).max() < arm.policy.halfway:
+            return True
     return False
 
 
@@ -1661,7 +1661,7 @@ def _rows_and_doubts(
     near a singularity, or leave a joint free."""
     if arm.together is None:
         return _careful_rows(arm, T, held, near)
-    return _closed_form_rows_certain_rows(arm, arm.together, T, held, near)
+    return _certain_rows(arm, arm.together, T, held, near)
 
 
 # The nearest pose that the arm can take, of one that it cannot.
@@ -1825,6 +1825,9 @@ def _branch_numbers(arm: _Arm, q: Array) -> list[int]:
 # All solutions of one pose.
 
 
+_One = tuple[list[list[float]], Row | None, Row]
+
+
 def _solve_pose(
     arm: _Arm,
     pose: Any,
@@ -1845,10 +1848,18 @@ def _solve_pose(
     if T is None:
         reason = _pose_fault(arm.task, lines, arm.policy)
         return _no_solutions(len(arm.lower), Status.INVALID, reason)
-    answer = _fitting(arm, T, near, held, limits)
+    asked = T, near, held
+    return _solutions_of(arm, asked, limits, _fitting(arm, asked, limits), project)
+
+
+def _solutions_of(
+    arm: _Arm, asked: _One, limits: bool, answer: _Answer, project: bool = False
+) -> Solutions:
+    """The answer in order, or why there is none; to a pose nearby where it is to `project`."""
+    T, near, held = asked
     found = answer.rows
     if project and not found:
-        found = _projected(arm, T, near, held, limits)
+        found = _projected(arm, asked, limits)
     if not found:
         status = Status.LIMITS if answer.real else Status.UNREACHABLE
         return _no_solutions(len(arm.lower), status, _held_reason(arm, held, answer.real))
@@ -1872,35 +1883,42 @@ def _held_reason(arm: _Arm, held: Row, real: bool) -> str:
     return f"{what} with {values} held; other values may reach the pose: {tells}"
 
 
-def _projected(
-    arm: _Arm, T: list[list[float]], near: Row | None, held: Row, limits: bool
-) -> list[_Found]:
+def _projected(arm: _Arm, asked: _One, limits: bool) -> list[_Found]:
     """Solutions of the nearest pose that the arm can take."""
-    start = _asked(T, near, held).starts(arm)[0]
+    T, near, _ = asked
+    start = _asked(asked).starts(arm)[0]
     row = _nearest_row(arm, np.array(T), tuple(start.tolist()), limits)
     pose: list[list[float]] = _forward(arm.chain, row).tolist()
-    found = _fitting(arm, pose, near, tuple(_held_of(arm, np.array(row)).tolist()), limits).rows
+    nearest = pose, near, tuple(_held_of(arm, np.array(row)).tolist())
+    found = _fitting(arm, nearest, limits).rows
     if len(found) < arm.most and _is_new(arm, row, found):
         found += _place_rows(arm, [(row, False)], near, limits)
     return found
 
 
-def _asked(T: list[list[float]], near: Row | None, held: Row) -> _Asked:
+def _asked(asked: _One) -> _Asked:
+    T, near, held = asked
     return _Asked(np.array([T]), None if near is None else np.array([near]), np.array([held]))
 
 
-def _fitting(arm: _Arm, T: list[list[float]], near: Row | None, held: Row, limits: bool) -> _Answer:
+def _fitting(arm: _Arm, asked: _One, limits: bool) -> _Answer:
+    sure = _sure_answer(arm, asked, limits)
+    return _placed_rows(arm, _asked(asked), limits)[0] if sure is None else sure
+
+
+def _sure_answer(arm: _Arm, asked: _One, limits: bool) -> _Answer | None:
     """From the closed form on floats, where that leaves no doubt."""
-    kept = _certain_rows(arm, T, near, held)
+    T, near, held = asked
+    kept = _pose_solving_certain_rows(arm, T, near, held)
     if kept is None:
-        return _placed_rows(arm, _asked(T, near, held), limits)[0]
+        return None
     placed = _place_rows(arm, kept, near, limits)
     if near is not None and not placed:
-        placed = _place_rows(arm, _seeded_rows(arm, _asked(T, near, held))[0], near, limits)
+        placed = _place_rows(arm, _seeded_rows(arm, _asked(asked))[0], near, limits)
     return _Answer(placed, bool(kept))
 
 
-def _certain_rows(
+def _pose_solving_certain_rows(
     arm: _Arm, T: list[list[float]], near: Row | None, held: Row
 ) -> list[_Found] | None:
     """Distinct rows, of a rounded arm refined all at once; None where that leaves a doubt."""
