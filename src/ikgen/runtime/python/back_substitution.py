@@ -18,7 +18,6 @@ from ikgen.runtime.python.solution_rows import rows_of
 
 __all__ = ["complete_angles", "middle_angles", "null_angles", "turned"]
 
-_ROUNDING = 1e-15  # of an equation's entries: at a root they are singular to the last digit
 _ONE_ROOT = 1e-6  # rad: rounding moves roots with two solutions by less
 
 
@@ -51,7 +50,7 @@ def _null_spaces(M: Array) -> tuple[Array, Flags, Flags]:
     """Two orthogonal vectors (k, 12, 2) each that M (k, 12, 12) shrinks most, the first one most of all;
     which M may have both of them in their null space, and which the first one alone: of the columns of
     an inverse, as inverse iteration has it (Ipsen 1997)."""
-    W = solved(M, np.broadcast_to(np.eye(12), M.shape), _ROUNDING)
+    W = solved(M, np.broadcast_to(np.eye(12), M.shape))
     a, longest = _longest(W)
     W = W - a * (np.swapaxes(a, 1, 2) @ W)
     b, length = _longest(W)
