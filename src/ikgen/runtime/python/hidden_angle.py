@@ -112,11 +112,14 @@ def solved(pivot: Array, N: Array, off: float = 0.0) -> Array:
     then is put off further, and no other beside it: what is found of a pose does not hang on those that
     are solved with it."""
     size = np.abs(pivot).max(axis=(1, 2))[:, None, None] + 1e-30 if off else 0.0
+    moved = pivot + off * size * _JITTER
     try:
-        return np.asarray(np.linalg.solve(pivot + off * size * _JITTER, N))
+        return np.asarray(np.linalg.solve(moved, N))
     except np.linalg.LinAlgError:
-        if len(pivot) > 1:  # halves, until those that are singular are alone
-            half = len(pivot) // 2
-            parts = (slice(None, half), slice(half, None))
-            return np.concatenate([solved(pivot[part], N[part], off) for part in parts])
-        return solved(pivot, N, max(2.0 * off, 1e-10))
+        flat = np.linalg.slogdet(moved)[0] == 0.0
+        if flat.all() or not flat.any():
+            return solved(pivot, N, 2.0 * off or 1e-10)
+        out: Array = np.empty(N.shape)
+        out[flat] = solved(pivot[flat], N[flat], 2.0 * off or 1e-10)
+        out[~flat] = solved(pivot[~flat], N[~flat], off)
+        return out
