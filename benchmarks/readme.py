@@ -1,5 +1,5 @@
-"""Fills the figures of README.md and of the page of comparisons, between their marks, from the recorded
-results.
+"""Fills the figures of README.md, of the page of comparisons and of the documentation's home page, between
+their marks, from the recorded results.
 
     python -m benchmarks.readme [--check]
 
@@ -174,6 +174,13 @@ def _answers(read: Callable[[str], Measured]) -> str:
     return _table(("solver", *(ARMS[arm] for arm in arms)), rows) + _source(measured)
 
 
+def _batch(read: Callable[[str], Measured]) -> str:
+    """The shortest time that the home page tells."""
+    rows = read("peers").found["times"]
+    fast = min(r["microseconds"] for r in rows if r["solver"].startswith("ikgen, C++ batch"))
+    return f"{_short(fast)} µs a pose in batches of C++, [measured](explanation/comparison.md#speed).\n"
+
+
 def _percent(share: float) -> str:
     return f"{100 * share:.3g} %"
 
@@ -184,9 +191,14 @@ BLOCKS: dict[str, Callable[[Callable[[str], Measured]], str]] = {
     "tables": _tables,
     "peers": _peers,
     "answers": _answers,
+    "batch": _batch,
 }
 """Block -> its text."""
-PAGES = {PAGE: ("public", "corpus", "tables", "peers"), COMPARISON: ("peers", "answers")}
+PAGES = {
+    PAGE: ("public", "corpus", "tables", "peers"),
+    COMPARISON: ("peers", "answers"),
+    COMPARISON.parents[1] / "index.md": ("batch",),
+}
 """Page -> its blocks."""
 
 

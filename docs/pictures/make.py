@@ -69,7 +69,7 @@ STAGES = (
     ("kinematics", "DHChain", "exact rows, named lengths, what was snapped"),
     ("equations", "EquationSet", "two-sided matrix equations, entry by entry"),
     ("solver", "SolutionGraph", "one solved unknown after the other, its parents"),
-    ("ir", "Program", "levels, guards, joint values: the same for every language"),
+    ("lowering", "Program", "levels, guards, joint values: the same for every language"),
 )
 
 

@@ -82,6 +82,8 @@ def test_every_block_says_commit_and_date() -> None:
     shown = [(page, name) for page, names in PAGES.items() for name in names]
     assert {name for _, name in shown} == set(BLOCKS)
     for page, name in shown:
+        if name == "batch":  # a sentence that leads to where that stands
+            continue
         assert re.search(r"Measured at `[0-9a-f]{7}\+?` on \d{4}-\d\d-\d\d", block(page, name))
 
 
