@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
@@ -144,6 +145,18 @@ def reading_options(function: F) -> F:
     return _apply([*_READING_OPTIONS, trust_option], function)
 
 
+class _Count(click.IntRange):
+    """A whole number from 1 on, with an exponent too: `1e9`."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The number as an int."""
+        if isinstance(value, str) and "e" in value.lower():
+            with contextlib.suppress(ValueError):
+                number = float(value)
+                value = int(number) if number.is_integer() else value
+        return super().convert(value, param, ctx)
+
+
 def sampling_options(function: F) -> F:
     """How much is verified."""
     return _apply(
@@ -151,7 +164,7 @@ def sampling_options(function: F) -> F:
             click.option(
                 "--samples",
                 metavar="N",
-                type=click.IntRange(min=1),
+                type=_Count(min=1),
                 default=1000,
                 show_default=True,
                 help="Random poses in the verification.",
