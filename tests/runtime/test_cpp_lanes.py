@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tests.support.chains import make_chain, rotation, translation
 from tests.support.cpp_modules import solver_module as published_module
 from tests.support.held_arms import held_module
-from tests.support.rounded_arms import EXACT, X, Z, meeting_shoulder, spherical_wrist
+from tests.support.rounded_arms import EXACT, FOLDED, X, Z, meeting_shoulder, spherical_wrist
 from tests.support.routines import compiled_header, feed
 from tests.support.solving import solver_module
 
@@ -184,17 +184,6 @@ def test_lanes_find_the_rows_at_an_arm_angle(tmp_path: Path) -> None:
         assert all(apart(rows, row).min() < 1e-8 for row in careful) or rough
     assert sum(len(rows) == 8 for (rows, _, _), _ in found) > 80
     assert sum(rough > 0 for _, rough in found) < 40
-
-
-FOLDED = [
-    [-1.96033274450597, 0.66543809597274, -2.52372616827503, -2.50427844103334, 0.89406157205916,
-     3.03630490120778],
-    [-1.96032965443633, 0.66543355343915, -2.52370960393478, -2.50428732897959, 0.89407944782896,
-     3.03629500742216],
-    [-1.96033056596298, 0.66543328581914, -2.52370942073624, -2.50428670206727, 0.89407901978423,
-     3.03629557192863],
-]  # fmt: skip
-"""Configurations where two solutions meet on what is a continuum of the solved geometry alone."""
 
 
 def test_a_continuum_that_rounding_breaks_is_searched_all_around(tmp_path: Path) -> None:
