@@ -10,6 +10,7 @@ import numpy as np
 from ikgen.runtime.python.array_types import Array, Flags, Index, Row
 from ikgen.runtime.python.closed_form_rows import ClosedForm, closed_form, rows_beside
 from ikgen.runtime.python.held_parameters import aims
+from ikgen.runtime.python.limit_rows import rows_inside
 from ikgen.runtime.python.meeting_rows import (
     Leads,
     Starts,
@@ -97,9 +98,10 @@ def _goes_on(
     if not free and any(flag for _, flag in kept):
         _add(arm, T, seeded, kept)
     answer.real = answer.real or bool(kept)
-    _add(arm, T, place_rows(arm, kept, near, limits), answer.rows)
+    aim = aims(arm, asked.T[k : k + 1], asked.held[k : k + 1])
+    _add(arm, T, rows_inside(arm, aim, kept, near, limits), answer.rows)
     if not answer.rows:
-        answer.rows = place_rows(arm, seeded, near, limits)
+        answer.rows = rows_inside(arm, aim, seeded, near, limits)
     led = led if arm.rounded else any(flag for _, flag in answer.rows)
     return free and not (answer.rows and led)
 

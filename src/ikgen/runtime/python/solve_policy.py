@@ -19,6 +19,7 @@ class Policy:
     alike: float  # and singular ones, where the pose is theirs between them too:
     halfway: float  # to this error
     limit_tolerance: float  # how far outside a limit a row is put back on it
+    limit_reach: float  # and how far outside that is tried
     tries: int  # values tried for a joint that a pose leaves free
     try_step: float  # rad from one to the next
     rank_loss: float  # smallest singular value below which a refined row is singular
