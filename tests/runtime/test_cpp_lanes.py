@@ -12,7 +12,16 @@ from numpy.typing import NDArray
 from tests.support.chains import make_chain, rotation, translation
 from tests.support.cpp_modules import solver_module as published_module
 from tests.support.held_arms import held_module
-from tests.support.rounded_arms import EXACT, FOLDED, X, Z, meeting_shoulder, spherical_wrist
+from tests.support.rounded_arms import (
+    EXACT,
+    FOLDED,
+    X,
+    Z,
+    beside_the_wrist,
+    meeting_shoulder,
+    spherical_wrist,
+    three_parallel,
+)
 from tests.support.routines import compiled_header, feed
 from tests.support.solving import solver_module
 
@@ -192,3 +201,10 @@ def test_a_continuum_that_rounding_breaks_is_searched_all_around(tmp_path: Path)
     for at, (answered, _) in zip(q, found, strict=True):
         for rows in answered:
             assert len(rows) and apart(rows, at).min() < 1e-4
+
+
+def test_behind_a_direction_that_rounding_turns_rows_are_found(tmp_path: Path) -> None:
+    q = beside_the_wrist(300)
+    for at, (answered, _) in zip(q, answers(rounded(three_parallel()), q, tmp_path), strict=True):
+        for rows in answered:
+            assert len(rows) and apart(rows, at).min() < 1e-6
