@@ -18,6 +18,7 @@ from ikgen.runtime.python.meeting_rows import (
     leads_of,
     repeats,
     rows_nearby,
+    traced,
 )
 from ikgen.runtime.python.row_placement import is_new, place_rows
 from ikgen.runtime.python.solved_arm import Arm, Found
@@ -149,8 +150,11 @@ def _rows(arm: Arm, asked: Asked, start: Array, first: bool) -> list[_Rows]:
     if looks and anywhere:
         starts = joined(starts, _beside(arm, asked, start, np.arange(len(start))))
     leads = leads_of(arm, starts, known)
+    if first and arm.rounded:
+        leads = traced(arm, leads)
+    close = (starts.source >= 0) & (leads.ends.loss < arm.policy.beside_reach) & ~leads.known
     near = free.copy()
-    near[starts.pose[(starts.source >= 0) & (leads.ends.loss < arm.policy.beside_reach)]] = True
+    near[starts.pose[close]] = True
     if looks and not anywhere and near.any():
         more = _beside(arm, asked, start, np.flatnonzero(near))
         leads = joined(leads, leads_of(arm, more, known))

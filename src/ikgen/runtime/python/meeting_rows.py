@@ -28,6 +28,7 @@ __all__ = [
     "leads_of",
     "repeats",
     "rows_nearby",
+    "traced",
 ]
 
 
@@ -64,11 +65,12 @@ class Led(NamedTuple):
 
 class Leads(NamedTuple):
     """Starts and their ends, with an infinite error where a start stands for a continuum of the solved
-    geometry, and what is found `around` that."""
+    geometry, what is found `around` that, and of which starts (k,) that is `known`."""
 
     starts: Starts
     ends: Ends
     around: Led
+    known: Flags
 
 
 def joined(one: Any, other: Any) -> Any:
@@ -107,7 +109,21 @@ def leads_of(arm: Arm, starts: Starts, known: Flags) -> Leads:
     for whole, part in zip(ends, ends_of(arm, starts.q[~around], starts.T[~around])):
         whole[~around] = part
     starts = starts._replace(marked=starts.marked & (around | ~broken))
-    return Leads(starts, ends, found)
+    return Leads(starts, ends, found, around)
+
+
+def traced(arm: Arm, leads: Leads) -> Leads:
+    """With what is found around continua of the solved geometry that rows near singularities lie on."""
+    starts, (q, _, loss) = leads.starts, leads.ends
+    own = (starts.source == 0) & ~starts.marked
+    some = np.flatnonzero(own & (loss < min(arm.policy.broken_reach, arm.policy.fold_reach)))
+    if arm.around is None or not len(some):
+        return leads
+    curve, owner, rows, there = arm.around(arm, q[some], starts.T[some], broken=True)
+    known = leads.known.copy()
+    known[some[curve]] = True
+    around = joined(leads.around, Led(some[owner], rows, there))
+    return leads._replace(around=around, known=known)
 
 
 def rows_nearby(arm: Arm, leads: Leads) -> Led:
@@ -118,7 +134,7 @@ def rows_nearby(arm: Arm, leads: Leads) -> Led:
     settled = error < np.where(near, arm.policy.converged, arm.policy.arrived)
     fresh = _fresh(arm, q, starts, near, near & ~settled)
     settled &= fresh
-    near &= fresh
+    near &= fresh & ~leads.known
     sure = np.flatnonzero(settled)
     first = _in_order(Led(sure, q[sure], loss[sure]), leads.around)
     if not near.any():

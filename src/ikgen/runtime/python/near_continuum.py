@@ -24,7 +24,7 @@ __all__ = ["Traced", "rows_around", "trace"]
 _MOST, _CORRECTIONS, _STEPS, _DEEP, _LEAST = 96, 6, 40, 24, 4
 _SAMPLES = 600  # of a curve
 _ROOM = 32  # solutions of a curve
-_NEAR = 1e-8  # rad or m: a correction whose square is round-off
+_NEAR = 1e-11  # rad or m: how far off the curve slopes along it are the curve's
 _ROUND_OFF, _SMALL, _DOUBT, _BESIDE, _SAME_WAY = 1e-15, 4e-15, 0.03, 0.06, 0.9
 
 
@@ -49,12 +49,19 @@ class _Parts(NamedTuple):
     width: Array
 
 
-def rows_around(arm: Arm, q: Array, T: Array) -> tuple[Flags, Index, Array, Array]:
+def rows_around(
+    arm: Arm, q: Array, T: Array, broken: bool = False
+) -> tuple[Flags, Index, Array, Array]:
     """Which rows q (k, dof) towards aims T (k, ...) stand for a continuum of the solved geometry; from
     which (n,) the solutions (n, dof) all around are, or one where the file's arm has the continuum too, and
-    the smallest singular values (n,) there."""
+    the smallest singular values (n,) there. `broken`: of such that the file's arm has not alone, and no
+    others than those that are right to round-off."""
     with np.errstate(all="ignore"):
         traced = trace(arm, q, T)
+    if broken:
+        end, error, _, slope = refined(arm, traced.q, T[traced.owner])
+        good = error < arm.policy.exact
+        return traced.broken, traced.owner[good], end[good], least_singular(slope[good])
     given = np.flatnonzero(traced.curve)
     owner = np.concatenate([traced.owner, given])
     rows, error, _, slope = refined(arm, np.concatenate([traced.q, q[given]]), T[owner])
@@ -222,4 +229,5 @@ def _kept(arm: Arm, parts: _Parts) -> tuple[Index, Array]:
     order = np.lexsort((parts.place, parts.owner))
     order = order[np.abs(left[order]) < arm.policy.arrived]
     order = order[places(parts.owner[order]) < _ROOM]
-    return parts.owner[order], q[order]
+    whole = 2.0 * np.pi * np.round(q / (2.0 * np.pi))
+    return parts.owner[order], np.where(arm.chain.revolute, q - whole, q)[order]

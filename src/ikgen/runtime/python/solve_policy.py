@@ -27,6 +27,7 @@ class Policy:
     fold_reach: float  # smallest singular value below which another row may be near
     beside_reach: float  # and below which poses beside are solved as well
     anywhere: float  # the same where they always are
+    broken_reach: float  # below which a row may lie on a continuum that rounding broke
     farthest_start: float  # first step (rad, m) of rows that are refined together
     contraction: float  # of each further one
     pivot_share: float  # of the pivot: the first step at most

@@ -27,7 +27,9 @@ class Together(Protocol):
 class Around(Protocol):
     """`rows_around`."""
 
-    def __call__(self, arm: Arm, q: Array, T: Array) -> tuple[Flags, Index, Array, Array]: ...
+    def __call__(
+        self, arm: Arm, q: Array, T: Array, broken: bool = False
+    ) -> tuple[Flags, Index, Array, Array]: ...
 
 
 class HeldAngle(Protocol):
