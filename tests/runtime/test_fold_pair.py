@@ -31,6 +31,14 @@ def test_the_root_is_that_on_its_side_of_the_least(side: float, bend: float, flo
     assert root(-side, rest, bend, flow) != pytest.approx(x)
 
 
+@pytest.mark.parametrize("flow", [0.0, 1e-6, -1e-6, 0.01])
+def test_where_there_is_no_root_both_sides_go_to_the_least_error(flow: float) -> None:
+    """With `flow` next to nothing the root formula would leap as far as it may."""
+    for side in (1.0, -1.0):
+        for bend in (2.0, -3.0):
+            assert root(side, -0.01 * np.sign(bend), bend, flow) == pytest.approx(-flow / bend)
+
+
 def test_a_straight_line_has_none_and_none_is_far() -> None:
     for side in (1.0, -1.0):
         assert root(side, 0.01, 0.0, 0.3) == 0.0  # straight: the other joints have done it all

@@ -119,10 +119,10 @@ def _still(slope: Array, still: Array, damping: float) -> Array:
 
 def _root(side: Array, rest: Array, bend: Array, flow: Array) -> Array:
     """The root (k,) of s x + k x^2 / 2 = e on this side of the least error, along the direction that the
-    others leave."""
+    others leave; where there is none, that least error itself."""
     k, s, e = (np.einsum("ke,ke->k", bend, v) for v in (bend, flow, rest))
-    w = np.sqrt(np.maximum(s * s + 2.0 * k * e, 0.0))
-    p = s + np.copysign(w, s)
+    square = s * s + 2.0 * k * e
+    p = s + np.copysign(np.sqrt(np.maximum(square, 0.0)), s)
     with np.errstate(all="ignore"):
-        x = np.where(((s > 0.0) == (side > 0.0)) & (p != 0.0), 2.0 * e / p, -p / k)
+        x = np.where(((s > 0.0) == (side > 0.0)) & (square > 0.0), 2.0 * e / p, -p / k)
     return np.asarray(np.clip(np.nan_to_num(np.where(k > 0.0, x, 0.0)), -_FAR, _FAR))

@@ -25,6 +25,7 @@ _MOST, _CORRECTIONS, _STEPS, _DEEP, _LEAST = 96, 6, 40, 24, 4
 _SAMPLES = 600  # of a curve
 _ROOM = 32  # solutions of a curve
 _NEAR = 1e-11  # rad or m: how far off the curve slopes along it are the curve's
+_WAY = 1e-10  # rad or m: along it, by which what is left varies by round-off
 _ROUND_OFF, _SMALL, _DOUBT, _BESIDE, _SAME_WAY = 1e-15, 4e-15, 0.03, 0.06, 0.9
 
 
@@ -201,18 +202,20 @@ def _bernstein(arm: Arm, parts: _Parts) -> Array:
 
 
 def _closed_in(arm: Arm, parts: _Parts, T: Array) -> _Parts:
-    """Parts at whose ends what is left has two signs, narrowed until it is round-off at one: by false
-    position, halving what an end keeps (Dowell & Jarratt 1971)."""
+    """Parts at whose ends what is left has two signs, narrowed until it is round-off at one, or the way
+    to there is: by false position, halving what an end keeps (Dowell & Jarratt 1971)."""
     ends = Reduced(*map(np.stack, zip(parts.a, parts.b)))
     values, last = ends.left.copy(), np.full(len(parts.owner), -1)
+    way = np.full(len(parts.owner), np.inf)
     for _ in range(_STEPS):
-        going = np.flatnonzero(np.abs(ends.left).min(axis=0) > _ROUND_OFF)
+        going = np.flatnonzero((np.abs(ends.left).min(axis=0) > _ROUND_OFF) & (way > _WAY))
         if not len(going):
             break
         x, y = values[:, going]
         now = _some(parts, going)._replace(a=_some(ends, (0, going)), b=_some(ends, (1, going)))
         c = _between(arm, now, x / (x - y), T)
         side = (now.a.left * c.left < 0.0).astype(np.intp)
+        way[going] = np.abs(c.q - ends.q[side, going]).max(axis=1)
         for whole, part in zip(ends, c):
             whole[side, going] = part
         values[side, going] = c.left
