@@ -1,15 +1,16 @@
-"""Millions of poses through the emitted C++ header of one arm: wrong rows, missed solutions.
+"""Many poses through the emitted C++ header or Python module of one arm: wrong rows, missed solutions.
 
     python -m benchmarks.soak [ARM ...] [--record] [--poses 10000000] [--near 1000000] [--above 1e-3]
-        [--jobs 2] [--option=--free --option=JOINT]
+        [--jobs 2] [--language cpp|python] [--option=--free --option=JOINT]
 
 ARM is the name of an arm of the collection, or a URDF file or DH table (`--option` hands options to ikgen);
 without any, ten of the collection: exact, rounded, off by small offsets, elimination, redundant.
-Random poses, and poses 10^-1 to 10^-12 beside singular configurations, joints inside their limits. Prints,
-by decade of the smallest singular value of the configuration that made the pose: how many poses, at how
-many that configuration is missed among the rows, how many got no row at all. How close a row must come is
-what `ikgen.verify.completeness` says. Exits with 1 if a row is wrong, or anything is missed or unanswered
-at singular values from `--above` on.
+Random poses, and poses 10^-1 to 10^-12 beside singular configurations, joints inside their limits (a
+module takes thousands where a header takes millions: see `benchmarks.module_soak`). Prints, by decade of
+the smallest singular value of the configuration that made the pose: how many poses, at how many that
+configuration is missed among the rows, how many got no row at all. How close a row must come is what
+`ikgen.verify.completeness` says. Exits with 1 if a row is wrong, or anything is missed or unanswered at
+singular values from `--above` on. `--record` keeps what was found of headers.
 """
 
 from __future__ import annotations
@@ -18,14 +19,16 @@ import argparse
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from dataclasses import asdict
 from pathlib import Path
 
 from benchmarks.command_line import Emitted, Source, emit, sources
 from benchmarks.cpp_speed import FLAGS, compiled_program
+from benchmarks.module_soak import soak_module
 from benchmarks.results import write_result
+from benchmarks.soak_counts import Soak, added, table
 
 ARMS = (
     "kuka_kr6r900sixx", "staubli_tx60", "ur5e", "realman_rm65", "agilex_piper", "doosan_m1013",
@@ -39,34 +42,6 @@ TASKS = {
     "rotation": (0, 3), "direction": (0, 1),
 }  # fmt: skip
 """Task -> whether it reads the position, and what of the rotation (see soak.cpp)."""
-
-
-@dataclass(frozen=True, slots=True)
-class Soak:
-    """What was found. `decades`: per power of ten of the smallest singular value, poses, missed and
-    unanswered of the random poses and the same of those beside singularities; `cases` spells out
-    failures."""
-
-    rows: int
-    wrong: int
-    decades: tuple[tuple[int, ...], ...]
-    cases: tuple[str, ...]
-
-    def failures(self, above: float) -> int:
-        """Wrong rows, and misses and unanswered poses at singular values from `above` on."""
-        kept = [d for k, d in enumerate(self.decades) if 10.0 ** -(k + 1) >= above * (1 - 1e-9)]
-        return self.wrong + sum(d[i] for d in kept for i in (1, 2, 4, 5))
-
-
-def added(parts: Sequence[Soak]) -> Soak:
-    """The sum of several runs."""
-    decades = zip(*(p.decades for p in parts), strict=True)
-    return Soak(
-        sum(p.rows for p in parts),
-        sum(p.wrong for p in parts),
-        tuple(tuple(map(sum, zip(*d, strict=True))) for d in decades),
-        tuple(case for p in parts for case in p.cases),
-    )
 
 
 def parsed(text: str) -> Soak:
@@ -122,18 +97,14 @@ def found_source(name: str, options: Sequence[str]) -> Source:
     raise SystemExit(f"no arm '{name}': give a URDF file, a DH table, or an arm of the collection")
 
 
-def table(found: Soak) -> Iterator[str]:
-    """The lines to print."""
-    yield f"{'smallest singular value':26} {'random':>10} {'missed':>7} {'no row':>7}  " + (
-        f"{'beside':>9} {'missed':>7} {'no row':>7}"
-    )
-    for k, d in enumerate(found.decades):
-        if d[0] or d[3]:
-            span = f"1e-{k:02} to 1e-{k + 1:02}" if k else "0.1 and more"
-            last = f"below 1e-{k:02}" if k == len(found.decades) - 1 else span
-            yield f"{last:26} {d[0]:10} {d[1]:7} {d[2]:7}  {d[3]:9} {d[4]:7} {d[5]:7}"
-    yield f"{found.rows} rows, {found.wrong} wrong"
-    yield from found.cases
+def _through(made: Emitted, options: argparse.Namespace) -> Soak:
+    if options.language == "cpp":
+        return soak(made, options.poses, options.near, jobs=options.jobs, seed=options.seed)
+    share = [-(-n // options.jobs) for n in (options.poses, options.near)]
+    seeds = [options.seed + 1000 * job for job in range(options.jobs)]
+    with ProcessPoolExecutor(options.jobs) as pool:
+        runs = [pool.submit(soak_module, made, *share, seed=seed) for seed in seeds]
+        return added([run.result() for run in runs])
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -141,23 +112,28 @@ def main(arguments: Sequence[str] | None = None) -> int:
     layout = argparse.RawTextHelpFormatter
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=layout)
     parser.add_argument("arms", nargs="*", default=ARMS)
-    parser.add_argument("--record", action="store_true", help="write benchmarks/results/soak.json")
+    parser.add_argument(
+        "--record", action="store_true", help="of headers: benchmarks/results/soak.json"
+    )
     parser.add_argument("--poses", type=int, default=10_000_000)
     parser.add_argument("--near", type=int, default=1_000_000, help="poses beside singularities")
     parser.add_argument("--above", type=float, default=ABOVE)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--language", choices=("cpp", "python"), default="cpp")
     parser.add_argument("--option", action="append", default=[], help="handed to ikgen")
     options = parser.parse_args(arguments)
+    if options.record and options.language != "cpp":
+        parser.error("--record keeps what was found of headers: leave out --language python")
     results: dict[str, Soak] = {}
     for arm in options.arms:
         with tempfile.TemporaryDirectory(prefix="ikgen-soak-") as folder:
             made = emit(found_source(arm, options.option), Path(folder), "python,cpp")
-            if made.header is None:
+            if made.module is None or made.header is None:
                 message = made.answer.get("error", "")
                 print(f"{arm}: ikgen ended with {made.code}: {message}", file=sys.stderr)
                 return 2
-            found = soak(made, options.poses, options.near, jobs=options.jobs, seed=options.seed)
+            found = _through(made, options)
         results[arm] = found
         print(f"== {arm}")
         print("\n".join(table(found)), flush=True)

@@ -8,7 +8,9 @@ from pathlib import Path
 
 import pytest
 from benchmarks.command_line import REPOSITORY, Emitted, emit
-from benchmarks.soak import ABOVE, Soak, added, found_source, main, parsed, soak, table
+from benchmarks.module_soak import soak_module
+from benchmarks.soak import ABOVE, found_source, main, parsed, soak
+from benchmarks.soak_counts import Soak, added, table
 from tests.support.sampled import sampled
 from tests.support.solving import NO_COMPILER
 
@@ -89,6 +91,28 @@ def test_what_is_wrong_is_noticed(
     found = soak(replace(exact, header=header), POSES // 10, 100, flags=QUICK)
     assert caught(found), "\n".join(table(found))
     assert found.failures(ABOVE) > 0 and found.cases
+
+
+def test_a_module_is_put_to_the_same(exact: Emitted, tmp_path: Path) -> None:
+    found = soak_module(exact, 300, 300)
+    assert sum(d[0] for d in found.decades) == sum(d[3] for d in found.decades) == 300
+    assert found.rows > 1500 and sum(d[3] > 5 for d in found.decades) > 8
+    assert found.failures(0.0) == 0, "\n".join(table(found))
+    assert exact.module is not None
+    text = exact.module.read_text()
+    broken = tmp_path / "broken_ik.py"
+    for line, caught in (
+        ("rows[valid.sum(axis=1) > 4, 0, 1] += 1e-6", lambda s: s.wrong > 100),
+        ("valid[:, 0] = False", lambda s: sum(d[1] + d[4] for d in s.decades) > 20),
+        ("valid[:] = False", lambda s: sum(d[2] + d[5] for d in s.decades) > 500),
+    ):
+        last = "    return rows.reshape(DOF, -1, count).transpose(2, 1, 0), valid.copy(), "
+        assert text.count(last) == 1
+        own = "rows = rows.reshape(DOF, -1, count).transpose(2, 1, 0).copy()"
+        changed = [own, "valid = valid.copy()", line, "return rows, valid, "]
+        broken.write_text(text.replace(last, "\n".join(f"    {x}" for x in changed)))
+        found = soak_module(replace(exact, module=broken), 300, 300)
+        assert caught(found) and found.failures(ABOVE) > 0, "\n".join(table(found))
 
 
 def test_failures_count_from_the_threshold_on() -> None:

@@ -99,10 +99,11 @@ def test_nothing_is_lost(made: Made, language: str, seeded: bool) -> None:
 
 
 @pytest.mark.parametrize("made", ["doosan_m1013"], indirect=True)
-def test_none_is_lost_where_two_meet_along_a_broken_continuum(made: Made) -> None:
-    lost = replace(made, q=np.array(BROKEN))
-    trial = run_trial(made.cpp, made.arm, lost.sample, limits=False)
-    found = survey(made.arm, made.cpp, [trial])
+@pytest.mark.parametrize("language", ["python", "cpp"])
+def test_none_is_lost_where_two_meet_along_a_broken_continuum(made: Made, language: str) -> None:
+    lost, runner = replace(made, q=np.array(BROKEN)), getattr(made, language)
+    trial = run_trial(runner, made.arm, lost.sample, limits=False)
+    found = survey(made.arm, runner, [trial])
     assert not (found.missed | found.unanswered).any(), found.case(0)
 
 

@@ -62,3 +62,14 @@ def test_branches_start_apart_only_where_rows_are_refined() -> None:
     exact, rounded = (Tolerances.for_model_error(x) for x in (0.1 * ROUNDED, 1e-4))
     assert exact.fold == 0.0 < rounded.fold
     assert rounded.clamp > 1e-4 > Tolerances.for_model_error(0.0).clamp
+
+
+def test_directions_that_the_file_turns_count_as_of_a_continuum() -> None:
+    g, error = ExpressionGraph(len(SHARES)), 2e-4
+    tolerances = Tolerances.for_model_error(error)
+    plain = divisor_of(g, given(g, SHARES), tolerances)
+    norm = leading(g, (given(g, SHARES), g.zero), tolerances)
+    for divisor, share in ((plain, 5.0 * error), (norm, 50.0 * error)):
+        assert divisor.clear is not None
+        assert list(divisor.clear.probe > 0.5) == list(share < SHARES)
+    assert Tolerances.for_model_error(1e-9).norm == Tolerances.for_model_error(1e-9).flag == 1e-4

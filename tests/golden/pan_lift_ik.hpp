@@ -694,8 +694,8 @@ template <class Arm> struct FoldPair {
       e += bend[i] * rest[i];
     }
     if (!(k > 0.0)) return 0.0;
-    const double w = std::sqrt(std::max(s * s + 2.0 * k * e, 0.0)), p = s + std::copysign(w, s);
-    const double x = (s > 0.0) == (side > 0.0) && p != 0.0 ? 2.0 * e / p : -p / k;
+    const double square = s * s + 2.0 * k * e, p = s + std::copysign(std::sqrt(std::max(square, 0.0)), s);
+    const double x = (s > 0.0) == (side > 0.0) && square > 0.0 ? 2.0 * e / p : -p / k;
     return std::min(std::max(x, -kFar), kFar);
   }
 

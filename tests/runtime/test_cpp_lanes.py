@@ -12,7 +12,16 @@ from numpy.typing import NDArray
 from tests.support.chains import make_chain, rotation, translation
 from tests.support.cpp_modules import solver_module as published_module
 from tests.support.held_arms import held_module
-from tests.support.rounded_arms import EXACT, X, Z, meeting_shoulder, spherical_wrist
+from tests.support.rounded_arms import (
+    EXACT,
+    FOLDED,
+    X,
+    Z,
+    beside_the_wrist,
+    meeting_shoulder,
+    spherical_wrist,
+    three_parallel,
+)
 from tests.support.routines import compiled_header, feed
 from tests.support.solving import solver_module
 
@@ -186,20 +195,16 @@ def test_lanes_find_the_rows_at_an_arm_angle(tmp_path: Path) -> None:
     assert sum(rough > 0 for _, rough in found) < 40
 
 
-FOLDED = [
-    [-1.96033274450597, 0.66543809597274, -2.52372616827503, -2.50427844103334, 0.89406157205916,
-     3.03630490120778],
-    [-1.96032965443633, 0.66543355343915, -2.52370960393478, -2.50428732897959, 0.89407944782896,
-     3.03629500742216],
-    [-1.96033056596298, 0.66543328581914, -2.52370942073624, -2.50428670206727, 0.89407901978423,
-     3.03629557192863],
-]  # fmt: skip
-"""Configurations where two solutions meet on what is a continuum of the solved geometry alone."""
-
-
 def test_a_continuum_that_rounding_breaks_is_searched_all_around(tmp_path: Path) -> None:
     q = np.array(FOLDED)
     found = answers(rounded(meeting_shoulder()), q, tmp_path)
     for at, (answered, _) in zip(q, found, strict=True):
         for rows in answered:
             assert len(rows) and apart(rows, at).min() < 1e-4
+
+
+def test_behind_a_direction_that_rounding_turns_rows_are_found(tmp_path: Path) -> None:
+    q = beside_the_wrist(300)
+    for at, (answered, _) in zip(q, answers(rounded(three_parallel()), q, tmp_path), strict=True):
+        for rows in answered:
+            assert len(rows) and apart(rows, at).min() < 1e-6

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.cpp_modules import solver_module
-from tests.support.solving import import_text
+from tests.support.rounded_arms import beside_the_wrist, three_parallel
+from tests.support.solving import emitted, import_text
 
 from ikgen.emit.python.python_emitter import emit_module
+from ikgen.kinematics.modified_dh import to_dh
 
 Array = NDArray[np.float64]
 
@@ -65,6 +68,14 @@ def test_a_batch_gives_what_each_pose_gives(arm: ModuleType, seeded: bool, limit
         assert np.isnan(rows[i, count[i] :]).all()
         assert np.abs(arm.forward(alone.q) - T).max(initial=0.0) < 2e-9
         assert apart(alone.q, q[i]).min() < 1e-4
+
+
+def test_behind_a_direction_that_rounding_turns_rows_are_found(tmp_path: Path) -> None:
+    q = beside_the_wrist(300)
+    module = emitted(to_dh(three_parallel()), tmp_path)
+    rows, count, _ = module.solve_batch(module.forward(q), limits=False)
+    for k, at in enumerate(q):
+        assert apart(rows[k, : count[k]], at).min(initial=9.0) < 1e-6
 
 
 def test_poses_out_of_reach_have_no_rows(arm: ModuleType) -> None:

@@ -1,4 +1,4 @@
-"""Near a singularity: the root on a side, the direction that keeps its sense, and rows that repeat."""
+"""Near a singularity: rows that repeat, and both of two that meet."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.support.cpp_modules import solver_module
 from tests.support.solving import import_text
 
 from ikgen.emit.python.python_emitter import emit_module
-from ikgen.runtime.python.meeting_rows import Starts, _fresh, _root, _still, ends_of, rows_nearby
+from ikgen.runtime.python.meeting_rows import Starts, _fresh, leads_of, rows_nearby
 from ikgen.runtime.python.row_links import differences
 
 Array = NDArray[np.float64]
@@ -21,40 +21,6 @@ ARM: Any = SimpleNamespace(
     chain=SimpleNamespace(revolute=(True, False)),
     policy=SimpleNamespace(coincident=1e-6, alike=0.05),
 )
-
-
-def root(side: float, rest: float, bend: float, flow: float) -> float:
-    one = [np.array([[x]]) for x in (rest, bend, flow)]
-    return float(_root(np.array([side]), *one)[0])
-
-
-@pytest.mark.parametrize("side", [1.0, -1.0])
-@pytest.mark.parametrize("bend", [2.0, -3.0])
-@pytest.mark.parametrize("flow", [0.0, 1e-3, -1e-3, 0.2, -0.2])
-def test_the_root_is_that_on_its_side_of_the_least(side: float, bend: float, flow: float) -> None:
-    """`flow x + bend x^2 / 2 = rest` has two, beside -flow / bend."""
-    rest = 0.01 * np.sign(bend)
-    x = root(side, rest, bend, flow)
-    assert flow * x + 0.5 * bend * x * x == pytest.approx(rest, abs=1e-14)
-    assert (root(-side, rest, bend, flow) - x) * side < 0.0 or flow == 0.0
-    assert root(-side, rest, bend, flow) != pytest.approx(x)
-
-
-def test_a_straight_line_has_none_and_none_is_far() -> None:
-    for side in (1.0, -1.0):
-        assert root(side, 0.01, 0.0, 0.3) == 0.0  # straight: the other joints have done it all
-        assert abs(root(side, 1.0, 1e-9, 0.0)) == pytest.approx(0.3)
-
-
-def test_the_direction_of_least_motion_keeps_its_sense() -> None:
-    rng = np.random.default_rng(5)
-    for _ in range(6):
-        u, s, vt = np.linalg.svd(rng.normal(size=(6, 6)))
-        slope = (u * np.array([*s[:-1], 1e-6])) @ vt
-        for sense in (1.0, -1.0):
-            start = sense * vt[-1] + 0.3 * rng.normal(size=6)
-            found = _still(slope[None], start[None], 1e-12)[0]
-            np.testing.assert_allclose(found, np.sign(start @ vt[-1]) * vt[-1], atol=1e-6)
 
 
 def test_gaps_are_on_the_shortest_way_of_what_turns() -> None:
@@ -70,7 +36,8 @@ def fresh(
     flags = [np.array([c == "x" for c in text.ljust(n, ".")]) for text in (near, stalled)]
     places = np.array([int(c) for c in pose.ljust(n, "0")])
     rows = np.array(q)
-    starts = Starts(rows, np.zeros((n, 4, 4)), places, np.zeros(n, bool), np.array(source))
+    none = np.zeros(n, bool)
+    starts = Starts(rows, np.zeros((n, 4, 4)), places, none, np.array(source), 0 * places)
     return _fresh(ARM, rows, starts, *flags).tolist()  # type: ignore[no-any-return]
 
 
@@ -113,9 +80,9 @@ def test_both_rows_beside_a_fold_are_found_from_it(off: float, tmp_path: Path) -
         turned = np.linalg.det(arm.jacobian(bent(low))) * np.linalg.det(arm.jacobian(bent(middle)))
         low, high = (low, middle) if turned < 0.0 else (middle, high)
     pose = arm.forward(bent(low + off))
-    given = np.zeros(1, np.intp), np.zeros(1, bool), np.zeros(1, int)
-    starts = Starts(bent(low)[None], pose[None], *given)
-    of, rows, _ = rows_nearby(arm._ARM, starts, ends_of(arm._ARM, starts.q, starts.T))
+    own = np.zeros(1, np.intp), np.zeros(1, bool), np.zeros(1, int), np.zeros(1, np.intp)
+    starts = Starts(bent(low)[None], pose[None], *own)
+    of, rows, _ = rows_nearby(arm._ARM, leads_of(arm._ARM, starts, np.zeros((1, 1), bool)))
     assert not of.any() and np.abs(arm.forward(rows) - pose).max() < 1e-9
     assert np.abs(rows - bent(low + off)).max(axis=1).min() < 1e-8
     assert rows[:, 2].min() - bent(low)[2] == pytest.approx(-off, rel=1e-2)

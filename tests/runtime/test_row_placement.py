@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf, pi
 
 import numpy as np
@@ -11,7 +12,13 @@ from numpy.typing import NDArray
 from ikgen.elimination.routine import runtime_policy
 from ikgen.program.policy import SolvePolicy
 from ikgen.runtime.python.chain_kinematics import chain_of
-from ikgen.runtime.python.row_placement import distinct, is_new, place_rows, place_rows_batch
+from ikgen.runtime.python.row_placement import (
+    distinct,
+    is_new,
+    place_rows,
+    place_rows_batch,
+    rows_at_limits,
+)
 from ikgen.runtime.python.solved_arm import Arm
 from ikgen.runtime.python.whole_pose import PoseTask
 
@@ -62,7 +69,7 @@ def rows(n: int) -> Array:
 def test_floats_and_arrays_agree(limits: bool, seed: tuple[float, ...] | None) -> None:
     q = rows(400)
     near = None if seed is None else np.tile(np.array(seed), (len(q), 1))
-    together, inside = place_rows_batch(arm(), q.copy(), near, limits)
+    together, inside, _ = place_rows_batch(arm(), q.copy(), near, limits)
     kept = 0
     for row, placed, fits in zip(q[:, 0].tolist(), together[:, 0], inside[:, 0], strict=True):
         found = place_rows(arm(), [(tuple(row), True)], seed, limits)
@@ -110,3 +117,34 @@ def test_long_slides_are_compared_relative_to_their_length() -> None:
     assert distinct(one, q, np.ones((1, 4), dtype=bool)).tolist() == [[True, True, True, False]]
     kept = [(tuple(row), False) for row in q[0].tolist()]
     assert [is_new(one, kept[k][0], kept[k - 1 : k]) for k in (1, 3)] == [True, False]
+
+
+@pytest.mark.parametrize("joint", [0, 1, 3])
+def test_rows_hardly_outside_are_told_apart(joint: int) -> None:
+    one = replace(arm(), lower=(-1.0, -1.5, -inf, 0.0, -inf), upper=(2.0, 1.0, inf, 1.0, inf))
+    reach = one.policy.limit_reach
+    row = np.array([0.3, 0.2, 0.1, 0.5, 0.0])
+    for bound, sign in ((one.lower[joint], -1.0), (one.upper[joint], 1.0)):
+        for turn in (0.0, 2.0 * pi, -2.0 * pi) if joint != 3 else (0.0,):
+            for beyond, kind in ((0.5e-9, "inside"), (0.5 * reach, "close"), (1.5 * reach, "out")):
+                row[joint] = bound + sign * beyond + turn
+                inside, close = rows_at_limits(one, [(tuple(row), True)], None, True)
+                assert (len(inside), len(close)) == (kind == "inside", kind == "close")
+                for (was, flag), there in close:
+                    assert (
+                        was == tuple(row)
+                        and flag
+                        and there[joint] == pytest.approx(bound, abs=1e-15)
+                    )
+                _, fits, near = place_rows_batch(one, row[None, None].copy(), None, True)
+                assert (fits.item(), near.item()) == (kind == "inside", kind == "close")
+                assert rows_at_limits(one, [(tuple(row), True)], None, False)[1] == []
+                assert not place_rows_batch(one, row[None, None].copy(), None, False)[2].any()
+
+
+def test_a_row_far_outside_of_another_limit_is_not_close() -> None:
+    one = replace(arm(), lower=(-1.0, -1.5, -inf, 0.0, -inf), upper=(2.0, 1.0, inf, 1.0, inf))
+    for row in ((2.0 + 1e-7, 0.0, 0.0, 1.5, 0.0), (3.0, 0.0, 0.0, 1.0 + 1e-7, 0.0)):
+        assert rows_at_limits(one, [(row, True)], None, True) == ([], [])
+        _, inside, close = place_rows_batch(one, np.array([[row]]), None, True)
+        assert not inside.any() and not close.any()

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+from numpy.typing import NDArray
 from tests.support.chains import make_chain, rotation, translation
 
 from ikgen.model.chain import Chain
@@ -64,3 +66,26 @@ def meeting_shoulder(right: float = 1.5708, *, offset: float = 1e-6) -> Chain:
 
 
 EXACT = math.pi / 2
+
+FOLDED = [
+    [-1.96033274450597, 0.66543809597274, -2.52372616827503, -2.50427844103334, 0.89406157205916,
+     3.03630490120778],
+    [-1.96032965443633, 0.66543355343915, -2.52370960393478, -2.50428732897959, 0.89407944782896,
+     3.03629500742216],
+    [-1.96033056596298, 0.66543328581914, -2.52370942073624, -2.50428670206727, 0.89407901978423,
+     3.03629557192863],
+]  # fmt: skip
+"""Configurations of `meeting_shoulder` where two solutions meet on what is a continuum of the solved
+geometry alone."""
+
+
+def beside_the_wrist(count: int) -> NDArray[np.float64]:
+    """Configurations of `three_parallel` with the wrist 10 to 60 times as far from straight as its file is
+    off what is solved, and the elbow nearly straight: what the closed form takes for the hand's direction
+    is wrong enough there to bring the elbow out of reach."""
+    rng = np.random.default_rng(2)
+    q = rng.uniform(-3.0, 3.0, (count, 6))
+    q[:, 2] = rng.choice([-1.0, 1.0], count) * rng.uniform(0.05, 0.3, count)
+    off = rng.choice([-1.0, 1.0], count) * rng.uniform(1e-4, 6e-4, count)
+    q[:, 4] = rng.choice([0.0, math.pi], count) + off
+    return q

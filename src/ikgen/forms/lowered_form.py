@@ -28,15 +28,16 @@ ROUNDED = 2e-9
 
 @dataclass(frozen=True, slots=True)
 class Tolerances:
-    """Relative to natural sizes: a divisor below `singular` makes its joint free, one below `flag` marks
-    the solution as one of a continuum; a square root's argument may be `clamp` outside its domain, as
-    poses on the boundary of the workspace are reachable, and where rows are refined it is kept above
-    `fold`, so that two branches start apart. Where the condition `rough` holds, what a square root is
-    taken of has lost digits: it may be `wide` outside.
+    """Relative to natural sizes: a divisor below `singular` makes its joint free, one below `flag`, or
+    `norm` where it is a sum of squares, marks the solution as one of a continuum; a square root's
+    argument may be `clamp` outside its domain, as poses on the boundary of the workspace are reachable,
+    and where rows are refined it is kept above `fold`, so that two branches start apart. Where the
+    condition `rough` holds, what a square root is taken of has lost digits: it may be `wide` outside.
     """
 
     singular: float = 1e-11
     flag: float = 1e-4
+    norm: float = 1e-4
     clamp: float = 1e-11
     fold: float = 0.0
     rough: Expr | None = None
@@ -47,12 +48,14 @@ class Tolerances:
         """Tolerances where the solved geometry is `error` (m or rad) off the file's.
 
         Where rows are not refined, a divisor that is no larger than what the two differ by is as good as
-        zero: the file's direction of it is lost.
+        zero: the file's direction of it is lost. Of length `x` it turns by `error / x`: where rows are
+        refined, a fiftieth of a radian is too far to start from.
         """
         clamp = max(1e-11, 25.0 * error)
         fold = 0.05 * error if error > ROUNDED else 0.0
         singular = 1e-11 if error > ROUNDED else max(1e-11, 4.0 * error)
-        return Tolerances(singular, min(max(1e-4, 5.0 * error), 1e-2), clamp, fold)
+        flag, norm = (min(max(1e-4, share * error), 1e-2) for share in (5.0, 50.0))
+        return Tolerances(singular, flag, norm, clamp, fold)
 
     def guard(self, g: ExpressionGraph, value: Expr, size: float) -> Expr:
         """Condition that a square root of `value`, of natural size `size`, may be taken."""
@@ -126,7 +129,7 @@ def divisor_of(g: ExpressionGraph, value: Expr, tol: Tolerances, power: int = 1)
     magnitude = g.unary("abs", value) if power == 1 else value
     found = Divisor(value, None, None, magnitude, size, power)
     regular = found.above(g, tol.singular)
-    clear = found.above(g, tol.flag)
+    clear = found.above(g, tol.flag if power == 1 else tol.norm)
     assert regular is not None
     return Divisor(g.select(regular, value, g.one), regular, clear, magnitude, size, power)
 

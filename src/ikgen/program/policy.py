@@ -36,7 +36,8 @@ class SolvePolicy:
       rotation; `orthonormal`: what is round-off of them.
     - `coincident`: rows closer than that (rad or m) are one, singular ones closer than `alike` where the
       pose is theirs to `halfway` between them too; `meeting`: how close branches are where their rows are
-      compared. `limit_tolerance`: a row that far (rad or m) outside a limit is put back on it.
+      compared. `limit_tolerance`: a row that far (rad or m) outside a limit is put back on it,
+      and one that far, `limit_reach`, where its pose does not tell that it is outside.
     - `tries`: how many values of a joint that a pose leaves free are tried, `try_step` (rad) apart.
     - `rank_loss`: smallest singular value below which a refined row is singular; `continuum_rank_loss`
       where the Program marked it already.
@@ -68,6 +69,7 @@ class SolvePolicy:
     halfway: float = 2e-14
     meeting: float = 2e-5
     limit_tolerance: float = 1e-9
+    limit_reach: float = 1e-5
     tries: int = 16
     try_step: float = 0.39269908169872414
     rank_loss: float = 1e-7

@@ -82,7 +82,7 @@ template <class Arm> struct FoldPair {
       q[kJoints[k]] += std::min(std::max(across[k], -kFar), kFar) + along * still[k];
   }
 
-  // The root of s x + k x^2 / 2 = e on this side of the least error, along the direction that the others leave.
+  // The root of s x + k x^2 / 2 = e on this side of the least error, or that, along the direction that the others leave.
   static double root(double side, const double (&bend)[kEquations], const double (&flow)[kEquations],
                      const double (&rest)[kEquations]) noexcept {
     double k = 0.0, s = 0.0, e = 0.0;
@@ -92,8 +92,8 @@ template <class Arm> struct FoldPair {
       e += bend[i] * rest[i];
     }
     if (!(k > 0.0)) return 0.0;
-    const double w = std::sqrt(std::max(s * s + 2.0 * k * e, 0.0)), p = s + std::copysign(w, s);
-    const double x = (s > 0.0) == (side > 0.0) && p != 0.0 ? 2.0 * e / p : -p / k;
+    const double square = s * s + 2.0 * k * e, p = s + std::copysign(std::sqrt(std::max(square, 0.0)), s);
+    const double x = (s > 0.0) == (side > 0.0) && square > 0.0 ? 2.0 * e / p : -p / k;
     return std::min(std::max(x, -kFar), kFar);
   }
 

@@ -68,7 +68,8 @@ def solve_poses(
 def _solve_chunk(arm: Arm, T: Array, held: Array, near: Array | None, limits: bool) -> _Batch:
     q, valid, doubt = _rows_and_doubts(arm, T, held, near)
     real: Flags = np.asarray(valid.any(axis=1))
-    q, inside = place_rows_batch(arm, q, near, limits)
+    q, inside, close = place_rows_batch(arm, q, near, limits)
+    doubt |= (valid & close).any(axis=1)
     valid &= inside
     distance: Array | Flags = ~valid
     if near is not None:

@@ -43,14 +43,16 @@ def closed_form(arm: Arm, T: Array, near: Array | None, held: Array) -> ClosedFo
     return found
 
 
-def rows_beside(arm: Arm, T: Array, near: Array | None, held: Array) -> tuple[Array, Flags]:
-    """The closed form's rows (N, M, dof) of poses beside T (N, 4, 4), one after the other, and which are
-    valid (N, M)."""
+def rows_beside(arm: Arm, T: Array, near: Array | None, held: Array) -> tuple[Array, Flags, Flags]:
+    """The closed form's rows (N, M, dof) of poses beside T (N, 4, 4), one after the other, which are
+    valid (N, M), and which of a continuum."""
     each = len(arm.beside)
     poses = (T[:, None] @ arm.beside).reshape(-1, 4, 4)
     starts = None if near is None else np.repeat(near, each, axis=0)
-    q, valid, _, _ = closed_form(arm, poses, starts, np.repeat(held, each, axis=0))
-    return q.reshape(len(T), -1, q.shape[2]), valid.reshape(len(T), -1)
+    closed = closed_form(arm, poses, starts, np.repeat(held, each, axis=0))
+    valid = closed.valid.reshape(len(T), -1)
+    marked = closed.singular.reshape(len(T), -1) & valid
+    return closed.q.reshape(len(T), -1, closed.q.shape[2]), valid, marked
 
 
 def certain_rows(
@@ -76,7 +78,7 @@ def careful_rows(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[A
     closed = closed_form(arm, T, near, held)
     q, valid, rough, doubt = closed.q, closed.valid, closed.rough, closed.free
     if len(arm.beside) and arm.policy.beside_anywhere:
-        more, real = rows_beside(arm, T, near, held)
+        more, real, _ = rows_beside(arm, T, near, held)
         q, valid = np.concatenate([q, more], axis=1), np.concatenate([valid, real], axis=1)
         rough = np.ones_like(valid)
     pose, row = np.nonzero(rough & valid)

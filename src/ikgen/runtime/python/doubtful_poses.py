@@ -8,15 +8,17 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags, Index, Row
-from ikgen.runtime.python.closed_form_rows import closed_form, rows_beside
+from ikgen.runtime.python.closed_form_rows import ClosedForm, closed_form, rows_beside
 from ikgen.runtime.python.held_parameters import aims
+from ikgen.runtime.python.limit_rows import rows_inside
 from ikgen.runtime.python.meeting_rows import (
-    Ends,
+    Leads,
     Starts,
-    ends_of,
     joined,
+    leads_of,
     repeats,
     rows_nearby,
+    traced,
 )
 from ikgen.runtime.python.row_placement import is_new, place_rows
 from ikgen.runtime.python.solved_arm import Arm, Found
@@ -97,9 +99,10 @@ def _goes_on(
     if not free and any(flag for _, flag in kept):
         _add(arm, T, seeded, kept)
     answer.real = answer.real or bool(kept)
-    _add(arm, T, place_rows(arm, kept, near, limits), answer.rows)
+    aim = aims(arm, asked.T[k : k + 1], asked.held[k : k + 1])
+    _add(arm, T, rows_inside(arm, aim, kept, near, limits), answer.rows)
     if not answer.rows:
-        answer.rows = place_rows(arm, seeded, near, limits)
+        answer.rows = rows_inside(arm, aim, seeded, near, limits)
     led = led if arm.rounded else any(flag for _, flag in answer.rows)
     return free and not (answer.rows and led)
 
@@ -126,7 +129,7 @@ def _led_to(arm: Arm, asked: Asked, start: Array) -> list[list[Found]]:
     if not len(start):
         return []
     starts = _given(arm, asked, start, np.arange(len(start)))
-    return _meeting(arm, asked, starts, ends_of(arm, starts.q, starts.T))
+    return _meeting(arm, asked, leads_of(arm, starts, np.zeros((len(start), 1), dtype=bool)))
 
 
 def unplaced_rows(arm: Arm, T: Array, held: Array) -> list[list[Found]]:
@@ -140,48 +143,76 @@ def _rows(arm: Arm, asked: Asked, start: Array, first: bool) -> list[_Rows]:
     those that poses beside lead to, where they count."""
     closed = closed_form(arm, asked.T, start, asked.held)
     free, marked = closed.free, closed.singular & closed.valid
-    pose, lane = np.nonzero(closed.valid & closed.rough)
-    own = _starts(arm, asked, closed.q[pose, lane], pose, marked[pose, lane], 0)
+    known = np.zeros(closed.valid.shape, dtype=bool)
+    own = _of_lanes(arm, asked, closed, closed.valid & closed.rough, marked)
     starts = joined(_given(arm, asked, start, np.flatnonzero(free)), own)
     looks, anywhere = first and len(arm.beside) > 0, arm.policy.beside_anywhere
     if looks and anywhere:
         starts = joined(starts, _beside(arm, asked, start, np.arange(len(start))))
-    ends = ends_of(arm, starts.q, starts.T)
+    leads = leads_of(arm, starts, known)
+    if first and arm.rounded:
+        leads = traced(arm, leads)
+    close = (starts.source >= 0) & (leads.ends.loss < arm.policy.beside_reach) & ~leads.known
     near = free.copy()
-    near[starts.pose[(starts.source >= 0) & (ends.loss < arm.policy.beside_reach)]] = True
+    near[starts.pose[close]] = True
     if looks and not anywhere and near.any():
         more = _beside(arm, asked, start, np.flatnonzero(near))
-        starts, ends = joined(starts, more), joined(ends, ends_of(arm, more.q, more.T))
-    kept = _meeting(arm, asked, starts, ends)
+        leads = joined(leads, leads_of(arm, more, known))
+    if arm.rounded and free.any():
+        hidden = closed.singular & ~known & _without_rows(arm, free, leads)[:, None]
+        hidden &= np.isfinite(closed.q).all(axis=2)
+        more = _of_lanes(arm, asked, closed, hidden, hidden)
+        leads = joined(leads, leads_of(arm, more, known))
+    kept = _meeting(arm, asked, leads)
     for i, k in np.argwhere(closed.valid & ~closed.rough).tolist():
         _add(arm, asked.T[i], [(tuple(closed.q[i, k].tolist()), bool(marked[i, k]))], kept[i])
-    led: Flags = np.asarray(marked.any(axis=1))
+    led: Flags = np.asarray((marked | known).any(axis=1))
     return list(zip(kept, free.tolist(), led.tolist()))
+
+
+def _without_rows(arm: Arm, free: Flags, leads: Leads) -> Flags:
+    """Which poses leave a joint free and led nowhere: less than the file is off may be what is missing to
+    rows that the closed form has not."""
+    starts, poor = leads.starts, np.array(free, dtype=bool)
+    poor[starts.pose[(starts.source >= 0) | (leads.ends.error < arm.policy.arrived)]] = False
+    return poor
 
 
 def _beside(arm: Arm, asked: Asked, start: Array, some: Index) -> Starts:
     """From poses beside some."""
-    q, valid = rows_beside(arm, asked.T[some], start[some], asked.held[some])
-    pose, lane = np.nonzero(valid)
-    return _starts(arm, asked, q[pose, lane], some[pose], np.zeros(len(pose), dtype=bool), 1)
+    q, valid, marked = rows_beside(arm, asked.T[some], start[some], asked.held[some])
+    pose, row = np.nonzero(valid)
+    motion, lane = np.divmod(row, valid.shape[1] // len(arm.beside))
+    which = some[pose], marked[pose, row], 1 + motion, lane
+    return _starts(arm, asked, q[pose, row], *which)
 
 
-def _starts(arm: Arm, asked: Asked, q: Array, pose: Index, marked: Flags, source: int) -> Starts:
-    aim = aims(arm, asked.T, asked.held)[pose]
-    return Starts(q, aim, pose, marked, np.full(len(q), source))
+def _of_lanes(arm: Arm, asked: Asked, closed: ClosedForm, lanes: Flags, marked: Flags) -> Starts:
+    """From some of the closed form's rows (N, M), `marked` (N, M)."""
+    pose, lane = np.nonzero(lanes)
+    source = np.zeros(len(pose), dtype=np.int64)
+    return _starts(arm, asked, closed.q[pose, lane], pose, marked[pose, lane], source, lane)
 
 
 def _given(arm: Arm, asked: Asked, start: Array, pose: Index) -> Starts:
-    return _starts(arm, asked, start[pose], pose, np.ones(len(pose), dtype=bool), -1)
+    marked, place = np.ones(len(pose), dtype=bool), np.zeros(len(pose), dtype=np.int64)
+    return _starts(arm, asked, start[pose], pose, marked, place - 1, place)
 
 
-def _meeting(arm: Arm, asked: Asked, starts: Starts, ends: Ends) -> list[list[Found]]:
+def _starts(
+    arm: Arm, asked: Asked, q: Array, pose: Index, marked: Flags, source: Index, lane: Index
+) -> Starts:
+    aim = aims(arm, asked.T, asked.held)[pose]
+    return Starts(q, aim, pose, marked, source, lane)
+
+
+def _meeting(arm: Arm, asked: Asked, leads: Leads) -> list[list[Found]]:
     """For each pose the distinct rows that Newton steps lead to."""
     out: list[list[Found]] = [[] for _ in asked.T]
-    owner, q, loss = rows_nearby(arm, starts, ends)
+    owner, q, loss = rows_nearby(arm, leads)
     flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
-    flags = (starts.marked[owner] & (loss < continuum)) | (loss < flat)
-    for i, row, flag in zip(starts.pose[owner].tolist(), q.tolist(), flags.tolist()):
+    flags = (leads.starts.marked[owner] & (loss < continuum)) | (loss < flat)
+    for i, row, flag in zip(leads.starts.pose[owner].tolist(), q.tolist(), flags.tolist()):
         _add(arm, asked.T[i], [(tuple(row), flag)], out[i])
     return out
 

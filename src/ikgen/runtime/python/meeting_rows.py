@@ -1,7 +1,4 @@
-"""Solutions near a singularity, where Newton's method stalls.
-
-The pose is taken to second order along the direction in which it moves least, to first order along the
-others (Lyapunov and Schmidt's reduction; Golubitsky & Schaeffer 1985, I.3)."""
+"""What Newton steps from the closed form's rows lead to near singularities, where solutions meet."""
 
 from __future__ import annotations
 
@@ -11,10 +8,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.runtime.python.arm_newton import linearized, refined
+from ikgen.runtime.python.arm_newton import refined
 from ikgen.runtime.python.array_types import Array, Flags, Index, Row
 from ikgen.runtime.python.chain_kinematics import forward
-from ikgen.runtime.python.refinement import damped, least_singular, normal_inverse
+from ikgen.runtime.python.fold_pair import approach
+from ikgen.runtime.python.refinement import least_singular
 from ikgen.runtime.python.row_links import differences
 from ikgen.runtime.python.row_placement import distinct
 from ikgen.runtime.python.solution_rows import places
@@ -22,34 +20,29 @@ from ikgen.runtime.python.solved_arm import Arm, Found
 
 __all__ = [
     "Ends",
+    "Leads",
+    "Led",
     "Starts",
     "ends_of",
     "joined",
+    "leads_of",
     "repeats",
     "rows_nearby",
+    "traced",
 ]
-
-_ALONG = 1e-4  # rad or m
-_CLOSE = 1e-9
-_FAR = 0.3
-_STEPS = 8
 
 
 class Starts(NamedTuple):
     """Where Newton steps start: rows `q` (k, dof) for poses `T` (k, 4, 4), which rows are of the same pose,
     `pose` (k,), which the closed form `marked` (k,) as of a continuum, and the `source` (k,) of each:
-    given (-1), the closed form for the pose (0), or for one beside it (1)."""
+    given (-1), the closed form for the pose (0), or for one beside (1, 2, ...), on branch `lane` (k,)."""
 
     q: Array
     T: Array
     pose: Index
     marked: Flags
     source: NDArray[np.int64]
-
-
-def joined(one: Any, other: Any) -> Any:
-    """Two tuples of arrays as one."""
-    return type(one)(*map(np.concatenate, zip(one, other)))
+    lane: Index
 
 
 class Ends(NamedTuple):
@@ -61,51 +54,111 @@ class Ends(NamedTuple):
     loss: Array
 
 
+class Led(NamedTuple):
+    """Solutions `q` (n, dof), the starts `owner` (n,) that led to them, and the smallest singular values
+    `loss` (n,) there."""
+
+    owner: Index
+    q: Array
+    loss: Array
+
+
+class Leads(NamedTuple):
+    """Starts and their ends, with an infinite error where a start stands for a continuum of the solved
+    geometry, what is found `around` that, and of which starts (k,) that is `known`."""
+
+    starts: Starts
+    ends: Ends
+    around: Led
+    known: Flags
+
+
+def joined(one: Any, other: Any) -> Any:
+    """Two tuples of arrays as one; of `Leads` too."""
+    if isinstance(one, Leads):
+        owner = other.around.owner + len(one.starts.q)
+        other = other._replace(around=other.around._replace(owner=owner))
+    pairs = zip(one, other)
+    return type(one)(*(joined(*x) if isinstance(x[0], tuple) else np.concatenate(x) for x in pairs))
+
+
 def ends_of(arm: Arm, q: Array, T: Array) -> Ends:
     """Where steps from rows q (k, dof) towards aims T end."""
     q, error, _, slope = refined(arm, q, T)
     return Ends(q, error, least_singular(slope))
 
 
-def rows_nearby(arm: Arm, starts: Starts, ends: Ends) -> tuple[Index, Array, Array]:
-    """Which start (m,) each solution (m, dof) comes from that steps lead to, those that are sure first, and
-    the smallest singular values (m,) there.
+def leads_of(arm: Arm, starts: Starts, known: Flags) -> Leads:
+    """What starts lead to. A continuum that the closed form has, where it marked a row, is followed all
+    around where the file's arm may not have it, once for each branch of a pose; `known` (poses, branches):
+    which were, and are then. Starts on none are no longer marked."""
+    count = len(starts.q)
+    broken = starts.marked & (starts.source >= 0)
+    if not arm.rounded and broken.any():
+        error = ends_of(arm, starts.q[broken], starts.T[broken]).error
+        broken[broken] = error >= arm.policy.arrived
+    at, found = (starts.pose, starts.lane), Led(np.zeros(0, np.intp), starts.q[:0], np.zeros(0))
+    for source in np.unique(starts.source[broken]).tolist():
+        some = np.flatnonzero(broken & (starts.source == source) & ~known[at])
+        if arm.around is not None and len(some):
+            curve, owner, q, loss = arm.around(arm, starts.q[some], starts.T[some])
+            known[starts.pose[some[curve]], starts.lane[some[curve]]] = True
+            found = joined(found, Led(some[owner], q, loss))
+    around = broken & known[at]
+    ends = Ends(starts.q.copy(), np.full(count, np.inf), np.full(count, np.inf))
+    for whole, part in zip(ends, ends_of(arm, starts.q[~around], starts.T[~around])):
+        whole[~around] = part
+    starts = starts._replace(marked=starts.marked & (around | ~broken))
+    return Leads(starts, ends, found, around)
 
-    Where two may meet near a singularity both are found, and all around a continuum that the closed form
-    has, where it marked a row, and the file's arm has not. What is given leads only to its own.
-    """
-    T, (q, error, loss) = starts.T, (x.copy() for x in ends)
-    arrived, own = error < arm.policy.arrived, starts.source >= 0
-    broken = starts.marked & (arm.rounded | ~arrived) & own
-    near = own & ~starts.marked & (loss < arm.policy.fold_reach)
-    settled = ~broken & np.where(near, error < arm.policy.converged, arrived)
+
+def traced(arm: Arm, leads: Leads) -> Leads:
+    """With what is found around continua of the solved geometry that rows near singularities lie on."""
+    starts, (q, _, loss) = leads.starts, leads.ends
+    own = (starts.source == 0) & ~starts.marked
+    some = np.flatnonzero(own & (loss < min(arm.policy.broken_reach, arm.policy.fold_reach)))
+    if arm.around is None or not len(some):
+        return leads
+    curve, owner, rows, there = arm.around(arm, q[some], starts.T[some], broken=True)
+    known = leads.known.copy()
+    known[some[curve]] = True
+    around = joined(leads.around, Led(some[owner], rows, there))
+    return leads._replace(around=around, known=known)
+
+
+def rows_nearby(arm: Arm, leads: Leads) -> Led:
+    """The solutions that starts lead to, those that are sure first. Where two may meet near a singularity
+    both are found. What is given leads only to its own."""
+    starts, T, (q, error, loss) = leads.starts, leads.starts.T, (x.copy() for x in leads.ends)
+    near = (starts.source >= 0) & ~starts.marked & (loss < arm.policy.fold_reach)
+    settled = error < np.where(near, arm.policy.converged, arm.policy.arrived)
     fresh = _fresh(arm, q, starts, near, near & ~settled)
     settled &= fresh
-    near &= fresh
-    owner, trial = np.flatnonzero(near), q[near]
-    if broken.any():
-        around, worst = _walk(arm, starts.q[broken], T[broken])
-        isolated = np.flatnonzero(broken)[worst >= arm.policy.arrived]
-        around = around[:, worst >= arm.policy.arrived]
-        owner = np.concatenate([owner, np.repeat(isolated, len(around))])
-        trial = np.concatenate([trial, around.transpose(1, 0, 2).reshape(-1, q.shape[1])])
-    first, own_rows = np.flatnonzero(settled), q[settled]
-    if not len(owner) and not (broken & arrived).any():
-        return first, own_rows, loss[first]
-    owner, side = np.repeat(owner, 2), np.tile([1.0, -1.0], len(owner))
-    pairs = _approach(arm, np.repeat(trial, 2, axis=0), T[owner], side)
+    near &= fresh & ~leads.known
+    sure = np.flatnonzero(settled)
+    first = _in_order(Led(sure, q[sure], loss[sure]), leads.around)
+    if not near.any():
+        return first
+    owner = np.repeat(np.flatnonzero(near), 2)
+    pairs = approach(arm, q[owner], T[owner], np.tile([1.0, -1.0], len(owner) // 2))
     pairs, left, there = ends_of(arm, pairs, T[owner])
     exact = left < arm.policy.exact
     for k, i in zip(np.flatnonzero(~exact).tolist(), owner[~exact].tolist()):
         if left[k] < error[i]:
             q[i], error[i], loss[i] = pairs[k], left[k], there[k]
-    alone = np.flatnonzero((near | broken) & (error < arm.policy.arrived))
-    alone = np.setdiff1d(alone, [*owner[exact], *first])
-    source, rows = np.concatenate([owner[exact], alone]), np.concatenate([pairs[exact], q[alone]])
-    order = np.argsort(source, kind="stable")
-    rows = np.concatenate([own_rows, rows[order]])
-    losses = np.concatenate([loss[first], np.concatenate([there[exact], loss[alone]])[order]])
-    return np.concatenate([first, source[order]]), rows, losses
+    alone = np.flatnonzero(near & (error < arm.policy.arrived))
+    alone = np.setdiff1d(alone, [*owner[exact], *sure])
+    more = _in_order(
+        Led(owner[exact], pairs[exact], there[exact]), Led(alone, q[alone], loss[alone])
+    )
+    found: Led = joined(first, more)
+    return found
+
+
+def _in_order(one: Led, other: Led) -> Led:
+    found = joined(one, other)
+    order = np.argsort(found.owner, kind="stable")
+    return Led(*(x[order] for x in found))
 
 
 def _fresh(arm: Arm, q: Array, starts: Starts, near: Flags, stalled: Flags) -> Flags:
@@ -138,80 +191,3 @@ def repeats(arm: Arm, T: Array, row: Row, kept: Sequence[Found]) -> bool:
         if np.abs(arm.task.error(middle[None], T[None])).max() < arm.policy.halfway:
             return True
     return False
-
-
-def _approach(arm: Arm, q: Array, T: Array, side: Array) -> Array:
-    """From q (k, dof) towards the solution on one `side` (k,), 1 or -1, of the place where two may meet, or
-    to where they nearly do; T (k, 4, 4)."""
-    q, still, going = q.copy(), _generic(arm, len(q)), np.arange(len(q))
-    for _ in range(_STEPS):
-        q[going], still[going], x, _ = _step(arm, q[going], T[going], side[going], still[going])
-        going = going[np.abs(x) > _CLOSE]
-        if not len(going):
-            break
-    return q
-
-
-def _walk(arm: Arm, q: Array, T: Array) -> tuple[Array, Array]:
-    """Configurations (tries, k, dof) from q (k, dof) on, where the pose hardly moves, the fastest
-    joint by `policy.try_step` from one to the next, and the largest errors (k,) there."""
-    nowhere, moving = np.zeros(len(q)), list(arm.moving)
-    q, still, _, _ = _step(arm, q, T, nowhere, _generic(arm, len(q)))
-    worst, out = np.zeros(len(q)), []
-    for _ in range(arm.policy.tries):
-        for _ in range(2):
-            q, still, _, error = _step(arm, q, T, nowhere, still)
-        worst = np.maximum(worst, error)
-        out.append(q)
-        q = q.copy()
-        q[:, moving] += arm.policy.try_step * still / np.abs(still).max(axis=1)[:, None]
-    return np.array(out), worst
-
-
-def _generic(arm: Arm, count: int) -> Array:
-    return np.tile(1.0 + 0.1 * np.arange(len(arm.moving)), (count, 1))
-
-
-def _step(
-    arm: Arm, q: Array, T: Array, side: Array, still: Array
-) -> tuple[Array, Array, Array, Array]:
-    """q (k, dof) after a step, the unit directions (k, n) in which the pose moves least, in the sense of
-    `still`, how far the step goes along them (k,), not at all on side 0, and the errors before (k,)."""
-    columns = list(arm.moving)
-    error, slope = linearized(arm, q, T)
-    still = _still(slope, still, arm.policy.least_damping)
-    flow = np.einsum("kej,kj->ke", slope, still)
-    there = q.copy()
-    there[:, columns] += _ALONG * still
-    _, beyond = linearized(arm, there, T)
-    bend = np.einsum("kej,kj->ke", beyond - slope, still) / _ALONG
-    V = slope - flow[:, :, None] * still[:, None, :]
-    Vt = V.transpose(0, 2, 1)
-    A = damped(Vt @ V + still[:, :, None] * still[:, None, :], arm.policy.least_damping)
-    z = np.stack([error, bend, flow], axis=2)
-    across = np.linalg.solve(A, Vt @ z)
-    rest, bend, flow = np.moveaxis(z - V @ across, 2, 0)
-    x = np.where(side == 0.0, 0.0, _root(side, rest, bend, flow))
-    q = q.copy()
-    q[:, columns] += np.clip(across[:, :, 0], -_FAR, _FAR) + x[:, None] * still
-    return q, still, x, np.abs(error).max(axis=1)
-
-
-def _still(slope: Array, still: Array, damping: float) -> Array:
-    """By inverse iteration, from what it was, which keeps its sense."""
-    inverse = normal_inverse(slope, damping)
-    for _ in range(4):
-        still = (inverse @ still[:, :, None])[:, :, 0]
-        still = still / np.linalg.norm(still, axis=1)[:, None]
-    return still
-
-
-def _root(side: Array, rest: Array, bend: Array, flow: Array) -> Array:
-    """The root (k,) of s x + k x^2 / 2 = e on this side of the least error, along the direction that the
-    others leave."""
-    k, s, e = (np.einsum("ke,ke->k", bend, v) for v in (bend, flow, rest))
-    w = np.sqrt(np.maximum(s * s + 2.0 * k * e, 0.0))
-    p = s + np.copysign(w, s)
-    with np.errstate(all="ignore"):
-        x = np.where(((s > 0.0) == (side > 0.0)) & (p != 0.0), 2.0 * e / p, -p / k)
-    return np.asarray(np.clip(np.nan_to_num(np.where(k > 0.0, x, 0.0)), -_FAR, _FAR))

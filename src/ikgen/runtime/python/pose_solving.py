@@ -19,7 +19,7 @@ from ikgen.runtime.python.pose_arguments import one_pose
 from ikgen.runtime.python.pose_faults import nearest_pose, pose_fault
 from ikgen.runtime.python.projection import nearest_row, off_by
 from ikgen.runtime.python.row_branches import branch_names
-from ikgen.runtime.python.row_placement import in_order, is_new, place_rows
+from ikgen.runtime.python.row_placement import in_order, is_new, place_rows, rows_at_limits
 from ikgen.runtime.python.solutions import Solutions, Status, no_solutions
 from ikgen.runtime.python.solved_arm import Arm, Found
 
@@ -113,7 +113,9 @@ def sure_answer(arm: Arm, asked: One, limits: bool) -> Answer | None:
     kept = _certain_rows(arm, T, near, held)
     if kept is None:
         return None
-    placed = place_rows(arm, kept, near, limits)
+    placed, close = rows_at_limits(arm, kept, near, limits)
+    if close:
+        return None
     if near is not None and not placed:
         placed = place_rows(arm, seeded_rows(arm, _asked(asked))[0], near, limits)
     return Answer(placed, bool(kept))

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import ceil, floor, inf, pi
+from math import ceil, floor, inf, pi, remainder
 
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags, Row
 from ikgen.runtime.python.solved_arm import Arm, Found
 
-__all__ = ["distinct", "in_order", "is_new", "place_rows", "place_rows_batch"]
+__all__ = [
+    "distinct",
+    "in_order",
+    "is_new",
+    "place_rows",
+    "place_rows_batch",
+    "rows_at_limits",
+]
 
 _TURN = 2.0 * pi
 
@@ -55,12 +62,27 @@ def distinct(arm: Arm, q: Array, valid: Flags) -> Flags:
 
 def place_rows(arm: Arm, rows: list[Found], near: Row | None, limits: bool) -> list[Found]:
     """The rows on the right turns; those that no turn brings inside the limits are dropped."""
-    placed = [(_place(arm, row, near, limits), flag) for row, flag in rows]
-    return [(row, flag) for row, flag in placed if row is not None]
+    return rows_at_limits(arm, rows, near, limits)[0]
 
 
-def _place(arm: Arm, row: Row, near: Row | None, limits: bool) -> Row | None:
-    out = []
+def rows_at_limits(
+    arm: Arm, rows: list[Found], near: Row | None, limits: bool
+) -> tuple[list[Found], list[tuple[Found, Row]]]:
+    """`place_rows`, and of the dropped rows those hardly outside: as they were, and on the limits."""
+    inside, close = [], []
+    for row, flag in rows:
+        placed, beyond = _place(arm, row, near, limits)
+        if placed is not None and beyond:
+            close.append(((row, flag), placed))
+        elif placed is not None:
+            inside.append((placed, flag))
+    return inside, close
+
+
+def _place(arm: Arm, row: Row, near: Row | None, limits: bool) -> tuple[Row | None, bool]:
+    """The row on its turns, None where it is far outside; and whether it had to be moved to limits by more
+    than round-off."""
+    out, beyond = [], False
     for j, (q, turning, low, high) in enumerate(zip(row, arm.turning, arm.lower, arm.upper)):
         shift = 0.0
         if turning:
@@ -77,11 +99,16 @@ def _place(arm: Arm, row: Row, near: Row | None, limits: bool) -> Row | None:
             if turning and q + shift > most:
                 shift = _TURN * floor((most - q) / _TURN)
             if not least <= q + shift <= most:
-                return None
+                to_low, to_high = low - q, high - q
+                if turning:
+                    to_low, to_high = remainder(to_low, _TURN), remainder(to_high, _TURN)
+                if min(abs(to_low), abs(to_high)) > arm.policy.limit_reach:
+                    return None, True
+                shift, beyond = (low if abs(to_low) < abs(to_high) else high) - q, True
             out.append(min(max(q + shift, low), high))
         else:
             out.append(q + shift)
-    return tuple(out)
+    return tuple(out), beyond
 
 
 def in_order(arm: Arm, rows: list[Found], near: Row | None) -> list[Found]:
@@ -91,9 +118,12 @@ def in_order(arm: Arm, rows: list[Found], near: Row | None) -> list[Found]:
     return rows[: arm.most]
 
 
-def place_rows_batch(arm: Arm, q: Array, near: Array | None, limits: bool) -> tuple[Array, Flags]:
-    """Rows (N, M, dof) on the right turns, in place, and which of them lie inside the limits."""
-    inside = np.ones(q.shape[:2], dtype=bool)
+def place_rows_batch(
+    arm: Arm, q: Array, near: Array | None, limits: bool
+) -> tuple[Array, Flags, Flags]:
+    """Rows (N, M, dof) on the right turns, in place, which of them lie inside the limits, and which may be
+    hardly outside."""
+    inside, close, reach = (*np.ones((2, *q.shape[:2]), dtype=bool), arm.policy.limit_reach)
     for j, (turning, low, high) in enumerate(zip(arm.turning, arm.lower, arm.upper)):
         value = q[..., j]
         least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
@@ -109,7 +139,13 @@ def place_rows_batch(arm: Arm, q: Array, near: Array | None, limits: bool) -> tu
                 turns = np.minimum(turns, np.floor((most - value) / _TURN))
             value = value + _TURN * turns
         if limits:
-            inside &= (value >= least) & (value <= most)
+            fits = (value >= least) & (value <= most)
+            inside &= fits
+            if close.any():
+                beyond = (value > low - reach) & (value < high + reach)
+                if turning:
+                    beyond |= value + _TURN < high + reach
+                close &= beyond
             value = np.minimum(np.maximum(value, low), high)
         q[..., j] = value
-    return q, inside
+    return q, inside, close & ~inside

@@ -52,7 +52,7 @@ def preference_costs(
     for j in arm.free:
         if arm.chain.revolute[j] and not isfinite(arm.upper[j] - arm.lower[j]):
             q[..., j] += 2.0 * pi * np.round((middle[j] - q[..., j]) / (2.0 * pi))
-    q, inside = place_rows_batch(arm, q, np.tile(middle, (len(q), 1)), limits)
+    q, inside, _ = place_rows_batch(arm, q, np.tile(middle, (len(q), 1)), limits)
     if name != "dexterous":
         return q, np.asarray((q - np.array(middle)) ** 2 @ np.array(weights)), inside
     flat = q.reshape(-1, q.shape[-1])

@@ -19,6 +19,7 @@ class Policy:
     alike: float  # and singular ones, where the pose is theirs between them too:
     halfway: float  # to this error
     limit_tolerance: float  # how far outside a limit a row is put back on it
+    limit_reach: float  # and how far outside that is tried
     tries: int  # values tried for a joint that a pose leaves free
     try_step: float  # rad from one to the next
     rank_loss: float  # smallest singular value below which a refined row is singular
@@ -26,6 +27,7 @@ class Policy:
     fold_reach: float  # smallest singular value below which another row may be near
     beside_reach: float  # and below which poses beside are solved as well
     anywhere: float  # the same where they always are
+    broken_reach: float  # below which a row may lie on a continuum that rounding broke
     farthest_start: float  # first step (rad, m) of rows that are refined together
     contraction: float  # of each further one
     pivot_share: float  # of the pivot: the first step at most

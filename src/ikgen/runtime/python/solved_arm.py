@@ -6,12 +6,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from ikgen.runtime.python.array_types import Array, Flags, Row
+from ikgen.runtime.python.array_types import Array, Flags, Index, Row
 from ikgen.runtime.python.chain_kinematics import Chain
 from ikgen.runtime.python.solve_policy import Policy
 from ikgen.runtime.python.task_interface import Task
 
-__all__ = ["Arm", "Branches", "BranchesBatch", "Found", "HeldAngle", "Together"]
+__all__ = ["Arm", "Around", "Branches", "BranchesBatch", "Found", "HeldAngle", "Together"]
 
 Found = tuple[Row, bool]  # a solution, and whether it is one of a continuum
 Branches = Callable[[Sequence[Sequence[float]], Row, Row], tuple[list[tuple[Row, bool]], bool]]
@@ -22,6 +22,14 @@ class Together(Protocol):
     """`refine_together` with the arm's chain in lanes."""
 
     def __call__(self, arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]: ...
+
+
+class Around(Protocol):
+    """`rows_around`."""
+
+    def __call__(
+        self, arm: Arm, q: Array, T: Array, broken: bool = False
+    ) -> tuple[Flags, Index, Array, Array]: ...
 
 
 class HeldAngle(Protocol):
@@ -59,7 +67,7 @@ class Arm:
     (n, 4, 4): motions of the tool to poses that are solved as well. `turning`: which joints are
     revolute and not held; `moving`: indices of those not held.
     `together`: `refine_together` where the closed form is of another geometry than the file's, and all rows
-    are rough.
+    are rough. `around`: `rows_around` where there is a closed form.
     `branch_kind`, `elbow_end`: as in `branch_names`. `angle`: the arm angle, where that is held after
     the joints."""
 
@@ -81,6 +89,7 @@ class Arm:
     branch_kind: str
     elbow_end: int
     angle: HeldAngle | None = None
+    around: Around | None = None
 
     @property
     def rounded(self) -> bool:

@@ -1,0 +1,236 @@
+"""Solutions on what is a continuum of the geometry that was solved, and none of the file's.
+
+Along it the other joints take the pose's error away but for one direction (Lyapunov and Schmidt's
+reduction; Golubitsky & Schaeffer 1985, I.3): a solution is where what is left changes its sign, or
+touches 0."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ikgen.runtime.python.arm_newton import linearized, refined
+from ikgen.runtime.python.array_types import Array, Flags, Index
+from ikgen.runtime.python.fold_pair import Reduced, correct, generic
+from ikgen.runtime.python.refinement import least_singular
+from ikgen.runtime.python.row_links import differences
+from ikgen.runtime.python.solution_rows import places
+from ikgen.runtime.python.solved_arm import Arm
+
+__all__ = ["Traced", "rows_around", "trace"]
+
+_MOST, _CORRECTIONS, _STEPS, _DEEP, _LEAST = 96, 6, 40, 24, 4
+_SAMPLES = 600  # of a curve
+_ROOM = 32  # solutions of a curve
+_NEAR = 1e-11  # rad or m: how far off the curve slopes along it are the curve's
+_WAY = 1e-10  # rad or m: along it, by which what is left varies by round-off
+_ROUND_OFF, _SMALL, _DOUBT, _BESIDE, _SAME_WAY = 1e-15, 4e-15, 0.03, 0.06, 0.9
+
+
+class Traced(NamedTuple):
+    """Which starts (k,) lie on a `curve` of the solved geometry, and which of these are `broken` (k,), none
+    of the file's arm; the starts `owner` (n,) of solutions, nearly, `q` (n, dof) on broken ones."""
+
+    curve: Flags
+    broken: Flags
+    owner: Index
+    q: Array
+
+
+class _Parts(NamedTuple):
+    """Parts of curves, between samples `a` and `b` of those of the starts `owner` (n,), `place` (n,) and
+    `width` (n,) in the order in which they were passed."""
+
+    a: Reduced
+    b: Reduced
+    owner: Index
+    place: Array
+    width: Array
+
+
+def rows_around(
+    arm: Arm, q: Array, T: Array, broken: bool = False
+) -> tuple[Flags, Index, Array, Array]:
+    """Which rows q (k, dof) towards aims T (k, ...) stand for a continuum of the solved geometry; from
+    which (n,) the solutions (n, dof) all around are, or one where the file's arm has the continuum too, and
+    the smallest singular values (n,) there. `broken`: of such that the file's arm has not alone, and no
+    others than those that are right to round-off."""
+    with np.errstate(all="ignore"):
+        traced = trace(arm, q, T)
+    if broken:
+        end, error, _, slope = refined(arm, traced.q, T[traced.owner])
+        good = error < arm.policy.exact
+        return traced.broken, traced.owner[good], end[good], least_singular(slope[good])
+    given = np.flatnonzero(traced.curve)
+    owner = np.concatenate([traced.owner, given])
+    rows, error, _, slope = refined(arm, np.concatenate([traced.q, q[given]]), T[owner])
+    exact = error < arm.policy.exact
+    best = np.lexsort((error, owner))
+    best = best[places(owner[best]) == 0]
+    best = best[~np.isin(owner[best], owner[exact]) & (error[best] < arm.policy.arrived)]
+    some = np.concatenate([np.flatnonzero(exact), best])
+    some = some[np.argsort(owner[some], kind="stable")]
+    return traced.curve, owner[some], rows[some], least_singular(slope[some])
+
+
+def trace(arm: Arm, q: Array, T: Array) -> Traced:
+    """The curves through rows q (k, dof) towards aims T (k, ...), once around, or to both their ends."""
+    count, (error, _) = len(q), linearized(arm, q[:1], T[:1])
+    nothing = np.zeros(count)
+    start = Reduced(
+        q, generic(count, len(arm.moving)), generic(count, error.shape[1]), nothing, nothing
+    )
+    first = _sample(arm, start, T)
+    back = first._replace(still=-first.still, slope=-first.slope)
+    parts, closed, worst = _follow(arm, first, T, np.arange(count), 0.0)
+    open_ends = np.flatnonzero(~closed)
+    more, _, largest = _follow(arm, back, T, open_ends, 1.0 * _MOST)
+    worst = np.maximum(np.maximum(worst, largest), np.abs(first.left))
+    parts = _joined([*parts, *more])
+    steps = np.bincount(parts.owner, minlength=count)
+    curve = steps >= _LEAST
+    broken = curve & (worst >= arm.policy.arrived)
+    found = _look(arm, _some(parts, broken[parts.owner]), T, steps)
+    return Traced(curve, broken, *found)
+
+
+def _sample(arm: Arm, at: Reduced, T: Array) -> Reduced:
+    """The configurations of the curves beside some (k,): of which one direction of the error is left."""
+    at = Reduced(*(x.copy() for x in at))
+    going = np.arange(len(T))
+    for _ in range(_CORRECTIONS):
+        moved, farthest = correct(arm, _some(at, going), T[going])
+        for whole, part in zip(at, moved):
+            whole[going] = part
+        going = going[~(farthest < _NEAR)]
+        if not len(going):
+            break
+    return at
+
+
+def _some(parts: Any, index: Any) -> Any:
+    """Some of what tuples of arrays stand for."""
+    return type(parts)(*(_some(x, index) if isinstance(x, tuple) else x[index] for x in parts))
+
+
+def _joined(parts: Sequence[Any]) -> Any:
+    """Several tuples of arrays as one."""
+    return type(parts[0])(
+        *(_joined(x) if isinstance(x[0], tuple) else np.concatenate(x) for x in zip(*parts))
+    )
+
+
+def _follow(
+    arm: Arm, first: Reduced, T: Array, some: Index, place: float
+) -> tuple[list[_Parts], Flags, Array]:
+    """On from some samples, the fastest joint by `policy.try_step` from one to the next; which (k,) come
+    back to where they began, and the most (k,) that is left."""
+    closed, worst = np.zeros(len(T), dtype=bool), np.zeros(len(T))
+    parts, moving, owner = [], list(arm.moving), some
+    b = _some(first, some)
+    for step in range(_MOST):
+        ahead = b.q.copy()
+        ahead[:, moving] += arm.policy.try_step * b.still / np.abs(b.still).max(axis=1)[:, None]
+        c = _sample(arm, b._replace(q=ahead), T[owner])
+        on = np.abs(c.left) < arm.policy.fold_reach
+        b, c, owner = _some(b, on), _some(c, on), owner[on]
+        worst[owner] = np.maximum(worst[owner], np.abs(c.left))
+        parts.append(_Parts(b, c, owner, np.full(len(owner), place + step), np.ones(len(owner))))
+        round_about = _back(arm, _some(first, owner), b) & (step > 1)
+        closed[owner[round_about]] = True
+        b, owner = _some(c, ~round_about), owner[~round_about]
+        if not len(owner):
+            break
+    closed[owner] = True
+    return parts, closed, worst
+
+
+def _back(arm: Arm, a: Reduced, b: Reduced) -> Flags:
+    """Whether curves are at samples of them again, and not at other parts that are near."""
+    way = differences(arm, a.q, b.q)[:, list(arm.moving)]
+    along = (way * a.still).sum(axis=1)[:, None]
+    beside = np.abs(way - along * a.still).max(axis=1) < _BESIDE
+    near = np.abs(way).max(axis=1) < 0.75 * arm.policy.try_step
+    same = (a.still * b.still).sum(axis=1) > _SAME_WAY
+    return np.asarray(beside & near & same)
+
+
+def _between(arm: Arm, parts: _Parts, share: Array, T: Array) -> Reduced:
+    """Samples at a `share` (n,) of the way from a to b."""
+    q = parts.a.q + share[:, None] * (parts.b.q - parts.a.q)
+    return _sample(arm, parts.a._replace(q=q), T[parts.owner])
+
+
+def _look(arm: Arm, parts: _Parts, T: Array, samples: Index) -> tuple[Index, Array]:
+    """The solutions (n, dof) inside parts, by the signs of the coefficients, after Bernstein, of cubics
+    through values and slopes; whose they are (n,). `samples` (k,): that were taken of each curve."""
+    kept, brackets = [], []
+    for deep in range(_DEEP + 1):
+        values = _bernstein(arm, parts)
+        most = np.abs(values).max(axis=0)
+        spent = samples[parts.owner] >= _SAMPLES
+        end = (most < _SMALL) | spent | (deep == _DEEP)
+        doubtful = np.abs(values[1:3]).min(axis=0) < _DOUBT * most
+        changes = (values[:-1] * values[1:] <= 0.0).sum(axis=0)
+        split = ~end & (doubtful | (changes > 1))
+        kept.append(_some(parts, end))
+        brackets.append(_some(parts, ~end & ~split & (changes == 1)))
+        if not split.any():
+            break
+        parts = _some(parts, split)
+        middle = _between(arm, parts, np.full(len(parts.owner), 0.5), T)
+        samples = samples + np.bincount(parts.owner, minlength=len(samples))
+        half = 0.5 * parts.width
+        parts = _joined(
+            [
+                parts._replace(b=middle, width=half),
+                parts._replace(a=middle, place=parts.place + half, width=half),
+            ]
+        )
+    return _kept(arm, _joined([*kept, _closed_in(arm, _joined(brackets), T)]))
+
+
+def _bernstein(arm: Arm, parts: _Parts) -> Array:
+    """The coefficients (4, n)."""
+    a, b = parts.a, parts.b
+    step = (b.q - a.q)[:, list(arm.moving)]
+    rise = a.slope * (a.still * step).sum(axis=1)
+    fall = b.slope * (b.still * step).sum(axis=1)
+    return np.array([a.left, a.left + rise / 3.0, b.left - fall / 3.0, b.left])
+
+
+def _closed_in(arm: Arm, parts: _Parts, T: Array) -> _Parts:
+    """Parts at whose ends what is left has two signs, narrowed until it is round-off at one, or the way
+    to there is: by false position, halving what an end keeps (Dowell & Jarratt 1971)."""
+    ends = Reduced(*map(np.stack, zip(parts.a, parts.b)))
+    values, last = ends.left.copy(), np.full(len(parts.owner), -1)
+    way = np.full(len(parts.owner), np.inf)
+    for _ in range(_STEPS):
+        going = np.flatnonzero((np.abs(ends.left).min(axis=0) > _ROUND_OFF) & (way > _WAY))
+        if not len(going):
+            break
+        x, y = values[:, going]
+        now = _some(parts, going)._replace(a=_some(ends, (0, going)), b=_some(ends, (1, going)))
+        c = _between(arm, now, x / (x - y), T)
+        side = (now.a.left * c.left < 0.0).astype(np.intp)
+        way[going] = np.abs(c.q - ends.q[side, going]).max(axis=1)
+        for whole, part in zip(ends, c):
+            whole[side, going] = part
+        values[side, going] = c.left
+        values[1 - side, going] *= np.where(last[going] == side, 0.5, 1.0)
+        last[going] = side
+    return parts._replace(a=_some(ends, 0), b=_some(ends, 1))
+
+
+def _kept(arm: Arm, parts: _Parts) -> tuple[Index, Array]:
+    """Of each part the end where less is left, in order."""
+    ends = Reduced(*map(np.stack, zip(parts.a, parts.b)))
+    least = np.abs(ends.left).argmin(axis=0)
+    left, q = (x[least, np.arange(len(least))] for x in (ends.left, ends.q))
+    order = np.lexsort((parts.place, parts.owner))
+    order = order[np.abs(left[order]) < arm.policy.arrived]
+    order = order[places(parts.owner[order]) < _ROOM]
+    whole = 2.0 * np.pi * np.round(q / (2.0 * np.pi))
+    return parts.owner[order], np.where(arm.chain.revolute, q - whole, q)[order]

@@ -1,0 +1,133 @@
+"""Solutions on what is a continuum of the solved geometry and none of the file's."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import ModuleType, SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from tests.support.cpp_modules import solver_module as published_module
+from tests.support.rounded_arms import FOLDED, meeting_shoulder
+from tests.support.solving import emitted, import_text
+
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.kinematics.modified_dh import to_dh
+from ikgen.runtime.python import near_continuum
+from ikgen.runtime.python.fold_pair import Reduced
+from ikgen.runtime.python.near_continuum import _back, _look, _Parts, rows_around, trace
+
+Array = NDArray[np.float64]
+POLICY = SimpleNamespace(arrived=0.5e-9, try_step=np.pi / 8)
+LINE: Any = SimpleNamespace(moving=(0,), policy=POLICY, chain=SimpleNamespace(revolute=(True,)))
+
+
+@pytest.fixture(scope="module")
+def folded(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
+    """With the wrist above the shoulder its joint 1 is free, but for what the file rounds."""
+    return emitted(to_dh(meeting_shoulder()), tmp_path_factory.mktemp("arm"))
+
+
+def apart(a: Array, b: Array) -> Array:
+    return np.asarray(np.abs(np.remainder(a - b + np.pi, 2 * np.pi) - np.pi).max(axis=-1))
+
+
+def test_rows_on_broken_continua_are_found(folded: ModuleType) -> None:
+    q = np.array(FOLDED)
+    poses = folded.forward(q)
+    rows, count, _ = folded.solve_batch(poses)
+    for i, pose in enumerate(poses):
+        for found in (folded.solve(pose).q, rows[i, : count[i]]):
+            assert np.abs(folded.forward(found) - pose).max() < 2e-9
+            assert apart(found, q[i]).min() < 1e-4
+
+
+def marked_rows(arm: ModuleType, q: Array) -> tuple[Array, Array]:
+    """The closed form's rows for the poses of q, where it marks them as of a continuum; and those poses."""
+    poses = arm.forward(q)
+    rows, valid, singular, _ = arm._ARM.branches_batch(
+        poses, np.zeros_like(q), np.empty((len(q), 0))
+    )
+    pose, lane = np.nonzero(valid & singular)
+    return rows[pose, lane], poses[pose]
+
+
+def test_of_a_continuum_of_the_arm_itself_one_row_is_taken(tmp_path: Path) -> None:
+    exact = import_text(emit_module(published_module("kuka_kr6r900sixx")), tmp_path)
+    rows, poses = marked_rows(exact, np.array([[0.2, -0.9, 1.1, 0.3, 0.0, -0.4]]))
+    assert len(rows)
+    traced = trace(exact._ARM, rows, poses)
+    assert traced.curve.all() and not traced.broken.any() and not len(traced.owner)
+    curve, owner, found, loss = rows_around(exact._ARM, rows, poses)
+    assert curve.all() and owner.tolist() == list(range(len(rows)))
+    assert np.abs(exact.forward(found) - poses).max() < 1e-9 and loss.max() < 1e-9
+
+
+def test_a_broken_one_has_its_solutions_wherever_the_trace_starts(folded: ModuleType) -> None:
+    q = np.array(FOLDED)
+    rows, poses = marked_rows(folded, q)
+    traced = trace(folded._ARM, rows, poses)
+    assert traced.curve.all() and traced.broken.all() and len(traced.owner) >= 2 * len(q)
+    assert (np.diff(traced.owner) >= 0).all()
+    curve, owner, found, _ = rows_around(folded._ARM, rows, poses)
+    assert curve.all() and np.abs(folded.forward(found) - poses[owner]).max() < 2e-9
+    alone = [rows_around(folded._ARM, rows[k : k + 1], poses[k : k + 1]) for k in range(len(rows))]
+    assert np.concatenate([one[2] for one in alone]) == pytest.approx(found, abs=1e-9)
+    for at, pose in zip(q, folded.forward(q), strict=True):
+        own = found[np.abs(poses[owner] - pose).max(axis=(1, 2)) < 1e-12]
+        assert apart(own, at).min() < 1e-4
+
+
+def test_regular_rows_and_what_is_no_row_lie_on_none(folded: ModuleType) -> None:
+    q = np.array([[0.3, 0.7, -0.9, 0.4, 1.1, -0.2], [0.3, 0.7, np.nan, 0.4, 1.1, -0.2]])
+    T = np.repeat(folded.forward(q[:1]), 2, axis=0)
+    traced = trace(folded._ARM, q, T)
+    assert not traced.curve.any() and not traced.broken.any() and not len(traced.q)
+
+
+def on_line(x: Array, roots: Array) -> Reduced:
+    """Samples of the polynomial with these roots, as if the error left along a joint were that."""
+    left, slope = (np.polyval(p, x) for p in (np.poly(roots), np.polyder(np.poly(roots))))
+    return Reduced(x[:, None], np.ones((len(x), 1)), np.ones((len(x), 1)), left, slope)
+
+
+@pytest.mark.parametrize(
+    "roots",
+    [
+        [0.11],
+        [0.11, 0.16],
+        [0.11, 0.22, 0.31],
+        [-0.35, 0.3501],
+        [0.11, 0.1101],
+        [0.21, 0.21, -0.11],
+        [5.0],
+    ],
+)
+def test_all_roots_between_two_samples_are_found(
+    roots: list[float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ways = np.array(roots)
+    monkeypatch.setattr(near_continuum, "_sample", lambda arm, at, T: on_line(at.q[:, 0], ways))
+    a, b = on_line(np.array([-0.4]), ways), on_line(np.array([0.4]), ways)
+    parts = _Parts(a, b, np.zeros(1, np.intp), np.zeros(1), np.ones(1))
+    owner, found = _look(LINE, parts, np.zeros((1, 4, 4)), np.zeros(1, np.intp))
+    wanted = sorted({x for x in roots if abs(x) < 0.4})
+    assert not owner.any() and (np.diff(found[:, 0]) >= -1e-12).all()
+    for x in wanted:
+        assert np.abs(found[:, 0] - x).min() < (1e-4 if roots.count(x) > 1 else 1e-12)
+    assert len(found) == len(wanted) or len(wanted) < len(roots)
+    assert np.abs(np.polyval(np.poly(roots), found[:, 0])).max(initial=0.0) < 1e-8
+
+
+def at(x: float, sense: float) -> Reduced:
+    none = np.zeros(1)
+    return Reduced(np.array([[x]]), np.array([[sense]]), np.ones((1, 1)), none, none)
+
+
+def test_a_curve_is_back_where_it_was_in_the_same_sense() -> None:
+    assert _back(LINE, at(0.1, 1.0), at(0.1 + 2.0 * np.pi, 1.0)).all()
+    assert _back(LINE, at(0.1, 1.0), at(-0.1, 1.0)).all()
+    assert not _back(LINE, at(0.1, 1.0), at(0.1, -1.0)).any()
+    assert not _back(LINE, at(0.1, 1.0), at(0.5, 1.0)).any()
