@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import partial
-from math import asin, atan2, ceil, copysign, floor, inf, isfinite, pi, sqrt
+from math import asin, atan2, ceil, copysign, floor, inf, isfinite, pi, remainder, sqrt
 from operator import or_
 from typing import Any, NamedTuple, Protocol, TypeVar
 
@@ -391,6 +391,7 @@ class _Policy:
     alike: float  # and singular ones, where the pose is theirs between them too:
     halfway: float  # to this error
     limit_tolerance: float  # how far outside a limit a row is put back on it
+    limit_reach: float  # and how far outside that is tried
     tries: int  # values tried for a joint that a pose leaves free
     try_step: float  # rad from one to the next
     rank_loss: float  # smallest singular value below which a refined row is singular
@@ -398,6 +399,7 @@ class _Policy:
     fold_reach: float  # smallest singular value below which another row may be near
     beside_reach: float  # and below which poses beside are solved as well
     anywhere: float  # the same where they always are
+    broken_reach: float  # below which a row may lie on a continuum that rounding broke
     farthest_start: float  # first step (rad, m) of rows that are refined together
     contraction: float  # of each further one
     pivot_share: float  # of the pivot: the first step at most
@@ -501,6 +503,14 @@ class _Together(Protocol):
     def __call__(self, arm: _Arm, q: Array, T: Array) -> tuple[Array, _Flags, _Flags]: ...
 
 
+class _Around(Protocol):
+    """`rows_around`."""
+
+    def __call__(
+        self, arm: _Arm, q: Array, T: Array, broken: bool = False
+    ) -> tuple[_Flags, _Index, Array, Array]: ...
+
+
 class _HeldAngle(Protocol):
     """An angle that is held in place of a joint, of rows (..., dof) and their poses (..., 4, 4)."""
 
@@ -536,7 +546,7 @@ class _Arm:
     (n, 4, 4): motions of the tool to poses that are solved as well. `turning`: which joints are
     revolute and not held; `moving`: indices of those not held.
     `together`: `refine_together` where the closed form is of another geometry than the file's, and all rows
-    are rough.
+    are rough. `around`: `rows_around` where there is a closed form.
     `branch_kind`, `elbow_end`: as in `branch_names`. `angle`: the arm angle, where that is held after
     the joints."""
 
@@ -558,6 +568,7 @@ class _Arm:
     branch_kind: str
     elbow_end: int
     angle: _HeldAngle | None = None
+    around: _Around | None = None
 
     @property
     def rounded(self) -> bool:
@@ -765,12 +776,27 @@ def _distinct(arm: _Arm, q: Array, valid: _Flags) -> _Flags:
 
 def _place_rows(arm: _Arm, rows: list[_Found], near: Row | None, limits: bool) -> list[_Found]:
     """The rows on the right turns; those that no turn brings inside the limits are dropped."""
-    placed = [(_place(arm, row, near, limits), flag) for row, flag in rows]
-    return [(row, flag) for row, flag in placed if row is not None]
+    return _rows_at_limits(arm, rows, near, limits)[0]
 
 
-def _place(arm: _Arm, row: Row, near: Row | None, limits: bool) -> Row | None:
-    out = []
+def _rows_at_limits(
+    arm: _Arm, rows: list[_Found], near: Row | None, limits: bool
+) -> tuple[list[_Found], list[tuple[_Found, Row]]]:
+    """`_place_rows`, and of the dropped rows those hardly outside: as they were, and on the limits."""
+    inside, close = [], []
+    for row, flag in rows:
+        placed, beyond = _place(arm, row, near, limits)
+        if placed is not None and beyond:
+            close.append(((row, flag), placed))
+        elif placed is not None:
+            inside.append((placed, flag))
+    return inside, close
+
+
+def _place(arm: _Arm, row: Row, near: Row | None, limits: bool) -> tuple[Row | None, bool]:
+    """The row on its turns, None where it is far outside; and whether it had to be moved to limits by more
+    than round-off."""
+    out, beyond = [], False
     for j, (q, turning, low, high) in enumerate(zip(row, arm.turning, arm.lower, arm.upper)):
         shift = 0.0
         if turning:
@@ -787,11 +813,16 @@ def _place(arm: _Arm, row: Row, near: Row | None, limits: bool) -> Row | None:
             if turning and q + shift > most:
                 shift = _TURN * floor((most - q) / _TURN)
             if not least <= q + shift <= most:
-                return None
+                to_low, to_high = low - q, high - q
+                if turning:
+                    to_low, to_high = remainder(to_low, _TURN), remainder(to_high, _TURN)
+                if min(abs(to_low), abs(to_high)) > arm.policy.limit_reach:
+                    return None, True
+                shift, beyond = (low if abs(to_low) < abs(to_high) else high) - q, True
             out.append(min(max(q + shift, low), high))
         else:
             out.append(q + shift)
-    return tuple(out)
+    return tuple(out), beyond
 
 
 def _in_order(arm: _Arm, rows: list[_Found], near: Row | None) -> list[_Found]:
@@ -801,9 +832,12 @@ def _in_order(arm: _Arm, rows: list[_Found], near: Row | None) -> list[_Found]:
     return rows[: arm.most]
 
 
-def _place_rows_batch(arm: _Arm, q: Array, near: Array | None, limits: bool) -> tuple[Array, _Flags]:
-    """Rows (N, M, dof) on the right turns, in place, and which of them lie inside the limits."""
-    inside = np.ones(q.shape[:2], dtype=bool)
+def _place_rows_batch(
+    arm: _Arm, q: Array, near: Array | None, limits: bool
+) -> tuple[Array, _Flags, _Flags]:
+    """Rows (N, M, dof) on the right turns, in place, which of them lie inside the limits, and which may be
+    hardly outside."""
+    inside, close, reach = (*np.ones((2, *q.shape[:2]), dtype=bool), arm.policy.limit_reach)
     for j, (turning, low, high) in enumerate(zip(arm.turning, arm.lower, arm.upper)):
         value = q[..., j]
         least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
@@ -819,10 +853,16 @@ def _place_rows_batch(arm: _Arm, q: Array, near: Array | None, limits: bool) -> 
                 turns = np.minimum(turns, np.floor((most - value) / _TURN))
             value = value + _TURN * turns
         if limits:
-            inside &= (value >= least) & (value <= most)
+            fits = (value >= least) & (value <= most)
+            inside &= fits
+            if close.any():
+                beyond = (value > low - reach) & (value < high + reach)
+                if turning:
+                    beyond |= value + _TURN < high + reach
+                close &= beyond
             value = np.minimum(np.maximum(value, low), high)
         q[..., j] = value
-    return q, inside
+    return q, inside, close & ~inside
 
 
 # The closed form's rows of many poses, and what Newton steps make of them.
@@ -855,14 +895,16 @@ def _closed_form(arm: _Arm, T: Array, near: Array | None, held: Array) -> _Close
     return found
 
 
-def _rows_beside(arm: _Arm, T: Array, near: Array | None, held: Array) -> tuple[Array, _Flags]:
-    """The closed form's rows (N, M, dof) of poses beside T (N, 4, 4), one after the other, and which are
-    valid (N, M)."""
+def _rows_beside(arm: _Arm, T: Array, near: Array | None, held: Array) -> tuple[Array, _Flags, _Flags]:
+    """The closed form's rows (N, M, dof) of poses beside T (N, 4, 4), one after the other, which are
+    valid (N, M), and which of a continuum."""
     each = len(arm.beside)
     poses = (T[:, None] @ arm.beside).reshape(-1, 4, 4)
     starts = None if near is None else np.repeat(near, each, axis=0)
-    q, valid, _, _ = _closed_form(arm, poses, starts, np.repeat(held, each, axis=0))
-    return q.reshape(len(T), -1, q.shape[2]), valid.reshape(len(T), -1)
+    closed = _closed_form(arm, poses, starts, np.repeat(held, each, axis=0))
+    valid = closed.valid.reshape(len(T), -1)
+    marked = closed.singular.reshape(len(T), -1) & valid
+    return closed.q.reshape(len(T), -1, closed.q.shape[2]), valid, marked
 
 
 def _certain_rows(
@@ -888,7 +930,7 @@ def _careful_rows(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple
     closed = _closed_form(arm, T, near, held)
     q, valid, rough, doubt = closed.q, closed.valid, closed.rough, closed.free
     if len(arm.beside) and arm.policy.beside_anywhere:
-        more, real = _rows_beside(arm, T, near, held)
+        more, real, _ = _rows_beside(arm, T, near, held)
         q, valid = np.concatenate([q, more], axis=1), np.concatenate([valid, real], axis=1)
         rough = np.ones_like(valid)
     pose, row = np.nonzero(rough & valid)
@@ -897,6 +939,146 @@ def _careful_rows(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple
         q[pose, row], valid[pose, row] = found, error < arm.policy.arrived
         doubt[pose[~_steeper(slope, arm.policy.fold_reach)]] = True
     return q, _distinct(arm, q, valid), doubt
+
+
+# Rows that are hardly outside the limits: near singularities the pose does not tell that.
+
+
+def _rows_inside(
+    arm: _Arm, aim: Array, rows: list[_Found], near: Row | None, limits: bool
+) -> list[_Found]:
+    """`_place_rows` towards an aim (1, ...). A row that is hardly outside takes Newton steps first; if it
+    stays there its other joints do, and what is outside is put on the limits."""
+    inside, close = _rows_at_limits(arm, rows, near, limits)
+    for (row, flag), on_limits in close:
+        q, error, _, _ = _refined(arm, np.array([row]), aim)
+        found = [(tuple(q[0].tolist()), flag)] if error[0] < arm.policy.arrived else []
+        inside += _place_rows(arm, found, near, limits) or _held_there(arm, aim, on_limits, flag)
+    return inside
+
+
+def _held_there(arm: _Arm, aim: Array, row: Row, flag: bool) -> list[_Found]:
+    """The row with its joints on limits left there, if the pose is right to round-off."""
+    moving = [j for j in arm.moving if row[j] not in (arm.lower[j], arm.upper[j])]
+    start, policy = np.array([row]), arm.policy
+    q, error, _, _ = _refine(arm.chain, arm.task, moving, start, aim, policy, arm.angle)
+    found = [(tuple(q[0].tolist()), flag)] if error[0] < policy.exact else []
+    return _place_rows(arm, found, row, True)
+
+
+# Solutions near a singularity, where Newton's method stalls.
+
+
+_ALONG = 1e-4  # rad or m
+_CLOSE = 1e-9
+_FAR = 0.3
+_fold_pair_STEPS = 8
+
+
+class _Reduced(NamedTuple):
+    """Rows `q` (k, dof); unit directions `still` (k, n) in which their poses move least, and `out` (k, m)
+    of the errors in which no other direction moves them; what is `left` (k,) of the errors then, and how
+    that grows along the still direction, its `slope` (k,)."""
+
+    q: Array
+    still: Array
+    out: Array
+    left: Array
+    slope: Array
+
+
+class _Others(NamedTuple):
+    """The directions across the `still` one, and what that does to the pose: its `flow` (k, m)."""
+
+    still: Array
+    flow: Array
+    V: Array
+    normal: Array
+
+    def take_away(self, z: Array) -> tuple[Array, Array]:
+        """What they leave of z (k, m, i), by going (k, n, i)."""
+        solved = np.linalg.solve(self.normal, self.V.transpose(0, 2, 1) @ z)
+        going: Array = np.asarray(solved, dtype=np.float64)
+        return z - self.V @ going, going
+
+    def moved(self, arm: _Arm, q: Array, across: Array, along: Array | float) -> Array:
+        """Rows q (k, dof) after a step."""
+        q = q.copy()
+        q[:, list(arm.moving)] += np.clip(across, -_FAR, _FAR) + along * self.still
+        return q
+
+
+def _generic(count: int, size: int) -> Array:
+    """Directions (count, size) that are at right angles to none in particular."""
+    return np.tile(1.0 + 0.1 * np.arange(size), (count, 1))
+
+
+def _approach(arm: _Arm, q: Array, T: Array, side: Array) -> Array:
+    """From q (k, dof) towards the solution on one `side` (k,), 1 or -1, of the place where two may meet, or
+    to where they nearly do; T (k, 4, 4)."""
+    q, still, going = q.copy(), _generic(len(q), len(arm.moving)), np.arange(len(q))
+    for _ in range(_fold_pair_STEPS):
+        q[going], still[going], x = _step(arm, q[going], T[going], side[going], still[going])
+        going = going[np.abs(x) > _CLOSE]
+        if not len(going):
+            break
+    return q
+
+
+def _correct(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, Array]:
+    """After one step across the still directions, with what was left before it; how far (k,) the fastest
+    joint goes."""
+    error, slope = _linearized(arm, at.q, T)
+    others = _others(arm, slope, at.still)
+    taken, going = others.take_away(np.stack([error, at.out], axis=2))
+    rest, out = np.moveaxis(taken, 2, 0)
+    out = out / np.linalg.norm(out, axis=1)[:, None]
+    across = going[:, :, 0]
+    left = np.einsum("ke,ke->k", out, rest)
+    grows = -np.einsum("ke,ke->k", out, others.flow)
+    q = others.moved(arm, at.q, across, 0.0)
+    return _Reduced(q, others.still, out, left, grows), np.abs(across).max(axis=1)
+
+
+def _others(arm: _Arm, slope: Array, still: Array) -> _Others:
+    still = _still(slope, still, arm.policy.least_damping)
+    flow = np.einsum("kej,kj->ke", slope, still)
+    V = slope - flow[:, :, None] * still[:, None, :]
+    normal = V.transpose(0, 2, 1) @ V + still[:, :, None] * still[:, None, :]
+    return _Others(still, flow, V, _damped(normal, arm.policy.least_damping))
+
+
+def _step(arm: _Arm, q: Array, T: Array, side: Array, still: Array) -> tuple[Array, Array, Array]:
+    """q (k, dof) after a step, the unit directions (k, n) in which the pose moves least, in the sense of
+    `still`, and how far the step goes along them (k,)."""
+    error, slope = _linearized(arm, q, T)
+    others = _others(arm, slope, still)
+    there = others.moved(arm, q, np.zeros_like(still), _ALONG)
+    _, beyond = _linearized(arm, there, T)
+    bend = np.einsum("kej,kj->ke", beyond - slope, others.still) / _ALONG
+    taken, going = others.take_away(np.stack([error, bend, others.flow], axis=2))
+    x = _root(side, *np.moveaxis(taken, 2, 0))
+    return others.moved(arm, q, going[:, :, 0], x[:, None]), others.still, x
+
+
+def _still(slope: Array, still: Array, damping: float) -> Array:
+    """By inverse iteration, from what it was, which keeps its sense."""
+    inverse = _normal_inverse(slope, damping)
+    for _ in range(4):
+        still = (inverse @ still[:, :, None])[:, :, 0]
+        still = still / np.linalg.norm(still, axis=1)[:, None]
+    return still
+
+
+def _root(side: Array, rest: Array, bend: Array, flow: Array) -> Array:
+    """The root (k,) of s x + k x^2 / 2 = e on this side of the least error, along the direction that the
+    others leave; where there is none, that least error itself."""
+    k, s, e = (np.einsum("ke,ke->k", bend, v) for v in (bend, flow, rest))
+    square = s * s + 2.0 * k * e
+    p = s + np.copysign(np.sqrt(np.maximum(square, 0.0)), s)
+    with np.errstate(all="ignore"):
+        x = np.where(((s > 0.0) == (side > 0.0)) & (square > 0.0), 2.0 * e / p, -p / k)
+    return np.asarray(np.clip(np.nan_to_num(np.where(k > 0.0, x, 0.0)), -_FAR, _FAR))
 
 
 # Which rows at one value of a held joint go on as which at the next.
@@ -921,30 +1103,20 @@ def _places(pose: _Index) -> _Index:
     return np.asarray(np.arange(len(pose)) - first)
 
 
-# Solutions near a singularity, where Newton's method stalls.
-
-
-_ALONG = 1e-4  # rad or m
-_CLOSE = 1e-9
-_FAR = 0.3
-_STEPS = 8
+# What Newton steps from the closed form's rows lead to near singularities, where solutions meet.
 
 
 class _Starts(NamedTuple):
     """Where Newton steps start: rows `q` (k, dof) for poses `T` (k, 4, 4), which rows are of the same pose,
     `pose` (k,), which the closed form `marked` (k,) as of a continuum, and the `source` (k,) of each:
-    given (-1), the closed form for the pose (0), or for one beside it (1)."""
+    given (-1), the closed form for the pose (0), or for one beside (1, 2, ...), on branch `lane` (k,)."""
 
     q: Array
     T: Array
     pose: _Index
     marked: _Flags
     source: NDArray[np.int64]
-
-
-def _joined(one: Any, other: Any) -> Any:
-    """Two tuples of arrays as one."""
-    return type(one)(*map(np.concatenate, zip(one, other)))
+    lane: _Index
 
 
 class _Ends(NamedTuple):
@@ -956,47 +1128,111 @@ class _Ends(NamedTuple):
     loss: Array
 
 
+class _Led(NamedTuple):
+    """Solutions `q` (n, dof), the starts `owner` (n,) that led to them, and the smallest singular values
+    `loss` (n,) there."""
+
+    owner: _Index
+    q: Array
+    loss: Array
+
+
+class _Leads(NamedTuple):
+    """Starts and their ends, with an infinite error where a start stands for a continuum of the solved
+    geometry, what is found `around` that, and of which starts (k,) that is `known`."""
+
+    starts: _Starts
+    ends: _Ends
+    around: _Led
+    known: _Flags
+
+
+def _meeting_rows_joined(one: Any, other: Any) -> Any:
+    """Two tuples of arrays as one; of `_Leads` too."""
+    if isinstance(one, _Leads):
+        owner = other.around.owner + len(one.starts.q)
+        other = other._replace(around=other.around._replace(owner=owner))
+    pairs = zip(one, other)
+    return type(one)(*(_meeting_rows_joined(*x) if isinstance(x[0], tuple) else np.concatenate(x) for x in pairs))
+
+
 def _ends_of(arm: _Arm, q: Array, T: Array) -> _Ends:
     """Where steps from rows q (k, dof) towards aims T end."""
     q, error, _, slope = _refined(arm, q, T)
     return _Ends(q, error, _least_singular(slope))
 
 
-def _rows_nearby(arm: _Arm, starts: _Starts, ends: _Ends) -> tuple[_Index, Array, Array]:
-    """Which start (m,) each solution (m, dof) comes from that steps lead to, those that are sure first, and
-    the smallest singular values (m,) there."""
-    T, (q, error, loss) = starts.T, (x.copy() for x in ends)
-    arrived, own = error < arm.policy.arrived, starts.source >= 0
-    broken = starts.marked & (arm.rounded | ~arrived) & own
-    near = own & ~starts.marked & (loss < arm.policy.fold_reach)
-    settled = ~broken & np.where(near, error < arm.policy.converged, arrived)
+def _leads_of(arm: _Arm, starts: _Starts, known: _Flags) -> _Leads:
+    """What starts lead to. A continuum that the closed form has, where it marked a row, is followed all
+    around where the file's arm may not have it, once for each branch of a pose; `known` (poses, branches):
+    which were, and are then. Starts on none are no longer marked."""
+    count = len(starts.q)
+    broken = starts.marked & (starts.source >= 0)
+    if not arm.rounded and broken.any():
+        error = _ends_of(arm, starts.q[broken], starts.T[broken]).error
+        broken[broken] = error >= arm.policy.arrived
+    at, found = (starts.pose, starts.lane), _Led(np.zeros(0, np.intp), starts.q[:0], np.zeros(0))
+    for source in np.unique(starts.source[broken]).tolist():
+        some = np.flatnonzero(broken & (starts.source == source) & ~known[at])
+        if arm.around is not None and len(some):
+            curve, owner, q, loss = arm.around(arm, starts.q[some], starts.T[some])
+            known[starts.pose[some[curve]], starts.lane[some[curve]]] = True
+            found = _meeting_rows_joined(found, _Led(some[owner], q, loss))
+    around = broken & known[at]
+    ends = _Ends(starts.q.copy(), np.full(count, np.inf), np.full(count, np.inf))
+    for whole, part in zip(ends, _ends_of(arm, starts.q[~around], starts.T[~around])):
+        whole[~around] = part
+    starts = starts._replace(marked=starts.marked & (around | ~broken))
+    return _Leads(starts, ends, found, around)
+
+
+def _traced(arm: _Arm, leads: _Leads) -> _Leads:
+    """With what is found around continua of the solved geometry that rows near singularities lie on."""
+    starts, (q, _, loss) = leads.starts, leads.ends
+    own = (starts.source == 0) & ~starts.marked
+    some = np.flatnonzero(own & (loss < min(arm.policy.broken_reach, arm.policy.fold_reach)))
+    if arm.around is None or not len(some):
+        return leads
+    curve, owner, rows, there = arm.around(arm, q[some], starts.T[some], broken=True)
+    known = leads.known.copy()
+    known[some[curve]] = True
+    around = _meeting_rows_joined(leads.around, _Led(some[owner], rows, there))
+    return leads._replace(around=around, known=known)
+
+
+def _rows_nearby(arm: _Arm, leads: _Leads) -> _Led:
+    """The solutions that starts lead to, those that are sure first. Where two may meet near a singularity
+    both are found. What is given leads only to its own."""
+    starts, T, (q, error, loss) = leads.starts, leads.starts.T, (x.copy() for x in leads.ends)
+    near = (starts.source >= 0) & ~starts.marked & (loss < arm.policy.fold_reach)
+    settled = error < np.where(near, arm.policy.converged, arm.policy.arrived)
     fresh = _fresh(arm, q, starts, near, near & ~settled)
     settled &= fresh
-    near &= fresh
-    owner, trial = np.flatnonzero(near), q[near]
-    if broken.any():
-        around, worst = _walk(arm, starts.q[broken], T[broken])
-        isolated = np.flatnonzero(broken)[worst >= arm.policy.arrived]
-        around = around[:, worst >= arm.policy.arrived]
-        owner = np.concatenate([owner, np.repeat(isolated, len(around))])
-        trial = np.concatenate([trial, around.transpose(1, 0, 2).reshape(-1, q.shape[1])])
-    first, own_rows = np.flatnonzero(settled), q[settled]
-    if not len(owner) and not (broken & arrived).any():
-        return first, own_rows, loss[first]
-    owner, side = np.repeat(owner, 2), np.tile([1.0, -1.0], len(owner))
-    pairs = _approach(arm, np.repeat(trial, 2, axis=0), T[owner], side)
+    near &= fresh & ~leads.known
+    sure = np.flatnonzero(settled)
+    first = _meeting_rows_in_order(_Led(sure, q[sure], loss[sure]), leads.around)
+    if not near.any():
+        return first
+    owner = np.repeat(np.flatnonzero(near), 2)
+    pairs = _approach(arm, q[owner], T[owner], np.tile([1.0, -1.0], len(owner) // 2))
     pairs, left, there = _ends_of(arm, pairs, T[owner])
     exact = left < arm.policy.exact
     for k, i in zip(np.flatnonzero(~exact).tolist(), owner[~exact].tolist()):
         if left[k] < error[i]:
             q[i], error[i], loss[i] = pairs[k], left[k], there[k]
-    alone = np.flatnonzero((near | broken) & (error < arm.policy.arrived))
-    alone = np.setdiff1d(alone, [*owner[exact], *first])
-    source, rows = np.concatenate([owner[exact], alone]), np.concatenate([pairs[exact], q[alone]])
-    order = np.argsort(source, kind="stable")
-    rows = np.concatenate([own_rows, rows[order]])
-    losses = np.concatenate([loss[first], np.concatenate([there[exact], loss[alone]])[order]])
-    return np.concatenate([first, source[order]]), rows, losses
+    alone = np.flatnonzero(near & (error < arm.policy.arrived))
+    alone = np.setdiff1d(alone, [*owner[exact], *sure])
+    more = _meeting_rows_in_order(
+        _Led(owner[exact], pairs[exact], there[exact]), _Led(alone, q[alone], loss[alone])
+    )
+    found: _Led = _meeting_rows_joined(first, more)
+    return found
+
+
+def _meeting_rows_in_order(one: _Led, other: _Led) -> _Led:
+    found = _meeting_rows_joined(one, other)
+    order = np.argsort(found.owner, kind="stable")
+    return _Led(*(x[order] for x in found))
 
 
 def _fresh(arm: _Arm, q: Array, starts: _Starts, near: _Flags, stalled: _Flags) -> _Flags:
@@ -1029,83 +1265,6 @@ def _repeats(arm: _Arm, T: Array, row: Row, kept: Sequence[_Found]) -> bool:
         if np.abs(arm.task.error(middle[None], T[None])).max() < arm.policy.halfway:
             return True
     return False
-
-
-def _approach(arm: _Arm, q: Array, T: Array, side: Array) -> Array:
-    """From q (k, dof) towards the solution on one `side` (k,), 1 or -1, of the place where two may meet, or
-    to where they nearly do; T (k, 4, 4)."""
-    q, still, going = q.copy(), _generic(arm, len(q)), np.arange(len(q))
-    for _ in range(_STEPS):
-        q[going], still[going], x, _ = _step(arm, q[going], T[going], side[going], still[going])
-        going = going[np.abs(x) > _CLOSE]
-        if not len(going):
-            break
-    return q
-
-
-def _walk(arm: _Arm, q: Array, T: Array) -> tuple[Array, Array]:
-    """Configurations (tries, k, dof) from q (k, dof) on, where the pose hardly moves, the fastest
-    joint by `policy.try_step` from one to the next, and the largest errors (k,) there."""
-    nowhere, moving = np.zeros(len(q)), list(arm.moving)
-    q, still, _, _ = _step(arm, q, T, nowhere, _generic(arm, len(q)))
-    worst, out = np.zeros(len(q)), []
-    for _ in range(arm.policy.tries):
-        for _ in range(2):
-            q, still, _, error = _step(arm, q, T, nowhere, still)
-        worst = np.maximum(worst, error)
-        out.append(q)
-        q = q.copy()
-        q[:, moving] += arm.policy.try_step * still / np.abs(still).max(axis=1)[:, None]
-    return np.array(out), worst
-
-
-def _generic(arm: _Arm, count: int) -> Array:
-    return np.tile(1.0 + 0.1 * np.arange(len(arm.moving)), (count, 1))
-
-
-def _step(
-    arm: _Arm, q: Array, T: Array, side: Array, still: Array
-) -> tuple[Array, Array, Array, Array]:
-    """q (k, dof) after a step, the unit directions (k, n) in which the pose moves least, in the sense of
-    `still`, how far the step goes along them (k,), not at all on side 0, and the errors before (k,)."""
-    columns = list(arm.moving)
-    error, slope = _linearized(arm, q, T)
-    still = _still(slope, still, arm.policy.least_damping)
-    flow = np.einsum("kej,kj->ke", slope, still)
-    there = q.copy()
-    there[:, columns] += _ALONG * still
-    _, beyond = _linearized(arm, there, T)
-    bend = np.einsum("kej,kj->ke", beyond - slope, still) / _ALONG
-    V = slope - flow[:, :, None] * still[:, None, :]
-    Vt = V.transpose(0, 2, 1)
-    A = _damped(Vt @ V + still[:, :, None] * still[:, None, :], arm.policy.least_damping)
-    z = np.stack([error, bend, flow], axis=2)
-    across = np.linalg.solve(A, Vt @ z)
-    rest, bend, flow = np.moveaxis(z - V @ across, 2, 0)
-    x = np.where(side == 0.0, 0.0, _root(side, rest, bend, flow))
-    q = q.copy()
-    q[:, columns] += np.clip(across[:, :, 0], -_FAR, _FAR) + x[:, None] * still
-    return q, still, x, np.abs(error).max(axis=1)
-
-
-def _still(slope: Array, still: Array, damping: float) -> Array:
-    """By inverse iteration, from what it was, which keeps its sense."""
-    inverse = _normal_inverse(slope, damping)
-    for _ in range(4):
-        still = (inverse @ still[:, :, None])[:, :, 0]
-        still = still / np.linalg.norm(still, axis=1)[:, None]
-    return still
-
-
-def _root(side: Array, rest: Array, bend: Array, flow: Array) -> Array:
-    """The root (k,) of s x + k x^2 / 2 = e on this side of the least error, along the direction that the
-    others leave."""
-    k, s, e = (np.einsum("ke,ke->k", bend, v) for v in (bend, flow, rest))
-    w = np.sqrt(np.maximum(s * s + 2.0 * k * e, 0.0))
-    p = s + np.copysign(w, s)
-    with np.errstate(all="ignore"):
-        x = np.where(((s > 0.0) == (side > 0.0)) & (p != 0.0), 2.0 * e / p, -p / k)
-    return np.asarray(np.clip(np.nan_to_num(np.where(k > 0.0, x, 0.0)), -_FAR, _FAR))
 
 
 # All solutions of poses near singularities, and of those that leave joints free: of many poses at once, as
@@ -1183,9 +1342,10 @@ def _goes_on(
     if not free and any(flag for _, flag in kept):
         _add(arm, T, seeded, kept)
     answer.real = answer.real or bool(kept)
-    _add(arm, T, _place_rows(arm, kept, near, limits), answer.rows)
+    aim = _aims(arm, asked.T[k : k + 1], asked.held[k : k + 1])
+    _add(arm, T, _rows_inside(arm, aim, kept, near, limits), answer.rows)
     if not answer.rows:
-        answer.rows = _place_rows(arm, seeded, near, limits)
+        answer.rows = _rows_inside(arm, aim, seeded, near, limits)
     led = led if arm.rounded else any(flag for _, flag in answer.rows)
     return free and not (answer.rows and led)
 
@@ -1212,7 +1372,7 @@ def _led_to(arm: _Arm, asked: _Asked, start: Array) -> list[list[_Found]]:
     if not len(start):
         return []
     starts = _given(arm, asked, start, np.arange(len(start)))
-    return _meeting(arm, asked, starts, _ends_of(arm, starts.q, starts.T))
+    return _meeting(arm, asked, _leads_of(arm, starts, np.zeros((len(start), 1), dtype=bool)))
 
 
 def _rows(arm: _Arm, asked: _Asked, start: Array, first: bool) -> list[_Rows]:
@@ -1220,48 +1380,76 @@ def _rows(arm: _Arm, asked: _Asked, start: Array, first: bool) -> list[_Rows]:
     those that poses beside lead to, where they count."""
     closed = _closed_form(arm, asked.T, start, asked.held)
     free, marked = closed.free, closed.singular & closed.valid
-    pose, lane = np.nonzero(closed.valid & closed.rough)
-    own = _starts(arm, asked, closed.q[pose, lane], pose, marked[pose, lane], 0)
-    starts = _joined(_given(arm, asked, start, np.flatnonzero(free)), own)
+    known = np.zeros(closed.valid.shape, dtype=bool)
+    own = _of_lanes(arm, asked, closed, closed.valid & closed.rough, marked)
+    starts = _meeting_rows_joined(_given(arm, asked, start, np.flatnonzero(free)), own)
     looks, anywhere = first and len(arm.beside) > 0, arm.policy.beside_anywhere
     if looks and anywhere:
-        starts = _joined(starts, _beside(arm, asked, start, np.arange(len(start))))
-    ends = _ends_of(arm, starts.q, starts.T)
+        starts = _meeting_rows_joined(starts, _beside(arm, asked, start, np.arange(len(start))))
+    leads = _leads_of(arm, starts, known)
+    if first and arm.rounded:
+        leads = _traced(arm, leads)
+    close = (starts.source >= 0) & (leads.ends.loss < arm.policy.beside_reach) & ~leads.known
     near = free.copy()
-    near[starts.pose[(starts.source >= 0) & (ends.loss < arm.policy.beside_reach)]] = True
+    near[starts.pose[close]] = True
     if looks and not anywhere and near.any():
         more = _beside(arm, asked, start, np.flatnonzero(near))
-        starts, ends = _joined(starts, more), _joined(ends, _ends_of(arm, more.q, more.T))
-    kept = _meeting(arm, asked, starts, ends)
+        leads = _meeting_rows_joined(leads, _leads_of(arm, more, known))
+    if arm.rounded and free.any():
+        hidden = closed.singular & ~known & _without_rows(arm, free, leads)[:, None]
+        hidden &= np.isfinite(closed.q).all(axis=2)
+        more = _of_lanes(arm, asked, closed, hidden, hidden)
+        leads = _meeting_rows_joined(leads, _leads_of(arm, more, known))
+    kept = _meeting(arm, asked, leads)
     for i, k in np.argwhere(closed.valid & ~closed.rough).tolist():
         _add(arm, asked.T[i], [(tuple(closed.q[i, k].tolist()), bool(marked[i, k]))], kept[i])
-    led: _Flags = np.asarray(marked.any(axis=1))
+    led: _Flags = np.asarray((marked | known).any(axis=1))
     return list(zip(kept, free.tolist(), led.tolist()))
+
+
+def _without_rows(arm: _Arm, free: _Flags, leads: _Leads) -> _Flags:
+    """Which poses leave a joint free and led nowhere: less than the file is off may be what is missing to
+    rows that the closed form has not."""
+    starts, poor = leads.starts, np.array(free, dtype=bool)
+    poor[starts.pose[(starts.source >= 0) | (leads.ends.error < arm.policy.arrived)]] = False
+    return poor
 
 
 def _beside(arm: _Arm, asked: _Asked, start: Array, some: _Index) -> _Starts:
     """From poses beside some."""
-    q, valid = _rows_beside(arm, asked.T[some], start[some], asked.held[some])
-    pose, lane = np.nonzero(valid)
-    return _starts(arm, asked, q[pose, lane], some[pose], np.zeros(len(pose), dtype=bool), 1)
+    q, valid, marked = _rows_beside(arm, asked.T[some], start[some], asked.held[some])
+    pose, row = np.nonzero(valid)
+    motion, lane = np.divmod(row, valid.shape[1] // len(arm.beside))
+    which = some[pose], marked[pose, row], 1 + motion, lane
+    return _starts(arm, asked, q[pose, row], *which)
 
 
-def _starts(arm: _Arm, asked: _Asked, q: Array, pose: _Index, marked: _Flags, source: int) -> _Starts:
-    aim = _aims(arm, asked.T, asked.held)[pose]
-    return _Starts(q, aim, pose, marked, np.full(len(q), source))
+def _of_lanes(arm: _Arm, asked: _Asked, closed: _ClosedForm, lanes: _Flags, marked: _Flags) -> _Starts:
+    """From some of the closed form's rows (N, M), `marked` (N, M)."""
+    pose, lane = np.nonzero(lanes)
+    source = np.zeros(len(pose), dtype=np.int64)
+    return _starts(arm, asked, closed.q[pose, lane], pose, marked[pose, lane], source, lane)
 
 
 def _given(arm: _Arm, asked: _Asked, start: Array, pose: _Index) -> _Starts:
-    return _starts(arm, asked, start[pose], pose, np.ones(len(pose), dtype=bool), -1)
+    marked, place = np.ones(len(pose), dtype=bool), np.zeros(len(pose), dtype=np.int64)
+    return _starts(arm, asked, start[pose], pose, marked, place - 1, place)
 
 
-def _meeting(arm: _Arm, asked: _Asked, starts: _Starts, ends: _Ends) -> list[list[_Found]]:
+def _starts(
+    arm: _Arm, asked: _Asked, q: Array, pose: _Index, marked: _Flags, source: _Index, lane: _Index
+) -> _Starts:
+    aim = _aims(arm, asked.T, asked.held)[pose]
+    return _Starts(q, aim, pose, marked, source, lane)
+
+
+def _meeting(arm: _Arm, asked: _Asked, leads: _Leads) -> list[list[_Found]]:
     """For each pose the distinct rows that Newton steps lead to."""
     out: list[list[_Found]] = [[] for _ in asked.T]
-    owner, q, loss = _rows_nearby(arm, starts, ends)
+    owner, q, loss = _rows_nearby(arm, leads)
     flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
-    flags = (starts.marked[owner] & (loss < continuum)) | (loss < flat)
-    for i, row, flag in zip(starts.pose[owner].tolist(), q.tolist(), flags.tolist()):
+    flags = (leads.starts.marked[owner] & (loss < continuum)) | (loss < flat)
+    for i, row, flag in zip(leads.starts.pose[owner].tolist(), q.tolist(), flags.tolist()):
         _add(arm, asked.T[i], [(tuple(row), flag)], out[i])
     return out
 
@@ -1621,7 +1809,8 @@ def _solve_poses(
 def _solve_chunk(arm: _Arm, T: Array, held: Array, near: Array | None, limits: bool) -> _Batch:
     q, valid, doubt = _rows_and_doubts(arm, T, held, near)
     real: _Flags = np.asarray(valid.any(axis=1))
-    q, inside = _place_rows_batch(arm, q, near, limits)
+    q, inside, close = _place_rows_batch(arm, q, near, limits)
+    doubt |= (valid & close).any(axis=1)
     valid &= inside
     distance: Array | _Flags = ~valid
     if near is not None:
@@ -1670,6 +1859,224 @@ def _rows_and_doubts(
     if arm.together is None:
         return _careful_rows(arm, T, held, near)
     return _certain_rows(arm, arm.together, T, held, near)
+
+
+# Solutions on what is a continuum of the geometry that was solved, and none of the file's.
+
+
+_MOST, _CORRECTIONS, _STEPS, _DEEP, _LEAST = 96, 6, 40, 24, 4
+_SAMPLES = 600  # of a curve
+_ROOM = 32  # solutions of a curve
+_NEAR = 1e-11  # rad or m: how far off the curve slopes along it are the curve's
+_WAY = 1e-10  # rad or m: along it, by which what is left varies by round-off
+_ROUND_OFF, _SMALL, _DOUBT, _near_continuum_BESIDE, _SAME_WAY = 1e-15, 4e-15, 0.03, 0.06, 0.9
+
+
+class _Traced(NamedTuple):
+    """Which starts (k,) lie on a `curve` of the solved geometry, and which of these are `broken` (k,), none
+    of the file's arm; the starts `owner` (n,) of solutions, nearly, `q` (n, dof) on broken ones."""
+
+    curve: _Flags
+    broken: _Flags
+    owner: _Index
+    q: Array
+
+
+class _Parts(NamedTuple):
+    """Parts of curves, between samples `a` and `b` of those of the starts `owner` (n,), `place` (n,) and
+    `width` (n,) in the order in which they were passed."""
+
+    a: _Reduced
+    b: _Reduced
+    owner: _Index
+    place: Array
+    width: Array
+
+
+def _rows_around(
+    arm: _Arm, q: Array, T: Array, broken: bool = False
+) -> tuple[_Flags, _Index, Array, Array]:
+    """Which rows q (k, dof) towards aims T (k, ...) stand for a continuum of the solved geometry; from
+    which (n,) the solutions (n, dof) all around are, or one where the file's arm has the continuum too, and
+    the smallest singular values (n,) there. `broken`: of such that the file's arm has not alone, and no
+    others than those that are right to round-off."""
+    with np.errstate(all="ignore"):
+        traced = _trace(arm, q, T)
+    if broken:
+        end, error, _, slope = _refined(arm, traced.q, T[traced.owner])
+        good = error < arm.policy.exact
+        return traced.broken, traced.owner[good], end[good], _least_singular(slope[good])
+    given = np.flatnonzero(traced.curve)
+    owner = np.concatenate([traced.owner, given])
+    rows, error, _, slope = _refined(arm, np.concatenate([traced.q, q[given]]), T[owner])
+    exact = error < arm.policy.exact
+    best = np.lexsort((error, owner))
+    best = best[_places(owner[best]) == 0]
+    best = best[~np.isin(owner[best], owner[exact]) & (error[best] < arm.policy.arrived)]
+    some = np.concatenate([np.flatnonzero(exact), best])
+    some = some[np.argsort(owner[some], kind="stable")]
+    return traced.curve, owner[some], rows[some], _least_singular(slope[some])
+
+
+def _trace(arm: _Arm, q: Array, T: Array) -> _Traced:
+    """The curves through rows q (k, dof) towards aims T (k, ...), once around, or to both their ends."""
+    count, (error, _) = len(q), _linearized(arm, q[:1], T[:1])
+    nothing = np.zeros(count)
+    start = _Reduced(
+        q, _generic(count, len(arm.moving)), _generic(count, error.shape[1]), nothing, nothing
+    )
+    first = _sample(arm, start, T)
+    back = first._replace(still=-first.still, slope=-first.slope)
+    parts, closed, worst = _follow(arm, first, T, np.arange(count), 0.0)
+    open_ends = np.flatnonzero(~closed)
+    more, _, largest = _follow(arm, back, T, open_ends, 1.0 * _MOST)
+    worst = np.maximum(np.maximum(worst, largest), np.abs(first.left))
+    parts = _joined([*parts, *more])
+    steps = np.bincount(parts.owner, minlength=count)
+    curve = steps >= _LEAST
+    broken = curve & (worst >= arm.policy.arrived)
+    found = _look(arm, _some(parts, broken[parts.owner]), T, steps)
+    return _Traced(curve, broken, *found)
+
+
+def _sample(arm: _Arm, at: _Reduced, T: Array) -> _Reduced:
+    """The configurations of the curves beside some (k,): of which one direction of the error is left."""
+    at = _Reduced(*(x.copy() for x in at))
+    going = np.arange(len(T))
+    for _ in range(_CORRECTIONS):
+        moved, farthest = _correct(arm, _some(at, going), T[going])
+        for whole, part in zip(at, moved):
+            whole[going] = part
+        going = going[~(farthest < _NEAR)]
+        if not len(going):
+            break
+    return at
+
+
+def _some(parts: Any, index: Any) -> Any:
+    """Some of what tuples of arrays stand for."""
+    return type(parts)(*(_some(x, index) if isinstance(x, tuple) else x[index] for x in parts))
+
+
+def _joined(parts: Sequence[Any]) -> Any:
+    """Several tuples of arrays as one."""
+    return type(parts[0])(
+        *(_joined(x) if isinstance(x[0], tuple) else np.concatenate(x) for x in zip(*parts))
+    )
+
+
+def _follow(
+    arm: _Arm, first: _Reduced, T: Array, some: _Index, place: float
+) -> tuple[list[_Parts], _Flags, Array]:
+    """On from some samples, the fastest joint by `policy.try_step` from one to the next; which (k,) come
+    back to where they began, and the most (k,) that is left."""
+    closed, worst = np.zeros(len(T), dtype=bool), np.zeros(len(T))
+    parts, moving, owner = [], list(arm.moving), some
+    b = _some(first, some)
+    for step in range(_MOST):
+        ahead = b.q.copy()
+        ahead[:, moving] += arm.policy.try_step * b.still / np.abs(b.still).max(axis=1)[:, None]
+        c = _sample(arm, b._replace(q=ahead), T[owner])
+        on = np.abs(c.left) < arm.policy.fold_reach
+        b, c, owner = _some(b, on), _some(c, on), owner[on]
+        worst[owner] = np.maximum(worst[owner], np.abs(c.left))
+        parts.append(_Parts(b, c, owner, np.full(len(owner), place + step), np.ones(len(owner))))
+        round_about = _back(arm, _some(first, owner), b) & (step > 1)
+        closed[owner[round_about]] = True
+        b, owner = _some(c, ~round_about), owner[~round_about]
+        if not len(owner):
+            break
+    closed[owner] = True
+    return parts, closed, worst
+
+
+def _back(arm: _Arm, a: _Reduced, b: _Reduced) -> _Flags:
+    """Whether curves are at samples of them again, and not at other parts that are near."""
+    way = _differences(arm, a.q, b.q)[:, list(arm.moving)]
+    along = (way * a.still).sum(axis=1)[:, None]
+    beside = np.abs(way - along * a.still).max(axis=1) < _near_continuum_BESIDE
+    near = np.abs(way).max(axis=1) < 0.75 * arm.policy.try_step
+    same = (a.still * b.still).sum(axis=1) > _SAME_WAY
+    return np.asarray(beside & near & same)
+
+
+def _near_continuum_between(arm: _Arm, parts: _Parts, share: Array, T: Array) -> _Reduced:
+    """Samples at a `share` (n,) of the way from a to b."""
+    q = parts.a.q + share[:, None] * (parts.b.q - parts.a.q)
+    return _sample(arm, parts.a._replace(q=q), T[parts.owner])
+
+
+def _look(arm: _Arm, parts: _Parts, T: Array, samples: _Index) -> tuple[_Index, Array]:
+    """The solutions (n, dof) inside parts, by the signs of the coefficients, after Bernstein, of cubics
+    through values and slopes; whose they are (n,). `samples` (k,): that were taken of each curve."""
+    kept, brackets = [], []
+    for deep in range(_DEEP + 1):
+        values = _bernstein(arm, parts)
+        most = np.abs(values).max(axis=0)
+        spent = samples[parts.owner] >= _SAMPLES
+        end = (most < _SMALL) | spent | (deep == _DEEP)
+        doubtful = np.abs(values[1:3]).min(axis=0) < _DOUBT * most
+        changes = (values[:-1] * values[1:] <= 0.0).sum(axis=0)
+        split = ~end & (doubtful | (changes > 1))
+        kept.append(_some(parts, end))
+        brackets.append(_some(parts, ~end & ~split & (changes == 1)))
+        if not split.any():
+            break
+        parts = _some(parts, split)
+        middle = _near_continuum_between(arm, parts, np.full(len(parts.owner), 0.5), T)
+        samples = samples + np.bincount(parts.owner, minlength=len(samples))
+        half = 0.5 * parts.width
+        parts = _joined(
+            [
+                parts._replace(b=middle, width=half),
+                parts._replace(a=middle, place=parts.place + half, width=half),
+            ]
+        )
+    return _kept(arm, _joined([*kept, _closed_in(arm, _joined(brackets), T)]))
+
+
+def _bernstein(arm: _Arm, parts: _Parts) -> Array:
+    """The coefficients (4, n)."""
+    a, b = parts.a, parts.b
+    step = (b.q - a.q)[:, list(arm.moving)]
+    rise = a.slope * (a.still * step).sum(axis=1)
+    fall = b.slope * (b.still * step).sum(axis=1)
+    return np.array([a.left, a.left + rise / 3.0, b.left - fall / 3.0, b.left])
+
+
+def _closed_in(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
+    """Parts at whose ends what is left has two signs, narrowed until it is round-off at one, or the way
+    to there is: by false position, halving what an end keeps (Dowell & Jarratt 1971)."""
+    ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
+    values, last = ends.left.copy(), np.full(len(parts.owner), -1)
+    way = np.full(len(parts.owner), np.inf)
+    for _ in range(_STEPS):
+        going = np.flatnonzero((np.abs(ends.left).min(axis=0) > _ROUND_OFF) & (way > _WAY))
+        if not len(going):
+            break
+        x, y = values[:, going]
+        now = _some(parts, going)._replace(a=_some(ends, (0, going)), b=_some(ends, (1, going)))
+        c = _near_continuum_between(arm, now, x / (x - y), T)
+        side = (now.a.left * c.left < 0.0).astype(np.intp)
+        way[going] = np.abs(c.q - ends.q[side, going]).max(axis=1)
+        for whole, part in zip(ends, c):
+            whole[side, going] = part
+        values[side, going] = c.left
+        values[1 - side, going] *= np.where(last[going] == side, 0.5, 1.0)
+        last[going] = side
+    return parts._replace(a=_some(ends, 0), b=_some(ends, 1))
+
+
+def _kept(arm: _Arm, parts: _Parts) -> tuple[_Index, Array]:
+    """Of each part the end where less is left, in order."""
+    ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
+    least = np.abs(ends.left).argmin(axis=0)
+    left, q = (x[least, np.arange(len(least))] for x in (ends.left, ends.q))
+    order = np.lexsort((parts.place, parts.owner))
+    order = order[np.abs(left[order]) < arm.policy.arrived]
+    order = order[_places(parts.owner[order]) < _ROOM]
+    whole = 2.0 * np.pi * np.round(q / (2.0 * np.pi))
+    return parts.owner[order], np.where(arm.chain.revolute, q - whole, q)[order]
 
 
 # The nearest pose that the arm can take, of one that it cannot.
@@ -1920,7 +2327,9 @@ def _sure_answer(arm: _Arm, asked: _One, limits: bool) -> _Answer | None:
     kept = _pose_solving_certain_rows(arm, T, near, held)
     if kept is None:
         return None
-    placed = _place_rows(arm, kept, near, limits)
+    placed, close = _rows_at_limits(arm, kept, near, limits)
+    if close:
+        return None
     if near is not None and not placed:
         placed = _place_rows(arm, _seeded_rows(arm, _asked(asked))[0], near, limits)
     return _Answer(placed, bool(kept))
@@ -1990,7 +2399,7 @@ def _preference_costs(
     for j in arm.free:
         if arm.chain.revolute[j] and not isfinite(arm.upper[j] - arm.lower[j]):
             q[..., j] += 2.0 * pi * np.round((middle[j] - q[..., j]) / (2.0 * pi))
-    q, inside = _place_rows_batch(arm, q, np.tile(middle, (len(q), 1)), limits)
+    q, inside, _ = _place_rows_batch(arm, q, np.tile(middle, (len(q), 1)), limits)
     if name != "dexterous":
         return q, np.asarray((q - np.array(middle)) ** 2 @ np.array(weights)), inside
     flat = q.reshape(-1, q.shape[-1])
@@ -2350,6 +2759,7 @@ _ARM = _Arm(
         alike=0.01,
         halfway=2e-14,
         limit_tolerance=1e-09,
+        limit_reach=1e-05,
         tries=16,
         try_step=0.39269908169872414,
         rank_loss=1e-07,
@@ -2357,6 +2767,7 @@ _ARM = _Arm(
         fold_reach=0.0001,
         beside_reach=0.0,
         anywhere=1000.0,
+        broken_reach=0.0,
         farthest_start=0.05,
         contraction=0.25,
         pivot_share=4.0,
@@ -2383,6 +2794,7 @@ _ARM = _Arm(
     branch_kind="number",
     elbow_end=5,
     turning=(True, False, ),
+    around=_rows_around,
     together=None,
     moving=(0, 1, ),
 )
