@@ -39,7 +39,7 @@ def planar(lower: tuple[float, ...] = (-pi,) * 3, upper: tuple[float, ...] = (pi
     policy = SimpleNamespace(limit_tolerance=1e-9)
     return SimpleNamespace(
         chain=chain, task=Plane, policy=policy, lower=lower, upper=upper, moving=(1, 2), free=(0,),
-        angle=None,
+        angle=None, rounded=False,
     )  # fmt: skip
 
 
@@ -141,6 +141,9 @@ def test_ends_that_are_not_on_their_curve_are_left() -> None:
     assert far.inner == pytest.approx(high, abs=1e-10) and far.outer - far.inner == pytest.approx(
         1e-10, rel=1e-4
     )
+    joint.arm.rounded = True  # rows may be missed beside a fold: as far again beyond is right
+    follow_ends(joint, aim(), [near], True)
+    assert near.inner == pytest.approx(high, abs=1e-10)
     joint.arm = planar((-pi, -inf, 0.5), (pi, inf, 3.0))
     end = BranchEnd(q[0], high + 0.1, q, 0, [], True, False, other, q[0])
     follow_ends(joint, aim(), [end], True)

@@ -42,6 +42,7 @@ class Branches:
     guarded: bool = True
     rounds: int = 0
     tolerance: float = 0.25
+    rounded: bool = False
 
     @property
     def margins_tell(self) -> bool:
@@ -52,6 +53,7 @@ class Branches:
         return SimpleNamespace(
             chain=SimpleNamespace(revolute=(False,)),
             policy=SimpleNamespace(limit_tolerance=self.tolerance),
+            rounded=self.rounded,
         )
 
     def at(self, _: object, T: object, held: NDArray[np.float64]) -> Rows:
@@ -211,3 +213,6 @@ def test_where_margins_do_not_tell_an_end_is_on_the_way_to_another_row() -> None
     alone = np.array([[0, 1, 2, 3], [-1, 1, 2, 3]])
     tracks.links = alone
     assert branch_end(joint, tracks, alone, (1, 0), (2, -1)).there is None
+    joint.arm.rounded = True  # the one that it meets may be found farther
+    end = branch_end(joint, tracks, alone, (1, 0), (2, -1))
+    assert end.there is not None and end.there[0] == q[1, 2]

@@ -73,12 +73,12 @@ template <class Arm> struct BranchEnd {
   int count = 0;
   double at[kKnown + 1], value[kKnown + 1];  // the nearest last
 
-  // The nearest of the rows that end beside the branch's; -1 without one.
+  // The nearest of the rows that end beside the branch's, of a rounded arm of all: it may be found farther; -1 without one.
   int met(const Sample& a, const int* links) const noexcept {
     int best = -1;
     double least = kInfinity;
     for (int l = 0; l < a.lanes; ++l) {
-      const double gap = a.real[l] && l != lane && links[l] < 0 ? a.distance(l, q) : kInfinity;
+      const double gap = a.real[l] && l != lane && (Arm::kRounded || links[l] < 0) ? a.distance(l, q) : kInfinity;
       if (gap < least) {
         least = gap;
         best = l;
@@ -93,12 +93,14 @@ template <class Arm> struct BranchEnd {
     if (goes) s.row(row, there);
   }
 
-  // Along the curve; whether that has an end in the bracket.
+  // Along the curve; whether that has an end in the bracket, of a rounded arm, whose rows may be missed beside a fold, also
+  // as far again beyond.
   bool follow(const HeldSweep<Arm>& sweep) noexcept {
     const BranchArc<Arm> arc(sweep, q, inner, there, then);
     const double sense = outer > inner ? 1.0 : -1.0;
     typename BranchArc<Arm>::Point end = arc.to;
-    if (at_fold && !(arc.fold(sense, end) && sense * (outer - end.held) > -kEnough)) return false;
+    const double beyond = Arm::kRounded ? std::abs(outer - inner) : kEnough;
+    if (at_fold && !(arc.fold(sense, end) && sense * (outer - end.held) > -beyond)) return false;
     if (end.off > 0.0 && !arc.limit(arc.from, end, end)) return false;
     inner = end.held;
     outer = inner + sense * kEnough;

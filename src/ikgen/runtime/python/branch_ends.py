@@ -94,11 +94,12 @@ def _followed(tracks: Tracks, before: Index, at: int, row: int, to: int) -> tupl
 
 
 def _met(arm: Arm, tracks: Tracks, before: Index, inside: tuple[int, int], to: int) -> int:
-    """Of the rows that end beside a row (index, row) towards sample `to` the nearest; -1 without one."""
+    """Of the rows that end beside a row (index, row) towards sample `to` the nearest, of a rounded arm of
+    all: it may be found farther; -1 without one."""
     at, row = inside
     rows, links = tracks.rows, tracks.links[at] if to > at else before[to]
     gap = np.abs(differences(arm, rows.q[at, row], rows.q[at])).max(axis=1)
-    gap = np.where(rows.real[at] & (links < 0), gap, inf)
+    gap = np.where(rows.real[at] & (arm.rounded | (links < 0)), gap, inf)
     gap[row] = inf
     nearest = int(gap.argmin())
     return nearest if gap[nearest] < inf else -1
@@ -133,7 +134,8 @@ def find_ends(joint: HeldJoint, T: Array, ends: list[BranchEnd], limits: bool) -
 
 
 def follow_ends(joint: HeldJoint, T: Array, ends: list[BranchEnd], limits: bool) -> None:
-    """Takes those that are found along the curves to other rows."""
+    """Takes those that are found along the curves to other rows, in their brackets; of a rounded arm, whose
+    rows may be missed beside a fold, also as far again beyond."""
     if not ends:
         return
     inner, outer, then = (
@@ -146,7 +148,8 @@ def follow_ends(joint: HeldJoint, T: Array, ends: list[BranchEnd], limits: bool)
     if at_fold.any():
         fold, found = arcs.folds(sense)
         end = fold.where(at_fold, end)
-        good = ~at_fold | (found & (sense * (outer - fold.held) > -_ENOUGH))
+        beyond = np.abs(outer - inner) if joint.arm.rounded else _ENOUGH
+        good = ~at_fold | (found & (sense * (outer - fold.held) > -beyond))
     leaves = end.off > 0.0
     if leaves.any():
         last, found = arcs.limits(arcs.start, end)
