@@ -60,15 +60,15 @@ class RobotMeshes:
     def visible(self, shown: bool) -> None:
         self._root.visible = shown
 
-    def _configuration(self, q: Array) -> dict[str, float]:
-        """Values of all joints that have one."""
+    def _configuration(self, q: Array) -> Array:
+        """Values of all joints that have one, in the order of `urdf`."""
         dh = self._reading.dh
         known = dict(dh.locked) | dict(zip((j.name for j in dh.joints), q.tolist(), strict=True))
-        values = {}
+        values: dict[str, float] = {}
         for name, coupling in self._couplings.items():
             driver = known.get(coupling.driver.name, 0.0)
             values[name] = known.get(name, coupling.multiplier * driver + coupling.offset)
-        return values
+        return np.array([values.get(name, 0.0) for name in self._urdf.actuated_joint_names])
 
 
 def _couplings(tree: JointTree) -> dict[str, Coupling]:
