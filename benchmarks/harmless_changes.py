@@ -42,7 +42,7 @@ HARMLESS = (
     ),
     HarmlessChange(
         "runtime/python/meeting_rows.py",
-        "alone = np.flatnonzero((near | broken) & (error < arm.policy.arrived))",
+        "alone = np.flatnonzero(near & (error < arm.policy.arrived))",
         "<", "<=", _EQUAL,
     ),
     HarmlessChange(
