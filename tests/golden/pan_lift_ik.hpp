@@ -933,6 +933,7 @@ template <class Arm> struct NearContinuum {
   }
 
   void look(const Sample& a, const Sample& b, int deep) noexcept {
+    if (std::max(std::abs(a.left), std::abs(b.left)) >= Policy::kFoldReach) return;  // as far off as the end of a curve
     double rise = 0.0, fall = 0.0;
     for (int k = 0; k < Fold::kMoving; ++k) {
       const double step = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
@@ -950,15 +951,16 @@ template <class Arm> struct NearContinuum {
       look(a, middle, deep - 1);
       look(middle, b, deep - 1);
     } else if (count_of == 1) {
-      close_in(a, b);
+      close_in(a, b, 2.0 * most);
     }
   }
 
-  void close_in(Sample a, Sample b) noexcept {
+  void close_in(Sample a, Sample b, double most) noexcept {
     double x = a.left, y = b.left;
     int kept = 0;
     for (int i = 0; i < kSteps && std::min(std::abs(a.left), std::abs(b.left)) > kRoundOff; ++i) {
       const Sample c = part(a, b, x / (x - y));
+      if (std::abs(c.left) > most) break;
       if (a.left * c.left < 0.0) {
         b = c;
         y = c.left;

@@ -2008,9 +2008,13 @@ def _near_continuum_between(arm: _Arm, parts: _Parts, share: Array, T: Array) ->
 
 def _look(arm: _Arm, parts: _Parts, T: Array, samples: _Index) -> tuple[_Index, Array]:
     """The solutions (n, dof) inside parts, by the signs of the coefficients, after Bernstein, of cubics
-    through values and slopes; whose they are (n,). `samples` (k,): that were taken of each curve."""
+    through values and slopes; whose they are (n,). `samples` (k,): that were taken of each curve. Where a
+    sample is as far off as the end of a curve, there is none."""
     kept, brackets = [], []
     for deep in range(_DEEP + 1):
+        parts = _some(
+            parts, ~(np.maximum(abs(parts.a.left), abs(parts.b.left)) >= arm.policy.fold_reach)
+        )
         values = _bernstein(arm, parts)
         most = np.abs(values).max(axis=0)
         spent = samples[parts.owner] >= _SAMPLES
@@ -2046,10 +2050,12 @@ def _bernstein(arm: _Arm, parts: _Parts) -> Array:
 
 def _closed_in(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
     """Parts at whose ends what is left has two signs, narrowed until it is round-off at one, or the way
-    to there is: by false position, halving what an end keeps (Dowell & Jarratt 1971)."""
+    to there is: by false position, halving what an end keeps (Dowell & Jarratt 1971). A part in which
+    far more is left than the cubic's coefficients bound is of no one curve, and stays as it is then."""
     ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
     values, last = ends.left.copy(), np.full(len(parts.owner), -1)
     way = np.full(len(parts.owner), np.inf)
+    most = 2.0 * np.abs(_bernstein(arm, parts)).max(axis=0)
     for _ in range(_STEPS):
         going = np.flatnonzero((np.abs(ends.left).min(axis=0) > _ROUND_OFF) & (way > _WAY))
         if not len(going):
@@ -2059,6 +2065,7 @@ def _closed_in(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
         c = _near_continuum_between(arm, now, x / (x - y), T)
         side = (now.a.left * c.left < 0.0).astype(np.intp)
         way[going] = np.abs(c.q - ends.q[side, going]).max(axis=1)
+        way[going[np.abs(c.left) > most[going]]] = 0.0
         for whole, part in zip(ends, c):
             whole[side, going] = part
         values[side, going] = c.left

@@ -20,7 +20,7 @@ from ikgen.runtime.python.fold_pair import Reduced
 from ikgen.runtime.python.near_continuum import _back, _look, _Parts, rows_around, trace
 
 Array = NDArray[np.float64]
-POLICY = SimpleNamespace(arrived=0.5e-9, try_step=np.pi / 8)
+POLICY = SimpleNamespace(arrived=0.5e-9, try_step=np.pi / 8, fold_reach=10.0)
 LINE: Any = SimpleNamespace(moving=(0,), policy=POLICY, chain=SimpleNamespace(revolute=(True,)))
 
 
@@ -119,6 +119,23 @@ def test_all_roots_between_two_samples_are_found(
         assert np.abs(found[:, 0] - x).min() < (1e-4 if roots.count(x) > 1 else 1e-12)
     assert len(found) == len(wanted) or len(wanted) < len(roots)
     assert np.abs(np.polyval(np.poly(roots), found[:, 0])).max(initial=0.0) < 1e-8
+
+
+@pytest.mark.parametrize("between", [1e-2, 20.0], ids=["more than at the ends", "off the curve"])
+def test_a_change_of_sign_from_one_curve_to_another_is_no_solution(
+    between: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    taken = []
+
+    def leap(arm: Any, at: Reduced, T: Array) -> Reduced:
+        taken.append(len(T))
+        return at._replace(left=np.full(len(T), between), slope=np.zeros(len(T)))
+
+    monkeypatch.setattr(near_continuum, "_sample", leap)
+    ends = (on_line(np.array([x]), np.array([0.0])) for x in (-1e-3, 1e-3))
+    parts = _Parts(*ends, np.zeros(1, np.intp), np.zeros(1), np.ones(1))
+    _, found = _look(LINE, parts, np.zeros((1, 4, 4)), np.zeros(1, np.intp))
+    assert not len(found) and taken == [1]
 
 
 def at(x: float, sense: float) -> Reduced:
