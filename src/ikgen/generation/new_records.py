@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ikgen.generation.publish import content_digest
 from ikgen.generation.record import (
     GENERATOR,
     Asked,
@@ -16,7 +17,6 @@ from ikgen.generation.record import (
     environment_digest,
     record_name,
     record_text,
-    text_digest,
 )
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def _package(texts: Mapping[str, str]) -> str:
 def _digests(texts: Mapping[str, str], package: str) -> dict[str, str]:
     """Path relative to the package -> SHA-256."""
     start = len(package) + 1 if package else 0
-    return {path[start:]: text_digest(text) for path, text in sorted(texts.items())}
+    return {path[start:]: content_digest(text) for path, text in sorted(texts.items())}
 
 
 def _record(request: Request, outputs: Outputs, derivation: Derivation, folder: Path) -> Record:

@@ -31,7 +31,6 @@ __all__ = [
     "record_text",
     "records_of",
     "seen",
-    "text_digest",
 ]
 
 GENERATOR = "ikgen"
@@ -129,11 +128,6 @@ def digest(path: Path) -> str | None:
         return hashlib.sha256(path.read_bytes()).hexdigest()
     except OSError:
         return None
-
-
-def text_digest(text: str) -> str:
-    """SHA-256 of the bytes of a file with this text."""
-    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def environment_digest(value: str | None) -> str:
