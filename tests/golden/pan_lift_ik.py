@@ -713,6 +713,21 @@ def _refined(arm: _Arm, q: Array, aim: Array) -> tuple[Array, Array, Array, Arra
     return _refine(arm.chain, arm.task, arm.moving, q, aim, arm.policy, arm.angle)
 
 
+# Tuples of arrays, or of such tuples again, whose first axes belong together.
+
+
+def _joined(*parts: Any) -> Any:
+    """Several as one."""
+    return type(parts[0])(
+        *(_joined(*x) if isinstance(x[0], tuple) else np.concatenate(x) for x in zip(*parts))
+    )
+
+
+def _some_of(parts: Any, index: Any) -> Any:
+    """Some of what they stand for."""
+    return type(parts)(*(_some_of(x, index) if isinstance(x, tuple) else x[index] for x in parts))
+
+
 # Values of what is held: of joints, and of the arm angle.
 
 
@@ -1147,13 +1162,11 @@ class _Leads(NamedTuple):
     known: _Flags
 
 
-def _meeting_rows_joined(one: Any, other: Any) -> Any:
-    """Two tuples of arrays as one; of `_Leads` too."""
-    if isinstance(one, _Leads):
-        owner = other.around.owner + len(one.starts.q)
-        other = other._replace(around=other.around._replace(owner=owner))
-    pairs = zip(one, other)
-    return type(one)(*(_meeting_rows_joined(*x) if isinstance(x[0], tuple) else np.concatenate(x) for x in pairs))
+def _both(one: _Leads, other: _Leads) -> _Leads:
+    """Those of two."""
+    owner = other.around.owner + len(one.starts.q)
+    out: _Leads = _joined(one, other._replace(around=other.around._replace(owner=owner)))
+    return out
 
 
 def _ends_of(arm: _Arm, q: Array, T: Array) -> _Ends:
@@ -1177,7 +1190,7 @@ def _leads_of(arm: _Arm, starts: _Starts, known: _Flags) -> _Leads:
         if arm.around is not None and len(some):
             curve, owner, q, loss = arm.around(arm, starts.q[some], starts.T[some])
             known[starts.pose[some[curve]], starts.lane[some[curve]]] = True
-            found = _meeting_rows_joined(found, _Led(some[owner], q, loss))
+            found = _joined(found, _Led(some[owner], q, loss))
     around = broken & known[at]
     ends = _Ends(starts.q.copy(), np.full(count, np.inf), np.full(count, np.inf))
     for whole, part in zip(ends, _ends_of(arm, starts.q[~around], starts.T[~around])):
@@ -1196,7 +1209,7 @@ def _traced(arm: _Arm, leads: _Leads) -> _Leads:
     curve, owner, rows, there = arm.around(arm, q[some], starts.T[some], broken=True)
     known = leads.known.copy()
     known[some[curve]] = True
-    around = _meeting_rows_joined(leads.around, _Led(some[owner], rows, there))
+    around = _joined(leads.around, _Led(some[owner], rows, there))
     return leads._replace(around=around, known=known)
 
 
@@ -1225,12 +1238,12 @@ def _rows_nearby(arm: _Arm, leads: _Leads) -> _Led:
     more = _meeting_rows_in_order(
         _Led(owner[exact], pairs[exact], there[exact]), _Led(alone, q[alone], loss[alone])
     )
-    found: _Led = _meeting_rows_joined(first, more)
+    found: _Led = _joined(first, more)
     return found
 
 
 def _meeting_rows_in_order(one: _Led, other: _Led) -> _Led:
-    found = _meeting_rows_joined(one, other)
+    found = _joined(one, other)
     order = np.argsort(found.owner, kind="stable")
     return _Led(*(x[order] for x in found))
 
@@ -1382,10 +1395,10 @@ def _rows(arm: _Arm, asked: _Asked, start: Array, first: bool) -> list[_Rows]:
     free, marked = closed.free, closed.singular & closed.valid
     known = np.zeros(closed.valid.shape, dtype=bool)
     own = _of_lanes(arm, asked, closed, closed.valid & closed.rough, marked)
-    starts = _meeting_rows_joined(_given(arm, asked, start, np.flatnonzero(free)), own)
+    starts = _joined(_given(arm, asked, start, np.flatnonzero(free)), own)
     looks, anywhere = first and len(arm.beside) > 0, arm.policy.beside_anywhere
     if looks and anywhere:
-        starts = _meeting_rows_joined(starts, _beside(arm, asked, start, np.arange(len(start))))
+        starts = _joined(starts, _beside(arm, asked, start, np.arange(len(start))))
     leads = _leads_of(arm, starts, known)
     if first and arm.rounded:
         leads = _traced(arm, leads)
@@ -1394,12 +1407,12 @@ def _rows(arm: _Arm, asked: _Asked, start: Array, first: bool) -> list[_Rows]:
     near[starts.pose[close]] = True
     if looks and not anywhere and near.any():
         more = _beside(arm, asked, start, np.flatnonzero(near))
-        leads = _meeting_rows_joined(leads, _leads_of(arm, more, known))
+        leads = _both(leads, _leads_of(arm, more, known))
     if arm.rounded and free.any():
         hidden = closed.singular & ~known & _without_rows(arm, free, leads)[:, None]
         hidden &= np.isfinite(closed.q).all(axis=2)
         more = _of_lanes(arm, asked, closed, hidden, hidden)
-        leads = _meeting_rows_joined(leads, _leads_of(arm, more, known))
+        leads = _both(leads, _leads_of(arm, more, known))
     kept = _meeting(arm, asked, leads)
     for i, k in np.argwhere(closed.valid & ~closed.rough).tolist():
         _add(arm, asked.T[i], [(tuple(closed.q[i, k].tolist()), bool(marked[i, k]))], kept[i])
@@ -1929,13 +1942,13 @@ def _trace(arm: _Arm, q: Array, T: Array) -> _Traced:
     back = first._replace(still=-first.still, slope=-first.slope)
     parts, closed, worst = _follow(arm, first, T, np.arange(count), 0.0)
     open_ends = np.flatnonzero(~closed)
-    more, _, largest = _follow(arm, back, T, open_ends, 1.0 * _MOST)
+    more, _, largest = _follow(arm, back, T, open_ends, float(_MOST))
     worst = np.maximum(np.maximum(worst, largest), np.abs(first.left))
-    parts = _joined([*parts, *more])
+    parts = _joined(*parts, *more)
     steps = np.bincount(parts.owner, minlength=count)
     curve = steps >= _LEAST
     broken = curve & (worst >= arm.policy.arrived)
-    found = _look(arm, _some(parts, broken[parts.owner]), T, steps)
+    found = _look(arm, _some_of(parts, broken[parts.owner]), T, steps)
     return _Traced(curve, broken, *found)
 
 
@@ -1944,25 +1957,13 @@ def _sample(arm: _Arm, at: _Reduced, T: Array) -> _Reduced:
     at = _Reduced(*(x.copy() for x in at))
     going = np.arange(len(T))
     for _ in range(_CORRECTIONS):
-        moved, farthest = _correct(arm, _some(at, going), T[going])
+        moved, farthest = _correct(arm, _some_of(at, going), T[going])
         for whole, part in zip(at, moved):
             whole[going] = part
         going = going[~(farthest < _NEAR)]
         if not len(going):
             break
     return at
-
-
-def _some(parts: Any, index: Any) -> Any:
-    """Some of what tuples of arrays stand for."""
-    return type(parts)(*(_some(x, index) if isinstance(x, tuple) else x[index] for x in parts))
-
-
-def _joined(parts: Sequence[Any]) -> Any:
-    """Several tuples of arrays as one."""
-    return type(parts[0])(
-        *(_joined(x) if isinstance(x[0], tuple) else np.concatenate(x) for x in zip(*parts))
-    )
 
 
 def _follow(
@@ -1972,18 +1973,18 @@ def _follow(
     back to where they began, and the most (k,) that is left."""
     closed, worst = np.zeros(len(T), dtype=bool), np.zeros(len(T))
     parts, moving, owner = [], list(arm.moving), some
-    b = _some(first, some)
+    b = _some_of(first, some)
     for step in range(_MOST):
         ahead = b.q.copy()
         ahead[:, moving] += arm.policy.try_step * b.still / np.abs(b.still).max(axis=1)[:, None]
         c = _sample(arm, b._replace(q=ahead), T[owner])
         on = np.abs(c.left) < arm.policy.fold_reach
-        b, c, owner = _some(b, on), _some(c, on), owner[on]
+        b, c, owner = _some_of(b, on), _some_of(c, on), owner[on]
         worst[owner] = np.maximum(worst[owner], np.abs(c.left))
         parts.append(_Parts(b, c, owner, np.full(len(owner), place + step), np.ones(len(owner))))
-        round_about = _back(arm, _some(first, owner), b) & (step > 1)
+        round_about = _back(arm, _some_of(first, owner), b) & (step > 1)
         closed[owner[round_about]] = True
-        b, owner = _some(c, ~round_about), owner[~round_about]
+        b, owner = _some_of(c, ~round_about), owner[~round_about]
         if not len(owner):
             break
     closed[owner] = True
@@ -2012,7 +2013,7 @@ def _look(arm: _Arm, parts: _Parts, T: Array, samples: _Index) -> tuple[_Index, 
     sample is as far off as the end of a curve, there is none."""
     kept, brackets = [], []
     for deep in range(_DEEP + 1):
-        parts = _some(
+        parts = _some_of(
             parts, ~(np.maximum(abs(parts.a.left), abs(parts.b.left)) >= arm.policy.fold_reach)
         )
         values = _bernstein(arm, parts)
@@ -2022,21 +2023,19 @@ def _look(arm: _Arm, parts: _Parts, T: Array, samples: _Index) -> tuple[_Index, 
         doubtful = np.abs(values[1:3]).min(axis=0) < _DOUBT * most
         changes = (values[:-1] * values[1:] <= 0.0).sum(axis=0)
         split = ~end & (doubtful | (changes > 1))
-        kept.append(_some(parts, end))
-        brackets.append(_some(parts, ~end & ~split & (changes == 1)))
+        kept.append(_some_of(parts, end))
+        brackets.append(_some_of(parts, ~end & ~split & (changes == 1)))
         if not split.any():
             break
-        parts = _some(parts, split)
+        parts = _some_of(parts, split)
         middle = _near_continuum_between(arm, parts, np.full(len(parts.owner), 0.5), T)
         samples = samples + np.bincount(parts.owner, minlength=len(samples))
         half = 0.5 * parts.width
         parts = _joined(
-            [
-                parts._replace(b=middle, width=half),
-                parts._replace(a=middle, place=parts.place + half, width=half),
-            ]
+            parts._replace(b=middle, width=half),
+            parts._replace(a=middle, place=parts.place + half, width=half),
         )
-    return _kept(arm, _joined([*kept, _closed_in(arm, _joined(brackets), T)]))
+    return _kept(arm, _joined(*kept, _closed_in(arm, _joined(*brackets), T)))
 
 
 def _bernstein(arm: _Arm, parts: _Parts) -> Array:
@@ -2061,7 +2060,9 @@ def _closed_in(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
         if not len(going):
             break
         x, y = values[:, going]
-        now = _some(parts, going)._replace(a=_some(ends, (0, going)), b=_some(ends, (1, going)))
+        now = _some_of(parts, going)._replace(
+            a=_some_of(ends, (0, going)), b=_some_of(ends, (1, going))
+        )
         c = _near_continuum_between(arm, now, x / (x - y), T)
         side = (now.a.left * c.left < 0.0).astype(np.intp)
         way[going] = np.abs(c.q - ends.q[side, going]).max(axis=1)
@@ -2071,7 +2072,7 @@ def _closed_in(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
         values[side, going] = c.left
         values[1 - side, going] *= np.where(last[going] == side, 0.5, 1.0)
         last[going] = side
-    return parts._replace(a=_some(ends, 0), b=_some(ends, 1))
+    return parts._replace(a=_some_of(ends, 0), b=_some_of(ends, 1))
 
 
 def _kept(arm: _Arm, parts: _Parts) -> tuple[_Index, Array]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ikgen.runtime.python.array_tuples import joined
 from ikgen.runtime.python.array_types import Array, Flags, Index, Row
 from ikgen.runtime.python.closed_form_rows import ClosedForm, closed_form, rows_beside
 from ikgen.runtime.python.held_parameters import aims
@@ -14,7 +15,7 @@ from ikgen.runtime.python.limit_rows import rows_inside
 from ikgen.runtime.python.meeting_rows import (
     Leads,
     Starts,
-    joined,
+    both,
     leads_of,
     repeats,
     rows_nearby,
@@ -157,12 +158,12 @@ def _rows(arm: Arm, asked: Asked, start: Array, first: bool) -> list[_Rows]:
     near[starts.pose[close]] = True
     if looks and not anywhere and near.any():
         more = _beside(arm, asked, start, np.flatnonzero(near))
-        leads = joined(leads, leads_of(arm, more, known))
+        leads = both(leads, leads_of(arm, more, known))
     if arm.rounded and free.any():
         hidden = closed.singular & ~known & _without_rows(arm, free, leads)[:, None]
         hidden &= np.isfinite(closed.q).all(axis=2)
         more = _of_lanes(arm, asked, closed, hidden, hidden)
-        leads = joined(leads, leads_of(arm, more, known))
+        leads = both(leads, leads_of(arm, more, known))
     kept = _meeting(arm, asked, leads)
     for i, k in np.argwhere(closed.valid & ~closed.rough).tolist():
         _add(arm, asked.T[i], [(tuple(closed.q[i, k].tolist()), bool(marked[i, k]))], kept[i])

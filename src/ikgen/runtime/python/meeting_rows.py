@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.runtime.python.arm_newton import refined
+from ikgen.runtime.python.array_tuples import joined
 from ikgen.runtime.python.array_types import Array, Flags, Index, Row
 from ikgen.runtime.python.chain_kinematics import forward
 from ikgen.runtime.python.fold_pair import approach
@@ -23,8 +24,8 @@ __all__ = [
     "Leads",
     "Led",
     "Starts",
+    "both",
     "ends_of",
-    "joined",
     "leads_of",
     "repeats",
     "rows_nearby",
@@ -73,13 +74,11 @@ class Leads(NamedTuple):
     known: Flags
 
 
-def joined(one: Any, other: Any) -> Any:
-    """Two tuples of arrays as one; of `Leads` too."""
-    if isinstance(one, Leads):
-        owner = other.around.owner + len(one.starts.q)
-        other = other._replace(around=other.around._replace(owner=owner))
-    pairs = zip(one, other)
-    return type(one)(*(joined(*x) if isinstance(x[0], tuple) else np.concatenate(x) for x in pairs))
+def both(one: Leads, other: Leads) -> Leads:
+    """Those of two."""
+    owner = other.around.owner + len(one.starts.q)
+    out: Leads = joined(one, other._replace(around=other.around._replace(owner=owner)))
+    return out
 
 
 def ends_of(arm: Arm, q: Array, T: Array) -> Ends:

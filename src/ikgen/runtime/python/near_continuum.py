@@ -6,12 +6,12 @@ touches 0."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ikgen.runtime.python.arm_newton import linearized, refined
+from ikgen.runtime.python.array_tuples import joined, some_of
 from ikgen.runtime.python.array_types import Array, Flags, Index
 from ikgen.runtime.python.fold_pair import Reduced, correct, generic
 from ikgen.runtime.python.refinement import least_singular
@@ -86,13 +86,13 @@ def trace(arm: Arm, q: Array, T: Array) -> Traced:
     back = first._replace(still=-first.still, slope=-first.slope)
     parts, closed, worst = _follow(arm, first, T, np.arange(count), 0.0)
     open_ends = np.flatnonzero(~closed)
-    more, _, largest = _follow(arm, back, T, open_ends, 1.0 * _MOST)
+    more, _, largest = _follow(arm, back, T, open_ends, float(_MOST))
     worst = np.maximum(np.maximum(worst, largest), np.abs(first.left))
-    parts = _joined([*parts, *more])
+    parts = joined(*parts, *more)
     steps = np.bincount(parts.owner, minlength=count)
     curve = steps >= _LEAST
     broken = curve & (worst >= arm.policy.arrived)
-    found = _look(arm, _some(parts, broken[parts.owner]), T, steps)
+    found = _look(arm, some_of(parts, broken[parts.owner]), T, steps)
     return Traced(curve, broken, *found)
 
 
@@ -101,25 +101,13 @@ def _sample(arm: Arm, at: Reduced, T: Array) -> Reduced:
     at = Reduced(*(x.copy() for x in at))
     going = np.arange(len(T))
     for _ in range(_CORRECTIONS):
-        moved, farthest = correct(arm, _some(at, going), T[going])
+        moved, farthest = correct(arm, some_of(at, going), T[going])
         for whole, part in zip(at, moved):
             whole[going] = part
         going = going[~(farthest < _NEAR)]
         if not len(going):
             break
     return at
-
-
-def _some(parts: Any, index: Any) -> Any:
-    """Some of what tuples of arrays stand for."""
-    return type(parts)(*(_some(x, index) if isinstance(x, tuple) else x[index] for x in parts))
-
-
-def _joined(parts: Sequence[Any]) -> Any:
-    """Several tuples of arrays as one."""
-    return type(parts[0])(
-        *(_joined(x) if isinstance(x[0], tuple) else np.concatenate(x) for x in zip(*parts))
-    )
 
 
 def _follow(
@@ -129,18 +117,18 @@ def _follow(
     back to where they began, and the most (k,) that is left."""
     closed, worst = np.zeros(len(T), dtype=bool), np.zeros(len(T))
     parts, moving, owner = [], list(arm.moving), some
-    b = _some(first, some)
+    b = some_of(first, some)
     for step in range(_MOST):
         ahead = b.q.copy()
         ahead[:, moving] += arm.policy.try_step * b.still / np.abs(b.still).max(axis=1)[:, None]
         c = _sample(arm, b._replace(q=ahead), T[owner])
         on = np.abs(c.left) < arm.policy.fold_reach
-        b, c, owner = _some(b, on), _some(c, on), owner[on]
+        b, c, owner = some_of(b, on), some_of(c, on), owner[on]
         worst[owner] = np.maximum(worst[owner], np.abs(c.left))
         parts.append(_Parts(b, c, owner, np.full(len(owner), place + step), np.ones(len(owner))))
-        round_about = _back(arm, _some(first, owner), b) & (step > 1)
+        round_about = _back(arm, some_of(first, owner), b) & (step > 1)
         closed[owner[round_about]] = True
-        b, owner = _some(c, ~round_about), owner[~round_about]
+        b, owner = some_of(c, ~round_about), owner[~round_about]
         if not len(owner):
             break
     closed[owner] = True
@@ -169,7 +157,7 @@ def _look(arm: Arm, parts: _Parts, T: Array, samples: Index) -> tuple[Index, Arr
     sample is as far off as the end of a curve, there is none."""
     kept, brackets = [], []
     for deep in range(_DEEP + 1):
-        parts = _some(
+        parts = some_of(
             parts, ~(np.maximum(abs(parts.a.left), abs(parts.b.left)) >= arm.policy.fold_reach)
         )
         values = _bernstein(arm, parts)
@@ -179,21 +167,19 @@ def _look(arm: Arm, parts: _Parts, T: Array, samples: Index) -> tuple[Index, Arr
         doubtful = np.abs(values[1:3]).min(axis=0) < _DOUBT * most
         changes = (values[:-1] * values[1:] <= 0.0).sum(axis=0)
         split = ~end & (doubtful | (changes > 1))
-        kept.append(_some(parts, end))
-        brackets.append(_some(parts, ~end & ~split & (changes == 1)))
+        kept.append(some_of(parts, end))
+        brackets.append(some_of(parts, ~end & ~split & (changes == 1)))
         if not split.any():
             break
-        parts = _some(parts, split)
+        parts = some_of(parts, split)
         middle = _between(arm, parts, np.full(len(parts.owner), 0.5), T)
         samples = samples + np.bincount(parts.owner, minlength=len(samples))
         half = 0.5 * parts.width
-        parts = _joined(
-            [
-                parts._replace(b=middle, width=half),
-                parts._replace(a=middle, place=parts.place + half, width=half),
-            ]
+        parts = joined(
+            parts._replace(b=middle, width=half),
+            parts._replace(a=middle, place=parts.place + half, width=half),
         )
-    return _kept(arm, _joined([*kept, _closed_in(arm, _joined(brackets), T)]))
+    return _kept(arm, joined(*kept, _closed_in(arm, joined(*brackets), T)))
 
 
 def _bernstein(arm: Arm, parts: _Parts) -> Array:
@@ -218,7 +204,9 @@ def _closed_in(arm: Arm, parts: _Parts, T: Array) -> _Parts:
         if not len(going):
             break
         x, y = values[:, going]
-        now = _some(parts, going)._replace(a=_some(ends, (0, going)), b=_some(ends, (1, going)))
+        now = some_of(parts, going)._replace(
+            a=some_of(ends, (0, going)), b=some_of(ends, (1, going))
+        )
         c = _between(arm, now, x / (x - y), T)
         side = (now.a.left * c.left < 0.0).astype(np.intp)
         way[going] = np.abs(c.q - ends.q[side, going]).max(axis=1)
@@ -228,7 +216,7 @@ def _closed_in(arm: Arm, parts: _Parts, T: Array) -> _Parts:
         values[side, going] = c.left
         values[1 - side, going] *= np.where(last[going] == side, 0.5, 1.0)
         last[going] = side
-    return parts._replace(a=_some(ends, 0), b=_some(ends, 1))
+    return parts._replace(a=some_of(ends, 0), b=some_of(ends, 1))
 
 
 def _kept(arm: Arm, parts: _Parts) -> tuple[Index, Array]:
