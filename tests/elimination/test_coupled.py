@@ -10,21 +10,19 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.coupled_arms import coupled_table, hollow_wrist
+from tests.support.held_stacks import assert_solved_as_each_alone
 from tests.support.multi_start import apart, searched
 from tests.support.solving import NO_COMPILER, import_text
 
 from ikgen.elimination import EliminationPlan, elimination_plan
-from ikgen.elimination.routine import Plan, runtime_policy, six_joints_batch
+from ikgen.elimination.routine import Plan, six_joints_batch
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.generation.derive import derive
 from ikgen.generation.generate import generate
 from ikgen.generation.read import read
 from ikgen.generation.request import Outputs, Request
-from ikgen.program.policy import SolvePolicy
 from ikgen.runtime.python.chain_kinematics import Chain, chain_of, forward, jacobian
 from ikgen.runtime.python.coupled_angle import CoupledAngle, coupled_determinants
-from ikgen.runtime.python.general_6r import six_joint_rows
-from ikgen.runtime.python.six_joints import six_joints
 
 Array = NDArray[np.float64]
 TURNS = (True,) * 6
@@ -77,28 +75,11 @@ def test_every_row_is_right_and_every_configuration_found(relation: str) -> None
 @pytest.mark.parametrize("place", [1, 3, 6])
 def test_poses_with_held_values_of_their_own_are_solved_as_each_is_alone(place: int) -> None:
     plan, _ = coupled_arm(HOLLOW)
-    motions = [*plan.motions]
-    motions.insert(place, (6, True, 1.0, 0.0))
-    frames = np.insert(plan.frames, place + 1, np.eye(4), axis=0)
     rng = np.random.default_rng(place)
     held = rng.uniform(-0.2, 0.2, (3, 1))
-    made = Plan(
-        plan.length,
-        plan.eliminations,
-        TURNS,
-        CoupledAngle(plan.motions, plan.crowded),
-        motions=plan.motions,
-    )
-    six = six_joints(frames, plan.length, tuple(motions), held)
-    T = forward(six.chain, np.concatenate([rng.uniform(-3.0, 3.0, (3, 6)), held], axis=1))
-    T[:, :3, 3] *= plan.length
-    policy = runtime_policy(SolvePolicy())
-    pose, rows = six_joint_rows(six, made, T, policy)
-    for k in range(3):
-        one = six_joints(frames, plan.length, tuple(motions), held[k : k + 1])
-        _, alone = six_joint_rows(one, made, T[k : k + 1], policy)
-        assert len(alone) >= 1
-        np.testing.assert_allclose(rows[pose == k], alone, atol=1e-7)
+    angle = CoupledAngle(plan.motions, plan.crowded)
+    made = Plan(plan.length, plan.eliminations, TURNS, angle, motions=plan.motions)
+    assert_solved_as_each_alone(made, plan.frames, plan.motions, place, held, rng, 1e-7)
 
 
 def test_a_wrist_held_nearly_straight() -> None:

@@ -10,19 +10,18 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.chains import rotation, translation
+from tests.support.held_stacks import assert_solved_as_each_alone
 from tests.support.parallel_arms import parallel_frames
 
 from ikgen.elimination.loop_frames import forward as chain_forward
 from ikgen.elimination.loop_frames import hold_joint, over
-from ikgen.elimination.routine import runtime_policy
-from ikgen.program.policy import SolvePolicy
 from ikgen.runtime.python import elimination_rows
 from ikgen.runtime.python.chain_kinematics import forward
 from ikgen.runtime.python.elimination_rows import _six_joints
-from ikgen.runtime.python.general_6r import Plan, candidates, six_joint_rows
+from ikgen.runtime.python.general_6r import Plan, candidates
 from ikgen.runtime.python.parallel_axes import parallel_candidates
 from ikgen.runtime.python.parallel_links import MEETING, PLAIN, UPRIGHT
-from ikgen.runtime.python.six_joints import SixJoints, six_joints
+from ikgen.runtime.python.six_joints import SixJoints
 
 Array = NDArray[np.float64]
 FRAMES = np.array(
@@ -83,19 +82,9 @@ def test_poses_with_values_of_their_own_are_solved_as_each_is_alone(
     direct = () if isinstance(kind, str) else ((parallel_candidates, (0, 0, kind), 1e-7),)
     plan = Plan(1.0, ((0, 0, 0), (0, 1, 0)), TURNS, candidates, direct)
     motions = [(k, True, 1.0, 0.0) for k in range(6)]
-    motions.insert(place, (6, True, 1.0, 0.0))
-    chain = np.insert(frames, place + 1, np.eye(4), axis=0)
     rng = np.random.default_rng(place)
     held = rng.uniform(-0.3, 0.3, (4, 1))
-    six = six_joints(chain, plan.length, tuple(motions), held)
-    T = forward(six.chain, np.concatenate([rng.uniform(-3.0, 3.0, (4, 6)), held], axis=1))
-    policy = runtime_policy(SolvePolicy())
-    pose, rows = six_joint_rows(six, plan, T, policy)
-    for k in range(4):
-        alone = six_joints(chain, plan.length, tuple(motions), held[k : k + 1])
-        _, expected = six_joint_rows(alone, plan, T[k : k + 1], policy)
-        assert len(expected) >= 1
-        np.testing.assert_allclose(rows[pose == k], expected, atol=1e-9)
+    assert_solved_as_each_alone(plan, frames, motions, place, held, rng, 1e-9)
 
 
 def test_samples_of_a_continuum_go_first_where_there_are_too_many_rows(
