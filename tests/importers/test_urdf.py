@@ -87,6 +87,7 @@ REFUSED = {
     "huge": (robot(joint('<origin xyz="1e999 0 0"/>')), "not finite", "finite", 4),
     "xacro left": (robot(joint('<origin xyz="$(optenv X 0 0 0)"/>')), "xacro", ".urdf.xacro", 4),
     "limit": (robot(joint('<limit lower="-pi" upper="1"/>')), "lower: '-pi'", "decimal", 4),
+    "axis without a direction": (robot(joint("<axis />")), "without xyz", 'xyz="..."', 4),
     "zero axis": (robot(joint('<axis xyz="0 0 0"/>')), "zero axis", "direction", 4),
     "endless axis": (robot(joint('<axis xyz="1e300 1e300 0"/>')), "axis of length", "unit", 4),
     "spherical": (robot(joint(type_="spherical")), "unknown type 'spherical'", "three", 4),
@@ -164,7 +165,7 @@ BENT = {
     "half": (robot(joint('<limit upper="1"/>')), "no lower limit: taken as 0"),
     "degrees": (robot(joint('<limit lower="-170" upper="170"/>')), "look like degrees"),
     "axis": (robot(joint('<axis xyz="1 0 0.5"/>' + LIMIT)), "axis of length 1.11803 normalised"),
-    "axis rpy": (robot(joint('<axis rpy="0 0 0"/>' + LIMIT)), "has an rpy"),
+    "axis rpy": (robot(joint('<axis xyz="1 0 0" rpy="0 0 0"/>' + LIMIT)), "has an rpy"),
     "roots": (robot(joint(LIMIT), links="cab"), "several root links: took 'a'"),
 }
 

@@ -139,6 +139,7 @@ def _axis(joint: Element, name: str, place: Place) -> Matrix:
     axis = _only_child(joint, "axis", name, place)
     xyz = _X
     if axis is not None:
+        required_attribute(axis, "xyz", f"<axis> of joint '{name}'", place)
         xyz = _vector(axis, "xyz", xyz, name, place)
         if axis.get("rpy") is not None:
             place.warn(axis, f"joint '{name}': <axis> has an rpy, which URDF ignores")
