@@ -60,7 +60,7 @@ def test_what_reads_no_position_or_slides_without_limits_has_no_reach() -> None:
     rng = np.random.default_rng(1)
     assert farthest_configuration(arm("rotation"), rng) is None
     a = arm(text=SLIDE)
-    for low, high in ((-np.inf, 1.0), (0.0, np.inf)):
+    for low, high in ((-np.inf, 1.0), (0.0, np.inf), (-1e6, 1e6)):
         lower, upper = a.lower.copy(), a.upper.copy()
         lower[2], upper[2] = low, high
         endless = replace(a, lower=lower, upper=upper)

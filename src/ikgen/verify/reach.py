@@ -51,9 +51,10 @@ def _improve(arm: ArmUnderTest, q: Array, j: int) -> Array:
 def farthest_configuration(arm: ArmUnderTest, rng: np.random.Generator) -> Array | None:
     """The configuration (dof,) whose tip is farthest from the base, revolute limits disregarded.
 
-    None for tasks that do not read the position and for arms of unlimited reach.
+    None for tasks that do not read the position, and for arms with slides that go farther than values
+    are drawn.
     """
-    unlimited = ~arm.revolute & ~(np.isfinite(arm.lower) & np.isfinite(arm.upper))
+    unlimited = ~arm.revolute & ((arm.lower < arm.low) | (arm.high < arm.upper))
     if not arm.task.position or np.any(unlimited):
         return None
     q = arm.uniform(rng, 32, limits=False)
