@@ -163,6 +163,10 @@ BENT = {
     "zero range": (robot(joint('<limit lower="0" upper="0"/>')), "lower = upper = 0"),
     "one value": (robot(joint('<limit lower="1" upper="1"/>')), "cannot move"),
     "half": (robot(joint('<limit upper="1"/>')), "no lower limit: taken as 0"),
+    "endless": (
+        robot(joint('<limit lower="-2" upper="1e9"/>')),
+        "-2 to 1e+09 rad: taken as unlimited",
+    ),
     "degrees": (robot(joint('<limit lower="-170" upper="170"/>')), "look like degrees"),
     "axis": (robot(joint('<axis xyz="1 0 0.5"/>' + LIMIT)), "axis of length 1.11803 normalised"),
     "axis rpy": (robot(joint('<axis xyz="1 0 0" rpy="0 0 0"/>' + LIMIT)), "has an rpy"),
@@ -192,7 +196,11 @@ def test_tolerated_with_a_warning(read, case):
         ("continuous", '<limit lower="0" upper="0"/>', -INF, INF),
         ("continuous", '<limit lower="-4" upper="4"/>', -INF, INF),
         ("continuous", '<limit lower="1e300" upper="2e300"/>', -INF, INF),
-        ("revolute", '<limit lower="-1e16" upper="1e16"/>', -1e16, 1e16),
+        ("revolute", '<limit lower="-1e16" upper="1e16"/>', -INF, INF),
+        ("revolute", '<limit lower="1e9" upper="2"/>', -INF, INF),
+        ("revolute", '<limit lower="2" upper="inf"/>', -INF, INF),
+        ("revolute", '<limit lower="-500" upper="500"/>', -500.0, 500.0),
+        ("prismatic", '<limit lower="-1e5" upper="1e5"/>', -1e5, 1e5),
         ("fixed", '<limit lower="x" upper="4"/>', -INF, INF),
     ],
 )

@@ -14,6 +14,7 @@ from ikgen.equations.knowledge import Knowledge
 from ikgen.equations.probes import arm_size, make_probes, smallest_singular
 from ikgen.generation import closed_forms
 from ikgen.generation import derive as derivation
+from ikgen.generation.held_joints import held_choices
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
 from ikgen.solver.choice import Chooser
@@ -21,6 +22,7 @@ from ikgen.solver.leaves import all_leaves
 from ikgen.solver.session import Session
 from ikgen.solver.solve import solve_chain
 from ikgen.tasks import find_task
+from ikgen.tasks.fitting import over_constrained
 
 ROOT = Path(__file__).resolve().parents[2]
 FIVE_JOINTS = ROOT / "urdf_fixtures" / "igus_robolink_rl_dp_5.urdf"
@@ -66,6 +68,26 @@ def test_regular_is_what_the_task_reads() -> None:
     assert len(special) and np.all(
         smallest_singular(dh, special, size, readable=task.readable, tool=True) > 1e-2
     )
+
+
+def test_an_arm_that_is_nowhere_far_from_singular_has_regular_configurations(
+    tmp_path: Path,
+) -> None:
+    """The first two axes are 0.3 degrees from parallel. A pose without rows once came of a divisor that
+    vanishes where the arm is as regular as it gets."""
+    text = PUMA.with_name("Puma_paper.toml").read_text("utf-8")
+    table = tmp_path / "table.toml"
+    table.write_text(
+        text.replace('"-pi/2"', '"alpha_1"', 1).replace(
+            "d_3 = 0.1245", "d_3 = 7.2\nalpha_1 = 0.0055"
+        )
+    )
+    reading = read(Request(table))
+    probes = make_probes(reading.dh)
+    assert probes.typical < 1e-2 and probes.regular > probes.generic
+    assert not over_constrained(reading.dh, find_task("pose"))
+    graph = solve_chain(reading.dh)
+    assert graph.sound and not held_choices(reading, find_task("pose"))
 
 
 def test_divisors_may_vanish_where_the_task_is_singular() -> None:

@@ -19,7 +19,7 @@ from ikgen.kinematics.rigid import dh_link
 from ikgen.model.dh import Angle, DHChain, Length
 
 __all__ = [
-    "Probes", "arm_size", "dh_pose", "elbow_position", "make_probes", "smallest_singular",
+    "Probes", "arm_size", "dh_pose", "elbow_position", "least_regular", "make_probes", "smallest_singular",
 ]  # fmt: skip
 
 Kept = Mapping[str, NDArray[np.float64]]
@@ -34,13 +34,21 @@ SINGULAR = 16
 class Probes:
     """`values` (N, dof) DH variables (of each joint's leading row), `pose` (N, 4, 4) of the last DH frame
     in frame 0. The first `generic` are random, up to `regular` they have joints at multiples of 90
-    degrees but are regular, the rest are singular. `kept` are the values (N,) of rounded constants."""
+    degrees but are regular, the rest are singular. `typical` is the median of the smallest singular value
+    at the random ones. `kept` are the values (N,) of rounded constants."""
 
     values: NDArray[np.float64]
     pose: NDArray[np.float64]
     generic: int
     regular: int
+    typical: float
     kept: Kept = field(default_factory=lambda: _NONE)
+
+
+def least_regular(usual: float, typical: float) -> float:
+    """Smallest singular value above which a configuration is regular: the `usual` one, or half of what is
+    `typical` of an arm that is nowhere far from singular."""
+    return min(usual, max(0.5 * typical, 1e-6))
 
 
 def _constant(x: Angle | Length, kept: Kept) -> float | NDArray[np.float64]:
@@ -150,15 +158,18 @@ def make_probes(
     quarter = rng.integers(-1, 3, special.shape) * (np.pi / 2)
     chosen = rng.random(special.shape) < rng.uniform(0.15, 1.0, (len(special), 1))
     special = np.where(chosen, np.where(revolute, quarter, 0.0), special)
-    smallest = smallest_singular(dh, special, size, readable=readable, tool=tool)
-    regular = special[smallest > 1e-2][:SPECIAL]
+    smallest, generally = (
+        smallest_singular(dh, q, size, readable=readable, tool=tool) for q in (special, generic)
+    )
+    typical = float(np.median(generally))
+    regular = special[smallest > least_regular(1e-2, typical)][:SPECIAL]
     singular = special[smallest < 1e-8][:SINGULAR]
     values = np.concatenate([generic, regular, singular])
     kept = _kept_values(dh, len(values), size)
     pose = dh_pose(dh, values, kept)
     if tool:
         pose = product(pose, dh.X_tip)
-    return Probes(values, pose, GENERIC, GENERIC + len(regular), kept)
+    return Probes(values, pose, GENERIC, GENERIC + len(regular), typical, kept)
 
 
 def _kept_values(dh: DHChain, count: int, size: float) -> Kept:

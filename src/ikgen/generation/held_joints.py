@@ -28,9 +28,6 @@ the file's chain follow (offsets of 0.2 mm in a wrist that is meant to be spheri
 _POOR = 0.2
 """Choices of a class that are conditioned worse than its best by this factor come last in it."""
 
-_INDEPENDENT = 1e-4
-"""Least singular value, relative to the largest, of joints that move the task's freedoms independently."""
-
 
 @dataclass(frozen=True, slots=True)
 class HeldChoice:
@@ -148,4 +145,6 @@ def _singular(motion: Matrix, subsets: Sequence[Sequence[int]]) -> Matrix:
 
 
 def _rank(ratios: Matrix) -> int:
-    return int((ratios > _INDEPENDENT).sum())
+    from ikgen.tasks.fitting import INDEPENDENT
+
+    return int((ratios > INDEPENDENT).sum())

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.evaluation import evaluate
-from ikgen.equations.probes import Probes, arm_size, smallest_singular
+from ikgen.equations.probes import Probes, arm_size, least_regular, smallest_singular
 from ikgen.forms.form import scales
 from ikgen.kinematics.fixed_order import product
 from ikgen.solver.candidate import Candidate
@@ -23,7 +23,8 @@ Array = NDArray[np.float64]
 STARTS = 24
 STEPS = 12
 REGULAR = 2e-2
-"""Smallest singular value of what the task reads above which a configuration counts as regular."""
+"""Smallest singular value of what the task reads above which a configuration usually counts as
+regular."""
 
 
 def conditions(candidate: Candidate, system: EquationSet, values: Array) -> list[Array]:
@@ -50,7 +51,7 @@ def weak_configurations(candidate: Candidate, system: EquationSet, probes: Probe
             smallest = smallest_singular(
                 system.dh, at, size, readable=system.readable, tool=system.tool_on_right
             )
-            found.append(at[smallest > REGULAR])
+            found.append(at[smallest > least_regular(REGULAR, probes.typical)])
     return np.concatenate(found) if found else np.empty((0, system.dh.dof))
 
 

@@ -15,9 +15,16 @@ if TYPE_CHECKING:
     from ikgen.model.dh import DHChain
     from ikgen.model.joint_tree import Matrix
 
-__all__ = ["fits", "fitting_tasks", "freedoms_moved", "over_constrained", "scaled_motion"]
+__all__ = [
+    "INDEPENDENT",
+    "fits",
+    "fitting_tasks",
+    "freedoms_moved",
+    "over_constrained",
+    "scaled_motion",
+]
 
-_INDEPENDENT = 1e-4
+INDEPENDENT = 1e-5
 """Least singular value, relative to the largest, of freedoms that are moved independently."""
 
 _AS_GOOD = 0.5
@@ -68,7 +75,7 @@ def over_constrained(dh: DHChain, task: Task) -> int:
 def freedoms_moved(dh: DHChain, task: Task) -> int:
     """How many freedoms of the task the joints that are not held move, nearly everywhere: the rank of
     the task's entries by the joints."""
-    return int((_ratios(dh, task) > _INDEPENDENT).sum())
+    return int((_ratios(dh, task) > INDEPENDENT).sum())
 
 
 def _condition(dh: DHChain, task: Task) -> float:

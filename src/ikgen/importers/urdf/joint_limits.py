@@ -7,13 +7,16 @@ import math
 from ikgen.importers.urdf.attribute_values import BadValueError
 from ikgen.model.joint_tree import JointType, Limits
 
-__all__ = ["FARTHEST", "UNLIMITED", "joint_limits"]
+__all__ = ["FARTHEST", "UNLIMITED", "joint_limits", "turning_limits"]
 
 UNLIMITED = Limits(-math.inf, math.inf)
 
-# Two turns either way; robots that state more than that mean degrees (or no limit at all).
 _DEGREES_ABOVE = 4.0 * math.pi + 1e-6
+"""Two turns either way (rad): robots that state more than that mean degrees, or no limit at all."""
+
 _NO_LIMIT_FROM = 1e3
+"""A range (rad) that stands for none: files write 999999, and 159 turns reach every angle."""
+
 _TURN = 2.0 * math.pi
 FARTHEST = 1e6
 """Neighbouring doubles are 1e-10 apart here: no joint value beyond this (rad or m) is exact."""
@@ -25,8 +28,9 @@ def joint_limits(
     """The range of a joint (rad or m) and what was odd about it.
 
     URDF's default of an absent bound is 0, which cannot be meant where both are absent or 0: such
-    a joint has no limits. URDF gives a continuous joint none, whatever its file states. Raises
-    `BadValueError` for a range that begins beyond all values which can be told apart.
+    a joint has no limits. URDF gives a continuous joint none, whatever its file states, and a revolute
+    one that may turn more than 159 times has none that matter. Raises `BadValueError` for a range that
+    begins beyond all values which can be told apart.
     """
     if not type_.moves_on_one_axis or type_ is JointType.CONTINUOUS:
         return UNLIMITED, ()
@@ -49,7 +53,19 @@ def joint_limits(
         )
     if low == high:
         notes.append(f"lower = upper = {low:g}: the joint cannot move")
-    widest = max(abs(low), abs(high))
-    if type_ is not JointType.PRISMATIC and _DEGREES_ABOVE < widest < _NO_LIMIT_FROM:
-        notes.append(f"limits {low:g} to {high:g} rad look like degrees: kept as they are")
-    return Limits(low, high), tuple(notes)
+    if type_ is JointType.PRISMATIC:
+        return Limits(low, high), tuple(notes)
+    limits, odd = turning_limits(low, high)
+    return limits, (*notes, *odd)
+
+
+def turning_limits(low: float, high: float) -> tuple[Limits, tuple[str, ...]]:
+    """The range of a revolute joint (rad) whose limits are stated so, and what was odd about it."""
+    if high - low > _NO_LIMIT_FROM:
+        known = min(-low, high) >= _NO_LIMIT_FROM
+        note = f"limits {low:g} to {high:g} rad: taken as unlimited"
+        return UNLIMITED, () if known else (note,)
+    if max(abs(low), abs(high)) > _DEGREES_ABOVE:
+        note = f"limits {low:g} to {high:g} rad look like degrees: kept as they are"
+        return Limits(low, high), (note,)
+    return Limits(low, high), ()
