@@ -174,6 +174,22 @@ def test_locked_joints_become_constants(tmp_path: Path) -> None:
         )
 
 
+@pytest.mark.parametrize(
+    ("limits", "words"),
+    [
+        ("[-2, 1e9]", "taken as unlimited"),
+        ("[-170, 170]", "look like degrees"),
+        ("[-1e9, 1e9]", ""),
+    ],
+)
+def test_limits_that_are_hardly_meant(tmp_path: Path, limits: str, words: str) -> None:
+    path = tmp_path / "arm.toml"
+    path.write_text(table(GOOD, tail=f"limits = {limits}"))
+    source, dh = read_dh_table(path)
+    assert " ".join(source.warnings).endswith(words + ": kept as they are" * ("degrees" in words))
+    assert math.isinf(dh.joints[-1].limits.upper) == ("degrees" not in words)
+
+
 def test_standard_fixture_with_limits_and_tool() -> None:
     source, dh = read_dh_table(FIXTURES / "scara_standard.toml", free=("flange",))
     assert source.warnings == ()
