@@ -168,7 +168,7 @@ def _compared(
         rows = module.solve(pose, limits=False).q
         found = searched(module, pose, rng, 3.0 * arm_size(dh), least=len(rows))
         lost = sum(not len(rows) or apart(x, rows, turning).min() > 1e-4 for x in found)
-        missed, equal = missed + lost, equal + (len(found) == len(rows) and not lost)
+        missed, equal = missed + int(lost), equal + int(len(found) == len(rows) and not lost)
         if lost or len(found) != len(rows):
             counts = f"{len(rows)} solutions, {len(found)} by search, {lost} of them lost"
             print(f"{pattern(dh)}: {counts}", flush=True)
