@@ -13,7 +13,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-__all__ = ["FOLDER", "Measured", "added_counts", "read_result", "write_result"]
+__all__ = ["FOLDER", "Measured", "added_counts", "commit", "read_result", "write_result"]
 
 FOLDER = Path(__file__).resolve().parent / "results"
 
@@ -33,7 +33,7 @@ class Measured:
 def write_result(name: str, command: str, found: dict[str, Any]) -> Path:
     """Write `results/<name>.json`, marked with the commit and the date."""
     machine = f"{os.cpu_count()} cores, {platform.machine()}"
-    measured = Measured(command, _commit(), datetime.date.today().isoformat(), machine, found)
+    measured = Measured(command, commit(), datetime.date.today().isoformat(), machine, found)
     FOLDER.mkdir(exist_ok=True)
     path = FOLDER / f"{name}.json"
     path.write_text(json.dumps(asdict(measured), indent=1) + "\n", encoding="utf-8")
@@ -51,11 +51,11 @@ def added_counts(name: str, key: str, counts: Mapping[str, int]) -> dict[str, in
         earlier = read_result(name)
     except FileNotFoundError:
         return dict(counts)
-    before = earlier.found[key] if earlier.commit == _commit() else {}
+    before = earlier.found[key] if earlier.commit == commit() else {}
     return dict(Counter(before) + Counter(counts))
 
 
-def _commit() -> str:
+def commit() -> str:
     """The commit that is checked out, as short as it may be; "unknown" outside a repository."""
 
     def git(*arguments: str) -> str:

@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 _STARTS = 300
 _MOST_ROUNDS = 12
 _REPEATS = 2  # rounds without a new solution after which the search ends
+_MORE_ROUNDS = 100  # where fewer are found than are known to exist
 _STEPS = 40
 _CLOSED = 1e-10
 _SAME = 1e-5
@@ -32,13 +33,17 @@ def apart(q: Array, rows: Array, turning: NDArray[np.bool_]) -> Array:
     )
 
 
-def searched(module: ModuleType, pose: Array, rng: np.random.Generator, reach: float) -> Array:
+def searched(
+    module: ModuleType, pose: Array, rng: np.random.Generator, reach: float, *, least: int = 0
+) -> Array:
     """The distinct solutions (k, dof) that are found; slides start within `reach` (m), some up to a hundred
-    times as far."""
+    times as far. Where fewer than `least` are, more random starts follow."""
     turning = revolute(module)
     found = np.zeros((0, len(turning)))
     quiet = 0
-    for _ in range(_MOST_ROUNDS):
+    for done in range(_MORE_ROUNDS):
+        if len(found) >= least and (quiet >= _REPEATS or done >= _MOST_ROUNDS):
+            break
         known = len(found)
         bound = np.where(turning, np.pi, reach)
         starts = rng.uniform(-bound, bound, (_STARTS, len(turning)))
@@ -48,8 +53,6 @@ def searched(module: ModuleType, pose: Array, rng: np.random.Generator, reach: f
             if not len(found) or apart(q, found, turning).min() > _SAME:
                 found = np.vstack([found, q])
         quiet = quiet + 1 if len(found) == known else 0
-        if quiet == _REPEATS:
-            break
     return found
 
 

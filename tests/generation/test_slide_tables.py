@@ -17,9 +17,9 @@ ANGLES = ("0.3", "1.2", "-0.7", "0.9", "-1.1", "0.6")
 
 
 def table(kinds: str, folder: Path) -> Path:
-    """A table without special geometry."""
+    """A table of up to six joints without special geometry."""
     rows = [f'name = "{kinds.lower()}"', 'convention = "modified"']
-    for i, (kind, twist) in enumerate(zip(kinds, ANGLES, strict=True)):
+    for i, (kind, twist) in enumerate(zip(kinds, ANGLES, strict=False)):
         rows += [
             "[[joints]]",
             f'type = "{"revolute" if kind == "R" else "prismatic"}"',

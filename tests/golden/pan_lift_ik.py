@@ -2205,7 +2205,12 @@ def _branch_names(arm: _Arm, q: Array) -> tuple[str, ...]:
         return _side_names(arm, q)
     if arm.branch_kind == "number":
         return tuple(f"branch {number}" for number in _branch_numbers(arm, q))
-    J = _tip_and_jacobian(arm.chain, q)[1][:, :, arm.moving]
+    tip, J = _tip_and_jacobian(arm.chain, q)
+    J = J[:, :, arm.moving]
+    if J.shape[2] == 5:  # the elimination's last joint turns about the tool's axis
+        turn = np.zeros((len(q), 6, 1))
+        turn[:, 3:, 0] = tip[:, :3, arm.task.unit[0]]
+        J = np.concatenate([J, turn], axis=2)
     return tuple(f"det J {'>' if sign > 0.0 else '<'} 0" for sign in np.linalg.det(J))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from ikgen.elimination.loop_frames import held_frames
 from ikgen.elimination.plan import EliminationPlan, choose_plan
 from ikgen.model.dh import DHChain, DHRow
 from ikgen.runtime.python.chain_kinematics import Motion
+from ikgen.runtime.python.six_joints import with_tool_joint
 
 __all__ = ["axis_motions", "elimination_plan"]
 
@@ -23,23 +25,30 @@ _MOST_SLIDES = 3
 """With more of them the rest cannot turn the tip to every rotation."""
 
 
-def elimination_plan(dh: DHChain) -> EliminationPlan | None:
+def elimination_plan(dh: DHChain, tool: int | None = None) -> EliminationPlan | None:
     """The plan for a whole pose; None unless six joints move, at most three of them slides, or all
-    turning where one of them, and no other, turns several axes; or where no plan finds all."""
+    turning where one of them, and no other, turns several axes; or where no plan finds all.
+
+    `tool` (0: x): the plan for the position and the direction of that axis of the tool. A turn about
+    it is then the sixth joint, and any pose with that direction does.
+    """
     moving = [row for row in dh.rows if dh.joints[row.driver].name not in dh.free]
     drivers = Counter(row.driver for row in moving)
     several = sum(count > 1 for count in drivers.values())
-    turning = tuple(row.revolute for row in moving)
+    turned = 0 if tool is None else 1
+    turning = tuple(row.revolute for row in moving) + (True,) * turned
     slides = turning.count(False)
-    if len(drivers) != 6 or len(dh.rows) - len(moving) != len(dh.free):
+    if len(drivers) + turned != 6 or len(dh.rows) - len(moving) != len(dh.free):
         return None
     if several > 1 or slides > (0 if several else _MOST_SLIDES):
         return None
     values = _HELD_VALUES if dh.free else (0.0,)
     family = np.array([held_frames(dh, value) for value in values])
     motions = axis_motions(dh, moving)
+    if tool is not None:
+        family, motions = with_tool_joint(family, tool), (*motions, (5, True, 1.0, 0.0))
     plan = choose_coupled(family, motions) if several else choose_plan(family, turning)
-    return plan if plan is not None and plan.usable else None
+    return replace(plan, tool=tool) if plan is not None and plan.usable else None
 
 
 def axis_motions(dh: DHChain, moving: Sequence[DHRow]) -> tuple[Motion, ...]:

@@ -61,6 +61,8 @@ class EliminationPlan:
     None where they are not, or where it settles few poses. motions: those of the axes in their order along
     the chain where a joint turns several; frames is then (n + 1, 4, 4), and the third number of an
     elimination its degree in that joint's angle; near `crowded` angles (rad) that is looked at closely.
+    tool: the tool's axis (0: x) that the last joint turns about, where the task leaves that turn open; it
+    is none of the arm's joints.
     """
 
     frames: Matrix
@@ -72,6 +74,7 @@ class EliminationPlan:
     parallel: ParallelPlan | None = None
     motions: tuple[Motion, ...] = ()
     crowded: tuple[float, ...] = ()
+    tool: int | None = None
 
     @property
     def coupled(self) -> int:

@@ -218,7 +218,8 @@ def as_written(form: ClosedForm, demand: Demand) -> ClosedForm:
 
 
 def _best_task(reading: Reading, demand: Demand) -> ClosedForm:
-    """The asked task; without one the task that fits the arm best and has a closed form."""
+    """The asked task; without one the task that fits the arm best and has a closed form: by the rules, or
+    by an elimination before the whole pose, which fewer joints than six can take here and there only."""
     from ikgen.tasks import find_task
     from ikgen.tasks.fitting import fitting_tasks
 
@@ -230,6 +231,10 @@ def _best_task(reading: Reading, demand: Demand) -> ClosedForm:
         tasks = [task for task in fitting if task.name not in demand.passed_over]
     first: ClosedForm | None = None
     for task in tasks:
+        if first is not None and task.whole_pose:
+            first = by_elimination(first, demand)
+            if first.plan is not None:
+                return first
         form = task_form(reading, task, demand.progress)
         if form.closed:
             return form
@@ -268,10 +273,15 @@ def by_rules(
 
 
 def by_elimination(form: ClosedForm, demand: Demand) -> ClosedForm:
-    """The form with the plan of an elimination where one applies."""
-    if not form.task.whole_pose:
-        return form
+    """The form with the plan of an elimination where one applies: of a whole pose, or of a position with
+    the direction of one of the tool's axes."""
     from ikgen.elimination import elimination_plan
+    from ikgen.tasks import AXES
 
+    task = form.task
+    pointing = task.position and task.orientation == "direction"
+    if form.plan is not None or not (task.whole_pose or pointing):
+        return form
     demand.progress("derive", "elimination")
-    return replace(form, plan=elimination_plan(form.reading.dh))
+    tool = AXES.index(task.axis) if pointing else None
+    return replace(form, plan=elimination_plan(form.reading.dh, tool))

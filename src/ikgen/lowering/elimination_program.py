@@ -12,6 +12,7 @@ from ikgen.lowering.joint_values import joint_value, variable_lets
 from ikgen.model.dh import DHChain
 from ikgen.program.inputs import HeldValue, PoseEntry
 from ikgen.program.liveness import trimmed
+from ikgen.program.ops import Op
 from ikgen.program.statements import Call, Comment, JointOutput, Let, Level, Program, Statement
 
 __all__ = ["elimination_name", "elimination_program"]
@@ -34,10 +35,13 @@ def _coupled(dh: DHChain) -> bool:
     return len(dh.rows) > dh.dof
 
 
-def elimination_program(dh: DHChain, most: int) -> Program:
+def elimination_program(dh: DHChain, most: int, tool: int | None = None) -> Program:
     """All joints that are not held from one call of an elimination (Raghavan and Roth 1993), which has at
-    `most` so many solutions."""
-    pose = tuple(PoseEntry(i, j) for i in range(3) for j in range(4))
+    `most` so many solutions. `tool`: the tool's axis (0: x) whose direction alone is read beside the
+    position; the last joint that the elimination finds turns about it, and is none of the arm's."""
+    columns = range(4) if tool is None else (tool, 3)
+    pose = tuple(PoseEntry(i, j) for i in range(3) for j in columns)
+    completed, entries = _whole_pose(tool)
     held = tuple(HeldValue(j) for j in dh.free_indices)
     prelude: list[Let] = []
     given: list[str] = []
@@ -47,14 +51,16 @@ def elimination_program(dh: DHChain, most: int) -> Program:
         given += names
     moving = [j for j in range(dh.dof) if HeldValue(j) not in held]
     found = tuple(name for j in moving for name in _names(dh, j))
+    if tool is not None:
+        found += (f"c{dh.dof + 1}", f"s{dh.dof + 1}")
     routine = "coupled_6r" if _coupled(dh) else _ROUTINES[_slides(dh)]
-    call = Call(routine, (*(entry.name for entry in pose), *given), found)
+    call = Call(routine, (*entries, *given), found)
     values = [_value(dh, j) for j in moving]
     body: tuple[Statement, ...] = (
         Comment(f"all joints at once: the general {elimination_name(dh)} elimination"),
         *(Let(f"q{j + 1}", operand_of(e)) for j, e in zip(moving, values, strict=True)),
     )
-    levels = (Level(1, None, None, ()), Level(most, None, call, body))
+    levels = (Level(1, None, None, completed), Level(most, None, call, body))
     outputs = tuple(
         JointOutput(j, HeldValue(j).name if HeldValue(j) in held else f"q{j + 1}")
         for j in range(dh.dof)
@@ -65,6 +71,31 @@ def elimination_program(dh: DHChain, most: int) -> Program:
             frames=file_frames(dh),
         )
     )  # fmt: skip
+
+
+def _whole_pose(tool: int | None) -> tuple[tuple[Statement, ...], tuple[str, ...]]:
+    """The pose's upper rows by name, and the statements that complete a direction of the tool's axis `tool`
+    to a rotation (Duff et al. 2017)."""
+    rows = [[PoseEntry(i, j).name for j in range(4)] for i in range(3)]
+    if tool is None:
+        return (), tuple(name for row in rows for name in row)
+    x, y, z = (row[tool] for row in rows)
+    first, second = (tool + 1) % 3, (tool + 2) % 3
+    for i in range(3):
+        rows[i][first], rows[i][second] = f"u{i + 1}", f"v{i + 1}"
+    lets = [
+        Let("side", Op("select", (Op("gt", (z, 0.0)), 1.0, -1.0))),
+        Let("share", Op("div", (-1.0, Op("add", ("side", z))))),
+        Let("skew", Op("mul", (Op("mul", (x, y)), "share"))),
+        Let("u1", Op("add", (1.0, Op("mul", (Op("mul", ("side", "share")), Op("mul", (x, x))))))),
+        Let("u2", Op("mul", ("side", "skew"))),
+        Let("u3", Op("neg", (Op("mul", ("side", x)),))),
+        Let("v1", "skew"),
+        Let("v2", Op("add", ("side", Op("mul", ("share", Op("mul", (y, y))))))),
+        Let("v3", Op("neg", (y,))),
+    ]
+    words = "any rotation with this direction: the elimination's last joint turns about it"
+    return (Comment(words), *lets), tuple(name for row in rows for name in row)
 
 
 def _names(dh: DHChain, joint: int) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from ikgen.report.document import Block, Paragraph, Picture
 from ikgen.report.worked_example import Array, WorkedExample
 from ikgen.runtime.python.hidden_angle import loop_resultant
 from ikgen.runtime.python.loop_equations import loop_constants, loop_equations
+from ikgen.tasks import AXES
 
 __all__ = ["hidden_roots", "loop_order", "roots_blocks"]
 
@@ -33,6 +34,8 @@ def loop_order(dh: DHChain, plan: EliminationPlan) -> list[str]:
     names = [dh.joints[row.driver].name for row in dh.rows]
     moving = [name for name in names if name not in dh.free]
     start, reverse = _hidden(plan)
+    if plan.tool is not None:
+        moving.append(f"a turn about the tool's {AXES[plan.tool]} axis")
     return [moving[(start - i if reverse else start + i) % len(moving)] for i in range(len(moving))]
 
 

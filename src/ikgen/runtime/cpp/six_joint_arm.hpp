@@ -61,7 +61,7 @@ inline Frames chain_of(const double (&F)[N][12]) noexcept {
 // which are six unless Frames has room for more.
 template <class Arm, class Method, class Frames = g6::Chain>
 struct SixJointArm {
-  static constexpr int kCount = sizeof(Arm::kMotions) / sizeof(Arm::kMotions[0]);
+  static constexpr std::size_t kCount = sizeof(Arm::kMotions) / sizeof(Arm::kMotions[0]);
   static constexpr int kFrames = sizeof(Frames) / sizeof(g6::Frame);
   using Plan = typename Arm::Plan;
 
@@ -69,9 +69,9 @@ struct SixJointArm {
   static void merge(const double* held, double (&F)[kFrames][12]) noexcept {
     g6::Frame frame = constant(0);
     int n = 0;
-    for (int i = 0; i < kCount; ++i) {
+    for (std::size_t i = 0; i < kCount; ++i) {
       const auto& motion = Arm::kMotions[i];
-      if (!Arm::kHeld[motion.joint]) {
+      if (!is_held(motion.joint)) {
         write(frame, F[n++]);
         frame = constant(i + 1);
         continue;
@@ -116,11 +116,13 @@ struct SixJointArm {
       n += Arm::kHeld[j] ? 0 : 1;
     }
     for (const auto& motion : Arm::kMotions)
-      if (!Arm::kHeld[motion.joint]) out[place[motion.joint]] = motion.revolute;
+      if (!is_held(motion.joint)) out[place[motion.joint]] = motion.revolute;
     return out;
   }
 
-  static g6::Frame constant(int i) noexcept {
+  static constexpr bool is_held(int joint) noexcept { return Arm::kHeld[static_cast<std::size_t>(joint)]; }
+
+  static g6::Frame constant(std::size_t i) noexcept {
     g6::Frame out;
     for (std::size_t r = 0; r < 3; ++r) {
       for (std::size_t c = 0; c < 3; ++c) out.R(r, c) = Arm::kFrames[i][r][c];

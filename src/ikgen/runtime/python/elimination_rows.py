@@ -10,7 +10,7 @@ from ikgen.runtime.python.array_types import Array, Index
 from ikgen.runtime.python.chain_kinematics import Motion
 from ikgen.runtime.python.general_6r import Plan, six_joint_rows
 from ikgen.runtime.python.refinement import rank_loss
-from ikgen.runtime.python.six_joints import SixJoints, six_joints
+from ikgen.runtime.python.six_joints import SixJoints, six_joints, with_tool_joint
 from ikgen.runtime.python.solution_rows import places
 from ikgen.runtime.python.solved_arm import Arm
 
@@ -31,8 +31,10 @@ def _six_joints(arm: Arm, plan: Plan, held: Array) -> SixJoints:
             continue
         motions.append((6 + len(values), turns, 1.0, 0.0))
         values.append(_value(columns, turns))
-    at = np.stack(values, axis=1) if values else None
-    return six_joints(arm.chain.frames, plan.length, tuple(motions), at)
+    at, frames = np.stack(values, axis=1) if values else None, arm.chain.frames
+    if plan.tool is not None:
+        frames = with_tool_joint(frames, plan.tool)
+    return six_joints(frames, plan.length, (*motions, *moving), at)
 
 
 def _value(columns: Iterator[Array], turns: bool) -> Array:

@@ -52,7 +52,8 @@ class Plan:
     """How an arm is solved: its typical `length` (m), the `eliminations` that suit it, in order of
     preference, and the function that finds candidates by one of them. `direct`: ways that its geometry
     allows besides, tried first. `motions`: those of the axes in their order along the chain where they are
-    more than the six joints."""
+    more than the six joints. `tool`: the tool's axis (0: x) that the last joint turns about, where that is
+    none of the arm's."""
 
     length: float
     eliminations: tuple[Elimination, ...]
@@ -60,6 +61,7 @@ class Plan:
     find: Finder
     direct: tuple[Way, ...] = ()
     motions: tuple[Motion, ...] = ()
+    tool: int | None = None
 
     @property
     def axes(self) -> tuple[Motion, ...]:

@@ -16,8 +16,9 @@ def branch_names(arm: Arm, q: Array) -> tuple[str, ...]:
     """A name for each row (k, dof).
 
     Arms with a shoulder, an elbow and a wrist (`arm.branch_kind` "names") have sides of those. Others have
-    the number of the closed form's branch on which the row lies ("number"), and those of the 6R
-    elimination, whose rows are all on one, the sign of the determinant of the Jacobian ("orientation").
+    the number of the closed form's branch on which the row lies ("number"), and those of an
+    elimination, whose rows are all on one, the sign of the determinant of the Jacobian of its six joints
+    ("orientation").
     """
     if not len(q):
         return ()
@@ -25,7 +26,12 @@ def branch_names(arm: Arm, q: Array) -> tuple[str, ...]:
         return _side_names(arm, q)
     if arm.branch_kind == "number":
         return tuple(f"branch {number}" for number in _branch_numbers(arm, q))
-    J = tip_and_jacobian(arm.chain, q)[1][:, :, arm.moving]
+    tip, J = tip_and_jacobian(arm.chain, q)
+    J = J[:, :, arm.moving]
+    if J.shape[2] == 5:  # the elimination's last joint turns about the tool's axis
+        turn = np.zeros((len(q), 6, 1))
+        turn[:, 3:, 0] = tip[:, :3, arm.task.unit[0]]
+        J = np.concatenate([J, turn], axis=2)
     return tuple(f"det J {'>' if sign > 0.0 else '<'} 0" for sign in np.linalg.det(J))
 
 

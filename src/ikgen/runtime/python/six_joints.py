@@ -12,7 +12,7 @@ from ikgen.runtime.python.chain_kinematics import Chain, Motion, chain_of
 from ikgen.runtime.python.rigid_motion import motions_z, rotations_z
 from ikgen.runtime.python.solution_rows import Turning, rows_of
 
-__all__ = ["SixJoints", "one_axis_each", "six_joints"]
+__all__ = ["SixJoints", "one_axis_each", "six_joints", "with_tool_joint"]
 
 
 @dataclass(frozen=True)
@@ -39,6 +39,16 @@ class SixJoints:
 def one_axis_each(turning: Turning) -> tuple[Motion, ...]:
     """The motions of six joints, each turning about or sliding along an axis of its own."""
     return tuple((i, turns, 1.0, 0.0) for i, turns in enumerate(turning))
+
+
+def with_tool_joint(F: Array, axis: int) -> Array:
+    """Constant transforms (..., n + 2, 4, 4) of the chain F (..., n + 1, 4, 4) and of a joint behind it: a
+    turn about the tool's axis (0: x) through its origin, which a task leaves open that reads the position
+    and the direction of that axis."""
+    last = np.eye(4)
+    last[:3, :3] = np.roll(np.eye(3), -1 - axis, axis=0)
+    behind = np.broadcast_to(last, (*F.shape[:-3], 1, 4, 4))
+    return np.concatenate([F[..., :-1, :, :], F[..., -1:, :, :] @ last.T, behind], axis=-3)
 
 
 def six_joints(
