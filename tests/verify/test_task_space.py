@@ -89,6 +89,22 @@ def test_search_finds_solutions_and_keeps_free_joints(task: str, free: tuple[str
         assert a.distance(found, held).min() < 1e-6
 
 
+def test_regular_is_what_is_typical_of_an_arm() -> None:
+    """With an elbow 20 m to the side, links of half a metre move little of what the arm's size measures."""
+    usual = arm()
+    assert usual.regular_above() == REGULAR_SIGMA
+    oracle = PinocchioOracle(
+        tree_of(six_axis_urdf().replace("0 0 0.5", "0 20 0.5", 1)),
+        "l0",
+        "tip",
+        [f"j{k + 1}" for k in range(6)],
+    )
+    long = arm_under_test(oracle, TASK_SPACES["pose"], (oracle.lower, oracle.upper), ())
+    sigma = sample_sets(long, 200, 0)["random"].sigma
+    assert (sigma < REGULAR_SIGMA).all() and 1e-7 < long.regular_above() < REGULAR_SIGMA
+    assert (sigma > long.regular_above()).mean() > 0.5
+
+
 def test_sampled_sets() -> None:
     a = arm()
     sets = sample_sets(a, 200, 0)

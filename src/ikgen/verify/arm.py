@@ -18,8 +18,10 @@ __all__ = ["FAR_LIMIT", "REGULAR_SIGMA", "ArmUnderTest", "arm_under_test"]
 Array = NDArray[np.float64]
 
 REGULAR_SIGMA = 1e-3
-"""Smallest singular value of the length-scaled task Jacobian above which a configuration is
+"""Smallest singular value of the length-scaled task Jacobian above which a configuration is usually
 regular."""
+
+_LEAST_REGULAR = 1e-7
 
 FAR_LIMIT = 1e3
 """Limits (rad or m) beyond this mean "none": files write 999999, where rounding alone moves the
@@ -119,6 +121,13 @@ class ArmUnderTest:
             return np.ones(len(q))
         values = np.linalg.svd(self.scaled_jacobian(q)[1], compute_uv=False)
         return np.asarray(values[:, min(self.rank, len(self.active)) - 1])
+
+    def regular_above(self, usual: float = REGULAR_SIGMA) -> float:
+        """Smallest singular value above which a configuration is regular: the `usual` one, or a tenth of
+        what is typical of an arm that is nowhere far from singular, as one of links that are short beside
+        a long one."""
+        typical = np.median(self.sigma(self.uniform(np.random.default_rng(0), 64)))
+        return min(usual, max(0.1 * float(typical), _LEAST_REGULAR))
 
     def difference(self, a: Array, b: Array) -> Array:
         """Joint-wise a - b, modulo the joints' periods."""

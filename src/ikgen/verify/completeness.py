@@ -30,7 +30,7 @@ __all__ = [
 Array = NDArray[np.float64]
 
 FAILS_ABOVE = 1e-3
-"""Smallest singular value from which on a miss, or a pose without any row, fails the verification.
+"""Smallest singular value from which on a miss, or a pose without any row, usually fails the verification.
 Those below are counted and reported. To be lowered as solvers improve."""
 
 BAND_EDGES = (1e-3, 1e-5, 1e-7)
@@ -92,7 +92,8 @@ def sensitivity(arm: ArmUnderTest, q: Array) -> Sensitivity:
 class Survey:
     """All poses of several trials together: the generating configurations' smallest singular values
     `sigma` (N,), how far `off` (N,) the nearest row is, which are `missed`, which only found
-    `loose` and which `unanswered` (N,). Pose k is number `index[k]` of `trials[which[k]]`."""
+    `loose` and which `unanswered` (N,). A miss fails the verification from the singular value `fails_above`
+    on. Pose k is number `index[k]` of `trials[which[k]]`."""
 
     trials: tuple[Trial, ...]
     which: NDArray[np.int64]
@@ -102,6 +103,7 @@ class Survey:
     missed: NDArray[np.bool_]
     loose: NDArray[np.bool_]
     unanswered: NDArray[np.bool_]
+    fails_above: float
 
     def case(self, k: int) -> str:
         """Pose k in words."""
@@ -141,6 +143,7 @@ def survey(arm: ArmUnderTest, runner: Runner, trials: Sequence[Trial]) -> Survey
         missed,
         loose,
         np.concatenate([t.rows.count == 0 for t in trials]),
+        arm.regular_above(FAILS_ABOVE),
     )
 
 
@@ -181,7 +184,7 @@ def _nearest_row(arm: ArmUnderTest, rows: Rows, q: Array, poses: Array) -> tuple
 
 def check_completeness(found: Survey) -> CheckResult:
     """The generating configuration is among the rows, modulo whole turns."""
-    regular = found.sigma >= FAILS_ABOVE
+    regular = found.sigma >= found.fails_above
     if not regular.any():
         return result("completeness", 0, 1, detail="no sampled configuration is regular")
     off = np.where(regular, found.off, 0.0)
@@ -194,7 +197,7 @@ def check_completeness(found: Survey) -> CheckResult:
 
 def check_answered(found: Survey) -> CheckResult:
     """No pose that the arm stands in is answered without rows."""
-    bad = found.unanswered & (found.sigma >= FAILS_ABOVE)
+    bad = found.unanswered & (found.sigma >= found.fails_above)
     case = found.case(int(np.argmax(bad)))
     detail = _below(found, found.unanswered, "without any row")
     return result(

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.verify.arm import REGULAR_SIGMA, ArmUnderTest
+from ikgen.verify.arm import ArmUnderTest
 from ikgen.verify.checks import LIMIT_TOLERANCE
 from ikgen.verify.completeness import FOUND_TOLERANCE
 from ikgen.verify.search import find_solutions
@@ -30,9 +30,10 @@ def check_exhaustive(
     found = find_solutions(arm, sample.poses, sample.q, starts, rng)
     count = failures = 0
     case = ""
+    regular = arm.regular_above()
     for i, q in enumerate(found):
         known: list[Array] = []
-        for candidate in q[arm.sigma(q) > REGULAR_SIGMA]:
+        for candidate in q[arm.sigma(q) > regular]:
             if all(arm.distance(candidate, other) > FOUND_TOLERANCE for other in known):
                 known.append(candidate)
         if not known:
