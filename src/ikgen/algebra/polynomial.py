@@ -99,6 +99,8 @@ def _combine(a: Trig, b: Trig) -> list[tuple[float, Trig | None]]:
 def _multiply_monomials(
     group_of: GroupOf, a: Monomial, b: Monomial
 ) -> list[tuple[float, Monomial]]:
+    if a == ONE or b == ONE:
+        return [(1.0, b if a == ONE else a)]
     powers = dict(a[1])
     for joint, power in b[1]:
         powers[joint] = powers.get(joint, 0) + power
