@@ -34,7 +34,8 @@ class Expr:
     """A node: operation, arguments, probe values. Compare by identity; made by `NodeTable` only."""
 
     __slots__ = (
-        "_vanishes", "args", "atom", "id", "is_fixed", "name", "op", "probe", "scale", "support", "value",
+        "_vanishes", "args", "atom", "id", "is_const", "is_fixed", "name", "op", "probe", "scale",
+        "support", "value",
     )  # fmt: skip
 
     def __init__(
@@ -52,11 +53,8 @@ class Expr:
         self._vanishes: bool | None = None  # not yet asked
         self.is_fixed: bool = op != "atom" and all(a.is_fixed for a in args)
         """Whether the node depends on parameters and numbers only."""
-
-    @property
-    def is_const(self) -> bool:
+        self.is_const: bool = op == "const"
         """Whether the node is a literal number."""
-        return self.op == "const"
 
     @property
     def vanishes(self) -> bool:

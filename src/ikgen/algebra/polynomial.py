@@ -9,6 +9,7 @@ identity hold by construction and two polynomials are equal exactly when their t
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
@@ -72,7 +73,8 @@ def scale(graph: ExpressionGraph, a: Polynomial, factor: Expr) -> Polynomial:
     return {mono: graph.mul(factor, value) for mono, value in a.items()}
 
 
-def _combine(a: Trig, b: Trig) -> list[tuple[float, Trig | None]]:
+@cache
+def _combine(a: Trig, b: Trig) -> tuple[tuple[float, Trig | None], ...]:
     """Product to sum: the factors of two trigonometric functions of one group as a sum of single ones."""
     total = tuple(x + y for x, y in zip(a[0], b[0], strict=True))
     difference = tuple(x - y for x, y in zip(a[0], b[0], strict=True))
@@ -93,12 +95,14 @@ def _combine(a: Trig, b: Trig) -> list[tuple[float, Trig | None]]:
                 out.append((factor, None))
         else:
             out.append((factor * (sign if kind == "s" else 1), (combination, kind)))
-    return out
+    return tuple(out)
 
 
 def _multiply_monomials(
     group_of: GroupOf, a: Monomial, b: Monomial
 ) -> list[tuple[float, Monomial]]:
+    if a == ONE or b == ONE:
+        return [(1.0, b if a == ONE else a)]
     powers = dict(a[1])
     for joint, power in b[1]:
         powers[joint] = powers.get(joint, 0) + power
@@ -109,7 +113,7 @@ def _multiply_monomials(
     terms: list[tuple[float, tuple[Trig, ...]]] = [(1.0, ())]
     for group in sorted(by_group):
         factors = by_group[group]
-        pieces = [(1.0, factors[0])] if len(factors) == 1 else _combine(factors[0], factors[1])
+        pieces = ((1.0, factors[0]),) if len(factors) == 1 else _combine(factors[0], factors[1])
         terms = [
             (c * k, (*trigs, trig) if trig is not None else trigs)
             for c, trigs in terms
@@ -127,5 +131,6 @@ def multiply(graph: ExpressionGraph, group_of: GroupOf, a: Polynomial, b: Polyno
             if product is graph.zero:
                 continue
             for factor, mono in _multiply_monomials(group_of, mono_a, mono_b):
-                _accumulate(graph, out, mono, graph.mul(graph.const(factor), product))
+                scaled = product if factor == 1.0 else graph.mul(graph.const(factor), product)
+                _accumulate(graph, out, mono, scaled)
     return out

@@ -28,13 +28,15 @@ class AngleLattice:
         self._represented: dict[
             AngleCombination, tuple[int, AngleCombination, AngleCombination]
         ] = {}
+        self._ranks: dict[frozenset[AngleCombination], int] = {}
+        self._solved_rank = 0
 
     def over(self, graph: ExpressionGraph, variables: JointVariables) -> AngleLattice:
         """The same lattice over a graph that has all nodes of this one's."""
         other = copy(self)
         other._graph, other._variables = graph, variables
         other.solved = dict(self.solved)
-        other._represented = dict(self._represented)
+        other._represented, other._ranks = dict(self._represented), dict(self._ranks)
         return other
 
     def add(self, combination: AngleCombination) -> None:
@@ -55,6 +57,9 @@ class AngleLattice:
     def rebuild(self) -> None:
         """Find all combinations that follow from the solved ones."""
         self._represented.clear()
+        self._ranks.clear()
+        known = [list(k) for k in self.solved]
+        self._solved_rank = int(np.linalg.matrix_rank(np.array(known))) if known else 0
         self.known = KnownCombinations(self.solved, tuple(self._variables.group))
 
     def pair(self, combination: AngleCombination) -> tuple[Expr, Expr] | None:
@@ -101,7 +106,9 @@ class AngleLattice:
         """Number of independent unknowns among the angles of combinations."""
         if not combinations:
             return 0
-        known = [list(k) for k in self.solved]
-        base = np.linalg.matrix_rank(np.array(known)) if known else 0
-        both = np.linalg.matrix_rank(np.array(known + [list(k) for k in combinations]))
-        return int(both - base)
+        key = frozenset(combinations)
+        if key not in self._ranks:
+            known = [list(k) for k in self.solved]
+            both = np.linalg.matrix_rank(np.array(known + [list(k) for k in combinations]))
+            self._ranks[key] = int(both) - self._solved_rank
+        return self._ranks[key]

@@ -83,7 +83,9 @@ class Knowledge:
         self.known_mask = 0
         self.binding: dict[int, Expr] = {}
         self._lattice = AngleLattice(equations.graph, equations.variables)
-        self._converted: dict[int, Polynomial] = {}
+        self._converted: dict[int, tuple[int, Polynomial]] = {}
+        self._ranks: dict[int, int] = {}
+        self._rewritten: dict[tuple[AngleCombination, str], Polynomial] = {}
 
     def workspace(self) -> Knowledge:
         """What is known, over an expression graph of its own: what is added there is not seen here."""
@@ -92,6 +94,7 @@ class Knowledge:
         other.equations = self.equations.over(other.graph)
         other.variables = other.equations.variables
         other.binding, other._converted = dict(self.binding), {}
+        other._ranks, other._rewritten = {}, {}
         other._lattice = self._lattice.over(other.graph, other.variables)
         return other
 
@@ -114,8 +117,9 @@ class Knowledge:
 
     def refresh(self) -> None:
         """Rebuild the lattice of known combinations and mark the atoms in it."""
-        self._converted.clear()
         self._lattice.rebuild()
+        self._ranks.clear()
+        self._rewritten.clear()
         self._mark_atoms()
 
     def _mark_atoms(self) -> None:
@@ -165,13 +169,13 @@ class Knowledge:
 
     def convert(self, node: Expr) -> Polynomial:
         """The node as a polynomial in the unknown atoms (combinations not yet reduced)."""
-        if not node.support & ~self.known_mask:
+        unknown = node.support & ~self.known_mask
+        if not unknown:
             return {} if node.vanishes else {poly.ONE: node}
         found = self._converted.get(node.id)
-        if found is None:
-            found = self._convert(node)
-            self._converted[node.id] = found
-        return found
+        if found is None or found[0] != unknown:
+            found = self._converted[node.id] = unknown, self._convert(node)
+        return found[1]
 
     def _convert(self, node: Expr) -> Polynomial:
         g = self.graph
@@ -204,10 +208,10 @@ class Knowledge:
         out: Polynomial = {}
         for (trigs, slides), value in polynomial.items():
             term: Polynomial = {((), slides): value}
-            for combination, kind in trigs:
-                term = poly.multiply(
-                    g, self.variables.group_of, term, self._reduced(combination, kind)
-                )
+            for trig in trigs:
+                if trig not in self._rewritten:
+                    self._rewritten[trig] = self._reduced(*trig)
+                term = poly.multiply(g, self.variables.group_of, term, self._rewritten[trig])
             out = poly.add(g, out, term)
         return out
 
@@ -237,6 +241,11 @@ class Knowledge:
     def unknown_rank(self, support: int) -> int:
         """Number of independent unknowns among the atoms of a support mask (99: unreadable pose)."""
         mask = support & ~self.known_mask
+        if mask not in self._ranks:
+            self._ranks[mask] = self._rank_of(mask)
+        return self._ranks[mask]
+
+    def _rank_of(self, mask: int) -> int:
         combinations: list[AngleCombination] = []
         distances: set[AngleCombination] = set()
         for node in self.graph.atoms_in(mask):

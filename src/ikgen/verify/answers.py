@@ -9,14 +9,15 @@ from numpy.typing import NDArray
 
 from ikgen.verify.arm import ArmUnderTest
 from ikgen.verify.reach import unreachable_poses
-from ikgen.verify.runners.runner import Rows, Runner
+from ikgen.verify.runners.runner import Runner
 from ikgen.verify.sampling import SampleSet, generator, sample_sets
-from ikgen.verify.trials import Trial, run_trial
+from ikgen.verify.trials import Trial, run_trial, run_trials
 
 __all__ = ["Answers", "collect_answers"]
 
 Array = NDArray[np.float64]
 
+_INSIDE_SETS = ("at limits", "special")
 _SINGULAR_SETS = ("singular", "near singular", "boundary", "special")
 _ORDERED = 100  # poses solved again with a random seed
 _REPEATED = 20
@@ -63,9 +64,8 @@ def _first(sample: SampleSet, n: int) -> SampleSet:
 
 
 def _slice(trial: Trial, n: int) -> Trial:
-    rows = trial.rows
-    some = Rows(rows.q[:n], rows.count[:n], rows.status[:n], rows.singular[:n])
-    return Trial(_first(trial.sample, n), some, trial.limits, trial.seeded)
+    rows = trial.rows.at(np.arange(n)[: len(trial.sample)])
+    return Trial(_first(trial.sample, n), rows, trial.limits, trial.seeded)
 
 
 def _with_seeds(runner: Runner, arm: ArmUnderTest, sample: SampleSet, seeds: Array) -> Trial:
@@ -108,25 +108,18 @@ def _in_batch(runner: Runner, arm: ArmUnderTest, limited: Trial) -> Trial:
 def collect_answers(runner: Runner, arm: ArmUnderTest, samples: int, seed: int) -> Answers:
     """Draw all sets and solve them; whatever the emitted code raises passes through."""
     sets = sample_sets(arm, samples, seed)
-    limited = run_trial(runner, arm, sets["random"], limits=True)
-    unlimited = _in_batch(runner, arm, limited)
     some, few = (_first(sets["random"], n) for n in (_ORDERED, _REPEATED))
     seeds = arm.uniform(generator(seed, "seeds"), len(some))
-    outside = sets["outside limits"]
+    asked = [sets[label] for label in ("random", *_INSIDE_SETS, "outside limits")]
+    limited, *inside, outside = run_trials(runner, arm, asked, limits=True)
+    unlimited = _in_batch(runner, arm, limited)
+    singular = [sets[label] for label in _SINGULAR_SETS]
     return Answers(
         limited=limited,
         unlimited=unlimited,
-        inside=tuple(
-            run_trial(runner, arm, sets[label], limits=True) for label in ("at limits", "special")
-        ),
-        outside=(
-            run_trial(runner, arm, outside, limits=True),
-            run_trial(runner, arm, outside, limits=False),
-        ),
-        seeded=tuple(
-            run_trial(runner, arm, sets[label], limits=True, seeded=True)
-            for label in _SINGULAR_SETS
-        ),
+        inside=tuple(inside),
+        outside=(outside, run_trial(runner, arm, outside.sample, limits=False)),
+        seeded=run_trials(runner, arm, singular, limits=True, seeded=True),
         ordered=_with_seeds(runner, arm, some, seeds),
         seeds=seeds,
         searched=_slice(unlimited, _SEARCHED),

@@ -130,9 +130,9 @@ def survey(arm: ArmUnderTest, runner: Runner, trials: Sequence[Trial]) -> Survey
     """Look for the generating configuration of every pose of `trials`.
 
     Where rows stand for a continuum (flagged `singular`) and none is the generating configuration, the
-    pose is solved again with that as the seed: it must then be among the rows.
+    pose is solved again with that as the seed, if none of `trials` did so: it must then be among the rows.
     """
-    looks = [_look(arm, runner, trial) for trial in trials]
+    looks = [_look(arm, runner, trial, trials) for trial in trials]
     off, missed, loose = (np.concatenate(part) for part in zip(*looks, strict=True))
     return Survey(
         tuple(trials),
@@ -148,7 +148,7 @@ def survey(arm: ArmUnderTest, runner: Runner, trials: Sequence[Trial]) -> Survey
 
 
 def _look(
-    arm: ArmUnderTest, runner: Runner, trial: Trial
+    arm: ArmUnderTest, runner: Runner, trial: Trial, trials: Sequence[Trial]
 ) -> tuple[Array, NDArray[np.bool_], NDArray[np.bool_]]:
     """Distance of the nearest row, which poses miss theirs, which have it only loosely; each (N,)."""
     q, poses = trial.sample.q, trial.sample.poses
@@ -157,12 +157,27 @@ def _look(
     missed = ~(off <= sensitive.within(POSE_NOISE + error))
     again = np.flatnonzero(missed & trial.rows.singular.any(axis=1))
     if len(again) and not trial.seeded:
-        free = arm.held_values(q[again], poses[again])
-        rows = runner.solve_many(poses[again], free=free, seeds=q[again], limits=trial.limits)
+        rows = _seeded_rows(arm, runner, trial, trials, again)
         off[again], error[again] = _nearest_row(arm, rows, q[again], poses[again])
         missed = ~(off <= sensitive.within(POSE_NOISE + error))
     loose = ~missed & (off > sensitive.within(POSE_NOISE))
     return off, missed, np.asarray(loose)
+
+
+def _seeded_rows(
+    arm: ArmUnderTest,
+    runner: Runner,
+    trial: Trial,
+    trials: Sequence[Trial],
+    some: NDArray[np.int64],
+) -> Rows:
+    """The answers to poses `some` (k,) of a trial with the generating configurations as seeds."""
+    for other in trials:
+        if other.seeded and other.sample is trial.sample and other.limits == trial.limits:
+            return other.rows.at(some)
+    q, poses = trial.sample.q[some], trial.sample.poses[some]
+    free = arm.held_values(q, poses)
+    return runner.solve_many(poses, free=free, seeds=q, limits=trial.limits)
 
 
 def _nearest_row(arm: ArmUnderTest, rows: Rows, q: Array, poses: Array) -> tuple[Array, Array]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +13,7 @@ from ikgen.verify.runners.runner import Rows, Runner
 from ikgen.verify.sampling import SampleSet
 from ikgen.verify.verification_report import CheckResult
 
-__all__ = ["Trial", "nearest", "result", "run_trial", "spell"]
+__all__ = ["Trial", "nearest", "result", "run_trial", "run_trials", "spell"]
 
 Array = NDArray[np.float64]
 
@@ -34,10 +35,38 @@ def run_trial(
     runner: Runner, arm: ArmUnderTest, sample: SampleSet, *, limits: bool, seeded: bool = False
 ) -> Trial:
     """Solve all poses of the set, free joints held where the generating configuration has them."""
-    free = arm.held_values(sample.q, sample.poses)
-    seeds = sample.q if seeded else None
-    rows = runner.solve_many(sample.poses, free=free, seeds=seeds, limits=limits)
-    return Trial(sample, rows, limits, seeded)
+    return run_trials(runner, arm, [sample], limits=limits, seeded=seeded)[0]
+
+
+def run_trials(
+    runner: Runner,
+    arm: ArmUnderTest,
+    samples: Sequence[SampleSet],
+    *,
+    limits: bool,
+    seeded: bool = False,
+) -> tuple[Trial, ...]:
+    """`run_trial` of several sets in one call: what is in several of them is solved once, and poses that
+    leave doubts come in large stacks."""
+    q = np.concatenate([sample.q for sample in samples])
+    poses = np.concatenate([sample.poses for sample in samples])
+    known: dict[bytes, int] = {}
+    asked = np.concatenate([q, poses.reshape(len(q), -1)], axis=1)
+    places = np.array(
+        [known.setdefault(one.tobytes(), len(known)) for one in asked], dtype=np.int64
+    )
+    first = np.unique(places, return_index=True)[1]
+    rows = runner.solve_many(
+        poses[first],
+        free=arm.held_values(q[first], poses[first]),
+        seeds=q[first] if seeded else None,
+        limits=limits,
+    )
+    parts = np.split(places, np.cumsum([len(sample) for sample in samples])[:-1])
+    return tuple(
+        Trial(sample, rows.at(part), limits, seeded)
+        for sample, part in zip(samples, parts, strict=True)
+    )
 
 
 def nearest(arm: ArmUnderTest, a: Array, b: Array, *, same: bool = False) -> Array:

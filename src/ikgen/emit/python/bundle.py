@@ -74,9 +74,9 @@ def _used(shell: RuntimeSource) -> _Bundle:
             if needed is not None:
                 stack.append((needed, _private(needed[1])))
     order: dict[str, None] = {}
-    for module_name in sorted({module_name for module_name, _ in names}):
-        order |= dict.fromkeys(_after_imports(module_name))
     used = {module_name for module_name, _ in names}
+    for module_name in sorted(used):
+        _add_after_imports(module_name, order)
     return _Bundle(tuple(read_source(name) for name in order if name in used), names)
 
 
@@ -98,11 +98,12 @@ def _owner(module: RuntimeSource, name: str) -> Key | None:
     return module.internal.get(name)
 
 
-def _after_imports(name: str) -> Iterator[str]:
-    """The modules that a module imports, each after its own, then itself."""
-    for module, _ in read_source(name).internal.values():
-        yield from _after_imports(module)
-    yield name
+def _add_after_imports(name: str, order: dict[str, None]) -> None:
+    """Adds a module, and before it those that it imports, each after its own, but for what is there."""
+    if name not in order:
+        for module, _ in read_source(name).internal.values():
+            _add_after_imports(module, order)
+        order[name] = None
 
 
 def _kept(module: RuntimeSource, used: _Bundle) -> list[Definition]:

@@ -80,6 +80,7 @@ def taken_apart(name: str, text: str, *, moved: bool = True) -> RuntimeSource:
     external: list[External] = []
     definitions: list[Definition] = []
     imports: list[int] = []
+    parts: dict[ast.stmt, list[ast.AST]] = {}
     above = 0
     for node in tree.body:
         if isinstance(node, ast.Import | ast.ImportFrom):
@@ -90,13 +91,14 @@ def taken_apart(name: str, text: str, *, moved: bool = True) -> RuntimeSource:
                 else:
                     external.append(one)
         elif not _is_about_the_module(node):
-            definitions.append(_definition(node, lines, above))
+            parts[node] = list(ast.walk(node))
+            definitions.append(_definition(node, parts[node], lines, above))
             if moved and not definitions[-1].defines:
                 raise ValueError(f"{name}, line {node.lineno}: only definitions can be bundled")
         above = node.end_lineno or node.lineno
     own = {n for d in definitions for n in d.defines} | set(internal)
-    for node in tree.body if moved else ():
-        shadows = sorted(set(_locals(node)) & own)
+    for node in parts if moved else ():
+        shadows = sorted(set(_locals(node, parts[node])) & own)
         if shadows:
             raise ValueError(f"{name}, line {node.lineno}: local names of the module: {shadows}")
     span = (min(imports), max(imports)) if imports else (0, 0)
@@ -110,22 +112,22 @@ def _is_about_the_module(node: ast.stmt) -> bool:
     return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
 
 
-def _definition(node: ast.stmt, lines: list[str], above: int) -> Definition:
+def _definition(node: ast.stmt, parts: list[ast.AST], lines: list[str], above: int) -> Definition:
     block = isinstance(node, ast.FunctionDef | ast.ClassDef)
     start = node.lineno
     if isinstance(node, ast.FunctionDef | ast.ClassDef):
         start = min([start, *(d.lineno for d in node.decorator_list)])
     while start - 1 > above and lines[start - 2].startswith("#"):
         start -= 1
-    places = tuple((line - start, column, name) for line, column, name in _places(node))
+    places = tuple((line - start, column, name) for line, column, name in _places(node, parts))
     part = tuple(lines[start - 1 : node.end_lineno])
-    details = tuple((a - start, b - start) for a, b in _details(node, lines))
+    details = tuple((a - start, b - start) for a, b in _details(parts, lines))
     return Definition(_defined(node), part, start, places, block, details)
 
 
-def _details(node: ast.stmt, lines: list[str]) -> Iterator[tuple[int, int]]:
+def _details(parts: list[ast.AST], lines: list[str]) -> Iterator[tuple[int, int]]:
     """First and last line (from 1) of what docstrings say behind their first paragraph, in order."""
-    for part in ast.walk(node):
+    for part in parts:
         if isinstance(part, ast.FunctionDef | ast.ClassDef) and ast.get_docstring(part):
             first, last = part.body[0].lineno, part.body[0].end_lineno or part.body[0].lineno
             blank = next((i for i in range(first, last) if not lines[i - 1].strip()), None)
@@ -147,18 +149,18 @@ def _defined(node: ast.stmt) -> tuple[str, ...]:
     return tuple(names) if len(names) == len(parts) else ()
 
 
-def _places(node: ast.stmt) -> Iterator[tuple[int, int, str]]:
+def _places(node: ast.stmt, parts: list[ast.AST]) -> Iterator[tuple[int, int, str]]:
     if isinstance(node, ast.FunctionDef | ast.ClassDef):
         yield node.lineno, len("def " if isinstance(node, ast.FunctionDef) else "class "), node.name
-    for part in ast.walk(node):
+    for part in parts:
         if isinstance(part, ast.Name):
             yield part.lineno, part.col_offset, part.id
 
 
-def _locals(node: ast.stmt) -> Iterator[str]:
+def _locals(node: ast.stmt, parts: list[ast.AST]) -> Iterator[str]:
     """Names that are bound inside a function or class."""
     if isinstance(node, ast.FunctionDef | ast.ClassDef):
-        for part in ast.walk(node):
+        for part in parts:
             if isinstance(part, ast.arg):
                 yield part.arg
             elif isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store):

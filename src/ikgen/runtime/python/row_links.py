@@ -24,12 +24,18 @@ def differences(arm: Arm, a: Array, b: Array) -> Array:
 def linked_rows(arm: Arm, q: Array, real: Flags) -> Index:
     """For rows (n, m, dof) of which some are real (n, m): the index (n - 1, m) of the row at the next value
     that each is nearest to and that is nearest to it; -1 where there is none."""
-    gap = np.abs(differences(arm, q[:-1, :, None], q[1:, None])).max(axis=3)
-    gap = np.where(real[:-1, :, None] & real[1:, None], gap, inf)
+    order = np.argsort(~real, axis=1, kind="stable")[:, : real.sum(axis=1).max(initial=1)]
+    rows = np.take_along_axis(q, order[:, :, None], axis=1)
+    some = np.take_along_axis(real, order, axis=1)
+    gap = np.abs(differences(arm, rows[:-1, :, None], rows[1:, None])).max(axis=3)
+    gap = np.where(some[:-1, :, None] & some[1:, None], gap, inf)
     there, back = gap.argmin(axis=2), gap.argmin(axis=1)
-    mutual = np.take_along_axis(back, there, axis=1) == np.arange(q.shape[1])
+    mutual = np.take_along_axis(back, there, axis=1) == np.arange(order.shape[1])
     near = np.take_along_axis(gap, there[:, :, None], axis=2)[:, :, 0] < inf
-    return np.where(mutual & near, there, -1)
+    following = np.where(mutual & near, np.take_along_axis(order[1:], there, axis=1), -1)
+    out = np.full((len(order) - 1, real.shape[1]), -1)
+    np.put_along_axis(out, order[:-1], following, axis=1)
+    return out
 
 
 def origins(following: Index) -> Index:

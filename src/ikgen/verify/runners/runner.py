@@ -62,6 +62,11 @@ class Rows:
         mask = self.mask
         return np.nonzero(mask)[0], self.q[mask], self.singular[mask]
 
+    def at(self, index: NDArray[np.int64]) -> Rows:
+        """Those of the poses `index` (k,)."""
+        status = tuple(self.status[k] for k in index.tolist())
+        return Rows(self.q[index], self.count[index], status, self.singular[index])
+
     def with_answers(self, index: NDArray[np.int64], other: Rows) -> Rows:
         """These with those of the poses `index` (k,) replaced by the `other` ones."""
         width = max(self.q.shape[1], other.q.shape[1])
