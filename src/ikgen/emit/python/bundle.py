@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
 
 from ikgen.emit.python.import_lines import External, import_lines
 from ikgen.emit.python.runtime_source import (
@@ -98,11 +99,13 @@ def _owner(module: RuntimeSource, name: str) -> Key | None:
     return module.internal.get(name)
 
 
-def _after_imports(name: str) -> Iterator[str]:
-    """The modules that a module imports, each after its own, then itself."""
+@cache
+def _after_imports(name: str) -> tuple[str, ...]:
+    """The modules that a module imports, each once and after its own, then itself."""
+    order: dict[str, None] = {}
     for module, _ in read_source(name).internal.values():
-        yield from _after_imports(module)
-    yield name
+        order |= dict.fromkeys(_after_imports(module))
+    return (*order, name)
 
 
 def _kept(module: RuntimeSource, used: _Bundle) -> list[Definition]:
