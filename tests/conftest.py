@@ -1,12 +1,16 @@
-"""What tests of all folders share: where CMake finds Eigen, and the compiler."""
+"""What tests of all folders share: where CMake finds Eigen, the compiler, chains that are solved once."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 
+import pytest
 from tests.support.precompiled import compilers
+from tests.support.solved import solved
 
 from ikgen.errors import MissingToolError
+from ikgen.solver import solve
 from ikgen.verify.runners.cpp_toolchain import find_eigen
 
 try:
@@ -18,3 +22,11 @@ os.environ["CMAKE_PREFIX_PATH"] = os.pathsep.join([*_GIVEN, *_PREFIX])
 
 if _COMPILERS := compilers():
     os.environ["PATH"] = f"{_COMPILERS}{os.pathsep}{os.environ['PATH']}"
+
+
+@pytest.fixture(scope="module")
+def solved_once() -> Iterator[None]:
+    """For modules of tests of what comes after the solution of a chain: equal chains are solved once."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(solve, "solve_chain", solved)
+        yield

@@ -25,6 +25,8 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 HERE = Path(__file__).resolve().parent
 FIXTURES = HERE.parents[1] / "urdf_fixtures"
 EXPECTED = tomllib.loads((HERE / "expected.toml").read_text(encoding="utf-8"))
