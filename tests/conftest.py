@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterator
 
 import pytest
@@ -26,7 +27,9 @@ if _COMPILERS := compilers():
 
 @pytest.fixture(scope="module")
 def solved_once() -> Iterator[None]:
-    """For modules of tests of what comes after the solution of a chain: equal chains are solved once."""
+    """For modules of tests of what comes after the solution of a chain: equal chains are solved once, but
+    where it is traced which functions each test calls."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(solve, "solve_chain", solved)
+        if sys.gettrace() is None:
+            patch.setattr(solve, "solve_chain", solved)
         yield
