@@ -19,8 +19,9 @@ import argparse
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 
@@ -69,6 +70,13 @@ def soak(
     flags: Sequence[str] = tuple(FLAGS["native"]),
 ) -> Soak:
     """Compile the header and put the poses through it, shared among `jobs` processes."""
+    with soak_program(made, flags) as program:
+        return put_through(program, poses, near, jobs=jobs, seed=seed)
+
+
+@contextmanager
+def soak_program(made: Emitted, flags: Sequence[str]) -> Iterator[Path]:
+    """The program that puts poses through a header, for as long as the context lasts."""
     assert made.header is not None
     task = str(made.answer["task"])
     if task not in TASKS:
@@ -76,15 +84,20 @@ def soak(
     position, turn = TASKS[task]
     defines = [f"-DSOAK_POSITION={position}", f"-DSOAK_TURN={turn}"]
     with compiled_program(SOURCE, made.header, [*flags, *defines]) as program:
+        yield program
 
-        def run(job: int) -> Soak:
-            share = [str(-(-n // jobs)) for n in (poses, near)]
-            command = [str(program), *share, str(seed + 1000 * job)]
-            done = subprocess.run(command, check=True, capture_output=True, text=True)
-            return parsed(done.stdout)
 
-        with ThreadPoolExecutor(jobs) as pool:
-            return added(list(pool.map(run, range(jobs))))
+def put_through(program: Path, poses: int, near: int, *, jobs: int = 1, seed: int = 1) -> Soak:
+    """What the program says of the poses, shared among `jobs` processes."""
+
+    def run(job: int) -> Soak:
+        share = [str(-(-n // jobs)) for n in (poses, near)]
+        command = [str(program), *share, str(seed + 1000 * job)]
+        done = subprocess.run(command, check=True, capture_output=True, text=True)
+        return parsed(done.stdout)
+
+    with ThreadPoolExecutor(jobs) as pool:
+        return added(list(pool.map(run, range(jobs))))
 
 
 def found_source(name: str, options: Sequence[str]) -> Source:

@@ -1,31 +1,35 @@
-"""CMake finds Eigen where this environment has it, as a package of its own or the system's; what tests of
-this process compile takes it precompiled."""
+"""What tests of all folders share: where CMake finds Eigen, the compiler, chains that are solved once."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
-from pathlib import Path
+import sys
+from collections.abc import Iterator
 
-from tests.support.precompiled import with_eigen
+import pytest
+from tests.support.precompiled import compilers
+from tests.support.solved import solved
 
 from ikgen.errors import MissingToolError
-from ikgen.verify.runners import cpp_toolchain
+from ikgen.solver import solve
+from ikgen.verify.runners.cpp_toolchain import find_eigen
 
 try:
-    _PREFIX = [str(cpp_toolchain.find_eigen().parents[1])]
+    _PREFIX = [str(find_eigen().parents[1])]
 except MissingToolError:
     _PREFIX = []
 _GIVEN = [part for part in os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep) if part]
 os.environ["CMAKE_PREFIX_PATH"] = os.pathsep.join([*_GIVEN, *_PREFIX])
 
-_compile = cpp_toolchain.compile_program
+if _COMPILERS := compilers():
+    os.environ["PATH"] = f"{_COMPILERS}{os.pathsep}{os.environ['PATH']}"
 
 
-def _compile_program(
-    source: Path, output: Path, include: list[Path], flags: Sequence[str] = ("-O1",)
-) -> None:
-    _compile(source, output, include, with_eigen(flags))
-
-
-cpp_toolchain.compile_program = _compile_program  # before any module imports it
+@pytest.fixture(scope="module")
+def solved_once() -> Iterator[None]:
+    """For modules of tests of what comes after the solution of a chain: equal chains are solved once, but
+    where it is traced which functions each test calls."""
+    with pytest.MonkeyPatch.context() as patch:
+        if sys.gettrace() is None:
+            patch.setattr(solve, "solve_chain", solved)
+        yield

@@ -15,6 +15,8 @@ import pytest
 
 from ikgen.cli.main import run
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 jsonschema = pytest.importorskip("jsonschema")
 yaml = pytest.importorskip("yaml")
 ROOT = Path(__file__).resolve().parents[2]

@@ -15,6 +15,8 @@ from ikgen.cli.main import run
 from ikgen.errors import ArgumentError
 from ikgen.verify.runners.python_module import PythonModule
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 QUICK = ["--samples", "40", "-q"]
 
 

@@ -13,6 +13,8 @@ from tests.support.solving import NO_COMPILER
 
 from ikgen.cli.main import run
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 needs_compiler = pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
 KUKA = Path(__file__).resolve().parents[2] / "urdf_fixtures" / "kuka_kr6r900sixx.urdf"
 

@@ -13,6 +13,8 @@ from tests.support.solving import FIXTURES
 
 from ikgen.cli.main import run
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 KUKA = Path(__file__).resolve().parents[2] / "urdf_fixtures" / "kuka_kr6r900sixx.urdf"
 Called = Callable[..., tuple[int, dict[str, Any]]]
 

@@ -18,6 +18,8 @@ from ikgen.errors import UsageError
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 Array = NDArray[np.float64]
 
 ELBOWS = {"arm_angle": (0.0, 1.0), "offset_elbow": (0.08, -1.0)}

@@ -27,7 +27,10 @@ from ikgen.verify.runners.runner import ArmConstants
 
 Array = NDArray[np.float64]
 
-pytestmark = pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
+pytestmark = [
+    pytest.mark.usefixtures("solved_once"),
+    pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER),
+]
 
 SAMPLES = 60
 

@@ -14,7 +14,10 @@ from tests.support.solving import NO_COMPILER
 from ikgen.emit.cpp.cpp_emitter import emit
 from ikgen.verify.runners.cpp_toolchain import compile_program
 
-pytestmark = pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
+pytestmark = [
+    pytest.mark.usefixtures("solved_once"),
+    pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER),
+]
 
 DRIVER = r"""
 #include <cstdio>

@@ -23,7 +23,10 @@ from ikgen.generation.request import Request
 from ikgen.kinematics.rigid import rotation_about
 from ikgen.verify.runners.cpp_toolchain import compile_program, find_eigen
 
-pytestmark = pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
+pytestmark = [
+    pytest.mark.usefixtures("solved_once"),
+    pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles"),
+]
 
 Array = NDArray[np.float64]
 

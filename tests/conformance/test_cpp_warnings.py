@@ -15,6 +15,8 @@ from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 from ikgen.verify.runners.cpp_toolchain import find_eigen
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 CLANG = shutil.which("clang++")
 ARMS = ("ur5e", "doosan_m1013", "KawasakiRS05L")
 """Solved by rules, by rules and refinement, by an elimination."""

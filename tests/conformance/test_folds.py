@@ -23,7 +23,10 @@ from ikgen.verify.trials import run_trial
 
 Array = NDArray[np.float64]
 
-pytestmark = pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")
+pytestmark = [
+    pytest.mark.usefixtures("solved_once"),
+    pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or ""),
+]
 
 ARMS = ("ur5e", "doosan_m1013", "fanuc_crx10ia")
 """A continuum at the wrist, one that a file with offsets breaks into isolated solutions, an elimination."""

@@ -9,6 +9,8 @@ import pytest
 from numpy.typing import NDArray
 from tests.support.held_arms import imported
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 Array = NDArray[np.float64]
 
 

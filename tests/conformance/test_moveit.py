@@ -15,6 +15,8 @@ from tests.support.solving import import_text
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.model.joint_tree import Limits
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 Array = NDArray[np.float64]
 
 

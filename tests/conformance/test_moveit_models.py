@@ -19,6 +19,8 @@ from tests.support.moveit_arms import (
 )
 from tests.support.moveit_driver import Plugin
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 
 @needs(KUKA)
 def test_frames_may_differ_by_fixed_transforms(arm: Arm, plugin: Plugin) -> None:

@@ -20,6 +20,8 @@ from tests.support.moveit_driver import own_test, warnings_of
 
 from ikgen.emit.moveit import emit, package_name
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 NO_CLANG = missing_tools("clang++")
 
 

@@ -19,6 +19,8 @@ from ikgen.emit.nanobind import emit
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.solver_module import SolverModule
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 
 def test_the_folder_stands_alone() -> None:
     module = solver_module(ROBOTS[0])
@@ -38,9 +40,9 @@ def installed(module: SolverModule, folder: Path) -> tuple[ModuleType, ModuleTyp
         (folder / path).parent.mkdir(parents=True, exist_ok=True)
         (folder / path).write_text(text)
     target = folder / "site"
-    venv.create(folder / "venv", with_pip=True)
-    pip = [folder / "venv" / "bin" / "python", "-m", "pip", "install", "--no-deps"]
-    subprocess.run([*pip, "--target", target, folder / name], check=True)
+    venv.create(folder / "venv", with_pip=False)
+    pip = [sys.executable, "-m", "pip", "--python", folder / "venv/bin/python", "install"]
+    subprocess.run([*pip, "--no-deps", "--target", target, folder / name], check=True)
     sys.path.insert(0, str(target))
     return importlib.import_module(name), import_text(emit_module(module), folder)
 

@@ -18,6 +18,8 @@ from ikgen.generation.emitted_runners import arm_constants
 from ikgen.generation.request import Request
 from ikgen.verify.runners.cpp_header import CppHeader
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 Array = NDArray[np.float64]
 ROOT = Path(__file__).resolve().parents[2]
 FIXTURES, TABLES = ROOT / "urdf_fixtures", ROOT / "tests/robots/tables"

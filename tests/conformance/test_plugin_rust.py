@@ -21,7 +21,10 @@ from ikgen.generation.request import Outputs, Request
 from ikgen.verify.runners.python_module import PythonModule
 
 pytest.importorskip("hatchling")
-pytestmark = pytest.mark.skipif(shutil.which("rustc") is None, reason="rustc is not installed")
+pytestmark = [
+    pytest.mark.usefixtures("solved_once"),
+    pytest.mark.skipif(shutil.which("rustc") is None, reason="rustc is not installed"),
+]
 
 ROOT = Path(__file__).resolve().parents[2]
 FIXTURES = ROOT / "urdf_fixtures"

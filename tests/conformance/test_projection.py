@@ -17,6 +17,8 @@ from ikgen.emit.python.python_emitter import emit_module
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 Array = NDArray[np.float64]
 
 FIXTURE = Path(__file__).resolve().parents[2] / "urdf_fixtures/open_manipulator_x.urdf"

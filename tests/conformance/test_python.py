@@ -19,6 +19,8 @@ from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 from ikgen.verify.runners.python_module import PythonModule
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 KUKA = FIXTURES / "kuka_kr6r900sixx.urdf"
 ODD = (

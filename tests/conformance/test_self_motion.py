@@ -10,6 +10,8 @@ import pytest
 from numpy.typing import NDArray
 from tests.support.held_arms import held_limits, held_of, imported, on_limits
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 Array = NDArray[np.float64]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import http.server
+import os
 import subprocess
 import sys
 import threading
@@ -27,13 +28,15 @@ class Quiet(http.server.SimpleHTTPRequestHandler):
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Any]]:
-    """Where the site is served, and a browser."""
+    """Where the site is served, and a browser; IKGEN_SITE names the folder of one that was just built."""
     pytest.importorskip("mkdocs")
     with browser() as opened:
-        folder = tmp_path_factory.mktemp("site")
-        command = [sys.executable, "-m", "mkdocs", "build", "--quiet", "--site-dir", str(folder)]
-        subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
-        handler = functools.partial(Quiet, directory=str(folder))
+        made = os.environ.get("IKGEN_SITE")
+        folder = made or str(tmp_path_factory.mktemp("site"))
+        if not made:
+            command = [sys.executable, "-m", "mkdocs", "build", "--quiet", "--site-dir", folder]
+            subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
+        handler = functools.partial(Quiet, directory=folder)
         with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
             threading.Thread(target=server.serve_forever, daemon=True).start()
             yield f"http://127.0.0.1:{server.server_port}", opened

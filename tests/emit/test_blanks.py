@@ -21,6 +21,8 @@ from ikgen.program.interpret import evaluate
 from ikgen.verify.runners.cpp_toolchain import find_compiler
 from ikgen.verify.runners.python_module import PythonModule
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 ROOT = Path(__file__).resolve().parents[2]
 PUMA = ROOT / "urdf_fixtures" / "puma560_symbolic.toml"
 PAPER = ROOT / "urdf_fixtures" / "puma560_paper.toml"

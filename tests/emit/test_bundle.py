@@ -20,6 +20,8 @@ from ikgen.emit.python.runtime_source import PACKAGE, read_source, taken_apart
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 SHELL = f"""\"\"\"Turns.\"\"\"
 
 from __future__ import annotations

@@ -13,6 +13,8 @@ from ikgen.emit.cpp.cpp_package import emit
 from ikgen.generation.generate import generate
 from ikgen.generation.request import Outputs, Request
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 STRICT = "-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror"
 USER = """cmake_minimum_required(VERSION 3.15)

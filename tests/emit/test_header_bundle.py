@@ -18,6 +18,8 @@ from ikgen.emit.cpp.header_bundle import RUNTIME, bundle
 from ikgen.program.policy import SolvePolicy
 from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 needs_compiler = pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
 
 

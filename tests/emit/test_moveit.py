@@ -17,6 +17,8 @@ from ikgen.emit.moveit import emit
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 STUBS = Path(__file__).resolve().parents[1] / "conformance" / "moveit_stubs"
 PACKAGE = "kuka_kr6r900sixx_ik_moveit"
 DEPENDENCIES = ("geometry_msgs", "moveit_core", "moveit_msgs", "pluginlib", "rclcpp")

@@ -20,6 +20,8 @@ from lxml import etree
 from ikgen.cli.main import run
 from ikgen.emit.rendering import TURNING_MARKS
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 ELBOW = Path(__file__).resolve().parents[2] / "examples/setuptools_robot/urdf/elbow.urdf"
 EMIT = "python,cpp,nanobind,cpp-package,moveit"
 ODD = (

@@ -13,6 +13,8 @@ from ikgen.emit.python.python_emitter import emit_module
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 ROOT = Path(__file__).resolve().parents[2]
 ARMS = {
     "exact": Request(ROOT / "urdf_fixtures/kuka_kr6r900sixx.urdf"),

@@ -17,6 +17,8 @@ from ikgen.importers.xacro import budget as budgets
 from ikgen.importers.xacro.expansion import expand
 from ikgen.importers.xacro.guarded_xacro import GuardedXacro
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 OPEN = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
 SHELL = (
     "${(lambda: [s for s in ().__class__.__base__.__subclasses__() if s.__name__=='_wrap_close'][0]"

@@ -14,6 +14,8 @@ from ikgen.projects.config import default_config, load_config
 from ikgen.projects.depfile import depfile_text
 from ikgen.projects.stale import why_stale
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples/cmake_only/urdf"
 CONFIG = """

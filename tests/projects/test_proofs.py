@@ -12,6 +12,8 @@ from tests.support.solving import FIXTURES
 from ikgen.cli.main import run
 from ikgen.symbolic import identities
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 ROOT = Path(__file__).resolve().parents[2]
 SCHEMA = json.loads((ROOT / "docs/reference/verify.schema.json").read_text())
 

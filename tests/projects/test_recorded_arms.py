@@ -15,6 +15,8 @@ from ikgen.generation.request import Request
 from ikgen.model.maintainer import is_maintainer, name_and_email
 from ikgen.projects.recorded_arms import arms_below
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 ADA = "Ada Lovelace <ada@example.com>"
 

@@ -28,6 +28,8 @@ from ikgen.reach.slices_page import slices_page
 from ikgen.reach.stored_map import archive
 from ikgen.report.worked_example import solver_of
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 ROOT = Path(__file__).resolve().parents[2]
 UR5E = ROOT / "urdf_fixtures/ur5e.urdf"
 

@@ -19,6 +19,8 @@ from ikgen.reach.grid import grid_over
 from ikgen.reach.reach_map import ReachMap, interpreted_engine, reach_map
 from ikgen.reach.stored_map import archive, map_contents, read_map, zarr_files
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 TABLE = Path(__file__).resolve().parents[2] / "urdf_fixtures/scara_standard.toml"
 
 

@@ -16,6 +16,8 @@ from ikgen.generation.request import Request
 from ikgen.projects.new_config import robot_arms
 from ikgen.report import emit_report, emit_unsolved
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 ROOT = Path(__file__).resolve().parents[2]
 TABLES = sorted((ROOT / "tests/robots/tables").glob("*.toml"))
 URDFS = sorted((ROOT / "urdf_fixtures").glob("*.urdf"))

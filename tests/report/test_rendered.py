@@ -20,6 +20,8 @@ from ikgen.report import emit_report, emit_unsolved
 from ikgen.report.document import Paragraph
 from ikgen.report.latex import to_latex
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 ROOT = Path(__file__).resolve().parents[2]
 TABLES = ROOT / "tests" / "robots" / "tables"
 SUITE = sorted(path.stem for path in TABLES.glob("*.toml"))

@@ -18,6 +18,8 @@ from ikgen.report import emit_report
 from ikgen.report.roots_picture import hidden_roots
 from ikgen.report.worked_example import WorkedExample, solver_of, worked_example
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 ROOT = Path(__file__).resolve().parents[2]
 ARMS = {
     "puma": "urdf_fixtures/puma560_paper.toml",

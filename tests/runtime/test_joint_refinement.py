@@ -16,6 +16,8 @@ from tests.support.solving import import_text
 
 from ikgen.emit.python.python_emitter import emit_module
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 Array = NDArray[np.float64]
 
 

@@ -14,6 +14,8 @@ from tests.support.solving import import_text
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.runtime.python.limit_rows import rows_inside
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 Array = NDArray[np.float64]
 JOINT = 2
 

@@ -15,6 +15,8 @@ from ikgen.emit.python.python_emitter import emit_module
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 
 @pytest.fixture(scope="module", params=["kuka_kr6r900sixx", "ur5e"])
 def arm(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> ModuleType:

@@ -9,6 +9,8 @@ import pytest
 
 import ikgen
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 ROOT = Path(__file__).resolve().parents[2]
 SIDES = ("ur5e.urdf", "abb_irb2400.urdf", "puma560_paper.toml", "doosan_m1013.urdf")
 

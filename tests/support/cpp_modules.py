@@ -8,7 +8,7 @@ from ikgen.emit.solver_module import SolverModule
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
 from ikgen.lowering.lower import lower
-from ikgen.solver.solve import solve_chain
+from ikgen.solver import solve
 
 __all__ = ["EXACT", "ROBOTS", "robot_file", "solver_module"]
 
@@ -39,7 +39,7 @@ def robot_file(name: str) -> Path:
 def solver_module(name: str) -> SolverModule:
     """The module of a robot by its name, for the whole pose."""
     dh = read(Request(robot_file(name))).dh
-    graph = solve_chain(dh)
+    graph = solve.solve_chain(dh)
     assert not graph.open_joints
     return SolverModule(
         name=name.lower().replace("-", "_"),

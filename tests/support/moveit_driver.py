@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pinocchio
 from numpy.typing import ArrayLike, NDArray
-from tests.support.precompiled import with_eigen
 
 from ikgen.model.joint_tree import JointTree
 from ikgen.verify.runners.cpp_toolchain import find_eigen
@@ -43,8 +42,7 @@ def warnings_of(compiler: str, package: Path, style: str) -> str:
 def compile_driver(package: Path, style: str, program: Path) -> None:
     """The plugin and the program that calls it; warnings are errors."""
     sources = [*_sources(package), str(STUBS / "driver.cpp")]
-    options = with_eigen(["-O1"])
-    command = [*_command("g++", package, style), *options, *sources, "-o", str(program)]
+    command = [*_command("g++", package, style), "-O1", *sources, "-o", str(program)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[:4000]
 
@@ -52,8 +50,7 @@ def compile_driver(package: Path, style: str, program: Path) -> None:
 def own_test(package: Path, program: Path) -> subprocess.CompletedProcess[str]:
     """What came of the program that the package tests its solver with; warnings are errors."""
     source = str(package / "test/solver_test.cpp")
-    options = with_eigen(["-O1"])
-    command = [*_command("g++", package, "hpp"), *options, source, "-o", str(program)]
+    command = [*_command("g++", package, "hpp"), "-O1", source, "-o", str(program)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[:4000]
     return subprocess.run([program], capture_output=True, text=True, check=False)

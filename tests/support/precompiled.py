@@ -1,52 +1,62 @@
-"""Eigen's headers precompiled for g++: they are most of what it reads in every test that compiles."""
+"""A g++ that takes Eigen's headers precompiled: they are most of what it reads where tests compile."""
 
 from __future__ import annotations
 
 import hashlib
 import os
+import shlex
 import subprocess
-from collections.abc import Sequence
-from functools import cache
 from pathlib import Path
 
 from ikgen.errors import MissingToolError
 from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
 
-__all__ = ["with_eigen"]
+__all__ = ["compilers"]
 
 FOLDER = Path(__file__).parents[2] / "build" / "precompiled"
 HEADERS = "#include <Eigen/Core>\n#include <Eigen/Geometry>\n"
-OPTIMISED = (("-O1",), ("-O2",))
-"""The options, beside those for warnings, that headers are precompiled for."""
+SCRIPT = """#!/bin/sh
+# {compiler}, with Eigen precompiled for options of ikgen's own compilations. Where others differ from those
+# it was precompiled for, g++ reads the headers themselves.
+level=
+case " $* " in
+  *" -fsyntax-only "* | *" -march="*) ;;
+  *" -std=c++17"*" -O1 "*) level=-O1 ;;
+  *" -std=c++17"*" -O2 "*) level=-O2 ;;
+esac
+[ -n "$level" ] || exec {compiler} "$@"
+made={header}.gch/$level
+if [ ! -f "$made" ]; then
+  mkdir -p {header}.gch  # each process writes a file of its own
+  {compiler} -std=c++17 $level -pthread -isystem {eigen} -x c++-header {header} -o {folder}/$$.gch &&
+    mv {folder}/$$.gch "$made"
+fi
+exec {compiler} -pthread -include {header} "$@"
+"""
 
 
-def with_eigen(options: Sequence[str]) -> tuple[str, ...]:
-    """Options of a C++17 compilation, with Eigen precompiled where that is done for them."""
-    kept = tuple(one for one in options if not one.startswith(("-W", "-std=")))
-    if kept not in OPTIMISED or "CXX" in os.environ:
-        return tuple(options)
-    header = _precompiled(kept)
-    return tuple(options) if header is None else (*options, "-include", str(header))
-
-
-@cache
-def _precompiled(options: tuple[str, ...]) -> Path | None:
-    """The header that stands for Eigen's with these options; None for another compiler than g++."""
+def compilers() -> Path | None:
+    """The folder of c++ and g++ to come first on PATH. None where CXX names a compiler, where that is not
+    g++, or is this one already."""
     try:
         compiler, eigen = find_compiler(), find_eigen()
     except MissingToolError:
         return None
     version = subprocess.run([*compiler, "--version"], capture_output=True, text=True).stdout
-    if "Free Software Foundation" not in version:
+    own = FOLDER in Path(compiler[0]).parents
+    if own or "CXX" in os.environ or "Free Software Foundation" not in version:
         return None
-    key = "\n".join([version, str(eigen), *options, HEADERS])
-    header = FOLDER / hashlib.sha256(key.encode()).hexdigest()[:16] / "eigen.hpp"
-    made = header.with_name(f"{header.name}.gch")
-    if not made.is_file():
-        header.parent.mkdir(parents=True, exist_ok=True)
+    key = "\n".join([version, *compiler, str(eigen), HEADERS, SCRIPT])
+    folder = FOLDER / hashlib.sha256(key.encode()).hexdigest()[:16]
+    header, script = folder / "eigen.hpp", folder / "bin" / "c++"
+    if not script.is_file():
+        script.parent.mkdir(parents=True, exist_ok=True)
         header.write_text(HEADERS)
-        mine = header.with_name(f"{os.getpid()}.gch")  # of several processes each has its own
-        command = [*compiler, "-std=c++17", *options, "-isystem", str(eigen)]
-        subprocess.run([*command, "-x", "c++-header", str(header), "-o", str(mine)], check=True)
-        mine.replace(made)
-    return header
+        places = {"folder": folder, "header": header, "eigen": eigen, "compiler": compiler[0]}
+        text = SCRIPT.format(**{name: shlex.quote(str(path)) for name, path in places.items()})
+        for name in ("g++", "c++"):
+            mine = folder / f"{os.getpid()}.{name}"
+            mine.write_text(text)
+            mine.chmod(0o755)
+            mine.replace(script.with_name(name))
+    return script.parent

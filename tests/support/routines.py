@@ -6,7 +6,6 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from tests.support.precompiled import with_eigen
 from tests.support.solving import NO_COMPILER
 
 from ikgen.emit.cpp.header_bundle import RUNTIME
@@ -32,8 +31,7 @@ def compiled_header(text: str, folder: Path, *flags: str) -> Path:
     source, program = folder / "main.cpp", folder / "main"
     source.write_text(text)
     includes = [f"-I{RUNTIME}", f"-I{Path(__file__).parent}", "-isystem", str(find_eigen())]
-    options = with_eigen([*FLAGS, *flags])
-    command = [*find_compiler(), *options, *includes, str(source), "-o", str(program)]
+    command = [*find_compiler(), *FLAGS, *flags, *includes, str(source), "-o", str(program)]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return program

@@ -13,8 +13,8 @@ from ikgen.emit.solver_module import SolverModule
 from ikgen.errors import MissingToolError
 from ikgen.lowering.lower import lower
 from ikgen.model.dh import DHChain
+from ikgen.solver import solve
 from ikgen.solver.solution_graph import SolutionGraph
-from ikgen.solver.solve import solve_chain
 from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
 
 try:
@@ -30,7 +30,7 @@ _count = itertools.count()
 
 def solver_module(dh: DHChain, *, name: str = "arm") -> SolverModule:
     """A solver module of a chain, free joints at 0."""
-    return module_of(dh, solve_chain(dh), name=name)
+    return module_of(dh, solve.solve_chain(dh), name=name)
 
 
 def module_of(dh: DHChain, graph: SolutionGraph, *, name: str = "arm") -> SolverModule:

@@ -26,6 +26,8 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 Array = NDArray[np.float64]
 ROBOTS = Path(__file__).resolve().parents[1] / "robots"
 EXPECTED = tomllib.loads((ROBOTS / "expected.toml").read_text(encoding="utf-8"))

@@ -21,6 +21,8 @@ from ikgen.symbolic import equations, prove
 from ikgen.symbolic.identities import prove_identities
 from ikgen.symbolic.proof import prove_graph
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 
 @pytest.fixture(scope="module")
 def puma() -> Derivation:

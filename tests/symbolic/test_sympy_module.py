@@ -18,6 +18,8 @@ from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 from ikgen.symbolic.sympy_module import module_text
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 TABLES = Path(__file__).resolve().parents[1] / "robots" / "tables"
 DRIVER = """
 import json, sys

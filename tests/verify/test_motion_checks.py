@@ -22,6 +22,8 @@ from ikgen.verify.runners.python_module import PythonModule
 from ikgen.verify.sampling import generator
 from ikgen.verify.task_space import task_space
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 Array = NDArray[np.float64]
 
 

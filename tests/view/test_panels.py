@@ -24,6 +24,8 @@ from ikgen.report.worked_example import solver_of
 from ikgen.view.followed_path import between, followed
 from ikgen.view.robot_meshes import robot_meshes
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 ROOT = Path(__file__).resolve().parents[2]
 pytest.importorskip("viser")
 
