@@ -60,7 +60,7 @@ def test_of_a_continuum_of_the_arm_itself_one_row_is_taken(tmp_path: Path) -> No
     assert len(rows)
     traced = trace(exact._ARM, rows, poses)
     assert traced.curve.all() and not traced.broken.any() and not len(traced.owner)
-    curve, owner, found, loss = rows_around(exact._ARM, rows, poses)
+    curve, owner, found, loss = rows_around(exact._ARM, rows, poses, np.zeros(len(rows), bool))
     assert curve.all() and owner.tolist() == list(range(len(rows)))
     assert np.abs(exact.forward(found) - poses).max() < 1e-9 and loss.max() < 1e-9
 
@@ -71,9 +71,11 @@ def test_a_broken_one_has_its_solutions_wherever_the_trace_starts(folded: Module
     traced = trace(folded._ARM, rows, poses)
     assert traced.curve.all() and traced.broken.all() and len(traced.owner) >= 2 * len(q)
     assert (np.diff(traced.owner) >= 0).all()
-    curve, owner, found, _ = rows_around(folded._ARM, rows, poses)
+    curve, owner, found, _ = rows_around(folded._ARM, rows, poses, np.zeros(len(rows), bool))
     assert curve.all() and np.abs(folded.forward(found) - poses[owner]).max() < 2e-9
-    alone = [rows_around(folded._ARM, rows[k : k + 1], poses[k : k + 1]) for k in range(len(rows))]
+    alone = [
+        rows_around(folded._ARM, rows[[k]], poses[[k]], np.zeros(1, bool)) for k in range(len(rows))
+    ]
     assert np.concatenate([one[2] for one in alone]) == pytest.approx(found, abs=1e-9)
     for at, pose in zip(q, folded.forward(q), strict=True):
         own = found[np.abs(poses[owner] - pose).max(axis=(1, 2)) < 1e-12]

@@ -19,7 +19,6 @@ from ikgen.runtime.python.meeting_rows import (
     leads_of,
     repeats,
     rows_nearby,
-    traced,
 )
 from ikgen.runtime.python.row_placement import is_new, place_rows
 from ikgen.runtime.python.solved_arm import Arm, Found
@@ -150,9 +149,7 @@ def _rows(arm: Arm, asked: Asked, start: Array, first: bool) -> list[_Rows]:
     looks, anywhere = first and len(arm.beside) > 0, arm.policy.beside_anywhere
     if looks and anywhere:
         starts = joined(starts, _beside(arm, asked, start, np.arange(len(start))))
-    leads = leads_of(arm, starts, known)
-    if first and arm.rounded:
-        leads = traced(arm, leads)
+    leads = leads_of(arm, starts, known, near=first and arm.rounded)
     close = (starts.source >= 0) & (leads.ends.loss < arm.policy.beside_reach) & ~leads.known
     near = free.copy()
     near[starts.pose[close]] = True

@@ -14,7 +14,7 @@ from ikgen.runtime.python.array_types import Array
 from ikgen.runtime.python.refinement import damped, normal_inverse
 from ikgen.runtime.python.solved_arm import Arm
 
-__all__ = ["Reduced", "approach", "correct", "generic"]
+__all__ = ["Reduced", "approach", "correct", "generic", "still_directions"]
 
 _ALONG = 1e-4  # rad or m
 _CLOSE = 1e-9
@@ -60,6 +60,11 @@ def generic(count: int, size: int) -> Array:
     return np.tile(1.0 + 0.1 * np.arange(size), (count, 1))
 
 
+def still_directions(arm: Arm, slope: Array) -> Array:
+    """The unit directions (k, n) in which poses of derivatives (k, m, n) move least."""
+    return _still(slope, generic(len(slope), slope.shape[2]), arm.policy.least_damping)
+
+
 def approach(arm: Arm, q: Array, T: Array, side: Array) -> Array:
     """From q (k, dof) towards the solution on one `side` (k,), 1 or -1, of the place where two may meet, or
     to where they nearly do; T (k, 4, 4)."""
@@ -74,25 +79,31 @@ def approach(arm: Arm, q: Array, T: Array, side: Array) -> Array:
 
 def correct(arm: Arm, at: Reduced, T: Array) -> tuple[Reduced, Array]:
     """After one step across the still directions, with what was left before it; how far (k,) the fastest
-    joint goes."""
+    joint goes.
+
+    What the others make good of the still directions' flow turns these to where less moves the pose, as a
+    step of inverse iteration does."""
     error, slope = linearized(arm, at.q, T)
-    others = _others(arm, slope, at.still)
-    taken, going = others.take_away(np.stack([error, at.out], axis=2))
-    rest, out = np.moveaxis(taken, 2, 0)
-    out = out / np.linalg.norm(out, axis=1)[:, None]
+    others = _across(slope, at.still, arm.policy.least_damping)
+    taken, going = others.take_away(np.stack([error, at.out, others.flow], axis=2))
+    still, size = _unit(at.still - going[:, :, 2])
+    out, _ = _unit(taken[:, :, 1])
+    left, grows = np.einsum("ke,kei->ik", out, taken[:, :, ::2])
     across = going[:, :, 0]
-    left = np.einsum("ke,ke->k", out, rest)
-    grows = -np.einsum("ke,ke->k", out, others.flow)
     q = others.moved(arm, at.q, across, 0.0)
-    return Reduced(q, others.still, out, left, grows), np.abs(across).max(axis=1)
+    return Reduced(q, still, out, left, -grows / size), np.abs(across).max(axis=1)
 
 
 def _others(arm: Arm, slope: Array, still: Array) -> _Others:
-    still = _still(slope, still, arm.policy.least_damping)
+    damping = arm.policy.least_damping
+    return _across(slope, _still(slope, still, damping), damping)
+
+
+def _across(slope: Array, still: Array, damping: float) -> _Others:
     flow = np.einsum("kej,kj->ke", slope, still)
     V = slope - flow[:, :, None] * still[:, None, :]
     normal = V.transpose(0, 2, 1) @ V + still[:, :, None] * still[:, None, :]
-    return _Others(still, flow, V, damped(normal, arm.policy.least_damping))
+    return _Others(still, flow, V, damped(normal, damping))
 
 
 def _step(arm: Arm, q: Array, T: Array, side: Array, still: Array) -> tuple[Array, Array, Array]:
@@ -109,12 +120,16 @@ def _step(arm: Arm, q: Array, T: Array, side: Array, still: Array) -> tuple[Arra
 
 
 def _still(slope: Array, still: Array, damping: float) -> Array:
-    """By inverse iteration, from what it was, which keeps its sense."""
+    """By four steps of inverse iteration, from what it was, which keeps its sense."""
     inverse = normal_inverse(slope, damping)
-    for _ in range(4):
-        still = (inverse @ still[:, :, None])[:, :, 0]
-        still = still / np.linalg.norm(still, axis=1)[:, None]
-    return still
+    twice = inverse @ inverse
+    return _unit((twice @ (twice @ still[:, :, None]))[:, :, 0])[0]
+
+
+def _unit(v: Array) -> tuple[Array, Array]:
+    """v (k, n) at unit length, and its length (k,)."""
+    size = np.sqrt(np.einsum("ki,ki->k", v, v))
+    return v / size[:, None], size
 
 
 def _root(side: Array, rest: Array, bend: Array, flow: Array) -> Array:

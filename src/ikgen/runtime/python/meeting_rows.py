@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.runtime.python.arm_newton import refined
-from ikgen.runtime.python.array_tuples import joined
+from ikgen.runtime.python.array_tuples import joined, some_of
 from ikgen.runtime.python.array_types import Array, Flags, Index, Row
 from ikgen.runtime.python.chain_kinematics import forward
 from ikgen.runtime.python.fold_pair import approach
@@ -29,7 +29,6 @@ __all__ = [
     "leads_of",
     "repeats",
     "rows_nearby",
-    "traced",
 ]
 
 
@@ -87,42 +86,52 @@ def ends_of(arm: Arm, q: Array, T: Array) -> Ends:
     return Ends(q, error, least_singular(slope))
 
 
-def leads_of(arm: Arm, starts: Starts, known: Flags) -> Leads:
+def leads_of(arm: Arm, starts: Starts, known: Flags, near: bool = False) -> Leads:
     """What starts lead to. A continuum that the closed form has, where it marked a row, is followed all
     around where the file's arm may not have it, once for each branch of a pose; `known` (poses, branches):
-    which were, and are then. Starts on none are no longer marked."""
-    count = len(starts.q)
+    which were, and are then. Starts on none are no longer marked. With `near`, continua that the pose's own
+    rows may lie on near singularities are followed as well."""
     broken = starts.marked & (starts.source >= 0)
     if not arm.rounded and broken.any():
         error = ends_of(arm, starts.q[broken], starts.T[broken]).error
         broken[broken] = error >= arm.policy.arrived
-    at, found = (starts.pose, starts.lane), Led(np.zeros(0, np.intp), starts.q[:0], np.zeros(0))
-    for source in np.unique(starts.source[broken]).tolist():
-        some = np.flatnonzero(broken & (starts.source == source) & ~known[at])
-        if arm.around is not None and len(some):
-            curve, owner, q, loss = arm.around(arm, starts.q[some], starts.T[some])
-            known[starts.pose[some[curve]], starts.lane[some[curve]]] = True
-            found = joined(found, Led(some[owner], q, loss))
+    nowhere = np.full(len(starts.q), np.inf)
+    ends = Ends(starts.q.copy(), nowhere, nowhere.copy())
+    _run(arm, starts, ends, ~broken)
+    own, at = starts.source == 0, (starts.pose, starts.lane)
+    lie = own & ~starts.marked & near
+    lie &= ends.loss < min(arm.policy.broken_reach, arm.policy.fold_reach)
+    one, on = _found_around(arm, starts, ends, (broken & own & ~known[at]) | lie, lie)
+    known[starts.pose[on & ~lie], starts.lane[on & ~lie]] = True
+    other, also = _found_around(arm, starts, ends, broken & ~own & ~known[at], lie)
+    known[starts.pose[also], starts.lane[also]] = True
     around = broken & known[at]
-    ends = Ends(starts.q.copy(), np.full(count, np.inf), np.full(count, np.inf))
-    for whole, part in zip(ends, ends_of(arm, starts.q[~around], starts.T[~around])):
-        whole[~around] = part
+    _run(arm, starts, ends, broken & ~around)
     starts = starts._replace(marked=starts.marked & (around | ~broken))
-    return Leads(starts, ends, found, around)
+    return Leads(starts, ends, joined(one, other), around | (on & lie))
 
 
-def traced(arm: Arm, leads: Leads) -> Leads:
-    """With what is found around continua of the solved geometry that rows near singularities lie on."""
-    starts, (q, _, loss) = leads.starts, leads.ends
-    own = (starts.source == 0) & ~starts.marked
-    some = np.flatnonzero(own & (loss < min(arm.policy.broken_reach, arm.policy.fold_reach)))
-    if arm.around is None or not len(some):
-        return leads
-    curve, owner, rows, there = arm.around(arm, q[some], starts.T[some], broken=True)
-    known = leads.known.copy()
-    known[some[curve]] = True
-    around = joined(leads.around, Led(some[owner], rows, there))
-    return leads._replace(around=around, known=known)
+def _run(arm: Arm, starts: Starts, ends: Ends, some: Flags) -> None:
+    """Enters where steps from some of the starts end."""
+    for whole, part in zip(ends, ends_of(arm, starts.q[some], starts.T[some])):
+        whole[some] = part
+
+
+def _found_around(
+    arm: Arm, starts: Starts, ends: Ends, some: Flags, lie: Flags
+) -> tuple[Led, Flags]:
+    """The solutions around continua that some starts (k,) stand for, or that rows `lie` (k,) on which they
+    lead to, once for each branch of a pose; which starts these are from."""
+    index, on = np.flatnonzero(some), np.zeros(len(some), dtype=bool)
+    if arm.around is None or not len(index):
+        return Led(index[:0], starts.q[:0], ends.loss[:0]), on
+    q = np.where(lie[:, None], ends.q, starts.q)[index]
+    curve, owner, rows, loss = arm.around(arm, q, starts.T[index], lie[index])
+    branch = np.stack([starts.pose, starts.lane], axis=1)[index[curve]]
+    _, first = np.unique(branch, axis=0, return_index=True)
+    on[index[curve][first]] = True
+    found: Led = some_of(Led(index[owner], rows, loss), on[index[owner]])
+    return found, on
 
 
 def rows_nearby(arm: Arm, leads: Leads) -> Led:

@@ -13,7 +13,7 @@ import numpy as np
 from ikgen.runtime.python.arm_newton import linearized, refined
 from ikgen.runtime.python.array_tuples import joined, some_of
 from ikgen.runtime.python.array_types import Array, Flags, Index
-from ikgen.runtime.python.fold_pair import Reduced, correct, generic
+from ikgen.runtime.python.fold_pair import Reduced, correct, generic, still_directions
 from ikgen.runtime.python.refinement import least_singular
 from ikgen.runtime.python.row_links import differences
 from ikgen.runtime.python.solution_rows import places
@@ -22,6 +22,8 @@ from ikgen.runtime.python.solved_arm import Arm
 __all__ = ["Traced", "rows_around", "trace"]
 
 _MOST, _CORRECTIONS, _STEPS, _DEEP, _LEAST = 96, 6, 40, 24, 4
+_CUBICS, _NEWTON, _CLEAR = 2, 4, 1e-6
+_LEAP, _SOON = 16.0, 3
 _SAMPLES = 600  # of a curve
 _ROOM = 32  # solutions of a curve
 _NEAR = 1e-11  # rad or m: how far off the curve slopes along it are the curve's
@@ -50,38 +52,32 @@ class _Parts(NamedTuple):
     width: Array
 
 
-def rows_around(
-    arm: Arm, q: Array, T: Array, broken: bool = False
-) -> tuple[Flags, Index, Array, Array]:
+def rows_around(arm: Arm, q: Array, T: Array, broken: Flags) -> tuple[Flags, Index, Array, Array]:
     """Which rows q (k, dof) towards aims T (k, ...) stand for a continuum of the solved geometry; from
     which (n,) the solutions (n, dof) all around are, or one where the file's arm has the continuum too, and
-    the smallest singular values (n,) there. `broken`: of such that the file's arm has not alone, and no
-    others than those that are right to round-off."""
+    the smallest singular values (n,) there. `broken` (k,): from which only of such that the file's arm has
+    not, and no others than those that are right to round-off."""
     with np.errstate(all="ignore"):
         traced = trace(arm, q, T)
-    if broken:
-        end, error, _, slope = refined(arm, traced.q, T[traced.owner])
-        good = error < arm.policy.exact
-        return traced.broken, traced.owner[good], end[good], least_singular(slope[good])
-    given = np.flatnonzero(traced.curve)
+    given = np.flatnonzero(traced.curve & ~broken)
     owner = np.concatenate([traced.owner, given])
     rows, error, _, slope = refined(arm, np.concatenate([traced.q, q[given]]), T[owner])
     exact = error < arm.policy.exact
     best = np.lexsort((error, owner))
     best = best[places(owner[best]) == 0]
     best = best[~np.isin(owner[best], owner[exact]) & (error[best] < arm.policy.arrived)]
+    best = best[~broken[owner[best]]]
     some = np.concatenate([np.flatnonzero(exact), best])
     some = some[np.argsort(owner[some], kind="stable")]
-    return traced.curve, owner[some], rows[some], least_singular(slope[some])
+    curve = np.where(broken, traced.broken, traced.curve)
+    return curve, owner[some], rows[some], least_singular(slope[some])
 
 
 def trace(arm: Arm, q: Array, T: Array) -> Traced:
     """The curves through rows q (k, dof) towards aims T (k, ...), once around, or to both their ends."""
-    count, (error, _) = len(q), linearized(arm, q[:1], T[:1])
-    nothing = np.zeros(count)
-    start = Reduced(
-        q, generic(count, len(arm.moving)), generic(count, error.shape[1]), nothing, nothing
-    )
+    count, (error, slope) = len(q), linearized(arm, q, T)
+    nothing, still = np.zeros(count), still_directions(arm, slope)
+    start = Reduced(q, still, generic(count, error.shape[1]), nothing, nothing)
     first = _sample(arm, start, T)
     back = first._replace(still=-first.still, slope=-first.slope)
     parts, closed, worst = _follow(arm, first, T, np.arange(count), 0.0)
@@ -193,13 +189,14 @@ def _bernstein(arm: Arm, parts: _Parts) -> Array:
 
 def _closed_in(arm: Arm, parts: _Parts, T: Array) -> _Parts:
     """Parts at whose ends what is left has two signs, narrowed until it is round-off at one, or the way
-    to there is: by false position, halving what an end keeps (Dowell & Jarratt 1971). A part in which
-    far more is left than the cubic's coefficients bound is of no one curve, and stays as it is then."""
+    to there is: first at roots of cubics, where far more than round-off is left, then by false position,
+    halving what an end keeps (Dowell & Jarratt 1971). A part in which far more is left than the cubic's
+    coefficients bound, or in which that leaps, is of no one curve, and stays as it is then."""
     ends = Reduced(*map(np.stack, zip(parts.a, parts.b)))
     values, last = ends.left.copy(), np.full(len(parts.owner), -1)
     way = np.full(len(parts.owner), np.inf)
     most = 2.0 * np.abs(_bernstein(arm, parts)).max(axis=0)
-    for _ in range(_STEPS):
+    for step in range(_STEPS):
         going = np.flatnonzero((np.abs(ends.left).min(axis=0) > _ROUND_OFF) & (way > _WAY))
         if not len(going):
             break
@@ -207,16 +204,34 @@ def _closed_in(arm: Arm, parts: _Parts, T: Array) -> _Parts:
         now = some_of(parts, going)._replace(
             a=some_of(ends, (0, going)), b=some_of(ends, (1, going))
         )
-        c = _between(arm, now, x / (x - y), T)
+        cubic, share = _bernstein(arm, now), x / (x - y)
+        if step < _CUBICS:
+            share = np.where(most[going] > _CLEAR, _root_share(cubic, share), share)
+        c = _between(arm, now, share, T)
         side = (now.a.left * c.left < 0.0).astype(np.intp)
         way[going] = np.abs(c.q - ends.q[side, going]).max(axis=1)
-        way[going[np.abs(c.left) > most[going]]] = 0.0
+        change = np.abs(np.diff(cubic, axis=0))
+        leaps = change[1] > _LEAP * np.maximum(change[0], change[2])
+        leaps &= (np.abs(ends.left[:, going]).min(axis=0) > arm.policy.arrived) & (step > _SOON)
+        way[going[leaps | (np.abs(c.left) > most[going])]] = 0.0
         for whole, part in zip(ends, c):
             whole[side, going] = part
         values[side, going] = c.left
         values[1 - side, going] *= np.where(last[going] == side, 0.5, 1.0)
         last[going] = side
     return parts._replace(a=some_of(ends, 0), b=some_of(ends, 1))
+
+
+def _root_share(values: Array, share: Array) -> Array:
+    """Where cubics of coefficients (4, n), after Bernstein, vanish (n,): by Newton's method from a `share`
+    (n,), or there where that leads out."""
+    a, b, c, d = values
+    one, two, three = 3.0 * (b - a), 3.0 * (c - b - b + a), d - a + 3.0 * (b - c)
+    x = share
+    for _ in range(_NEWTON):
+        rise = (3.0 * three * x + 2.0 * two) * x + one
+        x = x - (((three * x + two) * x + one) * x + a) / rise
+    return np.asarray(np.where((x > 0.0) & (x < 1.0), x, share))
 
 
 def _kept(arm: Arm, parts: _Parts) -> tuple[Index, Array]:

@@ -28,7 +28,7 @@ class Around(Protocol):
     """`rows_around`."""
 
     def __call__(
-        self, arm: Arm, q: Array, T: Array, broken: bool = False
+        self, arm: Arm, q: Array, T: Array, broken: Flags
     ) -> tuple[Flags, Index, Array, Array]: ...
 
 
