@@ -13,6 +13,7 @@ from ikgen.elimination.routine import runtime_policy
 from ikgen.program.policy import SolvePolicy
 from ikgen.runtime.python.chain_kinematics import chain_of
 from ikgen.runtime.python.row_placement import (
+    apart,
     distinct,
     is_new,
     place_rows,
@@ -23,6 +24,9 @@ from ikgen.runtime.python.solved_arm import Arm
 from ikgen.runtime.python.whole_pose import PoseTask
 
 Array = NDArray[np.float64]
+
+
+_TURNING = tuple((j, True, 1.0, 0.0) for j in range(3))
 
 
 def arm() -> Arm:
@@ -148,3 +152,23 @@ def test_a_row_far_outside_of_another_limit_is_not_close() -> None:
         assert rows_at_limits(one, [(row, True)], None, True) == ([], [])
         _, inside, close = place_rows_batch(one, np.array([[row]]), None, True)
         assert not inside.any() and not close.any()
+
+
+def test_rows_are_apart_where_none_repeats_another() -> None:
+    turning = replace(arm(), chain=chain_of(np.tile(np.eye(4), (4, 1, 1)), _TURNING, 3))
+    q = np.array([[0.1, 0.2, pi], [0.1, 0.2, 0.5], [0.3, 0.2, -pi]])
+    assert apart(turning, q) and apart(turning, q[:1]) and apart(turning, q[:0])
+    for repeated in (q[0] + 1e-7, q[0] - 2.0 * pi, q[2] + np.array([-0.2, 4.0 * pi, 0.0])):
+        assert not apart(turning, np.vstack([q, repeated]))
+        assert not is_new(turning, tuple(repeated), [(tuple(row), False) for row in q.tolist()])
+    assert not apart(arm(), rows(2)[:, 0])
+
+
+def test_rows_within_limits_and_half_turns_stay() -> None:
+    """Those that need no turn are taken as they are; what is on an edge goes the long way."""
+    inside = (0.5, -3.0, 1.0, 0.5, 9.0)
+    for row in (inside, (pi, *inside[1:]), (-pi, *inside[1:])):
+        placed, close = rows_at_limits(arm(), [(row, True)], None, True)
+        assert placed == [((pi if row[0] == -pi else row[0], *inside[1:]), True)] and not close
+    unlimited, _ = rows_at_limits(arm(), [((0.5, -3.0, 4.0, 7.0, 9.0), False)], None, False)
+    assert unlimited == [((0.5, -3.0, 4.0 - 2.0 * pi, 7.0, 9.0), False)]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from operator import or_
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,7 @@ from ikgen.runtime.python.pose_arguments import one_pose
 from ikgen.runtime.python.pose_faults import nearest_pose, pose_fault
 from ikgen.runtime.python.projection import nearest_row, off_by
 from ikgen.runtime.python.row_branches import branch_names
-from ikgen.runtime.python.row_placement import in_order, is_new, place_rows, rows_at_limits
+from ikgen.runtime.python.row_placement import apart, in_order, is_new, place_rows, rows_at_limits
 from ikgen.runtime.python.solutions import Solutions, Status, no_solutions
 from ikgen.runtime.python.solved_arm import Arm, Found
 
@@ -139,10 +138,13 @@ def _certain_rows(
         return None if any(arm.branches(pose, tuple(start), held)[0] for pose in beside) else []
     if arm.together is not None:
         aim = aims(arm, np.array([T]), np.array([held]))
-        q, arrived, missed = (x.tolist() for x in arm.together(arm, np.array(rows), aim))
-        if not all(map(or_, arrived, missed)):
+        q, arrived, missed = arm.together(arm, np.array(rows), aim)
+        if not (arrived | missed).all():
             return None
-        rows = [tuple(row) for row, there in zip(q, arrived) if there]
+        q = q[arrived]
+        rows = list(map(tuple, q.tolist()))
+        if apart(arm, q):
+            return [(row, False) for row in rows]
     kept: list[Found] = []
     for row in rows:
         if is_new(arm, row, kept):

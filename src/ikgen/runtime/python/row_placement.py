@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from math import ceil, floor, inf, pi, remainder
+from operator import lt
 
 import numpy as np
 
-from ikgen.runtime.python.array_types import Array, Flags, Row
+from ikgen.runtime.python.array_types import Array, Flags, Index, Row
 from ikgen.runtime.python.solved_arm import Arm, Found
 
 __all__ = [
+    "apart",
     "distinct",
     "in_order",
     "is_new",
@@ -38,6 +41,24 @@ def is_new(arm: Arm, row: Row, kept: Sequence[Found]) -> bool:
         else:
             return False
     return True
+
+
+def apart(arm: Arm, q: Array) -> bool:
+    """Whether all rows (k, dof) of revolute joints differ, whole turns aside; False also where slides have
+    to tell."""
+    if not all(arm.chain.revolute):
+        return False
+    later, earlier = _pairs(len(q))
+    gap = q[later] - q[earlier]
+    gap -= _TURN * np.rint(gap / _TURN)
+    most = np.maximum.reduce(np.abs(gap), axis=1, initial=0.0)
+    return bool((most > arm.policy.coincident).all())
+
+
+@cache
+def _pairs(count: int) -> tuple[Index, Index]:
+    """Of so many."""
+    return np.tril_indices(count, -1)
 
 
 def distinct(arm: Arm, q: Array, valid: Flags) -> Flags:
@@ -70,7 +91,15 @@ def rows_at_limits(
 ) -> tuple[list[Found], list[tuple[Found, Row]]]:
     """`place_rows`, and of the dropped rows those hardly outside: as they were, and on the limits."""
     inside, close = [], []
+    low, high = arm.lower, arm.upper
+    if not limits:
+        low, high = (-inf,) * len(low), (inf,) * len(low)
+    least = [max(x, -pi) if turning else x for x, turning in zip(low, arm.turning)]
+    most = [min(x, pi) if turning else x for x, turning in zip(high, arm.turning)]
     for row, flag in rows:
+        if near is None and all(map(lt, least, row)) and all(map(lt, row, most)):
+            inside.append((row, flag))
+            continue
         placed, beyond = _place(arm, row, near, limits)
         if placed is not None and beyond:
             close.append(((row, flag), placed))
