@@ -13,9 +13,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from functools import partial
+from functools import cache, partial
 from math import asin, atan2, ceil, copysign, floor, inf, isfinite, pi, remainder, sqrt
-from operator import or_
+from operator import lt
 from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
@@ -507,7 +507,7 @@ class _Around(Protocol):
     """`rows_around`."""
 
     def __call__(
-        self, arm: _Arm, q: Array, T: Array, broken: bool = False
+        self, arm: _Arm, q: Array, T: Array, broken: _Flags
     ) -> tuple[_Flags, _Index, Array, Array]: ...
 
 
@@ -769,6 +769,24 @@ def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
     return True
 
 
+def _apart(arm: _Arm, q: Array) -> bool:
+    """Whether all rows (k, dof) of revolute joints differ, whole turns aside; False also where slides have
+    to tell."""
+    if not all(arm.chain.revolute):
+        return False
+    later, earlier = _pairs(len(q))
+    gap = q[later] - q[earlier]
+    gap -= _TURN * np.rint(gap / _TURN)
+    most = np.maximum.reduce(np.abs(gap), axis=1, initial=0.0)
+    return bool((most > arm.policy.coincident).all())
+
+
+@cache
+def _pairs(count: int) -> tuple[_Index, _Index]:
+    """Of so many."""
+    return np.tril_indices(count, -1)
+
+
 def _distinct(arm: _Arm, q: Array, valid: _Flags) -> _Flags:
     """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside; long
     slides count relative to their length."""
@@ -799,7 +817,15 @@ def _rows_at_limits(
 ) -> tuple[list[_Found], list[tuple[_Found, Row]]]:
     """`_place_rows`, and of the dropped rows those hardly outside: as they were, and on the limits."""
     inside, close = [], []
+    low, high = arm.lower, arm.upper
+    if not limits:
+        low, high = (-inf,) * len(low), (inf,) * len(low)
+    least = [max(x, -pi) if turning else x for x, turning in zip(low, arm.turning)]
+    most = [min(x, pi) if turning else x for x, turning in zip(high, arm.turning)]
     for row, flag in rows:
+        if near is None and all(map(lt, least, row)) and all(map(lt, row, most)):
+            inside.append((row, flag))
+            continue
         placed, beyond = _place(arm, row, near, limits)
         if placed is not None and beyond:
             close.append(((row, flag), placed))
@@ -1028,6 +1054,11 @@ def _generic(count: int, size: int) -> Array:
     return np.tile(1.0 + 0.1 * np.arange(size), (count, 1))
 
 
+def _still_directions(arm: _Arm, slope: Array) -> Array:
+    """The unit directions (k, n) in which poses of derivatives (k, m, n) move least."""
+    return _still(slope, _generic(len(slope), slope.shape[2]), arm.policy.least_damping)
+
+
 def _approach(arm: _Arm, q: Array, T: Array, side: Array) -> Array:
     """From q (k, dof) towards the solution on one `side` (k,), 1 or -1, of the place where two may meet, or
     to where they nearly do; T (k, 4, 4)."""
@@ -1044,23 +1075,26 @@ def _correct(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, Array]:
     """After one step across the still directions, with what was left before it; how far (k,) the fastest
     joint goes."""
     error, slope = _linearized(arm, at.q, T)
-    others = _others(arm, slope, at.still)
-    taken, going = others.take_away(np.stack([error, at.out], axis=2))
-    rest, out = np.moveaxis(taken, 2, 0)
-    out = out / np.linalg.norm(out, axis=1)[:, None]
+    others = _across(slope, at.still, arm.policy.least_damping)
+    taken, going = others.take_away(np.stack([error, at.out, others.flow], axis=2))
+    still, size = _unit(at.still - going[:, :, 2])
+    out, _ = _unit(taken[:, :, 1])
+    left, grows = np.einsum("ke,kei->ik", out, taken[:, :, ::2])
     across = going[:, :, 0]
-    left = np.einsum("ke,ke->k", out, rest)
-    grows = -np.einsum("ke,ke->k", out, others.flow)
     q = others.moved(arm, at.q, across, 0.0)
-    return _Reduced(q, others.still, out, left, grows), np.abs(across).max(axis=1)
+    return _Reduced(q, still, out, left, -grows / size), np.abs(across).max(axis=1)
 
 
 def _others(arm: _Arm, slope: Array, still: Array) -> _Others:
-    still = _still(slope, still, arm.policy.least_damping)
+    damping = arm.policy.least_damping
+    return _across(slope, _still(slope, still, damping), damping)
+
+
+def _across(slope: Array, still: Array, damping: float) -> _Others:
     flow = np.einsum("kej,kj->ke", slope, still)
     V = slope - flow[:, :, None] * still[:, None, :]
     normal = V.transpose(0, 2, 1) @ V + still[:, :, None] * still[:, None, :]
-    return _Others(still, flow, V, _damped(normal, arm.policy.least_damping))
+    return _Others(still, flow, V, _damped(normal, damping))
 
 
 def _step(arm: _Arm, q: Array, T: Array, side: Array, still: Array) -> tuple[Array, Array, Array]:
@@ -1077,12 +1111,16 @@ def _step(arm: _Arm, q: Array, T: Array, side: Array, still: Array) -> tuple[Arr
 
 
 def _still(slope: Array, still: Array, damping: float) -> Array:
-    """By inverse iteration, from what it was, which keeps its sense."""
+    """By four steps of inverse iteration, from what it was, which keeps its sense."""
     inverse = _normal_inverse(slope, damping)
-    for _ in range(4):
-        still = (inverse @ still[:, :, None])[:, :, 0]
-        still = still / np.linalg.norm(still, axis=1)[:, None]
-    return still
+    twice = inverse @ inverse
+    return _unit((twice @ (twice @ still[:, :, None]))[:, :, 0])[0]
+
+
+def _unit(v: Array) -> tuple[Array, Array]:
+    """v (k, n) at unit length, and its length (k,)."""
+    size = np.sqrt(np.einsum("ki,ki->k", v, v))
+    return v / size[:, None], size
 
 
 def _root(side: Array, rest: Array, bend: Array, flow: Array) -> Array:
@@ -1175,42 +1213,52 @@ def _ends_of(arm: _Arm, q: Array, T: Array) -> _Ends:
     return _Ends(q, error, _least_singular(slope))
 
 
-def _leads_of(arm: _Arm, starts: _Starts, known: _Flags) -> _Leads:
+def _leads_of(arm: _Arm, starts: _Starts, known: _Flags, near: bool = False) -> _Leads:
     """What starts lead to. A continuum that the closed form has, where it marked a row, is followed all
     around where the file's arm may not have it, once for each branch of a pose; `known` (poses, branches):
-    which were, and are then. Starts on none are no longer marked."""
-    count = len(starts.q)
+    which were, and are then. Starts on none are no longer marked. With `near`, continua that the pose's own
+    rows may lie on near singularities are followed as well."""
     broken = starts.marked & (starts.source >= 0)
     if not arm.rounded and broken.any():
         error = _ends_of(arm, starts.q[broken], starts.T[broken]).error
         broken[broken] = error >= arm.policy.arrived
-    at, found = (starts.pose, starts.lane), _Led(np.zeros(0, np.intp), starts.q[:0], np.zeros(0))
-    for source in np.unique(starts.source[broken]).tolist():
-        some = np.flatnonzero(broken & (starts.source == source) & ~known[at])
-        if arm.around is not None and len(some):
-            curve, owner, q, loss = arm.around(arm, starts.q[some], starts.T[some])
-            known[starts.pose[some[curve]], starts.lane[some[curve]]] = True
-            found = _joined(found, _Led(some[owner], q, loss))
+    nowhere = np.full(len(starts.q), np.inf)
+    ends = _Ends(starts.q.copy(), nowhere, nowhere.copy())
+    _run(arm, starts, ends, ~broken)
+    own, at = starts.source == 0, (starts.pose, starts.lane)
+    lie = own & ~starts.marked & near
+    lie &= ends.loss < min(arm.policy.broken_reach, arm.policy.fold_reach)
+    one, on = _found_around(arm, starts, ends, (broken & own & ~known[at]) | lie, lie)
+    known[starts.pose[on & ~lie], starts.lane[on & ~lie]] = True
+    other, also = _found_around(arm, starts, ends, broken & ~own & ~known[at], lie)
+    known[starts.pose[also], starts.lane[also]] = True
     around = broken & known[at]
-    ends = _Ends(starts.q.copy(), np.full(count, np.inf), np.full(count, np.inf))
-    for whole, part in zip(ends, _ends_of(arm, starts.q[~around], starts.T[~around])):
-        whole[~around] = part
+    _run(arm, starts, ends, broken & ~around)
     starts = starts._replace(marked=starts.marked & (around | ~broken))
-    return _Leads(starts, ends, found, around)
+    return _Leads(starts, ends, _joined(one, other), around | (on & lie))
 
 
-def _traced(arm: _Arm, leads: _Leads) -> _Leads:
-    """With what is found around continua of the solved geometry that rows near singularities lie on."""
-    starts, (q, _, loss) = leads.starts, leads.ends
-    own = (starts.source == 0) & ~starts.marked
-    some = np.flatnonzero(own & (loss < min(arm.policy.broken_reach, arm.policy.fold_reach)))
-    if arm.around is None or not len(some):
-        return leads
-    curve, owner, rows, there = arm.around(arm, q[some], starts.T[some], broken=True)
-    known = leads.known.copy()
-    known[some[curve]] = True
-    around = _joined(leads.around, _Led(some[owner], rows, there))
-    return leads._replace(around=around, known=known)
+def _run(arm: _Arm, starts: _Starts, ends: _Ends, some: _Flags) -> None:
+    """Enters where steps from some of the starts end."""
+    for whole, part in zip(ends, _ends_of(arm, starts.q[some], starts.T[some])):
+        whole[some] = part
+
+
+def _found_around(
+    arm: _Arm, starts: _Starts, ends: _Ends, some: _Flags, lie: _Flags
+) -> tuple[_Led, _Flags]:
+    """The solutions around continua that some starts (k,) stand for, or that rows `lie` (k,) on which they
+    lead to, once for each branch of a pose; which starts these are from."""
+    index, on = np.flatnonzero(some), np.zeros(len(some), dtype=bool)
+    if arm.around is None or not len(index):
+        return _Led(index[:0], starts.q[:0], ends.loss[:0]), on
+    q = np.where(lie[:, None], ends.q, starts.q)[index]
+    curve, owner, rows, loss = arm.around(arm, q, starts.T[index], lie[index])
+    branch = np.stack([starts.pose, starts.lane], axis=1)[index[curve]]
+    _, first = np.unique(branch, axis=0, return_index=True)
+    on[index[curve][first]] = True
+    found: _Led = _some_of(_Led(index[owner], rows, loss), on[index[owner]])
+    return found, on
 
 
 def _rows_nearby(arm: _Arm, leads: _Leads) -> _Led:
@@ -1399,9 +1447,7 @@ def _rows(arm: _Arm, asked: _Asked, start: Array, first: bool) -> list[_Rows]:
     looks, anywhere = first and len(arm.beside) > 0, arm.policy.beside_anywhere
     if looks and anywhere:
         starts = _joined(starts, _beside(arm, asked, start, np.arange(len(start))))
-    leads = _leads_of(arm, starts, known)
-    if first and arm.rounded:
-        leads = _traced(arm, leads)
+    leads = _leads_of(arm, starts, known, near=first and arm.rounded)
     close = (starts.source >= 0) & (leads.ends.loss < arm.policy.beside_reach) & ~leads.known
     near = free.copy()
     near[starts.pose[close]] = True
@@ -1878,6 +1924,8 @@ def _rows_and_doubts(
 
 
 _MOST, _CORRECTIONS, _STEPS, _DEEP, _LEAST = 96, 6, 40, 24, 4
+_CUBICS, _NEWTON, _CLEAR = 2, 4, 1e-6
+_LEAP, _SOON = 16.0, 3
 _SAMPLES = 600  # of a curve
 _ROOM = 32  # solutions of a curve
 _NEAR = 1e-11  # rad or m: how far off the curve slopes along it are the curve's
@@ -1906,38 +1954,32 @@ class _Parts(NamedTuple):
     width: Array
 
 
-def _rows_around(
-    arm: _Arm, q: Array, T: Array, broken: bool = False
-) -> tuple[_Flags, _Index, Array, Array]:
+def _rows_around(arm: _Arm, q: Array, T: Array, broken: _Flags) -> tuple[_Flags, _Index, Array, Array]:
     """Which rows q (k, dof) towards aims T (k, ...) stand for a continuum of the solved geometry; from
     which (n,) the solutions (n, dof) all around are, or one where the file's arm has the continuum too, and
-    the smallest singular values (n,) there. `broken`: of such that the file's arm has not alone, and no
-    others than those that are right to round-off."""
+    the smallest singular values (n,) there. `broken` (k,): from which only of such that the file's arm has
+    not, and no others than those that are right to round-off."""
     with np.errstate(all="ignore"):
         traced = _trace(arm, q, T)
-    if broken:
-        end, error, _, slope = _refined(arm, traced.q, T[traced.owner])
-        good = error < arm.policy.exact
-        return traced.broken, traced.owner[good], end[good], _least_singular(slope[good])
-    given = np.flatnonzero(traced.curve)
+    given = np.flatnonzero(traced.curve & ~broken)
     owner = np.concatenate([traced.owner, given])
     rows, error, _, slope = _refined(arm, np.concatenate([traced.q, q[given]]), T[owner])
     exact = error < arm.policy.exact
     best = np.lexsort((error, owner))
     best = best[_places(owner[best]) == 0]
     best = best[~np.isin(owner[best], owner[exact]) & (error[best] < arm.policy.arrived)]
+    best = best[~broken[owner[best]]]
     some = np.concatenate([np.flatnonzero(exact), best])
     some = some[np.argsort(owner[some], kind="stable")]
-    return traced.curve, owner[some], rows[some], _least_singular(slope[some])
+    curve = np.where(broken, traced.broken, traced.curve)
+    return curve, owner[some], rows[some], _least_singular(slope[some])
 
 
 def _trace(arm: _Arm, q: Array, T: Array) -> _Traced:
     """The curves through rows q (k, dof) towards aims T (k, ...), once around, or to both their ends."""
-    count, (error, _) = len(q), _linearized(arm, q[:1], T[:1])
-    nothing = np.zeros(count)
-    start = _Reduced(
-        q, _generic(count, len(arm.moving)), _generic(count, error.shape[1]), nothing, nothing
-    )
+    count, (error, slope) = len(q), _linearized(arm, q, T)
+    nothing, still = np.zeros(count), _still_directions(arm, slope)
+    start = _Reduced(q, still, _generic(count, error.shape[1]), nothing, nothing)
     first = _sample(arm, start, T)
     back = first._replace(still=-first.still, slope=-first.slope)
     parts, closed, worst = _follow(arm, first, T, np.arange(count), 0.0)
@@ -2049,13 +2091,14 @@ def _bernstein(arm: _Arm, parts: _Parts) -> Array:
 
 def _closed_in(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
     """Parts at whose ends what is left has two signs, narrowed until it is round-off at one, or the way
-    to there is: by false position, halving what an end keeps (Dowell & Jarratt 1971). A part in which
-    far more is left than the cubic's coefficients bound is of no one curve, and stays as it is then."""
+    to there is: first at roots of cubics, where far more than round-off is left, then by false position,
+    halving what an end keeps (Dowell & Jarratt 1971). A part in which far more is left than the cubic's
+    coefficients bound, or in which that leaps, is of no one curve, and stays as it is then."""
     ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
     values, last = ends.left.copy(), np.full(len(parts.owner), -1)
     way = np.full(len(parts.owner), np.inf)
     most = 2.0 * np.abs(_bernstein(arm, parts)).max(axis=0)
-    for _ in range(_STEPS):
+    for step in range(_STEPS):
         going = np.flatnonzero((np.abs(ends.left).min(axis=0) > _ROUND_OFF) & (way > _WAY))
         if not len(going):
             break
@@ -2063,16 +2106,34 @@ def _closed_in(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
         now = _some_of(parts, going)._replace(
             a=_some_of(ends, (0, going)), b=_some_of(ends, (1, going))
         )
-        c = _near_continuum_between(arm, now, x / (x - y), T)
+        cubic, share = _bernstein(arm, now), x / (x - y)
+        if step < _CUBICS:
+            share = np.where(most[going] > _CLEAR, _root_share(cubic, share), share)
+        c = _near_continuum_between(arm, now, share, T)
         side = (now.a.left * c.left < 0.0).astype(np.intp)
         way[going] = np.abs(c.q - ends.q[side, going]).max(axis=1)
-        way[going[np.abs(c.left) > most[going]]] = 0.0
+        change = np.abs(np.diff(cubic, axis=0))
+        leaps = change[1] > _LEAP * np.maximum(change[0], change[2])
+        leaps &= (np.abs(ends.left[:, going]).min(axis=0) > arm.policy.arrived) & (step > _SOON)
+        way[going[leaps | (np.abs(c.left) > most[going])]] = 0.0
         for whole, part in zip(ends, c):
             whole[side, going] = part
         values[side, going] = c.left
         values[1 - side, going] *= np.where(last[going] == side, 0.5, 1.0)
         last[going] = side
     return parts._replace(a=_some_of(ends, 0), b=_some_of(ends, 1))
+
+
+def _root_share(values: Array, share: Array) -> Array:
+    """Where cubics of coefficients (4, n), after Bernstein, vanish (n,): by Newton's method from a `share`
+    (n,), or there where that leads out."""
+    a, b, c, d = values
+    one, two, three = 3.0 * (b - a), 3.0 * (c - b - b + a), d - a + 3.0 * (b - c)
+    x = share
+    for _ in range(_NEWTON):
+        rise = (3.0 * three * x + 2.0 * two) * x + one
+        x = x - (((three * x + two) * x + one) * x + a) / rise
+    return np.asarray(np.where((x > 0.0) & (x < 1.0), x, share))
 
 
 def _kept(arm: _Arm, parts: _Parts) -> tuple[_Index, Array]:
@@ -2366,10 +2427,13 @@ def _pose_solving_certain_rows(
         return None if any(arm.branches(pose, tuple(start), held)[0] for pose in beside) else []
     if arm.together is not None:
         aim = _aims(arm, np.array([T]), np.array([held]))
-        q, arrived, missed = (x.tolist() for x in arm.together(arm, np.array(rows), aim))
-        if not all(map(or_, arrived, missed)):
+        q, arrived, missed = arm.together(arm, np.array(rows), aim)
+        if not (arrived | missed).all():
             return None
-        rows = [tuple(row) for row, there in zip(q, arrived) if there]
+        q = q[arrived]
+        rows = list(map(tuple, q.tolist()))
+        if _apart(arm, q):
+            return [(row, False) for row in rows]
     kept: list[_Found] = []
     for row in rows:
         if _is_new(arm, row, kept):
