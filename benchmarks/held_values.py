@@ -1,7 +1,7 @@
 """self_motion and search of C++ headers with held joints: against grids and random values, and timed.
 
     python -m benchmarks.held_values [--arm NAME] [--poses 20] [--values 10000] [--joints 7]
-        [--flags native] [--arm-angle] [--log FILE] [--record]
+        [--flags native] [--arm-angle] [--log FILE] [--done] [--record]
 
 Takes every arm of the collection with so many joints that move or more, or ROBOT files by `--arm FILE`. For
 each, random poses inside the limits. Intervals of self_motion are compared with the rows of solve on a grid
@@ -10,8 +10,8 @@ values and more at which they differ, "off" ends that are elsewhere. The best ro
 three preferences, is compared with the best at random values of the held joints: "worse" counts searches
 that were beaten. Times are the median and the largest over the poses, processor time in us, of the best
 of several runs. With --arm-angle the arms that have one hold that in place of a joint. What is done stands
-in FILE of --log, one JSON object a line, and a run with the same file goes on behind it. Exits with 1 if
-anything is missed, off or worse.
+in FILE of --log, one JSON object a line, and a run with the same file goes on behind it; --done sums up
+what stands there. Exits with 1 if anything is missed, off or worse.
 """
 
 from __future__ import annotations
@@ -143,6 +143,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--flags", choices=FLAGS, default="native")
     parser.add_argument("--arm-angle", action="store_true")
     parser.add_argument("--log", type=Path, help="file of what is done, to go on from")
+    parser.add_argument("--done", action="store_true", help="nothing but what stands in the log")
     parser.add_argument("--record", action="store_true", help="write results/held_values.json")
     options = parser.parse_args(arguments)
     found = chosen(options.arm, options.joints)
@@ -156,7 +157,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     numbers = (options.poses, options.values, options.seed)
     done = logged(options.log)
     for source in found:
-        if source.key in done:
+        if options.done or source.key in done:
             continue
         if options.arm_angle:
             source = replace(source, choices=(("--free", "arm-angle"),))

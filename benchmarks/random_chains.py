@@ -1,7 +1,7 @@
 """Random chains: whether all are solved, and whether what was solved is right and complete.
 
     python -m benchmarks.random_chains [--class NAME] [--count N] [--first N] [--seed N] [--poses N]
-        [--search N] [--derive-only] [--emit python,cpp] [--log FILE] [--again] [--record]
+        [--search N] [--derive-only] [--emit python,cpp] [--log FILE] [--again] [--done] [--record]
 
 Modified DH tables, each through `ikgen from-dh` with its whole verification, special poses included.
 Classes are `3-6`, 300 tables of so many joints, a quarter of them prismatic, twists of 0 and ±90 degrees
@@ -12,9 +12,9 @@ Any other class of these forms (`4-5`, `3R2P`) may be named. Arms whose joints a
 smaller rank than joints) are drawn again: they have infinitely many solutions.
 
 What is done stands in FILE, one JSON object a line, and a run with the same file goes on behind it; with
-`--again` after those that failed were tried anew. `--derive-only` leaves out the command line and its
-verification: the rules, then the eliminations, and the same comparisons. Exits with 1 where a table is not
-solved, wrong or incomplete.
+`--again` after those that failed were tried anew; `--done` sums up what stands there. `--derive-only`
+leaves out the command line and its verification: the rules, then the eliminations, and the same
+comparisons. Exits with 1 where a table is not solved, wrong or incomplete.
 """
 
 from __future__ import annotations
@@ -106,6 +106,8 @@ def run(options: argparse.Namespace, log: Log, folder: Path) -> dict[str, list[O
         for number, dh in tables(name, options.seed, options.first, count):
             key = (name, options.seed, number)
             done = log.found.get(key)
+            if done is None and options.done:
+                continue
             if done is None or (options.again and not done.good):
                 done = outcome(dh, folder, extent, number)
                 log.add(key, done)
@@ -162,6 +164,7 @@ def parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("--emit", default="python", help="what `ikgen from-dh` writes")
     parser.add_argument("--log", type=Path, help="file of what is done, to go on from")
     parser.add_argument("--again", action="store_true", help="try anew what failed")
+    parser.add_argument("--done", action="store_true", help="nothing but what stands in the log")
     parser.add_argument("--record", action="store_true", help="write results/random_chains.json")
     options = parser.parse_args(arguments)
     for name in options.classes or ():

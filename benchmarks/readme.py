@@ -51,6 +51,13 @@ CLASSES = {
 }
 """What the collection calls a class -> what the README calls it, where that is not the same with a comma
 after the kinds of joints."""
+RANDOM = {
+    "3-6": "3 to 6, a quarter slides, right angles",
+    "6R": "6R, any twists",
+    "5R1P": "5R1P, any twists",
+    "4R2P": "4R2P, any twists",
+}
+"""Classes of random tables -> what the README calls them."""
 ARMS = {
     "IRB 2400": "ABB IRB 2400",
     "UR5e": "UR5e",
@@ -115,24 +122,31 @@ def _classes(name: str, read: Callable[[str], Measured]) -> str:
 
 
 def _tables(read: Callable[[str], Measured]) -> str:
-    measured = [read(name) for name in ("random_chains", "suite")]
-    rows = [_counts(m) for m in measured]
-    head = (
-        "command",
-        "tables",
-        "solved by rules",
-        "by elimination",
-        "wrong rows",
-        "missed",
-        "median",
-    )
-    return _table(head, rows) + _source(*measured)
+    measured = read("suite")
+    head = ("command", *_COUNTED.values(), "median")
+    row = [f"`{measured.command}`", *_counts(measured.found)]
+    return _table(head, [row]) + _source(measured)
 
 
-def _counts(measured: Measured) -> list[str]:
-    found = measured.found
-    names = ("tables", "by_rules", "by_elimination", "wrong", "missed")
-    return [f"`{measured.command}`", *(str(found[n]) for n in names), f"{found['median']:.1f} s"]
+def _random(read: Callable[[str], Measured]) -> str:
+    measured = read("random_chains")
+    head = ("joints", *_COUNTED.values(), "median", "poses with as many solutions by search")
+    rows = [
+        [RANDOM.get(c["class"], c["class"]), *_counts(c),
+         f"{c['equal']} of {c['searched']}" if c["searched"] else "–"]
+        for c in measured.found["classes"]
+    ]  # fmt: skip
+    return _table(head, rows) + _source(measured)
+
+
+_COUNTED = {
+    "tables": "tables", "by_rules": "solved by rules", "by_elimination": "by elimination",
+    "wrong": "wrong rows", "missed": "missed",
+}  # fmt: skip
+
+
+def _counts(found: dict[str, Any]) -> list[str]:
+    return [*(str(found[n]) for n in _COUNTED), f"{found['median']:.1f} s"]
 
 
 def _peers(read: Callable[[str], Measured]) -> str:
@@ -189,13 +203,14 @@ BLOCKS: dict[str, Callable[[Callable[[str], Measured]], str]] = {
     "public": partial(_classes, "public"),
     "corpus": partial(_classes, "corpus"),
     "tables": _tables,
+    "random": _random,
     "peers": _peers,
     "answers": _answers,
     "batch": _batch,
 }
 """Block -> its text."""
 PAGES = {
-    PAGE: ("public", "corpus", "tables", "peers"),
+    PAGE: ("public", "corpus", "random", "tables", "peers"),
     COMPARISON: ("peers", "answers"),
     COMPARISON.parents[1] / "index.md": ("batch",),
 }
