@@ -30,8 +30,6 @@ def test_rows_of_rounded_files_are_refined(
     )  # fmt: skip
     policy = SolvePolicy()
     assert (module.refine, module.far) == (refine, far)
-    least = max(policy.least_pivot, policy.reach * math.sqrt(deviation))
-    assert module.policy.least_pivot == pytest.approx(least)
     near = policy.fold * math.sqrt(deviation)
     assert module.policy.fold_reach == pytest.approx(max(policy.fold_reach, near))
     beside = policy.anywhere if far else near

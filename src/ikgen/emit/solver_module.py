@@ -78,10 +78,10 @@ class SolverModule:
 
     @property
     def policy(self) -> SolvePolicy:
-        """The tolerances of `solve`, four of them as far as the file is off what was solved.
+        """The tolerances of `solve`, three of them as far as the file is off what was solved.
 
-        `least_pivot`: nearer to a singularity the file's solutions may be others in number; `fold_reach`:
-        there two of them may start from one row; with those of poses beside, hardly ever far from it.
+        `fold_reach`: there two of them may start from one row; with those of poses beside, hardly ever far
+        from it.
         `beside_reach`: there, and where a divisor of the closed form vanishes, others may start from none;
         `broken_reach`: there others may lie all along a continuum that the file's arm has not.
         """
@@ -89,7 +89,6 @@ class SolverModule:
         root = math.sqrt(off)
         return replace(
             plain,
-            least_pivot=max(plain.least_pivot, plain.reach * root),
             fold_reach=max(plain.fold_reach, plain.fold * root),
             beside_reach=plain.anywhere if self.far else plain.fold * root,
             broken_reach=plain.broken_reach * off,

@@ -48,10 +48,9 @@ class SolvePolicy:
       singular value below which a row may lie on a continuum that rounding broke, over how far the file is
       off: along it the error is as small as that, and so is its slope.
     - `farthest_start`: the largest first step (rad, m) of rows that are refined together, `contraction`:
-      the most that a step of theirs may be of the one before, `least_pivot`: the least entry of the
-      diagonal of their derivatives' triangular factor, `reach`: the same over the root of how far the file
-      is off what was solved, `pivot_share`: the most that a first step may be of that entry where its rows
-      are looked at in Python, `least_miss`: the error that shows that they end beside the pose,
+      the most that a step of theirs may be of the one before, `least_pivot`: how far the derivatives by a
+      joint must be from the span of others', `pivot_share`: the most that a first step may be of that
+      distance, `least_miss`: the error that shows that they end beside the pose,
       `near`: the largest step in C++ behind which the derivatives stay, `lane_steps`: how many they take at
       most; other rows are refined one by one.
     - `least_damping`, `damping`: a Newton step is damped by max(least, damping * error^2); `largest_step`
@@ -83,7 +82,6 @@ class SolvePolicy:
     contraction: float = 0.25
     pivot_share: float = 4.0
     least_pivot: float = 1e-5
-    reach: float = 1.0
     least_miss: float = 1e-8
     near: float = 1e-4
     lane_steps: int = 7

@@ -16,6 +16,7 @@ from ikgen.emit.printer import expression
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
 from ikgen.errors import UsageError
+from ikgen.kinematics.column_blocks import column_blocks
 from ikgen.program.margins import fold_margins
 from ikgen.program.ops import Op
 from ikgen.program.policy import SolvePolicy
@@ -79,7 +80,6 @@ def emit_header(module: SolverModule) -> str:
         rough=_rough(module, policy),
         order=_depth_first(branches),
         frames=[[[expression(CONSTANT, x) for x in row] for row in F] for F in program.frames],
-        twisted=twist_lines(module) if _newton(module) else None,
         held=len(module.held),
         elbow=elbow_text(module, number),
         folds=fold_margins(program),
@@ -90,6 +90,7 @@ def emit_header(module: SolverModule) -> str:
         size=_size_text(module),
         blanks=blanks(module),
         **_elimination(module),
+        **_refinement(module),
         angles=[(f, n) for n in pairs(module) for f in ("cos", "sin")],
         free_defaults=[number(x) for x in module.free_defaults],
         number=number,
@@ -107,6 +108,20 @@ def _careful(module: SolverModule) -> bool:
 def _newton(module: SolverModule) -> bool:
     """Whether all rows are refined at once."""
     return module.refine == "all"
+
+
+def _refinement(module: SolverModule) -> dict[str, object]:
+    """What the templates say of rows that are refined at once: the chain for that, the joints by blocks."""
+    twisted = twist_lines(module) if _newton(module) else None
+    return {"twisted": twisted, "blocks": _blocks(module)}
+
+
+def _blocks(module: SolverModule) -> tuple[int, ...]:
+    """The joints by blocks of their derivatives, where those of all rows are eliminated so."""
+    if not _newton(module) or module.task != "pose" or module.dh.arm_angle:
+        return ()
+    moving = [j for j in range(module.dh.dof) if j not in module.free]
+    return column_blocks(module.dh, moving, module.size)
 
 
 def _headers(module: SolverModule) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import fields
 from typing import TYPE_CHECKING
 
 from ikgen.elimination.routine import runtime_policy
@@ -17,7 +17,6 @@ from ikgen.emit.python.python_statements import batch_lines, scalar_lines
 from ikgen.emit.python.python_text import literal, words
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
-from ikgen.program.policy import SolvePolicy
 from ikgen.runtime.python.solve_policy import Policy
 from ikgen.tasks import AXES, Task
 
@@ -36,7 +35,6 @@ def emit_derivation(derivation: Derivation) -> dict[str, str]:
 def emit_module(module: SolverModule) -> str:
     """The text of `<name>_ik.py`."""
     program = module.program
-    policy = replace(module.policy, least_pivot=SolvePolicy().least_pivot)
     shell = render(
         "python",
         "module.py.jinja",
@@ -70,8 +68,8 @@ def emit_module(module: SolverModule) -> str:
         branch_kind=branch_kind(module),
         elbow_end=elbow_end(module),
         unit_columns=_unit_columns(module.reads),
-        policy=policy,
-        policy_values=_policy_values(runtime_policy(policy)),
+        policy=module.policy,
+        policy_values=_policy_values(runtime_policy(module.policy)),
     )
     return bundle(shell)
 

@@ -8,6 +8,7 @@
 #include "near_continuum.hpp"
 #include "newton_refinement.hpp"
 #include "rank_loss.hpp"
+#include "row_pair.hpp"
 #include "solution_rows.hpp"
 
 namespace ikgen_runtime {
@@ -19,6 +20,7 @@ namespace ikgen_runtime {
 template <class Arm> struct CarefulSolve {
   using Aim = HeldAim<Arm>;
   using Options = typename Arm::Options;
+  using Pair = RowPair<Arm>;
   using Policy = typename Arm::Policy;
   using Refinement = NewtonRefinement<Arm>;
   using Row = SolutionRows<Arm>;
@@ -65,6 +67,16 @@ template <class Arm> struct CarefulSolve {
   }
 
  private:
+  // The rows of another geometry after steps towards the aim, all at once.
+  static Rows refined_lanes(const Rows& rows, const Aim& aim, const Options& options) noexcept {
+    Rows out = rows;
+    if constexpr (Arm::kNewton) {
+      constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
+      Arm::refine(gather<1>(&aim.pose), options.free, anywhere, out);
+    }
+    return out;
+  }
+
   // As Solutions, with room for rows that are outside the limits, or farther from a seed than others.
   struct Places {
     static constexpr std::size_t kRoom = 2 * Arm::kMaxSolutions;
@@ -92,8 +104,13 @@ template <class Arm> struct CarefulSolve {
       for (int j = 0; j < Arm::kDof; ++j) start[j] = q[j] = rows.q[j][lane];
     }
 
-    void refine(const Aim& aim) noexcept {
-      if (!Arm::kRefined) error = Refinement::error_after(q, aim);
+    // From where steps in lanes led to, if they did.
+    void refine(const Aim& aim, const Rows& ends) noexcept {
+      if (Arm::kNewton && (bits(ends, lane) & kFound) != 0) {
+        for (int j = 0; j < Arm::kDof; ++j) q[j] = ends.q[j][lane];
+      } else if (!Arm::kRefined) {
+        error = Refinement::error_after(q, aim);
+      }
     }
 
     void judge() noexcept {
@@ -173,27 +190,28 @@ template <class Arm> struct CarefulSolve {
         for (int i = 0; i < curve.count && one.around; ++i) {
           Nearest(one).take(aim, curve.found[i], out);
           for (int other = k + 1; other < count; ++other)
-            at(other).around = at(other).around || within(Policy::kMeeting, at(other).q, curve.found[i]);
+            at(other).around = at(other).around || Pair::within(Policy::kMeeting, at(other).q, curve.found[i]);
         }
       }
     }
 
     bool any_traced() const noexcept { return std::find(std::begin(traced), std::end(traced), true) != std::end(traced); }
 
-    void take(Nearest start, bool beside, const Aim& aim, Places& out) noexcept {
-      if (!(Arm::kRounded && start.marked)) start.refine(aim);
+    // ends: what steps in lanes led to.
+    void take(Nearest start, const Rows& ends, bool beside, const Aim& aim, Places& out) noexcept {
+      if (!(Arm::kRounded && start.marked)) start.refine(aim, ends);
       if (start.marked && (Arm::kRounded || !(start.error < Policy::kArrived))) {
         if (!traced[start.lane]) traced[start.lane] = start.add_around(aim, out);
         if (traced[start.lane]) return;
         start.marked = false;
-        start.refine(aim);
+        start.refine(aim, ends);
       }
       for (int k = 0; k < count && beside; ++k)
         if (Row::same(start.q, at(k).q)) return;
       Nearest& one = at(count) = start;
       one.judge();
       for (int k = 0; k < count && beside && one.near && !one.settled; ++k)
-        if (at(k).near && within(Policy::kAlike, one.q, at(k).q)) return;
+        if (at(k).near && Pair::within(Policy::kAlike, one.q, at(k).q)) return;
       ++count;
       if (!one.settled) return;
       if (one.near || one.marked)
@@ -219,22 +237,8 @@ template <class Arm> struct CarefulSolve {
   static void add(const Aim& aim, Places& out, const double* q, bool marked) noexcept {
     const bool singular = RankLoss<Arm>::below(q, marked ? Policy::kContinuumRankLoss : Policy::kRankLoss);
     for (int k = 0; k < out.count && singular; ++k)
-      if (Row::flag(out, k) && between(aim, q, Row::row(out, k))) return;
+      if (Row::flag(out, k) && Pair::between(aim, q, Row::row(out, k))) return;
     Row::add(out, q, singular);
-  }
-
-  static bool within(double reach, const double* a, const double* b) noexcept {
-    for (int j = 0; j < Arm::kDof; ++j)
-      if (!(std::abs(Row::change(j, a, b)) < reach)) return false;
-    return true;
-  }
-
-  // Whether nothing tells two rows near each other apart: the pose is theirs between them too.
-  static bool between(const Aim& aim, const double* a, const double* b) noexcept {
-    if (!within(Policy::kAlike, a, b)) return false;
-    double middle[Arm::kDof];
-    for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * Row::change(j, a, b);
-    return PoseError<Arm>(middle, aim).largest() < Policy::kHalfway;
   }
 
   // Adds the distinct solutions of a pose, refined where the closed form lost digits.
@@ -249,14 +253,15 @@ template <class Arm> struct CarefulSolve {
       left.led = left.led || (bits(rows, lane) & (kSingular | kReal)) == (kSingular | kReal);
     }
     if (left.free) add_from(aim, q0, out);
+    const Rows ends = refined_lanes(rows, aim, options);
     Starts starts;
     for (const int lane : Arm::kLaneOfRow)
       if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
-        starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, false, aim, out);
+        starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, false, aim, out);
     if (Arm::kRounded && beside) starts.trace_broken(aim, out);
     if (Arm::kBesides > 0 && beside && (kBesideAnywhere || left.free || starts.close()))
       take_beside(aim, q0, options, starts, out);
-    if (Arm::kRounded && starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, starts, out);
+    if (Arm::kRounded && starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, ends, starts, out);
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
       if (starts.at(k).near && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
@@ -269,9 +274,9 @@ template <class Arm> struct CarefulSolve {
   }
 
   // Lanes that are not real where a divisor nearly vanishes: less than the file is off may be what is missing there.
-  static void take_all(const Aim& aim, const Rows& rows, Starts& starts, Places& out) noexcept {
+  static void take_all(const Aim& aim, const Rows& rows, const Rows& ends, Starts& starts, Places& out) noexcept {
     for (const int lane : Arm::kLaneOfRow)
-      if ((bits(rows, lane) & kSingular) != 0) starts.take({rows, lane, true}, false, aim, out);
+      if ((bits(rows, lane) & kSingular) != 0) starts.take({rows, lane, true}, ends, false, aim, out);
   }
 
   // The rows of poses beside this one.
@@ -281,9 +286,10 @@ template <class Arm> struct CarefulSolve {
       for (const auto& motion : Arm::kBeside) {
         Rows rows;
         find_lanes(displaced(aim.pose, motion), q0, options, rows);
+        const Rows ends = refined_lanes(rows, aim, options);
         for (const int lane : Arm::kLaneOfRow)
           if ((bits(rows, lane) & kReal) != 0)
-            starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, true, aim, out);
+            starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, true, aim, out);
       }
   }
 };

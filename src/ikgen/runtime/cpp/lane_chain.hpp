@@ -33,8 +33,12 @@ template <class Arm, int N> struct LaneChain {
   [[gnu::always_inline]] void start() noexcept { start(std::make_index_sequence<kCount>()); }
 
   // Adds d, at most 0.1 rad for what turns.
-  [[gnu::always_inline]] void move(const Pack (&d)[Arm::kDof]) noexcept {
+  [[gnu::always_inline]] void add(const Pack (&d)[Arm::kDof]) noexcept {
     for (int j = 0; j < Arm::kDof; ++j) q[j] = q[j] + d[j];
+  }
+
+  // Turns the angles by what was added.
+  [[gnu::always_inline]] void turn(const Pack (&d)[Arm::kDof]) noexcept {
     turn(d, std::make_index_sequence<kCount>());
   }
 
@@ -43,8 +47,6 @@ template <class Arm, int N> struct LaneChain {
 
   // The geometric Jacobian of the tip there, linear rows first.
   [[gnu::always_inline]] void jacobian(Pack (&J)[6][Arm::kDof]) const noexcept {
-    for (auto& row : J)
-      for (Pack& x : row) x = spread<N>(0.0);
     add_columns(J, std::make_index_sequence<kCount>());
   }
 
@@ -113,13 +115,27 @@ template <class Arm, int N> struct LaneChain {
     constexpr Link link = Arm::kLinks[I];
     for (int r = 0; r < 3; ++r) {
       const int u = (r + 1) % 3, v = (r + 2) % 3;
-      Pack linear = axis[I][r];
+      Pack linear = axis[I][r], angular = spread<N>(0.0);
       if constexpr (link.revolute) {
         linear = axis[I][u] * (tip.p[v] - origin[I][v]) - axis[I][v] * (tip.p[u] - origin[I][u]);
-        J[3 + r][link.joint] = J[3 + r][link.joint] + link.scale * axis[I][r];
+        angular = axis[I][r];
       }
-      J[r][link.joint] = J[r][link.joint] + link.scale * linear;
+      add<I>(linear, J[r][link.joint]);
+      add<I>(angular, J[3 + r][link.joint]);
     }
+  }
+
+  // Takes part in an entry of its joint's column, which begins with the joint's first link.
+  template <std::size_t I> [[gnu::always_inline]] static void add(const Pack& x, Pack& entry) noexcept {
+    constexpr Link link = Arm::kLinks[I];
+    const Pack part = link.scale == 1.0 ? x : link.scale == -1.0 ? -x : link.scale * x;
+    entry = begins(I) ? part : entry + part;
+  }
+
+  static constexpr bool begins(std::size_t link) noexcept {
+    for (std::size_t i = 0; i < link; ++i)
+      if (Arm::kLinks[i].joint == Arm::kLinks[link].joint) return false;
+    return true;
   }
 };
 

@@ -3,6 +3,7 @@
 
 #include "joint_range.hpp"
 #include "lane_aim.hpp"
+#include "lane_blocks.hpp"
 #include "lane_chain.hpp"
 #include "lane_rows.hpp"
 #include "moving_joints.hpp"
@@ -11,22 +12,22 @@ namespace ikgen_runtime {
 
 // The least squares solution of V d = e in lanes by V = Q R (modified Gram-Schmidt).
 template <int Rows, int Columns, int N> struct LaneFactors {
-  Lanes<N> Q[Rows][Columns], R[Columns][Columns], inverse[Columns];
+  Lanes<N> V[Rows][Columns], R[Columns][Columns], inverse[Columns];
   Lanes<N> pivot;  // the smallest diagonal entry of R
 
-  // Q holds V before.
+  // Puts Q into the place of V.
   [[gnu::always_inline]] void factor() noexcept {
     for (int k = 0; k < Columns; ++k) {
-      Lanes<N> square = Q[0][k] * Q[0][k];
-      for (int e = 1; e < Rows; ++e) square = square + Q[e][k] * Q[e][k];
+      Lanes<N> square = V[0][k] * V[0][k];
+      for (int e = 1; e < Rows; ++e) square = square + V[e][k] * V[e][k];
       const Lanes<N> length = sqrt(max(square, 1e-200));
       pivot = k == 0 ? length : min(pivot, length);
       inverse[k] = 1.0 / length;
-      for (int e = 0; e < Rows; ++e) Q[e][k] = Q[e][k] * inverse[k];
+      for (int e = 0; e < Rows; ++e) V[e][k] = V[e][k] * inverse[k];
       for (int j = k + 1; j < Columns; ++j) {
-        R[k][j] = Q[0][k] * Q[0][j];
-        for (int e = 1; e < Rows; ++e) R[k][j] = R[k][j] + Q[e][k] * Q[e][j];
-        for (int e = 0; e < Rows; ++e) Q[e][j] = Q[e][j] - R[k][j] * Q[e][k];
+        R[k][j] = V[0][k] * V[0][j];
+        for (int e = 1; e < Rows; ++e) R[k][j] = R[k][j] + V[e][k] * V[e][j];
+        for (int e = 0; e < Rows; ++e) V[e][j] = V[e][j] - R[k][j] * V[e][k];
       }
     }
   }
@@ -34,9 +35,9 @@ template <int Rows, int Columns, int N> struct LaneFactors {
   // d; e is left with what no d takes away.
   [[gnu::always_inline]] void solve(Lanes<N> (&e)[Rows], Lanes<N> (&d)[Columns]) const noexcept {
     for (int k = 0; k < Columns; ++k) {
-      d[k] = Q[0][k] * e[0];
-      for (int i = 1; i < Rows; ++i) d[k] = d[k] + Q[i][k] * e[i];
-      for (int i = 0; i < Rows; ++i) e[i] = e[i] - d[k] * Q[i][k];
+      d[k] = V[0][k] * e[0];
+      for (int i = 1; i < Rows; ++i) d[k] = d[k] + V[i][k] * e[i];
+      for (int i = 0; i < Rows; ++i) e[i] = e[i] - d[k] * V[i][k];
     }
     for (int k = Columns - 1; k >= 0; --k) {
       for (int j = k + 1; j < Columns; ++j) d[k] = d[k] - R[k][j] * d[j];
@@ -45,7 +46,8 @@ template <int Rows, int Columns, int N> struct LaneFactors {
   }
 };
 
-// Arm: as for LaneChain, LaneAim and MovingJoints; Task; kSize; Rows<P>; Policy.
+// Arm: as for LaneChain, LaneAim and MovingJoints; Task; kSize; Rows<P>; Policy; kBlocks, the joints in the order of
+// LaneBlocks, or none.
 template <class Arm> struct LaneNewton {
   using Policy = typename Arm::Policy;
   template <int P> using Rows = typename Arm::template Rows<P>;
@@ -53,6 +55,8 @@ template <class Arm> struct LaneNewton {
   static constexpr int kTask = Arm::Task::kCount, kEquations = kTask + LaneAim<Arm, 1>::kCount;
   static constexpr int kMoving = MovingJoints<Arm>::kCount;
   static_assert(kMoving <= kEquations);
+  static constexpr bool kBlocks = !Arm::kBlocks.empty();
+  template <int N> using Factors = std::conditional_t<kBlocks, LaneBlocks<N>, LaneFactors<kEquations, kMoving, N>>;
 
   // Refines the rows that are real, and puts them into the range. What is not shown to be the one solution near its
   // start stays rough.
@@ -103,7 +107,7 @@ template <class Arm> struct LaneNewton {
   // Steps until all lanes are done, or as many as there may be.
   template <int P, int N>
   static Arrival<N> steps(const Pose<P>& pose, LaneAim<Arm, N> aim, const Mask<N>& real, LaneChain<Arm, N>& chain) noexcept {
-    LaneFactors<kEquations, kMoving, N> factors;
+    Factors<N> factors;
     Lanes<N> before = spread<N>(Policy::kFarthestStart), rest = before;
     Mask<N> good = real, done = !real;
     chain.start();
@@ -111,32 +115,45 @@ template <class Arm> struct LaneNewton {
     for (int k = 0; k < Policy::kLaneSteps; ++k) {
       Lanes<N> error[kEquations], d[kMoving], step[Arm::kDof];
       chain.forward();
-      const bool fresh = k == 0 || k > 2 || !all((!good) | (Policy::kNear > before));
+      const bool fresh = k != 2 || !all((!good) | (Policy::kNear > before));
       compare<P, N>(pose, aim, chain, fresh, error, factors);
       factors.solve(error, d);
       Lanes<N> size = abs(d[0]);
       for (int i = 1; i < kMoving; ++i) size = max(size, abs(d[i]));
       // Newton's method contracts this fast only near the one solution there (Deuflhard 2004, theorem 2.1)
-      good = good & (((k == 0 ? 1.0 : Policy::kContraction) * before > size) | (Policy::kConverged > size)) &
-             (factors.pivot > Policy::kLeastPivot);
+      const Lanes<N> bound = k == 0 ? min(before, Policy::kPivotShare * factors.pivot) : Policy::kContraction * before;
+      good = good & ((bound > size) | (Policy::kConverged > size)) & (factors.pivot > Policy::kLeastPivot);
       for (auto& none : step) none = spread<N>(0.0);
-      for (int i = 0; i < kMoving; ++i) step[kJoints[i]] = select(good, d[i], 0.0);
-      chain.move(step);
-      aim.move(step);
-      if (k > 0) done = (!good) | (Policy::kConverged * before > size * size) | (Policy::kConverged > size);
+      for (int i = 0; i < kMoving; ++i) step[column(i)] = select(good, d[i], 0.0);
+      chain.add(step);
       rest = abs(error[0]);
       for (int i = 1; i < kEquations; ++i) rest = max(rest, abs(error[i]));
-      if (k > 0 && all(done)) break;
+      if (k > 0) {
+        const Lanes<N> next = fresh ? size * size * size : size * size * before;  // over the square of the step before
+        done = (!good) | (Policy::kConverged * (before * before) > next) | (Policy::kConverged > size);
+        if (all(done)) break;
+      }
+      chain.turn(step);
+      aim.move(step);
       before = size;
     }
     const Mask<N> ended = good & done, far = rest > Policy::kLeastMiss;
     return {ended & (Policy::kArrived > rest), ended & far};
   }
 
+  // The joint of a column of the slope.
+  static constexpr int column(int i) noexcept {
+    if constexpr (kBlocks) {
+      return Arm::kBlocks[static_cast<std::size_t>(i)];
+    } else {
+      return kJoints[i];
+    }
+  }
+
   // The error at the chain's tip, and with `fresh` its slope, factored.
   template <int P, int N>
   static void compare(const Pose<P>& pose, const LaneAim<Arm, N>& aim, const LaneChain<Arm, N>& chain, bool fresh,
-                      Lanes<N> (&error)[kEquations], LaneFactors<kEquations, kMoving, N>& factors) noexcept {
+                      Lanes<N> (&error)[kEquations], Factors<N>& factors) noexcept {
     Lanes<N> t[3][4], slope[kEquations][Arm::kDof];
     for (int r = 0; r < 3; ++r)
       for (int c = 0; c < 4; ++c) t[r][c] = spread<N>(pose.t[r][c]);
@@ -147,7 +164,7 @@ template <class Arm> struct LaneNewton {
     chain.jacobian(J);
     Arm::Task::slope(chain.tip, J, slope);
     for (int e = 0; e < kEquations; ++e)
-      for (int i = 0; i < kMoving; ++i) factors.Q[e][i] = slope[e][kJoints[i]];
+      for (int i = 0; i < kMoving; ++i) factors.V[e][i] = slope[e][column(i)];
     factors.factor();
   }
 };
