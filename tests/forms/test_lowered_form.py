@@ -73,3 +73,19 @@ def test_directions_that_the_file_turns_count_as_of_a_continuum() -> None:
         assert divisor.clear is not None
         assert list(divisor.clear.probe > 0.5) == list(share < SHARES)
     assert Tolerances.for_model_error(1e-9).norm == Tolerances.for_model_error(1e-9).flag == 1e-4
+
+
+def test_a_root_may_be_as_far_outside_as_an_earlier_one_moved_it() -> None:
+    """A geometry that is 1e-5 off moves what follows from a root of 1e-4 by 1e-3."""
+    value, under = (
+        np.array([-2e-3, -2e-3, -2e-4, 2e-3, -2e-1]),
+        np.array([1e-4, 1.0, 1.0, 1.0, 1e-8]),
+    )
+    g = ExpressionGraph(len(value))
+    tolerances = Tolerances.for_model_error(1e-5)
+    plain = tolerances.guard(g, given(g, value), 1.0)
+    assert list(plain.probe > 0.5) == [False, False, True, True, False]
+    after = replace(tolerances, margin=given(g, under)).guard(g, given(g, value), 1.0)
+    assert list(after.probe > 0.5) == [True, False, True, True, True]
+    twice = replace(tolerances, margin=given(g, under)).guard(g, given(g, 2.0 * value), 2.0)
+    assert list(twice.probe > 0.5) == list(after.probe > 0.5)

@@ -25,6 +25,9 @@ __all__ = [
 ROUNDED = 2e-9
 """Model error (m or rad) above which every row is refined."""
 
+_MULTIPLIED = 4.0
+"""Times the model error over a square root that what follows from it may be off."""
+
 
 @dataclass(frozen=True, slots=True)
 class Tolerances:
@@ -32,7 +35,9 @@ class Tolerances:
     `norm` where it is a sum of squares, marks the solution as one of a continuum; a square root's
     argument may be `clamp` outside its domain, as poses on the boundary of the workspace are reachable,
     and where rows are refined it is kept above `fold`, so that two branches start apart. Where the
-    condition `rough` holds, what a square root is taken of has lost digits: it may be `wide` outside.
+    condition `rough` holds, what a square root is taken of has lost digits: it may be `wide` outside. An
+    `error` of the geometry moves what follows from a square root by as much over that root: `margin` is
+    the least, relative to natural sizes, of what square roots were taken of so far.
     """
 
     singular: float = 1e-11
@@ -42,6 +47,8 @@ class Tolerances:
     fold: float = 0.0
     rough: Expr | None = None
     wide: float = 1e-3
+    error: float = 0.0
+    margin: Expr | None = None
 
     @staticmethod
     def for_model_error(error: float) -> Tolerances:
@@ -55,14 +62,18 @@ class Tolerances:
         fold = 0.05 * error if error > ROUNDED else 0.0
         singular = 1e-11 if error > ROUNDED else max(1e-11, 4.0 * error)
         flag, norm = (min(max(1e-4, share * error), 1e-2) for share in (5.0, 50.0))
-        return Tolerances(singular, flag, norm, clamp, fold)
+        return Tolerances(singular, flag, norm, clamp, fold, error=error)
 
     def guard(self, g: ExpressionGraph, value: Expr, size: float) -> Expr:
         """Condition that a square root of `value`, of natural size `size`, may be taken."""
         least = g.const(-self.clamp * size)
         if self.rough is not None:
             least = g.select(self.rough, g.const(-self.wide * size), least)
-        return g.binary("gt", value, least)
+        real = g.binary("gt", value, least)
+        if self.margin is None:
+            return real
+        reach = g.const((_MULTIPLIED * self.error * size) ** 2)
+        return g.binary("or", real, g.binary("gt", reach, g.mul(g.square(value), self.margin)))
 
 
 @dataclass(frozen=True, slots=True)

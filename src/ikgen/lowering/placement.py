@@ -12,7 +12,7 @@ from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import Variable
 from ikgen.equations.products import ENTRY_NAMES
 from ikgen.forms.form import Form
-from ikgen.forms.lowered_form import Tolerances, natural_size
+from ikgen.forms.lowered_form import Tolerances, at_least, natural_size
 from ikgen.program.inputs import Input
 from ikgen.program.statements import Comment, Let
 from ikgen.solver.choice import Step
@@ -63,6 +63,7 @@ class Placement:
         self.residuals: list[Expr] = []
         self.norms: list[Expr] = []
         self.folds: list[Expr] = []
+        self.margins: list[Expr] = []
         self.levels = [LoweredLevel(1)]
         self.definition: dict[int, Expr] = dict(self.knowledge.binding)
         self.level_of: dict[int, int] = {}
@@ -89,11 +90,18 @@ class Placement:
         """A square root was taken of `under`: of few digits where that is small beside `size`."""
         if self.loses_digits:
             self.folds.append(self.g.binary("gt", self.g.const(FOLDED * size), under))
+        if self._tolerances.fold:
+            self.margins.append(self.g.mul(self.g.const(1.0 / size), under))
 
     @property
     def tolerances(self) -> Tolerances:
         """Those of the next unknown."""
-        return replace(self._tolerances, rough=self.rough)
+        margin: Expr | None = None
+        for one in self.margins:
+            margin = one if margin is None else self.g.binary("min", margin, one)
+        if margin is not None:
+            margin = at_least(self.g, margin, self.g.const(self._tolerances.fold))
+        return replace(self._tolerances, rough=self.rough, margin=margin)
 
     @property
     def whole_pose(self) -> bool:
