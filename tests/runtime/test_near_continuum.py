@@ -150,3 +150,21 @@ def test_a_curve_is_back_where_it_was_in_the_same_sense() -> None:
     assert _back(LINE, at(0.1, 1.0), at(-0.1, 1.0)).all()
     assert not _back(LINE, at(0.1, 1.0), at(0.1, -1.0)).any()
     assert not _back(LINE, at(0.1, 1.0), at(0.5, 1.0)).any()
+
+
+def test_a_curve_is_back_along_its_own_direction_alone() -> None:
+    pair: Any = SimpleNamespace(
+        moving=(0, 1), policy=POLICY, chain=SimpleNamespace(revolute=(True, True))
+    )
+    none = np.zeros(1)
+
+    def sample(x: float, y: float, way: tuple[float, float] = (0.6, 0.8)) -> Reduced:
+        return Reduced(np.array([[x, y]]), np.array([way]), np.ones((1, 1)), none, none)
+
+    assert _back(pair, sample(0.0, 0.0), sample(0.12, 0.16)).all()
+    assert _back(pair, sample(0.0, 0.0), sample(-0.12 + 0.03, -0.16 - 2.0 * np.pi)).all()
+    assert not _back(pair, sample(0.0, 0.0), sample(0.16, -0.12)).any()
+    assert not _back(pair, sample(0.0, 0.0), sample(0.12, 0.16, (-0.8, 0.6))).any()
+    along = (1.0, 0.0)
+    assert _back(pair, sample(0.0, 0.0, along), sample(0.2, 0.05, along)).all()
+    assert not _back(pair, sample(0.0, 0.0, along), sample(0.2, 0.07, along)).any()
