@@ -1,0 +1,124 @@
+"""What is made of rows of poses that leave joints free, and of those that poses beside have."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from tests.support.chains import translation
+from tests.support.given_rows import NONE, given_arm, given_rows
+
+from ikgen.runtime.python.chain_kinematics import forward
+from ikgen.runtime.python.doubtful_poses import (
+    Answer,
+    Asked,
+    _goes_on,
+    placed_rows,
+    unplaced_rows,
+)
+from ikgen.runtime.python.solved_arm import Arm
+
+Array = NDArray[np.float64]
+ROW = np.array([0.3, -0.7, 0.9, 0.4, 1.1, -0.2])
+OTHER = np.array([1.3, 0.7, -0.9, 1.4, -1.1, 2.2])
+OFF = np.array([1e-3, -2e-3, 1e-3, 5e-4, -1e-3, 2e-3])
+
+
+def pose_of(arm: Arm, row: Array = ROW) -> Array:
+    return forward(arm.chain, row[None])
+
+
+def not_there(*_: Any) -> Any:
+    raise AssertionError
+
+
+def test_rows_are_marked_that_the_closed_form_has_as_of_a_continuum() -> None:
+    """And not what it marks, but has not."""
+    third = OTHER + 0.5
+    arm = given_arm(given_rows(np.array([ROW, OTHER, third]), valid="xx.", singular=".xx"))
+    for kept in (
+        unplaced_rows(arm, pose_of(arm), NONE)[0],
+        placed_rows(arm, Asked(pose_of(arm), None, NONE), True)[0].rows,
+    ):
+        flags = {round(row[0], 6): flag for row, flag in kept}
+        assert flags[0.3] is False and flags[1.3] is True and 1.8 not in flags
+
+
+def test_rows_that_poses_beside_have_count() -> None:
+    plain = given_arm(not_there)
+    pose = pose_of(plain)
+
+    def beside(T: Array, near: Array, held: Array) -> Any:
+        q, valid, *flags = given_rows(ROW[None] + OFF)(T, near, held)
+        return q, valid & (np.abs(T - pose).max(axis=(1, 2)) > 1e-9)[:, None], *flags
+
+    policy = replace(plain.policy, beside_reach=plain.policy.anywhere)
+    arm = given_arm(beside, beside=translation(1e-3, 0.0, 0.0)[None], policy=policy)
+    for kept in (
+        unplaced_rows(arm, pose, NONE)[0],
+        placed_rows(arm, Asked(pose, None, NONE), True)[0].rows,
+    ):
+        assert len(kept) == 1 and kept[0][1] is False
+        np.testing.assert_allclose(kept[0][0], ROW, atol=1e-9)
+
+
+def test_where_a_free_joint_leads_nowhere_other_values_are_tried() -> None:
+    """One after the other, till one leads somewhere."""
+    step = given_arm(not_there).policy.try_step
+    tries = given_arm(not_there).policy.tries
+    asked: list[list[float]] = []
+
+    for wanted in (1, 2, tries - 1):
+
+        def branches(T: Array, near: Array, held: Array, wanted: int = wanted) -> Any:
+            asked.append(near[:, 0].tolist())
+            q, valid, *_ = given_rows(OTHER[None])(T, near, held)
+            led = np.abs(near[:, :1] - wanted * step) < 1e-9
+            return q, valid & led, valid, ~valid
+
+        arm = given_arm(branches)
+        far = translation(0.0, 0.0, 50.0)[None]  # where no Newton step leads anywhere
+        (answer,) = placed_rows(arm, Asked(far, None, NONE), True)
+        assert [row for row, _ in answer.rows] == [tuple(OTHER.tolist())] and answer.real
+    assert asked[0] == [0.0]
+    assert np.allclose(asked[1], step * np.arange(1, tries))
+
+
+@pytest.mark.parametrize("rounded", [False, True])
+def test_other_values_are_tried_till_a_row_of_the_continuum_is_there(rounded: bool) -> None:
+    """Of a rounded arm, till the closed form led to one."""
+    arm = given_arm(not_there, together=not_there if rounded else None)
+    asked = Asked(pose_of(arm), None, NONE)
+
+    def goes_on(rows: list[tuple[Array, bool]], free: bool, led: bool) -> bool:
+        kept = [(tuple(row.tolist()), flag) for row, flag in rows]
+        answer = Answer()
+        told = _goes_on(arm, asked, 0, (kept, free, led), [], False, answer)
+        assert len(answer.rows) == len(rows) and answer.real is bool(rows)
+        return told
+
+    regular, singular = (ROW, False), (OTHER, True)
+    for rows in ([], [regular], [singular], [regular, singular]):
+        for led in (False, True):
+            assert not goes_on(rows, False, led)
+            enough = led if rounded else any(flag for _, flag in rows)
+            assert goes_on(rows, True, led) is not (len(rows) > 0 and enough)
+
+
+def test_of_a_rounded_arm_rows_behind_a_free_joint_are_refined_though_they_miss() -> None:
+    def together(arm: Arm, q: Array, T: Array) -> Any:
+        none = np.zeros(len(q), dtype=bool)
+        return q, none, ~none
+
+    told = given_rows(ROW[None] + OFF, valid=".", singular="x", rough="x")
+    for rounded in (False, True):
+        arm = given_arm(told, together=together if rounded else None)
+        pose = pose_of(arm)
+        kept = unplaced_rows(arm, pose, NONE)[0]
+        for row, _ in kept:
+            np.testing.assert_allclose(forward(arm.chain, row), pose[0], atol=1e-9)
+        found = [np.abs(np.array(row) - ROW).max() < 1e-6 for row, _ in kept]
+        assert any(found) == rounded

@@ -1,0 +1,98 @@
+"""Which of what Newton steps lead to are solutions of their own."""
+
+from __future__ import annotations
+
+from math import pi
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.runtime.python.chain_kinematics import chain_of, forward
+from ikgen.runtime.python.meeting_rows import Ends, Leads, Led, Starts, repeats, rows_nearby, traced
+
+Array = NDArray[np.float64]
+POLICY = SimpleNamespace(
+    broken_reach=0.1, fold_reach=0.01, converged=1e-12, arrived=1e-9, exact=1e-10, coincident=1e-6,
+    alike=0.3, halfway=1e-9,
+)  # fmt: skip
+
+
+def leads_of_rows(q: list[float], source: list[int], loss: list[float], marked: str = "") -> Leads:
+    n = len(q)
+    rows, flags = np.array(q)[:, None], np.array([c == "x" for c in marked.ljust(n, ".")])
+    T = np.arange(n)[:, None, None] * np.ones((n, 4, 4))
+    starts = Starts(rows, T, np.zeros(n, np.intp), flags, np.array(source), np.zeros(n, np.intp))
+    none = Led(np.zeros(0, np.intp), rows[:0], np.zeros(0))
+    return Leads(starts, Ends(rows, np.zeros(n), np.array(loss)), none, np.zeros(n, dtype=bool))
+
+
+def test_continua_are_followed_from_the_closed_forms_rows_near_singularities() -> None:
+    """Not from what is given, what poses beside have, nor from what was followed already."""
+    seen: list[Any] = []
+
+    def around(arm: Any, q: Array, T: Array, broken: bool = False) -> Any:
+        seen.append((q[:, 0].tolist(), T[:, 0, 0].tolist(), broken))
+        curve = np.array([False, True])
+        return (
+            curve,
+            np.array([1, 1, 0]),
+            np.array([[7.0], [8.0], [9.0]]),
+            np.array([0.5, 0.6, 0.7]),
+        )
+
+    arm: Any = SimpleNamespace(policy=POLICY, around=around)
+    given = leads_of_rows(
+        [0.0, 1.0, 2.0, 3.0, 4.0, 5.0],
+        [-1, 0, 1, 0, 0, 0],
+        [0.0, 0.0, 0.0, 0.02, 0.0, 0.0],
+        "....x.",
+    )
+    found = traced(arm, given)
+    assert seen == [([1.0, 5.0], [1.0, 5.0], True)]
+    assert found.known.tolist() == [False] * 5 + [True] and not given.known.any()
+    assert found.around.owner.tolist() == [5, 5, 1]
+    assert found.around.q[:, 0].tolist() == [7.0, 8.0, 9.0]
+    assert found.around.loss.tolist() == [0.5, 0.6, 0.7]
+    arm.around = None
+    assert traced(arm, given) is given
+
+
+def test_a_row_that_a_pose_beside_led_to_once_more_is_left_out() -> None:
+    arm: Any = SimpleNamespace(policy=POLICY, chain=SimpleNamespace(revolute=(True,)))
+    given = leads_of_rows([0.5, 1.5, 0.5 + 2.0 * pi, 2.5], [0, 0, 1, 2], [1.0, 2.0, 3.0, 4.0])
+    found = rows_nearby(arm, given)
+    assert found.owner.tolist() == [0, 1, 3] and found.loss.tolist() == [1.0, 2.0, 4.0]
+    assert found.q[:, 0].tolist() == [0.5, 1.5, 2.5]
+
+
+class Plane:
+    """The task of a position in the plane."""
+
+    @staticmethod
+    def error(pose: Array, T: Array) -> Array:
+        return T[:, :2, 3] - pose[:, :2, 3]
+
+
+def test_singular_rows_are_one_where_the_pose_is_theirs_between_them_too() -> None:
+    """An elbow a little bent to either side: halfway it is stretched, and a quarter of that off."""
+    frames = np.tile(np.eye(4), (3, 1, 1))
+    frames[1:, 0, 3] = 0.5
+    chain = chain_of(frames, ((0, True, 1.0, 0.0), (1, True, 1.0, 0.0)), 2)
+    bend = 0.1
+    rows = [(-0.5 * side * bend, side * bend) for side in (1.0, -1.0)]
+    T = forward(chain, np.array(rows[0]))
+    off = float(forward(chain, np.zeros(2))[0, 3] - T[0, 3])
+
+    def told(halfway: float, singular: bool = True, alike: float = 0.3) -> bool:
+        policy = SimpleNamespace(halfway=halfway, alike=alike)
+        arm: Any = SimpleNamespace(policy=policy, chain=chain, task=Plane)
+        return repeats(arm, T, rows[0], [(rows[1], singular)])
+
+    assert told(1.01 * off) and not told(0.99 * off)
+    assert not told(1.0, singular=False) and not told(1.0, alike=0.1)
+    arm: Any = SimpleNamespace(
+        policy=SimpleNamespace(halfway=1.0, alike=1.0), chain=chain, task=Plane
+    )
+    assert not repeats(arm, T, rows[0], [])
