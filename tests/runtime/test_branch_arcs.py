@@ -220,8 +220,17 @@ def test_what_a_neighbour_foretells_is_corrected_by_no_more_than_a_radian(
 ) -> None:
     curves = arcs(planar(), (row(0.1, 1.0), row(0.2, 1.0)))
     start = curves.start
-    for size, way in ((0.4, 0.8), (3.0, 0.0)):
-        step = np.array([[size, 0.0, 0.0]]), np.ones((1, 3))
+    for joint, size, way in ((1, 0.4, 0.8), (1, 3.0, 0.0), (2, 0.4, 0.8), (2, 3.0, 0.0)):
+        step = size * np.eye(3)[joint - 1][None], np.ones((1, 3))
         monkeypatch.setattr(curves, "_step", lambda share, q, held, step=step: step)
         found, good = curves._find(start.share, start)
-        assert not good[0] and found.q[0, 1] - start.q[0, 1] == pytest.approx(way)
+        assert not good[0] and found.q[0, joint] - start.q[0, joint] == pytest.approx(way)
+
+
+def test_rows_are_off_by_how_far_they_are_outside_the_tolerance_of_limits() -> None:
+    q = row(0.3, 1.0)
+    low, high = (tuple(x + by for x in q) for by in (-0.5, 0.2))
+    arm = planar(low, high)
+    for tolerance in (0.0, 1e-9, 0.05):
+        arm.policy.limit_tolerance = tolerance
+        assert arcs(arm, (q, q)).start.off[0] == pytest.approx(-0.2 - tolerance, abs=1e-12)

@@ -122,3 +122,48 @@ def test_of_a_rounded_arm_rows_behind_a_free_joint_are_refined_though_they_miss(
             np.testing.assert_allclose(forward(arm.chain, row), pose[0], atol=1e-9)
         found = [np.abs(np.array(row) - ROW).max() < 1e-6 for row, _ in kept]
         assert any(found) == rounded
+
+
+def test_poses_beside_are_left_alone_where_rows_are_regular() -> None:
+    """Unless they always count."""
+    plain = given_arm(not_there)
+    pose, asked = pose_of(plain), []
+
+    def rows(T: Array, near: Array, held: Array) -> Any:
+        asked.append(float(np.abs(T - pose).max()))
+        return given_rows(np.array([ROW + OFF]), rough="x")(T, near, held)
+
+    for reach in (0.0, plain.policy.anywhere):
+        arm = given_arm(
+            rows,
+            beside=translation(1e-3, 0.0, 0.0)[None],
+            policy=replace(plain.policy, beside_reach=reach),
+        )
+        asked.clear()
+        assert len(unplaced_rows(arm, pose, NONE)[0]) == 1
+        assert (max(asked) > 1e-9) == (reach > 0.0)
+
+
+@pytest.mark.parametrize("inside", [True, False])
+def test_what_a_seed_leads_to_counts_where_no_other_row_is_inside(inside: bool) -> None:
+    arm = given_arm(given_rows(ROW[None]), lower=(-1.5,) * 6, upper=(1.5,) * 6)
+    T = pose_of(arm)
+    if not inside:  # what the closed form says is the row is out of the limits
+        arm = replace(arm, branches_batch=given_rows(np.array([[0.3, -0.7, 0.9, 0.4, 2.9, -0.2]])))
+    (answer,) = placed_rows(arm, Asked(T, ROW[None] + 0.01, NONE), True)
+    assert len(answer.rows) == 1 and answer.real
+    np.testing.assert_allclose(answer.rows[0][0], ROW, atol=1e-9)
+
+
+@pytest.mark.parametrize("free", [False, True])
+def test_beside_a_singular_row_the_seeds_own_counts_where_no_joint_is_free(free: bool) -> None:
+    arm = given_arm(not_there)
+    asked = Asked(pose_of(arm), ROW[None], NONE)
+    regular, singular = (tuple(ROW.tolist()), False), (tuple(OTHER.tolist()), True)
+    for kept, wanted in (
+        ([singular], [singular] if free else [singular, regular]),
+        ([(singular[0], False)], [(singular[0], False)]),
+    ):
+        answer = Answer()
+        _goes_on(arm, asked, 0, (list(kept), free, True), [regular], False, answer)
+        assert sorted(answer.rows, key=lambda one: not one[1]) == wanted

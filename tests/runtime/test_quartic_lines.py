@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from ikgen.runtime.python import trig_quartic_roots
 from ikgen.runtime.python.quartic_lines import ARRAYS, FLOATS, _resolvent, quartic_lines
 from ikgen.runtime.python.trig_quartic_roots import trig_quartic, trig_quartic_batch
 
@@ -85,3 +86,28 @@ def test_roots_that_are_close_are_all_found(apart: float) -> None:
         for root in roots:
             gap = [np.hypot(c - np.cos(root), s - np.sin(root)) for c, s in found]
             assert min(gap) < max(1e-9, 3e-15 / apart) + (apart if apart < 1e-6 else 0.0)
+
+
+def test_roots_of_other_resolvents_beyond_the_ends_are_left_alone() -> None:
+    rng = np.random.default_rng(6)
+    for _ in range(2000):
+        a, pp, qq = rng.uniform(-6.0, 6.0), *rng.uniform(0.0, 2.5, 2) ** 2
+        found = float(_resolvent(a, pp, qq, FLOATS))
+        value = (a - found) * (found * found - 1.0) - pp * (found - 1.0) - qq * (found + 1.0)
+        assert -1.0 <= found <= 1.0 and abs(value) < 1e-13 * (1.0 + abs(a) + pp + qq)
+
+
+def test_roots_far_apart_are_found_together_whatever_the_size_of_the_equation(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rng = np.random.default_rng(8)
+    wanted = np.sort(rng.uniform(-0.3, 0.3, (30, 4)) + np.array([-2.4, -0.8, 0.8, 2.4]), axis=1)
+    t = 2.0 * np.pi / 8.0 * np.arange(8)
+    h = np.fft.fft(np.sin(0.5 * (t - wanted[:, :, None])).prod(axis=1), axis=1) / 8.0
+    K = np.stack([2.0 * h[:, 2].real, -2.0 * h[:, 2].imag, 2.0 * h[:, 1].real, -2.0 * h[:, 1].imag,
+                  h[:, 0].real])  # fmt: skip
+    monkeypatch.setattr(trig_quartic_roots, "trig_quartic", None)
+    for size in (1e-12, 1.0, 1e12, 1e308):
+        count, c, s = trig_quartic_batch(*(K / np.abs(K).max(axis=0) * size))
+        assert count.tolist() == [4] * 30
+        np.testing.assert_allclose(np.sort(np.arctan2(s, c), axis=1), wanted, atol=1e-9)

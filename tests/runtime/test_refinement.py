@@ -5,12 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
+from numpy.typing import NDArray
 from tests.support.given_rows import given_arm
 
 from ikgen.runtime.python import refinement
 from ikgen.runtime.python.chain_kinematics import forward
 from ikgen.runtime.python.refinement import newton, refine
 
+Array = NDArray[np.float64]
 ARM = given_arm(None)
 ROWS = np.array([[0.3, -0.7, 0.9, 0.4, 1.1, -0.2], [1.2, 0.4, -0.8, -0.5, 0.6, 2.0]])
 MOVING = range(6)
@@ -49,3 +52,24 @@ def test_the_smallest_singular_value_is_bounded_by_the_inverse() -> None:
     for bound in (0.01, 0.1, 0.5):
         told = refinement.steeper(slope, bound)
         assert (least[told] > bound).all() and told[least > 6.0 * bound].all()
+
+
+def test_steps_without_progress_are_borne_for_a_while(monkeypatch: pytest.MonkeyPatch) -> None:
+    """So many of them as the policy has patience, counted anew after each that helps."""
+    calls: list[int] = []
+    errors: list[float] = []
+
+    def slopes(chain: object, task: object, moving: object, q: Array, *_: object) -> object:
+        calls.append(len(q))
+        error = errors[min(len(calls), len(errors)) - 1]
+        return np.full((len(q), 6), error), np.tile(np.eye(6), (len(q), 1, 1))
+
+    monkeypatch.setattr(refinement, "errors_and_slopes", slopes)
+    T = np.tile(np.eye(4), (2, 1, 1))
+    for patience in (1, 2, 3, 5):
+        policy = replace(ARM.policy, patience=patience, progress=0.5)
+        for told, first in (([1.0], 1), ([1.0, 0.9, 0.4, 0.3], 3 if patience > 1 else 1)):
+            calls.clear()
+            errors[:] = told
+            newton(ARM.chain, ARM.task, MOVING, ROWS, T, 40, policy)
+            assert len(calls) == first + patience

@@ -17,11 +17,11 @@ Array = NDArray[np.float64]
 X = [1.0, 0.0, 0.0]
 
 
-def arm(offset: float) -> Any:
-    """A column of 0.3 m, links of 0.5 and 0.4 m beside it, and a wrist."""
+def arm(offset: float, ahead: float = 0.0) -> Any:
+    """A column of 0.3 m, links of 0.5 and 0.4 m beside it, or ahead of it, and a wrist."""
     frames = [
         np.eye(4),
-        translation(0.0, 0.0, 0.3) @ rotation(X, -pi / 2) @ translation(0.0, 0.0, offset),
+        translation(ahead, 0.0, 0.3) @ rotation(X, -pi / 2) @ translation(0.0, 0.0, offset),
         translation(0.5, 0.0, 0.0),
         translation(0.4, 0.0, 0.0) @ rotation([0.0, 1.0, 0.0], pi / 2),
         rotation(X, -pi / 2),
@@ -36,19 +36,19 @@ def test_sides_are_those_of_the_links_in_their_plane() -> None:
     """By heights above the line from shoulder to wrist, and by where the wrist is from the column."""
     rng = np.random.default_rng(4)
     q = rng.uniform(-3.0, 3.0, (400, 6))
-    for offset in (0.0, 0.2):
+    for offset, ahead in ((0.0, 0.0), (0.2, 0.0), (0.0, 0.3)):
         seen = set()
-        for row, name in zip(q, branch_names(arm(offset), q), strict=True):
+        for row, name in zip(q, branch_names(arm(offset, ahead), q), strict=True):
             r = np.cumsum([0.0, 0.5 * np.cos(row[1]), 0.4 * np.cos(row[1] + row[2])])
             z = -np.cumsum([0.0, 0.5 * np.sin(row[1]), 0.4 * np.sin(row[1] + row[2])])
             above = (z[1] * r[2] - r[1] * z[2]) * np.sign(
                 r[2]
             )  # over the line, times its length along r
-            if min(abs(above), abs(r[2]), abs(np.sin(row[4]))) < 1e-3:
+            if min(abs(above), abs(r[2]), abs(r[2] + ahead), abs(np.sin(row[4]))) < 1e-3:
                 continue
             shoulder, elbow, wrist = name.split(", ")
             assert elbow == ("elbow up" if above > 0.0 else "elbow down")
-            seen.add((shoulder, r[2] > 0.0))
+            seen.add((shoulder, r[2] + ahead > 0.0))
             assert wrist == (
                 "wrist not flipped" if np.sin(row[4]) > 0.0 else "wrist flipped"
             ) or wrist == ("wrist flipped" if np.sin(row[4]) > 0.0 else "wrist not flipped")

@@ -57,30 +57,32 @@ def test_a_branch_inside_all_over_has_the_whole_range(monkeypatch: pytest.Monkey
 
 
 def test_runs_end_at_the_limits_and_where_rows_come_and_go(monkeypatch: pytest.MonkeyPatch) -> None:
-    found, asked = pieces(monkeypatch, joint_of(), tracks_of(".xoxx", "xxx..", "oooox"))
+    lanes = ".xoxx", "xxx..", "oooox", "oxxxo"
+    found, asked = pieces(monkeypatch, joint_of(), tracks_of(*lanes))
     ends = [
         tuple(
             (x if isinstance(x, float) else (x.inner, x.outer, x.at_fold)) for x in (p.low, p.high)
         )
         for p in found
     ]
-    assert [piece.branch for piece in found] == [0, 0, 1, 2]
+    assert [piece.branch for piece in found] == [0, 0, 1, 2, 3]
     assert ends == [
         ((2.1, 2.0, True), (2.1, 2.3, False)),
         ((2.4, 2.3, False), 2.8),
         (2.0, (2.3, 2.4, True)),
         ((2.8, 2.4, False), 2.8),
+        ((2.1, 2.0, False), (2.4, 2.8, False)),
     ]
-    assert sorted(x.lane for x in asked) == [0, 0, 0, 1, 2] and all(x.stays for x in asked)
+    assert sorted(x.lane for x in asked) == [0, 0, 0, 1, 2, 3, 3] and all(x.stays for x in asked)
     assert found[1].width() == pytest.approx(0.5)  # at most
     assert found[1].interval().low == 2.4  # what is known
 
 
 def test_many_slivers_are_left_where_they_were_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of a range from 1000 on a cell of 1e-6 is one, and a thousandth of the range is none."""
-    held = 1000.0 + np.array([0.0, 1e-6, 2e-6, 0.5, 0.501, 0.502, 1.0])
+    """A hundred-thousandth of the range is one, and a thousandth is none."""
+    held = 1000.0 + np.array([0.0, 0.9, 0.900005, 0.90001, 0.95, 0.951, 0.952, 1.0])
     for slivers, looked in ((2, True), (3, False)):
-        lanes = [".x....."] * slivers + ["....x.."]
+        lanes = ["..x....."] * slivers + [".....x.."]
         found, asked = pieces(monkeypatch, joint_of(most=1), tracks_of(*lanes, held=held))
         assert len(found) == slivers + 1
         assert {end.lane for end in asked} == ({0, 1, 2} if looked else {slivers})
