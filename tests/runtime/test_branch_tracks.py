@@ -248,3 +248,20 @@ def test_rows_that_each_of_two_margins_takes_from_one_end_may_be_between() -> No
     none, nowhere = np.zeros((5, 1), dtype=bool), np.zeros(5, dtype=bool)
     found = _hidden_folds(Rows(HELD, rows.q, rows.real, folds), none, nowhere)
     assert np.flatnonzero(found[:, 0]).tolist() == [1]
+
+
+def test_margins_are_bounded_by_second_differences_between_samples_that_are_not_even() -> None:
+    """Of a parabola by its bend over a cell, c w^2 / 4, four times as much."""
+    zero: Callable[[float], float] = lambda h: 0.0  # noqa: E731
+    rng, width = np.random.default_rng(2), np.diff(HELD)
+    none, nowhere = np.zeros((5, 1), dtype=bool), np.zeros(5, dtype=bool)
+    flagged = 0
+    for c, a, e in zip(
+        *rng.uniform([[0.5], [0.0], [1e-4]], [[9.0], [0.7], [0.1]], (3, 60)), strict=True
+    ):
+        f = c * (HELD - a) ** 2 + e
+        found = _hidden_folds(rows_of([zero], folds=f[:, None]), none, nowhere)[:, 0]
+        bound = _SAFETY * c * width**2 / 4.0
+        np.testing.assert_array_equal(found, np.minimum(f[:-1], f[1:]) < bound)
+        flagged += int(found.sum())
+    assert 30 < flagged < 270

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from tests.support.chains import translation
 from tests.support.given_rows import NONE, given_arm, given_rows
 
+from ikgen.runtime.python import doubtful_poses
 from ikgen.runtime.python.chain_kinematics import forward
 from ikgen.runtime.python.doubtful_poses import (
     Answer,
@@ -19,6 +21,7 @@ from ikgen.runtime.python.doubtful_poses import (
     placed_rows,
     unplaced_rows,
 )
+from ikgen.runtime.python.meeting_rows import Led
 from ikgen.runtime.python.solved_arm import Arm
 
 Array = NDArray[np.float64]
@@ -167,3 +170,21 @@ def test_beside_a_singular_row_the_seeds_own_counts_where_no_joint_is_free(free:
         answer = Answer()
         _goes_on(arm, asked, 0, (list(kept), free, True), [regular], False, answer)
         assert sorted(answer.rows, key=lambda one: not one[1]) == wanted
+
+
+def test_rows_are_singular_by_what_is_lost_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By more where the closed form says that they are of a continuum."""
+    arm = given_arm(not_there)
+    flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
+    assert 0.0 < flat < continuum
+    loss = np.array([0.5 * flat, 2.0 * flat, 2.0 * continuum] * 2)
+    q = ROW + 0.2 * np.arange(6.0)[:, None]
+    owner = np.array([0, 0, 0, 1, 1, 1])
+    monkeypatch.setattr(doubtful_poses, "rows_nearby", lambda *_: Led(owner, q, loss))
+    starts: Any = SimpleNamespace(pose=np.array([1, 0]), marked=np.array([False, True]))
+    leads: Any = SimpleNamespace(starts=starts)
+    asked = Asked(np.tile(np.eye(4), (2, 1, 1)), None, np.zeros((2, 0)))
+    marked, plain = doubtful_poses._meeting(arm, asked, leads)
+    assert [flag for _, flag in plain] == [True, False, False]
+    assert [flag for _, flag in marked] == [True, True, False]
+    assert [row for row, _ in plain] == [tuple(row) for row in q[:3].tolist()]

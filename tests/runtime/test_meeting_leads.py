@@ -7,10 +7,21 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
+from ikgen.runtime.python import meeting_rows
 from ikgen.runtime.python.chain_kinematics import chain_of, forward
-from ikgen.runtime.python.meeting_rows import Ends, Leads, Led, Starts, repeats, rows_nearby, traced
+from ikgen.runtime.python.meeting_rows import (
+    Ends,
+    Leads,
+    Led,
+    Starts,
+    leads_of,
+    repeats,
+    rows_nearby,
+    traced,
+)
 
 Array = NDArray[np.float64]
 POLICY = SimpleNamespace(
@@ -96,3 +107,46 @@ def test_singular_rows_are_one_where_the_pose_is_theirs_between_them_too() -> No
         policy=SimpleNamespace(halfway=1.0, alike=1.0), chain=chain, task=Plane
     )
     assert not repeats(arm, T, rows[0], [])
+
+
+def test_marked_rows_that_are_not_the_arms_own_are_followed_once_for_each_branch(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Those of the pose first, then what poses beside have; what is given is not."""
+    q = np.arange(6.0)[:, None]
+    error = np.array([1.0, 1.0, 1.0, 1.0, 0.0, 1.0])
+    monkeypatch.setattr(
+        meeting_rows,
+        "ends_of",
+        lambda arm, q, T: Ends(q + 100.0, error[q[:, 0].astype(int)], q[:, 0]),
+    )
+    seen: list[list[float]] = []
+
+    def around(arm: Any, q: Array, T: Array) -> Any:
+        seen.append(q[:, 0].tolist())
+        return np.ones(len(q), dtype=bool), np.arange(len(q)), q + 10.0, q[:, 0]
+
+    starts = Starts(
+        q, np.zeros((6, 4, 4)), np.zeros(6, np.intp), np.array([True] * 5 + [False]),
+        np.array([-1, 0, 1, 1, 0, 0]), np.array([0, 0, 0, 1, 2, 3]),
+    )  # fmt: skip
+    known = np.zeros((1, 4), dtype=bool)
+    arm: Any = SimpleNamespace(policy=POLICY, rounded=False, around=around)
+    found = leads_of(arm, starts, known)
+    assert seen == [
+        [1.0],
+        [3.0],
+    ]  # the second one's branch is known by then, the fifth is the arm's own
+    assert known.tolist() == [[True, True, False, False]]
+    assert found.around.owner.tolist() == [1, 3] and found.around.q[:, 0].tolist() == [11.0, 13.0]
+    assert found.known.tolist() == [False, True, True, True, False, False]
+    assert found.starts.marked.tolist() == [True, True, True, True, True, False]
+    assert np.isinf(found.ends.error[1:4]).all() and np.isfinite(found.ends.error[[0, 4, 5]]).all()
+    assert found.ends.q[[0, 4, 5], 0].tolist() == [100.0, 104.0, 105.0]
+    seen.clear()
+    arm.rounded = True  # then none is known to be the file's
+    leads_of(arm, starts, np.zeros((1, 4), dtype=bool))
+    assert seen == [[1.0, 4.0], [3.0]]
+    arm.around = None
+    none = leads_of(arm, starts, np.zeros((1, 4), dtype=bool))
+    assert none.starts.marked.tolist() == [True] + [False] * 5 and not none.known.any()

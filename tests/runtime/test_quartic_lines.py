@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from ikgen.runtime.python import trig_quartic_roots
 from ikgen.runtime.python.quartic_lines import ARRAYS, FLOATS, _resolvent, quartic_lines
-from ikgen.runtime.python.trig_quartic_roots import trig_quartic, trig_quartic_batch
+from ikgen.runtime.python.trig_quartic_roots import _near, trig_quartic, trig_quartic_batch
 
 Array = NDArray[np.float64]
 
@@ -111,3 +113,33 @@ def test_roots_far_apart_are_found_together_whatever_the_size_of_the_equation(
         count, c, s = trig_quartic_batch(*(K / np.abs(K).max(axis=0) * size))
         assert count.tolist() == [4] * 30
         np.testing.assert_allclose(np.sort(np.arctan2(s, c), axis=1), wanted, atol=1e-9)
+
+
+def test_the_root_of_the_resolvent_takes_few_steps() -> None:
+    rng, steps = np.random.default_rng(9), [0]
+
+    def every(done: bool) -> bool:
+        steps[-1] += 1
+        return done
+
+    counted = replace(FLOATS, every=every)
+    for _ in range(300):
+        steps.append(0)
+        _resolvent(rng.uniform(-3.0, 3.0), *(rng.uniform(0.0, 1.0, 2) ** 2).tolist(), counted)
+    assert max(steps) < 40 and np.mean(steps[1:]) < 9.0
+
+
+def test_a_root_is_not_taken_where_steps_lead_away_from_the_line() -> None:
+    """Of cos t: from beside pi / 2, by less than the reach or more."""
+    k = 0.0, 0.0, 1.0, 0.0, 0.0
+    for sign in (1.0, -1.0):
+        for off in (0.05, -0.05):
+            angle = sign * np.pi / 2 + off
+            c, s = np.cos(angle), np.sin(angle)
+            assert _near(k, c, s, 0.06) == pytest.approx((0.0, sign), abs=1e-9)
+            assert _near(k, c, s, 0.04) == (c, s)
+    for angle in (np.pi / 4, 3.0 * np.pi / 4):  # where cosine and sine move by as much
+        k = 0.0, 0.0, -np.sin(angle), np.cos(angle), 0.0
+        c, s = np.cos(angle + 0.05), np.sin(angle + 0.05)
+        assert _near(k, c, s, 0.06) == (c, s)
+        assert _near(k, c, s, 0.08) == pytest.approx((np.cos(angle), np.sin(angle)))
