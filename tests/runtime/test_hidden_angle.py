@@ -35,8 +35,8 @@ def test_those_that_are_put_off_further_are_put_off_as_far_as_alone() -> None:
     N = random.normal(size=(3, 12, 12))
     pivot = random.uniform(-0.5, 0.5, (3, 12, 12))
     pivot[:, 2, 0] = 1.0  # the largest
-    pivot[1, 0], pivot[1, 1] = 0.0, -(1e-10 * 1.0 * _JITTER[1])
-    for off in (0.0, 1e-10):
+    pivot[1, 0], pivot[1, 1] = 0.0, -(1e-12 * 1.0 * _JITTER[1])
+    for off in (0.0, 1e-12):
         found = solved(pivot, N, off)
         for i in range(3):
             np.testing.assert_array_equal(found[i], solved(pivot[i : i + 1], N[i : i + 1], off)[0])
