@@ -147,6 +147,11 @@ HARMLESS = (
         "<", "<=", "the elbow itself is never asked for",
     ),
     HarmlessChange(
+        "runtime/python/arm_angle_motion.py",
+        "limit = middle + side * (half + 0.5 * arm.policy.limit_tolerance)",
+        "+", "-", "both sides are looked at, in whatever order",
+    ),
+    HarmlessChange(
         "runtime/python/branch_arcs.py",
         "lambda p: sense * p.rise > 0.0,",
         "*", "/", "they have one sign, and where the held value rises no more the fold is found",
