@@ -257,6 +257,11 @@ HARMLESS = (
         ">", ">=", "a row without any error goes no step",
     ),
     HarmlessChange(
+        "runtime/python/trig_quartic_roots.py",
+        "c, s, good = _regular_roots(K / np.where(size > zero, size, 1.0)[:, None])",
+        ">", "<", "roots and steps are of ratios: the equation's size does not tell",
+    ),
+    HarmlessChange(
         "runtime/python/self_motion.py",
         "following = int(tracks.links[at, row]) if at < last else -1",
         "1", "2", "any number below 0 says that no row follows",

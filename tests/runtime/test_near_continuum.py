@@ -196,4 +196,4 @@ def test_where_values_are_round_off_before_they_are_nothing_the_way_tells(
     )
     found = near_continuum._closed_in(LINE, parts, np.zeros((1, 4, 4)))
     ends = [float(x.q[0, 0]) for x in (found.a, found.b)]
-    assert min(abs(x - 0.1234567) for x in ends) < 1e-8 and len(taken) < 38
+    assert min(abs(x - 0.1234567) for x in ends) < 1e-8 and len(taken) < 20
