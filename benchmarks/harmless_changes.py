@@ -78,7 +78,7 @@ HARMLESS = (
     ),
     HarmlessChange(
         "runtime/python/near_continuum.py",
-        "way[going[np.abs(c.left) > most[going]]] = 0.0",
+        "way[going[leaps | (np.abs(c.left) > most[going])]] = 0.0",
         ">", ">=", _EQUAL,
     ),
     HarmlessChange(

@@ -20,7 +20,6 @@ from ikgen.runtime.python.meeting_rows import (
     leads_of,
     repeats,
     rows_nearby,
-    traced,
 )
 
 Array = NDArray[np.float64]
@@ -39,35 +38,43 @@ def leads_of_rows(q: list[float], source: list[int], loss: list[float], marked: 
     return Leads(starts, Ends(rows, np.zeros(n), np.array(loss)), none, np.zeros(n, dtype=bool))
 
 
-def test_continua_are_followed_from_the_closed_forms_rows_near_singularities() -> None:
-    """Not from what is given, what poses beside have, nor from what was followed already."""
+def test_continua_are_followed_from_where_own_rows_near_singularities_end(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Not from where what is given does, what poses beside have, or what is regular."""
     seen: list[Any] = []
+    losses = np.array([0.0, 0.0, 0.0, 0.02, 0.0, 0.0])
 
-    def around(arm: Any, q: Array, T: Array, broken: bool = False) -> Any:
-        seen.append((q[:, 0].tolist(), T[:, 0, 0].tolist(), broken))
-        curve = np.array([False, True])
+    def ends(arm: Any, q: Array, T: Array) -> Ends:
+        return Ends(q + 100.0, np.zeros(len(q)), losses[q[:, 0].astype(int)])
+
+    def around(arm: Any, q: Array, T: Array, lie: Any) -> Any:
+        seen.append((q[:, 0].tolist(), T[:, 0, 0].tolist(), lie.tolist()))
+        curve = np.array([False, True, True])
         return (
             curve,
-            np.array([1, 1, 0]),
+            np.array([1, 2, 2]),
             np.array([[7.0], [8.0], [9.0]]),
             np.array([0.5, 0.6, 0.7]),
         )
 
-    arm: Any = SimpleNamespace(policy=POLICY, around=around)
-    given = leads_of_rows(
-        [0.0, 1.0, 2.0, 3.0, 4.0, 5.0],
-        [-1, 0, 1, 0, 0, 0],
-        [0.0, 0.0, 0.0, 0.02, 0.0, 0.0],
-        "....x.",
-    )
-    found = traced(arm, given)
-    assert seen == [([1.0, 5.0], [1.0, 5.0], True)]
-    assert found.known.tolist() == [False] * 5 + [True] and not given.known.any()
-    assert found.around.owner.tolist() == [5, 5, 1]
+    monkeypatch.setattr(meeting_rows, "ends_of", ends)
+    arm: Any = SimpleNamespace(policy=POLICY, around=around, rounded=True)
+    starts = leads_of_rows(
+        [0.0, 1.0, 2.0, 3.0, 4.0, 5.0], [-1, 0, 1, 0, 0, 0], [0.0] * 6, "....x."
+    ).starts
+    starts = starts._replace(lane=np.arange(6))
+    known = np.zeros((1, 6), dtype=bool)
+    found = leads_of(arm, starts, known, near=True)
+    assert seen == [([101.0, 4.0, 105.0], [1.0, 4.0, 5.0], [True, False, True])]
+    assert found.known.tolist() == [False] * 4 + [True] * 2
+    assert known.tolist() == [[False] * 4 + [True, False]]
+    assert found.around.owner.tolist() == [4, 5, 5]
     assert found.around.q[:, 0].tolist() == [7.0, 8.0, 9.0]
     assert found.around.loss.tolist() == [0.5, 0.6, 0.7]
-    arm.around = None
-    assert traced(arm, given) is given
+    assert found.starts.marked.tolist() == [False] * 4 + [True, False]
+    plain = leads_of(arm, starts._replace(marked=starts.marked & False), known & False)
+    assert len(seen) == 1 and not plain.known.any() and not len(plain.around.owner)
 
 
 def test_a_row_that_a_pose_beside_led_to_once_more_is_left_out() -> None:
@@ -122,7 +129,8 @@ def test_marked_rows_that_are_not_the_arms_own_are_followed_once_for_each_branch
     )
     seen: list[list[float]] = []
 
-    def around(arm: Any, q: Array, T: Array) -> Any:
+    def around(arm: Any, q: Array, T: Array, lie: Any) -> Any:
+        assert not lie.any()
         seen.append(q[:, 0].tolist())
         return np.ones(len(q), dtype=bool), np.arange(len(q)), q + 10.0, q[:, 0]
 
