@@ -27,8 +27,245 @@ class HarmlessChange:
 _EQUAL = "the two numbers are rounded ones that are never equal"
 _AS_LONG = "both always have the same length"
 _COUNT = "so many suffice, and one more does too"
+_WHATEVER = "any length below 0 is what the others leave"
+_PLACES = "the two vectors change places, and their order is none"
 
 HARMLESS = (
+    HarmlessChange(
+        "runtime/python/branch_arcs.py",
+        "done |= going & (size <= _ARRIVED)",
+        "<=", "<", _EQUAL,
+    ),
+    HarmlessChange(
+        "runtime/python/branch_arcs.py",
+        "if (done | ~(moved < _FAR)).all():",
+        "<", "<=", _EQUAL,
+    ),
+    HarmlessChange(
+        "runtime/python/branch_tracks.py",
+        "sure = (left > off) & (right > off) & ~(opposite & far)",
+        ">", ">=", _EQUAL,
+    ),
+    HarmlessChange(
+        "runtime/python/back_substitution.py",
+        "w = np.where(w[:, :1] < 0.0, -w, w)",
+        "<", "<=", _EQUAL,
+    ),
+    HarmlessChange(
+        "runtime/python/hidden_angle.py",
+        "row, i = np.nonzero(off < accept)",
+        "<", "<=", _EQUAL,
+    ),
+    HarmlessChange(
+        "runtime/python/lane_newton.py",
+        "missed[part] = done & (off > arm.policy.least_miss)",
+        ">", ">=", _EQUAL,
+    ),
+    HarmlessChange(
+        "runtime/python/lane_newton.py",
+        "done = size**3 < policy.converged * before**2",
+        "<", "<=", _EQUAL,
+    ),
+    HarmlessChange(
+        "runtime/python/meeting_rows.py",
+        "for gap in gaps[np.abs(gaps).max(axis=1) < arm.policy.alike]:",
+        "<", "<=", _EQUAL,
+    ),
+    HarmlessChange(
+        "runtime/python/near_continuum.py",
+        "broken = curve & (worst >= arm.policy.arrived)",
+        ">=", ">", _EQUAL,
+    ),
+    HarmlessChange(
+        "runtime/python/near_continuum.py",
+        "way[going[leaps | (np.abs(c.left) > most[going])]] = 0.0",
+        ">", ">=", _EQUAL,
+    ),
+    HarmlessChange(
+        "runtime/python/near_continuum.py",
+        "order = order[np.abs(left[order]) < arm.policy.arrived]",
+        "<", "<=", _EQUAL,
+    ),
+    HarmlessChange(
+        "runtime/python/path_following.py",
+        "return q[None], loss < arm.policy.rank_loss, Status.OK",
+        "<", "<=", _EQUAL,
+    ),
+    HarmlessChange(
+        "runtime/python/path_following.py",
+        "if (slow and i > 2) or least < self.arm.policy.converged:",
+        "<", "<=", _EQUAL,
+    ),
+    HarmlessChange(
+        "runtime/python/row_placement.py",
+        "beyond |= value + _TURN < high + reach",
+        "<", "<=", _EQUAL,
+    ),
+    HarmlessChange(
+        "runtime/python/slide_range.py",
+        "if abs(slope) < _ACROSS:",
+        "<", "<=", _EQUAL,
+    ),
+    HarmlessChange(
+        "runtime/python/solution_rows.py",
+        "apart = (np.diff(rank[order]) > 0) | (np.diff(key[order]) > _SAME_KEY)",
+        ">", ">=", _EQUAL,
+    ),
+    HarmlessChange(
+        "runtime/python/trig_quartic_roots.py",
+        "return (u, v) if abs(u - c) + abs(v - s) < reach else (c, s)",
+        "<", "<=", _EQUAL,
+    ),
+    HarmlessChange(
+        "runtime/python/trig_quartic_roots.py",
+        "if h < 1e-7:  # the value at the extremum is round-off: Newton steps would be too",
+        "<", "<=", _EQUAL,
+    ),
+    HarmlessChange(
+        "runtime/python/branch_arcs.py",
+        "_MOST = 40",
+        "40", "41", _COUNT,
+    ),
+    HarmlessChange(
+        "runtime/python/near_continuum.py",
+        "_MOST, _CORRECTIONS, _STEPS, _DEEP, _LEAST = 96, 6, 40, 24, 4",
+        "40", "41", _COUNT,
+    ),
+    HarmlessChange(
+        "runtime/python/back_substitution.py",
+        "cone = np.stack([-H[:, 0, 1] - sign * disc, H[:, 0, 0]], axis=-1)",
+        "-", "+", _PLACES,
+    ),
+    HarmlessChange(
+        "runtime/python/back_substitution.py",
+        "other = np.stack([H[:, 1, 1], -H[:, 0, 1] + sign * disc], axis=-1)",
+        "+", "-", _PLACES,
+    ),
+    HarmlessChange(
+        "runtime/python/arm_angle_motion.py",
+        "middle, still, moving = (1, 0, 2) if j < _ELBOW else (5, 6, 4)",
+        "<", "<=", "the elbow itself is never asked for",
+    ),
+    HarmlessChange(
+        "runtime/python/arm_angle_motion.py",
+        "limit = middle + side * (half + 0.5 * arm.policy.limit_tolerance)",
+        "+", "-", "both sides are looked at, in whatever order",
+    ),
+    HarmlessChange(
+        "runtime/python/branch_arcs.py",
+        "lambda p: sense * p.rise > 0.0,",
+        "*", "/", "they have one sign, and where the held value rises no more the fold is found",
+    ),
+    HarmlessChange(
+        "runtime/python/branch_ends.py",
+        "least = -float(rows.folds[k, row if seen else e.lane].min(initial=inf))",
+        "seen", "not (seen)", "an end at a fold stays in its lane where margins tell",
+    ),
+    HarmlessChange(
+        "runtime/python/branch_tracks.py",
+        "opposite, far = a * b < 0.0, turns & (np.abs(a) + np.abs(b) > pi)",
+        "<", "<=", "a row in the middle is inside, and no other is more than half a turn away",
+    ),
+    HarmlessChange(
+        "runtime/python/closed_form_rows.py",
+        "poses = (T[:, None] @ arm.beside).reshape(-1, 4, 4)",
+        "1", "2", _WHATEVER,
+    ),
+    HarmlessChange(
+        "runtime/python/held_grid_search.py",
+        'return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes)), tuple(steps)',
+        "1", "2", _WHATEVER,
+    ),
+    HarmlessChange(
+        "runtime/python/doubtful_poses.py",
+        "break",
+        "break", "continue", "nothing is left to be tried then",
+    ),
+    HarmlessChange(
+        "runtime/python/elimination_rows.py",
+        "for i in np.flatnonzero(np.bincount(pose, minlength=1) > arm.most):",
+        ">", ">=", "as many as there may be stay as they are",
+    ),
+    HarmlessChange(
+        "runtime/python/fold_pair.py",
+        "x = np.where(((s > 0.0) == (side > 0.0)) & (square > 0.0), 2.0 * e / p, -p / k)",
+        ">", ">=", "a side is 1 or -1",
+    ),
+    HarmlessChange(
+        "runtime/python/hidden_angle.py",
+        "_NODES = 2.0 * np.pi / 7.0 * np.arange(7)",
+        "2.0", "3.0", "other angles all over the turn, of which the best is taken",
+    ),
+    HarmlessChange(
+        "runtime/python/hidden_angle.py",
+        "if flat.all() or not flat.any():",
+        "or", "and", "where all are singular those that are not are none",
+    ),
+    HarmlessChange(
+        "runtime/python/near_continuum.py",
+        "values, last = ends.left.copy(), np.full(len(parts.owner), -1)",
+        "1", "2", "no side is below 0",
+    ),
+    HarmlessChange(
+        "runtime/python/near_continuum.py",
+        "side = (now.a.left * c.left < 0.0).astype(np.intp)",
+        "<", "<=", "what is left is 0 then, and the search ends at it",
+    ),
+    HarmlessChange(
+        "runtime/python/one_slide.py",
+        "values = np.concatenate([np.stack(pair, axis=-1), t], axis=1)",
+        "-1", "(1)", "an array with one axis is stacked",
+    ),
+    HarmlessChange(
+        "runtime/python/parallel_axes.py",
+        "out[..., 4, 0] += (o4 * o4).sum(axis=-1)[..., None] + (o * o).sum(axis=-1)",
+        "-1", "(1)", "the array has two axes",
+    ),
+    HarmlessChange(
+        "runtime/python/parallel_axes.py",
+        "both *= np.copysign(1.0, both[:, :1])",
+        "1.0", "2.0", "the vector's length is taken away behind it",
+    ),
+    HarmlessChange(
+        "runtime/python/parallel_links.py",
+        "side = np.where(second[:, 2, 2] > 0.0, 1.0, -1.0)",
+        ">", ">=", "of parallel axes it is 1 or -1",
+    ),
+    HarmlessChange(
+        "runtime/python/pose_arguments.py",
+        "if isinstance(pose, np.ndarray) and pose.shape[-2:] == (4, 4):",
+        "2", "3", "a stack of matrices stays as it is on the way that others go, too",
+    ),
+    HarmlessChange(
+        "runtime/python/quartic_lines.py",
+        "low = m <= 0.0",
+        "<=", "<", "at 0 both ways lead to the same lines",
+    ),
+    HarmlessChange(
+        "runtime/python/quartic_lines.py",
+        "lo = pick(either, m2, pick(left, -1.0, pick(right | (in1 & in2), m2, -1.0)))",
+        "1.0", "2.0", "beyond the first extremum there is one root",
+    ),
+    HarmlessChange(
+        "runtime/python/quartic_lines.py",
+        "return on.clip(m, -1.0, 1.0)",
+        "1.0", "2.0", "the root is between bounds that are no more than 1",
+    ),
+    HarmlessChange(
+        "runtime/python/refinement.py",
+        "on = (least > policy.converged) & (stalled < policy.patience)",
+        ">", ">=", "a row without any error goes no step",
+    ),
+    HarmlessChange(
+        "runtime/python/trig_quartic_roots.py",
+        "c, s, good = _regular_roots(K / np.where(size > zero, size, 1.0)[:, None])",
+        ">", "<", "roots and steps are of ratios: the equation's size does not tell",
+    ),
+    HarmlessChange(
+        "runtime/python/self_motion.py",
+        "following = int(tracks.links[at, row]) if at < last else -1",
+        "1", "2", "any number below 0 says that no row follows",
+    ),
     HarmlessChange(
         "runtime/python/projection.py", "_FOLLOWED = 16", "16", "17", _COUNT,
     ),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import ModuleType
 
 import numpy as np
@@ -11,6 +12,7 @@ from tests.support.held_arms import imported
 
 from ikgen.runtime.python.arm_angle_motion import _ends, _harmonic, _roots, _turned
 from ikgen.runtime.python.chain_kinematics import cross, joint_axes
+from ikgen.runtime.python.solved_arm import Arm
 
 Array = NDArray[np.float64]
 ELBOW = 3
@@ -88,3 +90,31 @@ def test_what_is_no_pose_has_no_intervals_and_a_pose_has_some(arm: ModuleType) -
     found = arm.self_motion(pose)
     assert found and all(-np.pi <= one.low < one.high <= np.pi for one in found)
     assert tuple(arm.self_motion(np.full((4, 4), np.nan))) == ()
+
+
+def bounded(arm: ModuleType, joint: int, low: float, high: float, tolerance: float) -> Arm:
+    """With limits of one joint alone."""
+    lower, upper = [-4.0] * 7, [4.0] * 7
+    lower[joint], upper[joint] = low, high
+    policy = replace(arm._ARM.policy, limit_tolerance=tolerance)
+    return replace(arm._ARM, lower=tuple(lower), upper=tuple(upper), policy=policy)
+
+
+@pytest.mark.parametrize("joint", range(7))
+def test_ends_are_half_the_tolerance_outside_a_limit_of_any_joint_but_the_elbow(
+    arm: ModuleType, joint: int
+) -> None:
+    """The elbow's angle is the same at all arm angles."""
+    count = 0
+    for seed in range(3):
+        pose, q = at_zero(arm, seed)
+        low, high = (float(q[joint]) + by for by in (-0.2, 0.1))
+        one = bounded(arm, joint, low, high, 1e-3)
+        ends = _ends(one, pose, q, True)
+        assert ends == [] or joint != ELBOW
+        for angle in ends or ():
+            value = arm.solve(pose, free=[angle], limits=False).q[:, joint]
+            off = np.concatenate([value - (high + 5e-4), value - (low - 5e-4)])
+            assert np.abs(np.remainder(off + np.pi, 2.0 * np.pi) - np.pi).min() < 1e-6
+            count += 1
+    assert count > 0 or joint == ELBOW

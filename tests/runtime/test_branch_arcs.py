@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from ikgen.runtime.python.arm_angle import ArmAngle
-from ikgen.runtime.python.branch_arcs import Arcs
+from ikgen.runtime.python.branch_arcs import Arcs, Points
 from ikgen.runtime.python.branch_ends import BranchEnd, follow_ends
 from ikgen.runtime.python.chain_kinematics import chain_of, forward
 
@@ -166,3 +166,71 @@ def test_the_slope_of_what_an_elbow_misses_by_the_arm_angle() -> None:
     beside = [angle.errors(q, angle.aims(T, held + by))[0] % 1.0 for by in (1e-6, -1e-6)]
     slope = (beside[0] - beside[1] + 0.5) % 1.0 - 0.5  # what is beyond the line counts 1 more
     np.testing.assert_allclose(angle.turned(q, angle.aims(T, held)), -slope / 2e-6, atol=1e-8)
+
+
+class Given(Arcs):
+    """A curve whose points at shares of the way are given: how far out, and how fast the held value rises,
+    where that is as far along as the share, times `length`."""
+
+    def __init__(self, off: Any, rise: Any, length: float = 1.0) -> None:
+        self.found = 0
+        self._function, self._stretch = (off, rise), length
+        self._length = np.array([length])
+        self.start, self.end = self.at(np.zeros(1)), self.at(np.ones(1))
+
+    def at(self, share: Array) -> Points:
+        off, rise = (np.array([f(x) for x in share]) for f in self._function)
+        held = self._stretch * share
+        return Points(share, held, held[:, None], off, rise[:, None])
+
+    def _find(self, share: Array, near: Points) -> tuple[Points, Any]:
+        self.found += 1
+        return self.at(share), np.ones(1, dtype=bool)
+
+
+@pytest.mark.parametrize("power", [1, 3, 9])
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_sign_is_found_however_bent_the_function_is(power: int, mirrored: bool) -> None:
+    """False position alone leaves one end where it is, and creeps."""
+
+    def rise(share: float) -> float:
+        return float(0.01 - share**power if not mirrored else (1.0 - share) ** power - 0.01)
+
+    root = 0.01 ** (1.0 / power)
+    curve = Given(lambda share: -1.0, rise)
+    at, good = curve.folds(np.ones(1))
+    assert good[0] and abs(at.share[0] - (1.0 - root if mirrored else root)) < 1e-4
+    assert rise(float(at.share[0])) ** 2 < 1e-10
+
+
+@pytest.mark.parametrize("slope", [1e-4, 1.0, 1e4])
+@pytest.mark.parametrize("length", [1.0, 0.01])
+def test_the_last_point_inside_is_as_near_to_the_limit_as_values_are_told_apart(
+    slope: float, length: float
+) -> None:
+    curve = Given(lambda share: slope * (share - 0.37), lambda share: 1.0, length)
+    at, good = curve.limits(curve.start, curve.end)
+    assert good[0] and at.off[0] <= 0.0
+    assert 0.0 <= 0.37 * length - at.held[0] < 1e-10
+    assert curve.found < 6  # a straight line's is met at once
+
+
+def test_what_a_neighbour_foretells_is_corrected_by_no_more_than_a_radian(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    curves = arcs(planar(), (row(0.1, 1.0), row(0.2, 1.0)))
+    start = curves.start
+    for joint, size, way in ((1, 0.4, 0.8), (1, 3.0, 0.0), (2, 0.4, 0.8), (2, 3.0, 0.0)):
+        step = size * np.eye(3)[joint - 1][None], np.ones((1, 3))
+        monkeypatch.setattr(curves, "_step", lambda share, q, held, step=step: step)
+        found, good = curves._find(start.share, start)
+        assert not good[0] and found.q[0, joint] - start.q[0, joint] == pytest.approx(way)
+
+
+def test_rows_are_off_by_how_far_they_are_outside_the_tolerance_of_limits() -> None:
+    q = row(0.3, 1.0)
+    low, high = (tuple(x + by for x in q) for by in (-0.5, 0.2))
+    arm = planar(low, high)
+    for tolerance in (0.0, 1e-9, 0.05):
+        arm.policy.limit_tolerance = tolerance
+        assert arcs(arm, (q, q)).start.off[0] == pytest.approx(-0.2 - tolerance, abs=1e-12)

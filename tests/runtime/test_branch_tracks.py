@@ -221,3 +221,47 @@ def test_a_row_that_may_touch_a_limit_twice_is_looked_at_closely(
     held = tracks.rows.held
     assert len(outside) and ends[0] <= held[outside[0]] and held[outside[-1]] <= ends[1]
     assert len(held) < 130
+
+
+def test_a_row_that_comes_to_a_limit_is_inside_and_crosses_it_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    exact = SimpleNamespace(
+        moving=(0,), lower=np.array([-1.0]), upper=np.array([1.0]), chain=ARM.chain,
+        policy=SimpleNamespace(limit_tolerance=0.0), rounded=False,
+    )  # fmt: skip
+    linked = np.ones((1, 1), dtype=bool)
+    for start, change in ((0.5, 0.5), (1.0, -0.5), (-1.0, 0.5), (1.0, 0.5)):
+        q, way, off = (np.full((1, 1, 1), x) for x in (start, change, 0.0))
+        dead, count = _limit_crossings(exact, q, way, off, linked, True)
+        assert not dead[0, 0] and count[0, 0] == 1
+    joint = joint_of(monkeypatch, lambda h: [(0.5 + 0.5 * h, 1.0)])
+    joint.arm = exact
+    tracks = tracked(joint, np.eye(4), -1.0, 1.0, True)
+    assert tracks.off[-1, 0] == 0.0 and tracks.inside.all() and len(tracks.rows.held) == 65
+
+
+def test_rows_that_each_of_two_margins_takes_from_one_end_may_be_between() -> None:
+    zero: Callable[[float], float] = lambda h: 0.0  # noqa: E731
+    rows = rows_of([zero], real=np.zeros((6, 1), dtype=bool))
+    folds = np.array([[[h - 0.2, 0.22 - h]] for h in HELD])
+    none, nowhere = np.zeros((5, 1), dtype=bool), np.zeros(5, dtype=bool)
+    found = _hidden_folds(Rows(HELD, rows.q, rows.real, folds), none, nowhere)
+    assert np.flatnonzero(found[:, 0]).tolist() == [1]
+
+
+def test_margins_are_bounded_by_second_differences_between_samples_that_are_not_even() -> None:
+    """Of a parabola by its bend over a cell, c w^2 / 4, four times as much."""
+    zero: Callable[[float], float] = lambda h: 0.0  # noqa: E731
+    rng, width = np.random.default_rng(2), np.diff(HELD)
+    none, nowhere = np.zeros((5, 1), dtype=bool), np.zeros(5, dtype=bool)
+    flagged = 0
+    for c, a, e in zip(
+        *rng.uniform([[0.5], [0.0], [1e-4]], [[9.0], [0.7], [0.1]], (3, 60)), strict=True
+    ):
+        f = c * (HELD - a) ** 2 + e
+        found = _hidden_folds(rows_of([zero], folds=f[:, None]), none, nowhere)[:, 0]
+        bound = _SAFETY * c * width**2 / 4.0
+        np.testing.assert_array_equal(found, np.minimum(f[:-1], f[1:]) < bound)
+        flagged += int(found.sum())
+    assert 30 < flagged < 270

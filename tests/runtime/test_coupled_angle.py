@@ -44,7 +44,7 @@ def test_a_polynomial_of_no_degree_has_no_roots() -> None:
 
 
 def test_roots_near_an_angle_are_found_by_the_values_there() -> None:
-    wanted = np.array([[-0.15, -0.011, 0.012, 0.19], [-0.1, 0.05, 0.9, 1.5]])
+    wanted = np.array([[-0.15, -0.011, 0.012, 0.19], [-0.1, 0.05, 0.3, 1.5]])
     pose, x = _close_roots(product(wanted, _NEAR * _NODES) * np.array([[1.0], [1e-12]]))
     assert pose.tolist() == [0, 0, 0, 0, 1, 1]
     np.testing.assert_allclose(np.sort(x[:4]), wanted[0], atol=1e-9)

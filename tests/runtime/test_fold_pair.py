@@ -3,15 +3,31 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from tests.support.rounded_arms import FOLDED, meeting_shoulder
 from tests.support.solving import emitted
 
+from ikgen.elimination.routine import runtime_policy
 from ikgen.kinematics.modified_dh import to_dh
+from ikgen.program.policy import SolvePolicy
 from ikgen.runtime.python.arm_newton import linearized
-from ikgen.runtime.python.fold_pair import Reduced, _root, _still, correct, generic
+from ikgen.runtime.python.chain_kinematics import chain_of
+from ikgen.runtime.python.fold_pair import (
+    Reduced,
+    _root,
+    _step,
+    _still,
+    approach,
+    correct,
+    generic,
+)
+
+Array = NDArray[np.float64]
 
 
 def root(side: float, rest: float, bend: float, flow: float) -> float:
@@ -77,3 +93,39 @@ def test_one_direction_of_the_error_is_left_and_grows_by_the_slope(tmp_path: Pat
         np.testing.assert_allclose(-(flow * at.out).sum(axis=1), at.slope, atol=1e-12)
     assert np.abs(at.left).min() > 1e-8
     np.testing.assert_allclose((at.left - before.left) / step, before.slope, rtol=1e-2)
+
+
+class Plane:
+    """The task of a position in the plane."""
+
+    @staticmethod
+    def error(pose: Array, T: Array) -> Array:
+        return T[:, :2, 3] - pose[:, :2, 3]
+
+    @staticmethod
+    def rows(_: Array, J: Array) -> Array:
+        return J[:, :2]
+
+
+@pytest.mark.parametrize("off", [0.003, 1e-4])
+def test_one_step_from_a_stretched_arm_goes_nearly_to_each_of_the_two_rows(off: float) -> None:
+    """Of two links of 1 m, with the tip pulled back by so much; the elbow's angle is known."""
+    frames = np.tile(np.eye(4), (3, 1, 1))
+    frames[1:, 0, 3] = 1.0
+    chain = chain_of(frames, ((0, True, 1.0, 0.0), (1, True, 1.0, 0.0)), 2)
+    policy = runtime_policy(SolvePolicy())
+    arm: Any = SimpleNamespace(
+        chain=chain, task=Plane, policy=policy, moving=(0, 1), free=(), angle=None
+    )
+    T = np.tile(np.eye(4), (2, 1, 1))
+    T[:, 0, 3] = 2.0 - off
+    elbow = 2.0 * np.arccos(1.0 - 0.5 * off)
+    q, side = np.zeros((2, 2)), np.array([1.0, -1.0])
+    moved, still, x = _step(arm, q, T, side, generic(2, 2))
+    np.testing.assert_allclose(np.abs(moved[:, 1]), elbow, rtol=2e-2)
+    assert moved[0, 1] * moved[1, 1] < 0.0 and x[0] * x[1] < 0.0
+    np.testing.assert_allclose(np.abs(x), np.hypot(elbow, 0.5 * elbow), rtol=2e-2)
+    assert np.abs(np.linalg.norm(still, axis=1) - 1.0).max() < 1e-12
+    rows = approach(arm, q, T, side)
+    np.testing.assert_allclose(np.abs(rows[:, 1]), elbow, rtol=1e-9)
+    np.testing.assert_allclose(rows[:, 0], -0.5 * rows[:, 1], atol=1e-9)

@@ -21,7 +21,11 @@ def end(inner: float) -> BranchEnd:
 
 
 def started(
-    monkeypatch: pytest.MonkeyPatch, cost: Any, low: BranchEnd | float, high: BranchEnd | float
+    monkeypatch: pytest.MonkeyPatch,
+    cost: Any,
+    low: BranchEnd | float,
+    high: BranchEnd | float,
+    samples: tuple[tuple[int, int], ...] = ((1, 0), (2, 0), (3, 0)),
 ) -> list[tuple[float, float]]:
     """Values at which the search starts, and how far it may step first, where a row's value is the held
     joint's."""
@@ -29,7 +33,7 @@ def started(
         held_joint_search, "preference_costs", lambda arm, wanted, q, limits: (q, cost(q[..., 0]), q > 0.0)
     )  # fmt: skip
     tracks: Any = SimpleNamespace(rows=SimpleNamespace(held=HELD, q=HELD[:, None, None]))
-    piece = Piece(low, high, 0, ((1, 0), (2, 0), (3, 0)))
+    piece = Piece(low, high, 0, samples)
     joint: Any = SimpleNamespace(arm=None)
     starts = _starts(tracks, piece, 7, ("near", (), ()), joint, True)
     assert all(group == 7 and row[0] == value for (value,), row, _, group in starts)
@@ -56,3 +60,9 @@ def test_samples_better_than_those_beside_them_are_starts(monkeypatch: pytest.Mo
     alike = started(monkeypatch, lambda x: 0.0 * x, end(0.13), end(0.67))
     assert [v for v, _ in alike] == [0.13, 0.2, 0.4, 0.6, 0.67]
     assert [step for _, step in alike] == pytest.approx([0.035, 0.1, 0.1, 0.1, 0.035])
+
+
+def test_about_a_lone_sample_the_search_starts_close(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An interval at whose ends the range ends as well, and one sample in it."""
+    lone = started(monkeypatch, lambda x: x, 0.2, 0.2, ((1, 0),))
+    assert lone == [(0.2, pytest.approx(5e-4))]

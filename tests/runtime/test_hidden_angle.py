@@ -28,3 +28,15 @@ def test_a_matrix_that_is_singular_with_what_is_added_is_put_off_further() -> No
     assert not put_off[0, 1].any()
     found = solved(pivot, np.eye(12)[None])
     assert np.isfinite(found).all() and np.abs(found).max() > 1e6
+
+
+def test_those_that_are_put_off_further_are_put_off_as_far_as_alone() -> None:
+    random = np.random.default_rng(5)
+    N = random.normal(size=(3, 12, 12))
+    pivot = random.uniform(-0.5, 0.5, (3, 12, 12))
+    pivot[:, 2, 0] = 1.0  # the largest
+    pivot[1, 0], pivot[1, 1] = 0.0, -(1e-12 * 1.0 * _JITTER[1])
+    for off in (0.0, 1e-12):
+        found = solved(pivot, N, off)
+        for i in range(3):
+            np.testing.assert_array_equal(found[i], solved(pivot[i : i + 1], N[i : i + 1], off)[0])

@@ -56,3 +56,14 @@ def test_values_for_many_poses() -> None:
 def test_the_seed_has_the_name_of_the_argument() -> None:
     with pytest.raises(ValueError, match=r"start has shape \(2,\), expected \(3,\)"):
         seed_rows(arm(), [1.0, 2.0], (3,), name="start")
+
+
+def test_turns_that_doubles_cannot_tell_are_left_out_of_seeds() -> None:
+    """By whole ones, where a joint turns and its value is more than a million."""
+    turn = 2.0 * np.pi
+    seed = [1e6 - 1.0, 0.25 + turn * 2.0**20, -0.25 - turn * 2.0**20]
+    found = seed_rows(arm(), seed, (3,))
+    assert found[0] == seed[0]
+    np.testing.assert_allclose(found[1:], [0.25, -0.25], atol=1e-8)
+    slides = cast(Arm, SimpleNamespace(turning=(False,) * 3, lower=(0.0,) * 3))
+    np.testing.assert_array_equal(seed_rows(slides, seed, (3,)), seed)

@@ -11,10 +11,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.cpp_modules import solver_module
+from tests.support.given_rows import given_arm
 from tests.support.held_arms import imported
 from tests.support.solving import import_text
 
 from ikgen.emit.python.python_emitter import emit_module
+from ikgen.runtime.python import joint_refinement
+from ikgen.runtime.python.chain_kinematics import forward as arm_forward
+from ikgen.runtime.python.joint_refinement import _refine_few
+from ikgen.runtime.python.solution_rows import sorted_rows
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
@@ -105,3 +110,50 @@ def test_rows_at_arm_angles_are_refined_a_part_at_a_time(tmp_path: Path) -> None
     done, arrived, _ = arm.together(arm, q + 1e-6, module._ANGLE.aims(T, held))
     assert max(sizes) < 2000
     assert arrived.mean() > 0.9 and apart(done, q)[arrived].max() < 1e-8
+
+
+def test_of_few_rows_those_that_start_too_far_off_are_given_back_as_they_were() -> None:
+    """Though some of them would arrive: what they arrive at may be another's."""
+    arm = given_arm(None)
+    row = np.array([0.3, -0.7, 0.9, 0.4, 1.1, -0.2])
+    off = np.array([1e-3, 0.01, 0.06, 0.1, 0.2])[:, None] * np.array(
+        [1.0, -1.0, 1.0, 1.0, -1.0, 1.0]
+    )
+    T = np.tile(arm_forward(arm.chain, row), (len(off), 1, 1))
+    q, arrived, missed = _refine_few(arm, row + off, T)
+    assert arrived.tolist() == [True, True, False, False, False] and not missed.any()
+    np.testing.assert_allclose(q[:2], [row, row], atol=1e-9)
+    np.testing.assert_array_equal(q[2:], (row + off)[2:])
+
+
+def test_a_row_that_began_badly_does_not_arrive_with_others(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    arm = given_arm(None)
+    row = np.array([0.3, -0.7, 0.9, 0.4, 1.1, -0.2])
+    start = np.array([row + 0.01, row + 0.01])
+    T = np.tile(arm_forward(arm.chain, row), (2, 1, 1))
+    assert _refine_few(arm, start, T)[1].tolist() == [True, True]
+    monkeypatch.setattr(joint_refinement, "begins", lambda *_: np.array([True, False]))
+    q, arrived, missed = _refine_few(arm, start, T)
+    assert arrived.tolist() == [True, False] and not missed.any()
+    np.testing.assert_array_equal(q[1], start[1])
+
+
+@pytest.mark.parametrize("count", [1, 3, 4])
+def test_rows_in_any_order_come_out_in_one(count: int) -> None:
+    """Values that rounding tells apart alone are the same, and the next joint's tells."""
+    rng = np.random.default_rng(3)
+    q = rng.uniform(-0.9, 3.0, (8, 6))
+    q[:, 0] = 0.5
+    q[4:, 1] = q[3, 1]
+    pose = np.repeat(np.arange(2), 4)[:, None] * np.ones(1)
+    turning = (True,) * 6
+    wanted = sorted_rows(q, pose[:, 0].astype(np.intp), turning)
+    for half in (wanted[:4], wanted[4:]):
+        assert [tuple(x) for x in half] == sorted(tuple(x) for x in half)
+    for _ in range(count):
+        order = np.concatenate([rng.permutation(4), 4 + rng.permutation(4)])
+        noisy = q + 1e-13 * rng.uniform(-1.0, 1.0, q.shape)
+        found = sorted_rows(noisy[order], pose[:, 0].astype(np.intp), turning)
+        np.testing.assert_allclose(found, wanted, atol=1e-12)

@@ -150,3 +150,50 @@ def test_a_curve_is_back_where_it_was_in_the_same_sense() -> None:
     assert _back(LINE, at(0.1, 1.0), at(-0.1, 1.0)).all()
     assert not _back(LINE, at(0.1, 1.0), at(0.1, -1.0)).any()
     assert not _back(LINE, at(0.1, 1.0), at(0.5, 1.0)).any()
+
+
+def test_a_curve_is_back_along_its_own_direction_alone() -> None:
+    pair: Any = SimpleNamespace(
+        moving=(0, 1), policy=POLICY, chain=SimpleNamespace(revolute=(True, True))
+    )
+    none = np.zeros(1)
+
+    def sample(x: float, y: float, way: tuple[float, float] = (0.6, 0.8)) -> Reduced:
+        return Reduced(np.array([[x, y]]), np.array([way]), np.ones((1, 1)), none, none)
+
+    assert _back(pair, sample(0.0, 0.0), sample(0.12, 0.16)).all()
+    assert _back(pair, sample(0.0, 0.0), sample(-0.12 + 0.03, -0.16 - 2.0 * np.pi)).all()
+    assert not _back(pair, sample(0.0, 0.0), sample(0.16, -0.12)).any()
+    assert not _back(pair, sample(0.0, 0.0), sample(0.12, 0.16, (-0.8, 0.6))).any()
+    along = (1.0, 0.0)
+    assert _back(pair, sample(0.0, 0.0, along), sample(0.2, 0.05, along)).all()
+    assert not _back(pair, sample(0.0, 0.0, along), sample(0.2, 0.07, along)).any()
+
+
+def test_where_values_are_round_off_before_they_are_nothing_the_way_tells(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What is left jumps across 0 there, and the solution is as near as the way tells."""
+    taken = []
+
+    def steep(x: Array) -> Reduced:
+        left = 3e-9 * np.sign(x - 0.1234567) + (x - 0.1234567) + 20.0 * (x - 0.1234567) ** 3
+        return on_line(x, np.array([0.0]))._replace(
+            left=left, slope=1.0 + 60.0 * (x - 0.1234567) ** 2
+        )
+
+    def sample(arm: Any, at: Reduced, T: Array) -> Reduced:
+        taken.append(len(T))
+        return steep(at.q[:, 0])
+
+    monkeypatch.setattr(near_continuum, "_sample", sample)
+    parts = _Parts(
+        steep(np.array([0.0])),
+        steep(np.array([0.3])),
+        np.zeros(1, np.intp),
+        np.zeros(1),
+        np.ones(1),
+    )
+    found = near_continuum._closed_in(LINE, parts, np.zeros((1, 4, 4)))
+    ends = [float(x.q[0, 0]) for x in (found.a, found.b)]
+    assert min(abs(x - 0.1234567) for x in ends) < 1e-8 and len(taken) < 20
