@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from junitparser import JUnitXml
 
 from ikgen.verify.junit import write_junit_xml
-from ikgen.verify.verification_report import CheckResult, VerificationReport
+from ikgen.verify.verification_report import CheckResult, SigmaBand, VerificationReport
 
 GOOD = CheckResult("closure", True, 800, worst=(("position m", 1e-15), ("rotation rad", 2e-15)))
 IDLE = CheckResult("free joints", True, 0, detail="no joint is held free")
@@ -42,6 +43,22 @@ def test_numbers_and_text() -> None:
     data = both.to_dict()
     assert data["checks"][1]["worst"] == {"off rad or m": None}
     assert data["passed"] is False and "seconds" not in data
+
+
+def test_misses_are_said_to_be_near_singularities_where_all_are() -> None:
+    bands = (
+        SigmaBand(0.0, 1e-3, 40, missed=2), SigmaBand(1e-3, 1e-2, 30, missed=1),
+        SigmaBand(1e-2, math.inf, 900),
+    )  # fmt: skip
+    near = replace(report(GOOD), bands=bands)
+    assert near.missed == 3
+    assert near.missed_words == "3 missed, all of them among 70 poses put next to singularities"
+    searched = CheckResult("exhaustive search", False, 100, 4)
+    failed = replace(report(GOOD, searched), bands=bands)
+    assert failed.missed == 7 and failed.missed_words == "7 missed"
+    for none in (report(GOOD), report(GOOD, BAD), replace(report(GOOD), bands=bands[2:])):
+        assert none.missed == 0 and none.missed_words == "0 missed"
+    assert [band["high"] for band in near.to_dict()["by_sigma"]] == [1e-3, 1e-2, None]
 
 
 def test_junit(tmp_path: Path) -> None:
