@@ -11,13 +11,15 @@ import pytest
 from tests.support.made_programs import made_module, with_limits
 
 from ikgen.emit import moveit
+from ikgen.emit.blanks import pairs
 from ikgen.emit.cpp.cpp_emitter import _depth_first, _elimination, _headers, _rough, emit_header
 from ikgen.emit.cpp.cpp_twist_chain import twist_lines
+from ikgen.emit.derivation import Held
 from ikgen.emit.python.python_emitter import _held_name, _held_turns
 from ikgen.emit.solver_module import SolverModule, most_rows
 from ikgen.errors import UsageError
 from ikgen.kinematics.twist_links import twist_chain
-from ikgen.model.dh import ARM_ANGLE
+from ikgen.model.dh import ARM_ANGLE, Angle
 from ikgen.program.policy import SolvePolicy
 
 PI, INF = math.pi, math.inf
@@ -190,3 +192,27 @@ def test_a_plugin_turns_what_is_not_held(free: tuple[str, ...], turning: list[st
     )
     assert values["version"] == "0.0.0" and moveit._version("1.2.3.dev4+x") == "1.2.3"
     assert moveit.package_name("Two__Arms") == "two_arms_ik_moveit"
+
+
+def test_angles_to_fill_in_are_those_without_numbers() -> None:
+    module = made_module()
+    assert pairs(module) == ()
+    first, second, third = module.dh.rows
+    shared = Angle(0.3, None, "alpha_1", symbolic=True)
+    rows = (
+        replace(first, alpha=shared),
+        replace(
+            second, alpha=Angle(0.3, None, "alpha_2"), theta=Angle(0.1, None, None, symbolic=True)
+        ),
+        replace(third, theta=Angle(0.2, None, "theta_3", symbolic=True), alpha=shared),
+    )
+    assert pairs(replace(module, dh=replace(module.dh, rows=rows))) == ("alpha_1", "theta_3")
+
+
+def test_what_was_chosen_to_be_held_is_said_with_what_came_next() -> None:
+    plain = Held(("q1",), "fewest sets")
+    assert plain.words == "holding q1: fewest sets with it held"
+    both = Held(("q1", "q3"), "why", (("q2",), ("q4", "q5")), (("q6",),))
+    assert both.words == (
+        "holding q1 and q3: why with them held; others: q2, q4 and q5; failed verification: q6"
+    )

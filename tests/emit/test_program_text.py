@@ -14,6 +14,7 @@ from ikgen.emit.cpp.cpp_statements import ProgramText
 from ikgen.emit.python.python_statements import batch_lines, scalar_lines
 from ikgen.emit.solver_module import SolverModule
 from ikgen.program.interpret import run
+from ikgen.program.ops import Op
 from ikgen.program.policy import SolvePolicy
 from ikgen.program.statements import Let
 from ikgen.runtime.python.batch_solving import branch_axis
@@ -168,6 +169,21 @@ def test_cpp_leaves_out_what_nothing_reads() -> None:
     program = replace(program, levels=(*program.levels[:2], last), outputs=outputs)
     _, text = text_of(replace(module, program=program))
     assert "idle" not in text and "const auto s2" not in text and "const auto c2 = " in text
+
+
+def test_cpp_takes_constants_under_an_arctangent_as_packs() -> None:
+    module = made_module()
+    program = module.program
+    more = [
+        Let("t1", Op("atan2", ("k1", "x1"))),
+        Let("t2", Op("add", (Op("atan2", ("x1", 0.5)), "t1"))),
+    ]
+    first = replace(program.levels[0], body=(*program.levels[0].body, *more))
+    outputs = (replace(program.outputs[0], value="t2"), *program.outputs[1:])
+    program = replace(program, levels=(first, *program.levels[1:]), outputs=outputs)
+    _, text = text_of(replace(module, program=program))
+    assert "const auto t1 = angle(spread<1>(k1), x1);" in text
+    assert "const auto t2 = angle(x1, spread<1>(0.5)) + t1;" in text
 
 
 def test_cpp_reads_inputs_by_their_places() -> None:

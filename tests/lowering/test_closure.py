@@ -7,7 +7,7 @@ import pytest
 from tests.support.tables import table
 
 from ikgen.lowering.closure import CHECK_TOLERANCE, _bounded, _differences, require_closure
-from ikgen.lowering.placement import Placement, Requirement
+from ikgen.lowering.placement import LoweredLevel, Placement, Requirement
 from ikgen.program.statements import Comment
 from ikgen.solver.solve import solve_chain
 
@@ -89,3 +89,18 @@ def test_differences_that_vanish_or_are_not_read_are_left_out() -> None:
     pairs = [(pose, pose), (pose, half), (unread, pose), (pose, unread), (half, g.const(2.0))]
     found = _differences(work, pairs)
     assert [e.id for e in found] == [g.sub(pose, half).id, g.sub(half, g.const(2.0)).id]
+
+
+def test_norms_are_bounded_at_the_level_that_they_are_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    work = two_joints()
+    g, part = work.g, work.g.add(work.g.const(0.5), work.system.equations[0].left)
+    sigma = g.atom("sigma", "0", np.ones(g.probes), unknown=False)
+    work.levels.append(LoweredLevel(2, sigma))
+    work.level_of[sigma.id] = len(work.levels) - 1
+    outer, inner = g.square(part), g.binary("max", part, sigma)
+    work.norms += [outer, inner]
+    monkeypatch.setattr("ikgen.lowering.closure._residuals", lambda *_: ([], []))
+    require_closure(work)
+    assert work.residuals == [g.square(outer), g.square(inner)]
+    held = [[i for i in level.items if isinstance(i, Requirement)] for level in work.levels]
+    assert [len(items) for items in held] == [1] + [0] * (len(held) - 2) + [1]

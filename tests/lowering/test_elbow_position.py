@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from tests.support.redundant_arms import OFFSET_ELBOW, SHOULDER_ELBOW_WRIST, serial_urdf
 
+from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.knowledge import Knowledge
-from ikgen.equations.probes import make_probes
+from ikgen.equations.probes import arm_size, make_probes
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
 from ikgen.lowering.elbow_position import bind_elbow
@@ -47,6 +48,18 @@ def placement(
     return Placement(stub, 0.0), angle  # type: ignore[arg-type]
 
 
+def nodes(work: Placement) -> set[Expr]:
+    """All that the elbow is computed from."""
+    found: set[Expr] = set()
+    stack = [work.definition[atom.id] for atom in work.system.elbow]
+    while stack:
+        node = stack.pop()
+        if node not in found:
+            found.add(node)
+            stack += node.args
+    return found
+
+
 @pytest.mark.parametrize("joints", [SHOULDER_ELBOW_WRIST, OFFSET_ELBOW], ids=["upright", "offset"])
 def test_the_elbow_is_where_the_joints_put_it(joints: tuple, tmp_path: Path) -> None:
     work, angle = placement(tmp_path, joints)
@@ -59,6 +72,8 @@ def test_the_elbow_is_where_the_joints_put_it(joints: tuple, tmp_path: Path) -> 
         np.testing.assert_allclose(at, truth, atol=1e-6)
     assert np.ptp([atom.probe for atom in work.system.elbow], axis=1).min() > 0.1
     assert [work.names[atom.id] for atom in work.system.elbow] == ["elbow_x", "elbow_y", "elbow_z"]
+    (least,) = {e.args[1].value for e in nodes(work) if e.op == "max" and e.args[1].is_const}
+    assert least == pytest.approx((1e-12 * arm_size(work.dh)) ** 2, rel=1e-12)
     assert work.inputs == [ArmAngle()]
     given = ArmAngle().name
     assert [(let.name, let.value) for let in work.prelude] == [

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from tests.support.tables import table
 
 from ikgen.equations.knowledge import Variable
 from ikgen.forms.quartic_form import TrigQuartic
+from ikgen.lowering.frames import operand_of
 from ikgen.lowering.lower import _or_seed, _routine, lower
-from ikgen.lowering.placement import Placement
+from ikgen.lowering.placement import LoweredLevel, Placement
+from ikgen.lowering.program_inputs import seed_values
+from ikgen.program.interpret import evaluate
 from ikgen.program.ops import operand_names
 from ikgen.program.statements import Comment, Let, Level, Program, Require
 from ikgen.solver.solution_graph import SolutionGraph
@@ -78,7 +82,12 @@ def test_a_routine_s_roots_make_a_level_of_their_own() -> None:
     a, b = (work.system.equations[i].left for i in (0, 1))
     form = TrigQuartic(a, b, g.zero, g.one, g.zero)
     lowered = form.lower(g, g.one, work.tolerances)
+    work.loses_digits = True
     _routine(work, v, form, lowered, "theta_1: quartic")
+    (fold,) = work.folds
+    slope = work.slope(v, form)
+    assert slope is not None and fold.op == "gt" and fold.args[1] is g.square(slope)
+    assert fold.args[0].value == pytest.approx(1e-6 * np.abs(slope.probe).max() ** 2)
     level = work.levels[-1]
     assert (len(work.levels), level.branches, level.sigma) == (2, 4, None)
     assert level.call is not None
@@ -107,3 +116,40 @@ def test_where_a_routine_s_divisor_vanishes_its_root_is_the_seed_s() -> None:
         assert all(e.args[0] is lowered.divisor.regular for e in found if e.op == "select")
     (flag,) = work.singular
     assert flag.op == "not" and flag.args[0] is lowered.divisor.clear and flag.id in work.placed
+
+
+def test_what_is_placed_costs_nothing_and_what_is_not_each_once() -> None:
+    work = Placement(solve_chain(table(("R", "0", 0.0, 0.0), ("P", "1", 0.0, 0.0))), 0.0)
+    g, a, b = work.g, work.atom("a"), work.atom("b")
+    inner = g.binary("max", a, b)
+    outer = g.binary("min", inner, g.binary("gt", inner, g.mul(g.param("a_9", 0.25), g.const(2.0))))
+    assert work.price([]) == work.price([a, b]) == 0.0
+    assert work.price([inner]) == 1.0 and work.price([outer]) == 3.0
+    assert work.price([outer, inner, outer]) == 3.0
+    sigma = g.atom("sigma", "0", np.ones(g.probes), unknown=False)
+    work.levels.append(LoweredLevel(2, sigma))
+    work.level_of[sigma.id] = 1
+    deep = g.binary("min", inner, sigma)
+    assert work.price([deep]) == 1.0 + 2.0
+    work.place(inner)
+    assert work.price([outer]) == 2.0 and work.price([deep]) == 2.0
+
+
+def test_the_seed_s_value_of_sums_and_lengths_is_that_of_the_joints() -> None:
+    dh = table(("R", "0", 0.0, 0.0), ("R", "1", 0.0, 0.0), ("P", "1", 0.0, 0.0))
+    chain = solve_chain(table(("R", "0", 0.0, 0.0), ("P", "1", 0.0, 0.0)))
+    work = Placement(chain, 0.0)
+    assert dh.dof == 3 and seed_values(work, Variable("prismatic", (0, 1))) == (
+        work.atom("seed_d2"),
+    )
+    angles = {1: 0.4, 2: -0.9}
+    values = {
+        f"seed_{x}{j}": f(angle)
+        for j, angle in angles.items()
+        for x, f in (("c", np.cos), ("s", np.sin))
+    }
+    for combination in ((1, 0), (0, 1), (1, 1), (1, -1), (-2, 1), (0, -1)):
+        total = sum(k * angles[j + 1] for j, k in enumerate(combination))
+        pair = seed_values(work, Variable("angle", combination))
+        found = [evaluate(operand_of(e), values) for e in pair]
+        assert found == pytest.approx([np.cos(total), np.sin(total)])

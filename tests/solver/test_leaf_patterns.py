@@ -101,6 +101,9 @@ def test_a_leaf_takes_its_pattern(leaf, unknown, polynomial, form, coefficients)
 def test_a_leaf_leaves_what_is_not_its_pattern(leaf, unknown, polynomials) -> None:
     for polynomial in polynomials:
         assert leaf.find([equation(polynomial, unknown)], unknown, SimpleNamespace(graph=G)) == []
+    right = {algebraic: LINE, quadratic: SQUARE, trig_quartic: FULL, sine_and_cosine: SINGLE}[leaf]
+    every = [equation(p, unknown) for p in (*polynomials, right, polynomials[0], right)]
+    assert len(leaf.find(every, unknown, SimpleNamespace(graph=G))) == 2
 
 
 def test_sums_of_squares_and_single_functions_have_names_of_their_own() -> None:
@@ -125,6 +128,19 @@ def test_a_pair_takes_both_equations_and_both_their_sources() -> None:
     assert {*candidate.coefficients} == {A, B, G.neg(C), D, E, G.neg(B)}
     assert simultaneous.find(equations[:1] * 2, ANGLE, knowledge) == []
     assert simultaneous.find(equations, LENGTH, knowledge) == []
+
+
+@pytest.mark.parametrize("off", [1e-12, 1e-6])
+def test_the_sides_of_a_pair_do_not_tell_whether_it_is_one(off: float) -> None:
+    """Only the coefficients do, however large the sides are."""
+    one, near, large = G.const(2.0), G.const(2.0 + off), given(G, np.full(3, 1e9))
+    equations = [
+        equation({trig("c"): one, trig("s"): one, ONE: large}, ANGLE),
+        equation({trig("c"): one, trig("s"): near, ONE: G.mul(large, large)}, ANGLE, entry="py"),
+    ]
+    for order in (equations, equations[::-1]):
+        pairs = simultaneous.find(order, ANGLE, SimpleNamespace(graph=G))
+        assert len(pairs) == (off > 1e-9)
 
 
 def times(kind: str, value) -> dict:

@@ -7,9 +7,11 @@ import pytest
 from tests.support.polynomials import polynomial_values
 from tests.support.tables import Row, table
 
+from ikgen.algebra import polynomial as poly
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.knowledge import Knowledge
+from ikgen.equations.matching import AngleSplit
 from ikgen.equations.probes import make_probes
 from ikgen.solver.session import Session
 from ikgen.solver.solve import solve_chain
@@ -45,3 +47,39 @@ def test_it_solves_what_the_rules_alone_do_not() -> None:
     assert not graph.open_joints and graph.sound
     rankers = {t.path[-2]: t.outcome for t in graph.ticks if t.round == 1 and t.node == "ranker"}
     assert rankers == {"rules": "failure", "after square and add": "success"}
+
+
+def test_coefficients_that_are_turned_drop_the_unknown_out() -> None:
+    """`K cos u = P`, `K sin u = Q` with K unknown: `K^2 = P^2 + Q^2`, wherever the two stand."""
+    dh = table(("R", "-1", 0.0, 0.0), ("R", "1", 0.3, 0.0), ("R", "-1", 0.1, 0.0))
+    probes = make_probes(dh)
+    system = EquationSet(ExpressionGraph(len(probes.values)), dh, probes.values, probes.pose)
+    knowledge = Knowledge(system)
+    g, u, v = system.graph, probes.values[:, 0], probes.values[:, 1]
+    k = {((((0, 1, 0), "c"),), ()): g.one}
+    K = np.cos(v)
+
+    def known(name: str, values: np.ndarray) -> dict:
+        return {poly.ONE: g.atom("pose", name, values, unknown=False)}
+
+    double = poly.scale(g, k, g.const(2.0))
+    p, q = known("p", K * np.cos(u)), known("q", 2.0 * K * np.sin(u))
+    a = known("a", K * np.cos(u) + K * np.sin(u))
+    b = known("b", K * np.cos(u) - K * np.sin(u))
+    minus = poly.scale(g, k, g.minus_one)
+    for s1, s2, right in (
+        (AngleSplit(k, {}, p), AngleSplit({}, double, q), True),
+        (AngleSplit({}, double, q), AngleSplit(k, {}, p), True),
+        (AngleSplit(k, k, a), AngleSplit(k, minus, b), True),
+        (AngleSplit(k, minus, b), AngleSplit(k, k, a), True),
+        (AngleSplit(k, k, a), AngleSplit(k, k, a), False),
+        (AngleSplit(k, {}, p), AngleSplit(k, {}, p), False),
+        (AngleSplit({}, double, q), AngleSplit({}, double, q), False),
+        (AngleSplit(k, k, a), AngleSplit(k, {}, p), False),
+        (AngleSplit(k, {}, p), AngleSplit(k, k, a), False),
+        (AngleSplit(k, {}, p), AngleSplit({}, p, q), False),
+    ):
+        found = square_and_add._rotated(s1, s2, knowledge)
+        assert (found is not None) == right
+        if found is not None:
+            assert len(found) > 1 and np.abs(polynomial_values(found, probes.values)).max() < 1e-12

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from tests.support.fake_arms import six_axis_oracle
 
-from ikgen.verify.arm import ArmUnderTest, arm_under_test
+from ikgen.verify.arm import ArmUnderTest, _sampled_range, arm_under_test
 from ikgen.verify.reach import _improve, farthest_configuration
 from ikgen.verify.sampling import (
     _NEAR,
@@ -20,8 +20,14 @@ from ikgen.verify.sampling import (
     generator,
     sample_sets,
 )
+from ikgen.verify.screws import ScrewChain
 from ikgen.verify.search import converge, find_solutions
-from ikgen.verify.singularities import SINGULAR_SIGMA, _descend, singular_configurations
+from ikgen.verify.singularities import (
+    SINGULAR_SIGMA,
+    _descend,
+    on_continuum,
+    singular_configurations,
+)
 from ikgen.verify.task_space import TASK_SPACES
 
 Array = NDArray[np.float64]
@@ -169,3 +175,55 @@ def test_the_reach_is_sought_from_anywhere() -> None:
     assert np.linalg.norm(oracle.forward(q)[:3, 3]) == pytest.approx(
         0.4 + 0.5 + 0.4 + 0.1, abs=1e-9
     )
+
+
+def test_slides_without_limits_are_sampled_a_metre_to_each_side() -> None:
+    period = np.array([np.inf, np.inf, np.inf, 2 * np.pi, 2 * np.pi, 2 * np.pi])
+    lower = np.array([-np.inf, -0.2, -2e3, -np.inf, 1.0, 2.0])
+    upper = np.array([np.inf, 0.7, 2e3, np.inf, 2.0, 9.0])
+    low, high = _sampled_range(lower, upper, period)
+    assert low == pytest.approx([-1.0, -0.2, -1.0, -np.pi, 1.0, 2.0])
+    assert high == pytest.approx([1.0, 0.7, 1.0, np.pi, 2.0, 2.0 + 2 * np.pi])
+
+
+def test_ends_that_are_regular_are_no_continuum(
+    arm: ArmUnderTest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nor is one where the steps do not reach the pose, or come back, or all end at one place."""
+    targets = arm.oracle.forward(WRIST[None])
+
+    def told(end: Array, *, reached: bool = True, apart: bool = True) -> bool:
+        count = iter(range(1, 9))
+
+        def converge(_: ArmUnderTest, q: Array, aims: Array) -> tuple[Array, NDArray[np.bool_]]:
+            ends = end[None] + (0.1 * next(count) * np.eye(6)[3] if apart else 0.0)
+            return ends, np.full(len(q), reached)
+
+        monkeypatch.setattr("ikgen.verify.singularities.converge", converge)
+        return bool(on_continuum(arm, WRIST[None], targets)[0])
+
+    assert told(WRIST)
+    assert not told(REGULAR) and not told(WRIST, reached=False)
+    assert not told(WRIST, apart=False) and not told(WRIST + np.eye(6)[3], apart=False)
+    slight = WRIST + 1e-3 * np.eye(6)[4]
+    assert 1e-5 < arm.sigma(slight[None])[0] < 1e-2 and not told(slight)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_screws_turn_and_slide_along_any_axis(seed: int) -> None:
+    rng, h = np.random.default_rng(seed), 1e-6
+    screws = rng.standard_normal((4, 6))
+    screws[:, 3:] /= np.linalg.norm(screws[:, 3:], axis=1, keepdims=True)
+    screws[2, 3:] = 0.0
+    A, b = rng.standard_normal((4, 3)), rng.standard_normal(4)
+    chain = ScrewChain(screws, np.eye(4), A, b)
+    q = rng.standard_normal((5, 3))
+    T, J = chain.forward_and_jacobian(q)
+    np.testing.assert_allclose(T, chain.forward(q), atol=1e-14)
+    R = T[:, :3, :3]
+    np.testing.assert_allclose(R @ R.transpose(0, 2, 1), np.tile(np.eye(3), (5, 1, 1)), atol=1e-12)
+    for k, step in enumerate(h * np.eye(3)):
+        dT = (chain.forward(q + step) - chain.forward(q - step)) / (2 * h)
+        spin = dT[:, :3, :3] @ R.transpose(0, 2, 1)
+        numeric = [*dT[:, :3, 3].T, spin[:, 2, 1], spin[:, 0, 2], spin[:, 1, 0]]
+        np.testing.assert_allclose(J[:, :, k], np.transpose(numeric), atol=1e-7)
