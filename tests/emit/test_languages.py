@@ -93,6 +93,7 @@ def test_cpp_calls() -> None:
     assert expression(CPP, Op("or", ("x", "y"))) == "(x | y)"
     assert expression(CPP, Op("or", (GREATER, Op("or", ("x", "y"))))) == "((a > b) | (x | y))"
     assert expression(CPP, Op("and", (Op("and", ("x", "y")), "z"))) == "x & y & z"
+    assert expression(CPP, Op("and", ("x", "y")), 3) == "(x & y)"  # behind another &
     assert expression(CONSTANT, Op("and", ("x", "y"))) == "x && y"
     assert expression(CONSTANT, Op("or", ("x", "y"))) == "(x || y)"
 

@@ -227,3 +227,15 @@ def test_only_joints_that_may_be_outside_are_put_inside(
     program = replace(held.program, inputs=held.program.inputs[:3])
     first = ProgramText(replace(held, program=program)).joint_values()[0][1]
     assert first == ("" if limits == every else "clamp")
+
+
+def test_cpp_lines_break_between_words() -> None:
+    found = ProgramText(made_module())
+    assert max(map(len, found.lines)) <= 110
+    for word in ("w" * 150, "some-what_like-this"):
+        found.lines.clear()
+        found._statement(" ".join([word] * 20))
+        assert " ".join(found.lines).split() == [word] * 20 and len(found.lines) > 1
+        assert all(
+            line.startswith("    w") or line.startswith("    some") for line in found.lines[1:]
+        )

@@ -11,7 +11,7 @@ from ikgen.algebra.expression import Expr
 from ikgen.lowering.placement import LoweredLevel, Placement
 from ikgen.lowering.serialize import _without_idle_comments, serialize
 from ikgen.program.ops import Op, Operand
-from ikgen.program.statements import Comment, Let, Level, Require
+from ikgen.program.statements import Call, Comment, Let, Level, Require
 from ikgen.solver.solution_graph import SolutionGraph
 from ikgen.solver.solve import solve_chain
 
@@ -113,3 +113,23 @@ def test_comments_of_nothing_are_left_out() -> None:
     assert _without_idle_comments([one, two, let, one]) == [two, let]
     assert _without_idle_comments([one, let, two, let]) == [one, let, two, let]
     assert _without_idle_comments([one]) == [] == _without_idle_comments([])
+
+
+def test_arguments_of_a_routine_are_written_in_its_call(work: Placement) -> None:
+    """Those of the level before alone; of an outer level they have names."""
+    g, outer = work.g, running(work, 1, "u")
+    work.place(outer)
+    sigma = g.atom("sigma", "0", [1.0] * g.probes, unknown=False)
+    work.levels.append(LoweredLevel(2, sigma))
+    work.level_of[sigma.id], work.names[sigma.id] = 1, "sigma_1"
+    inner = g.binary("min", sigma, work.atom("v"))
+    work.place(inner)
+    roots = tuple(g.atom("root", name, [0.5] * g.probes, unknown=False) for name in "cs")
+    work.levels.append(LoweredLevel(4, None, ("a_routine", (outer, inner, g.const(0.5)), roots)))
+    for atom, name in zip(roots, "cs", strict=True):
+        work.level_of[atom.id], work.names[atom.id] = 2, name
+    first, second, third = levels(work)
+    (name,) = lets(first)
+    assert not lets(second) and not lets(third)
+    assert third.call == Call("a_routine", (name, Op("min", ("sigma_1", "v")), 0.5), ("c", "s"))
+    assert (third.branches, third.sigma, third.solved) == (4, None, ())

@@ -154,7 +154,10 @@ def test_rows_off_their_pose_are_told_with_the_worst(arm: ArmUnderTest) -> None:
     assert "moved #2" in found.worst_case
     nan = np.where(off > 0.0, np.nan, 0.0)
     assert check_closure(arm, [reached(arm, q, nan)]).failures == 2
-    none = check_closure(arm, [trial_of(arm, rows_of([], []))])
+    empty = trial_of(arm, rows_of([], []))
+    after = check_closure(arm, [empty, reached(arm, q, off, label="moved"), empty])
+    assert (after.count, after.failures) == (4, 2) and "moved #2" in after.worst_case
+    none = check_closure(arm, [empty])
     assert not none.passed and none.worst_case == "no pose was answered with a row"
 
 

@@ -187,6 +187,12 @@ def test_a_batch_has_the_rows_and_the_status_of_single_answers() -> None:
     assert batch(lambda r: None) == (True, 0, "code has none")
 
 
+@pytest.mark.parametrize("count", [1, 3, 5])
+def test_a_batch_with_another_number_of_statuses_is_no_answer(count: int) -> None:
+    with pytest.raises(ValueError, match="zip"):
+        batch(lambda one: replace(one, status=("OK",) * count))
+
+
 def test_a_batch_has_no_fewer_and_no_other_rows() -> None:
     """Of two rows, one twice is not both."""
     code = Code()
