@@ -83,6 +83,7 @@ def test_motions_are_regular_and_inside_the_limits() -> None:
         assert (a.sigma(q) > CLEARLY_REGULAR).all() and a.within(q).all()
     moved = np.abs(motions.end - motions.start)
     assert 0.15 < moved.max() <= 0.2
+    assert (np.abs(np.sign(motions.end - motions.start).mean(axis=0)) < 0.9).all()  # both ways
     assert np.array_equal(motions.poses[:, 1], a.oracle.forward(motions.end))
 
 

@@ -184,6 +184,40 @@ def test_slides_without_limits_are_sampled_a_metre_to_each_side() -> None:
     low, high = _sampled_range(lower, upper, period)
     assert low == pytest.approx([-1.0, -0.2, -1.0, -np.pi, 1.0, 2.0])
     assert high == pytest.approx([1.0, 0.7, 1.0, np.pi, 2.0, 2.0 + 2 * np.pi])
+    wide = _sampled_range(-1e3 * np.ones(6), 1e3 * np.ones(6), period)  # as far as limits go
+    assert wide[0][:3] == pytest.approx([-1e3] * 3) and wide[1][:3] == pytest.approx([1e3] * 3)
+
+
+def test_an_arm_angle_that_is_held_is_one_more_row(arm: ArmUnderTest) -> None:
+    q = np.random.default_rng(1).uniform(-1.0, 1.0, (3, 6))
+    line, off = np.arange(18.0).reshape(3, 6), np.array([0.1, 0.2, 0.3])
+    asked: list[Array] = []
+
+    class Angle:
+        upper = 0.5
+
+        def errors(self, q: Array, aims: Array) -> tuple[Array, Array]:
+            asked.append(aims)
+            return off, line
+
+        def of_rows(self, q: Array, poses: Array) -> Array:
+            return q[:, 0]
+
+        def aims(self, poses: Array, held: Array) -> Array:
+            return np.concatenate([poses[:, :, 0], held], axis=1)
+
+    held = replace(arm, angle=Angle(), held=("j2", "arm_angle"), free=(1,), active=(0, 2, 3, 4, 5))
+    T, J = held.scaled_jacobian(q)
+    plain = arm.scaled_jacobian(q)[1][:, :, [0, 2, 3, 4, 5]]
+    np.testing.assert_allclose(J[:, :6], plain)
+    np.testing.assert_allclose(J[:, 6], line[:, [0, 2, 3, 4, 5]] * 0.5 / arm.length)
+    np.testing.assert_allclose(asked[0][:, 4], q[:, 0])
+    aims = T.copy()
+    held.scaled_jacobian(q, aims)
+    assert asked[1] is aims
+    np.testing.assert_allclose(held.residual(q, T, T)[:, 6], off * 0.5 / arm.length)
+    np.testing.assert_array_equal(held.held_values(q, T), q[:, [1, 0]])
+    assert arm.held_values(q, T) is None and arm.aims(q, T) is T
 
 
 def test_ends_that_are_regular_are_no_continuum(

@@ -12,7 +12,7 @@ from ikgen.verify.reach import invalid_poses, unreachable_poses
 from ikgen.verify.sampling import sample_sets
 from ikgen.verify.search import find_solutions
 from ikgen.verify.singularities import on_continuum
-from ikgen.verify.task_space import TASK_SPACES, _turn
+from ikgen.verify.task_space import TASK_SPACES, TaskSpace, _turn
 
 
 def arm(task: str = "pose", free: tuple[str, ...] = ()) -> ArmUnderTest:
@@ -170,3 +170,17 @@ def test_differences_of_yaw_are_the_short_way(a: float, b: float) -> None:
     (e,) = TASK_SPACES["position-yaw"].residual(T, target)[:, 3]
     assert abs(e) <= np.pi and np.sin(e - (b - a)) == pytest.approx(0.0, abs=1e-12)
     assert np.cos(e - (b - a)) == pytest.approx(1.0)
+
+
+def test_entries_count_each_for_itself_those_of_the_position_as_lengths() -> None:
+    space = TaskSpace("made", 3, False, "", ((0, 3), (1, 0), (2, 3)))
+    assert space.lengths == [0, 2]
+    T, target = np.eye(4)[None], np.eye(4)[None].copy()
+    target[0, :3, 3], target[0, 1, 0] = (0.3, 9.0, -0.4), 0.25
+    np.testing.assert_allclose(space.residual(T, target), [[0.3, 0.25, -0.4]])
+    position, rotation = space.errors(T, target)
+    assert (position[0], rotation[0]) == (pytest.approx(0.5), pytest.approx(0.25))
+    J = np.arange(12.0).reshape(1, 6, 2)
+    np.testing.assert_allclose(space.jacobian(T, J), [[J[0, 0], J[0, 5], J[0, 2]]])
+    both = TaskSpace("made", 3, True, "")
+    assert both.lengths == [0, 1, 2] and both.errors(T, target)[1].tolist() == [0.0]
