@@ -171,3 +171,12 @@ def test_a_common_unknown_factor_leaves_a_direction() -> None:
 def test_every_leaf_has_a_pattern_here() -> None:
     here = (algebraic, quadratic, trig_quartic, sine_and_cosine, simultaneous, tangent)
     assert {leaf.find for leaf in LEAVES} == {module.find for module in here}
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-12, 1e-6])
+def test_the_same_direction_twice_is_no_pair(off: float) -> None:
+    one = tangent._Row(G.const(2.0), G.const(2.0), C, equation({}, OTHER, ANGLE))
+    two = tangent._Row(G.const(2.0), G.const(2.0 + off), D, equation({}, OTHER, ANGLE))
+    for first, second in ((one, two), (two, one)):
+        found = tangent._solve(first, second, ANGLE, SimpleNamespace(graph=G))
+        assert (found is None) == (off < 1e-9)

@@ -94,3 +94,8 @@ def test_the_nearest_leaf_lacks_the_fewest_then_is_the_simplest_then_the_shortes
 def test_an_unknown_that_does_not_occur_is_of_degree_zero(v: Variable) -> None:
     for polynomial in ({}, {((), ()): 1.0}, {((((0, 1, 1), "c"),), ((2, 3),)): 1.0}):
         assert _degree(PolynomialEquation(polynomial, (), (), 0), v) == 0
+
+
+def test_forty_equations_are_enough_to_tell() -> None:
+    assert len(Equations(*[1] * 50).opened()) == 40 and count_open(Equations(*[1] * 50)) == 50
+    assert len(open_equations(Equations(*[1] * 50), lambda side: side.size)) == 40

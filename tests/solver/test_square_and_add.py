@@ -10,7 +10,7 @@ from tests.support.tables import Row, table
 from ikgen.algebra import polynomial as poly
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.equation_set import EquationSet
-from ikgen.equations.knowledge import Knowledge
+from ikgen.equations.knowledge import Knowledge, PolynomialEquation, Variable
 from ikgen.equations.matching import AngleSplit
 from ikgen.equations.probes import make_probes
 from ikgen.solver.session import Session
@@ -83,3 +83,47 @@ def test_coefficients_that_are_turned_drop_the_unknown_out() -> None:
         assert (found is not None) == right
         if found is not None:
             assert len(found) > 1 and np.abs(polynomial_values(found, probes.values)).max() < 1e-12
+
+
+TURNS = (Variable("angle", (1, 0, 0)), Variable("angle", (0, 1, 0)))
+
+
+def three_turns() -> Knowledge:
+    dh = table(("R", "-1", 0.0, 0.0), ("R", "1", 0.3, 0.0), ("R", "-1", 0.1, 0.0))
+    probes = make_probes(dh)
+    return Knowledge(
+        EquationSet(ExpressionGraph(len(probes.values)), dh, probes.values, probes.pose)
+    )
+
+
+@pytest.mark.parametrize(
+    ("size", "off"), [(1.0, 1e-3), (1e3, 1e-3), (1e3, 1e-8), (1e-3, 1e-8), (1e-3, 1e-3)]
+)
+def test_coefficients_that_are_all_but_parallel_are_no_pair(size: float, off: float) -> None:
+    """However large they are."""
+    knowledge = three_turns()
+    g = knowledge.graph
+    rest = {poly.ONE: g.one}
+
+    def known(value: float) -> dict:
+        return {poly.ONE: g.atom("pose", repr(value), np.full(g.probes, value), unknown=False)}
+
+    one = AngleSplit(known(size), known(size), rest)
+    two = AngleSplit(known(size), known(size * (1.0 + off * 1e-3)), rest)
+    found = square_and_add._known_coefficients(one, two, knowledge)
+    assert (found is not None) == (off == 1e-3)
+
+
+def test_sixty_pairs_of_one_unknown_are_the_most() -> None:
+    knowledge = three_turns()
+    g, rng = knowledge.graph, np.random.default_rng(0)
+    equations = []
+    for i in range(12):
+        values = {
+            (((v.combination, kind),), ()): g.atom("pose", f"{i}{v.text}{kind}", at, unknown=False)
+            for v in TURNS
+            for kind, at in zip("cs", rng.uniform(0.5, 1.5, (2, g.probes)), strict=True)
+        }
+        equations.append(PolynomialEquation(values, tuple(sorted(TURNS)), (), 2))
+    made = square_and_add.apply(equations, knowledge)
+    assert [sum(e.unknowns == (v,) for e in made) for v in TURNS] == [60, 60] and len(made) == 120

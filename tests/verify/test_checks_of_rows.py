@@ -273,6 +273,12 @@ def test_the_status_says_what_limits_leave(arm: ArmUnderTest) -> None:
         return found.failures
 
     assert told(with_, without) == 0
+    late = replace(with_, status=("OK", "OK", "OK"))
+    pairs = [
+        (trial_of(arm, one), trial_of(arm, without, limits=False)) for one in (with_, late, late)
+    ]
+    found = check_status(arm, pairs)
+    assert (found.count, found.failures) == (9, 4) and "made, OK #1" in found.worst_case
     assert told(replace(with_, status=("OK", "UNREACHABLE", "UNREACHABLE")), without) == 1
     assert told(replace(with_, status=("LIMITS", "LIMITS", "LIMITS")), without) == 2
     assert told(with_, replace(without, status=("UNREACHABLE", "OK", "OK"))) == 2

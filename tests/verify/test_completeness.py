@@ -214,3 +214,17 @@ def test_how_a_singular_value_turns_is_known_where_it_is_the_only_small_one(
     found = sensitivity(made, np.zeros((2, 3)))  # type: ignore[arg-type]
     assert found.sigma == pytest.approx([values[2]] * 2)
     assert found.kappa == pytest.approx([1.0 if alone else 0.0] * 2, rel=1e-4)
+
+
+def test_every_pose_is_in_one_band() -> None:
+    sigma = np.array([0.0, *completeness.BAND_EDGES, 0.5 * completeness.BAND_EDGES[0], 1.0, 7.0])
+    count, none = len(sigma), np.zeros(len(sigma), dtype=bool)
+    where = np.zeros(count, dtype=int)
+    loose = none.copy()
+    loose[0] = True
+    made = completeness.Survey((), where, where, sigma, sigma, none, loose, ~none, 1e-3)
+    bands = made.bands
+    assert sum(band.poses for band in bands) == sum(band.unanswered for band in bands) == count
+    assert [band.low for band in bands] == [*completeness.BAND_EDGES, 0.0]
+    assert bands[-1].poses == 1 and bands[-1].loose == 1 == sum(band.loose for band in bands)
+    assert not any(band.missed or band.case for band in bands)

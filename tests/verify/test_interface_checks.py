@@ -102,6 +102,14 @@ def constants(free: tuple[str, ...] = (), **wrong: Any) -> str:
     return found.detail
 
 
+def test_limits_are_those_that_were_asked_for_and_the_file_s() -> None:
+    asked = arm_under_test(ORACLE, TASK_SPACES["pose"], (0.5 * ORACLE.lower, ORACLE.upper), ())
+    found = check_constants(asked, Code(), rows())  # type: ignore[arg-type]
+    assert found.detail == "lower limits"
+    found = check_constants(asked, Code(lower=0.5 * ORACLE.lower), rows())  # type: ignore[arg-type]
+    assert found.detail == "lower limits"
+
+
 def test_right_constants_pass_and_each_wrong_one_is_named() -> None:
     assert constants() == ""
     assert constants(joint_names=tuple("abcdef")) == "joint names"

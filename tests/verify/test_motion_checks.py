@@ -87,6 +87,17 @@ def test_motions_are_regular_and_inside_the_limits() -> None:
     assert np.array_equal(motions.poses[:, 1], a.oracle.forward(motions.end))
 
 
+def test_limits_that_are_close_leave_room_for_motions() -> None:
+    a = arm()
+    lower, upper = np.full(6, -1.5), np.full(6, 1.5)
+    lower[5], upper[5] = 0.3, 0.4
+    a = replace(a, lower=lower, upper=upper, low=lower, high=upper)
+    motions = regular_motions(a, generator(0, "motions"))
+    assert len(motions.start)
+    for q in (motions.start, motions.end):
+        assert ((q[:, 5] >= 0.31) & (q[:, 5] <= 0.39)).all()
+
+
 def test_what_is_right_passes() -> None:
     a = arm((six_axis_oracle().joint_names[0],))
     assert failures(a, "") == {"paths": (0, 15), "search": (0, 3), "self motion": (0, 3)}

@@ -164,6 +164,14 @@ def test_rotation_vectors_have_the_angle_and_its_axis(angle: float) -> None:
         assert found[0] == pytest.approx(angle * axis, abs=1e-9)
 
 
+def test_half_a_turn_is_about_some_axis_and_none_about_none() -> None:
+    cross = np.array([[0.0, 0.0, 0.0], [0.0, 1e-10, 0.0], [0.0, 0.0, 0.0], [0.0, 1e-10, 0.0]])
+    found = _turn(cross, np.array([-1.0, -1.0, 1.0, 1.0]))
+    assert np.linalg.norm(found, axis=1)[:2] == pytest.approx([np.pi, np.pi])
+    np.testing.assert_array_equal(found[2], np.zeros(3))
+    np.testing.assert_allclose(found[3], cross[3], rtol=1e-12)
+
+
 @pytest.mark.parametrize(("a", "b"), [(3.0, -3.0), (-3.0, 3.0), (0.5, -0.25), (-3.1, -3.0)])
 def test_differences_of_yaw_are_the_short_way(a: float, b: float) -> None:
     T, target = turned(2, a), turned(2, b)

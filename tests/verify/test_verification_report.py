@@ -70,6 +70,10 @@ def test_junit(tmp_path: Path) -> None:
     first, *_ = suites
     cases = {case.name: case for case in first}
     assert cases["closure"].is_passed and cases["free joints"].is_skipped
+    assert cases["free joints"].result[0].message == "no joint is held free"
+    write_junit_xml(path, [("ur5e", report(replace(IDLE, detail="")))])
+    ((plain,),) = JUnitXml.fromfile(str(path))
+    assert plain.result[0].message == "nothing to check"
     assert cases["completeness"].is_failure
     assert "3 of 100" in cases["completeness"].result[0].message
     assert "random #7" in cases["completeness"].result[0].text
