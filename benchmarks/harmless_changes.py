@@ -326,6 +326,83 @@ HARMLESS = (
         "solver/soundness.py", "break", "break", "continue",
         "nothing is changed in a step that ends so, and nothing in those that would follow",
     ),
+    HarmlessChange(
+        "solver/session.py",
+        "def get(self, support: int, default: float = 1.0) -> float:  # type: ignore[override]",
+        "1.0", "2.0", "every support has a weight: the default is not read",
+    ),
+    HarmlessChange(
+        "verify/task_space.py",
+        "(np.remainder(difference[0] - difference[1] + np.pi, 2 * np.pi) - np.pi)[:, None]",
+        "+", "-", "the two are a whole turn apart, of which the remainder is taken",
+    ),
+    HarmlessChange(
+        "verify/task_space.py",
+        "scale = np.divide(angle, sine, out=np.ones_like(angle), where=sine > 1e-300)",
+        ">", ">=", _EQUAL,
+    ),
+    HarmlessChange(
+        "verify/motion_checks.py",
+        "regular = np.flatnonzero(clear & (sigma.reshape(_BETWEEN, -1).min(axis=0) > CLEARLY_REGULAR))",
+        "1", "2", "any negative length is worked out from the others",
+    ),
+    HarmlessChange(
+        "verify/coverage.py",
+        "dropped = expected & (nearest(arm, b, a) > FOUND_TOLERANCE)",
+        ">", ">=", _EQUAL,
+    ),
+    HarmlessChange(
+        "verify/search.py",
+        "reached = residual < CONVERGED",
+        "<", "<=", _EQUAL,
+    ),
+    HarmlessChange(
+        "verify/sampling.py",
+        "chosen = rng.random((n, arm.dof)) < rng.uniform(0.2, 1.0, size=(n, 1))",
+        "<", "<=", _EQUAL,
+    ),
+    HarmlessChange(
+        "verify/reach.py",
+        'cases["infinite position"] = changed(slice(2, 3), slice(3, 4), -np.inf)',
+        "4", "5", "there is no column behind the last",
+    ),
+    HarmlessChange(
+        "emit/python/python_language.py",
+        'return "inf" if value > 0 else "-inf"',
+        ">", ">=", "zero is not infinite",
+    ),
+    HarmlessChange(
+        "lowering/lower.py",
+        "work.placed.add(atom.id)",
+        "work.placed.add(atom.id)", "pass", "what stands for nothing else is neither scheduled nor counted",
+    ),
+    HarmlessChange(
+        "lowering/program_inputs.py",
+        "for atom, name in zip(atoms, names, strict=True):",
+        "True", "False", _AS_LONG,
+    ),
+    HarmlessChange(
+        "verify/completeness.py",
+        "missed = ~(off <= sensitive.within(POSE_NOISE + error))",
+        "<=", "<", _EQUAL,
+    ),
+    HarmlessChange(
+        "verify/reach.py", "for _ in range(12):", "12", "13", _COUNT,
+    ),
+    HarmlessChange(
+        "solver/soundness.py",
+        "found.append(at[smallest > least_regular(REGULAR, probes.typical)])",
+        ">", ">=", _EQUAL,
+    ),
+    HarmlessChange(
+        "forms/quartic_form.py", "out = np.full((4, 2, len(a2)), np.nan)", "4", "5",
+        "a place behind the last root is not read",
+    ),
+    HarmlessChange(
+        "runtime/python/trig_quartic_roots.py",
+        "return (u, v) if abs(u - c) + abs(v - s) < reach else (c, s)",
+        "<", "<=", _EQUAL,
+    ),
 )  # fmt: skip
 
 

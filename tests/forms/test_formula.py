@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
+from tests.support.probed import given
 
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import Variable
 from ikgen.forms.form import Form
-from ikgen.forms.formula import FormulaWriter
+from ikgen.forms.formula import FormulaWriter, linear_combination
 from ikgen.forms.linear_form import Linear
 from ikgen.forms.pair_form import LinearPair
 from ikgen.forms.quadratic_form import Quadratic
@@ -70,9 +73,12 @@ def test_a_divisor_that_is_a_constant_is_not_told() -> None:
     [
         ([1.0, 2.0, 3.0], r"(a_{1}\,c_{2}-a_{2}\,c_{1},\,b_{2}\,c_{1}-b_{1}\,c_{2})"),
         ([-1.0, -2.0, -3.0], r"(a_{2}\,c_{1}-a_{1}\,c_{2},\,b_{1}\,c_{2}-b_{2}\,c_{1})"),
+        ([1e6, 2e6, -1e-7], r"(a_{1}\,c_{2}-a_{2}\,c_{1},\,b_{2}\,c_{1}-b_{1}\,c_{2})"),
+        ([-1e6, -2e6, 1e-7], r"(a_{2}\,c_{1}-a_{1}\,c_{2},\,b_{1}\,c_{2}-b_{2}\,c_{1})"),
     ],
 )  # fmt: skip
 def test_a_pair_leaves_out_a_determinant_of_one_sign(diagonal: list[float], solution: str) -> None:
+    """Of one sign but for rounding."""
     nothing = [0.0, 0.0, 0.0]
     w = writer({**PLAIN, "a1": diagonal, "b2": [1.0, 1.0, 1.0], "b1": nothing, "a2": nothing})
     formula = LinearPair(*w.e).formula(w)
@@ -184,3 +190,41 @@ def test_each_form_reads_as_it_is_solved(
     assert tuple(map(latex, found.branches)) == branches
     assert ("" if found.reach is None else latex(found.reach)) == reach
     assert ("" if found.divisor is None else latex(found.divisor)) == divisor
+
+
+def test_terms_of_a_combination_bring_their_signs() -> None:
+    w = writer(PLAIN)
+    g, (a, b, *_) = w.g, w.e
+    x, y = m.name("x"), m.name("y")
+    for first, second, text in (
+        (a, b, r"a_{1}\,x+b_{1}\,y"),
+        (g.neg(a), b, r"-a_{1}\,x+b_{1}\,y"),
+        (a, g.neg(b), r"a_{1}\,x-b_{1}\,y"),
+        (g.one, g.minus_one, "x-y"),
+        (g.minus_one, g.one, "-x+y"),
+        (g.const(-2.0), g.zero, r"-2\,x"),
+        (g.zero, g.neg(b), r"-b_{1}\,y"),
+        (g.zero, g.zero, "0"),
+        (g.neg(g.add(a, b)), g.one, r"(-a_{1}-b_{1})\,x+y"),
+        (a, g.sub(g.neg(a), b), r"a_{1}\,x+(-a_{1}-b_{1})\,y"),
+        (g.sub(a, b), a, r"(a_{1}-b_{1})\,x+a_{1}\,y"),
+    ):
+        parts = [(w.sum(first), x), (w.sum(second), y)]
+        assert latex(linear_combination(parts)) == text
+
+
+@pytest.mark.parametrize("case", WRITTEN, ids=lambda case: f"{case[0].__name__} {case[1]}")
+def test_a_sign_stands_before_a_term_an_operation_between_two(
+    case: tuple[type[Form], str, tuple[str, ...], tuple[str, ...], str, str],
+) -> None:
+    g = ExpressionGraph(3)
+    e = [
+        given(g, PLAIN[NAMES[k]]) if c.isalpha() else g.const(float(c))
+        for k, c in enumerate(case[1].split())
+    ]
+    w = FormulaWriter(Variable("angle", (1, 0)), e, g, Normalizer(), Abbreviations([]))
+    found = case[0](*e).formula(w)
+    for text in (*found.equations, *found.branches):
+        marked = re.sub("<m(row|frac|sqrt|sup)>", "", text.mathml)
+        assert not re.search(r'(^|<mo[^>]*>[(=]</mo>)<mo form="infix">', marked), marked
+        assert not re.search(r'</m[in]><mo form="prefix">', marked), marked

@@ -52,6 +52,11 @@ def test_a_square_root_may_be_a_little_outside_its_domain_more_where_digits_were
     wide = replace(Tolerances(), rough=rough).guard(g, value, 1.0)
     assert list(plain.probe) == [1.0, 0.0, 0.0, 0.0]
     assert list(wide.probe) == [1.0, 0.0, 1.0, 0.0]
+    for size in (1e-4, 1e4):  # of what the root is taken of
+        scaled = given(g, size * value.probe)
+        assert list(Tolerances().guard(g, scaled, size).probe) == list(plain.probe)
+        found = replace(Tolerances(), rough=rough).guard(g, scaled, size)
+        assert list(found.probe) == list(wide.probe)
 
 
 def test_branches_start_apart_only_where_rows_are_refined() -> None:

@@ -7,7 +7,8 @@ import pytest
 from tests.support.tables import table
 
 from ikgen.lowering.closure import CHECK_TOLERANCE, _bounded, _differences, require_closure
-from ikgen.lowering.placement import Placement, Requirement
+from ikgen.lowering.placement import LoweredLevel, Placement, Requirement
+from ikgen.program.statements import Comment
 from ikgen.solver.solve import solve_chain
 
 
@@ -52,6 +53,30 @@ def test_rows_may_be_off_more_where_an_unknown_may_have_lost_digits(
     require_closure(work)
     bounds = [guard.condition.args[0].probe[0] for guard in guards(work)]
     assert bounds == pytest.approx([(times * CHECK_TOLERANCE) ** 2] * len(bounds)) and bounds
+    (told,) = (item for item in work.levels[-1].items if isinstance(item, Comment))
+    assert told.text == "does the row reproduce the pose?"
+
+
+@pytest.mark.parametrize("dear", ["position", "rotation", "both"])
+def test_the_split_that_costs_least_is_compared(monkeypatch: pytest.MonkeyPatch, dear: str) -> None:
+    """Of position and rotation together."""
+    work = two_joints()
+    g, part = work.g, work.g.add(work.g.const(0.5), work.system.equations[0].left)
+    costly = g.square(g.square(g.square(g.add(g.const(0.25), part))))
+    looked_at: list[tuple[int, int]] = []
+
+    def residuals(_: Placement, k: int, m: int) -> tuple[list, list]:
+        looked_at.append((k, m))
+        if (k, m) == (1, 2):
+            return [part], [part]
+        return [part] if dear == "rotation" else [costly], [part] if dear == "position" else [
+            costly
+        ]
+
+    monkeypatch.setattr("ikgen.lowering.closure._residuals", residuals)
+    require_closure(work)
+    assert sorted(looked_at) == [(0, 1), (0, 2), (1, 2)]
+    assert work.residuals == [g.square(part)] * 2
 
 
 def test_differences_that_vanish_or_are_not_read_are_left_out() -> None:
@@ -64,3 +89,18 @@ def test_differences_that_vanish_or_are_not_read_are_left_out() -> None:
     pairs = [(pose, pose), (pose, half), (unread, pose), (pose, unread), (half, g.const(2.0))]
     found = _differences(work, pairs)
     assert [e.id for e in found] == [g.sub(pose, half).id, g.sub(half, g.const(2.0)).id]
+
+
+def test_norms_are_bounded_at_the_level_that_they_are_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    work = two_joints()
+    g, part = work.g, work.g.add(work.g.const(0.5), work.system.equations[0].left)
+    sigma = g.atom("sigma", "0", np.ones(g.probes), unknown=False)
+    work.levels.append(LoweredLevel(2, sigma))
+    work.level_of[sigma.id] = len(work.levels) - 1
+    outer, inner = g.square(part), g.binary("max", part, sigma)
+    work.norms += [outer, inner]
+    monkeypatch.setattr("ikgen.lowering.closure._residuals", lambda *_: ([], []))
+    require_closure(work)
+    assert work.residuals == [g.square(outer), g.square(inner)]
+    held = [[i for i in level.items if isinstance(i, Requirement)] for level in work.levels]
+    assert [len(items) for items in held] == [1] + [0] * (len(held) - 2) + [1]

@@ -77,6 +77,13 @@ def test_lengths_go_there_and_back(scale: float, offset: float, q: float) -> Non
     assert abs(value(r, (d,)) - q) < 1e-12
 
 
+@pytest.mark.parametrize("scale", [0.5, -0.5, 0.25, -3.0])
+def test_only_the_sign_of_a_ratio_mirrors(scale: float) -> None:
+    r = row(REVOLUTE, scale, 0.2)
+    for q in (-0.9, 0.1, 1.0):
+        assert abs(value(r, variable(r, q)) - q) < 1e-12
+
+
 def test_a_plain_joint_costs_nothing() -> None:
     assert [let.value for let in variable_lets(row(PRISMATIC, 1.0, 0.0), "given", ("d",))] == [
         "given"

@@ -51,6 +51,9 @@ def empty(**changes: object) -> Program:
 
 def test_every_operation_is_covered() -> None:
     assert set(MEANING) | {"and", "or", "not", "select"} == set(ARITY)
+    one = {op for op, count in ARITY.items() if count == 1}
+    assert one == {"neg", "abs", "sqrt", "cos", "sin", "not"}
+    assert {op: count for op, count in ARITY.items() if count not in (1, 2)} == {"select": 3}
 
 
 @given(NUMBERS, NUMBERS)

@@ -117,3 +117,26 @@ def test_what_fails_is_taken_where_there_is_nothing_else_and_is_not_sound(
     assert choose(arm, weak) is None
     step = choose(arm, weak, anything=True)
     assert step is not None and step.candidate is weak and not step.sound
+
+
+def test_two_candidates_of_an_unknown_are_tried_with_fallbacks(arm: Constructed) -> None:
+    """The first fails at three places, of which each other holds at one alone."""
+    g = arm.graph
+    at = [g.sub(arm.c2, g.const(x)) for x in (-0.7, 0.1, 0.8)]
+    whole = g.mul(g.mul(at[0], at[1]), at[2])
+    pairs = [g.mul(at[0], at[1]), g.mul(at[1], at[2]), g.mul(at[0], at[2])]
+    first, *others = found(arm, arm.tangent(whole), *map(arm.tangent, pairs))
+    step = choose(arm, first, *others, ranked=False)
+    assert step is not None and step.candidate is others[0] and len(step.fallbacks) == 2
+    worse = [first, first, *others]
+    assert choose(arm, *worse, ranked=False) is None
+
+
+@pytest.mark.parametrize("hidden", [5, 6])
+def test_six_that_fail_where_no_probe_is_are_enough(arm: Constructed, hidden: int) -> None:
+    g = arm.graph
+    zeros = [g.sub(arm.c2, g.const(0.1 * k + 0.05)) for k in range(hidden)]
+    sound, *others = found(arm, arm.tangent(g.one), *map(arm.tangent, zeros))
+    step = choose(arm, *others, sound, ranked=False)
+    assert step is not None and (step.candidate is sound) == (hidden < 6)
+    assert bool(step.fallbacks) == (hidden == 6)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from ikgen.generation import derive as derivation
 from ikgen.generation.held_joints import held_choices
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
+from ikgen.solver import soundness
 from ikgen.solver.choice import Chooser
 from ikgen.solver.leaves import all_leaves
 from ikgen.solver.session import Session
@@ -109,3 +111,24 @@ def test_the_elimination_is_taken_where_a_step_is_unsound(monkeypatch: pytest.Mo
     found = derivation.derive(Request(PUMA))
     assert not found.graph.sound
     assert found.module.plan is not None
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_descent_takes_twelve_steps_of_half_a_radian(
+    way: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a condition that vanishes far away; one near is met."""
+    candidate = SimpleNamespace()
+    variables = SimpleNamespace(
+        primary=(SimpleNamespace(revolute=True), SimpleNamespace(revolute=False))
+    )
+    system = SimpleNamespace(variables=variables)
+    start, size = np.array([[0.25, 1.0]]), 3.0
+
+    def ending(joint: int, zero: float) -> np.ndarray:
+        monkeypatch.setattr(soundness, "conditions", lambda c, s, q: [(q[:, joint] - zero)[None]])
+        return soundness._descend(candidate, system, start, 0, size) - start  # type: ignore[arg-type]
+
+    assert ending(0, 100.0 * way)[0] == pytest.approx([6.0 * way, 0.0])
+    assert ending(1, 100.0 * way)[0] == pytest.approx([0.0, 6.0 * size * way])
+    assert ending(0, 0.25 + 2.2 * way)[0] == pytest.approx([2.2 * way, 0.0], abs=1e-9)

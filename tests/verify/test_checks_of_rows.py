@@ -22,6 +22,7 @@ from ikgen.verify.checks import (
     check_singular_flags,
 )
 from ikgen.verify.coverage import (
+    check_exhaustive,
     check_limit_choice,
     check_singular_answers,
     check_status,
@@ -153,8 +154,30 @@ def test_rows_off_their_pose_are_told_with_the_worst(arm: ArmUnderTest) -> None:
     assert "moved #2" in found.worst_case
     nan = np.where(off > 0.0, np.nan, 0.0)
     assert check_closure(arm, [reached(arm, q, nan)]).failures == 2
-    none = check_closure(arm, [trial_of(arm, rows_of([], []))])
+    empty = trial_of(arm, rows_of([], []))
+    after = check_closure(arm, [empty, reached(arm, q, off, label="moved"), empty])
+    assert (after.count, after.failures) == (4, 2) and "moved #2" in after.worst_case
+    none = check_closure(arm, [empty])
     assert not none.passed and none.worst_case == "no pose was answered with a row"
+
+
+def test_of_rows_that_are_as_wrong_the_first_is_told(arm: ArmUnderTest) -> None:
+    q, off = drawn(3), np.zeros((3, 6))
+    off[1:, 5] = 1e-6
+    trials = [reached(arm, q, off, label=label) for label in ("first", "second")]
+    assert "first #" in check_closure(arm, trials).worst_case
+    out = [row(0.5), row(2.9 + 0.3)]
+    beyond = [trial_of(arm, rows_of(out)), trial_of(arm, rows_of([row(0.1)], out))]
+    assert "made #0" in check_inside_limits(arm, beyond).worst_case
+    double = rows_of([row(0.5)], [row(0.5), row(0.5)], [row(0.7), row(0.7)])
+    assert "made #1" in check_distinct(arm, [trial_of(arm, double)] * 2).worst_case
+    none = rows_of([row(0.5)], [], [])
+    assert "made #1" in check_singular_answers(arm, [trial_of(arm, none)] * 2).worst_case
+    wrong = replace(none, status=("LIMITS", "LIMITS", "OK"))
+    assert "made, LIMITS #1" in check_unreachable(
+        arm, [trial_of(arm, replace(none, status=("UNREACHABLE",) * 3, count=np.zeros(3, int))),
+              trial_of(arm, replace(wrong, status=("UNREACHABLE", "LIMITS", "OK"), count=np.zeros(3, int)))]
+    ).worst_case  # fmt: skip
 
 
 def test_a_row_that_was_put_on_its_limit_may_be_off_by_as_much(arm: ArmUnderTest) -> None:
@@ -212,6 +235,10 @@ def test_held_joints_stay(arm: ArmUnderTest) -> None:
     off[1, 3] = 1e-6
     found = check_free_joints(held, [reached(held, q), reached(held, q, off)])
     assert (found.count, found.failures) == (6, 1) and "made #1" in found.worst_case
+    assert found.detail == "" and dict(found.worst)["off rad or m"] == pytest.approx(1e-6)
+    none = check_free_joints(arm, [reached(arm, q, off)])
+    assert none.passed and (none.count, none.worst) == (0, ())
+    assert none.detail == "no joint is held free"
 
 
 def test_limits_choose_among_the_rows_without_them(arm: ArmUnderTest) -> None:
@@ -246,6 +273,12 @@ def test_the_status_says_what_limits_leave(arm: ArmUnderTest) -> None:
         return found.failures
 
     assert told(with_, without) == 0
+    late = replace(with_, status=("OK", "OK", "OK"))
+    pairs = [
+        (trial_of(arm, one), trial_of(arm, without, limits=False)) for one in (with_, late, late)
+    ]
+    found = check_status(arm, pairs)
+    assert (found.count, found.failures) == (9, 4) and "made, OK #1" in found.worst_case
     assert told(replace(with_, status=("OK", "UNREACHABLE", "UNREACHABLE")), without) == 1
     assert told(replace(with_, status=("LIMITS", "LIMITS", "LIMITS")), without) == 2
     assert told(with_, replace(without, status=("UNREACHABLE", "OK", "OK"))) == 2
@@ -259,3 +292,35 @@ def test_poses_out_of_reach_have_neither_rows_nor_another_status(arm: ArmUnderTe
     assert (found.count, found.failures) == (4, 1) and "made" in found.worst_case
     rows = rows_of([row(0.5)], [])
     assert check_unreachable(arm, [trial_of(arm, rows)]).failures == 1
+
+
+def test_solutions_that_a_search_finds_are_among_the_rows(
+    arm: ArmUnderTest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each is counted once, however often it is found; singular ones are not."""
+    one, two, three = (np.array(row(*first)) for first in ([0.5], [0.9, 0.4], [1.4, -0.6]))
+    flat = np.array([*row(0.5)[:4], 0.0, 0.1])
+    turn = 2.0 * np.pi * np.eye(6)[3]
+    found = [
+        np.array([one, two, one + 1e-9, flat, two + turn, three]), np.empty((0, 6)), flat[None],
+        np.array([three, three]),
+    ]  # fmt: skip
+    monkeypatch.setattr("ikgen.verify.coverage.find_solutions", lambda *_: found)
+    nothing: list[list[float]] = []
+
+    def told(*answers: list[list[float]]) -> tuple[int, int, str]:
+        trial = trial_of(arm, rows_of(*answers), limits=False)
+        result = check_exhaustive(arm, trial, 7, np.random.default_rng(0))
+        assert result.detail == "4 poses, 7 starts each"
+        return result.count, result.failures, result.worst_case
+
+    every = [list(one), list(two - turn), list(three)]
+    assert told(every, nothing, nothing, every) == (4, 0, "")
+    count, failures, case = told(every[:1], nothing, nothing, every[:2])
+    assert (count, failures) == (4, 3) and "made #0" in case and "0.9" in case and "1.4" in case
+    count, failures, case = told(every, nothing, nothing, nothing)
+    assert (count, failures) == (4, 1) and "made #3" in case
+
+
+def test_an_arm_angle_that_is_held_counts_as_one_more(arm: ArmUnderTest) -> None:
+    assert arm.rank == 6 and replace(arm, angle=object()).rank == 7

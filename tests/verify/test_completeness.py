@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -191,3 +192,39 @@ def test_tolerances_on_slides_are_relative_to_their_values() -> None:
     assert slides.distance(a - a, b - a)[0] == pytest.approx(1e-3)
     assert slides.size_of(a)[0] == 1e7
     assert arm().distance(a, b)[0] > 1e-4
+
+
+@pytest.mark.parametrize(
+    ("values", "alone"),
+    [((3.0, 0.5, 1e-9), True), ((3.0, 1e-7, 1e-9), False), ((0.5, 0.4, 0.3), True)],
+)
+def test_how_a_singular_value_turns_is_known_where_it_is_the_only_small_one(
+    values: tuple[float, ...], alone: bool
+) -> None:
+    """Of a matrix whose last entry is the joint's value: its derivative along the last joint is 1."""
+
+    def jacobian(q: Array) -> tuple[None, Array]:
+        J = np.tile(np.diag(values), (len(q), 1, 1))
+        J[:, 2, 2] += q[:, 2]
+        return None, J
+
+    made = SimpleNamespace(
+        active=(0, 1, 2), rank=3, revolute=np.ones(3, bool), length=1.0, scaled_jacobian=jacobian
+    )
+    found = sensitivity(made, np.zeros((2, 3)))  # type: ignore[arg-type]
+    assert found.sigma == pytest.approx([values[2]] * 2)
+    assert found.kappa == pytest.approx([1.0 if alone else 0.0] * 2, rel=1e-4)
+
+
+def test_every_pose_is_in_one_band() -> None:
+    sigma = np.array([0.0, *completeness.BAND_EDGES, 0.5 * completeness.BAND_EDGES[0], 1.0, 7.0])
+    count, none = len(sigma), np.zeros(len(sigma), dtype=bool)
+    where = np.zeros(count, dtype=int)
+    loose = none.copy()
+    loose[0] = True
+    made = completeness.Survey((), where, where, sigma, sigma, none, loose, ~none, 1e-3)
+    bands = made.bands
+    assert sum(band.poses for band in bands) == sum(band.unanswered for band in bands) == count
+    assert [band.low for band in bands] == [*completeness.BAND_EDGES, 0.0]
+    assert bands[-1].poses == 1 and bands[-1].loose == 1 == sum(band.loose for band in bands)
+    assert not any(band.missed or band.case for band in bands)

@@ -11,7 +11,7 @@ from tests.support.fake_arms import tree_of
 
 from ikgen.errors import BadDescriptionError, MissingToolError, VerificationError
 from ikgen.verify.oracle import PinocchioOracle
-from ikgen.verify.runners import cpp_toolchain
+from ikgen.verify.runners import cpp_header, cpp_toolchain
 from ikgen.verify.runners.cpp_header import CppHeader
 from ikgen.verify.runners.runner import ArmConstants
 from ikgen.verify.verification import verify
@@ -166,3 +166,26 @@ def test_eigen_directory_from_the_environment(
     (headers / "Eigen" / "Dense").touch()
     monkeypatch.setenv("Eigen3_DIR", str(tmp_path / "share" / "eigen3" / "cmake"))
     assert cpp_toolchain.find_eigen() == headers
+
+
+def test_a_driver_is_compiled_beside_the_header(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: dict[str, object] = {}
+
+    def compile_program(source: Path, program: Path, include: list[Path]) -> None:
+        told.update(text=source.read_text(), source=source, program=program, include=include)
+
+    monkeypatch.setattr(cpp_header, "compile_program", compile_program)
+    monkeypatch.setattr(
+        cpp_header.ProgramRunner, "__init__", lambda self, *a, **k: told.update(given=a, named=k)
+    )
+    path = tmp_path / "made_ik.hpp"
+    for body, batch in (("nothing", False), ("void solve_batch(", True)):
+        path.write_text(body)
+        runner = cpp_header.CppHeader(path, None)  # type: ignore[arg-type]
+        assert told["include"] == [tmp_path.resolve()] and runner.path == path.resolve()
+        assert told["source"].name == "driver.cpp" and told["program"].name == "driver"
+        assert told["given"] == ("cpp", told["program"], None)
+        assert told["named"] == {"batch": batch, "source": str(path)}
+        assert '#include "made_ik.hpp"' in told["text"]

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import os
+import sysconfig
 from pathlib import Path
 
 import pytest
 
 from ikgen.errors import MissingToolError, VerificationError
+from ikgen.processes.outside_program import Finished
+from ikgen.verify.runners import cpp_toolchain
 from ikgen.verify.runners.cpp_toolchain import compile_program, find_compiler, find_eigen
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="needs sh")
@@ -44,6 +47,43 @@ def test_a_compiler_that_fails(kind: str, tmp_path: Path, monkeypatch: pytest.Mo
     with pytest.raises(MissingToolError, match=told) as caught:
         compile_program(tmp_path / "x.cpp", tmp_path / "x", [])
     assert "is not known" in caught.value.hint
+
+
+def test_complaints_about_the_code_are_told_the_first_of_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    compiler = tmp_path / "compiler"
+    lines = "".join(f"echo 'x.hpp:{k}:7: error: no {k}' >&2\n" for k in range(1, 8))
+    compiler.write_text(f"#!/bin/sh\necho 'x.hpp:1:1: warning: a' >&2\n{lines}exit 1\n")
+    compiler.chmod(0o755)
+    monkeypatch.setenv("CXX", str(compiler))
+    with pytest.raises(VerificationError, match="emitted header does not compile") as caught:
+        compile_program(tmp_path / "x.cpp", tmp_path / "x", [])
+    told = caught.value.message.split(": ", 1)[1].splitlines()
+    assert told == [f"x.hpp:{k}:7: error: no {k}" for k in range(1, 6)]
+    assert caught.value.hint == f"compiler: {compiler}"
+
+
+@pytest.mark.parametrize("platform", ["linux", "darwin"])
+def test_an_extension_may_lack_the_names_of_its_interpreter(
+    platform: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    commands: list[list[str]] = []
+    out = tmp_path / "x.so"
+    out.touch()
+
+    def run(command: list[str], **_: object) -> Finished:
+        commands.append(command)
+        return Finished(0, "")
+
+    monkeypatch.setattr(cpp_toolchain, "run_program", run)
+    monkeypatch.setattr(cpp_toolchain.sys, "platform", platform)
+    cpp_toolchain.compile_extension([tmp_path / "a.cpp"], out, [tmp_path], "ONE=1")
+    ((*options, name, output),) = commands
+    assert (name, output) == ("-o", str(out)) and options[-1] == str(tmp_path / "a.cpp")
+    wanted = {"-std=c++17", "-DNDEBUG", "-DONE=1", "-O3", "-shared", "-fPIC", f"-I{tmp_path}"}
+    assert wanted <= set(options) and f"-I{sysconfig.get_path('include')}" in options
+    assert ("dynamic_lookup" in options) == ("-undefined" in options) == (platform == "darwin")
 
 
 def test_code_that_does_not_compile_in_another_language(

@@ -102,6 +102,14 @@ def constants(free: tuple[str, ...] = (), **wrong: Any) -> str:
     return found.detail
 
 
+def test_limits_are_those_that_were_asked_for_and_the_file_s() -> None:
+    asked = arm_under_test(ORACLE, TASK_SPACES["pose"], (0.5 * ORACLE.lower, ORACLE.upper), ())
+    found = check_constants(asked, Code(), rows())  # type: ignore[arg-type]
+    assert found.detail == "lower limits"
+    found = check_constants(asked, Code(lower=0.5 * ORACLE.lower), rows())  # type: ignore[arg-type]
+    assert found.detail == "lower limits"
+
+
 def test_right_constants_pass_and_each_wrong_one_is_named() -> None:
     assert constants() == ""
     assert constants(joint_names=tuple("abcdef")) == "joint names"
@@ -185,6 +193,12 @@ def test_a_batch_has_the_rows_and_the_status_of_single_answers() -> None:
     assert batch(lambda r: replace(r, q=np.where(np.isnan(r.q), 0.0, r.q))) == (False, 1, "")
     assert batch(lambda r: replace(r, q=r.q[:, :, :5])) == (False, 4, "shape of q (4, 1, 5)")
     assert batch(lambda r: None) == (True, 0, "code has none")
+
+
+@pytest.mark.parametrize("count", [1, 3, 5])
+def test_a_batch_with_another_number_of_statuses_is_no_answer(count: int) -> None:
+    with pytest.raises(ValueError, match="zip"):
+        batch(lambda one: replace(one, status=("OK",) * count))
 
 
 def test_a_batch_has_no_fewer_and_no_other_rows() -> None:

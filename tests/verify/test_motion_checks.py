@@ -16,7 +16,12 @@ from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 from ikgen.tasks import find_task
 from ikgen.verify.arm import ArmUnderTest, arm_under_test
-from ikgen.verify.motion_checks import CLEARLY_REGULAR, motion_checks, regular_motions
+from ikgen.verify.motion_checks import (
+    CLEARLY_REGULAR,
+    check_self_motion,
+    motion_checks,
+    regular_motions,
+)
 from ikgen.verify.oracle import oracle_from_dh
 from ikgen.verify.runners.python_module import PythonModule
 from ikgen.verify.sampling import generator
@@ -78,7 +83,19 @@ def test_motions_are_regular_and_inside_the_limits() -> None:
         assert (a.sigma(q) > CLEARLY_REGULAR).all() and a.within(q).all()
     moved = np.abs(motions.end - motions.start)
     assert 0.15 < moved.max() <= 0.2
+    assert (np.abs(np.sign(motions.end - motions.start).mean(axis=0)) < 0.9).all()  # both ways
     assert np.array_equal(motions.poses[:, 1], a.oracle.forward(motions.end))
+
+
+def test_limits_that_are_close_leave_room_for_motions() -> None:
+    a = arm()
+    lower, upper = np.full(6, -1.5), np.full(6, 1.5)
+    lower[5], upper[5] = 0.3, 0.4
+    a = replace(a, lower=lower, upper=upper, low=lower, high=upper)
+    motions = regular_motions(a, generator(0, "motions"))
+    assert len(motions.start)
+    for q in (motions.start, motions.end):
+        assert ((q[:, 5] >= 0.31) & (q[:, 5] <= 0.39)).all()
 
 
 def test_what_is_right_passes() -> None:
@@ -106,6 +123,28 @@ def test_what_is_wrong_fails(wrong: str, check: str, count: int) -> None:
     found = failures(a, wrong)
     assert found.pop(check) == (count, count)
     assert all(failed == 0 for failed, _ in found.values())
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "failures"),
+    [
+        (0.0, 0.0, 0), (5e-7, 1.0, 0), (-1.0, -5e-7, 0), (2e-6, 1.0, 3), (-1.0, -2e-6, 3),
+        (2.0, 3.0, 3), (-3.0, -2.0, 3),
+    ],
+)  # fmt: skip
+def test_an_interval_holds_its_ends(low: float, high: float, failures: int) -> None:
+    a = arm((six_axis_oracle().joint_names[0],))
+    motions = regular_motions(a, generator(0, "motions"))
+    ends = iter(motions.start[:, 0])
+
+    class Around(Moving):
+        def self_motion(self, pose: Array) -> Array:
+            value = next(ends)
+            return np.array([[value - 9.0, value - 8.0], [value + low, value + high]])
+
+    found = check_self_motion(a, Around(a, motions.end), motions)
+    assert (found.failures, found.count) == (failures, 3)
+    assert ("motion #0" in found.worst_case) == (failures > 0)
 
 
 def test_a_module_that_turns_the_wrong_way_between_poses_is_noticed(tmp_path: Path) -> None:

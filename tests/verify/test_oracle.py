@@ -56,6 +56,12 @@ def test_locked_driver_sets_its_mimic_joints() -> None:
     )
 
 
+def test_what_follows_nothing_that_moves_stands_at_zero() -> None:
+    still = PinocchioOracle(tree_of(MIMIC), "b", "l2", [])
+    T = still.forward(np.zeros((1, 0)))[0]
+    assert T[:2, 0] == pytest.approx([np.cos(0.1), np.sin(0.1)]) and T[0, 3] == pytest.approx(1.0)
+
+
 def test_base_below_the_tip_and_a_lock() -> None:
     tree = tree_of(six_axis_urdf())
     down = PinocchioOracle(tree, "l0", "tip", ["j2", "j4"], {"j1": 0.3, "j3": -0.7})

@@ -12,7 +12,7 @@ from ikgen.verify.reach import invalid_poses, unreachable_poses
 from ikgen.verify.sampling import sample_sets
 from ikgen.verify.search import find_solutions
 from ikgen.verify.singularities import on_continuum
-from ikgen.verify.task_space import TASK_SPACES
+from ikgen.verify.task_space import TASK_SPACES, TaskSpace, _turn
 
 
 def arm(task: str = "pose", free: tuple[str, ...] = ()) -> ArmUnderTest:
@@ -153,3 +153,42 @@ def test_invalid_poses_depend_on_the_task() -> None:
     assert "reflection" in invalid_poses(TASK_SPACES["pose"], np.eye(4))
     assert "NaN rotation" not in invalid_poses(TASK_SPACES["position"], np.eye(4))
     assert "NaN position" not in invalid_poses(TASK_SPACES["rotation"], np.eye(4))
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-12, 1e-3, 1.0, 3.0, np.pi - 1e-6, np.pi])
+def test_rotation_vectors_have_the_angle_and_its_axis(angle: float) -> None:
+    axis = np.array([0.6, 0.0, 0.8])
+    found = _turn(np.sin(angle) * axis[None], np.array([np.cos(angle)]))
+    assert np.linalg.norm(found) == pytest.approx(angle, abs=1e-15)
+    if 0.0 < angle < np.pi:
+        assert found[0] == pytest.approx(angle * axis, abs=1e-9)
+
+
+def test_half_a_turn_is_about_some_axis_and_none_about_none() -> None:
+    cross = np.array([[0.0, 0.0, 0.0], [0.0, 1e-10, 0.0], [0.0, 0.0, 0.0], [0.0, 1e-10, 0.0]])
+    found = _turn(cross, np.array([-1.0, -1.0, 1.0, 1.0]))
+    assert np.linalg.norm(found, axis=1)[:2] == pytest.approx([np.pi, np.pi])
+    np.testing.assert_array_equal(found[2], np.zeros(3))
+    np.testing.assert_allclose(found[3], cross[3], rtol=1e-12)
+
+
+@pytest.mark.parametrize(("a", "b"), [(3.0, -3.0), (-3.0, 3.0), (0.5, -0.25), (-3.1, -3.0)])
+def test_differences_of_yaw_are_the_short_way(a: float, b: float) -> None:
+    T, target = turned(2, a), turned(2, b)
+    (e,) = TASK_SPACES["position-yaw"].residual(T, target)[:, 3]
+    assert abs(e) <= np.pi and np.sin(e - (b - a)) == pytest.approx(0.0, abs=1e-12)
+    assert np.cos(e - (b - a)) == pytest.approx(1.0)
+
+
+def test_entries_count_each_for_itself_those_of_the_position_as_lengths() -> None:
+    space = TaskSpace("made", 3, False, "", ((0, 3), (1, 0), (2, 3)))
+    assert space.lengths == [0, 2]
+    T, target = np.eye(4)[None], np.eye(4)[None].copy()
+    target[0, :3, 3], target[0, 1, 0] = (0.3, 9.0, -0.4), 0.25
+    np.testing.assert_allclose(space.residual(T, target), [[0.3, 0.25, -0.4]])
+    position, rotation = space.errors(T, target)
+    assert (position[0], rotation[0]) == (pytest.approx(0.5), pytest.approx(0.25))
+    J = np.arange(12.0).reshape(1, 6, 2)
+    np.testing.assert_allclose(space.jacobian(T, J), [[J[0, 0], J[0, 5], J[0, 2]]])
+    both = TaskSpace("made", 3, True, "")
+    assert both.lengths == [0, 1, 2] and both.errors(T, target)[1].tolist() == [0.0]

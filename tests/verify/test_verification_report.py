@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from junitparser import JUnitXml
 
 from ikgen.verify.junit import write_junit_xml
-from ikgen.verify.verification_report import CheckResult, VerificationReport
+from ikgen.verify.verification_report import CheckResult, SigmaBand, VerificationReport
 
 GOOD = CheckResult("closure", True, 800, worst=(("position m", 1e-15), ("rotation rad", 2e-15)))
 IDLE = CheckResult("free joints", True, 0, detail="no joint is held free")
@@ -44,6 +45,22 @@ def test_numbers_and_text() -> None:
     assert data["passed"] is False and "seconds" not in data
 
 
+def test_misses_are_said_to_be_near_singularities_where_all_are() -> None:
+    bands = (
+        SigmaBand(0.0, 1e-3, 40, missed=2), SigmaBand(1e-3, 1e-2, 30, missed=1),
+        SigmaBand(1e-2, math.inf, 900),
+    )  # fmt: skip
+    near = replace(report(GOOD), bands=bands)
+    assert near.missed == 3
+    assert near.missed_words == "3 missed, all of them among 70 poses put next to singularities"
+    searched = CheckResult("exhaustive search", False, 100, 4)
+    failed = replace(report(GOOD, searched), bands=bands)
+    assert failed.missed == 7 and failed.missed_words == "7 missed"
+    for none in (report(GOOD), report(GOOD, BAD), replace(report(GOOD), bands=bands[2:])):
+        assert none.missed == 0 and none.missed_words == "0 missed"
+    assert [band["high"] for band in near.to_dict()["by_sigma"]] == [1e-3, 1e-2, None]
+
+
 def test_junit(tmp_path: Path) -> None:
     path = tmp_path / "out.xml"
     write_junit_xml(path, [("ur5e", report(GOOD, IDLE, BAD)), ("ur5e", report(GOOD, label="cpp"))])
@@ -53,6 +70,10 @@ def test_junit(tmp_path: Path) -> None:
     first, *_ = suites
     cases = {case.name: case for case in first}
     assert cases["closure"].is_passed and cases["free joints"].is_skipped
+    assert cases["free joints"].result[0].message == "no joint is held free"
+    write_junit_xml(path, [("ur5e", report(replace(IDLE, detail="")))])
+    ((plain,),) = JUnitXml.fromfile(str(path))
+    assert plain.result[0].message == "nothing to check"
     assert cases["completeness"].is_failure
     assert "3 of 100" in cases["completeness"].result[0].message
     assert "random #7" in cases["completeness"].result[0].text
