@@ -51,7 +51,7 @@ def run_trials(
     q = np.concatenate([sample.q for sample in samples])
     poses = np.concatenate([sample.poses for sample in samples])
     known: dict[bytes, int] = {}
-    asked = np.concatenate([q, poses.reshape(len(q), -1)], axis=1)
+    asked = np.concatenate([q, poses.reshape(len(q), 16)], axis=1)
     places = np.array(
         [known.setdefault(one.tobytes(), len(known)) for one in asked], dtype=np.int64
     )
