@@ -101,6 +101,13 @@ def test_files_that_pinocchio_refuses() -> None:
     assert six_axis_oracle().notes == ()
 
 
+def test_limits_that_stand_for_none() -> None:
+    text = six_axis_urdf().replace('lower="-2.9"', 'lower="-999999"').replace('"2.9"', '"999999"')
+    oracle = PinocchioOracle(tree_of(text), "l0", "tip", JOINTS)
+    assert (oracle.lower[0], oracle.upper[0]) == (-math.inf, math.inf)
+    assert (oracle.lower[1], oracle.upper[1]) == (-2.0, 2.0)
+
+
 def test_unknown_names_and_broken_text() -> None:
     tree = tree_of(six_axis_urdf())
     with pytest.raises(UnknownNameError, match="tipp"):

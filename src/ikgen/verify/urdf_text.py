@@ -22,6 +22,9 @@ JOINT_PREFIX = "joint:"
 
 _KINEMATIC = ("origin", "parent", "child", "axis")
 _LIMITED = ("revolute", "prismatic")
+_UNLIMITED = 1e3
+"""Limits (rad) that are farther apart than this stand for none."""
+
 _HARMLESS_LIMIT = {"lower": "-1", "upper": "1", "effort": "1", "velocity": "1"}
 
 
@@ -49,6 +52,8 @@ def _range(joint: ET.Element) -> tuple[float, float]:
         return -math.inf, math.inf
     limit = joint.find("limit")
     lower, upper = _number(limit, "lower", 0.0), _number(limit, "upper", 0.0)
+    if joint.get("type") == "revolute" and upper - lower > _UNLIMITED:
+        return -math.inf, math.inf
     return (lower, upper) if lower < upper else (math.nan, math.nan)
 
 
