@@ -128,7 +128,7 @@ template <class Arm, int N> struct LaneChain {
   // Takes part in an entry of its joint's column, which begins with the joint's first link.
   template <std::size_t I> [[gnu::always_inline]] static void add(const Pack& x, Pack& entry) noexcept {
     constexpr Link link = Arm::kLinks[I];
-    const Pack part = link.scale == 1.0 ? x : link.scale == -1.0 ? -x : link.scale * x;
+    const Pack part = link.scale * x;
     entry = begins(I) ? part : entry + part;
   }
 

@@ -129,7 +129,8 @@ template <class Arm> struct LaneNewton {
       rest = abs(error[0]);
       for (int i = 1; i < kEquations; ++i) rest = max(rest, abs(error[i]));
       if (k > 0) {
-        const Lanes<N> next = fresh ? size * size * size : size * size * before;  // over the square of the step before
+        // over the square of the step before; what was small in it may be a hundred times as much in the next
+        const Lanes<N> next = (fresh ? 100.0 * size : before) * (size * size);
         done = (!good) | (Policy::kConverged * (before * before) > next) | (Policy::kConverged > size);
         if (all(done)) break;
       }
