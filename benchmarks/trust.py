@@ -80,7 +80,7 @@ def _mutation_score(found: dict[str, object]) -> list[tuple[str, str]]:
     by_package = found["found"]
     assert isinstance(by_package, dict)
     noticed = sum(row[0] for row in by_package.values())
-    words = f"{found['mutations']} small changes of ikgen's own code, one at a time"
+    words = f"{found['mutations']:,} small changes of ikgen's own code, one at a time"
     return [(words, f"{noticed} noticed by a short test")]
 
 
