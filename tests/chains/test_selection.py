@@ -262,3 +262,13 @@ def test_a_long_row_of_mimic_joints_that_grows_is_refused():
     ) as caught:
         select_chain(tree)
     assert caught.value.line is not None and "<mimic>" in caught.value.hint
+
+
+def test_a_mimic_joint_that_hardly_moves_is_refused():
+    inner = {"j2": mimic("j1", 1e-3), "j3": mimic("j2", -1e-4)}
+    with pytest.raises(BadDescriptionError, match="'j3' follows 'j1' as -1e-07") as caught:
+        select_chain(serial("revolute", "revolute", "revolute", "revolute", **inner))
+    assert "multiplier 0" in caught.value.hint
+    for multiplier in (0.0, 1e-5):
+        still = {"j2": mimic("j1", multiplier)}
+        assert select_chain(serial("revolute", "revolute", "revolute", **still)).dof == 2

@@ -12,7 +12,8 @@ from ikgen.model.joint_tree import Joint, JointTree
 __all__ = ["Coupling", "couple"]
 
 _LARGEST = 1e6
-"""The greatest multiplier and offset (rad or m) that a chain of mimic joints may come to."""
+"""The greatest multiplier and offset (rad or m) that a chain of mimic joints may come to, and the inverse
+of the least multiplier but 0."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,11 +75,13 @@ def _resolve(tree: JointTree, joints: Mapping[str, Joint], joint: Joint) -> Coup
             line=joint.line,
             hint="a mimic joint follows a revolute, continuous or prismatic joint",
         )
-    if max(abs(multiplier), abs(offset)) > _LARGEST:
+    little = 0.0 < abs(multiplier) < 1.0 / _LARGEST
+    if little or max(abs(multiplier), abs(offset)) > _LARGEST:
+        left = f"no digit of an angle is left beyond {_LARGEST:g}: correct <mimic>"
         raise BadDescriptionError(
             f"joint '{joint.name}' follows '{current.name}' as {multiplier:g} * value + {offset:g}",
             file=shown_file(tree.source),
             line=joint.line,
-            hint=f"no digit of an angle is left beyond {_LARGEST:g}: correct <mimic>",
+            hint="such a joint hardly moves: write multiplier 0, or correct it" if little else left,
         )
     return Coupling(current, multiplier, offset)
