@@ -65,7 +65,9 @@ def _step(work: Placement, index: int, step: Step) -> None:
     work.define(v, choose_form(work, v, alternatives, sigma))
     if sigma is not g.one:
         work.levels[-1].solved = work.atoms_of(v)
-    if not all(form.on_circle for form in forms) or _given_way(work, alternatives):
+    if v.kind == "angle" and (
+        not all(form.on_circle for form in forms) or _given_way(work, alternatives)
+    ):
         work.norms.append(_excess(work, v))
 
 
