@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import itertools
 import os
 import re
@@ -14,6 +13,7 @@ from types import ModuleType
 
 import numpy as np
 
+from benchmarks.command_line import load_module
 from benchmarks.drawn import revolute
 from benchmarks.random_tables import pattern, table_text
 from benchmarks.results import commit
@@ -82,24 +82,13 @@ def outcome(dh: DHChain, folder: Path, extent: Extent, seed: int) -> Outcome:
     seconds = round(_processor_time() - started, 2)
     refused, counts = path is None and way != NEITHER, (0, 0, 0, 0)
     if path is not None and path.exists():
-        counts = _counted(dh, _load(path), extent, np.random.default_rng(seed))
+        counts = _counted(dh, load_module(path), extent, np.random.default_rng(seed))
     return Outcome(pattern(dh), dh.dof, way, said, refused, *counts, seconds, commit())
 
 
 def _processor_time() -> float:
     """Of this process and those that it waited for (s): a busy machine changes little of it."""
     return sum(os.times()[:4])
-
-
-def _load(path: Path) -> ModuleType:
-    """An emitted module from its file."""
-    name = f"random_{next(_count)}_ik"
-    spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    spec.loader.exec_module(module)
-    return module
 
 
 def _derived(dh: DHChain, folder: Path) -> tuple[str, Path | None]:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from tests.support.plane_task import Plane
 
 from ikgen.runtime.python.arm_angle import ArmAngle
 from ikgen.runtime.python.branch_arcs import Arcs, Points
@@ -18,18 +19,6 @@ from ikgen.runtime.python.chain_kinematics import chain_of, forward
 Array = NDArray[np.float64]
 LENGTHS = (0.5, 0.4, 0.3)
 POINT = (0.9, 0.35)
-
-
-class Plane:
-    """The task of a position in the plane."""
-
-    @staticmethod
-    def error(pose: Array, T: Array) -> Array:
-        return T[:, :2, 3] - pose[:, :2, 3]
-
-    @staticmethod
-    def rows(_: Array, J: Array) -> Array:
-        return J[:, :2]
 
 
 def planar(lower: tuple[float, ...] = (-pi,) * 3, upper: tuple[float, ...] = (pi,) * 3) -> Any:

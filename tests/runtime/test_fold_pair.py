@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from tests.support.plane_task import Plane
 from tests.support.rounded_arms import FOLDED, meeting_shoulder
 from tests.support.solving import emitted
 
@@ -93,18 +94,6 @@ def test_one_direction_of_the_error_is_left_and_grows_by_the_slope(tmp_path: Pat
         np.testing.assert_allclose(-(flow * at.out).sum(axis=1), at.slope, atol=1e-12)
     assert np.abs(at.left).min() > 1e-8
     np.testing.assert_allclose((at.left - before.left) / step, before.slope, rtol=1e-2)
-
-
-class Plane:
-    """The task of a position in the plane."""
-
-    @staticmethod
-    def error(pose: Array, T: Array) -> Array:
-        return T[:, :2, 3] - pose[:, :2, 3]
-
-    @staticmethod
-    def rows(_: Array, J: Array) -> Array:
-        return J[:, :2]
 
 
 @pytest.mark.parametrize("off", [0.003, 1e-4])

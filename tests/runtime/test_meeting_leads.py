@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from tests.support.plane_task import Plane
 
 from ikgen.runtime.python import meeting_rows
 from ikgen.runtime.python.chain_kinematics import chain_of, forward
@@ -83,14 +84,6 @@ def test_a_row_that_a_pose_beside_led_to_once_more_is_left_out() -> None:
     found = rows_nearby(arm, given)
     assert found.owner.tolist() == [0, 1, 3] and found.loss.tolist() == [1.0, 2.0, 4.0]
     assert found.q[:, 0].tolist() == [0.5, 1.5, 2.5]
-
-
-class Plane:
-    """The task of a position in the plane."""
-
-    @staticmethod
-    def error(pose: Array, T: Array) -> Array:
-        return T[:, :2, 3] - pose[:, :2, 3]
 
 
 def test_singular_rows_are_one_where_the_pose_is_theirs_between_them_too() -> None:

@@ -68,17 +68,17 @@ def held_choices(reading: Reading, task: Task) -> tuple[HeldChoice, ...]:
     an order worse conditioned than the best come last: an elbow that is held leaves the arm a shell to
     reach.
     """
-    from ikgen.tasks.fitting import scaled_motion
+    from ikgen.tasks.fitting import rank, scaled_motion
 
     dh = reading.dh
     motion, moving = scaled_motion(dh, task), _moving(dh)
-    rank = _rank(_singular(motion, [moving])[0])
-    spare = len(moving) - rank - int(dh.arm_angle)
-    if not spare or not rank:
+    moved = rank(_singular(motion, [moving])[0])
+    spare = len(moving) - moved - int(dh.arm_angle)
+    if not spare or not moved:
         return ()
-    subsets = [list(kept) for kept in itertools.combinations(moving, rank)]
+    subsets = [list(kept) for kept in itertools.combinations(moving, moved)]
     measured = zip(subsets, _singular(motion, subsets), strict=True)
-    full = [(kept, ratios) for kept, ratios in measured if _rank(ratios) == rank]
+    full = [(kept, ratios) for kept, ratios in measured if rank(ratios) == moved]
     found = _ranked(dh, full)
     other = nearby(reading)
     if other is not None and other.rows != dh.rows:
@@ -142,9 +142,3 @@ def _singular(motion: Matrix, subsets: Sequence[Sequence[int]]) -> Matrix:
     parts = np.stack([motion[:, :, list(columns)] for columns in subsets])
     values = np.linalg.svd(parts, compute_uv=False)
     return np.asarray(np.median(values / np.maximum(values[..., :1], 1e-12), axis=1))
-
-
-def _rank(ratios: Matrix) -> int:
-    from ikgen.tasks.fitting import INDEPENDENT
-
-    return int((ratios > INDEPENDENT).sum())

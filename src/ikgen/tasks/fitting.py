@@ -16,15 +16,15 @@ if TYPE_CHECKING:
     from ikgen.model.joint_tree import Matrix
 
 __all__ = [
-    "INDEPENDENT",
     "fits",
     "fitting_tasks",
     "freedoms_moved",
     "over_constrained",
+    "rank",
     "scaled_motion",
 ]
 
-INDEPENDENT = 1e-5
+_INDEPENDENT = 1e-5
 """Least singular value, relative to the largest, of freedoms that are moved independently."""
 
 _AS_GOOD = 0.5
@@ -75,7 +75,12 @@ def over_constrained(dh: DHChain, task: Task) -> int:
 def freedoms_moved(dh: DHChain, task: Task) -> int:
     """How many freedoms of the task the joints that are not held move, nearly everywhere: the rank of
     the task's entries by the joints."""
-    return int((_ratios(dh, task) > INDEPENDENT).sum())
+    return rank(_ratios(dh, task))
+
+
+def rank(ratios: Matrix) -> int:
+    """How many of singular values, each over the largest, are those of independent motions."""
+    return int((ratios > _INDEPENDENT).sum())
 
 
 def _condition(dh: DHChain, task: Task) -> float:
