@@ -17,7 +17,7 @@ from benchmarks.command_line import load_module
 from benchmarks.drawn import revolute
 from benchmarks.random_tables import pattern, table_text
 from benchmarks.results import commit
-from benchmarks.solution_search import apart, searched
+from benchmarks.solution_search import Array, apart, searched
 from ikgen.elimination import elimination_plan
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.solver_module import SolverModule
@@ -151,13 +151,24 @@ def _checked(
     return wrong, missed
 
 
+def _regular(dh: DHChain, poses: int, rng: np.random.Generator) -> Array:
+    """So many configurations well away from singularities; fewer where such are one in a hundred."""
+    found = np.empty((0, dh.dof))
+    for _ in range(25):
+        q = rng.uniform(-2.0, 2.0, (4 * poses, dh.dof))
+        regular = smallest_singular(dh, q, arm_size(dh)) > 1e-2
+        found = np.concatenate([found, q[regular]])
+        if len(found) >= poses:
+            break
+    return found[:poses]
+
+
 def _compared(
     dh: DHChain, module: ModuleType, poses: int, rng: np.random.Generator
 ) -> tuple[int, int, int]:
     """Solutions of random regular poses that the search finds and the module does not, the poses, and those
     of them where their numbers are the same; the others are printed."""
-    q = rng.uniform(-2.0, 2.0, (4 * poses, dh.dof))
-    q = q[smallest_singular(dh, q, arm_size(dh)) > 1e-2][:poses]
+    q = _regular(dh, poses, rng)
     turning, missed, equal = revolute(module), 0, 0
     for pose in dh_pose(dh, q):
         rows = module.solve(pose, limits=False).q
