@@ -51,6 +51,8 @@ class Share:
 CLASSES = {"3-6": Share(300, 0), "6R": Share(34, 20), "5R1P": Share(33, 20), "4R2P": Share(33, 20)}
 """What is taken where no class is named."""
 _OTHER = Share(10, 20)
+_BESIDE = re.compile(r"([1-9]\d*) missed, all of them among \d+ poses put next to singularities")
+"""What verification says of poses beside singularities, where its own count does not fail."""
 
 
 def drawn_class(name: str) -> Drawn:
@@ -132,6 +134,7 @@ def line(name: str, number: int, done: Outcome) -> str:
 def totals(name: str, found: Sequence[Outcome]) -> dict[str, Any]:
     """The figures of a class."""
     ways = Counter(o.way for o in found)
+    beside = [int(text) for o in found for text in _BESIDE.findall(o.said)]
     seconds = [o.seconds for o in found]
     return {
         "class": name,
@@ -141,6 +144,8 @@ def totals(name: str, found: Sequence[Outcome]) -> dict[str, Any]:
         "by_elimination": ways[ELIMINATION],
         "wrong": sum(o.wrong for o in found),
         "missed": sum(o.missed for o in found),
+        "beside": sum(beside),
+        "beside_tables": len(beside),
         "searched": sum(o.searched for o in found),
         "equal": sum(o.equal for o in found),
         "median": round(float(np.median(seconds)), 2),

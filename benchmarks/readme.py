@@ -122,21 +122,28 @@ def _classes(name: str, read: Callable[[str], Measured]) -> str:
 
 
 def _tables(read: Callable[[str], Measured]) -> str:
-    measured = read("suite")
+    measured = [read(name) for name in ("suite", "suite_chosen")]
     head = ("command", *_COUNTED.values(), "median")
-    row = [f"`{measured.command}`", *_counts(measured.found)]
-    return _table(head, [row]) + _source(measured)
+    rows = [[f"`{m.command}`", *_counts(m.found)] for m in measured]
+    return _table(head, rows) + _source(*measured)
 
 
 def _random(read: Callable[[str], Measured]) -> str:
     measured = read("random_chains")
-    head = ("joints", *_COUNTED.values(), "median", "poses with as many solutions by search")
+    head = (
+        "joints", *_COUNTED.values(), "median", "missed next to singularities",
+        "poses with as many solutions by search",
+    )  # fmt: skip
     rows = [
-        [RANDOM.get(c["class"], c["class"]), *_counts(c),
+        [RANDOM.get(c["class"], c["class"]), *_counts(c), _beside(c),
          f"{c['equal']} of {c['searched']}" if c["searched"] else "–"]
         for c in measured.found["classes"]
     ]  # fmt: skip
     return _table(head, rows) + _source(measured)
+
+
+def _beside(found: dict[str, Any]) -> str:
+    return f"{found['beside']}, in {found['beside_tables']} tables" if found["beside"] else "0"
 
 
 _COUNTED = {

@@ -23,6 +23,14 @@ def test_robots_stand_beside_the_papers(capsys: pytest.CaptureFixture[str]) -> N
     assert "ikgen: theta_3 (tangent), " in printed
 
 
+def test_arms_with_five_joints_take_a_pose_as_in_the_paper_or_what_they_can_do_everywhere() -> None:
+    asked = try_robot(TABLES / "Chair_Helper.toml", 5, 1, 20)
+    chosen = try_robot(TABLES / "Chair_Helper.toml", 5, 1, 20, None)
+    assert asked.state == chosen.state == "solved"
+    assert asked.most < chosen.most  # solutions of a position and a direction
+    assert asked.leaves and not chosen.leaves  # the second by elimination
+
+
 def test_what_is_not_solved_is_no_time() -> None:
     trial = try_robot(TABLES / "Olson13.toml", 5, 1, 20)
     lines = list(comparison([("Olson13", 6, None, ()), ("Minder13", 4, 0.5, trial.order)]))
