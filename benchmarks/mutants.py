@@ -1,17 +1,16 @@
 """Mutants of real robot files: whatever a file says, an answer or a refusal with its place, in time.
 
-    python -m benchmarks.mutants [--read N] [--run N] [--seed N] [--keep DIR] [--record [--add]]
+    python -m benchmarks.mutants [--read N] [--run N] [--first N] [--seed N] [--keep DIR] [--record [--add]]
 
 N mutants are read in this process (file, chains, DH form, geometry), another N go through the command line
-(`ikgen from-urdf`, Python and verification). Wrong is: an exception that is no `IkgenError` with a way out,
-an exit code other than 0, 2 or 3, a traceback, "please report it", more than two minutes. Exit code 1 where
-any is.
+(`ikgen from-urdf`, Python and verification), from the one of number `--first` on. Wrong is: an exception
+that is no `IkgenError` with a way out, an exit code other than 0, 2 or 3, a traceback, "please report it",
+more than two minutes. Exit code 1 where any is.
 """
 
 from __future__ import annotations
 
 import argparse
-import itertools
 import random
 import shutil
 import signal
@@ -39,11 +38,12 @@ def robot_files() -> list[Path]:
     return [*sorted(FIXTURES.glob("*.urdf")), *sorted((CORPUS / "urdf").glob("*.urdf"))]
 
 
-def mutants(count: int, seed: int) -> Iterator[tuple[str, bytes]]:
-    """Names and texts, each file in turn."""
+def mutants(count: int, seed: int, first: int = 0) -> Iterator[tuple[str, bytes]]:
+    """Names and texts, each file in turn; of all mutants of the seed those from number `first` on."""
     files = robot_files()
     texts = {path: path.read_text("utf-8") for path in files}
-    for number, path in zip(range(count), itertools.cycle(files)):
+    for number in range(first, first + count):
+        path = files[number % len(files)]
         draw = random.Random(f"{seed}/{number}")
         text = mutant(texts[path], draw)
         yield f"{path.stem}_{seed}_{number}", text.encode("utf-8", "surrogateescape")
@@ -94,13 +94,13 @@ def read_all(count: int, seed: int, keep: Path) -> Counter[str]:
     return counts
 
 
-def run_all(count: int, seed: int, keep: Path) -> Counter[str]:
+def run_all(count: int, seed: int, keep: Path, first: int = 0) -> Counter[str]:
     """The mutants of the second kind."""
     counts = Counter[str]()
     if count:
         warm_runs.load("from-urdf", str(FIXTURES / "ur5e.urdf"), "-q", "--samples", "10")
     links = [arm_of(path) for path in robot_files()]
-    for number, (name, data) in enumerate(mutants(count, seed + 1)):
+    for number, (name, data) in enumerate(mutants(count, seed + 1, first), start=first):
         path = keep / f"{name}.urdf"
         path.write_bytes(data)
         words = run_one(path, links[number % len(links)])
@@ -144,6 +144,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="Mutants of real robot files.")
     parser.add_argument("--read", type=int, default=20000)
     parser.add_argument("--run", type=int, default=1000)
+    parser.add_argument("--first", type=int, default=0, help="number of the first one that is run")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--keep", type=Path, default=None, help="where wrong ones are kept")
     parser.add_argument("--record", action="store_true", help="write the recorded result")
@@ -152,7 +153,7 @@ def main() -> int:
     keep = options.keep or Path(tempfile.mkdtemp(prefix="mutants-"))
     keep.mkdir(parents=True, exist_ok=True)
     found = {"read": read_all(options.read, options.seed, keep)}
-    found["run"] = run_all(options.run, options.seed, keep)
+    found["run"] = run_all(options.run, options.seed, keep, options.first)
     for kind, counts in found.items():
         for words, count in counts.most_common():
             print(f"{kind:5} {count:6}  {words}")

@@ -23,3 +23,9 @@ def test_all_are_read_or_refused(
     arguments = ["mutants", "--read", "150", "--run", "2", "--seed", "3", "--keep", str(tmp_path)]
     monkeypatch.setattr("sys.argv", arguments)
     assert mutants.main() == 0, capsys.readouterr().out
+
+
+def test_mutants_from_a_number_on_are_those_of_that_number() -> None:
+    first = list(mutants.mutants(5, 7))
+    assert list(mutants.mutants(3, 7, 2)) == first[2:]
+    assert len({name for name, _ in first}) == 5
