@@ -255,13 +255,16 @@ def test_a_tree_without_moving_joints():
 
 
 def test_a_long_row_of_mimic_joints_that_grows_is_refused():
-    inner = {f"j{i}": mimic(f"j{i - 1}", 1e3) for i in range(2, 5)}
+    inner = {f"j{i}": mimic(f"j{i - 1}", 1e2) for i in range(2, 5)}
     tree = serial("revolute", "revolute", "revolute", "revolute", **inner)
     with pytest.raises(
-        BadDescriptionError, match=r"'j4' follows 'j1' as 1e\+09 \* value"
+        BadDescriptionError, match=r"'j4' follows 'j1' as 1e\+06 \* value"
     ) as caught:
         select_chain(tree)
     assert caught.value.line is not None and "<mimic>" in caught.value.hint
+    assert "multiplier 10000" in caught.value.hint
+    fast = serial("revolute", "revolute", "revolute", j2=mimic("j1", -1e4))
+    assert select_chain(fast).dof == 2
 
 
 def test_a_mimic_joint_that_hardly_moves_is_refused():
@@ -269,6 +272,6 @@ def test_a_mimic_joint_that_hardly_moves_is_refused():
     with pytest.raises(BadDescriptionError, match="'j3' follows 'j1' as -1e-07") as caught:
         select_chain(serial("revolute", "revolute", "revolute", "revolute", **inner))
     assert "multiplier 0" in caught.value.hint
-    for multiplier in (0.0, 1e-5):
+    for multiplier in (0.0, 1e-4):
         still = {"j2": mimic("j1", multiplier)}
         assert select_chain(serial("revolute", "revolute", "revolute", **still)).dof == 2

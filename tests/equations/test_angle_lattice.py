@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -178,3 +179,24 @@ def test_a_lattice_over_another_graph_learns_by_itself(combination: AngleCombina
     lattice.add((1, 1, 0, 0, 0))
     lattice.rebuild()
     assert (1, 1, 0, 0, 0) not in other.known
+
+
+@pytest.mark.parametrize("ratio", [1, -2, 3, 7, -180, 10000])
+def test_angles_that_follow_fast_are_known_with_their_driver(ratio: int) -> None:
+    """Axis 2 turns `ratio` times as far as axis 1, parallel to it."""
+    driven = replace(ARM.rows[1], driver=0, scale=float(ratio))
+    rows = (ARM.rows[0], driven, *(replace(row, driver=i) for i, row in enumerate(ARM.rows[2:], 1)))
+    dh = replace(ARM, rows=rows, joints=(ARM.joints[0], *ARM.joints[2:]))
+    graph, angles = ExpressionGraph(len(ANGLES)), ANGLES[:, :4]
+    variables = JointVariables(graph, dh, angles)
+    lattice = AngleLattice(graph, variables)
+    lattice.add((1, 0, 0, 0))
+    lattice.rebuild()
+    for factor in (ratio, 1 + ratio):
+        pair = lattice.pair((factor, 0, 0, 0))
+        assert pair is not None
+        wanted = np.cos(factor * angles[:, 0]), np.sin(factor * angles[:, 0])
+        assert np.abs(np.array([e.probe for e in pair]) - wanted).max() < 1e-15 * (20 + abs(ratio))
+    most = 2 if abs(ratio) < 2 else abs(ratio) + 4
+    assert variables.largest_factor == most
+    assert lattice.pair((most + 1, 0, 0, 0)) is None

@@ -32,3 +32,9 @@ def test_nothing_follows_in_a_group_without_solved_angles() -> None:
     known = KnownCombinations([unit(0)], (*[0] * 20, *[1] * 20))
     assert unit(0) in known and unit(1) not in known and unit(30) not in known
     assert known[(0,) * COUNT] == ()
+
+
+def test_larger_factors_are_taken_where_they_are_asked_for() -> None:
+    thrice = (3,) + (0,) * (COUNT - 1)
+    assert KnownCombinations([unit(0)], (0,) * COUNT, 3)[thrice] == ((3, unit(0)),)
+    assert thrice not in KnownCombinations([unit(0)], (0,) * COUNT)

@@ -12,8 +12,11 @@ from ikgen.model.joint_tree import Joint, JointTree
 __all__ = ["Coupling", "couple"]
 
 _LARGEST = 1e6
-"""The greatest multiplier and offset (rad or m) that a chain of mimic joints may come to, and the inverse
-of the least multiplier but 0."""
+"""The greatest offset (rad or m) that a chain of mimic joints may come to."""
+
+_FASTEST = 1e4
+"""The greatest multiplier that a chain of mimic joints may come to, and the inverse of the least but 0:
+values of a joint that are 1e-6 apart count as one, which moves what follows it by a hundredth."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,9 +78,10 @@ def _resolve(tree: JointTree, joints: Mapping[str, Joint], joint: Joint) -> Coup
             line=joint.line,
             hint="a mimic joint follows a revolute, continuous or prismatic joint",
         )
-    little = 0.0 < abs(multiplier) < 1.0 / _LARGEST
-    if little or max(abs(multiplier), abs(offset)) > _LARGEST:
-        left = f"no digit of an angle is left beyond {_LARGEST:g}: correct <mimic>"
+    little, fast = 0.0 < abs(multiplier) < 1.0 / _FASTEST, abs(multiplier) > _FASTEST
+    if little or fast or abs(offset) > _LARGEST:
+        most = f"multiplier {_FASTEST:g}" if fast else f"offset {_LARGEST:g}"
+        left = f"too few digits of its value are left beyond {most}: correct <mimic>"
         raise BadDescriptionError(
             f"joint '{joint.name}' follows '{current.name}' as {multiplier:g} * value + {offset:g}",
             file=shown_file(tree.source),

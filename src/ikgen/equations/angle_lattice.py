@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from copy import copy
 
 import numpy as np
@@ -23,7 +24,7 @@ class AngleLattice:
         self._graph = graph
         self._variables = variables
         self.solved: dict[AngleCombination, tuple[Expr, Expr]] = {}
-        self.known = KnownCombinations((), tuple(variables.group))
+        self.known = self._following(())
         self._representatives = self._contiguous_keys()
         self._represented: dict[
             AngleCombination, tuple[int, AngleCombination, AngleCombination]
@@ -60,7 +61,11 @@ class AngleLattice:
         self._ranks.clear()
         known = [list(k) for k in self.solved]
         self._solved_rank = int(np.linalg.matrix_rank(np.array(known))) if known else 0
-        self.known = KnownCombinations(self.solved, tuple(self._variables.group))
+        self.known = self._following(self.solved)
+
+    def _following(self, solved: Iterable[AngleCombination]) -> KnownCombinations:
+        variables = self._variables
+        return KnownCombinations(solved, tuple(variables.group), variables.largest_factor)
 
     def pair(self, combination: AngleCombination) -> tuple[Expr, Expr] | None:
         """Cosine and sine of a known combination's angle, composed from solved ones; None if unknown."""
@@ -68,17 +73,19 @@ class AngleLattice:
         if terms is None:
             return None
         g = self._graph
-        c, s = g.one, g.zero
+        found = g.one, g.zero
         for factor, base in terms:
-            bc, bs = self.solved[base]
-            if factor < 0:
-                bs = g.neg(bs)
-            for _ in range(abs(factor)):
-                c, s = (
-                    g.sub(g.mul(c, bc), g.mul(s, bs)),
-                    g.add(g.mul(s, bc), g.mul(c, bs)),
-                )
-        return c, s
+            c, s = self.solved[base]
+            turn = c, (g.neg(s) if factor < 0 else s)
+            # one after the other while there are two at most, else by doubling
+            left = abs(factor)
+            while left:
+                if left % 2 or left == 2:
+                    found = _sum(g, found, turn)
+                    left -= 1
+                else:
+                    turn, left = _sum(g, turn, turn), left // 2
+        return found
 
     def represent(
         self, combination: AngleCombination
@@ -112,3 +119,9 @@ class AngleLattice:
             both = np.linalg.matrix_rank(np.array(known + [list(k) for k in combinations]))
             self._ranks[key] = int(both) - self._solved_rank
         return self._ranks[key]
+
+
+def _sum(g: ExpressionGraph, a: tuple[Expr, Expr], b: tuple[Expr, Expr]) -> tuple[Expr, Expr]:
+    """Cosine and sine of the sum of two angles."""
+    (ac, as_), (bc, bs) = a, b
+    return g.sub(g.mul(ac, bc), g.mul(as_, bs)), g.add(g.mul(as_, bc), g.mul(ac, bs))

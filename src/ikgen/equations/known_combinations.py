@@ -1,8 +1,9 @@
 """Which angle combinations follow from solved ones, each found when it is asked for.
 
-A combination follows where it is a sum of solved ones of its group with factors from -2 to 2. Their
-number grows as 5^n with the solved ones, so they are not listed: the factors of one are those of the
-linear system in an independent part of the solved ones, for each choice of factors of the few others.
+A combination follows where it is a sum of solved ones of its group with factors from -2 to 2, or beyond
+where mimic joints turn faster. Their number grows as 5^n with the solved ones, so they are not listed: the
+factors of one are those of the linear system in an independent part of the solved ones, for each choice of
+factors of the few others.
 """
 
 from __future__ import annotations
@@ -16,25 +17,32 @@ from numpy.typing import NDArray
 
 from ikgen.algebra.polynomial import AngleCombination
 
-__all__ = ["KnownCombinations", "Terms"]
+__all__ = ["LARGEST", "KnownCombinations", "Terms"]
 
 Terms: TypeAlias = tuple[tuple[int, AngleCombination], ...]
 
 _FACTORS = (0, 1, -1, 2, -2)
-_LARGEST = 2
+LARGEST = 2
+"""The largest factor of arms whose mimic joints turn no faster than what they follow."""
 
 
 class KnownCombinations:
     """The combinations that follow from `solved`, in `groups` that no combination reaches beyond; as a
-    mapping to (factor, solved combination) pairs, the fewest and smallest factors first."""
+    mapping to (factor, solved combination) pairs, the fewest and smallest factors first. Factors of an
+    independent part of them are at most `largest`."""
 
-    def __init__(self, solved: Iterable[AngleCombination], groups: tuple[int, ...]) -> None:
+    def __init__(
+        self,
+        solved: Iterable[AngleCombination],
+        groups: tuple[int, ...],
+        largest: int = LARGEST,
+    ) -> None:
         self._groups = groups
         members: dict[int, list[AngleCombination]] = {}
         for combination in solved:
             members.setdefault(self._group_of(combination), []).append(combination)
         self._places = {group: place for place, group in enumerate(members)}
-        self._spans = {group: _Span(found) for group, found in members.items()}
+        self._spans = {group: _Span(found, largest) for group, found in members.items()}
         self._found: dict[AngleCombination, Terms | None] = {}
 
     def _group_of(self, combination: AngleCombination) -> int:
@@ -75,8 +83,9 @@ class KnownCombinations:
 class _Span:
     """The solved combinations of one group."""
 
-    def __init__(self, members: list[AngleCombination]) -> None:
+    def __init__(self, members: list[AngleCombination], largest: int) -> None:
         self.members = members
+        self._largest = largest
         self._independent: list[int] = []
         for i in range(len(members)):
             if np.linalg.matrix_rank(self._rows([*self._independent, i])) > len(self._independent):
@@ -98,7 +107,7 @@ class _Span:
             for factor, i in zip(chosen, self._others, strict=True):
                 rest = rest - factor * np.array(self.members[i], dtype=float)
             solution = np.rint(rest @ self._inverse)
-            if (abs(solution) > _LARGEST).any() or (solution @ self._basis != rest).any():
+            if (abs(solution) > self._largest).any() or (solution @ self._basis != rest).any():
                 continue
             factors = dict(zip(self._others, chosen, strict=True))
             factors.update(zip(self._independent, map(int, solution), strict=True))

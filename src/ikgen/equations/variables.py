@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.algebra.polynomial import AngleCombination, canonical
+from ikgen.equations.known_combinations import LARGEST
 from ikgen.errors import UnsupportedJointError
 from ikgen.kinematics.fixed_order import cosines, product, sines
 from ikgen.kinematics.rigid import exact_cos_sin
@@ -81,6 +82,15 @@ class JointVariables:
             round(ratio) if row.revolute else 1,
             row.offset.value - ratio * first.offset.value,
         )
+
+    @property
+    def largest_factor(self) -> int:
+        """The largest factor with which one combination may follow from others: more than the usual one
+        where the rows that a joint drives turn faster, together, than twice the one that turns least."""
+        turned = [0] * self.count
+        for row in self._rows:
+            turned[row.driver] += abs(row.ratio)
+        return LARGEST if max(turned) <= LARGEST else sum(turned)
 
     def _groups(self) -> list[int]:
         group = list(range(self.count))
