@@ -324,3 +324,17 @@ def test_solutions_that_a_search_finds_are_among_the_rows(
 
 def test_an_arm_angle_that_is_held_counts_as_one_more(arm: ArmUnderTest) -> None:
     assert arm.rank == 6 and replace(arm, angle=object()).rank == 7
+
+
+def test_a_search_finds_solutions_as_near_as_its_residual_tells(
+    arm: ArmUnderTest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On a mast 1e5 times as long as the arm, a residual of 1e-11 of it is some 1e-6 rad."""
+    far = replace(arm, length=1e5 * arm.length)
+    q = np.array(row(0.9, 0.4))
+    for one, off, failures in ((arm, 3e-6, 1), (far, 3e-6, 0), (far, 2e-2, 1)):
+        monkeypatch.setattr(
+            "ikgen.verify.coverage.find_solutions", lambda *_, off=off: [np.array([q + off])]
+        )
+        trial = trial_of(one, rows_of([list(q)]), limits=False)
+        assert check_exhaustive(one, trial, 7, np.random.default_rng(0)).failures == failures

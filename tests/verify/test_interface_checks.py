@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -266,3 +267,20 @@ def test_inputs_of_a_wrong_shape_are_handed_over(task: str, size: int) -> None:
     code.dynamic_shapes = False
     excluded = check_shapes(arm(task), code, pose)  # type: ignore[arg-type]
     assert (excluded.count, excluded.passed) == (0, True)
+
+
+def test_a_joint_that_others_follow_fast_is_compared_relative_to_its_column() -> None:
+    """Where one turns 1e4 times as far as its driver, rounding alone moves entries by 1e-8."""
+    fast, code = arm(), Code()
+    true = fast.oracle.jacobian(sample().q)
+    scaled = true * np.array([1e4, 1.0, 1.0, 1.0, 1.0, 1.0])
+    for column, by, failures in ((0, 1e-6, 0), (0, 1e-4, 4), (1, 1e-8, 4)):
+        off = np.zeros((6, 6))
+        off[0, column] = by
+        made = replace(
+            fast,
+            oracle=SimpleNamespace(jacobian=lambda q: scaled),  # type: ignore[arg-type]
+        )
+        code = SimpleNamespace(jacobian=lambda q, off=off: scaled + off)  # type: ignore[assignment]
+        found = check_jacobian(made, code, sample())  # type: ignore[arg-type]
+        assert found.failures == failures

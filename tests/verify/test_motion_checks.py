@@ -160,3 +160,15 @@ def test_a_module_that_turns_the_wrong_way_between_poses_is_noticed(tmp_path: Pa
         checks = motion_checks(a, runner, regular_motions(a, generator(0, "motions")))
         failed.append(checks["paths"]().failures)
     assert failed[0] == 0 and failed[1] > 3
+
+
+def test_what_follows_a_joint_moves_no_farther_than_a_joint() -> None:
+    a = arm()
+    A = np.array(a.screws.A)
+    A[1, 0] = -4.0
+    fast = replace(a, screws=replace(a.screws, A=A))
+    assert fast.fastest.tolist() == [4.0, 1.0, 1.0, 1.0, 1.0, 1.0]
+    assert a.fastest.tolist() == [1.0] * 6
+    motions = regular_motions(fast, generator(0, "motions"))
+    moved = np.abs(motions.end - motions.start).max(axis=0)
+    assert 0.03 < moved[0] <= 0.05 and (moved[1:] > 0.15).all()

@@ -63,6 +63,11 @@ class ArmUnderTest:
         """Number of actuated joints."""
         return len(self.lower)
 
+    @property
+    def fastest(self) -> Array:
+        """How many times as far (dof,) as a joint the fastest of what it drives moves, at least 1."""
+        return np.asarray(np.max(np.abs(self.screws.A), axis=0, initial=1.0))
+
     def held_values(self, q: Array, poses: Array) -> Array | None:
         """What configurations (N, dof) at `poses` (N, 4, 4) have of it: (N, held); None where nothing is
         held."""

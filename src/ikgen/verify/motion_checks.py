@@ -29,7 +29,9 @@ Array = NDArray[np.float64]
 CLEARLY_REGULAR = 0.05  # smallest singular value all the way
 FOUND = 1e-6  # rad or m
 _MOTIONS, _SEARCHES, _DRAWN = 15, 3, 600
-_FARTHEST = 0.2  # rad, or m and of the arm's length, that a joint moves between two poses
+_FARTHEST = 0.2
+"""rad, or m and of the arm's length, that a joint or what follows it moves between two poses."""
+
 _MARGIN = 0.5  # of that, from the limits
 _BETWEEN = 9  # configurations that are looked at
 
@@ -47,7 +49,7 @@ def regular_motions(arm: ArmUnderTest, rng: np.random.Generator) -> Motions:
     """A few random ones, clear of the limits, as what lies between the poses is not the motion; none of an
     arm that is nowhere clearly regular."""
     start = arm.uniform(rng, _DRAWN)
-    most = np.where(arm.revolute, _FARTHEST, _FARTHEST * min(1.0, arm.length))
+    most = np.where(arm.revolute, _FARTHEST, _FARTHEST * min(1.0, arm.length)) / arm.fastest
     end = start + rng.uniform(-most, most, start.shape)
     share = np.linspace(0.0, 1.0, _BETWEEN)[:, None, None]
     sigma = arm.sigma((start + share * (end - start)).reshape(-1, arm.dof))
