@@ -191,3 +191,16 @@ def test_of_two_conditions_one_is_taken_where_a_third_holds(
     one, two = (np.broadcast_to(FLAGS[name], 4).astype(bool) for name in (mine, other))
     shown = np.full(4, found) if isinstance(found, bool) else found.probe[:4] > 0.5
     assert shown.tolist() == np.where(np.array(here) > 0.5, one, two).tolist()
+
+
+def test_a_divisor_of_the_size_of_what_the_geometry_is_off_comes_last(
+    solved: SolutionGraph,
+) -> None:
+    """An offset of 0.1 mm, kept where the file is off by 0.01 mm, tells hardly a digit."""
+    for error, comes_first in ((1e-5, False), (1e-7, True)):
+        b = Bench(solved, model_error=error)
+        small = b.given((1e-4,) * len(SHARES))
+        small = b.g.mul(small, b.g.const(1.0))
+        first = Linear(b.g.mul(b.share, b.given((1e-4,) * b.g.probes)), b.g.neg(small))
+        last = Linear(b.g.one, b.g.const(-3.0))
+        assert b.taken(b.length, first, last)[0] is comes_first

@@ -16,6 +16,10 @@ __all__ = ["choose_form"]
 WELL_CONDITIONED = 1e-3
 """Relative size of a divisor below which a fallback is taken in its form's place."""
 
+_LOST = 1e-2
+"""Model error over the natural size of a divisor (an offset of 0.1 mm, say) above which it is never well
+conditioned: hardly a digit of it is the file's."""
+
 Flag = bool | Expr
 
 
@@ -49,9 +53,9 @@ def choose_form(
     first.
     """
     g = work.g
-    first = [_well_conditioned(work, form) for form in forms[:-1]]
+    first = [_well_conditioned(work, form) for form in forms[:-1] if not _lost(work, form)]
     last = forms[-1].divisor
-    if first and last.clear is not None and work.model_error > ROUNDED:
+    if len(forms) > 1 and last.clear is not None and work.model_error > ROUNDED:
         wide = Divisor(last.value, last.clear, last.clear)
         forms = [*first, replace(forms[-1], divisor=wide), *forms]
     else:
@@ -85,6 +89,13 @@ def choose_form(
         if form.under is not None:
             work.note_fold(form.under[0], natural_size(form.under[1]))
     return values
+
+
+def _lost(work: Placement, form: LoweredForm) -> bool:
+    """Whether the file's geometry leaves no more of a form's divisor than of what it is off."""
+    divisor = form.divisor
+    error = work.model_error if work.model_error > ROUNDED else 0.0
+    return divisor.magnitude is not None and error > _LOST * divisor.size ** (1.0 / divisor.power)
 
 
 def _well_conditioned(work: Placement, form: LoweredForm) -> LoweredForm:
