@@ -18,6 +18,7 @@ from ikgen.generation.progress import Progress, silent
 from ikgen.generation.publish import check_folder, left_over, publish
 from ikgen.generation.publishing import complete_folder
 from ikgen.generation.read import default_name, read
+from ikgen.generation.unsolved import incomplete_error
 from ikgen.tasks import find_task
 
 if TYPE_CHECKING:
@@ -113,7 +114,8 @@ def make_texts(
     outputs: Outputs,
     progress: Progress = silent,
 ) -> Made:
-    """Derive, emit and verify; nothing is written. Raises `VerificationError` if a check fails.
+    """Derive, emit and verify; nothing is written. Raises `VerificationError` if a check fails,
+    `UnsolvedChainError` where rows are missing of a form that was known not to have all.
 
     Where what was chosen for the arm fails, the next choice is taken: of joints to hold, of the tool's
     axis, and in the end the whole pose.
@@ -125,13 +127,13 @@ def make_texts(
         try:
             made, reports = _emitted(derivation, emitters, outputs, progress)
             break
-        except VerificationError:
+        except VerificationError as error:
             if derivation.held is not None and len(held) < _REFUSED:
                 held.append(derivation.held.joints)
             elif derivation.chosen and not derivation.task.whole_pose:
                 tasks.append(derivation.task.name)
             else:
-                raise
+                raise incomplete_error(error, request) from None
     for emitter in emitters:
         if emitter.tells_verification:
             progress("emit", emitter.name)

@@ -5,17 +5,21 @@ from __future__ import annotations
 import itertools
 from typing import TYPE_CHECKING
 
-from ikgen.errors import UnsolvedChainError
+from ikgen.emit.derivation import Unsolved
+from ikgen.errors import IkgenError, UnsolvedChainError, VerificationError
 from ikgen.kinematics.classify import same_line_as_previous
 from ikgen.report.leftover import leftover_text
 
 if TYPE_CHECKING:
-    from ikgen.emit.derivation import Unsolved
+    from ikgen.emit.derivation import Derivation
     from ikgen.generation.request import Request
     from ikgen.model.dh import DHChain
     from ikgen.tasks import Task
 
-__all__ = ["unsolved_error"]
+__all__ = ["incomplete_error", "unsolved_error"]
+
+_OF_WRONG_ROWS = {"closure", "distinct rows", "inside limits", "constants", "forward", "jacobian"}
+"""Checks that no form that misses rows fails for it."""
 
 
 def unsolved_error(found: Unsolved, request: Request) -> UnsolvedChainError:
@@ -34,6 +38,51 @@ def unsolved_error(found: Unsolved, request: Request) -> UnsolvedChainError:
         details=details,
         hint=f"{request.command()} {advice}",
     )
+
+
+def incomplete_error(error: VerificationError, request: Request) -> IkgenError:
+    """The error of a verification that found rows missing where the form was known not to hold everywhere:
+    by a weak step, an elimination that misses some, or with fewer joints than the task fixes. Any other
+    failure as it is."""
+    derivation: Derivation | None = error.derivation
+    failed = {check.name for report in error.reports.values() for check in report.failed}
+    if derivation is None or not failed or failed & _OF_WRONG_ROWS:
+        return error
+    causes = _known_gaps(derivation)
+    if not causes:
+        return error
+    left = Unsolved(
+        derivation.reading,
+        derivation.geometry,
+        derivation.task,
+        derivation.graph,
+        derivation.module.name,
+        request.robot.name,
+    )
+    return UnsolvedChainError(
+        f"no closed form found for the task '{derivation.task.name}' that has all solutions: {causes[0]}",
+        unsolved=left,
+        details=tuple(report.worst_case for report in error.reports.values()),
+        hint=f"{request.command()} --free JOINT, or --task TASK",
+    )
+
+
+def _known_gaps(derivation: Derivation) -> list[str]:
+    """Why the form may miss rows, in words; empty where nothing tells."""
+    from ikgen.tasks.fitting import over_constrained
+
+    dh, plan = derivation.reading.dh, derivation.module.plan
+    found = []
+    if plan is None and not derivation.graph.sound:
+        weak = [step.candidate for step in derivation.graph.steps if not step.sound]
+        steps = ", ".join(f"{c.unknown.text} ({c.leaf})" for c in weak)
+        found.append(f"the rules leave no other way where {steps} fails")
+    if plan is not None and plan.recall < 1.0:
+        found.append(f"the elimination finds {plan.recall:.1%} of them")
+    if over_constrained(dh, derivation.task):
+        moving = dh.dof - len(dh.free)
+        found.append(f"{moving} joints move and the task fixes {derivation.task.freedoms} freedoms")
+    return found
 
 
 def _counted(dh: DHChain, task: Task) -> tuple[str, str]:
