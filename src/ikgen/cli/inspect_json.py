@@ -65,11 +65,12 @@ def _attempt(attempt: Attempt) -> dict[str, Any]:
 def _chain(dh: DHChain, geometry: GeometryClass) -> dict[str, Any]:
     from ikgen.kinematics.kept import kept_constants
 
+    names = [joint.name for joint in dh.joints]
     return {
         "base": dh.base_link,
         "tip": dh.tip_link,
         "dof": dh.dof,
-        "joints": [joint.name for joint in dh.joints],
+        "joints": names,
         "geometry": {"name": geometry.name, "words": geometry.words},
         "base_transform": dh.X_base.tolist(),
         "tool_transform": dh.X_tip.tolist(),
@@ -77,6 +78,7 @@ def _chain(dh: DHChain, geometry: GeometryClass) -> dict[str, Any]:
         "constants": constants(dh),
         "snaps": [{"what": s.what, "before": s.before, "after": s.after} for s in dh.snaps],
         "kept": [{"what": s.what, "value": s.before, "meant": s.after} for s in kept_constants(dh)],
+        "motors": [] if dh.transmission is None else list(dh.transmission.words(names)),
         "deviation": {"m": dh.deviation[0], "rad": dh.deviation[1]},
     }
 

@@ -58,6 +58,7 @@ def _chain(dh: DHChain, geometry: GeometryClass) -> list[str]:
         f"modified DH rows:\n{dh_table(dh)}",
         f"before the first row and after the last (m, rad):\n{ends}",
         f"geometry: {geometry.words}",
+        *_motors(dh),
     ]
     metres, radians = dh.deviation
     if dh.snaps:
@@ -67,6 +68,14 @@ def _chain(dh: DHChain, geometry: GeometryClass) -> list[str]:
     else:
         parts.append("taken as exact: nothing")
     return parts + _kept(dh)
+
+
+def _motors(dh: DHChain) -> list[str]:
+    """What motors move the joints by, where several move one."""
+    if dh.transmission is None:
+        return []
+    lines = "\n".join(f"  {one}" for one in dh.transmission.words([j.name for j in dh.joints]))
+    return [f"joints of motors, which the solver's values are of:\n{lines}"]
 
 
 def _kept(dh: DHChain) -> list[str]:

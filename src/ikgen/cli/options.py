@@ -76,7 +76,8 @@ _CHAIN_OPTIONS = (
         "--couple",
         multiple=True,
         metavar="JOINT=SOURCE*k+c",
-        help="Make a joint follow another: its value is k times the other's plus c (rad, m).",
+        help="Make a joint follow another: its value is k times the other's plus c (rad, m). Of several "
+        "sources, JOINT=A*k1+B*k2+c: what motors move it by, whose values the solver then has.",
     ),
     *_READING_OPTIONS,
     click.option(

@@ -109,7 +109,8 @@ def parse_coupled(texts: Sequence[str]) -> dict[str, str]:
             read_relation(relation)
         except ValueError as error:
             raise UsageError(
-                f"--couple {text}: {error}", hint="for example --couple stage_2=stage_1*1+0"
+                f"--couple {text}: {error}",
+                hint="for example --couple stage_2=stage_1*1+0, or --couple elbow=elbow*1+shoulder*-1",
             ) from None
         if not joint or joint in found:
             what = "given twice" if joint else "no joint named"

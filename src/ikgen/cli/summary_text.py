@@ -10,6 +10,7 @@ from ikgen.generation.result import rounding
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
     from ikgen.generation.generate import Generation
+    from ikgen.model.dh import DHChain
     from ikgen.verify.verification_report import VerificationReport
 
 __all__ = ["summary"]
@@ -24,6 +25,7 @@ def summary(generation: Generation) -> str:
         ("task", _task(derivation) + _held(derivation)),
         ("geometry", derivation.geometry.words + _rounding(derivation)),
         ("solved", "; ".join(module.order)),
+        *_motors(dh),
         ("solutions", _solutions(generation)),
     ]
     lines += [("verified", _verified(name, r)) for name, r in generation.reports.items()]
@@ -35,6 +37,13 @@ def summary(generation: Generation) -> str:
     lines += [("wrote", str(path)) for path in generation.files]
     lines.append(("time", f"{generation.seconds:.1f} s"))
     return table([(f"{name}:", text) for name, text in lines], indent="")
+
+
+def _motors(dh: DHChain) -> list[tuple[str, str]]:
+    """Of what the solver's values are, where that is not the joints."""
+    if dh.transmission is None:
+        return []
+    return [("motors", "; ".join(dh.transmission.words([joint.name for joint in dh.joints])))]
 
 
 def _task(derivation: Derivation) -> str:

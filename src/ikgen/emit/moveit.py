@@ -61,7 +61,7 @@ def emit(module: SolverModule, chain: Chain | None = None) -> dict[str, str]:
     paths |= {f"{include}/{header}.hpp": f"{header}.hpp" for header in headers}
     values = _values(module, package) | group
     out = {path: render("moveit", f"{file}.jinja", **values) for path, file in paths.items()}
-    return out | {f"{include}/{module.name}_ik.hpp": emit_header(module)}
+    return out | {f"{include}/{module.name}_ik.hpp": emit_header(module.on_joints)}
 
 
 def _group(module: SolverModule, chain: Chain | None) -> dict[str, object]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ikgen.emit.cpp.cpp_emitter import emit_header
 from ikgen.emit.cpp.cpp_language import literal as quoted
+from ikgen.emit.gear_text import gear_text
 from ikgen.emit.python.python_text import literal
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
@@ -39,6 +40,7 @@ def emit(module: SolverModule) -> dict[str, str]:
         "literal": literal,
         "quoted": quoted,
         "lower": [_number(joint.limits.lower) for joint in module.dh.joints],
+        "geared": gear_text(module, _number),
         "version": _version(module.generator_version),
         "upper": [_number(joint.limits.upper) for joint in module.dh.joints],
     }

@@ -66,6 +66,11 @@ class SolverModule:
     license: str | None = None
 
     @property
+    def on_joints(self) -> SolverModule:
+        """The same with values of joints, also where motors move several: what robot models have."""
+        return replace(self, dh=replace(self.dh, transmission=None))
+
+    @property
     def held(self) -> tuple[str, ...]:
         """Names of what is held: joints, base to tip, then the arm angle."""
         return self.dh.held

@@ -57,7 +57,8 @@ def nearby(reading: Reading) -> DHChain | None:
 
     if reading.chain is None:
         return None
-    return to_dh(reading.chain, free=reading.dh.free, length_tolerance=NEARBY)
+    near = to_dh(reading.chain, free=reading.dh.free, length_tolerance=NEARBY)
+    return replace(near, transmission=reading.dh.transmission)
 
 
 def held_choices(reading: Reading, task: Task) -> tuple[HeldChoice, ...]:

@@ -25,9 +25,19 @@ __all__ = ["arm_name", "default_name", "has_arm_angle", "read", "read_tree"]
 def read(request: Request, tree: JointTree | None = None) -> Reading:
     """Read the file, choose the chain and convert it to modified DH form. `tree` is the file's where it was
     read before."""
-    reading = _read(request, tree)
+    reading = _with_motors(_read(request, tree), request)
     _check_units(request, reading.dh.held_inputs)
     return _with_elbow(reading) if reading.dh.arm_angle else reading
+
+
+def _with_motors(reading: Reading, request: Request) -> Reading:
+    """With the transmission between motors and joints, where the request has one."""
+    if not request.motors:
+        return reading
+    from ikgen.kinematics.motor_matrix import motor_matrix
+
+    transmission = motor_matrix(reading.dh, request.motors)
+    return replace(reading, dh=replace(reading.dh, transmission=transmission))
 
 
 def _with_elbow(reading: Reading) -> Reading:
@@ -86,7 +96,7 @@ def _coupled_chain(request: Request, tree: JointTree) -> tuple[JointTree, Chain,
     locked = dict(request.lock)
     chain = select_chain(tree, request.base, request.tip, locked)
     relations = request.relations
-    stages = {} if relations else equal_stages(chain)
+    stages = {} if request.couple else equal_stages(chain)
     named = {*stages, *(stage.joint for stage in stages.values())}
     if named & {*request.free}:
         stages = {}

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from ikgen.generation.codec import CodecError, coded, read_free, uncoded
-from ikgen.model.joint_relation import Mimic, read_relation
+from ikgen.model.joint_relation import Mimic, Relation, read_relation
 from ikgen.model.maintainer import is_maintainer
 from ikgen.model.module_name import is_module_name
 from ikgen.tasks import AXES
@@ -72,8 +72,9 @@ class Request:
     """One robot file or DH table, one chain, one task, by the tool's axis `tool_axis` where it is one with
     a direction (None: the one that suits). `free` maps held joints to their default value
     (None: chosen), `lock` fixed joints to their value (rad or m), `couple` joints to what
-    they follow (`SOURCE*k+c`, rad or m), `args` are xacro's, `calibration` is a
-    file of the one arm's own kinematics; `name` is the prefix of the files (None: made from the robot's);
+    they follow (`SOURCE*k+c`, rad or m) or to what motors move them by (`A*k1+B*k2+c`), `args` are
+    xacro's, `calibration` is a file of the one arm's own kinematics; `name` is the prefix of the files
+    (None: made from the robot's);
     `maintainer` (`NAME <EMAIL>`) and `license` go into the manifest of a ROS package; `trust` lets the
     file do whatever xacro can."""
 
@@ -101,7 +102,18 @@ class Request:
 
     @property
     def relations(self) -> dict[str, Mimic]:
-        """What the coupled joints follow."""
+        """What joints follow that follow one other."""
+        read = {joint: relation.mimic(joint) for joint, relation in self._couplings.items()}
+        return {joint: mimic for joint, mimic in read.items() if mimic is not None}
+
+    @property
+    def motors(self) -> dict[str, Relation]:
+        """What the other coupled joints are of the motors' values."""
+        read = self._couplings.items()
+        return {joint: relation for joint, relation in read if relation.mimic(joint) is None}
+
+    @property
+    def _couplings(self) -> dict[str, Relation]:
         return {joint: read_relation(text) for joint, text in self.couple.items()}
 
     @property

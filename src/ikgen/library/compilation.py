@@ -96,7 +96,10 @@ class CompiledArm(Arm):
 
     @cached_property
     def _names(self) -> Any:
-        return partial(self.module._branch_names, self.module._ARM)
+        module = self.module
+        names = partial(module._branch_names, module._ARM)
+        motors = getattr(module, "_MOTORS", None)
+        return names if motors is None else lambda rows: names(motors.joints(rows))
 
     def _matrices(self, function: str, poses: Any, orthonormalize: bool) -> Array:
         """Poses of any form as matrices."""

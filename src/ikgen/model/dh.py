@@ -13,6 +13,7 @@ from fractions import Fraction
 
 from ikgen.model.chain import REVOLUTE, ActuatedJoint
 from ikgen.model.joint_tree import Limits, Matrix
+from ikgen.model.transmission import Transmission
 
 __all__ = ["ARM_ANGLE", "HELD_ANGLE", "Angle", "DHChain", "DHRow", "Length", "Snap"]
 
@@ -114,7 +115,8 @@ class DHChain:
     `X_base`, `X_tip` (4, 4): constant transforms at the ends. `file_frames`: n + 1 constant transforms
     (4, 4), the file's own chain to round-off: `T = F_0 M_1(v_1) F_1 ... M_n(v_n) F_n` with `v_i` the DH
     variable of row i (offset included) and `M` = Rz or Tz. `deviation` is the largest difference
-    between the two over random configurations: (m, rad).
+    between the two over random configurations: (m, rad). `transmission` is between motors and joints
+    where each joint has no motor of its own; all else here, limits too, is of the joints.
     """
 
     robot: str
@@ -129,6 +131,7 @@ class DHChain:
     deviation: tuple[float, float] = (0.0, 0.0)
     free: tuple[str, ...] = ()
     locked: tuple[tuple[str, float], ...] = ()
+    transmission: Transmission | None = None
 
     @property
     def dof(self) -> int:

@@ -1,4 +1,4 @@
-"""A joint that follows another: `SOURCE*k+c`. The standard library alone: configs hold such texts."""
+"""What a joint's value follows: `A*k1+B*k2+c`. The standard library alone: configs hold such texts."""
 
 from __future__ import annotations
 
@@ -6,12 +6,15 @@ import math
 import re
 from dataclasses import dataclass
 
-__all__ = ["Mimic", "read_relation"]
+__all__ = ["Mimic", "Relation", "read_relation"]
 
 _NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-_RELATION = re.compile(
-    rf"(?P<source>[^*]+?)(?:\*(?P<k>[+-]?{_NUMBER})(?P<c>[+-]{_NUMBER})?)?", re.ASCII
+_ALONE = re.compile(r"[^*]+")
+_TERM = rf"(?P<source>[^*]+?)\*(?P<k>[+-]?{_NUMBER})(?=\s*[+-]|$)"
+_FIRST, _NEXT = (
+    re.compile(sign + _TERM, re.ASCII) for sign in ("(?P<sign>)", r"\s*(?P<sign>[+-])")
 )
+_CONSTANT = re.compile(rf"\s*[+-]\s*{_NUMBER}", re.ASCII)
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,14 +31,51 @@ class Mimic:
         return f"{self.joint}*{self.multiplier!r}{self.offset:+}"
 
 
-def read_relation(text: str) -> Mimic:
-    """The relation of a text `SOURCE`, `SOURCE*k` or `SOURCE*k+c`; raises `ValueError` for another."""
-    found = _RELATION.fullmatch(text.strip())
-    if found is None:
+@dataclass(frozen=True, slots=True)
+class Relation:
+    """`value = sum(multiplier * source) + offset`, in rad or m; `terms` are the sources, each once, with
+    their multipliers."""
+
+    terms: tuple[tuple[str, float], ...]
+    offset: float = 0.0
+
+    def mimic(self, joint: str) -> Mimic | None:
+        """The one other joint that `joint` follows by it. None where there are several sources, or where it
+        is what the joint's own motor moves it by."""
+        (source, multiplier), *others = self.terms
+        own = source == joint
+        return None if others or own else Mimic(source, multiplier, self.offset)
+
+
+def read_relation(text: str) -> Relation:
+    """The relation of a text `SOURCE`, `SOURCE*k`, `SOURCE*k+c`, or of several sources `A*k1+B*k2+c`;
+    raises `ValueError` for another."""
+    relation = _parsed(text.strip())
+    if relation is None:
         raise ValueError(f"'{text}' is not SOURCE*k+c with numbers k and c")
-    relation = Mimic(found["source"].strip(), float(found["k"] or 1), float(found["c"] or 0))
-    if not math.isfinite(relation.multiplier) or not math.isfinite(relation.offset):
+    sources = [source for source, _ in relation.terms]
+    if not all(map(math.isfinite, (relation.offset, *(k for _, k in relation.terms)))):
         raise ValueError(f"'{text}' holds no finite number")
-    if relation.multiplier == 0.0:
+    if relation.terms == ((sources[0], 0.0),):
         raise ValueError(f"'{text}' holds the joint still: lock it instead")
+    for source, multiplier in relation.terms:
+        if multiplier == 0.0 or sources.count(source) > 1:
+            what = "has the factor 0" if multiplier == 0.0 else "is named twice"
+            raise ValueError(f"in '{text}' '{source}' {what}")
     return relation
+
+
+def _parsed(text: str) -> Relation | None:
+    if _ALONE.fullmatch(text):
+        return Relation(((text, 1.0),))
+    terms: list[tuple[str, float]] = []
+    at = 0
+    while found := (_NEXT if terms else _FIRST).match(text, at):
+        size = float(found["k"])
+        terms.append((found["source"].strip(), -size if found["sign"] == "-" else size))
+        at = found.end()
+    rest = text[at:]
+    read = terms and all(source for source, _ in terms)
+    if not read or (rest and not _CONSTANT.fullmatch(rest)):
+        return None
+    return Relation(tuple(terms), float("".join(rest.split()) or 0.0))

@@ -57,7 +57,9 @@ def engine_of(
         raise UsageError("a table without numbers reaches nothing", hint="give [parameters] values")
     rows, moving, size = _measure(derivation)
     try:
-        return compiled_engine(derivation.module, rows, moving, size, portable=portable), size
+        return compiled_engine(
+            derivation.module.on_joints, rows, moving, size, portable=portable
+        ), size
     except MissingToolError as error:
         warn(f"slower, by NumPy: {error.message}; {error.hint}")
     return interpreted_engine(derivation), size
@@ -65,7 +67,7 @@ def engine_of(
 
 def interpreted_engine(derivation: Derivation) -> Interpreted:
     """The NumPy engine of an arm with numbers."""
-    module = derivation.module
+    module = derivation.module.on_joints
     return Interpreted(emit_module(module), module.dh, *_measure(derivation))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
 
@@ -144,6 +145,34 @@ def _ends(dh: DHChain, task: Task) -> list[Block]:
             Paragraph(("The variables of the table from the joint values q:",)),
             Formulas(tuple(lines)),
         ]
+    return out + _motors(dh)
+
+
+def _motors(dh: DHChain) -> list[Block]:
+    """How motors move the joints, where several move one."""
+    if dh.transmission is None:
+        return []
+    lines = []
+    rows = zip(dh.transmission.matrix.tolist(), dh.transmission.offset.tolist(), strict=True)
+    for place, (row, c) in enumerate(rows, start=1):
+        terms = [(k, m.name("m", str(j))) for j, k in enumerate(row, start=1) if k]
+        lines.append(m.name("q", str(place)) + m.relation() + _linear(terms, c))
+    text = (
+        "The joint values q from the motors' values m, which the emitted code takes and gives; all else "
+        "here, limits too, is of the joints:"
+    )
+    return [Paragraph((text,)), Formulas(tuple(lines))]
+
+
+def _linear(terms: Sequence[tuple[float, Math]], constant: float) -> Math:
+    """A sum of multiples and a number."""
+    out = Math(())
+    for k, what in [*terms, *([(constant, Math(()))] if constant else [])]:
+        sign = m.minus(sign=not out.tokens) if k < 0 else m.plus() if out.tokens else Math(())
+        bare = not what.tokens
+        size = m.number(abs(k)) if bare or abs(k) != 1.0 else Math(())
+        gap = m.space() if size.tokens and not bare else Math(())
+        out = out + sign + size + gap + what
     return out
 
 

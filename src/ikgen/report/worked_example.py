@@ -58,12 +58,12 @@ def worked_example(derivation: Derivation, runner: PythonModule) -> WorkedExampl
 
 
 def solver_of(derivation: Derivation) -> PythonModule | None:
-    """The emitted Python module; None of a table whose lengths have no numbers."""
+    """The emitted Python module, with values of joints; None of a table whose lengths have no numbers."""
     if derivation.reading.dh.symbols:
         return None
     with ScratchFolder("ikgen-") as folder:
         path = folder / f"{derivation.module.name}_ik.py"
-        path.write_text(emit_module(derivation.module), encoding="utf-8")
+        path.write_text(emit_module(derivation.module.on_joints), encoding="utf-8")
         return PythonModule(path)
 
 

@@ -12,6 +12,7 @@ from ikgen.emit.cpp.cpp_statements import ProgramText
 from ikgen.emit.cpp.cpp_twist_chain import twist_lines
 from ikgen.emit.cpp.header_bundle import bundle
 from ikgen.emit.elbow_text import elbow_text
+from ikgen.emit.gear_text import gear_text
 from ikgen.emit.printer import expression
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
@@ -64,7 +65,7 @@ def emit_header(module: SolverModule) -> str:
         "cpp",
         "header.hpp.jinja",
         m=module,
-        namespace=f"{module.name}_ik",
+        **_namespaces(module),
         runtime=runtime,
         policy=policy_lines(policy, runtime.body),
         careful=_careful(module),
@@ -98,6 +99,13 @@ def emit_header(module: SolverModule) -> str:
         literal=literal,
         comment=comment,
     )
+
+
+def _namespaces(module: SolverModule) -> dict[str, object]:
+    """The solver's namespace: inside the `outer` one where functions there have values of motors."""
+    outer, geared = f"{module.name}_ik", gear_text(module, number)
+    inner = f"{outer}::joints" if geared else outer
+    return {"outer": outer, "namespace": inner, "geared": geared}
 
 
 def _careful(module: SolverModule) -> bool:

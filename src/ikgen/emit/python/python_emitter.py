@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from ikgen.elimination.routine import runtime_policy
 from ikgen.emit.blanks import blanks, pairs
 from ikgen.emit.elbow_text import elbow_text
+from ikgen.emit.gear_text import gear_text
 from ikgen.emit.printer import expression
 from ikgen.emit.python.branch_kinds import branch_kind, elbow_end
 from ikgen.emit.python.bundle import bundle
@@ -60,6 +61,7 @@ def emit_module(module: SolverModule) -> str:
         held_name=words(_held_name(module)),
         held_turns=module.dh.arm_angle or _held_turns(module),
         elbow=elbow_text(module, number),
+        geared=gear_text(module, number),
         guarded=module.guarded,
         beside=[[[number(float(x)) for x in row] for row in D] for D in module.beside],
         orientation=module.reads.orientation,

@@ -117,7 +117,8 @@ class PythonModule:
         """`solve` for each of the poses (N, 4, 4) with free values (N, f) and seeds (N, dof): every eighth
         by itself, of the others those that leave doubts in stacks."""
         each = np.arange(len(poses))
-        alone = each % _ALONE == 0 if hasattr(self.module, "_solve_each") else each >= 0
+        stacks = hasattr(self.module, "_solve_each") and not hasattr(self.module, "_MOTORS")
+        alone = each % _ALONE == 0 if stacks else each >= 0
         frees, near = (None if x is None else x[~alone] for x in (free, seeds))
         stacked = iter(() if alone.all() else self._stacked(poses[~alone], frees, near, limits))
         answers = [
