@@ -14,6 +14,7 @@ from tests.support.solving import import_text
 
 import ikgen.runtime.python
 from ikgen.emit.python.bundle import MARK, bundle
+from ikgen.emit.python.docstrings import summary
 from ikgen.emit.python.import_lines import External, import_lines
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.python.runtime_source import PACKAGE, read_source, taken_apart
@@ -66,6 +67,71 @@ def test_details_of_private_documentation_stay_with_the_runtime() -> None:
     assert turned.text({}) == text.partition("\n\n\n")[2].rstrip()
     short = turned.text({"turned": "_turned"})
     assert short == 'def _turned(x: float) -> float:\n    """Say it."""\n    return -x'
+
+
+@pytest.mark.parametrize(
+    ("text", "first"),
+    [
+        ("Rows (k, 6); the errors.", "Rows (k, 6)."),
+        ("Poses at q\n(..., dof): (..., 4, 4); raises ValueError.", "Poses at q (..., dof): (..., 4, 4)."),
+        ("The best: of all.", "The best."),
+        ("`F_0; F_1 ... F_n`, a chain (one; two). It moves.", "`F_0; F_1 ... F_n`, a chain (one; two)."),
+        ("No full stop", "No full stop"),
+    ],
+)  # fmt: skip
+def test_what_a_docstring_says_first(text: str, first: str) -> None:
+    assert summary(text) == first
+
+
+def test_a_class_tells_what_its_members_are() -> None:
+    assert summary("Ends: rows `q`; errors. More.", short=False) == "Ends: rows `q`; errors."
+
+
+CLASSES = '''"""A module."""
+
+
+class Walk:
+    """Goes."""
+
+    def on(self) -> int:
+        return self._step()
+
+    def _step(self) -> int:
+        return ONE
+
+    # Back.
+    def back(self) -> int:
+        """Goes back; far."""
+        return TWO
+
+    @property
+    def far(self) -> bool:
+        return True
+
+
+ONE, TWO = 1, 2
+'''
+
+
+def test_methods_that_are_not_called_stay_with_the_runtime() -> None:
+    walk = taken_apart("module", CLASSES).definitions[0]
+    assert [one.name for one in walk.members] == ["on", "_step", "back"]
+    less = walk.without(one for one in walk.members if one.name == "back")
+    assert less.text({}) == CLASSES.partition("\n\n\n")[2].partition("\n\n\nONE")[0].replace(
+        CLASSES[CLASSES.index("\n    # Back") : CLASSES.index("\n    @property")], ""
+    )
+    assert less.uses == {"Walk", "int", "ONE", "bool", "property", "self"}
+
+
+def test_methods_that_are_called_come_along(tmp_path: Path) -> None:
+    shell = SHELL.replace(
+        "rigid_motion import rotations_z as _turns", "path_following import _Walk"
+    )
+    shell = shell.replace("_turns(np.array(HALF))", "_Walk._newton")
+    text = bundle(shell)
+    assert "def _newton(" in text and "def _motion(" in text  # which that calls
+    assert "def go_on(" not in text and "def _unstopped(" not in text and "def __init__(" in text
+    assert import_text(text, tmp_path).half_turn().__name__ == "_newton"
 
 
 def test_the_same_text_each_time() -> None:

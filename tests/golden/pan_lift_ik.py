@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from functools import cache, partial
+from functools import partial
 from math import asin, atan2, ceil, copysign, floor, inf, isfinite, pi, remainder, sqrt
 from operator import lt
 from typing import Any, NamedTuple, Protocol, TypeVar
@@ -226,8 +226,7 @@ Row = tuple[float, ...]
 
 
 def _real_array(values: ArrayLike, name: str) -> Array:
-    """The values as doubles; raises ValueError for what is no array of numbers, and for complex ones, whose
-    imaginary part would be lost."""
+    """The values as doubles."""
     try:
         array = np.asarray(values)
         if array.dtype.kind != "c":
@@ -245,8 +244,8 @@ _Motion = tuple[int, bool, float, float]  # joint, whether it turns, scale and o
 
 @dataclass(frozen=True)
 class _Chain:
-    """`T = F_0 M(v_1) F_1 ... M(v_n) F_n`, M a rotation about or a motion along z,
-    `v_i = scale_i * q[joint_i] + offset_i`."""
+    """`T = F_0 M(v_1) F_1 ... M(v_n) F_n`, M a rotation about or a motion along z, `v_i = scale_i *
+    q[joint_i] + offset_i`."""
 
     frames: Array
     motions: tuple[_Motion, ...]
@@ -293,7 +292,7 @@ def _chain_of(frames: Array, motions: tuple[_Motion, ...], dof: int) -> _Chain:
 
 def _turns_freely(motions: Sequence[_Motion]) -> bool:
     """Whether a joint's values are the same configuration where they differ by whole turns, and only
-    there: not with a motion that turns by another ratio."""
+    there."""
     _, turning, ratio, _ = motions[0]
     return turning and abs(ratio) == 1.0 and all(abs(m[2] - round(m[2])) < 1e-12 for m in motions)
 
@@ -318,7 +317,7 @@ def _in_line(chain: _Chain, q: ArrayLike) -> tuple[tuple[int, ...], Array]:
 
 
 def _forward(chain: _Chain, q: ArrayLike) -> Array:
-    """Tip poses (..., 4, 4) at q (..., dof); raises ValueError for another shape."""
+    """Tip poses (..., 4, 4) at q (..., dof)."""
     shape, rows = _in_line(chain, q)
     steps = _steps(chain, rows)
     T: Array = steps[0]
@@ -328,16 +327,9 @@ def _forward(chain: _Chain, q: ArrayLike) -> Array:
 
 
 def _jacobian(chain: _Chain, q: ArrayLike) -> Array:
-    """Geometric Jacobians (..., 6, dof) at q (..., dof); raises ValueError for another shape."""
+    """Geometric Jacobians (..., 6, dof) at q (..., dof)."""
     shape, rows = _in_line(chain, q)
     return np.asarray(_tip_and_jacobian(chain, rows)[1].reshape(*shape, 6, rows.shape[1]))
-
-
-def _cross(a: Array, b: Array) -> Array:
-    """Cross products of (..., 3); for few of them several times faster than np.cross."""
-    x, y, z = a[..., 0], a[..., 1], a[..., 2]
-    u, v, w = b[..., 0], b[..., 1], b[..., 2]
-    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)
 
 
 def _joint_axes(chain: _Chain, q: Array) -> Array:
@@ -456,51 +448,12 @@ def _entry_lane_rows(entries: _Entries, weight: Array, pose: Array, J: Any) -> A
     return out * weight.astype(J.dtype)[:, None]
 
 
-# What of a pose counts.
-
-
-class _Task(Protocol):
-    """How poses are read and compared: `entries` of them, of which the columns `unit` are unit vectors
-    at right angles; positions count over `size` (m); `alone`: "rotation" or "position" where no other
-    part of the pose is read, else ""."""
-
-    @property
-    def entries(self) -> _Entries: ...
-
-    @property
-    def unit(self) -> tuple[int, ...]: ...
-
-    @property
-    def alone(self) -> str: ...
-
-    @property
-    def size(self) -> float: ...
-
-    def read(self, T: list[list[float]], policy: _Policy) -> list[list[float]] | None:
-        """The pose that nested lists stand for, its rotation the nearest one; None for no pose."""
-
-    def read_batch(self, T: Array, policy: _Policy) -> tuple[Array, _Flags]:
-        """The same for T (N, 4, 4), and which are poses."""
-
-    def error(self, pose: Array, T: Array) -> Array:
-        """Differences (k, m) of poses (k, 4, 4) from those asked for, T (k, 4, 4)."""
-
-    def rows(self, pose: Array, J: Array) -> Array:
-        """Derivatives (k, m, dof) of what `error` compares by the joints, from the Jacobian."""
-
-
 # Everything that the runtime is told about one arm.
 
 
 _Found = tuple[Row, bool]  # a solution, and whether it is one of a continuum
 _Branches = Callable[[Sequence[Sequence[float]], Row, Row], tuple[list[tuple[Row, bool]], bool]]
 _BranchesBatch = Callable[[Array, Array, Array], tuple[Array, _Flags, _Flags, _Flags]]
-
-
-class _Together(Protocol):
-    """`refine_together` with the arm's chain in lanes."""
-
-    def __call__(self, arm: _Arm, q: Array, T: Array) -> tuple[Array, _Flags, _Flags]: ...
 
 
 class _Around(Protocol):
@@ -518,40 +471,16 @@ class _HeldAngle(Protocol):
     def upper(self) -> float:
         """Length of the upper arm, m."""
 
-    def of_rows(self, q: Array, pose: Array) -> Array:
-        """The angles (...)."""
-
-    def beside_line(self, q: Array, pose: Array) -> Array:
-        """Where elbows are beside the line that the angle is counted about (..., 2), m."""
-
-    def plane(self, T: Array) -> tuple[Array, Array]:
-        """Directions (..., 3) from the line: where the angle is 0, and a quarter turn on."""
-
-    def aims(self, T: Array, held: Array) -> Array:
-        """Poses T (k, 4, 4) and angles `held` (k, 1) to be reached, as `errors` takes them."""
-
     def errors(self, q: Array, aim: Array) -> tuple[Array, Array]:
         """By how much rows (k, dof) miss them (k,), and the derivatives (k, dof)."""
-
-    def turned(self, q: Array, aim: Array) -> Array:
-        """The derivatives (k,) of minus that by the angle."""
 
 
 @dataclass(frozen=True)
 class _Arm:
-    """`free`, `free_joints`, `free_defaults`: indices, names and values of held joints. `most`: rows at
-    most. `branches(T, q0, held)`: the closed form's rows for a pose, values of joints that it leaves
-    free, values of held joints, each with whether it is rough, and whether the pose left a joint free;
-    None for an elimination; `branches_batch`: in arrays. `beside`
-    (n, 4, 4): motions of the tool to poses that are solved as well. `turning`: which joints are
-    revolute and not held; `moving`: indices of those not held.
-    `together`: `refine_together` where the closed form is of another geometry than the file's, and all rows
-    are rough. `around`: `rows_around` where there is a closed form.
-    `branch_kind`, `elbow_end`: as in `branch_names`. `angle`: the arm angle, where that is held after
-    the joints."""
+    """`free`, `free_joints`, `free_defaults`: indices, names and values of held joints."""
 
     chain: _Chain
-    task: _Task
+    task: _EntriesTask
     policy: _Policy
     lower: Row
     upper: Row
@@ -559,15 +488,15 @@ class _Arm:
     free_joints: tuple[str, ...]
     free_defaults: Row
     most: int
-    branches: _Branches | None
+    branches: _Branches
     branches_batch: _BranchesBatch
     beside: Array
     turning: tuple[bool, ...]
     moving: tuple[int, ...]
-    together: _Together | None
+    together: None
     branch_kind: str
     elbow_end: int
-    angle: _HeldAngle | None = None
+    angle: None = None
     around: _Around | None = None
 
     @property
@@ -586,16 +515,14 @@ _BLOCK = 1024  # rows whose arrays fit into a processor's cache
 
 def _refine(
     chain: _Chain,
-    task: _Task,
+    task: _EntriesTask,
     moving: Sequence[int],
     q: Array,
     T: Array,
     policy: _Policy,
     angle: _HeldAngle | None = None,
 ) -> tuple[Array, Array, Array, Array]:
-    """Newton steps of the joints `moving` from q (k, dof) towards T (k, 4, 4); the errors that they leave,
-    and those before (k,), and the task's derivatives by the joints (k, m, n) where the rows end. With an
-    `angle` that is held T are its aims."""
+    """Newton steps of the joints `moving` from q (k, dof) towards T (k, 4, 4)."""
     (steps, fine, promising), *further = policy.refinement
 
     def first(part: Array, aim: Array) -> tuple[Array, ...]:
@@ -615,7 +542,7 @@ def _refine(
 
 def _newton(
     chain: _Chain,
-    task: _Task,
+    task: _EntriesTask,
     moving: Sequence[int],
     q: Array,
     T: Array,
@@ -653,7 +580,7 @@ def _newton(
 
 def _errors_and_slopes(
     chain: _Chain,
-    task: _Task,
+    task: _EntriesTask,
     moving: Sequence[int],
     q: Array,
     T: Array,
@@ -669,27 +596,19 @@ def _errors_and_slopes(
     return np.concatenate(parts[:2], axis=1), np.concatenate(parts[2:], axis=1)
 
 
-def _rank_loss(chain: _Chain, task: _Task, moving: Sequence[int], q: Array) -> Array:
-    """Smallest singular value (k,) of the task's derivatives by the joints `moving` at q (k, dof)."""
-    return _least_singular(task.rows(*_tip_and_jacobian(chain, q))[:, :, list(moving)])
-
-
 def _steeper(slope: Array, bound: float) -> _Flags:
-    """Which derivatives (k, m, n) have no singular value below `bound`; of those near it some may not be
-    told. Each column is at least the smallest singular value away from what the others span, and the
-    nearest of n at most its sqrt(n)-fold."""
+    """Which derivatives (k, m, n) have no singular value below `bound`."""
     nearest = 1.0 / np.sqrt(np.einsum("kii->ki", _normal_inverse(slope)).max(axis=1))
     return np.asarray(nearest > bound * slope.shape[2] ** 0.5)
 
 
 def _normal_inverse(slope: Array, damping: float = 1e-14) -> Array:
-    """Inverses (k, n, n) of the normal equations of derivatives (k, m, n); never singular."""
+    """Inverses (k, n, n) of the normal equations of derivatives (k, m, n)."""
     return np.asarray(np.linalg.inv(_damped(slope.transpose(0, 2, 1) @ slope, damping)))
 
 
 def _damped(square: Array, damping: Array | float) -> Array:
-    """Matrices (k, n, n) of normal equations, damped. Beside a slide that is very far out the rounding of
-    the others is more than the damping: there as much is added as they may be off."""
+    """Matrices (k, n, n) of normal equations, damped."""
     size = np.einsum("kii->k", square)
     enough = np.maximum(damping, np.where(size > _FAR_OUT, _ROUNDING * size, 0.0))
     return np.asarray(square + enough[:, None, None] * np.eye(square.shape[2]))
@@ -734,15 +653,12 @@ def _some_of(parts: Any, index: Any) -> Any:
 def _held_of(arm: _Arm, q: Array) -> Array:
     """What rows (..., dof) have of it: (..., held)."""
     values = q[..., list(arm.free)]
-    if arm.angle is None:
-        return values
-    angle = arm.angle.of_rows(q, _forward(arm.chain, q))
-    return np.concatenate([values, angle[..., None]], axis=-1)
+    return values
 
 
 def _aims(arm: _Arm, T: Array, held: Array) -> Array:
-    """What rows are refined towards: poses (k, 4, 4), and angles that are held (k, held)."""
-    return T if arm.angle is None else arm.angle.aims(T, held[:, len(arm.free) :])
+    """What rows are refined towards."""
+    return T
 
 
 # Rows on the whole turns that limits and seed ask for, and without repetitions: for floats and arrays.
@@ -752,8 +668,7 @@ _TURN = 2.0 * pi
 
 
 def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
-    """Whether the row differs from all kept ones, whole turns aside; long slides count relative to their
-    length."""
+    """Whether the row differs from all kept ones, whole turns aside."""
     near, revolute = arm.policy.coincident, arm.chain.revolute[::-1]
     for other, _ in kept:
         for a, b, turns in zip(
@@ -769,27 +684,8 @@ def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
     return True
 
 
-def _apart(arm: _Arm, q: Array) -> bool:
-    """Whether all rows (k, dof) of revolute joints differ, whole turns aside; False also where slides have
-    to tell."""
-    if not all(arm.chain.revolute):
-        return False
-    later, earlier = _pairs(len(q))
-    gap = q[later] - q[earlier]
-    gap -= _TURN * np.rint(gap / _TURN)
-    most = np.maximum.reduce(np.abs(gap), axis=1, initial=0.0)
-    return bool((most > arm.policy.coincident).all())
-
-
-@cache
-def _pairs(count: int) -> tuple[_Index, _Index]:
-    """Of so many."""
-    return np.tril_indices(count, -1)
-
-
 def _distinct(arm: _Arm, q: Array, valid: _Flags) -> _Flags:
-    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside; long
-    slides count relative to their length."""
+    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside."""
     near = arm.policy.coincident
     later, earlier = np.tril_indices(q.shape[1], -1)
     same = valid.T[later] & valid.T[earlier]
@@ -808,14 +704,14 @@ def _distinct(arm: _Arm, q: Array, valid: _Flags) -> _Flags:
 
 
 def _place_rows(arm: _Arm, rows: list[_Found], near: Row | None, limits: bool) -> list[_Found]:
-    """The rows on the right turns; those that no turn brings inside the limits are dropped."""
+    """The rows on the right turns."""
     return _rows_at_limits(arm, rows, near, limits)[0]
 
 
 def _rows_at_limits(
     arm: _Arm, rows: list[_Found], near: Row | None, limits: bool
 ) -> tuple[list[_Found], list[tuple[_Found, Row]]]:
-    """`_place_rows`, and of the dropped rows those hardly outside: as they were, and on the limits."""
+    """`_place_rows`, and of the dropped rows those hardly outside."""
     inside, close = [], []
     low, high = arm.lower, arm.upper
     if not limits:
@@ -835,8 +731,7 @@ def _rows_at_limits(
 
 
 def _place(arm: _Arm, row: Row, near: Row | None, limits: bool) -> tuple[Row | None, bool]:
-    """The row on its turns, None where it is far outside; and whether it had to be moved to limits by more
-    than round-off."""
+    """The row on its turns, None where it is far outside."""
     out, beyond = [], False
     for j, (q, turning, low, high) in enumerate(zip(row, arm.turning, arm.lower, arm.upper)):
         shift = 0.0
@@ -936,44 +831,11 @@ def _closed_form(arm: _Arm, T: Array, near: Array | None, held: Array) -> _Close
     return found
 
 
-def _rows_beside(arm: _Arm, T: Array, near: Array | None, held: Array) -> tuple[Array, _Flags, _Flags]:
-    """The closed form's rows (N, M, dof) of poses beside T (N, 4, 4), one after the other, which are
-    valid (N, M), and which of a continuum."""
-    each = len(arm.beside)
-    poses = (T[:, None] @ arm.beside).reshape(-1, 4, 4)
-    starts = None if near is None else np.repeat(near, each, axis=0)
-    closed = _closed_form(arm, poses, starts, np.repeat(held, each, axis=0))
-    valid = closed.valid.reshape(len(T), -1)
-    marked = closed.singular.reshape(len(T), -1) & valid
-    return closed.q.reshape(len(T), -1, closed.q.shape[2]), valid, marked
-
-
-def _certain_rows(
-    arm: _Arm, together: _Together, T: Array, held: Array, near: Array | None
-) -> tuple[Array, _Flags, _Flags]:
-    """Rows (N, M, dof) of a rounded arm refined all at once, which of them are solutions, and for which
-    poses (N,) that leaves a doubt."""
-    closed = _closed_form(arm, T, near, held)
-    q, valid, doubt = closed.q, closed.valid, closed.free
-    pose, row = np.nonzero(valid)
-    q[pose, row], arrived, missed = together(arm, q[pose, row], _aims(arm, T, held)[pose])
-    found = valid.copy()
-    found[pose, row] = arrived
-    doubt[pose[~(arrived | missed)]] = True
-    doubt |= (_distinct(arm, q, found) != found).any(axis=1) | ~found.any(axis=1)
-    return q, found, doubt
-
-
 def _careful_rows(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, _Flags, _Flags]:
     """Rows (N, M, dof) of which each is refined for as long as it takes, with those of poses beside where
-    they always count; which are distinct solutions, and which poses (N,) have rows of a continuum or near
-    a singularity."""
+    they always count."""
     closed = _closed_form(arm, T, near, held)
     q, valid, rough, doubt = closed.q, closed.valid, closed.rough, closed.free
-    if len(arm.beside) and arm.policy.beside_anywhere:
-        more, real, _ = _rows_beside(arm, T, near, held)
-        q, valid = np.concatenate([q, more], axis=1), np.concatenate([valid, real], axis=1)
-        rough = np.ones_like(valid)
     pose, row = np.nonzero(rough & valid)
     if len(pose):
         found, error, _, slope = _refined(arm, q[pose, row], _aims(arm, T, held)[pose])
@@ -988,8 +850,7 @@ def _careful_rows(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple
 def _rows_inside(
     arm: _Arm, aim: Array, rows: list[_Found], near: Row | None, limits: bool
 ) -> list[_Found]:
-    """`_place_rows` towards an aim (1, ...). A row that is hardly outside takes Newton steps first; if it
-    stays there its other joints do, and what is outside is put on the limits."""
+    """`_place_rows` towards an aim (1, ...)."""
     inside, close = _rows_at_limits(arm, rows, near, limits)
     for (row, flag), on_limits in close:
         q, error, _, _ = _refined(arm, np.array([row]), aim)
@@ -1061,7 +922,7 @@ def _still_directions(arm: _Arm, slope: Array) -> Array:
 
 def _approach(arm: _Arm, q: Array, T: Array, side: Array) -> Array:
     """From q (k, dof) towards the solution on one `side` (k,), 1 or -1, of the place where two may meet, or
-    to where they nearly do; T (k, 4, 4)."""
+    to where they nearly do."""
     q, still, going = q.copy(), _generic(len(q), len(arm.moving)), np.arange(len(q))
     for _ in range(_fold_pair_STEPS):
         q[going], still[going], x = _step(arm, q[going], T[going], side[going], still[going])
@@ -1072,8 +933,7 @@ def _approach(arm: _Arm, q: Array, T: Array, side: Array) -> Array:
 
 
 def _correct(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, Array]:
-    """After one step across the still directions, with what was left before it; how far (k,) the fastest
-    joint goes."""
+    """After one step across the still directions, with what was left before it."""
     error, slope = _linearized(arm, at.q, T)
     others = _across(slope, at.still, arm.policy.least_damping)
     taken, going = others.take_away(np.stack([error, at.out, others.flow], axis=2))
@@ -1125,7 +985,7 @@ def _unit(v: Array) -> tuple[Array, Array]:
 
 def _root(side: Array, rest: Array, bend: Array, flow: Array) -> Array:
     """The root (k,) of s x + k x^2 / 2 = e on this side of the least error, along the direction that the
-    others leave; where there is none, that least error itself."""
+    others leave."""
     k, s, e = (np.einsum("ke,ke->k", bend, v) for v in (bend, flow, rest))
     square = s * s + 2.0 * k * e
     p = s + np.copysign(np.sqrt(np.maximum(square, 0.0)), s)
@@ -1200,13 +1060,6 @@ class _Leads(NamedTuple):
     known: _Flags
 
 
-def _both(one: _Leads, other: _Leads) -> _Leads:
-    """Those of two."""
-    owner = other.around.owner + len(one.starts.q)
-    out: _Leads = _joined(one, other._replace(around=other.around._replace(owner=owner)))
-    return out
-
-
 def _ends_of(arm: _Arm, q: Array, T: Array) -> _Ends:
     """Where steps from rows q (k, dof) towards aims T end."""
     q, error, _, slope = _refined(arm, q, T)
@@ -1214,12 +1067,9 @@ def _ends_of(arm: _Arm, q: Array, T: Array) -> _Ends:
 
 
 def _leads_of(arm: _Arm, starts: _Starts, known: _Flags, near: bool = False) -> _Leads:
-    """What starts lead to. A continuum that the closed form has, where it marked a row, is followed all
-    around where the file's arm may not have it, once for each branch of a pose; `known` (poses, branches):
-    which were, and are then. Starts on none are no longer marked. With `near`, continua that the pose's own
-    rows may lie on near singularities are followed as well."""
+    """What starts lead to."""
     broken = starts.marked & (starts.source >= 0)
-    if not arm.rounded and broken.any():
+    if broken.any():
         error = _ends_of(arm, starts.q[broken], starts.T[broken]).error
         broken[broken] = error >= arm.policy.arrived
     nowhere = np.full(len(starts.q), np.inf)
@@ -1248,7 +1098,7 @@ def _found_around(
     arm: _Arm, starts: _Starts, ends: _Ends, some: _Flags, lie: _Flags
 ) -> tuple[_Led, _Flags]:
     """The solutions around continua that some starts (k,) stand for, or that rows `lie` (k,) on which they
-    lead to, once for each branch of a pose; which starts these are from."""
+    lead to, once for each branch of a pose."""
     index, on = np.flatnonzero(some), np.zeros(len(some), dtype=bool)
     if arm.around is None or not len(index):
         return _Led(index[:0], starts.q[:0], ends.loss[:0]), on
@@ -1262,8 +1112,7 @@ def _found_around(
 
 
 def _rows_nearby(arm: _Arm, leads: _Leads) -> _Led:
-    """The solutions that starts lead to, those that are sure first. Where two may meet near a singularity
-    both are found. What is given leads only to its own."""
+    """The solutions that starts lead to, those that are sure first."""
     starts, T, (q, error, loss) = leads.starts, leads.starts.T, (x.copy() for x in leads.ends)
     near = (starts.source >= 0) & ~starts.marked & (loss < arm.policy.fold_reach)
     settled = error < np.where(near, arm.policy.converged, arm.policy.arrived)
@@ -1299,26 +1148,11 @@ def _meeting_rows_in_order(one: _Led, other: _Led) -> _Led:
 def _fresh(arm: _Arm, q: Array, starts: _Starts, near: _Flags, stalled: _Flags) -> _Flags:
     """Which rows (k, dof) are not of a pose beside, and led to the same as an earlier one of their pose or
     stalled by one that is near another solution."""
-    beside = starts.source > 0
-    fresh = ~beside
-    own = np.flatnonzero(np.isin(starts.pose, starts.pose[beside]) & (starts.source >= 0))
-    if not len(own):
-        return fresh
-    own = own[np.argsort(starts.pose[own], kind="stable")]
-    _, pose = np.unique(starts.pose[own], return_inverse=True)
-    place = _places(pose)
-    rows = np.zeros((int(pose[-1]) + 1, int(place.max()) + 1, q.shape[1]))
-    valid = np.zeros(rows.shape[:2], dtype=bool)
-    rows[pose, place], valid[pose, place] = q[own], True
-    fresh[own] |= _distinct(arm, rows, valid)[pose, place]
-    for k in np.flatnonzero(fresh & beside & stalled).tolist():
-        others = q[:k][(fresh & near & (starts.pose == starts.pose[k]))[:k]]
-        fresh[k] = not (np.abs(_differences(arm, others, q[k])).max(axis=1) < arm.policy.alike).any()
-    return fresh
+    return np.ones(len(q), dtype=bool)
 
 
 def _repeats(arm: _Arm, T: Array, row: Row, kept: Sequence[_Found]) -> bool:
-    """Whether nothing tells a singular row from one kept nearby: the pose is theirs between them too."""
+    """Whether nothing tells a singular row from one kept nearby."""
     others = [other for other, singular in kept if singular]
     gaps = _differences(arm, np.array(row), np.array(others)) if others else np.zeros((0, len(row)))
     for gap in gaps[np.abs(gaps).max(axis=1) < arm.policy.alike]:
@@ -1350,7 +1184,7 @@ class _Asked:
 
     def starts(self, arm: _Arm, turn: Array | None = None) -> Array:
         """Values (n, dof) for joints that the poses leave free, those of revolute ones turned by `turn`
-        (n,); held ones as they are."""
+        (n,)."""
         q = np.zeros((len(self.T), len(arm.lower))) if self.near is None else self.near.copy()
         if turn is not None:
             q[:, arm.chain.revolute] += turn[:, None]
@@ -1370,7 +1204,7 @@ _Rows = tuple[list[_Found], bool, bool]
 
 
 def _placed_rows(arm: _Arm, asked: _Asked, limits: bool) -> list[_Answer]:
-    """Of each pose. Where it leaves a joint free and the given value leads nowhere, others are tried."""
+    """Of each pose."""
     out = [_Answer() for _ in asked.T]
     left = np.arange(len(out))
     for tries in (range(1), range(1, arm.policy.tries)):
@@ -1407,7 +1241,7 @@ def _goes_on(
     _add(arm, T, _rows_inside(arm, aim, kept, near, limits), answer.rows)
     if not answer.rows:
         answer.rows = _rows_inside(arm, aim, seeded, near, limits)
-    led = led if arm.rounded else any(flag for _, flag in answer.rows)
+    led = any(flag for _, flag in answer.rows)
     return free and not (answer.rows and led)
 
 
@@ -1444,43 +1278,15 @@ def _rows(arm: _Arm, asked: _Asked, start: Array, first: bool) -> list[_Rows]:
     known = np.zeros(closed.valid.shape, dtype=bool)
     own = _of_lanes(arm, asked, closed, closed.valid & closed.rough, marked)
     starts = _joined(_given(arm, asked, start, np.flatnonzero(free)), own)
-    looks, anywhere = first and len(arm.beside) > 0, arm.policy.beside_anywhere
-    if looks and anywhere:
-        starts = _joined(starts, _beside(arm, asked, start, np.arange(len(start))))
     leads = _leads_of(arm, starts, known, near=first and arm.rounded)
     close = (starts.source >= 0) & (leads.ends.loss < arm.policy.beside_reach) & ~leads.known
     near = free.copy()
     near[starts.pose[close]] = True
-    if looks and not anywhere and near.any():
-        more = _beside(arm, asked, start, np.flatnonzero(near))
-        leads = _both(leads, _leads_of(arm, more, known))
-    if arm.rounded and free.any():
-        hidden = closed.singular & ~known & _without_rows(arm, free, leads)[:, None]
-        hidden &= np.isfinite(closed.q).all(axis=2)
-        more = _of_lanes(arm, asked, closed, hidden, hidden)
-        leads = _both(leads, _leads_of(arm, more, known))
     kept = _meeting(arm, asked, leads)
     for i, k in np.argwhere(closed.valid & ~closed.rough).tolist():
         _add(arm, asked.T[i], [(tuple(closed.q[i, k].tolist()), bool(marked[i, k]))], kept[i])
     led: _Flags = np.asarray((marked | known).any(axis=1))
     return list(zip(kept, free.tolist(), led.tolist()))
-
-
-def _without_rows(arm: _Arm, free: _Flags, leads: _Leads) -> _Flags:
-    """Which poses leave a joint free and led nowhere: less than the file is off may be what is missing to
-    rows that the closed form has not."""
-    starts, poor = leads.starts, np.array(free, dtype=bool)
-    poor[starts.pose[(starts.source >= 0) | (leads.ends.error < arm.policy.arrived)]] = False
-    return poor
-
-
-def _beside(arm: _Arm, asked: _Asked, start: Array, some: _Index) -> _Starts:
-    """From poses beside some."""
-    q, valid, marked = _rows_beside(arm, asked.T[some], start[some], asked.held[some])
-    pose, row = np.nonzero(valid)
-    motion, lane = np.divmod(row, valid.shape[1] // len(arm.beside))
-    which = some[pose], marked[pose, row], 1 + motion, lane
-    return _starts(arm, asked, q[pose, row], *which)
 
 
 def _of_lanes(arm: _Arm, asked: _Asked, closed: _ClosedForm, lanes: _Flags, marked: _Flags) -> _Starts:
@@ -1529,8 +1335,7 @@ _FARTHEST = 1e6  # rad: neighbouring doubles are 1e-10 apart
 def _held_values(
     arm: _Arm, free: Sequence[float] | Mapping[str, float] | None, near: Row | None
 ) -> Row:
-    """Values of the held joints, base to tip: those of the seed `near`, or without one the defaults,
-    where `free` gives none. Raises ValueError where they are no such values."""
+    """Values of the held joints, base to tip."""
     names, others = arm.free_joints, arm.free_defaults
     if near is not None:
         others = tuple(_held_of(arm, np.array(near)).tolist())
@@ -1557,8 +1362,7 @@ def _held_values(
 def _held_rows(
     arm: _Arm, free: ArrayLike | Mapping[str, float] | None, near: Array | None, count: int
 ) -> Array:
-    """`_held_values` for many poses: one row for all of them, or one each (of one joint: one value each);
-    (count, held joints). `near`: the seeds (count, dof)."""
+    """`_held_values` for many poses."""
     shape = (count, len(arm.free_joints))
     if free is None or isinstance(free, Mapping):
         values = np.tile(_held_values(arm, free, None), (count, 1)).reshape(shape)
@@ -1586,8 +1390,7 @@ def _seed_values(arm: _Arm, seed: ArrayLike | None) -> Row | None:
 
 
 def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...], name: str = "seed") -> Array:
-    """The seed, called `name`, as an array of one of the shapes; raises ValueError for others. Turns of a
-    revolute joint that doubles cannot tell apart to 1e-10 rad are left out."""
+    """The seed, called `name`, as an array of one of the shapes."""
     values = _real_array(seed, name)
     if values.shape not in shapes:
         expected = " or ".join(map(str, shapes))
@@ -1606,7 +1409,7 @@ _TRANSFORMS = ("homogeneous", "as_matrix", "A")
 
 
 def _one_pose(pose: Any, alone: str) -> Array:
-    """`_pose_matrices` of one, (4, 4); raises ValueError for another shape."""
+    """`_pose_matrices` of one, (4, 4)."""
     T = _pose_matrices(pose, alone)
     if T.shape != (4, 4):
         raise ValueError(f"pose has shape {T.shape}, expected (4, 4)")
@@ -1614,7 +1417,7 @@ def _one_pose(pose: Any, alone: str) -> Array:
 
 
 def _poses_in_line(poses: Any, alone: str) -> Array:
-    """`_pose_matrices` of many, (N, 4, 4); raises ValueError for another shape."""
+    """`_pose_matrices` of many, (N, 4, 4)."""
     T = _pose_matrices(poses, alone)
     if T.shape == (0,):  # a sequence of none
         return np.empty((0, 4, 4))
@@ -1624,8 +1427,7 @@ def _poses_in_line(poses: Any, alone: str) -> Array:
 
 
 def _pose_matrices(pose: Any, alone: str) -> Array:
-    """(4, 4), or (N, 4, 4) of many: of matrices (4, 4) or (3, 4), pairs (rotation (3, 3), position) or
-    (position, quaternion x y z w), objects that have one of `_TRANSFORMS`, or a sequence of those."""
+    """(4, 4), or (N, 4, 4) of many."""
     if isinstance(pose, np.ndarray) and pose.shape[-2:] == (4, 4):
         return _real_array(pose, "pose")
     if isinstance(pose, (list, tuple)) and len(pose):
@@ -1658,7 +1460,7 @@ def _matrices(R: Array, p: Array) -> Array:
 
 
 def _rotations(quaternion: Array) -> Array:
-    """(..., 3, 3) of x y z w: times its squared norm, so that a norm that is not 1 gives no rotation."""
+    """(..., 3, 3) of x y z w."""
     x, y, z, w = np.moveaxis(quaternion, -1, 0)
     rows = (
         (w * w + x * x - y * y - z * z, 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
@@ -1709,7 +1511,7 @@ def _most_defect(entries: int, off: float) -> float:
 
 
 def _determinant(columns: _Columns[_N]) -> _N:
-    """Of three columns: positive where they are right-handed."""
+    """Of three columns."""
     u, v, w = columns
     x, y, z = u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
     return x * w[0] + y * w[1] + z * w[2]
@@ -1735,18 +1537,18 @@ def _nearest_columns(columns: _Columns[_N]) -> _Columns[_N]:
 _PRINTED = 1e-3  # how far the entries of a rotation that was printed with a few digits may be off
 
 
-def _nearest_pose(task: _Task, T: list[list[float]], policy: _Policy) -> list[list[float]]:
-    """The pose with the nearest rotation; as it is where that is too far."""
+def _nearest_pose(task: _EntriesTask, T: list[list[float]], policy: _Policy) -> list[list[float]]:
+    """The pose with the nearest rotation."""
     return task.read(T, replace(policy, pose_tolerance=_PRINTED)) or T
 
 
-def _nearest_poses(task: _Task, T: Array, policy: _Policy) -> Array:
+def _nearest_poses(task: _EntriesTask, T: Array, policy: _Policy) -> Array:
     """The same of T (N, 4, 4)."""
     near, good = task.read_batch(T, replace(policy, pose_tolerance=_PRINTED))
     return np.where(good[:, None, None], near, T)
 
 
-def _pose_fault(task: _Task, T: list[list[float]], policy: _Policy) -> str:
+def _pose_fault(task: _EntriesTask, T: list[list[float]], policy: _Policy) -> str:
     """Why a pose is none."""
     if not all(isfinite(x) for row in T[:3] for x in row):
         return "the pose has entries that are not finite"
@@ -1895,8 +1697,7 @@ def _solve_chunk(arm: _Arm, T: Array, held: Array, near: Array | None, limits: b
 def _doubtful(
     arm: _Arm, asked: _Asked, limits: bool, doubt: _Flags, real: _Flags, number: Array
 ) -> Iterator[tuple[int, list[_Found], bool]]:
-    """Poses, their rows and whether they have any before limits: of those that leave a doubt, and of others
-    without a row what their seeds lead to."""
+    """Poses, their rows and whether they have any before limits."""
     for some in _parts(doubt):
         for i, answer in zip(some.tolist(), _placed_rows(arm, asked.at(some), limits)):
             yield i, answer.rows, answer.real
@@ -1913,11 +1714,8 @@ def _parts(poses: _Flags) -> list[_Index]:
 def _rows_and_doubts(
     arm: _Arm, T: Array, held: Array, near: Array | None
 ) -> tuple[Array, _Flags, _Flags]:
-    """Rows (N, M, dof) on no turn in particular; which are distinct solutions, and which poses (N,) are
-    near a singularity, or leave a joint free."""
-    if arm.together is None:
-        return _careful_rows(arm, T, held, near)
-    return _certain_rows(arm, arm.together, T, held, near)
+    """Rows (N, M, dof) on no turn in particular."""
+    return _careful_rows(arm, T, held, near)
 
 
 # Solutions on what is a continuum of the geometry that was solved, and none of the file's.
@@ -1955,10 +1753,7 @@ class _Parts(NamedTuple):
 
 
 def _rows_around(arm: _Arm, q: Array, T: Array, broken: _Flags) -> tuple[_Flags, _Index, Array, Array]:
-    """Which rows q (k, dof) towards aims T (k, ...) stand for a continuum of the solved geometry; from
-    which (n,) the solutions (n, dof) all around are, or one where the file's arm has the continuum too, and
-    the smallest singular values (n,) there. `broken` (k,): from which only of such that the file's arm has
-    not, and no others than those that are right to round-off."""
+    """Which rows q (k, dof) towards aims T (k, ...) stand for a continuum of the solved geometry."""
     with np.errstate(all="ignore"):
         traced = _trace(arm, q, T)
     given = np.flatnonzero(traced.curve & ~broken)
@@ -1995,7 +1790,7 @@ def _trace(arm: _Arm, q: Array, T: Array) -> _Traced:
 
 
 def _sample(arm: _Arm, at: _Reduced, T: Array) -> _Reduced:
-    """The configurations of the curves beside some (k,): of which one direction of the error is left."""
+    """The configurations of the curves beside some (k,)."""
     at = _Reduced(*(x.copy() for x in at))
     going = np.arange(len(T))
     for _ in range(_CORRECTIONS):
@@ -2011,8 +1806,7 @@ def _sample(arm: _Arm, at: _Reduced, T: Array) -> _Reduced:
 def _follow(
     arm: _Arm, first: _Reduced, T: Array, some: _Index, place: float
 ) -> tuple[list[_Parts], _Flags, Array]:
-    """On from some samples, the fastest joint by `policy.try_step` from one to the next; which (k,) come
-    back to where they began, and the most (k,) that is left."""
+    """On from some samples, the fastest joint by `policy.try_step` from one to the next."""
     closed, worst = np.zeros(len(T), dtype=bool), np.zeros(len(T))
     parts, moving, owner = [], list(arm.moving), some
     b = _some_of(first, some)
@@ -2043,7 +1837,7 @@ def _back(arm: _Arm, a: _Reduced, b: _Reduced) -> _Flags:
     return np.asarray(beside & near & same)
 
 
-def _near_continuum_between(arm: _Arm, parts: _Parts, share: Array, T: Array) -> _Reduced:
+def _between(arm: _Arm, parts: _Parts, share: Array, T: Array) -> _Reduced:
     """Samples at a `share` (n,) of the way from a to b."""
     q = parts.a.q + share[:, None] * (parts.b.q - parts.a.q)
     return _sample(arm, parts.a._replace(q=q), T[parts.owner])
@@ -2051,8 +1845,7 @@ def _near_continuum_between(arm: _Arm, parts: _Parts, share: Array, T: Array) ->
 
 def _look(arm: _Arm, parts: _Parts, T: Array, samples: _Index) -> tuple[_Index, Array]:
     """The solutions (n, dof) inside parts, by the signs of the coefficients, after Bernstein, of cubics
-    through values and slopes; whose they are (n,). `samples` (k,): that were taken of each curve. Where a
-    sample is as far off as the end of a curve, there is none."""
+    through values and slopes."""
     kept, brackets = [], []
     for deep in range(_DEEP + 1):
         parts = _some_of(
@@ -2070,7 +1863,7 @@ def _look(arm: _Arm, parts: _Parts, T: Array, samples: _Index) -> tuple[_Index, 
         if not split.any():
             break
         parts = _some_of(parts, split)
-        middle = _near_continuum_between(arm, parts, np.full(len(parts.owner), 0.5), T)
+        middle = _between(arm, parts, np.full(len(parts.owner), 0.5), T)
         samples = samples + np.bincount(parts.owner, minlength=len(samples))
         half = 0.5 * parts.width
         parts = _joined(
@@ -2090,10 +1883,8 @@ def _bernstein(arm: _Arm, parts: _Parts) -> Array:
 
 
 def _closed_in(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
-    """Parts at whose ends what is left has two signs, narrowed until it is round-off at one, or the way
-    to there is: first at roots of cubics, where far more than round-off is left, then by false position,
-    halving what an end keeps (Dowell & Jarratt 1971). A part in which far more is left than the cubic's
-    coefficients bound, or in which that leaps, is of no one curve, and stays as it is then."""
+    """Parts at whose ends what is left has two signs, narrowed until it is round-off at one, or the way to
+    there is."""
     ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
     values, last = ends.left.copy(), np.full(len(parts.owner), -1)
     way = np.full(len(parts.owner), np.inf)
@@ -2109,7 +1900,7 @@ def _closed_in(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
         cubic, share = _bernstein(arm, now), x / (x - y)
         if step < _CUBICS:
             share = np.where(most[going] > _CLEAR, _root_share(cubic, share), share)
-        c = _near_continuum_between(arm, now, share, T)
+        c = _between(arm, now, share, T)
         side = (now.a.left * c.left < 0.0).astype(np.intp)
         way[going] = np.abs(c.q - ends.q[side, going]).max(axis=1)
         change = np.abs(np.diff(cubic, axis=0))
@@ -2125,8 +1916,7 @@ def _closed_in(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
 
 
 def _root_share(values: Array, share: Array) -> Array:
-    """Where cubics of coefficients (4, n), after Bernstein, vanish (n,): by Newton's method from a `share`
-    (n,), or there where that leads out."""
+    """Where cubics of coefficients (4, n), after Bernstein, vanish (n,)."""
     a, b, c, d = values
     one, two, three = 3.0 * (b - a), 3.0 * (c - b - b + a), d - a + 3.0 * (b - c)
     x = share
@@ -2154,7 +1944,7 @@ def _kept(arm: _Arm, parts: _Parts) -> tuple[_Index, Array]:
 _START_COUNT = 128  # drawn; the best of them are followed
 _FOLLOWED = 16
 _STEP_COUNT = 80
-_projection_LEAST_DAMPING, _FIRST_DAMPING, _MOST_DAMPING = 1e-10, 1e-3, 1e10  # damping of a step
+_LEAST_DAMPING, _FIRST_DAMPING, _MOST_DAMPING = 1e-10, 1e-3, 1e10  # damping of a step
 _LONGEST_STEP = 0.5  # rad or m: step of a joint
 
 
@@ -2169,7 +1959,7 @@ def _nearest_row(arm: _Arm, T: Array, start: Row, limits: bool) -> Row:
     return best
 
 
-def _off_by(task: _Task, pose: Array, T: Array) -> Array:
+def _off_by(task: _EntriesTask, pose: Array, T: Array) -> Array:
     """How far poses (k, 4, 4) are from T (4, 4): (k, 2), m and rad."""
     error = _chord_errors(task, pose, T)
     length = np.array([c == 3 for _, c in task.entries])
@@ -2188,13 +1978,13 @@ def _off_by(task: _Task, pose: Array, T: Array) -> Array:
     return off
 
 
-def _chord_weight(task: _Task) -> Array:
-    """Of each entry: a turn by x moves the nine of a rotation by sqrt(8) sin(x / 2)."""
+def _chord_weight(task: _EntriesTask) -> Array:
+    """Of each entry."""
     turn = sqrt(0.5) if len(task.unit) == 3 else 1.0
     return np.array([1.0 / task.size if c == 3 else turn for _, c in task.entries])
 
 
-def _chord_errors(task: _Task, pose: Array, T: Array) -> Array:
+def _chord_errors(task: _EntriesTask, pose: Array, T: Array) -> Array:
     """What poses (k, 4, 4) are off T (4, 4): (k, entries)."""
     return _entry_errors(task.entries, _chord_weight(task), pose, np.broadcast_to(T, pose.shape))
 
@@ -2206,8 +1996,7 @@ def _step_bounds(arm: _Arm, limits: bool) -> tuple[Array, Array]:
 
 
 def _even_starts(arm: _Arm, low: Array, high: Array) -> Array:
-    """Configurations (n, dof) that fill the limits evenly: Kronecker's sequence by powers of the root of
-    `x^(dof + 1) = x + 1` (Roberts 2018)."""
+    """Configurations (n, dof) that fill the limits evenly."""
     dof = len(low)
     root = 2.0
     for _ in range(40):
@@ -2237,7 +2026,7 @@ def _descend_to(arm: _Arm, T: Array, q: Array, bounds: tuple[Array, Array]) -> t
         better = costs < cost
         q[better], error[better], cost[better] = trial[better], errors[better], costs[better]
         pose, J = (np.where(better[:, None, None], a, b) for a, b in zip(new[1:], (pose, J)))
-        damping = np.clip(damping * np.where(better, 0.2, 8.0), _projection_LEAST_DAMPING, _MOST_DAMPING)
+        damping = np.clip(damping * np.where(better, 0.2, 8.0), _LEAST_DAMPING, _MOST_DAMPING)
         if damping.min() == _MOST_DAMPING:
             break
     return q, cost
@@ -2246,7 +2035,7 @@ def _descend_to(arm: _Arm, T: Array, q: Array, bounds: tuple[Array, Array]) -> t
 def _clipped_step(
     q: Array, slope: Array, error: Array, damping: Array, bounds: tuple[Array, Array]
 ) -> Array:
-    """The rows (k, n) after one step; joints at a limit that it would pass stay."""
+    """The rows (k, n) after one step."""
     push = np.einsum("kmj,km->kj", slope, error)
     stuck = ((q <= bounds[0]) & (push < 0.0)) | ((q >= bounds[1]) & (push > 0.0))
     slope = np.where(stuck[:, None], 0.0, slope)
@@ -2262,38 +2051,7 @@ def _branch_names(arm: _Arm, q: Array) -> tuple[str, ...]:
     """A name for each row (k, dof)."""
     if not len(q):
         return ()
-    if arm.branch_kind == "names":
-        return _side_names(arm, q)
-    if arm.branch_kind == "number":
-        return tuple(f"branch {number}" for number in _branch_numbers(arm, q))
-    tip, J = _tip_and_jacobian(arm.chain, q)
-    J = J[:, :, arm.moving]
-    if J.shape[2] == 5:  # the elimination's last joint turns about the tool's axis
-        turn = np.zeros((len(q), 6, 1))
-        turn[:, 3:, 0] = tip[:, :3, arm.task.unit[0]]
-        J = np.concatenate([J, turn], axis=2)
-    return tuple(f"det J {'>' if sign > 0.0 else '<'} 0" for sign in np.linalg.det(J))
-
-
-def _inner(a: Array, b: Array) -> Array:
-    return np.asarray((a * b).sum(axis=-1))
-
-
-def _side_names(arm: _Arm, q: Array) -> tuple[str, ...]:
-    """Of six axes, the first at right angles to the second, which is parallel to the third."""
-    axes = _joint_axes(arm.chain, q)[:-1].swapaxes(0, 1)
-    z, p = axes[:, :, :3, 2], axes[:, :, :3, 3]
-    up = z[:, 0] * np.where(z[:, :1, 2] < 0.0, -1.0, 1.0)
-    right = _inner(_cross(up, z[:, 1]), p[:, 5] - p[:, 0]) >= 0.0
-    elbow, end = p[:, 2] - p[:, 1], p[:, arm.elbow_end] - p[:, 1]
-    level = _cross(z[:, 1], up)  # in the plane of the links
-    above = _inner(z[:, 1], _cross(end, elbow)) * _inner(level, end) <= 0.0
-    plain = _inner(_cross(z[:, 3], z[:, 5]), z[:, 4]) >= 0.0
-    return tuple(
-        f"shoulder {'right' if r else 'left'}, elbow {'up' if a else 'down'}, "
-        f"wrist {'not flipped' if f else 'flipped'}"
-        for r, a, f in zip(right.tolist(), above.tolist(), plain.tolist())
-    )
+    return tuple(f"branch {number}" for number in _branch_numbers(arm, q))
 
 
 def _branch_numbers(arm: _Arm, q: Array) -> list[int]:
@@ -2326,8 +2084,8 @@ def _solve_pose(
     project: bool = False,
     orthonormalize: bool = False,
 ) -> Solutions:
-    """All joint values that bring the tip to `pose`, or with `project` to the nearest pose that the arm
-    can take; raises ValueError for bad arguments."""
+    """All joint values that bring the tip to `pose`, or with `project` to the nearest pose that the arm can
+    take."""
     lines = _one_pose(pose, arm.task.alone).tolist()
     near = _seed_values(arm, seed)
     held = _held_values(arm, free, near)
@@ -2344,7 +2102,7 @@ def _solve_pose(
 def _solutions_of(
     arm: _Arm, asked: _One, limits: bool, answer: _Answer, project: bool = False
 ) -> Solutions:
-    """The answer in order, or why there is none; to a pose nearby where it is to `project`."""
+    """The answer in order, or why there is none."""
     T, near, held = asked
     found = answer.rows
     if project and not found:
@@ -2361,7 +2119,7 @@ def _solutions_of(
 
 
 def _held_reason(arm: _Arm, held: Row, real: bool) -> str:
-    """What holding joints has to do with it; nothing where none is held."""
+    """What holding joints has to do with it."""
     if not held:
         return ""
     values = ", ".join(f"{name} = {x:.6g}" for name, x in zip(arm.free_joints, held))
@@ -2398,7 +2156,7 @@ def _fitting(arm: _Arm, asked: _One, limits: bool) -> _Answer:
 def _sure_answer(arm: _Arm, asked: _One, limits: bool) -> _Answer | None:
     """From the closed form on floats, where that leaves no doubt."""
     T, near, held = asked
-    kept = _pose_solving_certain_rows(arm, T, near, held)
+    kept = _certain_rows(arm, T, near, held)
     if kept is None:
         return None
     placed, close = _rows_at_limits(arm, kept, near, limits)
@@ -2409,31 +2167,17 @@ def _sure_answer(arm: _Arm, asked: _One, limits: bool) -> _Answer | None:
     return _Answer(placed, bool(kept))
 
 
-def _pose_solving_certain_rows(
+def _certain_rows(
     arm: _Arm, T: list[list[float]], near: Row | None, held: Row
 ) -> list[_Found] | None:
-    """Distinct rows, of a rounded arm refined all at once; None where that leaves a doubt."""
-    if arm.branches is None:
-        return None
+    """Distinct rows, of a rounded arm refined all at once."""
     start = list(near) if near is not None else [0.0] * len(arm.lower)
     for j, value in zip(arm.free, held):
         start[j] = value
     answers, hit = arm.branches(T, tuple(start), held)
-    if hit or (arm.together is None and any(rough for _, rough in answers)):
+    if hit or (any(rough for _, rough in answers)):
         return None
     rows: list[Row] = [row for row, _ in answers]
-    if arm.together is not None and not rows:
-        beside = (np.array(T) @ arm.beside).tolist() if arm.policy.beside_anywhere else []
-        return None if any(arm.branches(pose, tuple(start), held)[0] for pose in beside) else []
-    if arm.together is not None:
-        aim = _aims(arm, np.array([T]), np.array([held]))
-        q, arrived, missed = arm.together(arm, np.array(rows), aim)
-        if not (arrived | missed).all():
-            return None
-        q = q[arrived]
-        rows = list(map(tuple, q.tolist()))
-        if _apart(arm, q):
-            return [(row, False) for row in rows]
     kept: list[_Found] = []
     for row in rows:
         if _is_new(arm, row, kept):
@@ -2450,7 +2194,7 @@ _Preference = tuple[str, Row, Row]  # its name; what rows are wanted near to, an
 
 
 def _preference_of(arm: _Arm, prefer: str, seed: ArrayLike | None) -> _Preference:
-    """ "near": to the seed, "centre": of the limits, as near without a seed, or "dexterous"."""
+    """"near"."""
     if prefer not in ("near", "centre", "dexterous"):
         raise ValueError(f"prefer is {prefer!r}, expected 'near', 'centre' or 'dexterous'")
     near = _seed_values(arm, seed)
@@ -2469,8 +2213,8 @@ def _preference_of(arm: _Arm, prefer: str, seed: ArrayLike | None) -> _Preferenc
 def _preference_costs(
     arm: _Arm, preference: _Preference, q: Array, limits: bool
 ) -> tuple[Array, Array, _Flags]:
-    """Rows (n, m, dof) on the turns that limits and preference ask for, their costs (n, m), less is
-    better, and which are inside the limits (n, m)."""
+    """Rows (n, m, dof) on the turns that limits and preference ask for, their costs (n, m), less is better,
+    and which are inside the limits (n, m)."""
     name, middle, weights = preference
     q = q.copy()
     for j in arm.free:
@@ -2492,7 +2236,7 @@ def _preference_costs(
 def _search_held(
     arm: _Arm, pose: Any, seed: ArrayLike | None, prefer: str, limits: bool
 ) -> Solutions:
-    """All rows, best first. Raises ValueError for bad arguments."""
+    """All rows, best first."""
     preference = _preference_of(arm, prefer, seed)
     found = _solve_pose(arm, pose, None, seed, limits)
     if not len(found):
@@ -2511,10 +2255,8 @@ _path_following_FARTHEST = 0.3  # rad or m that a joint may move at once
 _AWAY = 1.0  # rad or m by which it turns around a singularity, where another row is next to the last one
 _OFF = 0.2  # of the motion, and
 _LEAST_OFF = 1e-4  # rad or m: how far a row may be from where the Jacobian leads
-_NEWTON_STEPS = 30
-_BESIDE_START = 0.1  # rad or m
-_DAMPING = 1e-8  # of directions that are all but lost, squared, where steps shall arrive,
-_LEAST_DAMPING = 1e-14  # and where they shall tell how far the next row is
+
+_path_following_LEAST_DAMPING = 1e-14  # and where they shall tell how far the next row is
 _JUMP = 0.05  # rad or m that a row may be from the last one where halving does not help
 
 
@@ -2538,8 +2280,7 @@ def _follow_poses(
     start: ArrayLike,
     limits: bool,
 ) -> Path:
-    """From the row of the first pose (N, 4, 4) that is nearest to `start` (dof,); `search(pose, start,
-    limits)`: rows nearest to it first. Raises ValueError for bad arguments."""
+    """From the row of the first pose (N, 4, 4) that is nearest to `start` (dof,)."""
     T, dof = _poses_in_line(poses, arm.task.alone), len(arm.lower)
     row = _seed_rows(arm, start, (dof,), name="start")
     q, singular = np.full((len(T), dof), np.nan), np.zeros(len(T), dtype=bool)
@@ -2573,19 +2314,13 @@ class _Walk:
     ) -> Status:
         """To the row next to the start, or the best that a search finds."""
         self.q = start
-        if self.arm.free_joints:
-            rows, flags, _ = self._unstopped(pose)
-            if len(rows) and np.abs(rows[0] - start).max() < _BESIDE_START:
-                self.crossed = bool(flags[0])
-                return self._arrive(rows[0])
         found = search(pose, start, self.limits)
         if len(found):
             self.q, self.crossed = found.q[0], bool(found.singular[0])
         return found.status
 
     def go_on(self, before: Array, pose: Array) -> Status:
-        """From a pose to the next; where halved steps lead far away or nowhere, as beside a singularity,
-        to a row next to the last one if there is one."""
+        """From a pose to the next."""
         here = self.q
         status = self.step(before, pose, 0)
         if status is Status.OK and np.abs(self.q - here).max() < _AWAY:
@@ -2615,7 +2350,7 @@ class _Walk:
             status = Status.SINGULAR
         if depth == _DEEPEST or (depth >= _SHALLOW and not len(rows)):
             return status
-        middle = _between(before, pose)
+        middle = _path_following_between(before, pose)
         first = self.step(before, middle, depth + 1)
         return first if first is not Status.OK else self.step(middle, pose, depth + 1)
 
@@ -2631,13 +2366,13 @@ class _Walk:
 
     def _expected(self, pose: Array) -> Array:
         """Where the shortest motion by the Jacobian leads from here."""
-        return self.q + self._motion(self.q, pose, list(range(len(self.q))), _LEAST_DAMPING)[0]
+        return self.q + self._motion(self.q, pose, list(range(len(self.q))), _path_following_LEAST_DAMPING)[0]
 
     def _motion(
         self, q: Array, pose: Array, moving: list[int], damping: float
     ) -> tuple[Array, float]:
         """The shortest motion (dof,) of some joints that the Jacobian asks for, at most a radian or metre
-        each; the error that it shall make good."""
+        each."""
         arm = self.arm
         here, J = _tip_and_jacobian(arm.chain, q[None])
         error, rows = arm.task.error(here, pose[None])[0], arm.task.rows(here, J)[0][:, moving]
@@ -2647,50 +2382,13 @@ class _Walk:
         return step, float(np.abs(error).max())
 
     def _rows(self, pose: Array) -> tuple[Array, _Flags, Status]:
-        """All rows without limits; with held joints the one that those lead to which no limit stops."""
-        if self.arm.free_joints:
-            return self._unstopped(pose)
+        """All rows without limits."""
         found = _solve_pose(self.arm, pose, None, self.q, False)
         return found.q, found.singular, found.status
 
-    def _unstopped(self, pose: Array) -> tuple[Array, _Flags, Status]:
-        """The row next to the expected one that all joints reach together, those that it would take out
-        of their limits stopped there."""
-        arm, stopped = self.arm, dict[int, float]()
-        while True:
-            moving = [j for j in range(len(self.q)) if j not in stopped]
-            at = self.q.copy()
-            for j, value in stopped.items():
-                at[j] = value
-            q, error = self._newton(at, pose, moving)
-            if not error < arm.policy.arrived:
-                none = np.empty((0, len(at))), np.empty(0, dtype=bool)
-                return *none, Status.LIMITS if stopped else Status.UNREACHABLE
-            low, high = np.array(arm.lower), np.array(arm.upper)
-            excess = np.maximum(low - q, q - high)
-            worst = int(excess.argmax())
-            if not self.limits or excess[worst] <= arm.policy.limit_tolerance:
-                loss = _rank_loss(arm.chain, arm.task, range(len(at)), q[None])
-                return q[None], loss < arm.policy.rank_loss, Status.OK
-            stopped[worst] = float(low[worst] if q[worst] < low[worst] else high[worst])
 
-    def _newton(self, q: Array, pose: Array, moving: list[int]) -> tuple[Array, float]:
-        """The best row of shortest motions from q, and its error."""
-        best, least = q, inf
-        for i in range(_NEWTON_STEPS):
-            step, error = self._motion(q, pose, moving, _DAMPING)
-            slow = not error < 0.5 * least
-            if error < least:
-                best, least = q, error
-            if (slow and i > 2) or least < self.arm.policy.converged:
-                break
-            q = q + step
-        return best, least
-
-
-def _between(a: Array, b: Array) -> Array:
-    """The pose halfway (4, 4): the middle of the positions, half of the turn between (its axis by the
-    antisymmetric part, or the largest column of the symmetric one for half turns)."""
+def _path_following_between(a: Array, b: Array) -> Array:
+    """The pose halfway (4, 4)."""
     T = 0.5 * (a + b)
     R = a[:3, :3].T @ b[:3, :3]
     w = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
@@ -2745,7 +2443,7 @@ class _EntriesTask:
         return self._with_unit_columns(lines, policy) if self.unit else lines
 
     def _with_unit_columns(self, T: list[list[float]], policy: _Policy) -> list[list[float]] | None:
-        """The pose with the nearest orthonormal columns; None where they are none."""
+        """The pose with the nearest orthonormal columns."""
         height = 2 if self.flat else 3
         R = [(*line, 0.0)[:3] for line in zip(*T[:height])]
         columns = tuple((x, y, z) for x, y, z in (R[j] for j in self.unit))
@@ -2787,8 +2485,7 @@ class _EntriesTask:
         return T, good
 
     def _single_entries(self, T: Array, policy: _Policy) -> tuple[Array, _Flags]:
-        """Poses whose entries of no unit column, which are cosines, lie between -1 and 1; and which are
-        poses."""
+        """Poses whose entries of no unit column, which are cosines, lie between -1 and 1."""
         good: _Flags = np.asarray(np.isfinite(T[:, self.row, self.column]).all(axis=1))
         for r, c in zip(self.row, self.column):
             if c == 3 or c in self.unit:

@@ -18,7 +18,8 @@ from tests.support.solving import import_text
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.runtime.python import joint_refinement
 from ikgen.runtime.python.chain_kinematics import forward as arm_forward
-from ikgen.runtime.python.joint_refinement import _refine_few
+from ikgen.runtime.python.joint_refinement import _refine_few, refine_together
+from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.solution_rows import sorted_rows
 
 pytestmark = pytest.mark.usefixtures("solved_once")
@@ -52,7 +53,7 @@ def test_rows_close_and_none_is_lost(doosan: ModuleType) -> None:
         assert apart(found, at).min() < 1e-9
         assert n == len(found)
         assert all(apart(found, row).min() < 1e-9 for row in many[:n])
-        before = doosan._solve_pose(careful, pose, None, None, False).q
+        before = solve_pose(careful, pose, None, None, False).q
         assert all(apart(found, row).min() < 1e-6 for row in before)
 
 
@@ -90,7 +91,8 @@ def test_a_least_error_above_zero_is_no_solution(doosan: ModuleType) -> None:
     held = replace(held, free=(3,))
     for count in (1, 100):
         start = q + 1e-4 * np.eye(6)[[3] * count]
-        _, arrived, missed = held.together(held, start, np.tile(doosan.forward(q), (count, 1, 1)))
+        T = np.tile(doosan.forward(q), (count, 1, 1))
+        _, arrived, missed = refine_together(doosan._LANES, held, start, T)
         assert missed.all() and not arrived.any()
 
 

@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 ARM: Any = SimpleNamespace(
     chain=SimpleNamespace(revolute=(True, False)),
     policy=SimpleNamespace(coincident=1e-6, alike=0.05),
+    beside=np.eye(4)[None],
 )
 
 

@@ -16,6 +16,8 @@ from ikgen.emit.python.lane_text import lane_text
 from ikgen.emit.python.python_language import SCALAR, number
 from ikgen.emit.python.python_statements import batch_lines, scalar_lines
 from ikgen.emit.python.python_text import literal, words
+from ikgen.emit.python.reached_definitions import Key
+from ikgen.emit.python.settled_branches import SOME, Facts
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
 from ikgen.runtime.python.solve_policy import Policy
@@ -24,7 +26,7 @@ from ikgen.tasks import AXES, Task
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
 
-__all__ = ["emit_derivation", "emit_module"]
+__all__ = ["emit_derivation", "emit_module", "known_facts"]
 
 
 def emit_derivation(derivation: Derivation) -> dict[str, str]:
@@ -73,7 +75,34 @@ def emit_module(module: SolverModule) -> str:
         policy=module.policy,
         policy_values=_policy_values(runtime_policy(module.policy)),
     )
-    return bundle(shell)
+    return bundle(shell, known_facts(module), _types(module))
+
+
+def known_facts(module: SolverModule) -> Facts:
+    """What is known of the runtime's `Arm` that the templates make."""
+    refined, branches = module.refine == "all", None if module.plan is not None else SOME
+    known = [
+        ("beside", (SOME,) * len(module.beside)),
+        ("branch_kind", branch_kind(module)),
+        ("branches", branches),
+        ("free", module.free),
+        ("free_joints", module.held),
+        ("policy.beside_anywhere", runtime_policy(module.policy).beside_anywhere),
+        ("rounded", refined),
+        ("together", SOME if refined else None),
+    ]
+    absent = [("angle", module.dh.arm_angle), ("around", branches)]
+    return (*known, *((name, None) for name, there in absent if not there))
+
+
+def _types(module: SolverModule) -> dict[Key, Key]:
+    """The classes that the module has of what the runtime knows by protocols."""
+    whole = module.reads.whole_pose
+    task = ("whole_pose", "PoseTask") if whole else ("pose_entries", "EntriesTask")
+    out = {("task_interface", "Task"): task} if whole or module.plan is None else {}
+    if module.dh.arm_angle:
+        out["solved_arm", "HeldAngle"] = ("arm_angle", "ArmAngle")
+    return out
 
 
 def _held_name(module: SolverModule) -> str:

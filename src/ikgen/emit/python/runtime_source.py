@@ -4,49 +4,80 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
 
+from ikgen.emit.python.docstrings import Docstring, docstrings
 from ikgen.emit.python.import_lines import External
+from ikgen.emit.python.settled_branches import Facts, settled
 
-__all__ = ["PACKAGE", "Definition", "RuntimeSource", "read_source", "taken_apart"]
+__all__ = ["PACKAGE", "Definition", "Member", "RuntimeSource", "read_source", "taken_apart"]
 
 PACKAGE = "ikgen.runtime.python"
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A method of a class: its `name` and lines (first, last, from 0), from the comments and the empty line
+    above it on."""
+
+    name: str
+    first: int
+    last: int
 
 
 @dataclass(frozen=True, slots=True)
 class Definition:
     """A top-level statement: the names it `defines`; its `lines` from the comments above it on, the
     first being line `start` of the module; `places` of names in them (line from 0, column in
-    bytes, name); whether it is a `block`, a function or class; the lines (first, last, from 0) that
-    docstrings have behind their first paragraph as its `details`."""
+    bytes, name); names behind a dot as `attributes` (line from 0, name); whether it is a `block`, a
+    function or class; its `docstrings` that have a summary; the `members` of a class that nothing but
+    their names leads to."""
 
     defines: tuple[str, ...]
     lines: tuple[str, ...]
     start: int
     places: tuple[tuple[int, int, str], ...]
+    attributes: tuple[tuple[int, str], ...]
     block: bool
-    details: tuple[tuple[int, int], ...] = ()
+    docstrings: tuple[Docstring, ...] = ()
+    members: tuple[Member, ...] = ()
 
     @property
     def uses(self) -> frozenset[str]:
         """Names that stand in it."""
         return frozenset(name for _, _, name in self.places)
 
+    def private(self, names: Mapping[str, str]) -> bool:
+        """Whether none of its names is public."""
+        return all(names.get(name, name).startswith("_") for name in self.defines)
+
+    def without(self, members: Iterable[Member]) -> Definition:
+        """The definition without some of its members: their lines are empty, and left out of its text."""
+        gone = {k for one in members for k in range(one.first, one.last + 1)}
+        return replace(
+            self,
+            lines=tuple("\0" if k in gone else line for k, line in enumerate(self.lines)),
+            places=tuple(one for one in self.places if one[0] not in gone),
+            attributes=tuple(one for one in self.attributes if one[0] not in gone),
+            docstrings=tuple(one for one in self.docstrings if one.first not in gone),
+            members=tuple(one for one in self.members if one.first not in gone),
+        )
+
     def text(self, names: Mapping[str, str]) -> str:
-        """Its text with names replaced, in backticks of its documentation too; without details where
-        no name of it is public: those are for who works on the runtime."""
+        """Its text with names replaced, in backticks of its documentation too; where no name of it is
+        public its docstrings say what they say first: the rest is for who works on the runtime."""
         lines = [line.encode() for line in self.lines]
         for line, column, name in sorted(self.places, reverse=True):
             end = column + len(name.encode())
             new = names.get(name, name).encode()
             lines[line] = lines[line][:column] + new + lines[line][end:]
-        if all(names.get(name, name).startswith("_") for name in self.defines):
-            for first, last in reversed(self.details):
-                lines[first - 1 : last + 1] = [lines[first - 1] + b'"""']
-        text = b"\n".join(lines).decode()
+        if self.private(names):
+            for one in reversed(self.docstrings):
+                lines[one.first : one.last + 1] = [line.encode() for line in one.summary]
+        text = b"\n".join(line for line in lines if line != b"\0").decode()
         return re.sub(r"`(\w+)`", lambda m: f"`{names.get(m[1], m[1])}`", text)
 
 
@@ -64,9 +95,11 @@ class RuntimeSource:
 
 
 @cache
-def read_source(name: str) -> RuntimeSource:
-    """The runtime's module of a name."""
-    return taken_apart(name, (files(PACKAGE) / f"{name}.py").read_text(encoding="utf-8"))
+def read_source(name: str, facts: Facts = ()) -> RuntimeSource:
+    """The runtime's module of a name, without what an arm of which `facts` are known never reaches."""
+    text = (files(PACKAGE) / f"{name}.py").read_text(encoding="utf-8")
+    left = settled(text, facts)
+    return read_source(name) if facts and left == text else taken_apart(name, left)
 
 
 def taken_apart(name: str, text: str, *, moved: bool = True) -> RuntimeSource:
@@ -119,20 +152,28 @@ def _definition(node: ast.stmt, parts: list[ast.AST], lines: list[str], above: i
         start = min([start, *(d.lineno for d in node.decorator_list)])
     while start - 1 > above and lines[start - 2].startswith("#"):
         start -= 1
-    places = tuple((line - start, column, name) for line, column, name in _places(node, parts))
-    part = tuple(lines[start - 1 : node.end_lineno])
-    details = tuple((a - start, b - start) for a, b in _details(parts, lines))
-    return Definition(_defined(node), part, start, places, block, details)
+    return Definition(
+        _defined(node),
+        tuple(lines[start - 1 : node.end_lineno]),
+        start,
+        tuple((line - start, column, name) for line, column, name in _places(node, parts)),
+        tuple(
+            (part.lineno - start, part.attr) for part in parts if isinstance(part, ast.Attribute)
+        ),
+        block,
+        tuple(docstrings(parts, start)),
+        tuple(_members(node, lines, start)),
+    )
 
 
-def _details(parts: list[ast.AST], lines: list[str]) -> Iterator[tuple[int, int]]:
-    """First and last line (from 1) of what docstrings say behind their first paragraph, in order."""
-    for part in parts:
-        if isinstance(part, ast.FunctionDef | ast.ClassDef) and ast.get_docstring(part):
-            first, last = part.body[0].lineno, part.body[0].end_lineno or part.body[0].lineno
-            blank = next((i for i in range(first, last) if not lines[i - 1].strip()), None)
-            if blank is not None:
-                yield blank, last
+def _members(node: ast.stmt, lines: list[str], start: int) -> Iterator[Member]:
+    for part in node.body if isinstance(node, ast.ClassDef) else ():
+        bare = isinstance(part, ast.FunctionDef) and not part.decorator_list
+        if isinstance(part, ast.FunctionDef) and bare and not part.name.startswith("__"):
+            first = part.lineno
+            while not lines[first - 2].strip() or lines[first - 2].lstrip().startswith("#"):
+                first -= 1
+            yield Member(part.name, first - start, (part.end_lineno or 0) - start)
 
 
 def _defined(node: ast.stmt) -> tuple[str, ...]:

@@ -146,14 +146,13 @@ def _rows(arm: Arm, asked: Asked, start: Array, first: bool) -> list[_Rows]:
     known = np.zeros(closed.valid.shape, dtype=bool)
     own = _of_lanes(arm, asked, closed, closed.valid & closed.rough, marked)
     starts = joined(_given(arm, asked, start, np.flatnonzero(free)), own)
-    looks, anywhere = first and len(arm.beside) > 0, arm.policy.beside_anywhere
-    if looks and anywhere:
+    if first and len(arm.beside) and arm.policy.beside_anywhere:
         starts = joined(starts, _beside(arm, asked, start, np.arange(len(start))))
     leads = leads_of(arm, starts, known, near=first and arm.rounded)
     close = (starts.source >= 0) & (leads.ends.loss < arm.policy.beside_reach) & ~leads.known
     near = free.copy()
     near[starts.pose[close]] = True
-    if looks and not anywhere and near.any():
+    if first and len(arm.beside) and not arm.policy.beside_anywhere and near.any():
         more = _beside(arm, asked, start, np.flatnonzero(near))
         leads = both(leads, leads_of(arm, more, known))
     if arm.rounded and free.any():

@@ -172,6 +172,8 @@ def _in_order(one: Led, other: Led) -> Led:
 def _fresh(arm: Arm, q: Array, starts: Starts, near: Flags, stalled: Flags) -> Flags:
     """Which rows (k, dof) are not of a pose beside, and led to the same as an earlier one of their pose or
     stalled by one that is near another solution."""
+    if not len(arm.beside):
+        return np.ones(len(q), dtype=bool)
     beside = starts.source > 0
     fresh = ~beside
     own = np.flatnonzero(np.isin(starts.pose, starts.pose[beside]) & (starts.source >= 0))
