@@ -7,11 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.support.solving import import_text
+from tests.support.solving import NO_COMPILER, import_text
 
+from ikgen.emit.cpp.cpp_emitter import emit_header
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
+from ikgen.verify.runners.cpp_header import CppHeader
+from ikgen.verify.runners.python_module import PythonModule
 
 # kind, alpha (quarters), a, d of each row; joint values
 SLIDE = (
@@ -55,6 +58,17 @@ BEHIND_A_QUARTIC = (
     ],
     [-0.7296057862685923, 0.4262236538833992, -pi / 2, 2.081041988664359, -pi / 2],
 )
+UPRIGHT = (
+    [
+        ("revolute", 0, 0.0, 0.0),
+        ("prismatic", 1, 0.2133, 0.0),
+        ("revolute", 1, 0.6879, 0.0),
+        ("revolute", -1, 0.4294, 0.0),
+        ("prismatic", 1, 0.7624, 0.0),
+    ],
+    [0.3, 0.4, 0.5, pi, 0.6],
+)
+"""The tool upright: every divisor of the closed form vanishes, and three joints move it in a plane."""
 SPECIAL = {
     "slide at 0": SLIDE,
     "fold behind a fold": FOLDS,
@@ -84,3 +98,29 @@ def test_the_generating_configuration_is_found(
     apart = np.abs((found.q - q + pi) % (2 * pi) - pi).max(axis=1, initial=0.0)
     assert len(found) and apart.min() < 1e-5
     assert np.abs(arm.forward(found.q) - arm.forward(q)).max() < 1e-9
+
+
+@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
+def test_where_every_divisor_vanishes_the_pose_is_answered(tmp_path: Path) -> None:
+    """From whatever seed, and inside the limits where it can be."""
+    rows, configuration = UPRIGHT
+    module = derive(Request(table(rows, tmp_path))).module
+    assert module.task == "position-direction"
+    path = tmp_path / "special_ik.py"
+    path.write_text(emit_module(module))
+    python = PythonModule(path)
+    header = tmp_path / "special_ik.hpp"
+    header.write_text(emit_header(module))
+    cpp = CppHeader(header, python.constants)
+    rng = np.random.default_rng(5)
+    q = rng.uniform(-1.5, 1.5, (30, 5))
+    q[:, 3] = np.where(np.arange(30) % 2, pi, 0.0)
+    q[0] = configuration
+    poses = python.forward(q)
+    for runner in (python, cpp):
+        for seed in (None, rng.uniform(-3.0, 3.0, q.shape)):
+            answers = runner.solve_many(poses, seeds=seed)
+            assert set(answers.status) == {"OK"} and (answers.count > 0).all()
+            back = runner.forward(answers.q[:, 0])
+            assert np.abs(back[:, :3, 2:] - poses[:, :3, 2:]).max() < 1e-9
+            assert answers.singular[:, 0].all()

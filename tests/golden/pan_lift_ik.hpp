@@ -1082,8 +1082,8 @@ template <class Arm> struct RowPair {
   }
 };
 
-// --- careful solve -------------------------------------------------------------------------------
-template <class Arm> struct CarefulSolve {
+// --- careful rows --------------------------------------------------------------------------------
+template <class Arm> struct CarefulRows {
   using Aim = HeldAim<Arm>;
   using Options = typename Arm::Options;
   using Pair = RowPair<Arm>;
@@ -1091,52 +1091,6 @@ template <class Arm> struct CarefulSolve {
   using Refinement = NewtonRefinement<Arm>;
   using Row = SolutionRows<Arm>;
   using Rows = typename Arm::template Rows<1>;
-  using Solutions = typename Arm::Solutions;
-
-  [[gnu::always_inline]] static void solve(const Eigen::Isometry3d& pose, const Options& options,
-                                           Solutions& out) noexcept {
-    const Aim aim(pose, options.free);
-    bool real = false;
-    Places found;
-    for (int turn = 0; turn < Policy::kTries; ++turn) {
-      double start[Arm::kDof];
-      for (int j = 0; j < Arm::kDof; ++j)
-        start[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kRevolute[j] ? turn * Policy::kTryStep : 0.0);
-      for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) start[Arm::kFreeJoints[k]] = options.free[k];
-      Left left = find_rows(aim, start, options, turn == 0, found);
-      if (options.seed && !left.free && any_singular(found)) add_from(aim, start, found);
-      real = real || found.count > 0;
-      Row::place_all(options, found);
-      if (found.count == 0 && options.seed && Refinement::refine(start, aim)) {
-        add(aim, found, start, true);
-        Row::place_all(options, found);
-      }
-      if (!Arm::kRounded) left.led = any_singular(found);
-      if (!left.free || (left.led && found.count > 0)) break;
-    }
-    if (options.seed) Row::sort_by_distance(found, options.seed->data());
-    out.count = std::min(found.count, Arm::kMaxSolutions);
-    std::copy_n(found.q.begin(), out.count, out.q.begin());
-    std::copy_n(found.singular.begin(), out.count, out.singular.begin());
-    out.status = out.count > 0 ? Arm::Status::Ok : real ? Arm::Status::Limits : Arm::Status::Unreachable;
-  }
-
-  static constexpr bool kBesideAnywhere = !(Policy::kBesideReach < Policy::kAnywhere);
-
-  static void find_lanes(const Eigen::Isometry3d& pose, const double* q0, const Options& options, Rows& out) noexcept {
-    constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
-    Arm::branches(gather<1>(&pose), typename Arm::Seed(q0), options.free, anywhere, out);
-  }
-
- private:
-  static Rows refined_lanes(const Rows& rows, const Aim& aim, const Options& options) noexcept {
-    Rows out = rows;
-    if constexpr (Arm::kNewton) {
-      constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
-      Arm::refine(gather<1>(&aim.pose), options.free, anywhere, out);
-    }
-    return out;
-  }
 
   struct Places {
     static constexpr std::size_t kRoom = 2 * Arm::kMaxSolutions;
@@ -1148,6 +1102,72 @@ template <class Arm> struct CarefulSolve {
   struct Left {
     bool free = false, led = false;
   };
+
+  static constexpr bool kBesideAnywhere = !(Policy::kBesideReach < Policy::kAnywhere);
+
+  static void find_lanes(const Eigen::Isometry3d& pose, const double* q0, const Options& options, Rows& out) noexcept {
+    constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
+    Arm::branches(gather<1>(&pose), typename Arm::Seed(q0), options.free, anywhere, out);
+  }
+
+  static bool any_singular(const Places& rows) noexcept {
+    const auto end = rows.singular.begin() + rows.count;
+    return std::find(rows.singular.begin(), end, true) != end;
+  }
+
+  static void add_from(const Aim& aim, const double* q0, Places& out) noexcept {
+    double q[Arm::kDof];
+    std::copy_n(q0, Arm::kDof, q);
+    if (Refinement::refine(q, aim)) add(aim, out, q, true);
+  }
+
+  static void add(const Aim& aim, Places& out, const double* q, bool marked) noexcept {
+    const bool singular = RankLoss<Arm>::below(q, marked ? Policy::kContinuumRankLoss : Policy::kRankLoss);
+    for (int k = 0; k < out.count && singular; ++k)
+      if (Row::flag(out, k) && Pair::between(aim, q, Row::row(out, k))) return;
+    Row::add(out, q, singular);
+  }
+
+  [[gnu::always_inline]] static Left find_rows(const Aim& aim, const double* q0, const Options& options,
+                                               bool beside, Places& out) noexcept {
+    Rows rows;
+    find_lanes(aim.pose, q0, options, rows);
+    double q[Arm::kDof];
+    Left left;
+    for (const int lane : Arm::kLaneOfRow) {
+      left.free = left.free || (bits(rows, lane) & kHit) != 0;
+      left.led = left.led || (bits(rows, lane) & (kSingular | kReal)) == (kSingular | kReal);
+    }
+    if (left.free) add_from(aim, q0, out);
+    const Rows ends = refined_lanes(rows, aim, options);
+    Starts starts;
+    for (const int lane : Arm::kLaneOfRow)
+      if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
+        starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, false, aim, out);
+    if (Arm::kRounded && beside) starts.trace_broken(aim, out);
+    if (Arm::kBesides > 0 && beside && (kBesideAnywhere || left.free || starts.close()))
+      take_beside(aim, q0, options, starts, out);
+    if (Arm::kRounded && starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, ends, starts, out);
+    left.led = left.led || starts.any_traced();
+    for (int k = 0; k < starts.count; ++k)
+      if (starts.at(k).near && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
+    for (const int lane : Arm::kLaneOfRow) {
+      if (Arm::kRefined || (bits(rows, lane) & (kReal | kRough)) != kReal) continue;
+      for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
+      Row::add(out, q, false);
+    }
+    return left;
+  }
+
+ private:
+  static Rows refined_lanes(const Rows& rows, const Aim& aim, const Options& options) noexcept {
+    Rows out = rows;
+    if constexpr (Arm::kNewton) {
+      constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
+      Arm::refine(gather<1>(&aim.pose), options.free, anywhere, out);
+    }
+    return out;
+  }
 
   static int bits(const Rows& rows, int lane) noexcept { return static_cast<int>(rows.flags[lane]); }
 
@@ -1268,55 +1288,6 @@ template <class Arm> struct CarefulSolve {
     }
   };
 
-  static bool any_singular(const Places& rows) noexcept {
-    const auto end = rows.singular.begin() + rows.count;
-    return std::find(rows.singular.begin(), end, true) != end;
-  }
-
-  static void add_from(const Aim& aim, const double* q0, Places& out) noexcept {
-    double q[Arm::kDof];
-    std::copy_n(q0, Arm::kDof, q);
-    if (Refinement::refine(q, aim)) add(aim, out, q, true);
-  }
-
-  static void add(const Aim& aim, Places& out, const double* q, bool marked) noexcept {
-    const bool singular = RankLoss<Arm>::below(q, marked ? Policy::kContinuumRankLoss : Policy::kRankLoss);
-    for (int k = 0; k < out.count && singular; ++k)
-      if (Row::flag(out, k) && Pair::between(aim, q, Row::row(out, k))) return;
-    Row::add(out, q, singular);
-  }
-
-  [[gnu::always_inline]] static Left find_rows(const Aim& aim, const double* q0, const Options& options,
-                                               bool beside, Places& out) noexcept {
-    Rows rows;
-    find_lanes(aim.pose, q0, options, rows);
-    double q[Arm::kDof];
-    Left left;
-    for (const int lane : Arm::kLaneOfRow) {
-      left.free = left.free || (bits(rows, lane) & kHit) != 0;
-      left.led = left.led || (bits(rows, lane) & (kSingular | kReal)) == (kSingular | kReal);
-    }
-    if (left.free) add_from(aim, q0, out);
-    const Rows ends = refined_lanes(rows, aim, options);
-    Starts starts;
-    for (const int lane : Arm::kLaneOfRow)
-      if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
-        starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, false, aim, out);
-    if (Arm::kRounded && beside) starts.trace_broken(aim, out);
-    if (Arm::kBesides > 0 && beside && (kBesideAnywhere || left.free || starts.close()))
-      take_beside(aim, q0, options, starts, out);
-    if (Arm::kRounded && starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, ends, starts, out);
-    left.led = left.led || starts.any_traced();
-    for (int k = 0; k < starts.count; ++k)
-      if (starts.at(k).near && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
-    for (const int lane : Arm::kLaneOfRow) {
-      if (Arm::kRefined || (bits(rows, lane) & (kReal | kRough)) != kReal) continue;
-      for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
-      Row::add(out, q, false);
-    }
-    return left;
-  }
-
   static void take_all(const Aim& aim, const Rows& rows, const Rows& ends, Starts& starts, Places& out) noexcept {
     for (const int lane : Arm::kLaneOfRow)
       if ((bits(rows, lane) & kSingular) != 0) starts.take({rows, lane, true}, ends, false, aim, out);
@@ -1333,6 +1304,241 @@ template <class Arm> struct CarefulSolve {
           if ((bits(rows, lane) & kReal) != 0)
             starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, true, aim, out);
       }
+  }
+};
+
+// --- pose entries --------------------------------------------------------------------------------
+template <class Arm> struct PoseEntries {
+  static constexpr int kCount = sizeof(Arm::kRead) / sizeof(Arm::kRead[0]);
+  static constexpr bool kPosition = Arm::kRead[0][1] == 3;  // is read
+
+  template <class X, class Tip>
+  static void error(const X (&t)[3][4], const Tip& T, X* error) noexcept {
+    for (int i = 0; i < kCount; ++i) {
+      const auto [r, c] = Arm::kRead[i];
+      if (c == 3) {
+        error[i] = (t[r][3] - T.p[r]) / Arm::kSize;
+      } else {
+        error[i] = t[r][c] - T.R[r][c];
+      }
+    }
+  }
+
+  template <class X, class Tip>
+  static void slope(const Tip& T, const X (&J)[6][Arm::kDof], X (*slope)[Arm::kDof]) noexcept {
+    for (int i = 0; i < kCount; ++i) {
+      const auto [r, c] = Arm::kRead[i];
+      const int u = (r + 1) % 3, v = (r + 2) % 3;
+      for (int j = 0; j < Arm::kDof; ++j) {
+        if (c == 3) {
+          slope[i][j] = J[r][j] / Arm::kSize;
+        } else {
+          slope[i][j] = J[3 + u][j] * T.R[v][c] - J[3 + v][j] * T.R[u][c];
+        }
+      }
+    }
+  }
+};
+
+// --- nearest row ---------------------------------------------------------------------------------
+template <class Arm> struct PoseChords {
+  static constexpr int kCount = PoseEntries<Arm>::kCount;
+  double error[kCount], slope[kCount][Arm::kDof], cost = 0.0;
+
+  PoseChords(const double* q, const double* t) noexcept {
+    double J[6][Arm::kDof], rows[3][4];
+    const Frame T = MotionChain<Arm>::forward(q, J);
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 4; ++c) rows[r][c] = t[4 * c + r];
+    PoseEntries<Arm>::error(rows, T, error);
+    PoseEntries<Arm>::slope(T, J, slope);
+    for (int i = 0; i < kCount; ++i) {
+      const double weight = Arm::kRead[i][1] == 3 ? 1.0 : turn();
+      error[i] *= weight;
+      cost += error[i] * error[i];
+      for (int j = 0; j < Arm::kDof; ++j) slope[i][j] *= Arm::kHeld[j] ? 0.0 : weight;
+    }
+  }
+
+  static double turn() noexcept {
+    int turned = 0;
+    for (const auto& entry : Arm::kRead) turned += entry[1] < 3 ? 1 : 0;
+    return turned == 9 ? std::sqrt(0.5) : 1.0;
+  }
+
+  static void off_by(const double* q, const double* t, double* off) noexcept {
+    const PoseChords at(q, t);
+    double f[16], length = 0.0, chord = 0.0, angles = 0.0;
+    by_columns(MotionChain<Arm>::forward(q), f);
+    for (int i = 0; i < kCount; ++i) {
+      const auto [r, c] = Arm::kRead[i];
+      (c == 3 ? length : chord) += at.error[i] * at.error[i];
+      if (c == 3 || Arm::Columns::has(c)) continue;
+      const double gap = std::asin(std::clamp(f[4 * c + r], -1.0, 1.0)) - std::asin(std::clamp(t[4 * c + r], -1.0, 1.0));
+      angles += gap * gap;
+    }
+    off[0] = std::sqrt(length) * Arm::kSize;
+    off[1] = angles > 0.0 ? std::sqrt(angles) : 2.0 * std::asin(std::min(0.5 * std::sqrt(chord), 1.0));
+  }
+};
+
+template <class Arm> struct NearestRow {
+  using Options = typename Arm::Options;
+  using Chords = PoseChords<Arm>;
+  static constexpr int kStarts = 128, kFollowed = 16, kSteps = 80;
+  static constexpr double kLeast = 1e-10, kFirst = 1e-3, kMost = 1e10;  // damping of a step
+  static constexpr double kLongest = 0.5;                              // rad or m: step of a joint
+
+  [[gnu::cold, gnu::noinline]] static void find(const double* t, const Options& options, bool inside,
+                                                double* best) noexcept {
+    double rows[kFollowed][Arm::kDof], costs[kFollowed], q[Arm::kDof], root = 2.0;
+    for (int k = 0; k < 40; ++k) root = std::pow(1.0 + root, 1.0 / (Arm::kDof + 1));
+    int kept = 0;
+    for (int i = -1; i < kStarts; ++i) {
+      if (i >= 0) start(i, root, options, inside, q);
+      for (int j = 0; i < 0 && j < Arm::kDof; ++j) {
+        double low, high;
+        bounds(j, inside, &low, &high);
+        q[j] = std::clamp(options.seed ? options.seed->data()[j] : 0.0, low, high);
+      }
+      hold(options, q);
+      const double cost = Chords(q, t).cost;
+      int at = std::min(kept, kFollowed - 1);
+      if (kept == kFollowed && !(cost < costs[at])) continue;
+      for (; at > 0 && costs[at - 1] > cost; --at) {
+        costs[at] = costs[at - 1];
+        std::copy_n(rows[at - 1], Arm::kDof, rows[at]);
+      }
+      costs[at] = cost;
+      std::copy_n(q, Arm::kDof, rows[at]);
+      kept = std::min(kept + 1, kFollowed);
+    }
+    double least = kInfinity;
+    for (int k = 0; k < kept; ++k) {
+      const double cost = descend(t, inside, rows[k]);
+      if (!(cost < least)) continue;
+      least = cost;
+      std::copy_n(rows[k], Arm::kDof, best);
+    }
+  }
+
+ private:
+  static void bounds(int j, bool limits, double* low, double* high) noexcept {
+    *low = limits ? Arm::kLower.data()[j] : -kInfinity;
+    *high = limits ? Arm::kUpper.data()[j] : kInfinity;
+  }
+
+  static void start(int i, double root, const Options& options, bool inside, double* q) noexcept {
+    double step = 1.0;
+    for (int j = 0; j < Arm::kDof; ++j) {
+      step /= root;
+      double low, high, whole;
+      bounds(j, inside, &low, &high);
+      const double half = Arm::kRevolute[j] ? kPi : Arm::kSize;
+      const double centre = std::clamp(0.0, low + half, std::max(high - half, low + half));
+      low = std::max(low, centre - half);
+      high = std::min(high, centre + half);
+      q[j] = low + std::modf(0.5 + (i + 1) * step, &whole) * (high - low);
+    }
+    hold(options, q);
+  }
+
+  static void hold(const Options& options, double* q) noexcept {
+    for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) q[Arm::kFreeJoints[k]] = options.free[k];
+  }
+
+  static double descend(const double* t, bool limits, double* q) noexcept {
+    double damping = kFirst;
+    Chords at(q, t);
+    for (int i = 0; i < kSteps && damping < kMost; ++i) {
+      double trial[Arm::kDof];
+      std::copy_n(q, Arm::kDof, trial);
+      step(at, limits, damping, trial);
+      const Chords there(trial, t);
+      const bool better = there.cost < at.cost;
+      damping = std::clamp(damping * (better ? 0.2 : 8.0), kLeast, kMost);
+      if (!better) continue;
+      at = there;
+      std::copy_n(trial, Arm::kDof, q);
+    }
+    return at.cost;
+  }
+
+  static void step(const Chords& at, bool limits, double damping, double* q) noexcept {
+    double A[Arm::kDof][Arm::kDof], x[Arm::kDof], low[Arm::kDof], high[Arm::kDof];
+    bool stuck[Arm::kDof];
+    for (int j = 0; j < Arm::kDof; ++j) {
+      bounds(j, limits, low + j, high + j);
+      x[j] = 0.0;
+      for (int e = 0; e < Chords::kCount; ++e) x[j] += at.slope[e][j] * at.error[e];
+      stuck[j] = Arm::kHeld[j] || (q[j] <= low[j] && x[j] < 0.0) || (q[j] >= high[j] && x[j] > 0.0);
+      if (stuck[j]) x[j] = 0.0;
+    }
+    for (int i = 0; i < Arm::kDof; ++i)
+      for (int j = 0; j <= i; ++j) {
+        A[i][j] = i == j ? damping : 0.0;
+        for (int e = 0; e < Chords::kCount && !stuck[i] && !stuck[j]; ++e) A[i][j] += at.slope[e][i] * at.slope[e][j];
+      }
+    factor(A);
+    substitute(A, x);
+    for (int j = 0; j < Arm::kDof; ++j)
+      if (!stuck[j]) q[j] = std::clamp(q[j] + std::clamp(x[j], -kLongest, kLongest), low[j], high[j]);
+  }
+};
+
+// --- careful solve -------------------------------------------------------------------------------
+template <class Arm> struct CarefulSolve {
+  using Careful = CarefulRows<Arm>;
+  using Aim = HeldAim<Arm>;
+  using Options = typename Arm::Options;
+  using Places = typename Careful::Places;
+  using Policy = typename Arm::Policy;
+  using Refinement = NewtonRefinement<Arm>;
+  using Row = SolutionRows<Arm>;
+  using Solutions = typename Arm::Solutions;
+
+  [[gnu::always_inline]] static void solve(const Eigen::Isometry3d& pose, const Options& options,
+                                           Solutions& out) noexcept {
+    const Aim aim(pose, options.free);
+    bool real = false, free = true;
+    Places found;
+    for (int turn = 0; turn < Policy::kTries && free; ++turn) {
+      double start[Arm::kDof];
+      for (int j = 0; j < Arm::kDof; ++j)
+        start[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kRevolute[j] ? turn * Policy::kTryStep : 0.0);
+      for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) start[Arm::kFreeJoints[k]] = options.free[k];
+      auto left = Careful::find_rows(aim, start, options, turn == 0, found);
+      if (options.seed && !left.free && Careful::any_singular(found)) Careful::add_from(aim, start, found);
+      real = real || found.count > 0;
+      Row::place_all(options, found);
+      if (found.count == 0 && options.seed && Refinement::refine(start, aim)) {
+        Careful::add(aim, found, start, true);
+        Row::place_all(options, found);
+      }
+      if (!Arm::kRounded) left.led = Careful::any_singular(found);
+      free = left.free && !(left.led && found.count > 0);
+    }
+    if (free && !real) real = add_nearest(aim, options, found);
+    if (options.seed) Row::sort_by_distance(found, options.seed->data());
+    out.count = std::min(found.count, Arm::kMaxSolutions);
+    std::copy_n(found.q.begin(), out.count, out.q.begin());
+    std::copy_n(found.singular.begin(), out.count, out.singular.begin());
+    out.status = out.count > 0 ? Arm::Status::Ok : real ? Arm::Status::Limits : Arm::Status::Unreachable;
+  }
+
+ private:
+  [[gnu::cold, gnu::noinline]] static bool add_nearest(const Aim& aim, const Options& options, Places& out) noexcept {
+    bool real = false;
+    for (bool inside = options.limits;; inside = false) {
+      double q[Arm::kDof];
+      NearestRow<Arm>::find(aim.pose.matrix().data(), options, inside, q);
+      if (Refinement::refine(q, aim)) {
+        real = true;
+        Careful::add(aim, out, q, true);
+        Row::place_all(options, out);
+      }
+      if (out.count > 0 || !inside) return real;
+    }
   }
 };
 
@@ -1468,7 +1674,7 @@ template <class Arm> struct LaneSolve {
       count += bits & kFound;
       seen |= bits;
     }
-    if ((seen & (kRough | kHit)) != 0 || (CarefulSolve<Arm>::kBesideAnywhere && (seen & kReal) == 0)) return false;
+    if ((seen & (kRough | kHit)) != 0 || (CarefulRows<Arm>::kBesideAnywhere && (seen & kReal) == 0)) return false;
     out.count = count;
     if (Arm::kNewton || (seen & kMeeting) != 0) {
       leave_distinct(out);
@@ -1477,39 +1683,6 @@ template <class Arm> struct LaneSolve {
     if (options.seed) Row::sort_by_distance(out, options.seed->data());
     out.status = out.count > 0 ? Arm::Status::Ok : (seen & kReal) != 0 ? Arm::Status::Limits : Arm::Status::Unreachable;
     return out.count > 0 || !options.seed;
-  }
-};
-
-// --- pose entries --------------------------------------------------------------------------------
-template <class Arm> struct PoseEntries {
-  static constexpr int kCount = sizeof(Arm::kRead) / sizeof(Arm::kRead[0]);
-  static constexpr bool kPosition = Arm::kRead[0][1] == 3;  // is read
-
-  template <class X, class Tip>
-  static void error(const X (&t)[3][4], const Tip& T, X* error) noexcept {
-    for (int i = 0; i < kCount; ++i) {
-      const auto [r, c] = Arm::kRead[i];
-      if (c == 3) {
-        error[i] = (t[r][3] - T.p[r]) / Arm::kSize;
-      } else {
-        error[i] = t[r][c] - T.R[r][c];
-      }
-    }
-  }
-
-  template <class X, class Tip>
-  static void slope(const Tip& T, const X (&J)[6][Arm::kDof], X (*slope)[Arm::kDof]) noexcept {
-    for (int i = 0; i < kCount; ++i) {
-      const auto [r, c] = Arm::kRead[i];
-      const int u = (r + 1) % 3, v = (r + 2) % 3;
-      for (int j = 0; j < Arm::kDof; ++j) {
-        if (c == 3) {
-          slope[i][j] = J[r][j] / Arm::kSize;
-        } else {
-          slope[i][j] = J[3 + u][j] * T.R[v][c] - J[3 + v][j] * T.R[u][c];
-        }
-      }
-    }
   }
 };
 
@@ -1673,54 +1846,10 @@ template <class Arm, template <class> class Way> struct PoseSolver {
 };
 
 // --- projection ----------------------------------------------------------------------------------
-template <class Arm> struct PoseChords {
-  static constexpr int kCount = PoseEntries<Arm>::kCount;
-  double error[kCount], slope[kCount][Arm::kDof], cost = 0.0;
-
-  PoseChords(const double* q, const double* t) noexcept {
-    double J[6][Arm::kDof], rows[3][4];
-    const Frame T = MotionChain<Arm>::forward(q, J);
-    for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 4; ++c) rows[r][c] = t[4 * c + r];
-    PoseEntries<Arm>::error(rows, T, error);
-    PoseEntries<Arm>::slope(T, J, slope);
-    for (int i = 0; i < kCount; ++i) {
-      const double weight = Arm::kRead[i][1] == 3 ? 1.0 : turn();
-      error[i] *= weight;
-      cost += error[i] * error[i];
-      for (int j = 0; j < Arm::kDof; ++j) slope[i][j] *= Arm::kHeld[j] ? 0.0 : weight;
-    }
-  }
-
-  static double turn() noexcept {
-    int turned = 0;
-    for (const auto& entry : Arm::kRead) turned += entry[1] < 3 ? 1 : 0;
-    return turned == 9 ? std::sqrt(0.5) : 1.0;
-  }
-
-  static void off_by(const double* q, const double* t, double* off) noexcept {
-    const PoseChords at(q, t);
-    double f[16], length = 0.0, chord = 0.0, angles = 0.0;
-    by_columns(MotionChain<Arm>::forward(q), f);
-    for (int i = 0; i < kCount; ++i) {
-      const auto [r, c] = Arm::kRead[i];
-      (c == 3 ? length : chord) += at.error[i] * at.error[i];
-      if (c == 3 || Arm::Columns::has(c)) continue;
-      const double gap = std::asin(std::clamp(f[4 * c + r], -1.0, 1.0)) - std::asin(std::clamp(t[4 * c + r], -1.0, 1.0));
-      angles += gap * gap;
-    }
-    off[0] = std::sqrt(length) * Arm::kSize;
-    off[1] = angles > 0.0 ? std::sqrt(angles) : 2.0 * std::asin(std::min(0.5 * std::sqrt(chord), 1.0));
-  }
-};
-
 template <class Arm, template <class> class Way> struct Projection {
   using Options = typename Arm::Options;
   using Solutions = typename Arm::Solutions;
   using Chords = PoseChords<Arm>;
-  static constexpr int kStarts = 128, kFollowed = 16, kSteps = 80;
-  static constexpr double kLeast = 1e-10, kFirst = 1e-3, kMost = 1e10;  // damping of a step
-  static constexpr double kLongest = 0.5;                              // rad or m: step of a joint
 
   [[gnu::cold, gnu::noinline]] static void apply(const Eigen::Isometry3d& pose, const Options& given,
                                                  Solutions& out) noexcept {
@@ -1736,107 +1865,13 @@ template <class Arm, template <class> class Way> struct Projection {
   static void solve_nearest(const double* t, Options options, Solutions& out) noexcept {
     if (options.seed && !SolutionRows<Arm>::finite(options.seed->data())) options.seed = nullptr;
     double q[Arm::kDof];
-    nearest(t, options, q);
+    NearestRow<Arm>::find(t, options, options.limits, q);
     Eigen::Isometry3d pose;
     by_columns(MotionChain<Arm>::forward(q), pose.matrix().data());
     HeldAim<Arm>::values(q, options.free);
     Way<Arm>::template solve<1>(&pose, options, &out);
     if (SolutionRows<Arm>::place(q, options)) SolutionRows<Arm>::add(out, q, false);
     if (out.count > 0) out.status = Arm::Status::Ok;
-  }
-
-  static void bounds(int j, bool limits, double* low, double* high) noexcept {
-    *low = limits ? Arm::kLower.data()[j] : -kInfinity;
-    *high = limits ? Arm::kUpper.data()[j] : kInfinity;
-  }
-
-  static void start(int i, double root, const Options& options, double* q) noexcept {
-    double step = 1.0;
-    for (int j = 0; j < Arm::kDof; ++j) {
-      step /= root;
-      double low, high, whole;
-      bounds(j, options.limits, &low, &high);
-      const double half = Arm::kRevolute[j] ? kPi : Arm::kSize;
-      const double centre = std::clamp(0.0, low + half, std::max(high - half, low + half));
-      low = std::max(low, centre - half);
-      high = std::min(high, centre + half);
-      q[j] = low + std::modf(0.5 + (i + 1) * step, &whole) * (high - low);
-    }
-    hold(options, q);
-  }
-
-  static void hold(const Options& options, double* q) noexcept {
-    for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) q[Arm::kFreeJoints[k]] = options.free[k];
-  }
-
-  static void nearest(const double* t, const Options& options, double* best) noexcept {
-    double rows[kFollowed][Arm::kDof], costs[kFollowed], q[Arm::kDof], root = 2.0;
-    for (int k = 0; k < 40; ++k) root = std::pow(1.0 + root, 1.0 / (Arm::kDof + 1));
-    int kept = 0;
-    for (int i = -1; i < kStarts; ++i) {
-      if (i >= 0) start(i, root, options, q);
-      for (int j = 0; i < 0 && j < Arm::kDof; ++j) {
-        double low, high;
-        bounds(j, options.limits, &low, &high);
-        q[j] = std::clamp(options.seed ? options.seed->data()[j] : 0.0, low, high);
-      }
-      hold(options, q);
-      const double cost = Chords(q, t).cost;
-      int at = std::min(kept, kFollowed - 1);
-      if (kept == kFollowed && !(cost < costs[at])) continue;
-      for (; at > 0 && costs[at - 1] > cost; --at) {
-        costs[at] = costs[at - 1];
-        std::copy_n(rows[at - 1], Arm::kDof, rows[at]);
-      }
-      costs[at] = cost;
-      std::copy_n(q, Arm::kDof, rows[at]);
-      kept = std::min(kept + 1, kFollowed);
-    }
-    double least = kInfinity;
-    for (int k = 0; k < kept; ++k) {
-      const double cost = descend(t, options.limits, rows[k]);
-      if (!(cost < least)) continue;
-      least = cost;
-      std::copy_n(rows[k], Arm::kDof, best);
-    }
-  }
-
-  static double descend(const double* t, bool limits, double* q) noexcept {
-    double damping = kFirst;
-    Chords at(q, t);
-    for (int i = 0; i < kSteps && damping < kMost; ++i) {
-      double trial[Arm::kDof];
-      std::copy_n(q, Arm::kDof, trial);
-      step(at, limits, damping, trial);
-      const Chords there(trial, t);
-      const bool better = there.cost < at.cost;
-      damping = std::clamp(damping * (better ? 0.2 : 8.0), kLeast, kMost);
-      if (!better) continue;
-      at = there;
-      std::copy_n(trial, Arm::kDof, q);
-    }
-    return at.cost;
-  }
-
-  static void step(const Chords& at, bool limits, double damping, double* q) noexcept {
-    double A[Arm::kDof][Arm::kDof], x[Arm::kDof], low[Arm::kDof], high[Arm::kDof];
-    bool stuck[Arm::kDof];
-    for (int j = 0; j < Arm::kDof; ++j) {
-      bounds(j, limits, low + j, high + j);
-      x[j] = 0.0;
-      for (int e = 0; e < Chords::kCount; ++e) x[j] += at.slope[e][j] * at.error[e];
-      stuck[j] = Arm::kHeld[j] || (q[j] <= low[j] && x[j] < 0.0) || (q[j] >= high[j] && x[j] > 0.0);
-      if (stuck[j]) x[j] = 0.0;
-    }
-    for (int i = 0; i < Arm::kDof; ++i)
-      for (int j = 0; j <= i; ++j) {
-        A[i][j] = i == j ? damping : 0.0;
-        for (int e = 0; e < Chords::kCount && !stuck[i] && !stuck[j]; ++e) A[i][j] += at.slope[e][i] * at.slope[e][j];
-      }
-    factor(A);
-    substitute(A, x);
-    for (int j = 0; j < Arm::kDof; ++j)
-      if (!stuck[j]) q[j] = std::clamp(q[j] + std::clamp(x[j], -kLongest, kLongest), low[j], high[j]);
   }
 };
 

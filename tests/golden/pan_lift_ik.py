@@ -1162,6 +1162,112 @@ def _repeats(arm: _Arm, T: Array, row: Row, kept: Sequence[_Found]) -> bool:
     return False
 
 
+# The nearest pose that the arm can take, of one that it cannot.
+
+
+_START_COUNT = 128  # drawn; the best of them are followed
+_FOLLOWED = 16
+_STEP_COUNT = 80
+_LEAST_DAMPING, _FIRST_DAMPING, _MOST_DAMPING = 1e-10, 1e-3, 1e10  # damping of a step
+_LONGEST_STEP = 0.5  # rad or m: step of a joint
+
+
+def _nearest_row(arm: _Arm, T: Array, start: Row, limits: bool) -> Row:
+    """The joint values whose pose is nearest to T (4, 4), held joints as in `start`."""
+    low, high = _step_bounds(arm, limits)
+    q = np.vstack([np.clip(start, low, high), _even_starts(arm, low, high)])
+    q[:, list(arm.free)] = [start[j] for j in arm.free]
+    cost = (_chord_errors(arm.task, _forward(arm.chain, q), T) ** 2).sum(axis=1)
+    q, cost = _descend_to(arm, T, q[np.argsort(cost, kind="stable")[:_FOLLOWED]], (low, high))
+    best: Row = tuple(q[int(np.argmin(cost))].tolist())
+    return best
+
+
+def _off_by(task: _EntriesTask, pose: Array, T: Array) -> Array:
+    """How far poses (k, 4, 4) are from T (4, 4): (k, 2), m and rad."""
+    error = _chord_errors(task, pose, T)
+    length = np.array([c == 3 for _, c in task.entries])
+    off = np.empty((len(pose), 2))
+    off[:, 0] = np.sqrt((error[:, length] ** 2).sum(axis=1)) * task.size
+    if task.unit:
+        chord = np.sqrt((error[:, ~length] ** 2).sum(axis=1))
+        off[:, 1] = 2.0 * np.arcsin(np.minimum(0.5 * chord, 1.0))
+    else:  # single entries are sines of angles to the base's planes
+        gaps = [
+            np.arcsin(pose[:, r, c].clip(-1.0, 1.0)) - asin(T[r, c])
+            for r, c in task.entries
+            if c < 3
+        ]
+        off[:, 1] = np.sqrt(sum(gap**2 for gap in gaps))
+    return off
+
+
+def _chord_weight(task: _EntriesTask) -> Array:
+    """Of each entry."""
+    turn = sqrt(0.5) if len(task.unit) == 3 else 1.0
+    return np.array([1.0 / task.size if c == 3 else turn for _, c in task.entries])
+
+
+def _chord_errors(task: _EntriesTask, pose: Array, T: Array) -> Array:
+    """What poses (k, 4, 4) are off T (4, 4): (k, entries)."""
+    return _entry_errors(task.entries, _chord_weight(task), pose, np.broadcast_to(T, pose.shape))
+
+
+def _step_bounds(arm: _Arm, limits: bool) -> tuple[Array, Array]:
+    """Where steps are clipped to."""
+    low, high = np.array(arm.lower), np.array(arm.upper)
+    return (low, high) if limits else (np.full(len(low), -inf), np.full(len(low), inf))
+
+
+def _even_starts(arm: _Arm, low: Array, high: Array) -> Array:
+    """Configurations (n, dof) that fill the limits evenly."""
+    dof = len(low)
+    root = 2.0
+    for _ in range(40):
+        root = (1.0 + root) ** (1.0 / (dof + 1))
+    steps = (1.0 / root) ** np.arange(1, dof + 1)
+    part = (0.5 + np.arange(1, _START_COUNT + 1)[:, None] * steps) % 1.0
+    half = np.where(arm.chain.revolute, pi, arm.task.size)
+    centre = np.clip(0.0, low + half, np.maximum(high - half, low + half))
+    least, most = np.maximum(low, centre - half), np.minimum(high, centre + half)
+    return np.asarray(least + part * (most - least))
+
+
+def _descend_to(arm: _Arm, T: Array, q: Array, bounds: tuple[Array, Array]) -> tuple[Array, Array]:
+    """The rows (k, dof) at the ends of the steps, and what is least there (k,)."""
+    moving, damping = list(arm.moving), np.full(len(q), _FIRST_DAMPING)
+    low, high = (bound[moving] for bound in bounds)
+    pose, J = _tip_and_jacobian(arm.chain, q)
+    error = _chord_errors(arm.task, pose, T)
+    cost = (error**2).sum(axis=1)
+    for _ in range(_STEP_COUNT):
+        trial = q.copy()
+        slope = _entry_rows(arm.task.entries, _chord_weight(arm.task), pose, J)[:, :, moving]
+        trial[:, moving] = _clipped_step(q[:, moving], slope, error, damping, (low, high))
+        new = (trial, *_tip_and_jacobian(arm.chain, trial))
+        errors = _chord_errors(arm.task, new[1], T)
+        costs = (errors**2).sum(axis=1)
+        better = costs < cost
+        q[better], error[better], cost[better] = trial[better], errors[better], costs[better]
+        pose, J = (np.where(better[:, None, None], a, b) for a, b in zip(new[1:], (pose, J)))
+        damping = np.clip(damping * np.where(better, 0.2, 8.0), _LEAST_DAMPING, _MOST_DAMPING)
+        if damping.min() == _MOST_DAMPING:
+            break
+    return q, cost
+
+
+def _clipped_step(
+    q: Array, slope: Array, error: Array, damping: Array, bounds: tuple[Array, Array]
+) -> Array:
+    """The rows (k, n) after one step."""
+    push = np.einsum("kmj,km->kj", slope, error)
+    stuck = ((q <= bounds[0]) & (push < 0.0)) | ((q >= bounds[1]) & (push > 0.0))
+    slope = np.where(stuck[:, None], 0.0, slope)
+    normal = np.einsum("kmi,kmj->kij", slope, slope) + damping[:, None, None] * np.eye(q.shape[1])
+    step = np.linalg.solve(normal, np.where(stuck, 0.0, push)[:, :, None])[:, :, 0]
+    return np.asarray(np.clip(q + np.clip(step, -_LONGEST_STEP, _LONGEST_STEP), *bounds))
+
+
 # All solutions of poses near singularities, and of those that leave joints free: of many poses at once, as
 
 
@@ -1220,7 +1326,23 @@ def _placed_rows(arm: _Arm, asked: _Asked, limits: bool) -> list[_Answer]:
             if going[i]:
                 going[i] = _goes_on(arm, some, k, rows[k], seeded.get(k, []), limits, out[i])
         left = left[going[left]]
+    for i in left.tolist():
+        if not out[i].real:
+            _take_nearest(arm, asked.at(np.array([i])), limits, out[i])
     return out
+
+
+def _take_nearest(arm: _Arm, asked: _Asked, limits: bool, answer: _Answer) -> None:
+    """Adds a row that takes the one pose asked for, inside the limits if one of these was found."""
+    start: Row = tuple(asked.starts(arm)[0].tolist())
+    aim = _aims(arm, asked.T, asked.held)
+    for inside in dict.fromkeys((limits, False)):
+        row = _nearest_row(arm, asked.T[0], start, inside)
+        found = _led_to(arm, asked, np.array([row]))[0]
+        answer.real = answer.real or bool(found)
+        answer.rows = _rows_inside(arm, aim, found, asked.seed(0), limits)
+        if answer.rows:
+            break
 
 
 def _goes_on(
@@ -1936,112 +2058,6 @@ def _kept(arm: _Arm, parts: _Parts) -> tuple[_Index, Array]:
     order = order[_places(parts.owner[order]) < _ROOM]
     whole = 2.0 * np.pi * np.round(q / (2.0 * np.pi))
     return parts.owner[order], np.where(arm.chain.revolute, q - whole, q)[order]
-
-
-# The nearest pose that the arm can take, of one that it cannot.
-
-
-_START_COUNT = 128  # drawn; the best of them are followed
-_FOLLOWED = 16
-_STEP_COUNT = 80
-_LEAST_DAMPING, _FIRST_DAMPING, _MOST_DAMPING = 1e-10, 1e-3, 1e10  # damping of a step
-_LONGEST_STEP = 0.5  # rad or m: step of a joint
-
-
-def _nearest_row(arm: _Arm, T: Array, start: Row, limits: bool) -> Row:
-    """The joint values whose pose is nearest to T (4, 4), held joints as in `start`."""
-    low, high = _step_bounds(arm, limits)
-    q = np.vstack([np.clip(start, low, high), _even_starts(arm, low, high)])
-    q[:, list(arm.free)] = [start[j] for j in arm.free]
-    cost = (_chord_errors(arm.task, _forward(arm.chain, q), T) ** 2).sum(axis=1)
-    q, cost = _descend_to(arm, T, q[np.argsort(cost, kind="stable")[:_FOLLOWED]], (low, high))
-    best: Row = tuple(q[int(np.argmin(cost))].tolist())
-    return best
-
-
-def _off_by(task: _EntriesTask, pose: Array, T: Array) -> Array:
-    """How far poses (k, 4, 4) are from T (4, 4): (k, 2), m and rad."""
-    error = _chord_errors(task, pose, T)
-    length = np.array([c == 3 for _, c in task.entries])
-    off = np.empty((len(pose), 2))
-    off[:, 0] = np.sqrt((error[:, length] ** 2).sum(axis=1)) * task.size
-    if task.unit:
-        chord = np.sqrt((error[:, ~length] ** 2).sum(axis=1))
-        off[:, 1] = 2.0 * np.arcsin(np.minimum(0.5 * chord, 1.0))
-    else:  # single entries are sines of angles to the base's planes
-        gaps = [
-            np.arcsin(pose[:, r, c].clip(-1.0, 1.0)) - asin(T[r, c])
-            for r, c in task.entries
-            if c < 3
-        ]
-        off[:, 1] = np.sqrt(sum(gap**2 for gap in gaps))
-    return off
-
-
-def _chord_weight(task: _EntriesTask) -> Array:
-    """Of each entry."""
-    turn = sqrt(0.5) if len(task.unit) == 3 else 1.0
-    return np.array([1.0 / task.size if c == 3 else turn for _, c in task.entries])
-
-
-def _chord_errors(task: _EntriesTask, pose: Array, T: Array) -> Array:
-    """What poses (k, 4, 4) are off T (4, 4): (k, entries)."""
-    return _entry_errors(task.entries, _chord_weight(task), pose, np.broadcast_to(T, pose.shape))
-
-
-def _step_bounds(arm: _Arm, limits: bool) -> tuple[Array, Array]:
-    """Where steps are clipped to."""
-    low, high = np.array(arm.lower), np.array(arm.upper)
-    return (low, high) if limits else (np.full(len(low), -inf), np.full(len(low), inf))
-
-
-def _even_starts(arm: _Arm, low: Array, high: Array) -> Array:
-    """Configurations (n, dof) that fill the limits evenly."""
-    dof = len(low)
-    root = 2.0
-    for _ in range(40):
-        root = (1.0 + root) ** (1.0 / (dof + 1))
-    steps = (1.0 / root) ** np.arange(1, dof + 1)
-    part = (0.5 + np.arange(1, _START_COUNT + 1)[:, None] * steps) % 1.0
-    half = np.where(arm.chain.revolute, pi, arm.task.size)
-    centre = np.clip(0.0, low + half, np.maximum(high - half, low + half))
-    least, most = np.maximum(low, centre - half), np.minimum(high, centre + half)
-    return np.asarray(least + part * (most - least))
-
-
-def _descend_to(arm: _Arm, T: Array, q: Array, bounds: tuple[Array, Array]) -> tuple[Array, Array]:
-    """The rows (k, dof) at the ends of the steps, and what is least there (k,)."""
-    moving, damping = list(arm.moving), np.full(len(q), _FIRST_DAMPING)
-    low, high = (bound[moving] for bound in bounds)
-    pose, J = _tip_and_jacobian(arm.chain, q)
-    error = _chord_errors(arm.task, pose, T)
-    cost = (error**2).sum(axis=1)
-    for _ in range(_STEP_COUNT):
-        trial = q.copy()
-        slope = _entry_rows(arm.task.entries, _chord_weight(arm.task), pose, J)[:, :, moving]
-        trial[:, moving] = _clipped_step(q[:, moving], slope, error, damping, (low, high))
-        new = (trial, *_tip_and_jacobian(arm.chain, trial))
-        errors = _chord_errors(arm.task, new[1], T)
-        costs = (errors**2).sum(axis=1)
-        better = costs < cost
-        q[better], error[better], cost[better] = trial[better], errors[better], costs[better]
-        pose, J = (np.where(better[:, None, None], a, b) for a, b in zip(new[1:], (pose, J)))
-        damping = np.clip(damping * np.where(better, 0.2, 8.0), _LEAST_DAMPING, _MOST_DAMPING)
-        if damping.min() == _MOST_DAMPING:
-            break
-    return q, cost
-
-
-def _clipped_step(
-    q: Array, slope: Array, error: Array, damping: Array, bounds: tuple[Array, Array]
-) -> Array:
-    """The rows (k, n) after one step."""
-    push = np.einsum("kmj,km->kj", slope, error)
-    stuck = ((q <= bounds[0]) & (push < 0.0)) | ((q >= bounds[1]) & (push > 0.0))
-    slope = np.where(stuck[:, None], 0.0, slope)
-    normal = np.einsum("kmi,kmj->kij", slope, slope) + damping[:, None, None] * np.eye(q.shape[1])
-    step = np.linalg.solve(normal, np.where(stuck, 0.0, push)[:, :, None])[:, :, 0]
-    return np.asarray(np.clip(q + np.clip(step, -_LONGEST_STEP, _LONGEST_STEP), *bounds))
 
 
 # What distinguishes the rows of a pose: names of their branches, from the geometry of each row alone.

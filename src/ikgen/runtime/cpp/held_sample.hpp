@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "careful_solve.hpp"
+#include "careful_rows.hpp"
 #include "displacement.hpp"
 #include "fold_rows.hpp"
 #include "joint_range.hpp"
@@ -45,9 +45,9 @@ template <class Arm> struct JointBounds {
   }
 };
 
-// Arm: as for CarefulSolve; kFolds, how many margins its closed form has.
+// Arm: as for CarefulRows; kFolds, how many margins its closed form has.
 template <class Arm> struct HeldSample {
-  static constexpr int kBesides = CarefulSolve<Arm>::kBesideAnywhere ? Arm::kBesides : 0;
+  static constexpr int kBesides = CarefulRows<Arm>::kBesideAnywhere ? Arm::kBesides : 0;
   static constexpr int kLanes = Arm::kLanes * (1 + kBesides), kMargins = Arm::kFolds > 0 ? Arm::kFolds : 1;
   static constexpr bool kMarginsTell = Arm::kGuarded && !Arm::kRounded;  // where branches end: a rounded arm's do not
   double held = 0.0;

@@ -67,7 +67,7 @@ template <class Arm> struct LaneSolve {
       count += bits & kFound;
       seen |= bits;
     }
-    if ((seen & (kRough | kHit)) != 0 || (CarefulSolve<Arm>::kBesideAnywhere && (seen & kReal) == 0)) return false;
+    if ((seen & (kRough | kHit)) != 0 || (CarefulRows<Arm>::kBesideAnywhere && (seen & kReal) == 0)) return false;
     out.count = count;
     if (Arm::kNewton || (seen & kMeeting) != 0) {
       leave_distinct(out);

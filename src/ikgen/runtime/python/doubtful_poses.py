@@ -20,6 +20,7 @@ from ikgen.runtime.python.meeting_rows import (
     repeats,
     rows_nearby,
 )
+from ikgen.runtime.python.projection import nearest_row
 from ikgen.runtime.python.row_placement import is_new, place_rows
 from ikgen.runtime.python.solved_arm import Arm, Found
 
@@ -66,7 +67,8 @@ _Rows = tuple[list[Found], bool, bool]
 
 
 def placed_rows(arm: Arm, asked: Asked, limits: bool) -> list[Answer]:
-    """Of each pose. Where it leaves a joint free and the given value leads nowhere, others are tried."""
+    """Of each pose. Where it leaves a joint free and the given value leads nowhere, others are tried, and
+    in the end the nearest pose's row."""
     out = [Answer() for _ in asked.T]
     left = np.arange(len(out))
     for tries in (range(1), range(1, arm.policy.tries)):
@@ -82,7 +84,23 @@ def placed_rows(arm: Arm, asked: Asked, limits: bool) -> list[Answer]:
             if going[i]:
                 going[i] = _goes_on(arm, some, k, rows[k], seeded.get(k, []), limits, out[i])
         left = left[going[left]]
+    for i in left.tolist():
+        if not out[i].real:
+            _take_nearest(arm, asked.at(np.array([i])), limits, out[i])
     return out
+
+
+def _take_nearest(arm: Arm, asked: Asked, limits: bool, answer: Answer) -> None:
+    """Adds a row that takes the one pose asked for, inside the limits if one of these was found."""
+    start: Row = tuple(asked.starts(arm)[0].tolist())
+    aim = aims(arm, asked.T, asked.held)
+    for inside in dict.fromkeys((limits, False)):
+        row = nearest_row(arm, asked.T[0], start, inside)
+        found = _led_to(arm, asked, np.array([row]))[0]
+        answer.real = answer.real or bool(found)
+        answer.rows = rows_inside(arm, aim, found, asked.seed(0), limits)
+        if answer.rows:
+            break
 
 
 def _goes_on(
