@@ -17,13 +17,7 @@ from ikgen.algebra.expression import Expr
 from ikgen.equations.elbow_equations import elbow_equations
 from ikgen.equations.equation import Equation
 from ikgen.equations.products import ChainProducts
-from ikgen.equations.symbolic_transforms import (
-    Rigid,
-    identity,
-    inverse,
-    link,
-    multiply,
-)
+from ikgen.equations.symbolic_transforms import Rigid, identity, multiply
 
 __all__ = ["EquationSet"]
 
@@ -39,7 +33,7 @@ class EquationSet(ChainProducts):
         g, v = self.graph, self.variables
         tail = identity(g)
         if k + 1 < m:
-            tail = multiply(g, link(v, k + 1), self.right(k + 1, m))
+            tail = multiply(g, self.link(k + 1), self.right(k + 1, m))
         elif m == self.n:
             tail = self.tool
         return tail.p[0], tail.p[1], g.add(tail.p[2], v.row_distance(k))
@@ -48,7 +42,7 @@ class EquationSet(ChainProducts):
         g, v = self.graph, self.variables
         tail = identity(g)
         if k + 1 < m:
-            tail = multiply(g, inverse(g, link(v, m - 1)), self.right_inverse(k, m - 1))
+            tail = multiply(g, self._link_inverse(m - 1), self.right_inverse(k, m - 1))
         return tail.p[0], tail.p[1], g.sub(tail.p[2], v.row_distance(m - 1))
 
     def _offsets(self, k: int, m: int) -> Iterator[tuple[Rigid, list[Expr]]]:

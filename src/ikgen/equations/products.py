@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from copy import copy
+from functools import wraps
 from types import MappingProxyType
-from typing import TypeVar
+from typing import TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +37,20 @@ ENTRY_NAMES = (
 )
 
 Products = TypeVar("Products", bound="ChainProducts")
+Method = TypeVar("Method", bound=Callable[..., Rigid])
+
+
+def _kept(method: Method) -> Method:
+    """The method, which makes each product once: its factors make many."""
+
+    @wraps(method)
+    def product(self: ChainProducts, *key: int) -> Rigid:
+        place = method.__name__, key
+        if place not in self._products:
+            self._products[place] = method(self, *key)
+        return self._products[place]
+
+    return cast(Method, product)
 
 
 class ChainProducts:
@@ -64,8 +79,7 @@ class ChainProducts:
         self.readable = readable
         self.tool_on_right = tool_on_right
         self.tool = constant(graph, dh.X_tip) if tool_on_right else identity(graph)
-        self._left: dict[int, Rigid] = {}
-        self._targets: dict[tuple[int, int], Rigid] = {}
+        self._products: dict[tuple[str, tuple[int, ...]], Rigid] = {}
         self.pose = self._pose(pose)
         self.elbow = self._elbow(values, kept) if dh.arm_angle else ()
 
@@ -74,7 +88,7 @@ class ChainProducts:
         other = copy(self)
         other.graph = graph
         other.variables = self.variables.over(graph)
-        other._left, other._targets = dict(self._left), dict(self._targets)
+        other._products = dict(self._products)
         return other
 
     def _pose(self, values: NDArray[np.float64]) -> Rigid:
@@ -110,79 +124,100 @@ class ChainProducts:
             i -= 1
         return i
 
+    @_kept
     def before(self, k: int) -> Rigid:
         """`(A_1 ... A_k)^-1`-side product applied to the pose: `(A_1 ... A_k)^-1 T`."""
         if k == 0:
             return self.pose
-        if k not in self._left:
-            g, v = self.graph, self.variables
-            start = self._run_start(k - 1)
-            earlier = multiply(g, inverse(g, link(v, start)), self.before(start))
-            self._left[k] = multiply(g, run_inverse(v, start, k - 1), earlier)
-        return self._left[k]
+        start = self._run_start(k - 1)
+        earlier = multiply(self.graph, self._link_inverse(start), self.before(start))
+        return multiply(self.graph, run_inverse(self.variables, start, k - 1), earlier)
+
+    @_kept
+    def _head(self, k: int, linked: bool) -> Rigid:
+        """`before(k)`, or that behind the inverse of row k's link."""
+        if not linked or k == self.n:
+            return self.before(k)
+        return multiply(self.graph, self._link_inverse(k), self.before(k))
+
+    @_kept
+    def _without_tool(self, k: int, linked: bool) -> Rigid:
+        g = self.graph
+        return multiply(g, self._head(k, linked), inverse(g, self.tool))
 
     def left(self, k: int, m: int) -> Rigid:
         """The left side of the split (k, m)."""
-        g, v = self.graph, self.variables
-        head = self.before(k)
-        if k < self.n:
-            head = multiply(g, inverse(g, link(v, k)), head)
-        return self._after(head, m)
+        return self._after(k, True, m)
 
-    def _after(self, head: Rigid, m: int) -> Rigid:
-        """`head * (A_{m+1} ... A_n)^-1`, from the right end inwards."""
-        g, v = self.graph, self.variables
-        if m < self.n:
-            head = multiply(g, head, inverse(g, self.tool))
-        pieces: list[Rigid] = []
-        i = m
-        while i < self.n:
-            end = self._run_end(i)
-            pieces.append(multiply(g, run_inverse(v, i, end), inverse(g, link(v, i))))
-            i = end + 1
-        for piece in reversed(pieces):
-            head = multiply(g, head, piece)
-        return head
+    @_kept
+    def _after(self, k: int, linked: bool, m: int) -> Rigid:
+        """`_head(k, linked) * (A_{m+1} ... A_n)^-1`, from the right end inwards."""
+        if m == self.n:
+            return self._head(k, linked)
+        ahead, piece = self._without_tool(k, linked), self._piece(m)
+        following = self._run_end(m) + 1
+        if following < self.n:
+            ahead = self._after(k, linked, following)
+        return multiply(self.graph, ahead, piece)
 
+    @_kept
+    def _piece(self, i: int) -> Rigid:
+        """The inverse of rows i to the end of their run."""
+        turned = run_inverse(self.variables, i, self._run_end(i))
+        return multiply(self.graph, turned, self._link_inverse(i))
+
+    @_kept
+    def link(self, i: int) -> Rigid:
+        """`C_{i+1}`."""
+        return link(self.variables, i)
+
+    @_kept
+    def _link_inverse(self, i: int) -> Rigid:
+        return inverse(self.graph, self.link(i))
+
+    @_kept
+    def _linked_run(self, first: int, last: int) -> Rigid:
+        return multiply(self.graph, self.link(first), run(self.variables, first, last))
+
+    @_kept
     def right(self, k: int, m: int) -> Rigid:
         """`V_{k+1} C_{k+2} V_{k+2} ... V_m`, in cumulative angles."""
-        g, v = self.graph, self.variables
-        end = min(self._run_end(k), m - 1)
-        product = run(v, k, end)
-        i = end + 1
-        while i < m:
-            end = min(self._run_end(i), m - 1)
-            product = multiply(g, product, multiply(g, link(v, i), run(v, i, end)))
-            i = end + 1
-        return multiply(g, product, self.tool) if m == self.n else product
+        product = self._rows(k, m)
+        return multiply(self.graph, product, self.tool) if m == self.n else product
 
+    @_kept
+    def _rows(self, k: int, m: int) -> Rigid:
+        """`right` without a tool."""
+        start = self._run_start(m - 1)
+        if start <= k:
+            return run(self.variables, k, m - 1)
+        return multiply(self.graph, self._rows(k, start), self._linked_run(start, m - 1))
+
+    @_kept
     def right_inverse(self, k: int, m: int) -> Rigid:
         """The inverse of `right`, built from the other end so that the first joint's angle is not in
         its position."""
-        g, v = self.graph, self.variables
-        product = inverse(g, self.tool) if m == self.n else identity(g)
-        i = m - 1
-        while i >= k:
-            start = max(self._run_start(i), k)
-            product = multiply(g, product, run_inverse(v, start, i))
-            if start > k:
-                product = multiply(g, product, inverse(g, link(v, start)))
-            i = start - 1
-        return product
+        g = self.graph
+        last = min(self._run_end(k), m - 1)
+        if last < m - 1:
+            ahead = multiply(g, self.right_inverse(last + 1, m), self._link_inverse(last + 1))
+        else:
+            ahead = inverse(g, self.tool) if m == self.n else identity(g)
+        return multiply(g, ahead, run_inverse(self.variables, k, last))
 
+    @_kept
     def _between(self, j: int, k: int) -> Rigid:
         """`A_{j+1} ... A_k C_{k+1}`; j is the start of a run."""
-        g, v = self.graph, self.variables
-        product = identity(g)
-        i = j
-        while i < k:
-            end = min(self._run_end(i), k - 1)
-            product = multiply(g, product, multiply(g, link(v, i), run(v, i, end)))
-            i = end + 1
-        return multiply(g, product, link(v, k))
+        return multiply(self.graph, self._complete(j, k), self.link(k))
+
+    @_kept
+    def _complete(self, j: int, k: int) -> Rigid:
+        """`A_{j+1} ... A_k`; j is the start of a run."""
+        if j == k:
+            return identity(self.graph)
+        start = self._run_start(k - 1)
+        return multiply(self.graph, self._complete(j, start), self._linked_run(start, k - 1))
 
     def _target(self, j: int, m: int) -> Rigid:
         """`(A_1 ... A_j)^-1 T (A_{m+1} ... A_n)^-1`."""
-        if (j, m) not in self._targets:
-            self._targets[j, m] = self._after(self.before(j), m)
-        return self._targets[j, m]
+        return self._after(j, False, m)

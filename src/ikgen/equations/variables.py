@@ -123,9 +123,11 @@ class JointVariables:
         combination, sign = canonical(combination)
         if sign == 0:
             return g.one, g.zero
-        angle = product(self.values, np.array(combination, dtype=float))
-        c = g.atom("cos", combination, cosines(angle), unknown=True)
-        s = g.atom("sin", combination, sines(angle), unknown=True)
+        c, s = g.find_atom("cos", combination), g.find_atom("sin", combination)
+        if c is None or s is None:
+            angle = product(self.values, np.array(combination, dtype=float))
+            c = g.atom("cos", combination, cosines(angle), unknown=True)
+            s = g.atom("sin", combination, sines(angle), unknown=True)
         return c, (s if sign > 0 else g.neg(s))
 
     def rotated(self, combination: AngleCombination, shift: float) -> tuple[Expr, Expr]:
