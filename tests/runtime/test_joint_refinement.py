@@ -18,7 +18,7 @@ from tests.support.solving import import_text
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.runtime.python import joint_refinement
 from ikgen.runtime.python.chain_kinematics import forward as arm_forward
-from ikgen.runtime.python.joint_refinement import _refine_few, refine_together
+from ikgen.runtime.python.joint_refinement import refine_few, refine_together
 from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.solution_rows import sorted_rows
 
@@ -122,7 +122,7 @@ def test_of_few_rows_those_that_start_too_far_off_are_given_back_as_they_were() 
         [1.0, -1.0, 1.0, 1.0, -1.0, 1.0]
     )
     T = np.tile(arm_forward(arm.chain, row), (len(off), 1, 1))
-    q, arrived, missed = _refine_few(arm, row + off, T)
+    q, arrived, missed = refine_few(arm, row + off, T)
     assert arrived.tolist() == [True, True, False, False, False] and not missed.any()
     np.testing.assert_allclose(q[:2], [row, row], atol=1e-9)
     np.testing.assert_array_equal(q[2:], (row + off)[2:])
@@ -135,9 +135,9 @@ def test_a_row_that_began_badly_does_not_arrive_with_others(
     row = np.array([0.3, -0.7, 0.9, 0.4, 1.1, -0.2])
     start = np.array([row + 0.01, row + 0.01])
     T = np.tile(arm_forward(arm.chain, row), (2, 1, 1))
-    assert _refine_few(arm, start, T)[1].tolist() == [True, True]
+    assert refine_few(arm, start, T)[1].tolist() == [True, True]
     monkeypatch.setattr(joint_refinement, "begins", lambda *_: np.array([True, False]))
-    q, arrived, missed = _refine_few(arm, start, T)
+    q, arrived, missed = refine_few(arm, start, T)
     assert arrived.tolist() == [True, False] and not missed.any()
     np.testing.assert_array_equal(q[1], start[1])
 

@@ -14,7 +14,7 @@ from ikgen.runtime.python.refinement import normal_inverse
 from ikgen.runtime.python.row_blocks import in_blocks
 from ikgen.runtime.python.solved_arm import Arm
 
-__all__ = ["refine_together"]
+__all__ = ["refine_few", "refine_together"]
 
 _BLOCK = 1024
 _FEW = 64  # rows for which whole matrices are faster than long rows of each of their entries
@@ -30,17 +30,17 @@ def refine_together(chain: LaneChain, arm: Arm, q: Array, T: Array) -> tuple[Arr
     """
     with np.errstate(all="ignore"):
         if len(q) <= _FEW:
-            return _refine_few(arm, q, T)
+            return refine_few(arm, q, T)
         T = np.broadcast_to(T, (len(q), *T.shape[1:]))
         if arm.angle is None:
             return refine_lanes(arm, chain, q, T)
-        done: tuple[Array, Flags, Flags] = in_blocks(partial(_refine_few, arm), _BLOCK, q, T)
+        done: tuple[Array, Flags, Flags] = in_blocks(partial(refine_few, arm), _BLOCK, q, T)
         return done
 
 
-def _refine_few(arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
-    """Every second step is solved with the inverse of the one before, and what that leaves of it once
-    more, as in `refine_lanes`."""
+def refine_few(arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
+    """`refine_together` of few rows. Every second step is solved with the inverse of the one before, and
+    what that leaves of it once more, as in `refine_lanes`."""
     policy, start = arm.policy, q
     good, before = np.ones(len(q), dtype=bool), np.full(len(q), policy.farthest_start)
     for steps in range(0, policy.lane_steps, 2):

@@ -9,7 +9,8 @@ import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags
 from ikgen.runtime.python.batch_solving import rows_batch
-from ikgen.runtime.python.held_parameters import held_of
+from ikgen.runtime.python.held_parameters import aims, held_of
+from ikgen.runtime.python.joint_refinement import refine_few
 from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.row_branches import branch_names
 from ikgen.runtime.python.row_links import differences
@@ -44,10 +45,9 @@ def best_rows(
         moved = np.zeros(len(going), dtype=bool)
         now = held[going], rows[going], best[going]
         for k in range(held.shape[1]):
-            for sign in (1.0, -1.0):
-                trial = now[0].copy()
-                trial[:, k] += sign * step[going, k]
-                moved |= _improved(arm, T, preference, limits, now, trial)
+            trials = np.stack([now[0], now[0]])
+            trials[:, :, k] += np.outer((1.0, -1.0), step[going, k])
+            moved |= _improved(arm, T, preference, limits, now, trials)
         held[going], rows[going], best[going] = now
         step[going[~moved]] *= 0.5 if held.shape[1] > 1 else 0.4
     groups = np.array([s[3] for s in starts])
@@ -64,22 +64,40 @@ def _improved(
     preference: Preference,
     limits: bool,
     now: tuple[Array, Array, Array],
-    trial: Array,
+    trials: Array,
 ) -> Flags:
-    """Takes trials (n, held joints) that are better, in place; which were."""
+    """Takes, in place, the first of each row's trials (s, n, held joints) that is better; which were."""
     held, rows, best = now
     if limits and arm.free:
         low, high = np.array(arm.lower)[list(arm.free)], np.array(arm.upper)[list(arm.free)]
-        trial = np.clip(trial, low, high)
-    q, real = rows_batch(arm, np.broadcast_to(T, (len(trial), 4, 4)), trial)
-    gap = np.abs(differences(arm, rows[:, None], q)).max(axis=2)
-    gap = np.where(real, gap, inf)
-    which, nearest = np.arange(len(trial)), gap.argmin(axis=1)
-    row = q[which, nearest]
+        trials = np.clip(trials, low, high)
+    count, trial = len(trials), trials.reshape(-1, held.shape[1])
+    row, near = _next_rows(
+        arm, np.broadcast_to(T, (len(trial), 4, 4)), np.tile(rows, (count, 1)), trial
+    )
     _, cost, inside = preference_costs(arm, preference, row[:, None], limits)
-    better = (gap[which, nearest] < _NEAR) & inside[:, 0] & (cost[:, 0] < best)
-    held[better], rows[better], best[better] = trial[better], row[better], cost[better, 0]
+    good = (near & inside[:, 0]).reshape(count, -1) & (cost.reshape(count, -1) < best)
+    better = good.any(axis=0)
+    which = (good.argmax(axis=0) * len(best) + np.arange(len(best)))[better]
+    held[better], rows[better], best[better] = trial[which], row[which], cost[which, 0]
     return np.asarray(better)
+
+
+def _next_rows(arm: Arm, T: Array, rows: Array, held: Array) -> tuple[Array, Flags]:
+    """The rows (n, dof) at held values (n, held) that are next to `rows` (n, dof), and which are near: by
+    Newton steps where these tell, by the closed form elsewhere."""
+    start = rows.copy()
+    start[:, list(arm.free)] = held[:, : len(arm.free)]
+    with np.errstate(all="ignore"):
+        row, near, _ = refine_few(arm, start, aims(arm, T, held))
+    left = np.flatnonzero(~near)
+    if len(left):
+        q, real = rows_batch(arm, T[left], held[left])
+        gap = np.abs(differences(arm, rows[left, None], q)).max(axis=2)
+        gap = np.where(real, gap, inf)
+        which, nearest = np.arange(len(left)), gap.argmin(axis=1)
+        row[left], near[left] = q[which, nearest], gap[which, nearest] < _NEAR
+    return row, near
 
 
 def _solutions(

@@ -13,7 +13,7 @@ from ikgen.runtime.python.solved_arm import Arm
 
 __all__ = ["solve_each"]
 
-_STACK = 128  # poses
+_STACK = 512  # poses
 
 
 def solve_each(
