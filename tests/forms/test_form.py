@@ -304,3 +304,16 @@ def test_forms_without_a_routine_have_nothing_instead() -> None:
     graph, form, _, _ = filled(Linear.name, 0)
     with pytest.raises(NotImplementedError, match="linear"):
         form.instead(graph, (graph.one,))
+
+
+def test_a_quartic_of_rounded_geometry_is_handed_how_far_a_root_may_be_complex() -> None:
+    """What the geometry moves the polynomial by makes a pair of real roots a pair that is as far apart as
+    its square root, at most 0.1 rad."""
+    graph, form, _, _ = filled(TrigQuartic.name, 3)
+    for error, wanted in ((1e-5, (25.0 * 1e-5) ** 0.5), (1e-2, 0.1)):
+        found = form.lower(graph, graph.one, Tolerances.for_model_error(error))
+        assert isinstance(found, LoweredRoutine) and found.routine == "trig_quartic_wide"
+        assert found.arguments[:5] == form.coefficients
+        assert found.arguments[5].value == pytest.approx(wanted)
+    exact = form.lower(graph, graph.one, Tolerances.for_model_error(1e-12))
+    assert isinstance(exact, LoweredRoutine) and exact.routine == "trig_quartic"

@@ -7,6 +7,7 @@ import pytest
 from tests.support.tables import table
 
 from ikgen.equations.knowledge import Variable
+from ikgen.forms.lowered_form import Tolerances
 from ikgen.forms.quartic_form import TrigQuartic
 from ikgen.lowering.frames import operand_of
 from ikgen.lowering.lower import _or_seed, _routine, lower
@@ -116,6 +117,8 @@ def test_where_a_routine_s_divisor_vanishes_its_root_is_the_seed_s() -> None:
         assert all(e.args[0] is lowered.divisor.regular for e in found if e.op == "select")
     (flag,) = work.singular
     assert flag.op == "not" and flag.args[0] is lowered.divisor.clear and flag.id in work.placed
+    wide = form.lower(g, g.one, Tolerances.for_model_error(1e-5))
+    assert _or_seed(work, v, form, wide)[5] is wide.arguments[5]
 
 
 def test_what_is_placed_costs_nothing_and_what_is_not_each_once() -> None:

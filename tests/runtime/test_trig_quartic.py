@@ -13,6 +13,8 @@ from ikgen.runtime.python.trig_quartic_roots import (
     trig_quartic,
     trig_quartic_batch,
     trig_quartic_lanes,
+    trig_quartic_wide_branches,
+    trig_quartic_wide_lanes,
 )
 
 Array = NDArray[np.float64]
@@ -162,3 +164,13 @@ def test_lanes_are_the_batch_along_an_axis() -> None:
         np.testing.assert_array_equal(cosines[0, :n, i], c[i, :n])
         np.testing.assert_array_equal(sines[0, :n, i], s[i, :n])
     assert np.isfinite(cosines).all() and np.isfinite(sines).all()
+
+
+def test_complex_pairs_count_as_far_as_is_said() -> None:
+    """`cos t = 1 + tol^2 / 2` has roots `tol` beside the circle."""
+    for off, wide, wanted in ((0.02, 0.03, 1), (0.02, 0.01, 0), (1e-4, 1e-2, 1)):
+        k = (0.0, 0.0, 1.0, 0.0, -1.0 - 0.5 * off**2)
+        assert len(trig_quartic_wide_branches(*k, wide)) == wanted
+        lanes = tuple(np.full((1, 3), x) for x in k)
+        cosines, _, real = trig_quartic_wide_lanes((*lanes, wide), 1)
+        assert real.sum() == 3 * wanted and np.allclose(cosines[real], 1.0)

@@ -12,12 +12,15 @@ from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.forms.form import Array, Form
 from ikgen.forms.formula import Formula, FormulaWriter, equals
-from ikgen.forms.lowered_form import LoweredRoutine, Tolerances, leading
+from ikgen.forms.lowered_form import ROUNDED, LoweredRoutine, Tolerances, leading
 from ikgen.formulas import mathtext as m
 from ikgen.formulas.mathtext import Math
 from ikgen.formulas.notation import angle, show
 
 __all__ = ["TrigQuartic"]
+
+_WIDEST = 0.1
+"""Imaginary part (rad) of a root that counts as real at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,9 +76,13 @@ class TrigQuartic(Form):
         return g.dot([*self.coefficients[:4]], [*double, g.neg(s), c])
 
     def lower(self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances) -> LoweredRoutine:
-        """A call of the routine `trig_quartic`."""
+        """A call of the routine `trig_quartic`, or where rows are refined of `trig_quartic_wide`: two roots
+        that the file's geometry has may be as far beside the circle as it moves the polynomial's value."""
         divisor = leading(g, self.divisor_parts, tolerances)
-        return LoweredRoutine("trig_quartic", self.coefficients, divisor)
+        if tolerances.error <= ROUNDED:
+            return LoweredRoutine("trig_quartic", self.coefficients, divisor)
+        wide = g.const(min(tolerances.clamp**0.5, _WIDEST))
+        return LoweredRoutine("trig_quartic_wide", (*self.coefficients, wide), divisor)
 
     def instead(self, g: ExpressionGraph, seed: tuple[Expr, ...]) -> tuple[Expr, ...]:
         """`sin(u - seed) = 0`"""

@@ -111,6 +111,7 @@ def _or_seed(work: Placement, v: Variable, form: Form, lowered: LoweredRoutine) 
     work.place(missing)
     work.singular.append(missing)
     instead = form.instead(g, seed_values(work, v))
+    instead = (*instead, *lowered.arguments[len(instead) :])
     both = zip(lowered.arguments, instead, strict=True)
     return tuple(g.select(divisor.regular, mine, other) for mine, other in both)
 

@@ -189,14 +189,18 @@ inline TrigRoots trig_quartic(double a2, double b2, double a1, double b1, double
   return out;
 }
 
-// The roots as branches; none where the angle is free.
-inline int trig_quartic_branches(const double (&x)[5], double (&roots)[4][2]) noexcept {
-  const TrigRoots found = trig_quartic(x[0], x[1], x[2], x[3], x[4]);
+// The roots as cosines and sines, and how many there are.
+inline int roots_as_branches(const TrigRoots& found, double (&roots)[4][2]) noexcept {
   for (int i = 0; i < found.count; ++i) {
     roots[i][0] = found.c[i];
     roots[i][1] = found.s[i];
   }
   return found.count;
+}
+
+// The roots as branches; none where the angle is free.
+inline int trig_quartic_branches(const double (&x)[5], double (&roots)[4][2]) noexcept {
+  return roots_as_branches(trig_quartic(x[0], x[1], x[2], x[3], x[4]), roots);
 }
 
 }  // namespace ikgen_runtime

@@ -18,7 +18,14 @@ from ikgen.runtime.python.quartic_lines import (
     quartic_values,
 )
 
-__all__ = ["trig_quartic", "trig_quartic_batch", "trig_quartic_branches", "trig_quartic_lanes"]
+__all__ = [
+    "trig_quartic",
+    "trig_quartic_batch",
+    "trig_quartic_branches",
+    "trig_quartic_lanes",
+    "trig_quartic_wide_branches",
+    "trig_quartic_wide_lanes",
+]
 
 _LEAST = 1e-8  # second harmonic over the rest, below which there is a line instead of a conic
 _Pair = tuple[float, float]
@@ -154,14 +161,29 @@ def trig_quartic_branches(a2: float, b2: float, a1: float, b1: float, a0: float)
     return trig_quartic(a2, b2, a1, b1, a0)[1]
 
 
-def trig_quartic_lanes(
+def trig_quartic_wide_branches(
+    a2: float, b2: float, a1: float, b1: float, a0: float, tol: float
+) -> list[_Pair]:
+    """The roots as (cosine, sine), complex pairs with imaginary parts up to `tol` (rad) as one."""
+    return trig_quartic(a2, b2, a1, b1, a0, tol)[1]
+
+
+def trig_quartic_wide_lanes(
     coefficients: tuple[Array | float, ...], axis: int
+) -> tuple[Array, Array, Flags]:
+    """`trig_quartic_lanes`, of which the last, a number, is the imaginary part of a root at most."""
+    tol: float = coefficients[5]  # type: ignore[assignment]
+    return trig_quartic_lanes(coefficients[:5], axis, tol)
+
+
+def trig_quartic_lanes(
+    coefficients: tuple[Array | float, ...], axis: int, tol: float = 1e-3
 ) -> tuple[Array, Array, Flags]:
     """The roots of coefficient arrays along the axis of their level: cosines, sines, which there are."""
     parts = np.broadcast_arrays(*coefficients)
     shape = parts[0].shape
     a2, b2, a1, b1, a0 = (p.reshape(-1) for p in parts)
-    count, c, s = trig_quartic_batch(a2, b2, a1, b1, a0)
+    count, c, s = trig_quartic_batch(a2, b2, a1, b1, a0, tol)
     found = np.arange(4) < count[:, None]
     lanes = [np.where(found, x, 1.0).T.reshape(4, *shape) for x in (c, s)]
     full = [
