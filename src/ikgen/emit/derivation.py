@@ -20,13 +20,15 @@ __all__ = ["Derivation", "Held", "Reading", "Unsolved"]
 @dataclass(frozen=True, slots=True)
 class Reading:
     """A description as read: its tree and chain (none for a DH table) and the chain in DH form. `coupled`
-    are the relations between joints that were chosen, not asked for (`JOINT=SOURCE*k+c`)."""
+    are the relations between joints that were chosen, not asked for (`JOINT=SOURCE*k+c`); `parts` are
+    joints of the chain that are not the robot's, each a part of the value of one that follows several."""
 
     source: Source
     tree: JointTree | None
     chain: Chain | None
     dh: DHChain
     coupled: tuple[str, ...] = ()
+    parts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -43,6 +43,12 @@ _HEADERS = (
 
 def emit_derivation(derivation: Derivation) -> dict[str, str]:
     """Relative path -> text of the package's folder, `<name>_ik_moveit/`."""
+    if derivation.reading.parts:
+        raise UsageError(
+            f"{derivation.module.dh.robot}: a joint follows several others, and the MoveIt plugin does not "
+            "serve that",
+            hint="use the Python or C++ output",
+        )
     return emit(derivation.module, derivation.reading.chain)
 
 

@@ -25,9 +25,18 @@ __all__ = ["arm_name", "default_name", "has_arm_angle", "read", "read_tree"]
 def read(request: Request, tree: JointTree | None = None) -> Reading:
     """Read the file, choose the chain and convert it to modified DH form. `tree` is the file's where it was
     read before."""
-    reading = _with_motors(_read(request, tree), request)
+    reading = _with_motors(_with_parts(_read(request, tree), request), request)
     _check_units(request, reading.dh.held_inputs)
     return _with_elbow(reading) if reading.dh.arm_angle else reading
+
+
+def _with_parts(reading: Reading, request: Request) -> Reading:
+    """With the names of joints that joints which follow several have behind them."""
+    if not request.sums:
+        return reading
+    from ikgen.chains.several_sources import parts
+
+    return replace(reading, parts=tuple(parts(request.sums).keys() - request.sums.keys()))
 
 
 def _with_motors(reading: Reading, request: Request) -> Reading:
@@ -92,17 +101,19 @@ def _coupled_chain(request: Request, tree: JointTree) -> tuple[JointTree, Chain,
     chosen: where none is asked for, the stages of a telescope take equal shares, unless one is held."""
     from ikgen.chains.related_joints import equal_stages, related_tree
     from ikgen.chains.selection import select_chain
+    from ikgen.chains.several_sources import parted_tree, parts
 
     locked = dict(request.lock)
     chain = select_chain(tree, request.base, request.tip, locked)
-    relations = request.relations
+    followed = {joint: one.joint for joint, one in request.relations.items()}
+    relations = request.relations | parts(request.sums)
     stages = {} if request.couple else equal_stages(chain)
     named = {*stages, *(stage.joint for stage in stages.values())}
     if named & {*request.free}:
         stages = {}
     if not relations and not stages:
         return tree, chain, ()
-    tree = related_tree(tree, relations or stages)
+    tree = related_tree(parted_tree(tree, request.sums, locked, followed), relations or stages)
     words = tuple(f"{joint}={stage.words}" for joint, stage in stages.items())
     if stages:
         note = f"stages of a telescope take equal shares: --couple {' --couple '.join(words)}"
@@ -156,11 +167,14 @@ def _taken_arguments(request: Request) -> str:
 
 def _read_table(request: Request, free: tuple[str, ...]) -> Reading:
     from ikgen.chains.related_rows import related_dh
+    from ikgen.chains.several_sources import parted_dh, parts
     from ikgen.importers.dh.dh_table import read_dh_table
 
     source, dh = read_dh_table(request.robot, free=free, locked=request.lock)
     joints = read_dh_table(request.robot)[1].joints if request.lock else dh.joints
-    dh = related_dh(dh, request.relations)
+    followed = {joint: one.joint for joint, one in request.relations.items()}
+    dh = parted_dh(dh, request.sums, followed)
+    dh = related_dh(dh, request.relations | parts(request.sums))
     _check_units(request, joints)
     _check_locks(request, joints)
     return Reading(source, None, None, dh)

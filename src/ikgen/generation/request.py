@@ -107,8 +107,20 @@ class Request:
         return {joint: mimic for joint, mimic in read.items() if mimic is not None}
 
     @property
+    def sums(self) -> dict[str, Relation]:
+        """What joints follow that follow several others: those whose motor moves none."""
+        return {joint: one for joint, one in self._several.items() if joint not in self.motors}
+
+    @property
     def motors(self) -> dict[str, Relation]:
-        """What the other coupled joints are of the motors' values."""
+        """What motors move the other coupled joints by."""
+        left = self._several
+        while idle := left.keys() - {name for one in left.values() for name, _ in one.terms}:
+            left = {joint: one for joint, one in left.items() if joint not in idle}
+        return left
+
+    @property
+    def _several(self) -> dict[str, Relation]:
         read = self._couplings.items()
         return {joint: relation for joint, relation in read if relation.mimic(joint) is None}
 

@@ -64,13 +64,6 @@ def _check_motors(
             f"--couple: '{next(iter(relations))}' follows itself",
             hint="name another joint that it follows",
         )
-    idle = [name for name, column in zip(names, matrix.T, strict=True) if not column.any()]
-    if idle:
-        raise UsageError(
-            f"--couple: the motor of '{idle[0]}' moves no joint: there are more joints than motors",
-            hint=f"name '{idle[0]}' in a relation, {idle[0]}={idle[0]}*1+..., or let it follow one joint "
-            "(JOINT=SOURCE*k+c)",
-        )
     scaled = matrix / np.abs(matrix).max(axis=0)
     scaled /= np.abs(scaled).max(axis=1, keepdims=True)
     if np.linalg.svd(scaled, compute_uv=False)[-1] < _LEAST:
