@@ -172,3 +172,15 @@ def test_what_follows_a_joint_moves_no_farther_than_a_joint() -> None:
     motions = regular_motions(fast, generator(0, "motions"))
     moved = np.abs(motions.end - motions.start).max(axis=0)
     assert 0.03 < moved[0] <= 0.05 and (moved[1:] > 0.15).all()
+
+
+def test_motions_between_narrow_limits_are_as_short_as_what_lies_beside_them_asks() -> None:
+    """Half of a motion's square fits into a tenth of the limits of the joint that has least room."""
+    a = arm()
+    for width, longest in ((1e-2, (2.0 * 1e-3) ** 0.5), (1e-6, (2.0 * 1e-7) ** 0.5), (4.0, 0.2)):
+        lower, upper = np.full(6, -1.5), np.full(6, 1.5)
+        lower[4], upper[4] = 0.5 - 0.5 * width, 0.5 + 0.5 * width
+        narrow = replace(a, lower=lower, upper=upper, low=lower, high=upper)
+        motions = regular_motions(narrow, generator(0, "motions"))
+        moved = np.abs(motions.end - motions.start).max(axis=0)
+        assert len(motions.start) and 0.6 * longest < moved[:4].max() <= longest

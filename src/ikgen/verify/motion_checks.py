@@ -46,14 +46,16 @@ class Motions:
 
 
 def regular_motions(arm: ArmUnderTest, rng: np.random.Generator) -> Motions:
-    """A few random ones, clear of the limits, as what lies between the poses is not the motion; none of an
-    arm that is nowhere clearly regular."""
+    """A few random ones, clear of the limits, as what lies between the poses is not the motion but about
+    half of its square beside it; none of an arm that is nowhere clearly regular."""
     start = arm.uniform(rng, _DRAWN)
     most = np.where(arm.revolute, _FARTHEST, _FARTHEST * min(1.0, arm.length)) / arm.fastest
+    room = 0.1 * (arm.upper - arm.lower)
+    most = most * min(1.0, float(np.sqrt(2.0 * np.min(room))) / _FARTHEST)
     end = start + rng.uniform(-most, most, start.shape)
     share = np.linspace(0.0, 1.0, _BETWEEN)[:, None, None]
     sigma = arm.sigma((start + share * (end - start)).reshape(-1, arm.dof))
-    margin = np.minimum(_MARGIN * most, 0.1 * (arm.upper - arm.lower))
+    margin = np.minimum(_MARGIN * most, room)
     clear = arm.within(start, -margin) & arm.within(end, -margin)
     regular = np.flatnonzero(clear & (sigma.reshape(_BETWEEN, -1).min(axis=0) > CLEARLY_REGULAR))
     start, end = start[regular[:_MOTIONS]], end[regular[:_MOTIONS]]
