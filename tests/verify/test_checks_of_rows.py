@@ -21,6 +21,7 @@ from ikgen.verify.checks import (
     check_seed_order,
     check_singular_flags,
 )
+from ikgen.verify.completeness import Sensitivity
 from ikgen.verify.coverage import (
     check_exhaustive,
     check_limit_choice,
@@ -338,3 +339,18 @@ def test_a_search_finds_solutions_as_near_as_its_residual_tells(
         )
         trial = trial_of(one, rows_of([list(q)]), limits=False)
         assert check_exhaustive(one, trial, 7, np.random.default_rng(0)).failures == failures
+
+
+def test_a_search_that_ends_beside_a_fold_is_as_far_off_as_the_fold_lets_it(
+    arm: ArmUnderTest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`kappa x^2 / 2 = 1e-11` with kappa 0.1 ends at x = 1.4e-5, where sigma is kappa x."""
+    off = (2e-11 / 0.1) ** 0.5
+    known = Sensitivity(np.array([0.1 * off]), np.array([0.1]))
+    monkeypatch.setattr("ikgen.verify.coverage.sensitivity", lambda *_: known)
+    q = np.array(row(0.9, 0.4))
+    for share, failures in ((0.95, 0), (2.5, 1)):
+        found = [np.array([q + share * off * np.eye(6)[0]])]
+        monkeypatch.setattr("ikgen.verify.coverage.find_solutions", lambda *_, found=found: found)
+        trial = trial_of(arm, rows_of([list(q)]), limits=False)
+        assert check_exhaustive(arm, trial, 7, np.random.default_rng(0)).failures == failures
