@@ -25,10 +25,14 @@ case " $* " in
   *" -std=c++17"*" -O2 "*) level=-O2 ;;
 esac
 [ -n "$level" ] || exec {compiler} "$@"
-made={header}.gch/$level
+strict=
+case " $* " in
+  *" -Wpedantic "*) strict=-Wpedantic ;;  # another set of predefined macros
+esac
+made={header}.gch/$level$strict
 if [ ! -f "$made" ]; then
   mkdir -p {header}.gch  # each process writes a file of its own
-  {compiler} -std=c++17 $level -pthread -isystem {eigen} -x c++-header {header} -o {folder}/$$.gch &&
+  {compiler} -std=c++17 $level $strict -pthread -isystem {eigen} -x c++-header {header} -o {folder}/$$.gch &&
     mv {folder}/$$.gch "$made"
 fi
 exec {compiler} -pthread -include {header} "$@"
