@@ -20,20 +20,19 @@ SCRIPT = """#!/bin/sh
 # it was precompiled for, g++ reads the headers themselves.
 level=
 case " $* " in
-  *" -fsyntax-only "* | *" -march="*) ;;
+  *" -fsyntax-only "*) ;;
   *" -std=c++17"*" -O1 "*) level=-O1 ;;
   *" -std=c++17"*" -O2 "*) level=-O2 ;;
 esac
 [ -n "$level" ] || exec {compiler} "$@"
-strict=
-case " $* " in
-  *" -Wpedantic "*) strict=-Wpedantic ;;  # another set of predefined macros
-esac
-made={header}.gch/$level$strict
+strict= machine=  # other sets of predefined macros
+case " $* " in *" -Wpedantic "*) strict=-Wpedantic ;; esac
+case " $* " in *" -march=native "*) machine=-march=native ;; esac
+made={header}.gch/$level$strict$machine
 if [ ! -f "$made" ]; then
   mkdir -p {header}.gch  # each process writes a file of its own
-  {compiler} -std=c++17 $level $strict -pthread -isystem {eigen} -x c++-header {header} -o {folder}/$$.gch &&
-    mv {folder}/$$.gch "$made"
+  {compiler} -std=c++17 $level $strict $machine -pthread -isystem {eigen} \\
+    -x c++-header {header} -o {folder}/$$.gch && mv {folder}/$$.gch "$made"
 fi
 exec {compiler} -pthread -include {header} "$@"
 """
