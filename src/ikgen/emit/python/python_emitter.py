@@ -82,11 +82,11 @@ def known_facts(module: SolverModule) -> Facts:
     """What is known of the runtime's `Arm` that the templates make."""
     refined, branches = module.refine == "all", None if module.plan is not None else SOME
     known = [
-        ("beside", (SOME,) * len(module.beside)),
+        ("beside", SOME if module.beside else ()),
         ("branch_kind", branch_kind(module)),
         ("branches", branches),
-        ("free", module.free),
-        ("free_joints", module.held),
+        ("free", SOME if module.free else ()),
+        ("free_joints", SOME if module.held else ()),
         ("policy.beside_anywhere", runtime_policy(module.policy).beside_anywhere),
         ("rounded", refined),
         ("together", SOME if refined else None),

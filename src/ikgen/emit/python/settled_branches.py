@@ -13,7 +13,7 @@ Facts = tuple[tuple[str, object], ...]
 `policy.beside_anywhere`) and their values."""
 
 SOME = object()
-"""Stands for what is not None."""
+"""Stands for what is not None, and not empty: arms have the same texts whatever joints they hold."""
 
 _UNKNOWN = object()
 _COMPARED: Mapping[type[ast.cmpop], Callable[[object, object], bool]] = {
@@ -173,10 +173,11 @@ def _value(node: ast.expr, known: _Known) -> object:
     if isinstance(node, ast.Compare) and len(node.ops) == 1:
         pair = _value(node.left, known), _value(node.comparators[0], known)
         compared = _COMPARED.get(type(node.ops[0]))
-        return _UNKNOWN if _UNKNOWN in pair or compared is None else compared(*pair)
+        vague = SOME in pair and None not in pair
+        return _UNKNOWN if _UNKNOWN in pair or compared is None or vague else compared(*pair)
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "len":
         value = _value(node.args[0], known)
-        return len(value) if isinstance(value, tuple) else _UNKNOWN
+        return value if value is SOME else len(value) if isinstance(value, tuple) else _UNKNOWN
     return _UNKNOWN
 
 
