@@ -490,24 +490,24 @@ template <int N> inline void factor(double (&A)[N][N]) noexcept {
     for (int j = 0; j <= i; ++j) {
       double sum = A[i][j];
       for (int k = 0; k < j; ++k) sum -= A[i][k] * A[j][k];
-      A[i][j] = i == j ? std::sqrt(std::max(sum, 1e-300)) : sum / A[j][j];
+      A[i][j] = i == j ? 1.0 / std::sqrt(std::max(sum, 1e-300)) : sum * A[j][j];
     }
 }
 
 template <int N> inline bool definite(const double (&L)[N][N]) noexcept {
   for (int i = 0; i < N; ++i)
-    if (!(L[i][i] > 1e-149)) return false;
+    if (!(L[i][i] < 1e149)) return false;
   return true;
 }
 
 template <int N> inline void substitute(const double (&L)[N][N], double (&x)[N]) noexcept {
   for (int i = 0; i < N; ++i) {
     for (int k = 0; k < i; ++k) x[i] -= L[i][k] * x[k];
-    x[i] /= L[i][i];
+    x[i] *= L[i][i];
   }
   for (int i = N - 1; i >= 0; --i) {
     for (int k = i + 1; k < N; ++k) x[i] -= L[k][i] * x[k];
-    x[i] /= L[i][i];
+    x[i] *= L[i][i];
   }
 }
 
@@ -643,9 +643,10 @@ template <class Arm> struct FoldPair {
     others.take_away(at.error, rest, across);
     others.take_away(out, out, ignored);
     for (const double x : out) square += x * x;
+    const double inverse = 1.0 / std::sqrt(square);
     left = slope = 0.0;
     for (int e = 0; e < kEquations; ++e) {
-      out[e] /= std::sqrt(square);
+      out[e] *= inverse;
       left += out[e] * rest[e];
       slope -= out[e] * others.flow[e];
     }
@@ -655,7 +656,7 @@ template <class Arm> struct FoldPair {
   }
 
  private:
-  static constexpr double kAlong = 1e-4, kClose = 1e-9, kFar = 0.3;
+  static constexpr double kAlong = 1e-4, kClose = 1e-9, kFar = 0.3, kStands = 1e-9;
   static constexpr int kSteps = 8;
 
   double step(double side, double* q) noexcept {
@@ -736,11 +737,19 @@ template <class Arm> struct FoldPair {
         for (int e = 0; e < kEquations; ++e) N[a][b] += at.slope[e][kJoints[a]] * at.slope[e][kJoints[b]];
       }
     factor(N);
-    for (int i = 0; i < 4; ++i) {
-      substitute(N, still);
+    double change = 1.0;
+    for (int i = 0; i < 4 && change > kStands; ++i) {
+      Vector next;
+      std::copy_n(still, kMoving, next);
+      substitute(N, next);
       double square = 0.0;
-      for (const double x : still) square += x * x;
-      for (double& x : still) x /= std::sqrt(square);
+      for (const double x : next) square += x * x;
+      const double inverse = 1.0 / std::sqrt(square);
+      change = 0.0;
+      for (int k = 0; k < kMoving; ++k) {
+        change = std::max(change, std::abs(inverse * next[k] - still[k]));
+        still[k] = inverse * next[k];
+      }
     }
   }
 };
@@ -928,8 +937,24 @@ template <class Arm> struct NearContinuum {
 
   Sample part(const Sample& a, const Sample& b, double share) noexcept {
     double q[Arm::kDof];
-    for (int j = 0; j < Arm::kDof; ++j) q[j] = a.q[j] + share * (b.q[j] - a.q[j]);
+    between(a, b, share, q);
     return at(q, a, 1.0);
+  }
+
+  static void between(const Sample& a, const Sample& b, double share, double* q) noexcept {
+    double along = 0.0, beyond = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      const double way = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
+      along += way * a.still[k];
+      beyond += way * b.still[k];
+    }
+    const double rest = 1.0 - share, first = share * rest * rest, last = -share * share * rest;
+    std::copy_n(a.q, Arm::kDof, q);
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      const int j = Fold::kJoints[k];
+      const double way = b.q[j] - a.q[j];
+      q[j] += share * way + first * (along * a.still[k] - way) + last * (beyond * b.still[k] - way);
+    }
   }
 
   void look(const Sample& a, const Sample& b, int deep) noexcept {
@@ -1173,6 +1198,7 @@ template <class Arm> struct CarefulRows {
 
   struct Nearest {
     bool marked = false, near = false, settled = false, exact = false;  // settled: a solution, whatever else there is
+    bool alone = false;  // whether steps showed that it is the one solution near its start
     bool around = false;  // whether the solutions of the continuum that it lies on are known
     int lane = 0;
     double error = 0.0, start[Arm::kDof], q[Arm::kDof];
@@ -1185,13 +1211,14 @@ template <class Arm> struct CarefulRows {
     void refine(const Aim& aim, const Rows& ends) noexcept {
       if (Arm::kNewton && (bits(ends, lane) & kFound) != 0) {
         for (int j = 0; j < Arm::kDof; ++j) q[j] = ends.q[j][lane];
+        alone = true;
       } else if (!Arm::kRefined) {
         error = Refinement::error_after(q, aim);
       }
     }
 
     void judge() noexcept {
-      near = !marked && RankLoss<Arm>::below(q, Policy::kFoldReach);
+      near = !marked && !alone && RankLoss<Arm>::below(q, Policy::kFoldReach);
       settled = error < (near ? Policy::kConverged : Policy::kArrived);
     }
 
@@ -1273,8 +1300,12 @@ template <class Arm> struct CarefulRows {
         start.marked = false;
         start.refine(aim, ends);
       }
-      for (int k = 0; k < count && beside; ++k)
-        if (Row::same(start.q, at(k).q)) return;
+      for (int k = 0; k < count; ++k)
+        if ((beside || start.alone) && Row::same(start.q, at(k).q)) {
+          if (beside) return;
+          start.alone = false;
+        }
+      if (beside) start.alone = false;
       Nearest& one = at(count) = start;
       one.judge();
       for (int k = 0; k < count && beside && one.near && !one.settled; ++k)

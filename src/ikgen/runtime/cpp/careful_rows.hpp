@@ -116,6 +116,7 @@ template <class Arm> struct CarefulRows {
   // What Newton steps from a lane led to. Rows that are right to round-off are added; of the others the nearest is kept.
   struct Nearest {
     bool marked = false, near = false, settled = false, exact = false;  // settled: a solution, whatever else there is
+    bool alone = false;  // whether steps showed that it is the one solution near its start
     bool around = false;  // whether the solutions of the continuum that it lies on are known
     int lane = 0;
     double error = 0.0, start[Arm::kDof], q[Arm::kDof];
@@ -129,13 +130,14 @@ template <class Arm> struct CarefulRows {
     void refine(const Aim& aim, const Rows& ends) noexcept {
       if (Arm::kNewton && (bits(ends, lane) & kFound) != 0) {
         for (int j = 0; j < Arm::kDof; ++j) q[j] = ends.q[j][lane];
+        alone = true;
       } else if (!Arm::kRefined) {
         error = Refinement::error_after(q, aim);
       }
     }
 
     void judge() noexcept {
-      near = !marked && RankLoss<Arm>::below(q, Policy::kFoldReach);
+      near = !marked && !alone && RankLoss<Arm>::below(q, Policy::kFoldReach);
       settled = error < (near ? Policy::kConverged : Policy::kArrived);
     }
 
@@ -227,8 +229,12 @@ template <class Arm> struct CarefulRows {
         start.marked = false;
         start.refine(aim, ends);
       }
-      for (int k = 0; k < count && beside; ++k)
-        if (Row::same(start.q, at(k).q)) return;
+      for (int k = 0; k < count; ++k)
+        if ((beside || start.alone) && Row::same(start.q, at(k).q)) {
+          if (beside) return;
+          start.alone = false;
+        }
+      if (beside) start.alone = false;
       Nearest& one = at(count) = start;
       one.judge();
       for (int k = 0; k < count && beside && one.near && !one.settled; ++k)

@@ -39,9 +39,10 @@ template <class Arm> struct FoldPair {
     others.take_away(at.error, rest, across);
     others.take_away(out, out, ignored);
     for (const double x : out) square += x * x;
+    const double inverse = 1.0 / std::sqrt(square);
     left = slope = 0.0;
     for (int e = 0; e < kEquations; ++e) {
-      out[e] /= std::sqrt(square);
+      out[e] *= inverse;
       left += out[e] * rest[e];
       slope -= out[e] * others.flow[e];
     }
@@ -51,7 +52,7 @@ template <class Arm> struct FoldPair {
   }
 
  private:
-  static constexpr double kAlong = 1e-4, kClose = 1e-9, kFar = 0.3;
+  static constexpr double kAlong = 1e-4, kClose = 1e-9, kFar = 0.3, kStands = 1e-9;
   static constexpr int kSteps = 8;
 
   // One step; how far it goes in the still direction.
@@ -137,11 +138,19 @@ template <class Arm> struct FoldPair {
         for (int e = 0; e < kEquations; ++e) N[a][b] += at.slope[e][kJoints[a]] * at.slope[e][kJoints[b]];
       }
     factor(N);
-    for (int i = 0; i < 4; ++i) {
-      substitute(N, still);
+    double change = 1.0;
+    for (int i = 0; i < 4 && change > kStands; ++i) {
+      Vector next;
+      std::copy_n(still, kMoving, next);
+      substitute(N, next);
       double square = 0.0;
-      for (const double x : still) square += x * x;
-      for (double& x : still) x /= std::sqrt(square);
+      for (const double x : next) square += x * x;
+      const double inverse = 1.0 / std::sqrt(square);
+      change = 0.0;
+      for (int k = 0; k < kMoving; ++k) {
+        change = std::max(change, std::abs(inverse * next[k] - still[k]));
+        still[k] = inverse * next[k];
+      }
     }
   }
 };

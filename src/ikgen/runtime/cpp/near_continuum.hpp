@@ -97,8 +97,25 @@ template <class Arm> struct NearContinuum {
 
   Sample part(const Sample& a, const Sample& b, double share) noexcept {
     double q[Arm::kDof];
-    for (int j = 0; j < Arm::kDof; ++j) q[j] = a.q[j] + share * (b.q[j] - a.q[j]);
+    between(a, b, share, q);
     return at(q, a, 1.0);
+  }
+
+  // By the cubic through two configurations along their still directions (Hermite).
+  static void between(const Sample& a, const Sample& b, double share, double* q) noexcept {
+    double along = 0.0, beyond = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      const double way = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
+      along += way * a.still[k];
+      beyond += way * b.still[k];
+    }
+    const double rest = 1.0 - share, first = share * rest * rest, last = -share * share * rest;
+    std::copy_n(a.q, Arm::kDof, q);
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      const int j = Fold::kJoints[k];
+      const double way = b.q[j] - a.q[j];
+      q[j] += share * way + first * (along * a.still[k] - way) + last * (beyond * b.still[k] - way);
+    }
   }
 
   // Between two samples, by the signs of the coefficients, after Bernstein, of the cubic through values and slopes.

@@ -13,20 +13,20 @@ inline void cross(const double* a, const double* b, double* out) noexcept {
   out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-// Cholesky's factor of A, symmetric and given up to its diagonal, in its place.
+// Cholesky's factor of A, symmetric and given up to its diagonal, in its place, but for inverses on its diagonal.
 template <int N> inline void factor(double (&A)[N][N]) noexcept {
   for (int i = 0; i < N; ++i)
     for (int j = 0; j <= i; ++j) {
       double sum = A[i][j];
       for (int k = 0; k < j; ++k) sum -= A[i][k] * A[j][k];
-      A[i][j] = i == j ? std::sqrt(std::max(sum, 1e-300)) : sum / A[j][j];
+      A[i][j] = i == j ? 1.0 / std::sqrt(std::max(sum, 1e-300)) : sum * A[j][j];
     }
 }
 
 // Whether the matrix was positive definite whose factor this is.
 template <int N> inline bool definite(const double (&L)[N][N]) noexcept {
   for (int i = 0; i < N; ++i)
-    if (!(L[i][i] > 1e-149)) return false;
+    if (!(L[i][i] < 1e149)) return false;
   return true;
 }
 
@@ -34,11 +34,11 @@ template <int N> inline bool definite(const double (&L)[N][N]) noexcept {
 template <int N> inline void substitute(const double (&L)[N][N], double (&x)[N]) noexcept {
   for (int i = 0; i < N; ++i) {
     for (int k = 0; k < i; ++k) x[i] -= L[i][k] * x[k];
-    x[i] /= L[i][i];
+    x[i] *= L[i][i];
   }
   for (int i = N - 1; i >= 0; --i) {
     for (int k = i + 1; k < N; ++k) x[i] -= L[k][i] * x[k];
-    x[i] /= L[i][i];
+    x[i] *= L[i][i];
   }
 }
 
