@@ -1,6 +1,7 @@
 // The curve on which a row moves with the held value, between two of its points: beyond a fold the held value turns back.
 #pragma once
 
+#include "branch_curve.hpp"
 #include "held_sweep.hpp"
 
 namespace ikgen_runtime {
@@ -8,8 +9,9 @@ namespace ikgen_runtime {
 // Points are told apart by their share of the way along the chord between the two ends (Keller 1977: a curve goes on
 // smoothly past a fold by another parameter than the held value). Arm: as for HeldSweep.
 template <class Arm> struct BranchArc {
+  using Curve = BranchCurve<Arm>;
   static constexpr MovingJoints<Arm> kJoints{};
-  static constexpr int kMoving = MovingJoints<Arm>::kCount, kVariables = kMoving + 1;
+  static constexpr int kMoving = Curve::kMoving, kVariables = kMoving + 1;
   using Vector = double[kVariables];
 
   struct Point {
@@ -203,34 +205,6 @@ template <class Arm> struct BranchArc {
     p.held += d[kMoving];
     return farthest <= kFar ? farthest : 2.0 * kFar;
   }
-
-  // What a point misses of the pose, and the slope of that by the joints that move and, last, the held value.
-  struct Curve {
-    static constexpr int kCount = PoseError<Arm>::kCount;
-    double error[kCount], slope[kCount][kVariables];
-
-    Curve(const Eigen::Isometry3d& pose, double* q, double held) noexcept {
-      if constexpr (Arm::kArmAngle) {
-        const HeldAim<Arm> aim(pose, {held});
-        take(PoseError<Arm>(q, aim));
-        for (auto& row : slope) row[kMoving] = 0.0;
-        slope[kCount - 1][kMoving] = aim.turned(q);
-      } else {
-        q[Arm::kFreeJoints[0]] = held;
-        const PoseError<AllMoving<Arm>> at(q, HeldAim<AllMoving<Arm>>(pose));
-        take(at);
-        for (int e = 0; e < kCount; ++e) slope[e][kMoving] = at.slope[e][Arm::kFreeJoints[0]];
-      }
-    }
-
-   private:
-    template <class Error> void take(const Error& at) noexcept {
-      for (int e = 0; e < kCount; ++e) {
-        error[e] = at.error[e];
-        for (int k = 0; k < kMoving; ++k) slope[e][k] = at.slope[e][kJoints[k]];
-      }
-    }
-  };
 };
 
 }  // namespace ikgen_runtime

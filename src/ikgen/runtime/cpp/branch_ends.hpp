@@ -4,19 +4,19 @@
 
 namespace ikgen_runtime {
 
-// The samples between which the last end was found: other rows may end there as well.
+// The sample at which the last end was found, or those between which it was: other rows may end there as well.
 template <class Arm> struct LastEnd {
   HeldSample<Arm> inside, outside;
-  bool known = false;
+  bool known = false, settled = false;
 };
 
 // Between a value of the held joint at which a branch's row is inside and one at which it is not, the last at which
-// it is. Where margins tell that: by inverse interpolation (Brent 1973, section 4.2, of up to four values), and by halving
-// where that leads out of the bracket or is slow. Else on the curve to the branch's row beyond, or to the row that it
+// it is. Where margins tell that: by inverse interpolation (Brent 1973, section 4.2, of up to four values) of what is just
+// inside, and by halving where that leads out of the bracket or is slow. Else on the curve to the branch's row beyond, or to the row that it
 // meets; by halving where there is none. Arm: as for HeldSweep.
 template <class Arm> struct BranchEnd {
   using Sample = HeldSample<Arm>;
-  static constexpr double kEnough = 1e-10;
+  static constexpr double kEnough = 1e-10, kShare = 0.05;  // of it, how far inside an end is looked for
   static constexpr int kSteps = 60, kHalve = 6, kKnown = 4;
 
   double inner, outer, q[Arm::kDof];
@@ -43,8 +43,10 @@ template <class Arm> struct BranchEnd {
   void find(const HeldSweep<Arm>& sweep, LastEnd<Arm>& last) noexcept {
     if constexpr (!Sample::kMarginsTell)
       if (goes && follow(sweep)) return;
+    if (last.settled && ends_at(last.inside)) return;
     if (last.known && (found(last.inside, last.outside) || found(last.outside, last.inside))) return;
     last.inside.held = last.outside.held = kInfinity;
+    last.settled = false;
     for (int step = 0; step < kSteps && std::abs(outer - inner) > kEnough; ++step) {
       const Sample s = sweep.at(trial(step));
       const int row = row_in(s);
@@ -54,6 +56,13 @@ template <class Arm> struct BranchEnd {
       if (at_fold && seen && !good) {  // a limit comes before the fold
         at_fold = false;
         count = 0;
+      }
+      if (good && settles(s, row)) {
+        settle(s, row);
+        last.inside = s;
+        last.settled = true;
+        last.known = false;
+        return;
       }
       narrow(s, seen ? row : at_fold && Sample::kMarginsTell ? lane : -1, far);
       (good ? last.inside : last.outside) = s;
@@ -121,6 +130,30 @@ template <class Arm> struct BranchEnd {
     return true;
   }
 
+  // Whether a row that is inside is so near to its end, by the least slope to what is known, that nothing is to be gained.
+  bool settles(const Sample& s, int row, double part = 2.0 * kShare) const noexcept {
+    const double here = value_of(s, row);
+    double slope = kInfinity;
+    for (int k = 0; k < count; ++k)
+      if (at[k] != s.held) slope = std::min(slope, std::abs((value[k] - here) / (at[k] - s.held)));
+    return slope < kInfinity && here <= 0.0 && here > -part * kEnough * slope;
+  }
+  void settle(const Sample& s, int row) noexcept {
+    outer = s.held + std::copysign(kEnough, outer - inner);
+    inner = s.held;
+    s.row(row, q);
+    lane = row;
+  }
+
+  // Whether the end lies where the last one does.
+  bool ends_at(const Sample& s) noexcept {
+    if ((s.held - inner) * (s.held - outer) > 0.0) return false;
+    const int row = row_in(s);
+    if (row < 0 || !s.inside(row) || s.distance(row, q) > 1.0 || !settles(s, row, 1.0)) return false;
+    settle(s, row);
+    return true;
+  }
+
   // The branch's row; -1 without one.
   int row_in(const Sample& s) const noexcept { return stays || (at_fold && Arm::kGuarded) ? lane : s.nearest(q); }
 
@@ -172,7 +205,7 @@ template <class Arm> struct BranchEnd {
     for (int first = 0; first < count - 1 && step % kHalve != kHalve - 1; ++first) {
       const double end = interpolated(first), part = (end - inner) / width;
       if (!(part > 0.0 && part < 1.0)) continue;
-      share = part;
+      share = part - kShare * kEnough / std::abs(width);
       break;
     }
     return inner + std::min(std::max(share, least), 1.0 - least) * width;

@@ -1,6 +1,7 @@
 // The best row of each interval of the held joint's values.
 #pragma once
 
+#include "branch_curve.hpp"
 #include "row_preference.hpp"
 #include "self_motion.hpp"
 
@@ -11,9 +12,10 @@ template <class Arm> struct HeldSearch {
   using Sample = HeldSample<Arm>;
   static constexpr int kMost = 4;         // minima of an interval that are looked at
   static constexpr int kCells = 48;       // of the range, where intervals are known without looking
-  // How near to a minimum is enough, of distances and of singular values, which have kinks: beside a fold joint values
-  // change as the root of the held one's, up to 1e3 times as much.
-  static constexpr double kNear = 1e-11, kNearKink = 1e-9;
+  // How near to a minimum is enough, of singular values, which have kinks: beside a fold joint values change as the root
+  // of the held one's, up to 1e3 times as much. Of distances, what is to be gained, over the distance.
+  static constexpr double kNear = 1e-9, kGain = 1e-16, kLevel = 1e-14;
+  static constexpr int kSteps = 40, kHalve = 6;
 
   struct Point {
     double at, cost, q[Arm::kDof];
@@ -145,18 +147,69 @@ template <class Arm> struct HeldSearch {
     return m.best.cost - depth > costs[Arm::kMaxSolutions - 1];
   }
 
-  // Parabolic interpolation guarded by the golden section (Brent 1973).
   void refine(Minimum& m) const noexcept {
+    if (preference.prefer != Arm::Prefer::Dexterous) return descend(m);
+    if (m.best.at == m.low || m.best.at == m.high) {  // an end, if it is better than what is next to it
+      const double far = m.best.at == m.low ? m.high : m.low, least = kNear * (1.0 + std::abs(m.best.at));
+      if (std::abs(far - m.best.at) <= 2.0 * least) return;
+      const Point next = beside(m.best.at + std::copysign(least, far - m.best.at), m.best);
+      if (next.cost >= m.best.cost && next.cost < kInfinity) return;
+    }
+    interpolate(m);
+  }
+
+  // The derivative of a distance along the branch.
+  double slope(const Point& p) const noexcept {
+    double q[Arm::kDof], flow[Arm::kDof], sum = 0.0;
+    std::copy_n(p.q, Arm::kDof, q);
+    BranchCurve<Arm>(sweep.pose, q, p.at).flow(flow);
+    for (int j = 0; j < Arm::kDof; ++j) sum += 2.0 * preference.weight[j] * (p.q[j] - preference.wanted.data()[j]) * flow[j];
+    return sum;
+  }
+
+  // To where the derivative is 0: by a parabola with the slope of the best point, then secants, guarded by halving.
+  void descend(Minimum& m) const noexcept {
+    double ends[2] = {m.low, m.high}, costs_there[2] = {m.low_cost, m.high_cost}, g = slope(m.best), last = 0.0, was = 0.0;
+    bool known = false;  // the slope `was` at `last`
+    for (int i = 0; i < kSteps; ++i) {
+      const double x = m.best.at, level = 1.0 + m.best.cost;
+      const int side = g > 0.0 ? 0 : 1;
+      const double width = ends[side] - x, rise = costs_there[side] - m.best.cost;
+      if (!(std::abs(width) > 1e-15 * (1.0 + std::abs(x)))) return;
+      double step = 0.5 * width;
+      if (i % kHalve != kHalve - 1 && (known || rise < kInfinity))
+        step = known ? -g * (x - last) / (g - was) : -g * width * width / (2.0 * (rise - g * width));
+      if (!(step * width > 0.0 && std::abs(step) < std::abs(width))) step = 0.5 * width;
+      if (std::abs(g * step) <= kGain * level) return;
+      const Point trial = beside(x + step, m.best);
+      const double there = trial.cost < kInfinity ? slope(trial) : 0.0;
+      const bool turns = there * g < 0.0, better = trial.cost <= m.best.cost + kLevel * level;
+      known = turns || better;
+      if (turns || !better) {
+        ends[side] = trial.at;
+        costs_there[side] = trial.cost;
+      }
+      last = better ? x : trial.at;
+      was = better ? g : there;
+      if (!better) continue;
+      ends[1 - side] = x;
+      costs_there[1 - side] = m.best.cost;
+      m.best = trial;
+      g = there;
+    }
+  }
+
+  // Parabolic interpolation guarded by the golden section (Brent 1973).
+  void interpolate(Minimum& m) const noexcept {
     constexpr double kGolden = 0.3819660112501051;
     double low = m.low, high = m.high, step = 0.5 * (high - low), before = high - low;
-    const bool smooth = preference.prefer != Arm::Prefer::Dexterous;
     double second = low, third = high, second_cost = m.low_cost, third_cost = m.high_cost;
     if (third_cost < second_cost) {
       std::swap(second, third);
       std::swap(second_cost, third_cost);
     }
     for (int i = 0; i < 60; ++i) {
-      const double x = m.best.at, middle = 0.5 * (low + high), least = (smooth ? kNear : kNearKink) * (1.0 + std::abs(x));
+      const double x = m.best.at, middle = 0.5 * (low + high), least = kNear * (1.0 + std::abs(x));
       if (std::abs(x - middle) <= 2.0 * least - 0.5 * (high - low)) return;
       double golden = x < middle ? high - x : low - x;
       bool parabolic = false;
