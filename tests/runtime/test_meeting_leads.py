@@ -79,7 +79,7 @@ def test_continua_are_followed_from_where_own_rows_near_singularities_end(
 
 
 def test_a_row_that_a_pose_beside_led_to_once_more_is_left_out() -> None:
-    arm: Any = SimpleNamespace(policy=POLICY, chain=SimpleNamespace(revolute=(True,)))
+    arm: Any = SimpleNamespace(policy=POLICY, chain=SimpleNamespace(revolute=(True,)), beside=(0,))
     given = leads_of_rows([0.5, 1.5, 0.5 + 2.0 * pi, 2.5], [0, 0, 1, 2], [1.0, 2.0, 3.0, 4.0])
     found = rows_nearby(arm, given)
     assert found.owner.tolist() == [0, 1, 3] and found.loss.tolist() == [1.0, 2.0, 4.0]

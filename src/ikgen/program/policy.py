@@ -49,10 +49,10 @@ class SolvePolicy:
       off: along it the error is as small as that, and so is its slope.
     - `farthest_start`: the largest first step (rad, m) of rows that are refined together, `contraction`:
       the most that a step of theirs may be of the one before, `least_pivot`: how far the derivatives by a
-      joint must be from the span of others' (in C++ `broken_reach` at least), `pivot_share`: in Python, the
-      most that a first step may be of that distance, `least_miss`: the error that shows that they end
-      beside the pose, `near`: the largest step in C++ behind which the derivatives stay, `lane_steps`: how
-      many they take at most; other rows are refined one by one.
+      joint must be from the span of others', `pivot_share`: the most that a first step may be of that
+      distance, `least_miss`: the error that shows that they end beside the pose,
+      `near`: the largest step in C++ behind which the derivatives stay, `lane_steps`: how many they take at
+      most; other rows are refined one by one.
     - `least_damping`, `damping`: a Newton step is damped by max(least, damping * error^2); `largest_step`
       (rad or m) bounds each joint's; `converged`: error at which steps end; `patience` steps may pass
       without the error falling to `progress` of what it was.

@@ -80,11 +80,6 @@ template <class Arm> struct LaneNewton {
   }
 
  private:
-  // Nearer a singularity a row may lie on a continuum that rounding broke, with more than one other near. Before, the
-  // solution set at most folds: the error e of f = s x + k x^2 / 2 is at most s^2 / (2 k), and both solutions of a fold
-  // are real before and after, where the second step is k e / (2 s^2) <= kContraction = 1/4 of the first.
-  static constexpr double kLeastPivot = std::max(Policy::kLeastPivot, Policy::kBrokenReach);
-
   template <int P, int N, bool H, bool F>
   static void refine_pack(const Pose<P>& pose, const LaneAim<Arm, N>& aim, const Range& range, int at,
                           const MaskOf<N, H>& given, const LanesOf<N, F>& flags, Rows<P>& rows) noexcept {
@@ -126,8 +121,8 @@ template <class Arm> struct LaneNewton {
       Lanes<N> size = abs(d[0]);
       for (int i = 1; i < kMoving; ++i) size = max(size, abs(d[i]));
       // Newton's method contracts this fast only near the one solution there (Deuflhard 2004, theorem 2.1)
-      const Lanes<N> bound = k == 0 ? before : Policy::kContraction * before;
-      good = good & ((bound > size) | (Policy::kConverged > size)) & (factors.pivot > kLeastPivot);
+      const Lanes<N> bound = k == 0 ? min(before, Policy::kPivotShare * factors.pivot) : Policy::kContraction * before;
+      good = good & ((bound > size) | (Policy::kConverged > size)) & (factors.pivot > Policy::kLeastPivot);
       for (auto& none : step) none = spread<N>(0.0);
       for (int i = 0; i < kMoving; ++i) step[column(i)] = select(good, d[i], 0.0);
       chain.add(step);
