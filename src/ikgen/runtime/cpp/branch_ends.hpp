@@ -11,9 +11,9 @@ template <class Arm> struct LastEnd {
 };
 
 // Between a value of the held joint at which a branch's row is inside and one at which it is not, the last at which
-// it is. Where margins tell that: by inverse interpolation (Brent 1973, section 4.2, of up to four values) of what is just
-// inside, and by halving where that leads out of the bracket or is slow. Else on the curve to the branch's row beyond, or to the row that it
-// meets; by halving where there is none. Arm: as for HeldSweep.
+// it is. Where margins tell that: by inverse interpolation (Brent 1973, section 4.2, of up to four values) of what is
+// just inside, and by halving where that leads out of the bracket or is slow. Else on the curve to the branch's row
+// beyond, or to the row that it meets; by halving where there is none. Arm: as for HeldSweep.
 template <class Arm> struct BranchEnd {
   using Sample = HeldSample<Arm>;
   static constexpr double kEnough = 1e-10, kShare = 0.05;  // of it, how far inside an end is looked for
