@@ -2267,6 +2267,7 @@ def _search_held(
 
 _DEEPEST = 24  # of the way from one pose to the next
 _SHALLOW = 9  # the same where there are no rows
+_path_following_MOST = 1000  # steps from one pose to the next, where rows follow at no length
 _path_following_FARTHEST = 0.3  # rad or m that a joint may move at once
 _AWAY = 1.0  # rad or m by which it turns around a singularity, where another row is next to the last one
 _OFF = 0.2  # of the motion, and
@@ -2324,6 +2325,7 @@ class _Walk:
         self.arm, self.limits = arm, limits
         self.q: Array = np.zeros(len(arm.lower))
         self.crossed = False
+        self.left = _path_following_MOST
 
     def begin(
         self, pose: Array, start: Array, search: Callable[[Array, Array, bool], Solutions]
@@ -2337,7 +2339,7 @@ class _Walk:
 
     def go_on(self, before: Array, pose: Array) -> Status:
         """From a pose to the next."""
-        here = self.q
+        here, self.left = self.q, _path_following_MOST
         status = self.step(before, pose, 0)
         if status is Status.OK and np.abs(self.q - here).max() < _AWAY:
             return status
@@ -2353,6 +2355,7 @@ class _Walk:
 
     def step(self, before: Array, pose: Array, depth: int) -> Status:
         """From a pose to the next, with halved steps where the rows do not follow the Jacobian."""
+        self.left -= 1
         expected = self._expected(pose)
         rows, flags, status = self._rows(pose)
         if len(rows):
@@ -2364,7 +2367,7 @@ class _Walk:
                 self.crossed = self.crossed or bool(flags[k]) or not follows
                 return self._arrive(rows[k])
             status = Status.SINGULAR
-        if depth == _DEEPEST or (depth >= _SHALLOW and not len(rows)):
+        if depth == _DEEPEST or self.left < 0 or (depth >= _SHALLOW and not len(rows)):
             return status
         middle = _path_following_between(before, pose)
         first = self.step(before, middle, depth + 1)

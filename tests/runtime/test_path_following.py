@@ -123,3 +123,19 @@ def test_long_ways_are_gone_in_steps_of_less_than_a_third_of_a_radian() -> None:
         there = turn(np.array([0.0, 0.0, 1.0]), 0.0, (way, 0.0, 0.0))
         assert walk.step(np.eye(4), there, 0) is Status.OK and walk.q[0] == way
         assert max(np.diff(at)) < 0.3 and not walk.crossed
+
+
+def test_rows_that_follow_at_no_length_end_the_way_soon() -> None:
+    """Each a little beside where the Jacobian leads: every step would be halved down to the last."""
+    walk, asked = _Walk(given_arm(lambda *_: None), False), [0]
+
+    def rows(pose: Array) -> Any:
+        asked[0] += 1
+        return (walk.q + 0.01)[None], np.zeros(1, dtype=bool), Status.OK
+
+    walk._rows, walk._expected = rows, lambda pose: walk.q  # type: ignore[assignment, method-assign]
+    here = walk.q
+    there = turn(np.array([0.0, 0.0, 1.0]), 0.0, (0.4, 0.0, 0.0))
+    assert walk.go_on(np.eye(4), there) is Status.OK and walk.crossed  # to the row next to it
+    assert np.abs(walk.q - here).max() == 0.01
+    assert 500 < asked[0] < 1100

@@ -15,18 +15,21 @@ namespace ikgen_runtime {
 // A: as for PoseError and RankLoss; Solver: solve(pose, options, out), search(pose, seed, limits, out).
 template <class A, class Solver> struct PathStep {
   static constexpr int kDof = A::kDof, kDeepest = 24, kShallow = 9;
+  static constexpr int kMost = 1000;  // steps to a pose, where rows follow at no length
   static constexpr double kFarthest = 0.3, kAway = 1.0, kOff = 0.2, kLeastOff = 1e-4, kJump = 0.05;
   static constexpr double kDamping = 1e-8, kLeastDamping = 1e-14;  // where Newton steps arrive, and where they foretell
   using Status = typename A::Status;
 
   double q[kDof];
   bool limits, crossed = false;
+  int left = kMost;
 
   // From a pose to the next; where halved steps lead far away or nowhere, as beside a singularity, to a row next to the
   // last one if there is one.
   Status go_on(const Eigen::Isometry3d& before, const Eigen::Isometry3d& pose) noexcept {
     double here[kDof], there[kDof], row[kDof];
     std::copy_n(q, kDof, here);
+    left = kMost;
     const Status status = step(before, pose, 0);
     if (status == Status::Ok && farthest(q, here) < kAway) return status;
     std::copy_n(q, kDof, there);
@@ -43,6 +46,7 @@ template <class A, class Solver> struct PathStep {
 
   // From a pose to the next, with halved steps where the rows do not follow the Jacobian.
   Status step(const Eigen::Isometry3d& before, const Eigen::Isometry3d& pose, int depth) noexcept {
+    --left;
     double expected[kDof], row[kDof];
     bool singular = false;
     const bool none[kDof] = {};
@@ -60,7 +64,7 @@ template <class A, class Solver> struct PathStep {
     } else if (depth >= kShallow) {
       return status;
     }
-    if (depth == kDeepest) return status;
+    if (depth == kDeepest || left < 0) return status;
     const Eigen::Isometry3d middle = between(before, pose);
     const Status first = step(before, middle, depth + 1);
     return first == Status::Ok ? step(middle, pose, depth + 1) : first;
