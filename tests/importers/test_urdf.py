@@ -136,6 +136,12 @@ REFUSED = {
         ".urdf.xacro",
         4,
     ),
+    "insert_block": (
+        robot(joint('<insert_block name="origin"/>')),
+        "<insert_block> left in joint 'j'",
+        "<xacro:insert_block>",
+        4,
+    ),
     "bytes": (b'<robot name="\xff\xfe"/>', "cannot decode", "UTF-8", None),
     "encoding": (b'<?xml version="1.0" encoding="nonesuch"?><robot/>', "decode", "UTF-8", None),
     "nul": (b"<robot>\0</robot>", "not well-formed", "correct", 1),
@@ -171,6 +177,10 @@ BENT = {
     "axis": (robot(joint('<axis xyz="1 0 0.5"/>' + LIMIT)), "axis of length 1.11803 normalised"),
     "axis rpy": (robot(joint('<axis xyz="1 0 0" rpy="0 0 0"/>' + LIMIT)), "has an rpy"),
     "roots": (robot(joint(LIMIT), links="cab"), "several root links: took 'a'"),
+    "include": (
+        robot(joint(LIMIT), '<include filename="x"/><property name="x" value="1"/>'),
+        "<include> and 1 more not read: xacro no longer expands",
+    ),
 }
 
 

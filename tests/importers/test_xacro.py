@@ -244,3 +244,29 @@ class TestPackages:
         with pytest.raises(PackageNotFoundError, match="'wanted'") as caught:
             self.find(file, "wanted", tmp_path)
         assert str(tmp_path) in caught.value.searched
+
+
+def test_the_spelling_of_the_first_xacro_is_named_where_it_defines_what_is_missing(file):
+    limits = file.parent / "limits.xacro"
+    limits.write_text('<robot>\n<!-- <macro/> -->\n<property name="most" value="2"/>\n</robot>')
+    write(
+        file,
+        '<xacro:include filename="limits.xacro"/>',
+        '<link name="b"/><joint name="j" type="revolute"><parent link="a"/><child link="b"/>'
+        '<limit lower="0" upper="${most}"/></joint>',
+    )
+    with pytest.raises(BadDescriptionError, match="'most' is not defined") as caught:
+        load_tree(file)
+    assert "line 3 of limits.xacro has <property>" in caught.value.hint
+    assert "write <xacro:property>" in caught.value.hint
+
+
+def test_an_origin_that_is_inserted_without_the_prefix_is_never_taken_for_none(file):
+    write(
+        file,
+        '<xacro:macro name="arm" params="*origin"><joint name="j" type="fixed">'
+        '<insert_block name="origin"/><parent link="a"/><child link="b"/></joint></xacro:macro>',
+        '<link name="b"/><xacro:arm><origin xyz="1 2 3"/></xacro:arm>',
+    )
+    with pytest.raises(BadDescriptionError, match="<insert_block> left in joint 'j'"):
+        load_tree(file)

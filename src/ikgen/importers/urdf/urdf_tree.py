@@ -10,6 +10,7 @@ from pathlib import Path
 from lxml import etree
 
 from ikgen.errors import UsageError
+from ikgen.importers.unprefixed import require_expanded
 from ikgen.importers.urdf.joint_list import read_joints, unique_names
 from ikgen.importers.urdf.topology import check_joints, find_roots
 from ikgen.importers.xml_document import (
@@ -69,6 +70,7 @@ def parse_urdf(
     place = Place(shown_file(source), list(warnings))
     root = parse_xml(text, place.file)
     _check_root(root, place)
+    require_expanded(root, place)
     links = _link_names(root, place)
     joints = read_joints(root, place)
     check_joints(links, joints, place.file)

@@ -9,6 +9,7 @@ from xml.parsers.expat import ExpatError
 
 from ikgen.errors import BadDescriptionError
 from ikgen.importers.packages import PackageNotFoundError
+from ikgen.importers.unprefixed import LEFT_OUT, first_unprefixed
 from ikgen.importers.urdf.attribute_values import shortened
 from ikgen.importers.xacro.error_places import line_of, place_of, text_of
 from ikgen.importers.xacro.refusal_errors import refused
@@ -63,8 +64,20 @@ def _unexplained(error: Exception, files: Sequence[Path], name: str) -> BadDescr
         f"xacro cannot expand the file: {message or type(error).__name__}{within}",
         file=name,
         line=line,
-        hint="check the expression or macro that the message names",
+        hint=_old_spelling(files) or "check the expression or macro that the message names",
     )
+
+
+def _old_spelling(files: Sequence[Path]) -> str:
+    """What to do where a file has instructions without xacro's prefix: what they define is unknown."""
+    for file in files:
+        text = text_of(file)
+        found = first_unprefixed(text)
+        if found is not None:
+            tag, start = found
+            where = f"line {line_at(text, start)} of {file.name}"
+            return f"{where} has <{tag}>: {LEFT_OUT}; write <xacro:{tag}> there and in what follows"
+    return ""
 
 
 def _causes(error: BaseException) -> Iterator[BaseException]:
