@@ -1,5 +1,5 @@
-"""xacro's instructions without the prefix `xacro:`: the first releases of xacro expanded them, those of today
-leave them in the text, where nothing reads them."""
+"""xacro's instructions without the prefix `xacro:`: the first releases of xacro expanded them, those of
+today leave them in the text, where nothing reads them."""
 
 from __future__ import annotations
 
