@@ -24,9 +24,10 @@ from ikgen.program.policy import SolvePolicy
 def test_rows_of_rounded_files_are_refined(
     deviation: float, plan: object, refine: str, far: bool
 ) -> None:
+    dh = SimpleNamespace(deviation=(0.0, deviation), most_driven=1.0)
     module = SolverModule(
-        name="arm", program=None, dh=SimpleNamespace(deviation=(0.0, deviation)), task="pose", free=(),
-        free_defaults=(), source_name="", source_sha256="", generator_version="", plan=plan,
+        name="arm", program=None, dh=dh, task="pose", free=(), free_defaults=(),
+        source_name="", source_sha256="", generator_version="", plan=plan,
     )  # fmt: skip
     policy = SolvePolicy()
     assert (module.refine, module.far) == (refine, far)
@@ -34,3 +35,13 @@ def test_rows_of_rounded_files_are_refined(
     assert module.policy.fold_reach == pytest.approx(max(policy.fold_reach, near))
     beside = policy.anywhere if far else near
     assert module.policy.beside_reach == pytest.approx(beside)
+    assert module.policy.limit_tolerance == policy.limit_tolerance
+
+
+def test_a_joint_that_moves_the_tool_several_times_as_far_is_put_on_limits_from_less_far() -> None:
+    dh = SimpleNamespace(deviation=(0.0, 0.0), most_driven=4.0)
+    module = SolverModule(
+        name="arm", program=None, dh=dh, task="pose", free=(), free_defaults=(),
+        source_name="", source_sha256="", generator_version="",
+    )  # fmt: skip
+    assert module.policy.limit_tolerance == SolvePolicy().limit_tolerance / 4.0

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from ikgen.chains.merged_axes import merged_axes
 from ikgen.chains.mimic import Coupling
 from ikgen.kinematics.fixed_order import product
 from ikgen.kinematics.rigid import axis_motion, read_only
@@ -25,7 +26,7 @@ def assemble(
 ) -> Chain:
     """The chain of a path of joints; `couplings` as `couple` gives them, `locked` in rad or m."""
     drivers = _drivers(path, couplings, locked)
-    axes, T_last_tip = _axes(path, couplings, drivers, locked)
+    axes, T_last_tip = merged_axes(*_axes(path, couplings, drivers, locked))
     return Chain(
         robot=robot,
         base_link=base,

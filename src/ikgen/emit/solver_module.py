@@ -83,8 +83,10 @@ class SolverModule:
 
     @property
     def policy(self) -> SolvePolicy:
-        """The tolerances of `solve`, three of them as far as the file is off what was solved.
+        """The tolerances of `solve`, three as far as the file is off what was solved.
 
+        `limit_tolerance`: a joint that moves several axes, or one several times as far, takes the tool that
+        many times as far when it is put on its limit.
         `fold_reach`: there two of them may start from one row; with those of poses beside, hardly ever far
         from it.
         `beside_reach`: there, and where a divisor of the closed form vanishes, others may start from none;
@@ -94,6 +96,7 @@ class SolverModule:
         root = math.sqrt(off)
         return replace(
             plain,
+            limit_tolerance=plain.limit_tolerance / self.dh.most_driven,
             fold_reach=max(plain.fold_reach, plain.fold * root),
             beside_reach=plain.anywhere if self.far else plain.fold * root,
             broken_reach=plain.broken_reach * off,

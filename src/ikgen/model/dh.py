@@ -139,6 +139,14 @@ class DHChain:
         return len(self.joints)
 
     @property
+    def most_driven(self) -> float:
+        """How far the rows of one joint move together, at most, where it moves by 1; at least 1."""
+        driven = [0.0] * self.dof
+        for row in self.rows:
+            driven[row.driver] += abs(row.scale)
+        return max(1.0, *driven)
+
+    @property
     def arm_angle(self) -> bool:
         """Whether the arm angle is held, in place of a joint."""
         return ARM_ANGLE in self.free and all(j.name != ARM_ANGLE for j in self.joints)
