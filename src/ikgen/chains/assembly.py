@@ -26,7 +26,8 @@ def assemble(
 ) -> Chain:
     """The chain of a path of joints; `couplings` as `couple` gives them, `locked` in rad or m."""
     drivers = _drivers(path, couplings, locked)
-    axes, T_last_tip = merged_axes(*_axes(path, couplings, drivers, locked))
+    file_axes, T_last_tip = _axes(path, couplings, drivers, locked)
+    axes, T_last_tip = merged_axes(file_axes, T_last_tip)
     return Chain(
         robot=robot,
         base_link=base,
@@ -35,6 +36,7 @@ def assemble(
         axes=axes,
         T_last_tip=T_last_tip,
         locked=tuple(sorted((name, float(value)) for name, value in locked.items())),
+        file_axes=file_axes if len(axes) < len(file_axes) else (),
     )
 
 

@@ -74,7 +74,7 @@ def _group(module: SolverModule, chain: Chain | None) -> dict[str, object]:
     """The joints between base and tip by name, with what moves them, and where the solver's joints are."""
     names = [joint.name for joint in module.dh.joints]
     if chain is not None:
-        group = [(a.name, a.driver, a.multiplier, a.offset) for a in chain.axes]
+        group = [(a.name, a.driver, a.multiplier, a.offset) for a in chain.file_axes or chain.axes]
     elif len(module.dh.rows) == module.dh.dof:
         group = [(name, j, 1.0, 0.0) for j, name in enumerate(names)]
     else:

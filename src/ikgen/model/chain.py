@@ -49,6 +49,7 @@ class Chain:
     """`T_base_tip(q) = prod_i(T_prev_axis_i * Motion_i) * T_last_tip`, joints listed base to tip.
 
     Joints that were locked are constants inside the transforms and not listed; `locked` names them.
+    `file_axes` are those of the file where linkages of several are one of `axes`, empty otherwise.
     """
 
     robot: str
@@ -58,6 +59,7 @@ class Chain:
     axes: tuple[ChainAxis, ...]
     T_last_tip: Matrix
     locked: tuple[tuple[str, float], ...] = ()
+    file_axes: tuple[ChainAxis, ...] = ()
 
     @property
     def dof(self) -> int:
