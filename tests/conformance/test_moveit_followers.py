@@ -15,7 +15,7 @@ from tests.support.moveit_driver import Plugin, compile_driver, warnings_of
 from tests.support.telescopes import RELATIONS, telescope_robot
 
 from ikgen.emit.derivation import Derivation
-from ikgen.emit.moveit import emit_derivation, package_name
+from ikgen.emit.moveit import emit, emit_derivation, package_name
 from ikgen.errors import UsageError
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
@@ -129,8 +129,7 @@ def test_a_joint_outside_of_the_chain_is_refused(tmp_path: Path) -> None:
 
 
 def test_rows_of_a_table_that_follow_others_are_refused(derivation: Derivation) -> None:
-    table = dataclasses.replace(
-        derivation, reading=dataclasses.replace(derivation.reading, chain=None)
-    )
+    dh = derivation.module.dh
+    table = dataclasses.replace(dh, rows=(*dh.rows, dh.rows[1]))
     with pytest.raises(UsageError, match="MoveIt has no model"):
-        emit_derivation(table)
+        emit(dataclasses.replace(derivation.module, dh=table))
