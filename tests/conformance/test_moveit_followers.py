@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.coupled_arms import crank_robot
-from tests.support.moveit_arms import missing_tools, with_joint
+from tests.support.moveit_arms import fixed, missing_tools, offset, with_joint
 from tests.support.moveit_driver import Plugin, compile_driver, warnings_of
 from tests.support.telescopes import RELATIONS, telescope_robot
 
@@ -90,6 +90,22 @@ def test_solutions_have_every_joint_of_the_group(derivation: Derivation, plugin:
         assert np.abs(plugin.get(pose, group_values(q)).values - group_values(q)).max() < 1e-6
         good, poses = plugin.forward(["link_7"], group_values(q))
         assert good and np.abs(poses[0] - pose).max() < 1e-9
+
+
+def test_the_tip_stays_where_the_task_leaves_its_orientation_open(
+    derivation: Derivation, plugin: Plugin
+) -> None:
+    tree, T_cell_base = tree_of(derivation), offset(0.5, 0.7)
+    ends = (fixed("cell", tree.root_link, T_cell_base), fixed("tool", "link_7", offset(0.1, 0.5)))
+    plugin.load(dataclasses.replace(tree, joints=(*tree.joints, *ends)))
+    plugin.group("arm", GROUP)
+    assert "leaves the tip's orientation open" in plugin.initialize("base", "tool").log
+    assert plugin.initialize("cell", "link_7").good
+    q = configurations(derivation, seed=3, count=1)[0]
+    pose = pose_of(derivation, q)
+    answer, rows = plugin.get_all([np.linalg.inv(T_cell_base) @ pose], group_values(q))
+    assert answer.good and np.abs(rows[0] - group_values(q)).max() < 1e-8
+    assert np.abs(pose_of(derivation, rows[:, MOVING])[:, :3, 3] - pose[:3, 3]).max() < 1e-8
 
 
 def test_a_followers_limits_and_reach_bound_what_moves_it(

@@ -54,7 +54,7 @@ def test_frames_may_differ_by_fixed_transforms(arm: Arm, plugin: Plugin) -> None
     assert log.split("\n")[-2] == "link finger" and log.count("joint") >= 6
 
 
-@pytest.mark.slow
+@pytest.mark.long  # of another arm: test_moveit_followers.py
 @needs(MANIPULATOR)
 def test_a_task_that_leaves_the_orientation_open(arm: Arm, plugin: Plugin) -> None:
     T_tip_tool, T_cell_base = offset(0.1, 0.5), offset(0.5, 0.7)

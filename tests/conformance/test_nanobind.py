@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import os
 import subprocess
 import sys
 import venv
@@ -20,6 +21,10 @@ from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.solver_module import SolverModule
 
 pytestmark = pytest.mark.usefixtures("solved_once")
+
+
+QUICK = "-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=0 '-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG'"
+"""How nanobind itself is compiled: at once, and not for speed. What is emitted says what it needs."""
 
 
 def test_the_folder_stands_alone() -> None:
@@ -42,7 +47,8 @@ def installed(module: SolverModule, folder: Path) -> tuple[ModuleType, ModuleTyp
     target = folder / "site"
     venv.create(folder / "venv", with_pip=False)
     pip = [sys.executable, "-m", "pip", "--python", folder / "venv/bin/python", "install"]
-    subprocess.run([*pip, "--no-deps", "--target", target, folder / name], check=True)
+    command = [*pip, "--no-deps", "--target", target, folder / name]
+    subprocess.run(command, check=True, env={**os.environ, "CMAKE_ARGS": QUICK})
     sys.path.insert(0, str(target))
     return importlib.import_module(name), import_text(emit_module(module), folder)
 

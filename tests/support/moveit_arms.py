@@ -35,10 +35,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Case:
-    """How an arm of the fixtures is generated, and the headers that its plugin is compiled with."""
+    """How an arm of the fixtures is generated, the headers that its plugin is compiled with, and whether
+    each of its sources is compiled by itself."""
 
     style: str
     options: dict[str, Any] = field(default_factory=dict)
+    apart: bool = False
 
 
 KUKA = "kuka_kr6r900sixx"
@@ -46,7 +48,7 @@ FRANKA = "franka_fr3"
 MANIPULATOR = "open_manipulator_x"
 CASES = {
     KUKA: Case("hpp"),
-    FRANKA: Case("h", {"free": {"fr3_joint7": None}}),
+    FRANKA: Case("h", {"free": {"fr3_joint7": None}}, apart=True),
     MANIPULATOR: Case("hpp", {"task": "position", "free": {"joint2": None}}),
 }
 
@@ -130,7 +132,8 @@ def compiled_arm(name: str, folder: Path) -> Arm:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not program.exists():
             package = write_package(module_of(name), program.parent)
-            compile_driver(package, CASES[name].style, program)
+            case = CASES[name]
+            compile_driver(package, case.style, program, apart=case.apart)
     return Arm(module_of(name), load_tree(FIXTURES / f"{name}.urdf"), program)
 
 

@@ -39,9 +39,14 @@ def warnings_of(compiler: str, package: Path, style: str) -> str:
     return subprocess.run(command, capture_output=True, text=True, check=False).stderr
 
 
-def compile_driver(package: Path, style: str, program: Path) -> None:
-    """The plugin and the program that calls it; warnings are errors."""
+def compile_driver(package: Path, style: str, program: Path, *, apart: bool = False) -> None:
+    """The plugin and the program that calls it; warnings are errors. Compiled as one source, which reads
+    the solver once, or each by itself."""
     sources = [*_sources(package), str(STUBS / "driver.cpp")]
+    if not apart:
+        whole = program.with_suffix(".cpp")
+        whole.write_text("".join(f'#include "{source}"\n' for source in sources))
+        sources = [str(whole)]
     command = [*_command("g++", package, style), "-O1", *sources, "-o", str(program)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[:4000]
