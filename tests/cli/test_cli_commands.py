@@ -8,14 +8,18 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, TORSO, Joint, serial_urdf
 from tests.support.small_robots import write_robot
 
+from ikgen.cli.main import run
 from ikgen.generation.record import read_record
 from ikgen.projects.config import load_config
+
+pytestmark = pytest.mark.usefixtures("solved_once")
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 KUKA = FIXTURES / "kuka_kr6r900sixx.urdf"
@@ -25,19 +29,34 @@ INCLUDING = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
 <xacro:include filename="parts/elbow.urdf"/>
 </robot>
 """
+Ended = subprocess.CompletedProcess[str]
+Called = Callable[..., Ended]
 AR4 = FIXTURES / "ar4_ros_driver/annin_ar4_description/urdf/ar.urdf.xacro"
 
 
-def ikgen(
-    *arguments: object, cwd: Path | None = None, **environment: str
-) -> subprocess.CompletedProcess[str]:
+def ikgen(*arguments: object, cwd: Path | None = None, **environment: str) -> Ended:
     command = [sys.executable, "-m", "ikgen", *map(str, arguments)]
     return subprocess.run(
         command, cwd=cwd, text=True, capture_output=True, env={**os.environ, **environment}
     )
 
 
-def refused(result: subprocess.CompletedProcess[str], code: int = 2) -> str:
+@pytest.fixture
+def at_once(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Called:
+    """What becomes of a command where nothing hangs on a process of its own."""
+
+    def call(*arguments: object, cwd: Path | None = None) -> Ended:
+        if cwd is not None:
+            monkeypatch.chdir(cwd)
+        words = list(map(str, arguments))
+        code = run(words)
+        said = capsys.readouterr()
+        return subprocess.CompletedProcess(words, code, said.out, said.err)
+
+    return call
+
+
+def refused(result: Ended, code: int = 2) -> str:
     """The message of a command that ended with an error; never a traceback."""
     assert result.returncode == code, result.stderr
     assert "Traceback" not in result.stderr
@@ -61,7 +80,6 @@ def test_generates_and_verifies(tmp_path: Path) -> None:
 def test_text_that_cannot_be_imported_is_not_written(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from ikgen.cli.main import run
     from ikgen.emit.python import python_emitter as python
 
     broken = {"kuka_kr6r900sixx_ik.py": 'NAME = "open\n'}
@@ -113,14 +131,14 @@ def test_same_input_gives_the_same_bytes(tmp_path: Path) -> None:
     assert b"parts/elbow.urdf" in near[Path("arm_ik.json")]
 
 
-def test_a_xacro_file_and_its_arguments(tmp_path: Path) -> None:
+def test_a_xacro_file_and_its_arguments(tmp_path: Path, at_once: Called) -> None:
     arguments = ("--arg", "ar_model:=mk3", "--arg", "include_gripper:=false")
-    done = ikgen(
+    done = at_once(
         "from-urdf", AR4, *arguments, "--samples", 20, "-o", tmp_path, "--depfile", tmp_path / "d"
     )
     assert done.returncode == 0, done.stderr
     assert "mk3.yaml" in (tmp_path / "d").read_text()
-    assert "ar_model" in refused(ikgen("from-urdf", AR4, "-o", tmp_path / "none"))
+    assert "ar_model" in refused(at_once("from-urdf", AR4, "-o", tmp_path / "none"))
     assert not (tmp_path / "none").exists()
 
 
@@ -155,13 +173,15 @@ def test_a_xacro_file_and_its_arguments(tmp_path: Path) -> None:
     ],
     ids=lambda value: " ".join(map(str, value))[-40:] if isinstance(value, list) else "",
 )
-def test_bad_input_is_explained(tmp_path: Path, arguments: list[object], said: str) -> None:
-    assert said in refused(ikgen(*arguments, cwd=tmp_path))
+def test_bad_input_is_explained(
+    tmp_path: Path, at_once: Called, arguments: list[object], said: str
+) -> None:
+    assert said in refused(at_once(*arguments, cwd=tmp_path))
     assert not any(tmp_path.iterdir())
 
 
-def test_seven_joints_need_no_option(tmp_path: Path) -> None:
-    done = ikgen(
+def test_seven_joints_need_no_option(tmp_path: Path, at_once: Called) -> None:
+    done = at_once(
         "from-urdf", FIXTURES / "franka_fr3.urdf", "-o", tmp_path, "--samples", 30, "--json"
     )
     assert done.returncode == 0, done.stderr
@@ -176,16 +196,18 @@ def test_seven_joints_need_no_option(tmp_path: Path) -> None:
     before = (tmp_path / "fr3_ik.py").read_bytes()
     again = read_record(tmp_path / "fr3_ik.json").again()
     assert again.free == {"fr3_joint7": None}
-    done = ikgen(*again.command("-o", str(tmp_path), "--no-verify").split()[1:])
+    done = at_once(*again.command("-o", str(tmp_path), "--no-verify").split()[1:])
     assert done.returncode == 0 and "holding" not in done.stderr
     assert (tmp_path / "fr3_ik.py").read_bytes() == before
 
 
 @pytest.mark.parametrize("lift", [(), (TORSO,)], ids=["S-R-S", "P and S-R-S"])
-def test_redundant_arms_need_no_option(tmp_path: Path, lift: tuple[Joint, ...]) -> None:
+def test_redundant_arms_need_no_option(
+    tmp_path: Path, at_once: Called, lift: tuple[Joint, ...]
+) -> None:
     path = tmp_path / "arm.urdf"
     path.write_text(serial_urdf("arm", [*lift, *SHOULDER_ELBOW_WRIST]))
-    done = ikgen("from-urdf", path, "-o", tmp_path, "--samples", 30, "--json")
+    done = at_once("from-urdf", path, "-o", tmp_path, "--samples", 30, "--json")
     assert done.returncode == 0, done.stderr
     record = json.loads(done.stdout)
     assert len(record["chosen"]["held"]) == 1 + len(lift)
@@ -193,34 +215,34 @@ def test_redundant_arms_need_no_option(tmp_path: Path, lift: tuple[Joint, ...]) 
     assert record["verification"]["python"]["passed"]
 
 
-def test_init_lists_every_arm(tmp_path: Path) -> None:
+def test_init_lists_every_arm(tmp_path: Path, at_once: Called) -> None:
     write_robot(tmp_path / "twin.urdf", sides=("left_", "right_"))
-    done = ikgen("init", "twin.urdf", "--emit", "python,cpp", cwd=tmp_path)
+    done = at_once("init", "twin.urdf", "--emit", "python,cpp", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout.endswith("wrote: ikgen.toml\nnext: ikgen build\n")
     arms = load_config(tmp_path / "ikgen.toml")
     assert [arm.name for arm in arms] == ["twin_left_tool0", "twin_right_tool0"]
     assert {arm.request.base for arm in arms} == {"base_link"}
     assert {arm.request.tip for arm in arms} == {"left_tool0", "right_tool0"}
-    told = refused(ikgen("init", "twin.urdf", cwd=tmp_path))
+    told = refused(at_once("init", "twin.urdf", cwd=tmp_path))
     assert "is there already" in told and "--add" in told
-    assert ikgen("init", "twin.urdf", "--force", cwd=tmp_path).returncode == 0
-    built = ikgen("build", "--no-verify", cwd=tmp_path)
+    assert at_once("init", "twin.urdf", "--force", cwd=tmp_path).returncode == 0
+    built = at_once("build", "--no-verify", cwd=tmp_path)
     assert built.returncode == 0, built.stderr
     assert (tmp_path / "generated/twin_left_tool0_ik.py").is_file()
 
 
-def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_made(tmp_path: Path, at_once: Called) -> None:
     (tmp_path / "file").write_text("")
-    refused(ikgen("from-urdf", KUKA, "-o", tmp_path / "file", "--no-verify"))
+    refused(at_once("from-urdf", KUKA, "-o", tmp_path / "file", "--no-verify"))
 
 
-def test_inspect_writes_nothing(tmp_path: Path) -> None:
-    done = ikgen("inspect", FIXTURES / "doosan_m1013.urdf", "--json", cwd=tmp_path)
+def test_inspect_writes_nothing(tmp_path: Path, at_once: Called) -> None:
+    done = at_once("inspect", FIXTURES / "doosan_m1013.urdf", "--json", cwd=tmp_path)
     record = json.loads(done.stdout)
     assert record["chain"]["dof"] == 6 and record["chain"]["snaps"]
     assert record["chain"]["deviation"]["m"] > 0
-    text = ikgen("inspect", FIXTURES / "abb_yumi.urdf", cwd=tmp_path)
+    text = at_once("inspect", FIXTURES / "abb_yumi.urdf", cwd=tmp_path)
     assert text.returncode == 0 and text.stdout.count("--base yumi_base_link --tip") == 2
     assert not any(tmp_path.iterdir())
 
@@ -262,21 +284,21 @@ def test_doctor_and_cmake_dir() -> None:
     assert (folder / "ikgenConfig.cmake").is_file()
 
 
-def test_report(tmp_path: Path) -> None:
-    done = ikgen("report", KUKA, "-o", tmp_path, "--json")
+def test_report(tmp_path: Path, at_once: Called) -> None:
+    done = at_once("report", ELBOW, "--task", "position", "-o", tmp_path, "--json")
     files = [Path(name) for name in json.loads(done.stdout)["files"]]
     assert {".tex", ".html"} <= {path.suffix for path in files}
     assert all(path.is_file() and path.stat().st_size for path in files)
 
 
-def test_from_dh(tmp_path: Path) -> None:
+def test_from_dh(tmp_path: Path, at_once: Called) -> None:
     row = '[[joints]]\ntype = "revolute"\nalpha = {}\na = {}\nd = {}\ntheta = 0\n'
     rows = [(0, 0, 0), ('"-pi/2"', 0, 0), (0, 0.43, 0.15), ('"-pi/2"', 0.02, 0.43)]
     rows += [('"pi/2"', 0, 0), ('"-pi/2"', 0, 0)]
     text = 'name = "puma"\nconvention = "modified"\n' + "".join(row.format(*r) for r in rows)
     (tmp_path / "puma.toml").write_text(text)
-    done = ikgen("from-dh", "puma.toml", "-o", "out", "--samples", 20, cwd=tmp_path)
+    done = at_once("from-dh", "puma.toml", "-o", "out", "--samples", 20, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert ikgen("verify", "out", "--samples", 20, cwd=tmp_path).returncode == 0
+    assert at_once("verify", "out", "--samples", 20, cwd=tmp_path).returncode == 0
     (tmp_path / "puma.toml").write_text(text.replace("0.43", "0.44"))
-    assert "mm and" in refused(ikgen("verify", "out", "--samples", 20, cwd=tmp_path), 1)
+    assert "mm and" in refused(at_once("verify", "out", "--samples", 20, cwd=tmp_path), 1)
