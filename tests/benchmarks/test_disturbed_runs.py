@@ -11,9 +11,9 @@ import pytest
 from benchmarks.command_line import REPOSITORY
 
 SAMPLES = {
-    "kills": ("--kills", "4", "--seed", "1"),
-    "faults": ("--most", "8", "--seed", "1"),
-    "pairs": ("--pairs", "4", "--seed", "1"),
+    "kills": ("--kills", "3", "--seed", "1"),
+    "faults": ("--most", "6", "--seed", "1"),
+    "pairs": ("--pairs", "3", "--seed", "1"),
 }
 
 

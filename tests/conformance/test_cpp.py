@@ -10,11 +10,13 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.cpp_modules import EXACT, ROBOTS, solver_module
+from tests.support.sampled import sampled
 from tests.support.solving import NO_COMPILER
 
 from ikgen.emit.cpp.cpp_emitter import emit, emit_header
@@ -33,6 +35,8 @@ pytestmark = [
 ]
 
 SAMPLES = 60
+RARE = ("Olson13", "UR5")
+"""Compiled with the long tests alone: the others have what they have."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +48,11 @@ class Arm:
     q: Array
     """Configurations (N, dof), some of them singular."""
     poses: Array
+
+
+def often(names: list[str]) -> list[Any]:
+    """Robots as parameters of a test."""
+    return sampled(names, [name for name in names if name not in RARE])
 
 
 @functools.cache
@@ -112,7 +121,7 @@ def gap(module: SolverModule, a: Array, b: Array) -> Array:
     return np.where(turns, wrapped, np.abs(a - b))
 
 
-@pytest.mark.parametrize("name", EXACT)
+@pytest.mark.parametrize("name", often(EXACT))
 def test_rows_are_the_interpreters(name: str, folder: Path) -> None:
     arm = compiled(name, folder)
     found = arm.header.solve_many(arm.poses, limits=False)
@@ -143,7 +152,7 @@ def python_module(arm: Arm, folder: Path) -> ModuleType:
 
 
 @pytest.mark.parametrize("seeded", [False, True])
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", often(ROBOTS))
 def test_rows_are_the_python_modules(name: str, seeded: bool, folder: Path) -> None:
     arm = compiled(name, folder)
     python = python_module(arm, folder)
@@ -205,7 +214,7 @@ def test_rows_at_limits_are_the_python_modules(name: str, seeded: bool, folder: 
     assert compared > 20 and touching > 10
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", often(ROBOTS))
 def test_a_batch_has_the_rows_of_single_poses(name: str, folder: Path) -> None:
     arm = compiled(name, folder)
     poses = np.concatenate([arm.poses, arm.poses[:1] * np.nan])
@@ -217,7 +226,7 @@ def test_a_batch_has_the_rows_of_single_poses(name: str, folder: Path) -> None:
         assert np.array_equal(batch.q, single.q, equal_nan=True)
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", often(ROBOTS))
 def test_a_seed_turns_and_orders_the_rows_that_are_there_without(name: str, folder: Path) -> None:
     arm = compiled(name, folder)
     plain = arm.header.solve_many(arm.poses, limits=False)
@@ -263,7 +272,7 @@ def test_odd_names_are_escaped(folder: Path) -> None:
     assert r'"tool \0420\042 \134 \012 \303\251 \077\077/"' in text
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", often(ROBOTS))
 def test_rows_reach_the_pose_and_include_the_one_it_was_made_from(name: str, folder: Path) -> None:
     arm = compiled(name, folder)
     for limits in (False, True):
@@ -284,7 +293,7 @@ def test_rows_reach_the_pose_and_include_the_one_it_was_made_from(name: str, fol
                 assert (rows <= arm.header.constants.upper).all()
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", often(ROBOTS))
 def test_kinematics_are_the_files(name: str, folder: Path) -> None:
     arm = compiled(name, folder)
     assert np.abs(arm.header.forward(arm.q) - arm.poses).max() < 1e-12

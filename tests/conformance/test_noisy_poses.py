@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from tests.support.sampled import sampled
 from tests.support.solving import NO_COMPILER, import_text
 
 from ikgen.emit.cpp.cpp_emitter import emit
@@ -35,6 +36,8 @@ ARMS = {
     "rotation": Request(TABLES / "Wrist.toml", task="rotation"),
 }
 NOISES = ("float32", "1e-6")
+COMPILED = [name for name in ARMS if name != "parallel axes"]
+"""Arms whose header is compiled in every run; that of the other is in test_cpp.py and test_folds.py."""
 
 
 @pytest.fixture(scope="module", params=ARMS)
@@ -144,6 +147,7 @@ def test_a_height_beyond_one_is_none(arm: Any) -> None:
         assert arm.solve(pose).status == "INVALID"
 
 
+@pytest.mark.parametrize("module", sampled(ARMS, COMPILED), indirect=True)
 @pytest.mark.parametrize("kind", NOISES)
 def test_the_header_has_the_rows_of_the_module(arm: Any, header: CppHeader, kind: str) -> None:
     poses = noisy(arm.forward(configurations(arm, 25)), kind)
@@ -156,6 +160,7 @@ def test_the_header_has_the_rows_of_the_module(arm: Any, header: CppHeader, kind
         assert max(apart.min(axis=0).max(), apart.min(axis=1).max()) < 1e-9
 
 
+@pytest.mark.parametrize("module", sampled(ARMS, COMPILED), indirect=True)
 def test_the_header_refuses_what_the_module_refuses(arm: Any, header: CppHeader) -> None:
     good = arm.forward(configurations(arm, 1)[0])
     bad = np.stack([good] * 4)
