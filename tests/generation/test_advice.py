@@ -9,6 +9,8 @@ from ikgen.generation.derive import derive
 from ikgen.generation.inspection import inspect_robot
 from ikgen.generation.request import Request
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 
 @pytest.mark.parametrize("robot", ["doosan_m1013", "ur5e", "igus_robolink_rl_dp_5", "franka_fr3"])
 def test_rows_steps_and_solutions_are_those_of_the_derivation(robot: str) -> None:

@@ -16,7 +16,10 @@ from ikgen.solver.solve import solve_chain
 TABLES = Path(__file__).resolve().parents[1] / "robots" / "tables"
 
 
-@pytest.mark.parametrize(("name", "ranked", "fewest"), [("Bartell", 4, 2), ("Parkman13", 8, 4)])
+@pytest.mark.parametrize(
+    ("name", "ranked", "fewest"),
+    [("Bartell", 4, 2), pytest.param("Parkman13", 8, 4, marks=pytest.mark.long)],
+)
 def test_takes_another_first_branch_where_sets_never_hold_together(
     name: str, ranked: int, fewest: int
 ) -> None:
