@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from collections.abc import Iterator
@@ -23,6 +24,12 @@ os.environ["CMAKE_PREFIX_PATH"] = os.pathsep.join([*_GIVEN, *_PREFIX])
 
 if _COMPILERS := compilers():
     os.environ["PATH"] = f"{_COMPILERS}{os.pathsep}{os.environ['PATH']}"
+
+
+def pytest_collection_finish() -> None:
+    """Modules and thousands of collected tests stay to the end: no garbage is to be looked for there."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(scope="module")
