@@ -478,26 +478,59 @@ template <class Arm, bool kAngle = Arm::kArmAngle> struct HeldAim {
   }
 };
 
+// --- lane sines ----------------------------------------------------------------------------------
+template <int N> struct Sines {
+  Lanes<N> cosine, sine;
+};
+
+template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> nearest(const LanesOf<N, H>& x) noexcept {
+  constexpr double kShift = 6755399441055744.0;  // 1.5 * 2^52
+  return (x + kShift) - kShift;
+}
+
+template <int N, bool H> [[gnu::always_inline]] inline Sines<N> sines(const LanesOf<N, H>& x) noexcept {
+  const Lanes<N> k = nearest(0.63661977236758134 * x);
+  const Lanes<N> r = ((x - k * 1.570796325802803) - k * 9.920935791635221e-10) - k * 5.170182981794105e-19;
+  const Lanes<N> z = r * r, z2 = z * z, z4 = z2 * z2;
+  const Lanes<N> s = r - r * z * ((1.0 / 6 - z * (1.0 / 120)) + z2 * (1.0 / 5040 - z * (1.0 / 362880)) +
+                                  z4 * ((1.0 / 39916800 - z * (1.0 / 6227020800)) + z2 * (1.0 / 1307674368000)));
+  const Lanes<N> c = (1.0 - 0.5 * z) + z2 * ((1.0 / 24 - z * (1.0 / 720)) + z2 * (1.0 / 40320 - z * (1.0 / 3628800)) +
+                                            z4 * ((1.0 / 479001600 - z * (1.0 / 87178291200)) + z2 * (1.0 / 20922789888000)));
+  const Lanes<N> quarter = k - 4.0 * nearest(0.25 * k);  // -2, -1, 0, 1 or 2
+  const auto odd = (abs(quarter) > 0.5) & (1.5 > abs(quarter));
+  const Lanes<N> a = select(odd, s, c), b = select(odd, c, s);
+  return {select((quarter > 0.5) | (-1.5 > quarter), -a, a), select((-0.5 > quarter) | (quarter > 1.5), -b, b)};
+}
+
+template <int N, bool H> [[gnu::always_inline]] inline Sines<N> turned(const Sines<N>& by, const LanesOf<N, H>& x) noexcept {
+  const Lanes<N> z = x * x;
+  const Lanes<N> s = x - x * z * ((1.0 / 6 - z * (1.0 / 120)) + z * z * (1.0 / 5040 - z * (1.0 / 362880)));
+  const Lanes<N> c = z * ((0.5 - z * (1.0 / 24)) + z * z * (1.0 / 720 - z * (1.0 / 40320)));  // 1 less it
+  return {by.cosine - (by.cosine * c + by.sine * s), by.sine - (by.sine * c - by.cosine * s)};
+}
+
 // --- small matrix --------------------------------------------------------------------------------
-inline void cross(const double* a, const double* b, double* out) noexcept {
+template <class X> inline void cross(const X* a, const X* b, X* out) noexcept {
   out[0] = a[1] * b[2] - a[2] * b[1];
   out[1] = a[2] * b[0] - a[0] * b[2];
   out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-template <int N> inline void factor(double (&A)[N][N]) noexcept {
+template <class X, int N> inline void factor(X (&A)[N][N]) noexcept {
+  using std::max;
+  using std::sqrt;
   for (int i = 0; i < N; ++i)
     for (int j = 0; j <= i; ++j) {
-      double sum = A[i][j];
-      for (int k = 0; k < j; ++k) sum -= A[i][k] * A[j][k];
-      A[i][j] = i == j ? 1.0 / std::sqrt(std::max(sum, 1e-300)) : sum * A[j][j];
+      X sum = A[i][j];
+      for (int k = 0; k < j; ++k) sum = sum - A[i][k] * A[j][k];
+      A[i][j] = i == j ? 1.0 / sqrt(max(sum, 1e-300)) : sum * A[j][j];
     }
 }
 
-template <int N> inline bool definite(const double (&L)[N][N]) noexcept {
-  for (int i = 0; i < N; ++i)
-    if (!(L[i][i] < 1e149)) return false;
-  return true;
+template <class X, int N> inline auto definite(const X (&L)[N][N]) noexcept {
+  auto yes = 1e149 > L[0][0];
+  for (int i = 1; i < N; ++i) yes = yes & (1e149 > L[i][i]);
+  return yes;
 }
 
 template <int N> inline void substitute(const double (&L)[N][N], double (&x)[N]) noexcept {
@@ -518,9 +551,10 @@ struct Motion {
   double scale, offset;
 };
 
-struct Frame {
-  double R[3][3], p[3];
+template <class X> struct FrameOf {  // X: double, or lanes
+  X R[3][3], p[3];
 };
+using Frame = FrameOf<double>;
 
 inline void by_columns(const Frame& T, double* t) noexcept {
   for (int r = 0; r < 3; ++r) {
@@ -534,24 +568,24 @@ inline void by_columns(const Frame& T, double* t) noexcept {
 template <class Arm> struct MotionChain {
   static constexpr int kCount = sizeof(Arm::kMotions) / sizeof(Motion);
 
-  static Frame first() noexcept {
-    Frame T;
+  template <class X = double> static FrameOf<X> first() noexcept {
+    FrameOf<X> T;
     for (int r = 0; r < 3; ++r) {
-      for (int k = 0; k < 3; ++k) T.R[r][k] = Arm::kFrames[0][r][k];
-      T.p[r] = Arm::kFrames[0][r][3];
+      for (int k = 0; k < 3; ++k) T.R[r][k] = constant<X>(Arm::kFrames[0][r][k]);
+      T.p[r] = constant<X>(Arm::kFrames[0][r][3]);
     }
     return T;
   }
 
-  static void advance(Frame& T, int i, const double* q) noexcept {
+  template <class X> static void advance(FrameOf<X>& T, int i, const X* q) noexcept {
     const Motion& motion = Arm::kMotions[i];
     const auto& F = Arm::kFrames[i + 1];
-    const double v = motion.scale * q[motion.joint] + motion.offset;
-    const double c = motion.revolute ? std::cos(v) : 1.0, s = motion.revolute ? std::sin(v) : 0.0;
-    const double d = motion.revolute ? 0.0 : v;
+    const X v = motion.scale * q[motion.joint] + motion.offset;
+    X c = constant<X>(1.0), s = constant<X>(0.0), d = v;
+    if (motion.revolute) turn_by(v, c, s, d);
     for (int r = 0; r < 3; ++r) {
-      const double x = c * T.R[r][0] + s * T.R[r][1], y = c * T.R[r][1] - s * T.R[r][0], z = T.R[r][2];
-      T.p[r] += d * z + (x * F[0][3] + y * F[1][3] + z * F[2][3]);
+      const X x = c * T.R[r][0] + s * T.R[r][1], y = c * T.R[r][1] - s * T.R[r][0], z = T.R[r][2];
+      T.p[r] = T.p[r] + (d * z + (x * F[0][3] + y * F[1][3] + z * F[2][3]));
       for (int k = 0; k < 3; ++k) T.R[r][k] = x * F[0][k] + y * F[1][k] + z * F[2][k];
     }
   }
@@ -562,9 +596,9 @@ template <class Arm> struct MotionChain {
     return T;
   }
 
-  [[gnu::noinline]] static Frame forward(const double* q, double (&J)[6][Arm::kDof]) noexcept {
-    double axes[kCount][3], origins[kCount][3];
-    Frame T = first();
+  template <class X> [[gnu::noinline]] static FrameOf<X> forward(const X* q, X (&J)[6][Arm::kDof]) noexcept {
+    X axes[kCount][3], origins[kCount][3];
+    FrameOf<X> T = first<X>();
     for (int i = 0; i < kCount; ++i) {
       for (int r = 0; r < 3; ++r) {
         axes[i][r] = Arm::kMotions[i].scale * T.R[r][2];
@@ -573,18 +607,39 @@ template <class Arm> struct MotionChain {
       advance(T, i, q);
     }
     for (auto& row : J)
-      for (double& x : row) x = 0.0;
+      for (X& x : row) x = constant<X>(0.0);
     for (int i = 0; i < kCount; ++i) {
       const int j = Arm::kMotions[i].joint;
-      double linear[3] = {axes[i][0], axes[i][1], axes[i][2]};
+      X linear[3] = {axes[i][0], axes[i][1], axes[i][2]};
       if (Arm::kMotions[i].revolute) {
-        const double arm[3] = {T.p[0] - origins[i][0], T.p[1] - origins[i][1], T.p[2] - origins[i][2]};
+        const X arm[3] = {T.p[0] - origins[i][0], T.p[1] - origins[i][1], T.p[2] - origins[i][2]};
         cross(axes[i], arm, linear);
-        for (int r = 0; r < 3; ++r) J[3 + r][j] += axes[i][r];
+        for (int r = 0; r < 3; ++r) J[3 + r][j] = J[3 + r][j] + axes[i][r];
       }
-      for (int r = 0; r < 3; ++r) J[r][j] += linear[r];
+      for (int r = 0; r < 3; ++r) J[r][j] = J[r][j] + linear[r];
     }
     return T;
+  }
+
+ private:
+  template <class X> static X constant(double x) noexcept {
+    if constexpr (std::is_same_v<X, double>) {
+      return x;
+    } else {
+      return spread<kWidth<X>>(x);
+    }
+  }
+
+  template <class X> static void turn_by(const X& v, X& c, X& s, X& d) noexcept {
+    if constexpr (std::is_same_v<X, double>) {
+      c = std::cos(v);
+      s = std::sin(v);
+    } else {
+      const auto both = sines(v);
+      c = both.cosine;
+      s = both.sine;
+    }
+    d = constant<X>(0.0);
   }
 };
 
@@ -1073,19 +1128,44 @@ template <class Arm> struct RankLoss {
 
   static bool below(const double* q, double bound) noexcept {
     const PoseError<Arm> at(q, HeldAim<Arm>::own(q));
-    double A[kRank][kRank];
+    return !above(at.slope, bound);
+  }
+
+  template <class Rows> static void regular(const Rows& rows, double bound, bool (&out)[Rows::kLanes]) noexcept {
+    constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;
+    static_assert(PoseError<Arm>::kTask == kEquations);
+    for (int at = 0; at < Rows::kLanes; at += N) {
+      bool any = false;
+      for (int i = at; i < at + N; ++i) {
+        out[i] = (static_cast<int>(rows.flags[i]) & kReal) != 0;
+        any = any || out[i];
+      }
+      if (!any) continue;
+      Lanes<N> q[Arm::kDof], J[6][Arm::kDof], slope[kEquations][Arm::kDof];
+      for (int j = 0; j < Arm::kDof; ++j) q[j] = load<N>(rows.q[j] + at);
+      Arm::Task::slope(MotionChain<Arm>::forward(q, J), J, slope);
+      alignas(64) double far[std::size_t{N}];
+      store(above(slope, bound), far);
+      for (int i = 0; i < N; ++i) out[at + i] = out[at + i] && far[i] > 0.5;
+    }
+  }
+
+ private:
+  template <class X> static auto above(const X (&slope)[kEquations][Arm::kDof], double bound) noexcept {
+    X A[kRank][kRank];
     for (int a = 0; a < kRank; ++a)
       for (int b = 0; b <= a; ++b) {
-        double sum = a == b ? -bound * bound : 0.0;
         if constexpr (kMoving < kEquations) {
-          for (const auto& row : at.slope) sum += row[kJoints[a]] * row[kJoints[b]];
+          A[a][b] = slope[0][kJoints[a]] * slope[0][kJoints[b]];
+          for (int e = 1; e < kEquations; ++e) A[a][b] = A[a][b] + slope[e][kJoints[a]] * slope[e][kJoints[b]];
         } else {
-          for (const int j : kJoints.joint) sum += at.slope[a][j] * at.slope[b][j];
+          A[a][b] = slope[a][kJoints[0]] * slope[b][kJoints[0]];
+          for (int k = 1; k < kMoving; ++k) A[a][b] = A[a][b] + slope[a][kJoints[k]] * slope[b][kJoints[k]];
         }
-        A[a][b] = sum;
+        if (a == b) A[a][b] = A[a][b] - bound * bound;
       }
     factor(A);
-    return !definite(A);
+    return definite(A);
   }
 };
 
@@ -1157,7 +1237,6 @@ template <class Arm> struct CarefulRows {
                                                bool beside, Places& out) noexcept {
     Rows rows;
     find_lanes(aim.pose, q0, options, rows);
-    double q[Arm::kDof];
     Left left;
     for (const int lane : Arm::kLaneOfRow) {
       left.free = left.free || (bits(rows, lane) & kHit) != 0;
@@ -1166,8 +1245,12 @@ template <class Arm> struct CarefulRows {
     if (left.free) add_from(aim, q0, out);
     const Rows ends = refined_lanes(rows, aim, options);
     Starts starts;
+    bool plain[Arm::kLanes] = {};  // right, and far from singularities
+    if constexpr (Arm::kRefined) RankLoss<Arm>::regular(rows, Policy::kFoldReach, plain);
     for (const int lane : Arm::kLaneOfRow)
-      if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
+      if (plain[lane] && (bits(rows, lane) & kSingular) == 0)
+        add_lane(rows, lane, out);
+      else if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
         starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, false, aim, out);
     if (Arm::kRounded && beside) starts.trace_broken(aim, out);
     if (Arm::kBesides > 0 && beside && (kBesideAnywhere || left.free || starts.close()))
@@ -1176,15 +1259,18 @@ template <class Arm> struct CarefulRows {
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
       if (starts.at(k).near && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
-    for (const int lane : Arm::kLaneOfRow) {
-      if (Arm::kRefined || (bits(rows, lane) & (kReal | kRough)) != kReal) continue;
-      for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
-      Row::add(out, q, false);
-    }
+    for (const int lane : Arm::kLaneOfRow)
+      if (!Arm::kRefined && (bits(rows, lane) & (kReal | kRough)) == kReal) add_lane(rows, lane, out);
     return left;
   }
 
  private:
+  static void add_lane(const Rows& rows, int lane, Places& out) noexcept {
+    double q[Arm::kDof];
+    for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
+    Row::add(out, q, false);
+  }
+
   static Rows refined_lanes(const Rows& rows, const Aim& aim, const Options& options) noexcept {
     Rows out = rows;
     if constexpr (Arm::kNewton) {
@@ -1572,37 +1658,6 @@ template <class Arm> struct CarefulSolve {
     }
   }
 };
-
-// --- lane sines ----------------------------------------------------------------------------------
-template <int N> struct Sines {
-  Lanes<N> cosine, sine;
-};
-
-template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> nearest(const LanesOf<N, H>& x) noexcept {
-  constexpr double kShift = 6755399441055744.0;  // 1.5 * 2^52
-  return (x + kShift) - kShift;
-}
-
-template <int N, bool H> [[gnu::always_inline]] inline Sines<N> sines(const LanesOf<N, H>& x) noexcept {
-  const Lanes<N> k = nearest(0.63661977236758134 * x);
-  const Lanes<N> r = ((x - k * 1.570796325802803) - k * 9.920935791635221e-10) - k * 5.170182981794105e-19;
-  const Lanes<N> z = r * r, z2 = z * z, z4 = z2 * z2;
-  const Lanes<N> s = r - r * z * ((1.0 / 6 - z * (1.0 / 120)) + z2 * (1.0 / 5040 - z * (1.0 / 362880)) +
-                                  z4 * ((1.0 / 39916800 - z * (1.0 / 6227020800)) + z2 * (1.0 / 1307674368000)));
-  const Lanes<N> c = (1.0 - 0.5 * z) + z2 * ((1.0 / 24 - z * (1.0 / 720)) + z2 * (1.0 / 40320 - z * (1.0 / 3628800)) +
-                                            z4 * ((1.0 / 479001600 - z * (1.0 / 87178291200)) + z2 * (1.0 / 20922789888000)));
-  const Lanes<N> quarter = k - 4.0 * nearest(0.25 * k);  // -2, -1, 0, 1 or 2
-  const auto odd = (abs(quarter) > 0.5) & (1.5 > abs(quarter));
-  const Lanes<N> a = select(odd, s, c), b = select(odd, c, s);
-  return {select((quarter > 0.5) | (-1.5 > quarter), -a, a), select((-0.5 > quarter) | (quarter > 1.5), -b, b)};
-}
-
-template <int N, bool H> [[gnu::always_inline]] inline Sines<N> turned(const Sines<N>& by, const LanesOf<N, H>& x) noexcept {
-  const Lanes<N> z = x * x;
-  const Lanes<N> s = x - x * z * ((1.0 / 6 - z * (1.0 / 120)) + z * z * (1.0 / 5040 - z * (1.0 / 362880)));
-  const Lanes<N> c = z * ((0.5 - z * (1.0 / 24)) + z * z * (1.0 / 720 - z * (1.0 / 40320)));  // 1 less it
-  return {by.cosine - (by.cosine * c + by.sine * s), by.sine - (by.sine * c - by.cosine * s)};
-}
 
 // --- lane placement ------------------------------------------------------------------------------
 template <class Arm> struct LanePlacement {

@@ -73,7 +73,6 @@ template <class Arm> struct CarefulRows {
                                                bool beside, Places& out) noexcept {
     Rows rows;
     find_lanes(aim.pose, q0, options, rows);
-    double q[Arm::kDof];
     Left left;
     for (const int lane : Arm::kLaneOfRow) {
       left.free = left.free || (bits(rows, lane) & kHit) != 0;
@@ -82,8 +81,12 @@ template <class Arm> struct CarefulRows {
     if (left.free) add_from(aim, q0, out);
     const Rows ends = refined_lanes(rows, aim, options);
     Starts starts;
+    bool plain[Arm::kLanes] = {};  // right, and far from singularities
+    if constexpr (Arm::kRefined) RankLoss<Arm>::regular(rows, Policy::kFoldReach, plain);
     for (const int lane : Arm::kLaneOfRow)
-      if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
+      if (plain[lane] && (bits(rows, lane) & kSingular) == 0)
+        add_lane(rows, lane, out);
+      else if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
         starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, false, aim, out);
     if (Arm::kRounded && beside) starts.trace_broken(aim, out);
     if (Arm::kBesides > 0 && beside && (kBesideAnywhere || left.free || starts.close()))
@@ -92,15 +95,18 @@ template <class Arm> struct CarefulRows {
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
       if (starts.at(k).near && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
-    for (const int lane : Arm::kLaneOfRow) {
-      if (Arm::kRefined || (bits(rows, lane) & (kReal | kRough)) != kReal) continue;
-      for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
-      Row::add(out, q, false);
-    }
+    for (const int lane : Arm::kLaneOfRow)
+      if (!Arm::kRefined && (bits(rows, lane) & (kReal | kRough)) == kReal) add_lane(rows, lane, out);
     return left;
   }
 
  private:
+  static void add_lane(const Rows& rows, int lane, Places& out) noexcept {
+    double q[Arm::kDof];
+    for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
+    Row::add(out, q, false);
+  }
+
   // The rows of another geometry after steps towards the aim, all at once.
   static Rows refined_lanes(const Rows& rows, const Aim& aim, const Options& options) noexcept {
     Rows out = rows;

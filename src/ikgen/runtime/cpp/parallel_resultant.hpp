@@ -1,6 +1,7 @@
 #pragma once
 
 #include "parallel_links.hpp"
+#include "small_matrix.hpp"
 
 namespace ikgen_runtime {
 
@@ -52,13 +53,6 @@ inline ParallelProducts products(const ParallelLoop& p, const Wide& c6, const Wi
 }
 
 inline Wide dot(const Wide (&a)[3], const Wide (&b)[3]) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-inline void cross(const Wide (&a)[3], const Wide (&b)[3], Wide (&out)[3]) noexcept {
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    out[i] = a[j] * b[k] - a[k] * b[j];
-  }
-}
 
 // adds scale (a b' + b a') / 2 to a symmetric matrix: its entries 00, 01, 02, 11, 12, 22.
 inline void add_product(const Wide& scale, const Wide (&a)[3], const Wide (&b)[3], Wide (&Q)[6]) noexcept {

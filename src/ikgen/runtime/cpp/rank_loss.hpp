@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+
+#include "lane_rows.hpp"
 #include "moving_joints.hpp"
 #include "pose_error.hpp"
 
@@ -15,19 +18,45 @@ template <class Arm> struct RankLoss {
   // smaller, is not positive definite then.
   static bool below(const double* q, double bound) noexcept {
     const PoseError<Arm> at(q, HeldAim<Arm>::own(q));
-    double A[kRank][kRank];
+    return !above(at.slope, bound);
+  }
+
+  // Which rows in lanes are real and have no such value. Not for arms that hold the arm angle.
+  template <class Rows> static void regular(const Rows& rows, double bound, bool (&out)[Rows::kLanes]) noexcept {
+    constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;
+    static_assert(PoseError<Arm>::kTask == kEquations);
+    for (int at = 0; at < Rows::kLanes; at += N) {
+      bool any = false;
+      for (int i = at; i < at + N; ++i) {
+        out[i] = (static_cast<int>(rows.flags[i]) & kReal) != 0;
+        any = any || out[i];
+      }
+      if (!any) continue;
+      Lanes<N> q[Arm::kDof], J[6][Arm::kDof], slope[kEquations][Arm::kDof];
+      for (int j = 0; j < Arm::kDof; ++j) q[j] = load<N>(rows.q[j] + at);
+      Arm::Task::slope(MotionChain<Arm>::forward(q, J), J, slope);
+      alignas(64) double far[std::size_t{N}];
+      store(above(slope, bound), far);
+      for (int i = 0; i < N; ++i) out[at + i] = out[at + i] && far[i] > 0.5;
+    }
+  }
+
+ private:
+  template <class X> static auto above(const X (&slope)[kEquations][Arm::kDof], double bound) noexcept {
+    X A[kRank][kRank];
     for (int a = 0; a < kRank; ++a)
       for (int b = 0; b <= a; ++b) {
-        double sum = a == b ? -bound * bound : 0.0;
         if constexpr (kMoving < kEquations) {
-          for (const auto& row : at.slope) sum += row[kJoints[a]] * row[kJoints[b]];
+          A[a][b] = slope[0][kJoints[a]] * slope[0][kJoints[b]];
+          for (int e = 1; e < kEquations; ++e) A[a][b] = A[a][b] + slope[e][kJoints[a]] * slope[e][kJoints[b]];
         } else {
-          for (const int j : kJoints.joint) sum += at.slope[a][j] * at.slope[b][j];
+          A[a][b] = slope[a][kJoints[0]] * slope[b][kJoints[0]];
+          for (int k = 1; k < kMoving; ++k) A[a][b] = A[a][b] + slope[a][kJoints[k]] * slope[b][kJoints[k]];
         }
-        A[a][b] = sum;
+        if (a == b) A[a][b] = A[a][b] - bound * bound;
       }
     factor(A);
-    return !definite(A);
+    return definite(A);
   }
 };
 

@@ -7,27 +7,30 @@
 
 namespace ikgen_runtime {
 
-inline void cross(const double* a, const double* b, double* out) noexcept {
+// X: double, or lanes.
+template <class X> inline void cross(const X* a, const X* b, X* out) noexcept {
   out[0] = a[1] * b[2] - a[2] * b[1];
   out[1] = a[2] * b[0] - a[0] * b[2];
   out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
 // Cholesky's factor of A, symmetric and given up to its diagonal, in its place, but for inverses on its diagonal.
-template <int N> inline void factor(double (&A)[N][N]) noexcept {
+template <class X, int N> inline void factor(X (&A)[N][N]) noexcept {
+  using std::max;
+  using std::sqrt;
   for (int i = 0; i < N; ++i)
     for (int j = 0; j <= i; ++j) {
-      double sum = A[i][j];
-      for (int k = 0; k < j; ++k) sum -= A[i][k] * A[j][k];
-      A[i][j] = i == j ? 1.0 / std::sqrt(std::max(sum, 1e-300)) : sum * A[j][j];
+      X sum = A[i][j];
+      for (int k = 0; k < j; ++k) sum = sum - A[i][k] * A[j][k];
+      A[i][j] = i == j ? 1.0 / sqrt(max(sum, 1e-300)) : sum * A[j][j];
     }
 }
 
 // Whether the matrix was positive definite whose factor this is.
-template <int N> inline bool definite(const double (&L)[N][N]) noexcept {
-  for (int i = 0; i < N; ++i)
-    if (!(L[i][i] < 1e149)) return false;
-  return true;
+template <class X, int N> inline auto definite(const X (&L)[N][N]) noexcept {
+  auto yes = 1e149 > L[0][0];
+  for (int i = 1; i < N; ++i) yes = yes & (1e149 > L[i][i]);
+  return yes;
 }
 
 // x = A^-1 x by the factor of A.
