@@ -26,6 +26,7 @@
 #include <limits>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -502,6 +503,13 @@ template <int N, bool H> [[gnu::always_inline]] inline Sines<N> sines(const Lane
   return {select((quarter > 0.5) | (-1.5 > quarter), -a, a), select((-0.5 > quarter) | (quarter > 1.5), -b, b)};
 }
 
+template <int N, bool H>
+[[gnu::always_inline]] inline void turn_to(const LanesOf<N, H>& angle, LanesOf<N, H>& cosine, LanesOf<N, H>& sine) noexcept {
+  const Sines<N> of = sines(angle);
+  cosine = of.cosine;
+  sine = of.sine;
+}
+
 template <int N, bool H> [[gnu::always_inline]] inline Sines<N> turned(const Sines<N>& by, const LanesOf<N, H>& x) noexcept {
   const Lanes<N> z = x * x;
   const Lanes<N> s = x - x * z * ((1.0 / 6 - z * (1.0 / 120)) + z * z * (1.0 / 5040 - z * (1.0 / 362880)));
@@ -516,21 +524,19 @@ template <class X> inline void cross(const X* a, const X* b, X* out) noexcept {
   out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-template <class X, int N> inline void factor(X (&A)[N][N]) noexcept {
-  using std::max;
-  using std::sqrt;
+template <int N> inline void factor(double (&A)[N][N]) noexcept {
   for (int i = 0; i < N; ++i)
     for (int j = 0; j <= i; ++j) {
-      X sum = A[i][j];
-      for (int k = 0; k < j; ++k) sum = sum - A[i][k] * A[j][k];
-      A[i][j] = i == j ? 1.0 / sqrt(max(sum, 1e-300)) : sum * A[j][j];
+      double sum = A[i][j];
+      for (int k = 0; k < j; ++k) sum -= A[i][k] * A[j][k];
+      A[i][j] = i == j ? 1.0 / std::sqrt(std::max(sum, 1e-300)) : sum * A[j][j];
     }
 }
 
-template <class X, int N> inline auto definite(const X (&L)[N][N]) noexcept {
-  auto yes = 1e149 > L[0][0];
-  for (int i = 1; i < N; ++i) yes = yes & (1e149 > L[i][i]);
-  return yes;
+template <int N> inline bool definite(const double (&L)[N][N]) noexcept {
+  for (int i = 0; i < N; ++i)
+    if (!(L[i][i] < 1e149)) return false;
+  return true;
 }
 
 template <int N> inline void substitute(const double (&L)[N][N], double (&x)[N]) noexcept {
@@ -551,10 +557,15 @@ struct Motion {
   double scale, offset;
 };
 
-template <class X> struct FrameOf {  // X: double, or lanes
+template <class X> struct FrameOf {
   X R[3][3], p[3];
 };
 using Frame = FrameOf<double>;
+
+inline void turn_to(double angle, double& cosine, double& sine) noexcept {
+  cosine = std::cos(angle);
+  sine = std::sin(angle);
+}
 
 inline void by_columns(const Frame& T, double* t) noexcept {
   for (int r = 0; r < 3; ++r) {
@@ -577,35 +588,22 @@ template <class Arm> struct MotionChain {
     return T;
   }
 
-  template <class X> static void advance(FrameOf<X>& T, int i, const X* q) noexcept {
-    const Motion& motion = Arm::kMotions[i];
-    const auto& F = Arm::kFrames[i + 1];
-    const X v = motion.scale * q[motion.joint] + motion.offset;
-    X c = constant<X>(1.0), s = constant<X>(0.0), d = v;
-    if (motion.revolute) turn_by(v, c, s, d);
-    for (int r = 0; r < 3; ++r) {
-      const X x = c * T.R[r][0] + s * T.R[r][1], y = c * T.R[r][1] - s * T.R[r][0], z = T.R[r][2];
-      T.p[r] = T.p[r] + (d * z + (x * F[0][3] + y * F[1][3] + z * F[2][3]));
-      for (int k = 0; k < 3; ++k) T.R[r][k] = x * F[0][k] + y * F[1][k] + z * F[2][k];
-    }
-  }
-
-  static Frame forward(const double* q) noexcept {
-    Frame T = first();
-    for (int i = 0; i < kCount; ++i) advance(T, i, q);
+  template <class X> static FrameOf<X> forward(const X* q) noexcept {
+    FrameOf<X> T = first<X>();
+    advance(T, q, [](std::size_t, const FrameOf<X>&) noexcept {}, kAll);
     return T;
   }
 
   template <class X> [[gnu::noinline]] static FrameOf<X> forward(const X* q, X (&J)[6][Arm::kDof]) noexcept {
     X axes[kCount][3], origins[kCount][3];
     FrameOf<X> T = first<X>();
-    for (int i = 0; i < kCount; ++i) {
+    const auto keep = [&](std::size_t i, const FrameOf<X>& at) noexcept {
       for (int r = 0; r < 3; ++r) {
-        axes[i][r] = Arm::kMotions[i].scale * T.R[r][2];
-        origins[i][r] = T.p[r];
+        axes[i][r] = Arm::kMotions[i].scale * at.R[r][2];
+        origins[i][r] = at.p[r];
       }
-      advance(T, i, q);
-    }
+    };
+    advance(T, q, keep, kAll);
     for (auto& row : J)
       for (X& x : row) x = constant<X>(0.0);
     for (int i = 0; i < kCount; ++i) {
@@ -622,7 +620,9 @@ template <class Arm> struct MotionChain {
   }
 
  private:
-  template <class X> static X constant(double x) noexcept {
+  static constexpr auto kAll = std::make_index_sequence<static_cast<std::size_t>(kCount)>();
+
+  template <class X> [[gnu::always_inline]] static X constant(double x) noexcept {
     if constexpr (std::is_same_v<X, double>) {
       return x;
     } else {
@@ -630,16 +630,43 @@ template <class Arm> struct MotionChain {
     }
   }
 
-  template <class X> static void turn_by(const X& v, X& c, X& s, X& d) noexcept {
-    if constexpr (std::is_same_v<X, double>) {
-      c = std::cos(v);
-      s = std::sin(v);
+  template <std::size_t I, int C, class X> [[gnu::always_inline]] static X mixed(const X& x, const X& y, const X& z) noexcept {
+    constexpr double a = Arm::kFrames[I + 1][0][C], b = Arm::kFrames[I + 1][1][C], c = Arm::kFrames[I + 1][2][C];
+    if constexpr (a == 0.0 && b == 0.0) {
+      return c * z;
+    } else if constexpr (a == 0.0) {
+      return c == 0.0 ? b * y : b * y + c * z;
+    } else if constexpr (b == 0.0) {
+      return c == 0.0 ? a * x : a * x + c * z;
     } else {
-      const auto both = sines(v);
-      c = both.cosine;
-      s = both.sine;
+      return c == 0.0 ? a * x + b * y : a * x + b * y + c * z;
     }
-    d = constant<X>(0.0);
+  }
+
+  template <std::size_t I, class X> [[gnu::always_inline]] static void advance(FrameOf<X>& T, const X* q) noexcept {
+    constexpr Motion motion = Arm::kMotions[I];
+    const X v = motion.scale * q[motion.joint] + motion.offset;
+    X c, s;
+    if constexpr (motion.revolute) turn_to(v, c, s);
+    for (int r = 0; r < 3; ++r) {
+      X x = T.R[r][0], y = T.R[r][1], p = T.p[r];
+      const X z = T.R[r][2];
+      if constexpr (motion.revolute) {
+        x = c * T.R[r][0] + s * T.R[r][1];
+        y = c * T.R[r][1] - s * T.R[r][0];
+      } else {
+        p = p + v * z;
+      }
+      T.p[r] = p + mixed<I, 3>(x, y, z);
+      T.R[r][0] = mixed<I, 0>(x, y, z);
+      T.R[r][1] = mixed<I, 1>(x, y, z);
+      T.R[r][2] = mixed<I, 2>(x, y, z);
+    }
+  }
+
+  template <class X, class Before, std::size_t... I>
+  static void advance(FrameOf<X>& T, const X* q, const Before& before, std::index_sequence<I...>) noexcept {
+    ((before(I, T), advance<I>(T, q)), ...);
   }
 };
 
@@ -1128,44 +1155,19 @@ template <class Arm> struct RankLoss {
 
   static bool below(const double* q, double bound) noexcept {
     const PoseError<Arm> at(q, HeldAim<Arm>::own(q));
-    return !above(at.slope, bound);
-  }
-
-  template <class Rows> static void regular(const Rows& rows, double bound, bool (&out)[Rows::kLanes]) noexcept {
-    constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;
-    static_assert(PoseError<Arm>::kTask == kEquations);
-    for (int at = 0; at < Rows::kLanes; at += N) {
-      bool any = false;
-      for (int i = at; i < at + N; ++i) {
-        out[i] = (static_cast<int>(rows.flags[i]) & kReal) != 0;
-        any = any || out[i];
-      }
-      if (!any) continue;
-      Lanes<N> q[Arm::kDof], J[6][Arm::kDof], slope[kEquations][Arm::kDof];
-      for (int j = 0; j < Arm::kDof; ++j) q[j] = load<N>(rows.q[j] + at);
-      Arm::Task::slope(MotionChain<Arm>::forward(q, J), J, slope);
-      alignas(64) double far[std::size_t{N}];
-      store(above(slope, bound), far);
-      for (int i = 0; i < N; ++i) out[at + i] = out[at + i] && far[i] > 0.5;
-    }
-  }
-
- private:
-  template <class X> static auto above(const X (&slope)[kEquations][Arm::kDof], double bound) noexcept {
-    X A[kRank][kRank];
+    double A[kRank][kRank];
     for (int a = 0; a < kRank; ++a)
       for (int b = 0; b <= a; ++b) {
+        double sum = a == b ? -bound * bound : 0.0;
         if constexpr (kMoving < kEquations) {
-          A[a][b] = slope[0][kJoints[a]] * slope[0][kJoints[b]];
-          for (int e = 1; e < kEquations; ++e) A[a][b] = A[a][b] + slope[e][kJoints[a]] * slope[e][kJoints[b]];
+          for (const auto& row : at.slope) sum += row[kJoints[a]] * row[kJoints[b]];
         } else {
-          A[a][b] = slope[a][kJoints[0]] * slope[b][kJoints[0]];
-          for (int k = 1; k < kMoving; ++k) A[a][b] = A[a][b] + slope[a][kJoints[k]] * slope[b][kJoints[k]];
+          for (const int j : kJoints.joint) sum += at.slope[a][j] * at.slope[b][j];
         }
-        if (a == b) A[a][b] = A[a][b] - bound * bound;
+        A[a][b] = sum;
       }
     factor(A);
-    return definite(A);
+    return !definite(A);
   }
 };
 
@@ -1237,6 +1239,7 @@ template <class Arm> struct CarefulRows {
                                                bool beside, Places& out) noexcept {
     Rows rows;
     find_lanes(aim.pose, q0, options, rows);
+    double q[Arm::kDof];
     Left left;
     for (const int lane : Arm::kLaneOfRow) {
       left.free = left.free || (bits(rows, lane) & kHit) != 0;
@@ -1245,12 +1248,8 @@ template <class Arm> struct CarefulRows {
     if (left.free) add_from(aim, q0, out);
     const Rows ends = refined_lanes(rows, aim, options);
     Starts starts;
-    bool plain[Arm::kLanes] = {};  // right, and far from singularities
-    if constexpr (Arm::kRefined) RankLoss<Arm>::regular(rows, Policy::kFoldReach, plain);
     for (const int lane : Arm::kLaneOfRow)
-      if (plain[lane] && (bits(rows, lane) & kSingular) == 0)
-        add_lane(rows, lane, out);
-      else if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
+      if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
         starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, false, aim, out);
     if (Arm::kRounded && beside) starts.trace_broken(aim, out);
     if (Arm::kBesides > 0 && beside && (kBesideAnywhere || left.free || starts.close()))
@@ -1259,18 +1258,15 @@ template <class Arm> struct CarefulRows {
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
       if (starts.at(k).near && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
-    for (const int lane : Arm::kLaneOfRow)
-      if (!Arm::kRefined && (bits(rows, lane) & (kReal | kRough)) == kReal) add_lane(rows, lane, out);
+    for (const int lane : Arm::kLaneOfRow) {
+      if (Arm::kRefined || (bits(rows, lane) & (kReal | kRough)) != kReal) continue;
+      for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
+      Row::add(out, q, false);
+    }
     return left;
   }
 
  private:
-  static void add_lane(const Rows& rows, int lane, Places& out) noexcept {
-    double q[Arm::kDof];
-    for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
-    Row::add(out, q, false);
-  }
-
   static Rows refined_lanes(const Rows& rows, const Aim& aim, const Options& options) noexcept {
     Rows out = rows;
     if constexpr (Arm::kNewton) {
@@ -1961,6 +1957,90 @@ template <class Arm, template <class> class Way> struct Projection {
   }
 };
 
+// --- least singular value ------------------------------------------------------------------------
+template <class A, int N> struct LeastSingularValue {
+  using Pack = Lanes<N>;
+
+  static Pack of(const Pack (&q)[A::kDof]) noexcept {
+    Pack J[6][A::kDof], slope[kRows][A::kDof], S[kOrder][kOrder];
+    const FrameOf<Pack> T = MotionChain<AllMoving<A>>::forward(q, J);
+    A::Task::slope(T, J, slope);
+    for (int a = 0; a < kRows; ++a)
+      if (A::kWholePose ? a < 3 : A::kRead[a][1] == 3)
+        for (Pack& x : slope[a]) x = A::kSize * x;
+    for (int a = 0; a < kOrder; ++a)
+      for (int b = 0; b <= a; ++b) {
+        S[a][b] = spread<N>(0.0);
+        for (int k = 0; k < (kByRows ? A::kDof : kRows); ++k)
+          S[a][b] = S[a][b] + (kByRows ? slope[a][k] * slope[b][k] : slope[k][a] * slope[k][b]);
+        S[b][a] = S[a][b];
+      }
+    Pack diagonal[kOrder], squares[kOrder];
+    reduce(S, diagonal, squares);
+    return sqrt(least_root(diagonal, squares));
+  }
+
+ private:
+  static constexpr int kRows = A::Task::kCount, kOrder = A::kDof < kRows ? A::kDof : kRows, kSteps = 40;
+  static constexpr bool kByRows = kOrder == kRows;
+
+  static void reduce(Pack (&S)[kOrder][kOrder], Pack (&diagonal)[kOrder], Pack (&squares)[kOrder]) noexcept {
+    squares[0] = spread<N>(0.0);
+    for (int k = 0; k < kOrder; ++k) {
+      diagonal[k] = S[k][k];
+      if (k + 1 == kOrder) return;
+      Pack v[kOrder], w[kOrder], length = spread<N>(0.0), product = length;
+      for (int i = k + 1; i < kOrder; ++i) {
+        v[i] = S[i][k];
+        length = length + v[i] * v[i];
+      }
+      squares[k + 1] = length;
+      if (k + 2 == kOrder) continue;
+      const Pack root = sqrt(length), turned = select(v[k + 1] > 0.0, root, -root);
+      const Pack scale = 1.0 / max(length + abs(v[k + 1]) * root, 1e-300);
+      v[k + 1] = v[k + 1] + turned;
+      for (int i = k + 1; i < kOrder; ++i) {
+        w[i] = spread<N>(0.0);
+        for (int j = k + 1; j < kOrder; ++j) w[i] = w[i] + S[i][j] * v[j];
+        w[i] = scale * w[i];
+        product = product + w[i] * v[i];
+      }
+      product = 0.5 * scale * product;
+      for (int i = k + 1; i < kOrder; ++i) w[i] = w[i] - product * v[i];
+      for (int i = k + 1; i < kOrder; ++i)
+        for (int j = k + 1; j <= i; ++j) {
+          S[i][j] = S[i][j] - (v[i] * w[j] + w[i] * v[j]);
+          S[j][i] = S[i][j];
+        }
+    }
+  }
+
+  static Pack least_root(const Pack (&diagonal)[kOrder], const Pack (&squares)[kOrder]) noexcept {
+    Pack x = spread<N>(0.0);
+    for (int i = 0; i < kSteps; ++i) {
+      Pack p = diagonal[0] - x, before = spread<N>(1.0), d = spread<N>(-1.0), d_before = spread<N>(0.0), h = d_before, h_before = h;
+      for (int k = 1; k < kOrder; ++k) {
+        const Pack at = diagonal[k] - x;
+        const Pack next = at * p - squares[k] * before, d_next = at * d - p - squares[k] * d_before;
+        const Pack h_next = at * h - 2.0 * d - squares[k] * h_before;
+        before = p;
+        d_before = d;
+        h_before = h;
+        p = next;
+        d = d_next;
+        h = h_next;
+      }
+      constexpr double n = kOrder;
+      const auto left = (p > 0.0) & (0.0 > d);  // of all roots
+      const Pack over = 1.0 / select(left, p, 1.0), g = -d * over;
+      const Pack step = n / (g + sqrt((n - 1.0) * ((n - 1.0) * g * g - n * h * over)));
+      x = x + select(left, step, 0.0);
+      if (all(!(left & (step > 1e-15 * x)))) break;
+    }
+    return x;
+  }
+};
+
 // --- path following ------------------------------------------------------------------------------
 template <class A, class Solver> struct PathStep {
   static constexpr int kDof = A::kDof, kDeepest = 24, kShallow = 9;
@@ -2204,53 +2284,9 @@ template <class A> struct RowPreference {
   }
 
   static double smallest_singular_value(const double* q) noexcept {
-    constexpr int e = PoseError<AllMoving<A>>::kCount, n = A::kDof < e ? A::kDof : e;
-    PoseError<AllMoving<A>> at(q, HeldAim<AllMoving<A>>::own(q));
-    for (int a = 0; a < e; ++a)
-      if (A::kWholePose ? a < 3 : A::kRead[a][1] == 3)
-        for (double& x : at.slope[a]) x *= A::kSize;
-    double N[n][n], M[n][n], v[n];
-    for (int a = 0; a < n; ++a)
-      for (int b = 0; b <= a; ++b) {
-        N[a][b] = 0.0;
-        for (int k = 0; k < (n == e ? A::kDof : e); ++k)
-          N[a][b] += n == e ? at.slope[a][k] * at.slope[b][k] : at.slope[k][a] * at.slope[k][b];
-      }
-    factor(N);
-    double trace = 0.0;
-    for (int a = 0; a < n; ++a) {
-      for (int b = 0; b < n; ++b) M[a][b] = a == b ? 1.0 : 0.0;
-      substitute(N, M[a]);
-      trace += M[a][a];
-    }
-    for (int i = 0; i < kSquarings && !(i > 0 && trace > 1.0 - 1e-14); ++i) trace = square(M, 1.0 / trace);
-    int best = 0;
-    for (int a = 1; a < n; ++a)
-      if (M[a][a] > M[best][best]) best = a;
-    double length = 0.0, growth = 0.0;
-    std::copy_n(M[best], n, v);
-    for (const double x : v) length += x * x;
-    substitute(N, v);
-    for (int a = 0; a < n; ++a) growth += M[best][a] * v[a];
-    return std::sqrt(std::max(length / growth, 0.0));
-  }
-
- private:
-  static constexpr int kSquarings = 24;  // or fewer: until nothing else is left
-
-  template <int N> static double square(double (&M)[N][N], double scale) noexcept {
-    double S[N][N], trace = 0.0;
-    for (auto& row : M)
-      for (double& x : row) x *= scale;
-    for (int a = 0; a < N; ++a)
-      for (int b = 0; b <= a; ++b) {
-        S[a][b] = 0.0;
-        for (int k = 0; k < N; ++k) S[a][b] += M[a][k] * M[b][k];
-        S[b][a] = S[a][b];
-      }
-    for (int a = 0; a < N; ++a) trace += S[a][a];
-    std::copy_n(&S[0][0], N * N, &M[0][0]);
-    return trace;
+    Lanes<1> at[A::kDof];
+    for (int j = 0; j < A::kDof; ++j) at[j] = {q[j]};
+    return LeastSingularValue<A, 1>::of(at).v;
   }
 };
 

@@ -40,7 +40,23 @@ template <class Arm> struct BranchEnd {
     take(a, lane_a);
   }
 
-  void find(const HeldSweep<Arm>& sweep, LastEnd<Arm>& last) noexcept {
+  // With `row` its row is wanted too, to all digits.
+  void find(const HeldSweep<Arm>& sweep, LastEnd<Arm>& last, bool row) noexcept {
+    coarse = false;
+    look(sweep, last);
+    if (row && coarse) Sample::refine(sweep.pose, inner, q);
+  }
+
+ private:
+  bool at_fold;
+  bool coarse;        // whether its row may have lost digits
+  bool stays;         // in its lane, however near others come
+  bool goes = false;  // to the row `there` at the value `then`
+  double there[Arm::kDof], then;
+  int count = 0;
+  double at[kKnown + 1], value[kKnown + 1];  // the nearest last
+
+  void look(const HeldSweep<Arm>& sweep, LastEnd<Arm>& last) noexcept {
     if constexpr (!Sample::kMarginsTell)
       if (goes && follow(sweep)) return;
     if (last.settled && ends_at(last.inside)) return;
@@ -48,7 +64,7 @@ template <class Arm> struct BranchEnd {
     last.inside.held = last.outside.held = kInfinity;
     last.settled = false;
     for (int step = 0; step < kSteps && std::abs(outer - inner) > kEnough; ++step) {
-      const Sample s = sweep.at(trial(step));
+      const Sample s = sweep.at(trial(step), at_fold);
       const int row = row_in(s);
       const bool seen = row >= 0 && s.real[row] && s.distance(row, q) < 1.0, good = seen && s.off[row] <= 0.0;
       const double far = good ? outer : inner;
@@ -67,20 +83,17 @@ template <class Arm> struct BranchEnd {
       narrow(s, seen ? row : at_fold && Sample::kMarginsTell ? lane : -1, far);
       (good ? last.inside : last.outside) = s;
       if (good) {
-        s.row(row, q);
-        lane = row;
+        take_row(s, row);
       }
     }
     last.known = last.inside.held == inner && last.outside.held == outer;
   }
 
- private:
-  bool at_fold;
-  bool stays;         // in its lane, however near others come
-  bool goes = false;  // to the row `there` at the value `then`
-  double there[Arm::kDof], then;
-  int count = 0;
-  double at[kKnown + 1], value[kKnown + 1];  // the nearest last
+  void take_row(const Sample& s, int row) noexcept {
+    coarse = s.rough[row];
+    s.row(row, q);
+    lane = row;
+  }
 
   // The nearest of the rows that end beside the branch's, of a rounded arm of all: it may be found farther; -1 without one.
   int met(const Sample& a, const int* links) const noexcept {
@@ -121,12 +134,11 @@ template <class Arm> struct BranchEnd {
   bool found(const Sample& a, const Sample& b) noexcept {
     if (!(std::abs(a.held - b.held) <= kEnough) || (a.held - inner) * (a.held - outer) > 0.0) return false;
     const int row = row_in(a), other = row_in(b);
-    if (row < 0 || !a.inside(row) || a.distance(row, q) > 1.0) return false;
+    if (row < 0 || !a.inside(row) || !tells(a, row) || a.distance(row, q) > 1.0) return false;
     if (other >= 0 && b.inside(other) && b.distance(other, q) < 1.0) return false;
     inner = a.held;
     outer = b.held;
-    a.row(row, q);
-    lane = row;
+    take_row(a, row);
     return true;
   }
 
@@ -141,18 +153,20 @@ template <class Arm> struct BranchEnd {
   void settle(const Sample& s, int row) noexcept {
     outer = s.held + std::copysign(kEnough, outer - inner);
     inner = s.held;
-    s.row(row, q);
-    lane = row;
+    take_row(s, row);
   }
 
   // Whether the end lies where the last one does.
   bool ends_at(const Sample& s) noexcept {
     if ((s.held - inner) * (s.held - outer) > 0.0) return false;
     const int row = row_in(s);
-    if (row < 0 || !s.inside(row) || s.distance(row, q) > 1.0 || !settles(s, row, 1.0)) return false;
+    if (row < 0 || !s.inside(row) || !tells(s, row) || s.distance(row, q) > 1.0 || !settles(s, row, 1.0)) return false;
     settle(s, row);
     return true;
   }
+
+  // Whether a sample has the digits of a row that matter at this end.
+  bool tells(const Sample& s, int row) const noexcept { return at_fold || !s.rough[row]; }
 
   // The branch's row; -1 without one.
   int row_in(const Sample& s) const noexcept { return stays || (at_fold && Arm::kGuarded) ? lane : s.nearest(q); }

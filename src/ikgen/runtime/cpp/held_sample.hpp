@@ -18,6 +18,9 @@ namespace ikgen_runtime {
 inline double shortest(double gap) noexcept {
   return gap > kPi ? gap - kTurn : gap < -kPi ? gap + kTurn : gap;
 }
+template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> shortest(const LanesOf<N, H>& gap) noexcept {
+  return gap + select(gap > kPi, -kTurn, select(-kPi > gap, kTurn, 0.0));
+}
 
 // Limits of the joints that move: index, middle and half of the range. Arm: as for SolutionRows.
 template <class Arm> struct JointBounds {
@@ -40,7 +43,7 @@ template <class Arm> struct JointBounds {
   }
 
   // A joint's value from the middle of its range.
-  double offset(int i, double q) const noexcept {
+  template <class X> [[gnu::always_inline]] X offset(int i, const X& q) const noexcept {
     return Arm::kRevolute[joint[i]] ? shortest(q - middle[i]) : q - middle[i];
   }
 };
@@ -49,28 +52,41 @@ template <class Arm> struct JointBounds {
 template <class Arm> struct HeldSample {
   static constexpr int kBesides = CarefulRows<Arm>::kBesideAnywhere ? Arm::kBesides : 0;
   static constexpr int kLanes = Arm::kLanes * (1 + kBesides), kMargins = Arm::kFolds > 0 ? Arm::kFolds : 1;
+  static constexpr int kPack = Arm::kLanes < kNative ? Arm::kLanes : kNative;
   static constexpr bool kMarginsTell = Arm::kGuarded && !Arm::kRounded;  // where branches end: a rounded arm's do not
   double held = 0.0;
   int lanes = Arm::kLanes;  // which may be real
   double q[Arm::kDof][kLanes], off[kLanes], fold[kMargins][Arm::kLanes];
-  bool real[kLanes];
+  bool real[kLanes] = {};
+  bool rough[kLanes] = {};  // rows that lost digits and are as the closed form gives them
 
   // Whether a row is real and inside the limits.
   bool inside(int lane) const noexcept { return real[lane] && off[lane] <= 0.0; }
 
-  // The rows at a value; T: the pose as it is read.
-  HeldSample(const Eigen::Isometry3d& T, double value, const JointBounds<Arm>& bounds) noexcept : held(value) {
-    if (!take_certain(T)) take_carefully(T);
-    for (int l = 0; l < lanes; ++l) off[l] = -kInfinity;
-    for (int i = 0; i < bounds.count; ++i)
-      for (int l = 0; l < lanes; ++l)
-        off[l] = std::max(off[l], std::abs(bounds.offset(i, q[bounds.joint[i]][l])) - bounds.half[i] - Arm::Policy::kLimitTolerance);
+  // The rows at a value; T: the pose as it is read. Where margins tell which are real they may be left coarse.
+  HeldSample(const Eigen::Isometry3d& T, double value, const JointBounds<Arm>& bounds, bool margins_only = false) noexcept
+      : held(value) {
+    if (!take_certain(T)) take_carefully(T, kMarginsTell && margins_only);
+    for (int at = 0; at < lanes; at += kPack) {
+      Lanes<kPack> most = spread<kPack>(-kInfinity);
+      for (int i = 0; i < bounds.count; ++i)
+        most = max(most, abs(bounds.offset(i, load<kPack>(q[bounds.joint[i]] + at))) - (bounds.half[i] + Arm::Policy::kLimitTolerance));
+      store(most, off + at);
+    }
   }
 
   HeldSample() = default;
 
   void row(int lane, double* out) const noexcept {
     for (int j = 0; j < Arm::kDof; ++j) out[j] = q[j][lane];
+  }
+
+  // Takes a row to the pose with the held value; whether it comes there.
+  static bool refine(const Eigen::Isometry3d& T, double value, double* row) noexcept {
+    const bool there = NewtonRefinement<Arm>::refine(row, HeldAim<Arm>(T, {value}));
+    for (int j = 0; j < Arm::kDof; ++j)
+      if (Arm::kRevolute[j] && !Arm::kHeld[j]) row[j] -= kTurn * std::nearbyint(row[j] / kTurn);
+    return there;
   }
 
   // The change of a joint from one row to another.
@@ -95,22 +111,30 @@ template <class Arm> struct HeldSample {
   // The lane of the real row that is nearest to another; -1 without one.
   int nearest(const double* other) const noexcept {
     int best = -1;
-    double least = kInfinity;
-    for (int l = 0; l < lanes; ++l) {
-      const double here = real[l] ? distance(l, other) : kInfinity;
-      if (here < least) {
-        least = here;
-        best = l;
-      }
+    double least = kInfinity, gaps[kPack];
+    for (int at = 0; at < lanes; at += kPack) {
+      Lanes<kPack> most = spread<kPack>(0.0);
+      for (int j = 0; j < Arm::kDof; ++j)
+        if (!Arm::kHeld[j]) most = max(most, abs(between(j, spread<kPack>(other[j]), load<kPack>(q[j] + at))));
+      store(most, gaps);
+      for (int i = 0; i < kPack; ++i)
+        if (real[at + i] && gaps[i] < least) {
+          least = gaps[i];
+          best = at + i;
+        }
     }
     return best;
   }
 
- private:
-  static double between(int j, double from, double to) noexcept {
-    return Arm::kRevolute[j] ? shortest(to - from) : to - from;
+  // The change of joint j, and its value, on the shortest way; of numbers or packs.
+  template <class X> [[gnu::always_inline]] static X between(int j, const X& from, const X& to) noexcept {
+    return within(j, to - from);
+  }
+  template <class X> [[gnu::always_inline]] static X within(int j, const X& x) noexcept {
+    return Arm::kRevolute[j] ? shortest(x) : x;
   }
 
+ private:
   static constexpr Range kAnywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
   using Rows = FoldRows<Arm::kDof, Arm::kLanes, Arm::kFolds>;
 
@@ -132,12 +156,15 @@ template <class Arm> struct HeldSample {
   }
 
   // Takes the rows of the pose and those beside it, each refined for as long as that takes; no more than solve gives.
-  void take_carefully(const Eigen::Isometry3d& T) noexcept {
-    bool again = take(T, T, 0);
-    if constexpr (kBesides > 0)
-      for (int i = 0; i < kBesides; ++i) again = take(T, displaced(T, Arm::kBeside[i]), i + 1) || again;
+  void take_carefully(const Eigen::Isometry3d& T, bool coarse) noexcept {
+    bool again = take(T, T, 0, nullptr, coarse);
+    if constexpr (kBesides > 0) {
+      bool known[Arm::kLanes];
+      for (int r = 0; r < Arm::kLanes; ++r) known[r] = distinct(r);
+      for (int i = 0; i < kBesides; ++i) again = take(T, displaced(T, Arm::kBeside[i]), i + 1, known, false) || again;
+    }
     lanes = kLanes;
-    if (again) remove_repetitions();
+    if (again && !coarse) remove_repetitions();
     int count = 0, used = Arm::kLanes;
     for (int l = 0; l < kLanes; ++l) {
       count += real[l] ? 1 : 0;
@@ -156,11 +183,21 @@ template <class Arm> struct HeldSample {
     return bits;
   }
 
-  // Takes the rows of the pose, or of one beside it, refined where that is needed: in lanes first where all are; whether
-  // some may be equal.
-  bool take(const Eigen::Isometry3d& T, const Eigen::Isometry3d& near, int part) noexcept {
+  // Whether the pose itself has a row in the lane that no other lane led to: then one beside has no other in that lane.
+  bool distinct(int lane) const noexcept {
+    bool out = real[lane];
+    for (int l = 0; l < Arm::kLanes && out; ++l)
+      out = l == lane || !real[l] || gap(*this, l, *this, lane) > Arm::Policy::kCoincident;
+    return out;
+  }
+
+  // Takes the rows of the pose, or of one beside it but for lanes that are known, refined where that is needed: in lanes
+  // first where all are; whether some may be equal.
+  bool take(const Eigen::Isometry3d& T, const Eigen::Isometry3d& near, int part, const bool* known, bool coarse) noexcept {
     Rows rows;
     Arm::branches(gather<1>(&near), typename Arm::Seed(), std::array<double, 1>{held}, kAnywhere, rows);
+    for (int r = 0; r < Arm::kLanes && known; ++r)
+      if (known[r]) rows.flags[Arm::kLaneOfRow[r]] = 0.0;
     typename Arm::template Rows<1> fine;
     if constexpr (Arm::kNewton) {
       std::memcpy(fine.q, rows.q, sizeof(fine.q));
@@ -175,6 +212,8 @@ template <class Arm> struct HeldSample {
       for (int j = 0; j < Arm::kDof && part > 0; ++j) q[j][l] = Arm::kHeld[j] ? held : rows.q[j][lane];
       again = again || (real[l] && (bits & (kRough | kMeeting)) != 0);
       if (!real[l] || (bits & kRough) == 0 || Arm::kRefined) continue;
+      rough[l] = coarse;
+      if (coarse) continue;
       if (Arm::kNewton && (static_cast<int>(fine.flags[lane]) & kRough) == 0) {
         real[l] = (static_cast<int>(fine.flags[lane]) & kReal) != 0;
         for (int j = 0; j < Arm::kDof; ++j) q[j][l] = Arm::kHeld[j] ? held : fine.q[j][lane];
@@ -182,9 +221,8 @@ template <class Arm> struct HeldSample {
       }
       double refined[Arm::kDof];
       row(l, refined);
-      real[l] = NewtonRefinement<Arm>::refine(refined, HeldAim<Arm>(T, {held}));
-      for (int j = 0; j < Arm::kDof; ++j)
-        q[j][l] = !Arm::kRevolute[j] || Arm::kHeld[j] ? refined[j] : refined[j] - kTurn * std::nearbyint(refined[j] / kTurn);
+      real[l] = refine(T, held, refined);
+      for (int j = 0; j < Arm::kDof; ++j) q[j][l] = refined[j];
     }
     return again;
   }

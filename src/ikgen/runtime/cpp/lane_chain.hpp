@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "lane_sines.hpp"
+#include "motion_chain.hpp"
 
 namespace ikgen_runtime {
 
@@ -16,9 +16,7 @@ struct Link {
   double scale, offset, turn_cosine, turn_sine, x, y, twist_cosine, twist_sine;
 };
 
-template <int N> struct LaneFrame {
-  Lanes<N> R[3][3], p[3];
-};
+template <int N> using LaneFrame = FrameOf<Lanes<N>>;
 
 // Arm: kDof; kLinks; kFirst and kLast, the upper rows of the frames at the ends.
 template <class Arm, int N> struct LaneChain {

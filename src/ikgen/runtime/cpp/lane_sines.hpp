@@ -30,6 +30,13 @@ template <int N, bool H> [[gnu::always_inline]] inline Sines<N> sines(const Lane
   return {select((quarter > 0.5) | (-1.5 > quarter), -a, a), select((-0.5 > quarter) | (quarter > 1.5), -b, b)};
 }
 
+template <int N, bool H>
+[[gnu::always_inline]] inline void turn_to(const LanesOf<N, H>& angle, LanesOf<N, H>& cosine, LanesOf<N, H>& sine) noexcept {
+  const Sines<N> of = sines(angle);
+  cosine = of.cosine;
+  sine = of.sine;
+}
+
 // (cosine, sine) turned by an angle of at most 0.1, to 2e-16.
 template <int N, bool H> [[gnu::always_inline]] inline Sines<N> turned(const Sines<N>& by, const LanesOf<N, H>& x) noexcept {
   const Lanes<N> z = x * x;

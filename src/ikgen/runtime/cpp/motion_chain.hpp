@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <type_traits>
+#include <utility>
 
 #include "lane_sines.hpp"
 #include "small_matrix.hpp"
@@ -16,10 +18,16 @@ struct Motion {
   double scale, offset;
 };
 
-template <class X> struct FrameOf {  // X: double, or lanes
+// Of numbers, or of packs.
+template <class X> struct FrameOf {
   X R[3][3], p[3];
 };
 using Frame = FrameOf<double>;
+
+inline void turn_to(double angle, double& cosine, double& sine) noexcept {
+  cosine = std::cos(angle);
+  sine = std::sin(angle);
+}
 
 // A frame's matrix, columns first.
 inline void by_columns(const Frame& T, double* t) noexcept {
@@ -31,7 +39,8 @@ inline void by_columns(const Frame& T, double* t) noexcept {
   t[15] = 1.0;
 }
 
-// Arm: kDof; kMotions, the M of the chain; kFrames, the upper rows of the F.
+// Arm: kDof; kMotions, the M of the chain; kFrames, the upper rows of the F. Of one configuration (X: double), or of those in
+// lanes.
 template <class Arm> struct MotionChain {
   static constexpr int kCount = sizeof(Arm::kMotions) / sizeof(Motion);
 
@@ -44,23 +53,9 @@ template <class Arm> struct MotionChain {
     return T;
   }
 
-  // Moves along motion i by its joint, then by the constant behind it.
-  template <class X> static void advance(FrameOf<X>& T, int i, const X* q) noexcept {
-    const Motion& motion = Arm::kMotions[i];
-    const auto& F = Arm::kFrames[i + 1];
-    const X v = motion.scale * q[motion.joint] + motion.offset;
-    X c = constant<X>(1.0), s = constant<X>(0.0), d = v;
-    if (motion.revolute) turn_by(v, c, s, d);
-    for (int r = 0; r < 3; ++r) {
-      const X x = c * T.R[r][0] + s * T.R[r][1], y = c * T.R[r][1] - s * T.R[r][0], z = T.R[r][2];
-      T.p[r] = T.p[r] + (d * z + (x * F[0][3] + y * F[1][3] + z * F[2][3]));
-      for (int k = 0; k < 3; ++k) T.R[r][k] = x * F[0][k] + y * F[1][k] + z * F[2][k];
-    }
-  }
-
-  static Frame forward(const double* q) noexcept {
-    Frame T = first();
-    for (int i = 0; i < kCount; ++i) advance(T, i, q);
+  template <class X> static FrameOf<X> forward(const X* q) noexcept {
+    FrameOf<X> T = first<X>();
+    advance(T, q, [](std::size_t, const FrameOf<X>&) noexcept {}, kAll);
     return T;
   }
 
@@ -68,13 +63,13 @@ template <class Arm> struct MotionChain {
   template <class X> [[gnu::noinline]] static FrameOf<X> forward(const X* q, X (&J)[6][Arm::kDof]) noexcept {
     X axes[kCount][3], origins[kCount][3];
     FrameOf<X> T = first<X>();
-    for (int i = 0; i < kCount; ++i) {
+    const auto keep = [&](std::size_t i, const FrameOf<X>& at) noexcept {
       for (int r = 0; r < 3; ++r) {
-        axes[i][r] = Arm::kMotions[i].scale * T.R[r][2];
-        origins[i][r] = T.p[r];
+        axes[i][r] = Arm::kMotions[i].scale * at.R[r][2];
+        origins[i][r] = at.p[r];
       }
-      advance(T, i, q);
-    }
+    };
+    advance(T, q, keep, kAll);
     for (auto& row : J)
       for (X& x : row) x = constant<X>(0.0);
     for (int i = 0; i < kCount; ++i) {
@@ -91,7 +86,9 @@ template <class Arm> struct MotionChain {
   }
 
  private:
-  template <class X> static X constant(double x) noexcept {
+  static constexpr auto kAll = std::make_index_sequence<static_cast<std::size_t>(kCount)>();
+
+  template <class X> [[gnu::always_inline]] static X constant(double x) noexcept {
     if constexpr (std::is_same_v<X, double>) {
       return x;
     } else {
@@ -99,17 +96,46 @@ template <class Arm> struct MotionChain {
     }
   }
 
-  // The cosine and sine of what turns, and no distance.
-  template <class X> static void turn_by(const X& v, X& c, X& s, X& d) noexcept {
-    if constexpr (std::is_same_v<X, double>) {
-      c = std::cos(v);
-      s = std::sin(v);
+  // Column C of (x, y, z) times the constant behind motion I, most of whose entries are 0.
+  template <std::size_t I, int C, class X> [[gnu::always_inline]] static X mixed(const X& x, const X& y, const X& z) noexcept {
+    constexpr double a = Arm::kFrames[I + 1][0][C], b = Arm::kFrames[I + 1][1][C], c = Arm::kFrames[I + 1][2][C];
+    if constexpr (a == 0.0 && b == 0.0) {
+      return c * z;
+    } else if constexpr (a == 0.0) {
+      return c == 0.0 ? b * y : b * y + c * z;
+    } else if constexpr (b == 0.0) {
+      return c == 0.0 ? a * x : a * x + c * z;
     } else {
-      const auto both = sines(v);
-      c = both.cosine;
-      s = both.sine;
+      return c == 0.0 ? a * x + b * y : a * x + b * y + c * z;
     }
-    d = constant<X>(0.0);
+  }
+
+  // Moves along motion I by its joint, then by the constant behind it.
+  template <std::size_t I, class X> [[gnu::always_inline]] static void advance(FrameOf<X>& T, const X* q) noexcept {
+    constexpr Motion motion = Arm::kMotions[I];
+    const X v = motion.scale * q[motion.joint] + motion.offset;
+    X c, s;
+    if constexpr (motion.revolute) turn_to(v, c, s);
+    for (int r = 0; r < 3; ++r) {
+      X x = T.R[r][0], y = T.R[r][1], p = T.p[r];
+      const X z = T.R[r][2];
+      if constexpr (motion.revolute) {
+        x = c * T.R[r][0] + s * T.R[r][1];
+        y = c * T.R[r][1] - s * T.R[r][0];
+      } else {
+        p = p + v * z;
+      }
+      T.p[r] = p + mixed<I, 3>(x, y, z);
+      T.R[r][0] = mixed<I, 0>(x, y, z);
+      T.R[r][1] = mixed<I, 1>(x, y, z);
+      T.R[r][2] = mixed<I, 2>(x, y, z);
+    }
+  }
+
+  // Along all motions; `before` is told of each and the frame in which it turns or moves.
+  template <class X, class Before, std::size_t... I>
+  static void advance(FrameOf<X>& T, const X* q, const Before& before, std::index_sequence<I...>) noexcept {
+    ((before(I, T), advance<I>(T, q)), ...);
   }
 };
 

@@ -1,6 +1,7 @@
 // Which rows are better than others.
 #pragma once
 
+#include "least_singular_value.hpp"
 #include "path_following.hpp"
 #include "solution_rows.hpp"
 
@@ -45,57 +46,10 @@ template <class A> struct RowPreference {
     return sum;
   }
 
-  // From the largest eigenvalue of (J J^T)^-1, or (J^T J)^-1 where that is smaller: squared again and again it becomes the
-  // projection onto its vector. Rows of lengths are not over the arm's size.
   static double smallest_singular_value(const double* q) noexcept {
-    constexpr int e = PoseError<AllMoving<A>>::kCount, n = A::kDof < e ? A::kDof : e;
-    PoseError<AllMoving<A>> at(q, HeldAim<AllMoving<A>>::own(q));
-    for (int a = 0; a < e; ++a)
-      if (A::kWholePose ? a < 3 : A::kRead[a][1] == 3)
-        for (double& x : at.slope[a]) x *= A::kSize;
-    double N[n][n], M[n][n], v[n];
-    for (int a = 0; a < n; ++a)
-      for (int b = 0; b <= a; ++b) {
-        N[a][b] = 0.0;
-        for (int k = 0; k < (n == e ? A::kDof : e); ++k)
-          N[a][b] += n == e ? at.slope[a][k] * at.slope[b][k] : at.slope[k][a] * at.slope[k][b];
-      }
-    factor(N);
-    double trace = 0.0;
-    for (int a = 0; a < n; ++a) {
-      for (int b = 0; b < n; ++b) M[a][b] = a == b ? 1.0 : 0.0;
-      substitute(N, M[a]);
-      trace += M[a][a];
-    }
-    for (int i = 0; i < kSquarings && !(i > 0 && trace > 1.0 - 1e-14); ++i) trace = square(M, 1.0 / trace);
-    int best = 0;
-    for (int a = 1; a < n; ++a)
-      if (M[a][a] > M[best][best]) best = a;
-    double length = 0.0, growth = 0.0;
-    std::copy_n(M[best], n, v);
-    for (const double x : v) length += x * x;
-    substitute(N, v);
-    for (int a = 0; a < n; ++a) growth += M[best][a] * v[a];
-    return std::sqrt(std::max(length / growth, 0.0));
-  }
-
- private:
-  static constexpr int kSquarings = 24;  // or fewer: until nothing else is left
-
-  // M = (scale M)^2, of a symmetric M; its trace, 1 once M is the projection onto one vector.
-  template <int N> static double square(double (&M)[N][N], double scale) noexcept {
-    double S[N][N], trace = 0.0;
-    for (auto& row : M)
-      for (double& x : row) x *= scale;
-    for (int a = 0; a < N; ++a)
-      for (int b = 0; b <= a; ++b) {
-        S[a][b] = 0.0;
-        for (int k = 0; k < N; ++k) S[a][b] += M[a][k] * M[b][k];
-        S[b][a] = S[a][b];
-      }
-    for (int a = 0; a < N; ++a) trace += S[a][a];
-    std::copy_n(&S[0][0], N * N, &M[0][0]);
-    return trace;
+    Lanes<1> at[A::kDof];
+    for (int j = 0; j < A::kDof; ++j) at[j] = {q[j]};
+    return LeastSingularValue<A, 1>::of(at).v;
   }
 };
 
