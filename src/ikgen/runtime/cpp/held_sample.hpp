@@ -157,12 +157,9 @@ template <class Arm> struct HeldSample {
 
   // Takes the rows of the pose and those beside it, each refined for as long as that takes; no more than solve gives.
   void take_carefully(const Eigen::Isometry3d& T, bool coarse) noexcept {
-    bool again = take(T, T, 0, nullptr, coarse);
-    if constexpr (kBesides > 0) {
-      bool known[Arm::kLanes];
-      for (int r = 0; r < Arm::kLanes; ++r) known[r] = distinct(r);
-      for (int i = 0; i < kBesides; ++i) again = take(T, displaced(T, Arm::kBeside[i]), i + 1, known, false) || again;
-    }
+    bool again = take(T, T, 0, coarse);
+    if constexpr (kBesides > 0)
+      for (int i = 0; i < kBesides; ++i) again = take(T, displaced(T, Arm::kBeside[i]), i + 1, false) || again;
     lanes = kLanes;
     if (again && !coarse) remove_repetitions();
     int count = 0, used = Arm::kLanes;
@@ -183,21 +180,11 @@ template <class Arm> struct HeldSample {
     return bits;
   }
 
-  // Whether the pose itself has a row in the lane that no other lane led to: then one beside has no other in that lane.
-  bool distinct(int lane) const noexcept {
-    bool out = real[lane];
-    for (int l = 0; l < Arm::kLanes && out; ++l)
-      out = l == lane || !real[l] || gap(*this, l, *this, lane) > Arm::Policy::kCoincident;
-    return out;
-  }
-
-  // Takes the rows of the pose, or of one beside it but for lanes that are known, refined where that is needed: in lanes
-  // first where all are; whether some may be equal.
-  bool take(const Eigen::Isometry3d& T, const Eigen::Isometry3d& near, int part, const bool* known, bool coarse) noexcept {
+  // Takes the rows of the pose, or of one beside it, refined where that is needed: in lanes first where all are, and not at
+  // all if they may be coarse; whether some may be equal.
+  bool take(const Eigen::Isometry3d& T, const Eigen::Isometry3d& near, int part, bool coarse) noexcept {
     Rows rows;
     Arm::branches(gather<1>(&near), typename Arm::Seed(), std::array<double, 1>{held}, kAnywhere, rows);
-    for (int r = 0; r < Arm::kLanes && known; ++r)
-      if (known[r]) rows.flags[Arm::kLaneOfRow[r]] = 0.0;
     typename Arm::template Rows<1> fine;
     if constexpr (Arm::kNewton) {
       std::memcpy(fine.q, rows.q, sizeof(fine.q));
