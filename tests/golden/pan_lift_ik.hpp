@@ -386,21 +386,27 @@ template <int N> struct Unbounded {
 template <int N> inline constexpr Unbounded<N> kUnbounded{};
 
 template <int N> struct Placed {
-  Lanes<N> q;
-  Mask<N> inside;
+  Lanes<N> q, off;
 };
 
 template <class Policy, int N, bool H>
 [[gnu::always_inline]] inline Placed<N> clamp(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
-  const auto outside =
-      (range.lower[j] - Policy::kLimitTolerance > q) | (q > range.upper[j] + Policy::kLimitTolerance);
-  return {max(min(q, range.upper[j]), range.lower[j]), !outside};
+  return {max(min(q, range.upper[j]), range.lower[j]), max(range.lower[j] - q, q - range.upper[j])};
+}
+
+template <class Policy, int N, bool H> [[gnu::always_inline]] inline Mask<N> inside(const LanesOf<N, H>& off) noexcept {
+  return !(off > Policy::kLimitTolerance);
+}
+
+template <class Policy, int N, bool H>
+[[gnu::always_inline]] inline Mask<N> hardly_outside(const LanesOf<N, H>& off) noexcept {
+  return (off > Policy::kLimitTolerance) & (Policy::kLimitReach > off);
 }
 
 template <class Policy, int N, bool H>
 [[gnu::always_inline]] inline Placed<N> place(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
-  const auto up = select(range.lower[j] - Policy::kLimitTolerance > q, kTurn, 0.0);
-  const auto down = select(q > range.upper[j] + Policy::kLimitTolerance, kTurn, 0.0);
+  const auto up = select(range.lower[j] - Policy::kLimitReach > q, kTurn, 0.0);
+  const auto down = select(q > range.upper[j] + Policy::kLimitReach, kTurn, 0.0);
   return clamp<Policy>(j, q + (up - down), range);
 }
 
@@ -689,6 +695,11 @@ template <class Arm> struct PoseError {
       for (auto& row : slope) row[j] = 0.0;
   }
 
+  void hold(const bool* still) noexcept {
+    for (int j = 0; j < Arm::kDof; ++j)
+      for (auto& row : slope) row[j] = still[j] ? 0.0 : row[j];
+  }
+
   double largest() const noexcept {
     double worst = 0.0;
     for (const double x : error) worst = std::abs(x) <= worst ? worst : std::abs(x);
@@ -858,6 +869,11 @@ template <class Arm> struct SolutionRows {
     return Arm::kRevolute[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap;
   }
 
+  static double beyond(int j, double x, double value) noexcept {
+    const double gap = value - x;
+    return std::abs(Arm::kRevolute[j] && !Arm::kHeld[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap);
+  }
+
   static bool same(const double* a, const double* b) noexcept {
     for (int j = 0; j < Arm::kDof; ++j) {
       double gap = std::abs(a[j] - b[j]);
@@ -877,7 +893,10 @@ template <class Arm> struct SolutionRows {
     ++out.count;
   }
 
-  static bool place(double* q, const Options& options) noexcept {
+  enum class Place { Inside, Hardly, Outside };
+
+  static Place placed(double* q, const Options& options) noexcept {
+    Place where = Place::Inside;
     const double* seed = options.seed ? options.seed->data() : nullptr;
     for (int j = 0; j < Arm::kDof; ++j) {
       const double low = Arm::kLower.data()[j] - Policy::kLimitTolerance, high = Arm::kUpper.data()[j] + Policy::kLimitTolerance;
@@ -889,20 +908,18 @@ template <class Arm> struct SolutionRows {
         q[j] += shift;
       }
       if (!options.limits) continue;
-      if (!(low <= q[j] && q[j] <= high)) return false;
+      if (!(low <= q[j] && q[j] <= high)) {
+        const double below = beyond(j, q[j], Arm::kLower.data()[j]), above = beyond(j, q[j], Arm::kUpper.data()[j]);
+        if (!(std::min(below, above) < Policy::kLimitReach)) return Place::Outside;
+        q[j] = below < above ? Arm::kLower.data()[j] : Arm::kUpper.data()[j];
+        where = Place::Hardly;
+      }
       q[j] = std::min(std::max(q[j], Arm::kLower.data()[j]), Arm::kUpper.data()[j]);
     }
-    return true;
+    return where;
   }
 
-  template <class Out> static void place_all(const Options& options, Out& out) noexcept {
-    int kept = 0;
-    for (int k = 0; k < out.count; ++k) {
-      if (kept < k) move(out, k, kept);
-      kept += place(row(out, kept), options) ? 1 : 0;
-    }
-    out.count = kept;
-  }
+  static bool place(double* q, const Options& options) noexcept { return placed(q, options) == Place::Inside; }
 
   template <class Out> static void sort_by_distance(Out& out, const double* seed) noexcept {
     sort(out, [seed](const double* q) noexcept {
@@ -1117,11 +1134,12 @@ template <class Arm> struct NewtonRefinement {
     for (int j = 0; j < Arm::kDof; ++j) q[j] += std::min(std::max(x[j], -Policy::kLargestStep), Policy::kLargestStep);
   }
 
-  static double run(double* q, const Aim& aim, int steps) noexcept {
+  static double run(double* q, const Aim& aim, int steps, const bool* still) noexcept {
     double trial[Arm::kDof], best = kInfinity;
     std::copy_n(q, Arm::kDof, trial);
     for (int i = 0, stalled = 0;; ++i) {
-      const PoseError<Arm> at(trial, aim);
+      PoseError<Arm> at(trial, aim);
+      if (still != nullptr) at.hold(still);
       const double worst = at.largest();
       stalled = worst < Policy::kProgress * best && worst > Policy::kConverged ? 0 : stalled + 1;
       if (worst < best) {
@@ -1133,10 +1151,10 @@ template <class Arm> struct NewtonRefinement {
     }
   }
 
-  static double error_after(double* q, const Aim& aim) noexcept {
+  static double error_after(double* q, const Aim& aim, const bool* still = nullptr) noexcept {
     double error = kInfinity;
     for (const RefineStage& stage : Policy::kRefinement) {
-      error = run(q, aim, stage.steps);
+      error = run(q, aim, stage.steps, still);
       if (!(error >= stage.fine && error < stage.promising)) break;
     }
     return error;
@@ -1420,6 +1438,44 @@ template <class Arm> struct CarefulRows {
   }
 };
 
+// --- limit rows ----------------------------------------------------------------------------------
+template <class Arm> struct LimitRows {
+  using Aim = HeldAim<Arm>;
+  using Options = typename Arm::Options;
+  using Policy = typename Arm::Policy;
+  using Refinement = NewtonRefinement<Arm>;
+  using Row = SolutionRows<Arm>;
+
+  template <class Out> static void place_all(const Aim& aim, const Options& options, Out& out) noexcept {
+    Out given = out;
+    out.count = 0;
+    int hardly = 0;
+    for (int k = 0; k < given.count; ++k) {
+      double q[Arm::kDof];
+      std::copy_n(Row::row(given, k), Arm::kDof, q);
+      const typename Row::Place where = Row::placed(q, options);
+      if (where == Row::Place::Hardly) Row::move(given, k, hardly++);
+      if (where != Row::Place::Inside) continue;
+      std::copy_n(q, Arm::kDof, Row::row(out, out.count));
+      Row::flag(out, out.count++) = Row::flag(given, k);
+    }
+    for (int k = 0; k < hardly; ++k) take(aim, options, Row::row(given, k), Row::flag(given, k), out);
+  }
+
+ private:
+  template <class Out> static void take(const Aim& aim, const Options& options, double* q, bool singular, Out& out) noexcept {
+    double on_limits[Arm::kDof];
+    std::copy_n(q, Arm::kDof, on_limits);
+    Row::placed(on_limits, options);
+    if (Refinement::refine(q, aim) && Row::place(q, options)) return Row::add(out, q, singular);
+    bool still[Arm::kDof];
+    for (int j = 0; j < Arm::kDof; ++j)
+      still[j] = on_limits[j] == Arm::kLower.data()[j] || on_limits[j] == Arm::kUpper.data()[j];
+    if (Refinement::error_after(on_limits, aim, still) < Policy::kExact && Row::place(on_limits, options))
+      Row::add(out, on_limits, singular);
+  }
+};
+
 // --- pose entries --------------------------------------------------------------------------------
 template <class Arm> struct PoseEntries {
   static constexpr int kCount = sizeof(Arm::kRead) / sizeof(Arm::kRead[0]);
@@ -1623,10 +1679,10 @@ template <class Arm> struct CarefulSolve {
       auto left = Careful::find_rows(aim, start, options, turn == 0, found);
       if (options.seed && !left.free && Careful::any_singular(found)) Careful::add_from(aim, start, found);
       real = real || found.count > 0;
-      Row::place_all(options, found);
+      LimitRows<Arm>::place_all(aim, options, found);
       if (found.count == 0 && options.seed && Refinement::refine(start, aim)) {
         Careful::add(aim, found, start, true);
-        Row::place_all(options, found);
+        LimitRows<Arm>::place_all(aim, options, found);
       }
       if (!Arm::kRounded) left.led = Careful::any_singular(found);
       free = left.free && !(left.led && found.count > 0);
@@ -1648,7 +1704,7 @@ template <class Arm> struct CarefulSolve {
       if (Refinement::refine(q, aim)) {
         real = true;
         Careful::add(aim, out, q, true);
-        Row::place_all(options, out);
+        LimitRows<Arm>::place_all(aim, options, out);
       }
       if (out.count > 0 || !inside) return real;
     }
@@ -1662,28 +1718,31 @@ template <class Arm> struct LanePlacement {
   template <class Rows> static void apply(const typename Arm::Options& options, Rows& rows) noexcept {
     constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;
     for (int at = 0; at < Rows::kLanes; at += N) {
-      Mask<N> inside = spread<N>(1.0) > 0.0;
+      Lanes<N> off = spread<N>(-kInfinity);
       for (int j = 0; j < Arm::kDof; ++j) {
         Lanes<N> q = load<N>(rows.q[j] + at);
         if (Arm::kRevolute[j] && !Arm::kHeld[j]) q = turned(j, q, options);
         if (options.limits) {
           const Placed<N> placed = clamp<Policy>(j, q, {Arm::kLower.data(), Arm::kUpper.data()});
-          inside = inside & placed.inside;
+          off = max(off, placed.off);
           q = placed.q;
         }
         store(q, rows.q[j] + at);
       }
-      alignas(64) double kept[std::size_t{N}];
-      store(inside, kept);
-      for (int i = 0; i < N; ++i)
-        rows.flags[at + i] = static_cast<int>(rows.flags[at + i]) & (kept[i] > 0.5 ? ~0 : ~kFound);
+      alignas(64) double by[std::size_t{N}];
+      store(off, by);
+      for (int i = 0; i < N; ++i) {
+        const int bits = static_cast<int>(rows.flags[at + i]);
+        const int rough = (bits & kReal) != 0 && by[i] < Policy::kLimitReach ? bits | kRough : bits;
+        rows.flags[at + i] = by[i] > Policy::kLimitTolerance ? rough & ~kFound : bits;
+      }
     }
   }
 
  private:
   template <int N, bool H>
   [[gnu::always_inline]] static Lanes<N> turned(int j, const LanesOf<N, H>& given, const typename Arm::Options& options) noexcept {
-    const double low = Arm::kLower.data()[j] - Policy::kLimitTolerance, high = Arm::kUpper.data()[j] + Policy::kLimitTolerance;
+    const double low = Arm::kLower.data()[j] - Policy::kLimitReach, high = Arm::kUpper.data()[j] + Policy::kLimitReach;
     const Lanes<N> q = given + select(given > -kPi, select(given > kPi, -kTurn, 0.0), kTurn);
     Lanes<N> shift = spread<N>(0.0);
     if (options.seed) shift = kTurn * nearest((options.seed->data()[j] - q) / kTurn);
@@ -2311,10 +2370,10 @@ inline void order_rows(const Eigen::Isometry3d& pose, const double* seed, typena
 struct Policy {
   static constexpr int kTries = 16, kPatience = 5;
   static constexpr double kArrived = 5e-10, kExact = 1e-12, kPoseTolerance = 1e-06, kOrthonormal = 1e-14,
-      kCoincident = 1e-06, kAlike = 0.01, kHalfway = 2e-14, kMeeting = 2e-05, kLimitTolerance = 1e-09, kTryStep
-      = 0.39269908169872414, kRankLoss = 1e-07, kContinuumRankLoss = 0.001, kFoldReach = 0.0001, kBesideReach =
-      0.0, kAnywhere = 1000.0, kBrokenReach = 0.0, kLeastDamping = 1e-14, kDamping = 0.001, kLargestStep = 0.3,
-      kConverged = 1e-13, kProgress = 0.8;
+      kCoincident = 1e-06, kAlike = 0.01, kHalfway = 2e-14, kMeeting = 2e-05, kLimitTolerance = 1e-09,
+      kLimitReach = 1e-05, kTryStep = 0.39269908169872414, kRankLoss = 1e-07, kContinuumRankLoss = 0.001,
+      kFoldReach = 0.0001, kBesideReach = 0.0, kAnywhere = 1000.0, kBrokenReach = 0.0, kLeastDamping = 1e-14,
+      kDamping = 0.001, kLargestStep = 0.3, kConverged = 1e-13, kProgress = 0.8;
   static constexpr RefineStage kRefinement[] = {{3, 1e-12, 0.1}, {6, 1e-12, 0.001}, {30, 0.0, 0.0}};
 };
 
@@ -2408,11 +2467,11 @@ inline void Arm::branches(const Pose<P>& pose, [[maybe_unused]] const Seed& seed
   store(spread<n>(placed_1.q), rows.q[0]);
   store(spread<n>(placed_2.q), rows.q[1]);
 
-  const auto inside = placed_1.inside & placed_2.inside;
-  const auto found = bit(real_1, kReal) + bit(real_1 & inside, kFound);
+  const auto off = max(placed_1.off, placed_2.off);
+  const auto found = bit(real_1, kReal) + bit(real_1 & inside<Policy>(off), kFound);
   constexpr double degenerate = 0.0;
   const auto meets = bit(real_1 & (meeting<Policy, 2 * P>(c1, s1)), kMeeting);
-  constexpr double rough = 0.0;
+  const auto rough = bit(real_1 & hardly_outside<Policy>(off), kRough);
   store(spread<n>(found + ((degenerate + meets) + rough)), rows.flags);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "careful_rows.hpp"
+#include "limit_rows.hpp"
 #include "nearest_row.hpp"
 
 namespace ikgen_runtime {
@@ -32,10 +33,10 @@ template <class Arm> struct CarefulSolve {
       auto left = Careful::find_rows(aim, start, options, turn == 0, found);
       if (options.seed && !left.free && Careful::any_singular(found)) Careful::add_from(aim, start, found);
       real = real || found.count > 0;
-      Row::place_all(options, found);
+      LimitRows<Arm>::place_all(aim, options, found);
       if (found.count == 0 && options.seed && Refinement::refine(start, aim)) {
         Careful::add(aim, found, start, true);
-        Row::place_all(options, found);
+        LimitRows<Arm>::place_all(aim, options, found);
       }
       if (!Arm::kRounded) left.led = Careful::any_singular(found);
       free = left.free && !(left.led && found.count > 0);
@@ -58,7 +59,7 @@ template <class Arm> struct CarefulSolve {
       if (Refinement::refine(q, aim)) {
         real = true;
         Careful::add(aim, out, q, true);
-        Row::place_all(options, out);
+        LimitRows<Arm>::place_all(aim, options, out);
       }
       if (out.count > 0 || !inside) return real;
     }

@@ -37,12 +37,13 @@ template <class Arm> struct NewtonRefinement {
     for (int j = 0; j < Arm::kDof; ++j) q[j] += std::min(std::max(x[j], -Policy::kLargestStep), Policy::kLargestStep);
   }
 
-  // At most `steps` of them; the error that is left.
-  static double run(double* q, const Aim& aim, int steps) noexcept {
+  // At most `steps` of them, of joints that do not stay `still` where that is given; the error that is left.
+  static double run(double* q, const Aim& aim, int steps, const bool* still) noexcept {
     double trial[Arm::kDof], best = kInfinity;
     std::copy_n(q, Arm::kDof, trial);
     for (int i = 0, stalled = 0;; ++i) {
-      const PoseError<Arm> at(trial, aim);
+      PoseError<Arm> at(trial, aim);
+      if (still != nullptr) at.hold(still);
       const double worst = at.largest();
       stalled = worst < Policy::kProgress * best && worst > Policy::kConverged ? 0 : stalled + 1;
       if (worst < best) {
@@ -56,10 +57,10 @@ template <class Arm> struct NewtonRefinement {
 
   // The error that steps from q leave: only what is promising takes many. All digits are wanted where they
   // come easily, as rows may lie on a limit.
-  static double error_after(double* q, const Aim& aim) noexcept {
+  static double error_after(double* q, const Aim& aim, const bool* still = nullptr) noexcept {
     double error = kInfinity;
     for (const RefineStage& stage : Policy::kRefinement) {
-      error = run(q, aim, stage.steps);
+      error = run(q, aim, stage.steps, still);
       if (!(error >= stage.fine && error < stage.promising)) break;
     }
     return error;

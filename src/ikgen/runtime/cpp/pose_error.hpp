@@ -27,6 +27,12 @@ template <class Arm> struct PoseError {
       for (auto& row : slope) row[j] = 0.0;
   }
 
+  // Leaves joints out of the slope.
+  void hold(const bool* still) noexcept {
+    for (int j = 0; j < Arm::kDof; ++j)
+      for (auto& row : slope) row[j] = still[j] ? 0.0 : row[j];
+  }
+
   double largest() const noexcept {
     double worst = 0.0;
     for (const double x : error) worst = std::abs(x) <= worst ? worst : std::abs(x);

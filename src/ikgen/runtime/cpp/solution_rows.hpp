@@ -32,6 +32,12 @@ template <class Arm> struct SolutionRows {
     return Arm::kRevolute[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap;
   }
 
+  // How far a joint is from a value, the shortest way.
+  static double beyond(int j, double x, double value) noexcept {
+    const double gap = value - x;
+    return std::abs(Arm::kRevolute[j] && !Arm::kHeld[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap);
+  }
+
   // Whether two rows are the same, whole turns aside; long slides count relative to their length.
   static bool same(const double* a, const double* b) noexcept {
     for (int j = 0; j < Arm::kDof; ++j) {
@@ -53,8 +59,11 @@ template <class Arm> struct SolutionRows {
     ++out.count;
   }
 
-  // Puts a row on the turns that the seed or the limits ask for; false where it is outside.
-  static bool place(double* q, const Options& options) noexcept {
+  enum class Place { Inside, Hardly, Outside };
+
+  // Puts a row on the turns that the seed or the limits ask for, one that is hardly outside on the limits.
+  static Place placed(double* q, const Options& options) noexcept {
+    Place where = Place::Inside;
     const double* seed = options.seed ? options.seed->data() : nullptr;
     for (int j = 0; j < Arm::kDof; ++j) {
       const double low = Arm::kLower.data()[j] - Policy::kLimitTolerance, high = Arm::kUpper.data()[j] + Policy::kLimitTolerance;
@@ -66,21 +75,19 @@ template <class Arm> struct SolutionRows {
         q[j] += shift;
       }
       if (!options.limits) continue;
-      if (!(low <= q[j] && q[j] <= high)) return false;
+      if (!(low <= q[j] && q[j] <= high)) {
+        const double below = beyond(j, q[j], Arm::kLower.data()[j]), above = beyond(j, q[j], Arm::kUpper.data()[j]);
+        if (!(std::min(below, above) < Policy::kLimitReach)) return Place::Outside;
+        q[j] = below < above ? Arm::kLower.data()[j] : Arm::kUpper.data()[j];
+        where = Place::Hardly;
+      }
       q[j] = std::min(std::max(q[j], Arm::kLower.data()[j]), Arm::kUpper.data()[j]);
     }
-    return true;
+    return where;
   }
 
-  // Leaves the rows that can be placed.
-  template <class Out> static void place_all(const Options& options, Out& out) noexcept {
-    int kept = 0;
-    for (int k = 0; k < out.count; ++k) {
-      if (kept < k) move(out, k, kept);
-      kept += place(row(out, kept), options) ? 1 : 0;
-    }
-    out.count = kept;
-  }
+  // The same; false where it is outside.
+  static bool place(double* q, const Options& options) noexcept { return placed(q, options) == Place::Inside; }
 
   template <class Out> static void sort_by_distance(Out& out, const double* seed) noexcept {
     sort(out, [seed](const double* q) noexcept {
