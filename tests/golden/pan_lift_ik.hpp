@@ -545,6 +545,20 @@ template <int N> inline bool definite(const double (&L)[N][N]) noexcept {
   return true;
 }
 
+template <int N> inline bool keeps_orientation(double (&A)[N][N]) noexcept {
+  bool keeps = true;
+  for (int k = 0; k < N; ++k) {
+    int pivot = k;
+    for (int i = k + 1; i < N; ++i)
+      if (std::abs(A[i][k]) > std::abs(A[pivot][k])) pivot = i;
+    if (pivot != k) std::swap_ranges(A[k], A[k] + N, A[pivot]);
+    keeps = keeps == ((pivot == k) == (A[k][k] >= 0.0));
+    for (int i = k + 1; i < N && A[k][k] != 0.0; ++i)
+      for (int j = N - 1; j >= k; --j) A[i][j] -= A[i][k] / A[k][k] * A[k][j];
+  }
+  return keeps;
+}
+
 template <int N> inline void substitute(const double (&L)[N][N], double (&x)[N]) noexcept {
   for (int i = 0; i < N; ++i) {
     for (int k = 0; k < i; ++k) x[i] -= L[i][k] * x[k];
@@ -736,7 +750,7 @@ template <class Arm> struct FoldPair {
     others.take_away(at.error, rest, across);
     others.take_away(out, out, ignored);
     for (const double x : out) square += x * x;
-    const double inverse = 1.0 / std::sqrt(square);
+    const double inverse = others.sense(out, still) / std::sqrt(square);
     left = slope = 0.0;
     for (int e = 0; e < kEquations; ++e) {
       out[e] *= inverse;
@@ -808,6 +822,17 @@ template <class Arm> struct FoldPair {
           for (int e = 0; e < kEquations; ++e) A[a][b] += V[e][a] * V[e][b];
         }
       factor(A);
+    }
+
+    double sense([[maybe_unused]] const double* out, [[maybe_unused]] const double* still) const noexcept {
+      if constexpr (kEquations != kMoving) {
+        return 1.0;
+      } else {
+        double turned[kMoving][kMoving];
+        for (int e = 0; e < kEquations; ++e)
+          for (int k = 0; k < kMoving; ++k) turned[e][k] = V[e][k] + out[e] * still[k];
+        return keeps_orientation(turned) ? 1.0 : -1.0;
+      }
     }
 
     void take_away(const double* z, double* rest, Vector& y) const noexcept {
@@ -997,21 +1022,24 @@ template <class Arm> struct NearContinuum {
     return s;
   }
 
-  Sample at(const double* q, const Sample& from, double sense) noexcept {
-    for (int k = 0; k < Fold::kMoving; ++k) fold.still[k] = sense * from.still[k];
+  Sample at(const double* q, const Sample& from) noexcept {
+    std::copy_n(from.still, Fold::kMoving, fold.still);
     std::copy_n(from.out, Fold::kEquations, fold.out);
     return at(q);
   }
 
   bool follow(const Sample& first, double sense, double& worst) noexcept {
-    Sample b = first, origin = first;
-    for (double& x : origin.still) x *= sense;
-    for (int k = 0; k < kMost && samples > 0; ++k, sense = 1.0) {
+    Sample b = first;
+    b.left *= sense;
+    for (double& x : b.still) x *= sense;
+    for (double& x : b.out) x *= sense;
+    const Sample origin = b;
+    for (int k = 0; k < kMost && samples > 0; ++k) {
       double q[Arm::kDof], largest = 0.0;
       std::copy_n(b.q, Arm::kDof, q);
       for (const double x : b.still) largest = std::max(largest, std::abs(x));
-      for (int i = 0; i < Fold::kMoving; ++i) q[Fold::kJoints[i]] += sense * Policy::kTryStep / largest * b.still[i];
-      const Sample c = at(q, b, sense);
+      for (int i = 0; i < Fold::kMoving; ++i) q[Fold::kJoints[i]] += Policy::kTryStep / largest * b.still[i];
+      const Sample c = at(q, b);
       if (!(std::abs(c.left) < Policy::kFoldReach)) return false;
       ++steps;
       worst = std::max(worst, std::abs(c.left));
@@ -1037,7 +1065,7 @@ template <class Arm> struct NearContinuum {
   Sample part(const Sample& a, const Sample& b, double share) noexcept {
     double q[Arm::kDof];
     between(a, b, share, q);
-    return at(q, a, 1.0);
+    return at(q, a);
   }
 
   static void between(const Sample& a, const Sample& b, double share, double* q) noexcept {

@@ -938,11 +938,20 @@ def _correct(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, Array]:
     others = _across(slope, at.still, arm.policy.least_damping)
     taken, going = others.take_away(np.stack([error, at.out, others.flow], axis=2))
     still, size = _unit(at.still - going[:, :, 2])
-    out, _ = _unit(taken[:, :, 1])
+    out = _oriented(_unit(taken[:, :, 1])[0], others)
     left, grows = np.einsum("ke,kei->ik", out, taken[:, :, ::2])
     across = going[:, :, 0]
     q = others.moved(arm, at.q, across, 0.0)
     return _Reduced(q, still, out, left, -grows / size), np.abs(across).max(axis=1)
+
+
+def _oriented(out: Array, others: _Others) -> Array:
+    """Unit directions (k, m) in the sense that goes with the still ones'."""
+    if others.V.shape[1] != others.V.shape[2]:
+        return out
+    turned = others.V + out[:, :, None] * others.still[:, None, :]
+    with np.errstate(all="ignore"):
+        return np.where(np.linalg.det(turned)[:, None] < 0.0, -out, out)
 
 
 def _others(arm: _Arm, slope: Array, still: Array) -> _Others:
@@ -1898,7 +1907,7 @@ def _trace(arm: _Arm, q: Array, T: Array) -> _Traced:
     nothing, still = np.zeros(count), _still_directions(arm, slope)
     start = _Reduced(q, still, _generic(count, error.shape[1]), nothing, nothing)
     first = _sample(arm, start, T)
-    back = first._replace(still=-first.still, slope=-first.slope)
+    back = first._replace(still=-first.still, out=-first.out, left=-first.left)
     parts, closed, worst = _follow(arm, first, T, np.arange(count), 0.0)
     open_ends = np.flatnonzero(~closed)
     more, _, largest = _follow(arm, back, T, open_ends, float(_MOST))

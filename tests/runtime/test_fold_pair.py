@@ -20,6 +20,8 @@ from ikgen.runtime.python.arm_newton import linearized
 from ikgen.runtime.python.chain_kinematics import chain_of
 from ikgen.runtime.python.fold_pair import (
     Reduced,
+    _oriented,
+    _Others,
     _root,
     _step,
     _still,
@@ -60,6 +62,26 @@ def test_a_straight_line_has_none_and_none_is_far() -> None:
     for side in (1.0, -1.0):
         assert root(side, 0.01, 0.0, 0.3) == 0.0  # straight: the other joints have done it all
         assert abs(root(side, 1.0, 1e-9, 0.0)) == pytest.approx(0.3)
+
+
+def test_what_is_left_keeps_its_sense_however_far_its_direction_turns() -> None:
+    rng = np.random.default_rng(6)
+    u, s, vt = np.linalg.svd(rng.normal(size=(6, 6)))
+    across = (u[:, :5] * s[:5]) @ vt[:5]
+    out = _oriented(u[None, :, 5], _Others(vt[5:], u[None, :, 5], across[None], across[None]))
+    for angle in np.linspace(0.1, 3.1, 7):  # the whole error space turns, out with it
+        turn = np.eye(6)
+        turn[np.ix_([0, 5], [0, 5])] = [
+            [np.cos(angle), -np.sin(angle)],
+            [np.sin(angle), np.cos(angle)],
+        ]
+        V = (turn @ across)[None]
+        for guess in (1.0, -1.0):
+            there = _oriented(guess * out @ turn.T, _Others(vt[5:], out, V, V))
+            np.testing.assert_allclose(there, out @ turn.T, atol=1e-12)
+    taller = np.concatenate([across, across[:1]])[None]
+    given = rng.normal(size=(1, 7))
+    np.testing.assert_array_equal(_oriented(given, _Others(vt[5:], given, taller, taller)), given)
 
 
 def test_the_direction_of_least_motion_keeps_its_sense() -> None:

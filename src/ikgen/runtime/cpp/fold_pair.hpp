@@ -39,7 +39,7 @@ template <class Arm> struct FoldPair {
     others.take_away(at.error, rest, across);
     others.take_away(out, out, ignored);
     for (const double x : out) square += x * x;
-    const double inverse = 1.0 / std::sqrt(square);
+    const double inverse = others.sense(out, still) / std::sqrt(square);
     left = slope = 0.0;
     for (int e = 0; e < kEquations; ++e) {
       out[e] *= inverse;
@@ -114,6 +114,19 @@ template <class Arm> struct FoldPair {
           for (int e = 0; e < kEquations; ++e) A[a][b] += V[e][a] * V[e][b];
         }
       factor(A);
+    }
+
+    // 1 or -1, which takes `out` in the sense that goes with the still direction's: what the others do to the pose, with
+    // `out` for the still one, keeps orientation, however far `out` turns from one sample to the next.
+    double sense([[maybe_unused]] const double* out, [[maybe_unused]] const double* still) const noexcept {
+      if constexpr (kEquations != kMoving) {
+        return 1.0;
+      } else {
+        double turned[kMoving][kMoving];
+        for (int e = 0; e < kEquations; ++e)
+          for (int k = 0; k < kMoving; ++k) turned[e][k] = V[e][k] + out[e] * still[k];
+        return keeps_orientation(turned) ? 1.0 : -1.0;
+      }
     }
 
     // What they leave of z, by going y.

@@ -56,22 +56,25 @@ template <class Arm> struct NearContinuum {
   }
 
   // Beside a sample.
-  Sample at(const double* q, const Sample& from, double sense) noexcept {
-    for (int k = 0; k < Fold::kMoving; ++k) fold.still[k] = sense * from.still[k];
+  Sample at(const double* q, const Sample& from) noexcept {
+    std::copy_n(from.still, Fold::kMoving, fold.still);
     std::copy_n(from.out, Fold::kEquations, fold.out);
     return at(q);
   }
 
   // On from a sample, the fastest joint by Policy::kTryStep from one to the next; whether it comes back to where it began.
   bool follow(const Sample& first, double sense, double& worst) noexcept {
-    Sample b = first, origin = first;
-    for (double& x : origin.still) x *= sense;
-    for (int k = 0; k < kMost && samples > 0; ++k, sense = 1.0) {
+    Sample b = first;
+    b.left *= sense;
+    for (double& x : b.still) x *= sense;
+    for (double& x : b.out) x *= sense;
+    const Sample origin = b;
+    for (int k = 0; k < kMost && samples > 0; ++k) {
       double q[Arm::kDof], largest = 0.0;
       std::copy_n(b.q, Arm::kDof, q);
       for (const double x : b.still) largest = std::max(largest, std::abs(x));
-      for (int i = 0; i < Fold::kMoving; ++i) q[Fold::kJoints[i]] += sense * Policy::kTryStep / largest * b.still[i];
-      const Sample c = at(q, b, sense);
+      for (int i = 0; i < Fold::kMoving; ++i) q[Fold::kJoints[i]] += Policy::kTryStep / largest * b.still[i];
+      const Sample c = at(q, b);
       if (!(std::abs(c.left) < Policy::kFoldReach)) return false;
       ++steps;
       worst = std::max(worst, std::abs(c.left));
@@ -98,7 +101,7 @@ template <class Arm> struct NearContinuum {
   Sample part(const Sample& a, const Sample& b, double share) noexcept {
     double q[Arm::kDof];
     between(a, b, share, q);
-    return at(q, a, 1.0);
+    return at(q, a);
   }
 
   // By the cubic through two configurations along their still directions (Hermite).

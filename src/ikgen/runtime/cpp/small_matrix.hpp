@@ -33,6 +33,21 @@ template <class X, int N> inline auto definite(const X (&L)[N][N]) noexcept {
   return yes;
 }
 
+// Whether the determinant of A is not below 0; eliminates in its place, with partial pivoting.
+template <int N> inline bool keeps_orientation(double (&A)[N][N]) noexcept {
+  bool keeps = true;
+  for (int k = 0; k < N; ++k) {
+    int pivot = k;
+    for (int i = k + 1; i < N; ++i)
+      if (std::abs(A[i][k]) > std::abs(A[pivot][k])) pivot = i;
+    if (pivot != k) std::swap_ranges(A[k], A[k] + N, A[pivot]);
+    keeps = keeps == ((pivot == k) == (A[k][k] >= 0.0));
+    for (int i = k + 1; i < N && A[k][k] != 0.0; ++i)
+      for (int j = N - 1; j >= k; --j) A[i][j] -= A[i][k] / A[k][k] * A[k][j];
+  }
+  return keeps;
+}
+
 // x = A^-1 x by the factor of A.
 template <int N> inline void substitute(const double (&L)[N][N], double (&x)[N]) noexcept {
   for (int i = 0; i < N; ++i) {

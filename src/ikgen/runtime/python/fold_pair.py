@@ -87,11 +87,21 @@ def correct(arm: Arm, at: Reduced, T: Array) -> tuple[Reduced, Array]:
     others = _across(slope, at.still, arm.policy.least_damping)
     taken, going = others.take_away(np.stack([error, at.out, others.flow], axis=2))
     still, size = _unit(at.still - going[:, :, 2])
-    out, _ = _unit(taken[:, :, 1])
+    out = _oriented(_unit(taken[:, :, 1])[0], others)
     left, grows = np.einsum("ke,kei->ik", out, taken[:, :, ::2])
     across = going[:, :, 0]
     q = others.moved(arm, at.q, across, 0.0)
     return Reduced(q, still, out, left, -grows / size), np.abs(across).max(axis=1)
+
+
+def _oriented(out: Array, others: _Others) -> Array:
+    """Unit directions (k, m) in the sense that goes with the still ones': what the others do to the pose,
+    with these for the still ones, keeps orientation, however far `out` turns in a step."""
+    if others.V.shape[1] != others.V.shape[2]:
+        return out
+    turned = others.V + out[:, :, None] * others.still[:, None, :]
+    with np.errstate(all="ignore"):
+        return np.where(np.linalg.det(turned)[:, None] < 0.0, -out, out)
 
 
 def _others(arm: Arm, slope: Array, still: Array) -> _Others:

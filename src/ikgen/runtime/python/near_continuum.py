@@ -79,7 +79,7 @@ def trace(arm: Arm, q: Array, T: Array) -> Traced:
     nothing, still = np.zeros(count), still_directions(arm, slope)
     start = Reduced(q, still, generic(count, error.shape[1]), nothing, nothing)
     first = _sample(arm, start, T)
-    back = first._replace(still=-first.still, slope=-first.slope)
+    back = first._replace(still=-first.still, out=-first.out, left=-first.left)
     parts, closed, worst = _follow(arm, first, T, np.arange(count), 0.0)
     open_ends = np.flatnonzero(~closed)
     more, _, largest = _follow(arm, back, T, open_ends, float(_MOST))
