@@ -386,27 +386,21 @@ template <int N> struct Unbounded {
 template <int N> inline constexpr Unbounded<N> kUnbounded{};
 
 template <int N> struct Placed {
-  Lanes<N> q, off;
+  Lanes<N> q;
+  Mask<N> inside;
 };
 
 template <class Policy, int N, bool H>
 [[gnu::always_inline]] inline Placed<N> clamp(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
-  return {max(min(q, range.upper[j]), range.lower[j]), max(range.lower[j] - q, q - range.upper[j])};
-}
-
-template <class Policy, int N, bool H> [[gnu::always_inline]] inline Mask<N> inside(const LanesOf<N, H>& off) noexcept {
-  return !(off > Policy::kLimitTolerance);
-}
-
-template <class Policy, int N, bool H>
-[[gnu::always_inline]] inline Mask<N> hardly_outside(const LanesOf<N, H>& off) noexcept {
-  return (off > Policy::kLimitTolerance) & (Policy::kLimitReach > off);
+  const auto outside =
+      (range.lower[j] - Policy::kLimitTolerance > q) | (q > range.upper[j] + Policy::kLimitTolerance);
+  return {max(min(q, range.upper[j]), range.lower[j]), !outside};
 }
 
 template <class Policy, int N, bool H>
 [[gnu::always_inline]] inline Placed<N> place(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
-  const auto up = select(range.lower[j] - Policy::kLimitReach > q, kTurn, 0.0);
-  const auto down = select(q > range.upper[j] + Policy::kLimitReach, kTurn, 0.0);
+  const auto up = select(range.lower[j] - Policy::kLimitTolerance > q, kTurn, 0.0);
+  const auto down = select(q > range.upper[j] + Policy::kLimitTolerance, kTurn, 0.0);
   return clamp<Policy>(j, q + (up - down), range);
 }
 
@@ -733,7 +727,7 @@ template <class Arm> struct FoldPair {
 
   explicit FoldPair(const HeldAim<Arm>& goal) noexcept : aim(goal) {
     for (int k = 0; k < kMoving; ++k) still[k] = 1.0 + 0.1 * k;
-    for (int e = 0; e < kEquations; ++e) out[e] = 1.0 + 0.1 * e;
+    for (int e = 0; e < kEquations; ++e) out[e] = 0.1 + 0.01 * e;  // shorter than what has a sense
   }
 
   void approach(double side, double* q) noexcept {
@@ -750,7 +744,7 @@ template <class Arm> struct FoldPair {
     others.take_away(at.error, rest, across);
     others.take_away(out, out, ignored);
     for (const double x : out) square += x * x;
-    const double inverse = others.sense(out, still) / std::sqrt(square);
+    const double inverse = (square < kTurned ? others.sense(out, still) : 1.0) / std::sqrt(square);
     left = slope = 0.0;
     for (int e = 0; e < kEquations; ++e) {
       out[e] *= inverse;
@@ -763,6 +757,7 @@ template <class Arm> struct FoldPair {
   }
 
  private:
+  static constexpr double kTurned = 0.5;  // squared length of what is left of a unit direction that turned by 45 degrees
   static constexpr double kAlong = 1e-4, kClose = 1e-9, kFar = 0.3, kStands = 1e-9;
   static constexpr int kSteps = 8;
 
@@ -1746,31 +1741,28 @@ template <class Arm> struct LanePlacement {
   template <class Rows> static void apply(const typename Arm::Options& options, Rows& rows) noexcept {
     constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;
     for (int at = 0; at < Rows::kLanes; at += N) {
-      Lanes<N> off = spread<N>(-kInfinity);
+      Mask<N> inside = spread<N>(1.0) > 0.0;
       for (int j = 0; j < Arm::kDof; ++j) {
         Lanes<N> q = load<N>(rows.q[j] + at);
         if (Arm::kRevolute[j] && !Arm::kHeld[j]) q = turned(j, q, options);
         if (options.limits) {
           const Placed<N> placed = clamp<Policy>(j, q, {Arm::kLower.data(), Arm::kUpper.data()});
-          off = max(off, placed.off);
+          inside = inside & placed.inside;
           q = placed.q;
         }
         store(q, rows.q[j] + at);
       }
-      alignas(64) double by[std::size_t{N}];
-      store(off, by);
-      for (int i = 0; i < N; ++i) {
-        const int bits = static_cast<int>(rows.flags[at + i]);
-        const int rough = (bits & kReal) != 0 && by[i] < Policy::kLimitReach ? bits | kRough : bits;
-        rows.flags[at + i] = by[i] > Policy::kLimitTolerance ? rough & ~kFound : bits;
-      }
+      alignas(64) double kept[std::size_t{N}];
+      store(inside, kept);
+      for (int i = 0; i < N; ++i)
+        rows.flags[at + i] = static_cast<int>(rows.flags[at + i]) & (kept[i] > 0.5 ? ~0 : ~kFound);
     }
   }
 
  private:
   template <int N, bool H>
   [[gnu::always_inline]] static Lanes<N> turned(int j, const LanesOf<N, H>& given, const typename Arm::Options& options) noexcept {
-    const double low = Arm::kLower.data()[j] - Policy::kLimitReach, high = Arm::kUpper.data()[j] + Policy::kLimitReach;
+    const double low = Arm::kLower.data()[j] - Policy::kLimitTolerance, high = Arm::kUpper.data()[j] + Policy::kLimitTolerance;
     const Lanes<N> q = given + select(given > -kPi, select(given > kPi, -kTurn, 0.0), kTurn);
     Lanes<N> shift = spread<N>(0.0);
     if (options.seed) shift = kTurn * nearest((options.seed->data()[j] - q) / kTurn);
@@ -2495,11 +2487,11 @@ inline void Arm::branches(const Pose<P>& pose, [[maybe_unused]] const Seed& seed
   store(spread<n>(placed_1.q), rows.q[0]);
   store(spread<n>(placed_2.q), rows.q[1]);
 
-  const auto off = max(placed_1.off, placed_2.off);
-  const auto found = bit(real_1, kReal) + bit(real_1 & inside<Policy>(off), kFound);
+  const auto inside = placed_1.inside & placed_2.inside;
+  const auto found = bit(real_1, kReal) + bit(real_1 & inside, kFound);
   constexpr double degenerate = 0.0;
   const auto meets = bit(real_1 & (meeting<Policy, 2 * P>(c1, s1)), kMeeting);
-  const auto rough = bit(real_1 & hardly_outside<Policy>(off), kRough);
+  constexpr double rough = 0.0;
   store(spread<n>(found + ((degenerate + meets) + rough)), rows.flags);
 }
 

@@ -82,10 +82,9 @@ struct Arm {
     constexpr int n = Rows<P>::kLanes;
     store(spread<n>(q1.q), rows.q[0]);
     store(spread<n>(q2.q), rows.q[1]);
-    const auto off = max(q1.off, q2.off);
-    const auto found = bit(real, kReal) + bit(real & inside<Policy>(off), kFound);
+    const auto found = bit(real, kReal) + bit(real & q1.inside & q2.inside, kFound);
     const auto flat = 1e-9 > abs(s2);
-    store(spread<n>(found + bit(!regular, kSingular) + bit(!regular, kHit) + bit(real & (flat | hardly_outside<Policy>(off)), kRough) +
+    store(spread<n>(found + bit(!regular, kSingular) + bit(!regular, kHit) + bit(real & flat, kRough) +
                     bit(meeting<Policy, 2 * P>(c2, s2), kMeeting)),
           rows.flags);
   }

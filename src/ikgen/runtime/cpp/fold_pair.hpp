@@ -19,7 +19,7 @@ template <class Arm> struct FoldPair {
 
   explicit FoldPair(const HeldAim<Arm>& goal) noexcept : aim(goal) {
     for (int k = 0; k < kMoving; ++k) still[k] = 1.0 + 0.1 * k;
-    for (int e = 0; e < kEquations; ++e) out[e] = 1.0 + 0.1 * e;
+    for (int e = 0; e < kEquations; ++e) out[e] = 0.1 + 0.01 * e;  // shorter than what has a sense
   }
 
   // From q towards one of the two solutions that may meet nearby, or to the place where they nearly do.
@@ -39,7 +39,7 @@ template <class Arm> struct FoldPair {
     others.take_away(at.error, rest, across);
     others.take_away(out, out, ignored);
     for (const double x : out) square += x * x;
-    const double inverse = others.sense(out, still) / std::sqrt(square);
+    const double inverse = (square < kTurned ? others.sense(out, still) : 1.0) / std::sqrt(square);
     left = slope = 0.0;
     for (int e = 0; e < kEquations; ++e) {
       out[e] *= inverse;
@@ -52,6 +52,7 @@ template <class Arm> struct FoldPair {
   }
 
  private:
+  static constexpr double kTurned = 0.5;  // squared length of what is left of a unit direction that turned by 45 degrees
   static constexpr double kAlong = 1e-4, kClose = 1e-9, kFar = 0.3, kStands = 1e-9;
   static constexpr int kSteps = 8;
 

@@ -87,17 +87,16 @@ template <class Arm> struct LaneNewton {
     for (int j = 0; j < Arm::kDof; ++j) chain.q[j] = load<N>(rows.q[j] + at);
     const Arrival<N> at_end = steps<P, N>(pose, aim, given, chain);
     const Mask<N> real = given & !at_end.beside, good = at_end.good;
-    Lanes<N> off = spread<N>(-kInfinity);
+    Mask<N> inside = real;
     for (int j = 0; j < Arm::kDof; ++j) {
       Lanes<N> q = chain.q[j];
       if (Arm::kRevolute[j] && !Arm::kHeld[j]) q = q + select(q > kPi, -kTurn, select(-kPi > q, kTurn, 0.0));
       const Placed<N> placed =
           Arm::kRevolute[j] && !Arm::kHeld[j] ? place<Policy>(j, q, range) : clamp<Policy>(j, q, range);
-      off = max(off, placed.off);
+      inside = inside & placed.inside;
       store(select(good, placed.q, load<N>(rows.q[j] + at)), rows.q[j] + at);
     }
-    const Mask<N> rough = real & (!good | hardly_outside<Policy>(off));
-    store((bit(real, kReal) + bit(good & inside<Policy>(off), kFound)) + (bit(rough, kRough) + flags), rows.flags + at);
+    store((bit(real, kReal) + bit(good & inside, kFound)) + (bit(real & !good, kRough) + flags), rows.flags + at);
   }
 
   // Which lanes arrived at the one solution near their start, and which at a least error that is not 0.

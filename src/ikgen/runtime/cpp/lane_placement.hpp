@@ -13,28 +13,25 @@ namespace ikgen_runtime {
 template <class Arm> struct LanePlacement {
   using Policy = typename Arm::Policy;
 
-  // Rows that cannot be placed are found no more; those hardly outside want Newton steps. Angles are given within a turn of (-pi, pi].
+  // Rows that cannot be placed are found no more. Angles are given within a turn of (-pi, pi].
   template <class Rows> static void apply(const typename Arm::Options& options, Rows& rows) noexcept {
     constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;
     for (int at = 0; at < Rows::kLanes; at += N) {
-      Lanes<N> off = spread<N>(-kInfinity);
+      Mask<N> inside = spread<N>(1.0) > 0.0;
       for (int j = 0; j < Arm::kDof; ++j) {
         Lanes<N> q = load<N>(rows.q[j] + at);
         if (Arm::kRevolute[j] && !Arm::kHeld[j]) q = turned(j, q, options);
         if (options.limits) {
           const Placed<N> placed = clamp<Policy>(j, q, {Arm::kLower.data(), Arm::kUpper.data()});
-          off = max(off, placed.off);
+          inside = inside & placed.inside;
           q = placed.q;
         }
         store(q, rows.q[j] + at);
       }
-      alignas(64) double by[std::size_t{N}];
-      store(off, by);
-      for (int i = 0; i < N; ++i) {
-        const int bits = static_cast<int>(rows.flags[at + i]);
-        const int rough = (bits & kReal) != 0 && by[i] < Policy::kLimitReach ? bits | kRough : bits;
-        rows.flags[at + i] = by[i] > Policy::kLimitTolerance ? rough & ~kFound : bits;
-      }
+      alignas(64) double kept[std::size_t{N}];
+      store(inside, kept);
+      for (int i = 0; i < N; ++i)
+        rows.flags[at + i] = static_cast<int>(rows.flags[at + i]) & (kept[i] > 0.5 ? ~0 : ~kFound);
     }
   }
 
@@ -42,7 +39,7 @@ template <class Arm> struct LanePlacement {
   // On the turn nearest to the seed, or if that is outside the limits, on the one inside that is nearest to them.
   template <int N, bool H>
   [[gnu::always_inline]] static Lanes<N> turned(int j, const LanesOf<N, H>& given, const typename Arm::Options& options) noexcept {
-    const double low = Arm::kLower.data()[j] - Policy::kLimitReach, high = Arm::kUpper.data()[j] + Policy::kLimitReach;
+    const double low = Arm::kLower.data()[j] - Policy::kLimitTolerance, high = Arm::kUpper.data()[j] + Policy::kLimitTolerance;
     const Lanes<N> q = given + select(given > -kPi, select(given > kPi, -kTurn, 0.0), kTurn);
     Lanes<N> shift = spread<N>(0.0);
     if (options.seed) shift = kTurn * nearest((options.seed->data()[j] - q) / kTurn);
