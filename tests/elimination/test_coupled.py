@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -23,6 +24,8 @@ from ikgen.generation.read import read
 from ikgen.generation.request import Outputs, Request
 from ikgen.runtime.python.chain_kinematics import Chain, chain_of, forward, jacobian
 from ikgen.runtime.python.coupled_angle import CoupledAngle, coupled_determinants
+from ikgen.runtime.python.general_6r import Candidates, Elimination
+from ikgen.runtime.python.solution_rows import Turning
 
 Array = NDArray[np.float64]
 TURNS = (True,) * 6
@@ -87,13 +90,43 @@ def test_a_wrist_held_nearly_straight() -> None:
     plan, chain = coupled_arm(HOLLOW)
     assert plan.crowded
     q = np.random.default_rng(7).uniform(-np.pi, np.pi, (80, 6))
-    q[:, plan.coupled] = plan.crowded[0] + np.random.default_rng(8).uniform(-0.1, 0.1, 80)
+    q[:, plan.coupled] = plan.crowded[0][0] + np.random.default_rng(8).uniform(-0.1, 0.1, 80)
     q = q[np.linalg.svd(jacobian(chain, q), compute_uv=False)[:, -1] > 1e-3]
     assert len(q) > 40
     for rows, row in zip(solved(plan, forward(chain, q)), q, strict=True):
         assert apart(rows, row).min() < 1e-6
     general, _ = coupled_arm("q3=q1*2")
     assert not general.crowded
+
+
+class Doubting(CoupledAngle):
+    """Finds the same, and leaves it open whether that is all."""
+
+    def __call__(
+        self, F: Sequence[Array], T: Array, plan: Elimination, turning: Turning
+    ) -> Candidates:
+        pose, q, least, clear = super().__call__(F, T, plan, turning)
+        return pose, q, np.zeros_like(least), np.zeros_like(clear)
+
+
+def test_one_run_is_enough_where_roots_leave_no_doubt() -> None:
+    plan, chain = coupled_arm(HOLLOW)
+    q = np.random.default_rng(9).uniform(-np.pi, np.pi, (120, 6))
+    straight = 10.0 ** np.random.default_rng(10).uniform(-4.0, -1.0, 60)
+    q[60:, plan.coupled] = plan.crowded[0][0] + straight
+    poses, find = forward(chain, q), CoupledAngle(plan.motions, plan.crowded)
+    _, _, least, clear = find([*plan.frames[:, None]], poses, plan.eliminations[0], TURNS)
+    assert clear[:60].mean() > 0.8
+    assert clear.mean() < 0.9
+    made = (
+        Plan(plan.length, plan.eliminations, TURNS, kind, motions=plan.motions)
+        for kind in (find, Doubting(plan.motions, plan.crowded))
+    )
+    one, all_runs = (six_joints_batch(plan.frames, each, poses) for each in made)
+    assert [len(rows) for rows in one] == [len(rows) for rows in all_runs]
+    assert [len(rows) for rows, sure in zip(one, clear, strict=True) if sure] == least[
+        clear
+    ].tolist()
 
 
 @pytest.mark.parametrize("relation", [HOLLOW, "q3=q1*2"])

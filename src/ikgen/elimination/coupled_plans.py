@@ -83,7 +83,8 @@ def _probe(frames: Matrix, chain: Chain, q: Matrix, plans: list[Plan]) -> tuple[
     return np.concatenate([np.zeros((len(plans), 0), dtype=bool), *hits], axis=1), rough
 
 
-_Group = tuple[tuple[float, ...], list[Elimination]]
+_Crowded = tuple[tuple[float, int], ...]
+_Group = tuple[_Crowded, list[Elimination]]
 
 
 def _eliminations(chain: Chain, rng: np.random.Generator) -> list[_Group]:
@@ -93,7 +94,7 @@ def _eliminations(chain: Chain, rng: np.random.Generator) -> list[_Group]:
     poses = forward(chain, rng.uniform(-np.pi, np.pi, (_POSES, 6)))
     joints = [motion[0] for motion in chain.motions]
     coupled, singles = coupled_and_others(chain.motions)
-    found: dict[tuple[int, tuple[float, ...]], list[Elimination]] = {}
+    found: dict[tuple[int, _Crowded], list[Elimination]] = {}
     for reverse, start in product((0, 1), range(5)):
         at = joints.index(singles[start])
         if coupled in (joints[at - 1], joints[(at + 1) % len(joints)]):

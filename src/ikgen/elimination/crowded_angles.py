@@ -24,19 +24,20 @@ _LEAST = 3.0
 
 def crowded_angles(
     cosines: Callable[[Matrix], Matrix], determinants: Callable[[Matrix], Matrix]
-) -> tuple[float, ...]:
+) -> tuple[tuple[float, int], ...]:
     """The angles (rad, multiples of 2 pi / 256) near which `determinants` (N, n) of N poses at angles (n,)
-    all have a root of high order, among those at which one of the `cosines` (m, n) between neighbouring
-    axes is the nearest to 1 or -1."""
+    all have a root of high order, and that order, among those at which one of the `cosines` (m, n) between
+    neighbouring axes is the nearest to 1 or -1."""
     grid: Matrix = 2.0 * np.pi / _GRID * np.arange(_GRID, dtype=float)
-    found: set[float] = set()
+    found: dict[float, int] = {}
     for values in cosines(grid):
         size = np.abs(values)
         peaks = (size >= np.roll(size, 1)) & (size > np.roll(size, -1)) & (size > 1.0 - _IN_LINE)
         for angle in grid[peaks]:
-            if _order(determinants, angle) > _LEAST:
-                found.add(float(angle))
-    return tuple(sorted(found))
+            order = _order(determinants, angle)
+            if order > _LEAST:
+                found[float(angle)] = round(order)
+    return tuple(sorted(found.items()))
 
 
 def _order(determinants: Callable[[Matrix], Matrix], angle: float) -> float:

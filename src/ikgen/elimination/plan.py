@@ -73,7 +73,7 @@ class EliminationPlan:
     turning: Turning = _REVOLUTE
     parallel: ParallelPlan | None = None
     motions: tuple[Motion, ...] = ()
-    crowded: tuple[float, ...] = ()
+    crowded: tuple[tuple[float, int], ...] = ()
     tool: int | None = None
 
     @property

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.runtime.python.array_types import Array, Index
+from ikgen.runtime.python.array_types import Array, Flags, Index
 from ikgen.runtime.python.back_substitution import complete_angles, null_angles
 from ikgen.runtime.python.chain_kinematics import Motion
 from ikgen.runtime.python.general_6r import Candidates, Elimination
@@ -26,12 +26,21 @@ from ikgen.runtime.python.solution_rows import rows_of
 
 __all__ = ["CoupledAngle", "coupled_and_others", "coupled_determinants", "neighbours"]
 
+Complex = NDArray[np.complex128]
+
 _ONE = np.eye(4)[None]
 _FIRST_NODE = 0.05  # rad, an angle that no right angle shares
 _REAL = 0.03  # rad, the imaginary part of an angle that may be real
+_NOISE = 1e-13  # of a determinant's harmonics, of the largest
+_OFF, _SURE, _SHARE = (
+    0.3,
+    1e-6,
+    0.25,
+)  # rad: roots so far off cannot be real; rounding that leaves no doubt
+_GONE = 10j  # a root that is none
 
 # Near a crowded angle (rad): how far, and the degree of polynomials of sines and cosines there.
-_NEAR, _CLOSE = 0.2, 20
+_NEAR, _CLOSE, _SEAM, _CORE = 0.2, 20, 5e-3, 0.01
 _NODES: Array = np.cos(np.pi / (_CLOSE + 1) * (np.arange(_CLOSE + 1, dtype=float) + 0.5))
 _CHEBYSHEV = np.linalg.inv(np.polynomial.chebyshev.chebvander(_NODES, _CLOSE))
 
@@ -39,33 +48,48 @@ _CHEBYSHEV = np.linalg.inv(np.polynomial.chebyshev.chebvander(_NODES, _CLOSE))
 @dataclass(frozen=True)
 class CoupledAngle:
     """Finds candidates of a chain in which one joint, and no other, turns several axes: `motions` in their
-    order along the chain. The plan's third number is the degree in that joint's angle. Near `crowded`
-    angles (rad) the determinant is small at every pose; it is looked at there by itself."""
+    order along the chain. The plan's third number is the degree in that joint's angle. At `crowded`
+    angles (rad) the determinant has roots at every pose, so many each; it is looked at there by itself."""
 
     motions: tuple[Motion, ...]
-    crowded: tuple[float, ...] = ()
+    crowded: tuple[tuple[float, int], ...] = ()
 
     def __call__(
         self, F: Sequence[Array], T: Array, plan: Elimination, _: tuple[bool, ...]
     ) -> Candidates:
-        """As `candidates`, of as many frames F as rows and 1; none is known to be all of a pose."""
-        count, degree = len(T), plan[2]
-        step = 2.0 * np.pi / (2 * degree + 2)
-        nodes: Array = _FIRST_NODE + step * np.arange(2 * degree + 2, dtype=float)
-        pose, angle = _roots(coupled_determinants(self.motions, F, T, plan, nodes), degree)
-        for place in self.crowded:
-            close = coupled_determinants(self.motions, F, T, plan, place + _NEAR * _NODES)
-            apart = np.abs(np.remainder(angle - place + np.pi, 2.0 * np.pi) - np.pi) > 0.9 * _NEAR
-            more, near = _close_roots(close)
-            pose, angle = np.append(pose[apart], more), np.append(angle[apart], place + near)
-        order = np.argsort(pose, kind="stable")
-        pose, angle = pose[order], angle[order]
-        none, unclear = np.zeros(count, dtype=np.intp), np.zeros(count, dtype=bool)
+        """As `candidates`, of as many frames F as rows and 1."""
+        pose, angle, least, clear = self._angles(F, T, plan)
         if not len(pose):
-            return pose, np.zeros((0, 6)), none, unclear
+            return pose, np.zeros((0, 6)), least, clear
         frames = [rows_of(frame, pose) for frame in F]
         k, q = _completed(self.motions, frames, T[pose], plan, pose, angle)
-        return pose[k], q, none, unclear
+        return pose[k], q, least, clear
+
+    def _angles(
+        self, F: Sequence[Array], T: Array, plan: Elimination
+    ) -> tuple[Index, Array, Index, Flags]:
+        """Poses (k,) in order and the roots (k,) that may be real; of each pose how many clearly are, and
+        whether the others clearly are not. Roots that every pose has near a crowded angle are left out
+        where no other is among them."""
+        degree = plan[2]
+        step = 2.0 * np.pi / (2 * degree + 2)
+        nodes: Array = _FIRST_NODE + step * np.arange(2 * degree + 2, dtype=float)
+        roots, sure = _roots(coupled_determinants(self.motions, F, T, plan, nodes), degree)
+        clear = np.ones(len(T), dtype=bool)
+        for place, order in self.crowded:
+            close = coupled_determinants(self.motions, F, T, plan, place + _NEAR * _NODES)
+            near, certain = _close_roots(close)
+            core = np.abs(near) < _CORE
+            alone = core.sum(axis=1) == order
+            way = np.abs(np.remainder(roots.real - place + np.pi, 2.0 * np.pi) - np.pi)
+            clear &= alone & ~_at_seam(way, roots.imag) & ~_at_seam(np.abs(near.real), near.imag)
+            roots = np.where(way > 0.9 * _NEAR, roots, _GONE)
+            left_out = (np.abs(near.real) > 0.9 * _NEAR) | (core & alone[:, None])
+            roots = np.concatenate([roots, np.where(left_out, _GONE, place + near)], axis=1)
+            sure = np.concatenate([sure, certain], axis=1)
+        clear &= (sure | (np.abs(roots.imag) > _OFF)).all(axis=1)
+        pose, angle, real, apart = real_angles(np.tan(0.5 * roots), np.zeros(len(T)), _REAL)
+        return pose, angle, np.where(clear, real, 0), clear & apart
 
 
 def coupled_determinants(
@@ -139,9 +163,27 @@ def _singular(E: Array, left: Array) -> Array:
     return lift(A)
 
 
-def _roots(values: Array, degree: int) -> tuple[Index, Array]:
-    """Poses (k,) in order and the real roots (k,), in order for each, of trigonometric polynomials with
-    `values` (N, n) at the nodes."""
+def _at_seam(way: Array, off: Array) -> Flags:
+    """Of which poses (N,) roots `way` (N, n) from a crowded angle, with imaginary parts `off`, may be of
+    either polynomial."""
+    seam = (np.abs(way - 0.9 * _NEAR) < _SEAM) & (np.abs(off) < _REAL)
+    return np.asarray(seam.any(axis=1))
+
+
+def _sure(z: Complex, off: Array, size: Array) -> Flags:
+    """Which roots z (N, n) of polynomials, `off` (N, n) rad from real angles, rounding leaves as they are.
+    `size` (N, n): by how many rad times the product of a root's distances from the others it moves each."""
+    apart = z[:, :, None] - z[:, None, :]
+    k = np.arange(z.shape[1])
+    apart[:, k, k] = 1.0
+    with np.errstate(all="ignore"):
+        moved = size / np.abs(np.prod(apart, axis=2))
+    return np.asarray(moved < np.maximum(_SURE, _SHARE * off))
+
+
+def _roots(values: Array, degree: int) -> tuple[Complex, Flags]:
+    """The roots (N, 2 degree), angles, of trigonometric polynomials with `values` (N, n) at the nodes, and
+    which are `_sure`."""
     harmonics = np.arange(-degree, degree + 1)
     c = np.fft.fft(values, axis=1)[:, harmonics]
     c = c / np.maximum(np.abs(c).max(axis=1, keepdims=True), 1e-300)
@@ -149,25 +191,32 @@ def _roots(values: Array, degree: int) -> tuple[Index, Array]:
     companion = np.zeros((len(c), 2 * degree, 2 * degree), dtype=complex)
     companion[:, 1:, :-1] = np.eye(2 * degree - 1)
     companion[:, :, -1] = -c[:, :-1] / lead
-    z = np.linalg.eigvals(companion)
-    t: NDArray[np.complex128] = -1j * (z - 1.0) / np.where(z == -1.0, 1e-300, z + 1.0)
-    pose, angle, _, _ = real_angles(t, np.full(len(z), _FIRST_NODE), _REAL)
-    return pose, angle
+    z: Complex = np.asarray(np.linalg.eigvals(companion), dtype=np.complex128)
+    z[np.abs(z) < 1e-300] = 1e-300
+    size = np.abs(z)
+    roots: Complex = _FIRST_NODE + np.angle(z) - 1j * np.log(size)
+    with np.errstate(all="ignore"):
+        harmonic = (size[:, :, None] ** np.arange(2 * degree + 1)).sum(axis=2)
+        moved = _NOISE * harmonic / (size * np.abs(lead))
+    return roots, _sure(z, np.abs(roots.imag), moved)
 
 
-def _close_roots(values: Array) -> tuple[Index, Array]:
-    """Poses (k,) and the real roots (k,), from a crowded angle, of determinants with `values` (N, n) at the
-    nodes near it: eigenvalues of the colleague matrix (Good 1961)."""
+def _close_roots(values: Array) -> tuple[Complex, Flags]:
+    """The roots (N, n), from a crowded angle, of determinants with `values` (N, n + 1) at the nodes near
+    it, and which are `_sure`: eigenvalues of the colleague matrix (Good 1961)."""
     c = values @ _CHEBYSHEV.T
+    c = c / np.maximum(np.abs(c).max(axis=1, keepdims=True), 1e-300)
     lead = np.where(np.abs(c[:, -1:]) < 1e-300, 1e-300, c[:, -1:])
     colleague = np.zeros((len(c), _CLOSE, _CLOSE))
     k = np.arange(_CLOSE - 1)
     colleague[:, k, k + 1] = colleague[:, k + 1, k] = 0.5
     colleague[:, 0, 1] = 1.0
     colleague[:, -1] -= 0.5 * c[:, :-1] / lead
-    x = np.linalg.eigvals(colleague)
-    pose, i = np.nonzero((np.abs(x.imag) < _REAL / _NEAR) & (np.abs(x.real) <= 1.0))
-    return pose, np.asarray(_NEAR * x.real[pose, i], dtype=float)
+    x: Complex = np.asarray(np.linalg.eigvals(colleague), dtype=np.complex128)
+    with np.errstate(all="ignore"):
+        waves = np.abs(np.cos(np.arange(_CLOSE + 1) * np.arccos(x)[:, :, None])).sum(axis=2)
+    moved = _NEAR * _NOISE * waves / (0.5 * 2.0**_CLOSE * np.abs(lead))
+    return _NEAR * x, _sure(x, _NEAR * np.abs(x.imag), moved)
 
 
 def _completed(
