@@ -1852,12 +1852,15 @@ def _rows_and_doubts(
 # Solutions on what is a continuum of the geometry that was solved, and none of the file's.
 
 
-_MOST, _CORRECTIONS, _STEPS, _DEEP, _LEAST = 96, 6, 40, 24, 4
+_near_continuum_MOST, _CORRECTIONS, _STEPS, _DEEP, _LEAST = 96, 6, 40, 24, 4
 _CUBICS, _NEWTON, _CLEAR = 2, 4, 1e-6
 _LEAP, _SOON = 16.0, 3
 _SAMPLES = 600  # of a curve
 _ROOM = 32  # solutions of a curve
-_NEAR = 1e-11  # rad or m: how far off the curve slopes along it are the curve's
+_NEAR = (
+    1e-8  # rad or m: how far off the curve what is left, whose error is the square, is the curve's
+)
+_ALMOST, _SAME = 1e-3, 4e-15  # or how close it must be where what is left is the same after a step
 _WAY = 1e-10  # rad or m: along it, by which what is left varies by round-off
 _ROUND_OFF, _SMALL, _DOUBT, _near_continuum_BESIDE, _SAME_WAY = 1e-15, 4e-15, 0.03, 0.06, 0.9
 
@@ -1903,6 +1906,17 @@ def _rows_around(arm: _Arm, q: Array, T: Array, broken: _Flags) -> tuple[_Flags,
 
 def _trace(arm: _Arm, q: Array, T: Array) -> _Traced:
     """The curves through rows q (k, dof) towards aims T (k, ...), once around, or to both their ends."""
+    asked = np.concatenate([q, T.reshape(len(q), -1)], axis=1)
+    _, first, again = np.unique(asked, axis=0, return_index=True, return_inverse=True)
+    again = again.reshape(-1)
+    curve, broken, owner, rows = _traced(arm, q[first], T[first])
+    begin, end = np.searchsorted(owner, again), np.searchsorted(owner, again, side="right")
+    whose = np.repeat(np.arange(len(q)), end - begin)
+    return _Traced(curve[again], broken[again], whose, rows[begin[whose] + _places(whose)])
+
+
+def _traced(arm: _Arm, q: Array, T: Array) -> _Traced:
+    """`_trace` of rows that differ."""
     count, (error, slope) = len(q), _linearized(arm, q, T)
     nothing, still = np.zeros(count), _still_directions(arm, slope)
     start = _Reduced(q, still, _generic(count, error.shape[1]), nothing, nothing)
@@ -1910,7 +1924,7 @@ def _trace(arm: _Arm, q: Array, T: Array) -> _Traced:
     back = first._replace(still=-first.still, out=-first.out, left=-first.left)
     parts, closed, worst = _follow(arm, first, T, np.arange(count), 0.0)
     open_ends = np.flatnonzero(~closed)
-    more, _, largest = _follow(arm, back, T, open_ends, float(_MOST))
+    more, _, largest = _follow(arm, back, T, open_ends, float(_near_continuum_MOST))
     worst = np.maximum(np.maximum(worst, largest), np.abs(first.left))
     parts = _joined(*parts, *more)
     steps = np.bincount(parts.owner, minlength=count)
@@ -1923,12 +1937,14 @@ def _trace(arm: _Arm, q: Array, T: Array) -> _Traced:
 def _sample(arm: _Arm, at: _Reduced, T: Array) -> _Reduced:
     """The configurations of the curves beside some (k,)."""
     at = _Reduced(*(x.copy() for x in at))
-    going = np.arange(len(T))
+    going, before = np.arange(len(T)), np.full(len(T), np.inf)
     for _ in range(_CORRECTIONS):
         moved, farthest = _correct(arm, _some_of(at, going), T[going])
         for whole, part in zip(at, moved):
             whole[going] = part
-        going = going[~(farthest < _NEAR)]
+        same = (np.abs(moved.left - before) < _SAME) & (farthest < _ALMOST)
+        on = ~((farthest < _NEAR) | same)
+        going, before = going[on], moved.left[on]
         if not len(going):
             break
     return at
@@ -1941,9 +1957,10 @@ def _follow(
     closed, worst = np.zeros(len(T), dtype=bool), np.zeros(len(T))
     parts, moving, owner = [], list(arm.moving), some
     b = _some_of(first, some)
-    for step in range(_MOST):
-        ahead = b.q.copy()
-        ahead[:, moving] += arm.policy.try_step * b.still / np.abs(b.still).max(axis=1)[:, None]
+    before = b.still
+    for step in range(_near_continuum_MOST):
+        ahead, course = b.q.copy(), 1.5 * b.still - 0.5 * before
+        ahead[:, moving] += arm.policy.try_step * course / np.abs(course).max(axis=1)[:, None]
         c = _sample(arm, b._replace(q=ahead), T[owner])
         on = np.abs(c.left) < arm.policy.fold_reach
         b, c, owner = _some_of(b, on), _some_of(c, on), owner[on]
@@ -1951,6 +1968,7 @@ def _follow(
         parts.append(_Parts(b, c, owner, np.full(len(owner), place + step), np.ones(len(owner))))
         round_about = _back(arm, _some_of(first, owner), b) & (step > 1)
         closed[owner[round_about]] = True
+        before = b.still[~round_about]
         b, owner = _some_of(c, ~round_about), owner[~round_about]
         if not len(owner):
             break
@@ -1969,9 +1987,17 @@ def _back(arm: _Arm, a: _Reduced, b: _Reduced) -> _Flags:
 
 
 def _between(arm: _Arm, parts: _Parts, share: Array, T: Array) -> _Reduced:
-    """Samples at a `share` (n,) of the way from a to b."""
-    q = parts.a.q + share[:, None] * (parts.b.q - parts.a.q)
-    return _sample(arm, parts.a._replace(q=q), T[parts.owner])
+    """Samples at a `share` (n,) of the way from a to b, near the cubic with the directions at both."""
+    a, b, s, moving = parts.a, parts.b, share[:, None], list(arm.moving)
+    way = (b.q - a.q)[:, moving]
+    length = np.sqrt((way**2).sum(axis=1))[:, None]
+    along = ((a.still * b.still).sum(axis=1) > 0.0)[:, None]
+    rise, fall = (np.where(along, length * end.still - way, 0.0) for end in (a, b))
+    q = a.q + s * (b.q - a.q)
+    q[:, moving] += s * (1.0 - s) * ((1.0 - s) * rise - s * fall)
+    still = np.where(along, (1.0 - s) * a.still + s * b.still, a.still)
+    still /= np.sqrt((still**2).sum(axis=1))[:, None]
+    return _sample(arm, a._replace(q=q, still=still), T[parts.owner])
 
 
 def _look(arm: _Arm, parts: _Parts, T: Array, samples: _Index) -> tuple[_Index, Array]:
@@ -2276,7 +2302,7 @@ def _search_held(
 
 _DEEPEST = 24  # of the way from one pose to the next
 _SHALLOW = 9  # the same where there are no rows
-_path_following_MOST = 1000  # steps from one pose to the next, where rows follow at no length
+_MOST = 1000  # steps from one pose to the next, where rows follow at no length
 _path_following_FARTHEST = 0.3  # rad or m that a joint may move at once
 _AWAY = 1.0  # rad or m by which it turns around a singularity, where another row is next to the last one
 _OFF = 0.2  # of the motion, and
@@ -2334,7 +2360,7 @@ class _Walk:
         self.arm, self.limits = arm, limits
         self.q: Array = np.zeros(len(arm.lower))
         self.crossed = False
-        self.left = _path_following_MOST
+        self.left = _MOST
 
     def begin(
         self, pose: Array, start: Array, search: Callable[[Array, Array, bool], Solutions]
@@ -2348,7 +2374,7 @@ class _Walk:
 
     def go_on(self, before: Array, pose: Array) -> Status:
         """From a pose to the next."""
-        here, self.left = self.q, _path_following_MOST
+        here, self.left = self.q, _MOST
         status = self.step(before, pose, 0)
         if status is Status.OK and np.abs(self.q - here).max() < _AWAY:
             return status

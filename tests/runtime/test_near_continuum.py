@@ -65,6 +65,46 @@ def test_of_a_continuum_of_the_arm_itself_one_row_is_taken(tmp_path: Path) -> No
     assert np.abs(exact.forward(found) - poses).max() < 1e-9 and loss.max() < 1e-9
 
 
+def test_equal_starts_are_followed_once(
+    folded: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rows, poses = marked_rows(folded, np.array(FOLDED))
+    once = trace(folded._ARM, rows, poses)
+    sizes, traced = [], near_continuum._traced
+
+    def counted(arm: Any, q: Array, T: Array) -> near_continuum.Traced:
+        sizes.append(len(q))
+        return traced(arm, q, T)
+
+    monkeypatch.setattr(near_continuum, "_traced", counted)
+    again = trace(folded._ARM, np.tile(rows, (3, 1)), np.tile(poses, (3, 1, 1)))
+    assert sizes == [len(rows)]
+    assert again.curve.tolist() == once.curve.tolist() * 3
+    assert again.broken.tolist() == once.broken.tolist() * 3
+    count = len(rows)
+    assert again.owner.tolist() == [k * count + i for k in range(3) for i in once.owner.tolist()]
+    assert again.q == pytest.approx(np.tile(once.q, (3, 1)), abs=1e-12)
+
+
+def test_samples_between_two_begin_near_the_curve(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a circle: a chord is 0.02 off it."""
+    plane: Any = SimpleNamespace(moving=(0, 1))
+    monkeypatch.setattr(near_continuum, "_sample", lambda arm, at, T: at)
+
+    def on_circle(angle: float) -> Reduced:
+        c, s, zero = np.cos(angle), np.sin(angle), np.zeros(1)
+        return Reduced(np.array([[c, s]]), np.array([[-s, c]]), np.zeros((1, 2)), zero, zero)
+
+    first = np.zeros(1, dtype=np.intp)
+    parts = _Parts(on_circle(0.0), on_circle(0.4), first, np.zeros(1), np.ones(1))
+    middle = near_continuum._between(plane, parts, np.array([0.5]), np.zeros((1, 4, 4)))
+    assert np.abs(middle.q - on_circle(0.2).q).max() < 2e-3
+    assert middle.still == pytest.approx(on_circle(0.2).still, abs=1e-12)
+    turned = parts._replace(b=parts.b._replace(still=-parts.b.still))
+    middle = near_continuum._between(plane, turned, np.array([0.5]), np.zeros((1, 4, 4)))
+    assert middle.q == pytest.approx(0.5 * (parts.a.q + parts.b.q))
+
+
 def test_a_broken_one_has_its_solutions_wherever_the_trace_starts(folded: ModuleType) -> None:
     q = np.array(FOLDED)
     rows, poses = marked_rows(folded, q)

@@ -26,7 +26,10 @@ _CUBICS, _NEWTON, _CLEAR = 2, 4, 1e-6
 _LEAP, _SOON = 16.0, 3
 _SAMPLES = 600  # of a curve
 _ROOM = 32  # solutions of a curve
-_NEAR = 1e-11  # rad or m: how far off the curve slopes along it are the curve's
+_NEAR = (
+    1e-8  # rad or m: how far off the curve what is left, whose error is the square, is the curve's
+)
+_ALMOST, _SAME = 1e-3, 4e-15  # or how close it must be where what is left is the same after a step
 _WAY = 1e-10  # rad or m: along it, by which what is left varies by round-off
 _ROUND_OFF, _SMALL, _DOUBT, _BESIDE, _SAME_WAY = 1e-15, 4e-15, 0.03, 0.06, 0.9
 
@@ -74,7 +77,19 @@ def rows_around(arm: Arm, q: Array, T: Array, broken: Flags) -> tuple[Flags, Ind
 
 
 def trace(arm: Arm, q: Array, T: Array) -> Traced:
-    """The curves through rows q (k, dof) towards aims T (k, ...), once around, or to both their ends."""
+    """The curves through rows q (k, dof) towards aims T (k, ...), once around, or to both their ends; of
+    equal ones one is followed."""
+    asked = np.concatenate([q, T.reshape(len(q), -1)], axis=1)
+    _, first, again = np.unique(asked, axis=0, return_index=True, return_inverse=True)
+    again = again.reshape(-1)
+    curve, broken, owner, rows = _traced(arm, q[first], T[first])
+    begin, end = np.searchsorted(owner, again), np.searchsorted(owner, again, side="right")
+    whose = np.repeat(np.arange(len(q)), end - begin)
+    return Traced(curve[again], broken[again], whose, rows[begin[whose] + places(whose)])
+
+
+def _traced(arm: Arm, q: Array, T: Array) -> Traced:
+    """`trace` of rows that differ."""
     count, (error, slope) = len(q), linearized(arm, q, T)
     nothing, still = np.zeros(count), still_directions(arm, slope)
     start = Reduced(q, still, generic(count, error.shape[1]), nothing, nothing)
@@ -95,12 +110,14 @@ def trace(arm: Arm, q: Array, T: Array) -> Traced:
 def _sample(arm: Arm, at: Reduced, T: Array) -> Reduced:
     """The configurations of the curves beside some (k,): of which one direction of the error is left."""
     at = Reduced(*(x.copy() for x in at))
-    going = np.arange(len(T))
+    going, before = np.arange(len(T)), np.full(len(T), np.inf)
     for _ in range(_CORRECTIONS):
         moved, farthest = correct(arm, some_of(at, going), T[going])
         for whole, part in zip(at, moved):
             whole[going] = part
-        going = going[~(farthest < _NEAR)]
+        same = (np.abs(moved.left - before) < _SAME) & (farthest < _ALMOST)
+        on = ~((farthest < _NEAR) | same)
+        going, before = going[on], moved.left[on]
         if not len(going):
             break
     return at
@@ -114,9 +131,10 @@ def _follow(
     closed, worst = np.zeros(len(T), dtype=bool), np.zeros(len(T))
     parts, moving, owner = [], list(arm.moving), some
     b = some_of(first, some)
+    before = b.still
     for step in range(_MOST):
-        ahead = b.q.copy()
-        ahead[:, moving] += arm.policy.try_step * b.still / np.abs(b.still).max(axis=1)[:, None]
+        ahead, course = b.q.copy(), 1.5 * b.still - 0.5 * before
+        ahead[:, moving] += arm.policy.try_step * course / np.abs(course).max(axis=1)[:, None]
         c = _sample(arm, b._replace(q=ahead), T[owner])
         on = np.abs(c.left) < arm.policy.fold_reach
         b, c, owner = some_of(b, on), some_of(c, on), owner[on]
@@ -124,6 +142,7 @@ def _follow(
         parts.append(_Parts(b, c, owner, np.full(len(owner), place + step), np.ones(len(owner))))
         round_about = _back(arm, some_of(first, owner), b) & (step > 1)
         closed[owner[round_about]] = True
+        before = b.still[~round_about]
         b, owner = some_of(c, ~round_about), owner[~round_about]
         if not len(owner):
             break
@@ -142,9 +161,17 @@ def _back(arm: Arm, a: Reduced, b: Reduced) -> Flags:
 
 
 def _between(arm: Arm, parts: _Parts, share: Array, T: Array) -> Reduced:
-    """Samples at a `share` (n,) of the way from a to b."""
-    q = parts.a.q + share[:, None] * (parts.b.q - parts.a.q)
-    return _sample(arm, parts.a._replace(q=q), T[parts.owner])
+    """Samples at a `share` (n,) of the way from a to b, near the cubic with the directions at both."""
+    a, b, s, moving = parts.a, parts.b, share[:, None], list(arm.moving)
+    way = (b.q - a.q)[:, moving]
+    length = np.sqrt((way**2).sum(axis=1))[:, None]
+    along = ((a.still * b.still).sum(axis=1) > 0.0)[:, None]
+    rise, fall = (np.where(along, length * end.still - way, 0.0) for end in (a, b))
+    q = a.q + s * (b.q - a.q)
+    q[:, moving] += s * (1.0 - s) * ((1.0 - s) * rise - s * fall)
+    still = np.where(along, (1.0 - s) * a.still + s * b.still, a.still)
+    still /= np.sqrt((still**2).sum(axis=1))[:, None]
+    return _sample(arm, a._replace(q=q, still=still), T[parts.owner])
 
 
 def _look(arm: Arm, parts: _Parts, T: Array, samples: Index) -> tuple[Index, Array]:
