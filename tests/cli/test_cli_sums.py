@@ -71,6 +71,29 @@ def test_a_level_tool_follows_shoulder_and_elbow(robot: Path) -> None:
     assert run(["verify", ".", "--samples", "20"]) == 0
 
 
+@pytest.mark.parametrize(
+    ("axis", "offset"), [("0 0 1", "+0.2"), ("0 0.2 1", ""), ("0.2 0.2 1", "")]
+)
+def test_a_tool_off_level_has_a_heading_with_a_length(
+    axis: str, offset: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "palletizer.urdf"
+    joints = list(palletizer())
+    joints[-1] = (*joints[-1][:2], axis, *joints[-1][3:])
+    path.write_text(serial_urdf("palletizer", tuple(joints)))
+    given = ["--couple", f"level=elbow*-1-shoulder*1{offset}", "-o", str(tmp_path)]
+    assert run(["from-urdf", str(path), *given, "--task", "position-yaw", "--samples", "40"]) == 0
+    assert "'position-yaw' fixes 5 freedoms and 4 joints move" in capsys.readouterr().err
+    module = PythonModule(tmp_path / "palletizer_ik.py").module
+    for turn in (
+        1e-2,
+        1e-3,
+        1e-4,
+    ):  # the x axis nearly horizontal: as short as it is, not a unit vector
+        q = np.array([0.4, -0.3, 0.7, turn + (0.5 * np.pi if offset else 0.0)])
+        assert np.abs(module.solve(module.forward(q), seed=q).q - q).max(axis=1).min() < 1e-9
+
+
 def test_its_sources_may_have_motors_that_move_several(robot: Path) -> None:
     given = ["--couple", "level=elbow*-1+shoulder*-1", "--couple", "elbow=elbow*1-shoulder*1"]
     assert run(["from-urdf", str(robot), *given, "--task", "position-yaw", *QUICK]) == 0

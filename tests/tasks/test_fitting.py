@@ -15,7 +15,14 @@ from ikgen.generation.read import read
 from ikgen.generation.request import Request
 from ikgen.model.dh import DHChain
 from ikgen.tasks import TASKS, find_task
-from ikgen.tasks.fitting import fits, fitting_tasks, freedoms_moved, over_constrained
+from ikgen.tasks.fitting import (
+    fits,
+    fitting_tasks,
+    freedoms_fixed,
+    freedoms_moved,
+    keeps_heading_level,
+    over_constrained,
+)
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 
@@ -107,6 +114,14 @@ def test_a_roll_about_the_tool_axis_asks_for_another_axis(tmp_path: Path) -> Non
         "position-direction:y",
     }
     assert [task.name for task in fitting_tasks(dh, "z")] == ["pose"]
+
+
+def test_a_tilt_that_changes_counts_with_the_heading() -> None:
+    yaw, pitch = find_task("position-yaw"), find_task("position-pitch")
+    level, tilting = chain("scara_standard.toml"), chain("open_manipulator_x.urdf")
+    assert keeps_heading_level(level) and freedoms_fixed(level, yaw) == 4
+    assert not keeps_heading_level(tilting) and freedoms_fixed(tilting, yaw) == 5
+    assert over_constrained(tilting, yaw) == 1 and freedoms_fixed(tilting, pitch) == 4
 
 
 def test_six_joints_take_the_whole_pose() -> None:

@@ -47,11 +47,12 @@ def test_a_task_compares_only_what_it_reads(task: str, counts: tuple[bool | None
     space = TASK_SPACES[task]
     poses = turned(2, 0, 0.25), turned(2, 0.5), turned(0, 0.5)
     for T, counted in zip(poses, counts, strict=True):
+        turn = 2.0 * np.sin(0.25) if task == "position-yaw" else 0.5  # of a heading the chord
         error = sum(e[0] for e in space.errors(T, np.eye(4)[None]))
         if counted is None:  # the tool's axis leaves the vertical: the sine of its elevation counts
             assert error == pytest.approx(1.0 - np.cos(0.5))
             continue
-        assert error == pytest.approx((0.5 if T[0, 0, 3] == 0 else 0.25) if counted else 0.0)
+        assert error == pytest.approx((turn if T[0, 0, 3] == 0 else 0.25) if counted else 0.0)
     half = space.errors(turned(0, np.pi), np.eye(4)[None])[1][0]
     assert half == pytest.approx({True: np.pi, None: 2.0}.get(counts[2], 0.0))
 
@@ -173,11 +174,16 @@ def test_half_a_turn_is_about_some_axis_and_none_about_none() -> None:
 
 
 @pytest.mark.parametrize(("a", "b"), [(3.0, -3.0), (-3.0, 3.0), (0.5, -0.25), (-3.1, -3.0)])
-def test_differences_of_yaw_are_the_short_way(a: float, b: float) -> None:
+def test_headings_differ_by_the_chord_between_them(a: float, b: float) -> None:
     T, target = turned(2, a), turned(2, b)
-    (e,) = TASK_SPACES["position-yaw"].residual(T, target)[:, 3]
-    assert abs(e) <= np.pi and np.sin(e - (b - a)) == pytest.approx(0.0, abs=1e-12)
-    assert np.cos(e - (b - a)) == pytest.approx(1.0)
+    space = TASK_SPACES["position-yaw"]
+    np.testing.assert_allclose(space.residual(T, target)[0, 3:], target[0, :2, 0] - T[0, :2, 0])
+    assert space.errors(T, target)[1][0] == pytest.approx(2.0 * abs(np.sin((b - a) / 2.0)))
+
+
+def test_a_tilt_shortens_a_heading() -> None:
+    error = TASK_SPACES["position-yaw"].errors(turned(1, 0.5), np.eye(4)[None])[1][0]
+    assert error == pytest.approx(1.0 - np.cos(0.5))
 
 
 def test_entries_count_each_for_itself_those_of_the_position_as_lengths() -> None:

@@ -31,12 +31,12 @@ def _passed_over(derivation: Derivation) -> str:
 def _over_constrained(derivation: Derivation) -> str:
     """In words, what a task that fixes more freedoms than the joints move means; "" where it does not."""
     from ikgen.generation.held_needs import needs_held
-    from ikgen.tasks.fitting import fitting_tasks, over_constrained
+    from ikgen.tasks.fitting import fitting_tasks, freedoms_fixed, over_constrained
 
     dh, task = derivation.reading.dh, derivation.task
     if not over_constrained(dh, task):
         return ""
-    moving = dh.dof - len(dh.free)
+    moving, fixed = dh.dof - len(dh.free), freedoms_fixed(dh, task)
     other = next((t.name for t in fitting_tasks(dh) if not t.whole_pose), "")
     smaller = f"--task {other} asks what the arm can do everywhere; " if other else ""
     if derivation.chosen:
@@ -45,7 +45,7 @@ def _over_constrained(derivation: Derivation) -> str:
         these = " ".join(f"--free {name}" for name in dh.free)
         smaller += f"without {these} the arm can do it; "
     return (
-        f"OVER-CONSTRAINED: the task '{task.name}' fixes {task.freedoms} freedoms and {moving} joints "
+        f"OVER-CONSTRAINED: the task '{task.name}' fixes {fixed} freedoms and {moving} joints "
         f"move: solve() answers only poses that the arm can take to rounding, and no others. {smaller}"
         "solve(pose, project=True) answers with the nearest pose that the arm can take"
     )

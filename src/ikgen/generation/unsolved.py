@@ -69,7 +69,7 @@ def incomplete_error(error: VerificationError, request: Request) -> IkgenError:
 
 def _known_gaps(derivation: Derivation) -> list[str]:
     """Why the form may miss rows, in words; empty where nothing tells."""
-    from ikgen.tasks.fitting import over_constrained
+    from ikgen.tasks.fitting import freedoms_fixed, over_constrained
 
     dh, plan = derivation.reading.dh, derivation.module.plan
     found = []
@@ -81,7 +81,8 @@ def _known_gaps(derivation: Derivation) -> list[str]:
         found.append(f"the elimination finds {plan.recall:.1%} of them")
     if over_constrained(dh, derivation.task):
         moving = dh.dof - len(dh.free)
-        found.append(f"{moving} joints move and the task fixes {derivation.task.freedoms} freedoms")
+        fixed = freedoms_fixed(dh, derivation.task)
+        found.append(f"{moving} joints move and the task fixes {fixed} freedoms")
     return found
 
 

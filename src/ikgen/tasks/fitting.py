@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 __all__ = [
     "fits",
     "fitting_tasks",
+    "freedoms_fixed",
     "freedoms_moved",
+    "keeps_heading_level",
     "over_constrained",
     "rank",
     "scaled_motion",
@@ -26,6 +28,10 @@ __all__ = [
 
 _INDEPENDENT = 1e-5
 """Least singular value, relative to the largest, of freedoms that are moved independently."""
+
+_LEVEL = 1e-10
+"""Most by which a heading's squared length falls short of 1, or changes, of a tool that stays as it is: the
+tilt of a file that writes its right angles in six digits."""
 
 _AS_GOOD = 0.5
 """The tool's z axis is taken unless it is conditioned worse than another by this factor."""
@@ -69,7 +75,22 @@ def fits(dh: DHChain, task: Task) -> bool:
 
 def over_constrained(dh: DHChain, task: Task) -> int:
     """How many of the task's freedoms the joints cannot move: 0 for a task that the arm can do."""
-    return max(0, task.freedoms - freedoms_moved(dh, task))
+    return max(0, freedoms_fixed(dh, task) - freedoms_moved(dh, task))
+
+
+def freedoms_fixed(dh: DHChain, task: Task) -> int:
+    """How many freedoms the task fixes: with a heading whose length the joints change its tilt as well."""
+    return task.freedoms + int(task.orientation == "yaw" and np.ptp(_shortened(dh)) > _LEVEL)
+
+
+def keeps_heading_level(dh: DHChain) -> bool:
+    """Whether the tool's x axis stays horizontal, so that its heading is a unit vector."""
+    return bool(_shortened(dh).max() < _LEVEL)
+
+
+def _shortened(dh: DHChain) -> Matrix:
+    """By how much the square of the heading's length falls short of 1, at a few configurations (8,)."""
+    return np.asarray(file_forward(dh, _configurations(dh))[:, 2, 0] ** 2)
 
 
 def freedoms_moved(dh: DHChain, task: Task) -> int:

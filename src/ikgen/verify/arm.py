@@ -27,6 +27,8 @@ FAR_LIMIT = 1e3
 """Limits (rad or m) beyond this mean "none": files write 999999, where rounding alone moves the
 tip."""
 
+_STAYS = 1e-10  # most change of a heading's squared length where the tilt stays as it is
+
 _UNBOUNDED_SLIDE = 1.0  # m: range sampled of a prismatic joint without limits
 
 
@@ -36,7 +38,8 @@ class ArmUnderTest:
     (at most one turn); `free`: indices of held joints; `active`: the others; `length` (m) scales
     metres against radians: the largest distance of the tip from the base that a random sample
     reached; `period` (dof,): as of the oracle, by which values are compared; `held`: names of what is
-    held; `angle`: the arm angle, where that is held after the joints."""
+    held; `angle`: the arm angle, where that is held after the joints; `tilting`: whether the task reads the
+    heading of an axis that the joints tilt more and less."""
 
     oracle: Oracle
     task: TaskSpace
@@ -52,11 +55,13 @@ class ArmUnderTest:
     length: float
     held: tuple[str, ...] = ()
     angle: ArmAngle | None = None
+    tilting: bool = False
 
     @property
     def rank(self) -> int:
-        """How many freedoms the task fixes, the arm angle that is held among them."""
-        return self.task.rank + int(self.angle is not None)
+        """How many freedoms the task fixes, the arm angle that is held among them, and the tilt of a
+        heading that changes its length."""
+        return self.task.rank + int(self.angle is not None) + int(self.tilting)
 
     @property
     def dof(self) -> int:
@@ -195,9 +200,10 @@ def arm_under_test(
     free = tuple(oracle.joint_names.index(name) for name in held if name in oracle.joint_names)
     active = tuple(i for i in range(oracle.dof) if i not in free)
     probe = np.random.default_rng(0).uniform(low, high, size=(64, oracle.dof))
-    tips = screws.forward(probe)[:, :3, 3]
-    length = max(float(np.max(np.linalg.norm(tips, axis=1))), 1e-3)
+    tips = screws.forward(probe)
+    length = max(float(np.max(np.linalg.norm(tips[:, :3, 3], axis=1))), 1e-3)
+    tilting = task.orientation == "yaw" and bool(np.ptp(tips[:, 2, 0] ** 2) > _STAYS)
     return ArmUnderTest(
         oracle, task, lower, upper, low, high, free, active, oracle.revolute, period, screws, length,
-        held, angle,
+        held, angle, tilting,
     )  # fmt: skip

@@ -48,10 +48,8 @@ def _pitch(T: Array, target: Array, axis: int) -> Array:
 
 
 def _yaw(T: Array, target: Array, axis: int) -> Array:
-    difference = [np.arctan2(X[:, 1, 0], X[:, 0, 0]) for X in (target, T)]
-    return np.asarray(
-        (np.remainder(difference[0] - difference[1] + np.pi, 2 * np.pi) - np.pi)[:, None]
-    )
+    """Differences of what the pose has of the heading, which a tilt shortens."""
+    return np.asarray(target[:, :2, 0] - T[:, :2, 0])
 
 
 def _rotation_rows(T: Array, J: Array, axis: int) -> Array:
@@ -70,11 +68,7 @@ def _pitch_rows(T: Array, J: Array, axis: int) -> Array:
 
 
 def _yaw_rows(T: Array, J: Array, axis: int) -> Array:
-    x = T[:, :3, 0]
-    velocity = np.cross(J[:, 3:], x[:, :, None], axis=1)
-    squared = np.maximum(x[:, 0] ** 2 + x[:, 1] ** 2, 1e-12)[:, None]
-    rate = (x[:, 0, None] * velocity[:, 1] - x[:, 1, None] * velocity[:, 0]) / squared
-    return np.asarray(rate[:, None, :])
+    return _entry_rows(T, J, ((0, 0), (1, 0)))
 
 
 def _entry_rows(T: Array, J: Array, entries: tuple[tuple[int, int], ...]) -> Array:

@@ -21,7 +21,8 @@ from ikgen.kinematics.column_blocks import column_blocks
 from ikgen.program.margins import fold_margins
 from ikgen.program.ops import Op
 from ikgen.program.policy import SolvePolicy
-from ikgen.tasks import AXES, Task
+from ikgen.tasks import AXES
+from ikgen.tasks.fitting import keeps_heading_level
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -32,8 +33,11 @@ _SYSTEM = ("array", "cstddef", "Eigen/Core", "Eigen/Geometry")
 """Headers that the shell itself needs."""
 
 
-def _columns(task: Task) -> str:
+def _columns(module: SolverModule) -> str:
     """First column of the rotation that a task reads, how many, and how many rows of them."""
+    task = module.reads
+    if task.orientation == "yaw" and not keeps_heading_level(module.dh):
+        return "0, 0, 3"
     if task.orientation == "direction":
         return f"{AXES.index(task.axis)}, 1, 3"
     return {"rotation": "0, 3, 3", "yaw": "0, 1, 2"}.get(task.orientation, "0, 0, 3")
@@ -71,7 +75,7 @@ def emit_header(module: SolverModule) -> str:
         careful=_careful(module),
         way="SingleSolve" if _careful(module) else "LaneSolve",
         entries_read=module.reads.entries,
-        columns=_columns(module.reads),
+        columns=_columns(module),
         joints=module.dh.joints,
         lower=[number(j.limits.lower) for j in module.dh.joints],
         upper=[number(j.limits.upper) for j in module.dh.joints],
