@@ -31,7 +31,7 @@ def test_a_header_has_what_its_arm_takes_and_no_more(rounded: bool, task: str, h
         exact(), dh=dh, task=task, free=tuple(range(held)), free_defaults=(0.0,) * held
     )
     found = _headers(module)
-    assert ("lane_newton.hpp" in found) == ("displacement.hpp" in found) == rounded
+    assert ("lane_refinement.hpp" in found) == ("displacement.hpp" in found) == rounded
     assert ("whole_pose.hpp" in found) == (task == "pose") != ("pose_entries.hpp" in found)
     assert found[-1] == ("row_preference.hpp", "held_search.hpp", "held_grid_search.hpp")[held]
     assert found[:2] == ["lane_angle.hpp", "lane_solve.hpp"] and "projection.hpp" in found
@@ -40,4 +40,4 @@ def test_a_header_has_what_its_arm_takes_and_no_more(rounded: bool, task: str, h
         free = (*dh.free[1:], ARM_ANGLE)
         angle = replace(module, dh=replace(dh, free=free))
         assert ("lane_elbow.hpp" if rounded else "arm_angle_motion.hpp") in _headers(angle)
-        assert ("lane_newton.hpp" in _headers(angle)) == rounded
+        assert ("lane_refinement.hpp" in _headers(angle)) == rounded

@@ -56,13 +56,36 @@ ROWS = r"""
 #include <cstdio>
 #include <vector>
 #include "arm_ik.hpp"
-// For each configuration its rows by solve, by solve_batch and by the careful way alone.
+// For each configuration its rows by solve, by solve_batch and by the careful way alone; how many rows need care; and of
+// how many starts beside them steps in lanes lead elsewhere than one by one.
 using namespace arm_ik;
+using detail::Arm;
 void print(const Solutions& found) {
   std::printf("%d", found.count);
   for (const Joints& q : found)
     for (int j = 0; j < kDof; ++j) std::printf(" %.17g", q[j]);
   std::printf("\n");
+}
+int elsewhere(const Eigen::Isometry3d& pose, const Options& options, detail::Arm::Rows<1> rows) {
+  constexpr int kLanes = Arm::Rows<1>::kLanes;
+  int lanes[kLanes];
+  double error[kLanes], alone[kLanes][kDof], left[kLanes];
+  for (int i = 0; i < kLanes; ++i) {
+    lanes[i] = i;
+    for (int j = 0; j < kDof; ++j) {
+      if (!Arm::kHeld[j]) rows.q[j][i] += 0.02 * (i + j);
+      alone[i][j] = rows.q[j][i];
+    }
+    left[i] = detail::NewtonRefinement<Arm>::error_after(alone[i], detail::HeldAim<Arm>(pose, options.free));
+  }
+  Arm::take_along(detail::gather<1>(&pose), options.free, lanes, kLanes - 1, rows, error);
+  int count = 0;
+  for (int i = 0; i < kLanes - 1; ++i) {
+    double apart = std::abs(error[i] - left[i]);
+    for (int j = 0; j < kDof && left[i] < 1e-12; ++j) apart = std::max(apart, std::abs(rows.q[j][i] - alone[i][j]));
+    count += !(apart < 1e-7);
+  }
+  return count;
 }
 int main() {
   std::vector<Eigen::Isometry3d> poses;
@@ -90,6 +113,7 @@ int main() {
     for (const double flags : rows.flags)
       rough += (static_cast<int>(flags) & (detail::kRough | detail::kHit)) != 0;
     std::printf("%d\n", rough);
+    std::printf("%d\n", elsewhere(poses[i], options, rows));
   }
 }
 """
@@ -127,18 +151,19 @@ def test_sines_are_right_to_round_off(flags: list[str], tmp_path: Path) -> None:
 def answers(
     module: SolverModule, q: Array, folder: Path, *flags: str
 ) -> list[tuple[list[Array], int]]:
-    """Of each configuration the rows by `solve`, in a batch and one by one, and how many rows the lanes
-    left to the latter."""
+    """Of each configuration the rows by `solve`, in a batch and one by one, and how many rows the lanes left to the
+    latter. Steps of several starts in lanes lead where those one by one do."""
     (folder / "arm_ik.hpp").write_text(emit_header(replace(module, name="arm")))
     program = compiled_header(ROWS, folder, f"-I{folder}", *flags)
     lines = feed(program, q.ravel().tolist())
-    assert len(lines) == 4 * len(q)
+    assert len(lines) == 5 * len(q)
+    assert sum(one[0] > 0 for one in lines[4::5]) <= 0.02 * len(q)  # at the verge of a stage
     return [
         (
             [np.array(one[1:]).reshape(int(one[0]), -1) for one in lines[i : i + 3]],
             int(lines[i + 3][0]),
         )
-        for i in range(0, len(lines), 4)
+        for i in range(0, len(lines), 5)
     ]
 
 

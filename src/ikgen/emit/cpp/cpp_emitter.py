@@ -144,7 +144,7 @@ def _headers(module: SolverModule) -> list[str]:
     needed += [_ROUTINES.get(name, f"{name}.hpp") for name in routines]
     needed += ["parallel_6r.hpp"] * bool(_parallel_kind(module))
     needed += ["tool_joint.hpp"] * (module.plan is not None and module.plan.tool is not None)
-    needed += ["lane_newton.hpp"] * _newton(module)
+    needed += ["lane_refinement.hpp"] * _newton(module)
     if module.dh.arm_angle:
         needed += ["lane_elbow.hpp" if _newton(module) else "arm_angle_motion.hpp"]
     needed += ["displacement.hpp"] * bool(module.beside)

@@ -16,7 +16,7 @@ namespace ikgen_runtime {
 // Arm: as for NewtonRefinement, RankLoss and SolutionRows; Seed, Rows<P> and branches<P>, the closed form, of kLanes
 // rows; kLaneOfRow; kRefined, whether its rows are right already; kRounded, whether it is of another geometry than the
 // file, and kBesides, kBeside, the motions of the tool to poses that are solved as well then: near folds those have
-// rows that the pose has not.
+// rows that the pose has not. Where kNewton is set refine<P> and take_along, steps in lanes.
 template <class Arm> struct CarefulRows {
   using Aim = HeldAim<Arm>;
   using Options = typename Arm::Options;
@@ -79,7 +79,7 @@ template <class Arm> struct CarefulRows {
       left.led = left.led || (bits(rows, lane) & (kSingular | kReal)) == (kSingular | kReal);
     }
     if (left.free) add_from(aim, q0, out);
-    const Rows ends = refined_lanes(rows, aim, options);
+    const Ends ends(rows, aim, options, kReal);
     Starts starts;
     bool plain[Arm::kLanes] = {};  // right, and far from singularities
     if constexpr (Arm::kRefined) RankLoss<Arm>::regular(rows, Policy::kFoldReach, plain);
@@ -91,7 +91,7 @@ template <class Arm> struct CarefulRows {
     if (Arm::kRounded && beside) starts.trace_broken(aim, out);
     if (Arm::kBesides > 0 && beside && (kBesideAnywhere || left.free || starts.close()))
       take_beside(aim, q0, options, starts, out);
-    if (Arm::kRounded && starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, ends, starts, out);
+    if (Arm::kRounded && starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, options, starts, out);
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
       if (starts.at(k).near && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
@@ -107,17 +107,26 @@ template <class Arm> struct CarefulRows {
     Row::add(out, q, false);
   }
 
-  // The rows of another geometry after steps towards the aim, all at once.
-  static Rows refined_lanes(const Rows& rows, const Aim& aim, const Options& options) noexcept {
-    Rows out = rows;
-    if constexpr (Arm::kNewton) {
-      constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
-      Arm::refine(gather<1>(&aim.pose), options.free, anywhere, out);
-    }
-    return out;
-  }
-
   static int bits(const Rows& rows, int lane) noexcept { return static_cast<int>(rows.flags[lane]); }
+
+  // Where steps towards the aim lead from lanes of another geometry that have a flag, all at once, and the error that is
+  // left where they don't show the one solution near their start.
+  struct Ends {
+    Rows rows;
+    double error[Arm::kLanes];
+
+    Ends(const Rows& from, const Aim& aim, const Options& options, Bit flag) noexcept : rows(from) {
+      if constexpr (Arm::kNewton) {
+        constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
+        const Pose<1> pose = gather<1>(&aim.pose);
+        Arm::refine(pose, options.free, anywhere, rows);
+        int lanes[Arm::kLanes], count = 0;
+        for (const int lane : Arm::kLaneOfRow)
+          if ((bits(from, lane) & flag) != 0 && (bits(rows, lane) & kFound) == 0) lanes[count++] = lane;
+        Arm::take_along(pose, options.free, lanes, count, rows, error);
+      }
+    }
+  };
 
   // What Newton steps from a lane led to. Rows that are right to round-off are added; of the others the nearest is kept.
   struct Nearest {
@@ -133,10 +142,11 @@ template <class Arm> struct CarefulRows {
     }
 
     // From where steps in lanes led to, if they did.
-    void refine(const Aim& aim, const Rows& ends) noexcept {
-      if (Arm::kNewton && (bits(ends, lane) & kFound) != 0) {
-        for (int j = 0; j < Arm::kDof; ++j) q[j] = ends.q[j][lane];
-        alone = true;
+    void refine(const Aim& aim, const Ends& ends) noexcept {
+      if constexpr (Arm::kNewton) {
+        for (int j = 0; j < Arm::kDof; ++j) q[j] = ends.rows.q[j][lane];
+        alone = (bits(ends.rows, lane) & kFound) != 0;
+        if (!alone) error = ends.error[lane];
       } else if (!Arm::kRefined) {
         error = Refinement::error_after(q, aim);
       }
@@ -227,7 +237,7 @@ template <class Arm> struct CarefulRows {
     bool any_traced() const noexcept { return std::find(std::begin(traced), std::end(traced), true) != std::end(traced); }
 
     // ends: what steps in lanes led to.
-    void take(Nearest start, const Rows& ends, bool beside, const Aim& aim, Places& out) noexcept {
+    void take(Nearest start, const Ends& ends, bool beside, const Aim& aim, Places& out) noexcept {
       if (!(Arm::kRounded && start.marked)) start.refine(aim, ends);
       if (start.marked && (Arm::kRounded || !(start.error < Policy::kArrived))) {
         if (!traced[start.lane]) traced[start.lane] = start.add_around(aim, out);
@@ -255,7 +265,8 @@ template <class Arm> struct CarefulRows {
   };
 
   // Lanes that are not real where a divisor nearly vanishes: less than the file is off may be what is missing there.
-  static void take_all(const Aim& aim, const Rows& rows, const Rows& ends, Starts& starts, Places& out) noexcept {
+  static void take_all(const Aim& aim, const Rows& rows, const Options& options, Starts& starts, Places& out) noexcept {
+    const Ends ends(rows, aim, options, kSingular);
     for (const int lane : Arm::kLaneOfRow)
       if ((bits(rows, lane) & kSingular) != 0) starts.take({rows, lane, true}, ends, false, aim, out);
   }
@@ -267,7 +278,7 @@ template <class Arm> struct CarefulRows {
       for (const auto& motion : Arm::kBeside) {
         Rows rows;
         find_lanes(displaced(aim.pose, motion), q0, options, rows);
-        const Rows ends = refined_lanes(rows, aim, options);
+        const Ends ends(rows, aim, options, kReal);
         for (const int lane : Arm::kLaneOfRow)
           if ((bits(rows, lane) & kReal) != 0)
             starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, true, aim, out);

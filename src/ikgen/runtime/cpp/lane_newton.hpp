@@ -79,6 +79,33 @@ template <class Arm> struct LaneNewton {
     }
   }
 
+  // The joint of a column of the slope.
+  static constexpr int column(int i) noexcept {
+    if constexpr (kBlocks) {
+      return Arm::kBlocks[static_cast<std::size_t>(i)];
+    } else {
+      return kJoints[i];
+    }
+  }
+
+  // The error at the chain's tip, and with `fresh` its slope, factored.
+  template <int P, int N, class Factored>
+  static void compare(const Pose<P>& pose, const LaneAim<Arm, N>& aim, const LaneChain<Arm, N>& chain, bool fresh,
+                      Lanes<N> (&error)[kEquations], Factored& factors) noexcept {
+    Lanes<N> t[3][4], slope[kEquations][Arm::kDof];
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 4; ++c) t[r][c] = spread<N>(pose.t[r][c]);
+    Arm::Task::error(t, chain.tip, error);
+    if constexpr (kEquations > kTask) aim.compare(error[kTask], slope[kTask]);
+    if (!fresh) return;
+    Lanes<N> J[6][Arm::kDof];
+    chain.jacobian(J);
+    Arm::Task::slope(chain.tip, J, slope);
+    for (int e = 0; e < kEquations; ++e)
+      for (int i = 0; i < kMoving; ++i) factors.V[e][i] = slope[e][column(i)];
+    factors.factor();
+  }
+
  private:
   template <int P, int N, bool H, bool F>
   static void refine_pack(const Pose<P>& pose, const LaneAim<Arm, N>& aim, const Range& range, int at,
@@ -140,33 +167,6 @@ template <class Arm> struct LaneNewton {
     }
     const Mask<N> ended = good & done, far = rest > Policy::kLeastMiss;
     return {ended & (Policy::kArrived > rest), ended & far};
-  }
-
-  // The joint of a column of the slope.
-  static constexpr int column(int i) noexcept {
-    if constexpr (kBlocks) {
-      return Arm::kBlocks[static_cast<std::size_t>(i)];
-    } else {
-      return kJoints[i];
-    }
-  }
-
-  // The error at the chain's tip, and with `fresh` its slope, factored.
-  template <int P, int N>
-  static void compare(const Pose<P>& pose, const LaneAim<Arm, N>& aim, const LaneChain<Arm, N>& chain, bool fresh,
-                      Lanes<N> (&error)[kEquations], Factors<N>& factors) noexcept {
-    Lanes<N> t[3][4], slope[kEquations][Arm::kDof];
-    for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 4; ++c) t[r][c] = spread<N>(pose.t[r][c]);
-    Arm::Task::error(t, chain.tip, error);
-    if constexpr (kEquations > kTask) aim.compare(error[kTask], slope[kTask]);
-    if (!fresh) return;
-    Lanes<N> J[6][Arm::kDof];
-    chain.jacobian(J);
-    Arm::Task::slope(chain.tip, J, slope);
-    for (int e = 0; e < kEquations; ++e)
-      for (int i = 0; i < kMoving; ++i) factors.V[e][i] = slope[e][column(i)];
-    factors.factor();
   }
 };
 

@@ -24,11 +24,6 @@ template <class X> struct FrameOf {
 };
 using Frame = FrameOf<double>;
 
-inline void turn_to(double angle, double& cosine, double& sine) noexcept {
-  cosine = std::cos(angle);
-  sine = std::sin(angle);
-}
-
 // A frame's matrix, columns first.
 inline void by_columns(const Frame& T, double* t) noexcept {
   for (int r = 0; r < 3; ++r) {
@@ -96,6 +91,35 @@ template <class Arm> struct MotionChain {
     }
   }
 
+  // Cosines and sines of what turns, and how far what slides moves.
+  template <class X> struct Turns {
+    static constexpr bool kPack = !std::is_same_v<X, double>;
+    static constexpr int kWide = kPack ? kCount : (kCount + 3) / 4 * 4;
+    static constexpr double kReduced = 1e5;  // rad: so far lane_sines.hpp reduces an angle to all digits
+    X value[kWide] = {}, cosine[kWide], sine[kWide];
+
+    explicit Turns(const X* q) noexcept {
+      for (int i = 0; i < kCount; ++i) {
+        value[i] = Arm::kMotions[i].scale * q[Arm::kMotions[i].joint] + Arm::kMotions[i].offset;
+        if constexpr (kPack)
+          if (Arm::kMotions[i].revolute) turn_to(value[i], cosine[i], sine[i]);
+      }
+      if constexpr (!kPack) turn_all();
+    }
+
+   private:
+    // Those of one configuration, several joints at once.
+    void turn_all() noexcept {
+      for (int i = 0; i < kWide; i += 4) {
+        const Sines<4> pair = sines(load<4>(value + i));
+        store(pair.cosine, cosine + i);
+        store(pair.sine, sine + i);
+      }
+      for (int i = 0; i < kCount; ++i)
+        if (!(std::abs(value[i]) < kReduced)) cosine[i] = std::cos(value[i]), sine[i] = std::sin(value[i]);
+    }
+  };
+
   // Column C of (x, y, z) times the constant behind motion I, most of whose entries are 0.
   template <std::size_t I, int C, class X> [[gnu::always_inline]] static X mixed(const X& x, const X& y, const X& z) noexcept {
     constexpr double a = Arm::kFrames[I + 1][0][C], b = Arm::kFrames[I + 1][1][C], c = Arm::kFrames[I + 1][2][C];
@@ -111,19 +135,16 @@ template <class Arm> struct MotionChain {
   }
 
   // Moves along motion I by its joint, then by the constant behind it.
-  template <std::size_t I, class X> [[gnu::always_inline]] static void advance(FrameOf<X>& T, const X* q) noexcept {
+  template <std::size_t I, class X> [[gnu::always_inline]] static void advance(FrameOf<X>& T, const Turns<X>& turns) noexcept {
     constexpr Motion motion = Arm::kMotions[I];
-    const X v = motion.scale * q[motion.joint] + motion.offset;
-    X c, s;
-    if constexpr (motion.revolute) turn_to(v, c, s);
     for (int r = 0; r < 3; ++r) {
       X x = T.R[r][0], y = T.R[r][1], p = T.p[r];
       const X z = T.R[r][2];
       if constexpr (motion.revolute) {
-        x = c * T.R[r][0] + s * T.R[r][1];
-        y = c * T.R[r][1] - s * T.R[r][0];
+        x = turns.cosine[I] * T.R[r][0] + turns.sine[I] * T.R[r][1];
+        y = turns.cosine[I] * T.R[r][1] - turns.sine[I] * T.R[r][0];
       } else {
-        p = p + v * z;
+        p = p + turns.value[I] * z;
       }
       T.p[r] = p + mixed<I, 3>(x, y, z);
       T.R[r][0] = mixed<I, 0>(x, y, z);
@@ -135,7 +156,8 @@ template <class Arm> struct MotionChain {
   // Along all motions; `before` is told of each and the frame in which it turns or moves.
   template <class X, class Before, std::size_t... I>
   static void advance(FrameOf<X>& T, const X* q, const Before& before, std::index_sequence<I...>) noexcept {
-    ((before(I, T), advance<I>(T, q)), ...);
+    const Turns<X> turns(q);
+    ((before(I, T), advance<I>(T, turns)), ...);
   }
 };
 

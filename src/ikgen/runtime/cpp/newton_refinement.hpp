@@ -3,16 +3,10 @@
 
 #include <algorithm>
 
-#include "constants.hpp"
 #include "pose_error.hpp"
+#include "refinement_course.hpp"
 
 namespace ikgen_runtime {
-
-// At most `steps` steps for what is off by at least `fine` and less than `promising` once the stage before is done.
-struct RefineStage {
-  int steps;
-  double fine, promising;
-};
 
 // Arm: as for PoseError, and its Policy.
 template <class Arm> struct NewtonRefinement {
@@ -37,33 +31,22 @@ template <class Arm> struct NewtonRefinement {
     for (int j = 0; j < Arm::kDof; ++j) q[j] += std::min(std::max(x[j], -Policy::kLargestStep), Policy::kLargestStep);
   }
 
-  // At most `steps` of them, of joints that do not stay `still` where that is given; the error that is left.
-  static double run(double* q, const Aim& aim, int steps, const bool* still) noexcept {
-    double trial[Arm::kDof], best = kInfinity;
+  // The error that steps from q leave, of joints that do not stay `still` where that is given.
+  static double error_after(double* q, const Aim& aim, const bool* still = nullptr) noexcept {
+    double trial[Arm::kDof];
     std::copy_n(q, Arm::kDof, trial);
-    for (int i = 0, stalled = 0;; ++i) {
+    for (RefinementCourse<Policy> course;;) {
       PoseError<Arm> at(trial, aim);
       if (still != nullptr) at.hold(still);
       const double worst = at.largest();
-      stalled = worst < Policy::kProgress * best && worst > Policy::kConverged ? 0 : stalled + 1;
-      if (worst < best) {
-        best = worst;
-        std::copy_n(trial, Arm::kDof, q);
-      }
-      if (i == steps || stalled == Policy::kPatience || !(best > Policy::kConverged)) return best;
-      step(at, worst, trial);
+      if (course.takes(worst)) std::copy_n(trial, Arm::kDof, q);
+      if (!course.starts_again())
+        step(at, worst, trial);
+      else if (course.done)
+        return course.best;
+      else
+        std::copy_n(q, Arm::kDof, trial);
     }
-  }
-
-  // The error that steps from q leave: only what is promising takes many. All digits are wanted where they
-  // come easily, as rows may lie on a limit.
-  static double error_after(double* q, const Aim& aim, const bool* still = nullptr) noexcept {
-    double error = kInfinity;
-    for (const RefineStage& stage : Policy::kRefinement) {
-      error = run(q, aim, stage.steps, still);
-      if (!(error >= stage.fine && error < stage.promising)) break;
-    }
-    return error;
   }
 
   // Whether they lead to the aim.

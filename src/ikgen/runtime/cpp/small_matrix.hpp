@@ -14,7 +14,8 @@ template <class X> inline void cross(const X* a, const X* b, X* out) noexcept {
   out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-// Cholesky's factor of A, symmetric and given up to its diagonal, in its place, but for inverses on its diagonal.
+// Cholesky's factor of A, symmetric and given up to its diagonal, in its place, but for inverses on its diagonal. X is
+// double, or a pack of them.
 template <class X, int N> inline void factor(X (&A)[N][N]) noexcept {
   using std::max;
   using std::sqrt;
@@ -49,14 +50,14 @@ template <int N> inline bool keeps_orientation(double (&A)[N][N]) noexcept {
 }
 
 // x = A^-1 x by the factor of A.
-template <int N> inline void substitute(const double (&L)[N][N], double (&x)[N]) noexcept {
+template <class X, int N> inline void substitute(const X (&L)[N][N], X (&x)[N]) noexcept {
   for (int i = 0; i < N; ++i) {
-    for (int k = 0; k < i; ++k) x[i] -= L[i][k] * x[k];
-    x[i] *= L[i][i];
+    for (int k = 0; k < i; ++k) x[i] = x[i] - L[i][k] * x[k];
+    x[i] = x[i] * L[i][i];
   }
   for (int i = N - 1; i >= 0; --i) {
-    for (int k = i + 1; k < N; ++k) x[i] -= L[k][i] * x[k];
-    x[i] *= L[i][i];
+    for (int k = i + 1; k < N; ++k) x[i] = x[i] - L[k][i] * x[k];
+    x[i] = x[i] * L[i][i];
   }
 }
 
