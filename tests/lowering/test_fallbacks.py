@@ -204,3 +204,25 @@ def test_a_divisor_of_the_size_of_what_the_geometry_is_off_comes_last(
         first = Linear(b.g.mul(b.share, b.given((1e-4,) * b.g.probes)), b.g.neg(small))
         last = Linear(b.g.one, b.g.const(-3.0))
         assert b.taken(b.length, first, last)[0] is comes_first
+
+
+def test_a_root_may_be_outside_by_what_a_small_divisor_before_it_moved_it(
+    solved: SolutionGraph,
+) -> None:
+    """What the only form divides by counts as its square, as what a square root is taken of; with a
+    constant to fall back on nothing is divided by what is small, and exact rows are moved by nothing."""
+    b = Bench(solved, 1e-5)
+    tolerances = b.work.tolerances
+    assert tolerances.margin is None and tolerances.fold
+    choose_form(b.work, b.length, [b.lowered(Linear(b.share, b.g.const(-3.0)), b.g.one)], b.g.one)
+    margin = b.work.tolerances.margin
+    assert margin is not None
+    squares = np.maximum(np.square(SHARES), tolerances.fold)
+    np.testing.assert_allclose(margin.probe[: len(SHARES)], squares)
+    for error, forms in ((1e-5, 2), (0.0, 1)):
+        other = Bench(solved, error)
+        first = Linear(other.share, other.g.const(-3.0))
+        last = Linear(other.g.one, other.g.const(-3.0))
+        lowered = [other.lowered(form, other.g.one) for form in (first, last)]
+        choose_form(other.work, other.length, lowered[:forms], other.g.one)
+        assert other.work.tolerances.margin is None

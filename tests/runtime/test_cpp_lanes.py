@@ -56,8 +56,8 @@ ROWS = r"""
 #include <cstdio>
 #include <vector>
 #include "arm_ik.hpp"
-// For each configuration its rows by solve, by solve_batch and by the careful way alone; how many rows need care; and of
-// how many starts beside them steps in lanes lead elsewhere than one by one.
+// For each configuration its rows by solve, by solve_batch and by the careful way alone; how many rows
+// need care; and of how many starts beside them steps in lanes lead elsewhere than one by one.
 using namespace arm_ik;
 using detail::Arm;
 void print(const Solutions& found) {
@@ -76,13 +76,15 @@ int elsewhere(const Eigen::Isometry3d& pose, const Options& options, detail::Arm
       if (!Arm::kHeld[j]) rows.q[j][i] += 0.02 * (i + j);
       alone[i][j] = rows.q[j][i];
     }
-    left[i] = detail::NewtonRefinement<Arm>::error_after(alone[i], detail::HeldAim<Arm>(pose, options.free));
+    const detail::HeldAim<Arm> aim(pose, options.free);
+    left[i] = detail::NewtonRefinement<Arm>::error_after(alone[i], aim);
   }
   Arm::take_along(detail::gather<1>(&pose), options.free, lanes, kLanes - 1, rows, error);
   int count = 0;
   for (int i = 0; i < kLanes - 1; ++i) {
     double apart = std::abs(error[i] - left[i]);
-    for (int j = 0; j < kDof && left[i] < 1e-12; ++j) apart = std::max(apart, std::abs(rows.q[j][i] - alone[i][j]));
+    for (int j = 0; j < kDof && left[i] < 1e-12; ++j)
+      apart = std::max(apart, std::abs(rows.q[j][i] - alone[i][j]));
     count += !(apart < 1e-7);
   }
   return count;
@@ -151,8 +153,8 @@ def test_sines_are_right_to_round_off(flags: list[str], tmp_path: Path) -> None:
 def answers(
     module: SolverModule, q: Array, folder: Path, *flags: str
 ) -> list[tuple[list[Array], int]]:
-    """Of each configuration the rows by `solve`, in a batch and one by one, and how many rows the lanes left to the
-    latter. Steps of several starts in lanes lead where those one by one do."""
+    """Of each configuration the rows by `solve`, in a batch and one by one, and how many rows the lanes
+    left to the latter. Steps of several starts in lanes lead where those one by one do."""
     (folder / "arm_ik.hpp").write_text(emit_header(replace(module, name="arm")))
     program = compiled_header(ROWS, folder, f"-I{folder}", *flags)
     lines = feed(program, q.ravel().tolist())

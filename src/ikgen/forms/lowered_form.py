@@ -36,8 +36,9 @@ class Tolerances:
     argument may be `clamp` outside its domain, as poses on the boundary of the workspace are reachable,
     and where rows are refined it is kept above `fold`, so that two branches start apart. Where the
     condition `rough` holds, what a square root is taken of has lost digits: it may be `wide` outside. An
-    `error` of the geometry moves what follows from a square root by as much over that root: `margin` is
-    the least, relative to natural sizes, of what square roots were taken of so far.
+    `error` of the geometry moves what follows from a square root by as much over that root, and what
+    follows from a divisor by as much over it: `margin` is the least, relative to natural sizes, of what
+    square roots were taken of so far and of the squares of divisors.
     """
 
     singular: float = 1e-11
@@ -95,6 +96,13 @@ class Divisor:
             return None
         limit = self.size * share if self.power == 1 else self.size * share**self.power
         return g.binary("gt", self.magnitude, g.const(limit))
+
+    def square(self, g: ExpressionGraph) -> Expr | None:
+        """Its square as a share of its natural size; None: it is constant."""
+        if self.magnitude is None:
+            return None
+        share = g.mul(g.const(1.0 / self.size), self.magnitude)
+        return share if self.power == 2 else g.square(share)
 
 
 @dataclass(frozen=True, slots=True)

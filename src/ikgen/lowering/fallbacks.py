@@ -53,6 +53,7 @@ def choose_form(
     first.
     """
     g = work.g
+    divisors = [form.divisor for form in forms]
     first = [_well_conditioned(work, form) for form in forms[:-1] if not _lost(work, form)]
     last = forms[-1].divisor
     if len(forms) > 1 and last.clear is not None and work.model_error > ROUNDED:
@@ -88,6 +89,7 @@ def choose_form(
     for form in forms:
         if form.under is not None:
             work.note_fold(form.under[0], natural_size(form.under[1]))
+    work.note_divisors(divisors)
     return values
 
 

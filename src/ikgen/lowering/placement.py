@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial, reduce
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +14,7 @@ from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import Variable
 from ikgen.equations.products import ENTRY_NAMES
 from ikgen.forms.form import Form
-from ikgen.forms.lowered_form import Tolerances, at_least, natural_size
+from ikgen.forms.lowered_form import Divisor, Tolerances, at_least, natural_size
 from ikgen.program.inputs import Input
 from ikgen.program.statements import Comment, Let
 from ikgen.solver.choice import Step
@@ -92,6 +94,13 @@ class Placement:
             self.folds.append(self.g.binary("gt", self.g.const(FOLDED * size), under))
         if self._tolerances.fold:
             self.margins.append(self.g.mul(self.g.const(1.0 / size), under))
+
+    def note_divisors(self, divisors: Sequence[Divisor]) -> None:
+        """An unknown was divided by the first of these that is large."""
+        squares = [one.square(self.g) for one in divisors] if self._tolerances.fold else []
+        if squares and None not in squares:
+            largest = reduce(partial(self.g.binary, "max"), filter(None, squares))
+            self.margins.append(largest)
 
     @property
     def tolerances(self) -> Tolerances:
