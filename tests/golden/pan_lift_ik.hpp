@@ -23,6 +23,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <tuple>
 #include <type_traits>
@@ -524,19 +525,21 @@ template <class X> inline void cross(const X* a, const X* b, X* out) noexcept {
   out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-template <int N> inline void factor(double (&A)[N][N]) noexcept {
+template <class X, int N> inline void factor(X (&A)[N][N]) noexcept {
+  using std::max;
+  using std::sqrt;
   for (int i = 0; i < N; ++i)
     for (int j = 0; j <= i; ++j) {
-      double sum = A[i][j];
-      for (int k = 0; k < j; ++k) sum -= A[i][k] * A[j][k];
-      A[i][j] = i == j ? 1.0 / std::sqrt(std::max(sum, 1e-300)) : sum * A[j][j];
+      X sum = A[i][j];
+      for (int k = 0; k < j; ++k) sum = sum - A[i][k] * A[j][k];
+      A[i][j] = i == j ? 1.0 / sqrt(max(sum, 1e-300)) : sum * A[j][j];
     }
 }
 
-template <int N> inline bool definite(const double (&L)[N][N]) noexcept {
-  for (int i = 0; i < N; ++i)
-    if (!(L[i][i] < 1e149)) return false;
-  return true;
+template <class X, int N> inline auto definite(const X (&L)[N][N]) noexcept {
+  auto yes = 1e149 > L[0][0];
+  for (int i = 1; i < N; ++i) yes = yes & (1e149 > L[i][i]);
+  return yes;
 }
 
 template <int N> inline bool keeps_orientation(double (&A)[N][N]) noexcept {
@@ -553,14 +556,14 @@ template <int N> inline bool keeps_orientation(double (&A)[N][N]) noexcept {
   return keeps;
 }
 
-template <int N> inline void substitute(const double (&L)[N][N], double (&x)[N]) noexcept {
+template <class X, int N> inline void substitute(const X (&L)[N][N], X (&x)[N]) noexcept {
   for (int i = 0; i < N; ++i) {
-    for (int k = 0; k < i; ++k) x[i] -= L[i][k] * x[k];
-    x[i] *= L[i][i];
+    for (int k = 0; k < i; ++k) x[i] = x[i] - L[i][k] * x[k];
+    x[i] = x[i] * L[i][i];
   }
   for (int i = N - 1; i >= 0; --i) {
-    for (int k = i + 1; k < N; ++k) x[i] -= L[k][i] * x[k];
-    x[i] *= L[i][i];
+    for (int k = i + 1; k < N; ++k) x[i] = x[i] - L[k][i] * x[k];
+    x[i] = x[i] * L[i][i];
   }
 }
 
@@ -575,11 +578,6 @@ template <class X> struct FrameOf {
   X R[3][3], p[3];
 };
 using Frame = FrameOf<double>;
-
-inline void turn_to(double angle, double& cosine, double& sine) noexcept {
-  cosine = std::cos(angle);
-  sine = std::sin(angle);
-}
 
 inline void by_columns(const Frame& T, double* t) noexcept {
   for (int r = 0; r < 3; ++r) {
@@ -644,6 +642,33 @@ template <class Arm> struct MotionChain {
     }
   }
 
+  template <class X> struct Turns {
+    static constexpr bool kPack = !std::is_same_v<X, double>;
+    static constexpr int kWide = kPack ? kCount : (kCount + 3) / 4 * 4;
+    static constexpr double kReduced = 1e5;  // rad: so far lane_sines.hpp reduces an angle to all digits
+    X value[kWide] = {}, cosine[kWide], sine[kWide];
+
+    explicit Turns(const X* q) noexcept {
+      for (int i = 0; i < kCount; ++i) {
+        value[i] = Arm::kMotions[i].scale * q[Arm::kMotions[i].joint] + Arm::kMotions[i].offset;
+        if constexpr (kPack)
+          if (Arm::kMotions[i].revolute) turn_to(value[i], cosine[i], sine[i]);
+      }
+      if constexpr (!kPack) turn_all();
+    }
+
+   private:
+    void turn_all() noexcept {
+      for (int i = 0; i < kWide; i += 4) {
+        const Sines<4> pair = sines(load<4>(value + i));
+        store(pair.cosine, cosine + i);
+        store(pair.sine, sine + i);
+      }
+      for (int i = 0; i < kCount; ++i)
+        if (!(std::abs(value[i]) < kReduced)) cosine[i] = std::cos(value[i]), sine[i] = std::sin(value[i]);
+    }
+  };
+
   template <std::size_t I, int C, class X> [[gnu::always_inline]] static X mixed(const X& x, const X& y, const X& z) noexcept {
     constexpr double a = Arm::kFrames[I + 1][0][C], b = Arm::kFrames[I + 1][1][C], c = Arm::kFrames[I + 1][2][C];
     if constexpr (a == 0.0 && b == 0.0) {
@@ -657,19 +682,16 @@ template <class Arm> struct MotionChain {
     }
   }
 
-  template <std::size_t I, class X> [[gnu::always_inline]] static void advance(FrameOf<X>& T, const X* q) noexcept {
+  template <std::size_t I, class X> [[gnu::always_inline]] static void advance(FrameOf<X>& T, const Turns<X>& turns) noexcept {
     constexpr Motion motion = Arm::kMotions[I];
-    const X v = motion.scale * q[motion.joint] + motion.offset;
-    X c, s;
-    if constexpr (motion.revolute) turn_to(v, c, s);
     for (int r = 0; r < 3; ++r) {
       X x = T.R[r][0], y = T.R[r][1], p = T.p[r];
       const X z = T.R[r][2];
       if constexpr (motion.revolute) {
-        x = c * T.R[r][0] + s * T.R[r][1];
-        y = c * T.R[r][1] - s * T.R[r][0];
+        x = turns.cosine[I] * T.R[r][0] + turns.sine[I] * T.R[r][1];
+        y = turns.cosine[I] * T.R[r][1] - turns.sine[I] * T.R[r][0];
       } else {
-        p = p + v * z;
+        p = p + turns.value[I] * z;
       }
       T.p[r] = p + mixed<I, 3>(x, y, z);
       T.R[r][0] = mixed<I, 0>(x, y, z);
@@ -680,7 +702,8 @@ template <class Arm> struct MotionChain {
 
   template <class X, class Before, std::size_t... I>
   static void advance(FrameOf<X>& T, const X* q, const Before& before, std::index_sequence<I...>) noexcept {
-    ((before(I, T), advance<I>(T, q)), ...);
+    const Turns<X> turns(q);
+    ((before(I, T), advance<I>(T, turns)), ...);
   }
 };
 
@@ -1130,12 +1153,42 @@ template <class Arm> struct NearContinuum {
   }
 };
 
-// --- newton refinement ---------------------------------------------------------------------------
+// --- refinement course ---------------------------------------------------------------------------
 struct RefineStage {
   int steps;
   double fine, promising;
 };
 
+template <class Policy> struct RefinementCourse {
+  double best = kInfinity;  // the least error of this stage
+
+  bool takes(double worst) noexcept {
+    stalled = worst < Policy::kProgress * best && worst > Policy::kConverged ? 0 : stalled + 1;
+    if (!(worst < best)) return false;
+    best = worst;
+    return true;
+  }
+
+  bool starts_again() noexcept {
+    if (step++ < stage().steps && stalled < Policy::kPatience && best > Policy::kConverged) return false;
+    done = !(best >= stage().fine && best < stage().promising) || at + 1 == std::size(Policy::kRefinement);
+    if (done) return true;
+    ++at;
+    step = stalled = 0;
+    best = kInfinity;
+    return true;
+  }
+
+  bool done = false;
+
+ private:
+  std::size_t at = 0;
+  int step = 0, stalled = 0;
+
+  const RefineStage& stage() const noexcept { return Policy::kRefinement[at]; }
+};
+
+// --- newton refinement ---------------------------------------------------------------------------
 template <class Arm> struct NewtonRefinement {
   using Aim = HeldAim<Arm>;
   using Policy = typename Arm::Policy;
@@ -1157,30 +1210,21 @@ template <class Arm> struct NewtonRefinement {
     for (int j = 0; j < Arm::kDof; ++j) q[j] += std::min(std::max(x[j], -Policy::kLargestStep), Policy::kLargestStep);
   }
 
-  static double run(double* q, const Aim& aim, int steps, const bool* still) noexcept {
-    double trial[Arm::kDof], best = kInfinity;
+  static double error_after(double* q, const Aim& aim, const bool* still = nullptr) noexcept {
+    double trial[Arm::kDof];
     std::copy_n(q, Arm::kDof, trial);
-    for (int i = 0, stalled = 0;; ++i) {
+    for (RefinementCourse<Policy> course;;) {
       PoseError<Arm> at(trial, aim);
       if (still != nullptr) at.hold(still);
       const double worst = at.largest();
-      stalled = worst < Policy::kProgress * best && worst > Policy::kConverged ? 0 : stalled + 1;
-      if (worst < best) {
-        best = worst;
-        std::copy_n(trial, Arm::kDof, q);
-      }
-      if (i == steps || stalled == Policy::kPatience || !(best > Policy::kConverged)) return best;
-      step(at, worst, trial);
+      if (course.takes(worst)) std::copy_n(trial, Arm::kDof, q);
+      if (!course.starts_again())
+        step(at, worst, trial);
+      else if (course.done)
+        return course.best;
+      else
+        std::copy_n(q, Arm::kDof, trial);
     }
-  }
-
-  static double error_after(double* q, const Aim& aim, const bool* still = nullptr) noexcept {
-    double error = kInfinity;
-    for (const RefineStage& stage : Policy::kRefinement) {
-      error = run(q, aim, stage.steps, still);
-      if (!(error >= stage.fine && error < stage.promising)) break;
-    }
-    return error;
   }
 
   static bool refine(double* q, const Aim& aim) noexcept {
@@ -1196,19 +1240,44 @@ template <class Arm> struct RankLoss {
 
   static bool below(const double* q, double bound) noexcept {
     const PoseError<Arm> at(q, HeldAim<Arm>::own(q));
-    double A[kRank][kRank];
+    return !above(at.slope, bound);
+  }
+
+  template <class Rows> static void regular(const Rows& rows, double bound, bool (&out)[Rows::kLanes]) noexcept {
+    constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;
+    static_assert(PoseError<Arm>::kTask == kEquations);
+    for (int at = 0; at < Rows::kLanes; at += N) {
+      bool any = false;
+      for (int i = at; i < at + N; ++i) {
+        out[i] = (static_cast<int>(rows.flags[i]) & kReal) != 0;
+        any = any || out[i];
+      }
+      if (!any) continue;
+      Lanes<N> q[Arm::kDof], J[6][Arm::kDof], slope[kEquations][Arm::kDof];
+      for (int j = 0; j < Arm::kDof; ++j) q[j] = load<N>(rows.q[j] + at);
+      Arm::Task::slope(MotionChain<Arm>::forward(q, J), J, slope);
+      alignas(64) double far[std::size_t{N}];
+      store(above(slope, bound), far);
+      for (int i = 0; i < N; ++i) out[at + i] = out[at + i] && far[i] > 0.5;
+    }
+  }
+
+ private:
+  template <class X> static auto above(const X (&slope)[kEquations][Arm::kDof], double bound) noexcept {
+    X A[kRank][kRank];
     for (int a = 0; a < kRank; ++a)
       for (int b = 0; b <= a; ++b) {
-        double sum = a == b ? -bound * bound : 0.0;
         if constexpr (kMoving < kEquations) {
-          for (const auto& row : at.slope) sum += row[kJoints[a]] * row[kJoints[b]];
+          A[a][b] = slope[0][kJoints[a]] * slope[0][kJoints[b]];
+          for (int e = 1; e < kEquations; ++e) A[a][b] = A[a][b] + slope[e][kJoints[a]] * slope[e][kJoints[b]];
         } else {
-          for (const int j : kJoints.joint) sum += at.slope[a][j] * at.slope[b][j];
+          A[a][b] = slope[a][kJoints[0]] * slope[b][kJoints[0]];
+          for (int k = 1; k < kMoving; ++k) A[a][b] = A[a][b] + slope[a][kJoints[k]] * slope[b][kJoints[k]];
         }
-        A[a][b] = sum;
+        if (a == b) A[a][b] = A[a][b] - bound * bound;
       }
     factor(A);
-    return !definite(A);
+    return definite(A);
   }
 };
 
@@ -1280,44 +1349,58 @@ template <class Arm> struct CarefulRows {
                                                bool beside, Places& out) noexcept {
     Rows rows;
     find_lanes(aim.pose, q0, options, rows);
-    double q[Arm::kDof];
     Left left;
     for (const int lane : Arm::kLaneOfRow) {
       left.free = left.free || (bits(rows, lane) & kHit) != 0;
       left.led = left.led || (bits(rows, lane) & (kSingular | kReal)) == (kSingular | kReal);
     }
     if (left.free) add_from(aim, q0, out);
-    const Rows ends = refined_lanes(rows, aim, options);
+    const Ends ends(rows, aim, options, kReal);
     Starts starts;
+    bool plain[Arm::kLanes] = {};  // right, and far from singularities
+    if constexpr (Arm::kRefined) RankLoss<Arm>::regular(rows, Policy::kFoldReach, plain);
     for (const int lane : Arm::kLaneOfRow)
-      if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
+      if (plain[lane] && (bits(rows, lane) & kSingular) == 0)
+        add_lane(rows, lane, out);
+      else if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
         starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, false, aim, out);
     if (Arm::kRounded && beside) starts.trace_broken(aim, out);
     if (Arm::kBesides > 0 && beside && (kBesideAnywhere || left.free || starts.close()))
       take_beside(aim, q0, options, starts, out);
-    if (Arm::kRounded && starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, ends, starts, out);
+    if (Arm::kRounded && starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, options, starts, out);
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
       if (starts.at(k).near && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
-    for (const int lane : Arm::kLaneOfRow) {
-      if (Arm::kRefined || (bits(rows, lane) & (kReal | kRough)) != kReal) continue;
-      for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
-      Row::add(out, q, false);
-    }
+    for (const int lane : Arm::kLaneOfRow)
+      if (!Arm::kRefined && (bits(rows, lane) & (kReal | kRough)) == kReal) add_lane(rows, lane, out);
     return left;
   }
 
  private:
-  static Rows refined_lanes(const Rows& rows, const Aim& aim, const Options& options) noexcept {
-    Rows out = rows;
-    if constexpr (Arm::kNewton) {
-      constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
-      Arm::refine(gather<1>(&aim.pose), options.free, anywhere, out);
-    }
-    return out;
+  static void add_lane(const Rows& rows, int lane, Places& out) noexcept {
+    double q[Arm::kDof];
+    for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
+    Row::add(out, q, false);
   }
 
   static int bits(const Rows& rows, int lane) noexcept { return static_cast<int>(rows.flags[lane]); }
+
+  struct Ends {
+    Rows rows;
+    double error[Arm::kLanes];
+
+    Ends(const Rows& from, const Aim& aim, const Options& options, Bit flag) noexcept : rows(from) {
+      if constexpr (Arm::kNewton) {
+        constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
+        const Pose<1> pose = gather<1>(&aim.pose);
+        Arm::refine(pose, options.free, anywhere, rows);
+        int lanes[Arm::kLanes], count = 0;
+        for (const int lane : Arm::kLaneOfRow)
+          if ((bits(from, lane) & flag) != 0 && (bits(rows, lane) & kFound) == 0) lanes[count++] = lane;
+        Arm::take_along(pose, options.free, lanes, count, rows, error);
+      }
+    }
+  };
 
   struct Nearest {
     bool marked = false, near = false, settled = false, exact = false;  // settled: a solution, whatever else there is
@@ -1331,10 +1414,11 @@ template <class Arm> struct CarefulRows {
       for (int j = 0; j < Arm::kDof; ++j) start[j] = q[j] = rows.q[j][lane];
     }
 
-    void refine(const Aim& aim, const Rows& ends) noexcept {
-      if (Arm::kNewton && (bits(ends, lane) & kFound) != 0) {
-        for (int j = 0; j < Arm::kDof; ++j) q[j] = ends.q[j][lane];
-        alone = true;
+    void refine(const Aim& aim, const Ends& ends) noexcept {
+      if constexpr (Arm::kNewton) {
+        for (int j = 0; j < Arm::kDof; ++j) q[j] = ends.rows.q[j][lane];
+        alone = (bits(ends.rows, lane) & kFound) != 0;
+        if (!alone) error = ends.error[lane];
       } else if (!Arm::kRefined) {
         error = Refinement::error_after(q, aim);
       }
@@ -1415,7 +1499,7 @@ template <class Arm> struct CarefulRows {
 
     bool any_traced() const noexcept { return std::find(std::begin(traced), std::end(traced), true) != std::end(traced); }
 
-    void take(Nearest start, const Rows& ends, bool beside, const Aim& aim, Places& out) noexcept {
+    void take(Nearest start, const Ends& ends, bool beside, const Aim& aim, Places& out) noexcept {
       if (!(Arm::kRounded && start.marked)) start.refine(aim, ends);
       if (start.marked && (Arm::kRounded || !(start.error < Policy::kArrived))) {
         if (!traced[start.lane]) traced[start.lane] = start.add_around(aim, out);
@@ -1442,7 +1526,8 @@ template <class Arm> struct CarefulRows {
     }
   };
 
-  static void take_all(const Aim& aim, const Rows& rows, const Rows& ends, Starts& starts, Places& out) noexcept {
+  static void take_all(const Aim& aim, const Rows& rows, const Options& options, Starts& starts, Places& out) noexcept {
+    const Ends ends(rows, aim, options, kSingular);
     for (const int lane : Arm::kLaneOfRow)
       if ((bits(rows, lane) & kSingular) != 0) starts.take({rows, lane, true}, ends, false, aim, out);
   }
@@ -1453,7 +1538,7 @@ template <class Arm> struct CarefulRows {
       for (const auto& motion : Arm::kBeside) {
         Rows rows;
         find_lanes(displaced(aim.pose, motion), q0, options, rows);
-        const Rows ends = refined_lanes(rows, aim, options);
+        const Ends ends(rows, aim, options, kReal);
         for (const int lane : Arm::kLaneOfRow)
           if ((bits(rows, lane) & kReal) != 0)
             starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, true, aim, out);
