@@ -59,9 +59,8 @@ def row_of(python: str) -> Row:
 
 def rows() -> list[Row]:
     """The matrix; its first row is what the others are compared with."""
-    kernels = ("SkylakeX", "Haswell", "Sandybridge", "Zen", "Prescott")
     found = [Row("as it is")]
-    found += [Row(f"OpenBLAS for {name}", {"OPENBLAS_CORETYPE": name}) for name in kernels]
+    found += [Row(f"OpenBLAS for {name}", {"OPENBLAS_CORETYPE": name}) for name in _kernels()]
     found += [
         Row("two threads of OpenBLAS", {"OPENBLAS_NUM_THREADS": "2"}),
         Row("NumPy without AVX-512", {"NPY_DISABLE_CPU_FEATURES": _wide()}),
@@ -82,6 +81,22 @@ def rows() -> list[Row]:
         Row("two processes", options=("-j", "2")),
     ]
     return found
+
+
+_KERNELS = {
+    "SkylakeX": "AVX512F",
+    "Haswell": "AVX2",
+    "Sandybridge": "AVX",
+    "Zen": "AVX2",
+    "Prescott": "SSE3",
+}
+
+
+def _kernels() -> list[str]:
+    """OpenBLAS's for processors that can no more than this one."""
+    from numpy._core._multiarray_umath import __cpu_features__
+
+    return [name for name, needed in _KERNELS.items() if __cpu_features__.get(needed)]
 
 
 def _wide(*more: str) -> str:

@@ -333,11 +333,6 @@ HARMLESS = (
     ),
     HarmlessChange(
         "verify/task_space.py",
-        "(np.remainder(difference[0] - difference[1] + np.pi, 2 * np.pi) - np.pi)[:, None]",
-        "+", "-", "the two are a whole turn apart, of which the remainder is taken",
-    ),
-    HarmlessChange(
-        "verify/task_space.py",
         "scale = np.divide(angle, sine, out=np.ones_like(angle), where=sine > 1e-300)",
         ">", ">=", _EQUAL,
     ),

@@ -166,10 +166,10 @@ def test_a_planning_group_has_the_solver_s_joints_or_those_of_the_chain() -> Non
             ("q0", 0, 1.0, 0.0), ("copy", 0, -2.0, 0.5), ("q1", 1, 1.0, 0.0), ("q2", 2, 1.0, 0.0),
         )
     ]  # fmt: skip
-    found = moveit._group(module, SimpleNamespace(axes=axes))
+    found = moveit._group(module, SimpleNamespace(axes=axes, file_axes=()))
     assert found["places"] == [0, 2, 3] and found["group"][1] == ("copy", 0, -2.0, 0.5)
     with pytest.raises(UsageError, match="the joint 'q2' moves the chain from outside"):
-        moveit._group(module, SimpleNamespace(axes=axes[:3]))
+        moveit._group(module, SimpleNamespace(file_axes=(), axes=axes[:3]))
     rows = module.dh.rows
     with pytest.raises(UsageError, match="rows of a DH table follow others"):
         moveit._group(replace(module, dh=replace(module.dh, rows=(*rows, rows[0]))), None)

@@ -159,7 +159,7 @@ def answers(
     program = compiled_header(ROWS, folder, f"-I{folder}", *flags)
     lines = feed(program, q.ravel().tolist())
     assert len(lines) == 5 * len(q)
-    assert sum(one[0] > 0 for one in lines[4::5]) <= 0.02 * len(q)  # at the verge of a stage
+    assert sum(one[0] > 0 for one in lines[4::5]) <= 1 + 0.02 * len(q)  # at the verge of a stage
     return [
         (
             [np.array(one[1:]).reshape(int(one[0]), -1) for one in lines[i : i + 3]],

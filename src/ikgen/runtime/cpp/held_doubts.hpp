@@ -131,13 +131,13 @@ template <class Arm> struct HeldDoubts {
       const double reach = bounds.half[i] + Arm::Policy::kLimitTolerance;  // of rows that are taken as inside
       const Lanes<N> left = reach - abs(x), right = reach - abs(y), slack = off[j] + kRoundOff;
       const auto far = (0.0 > x * y) & (abs(x) + abs(y) > (Arm::kRevolute[j] ? kPi : kInfinity));
-      const auto opposite = (0.0 > x * y) & !far;
-      dead = dead | (w.go & (-slack > left) & (-slack > right) & !opposite);
-      const auto clear = (left > slack) & (right > slack) & !far;
-      const auto once = !(left * right > 0.0) & (abs(left - right) > 4.0 * slack);
+      const auto opposite = (0.0 > x * y) & (!far);
+      dead = dead | (w.go & (-slack > left) & (-slack > right) & (!opposite));
+      const auto clear = (left > slack) & (right > slack) & (!far);
+      const auto once = (!(left * right > 0.0)) & (abs(left - right) > 4.0 * slack);
       crossings = crossings + select(clear, 0.0, select(once, 1.0, 2.0));
     }
-    return any_of(w.go & !dead & (crossings > 1.5));
+    return any_of(w.go & (!dead) & (crossings > 1.5));
   }
 
   // Whether two rows may come and go in the cell, or go and come: of a rounded arm, in a wide one, also where it is not
@@ -156,10 +156,10 @@ template <class Arm> struct HeldDoubts {
       const Lanes<N> after = up.sample ? load<N>(up.sample->fold[k] + at) - y : y;
       const Lanes<N> off = arch((y - x) * (1.0 / width), before, down.sample ? every : none, after, up.sample ? every : none);
       both = both & (max(x, y) + off > 0.0);
-      some = some | !(min(x, y) > 0.0);
+      some = some | (!(min(x, y) > 0.0));
       dips = dips | (0.0 > min(x, y) - off);
     }
-    return any_of((load<N>(same) > 0.5) & !dead & ((is_real & dips) | (!is_real & both & some)));
+    return any_of((load<N>(same) > 0.5) & (!dead) & ((is_real & dips) | ((!is_real) & both & some)));
   }
 };
 
