@@ -670,16 +670,11 @@ template <class Arm> struct MotionChain {
   };
 
   template <std::size_t I, int C, class X> [[gnu::always_inline]] static X mixed(const X& x, const X& y, const X& z) noexcept {
-    constexpr double a = Arm::kFrames[I + 1][0][C], b = Arm::kFrames[I + 1][1][C], c = Arm::kFrames[I + 1][2][C];
-    if constexpr (a == 0.0 && b == 0.0) {
-      return c * z;
-    } else if constexpr (a == 0.0) {
-      return c == 0.0 ? b * y : b * y + c * z;
-    } else if constexpr (b == 0.0) {
-      return c == 0.0 ? a * x : a * x + c * z;
-    } else {
-      return c == 0.0 ? a * x + b * y : a * x + b * y + c * z;
-    }
+    const double a = Arm::kFrames[I + 1][0][C], b = Arm::kFrames[I + 1][1][C], c = Arm::kFrames[I + 1][2][C];
+    if (a == 0.0 && b == 0.0) return c * z;
+    if (a == 0.0) return c == 0.0 ? b * y : b * y + c * z;
+    if (b == 0.0) return c == 0.0 ? a * x : a * x + c * z;
+    return c == 0.0 ? a * x + b * y : a * x + b * y + c * z;
   }
 
   template <std::size_t I, class X> [[gnu::always_inline]] static void advance(FrameOf<X>& T, const Turns<X>& turns) noexcept {
