@@ -1148,6 +1148,27 @@ template <class Arm> struct NearContinuum {
   }
 };
 
+// --- damped step ---------------------------------------------------------------------------------
+template <class Policy, class X, int Rows, int Columns>
+inline void damped_step(const X (&V)[Rows][Columns], const X (&e)[Rows], const X& worst, X (&x)[Columns]) noexcept {
+  using std::max;
+  using std::min;
+  const X bounded = min(worst, 1.0);
+  X A[Columns][Columns];
+  for (int i = 0; i < Columns; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      A[i][j] = V[0][i] * V[0][j];
+      for (int r = 1; r < Rows; ++r) A[i][j] = A[i][j] + V[r][i] * V[r][j];
+    }
+    A[i][i] = A[i][i] + max(Policy::kDamping * (bounded * bounded), Policy::kLeastDamping);
+    x[i] = V[0][i] * e[0];
+    for (int r = 1; r < Rows; ++r) x[i] = x[i] + V[r][i] * e[r];
+  }
+  factor(A);
+  substitute(A, x);
+  for (X& one : x) one = min(max(one, -Policy::kLargestStep), Policy::kLargestStep);
+}
+
 // --- refinement course ---------------------------------------------------------------------------
 struct RefineStage {
   int steps;
@@ -1188,23 +1209,6 @@ template <class Arm> struct NewtonRefinement {
   using Aim = HeldAim<Arm>;
   using Policy = typename Arm::Policy;
 
-  static void step(const PoseError<Arm>& at, double worst, double (&q)[Arm::kDof]) noexcept {
-    const double bounded = std::min(worst, 1.0);
-    double A[Arm::kDof][Arm::kDof], x[Arm::kDof];
-    for (int i = 0; i < Arm::kDof; ++i) {
-      for (int j = 0; j <= i; ++j) {
-        A[i][j] = 0.0;
-        for (int e = 0; e < at.kCount; ++e) A[i][j] += at.slope[e][i] * at.slope[e][j];
-      }
-      A[i][i] += std::max(Policy::kLeastDamping, Policy::kDamping * bounded * bounded);
-      x[i] = 0.0;
-      for (int e = 0; e < at.kCount; ++e) x[i] += at.slope[e][i] * at.error[e];
-    }
-    factor(A);
-    substitute(A, x);
-    for (int j = 0; j < Arm::kDof; ++j) q[j] += std::min(std::max(x[j], -Policy::kLargestStep), Policy::kLargestStep);
-  }
-
   static double error_after(double* q, const Aim& aim, const bool* still = nullptr) noexcept {
     double trial[Arm::kDof];
     std::copy_n(q, Arm::kDof, trial);
@@ -1213,12 +1217,14 @@ template <class Arm> struct NewtonRefinement {
       if (still != nullptr) at.hold(still);
       const double worst = at.largest();
       if (course.takes(worst)) std::copy_n(trial, Arm::kDof, q);
-      if (!course.starts_again())
-        step(at, worst, trial);
-      else if (course.done)
-        return course.best;
-      else
+      if (course.starts_again()) {
+        if (course.done) return course.best;
         std::copy_n(q, Arm::kDof, trial);
+      } else {
+        double step[Arm::kDof];
+        damped_step<Policy>(at.slope, at.error, worst, step);
+        for (int j = 0; j < Arm::kDof; ++j) trial[j] += step[j];
+      }
     }
   }
 

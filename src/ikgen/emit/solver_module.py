@@ -14,7 +14,8 @@ from ikgen.kinematics.whole_turns import turns_freely
 from ikgen.model.dh import DHChain
 from ikgen.program.policy import SolvePolicy
 from ikgen.program.statements import Program
-from ikgen.tasks import Task, find_task
+from ikgen.tasks import AXES, Task, find_task
+from ikgen.tasks.fitting import keeps_heading_level
 
 __all__ = ["CLOSE", "SolverModule", "most_rows", "refines_all"]
 
@@ -134,6 +135,16 @@ class SolverModule:
     def reads(self) -> Task:
         """What of the pose counts."""
         return find_task(self.task)
+
+    @property
+    def unit_columns(self) -> tuple[int, ...]:
+        """Columns of the rotation that the entries of the task make up, and that are unit vectors."""
+        task = self.reads
+        if task.orientation == "direction":
+            return (AXES.index(task.axis),)
+        if task.orientation == "yaw":
+            return (0,) if keeps_heading_level(self.dh) else ()
+        return (0, 1, 2) if task.orientation == "rotation" else ()
 
     @property
     def size(self) -> float:

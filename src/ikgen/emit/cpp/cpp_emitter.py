@@ -21,8 +21,6 @@ from ikgen.kinematics.column_blocks import column_blocks
 from ikgen.program.margins import fold_margins
 from ikgen.program.ops import Op
 from ikgen.program.policy import SolvePolicy
-from ikgen.tasks import AXES
-from ikgen.tasks.fitting import keeps_heading_level
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -35,12 +33,9 @@ _SYSTEM = ("array", "cstddef", "Eigen/Core", "Eigen/Geometry")
 
 def _columns(module: SolverModule) -> str:
     """First column of the rotation that a task reads, how many, and how many rows of them."""
-    task = module.reads
-    if task.orientation == "yaw" and not keeps_heading_level(module.dh):
-        return "0, 0, 3"
-    if task.orientation == "direction":
-        return f"{AXES.index(task.axis)}, 1, 3"
-    return {"rotation": "0, 3, 3", "yaw": "0, 1, 2"}.get(task.orientation, "0, 0, 3")
+    columns = module.unit_columns
+    rows = 2 if columns and module.reads.orientation == "yaw" else 3
+    return f"{min(columns, default=0)}, {len(columns)}, {rows}"
 
 
 def emit_derivation(derivation: Derivation) -> dict[str, str]:

@@ -21,8 +21,6 @@ from ikgen.emit.python.settled_branches import SOME, Facts
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
 from ikgen.runtime.python.solve_policy import Policy
-from ikgen.tasks import AXES
-from ikgen.tasks.fitting import keeps_heading_level
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -72,7 +70,7 @@ def emit_module(module: SolverModule) -> str:
         size=module.size,
         branch_kind=branch_kind(module),
         elbow_end=elbow_end(module),
-        unit_columns=_unit_columns(module),
+        unit_columns=module.unit_columns,
         policy=module.policy,
         policy_values=_policy_values(runtime_policy(module.policy)),
     )
@@ -115,16 +113,6 @@ def _held_name(module: SolverModule) -> str:
 
 def _held_turns(module: SolverModule) -> bool:
     return bool(module.free) and module.dh.lead_row(module.free[0]).revolute
-
-
-def _unit_columns(module: SolverModule) -> tuple[int, ...]:
-    """Columns of the rotation that a task's entries make up."""
-    task = module.reads
-    if task.orientation == "yaw" and not keeps_heading_level(module.dh):
-        return ()
-    if task.orientation == "direction":
-        return (AXES.index(task.axis),)
-    return {"rotation": (0, 1, 2), "yaw": (0,)}.get(task.orientation, ())
 
 
 def _policy_values(policy: Policy) -> list[tuple[str, str]]:

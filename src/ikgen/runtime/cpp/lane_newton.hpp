@@ -88,10 +88,10 @@ template <class Arm> struct LaneNewton {
     }
   }
 
-  // The error at the chain's tip, and with `fresh` its slope, factored.
-  template <int P, int N, class Factored>
+  // The error at the chain's tip, and with `fresh` its slope.
+  template <int P, int N, class Slope>
   static void compare(const Pose<P>& pose, const LaneAim<Arm, N>& aim, const LaneChain<Arm, N>& chain, bool fresh,
-                      Lanes<N> (&error)[kEquations], Factored& factors) noexcept {
+                      Lanes<N> (&error)[kEquations], Slope& to) noexcept {
     Lanes<N> t[3][4], slope[kEquations][Arm::kDof];
     for (int r = 0; r < 3; ++r)
       for (int c = 0; c < 4; ++c) t[r][c] = spread<N>(pose.t[r][c]);
@@ -102,8 +102,7 @@ template <class Arm> struct LaneNewton {
     chain.jacobian(J);
     Arm::Task::slope(chain.tip, J, slope);
     for (int e = 0; e < kEquations; ++e)
-      for (int i = 0; i < kMoving; ++i) factors.V[e][i] = slope[e][column(i)];
-    factors.factor();
+      for (int i = 0; i < kMoving; ++i) to.V[e][i] = slope[e][column(i)];
   }
 
  private:
@@ -144,6 +143,7 @@ template <class Arm> struct LaneNewton {
       chain.forward();
       const bool fresh = k != 2 || !all((!good) | (Policy::kNear > before));
       compare<P, N>(pose, aim, chain, fresh, error, factors);
+      if (fresh) factors.factor();
       factors.solve(error, d);
       Lanes<N> size = abs(d[0]);
       for (int i = 1; i < kMoving; ++i) size = max(size, abs(d[i]));

@@ -1,9 +1,9 @@
 // Damped Newton steps as in newton_refinement.hpp, of several starts at once.
 #pragma once
 
+#include "damped_step.hpp"
 #include "lane_newton.hpp"
 #include "refinement_course.hpp"
-#include "small_matrix.hpp"
 
 namespace ikgen_runtime {
 
@@ -29,7 +29,6 @@ template <class Arm> struct LaneRefinement {
   // The slope by the joints that move.
   struct Slope {
     Lanes<N> V[kEquations][kMoving];
-    void factor() const noexcept {}
   };
 
   struct Pack {
@@ -51,7 +50,7 @@ template <class Arm> struct LaneRefinement {
       while (true) {
         LaneChain<Arm, N> chain;
         Slope slope;
-        Lanes<N> left[kEquations], worst;
+        Lanes<N> left[kEquations], step[kMoving], worst;
         for (int j = 0; j < Arm::kDof; ++j) chain.q[j] = load<N>(trial[j]);
         chain.start();
         chain.forward();
@@ -61,7 +60,11 @@ template <class Arm> struct LaneRefinement {
         for (int e = 1; e < kEquations; ++e) worst = max(worst, abs(left[e]));
         bool again[N];
         if (!judge(worst, again)) break;
-        step(slope, left, worst);
+        damped_step<Policy>(slope.V, left, worst, step);
+        for (int i = 0; i < kMoving; ++i) {
+          double* q = trial[Newton::column(i)];
+          store(load<N>(q) + step[i], q);
+        }
         for (int i = 0; i < N; ++i)
           if (again[i]) start(i);
       }
@@ -82,27 +85,6 @@ template <class Arm> struct LaneRefinement {
         any = any || !course[i].done;
       }
       return any;
-    }
-
-    // As NewtonRefinement::step.
-    void step(const Slope& slope, const Lanes<N> (&left)[kEquations], const Lanes<N>& worst) noexcept {
-      const Lanes<N> bounded = min(worst, 1.0);
-      Lanes<N> A[kMoving][kMoving], x[kMoving];
-      for (int i = 0; i < kMoving; ++i) {
-        for (int j = 0; j <= i; ++j) {
-          A[i][j] = slope.V[0][i] * slope.V[0][j];
-          for (int e = 1; e < kEquations; ++e) A[i][j] = A[i][j] + slope.V[e][i] * slope.V[e][j];
-        }
-        A[i][i] = A[i][i] + max(Policy::kDamping * (bounded * bounded), Policy::kLeastDamping);
-        x[i] = slope.V[0][i] * left[0];
-        for (int e = 1; e < kEquations; ++e) x[i] = x[i] + slope.V[e][i] * left[e];
-      }
-      factor(A);
-      substitute(A, x);
-      for (int i = 0; i < kMoving; ++i) {
-        double* q = trial[Newton::column(i)];
-        store(load<N>(q) + min(max(x[i], -Policy::kLargestStep), Policy::kLargestStep), q);
-      }
     }
   };
 };
