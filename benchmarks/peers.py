@@ -5,7 +5,8 @@
 
 ROBOTS_FOLDER holds abb_irb2400.urdf, kuka_kr6r900sixx.urdf, ur5e.urdf, franka_panda_erd.urdf, wam.urdf,
 doosan_m1013.urdf and fanuc_crx10ia.urdf; an arm whose file is missing is left out. DART's sources hold
-wam.urdf and what IKFast wrote of it (joint 3 held), to be given as --ikfast WAM=FILE.
+wam.urdf and what IKFast wrote of it (joint 3 held), to be given as --ikfast WAM=FILE; the sources of
+ikfast-pybind (PyPI) hold what it wrote of KR 6 R900 and Panda (joint 7 held).
 Peers are optional: pip install EAIK py-opw-kinematics ssik ikdh pin, of which missing ones are named;
 with the sources of opw_kinematics (C++) and of IKFast at hand, their paths add them to the table;
 the compiled package needs pip, a C++ compiler and network access for its build tools.
@@ -151,7 +152,7 @@ def compared(arm: Arm, header: Path, opw: Path | None, ikfast: str | None) -> li
         if opw is not None and arm.opw:
             pairs.append(("opw_kinematics, C++ (-O3)", against_opw(header, opw, arm.opw, flags)))
         if ikfast is not None:
-            pairs.append(("IKFast", against_ikfast(header, Path(ikfast), flags)))
+            pairs.append(("IKFast, C++ (-O3)", against_ikfast(header, Path(ikfast), flags)))
         for name, c in pairs:
             words = " ".join(flags)
             print(

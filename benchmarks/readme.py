@@ -60,6 +60,7 @@ RANDOM = {
 """Classes of random tables -> what the README calls them."""
 ARMS = {
     "IRB 2400": "ABB IRB 2400",
+    "KR 6 R900": "KUKA KR 6 R900",
     "UR5e": "UR5e",
     "Panda": "Panda, joint 7 held",
     "WAM": "Barrett WAM, joint 3 held",
