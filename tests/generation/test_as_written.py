@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.support.rounded_arms import EXACT, spherical_wrist, three_parallel
+from tests.support.rounded_arms import EXACT, IN_TEN_DIGITS, spherical_wrist, three_parallel
 from tests.support.solving import emitted, solver_module
 
 from ikgen.emit.solver_module import CLOSE
@@ -37,7 +37,9 @@ def branches(graph: SolutionGraph) -> int:
     return math.prod(step.branches for step in graph.steps)
 
 
-@pytest.mark.parametrize("chain", [three_parallel(), spherical_wrist(1.571)])
+@pytest.mark.parametrize(
+    "chain", [three_parallel(), three_parallel(IN_TEN_DIGITS), spherical_wrist(1.571)]
+)
 def test_files_own_chain_has_a_closed_form(chain: Chain, tmp_path: Path) -> None:
     dh, graph, exact = written(chain)
     assert max(dh.deviation) < 1e-14
@@ -49,6 +51,16 @@ def test_files_own_chain_has_a_closed_form(chain: Chain, tmp_path: Path) -> None
         rows = np.array(list(module.solve(T, limits=False)))
         assert max(np.abs(module.forward(row) - T).max() for row in rows) < 1e-12
         assert np.abs(np.remainder(rows - q + np.pi, 2 * np.pi) - np.pi).max(axis=1).min() < 1e-8
+
+
+def test_rows_next_to_a_stretched_elbow_are_the_files(tmp_path: Path) -> None:
+    """A fold moves by the root of what the rows are off: 2e-10 would hide these."""
+    module = emitted(written(three_parallel(IN_TEN_DIGITS))[0], tmp_path)
+    for elbow in 10.0 ** -np.arange(1.0, 7.0):
+        q = np.array([-0.85, -2.27, elbow, 2.91, 1.05, -3.1])
+        rows = np.array(list(module.solve(module.forward(q), limits=False)))
+        off = np.abs(np.remainder(rows - q + np.pi, 2 * np.pi) - np.pi).max(axis=1).min()
+        assert off < 1e-13 / elbow + 1e-8
 
 
 def test_branches_lie_half_a_turn_apart_but_for_rounding() -> None:

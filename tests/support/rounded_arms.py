@@ -65,7 +65,7 @@ def meeting_shoulder(right: float = 1.5708, *, offset: float = 1e-6) -> Chain:
     )
 
 
-EXACT = math.pi / 2
+EXACT, IN_TEN_DIGITS = math.pi / 2, 1.570796327
 
 FOLDED = [
     [-1.96033274450597, 0.66543809597274, -2.52372616827503, -2.50427844103334, 0.89406157205916,

@@ -20,6 +20,10 @@ __all__ = ["solve_as_written"]
 
 Attempt = Callable[["DHChain", Collection[str] | None], "SolutionGraph"]
 
+_ROUND_OFF = 1e-13
+"""Deviation (rad or m) of rows that are the file's own. Where rows are right to `CLOSE` but no better,
+those next to a fold, which moves by the root of it, are others than the file's."""
+
 _WORTH = 0.5
 """Where Newton steps follow all the same, the rows must come nearer to the file's by this factor."""
 
@@ -32,7 +36,7 @@ def solve_as_written(
     `attempt` solves a chain among the equations of some labels, or among all. What solved the exact
     geometry mostly solves the file's too, and one equation in ten is soon looked through.
     """
-    if max(dh.deviation) <= CLOSE:
+    if max(dh.deviation) <= _ROUND_OFF:
         return dh, graph
     for written in _written(dh):
         for among in (_labels(graph), None):
@@ -52,13 +56,15 @@ def _written(dh: DHChain) -> Iterator[DHChain]:
     """The rows with as many constants as the file has them as may be, most first."""
     from ikgen.kinematics.kept import keep_constants, stray_lengths
 
+    off = max(dh.deviation)
+    enough = CLOSE if off > CLOSE else _ROUND_OFF
     strays = stray_lengths(dh)
     if strays:
         whole = keep_constants(dh, strays)
-        if max(whole.deviation) <= CLOSE:
+        if max(whole.deviation) <= enough:
             yield whole
     nearest = keep_constants(dh)
-    if max(nearest.deviation) <= max(CLOSE, _WORTH * max(dh.deviation)):
+    if max(nearest.deviation) <= max(enough, _WORTH * off if off > CLOSE else 0.0):
         yield nearest
 
 

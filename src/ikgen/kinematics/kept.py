@@ -21,7 +21,7 @@ from ikgen.model.dh import Angle, DHChain, DHRow, Length, Snap
 
 __all__ = ["keep_constants", "kept_constants", "stray_lengths"]
 
-_NOISE = 1e-11
+_NOISE = 1e-13
 """Changes (rad or m) up to this leave a constant exact that costs operations: pi/2 in twelve digits."""
 
 _ROUND_OFF = 1e-13
