@@ -142,9 +142,8 @@ class ArmUnderTest:
     def difference(self, a: Array, b: Array) -> Array:
         """Joint-wise a - b, modulo the joints' periods."""
         d = a - b
-        period = np.where(np.isfinite(self.period), self.period, 2 * np.pi)
-        turned = np.remainder(d + 0.5 * period, period) - 0.5 * period
-        return np.asarray(np.where(np.isfinite(self.period), turned, d))
+        period = np.where(np.isfinite(self.period), self.period, 0.0)
+        return np.asarray(d - period * np.rint(d / self.period))
 
     def unit_of(self, q: Array) -> Array:
         """What a tolerance on each value of q (…, dof) is relative to: a slide's size (m) where that

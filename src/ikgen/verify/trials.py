@@ -76,15 +76,17 @@ def nearest(arm: ArmUnderTest, a: Array, b: Array, *, same: bool = False) -> Arr
     as its own neighbour.
     """
     out = np.full(a.shape[:2], np.inf)
-    if not b.shape[1] or not a.shape[1]:
+    filled, others = (np.flatnonzero(~np.isnan(x).any(axis=2).all(axis=0)) for x in (a, b))
+    if not len(filled) or not len(others):
         return out
+    a, b = a[:, filled], b[:, others]
     for start in range(0, len(a), _CHUNK):
         part = slice(start, start + _CHUNK)
         d = arm.distance(a[part][:, :, None], b[part][:, None])
         d = np.where(np.isnan(d), np.inf, d)
         if same:
             d[:, np.arange(a.shape[1]), np.arange(a.shape[1])] = np.inf
-        out[part] = np.min(d, axis=2)
+        out[part, filled] = np.min(d, axis=2)
     return out
 
 
