@@ -13,8 +13,11 @@ from ikgen.emit.cpp.cpp_emitter import emit_header
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
+from ikgen.tasks import find_task
 from ikgen.verify.runners.cpp_header import CppHeader
 from ikgen.verify.runners.python_module import PythonModule
+from ikgen.verify.runners.runner import Runner
+from ikgen.verify.task_space import task_space
 
 # kind, alpha (quarters), a, d of each row; joint values
 SLIDE = (
@@ -69,6 +72,31 @@ UPRIGHT = (
     [0.3, 0.4, 0.5, pi, 0.6],
 )
 """The tool upright: every divisor of the closed form vanishes, and three joints move it in a plane."""
+MEETING_AXES = (
+    [
+        ("revolute", 0, 0.0, 0.0),
+        ("revolute", 1, 0.375, 0.0),
+        ("revolute", 1, 0.0, 0.0),
+        ("revolute", 1, 0.0, 0.0),
+        ("revolute", 1, 0.325, 0.0),
+    ],
+    [[0.19, 0.0, pi / 2, 0.56, pi / 2], [-2.29, 0.43, -pi / 2, 2.08, pi / 2]],
+    [0, 4],
+)
+PARALLEL_SLIDES = (
+    [
+        ("revolute", 0, 0.0, 0.0),
+        ("revolute", 1, 0.458, 0.567),
+        ("revolute", 1, 0.731, 0.696),
+        ("prismatic", 0, 0.0, 0.0),
+        ("revolute", -1, 0.0, 0.787),
+        ("prismatic", -1, 0.0, 0.0),
+    ],
+    [[-pi / 2, 0.3, 0.0, 0.2, -0.3, 0.73], [0.75, 1.2, pi, 0.3, -1.3, 0.2]],
+    [0, 2],
+)
+"""Tables; configurations of which the forms leave two unknowns and the pose leaves one, beside regular
+solutions; joints whose values stay the same along that continuum."""
 SPECIAL = {
     "slide at 0": SLIDE,
     "fold behind a fold": FOLDS,
@@ -88,6 +116,16 @@ def table(rows: list[tuple[str, int, float, float]], folder: Path) -> Path:
     return path
 
 
+def both(rows: list[tuple[str, int, float, float]], folder: Path) -> tuple[Runner, Runner]:
+    """The table's solver in Python and in C++."""
+    module = derive(Request(table(rows, folder))).module
+    path, header = folder / "special_ik.py", folder / "special_ik.hpp"
+    path.write_text(emit_module(module))
+    header.write_text(emit_header(module))
+    python = PythonModule(path)
+    return python, CppHeader(header, python.constants)
+
+
 @pytest.mark.parametrize(("rows", "q"), SPECIAL.values(), ids=SPECIAL)
 def test_the_generating_configuration_is_found(
     rows: list[tuple[str, int, float, float]], q: list[float], tmp_path: Path
@@ -101,17 +139,40 @@ def test_the_generating_configuration_is_found(
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
+@pytest.mark.parametrize(
+    ("rows", "configurations", "fixed"), [MEETING_AXES, PARALLEL_SLIDES], ids=["turns", "slides"]
+)
+def test_a_continuum_of_which_the_forms_leave_two_unknowns_has_a_row(
+    rows: list[tuple[str, int, float, float]],
+    configurations: list[list[float]],
+    fixed: list[int],
+    tmp_path: Path,
+) -> None:
+    """From whatever seed; with that of one of its configurations, this one."""
+    python, cpp = both(rows, tmp_path)
+    space = task_space(find_task(python.constants.task))
+    q = np.array(configurations)
+    poses = python.forward(q)
+    seeds = np.random.default_rng(5).uniform(-3.0, 3.0, q.shape)
+    for runner in (python, cpp):
+        for seed in (None, seeds, q):
+            answers = runner.solve_many(poses, seeds=seed)
+            for k, n in enumerate(answers.count.tolist()):
+                found = answers.q[k, :n]
+                aims = np.broadcast_to(poses[k], (n, 4, 4))
+                assert np.abs(space.residual(runner.forward(found), aims)).max() < 1e-9
+                off = np.abs((found - q[k] + pi) % (2 * pi) - pi)
+                of_it = (off[:, fixed].max(axis=1) < 1e-6) & answers.singular[k, :n]
+                assert of_it.any()
+                assert seed is not q or off.max(axis=1).min() < 1e-6
+
+
+@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
 def test_where_every_divisor_vanishes_the_pose_is_answered(tmp_path: Path) -> None:
     """From whatever seed, and inside the limits where it can be."""
     rows, configuration = UPRIGHT
-    module = derive(Request(table(rows, tmp_path))).module
-    assert module.task == "position-direction"
-    path = tmp_path / "special_ik.py"
-    path.write_text(emit_module(module))
-    python = PythonModule(path)
-    header = tmp_path / "special_ik.hpp"
-    header.write_text(emit_header(module))
-    cpp = CppHeader(header, python.constants)
+    python, cpp = both(rows, tmp_path)
+    assert python.constants.task == "position-direction"
     rng = np.random.default_rng(5)
     q = rng.uniform(-1.5, 1.5, (30, 5))
     q[:, 3] = np.where(np.arange(30) % 2, pi, 0.0)

@@ -1186,10 +1186,21 @@ def _nearest_row(arm: _Arm, T: Array, start: Row, limits: bool) -> Row:
     low, high = _step_bounds(arm, limits)
     q = np.vstack([np.clip(start, low, high), _even_starts(arm, low, high)])
     q[:, list(arm.free)] = [start[j] for j in arm.free]
-    cost = (_chord_errors(arm.task, _forward(arm.chain, q), T) ** 2).sum(axis=1)
+    cost = _chord_costs(arm, T, q)
     q, cost = _descend_to(arm, T, q[np.argsort(cost, kind="stable")[:_FOLLOWED]], (low, high))
     best: Row = tuple(q[int(np.argmin(cost))].tolist())
     return best
+
+
+def _chord_costs(arm: _Arm, T: Array, q: Array) -> Array:
+    """What is least (k,), of rows q (k, dof) for one pose T (4, 4), or for each its own (k, 4, 4)."""
+    return np.asarray((_chord_errors(arm.task, _forward(arm.chain, q), T) ** 2).sum(axis=1))
+
+
+def _descended(arm: _Arm, T: Array, q: Array, limits: bool) -> Array:
+    """The joint values (k, dof) at which steps from q (k, dof) towards poses T (k, 4, 4) end."""
+    bounds = _step_bounds(arm, limits)
+    return _descend_to(arm, T, np.clip(q, *bounds), bounds)[0]
 
 
 def _off_by(task: _EntriesTask, pose: Array, T: Array) -> Array:
@@ -1218,7 +1229,7 @@ def _chord_weight(task: _EntriesTask) -> Array:
 
 
 def _chord_errors(task: _EntriesTask, pose: Array, T: Array) -> Array:
-    """What poses (k, 4, 4) are off T (4, 4): (k, entries)."""
+    """What poses (k, 4, 4) are off T (4, 4) or (k, 4, 4): (k, entries)."""
     return _entry_errors(task.entries, _chord_weight(task), pose, np.broadcast_to(T, pose.shape))
 
 
@@ -1335,10 +1346,41 @@ def _placed_rows(arm: _Arm, asked: _Asked, limits: bool) -> list[_Answer]:
             if going[i]:
                 going[i] = _goes_on(arm, some, k, rows[k], seeded.get(k, []), limits, out[i])
         left = left[going[left]]
+    if len(left):
+        _take_hidden(arm, asked, left, limits, out)
     for i in left.tolist():
         if not out[i].real:
             _take_nearest(arm, asked.at(np.array([i])), limits, out[i])
     return out
+
+
+def _take_hidden(arm: _Arm, asked: _Asked, some: _Index, limits: bool, out: list[_Answer]) -> None:
+    """Adds rows that take some of the poses, next to rows of the closed form that take none behind a joint
+    that it left free."""
+    which, q = _hidden_rows(arm, asked, some)
+    if not len(which):
+        return
+    rows = _descended(arm, asked.T[which], q, limits)
+    for i, found in zip(which.tolist(), _led_to(arm, asked.at(which), rows)):
+        out[i].real = out[i].real or bool(found)
+        aim = _aims(arm, asked.T[i : i + 1], asked.held[i : i + 1])
+        _add(arm, asked.T[i], _rows_inside(arm, aim, found, asked.seed(i), limits), out[i].rows)
+
+
+def _hidden_rows(arm: _Arm, asked: _Asked, some: _Index) -> tuple[_Index, Array]:
+    """Whose they are (k,), and the rows (k, dof)."""
+    each = arm.policy.tries
+    poses = asked.at(np.repeat(some, each))
+    start = poses.starts(arm, np.tile(range(each), len(some)) * arm.policy.try_step)
+    closed = _closed_form(arm, poses.T, start, poses.held)
+    hidden = closed.singular & ~closed.valid & np.isfinite(closed.q).all(axis=2)
+    k, lane = np.nonzero(hidden)
+    costs = np.full(hidden.shape, np.inf)
+    costs[k, lane] = _chord_costs(arm, poses.T[k], closed.q[k, lane])
+    q = closed.q.reshape(len(some), each, *closed.q.shape[1:])
+    cost = costs.reshape(len(some), each, -1)
+    pose, lane = np.nonzero(np.isfinite(cost).any(axis=1))
+    return some[pose], q[pose, cost.argmin(axis=1)[pose, lane], lane]
 
 
 def _take_nearest(arm: _Arm, asked: _Asked, limits: bool, answer: _Answer) -> None:

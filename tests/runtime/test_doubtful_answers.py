@@ -188,3 +188,19 @@ def test_rows_are_singular_by_what_is_lost_there(monkeypatch: pytest.MonkeyPatch
     assert [flag for _, flag in plain] == [True, False, False]
     assert [flag for _, flag in marked] == [True, True, False]
     assert [row for row, _ in plain] == [tuple(row) for row in q[:3].tolist()]
+
+
+def test_beside_regular_rows_steps_lead_on_from_those_that_miss_behind_a_free_joint() -> None:
+    """Of each branch from the value whose pose is nearest, and inside the limits."""
+    plain, far = given_arm(not_there), 0.9 * np.ones(6)
+
+    def branches(T: Array, near: Array, held: Array) -> Any:
+        q, *flags = given_rows(np.array([OTHER, ROW + OFF]), "x.", ".x")(T, near, held)
+        q[:, 1] += np.where(np.abs(near[:, :1] - 3.0 * plain.policy.try_step) < 1e-9, 0.0, far)
+        return q, *flags
+
+    for lower, found in ((-2.0 * np.pi, True), (0.0, False)):
+        arm = given_arm(branches, lower=(lower,) * 6)
+        (answer,) = placed_rows(arm, Asked(pose_of(arm), None, NONE), True)
+        there = [np.abs(np.array(row) - ROW).max() < 1e-6 for row, _ in answer.rows]
+        assert any(there) == found and (not found or answer.real)

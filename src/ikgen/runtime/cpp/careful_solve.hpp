@@ -27,9 +27,7 @@ template <class Arm> struct CarefulSolve {
     Places found;
     for (int turn = 0; turn < Policy::kTries && free; ++turn) {
       double start[Arm::kDof];
-      for (int j = 0; j < Arm::kDof; ++j)
-        start[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kRevolute[j] ? turn * Policy::kTryStep : 0.0);
-      for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) start[Arm::kFreeJoints[k]] = options.free[k];
+      take_start(options, turn, start);
       auto left = Careful::find_rows(aim, start, options, turn == 0, found);
       if (options.seed && !left.free && Careful::any_singular(found)) Careful::add_from(aim, start, found);
       real = real || found.count > 0;
@@ -41,6 +39,7 @@ template <class Arm> struct CarefulSolve {
       if (!Arm::kRounded) left.led = Careful::any_singular(found);
       free = left.free && !(left.led && found.count > 0);
     }
+    if (free && !Arm::kRounded && !Arm::kRefined) real = add_hidden(aim, options, found) || real;
     if (free && !real) real = add_nearest(aim, options, found);
     if (options.seed) Row::sort_by_distance(found, options.seed->data());
     out.count = std::min(found.count, Arm::kMaxSolutions);
@@ -50,6 +49,45 @@ template <class Arm> struct CarefulSolve {
   }
 
  private:
+  // Values for joints that the pose leaves free: the seed's, those of revolute ones turned; held ones as they are.
+  static void take_start(const Options& options, int turn, double* q) noexcept {
+    for (int j = 0; j < Arm::kDof; ++j)
+      q[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kRevolute[j] ? turn * Policy::kTryStep : 0.0);
+    for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) q[Arm::kFreeJoints[k]] = options.free[k];
+  }
+
+  // Adds rows that take the pose, next to rows of the closed form that do not behind a joint that it left free: where it
+  // left two and the pose leaves one, their values have to go together. Whether there are any.
+  [[gnu::cold, gnu::noinline]] static bool add_hidden(const Aim& aim, const Options& options, Places& out) noexcept {
+    const double* t = aim.pose.matrix().data();
+    double best[Arm::kLanes][Arm::kDof], least[Arm::kLanes];
+    std::fill_n(least, Arm::kLanes, kInfinity);
+    for (int turn = 0; turn < Policy::kTries; ++turn) {
+      double q[Arm::kDof];
+      take_start(options, turn, q);
+      typename Careful::Rows rows;
+      Careful::find_lanes(aim.pose, q, options, rows);
+      for (const int lane : Arm::kLaneOfRow) {
+        if ((static_cast<int>(rows.flags[lane]) & (kReal | kSingular)) != kSingular) continue;
+        for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
+        const double cost = Row::finite(q) ? PoseChords<Arm>(q, t).cost : kInfinity;
+        if (!(cost < least[lane])) continue;
+        least[lane] = cost;
+        std::copy_n(q, Arm::kDof, best[lane]);
+      }
+    }
+    bool real = false;
+    for (const int lane : Arm::kLaneOfRow) {
+      if (!(least[lane] < kInfinity)) continue;
+      NearestRow<Arm>::descend(t, options.limits, best[lane]);
+      if (!Refinement::refine(best[lane], aim)) continue;
+      real = true;
+      Careful::add(aim, out, best[lane], true);
+    }
+    LimitRows<Arm>::place_all(aim, options, out);
+    return real;
+  }
+
   // Adds a row that takes the pose, inside the limits if one of these was found; whether there is any.
   [[gnu::cold, gnu::noinline]] static bool add_nearest(const Aim& aim, const Options& options, Places& out) noexcept {
     bool real = false;

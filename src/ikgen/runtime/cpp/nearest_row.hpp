@@ -99,6 +99,24 @@ template <class Arm> struct NearestRow {
     }
   }
 
+  // Steps from q; what is least where they end.
+  static double descend(const double* t, bool limits, double* q) noexcept {
+    double damping = kFirst;
+    Chords at(q, t);
+    for (int i = 0; i < kSteps && damping < kMost; ++i) {
+      double trial[Arm::kDof];
+      std::copy_n(q, Arm::kDof, trial);
+      step(at, limits, damping, trial);
+      const Chords there(trial, t);
+      const bool better = there.cost < at.cost;
+      damping = std::clamp(damping * (better ? 0.2 : 8.0), kLeast, kMost);
+      if (!better) continue;
+      at = there;
+      std::copy_n(trial, Arm::kDof, q);
+    }
+    return at.cost;
+  }
+
  private:
   // The range of a joint that steps are clipped to, or of `half` to each side of 0 and beyond.
   static void bounds(int j, bool limits, double* low, double* high) noexcept {
@@ -125,24 +143,6 @@ template <class Arm> struct NearestRow {
 
   static void hold(const Options& options, double* q) noexcept {
     for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) q[Arm::kFreeJoints[k]] = options.free[k];
-  }
-
-  // Steps from q; what is least where they end.
-  static double descend(const double* t, bool limits, double* q) noexcept {
-    double damping = kFirst;
-    Chords at(q, t);
-    for (int i = 0; i < kSteps && damping < kMost; ++i) {
-      double trial[Arm::kDof];
-      std::copy_n(q, Arm::kDof, trial);
-      step(at, limits, damping, trial);
-      const Chords there(trial, t);
-      const bool better = there.cost < at.cost;
-      damping = std::clamp(damping * (better ? 0.2 : 8.0), kLeast, kMost);
-      if (!better) continue;
-      at = there;
-      std::copy_n(trial, Arm::kDof, q);
-    }
-    return at.cost;
   }
 
   // One step; joints at a limit that it would pass stay.

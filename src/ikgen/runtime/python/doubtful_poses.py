@@ -20,7 +20,7 @@ from ikgen.runtime.python.meeting_rows import (
     repeats,
     rows_nearby,
 )
-from ikgen.runtime.python.projection import nearest_row
+from ikgen.runtime.python.projection import chord_costs, descended, nearest_row
 from ikgen.runtime.python.row_placement import is_new, place_rows
 from ikgen.runtime.python.solved_arm import Arm, Found
 
@@ -84,10 +84,41 @@ def placed_rows(arm: Arm, asked: Asked, limits: bool) -> list[Answer]:
             if going[i]:
                 going[i] = _goes_on(arm, some, k, rows[k], seeded.get(k, []), limits, out[i])
         left = left[going[left]]
+    if not arm.rounded and len(left):
+        _take_hidden(arm, asked, left, limits, out)
     for i in left.tolist():
         if not out[i].real:
             _take_nearest(arm, asked.at(np.array([i])), limits, out[i])
     return out
+
+
+def _take_hidden(arm: Arm, asked: Asked, some: Index, limits: bool, out: list[Answer]) -> None:
+    """Adds rows that take some of the poses, next to rows of the closed form that take none behind a joint
+    that it left free: where it left two and the pose leaves one, their values have to go together."""
+    which, q = _hidden_rows(arm, asked, some)
+    if not len(which):
+        return
+    rows = descended(arm, asked.T[which], q, limits)
+    for i, found in zip(which.tolist(), _led_to(arm, asked.at(which), rows)):
+        out[i].real = out[i].real or bool(found)
+        aim = aims(arm, asked.T[i : i + 1], asked.held[i : i + 1])
+        _add(arm, asked.T[i], rows_inside(arm, aim, found, asked.seed(i), limits), out[i].rows)
+
+
+def _hidden_rows(arm: Arm, asked: Asked, some: Index) -> tuple[Index, Array]:
+    """Whose they are (k,), and the rows (k, dof): of each branch with the value whose pose is nearest."""
+    each = arm.policy.tries
+    poses = asked.at(np.repeat(some, each))
+    start = poses.starts(arm, np.tile(range(each), len(some)) * arm.policy.try_step)
+    closed = closed_form(arm, poses.T, start, poses.held)
+    hidden = closed.singular & ~closed.valid & np.isfinite(closed.q).all(axis=2)
+    k, lane = np.nonzero(hidden)
+    costs = np.full(hidden.shape, np.inf)
+    costs[k, lane] = chord_costs(arm, poses.T[k], closed.q[k, lane])
+    q = closed.q.reshape(len(some), each, *closed.q.shape[1:])
+    cost = costs.reshape(len(some), each, -1)
+    pose, lane = np.nonzero(np.isfinite(cost).any(axis=1))
+    return some[pose], q[pose, cost.argmin(axis=1)[pose, lane], lane]
 
 
 def _take_nearest(arm: Arm, asked: Asked, limits: bool, answer: Answer) -> None:

@@ -17,7 +17,7 @@ from ikgen.runtime.python.entry_differences import entry_errors, entry_rows
 from ikgen.runtime.python.solved_arm import Arm
 from ikgen.runtime.python.task_interface import Task
 
-__all__ = ["nearest_row", "off_by"]
+__all__ = ["chord_costs", "descended", "nearest_row", "off_by"]
 
 _START_COUNT = 128  # drawn; the best of them are followed
 _FOLLOWED = 16
@@ -31,10 +31,21 @@ def nearest_row(arm: Arm, T: Array, start: Row, limits: bool) -> Row:
     low, high = _step_bounds(arm, limits)
     q = np.vstack([np.clip(start, low, high), _even_starts(arm, low, high)])
     q[:, list(arm.free)] = [start[j] for j in arm.free]
-    cost = (_chord_errors(arm.task, forward(arm.chain, q), T) ** 2).sum(axis=1)
+    cost = chord_costs(arm, T, q)
     q, cost = _descend_to(arm, T, q[np.argsort(cost, kind="stable")[:_FOLLOWED]], (low, high))
     best: Row = tuple(q[int(np.argmin(cost))].tolist())
     return best
+
+
+def chord_costs(arm: Arm, T: Array, q: Array) -> Array:
+    """What is least (k,), of rows q (k, dof) for one pose T (4, 4), or for each its own (k, 4, 4)."""
+    return np.asarray((_chord_errors(arm.task, forward(arm.chain, q), T) ** 2).sum(axis=1))
+
+
+def descended(arm: Arm, T: Array, q: Array, limits: bool) -> Array:
+    """The joint values (k, dof) at which steps from q (k, dof) towards poses T (k, 4, 4) end."""
+    bounds = _step_bounds(arm, limits)
+    return _descend_to(arm, T, np.clip(q, *bounds), bounds)[0]
 
 
 def off_by(task: Task, pose: Array, T: Array) -> Array:
@@ -63,7 +74,7 @@ def _chord_weight(task: Task) -> Array:
 
 
 def _chord_errors(task: Task, pose: Array, T: Array) -> Array:
-    """What poses (k, 4, 4) are off T (4, 4): (k, entries)."""
+    """What poses (k, 4, 4) are off T (4, 4) or (k, 4, 4): (k, entries)."""
     return entry_errors(task.entries, _chord_weight(task), pose, np.broadcast_to(T, pose.shape))
 
 
