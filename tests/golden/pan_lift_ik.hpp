@@ -388,20 +388,21 @@ template <int N> inline constexpr Unbounded<N> kUnbounded{};
 
 template <int N> struct Placed {
   Lanes<N> q;
-  Mask<N> inside;
+  Mask<N> inside, near;
 };
 
 template <class Policy, int N, bool H>
 [[gnu::always_inline]] inline Placed<N> clamp(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
   const auto outside =
       (range.lower[j] - Policy::kLimitTolerance > q) | (q > range.upper[j] + Policy::kLimitTolerance);
-  return {max(min(q, range.upper[j]), range.lower[j]), !outside};
+  const auto far = (range.lower[j] - Policy::kLimitDoubt > q) | (q > range.upper[j] + Policy::kLimitDoubt);
+  return {max(min(q, range.upper[j]), range.lower[j]), !outside, !far};
 }
 
 template <class Policy, int N, bool H>
 [[gnu::always_inline]] inline Placed<N> place(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
-  const auto up = select(range.lower[j] - Policy::kLimitTolerance > q, kTurn, 0.0);
-  const auto down = select(q > range.upper[j] + Policy::kLimitTolerance, kTurn, 0.0);
+  const auto up = select(range.lower[j] - Policy::kLimitDoubt > q, kTurn, 0.0);
+  const auto down = select(q > range.upper[j] + Policy::kLimitDoubt, kTurn, 0.0);
   return clamp<Policy>(j, q + (up - down), range);
 }
 
@@ -1862,28 +1863,33 @@ template <class Arm> struct LanePlacement {
   template <class Rows> static void apply(const typename Arm::Options& options, Rows& rows) noexcept {
     constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;
     for (int at = 0; at < Rows::kLanes; at += N) {
-      Mask<N> inside = spread<N>(1.0) > 0.0;
+      Mask<N> inside = spread<N>(1.0) > 0.0, near = inside;
       for (int j = 0; j < Arm::kDof; ++j) {
         Lanes<N> q = load<N>(rows.q[j] + at);
         if (Arm::kRevolute[j] && !Arm::kHeld[j]) q = turned(j, q, options);
         if (options.limits) {
           const Placed<N> placed = clamp<Policy>(j, q, {Arm::kLower.data(), Arm::kUpper.data()});
           inside = inside & placed.inside;
+          near = near & placed.near;
           q = placed.q;
         }
         store(q, rows.q[j] + at);
       }
-      alignas(64) double kept[std::size_t{N}];
+      alignas(64) double kept[std::size_t{N}], close[std::size_t{N}];
       store(inside, kept);
-      for (int i = 0; i < N; ++i)
-        rows.flags[at + i] = static_cast<int>(rows.flags[at + i]) & (kept[i] > 0.5 ? ~0 : ~kFound);
+      store(near, close);
+      for (int i = 0; i < N; ++i) {
+        const int bits = static_cast<int>(rows.flags[at + i]);
+        const int doubt = (bits & kReal) != 0 && close[i] > 0.5 ? kRough : 0;
+        rows.flags[at + i] = kept[i] > 0.5 ? bits : (bits & ~kFound) | doubt;
+      }
     }
   }
 
  private:
   template <int N, bool H>
   [[gnu::always_inline]] static Lanes<N> turned(int j, const LanesOf<N, H>& given, const typename Arm::Options& options) noexcept {
-    const double low = Arm::kLower.data()[j] - Policy::kLimitTolerance, high = Arm::kUpper.data()[j] + Policy::kLimitTolerance;
+    const double low = Arm::kLower.data()[j] - Policy::kLimitDoubt, high = Arm::kUpper.data()[j] + Policy::kLimitDoubt;
     const Lanes<N> q = given + select(given > -kPi, select(given > kPi, -kTurn, 0.0), kTurn);
     Lanes<N> shift = spread<N>(0.0);
     if (options.seed) shift = kTurn * nearest((options.seed->data()[j] - q) / kTurn);
@@ -2512,9 +2518,9 @@ struct Policy {
   static constexpr int kTries = 16, kPatience = 5;
   static constexpr double kArrived = 5e-10, kExact = 1e-12, kPoseTolerance = 1e-06, kOrthonormal = 1e-14,
       kCoincident = 1e-06, kAlike = 0.01, kHalfway = 2e-14, kMeeting = 2e-05, kLimitTolerance = 1e-09,
-      kLimitReach = 1e-05, kTryStep = 0.39269908169872414, kRankLoss = 1e-07, kContinuumRankLoss = 0.001,
-      kFoldReach = 0.0001, kBesideReach = 0.0, kAnywhere = 1000.0, kBrokenReach = 0.0, kLeastDamping = 1e-14,
-      kDamping = 0.001, kLargestStep = 0.3, kConverged = 1e-13, kProgress = 0.8;
+      kLimitReach = 1e-05, kLimitDoubt = 1e-09, kTryStep = 0.39269908169872414, kRankLoss = 1e-07,
+      kContinuumRankLoss = 0.001, kFoldReach = 0.0001, kBesideReach = 0.0, kAnywhere = 1000.0, kBrokenReach =
+      0.0, kLeastDamping = 1e-14, kDamping = 0.001, kLargestStep = 0.3, kConverged = 1e-13, kProgress = 0.8;
   static constexpr RefineStage kRefinement[] = {{3, 1e-12, 0.1}, {6, 1e-12, 0.001}, {30, 0.0, 0.0}};
 };
 

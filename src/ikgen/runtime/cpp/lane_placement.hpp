@@ -13,25 +13,30 @@ namespace ikgen_runtime {
 template <class Arm> struct LanePlacement {
   using Policy = typename Arm::Policy;
 
-  // Rows that cannot be placed are found no more. Angles are given within a turn of (-pi, pi].
+  // Rows that cannot be placed are found no more; those in doubt take Newton steps. Angles are given within a turn of (-pi, pi].
   template <class Rows> static void apply(const typename Arm::Options& options, Rows& rows) noexcept {
     constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;
     for (int at = 0; at < Rows::kLanes; at += N) {
-      Mask<N> inside = spread<N>(1.0) > 0.0;
+      Mask<N> inside = spread<N>(1.0) > 0.0, near = inside;
       for (int j = 0; j < Arm::kDof; ++j) {
         Lanes<N> q = load<N>(rows.q[j] + at);
         if (Arm::kRevolute[j] && !Arm::kHeld[j]) q = turned(j, q, options);
         if (options.limits) {
           const Placed<N> placed = clamp<Policy>(j, q, {Arm::kLower.data(), Arm::kUpper.data()});
           inside = inside & placed.inside;
+          near = near & placed.near;
           q = placed.q;
         }
         store(q, rows.q[j] + at);
       }
-      alignas(64) double kept[std::size_t{N}];
+      alignas(64) double kept[std::size_t{N}], close[std::size_t{N}];
       store(inside, kept);
-      for (int i = 0; i < N; ++i)
-        rows.flags[at + i] = static_cast<int>(rows.flags[at + i]) & (kept[i] > 0.5 ? ~0 : ~kFound);
+      store(near, close);
+      for (int i = 0; i < N; ++i) {
+        const int bits = static_cast<int>(rows.flags[at + i]);
+        const int doubt = (bits & kReal) != 0 && close[i] > 0.5 ? kRough : 0;
+        rows.flags[at + i] = kept[i] > 0.5 ? bits : (bits & ~kFound) | doubt;
+      }
     }
   }
 
@@ -39,7 +44,7 @@ template <class Arm> struct LanePlacement {
   // On the turn nearest to the seed, or if that is outside the limits, on the one inside that is nearest to them.
   template <int N, bool H>
   [[gnu::always_inline]] static Lanes<N> turned(int j, const LanesOf<N, H>& given, const typename Arm::Options& options) noexcept {
-    const double low = Arm::kLower.data()[j] - Policy::kLimitTolerance, high = Arm::kUpper.data()[j] + Policy::kLimitTolerance;
+    const double low = Arm::kLower.data()[j] - Policy::kLimitDoubt, high = Arm::kUpper.data()[j] + Policy::kLimitDoubt;
     const Lanes<N> q = given + select(given > -kPi, select(given > kPi, -kTurn, 0.0), kTurn);
     Lanes<N> shift = spread<N>(0.0);
     if (options.seed) shift = kTurn * nearest((options.seed->data()[j] - q) / kTurn);
