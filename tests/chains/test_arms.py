@@ -61,6 +61,16 @@ def test_a_leg_ends_before_its_wheel(word):
     assert ends(tree_of(*leg, wheel)) == {("base", "leg_4_link"): 5}
 
 
+def test_rotors_of_a_leg_s_motors_are_no_propellers():
+    leg = [
+        ("hip", "revolute", "base", "hip_rotor"),
+        ("thigh", "fixed", "hip_rotor", "knee_stator"),
+        ("knee", "revolute", "knee_stator", "knee_rotor"),
+        ("wheel", "continuous", "knee_rotor", "wheel_rotor"),
+    ]
+    assert ends(tree_of(*leg)) == {("base", "knee_rotor"): 2}
+
+
 def test_an_arm_whose_joint_is_named_after_a_wheel_stays_one():
     arm = serial_joints("base", "wheel_1", *(f"arm_{i}" for i in range(5)))
     assert ends(tree_of(*arm)) == {("base", "arm_4_link"): 6}

@@ -7,10 +7,11 @@ on them.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ikgen.chains.link_names import is_finger, is_finger_link, is_wheel
+from ikgen.chains.link_names import is_finger, is_finger_link, is_rotor, is_wheel
 from ikgen.chains.rigid_bodies import RigidBodies
 from ikgen.importers.urdf.topology import TreeIndex
 from ikgen.model.joint_tree import Joint, JointType
@@ -78,7 +79,8 @@ def _held_fingers(index: TreeIndex, palms: Sequence[str]) -> frozenset[str]:
 
 
 def _wheel_joints(index: TreeIndex, bodies: RigidBodies) -> frozenset[str]:
-    """The joints that turn a wheel, caster or rotor: named so, with nothing else moving below."""
+    """The joints that turn a wheel, caster or rotor: named so, with nothing else moving below. A rotor that
+    turns less than once is a motor's, which moves what is fixed to it."""
     wheels: set[str] = set()
     rolls: dict[str, bool] = {}
     for link in reversed(tuple(bodies.hub)):
@@ -86,15 +88,18 @@ def _wheel_joints(index: TreeIndex, bodies: RigidBodies) -> frozenset[str]:
         for joint in index.below[link]:
             if joint.type is JointType.FIXED:
                 rolls[link] &= rolls[joint.child]
-            elif rolls[joint.child] and _turns(joint) and is_wheel(joint.name, joint.child):
+            elif rolls[joint.child] and _rolls(joint):
                 wheels.add(joint.name)
             else:
                 rolls[link] = False
     return frozenset(wheels)
 
 
-def _turns(joint: Joint) -> bool:
-    return joint.type in (JointType.CONTINUOUS, JointType.REVOLUTE)
+def _rolls(joint: Joint) -> bool:
+    if joint.type not in (JointType.CONTINUOUS, JointType.REVOLUTE):
+        return False
+    around = joint.limits.upper - joint.limits.lower >= math.tau
+    return is_wheel(joint.name, joint.child) or (around and is_rotor(joint.name, joint.child))
 
 
 def _finger_joints(

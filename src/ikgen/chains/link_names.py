@@ -10,6 +10,7 @@ __all__ = [
     "is_finger",
     "is_finger_link",
     "is_head",
+    "is_rotor",
     "is_sensor",
     "is_wheel",
     "tip_rank",
@@ -21,7 +22,8 @@ _FINGER_JOINT = re.compile(
     re.IGNORECASE,
 )
 _FINGER_LINK = re.compile(r"finger|knuckle|moving[-_](part|jaw)", re.IGNORECASE)
-_WHEEL = re.compile(r"wheel|caster|castor|rotor|propeller", re.IGNORECASE)
+_WHEEL = re.compile(r"wheel|caster|castor", re.IGNORECASE)
+_ROTOR = re.compile(r"rotor|propeller", re.IGNORECASE)
 _HEAD = re.compile(r"head|neck|cervical|(^|[/_])eyes?(_|$)", re.IGNORECASE)
 _SENSOR = re.compile(
     r"camera|optical|realsense|imu|sensor|touch|marker|contact|collision|inertia|balancing",
@@ -57,8 +59,13 @@ def is_finger_link(link: str) -> bool:
 
 
 def is_wheel(joint: str, child: str) -> bool:
-    """Whether the names of a joint and the link it holds tell of a wheel, caster or rotor."""
+    """Whether the names of a joint and the link it holds tell of a wheel or caster."""
     return _WHEEL.search(joint) is not None or _WHEEL.search(child) is not None
+
+
+def is_rotor(joint: str, child: str) -> bool:
+    """Whether the names of a joint and the link it holds tell of a rotor: a propeller, or a motor's."""
+    return _ROTOR.search(joint) is not None or _ROTOR.search(child) is not None
 
 
 def is_head(joint: str) -> bool:
