@@ -30,6 +30,30 @@ def rotation(roll: float, pitch: float, yaw: float) -> np.ndarray:
     return np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]]) @ Ry @ Rx
 
 
+def test_a_chain_without_a_closed_form_is_shown_with_the_reason(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # two links of a finger, the outer one geared to the inner one
+    joints = "".join(
+        f'<link name="link{i}"/><joint name="j{i}" type="revolute"><parent link="link{i - 1}"/>'
+        f'<child link="link{i}"/><origin xyz="0.04 0 0"/><axis xyz="0 0 1"/><limit lower="-1" upper="1"/>'
+        f"{mimic}</joint>"
+        for i, mimic in ((1, ""), (2, '<mimic joint="j1" multiplier="1.35"/>'))
+    )
+    robot = tmp_path / "finger.urdf"
+    robot.write_text(f'<robot name="finger"><link name="link0"/>{joints}</robot>')
+    assert run(["inspect", str(robot), "--tip", "link2"]) == 0
+    shown = capsys.readouterr().out
+    assert "j2: revolute" in shown
+    assert "modified DH rows" in shown
+    assert "'j1' and 'j2' turn in the ratio 1 : 1.35, and closed forms need whole numbers" in shown
+    assert "--lock j1=VALUE" in shown
+    assert run(["inspect", str(robot), "--tip", "link2", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["attempts"] == []
+    assert "1 : 1.35" in found["hindrance"]["message"]
+
+
 @pytest.mark.parametrize(
     "rpy",
     [

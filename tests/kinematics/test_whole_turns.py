@@ -95,7 +95,7 @@ def test_ratios_that_are_not_whole_are_refused(tmp_path: Path) -> None:
     )
     robot.write_text(text)
     with pytest.raises(
-        UnsolvedChainError, match=r"turn in the ratio 0\.007, which is one over no whole"
+        UnsolvedChainError, match=r"turn in the ratio 1 : 142\.857, and closed forms need"
     ):
         derive(request(robot))
     robot.write_text(text.replace('"elbow" type="revolute"', '"elbow" type="prismatic"'))

@@ -30,6 +30,8 @@ def as_dict(found: Inspection) -> dict[str, Any]:
         record["arm_angle"] = found.arm_angle
         record["chain"] = _chain(found.dh, found.geometry)
     record["attempts"] = [_attempt(one) for one in found.attempts]
+    why = found.hindrance
+    record["hindrance"] = None if why is None else {"message": why.message, "hint": why.hint}
     return record
 
 

@@ -98,6 +98,8 @@ def _advice(found: Inspection) -> str:
         lines.append(
             f"  --free {ARM_ANGLE}: closed form, the angle of the elbow held in a joint's place"
         )
+    if found.hindrance is not None:
+        lines += [f"  {found.hindrance.message}", f"      {found.hindrance.hint}"]
     if found.attempts and not found.closed:
         best = max(found.attempts, key=lambda attempt: len(attempt.order))
         lines.append(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from ikgen.errors import UnsolvedChainError
 from ikgen.generation.advice import attempts
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.read import has_arm_angle, read, read_tree
@@ -12,6 +13,7 @@ from ikgen.generation.read import has_arm_angle, read, read_tree
 if TYPE_CHECKING:
     from ikgen.chains.arms import ChainCandidate
     from ikgen.emit.derivation import Reading
+    from ikgen.errors import IkgenError
     from ikgen.generation.advice import Attempt
     from ikgen.generation.request import Request
     from ikgen.kinematics.classify import GeometryClass
@@ -24,13 +26,15 @@ __all__ = ["Inspection", "inspect_robot"]
 @dataclass(frozen=True, slots=True)
 class Inspection:
     """`reading` and its `geometry` are None where it is not clear which chain is meant, `tree` for a DH
-    table; `attempts` are derivations that were tried, best first. The geometry is that of `dh`."""
+    table; `attempts` are derivations that were tried, best first, `hindrance` why none was. The geometry is
+    that of `dh`."""
 
     reading: Reading | None
     geometry: GeometryClass | None
     tree: JointTree | None
     candidates: tuple[ChainCandidate, ...]
     attempts: tuple[Attempt, ...]
+    hindrance: IkgenError | None = None
 
     @property
     def taken(self) -> Attempt | None:
@@ -77,6 +81,7 @@ def inspect_robot(
     """Read the file; the chain and what follows from it where it is clear which one."""
     from ikgen.chains.arms import candidate_chains
     from ikgen.kinematics.classify import classify
+    from ikgen.kinematics.whole_turns import check_couplings
 
     progress("read", request.robot.name)
     tree: JointTree | None = None
@@ -90,7 +95,12 @@ def inspect_robot(
         if request.tip is not None or len(candidates) == 1:
             reading = read(request, tree)
     tried: list[Attempt] = []
+    hindrance: IkgenError | None = None
     if advice and reading:
-        tried = attempts(reading, request.named_task, progress, request.tool_axis)
-    found = Inspection(reading, None, tree, candidates, tuple(tried))
+        try:
+            check_couplings(reading.dh)
+            tried = attempts(reading, request.named_task, progress, request.tool_axis)
+        except UnsolvedChainError as error:
+            hindrance = error
+    found = Inspection(reading, None, tree, candidates, tuple(tried), hindrance)
     return replace(found, geometry=classify(found.dh) if found.dh else None)

@@ -61,7 +61,7 @@ def _cause(dh: DHChain, joint: int, rows: tuple[DHRow, ...]) -> tuple[str, str] 
         ratio = row.scale / lead.scale
         if row.revolute and abs(ratio - round(ratio)) > _WHOLE:
             text = (
-                f"{names} turn in the ratio {1 / abs(ratio):g}, which is one over no whole number"
+                f"{names} turn in the ratio 1 : {abs(ratio):g}, and closed forms need whole numbers"
             )
             return text, "; so do --base and --tip with one of the two between them"
     limits, held = dh.joints[joint].limits, dh.joints[joint].name in dh.free
