@@ -83,7 +83,7 @@ def sources(collections: Sequence[str] = ("fixtures", "suite", "corpus")) -> lis
     return out
 
 
-def emit(source: Source, folder: Path, languages: str = "python,cpp") -> Emitted:
+def emit(source: Source, folder: Path, languages: str = "python,cpp", name: str = "arm") -> Emitted:
     """Generate without verification into `folder` (empty), with the first options that give a closed
     form."""
     file = source.file
@@ -95,13 +95,13 @@ def emit(source: Source, folder: Path, languages: str = "python,cpp") -> Emitted
     for options in source.choices:
         command = [
             sys.executable, "-m", "ikgen", verb, str(file), *source.links, *options,
-            "--no-verify", "--emit", languages, "--name", "arm", "--json", "-q", "-o", str(folder),
+            "--no-verify", "--emit", languages, "--name", name, "--json", "-q", "-o", str(folder),
         ]  # fmt: skip
         code, seconds, said = _run(command)
         answer = _answer(*said)
         if code != UNSOLVED:
             break
-    paths = (folder / "arm_ik.py", folder / "arm_ik.hpp")
+    paths = (folder / f"{name}_ik.py", folder / f"{name}_ik.hpp")
     made = [p if code == 0 and p.is_file() else None for p in paths]
     return Emitted(source, code, seconds, options, answer, *made)
 

@@ -50,9 +50,8 @@ def make_arm(name: str, robots: Path, out: Path) -> tuple[Arm, Path]:
     return Arm(name, request.robot, module, values, opw, table), out / f"{file}_ik.hpp"
 
 
-def compiled(arm: Arm, out: Path) -> Any:
-    """The installed compiled package; raises AbsentError where it cannot be built."""
-    name = arm.module.__name__.removesuffix("_ik") + "_ik_ext"
+def compiled(name: str, out: Path) -> Any:
+    """The compiled package of a name, installed from `out`; raises AbsentError where it cannot be built."""
     target = out / "site"
     command = [sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--target", str(target)]
     done = subprocess.run([*command, str(out / name)], capture_output=True, check=False)

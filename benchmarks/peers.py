@@ -53,7 +53,7 @@ def solvers(arm: Arm, out: Path) -> dict[str, Solver]:
     free = list(arm.free) or None
 
     def native(arm: Arm) -> Solver:
-        package = compiled(arm, out)
+        package = compiled(f"{arm.module.__name__}_ext", out)
         return lambda pose: np.asarray(package.solve(pose, free=free, limits=False).q)
 
     makers: dict[str, Callable[[Arm], Solver]] = {
