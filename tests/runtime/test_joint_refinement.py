@@ -19,6 +19,7 @@ from ikgen.emit.python.python_emitter import emit_module
 from ikgen.runtime.python import joint_refinement
 from ikgen.runtime.python.chain_kinematics import forward as arm_forward
 from ikgen.runtime.python.joint_refinement import refine_few, refine_together
+from ikgen.runtime.python.lane_newton import begins, ends
 from ikgen.runtime.python.pose_solving import solve_pose
 from ikgen.runtime.python.solution_rows import sorted_rows
 
@@ -83,6 +84,32 @@ def test_rows_beside_folds_or_far_away_are_in_doubt(doosan: ModuleType) -> None:
         away = np.tile(regular + 0.3, (count, 1))
         left, arrived, _ = steps(doosan, away, doosan.forward(regular))
         assert not arrived.any() and (left == away).all()
+
+
+def test_steps_near_singularities_end_at_the_round_off_that_these_enlarge(
+    doosan: ModuleType,
+) -> None:
+    rng = np.random.default_rng(5)
+    q = rng.uniform(-2.0, 2.0, (300, 6))
+    q[:, 4] = rng.choice([-1, 1], 300) * 10.0 ** rng.uniform(-3.5, -2.5, 300)
+    starts, T = q + 1e-5 * rng.normal(size=q.shape), doosan.forward(q)
+    found = np.concatenate(
+        [steps(doosan, starts[i : i + 60], T[i : i + 60])[1] for i in range(0, 300, 60)]
+    )
+    assert found.mean() > 0.95
+
+
+def test_a_long_step_is_no_round_off_however_small_the_error() -> None:
+    policy = given_arm(None).policy
+    size, worst, pivot = (
+        np.array([1e-9, 1e-9, 1e-5]),
+        np.array([1e-15, 1e-12, 1e-15]),
+        np.full(3, 1e-3),
+    )
+    before = np.full(3, 1e-9)
+    assert begins(policy, size, worst, before, pivot, False).tolist() == [True, False, False]
+    near, done = ends(policy, before, size, worst, size, pivot)
+    assert near.tolist() == done.tolist() == [True, False, False]
 
 
 def test_a_least_error_above_zero_is_no_solution(doosan: ModuleType) -> None:

@@ -56,6 +56,8 @@ template <class Arm> struct LaneNewton {
   static constexpr int kMoving = MovingJoints<Arm>::kCount;
   static_assert(kMoving <= kEquations);
   static constexpr bool kBlocks = !Arm::kBlocks.empty();
+  static constexpr double kRoundOff = 1e-14;  // of errors (rad, or m over the arm's size)
+  static constexpr double kUnmoved = 1e-3;  // of the pivot: rows that are moved by less stay the solutions that they are
   template <int N> using Factors = std::conditional_t<kBlocks, LaneBlocks<N>, LaneFactors<kEquations, kMoving, N>>;
 
   // Refines the rows that are real, and puts them into the range. What is not shown to be the one solution near its
@@ -130,6 +132,12 @@ template <class Arm> struct LaneNewton {
     Mask<N> good, beside;
   };
 
+  template <std::size_t M, int N> static Lanes<N> largest(const Lanes<N> (&x)[M]) noexcept {
+    Lanes<N> out = abs(x[0]);
+    for (std::size_t i = 1; i < M; ++i) out = max(out, abs(x[i]));
+    return out;
+  }
+
   // Steps until all lanes are done, or as many as there may be.
   template <int P, int N>
   static Arrival<N> steps(const Pose<P>& pose, LaneAim<Arm, N> aim, const Mask<N>& real, LaneChain<Arm, N>& chain) noexcept {
@@ -144,21 +152,22 @@ template <class Arm> struct LaneNewton {
       const bool fresh = k != 2 || !all((!good) | (Policy::kNear > before));
       compare<P, N>(pose, aim, chain, fresh, error, factors);
       if (fresh) factors.factor();
+      const Lanes<N> worst = largest(error);
       factors.solve(error, d);
-      Lanes<N> size = abs(d[0]);
-      for (int i = 1; i < kMoving; ++i) size = max(size, abs(d[i]));
+      const Lanes<N> size = largest(d);
+      // steps that are round-off; those near singularities are as much longer as these enlarge it
+      const Mask<N> still = (Policy::kConverged > size) | ((kRoundOff > worst) & (kUnmoved * factors.pivot > size));
       // Newton's method contracts this fast only near the one solution there (Deuflhard 2004, theorem 2.1)
       const Lanes<N> bound = k == 0 ? min(before, Policy::kPivotShare * factors.pivot) : Policy::kContraction * before;
-      good = good & ((bound > size) | (Policy::kConverged > size)) & (factors.pivot > Policy::kLeastPivot);
+      good = good & ((bound > size) | still) & (factors.pivot > Policy::kLeastPivot);
       for (auto& none : step) none = spread<N>(0.0);
       for (int i = 0; i < kMoving; ++i) step[column(i)] = select(good, d[i], 0.0);
       chain.add(step);
-      rest = abs(error[0]);
-      for (int i = 1; i < kEquations; ++i) rest = max(rest, abs(error[i]));
+      rest = largest(error);
       if (k > 0) {
         // over the square of the step before; what was small in it may be a hundred times as much in the next
         const Lanes<N> next = (fresh ? 100.0 * size : before) * (size * size);
-        done = (!good) | (Policy::kConverged * (before * before) > next) | (Policy::kConverged > size);
+        done = (!good) | (Policy::kConverged * (before * before) > next) | still;
         if (all(done)) break;
       }
       chain.turn(step);

@@ -47,17 +47,18 @@ def refine_few(arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
         error, slope = _linearized(arm, q, T)
         inverse = _left_inverse(slope)
         change = inverse @ error
-        size = _largest(change[:, :, 0])
+        size, worst = _largest(change[:, :, 0]), _largest(error[:, :, 0])
         pivot = 1.0 / np.sqrt(_largest(np.add.reduce(inverse * inverse, axis=2)))
-        good &= begins(policy, size, before, pivot, not steps)
+        good &= begins(policy, size, worst, before, pivot, not steps)
         q = _moved(arm, q, change)
         rest, slope = _linearized(arm, q, T)
+        worst = _largest(rest[:, :, 0])
         change = inverse @ rest
         rest = rest - slope @ change
         more = inverse @ rest
         rest, change = rest - slope @ more, change + more
         before, size = size, _largest(change[:, :, 0])
-        near, done = ends(policy, before, size, _largest(more[:, :, 0]))
+        near, done = ends(policy, before, size, worst, _largest(more[:, :, 0]), pivot)
         good &= near
         q, before = _moved(arm, q, change), size
         if (done | ~good).all():

@@ -21,6 +21,8 @@ from ikgen.runtime.python.solved_arm import Arm
 __all__ = ["begins", "ends", "refine_lanes"]
 
 _BLOCK = 2048  # rows whose arrays fit into a processor's cache
+_ROUND_OFF = 1e-14  # of errors (rad, or m over the arm's size)
+_UNMOVED = 1e-3  # of the pivot: rows that are moved by less stay the solutions that they are
 
 
 def refine_lanes(arm: Arm, chain: LaneChain, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
@@ -63,36 +65,48 @@ def _two_steps(
     error, slope = _linearized(arm, chain, values, angles, T)
     inverse, pivot = _left_inverse(slope)
     change = np.einsum("imk,mk->ik", inverse, error)
-    size = np.abs(change).max(axis=0)
-    good = begins(policy, size, before, pivot, first)
+    size, worst = np.abs(change).max(axis=0), np.abs(error).max(axis=0)
+    good = begins(policy, size, worst, before, pivot, first)
     turn = _of_joints(arm, change)
     q, turns = q + turn, chain.changes(turn)
     values, angles = values + turns, turned(angles, turns)
     rest, slope = _linearized(arm, chain, values, angles, T)
+    worst = np.abs(rest).max(axis=0)
     change = np.einsum("imk,mk->ik", inverse, rest)
     rest -= np.einsum("imk,ik->mk", slope, change)
     more = np.einsum("imk,mk->ik", inverse, rest)
     rest -= np.einsum("imk,ik->mk", slope, more)
     change += more
     before, size = size, np.abs(change).max(axis=0)
-    near, done = ends(policy, before, size, np.abs(more).max(axis=0))
+    near, done = ends(policy, before, size, worst, np.abs(more).max(axis=0), pivot)
     good &= near
     return q + _of_joints(arm, change), size, good & done, good, np.abs(rest).max(axis=0)
 
 
-def begins(policy: Policy, size: Array, before: Array, pivot: Array | Single, first: bool) -> Flags:
-    """Which first steps of two, of this `size` (k,), may lead to the solution near their start."""
+def begins(
+    policy: Policy, size: Array, worst: Array, before: Array, pivot: Array | Single, first: bool
+) -> Flags:
+    """Which first steps of two, of this `size` (k,) towards errors of at most `worst` (k,), may lead to the
+    solution near their start."""
     bound = policy.pivot_share * pivot if first else policy.contraction * before
-    small = (size < np.minimum(before, bound)) | (size < policy.converged)
+    small = (size < np.minimum(before, bound)) | _is_round_off(policy, size, worst, pivot)
     return np.asarray(small & (pivot > policy.least_pivot))
 
 
-def ends(policy: Policy, before: Array, size: Array, more: Array) -> tuple[Flags, Flags]:
+def ends(
+    policy: Policy, before: Array, size: Array, worst: Array, more: Array, pivot: Array | Single
+) -> tuple[Flags, Flags]:
     """The same of second steps, `more` the size of what was left of them; and which are the last."""
-    small = size < policy.converged
+    small = _is_round_off(policy, size, worst, pivot)
     done = size**3 < policy.converged * before**2
     done &= more**2 < policy.converged * size
     return (size < policy.contraction * before) | small, done | small
+
+
+def _is_round_off(policy: Policy, size: Array, worst: Array, pivot: Array | Single) -> Flags:
+    """Which steps are; those near singularities are as much longer as these enlarge it."""
+    enlarged = (worst < _ROUND_OFF) & (size < _UNMOVED * pivot)
+    return np.asarray((size < policy.converged) | enlarged)
 
 
 def _linearized(
