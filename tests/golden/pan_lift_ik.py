@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from functools import partial
+from functools import cache, partial
 from math import asin, atan2, ceil, copysign, floor, inf, isfinite, pi, remainder, sqrt
 from operator import lt
 from typing import Any, NamedTuple, Protocol, TypeVar
@@ -661,6 +661,15 @@ def _aims(arm: _Arm, T: Array, held: Array) -> Array:
     return T
 
 
+# Rows to be compared.
+
+
+@cache
+def _pairs(count: int) -> tuple[_Index, _Index]:
+    """Of so many rows each, and each one before it."""
+    return np.tril_indices(count, -1)
+
+
 # Rows on the whole turns that limits and seed ask for, and without repetitions: for floats and arrays.
 
 
@@ -687,7 +696,7 @@ def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
 def _distinct(arm: _Arm, q: Array, valid: _Flags) -> _Flags:
     """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside."""
     near = arm.policy.coincident
-    later, earlier = np.tril_indices(q.shape[1], -1)
+    later, earlier = _pairs(q.shape[1])
     same = valid.T[later] & valid.T[earlier]
     for j in reversed(range(q.shape[2])):  # the last joints differ between most rows
         value = q[:, :, j].T
@@ -1800,7 +1809,7 @@ def _no_solutions(dof: int, status: Status, reason: str = "") -> Solutions:
 
 
 _CHUNK = 16384  # poses solved at a time,
-_DOUBTS = 128  # and those that leave doubts
+_DOUBTS = 512  # and those that leave doubts
 _Batch = tuple[Array, NDArray[np.int64], NDArray[np.str_]]
 
 
@@ -2247,11 +2256,14 @@ def _fitting(arm: _Arm, asked: _One, limits: bool) -> _Answer:
 
 
 def _sure_answer(arm: _Arm, asked: _One, limits: bool) -> _Answer | None:
-    """From the closed form on floats, where that leaves no doubt."""
-    T, near, held = asked
-    kept = _certain_rows(arm, T, near, held)
-    if kept is None:
-        return None
+    """From the closed form on floats, or an elimination, where that leaves no doubt."""
+    kept = _certain_rows(arm, *asked)
+    return None if kept is None else _placed_answer(arm, asked, kept, limits)
+
+
+def _placed_answer(arm: _Arm, asked: _One, kept: list[_Found], limits: bool) -> _Answer | None:
+    """From distinct rows, where none of them is close to a limit."""
+    near = asked[1]
     placed, close = _rows_at_limits(arm, kept, near, limits)
     if close:
         return None
@@ -2263,14 +2275,19 @@ def _sure_answer(arm: _Arm, asked: _One, limits: bool) -> _Answer | None:
 def _certain_rows(
     arm: _Arm, T: list[list[float]], near: Row | None, held: Row
 ) -> list[_Found] | None:
-    """Distinct rows, of a rounded arm refined all at once."""
+    """Distinct rows, refined where they need it, those of a rounded arm all at once."""
     start = list(near) if near is not None else [0.0] * len(arm.lower)
     for j, value in zip(arm.free, held):
         start[j] = value
     answers, hit = arm.branches(T, tuple(start), held)
-    if hit or (any(rough for _, rough in answers)):
+    if hit:
         return None
     rows: list[Row] = [row for row, _ in answers]
+    if any(rough for _, rough in answers):
+        regular = _regular_rows(arm, answers, (T, near, held))
+        if regular is None:
+            return None
+        rows = regular
     kept: list[_Found] = []
     for row in rows:
         if _is_new(arm, row, kept):
@@ -2278,6 +2295,23 @@ def _certain_rows(
         elif arm.rounded:  # another may lie there
             return None
     return kept
+
+
+def _regular_rows(arm: _Arm, answers: list[_Found], asked: _One) -> list[Row] | None:
+    """Rows of which those that are rough are refined, each for as long as it takes."""
+    T, _, held = asked
+    rough = [row for row, flag in answers if flag]
+    aim = _aims(arm, np.array([T] * len(rough)), np.array([held] * len(rough)))
+    q, error, _, slope = _refined(arm, np.array(rough), aim)
+    if not _steeper(slope, arm.policy.fold_reach).all():
+        return None
+    ends = iter(zip(q.tolist(), (error < arm.policy.arrived).tolist()))
+    rows = []
+    for row, flag in answers:
+        end, arrived = next(ends) if flag else (row, True)
+        if arrived:
+            rows.append(tuple(end))
+    return rows
 
 
 # Which rows are better than others.

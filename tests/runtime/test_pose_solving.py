@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,6 +15,9 @@ from tests.support.solving import import_text
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
+from ikgen.runtime.python import pose_solving
+from ikgen.runtime.python.doubtful_poses import placed_rows
+from ikgen.runtime.python.pose_solving import solve_pose
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
@@ -67,3 +71,40 @@ def test_poses_in_a_stack_are_solved_as_each_is_alone(
         assert one.status is alone.status and len(one) == len(alone)
         np.testing.assert_allclose(one.q, alone.q, atol=1e-7)
         np.testing.assert_array_equal(one.singular, alone.singular)
+
+
+def test_rough_rows_are_refined_where_they_are_regular(
+    arm: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As in arrays: what is for rows near singularities is for those alone."""
+    careful: list[object] = []
+
+    def placed(*given: object) -> object:
+        careful.append(given)
+        return placed_rows(*given)  # type: ignore[arg-type]
+
+    def branches(*given: Any) -> Any:
+        rows, hit = arm._ARM.branches(*given)
+        return [(tuple(x + 1e-6 for x in row), k != 1) for k, (row, _) in enumerate(rows)], hit
+
+    monkeypatch.setattr(pose_solving, "placed_rows", placed)
+    rough = replace(arm._ARM, branches=branches)
+    regular = arm.forward([0.3, -0.9, 1.1, 0.4, 0.7, -0.2])
+    found, exact = (solve_pose(one, regular, None, None, False).q for one in (rough, arm._ARM))
+    far = np.abs(found - exact).max(axis=1)
+    assert not careful and far[1] > 1e-7 and np.delete(far, 1).max() < 1e-8
+    solve_pose(rough, arm.forward([0.3, -0.9, 1.1, 0.4, 1e-5, -0.2]), None, None, False)
+    assert len(careful) == 1
+
+
+def test_an_elimination_takes_care_of_no_regular_pose(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    crx = import_text(emit_module(derive(Request(robot_file("fanuc_crx10ia"))).module), tmp_path)
+    poses = crx.forward(np.random.default_rng(2).uniform(-2.0, 2.0, (8, 6)))
+    rows, count, _ = crx.solve_batch(poses, limits=False)
+    monkeypatch.setattr(crx, "_placed_rows", None)  # cannot be called
+    for pose, q, n in zip(poses, rows, count, strict=True):
+        found = crx.solve(pose, limits=False)
+        np.testing.assert_allclose(found.q, q[:n], atol=1e-12)
+        assert n and not found.singular.any()

@@ -22,7 +22,7 @@ from ikgen.runtime.python.solved_arm import Arm, Found
 __all__ = ["branch_axis", "rows_batch", "solve_poses"]
 
 _CHUNK = 16384  # poses solved at a time,
-_DOUBTS = 128  # and those that leave doubts
+_DOUBTS = 512  # and those that leave doubts
 _Batch = tuple[Array, NDArray[np.int64], NDArray[np.str_]]
 
 

@@ -126,7 +126,10 @@ def cross(a: Array, b: Array) -> Array:
     """Cross products of (..., 3); for few of them several times faster than np.cross."""
     x, y, z = a[..., 0], a[..., 1], a[..., 2]
     u, v, w = b[..., 0], b[..., 1], b[..., 2]
-    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)
+    first = y * w - z * v
+    out = np.empty((*first.shape, 3))
+    out[..., 0], out[..., 1], out[..., 2] = first, z * u - x * w, x * v - y * u
+    return out
 
 
 def joint_axes(chain: Chain, q: Array) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
@@ -90,11 +91,18 @@ def refined_rows(
     near = slides_near(q, plan.turning)
     held = np.broadcast_to(rows_of(six.held, pose), (len(q), six.held.shape[1]))
     start = np.concatenate([np.where(near[:, None], q, 0.0), held], axis=1)
-    # Roots of a high degree come from farther off: of their rows all digits are wanted.
-    converged, steps = (0.0, _FINEST) if plan.motions else (policy.converged, _THOROUGH)
-    thorough = replace(policy, refinement=steps, converged=converged)
+    thorough = _thorough(policy, bool(plan.motions))
     q, error, before, _ = refine(six.chain, PoseTask(1.0), _SIX, start, T, thorough)
     return q[:, :6], (error < policy.arrived) & near, np.where(near, before, np.inf)
+
+
+@cache
+def _thorough(policy: Policy, farther: bool) -> Policy:
+    """With which candidates are refined; roots of a high degree come from `farther` off: of their rows all
+    digits are wanted."""
+    if farther:
+        return replace(policy, refinement=_FINEST, converged=0.0)
+    return replace(policy, refinement=_THOROUGH)
 
 
 def _displaced() -> Array:

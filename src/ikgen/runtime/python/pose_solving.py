@@ -9,20 +9,30 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ikgen.runtime.python.arm_newton import refined
 from ikgen.runtime.python.array_types import Row
 from ikgen.runtime.python.chain_kinematics import forward
+from ikgen.runtime.python.closed_form_rows import careful_rows
 from ikgen.runtime.python.doubtful_poses import Answer, Asked, placed_rows, seeded_rows
 from ikgen.runtime.python.held_parameters import aims, held_of
 from ikgen.runtime.python.joint_arguments import held_values, seed_values
 from ikgen.runtime.python.pose_arguments import one_pose
 from ikgen.runtime.python.pose_faults import nearest_pose, pose_fault
 from ikgen.runtime.python.projection import nearest_row, off_by
+from ikgen.runtime.python.refinement import steeper
 from ikgen.runtime.python.row_branches import branch_names
 from ikgen.runtime.python.row_placement import apart, in_order, is_new, place_rows, rows_at_limits
 from ikgen.runtime.python.solutions import Solutions, Status, no_solutions
 from ikgen.runtime.python.solved_arm import Arm, Found
 
-__all__ = ["One", "solutions_of", "solve_pose", "sure_answer"]
+__all__ = [
+    "One",
+    "eliminated_rows",
+    "placed_answer",
+    "solutions_of",
+    "solve_pose",
+    "sure_answer",
+]
 
 One = tuple[list[list[float]], Row | None, Row]
 """A pose, its seed if there is one, and values of held joints."""
@@ -107,11 +117,14 @@ def _fitting(arm: Arm, asked: One, limits: bool) -> Answer:
 
 
 def sure_answer(arm: Arm, asked: One, limits: bool) -> Answer | None:
-    """From the closed form on floats, where that leaves no doubt."""
-    T, near, held = asked
-    kept = _certain_rows(arm, T, near, held)
-    if kept is None:
-        return None
+    """From the closed form on floats, or an elimination, where that leaves no doubt."""
+    kept = _certain_rows(arm, *asked)
+    return None if kept is None else placed_answer(arm, asked, kept, limits)
+
+
+def placed_answer(arm: Arm, asked: One, kept: list[Found], limits: bool) -> Answer | None:
+    """From distinct rows, where none of them is close to a limit."""
+    near = asked[1]
     placed, close = rows_at_limits(arm, kept, near, limits)
     if close:
         return None
@@ -123,16 +136,22 @@ def sure_answer(arm: Arm, asked: One, limits: bool) -> Answer | None:
 def _certain_rows(
     arm: Arm, T: list[list[float]], near: Row | None, held: Row
 ) -> list[Found] | None:
-    """Distinct rows, of a rounded arm refined all at once; None where that leaves a doubt."""
+    """Distinct rows, refined where they need it, those of a rounded arm all at once; None where that leaves
+    a doubt."""
     if arm.branches is None:
-        return None
+        return eliminated_rows(arm, _asked((T, near, held)))[0]
     start = list(near) if near is not None else [0.0] * len(arm.lower)
     for j, value in zip(arm.free, held):
         start[j] = value
     answers, hit = arm.branches(T, tuple(start), held)
-    if hit or (arm.together is None and any(rough for _, rough in answers)):
+    if hit:
         return None
     rows: list[Row] = [row for row, _ in answers]
+    if arm.together is None and any(rough for _, rough in answers):
+        regular = _regular_rows(arm, answers, (T, near, held))
+        if regular is None:
+            return None
+        rows = regular
     if arm.together is not None and not rows:
         beside = (np.array(T) @ arm.beside).tolist() if arm.policy.beside_anywhere else []
         return None if any(arm.branches(pose, tuple(start), held)[0] for pose in beside) else []
@@ -152,3 +171,30 @@ def _certain_rows(
         elif arm.rounded:  # another may lie there
             return None
     return kept
+
+
+def eliminated_rows(arm: Arm, asked: Asked) -> list[list[Found] | None]:
+    """Distinct rows of each pose, by elimination; None where they leave a doubt."""
+    found = zip(*careful_rows(arm, asked.T, asked.held, asked.near))
+    return [
+        None if doubt else [(tuple(row), False) for row in q[valid].tolist()]
+        for q, valid, doubt in found
+    ]
+
+
+def _regular_rows(arm: Arm, answers: list[Found], asked: One) -> list[Row] | None:
+    """Rows of which those that are rough are refined, each for as long as it takes; None where one of these
+    is near a singularity."""
+    T, _, held = asked
+    rough = [row for row, flag in answers if flag]
+    aim = aims(arm, np.array([T] * len(rough)), np.array([held] * len(rough)))
+    q, error, _, slope = refined(arm, np.array(rough), aim)
+    if not steeper(slope, arm.policy.fold_reach).all():
+        return None
+    ends = iter(zip(q.tolist(), (error < arm.policy.arrived).tolist()))
+    rows = []
+    for row, flag in answers:
+        end, arrived = next(ends) if flag else (row, True)
+        if arrived:
+            rows.append(tuple(end))
+    return rows

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache
 from math import ceil, floor, inf, pi, remainder
 from operator import lt
 
 import numpy as np
 
-from ikgen.runtime.python.array_types import Array, Flags, Index, Row
+from ikgen.runtime.python.array_types import Array, Flags, Row
+from ikgen.runtime.python.row_pairs import pairs
 from ikgen.runtime.python.solved_arm import Arm, Found
 
 __all__ = [
@@ -48,24 +48,18 @@ def apart(arm: Arm, q: Array) -> bool:
     to tell."""
     if not all(arm.chain.revolute):
         return False
-    later, earlier = _pairs(len(q))
+    later, earlier = pairs(len(q))
     gap = q[later] - q[earlier]
     gap -= _TURN * np.rint(gap / _TURN)
     most = np.maximum.reduce(np.abs(gap), axis=1, initial=0.0)
     return bool((most > arm.policy.coincident).all())
 
 
-@cache
-def _pairs(count: int) -> tuple[Index, Index]:
-    """Of so many."""
-    return np.tril_indices(count, -1)
-
-
 def distinct(arm: Arm, q: Array, valid: Flags) -> Flags:
     """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside; long
     slides count relative to their length."""
     near = arm.policy.coincident
-    later, earlier = np.tril_indices(q.shape[1], -1)
+    later, earlier = pairs(q.shape[1])
     same = valid.T[later] & valid.T[earlier]
     for j in reversed(range(q.shape[2])):  # the last joints differ between most rows
         value = q[:, :, j].T

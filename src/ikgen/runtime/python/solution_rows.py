@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ikgen.runtime.python.array_types import Array, Flags, Index
+from ikgen.runtime.python.row_pairs import pairs
 
 __all__ = [
     "Turning",
@@ -46,7 +47,7 @@ def first_of_equals(q: Array, pose: Index, turning: Turning, coincident: float) 
     width = int(place.max()) + 1
     values = np.full((6, width, int(pose[-1] - first) + 1), np.nan)
     values[:, place, pose - first] = q.T
-    later, earlier = np.tril_indices(width, -1)
+    later, earlier = pairs(width)
     same: Flags = np.ones((len(later), values.shape[2]), dtype=bool)
     for value, turns in zip(values[::-1], turning[::-1]):  # the last differ between most rows
         other = value[earlier]

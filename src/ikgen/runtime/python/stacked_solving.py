@@ -4,10 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from ikgen.runtime.python.array_types import Array
-from ikgen.runtime.python.doubtful_poses import Asked, placed_rows
+from ikgen.runtime.python.array_types import Array, Row
+from ikgen.runtime.python.doubtful_poses import Answer, Asked, placed_rows
 from ikgen.runtime.python.joint_arguments import held_rows, seed_rows
-from ikgen.runtime.python.pose_solving import One, solutions_of, sure_answer
+from ikgen.runtime.python.pose_solving import (
+    One,
+    eliminated_rows,
+    placed_answer,
+    solutions_of,
+    sure_answer,
+)
 from ikgen.runtime.python.solutions import Solutions, Status, no_solutions
 from ikgen.runtime.python.solved_arm import Arm
 
@@ -24,22 +30,34 @@ def solve_each(
     near = None if seed is None else seed_rows(arm, seed, seed.shape)
     held = held_rows(arm, free, near, len(poses))
     out = [no_solutions(len(arm.lower), Status.INVALID) for _ in poses]
-    doubts: list[tuple[int, One]] = []
+    asked: dict[int, One] = {}
     for i, pose in enumerate(poses):
         T = arm.task.read(pose.tolist(), arm.policy)
-        if T is None:
-            continue
-        asked = T, None if near is None else tuple(near[i].tolist()), tuple(held[i].tolist())
-        sure = sure_answer(arm, asked, limits)
-        if sure is None:
-            doubts.append((i, asked))
-        else:
-            out[i] = solutions_of(arm, asked, limits, sure)
-    for start in range(0, len(doubts), _STACK):
-        part = doubts[start : start + _STACK]
-        some = [i for i, _ in part]
-        given = np.array([asked[0] for _, asked in part])
-        stack = Asked(given, None if near is None else near[some], held[some])
-        for (i, asked), answer in zip(part, placed_rows(arm, stack, limits)):
-            out[i] = solutions_of(arm, asked, limits, answer)
+        if T is not None:
+            seeds = None if near is None else tuple(near[i].tolist())
+            asked[i] = T, seeds, tuple(held[i].tolist())
+    answers: dict[int, Answer] = {}
+    for solve in (_sure_answers, placed_rows):
+        left = [i for i in asked if i not in answers]
+        for start in range(0, len(left), _STACK):
+            some = left[start : start + _STACK]
+            given = np.array([asked[i][0] for i in some])
+            stack = Asked(given, None if near is None else near[some], held[some])
+            found = zip(some, solve(arm, stack, limits))
+            answers |= {i: answer for i, answer in found if answer is not None}
+    for i, answer in answers.items():
+        out[i] = solutions_of(arm, asked[i], limits, answer)
     return out
+
+
+def _sure_answers(arm: Arm, asked: Asked, limits: bool) -> list[Answer | None]:
+    """`sure_answer` of each pose."""
+    near: list[Row | None] = [asked.seed(k) for k in range(len(asked.T))]
+    each = list(zip(asked.T.tolist(), near, map(tuple, asked.held.tolist())))
+    if arm.branches is not None:
+        return [sure_answer(arm, one, limits) for one in each]
+    rows = eliminated_rows(arm, asked)
+    return [
+        None if kept is None else placed_answer(arm, one, kept, limits)
+        for one, kept in zip(each, rows)
+    ]
