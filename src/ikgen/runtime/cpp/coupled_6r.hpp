@@ -3,9 +3,10 @@
 #include <array>
 #include <cmath>
 
+#include "coupled_resultant.hpp"
 #include "general_6r_pairs.hpp"
+#include "general_6r_runs.hpp"
 #include "general_6r_spectrum.hpp"
-#include "method_in_runs.hpp"
 #include "six_joint_arm.hpp"
 #include "unit_circle_roots.hpp"
 
@@ -18,46 +19,6 @@ namespace ikgen_runtime {
 // the same for all angles, and the determinant is a trigonometric polynomial.
 
 namespace g6 {
-
-// Plan: kAxes, of the axes in their order along the chain; kCoupled, the joint that turns several; kDegree, of the
-// determinant; kCrowded, angles near which that is small at every pose; kEigenproblems (start, reverse, degree).
-template <class Plan> struct CoupledChain : std::array<Frame, Plan::kAxes.size() + 1> {};
-
-template <class Plan>
-constexpr Axis axis_of(const CoupledChain<Plan>&, Index i) noexcept {
-  return Plan::kAxes[i];
-}
-
-// The loop of the other five as one of six whose third angle is 0: what the coupled joint turns lies behind it.
-template <class Plan>
-inline Loop coupled_loop(const CoupledChain<Plan>& F, const Frame& T, const std::array<int, 3>& plan,
-                         double angle) noexcept {
-  std::array<Index, 5> joints{};
-  std::array<Frame, 6> link{};  // before the first of the five, then behind each
-  Index n = 0;
-  link[0] = F[0];
-  for (Index i = 0; i < Plan::kAxes.size(); ++i) {
-    const Axis axis = Plan::kAxes[i];
-    if (axis.joint == Plan::kCoupled) {
-      link[n] = compose(moved(link[n], true, axis.ratio * angle + axis.shift), F[i + 1]);
-    } else {
-      joints[n++] = axis.joint;
-      link[n] = F[i + 1];
-    }
-  }
-  link[5] = compose(link[5], compose(inverse(T), link[0]));
-  Loop out{};
-  out.reverse = plan[1] != 0;
-  const Index start = static_cast<Index>(plan[0]);
-  for (Index i = 0; i < 5; ++i) {
-    const Index k = out.reverse ? (start + 5 - i) % 5 : (start + i) % 5, at = i < 2 ? i : i + 1;
-    out.order[at] = joints[k];
-    out.C[i < 1 ? i : i + 1] = out.reverse ? inverse(link[(k + 4) % 5 + 1]) : link[k + 1];
-  }
-  out.order[2] = Plan::kCoupled;
-  out.C[1] = {{{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}}, {}};
-  return out;
-}
 
 // The twelve equations.
 inline Square coupled_matrix(const Equations& eq) noexcept { return lift(make_pencil(eq.E, eq.left)).at(1.0, 0.0); }
@@ -94,7 +55,7 @@ inline Spectrum run_coupled(const CoupledChain<Plan>& F, const Frame& T, const F
     values[i] = determinant(first + 2.0 * kPi * static_cast<double>(i) / static_cast<double>(nodes));
   std::array<double, 2 * degree + kClose * Plan::kCrowded.size()> angles;
   int count = circle_roots<degree>(values, first, real, angles);
-  for (const double place : Plan::kCrowded) count = look_closely(determinant, place, real, angles, count);
+  for (const Crowded& at : Plan::kCrowded) count = look_closely(determinant, at.angle, real, angles, count);
   Spectrum roots;  // none is known to be all of the pose
   for (int i = 0; i < count; ++i) {
     const double angle = angles[static_cast<Index>(i)];
@@ -112,10 +73,19 @@ inline Spectrum run_coupled(const CoupledChain<Plan>& F, const Frame& T, const F
   return roots;
 }
 
+// All that a run by lanes is sure of, else what runs one angle at a time agree on.
+struct CoupledMethod {
+  template <class Plan>
+  static void solve(const CoupledChain<Plan>& F, const Frame& T, const Turning& turning, Solutions& out) noexcept {
+    if (!solve_resultant<run_coupled_resultant<Plan>>(F, T, Plan::kEigenproblems, out))
+      solve_in_runs<run_coupled<Plan>>(F, T, turning, Plan::kEigenproblems, out);
+  }
+};
+
 }  // namespace g6
 
 // Arm: as for SixJointArm, its Plan as for CoupledChain.
 template <class Arm, class Plan = typename Arm::Plan>
-struct Coupled6r : SixJointArm<Arm, g6::InRuns<g6::run_coupled<Plan>>, g6::CoupledChain<Plan>> {};
+struct Coupled6r : SixJointArm<Arm, g6::CoupledMethod, g6::CoupledChain<Plan>> {};
 
 }  // namespace ikgen_runtime

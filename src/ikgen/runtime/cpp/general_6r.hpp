@@ -16,7 +16,7 @@ namespace g6 {
 
 template <class Plan>
 inline void solve_6r(const Chain& F, const Frame& T, Solutions& out) noexcept {
-  if (!solve_resultant(F, T, Plan::kResultants, out))
+  if (!solve_resultant<run_resultant>(F, T, Plan::kResultants, out))
     solve_in_runs<run_eigenproblem>(F, T, kAllTurn, Plan::kEigenproblems, out);
 }
 

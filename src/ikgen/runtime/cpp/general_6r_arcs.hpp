@@ -40,11 +40,16 @@ constexpr Turn turn_by(long double x) noexcept {  // |x| < 1
 
 constexpr Turn times(const Turn& a, const Turn& b) noexcept { return {a.c * b.c - a.s * b.s, a.s * b.c + a.c * b.s}; }
 
-constexpr double binomial(int n, int r) noexcept {
-  double out = 1.0;
-  for (int i = 0; i < r; ++i) out = out * (n - i) / (i + 1);
+template <int N> struct Binomials {
+  double of[N + 1][N + 1];
+};
+template <int N> constexpr Binomials<N> pascal() noexcept {
+  Binomials<N> out{};
+  for (int n = 0; n <= N; ++n)
+    for (int r = 0; r <= n; ++r) out.of[n][r] = r == 0 || r == n ? 1.0 : out.of[n - 1][r - 1] + out.of[n - 1][r];
   return out;
 }
+template <int N> inline constexpr Binomials<N> kBinomials = pascal<N>();
 
 template <int D> constexpr Bernstein<D> make_bernstein(double width) noexcept {
   Turn half[D * 2 + 1] = {};  // multiples of width/2
@@ -58,7 +63,8 @@ template <int D> constexpr Bernstein<D> make_bernstein(double width) noexcept {
       for (int j = 0; j <= q; ++j) {
         const int l = q - j, phase = j - l - m;
         if (l > D - m) continue;
-        const double share = binomial(D + m, j) * binomial(D - m, l) / binomial(2 * D, q);
+        const auto& choices = kBinomials<2 * D>.of;
+        const double share = choices[D + m][j] * choices[D - m][l] / choices[2 * D][q];
         const auto w = static_cast<long double>(share);
         even += w * half[phase < 0 ? -phase : phase].c;
         odd += w * (phase < 0 ? -half[-phase].s : half[phase].s);

@@ -74,10 +74,12 @@ inline void null_vector(const Wide (&A)[6][6], Wide (&x)[6]) noexcept {
 }
 
 // theta_4 and theta_5 from the null vector.
-inline void inner_angles(const Pencil& pencil, const Pair& three, Pair& four, Pair& five) noexcept {
-  Wide bases[1][3][9], K[6][6], x[6];
+template <class Source>
+inline void inner_angles(const Source& source, const Pair& three, Pair& four, Pair& five) noexcept {
+  Wide A[1][6][9], bases[1][3][9], K[6][6], x[6];
   Reflected unused[1][6];
-  null_bases<1>(1, pencil, {three.c}, {three.s}, bases, unused);
+  fill(source, three.c, three.s, A[0]);
+  null_bases(1, A, bases, unused);
   const auto& basis = bases[0];
   half_angles(basis, K);
   null_vector(K, x);
@@ -131,13 +133,8 @@ inline WideFrame pass(WideFrame a, const Pair& angle, const Frame& constant) noe
   return compose(a, constant);
 }
 
-// All six angles of a solution from the first that is known.
-inline Six complete(const Loop& loop, const Equations& eq, const Pencil& pencil, const Pair& three) noexcept {
-  Pair z[6];
-  z[2] = three;
-  inner_angles(pencil, three, z[3], z[4]);
-  WideFrame U = pass(widen(loop.C[1]), z[2], loop.C[2]);
-  U = pass(pass(U, z[3], loop.C[3]), z[4], loop.C[4]);
+// All six angles from the inner three and the loop's frame U behind them, C2 R3 C3 R4 C4 R5 C5.
+inline Six close_loop(const Loop& loop, const Equations& eq, const WideFrame& U, Pair (&z)[6]) noexcept {
   outer_angles(eq, U, z[0], z[1]);
   WideFrame Y = pass(widen(loop.C[5]), z[0], loop.C[0]);
   turn(Y, z[1].c, z[1].s);
@@ -151,6 +148,16 @@ inline Six complete(const Loop& loop, const Equations& eq, const Pencil& pencil,
     out.s[loop.order[i]] = loop.reverse ? -z[i].s : z[i].s;
   }
   return out;
+}
+
+// All six angles of a solution from the first that is known.
+inline Six complete(const Loop& loop, const Equations& eq, const Pencil& pencil, const Pair& three) noexcept {
+  Pair z[6];
+  z[2] = three;
+  inner_angles(pencil, three, z[3], z[4]);
+  WideFrame U = pass(widen(loop.C[1]), z[2], loop.C[2]);
+  U = pass(pass(U, z[3], loop.C[3]), z[4], loop.C[4]);
+  return close_loop(loop, eq, U, z);
 }
 
 }  // namespace g6

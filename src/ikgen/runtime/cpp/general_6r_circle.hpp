@@ -11,7 +11,14 @@ namespace ikgen_runtime {
 namespace g6 {
 
 inline constexpr int kDegree = 8;  // of the resultant of any arm
-template <int D> inline constexpr int kNodes = 2 * D + 8;
+
+// A divisor of 384, so many more than coefficients that some frequencies must vanish.
+constexpr int nodes_for(int degree) noexcept {
+  for (const int count : {16, 24, 48, 64})
+    if (count >= 2 * degree + 8) return count;
+  return 96;
+}
+template <int D> inline constexpr int kNodes = nodes_for(D);
 template <int D> inline constexpr int kArcs = 4 * D;  // that the circle is cut into
 
 // Cosines of the multiples of a 384th of a turn, which all angles below are.
@@ -45,7 +52,7 @@ inline constexpr double kStart[2] = {0.99500416527802576610, 0.09983341664682815
 template <int D> struct Nodes {
   static constexpr int kCount = kNodes<D>;
   alignas(64) double c[kCount], s[kCount];    // without that angle
-  alignas(64) double weight[kCount][kCount];  // value k -> a0, a1..aD, b1..bD, and seven that must vanish
+  alignas(64) double weight[kCount][kCount];  // value k -> a0, a1..aD, b1..bD, and those that must vanish
 };
 template <int D> constexpr Nodes<D> make_nodes() noexcept {
   Nodes<D> out{};
@@ -54,10 +61,10 @@ template <int D> constexpr Nodes<D> make_nodes() noexcept {
   for (int n = 0; n < count; ++n) {
     out.c[n] = cosine(step * n);
     out.s[n] = sine(step * n);
-    for (int j = 0; j < count; ++j) {  // of four more cosines and three more sines at the end
-      const bool odd = (j > D && j <= 2 * D) || j > 2 * D + 4;
-      const int m = j <= D ? j : j <= 2 * D + 4 ? j - D : j - D - 4;
-      const double scale = (m == 0 || m == D + 4 ? 1.0 : 2.0) / count;
+    for (int j = 0; j < count; ++j) {  // of the other cosines and, one less, the other sines at the end
+      const bool odd = (j > D && j <= 2 * D) || j > D + count / 2;
+      const int m = j <= D ? j : j <= D + count / 2 ? j - D : j - count / 2;
+      const double scale = (m == 0 || m == count / 2 ? 1.0 : 2.0) / count;
       out.weight[n][j] = scale * (odd ? sine(step * n * m) : cosine(step * n * m));
     }
   }
@@ -74,8 +81,8 @@ template <int D> struct Polynomial {
 };
 
 // Coefficients of f from its values at the nodes, and how far they may be off. A polynomial of degree D has no
-// part in the seven frequencies above, so what is found there measures the error of the values. Were these errors
-// equally spread, the polynomial's error at a point would be 1.1 t times the norm of the seven coefficients, t of
+// part in the frequencies above, seven or more, so what is found there measures the error of the values. Were these
+// errors equally spread, the polynomial's error at a point would be 1.1 t times the norm of seven coefficients, t of
 // Student's distribution with 7 degrees of freedom: beyond 10 once in 50,000, and that at a point where f itself
 // comes as close to 0. Were one node's error all, it would be 4.7 times the norm. Rounding in the sums here and
 // where the polynomial is evaluated comes on top.

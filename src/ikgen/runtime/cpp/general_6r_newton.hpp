@@ -8,17 +8,8 @@ namespace ikgen_runtime {
 
 namespace g6 {
 
-// Error at the configuration and the slope by its angles, in rows (slope, error); the largest error of an entry.
-inline Wide linearize(const Chain& F, const Frame& T, const Six& q, Wide (&rows)[6][7]) noexcept {
-  WideFrame X = widen(F[0]);
-  Wide origin[6][3];
-  for (Index i = 0; i < 6; ++i) {
-    for (Index r = 0; r < 3; ++r) {
-      rows[3 + r][i] = X.R[r][2];
-      origin[i][r] = X.p[r];
-    }
-    X = pass(X, {q.c[i], q.s[i]}, F[i + 1]);
-  }
+// What a chain's end X is off the pose, as the last entry of each row; the largest error of an entry.
+inline Wide set_errors(const Frame& T, const WideFrame& X, Wide (&rows)[6][7]) noexcept {
   Wide S[3][3], worst = spread<kWide>(0.0);
   for (Index i = 0; i < 3; ++i) {
     for (Index j = 0; j < 3; ++j) {
@@ -31,6 +22,24 @@ inline Wide linearize(const Chain& F, const Frame& T, const Six& q, Wide (&rows)
   for (Index a = 0; a < 3; ++a) {
     const Index m = (a + 1) % 3, n = (a + 2) % 3;
     rows[3 + a][6] = 0.5 * (S[n][m] - S[m][n]);
+  }
+  return worst;
+}
+
+// Error at the configuration and the slope by its angles, in rows (slope, error); the largest error of an entry.
+inline Wide linearize(const Chain& F, const Frame& T, const Six& q, Wide (&rows)[6][7]) noexcept {
+  WideFrame X = widen(F[0]);
+  Wide origin[6][3];
+  for (Index i = 0; i < 6; ++i) {
+    for (Index r = 0; r < 3; ++r) {
+      rows[3 + r][i] = X.R[r][2];
+      origin[i][r] = X.p[r];
+    }
+    X = pass(X, {q.c[i], q.s[i]}, F[i + 1]);
+  }
+  const Wide worst = set_errors(T, X, rows);
+  for (Index a = 0; a < 3; ++a) {
+    const Index m = (a + 1) % 3, n = (a + 2) % 3;
     for (Index i = 0; i < 6; ++i)
       rows[a][i] = rows[3 + m][i] * (X.p[n] - origin[i][n]) - rows[3 + n][i] * (X.p[m] - origin[i][m]);
   }
@@ -71,7 +80,8 @@ struct Errors {
 inline constexpr double kExact = 1e-13;  // in an entry of the pose, lengths over the arm's
 
 // Newton steps for the lanes that are `live`, at most five.
-inline Errors newton(const Chain& F, const Frame& T, const WideMask& live, Six& q) noexcept {
+template <class Frames>
+inline Errors newton(const Frames& F, const Frame& T, const WideMask& live, Six& q) noexcept {
   Errors out;
   for (int step = 0;; ++step) {
     Wide rows[6][7], x[6];

@@ -111,12 +111,9 @@ inline void fill(const Pencil& p, const Wide& c, const Wide& s, Wide (&A)[6][9])
     for (Index j = 0; j < 9; ++j) A[i][j] = p.f(i, j) + c * p.c(i, j) + s * p.s(i, j);
 }
 
-// Orthonormal null vectors, and what triangulate says of A's rows.
+// Orthonormal null vectors, and what triangulate says of A's rows, which it makes triangular.
 template <int G>
-inline void null_bases(int groups, const Pencil& p, const Wide (&c)[G], const Wide (&s)[G], Wide (&basis)[G][3][9],
-                       Reflected (&h)[G][6]) noexcept {
-  Wide A[G][6][9];
-  for (int g = 0; g < groups; ++g) fill(p, c[g], s[g], A[g]);
+inline void null_bases(int groups, Wide (&A)[G][6][9], Wide (&basis)[G][3][9], Reflected (&h)[G][6]) noexcept {
   triangulate<0, 0>(groups, A, h);
   for (int g = 0; g < groups; ++g)
     for (int k = 0; k < 3; ++k)

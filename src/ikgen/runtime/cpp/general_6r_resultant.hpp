@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "general_6r_null_space.hpp"
@@ -77,38 +78,37 @@ inline Wide adjugate_size(const Wide (&A)[6][6], const Reflected (&h)[6], const 
 // As many groups of nodes are worked on at once as do not wait for each other's registers.
 inline constexpr int kGroups = kNative >= 8 ? 3 : 1;
 
-// `groups` groups of angles. Their number is an argument lest loops over it are written out: the code is to stay
-// in the cache.
-[[gnu::noinline]] inline void resultants_of(int groups, const Pencil& p, const RowSizes& sizes, bool close,
+// `groups` groups of angles, at which fill(p, cosine, sine, A) gives A. Their number is an argument lest loops over it
+// are written out: the code is to stay in the cache.
+template <class Source>
+[[gnu::noinline]] inline void resultants_of(int groups, const Source& p, const RowSizes& sizes, bool close,
                                             const double* c, const double* s, double* f, double* blur) noexcept {
-  Wide cosine[kGroups], sine[kGroups], basis[kGroups][3][9], K[kGroups][6][6];
+  Wide A[kGroups][6][9], basis[kGroups][3][9], K[kGroups][6][6];
   Reflected h[kGroups][6], k[kGroups][6];
-  for (int g = 0; g < groups; ++g) {
-    cosine[g] = load<kWide>(c + g * kWide);
-    sine[g] = load<kWide>(s + g * kWide);
-  }
-  null_bases(groups, p, cosine, sine, basis, h);
+  for (int g = 0; g < groups; ++g) fill(p, load<kWide>(c + g * kWide), load<kWide>(s + g * kWide), A[g]);
+  null_bases(groups, A, basis, h);
   for (int g = 0; g < groups; ++g) half_angles(basis[g], K[g]);
   triangulate<0, 2>(groups, K, k);
   for (int g = 0; g < groups; ++g) {
     const Wide corner = K[g][4][4] * K[g][5][5] - K[g][4][5] * K[g][5][4];
     const Wide product = (k[g][0].alpha * k[g][1].alpha) * (k[g][2].alpha * k[g][3].alpha);
-    const Spread A = spread_of(h[g], sizes);
-    store(A.squares * (product * corner), f + g * kWide);
+    const Spread rows = spread_of(h[g], sizes);
+    store(rows.squares * (product * corner), f + g * kWide);
     const Wide adjugate = close ? adjugate_size(K[g], k[g], product, corner) : spread<kWide>(kMostAdjugate);
-    store(A.squares * A.ratio * (adjugate + kBlur * A.ratio), blur + g * kWide);
+    store(rows.squares * rows.ratio * (adjugate + kBlur * rows.ratio), blur + g * kWide);
   }
 }
 
 // f at N angles, and the most that it may be off by the rounding in the pencil; close: tight where f is small.
-template <int N>
-inline void resultants(const Pencil& p, bool close, const double (&c)[N], const double (&s)[N], double (&f)[N],
+template <int N, class Source>
+inline void resultants(const Source& p, bool close, const double (&c)[N], const double (&s)[N], double (&f)[N],
                        double (&blur)[N]) noexcept {
-  static_assert(N % (kGroups * kWide) == 0);
+  static_assert(N % kWide == 0);
   const RowSizes sizes = row_sizes(p);
   for (int n = 0; n < N; n += kGroups * kWide) {
-    resultants_of(kGroups, p, sizes, close, c + n, s + n, f + n, blur + n);
-    for (int i = n; i < n + kGroups * kWide; ++i) blur[i] *= kBlur;
+    const int groups = std::min(kGroups, (N - n) / kWide);
+    resultants_of(groups, p, sizes, close, c + n, s + n, f + n, blur + n);
+    for (int i = n; i < n + groups * kWide; ++i) blur[i] *= kBlur;
   }
 }
 

@@ -114,15 +114,16 @@ inline bool look_closer(const Values& values, const Zone& zone, int look, Roots<
   return all;
 }
 
-// All roots; false where some may be missing.
-template <int D, class Values>
-inline bool find_roots(const Values& values, Roots<D>& out) noexcept {
+// All roots; false where some may be missing. settle(f, brackets) may take those away that are known to be none.
+template <int D, class Values, class Settle>
+inline bool find_roots(const Values& values, const Settle& settle, Roots<D>& out) noexcept {
   alignas(64) double f[kNodes<D>], blur[kNodes<D>], shift[kNodes<D>];
   const bool shifts = values(false, kRotated<D>.c, kRotated<D>.s, f, blur, shift);
   Polynomial<D> polynomial = interpolate<D>(f, *std::max_element(blur, blur + kNodes<D>));
   if (shifts) add_shift<D>(shift, polynomial);
-  const Brackets<D> brackets = isolate(polynomial);
+  Brackets<D> brackets = isolate(polynomial);
   if (brackets.doubt) return false;
+  settle(polynomial, brackets);
   clear_roots(polynomial, brackets, out);
   for (int i = 0; i < out.count; ++i) {
     const double c = out.c[i], s = out.s[i];
@@ -137,8 +138,13 @@ inline bool find_roots(const Values& values, Roots<D>& out) noexcept {
   return all && out.count <= kRoots<D> && out.count % 2 == 0;
 }
 
+template <int D, class Values> inline bool find_roots(const Values& values, Roots<D>& out) noexcept {
+  return find_roots<D>(values, [](const Polynomial<D>&, const Brackets<D>&) {}, out);
+}
+
 // Adds the solutions of the roots from `first` on; whether each became one of its own.
-inline bool add_rows(const Chain& F, const Frame& T, const Six& start, const double (&live)[kWide],
+template <class Frames>
+inline bool add_rows(const Frames& F, const Frame& T, const Six& start, const double (&live)[kWide],
                      Solutions& out) noexcept {
   Six q = start;
   const Errors errors = newton(F, T, load<kWide>(live) > 0.5, q);
@@ -162,6 +168,22 @@ inline bool add_rows(const Chain& F, const Frame& T, const Six& start, const dou
   return all;
 }
 
+// Adds the solutions that of(angles) gives for roots side by side; whether each became one of its own.
+template <int D, class Frames, class Of>
+inline bool add_solutions(const Frames& F, const Frame& T, const Of& of, Roots<D>& roots, Solutions& out) noexcept {
+  bool all = true;
+  for (int i = roots.count; i < roots.count + kWide; ++i) {
+    roots.c[i] = roots.count > 0 ? roots.c[0] : 1.0;
+    roots.s[i] = roots.count > 0 ? roots.s[0] : 0.0;
+  }
+  for (int i = 0; i < roots.count; i += kWide) {
+    double live[kWide];
+    for (int l = 0; l < kWide; ++l) live[l] = i + l < roots.count ? 1.0 : 0.0;
+    all = add_rows(F, T, of({load<kWide>(roots.c + i), load<kWide>(roots.s + i)}), live, out) && all;
+  }
+  return all;
+}
+
 // Adds the solutions for the pose T. True where they are all: every root is single, and leads to a solution of
 // its own.
 inline bool run_resultant(const Chain& F, const Frame& T, const std::array<int, 2>& plan, Solutions& out) noexcept {
@@ -173,32 +195,22 @@ inline bool run_resultant(const Chain& F, const Frame& T, const std::array<int, 
     resultants(pencil, close, c, s, f, blur);
     return false;
   };
-  bool all = find_roots<kDegree>(values, roots);
-  for (int i = roots.count; i < roots.count + kWide; ++i) {
-    roots.c[i] = roots.count > 0 ? roots.c[0] : 1.0;
-    roots.s[i] = roots.count > 0 ? roots.s[0] : 0.0;
-  }
-  for (int i = 0; i < roots.count; i += kWide) {
-    const Pair three = {load<kWide>(roots.c + i), load<kWide>(roots.s + i)};
-    double live[kWide];
-    for (int l = 0; l < kWide; ++l) live[l] = i + l < roots.count ? 1.0 : 0.0;
-    all = add_rows(F, T, complete(loop, eq, pencil, three), live, out) && all;
-  }
-  return all;
+  const bool all = find_roots<kDegree>(values, roots);
+  const auto completed = [&](const Pair& three) { return complete(loop, eq, pencil, three); };
+  return add_solutions<kDegree>(F, T, completed, roots, out) && all;
 }
 
 // All solutions, or false and those that were found, where every hidden angle leaves doubts. Poses displaced a
 // little are no help: next to a singularity all of them may lack solutions that the pose itself has.
-template <std::size_t N>
-inline bool solve_resultant(const Chain& F, const Frame& T, const std::array<std::array<int, 2>, N>& plans,
-                            Solutions& out) noexcept {
-  for (const std::array<int, 2>& plan : plans) {
+template <auto Run, class Frames, class Plans>
+inline bool solve_resultant(const Frames& F, const Frame& T, const Plans& plans, Solutions& out) noexcept {
+  for (const auto& plan : plans) {
     if (out.count == 0) {
-      if (run_resultant(F, T, plan, out)) return true;
+      if (Run(F, T, plan, out)) return true;
       continue;
     }
     Solutions mine;
-    const bool all = run_resultant(F, T, plan, mine);
+    const bool all = Run(F, T, plan, mine);
     for (int k = 0; k < mine.count; ++k) keep(mine.rows[static_cast<Index>(k)], out);
     if (all && mine.count == out.count) return true;
   }
