@@ -7,7 +7,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from tests.support.cpp_modules import solver_module
+from tests.support.cpp_modules import robot_file, solver_module
 from tests.support.pan_lift import pan_lift
 from tests.support.routines import FLAGS
 from tests.support.solving import NO_COMPILER
@@ -15,6 +15,8 @@ from tests.support.solving import NO_COMPILER
 from ikgen.emit.cpp.cpp_emitter import emit_header
 from ikgen.emit.cpp.cpp_policy import policy_lines
 from ikgen.emit.cpp.header_bundle import RUNTIME, bundle
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
 from ikgen.program.policy import SolvePolicy
 from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
 
@@ -71,6 +73,18 @@ def test_an_emitted_header_takes_what_it_uses() -> None:
         and "struct WholePose" not in plain
     )
     assert "TrigRoots" in quartic and "struct SelfMotionFinder" not in quartic
+
+
+def test_of_a_header_only_what_one_arm_needs_is_taken() -> None:
+    exact, rounded = emit_header(solver_module("ur5e")), emit_header(solver_module("doosan_m1013"))
+    eliminated = emit_header(derive(Request(robot_file("KawasakiRS05L"))).module)
+    for name in ("take_beside", "trace_broken", "unstopped", "hold_the_seed", "void regular"):
+        assert name not in exact, name
+    assert "void take_beside(" in rounded and "void trace_broken(" in rounded
+    assert "void regular(" in eliminated and "void regular(" not in rounded
+    for text in (exact, rounded, eliminated):
+        assert not re.search(r"if constexpr \(!?A(rm)?::k(Newton|Rounded|Refined)", text)
+        assert "\2" not in text
 
 
 def compile_text(text: str, folder: Path, *flags: str) -> subprocess.CompletedProcess[str]:

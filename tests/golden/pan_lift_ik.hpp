@@ -388,21 +388,20 @@ template <int N> inline constexpr Unbounded<N> kUnbounded{};
 
 template <int N> struct Placed {
   Lanes<N> q;
-  Mask<N> inside, near;
+  Mask<N> inside;
 };
 
 template <class Policy, int N, bool H>
 [[gnu::always_inline]] inline Placed<N> clamp(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
   const auto outside =
       (range.lower[j] - Policy::kLimitTolerance > q) | (q > range.upper[j] + Policy::kLimitTolerance);
-  const auto far = (range.lower[j] - Policy::kLimitDoubt > q) | (q > range.upper[j] + Policy::kLimitDoubt);
-  return {max(min(q, range.upper[j]), range.lower[j]), !outside, !far};
+  return {max(min(q, range.upper[j]), range.lower[j]), !outside};
 }
 
 template <class Policy, int N, bool H>
 [[gnu::always_inline]] inline Placed<N> place(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
-  const auto up = select(range.lower[j] - Policy::kLimitDoubt > q, kTurn, 0.0);
-  const auto down = select(q > range.upper[j] + Policy::kLimitDoubt, kTurn, 0.0);
+  const auto up = select(range.lower[j] - Policy::kLimitTolerance > q, kTurn, 0.0);
+  const auto down = select(q > range.upper[j] + Policy::kLimitTolerance, kTurn, 0.0);
   return clamp<Policy>(j, q + (up - down), range);
 }
 
@@ -1245,25 +1244,6 @@ template <class Arm> struct RankLoss {
     return !above(at.slope, bound);
   }
 
-  template <class Rows> static void regular(const Rows& rows, double bound, bool (&out)[Rows::kLanes]) noexcept {
-    constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;
-    static_assert(PoseError<Arm>::kTask == kEquations);
-    for (int at = 0; at < Rows::kLanes; at += N) {
-      bool any = false;
-      for (int i = at; i < at + N; ++i) {
-        out[i] = (static_cast<int>(rows.flags[i]) & kReal) != 0;
-        any = any || out[i];
-      }
-      if (!any) continue;
-      Lanes<N> q[Arm::kDof], J[6][Arm::kDof], slope[kEquations][Arm::kDof];
-      for (int j = 0; j < Arm::kDof; ++j) q[j] = load<N>(rows.q[j] + at);
-      Arm::Task::slope(MotionChain<Arm>::forward(q, J), J, slope);
-      alignas(64) double far[std::size_t{N}];
-      store(above(slope, bound), far);
-      for (int i = 0; i < N; ++i) out[at + i] = out[at + i] && far[i] > 0.5;
-    }
-  }
-
  private:
   template <class X> static auto above(const X (&slope)[kEquations][Arm::kDof], double bound) noexcept {
     X A[kRank][kRank];
@@ -1348,7 +1328,7 @@ template <class Arm> struct CarefulRows {
   }
 
   [[gnu::always_inline]] static Left find_rows(const Aim& aim, const double* q0, const Options& options,
-                                               bool beside, Places& out) noexcept {
+                                               [[maybe_unused]] bool beside, Places& out) noexcept {
     Rows rows;
     find_lanes(aim.pose, q0, options, rows);
     Left left;
@@ -1360,21 +1340,16 @@ template <class Arm> struct CarefulRows {
     const Ends ends(rows, aim, options, kReal);
     Starts starts;
     bool plain[Arm::kLanes] = {};  // right, and far from singularities
-    if constexpr (Arm::kRefined) RankLoss<Arm>::regular(rows, Policy::kFoldReach, plain);
     for (const int lane : Arm::kLaneOfRow)
       if (plain[lane] && (bits(rows, lane) & kSingular) == 0)
         add_lane(rows, lane, out);
       else if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
         starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, false, aim, out);
-    if (Arm::kRounded && beside) starts.trace_broken(aim, out);
-    if (Arm::kBesides > 0 && beside && (kBesideAnywhere || left.free || starts.close()))
-      take_beside(aim, q0, options, starts, out);
-    if (Arm::kRounded && starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, options, starts, out);
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
       if (starts.at(k).near && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
     for (const int lane : Arm::kLaneOfRow)
-      if (!Arm::kRefined && (bits(rows, lane) & (kReal | kRough)) == kReal) add_lane(rows, lane, out);
+      if ((bits(rows, lane) & (kReal | kRough)) == kReal) add_lane(rows, lane, out);
     return left;
   }
 
@@ -1391,16 +1366,9 @@ template <class Arm> struct CarefulRows {
     Rows rows;
     double error[Arm::kLanes];
 
-    Ends(const Rows& from, const Aim& aim, const Options& options, Bit flag) noexcept : rows(from) {
-      if constexpr (Arm::kNewton) {
-        constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
-        const Pose<1> pose = gather<1>(&aim.pose);
-        Arm::refine(pose, options.free, anywhere, rows);
-        int lanes[Arm::kLanes], count = 0;
-        for (const int lane : Arm::kLaneOfRow)
-          if ((bits(from, lane) & flag) != 0 && (bits(rows, lane) & kFound) == 0) lanes[count++] = lane;
-        Arm::take_along(pose, options.free, lanes, count, rows, error);
-      }
+    Ends(const Rows& from, [[maybe_unused]] const Aim& aim, [[maybe_unused]] const Options& options,
+         [[maybe_unused]] Bit flag) noexcept
+        : rows(from) {
     }
   };
 
@@ -1416,22 +1384,14 @@ template <class Arm> struct CarefulRows {
       for (int j = 0; j < Arm::kDof; ++j) start[j] = q[j] = rows.q[j][lane];
     }
 
-    void refine(const Aim& aim, const Ends& ends) noexcept {
-      if constexpr (Arm::kNewton) {
-        for (int j = 0; j < Arm::kDof; ++j) q[j] = ends.rows.q[j][lane];
-        alone = (bits(ends.rows, lane) & kFound) != 0;
-        if (!alone) error = ends.error[lane];
-      } else if (!Arm::kRefined) {
-        error = Refinement::error_after(q, aim);
-      }
+    void refine([[maybe_unused]] const Aim& aim, [[maybe_unused]] const Ends& ends) noexcept {
+      error = Refinement::error_after(q, aim);
     }
 
     void judge() noexcept {
       near = !marked && !alone && RankLoss<Arm>::below(q, Policy::kFoldReach);
       settled = error < (near ? Policy::kConverged : Policy::kArrived);
     }
-
-    bool close() const noexcept { return near && RankLoss<Arm>::below(q, Policy::kBesideReach); }
 
     void take(const Aim& aim, const double* from, Places& out) noexcept {
       double trial[Arm::kDof];
@@ -1481,24 +1441,6 @@ template <class Arm> struct CarefulRows {
 
     Nearest& at(int k) noexcept { return all[static_cast<std::size_t>(k)]; }
 
-    bool close() const noexcept {
-      return std::any_of(all.begin(), all.begin() + count, [](const Nearest& one) { return one.close() && !one.around; });
-    }
-
-    void trace_broken(const Aim& aim, Places& out) noexcept {
-      for (int k = 0; k < count; ++k) {
-        Nearest& one = at(k);
-        if (one.around || !one.near || !RankLoss<Arm>::below(one.q, Policy::kBrokenReach)) continue;
-        NearContinuum<Arm> curve(aim);
-        one.around = curve.trace(one.q) == NearContinuum<Arm>::Kind::Broken;
-        for (int i = 0; i < curve.count && one.around; ++i) {
-          Nearest(one).take(aim, curve.found[i], out);
-          for (int other = k + 1; other < count; ++other)
-            at(other).around = at(other).around || Pair::within(Policy::kMeeting, at(other).q, curve.found[i]);
-        }
-      }
-    }
-
     bool any_traced() const noexcept { return std::find(std::begin(traced), std::end(traced), true) != std::end(traced); }
 
     void take(Nearest start, const Ends& ends, bool beside, const Aim& aim, Places& out) noexcept {
@@ -1527,25 +1469,6 @@ template <class Arm> struct CarefulRows {
         Row::add(out, one.q, false);
     }
   };
-
-  static void take_all(const Aim& aim, const Rows& rows, const Options& options, Starts& starts, Places& out) noexcept {
-    const Ends ends(rows, aim, options, kSingular);
-    for (const int lane : Arm::kLaneOfRow)
-      if ((bits(rows, lane) & kSingular) != 0) starts.take({rows, lane, true}, ends, false, aim, out);
-  }
-
-  static void take_beside(const Aim& aim, const double* q0, const Options& options, Starts& starts,
-                          Places& out) noexcept {
-    if constexpr (Arm::kBesides > 0)
-      for (const auto& motion : Arm::kBeside) {
-        Rows rows;
-        find_lanes(displaced(aim.pose, motion), q0, options, rows);
-        const Ends ends(rows, aim, options, kReal);
-        for (const int lane : Arm::kLaneOfRow)
-          if ((bits(rows, lane) & kReal) != 0)
-            starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, true, aim, out);
-      }
-  }
 };
 
 // --- limit rows ----------------------------------------------------------------------------------
@@ -1589,7 +1512,6 @@ template <class Arm> struct LimitRows {
 // --- pose entries --------------------------------------------------------------------------------
 template <class Arm> struct PoseEntries {
   static constexpr int kCount = sizeof(Arm::kRead) / sizeof(Arm::kRead[0]);
-  static constexpr bool kPosition = Arm::kRead[0][1] == 3;  // is read
 
   template <class X, class Tip>
   static void error(const X (&t)[3][4], const Tip& T, X* error) noexcept {
@@ -1701,23 +1623,6 @@ template <class Arm> struct NearestRow {
     }
   }
 
-  static double descend(const double* t, bool limits, double* q) noexcept {
-    double damping = kFirst;
-    Chords at(q, t);
-    for (int i = 0; i < kSteps && damping < kMost; ++i) {
-      double trial[Arm::kDof];
-      std::copy_n(q, Arm::kDof, trial);
-      step(at, limits, damping, trial);
-      const Chords there(trial, t);
-      const bool better = there.cost < at.cost;
-      damping = std::clamp(damping * (better ? 0.2 : 8.0), kLeast, kMost);
-      if (!better) continue;
-      at = there;
-      std::copy_n(trial, Arm::kDof, q);
-    }
-    return at.cost;
-  }
-
  private:
   static void bounds(int j, bool limits, double* low, double* high) noexcept {
     *low = limits ? Arm::kLower.data()[j] : -kInfinity;
@@ -1741,6 +1646,23 @@ template <class Arm> struct NearestRow {
 
   static void hold(const Options& options, double* q) noexcept {
     for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) q[Arm::kFreeJoints[k]] = options.free[k];
+  }
+
+  static double descend(const double* t, bool limits, double* q) noexcept {
+    double damping = kFirst;
+    Chords at(q, t);
+    for (int i = 0; i < kSteps && damping < kMost; ++i) {
+      double trial[Arm::kDof];
+      std::copy_n(q, Arm::kDof, trial);
+      step(at, limits, damping, trial);
+      const Chords there(trial, t);
+      const bool better = there.cost < at.cost;
+      damping = std::clamp(damping * (better ? 0.2 : 8.0), kLeast, kMost);
+      if (!better) continue;
+      at = there;
+      std::copy_n(trial, Arm::kDof, q);
+    }
+    return at.cost;
   }
 
   static void step(const Chords& at, bool limits, double damping, double* q) noexcept {
@@ -1783,7 +1705,9 @@ template <class Arm> struct CarefulSolve {
     Places found;
     for (int turn = 0; turn < Policy::kTries && free; ++turn) {
       double start[Arm::kDof];
-      take_start(options, turn, start);
+      for (int j = 0; j < Arm::kDof; ++j)
+        start[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kRevolute[j] ? turn * Policy::kTryStep : 0.0);
+      for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) start[Arm::kFreeJoints[k]] = options.free[k];
       auto left = Careful::find_rows(aim, start, options, turn == 0, found);
       if (options.seed && !left.free && Careful::any_singular(found)) Careful::add_from(aim, start, found);
       real = real || found.count > 0;
@@ -1795,7 +1719,6 @@ template <class Arm> struct CarefulSolve {
       if (!Arm::kRounded) left.led = Careful::any_singular(found);
       free = left.free && !(left.led && found.count > 0);
     }
-    if (free && !Arm::kRounded && !Arm::kRefined) real = add_hidden(aim, options, found) || real;
     if (free && !real) real = add_nearest(aim, options, found);
     if (options.seed) Row::sort_by_distance(found, options.seed->data());
     out.count = std::min(found.count, Arm::kMaxSolutions);
@@ -1805,42 +1728,6 @@ template <class Arm> struct CarefulSolve {
   }
 
  private:
-  static void take_start(const Options& options, int turn, double* q) noexcept {
-    for (int j = 0; j < Arm::kDof; ++j)
-      q[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kRevolute[j] ? turn * Policy::kTryStep : 0.0);
-    for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) q[Arm::kFreeJoints[k]] = options.free[k];
-  }
-
-  [[gnu::cold, gnu::noinline]] static bool add_hidden(const Aim& aim, const Options& options, Places& out) noexcept {
-    const double* t = aim.pose.matrix().data();
-    double best[Arm::kLanes][Arm::kDof], least[Arm::kLanes];
-    std::fill_n(least, Arm::kLanes, kInfinity);
-    for (int turn = 0; turn < Policy::kTries; ++turn) {
-      double q[Arm::kDof];
-      take_start(options, turn, q);
-      typename Careful::Rows rows;
-      Careful::find_lanes(aim.pose, q, options, rows);
-      for (const int lane : Arm::kLaneOfRow) {
-        if ((static_cast<int>(rows.flags[lane]) & (kReal | kSingular)) != kSingular) continue;
-        for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
-        const double cost = Row::finite(q) ? PoseChords<Arm>(q, t).cost : kInfinity;
-        if (!(cost < least[lane])) continue;
-        least[lane] = cost;
-        std::copy_n(q, Arm::kDof, best[lane]);
-      }
-    }
-    bool real = false;
-    for (const int lane : Arm::kLaneOfRow) {
-      if (!(least[lane] < kInfinity)) continue;
-      NearestRow<Arm>::descend(t, options.limits, best[lane]);
-      if (!Refinement::refine(best[lane], aim)) continue;
-      real = true;
-      Careful::add(aim, out, best[lane], true);
-    }
-    LimitRows<Arm>::place_all(aim, options, out);
-    return real;
-  }
-
   [[gnu::cold, gnu::noinline]] static bool add_nearest(const Aim& aim, const Options& options, Places& out) noexcept {
     bool real = false;
     for (bool inside = options.limits;; inside = false) {
@@ -1863,33 +1750,28 @@ template <class Arm> struct LanePlacement {
   template <class Rows> static void apply(const typename Arm::Options& options, Rows& rows) noexcept {
     constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;
     for (int at = 0; at < Rows::kLanes; at += N) {
-      Mask<N> inside = spread<N>(1.0) > 0.0, near = inside;
+      Mask<N> inside = spread<N>(1.0) > 0.0;
       for (int j = 0; j < Arm::kDof; ++j) {
         Lanes<N> q = load<N>(rows.q[j] + at);
         if (Arm::kRevolute[j] && !Arm::kHeld[j]) q = turned(j, q, options);
         if (options.limits) {
           const Placed<N> placed = clamp<Policy>(j, q, {Arm::kLower.data(), Arm::kUpper.data()});
           inside = inside & placed.inside;
-          near = near & placed.near;
           q = placed.q;
         }
         store(q, rows.q[j] + at);
       }
-      alignas(64) double kept[std::size_t{N}], close[std::size_t{N}];
+      alignas(64) double kept[std::size_t{N}];
       store(inside, kept);
-      store(near, close);
-      for (int i = 0; i < N; ++i) {
-        const int bits = static_cast<int>(rows.flags[at + i]);
-        const int doubt = (bits & kReal) != 0 && close[i] > 0.5 ? kRough : 0;
-        rows.flags[at + i] = kept[i] > 0.5 ? bits : (bits & ~kFound) | doubt;
-      }
+      for (int i = 0; i < N; ++i)
+        rows.flags[at + i] = static_cast<int>(rows.flags[at + i]) & (kept[i] > 0.5 ? ~0 : ~kFound);
     }
   }
 
  private:
   template <int N, bool H>
   [[gnu::always_inline]] static Lanes<N> turned(int j, const LanesOf<N, H>& given, const typename Arm::Options& options) noexcept {
-    const double low = Arm::kLower.data()[j] - Policy::kLimitDoubt, high = Arm::kUpper.data()[j] + Policy::kLimitDoubt;
+    const double low = Arm::kLower.data()[j] - Policy::kLimitTolerance, high = Arm::kUpper.data()[j] + Policy::kLimitTolerance;
     const Lanes<N> q = given + select(given > -kPi, select(given > kPi, -kTurn, 0.0), kTurn);
     Lanes<N> shift = spread<N>(0.0);
     if (options.seed) shift = kTurn * nearest((options.seed->data()[j] - q) / kTurn);
@@ -1919,12 +1801,7 @@ template <class Arm> struct LaneSolve {
     const Pose<P> pose = gather<P>(poses);
     const Range range = bounded ? kLimits : kAnywhere;
     Rows<P> rows;
-    if constexpr (Arm::kNewton) {
-      Arm::branches(pose, typename Arm::Seed(), options.free, kAnywhere, rows);
-      Arm::refine(pose, options.free, range, rows);
-    } else {
-      Arm::branches(pose, typename Arm::Seed(), options.free, range, rows);
-    }
+    Arm::branches(pose, typename Arm::Seed(), options.free, range, rows);
     if (place_later(options)) LanePlacement<Arm>::apply(options, rows);
     for (int p = 0; p < P; ++p)
       if (!collect(rows, p, options, out[p])) fall_back(poses[p], options, out[p]);
@@ -2088,19 +1965,9 @@ template <class Arm, template <class> class Way> struct PoseSolver {
         if (!(value < kInfinity)) options.seed = nullptr;
       }
       if (far && options.seed) without_turns();
-      if constexpr (Arm::kFree > 0)
-        if (options.seed && options.hold_seed) hold_the_seed();
     }
     Checked(const Checked&) = delete;
     Checked& operator=(const Checked&) = delete;
-
-    void hold_the_seed() noexcept {
-      const auto plain = Options().free;
-      auto own = plain;
-      HeldAim<Arm>::values(options.seed->data(), own);
-      for (std::size_t k = 0; k < Arm::kFree; ++k)
-        if (options.free[k] == plain[k]) options.free[k] = own[k];
-    }
 
     void without_turns() noexcept {
       near = *options.seed;
@@ -2302,11 +2169,9 @@ template <class A, class Solver> struct PathStep {
     return first == Status::Ok ? step(middle, pose, depth + 1) : first;
   }
 
-  Status begin(const Eigen::Isometry3d& pose, const typename A::Joints& start) noexcept {
-    double row[kDof];
+  Status begin([[maybe_unused]] const Eigen::Isometry3d& pose, const typename A::Joints& start) noexcept {
     std::copy_n(start.data(), kDof, q);
-    if (A::kFree == 0 || unstopped(pose, row, crossed) != Status::Ok) return Status::Unreachable;
-    return farthest(row, q) < 0.1 ? arrive(row) : Status::Unreachable;
+    return Status::Unreachable;
   }
 
  private:
@@ -2347,64 +2212,24 @@ template <class A, class Solver> struct PathStep {
     return worst;
   }
 
-  Status next_row(const Eigen::Isometry3d& pose, const double* expected, double* row, bool& singular) const noexcept {
-    if constexpr (A::kFree > 0) {
-      return unstopped(pose, row, singular);
-    } else {
-      typename A::Options options;
-      typename A::Joints seed;
-      std::copy_n(q, kDof, seed.data());
-      options.seed = &seed;
-      options.limits = false;
-      typename A::Solutions found;
-      Solver::solve(pose, options, found);
-      double least = kInfinity;
-      for (int k = 0; k < found.count; ++k) {
-        const double gap = farthest(found.q.data()[k].data(), expected);
-        if (!(gap < least)) continue;
-        least = gap;
-        std::copy_n(found.q.data()[k].data(), kDof, row);
-        singular = found.singular.data()[k];
-      }
-      return found.status;
+  Status next_row(const Eigen::Isometry3d& pose, [[maybe_unused]] const double* expected, double* row,
+                  bool& singular) const noexcept {
+    typename A::Options options;
+    typename A::Joints seed;
+    std::copy_n(q, kDof, seed.data());
+    options.seed = &seed;
+    options.limits = false;
+    typename A::Solutions found;
+    Solver::solve(pose, options, found);
+    double least = kInfinity;
+    for (int k = 0; k < found.count; ++k) {
+      const double gap = farthest(found.q.data()[k].data(), expected);
+      if (!(gap < least)) continue;
+      least = gap;
+      std::copy_n(found.q.data()[k].data(), kDof, row);
+      singular = found.singular.data()[k];
     }
-  }
-
-  Status unstopped(const Eigen::Isometry3d& pose, double* row, bool& singular) const noexcept {
-    bool stopped[kDof] = {};
-    double at[kDof];
-    std::copy_n(q, kDof, at);
-    for (int stops = 0;; ++stops) {
-      std::copy_n(at, kDof, row);
-      double error = kInfinity, tried[kDof];
-      std::copy_n(row, kDof, tried);
-      for (int i = 0; i < 30; ++i) {
-        double before[kDof];
-        std::copy_n(tried, kDof, before);
-        const double here = move(tried, pose, stopped, kDamping);
-        const bool slow = !(here < 0.5 * error);
-        if (here < error) {
-          error = here;
-          std::copy_n(before, kDof, row);
-        }
-        if ((slow && i > 2) || error < A::Policy::kConverged) break;
-      }
-      if (!(error < A::Policy::kArrived)) return stops > 0 ? Status::Limits : Status::Unreachable;
-      double most = A::Policy::kLimitTolerance;
-      int worst = -1;
-      for (int j = 0; j < kDof && limits; ++j) {
-        const double excess = std::max(A::kLower.data()[j] - row[j], row[j] - A::kUpper.data()[j]);
-        if (excess > most) {
-          most = excess;
-          worst = j;
-        }
-      }
-      if (worst < 0) break;
-      stopped[worst] = true;
-      at[worst] = row[worst] < A::kLower.data()[worst] ? A::kLower.data()[worst] : A::kUpper.data()[worst];
-    }
-    singular = RankLoss<AllMoving<A>>::below(row, A::Policy::kRankLoss);
-    return Status::Ok;
+    return found.status;
   }
 
   static Eigen::Isometry3d between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) noexcept {
@@ -2518,9 +2343,9 @@ struct Policy {
   static constexpr int kTries = 16, kPatience = 5;
   static constexpr double kArrived = 5e-10, kExact = 1e-12, kPoseTolerance = 1e-06, kOrthonormal = 1e-14,
       kCoincident = 1e-06, kAlike = 0.01, kHalfway = 2e-14, kMeeting = 2e-05, kLimitTolerance = 1e-09,
-      kLimitReach = 1e-05, kLimitDoubt = 1e-09, kTryStep = 0.39269908169872414, kRankLoss = 1e-07,
-      kContinuumRankLoss = 0.001, kFoldReach = 0.0001, kBesideReach = 0.0, kAnywhere = 1000.0, kBrokenReach =
-      0.0, kLeastDamping = 1e-14, kDamping = 0.001, kLargestStep = 0.3, kConverged = 1e-13, kProgress = 0.8;
+      kLimitReach = 1e-05, kTryStep = 0.39269908169872414, kRankLoss = 1e-07, kContinuumRankLoss = 0.001,
+      kFoldReach = 0.0001, kBesideReach = 0.0, kAnywhere = 1000.0, kLeastDamping = 1e-14, kDamping = 0.001,
+      kLargestStep = 0.3, kConverged = 1e-13, kProgress = 0.8;
   static constexpr RefineStage kRefinement[] = {{3, 1e-12, 0.1}, {6, 1e-12, 0.001}, {30, 0.0, 0.0}};
 };
 

@@ -10,7 +10,8 @@ from ikgen.emit.cpp.cpp_language import CONSTANT, comment, declared, literal, nu
 from ikgen.emit.cpp.cpp_policy import policy_lines
 from ikgen.emit.cpp.cpp_statements import ProgramText
 from ikgen.emit.cpp.cpp_twist_chain import twist_lines
-from ikgen.emit.cpp.header_bundle import bundle
+from ikgen.emit.cpp.header_bundle import bundle_for
+from ikgen.emit.cpp.settled_conditions import ArmFacts
 from ikgen.emit.elbow_text import elbow_text
 from ikgen.emit.gear_text import gear_text
 from ikgen.emit.printer import expression
@@ -29,6 +30,9 @@ __all__ = ["emit", "emit_derivation", "emit_header"]
 
 _SYSTEM = ("array", "cstddef", "Eigen/Core", "Eigen/Geometry")
 """Headers that the shell itself needs."""
+
+_INCLUDES, _POLICY, _RUNTIME = "\2includes\2", "\2RefineStage\2", "\2runtime\2"
+"""Where these go once it is known what the rest of the text needs; no name has such characters."""
 
 
 def _columns(module: SolverModule) -> str:
@@ -53,20 +57,28 @@ def emit_header(module: SolverModule) -> str:
 
     Raises UsageError for a Program whose levels have a number of branches that is no power of two.
     """
-    program = module.program
-    branches = [level.branches for level in program.levels[1:]]
+    branches = [level.branches for level in module.program.levels[1:]]
     if any(n & (n - 1) for n in branches):
         what = f"the C++ emitter needs levels of 2, 4, ... branches, not {branches}"
         raise UsageError(what, hint="emit Python alone, or have the leaf give 2, 4, ... branches")
-    text = ProgramText(module)
-    policy, runtime = module.policy, bundle(_headers(module), _SYSTEM)
+    shell = _shell(module, branches)
+    runtime = bundle_for(shell, _known_facts(module), _headers(module), _SYSTEM)
+    lines = policy_lines(module.policy, runtime.body)
+    with_policy = shell.replace(_POLICY, "\n  ".join(lines)).replace(_INCLUDES, runtime.includes)
+    return with_policy.replace(_RUNTIME, runtime.body)
+
+
+def _shell(module: SolverModule, branches: list[int]) -> str:
+    """The text around the runtime, and marks where that goes."""
+    program, text = module.program, ProgramText(module)
     return render(
         "cpp",
         "header.hpp.jinja",
         m=module,
         **_namespaces(module),
-        runtime=runtime,
-        policy=policy_lines(policy, runtime.body),
+        includes=_INCLUDES,
+        runtime=_RUNTIME,
+        policy=_POLICY,
         careful=_careful(module),
         way="SingleSolve" if _careful(module) else "LaneSolve",
         entries_read=module.reads.entries,
@@ -77,7 +89,7 @@ def emit_header(module: SolverModule) -> str:
         far=any(j.limits.lower > math.pi or j.limits.upper < -math.pi for j in module.dh.joints),
         text=text,
         values=text.joint_values(),
-        rough=_rough(module, policy),
+        rough=_rough(module, module.policy),
         order=_depth_first(branches),
         frames=[[[expression(CONSTANT, x) for x in row] for row in F] for F in program.frames],
         held=len(module.held),
@@ -97,6 +109,17 @@ def emit_header(module: SolverModule) -> str:
         declared=declared,
         literal=literal,
         comment=comment,
+    )
+
+
+def _known_facts(module: SolverModule) -> ArmFacts:
+    """What is known of the constants of `Arm`."""
+    return (
+        ("kBesides", bool(module.beside)),
+        ("kFree", bool(module.held)),
+        ("kNewton", _newton(module)),
+        ("kRefined", _careful(module)),
+        ("kRounded", _newton(module)),
     )
 
 

@@ -70,7 +70,7 @@ template <class Arm> struct CarefulRows {
 
   // Adds the distinct solutions of a pose, refined where the closed form lost digits.
   [[gnu::always_inline]] static Left find_rows(const Aim& aim, const double* q0, const Options& options,
-                                               bool beside, Places& out) noexcept {
+                                               [[maybe_unused]] bool beside, Places& out) noexcept {
     Rows rows;
     find_lanes(aim.pose, q0, options, rows);
     Left left;
@@ -88,15 +88,22 @@ template <class Arm> struct CarefulRows {
         add_lane(rows, lane, out);
       else if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
         starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, false, aim, out);
-    if (Arm::kRounded && beside) starts.trace_broken(aim, out);
-    if (Arm::kBesides > 0 && beside && (kBesideAnywhere || left.free || starts.close()))
-      take_beside(aim, q0, options, starts, out);
-    if (Arm::kRounded && starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, options, starts, out);
+    if constexpr (Arm::kRounded) {
+      if (beside) starts.trace_broken(aim, out);
+    }
+    if constexpr (Arm::kBesides > 0) {
+      if (beside && (kBesideAnywhere || left.free || starts.close())) take_beside(aim, q0, options, starts, out);
+    }
+    if constexpr (Arm::kRounded) {
+      if (starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, options, starts, out);
+    }
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
       if (starts.at(k).near && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
-    for (const int lane : Arm::kLaneOfRow)
-      if (!Arm::kRefined && (bits(rows, lane) & (kReal | kRough)) == kReal) add_lane(rows, lane, out);
+    if constexpr (!Arm::kRefined) {
+      for (const int lane : Arm::kLaneOfRow)
+        if ((bits(rows, lane) & (kReal | kRough)) == kReal) add_lane(rows, lane, out);
+    }
     return left;
   }
 
@@ -115,7 +122,9 @@ template <class Arm> struct CarefulRows {
     Rows rows;
     double error[Arm::kLanes];
 
-    Ends(const Rows& from, const Aim& aim, const Options& options, Bit flag) noexcept : rows(from) {
+    Ends(const Rows& from, [[maybe_unused]] const Aim& aim, [[maybe_unused]] const Options& options,
+         [[maybe_unused]] Bit flag) noexcept
+        : rows(from) {
       if constexpr (Arm::kNewton) {
         constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
         const Pose<1> pose = gather<1>(&aim.pose);
@@ -142,12 +151,12 @@ template <class Arm> struct CarefulRows {
     }
 
     // From where steps in lanes led to, if they did.
-    void refine(const Aim& aim, const Ends& ends) noexcept {
+    void refine([[maybe_unused]] const Aim& aim, [[maybe_unused]] const Ends& ends) noexcept {
       if constexpr (Arm::kNewton) {
         for (int j = 0; j < Arm::kDof; ++j) q[j] = ends.rows.q[j][lane];
         alone = (bits(ends.rows, lane) & kFound) != 0;
         if (!alone) error = ends.error[lane];
-      } else if (!Arm::kRefined) {
+      } else if constexpr (!Arm::kRefined) {
         error = Refinement::error_after(q, aim);
       }
     }
@@ -274,15 +283,14 @@ template <class Arm> struct CarefulRows {
   // The rows of poses beside this one.
   static void take_beside(const Aim& aim, const double* q0, const Options& options, Starts& starts,
                           Places& out) noexcept {
-    if constexpr (Arm::kBesides > 0)
-      for (const auto& motion : Arm::kBeside) {
-        Rows rows;
-        find_lanes(displaced(aim.pose, motion), q0, options, rows);
-        const Ends ends(rows, aim, options, kReal);
-        for (const int lane : Arm::kLaneOfRow)
-          if ((bits(rows, lane) & kReal) != 0)
-            starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, true, aim, out);
-      }
+    for (const auto& motion : Arm::kBeside) {
+      Rows rows;
+      find_lanes(displaced(aim.pose, motion), q0, options, rows);
+      const Ends ends(rows, aim, options, kReal);
+      for (const int lane : Arm::kLaneOfRow)
+        if ((bits(rows, lane) & kReal) != 0)
+          starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, true, aim, out);
+    }
   }
 };
 

@@ -66,7 +66,9 @@ template <class Arm> struct HeldSample {
   // The rows at a value; T: the pose as it is read. Where margins tell which are real they may be left coarse.
   HeldSample(const Eigen::Isometry3d& T, double value, const JointBounds<Arm>& bounds, bool margins_only = false) noexcept
       : held(value) {
-    if (!take_certain(T)) take_carefully(T, kMarginsTell && margins_only);
+    bool certain = false;
+    if constexpr (Arm::kNewton) certain = take_certain(T);
+    if (!certain) take_carefully(T, kMarginsTell && margins_only);
     for (int at = 0; at < lanes; at += kPack) {
       Lanes<kPack> most = spread<kPack>(-kInfinity);
       for (int i = 0; i < bounds.count; ++i)
@@ -140,19 +142,16 @@ template <class Arm> struct HeldSample {
 
   // Takes the rows of a rounded arm refined all at once, if that leaves no doubt.
   bool take_certain(const Eigen::Isometry3d& T) noexcept {
-    if constexpr (Arm::kNewton) {
-      Rows rows;
-      typename Arm::template Rows<1> fine;
-      const Pose<1> pose = gather<1>(&T);
-      Arm::branches(pose, typename Arm::Seed(), std::array<double, 1>{held}, kAnywhere, rows);
-      std::memcpy(fine.q, rows.q, sizeof(fine.q));
-      std::memcpy(fine.flags, rows.flags, sizeof(fine.flags));
-      Arm::refine(pose, {held}, kAnywhere, fine);
-      int seen = 0;
-      for (int r = 0; r < Arm::kLanes; ++r) seen |= keep(rows, fine, r);
-      return (seen & kReal) != 0 && (seen & (kRough | kHit)) == 0 && !remove_repetitions();
-    }
-    return false;
+    Rows rows;
+    typename Arm::template Rows<1> fine;
+    const Pose<1> pose = gather<1>(&T);
+    Arm::branches(pose, typename Arm::Seed(), std::array<double, 1>{held}, kAnywhere, rows);
+    std::memcpy(fine.q, rows.q, sizeof(fine.q));
+    std::memcpy(fine.flags, rows.flags, sizeof(fine.flags));
+    Arm::refine(pose, {held}, kAnywhere, fine);
+    int seen = 0;
+    for (int r = 0; r < Arm::kLanes; ++r) seen |= keep(rows, fine, r);
+    return (seen & kReal) != 0 && (seen & (kRough | kHit)) == 0 && !remove_repetitions();
   }
 
   // Takes the rows of the pose and those beside it, each refined for as long as that takes; no more than solve gives.

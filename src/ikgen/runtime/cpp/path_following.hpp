@@ -71,11 +71,13 @@ template <class A, class Solver> struct PathStep {
   }
 
   // To the row next to the start, if the arm has held joints and there is one.
-  Status begin(const Eigen::Isometry3d& pose, const typename A::Joints& start) noexcept {
-    double row[kDof];
+  Status begin([[maybe_unused]] const Eigen::Isometry3d& pose, const typename A::Joints& start) noexcept {
     std::copy_n(start.data(), kDof, q);
-    if (A::kFree == 0 || unstopped(pose, row, crossed) != Status::Ok) return Status::Unreachable;
-    return farthest(row, q) < 0.1 ? arrive(row) : Status::Unreachable;
+    if constexpr (A::kFree > 0) {
+      double row[kDof];
+      if (unstopped(pose, row, crossed) == Status::Ok && farthest(row, q) < 0.1) return arrive(row);
+    }
+    return Status::Unreachable;
   }
 
  private:
@@ -120,7 +122,8 @@ template <class A, class Solver> struct PathStep {
 
   // The row that goes on from here: of an arm without held joints the closed form's nearest to the expected one, of
   // others the one that all joints reach together, those that it would take out of their limits stopped there.
-  Status next_row(const Eigen::Isometry3d& pose, const double* expected, double* row, bool& singular) const noexcept {
+  Status next_row(const Eigen::Isometry3d& pose, [[maybe_unused]] const double* expected, double* row,
+                  bool& singular) const noexcept {
     if constexpr (A::kFree > 0) {
       return unstopped(pose, row, singular);
     } else {
