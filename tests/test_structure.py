@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import ast
+import re
 import statistics
 from collections import Counter
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import pytest
+
+from ikgen.emit.cpp.cpp_definitions import Definition, definitions
+from ikgen.emit.cpp.header_bundle import RUNTIME
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "src" / "ikgen"
@@ -42,8 +47,30 @@ def test_functions_are_short() -> None:
     assert max(found) <= 50
 
 
+def cpp_functions(found: Iterable[Definition]) -> Iterator[tuple[str, int]]:
+    """Names and lengths of functions, constructors and operators, and of whatever has no members."""
+    for one in found:
+        yield from cpp_functions(one.members)
+        if not one.members and (text := one.text.strip()):
+            yield text.splitlines()[0], len(text.splitlines())
+
+
+def test_functions_of_the_cpp_runtime_are_short() -> None:
+    inner = re.compile(r"namespace ikgen_runtime \{\n(.*)\}  // namespace", re.DOTALL)
+    texts = [inner.search(path.read_text(encoding="utf-8")) for path in RUNTIME.glob("*.hpp")]
+    found = [one for text in texts if text for one in cpp_functions(definitions(text[1]))]
+    assert len(found) > 1000
+    assert statistics.quantiles((lines for _, lines in found), n=10)[-1] <= 25
+    assert [(name, lines) for name, lines in found if lines > 50] == []
+
+
 def test_no_module_has_the_name_of_another() -> None:
-    names = Counter(path.name for path in MODULES)
+    names = Counter(path.name for path in [*MODULES, *RUNTIME.glob("*.hpp")])
+    names += Counter(
+        path.name
+        for path in (ROOT / "templates").glob("*/*.py.jinja")
+        if not path.name.startswith("_")
+    )
     assert [name for name, count in names.items() if count > 1] == []
 
 

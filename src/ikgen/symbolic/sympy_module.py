@@ -51,7 +51,7 @@ def module_text(derivation: Derivation) -> str:
     quartic = any(e.has(TrigQuarticRoot) for e in expressions)
     return render(
         "sympy",
-        "module.py.jinja",
+        "solution.py.jinja",
         name=derivation.module.name,
         version=__version__,
         source=derivation.module.source_name,

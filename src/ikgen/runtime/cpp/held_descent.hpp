@@ -120,6 +120,19 @@ template <class Arm> struct HeldDescent {
     }
   }
 
+  // The step to the vertex of the parabola through a point and two others, `ways` before it and lower by `falls`; whether it
+  // lies between `left` and `right` and is less than half of the step `before`.
+  static bool to_vertex(const double (&ways)[2], const double (&falls)[2], double before, double left, double right,
+                        double& step) noexcept {
+    const double r = ways[0] * falls[1];
+    double t = ways[1] * falls[0], p = ways[1] * t - ways[0] * r;
+    t = 2.0 * (t - r);
+    p = t > 0.0 ? -p : p;
+    t = std::abs(t);
+    step = p / t;
+    return std::abs(p) < std::abs(0.5 * t * before) && p > t * left && p < t * right;
+  }
+
   // Parabolic interpolation guarded by the golden section (Brent 1973).
   void interpolate(Minimum& m) const noexcept {
     constexpr double kGolden = 0.3819660112501051;
@@ -132,24 +145,17 @@ template <class Arm> struct HeldDescent {
     for (int i = 0; i < 60; ++i) {
       const double x = m.best.at, middle = 0.5 * (low + high), least = kNear * (1.0 + std::abs(x));
       if (std::abs(x - middle) <= 2.0 * least - 0.5 * (high - low)) return;
-      double golden = x < middle ? high - x : low - x;
-      bool parabolic = false;
-      if (std::abs(before) > least && second_cost < kInfinity && third_cost < kInfinity) {
-        const double r = (x - second) * (m.best.cost - third_cost);
-        double t = (x - third) * (m.best.cost - second_cost), p = (x - third) * t - (x - second) * r;
-        t = 2.0 * (t - r);
-        p = t > 0.0 ? -p : p;
-        t = std::abs(t);
-        parabolic = std::abs(p) < std::abs(0.5 * t * before) && p > t * (low - x) && p < t * (high - x);
-        if (parabolic) {
-          before = step;
-          step = p / t;
-          if (i > 1 && std::abs(step) < least) return;
-        }
-      }
-      if (!parabolic) {
-        before = golden;
-        step = kGolden * golden;
+      const double left = low - x, right = high - x, ways[2] = {x - second, x - third};
+      const double falls[2] = {m.best.cost - second_cost, m.best.cost - third_cost};
+      double there = 0.0;
+      if (std::abs(before) > least && second_cost < kInfinity && third_cost < kInfinity &&
+          to_vertex(ways, falls, before, left, right, there)) {
+        before = step;
+        step = there;
+        if (i > 1 && std::abs(step) < least) return;
+      } else {
+        before = x < middle ? high - x : low - x;
+        step = kGolden * before;
       }
       const double u = std::abs(step) >= least ? x + step : x + (step > 0.0 ? least : -least);
       const Point trial = beside(std::min(std::max(u, m.low), m.high), m.best);
