@@ -388,20 +388,21 @@ template <int N> inline constexpr Unbounded<N> kUnbounded{};
 
 template <int N> struct Placed {
   Lanes<N> q;
-  Mask<N> inside;
+  Mask<N> inside, near;
 };
 
 template <class Policy, int N, bool H>
 [[gnu::always_inline]] inline Placed<N> clamp(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
   const auto outside =
       (range.lower[j] - Policy::kLimitTolerance > q) | (q > range.upper[j] + Policy::kLimitTolerance);
-  return {max(min(q, range.upper[j]), range.lower[j]), !outside};
+  const auto far = (range.lower[j] - Policy::kLimitDoubt > q) | (q > range.upper[j] + Policy::kLimitDoubt);
+  return {max(min(q, range.upper[j]), range.lower[j]), !outside, !far};
 }
 
 template <class Policy, int N, bool H>
 [[gnu::always_inline]] inline Placed<N> place(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
-  const auto up = select(range.lower[j] - Policy::kLimitTolerance > q, kTurn, 0.0);
-  const auto down = select(q > range.upper[j] + Policy::kLimitTolerance, kTurn, 0.0);
+  const auto up = select(range.lower[j] - Policy::kLimitDoubt > q, kTurn, 0.0);
+  const auto down = select(q > range.upper[j] + Policy::kLimitDoubt, kTurn, 0.0);
   return clamp<Policy>(j, q + (up - down), range);
 }
 
@@ -1393,6 +1394,8 @@ template <class Arm> struct CarefulRows {
       settled = error < (near ? Policy::kConverged : Policy::kArrived);
     }
 
+    bool close() const noexcept { return near && RankLoss<Arm>::below(q, Policy::kBesideReach); }
+
     void take(const Aim& aim, const double* from, Places& out) noexcept {
       double trial[Arm::kDof];
       std::copy_n(from, Arm::kDof, trial);
@@ -1440,6 +1443,10 @@ template <class Arm> struct CarefulRows {
     std::array<Nearest, std::size_t{Arm::kLanes} * (1 + Arm::kBesides)> all;
 
     Nearest& at(int k) noexcept { return all[static_cast<std::size_t>(k)]; }
+
+    bool close() const noexcept {
+      return std::any_of(all.begin(), all.begin() + count, [](const Nearest& one) { return one.close() && !one.around; });
+    }
 
     bool any_traced() const noexcept { return std::find(std::begin(traced), std::end(traced), true) != std::end(traced); }
 
@@ -1623,6 +1630,23 @@ template <class Arm> struct NearestRow {
     }
   }
 
+  static double descend(const double* t, bool limits, double* q) noexcept {
+    double damping = kFirst;
+    Chords at(q, t);
+    for (int i = 0; i < kSteps && damping < kMost; ++i) {
+      double trial[Arm::kDof];
+      std::copy_n(q, Arm::kDof, trial);
+      step(at, limits, damping, trial);
+      const Chords there(trial, t);
+      const bool better = there.cost < at.cost;
+      damping = std::clamp(damping * (better ? 0.2 : 8.0), kLeast, kMost);
+      if (!better) continue;
+      at = there;
+      std::copy_n(trial, Arm::kDof, q);
+    }
+    return at.cost;
+  }
+
  private:
   static void bounds(int j, bool limits, double* low, double* high) noexcept {
     *low = limits ? Arm::kLower.data()[j] : -kInfinity;
@@ -1646,23 +1670,6 @@ template <class Arm> struct NearestRow {
 
   static void hold(const Options& options, double* q) noexcept {
     for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) q[Arm::kFreeJoints[k]] = options.free[k];
-  }
-
-  static double descend(const double* t, bool limits, double* q) noexcept {
-    double damping = kFirst;
-    Chords at(q, t);
-    for (int i = 0; i < kSteps && damping < kMost; ++i) {
-      double trial[Arm::kDof];
-      std::copy_n(q, Arm::kDof, trial);
-      step(at, limits, damping, trial);
-      const Chords there(trial, t);
-      const bool better = there.cost < at.cost;
-      damping = std::clamp(damping * (better ? 0.2 : 8.0), kLeast, kMost);
-      if (!better) continue;
-      at = there;
-      std::copy_n(trial, Arm::kDof, q);
-    }
-    return at.cost;
   }
 
   static void step(const Chords& at, bool limits, double damping, double* q) noexcept {
@@ -1705,9 +1712,7 @@ template <class Arm> struct CarefulSolve {
     Places found;
     for (int turn = 0; turn < Policy::kTries && free; ++turn) {
       double start[Arm::kDof];
-      for (int j = 0; j < Arm::kDof; ++j)
-        start[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kRevolute[j] ? turn * Policy::kTryStep : 0.0);
-      for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) start[Arm::kFreeJoints[k]] = options.free[k];
+      take_start(options, turn, start);
       auto left = Careful::find_rows(aim, start, options, turn == 0, found);
       if (options.seed && !left.free && Careful::any_singular(found)) Careful::add_from(aim, start, found);
       real = real || found.count > 0;
@@ -1719,6 +1724,7 @@ template <class Arm> struct CarefulSolve {
       if (!Arm::kRounded) left.led = Careful::any_singular(found);
       free = left.free && !(left.led && found.count > 0);
     }
+    if (free && !Arm::kRounded && !Arm::kRefined) real = add_hidden(aim, options, found) || real;
     if (free && !real) real = add_nearest(aim, options, found);
     if (options.seed) Row::sort_by_distance(found, options.seed->data());
     out.count = std::min(found.count, Arm::kMaxSolutions);
@@ -1728,6 +1734,42 @@ template <class Arm> struct CarefulSolve {
   }
 
  private:
+  static void take_start(const Options& options, int turn, double* q) noexcept {
+    for (int j = 0; j < Arm::kDof; ++j)
+      q[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kRevolute[j] ? turn * Policy::kTryStep : 0.0);
+    for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) q[Arm::kFreeJoints[k]] = options.free[k];
+  }
+
+  [[gnu::cold, gnu::noinline]] static bool add_hidden(const Aim& aim, const Options& options, Places& out) noexcept {
+    const double* t = aim.pose.matrix().data();
+    double best[Arm::kLanes][Arm::kDof], least[Arm::kLanes];
+    std::fill_n(least, Arm::kLanes, kInfinity);
+    for (int turn = 0; turn < Policy::kTries; ++turn) {
+      double q[Arm::kDof];
+      take_start(options, turn, q);
+      typename Careful::Rows rows;
+      Careful::find_lanes(aim.pose, q, options, rows);
+      for (const int lane : Arm::kLaneOfRow) {
+        if ((static_cast<int>(rows.flags[lane]) & (kReal | kSingular)) != kSingular) continue;
+        for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
+        const double cost = Row::finite(q) ? PoseChords<Arm>(q, t).cost : kInfinity;
+        if (!(cost < least[lane])) continue;
+        least[lane] = cost;
+        std::copy_n(q, Arm::kDof, best[lane]);
+      }
+    }
+    bool real = false;
+    for (const int lane : Arm::kLaneOfRow) {
+      if (!(least[lane] < kInfinity)) continue;
+      NearestRow<Arm>::descend(t, options.limits, best[lane]);
+      if (!Refinement::refine(best[lane], aim)) continue;
+      real = true;
+      Careful::add(aim, out, best[lane], true);
+    }
+    LimitRows<Arm>::place_all(aim, options, out);
+    return real;
+  }
+
   [[gnu::cold, gnu::noinline]] static bool add_nearest(const Aim& aim, const Options& options, Places& out) noexcept {
     bool real = false;
     for (bool inside = options.limits;; inside = false) {
@@ -1750,28 +1792,33 @@ template <class Arm> struct LanePlacement {
   template <class Rows> static void apply(const typename Arm::Options& options, Rows& rows) noexcept {
     constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;
     for (int at = 0; at < Rows::kLanes; at += N) {
-      Mask<N> inside = spread<N>(1.0) > 0.0;
+      Mask<N> inside = spread<N>(1.0) > 0.0, near = inside;
       for (int j = 0; j < Arm::kDof; ++j) {
         Lanes<N> q = load<N>(rows.q[j] + at);
         if (Arm::kRevolute[j] && !Arm::kHeld[j]) q = turned(j, q, options);
         if (options.limits) {
           const Placed<N> placed = clamp<Policy>(j, q, {Arm::kLower.data(), Arm::kUpper.data()});
           inside = inside & placed.inside;
+          near = near & placed.near;
           q = placed.q;
         }
         store(q, rows.q[j] + at);
       }
-      alignas(64) double kept[std::size_t{N}];
+      alignas(64) double kept[std::size_t{N}], close[std::size_t{N}];
       store(inside, kept);
-      for (int i = 0; i < N; ++i)
-        rows.flags[at + i] = static_cast<int>(rows.flags[at + i]) & (kept[i] > 0.5 ? ~0 : ~kFound);
+      store(near, close);
+      for (int i = 0; i < N; ++i) {
+        const int bits = static_cast<int>(rows.flags[at + i]);
+        const int doubt = (bits & kReal) != 0 && close[i] > 0.5 ? kRough : 0;
+        rows.flags[at + i] = kept[i] > 0.5 ? bits : (bits & ~kFound) | doubt;
+      }
     }
   }
 
  private:
   template <int N, bool H>
   [[gnu::always_inline]] static Lanes<N> turned(int j, const LanesOf<N, H>& given, const typename Arm::Options& options) noexcept {
-    const double low = Arm::kLower.data()[j] - Policy::kLimitTolerance, high = Arm::kUpper.data()[j] + Policy::kLimitTolerance;
+    const double low = Arm::kLower.data()[j] - Policy::kLimitDoubt, high = Arm::kUpper.data()[j] + Policy::kLimitDoubt;
     const Lanes<N> q = given + select(given > -kPi, select(given > kPi, -kTurn, 0.0), kTurn);
     Lanes<N> shift = spread<N>(0.0);
     if (options.seed) shift = kTurn * nearest((options.seed->data()[j] - q) / kTurn);
@@ -2343,9 +2390,9 @@ struct Policy {
   static constexpr int kTries = 16, kPatience = 5;
   static constexpr double kArrived = 5e-10, kExact = 1e-12, kPoseTolerance = 1e-06, kOrthonormal = 1e-14,
       kCoincident = 1e-06, kAlike = 0.01, kHalfway = 2e-14, kMeeting = 2e-05, kLimitTolerance = 1e-09,
-      kLimitReach = 1e-05, kTryStep = 0.39269908169872414, kRankLoss = 1e-07, kContinuumRankLoss = 0.001,
-      kFoldReach = 0.0001, kBesideReach = 0.0, kAnywhere = 1000.0, kLeastDamping = 1e-14, kDamping = 0.001,
-      kLargestStep = 0.3, kConverged = 1e-13, kProgress = 0.8;
+      kLimitReach = 1e-05, kLimitDoubt = 1e-09, kTryStep = 0.39269908169872414, kRankLoss = 1e-07,
+      kContinuumRankLoss = 0.001, kFoldReach = 0.0001, kBesideReach = 0.0, kAnywhere = 1000.0, kLeastDamping =
+      1e-14, kDamping = 0.001, kLargestStep = 0.3, kConverged = 1e-13, kProgress = 0.8;
   static constexpr RefineStage kRefinement[] = {{3, 1e-12, 0.1}, {6, 1e-12, 0.001}, {30, 0.0, 0.0}};
 };
 
