@@ -40,7 +40,7 @@ ABOVE = 1e-3
 """As `FAILS_ABOVE` of `ikgen.verify.completeness`, by default."""
 TASKS = {
     "pose": (1, 3), "position": (1, 0), "position-direction": (1, 1), "position-yaw": (1, 2),
-    "rotation": (0, 3), "direction": (0, 1),
+    "position-pitch": (1, 4), "rotation": (0, 3), "direction": (0, 1),
 }  # fmt: skip
 """Task -> whether it reads the position, and what of the rotation (see soak.cpp)."""
 
@@ -78,11 +78,14 @@ def soak(
 def soak_program(made: Emitted, flags: Sequence[str]) -> Iterator[Path]:
     """The program that puts poses through a header, for as long as the context lasts."""
     assert made.header is not None
-    task = str(made.answer["task"])
+    task, _, axis = str(made.answer["task"]).partition(":")
     if task not in TASKS:
         raise SystemExit(f"soak knows no way to compare poses by {task}: {', '.join(TASKS)}")
     position, turn = TASKS[task]
     defines = [f"-DSOAK_POSITION={position}", f"-DSOAK_TURN={turn}"]
+    defines.append(
+        f"-DSOAK_AXIS={'xyz'.index(axis) if axis else 0 if task == 'position-yaw' else 2}"
+    )
     with compiled_program(SOURCE, made.header, [*flags, *defines]) as program:
         yield program
 

@@ -1,7 +1,8 @@
 // Millions of poses through one emitted header: is every row right, is the generating configuration among them?
 //
 // Compile with -DIKGEN_HEADER='"x_ik.hpp"' -DIKGEN_NAMESPACE=x_ik -DIKGEN_FREE=0 or 1 (held joints)
-// -DSOAK_POSITION=0 or 1 and -DSOAK_TURN=0 (nothing), 1 (direction), 2 (yaw) or 3 (rotation): what the task reads.
+// -DSOAK_POSITION=0 or 1 and -DSOAK_TURN=0 (nothing), 1 (direction), 2 (yaw), 3 (rotation) or 4 (pitch): what the task reads, of
+// the tool's axis -DSOAK_AXIS=0, 1 or 2.
 // Arguments: random poses, poses beside singularities, seed. Those are drawn by descending on the smallest singular
 // value, and lie 10^-1 to 10^-12 (rad, m) off in a random direction. Prints the rows that were returned and those
 // that are wrong; then for each decade of the smallest singular value: random poses, missed, unanswered, and the same
@@ -27,7 +28,7 @@ constexpr int kBeside = 10;            // poses beside each singular configurati
 constexpr double kRight = 2e-9;        // closure: a row that was put on a limit may be off by twice 1e-9
 constexpr double kFound = 1e-6;        // as ikgen.verify.completeness, which says why
 constexpr double kNoise = 1e-13, kFarthest = 1e-2, kAlone = 1e-3;
-constexpr int kRows = 3 * SOAK_POSITION + (SOAK_TURN == 0 ? 0 : SOAK_TURN == 2 ? 1 : 3);
+constexpr int kRows = 3 * SOAK_POSITION + (SOAK_TURN == 0 ? 0 : SOAK_TURN % 2 == 0 ? 1 : 3);
 constexpr int kRank = kRows - (SOAK_TURN == 1 ? 1 : 0);
 using Task = Eigen::Matrix<double, kRows, Eigen::Dynamic>;
 
@@ -78,9 +79,11 @@ Task task_jacobian(const Arm& arm, const ik::Joints& q) {
     const Eigen::Vector3d linear = J.col(j).template head<3>() * (unit / arm.length);
     Eigen::Vector3d angular = J.col(j).template tail<3>() * unit;
     if (SOAK_POSITION) out.col(k).template head<3>() = linear;
-    if (SOAK_TURN == 1) angular -= R.col(2) * R.col(2).dot(angular);
-    if (SOAK_TURN == 2) {
-      const Eigen::Vector3d x = R.col(0), moved = angular.cross(x);
+    const Eigen::Vector3d x = R.col(SOAK_AXIS), moved = angular.cross(x);
+    if (SOAK_TURN == 1) angular -= x * x.dot(angular);
+    if (SOAK_TURN == 4) {
+      out(kRows - 1, k) = moved[2];
+    } else if (SOAK_TURN == 2) {
       out(kRows - 1, k) = (x[0] * moved[1] - x[1] * moved[0]) / std::max(x[0] * x[0] + x[1] * x[1], 1e-12);
     } else if (SOAK_TURN) {
       out.col(k).template tail<3>() = angular;
@@ -158,9 +161,11 @@ double closure(const Arm& arm, const ik::Joints& row, const Eigen::Isometry3d& p
   if (SOAK_POSITION) error = (got.translation() - pose.translation()).norm() / size;
   const Eigen::Matrix3d E = pose.linear().transpose() * got.linear();
   if (SOAK_TURN == 3) error = std::max(error, 0.5 * std::sqrt(2.0) * (E - Eigen::Matrix3d::Identity()).norm());
-  if (SOAK_TURN == 1) error = std::max(error, (got.linear().col(2) - pose.linear().col(2)).norm());
+  const Eigen::Vector3d x = got.linear().col(SOAK_AXIS), y = pose.linear().col(SOAK_AXIS);
+  if (SOAK_TURN == 1) error = std::max(error, (x - y).norm());
+  if (SOAK_TURN == 4) error = std::max(error, std::abs(x[2] - y[2]));
   if (SOAK_TURN == 2) {
-    const double a = std::atan2(got(1, 0), got(0, 0)), b = std::atan2(pose(1, 0), pose(0, 0));
+    const double a = std::atan2(x[1], x[0]), b = std::atan2(y[1], y[0]);
     error = std::max(error, std::abs(std::remainder(a - b, 6.283185307179586)));
   }
   return std::isnan(error) ? 1e300 : error;
