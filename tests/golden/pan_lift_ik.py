@@ -884,6 +884,7 @@ _ALONG = 1e-4  # rad or m
 _CLOSE = 1e-9
 _FAR = 0.3
 _fold_pair_STEPS = 8
+_TURNED = 0.5  # squared length of what is left of a unit direction that turned by 45 degrees
 
 
 class _Reduced(NamedTuple):
@@ -947,7 +948,10 @@ def _correct(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, Array]:
     others = _across(slope, at.still, arm.policy.least_damping)
     taken, going = others.take_away(np.stack([error, at.out, others.flow], axis=2))
     still, size = _unit(at.still - going[:, :, 2])
-    out = _oriented(_unit(taken[:, :, 1])[0], others)
+    out, remains = _unit(taken[:, :, 1])
+    turned = np.flatnonzero(~(remains**2 >= _TURNED))
+    if len(turned):
+        out[turned] = _oriented(out[turned], _some_of(others, turned))
     left, grows = np.einsum("ke,kei->ik", out, taken[:, :, ::2])
     across = going[:, :, 0]
     q = others.moved(arm, at.q, across, 0.0)
@@ -1970,7 +1974,8 @@ def _traced(arm: _Arm, q: Array, T: Array) -> _Traced:
     """`_trace` of rows that differ."""
     count, (error, slope) = len(q), _linearized(arm, q, T)
     nothing, still = np.zeros(count), _still_directions(arm, slope)
-    start = _Reduced(q, still, _generic(count, error.shape[1]), nothing, nothing)
+    unknown = 0.1 * _generic(count, error.shape[1])  # shorter than what has a sense
+    start = _Reduced(q, still, unknown, nothing, nothing)
     first = _sample(arm, start, T)
     back = first._replace(still=-first.still, out=-first.out, left=-first.left)
     parts, closed, worst = _follow(arm, first, T, np.arange(count), 0.0)

@@ -84,6 +84,23 @@ def test_what_is_left_keeps_its_sense_however_far_its_direction_turns() -> None:
     np.testing.assert_array_equal(_oriented(given, _Others(vt[5:], given, taller, taller)), given)
 
 
+def test_an_error_that_turned_little_keeps_its_sense_and_what_has_none_is_given_one(
+    tmp_path: Path,
+) -> None:
+    """Beside a second singularity the orientation may change where the direction hardly turns."""
+    module = emitted(to_dh(meeting_shoulder()), tmp_path)
+    arm, q = module._ARM, np.array(FOLDED)
+    T, nothing, unknown = module.forward(q), np.zeros(len(q)), 0.1 * generic(3, 6)
+    at, _ = correct(arm, Reduced(q, generic(3, 6), unknown, nothing, nothing), T)
+    other, _ = correct(arm, Reduced(q, generic(3, 6), -unknown, nothing, nothing), T)
+    np.testing.assert_allclose(other.out, at.out, atol=1e-12)
+    for _ in range(3):
+        at, _ = correct(arm, at, T)
+    for sense in (1.0, -1.0):
+        there, _ = correct(arm, at._replace(out=sense * at.out), T)
+        np.testing.assert_allclose(there.out, sense * at.out, atol=1e-6)
+
+
 def test_the_direction_of_least_motion_keeps_its_sense() -> None:
     rng = np.random.default_rng(5)
     for _ in range(6):

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ikgen.runtime.python.arm_newton import linearized
+from ikgen.runtime.python.array_tuples import some_of
 from ikgen.runtime.python.array_types import Array
 from ikgen.runtime.python.refinement import damped, normal_inverse
 from ikgen.runtime.python.solved_arm import Arm
@@ -20,6 +21,7 @@ _ALONG = 1e-4  # rad or m
 _CLOSE = 1e-9
 _FAR = 0.3
 _STEPS = 8
+_TURNED = 0.5  # squared length of what is left of a unit direction that turned by 45 degrees
 
 
 class Reduced(NamedTuple):
@@ -87,7 +89,10 @@ def correct(arm: Arm, at: Reduced, T: Array) -> tuple[Reduced, Array]:
     others = _across(slope, at.still, arm.policy.least_damping)
     taken, going = others.take_away(np.stack([error, at.out, others.flow], axis=2))
     still, size = _unit(at.still - going[:, :, 2])
-    out = _oriented(_unit(taken[:, :, 1])[0], others)
+    out, remains = _unit(taken[:, :, 1])
+    turned = np.flatnonzero(~(remains**2 >= _TURNED))
+    if len(turned):
+        out[turned] = _oriented(out[turned], some_of(others, turned))
     left, grows = np.einsum("ke,kei->ik", out, taken[:, :, ::2])
     across = going[:, :, 0]
     q = others.moved(arm, at.q, across, 0.0)
@@ -96,7 +101,7 @@ def correct(arm: Arm, at: Reduced, T: Array) -> tuple[Reduced, Array]:
 
 def _oriented(out: Array, others: _Others) -> Array:
     """Unit directions (k, m) in the sense that goes with the still ones': what the others do to the pose,
-    with these for the still ones, keeps orientation, however far `out` turns in a step."""
+    with these for the still ones, keeps orientation, however far `out` turned in a step."""
     if others.V.shape[1] != others.V.shape[2]:
         return out
     turned = others.V + out[:, :, None] * others.still[:, None, :]

@@ -92,7 +92,8 @@ def _traced(arm: Arm, q: Array, T: Array) -> Traced:
     """`trace` of rows that differ."""
     count, (error, slope) = len(q), linearized(arm, q, T)
     nothing, still = np.zeros(count), still_directions(arm, slope)
-    start = Reduced(q, still, generic(count, error.shape[1]), nothing, nothing)
+    unknown = 0.1 * generic(count, error.shape[1])  # shorter than what has a sense
+    start = Reduced(q, still, unknown, nothing, nothing)
     first = _sample(arm, start, T)
     back = first._replace(still=-first.still, out=-first.out, left=-first.left)
     parts, closed, worst = _follow(arm, first, T, np.arange(count), 0.0)
