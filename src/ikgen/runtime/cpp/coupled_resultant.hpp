@@ -33,21 +33,21 @@ template <class Plan> inline RowSizes row_sizes(const CoupledEquations<Plan>& of
 }
 
 // Two axes beside the coupled joint come into line at a crowded angle, and every pose has roots near it that are no
-// solutions. In a circle so wide about it (rad) there is no other where f over the crowded roots' factor does not
-// wind around 0 along the circle.
-inline constexpr double kCrowd = 0.03;
+// solutions. In a circle about it there is no other where f over the crowded roots' factor does not wind around 0
+// along the circle. Radii (rad) that are tried: along a wide one f is farther above its noise, but others may be in it.
+inline constexpr double kCrowds[] = {0.03, 0.1, 0.25};
 
-// f over (z - place)^order at eight points of the circle's upper half.
+// f over (z - angle)^order at eight points of the circle's upper half.
 template <int D>
-inline Pair over_crowd(const Polynomial<D>& f, double place, int order, double& least) noexcept {
+inline Pair over_crowd(const Polynomial<D>& f, const Crowded& crowd, double radius, double& least) noexcept {
   double x[kWide], y[kWide], c[kWide], s[kWide], up[kWide];
   for (int i = 0; i < kWide; ++i) {
     const double turn = kPi / kWide * (i + 0.5);
     x[i] = std::cos(turn);
     y[i] = -std::sin(turn);  // of 1 over the point
-    c[i] = std::cos(place + kCrowd * x[i]);
-    s[i] = std::sin(place + kCrowd * x[i]);
-    up[i] = std::exp(kCrowd * y[i]);
+    c[i] = std::cos(crowd.angle + radius * x[i]);
+    s[i] = std::sin(crowd.angle + radius * x[i]);
+    up[i] = std::exp(radius * y[i]);
   }
   const Wide grown = load<kWide>(up), shrunk = 1.0 / grown;
   const Pair z = {load<kWide>(c), load<kWide>(s)}, w = {grown * z.c, grown * z.s}, v = {shrunk * z.c, -(shrunk * z.s)};
@@ -63,14 +63,14 @@ inline Pair over_crowd(const Polynomial<D>& f, double place, int order, double& 
   store(sum.c * sum.c + sum.s * sum.s, size);
   least = std::sqrt(*std::min_element(size, size + kWide));
   const Pair over = {load<kWide>(x), load<kWide>(y)};
-  for (int k = 0; k < order; ++k) sum = times(sum, over);
+  for (int k = 0; k < crowd.order; ++k) sum = times(sum, over);
   return sum;
 }
 
-template <int D> inline bool crowd_alone(const Polynomial<D>& f, double place, int order) noexcept {
+template <int D> inline bool crowd_alone(const Polynomial<D>& f, const Crowded& crowd, double radius) noexcept {
   double least = 0.0, c[kWide], along[kWide];
-  const Pair h = over_crowd(f, place, order, least);
-  const double noise = *std::max_element(f.noise, f.noise + kArcs<D>);
+  const Pair h = over_crowd(f, crowd, radius, least);
+  const double noise = std::cosh(D * radius) * *std::max_element(f.noise, f.noise + kArcs<D>);
   store(h.c, c);
   store(h.c * h.c / (h.c * h.c + h.s * h.s), along);
   const auto ends = std::minmax_element(c, c + kWide);
@@ -80,14 +80,11 @@ template <int D> inline bool crowd_alone(const Polynomial<D>& f, double place, i
 
 inline double way(double angle, double place) noexcept { return std::abs(wrap(angle - place)); }
 
-// Takes away what lies within a crowd where that is alone.
-template <int D>
-inline void settle_crowd(const Polynomial<D>& f, const Crowded& crowd, Brackets<D>& out) noexcept {
-  const double place = crowd.angle - kStartAngle;
-  if (!crowd_alone(f, place, crowd.order)) return;
+// Takes away what lies in a circle.
+template <int D> inline void take_away(double place, double radius, Brackets<D>& out) noexcept {
   int kept = 0;
   for (int i = 0; i < out.count; ++i) {
-    const bool skip = std::max(way(out.low[i], place), way(out.high[i], place)) < kCrowd;
+    const bool skip = std::max(way(out.low[i], place), way(out.high[i], place)) < radius;
     out.low[kept] = out.low[i];
     out.high[kept] = out.high[i];
     out.guess[kept] = out.guess[i];
@@ -98,11 +95,20 @@ inline void settle_crowd(const Polynomial<D>& f, const Crowded& crowd, Brackets<
   kept = 0;
   for (int i = 0; i < out.zones; ++i) {
     const Zone zone = out.zone[i];
-    const bool skip = std::max(way(zone.low, place), way(zone.high, place)) < kCrowd;
+    const bool skip = std::max(way(zone.low, place), way(zone.high, place)) < radius;
     out.zone[kept] = zone;
     kept += skip ? 0 : 1;
   }
   out.zones = kept;
+}
+
+// Takes away what lies within a crowd that is alone. The crowd's angle is from the nodes' first.
+template <int D>
+inline void settle_crowd(const Polynomial<D>& f, const Crowded& crowd, Brackets<D>& out) noexcept {
+  for (const double radius : kCrowds) {
+    if (crowd_alone(f, crowd, radius)) take_away(crowd.angle, radius, out);
+    if (out.zones == 0) return;
+  }
 }
 
 // Adds the solutions for the pose T. True where they are all, as in `run_resultant`.
@@ -116,7 +122,7 @@ inline bool run_coupled_resultant(const CoupledChain<Plan>& F, const Frame& T, c
     return false;
   };
   const auto settle = [](const Polynomial<degree>& f, Brackets<degree>& brackets) {
-    for (const Crowded& crowd : Plan::kCrowded) settle_crowd(f, crowd, brackets);
+    for (const Crowded& at : Plan::kCrowded) settle_crowd(f, {at.angle - kStartAngle, at.order}, brackets);
   };
   Roots<degree> roots;
   const bool all = find_roots<degree>(values, settle, roots);

@@ -14,18 +14,25 @@ namespace ikgen_runtime {
 
 namespace g6 {
 
+// Without the library's care for infinities: where there is one, the result is none either.
+inline Complex product(Complex a, Complex b) noexcept {
+  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+inline Complex reciprocal(Complex z) noexcept { return std::conj(z) / std::norm(z); }
+
 // p(z) / p'(z), by powers of 1 / z outside the unit circle so that nothing overflows.
 template <Index N>
 inline Complex newton_ratio(const std::array<Complex, N>& c, Complex z) noexcept {
   const bool outside = std::norm(z) > 1.0;
-  const Complex w = outside ? 1.0 / z : z;
+  const Complex w = outside ? reciprocal(z) : z;
   Complex value = outside ? c[0] : c[N - 1], slope = 0.0;
   for (Index k = 1; k < N; ++k) {
-    slope = slope * w + value;
-    value = value * w + (outside ? c[k] : c[N - 1 - k]);
+    slope = product(slope, w) + value;
+    value = product(value, w) + (outside ? c[k] : c[N - 1 - k]);
   }
-  if (!outside) return value / slope;
-  return value / (w * (static_cast<double>(N - 1) * value - w * slope));
+  if (!outside) return product(value, reciprocal(slope));
+  const Complex rest = static_cast<double>(N - 1) * value - product(w, slope);
+  return product(value, reciprocal(product(w, rest)));
 }
 
 template <Index N>
@@ -35,20 +42,23 @@ inline std::array<Complex, N - 1> polynomial_roots(const std::array<Complex, N>&
     const double angle = 2.0 * kPi * static_cast<double>(i) / static_cast<double>(N - 1) + 0.4;
     z[i] = std::polar(i % 3 == 0 ? 1.1 : i % 3 == 1 ? 0.95 : 0.8, angle);
   }
+  std::array<bool, N - 1> still{};
   for (int round = 0; round < 60; ++round) {
-    double largest = 0.0;
+    bool all = true;
     for (Index i = 0; i + 1 < N; ++i) {
+      if (still[i]) continue;
       const Complex ratio = newton_ratio(c, z[i]);
       if (!(std::norm(ratio) < 1e300)) continue;
       Complex sum = 0.0;
       for (Index j = 0; j + 1 < N; ++j)
-        if (j != i && z[j] != z[i]) sum += 1.0 / (z[i] - z[j]);
-      const Complex step = ratio / (1.0 - ratio * sum);
+        if (j != i && z[j] != z[i]) sum += reciprocal(z[i] - z[j]);
+      const Complex step = product(ratio, reciprocal(1.0 - product(ratio, sum)));
       if (!(std::norm(step) < 1e300)) continue;
       z[i] -= step;
-      largest = std::max(largest, std::norm(step) / (std::norm(z[i]) + 1e-300));
+      still[i] = std::norm(step) < 1e-30 * std::norm(z[i]);
+      all = all && still[i];
     }
-    if (largest < 1e-30) break;
+    if (all) break;
   }
   return z;
 }
