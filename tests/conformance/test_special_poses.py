@@ -95,8 +95,31 @@ PARALLEL_SLIDES = (
     [[-pi / 2, 0.3, 0.0, 0.2, -0.3, 0.73], [0.75, 1.2, pi, 0.3, -1.3, 0.2]],
     [0, 2],
 )
+MANY_ROWS = (
+    [
+        ("revolute", 0, 0.0, 0.0),
+        ("revolute", -1, 0.24390447985850683, 0.0),
+        ("prismatic", 0, 0.0, 0.0),
+        ("revolute", 1, 0.7899444512298317, 0.0),
+        ("revolute", 0, 0.31173753457682196, 0.29788312819971063),
+    ],
+    [[0.0] * 5, [-2.365993203, 0.0, -0.067875403, -1.406331282, 0.734319555]],
+    [1],
+)
+NO_ROOTS = (
+    [
+        ("revolute", 0, 0.0, 0.49624293391800267),
+        ("revolute", -1, 0.0, 0.0),
+        ("prismatic", 1, 0.0, 0.0),
+        ("prismatic", 1, 0.0, 0.0),
+        ("revolute", 1, 0.8897371723548606, 0.0),
+    ],
+    [[-2.93, -pi / 2, 0.306, 0.0, -pi / 2], [pi, -pi / 2, 0.0775, 0.0, pi / 2]],
+    [1, 4],
+)
 """Tables; configurations of which the forms leave two unknowns and the pose leaves one, beside regular
-solutions; joints whose values stay the same along that continuum."""
+solutions, or where an elimination finds more rows than there is room for, or no roots, as all angles are
+some; joints whose values stay the same along that continuum."""
 SPECIAL = {
     "slide at 0": SLIDE,
     "fold behind a fold": FOLDS,
@@ -140,9 +163,11 @@ def test_the_generating_configuration_is_found(
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
 @pytest.mark.parametrize(
-    ("rows", "configurations", "fixed"), [MEETING_AXES, PARALLEL_SLIDES], ids=["turns", "slides"]
+    ("rows", "configurations", "fixed"),
+    [MEETING_AXES, PARALLEL_SLIDES, MANY_ROWS, NO_ROOTS],
+    ids=["turns", "slides", "many rows", "no roots"],
 )
-def test_a_continuum_of_which_the_forms_leave_two_unknowns_has_a_row(
+def test_a_continuum_has_a_row(
     rows: list[tuple[str, int, float, float]],
     configurations: list[list[float]],
     fixed: list[int],

@@ -1714,7 +1714,10 @@ template <class Arm> struct CarefulSolve {
       double start[Arm::kDof];
       take_start(options, turn, start);
       auto left = Careful::find_rows(aim, start, options, turn == 0, found);
-      if (options.seed && !left.free && Careful::any_singular(found)) Careful::add_from(aim, start, found);
+      if (options.seed && !left.free && Careful::any_singular(found)) {
+        found.count = std::min(found.count, static_cast<int>(Places::kRoom) - 1);  // of a continuum there may be any number
+        Careful::add_from(aim, start, found);
+      }
       real = real || found.count > 0;
       LimitRows<Arm>::place_all(aim, options, found);
       if (found.count == 0 && options.seed && Refinement::refine(start, aim)) {

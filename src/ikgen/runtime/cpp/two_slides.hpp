@@ -19,6 +19,7 @@ namespace ikgen_runtime {
 namespace g6 {
 
 inline constexpr Index kFourNodes = 16;
+inline constexpr double kVanishing = 1e-15;  // value of a polynomial, lengths in the arm's, that is round-off
 
 // The other three angles for a hidden one.
 inline Triple beside_hidden(const RevoluteLoop& loop, double c, double s) noexcept {
@@ -110,6 +111,7 @@ inline Spectrum quartic_roots(const QuarticSamples& at) noexcept {
   Index node = 0;
   for (Index n = 1; n < kFourNodes; ++n)
     if (std::abs(at.value[n]) > std::abs(at.value[node])) node = n;
+  const bool vanishes = std::abs(at.value[node]) < kVanishing;
   node = (node + kFourNodes / 2) % kFourNodes;
   std::array<double, 9> powers{};
   for (Index k = 0; k < 5; ++k) {
@@ -124,7 +126,6 @@ inline Spectrum quartic_roots(const QuarticSamples& at) noexcept {
       powers[j] += weight * (a * kHalfAnglePowers.c[k][j] + b * kHalfAnglePowers.s[k][j]);
   }
   Spectrum out;
-  if (powers[8] == 0.0) return out;
   Mat<8, 8> companion{};
   for (Index i = 0; i < 8; ++i) {
     if (i > 0) companion(i, i - 1) = 1.0;
@@ -132,7 +133,10 @@ inline Spectrum quartic_roots(const QuarticSamples& at) noexcept {
   }
   std::array<Complex, 8> t;
   out.real = 8;
-  if (!eigenvalues(companion, t)) return out;
+  if (vanishes)  // every angle is a root
+    for (Index i = 0; i < 8; ++i) t[i] = std::tan(kPi / 8 * static_cast<double>(i));
+  else if (!eigenvalues(companion, t))
+    return out;
   out.real = 0;
   add_angles(t, at.offset + 2.0 * kPi / kFourNodes * static_cast<double>(node), 0.03, out);
   return out;

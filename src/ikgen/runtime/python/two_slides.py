@@ -36,6 +36,7 @@ _QUARTIC_OFFSETS = np.array(
     [0.1, 0.19, 0.28, 0.37]
 )  # rad, of the nodes: one where no divisor is small
 _WELL_APART = 1e-3  # divisors above it need no other nodes
+_VANISHING = 1e-15  # value of a polynomial, lengths in the arm's, that is round-off
 _QUARTIC_DEGREE = 4
 _QUARTIC_HARMONICS = np.arange(-_QUARTIC_DEGREE, _QUARTIC_DEGREE + 1)
 
@@ -90,7 +91,8 @@ def _quartic_values(loop: RevoluteLoop, count: int) -> tuple[Array, Array]:
 
 def _quartic_roots(value: Array, offset: Array) -> tuple[Complex, Array]:
     """Eigenvalues t (n, 8), and the angle a (n,) for which hidden angles are `a + 2 atan(t)`: opposite to
-    the node where the polynomial is largest, so that this is the leading coefficient."""
+    the node where the polynomial is largest, so that this is the leading coefficient. Where it vanishes
+    everywhere each angle is a root: eight of them."""
     spectrum = np.fft.fft(value, axis=1)[:, _QUARTIC_HARMONICS] / _QUARTIC_COUNT
     opposite = (np.abs(value).argmax(axis=1) + _QUARTIC_COUNT // 2) % _QUARTIC_COUNT
     spectrum = spectrum * np.exp(1j * _QUARTIC_NODES[opposite][:, None] * _QUARTIC_HARMONICS)
@@ -100,9 +102,9 @@ def _quartic_roots(value: Array, offset: Array) -> tuple[Complex, Array]:
     companion = np.zeros((len(value), 8, 8))
     companion[:, 1:, :-1] = np.eye(7)
     companion[:, :, -1] = -powers[:, :-1] / lead
-    return np.asarray(np.linalg.eigvals(companion), dtype=complex), offset + _QUARTIC_NODES[
-        opposite
-    ]
+    t = np.asarray(np.linalg.eigvals(companion), dtype=complex)
+    t[np.abs(value).max(axis=1) < _VANISHING] = np.tan(0.5 * _QUARTIC_NODES[::2])
+    return t, offset + _QUARTIC_NODES[opposite]
 
 
 def two_slide_candidates(
