@@ -1708,7 +1708,7 @@ template <class Arm> struct CarefulSolve {
   [[gnu::always_inline]] static void solve(const Eigen::Isometry3d& pose, const Options& options,
                                            Solutions& out) noexcept {
     const Aim aim(pose, options.free);
-    bool real = false, free = true;
+    bool real = false, free = true, continuum = false;
     Places found;
     for (int turn = 0; turn < Policy::kTries && free; ++turn) {
       double start[Arm::kDof];
@@ -1719,6 +1719,7 @@ template <class Arm> struct CarefulSolve {
         Careful::add_from(aim, start, found);
       }
       real = real || found.count > 0;
+      continuum = continuum || Careful::any_singular(found);
       LimitRows<Arm>::place_all(aim, options, found);
       if (found.count == 0 && options.seed && Refinement::refine(start, aim)) {
         Careful::add(aim, found, start, true);
@@ -1728,7 +1729,7 @@ template <class Arm> struct CarefulSolve {
       free = left.free && !(left.led && found.count > 0);
     }
     if (free && !Arm::kRounded && !Arm::kRefined) real = add_hidden(aim, options, found) || real;
-    if (free && !real) real = add_nearest(aim, options, found);
+    if ((free && !real) || (continuum && found.count == 0)) real = add_nearest(aim, options, found) || real;
     if (options.seed) Row::sort_by_distance(found, options.seed->data());
     out.count = std::min(found.count, Arm::kMaxSolutions);
     std::copy_n(found.q.begin(), out.count, out.q.begin());

@@ -1333,10 +1333,11 @@ class _Asked:
 
 @dataclass
 class _Answer:
-    """Solutions on the right turns, and whether there were any before limits."""
+    """Solutions on the right turns, and whether there were any before limits, and any of a continuum."""
 
     rows: list[_Found] = field(default_factory=list)
     real: bool = False
+    continuum: bool = False
 
 
 _Rows = tuple[list[_Found], bool, bool]
@@ -1361,9 +1362,10 @@ def _placed_rows(arm: _Arm, asked: _Asked, limits: bool) -> list[_Answer]:
         left = left[going[left]]
     if len(left):
         _take_hidden(arm, asked, left, limits, out)
-    for i in left.tolist():
-        if not out[i].real:
-            _take_nearest(arm, asked.at(np.array([i])), limits, out[i])
+    unreal = [i for i in left.tolist() if not out[i].real]
+    lost = [i for i, answer in enumerate(out) if answer.continuum and not answer.rows]
+    for i in dict.fromkeys([*unreal, *lost]):
+        _take_nearest(arm, asked.at(np.array([i])), limits, out[i])
     return out
 
 
@@ -1423,6 +1425,7 @@ def _goes_on(
     if not free and any(flag for _, flag in kept):
         _add(arm, T, seeded, kept)
     answer.real = answer.real or bool(kept)
+    answer.continuum = answer.continuum or any(flag for _, flag in kept)
     aim = _aims(arm, asked.T[k : k + 1], asked.held[k : k + 1])
     _add(arm, T, _rows_inside(arm, aim, kept, near, limits), answer.rows)
     if not answer.rows:

@@ -56,10 +56,11 @@ class Asked:
 
 @dataclass
 class Answer:
-    """Solutions on the right turns, and whether there were any before limits."""
+    """Solutions on the right turns, and whether there were any before limits, and any of a continuum."""
 
     rows: list[Found] = field(default_factory=list)
     real: bool = False
+    continuum: bool = False
 
 
 _Rows = tuple[list[Found], bool, bool]
@@ -68,7 +69,7 @@ _Rows = tuple[list[Found], bool, bool]
 
 def placed_rows(arm: Arm, asked: Asked, limits: bool) -> list[Answer]:
     """Of each pose. Where it leaves a joint free and the given value leads nowhere, others are tried, and
-    in the end the nearest pose's row."""
+    in the end the nearest pose's row; so too where limits leave none, but a continuum may go on inside."""
     out = [Answer() for _ in asked.T]
     left = np.arange(len(out))
     for tries in (range(1), range(1, arm.policy.tries)):
@@ -86,9 +87,10 @@ def placed_rows(arm: Arm, asked: Asked, limits: bool) -> list[Answer]:
         left = left[going[left]]
     if not arm.rounded and len(left):
         _take_hidden(arm, asked, left, limits, out)
-    for i in left.tolist():
-        if not out[i].real:
-            _take_nearest(arm, asked.at(np.array([i])), limits, out[i])
+    unreal = [i for i in left.tolist() if not out[i].real]
+    lost = [i for i, answer in enumerate(out) if answer.continuum and not answer.rows]
+    for i in dict.fromkeys([*unreal, *lost]):
+        _take_nearest(arm, asked.at(np.array([i])), limits, out[i])
     return out
 
 
@@ -148,6 +150,7 @@ def _goes_on(
     if not free and any(flag for _, flag in kept):
         _add(arm, T, seeded, kept)
     answer.real = answer.real or bool(kept)
+    answer.continuum = answer.continuum or any(flag for _, flag in kept)
     aim = aims(arm, asked.T[k : k + 1], asked.held[k : k + 1])
     _add(arm, T, rows_inside(arm, aim, kept, near, limits), answer.rows)
     if not answer.rows:
