@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,8 +26,18 @@ __all__ = [
 ROUNDED = 2e-9
 """Model error (m or rad) above which every row is refined."""
 
+_HALF_OF_DIGITS = 1e-8
+"""What a double root has: its error leaves no direction of a smaller divisor."""
+
+Lost = Callable[[Expr], float]
+
 _MULTIPLIED = 4.0
 """Times the model error over a square root that what follows from it may be off."""
+
+
+def nothing_lost(value: Expr) -> float:
+    """That of a value which is exact."""
+    return 0.0 * value.scale
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +49,8 @@ class Tolerances:
     condition `rough` holds, what a square root is taken of has lost digits: it may be `wide` outside. An
     `error` of the geometry moves what follows from a square root by as much over that root, and what
     follows from a divisor by as much over it: `margin` is the least, relative to natural sizes, of what
-    square roots were taken of so far and of the squares of divisors.
+    square roots were taken of so far and of the squares of divisors. `lost` bounds by how much round-off
+    moves a value; where `double` holds, an unknown solved so far is nearly a double root.
     """
 
     singular: float = 1e-11
@@ -50,9 +62,11 @@ class Tolerances:
     wide: float = 1e-3
     error: float = 0.0
     margin: Expr | None = None
+    lost: Lost = nothing_lost
+    double: Expr | None = None
 
     @staticmethod
-    def for_model_error(error: float) -> Tolerances:
+    def for_model_error(error: float, lost: Lost = nothing_lost) -> Tolerances:
         """Tolerances where the solved geometry is `error` (m or rad) off the file's.
 
         Where rows are not refined, a divisor that is no larger than what the two differ by is as good as
@@ -63,11 +77,11 @@ class Tolerances:
         fold = 0.05 * error if error > ROUNDED else 0.0
         singular = 1e-11 if error > ROUNDED else max(1e-11, 4.0 * error)
         flag, norm = (min(max(1e-4, share * error), 1e-2) for share in (5.0, 50.0))
-        return Tolerances(singular, flag, norm, clamp, fold, error=error)
+        return Tolerances(singular, flag, norm, clamp, fold, error=error, lost=lost)
 
     def guard(self, g: ExpressionGraph, value: Expr, size: float) -> Expr:
         """Condition that a square root of `value`, of natural size `size`, may be taken."""
-        least = g.const(-self.clamp * size)
+        least = g.const(-max(self.clamp * size, min(self.lost(value), self.wide * size)))
         if self.rough is not None:
             least = g.select(self.rough, g.const(-self.wide * size), least)
         real = g.binary("gt", value, least)
@@ -147,7 +161,11 @@ def divisor_of(g: ExpressionGraph, value: Expr, tol: Tolerances, power: int = 1)
     size = natural_size(value)
     magnitude = g.unary("abs", value) if power == 1 else value
     found = Divisor(value, None, None, magnitude, size, power)
-    regular = found.above(g, tol.singular)
+    off = min(tol.lost(value) / (power * size), tol.flag)
+    regular = found.above(g, max(tol.singular, off))
+    if tol.double is not None and regular is not None:
+        least = g.select(tol.double, g.const(_HALF_OF_DIGITS * size), regular.args[1])
+        regular = g.binary("gt", magnitude, least)
     clear = found.above(g, tol.flag if power == 1 else tol.norm)
     assert regular is not None
     return Divisor(g.select(regular, value, g.one), regular, clear, magnitude, size, power)

@@ -7,7 +7,7 @@ import numpy as np
 from ikgen.algebra.expression import Expr
 from ikgen.equations.knowledge import Variable
 from ikgen.forms.form import Form
-from ikgen.forms.lowered_form import LoweredForm, LoweredRoutine, natural_size
+from ikgen.forms.lowered_form import LoweredForm, LoweredRoutine
 from ikgen.kinematics.whole_turns import middle_of
 from ikgen.lowering.closure import require_closure
 from ikgen.lowering.elbow_position import bind_elbow
@@ -99,7 +99,7 @@ def _routine(work: Placement, v: Variable, form: Form, lowered: LoweredRoutine, 
         work.placed.add(atom.id)
     slope = work.slope(v, form)
     if slope is not None:
-        work.note_fold(work.g.square(slope), natural_size(slope) ** 2)
+        work.note_root(atoms, form.pattern(work.g, atoms)[0], slope)
 
 
 def _or_seed(work: Placement, v: Variable, form: Form, lowered: LoweredRoutine) -> tuple[Expr, ...]:

@@ -15,6 +15,7 @@ from ikgen.equations.knowledge import Variable
 from ikgen.equations.products import ENTRY_NAMES
 from ikgen.forms.form import Form
 from ikgen.forms.lowered_form import Divisor, Tolerances, at_least, natural_size
+from ikgen.lowering.rounding import Rounding
 from ikgen.program.inputs import Input
 from ikgen.program.statements import Comment, Let
 from ikgen.solver.choice import Step
@@ -60,14 +61,16 @@ class Placement:
         self.system = self.knowledge.equations
         self.g: ExpressionGraph = self.knowledge.graph
         self.model_error = model_error
-        self._tolerances = Tolerances.for_model_error(model_error)
+        self.definition: dict[int, Expr] = dict(self.knowledge.binding)
+        self.rounding = Rounding(graph.probes.generic, self.definition)
+        self._tolerances = Tolerances.for_model_error(model_error, self.rounding.most)
         self.loses_digits = bool(graph.probes.kept) or any(map(self._folds, graph.steps))
         self.residuals: list[Expr] = []
         self.norms: list[Expr] = []
         self.folds: list[Expr] = []
         self.margins: list[Expr] = []
+        self.double: Expr | None = None
         self.levels = [LoweredLevel(1)]
-        self.definition: dict[int, Expr] = dict(self.knowledge.binding)
         self.level_of: dict[int, int] = {}
         self.placed: set[int] = set()
         self.names: dict[int, str] = {}
@@ -95,6 +98,14 @@ class Placement:
         if self._tolerances.fold:
             self.margins.append(self.g.mul(self.g.const(1.0 / size), under))
 
+    def note_root(self, atoms: Sequence[Expr], equation: Expr, slope: Expr) -> None:
+        """The atoms are the cosine and sine of a root, a double one where the slope vanishes."""
+        self.rounding.note_root(atoms, equation, slope)
+        folds = len(self.folds)
+        self.note_fold(self.g.square(slope), natural_size(slope) ** 2)
+        for flag in self.folds[folds:]:
+            self.double = flag if self.double is None else self.g.binary("or", self.double, flag)
+
     def note_divisors(self, divisors: Sequence[Divisor]) -> None:
         """An unknown was divided by the first of these that is large."""
         squares = [one.square(self.g) for one in divisors] if self._tolerances.fold else []
@@ -110,7 +121,8 @@ class Placement:
             margin = one if margin is None else self.g.binary("min", margin, one)
         if margin is not None:
             margin = at_least(self.g, margin, self.g.const(self._tolerances.fold))
-        return replace(self._tolerances, rough=self.rough, margin=margin)
+        double = None if self._tolerances.fold else self.double
+        return replace(self._tolerances, rough=self.rough, margin=margin, double=double)
 
     @property
     def whole_pose(self) -> bool:
