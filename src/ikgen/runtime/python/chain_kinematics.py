@@ -127,7 +127,7 @@ def cross(a: Array, b: Array) -> Array:
     x, y, z = a[..., 0], a[..., 1], a[..., 2]
     u, v, w = b[..., 0], b[..., 1], b[..., 2]
     first = y * w - z * v
-    out = np.empty((*first.shape, 3))
+    out = np.empty((*first.shape, 3), first.dtype)
     out[..., 0], out[..., 1], out[..., 2] = first, z * u - x * w, x * v - y * u
     return out
 
