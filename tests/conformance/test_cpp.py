@@ -35,7 +35,7 @@ pytestmark = [
 ]
 
 SAMPLES = 60
-RARE = ("Olson13", "UR5")
+RARE = ("Olson13", "Puma", "UR5")
 """Compiled with the long tests alone: the others have what they have."""
 
 
@@ -300,7 +300,7 @@ def test_kinematics_are_the_files(name: str, folder: Path) -> None:
     assert np.abs(arm.header.jacobian(arm.q) - file_jacobian(arm.module.dh, arm.q)).max() < 1e-12
 
 
-@pytest.mark.parametrize("name", ROBOTS[:2])
+@pytest.mark.parametrize("name", ["kuka_kr6r900sixx", "ur5e"])
 def test_what_is_no_pose_is_invalid(name: str, folder: Path) -> None:
     arm = compiled(name, folder)
     pose = arm.poses[0]
