@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tests.elimination.test_elimination import arm_frames
+from tests.elimination.test_elimination import arm_frames, configurations, dh_frames, missing
 
-from ikgen.elimination.loop_frames import forward, typical_length
-from ikgen.elimination.plan import _separate, digits_lost, ranking
+from ikgen.elimination.loop_frames import forward, hold_joint, typical_length
+from ikgen.elimination.plan import _separate, choose_plan, digits_lost, ranking
 from ikgen.elimination.resultant import root_shifts
+from ikgen.elimination.routine import Plan, finder, initial_residuals
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -54,3 +55,23 @@ def test_how_far_roots_move_is_the_same_whatever_the_last_bits() -> None:
         found.append(shifts[shifts < 0.1])
     assert all(len(one) == 1 for one in found)
     assert np.ptp(found) < 0.03 * np.mean(found)
+
+
+def test_a_held_joint_that_makes_axes_parallel_leaves_the_first_elimination_its_rank() -> None:
+    """Held at 0 or pi the third joint puts its neighbours' axes in parallel: some eliminations, one of them
+    the best elsewhere, find half of the solutions there, by chance."""
+    h = 0.5 * np.pi
+    lengths = [0.0, 0.04, 0.02, 0.02, 0.02, 0.05], [0.3, 0.18, -0.04, 0.16, -0.04, 0.0]
+    frames = dh_frames([0.0, -h, h, h, -h, -h], *lengths)
+    tip = dh_frames([0.0] * 5 + [h], [0.0] * 5 + [0.07], [0.0] * 4 + [0.165, 0.02])
+    frames = np.concatenate([frames[:6], tip[5:]])
+    frames[2:5, 1, 3] = -0.17, -0.04, 0.17
+    special = [hold_joint(frames, 2, value) for value in (0.0, np.pi)]
+    family = np.array([hold_joint(frames, 2, value) for value in (0.4, -1.1, 2.2)])
+    plan = choose_plan(family, special=special, probes=12)
+    for held in special:
+        q = configurations(held, 20)
+        poses = np.array([forward(held, row) for row in q])
+        alone = Plan(plan.length, plan.eliminations[:1], plan.turning, finder(plan.turning))
+        assert missing(initial_residuals(held, alone, poses)[0], q) == 0
+    assert choose_plan(family, probes=12).eliminations[0] != plan.eliminations[0]

@@ -20,6 +20,8 @@ __all__ = ["axis_motions", "elimination_plan"]
 _HELD_VALUES = (0.4, -1.1, 2.2)
 """Values of held joints (rad or m) at which plans are tried."""
 
+_RIGHT_ANGLES = (0.0, 0.5 * np.pi, np.pi, -0.5 * np.pi)
+"""The same where axes become parallel or meet, at which some eliminations lose rank."""
 
 _MOST_SLIDES = 3
 """With more of them the rest cannot turn the tip to every rotation."""
@@ -42,12 +44,13 @@ def elimination_plan(dh: DHChain, tool: int | None = None) -> EliminationPlan | 
         return None
     if several > 1 or slides > (0 if several else _MOST_SLIDES):
         return None
-    values = _HELD_VALUES if dh.free else (0.0,)
-    family = np.array([held_frames(dh, value) for value in values])
+    values, special = (_HELD_VALUES, _RIGHT_ANGLES) if dh.free else ((0.0,), ())
+    family = np.array([held_frames(dh, value) for value in (*values, *special)])
     motions = axis_motions(dh, moving)
     if tool is not None:
         family, motions = with_tool_joint(family, tool), (*motions, (5, True, 1.0, 0.0))
-    plan = choose_coupled(family, motions) if several else choose_plan(family, turning)
+    family, beside = np.split(family, [len(values)])
+    plan = choose_coupled(family, motions) if several else choose_plan(family, turning, [*beside])
     return replace(plan, tool=tool) if plan is not None and plan.usable else None
 
 

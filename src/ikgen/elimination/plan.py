@@ -11,6 +11,7 @@ two slides one of the four angles is hidden; with three the rotation gives all a
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -45,6 +46,7 @@ _SAME = 1e-5
 _FINE = -8.0  # logarithm of errors below which they no longer count
 _ALIKE = 0.3  # digits lost on average, which rounding moves by less than a tenth
 _KEPT = 2
+_SPECIAL_PROBES = 3
 _MOST = (16, 16, 8, 2)
 """Solutions by the number of slides (Raghavan and Roth 1993)."""
 
@@ -111,12 +113,18 @@ def eliminations(turning: Turning) -> tuple[Elimination, ...]:
 
 
 def choose_plan(
-    frames: Matrix, turning: Turning = _REVOLUTE, *, probes: int = 24, seed: int = 0
+    frames: Matrix,
+    turning: Turning = _REVOLUTE,
+    special: Sequence[Matrix] = (),
+    *,
+    probes: int = 24,
+    seed: int = 0,
 ) -> EliminationPlan:
     """The best eliminations for a chain of six joints, at most three of them slides, frames
     (7, 4, 4), or for all of a family (m, 7, 4, 4) that differs by a held joint's value (the plan
     then carries the first one's frames).
 
+    special: members at whose values some eliminations lose rank; the plan serves them as well as it can.
     Raises ValueError for other shapes.
     """
     family = np.asarray(frames, dtype=np.float64)
@@ -125,18 +133,17 @@ def choose_plan(
         raise ValueError(f"frames of six joints are (7, 4, 4), not {np.shape(frames)}")
     rng = np.random.default_rng(seed)
     each = max(probes // len(family), 2)
-    parts = [_probe(member, turning, each, rng) for member in family]
-    hits = np.concatenate([probe.hits for probe in parts], axis=1)
-    rough = np.max([probe.rough for probe in parts], axis=0)
-    shifts = np.max([probe.shifts for probe in parts], axis=0)
-    order = ranking(hits, rough)
+    plain = _joined([_probe(member, turning, each, rng) for member in family])
+    every = _joined([plain, *(_probe(member, turning, _SPECIAL_PROBES, rng) for member in special)])
+    order = ranking(every.hits, every.rough)
+    separate = dict.fromkeys([*_separate(every.shifts), *_separate(plain.shifts)])
     first = read_only(family[0])
     return EliminationPlan(
         frames=first,
         length=typical_length(first, turning),
         eliminations=tuple(eliminations(turning)[k] for k in order),
-        recall=float(hits[order[0]].mean()) if hits.size else 0.0,
-        resultants=tuple(RESULTANTS[k] for k in _separate(shifts)),
+        recall=float(plain.hits[order[0]].mean()) if plain.hits.size else 0.0,
+        resultants=tuple(RESULTANTS[k] for k in [*separate][:_KEPT]),
         turning=turning,
         parallel=choose_parallel(family) if all(turning) else None,
     )
@@ -176,6 +183,15 @@ class _Probe:
     hits: Matrix
     rough: Matrix
     shifts: Matrix
+
+
+def _joined(parts: Sequence[_Probe]) -> _Probe:
+    """All solutions, and the worst of the rest."""
+    hits = np.concatenate([part.hits for part in parts], axis=1)
+    rough, shifts = (
+        np.max([getattr(p, name) for p in parts], axis=0) for name in ("rough", "shifts")
+    )
+    return _Probe(hits, rough, shifts)
 
 
 def _probe(frames: Matrix, turning: Turning, count: int, rng: np.random.Generator) -> _Probe:
