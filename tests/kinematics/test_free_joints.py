@@ -49,6 +49,13 @@ def test_a_given_value_is_taken_up_to_the_limits() -> None:
         default(-1.0, 2.0, 2.1)
 
 
+def test_one_at_which_the_others_are_always_singular_is_left() -> None:
+    """At 0 the joint before and the one after it turn about one line."""
+    dh = read(Request(FR3, free={"fr3_joint2": None})).dh
+    assert free_defaults(dh, []) == pytest.approx((0.5 * dh.joints[1].limits.upper,))
+    assert free_defaults(dh, [("fr3_joint2", 0.0)]) == (0.0,)
+
+
 def test_a_value_outside_is_refused_before_the_search(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

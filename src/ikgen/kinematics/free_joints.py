@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from ikgen.errors import UsageError
 from ikgen.model.chain import ActuatedJoint
@@ -11,24 +12,56 @@ from ikgen.model.dh import DHChain
 
 __all__ = ["free_defaults"]
 
+_SAMPLES = 32
+_LOST = 1e-3
+"""Share of what the smallest singular value is elsewhere below which a held value has taken a direction."""
+
 
 def free_defaults(dh: DHChain, given: Iterable[tuple[str, float | None]]) -> tuple[float, ...]:
     """Default values (rad or m) of what is held, in that order: those `given` by name, else 0
-    brought inside the limits. Raises UsageError for a given value outside them."""
+    brought inside the limits, or another where what moves is singular everywhere with that. Raises
+    UsageError for a given value outside them."""
     values = dict(given)
-    return tuple(_default(held, values.get(held.name)) for held in dh.held_inputs)
+    choices = [_choices(held, values.get(held.name)) for held in dh.held_inputs]
+    first = tuple(one[0] for one in choices)
+    if dh.arm_angle or dh.symbols or all(len(one) == 1 for one in choices):
+        return first
+    least = _LOST * _margin(dh, None)
+    found = (one for one in itertools.product(*choices) if _margin(dh, one) >= least)
+    return next(found, first)
 
 
-def _default(joint: ActuatedJoint, value: float | None) -> float:
-    """The middle of limits that 0 is outside of, where they have one; else the limit next to 0."""
+def _choices(joint: ActuatedJoint, value: float | None) -> tuple[float, ...]:
+    """The value that is given; else, in the order in which they are tried, 0, the middle of limits that it
+    is outside of or where they have none the limit next to it, and values between the limits."""
     low, high = joint.limits.lower, joint.limits.upper
     if value is not None:
         if low <= value <= high:
-            return value
+            return (value,)
         raise UsageError(
             f"--free {joint.name}={value:.9g}: outside its limits, {low:.9g} to {high:.9g}",
             hint="give a value inside them (rad or m), or none",
         )
-    if low <= 0.0 <= high:
-        return 0.0
-    return 0.5 * (low + high) if math.isfinite(high - low) else max(low, min(high, 0.0))
+    near = min(max(low, 0.0), high)
+    bottom = low if math.isfinite(low) else min(high, math.pi) - 2.0 * math.pi
+    top = high if math.isfinite(high) else bottom + 2.0 * math.pi
+    others = tuple(bottom + share * (top - bottom) for share in (0.5, 0.75, 0.25))
+    return others if near != 0.0 and math.isfinite(high - low) else (near, *others)
+
+
+def _margin(dh: DHChain, held: Sequence[float] | None) -> float:
+    """The largest over configurations of the smallest singular value of what moves, of those that do not
+    vanish for any held values; `held`: random ones where None."""
+    import numpy as np
+
+    from ikgen.kinematics.forward import file_jacobian
+
+    q = np.random.default_rng(0).uniform(-1.5, 1.5, (_SAMPLES, dh.dof))
+    moving = [j for j in range(dh.dof) if j not in dh.free_indices]
+    usual = np.linalg.svd(file_jacobian(dh, q)[..., moving], compute_uv=False)
+    rank = int((usual.max(axis=0) > _LOST * usual.max()).sum())
+    if held is None:
+        return float(usual[:, rank - 1].max())
+    q[:, list(dh.free_indices)] = held
+    values = np.linalg.svd(file_jacobian(dh, q)[..., moving], compute_uv=False)
+    return float(values[:, rank - 1].max())
