@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from tests.support.solving import import_text
 
+from ikgen.emit.cpp.cpp_emitter import emit_header
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
@@ -52,3 +53,13 @@ def test_poses_beside_a_stretched_elbow_have_rows(decade: int, tmp_path: Path) -
         assert (
             np.nanmin(gap, initial=np.inf) < 5e-5
         )  # by so much a row that is right to 1e-10 may be off
+
+
+def test_its_rows_take_newton_steps_all_at_once(tmp_path: Path) -> None:
+    """In the header; those of the same arm without the lever are right as they are."""
+    robot = tmp_path / "slender.urdf"
+    for text, coarse in ((ARM, True), (ARM.replace("0.0079 0.000218121", "0 0"), False)):
+        robot.write_text(text)
+        module = derive(Request(robot)).module
+        assert module.refine == "some" and module.program.coarse == coarse
+        assert f"kNewton = {str(coarse).lower()};" in emit_header(module)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ikgen.algebra.expression import Expr
@@ -24,6 +26,9 @@ from ikgen.solver.solution_graph import SolutionGraph
 
 __all__ = ["lower"]
 
+_COARSE = 1e-9
+"""Bound on what a joint value is off (rad or m) above which most of its rows are not right as they are."""
+
 
 def lower(graph: SolutionGraph, *, model_error: float = 0.0) -> Program:
     """The Program of a solution graph.
@@ -40,7 +45,13 @@ def lower(graph: SolutionGraph, *, model_error: float = 0.0) -> Program:
     values = _joint_values(work)
     require_closure(work)
     _place_values(work, values)
-    return trimmed(serialize(work, values))
+    return replace(trimmed(serialize(work, values)), coarse=_coarse(work, values))
+
+
+def _coarse(work: Placement, values: list[tuple[int, Expr]]) -> bool:
+    """Whether round-off alone takes joint values too far off, at half of the probes."""
+    errors = [work.rounding.of(e) for j, e in values if j not in work.held]
+    return bool(np.median(np.nan_to_num(np.max(errors, axis=0), nan=np.inf)) > _COARSE)
 
 
 def _step(work: Placement, index: int, step: Step) -> None:

@@ -99,6 +99,7 @@ class Program:
     alone: it runs once a solve. `singular` are the conditions under which a solution is one of a continuum;
     `residuals` the squared errors (m^2, rad^2) with which a row reproduces the pose. `frames` are the
     constant transforms of the file's own chain, `T = F_0 M_1 F_1 ... M_n F_n` with M_i the motion of row i.
+    `coarse`: round-off alone moves rows at most poses by more than they may be off.
     """
 
     name: str
@@ -111,6 +112,7 @@ class Program:
     singular: tuple[str, ...]
     residuals: tuple[str, ...] = ()
     frames: tuple[Entries, ...] = ()
+    coarse: bool = False
 
     @property
     def max_solutions(self) -> int:

@@ -119,7 +119,7 @@ def _known_facts(module: SolverModule) -> ArmFacts:
         ("kFree", bool(module.held)),
         ("kNewton", _newton(module)),
         ("kRefined", _careful(module)),
-        ("kRounded", _newton(module)),
+        ("kRounded", module.refine == "all"),
     )
 
 
@@ -137,7 +137,7 @@ def _careful(module: SolverModule) -> bool:
 
 def _newton(module: SolverModule) -> bool:
     """Whether all rows are refined at once."""
-    return module.refine == "all"
+    return module.refine == "all" or module.program.coarse
 
 
 def _refinement(module: SolverModule) -> dict[str, object]:
