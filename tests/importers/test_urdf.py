@@ -145,6 +145,8 @@ REFUSED = {
     "bytes": (b'<robot name="\xff\xfe"/>', "cannot decode", "UTF-8", None),
     "encoding": (b'<?xml version="1.0" encoding="nonesuch"?><robot/>', "decode", "UTF-8", None),
     "nul": (b"<robot>\0</robot>", "not well-formed", "correct", 1),
+    "xacro undeclared": (robot("<xacro:include filename='x'/>"), "prefix xacro", "xmlns:xacro", 4),
+    "undeclared and cut off": (robot("<sensor:camera>"), "mismatch", "correct", 5),
 }
 
 
@@ -302,6 +304,13 @@ def test_a_bomb_of_entities_in_an_attribute_ends_at_once(read):
     )
     with pytest.raises(BadDescriptionError):
         read(text)
+
+
+def test_prefixes_that_nothing_declares_belong_to_the_name(read):
+    limited = joint(f'<ns:axis xyz="1 1 1"/><axis xyz="0 1 0" ns:xyz="1 0 0"/>{LIMIT}')
+    tree = read(robot('<sensor:camera name="rgb"><ns:joint/></sensor:camera>', limited))
+    assert tree.joints[0].axis.tolist() == [0.0, 1.0, 0.0]
+    assert (tree.joints[0].line, tree.links) == (5, ("a", "b"))
 
 
 def test_deep_nesting_is_refused_with_its_line(read):

@@ -136,21 +136,36 @@ def parse_xml(text: str, file: str) -> Element:
     """The root element of an XML text. Nothing is fetched; a document type that declares or names
     something is refused, as entities are declared there."""
     # The text is decoded already, so its own encoding declaration must not be applied again.
-    parser = etree.XMLParser(
-        resolve_entities=False, no_network=True, huge_tree=False, encoding="utf-8"
-    )
+    data = text.encode("utf-8", "replace")
+    parser = _parser()
     try:
-        root = etree.fromstring(text.encode("utf-8", "replace"), parser)
+        root = etree.fromstring(data, parser)
     except etree.XMLSyntaxError as error:
-        message = error.msg or "not XML"
-        raise BadDescriptionError(
-            f"not well-formed XML: {message.partition(', line')[0]}",
-            file=file,
-            line=error.lineno or None,
-            hint=_syntax_hint(text, message),
-        ) from None
+        faults = [fault for fault in parser.error_log if not _is_undeclared_prefix(fault)]
+        if faults or not len(parser.error_log):
+            message = faults[0].message if faults else error.msg or "not XML"
+            raise BadDescriptionError(
+                f"not well-formed XML: {message.partition(', line')[0]}",
+                file=file,
+                line=(faults[0].line if faults else error.lineno) or None,
+                hint=_syntax_hint(text, message),
+            ) from None
+        root = etree.fromstring(data, _parser(recover=True))
     _check_document_type(root, text, file)
     return root
+
+
+def _parser(*, recover: bool = False) -> Any:
+    return etree.XMLParser(
+        resolve_entities=False, no_network=True, huge_tree=False, encoding="utf-8", recover=recover
+    )
+
+
+def _is_undeclared_prefix(fault: Any) -> bool:
+    """Whether a parser's complaint is of a prefix that no xmlns declares, as in `<sensor:camera>` of files
+    for old simulators: other readers take it as part of the name. xacro's says what is to be expanded."""
+    undeclared = fault.type == etree.ErrorTypes.NS_ERR_UNDEFINED_NAMESPACE
+    return undeclared and "prefix xacro" not in fault.message
 
 
 def _check_document_type(root: Element, text: str, file: str) -> None:
