@@ -49,6 +49,15 @@ def test_mimic_joints_follow_the_file() -> None:
         assert T[:2, 0] == pytest.approx([math.cos(heading), math.sin(heading)], abs=1e-14)
 
 
+def test_prefixes_that_nothing_declares_are_left_alone() -> None:
+    old = MIMIC.replace(
+        '<link name="l1"/>', "<link name='l1'><sensor:camera><link/></sensor:camera></link>"
+    )
+    q = np.array([0.4])
+    same = [PinocchioOracle(tree_of(text), "b", "l3", ["j1"]).forward(q) for text in (MIMIC, old)]
+    assert np.array_equal(*same)
+
+
 def test_locked_driver_sets_its_mimic_joints() -> None:
     oracle = PinocchioOracle(tree_of(MIMIC), "b", "l2", [], {"j1": 0.4})
     assert oracle.forward(np.zeros((1, 0)))[0, :2, 0] == pytest.approx(

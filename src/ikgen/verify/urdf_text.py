@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass, field
+from xml.parsers import expat
 
 from ikgen.errors import BadDescriptionError, UnknownNameError
 
@@ -99,14 +100,22 @@ def _ends(joint: ET.Element) -> list[str]:
     return [element.get("link", "") for element in elements if element is not None]
 
 
+def _root(text: str) -> ET.Element:
+    """The document's root, prefixes left as parts of names: not all files declare them."""
+    builder, parser = ET.TreeBuilder(), expat.ParserCreate()
+    parser.StartElementHandler, parser.EndElementHandler = builder.start, builder.end
+    parser.Parse(text, True)
+    return builder.close()
+
+
 def read_kinematic_text(text: str, base_link: str, tip_link: str) -> KinematicText:
     """Reduce the URDF `text` to the kinematics between two links.
 
     Raises `BadDescriptionError` if it is not XML, `UnknownNameError` for a link that it lacks.
     """
     try:
-        robot = ET.fromstring(text)
-    except ET.ParseError as error:
+        robot = _root(text)
+    except expat.ExpatError as error:
         hint = "check what its macros expand to"
         raise BadDescriptionError(
             f"the expanded description is not XML: {error}", hint=hint
