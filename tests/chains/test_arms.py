@@ -114,3 +114,17 @@ def test_an_arm_may_begin_with_a_joint_that_follows_one_behind_it():
     coupled = replace(arm, joints=(replace(first, mimic=Mimic("arm_2", -0.5, 0.0)), *others))
     assert ends(coupled) == {("base", "arm_5_link"): 6}
     assert [chain.dof for chain in candidate_chains(coupled)] == [5]
+
+
+def test_a_leg_whose_hip_follows_the_other_leg_s_is_no_finger():
+    left = serial_joints("base", *(f"left_{i}" for i in range(6)))
+    right = serial_joints("base", *(f"right_{i}" for i in range(6)))
+    legs = tree_of(*left, *right)
+    joints = [
+        replace(joint, mimic=Mimic("left_0", 1.0, 0.0)) if joint.name == "right_0" else joint
+        for joint in legs.joints
+    ]
+    assert ends(replace(legs, joints=tuple(joints))) == {
+        ("base", "left_5_link"): 6,
+        ("base", "right_5_link"): 6,
+    }

@@ -131,8 +131,9 @@ def _is_finger_joint(joint: Joint, bodies: RigidBodies) -> bool:
         return False
     # The depth keeps robots whose every joint is named after a finger or a claw.
     deep = bodies.moving_above[joint.parent] >= ARM_JOINTS
-    short = bodies.moving_below[joint.child] < _LONGEST_FINGER
-    if deep and short and is_finger(joint.name, joint.child):
+    if bodies.moving_below[joint.child] >= _LONGEST_FINGER:
+        return False
+    if deep and is_finger(joint.name, joint.child):
         return True
     # A mimic joint of an arm follows a joint of the same arm; a finger's follows the one beside it.
     if joint.mimic is None or bodies.hangs_on(joint.parent, joint.mimic.joint):
