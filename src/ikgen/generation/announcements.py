@@ -9,6 +9,8 @@ if TYPE_CHECKING:
 
 __all__ = ["announcements"]
 
+_POSITION = 3  # freedoms
+
 
 def announcements(derivation: Derivation) -> tuple[str, ...]:
     """What was odd in the file, that the task is not the first that fits, and that it asks more than the
@@ -40,7 +42,8 @@ def _over_constrained(derivation: Derivation) -> str:
     other = next((t.name for t in fitting_tasks(dh) if not t.whole_pose), "")
     smaller = f"--task {other} asks what the arm can do everywhere; " if other else ""
     if derivation.chosen:
-        smaller = "No smaller task has a verified closed form here; "
+        smaller = "No task that so many joints fit has a verified closed form here; "
+        smaller += "--task position may, with a joint held; " if moving > _POSITION else ""
     elif needs_held(dh, task):
         these = " ".join(f"--free {name}" for name in dh.free)
         smaller += f"without {these} the arm can do it; "
