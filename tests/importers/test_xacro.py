@@ -133,6 +133,18 @@ def test_an_argument_without_default_is_named_where_all_stands_on_one_line(file)
         load_tree(file)
 
 
+def test_what_a_comment_says_is_not_what_fails(file):
+    write(file, '<!--\n<xacro:arg name="old"/> $(arg side) -->', '<link name="$(arg side)"/>')
+    with pytest.raises(BadDescriptionError) as caught:
+        load_tree(file)
+    assert (
+        caught.value.line == file.read_text().splitlines().index('<link name="$(arg side)"/>') + 1
+    )
+    write(file, '<!-- <xacro:arg name="old"/> --><xacro:arg name="side"/>')
+    with pytest.raises(BadDescriptionError, match=r'<xacro:arg name="side"> has no default'):
+        load_tree(file)
+
+
 @pytest.mark.parametrize("case", REFUSED)
 def test_refused_with_place_and_hint(file, case):
     text, message, hint = REFUSED[case]

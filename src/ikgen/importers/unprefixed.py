@@ -14,13 +14,12 @@ LEFT_OUT = "xacro no longer expands instructions without its prefix"
 
 _IN_JOINTS = frozenset({"if", "insert_block", "unless"})
 _IN_ROBOTS = frozenset({"include", "macro", "property", *_IN_JOINTS})
-_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _TAG = re.compile(rf"<({'|'.join(sorted(_IN_ROBOTS))})[\s/>]")
 
 
 def first_unprefixed(text: str) -> tuple[str, int] | None:
-    """The first instruction of a file's text that has no prefix, and where it stands."""
-    found = _TAG.search(_COMMENT.sub(lambda comment: " " * len(comment[0]), text))
+    """The first instruction of a file's text (without comments) that has no prefix, and where it stands."""
+    found = _TAG.search(text)
     return (found[1], found.start()) if found else None
 
 

@@ -48,7 +48,7 @@ def held_section(
     lead = (
         f"The arm has more joints than its task asks for. {' and '.join(_held_names(dh))} "
         f"{'are' if several else 'is'} held: solve takes {'their values' if several else 'its value'} "
-        "with the pose, and every value gives solutions of its own."
+        "with the pose, and each value has solutions of its own, or none."
     )
     why = f" ikgen chose so: {derivation.held.words}." if derivation.held is not None else ""
     sweep = _sweep(derivation, example, runner)

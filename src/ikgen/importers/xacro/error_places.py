@@ -12,14 +12,19 @@ from ikgen.importers.xml_document import LARGEST_FILE, line_at
 __all__ = ["line_of", "place_of", "text_of"]
 
 
+_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
+_IN_LINE = re.compile(r"[^\n]")
+
+
 def text_of(file: Path) -> str:
-    """The text of a file; empty where it cannot be read."""
+    """The text of a file, blanks for its comments; empty where it cannot be read."""
     try:
         if not file.is_file() or file.stat().st_size > LARGEST_FILE:
             return ""
-        return file.read_text(encoding="utf-8", errors="replace")
+        text = file.read_text(encoding="utf-8", errors="replace")
     except OSError:
         return ""
+    return _COMMENT.sub(lambda comment: _IN_LINE.sub(" ", comment[0]), text)
 
 
 def line_of(file: Path, pattern: str) -> int | None:
