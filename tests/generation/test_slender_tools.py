@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,53 +14,70 @@ from ikgen.emit.python.python_emitter import emit_module
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 
-_JOINTS = (
+_SLENDER = (
     ("0 0 0.1", "0 0 0"),
     ("0.03 0 0", "1.5707963267948966 0 0"),
     ("0.116 0 0", "0 0 0"),
     ("0.135 0 0", "0 0 0"),
     ("0 0 0", "1.5707963267948966 0 0"),
+    ("0.0079 0.000218121 -0.1592274", "0 0 0"),
 )
-_TIP = (
-    '<link name="tip"/><joint name="tool" type="fixed"><parent link="link5"/><child link="tip"/>'
-    '<origin xyz="0.0079 0.000218121 -0.1592274" rpy="0 0 0"/></joint>'
+_BENT = (
+    ("0 0 0.0975", "0 0 0"),
+    ("0 0 0", "1.5707963267948966 0 0"),
+    ("0.120520423580404 0 0", "0 0 0"),
+    ("0.162 0 0", "0 0 0"),
+    ("0 0 0", "1.5707963267948966 0 0"),
+    ("0 -0.0016 0.12063", "0 -1.5707963267948966 0"),
 )
-ARM = "\n".join(
-    [
-        '<robot name="slender"><link name="link0"/>',
-        *(
-            f'<link name="link{i}"/><joint name="joint{i}" type="revolute">'
-            f'<parent link="link{i - 1}"/><child link="link{i}"/><origin xyz="{xyz}" rpy="{rpy}"/>'
-            '<axis xyz="0 0 1"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint>'
-            for i, (xyz, rpy) in enumerate(_JOINTS, 1)
-        ),
-        _TIP,
-        "</robot>",
-    ]
-)
+
+
+def _robot(frames: tuple[tuple[str, str], ...]) -> str:
+    """An arm of revolute joints about z of the frames, the last of which is the tool's."""
+    parts = ['<robot name="slender"><link name="link0"/>']
+    for i, (xyz, rpy) in enumerate(frames, 1):
+        kind = "fixed" if i == len(frames) else "revolute"
+        parts += [
+            f'<link name="link{i}"/><joint name="joint{i}" type="{kind}">',
+            f'<parent link="link{i - 1}"/><child link="link{i}"/><origin xyz="{xyz}" rpy="{rpy}"/>',
+            '<axis xyz="0 0 1"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint>',
+        ]
+    return "\n".join([*parts, "</robot>"])
+
+
+def _solver(frames: tuple[tuple[str, str], ...], folder: Path) -> Any:
+    robot = folder / "slender.urdf"
+    robot.write_text(_robot(frames))
+    module = derive(Request(robot)).module
+    assert module.reads.name.startswith("position-direction")
+    return import_text(emit_module(module), folder)
 
 
 @pytest.mark.parametrize("decade", [4, 5, 6, 8, 10])
-def test_poses_beside_a_stretched_elbow_have_rows(decade: int, tmp_path: Path) -> None:
-    robot = tmp_path / "slender.urdf"
-    robot.write_text(ARM)
-    derivation = derive(Request(robot))
-    assert derivation.module.reads.name == "position-direction:x"
-    arm = import_text(emit_module(derivation.module), tmp_path)
+def test_poses_beside_a_stretched_elbow_have_all_digits(decade: int, tmp_path: Path) -> None:
+    arm = _solver(_SLENDER, tmp_path)
     q = np.random.default_rng(decade).uniform(-1.5, 1.5, (25, 5))
     q[:, 2] = 10.0**-decade
     for row, found in zip(q, arm.solve_batch(arm.forward(q), limits=False)[0], strict=True):
         gap = np.abs(np.remainder(found - row + np.pi, 2 * np.pi) - np.pi).max(axis=1)
-        assert (
-            np.nanmin(gap, initial=np.inf) < 5e-5
-        )  # by so much a row that is right to 1e-10 may be off
+        assert np.nanmin(gap, initial=np.inf) < 2e-6
+
+
+def test_poses_whose_continua_no_branch_comes_near_have_rows(tmp_path: Path) -> None:
+    arm = _solver(_BENT, tmp_path)
+    rng = np.random.default_rng(2)
+    q = rng.uniform(-3.0, 3.0, (40, 5))
+    q[:, 4] = -0.5 * np.pi + 10.0 ** rng.uniform(-9.0, -6.0, 40)
+    assert (arm.solve_batch(arm.forward(q), limits=False)[1] > 0).all()
 
 
 def test_its_rows_take_newton_steps_all_at_once(tmp_path: Path) -> None:
     """In the header; those of the same arm without the lever are right as they are."""
     robot = tmp_path / "slender.urdf"
-    for text, coarse in ((ARM, True), (ARM.replace("0.0079 0.000218121", "0 0"), False)):
-        robot.write_text(text)
+    straight = tuple((xyz.replace("0.0079 0.000218121", "0 0"), rpy) for xyz, rpy in _SLENDER)
+    assert straight != _SLENDER
+    for frames, coarse in ((_SLENDER, True), (straight, False)):
+        robot.write_text(_robot(frames))
         module = derive(Request(robot)).module
         assert module.refine == "some" and module.program.coarse == coarse
         assert f"kNewton = {str(coarse).lower()};" in emit_header(module)

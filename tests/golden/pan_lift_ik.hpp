@@ -1346,6 +1346,7 @@ template <class Arm> struct CarefulRows {
         add_lane(rows, lane, out);
       else if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
         starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, false, aim, out);
+    if (starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, options, starts, out);
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
       if (starts.at(k).near && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
@@ -1476,6 +1477,12 @@ template <class Arm> struct CarefulRows {
         Row::add(out, one.q, false);
     }
   };
+
+  static void take_all(const Aim& aim, const Rows& rows, const Options& options, Starts& starts, Places& out) noexcept {
+    const Ends ends(rows, aim, options, kSingular);
+    for (const int lane : Arm::kLaneOfRow)
+      if ((bits(rows, lane) & kSingular) != 0) starts.take({rows, lane, true}, ends, false, aim, out);
+  }
 };
 
 // --- limit rows ----------------------------------------------------------------------------------
@@ -1729,7 +1736,7 @@ template <class Arm> struct CarefulSolve {
       free = left.free && !(left.led && found.count > 0);
     }
     if (free && !Arm::kRounded && !Arm::kRefined) real = add_hidden(aim, options, found) || real;
-    if ((free && !real) || (continuum && found.count == 0)) real = add_nearest(aim, options, found) || real;
+    if ((free || continuum) && found.count == 0) real = add_nearest(aim, options, found) || real;
     if (options.seed) Row::sort_by_distance(found, options.seed->data());
     out.count = std::min(found.count, Arm::kMaxSolutions);
     std::copy_n(found.q.begin(), out.count, out.q.begin());

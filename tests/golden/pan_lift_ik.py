@@ -79,7 +79,7 @@ _MOTIONS: tuple[tuple[int, bool, float, float], ...] = (
 _SIZE = 1.0
 _FREE_DEFAULTS: Row = ()
 _BESIDE: Array = np.empty((0, 4, 4))
-_ROUGH = 1e-20  # squared error of a row above which it takes Newton steps
+_ROUGH = 1e-24  # squared error of a row above which it takes Newton steps
 
 
 def forward(q: ArrayLike) -> Array:
@@ -1082,6 +1082,13 @@ class _Leads(NamedTuple):
     known: _Flags
 
 
+def _both(one: _Leads, other: _Leads) -> _Leads:
+    """Those of two."""
+    owner = other.around.owner + len(one.starts.q)
+    out: _Leads = _joined(one, other._replace(around=other.around._replace(owner=owner)))
+    return out
+
+
 def _ends_of(arm: _Arm, q: Array, T: Array) -> _Ends:
     """Where steps from rows q (k, dof) towards aims T end."""
     q, error, _, slope = _refined(arm, q, T)
@@ -1362,9 +1369,8 @@ def _placed_rows(arm: _Arm, asked: _Asked, limits: bool) -> list[_Answer]:
         left = left[going[left]]
     if len(left):
         _take_hidden(arm, asked, left, limits, out)
-    unreal = [i for i in left.tolist() if not out[i].real]
-    lost = [i for i, answer in enumerate(out) if answer.continuum and not answer.rows]
-    for i in dict.fromkeys([*unreal, *lost]):
+    lost = set(left.tolist()) | {i for i, answer in enumerate(out) if answer.continuum}
+    for i in sorted(i for i in lost if not out[i].rows):
         _take_nearest(arm, asked.at(np.array([i])), limits, out[i])
     return out
 
@@ -1471,11 +1477,23 @@ def _rows(arm: _Arm, asked: _Asked, start: Array, first: bool) -> list[_Rows]:
     close = (starts.source >= 0) & (leads.ends.loss < arm.policy.beside_reach) & ~leads.known
     near = free.copy()
     near[starts.pose[close]] = True
+    if free.any():
+        hidden = closed.singular & ~known & _without_rows(arm, free, leads)[:, None]
+        hidden &= np.isfinite(closed.q).all(axis=2)
+        more = _of_lanes(arm, asked, closed, hidden, hidden)
+        leads = _both(leads, _leads_of(arm, more, known))
     kept = _meeting(arm, asked, leads)
     for i, k in np.argwhere(closed.valid & ~closed.rough).tolist():
         _add(arm, asked.T[i], [(tuple(closed.q[i, k].tolist()), bool(marked[i, k]))], kept[i])
     led: _Flags = np.asarray((marked | known).any(axis=1))
     return list(zip(kept, free.tolist(), led.tolist()))
+
+
+def _without_rows(arm: _Arm, free: _Flags, leads: _Leads) -> _Flags:
+    """Which poses leave a joint free and led nowhere."""
+    starts, poor = leads.starts, np.array(free, dtype=bool)
+    poor[starts.pose[(starts.source >= 0) | (leads.ends.error < arm.policy.arrived)]] = False
+    return poor
 
 
 def _of_lanes(arm: _Arm, asked: _Asked, closed: _ClosedForm, lanes: _Flags, marked: _Flags) -> _Starts:

@@ -34,6 +34,10 @@ Lost = Callable[[Expr], float]
 _MULTIPLIED = 4.0
 """Times the model error over a square root that what follows from it may be off."""
 
+_BESIDE = 100.0
+"""Times as far as at regular configurations that round-off may move what is under a square root, beside
+singularities of what it follows from: rows that are none show by what they leave of the pose."""
+
 
 def nothing_lost(value: Expr) -> float:
     """That of a value which is exact."""
@@ -79,9 +83,13 @@ class Tolerances:
         flag, norm = (min(max(1e-4, share * error), 1e-2) for share in (5.0, 50.0))
         return Tolerances(singular, flag, norm, clamp, fold, error=error, lost=lost)
 
+    def least(self, value: Expr, size: float) -> float:
+        """How far outside its domain `value`, of natural size `size`, may be under a square root."""
+        return max(self.clamp * size, min(_BESIDE * self.lost(value), self.wide * size))
+
     def guard(self, g: ExpressionGraph, value: Expr, size: float) -> Expr:
         """Condition that a square root of `value`, of natural size `size`, may be taken."""
-        least = g.const(-max(self.clamp * size, min(self.lost(value), self.wide * size)))
+        least = g.const(-self.least(value, size))
         if self.rough is not None:
             least = g.select(self.rough, g.const(-self.wide * size), least)
         real = g.binary("gt", value, least)

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial, reduce
+
+import numpy as np
+
 from ikgen.algebra.expression import Expr
 from ikgen.equations.probes import arm_size
+from ikgen.forms.lowered_form import ROUNDED
 from ikgen.lowering.placement import Placement
 from ikgen.program.statements import Comment
 
@@ -16,6 +21,14 @@ the closed form loses digits, which Newton steps win back."""
 _WIDER = 1000.0
 """As many times as large where an unknown may have lost digits: each step that follows from it may multiply
 what it is off, and which does is known of no single one. Newton steps tell."""
+
+_UNSEEN = 1e-12
+"""Round-off (rad, m) that rows may keep near folds too. Where it leaves more, it does so in most rows:
+those far from folds stay as they are."""
+
+_SHARE = 1e-4
+"""What a squared error counts away from folds then: it moves a row by no more than itself over the smallest
+singular value."""
 
 
 def require_closure(work: Placement) -> None:
@@ -51,7 +64,20 @@ def _bounded(work: Placement, parts: list[Expr], tolerance: float, where_lost: f
         if rough is not None and where_lost > tolerance:
             most = g.select(rough, g.const(where_lost**2), most)
         work.require(g.binary("gt", most, total))
-        work.residuals.append(total)
+        work.residuals.append(_counted(work, parts, total))
+
+
+def _counted(work: Placement, parts: list[Expr], total: Expr) -> Expr:
+    """Squared parts as they count where a row is to be refined: less away from folds, where round-off alone
+    leaves much."""
+    g = work.g
+    off = max(float(np.median(work.rounding.of(e))) for e in parts)
+    if off < _UNSEEN or work.model_error > ROUNDED or not work.close:
+        return total
+    close = reduce(partial(g.binary, "or"), work.close)
+    counted = g.mul(total, g.select(close, g.one, g.const(_SHARE)))
+    work.place(counted)
+    return counted
 
 
 def _residuals(work: Placement, k: int, m: int) -> tuple[list[Expr], list[Expr]]:

@@ -67,6 +67,7 @@ class Placement:
         self.loses_digits = bool(graph.probes.kept) or any(map(self._folds, graph.steps))
         self.residuals: list[Expr] = []
         self.norms: list[Expr] = []
+        self.close: list[Expr] = []
         self.folds: list[Expr] = []
         self.margins: list[Expr] = []
         self.double: Expr | None = None
@@ -93,8 +94,9 @@ class Placement:
 
     def note_fold(self, under: Expr, size: float) -> None:
         """A square root was taken of `under`: of few digits where that is small beside `size`."""
+        self.close.append(self.g.binary("gt", self.g.const(FOLDED * size), under))
         if self.loses_digits:
-            self.folds.append(self.g.binary("gt", self.g.const(FOLDED * size), under))
+            self.folds.append(self.close[-1])
         if self._tolerances.fold:
             self.margins.append(self.g.mul(self.g.const(1.0 / size), under))
 

@@ -61,7 +61,7 @@ class SolvePolicy:
 
     arrived: float = 0.5e-9
     exact: float = 1e-12
-    rough_square: float = 1e-20
+    rough_square: float = 1e-24
     pose_tolerance: float = 1e-6
     orthonormal: float = 1e-14
     coincident: float = 1e-6

@@ -94,9 +94,7 @@ template <class Arm> struct CarefulRows {
     if constexpr (Arm::kBesides > 0) {
       if (beside && (kBesideAnywhere || left.free || starts.close())) take_beside(aim, q0, options, starts, out);
     }
-    if constexpr (Arm::kRounded) {
-      if (starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, options, starts, out);
-    }
+    if (starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, options, starts, out);
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
       if (starts.at(k).near && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
@@ -273,7 +271,7 @@ template <class Arm> struct CarefulRows {
     }
   };
 
-  // Lanes that are not real where a divisor nearly vanishes: less than the file is off may be what is missing there.
+  // Lanes that are not real where a divisor nearly vanishes: less than the file, or round-off, is off may be missing.
   static void take_all(const Aim& aim, const Rows& rows, const Options& options, Starts& starts, Places& out) noexcept {
     const Ends ends(rows, aim, options, kSingular);
     for (const int lane : Arm::kLaneOfRow)

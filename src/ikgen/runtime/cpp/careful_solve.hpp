@@ -45,7 +45,7 @@ template <class Arm> struct CarefulSolve {
       free = left.free && !(left.led && found.count > 0);
     }
     if (free && !Arm::kRounded && !Arm::kRefined) real = add_hidden(aim, options, found) || real;
-    if ((free && !real) || (continuum && found.count == 0)) real = add_nearest(aim, options, found) || real;
+    if ((free || continuum) && found.count == 0) real = add_nearest(aim, options, found) || real;
     if (options.seed) Row::sort_by_distance(found, options.seed->data());
     out.count = std::min(found.count, Arm::kMaxSolutions);
     std::copy_n(found.q.begin(), out.count, out.q.begin());

@@ -87,9 +87,8 @@ def placed_rows(arm: Arm, asked: Asked, limits: bool) -> list[Answer]:
         left = left[going[left]]
     if not arm.rounded and len(left):
         _take_hidden(arm, asked, left, limits, out)
-    unreal = [i for i in left.tolist() if not out[i].real]
-    lost = [i for i, answer in enumerate(out) if answer.continuum and not answer.rows]
-    for i in dict.fromkeys([*unreal, *lost]):
+    lost = set(left.tolist()) | {i for i, answer in enumerate(out) if answer.continuum}
+    for i in sorted(i for i in lost if not out[i].rows):
         _take_nearest(arm, asked.at(np.array([i])), limits, out[i])
     return out
 
@@ -207,7 +206,7 @@ def _rows(arm: Arm, asked: Asked, start: Array, first: bool) -> list[_Rows]:
     if first and len(arm.beside) and not arm.policy.beside_anywhere and near.any():
         more = _beside(arm, asked, start, np.flatnonzero(near))
         leads = both(leads, leads_of(arm, more, known))
-    if arm.rounded and free.any():
+    if free.any():
         hidden = closed.singular & ~known & _without_rows(arm, free, leads)[:, None]
         hidden &= np.isfinite(closed.q).all(axis=2)
         more = _of_lanes(arm, asked, closed, hidden, hidden)
