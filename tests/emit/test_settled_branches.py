@@ -7,6 +7,7 @@ import pkgutil
 from functools import reduce
 from importlib.resources import files
 from pathlib import Path
+from textwrap import indent
 
 import pytest
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
@@ -71,9 +72,15 @@ EXACT: Facts = (("rounded", False), ("around", None), ("angle", None), ("beside"
     ],
 )  # fmt: skip
 def test_what_is_left_of_conditions(text: str, rounded: str | None, exact: str | None) -> None:
-    assert settled(text, ROUNDED) == (text if rounded is None else rounded)
-    assert settled(text, EXACT) == (text if exact is None else exact)
-    assert settled(text, ()) == text
+    assert settled(defined(text), ROUNDED) == defined(text if rounded is None else rounded)
+    assert settled(defined(text), EXACT) == defined(text if exact is None else exact)
+    assert settled(defined(text), ()) == defined(text)
+
+
+def defined(text: str) -> str:
+    """A module with a function, or a class, of a text."""
+    inside = text if text.startswith("class") else "def routine():\n" + indent(text, "    ")
+    return f"import ast\n\n# above\n{inside}\n\n\ndef last():\n    pass\n"
 
 
 @pytest.mark.parametrize("name", MODULES)

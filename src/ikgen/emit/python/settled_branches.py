@@ -31,11 +31,28 @@ _Patch = tuple[
 
 
 def settled(text: str, facts: Facts) -> str:
-    """A module's text without what conditions on attributes of `arm`, or of a member `arm`, leave out, and
-    without statements behind the end of a block; `Arm` itself with the types that the attributes have."""
+    """A module's text without what conditions on attributes of `arm`, or of a member `arm`, leave out of
+    its definitions, and without statements behind the end of a block there; `Arm` itself with the types
+    that the attributes have."""
     known = dict(facts)
-    if not any(f"arm.{name}" in text for name in known) and "class Arm:" not in text:
+    if not _says(text, known):
         return text
+    lines = text.split("\n")
+    for node in reversed(ast.parse(text).body):
+        span = slice(node.lineno - 1, node.end_lineno)
+        part = "\n".join(lines[span])
+        if _says(part, known):
+            lines[span] = _settled(part, known).split("\n")
+    return "\n".join(lines)
+
+
+def _says(text: str, known: _Known) -> bool:
+    """Whether anything of a text hangs on what is known."""
+    return "class Arm:" in text or any(f"arm.{name}" in text for name in known)
+
+
+def _settled(text: str, known: _Known) -> str:
+    """One definition's text, as often changed as there is more to leave out."""
     while True:
         lines = [line.encode() for line in text.split("\n")]
         patches = sorted(_patches(ast.parse(text), lines, known), key=lambda one: one[:2])
