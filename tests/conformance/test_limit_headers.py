@@ -39,6 +39,18 @@ WRIST = "\n".join(
 )
 """Right angles in nine digits, and a wrist whose axes meet to as many."""
 
+LEG = """<robot name="leg"><link name="base"/><link name="hip"/><link name="thigh"/><link name="toe"/>
+<joint name="1" type="revolute"><parent link="base"/><child link="hip"/>
+  <axis xyz="0 0 1"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
+<joint name="2" type="revolute"><parent link="hip"/><child link="thigh"/><origin xyz="0.05 0.014 0"/>
+  <axis xyz="0 1 0"/><limit lower="0" upper="1.57" effort="1" velocity="1"/></joint>
+<joint name="3" type="revolute"><parent link="thigh"/><child link="toe"/><origin xyz="0 0.04 -0.16"/>
+  <axis xyz="0 1 0"/><limit lower="-2.7" upper="0" effort="1" velocity="1"/></joint>
+<link name="end"/>
+<joint name="foot" type="fixed"><parent link="toe"/><child link="end"/><origin xyz="0 0 -0.17"/></joint>
+</robot>"""
+"""One of its knee's limits is where it is straight."""
+
 pytestmark = [
     pytest.mark.usefixtures("solved_once"),
     pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or ""),
@@ -63,6 +75,20 @@ def test_configurations_on_a_limit_of_an_arm_that_is_off_by_little_are_found(
     derivation = derive(Request(robot))
     assert 1e-11 < max(derivation.module.dh.deviation) < CLOSE
     found_on_limit(derivation, side, (1.0, 3.0), 1e-6, tmp_path)
+
+
+def test_configurations_on_the_limits_of_two_joints_where_rows_meet_are_found(
+    tmp_path: Path,
+) -> None:
+    robot = tmp_path / "leg.urdf"
+    robot.write_text(LEG)
+    derivation = derive(Request(robot))
+    at = np.random.default_rng(3).uniform(-3.0, 3.0, (400, 3))
+    at[:, 1:] = 1.57, 0.0
+    arm = arm_of(derivation)
+    rows = runner_of(derivation, "cpp", tmp_path).solve_many(arm.oracle.forward(at), limits=True)
+    gap = np.where(rows.mask, arm.distance(rows.q, at[:, None]), np.inf).min(axis=1)
+    assert (gap < 1e-6).all()
 
 
 def found_on_limit(

@@ -1886,6 +1886,13 @@ template <class Arm> struct LaneSolve {
     }
   }
 
+  template <int P> static bool leaves_out_meeting(const Rows<P>& rows, int p) noexcept {
+    bool some = false;
+    for (const int row : Arm::kLaneOfRow)
+      some = some || (static_cast<int>(rows.flags[row * P + p]) & (kFound | kMeeting)) == kMeeting;
+    return some;
+  }
+
   template <int P> static bool collect(const Rows<P>& rows, int p, const Options& options, Solutions& out) noexcept {
     int count = 0, seen = 0;
     for (const int row : Arm::kLaneOfRow) {
@@ -1898,6 +1905,7 @@ template <class Arm> struct LaneSolve {
       seen |= bits;
     }
     if ((seen & (kRough | kHit)) != 0 || (CarefulRows<Arm>::kBesideAnywhere && (seen & kReal) == 0)) return false;
+    if ((seen & kMeeting) != 0 && leaves_out_meeting(rows, p)) return false;
     out.count = count;
     if (Arm::kNewton || (seen & kMeeting) != 0) {
       leave_distinct(out);

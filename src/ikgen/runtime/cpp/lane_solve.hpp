@@ -55,6 +55,14 @@ template <class Arm> struct LaneSolve {
     }
   }
 
+  // Whether limits leave out a row of pose p that meets another: rounding moves it farther than what is put back.
+  template <int P> static bool leaves_out_meeting(const Rows<P>& rows, int p) noexcept {
+    bool some = false;
+    for (const int row : Arm::kLaneOfRow)
+      some = some || (static_cast<int>(rows.flags[row * P + p]) & (kFound | kMeeting)) == kMeeting;
+    return some;
+  }
+
   // Copies the found rows of pose p. Whether that is all there is to it: every row is a regular one.
   template <int P> static bool collect(const Rows<P>& rows, int p, const Options& options, Solutions& out) noexcept {
     int count = 0, seen = 0;
@@ -68,6 +76,7 @@ template <class Arm> struct LaneSolve {
       seen |= bits;
     }
     if ((seen & (kRough | kHit)) != 0 || (CarefulRows<Arm>::kBesideAnywhere && (seen & kReal) == 0)) return false;
+    if ((seen & kMeeting) != 0 && leaves_out_meeting(rows, p)) return false;
     out.count = count;
     if (Arm::kNewton || (seen & kMeeting) != 0) {
       leave_distinct(out);
