@@ -111,7 +111,7 @@ def test_other_values_are_tried_till_a_row_of_the_continuum_is_there(rounded: bo
             assert goes_on(rows, True, led) is not (len(rows) > 0 and enough)
 
 
-def test_of_a_rounded_arm_rows_behind_a_free_joint_are_refined_though_they_miss() -> None:
+def test_rows_behind_a_free_joint_are_refined_though_they_miss() -> None:
     def together(arm: Arm, q: Array, T: Array) -> Any:
         none = np.zeros(len(q), dtype=bool)
         return q, none, ~none
@@ -123,8 +123,7 @@ def test_of_a_rounded_arm_rows_behind_a_free_joint_are_refined_though_they_miss(
         kept = unplaced_rows(arm, pose, NONE)[0]
         for row, _ in kept:
             np.testing.assert_allclose(forward(arm.chain, row), pose[0], atol=1e-9)
-        found = [np.abs(np.array(row) - ROW).max() < 1e-6 for row, _ in kept]
-        assert any(found) == rounded
+        assert any(np.abs(np.array(row) - ROW).max() < 1e-6 for row, _ in kept)
 
 
 def test_poses_beside_are_left_alone_where_rows_are_regular() -> None:
