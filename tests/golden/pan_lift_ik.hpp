@@ -1329,10 +1329,10 @@ template <class Arm> struct CarefulRows {
   }
 
   [[gnu::always_inline]] static Left find_rows(const Aim& aim, const double* q0, const Options& options,
-                                               [[maybe_unused]] bool beside, Places& out) noexcept {
+                                               [[maybe_unused]] int turn, Places& out) noexcept {
     Rows rows;
-    find_lanes(aim.pose, q0, options, rows);
-    Left left;
+    Left left{turns_away(turn), false};
+    find_lanes(start_of(aim.pose, turn), q0, options, rows);
     for (const int lane : Arm::kLaneOfRow) {
       left.free = left.free || (bits(rows, lane) & kHit) != 0;
       left.led = left.led || (bits(rows, lane) & (kSingular | kReal)) == (kSingular | kReal);
@@ -1362,6 +1362,10 @@ template <class Arm> struct CarefulRows {
     Row::add(out, q, false);
   }
 
+  static constexpr bool turns_away(int turn) noexcept { return turn > 0 && turn <= Arm::kBesides; }
+  static Eigen::Isometry3d start_of(const Eigen::Isometry3d& pose, int turn) noexcept {
+    return pose;
+  }
   static int bits(const Rows& rows, int lane) noexcept { return static_cast<int>(rows.flags[lane]); }
 
   struct Ends {
@@ -1720,7 +1724,7 @@ template <class Arm> struct CarefulSolve {
     for (int turn = 0; turn < Policy::kTries && free; ++turn) {
       double start[Arm::kDof];
       take_start(options, turn, start);
-      auto left = Careful::find_rows(aim, start, options, turn == 0, found);
+      auto left = Careful::find_rows(aim, start, options, turn, found);
       if (options.seed && !left.free && Careful::any_singular(found)) {
         found.count = std::min(found.count, static_cast<int>(Places::kRoom) - 1);  // of a continuum there may be any number
         Careful::add_from(aim, start, found);

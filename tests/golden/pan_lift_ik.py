@@ -1359,8 +1359,9 @@ def _placed_rows(arm: _Arm, asked: _Asked, limits: bool) -> list[_Answer]:
             break
         which = np.repeat(left, len(tries))
         some = asked.at(which)
-        start = some.starts(arm, np.tile(tries, len(left)) * arm.policy.try_step)
-        rows = _rows(arm, some, start, len(tries) == 1)
+        turn = np.tile(tries, len(left))
+        start = some.starts(arm, turn * arm.policy.try_step)
+        rows = _rows(arm, some, start, turn)
         seeded = _seeded(arm, some, start, rows, limits) if asked.near is not None else {}
         going = np.ones(len(out), dtype=bool)
         for k, i in enumerate(which.tolist()):
@@ -1465,11 +1466,12 @@ def _led_to(arm: _Arm, asked: _Asked, start: Array) -> list[list[_Found]]:
     return _meeting(arm, asked, _leads_of(arm, starts, np.zeros((len(start), 1), dtype=bool)))
 
 
-def _rows(arm: _Arm, asked: _Asked, start: Array, first: bool) -> list[_Rows]:
-    """For each pose the solutions (radians between -pi and pi), of a rounded arm and its `first` start with
-    those that poses beside lead to, where they count."""
-    closed = _closed_form(arm, asked.T, start, asked.held)
-    free, marked = closed.free, closed.singular & closed.valid
+def _rows(arm: _Arm, asked: _Asked, start: Array, turn: _Index) -> list[_Rows]:
+    """For each pose the solutions (radians between -pi and pi) from its start after some turns (n,)."""
+    first, away, T = not turn.any(), (turn > 0) & (turn <= len(arm.beside)), asked.T.copy()
+    T[away] = T[away] @ arm.beside[turn[away] - 1]
+    closed = _closed_form(arm, T, start, asked.held)
+    free, marked = closed.free | away, closed.singular & closed.valid
     known = np.zeros(closed.valid.shape, dtype=bool)
     own = _of_lanes(arm, asked, closed, closed.valid & closed.rough, marked)
     starts = _joined(_given(arm, asked, start, np.flatnonzero(free)), own)

@@ -90,6 +90,25 @@ def test_where_a_free_joint_leads_nowhere_other_values_are_tried() -> None:
     assert np.allclose(asked[1], step * np.arange(1, tries))
 
 
+def test_a_divisor_that_nearly_vanishes_is_given_other_directions() -> None:
+    """By poses beside, which leave the joint free too; further values are the pose's own."""
+    motion, asked = translation(1e-3, 0.0, 0.0), []
+    far = translation(0.0, 0.0, 50.0)[None]
+
+    def branches(T: Array, near: Array, held: Array) -> Any:
+        asked.append(T)
+        at = (np.abs(T - far).max(axis=(1, 2)) < 1e-9)[:, None]
+        q, *_ = given_rows(OTHER[None])(T, near, held)
+        return q, np.zeros_like(at), at, ~at
+
+    arm = given_arm(branches, beside=motion[None])
+    (answer,) = placed_rows(arm, Asked(far, None, NONE), True)
+    assert not answer.rows
+    later = next(T for T in asked if len(T) == arm.policy.tries - 1)
+    np.testing.assert_allclose(later[:1], far @ motion)
+    np.testing.assert_allclose(later[1:], np.repeat(far, len(later) - 1, axis=0))
+
+
 @pytest.mark.parametrize("rounded", [False, True])
 def test_other_values_are_tried_till_a_row_of_the_continuum_is_there(rounded: bool) -> None:
     """Of a rounded arm, till the closed form led to one."""

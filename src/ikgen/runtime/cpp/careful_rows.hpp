@@ -70,10 +70,10 @@ template <class Arm> struct CarefulRows {
 
   // Adds the distinct solutions of a pose, refined where the closed form lost digits.
   [[gnu::always_inline]] static Left find_rows(const Aim& aim, const double* q0, const Options& options,
-                                               [[maybe_unused]] bool beside, Places& out) noexcept {
+                                               [[maybe_unused]] int turn, Places& out) noexcept {
     Rows rows;
-    find_lanes(aim.pose, q0, options, rows);
-    Left left;
+    Left left{turns_away(turn), false};
+    find_lanes(start_of(aim.pose, turn), q0, options, rows);
     for (const int lane : Arm::kLaneOfRow) {
       left.free = left.free || (bits(rows, lane) & kHit) != 0;
       left.led = left.led || (bits(rows, lane) & (kSingular | kReal)) == (kSingular | kReal);
@@ -88,12 +88,10 @@ template <class Arm> struct CarefulRows {
         add_lane(rows, lane, out);
       else if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
         starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, false, aim, out);
-    if constexpr (Arm::kRounded) {
-      if (beside) starts.trace_broken(aim, out);
-    }
-    if constexpr (Arm::kBesides > 0) {
-      if (beside && (kBesideAnywhere || left.free || starts.close())) take_beside(aim, q0, options, starts, out);
-    }
+    if constexpr (Arm::kRounded)
+      if (turn == 0) starts.trace_broken(aim, out);
+    if constexpr (Arm::kBesides > 0)
+      if (turn == 0 && (kBesideAnywhere || left.free || starts.close())) take_beside(aim, q0, options, starts, out);
     if (starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, options, starts, out);
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
@@ -112,6 +110,13 @@ template <class Arm> struct CarefulRows {
     Row::add(out, q, false);
   }
 
+  // A divisor that nearly vanishes has a direction of little to do with the file's arm: poses beside have others.
+  static constexpr bool turns_away(int turn) noexcept { return turn > 0 && turn <= Arm::kBesides; }
+  static Eigen::Isometry3d start_of(const Eigen::Isometry3d& pose, int turn) noexcept {
+    if constexpr (Arm::kBesides > 0)
+      if (turns_away(turn)) return displaced(pose, Arm::kBeside[turn - 1]);
+    return pose;
+  }
   static int bits(const Rows& rows, int lane) noexcept { return static_cast<int>(rows.flags[lane]); }
 
   // Where steps towards the aim lead from lanes of another geometry that have a flag, all at once, and the error that is

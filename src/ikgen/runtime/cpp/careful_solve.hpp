@@ -29,7 +29,7 @@ template <class Arm> struct CarefulSolve {
     for (int turn = 0; turn < Policy::kTries && free; ++turn) {
       double start[Arm::kDof];
       take_start(options, turn, start);
-      auto left = Careful::find_rows(aim, start, options, turn == 0, found);
+      auto left = Careful::find_rows(aim, start, options, turn, found);
       if (options.seed && !left.free && Careful::any_singular(found)) {
         found.count = std::min(found.count, static_cast<int>(Places::kRoom) - 1);  // of a continuum there may be any number
         Careful::add_from(aim, start, found);

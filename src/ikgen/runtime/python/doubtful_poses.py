@@ -77,8 +77,9 @@ def placed_rows(arm: Arm, asked: Asked, limits: bool) -> list[Answer]:
             break
         which = np.repeat(left, len(tries))
         some = asked.at(which)
-        start = some.starts(arm, np.tile(tries, len(left)) * arm.policy.try_step)
-        rows = _rows(arm, some, start, len(tries) == 1)
+        turn = np.tile(tries, len(left))
+        start = some.starts(arm, turn * arm.policy.try_step)
+        rows = _rows(arm, some, start, turn)
         seeded = _seeded(arm, some, start, rows, limits) if asked.near is not None else {}
         going = np.ones(len(out), dtype=bool)
         for k, i in enumerate(which.tolist()):
@@ -186,14 +187,19 @@ def _led_to(arm: Arm, asked: Asked, start: Array) -> list[list[Found]]:
 def unplaced_rows(arm: Arm, T: Array, held: Array) -> list[list[Found]]:
     """Distinct solutions of poses T (n, 4, 4), on no turns in particular."""
     asked = Asked(T, None, held)
-    return [kept for kept, _, _ in _rows(arm, asked, asked.starts(arm), True)]
+    return [
+        kept for kept, _, _ in _rows(arm, asked, asked.starts(arm), np.zeros(len(T), dtype=int))
+    ]
 
 
-def _rows(arm: Arm, asked: Asked, start: Array, first: bool) -> list[_Rows]:
-    """For each pose the solutions (radians between -pi and pi), of a rounded arm and its `first` start with
-    those that poses beside lead to, where they count."""
-    closed = closed_form(arm, asked.T, start, asked.held)
-    free, marked = closed.free, closed.singular & closed.valid
+def _rows(arm: Arm, asked: Asked, start: Array, turn: Index) -> list[_Rows]:
+    """For each pose the solutions (radians between -pi and pi) from its start after some turns (n,): of a
+    rounded arm those that poses beside lead to, with those of the pose at the first, where they count, and
+    alone at some others, as the direction that a vanishing divisor has says little of the file's."""
+    first, away, T = not turn.any(), (turn > 0) & (turn <= len(arm.beside)), asked.T.copy()
+    T[away] = T[away] @ arm.beside[turn[away] - 1]
+    closed = closed_form(arm, T, start, asked.held)
+    free, marked = closed.free | away, closed.singular & closed.valid
     known = np.zeros(closed.valid.shape, dtype=bool)
     own = _of_lanes(arm, asked, closed, closed.valid & closed.rough, marked)
     starts = joined(_given(arm, asked, start, np.flatnonzero(free)), own)
