@@ -1015,6 +1015,7 @@ template <class Arm> struct NearContinuum {
  private:
   static constexpr int kMost = 96, kCorrections = 6, kSteps = 40, kDeep = 24, kLeast = 4;
   static constexpr double kNear = 1e-11;  // rad or m: how far off the curve slopes along it are the curve's
+  static constexpr double kShare = 1e-3;  // of what is left: as little as that off the curve changes neither
   static constexpr double kRoundOff = 1e-15, kSmall = 4e-15, kDoubt = 0.03, kBeside = 0.06, kSameWay = 0.9;
 
   struct Sample {
@@ -1029,7 +1030,7 @@ template <class Arm> struct NearContinuum {
     Sample s;
     std::copy_n(q, Arm::kDof, s.q);
     for (int i = 0; i < kCorrections; ++i)
-      if (fold.correct(s.q, s.left, s.slope) < kNear) break;
+      if (fold.correct(s.q, s.left, s.slope) < std::max(kNear, kShare * std::abs(s.left))) break;
     std::copy_n(fold.still, Fold::kMoving, s.still);
     std::copy_n(fold.out, Fold::kEquations, s.out);
     --samples;
