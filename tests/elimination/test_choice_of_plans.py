@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tests.elimination.test_elimination import arm_frames, configurations, dh_frames, missing
+from numpy.typing import NDArray
+from tests.elimination.test_elimination import arm_frames, configurations, missing
 
 from ikgen.elimination.loop_frames import forward, hold_joint, typical_length
 from ikgen.elimination.plan import _separate, choose_plan, digits_lost, ranking
 from ikgen.elimination.resultant import root_shifts
 from ikgen.elimination.routine import Plan, finder, initial_residuals
+from ikgen.runtime.python.general_6r import candidates
+
+Array = NDArray[np.float64]
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -57,21 +61,35 @@ def test_how_far_roots_move_is_the_same_whatever_the_last_bits() -> None:
     assert np.ptp(found) < 0.03 * np.mean(found)
 
 
+def _link(quarters: int, x: float, y: float, z: float) -> Array:
+    """A displacement (m), and as many right angles about x."""
+    frame = np.eye(4)
+    c, s = ((1, 0), (0, 1), (-1, 0), (0, -1))[quarters % 4]
+    frame[1:3, 1:3] = [[c, -s], [s, c]]
+    frame[:3, 3] = x, y, z
+    return frame
+
+
+def seven_axes() -> Array:
+    """Frames (8, 4, 4) of an arm with its second and fourth axes parallel where the third joint is at 0."""
+    shoulder = _link(0, 0.0, 0.0, 0.3), _link(-1, 0.04, 0.02, 0.18), _link(1, 0.02, -0.17, -0.04)
+    elbow = _link(1, 0.02, -0.04, 0.16), _link(-1, -0.02, 0.17, -0.04)
+    wrist = _link(-1, 0.0, -0.04, 0.165), _link(1, 0.07, -0.05, -0.04), _link(0, 0.0, 0.0, 0.02)
+    return np.array([*shoulder, *elbow, *wrist])
+
+
 def test_a_held_joint_that_makes_axes_parallel_leaves_the_first_elimination_its_rank() -> None:
     """Held at 0 or pi the third joint puts its neighbours' axes in parallel: some eliminations, one of them
-    the best elsewhere, find half of the solutions there, by chance."""
-    h = 0.5 * np.pi
-    lengths = [0.0, 0.04, 0.02, 0.02, 0.02, 0.05], [0.3, 0.18, -0.04, 0.16, -0.04, 0.0]
-    frames = dh_frames([0.0, -h, h, h, -h, -h], *lengths)
-    tip = dh_frames([0.0] * 5 + [h], [0.0] * 5 + [0.07], [0.0] * 4 + [0.165, 0.02])
-    frames = np.concatenate([frames[:6], tip[5:]])
-    frames[2:5, 1, 3] = -0.17, -0.04, 0.17
+    the best elsewhere, are singular at every angle there, find half of the rows by chance, and say so."""
+    frames = seven_axes()
     special = [hold_joint(frames, 2, value) for value in (0.0, np.pi)]
     family = np.array([hold_joint(frames, 2, value) for value in (0.4, -1.1, 2.2)])
-    plan = choose_plan(family, special=special, probes=12)
+    plan, elsewhere = choose_plan(family, special=special), (1, 0, 0)
     for held in special:
         q = configurations(held, 20)
         poses = np.array([forward(held, row) for row in q])
         alone = Plan(plan.length, plan.eliminations[:1], plan.turning, finder(plan.turning))
         assert missing(initial_residuals(held, alone, poses)[0], q) == 0
-    assert choose_plan(family, probes=12).eliminations[0] != plan.eliminations[0]
+        said = [candidates(held[:, None], poses, e, plan.turning)[2] for e in plan.eliminations]
+        assert np.min(said) >= 0
+        assert (candidates(held[:, None], poses, elsewhere, plan.turning)[2] == -1).all()

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from tests.elimination.test_choice_of_plans import seven_axes
 from tests.elimination.test_elimination import apart, arm_frames, configurations, missing
 from tests.support.routines import compiled_header, feed
 
-from ikgen.elimination import EliminationPlan, choose_plan, hold_joint
+from ikgen.elimination import EliminationPlan, choose_plan, general_6r_batch, hold_joint
 from ikgen.elimination.loop_frames import forward
 from ikgen.elimination.resultant import RESULTANTS, root_shifts
 
@@ -169,6 +171,17 @@ def test_every_solution_is_right_and_none_is_missing(solver: Path, name: str) ->
             assert apart(others[:, :6], row[:6]).min() < 1e-6
         assert np.abs(rows[:, 6:12] - np.cos(rows[:, :6])).max() < 1e-15 * 4
         assert np.abs(rows[:, 12:] - np.sin(rows[:, :6])).max() < 1e-15 * 4
+
+
+def test_an_elimination_without_rank_is_followed_by_the_next(solver: Path) -> None:
+    frames = hold_joint(seven_axes(), 2, 0.0)
+    plan = replace(choose_plan(frames, probes=6), eliminations=((1, 0, 0), (4, 0, 0)))
+    q = configurations(frames, 60)
+    poses = np.array([forward(frames, row) for row in q])
+    found = solutions(solver, plan, frames, poses, method=1)
+    assert missing([rows[:, :6] for rows in found], q) == 0
+    reference = general_6r_batch(frames, plan.length, ((4, 0, 0), (0, 1, 0)), poses)
+    assert [len(rows) for rows in found] == [len(rows) for rows in reference]
 
 
 def test_unreachable_poses_and_nonsense_have_no_solution(solver: Path) -> None:

@@ -81,6 +81,16 @@ def test_what_a_later_elimination_says_there_is_counts(monkeypatch: pytest.Monke
     np.testing.assert_allclose(q, ROWS, atol=1e-12)
 
 
+def test_an_elimination_without_rank_confirms_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    lost, beside = ([0, 1], -1, True), ([0, 1], 2, False)
+    q, calls = run(monkeypatch, [lost, beside, ([0, 1, 2, 3], 4, False), ([0, 1, 2, 3], 4, False)])
+    assert calls == 4
+    np.testing.assert_allclose(q, ROWS, atol=1e-12)
+    nothing: tuple[list[int], int, bool] = ([], -1, True)
+    assert run(monkeypatch, [nothing, ([], 0, True), ([0, 1], 2, True), ([0, 1], 2, True)])[1] == 4
+    assert run(monkeypatch, [([], 0, True), ([], 0, True)])[1] == 2
+
+
 def test_what_a_direct_way_says_there_is_does_not(monkeypatch: pytest.MonkeyPatch) -> None:
     told = [([0, 1], 4, False), ([0, 1], 2, False)]
     q, calls = run(monkeypatch, told, direct=1)

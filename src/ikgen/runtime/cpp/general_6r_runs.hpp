@@ -53,13 +53,13 @@ inline Frame displacement() noexcept {
 // Adds all solutions of a pose to those that are known: Run(F, T, aim, turning, plan, found) gives those of a plan,
 // with the roots of the pose `aim` beside. One run of the first plan is enough where its roots are real, as many as solutions, and each a solution to many
 // digits. Otherwise more runs follow, with the pose displaced to either side and by the next elimination, until one
-// finds all that is known and no more.
+// finds all that is known and no more, and one of the pose itself tells.
 template <auto Run, class Frames, std::size_t N>
 inline void solve_in_runs(const Frames& F, const Frame& T, const Turning& turning,
                           const std::array<std::array<int, 3>, N>& plans, Solutions& out) noexcept {
   const Frame there = displacement(), back = inverse(there);
   const int given = out.count;
-  int least = 0, number = 0;
+  int least = -1, number = 0;
   for (const std::array<int, 3>& plan : plans)
     for (const Frame* shift : {static_cast<const Frame*>(nullptr), &there, &back}) {
       Solutions mine;
@@ -70,7 +70,7 @@ inline void solve_in_runs(const Frames& F, const Frame& T, const Turning& turnin
       for (int k = 0; k < mine.count; ++k) keep(mine.rows[static_cast<Index>(k)], out);
       const bool alone = number == 0 && given <= mine.count && roots.simple && out.count == roots.real && out.count > 0;
       const bool repeated = number > 0 && mine.count == known && out.count == known;
-      if (out.count % 2 == 0 && out.count >= least && (alone || repeated)) return;
+      if (out.count % 2 == 0 && least >= 0 && out.count >= least && (alone || repeated)) return;
       ++number;
     }
 }

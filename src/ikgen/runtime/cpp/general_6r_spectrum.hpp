@@ -94,9 +94,11 @@ inline void add_product(double factor, const Mat<AR, AC>& A, Index ra, Index ca,
     }
 }
 
+inline constexpr double kNoRank = 1e10;  // of the eigenproblem's entries: half of a root's digits are rounding
+
 struct Spectrum {
   int count = 0;  // roots theta_3 with imaginary parts below `accept`
-  int real = 0;   // those that are clearly real; 16 where the eigenvalues failed
+  int real = 0;   // those that are clearly real; -1 where the elimination does not tell
   bool simple = false;  // all of them are
   std::array<double, 16> theta;
 };
@@ -133,10 +135,12 @@ inline void add_angles(const std::array<Complex, N>& t, double node, double acce
 }
 
 // With M(theta) = M0 + N Rot(theta) W, Rot = c + s J on R^16, about a node where M_pi = M0 - N W is far from
-// singular: tan(theta/2) are the eigenvalues of -J (1 + 2 W M_pi^-1 N).
+// singular: tan(theta/2) are the eigenvalues of -J (1 + 2 W M_pi^-1 N). Where M is singular at every angle these are
+// large, and their eigenvalues mean nothing.
 inline Spectrum find_roots(const Mat<6, 16>& E, const Mat<14, 12>& left, const Resultant& M, double accept) noexcept {
   Node node;
   Spectrum out;
+  out.real = -1;
   best_node(M, node);
   if (!(node.determinant > 0.0)) return out;
   Mat<12, 16> N{};
@@ -161,11 +165,13 @@ inline Spectrum find_roots(const Mat<6, 16>& E, const Mat<14, 12>& left, const R
       A(8 + i, j) = -top(i, j);
     }
   }
+  double largest = 0.0;
+  for (const double entry : A.v) largest = std::max(largest, std::abs(entry));
   std::array<Complex, 16> t;
-  out.real = 16;
   if (!eigenvalues(A, t)) return out;
   out.real = 0;
   add_angles(t, node.angle, accept, out);
+  if (!(largest < kNoRank)) out.real = -1;
   return out;
 }
 

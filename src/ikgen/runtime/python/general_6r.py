@@ -72,7 +72,8 @@ class Plan:
 
 def candidates(F: Sequence[Array], T: Array, plan: Elimination, _: Turning) -> Candidates:
     """Approximate solutions for the poses T (N, 4, 4) by one plan: pose index (k,), joint angles
-    (k, 6); how many solutions each pose has at least, and whether those are all (N,)."""
+    (k, 6); how many solutions each pose has at least, -1 where the plan does not tell, and whether those
+    are all (N,)."""
     start, reverse, swap = plan
     order, C = loop_constants(F, T, start, reverse)
     E, left, right = loop_equations(C)
@@ -133,16 +134,16 @@ def six_joint_rows(six: SixJoints, plan: Plan, T: Array, policy: Policy) -> tupl
     One run of the first is enough where each of its roots is clearly real, or clearly not, and there are
     as many solutions as real roots, each found to many digits. Otherwise more runs follow, with the pose
     displaced to both sides (where right angles make roots coincide they come apart, and Newton's method
-    takes them back) and by the next elimination, until they find all that is known and no more. What a
-    direct way leaves open, these runs confirm or complete. Returns pose indices (k,) in order and joint
-    values (k, 6), angles in (-pi, pi], sorted.
+    takes them back) and by the next elimination, until they find all that is known and no more, and one of
+    the pose itself has kept its rank. What a direct way leaves open, these runs confirm or complete.
+    Returns pose indices (k,) in order and joint values (k, 6), angles in (-pi, pi], sorted.
     """
     T = T.copy()
     T[:, :3, 3] /= plan.length
     found, of = np.zeros((0, 6)), np.zeros(0, dtype=np.intp)
     inside = np.abs(T[:, :3]).max(axis=(1, 2), initial=0.0) < 1e6  # false for NaN
     todo = np.nonzero(inside)[0]
-    least, size = np.zeros(len(T), dtype=int), len(T)
+    least, size = np.full(len(T), -1), len(T)
     for number, ((find, one, near), moves) in enumerate(_runs(plan)):
         if not len(todo):
             break
@@ -167,7 +168,7 @@ def six_joint_rows(six: SixJoints, plan: Plan, T: Array, policy: Policy) -> tupl
             found, of = np.concatenate([found, q]), np.concatenate([of, pose])
             found, of, _ = distinct_rows(found, of, plan.turning, policy.coincident)
             count = np.bincount(of, minlength=size)[todo]
-            settled = (mine == known) & (known == count)
+            settled = (mine == known) & (known == count) & (least[todo] >= 0)
         todo = todo[~(settled & (count % 2 == 0) & (count >= least[todo]))]
     unit = np.where(plan.turning, 1.0, plan.length)
     return of, sorted_rows(found, of, plan.turning) * unit

@@ -27,6 +27,7 @@ Resultant = tuple[Array, Array, Array]
 _NODES = 2.0 * np.pi / 7.0 * np.arange(7)
 _REAL = 1e-8  # imaginary part of a root that is real
 DOUBTFUL = 1e-3  # below it, of one that may be half of a double root
+_NO_RANK = 1e10  # of the eigenproblem's entries: half of a root's digits are rounding
 _FOURFOLD = 0.03  # the same of a fourfold root
 _CROWD = 8.0  # times the imaginary part: how far off the other pair is at most
 _JITTER = np.cos(np.outer(np.arange(1, 13), np.arange(1, 13)))
@@ -53,8 +54,8 @@ def hidden_angles(
     E: Array, left: Array, M: Resultant, accept: float
 ) -> tuple[Index, Array, Index, Flags]:
     """The roots theta_3 with an imaginary part below `accept`: rows (k,) in order and real parts (k,),
-    in order for each; per row the number of those that are clearly real, and whether the others clearly
-    are not.
+    in order for each; per row the number of those that are clearly real, -1 where M is singular at every
+    angle and roots mean nothing, and whether the others clearly are not.
 
     With `M(theta) = M0 + N Rot(theta) W`, Rot = c + s J on R^16, about a node where `M_pi = M0 - N
     W` is far from singular: tan(theta/2) are the eigenvalues of `-J (1 + 2 W M_pi^-1 N)`.
@@ -71,7 +72,9 @@ def hidden_angles(
     W = np.concatenate([lift(left[:, XS]), lift(left[:, YS])], axis=1)
     K = np.eye(16) + 2.0 * W @ solved(at_node[row, k], N)
     t = np.linalg.eigvals(np.concatenate([K[:, 8:], -K[:, :8]], axis=1))
-    return real_angles(t, _NODES[k], accept)
+    pose, angle, real, clear = real_angles(t, _NODES[k], accept)
+    real[np.abs(K).max(axis=(1, 2)) > _NO_RANK] = -1
+    return pose, angle, real, clear
 
 
 def real_angles(
