@@ -30,6 +30,12 @@ def test_half_a_tenth_of_a_digit_of_noise_changes_no_order(seed: int) -> None:
     assert _separate(shifts) == [1, 3]
 
 
+def test_of_two_slides_the_second_hidden_angle_is_not_opposite_to_the_first() -> None:
+    hits, rough = np.ones((4, 9), dtype=bool), np.array([2.0, 0.0, 0.9, 0.01])
+    assert ranking(hits, rough) == [1, 3]
+    assert ranking(hits, rough, opposite=2) == [1, 2]
+
+
 def test_only_what_separates_roots_is_kept() -> None:
     assert _separate(np.array([1.0, 2e-2, 3e-5, 1.0])) == [2]
     assert _separate(np.ones(4)) == []

@@ -135,7 +135,7 @@ def choose_plan(
     each = max(probes // len(family), 2)
     plain = _joined([_probe(member, turning, each, rng) for member in family])
     every = _joined([plain, *(_probe(member, turning, _SPECIAL_PROBES, rng) for member in special)])
-    order = ranking(every.hits, every.rough)
+    order = ranking(every.hits, every.rough, opposite=2 if turning.count(False) == 2 else 0)
     separate = dict.fromkeys([*_separate(every.shifts), *_separate(plain.shifts)])
     first = read_only(family[0])
     return EliminationPlan(
@@ -149,13 +149,14 @@ def choose_plan(
     )
 
 
-def ranking(hits: Matrix, rough: Matrix) -> list[int]:
+def ranking(hits: Matrix, rough: Matrix, opposite: int = 0) -> list[int]:
     """The eliminations to keep: most solutions together with those before, then the first of the best
-    conditioned. One that loses a digit counts as if it had lost one solution in a hundred."""
+    conditioned. One that loses a digit counts as if it had lost one solution in a hundred. Of two that are
+    `opposite` places apart (0: none are) one is kept, as the other is no better where it fails."""
     order: list[int] = []
     covered = np.zeros(hits.shape[1], dtype=bool)
     for _ in range(min(_KEPT, len(hits))):
-        rest = [k for k in range(len(hits)) if k not in order]
+        rest = [k for k in range(len(hits)) if not {k, k - opposite, k + opposite} & {*order}]
         found = {k: int((covered | hits[k]).sum()) for k in rest}
         best = max(rest, key=lambda k: found[k] - 0.01 * rough[k] * hits.shape[1])
         as_many = [k for k in rest if found[k] >= found[best]]

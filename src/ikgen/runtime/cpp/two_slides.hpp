@@ -20,6 +20,7 @@ namespace g6 {
 
 inline constexpr Index kFourNodes = 16;
 inline constexpr double kVanishing = 1e-15;  // value of a polynomial, lengths in the arm's, that is round-off
+inline constexpr double kLarge = 100.0;  // another, in which roots are lost
 
 // The other three angles for a hidden one.
 inline Triple beside_hidden(const RevoluteLoop& loop, double c, double s) noexcept {
@@ -111,7 +112,7 @@ inline Spectrum quartic_roots(const QuarticSamples& at) noexcept {
   Index node = 0;
   for (Index n = 1; n < kFourNodes; ++n)
     if (std::abs(at.value[n]) > std::abs(at.value[node])) node = n;
-  const bool vanishes = std::abs(at.value[node]) < kVanishing;
+  const double largest = std::abs(at.value[node]);
   node = (node + kFourNodes / 2) % kFourNodes;
   std::array<double, 9> powers{};
   for (Index k = 0; k < 5; ++k) {
@@ -132,13 +133,14 @@ inline Spectrum quartic_roots(const QuarticSamples& at) noexcept {
     companion(i, 7) = -powers[i] / powers[8];
   }
   std::array<Complex, 8> t;
-  out.real = 8;
-  if (vanishes)  // every angle is a root
+  out.real = -1;
+  if (largest < kVanishing)  // every angle is a root
     for (Index i = 0; i < 8; ++i) t[i] = std::tan(kPi / 8 * static_cast<double>(i));
   else if (!eigenvalues(companion, t))
     return out;
   out.real = 0;
   add_angles(t, at.offset + 2.0 * kPi / kFourNodes * static_cast<double>(node), 0.03, out);
+  if (largest > kLarge) out.real = -1;
   return out;
 }
 

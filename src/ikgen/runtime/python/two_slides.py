@@ -37,6 +37,7 @@ _QUARTIC_OFFSETS = np.array(
 )  # rad, of the nodes: one where no divisor is small
 _WELL_APART = 1e-3  # divisors above it need no other nodes
 _VANISHING = 1e-15  # value of a polynomial, lengths in the arm's, that is round-off
+_LARGE = 100.0  # another, in which roots are lost
 _QUARTIC_DEGREE = 4
 _QUARTIC_HARMONICS = np.arange(-_QUARTIC_DEGREE, _QUARTIC_DEGREE + 1)
 
@@ -115,14 +116,16 @@ def two_slide_candidates(
     order, C = loop_constants(F, T, *plan[:2])
     turns = [turning[j] for j in order]
     loop = revolute_loop(C, turns, len(T))
-    t, about = _quartic_roots(*_quartic_values(loop, len(T)))
+    values, offset = _quartic_values(loop, len(T))
+    t, about = _quartic_roots(values, offset)
     pose, angle, least, simple = real_angles(t, about, 0.03)
+    least[np.abs(values).max(axis=1) > _LARGE] = -1
     loop = loop.of(pose)
     _, c, s = _beside_hidden(loop, angle)
     p, u = displacement(loop, c, s)
     g = np.abs(_triple_product(p, u))
     branch, k = np.nonzero(g <= 1e3 * g[::-1] + 1e-6)  # the one of which it is a root, or both
-    values = np.empty((len(k), 6))
-    values[:, np.flatnonzero(turns)] = np.arctan2(s[branch, :, k].real, c[branch, :, k].real)
-    values[:, np.flatnonzero(~np.array(turns))] = slide_lengths(p[branch, k], u[:, branch, k])
-    return pose[k], joint_values(values, order), least, simple
+    joints = np.empty((len(k), 6))
+    joints[:, np.flatnonzero(turns)] = np.arctan2(s[branch, :, k].real, c[branch, :, k].real)
+    joints[:, np.flatnonzero(~np.array(turns))] = slide_lengths(p[branch, k], u[:, branch, k])
+    return pose[k], joint_values(joints, order), least, simple
