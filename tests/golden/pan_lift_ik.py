@@ -1199,17 +1199,35 @@ _FOLLOWED = 16
 _STEP_COUNT = 80
 _LEAST_DAMPING, _FIRST_DAMPING, _MOST_DAMPING = 1e-10, 1e-3, 1e10  # damping of a step
 _LONGEST_STEP = 0.5  # rad or m: step of a joint
+_ROUND_OFF = 1e-16  # of what is least: what a step gains at most where nothing is left to gain
+_STANDING = 1e-6  # the same where what is least is not 0
 
 
 def _nearest_row(arm: _Arm, T: Array, start: Row, limits: bool) -> Row:
     """The joint values whose pose is nearest to T (4, 4), held joints as in `start`."""
-    low, high = _step_bounds(arm, limits)
-    q = np.vstack([np.clip(start, low, high), _even_starts(arm, low, high)])
-    q[:, list(arm.free)] = [start[j] for j in arm.free]
-    cost = _chord_costs(arm, T, q)
-    q, cost = _descend_to(arm, T, q[np.argsort(cost, kind="stable")[:_FOLLOWED]], (low, high))
-    best: Row = tuple(q[int(np.argmin(cost))].tolist())
+    best: Row = tuple(_nearest(arm, T[None], np.array([start]), limits, _ROUND_OFF)[0].tolist())
     return best
+
+
+def _nearest_rows(arm: _Arm, T: Array, start: Array, limits: bool) -> Array:
+    """`_nearest_row` of poses T (k, 4, 4), each with its start (k, dof)."""
+    return _nearest(arm, T, start, limits, _STANDING)
+
+
+def _nearest(arm: _Arm, T: Array, start: Array, limits: bool, enough: float) -> Array:
+    bounds = _step_bounds(arm, limits)
+    begin = [_best_starts(arm, pose, row, bounds) for pose, row in zip(T, start)]
+    aims = np.repeat(T, _FOLLOWED, axis=0)
+    q, cost = _descend_to(arm, aims, np.concatenate(begin), bounds, enough)
+    best = cost.reshape(len(T), _FOLLOWED).argmin(axis=1)
+    return np.asarray(q.reshape(len(T), _FOLLOWED, -1)[np.arange(len(T)), best])
+
+
+def _best_starts(arm: _Arm, T: Array, start: Array, bounds: tuple[Array, Array]) -> Array:
+    """Those (n, dof) that are followed."""
+    q = np.vstack([np.clip(start, *bounds), _even_starts(arm, *bounds)])
+    q[:, list(arm.free)] = start[list(arm.free)]
+    return np.asarray(q[np.argsort(_chord_costs(arm, T, q), kind="stable")[:_FOLLOWED]])
 
 
 def _chord_costs(arm: _Arm, T: Array, q: Array) -> Array:
@@ -1218,9 +1236,10 @@ def _chord_costs(arm: _Arm, T: Array, q: Array) -> Array:
 
 
 def _descended(arm: _Arm, T: Array, q: Array, limits: bool) -> Array:
-    """The joint values (k, dof) at which steps from q (k, dof) towards poses T (k, 4, 4) end."""
+    """The joint values (k, dof) at which steps from q (k, dof) towards poses T (k, 4, 4) end, if they take
+    these."""
     bounds = _step_bounds(arm, limits)
-    return _descend_to(arm, T, np.clip(q, *bounds), bounds)[0]
+    return _descend_to(arm, T, np.clip(q, *bounds), bounds, _STANDING)[0]
 
 
 def _off_by(task: _EntriesTask, pose: Array, T: Array) -> Array:
@@ -1273,39 +1292,57 @@ def _even_starts(arm: _Arm, low: Array, high: Array) -> Array:
     return np.asarray(least + part * (most - least))
 
 
-def _descend_to(arm: _Arm, T: Array, q: Array, bounds: tuple[Array, Array]) -> tuple[Array, Array]:
-    """The rows (k, dof) at the ends of the steps, and what is least there (k,)."""
-    moving, damping = list(arm.moving), np.full(len(q), _FIRST_DAMPING)
+def _descend_to(
+    arm: _Arm, T: Array, q: Array, bounds: tuple[Array, Array], enough: float
+) -> tuple[Array, Array]:
+    """The rows (k, dof) at the ends of the steps towards poses T (k, 4, 4), and what is least there
+    (k,)."""
+    moving, weight = list(arm.moving), _chord_weight(arm.task)
     low, high = (bound[moving] for bound in bounds)
-    pose, J = _tip_and_jacobian(arm.chain, q)
-    error = _chord_errors(arm.task, pose, T)
-    cost = (error**2).sum(axis=1)
+
+    def state(q: Array, T: Array) -> tuple[Array, ...]:
+        pose, J = _tip_and_jacobian(arm.chain, q)
+        error = _chord_errors(arm.task, pose, T)
+        slope = _entry_rows(arm.task.entries, weight, pose, J)[:, :, moving]
+        return q, error, slope, (error**2).sum(axis=1)
+
+    ends, costs, going = q.copy(), np.full(len(q), inf), np.arange(len(q))
+    at, damping = state(q, T), np.full(len(q), _FIRST_DAMPING)
     for _ in range(_STEP_COUNT):
+        q, error, slope, cost = at
         trial = q.copy()
-        slope = _entry_rows(arm.task.entries, _chord_weight(arm.task), pose, J)[:, :, moving]
-        trial[:, moving] = _clipped_step(q[:, moving], slope, error, damping, (low, high))
-        new = (trial, *_tip_and_jacobian(arm.chain, trial))
-        errors = _chord_errors(arm.task, new[1], T)
-        costs = (errors**2).sum(axis=1)
-        better = costs < cost
-        q[better], error[better], cost[better] = trial[better], errors[better], costs[better]
-        pose, J = (np.where(better[:, None, None], a, b) for a, b in zip(new[1:], (pose, J)))
+        trial[:, moving], gain = _clipped_step(q[:, moving], slope, error, damping, (low, high))
+        there = state(trial, T)
+        better = there[-1] < cost
+        at = tuple(np.where(_beside(better, new), new, old) for new, old in zip(there, at))
+        ends[going], costs[going] = at[0], at[-1]
+        on = (gain > enough * cost) | (damping > _FIRST_DAMPING)
         damping = np.clip(damping * np.where(better, 0.2, 8.0), _LEAST_DAMPING, _MOST_DAMPING)
-        if damping.min() == _MOST_DAMPING:
+        on &= damping < _MOST_DAMPING
+        if not on.any():
             break
-    return q, cost
+        going, damping, T = going[on], damping[on], T[on]
+        at = tuple(x[on] for x in at)
+    return ends, costs
+
+
+def _beside(flags: _Flags, values: Array) -> _Flags:
+    """Flags (k,) with as many axes as values (k, ...)."""
+    return flags.reshape(-1, *(1,) * (values.ndim - 1))
 
 
 def _clipped_step(
     q: Array, slope: Array, error: Array, damping: Array, bounds: tuple[Array, Array]
-) -> Array:
-    """The rows (k, n) after one step."""
+) -> tuple[Array, Array]:
+    """The rows (k, n) after one step, in which joints at a limit that it would pass stay, and what linear
+    equations have it gain (k,)."""
     push = np.einsum("kmj,km->kj", slope, error)
     stuck = ((q <= bounds[0]) & (push < 0.0)) | ((q >= bounds[1]) & (push > 0.0))
-    slope = np.where(stuck[:, None], 0.0, slope)
+    slope, push = np.where(stuck[:, None], 0.0, slope), np.where(stuck, 0.0, push)
     normal = np.einsum("kmi,kmj->kij", slope, slope) + damping[:, None, None] * np.eye(q.shape[1])
-    step = np.linalg.solve(normal, np.where(stuck, 0.0, push)[:, :, None])[:, :, 0]
-    return np.asarray(np.clip(q + np.clip(step, -_LONGEST_STEP, _LONGEST_STEP), *bounds))
+    step = np.linalg.solve(normal, push[:, :, None])[:, :, 0]
+    gain = np.einsum("kj,kj->k", push, step)
+    return np.clip(q + np.clip(step, -_LONGEST_STEP, _LONGEST_STEP), *bounds), gain
 
 
 # All solutions of poses near singularities, and of those that leave joints free: of many poses at once, as
@@ -1370,9 +1407,10 @@ def _placed_rows(arm: _Arm, asked: _Asked, limits: bool) -> list[_Answer]:
         left = left[going[left]]
     if len(left):
         _take_hidden(arm, asked, left, limits, out)
-    lost = set(left.tolist()) | {i for i, answer in enumerate(out) if answer.continuum}
-    for i in sorted(i for i in lost if not out[i].rows):
-        _take_nearest(arm, asked.at(np.array([i])), limits, out[i])
+    doubtful = set(left.tolist()) | {i for i, answer in enumerate(out) if answer.continuum}
+    lost = sorted(i for i in doubtful if not out[i].rows)
+    if lost:
+        _take_nearest(arm, asked, np.array(lost), limits, out)
     return out
 
 
@@ -1405,16 +1443,17 @@ def _hidden_rows(arm: _Arm, asked: _Asked, some: _Index) -> tuple[_Index, Array]
     return some[pose], q[pose, cost.argmin(axis=1)[pose, lane], lane]
 
 
-def _take_nearest(arm: _Arm, asked: _Asked, limits: bool, answer: _Answer) -> None:
-    """Adds a row that takes the one pose asked for, inside the limits if one of these was found."""
-    start: Row = tuple(asked.starts(arm)[0].tolist())
-    aim = _aims(arm, asked.T, asked.held)
+def _take_nearest(arm: _Arm, asked: _Asked, some: _Index, limits: bool, out: list[_Answer]) -> None:
+    """Adds rows that take some of the poses, inside the limits if one of these was found."""
     for inside in dict.fromkeys((limits, False)):
-        row = _nearest_row(arm, asked.T[0], start, inside)
-        found = _led_to(arm, asked, np.array([row]))[0]
-        answer.real = answer.real or bool(found)
-        answer.rows = _rows_inside(arm, aim, found, asked.seed(0), limits)
-        if answer.rows:
+        left = asked.at(some)
+        rows = _nearest_rows(arm, left.T, left.starts(arm), inside)
+        for i, found in zip(some.tolist(), _led_to(arm, left, rows)):
+            aim = _aims(arm, asked.T[i : i + 1], asked.held[i : i + 1])
+            out[i].real = out[i].real or bool(found)
+            out[i].rows = _rows_inside(arm, aim, found, asked.seed(i), limits)
+        some = some[[not out[i].rows for i in some.tolist()]]
+        if not len(some):
             break
 
 
@@ -1940,7 +1979,7 @@ _NEAR = (
 )
 _ALMOST, _SAME = 1e-3, 4e-15  # or how close it must be where what is left is the same after a step
 _WAY = 1e-10  # rad or m: along it, by which what is left varies by round-off
-_ROUND_OFF, _SMALL, _DOUBT, _near_continuum_BESIDE, _SAME_WAY = 1e-15, 4e-15, 0.03, 0.06, 0.9
+_near_continuum_ROUND_OFF, _SMALL, _DOUBT, _near_continuum_BESIDE, _SAME_WAY = 1e-15, 4e-15, 0.03, 0.06, 0.9
 
 
 class _Traced(NamedTuple):
@@ -2126,7 +2165,7 @@ def _closed_in(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
     way = np.full(len(parts.owner), np.inf)
     most = 2.0 * np.abs(_bernstein(arm, parts)).max(axis=0)
     for step in range(_STEPS):
-        going = np.flatnonzero((np.abs(ends.left).min(axis=0) > _ROUND_OFF) & (way > _WAY))
+        going = np.flatnonzero((np.abs(ends.left).min(axis=0) > _near_continuum_ROUND_OFF) & (way > _WAY))
         if not len(going):
             break
         x, y = values[:, going]

@@ -84,3 +84,25 @@ def test_poses_out_of_reach_have_no_rows(arm: ModuleType) -> None:
     for seed in (None, np.full(6, 0.1)):
         _, count, status = arm.solve_batch(far[1:], seed=seed)
         assert not count.any() and set(status) == {"UNREACHABLE"}
+
+
+def test_that_no_row_takes_a_pose_is_told_of_many_at_once(
+    arm: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Steps of one run, which end long before they stand still; rows that take a pose are not left."""
+    q, steps, step = beside(arm, 12), [], arm._clipped_step
+    poses = arm.forward(q)
+    poses[:6, 0, 3] += 9.0
+
+    def counted(q: Array, *given: Array) -> tuple[Array, Array]:
+        steps.append(len(q))
+        return step(q, *given)
+
+    monkeypatch.setattr(arm, "_clipped_step", counted)
+    rows = arm._nearest_rows(arm._ARM, poses, np.zeros((12, 6)), True)
+    assert len(steps) <= 80 and sum(steps) < 60 * steps[0]
+    off = np.abs(arm.forward(rows) - poses).max(axis=(1, 2))
+    assert (off[:6] > 1.0).all() and (off[6:] < 1e-3).all()
+    for k in range(0, 12, 4):
+        alone = arm._nearest_rows(arm._ARM, poses[k : k + 1], np.zeros((1, 6)), True)
+        np.testing.assert_allclose(rows[k], alone[0], atol=1e-9)

@@ -62,11 +62,12 @@ def test_joints_at_a_limit_that_a_step_would_pass_stay() -> None:
     q, slope = np.array([[1.0, 0.0, -1.0]]), np.eye(3)[None]
     bounds = np.full(3, -1.0), np.ones(3)
     error, damping = np.array([[0.3, 0.2, 0.4]]), np.full(1, 1e-12)
-    np.testing.assert_allclose(_clipped_step(q, slope, error, damping, bounds), [[1.0, 0.2, -0.6]])
-    np.testing.assert_allclose(
-        _clipped_step(q, slope, -error, damping, bounds), [[0.7, -0.2, -1.0]]
-    )
-    far = _clipped_step(0.0 * q, slope, 9.0 * error, damping, bounds)
+    row, gain = _clipped_step(q, slope, error, damping, bounds)
+    np.testing.assert_allclose(row, [[1.0, 0.2, -0.6]])
+    np.testing.assert_allclose(gain, [0.2**2 + 0.4**2])  # of what is least, as far as it is linear
+    row, _ = _clipped_step(q, slope, -error, damping, bounds)
+    np.testing.assert_allclose(row, [[0.7, -0.2, -1.0]])
+    far, _ = _clipped_step(0.0 * q, slope, 9.0 * error, damping, bounds)
     np.testing.assert_allclose(far, [[0.5, 0.5, 0.5]])  # the longest step
-    half = _clipped_step(0.0 * q, slope, error, np.ones(1), bounds)
+    half, _ = _clipped_step(0.0 * q, slope, error, np.ones(1), bounds)
     np.testing.assert_allclose(half, 0.5 * error)

@@ -84,7 +84,7 @@ template <class Arm> struct CarefulSolve {
     bool real = false;
     for (const int lane : Arm::kLaneOfRow) {
       if (!(least[lane] < kInfinity)) continue;
-      NearestRow<Arm>::descend(t, options.limits, best[lane]);
+      NearestRow<Arm>::descend(t, options.limits, NearestRow<Arm>::kStanding, best[lane]);
       if (!Refinement::refine(best[lane], aim)) continue;
       real = true;
       Careful::add(aim, out, best[lane], true);
@@ -98,7 +98,7 @@ template <class Arm> struct CarefulSolve {
     bool real = false;
     for (bool inside = options.limits;; inside = false) {
       double q[Arm::kDof];
-      NearestRow<Arm>::find(aim.pose.matrix().data(), options, inside, q);
+      NearestRow<Arm>::find(aim.pose.matrix().data(), options, inside, NearestRow<Arm>::kStanding, q);
       if (Refinement::refine(q, aim)) {
         real = true;
         Careful::add(aim, out, q, true);

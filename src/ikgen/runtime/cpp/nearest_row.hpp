@@ -63,10 +63,12 @@ template <class Arm> struct NearestRow {
   using Chords = PoseChords<Arm>;
   static constexpr int kStarts = 128, kFollowed = 16, kSteps = 80;
   static constexpr double kLeast = 1e-10, kFirst = 1e-3, kMost = 1e10;  // damping of a step
-  static constexpr double kLongest = 0.5;                              // rad or m: step of a joint
+  static constexpr double kLongest = 0.5;     // rad or m: step of a joint
+  static constexpr double kRoundOff = 1e-16;  // of what is least: what a step gains where nothing is left to gain
+  static constexpr double kStanding = 1e-6;   // the same where what is least is not 0
 
-  // t: the pose's matrix, columns first; inside: whether limits hold.
-  [[gnu::cold, gnu::noinline]] static void find(const double* t, const Options& options, bool inside,
+  // t: the pose's matrix, columns first; inside: whether limits hold; enough: as for descend.
+  [[gnu::cold, gnu::noinline]] static void find(const double* t, const Options& options, bool inside, double enough,
                                                 double* best) noexcept {
     double rows[kFollowed][Arm::kDof], costs[kFollowed], q[Arm::kDof], root = 2.0;
     for (int k = 0; k < 40; ++k) root = std::pow(1.0 + root, 1.0 / (Arm::kDof + 1));
@@ -92,27 +94,31 @@ template <class Arm> struct NearestRow {
     }
     double least = kInfinity;
     for (int k = 0; k < kept; ++k) {
-      const double cost = descend(t, inside, rows[k]);
+      const double cost = descend(t, inside, enough, rows[k]);
       if (!(cost < least)) continue;
       least = cost;
       std::copy_n(rows[k], Arm::kDof, best);
     }
   }
 
-  // Steps from q; what is least where they end.
-  static double descend(const double* t, bool limits, double* q) noexcept {
+  // Steps from q; what is least where they end: where one that is hardly damped gains a share of that which is not
+  // enough.
+  static double descend(const double* t, bool limits, double enough, double* q) noexcept {
     double damping = kFirst;
     Chords at(q, t);
     for (int i = 0; i < kSteps && damping < kMost; ++i) {
       double trial[Arm::kDof];
       std::copy_n(q, Arm::kDof, trial);
-      step(at, limits, damping, trial);
+      const double gain = step(at, limits, damping, trial);
+      const bool last = !(gain > enough * at.cost || damping > kFirst);
       const Chords there(trial, t);
       const bool better = there.cost < at.cost;
       damping = std::clamp(damping * (better ? 0.2 : 8.0), kLeast, kMost);
-      if (!better) continue;
-      at = there;
-      std::copy_n(trial, Arm::kDof, q);
+      if (better) {
+        at = there;
+        std::copy_n(trial, Arm::kDof, q);
+      }
+      if (last) break;
     }
     return at.cost;
   }
@@ -145,8 +151,8 @@ template <class Arm> struct NearestRow {
     for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) q[Arm::kFreeJoints[k]] = options.free[k];
   }
 
-  // One step; joints at a limit that it would pass stay.
-  static void step(const Chords& at, bool limits, double damping, double* q) noexcept {
+  // One step, in which joints at a limit that it would pass stay; what linear equations have it gain.
+  static double step(const Chords& at, bool limits, double damping, double* q) noexcept {
     double A[Arm::kDof][Arm::kDof], x[Arm::kDof], low[Arm::kDof], high[Arm::kDof];
     bool stuck[Arm::kDof];
     for (int j = 0; j < Arm::kDof; ++j) {
@@ -161,10 +167,15 @@ template <class Arm> struct NearestRow {
         A[i][j] = i == j ? damping : 0.0;
         for (int e = 0; e < Chords::kCount && !stuck[i] && !stuck[j]; ++e) A[i][j] += at.slope[e][i] * at.slope[e][j];
       }
+    double push[Arm::kDof], gain = 0.0;
+    std::copy_n(x, Arm::kDof, push);
     factor(A);
     substitute(A, x);
-    for (int j = 0; j < Arm::kDof; ++j)
+    for (int j = 0; j < Arm::kDof; ++j) {
+      gain += push[j] * x[j];
       if (!stuck[j]) q[j] = std::clamp(q[j] + std::clamp(x[j], -kLongest, kLongest), low[j], high[j]);
+    }
+    return gain;
   }
 };
 

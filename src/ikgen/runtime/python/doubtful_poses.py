@@ -20,7 +20,7 @@ from ikgen.runtime.python.meeting_rows import (
     repeats,
     rows_nearby,
 )
-from ikgen.runtime.python.projection import chord_costs, descended, nearest_row
+from ikgen.runtime.python.projection import chord_costs, descended, nearest_rows
 from ikgen.runtime.python.row_placement import is_new, place_rows
 from ikgen.runtime.python.solved_arm import Arm, Found
 
@@ -88,9 +88,10 @@ def placed_rows(arm: Arm, asked: Asked, limits: bool) -> list[Answer]:
         left = left[going[left]]
     if not arm.rounded and len(left):
         _take_hidden(arm, asked, left, limits, out)
-    lost = set(left.tolist()) | {i for i, answer in enumerate(out) if answer.continuum}
-    for i in sorted(i for i in lost if not out[i].rows):
-        _take_nearest(arm, asked.at(np.array([i])), limits, out[i])
+    doubtful = set(left.tolist()) | {i for i, answer in enumerate(out) if answer.continuum}
+    lost = sorted(i for i in doubtful if not out[i].rows)
+    if lost:
+        _take_nearest(arm, asked, np.array(lost), limits, out)
     return out
 
 
@@ -123,16 +124,17 @@ def _hidden_rows(arm: Arm, asked: Asked, some: Index) -> tuple[Index, Array]:
     return some[pose], q[pose, cost.argmin(axis=1)[pose, lane], lane]
 
 
-def _take_nearest(arm: Arm, asked: Asked, limits: bool, answer: Answer) -> None:
-    """Adds a row that takes the one pose asked for, inside the limits if one of these was found."""
-    start: Row = tuple(asked.starts(arm)[0].tolist())
-    aim = aims(arm, asked.T, asked.held)
+def _take_nearest(arm: Arm, asked: Asked, some: Index, limits: bool, out: list[Answer]) -> None:
+    """Adds rows that take some of the poses, inside the limits if one of these was found."""
     for inside in dict.fromkeys((limits, False)):
-        row = nearest_row(arm, asked.T[0], start, inside)
-        found = _led_to(arm, asked, np.array([row]))[0]
-        answer.real = answer.real or bool(found)
-        answer.rows = rows_inside(arm, aim, found, asked.seed(0), limits)
-        if answer.rows:
+        left = asked.at(some)
+        rows = nearest_rows(arm, left.T, left.starts(arm), inside)
+        for i, found in zip(some.tolist(), _led_to(arm, left, rows)):
+            aim = aims(arm, asked.T[i : i + 1], asked.held[i : i + 1])
+            out[i].real = out[i].real or bool(found)
+            out[i].rows = rows_inside(arm, aim, found, asked.seed(i), limits)
+        some = some[[not out[i].rows for i in some.tolist()]]
+        if not len(some):
             break
 
 
