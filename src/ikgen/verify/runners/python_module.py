@@ -20,7 +20,7 @@ __all__ = ["PythonModule"]
 Array = NDArray[np.float64]
 _Answer = tuple[Array, str, NDArray[np.bool_]]
 
-_ALONE = 8  # one pose of so many is solved by itself
+_ALONE = 32  # one pose of so many is solved by itself
 
 _NAMES = (
     "JOINT_NAMES", "LOWER", "UPPER", "BASE_LINK", "TIP_LINK", "DOF", "MAX_SOLUTIONS", "TASK",
@@ -114,8 +114,8 @@ class PythonModule:
         seeds: Array | None = None,
         limits: bool = True,
     ) -> Rows:
-        """`solve` for each of the poses (N, 4, 4) with free values (N, f) and seeds (N, dof): every eighth
-        by itself, of the others those that leave doubts in stacks."""
+        """`solve` for each of the poses (N, 4, 4) with free values (N, f) and seeds (N, dof): one of 32 by
+        itself, of the others those that leave doubts in stacks."""
         each = np.arange(len(poses))
         stacks = hasattr(self.module, "_solve_each") and not hasattr(self.module, "_MOTORS")
         alone = each % _ALONE == 0 if stacks else each >= 0
