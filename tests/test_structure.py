@@ -57,7 +57,7 @@ def cpp_functions(found: Iterable[Definition]) -> Iterator[tuple[str, int]]:
 
 def test_functions_of_the_cpp_runtime_are_short() -> None:
     inner = re.compile(r"namespace ikgen_runtime \{\n(.*)\}  // namespace", re.DOTALL)
-    texts = [inner.search(path.read_text(encoding="utf-8")) for path in RUNTIME.glob("*.hpp")]
+    texts = [inner.search(path.read_text(encoding="utf-8")) for path in RUNTIME.rglob("*.hpp")]
     found = [one for text in texts if text for one in cpp_functions(definitions(text[1]))]
     assert len(found) > 1000
     assert statistics.quantiles((lines for _, lines in found), n=10)[-1] <= 25
@@ -65,7 +65,7 @@ def test_functions_of_the_cpp_runtime_are_short() -> None:
 
 
 def test_no_module_has_the_name_of_another() -> None:
-    names = Counter(path.name for path in [*MODULES, *RUNTIME.glob("*.hpp")])
+    names = Counter(path.name for path in [*MODULES, *RUNTIME.rglob("*.hpp")])
     names += Counter(
         path.name
         for path in (ROOT / "templates").glob("*/*.py.jinja")

@@ -76,16 +76,16 @@ def test_tests_that_reach_a_function_run_those_of_its_module_first() -> None:
         "tests/runtime/test_rows.py::late": reach(0.7, "emitted::follow"),
         "tests/runtime/test_rows.py::soon": reach(0.1, "emitted::follow"),
         "tests/conformance/test_follow.py::near": reach(
-            2.0, "runtime/python/path_following.py::_follow"
+            2.0, "runtime/python/solving/path_following.py::_follow"
         ),
         "tests/conformance/test_follow.py::other": reach(
-            0.1, "runtime/python/path_following.py::start"
+            0.1, "runtime/python/solving/path_following.py::start"
         ),
         "tests/golden/test_python_module.py::golden": reach(0.1, "emitted::follow"),
         "tests/forms/test_form.py::none": reach(0.1, "forms/form.py::follow"),
         "tests/forms/test_form.py::long": reach(90.0, "emitted::follow"),
     }
-    path = "runtime/python/path_following.py"
+    path = "runtime/python/solving/path_following.py"
     assert list(chosen(path, "_follow", every)) == [
         "tests/conformance/test_follow.py::near",
         "tests/runtime/test_rows.py::soon",

@@ -12,7 +12,7 @@ from tests.support.solving import NO_COMPILER, solver_module
 
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
-from ikgen.runtime.python.slide_range import slide_range
+from ikgen.runtime.python.held.slide_range import slide_range
 
 LIFT = ("lift", "prismatic", "0 1 1", "0 0 0.1", (0.0, 0.3))
 RAIL = ("rail", "prismatic", "0 -1 0", "0.2 0 0.5", (-200.0, 300.0))

@@ -22,10 +22,10 @@ from ikgen.generation.derive import derive
 from ikgen.generation.generate import generate
 from ikgen.generation.read import read
 from ikgen.generation.request import Outputs, Request
-from ikgen.runtime.python.chain_kinematics import Chain, chain_of, forward, jacobian
-from ikgen.runtime.python.coupled_angle import CoupledAngle, coupled_determinants
-from ikgen.runtime.python.general_6r import Candidates, Elimination
-from ikgen.runtime.python.solution_rows import Turning
+from ikgen.runtime.python.arm.chain_kinematics import Chain, chain_of, forward, jacobian
+from ikgen.runtime.python.elimination.coupled_angle import CoupledAngle, coupled_determinants
+from ikgen.runtime.python.elimination.general_6r import Candidates, Elimination
+from ikgen.runtime.python.rows.solution_rows import Turning
 
 Array = NDArray[np.float64]
 TURNS = (True,) * 6

@@ -21,7 +21,7 @@ from ikgen.elimination import (
 )
 from ikgen.elimination.loop_frames import forward, jacobian
 from ikgen.kinematics.modified_dh import to_dh
-from ikgen.runtime.python.general_6r import one_axis_each
+from ikgen.runtime.python.elimination.general_6r import one_axis_each
 
 Array = NDArray[np.float64]
 ARMS = {a["name"]: a for a in load_arms()}

@@ -32,7 +32,7 @@ from ikgen.elimination.parallel_plans import (
     with_parallel,
 )
 from ikgen.elimination.routine import Plan, finder, six_joints_batch
-from ikgen.runtime.python.parallel_links import MEETING, PLAIN, UPRIGHT
+from ikgen.runtime.python.elimination.parallel_links import MEETING, PLAIN, UPRIGHT
 
 Array = NDArray[np.float64]
 CHAINS = {

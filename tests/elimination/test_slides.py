@@ -13,8 +13,8 @@ from ikgen.elimination import EliminationPlan, choose_plan
 from ikgen.elimination.loop_frames import forward, jacobian
 from ikgen.elimination.plan import eliminations
 from ikgen.elimination.routine import Plan, finder, six_joints_batch
-from ikgen.runtime.python.general_6r import one_axis_each
-from ikgen.runtime.python.solution_rows import distinct_rows
+from ikgen.runtime.python.elimination.general_6r import one_axis_each
+from ikgen.runtime.python.rows.solution_rows import distinct_rows
 
 Array = NDArray[np.float64]
 Turning = tuple[bool, ...]

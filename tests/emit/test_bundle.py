@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import ast
 import importlib
-import pkgutil
 from pathlib import Path
 
 import numpy as np
 import pytest
 from tests.support.pan_lift import pan_lift
+from tests.support.runtime_files import MODULES
 from tests.support.solving import import_text
 
-import ikgen.runtime.python
 from ikgen.emit.python.bundle import MARK, bundle
 from ikgen.emit.python.docstrings import summary
 from ikgen.emit.python.import_lines import External, import_lines
@@ -31,7 +30,7 @@ from math import cos, pi
 
 import numpy as np
 
-from {PACKAGE}.rigid_motion import rotations_z as _turns
+from {PACKAGE}.arrays.rigid_motion import rotations_z as _turns
 
 HALF = pi
 
@@ -42,7 +41,6 @@ HALF = pi
 def half_turn() -> object:
     return _turns(np.array(HALF))
 """
-MODULES = [info.name for info in pkgutil.iter_modules(ikgen.runtime.python.__path__)]
 
 
 def test_what_is_used_comes_along(tmp_path: Path) -> None:
@@ -125,7 +123,7 @@ def test_methods_that_are_not_called_stay_with_the_runtime() -> None:
 
 def test_methods_that_are_called_come_along(tmp_path: Path) -> None:
     shell = SHELL.replace(
-        "rigid_motion import rotations_z as _turns", "path_following import _Walk"
+        "arrays.rigid_motion import rotations_z as _turns", "solving.path_following import _Walk"
     )
     shell = shell.replace("_turns(np.array(HALF))", "_Walk._newton")
     text = bundle(shell)

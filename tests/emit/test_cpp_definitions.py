@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import pytest
+from tests.support.runtime_files import HEADERS
 
 from ikgen.emit.cpp.cpp_definitions import Definition, definitions, needed
-from ikgen.emit.cpp.header_bundle import RUNTIME, bundle
+from ikgen.emit.cpp.header_bundle import bundle
 
 TEXT = """\
 inline constexpr double kUsed = 1.0, kBeside = 2.0;
@@ -47,7 +48,7 @@ def left(*wanted: str) -> str:
     return "".join(one.without(kept) for one in found if id(one) in kept)
 
 
-@pytest.mark.parametrize("header", sorted(path.name for path in RUNTIME.glob("*.hpp")))
+@pytest.mark.parametrize("header", HEADERS)
 def test_the_runtime_is_all_there(header: str) -> None:
     text = bundle([header]).body
     assert "".join(map(all_of, definitions(text))) == text

@@ -31,13 +31,25 @@ def test_a_header_has_what_its_arm_takes_and_no_more(rounded: bool, task: str, h
         exact(), dh=dh, task=task, free=tuple(range(held)), free_defaults=(0.0,) * held
     )
     found = _headers(module)
-    assert ("lane_refinement.hpp" in found) == ("displacement.hpp" in found) == rounded
-    assert ("whole_pose.hpp" in found) == (task == "pose") != ("pose_entries.hpp" in found)
-    assert found[-1] == ("row_preference.hpp", "held_search.hpp", "held_grid_search.hpp")[held]
-    assert found[:2] == ["lane_angle.hpp", "lane_solve.hpp"] and "projection.hpp" in found
-    assert not {"lane_elbow.hpp", "arm_angle_motion.hpp", "single_solve.hpp"} & set(found)
+    assert ("newton/lane_refinement.hpp" in found) == ("held/displacement.hpp" in found) == rounded
+    assert ("arm/whole_pose.hpp" in found) == (task == "pose") != ("arm/pose_entries.hpp" in found)
+    assert (
+        found[-1]
+        == ("held/row_preference.hpp", "held/held_search.hpp", "held/held_grid_search.hpp")[held]
+    )
+    assert (
+        found[:2] == ["arrays/lane_angle.hpp", "solving/lane_solve.hpp"]
+        and "solving/projection.hpp" in found
+    )
+    assert not {
+        "held/lane_elbow.hpp",
+        "held/arm_angle_motion.hpp",
+        "solving/single_solve.hpp",
+    } & set(found)
     if held:
         free = (*dh.free[1:], ARM_ANGLE)
         angle = replace(module, dh=replace(dh, free=free))
-        assert ("lane_elbow.hpp" if rounded else "arm_angle_motion.hpp") in _headers(angle)
-        assert ("lane_refinement.hpp" in _headers(angle)) == rounded
+        assert ("held/lane_elbow.hpp" if rounded else "held/arm_angle_motion.hpp") in _headers(
+            angle
+        )
+        assert ("newton/lane_refinement.hpp" in _headers(angle)) == rounded

@@ -10,11 +10,12 @@ import pytest
 from tests.support.cpp_modules import robot_file, solver_module
 from tests.support.pan_lift import pan_lift
 from tests.support.routines import FLAGS
+from tests.support.runtime_files import HEADERS
 from tests.support.solving import NO_COMPILER
 
 from ikgen.emit.cpp.cpp_emitter import emit_header
 from ikgen.emit.cpp.cpp_policy import policy_lines
-from ikgen.emit.cpp.header_bundle import RUNTIME, bundle
+from ikgen.emit.cpp.header_bundle import bundle
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 from ikgen.program.policy import SolvePolicy
@@ -26,27 +27,34 @@ needs_compiler = pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
 
 
 def test_headers_come_behind_what_they_include_and_once() -> None:
-    names = re.findall(r"^// --- ([\w ]+?) -+$", bundle(["lane_angle.hpp", "lanes.hpp"]).body, re.M)
+    names = re.findall(
+        r"^// --- ([\w ]+?) -+$", bundle(["arrays/lane_angle.hpp", "arrays/lanes.hpp"]).body, re.M
+    )
     assert names == ["constants", "machine vectors", "lanes", "lane angle"]
-    assert bundle(["lanes.hpp"]).body in bundle(["lanes.hpp", "lane_angle.hpp"]).body
+    assert (
+        bundle(["arrays/lanes.hpp"]).body
+        in bundle(["arrays/lanes.hpp", "arrays/lane_angle.hpp"]).body
+    )
 
 
 def test_system_headers_are_merged() -> None:
-    includes = bundle(["motion_chain.hpp", "lanes.hpp"], ["Eigen/Core", "cmath"]).includes
+    includes = bundle(
+        ["arm/motion_chain.hpp", "arrays/lanes.hpp"], ["Eigen/Core", "cmath"]
+    ).includes
     lines = includes.splitlines()
     assert lines.count("#include <cmath>") == 1 and lines.index("") < lines.index(
         "#include <Eigen/Core>"
     )
     chosen = ("#if defined(__AVX__)", "#elif defined(__SSE2__)", "#endif")
     assert tuple(line for line in lines if line in chosen) == chosen
-    assert "#if defined(__AVX512F__)" in bundle(["lanes.hpp"]).body
+    assert "#if defined(__AVX512F__)" in bundle(["arrays/lanes.hpp"]).body
 
 
 def test_nothing_of_the_headers_own_frame_is_left() -> None:
-    bundled = bundle(path.name for path in sorted(RUNTIME.glob("*.hpp")))
+    bundled = bundle(HEADERS)
     for word in ("ikgen_runtime", "#pragma", "#include", "\n\n\n"):
         assert word not in bundled.body
-    assert bundled == bundle(path.name for path in sorted(RUNTIME.glob("*.hpp")))
+    assert bundled == bundle(HEADERS)
 
 
 def test_a_header_that_the_runtime_has_not() -> None:

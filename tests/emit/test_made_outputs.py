@@ -81,9 +81,10 @@ def test_the_elimination_about_parallel_axes_comes_with_its_header(bounded: bool
     for kind, name in enumerate(("kPlain", "kUpright", "kMeeting")):
         planned_one = replace(module, program=program, plan=planned(bounded=bounded, kind=kind))
         found = _headers(planned_one)
-        assert ("parallel_6r.hpp" in found) == bool(bounded)
+        assert ("elimination/parallel_6r.hpp" in found) == bool(bounded)
         assert found[:4] == [
-            "lane_angle.hpp", "single_solve.hpp", "routine_roots.hpp", "general_6r_arm.hpp"
+            "arrays/lane_angle.hpp", "solving/single_solve.hpp",
+            "roots/routine_roots.hpp", "elimination/general_6r_arm.hpp",
         ]  # fmt: skip
         told = _elimination(planned_one)
         assert told == {
@@ -93,7 +94,9 @@ def test_the_elimination_about_parallel_axes_comes_with_its_header(bounded: bool
     slide = replace(module, program=program, plan=planned(bounded=None, turning=False))
     assert _elimination(slide)["all_turn"] is False
     assert _elimination(module) == {"routine": ""}
-    assert "trig_quartic.hpp" in _headers(module) and "lane_solve.hpp" in _headers(module)
+    assert "roots/trig_quartic.hpp" in _headers(module) and "solving/lane_solve.hpp" in _headers(
+        module
+    )
 
 
 @pytest.mark.parametrize(

@@ -17,8 +17,8 @@ from ikgen.program.interpret import run
 from ikgen.program.ops import Op
 from ikgen.program.policy import SolvePolicy
 from ikgen.program.statements import Let
-from ikgen.runtime.python.batch_solving import branch_axis
-from ikgen.runtime.python.trig_quartic_roots import trig_quartic_branches, trig_quartic_lanes
+from ikgen.runtime.python.roots.trig_quartic_roots import trig_quartic_branches, trig_quartic_lanes
+from ikgen.runtime.python.solving.batch_solving import branch_axis
 
 SEED, HELD = 0.4, 0.2
 ROUGH = SolvePolicy().rough_square

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import pkgutil
 from functools import reduce
 from importlib.resources import files
 from pathlib import Path
@@ -11,9 +10,9 @@ from textwrap import indent
 
 import pytest
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
+from tests.support.runtime_files import MODULES
 from tests.support.solving import FIXTURES, import_text
 
-import ikgen.runtime.python
 from ikgen.emit.python.python_emitter import emit_module, known_facts
 from ikgen.emit.python.runtime_source import PACKAGE
 from ikgen.emit.python.settled_branches import SOME, Facts, settled
@@ -22,7 +21,6 @@ from ikgen.generation.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
-MODULES = [info.name for info in pkgutil.iter_modules(ikgen.runtime.python.__path__)]
 TABLES = Path(__file__).resolve().parents[1] / "robots" / "tables"
 REQUESTS = {
     "exact": Request(FIXTURES / "kuka_kr6r900sixx.urdf"),
@@ -85,7 +83,7 @@ def defined(text: str) -> str:
 
 @pytest.mark.parametrize("name", MODULES)
 def test_an_arm_of_the_runtime_is_called_so(name: str) -> None:
-    tree = ast.parse((files(PACKAGE) / f"{name}.py").read_text(encoding="utf-8"))
+    tree = ast.parse((files(PACKAGE) / f"{name.replace('.', '/')}.py").read_text(encoding="utf-8"))
     for node in ast.walk(tree):
         if isinstance(node, ast.arg) and node.arg.lstrip("_") == "arm":
             assert node.annotation is not None and ast.unparse(node.annotation) == "Arm"

@@ -21,7 +21,7 @@ from ikgen.forms.quadratic_form import Quadratic
 from ikgen.forms.quartic_form import TrigQuartic
 from ikgen.forms.sine_cosine_form import SineCosine
 from ikgen.forms.tangent_form import Tangent
-from ikgen.runtime.python.trig_quartic_roots import trig_quartic, trig_quartic_branches
+from ikgen.runtime.python.roots.trig_quartic_roots import trig_quartic, trig_quartic_branches
 
 PROBES = 8
 LAST = PROBES - 1

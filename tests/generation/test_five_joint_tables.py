@@ -20,7 +20,7 @@ from ikgen.emit.solver_module import SolverModule
 from ikgen.generation.derive import derive
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
-from ikgen.runtime.python.six_joints import with_tool_joint
+from ikgen.runtime.python.elimination.six_joints import with_tool_joint
 from ikgen.tasks import AXES, find_task
 from ikgen.verify.runners.cpp_header import CppHeader
 from ikgen.verify.runners.cpp_toolchain import find_eigen

@@ -16,7 +16,7 @@ from ikgen.program.interpret import run
 from ikgen.program.liveness import live_names
 from ikgen.program.ops import Op, Operand, operand_names
 from ikgen.program.statements import Call, Let, Program, Require
-from ikgen.runtime.python.trig_quartic_roots import trig_quartic_branches
+from ikgen.runtime.python.roots.trig_quartic_roots import trig_quartic_branches
 from ikgen.solver.solve import solve_chain
 
 ARMS: dict[str, tuple[Row, ...]] = {

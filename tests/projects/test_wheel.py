@@ -40,7 +40,7 @@ def test_everything_is_in_the_wheel(built: dict[str, Path]) -> None:
         "ikgen/py.typed",
         "ikgen/templates/python/module.py.jinja",
         "ikgen/templates/cpp/header.hpp.jinja",
-        "ikgen/runtime/cpp/lanes.hpp",
+        "ikgen/runtime/cpp/arrays/lanes.hpp",
         "ikgen/templates/cmake/ikgenConfig.cmake",
         "ikgen/templates/ament/ikgen_ament/package.xml",
         "ikgen/projects/cmake_root/cmake/ikgenConfig.cmake",

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.routines import compiled_header, feed
+from tests.support.runtime_files import HEADERS
 
 from ikgen.emit.cpp.header_bundle import RUNTIME, bundle
 
 Array = NDArray[np.float64]
 
-HEADERS = sorted(path.name for path in RUNTIME.glob("*.hpp"))
 SOLVE = r"""
 #include <cstdio>
 #include <vector>

@@ -7,11 +7,11 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "lane_angle.hpp"
-#include "lane_solve.hpp"
-#include "pose_entries.hpp"
-#include "pose_solver.hpp"
-#include "single_solve.hpp"
+#include "arrays/lane_angle.hpp"
+#include "solving/lane_solve.hpp"
+#include "arm/pose_entries.hpp"
+#include "arguments/pose_solver.hpp"
+#include "solving/single_solve.hpp"
 
 namespace elbow {
 

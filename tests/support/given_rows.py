@@ -12,9 +12,9 @@ from tests.support.chains import rotation, translation
 
 from ikgen.elimination.routine import runtime_policy
 from ikgen.program.policy import SolvePolicy
-from ikgen.runtime.python.chain_kinematics import chain_of
-from ikgen.runtime.python.solved_arm import Arm
-from ikgen.runtime.python.whole_pose import PoseTask
+from ikgen.runtime.python.arm.chain_kinematics import chain_of
+from ikgen.runtime.python.arm.solved_arm import Arm
+from ikgen.runtime.python.arm.whole_pose import PoseTask
 
 Array = NDArray[np.float64]
 FRAMES = np.array(

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from ikgen.elimination.routine import runtime_policy
 from ikgen.program.policy import SolvePolicy
-from ikgen.runtime.python.chain_kinematics import Motion, forward
-from ikgen.runtime.python.general_6r import Plan, six_joint_rows
-from ikgen.runtime.python.six_joints import six_joints
+from ikgen.runtime.python.arm.chain_kinematics import Motion, forward
+from ikgen.runtime.python.elimination.general_6r import Plan, six_joint_rows
+from ikgen.runtime.python.elimination.six_joints import six_joints
 
 __all__ = ["assert_solved_as_each_alone"]
 

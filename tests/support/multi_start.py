@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 
 from ikgen.elimination.routine import runtime_policy
 from ikgen.program.policy import SolvePolicy
-from ikgen.runtime.python.chain_kinematics import Motion, chain_of
-from ikgen.runtime.python.refinement import newton
-from ikgen.runtime.python.solution_rows import distinct_rows
-from ikgen.runtime.python.whole_pose import PoseTask
+from ikgen.runtime.python.arm.chain_kinematics import Motion, chain_of
+from ikgen.runtime.python.arm.whole_pose import PoseTask
+from ikgen.runtime.python.newton.refinement import newton
+from ikgen.runtime.python.rows.solution_rows import distinct_rows
 
 __all__ = ["apart", "searched"]
 

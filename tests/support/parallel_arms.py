@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from tests.elimination.test_elimination import dh_frames
 
-from ikgen.runtime.python.parallel_links import MEETING, PLAIN, UPRIGHT
-from ikgen.runtime.python.rigid_motion import inverses
+from ikgen.runtime.python.arrays.rigid_motion import inverses
+from ikgen.runtime.python.elimination.parallel_links import MEETING, PLAIN, UPRIGHT
 
 __all__ = ["KINDS", "exchanged", "flipped", "parallel_frames", "rounded_frames"]
 

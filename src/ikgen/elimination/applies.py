@@ -12,8 +12,8 @@ from ikgen.elimination.coupled_plans import choose_coupled
 from ikgen.elimination.loop_frames import held_frames
 from ikgen.elimination.plan import EliminationPlan, choose_plan
 from ikgen.model.dh import DHChain, DHRow
-from ikgen.runtime.python.chain_kinematics import Motion
-from ikgen.runtime.python.six_joints import with_tool_joint
+from ikgen.runtime.python.arm.chain_kinematics import Motion
+from ikgen.runtime.python.elimination.six_joints import with_tool_joint
 
 __all__ = ["axis_motions", "elimination_plan"]
 

@@ -27,8 +27,8 @@ from ikgen.elimination.plan import (
 from ikgen.elimination.routine import Elimination, Plan, initial_residuals
 from ikgen.kinematics.rigid import read_only
 from ikgen.model.joint_tree import Matrix
-from ikgen.runtime.python.chain_kinematics import Chain, Motion, chain_of, forward, jacobian
-from ikgen.runtime.python.coupled_angle import (
+from ikgen.runtime.python.arm.chain_kinematics import Chain, Motion, chain_of, forward, jacobian
+from ikgen.runtime.python.elimination.coupled_angle import (
     CoupledAngle,
     coupled_and_others,
     coupled_determinants,

@@ -14,10 +14,10 @@ import numpy as np
 from ikgen.elimination.loop_frames import forward, over, typical_length
 from ikgen.elimination.routine import Elimination, Plan, Turning, six_joints_batch
 from ikgen.model.joint_tree import Matrix
-from ikgen.runtime.python.general_6r import Candidates
-from ikgen.runtime.python.loop_equations import loop_constants
-from ikgen.runtime.python.parallel_axes import parallel_candidates
-from ikgen.runtime.python.parallel_links import (
+from ikgen.runtime.python.elimination.general_6r import Candidates
+from ikgen.runtime.python.elimination.loop_equations import loop_constants
+from ikgen.runtime.python.elimination.parallel_axes import parallel_candidates
+from ikgen.runtime.python.elimination.parallel_links import (
     MEETING,
     PLAIN,
     UPRIGHT,

@@ -23,8 +23,8 @@ from ikgen.elimination.resultant import RESULTANTS, Resultant, root_shifts
 from ikgen.elimination.routine import Elimination, Plan, Turning, finder, initial_residuals
 from ikgen.kinematics.rigid import read_only
 from ikgen.model.joint_tree import Matrix
-from ikgen.runtime.python.chain_kinematics import Motion
-from ikgen.runtime.python.coupled_angle import coupled_and_others
+from ikgen.runtime.python.arm.chain_kinematics import Motion
+from ikgen.runtime.python.elimination.coupled_angle import coupled_and_others
 
 __all__ = [
     "EliminationPlan",

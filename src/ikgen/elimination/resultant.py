@@ -14,7 +14,13 @@ from itertools import product
 import numpy as np
 
 from ikgen.model.joint_tree import Matrix
-from ikgen.runtime.python.loop_equations import XS, YS, ZS, loop_constants, loop_equations
+from ikgen.runtime.python.elimination.loop_equations import (
+    XS,
+    YS,
+    ZS,
+    loop_constants,
+    loop_equations,
+)
 
 __all__ = ["RESULTANTS", "Resultant", "root_shifts"]
 

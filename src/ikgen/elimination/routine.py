@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from ikgen.elimination.loop_frames import over
 from ikgen.model.joint_tree import Matrix
 from ikgen.program.policy import SolvePolicy
-from ikgen.runtime.python.general_6r import (
+from ikgen.runtime.python.arm.solve_policy import Policy
+from ikgen.runtime.python.elimination.general_6r import (
     Elimination,
     Finder,
     Plan,
@@ -19,12 +20,11 @@ from ikgen.runtime.python.general_6r import (
     refined_rows,
     six_joint_rows,
 )
-from ikgen.runtime.python.one_slide import one_slide_candidates
-from ikgen.runtime.python.six_joints import six_joints
-from ikgen.runtime.python.solution_rows import Turning, distinct_rows
-from ikgen.runtime.python.solve_policy import Policy
-from ikgen.runtime.python.three_slides import three_slide_candidates
-from ikgen.runtime.python.two_slides import two_slide_candidates
+from ikgen.runtime.python.elimination.one_slide import one_slide_candidates
+from ikgen.runtime.python.elimination.six_joints import six_joints
+from ikgen.runtime.python.elimination.three_slides import three_slide_candidates
+from ikgen.runtime.python.elimination.two_slides import two_slide_candidates
+from ikgen.runtime.python.rows.solution_rows import Turning, distinct_rows
 
 __all__ = [
     "Elimination",

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ikgen.equations.knowledge import Variable
     from ikgen.model.dh import DHChain
     from ikgen.program.statements import Program
-    from ikgen.runtime.python.arm_angle import ArmAngle as HeldAngle
+    from ikgen.runtime.python.held.arm_angle import ArmAngle as HeldAngle
     from ikgen.solver.solution_graph import SolutionGraph
 
 __all__ = ["with_fewest_sets"]

@@ -24,7 +24,7 @@ from ikgen.library.solver_cache import cache_folder
 from ikgen.processes.scratch_folder import ScratchFolder
 
 if TYPE_CHECKING:
-    from ikgen.runtime.python.solutions import Solutions
+    from ikgen.runtime.python.rows.solutions import Solutions
 
 __all__ = ["CompiledArm", "compile"]
 

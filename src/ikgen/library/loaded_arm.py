@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ikgen.generation.request import Outputs, Request
     from ikgen.library.arm_derivation import ArmDerivation
     from ikgen.library.solver_cache import SolverEntry
-    from ikgen.runtime.python.solutions import Solutions
+    from ikgen.runtime.python.rows.solutions import Solutions
     from ikgen.verify.verification_report import VerificationReport
 
 __all__ = ["Arm"]

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from ikgen.kinematics.elbow_geometry import elbow_geometry
 from ikgen.model.dh import DHChain
-from ikgen.runtime.python.arm_angle import ArmAngle
-from ikgen.runtime.python.chain_kinematics import chain_of
+from ikgen.runtime.python.arm.chain_kinematics import chain_of
+from ikgen.runtime.python.held.arm_angle import ArmAngle
 
 __all__ = ["held_angle", "held_values"]
 

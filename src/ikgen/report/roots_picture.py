@@ -13,8 +13,8 @@ from ikgen.kinematics.forward import row_values
 from ikgen.model.dh import DHChain
 from ikgen.report.document import Block, Paragraph, Picture
 from ikgen.report.worked_example import Array, WorkedExample
-from ikgen.runtime.python.hidden_angle import loop_resultant
-from ikgen.runtime.python.loop_equations import loop_constants, loop_equations
+from ikgen.runtime.python.elimination.hidden_angle import loop_resultant
+from ikgen.runtime.python.elimination.loop_equations import loop_constants, loop_equations
 from ikgen.tasks import AXES
 
 __all__ = ["hidden_roots", "loop_order", "roots_blocks"]

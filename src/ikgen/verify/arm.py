@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.runtime.python.arm_angle import ArmAngle
+from ikgen.runtime.python.held.arm_angle import ArmAngle
 from ikgen.verify.oracle import Oracle
 from ikgen.verify.screws import ScrewChain
 from ikgen.verify.task_space import TaskSpace

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.model.dh import HELD_ANGLE
-from ikgen.runtime.python.arm_angle import ArmAngle
+from ikgen.runtime.python.held.arm_angle import ArmAngle
 from ikgen.tasks import find_task
 from ikgen.verify import checks, completeness, coverage, interface_checks
 from ikgen.verify.agreement import check_agreement

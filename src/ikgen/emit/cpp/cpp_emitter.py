@@ -158,23 +158,30 @@ def _blocks(module: SolverModule) -> tuple[int, ...]:
 def _headers(module: SolverModule) -> list[str]:
     """The runtime's headers that the module needs, without those that they include."""
     routines = sorted({lv.call.routine for lv in module.program.levels if lv.call is not None})
-    needed = ["lane_angle.hpp", "single_solve.hpp" if _careful(module) else "lane_solve.hpp"]
-    needed += ["routine_roots.hpp"] * bool(routines)
-    needed += [_ROUTINES.get(name, f"{name}.hpp") for name in routines]
-    needed += ["parallel_6r.hpp"] * bool(_parallel_kind(module))
-    needed += ["tool_joint.hpp"] * (module.plan is not None and module.plan.tool is not None)
-    needed += ["lane_refinement.hpp"] * _newton(module)
+    needed = [
+        "arrays/lane_angle.hpp",
+        "solving/single_solve.hpp" if _careful(module) else "solving/lane_solve.hpp",
+    ]
+    needed += ["roots/routine_roots.hpp"] * bool(routines)
+    needed += [_ROUTINES.get(name, f"elimination/{name}.hpp") for name in routines]
+    needed += ["elimination/parallel_6r.hpp"] * bool(_parallel_kind(module))
+    needed += ["arm/tool_joint.hpp"] * (module.plan is not None and module.plan.tool is not None)
+    needed += ["newton/lane_refinement.hpp"] * _newton(module)
     if module.dh.arm_angle:
-        needed += ["lane_elbow.hpp" if _newton(module) else "arm_angle_motion.hpp"]
-    needed += ["displacement.hpp"] * bool(module.beside)
-    task = "whole_pose.hpp" if module.task == "pose" else "pose_entries.hpp"
-    needed += [task, "pose_solver.hpp", "projection.hpp"]
-    searches = ("row_preference.hpp", "held_search.hpp", "held_grid_search.hpp")
+        needed += ["held/lane_elbow.hpp" if _newton(module) else "held/arm_angle_motion.hpp"]
+    needed += ["held/displacement.hpp"] * bool(module.beside)
+    task = "arm/whole_pose.hpp" if module.task == "pose" else "arm/pose_entries.hpp"
+    needed += [task, "arguments/pose_solver.hpp", "solving/projection.hpp"]
+    searches = ("held/row_preference.hpp", "held/held_search.hpp", "held/held_grid_search.hpp")
     return [*needed, searches[min(len(module.held), 2)]]
 
 
-_ROUTINES = {"general_6r": "general_6r_arm.hpp"}
-"""Headers of routines that are not named after them."""
+_ROUTINES = {
+    "general_6r": "elimination/general_6r_arm.hpp",
+    "trig_quartic": "roots/trig_quartic.hpp",
+    "trig_quartic_wide": "roots/trig_quartic_wide.hpp",
+}
+"""Headers of routines that are no elimination named after them."""
 
 _PARALLEL_KINDS = ("kPlain", "kUpright", "kMeeting")
 

@@ -15,9 +15,9 @@ from ikgen.emit.cpp.settled_conditions import ArmFacts, without_other_arms
 __all__ = ["RUNTIME", "Bundle", "bundle", "bundle_for"]
 
 RUNTIME = Path(__file__).resolve().parents[2] / "runtime" / "cpp"
-"""Where the headers are: `namespace ikgen_runtime`, local includes by file name."""
+"""Where the headers are: `namespace ikgen_runtime`, local includes as `folder/name.hpp`."""
 
-_LOCAL = re.compile(r'#include "([\w.]+)"\n')
+_LOCAL = re.compile(r'#include "([\w./]+)"\n')
 _SYSTEM = re.compile(r"#include <[\w./]+>\n")
 _CHOSEN = re.compile(r"#if [^\n]*\n(?:(?:#include|#elif|#else)[^\n]*\n)+#endif\n")
 _DROPPED = re.compile(
@@ -105,7 +105,7 @@ def _header(name: str) -> _Header:
     local, system = _LOCAL.findall(text), _SYSTEM.findall(text)
     for pattern in (_LOCAL, _SYSTEM, _DROPPED):
         text = pattern.sub("", text)
-    title = f"// --- {name.removesuffix('.hpp').replace('_', ' ')} "
+    title = f"// --- {Path(name).stem.replace('_', ' ')} "
     return _Header(tuple(local), tuple(system), chosen, f"{_tidy(text)}\n", f"{title:-<100}\n")
 
 

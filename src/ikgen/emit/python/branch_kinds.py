@@ -13,7 +13,7 @@ _SIDES = 8
 
 def branch_kind(module: SolverModule) -> str:
     """ "names" (shoulder, elbow, wrist), "number" (of the closed form's branch), or "orientation" (of the
-    Jacobian), as `ikgen.runtime.python.row_branches` has them."""
+    Jacobian), as `ikgen.runtime.python.rows.row_branches` has them."""
     if module.plan is not None:
         return "orientation"
     return "names" if _has_sides(module) else "number"

@@ -20,7 +20,7 @@ from ikgen.emit.python.reached_definitions import Key
 from ikgen.emit.python.settled_branches import SOME, Facts
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
-from ikgen.runtime.python.solve_policy import Policy
+from ikgen.runtime.python.arm.solve_policy import Policy
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -97,10 +97,10 @@ def known_facts(module: SolverModule) -> Facts:
 def _types(module: SolverModule) -> dict[Key, Key]:
     """The classes that the module has of what the runtime knows by protocols."""
     whole = module.reads.whole_pose
-    task = ("whole_pose", "PoseTask") if whole else ("pose_entries", "EntriesTask")
-    out = {("task_interface", "Task"): task} if whole or module.plan is None else {}
+    task = ("arm.whole_pose", "PoseTask") if whole else ("arm.pose_entries", "EntriesTask")
+    out = {("arm.task_interface", "Task"): task} if whole or module.plan is None else {}
     if module.dh.arm_angle:
-        out["solved_arm", "HeldAngle"] = ("arm_angle", "ArmAngle")
+        out["arm.solved_arm", "HeldAngle"] = ("held.arm_angle", "ArmAngle")
     return out
 
 

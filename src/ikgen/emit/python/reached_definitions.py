@@ -35,14 +35,15 @@ class Reached:
         """Those of which something is used, each after those that it imports."""
         order: dict[str, None] = {}
         used = {module for module, _ in self.names}
-        for module in sorted(used):
+        for module in sorted(used, key=_alone):
             self._add_after_imports(module, order)
         return tuple(self._source(name) for name in order if name in used)
 
     def _add_after_imports(self, name: str, order: dict[str, None]) -> None:
         """Adds a module, and before it those that it imports, each after its own, but for what is there."""
         if name not in order:
-            for module, _ in self._source(name).internal.values():
+            imported = {module for module, _ in self._source(name).internal.values()}
+            for module in sorted(imported, key=_alone):
                 self._add_after_imports(module, order)
             order[name] = None
 
@@ -77,7 +78,7 @@ class Reached:
         if key in self.names:
             return
         if name in self._taken and self._shell.internal.get(name) != key:
-            name = f"_{key[0]}_{name.lstrip('_')}"
+            name = f"_{_alone(key[0])}_{name.lstrip('_')}"
         self.names[key] = name
         self._taken.add(name)
         one = _definition(self._source(key[0]), key[1])
@@ -95,6 +96,11 @@ class Reached:
             if needed is not None:
                 needed = self._instead.get(needed, needed)
                 self._waiting.append((needed, _private(needed[1])))
+
+
+def _alone(module: str) -> str:
+    """A module's name without its folder: no two have the same."""
+    return module.rpartition(".")[2]
 
 
 def _private(name: str) -> str:

@@ -83,7 +83,8 @@ class Definition:
 
 @dataclass(frozen=True, slots=True)
 class RuntimeSource:
-    """`internal`: name -> (module, name there) of what it imports of the runtime; `external`: what it
+    """`name`: `folder.module`; `internal`: name -> (module, name
+    there) of what it imports of the runtime; `external`: what it
     imports else; `imports`: the lines (first, last, from 1) from its first import to its last."""
 
     name: str
@@ -96,8 +97,8 @@ class RuntimeSource:
 
 @cache
 def read_source(name: str, facts: Facts = ()) -> RuntimeSource:
-    """The runtime's module of a name, without what an arm of which `facts` are known never reaches."""
-    text = (files(PACKAGE) / f"{name}.py").read_text(encoding="utf-8")
+    """The runtime's `folder.module`, without what an arm of which `facts` are known never reaches."""
+    text = (files(PACKAGE) / f"{name.replace('.', '/')}.py").read_text(encoding="utf-8")
     left = settled(text, facts)
     return read_source(name) if facts and left == text else taken_apart(name, left)
 

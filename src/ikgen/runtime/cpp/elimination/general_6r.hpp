@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+
+#include "elimination/general_6r_eigenproblem.hpp"
+#include "elimination/general_6r_search.hpp"
+#include "elimination/six_joint_arm.hpp"
+
+namespace ikgen_runtime {
+
+// --- general_6r: all real solutions of any 6R chain --------------------------------------------------
+// Elimination of Raghavan & Roth (1990, 1993): by a trigonometric resultant, which says itself where it is not
+// sure, and then by an eigenproblem.
+
+namespace g6 {
+
+template <class Plan>
+inline void solve_6r(const Chain& F, const Frame& T, Solutions& out) noexcept {
+  if (!solve_resultant<run_resultant>(F, T, Plan::kResultants, out))
+    solve_in_runs<run_eigenproblem>(F, T, kAllTurn, Plan::kEigenproblems, out);
+}
+
+}  // namespace g6
+
+// All real solutions of F_0 Rz(q_1) F_1 ... Rz(q_6) F_6 = T, sorted. F: constant rigid transforms, the upper three
+// rows of each by rows; T: the same. Plan: kLength (m), a typical size of the arm; kResultants (start, reverse) and
+// kEigenproblems (start, reverse, swap), arrays of eliminations in order of preference, the former perhaps empty.
+// Joint angles are in (-pi, pi], distinct, and verified to 0.5e-9 (lengths over kLength).
+template <class Plan>
+inline void general_6r(const double (&F)[7][12], const double (&T)[12], g6::Solutions& out) noexcept {
+  out.count = 0;
+  g6::solve_6r<Plan>(g6::chain_of<Plan>(F), g6::scaled_frame<Plan>(T), out);
+  g6::sort_rows(g6::kAllTurn, out);
+}
+
+}  // namespace ikgen_runtime

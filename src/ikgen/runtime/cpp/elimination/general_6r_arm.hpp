@@ -1,0 +1,20 @@
+#pragma once
+
+#include "elimination/general_6r.hpp"
+#include "elimination/six_joint_arm.hpp"
+
+namespace ikgen_runtime {
+
+// --- general_6r: the elimination for an arm, its held joints at given values -------------------------
+
+struct General6rMethod {
+  template <class Plan>
+  static void solve(const g6::Chain& F, const g6::Frame& T, const g6::Turning&, g6::Solutions& out) noexcept {
+    g6::solve_6r<Plan>(F, T, out);
+  }
+};
+
+// Arm: as for SixJointArm, its Plan as for general_6r.
+template <class Arm> struct General6r : SixJointArm<Arm, General6rMethod> {};
+
+}  // namespace ikgen_runtime

@@ -1,0 +1,149 @@
+#pragma once
+
+#include <cstddef>
+
+#include "elimination/general_6r_candidate.hpp"
+#include "elimination/general_6r_solutions.hpp"
+
+namespace ikgen_runtime {
+
+// --- an elimination of six joints for an arm, its held joints at given values --------------------------
+
+namespace g6 {
+
+inline constexpr double kNearlySingular = 1e-3;  // smallest singular value of the slope, lengths over the arm's
+
+// The least singular value of the chain's slope, from above: inverse iteration.
+template <class Frames>
+inline double least_singular(const Frames& F, const Turning& turning, const double (&values)[6]) noexcept {
+  Vector q;
+  for (Index i = 0; i < 6; ++i) q[i] = values[i];
+  const State at = residual(F, F[0], q, turning);
+  Vector x = {1.0, -0.7, 0.4, 0.9, -0.3, 0.6};
+  double size = 0.0;
+  for (int pass = 0; pass < 4; ++pass) {
+    double square = 0.0;
+    for (const double e : x) square += e * e;
+    for (double& e : x) e /= std::sqrt(square) + 1e-300;
+    Vector y{};
+    for (Index k = 0; k < 6; ++k)
+      for (Index i = 0; i < 6; ++i) y[k] += at.J(k, i) * x[i];
+    size = 0.0;
+    for (const double e : y) size += e * e;
+    x = inverse_normal(at, x, 1e-18);
+  }
+  return std::sqrt(size);
+}
+
+// Upper rows of a transform, its lengths over the plan's.
+template <class Plan>
+inline Frame scaled_frame(const double (&x)[12]) noexcept {
+  Frame out;
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t c = 0; c < 3; ++c) out.R(r, c) = x[4 * r + c];
+    out.p[r] = x[4 * r + 3] * (1.0 / Plan::kLength);
+  }
+  return out;
+}
+
+template <class Plan, class Frames = Chain, int N>
+inline Frames chain_of(const double (&F)[N][12]) noexcept {
+  Frames out;
+  for (std::size_t n = 0; n < std::size_t{N}; ++n) out[n] = scaled_frame<Plan>(F[n]);
+  return out;
+}
+
+}  // namespace g6
+
+// Arm: kMotions, in order along the chain, each with `joint` and `revolute`; kFrames, the upper rows of the
+// constants around them; kHeld by joint; kMaxSolutions; Plan, with kLength (m), a typical size of the arm. Six
+// joints are not held. Method::solve<Plan>(chain, pose, turning, found): the elimination, for the chain of their axes,
+// which are six unless Frames has room for more.
+template <class Arm, class Method, class Frames = g6::Chain>
+struct SixJointArm {
+  static constexpr std::size_t kCount = sizeof(Arm::kMotions) / sizeof(Arm::kMotions[0]);
+  static constexpr int kFrames = sizeof(Frames) / sizeof(g6::Frame);
+  using Plan = typename Arm::Plan;
+
+  // The chain of the moving axes, the held joints' values (cosine and sine, or a distance) merged into it.
+  static void merge(const double* held, double (&F)[kFrames][12]) noexcept {
+    g6::Frame frame = constant(0);
+    int n = 0;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const auto& motion = Arm::kMotions[i];
+      if (!is_held(motion.joint)) {
+        write(frame, F[n++]);
+        frame = constant(i + 1);
+        continue;
+      }
+      frame = motion.revolute ? g6::turn(frame, held[0], held[1]) : g6::slide(frame, held[0]);
+      held += motion.revolute ? 2 : 1;
+      frame = g6::compose(frame, constant(i + 1));
+    }
+    write(frame, F[n]);
+  }
+
+  // Per solution the cosine and sine of every moving joint's angle, or its length; how many. x: the pose by rows, then
+  // the held values.
+  template <std::size_t N>
+  static int branches(const double* x, double (&roots)[Arm::kMaxSolutions][N]) noexcept {
+    double F[kFrames][12], T[12];
+    merge(x + 12, F);
+    for (int i = 0; i < 12; ++i) T[i] = x[i];
+    g6::Solutions found;
+    found.count = 0;
+    const g6::Turning turns = turning();
+    const Frames chain = g6::chain_of<Plan, Frames>(F);
+    Method::template solve<Plan>(chain, g6::scaled_frame<Plan>(T), turns, found);
+    g6::sort_rows(turns, found);
+    const bool crowded = found.count > Arm::kMaxSolutions;  // samples of a continuum go first
+    int count = 0;
+    for (int pass = 0; pass < (crowded ? 2 : 1); ++pass)
+      for (int k = 0; k < found.count && count < Arm::kMaxSolutions; ++k) {
+        const g6::Solution& row = found.rows[static_cast<std::size_t>(k)];
+        if (crowded && (g6::least_singular(chain, turns, row.q) < g6::kNearlySingular) != (pass == 1)) continue;
+        write(row, turns, roots[count++]);
+      }
+    return count;
+  }
+
+ private:
+  static g6::Turning turning() noexcept {
+    g6::Turning out{};
+    std::size_t place[sizeof(Arm::kHeld)] = {}, n = 0;  // of each joint among those that move
+    for (std::size_t j = 0; j < sizeof(Arm::kHeld); ++j) {
+      place[j] = n;
+      n += Arm::kHeld[j] ? 0 : 1;
+    }
+    for (const auto& motion : Arm::kMotions)
+      if (!is_held(motion.joint)) out[place[motion.joint]] = motion.revolute;
+    return out;
+  }
+
+  static constexpr bool is_held(int joint) noexcept { return Arm::kHeld[static_cast<std::size_t>(joint)]; }
+
+  static g6::Frame constant(std::size_t i) noexcept {
+    g6::Frame out;
+    for (std::size_t r = 0; r < 3; ++r) {
+      for (std::size_t c = 0; c < 3; ++c) out.R(r, c) = Arm::kFrames[i][r][c];
+      out.p[r] = Arm::kFrames[i][r][3];
+    }
+    return out;
+  }
+
+  static void write(const g6::Frame& frame, double (&to)[12]) noexcept {
+    for (std::size_t r = 0; r < 3; ++r) {
+      for (std::size_t c = 0; c < 3; ++c) to[4 * r + c] = frame.R(r, c);
+      to[4 * r + 3] = frame.p[r];
+    }
+  }
+
+  static void write(const g6::Solution& row, const g6::Turning& turns, double* to) noexcept {
+    for (std::size_t i = 0; i < 6; ++i) {
+      *to++ = turns[i] ? row.c[i] : row.q[i] * Plan::kLength;
+      if (turns[i]) *to++ = row.s[i];
+    }
+  }
+};
+
+}  // namespace ikgen_runtime

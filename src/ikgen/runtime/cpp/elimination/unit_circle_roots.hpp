@@ -1,0 +1,123 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+
+#include "elimination/general_6r_equations.hpp"
+
+namespace ikgen_runtime {
+
+// --- roots of a trigonometric polynomial of any degree ---------------------------------------------------
+// All roots z of sum c_k z^k at once, by the iteration of Ehrlich (1967) and Aberth (1973).
+
+namespace g6 {
+
+// Without the library's care for infinities: where there is one, the result is none either.
+inline Complex product(Complex a, Complex b) noexcept {
+  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+inline Complex reciprocal(Complex z) noexcept { return std::conj(z) / std::norm(z); }
+
+// p(z) / p'(z), by powers of 1 / z outside the unit circle so that nothing overflows.
+template <Index N>
+inline Complex newton_ratio(const std::array<Complex, N>& c, Complex z) noexcept {
+  const bool outside = std::norm(z) > 1.0;
+  const Complex w = outside ? reciprocal(z) : z;
+  Complex value = outside ? c[0] : c[N - 1], slope = 0.0;
+  for (Index k = 1; k < N; ++k) {
+    slope = product(slope, w) + value;
+    value = product(value, w) + (outside ? c[k] : c[N - 1 - k]);
+  }
+  if (!outside) return product(value, reciprocal(slope));
+  const Complex rest = static_cast<double>(N - 1) * value - product(w, slope);
+  return product(value, reciprocal(product(w, rest)));
+}
+
+template <Index N>
+inline std::array<Complex, N - 1> polynomial_roots(const std::array<Complex, N>& c) noexcept {
+  std::array<Complex, N - 1> z;
+  for (Index i = 0; i + 1 < N; ++i) {  // radii on both sides, lest roots on the circle be met in pairs
+    const double angle = 2.0 * kPi * static_cast<double>(i) / static_cast<double>(N - 1) + 0.4;
+    z[i] = std::polar(i % 3 == 0 ? 1.1 : i % 3 == 1 ? 0.95 : 0.8, angle);
+  }
+  std::array<bool, N - 1> still{};
+  for (int round = 0; round < 60; ++round) {
+    bool all = true;
+    for (Index i = 0; i + 1 < N; ++i) {
+      if (still[i]) continue;
+      const Complex ratio = newton_ratio(c, z[i]);
+      if (!(std::norm(ratio) < 1e300)) continue;
+      Complex sum = 0.0;
+      for (Index j = 0; j + 1 < N; ++j)
+        if (j != i && z[j] != z[i]) sum += reciprocal(z[i] - z[j]);
+      const Complex step = product(ratio, reciprocal(1.0 - product(ratio, sum)));
+      if (!(std::norm(step) < 1e300)) continue;
+      z[i] -= step;
+      still[i] = std::norm(step) < 1e-30 * std::norm(z[i]);
+      all = all && still[i];
+    }
+    if (all) break;
+  }
+  return z;
+}
+
+// The angles of roots near the unit circle, of a polynomial of degree D with these values at n equidistant nodes from
+// `first` on; how many.
+template <Index D, Index n, std::size_t most>
+inline int circle_roots(const std::array<double, n>& values, double first, double accept,
+                        std::array<double, most>& angles) noexcept {
+  std::array<Complex, n> turn;
+  for (Index i = 0; i < n; ++i) {
+    const double angle = 2.0 * kPi * static_cast<double>(i) / static_cast<double>(n);
+    turn[i] = {std::cos(angle), -std::sin(angle)};
+  }
+  std::array<Complex, 2 * D + 1> c{};
+  for (Index k = 0; k <= D; ++k) {
+    for (Index i = 0; i < n; ++i) c[D + k] += values[i] * turn[k * i % n];
+    c[D - k] = std::conj(c[D + k]);
+  }
+  int count = 0;
+  for (const Complex& z : polynomial_roots(c))
+    if (std::abs(0.5 * std::log(std::norm(z) + 1e-300)) < accept)
+      angles[static_cast<Index>(count++)] = first + std::arg(z);
+  return count;
+}
+
+// Near a crowded angle: how far (rad), and the degree of polynomials of sines and cosines there.
+constexpr double kNear = 0.2;
+constexpr Index kClose = 20;
+
+// Puts the roots of a function of an angle that lie near `place` in place of those among the first `count` angles; how
+// many there are then. From its values at Chebyshev's nodes.
+template <class Function, std::size_t most>
+inline int look_closely(const Function& of, double place, double accept, std::array<double, most>& angles,
+                        int count) noexcept {
+  int kept = 0;
+  for (int i = 0; i < count; ++i) {
+    const double x = angles[static_cast<Index>(i)];
+    if (std::abs(std::remainder(x - place, 2.0 * kPi)) > 0.9 * kNear) angles[static_cast<Index>(kept++)] = x;
+  }
+  constexpr Index n = kClose + 1;
+  std::array<double, n> waves{}, last{}, next{}, now{};
+  for (Index i = 0; i < n; ++i) {
+    const double angle = kPi / static_cast<double>(n) * (static_cast<double>(i) + 0.5);
+    const double value = of(place + kNear * std::cos(angle)) / static_cast<double>(n);
+    for (Index k = 0; k < n; ++k) waves[k] += (k == 0 ? 1.0 : 2.0) * value * std::cos(static_cast<double>(k) * angle);
+  }
+  std::array<Complex, n> c{};
+  now[0] = 1.0;  // Chebyshev's polynomials by powers, one after the other
+  for (Index k = 0; k < n; ++k) {
+    for (Index j = 0; j <= k; ++j) c[j] += waves[k] * now[j];
+    for (Index j = 0; j < n; ++j) next[j] = (k == 0 ? 1.0 : 2.0) * (j == 0 ? 0.0 : now[j - 1]) - last[j];
+    last = now, now = next;
+  }
+  for (const Complex& x : polynomial_roots(c))
+    if (std::abs(x.imag()) < accept / kNear && std::abs(x.real()) <= 1.0)
+      angles[static_cast<Index>(kept++)] = place + kNear * x.real();
+  return kept;
+}
+
+}  // namespace g6
+}  // namespace ikgen_runtime

@@ -1,0 +1,73 @@
+// Which rows are better than others.
+#pragma once
+
+#include "held/least_singular_value.hpp"
+#include "solving/path_following.hpp"
+#include "rows/solution_rows.hpp"
+
+namespace ikgen_runtime {
+
+// A: as for PoseError and SolutionRows; Prefer, its preferences.
+template <class A> struct RowPreference {
+  using Prefer = typename A::Prefer;
+  typename A::Joints wanted;
+  double weight[A::kDof];
+  typename A::Options options;
+  Prefer prefer;
+
+  // Near to the seed, or the middle of the limits, without a seed too. The object must not be moved.
+  RowPreference(const double* seed, Prefer kind, bool limits) noexcept : prefer(kind) {
+    if (seed && !SolutionRows<A>::finite(seed)) seed = nullptr;
+    for (int j = 0; j < A::kDof; ++j) {
+      const double low = A::kLower.data()[j], high = A::kUpper.data()[j];
+      const bool bounded = high - low < kInfinity, near = kind == Prefer::Near && seed;
+      const double half = std::max(0.5 * (high - low), 1e-6);
+      wanted.data()[j] = bounded && !near ? 0.5 * (low + high) : seed ? seed[j] : 0.0;
+      weight[j] = near ? 1.0 : bounded ? 1.0 / (half * half) : 0.0;
+    }
+    options.limits = limits;
+    options.seed = &wanted;
+  }
+  RowPreference(const RowPreference&) = delete;
+
+  // Puts a row on the turns that limits and preference ask for; false where it is outside the limits.
+  bool place(double* q) const noexcept {
+    for (int j = 0; j < A::kDof; ++j)
+      if (A::kHeld[j] && A::kRevolute[j] && !(A::kUpper.data()[j] - A::kLower.data()[j] < kInfinity))
+        q[j] += kTurn * std::nearbyint((wanted.data()[j] - q[j]) / kTurn);
+    return SolutionRows<A>::place(q, options);
+  }
+
+  // Less is better: the squared distance, or minus the smallest singular value of the task's Jacobian.
+  double cost(const double* q) const noexcept {
+    if (prefer == Prefer::Dexterous) return -smallest_singular_value(q);
+    double sum = 0.0;
+    for (int j = 0; j < A::kDof; ++j) sum += weight[j] * (q[j] - wanted.data()[j]) * (q[j] - wanted.data()[j]);
+    return sum;
+  }
+
+  static double smallest_singular_value(const double* q) noexcept {
+    Lanes<1> at[A::kDof];
+    for (int j = 0; j < A::kDof; ++j) at[j] = {q[j]};
+    return LeastSingularValue<A, 1>::of(at).v;
+  }
+};
+
+// Rows of `solve`, best first. Solver: as for PathStep.
+template <class A, class Solver>
+inline void order_rows(const Eigen::Isometry3d& pose, const double* seed, typename A::Prefer prefer, bool limits,
+                       typename A::Solutions& out) noexcept {
+  const RowPreference<A> preference(seed, prefer, limits);
+  typename A::Options options;
+  typename A::Joints near;
+  if (seed) {
+    std::copy_n(seed, A::kDof, near.data());
+    options.seed = &near;
+  }
+  options.limits = limits;
+  Solver::solve(pose, options, out);
+  for (int k = 0; k < out.count; ++k) preference.place(SolutionRows<A>::row(out, k));
+  SolutionRows<A>::sort(out, [&](const double* q) noexcept { return preference.cost(q); });
+}
+
+}  // namespace ikgen_runtime

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "arrays/small_matrix.hpp"
+
+namespace ikgen_runtime {
+
+// The damped Newton step (Levenberg 1944, Marquardt 1963) towards no error `e`, of slope V, `worst` its largest entry: at a
+// fold of the solution set damped steps halve it. X: double, or lanes.
+template <class Policy, class X, int Rows, int Columns>
+inline void damped_step(const X (&V)[Rows][Columns], const X (&e)[Rows], const X& worst, X (&x)[Columns]) noexcept {
+  using std::max;
+  using std::min;
+  const X bounded = min(worst, 1.0);
+  X A[Columns][Columns];
+  for (int i = 0; i < Columns; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      A[i][j] = V[0][i] * V[0][j];
+      for (int r = 1; r < Rows; ++r) A[i][j] = A[i][j] + V[r][i] * V[r][j];
+    }
+    A[i][i] = A[i][i] + max(Policy::kDamping * (bounded * bounded), Policy::kLeastDamping);
+    x[i] = V[0][i] * e[0];
+    for (int r = 1; r < Rows; ++r) x[i] = x[i] + V[r][i] * e[r];
+  }
+  factor(A);
+  substitute(A, x);
+  for (X& one : x) one = min(max(one, -Policy::kLargestStep), Policy::kLargestStep);
+}
+
+}  // namespace ikgen_runtime

@@ -1,0 +1,182 @@
+// Newton steps of all rows at once on the file's own chain.
+#pragma once
+
+#include "arm/joint_range.hpp"
+#include "arm/lane_aim.hpp"
+#include "arrays/lane_blocks.hpp"
+#include "arm/lane_chain.hpp"
+#include "rows/lane_rows.hpp"
+#include "arm/moving_joints.hpp"
+
+namespace ikgen_runtime {
+
+// The least squares solution of V d = e in lanes by V = Q R (modified Gram-Schmidt).
+template <int Rows, int Columns, int N> struct LaneFactors {
+  Lanes<N> V[Rows][Columns], R[Columns][Columns], inverse[Columns];
+  Lanes<N> pivot;  // the smallest diagonal entry of R
+
+  // Puts Q into the place of V.
+  [[gnu::always_inline]] void factor() noexcept {
+    for (int k = 0; k < Columns; ++k) {
+      Lanes<N> square = V[0][k] * V[0][k];
+      for (int e = 1; e < Rows; ++e) square = square + V[e][k] * V[e][k];
+      const Lanes<N> length = sqrt(max(square, 1e-200));
+      pivot = k == 0 ? length : min(pivot, length);
+      inverse[k] = 1.0 / length;
+      for (int e = 0; e < Rows; ++e) V[e][k] = V[e][k] * inverse[k];
+      for (int j = k + 1; j < Columns; ++j) {
+        R[k][j] = V[0][k] * V[0][j];
+        for (int e = 1; e < Rows; ++e) R[k][j] = R[k][j] + V[e][k] * V[e][j];
+        for (int e = 0; e < Rows; ++e) V[e][j] = V[e][j] - R[k][j] * V[e][k];
+      }
+    }
+  }
+
+  // d; e is left with what no d takes away.
+  [[gnu::always_inline]] void solve(Lanes<N> (&e)[Rows], Lanes<N> (&d)[Columns]) const noexcept {
+    for (int k = 0; k < Columns; ++k) {
+      d[k] = V[0][k] * e[0];
+      for (int i = 1; i < Rows; ++i) d[k] = d[k] + V[i][k] * e[i];
+      for (int i = 0; i < Rows; ++i) e[i] = e[i] - d[k] * V[i][k];
+    }
+    for (int k = Columns - 1; k >= 0; --k) {
+      for (int j = k + 1; j < Columns; ++j) d[k] = d[k] - R[k][j] * d[j];
+      d[k] = d[k] * inverse[k];
+    }
+  }
+};
+
+// Arm: as for LaneChain, LaneAim and MovingJoints; Task; kSize; Rows<P>; Policy; kBlocks, the joints in the order of
+// LaneBlocks, or none.
+template <class Arm> struct LaneNewton {
+  using Policy = typename Arm::Policy;
+  template <int P> using Rows = typename Arm::template Rows<P>;
+  static constexpr MovingJoints<Arm> kJoints{};
+  static constexpr int kTask = Arm::Task::kCount, kEquations = kTask + LaneAim<Arm, 1>::kCount;
+  static constexpr int kMoving = MovingJoints<Arm>::kCount;
+  static_assert(kMoving <= kEquations);
+  static constexpr bool kBlocks = !Arm::kBlocks.empty();
+  static constexpr double kRoundOff = 1e-14;  // of errors (rad, or m over the arm's size)
+  static constexpr double kUnmoved = 1e-3;  // of the pivot: rows that are moved by less stay the solutions that they are
+  template <int N> using Factors = std::conditional_t<kBlocks, LaneBlocks<N>, LaneFactors<kEquations, kMoving, N>>;
+
+  // Refines the rows that are real, and puts them into the range. What is not shown to be the one solution near its
+  // start stays rough.
+  template <int P>
+  static void refine(const Pose<P>& pose, const std::array<double, Arm::kFree>& held, const Range& range,
+                     Rows<P>& rows) noexcept {
+    constexpr int N = Rows<P>::kLanes < kNative ? Rows<P>::kLanes : kNative;
+    const LaneAim<Arm, N> aim(pose, held);
+    for (int at = 0; at < Rows<P>::kLanes; at += N) {
+      alignas(64) double real[std::size_t{N}];
+      int any = 0;
+      for (int i = 0; i < N; ++i) {
+        const int bits = static_cast<int>(rows.flags[at + i]);
+        real[i] = (bits & kReal) != 0 ? 1.0 : 0.0;
+        any |= bits & (kReal | kHit);
+      }
+      if (any == 0) continue;
+      const auto flags = bit((any & kHit) != 0 ? spread<N>(1.0) > 0.0 : spread<N>(-1.0) > 0.0, kHit);
+      refine_pack<P, N>(pose, aim, range, at, load<N>(real) > 0.5, flags, rows);
+    }
+  }
+
+  // The joint of a column of the slope.
+  static constexpr int column(int i) noexcept {
+    if constexpr (kBlocks) {
+      return Arm::kBlocks[static_cast<std::size_t>(i)];
+    } else {
+      return kJoints[i];
+    }
+  }
+
+  // The error at the chain's tip, and with `fresh` its slope.
+  template <int P, int N, class Slope>
+  static void compare(const Pose<P>& pose, const LaneAim<Arm, N>& aim, const LaneChain<Arm, N>& chain, bool fresh,
+                      Lanes<N> (&error)[kEquations], Slope& to) noexcept {
+    Lanes<N> t[3][4], slope[kEquations][Arm::kDof];
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 4; ++c) t[r][c] = spread<N>(pose.t[r][c]);
+    Arm::Task::error(t, chain.tip, error);
+    if constexpr (kEquations > kTask) aim.compare(error[kTask], slope[kTask]);
+    if (!fresh) return;
+    Lanes<N> J[6][Arm::kDof];
+    chain.jacobian(J);
+    Arm::Task::slope(chain.tip, J, slope);
+    for (int e = 0; e < kEquations; ++e)
+      for (int i = 0; i < kMoving; ++i) to.V[e][i] = slope[e][column(i)];
+  }
+
+ private:
+  template <int P, int N, bool H, bool F>
+  static void refine_pack(const Pose<P>& pose, const LaneAim<Arm, N>& aim, const Range& range, int at,
+                          const MaskOf<N, H>& given, const LanesOf<N, F>& flags, Rows<P>& rows) noexcept {
+    LaneChain<Arm, N> chain;
+    for (int j = 0; j < Arm::kDof; ++j) chain.q[j] = load<N>(rows.q[j] + at);
+    const Arrival<N> at_end = steps<P, N>(pose, aim, given, chain);
+    const Mask<N> real = given & !at_end.beside, good = at_end.good;
+    Mask<N> inside = real;
+    for (int j = 0; j < Arm::kDof; ++j) {
+      Lanes<N> q = chain.q[j];
+      if (Arm::kRevolute[j] && !Arm::kHeld[j]) q = q + select(q > kPi, -kTurn, select(-kPi > q, kTurn, 0.0));
+      const Placed<N> placed =
+          Arm::kRevolute[j] && !Arm::kHeld[j] ? place<Policy>(j, q, range) : clamp<Policy>(j, q, range);
+      inside = inside & placed.inside;
+      store(select(good, placed.q, load<N>(rows.q[j] + at)), rows.q[j] + at);
+    }
+    store((bit(real, kReal) + bit(good & inside, kFound)) + (bit(real & !good, kRough) + flags), rows.flags + at);
+  }
+
+  // Which lanes arrived at the one solution near their start, and which at a least error that is not 0.
+  template <int N> struct Arrival {
+    Mask<N> good, beside;
+  };
+
+  template <std::size_t M, int N> static Lanes<N> largest(const Lanes<N> (&x)[M]) noexcept {
+    Lanes<N> out = abs(x[0]);
+    for (std::size_t i = 1; i < M; ++i) out = max(out, abs(x[i]));
+    return out;
+  }
+
+  // Steps until all lanes are done, or as many as there may be.
+  template <int P, int N>
+  static Arrival<N> steps(const Pose<P>& pose, LaneAim<Arm, N> aim, const Mask<N>& real, LaneChain<Arm, N>& chain) noexcept {
+    Factors<N> factors;
+    Lanes<N> before = spread<N>(Policy::kFarthestStart), rest = before;
+    Mask<N> good = real, done = !real;
+    chain.start();
+    aim.start(chain.q);
+    for (int k = 0; k < Policy::kLaneSteps; ++k) {
+      Lanes<N> error[kEquations], d[kMoving], step[Arm::kDof];
+      chain.forward();
+      const bool fresh = k != 2 || !all((!good) | (Policy::kNear > before));
+      compare<P, N>(pose, aim, chain, fresh, error, factors);
+      if (fresh) factors.factor();
+      const Lanes<N> worst = largest(error);
+      factors.solve(error, d);
+      const Lanes<N> size = largest(d);
+      // steps that are round-off; those near singularities are as much longer as these enlarge it
+      const Mask<N> still = (Policy::kConverged > size) | ((kRoundOff > worst) & (kUnmoved * factors.pivot > size));
+      // Newton's method contracts this fast only near the one solution there (Deuflhard 2004, theorem 2.1)
+      const Lanes<N> bound = k == 0 ? min(before, Policy::kPivotShare * factors.pivot) : Policy::kContraction * before;
+      good = good & ((bound > size) | still) & (factors.pivot > Policy::kLeastPivot);
+      for (auto& none : step) none = spread<N>(0.0);
+      for (int i = 0; i < kMoving; ++i) step[column(i)] = select(good, d[i], 0.0);
+      chain.add(step);
+      rest = largest(error);
+      if (k > 0) {
+        // over the square of the step before; what was small in it may be a hundred times as much in the next
+        const Lanes<N> next = (fresh ? 100.0 * size : before) * (size * size);
+        done = (!good) | (Policy::kConverged * (before * before) > next) | still;
+        if (all(done)) break;
+      }
+      chain.turn(step);
+      aim.move(step);
+      before = size;
+    }
+    const Mask<N> ended = good & done, far = rest > Policy::kLeastMiss;
+    return {ended & (Policy::kArrived > rest), ended & far};
+  }
+};
+
+}  // namespace ikgen_runtime

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstddef>
+
+#include "rows/lane_rows.hpp"
+#include "arm/moving_joints.hpp"
+#include "arm/pose_error.hpp"
+
+namespace ikgen_runtime {
+
+// Arm: as for PoseError; kHeld, a flag a joint.
+template <class Arm> struct RankLoss {
+  static constexpr MovingJoints<Arm> kJoints{};
+  static constexpr int kMoving = MovingJoints<Arm>::kCount, kEquations = PoseError<Arm>::kCount;
+  static constexpr int kRank = kMoving < kEquations ? kMoving : kEquations;
+
+  // Whether the slope V at q has a singular value below `bound`: V V^T - bound^2, or V^T V - bound^2 where that is
+  // smaller, is not positive definite then.
+  static bool below(const double* q, double bound) noexcept {
+    const PoseError<Arm> at(q, HeldAim<Arm>::own(q));
+    return !above(at.slope, bound);
+  }
+
+  // Which rows in lanes are real and have no such value. Not for arms that hold the arm angle.
+  template <class Rows> static void regular(const Rows& rows, double bound, bool (&out)[Rows::kLanes]) noexcept {
+    constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;
+    static_assert(PoseError<Arm>::kTask == kEquations);
+    for (int at = 0; at < Rows::kLanes; at += N) {
+      bool any = false;
+      for (int i = at; i < at + N; ++i) {
+        out[i] = (static_cast<int>(rows.flags[i]) & kReal) != 0;
+        any = any || out[i];
+      }
+      if (!any) continue;
+      Lanes<N> q[Arm::kDof], J[6][Arm::kDof], slope[kEquations][Arm::kDof];
+      for (int j = 0; j < Arm::kDof; ++j) q[j] = load<N>(rows.q[j] + at);
+      Arm::Task::slope(MotionChain<Arm>::forward(q, J), J, slope);
+      alignas(64) double far[std::size_t{N}];
+      store(above(slope, bound), far);
+      for (int i = 0; i < N; ++i) out[at + i] = out[at + i] && far[i] > 0.5;
+    }
+  }
+
+ private:
+  template <class X> static auto above(const X (&slope)[kEquations][Arm::kDof], double bound) noexcept {
+    X A[kRank][kRank];
+    for (int a = 0; a < kRank; ++a)
+      for (int b = 0; b <= a; ++b) {
+        if constexpr (kMoving < kEquations) {
+          A[a][b] = slope[0][kJoints[a]] * slope[0][kJoints[b]];
+          for (int e = 1; e < kEquations; ++e) A[a][b] = A[a][b] + slope[e][kJoints[a]] * slope[e][kJoints[b]];
+        } else {
+          A[a][b] = slope[a][kJoints[0]] * slope[b][kJoints[0]];
+          for (int k = 1; k < kMoving; ++k) A[a][b] = A[a][b] + slope[a][kJoints[k]] * slope[b][kJoints[k]];
+        }
+        if (a == b) A[a][b] = A[a][b] - bound * bound;
+      }
+    factor(A);
+    return definite(A);
+  }
+};
+
+}  // namespace ikgen_runtime

@@ -1,0 +1,179 @@
+// Solutions on what is a continuum of the geometry that was solved, and none of the file's. Along it the other joints take
+// the pose's error away but for one direction (Lyapunov and Schmidt's reduction; Golubitsky & Schaeffer 1985, I.3): a
+// solution is where what is left changes its sign, or touches 0.
+#pragma once
+
+#include "singular/fold_pair.hpp"
+#include "rows/solution_rows.hpp"
+
+namespace ikgen_runtime {
+
+// Arm: as for FoldPair and SolutionRows.
+template <class Arm> struct NearContinuum {
+  using Fold = FoldPair<Arm>;
+  using Policy = typename Arm::Policy;
+  static constexpr int kRoom = 32;
+
+  int count = 0;  // solutions, nearly
+  double found[kRoom][Arm::kDof];
+
+  explicit NearContinuum(const HeldAim<Arm>& goal) noexcept : fold(goal) {}
+
+  enum class Kind { None, Broken, Whole };  // no continuum nearby, one of the solved geometry, one of the file's too
+
+  // Finds those on the curve through a configuration: once around, or to both its ends.
+  Kind trace(const double* start) noexcept {
+    const Sample first = at(start);
+    double worst = std::abs(first.left);
+    steps = 0;
+    if (!follow(first, 1.0, worst)) follow(first, -1.0, worst);
+    return steps < kLeast ? Kind::None : worst >= Policy::kArrived ? Kind::Broken : Kind::Whole;
+  }
+
+ private:
+  static constexpr int kMost = 96, kCorrections = 6, kSteps = 40, kDeep = 24, kLeast = 4;
+  static constexpr double kNear = 1e-11;  // rad or m: how far off the curve slopes along it are the curve's
+  static constexpr double kShare = 1e-3;  // of what is left: as little as that off the curve changes neither
+  static constexpr double kRoundOff = 1e-15, kSmall = 4e-15, kDoubt = 0.03, kBeside = 0.06, kSameWay = 0.9;
+
+  // A configuration of which one direction of the error is left, and how that grows along the still direction.
+  struct Sample {
+    double q[Arm::kDof], still[Fold::kMoving], out[Fold::kEquations], left, slope;
+  };
+
+  Fold fold;
+  int samples = 600;  // that are left to be taken
+  int steps = 0;
+
+  Sample at(const double* q) noexcept {
+    Sample s;
+    std::copy_n(q, Arm::kDof, s.q);
+    for (int i = 0; i < kCorrections; ++i)
+      if (fold.correct(s.q, s.left, s.slope) < std::max(kNear, kShare * std::abs(s.left))) break;
+    std::copy_n(fold.still, Fold::kMoving, s.still);
+    std::copy_n(fold.out, Fold::kEquations, s.out);
+    --samples;
+    return s;
+  }
+
+  // Beside a sample.
+  Sample at(const double* q, const Sample& from) noexcept {
+    std::copy_n(from.still, Fold::kMoving, fold.still);
+    std::copy_n(from.out, Fold::kEquations, fold.out);
+    return at(q);
+  }
+
+  // On from a sample, the fastest joint by Policy::kTryStep from one to the next; whether it comes back to where it began.
+  bool follow(const Sample& first, double sense, double& worst) noexcept {
+    Sample b = first;
+    b.left *= sense;
+    for (double& x : b.still) x *= sense;
+    for (double& x : b.out) x *= sense;
+    const Sample origin = b;
+    for (int k = 0; k < kMost && samples > 0; ++k) {
+      double q[Arm::kDof], largest = 0.0;
+      std::copy_n(b.q, Arm::kDof, q);
+      for (const double x : b.still) largest = std::max(largest, std::abs(x));
+      for (int i = 0; i < Fold::kMoving; ++i) q[Fold::kJoints[i]] += Policy::kTryStep / largest * b.still[i];
+      const Sample c = at(q, b);
+      if (!(std::abs(c.left) < Policy::kFoldReach)) return false;
+      ++steps;
+      worst = std::max(worst, std::abs(c.left));
+      look(b, c, kDeep);
+      if (k > 1 && back(origin, b)) break;
+      b = c;
+    }
+    return true;
+  }
+
+  // Whether the curve is at a sample of it again, and not at another part that is near.
+  static bool back(const Sample& a, const Sample& b) noexcept {
+    double way[Fold::kMoving], along = 0.0, same = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      way[k] = SolutionRows<Arm>::change(Fold::kJoints[k], a.q, b.q);
+      along += way[k] * a.still[k];
+      same += a.still[k] * b.still[k];
+    }
+    for (int k = 0; k < Fold::kMoving; ++k)
+      if (!(std::abs(way[k] - along * a.still[k]) < kBeside && std::abs(way[k]) < 0.75 * Policy::kTryStep)) return false;
+    return same > kSameWay;
+  }
+
+  Sample part(const Sample& a, const Sample& b, double share) noexcept {
+    double q[Arm::kDof];
+    between(a, b, share, q);
+    return at(q, a);
+  }
+
+  // By the cubic through two configurations along their still directions (Hermite).
+  static void between(const Sample& a, const Sample& b, double share, double* q) noexcept {
+    double along = 0.0, beyond = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      const double way = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
+      along += way * a.still[k];
+      beyond += way * b.still[k];
+    }
+    const double rest = 1.0 - share, first = share * rest * rest, last = -share * share * rest;
+    std::copy_n(a.q, Arm::kDof, q);
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      const int j = Fold::kJoints[k];
+      const double way = b.q[j] - a.q[j];
+      q[j] += share * way + first * (along * a.still[k] - way) + last * (beyond * b.still[k] - way);
+    }
+  }
+
+  // Between two samples, by the signs of the coefficients, after Bernstein, of the cubic through values and slopes.
+  void look(const Sample& a, const Sample& b, int deep) noexcept {
+    if (std::max(std::abs(a.left), std::abs(b.left)) >= Policy::kFoldReach) return;  // as far off as the end of a curve
+    double rise = 0.0, fall = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      const double step = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
+      rise += a.slope * a.still[k] * step;
+      fall += b.slope * b.still[k] * step;
+    }
+    const double inner[2] = {a.left + rise / 3.0, b.left - fall / 3.0};
+    const double most = std::max({std::abs(a.left), std::abs(inner[0]), std::abs(inner[1]), std::abs(b.left)});
+    if (most < kSmall || deep == 0 || samples <= 0) return keep(std::abs(a.left) < std::abs(b.left) ? a : b);
+    const bool doubtful = std::min(std::abs(inner[0]), std::abs(inner[1])) < kDoubt * most;
+    const bool changes[3] = {a.left * inner[0] <= 0.0, inner[0] * inner[1] <= 0.0, inner[1] * b.left <= 0.0};
+    const int count_of = changes[0] + changes[1] + changes[2];
+    if (doubtful || count_of > 1) {
+      const Sample middle = part(a, b, 0.5);
+      look(a, middle, deep - 1);
+      look(middle, b, deep - 1);
+    } else if (count_of == 1) {
+      close_in(a, b, 2.0 * most);
+    }
+  }
+
+  // Where what is left changes its sign: by false position, halving what an end keeps (Dowell & Jarratt 1971). Where
+  // far more is left between the samples than the cubic's coefficients bound they are of no one curve.
+  void close_in(Sample a, Sample b, double most) noexcept {
+    double x = a.left, y = b.left;
+    int kept = 0;
+    for (int i = 0; i < kSteps && std::min(std::abs(a.left), std::abs(b.left)) > kRoundOff; ++i) {
+      const Sample c = part(a, b, x / (x - y));
+      if (std::abs(c.left) > most) break;
+      if (a.left * c.left < 0.0) {
+        b = c;
+        y = c.left;
+        if (kept == 1) x *= 0.5;
+        kept = 1;
+      } else {
+        a = c;
+        x = c.left;
+        if (kept == -1) y *= 0.5;
+        kept = -1;
+      }
+    }
+    keep(std::abs(a.left) < std::abs(b.left) ? a : b);
+  }
+
+  void keep(const Sample& s) noexcept {
+    if (count == kRoom || !(std::abs(s.left) < Policy::kArrived)) return;
+    double* q = found[count++];
+    for (int j = 0; j < Arm::kDof; ++j) q[j] = s.q[j] - (Arm::kRevolute[j] ? kTurn * std::nearbyint(s.q[j] / kTurn) : 0.0);
+  }
+};
+
+}  // namespace ikgen_runtime

@@ -1,0 +1,300 @@
+// Rows one by one, with care: on singularities, near them, of rounded geometry, and those of a seed alone.
+#pragma once
+
+#include <array>
+
+#include "arm/joint_range.hpp"
+#include "rows/lane_rows.hpp"
+#include "singular/near_continuum.hpp"
+#include "newton/newton_refinement.hpp"
+#include "rows/rank_loss.hpp"
+#include "rows/row_pair.hpp"
+#include "rows/solution_rows.hpp"
+
+namespace ikgen_runtime {
+
+// Arm: as for NewtonRefinement, RankLoss and SolutionRows; Seed, Rows<P> and branches<P>, the closed form, of kLanes
+// rows; kLaneOfRow; kRefined, whether its rows are right already; kRounded, whether it is of another geometry than the
+// file, and kBesides, kBeside, the motions of the tool to poses that are solved as well then: near folds those have
+// rows that the pose has not. Where kNewton is set refine<P> and take_along, steps in lanes.
+template <class Arm> struct CarefulRows {
+  using Aim = HeldAim<Arm>;
+  using Options = typename Arm::Options;
+  using Pair = RowPair<Arm>;
+  using Policy = typename Arm::Policy;
+  using Refinement = NewtonRefinement<Arm>;
+  using Row = SolutionRows<Arm>;
+  using Rows = typename Arm::template Rows<1>;
+
+  // As Solutions, with room for rows that are outside the limits, or farther from a seed than others.
+  struct Places {
+    static constexpr std::size_t kRoom = 2 * Arm::kMaxSolutions;
+    int count = 0;
+    std::array<typename Arm::Joints, kRoom> q;
+    std::array<bool, kRoom> singular;
+  };
+
+  // Whether the closed form left a joint free, and found rows with the given value of it.
+  struct Left {
+    bool free = false, led = false;
+  };
+
+  // Whether poses beside are solved near no singularity too.
+  static constexpr bool kBesideAnywhere = !(Policy::kBesideReach < Policy::kAnywhere);
+
+  // The closed form's rows without limits; q0 gives the values of joints that the pose leaves free.
+  static void find_lanes(const Eigen::Isometry3d& pose, const double* q0, const Options& options, Rows& out) noexcept {
+    constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
+    Arm::branches(gather<1>(&pose), typename Arm::Seed(q0), options.free, anywhere, out);
+  }
+
+  static bool any_singular(const Places& rows) noexcept {
+    const auto end = rows.singular.begin() + rows.count;
+    return std::find(rows.singular.begin(), end, true) != end;
+  }
+
+  // Adds what Newton steps from given values lead to.
+  static void add_from(const Aim& aim, const double* q0, Places& out) noexcept {
+    double q[Arm::kDof];
+    std::copy_n(q0, Arm::kDof, q);
+    if (Refinement::refine(q, aim)) add(aim, out, q, true);
+  }
+
+  // Adds a right row, as singular where it is one of a continuum or next to it.
+  static void add(const Aim& aim, Places& out, const double* q, bool marked) noexcept {
+    const bool singular = RankLoss<Arm>::below(q, marked ? Policy::kContinuumRankLoss : Policy::kRankLoss);
+    for (int k = 0; k < out.count && singular; ++k)
+      if (Row::flag(out, k) && Pair::between(aim, q, Row::row(out, k))) return;
+    Row::add(out, q, singular);
+  }
+
+  // Adds the distinct solutions of a pose, refined where the closed form lost digits.
+  [[gnu::always_inline]] static Left find_rows(const Aim& aim, const double* q0, const Options& options,
+                                               [[maybe_unused]] int turn, Places& out) noexcept {
+    Rows rows;
+    Left left{turns_away(turn), false};
+    find_lanes(start_of(aim.pose, turn), q0, options, rows);
+    for (const int lane : Arm::kLaneOfRow) {
+      left.free = left.free || (bits(rows, lane) & kHit) != 0;
+      left.led = left.led || (bits(rows, lane) & (kSingular | kReal)) == (kSingular | kReal);
+    }
+    if (left.free) add_from(aim, q0, out);
+    const Ends ends(rows, aim, options, kReal);
+    Starts starts;
+    bool plain[Arm::kLanes] = {};  // right, and far from singularities
+    if constexpr (Arm::kRefined) RankLoss<Arm>::regular(rows, Policy::kFoldReach, plain);
+    for (const int lane : Arm::kLaneOfRow)
+      if (plain[lane] && (bits(rows, lane) & kSingular) == 0)
+        add_lane(rows, lane, out);
+      else if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
+        starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, false, aim, out);
+    if constexpr (Arm::kRounded)
+      if (turn == 0) starts.trace_broken(aim, out);
+    if constexpr (Arm::kBesides > 0)
+      if (turn == 0 && (kBesideAnywhere || left.free || starts.close())) take_beside(aim, q0, options, starts, out);
+    if (starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, options, starts, out);
+    left.led = left.led || starts.any_traced();
+    for (int k = 0; k < starts.count; ++k)
+      if (starts.at(k).near && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
+    if constexpr (!Arm::kRefined) {
+      for (const int lane : Arm::kLaneOfRow)
+        if ((bits(rows, lane) & (kReal | kRough)) == kReal) add_lane(rows, lane, out);
+    }
+    return left;
+  }
+
+ private:
+  static void add_lane(const Rows& rows, int lane, Places& out) noexcept {
+    double q[Arm::kDof];
+    for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
+    Row::add(out, q, false);
+  }
+
+  // A divisor that nearly vanishes has a direction of little to do with the file's arm: poses beside have others.
+  static constexpr bool turns_away(int turn) noexcept { return turn > 0 && turn <= Arm::kBesides; }
+  static Eigen::Isometry3d start_of(const Eigen::Isometry3d& pose, int turn) noexcept {
+    if constexpr (Arm::kBesides > 0)
+      if (turns_away(turn)) return displaced(pose, Arm::kBeside[turn - 1]);
+    return pose;
+  }
+  static int bits(const Rows& rows, int lane) noexcept { return static_cast<int>(rows.flags[lane]); }
+
+  // Where steps towards the aim lead from lanes of another geometry that have a flag, all at once, and the error that is
+  // left where they don't show the one solution near their start.
+  struct Ends {
+    Rows rows;
+    double error[Arm::kLanes];
+
+    Ends(const Rows& from, [[maybe_unused]] const Aim& aim, [[maybe_unused]] const Options& options,
+         [[maybe_unused]] Bit flag) noexcept
+        : rows(from) {
+      if constexpr (Arm::kNewton) {
+        constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
+        const Pose<1> pose = gather<1>(&aim.pose);
+        Arm::refine(pose, options.free, anywhere, rows);
+        int lanes[Arm::kLanes], count = 0;
+        for (const int lane : Arm::kLaneOfRow)
+          if ((bits(from, lane) & flag) != 0 && (bits(rows, lane) & kFound) == 0) lanes[count++] = lane;
+        Arm::take_along(pose, options.free, lanes, count, rows, error);
+      }
+    }
+  };
+
+  // What Newton steps from a lane led to. Rows that are right to round-off are added; of the others the nearest is kept.
+  struct Nearest {
+    bool marked = false, near = false, settled = false, exact = false;  // settled: a solution, whatever else there is
+    bool alone = false;  // whether steps showed that it is the one solution near its start
+    bool around = false;  // whether the solutions of the continuum that it lies on are known
+    int lane = 0;
+    double error = 0.0, start[Arm::kDof], q[Arm::kDof];
+
+    Nearest() = default;
+    Nearest(const Rows& rows, int from, bool singular) noexcept : marked(singular), lane(from) {
+      for (int j = 0; j < Arm::kDof; ++j) start[j] = q[j] = rows.q[j][lane];
+    }
+
+    // From where steps in lanes led to, if they did.
+    void refine([[maybe_unused]] const Aim& aim, [[maybe_unused]] const Ends& ends) noexcept {
+      if constexpr (Arm::kNewton) {
+        for (int j = 0; j < Arm::kDof; ++j) q[j] = ends.rows.q[j][lane];
+        alone = (bits(ends.rows, lane) & kFound) != 0;
+        if (!alone) error = ends.error[lane];
+      } else if constexpr (!Arm::kRefined) {
+        error = Refinement::error_after(q, aim);
+      }
+    }
+
+    void judge() noexcept {
+      near = !marked && !alone && RankLoss<Arm>::below(q, Policy::kFoldReach);
+      settled = error < (near ? Policy::kConverged : Policy::kArrived);
+    }
+
+    // Whether other solutions may start from no lane of this pose.
+    bool close() const noexcept { return near && RankLoss<Arm>::below(q, Policy::kBesideReach); }
+
+    // Adds what Newton steps lead to.
+    void take(const Aim& aim, const double* from, Places& out) noexcept {
+      double trial[Arm::kDof];
+      std::copy_n(from, Arm::kDof, trial);
+      const double left = Refinement::error_after(trial, aim);
+      if (left < Policy::kExact) {
+        exact = true;
+        add(aim, out, trial, marked);
+      } else if (left < error) {
+        error = left;
+        std::copy_n(trial, Arm::kDof, q);
+      }
+    }
+
+    void take_rest(const Aim& aim, Places& out) noexcept {
+      if (!exact && !settled && error < Policy::kArrived) add(aim, out, q, marked);
+    }
+
+    // Adds the solutions that meet near the one that a lane led to.
+    void add_nearby(const Aim& aim, Places& out) noexcept {
+      std::copy_n(q, Arm::kDof, start);
+      for (const double side : {1.0, -1.0}) {
+        double trial[Arm::kDof];
+        std::copy_n(start, Arm::kDof, trial);
+        FoldPair<Arm>(aim).approach(side, trial);
+        take(aim, trial, out);
+      }
+      take_rest(aim, out);
+    }
+
+    // Adds the solutions all around a continuum of the solved geometry that the file's arm may not have, or one of it if
+    // the file's has it; whether there is one.
+    bool add_around(const Aim& aim, Places& out) noexcept {
+      using Curve = NearContinuum<Arm>;
+      Curve curve(aim);
+      const typename Curve::Kind kind = curve.trace(start);
+      if (kind == Curve::Kind::None) return false;
+      error = kInfinity;
+      for (int k = 0; k < curve.count && kind == Curve::Kind::Broken; ++k) take(aim, curve.found[k], out);
+      take(aim, start, out);
+      take_rest(aim, out);
+      return true;
+    }
+  };
+
+  // Starts of Newton steps, in the order of their lanes; those of poses beside that led to the same as an earlier one,
+  // or stalled where that looks for two solutions, are left out, as are those on a continuum that is known.
+  struct Starts {
+    int count = 0;
+    bool traced[Arm::kLanes] = {};
+    std::array<Nearest, std::size_t{Arm::kLanes} * (1 + Arm::kBesides)> all;
+
+    Nearest& at(int k) noexcept { return all[static_cast<std::size_t>(k)]; }
+
+    // Whether one is so near a singularity that other solutions may start from none of them.
+    bool close() const noexcept {
+      return std::any_of(all.begin(), all.begin() + count, [](const Nearest& one) { return one.close() && !one.around; });
+    }
+
+    // Adds the solutions all around the continua of the solved geometry that rows near singularities lie on.
+    void trace_broken(const Aim& aim, Places& out) noexcept {
+      for (int k = 0; k < count; ++k) {
+        Nearest& one = at(k);
+        if (one.around || !one.near || !RankLoss<Arm>::below(one.q, Policy::kBrokenReach)) continue;
+        NearContinuum<Arm> curve(aim);
+        one.around = curve.trace(one.q) == NearContinuum<Arm>::Kind::Broken;
+        for (int i = 0; i < curve.count && one.around; ++i) {
+          Nearest(one).take(aim, curve.found[i], out);
+          for (int other = k + 1; other < count; ++other)
+            at(other).around = at(other).around || Pair::within(Policy::kMeeting, at(other).q, curve.found[i]);
+        }
+      }
+    }
+
+    bool any_traced() const noexcept { return std::find(std::begin(traced), std::end(traced), true) != std::end(traced); }
+
+    // ends: what steps in lanes led to.
+    void take(Nearest start, const Ends& ends, bool beside, const Aim& aim, Places& out) noexcept {
+      if (!(Arm::kRounded && start.marked)) start.refine(aim, ends);
+      if (start.marked && (Arm::kRounded || !(start.error < Policy::kArrived))) {
+        if (!traced[start.lane]) traced[start.lane] = start.add_around(aim, out);
+        if (traced[start.lane]) return;
+        start.marked = false;
+        start.refine(aim, ends);
+      }
+      for (int k = 0; k < count; ++k)
+        if ((beside || start.alone) && Row::same(start.q, at(k).q)) {
+          if (beside) return;
+          start.alone = false;
+        }
+      if (beside) start.alone = false;
+      Nearest& one = at(count) = start;
+      one.judge();
+      for (int k = 0; k < count && beside && one.near && !one.settled; ++k)
+        if (at(k).near && Pair::within(Policy::kAlike, one.q, at(k).q)) return;
+      ++count;
+      if (!one.settled) return;
+      if (one.near || one.marked)
+        add(aim, out, one.q, one.marked);
+      else
+        Row::add(out, one.q, false);
+    }
+  };
+
+  // Lanes that are not real where a divisor nearly vanishes: less than the file, or round-off, is off may be missing.
+  static void take_all(const Aim& aim, const Rows& rows, const Options& options, Starts& starts, Places& out) noexcept {
+    const Ends ends(rows, aim, options, kSingular);
+    for (const int lane : Arm::kLaneOfRow)
+      if ((bits(rows, lane) & kSingular) != 0) starts.take({rows, lane, true}, ends, false, aim, out);
+  }
+
+  // The rows of poses beside this one.
+  static void take_beside(const Aim& aim, const double* q0, const Options& options, Starts& starts,
+                          Places& out) noexcept {
+    for (const auto& motion : Arm::kBeside) {
+      Rows rows;
+      find_lanes(displaced(aim.pose, motion), q0, options, rows);
+      const Ends ends(rows, aim, options, kReal);
+      for (const int lane : Arm::kLaneOfRow)
+        if ((bits(rows, lane) & kReal) != 0)
+          starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, true, aim, out);
+    }
+  }
+};
+
+}  // namespace ikgen_runtime

@@ -1,0 +1,112 @@
+// Poses one by one with care, by whatever starts it takes.
+#pragma once
+
+#include "solving/careful_rows.hpp"
+#include "singular/limit_rows.hpp"
+#include "solving/nearest_row.hpp"
+
+namespace ikgen_runtime {
+
+// Arm: as for CarefulRows and NearestRow.
+template <class Arm> struct CarefulSolve {
+  using Careful = CarefulRows<Arm>;
+  using Aim = HeldAim<Arm>;
+  using Options = typename Arm::Options;
+  using Places = typename Careful::Places;
+  using Policy = typename Arm::Policy;
+  using Refinement = NewtonRefinement<Arm>;
+  using Row = SolutionRows<Arm>;
+  using Solutions = typename Arm::Solutions;
+
+  // All solutions. Where the pose leaves a joint free and the seed's value of it leads nowhere, others are tried, and in
+  // the end what is nearest to the pose; so too where limits leave none, but a continuum may go on inside. Where no row
+  // fits, or one is of a continuum, the seed is taken as a Newton start.
+  [[gnu::always_inline]] static void solve(const Eigen::Isometry3d& pose, const Options& options,
+                                           Solutions& out) noexcept {
+    const Aim aim(pose, options.free);
+    bool real = false, free = true, continuum = false;
+    Places found;
+    for (int turn = 0; turn < Policy::kTries && free; ++turn) {
+      double start[Arm::kDof];
+      take_start(options, turn, start);
+      auto left = Careful::find_rows(aim, start, options, turn, found);
+      if (options.seed && !left.free && Careful::any_singular(found)) {
+        found.count = std::min(found.count, static_cast<int>(Places::kRoom) - 1);  // of a continuum there may be any number
+        Careful::add_from(aim, start, found);
+      }
+      real = real || found.count > 0;
+      continuum = continuum || Careful::any_singular(found);
+      LimitRows<Arm>::place_all(aim, options, found);
+      if (found.count == 0 && options.seed && Refinement::refine(start, aim)) {
+        Careful::add(aim, found, start, true);
+        LimitRows<Arm>::place_all(aim, options, found);
+      }
+      if (!Arm::kRounded) left.led = Careful::any_singular(found);
+      free = left.free && !(left.led && found.count > 0);
+    }
+    if (free && !Arm::kRounded && !Arm::kRefined) real = add_hidden(aim, options, found) || real;
+    if ((free || continuum) && found.count == 0) real = add_nearest(aim, options, found) || real;
+    if (options.seed) Row::sort_by_distance(found, options.seed->data());
+    out.count = std::min(found.count, Arm::kMaxSolutions);
+    std::copy_n(found.q.begin(), out.count, out.q.begin());
+    std::copy_n(found.singular.begin(), out.count, out.singular.begin());
+    out.status = out.count > 0 ? Arm::Status::Ok : real ? Arm::Status::Limits : Arm::Status::Unreachable;
+  }
+
+ private:
+  // Values for joints that the pose leaves free: the seed's, those of revolute ones turned; held ones as they are.
+  static void take_start(const Options& options, int turn, double* q) noexcept {
+    for (int j = 0; j < Arm::kDof; ++j)
+      q[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kRevolute[j] ? turn * Policy::kTryStep : 0.0);
+    for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) q[Arm::kFreeJoints[k]] = options.free[k];
+  }
+
+  // Adds rows that take the pose, next to rows of the closed form that do not behind a joint that it left free: where it
+  // left two and the pose leaves one, their values have to go together. Whether there are any.
+  [[gnu::cold, gnu::noinline]] static bool add_hidden(const Aim& aim, const Options& options, Places& out) noexcept {
+    const double* t = aim.pose.matrix().data();
+    double best[Arm::kLanes][Arm::kDof], least[Arm::kLanes];
+    std::fill_n(least, Arm::kLanes, kInfinity);
+    for (int turn = 0; turn < Policy::kTries; ++turn) {
+      double q[Arm::kDof];
+      take_start(options, turn, q);
+      typename Careful::Rows rows;
+      Careful::find_lanes(aim.pose, q, options, rows);
+      for (const int lane : Arm::kLaneOfRow) {
+        if ((static_cast<int>(rows.flags[lane]) & (kReal | kSingular)) != kSingular) continue;
+        for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
+        const double cost = Row::finite(q) ? PoseChords<Arm>(q, t).cost : kInfinity;
+        if (!(cost < least[lane])) continue;
+        least[lane] = cost;
+        std::copy_n(q, Arm::kDof, best[lane]);
+      }
+    }
+    bool real = false;
+    for (const int lane : Arm::kLaneOfRow) {
+      if (!(least[lane] < kInfinity)) continue;
+      NearestRow<Arm>::descend(t, options.limits, NearestRow<Arm>::kStanding, best[lane]);
+      if (!Refinement::refine(best[lane], aim)) continue;
+      real = true;
+      Careful::add(aim, out, best[lane], true);
+    }
+    LimitRows<Arm>::place_all(aim, options, out);
+    return real;
+  }
+
+  // Adds a row that takes the pose, inside the limits if one of these was found; whether there is any.
+  [[gnu::cold, gnu::noinline]] static bool add_nearest(const Aim& aim, const Options& options, Places& out) noexcept {
+    bool real = false;
+    for (bool inside = options.limits;; inside = false) {
+      double q[Arm::kDof];
+      NearestRow<Arm>::find(aim.pose.matrix().data(), options, inside, NearestRow<Arm>::kStanding, q);
+      if (Refinement::refine(q, aim)) {
+        real = true;
+        Careful::add(aim, out, q, true);
+        LimitRows<Arm>::place_all(aim, options, out);
+      }
+      if (out.count > 0 || !inside) return real;
+    }
+  }
+};
+
+}  // namespace ikgen_runtime

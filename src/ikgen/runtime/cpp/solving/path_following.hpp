@@ -1,0 +1,234 @@
+// Joint values along a path of poses, on one branch.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "newton/newton_refinement.hpp"
+#include "arguments/pose_reading.hpp"
+#include "rows/rank_loss.hpp"
+
+namespace ikgen_runtime {
+
+// A: as for PoseError and RankLoss; Solver: solve(pose, options, out), search(pose, seed, limits, out).
+template <class A, class Solver> struct PathStep {
+  static constexpr int kDof = A::kDof, kDeepest = 24, kShallow = 9;
+  static constexpr int kMost = 1000;  // steps to a pose, where rows follow at no length
+  static constexpr double kFarthest = 0.3, kAway = 1.0, kOff = 0.2, kLeastOff = 1e-4, kJump = 0.05;
+  static constexpr double kDamping = 1e-8, kLeastDamping = 1e-14;  // where Newton steps arrive, and where they foretell
+  using Status = typename A::Status;
+
+  double q[kDof];
+  bool limits, crossed = false;
+  int left = kMost;
+
+  // From a pose to the next; where halved steps lead far away or nowhere, as beside a singularity, to a row next to the
+  // last one if there is one.
+  Status go_on(const Eigen::Isometry3d& before, const Eigen::Isometry3d& pose) noexcept {
+    double here[kDof], there[kDof], row[kDof];
+    std::copy_n(q, kDof, here);
+    left = kMost;
+    const Status status = step(before, pose, 0);
+    if (status == Status::Ok && farthest(q, here) < kAway) return status;
+    std::copy_n(q, kDof, there);
+    std::copy_n(here, kDof, q);
+    bool singular = false;
+    const Status why = next_row(pose, here, row, singular);
+    if (why == Status::Ok && farthest(row, here) < kFarthest && arrive(row) == Status::Ok) {
+      crossed = true;
+      return Status::Ok;
+    }
+    std::copy_n(there, kDof, q);
+    return status == Status::Singular && why != Status::Ok ? why : status;
+  }
+
+  // From a pose to the next, with halved steps where the rows do not follow the Jacobian.
+  Status step(const Eigen::Isometry3d& before, const Eigen::Isometry3d& pose, int depth) noexcept {
+    --left;
+    double expected[kDof], row[kDof];
+    bool singular = false;
+    const bool none[kDof] = {};
+    std::copy_n(q, kDof, expected);
+    move(expected, pose, none, kLeastDamping);
+    Status status = next_row(pose, expected, row, singular);
+    if (status == Status::Ok) {
+      const double gap = farthest(row, expected), moved = farthest(row, q);
+      const bool follows = moved < kFarthest && gap < kLeastOff + kOff * moved;
+      if (follows || (depth == kDeepest && moved < kJump)) {
+        crossed = crossed || singular || !follows;
+        return arrive(row);
+      }
+      status = Status::Singular;
+    } else if (depth >= kShallow) {
+      return status;
+    }
+    if (depth == kDeepest || left < 0) return status;
+    const Eigen::Isometry3d middle = between(before, pose);
+    const Status first = step(before, middle, depth + 1);
+    return first == Status::Ok ? step(middle, pose, depth + 1) : first;
+  }
+
+  // To the row next to the start, if the arm has held joints and there is one.
+  Status begin([[maybe_unused]] const Eigen::Isometry3d& pose, const typename A::Joints& start) noexcept {
+    std::copy_n(start.data(), kDof, q);
+    if constexpr (A::kFree > 0) {
+      double row[kDof];
+      if (unstopped(pose, row, crossed) == Status::Ok && farthest(row, q) < 0.1) return arrive(row);
+    }
+    return Status::Unreachable;
+  }
+
+ private:
+  static double farthest(const double* a, const double* b) noexcept {
+    double most = 0.0;
+    for (int j = 0; j < kDof; ++j) most = std::max(most, std::abs(a[j] - b[j]));
+    return most;
+  }
+
+  // To a row, if it is inside the limits on the turn that it came to.
+  Status arrive(const double* row) noexcept {
+    for (int j = 0; j < kDof && limits; ++j)
+      if (!(row[j] >= A::kLower.data()[j] - A::Policy::kLimitTolerance && row[j] <= A::kUpper.data()[j] + A::Policy::kLimitTolerance))
+        return Status::Limits;
+    for (int j = 0; j < kDof; ++j)
+      q[j] = limits ? std::min(std::max(row[j], A::kLower.data()[j]), A::kUpper.data()[j]) : row[j];
+    return Status::Ok;
+  }
+
+  // The shortest motion by the Jacobian, of joints that are not stopped; the error before it.
+  static double move(double* at, const Eigen::Isometry3d& pose, const bool* stopped, double damping) noexcept {
+    PoseError<AllMoving<A>> here(at, HeldAim<AllMoving<A>>(pose));
+    constexpr int n = PoseError<AllMoving<A>>::kCount;
+    const double worst = here.largest();
+    double N[n][n];
+    for (auto& row : here.slope)
+      for (int j = 0; j < kDof; ++j) row[j] = stopped[j] ? 0.0 : row[j];
+    for (int a = 0; a < n; ++a)
+      for (int b = 0; b <= a; ++b) {
+        N[a][b] = a == b ? damping : 0.0;
+        for (int j = 0; j < kDof; ++j) N[a][b] += here.slope[a][j] * here.slope[b][j];
+      }
+    factor(N);
+    substitute(N, here.error);
+    for (int j = 0; j < kDof; ++j) {
+      double step = 0.0;
+      for (int a = 0; a < n; ++a) step += here.slope[a][j] * here.error[a];
+      at[j] += std::min(std::max(step, -1.0), 1.0);
+    }
+    return worst;
+  }
+
+  // The row that goes on from here: of an arm without held joints the closed form's nearest to the expected one, of
+  // others the one that all joints reach together, those that it would take out of their limits stopped there.
+  Status next_row(const Eigen::Isometry3d& pose, [[maybe_unused]] const double* expected, double* row,
+                  bool& singular) const noexcept {
+    if constexpr (A::kFree > 0) {
+      return unstopped(pose, row, singular);
+    } else {
+      typename A::Options options;
+      typename A::Joints seed;
+      std::copy_n(q, kDof, seed.data());
+      options.seed = &seed;
+      options.limits = false;
+      typename A::Solutions found;
+      Solver::solve(pose, options, found);
+      double least = kInfinity;
+      for (int k = 0; k < found.count; ++k) {
+        const double gap = farthest(found.q.data()[k].data(), expected);
+        if (!(gap < least)) continue;
+        least = gap;
+        std::copy_n(found.q.data()[k].data(), kDof, row);
+        singular = found.singular.data()[k];
+      }
+      return found.status;
+    }
+  }
+
+  Status unstopped(const Eigen::Isometry3d& pose, double* row, bool& singular) const noexcept {
+    bool stopped[kDof] = {};
+    double at[kDof];
+    std::copy_n(q, kDof, at);
+    for (int stops = 0;; ++stops) {
+      std::copy_n(at, kDof, row);
+      double error = kInfinity, tried[kDof];
+      std::copy_n(row, kDof, tried);
+      for (int i = 0; i < 30; ++i) {
+        double before[kDof];
+        std::copy_n(tried, kDof, before);
+        const double here = move(tried, pose, stopped, kDamping);
+        const bool slow = !(here < 0.5 * error);
+        if (here < error) {
+          error = here;
+          std::copy_n(before, kDof, row);
+        }
+        if ((slow && i > 2) || error < A::Policy::kConverged) break;
+      }
+      if (!(error < A::Policy::kArrived)) return stops > 0 ? Status::Limits : Status::Unreachable;
+      double most = A::Policy::kLimitTolerance;
+      int worst = -1;
+      for (int j = 0; j < kDof && limits; ++j) {
+        const double excess = std::max(A::kLower.data()[j] - row[j], row[j] - A::kUpper.data()[j]);
+        if (excess > most) {
+          most = excess;
+          worst = j;
+        }
+      }
+      if (worst < 0) break;
+      stopped[worst] = true;
+      at[worst] = row[worst] < A::kLower.data()[worst] ? A::kLower.data()[worst] : A::kUpper.data()[worst];
+    }
+    singular = RankLoss<AllMoving<A>>::below(row, A::Policy::kRankLoss);
+    return Status::Ok;
+  }
+
+  // The pose halfway: the middle of the positions, half of the turn between.
+  static Eigen::Isometry3d between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) noexcept {
+    Eigen::Isometry3d out = a;
+    const Eigen::Quaterniond p(a.linear()), r(b.linear());
+    out.linear() = p.slerp(0.5, r).toRotationMatrix();
+    out.translation() = 0.5 * (a.translation() + b.translation());
+    return out;
+  }
+};
+
+// Joint values along `count` poses. `Walk`: its result.
+template <class A, class Solver, class Walk>
+inline Walk follow_poses(const Eigen::Isometry3d* poses, std::ptrdiff_t count, const typename A::Joints& start, bool limits,
+                         typename A::Joints* q, bool* singular) noexcept {
+  using Status = typename A::Status;
+  Walk out;
+  PathStep<A, Solver> walk;
+  walk.limits = limits;
+  Eigen::Isometry3d before;
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    Eigen::Isometry3d pose = poses[i];
+    walk.crossed = false;
+    if (!PoseReading<A>::clean(pose)) {
+      out.status = Status::Invalid;
+    } else if (i > 0) {
+      out.status = walk.go_on(before, pose);
+    } else if (out.status = walk.begin(pose, start); out.status != Status::Ok) {
+      typename A::Solutions found;
+      typename A::SearchOptions options;
+      options.seed = &start;
+      options.limits = limits;
+      Solver::search(pose, options, found);
+      out.status = found.status;
+      if (found.count > 0) {
+        std::copy_n(found.q.data()->data(), A::kDof, walk.q);
+        walk.crossed = found.singular.data()[0];
+      }
+    }
+    if (out.status != Status::Ok) return out;
+    std::copy_n(walk.q, A::kDof, q[i].data());
+    if (singular) singular[i] = walk.crossed;
+    out.reached = i + 1;
+    before = pose;
+  }
+  out.status = Status::Ok;
+  return out;
+}
+
+}  // namespace ikgen_runtime

@@ -1,0 +1,43 @@
+// The nearest pose that the arm can take, of one that it cannot.
+#pragma once
+
+#include "arm/held_aim.hpp"
+#include "arm/motion_chain.hpp"
+#include "solving/nearest_row.hpp"
+#include "arguments/pose_reading.hpp"
+#include "rows/solution_rows.hpp"
+
+namespace ikgen_runtime {
+
+// Arm: as for NearestRow, PoseReading, SolutionRows and Way<Arm>, which solves an exact pose.
+template <class Arm, template <class> class Way> struct Projection {
+  using Options = typename Arm::Options;
+  using Solutions = typename Arm::Solutions;
+  using Chords = PoseChords<Arm>;
+
+  // Rows of the nearest pose where there is none of the pose, and by how much each row is off.
+  [[gnu::cold, gnu::noinline]] static void apply(const Eigen::Isometry3d& pose, const Options& given,
+                                                 Solutions& out) noexcept {
+    if (out.status == Arm::Status::Invalid) return;
+    Eigen::Isometry3d target = pose;
+    PoseReading<Arm>::clean(target);
+    const double* t = target.matrix().data();
+    if (out.count == 0) solve_nearest(t, given, out);
+    for (int k = 0; k < out.count; ++k) Chords::off_by(out.q.data()[k].data(), t, out.off.data()[k].data());
+  }
+
+ private:
+  static void solve_nearest(const double* t, Options options, Solutions& out) noexcept {
+    if (options.seed && !SolutionRows<Arm>::finite(options.seed->data())) options.seed = nullptr;
+    double q[Arm::kDof];
+    NearestRow<Arm>::find(t, options, options.limits, NearestRow<Arm>::kRoundOff, q);
+    Eigen::Isometry3d pose;
+    by_columns(MotionChain<Arm>::forward(q), pose.matrix().data());
+    HeldAim<Arm>::values(q, options.free);
+    Way<Arm>::template solve<1>(&pose, options, &out);
+    if (SolutionRows<Arm>::place(q, options)) SolutionRows<Arm>::add(out, q, false);
+    if (out.count > 0) out.status = Arm::Status::Ok;
+  }
+};
+
+}  // namespace ikgen_runtime

@@ -1,0 +1,1 @@
+"""What callers hand over: poses, joint values, and what is wrong with them."""

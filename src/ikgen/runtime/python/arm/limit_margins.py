@@ -1,0 +1,37 @@
+"""How far rows are from their joint limits, whatever turns they are on."""
+
+from __future__ import annotations
+
+from math import inf, pi
+
+import numpy as np
+
+from ikgen.runtime.python.arm.solved_arm import Arm
+from ikgen.runtime.python.arrays.array_types import Array
+
+__all__ = ["bounded_joints", "offsets", "outside"]
+
+
+def bounded_joints(arm: Arm) -> list[tuple[int, float, float, bool]]:
+    """Moving joints that limits bound: index, middle and half of their range, whether they turn."""
+    out = []
+    for j in arm.moving:
+        low, high, turns = arm.lower[j], arm.upper[j], arm.chain.revolute[j]
+        if (turns and high - low < 2.0 * pi) or (not turns and (low > -inf or high < inf)):
+            low, high = max(low, -1e6), min(high, 1e6)
+            out.append((j, 0.5 * (low + high), 0.5 * (high - low), turns))
+    return out
+
+
+def offsets(q: Array, middle: float, turns: bool) -> Array:
+    """Joint values from the middle of their range, turning ones on the nearest turn."""
+    x = q - middle
+    return np.asarray(x - 2.0 * pi * np.round(x / (2.0 * pi)) if turns else x)
+
+
+def outside(arm: Arm, q: Array, limits: bool) -> Array:
+    """How far rows (..., dof) are outside the limits at most: (...,), negative inside."""
+    out = np.full(q.shape[:-1], -inf)
+    for j, middle, half, turns in bounded_joints(arm) if limits else ():
+        out = np.maximum(out, np.abs(offsets(q[..., j], middle, turns)) - half)
+    return out

@@ -1,0 +1,97 @@
+"""Everything that the runtime is told about one arm."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from ikgen.runtime.python.arm.chain_kinematics import Chain
+from ikgen.runtime.python.arm.solve_policy import Policy
+from ikgen.runtime.python.arm.task_interface import Task
+from ikgen.runtime.python.arrays.array_types import Array, Flags, Index, Row
+
+__all__ = ["Arm", "Around", "Branches", "BranchesBatch", "Found", "HeldAngle", "Together"]
+
+Found = tuple[Row, bool]  # a solution, and whether it is one of a continuum
+Branches = Callable[[Sequence[Sequence[float]], Row, Row], tuple[list[tuple[Row, bool]], bool]]
+BranchesBatch = Callable[[Array, Array, Array], tuple[Array, Flags, Flags, Flags]]
+
+
+class Together(Protocol):
+    """`refine_together` with the arm's chain in lanes."""
+
+    def __call__(self, arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]: ...
+
+
+class Around(Protocol):
+    """`rows_around`."""
+
+    def __call__(
+        self, arm: Arm, q: Array, T: Array, broken: Flags
+    ) -> tuple[Flags, Index, Array, Array]: ...
+
+
+class HeldAngle(Protocol):
+    """An angle that is held in place of a joint, of rows (..., dof) and their poses (..., 4, 4)."""
+
+    @property
+    def upper(self) -> float:
+        """Length of the upper arm, m."""
+
+    def of_rows(self, q: Array, pose: Array) -> Array:
+        """The angles (...)."""
+
+    def beside_line(self, q: Array, pose: Array) -> Array:
+        """Where elbows are beside the line that the angle is counted about (..., 2), m."""
+
+    def plane(self, T: Array) -> tuple[Array, Array]:
+        """Directions (..., 3) from the line: where the angle is 0, and a quarter turn on."""
+
+    def aims(self, T: Array, held: Array) -> Array:
+        """Poses T (k, 4, 4) and angles `held` (k, 1) to be reached, as `errors` takes them."""
+
+    def errors(self, q: Array, aim: Array) -> tuple[Array, Array]:
+        """By how much rows (k, dof) miss them (k,), and the derivatives (k, dof)."""
+
+    def turned(self, q: Array, aim: Array) -> Array:
+        """The derivatives (k,) of minus that by the angle."""
+
+
+@dataclass(frozen=True)
+class Arm:
+    """`free`, `free_joints`, `free_defaults`: indices, names and values of held joints. `most`: rows at
+    most. `branches(T, q0, held)`: the closed form's rows for a pose, values of joints that it leaves
+    free, values of held joints, each with whether it is rough, and whether the pose left a joint free;
+    None for an elimination; `branches_batch`: in arrays. `beside`
+    (n, 4, 4): motions of the tool to poses that are solved as well. `turning`: which joints are
+    revolute and not held; `moving`: indices of those not held.
+    `together`: `refine_together` where the closed form is of another geometry than the file's, and all rows
+    are rough. `around`: `rows_around` where there is a closed form.
+    `branch_kind`, `elbow_end`: as in `branch_names`. `angle`: the arm angle, where that is held after
+    the joints."""
+
+    chain: Chain
+    task: Task
+    policy: Policy
+    lower: Row
+    upper: Row
+    free: tuple[int, ...]
+    free_joints: tuple[str, ...]
+    free_defaults: Row
+    most: int
+    branches: Branches | None
+    branches_batch: BranchesBatch
+    beside: Array
+    turning: tuple[bool, ...]
+    moving: tuple[int, ...]
+    together: Together | None
+    branch_kind: str
+    elbow_end: int
+    angle: HeldAngle | None = None
+    around: Around | None = None
+
+    @property
+    def rounded(self) -> bool:
+        """Whether the closed form is of another geometry than the file's."""
+        return self.together is not None

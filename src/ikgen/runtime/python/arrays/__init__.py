@@ -1,0 +1,1 @@
+"""Arrays, vectors and rigid motions: what knows nothing of arms."""

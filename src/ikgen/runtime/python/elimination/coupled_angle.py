@@ -1,0 +1,243 @@
+"""Approximate solutions of six revolute joints of which one turns several axes, as in hollow wrists.
+
+The angle of that joint is hidden in the elimination of Raghavan and Roth (1990). At an angle of it five
+joints are left, whose loop closes where the twelve equations without three of them are singular. Their
+determinant is a trigonometric polynomial, of a degree that ratios and geometry make; its roots are
+eigenvalues of a companion matrix. What is coupled may lie in any of three neighbouring links of the five
+joints' loop, so that the null spaces by which the three are eliminated stay the same for all angles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.runtime.python.arm.chain_kinematics import Motion
+from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
+from ikgen.runtime.python.arrays.rigid_motion import inverses, rotations_z
+from ikgen.runtime.python.elimination.back_substitution import complete_angles, null_angles
+from ikgen.runtime.python.elimination.general_6r import Candidates, Elimination
+from ikgen.runtime.python.elimination.hidden_angle import lift, real_angles
+from ikgen.runtime.python.elimination.loop_equations import left_invariants, loop_equations
+from ikgen.runtime.python.rows.solution_rows import rows_of
+
+__all__ = ["CoupledAngle", "coupled_and_others", "coupled_determinants", "neighbours"]
+
+Complex = NDArray[np.complex128]
+
+_ONE = np.eye(4)[None]
+_FIRST_NODE = 0.05  # rad, an angle that no right angle shares
+_REAL = 0.03  # rad, the imaginary part of an angle that may be real
+_NOISE = 1e-13  # of a determinant's harmonics, of the largest
+_OFF, _SURE, _SHARE = (
+    0.3,
+    1e-6,
+    0.25,
+)  # rad: roots so far off cannot be real; rounding that leaves no doubt
+_GONE = 10j  # a root that is none
+
+# Near a crowded angle (rad): how far, and the degree of polynomials of sines and cosines there.
+_NEAR, _CLOSE, _SEAM, _CORE = 0.2, 20, 5e-3, 0.01
+_NODES: Array = np.cos(np.pi / (_CLOSE + 1) * (np.arange(_CLOSE + 1, dtype=float) + 0.5))
+_CHEBYSHEV = np.linalg.inv(np.polynomial.chebyshev.chebvander(_NODES, _CLOSE))
+
+
+@dataclass(frozen=True)
+class CoupledAngle:
+    """Finds candidates of a chain in which one joint, and no other, turns several axes: `motions` in their
+    order along the chain. The plan's third number is the degree in that joint's angle. At `crowded`
+    angles (rad) the determinant has roots at every pose, so many each; it is looked at there by itself."""
+
+    motions: tuple[Motion, ...]
+    crowded: tuple[tuple[float, int], ...] = ()
+
+    def __call__(
+        self, F: Sequence[Array], T: Array, plan: Elimination, _: tuple[bool, ...]
+    ) -> Candidates:
+        """As `candidates`, of as many frames F as rows and 1."""
+        pose, angle, least, clear = self._angles(F, T, plan)
+        if not len(pose):
+            return pose, np.zeros((0, 6)), least, clear
+        frames = [rows_of(frame, pose) for frame in F]
+        k, q = _completed(self.motions, frames, T[pose], plan, pose, angle)
+        return pose[k], q, least, clear
+
+    def _angles(
+        self, F: Sequence[Array], T: Array, plan: Elimination
+    ) -> tuple[Index, Array, Index, Flags]:
+        """Poses (k,) in order and the roots (k,) that may be real; of each pose how many clearly are, and
+        whether the others clearly are not. Roots that every pose has near a crowded angle are left out
+        where no other is among them."""
+        degree = plan[2]
+        step = 2.0 * np.pi / (2 * degree + 2)
+        nodes: Array = _FIRST_NODE + step * np.arange(2 * degree + 2, dtype=float)
+        roots, sure = _roots(coupled_determinants(self.motions, F, T, plan, nodes), degree)
+        clear = np.ones(len(T), dtype=bool)
+        for place, order in self.crowded:
+            close = coupled_determinants(self.motions, F, T, plan, place + _NEAR * _NODES)
+            near, certain = _close_roots(close)
+            core = np.abs(near) < _CORE
+            alone = core.sum(axis=1) == order
+            way = np.abs(np.remainder(roots.real - place + np.pi, 2.0 * np.pi) - np.pi)
+            clear &= alone & ~_at_seam(way, roots.imag) & ~_at_seam(np.abs(near.real), near.imag)
+            roots = np.where(way > 0.9 * _NEAR, roots, _GONE)
+            left_out = (np.abs(near.real) > 0.9 * _NEAR) | (core & alone[:, None])
+            roots = np.concatenate([roots, np.where(left_out, _GONE, place + near)], axis=1)
+            sure = np.concatenate([sure, certain], axis=1)
+        clear &= (sure | (np.abs(roots.imag) > _OFF)).all(axis=1)
+        pose, angle, real, apart = real_angles(np.tan(0.5 * roots), np.zeros(len(T)), _REAL)
+        return pose, angle, np.where(clear, real, 0), clear & apart
+
+
+def coupled_determinants(
+    motions: Sequence[Motion], F: Sequence[Array], T: Array, plan: Elimination, nodes: Array
+) -> Array:
+    """The determinants (N, n) of the twelve equations at the coupled joint's angles `nodes` (n,)."""
+    loop = _Loop(motions, F, *plan[:2])
+    links = loop.links(T[:, None], nodes[None])
+    E, _ = _equations([link[:, 0] for link in links])
+    shape = np.broadcast_shapes(*(link.shape[:2] for link in links[1:4]))
+    inner = (np.broadcast_to(link, (*shape, 4, 4)).reshape(-1, 4, 4) for link in links[1:4])
+    left = left_invariants(*inner).reshape(*shape, 14, 9)
+    return np.asarray(np.linalg.det(_singular(E[:, None], left)))
+
+
+def neighbours(
+    motions: Sequence[Motion], F: Sequence[Array], plan: Elimination, nodes: Array
+) -> Array:
+    """Cosines (3, n) between the axes beside the links in which the coupled joint may lie, at its angles
+    `nodes` (n,)."""
+    links = _Loop(motions, F, *plan[:2]).links(np.eye(4)[None, None], nodes[None])
+    return np.array([np.broadcast_to(link[0, :, 2, 2], nodes.shape) for link in links[1:4]])
+
+
+def coupled_and_others(motions: Sequence[Motion]) -> tuple[int, list[int]]:
+    """The joint that turns several axes, and the others in their order along the chain."""
+    joints = [motion[0] for motion in motions]
+    coupled = max(joints, key=joints.count)
+    return coupled, [joint for joint in joints if joint != coupled]
+
+
+class _Loop:
+    """The loop of the five joints that turn one axis each, begun at `start`, `reverse`d or not."""
+
+    def __init__(
+        self, motions: Sequence[Motion], F: Sequence[Array], start: int, reverse: int
+    ) -> None:
+        self.coupled, singles = coupled_and_others(motions)
+        step = -1 if reverse else 1
+        self.places = [(start + step * i) % 5 for i in range(5)]
+        self.joints = [singles[place] for place in self.places]
+        self.reverse, self.motions, self.F = reverse, motions, F
+
+    def links(self, T: Array, angle: Array) -> list[Array]:
+        """What is behind each joint in the loop's order, (n, m, 4, 4) or 1 in place of n or m, at poses T
+        (n, m, 4, 4) and angles (n, m) of the coupled joint."""
+        behind, link = [], self.F[0][:, None]
+        for (joint, _, ratio, shift), frame in zip(self.motions, self.F[1:]):
+            if joint == self.coupled:
+                link = link @ rotations_z(ratio * angle + shift) @ frame[:, None]
+            else:
+                behind.append(link)
+                link = frame[:, None]
+        behind = [*behind[1:], link @ inverses(T) @ behind[0]]
+        if self.reverse:
+            return [inverses(behind[place - 1]) for place in self.places]
+        return [behind[place] for place in self.places]
+
+
+def _equations(links: list[Array]) -> tuple[Array, Array]:
+    """Equations E (n, 6, 15) and the invariants of the other side, as `loop_equations` has them: no angle
+    of the coupled joint changes them."""
+    E, _, right = loop_equations([links[0], _ONE, _ONE, _ONE, _ONE, links[4]])
+    return E, right
+
+
+def _singular(E: Array, left: Array) -> Array:
+    """The twelve equations (..., 12, 12) from E (..., 6, 15) and the left's invariants (..., 14, 9)."""
+    A = E[..., :14] @ left
+    A[..., 0] += E[..., 14]
+    return lift(A)
+
+
+def _at_seam(way: Array, off: Array) -> Flags:
+    """Of which poses (N,) roots `way` (N, n) from a crowded angle, with imaginary parts `off`, may be of
+    either polynomial."""
+    seam = (np.abs(way - 0.9 * _NEAR) < _SEAM) & (np.abs(off) < _REAL)
+    return np.asarray(seam.any(axis=1))
+
+
+def _sure(z: Complex, off: Array, size: Array) -> Flags:
+    """Which roots z (N, n) of polynomials, `off` (N, n) rad from real angles, rounding leaves as they are.
+    `size` (N, n): by how many rad times the product of a root's distances from the others it moves each."""
+    apart = z[:, :, None] - z[:, None, :]
+    k = np.arange(z.shape[1])
+    apart[:, k, k] = 1.0
+    with np.errstate(all="ignore"):
+        moved = size / np.abs(np.prod(apart, axis=2))
+    return np.asarray(moved < np.maximum(_SURE, _SHARE * off))
+
+
+def _roots(values: Array, degree: int) -> tuple[Complex, Flags]:
+    """The roots (N, 2 degree), angles, of trigonometric polynomials with `values` (N, n) at the nodes, and
+    which are `_sure`."""
+    harmonics = np.arange(-degree, degree + 1)
+    c = np.fft.fft(values, axis=1)[:, harmonics]
+    c = c / np.maximum(np.abs(c).max(axis=1, keepdims=True), 1e-300)
+    lead = np.where(np.abs(c[:, -1:]) < 1e-300, 1e-300, c[:, -1:])
+    companion = np.zeros((len(c), 2 * degree, 2 * degree), dtype=complex)
+    companion[:, 1:, :-1] = np.eye(2 * degree - 1)
+    companion[:, :, -1] = -c[:, :-1] / lead
+    z: Complex = np.asarray(np.linalg.eigvals(companion), dtype=np.complex128)
+    z[np.abs(z) < 1e-300] = 1e-300
+    size = np.abs(z)
+    roots: Complex = _FIRST_NODE + np.angle(z) - 1j * np.log(size)
+    with np.errstate(all="ignore"):
+        harmonic = (size[:, :, None] ** np.arange(2 * degree + 1)).sum(axis=2)
+        moved = _NOISE * harmonic / (size * np.abs(lead))
+    return roots, _sure(z, np.abs(roots.imag), moved)
+
+
+def _close_roots(values: Array) -> tuple[Complex, Flags]:
+    """The roots (N, n), from a crowded angle, of determinants with `values` (N, n + 1) at the nodes near
+    it, and which are `_sure`: eigenvalues of the colleague matrix (Good 1961)."""
+    c = values @ _CHEBYSHEV.T
+    c = c / np.maximum(np.abs(c).max(axis=1, keepdims=True), 1e-300)
+    lead = np.where(np.abs(c[:, -1:]) < 1e-300, 1e-300, c[:, -1:])
+    colleague = np.zeros((len(c), _CLOSE, _CLOSE))
+    k = np.arange(_CLOSE - 1)
+    colleague[:, k, k + 1] = colleague[:, k + 1, k] = 0.5
+    colleague[:, 0, 1] = 1.0
+    colleague[:, -1] -= 0.5 * c[:, :-1] / lead
+    x: Complex = np.asarray(np.linalg.eigvals(colleague), dtype=np.complex128)
+    with np.errstate(all="ignore"):
+        waves = np.abs(np.cos(np.arange(_CLOSE + 1) * np.arccos(x)[:, :, None])).sum(axis=2)
+    moved = _NEAR * _NOISE * waves / (0.5 * 2.0**_CLOSE * np.abs(lead))
+    return _NEAR * x, _sure(x, _NEAR * np.abs(x.imag), moved)
+
+
+def _completed(
+    motions: Sequence[Motion],
+    F: Sequence[Array],
+    T: Array,
+    plan: Elimination,
+    pose: Index,
+    angle: Array,
+) -> tuple[Index, Array]:
+    """Indices (m,) into the roots, `angle` (k,) of poses T (k, 4, 4), and values (m, 6) of all joints."""
+    loop, count = _Loop(motions, F, *plan[:2]), len(angle)
+    links = [link[:, 0] for link in loop.links(T[:, None], angle[:, None])]
+    E, right = _equations(links)
+    left = left_invariants(*(np.broadcast_to(link, (count, 4, 4)) for link in links[1:4]))
+    k, pair = null_angles(_singular(E, left), pose, angle)
+    C = [rows_of(link, k) for link in links]
+    t = np.concatenate([np.zeros((len(k), 1)), pair], axis=1)
+    each = np.arange(len(k))
+    found = complete_angles([C[0], _ONE, *C[1:]], left[k], rows_of(right, k), each, t)
+    q = np.empty((len(k), 6))
+    q[:, loop.joints] = (-1.0 if plan[1] else 1.0) * found[:, [0, 1, 3, 4, 5]]
+    q[:, loop.coupled] = angle[k]
+    return k, q

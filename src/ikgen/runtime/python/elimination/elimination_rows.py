@@ -1,0 +1,98 @@
+"""An elimination of six joints as the closed form of an arm, held joints merged into the chain."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ikgen.runtime.python.arm.chain_kinematics import Motion
+from ikgen.runtime.python.arm.solved_arm import Arm
+from ikgen.runtime.python.arrays.array_types import Array, Index
+from ikgen.runtime.python.elimination.general_6r import Plan, six_joint_rows
+from ikgen.runtime.python.elimination.six_joints import SixJoints, six_joints, with_tool_joint
+from ikgen.runtime.python.newton.refinement import rank_loss
+from ikgen.runtime.python.rows.solution_rows import places
+
+__all__ = ["elimination_lanes"]
+
+_POSES = 256  # whose arrays fit into a processor's cache
+
+
+def _six_joints(arm: Arm, plan: Plan, held: Array) -> SixJoints:
+    """The joints that move, of the chain with the others `held` (N, c): at the cosine and sine of an angle,
+    or at a distance, base to tip."""
+    columns, moving = iter(held.T), iter(plan.axes)
+    motions: list[Motion] = []
+    values: list[Array] = []
+    for joint, turns, _, _ in arm.chain.motions:
+        if joint not in arm.free:
+            motions.append(next(moving))
+            continue
+        motions.append((6 + len(values), turns, 1.0, 0.0))
+        values.append(_value(columns, turns))
+    at, frames = np.stack(values, axis=1) if values else None, arm.chain.frames
+    if plan.tool is not None:
+        frames = with_tool_joint(frames, plan.tool)
+    return six_joints(frames, plan.length, (*motions, *moving), at)
+
+
+def _value(columns: Iterator[Array], turns: bool) -> Array:
+    """An angle of its cosine and sine, or a distance."""
+    first = next(columns)
+    return np.asarray(np.arctan2(next(columns), first)) if turns else first
+
+
+def _regular_first(arm: Arm, angles: Array, held: Array) -> Array:
+    """At most `arm.most` rows of DH variables (k, 6): where a continuum gives more, its samples go."""
+    if len(angles) <= arm.most:
+        return angles
+    q = np.empty((len(angles), len(arm.lower)))
+    values, columns = iter(held), iter(angles.T)
+    motions = arm.chain.motions
+    for joint in range(len(arm.lower)):
+        lead = min((m for m in motions if m[0] == joint), key=lambda m: abs(m[2]))
+        value = next(columns) if joint not in arm.free else _value(values, lead[1])
+        q[:, joint] = (value - lead[3]) / lead[2]
+    loss = rank_loss(arm.chain, arm.task, arm.moving, q)
+    order = np.argsort(loss < arm.policy.continuum_rank_loss, kind="stable")
+    return np.asarray(angles[order][: arm.most])
+
+
+def elimination_lanes(arm: Arm, plan: Plan, entries: tuple[Array, ...]) -> tuple[Array, ...]:
+    """Of many poses the cosine and sine of every moving joint's angle, and the lengths of slides (most, N),
+    and which there are.
+
+    entries: the pose's first three rows, then cosines, sines and distances of held joints.
+    """
+    columns = np.array([e.reshape(-1) for e in np.broadcast_arrays(*entries)])
+    count = columns.shape[1]
+    lanes = np.ones((6 + sum(plan.turning), arm.most, count))
+    found = np.zeros((arm.most, count), dtype=bool)
+    T = np.tile(np.eye(4), (count, 1, 1))
+    T[:, :3] = columns[:12].T.reshape(-1, 3, 4)
+    held = columns[12:].T
+    alike = bool((held == held[:1]).all())
+    for start in range(0, count, _POSES):
+        part = slice(start, start + _POSES)
+        pose, values = _rows_of_poses(arm, plan, T[part], held[:1] if alike else held[part])
+        place, member, lane = places(pose), start + pose, 0
+        for value, turns in zip(values.T, plan.turning):
+            lanes[lane, place, member] = np.cos(value) if turns else value
+            if turns:
+                lanes[lane + 1, place, member] = np.sin(value)
+            lane += 2 if turns else 1
+        found[place, member] = True
+    return (*lanes, found)
+
+
+def _rows_of_poses(arm: Arm, plan: Plan, T: Array, held: Array) -> tuple[Index, Array]:
+    """Pose indices (k,) in order, and at most `arm.most` rows (k, 6) for each of the poses T (N, 4, 4) with
+    joints `held` (1 or N, c)."""
+    pose, values = six_joint_rows(_six_joints(arm, plan, held), plan, T, arm.policy)
+    for i in np.flatnonzero(np.bincount(pose, minlength=1) > arm.most):
+        some = _regular_first(arm, values[pose == i], held[i % len(held)])
+        before, after = pose < i, pose > i
+        values = np.concatenate([values[before], some, values[after]])
+        pose = np.concatenate([pose[before], np.full(len(some), i), pose[after]])
+    return pose, values

@@ -1,0 +1,178 @@
+"""All real solutions of six joints by an elimination, and the one of six revolute joints."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+
+from ikgen.runtime.python.arm.chain_kinematics import Motion
+from ikgen.runtime.python.arm.solve_policy import Policy
+from ikgen.runtime.python.arm.whole_pose import PoseTask
+from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
+from ikgen.runtime.python.arrays.rigid_motion import inverses, rotations_z
+from ikgen.runtime.python.elimination.back_substitution import complete_angles, middle_angles
+from ikgen.runtime.python.elimination.loop_equations import (
+    joint_values,
+    loop_constants,
+    loop_equations,
+)
+from ikgen.runtime.python.elimination.six_joints import SixJoints, one_axis_each
+from ikgen.runtime.python.newton.refinement import refine
+from ikgen.runtime.python.rows.solution_rows import (
+    Turning,
+    distinct_rows,
+    rows_of,
+    slides_near,
+    sorted_rows,
+)
+
+__all__ = [
+    "Candidates",
+    "Elimination",
+    "Finder",
+    "Plan",
+    "Way",
+    "candidates",
+    "refined_rows",
+    "six_joint_rows",
+]
+
+Elimination = tuple[int, int, int]  # joint that the loop begins at, whether reversed or swapped
+Candidates = tuple[Index, Array, Index, Flags]
+Finder = Callable[[Sequence[Array], Array, Elimination, Turning], Candidates]
+Way = tuple[Finder, Elimination, float]  # and how far off the pose exact candidates may be
+_SIX = range(6)
+# Error of a candidate from a root that is exact: a double one is off by the square root.
+_DIRECT = 1e-7
+# Beside a fold rows of several runs are one only where all have all their digits.
+_THOROUGH = ((3, 1e-12, 0.1), (6, 1e-12, 1e-3), (30, 0.0, 0.0))
+_FINEST = ((3, 1e-13, 0.1), (6, 1e-13, 1e-3), (30, 0.0, 0.0))
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How an arm is solved: its typical `length` (m), the `eliminations` that suit it, in order of
+    preference, and the function that finds candidates by one of them. `direct`: ways that its geometry
+    allows besides, tried first. `motions`: those of the axes in their order along the chain where they are
+    more than the six joints. `tool`: the tool's axis (0: x) that the last joint turns about, where that is
+    none of the arm's."""
+
+    length: float
+    eliminations: tuple[Elimination, ...]
+    turning: Turning
+    find: Finder
+    direct: tuple[Way, ...] = ()
+    motions: tuple[Motion, ...] = ()
+    tool: int | None = None
+
+    @property
+    def axes(self) -> tuple[Motion, ...]:
+        """The motions of all axes."""
+        return self.motions or one_axis_each(self.turning)
+
+
+def candidates(F: Sequence[Array], T: Array, plan: Elimination, _: Turning) -> Candidates:
+    """Approximate solutions for the poses T (N, 4, 4) by one plan: pose index (k,), joint angles
+    (k, 6); how many solutions each pose has at least, -1 where the plan does not tell, and whether those
+    are all (N,)."""
+    start, reverse, swap = plan
+    order, C = loop_constants(F, T, start, reverse)
+    E, left, right = loop_equations(C)
+    pose, t, least, clear = middle_angles(E, left, swap)
+    if not len(pose):
+        return pose, np.zeros((0, 6)), least, clear
+    angles = complete_angles(C, left, right, pose, t)
+    return pose, joint_values(angles, order, reverse), least, clear
+
+
+def refined_rows(
+    six: SixJoints, plan: Plan, pose: Index, T: Array, q: Array, policy: Policy
+) -> tuple[Array, Flags, Array]:
+    """Newton steps from q (k, 6) to T (k, 4, 4) of the poses with indices `pose` (k,): q, which arrived,
+    and the errors before (k,)."""
+    near = slides_near(q, plan.turning)
+    held = np.broadcast_to(rows_of(six.held, pose), (len(q), six.held.shape[1]))
+    start = np.concatenate([np.where(near[:, None], q, 0.0), held], axis=1)
+    thorough = _thorough(policy, bool(plan.motions))
+    q, error, before, _ = refine(six.chain, PoseTask(1.0), _SIX, start, T, thorough)
+    return q[:, :6], (error < policy.arrived) & near, np.where(near, before, np.inf)
+
+
+@cache
+def _thorough(policy: Policy, farther: bool) -> Policy:
+    """With which candidates are refined; roots of a high degree come from `farther` off: of their rows all
+    digits are wanted."""
+    if farther:
+        return replace(policy, refinement=_FINEST, converged=0.0)
+    return replace(policy, refinement=_THOROUGH)
+
+
+def _displaced() -> Array:
+    """A rotation of about 1e-3 rad, and as much of a translation (in arm lengths)."""
+    X = np.eye(4)
+    X[:3, :3] = (
+        rotations_z(np.array(9e-4)) @ rotations_z(np.array(1.1e-3))[[2, 0, 1, 3]][:, [2, 0, 1, 3]]
+    )[:3, :3]
+    X[:3, 3] = 8e-4, -1.1e-3, 6e-4
+    return X
+
+
+_ASIDE = _displaced()
+_OTHER_SIDE = inverses(_ASIDE)
+
+
+def _runs(plan: Plan) -> list[tuple[Way, tuple[Array | None, ...]]]:
+    """One after the other what is tried, and the motions of the tool to the poses that it is tried at."""
+    ways = [(plan.find, one, _DIRECT) for one in plan.eliminations]
+    runs: list[tuple[Way, tuple[Array | None, ...]]] = [(way, (None,)) for way in plan.direct]
+    runs += [(ways[0], (None,)), (ways[0], (_ASIDE, _OTHER_SIDE))]
+    return runs + [(way, (None, _ASIDE, _OTHER_SIDE)) for way in ways[1:]]
+
+
+def six_joint_rows(six: SixJoints, plan: Plan, T: Array, policy: Policy) -> tuple[Index, Array]:
+    """All real solutions of the six joints for poses T (N, 4, 4).
+
+    One run of the first is enough where each of its roots is clearly real, or clearly not, and there are
+    as many solutions as real roots, each found to many digits. Otherwise more runs follow, with the pose
+    displaced to both sides (where right angles make roots coincide they come apart, and Newton's method
+    takes them back) and by the next elimination, until they find all that is known and no more, and one of
+    the pose itself has kept its rank. What a direct way leaves open, these runs confirm or complete.
+    Returns pose indices (k,) in order and joint values (k, 6), angles in (-pi, pi], sorted.
+    """
+    T = T.copy()
+    T[:, :3, 3] /= plan.length
+    found, of = np.zeros((0, 6)), np.zeros(0, dtype=np.intp)
+    inside = np.abs(T[:, :3]).max(axis=(1, 2), initial=0.0) < 1e6  # false for NaN
+    todo = np.nonzero(inside)[0]
+    least, size = np.full(len(T), -1), len(T)
+    for number, ((find, one, near), moves) in enumerate(_runs(plan)):
+        if not len(todo):
+            break
+        exact = T[todo]
+        aims = np.concatenate([exact if X is None else exact @ X for X in moves])
+        some = six.of(np.tile(todo, len(moves)))
+        run, q, real, clear = find(some.frames, aims, one, plan.turning)
+        which, real = run % len(todo), real[: len(todo)]
+        if moves[0] is None and number >= len(plan.direct):
+            least[todo] = np.maximum(least[todo], real)
+        q, arrived, before = refined_rows(some, plan, run, exact[which], q, policy)
+        pose, q, before = todo[which[arrived]], q[arrived], before[arrived]
+        best = np.lexsort((before >= near, pose))
+        q, pose, kept = distinct_rows(q[best], pose[best], plan.turning, policy.coincident)
+        mine = np.bincount(pose, minlength=size)[todo]
+        if number == 0:
+            direct = np.bincount(pose[before[best[kept]] < near], minlength=size)[todo]
+            settled = clear & (direct == real) & (mine == real) & (real > 0)
+            found, of, count = q, pose, mine
+        else:
+            known = np.bincount(of, minlength=size)[todo]
+            found, of = np.concatenate([found, q]), np.concatenate([of, pose])
+            found, of, _ = distinct_rows(found, of, plan.turning, policy.coincident)
+            count = np.bincount(of, minlength=size)[todo]
+            settled = (mine == known) & (known == count) & (least[todo] >= 0)
+        todo = todo[~(settled & (count % 2 == 0) & (count >= least[todo]))]
+    unit = np.where(plan.turning, 1.0, plan.length)
+    return of, sorted_rows(found, of, plan.turning) * unit

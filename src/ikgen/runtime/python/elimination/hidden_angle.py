@@ -1,0 +1,128 @@
+"""The angle theta_3 of a loop: roots of a resultant, as eigenvalues.
+
+The resultant M(theta_3) is kept real by half angles and, because theta_3 turns four vectors of the left
+side, its sixteen roots are the eigenvalues of a real 16x16 matrix with nothing extraneous, where Manocha
+and Canny (1994) have 24x24 and (1 + x^2)^4.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
+from ikgen.runtime.python.elimination.loop_equations import XS, YS, ZS
+
+__all__ = [
+    "DOUBTFUL",
+    "Resultant",
+    "hidden_angles",
+    "lift",
+    "loop_resultant",
+    "real_angles",
+    "solved",
+]
+
+Resultant = tuple[Array, Array, Array]
+_NODES = 2.0 * np.pi / 7.0 * np.arange(7)
+_REAL = 1e-8  # imaginary part of a root that is real
+DOUBTFUL = 1e-3  # below it, of one that may be half of a double root
+_NO_RANK = 1e10  # of the eigenproblem's entries: half of a root's digits are rounding
+_FOURFOLD = 0.03  # the same of a fourfold root
+_CROWD = 8.0  # times the imaginary part: how far off the other pair is at most
+_JITTER = np.cos(np.outer(np.arange(1, 13), np.arange(1, 13)))
+
+
+def lift(A: Array) -> Array:
+    """Rows (..., r, 9) in (1, c, s) x (1, c', s') times cos h and sin h, h half the first angle:
+    (..., 2r, 12) in (cos h, sin h, cos 3h, sin 3h) x (1, c', s')."""
+    A0, A1, A2 = A[..., 0:3], 0.5 * A[..., 3:6], 0.5 * A[..., 6:9]
+    top = np.concatenate([A0 + A1, A2, A1, A2], axis=-1)
+    return np.concatenate([top, np.concatenate([A2, A0 - A1, -A2, A1], axis=-1)], axis=-2)
+
+
+def loop_resultant(E: Array, left: Array) -> Resultant:
+    """M0 (N, 12, 12), Mc, Ms with `M(theta_3) = M0 + Mc cos + Ms sin` singular at solutions."""
+    F0 = E[..., ZS] @ left[:, ZS]
+    F0[..., 0] += E[..., 14]
+    x, y = E[..., XS], E[..., YS]
+    X, Y = left[:, XS], left[:, YS]
+    return lift(F0), lift(x @ X + y @ Y), lift(y @ X - x @ Y)
+
+
+def hidden_angles(
+    E: Array, left: Array, M: Resultant, accept: float
+) -> tuple[Index, Array, Index, Flags]:
+    """The roots theta_3 with an imaginary part below `accept`: rows (k,) in order and real parts (k,),
+    in order for each; per row the number of those that are clearly real, -1 where M is singular at every
+    angle and roots mean nothing, and whether the others clearly are not.
+
+    With `M(theta) = M0 + N Rot(theta) W`, Rot = c + s J on R^16, about a node where `M_pi = M0 - N
+    W` is far from singular: tan(theta/2) are the eigenvalues of `-J (1 + 2 W M_pi^-1 N)`.
+    """
+    c, s = np.cos(_NODES)[:, None, None], np.sin(_NODES)[:, None, None]
+    at_node = M[0][:, None] - c * M[1][:, None] - s * M[2][:, None]
+    k = np.abs(np.linalg.det(at_node)).argmax(axis=1)
+    row = np.arange(len(at_node))
+    c, s = c[k], s[k]
+    x, y = E[..., XS], E[..., YS]
+    N = np.zeros((len(row), 12, 16))
+    N[:, :6, 0:4] = N[:, 6:, 4:8] = c * x + s * y
+    N[:, :6, 8:12] = N[:, 6:, 12:16] = c * y - s * x
+    W = np.concatenate([lift(left[:, XS]), lift(left[:, YS])], axis=1)
+    K = np.eye(16) + 2.0 * W @ solved(at_node[row, k], N)
+    t = np.linalg.eigvals(np.concatenate([K[:, 8:], -K[:, :8]], axis=1))
+    pose, angle, real, clear = real_angles(t, _NODES[k], accept)
+    real[np.abs(K).max(axis=(1, 2)) > _NO_RANK] = -1
+    return pose, angle, real, clear
+
+
+def real_angles(
+    t: Array | NDArray[np.complex128],
+    about: Array,
+    accept: float,
+    doubtful: float | Array = DOUBTFUL,
+) -> tuple[Index, Array, Index, Flags]:
+    """Those angles `about + 2 atan(t)`, about (N,) and t (N, n) complex, of which the imaginary part is
+    below `accept`: as `hidden_angles` has them. With one below `doubtful` (or that of each, (N, 1)) a root
+    is not clearly complex."""
+    # angle and modulus of (1 + i t) / (1 - i t)
+    z = (1.0 + 1j * t) / np.where(t == -1j, 1e-300, 1.0 - 1j * t)
+    off = np.abs(np.log(np.maximum(np.abs(z), 1e-300)))
+    real = (off < _REAL).sum(axis=1)
+    row, i = np.nonzero(off < accept)
+    angle = about[row] + np.angle(z[row, i])
+    order = np.lexsort((angle, row))
+    clear = (off < doubtful).sum(axis=1) == real
+    apart = (off < _FOURFOLD) & (off >= doubtful)
+    some = np.nonzero(clear & apart.any(axis=1))[0]
+    clear[some] = ~(apart[some] & _crowded(np.angle(z[some]), off[some])).any(axis=1)
+    return row[order], angle[order], real, clear
+
+
+def _crowded(angle: Array, off: Array) -> Flags:
+    """Which roots (N, n) of real and imaginary parts `angle` and `off` may be of a fourfold one: complex,
+    with another pair about as near as their own halves are. Rounding takes those apart by its fourth root,
+    where it takes halves of a double one apart by its square root."""
+    across = np.exp(1j * (angle[:, :, None] - angle[:, None, :]))
+    beside = np.hypot(np.abs(np.angle(across)), off[:, :, None] - off[:, None, :])
+    near = (beside < _CROWD * off[:, :, None]).sum(axis=2)
+    return np.asarray(near >= 4)
+
+
+def solved(pivot: Array, N: Array, off: float = 0.0) -> Array:
+    """`pivot^-1 N`, of pivots that are put `off` by so much of their largest entry; one that is singular
+    then is put off further, and no other beside it: what is found of a pose does not hang on those that
+    are solved with it."""
+    size = np.abs(pivot).max(axis=(1, 2))[:, None, None] + 1e-30 if off else 0.0
+    moved = pivot + off * size * _JITTER
+    try:
+        return np.asarray(np.linalg.solve(moved, N))
+    except np.linalg.LinAlgError:
+        flat = np.linalg.slogdet(moved)[0] == 0.0
+        if flat.all() or not flat.any():
+            return solved(pivot, N, 2.0 * off or 1e-10)
+        out: Array = np.empty(N.shape)
+        out[flat] = solved(pivot[flat], N[flat], 2.0 * off or 1e-10)
+        out[~flat] = solved(pivot[~flat], N[~flat], off)
+        return out

@@ -1,0 +1,117 @@
+"""The best rows of a pose over all values of the held joints."""
+
+from __future__ import annotations
+
+from functools import partial
+from math import inf
+
+import numpy as np
+
+from ikgen.runtime.python.arm.held_parameters import aims, held_of
+from ikgen.runtime.python.arm.solved_arm import Arm
+from ikgen.runtime.python.arrays.array_types import Array, Flags
+from ikgen.runtime.python.newton.joint_refinement import refine_few
+from ikgen.runtime.python.rows.row_branches import branch_names
+from ikgen.runtime.python.rows.row_links import differences
+from ikgen.runtime.python.rows.row_preference import Preference, preference_costs
+from ikgen.runtime.python.rows.solutions import Solutions, Status, no_solutions
+from ikgen.runtime.python.solving.batch_solving import rows_batch
+from ikgen.runtime.python.solving.pose_solving import solve_pose
+
+__all__ = ["Start", "best_rows"]
+
+Start = tuple[tuple[float, ...], Array, tuple[float, ...], int]
+"""Values of the held joints, a row there, the first steps of each value, and the number of its group."""
+
+_HALVINGS = 30
+_LEAST_STEP = 1e-10  # rad or m
+_NEAR = 0.5  # rad or m that a row may be from the one that a step began at
+
+
+def best_rows(
+    arm: Arm, T: Array, starts: list[Start], preference: Preference, limits: bool
+) -> Solutions:
+    """From each start the best row that a compass search (Hooke, Jeeves 1961) of the held values finds
+    on its branch; of each group the best, best first, at most as many as `solve` gives."""
+    held = np.array([s[0] for s in starts])
+    rows = np.array([s[1] for s in starts])
+    step = np.array([s[2] for s in starts])
+    _, cost, _ = preference_costs(arm, preference, rows[:, None], limits)
+    best = cost[:, 0]
+    for _ in range(_HALVINGS):
+        going = np.flatnonzero(step.max(axis=1) > _LEAST_STEP)
+        if not len(going):
+            break
+        moved = np.zeros(len(going), dtype=bool)
+        now = held[going], rows[going], best[going]
+        for k in range(held.shape[1]):
+            trials = np.stack([now[0], now[0]])
+            trials[:, :, k] += np.outer((1.0, -1.0), step[going, k])
+            moved |= _improved(arm, T, preference, limits, now, trials)
+        held[going], rows[going], best[going] = now
+        step[going[~moved]] *= 0.5 if held.shape[1] > 1 else 0.4
+    groups = np.array([s[3] for s in starts])
+    out: list[int] = []
+    for i in np.argsort(best, kind="stable").tolist():
+        if groups[i] not in groups[out] and len(out) < arm.most:
+            out.append(i)
+    return _solutions(arm, T, preference, limits, held[out], rows[out])
+
+
+def _improved(
+    arm: Arm,
+    T: Array,
+    preference: Preference,
+    limits: bool,
+    now: tuple[Array, Array, Array],
+    trials: Array,
+) -> Flags:
+    """Takes, in place, the first of each row's trials (s, n, held joints) that is better; which were."""
+    held, rows, best = now
+    if limits and arm.free:
+        low, high = np.array(arm.lower)[list(arm.free)], np.array(arm.upper)[list(arm.free)]
+        trials = np.clip(trials, low, high)
+    count, trial = len(trials), trials.reshape(-1, held.shape[1])
+    row, near = _next_rows(
+        arm, np.broadcast_to(T, (len(trial), 4, 4)), np.tile(rows, (count, 1)), trial
+    )
+    _, cost, inside = preference_costs(arm, preference, row[:, None], limits)
+    good = (near & inside[:, 0]).reshape(count, -1) & (cost.reshape(count, -1) < best)
+    better = good.any(axis=0)
+    which = (good.argmax(axis=0) * len(best) + np.arange(len(best)))[better]
+    held[better], rows[better], best[better] = trial[which], row[which], cost[which, 0]
+    return np.asarray(better)
+
+
+def _next_rows(arm: Arm, T: Array, rows: Array, held: Array) -> tuple[Array, Flags]:
+    """The rows (n, dof) at held values (n, held) that are next to `rows` (n, dof), and which are near: by
+    Newton steps where these tell, by the closed form elsewhere."""
+    start = rows.copy()
+    start[:, list(arm.free)] = held[:, : len(arm.free)]
+    with np.errstate(all="ignore"):
+        row, near, _ = refine_few(arm, start, aims(arm, T, held))
+    left = np.flatnonzero(~near)
+    if len(left):
+        q, real = rows_batch(arm, T[left], held[left])
+        gap = np.abs(differences(arm, rows[left, None], q)).max(axis=2)
+        gap = np.where(real, gap, inf)
+        which, nearest = np.arange(len(left)), gap.argmin(axis=1)
+        row[left], near[left] = q[which, nearest], gap[which, nearest] < _NEAR
+    return row, near
+
+
+def _solutions(
+    arm: Arm, T: Array, preference: Preference, limits: bool, held: Array, rows: Array
+) -> Solutions:
+    """The rows as `solve` gives them for these values, in this order."""
+    q, flags = [], []
+    placed, _, _ = preference_costs(arm, preference, rows[:, None], limits)
+    for values, row in zip(held_of(arm, placed[:, 0]), placed[:, 0]):
+        found = solve_pose(arm, T, values.tolist(), row, limits)
+        if len(found):
+            q.append(found.q[0])
+            flags.append(bool(found.singular[0]))
+    if not q:
+        return no_solutions(len(arm.lower), Status.LIMITS)
+    names = partial(branch_names, arm)
+    return Solutions(np.array(q), Status.OK, np.array(flags), names=names)

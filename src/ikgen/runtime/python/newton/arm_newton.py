@@ -1,0 +1,19 @@
+"""Newton's method on all of what an arm's rows are refined towards."""
+
+from __future__ import annotations
+
+from ikgen.runtime.python.arm.solved_arm import Arm
+from ikgen.runtime.python.arrays.array_types import Array
+from ikgen.runtime.python.newton.refinement import errors_and_slopes, refine
+
+__all__ = ["linearized", "refined"]
+
+
+def linearized(arm: Arm, q: Array, aim: Array) -> tuple[Array, Array]:
+    """`errors_and_slopes` of rows (k, dof) towards `aims`."""
+    return errors_and_slopes(arm.chain, arm.task, arm.moving, q, aim, arm.angle)
+
+
+def refined(arm: Arm, q: Array, aim: Array) -> tuple[Array, Array, Array, Array]:
+    """`refine` of rows (k, dof) towards `aims`."""
+    return refine(arm.chain, arm.task, arm.moving, q, aim, arm.policy, arm.angle)

@@ -1,0 +1,99 @@
+"""Undamped Newton steps of all rows at once, and which of them leave no doubt."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from ikgen.runtime.python.arm.lane_chain import LaneChain
+from ikgen.runtime.python.arm.solved_arm import Arm
+from ikgen.runtime.python.arrays.array_types import Array, Flags
+from ikgen.runtime.python.arrays.row_blocks import in_blocks
+from ikgen.runtime.python.newton.arm_newton import linearized
+from ikgen.runtime.python.newton.lane_newton import begins, ends, refine_lanes
+from ikgen.runtime.python.newton.refinement import normal_inverse
+
+__all__ = ["refine_few", "refine_together"]
+
+_BLOCK = 1024
+_FEW = 64  # rows for which whole matrices are faster than long rows of each of their entries
+
+
+def refine_together(chain: LaneChain, arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
+    """Rows (k, dof) after steps towards aims T (k, ...) or (1, ...); which arrived at the one solution near
+    their start, and which at a least error that is not 0.
+
+    Newton's method contracts by `policy.contraction` only near the one solution there (Deuflhard 2004,
+    theorem 2.1). Where the solution set folds, the other solution is twice the pivot over the curvature
+    away: rows whose first step is more than `policy.pivot_share` of the pivot are left to others.
+    """
+    with np.errstate(all="ignore"):
+        if len(q) <= _FEW:
+            return refine_few(arm, q, T)
+        T = np.broadcast_to(T, (len(q), *T.shape[1:]))
+        if arm.angle is None:
+            return refine_lanes(arm, chain, q, T)
+        done: tuple[Array, Flags, Flags] = in_blocks(partial(refine_few, arm), _BLOCK, q, T)
+        return done
+
+
+def refine_few(arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
+    """`refine_together` of few rows. Every second step is solved with the inverse of the one before, and
+    what that leaves of it once more, as in `refine_lanes`."""
+    policy, start = arm.policy, q
+    good, before = np.ones(len(q), dtype=bool), np.full(len(q), policy.farthest_start)
+    for steps in range(0, policy.lane_steps, 2):
+        error, slope = _linearized(arm, q, T)
+        inverse = _left_inverse(slope)
+        change = inverse @ error
+        size, worst = _largest(change[:, :, 0]), _largest(error[:, :, 0])
+        pivot = 1.0 / np.sqrt(_largest(np.add.reduce(inverse * inverse, axis=2)))
+        good &= begins(policy, size, worst, before, pivot, not steps)
+        q = _moved(arm, q, change)
+        rest, slope = _linearized(arm, q, T)
+        worst = _largest(rest[:, :, 0])
+        change = inverse @ rest
+        rest = rest - slope @ change
+        more = inverse @ rest
+        rest, change = rest - slope @ more, change + more
+        before, size = size, _largest(change[:, :, 0])
+        near, done = ends(policy, before, size, worst, _largest(more[:, :, 0]), pivot)
+        good &= near
+        q, before = _moved(arm, q, change), size
+        if (done | ~good).all():
+            break
+    done, off = done & good, _largest(rest[:, :, 0])
+    return (
+        np.where(done[:, None], q, start),
+        done & (off < policy.arrived),
+        done & (off > policy.least_miss),
+    )
+
+
+def _largest(x: Array) -> Array:
+    return np.asarray(np.maximum.reduce(np.abs(x), axis=1))
+
+
+def _moved(arm: Arm, q: Array, change: Array) -> Array:
+    if not arm.free:
+        return q + change[:, :, 0]
+    q = q.copy()
+    q[:, list(arm.moving)] += change[:, :, 0]
+    return q
+
+
+def _linearized(arm: Arm, q: Array, T: Array) -> tuple[Array, Array]:
+    """Errors (k, m, 1) at rows (k, dof), and their derivatives (k, m, n)."""
+    error, slope = linearized(arm, q, T)
+    return error[:, :, None], slope
+
+
+def _left_inverse(V: Array) -> Array:
+    """Of V (k, m, n): (k, n, m)."""
+    if V.shape[1] == V.shape[2]:
+        try:
+            return np.asarray(np.linalg.inv(V))
+        except np.linalg.LinAlgError:
+            pass
+    return np.asarray(normal_inverse(V) @ V.transpose(0, 2, 1))

@@ -1,0 +1,133 @@
+"""Ferrari's resolvent in its geometric form: the pencil of the quartic's conic and the unit circle holds
+a pair of real lines; each meets the circle in two roots. No half-angle tangent, so no point at infinity."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from ikgen.runtime.python.arrays.array_types import Array
+
+__all__ = [
+    "ARRAYS",
+    "FLOATS",
+    "Arithmetic",
+    "Coefficients",
+    "Line",
+    "quartic_lines",
+    "quartic_step",
+    "quartic_values",
+]
+
+_Value = TypeVar("_Value", float, Array)
+Coefficients = tuple[_Value, _Value, _Value, _Value, _Value]
+Line = tuple[_Value, _Value, _Value]
+
+
+@dataclass(frozen=True)
+class Arithmetic(Generic[_Value]):
+    """What differs between floats and arrays: `pick(c, a, b)` is a where c holds and else b; `every`:
+    whether a condition holds everywhere."""
+
+    sqrt: Callable[[Any], _Value]
+    copysign: Callable[[Any, Any], _Value]
+    clip: Callable[[Any, float, float], _Value]
+    pick: Callable[[Any, Any, Any], _Value]
+    every: Callable[[Any], bool]
+
+
+def _clip(x: float, low: float, high: float) -> float:
+    return low if x < low else high if x > high else x
+
+
+def _pick(condition: bool, a: float, b: float) -> float:
+    return a if condition else b
+
+
+FLOATS: Arithmetic[float] = Arithmetic(math.sqrt, math.copysign, _clip, _pick, bool)
+ARRAYS: Arithmetic[Array] = Arithmetic(np.sqrt, np.copysign, np.clip, np.where, np.all)
+
+
+def quartic_lines(
+    k: Coefficients[_Value], rho: _Value, on: Arithmetic[_Value]
+) -> tuple[Line[_Value], Line[_Value], _Value, _Value]:
+    """Lines (n_x, n_y, d), `n . (cos t, sin t) = d`, that hold all real roots; the square of half
+    their distance, below zero for complex ones, and the middle whose square it is to be compared with.
+
+    rho: modulus of the first two coefficients, not far below the others."""
+    a2, b2, a1, b1, a0 = k
+    first = on.sqrt(0.5 * (1.0 + abs(a2) / rho))
+    second = 0.5 * abs(b2) / (rho * first)
+    ch = on.pick(a2 >= 0.0, first, second)
+    sh = on.copysign(on.pick(a2 >= 0.0, second, first), b2)
+    p, q, a = (a1 * ch + b1 * sh) / rho, (b1 * ch - a1 * sh) / rho, a0 / rho
+    m = _resolvent(a, 0.25 * p * p, 0.25 * q * q, on)
+    low = m <= 0.0
+    big, small = on.sqrt(1.0 + abs(m)), on.sqrt(1.0 - abs(m))
+    given, other = on.pick(low, q, p), on.pick(low, p, q)
+    u = 0.5 * given / big
+    square = u * u + on.pick(low, a - m, m - a)
+    v = on.copysign(on.sqrt(on.clip(square, 0.0, math.inf)), other)
+    A, B = on.pick(low, small, big), on.pick(low, big, small)
+    w, v = on.pick(low, v, u), on.pick(low, u, v)
+    h = math.sqrt(0.5)
+    A, B, w, v = h * A, h * B, h * w, h * v
+    return (
+        (A * ch + B * sh, A * sh - B * ch, -w - v),
+        (A * ch - B * sh, A * sh + B * ch, -w + v),
+        square,
+        u,
+    )
+
+
+def _resolvent(a: _Value, pp: _Value, qq: _Value, on: Arithmetic[_Value]) -> _Value:
+    """The best separated root in [-1, 1] of `(a - m) (m^2 - 1) - pp (m - 1) - qq (m + 1)`, pp, qq
+    >= 0: it is >= 0 at -1 and <= 0 at 1. A root that is double stands for a double root of the
+    quartic."""
+    pick = on.pick
+    c1, c0 = 1.0 - pp - qq, -a + pp - qq
+    square = a * a + 3.0 * c1
+    root = on.sqrt(on.clip(square, 0.0, math.inf))
+    m1, m2 = (a - root) / 3.0, (a + root) / 3.0
+    g1, g2 = ((a - m1) * m1 + c1) * m1 + c0, ((a - m2) * m2 + c1) * m2 + c0
+    in1, in2 = (square > 0.0) & (abs(m1) <= 1.0), (square > 0.0) & (abs(m2) <= 1.0)
+    left, right = in1 & (g1 <= 0.0), in2 & (g2 >= 0.0)
+    either = right & (g2 > -g1)  # where both would do: the right one is apart farther
+    hi = pick(either, 1.0, pick(left, m1, 1.0))
+    lo = pick(either, m2, pick(left, -1.0, pick(right | (in1 & in2), m2, -1.0)))
+    m = 0.5 * (lo + hi)
+    for _ in range(60):
+        g = ((a - m) * m + c1) * m + c0
+        lo, hi = pick(g > 0.0, m, lo), pick(g > 0.0, hi, m)
+        slope = (2.0 * a - 3.0 * m) * m + c1
+        new = m - g / pick(slope != 0.0, slope, 1e-300)
+        done = abs(new - m) <= 4e-16
+        m = pick(done, m, pick((lo < new) & (new < hi), new, 0.5 * (lo + hi)))
+        if on.every(done):
+            break
+    return on.clip(m, -1.0, 1.0)
+
+
+def quartic_values(k: Coefficients[_Value], c: _Value, s: _Value) -> tuple[_Value, _Value, _Value]:
+    """The quartic and its first two derivatives at the angle with cosine c and sine s."""
+    a2, b2, a1, b1, a0 = k
+    c2, s2 = (c - s) * (c + s), 2.0 * s * c
+    u, v = a2 * c2 + b2 * s2, a1 * c + b1 * s
+    return u + v + a0, 2.0 * (b2 * c2 - a2 * s2) + b1 * c - a1 * s, -4.0 * u - v
+
+
+def quartic_step(
+    k: Coefficients[_Value], c: _Value, s: _Value, order: int, on: Arithmetic[_Value]
+) -> tuple[_Value, _Value, _Value]:
+    """A Newton step from (c, s) to a zero of the quartic (order 0) or of its derivative (order 1), and its
+    size."""
+    values = quartic_values(k, c, s)
+    top, below = values[order], values[order + 1]
+    step = on.clip(-top / on.pick(abs(below) < 1e-200, math.inf, below), -0.1, 0.1)
+    c, s = c - step * s, s + step * c
+    r = on.sqrt(c * c + s * s)
+    return c / r, s / r, abs(step)

@@ -1,0 +1,46 @@
+"""Which rows at one value of a held joint go on as which at the next."""
+
+from __future__ import annotations
+
+from math import inf, pi
+
+import numpy as np
+
+from ikgen.runtime.python.arm.solved_arm import Arm
+from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
+
+__all__ = ["differences", "linked_rows", "origins"]
+
+_WHOLE_TURN = 2.0 * pi
+
+
+def differences(arm: Arm, a: Array, b: Array) -> Array:
+    """b - a (..., dof), of turning joints on the shortest way."""
+    gap = b - a
+    turning = np.array(arm.chain.revolute)
+    return np.where(turning, gap - _WHOLE_TURN * np.round(gap / _WHOLE_TURN), gap)
+
+
+def linked_rows(arm: Arm, q: Array, real: Flags) -> Index:
+    """For rows (n, m, dof) of which some are real (n, m): the index (n - 1, m) of the row at the next value
+    that each is nearest to and that is nearest to it; -1 where there is none."""
+    order = np.argsort(~real, axis=1, kind="stable")[:, : real.sum(axis=1).max(initial=1)]
+    rows = np.take_along_axis(q, order[:, :, None], axis=1)
+    some = np.take_along_axis(real, order, axis=1)
+    gap = np.abs(differences(arm, rows[:-1, :, None], rows[1:, None])).max(axis=3)
+    gap = np.where(some[:-1, :, None] & some[1:, None], gap, inf)
+    there, back = gap.argmin(axis=2), gap.argmin(axis=1)
+    mutual = np.take_along_axis(back, there, axis=1) == np.arange(order.shape[1])
+    near = np.take_along_axis(gap, there[:, :, None], axis=2)[:, :, 0] < inf
+    following = np.where(mutual & near, np.take_along_axis(order[1:], there, axis=1), -1)
+    out = np.full((len(order) - 1, real.shape[1]), -1)
+    np.put_along_axis(out, order[:-1], following, axis=1)
+    return out
+
+
+def origins(following: Index) -> Index:
+    """For each row at the upper end of a cell, the row at its lower end that goes on as it; -1 for none."""
+    out = np.full_like(following, -1)
+    cell, row = np.nonzero(following >= 0)
+    out[cell, following[cell, row]] = row
+    return out

@@ -1,0 +1,174 @@
+"""Rows on the whole turns that limits and seed ask for, and without repetitions: for floats and arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import ceil, floor, inf, pi, remainder
+from operator import lt
+
+import numpy as np
+
+from ikgen.runtime.python.arm.solved_arm import Arm, Found
+from ikgen.runtime.python.arrays.array_types import Array, Flags, Row
+from ikgen.runtime.python.rows.row_pairs import pairs
+
+__all__ = [
+    "apart",
+    "distinct",
+    "in_order",
+    "is_new",
+    "place_rows",
+    "place_rows_batch",
+    "rows_at_limits",
+]
+
+_TURN = 2.0 * pi
+
+
+def is_new(arm: Arm, row: Row, kept: Sequence[Found]) -> bool:
+    """Whether the row differs from all kept ones, whole turns aside; long slides count relative to their
+    length."""
+    near, revolute = arm.policy.coincident, arm.chain.revolute[::-1]
+    for other, _ in kept:
+        for a, b, turns in zip(
+            reversed(row), reversed(other), revolute
+        ):  # the last ones differ most
+            gap = abs(a - b)
+            if gap <= near:
+                continue
+            if abs((gap + pi) % _TURN - pi) > near if turns else gap > near * abs(a):
+                break
+        else:
+            return False
+    return True
+
+
+def apart(arm: Arm, q: Array) -> bool:
+    """Whether all rows (k, dof) of revolute joints differ, whole turns aside; False also where slides have
+    to tell."""
+    if not all(arm.chain.revolute):
+        return False
+    later, earlier = pairs(len(q))
+    gap = q[later] - q[earlier]
+    gap -= _TURN * np.rint(gap / _TURN)
+    most = np.maximum.reduce(np.abs(gap), axis=1, initial=0.0)
+    return bool((most > arm.policy.coincident).all())
+
+
+def distinct(arm: Arm, q: Array, valid: Flags) -> Flags:
+    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside; long
+    slides count relative to their length."""
+    near = arm.policy.coincident
+    later, earlier = pairs(q.shape[1])
+    same = valid.T[later] & valid.T[earlier]
+    for j in reversed(range(q.shape[2])):  # the last joints differ between most rows
+        value = q[:, :, j].T
+        gap = np.abs(value[later] - value[earlier])
+        bound = near if arm.chain.revolute[j] else near * np.abs(value[later])
+        far = np.abs(gap - _TURN) if arm.chain.revolute[j] else gap
+        same &= (gap <= near) | (far <= bound)
+        if not same.any():
+            return valid
+    valid, some = valid.copy(), same.any(axis=1)
+    for i, k, equal in zip(later[some].tolist(), earlier[some].tolist(), same[some]):
+        valid[:, i] &= ~(equal & valid[:, k])
+    return valid
+
+
+def place_rows(arm: Arm, rows: list[Found], near: Row | None, limits: bool) -> list[Found]:
+    """The rows on the right turns; those that no turn brings inside the limits are dropped."""
+    return rows_at_limits(arm, rows, near, limits)[0]
+
+
+def rows_at_limits(
+    arm: Arm, rows: list[Found], near: Row | None, limits: bool
+) -> tuple[list[Found], list[tuple[Found, Row]]]:
+    """`place_rows`, and of the dropped rows those hardly outside: as they were, and on the limits."""
+    inside, close = [], []
+    low, high = arm.lower, arm.upper
+    if not limits:
+        low, high = (-inf,) * len(low), (inf,) * len(low)
+    least = [max(x, -pi) if turning else x for x, turning in zip(low, arm.turning)]
+    most = [min(x, pi) if turning else x for x, turning in zip(high, arm.turning)]
+    for row, flag in rows:
+        if near is None and all(map(lt, least, row)) and all(map(lt, row, most)):
+            inside.append((row, flag))
+            continue
+        placed, beyond = _place(arm, row, near, limits)
+        if placed is not None and beyond:
+            close.append(((row, flag), placed))
+        elif placed is not None:
+            inside.append((placed, flag))
+    return inside, close
+
+
+def _place(arm: Arm, row: Row, near: Row | None, limits: bool) -> tuple[Row | None, bool]:
+    """The row on its turns, None where it is far outside; and whether it had to be moved to limits by more
+    than round-off."""
+    out, beyond = [], False
+    for j, (q, turning, low, high) in enumerate(zip(row, arm.turning, arm.lower, arm.upper)):
+        shift = 0.0
+        if turning:
+            if q <= -pi:
+                q += _TURN
+            elif q > pi:
+                q -= _TURN
+            if near is not None:
+                shift = _TURN * round((near[j] - q) / _TURN)
+        if limits and not low <= q + shift <= high:
+            least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
+            if turning and q + shift < least:
+                shift = _TURN * ceil((least - q) / _TURN)
+            if turning and q + shift > most:
+                shift = _TURN * floor((most - q) / _TURN)
+            if not least <= q + shift <= most:
+                to_low, to_high = low - q, high - q
+                if turning:
+                    to_low, to_high = remainder(to_low, _TURN), remainder(to_high, _TURN)
+                if min(abs(to_low), abs(to_high)) > arm.policy.limit_reach:
+                    return None, True
+                shift, beyond = (low if abs(to_low) < abs(to_high) else high) - q, True
+            out.append(min(max(q + shift, low), high))
+        else:
+            out.append(q + shift)
+    return tuple(out), beyond
+
+
+def in_order(arm: Arm, rows: list[Found], near: Row | None) -> list[Found]:
+    """The rows, no more than the arm has, nearest to a seed first."""
+    if near is not None:
+        rows = sorted(rows, key=lambda item: sum((a - b) * (a - b) for a, b in zip(item[0], near)))
+    return rows[: arm.most]
+
+
+def place_rows_batch(
+    arm: Arm, q: Array, near: Array | None, limits: bool
+) -> tuple[Array, Flags, Flags]:
+    """Rows (N, M, dof) on the right turns, in place, which of them lie inside the limits, and which may be
+    hardly outside."""
+    inside, close, reach = (*np.ones((2, *q.shape[:2]), dtype=bool), arm.policy.limit_reach)
+    for j, (turning, low, high) in enumerate(zip(arm.turning, arm.lower, arm.upper)):
+        value = q[..., j]
+        least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
+        if turning:
+            value = np.where(value <= -pi, value + _TURN, value)
+            value = np.where(value > pi, value - _TURN, value)
+            turns: Array = np.zeros(1)
+            if near is not None:
+                turns = np.round((near[:, None, j] - value) / _TURN)
+            if limits and least > -inf:
+                turns = np.maximum(turns, np.ceil((least - value) / _TURN))
+            if limits and most < inf:
+                turns = np.minimum(turns, np.floor((most - value) / _TURN))
+            value = value + _TURN * turns
+        if limits:
+            fits = (value >= least) & (value <= most)
+            inside &= fits
+            if close.any():
+                beyond = (value > low - reach) & (value < high + reach)
+                if turning:
+                    beyond |= value + _TURN < high + reach
+                close &= beyond
+            value = np.minimum(np.maximum(value, low), high)
+        q[..., j] = value
+    return q, inside, close & ~inside

@@ -1,0 +1,158 @@
+"""Solutions near a singularity, where Newton's method stalls.
+
+The pose is taken to second order along the direction in which it moves least, to first order along the
+others (Lyapunov and Schmidt's reduction; Golubitsky & Schaeffer 1985, I.3)."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ikgen.runtime.python.arm.solved_arm import Arm
+from ikgen.runtime.python.arrays.array_tuples import some_of
+from ikgen.runtime.python.arrays.array_types import Array
+from ikgen.runtime.python.newton.arm_newton import linearized
+from ikgen.runtime.python.newton.refinement import damped, normal_inverse
+
+__all__ = ["Reduced", "approach", "correct", "generic", "still_directions"]
+
+_ALONG = 1e-4  # rad or m
+_CLOSE = 1e-9
+_FAR = 0.3
+_STEPS = 8
+_TURNED = 0.5  # squared length of what is left of a unit direction that turned by 45 degrees
+
+
+class Reduced(NamedTuple):
+    """Rows `q` (k, dof); unit directions `still` (k, n) in which their poses move least, and `out` (k, m)
+    of the errors in which no other direction moves them; what is `left` (k,) of the errors then, and how
+    that grows along the still direction, its `slope` (k,)."""
+
+    q: Array
+    still: Array
+    out: Array
+    left: Array
+    slope: Array
+
+
+class _Others(NamedTuple):
+    """The directions across the `still` one, and what that does to the pose: its `flow` (k, m)."""
+
+    still: Array
+    flow: Array
+    V: Array
+    normal: Array
+
+    def take_away(self, z: Array) -> tuple[Array, Array]:
+        """What they leave of z (k, m, i), by going (k, n, i)."""
+        solved = np.linalg.solve(self.normal, self.V.transpose(0, 2, 1) @ z)
+        going: Array = np.asarray(solved, dtype=np.float64)
+        return z - self.V @ going, going
+
+    def moved(self, arm: Arm, q: Array, across: Array, along: Array | float) -> Array:
+        """Rows q (k, dof) after a step."""
+        q = q.copy()
+        q[:, list(arm.moving)] += np.clip(across, -_FAR, _FAR) + along * self.still
+        return q
+
+
+def generic(count: int, size: int) -> Array:
+    """Directions (count, size) that are at right angles to none in particular."""
+    return np.tile(1.0 + 0.1 * np.arange(size), (count, 1))
+
+
+def still_directions(arm: Arm, slope: Array) -> Array:
+    """The unit directions (k, n) in which poses of derivatives (k, m, n) move least."""
+    return _still(slope, generic(len(slope), slope.shape[2]), arm.policy.least_damping)
+
+
+def approach(arm: Arm, q: Array, T: Array, side: Array) -> Array:
+    """From q (k, dof) towards the solution on one `side` (k,), 1 or -1, of the place where two may meet, or
+    to where they nearly do; T (k, 4, 4)."""
+    q, still, going = q.copy(), generic(len(q), len(arm.moving)), np.arange(len(q))
+    for _ in range(_STEPS):
+        q[going], still[going], x = _step(arm, q[going], T[going], side[going], still[going])
+        going = going[np.abs(x) > _CLOSE]
+        if not len(going):
+            break
+    return q
+
+
+def correct(arm: Arm, at: Reduced, T: Array) -> tuple[Reduced, Array]:
+    """After one step across the still directions, with what was left before it; how far (k,) the fastest
+    joint goes.
+
+    What the others make good of the still directions' flow turns these to where less moves the pose, as a
+    step of inverse iteration does."""
+    error, slope = linearized(arm, at.q, T)
+    others = _across(slope, at.still, arm.policy.least_damping)
+    taken, going = others.take_away(np.stack([error, at.out, others.flow], axis=2))
+    still, size = _unit(at.still - going[:, :, 2])
+    out, remains = _unit(taken[:, :, 1])
+    turned = np.flatnonzero(~(remains**2 >= _TURNED))
+    if len(turned):
+        out[turned] = _oriented(out[turned], some_of(others, turned))
+    left, grows = np.einsum("ke,kei->ik", out, taken[:, :, ::2])
+    across = going[:, :, 0]
+    q = others.moved(arm, at.q, across, 0.0)
+    return Reduced(q, still, out, left, -grows / size), np.abs(across).max(axis=1)
+
+
+def _oriented(out: Array, others: _Others) -> Array:
+    """Unit directions (k, m) in the sense that goes with the still ones': what the others do to the pose,
+    with these for the still ones, keeps orientation, however far `out` turned in a step."""
+    if others.V.shape[1] != others.V.shape[2]:
+        return out
+    turned = others.V + out[:, :, None] * others.still[:, None, :]
+    with np.errstate(all="ignore"):
+        return np.where(np.linalg.det(turned)[:, None] < 0.0, -out, out)
+
+
+def _others(arm: Arm, slope: Array, still: Array) -> _Others:
+    damping = arm.policy.least_damping
+    return _across(slope, _still(slope, still, damping), damping)
+
+
+def _across(slope: Array, still: Array, damping: float) -> _Others:
+    flow = np.einsum("kej,kj->ke", slope, still)
+    V = slope - flow[:, :, None] * still[:, None, :]
+    normal = V.transpose(0, 2, 1) @ V + still[:, :, None] * still[:, None, :]
+    return _Others(still, flow, V, damped(normal, damping))
+
+
+def _step(arm: Arm, q: Array, T: Array, side: Array, still: Array) -> tuple[Array, Array, Array]:
+    """q (k, dof) after a step, the unit directions (k, n) in which the pose moves least, in the sense of
+    `still`, and how far the step goes along them (k,)."""
+    error, slope = linearized(arm, q, T)
+    others = _others(arm, slope, still)
+    there = others.moved(arm, q, np.zeros_like(still), _ALONG)
+    _, beyond = linearized(arm, there, T)
+    bend = np.einsum("kej,kj->ke", beyond - slope, others.still) / _ALONG
+    taken, going = others.take_away(np.stack([error, bend, others.flow], axis=2))
+    x = _root(side, *np.moveaxis(taken, 2, 0))
+    return others.moved(arm, q, going[:, :, 0], x[:, None]), others.still, x
+
+
+def _still(slope: Array, still: Array, damping: float) -> Array:
+    """By four steps of inverse iteration, from what it was, which keeps its sense."""
+    inverse = normal_inverse(slope, damping)
+    twice = inverse @ inverse
+    return _unit((twice @ (twice @ still[:, :, None]))[:, :, 0])[0]
+
+
+def _unit(v: Array) -> tuple[Array, Array]:
+    """v (k, n) at unit length, and its length (k,)."""
+    size = np.sqrt(np.einsum("ki,ki->k", v, v))
+    return v / size[:, None], size
+
+
+def _root(side: Array, rest: Array, bend: Array, flow: Array) -> Array:
+    """The root (k,) of s x + k x^2 / 2 = e on this side of the least error, along the direction that the
+    others leave; where there is none, that least error itself."""
+    k, s, e = (np.einsum("ke,ke->k", bend, v) for v in (bend, flow, rest))
+    square = s * s + 2.0 * k * e
+    p = s + np.copysign(np.sqrt(np.maximum(square, 0.0)), s)
+    with np.errstate(all="ignore"):
+        x = np.where(((s > 0.0) == (side > 0.0)) & (square > 0.0), 2.0 * e / p, -p / k)
+    return np.asarray(np.clip(np.nan_to_num(np.where(k > 0.0, x, 0.0)), -_FAR, _FAR))

@@ -1,0 +1,203 @@
+"""What Newton steps from the closed form's rows lead to near singularities, where solutions meet."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ikgen.runtime.python.arm.chain_kinematics import forward
+from ikgen.runtime.python.arm.solved_arm import Arm, Found
+from ikgen.runtime.python.arrays.array_tuples import joined, some_of
+from ikgen.runtime.python.arrays.array_types import Array, Flags, Index, Row
+from ikgen.runtime.python.newton.arm_newton import refined
+from ikgen.runtime.python.newton.refinement import least_singular
+from ikgen.runtime.python.rows.row_links import differences
+from ikgen.runtime.python.rows.row_placement import distinct
+from ikgen.runtime.python.rows.solution_rows import places
+from ikgen.runtime.python.singular.fold_pair import approach
+
+__all__ = [
+    "Ends",
+    "Leads",
+    "Led",
+    "Starts",
+    "both",
+    "ends_of",
+    "leads_of",
+    "repeats",
+    "rows_nearby",
+]
+
+
+class Starts(NamedTuple):
+    """Where Newton steps start: rows `q` (k, dof) for poses `T` (k, 4, 4), which rows are of the same pose,
+    `pose` (k,), which the closed form `marked` (k,) as of a continuum, and the `source` (k,) of each:
+    given (-1), the closed form for the pose (0), or for one beside (1, 2, ...), on branch `lane` (k,)."""
+
+    q: Array
+    T: Array
+    pose: Index
+    marked: Flags
+    source: NDArray[np.int64]
+    lane: Index
+
+
+class Ends(NamedTuple):
+    """Where Newton steps end: rows `q` (k, dof), their `error` and the smallest singular value `loss` of
+    the derivatives (k,)."""
+
+    q: Array
+    error: Array
+    loss: Array
+
+
+class Led(NamedTuple):
+    """Solutions `q` (n, dof), the starts `owner` (n,) that led to them, and the smallest singular values
+    `loss` (n,) there."""
+
+    owner: Index
+    q: Array
+    loss: Array
+
+
+class Leads(NamedTuple):
+    """Starts and their ends, with an infinite error where a start stands for a continuum of the solved
+    geometry, what is found `around` that, and of which starts (k,) that is `known`."""
+
+    starts: Starts
+    ends: Ends
+    around: Led
+    known: Flags
+
+
+def both(one: Leads, other: Leads) -> Leads:
+    """Those of two."""
+    owner = other.around.owner + len(one.starts.q)
+    out: Leads = joined(one, other._replace(around=other.around._replace(owner=owner)))
+    return out
+
+
+def ends_of(arm: Arm, q: Array, T: Array) -> Ends:
+    """Where steps from rows q (k, dof) towards aims T end."""
+    q, error, _, slope = refined(arm, q, T)
+    return Ends(q, error, least_singular(slope))
+
+
+def leads_of(arm: Arm, starts: Starts, known: Flags, near: bool = False) -> Leads:
+    """What starts lead to. A continuum that the closed form has, where it marked a row, is followed all
+    around where the file's arm may not have it, once for each branch of a pose; `known` (poses, branches):
+    which were, and are then. Starts on none are no longer marked. With `near`, continua that the pose's own
+    rows may lie on near singularities are followed as well."""
+    broken = starts.marked & (starts.source >= 0)
+    if not arm.rounded and broken.any():
+        error = ends_of(arm, starts.q[broken], starts.T[broken]).error
+        broken[broken] = error >= arm.policy.arrived
+    nowhere = np.full(len(starts.q), np.inf)
+    ends = Ends(starts.q.copy(), nowhere, nowhere.copy())
+    _run(arm, starts, ends, ~broken)
+    own, at = starts.source == 0, (starts.pose, starts.lane)
+    lie = own & ~starts.marked & near
+    lie &= ends.loss < min(arm.policy.broken_reach, arm.policy.fold_reach)
+    one, on = _found_around(arm, starts, ends, (broken & own & ~known[at]) | lie, lie)
+    known[starts.pose[on & ~lie], starts.lane[on & ~lie]] = True
+    other, also = _found_around(arm, starts, ends, broken & ~own & ~known[at], lie)
+    known[starts.pose[also], starts.lane[also]] = True
+    around = broken & known[at]
+    _run(arm, starts, ends, broken & ~around)
+    starts = starts._replace(marked=starts.marked & (around | ~broken))
+    return Leads(starts, ends, joined(one, other), around | (on & lie))
+
+
+def _run(arm: Arm, starts: Starts, ends: Ends, some: Flags) -> None:
+    """Enters where steps from some of the starts end."""
+    for whole, part in zip(ends, ends_of(arm, starts.q[some], starts.T[some])):
+        whole[some] = part
+
+
+def _found_around(
+    arm: Arm, starts: Starts, ends: Ends, some: Flags, lie: Flags
+) -> tuple[Led, Flags]:
+    """The solutions around continua that some starts (k,) stand for, or that rows `lie` (k,) on which they
+    lead to, once for each branch of a pose; which starts these are from."""
+    index, on = np.flatnonzero(some), np.zeros(len(some), dtype=bool)
+    if arm.around is None or not len(index):
+        return Led(index[:0], starts.q[:0], ends.loss[:0]), on
+    q = np.where(lie[:, None], ends.q, starts.q)[index]
+    curve, owner, rows, loss = arm.around(arm, q, starts.T[index], lie[index])
+    branch = np.stack([starts.pose, starts.lane], axis=1)[index[curve]]
+    _, first = np.unique(branch, axis=0, return_index=True)
+    on[index[curve][first]] = True
+    found: Led = some_of(Led(index[owner], rows, loss), on[index[owner]])
+    return found, on
+
+
+def rows_nearby(arm: Arm, leads: Leads) -> Led:
+    """The solutions that starts lead to, those that are sure first. Where two may meet near a singularity
+    both are found. What is given leads only to its own."""
+    starts, T, (q, error, loss) = leads.starts, leads.starts.T, (x.copy() for x in leads.ends)
+    near = (starts.source >= 0) & ~starts.marked & (loss < arm.policy.fold_reach)
+    settled = error < np.where(near, arm.policy.converged, arm.policy.arrived)
+    fresh = _fresh(arm, q, starts, near, near & ~settled)
+    settled &= fresh
+    near &= fresh & ~leads.known
+    sure = np.flatnonzero(settled)
+    first = _in_order(Led(sure, q[sure], loss[sure]), leads.around)
+    if not near.any():
+        return first
+    owner = np.repeat(np.flatnonzero(near), 2)
+    pairs = approach(arm, q[owner], T[owner], np.tile([1.0, -1.0], len(owner) // 2))
+    pairs, left, there = ends_of(arm, pairs, T[owner])
+    exact = left < arm.policy.exact
+    for k, i in zip(np.flatnonzero(~exact).tolist(), owner[~exact].tolist()):
+        if left[k] < error[i]:
+            q[i], error[i], loss[i] = pairs[k], left[k], there[k]
+    alone = np.flatnonzero(near & (error < arm.policy.arrived))
+    alone = np.setdiff1d(alone, [*owner[exact], *sure])
+    more = _in_order(
+        Led(owner[exact], pairs[exact], there[exact]), Led(alone, q[alone], loss[alone])
+    )
+    found: Led = joined(first, more)
+    return found
+
+
+def _in_order(one: Led, other: Led) -> Led:
+    found = joined(one, other)
+    order = np.argsort(found.owner, kind="stable")
+    return Led(*(x[order] for x in found))
+
+
+def _fresh(arm: Arm, q: Array, starts: Starts, near: Flags, stalled: Flags) -> Flags:
+    """Which rows (k, dof) are not of a pose beside, and led to the same as an earlier one of their pose or
+    stalled by one that is near another solution."""
+    if not len(arm.beside):
+        return np.ones(len(q), dtype=bool)
+    beside = starts.source > 0
+    fresh = ~beside
+    own = np.flatnonzero(np.isin(starts.pose, starts.pose[beside]) & (starts.source >= 0))
+    if not len(own):
+        return fresh
+    own = own[np.argsort(starts.pose[own], kind="stable")]
+    _, pose = np.unique(starts.pose[own], return_inverse=True)
+    place = places(pose)
+    rows = np.zeros((int(pose[-1]) + 1, int(place.max()) + 1, q.shape[1]))
+    valid = np.zeros(rows.shape[:2], dtype=bool)
+    rows[pose, place], valid[pose, place] = q[own], True
+    fresh[own] |= distinct(arm, rows, valid)[pose, place]
+    for k in np.flatnonzero(fresh & beside & stalled).tolist():
+        others = q[:k][(fresh & near & (starts.pose == starts.pose[k]))[:k]]
+        fresh[k] = not (np.abs(differences(arm, others, q[k])).max(axis=1) < arm.policy.alike).any()
+    return fresh
+
+
+def repeats(arm: Arm, T: Array, row: Row, kept: Sequence[Found]) -> bool:
+    """Whether nothing tells a singular row from one kept nearby: the pose is theirs between them too."""
+    others = [other for other, singular in kept if singular]
+    gaps = differences(arm, np.array(row), np.array(others)) if others else np.zeros((0, len(row)))
+    for gap in gaps[np.abs(gaps).max(axis=1) < arm.policy.alike]:
+        middle = forward(arm.chain, np.array(row) + 0.5 * gap)
+        if np.abs(arm.task.error(middle[None], T[None])).max() < arm.policy.halfway:
+            return True
+    return False

@@ -1,0 +1,89 @@
+"""The closed form's rows of many poses, and what Newton steps make of them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ikgen.runtime.python.arm.held_parameters import aims
+from ikgen.runtime.python.arm.solved_arm import Arm, Together
+from ikgen.runtime.python.arrays.array_types import Array, Flags
+from ikgen.runtime.python.arrays.row_blocks import in_blocks
+from ikgen.runtime.python.newton.arm_newton import refined
+from ikgen.runtime.python.newton.refinement import steeper
+from ikgen.runtime.python.rows.row_placement import distinct
+
+__all__ = ["ClosedForm", "careful_rows", "certain_rows", "closed_form", "rows_beside"]
+
+_PART = 2048  # poses whose arrays fit into a processor's cache
+
+
+class ClosedForm(NamedTuple):
+    """Rows `q` (N, M, dof); which are `valid`, which `singular`, of a continuum, or not valid, but behind
+    a joint that the pose leaves free, and which are `rough` (N, M)."""
+
+    q: Array
+    valid: Flags
+    singular: Flags
+    rough: Flags
+
+    @property
+    def free(self) -> Flags:
+        """Which poses (N,) leave a joint free."""
+        return np.asarray(self.singular.any(axis=1))
+
+
+def closed_form(arm: Arm, T: Array, near: Array | None, held: Array) -> ClosedForm:
+    """Of poses T (N, 4, 4) with the values `near` (N, dof) of joints that they leave free."""
+    start = np.zeros((len(T), len(arm.lower))) if near is None else near
+    with np.errstate(all="ignore"):
+        found = ClosedForm(*in_blocks(arm.branches_batch, _PART, T, start, held))
+    found.q[:, :, list(arm.free)] = held[:, None, : len(arm.free)]
+    return found
+
+
+def rows_beside(arm: Arm, T: Array, near: Array | None, held: Array) -> tuple[Array, Flags, Flags]:
+    """The closed form's rows (N, M, dof) of poses beside T (N, 4, 4), one after the other, which are
+    valid (N, M), and which of a continuum."""
+    each = len(arm.beside)
+    poses = (T[:, None] @ arm.beside).reshape(-1, 4, 4)
+    starts = None if near is None else np.repeat(near, each, axis=0)
+    closed = closed_form(arm, poses, starts, np.repeat(held, each, axis=0))
+    valid = closed.valid.reshape(len(T), -1)
+    marked = closed.singular.reshape(len(T), -1) & valid
+    return closed.q.reshape(len(T), -1, closed.q.shape[2]), valid, marked
+
+
+def certain_rows(
+    arm: Arm, together: Together, T: Array, held: Array, near: Array | None
+) -> tuple[Array, Flags, Flags]:
+    """Rows (N, M, dof) of a rounded arm refined all at once, which of them are solutions, and for which
+    poses (N,) that leaves a doubt."""
+    closed = closed_form(arm, T, near, held)
+    q, valid, doubt = closed.q, closed.valid, closed.free
+    pose, row = np.nonzero(valid)
+    q[pose, row], arrived, missed = together(arm, q[pose, row], aims(arm, T, held)[pose])
+    found = valid.copy()
+    found[pose, row] = arrived
+    doubt[pose[~(arrived | missed)]] = True
+    doubt |= (distinct(arm, q, found) != found).any(axis=1) | ~found.any(axis=1)
+    return q, found, doubt
+
+
+def careful_rows(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, Flags, Flags]:
+    """Rows (N, M, dof) of which each is refined for as long as it takes, with those of poses beside where
+    they always count; which are distinct solutions, and which poses (N,) have rows of a continuum or near
+    a singularity."""
+    closed = closed_form(arm, T, near, held)
+    q, valid, rough, doubt = closed.q, closed.valid, closed.rough, closed.free
+    if len(arm.beside) and arm.policy.beside_anywhere:
+        more, real, _ = rows_beside(arm, T, near, held)
+        q, valid = np.concatenate([q, more], axis=1), np.concatenate([valid, real], axis=1)
+        rough = np.ones_like(valid)
+    pose, row = np.nonzero(rough & valid)
+    if len(pose):
+        found, error, _, slope = refined(arm, q[pose, row], aims(arm, T, held)[pose])
+        q[pose, row], valid[pose, row] = found, error < arm.policy.arrived
+        doubt[pose[~steeper(slope, arm.policy.fold_reach)]] = True
+    return q, distinct(arm, q, valid), doubt

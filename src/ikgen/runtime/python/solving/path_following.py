@@ -1,0 +1,229 @@
+"""Joint values along a path of poses, on one branch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import inf
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ikgen.runtime.python.arguments.joint_arguments import seed_rows
+from ikgen.runtime.python.arguments.pose_arguments import poses_in_line
+from ikgen.runtime.python.arm.chain_kinematics import tip_and_jacobian
+from ikgen.runtime.python.arm.solved_arm import Arm
+from ikgen.runtime.python.arrays.array_types import Array, Flags
+from ikgen.runtime.python.newton.refinement import rank_loss
+from ikgen.runtime.python.rows.solutions import Solutions, Status
+from ikgen.runtime.python.solving.pose_solving import solve_pose
+
+__all__ = ["Path", "follow_poses"]
+
+_DEEPEST = 24  # of the way from one pose to the next
+_SHALLOW = 9  # the same where there are no rows
+_MOST = 1000  # steps from one pose to the next, where rows follow at no length
+_FARTHEST = 0.3  # rad or m that a joint may move at once
+_AWAY = 1.0  # rad or m by which it turns around a singularity, where another row is next to the last one
+_OFF = 0.2  # of the motion, and
+_LEAST_OFF = 1e-4  # rad or m: how far a row may be from where the Jacobian leads
+_NEWTON_STEPS = 30
+_BESIDE_START = 0.1  # rad or m
+_DAMPING = 1e-8  # of directions that are all but lost, squared, where steps shall arrive,
+_LEAST_DAMPING = 1e-14  # and where they shall tell how far the next row is
+_JUMP = 0.05  # rad or m that a row may be from the last one where halving does not help
+
+
+@dataclass(frozen=True)
+class Path:
+    """Joint values `q` (N, DOF) along N poses, on one branch and without leaps of whole turns; NaN from
+    the first that was not reached. `reached`: how many were; `status`: OK for all of them, else why the
+    next was not, SINGULAR where its rows are a leap away. `singular` (N,): the row is at a singularity,
+    or was reached across one."""
+
+    q: Array
+    reached: int
+    status: Status
+    singular: Flags
+
+
+def follow_poses(
+    arm: Arm,
+    search: Callable[[Array, Array, bool], Solutions],
+    poses: Any,
+    start: ArrayLike,
+    limits: bool,
+) -> Path:
+    """From the row of the first pose (N, 4, 4) that is nearest to `start` (dof,); `search(pose, start,
+    limits)`: rows nearest to it first. Raises ValueError for bad arguments."""
+    T, dof = poses_in_line(poses, arm.task.alone), len(arm.lower)
+    row = seed_rows(arm, start, (dof,), name="start")
+    q, singular = np.full((len(T), dof), np.nan), np.zeros(len(T), dtype=bool)
+    walk, before = _Walk(arm, limits), np.eye(4)
+    for i, lines in enumerate(T.tolist()):
+        walk.crossed = False
+        read = arm.task.read(lines, arm.policy)
+        pose = np.array(lines if read is None else read)
+        if read is None:
+            status = Status.INVALID
+        elif i:
+            status = walk.go_on(before, pose)
+        else:
+            status = walk.begin(pose, row, search)
+        if status is not Status.OK:
+            return Path(q, i, status, singular)
+        q[i], singular[i], before = walk.q, walk.crossed, pose
+    return Path(q, len(T), Status.OK, singular)
+
+
+class _Walk:
+    """`q`: where the arm is; `crossed`: whether it came across a singularity since that was last unset."""
+
+    def __init__(self, arm: Arm, limits: bool) -> None:
+        self.arm, self.limits = arm, limits
+        self.q: Array = np.zeros(len(arm.lower))
+        self.crossed = False
+        self.left = _MOST
+
+    def begin(
+        self, pose: Array, start: Array, search: Callable[[Array, Array, bool], Solutions]
+    ) -> Status:
+        """To the row next to the start, or the best that a search finds."""
+        self.q = start
+        if self.arm.free_joints:
+            rows, flags, _ = self._unstopped(pose)
+            if len(rows) and np.abs(rows[0] - start).max() < _BESIDE_START:
+                self.crossed = bool(flags[0])
+                return self._arrive(rows[0])
+        found = search(pose, start, self.limits)
+        if len(found):
+            self.q, self.crossed = found.q[0], bool(found.singular[0])
+        return found.status
+
+    def go_on(self, before: Array, pose: Array) -> Status:
+        """From a pose to the next; where halved steps lead far away or nowhere, as beside a singularity,
+        to a row next to the last one if there is one."""
+        here, self.left = self.q, _MOST
+        status = self.step(before, pose, 0)
+        if status is Status.OK and np.abs(self.q - here).max() < _AWAY:
+            return status
+        there, self.q = self.q, here
+        rows, _, why = self._rows(pose)
+        moved = np.abs(rows - here).max(axis=1)
+        near = len(rows) and moved.min() < _FARTHEST
+        if near and self._arrive(rows[int(moved.argmin())]) is Status.OK:
+            self.crossed = True
+            return Status.OK
+        self.q = there
+        return why if status is Status.SINGULAR and not len(rows) else status
+
+    def step(self, before: Array, pose: Array, depth: int) -> Status:
+        """From a pose to the next, with halved steps where the rows do not follow the Jacobian."""
+        self.left -= 1
+        expected = self._expected(pose)
+        rows, flags, status = self._rows(pose)
+        if len(rows):
+            gap = np.abs(rows - expected).max(axis=1)
+            k = int(gap.argmin())
+            moved = float(np.abs(rows[k] - self.q).max())
+            follows = moved < _FARTHEST and gap[k] < _LEAST_OFF + _OFF * moved
+            if follows or (depth == _DEEPEST and moved < _JUMP):
+                self.crossed = self.crossed or bool(flags[k]) or not follows
+                return self._arrive(rows[k])
+            status = Status.SINGULAR
+        if depth == _DEEPEST or self.left < 0 or (depth >= _SHALLOW and not len(rows)):
+            return status
+        middle = _between(before, pose)
+        first = self.step(before, middle, depth + 1)
+        return first if first is not Status.OK else self.step(middle, pose, depth + 1)
+
+    def _arrive(self, row: Array) -> Status:
+        """To a row, if it is inside the limits on the turn that it came to."""
+        if self.limits:
+            inside = np.clip(row, self.arm.lower, self.arm.upper)
+            if np.abs(inside - row).max() > self.arm.policy.limit_tolerance:
+                return Status.LIMITS
+            row = inside
+        self.q = row
+        return Status.OK
+
+    def _expected(self, pose: Array) -> Array:
+        """Where the shortest motion by the Jacobian leads from here."""
+        return self.q + self._motion(self.q, pose, list(range(len(self.q))), _LEAST_DAMPING)[0]
+
+    def _motion(
+        self, q: Array, pose: Array, moving: list[int], damping: float
+    ) -> tuple[Array, float]:
+        """The shortest motion (dof,) of some joints that the Jacobian asks for, at most a radian or metre
+        each; the error that it shall make good."""
+        arm = self.arm
+        here, J = tip_and_jacobian(arm.chain, q[None])
+        error, rows = arm.task.error(here, pose[None])[0], arm.task.rows(here, J)[0][:, moving]
+        normal = rows @ rows.T + damping * np.eye(len(rows))
+        step = np.zeros(len(q))
+        step[moving] = np.clip(rows.T @ np.linalg.solve(normal, error), -1.0, 1.0)
+        return step, float(np.abs(error).max())
+
+    def _rows(self, pose: Array) -> tuple[Array, Flags, Status]:
+        """All rows without limits; with held joints the one that those lead to which no limit stops."""
+        if self.arm.free_joints:
+            return self._unstopped(pose)
+        found = solve_pose(self.arm, pose, None, self.q, False)
+        return found.q, found.singular, found.status
+
+    def _unstopped(self, pose: Array) -> tuple[Array, Flags, Status]:
+        """The row next to the expected one that all joints reach together, those that it would take out
+        of their limits stopped there."""
+        arm, stopped = self.arm, dict[int, float]()
+        while True:
+            moving = [j for j in range(len(self.q)) if j not in stopped]
+            at = self.q.copy()
+            for j, value in stopped.items():
+                at[j] = value
+            q, error = self._newton(at, pose, moving)
+            if not error < arm.policy.arrived:
+                none = np.empty((0, len(at))), np.empty(0, dtype=bool)
+                return *none, Status.LIMITS if stopped else Status.UNREACHABLE
+            low, high = np.array(arm.lower), np.array(arm.upper)
+            excess = np.maximum(low - q, q - high)
+            worst = int(excess.argmax())
+            if not self.limits or excess[worst] <= arm.policy.limit_tolerance:
+                loss = rank_loss(arm.chain, arm.task, range(len(at)), q[None])
+                return q[None], loss < arm.policy.rank_loss, Status.OK
+            stopped[worst] = float(low[worst] if q[worst] < low[worst] else high[worst])
+
+    def _newton(self, q: Array, pose: Array, moving: list[int]) -> tuple[Array, float]:
+        """The best row of shortest motions from q, and its error."""
+        best, least = q, inf
+        for i in range(_NEWTON_STEPS):
+            step, error = self._motion(q, pose, moving, _DAMPING)
+            slow = not error < 0.5 * least
+            if error < least:
+                best, least = q, error
+            if (slow and i > 2) or least < self.arm.policy.converged:
+                break
+            q = q + step
+        return best, least
+
+
+def _between(a: Array, b: Array) -> Array:
+    """The pose halfway (4, 4): the middle of the positions, half of the turn between (its axis by the
+    antisymmetric part, or the largest column of the symmetric one for half turns)."""
+    T = 0.5 * (a + b)
+    R = a[:3, :3].T @ b[:3, :3]
+    w = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
+    sine, cosine = 0.5 * float(np.linalg.norm(w)), 0.5 * (float(np.trace(R)) - 1.0)
+    angle = float(np.arctan2(sine, cosine))
+    if sine > 1e-6:
+        axis = w / (2.0 * sine)
+    elif cosine > 0.0:
+        return np.asarray(np.where(np.arange(4) == 3, T, a))
+    else:
+        S = R + np.eye(3)
+        column = S[:, int(np.argmax(np.diag(S)))]
+        axis = column / np.linalg.norm(column)
+    K = np.cross(np.eye(3), axis)
+    half = 0.5 * angle
+    T[:3, :3] = a[:3, :3] @ (np.eye(3) + np.sin(half) * K + (1.0 - np.cos(half)) * K @ K)
+    return T

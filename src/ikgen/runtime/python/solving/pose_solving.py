@@ -1,0 +1,206 @@
+"""All solutions of one pose."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ikgen.runtime.python.arguments.joint_arguments import held_values, seed_values
+from ikgen.runtime.python.arguments.pose_arguments import one_pose
+from ikgen.runtime.python.arguments.pose_faults import nearest_pose, pose_fault
+from ikgen.runtime.python.arm.chain_kinematics import forward
+from ikgen.runtime.python.arm.held_parameters import aims, held_of
+from ikgen.runtime.python.arm.solved_arm import Arm, Found
+from ikgen.runtime.python.arrays.array_types import Row
+from ikgen.runtime.python.newton.arm_newton import refined
+from ikgen.runtime.python.newton.refinement import steeper
+from ikgen.runtime.python.rows.row_branches import branch_names
+from ikgen.runtime.python.rows.row_placement import (
+    apart,
+    in_order,
+    is_new,
+    place_rows,
+    rows_at_limits,
+)
+from ikgen.runtime.python.rows.solutions import Solutions, Status, no_solutions
+from ikgen.runtime.python.solving.closed_form_rows import careful_rows
+from ikgen.runtime.python.solving.doubtful_poses import Answer, Asked, placed_rows, seeded_rows
+from ikgen.runtime.python.solving.projection import nearest_row, off_by
+
+__all__ = [
+    "One",
+    "eliminated_rows",
+    "placed_answer",
+    "solutions_of",
+    "solve_pose",
+    "sure_answer",
+]
+
+One = tuple[list[list[float]], Row | None, Row]
+"""A pose, its seed if there is one, and values of held joints."""
+
+
+def solve_pose(
+    arm: Arm,
+    pose: Any,
+    free: Sequence[float] | Mapping[str, float] | None,
+    seed: ArrayLike | None,
+    limits: bool,
+    project: bool = False,
+    orthonormalize: bool = False,
+) -> Solutions:
+    """All joint values that bring the tip to `pose`, or with `project` to the nearest pose that the arm
+    can take; raises ValueError for bad arguments."""
+    lines = one_pose(pose, arm.task.alone).tolist()
+    near = seed_values(arm, seed)
+    held = held_values(arm, free, near)
+    if orthonormalize:
+        lines = nearest_pose(arm.task, lines, arm.policy)
+    T = arm.task.read(lines, arm.policy)
+    if T is None:
+        reason = pose_fault(arm.task, lines, arm.policy)
+        return no_solutions(len(arm.lower), Status.INVALID, reason)
+    asked = T, near, held
+    return solutions_of(arm, asked, limits, _fitting(arm, asked, limits), project)
+
+
+def solutions_of(
+    arm: Arm, asked: One, limits: bool, answer: Answer, project: bool = False
+) -> Solutions:
+    """The answer in order, or why there is none; to a pose nearby where it is to `project`."""
+    T, near, held = asked
+    found = answer.rows
+    if project and not found:
+        found = _projected(arm, asked, limits)
+    if not found:
+        status = Status.LIMITS if answer.real else Status.UNREACHABLE
+        return no_solutions(len(arm.lower), status, _held_reason(arm, held, answer.real))
+    found = in_order(arm, found, near)
+    q = np.array([row for row, _ in found]) + 0.0
+    flags = np.array([flag for _, flag in found], dtype=bool)
+    off = off_by(arm.task, forward(arm.chain, q), np.array(T)) if project else None
+    names = partial(branch_names, arm)
+    return Solutions(q, Status.OK, flags, names=names, projected=off)
+
+
+def _held_reason(arm: Arm, held: Row, real: bool) -> str:
+    """What holding joints has to do with it; nothing where none is held."""
+    if not held:
+        return ""
+    values = ", ".join(f"{name} = {x:.6g}" for name, x in zip(arm.free_joints, held))
+    what = "all solutions are outside the limits" if real else "no solution"
+    tells = (
+        "self_motion(pose) has the values that do" if len(held) == 1 else "search(pose) tries them"
+    )
+    return f"{what} with {values} held; other values may reach the pose: {tells}"
+
+
+def _projected(arm: Arm, asked: One, limits: bool) -> list[Found]:
+    """Solutions of the nearest pose that the arm can take."""
+    T, near, _ = asked
+    start = _asked(asked).starts(arm)[0]
+    row = nearest_row(arm, np.array(T), tuple(start.tolist()), limits)
+    pose: list[list[float]] = forward(arm.chain, row).tolist()
+    nearest = pose, near, tuple(held_of(arm, np.array(row)).tolist())
+    found = _fitting(arm, nearest, limits).rows
+    if len(found) < arm.most and is_new(arm, row, found):
+        found += place_rows(arm, [(row, False)], near, limits)
+    return found
+
+
+def _asked(asked: One) -> Asked:
+    T, near, held = asked
+    return Asked(np.array([T]), None if near is None else np.array([near]), np.array([held]))
+
+
+def _fitting(arm: Arm, asked: One, limits: bool) -> Answer:
+    sure = sure_answer(arm, asked, limits)
+    return placed_rows(arm, _asked(asked), limits)[0] if sure is None else sure
+
+
+def sure_answer(arm: Arm, asked: One, limits: bool) -> Answer | None:
+    """From the closed form on floats, or an elimination, where that leaves no doubt."""
+    kept = _certain_rows(arm, *asked)
+    return None if kept is None else placed_answer(arm, asked, kept, limits)
+
+
+def placed_answer(arm: Arm, asked: One, kept: list[Found], limits: bool) -> Answer | None:
+    """From distinct rows, where none of them is close to a limit."""
+    near = asked[1]
+    placed, close = rows_at_limits(arm, kept, near, limits)
+    if close:
+        return None
+    if near is not None and not placed:
+        placed = place_rows(arm, seeded_rows(arm, _asked(asked))[0], near, limits)
+    return Answer(placed, bool(kept))
+
+
+def _certain_rows(
+    arm: Arm, T: list[list[float]], near: Row | None, held: Row
+) -> list[Found] | None:
+    """Distinct rows, refined where they need it, those of a rounded arm all at once; None where that leaves
+    a doubt."""
+    if arm.branches is None:
+        return eliminated_rows(arm, _asked((T, near, held)))[0]
+    start = list(near) if near is not None else [0.0] * len(arm.lower)
+    for j, value in zip(arm.free, held):
+        start[j] = value
+    answers, hit = arm.branches(T, tuple(start), held)
+    if hit:
+        return None
+    rows: list[Row] = [row for row, _ in answers]
+    if arm.together is None and any(rough for _, rough in answers):
+        regular = _regular_rows(arm, answers, (T, near, held))
+        if regular is None:
+            return None
+        rows = regular
+    if arm.together is not None and not rows:
+        beside = (np.array(T) @ arm.beside).tolist() if arm.policy.beside_anywhere else []
+        return None if any(arm.branches(pose, tuple(start), held)[0] for pose in beside) else []
+    if arm.together is not None:
+        aim = aims(arm, np.array([T]), np.array([held]))
+        q, arrived, missed = arm.together(arm, np.array(rows), aim)
+        if not (arrived | missed).all():
+            return None
+        q = q[arrived]
+        rows = list(map(tuple, q.tolist()))
+        if apart(arm, q):
+            return [(row, False) for row in rows]
+    kept: list[Found] = []
+    for row in rows:
+        if is_new(arm, row, kept):
+            kept.append((row, False))
+        elif arm.rounded:  # another may lie there
+            return None
+    return kept
+
+
+def eliminated_rows(arm: Arm, asked: Asked) -> list[list[Found] | None]:
+    """Distinct rows of each pose, by elimination; None where they leave a doubt."""
+    found = zip(*careful_rows(arm, asked.T, asked.held, asked.near))
+    return [
+        None if doubt else [(tuple(row), False) for row in q[valid].tolist()]
+        for q, valid, doubt in found
+    ]
+
+
+def _regular_rows(arm: Arm, answers: list[Found], asked: One) -> list[Row] | None:
+    """Rows of which those that are rough are refined, each for as long as it takes; None where one of these
+    is near a singularity."""
+    T, _, held = asked
+    rough = [row for row, flag in answers if flag]
+    aim = aims(arm, np.array([T] * len(rough)), np.array([held] * len(rough)))
+    q, error, _, slope = refined(arm, np.array(rough), aim)
+    if not steeper(slope, arm.policy.fold_reach).all():
+        return None
+    ends = iter(zip(q.tolist(), (error < arm.policy.arrived).tolist()))
+    rows = []
+    for row, flag in answers:
+        end, arrived = next(ends) if flag else (row, True)
+        if arrived:
+            rows.append(tuple(end))
+    return rows

@@ -1,0 +1,98 @@
+"""Which runs the six joints' rows are looked for in, until those found are all that is known."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from tests.support.given_rows import FRAMES, given_arm
+
+from ikgen.runtime.python.elimination import general_6r
+from ikgen.runtime.python.elimination.general_6r import _ASIDE, _OTHER_SIDE, Plan, six_joint_rows
+from ikgen.runtime.python.elimination.six_joints import six_joints
+
+Array = NDArray[np.float64]
+ROWS = np.arange(24.0).reshape(4, 6) / 10.0
+POLICY = given_arm(None).policy
+
+
+def test_poses_beside_are_a_small_rigid_motion_away_on_both_sides() -> None:
+    np.testing.assert_allclose(_ASIDE[:3, :3] @ _ASIDE[:3, :3].T, np.eye(3), atol=1e-15)
+    assert np.linalg.det(_ASIDE[:3, :3]) == pytest.approx(1.0)
+    turn = np.arccos(0.5 * (np.trace(_ASIDE[:3, :3]) - 1.0))
+    assert turn == pytest.approx(1.4e-3, rel=0.1)
+    assert np.linalg.norm(_ASIDE[:3, 3]) == pytest.approx(1.5e-3, rel=0.1)
+    np.testing.assert_allclose(_ASIDE @ _OTHER_SIDE, np.eye(4), atol=1e-15)
+
+
+def run(
+    monkeypatch: pytest.MonkeyPatch,
+    told: list[tuple[list[int], int, bool]],
+    direct: int = 0,
+    ways: int = 3,
+) -> tuple[Array, int]:
+    """Rows of one pose, of runs that find some of `ROWS` each, say that there are so many, and whether
+    those are all; and how many runs that took."""
+    calls = []
+
+    def find(frames: Any, aims: Array, one: Any, turning: Any) -> Any:
+        which, real, clear = told[len(calls)]
+        calls.append(one)
+        of = np.zeros(len(which), dtype=np.intp)
+        return of, ROWS[which], np.full(len(aims), real), np.full(len(aims), clear)
+
+    def refined(six: Any, plan: Any, pose: Any, T: Any, q: Array, policy: Any) -> Any:
+        return q, np.ones(len(q), dtype=bool), np.zeros(len(q))
+
+    monkeypatch.setattr(general_6r, "refined_rows", refined)
+    plans = tuple((0, k, 0) for k in range(ways))
+    ahead = tuple((find, (9, k, 0), 1e-7) for k in range(direct))
+    plan = Plan(1.0, plans, (True,) * 6, find, ahead)
+    motions = tuple((k, True, 1.0, 0.0) for k in range(6))
+    pose, q = six_joint_rows(six_joints(FRAMES, 1.0, motions, None), plan, np.eye(4)[None], POLICY)
+    assert not pose.any()
+    return q, len(calls)
+
+
+def test_one_run_does_where_it_is_clear_and_finds_what_it_says(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    q, calls = run(monkeypatch, [([0, 1], 2, True)])
+    assert calls == 1
+    np.testing.assert_allclose(q, ROWS[:2], atol=1e-12)
+
+
+def test_others_follow_until_they_find_all_that_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    two, four = ([0, 1], 2, False), ([0, 1, 2, 3], 4, False)
+    assert run(monkeypatch, [two, two])[1] == 2
+    assert run(monkeypatch, [([0, 1], 2, True)][:1], ways=1)[1] == 1
+    q, calls = run(monkeypatch, [two, four, four])
+    assert calls == 3
+    np.testing.assert_allclose(q, ROWS, atol=1e-12)
+    assert run(monkeypatch, [([0], 1, True), two, two])[1] == 3  # rows come in pairs
+
+
+def test_what_a_later_elimination_says_there_is_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    told = [([0, 1], 2, False), ([0], 0, False), ([0, 1], 4, False), ([0, 1, 2, 3], 4, False)]
+    q, calls = run(monkeypatch, told)
+    assert calls == 4
+    np.testing.assert_allclose(q, ROWS, atol=1e-12)
+
+
+def test_an_elimination_without_rank_confirms_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    lost, beside = ([0, 1], -1, True), ([0, 1], 2, False)
+    q, calls = run(monkeypatch, [lost, beside, ([0, 1, 2, 3], 4, False), ([0, 1, 2, 3], 4, False)])
+    assert calls == 4
+    np.testing.assert_allclose(q, ROWS, atol=1e-12)
+    nothing: tuple[list[int], int, bool] = ([], -1, True)
+    assert run(monkeypatch, [nothing, ([], 0, True), ([0, 1], 2, True), ([0, 1], 2, True)])[1] == 4
+    assert run(monkeypatch, [([], 0, True), ([], 0, True)])[1] == 2
+
+
+def test_what_a_direct_way_says_there_is_does_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    told = [([0, 1], 4, False), ([0, 1], 2, False)]
+    q, calls = run(monkeypatch, told, direct=1)
+    assert calls == 2
+    np.testing.assert_allclose(q, ROWS[:2], atol=1e-12)

@@ -1,0 +1,76 @@
+"""The grid of held joints' values that is searched first."""
+
+from __future__ import annotations
+
+from math import inf, pi
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from tests.support.chains import rotation, translation
+
+from ikgen.runtime.python.arm.chain_kinematics import chain_of
+from ikgen.runtime.python.held.held_grid_search import _grid
+
+Array = NDArray[np.float64]
+TO_X = rotation([0.0, 1.0, 0.0], pi / 2)
+
+
+def arm(kinds: str, lower: tuple[float, ...], upper: tuple[float, ...]) -> Any:
+    """All joints are held; slides and turns are along x."""
+    frames = np.array([TO_X, *[np.eye(4)] * len(kinds)])
+    motions = tuple((j, kind == "R", 1.0, 0.0) for j, kind in enumerate(kinds))
+    return SimpleNamespace(
+        chain=chain_of(frames, motions, len(kinds)), lower=lower, upper=upper,
+        free=tuple(range(len(kinds))), task=SimpleNamespace(entries=((0, 3),)),
+    )  # fmt: skip
+
+
+def axes(one: Any, middle: tuple[float, ...], limits: bool = True) -> tuple[list[Array], Any]:
+    values, steps = _grid(one, translation(0.4, 0.0, 0.0), middle, limits)
+    each = [np.unique(column) for column in values.T]
+    assert len(values) == np.prod([len(axis) for axis in each]) == len(np.unique(values, axis=0))
+    return each, steps
+
+
+def test_all_pairs_of_evenly_spread_values_are_on_it() -> None:
+    one = arm("RR", (-1.0, 0.5), (1.0, 2.0))
+    (first, second), steps = axes(one, (-1.0, 0.5))
+    assert len(first) == len(second) == 64
+    np.testing.assert_allclose(first, np.linspace(-1.0, 1.0, 64), atol=1e-15)
+    np.testing.assert_allclose(second, np.linspace(0.5, 2.0, 64), atol=1e-15)
+    assert steps == pytest.approx((1.0 / 63.0, 0.75 / 63.0))
+
+
+def test_what_is_wanted_is_on_it_as_far_as_limits_allow() -> None:
+    one = arm("RR", (-1.0, 0.5), (1.0, 2.0))
+    (first, second), _ = axes(one, (0.123, 9.0))
+    assert 0.123 in first and second[-1] == 2.0
+    others = np.sort(np.abs(first[:, None] - np.linspace(-1.0, 1.0, 64)).min(axis=1))
+    assert others[-2] < 1e-15 < others[-1] < 0.5 * 2.0 / 63.0
+
+
+@pytest.mark.parametrize("ends", [(-inf, 0.5), (-0.5, inf), (-inf, inf)])
+def test_a_turn_that_is_not_bounded_on_both_sides_goes_once_around(
+    ends: tuple[float, float],
+) -> None:
+    low, high = ends
+    for limits in (True, False):
+        (first, _), steps = axes(arm("RR", (low, 0.0), (high, 1.0)), (pi, 0.0), limits)
+        assert (first[0], first[-1]) == (-pi, pi) and steps[0] == pytest.approx(pi / 63.0)
+    (_, second), _ = axes(arm("RR", (low, 0.0), (high, 1.0)), (pi, pi), False)
+    assert (second[0], second[-1]) == (-pi, pi)
+
+
+def test_an_unbounded_slide_is_looked_at_a_metre_to_either_side() -> None:
+    for low, high, wanted in (
+        (-inf, inf, (2.0, 4.0)),
+        (-inf, 3.5, (2.0, 3.5)),
+        (2.5, inf, (2.5, 4.0)),
+        (7.0, inf, (7.0, 8.0)),
+    ):
+        one = arm("RP", (0.0, low), (1.0, high))
+        (_, second), _ = axes(one, (0.0, 3.0))
+        assert (second[0], second[-1]) == wanted

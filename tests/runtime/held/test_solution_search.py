@@ -1,0 +1,111 @@
+"""Steps of held values that are taken: to better rows of the same branch."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from ikgen.runtime.python.held import solution_search
+from ikgen.runtime.python.held.solution_search import _improved, best_rows
+
+Array = NDArray[np.float64]
+
+
+def arm(count: int = 1, **more: Any) -> Any:
+    fields = {
+        "lower": (-9.0,) * count,
+        "upper": (9.0,) * count,
+        "free": tuple(range(count)),
+        "most": 8,
+    }
+    return SimpleNamespace(chain=SimpleNamespace(revolute=(False,) * count), **{**fields, **more})
+
+
+def cost_of(monkeypatch: pytest.MonkeyPatch, cost: Any, away: float = 0.0) -> list[Array]:
+    """The row at held values is these, so far `away` in each; of its cost."""
+    asked: list[Array] = []
+
+    def rows(arm: Any, T: Array, held: Array) -> Any:
+        asked.append(held.copy())
+        return held[:, None] + away, np.ones((len(held), 1), dtype=bool)
+
+    monkeypatch.setattr(solution_search, "rows_batch", rows)
+    doubt = np.zeros(99, dtype=bool)
+    monkeypatch.setattr(solution_search, "aims", lambda arm, T, held: T)
+    monkeypatch.setattr(
+        solution_search,
+        "refine_few",
+        lambda arm, q, T: (q, *doubt[None, : len(q)].repeat(2, axis=0)),
+    )
+    monkeypatch.setattr(
+        solution_search, "preference_costs",
+        lambda arm, preference, q, limits: (q, cost(q), q[..., 0] < 5.0),
+    )  # fmt: skip
+    return asked
+
+
+WANTED: Any = ("near", (), ())
+
+
+def improved(trial: list[float], start: float = 1.0, limits: bool = True, **more: Any) -> Any:
+    n = len(trial)
+    now = np.full((n, 1), start), np.full((n, 1), start), np.full(n, start**2)
+    better = _improved(arm(**more), np.eye(4), WANTED, limits, now, np.array(trial)[None, :, None])
+    return better.tolist(), now[0][:, 0].tolist(), now[1][:, 0].tolist(), now[2].tolist()
+
+
+def test_better_rows_are_taken_with_their_costs(monkeypatch: pytest.MonkeyPatch) -> None:
+    cost_of(monkeypatch, lambda q: q[..., 0] ** 2)
+    found = improved([0.6, 1.2, -1.0, 1.0])
+    assert found[0] == [True, False, False, False]  # one as good is not better
+    assert found[1] == found[2] == [0.6, 1.0, 1.0, 1.0]
+    assert found[3] == pytest.approx([0.36, 1.0, 1.0, 1.0])
+
+
+def test_rows_of_other_branches_and_outside_are_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half a radian or metre from the one that the step began at."""
+    cost_of(monkeypatch, lambda q: -q[..., 0])
+    assert improved([1.4, 1.6, 2.4])[0] == [True, False, False]
+    assert improved([5.1, 4.9], start=4.8)[0] == [False, True]
+    cost_of(monkeypatch, lambda q: -q[..., 0], away=0.7)
+    assert improved([1.1])[0] == [False]
+
+
+def test_trials_stay_inside_the_limits_where_these_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    for limits, wanted in ((True, 1.2), (False, 1.3)):
+        asked = cost_of(monkeypatch, lambda q: -q[..., 0])
+        assert improved([1.3], limits=limits, upper=(1.2,))[1] == [wanted]
+        assert asked[0].tolist() == [[wanted]]
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_steps_get_shorter_where_none_is_better(
+    monkeypatch: pytest.MonkeyPatch, count: int
+) -> None:
+    """By the half, of one value alone by somewhat more, so that it comes to other places."""
+    middle = np.array([0.3, -0.2])[:count]
+    asked = cost_of(monkeypatch, lambda q: ((q - middle) ** 2).sum(axis=-1))
+    monkeypatch.setattr(solution_search, "_solutions", lambda *given: given[-2:])
+    start = (tuple(middle.tolist()), middle, (0.4,) * count, 0)
+    held, _ = best_rows(arm(count), np.eye(4), [start], WANTED, True)  # type: ignore[misc]
+    np.testing.assert_allclose(held[0], middle, atol=1e-6)  # type: ignore[index]
+    steps = [float(np.abs(trial[0] - middle).max()) for trial in asked[::count]]
+    ratio = 0.4 if count == 1 else 0.5
+    np.testing.assert_allclose(steps[:8], 0.4 * ratio ** np.arange(8), rtol=1e-6)
+
+
+def test_the_best_of_each_group_is_found_from_its_starts(monkeypatch: pytest.MonkeyPatch) -> None:
+    cost_of(monkeypatch, lambda q: (q[..., 0] - np.round(q[..., 0])) ** 2 + 1e-3 * q[..., 0])
+    monkeypatch.setattr(solution_search, "_solutions", lambda *given: given[-2])
+    starts = [
+        ((x,), np.array([x]), (0.1,), group)
+        for x, group in ((3.2, 0), (1.1, 0), (1.9, 1), (-0.8, 2))
+    ]
+    held: Any = best_rows(arm(), np.eye(4), starts, WANTED, True)
+    np.testing.assert_allclose(held[:, 0], [-1.0, 1.0, 2.0], atol=1e-3)
+    held = best_rows(arm(most=2), np.eye(4), starts, WANTED, True)
+    np.testing.assert_allclose(held[:, 0], [-1.0, 1.0], atol=1e-3)

@@ -1,0 +1,29 @@
+"""Which rows go on as which from one value of a held joint to the next."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from ikgen.runtime.python.rows.row_links import linked_rows, origins
+
+ARM: Any = SimpleNamespace(chain=SimpleNamespace(revolute=(True, False)))
+
+
+def test_rows_go_on_as_the_nearest_that_is_nearest_to_them() -> None:
+    q = np.array([
+        [[3.1, 0.0], [0.0, 2.0], [1.0, 1.0]],
+        [[0.1, 2.1], [-3.1, 0.1], [1.1, 1.0]],
+        [[0.3, 2.0], [0.2, 2.1], [3.0, 0.2]],
+    ])  # fmt: skip
+    real = np.array([[True, True, True], [True, True, False], [True, True, True]])
+    links = linked_rows(ARM, q, real)
+    assert links.tolist() == [[1, 0, -1], [1, 2, -1]]
+    assert linked_rows(ARM, q, real & False).tolist() == [[-1] * 3] * 2
+
+
+def test_each_row_knows_what_goes_on_as_it() -> None:
+    following = np.array([[2, -1, 0], [-1, -1, -1], [1, 2, -1]])
+    assert origins(following).tolist() == [[2, -1, 0], [-1, -1, -1], [-1, 0, 1]]

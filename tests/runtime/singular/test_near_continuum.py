@@ -1,0 +1,239 @@
+"""Solutions on what is a continuum of the solved geometry and none of the file's."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import ModuleType, SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from tests.support.cpp_modules import solver_module as published_module
+from tests.support.rounded_arms import FOLDED, meeting_shoulder
+from tests.support.solving import emitted, import_text
+
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.kinematics.modified_dh import to_dh
+from ikgen.runtime.python.singular import near_continuum
+from ikgen.runtime.python.singular.fold_pair import Reduced
+from ikgen.runtime.python.singular.near_continuum import _back, _look, _Parts, rows_around, trace
+
+Array = NDArray[np.float64]
+POLICY = SimpleNamespace(arrived=0.5e-9, try_step=np.pi / 8, fold_reach=10.0)
+LINE: Any = SimpleNamespace(moving=(0,), policy=POLICY, chain=SimpleNamespace(revolute=(True,)))
+
+
+@pytest.fixture(scope="module")
+def folded(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
+    """With the wrist above the shoulder its joint 1 is free, but for what the file rounds."""
+    return emitted(to_dh(meeting_shoulder()), tmp_path_factory.mktemp("arm"))
+
+
+def apart(a: Array, b: Array) -> Array:
+    return np.asarray(np.abs(np.remainder(a - b + np.pi, 2 * np.pi) - np.pi).max(axis=-1))
+
+
+def test_rows_on_broken_continua_are_found(folded: ModuleType) -> None:
+    q = np.array(FOLDED)
+    poses = folded.forward(q)
+    rows, count, _ = folded.solve_batch(poses)
+    for i, pose in enumerate(poses):
+        for found in (folded.solve(pose).q, rows[i, : count[i]]):
+            assert np.abs(folded.forward(found) - pose).max() < 2e-9
+            assert apart(found, q[i]).min() < 1e-4
+
+
+def marked_rows(arm: ModuleType, q: Array) -> tuple[Array, Array]:
+    """The closed form's rows for the poses of q, where it marks them as of a continuum; and those poses."""
+    poses = arm.forward(q)
+    rows, valid, singular, _ = arm._ARM.branches_batch(
+        poses, np.zeros_like(q), np.empty((len(q), 0))
+    )
+    pose, lane = np.nonzero(valid & singular)
+    return rows[pose, lane], poses[pose]
+
+
+def test_of_a_continuum_of_the_arm_itself_one_row_is_taken(tmp_path: Path) -> None:
+    exact = import_text(emit_module(published_module("kuka_kr6r900sixx")), tmp_path)
+    rows, poses = marked_rows(exact, np.array([[0.2, -0.9, 1.1, 0.3, 0.0, -0.4]]))
+    assert len(rows)
+    traced = trace(exact._ARM, rows, poses)
+    assert traced.curve.all() and not traced.broken.any() and not len(traced.owner)
+    curve, owner, found, loss = rows_around(exact._ARM, rows, poses, np.zeros(len(rows), bool))
+    assert curve.all() and owner.tolist() == list(range(len(rows)))
+    assert np.abs(exact.forward(found) - poses).max() < 1e-9 and loss.max() < 1e-9
+
+
+def test_equal_starts_are_followed_once(
+    folded: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rows, poses = marked_rows(folded, np.array(FOLDED))
+    once = trace(folded._ARM, rows, poses)
+    sizes, traced = [], near_continuum._traced
+
+    def counted(arm: Any, q: Array, T: Array) -> near_continuum.Traced:
+        sizes.append(len(q))
+        return traced(arm, q, T)
+
+    monkeypatch.setattr(near_continuum, "_traced", counted)
+    again = trace(folded._ARM, np.tile(rows, (3, 1)), np.tile(poses, (3, 1, 1)))
+    assert sizes == [len(rows)]
+    assert again.curve.tolist() == once.curve.tolist() * 3
+    assert again.broken.tolist() == once.broken.tolist() * 3
+    count = len(rows)
+    assert again.owner.tolist() == [k * count + i for k in range(3) for i in once.owner.tolist()]
+    assert again.q == pytest.approx(np.tile(once.q, (3, 1)), abs=1e-12)
+
+
+def test_samples_between_two_begin_near_the_curve(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a circle: a chord is 0.02 off it."""
+    plane: Any = SimpleNamespace(moving=(0, 1))
+    monkeypatch.setattr(near_continuum, "_sample", lambda arm, at, T: at)
+
+    def on_circle(angle: float) -> Reduced:
+        c, s, zero = np.cos(angle), np.sin(angle), np.zeros(1)
+        return Reduced(np.array([[c, s]]), np.array([[-s, c]]), np.zeros((1, 2)), zero, zero)
+
+    first = np.zeros(1, dtype=np.intp)
+    parts = _Parts(on_circle(0.0), on_circle(0.4), first, np.zeros(1), np.ones(1))
+    middle = near_continuum._between(plane, parts, np.array([0.5]), np.zeros((1, 4, 4)))
+    assert np.abs(middle.q - on_circle(0.2).q).max() < 2e-3
+    assert middle.still == pytest.approx(on_circle(0.2).still, abs=1e-12)
+    turned = parts._replace(b=parts.b._replace(still=-parts.b.still))
+    middle = near_continuum._between(plane, turned, np.array([0.5]), np.zeros((1, 4, 4)))
+    assert middle.q == pytest.approx(0.5 * (parts.a.q + parts.b.q))
+
+
+def test_a_broken_one_has_its_solutions_wherever_the_trace_starts(folded: ModuleType) -> None:
+    q = np.array(FOLDED)
+    rows, poses = marked_rows(folded, q)
+    traced = trace(folded._ARM, rows, poses)
+    assert traced.curve.all() and traced.broken.all() and len(traced.owner) >= 2 * len(q)
+    assert (np.diff(traced.owner) >= 0).all()
+    curve, owner, found, _ = rows_around(folded._ARM, rows, poses, np.zeros(len(rows), bool))
+    assert curve.all() and np.abs(folded.forward(found) - poses[owner]).max() < 2e-9
+    alone = [
+        rows_around(folded._ARM, rows[[k]], poses[[k]], np.zeros(1, bool)) for k in range(len(rows))
+    ]
+    assert np.concatenate([one[2] for one in alone]) == pytest.approx(found, abs=1e-9)
+    for at, pose in zip(q, folded.forward(q), strict=True):
+        own = found[np.abs(poses[owner] - pose).max(axis=(1, 2)) < 1e-12]
+        assert apart(own, at).min() < 1e-4
+
+
+def test_regular_rows_and_what_is_no_row_lie_on_none(folded: ModuleType) -> None:
+    q = np.array([[0.3, 0.7, -0.9, 0.4, 1.1, -0.2], [0.3, 0.7, np.nan, 0.4, 1.1, -0.2]])
+    T = np.repeat(folded.forward(q[:1]), 2, axis=0)
+    traced = trace(folded._ARM, q, T)
+    assert not traced.curve.any() and not traced.broken.any() and not len(traced.q)
+
+
+def on_line(x: Array, roots: Array) -> Reduced:
+    """Samples of the polynomial with these roots, as if the error left along a joint were that."""
+    left, slope = (np.polyval(p, x) for p in (np.poly(roots), np.polyder(np.poly(roots))))
+    return Reduced(x[:, None], np.ones((len(x), 1)), np.ones((len(x), 1)), left, slope)
+
+
+@pytest.mark.parametrize(
+    "roots",
+    [
+        [0.11],
+        [0.11, 0.16],
+        [0.11, 0.22, 0.31],
+        [-0.35, 0.3501],
+        [0.11, 0.1101],
+        [0.21, 0.21, -0.11],
+        [5.0],
+    ],
+)
+def test_all_roots_between_two_samples_are_found(
+    roots: list[float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ways = np.array(roots)
+    monkeypatch.setattr(near_continuum, "_sample", lambda arm, at, T: on_line(at.q[:, 0], ways))
+    a, b = on_line(np.array([-0.4]), ways), on_line(np.array([0.4]), ways)
+    parts = _Parts(a, b, np.zeros(1, np.intp), np.zeros(1), np.ones(1))
+    owner, found = _look(LINE, parts, np.zeros((1, 4, 4)), np.zeros(1, np.intp))
+    wanted = sorted({x for x in roots if abs(x) < 0.4})
+    assert not owner.any() and (np.diff(found[:, 0]) >= -1e-12).all()
+    for x in wanted:
+        assert np.abs(found[:, 0] - x).min() < (1e-4 if roots.count(x) > 1 else 1e-12)
+    assert len(found) == len(wanted) or len(wanted) < len(roots)
+    assert np.abs(np.polyval(np.poly(roots), found[:, 0])).max(initial=0.0) < 1e-8
+
+
+@pytest.mark.parametrize("between", [1e-2, 20.0], ids=["more than at the ends", "off the curve"])
+def test_a_change_of_sign_from_one_curve_to_another_is_no_solution(
+    between: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    taken = []
+
+    def leap(arm: Any, at: Reduced, T: Array) -> Reduced:
+        taken.append(len(T))
+        return at._replace(left=np.full(len(T), between), slope=np.zeros(len(T)))
+
+    monkeypatch.setattr(near_continuum, "_sample", leap)
+    ends = (on_line(np.array([x]), np.array([0.0])) for x in (-1e-3, 1e-3))
+    parts = _Parts(*ends, np.zeros(1, np.intp), np.zeros(1), np.ones(1))
+    _, found = _look(LINE, parts, np.zeros((1, 4, 4)), np.zeros(1, np.intp))
+    assert not len(found) and taken == [1]
+
+
+def at(x: float, sense: float) -> Reduced:
+    none = np.zeros(1)
+    return Reduced(np.array([[x]]), np.array([[sense]]), np.ones((1, 1)), none, none)
+
+
+def test_a_curve_is_back_where_it_was_in_the_same_sense() -> None:
+    assert _back(LINE, at(0.1, 1.0), at(0.1 + 2.0 * np.pi, 1.0)).all()
+    assert _back(LINE, at(0.1, 1.0), at(-0.1, 1.0)).all()
+    assert not _back(LINE, at(0.1, 1.0), at(0.1, -1.0)).any()
+    assert not _back(LINE, at(0.1, 1.0), at(0.5, 1.0)).any()
+
+
+def test_a_curve_is_back_along_its_own_direction_alone() -> None:
+    pair: Any = SimpleNamespace(
+        moving=(0, 1), policy=POLICY, chain=SimpleNamespace(revolute=(True, True))
+    )
+    none = np.zeros(1)
+
+    def sample(x: float, y: float, way: tuple[float, float] = (0.6, 0.8)) -> Reduced:
+        return Reduced(np.array([[x, y]]), np.array([way]), np.ones((1, 1)), none, none)
+
+    assert _back(pair, sample(0.0, 0.0), sample(0.12, 0.16)).all()
+    assert _back(pair, sample(0.0, 0.0), sample(-0.12 + 0.03, -0.16 - 2.0 * np.pi)).all()
+    assert not _back(pair, sample(0.0, 0.0), sample(0.16, -0.12)).any()
+    assert not _back(pair, sample(0.0, 0.0), sample(0.12, 0.16, (-0.8, 0.6))).any()
+    along = (1.0, 0.0)
+    assert _back(pair, sample(0.0, 0.0, along), sample(0.2, 0.05, along)).all()
+    assert not _back(pair, sample(0.0, 0.0, along), sample(0.2, 0.07, along)).any()
+
+
+def test_where_values_are_round_off_before_they_are_nothing_the_way_tells(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What is left jumps across 0 there, and the solution is as near as the way tells."""
+    taken = []
+
+    def steep(x: Array) -> Reduced:
+        left = 3e-9 * np.sign(x - 0.1234567) + (x - 0.1234567) + 20.0 * (x - 0.1234567) ** 3
+        return on_line(x, np.array([0.0]))._replace(
+            left=left, slope=1.0 + 60.0 * (x - 0.1234567) ** 2
+        )
+
+    def sample(arm: Any, at: Reduced, T: Array) -> Reduced:
+        taken.append(len(T))
+        return steep(at.q[:, 0])
+
+    monkeypatch.setattr(near_continuum, "_sample", sample)
+    parts = _Parts(
+        steep(np.array([0.0])),
+        steep(np.array([0.3])),
+        np.zeros(1, np.intp),
+        np.zeros(1),
+        np.ones(1),
+    )
+    found = near_continuum._closed_in(LINE, parts, np.zeros((1, 4, 4)))
+    ends = [float(x.q[0, 0]) for x in (found.a, found.b)]
+    assert min(abs(x - 0.1234567) for x in ends) < 1e-8 and len(taken) < 20
