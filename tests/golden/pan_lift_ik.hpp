@@ -1364,7 +1364,7 @@ template <class Arm> struct CarefulRows {
   }
 
   static constexpr bool turns_away(int turn) noexcept { return turn > 0 && turn <= Arm::kBesides; }
-  static Eigen::Isometry3d start_of(const Eigen::Isometry3d& pose, int turn) noexcept {
+  static Eigen::Isometry3d start_of(const Eigen::Isometry3d& pose, [[maybe_unused]] int turn) noexcept {
     return pose;
   }
   static int bits(const Rows& rows, int lane) noexcept { return static_cast<int>(rows.flags[lane]); }

@@ -112,7 +112,7 @@ template <class Arm> struct CarefulRows {
 
   // A divisor that nearly vanishes has a direction of little to do with the file's arm: poses beside have others.
   static constexpr bool turns_away(int turn) noexcept { return turn > 0 && turn <= Arm::kBesides; }
-  static Eigen::Isometry3d start_of(const Eigen::Isometry3d& pose, int turn) noexcept {
+  static Eigen::Isometry3d start_of(const Eigen::Isometry3d& pose, [[maybe_unused]] int turn) noexcept {
     if constexpr (Arm::kBesides > 0)
       if (turns_away(turn)) return displaced(pose, Arm::kBeside[turn - 1]);
     return pose;
