@@ -1338,6 +1338,7 @@ template <class Arm> struct CarefulRows {
       left.free = left.free || (bits(rows, lane) & kHit) != 0;
       left.led = left.led || (bits(rows, lane) & (kSingular | kReal)) == (kSingular | kReal);
     }
+    const int known = out.count;
     if (left.free) add_from(aim, q0, out);
     const Ends ends(rows, aim, options, kReal);
     Starts starts;
@@ -1347,7 +1348,7 @@ template <class Arm> struct CarefulRows {
         add_lane(rows, lane, out);
       else if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
         starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, false, aim, out);
-    if (starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, options, starts, out);
+    if (starts.count == 0 && left.free && out.count == known) take_all(aim, rows, options, starts, out);
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
       if (starts.at(k).near && !starts.at(k).around) starts.at(k).add_nearby(aim, out);

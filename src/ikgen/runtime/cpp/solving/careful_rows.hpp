@@ -78,6 +78,7 @@ template <class Arm> struct CarefulRows {
       left.free = left.free || (bits(rows, lane) & kHit) != 0;
       left.led = left.led || (bits(rows, lane) & (kSingular | kReal)) == (kSingular | kReal);
     }
+    const int known = out.count;
     if (left.free) add_from(aim, q0, out);
     const Ends ends(rows, aim, options, kReal);
     Starts starts;
@@ -92,7 +93,7 @@ template <class Arm> struct CarefulRows {
       if (turn == 0) starts.trace_broken(aim, out);
     if constexpr (Arm::kBesides > 0)
       if (turn == 0 && (kBesideAnywhere || left.free || starts.close())) take_beside(aim, q0, options, starts, out);
-    if (starts.count == 0 && left.free && out.count == 0) take_all(aim, rows, options, starts, out);
+    if (starts.count == 0 && left.free && out.count == known) take_all(aim, rows, options, starts, out);
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
       if (starts.at(k).near && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
