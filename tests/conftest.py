@@ -8,6 +8,7 @@ import sys
 from collections.abc import Iterator
 
 import pytest
+from hypothesis.internal.conjecture import providers
 from tests.support.precompiled import compilers
 from tests.support.solved import solved
 
@@ -30,6 +31,12 @@ def pytest_collection_finish() -> None:
     """Modules and thousands of collected tests stay to the end: no garbage is to be looked for there."""
     gc.collect()
     gc.freeze()
+
+
+if hasattr(providers, "is_local_module_file"):
+    # Else the first example of each process waits till the numbers of all modules that are loaded have been
+    # looked up for it: ten seconds where no run before has, in which other examples fail for being slow.
+    providers.is_local_module_file = lambda path: False
 
 
 @pytest.fixture(scope="module")

@@ -26,12 +26,13 @@ def test_two_names_are_two_symbols() -> None:
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
 def test_all_of_them_can_be_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    for number, start in enumerate(range(0, len(WORDS), 6)):
-        words = WORDS[start : start + 6]
+    for number, start in enumerate(range(0, len(WORDS), 12)):
+        words = (WORDS + WORDS)[start : start + 12]
+        sums = [f"{one} + {other}" for one, other in zip(words[:6], words[6:], strict=True)]
         parameters = "".join(f'"{word}" = 0.{k + 3}\n' for k, word in enumerate(words))
         joints = "".join(
             f'[[joints]]\ntype = "revolute"\nalpha = {alpha}\na = "{a}"\nd = "{d}"\ntheta = 0\n'
-            for alpha, a, d in zip((0, 0, '"pi/2"'), words[:3], words[3:], strict=True)
+            for alpha, a, d in zip((0, 0, '"pi/2"'), sums[:3], sums[3:], strict=True)
         )
         text = f'name = "t{number}"\nconvention = "modified"\n[parameters]\n{parameters}{joints}'
         Path("table.toml").write_text(text)
