@@ -97,10 +97,9 @@ template <class Arm> struct CarefulRows {
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
       if (starts.at(k).near && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
-    if constexpr (!Arm::kRefined) {
+    if constexpr (!Arm::kRefined)
       for (const int lane : Arm::kLaneOfRow)
         if ((bits(rows, lane) & (kReal | kRough)) == kReal) add_lane(rows, lane, out);
-    }
     return left;
   }
 
