@@ -196,6 +196,18 @@ def _answers(read: Callable[[str], Measured]) -> str:
     return _table(("solver", *(ARMS[arm] for arm in arms)), rows) + _source(measured)
 
 
+def _soak(read: Callable[[str], Measured]) -> str:
+    measured = read("soak")
+    rows = []
+    for name, found in measured.found["arms"].items():
+        poses, missed, empty, *beside = map(sum, zip(*found["decades"], strict=True))
+        counts = (found["rows"], found["wrong"], poses, missed, empty, *beside)
+        rows.append([name.replace("_", " "), *(f"{count:,}" for count in counts)])
+    counted = ("missed", "without a row")
+    head = ("arm", "rows", "wrong", "random poses", *counted, "beside singularities", *counted)
+    return _table(head, rows) + _source(measured)
+
+
 def _batch(read: Callable[[str], Measured]) -> str:
     """The shortest time that the home page tells."""
     rows = read("peers").found["times"]
@@ -214,11 +226,12 @@ BLOCKS: dict[str, Callable[[Callable[[str], Measured]], str]] = {
     "random": _random,
     "peers": _peers,
     "answers": _answers,
+    "soak": _soak,
     "batch": _batch,
 }
 """Block -> its text."""
 PAGES = {
-    PAGE: ("public", "corpus", "random", "tables", "peers"),
+    PAGE: ("public", "corpus", "soak", "random", "tables", "peers"),
     COMPARISON: ("peers", "answers"),
     COMPARISON.parents[1] / "index.md": ("batch",),
 }
