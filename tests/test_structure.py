@@ -7,6 +7,7 @@ import re
 import statistics
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from configparser import ConfigParser
 from pathlib import Path
 
 import pytest
@@ -62,6 +63,19 @@ def test_functions_of_the_cpp_runtime_are_short() -> None:
     assert len(found) > 1000
     assert statistics.quantiles((lines for _, lines in found), n=10)[-1] <= 25
     assert [(name, lines) for name, lines in found if lines > 50] == []
+
+
+def test_headers_include_what_the_layers_of_their_folders_allow() -> None:
+    contracts = ConfigParser()
+    contracts.read(ROOT / ".importlinter", encoding="utf-8")
+    layers = contracts["importlinter:contract:runtime"]["layers"].split()
+    up = [
+        f"{path.parent.name}/{path.name}: {folder}"
+        for path in RUNTIME.rglob("*.hpp")
+        for folder in re.findall(r'#include "(\w+)/', path.read_text(encoding="utf-8"))
+        if layers.index(folder) < layers.index(path.parent.name)
+    ]
+    assert up == [] and {path.name for path in RUNTIME.iterdir()} == set(layers)
 
 
 def test_no_module_has_the_name_of_another() -> None:

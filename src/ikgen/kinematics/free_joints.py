@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator
 
 from ikgen.errors import UsageError
 from ikgen.model.chain import ActuatedJoint
@@ -26,9 +26,7 @@ def free_defaults(dh: DHChain, given: Iterable[tuple[str, float | None]]) -> tup
     first = tuple(one[0] for one in choices)
     if dh.arm_angle or dh.symbols or all(len(one) == 1 for one in choices):
         return first
-    least = _LOST * _margin(dh, None)
-    found = (one for one in itertools.product(*choices) if _margin(dh, one) >= least)
-    return next(found, first)
+    return next(_leaving_all(dh, itertools.product(*choices)), first)
 
 
 def _choices(joint: ActuatedJoint, value: float | None) -> tuple[float, ...]:
@@ -49,19 +47,20 @@ def _choices(joint: ActuatedJoint, value: float | None) -> tuple[float, ...]:
     return others if near != 0.0 and math.isfinite(high - low) else (near, *others)
 
 
-def _margin(dh: DHChain, held: Sequence[float] | None) -> float:
-    """The largest over configurations of the smallest singular value of what moves, of those that do not
-    vanish for any held values; `held`: random ones where None."""
+def _leaving_all(dh: DHChain, values: Iterable[tuple[float, ...]]) -> Iterator[tuple[float, ...]]:
+    """Those of some held values with which what moves has, at one of the samples at least, all directions
+    that it has for others."""
     import numpy as np
 
     from ikgen.kinematics.forward import file_jacobian
 
-    q = np.random.default_rng(0).uniform(-1.5, 1.5, (_SAMPLES, dh.dof))
     moving = [j for j in range(dh.dof) if j not in dh.free_indices]
+    q = np.random.default_rng(0).uniform(-1.5, 1.5, (_SAMPLES, dh.dof))
     usual = np.linalg.svd(file_jacobian(dh, q)[..., moving], compute_uv=False)
-    rank = int((usual.max(axis=0) > _LOST * usual.max()).sum())
-    if held is None:
-        return float(usual[:, rank - 1].max())
-    q[:, list(dh.free_indices)] = held
-    values = np.linalg.svd(file_jacobian(dh, q)[..., moving], compute_uv=False)
-    return float(values[:, rank - 1].max())
+    last = int((usual.max(axis=0) > _LOST * usual.max()).sum()) - 1
+    least = _LOST * float(usual[:, last].max())
+    for held in values:
+        q[:, list(dh.free_indices)] = held
+        found = np.linalg.svd(file_jacobian(dh, q)[..., moving], compute_uv=False)
+        if found[:, last].max() >= least:
+            yield held

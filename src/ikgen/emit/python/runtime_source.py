@@ -83,9 +83,9 @@ class Definition:
 
 @dataclass(frozen=True, slots=True)
 class RuntimeSource:
-    """`name`: `folder.module`; `internal`: name -> (module, name
-    there) of what it imports of the runtime; `external`: what it
-    imports else; `imports`: the lines (first, last, from 1) from its first import to its last."""
+    """`name`: `folder.module`; `internal`: name -> (module, name there) of what it imports of the runtime;
+    `external`: what it imports else; `imports`: the lines (first, last, from 1) from its first import to
+    its last."""
 
     name: str
     docstring: str

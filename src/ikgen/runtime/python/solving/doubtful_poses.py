@@ -189,9 +189,8 @@ def _led_to(arm: Arm, asked: Asked, start: Array) -> list[list[Found]]:
 def unplaced_rows(arm: Arm, T: Array, held: Array) -> list[list[Found]]:
     """Distinct solutions of poses T (n, 4, 4), on no turns in particular."""
     asked = Asked(T, None, held)
-    return [
-        kept for kept, _, _ in _rows(arm, asked, asked.starts(arm), np.zeros(len(T), dtype=int))
-    ]
+    rows = _rows(arm, asked, asked.starts(arm), np.zeros(len(T), dtype=int))
+    return [kept for kept, _, _ in rows]
 
 
 def _rows(arm: Arm, asked: Asked, start: Array, turn: Index) -> list[_Rows]:
