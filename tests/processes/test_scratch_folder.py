@@ -72,3 +72,15 @@ def test_a_full_disk_is_told_by_its_place(tmp_path: Path, number: int) -> None:
 def test_other_errors_stay_as_they_are(tmp_path: Path) -> None:
     with pytest.raises(BrokenPipeError), ScratchFolder("x-", tmp_path):
         raise BrokenPipeError(errno.EPIPE, "gone")
+
+
+def test_one_that_is_ended_while_it_is_made_leaves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def ended(folder: Path) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("ikgen.processes.scratch_folder._locked", ended)
+    with pytest.raises(KeyboardInterrupt):
+        ScratchFolder("x-", tmp_path)
+    assert not list(tmp_path.iterdir())

@@ -6,9 +6,11 @@ ends, so that a folder without a lock is nobody's.
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import os
 import re
+import secrets
 import shutil
 import tempfile
 import time
@@ -24,7 +26,7 @@ try:
 except ImportError:  # pragma: no cover  (Windows: folders count by age alone)
     fcntl = None  # type: ignore[assignment]
 
-__all__ = ["ScratchFolder", "abandoned", "remove_abandoned", "try_lock"]
+__all__ = ["ScratchFolder", "abandoned", "remove_abandoned", "remove_own", "try_lock"]
 
 _LOCK = ".lock"
 _MAKER = re.compile(r"-(\d+)-[^-]*$")
@@ -36,6 +38,9 @@ _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
 """What says that a place takes no more files, rather than that one file is in the way."""
 
 
+_OWN: weakref.WeakSet[ScratchFolder] = weakref.WeakSet()
+
+
 class ScratchFolder:
     """A new folder `path` named `prefix` and more, in `place` (default: the system's for temporary
     files), removed at `close`, at the end of a `with` and of the process. Those that killed runs left
@@ -45,12 +50,16 @@ class ScratchFolder:
     def __init__(self, prefix: str, place: Path | None = None) -> None:
         remove_abandoned(prefix, place)
         try:
-            self.path = Path(tempfile.mkdtemp(prefix=f"{prefix}{os.getpid()}-", dir=place))
-            lock = _locked(self.path)
+            root = Path(tempfile.gettempdir()) if place is None else place
+            self.path = root / f"{prefix}{os.getpid()}-{secrets.token_hex(6)}"
+            held = contextlib.ExitStack()  # who is ended between the two lines below leaves nothing
+            self._remove = weakref.finalize(self, _removed, self.path, held)
+            _OWN.add(self)
+            self.path.mkdir(0o700)
+            held.enter_context(_locked(self.path))
         except OSError as error:
             raise _unwritable(place, error) from error
         self._place = place
-        self._remove = weakref.finalize(self, _removed, self.path, lock)
 
     def close(self) -> None:
         """Remove the folder with all that is in it."""
@@ -86,9 +95,15 @@ def _locked(folder: Path) -> IO[Any]:
     return file
 
 
-def _removed(path: Path, lock: IO[Any]) -> None:
+def _removed(path: Path, held: contextlib.ExitStack) -> None:
     shutil.rmtree(path, ignore_errors=True)
-    lock.close()
+    held.close()
+
+
+def remove_own() -> None:
+    """Remove the folders of this process, for one that ends without unwinding."""
+    for folder in list(_OWN):
+        folder.close()
 
 
 def try_lock(file: IO[Any] | int, *, wait: bool = False) -> bool:

@@ -10,10 +10,11 @@ import os
 import signal
 import threading
 import time
-import traceback
 from collections.abc import Sequence
 from types import FrameType
 from typing import TYPE_CHECKING, NoReturn
+
+from ikgen.processes.scratch_folder import remove_own
 
 if TYPE_CHECKING:
     from multiprocessing.process import BaseProcess
@@ -62,6 +63,7 @@ def end_with_parent() -> None:
     interrupts is that process, which then ends its workers."""
     from multiprocessing import parent_process
 
+    signal.signal(signal.SIGTERM, _raise_and_watch)
     unwind_on_signals()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = parent_process()
@@ -74,14 +76,25 @@ def _await(sentinel: int) -> None:
 
     wait([sentinel])
     signal.raise_signal(signal.SIGTERM)
-    time.sleep(_GRACE)
-    os._exit(TERMINATED)
+    _end_late()
 
 
-def end_now(error: Terminated) -> NoReturn:
-    """End a worker whose pool would go on after `error`; what its frames hold is let go of first, so that
-    its temporary folders are removed."""
-    traceback.clear_frames(error.__traceback__)
+def _raise_and_watch(number: int, frame: FrameType | None) -> None:
+    """`_raise`, for a worker: an exception is lost where a finalizer is what the signal interrupts."""
+    threading.Thread(target=_end_late, daemon=True).start()
+    _raise(number, frame)
+
+
+def _end_late() -> NoReturn:
+    """End this process where unwinding does not: before its parent's patience ends too."""
+    time.sleep(0.8 * _GRACE)
+    end_now()
+
+
+def end_now() -> NoReturn:
+    """End this process without unwinding (a pool would go on with the next piece); its temporary folders
+    are removed."""
+    remove_own()
     os._exit(TERMINATED)
 
 

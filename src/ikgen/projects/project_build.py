@@ -108,8 +108,8 @@ def _build_in_worker(job: tuple[ArmConfig, str, bool]) -> Outcome:
     """`_build_one` in a process of a pool, which takes no exception for an end."""
     try:
         return _build_one(job)
-    except Terminated as ended:
-        end_now(ended)
+    except Terminated:
+        end_now()
 
 
 def _build_one(job: tuple[ArmConfig, str, bool]) -> Outcome:
