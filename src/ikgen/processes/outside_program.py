@@ -20,7 +20,7 @@ from typing import IO
 
 from ikgen.errors import MissingToolError, UsageError
 
-__all__ = ["SECONDS_VARIABLE", "Finished", "run_program", "time_limit"]
+__all__ = ["SECONDS_VARIABLE", "Finished", "end_programs", "run_program", "time_limit"]
 
 SECONDS_VARIABLE = "IKGEN_TOOL_SECONDS"
 """Environment variable: how long a compiler or a compiled driver may run."""
@@ -29,6 +29,8 @@ _SECONDS = 600.0
 _MOST_KEPT = 64 * 1024
 _PIECE = 64 * 1024
 _DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
+_RUNNING: set[int] = set()
+"""Process numbers of the programs that run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +101,7 @@ def run_program(
 
 def _awaited(process: subprocess.Popen[bytes], limit: float) -> Finished:
     """What came of a process; nothing of it is left."""
+    _RUNNING.add(process.pid)
     kept = bytearray()
     assert process.stderr is not None
     reader = threading.Thread(target=_keep, args=(process.stderr, kept), daemon=True)
@@ -109,7 +112,9 @@ def _awaited(process: subprocess.Popen[bytes], limit: float) -> Finished:
     except subprocess.TimeoutExpired:
         late = True
     finally:  # an interrupt too
-        _end_group(process)
+        _end_group(process.pid)
+        process.wait()
+        _RUNNING.discard(process.pid)
         reader.join(1.0)
     return Finished(process.returncode, bytes(kept).decode("utf-8", "replace"), late)
 
@@ -121,14 +126,19 @@ def _keep(stream: IO[bytes], kept: bytearray) -> None:
             kept += piece[: _MOST_KEPT - len(kept)]
 
 
-def _end_group(process: subprocess.Popen[bytes]) -> None:
-    """End what is left of the program's group."""
-    if hasattr(os, "killpg"):
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            os.killpg(process.pid, signal.SIGKILL)
-    else:
-        process.kill()
-    process.wait()
+def end_programs() -> None:
+    """End those that run, for a process that ends without unwinding."""
+    for number in list(_RUNNING):
+        _end_group(number)
+
+
+def _end_group(number: int) -> None:
+    """End what is left of a program's group."""
+    with contextlib.suppress(OSError):
+        if hasattr(os, "killpg"):
+            os.killpg(number, signal.SIGKILL)
+        else:
+            os.kill(number, signal.SIGTERM)  # Windows: at once
 
 
 def _dying_with_parent() -> Callable[[], object] | None:

@@ -38,7 +38,8 @@ _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
 """What says that a place takes no more files, rather than that one file is in the way."""
 
 
-_OWN: weakref.WeakSet[ScratchFolder] = weakref.WeakSet()
+_OWN: set[Path] = set()
+"""Folders of this process that are there, or about to be made."""
 
 
 class ScratchFolder:
@@ -52,10 +53,10 @@ class ScratchFolder:
         try:
             root = Path(tempfile.gettempdir()) if place is None else place
             self.path = root / f"{prefix}{os.getpid()}-{secrets.token_hex(6)}"
-            held = contextlib.ExitStack()  # who is ended between the two lines below leaves nothing
+            held = contextlib.ExitStack()
+            _OWN.add(self.path)
             self._remove = weakref.finalize(self, _removed, self.path, held)
-            _OWN.add(self)
-            self.path.mkdir(0o700)
+            self.path.mkdir(0o700)  # who is ended from here on leaves nothing
             held.enter_context(_locked(self.path))
         except OSError as error:
             raise _unwritable(place, error) from error
@@ -97,13 +98,14 @@ def _locked(folder: Path) -> IO[Any]:
 
 def _removed(path: Path, held: contextlib.ExitStack) -> None:
     shutil.rmtree(path, ignore_errors=True)
+    _OWN.discard(path)
     held.close()
 
 
 def remove_own() -> None:
-    """Remove the folders of this process, for one that ends without unwinding."""
-    for folder in list(_OWN):
-        folder.close()
+    """Remove the folders of this process, for one that ends without unwinding, whatever it was at."""
+    for path in list(_OWN):
+        shutil.rmtree(path, ignore_errors=True)
 
 
 def try_lock(file: IO[Any] | int, *, wait: bool = False) -> bool:

@@ -10,10 +10,11 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from types import FrameType
 from typing import TYPE_CHECKING, NoReturn
 
+from ikgen.processes.outside_program import end_programs
 from ikgen.processes.scratch_folder import remove_own
 
 if TYPE_CHECKING:
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 __all__ = [
     "TERMINATED",
     "Terminated",
-    "end_now",
     "end_with_parent",
     "end_workers",
     "unwind_on_signals",
@@ -47,24 +47,28 @@ class Terminated(SystemExit):
 def unwind_on_signals() -> None:
     """From now on `Terminated` is raised in the main thread where a signal would have ended the process at
     once. One that is ignored (`nohup`) stays so."""
+    _on_signals(_raise)
+
+
+def _on_signals(handler: Callable[[int, FrameType | None], NoReturn]) -> None:
     for name in _SIGNALS:
         number = getattr(signal, name, None)  # Windows has no SIGHUP
         if number is not None and signal.getsignal(number) is signal.SIG_DFL:
-            signal.signal(number, _raise)
+            signal.signal(number, handler)
 
 
-def _raise(number: int, frame: FrameType | None) -> None:
+def _raise(number: int, frame: FrameType | None) -> NoReturn:
     signal.signal(number, signal.SIG_IGN)  # the next must not interrupt the unwinding
     raise Terminated
 
 
 def end_with_parent() -> None:
-    """For workers: end when the process that started this one has ended, however it did. What the keyboard
-    interrupts is that process, which then ends its workers."""
+    """For workers: end when the process that started this one has ended, however it did, and at once where
+    a signal asks for it: the pool's own code would take an exception for a result, and go on. What the
+    keyboard interrupts is that process, which then ends its workers."""
     from multiprocessing import parent_process
 
-    signal.signal(signal.SIGTERM, _raise_and_watch)
-    unwind_on_signals()
+    _on_signals(_end)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = parent_process()
     if parent is not None:
@@ -76,24 +80,13 @@ def _await(sentinel: int) -> None:
 
     wait([sentinel])
     signal.raise_signal(signal.SIGTERM)
-    _end_late()
+    time.sleep(_GRACE)  # the main thread looks after signals between its steps
+    _end()
 
 
-def _raise_and_watch(number: int, frame: FrameType | None) -> None:
-    """`_raise`, for a worker: an exception is lost where a finalizer is what the signal interrupts."""
-    threading.Thread(target=_end_late, daemon=True).start()
-    _raise(number, frame)
-
-
-def _end_late() -> NoReturn:
-    """End this process where unwinding does not: before its parent's patience ends too."""
-    time.sleep(0.8 * _GRACE)
-    end_now()
-
-
-def end_now() -> NoReturn:
-    """End this process without unwinding (a pool would go on with the next piece); its temporary folders
-    are removed."""
+def _end(number: int = signal.SIGTERM, frame: FrameType | None = None) -> NoReturn:
+    """End this process without unwinding; its programs are ended and its temporary folders removed."""
+    end_programs()
     remove_own()
     os._exit(TERMINATED)
 

@@ -13,7 +13,6 @@ from ikgen.generation.progress import Progress, silent
 from ikgen.generation.publishing import complete_folder
 from ikgen.generation.record import read_record
 from ikgen.processes.executors import Workers
-from ikgen.processes.termination import Terminated, end_now
 from ikgen.projects.config import ArmConfig
 from ikgen.projects.stale import stale_reasons
 
@@ -64,6 +63,7 @@ def build_arms(
     made = _run(work, workers or Workers())
     for arm, reason in zip(arms, reasons, strict=True):
         yield next(made) if reason else Outcome(arm.name, "", _files(arm))
+    yield from made  # none is left: the workers are let go
 
 
 def _run(work: Sequence[tuple[ArmConfig, str, bool]], workers: Workers) -> Iterator[Outcome]:
@@ -86,7 +86,7 @@ def _submit(pool: Executor, job: tuple[ArmConfig, str, bool]) -> Future[Outcome]
     from concurrent.futures import BrokenExecutor, Future
 
     try:
-        return pool.submit(_build_in_worker, job)
+        return pool.submit(_build_one, job)
     except BrokenExecutor as error:
         refused: Future[Outcome] = Future()
         refused.set_exception(error)
@@ -102,14 +102,6 @@ def _killed(name: str, reason: str) -> Outcome:
         hint="too little memory? --jobs 1 generates one arm at a time",
         exit_code=INTERNAL_ERROR,
     )
-
-
-def _build_in_worker(job: tuple[ArmConfig, str, bool]) -> Outcome:
-    """`_build_one` in a process of a pool, which takes no exception for an end."""
-    try:
-        return _build_one(job)
-    except Terminated:
-        end_now()
 
 
 def _build_one(job: tuple[ArmConfig, str, bool]) -> Outcome:
