@@ -20,7 +20,7 @@ def test_a_seed_gives_the_same_mutants() -> None:
 def test_all_are_read_or_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    arguments = ["mutants", "--read", "100", "--run", "2", "--seed", "3", "--keep", str(tmp_path)]
+    arguments = ["mutants", "--read", "50", "--run", "1", "--seed", "3", "--keep", str(tmp_path)]
     monkeypatch.setattr("sys.argv", arguments)
     assert mutants.main() == 0, capsys.readouterr().out
 

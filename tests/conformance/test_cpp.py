@@ -35,7 +35,7 @@ pytestmark = [
 ]
 
 SAMPLES = 60
-RARE = ("Olson13", "Puma", "UR5")
+RARE = ("Olson13", "Puma", "Raven-II", "Stanford", "UR5")
 """Compiled with the long tests alone: the others have what they have."""
 
 

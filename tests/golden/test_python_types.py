@@ -17,11 +17,9 @@ pytestmark = pytest.mark.usefixtures("solved_once")
 
 ROOT = Path(__file__).resolve().parents[2]
 ARMS = {
-    "exact": Request(ROOT / "urdf_fixtures/kuka_kr6r900sixx.urdf"),
     "held": Request(ROOT / "urdf_fixtures/franka_fr3.urdf", free={"fr3_joint7": None}),
     "rounded": Request(ROOT / "urdf_fixtures/doosan_m1013.urdf"),
     "eliminated": Request(ROOT / "tests/robots/tables/KawasakiRS05L.toml"),
-    "smaller task": Request(ROOT / "urdf_fixtures/scara_standard.toml"),
 }
 
 

@@ -26,16 +26,14 @@ def test_two_names_are_two_symbols() -> None:
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
 def test_all_of_them_can_be_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    for number, start in enumerate(range(0, len(WORDS), 12)):
-        words = (WORDS + WORDS)[start : start + 12]
-        sums = [f"{one} + {other}" for one, other in zip(words[:6], words[6:], strict=True)]
-        parameters = "".join(f'"{word}" = 0.{k + 3}\n' for k, word in enumerate(words))
-        joints = "".join(
-            f'[[joints]]\ntype = "revolute"\nalpha = {alpha}\na = "{a}"\nd = "{d}"\ntheta = 0\n'
-            for alpha, a, d in zip((0, 0, '"pi/2"'), sums[:3], sums[3:], strict=True)
-        )
-        text = f'name = "t{number}"\nconvention = "modified"\n[parameters]\n{parameters}{joints}'
-        Path("table.toml").write_text(text)
-        options = ["--task", "position", "--samples", "20", "-q", "--emit", "python,cpp"]
-        assert run(["from-dh", "table.toml", *options]) == 0, words
-        ast.parse(Path(f"t{number}_ik.py").read_text())
+    sums = [" + ".join(WORDS[k::6]) for k in range(6)]
+    parameters = "".join(f'"{word}" = 0.{k + 3}\n' for k, word in enumerate(WORDS))
+    joints = "".join(
+        f'[[joints]]\ntype = "revolute"\nalpha = {alpha}\na = "{a}"\nd = "{d}"\ntheta = 0\n'
+        for alpha, a, d in zip((0, 0, '"pi/2"'), sums[:3], sums[3:], strict=True)
+    )
+    text = f'name = "words"\nconvention = "modified"\n[parameters]\n{parameters}{joints}'
+    Path("table.toml").write_text(text)
+    options = ["--task", "position", "--samples", "20", "-q", "--emit", "python,cpp"]
+    assert run(["from-dh", "table.toml", *options]) == 0
+    ast.parse(Path("words_ik.py").read_text())

@@ -38,7 +38,7 @@ def test_regenerates_when_an_included_file_changes(tmp_path: Path, generator: st
         pytest.skip("needs ninja")
     shutil.copytree(EXAMPLE, tmp_path / "p")
     listing = tmp_path / "p/CMakeLists.txt"
-    text = listing.read_text().replace("VERIFY)", "SAMPLES 50 VERIFY)")
+    text = listing.read_text().replace("VERIFY)", "SAMPLES 50)")
     listing.write_text(text.replace("EMIT cpp python", "EMIT cpp"))
     out = tmp_path / "p" / "b"
     printed(
@@ -53,8 +53,6 @@ def test_regenerates_when_an_included_file_changes(tmp_path: Path, generator: st
     text = printed("cmake", "--build", out, cwd=tmp_path)
     assert made in text and "reach" in text
     assert made not in printed("cmake", "--build", out, cwd=tmp_path)
-    if generator == "Ninja":
-        printed("ctest", "--output-on-failure", cwd=out)
 
 
 def _eigen() -> list[str]:

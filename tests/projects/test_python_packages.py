@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 from tests.support.environments import numpy_alone, without_ikgen
+from tests.support.sampled import sampled
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = {"hatch_robot": "hatchling", "setuptools_robot": "setuptools"}
@@ -31,7 +32,12 @@ def build_wheel(project: Path, out: Path) -> subprocess.CompletedProcess[str]:
     )
 
 
-@pytest.fixture(params=EXAMPLES)
+def examples(*always: str) -> pytest.MarkDecorator:
+    """The test runs for these always, for all of them with the long tests."""
+    return pytest.mark.parametrize("project", sampled(EXAMPLES, always), indirect=True)
+
+
+@pytest.fixture
 def project(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
     """A copy of one of the examples."""
     pytest.importorskip(EXAMPLES[request.param])
@@ -52,6 +58,7 @@ print(arm_ik.__file__)
 
 
 @needs_entry_point
+@examples("hatch_robot")
 def test_the_wheel_works_with_numpy_alone(project: Path, tmp_path: Path) -> None:
     done = build_wheel(project, tmp_path / "prismatic")
     assert done.returncode == 0, done.stdout + done.stderr
@@ -68,6 +75,7 @@ def test_the_wheel_works_with_numpy_alone(project: Path, tmp_path: Path) -> None
 
 
 @needs_entry_point
+@examples("setuptools_robot")
 def test_an_editable_install_has_the_module(project: Path, tmp_path: Path) -> None:
     environment = without_ikgen(tmp_path / "env")
     environment.install("-e", ROOT)
@@ -77,6 +85,7 @@ def test_an_editable_install_has_the_module(project: Path, tmp_path: Path) -> No
 
 
 @needs_entry_point
+@examples("hatch_robot", "setuptools_robot")
 def test_a_bad_description_ends_the_build(project: Path, tmp_path: Path) -> None:
     (description,) = (project / "urdf").iterdir()
     text = description.read_text()

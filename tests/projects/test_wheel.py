@@ -57,7 +57,7 @@ def test_what_the_tests_need_is_in_the_sdist(built: dict[str, Path]) -> None:
     assert not any(name.endswith("_ik.py") and "examples" in name for name in names)
 
 
-@pytest.fixture(scope="module", params=KINDS)
+@pytest.fixture(scope="module")
 def installed(
     request: pytest.FixtureRequest, built: dict[str, Path], tmp_path_factory: pytest.TempPathFactory
 ) -> Environment:
@@ -135,6 +135,7 @@ def test_all_of_the_library_works_from_a_wheel(built: dict[str, Path], tmp_path:
     assert {"fr3_ik.py", "fr3_ik.hpp"} <= set(printed)
 
 
+@pytest.mark.parametrize("installed", sampled(KINDS, ["sdist"]), indirect=True)
 def test_smoke(installed: Environment, tmp_path: Path) -> None:
     robot = ROOT / "examples/setuptools_robot/urdf/elbow.urdf"
     ikgen = installed.folder / "bin/ikgen"

@@ -22,6 +22,9 @@ FLAGS = [
     "-Werror",
 ]
 
+MACHINES: dict[str, tuple[str, ...]] = {"portable": (), "native": ("-march=native",)}
+"""Sets of instructions, as options of the compiler."""
+
 
 def compiled_header(text: str, folder: Path, *flags: str) -> Path:
     """The program of a source that includes headers of the runtime; warnings are errors. Skips without a
