@@ -120,6 +120,17 @@ NO_ROOTS = (
 """Tables; configurations of which the forms leave two unknowns and the pose leaves one, beside regular
 solutions, or where an elimination finds more rows than there is room for, or no roots, as all angles are
 some; joints whose values stay the same along that continuum."""
+FOUR_MEET = (
+    [
+        ("prismatic", 0, 0.0, 0.0),
+        ("revolute", 1, 0.589360883235421, 0.726109999271997),
+        ("revolute", -1, 0.5224675042290778, 0.0),
+        ("revolute", 0, 0.2716203148375721, 0.0),
+        ("revolute", -1, 0.8206784047204927, 0.0),
+    ],
+    [0.0, pi, -1.6045899484602453, pi, 0.0],
+)
+"""Four solutions meet where the elimination has no rank; beside the pose they are soon far apart."""
 SPECIAL = {
     "slide at 0": SLIDE,
     "fold behind a fold": FOLDS,
@@ -159,6 +170,14 @@ def test_the_generating_configuration_is_found(
     apart = np.abs((found.q - q + pi) % (2 * pi) - pi).max(axis=1, initial=0.0)
     assert len(found) and apart.min() < 1e-5
     assert np.abs(arm.forward(found.q) - arm.forward(q)).max() < 1e-9
+
+
+def test_solutions_that_meet_are_found_without_rank(tmp_path: Path) -> None:
+    rows, q = FOUR_MEET
+    arm = import_text(emit_module(derive(Request(table(rows, tmp_path))).module), tmp_path)
+    found = arm.solve(arm.forward(q))
+    apart = np.abs((found.q - q + pi) % (2 * pi) - pi).max(axis=1)
+    assert len(found) == 3 and found.singular[apart.argmin()] and apart.min() < 1e-3
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)

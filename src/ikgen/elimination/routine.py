@@ -96,6 +96,7 @@ def initial_residuals(frames: Matrix, plan: Plan, poses: Matrix) -> tuple[list[M
     index, q, *_ = plan.find(six.frames, T, plan.eliminations[0], plan.turning)
     if not len(q):
         return [np.zeros((0, 6)) for _ in poses], np.zeros(0)
-    q, good, before = refined_rows(six, plan, index, T[index], q, policy)
+    q, error, before = refined_rows(six, plan, index, T[index], q, policy)
+    good = error < policy.arrived
     rows, pose, _ = distinct_rows(q[good], index[good], plan.turning, policy.coincident)
     return _by_pose(rows, pose, len(poses)), before[good]

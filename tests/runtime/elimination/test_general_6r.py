@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tests.support.given_rows import FRAMES, given_arm
 
 from ikgen.runtime.python.elimination import general_6r
-from ikgen.runtime.python.elimination.general_6r import _ASIDE, _OTHER_SIDE, Plan, six_joint_rows
+from ikgen.runtime.python.elimination.general_6r import _ASIDE, _CLOSE, Plan, six_joint_rows
 from ikgen.runtime.python.elimination.six_joints import six_joints
 
 Array = NDArray[np.float64]
@@ -18,13 +18,17 @@ ROWS = np.arange(24.0).reshape(4, 6) / 10.0
 POLICY = given_arm(None).policy
 
 
-def test_poses_beside_are_a_small_rigid_motion_away_on_both_sides() -> None:
-    np.testing.assert_allclose(_ASIDE[:3, :3] @ _ASIDE[:3, :3].T, np.eye(3), atol=1e-15)
-    assert np.linalg.det(_ASIDE[:3, :3]) == pytest.approx(1.0)
-    turn = np.arccos(0.5 * (np.trace(_ASIDE[:3, :3]) - 1.0))
-    assert turn == pytest.approx(1.4e-3, rel=0.1)
-    assert np.linalg.norm(_ASIDE[:3, 3]) == pytest.approx(1.5e-3, rel=0.1)
-    np.testing.assert_allclose(_ASIDE @ _OTHER_SIDE, np.eye(4), atol=1e-15)
+@pytest.mark.parametrize("moves, by", [(_ASIDE, 1e-3), (_CLOSE[0], 1e-6), (_CLOSE[1], 1e-8)])
+def test_poses_beside_are_a_small_rigid_motion_away_on_both_sides(
+    moves: tuple[Array, Array], by: float
+) -> None:
+    there, back = moves
+    np.testing.assert_allclose(there[:3, :3] @ there[:3, :3].T, np.eye(3), atol=1e-15)
+    assert np.linalg.det(there[:3, :3]) == pytest.approx(1.0)
+    turn = 0.5 * np.linalg.norm(there[:3, :3] - there[:3, :3].T) / np.sqrt(2.0)
+    assert turn == pytest.approx(1.4 * by, rel=0.1)
+    assert np.linalg.norm(there[:3, 3]) == pytest.approx(1.5 * by, rel=0.1)
+    np.testing.assert_allclose(there @ back, np.eye(4), atol=1e-15)
 
 
 def run(
@@ -32,9 +36,10 @@ def run(
     told: list[tuple[list[int], int, bool]],
     direct: int = 0,
     ways: int = 3,
+    error: float = 0.0,
 ) -> tuple[Array, int]:
     """Rows of one pose, of runs that find some of `ROWS` each, say that there are so many, and whether
-    those are all; and how many runs that took."""
+    those are all, the last of each run so far off; and how many runs that took."""
     calls = []
 
     def find(frames: Any, aims: Array, one: Any, turning: Any) -> Any:
@@ -44,7 +49,7 @@ def run(
         return of, ROWS[which], np.full(len(aims), real), np.full(len(aims), clear)
 
     def refined(six: Any, plan: Any, pose: Any, T: Any, q: Array, policy: Any) -> Any:
-        return q, np.ones(len(q), dtype=bool), np.zeros(len(q))
+        return q, np.where(np.arange(len(q)) < len(q) - 1, 0.0, error), np.zeros(len(q))
 
     monkeypatch.setattr(general_6r, "refined_rows", refined)
     plans = tuple((0, k, 0) for k in range(ways))
@@ -75,9 +80,11 @@ def test_others_follow_until_they_find_all_that_is_known(monkeypatch: pytest.Mon
 
 
 def test_what_a_later_elimination_says_there_is_counts(monkeypatch: pytest.MonkeyPatch) -> None:
-    told = [([0, 1], 2, False), ([0], 0, False), ([0, 1], 4, False), ([0, 1, 2, 3], 4, False)]
+    told = [([0, 1], 2, False), ([0], 0, False), ([0, 1], 4, False)] + [
+        ([0, 1, 2, 3], 4, False)
+    ] * 2
     q, calls = run(monkeypatch, told)
-    assert calls == 4
+    assert calls == 5
     np.testing.assert_allclose(q, ROWS, atol=1e-12)
 
 
@@ -89,6 +96,14 @@ def test_an_elimination_without_rank_confirms_nothing(monkeypatch: pytest.Monkey
     nothing: tuple[list[int], int, bool] = ([], -1, True)
     assert run(monkeypatch, [nothing, ([], 0, True), ([0, 1], 2, True), ([0, 1], 2, True)])[1] == 4
     assert run(monkeypatch, [([], 0, True), ([], 0, True)])[1] == 2
+
+
+def test_what_stalls_near_a_solution_asks_for_all_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    two = ([0, 1, 2], 2, False)
+    assert run(monkeypatch, [two] * 9, error=1e-3)[1] == 2
+    q, calls = run(monkeypatch, [two] * 10, error=1e-8)
+    assert calls == 2 + 2 + 2 * 3
+    np.testing.assert_allclose(q, ROWS[:2], atol=1e-12)
 
 
 def test_what_a_direct_way_says_there_is_does_not(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -151,15 +151,16 @@ inline Vector damped_step(const State& at, double mu) noexcept {
   return inverse_normal(at, x, mu);
 }
 
-// Damped Newton (Levenberg-Marquardt) on the chain; returns the residual, and in `before` that of the start. Beside a
-// fold steps halve the error: what has come near takes as many as rows need that are to be told apart.
+// Damped Newton (Levenberg-Marquardt) on the chain; returns the residual, and in `before` that of the start. Where
+// solutions meet steps halve the error, or do less: what has come near takes as many as rows need that are to be told
+// apart.
 template <class Frames>
 inline double refine_one(const Frames& F, const Frame& T, const Turning& turning, Vector& q, double& before) noexcept {
   State now = residual(F, T, q, turning);
   before = now.r;
-  double damp = 1e-3, bound = 1e4;
-  for (int step = 0; step < 40; ++step, bound = std::max(0.1 * bound, 1e-8)) {
-    if (!(now.r > 1e-14 && now.r < bound)) break;
+  double damp = 1e-3;
+  for (int step = 0; step < 40; ++step) {
+    if (!(now.r > 1e-14 && now.r < (step < 3 ? 1e4 : step < 9 ? 0.1 : 1e-3))) break;
     const Vector dq = damped_step(now, damp * std::min(now.square, 1.0) + 1e-13);
     double size = 0.0;
     for (const double x : dq) size = std::max(size, std::abs(x));
@@ -167,7 +168,7 @@ inline double refine_one(const Frames& F, const Frame& T, const Turning& turning
     Vector trial = q;
     for (Index i = 0; i < 6; ++i) trial[i] += size > 0.4 ? dq[i] * (0.4 / size) : dq[i];
     const State next = residual(F, T, trial, turning);
-    if (next.r < now.r) {
+    if (next.square < now.square) {
       q = trial;
       now = next;
       damp = 1e-3;

@@ -27,52 +27,65 @@ inline Solution solution_of(const Turning& turning, const Vector& q) noexcept {
   return out;
 }
 
+inline constexpr double kStalled = 1e-6;  // error where more than two solutions meet: steps get no closer soon
+
 // Adds a candidate of a run if it can be refined; one that is far off shows that the run's roots are not all sharp.
 template <class Frames>
 inline void add_refined(const Frames& F, const Frame& T, const Turning& turning, Vector q, Spectrum& roots,
                         Solutions& out) noexcept {
   double before = 0.0, farthest = 0.0;
-  const bool arrived = refine_one(F, T, turning, q, before) < kVerified;
+  const double after = refine_one(F, T, turning, q, before);
   for (Index i = 0; i < 6; ++i) farthest = std::max(farthest, turning[i] ? 0.0 : std::abs(q[i]));
-  if (arrived && farthest < kFarthest) keep(solution_of(turning, q), out);
+  if (farthest < kFarthest && after < kVerified)
+    keep(solution_of(turning, q), out);
+  else if (farthest < kFarthest && after < kStalled)
+    roots.stalled = true;
   if (!(before <= 1e-5)) roots.simple = false;
 }
 
-// A rotation of about 1e-3 rad, and as much of a translation: where right angles make solutions coincide in
+// A rotation of about so much, and as much of a translation: where right angles make solutions coincide in
 // the hidden angle, they come apart at the pose displaced by it, and Newton's method takes them back.
-inline Frame displacement() noexcept {
-  constexpr double c = 0.99999959500002733750, s = 8.999998785000048e-4;      // 9e-4 rad about z
-  constexpr double d = 0.99999939500006100416, e = 1.0999997781666800920e-3;  // 1.1e-3 rad about x
+inline Frame displacement(double by) noexcept {
+  const double c = std::cos(0.9 * by), s = std::sin(0.9 * by);  // about z
+  const double d = std::cos(1.1 * by), e = std::sin(1.1 * by);  // about x
   Frame out{};
   const double R[9] = {c, -s * d, s * e, s, c * d, -c * e, 0.0, e, d};
   for (Index i = 0; i < 9; ++i) out.R.v[i] = R[i];
-  out.p = {8e-4, -1.1e-3, 6e-4};
+  out.p = {0.8 * by, -1.1 * by, 0.6 * by};
   return out;
 }
 
+// How far displaced poses are off. Farther off what more than two solutions that meet become is not real, or far from
+// them; closer by an elimination that has no rank at the pose leaves no digits.
+inline constexpr double kAside[] = {1e-3, 1e-6, 1e-8};
+
 // Adds all solutions of a pose to those that are known: Run(F, T, aim, turning, plan, found) gives those of a plan,
-// with the roots of the pose `aim` beside. One run of the first plan is enough where its roots are real, as many as solutions, and each a solution to many
-// digits. Otherwise more runs follow, with the pose displaced to either side and by the next elimination, until one
-// finds all that is known and no more, and one of the pose itself tells.
+// with the roots of the pose `aim` beside. One run of the first plan is enough where its roots are real, as many as
+// solutions, and each a solution to many digits. Otherwise more runs follow, with the pose displaced to either side, by
+// the next elimination and with the pose displaced by less, until one finds all that is known and no more, none of it
+// stalls near another, and one of the pose itself tells.
 template <auto Run, class Frames, std::size_t N>
 inline void solve_in_runs(const Frames& F, const Frame& T, const Turning& turning,
                           const std::array<std::array<int, 3>, N>& plans, Solutions& out) noexcept {
-  const Frame there = displacement(), back = inverse(there);
   const int given = out.count;
   int least = -1, number = 0;
-  for (const std::array<int, 3>& plan : plans)
-    for (const Frame* shift : {static_cast<const Frame*>(nullptr), &there, &back}) {
-      Solutions mine;
-      const Frame aim = shift ? compose(T, *shift) : T;
-      const Spectrum roots = Run(F, T, aim, turning, plan, mine);
-      if (!shift) least = std::max(least, roots.real);
-      const int known = out.count;
-      for (int k = 0; k < mine.count; ++k) keep(mine.rows[static_cast<Index>(k)], out);
-      const bool alone = number == 0 && given <= mine.count && roots.simple && out.count == roots.real && out.count > 0;
-      const bool repeated = number > 0 && mine.count == known && out.count == known;
-      if (out.count % 2 == 0 && least >= 0 && out.count >= least && (alone || repeated)) return;
-      ++number;
-    }
+  for (const double by : kAside) {
+    const Frame there = displacement(by), back = inverse(there);
+    for (const std::array<int, 3>& plan : plans)
+      for (const Frame* shift : {static_cast<const Frame*>(nullptr), &there, &back}) {
+        if (!shift && by < kAside[0]) continue;  // known by now
+        Solutions mine;
+        const Frame aim = shift ? compose(T, *shift) : T;
+        const Spectrum roots = Run(F, T, aim, turning, plan, mine);
+        if (!shift) least = std::max(least, roots.real);
+        const int known = out.count;
+        for (int k = 0; k < mine.count; ++k) keep(mine.rows[static_cast<Index>(k)], out);
+        const bool alone = number == 0 && given <= mine.count && roots.simple && out.count == roots.real && out.count > 0;
+        const bool repeated = number > 0 && mine.count == known && out.count == known && !roots.stalled;
+        if (out.count % 2 == 0 && least >= 0 && out.count >= least && (alone || repeated)) return;
+        ++number;
+      }
+  }
 }
 
 }  // namespace g6

@@ -100,6 +100,7 @@ struct Spectrum {
   int count = 0;  // roots theta_3 with imaginary parts below `accept`
   int real = 0;   // those that are clearly real; -1 where the elimination does not tell
   bool simple = false;  // all of them are
+  bool stalled = false;  // steps from one of them come near a solution, and no closer
   std::array<double, 16> theta;
 };
 

@@ -47,6 +47,8 @@ Way = tuple[Finder, Elimination, float]  # and how far off the pose exact candid
 _SIX = range(6)
 # Error of a candidate from a root that is exact: a double one is off by the square root.
 _DIRECT = 1e-7
+# Error of one that stalls where more than two solutions meet: steps get no closer there in reasonable time.
+_STALLED = 1e-6
 # Beside a fold rows of several runs are one only where all have all their digits.
 _THOROUGH = ((3, 1e-12, 0.1), (6, 1e-12, 1e-3), (30, 0.0, 0.0))
 _FINEST = ((3, 1e-13, 0.1), (6, 1e-13, 1e-3), (30, 0.0, 0.0))
@@ -90,15 +92,15 @@ def candidates(F: Sequence[Array], T: Array, plan: Elimination, _: Turning) -> C
 
 def refined_rows(
     six: SixJoints, plan: Plan, pose: Index, T: Array, q: Array, policy: Policy
-) -> tuple[Array, Flags, Array]:
-    """Newton steps from q (k, 6) to T (k, 4, 4) of the poses with indices `pose` (k,): q, which arrived,
-    and the errors before (k,)."""
+) -> tuple[Array, Array, Array]:
+    """Newton steps from q (k, 6) to T (k, 4, 4) of the poses with indices `pose` (k,): q, and the errors
+    that they leave and those before (k,)."""
     near = slides_near(q, plan.turning)
     held = np.broadcast_to(rows_of(six.held, pose), (len(q), six.held.shape[1]))
     start = np.concatenate([np.where(near[:, None], q, 0.0), held], axis=1)
     thorough = _thorough(policy, bool(plan.motions))
     q, error, before, _ = refine(six.chain, PoseTask(1.0), _SIX, start, T, thorough)
-    return q[:, :6], (error < policy.arrived) & near, np.where(near, before, np.inf)
+    return q[:, :6], np.where(near, error, np.inf), np.where(near, before, np.inf)
 
 
 @cache
@@ -110,26 +112,27 @@ def _thorough(policy: Policy, farther: bool) -> Policy:
     return replace(policy, refinement=_THOROUGH)
 
 
-def _displaced() -> Array:
-    """A rotation of about 1e-3 rad, and as much of a translation (in arm lengths)."""
+def _displaced(by: float) -> tuple[Array, Array]:
+    """A rotation of about so much (rad) with as much of a translation (in arm lengths), and their inverse."""
     X = np.eye(4)
-    X[:3, :3] = (
-        rotations_z(np.array(9e-4)) @ rotations_z(np.array(1.1e-3))[[2, 0, 1, 3]][:, [2, 0, 1, 3]]
-    )[:3, :3]
-    X[:3, 3] = 8e-4, -1.1e-3, 6e-4
-    return X
+    one, other = rotations_z(np.array([0.9, 1.1]) * by)
+    X[:3, :3] = (one @ other[[2, 0, 1, 3]][:, [2, 0, 1, 3]])[:3, :3]
+    X[:3, 3] = 0.8 * by, -1.1 * by, 0.6 * by
+    return X, inverses(X)
 
 
-_ASIDE = _displaced()
-_OTHER_SIDE = inverses(_ASIDE)
+# Farther off what more than two solutions that meet become is not real, or far from them; closer by an
+# elimination that has no rank at the pose leaves no digits.
+_ASIDE, _CLOSE = _displaced(1e-3), (_displaced(1e-6), _displaced(1e-8))
 
 
 def _runs(plan: Plan) -> list[tuple[Way, tuple[Array | None, ...]]]:
     """One after the other what is tried, and the motions of the tool to the poses that it is tried at."""
     ways = [(plan.find, one, _DIRECT) for one in plan.eliminations]
     runs: list[tuple[Way, tuple[Array | None, ...]]] = [(way, (None,)) for way in plan.direct]
-    runs += [(ways[0], (None,)), (ways[0], (_ASIDE, _OTHER_SIDE))]
-    return runs + [(way, (None, _ASIDE, _OTHER_SIDE)) for way in ways[1:]]
+    runs += [(ways[0], (None,)), (ways[0], _ASIDE)]
+    runs += [(way, (None, *_ASIDE)) for way in ways[1:]]
+    return runs + [(way, moves) for moves in _CLOSE for way in ways]
 
 
 def six_joint_rows(six: SixJoints, plan: Plan, T: Array, policy: Policy) -> tuple[Index, Array]:
@@ -138,8 +141,9 @@ def six_joint_rows(six: SixJoints, plan: Plan, T: Array, policy: Policy) -> tupl
     One run of the first is enough where each of its roots is clearly real, or clearly not, and there are
     as many solutions as real roots, each found to many digits. Otherwise more runs follow, with the pose
     displaced to both sides (where right angles make roots coincide they come apart, and Newton's method
-    takes them back) and by the next elimination, until they find all that is known and no more, and one of
-    the pose itself has kept its rank. What a direct way leaves open, these runs confirm or complete.
+    takes them back), by the next elimination and with the pose displaced by less, until they find all that
+    is known and no more, none stalls near another, and one of the pose itself has kept its rank. What a
+    direct way leaves open, these runs confirm or complete.
     Returns pose indices (k,) in order and joint values (k, 6), angles in (-pi, pi], sorted.
     """
     T = T.copy()
@@ -158,7 +162,9 @@ def six_joint_rows(six: SixJoints, plan: Plan, T: Array, policy: Policy) -> tupl
         which, real = run % len(todo), real[: len(todo)]
         if moves[0] is None and number >= len(plan.direct):
             least[todo] = np.maximum(least[todo], real)
-        q, arrived, before = refined_rows(some, plan, run, exact[which], q, policy)
+        q, error, before = refined_rows(some, plan, run, exact[which], q, policy)
+        arrived = error < policy.arrived
+        stalled = np.bincount(which[~arrived & (error < _STALLED)], minlength=len(todo)) > 0
         pose, q, before = todo[which[arrived]], q[arrived], before[arrived]
         best = np.lexsort((before >= near, pose))
         q, pose, kept = distinct_rows(q[best], pose[best], plan.turning, policy.coincident)
@@ -172,7 +178,7 @@ def six_joint_rows(six: SixJoints, plan: Plan, T: Array, policy: Policy) -> tupl
             found, of = np.concatenate([found, q]), np.concatenate([of, pose])
             found, of, _ = distinct_rows(found, of, plan.turning, policy.coincident)
             count = np.bincount(of, minlength=size)[todo]
-            settled = (mine == known) & (known == count) & (least[todo] >= 0)
+            settled = (mine == known) & (known == count) & (least[todo] >= 0) & ~stalled
         todo = todo[~(settled & (count % 2 == 0) & (count >= least[todo]))]
     unit = np.where(plan.turning, 1.0, plan.length)
     return of, sorted_rows(found, of, plan.turning) * unit
