@@ -113,7 +113,7 @@ def _thorough(policy: Policy, farther: bool) -> Policy:
 
 
 def _displaced(by: float) -> tuple[Array, Array]:
-    """A rotation of about so much (rad) with as much of a translation (in arm lengths), and their inverse."""
+    """A rotation of about so much (rad), as much of a translation (arm lengths), and their inverse."""
     X = np.eye(4)
     one, other = rotations_z(np.array([0.9, 1.1]) * by)
     X[:3, :3] = (one @ other[[2, 0, 1, 3]][:, [2, 0, 1, 3]])[:3, :3]
