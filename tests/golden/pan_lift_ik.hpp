@@ -924,12 +924,22 @@ template <class Arm> struct SolutionRows {
   }
 
   template <class Out> static void add(Out& out, const double* q, bool singular) noexcept {
-    if (out.count == kRoom<Out>) return;
+    if (out.count == kRoom<Out> && singular) return;
     for (int k = 0; k < out.count; ++k)
       if (same(q, row(out, k))) return;
+    if (out.count == kRoom<Out> && !make_room(out)) return;
     std::copy_n(q, Arm::kDof, row(out, out.count));
     flag(out, out.count) = singular;
     ++out.count;
+  }
+
+  template <class Out> [[gnu::cold, gnu::noinline]] static bool make_room(Out& out) noexcept {
+    for (int k = out.count - 1; k >= 0; --k) {
+      if (!flag(out, k)) continue;
+      for (--out.count; k < out.count; ++k) move(out, k + 1, k);
+      return true;
+    }
+    return false;
   }
 
   enum class Place { Inside, Hardly, Outside };
@@ -1754,13 +1764,30 @@ template <class Arm> struct CarefulSolve {
     if (free && !Arm::kRounded && !Arm::kRefined) real = add_hidden(aim, options, found) || real;
     if ((free || continuum) && found.count == 0) real = add_nearest(aim, options, found) || real;
     if (options.seed) Row::sort_by_distance(found, options.seed->data());
-    out.count = std::min(found.count, Arm::kMaxSolutions);
-    std::copy_n(found.q.begin(), out.count, out.q.begin());
-    std::copy_n(found.singular.begin(), out.count, out.singular.begin());
+    take_in_order(found, out);
     out.status = out.count > 0 ? Arm::Status::Ok : real ? Arm::Status::Limits : Arm::Status::Unreachable;
   }
 
  private:
+  static void take_in_order(Places& found, Solutions& out) noexcept {
+    bool kept[Places::kRoom] = {};
+    int room = Arm::kMaxSolutions;
+    for (int k = 0; k < found.count; ++k) {
+      int near = 0;
+      const double* q = Row::row(found, k);
+      for (int i = 0; i < k && Row::flag(found, k); ++i)
+        if (kept[i] && Row::flag(found, i) && Careful::Pair::within(Policy::kAlike, q, Row::row(found, i))) ++near;
+      kept[k] = near < Policy::kCrowd;
+      room -= Row::flag(found, k) ? 0 : 1;
+    }
+    out.count = 0;
+    for (int k = 0; k < found.count && out.count < Arm::kMaxSolutions; ++k) {
+      if (!kept[k] || (Row::flag(found, k) && room-- <= 0)) continue;
+      std::copy_n(Row::row(found, k), Arm::kDof, Row::row(out, out.count));
+      Row::flag(out, out.count++) = Row::flag(found, k);
+    }
+  }
+
   static void take_start(const Options& options, int turn, double* q) noexcept {
     for (int j = 0; j < Arm::kDof; ++j)
       q[j] = (options.seed ? options.seed->data()[j] : 0.0) + (Arm::kRevolute[j] ? turn * Policy::kTryStep : 0.0);
@@ -2422,7 +2449,7 @@ inline void order_rows(const Eigen::Isometry3d& pose, const double* seed, typena
 // --- this arm -------------------------------------------------------------------------------------
 
 struct Policy {
-  static constexpr int kTries = 16, kPatience = 5;
+  static constexpr int kCrowd = 4, kTries = 16, kPatience = 5;
   static constexpr double kArrived = 5e-10, kExact = 1e-12, kPoseTolerance = 1e-06, kOrthonormal = 1e-14,
       kCoincident = 1e-06, kAlike = 0.01, kHalfway = 2e-14, kMeeting = 2e-05, kLimitTolerance = 1e-09,
       kLimitReach = 1e-05, kLimitDoubt = 1e-09, kTryStep = 0.39269908169872414, kRankLoss = 1e-07,

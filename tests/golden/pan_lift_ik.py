@@ -382,6 +382,7 @@ class _Policy:
     coincident: float  # rows closer than that (rad or m) are one
     alike: float  # and singular ones, where the pose is theirs between them too:
     halfway: float  # to this error
+    crowd: int  # rows of a continuum that are alike, at most
     limit_tolerance: float  # how far outside a limit a row is put back on it
     limit_reach: float  # and how far outside that is tried
     tries: int  # values tried for a joint that a pose leaves free
@@ -661,6 +662,19 @@ def _aims(arm: _Arm, T: Array, held: Array) -> Array:
     return T
 
 
+# Which rows at one value of a held joint go on as which at the next.
+
+
+_WHOLE_TURN = 2.0 * pi
+
+
+def _differences(arm: _Arm, a: Array, b: Array) -> Array:
+    """b - a (..., dof), of turning joints on the shortest way."""
+    gap = b - a
+    turning = np.array(arm.chain.revolute)
+    return np.where(turning, gap - _WHOLE_TURN * np.round(gap / _WHOLE_TURN), gap)
+
+
 # Rows to be compared.
 
 
@@ -771,10 +785,26 @@ def _place(arm: _Arm, row: Row, near: Row | None, limits: bool) -> tuple[Row | N
 
 
 def _in_order(arm: _Arm, rows: list[_Found], near: Row | None) -> list[_Found]:
-    """The rows, no more than the arm has, nearest to a seed first."""
+    """The rows, nearest to a seed first."""
     if near is not None:
         rows = sorted(rows, key=lambda item: sum((a - b) * (a - b) for a, b in zip(item[0], near)))
+    if any(singular for _, singular in rows):
+        rows = _thinned(arm, rows)
+        room = arm.most - sum(not singular for _, singular in rows)
+        places = np.cumsum([singular for _, singular in rows])
+        rows = [one for one, place in zip(rows, places) if not one[1] or place <= room]
     return rows[: arm.most]
+
+
+def _thinned(arm: _Arm, rows: list[_Found]) -> list[_Found]:
+    """Without rows of a continuum that are alike to `crowd` others before them."""
+    kept: list[_Found] = []
+    for row, singular in rows:
+        others = [other for other, flag in kept if flag] if singular else []
+        gaps = np.abs(_differences(arm, np.array(row), np.array(others).reshape(-1, len(row))))
+        if (gaps.max(axis=1) < arm.policy.alike).sum() < arm.policy.crowd:
+            kept.append((row, singular))
+    return kept
 
 
 def _place_rows_batch(
@@ -1014,19 +1044,6 @@ def _root(side: Array, rest: Array, bend: Array, flow: Array) -> Array:
     with np.errstate(all="ignore"):
         x = np.where(((s > 0.0) == (side > 0.0)) & (square > 0.0), 2.0 * e / p, -p / k)
     return np.asarray(np.clip(np.nan_to_num(np.where(k > 0.0, x, 0.0)), -_FAR, _FAR))
-
-
-# Which rows at one value of a held joint go on as which at the next.
-
-
-_WHOLE_TURN = 2.0 * pi
-
-
-def _differences(arm: _Arm, a: Array, b: Array) -> Array:
-    """b - a (..., dof), of turning joints on the shortest way."""
-    gap = b - a
-    turning = np.array(arm.chain.revolute)
-    return np.where(turning, gap - _WHOLE_TURN * np.round(gap / _WHOLE_TURN), gap)
 
 
 # Rows of several poses in one array: without repetitions, and in order.
@@ -2729,6 +2746,7 @@ _ARM = _Arm(
         coincident=1e-06,
         alike=0.01,
         halfway=2e-14,
+        crowd=4,
         limit_tolerance=1e-09,
         limit_reach=1e-05,
         tries=16,

@@ -35,7 +35,8 @@ class SolvePolicy:
     - `pose_tolerance`: how far a rotation's entries may be off; nearer ones are replaced by the nearest
       rotation; `orthonormal`: what is round-off of them.
     - `coincident`: rows closer than that (rad or m) are one, singular ones closer than `alike` where the
-      pose is theirs to `halfway` between them too; `meeting`: how close branches are where their rows are
+      pose is theirs to `halfway` between them too; of other singular ones that are `alike` at most `crowd`
+      are kept, as many as solutions meet at a point where two folds do; `meeting`: how close branches are where their rows are
       compared. `limit_tolerance`: a row that far (rad or m) outside a limit is put back on it,
       and one that far, `limit_reach`, where its pose does not tell that it is outside. `limit_doubt`: a
       closed form's row up to that far outside, in C++, is refined before it is said to be so.
@@ -67,6 +68,7 @@ class SolvePolicy:
     coincident: float = 1e-6
     alike: float = 1e-2
     halfway: float = 2e-14
+    crowd: int = 4
     meeting: float = 2e-5
     limit_tolerance: float = 1e-9
     limit_reach: float = 1e-5

@@ -17,6 +17,7 @@ from ikgen.runtime.python.arm.whole_pose import PoseTask
 from ikgen.runtime.python.rows.row_placement import (
     apart,
     distinct,
+    in_order,
     is_new,
     place_rows,
     place_rows_batch,
@@ -172,3 +173,17 @@ def test_rows_within_limits_and_half_turns_stay() -> None:
         assert placed == [((pi if row[0] == -pi else row[0], *inside[1:]), True)] and not close
     unlimited, _ = rows_at_limits(arm(), [((0.5, -3.0, 4.0, 7.0, 9.0), False)], None, False)
     assert unlimited == [((0.5, -3.0, 4.0 - 2.0 * pi, 7.0, 9.0), False)]
+
+
+def test_rows_of_a_continuum_crowd_no_others_out() -> None:
+    """Many alike, and as many as there are places far from each other; the seed's own is among them."""
+    spread = [((0.3 * k, 1.0, 0.0, 0.5, 0.0), True) for k in range(9)]
+    alike = [((-1.0 + 1e-3 * k, 0.0, 0.0, 0.5, 0.0), True) for k in range(9)]
+    regular = [((2.0, 0.1 * k, 0.0, 0.5, 0.0), False) for k in range(3)]
+    assert in_order(arm(), alike + regular, None) == alike[:4] + regular
+    assert in_order(arm(), spread + regular, None) == spread[:5] + regular
+    assert in_order(arm(), alike + spread + regular, None) == alike[:4] + spread[:1] + regular
+    found = in_order(arm(), alike + regular, alike[8][0])
+    assert found == alike[:4:-1] + regular
+    many = [((2.0, 0.1 * k, 0.0, 0.5, 0.0), False) for k in range(8)]
+    assert in_order(arm(), alike + many, None) == many

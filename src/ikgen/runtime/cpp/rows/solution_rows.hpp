@@ -49,14 +49,25 @@ template <class Arm> struct SolutionRows {
     return true;
   }
 
-  // Adds a row unless it is there already.
+  // Adds a row unless it is there already, or there is no room; where it is of no continuum, one that is makes room.
   template <class Out> static void add(Out& out, const double* q, bool singular) noexcept {
-    if (out.count == kRoom<Out>) return;
+    if (out.count == kRoom<Out> && singular) return;
     for (int k = 0; k < out.count; ++k)
       if (same(q, row(out, k))) return;
+    if (out.count == kRoom<Out> && !make_room(out)) return;
     std::copy_n(q, Arm::kDof, row(out, out.count));
     flag(out, out.count) = singular;
     ++out.count;
+  }
+
+  // Drops the last row of a continuum; whether there is one.
+  template <class Out> [[gnu::cold, gnu::noinline]] static bool make_room(Out& out) noexcept {
+    for (int k = out.count - 1; k >= 0; --k) {
+      if (!flag(out, k)) continue;
+      for (--out.count; k < out.count; ++k) move(out, k + 1, k);
+      return true;
+    }
+    return false;
   }
 
   enum class Place { Inside, Hardly, Outside };

@@ -47,13 +47,31 @@ template <class Arm> struct CarefulSolve {
     if (free && !Arm::kRounded && !Arm::kRefined) real = add_hidden(aim, options, found) || real;
     if ((free || continuum) && found.count == 0) real = add_nearest(aim, options, found) || real;
     if (options.seed) Row::sort_by_distance(found, options.seed->data());
-    out.count = std::min(found.count, Arm::kMaxSolutions);
-    std::copy_n(found.q.begin(), out.count, out.q.begin());
-    std::copy_n(found.singular.begin(), out.count, out.singular.begin());
+    take_in_order(found, out);
     out.status = out.count > 0 ? Arm::Status::Ok : real ? Arm::Status::Limits : Arm::Status::Unreachable;
   }
 
  private:
+  // Of a continuum at most kCrowd rows that are alike, and where there are more than places those of none.
+  static void take_in_order(Places& found, Solutions& out) noexcept {
+    bool kept[Places::kRoom] = {};
+    int room = Arm::kMaxSolutions;
+    for (int k = 0; k < found.count; ++k) {
+      int near = 0;
+      const double* q = Row::row(found, k);
+      for (int i = 0; i < k && Row::flag(found, k); ++i)
+        if (kept[i] && Row::flag(found, i) && Careful::Pair::within(Policy::kAlike, q, Row::row(found, i))) ++near;
+      kept[k] = near < Policy::kCrowd;
+      room -= Row::flag(found, k) ? 0 : 1;
+    }
+    out.count = 0;
+    for (int k = 0; k < found.count && out.count < Arm::kMaxSolutions; ++k) {
+      if (!kept[k] || (Row::flag(found, k) && room-- <= 0)) continue;
+      std::copy_n(Row::row(found, k), Arm::kDof, Row::row(out, out.count));
+      Row::flag(out, out.count++) = Row::flag(found, k);
+    }
+  }
+
   // Values for joints that the pose leaves free: the seed's, those of revolute ones turned; held ones as they are.
   static void take_start(const Options& options, int turn, double* q) noexcept {
     for (int j = 0; j < Arm::kDof; ++j)

@@ -18,6 +18,7 @@ class Policy:
     coincident: float  # rows closer than that (rad or m) are one
     alike: float  # and singular ones, where the pose is theirs between them too:
     halfway: float  # to this error
+    crowd: int  # rows of a continuum that are alike, at most
     limit_tolerance: float  # how far outside a limit a row is put back on it
     limit_reach: float  # and how far outside that is tried
     tries: int  # values tried for a joint that a pose leaves free

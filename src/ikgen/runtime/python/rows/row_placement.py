@@ -10,6 +10,7 @@ import numpy as np
 
 from ikgen.runtime.python.arm.solved_arm import Arm, Found
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Row
+from ikgen.runtime.python.rows.row_links import differences
 from ikgen.runtime.python.rows.row_pairs import pairs
 
 __all__ = [
@@ -135,10 +136,27 @@ def _place(arm: Arm, row: Row, near: Row | None, limits: bool) -> tuple[Row | No
 
 
 def in_order(arm: Arm, rows: list[Found], near: Row | None) -> list[Found]:
-    """The rows, no more than the arm has, nearest to a seed first."""
+    """The rows, nearest to a seed first: of a continuum at most `crowd` that are alike, and where there are
+    more than the arm has, those of none."""
     if near is not None:
         rows = sorted(rows, key=lambda item: sum((a - b) * (a - b) for a, b in zip(item[0], near)))
+    if any(singular for _, singular in rows):
+        rows = _thinned(arm, rows)
+        room = arm.most - sum(not singular for _, singular in rows)
+        places = np.cumsum([singular for _, singular in rows])
+        rows = [one for one, place in zip(rows, places) if not one[1] or place <= room]
     return rows[: arm.most]
+
+
+def _thinned(arm: Arm, rows: list[Found]) -> list[Found]:
+    """Without rows of a continuum that are alike to `crowd` others before them."""
+    kept: list[Found] = []
+    for row, singular in rows:
+        others = [other for other, flag in kept if flag] if singular else []
+        gaps = np.abs(differences(arm, np.array(row), np.array(others).reshape(-1, len(row))))
+        if (gaps.max(axis=1) < arm.policy.alike).sum() < arm.policy.crowd:
+            kept.append((row, singular))
+    return kept
 
 
 def place_rows_batch(
