@@ -34,12 +34,13 @@ class SolvePolicy:
       is refined.
     - `pose_tolerance`: how far a rotation's entries may be off; nearer ones are replaced by the nearest
       rotation; `orthonormal`: what is round-off of them.
-    - `coincident`: rows closer than that (rad or m) are one, singular ones closer than `alike` where the
-      pose is theirs to `halfway` between them too; of other singular ones that are `alike` at most `crowd`
-      are kept, as many as solutions meet at a point where two folds do; `meeting`: how close branches are where their rows are
-      compared. `limit_tolerance`: a row that far (rad or m) outside a limit is put back on it,
-      and one that far, `limit_reach`, where its pose does not tell that it is outside. `limit_doubt`: a
-      closed form's row up to that far outside, in C++, is refined before it is said to be so.
+    - `coincident`: rows closer than that (rad or m) are one, singular ones closer than `alike` where
+      the pose is theirs to `halfway` between them too; of other singular ones that are `alike` at most
+      `crowd` are kept, as many as solutions meet at a point where two folds do; `meeting`: how close
+      branches are where their rows are compared. `limit_tolerance`: a row that far (rad or m) outside a
+      limit is put back on it, and one that far, `limit_reach`, where its pose does not tell that it is
+      outside. `limit_doubt`: a closed form's row up to that far outside, in C++, is refined before it
+      is said to be so.
     - `tries`: how many values of a joint that a pose leaves free are tried, `try_step` (rad) apart.
     - `rank_loss`: smallest singular value below which a refined row is singular; `continuum_rank_loss`
       where the Program marked it already.
