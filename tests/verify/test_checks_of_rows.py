@@ -92,6 +92,17 @@ def test_without_a_seed_the_order_of_rows_is_not_promised(arm: ArmUnderTest) -> 
     assert compared.all() and not wrong.any() and largest == 0.0
 
 
+def test_rows_with_slides_far_out_need_not_agree(arm: ArmUnderTest) -> None:
+    """The joint in the middle taken for a slide."""
+    sliding = replace(arm, revolute=np.arange(6) != 2, length=1.0)
+    far, near, other = row(0.5, 0.1, -150.0), row(0.5, 0.1, 50.0), row(0.5, 0.1, 49.0)
+    ours = rows_of([near, far], [far], [near], [near, far])
+    theirs = rows_of([near], [], [], [other])
+    wrong, compared, largest = disagreements(sliding, ours, theirs)
+    assert wrong.tolist() == [False, False, True, True]
+    assert compared.all() and largest == 0.0
+
+
 def test_rows_outside_the_limits_are_told_with_the_worst(arm: ArmUnderTest) -> None:
     rows = rows_of([row(0.5), row(2.9 + 0.3)], [row(-2.9 - 0.5)], [row(2.9 + 5e-7)])
     free = rows_of([row(9.0)])
