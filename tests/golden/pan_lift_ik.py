@@ -1145,16 +1145,25 @@ def _found_around(
 ) -> tuple[_Led, _Flags]:
     """The solutions around continua that some starts (k,) stand for, or that rows `lie` (k,) on which they
     lead to, once for each branch of a pose."""
-    index, on = np.flatnonzero(some), np.zeros(len(some), dtype=bool)
-    if arm.around is None or not len(index):
-        return _Led(index[:0], starts.q[:0], ends.loss[:0]), on
-    q = np.where(lie[:, None], ends.q, starts.q)[index]
-    curve, owner, rows, loss = arm.around(arm, q, starts.T[index], lie[index])
-    branch = np.stack([starts.pose, starts.lane], axis=1)[index[curve]]
-    _, first = np.unique(branch, axis=0, return_index=True)
-    on[index[curve][first]] = True
-    found: _Led = _some_of(_Led(index[owner], rows, loss), on[index[owner]])
+    left, on = np.flatnonzero(some), np.zeros(len(some), dtype=bool)
+    found = _Led(left[:0], starts.q[:0], ends.loss[:0])
+    branch = starts.pose * (1 + starts.lane.max(initial=0)) + starts.lane
+    for others in (False, True):
+        if arm.around is None or not len(left):
+            break
+        index = left if others else _first_of(branch, left)
+        q = np.where(lie[index, None], ends.q[index], starts.q[index])
+        curve, owner, rows, loss = arm.around(arm, q, starts.T[index], lie[index])
+        on[_first_of(branch, index[curve])] = True
+        more = _Led(index[owner], rows, loss)
+        found = _joined(found, _some_of(more, on[more.owner]))
+        left = np.setdiff1d(left[~np.isin(branch[left], branch[on])], index)
     return found, on
+
+
+def _first_of(branch: _Index, some: _Index) -> _Index:
+    """Of some starts, in order, the first of each `branch` (k,)."""
+    return np.sort(some[np.unique(branch[some], return_index=True)[1]])
 
 
 def _rows_nearby(arm: _Arm, leads: _Leads) -> _Led:

@@ -151,3 +151,32 @@ def test_marked_rows_that_are_not_the_arms_own_are_followed_once_for_each_branch
     arm.around = None
     none = leads_of(arm, starts, np.zeros((1, 4), dtype=bool))
     assert none.starts.marked.tolist() == [True] + [False] * 5 and not none.known.any()
+
+
+@pytest.mark.parametrize(
+    ("on", "asked", "taken"), [([0, 3], [[0, 3]], [0, 3]), ([2, 3], [[0, 3], [1, 2]], [2, 3])]
+)
+def test_other_starts_of_a_branch_are_followed_where_the_first_is_on_no_continuum(
+    monkeypatch: pytest.MonkeyPatch, on: list[int], asked: list[list[int]], taken: list[int]
+) -> None:
+    q = np.arange(4.0)[:, None]
+    monkeypatch.setattr(
+        meeting_rows, "ends_of", lambda arm, q, T: Ends(q, np.ones(len(q)), np.ones(len(q)))
+    )
+    seen: list[list[int]] = []
+
+    def around(arm: Any, q: Array, T: Array, lie: Any) -> Any:
+        seen.append(q[:, 0].astype(int).tolist())
+        curve = np.isin(q[:, 0], on)
+        return curve, np.flatnonzero(curve), q[curve] + 10.0, q[curve, 0]
+
+    starts = Starts(
+        q, np.zeros((4, 4, 4)), np.zeros(4, np.intp), np.ones(4, dtype=bool),
+        np.array([1, 2, 3, 1]), np.array([0, 0, 0, 1]),
+    )  # fmt: skip
+    known = np.zeros((1, 2), dtype=bool)
+    arm: Any = SimpleNamespace(policy=POLICY, rounded=True, around=around)
+    found = leads_of(arm, starts, known)
+    assert seen == asked and known.all()
+    assert sorted(found.around.owner.tolist()) == taken
+    assert (found.around.q[:, 0] == found.around.owner + 10.0).all()

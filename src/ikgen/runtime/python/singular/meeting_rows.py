@@ -121,17 +121,27 @@ def _found_around(
     arm: Arm, starts: Starts, ends: Ends, some: Flags, lie: Flags
 ) -> tuple[Led, Flags]:
     """The solutions around continua that some starts (k,) stand for, or that rows `lie` (k,) on which they
-    lead to, once for each branch of a pose; which starts these are from."""
-    index, on = np.flatnonzero(some), np.zeros(len(some), dtype=bool)
-    if arm.around is None or not len(index):
-        return Led(index[:0], starts.q[:0], ends.loss[:0]), on
-    q = np.where(lie[:, None], ends.q, starts.q)[index]
-    curve, owner, rows, loss = arm.around(arm, q, starts.T[index], lie[index])
-    branch = np.stack([starts.pose, starts.lane], axis=1)[index[curve]]
-    _, first = np.unique(branch, axis=0, return_index=True)
-    on[index[curve][first]] = True
-    found: Led = some_of(Led(index[owner], rows, loss), on[index[owner]])
+    lead to, once for each branch of a pose; which starts these are from. Where a branch's first start is on
+    none, its others are tried."""
+    left, on = np.flatnonzero(some), np.zeros(len(some), dtype=bool)
+    found = Led(left[:0], starts.q[:0], ends.loss[:0])
+    branch = starts.pose * (1 + starts.lane.max(initial=0)) + starts.lane
+    for others in (False, True):
+        if arm.around is None or not len(left):
+            break
+        index = left if others else _first_of(branch, left)
+        q = np.where(lie[index, None], ends.q[index], starts.q[index])
+        curve, owner, rows, loss = arm.around(arm, q, starts.T[index], lie[index])
+        on[_first_of(branch, index[curve])] = True
+        more = Led(index[owner], rows, loss)
+        found = joined(found, some_of(more, on[more.owner]))
+        left = np.setdiff1d(left[~np.isin(branch[left], branch[on])], index)
     return found, on
+
+
+def _first_of(branch: Index, some: Index) -> Index:
+    """Of some starts, in order, the first of each `branch` (k,)."""
+    return np.sort(some[np.unique(branch[some], return_index=True)[1]])
 
 
 def rows_nearby(arm: Arm, leads: Leads) -> Led:
