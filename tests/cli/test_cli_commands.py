@@ -260,6 +260,12 @@ def test_help_and_version_import_nothing_heavy() -> None:
         assert done.stdout.splitlines()[-1] == "[]", (arguments, done.stdout, done.stderr)
 
 
+def test_what_writes_reports_is_imported_where_one_is_written() -> None:
+    code = "import sys, ikgen.generation.generate; print('ikgen.report' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], text=True, capture_output=True)
+    assert done.stdout == "False\n", done.stderr
+
+
 def test_an_internal_error_is_one_line(monkeypatch: pytest.MonkeyPatch, capsys) -> None:  # type: ignore[no-untyped-def]
     from ikgen.cli import main
 

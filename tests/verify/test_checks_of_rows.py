@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from tests.support.fake_arms import six_axis_oracle, six_axis_urdf, tree_of
 
 from ikgen.tasks import find_task
+from ikgen.verify import checks
 from ikgen.verify.agreement import disagreements
 from ikgen.verify.arm import ArmUnderTest, arm_under_test
 from ikgen.verify.checks import (
@@ -219,6 +221,28 @@ def test_flags_belong_to_continua(arm: ArmUnderTest) -> None:
     assert told(False, False, False) == (3, 1, "1 rows of a continuum not flagged")
     assert told(True, True, False) == (3, 1, "0 rows of a continuum not flagged")
     assert told(False, True, True) == (3, 3, "1 rows of a continuum not flagged")
+
+
+def test_rows_that_are_flagged_are_not_followed(
+    arm: ArmUnderTest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And those of all trials that are not in one call: of many rows the price is that of the calls."""
+    asked: list[list[float]] = []
+
+    def followed(arm: ArmUnderTest, q: Any, targets: Any) -> Any:
+        assert np.allclose(arm.oracle.forward(q), targets)
+        asked.append(q[:, 0].tolist())
+        return np.arange(len(q)) == 1
+
+    monkeypatch.setattr(checks, "on_continuum", followed)
+    trials = []
+    for q, flags in ((drawn(3), (False, True, False)), (drawn(2), (True, False))):
+        q[:, 0] = 0.1 * np.arange(len(q)) + len(q)
+        trial = reached(arm, q)
+        trials.append(replace(trial, rows=replace(trial.rows, singular=np.array(flags)[:, None])))
+    found = check_singular_flags(arm, trials)
+    np.testing.assert_allclose(asked, [[3.0, 3.2, 2.1]])
+    assert (found.count, found.failures) == (5, 3) and "made #1: row = [3.1" in found.worst_case
 
 
 def test_rows_come_in_the_order_of_some_distance_to_the_seed(arm: ArmUnderTest) -> None:

@@ -18,7 +18,6 @@ from ikgen.generation.progress import Progress, silent
 from ikgen.generation.publish import check_folder, left_over, publish
 from ikgen.generation.publishing import complete_folder
 from ikgen.generation.read import default_name, read
-from ikgen.generation.unsolved import incomplete_error
 from ikgen.tasks import find_task
 
 if TYPE_CHECKING:
@@ -133,6 +132,8 @@ def make_texts(
             elif derivation.chosen and not derivation.task.whole_pose:
                 tasks.append(derivation.task.name)
             else:
+                from ikgen.generation.unsolved import incomplete_error
+
                 raise incomplete_error(error, request) from None
     for emitter in emitters:
         if emitter.tells_verification:

@@ -92,23 +92,24 @@ def check_inside_limits(arm: ArmUnderTest, trials: Sequence[Trial]) -> CheckResu
 
 def check_singular_flags(arm: ArmUnderTest, trials: Sequence[Trial]) -> CheckResult:
     """Rows on a continuum of solutions are flagged, clearly regular rows are not."""
-    count = failures = missing = 0
+    rows = [trial.rows.flat() for trial in trials]
+    which = np.repeat(np.arange(len(trials)), [len(index) for index, _, _ in rows])
+    poses = np.concatenate([t.sample.poses[i] for t, (i, _, _) in zip(trials, rows, strict=True)])
+    index, q, flags = (np.concatenate(part) for part in zip(*rows, strict=True))
+    finite = np.all(np.isfinite(q), axis=1)
+    which, index, poses = which[finite], index[finite], poses[finite]
+    q, flags = q[finite], flags[finite]
+    wrong = np.zeros(len(q), dtype=bool)
+    wrong[~flags] = on_continuum(arm, q[~flags], poses[~flags])
+    missing = int(wrong.sum())
+    wrong[flags] = arm.sigma(q[flags]) > CLEARLY_REGULAR
     case = ""
-    for trial in trials:
-        index, q, flags = trial.rows.flat()
-        finite = np.all(np.isfinite(q), axis=1)
-        index, q, flags = index[finite], q[finite], flags[finite]
-        sigma = arm.sigma(q)
-        unflagged = ~flags & on_continuum(arm, q, trial.sample.poses[index])
-        wrong = unflagged | (flags & (sigma > CLEARLY_REGULAR))
-        count += len(q)
-        missing += int(unflagged.sum())
-        failures += int(wrong.sum())
-        if wrong.any() and not case:
-            k = int(np.argmax(wrong))
-            case = spell(trial.sample.label, index[k], row=q[k], sigma=sigma[k])
-    detail = f"{missing} rows of a continuum not flagged" if failures else ""
-    return result("singular flags", count, failures, detail=detail, worst_case=case)
+    if wrong.any():
+        k = int(np.argmax(wrong))
+        label, sigma = trials[which[k]].sample.label, arm.sigma(q[k : k + 1])[0]
+        case = spell(label, index[k], row=q[k], sigma=sigma)
+    detail = f"{missing} rows of a continuum not flagged" if wrong.any() else ""
+    return result("singular flags", len(q), int(wrong.sum()), detail=detail, worst_case=case)
 
 
 def check_seed_order(

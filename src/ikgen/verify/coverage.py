@@ -33,13 +33,9 @@ def check_exhaustive(
     case = ""
     regular = arm.regular_above()
     for i, q in enumerate(found):
-        known: list[Array] = []
-        for candidate in q[arm.sigma(q) > regular]:
-            if all(arm.distance(candidate, other) > FOUND_TOLERANCE for other in known):
-                known.append(candidate)
-        if not known:
+        solutions = _distinct(arm, q[arm.sigma(q) > regular])
+        if not len(solutions):
             continue
-        solutions = np.array(known)
         off = nearest(arm, solutions[None], trial.rows.q[i : i + 1])[0]
         # beside a fold the singular value where the search ends is up to twice the mean on its way on
         ended = sensitivity(arm, solutions).moved(2.0 * CONVERGED)
@@ -49,6 +45,14 @@ def check_exhaustive(
             case = spell(sample.label, i, missed=solutions[missed], pose=sample.poses[i])
     detail = f"{len(found)} poses, {starts} starts each"
     return result("exhaustive search", count, failures, detail=detail, worst_case=case)
+
+
+def _distinct(arm: ArmUnderTest, q: Array) -> Array:
+    """Of q (N, dof) those that differ from all that were kept before."""
+    known = q[:0]
+    while len(q):
+        known, q = np.vstack([known, q[:1]]), q[arm.distance(q, q[0]) > FOUND_TOLERANCE]
+    return known
 
 
 def check_singular_answers(arm: ArmUnderTest, trials: Sequence[Trial]) -> CheckResult:

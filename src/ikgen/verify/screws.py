@@ -34,14 +34,13 @@ class ScrewChain:
 
     def _exponential(self, i: int, v: Array) -> Array:
         """exp(S_i v) for v (N,): (N, 4, 4)."""
-        hat = _hat(self.screws[i])
-        angle = v[:, None, None]
-        linear: Array = np.eye(4) + angle * hat
-        if not np.any(self.screws[i, 3:]):
-            return linear
-        square = hat @ hat
-        curved = (1 - np.cos(angle)) * square + (angle - np.sin(angle)) * (square @ hat)
-        return linear + curved
+        hat, angle = _hat(self.screws[i]), v[:, None]
+        out: Array = np.eye(4).ravel() + angle * hat.ravel()
+        if self.screws[i, 3:].any():
+            second = hat @ hat
+            third = (second @ hat).ravel()
+            out += (1 - np.cos(angle)) * second.ravel() + (angle - np.sin(angle)) * third
+        return out.reshape(-1, 4, 4)
 
     def forward(self, q: Array) -> Array:
         """Tip poses in the base link (N, 4, 4) for q (N, dof)."""
@@ -55,15 +54,14 @@ class ScrewChain:
         """Tip poses (N, 4, 4) and geometric Jacobians (N, 6, dof), linear rows first, at the
         tip."""
         v = q @ self.A.T + self.b
-        n = len(self.screws)
         T = np.broadcast_to(np.eye(4), (len(q), 4, 4))
-        linear, angular = np.empty((len(q), n, 3)), np.empty((len(q), n, 3))
-        for i in range(n):
-            R = T[:, :3, :3]
-            angular[:, i] = R @ self.screws[i, 3:]
-            linear[:, i] = R @ self.screws[i, :3] + np.cross(T[:, :3, 3], angular[:, i])
+        linear, angular, origin = np.empty((3, len(q), len(self.screws), 3))
+        for i, screw in enumerate(self.screws):
+            R, origin[:, i] = T[:, :3, :3], T[:, :3, 3]
+            linear[:, i], angular[:, i] = R @ screw[:3], R @ screw[3:]
             T = T @ self._exponential(i, v[:, i])
         T = np.asarray(T @ self.home)
+        linear += np.cross(origin, angular)
         linear += np.cross(angular, T[:, None, :3, 3])
         J = np.concatenate([linear, angular], axis=2)
         return T, np.asarray(J.transpose(0, 2, 1) @ self.A)
