@@ -942,9 +942,25 @@ template <class Arm> struct SolutionRows {
     return false;
   }
 
+  static constexpr bool one_turn() noexcept {
+    for (int j = 0; j < Arm::kDof; ++j) {
+      const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j], least = Policy::kLimitTolerance;
+      if (Arm::kRevolute[j] && !(low > -kPi && high <= kPi && high - low < kTurn - 2.0 * least)) return false;
+    }
+    return true;
+  }
+
+  static bool within(const double* q) noexcept {
+    bool in = true;
+    for (int j = 0; j < Arm::kDof; ++j) in = in & (Arm::kLower.data()[j] <= q[j]) & (q[j] <= Arm::kUpper.data()[j]);
+    return in;
+  }
+
   enum class Place { Inside, Hardly, Outside };
 
   static Place placed(double* q, const Options& options) noexcept {
+    if constexpr (one_turn())
+      if (options.limits && within(q)) return Place::Inside;
     Place where = Place::Inside;
     const double* seed = options.seed ? options.seed->data() : nullptr;
     for (int j = 0; j < Arm::kDof; ++j) {
@@ -2198,7 +2214,7 @@ template <class A, int N> struct LeastSingularValue {
   }
 
   static Pack least_root(const Pack (&diagonal)[kOrder], const Pack (&squares)[kOrder]) noexcept {
-    Pack x = spread<N>(0.0);
+    Pack x = spread<N>(0.0), last = x;
     for (int i = 0; i < kSteps; ++i) {
       Pack p = diagonal[0] - x, before = spread<N>(1.0), d = spread<N>(-1.0), d_before = spread<N>(0.0), h = d_before, h_before = h;
       for (int k = 1; k < kOrder; ++k) {
@@ -2217,7 +2233,8 @@ template <class A, int N> struct LeastSingularValue {
       const Pack over = 1.0 / select(left, p, 1.0), g = -d * over;
       const Pack step = n / (g + sqrt((n - 1.0) * ((n - 1.0) * g * g - n * h * over)));
       x = x + select(left, step, 0.0);
-      if (all(!(left & (step > 1e-15 * x)))) break;
+      if (all(!(left & (step * step > 1e-15 * x * last)))) break;
+      last = step;
     }
     return x;
   }

@@ -40,23 +40,8 @@ template <class Arm> struct BranchEnd {
     take(a, lane_a);
   }
 
-  // With `row` its row is wanted too, to all digits.
-  void find(const HeldSweep<Arm>& sweep, LastEnd<Arm>& last, bool row) noexcept {
-    coarse = false;
-    look(sweep, last);
-    if (row && coarse) Sample::refine(sweep.pose, inner, q);
-  }
-
- private:
-  bool at_fold;
-  bool coarse;        // whether its row may have lost digits
-  bool stays;         // in its lane, however near others come
-  bool goes = false;  // to the row `there` at the value `then`
-  double there[Arm::kDof], then;
-  int count = 0;
-  double at[kKnown + 1], value[kKnown + 1];  // the nearest last
-
-  void look(const HeldSweep<Arm>& sweep, LastEnd<Arm>& last) noexcept {
+  // Its row may have lost digits.
+  void find(const HeldSweep<Arm>& sweep, LastEnd<Arm>& last) noexcept {
     if constexpr (!Sample::kMarginsTell)
       if (goes && follow(sweep)) return;
     if (last.settled && ends_at(last.inside)) return;
@@ -89,8 +74,15 @@ template <class Arm> struct BranchEnd {
     last.known = last.inside.held == inner && last.outside.held == outer;
   }
 
+ private:
+  bool at_fold;
+  bool stays;         // in its lane, however near others come
+  bool goes = false;  // to the row `there` at the value `then`
+  double there[Arm::kDof], then;
+  int count = 0;
+  double at[kKnown + 1], value[kKnown + 1];  // the nearest last
+
   void take_row(const Sample& s, int row) noexcept {
-    coarse = s.rough[row];
     s.row(row, q);
     lane = row;
   }

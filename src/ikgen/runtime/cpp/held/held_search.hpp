@@ -10,9 +10,8 @@ namespace ikgen_runtime {
 // Arm: as for BranchFollower and RowPreference.
 template <class Arm> struct HeldSearch {
   using Sample = HeldSample<Arm>;
-  static constexpr int kMost = 4;       // minima of an interval that are looked at
-  static constexpr int kCells = 48;     // of the range, where intervals are known without looking
-  static constexpr bool kRows = true;   // of ends are wanted
+  static constexpr int kMost = 4;    // minima of an interval that are looked at
+  static constexpr int kCells = 48;  // of the range, where intervals are known without looking
 
   using Point = HeldPoint<Arm>;
   using Minimum = HeldMinimum<Arm>;
@@ -117,16 +116,24 @@ template <class Arm> struct HeldSearch {
   }
 
   void finish() noexcept {
-    for (int k = 0; k < waits; ++k) {
-      if (hopeless(waiting[k].minimum)) continue;
-      descent.refine(waiting[k].minimum);
-      insert(waiting[k].minimum.best, waiting[k].interval);
+    const int together = preference.prefer == Arm::Prefer::Dexterous ? HeldDescent<Arm>::kTogether : 1;
+    for (int k = 0; k < waits;) {
+      Minimum* some[HeldDescent<Arm>::kTogether];
+      int interval[HeldDescent<Arm>::kTogether], count = 0;
+      for (; k < waits && count < together; ++k) {
+        if (hopeless(waiting[k].minimum)) continue;
+        interval[count] = waiting[k].interval;
+        some[count++] = &waiting[k].minimum;
+      }
+      descent.refine(some, count);
+      for (int i = 0; i < count; ++i) insert(some[i]->best, interval[i]);
     }
   }
 
-  // Takes a row, of an interval's the best.
+  // Takes a row that is inside, of an interval's the best.
   void insert(const Point& p, int interval) noexcept {
     int at = 0, last = 0;
+    if (!(p.cost < kInfinity)) return;
     while (last < out.count && owner[last] != interval) ++last;
     if (last < out.count && best[last] <= p.cost) return;
     while (at < out.count && best[at] <= p.cost) ++at;

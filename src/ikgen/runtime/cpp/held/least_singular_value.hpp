@@ -1,6 +1,8 @@
 // The smallest singular value of the task's Jacobian, in lanes.
 #pragma once
 
+#include <algorithm>
+
 #include "arm/moving_joints.hpp"
 #include "arm/pose_error.hpp"
 
@@ -28,6 +30,20 @@ template <class A, int N> struct LeastSingularValue {
     Pack diagonal[kOrder], squares[kOrder];
     reduce(S, diagonal, squares);
     return sqrt(least_root(diagonal, squares));
+  }
+
+  // Of `count` rows, row(k) each.
+  template <class Row> static void of_rows(int count, const Row& row, double* out) noexcept {
+    for (int k = 0; k < count; k += N) {
+      double values[N];
+      Pack q[A::kDof];
+      for (int j = 0; j < A::kDof; ++j) {
+        for (int i = 0; i < N; ++i) values[i] = row(k + i < count ? k + i : k)[j];
+        q[j] = load<N>(values);
+      }
+      store(of(q), values);
+      std::copy_n(values, std::min(N, count - k), out + k);
+    }
   }
 
  private:
@@ -66,9 +82,10 @@ template <class A, int N> struct LeastSingularValue {
     }
   }
 
-  // Laguerre's method from 0: where no root is below 0 its steps come to the least from the left, cubed where it is alone.
+  // Laguerre's method from 0: where no root is below 0 its steps come to the least from the left, cubed where it is alone, and
+  // each by less of the one before.
   static Pack least_root(const Pack (&diagonal)[kOrder], const Pack (&squares)[kOrder]) noexcept {
-    Pack x = spread<N>(0.0);
+    Pack x = spread<N>(0.0), last = x;
     for (int i = 0; i < kSteps; ++i) {
       Pack p = diagonal[0] - x, before = spread<N>(1.0), d = spread<N>(-1.0), d_before = spread<N>(0.0), h = d_before, h_before = h;
       for (int k = 1; k < kOrder; ++k) {
@@ -87,7 +104,8 @@ template <class A, int N> struct LeastSingularValue {
       const Pack over = 1.0 / select(left, p, 1.0), g = -d * over;
       const Pack step = n / (g + sqrt((n - 1.0) * ((n - 1.0) * g * g - n * h * over)));
       x = x + select(left, step, 0.0);
-      if (all(!(left & (step > 1e-15 * x)))) break;
+      if (all(!(left & (step * step > 1e-15 * x * last)))) break;
+      last = step;
     }
     return x;
   }

@@ -21,25 +21,19 @@ template <class Arm> struct SampleCosts {
   }
 
  private:
-  static constexpr int N = kNative;
   double measured = kInfinity, singular[Sample::kLanes];  // of the sample at that value
 
   void measure(const Sample& s) noexcept {
     measured = s.held;
-    int lanes[Sample::kLanes + N], count = 0;
-    for (int l = 0; l < s.lanes; ++l)
-      if (s.inside(l)) lanes[count++] = l;
-    std::fill_n(lanes + count, N, 0);
-    for (int k = 0; k < count; k += N) {
-      double values[N];
-      Lanes<N> q[Arm::kDof];
-      for (int j = 0; j < Arm::kDof; ++j) {
-        for (int i = 0; i < N; ++i) values[i] = s.q[j][lanes[k + i]];
-        q[j] = load<N>(values);
-      }
-      store(-LeastSingularValue<Arm, N>::of(q), values);
-      for (int i = 0; i < N && k + i < count; ++i) singular[lanes[k + i]] = values[i];
+    double rows[Sample::kLanes][Arm::kDof], values[Sample::kLanes];
+    int lanes[Sample::kLanes], count = 0;
+    for (int l = 0; l < s.lanes; ++l) {
+      if (!s.inside(l)) continue;
+      s.row(l, rows[count]);
+      lanes[count++] = l;
     }
+    LeastSingularValue<Arm, kNative>::of_rows(count, [&](int k) noexcept { return rows[k]; }, values);
+    for (int k = 0; k < count; ++k) singular[lanes[k]] = -values[k];
   }
 };
 

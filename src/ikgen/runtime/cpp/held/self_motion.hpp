@@ -6,7 +6,7 @@
 namespace ikgen_runtime {
 
 // Follows the branches of a sweep and tells `Record` of their runs inside the limits: open(lane, at, q, branch),
-// pass(lane, sample), move(next), close(lane, at, q), of rows if it is of kRows. Arm: as for HeldSweep.
+// pass(lane, sample), move(next), close(lane, at, q); rows of ends may have lost digits. Arm: as for HeldSweep.
 template <class Arm, class Record> struct BranchFollower {
   using Sample = HeldSample<Arm>;
   using End = BranchEnd<Arm>;
@@ -38,7 +38,7 @@ template <class Arm, class Record> struct BranchFollower {
               before.sample ? before.links->origin[l] : -1);
       const bool rough = late[l].waits && ++slivers > kSlivers;
       if (late[l].waits) begin(l, a, rough);
-      if (!rough) end.find(sweep, last, Record::kRows);
+      if (!rough) end.find(sweep, last);
       record.close(l, end.inner, end.q);
     }
     record.move(next);
@@ -54,7 +54,7 @@ template <class Arm, class Record> struct BranchFollower {
         if (late[k].waits) {
           static_cast<End&>(late[k]) = end;
         } else {
-          end.find(sweep, last, Record::kRows);
+          end.find(sweep, last);
           open(k, b, k, end.inner, end.q);
         }
       } else if (b.inside(k)) {
@@ -79,7 +79,7 @@ template <class Arm, class Record> struct BranchFollower {
 
   void begin(int lane, const Sample& s, bool rough) noexcept {
     LastEnd<Arm> none;
-    if (!rough) late[lane].find(sweep, none, Record::kRows);
+    if (!rough) late[lane].find(sweep, none);
     late[lane].waits = false;
     open(lane, s, lane, late[lane].inner, late[lane].q);
   }
@@ -141,7 +141,6 @@ template <class Arm, bool kFromLimits = Arm::kArmAngle && !Arm::kRounded> struct
 template <class Arm> struct SelfMotionFinder {
   using Sample = HeldSample<Arm>;
   static constexpr int kCells = 1;
-  static constexpr bool kRows = false;  // of ends are wanted
   typename Arm::Intervals& out;
   double start[Sample::kLanes];
   int branch[Sample::kLanes];

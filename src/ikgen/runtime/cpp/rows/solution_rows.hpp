@@ -70,10 +70,28 @@ template <class Arm> struct SolutionRows {
     return false;
   }
 
+  // Whether joints have one turn inside the limits, that between -pi and pi.
+  static constexpr bool one_turn() noexcept {
+    for (int j = 0; j < Arm::kDof; ++j) {
+      const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j], least = Policy::kLimitTolerance;
+      if (Arm::kRevolute[j] && !(low > -kPi && high <= kPi && high - low < kTurn - 2.0 * least)) return false;
+    }
+    return true;
+  }
+
+  // Whether all values are.
+  static bool within(const double* q) noexcept {
+    bool in = true;
+    for (int j = 0; j < Arm::kDof; ++j) in = in & (Arm::kLower.data()[j] <= q[j]) & (q[j] <= Arm::kUpper.data()[j]);
+    return in;
+  }
+
   enum class Place { Inside, Hardly, Outside };
 
   // Puts a row on the turns that the seed or the limits ask for, one that is hardly outside on the limits.
   static Place placed(double* q, const Options& options) noexcept {
+    if constexpr (one_turn())
+      if (options.limits && within(q)) return Place::Inside;
     Place where = Place::Inside;
     const double* seed = options.seed ? options.seed->data() : nullptr;
     for (int j = 0; j < Arm::kDof; ++j) {

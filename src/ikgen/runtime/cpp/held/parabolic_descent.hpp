@@ -1,0 +1,132 @@
+// The least cost between values of the held joint, by parabolas through the best three.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "arrays/constants.hpp"
+
+namespace ikgen_runtime {
+
+// A row, and what it costs. Arm: kDof.
+template <class Arm> struct HeldPoint {
+  double at, cost, q[Arm::kDof];
+  int lane;
+};
+
+// Three values, of which that between, or an end, is the best.
+template <class Arm> struct HeldMinimum {
+  double low, high, low_cost, high_cost;
+  HeldPoint<Arm> best;
+};
+
+// Parabolic interpolation guarded by the golden section (Brent 1973), one value after the other: begin(minimum), then while
+// next(), take(what the row at `trial` costs).
+template <class Arm> struct ParabolicDescent {
+  using Point = HeldPoint<Arm>;
+  using Minimum = HeldMinimum<Arm>;
+  // How near to a minimum is enough, of singular values, which have kinks: beside a fold joint values change as the root
+  // of the held one's, up to 1e3 times as much.
+  static constexpr double kNear = 1e-9;
+  static constexpr int kSteps = 60;
+  double trial;
+
+  void begin(Minimum& wanted) noexcept {
+    minimum = &wanted;
+    const Minimum& m = wanted;
+    low = m.low;
+    high = m.high;
+    step = 0.5 * (high - low);
+    before = high - low;
+    second = low;
+    third = high;
+    second_cost = m.low_cost;
+    third_cost = m.high_cost;
+    if (third_cost < second_cost) {
+      std::swap(second, third);
+      std::swap(second_cost, third_cost);
+    }
+    at_end = m.best.at == low || m.best.at == high;
+  }
+
+  // Whether there is a value to look at.
+  bool next() noexcept {
+    done = done || !tries();
+    return !done;
+  }
+
+  void take(const Point& p) noexcept {
+    Point& best = minimum->best;
+    if (at_end) {
+      at_end = false;
+      done = p.cost >= best.cost && p.cost < kInfinity;
+    } else if (p.cost < best.cost) {
+      (p.at >= best.at ? low : high) = best.at;
+      third = second;
+      third_cost = second_cost;
+      second = best.at;
+      second_cost = best.cost;
+      best = p;
+    } else {
+      (p.at < best.at ? low : high) = p.at;
+      if (p.cost <= second_cost || second == best.at) {
+        third = second;
+        third_cost = second_cost;
+        second = p.at;
+        second_cost = p.cost;
+      } else if (p.cost <= third_cost || third == best.at || third == second) {
+        third = p.at;
+        third_cost = p.cost;
+      }
+    }
+  }
+
+ private:
+  static constexpr double kGolden = 0.3819660112501051;
+  Minimum* minimum;
+  double low, high, step, before, second, third, second_cost, third_cost;
+  int steps = 0;
+  bool at_end, done = false;
+
+  bool tries() noexcept {
+    const Point& best = minimum->best;
+    const double x = best.at, middle = 0.5 * (low + high), least = kNear * (1.0 + std::abs(x));
+    if (at_end) {  // if it is better than what is next to it
+      const double far = x == low ? high : low;
+      trial = x + std::copysign(least, far - x);
+      return std::abs(far - x) > 2.0 * least;
+    }
+    if (steps == kSteps || std::abs(x - middle) <= 2.0 * least - 0.5 * (high - low)) return false;
+    const double left = low - x, right = high - x, ways[2] = {x - second, x - third};
+    const double falls[2] = {best.cost - second_cost, best.cost - third_cost};
+    double there = 0.0;
+    if (std::abs(before) > least && second_cost < kInfinity && third_cost < kInfinity &&
+        to_vertex(ways, falls, before, left, right, there)) {
+      before = step;
+      step = there;
+      if (steps > 1 && std::abs(step) < least) return false;
+    } else {
+      before = x < middle ? high - x : low - x;
+      step = kGolden * before;
+    }
+    const double u = std::abs(step) >= least ? x + step : x + (step > 0.0 ? least : -least);
+    trial = std::min(std::max(u, minimum->low), minimum->high);
+    ++steps;
+    return true;
+  }
+
+  // The step to the vertex of the parabola through a point and two others, `ways` before it and lower by `falls`; whether it
+  // lies between `left` and `right` and is less than half of the step `before`.
+  static bool to_vertex(const double (&ways)[2], const double (&falls)[2], double before, double left, double right,
+                        double& step) noexcept {
+    const double r = ways[0] * falls[1];
+    double t = ways[1] * falls[0], p = ways[1] * t - ways[0] * r;
+    t = 2.0 * (t - r);
+    p = t > 0.0 ? -p : p;
+    t = std::abs(t);
+    step = p / t;
+    return std::abs(p) < std::abs(0.5 * t * before) && p > t * left && p < t * right;
+  }
+};
+
+}  // namespace ikgen_runtime
