@@ -131,19 +131,20 @@ def test_one_bad_record_leaves_the_others(
     assert junitparser.JUnitXml.fromfile("j.xml").failures == 2
 
 
-def test_a_table_without_numbers_is_not_run(
+def test_a_table_without_numbers_is_not_passed(
     project: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     table = KUKA.parent / "puma560_symbolic.toml"
     shutil.copy(table, project / "puma.toml")
     assert run(["from-dh", "puma.toml", "-o", "table", "--no-verify", "-q"]) == 0
-    assert check(".") == 0
-    said = capsys.readouterr().out
-    assert "arm: right (python 20 poses" in said
-    assert "as recorded (nothing to run); not run: no numbers for a_2, " in said
+    assert check(".") == 2
+    said = capsys.readouterr()
+    assert "arm: right (python 20 poses" in said.out and ": NOT CHECKED" in said.out
+    assert "not checked: no numbers for a_2, d_3, a_3, d_4\n" in said.err
+    assert "hint: give them under [parameters] of puma.toml, then ikgen from-dh " in said.err
     with (project / "puma.toml").open("a") as stream:
         stream.write("# a remark\n")
-    assert check("table") == 1
+    assert check("table") == 2
     assert "made from an earlier description" in capsys.readouterr().err
 
 

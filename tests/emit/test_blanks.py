@@ -95,8 +95,8 @@ def test_generated_and_verified_with_samples(
     said = capsys.readouterr().out
     assert "fill in:" in said and "a_2, d_3, a_3, d_4; verified with sample numbers" in said
     assert "100 poses" in said
-    assert run(["verify", str(tmp_path)]) == 0
-    assert "not run: no numbers for a_2, d_3, a_3, d_4" in capsys.readouterr().out
+    assert run(["verify", str(tmp_path)]) == 2
+    assert "not checked: no numbers for a_2, d_3, a_3, d_4" in capsys.readouterr().err
 
 
 def test_frames_are_those_of_the_samples(twisted: Derivation) -> None:

@@ -114,9 +114,14 @@ def _checked(record: Record, reading: Reading, run: _Run) -> Recheck:
         return Recheck(record.path, record, (Finding(record.path, message, fix),), notes)
     if dh.symbols:
         blanks = ", ".join(dh.symbols)
-        note = f"not run: no numbers for {blanks} (give them under [parameters])"
+        missing = Finding(
+            record.path,
+            f"not checked: no numbers for {blanks}",
+            f"give them under [parameters] of {record.request.robot}, then {fix}",
+            exit_code=2,
+        )
         # what cannot run cannot show that only a remark changed
         old = Finding(record.path, "made from an earlier description", fix)
-        return Recheck(record.path, record, (old,) if changed else (), (*notes, note))
+        return Recheck(record.path, record, (old, missing) if changed else (missing,), notes)
     found = run.checked(record, reading)
     return Recheck(record.path, record, found.findings, notes, found.reports)
