@@ -13,15 +13,7 @@ ELBOW = REPOSITORY / "examples/setuptools_robot/urdf/elbow.urdf"
 def test_the_same_bytes(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    chosen = [
-        "Haswell",
-        "SkylakeX",
-        "seed 4242",
-        "tr_TR",
-        "Kathmandu",
-        "long spelling",
-        "processes",
-    ]
+    chosen = ["Haswell", "SkylakeX", "seed 4242", "tr_TR", "processes"]
     monkeypatch.setattr("sys.argv", ["determinism", "--arms", str(ELBOW), "--only", *chosen])
     assert determinism.main() == 0, capsys.readouterr().out
     rows = [row for row in determinism.rows() if any(name in row.words for name in chosen)]

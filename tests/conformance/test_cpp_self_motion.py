@@ -102,7 +102,7 @@ class Both:
         return STATUS[int(values[0])], values[2:]
 
 
-OFTEN = ("shoulder_elbow_wrist", "torso", "rounded_arm_angle", "ur5e")
+OFTEN = ("torso", "rounded_arm_angle", "ur5e")
 
 
 @pytest.fixture(scope="module", params=sampled(HELD, OFTEN))
