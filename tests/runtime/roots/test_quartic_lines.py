@@ -90,6 +90,20 @@ def test_roots_that_are_close_are_all_found(apart: float) -> None:
             assert min(gap) < max(1e-9, 3e-15 / apart) + (apart if apart < 1e-6 else 0.0)
 
 
+@pytest.mark.parametrize("inner", [3.4e-5, 3e-4, 1e-3])
+@pytest.mark.parametrize("outer", [0.01, 0.015, 0.1])
+def test_two_pairs_about_one_angle_are_both_found(inner: float, outer: float) -> None:
+    """Each line's extremum is the one between the inner two, which tells nothing of the outer ones."""
+    for middle in (np.pi, 0.3, -2.0):
+        a, b = np.cos(inner), np.cos(outer)
+        twice, once = 0.5 * np.exp(2j * middle), -(a + b) * np.exp(1j * middle)
+        k = (twice.real, twice.imag, once.real, once.imag, 0.5 + a * b)
+        _, found = trig_quartic(*k)
+        for angle in (middle - inner, middle + inner, middle - outer, middle + outer):
+            gap = min(np.hypot(c - np.cos(angle), s - np.sin(angle)) for c, s in found)
+            assert gap < 0.02 * outer
+
+
 def test_roots_of_other_resolvents_beyond_the_ends_are_left_alone() -> None:
     rng = np.random.default_rng(6)
     for _ in range(2000):

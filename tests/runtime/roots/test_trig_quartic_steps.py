@@ -38,12 +38,12 @@ def test_a_step_to_a_root_beyond_the_reach_is_undone(
 def test_an_extremum_beyond_the_reach_is_none(quarter: int, away: float) -> None:
     top = EIGHTH + 0.5 * math.pi * quarter
     a, b = pair(top)
-    k = (0.0, 0.0, a, b, -math.cos(0.01))  # roots 0.01 to each side of the extremum
+    k = (0.0, 0.0, a, b, -math.cos(0.03))  # roots 0.03 to each side of the extremum
     start = pair(top + away)
     assert _tangent(k, *start, 0.05, 1e-3) is None
-    found = _tangent(k, *start, 0.1, 1e-3)
+    found = _tangent(k, *start, 0.09, 1e-3)
     assert found is not None
-    for root, (c, s) in zip((top + 0.01, top - 0.01), sorted_about(found, top), strict=True):
+    for root, (c, s) in zip((top + 0.03, top - 0.03), sorted_about(found, top), strict=True):
         assert (c, s) == pytest.approx(pair(root), abs=1e-12)
 
 

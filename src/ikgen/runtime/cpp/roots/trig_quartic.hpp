@@ -123,19 +123,20 @@ inline Point near(const Coefficients& f, Point t, double reach) noexcept {
 }
 
 // The two roots beside the extremum near t; the extremum itself where it misses zero by a pair of complex
-// roots with imaginary parts up to tol; -1: no such extremum within reach, the half width of the line's chord.
+// roots with imaginary parts up to tol; -1: no such extremum within reach, the half width of the line's chord, or one
+// of two roots that are much closer.
 inline int tangent(const Coefficients& f, Point t, double reach, double tol, Point (&out)[2]) noexcept {
   const Point e = newton(f, t, 1);
   const double u = f.a2 * (e.c - e.s) * (e.c + e.s) + 2.0 * f.b2 * e.s * e.c, v = f.a1 * e.c + f.b1 * e.s;
   const double curve = -4.0 * u - v;
   if (std::abs(e.c - t.c) + std::abs(e.s - t.s) > 0.5 * reach + 1e-3 || std::abs(curve) < 1e-200) return -1;
-  const double r = 2.0 * (u + v + f.a0) / curve;
+  const double r = 2.0 * (u + v + f.a0) / curve, h = std::sqrt(std::abs(r));
+  if (h < 0.3 * reach - 1e-3) return -1;
   if (r >= 0.0) {
     out[0] = e;
     if (r <= tol * tol + 1e-14 / std::abs(curve)) return 1;
     return reach > 1e-4 ? -1 : 0;
   }
-  const double h = std::sqrt(-r);
   if (h > 3.0 * reach + 1e-3) return -1;
   const double n = std::sqrt(1.0 + h * h);
   out[0] = {(e.c - h * e.s) / n, (e.s + h * e.c) / n};

@@ -93,15 +93,17 @@ def _tangent(
 ) -> list[_Pair] | None:
     """The two roots beside the extremum near (c, s); the extremum itself where it misses zero by a
     pair of complex roots with imaginary parts up to tol, else no root; None: no such extremum
-    within reach, the half width of the line's chord."""
+    within reach, the half width of the line's chord, or one of two roots that are much closer."""
     x, y = _to_zero(k, c, s, 1)
     value, _, curve = quartic_values(k, x, y)
     if abs(x - c) + abs(y - s) > 0.5 * reach + 1e-3 or abs(curve) < 1e-200:
         return None
     r = 2.0 * value / curve
+    h = math.sqrt(abs(r))
+    if h < 0.3 * reach - 1e-3:
+        return None
     if r >= 0.0:
         return [(x, y)] if r <= tol * tol + 1e-14 / abs(curve) else None if reach > 1e-4 else []
-    h = math.sqrt(-r)
     if h > 3.0 * reach + 1e-3:
         return None
     n = math.sqrt(1.0 + h * h)
