@@ -861,6 +861,22 @@ class _ClosedForm(NamedTuple):
         return np.asarray(self.singular.any(axis=1))
 
 
+class _Beside(NamedTuple):
+    """Rows `q` (N, M, dof) of poses beside, one after the other, which are `valid` (N, M), and which
+    `marked`, of a continuum."""
+
+    q: Array
+    valid: _Flags
+    marked: _Flags
+
+
+class _AllRows(NamedTuple):
+    """The closed form's rows of poses, and those of poses `beside`: none where they do not always count."""
+
+    own: _ClosedForm
+    beside: _Beside
+
+
 def _closed_form(arm: _Arm, T: Array, near: Array | None, held: Array) -> _ClosedForm:
     """Of poses T (N, 4, 4) with the values `near` (N, dof) of joints that they leave free."""
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
@@ -870,11 +886,24 @@ def _closed_form(arm: _Arm, T: Array, near: Array | None, held: Array) -> _Close
     return found
 
 
+def _all_rows(arm: _Arm, T: Array, near: Array | None, held: Array) -> _AllRows:
+    """Of poses T (N, 4, 4), as `_closed_form` has them."""
+    own, none = _closed_form(arm, T, near, held), np.zeros((len(T), 0), dtype=bool)
+    return _AllRows(own, _Beside(own.q[:, :0], none, none))
+
+
 def _careful_rows(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, _Flags, _Flags]:
     """Rows (N, M, dof) of which each is refined for as long as it takes, with those of poses beside where
     they always count."""
-    closed = _closed_form(arm, T, near, held)
-    q, valid, rough, doubt = closed.q, closed.valid, closed.rough, closed.free
+    return _careful(arm, _all_rows(arm, T, near, held), T, held)
+
+
+def _careful(arm: _Arm, rows: _AllRows, T: Array, held: Array) -> tuple[Array, _Flags, _Flags]:
+    """`_careful_rows` of what the closed form has."""
+    own, beside = rows
+    q = np.concatenate([own.q, beside.q], axis=1)
+    valid = np.concatenate([own.valid, beside.valid], axis=1)
+    rough, doubt = np.ones_like(valid) if beside.q.shape[1] else own.rough, own.free
     pose, row = np.nonzero(rough & valid)
     if len(pose):
         found, error, _, slope = _refined(arm, q[pose, row], _aims(arm, T, held)[pose])
@@ -1376,16 +1405,19 @@ def _clipped_step(
 
 @dataclass(frozen=True)
 class _Asked:
-    """Poses `T` (n, 4, 4), seeds `near` (n, dof) if there are any, and values `held` (n, held)."""
+    """Poses `T` (n, 4, 4), seeds `near` (n, dof) if there are any, and values `held` (n, held); what the
+    closed form has, `closed`, if that is known."""
 
     T: Array
     near: Array | None
     held: Array
+    closed: _AllRows | None = None
 
     def at(self, index: _Index) -> _Asked:
         """Some of them."""
         near = None if self.near is None else self.near[index]
-        return _Asked(self.T[index], near, self.held[index])
+        closed = None if self.closed is None else _some_of(self.closed, index)
+        return _Asked(self.T[index], near, self.held[index], closed)
 
     def seed(self, k: int) -> Row | None:
         """Of one pose."""
@@ -1535,7 +1567,7 @@ def _rows(arm: _Arm, asked: _Asked, start: Array, turn: _Index) -> list[_Rows]:
     """For each pose the solutions (radians between -pi and pi) from its start after some turns (n,)."""
     first, away, T = not turn.any(), (turn > 0) & (turn <= len(arm.beside)), asked.T.copy()
     T[away] = T[away] @ arm.beside[turn[away] - 1]
-    closed = _closed_form(arm, T, start, asked.held)
+    closed = asked.closed.own if asked.closed and first else _closed_form(arm, T, start, asked.held)
     free, marked = closed.free | away, closed.singular & closed.valid
     known = np.zeros(closed.valid.shape, dtype=bool)
     own = _of_lanes(arm, asked, closed, closed.valid & closed.rough, marked)
@@ -2349,7 +2381,7 @@ def _fitting(arm: _Arm, asked: _One, limits: bool) -> _Answer:
 
 
 def _sure_answer(arm: _Arm, asked: _One, limits: bool) -> _Answer | None:
-    """From the closed form on floats, or an elimination, where that leaves no doubt."""
+    """From the closed form on floats, where that leaves no doubt."""
     kept = _certain_rows(arm, *asked)
     return None if kept is None else _placed_answer(arm, asked, kept, limits)
 
@@ -2369,6 +2401,7 @@ def _certain_rows(
     arm: _Arm, T: list[list[float]], near: Row | None, held: Row
 ) -> list[_Found] | None:
     """Distinct rows, refined where they need it, those of a rounded arm all at once."""
+    assert arm.branches is not None
     start = list(near) if near is not None else [0.0] * len(arm.lower)
     for j, value in zip(arm.free, held):
         start[j] = value

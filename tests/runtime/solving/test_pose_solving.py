@@ -108,3 +108,25 @@ def test_an_elimination_takes_care_of_no_regular_pose(
         found = crx.solve(pose, limits=False)
         np.testing.assert_allclose(found.q, q[:n], atol=1e-12)
         assert n and not found.singular.any()
+
+
+def test_an_elimination_settles_doubts_from_the_rows_that_it_has(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Alone and in a stack: of a pose near a singularity it is asked once."""
+    crx = import_text(emit_module(derive(Request(robot_file("fanuc_crx10ia"))).module), tmp_path)
+    asked: list[int] = []
+
+    def branches(T: Any, *given: Any) -> Any:
+        asked.append(len(T))
+        return crx._branches_batch(T, *given)
+
+    arm = replace(crx._ARM, branches_batch=branches)
+    q = np.array([[0.3, -0.9, 1.1, 0.4, 0.7, -0.2], [0.3, -0.9, 1.1, 0.4, 1e-9, -0.2]])
+    found = crx._solve_each(arm, crx.forward(q), None, None, False)
+    assert asked == [2]
+    alone = crx._solve_pose(arm, crx.forward(q[1]), None, None, False)
+    assert asked == [2, 1]
+    np.testing.assert_allclose(alone.q, found[1].q, atol=1e-6)
+    for row, answer in zip(q, found, strict=True):
+        assert np.abs(answer.q - row).max(axis=1).min() < 1e-6

@@ -14,7 +14,17 @@ from ikgen.runtime.python.newton.arm_newton import refined
 from ikgen.runtime.python.newton.refinement import steeper
 from ikgen.runtime.python.rows.row_placement import distinct
 
-__all__ = ["ClosedForm", "careful_rows", "certain_rows", "closed_form", "rows_beside"]
+__all__ = [
+    "AllRows",
+    "Beside",
+    "ClosedForm",
+    "all_rows",
+    "careful",
+    "careful_rows",
+    "certain_rows",
+    "closed_form",
+    "rows_beside",
+]
 
 _PART = 2048  # poses whose arrays fit into a processor's cache
 
@@ -34,6 +44,22 @@ class ClosedForm(NamedTuple):
         return np.asarray(self.singular.any(axis=1))
 
 
+class Beside(NamedTuple):
+    """Rows `q` (N, M, dof) of poses beside, one after the other, which are `valid` (N, M), and which
+    `marked`, of a continuum."""
+
+    q: Array
+    valid: Flags
+    marked: Flags
+
+
+class AllRows(NamedTuple):
+    """The closed form's rows of poses, and those of poses `beside`: none where they do not always count."""
+
+    own: ClosedForm
+    beside: Beside
+
+
 def closed_form(arm: Arm, T: Array, near: Array | None, held: Array) -> ClosedForm:
     """Of poses T (N, 4, 4) with the values `near` (N, dof) of joints that they leave free."""
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
@@ -43,16 +69,23 @@ def closed_form(arm: Arm, T: Array, near: Array | None, held: Array) -> ClosedFo
     return found
 
 
-def rows_beside(arm: Arm, T: Array, near: Array | None, held: Array) -> tuple[Array, Flags, Flags]:
-    """The closed form's rows (N, M, dof) of poses beside T (N, 4, 4), one after the other, which are
-    valid (N, M), and which of a continuum."""
+def all_rows(arm: Arm, T: Array, near: Array | None, held: Array) -> AllRows:
+    """Of poses T (N, 4, 4), as `closed_form` has them."""
+    own, none = closed_form(arm, T, near, held), np.zeros((len(T), 0), dtype=bool)
+    if len(arm.beside) and arm.policy.beside_anywhere:
+        return AllRows(own, rows_beside(arm, T, near, held))
+    return AllRows(own, Beside(own.q[:, :0], none, none))
+
+
+def rows_beside(arm: Arm, T: Array, near: Array | None, held: Array) -> Beside:
+    """The closed form's rows of poses beside T (N, 4, 4)."""
     each = len(arm.beside)
     poses = (T[:, None] @ arm.beside).reshape(-1, 4, 4)
     starts = None if near is None else np.repeat(near, each, axis=0)
     closed = closed_form(arm, poses, starts, np.repeat(held, each, axis=0))
     valid = closed.valid.reshape(len(T), -1)
     marked = closed.singular.reshape(len(T), -1) & valid
-    return closed.q.reshape(len(T), -1, closed.q.shape[2]), valid, marked
+    return Beside(closed.q.reshape(len(T), -1, closed.q.shape[2]), valid, marked)
 
 
 def certain_rows(
@@ -75,12 +108,15 @@ def careful_rows(arm: Arm, T: Array, held: Array, near: Array | None) -> tuple[A
     """Rows (N, M, dof) of which each is refined for as long as it takes, with those of poses beside where
     they always count; which are distinct solutions, and which poses (N,) have rows of a continuum or near
     a singularity."""
-    closed = closed_form(arm, T, near, held)
-    q, valid, rough, doubt = closed.q, closed.valid, closed.rough, closed.free
-    if len(arm.beside) and arm.policy.beside_anywhere:
-        more, real, _ = rows_beside(arm, T, near, held)
-        q, valid = np.concatenate([q, more], axis=1), np.concatenate([valid, real], axis=1)
-        rough = np.ones_like(valid)
+    return careful(arm, all_rows(arm, T, near, held), T, held)
+
+
+def careful(arm: Arm, rows: AllRows, T: Array, held: Array) -> tuple[Array, Flags, Flags]:
+    """`careful_rows` of what the closed form has."""
+    own, beside = rows
+    q = np.concatenate([own.q, beside.q], axis=1)
+    valid = np.concatenate([own.valid, beside.valid], axis=1)
+    rough, doubt = np.ones_like(valid) if beside.q.shape[1] else own.rough, own.free
     pose, row = np.nonzero(rough & valid)
     if len(pose):
         found, error, _, slope = refined(arm, q[pose, row], aims(arm, T, held)[pose])

@@ -9,7 +9,7 @@ import numpy as np
 
 from ikgen.runtime.python.arm.held_parameters import aims
 from ikgen.runtime.python.arm.solved_arm import Arm, Found
-from ikgen.runtime.python.arrays.array_tuples import joined
+from ikgen.runtime.python.arrays.array_tuples import joined, some_of
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index, Row
 from ikgen.runtime.python.rows.row_placement import is_new, place_rows
 from ikgen.runtime.python.singular.limit_rows import rows_inside
@@ -21,7 +21,12 @@ from ikgen.runtime.python.singular.meeting_rows import (
     repeats,
     rows_nearby,
 )
-from ikgen.runtime.python.solving.closed_form_rows import ClosedForm, closed_form, rows_beside
+from ikgen.runtime.python.solving.closed_form_rows import (
+    AllRows,
+    ClosedForm,
+    closed_form,
+    rows_beside,
+)
 from ikgen.runtime.python.solving.projection import chord_costs, descended, nearest_rows
 
 __all__ = ["Answer", "Asked", "placed_rows", "seeded_rows", "unplaced_rows"]
@@ -29,16 +34,19 @@ __all__ = ["Answer", "Asked", "placed_rows", "seeded_rows", "unplaced_rows"]
 
 @dataclass(frozen=True)
 class Asked:
-    """Poses `T` (n, 4, 4), seeds `near` (n, dof) if there are any, and values `held` (n, held)."""
+    """Poses `T` (n, 4, 4), seeds `near` (n, dof) if there are any, and values `held` (n, held); what the
+    closed form has, `closed`, if that is known."""
 
     T: Array
     near: Array | None
     held: Array
+    closed: AllRows | None = None
 
     def at(self, index: Index) -> Asked:
         """Some of them."""
         near = None if self.near is None else self.near[index]
-        return Asked(self.T[index], near, self.held[index])
+        closed = None if self.closed is None else some_of(self.closed, index)
+        return Asked(self.T[index], near, self.held[index], closed)
 
     def seed(self, k: int) -> Row | None:
         """Of one pose."""
@@ -199,7 +207,7 @@ def _rows(arm: Arm, asked: Asked, start: Array, turn: Index) -> list[_Rows]:
     alone at some others, as the direction that a vanishing divisor has says little of the file's."""
     first, away, T = not turn.any(), (turn > 0) & (turn <= len(arm.beside)), asked.T.copy()
     T[away] = T[away] @ arm.beside[turn[away] - 1]
-    closed = closed_form(arm, T, start, asked.held)
+    closed = asked.closed.own if asked.closed and first else closed_form(arm, T, start, asked.held)
     free, marked = closed.free | away, closed.singular & closed.valid
     known = np.zeros(closed.valid.shape, dtype=bool)
     own = _of_lanes(arm, asked, closed, closed.valid & closed.rough, marked)
@@ -235,7 +243,10 @@ def _without_rows(arm: Arm, free: Flags, leads: Leads) -> Flags:
 
 def _beside(arm: Arm, asked: Asked, start: Array, some: Index) -> Starts:
     """From poses beside some."""
-    q, valid, marked = rows_beside(arm, asked.T[some], start[some], asked.held[some])
+    if asked.closed is not None and arm.policy.beside_anywhere:
+        q, valid, marked = some_of(asked.closed.beside, some)
+    else:
+        q, valid, marked = rows_beside(arm, asked.T[some], start[some], asked.held[some])
     pose, row = np.nonzero(valid)
     motion, lane = np.divmod(row, valid.shape[1] // len(arm.beside))
     which = some[pose], marked[pose, row], 1 + motion, lane

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -27,18 +28,11 @@ from ikgen.runtime.python.rows.row_placement import (
     rows_at_limits,
 )
 from ikgen.runtime.python.rows.solutions import Solutions, Status, no_solutions
-from ikgen.runtime.python.solving.closed_form_rows import careful_rows
+from ikgen.runtime.python.solving.closed_form_rows import all_rows, careful
 from ikgen.runtime.python.solving.doubtful_poses import Answer, Asked, placed_rows, seeded_rows
 from ikgen.runtime.python.solving.projection import nearest_row, off_by
 
-__all__ = [
-    "One",
-    "eliminated_rows",
-    "placed_answer",
-    "solutions_of",
-    "solve_pose",
-    "sure_answer",
-]
+__all__ = ["One", "eliminated_answers", "solutions_of", "solve_pose", "sure_answer"]
 
 One = tuple[list[list[float]], Row | None, Row]
 """A pose, its seed if there is one, and values of held joints."""
@@ -118,17 +112,34 @@ def _asked(asked: One) -> Asked:
 
 
 def _fitting(arm: Arm, asked: One, limits: bool) -> Answer:
+    if arm.branches is None:
+        return eliminated_answers(arm, _asked(asked), limits)[0]
     sure = sure_answer(arm, asked, limits)
     return placed_rows(arm, _asked(asked), limits)[0] if sure is None else sure
 
 
+def eliminated_answers(arm: Arm, asked: Asked, limits: bool) -> list[Answer]:
+    """From an elimination of each pose; where that leaves doubts, they are settled from the same rows."""
+    closed = all_rows(arm, asked.T, asked.near, asked.held)
+    q, valid, doubt = careful(arm, closed, asked.T, asked.held)
+    out: list[Answer | None] = [None] * len(q)
+    for k in np.flatnonzero(~doubt).tolist():
+        one = asked.T[k].tolist(), asked.seed(k), tuple(asked.held[k].tolist())
+        kept = [(tuple(row), False) for row in q[k, valid[k]].tolist()]
+        out[k] = _placed_answer(arm, one, kept, limits)
+    left = np.array([k for k, answer in enumerate(out) if answer is None], dtype=np.intp)
+    some = replace(asked, closed=closed).at(left)
+    settled = iter(placed_rows(arm, some, limits) if len(left) else ())
+    return [next(settled) if answer is None else answer for answer in out]
+
+
 def sure_answer(arm: Arm, asked: One, limits: bool) -> Answer | None:
-    """From the closed form on floats, or an elimination, where that leaves no doubt."""
+    """From the closed form on floats, where that leaves no doubt."""
     kept = _certain_rows(arm, *asked)
-    return None if kept is None else placed_answer(arm, asked, kept, limits)
+    return None if kept is None else _placed_answer(arm, asked, kept, limits)
 
 
-def placed_answer(arm: Arm, asked: One, kept: list[Found], limits: bool) -> Answer | None:
+def _placed_answer(arm: Arm, asked: One, kept: list[Found], limits: bool) -> Answer | None:
     """From distinct rows, where none of them is close to a limit."""
     near = asked[1]
     placed, close = rows_at_limits(arm, kept, near, limits)
@@ -144,8 +155,7 @@ def _certain_rows(
 ) -> list[Found] | None:
     """Distinct rows, refined where they need it, those of a rounded arm all at once; None where that leaves
     a doubt."""
-    if arm.branches is None:
-        return eliminated_rows(arm, _asked((T, near, held)))[0]
+    assert arm.branches is not None
     start = list(near) if near is not None else [0.0] * len(arm.lower)
     for j, value in zip(arm.free, held):
         start[j] = value
@@ -177,15 +187,6 @@ def _certain_rows(
         elif arm.rounded:  # another may lie there
             return None
     return kept
-
-
-def eliminated_rows(arm: Arm, asked: Asked) -> list[list[Found] | None]:
-    """Distinct rows of each pose, by elimination; None where they leave a doubt."""
-    found = zip(*careful_rows(arm, asked.T, asked.held, asked.near))
-    return [
-        None if doubt else [(tuple(row), False) for row in q[valid].tolist()]
-        for q, valid, doubt in found
-    ]
 
 
 def _regular_rows(arm: Arm, answers: list[Found], asked: One) -> list[Row] | None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 
 from ikgen.runtime.python.arguments.joint_arguments import held_rows, seed_rows
@@ -11,8 +13,7 @@ from ikgen.runtime.python.rows.solutions import Solutions, Status, no_solutions
 from ikgen.runtime.python.solving.doubtful_poses import Answer, Asked, placed_rows
 from ikgen.runtime.python.solving.pose_solving import (
     One,
-    eliminated_rows,
-    placed_answer,
+    eliminated_answers,
     solutions_of,
     sure_answer,
 )
@@ -20,6 +21,7 @@ from ikgen.runtime.python.solving.pose_solving import (
 __all__ = ["solve_each"]
 
 _STACK = 512  # poses
+_Stage = Callable[[Arm, Asked, bool], Sequence[Answer | None]]
 
 
 def solve_each(
@@ -37,7 +39,8 @@ def solve_each(
             seeds = None if near is None else tuple(near[i].tolist())
             asked[i] = T, seeds, tuple(held[i].tolist())
     answers: dict[int, Answer] = {}
-    for solve in (_sure_answers, placed_rows):
+    stages: tuple[_Stage, ...] = (_sure_answers, placed_rows)
+    for solve in stages if arm.branches is not None else (eliminated_answers,):
         left = [i for i in asked if i not in answers]
         for start in range(0, len(left), _STACK):
             some = left[start : start + _STACK]
@@ -53,11 +56,5 @@ def solve_each(
 def _sure_answers(arm: Arm, asked: Asked, limits: bool) -> list[Answer | None]:
     """`sure_answer` of each pose."""
     near: list[Row | None] = [asked.seed(k) for k in range(len(asked.T))]
-    each = list(zip(asked.T.tolist(), near, map(tuple, asked.held.tolist())))
-    if arm.branches is not None:
-        return [sure_answer(arm, one, limits) for one in each]
-    rows = eliminated_rows(arm, asked)
-    return [
-        None if kept is None else placed_answer(arm, one, kept, limits)
-        for one, kept in zip(each, rows)
-    ]
+    each = zip(asked.T.tolist(), near, map(tuple, asked.held.tolist()))
+    return [sure_answer(arm, one, limits) for one in each]
