@@ -395,7 +395,8 @@ class _Policy:
     broken_reach: float  # below which a row may lie on a continuum that rounding broke
     farthest_start: float  # first step (rad, m) of rows that are refined together
     contraction: float  # of each further one
-    pivot_share: float  # of the pivot: the first step at most
+    pivot_share: float  # of the pivot: the first step at most, unless
+    fold_product: float  # the two smallest singular values have a larger product
     least_pivot: float  # how far the derivatives by each joint must be from the others' span
     least_miss: float  # error that shows that a row ends beside the pose
     lane_steps: int  # at most
@@ -2802,6 +2803,7 @@ _ARM = _Arm(
         farthest_start=0.05,
         contraction=0.25,
         pivot_share=4.0,
+        fold_product=0.0,
         least_pivot=1e-05,
         least_miss=1e-08,
         lane_steps=7,

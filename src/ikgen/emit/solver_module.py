@@ -89,7 +89,7 @@ class SolverModule:
 
     @property
     def policy(self) -> SolvePolicy:
-        """The tolerances of `solve`, three as far as the file is off what was solved.
+        """The tolerances of `solve`, four as far as the file is off what was solved.
 
         `limit_tolerance`: a joint that moves several axes, or one several times as far, takes the tool that
         many times as far when it is put on its limit.
@@ -98,7 +98,8 @@ class SolverModule:
         `fold_reach`: there two of them may start from one row; with those of poses beside, hardly ever far
         from it.
         `beside_reach`: there, and where a divisor of the closed form vanishes, others may start from none;
-        `broken_reach`: there others may lie all along a continuum that the file's arm has not.
+        `broken_reach`: there others may lie all along a continuum that the file's arm has not;
+        `fold_product`: below it they may come in beside a second singularity.
         """
         plain, off = SolvePolicy(), max(self.dh.deviation)
         root, tolerance = math.sqrt(off), plain.limit_tolerance / self.dh.most_driven
@@ -109,6 +110,7 @@ class SolverModule:
             fold_reach=max(plain.fold_reach, plain.fold * root),
             beside_reach=plain.anywhere if self.far else plain.fold * root,
             broken_reach=plain.broken_reach * off,
+            fold_product=plain.fold_product * off,
         )
 
     @property

@@ -53,9 +53,10 @@ class SolvePolicy:
     - `farthest_start`: the largest first step (rad, m) of rows that are refined together, `contraction`:
       the most that a step of theirs may be of the one before, `least_pivot`: how far the derivatives by a
       joint must be from the span of others', `pivot_share`: the most that a first step may be of that
-      distance, `least_miss`: the error that shows that they end beside the pose,
-      `near`: the largest step in C++ behind which the derivatives stay, `lane_steps`: how many they take at
-      most; other rows are refined one by one.
+      distance, unless the two smallest singular values have a product above `fold_product` times what the
+      file is off, as no other solution comes in there then, `least_miss`: the error that shows that they
+      end beside the pose, `near`: the largest step in C++ behind which the derivatives stay, `lane_steps`:
+      how many they take at most; other rows are refined one by one.
     - `least_damping`, `damping`: a Newton step is damped by max(least, damping * error^2); `largest_step`
       (rad or m) bounds each joint's; `converged`: error at which steps end; `patience` steps may pass
       without the error falling to `progress` of what it was.
@@ -81,6 +82,7 @@ class SolvePolicy:
     fold_reach: float = 1e-4
     beside_reach: float = 0.0
     fold: float = 0.3
+    fold_product: float = 2.0
     anywhere: float = 1e3
     broken_reach: float = 15.0
     farthest_start: float = 0.05

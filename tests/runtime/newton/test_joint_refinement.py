@@ -86,6 +86,17 @@ def test_rows_beside_folds_or_far_away_are_in_doubt(doosan: ModuleType) -> None:
         assert not arrived.any() and (left == away).all()
 
 
+def test_a_long_first_step_beside_one_singularity_alone_leaves_no_doubt(doosan: ModuleType) -> None:
+    one = np.array([0.3, 0.4, 1.2, 0.2, 0.02, -0.4])
+    both = np.array([-1.58145, -0.729103, 1.57079, 1.519, -0.00454182, -2.91468])
+    for count in (1, 100):
+        for q, turn, alone in ((one, 0.045, True), (both, 0.03, False)):
+            start = q + turn * (np.eye(6)[[3] * count] - np.eye(6)[[5] * count])
+            done, arrived, missed = steps(doosan, start, doosan.forward(q))
+            assert arrived.all() == arrived.any() == alone and not missed.any()
+            assert np.abs(done - q).max() < 1e-9
+
+
 def test_steps_near_singularities_end_at_the_round_off_that_these_enlarge(
     doosan: ModuleType,
 ) -> None:
@@ -107,7 +118,7 @@ def test_a_long_step_is_no_round_off_however_small_the_error() -> None:
         np.full(3, 1e-3),
     )
     before = np.full(3, 1e-9)
-    assert begins(policy, size, worst, before, pivot, False).tolist() == [True, False, False]
+    assert begins(policy, size, worst, before, pivot, False)[0].tolist() == [True, False, False]
     near, done = ends(policy, before, size, worst, size, pivot)
     assert near.tolist() == done.tolist() == [True, False, False]
 
@@ -149,7 +160,7 @@ def test_of_few_rows_those_that_start_too_far_off_are_given_back_as_they_were() 
         [1.0, -1.0, 1.0, 1.0, -1.0, 1.0]
     )
     T = np.tile(arm_forward(arm.chain, row), (len(off), 1, 1))
-    q, arrived, missed = refine_few(arm, row + off, T)
+    q, arrived, missed, _ = refine_few(arm, row + off, T)
     assert arrived.tolist() == [True, True, False, False, False] and not missed.any()
     np.testing.assert_allclose(q[:2], [row, row], atol=1e-9)
     np.testing.assert_array_equal(q[2:], (row + off)[2:])
@@ -163,8 +174,10 @@ def test_a_row_that_began_badly_does_not_arrive_with_others(
     start = np.array([row + 0.01, row + 0.01])
     T = np.tile(arm_forward(arm.chain, row), (2, 1, 1))
     assert refine_few(arm, start, T)[1].tolist() == [True, True]
-    monkeypatch.setattr(joint_refinement, "begins", lambda *_: np.array([True, False]))
-    q, arrived, missed = refine_few(arm, start, T)
+    monkeypatch.setattr(
+        joint_refinement, "begins", lambda *_: np.array([[True, False], [False] * 2])
+    )
+    q, arrived, missed, _ = refine_few(arm, start, T)
     assert arrived.tolist() == [True, False] and not missed.any()
     np.testing.assert_array_equal(q[1], start[1])
 

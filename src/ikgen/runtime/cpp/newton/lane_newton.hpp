@@ -44,6 +44,28 @@ template <int Rows, int Columns, int N> struct LaneFactors {
       d[k] = d[k] * inverse[k];
     }
   }
+
+  // What the product of the two smallest singular values is at least: over the inverse's ones, X, the sum of all such
+  // products is (tr(X X^T)^2 - tr((X X^T)^2)) / 2.
+  Lanes<N> least_product() const noexcept {
+    Lanes<N> X[Columns][Columns], sum = spread<N>(0.0), squares = sum;
+    for (int j = 0; j < Columns; ++j) {
+      X[j][j] = inverse[j];
+      for (int i = j - 1; i >= 0; --i) {
+        X[i][j] = R[i][i + 1] * X[i + 1][j];
+        for (int k = i + 2; k <= j; ++k) X[i][j] = X[i][j] + R[i][k] * X[k][j];
+        X[i][j] = -inverse[i] * X[i][j];
+      }
+    }
+    for (int i = 0; i < Columns; ++i)
+      for (int j = 0; j <= i; ++j) {
+        Lanes<N> inner = spread<N>(0.0);
+        for (int k = i; k < Columns; ++k) inner = inner + X[i][k] * X[j][k];
+        if (i == j) sum = sum + inner;
+        squares = squares + (i == j ? 1.0 : 2.0) * (inner * inner);
+      }
+    return sqrt(2.0 / max(sum * sum - squares, 1e-200));
+  }
 };
 
 // Arm: as for LaneChain, LaneAim and MovingJoints; Task; kSize; Rows<P>; Policy; kBlocks, the joints in the order of
@@ -143,7 +165,7 @@ template <class Arm> struct LaneNewton {
   static Arrival<N> steps(const Pose<P>& pose, LaneAim<Arm, N> aim, const Mask<N>& real, LaneChain<Arm, N>& chain) noexcept {
     Factors<N> factors;
     Lanes<N> before = spread<N>(Policy::kFarthestStart), rest = before;
-    Mask<N> good = real, done = !real;
+    Mask<N> good = real, done = !real, strained = done;
     chain.start();
     aim.start(chain.q);
     for (int k = 0; k < Policy::kLaneSteps; ++k) {
@@ -158,7 +180,8 @@ template <class Arm> struct LaneNewton {
       // steps that are round-off; those near singularities are as much longer as these enlarge it
       const Mask<N> still = (Policy::kConverged > size) | ((kRoundOff > worst) & (kUnmoved * factors.pivot > size));
       // Newton's method contracts this fast only near the one solution there (Deuflhard 2004, theorem 2.1)
-      const Lanes<N> bound = k == 0 ? min(before, Policy::kPivotShare * factors.pivot) : Policy::kContraction * before;
+      const Lanes<N> bound = k == 0 ? before : Policy::kContraction * before;
+      if (k == 0) strained = real & (size > Policy::kPivotShare * factors.pivot) & !still;
       good = good & ((bound > size) | still) & (factors.pivot > Policy::kLeastPivot);
       for (auto& none : step) none = spread<N>(0.0);
       for (int i = 0; i < kMoving; ++i) step[column(i)] = select(good, d[i], 0.0);
@@ -175,7 +198,21 @@ template <class Arm> struct LaneNewton {
       before = size;
     }
     const Mask<N> ended = good & done, far = rest > Policy::kLeastMiss;
-    return {ended & (Policy::kArrived > rest), ended & far};
+    Mask<N> sure = !strained;
+    if (!all(!(ended & strained))) sure = sure | stands_alone<P, N>(pose, aim, chain);
+    return {ended & (Policy::kArrived > rest) & sure, ended & far & !strained};
+  }
+
+  // Beside which rows nothing can have come in. Along the direction in which the pose moves least, by s1, what the file
+  // is off by turns the others by that over s2 at most, the next singular value; only where this is as much as s1 may the
+  // pose come to rest once more.
+  template <int P, int N>
+  static Mask<N> stands_alone(const Pose<P>& pose, const LaneAim<Arm, N>& aim, const LaneChain<Arm, N>& chain) noexcept {
+    LaneFactors<kEquations, kMoving, N> factors;
+    Lanes<N> error[kEquations];
+    compare<P, N>(pose, aim, chain, true, error, factors);
+    factors.factor();
+    return factors.least_product() > Policy::kFoldProduct;
   }
 };
 

@@ -31,7 +31,8 @@ class Policy:
     broken_reach: float  # below which a row may lie on a continuum that rounding broke
     farthest_start: float  # first step (rad, m) of rows that are refined together
     contraction: float  # of each further one
-    pivot_share: float  # of the pivot: the first step at most
+    pivot_share: float  # of the pivot: the first step at most, unless
+    fold_product: float  # the two smallest singular values have a larger product
     least_pivot: float  # how far the derivatives by each joint must be from the others' span
     least_miss: float  # error that shows that a row ends beside the pose
     lane_steps: int  # at most

@@ -89,7 +89,8 @@ def _next_rows(arm: Arm, T: Array, rows: Array, held: Array) -> tuple[Array, Fla
     start = rows.copy()
     start[:, list(arm.free)] = held[:, : len(arm.free)]
     with np.errstate(all="ignore"):
-        row, near, _ = refine_few(arm, start, aims(arm, T, held))
+        row, arrived, _, strained = refine_few(arm, start, aims(arm, T, held))
+    near = arrived & ~strained
     left = np.flatnonzero(~near)
     if len(left):
         q, real = rows_batch(arm, T[left], held[left])

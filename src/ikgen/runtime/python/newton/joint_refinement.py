@@ -11,8 +11,9 @@ from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_types import Array, Flags
 from ikgen.runtime.python.arrays.row_blocks import in_blocks
 from ikgen.runtime.python.newton.arm_newton import linearized
-from ikgen.runtime.python.newton.lane_newton import begins, ends, refine_lanes
+from ikgen.runtime.python.newton.lane_newton import Refined, begins, ends, refine_lanes
 from ikgen.runtime.python.newton.refinement import normal_inverse
+from ikgen.runtime.python.rows.solution_rows import rows_of
 
 __all__ = ["refine_few", "refine_together"]
 
@@ -26,30 +27,47 @@ def refine_together(chain: LaneChain, arm: Arm, q: Array, T: Array) -> tuple[Arr
 
     Newton's method contracts by `policy.contraction` only near the one solution there (Deuflhard 2004,
     theorem 2.1). Where the solution set folds, the other solution is twice the pivot over the curvature
-    away: rows whose first step is more than `policy.pivot_share` of the pivot are left to others.
+    away: rows whose first step is more than `policy.pivot_share` of the pivot are left to others, unless
+    the two smallest singular values tell that there are none.
     """
     with np.errstate(all="ignore"):
         if len(q) <= _FEW:
-            return refine_few(arm, q, T)
-        T = np.broadcast_to(T, (len(q), *T.shape[1:]))
-        if arm.angle is None:
-            return refine_lanes(arm, chain, q, T)
-        done: tuple[Array, Flags, Flags] = in_blocks(partial(refine_few, arm), _BLOCK, q, T)
-        return done
+            end = refine_few(arm, q, T)
+        elif arm.angle is None:
+            end = refine_lanes(arm, chain, q, np.broadcast_to(T, (len(q), *T.shape[1:])))
+        else:
+            T = np.broadcast_to(T, (len(q), *T.shape[1:]))
+            end = Refined(*in_blocks(partial(refine_few, arm), _BLOCK, q, T))
+        if end.strained.any():
+            _judge_strained(arm, end, T)
+    return end.q, end.arrived, end.missed
 
 
-def refine_few(arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
-    """`refine_together` of few rows. Every second step is solved with the inverse of the one before, and
+def _judge_strained(arm: Arm, end: Refined, T: Array) -> None:
+    """Leaves of the strained ones those arrived beside which nothing can have come in. Along the direction
+    in which the pose moves least, by s1, what the file is off by turns the others by that over s2 at most,
+    the next singular value; only where this is as much as s1 may the pose come to rest once more."""
+    end.missed[end.strained] = False
+    some = np.flatnonzero(end.arrived & end.strained)
+    _, slope = linearized(arm, end.q[some], rows_of(T, some))
+    least = np.linalg.svd(slope, compute_uv=False)[:, -2:]
+    end.arrived[some] = np.multiply.reduce(least, axis=1) > arm.policy.fold_product
+
+
+def refine_few(arm: Arm, q: Array, T: Array) -> Refined:
+    """`refine_lanes` of few rows. Every second step is solved with the inverse of the one before, and
     what that leaves of it once more, as in `refine_lanes`."""
     policy, start = arm.policy, q
-    good, before = np.ones(len(q), dtype=bool), np.full(len(q), policy.farthest_start)
+    good, strained = np.ones(len(q), dtype=bool), np.zeros(len(q), dtype=bool)
+    before = np.full(len(q), policy.farthest_start)
     for steps in range(0, policy.lane_steps, 2):
         error, slope = _linearized(arm, q, T)
         inverse = _left_inverse(slope)
         change = inverse @ error
         size, worst = _largest(change[:, :, 0]), _largest(error[:, :, 0])
         pivot = 1.0 / np.sqrt(_largest(np.add.reduce(inverse * inverse, axis=2)))
-        good &= begins(policy, size, worst, before, pivot, not steps)
+        near, far = begins(policy, size, worst, before, pivot, not steps)
+        good, strained = good & near, strained | far
         q = _moved(arm, q, change)
         rest, slope = _linearized(arm, q, T)
         worst = _largest(rest[:, :, 0])
@@ -64,11 +82,8 @@ def refine_few(arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
         if (done | ~good).all():
             break
     done, off = done & good, _largest(rest[:, :, 0])
-    return (
-        np.where(done[:, None], q, start),
-        done & (off < policy.arrived),
-        done & (off > policy.least_miss),
-    )
+    arrived, missed = done & (off < policy.arrived), done & (off > policy.least_miss)
+    return Refined(np.where(done[:, None], q, start), arrived, missed, strained)
 
 
 def _largest(x: Array) -> Array:

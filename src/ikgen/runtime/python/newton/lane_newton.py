@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,18 +18,28 @@ from ikgen.runtime.python.arm.solve_policy import Policy
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Single
 
-__all__ = ["begins", "ends", "refine_lanes"]
+__all__ = ["Refined", "begins", "ends", "refine_lanes"]
 
 _BLOCK = 2048  # rows whose arrays fit into a processor's cache
 _ROUND_OFF = 1e-14  # of errors (rad, or m over the arm's size)
 _UNMOVED = 1e-3  # of the pivot: rows that are moved by less stay the solutions that they are
 
 
-def refine_lanes(arm: Arm, chain: LaneChain, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
-    """Rows (k, dof) after steps towards T (k, 4, 4); which arrived, and which at a least error that is not
-    0, as of `refine_together`."""
+class Refined(NamedTuple):
+    """Rows `q` (k, dof) after steps; which `arrived` (k,) at the one solution near their start, and which
+    `missed` (k,), at a least error that is not 0; the first step of `strained` ones (k,) was more than
+    `policy.pivot_share` of the pivot: what they tell is to be judged."""
+
+    q: Array
+    arrived: Flags
+    missed: Flags
+    strained: Flags
+
+
+def refine_lanes(arm: Arm, chain: LaneChain, q: Array, T: Array) -> Refined:
+    """Of rows (k, dof) towards T (k, 4, 4)."""
     q = q.T.copy()
-    arrived, missed = np.zeros((2, q.shape[1]), dtype=bool)
+    arrived, missed, strained = np.zeros((3, q.shape[1]), dtype=bool)
     before = np.full(q.shape[1], arm.policy.farthest_start)
     parts: list[Any] = [slice(i, i + _BLOCK) for i in range(0, q.shape[1], _BLOCK)]
     for steps in range(0, arm.policy.lane_steps, 2):
@@ -37,23 +47,24 @@ def refine_lanes(arm: Arm, chain: LaneChain, q: Array, T: Array) -> tuple[Array,
         for part in parts:
             aim = np.ascontiguousarray(T[part].transpose(1, 2, 0)[:3])
             end = _two_steps(arm, chain, q[:, part], aim, before[part], steps == 0)
-            moved, before[part], done, good, off = end
+            moved, before[part], done, good, off, far = end
             q[:, part] = np.where(good, moved, q[:, part])
             arrived[part] = done & (off < arm.policy.arrived)
             missed[part] = done & (off > arm.policy.least_miss)
+            strained[part] |= far
             left.append(np.arange(q.shape[1])[part][good & ~done])
         going = np.concatenate(left)
         if not len(going):
             break
         parts = [going[i : i + _BLOCK] for i in range(0, len(going), _BLOCK)]
-    return q.T, arrived, missed
+    return Refined(q.T, arrived, missed, strained)
 
 
 def _two_steps(
     arm: Arm, chain: LaneChain, q: Array, T: Array, before: Array, first: bool
-) -> tuple[Array, Array, Flags, Flags, Array]:
+) -> tuple[Array, Array, Flags, Flags, Array, Flags]:
     """Rows (dof, k) after two steps towards T (3, 4, k), the second's size (k,), which are at the end,
-    which may come there, and what is left of the errors.
+    which may come there, what is left of the errors, and which are `strained`, of the `first`.
 
     The second is solved with the inverse of the first; what that leaves of it once more (iterative
     refinement; Wilkinson 1963). `before`: what the first step is less than, where it is the
@@ -66,7 +77,7 @@ def _two_steps(
     inverse, pivot = _left_inverse(slope)
     change = np.einsum("imk,mk->ik", inverse, error)
     size, worst = np.abs(change).max(axis=0), np.abs(error).max(axis=0)
-    good = begins(policy, size, worst, before, pivot, first)
+    good, strained = begins(policy, size, worst, before, pivot, first)
     turn = _of_joints(arm, change)
     q, turns = q + turn, chain.changes(turn)
     values, angles = values + turns, turned(angles, turns)
@@ -80,17 +91,19 @@ def _two_steps(
     before, size = size, np.abs(change).max(axis=0)
     near, done = ends(policy, before, size, worst, np.abs(more).max(axis=0), pivot)
     good &= near
-    return q + _of_joints(arm, change), size, good & done, good, np.abs(rest).max(axis=0)
+    left = np.abs(rest).max(axis=0)
+    return q + _of_joints(arm, change), size, good & done, good, left, strained
 
 
 def begins(
     policy: Policy, size: Array, worst: Array, before: Array, pivot: Array | Single, first: bool
-) -> Flags:
+) -> tuple[Flags, Flags]:
     """Which first steps of two, of this `size` (k,) towards errors of at most `worst` (k,), may lead to the
-    solution near their start."""
-    bound = policy.pivot_share * pivot if first else policy.contraction * before
-    small = (size < np.minimum(before, bound)) | _is_round_off(policy, size, worst, pivot)
-    return np.asarray(small & (pivot > policy.least_pivot))
+    solution near their start; and which are `strained`, where they are the `first` of all."""
+    small = _is_round_off(policy, size, worst, pivot)
+    strained = ~small & (size > policy.pivot_share * pivot) if first else np.zeros_like(small)
+    small |= size < (before if first else policy.contraction * before)
+    return small & (pivot > policy.least_pivot), strained
 
 
 def ends(
