@@ -754,11 +754,11 @@ template <class Arm> struct FoldPair {
       if (!(std::abs(step(side, q)) > kClose)) break;
   }
 
-  double correct(double* q, double& left, double& slope) noexcept {
+  double correct(double* q, double& left, double& slope, Vector& across) noexcept {
     const PoseError<Arm> at(q, aim);
     find_still(at);
     const Others others(*this, at);
-    Vector across, ignored;
+    Vector ignored;
     double rest[kEquations], square = 0.0, farthest = 0.0;
     others.take_away(at.error, rest, across);
     others.take_away(out, out, ignored);
@@ -1033,34 +1033,60 @@ template <class Arm> struct NearContinuum {
   Kind trace(const double* start) noexcept {
     const Sample first = at(start);
     double worst = std::abs(first.left);
-    steps = 0;
+    steps = 0.0;
     if (!follow(first, 1.0, worst)) follow(first, -1.0, worst);
-    return steps < kLeast ? Kind::None : worst >= Policy::kArrived ? Kind::Broken : Kind::Whole;
+    const Kind kind = steps < kLeast ? Kind::None : worst >= Policy::kArrived ? Kind::Broken : Kind::Whole;
+    if (kind == Kind::Whole || (kind == Kind::None && !lost)) count = 0;
+    return kind;
   }
 
  private:
   static constexpr int kMost = 96, kCorrections = 6, kSteps = 40, kDeep = 24, kLeast = 4;
   static constexpr double kNear = 1e-11;  // rad or m: how far off the curve slopes along it are the curve's
-  static constexpr double kShare = 1e-3;  // of what is left: as little as that off the curve changes neither
+  static constexpr double kShare = 3e-2;  // of what is left: as little as that off the curve changes neither
   static constexpr double kRoundOff = 1e-15, kSmall = 4e-15, kDoubt = 0.03, kBeside = 0.06, kSameWay = 0.9;
+  static constexpr double kFloor = 0.1, kAhead = 0.5;  // the shortest step, of Policy::kTryStep; how a step turns at most
+  static constexpr double kSlow = 0.1, kSteady = 0.8;  // how fast corrections converge that are not left to themselves
 
   struct Sample {
     double q[Arm::kDof], still[Fold::kMoving], out[Fold::kEquations], left, slope;
+    bool on;
   };
 
   Fold fold;
   int samples = 600;  // that are left to be taken
-  int steps = 0;
+  double steps = 0.0;  // of Policy::kTryStep
+  bool lost = false;   // where corrections converge from no step
 
   Sample at(const double* q) noexcept {
     Sample s;
     std::copy_n(q, Arm::kDof, s.q);
-    for (int i = 0; i < kCorrections; ++i)
-      if (fold.correct(s.q, s.left, s.slope) < std::max(kNear, kShare * std::abs(s.left))) break;
+    s.on = false;
+    double before[Fold::kMoving] = {}, last = kInfinity;
+    for (int i = 0; i < kCorrections && !s.on; ++i) {
+      double across[Fold::kMoving];
+      const double farthest = fold.correct(s.q, s.left, s.slope, across);
+      s.on = farthest < std::max(kNear, kShare * std::abs(s.left));
+      const bool leaps = !s.on && farthest > kSlow * last && leap(before, across, s.q);
+      last = leaps ? kInfinity : farthest;
+      std::copy_n(across, Fold::kMoving, before);
+    }
     std::copy_n(fold.still, Fold::kMoving, s.still);
     std::copy_n(fold.out, Fold::kEquations, s.out);
     --samples;
     return s;
+  }
+
+  static bool leap(const double* before, const double* across, double* q) noexcept {
+    double along = 0.0, square = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      along += across[k] * before[k];
+      square += before[k] * before[k];
+    }
+    const double ratio = along / square;
+    if (!(std::abs(ratio) < kSteady)) return false;
+    for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += ratio / (1.0 - ratio) * across[k];
+    return true;
   }
 
   Sample at(const double* q, const Sample& from) noexcept {
@@ -1075,20 +1101,48 @@ template <class Arm> struct NearContinuum {
     for (double& x : b.still) x *= sense;
     for (double& x : b.out) x *= sense;
     const Sample origin = b;
+    double reach = Policy::kTryStep, last = reach, before[Fold::kMoving];
+    std::copy_n(b.still, Fold::kMoving, before);
     for (int k = 0; k < kMost && samples > 0; ++k) {
-      double q[Arm::kDof], largest = 0.0;
+      double q[Arm::kDof], course[Fold::kMoving], largest = 0.0;
+      const double turn = 0.5 * reach / last;
       std::copy_n(b.q, Arm::kDof, q);
-      for (const double x : b.still) largest = std::max(largest, std::abs(x));
-      for (int i = 0; i < Fold::kMoving; ++i) q[Fold::kJoints[i]] += Policy::kTryStep / largest * b.still[i];
+      for (int i = 0; i < Fold::kMoving; ++i) {
+        course[i] = b.still[i] + turn * (b.still[i] - before[i]);
+        largest = std::max(largest, std::abs(course[i]));
+      }
+      for (int i = 0; i < Fold::kMoving; ++i) q[Fold::kJoints[i]] += reach / largest * course[i];
       const Sample c = at(q, b);
+      if (!(c.on && ahead(b, c, reach))) {
+        if (reach < kFloor * Policy::kTryStep) {
+          lost = true;
+          return false;
+        }
+        reach *= 0.5;
+        continue;
+      }
       if (!(std::abs(c.left) < Policy::kFoldReach)) return false;
-      ++steps;
+      steps += reach / Policy::kTryStep;
       worst = std::max(worst, std::abs(c.left));
       look(b, c, kDeep);
       if (k > 1 && back(origin, b)) break;
+      std::copy_n(b.still, Fold::kMoving, before);
       b = c;
+      last = reach;
+      reach = std::min(2.0 * reach, Policy::kTryStep);
     }
     return true;
+  }
+
+  static bool ahead(const Sample& a, const Sample& b, double reach) noexcept {
+    double along = 0.0, square = 0.0, same = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      const double way = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
+      along += way * a.still[k];
+      square += way * way;
+      same += a.still[k] * b.still[k];
+    }
+    return along > 0.5 * reach && along * along > 0.5 * square && same > kAhead;
   }
 
   static bool back(const Sample& a, const Sample& b) noexcept {
@@ -1458,12 +1512,12 @@ template <class Arm> struct CarefulRows {
     }
 
     bool add_around(const Aim& aim, Places& out) noexcept {
-      using Curve = NearContinuum<Arm>;
-      Curve curve(aim);
-      const typename Curve::Kind kind = curve.trace(start);
-      if (kind == Curve::Kind::None) return false;
-      error = kInfinity;
-      for (int k = 0; k < curve.count && kind == Curve::Kind::Broken; ++k) take(aim, curve.found[k], out);
+      NearContinuum<Arm> curve(aim);
+      const bool none = curve.trace(start) == NearContinuum<Arm>::Kind::None;
+      Nearest aside(*this);
+      if (!none) error = kInfinity;
+      for (int k = 0; k < curve.count; ++k) (none ? aside : *this).take(aim, curve.found[k], out);
+      if (none) return false;
       take(aim, start, out);
       take_rest(aim, out);
       return true;

@@ -30,11 +30,11 @@ template <class Arm> struct FoldPair {
 
   // One step across the still direction; how far its fastest joint goes, what it leaves of the error, and how much more a
   // step along the still direction does.
-  double correct(double* q, double& left, double& slope) noexcept {
+  double correct(double* q, double& left, double& slope, Vector& across) noexcept {
     const PoseError<Arm> at(q, aim);
     find_still(at);
     const Others others(*this, at);
-    Vector across, ignored;
+    Vector ignored;
     double rest[kEquations], square = 0.0, farthest = 0.0;
     others.take_away(at.error, rest, across);
     others.take_away(out, out, ignored);

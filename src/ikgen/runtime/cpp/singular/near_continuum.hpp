@@ -21,39 +21,68 @@ template <class Arm> struct NearContinuum {
 
   enum class Kind { None, Broken, Whole };  // no continuum nearby, one of the solved geometry, one of the file's too
 
-  // Finds those on the curve through a configuration: once around, or to both its ends.
+  // Finds those on the curve through a configuration: once around, or to both its ends; of one that is too short only
+  // where it could not be followed.
   Kind trace(const double* start) noexcept {
     const Sample first = at(start);
     double worst = std::abs(first.left);
-    steps = 0;
+    steps = 0.0;
     if (!follow(first, 1.0, worst)) follow(first, -1.0, worst);
-    return steps < kLeast ? Kind::None : worst >= Policy::kArrived ? Kind::Broken : Kind::Whole;
+    const Kind kind = steps < kLeast ? Kind::None : worst >= Policy::kArrived ? Kind::Broken : Kind::Whole;
+    if (kind == Kind::Whole || (kind == Kind::None && !lost)) count = 0;
+    return kind;
   }
 
  private:
   static constexpr int kMost = 96, kCorrections = 6, kSteps = 40, kDeep = 24, kLeast = 4;
   static constexpr double kNear = 1e-11;  // rad or m: how far off the curve slopes along it are the curve's
-  static constexpr double kShare = 1e-3;  // of what is left: as little as that off the curve changes neither
+  static constexpr double kShare = 3e-2;  // of what is left: as little as that off the curve changes neither
   static constexpr double kRoundOff = 1e-15, kSmall = 4e-15, kDoubt = 0.03, kBeside = 0.06, kSameWay = 0.9;
+  static constexpr double kFloor = 0.1, kAhead = 0.5;  // the shortest step, of Policy::kTryStep; how a step turns at most
+  static constexpr double kSlow = 0.1, kSteady = 0.8;  // how fast corrections converge that are not left to themselves
 
-  // A configuration of which one direction of the error is left, and how that grows along the still direction.
+  // A configuration of which one direction of the error is left, and how that grows along the still direction; whether
+  // its corrections converged.
   struct Sample {
     double q[Arm::kDof], still[Fold::kMoving], out[Fold::kEquations], left, slope;
+    bool on;
   };
 
   Fold fold;
   int samples = 600;  // that are left to be taken
-  int steps = 0;
+  double steps = 0.0;  // of Policy::kTryStep
+  bool lost = false;   // where corrections converge from no step
 
   Sample at(const double* q) noexcept {
     Sample s;
     std::copy_n(q, Arm::kDof, s.q);
-    for (int i = 0; i < kCorrections; ++i)
-      if (fold.correct(s.q, s.left, s.slope) < std::max(kNear, kShare * std::abs(s.left))) break;
+    s.on = false;
+    double before[Fold::kMoving] = {}, last = kInfinity;
+    for (int i = 0; i < kCorrections && !s.on; ++i) {
+      double across[Fold::kMoving];
+      const double farthest = fold.correct(s.q, s.left, s.slope, across);
+      s.on = farthest < std::max(kNear, kShare * std::abs(s.left));
+      const bool leaps = !s.on && farthest > kSlow * last && leap(before, across, s.q);
+      last = leaps ? kInfinity : farthest;
+      std::copy_n(across, Fold::kMoving, before);
+    }
     std::copy_n(fold.still, Fold::kMoving, s.still);
     std::copy_n(fold.out, Fold::kEquations, s.out);
     --samples;
     return s;
+  }
+
+  // Goes to where two corrections that converge slowly lead in the end (Aitken 1926), if they do.
+  static bool leap(const double* before, const double* across, double* q) noexcept {
+    double along = 0.0, square = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      along += across[k] * before[k];
+      square += before[k] * before[k];
+    }
+    const double ratio = along / square;
+    if (!(std::abs(ratio) < kSteady)) return false;
+    for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += ratio / (1.0 - ratio) * across[k];
+    return true;
   }
 
   // Beside a sample.
@@ -63,27 +92,57 @@ template <class Arm> struct NearContinuum {
     return at(q);
   }
 
-  // On from a sample, the fastest joint by Policy::kTryStep from one to the next; whether it comes back to where it began.
+  // On from a sample, the fastest joint by Policy::kTryStep from one to the next, or by less where corrections converge
+  // from there alone; whether it comes back to where it began.
   bool follow(const Sample& first, double sense, double& worst) noexcept {
     Sample b = first;
     b.left *= sense;
     for (double& x : b.still) x *= sense;
     for (double& x : b.out) x *= sense;
     const Sample origin = b;
+    double reach = Policy::kTryStep, last = reach, before[Fold::kMoving];
+    std::copy_n(b.still, Fold::kMoving, before);
     for (int k = 0; k < kMost && samples > 0; ++k) {
-      double q[Arm::kDof], largest = 0.0;
+      double q[Arm::kDof], course[Fold::kMoving], largest = 0.0;
+      const double turn = 0.5 * reach / last;
       std::copy_n(b.q, Arm::kDof, q);
-      for (const double x : b.still) largest = std::max(largest, std::abs(x));
-      for (int i = 0; i < Fold::kMoving; ++i) q[Fold::kJoints[i]] += Policy::kTryStep / largest * b.still[i];
+      for (int i = 0; i < Fold::kMoving; ++i) {
+        course[i] = b.still[i] + turn * (b.still[i] - before[i]);
+        largest = std::max(largest, std::abs(course[i]));
+      }
+      for (int i = 0; i < Fold::kMoving; ++i) q[Fold::kJoints[i]] += reach / largest * course[i];
       const Sample c = at(q, b);
+      if (!(c.on && ahead(b, c, reach))) {
+        if (reach < kFloor * Policy::kTryStep) {
+          lost = true;
+          return false;
+        }
+        reach *= 0.5;
+        continue;
+      }
       if (!(std::abs(c.left) < Policy::kFoldReach)) return false;
-      ++steps;
+      steps += reach / Policy::kTryStep;
       worst = std::max(worst, std::abs(c.left));
       look(b, c, kDeep);
       if (k > 1 && back(origin, b)) break;
+      std::copy_n(b.still, Fold::kMoving, before);
       b = c;
+      last = reach;
+      reach = std::min(2.0 * reach, Policy::kTryStep);
     }
     return true;
+  }
+
+  // Whether the curve goes on from a sample to another, and not back.
+  static bool ahead(const Sample& a, const Sample& b, double reach) noexcept {
+    double along = 0.0, square = 0.0, same = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      const double way = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
+      along += way * a.still[k];
+      square += way * way;
+      same += a.still[k] * b.still[k];
+    }
+    return along > 0.5 * reach && along * along > 0.5 * square && same > kAhead;
   }
 
   // Whether the curve is at a sample of it again, and not at another part that is near.

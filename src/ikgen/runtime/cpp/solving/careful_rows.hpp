@@ -205,12 +205,12 @@ template <class Arm> struct CarefulRows {
     // Adds the solutions all around a continuum of the solved geometry that the file's arm may not have, or one of it if
     // the file's has it; whether there is one.
     bool add_around(const Aim& aim, Places& out) noexcept {
-      using Curve = NearContinuum<Arm>;
-      Curve curve(aim);
-      const typename Curve::Kind kind = curve.trace(start);
-      if (kind == Curve::Kind::None) return false;
-      error = kInfinity;
-      for (int k = 0; k < curve.count && kind == Curve::Kind::Broken; ++k) take(aim, curve.found[k], out);
+      NearContinuum<Arm> curve(aim);
+      const bool none = curve.trace(start) == NearContinuum<Arm>::Kind::None;
+      Nearest aside(*this);
+      if (!none) error = kInfinity;
+      for (int k = 0; k < curve.count; ++k) (none ? aside : *this).take(aim, curve.found[k], out);
+      if (none) return false;
       take(aim, start, out);
       take_rest(aim, out);
       return true;
@@ -238,9 +238,9 @@ template <class Arm> struct CarefulRows {
         if (one.around || !one.near || !RankLoss<Arm>::below(one.q, Policy::kBrokenReach)) continue;
         NearContinuum<Arm> curve(aim);
         one.around = curve.trace(one.q) == NearContinuum<Arm>::Kind::Broken;
-        for (int i = 0; i < curve.count && one.around; ++i) {
+        for (int i = 0; i < curve.count; ++i) {
           Nearest(one).take(aim, curve.found[i], out);
-          for (int other = k + 1; other < count; ++other)
+          for (int other = k + 1; other < count && one.around; ++other)
             at(other).around = at(other).around || Pair::within(Policy::kMeeting, at(other).q, curve.found[i]);
         }
       }
