@@ -39,7 +39,7 @@ def cost_of(monkeypatch: pytest.MonkeyPatch, cost: Any, away: float = 0.0) -> li
     monkeypatch.setattr(
         solution_search,
         "refine_few",
-        lambda arm, q, T: (q, *doubt[None, : len(q)].repeat(2, axis=0)),
+        lambda arm, q, T: (q, *doubt[None, : len(q)].repeat(2, axis=0), ~doubt[: len(q)]),
     )
     monkeypatch.setattr(
         solution_search, "preference_costs",
