@@ -65,6 +65,22 @@ def test_of_a_continuum_of_the_arm_itself_one_row_is_taken(tmp_path: Path) -> No
     assert np.abs(exact.forward(found) - poses).max() < 1e-9 and loss.max() < 1e-9
 
 
+def test_nothing_is_followed_towards_poses_out_of_reach(
+    folded: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rows, poses = marked_rows(folded, np.array(FOLDED))
+    poses[:, 2, 3] += 3.0
+    steps, correct = [], near_continuum.correct
+
+    def counted(arm: Any, at: Reduced, T: Array) -> tuple[Reduced, Array]:
+        steps.append(len(T))
+        return correct(arm, at, T)
+
+    monkeypatch.setattr(near_continuum, "correct", counted)
+    traced = trace(folded._ARM, rows, poses)
+    assert len(rows) and not traced.curve.any() and len(steps) < 10
+
+
 def test_equal_starts_are_followed_once(
     folded: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
