@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from ikgen.cli.build import _print
 from ikgen.cli.main import run
 from ikgen.projects.config import ArmConfig
 from ikgen.projects.project_build import Outcome
@@ -48,3 +49,10 @@ def test_a_setup_file_without_a_main_guard(project: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert done.stdout.count("run once") == 1
     assert (project / "first_ik.py").is_file() and (project / "second_ik.py").is_file()
+
+
+def test_what_a_verification_missed_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+    outcome = Outcome("arm", "asked for", solutions=8, missed="python 4 missed, all of them")
+    _print([outcome], 0, as_json=False, quiet=False, verbose=False)
+    said = capsys.readouterr().out
+    assert "at most 8 solutions a pose (asked for); python 4 missed, all of them" in said

@@ -140,9 +140,9 @@ def _print(
             say(f"{o.name}: {o.message}", o.hint)
         elif not quiet and not as_json:
             many = f", at most {o.solutions} solutions a pose"
-            state = (
-                f"generated in {o.seconds:.1f} s{many} ({o.reason})" if o.reason else "up to date"
-            )
+            missed = f"; {o.missed}" if o.missed else ""
+            made = f"generated in {o.seconds:.1f} s{many} ({o.reason}){missed}"
+            state = made if o.reason else "up to date"
             click.echo(f"{o.name}: {state}")
 
 

@@ -130,5 +130,6 @@ def _line(result: Recheck) -> str:
     parts = []
     for name, report in result.reports.items():
         metres, radians = report.worst_closure
-        parts.append(f"{name} {report.samples} poses, closure {metres:.1e} m {radians:.1e} rad")
+        closure = f"closure {metres:.1e} m {radians:.1e} rad"
+        parts.append(f"{name} {report.samples} poses, {closure}, {report.missed_words}")
     return f"{result.name}: right ({'; '.join(parts)}){notes}"

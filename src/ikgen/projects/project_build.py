@@ -28,7 +28,8 @@ INTERNAL_ERROR = 70
 class Outcome:
     """What happened to one arm: `reason` it was stale (empty: fresh, left alone), its files, and
     the error if it failed (`exit_code` then is not 0); `trace` is that of an internal error, `warnings`
-    are what has to be told of what was generated, `solutions` how many a pose has at most."""
+    are what has to be told of what was generated, `solutions` how many a pose has at most, `missed` in
+    words what the verification of each output missed, empty where that is nothing."""
 
     name: str
     reason: str
@@ -40,6 +41,7 @@ class Outcome:
     trace: str = ""
     warnings: tuple[str, ...] = ()
     solutions: int = 0
+    missed: str = ""
 
 
 def build_arms(
@@ -123,7 +125,16 @@ def _build_one(job: tuple[ArmConfig, str, bool]) -> Outcome:
         return _internal(arm.name, reason, error)
     told = announcements(made.derivation)
     most = made.derivation.module.max_solutions
-    return Outcome(arm.name, reason, made.files, made.seconds, warnings=told, solutions=most)
+    missed = "; ".join(f"{n} {r.missed_words}" for n, r in made.reports.items() if r.missed)
+    return Outcome(
+        arm.name,
+        reason,
+        made.files,
+        made.seconds,
+        warnings=told,
+        solutions=most,
+        missed=missed,
+    )
 
 
 def _internal(name: str, reason: str, error: Exception) -> Outcome:

@@ -18,6 +18,7 @@ from ikgen.importers.named_robots import is_named
 from ikgen.processes.executors import Workers
 from ikgen.projects.check_findings import HALF_IN_PLACE, Finding, Recheck
 from ikgen.projects.output_checks import Checked, OutputChecks
+from ikgen.projects.recorded_inputs import Packages
 from ikgen.projects.sample_blocks import BLOCK, SampleBlock, blocks_checked
 
 if TYPE_CHECKING:
@@ -102,11 +103,20 @@ class _Run:
         return blocks_checked(first, block, self.workers, self.done)
 
 
+_TEXT = "the text of the description"
+
+
+def _changed_files(record: Record) -> str:
+    """The recorded inputs that are not as they were; "" where none is, as of other arguments."""
+    inputs = Packages().inputs(record)
+    return ", ".join(one.name for one in inputs if digest(one.path) != one.sha256)
+
+
 def _checked(record: Record, reading: Reading, run: _Run) -> Recheck:
     """One record against what was read now."""
     dh, fix = reading.dh, run.block.fix
     changed = reading.source.sha256 != record.source_sha256
-    notes = ("the text of the description has changed since",) if changed else ()
+    notes = (f"{_changed_files(record) or _TEXT} has changed since",) if changed else ()
     joints = tuple(joint.name for joint in dh.joints)
     if joints != record.joints:
         was, now = ", ".join(record.joints), ", ".join(joints)
