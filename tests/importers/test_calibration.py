@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
+import json
 import math
+import re
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from ikgen.cli.main import run
 from ikgen.errors import BadDescriptionError, UsageError
 from ikgen.generation.emitted_checks import oracle_for
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
 from ikgen.importers.calibration import row_offsets
 from ikgen.kinematics.forward import file_forward
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 UR5E = Request(FIXTURES / "ur5e.urdf", base="base_link", tip="tool0")
@@ -87,6 +96,38 @@ def test_offsets_of_rows_are_added(tmp_path: Path) -> None:
     T = T @ model.dh.file_frames[-1]
     assert np.abs(file_forward(own.dh, q) - T).max() < 1e-14
     assert np.abs(oracle_for(own).forward(q) - T).max() < 1e-14
+
+
+def test_it_is_told_how_far_a_calibration_is_off(tmp_path: Path) -> None:
+    near = read(calibrated(OWN, tmp_path))
+    assert near.calibration is not None and not near.calibration.far
+    assert min(near.calibration.off) > 1e-3 and max(near.calibration.off) < 1e-2
+    assert near.source.warnings == read(UR5E).source.warnings
+    gross = read(calibrated(OWN.replace("roll: 1.57138", "roll: 0.7"), tmp_path))
+    assert gross.calibration is not None and gross.calibration.off[1] == pytest.approx(
+        0.87, abs=0.01
+    )
+    assert " m and 0.87 rad off the model; arms are " in gross.source.warnings[-1]
+
+
+def test_summary_and_json_have_the_calibration(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    request = calibrated("[[joints]]\na = 0.1\n" + 3 * "[[joints]]\n", tmp_path, suffix="toml")
+    words = ["from-dh", str(FIXTURES / "scara_standard.toml"), "--no-verify", "-o", str(tmp_path)]
+    words += ["--calibration", str(request.calibration)]
+    assert run(words) == 0
+    said = capsys.readouterr()
+    assert re.search(r"calibrated: +\S*own.toml: up to 0.1 m and \S+ rad off the model", said.out)
+    assert "warning: " in said.err and "own.toml: up to 0.1 m" in said.err
+    assert run([*words, "--json", "-q"]) == 0
+    assert json.loads(capsys.readouterr().out)["calibration"]["m"] == pytest.approx(0.1)
+
+
+def test_the_page_on_fleets_has_a_row_for_each_of_the_arm() -> None:
+    page = FIXTURES.parent / "docs" / "how-to" / "calibrated-fleets.md"
+    texts = re.findall(r'```toml title="rows.toml"\n(.*?)```', page.read_text(), re.DOTALL)
+    assert [len(tomllib.loads(text)["joints"]) for text in texts] == [len(read(UR5E).dh.rows)]
 
 
 @pytest.mark.parametrize(

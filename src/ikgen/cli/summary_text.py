@@ -26,6 +26,7 @@ def summary(generation: Generation) -> str:
         ("geometry", derivation.geometry.words + _rounding(derivation)),
         ("solved", "; ".join(module.order)),
         *_motors(dh),
+        *_calibration(derivation),
         ("solutions", _solutions(generation)),
     ]
     lines += [("verified", _verified(name, r)) for name, r in generation.reports.items()]
@@ -44,6 +45,12 @@ def _motors(dh: DHChain) -> list[tuple[str, str]]:
     if dh.transmission is None:
         return []
     return [("motors", "; ".join(dh.transmission.words([joint.name for joint in dh.joints])))]
+
+
+def _calibration(derivation: Derivation) -> list[tuple[str, str]]:
+    """That the chain is one arm's own, and how far that is off the model."""
+    found = derivation.reading.calibration
+    return [] if found is None else [("calibrated", found.words)]
 
 
 def _task(derivation: Derivation) -> str:

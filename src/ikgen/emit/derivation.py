@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ikgen.emit.solver_module import SolverModule
+    from ikgen.kinematics.calibrated import Calibration
     from ikgen.kinematics.classify import GeometryClass
     from ikgen.model.chain import Chain
     from ikgen.model.dh import DHChain
@@ -21,7 +22,8 @@ __all__ = ["Derivation", "Held", "Reading", "Unsolved"]
 class Reading:
     """A description as read: its tree and chain (none for a DH table) and the chain in DH form. `coupled`
     are the relations between joints that were chosen, not asked for (`JOINT=SOURCE*k+c`); `parts` are
-    joints of the chain that are not the robot's, each a part of the value of one that follows several."""
+    joints of the chain that are not the robot's, each a part of the value of one that follows several;
+    `calibration` is there where the chain is one arm's own."""
 
     source: Source
     tree: JointTree | None
@@ -29,6 +31,7 @@ class Reading:
     dh: DHChain
     coupled: tuple[str, ...] = ()
     parts: tuple[str, ...] = ()
+    calibration: Calibration | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -70,9 +70,9 @@ class Inspection:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What was odd in the file."""
-        if self.tree is not None:
-            return self.tree.source.warnings
-        return self.reading.source.warnings if self.reading is not None else ()
+        if self.reading is not None:
+            return self.reading.source.warnings
+        return self.tree.source.warnings if self.tree is not None else ()
 
 
 def inspect_robot(

@@ -14,9 +14,11 @@ from ikgen.model.module_name import identifier
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+    from pathlib import Path
 
     from ikgen.generation.request import Request
     from ikgen.model.chain import ActuatedJoint, Chain
+    from ikgen.model.dh import DHChain
     from ikgen.model.joint_tree import JointTree
 
 __all__ = ["arm_name", "default_name", "has_arm_angle", "read", "read_tree"]
@@ -93,7 +95,18 @@ def _read(request: Request, tree: JointTree | None) -> Reading:
         return _with_offsets(reading, request)
     own = calibrated_tree(tree, request.calibration)
     calibrated = select_chain(own, chain.base_link, chain.tip_link, dict(request.lock))
-    return Reading(own.source, own, calibrated, calibrated_dh(reading.dh, calibrated), coupled)
+    dh = calibrated_dh(reading.dh, calibrated)
+    found = Reading(own.source, own, calibrated, dh, coupled)
+    return _told(found, request.calibration, reading.dh)
+
+
+def _told(reading: Reading, path: Path, model: DHChain) -> Reading:
+    """The calibrated reading with what there is to tell of its file beside the model's rows."""
+    from ikgen.kinematics.calibrated import calibration_of
+
+    found, source = calibration_of(path, model, reading.dh), reading.source
+    source = replace(source, warnings=(*source.warnings, *found.warnings))
+    return replace(reading, source=source, calibration=found)
 
 
 def _coupled_chain(request: Request, tree: JointTree) -> tuple[JointTree, Chain, tuple[str, ...]]:
@@ -136,7 +149,7 @@ def _with_offsets(reading: Reading, request: Request) -> Reading:
             hint="write [[joints]] with alpha, a, d, theta in a .toml file",
         )
     dh = offset_dh(reading.dh, row_offsets(path, len(reading.dh.rows)))
-    return Reading(calibrated_source(reading.source, path), None, None, dh)
+    return _told(Reading(calibrated_source(reading.source, path), None, None, dh), path, reading.dh)
 
 
 def read_tree(request: Request) -> JointTree:

@@ -43,11 +43,20 @@ def as_dict(generation: Generation) -> dict[str, Any]:
         ],
         "max_solutions": module.max_solutions,
         "deviation": {"m": dh.deviation[0], "rad": dh.deviation[1]},
+        "calibration": _calibration(derivation),
         "warnings": list(announcements(derivation)),
         "files": [str(path) for path in generation.files],
         "verification": {name: _report(r) for name, r in generation.reports.items()},
         "seconds": round(generation.seconds, 3),
     }
+
+
+def _calibration(derivation: Derivation) -> dict[str, Any] | None:
+    """The file of the arm's own kinematics, and how far that is off the model; None without one."""
+    found = derivation.reading.calibration
+    if found is None:
+        return None
+    return {"file": found.file.as_posix(), "m": found.off[0], "rad": found.off[1]}
 
 
 def _chosen(derivation: Derivation) -> dict[str, Any]:

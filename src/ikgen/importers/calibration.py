@@ -129,8 +129,8 @@ def row_offsets(path: Path, rows: int) -> tuple[dict[str, float], ...]:
         raise BadDescriptionError(
             f"no calibration of {rows} rows",
             file=str(path),
-            hint=f"write {rows} tables [[joints]] with the offsets alpha, a, d, theta (rad, m) of each "
-            "row, and nothing else; ikgen inspect shows the rows",
+            hint=f"write {rows} tables [[joints]], one a row in order, with what its alpha, a, d, theta "
+            "(rad, m) are off, none where that is nothing; ikgen inspect shows the rows",
         )
     return tuple(dict(_row(joint, i, path)) for i, joint in enumerate(joints, start=1))
 

@@ -7,17 +7,56 @@ closed form is that of the model's geometry, and Newton steps take its rows to t
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
-from ikgen.kinematics.file_frames import frames_of_chain, largest_deviation
+from ikgen.kinematics.axis_relations import reach
+from ikgen.kinematics.file_frames import (
+    frames_of_chain,
+    largest_deviation,
+    random_configurations,
+)
 from ikgen.kinematics.fixed_order import product
+from ikgen.kinematics.forward import file_forward, pose_difference
 from ikgen.kinematics.rigid import dh_link, read_only
 from ikgen.model.chain import Chain
 from ikgen.model.dh import DHChain
 
-__all__ = ["calibrated_dh", "offset_dh"]
+__all__ = ["Calibration", "calibrated_dh", "calibration_of", "offset_dh"]
+
+_FAR = 0.05
+"""From this angle on (rad; m by the arm's reach) a calibration is told to be far off: what is measured of
+arms is some 1e-3, 1e-2 at most, while a wrong sign, unit or angle is more."""
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """A calibration that was read: its file, how far (m, rad) the tip is off the model's at most, over
+    random configurations, and whether that is more than what is measured of arms."""
+
+    file: Path
+    off: tuple[float, float]
+    far: bool
+
+    @property
+    def words(self) -> str:
+        """One line."""
+        return f"{self.file}: up to {self.off[0]:.2g} m and {self.off[1]:.2g} rad off the model"
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What there is to warn of."""
+        why = "arms are measured to be off by some mm and 1e-3 rad: check its numbers and units"
+        return (f"{self.words}; {why}",) if self.far else ()
+
+
+def calibration_of(file: Path, model: DHChain, own: DHChain) -> Calibration:
+    """How far the arm's `own` chain is off that of its `model`, as the `file` has it."""
+    q = random_configurations(model)
+    off = pose_difference(file_forward(model, q), file_forward(own, q))
+    return Calibration(file, off, off[1] > _FAR or off[0] > _FAR * reach(model))
 
 
 def calibrated_dh(dh: DHChain, chain: Chain) -> DHChain:
