@@ -23,6 +23,7 @@ __all__ = [
     "UnsupportedJointError",
     "UsageError",
     "VerificationError",
+    "place_in",
     "shown",
 ]
 
@@ -34,6 +35,11 @@ _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 60
 def shown(value: object) -> str:
     """A value in a message: as Python writes it, cut where it is long."""
     return _SHORT.repr(value)
+
+
+def place_in(file: str, line: int | None) -> str:
+    """What a message about a place in a file begins with; "" where no file is known."""
+    return "" if not file else f"{file}:{line}: " if line else f"{file}: "
 
 
 class IkgenError(Exception):
@@ -66,8 +72,7 @@ class BadDescriptionError(IkgenError):
     def __init__(
         self, message: str, *, file: str = "", line: int | None = None, hint: str = ""
     ) -> None:
-        place = "" if not file else f"{file}:{line}: " if line else f"{file}: "
-        super().__init__(f"{place}{message}", hint=hint)
+        super().__init__(f"{place_in(file, line)}{message}", hint=hint)
         self.problem = message
         self.file = file
         self.line = line

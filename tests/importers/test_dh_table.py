@@ -301,3 +301,14 @@ def test_unknown_joints_are_listed(tmp_path: Path) -> None:
         read(tmp_path, table(GOOD), free=("theta_1",), locked={"theta_1": 0.0})
     with pytest.raises(BadDescriptionError, match="no such file"):
         read_dh_table(tmp_path / "none.toml")
+
+
+def test_names_without_numbers_are_told_with_those_of_the_code(tmp_path: Path) -> None:
+    row = '[[joints]]\ntype = "revolute"\nalpha = 0\na = "{}"\nd = 0\ntheta = 0\n'
+    rows = "".join(row.format(name) for name in ("a1", "a2", "l_3", "dt"))
+    path = tmp_path / "arm.toml"
+    path.write_text(f'name = "arm"\nconvention = "standard"\n[parameters]\na1 = 0.3\n{rows}')
+    source, dh = read_dh_table(path)
+    (said,) = (w for w in source.warnings if "symbols" in w)
+    words = "kept as symbols, without numbers: a2 (a_2 in code), dt (dt_ in code), l_3"
+    assert said == f"{path}: {words}" and set(dh.symbols) == {"a_2", "dt_", "l_3"}

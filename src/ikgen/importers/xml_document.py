@@ -11,7 +11,7 @@ from typing import Any
 
 from lxml import etree
 
-from ikgen.errors import BadDescriptionError
+from ikgen.errors import BadDescriptionError, place_in
 from ikgen.model.joint_tree import Source
 
 __all__ = [
@@ -64,7 +64,7 @@ class Place:
     def warn(self, element: Element, message: str) -> None:
         """Record an oddity that could be read anyway."""
         line = None if element is None else element.sourceline
-        self.warnings.append(f"line {line}: {message}" if line else message)
+        self.warnings.append(f"{place_in(self.file, line)}{message}")
 
 
 def shown_file(source: Source) -> str:

@@ -18,6 +18,7 @@ from ikgen.formulas.notation import show, symbol
 from ikgen.kinematics.kept import kept_constants
 from ikgen.model.dh import Angle, DHChain, DHRow, Length
 from ikgen.model.joint_tree import Matrix as Array
+from ikgen.model.joint_tree import Source
 from ikgen.report.document import Block, Formulas, Heading, Matrix, Paragraph, Rows, Text
 from ikgen.solver.solution_graph import SolutionGraph
 from ikgen.tasks import Task
@@ -39,9 +40,14 @@ def robot_section(reading: Reading, task: Task) -> list[Block]:
     values = _parameters(dh)
     if values:
         blocks.append(values)
-    blocks += [Paragraph((f"Note: {w}.",), note=True) for w in reading.source.warnings]
+    blocks += [Paragraph((f"Note: {w}.",), note=True) for w in _warnings(reading.source)]
     blocks += _ends(dh, task)
     return blocks + _kept(dh) + _snaps(dh)
+
+
+def _warnings(source: Source) -> list[str]:
+    """What was odd in the file, named without its folder: the report is the same wherever that lies."""
+    return [warning.replace(str(source.path), source.path.name) for warning in source.warnings]
 
 
 def _table(dh: DHChain) -> Rows:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ikgen.errors import BadDescriptionError
+from ikgen.errors import BadDescriptionError, place_in
 from ikgen.importers.dh.entry_expression import BadEntryError, evaluate, finite
 from ikgen.importers.dh.example_entry import read_example
 from ikgen.importers.dh.row_merge import Merged, merge, modified_rows
@@ -81,7 +81,7 @@ def _source(document: TableDocument, example: tuple[float, ...]) -> Source:
         text=document.text,
         sha256=hashlib.sha256(document.text.encode()).hexdigest(),
         dependencies=(document.path.resolve(),),
-        warnings=tuple(document.warnings),
+        warnings=tuple(f"{place_in(str(document.path), None)}{w}" for w in document.warnings),
         example=example,
     )
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ikgen.errors import UnknownNameError, UsageError
+from ikgen.importers.dh.constant_names import symbol_of
 from ikgen.importers.dh.entry_expression import BadEntryError, Quantity, evaluate, finite, number
 from ikgen.importers.dh.entry_limits import read_limits
 from ikgen.importers.dh.table_document import ENTRIES, TableDocument
@@ -159,11 +160,17 @@ def _check_parameters(
     symbols = sorted(
         {n for e in entries for k in ENTRIES for n, _ in getattr(e, k).terms} - set(parameters)
     )
-    names = [n for n in symbols if n.isidentifier()]
+    names = [_in_code(n) for n in symbols if n.isidentifier()]
     if names and parameters:
         document.warnings.append(f"kept as symbols, without numbers: {', '.join(names)}")
     if unused:
         document.warnings.append(f"parameters that no row uses: {', '.join(unused)}")
+
+
+def _in_code(name: str) -> str:
+    """A parameter without a number, and what it is called in emitted code, where that is another name."""
+    symbol = symbol_of(name)
+    return name if symbol == name else f"{name} ({symbol} in code)"
 
 
 def locked_entries(
