@@ -12,7 +12,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from ikgen.generation.codec import CodecError, Decoder, encode, inlined, uncoded
+from ikgen.generation.codec import CodecError, Decoder, encode, inlined, read_free, uncoded
 from ikgen.generation.request import Outputs, Request
 
 
@@ -114,3 +114,9 @@ def test_a_list_of_held_joints_and_arguments_of_any_kind() -> None:
 def test_samples_are_positive() -> None:
     with pytest.raises(CodecError, match="0 is less than 1"):
         Decoder(Path).table(Outputs, {"samples": 0}, "arm[0]")
+
+
+def test_held_joints_are_a_list_or_a_table() -> None:
+    assert read_free(["a"], "free") == {"a": None} and read_free({"a": 1}, "free") == {"a": 1}
+    with pytest.raises(CodecError, match=r"^free: 'a' is neither a list of joints nor a table"):
+        read_free("a", "free")

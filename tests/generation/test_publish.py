@@ -148,6 +148,12 @@ def test_a_folder_that_cannot_be_written_is_refused_at_once(tmp_path: Path) -> N
             check_folder(out)
 
 
+@pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="needs /proc")
+def test_where_nobody_can_make_a_folder() -> None:
+    with pytest.raises(UsageError, match=r"cannot write to '/proc'|no permission"):
+        check_folder(Path("/proc/out"))
+
+
 @pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="needs a user without all rights")
 def test_a_folder_without_permission(tmp_path: Path) -> None:
     (tmp_path / "locked").mkdir(mode=0o500)

@@ -63,6 +63,10 @@ def read_free(value: Any, where: str) -> Any:
     """Held joints: a list of names stands for a table without values."""
     if isinstance(value, list):
         return {str(name): None for name in value}
+    if value is not None and not isinstance(value, Mapping):
+        raise CodecError(
+            where, f"{value!r} is neither a list of joints nor a table of their values"
+        )
     return value
 
 

@@ -14,6 +14,8 @@ from ikgen.processes.scratch_folder import ScratchFolder
 
 __all__ = ["Content", "check_folder", "content_digest", "left_over", "publish", "write_texts"]
 
+_TRIAL = ".ikgen-trial-"
+
 Content = str | bytes
 """What a file holds: text (written as UTF-8, lines ended by a line feed) or bytes as they are."""
 
@@ -27,6 +29,7 @@ def check_folder(out: Path) -> None:
         raise UsageError(
             f"-o {out}: no permission to write to '{there}'", hint="name another folder"
         )
+    ScratchFolder(_TRIAL, there).close()  # file systems like /proc let nobody make anything
 
 
 def publish(out: Path, files: Mapping[str, Content], gone: Iterable[Path] = ()) -> tuple[Path, ...]:

@@ -83,7 +83,7 @@ class ScratchFolder:
 def _unwritable(place: Path | None, error: OSError) -> UsageError:
     """What to say where nothing more can be written to a place: the system's words name none."""
     where = place or os.environ.get("TMPDIR") or "/tmp"
-    hint = "make room there" if place else "make room there, or set TMPDIR"
+    hint = "make room there, or name another folder" if place else "make room there, or set TMPDIR"
     return UsageError(f"cannot write to '{where}': {error.strerror or error}", hint=hint)
 
 

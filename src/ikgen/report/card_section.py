@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 
 from ikgen.emit.derivation import Reading
+from ikgen.importers.named_robots import is_named
 from ikgen.kinematics.classify import GeometryClass
 from ikgen.model.chain import REVOLUTE, ActuatedJoint
 from ikgen.report.document import Block, Card, Heading, Picture, Text
@@ -42,7 +43,8 @@ def card_section(
     ]
     facts += [("held", (", ".join(dh.free),))] if dh.free else []
     facts += [(f"verified, {name}", (_verdict(report),)) for name, report in reports.items()]
-    facts += [("limits", (_limits(dh.joints),)), ("make it again", (command_again(reading, task),))]
+    again = "make it again" + ("" if is_named(reading.source.path) else ", where the file lies")
+    facts += [("limits", (_limits(dh.joints),)), (again, (command_again(reading, task),))]
     caption = "Joint axes dashed, lengths as in the formulas; x axes red, z axes blue"
     kept = tuple((name, text) for name, text in facts if text != ("",))
     return [
