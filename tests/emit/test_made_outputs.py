@@ -219,3 +219,5 @@ def test_what_was_chosen_to_be_held_is_said_with_what_came_next() -> None:
     assert both.words == (
         "holding q1 and q3: why with them held; others: q2, q4 and q5; failed verification: q6"
     )
+    behind = replace(both, refused=(), behind=("a narrower range", ""))
+    assert behind.words.endswith("; others: q2 (a narrower range), q4 and q5")

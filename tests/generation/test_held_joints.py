@@ -62,6 +62,19 @@ def test_every_choice_leaves_the_task_to_do(tmp_path: Path) -> None:
     assert keys == sorted(keys) and keys[0] == 0
 
 
+def test_what_puts_a_choice_behind_is_its_class_first() -> None:
+    choices = held_choices(read(Request(FR3)), find_task("pose"))
+    reasons = {choice.words: choice.behind(choices[0]) for choice in choices[1:]}
+    assert reasons["fr3_joint6"] == reasons["fr3_joint4"] == "a narrower range"
+    assert reasons["fr3_joint5"] == "position apart from rotation, a quartic"
+    assert choices[0].behind(choices[1]) == ""
+    alike = dataclasses.replace(choices[0], condition=choices[0].condition / 2)
+    assert alike.behind(choices[0]) == "worse conditioned"
+    assert choices[0].ranking.startswith(
+        "class: position apart from rotation, two branches a step; "
+    )
+
+
 def test_nothing_is_held_where_no_joint_is_spare() -> None:
     assert held(Request(ROOT / "urdf_fixtures/abb_irb2400.urdf")) == []
     assert held(Request(FR3, free={"fr3_joint3": None})) == []

@@ -305,7 +305,7 @@ def test_unknown_joints_are_listed(tmp_path: Path) -> None:
 
 def test_names_without_numbers_are_told_with_those_of_the_code(tmp_path: Path) -> None:
     row = '[[joints]]\ntype = "revolute"\nalpha = 0\na = "{}"\nd = 0\ntheta = 0\n'
-    rows = "".join(row.format(name) for name in ("a1", "a2", "l_3", "dt"))
+    rows = "".join(row.format(name) for name in ("a1", "a2", "l_3", "dt", "0"))
     path = tmp_path / "arm.toml"
     path.write_text(f'name = "arm"\nconvention = "standard"\n[parameters]\na1 = 0.3\n{rows}')
     source, dh = read_dh_table(path)

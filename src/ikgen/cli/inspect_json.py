@@ -61,6 +61,7 @@ def _attempt(attempt: Attempt) -> dict[str, Any]:
         "left": list(attempt.left),
         "options": attempt.options,
         "default": attempt.default,
+        "ranking": attempt.ranking or None,
     }
 
 

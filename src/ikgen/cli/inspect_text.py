@@ -116,6 +116,7 @@ def _proposal(attempt: Attempt) -> list[str]:
     closed = "closed form" if not attempt.weak else "closed form with a weak step"
     lines = [f"  {options}: {closed}, at most {attempt.max_solutions} solutions"]
     lines.append(f"      {'; '.join(attempt.order)}")
+    lines += [f"      ranked by {attempt.ranking}"] if attempt.ranking else []
     if attempt.weak:
         lines.append(
             f"      weak: {', '.join(attempt.weak)} fails at some regular configurations, with no other "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import zip_longest
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -36,22 +37,25 @@ class Reading:
 
 @dataclass(frozen=True, slots=True)
 class Held:
-    """Joints that were chosen to be held, base to tip, why, the choices that came next, and those before
-    that the verification refused."""
+    """Joints that were chosen to be held, base to tip, why, the choices that came next, those before that
+    the verification refused, and what put each of the `others` behind ("" where that is not known)."""
 
     joints: tuple[str, ...]
     why: str
     others: tuple[tuple[str, ...], ...] = ()
     refused: tuple[tuple[str, ...], ...] = ()
+    behind: tuple[str, ...] = ()
 
     @property
     def words(self) -> str:
         """One line."""
         it = "it" if len(self.joints) == 1 else "them"
         line = f"holding {' and '.join(self.joints)}: {self.why} with {it} held"
-        for kind, names in (("others", self.others), ("failed verification", self.refused)):
-            if names:
-                line += f"; {kind}: {', '.join(' and '.join(together) for together in names)}"
+        told = (("others", self.others, self.behind), ("failed verification", self.refused, ()))
+        for kind, names, reasons in told:
+            words = zip_longest(map(" and ".join, names), reasons, fillvalue="")
+            listed = [f"{name} ({reason})" if reason else name for name, reason in words]
+            line += f"; {kind}: {', '.join(listed)}" if listed else ""
         return line
 
 

@@ -38,7 +38,8 @@ class Attempt:
     asked for), and what came of it. `weak` says of each step that fails at some regular configurations
     which it is: such a closed form is verified before it is written, and may be refused then. `implied`
     says whether the task goes without saying, `default` whether this is what is made without options. `dh`
-    are the rows that it solves: the file's, or those of geometry nearby that a closed form needs."""
+    are the rows that it solves: the file's, or those of geometry nearby that a closed form needs; `ranking`
+    is what the joints to hold were ranked by, in order."""
 
     task: str
     free: tuple[str, ...]
@@ -51,6 +52,7 @@ class Attempt:
     implied: bool = True
     default: bool = False
     dh: DHChain | None = field(default=None, compare=False, repr=False)
+    ranking: str = ""
 
     @property
     def rank(self) -> tuple[bool, bool, int, bool, int]:
@@ -132,7 +134,7 @@ def _attempts_held(
     others = [pair for pair in tried if taken is None or pair[0].held != taken[0].held]
     forms = [(choice, as_written(form, demand)) for choice, form in others]
     found = [
-        replace(attempt(form, demand.progress), held=choice.held)
+        replace(attempt(form, demand.progress), held=choice.held, ranking=choice.ranking)
         for choice, form in (forms if taken is None else [taken, *forms])
     ]
     first = replace(found[0], default=found[0].closed and bool(found[0].held))

@@ -199,8 +199,10 @@ def _explained(
         why = f"closed form by rules ({FORM_WORDS[taken.form]})"
     else:
         why = "closed form by rules, with a weak step,"
-    others = dict.fromkeys(choice.held for choice in choices if choice.held != taken.held)
-    return replace(form, held=Held(taken.held, why, tuple(others)[:_OTHERS], refused))
+    others = [choice for choice in choices if choice.held != taken.held][:_OTHERS]
+    behind = tuple(choice.behind(taken) for choice in others)
+    held = Held(taken.held, why, tuple(choice.held for choice in others), refused, behind)
+    return replace(form, held=held)
 
 
 def as_written(form: ClosedForm, demand: Demand) -> ClosedForm:

@@ -50,6 +50,26 @@ class HeldChoice:
         """Their names."""
         return " and ".join(self.held)
 
+    @property
+    def ranking(self) -> str:
+        """What the choice is ranked by, in order."""
+        from ikgen.kinematics.form_class import FORM_WORDS
+
+        near = ", of the geometry nearby" if self.near else ""
+        measures = f"held range {self.span:.2g}; conditioning {self.condition:.2g}"
+        return f"class: {FORM_WORDS[self.form]}{near}; {measures}"
+
+    def behind(self, taken: HeldChoice) -> str:
+        """What puts it behind the choice that was taken; "" where it was before that."""
+        from ikgen.kinematics.form_class import FORM_WORDS
+
+        if (self.form, self.near) != (taken.form, taken.near):
+            later = (self.form, self.near) > (taken.form, taken.near)
+            return FORM_WORDS[self.form] if later else ""
+        if self.span < taken.span:
+            return "a narrower range"
+        return "worse conditioned" if self.condition < taken.condition else ""
+
 
 def nearby(reading: Reading) -> DHChain | None:
     """The chain in DH form with short offsets taken as zero; None for a table."""
