@@ -30,7 +30,10 @@ _NEAR = (
     1e-8  # rad or m: how far off the curve what is left, whose error is the square, is the curve's
 )
 _ALMOST, _SAME = 1e-3, 4e-15  # or how close it must be where what is left is the same after a step
-_STRAY = 1.0  # rad, or m as far as the arm is large: what corrections are less than where a curve is near
+_STRAY, _ASTRAY = (
+    1.0,
+    4,
+)  # rad or m: larger corrections of so many samples show that no curve is near
 _WAY = 1e-10  # rad or m: along it, by which what is left varies by round-off
 _ROUND_OFF, _SMALL, _DOUBT, _BESIDE, _SAME_WAY = 1e-15, 4e-15, 0.03, 0.06, 0.9
 
@@ -95,10 +98,10 @@ def _traced(arm: Arm, q: Array, T: Array) -> Traced:
     nothing, still = np.zeros(count), still_directions(arm, slope)
     unknown = 0.1 * generic(count, error.shape[1])  # shorter than what has a sense
     start = Reduced(q, still, unknown, nothing, nothing)
-    first, near = _sampled(arm, start, T)
+    first = _sample(arm, start, T)
     back = first._replace(still=-first.still, out=-first.out, left=-first.left)
-    parts, closed, worst = _follow(arm, first, T, np.flatnonzero(near), 0.0)
-    open_ends = np.flatnonzero(near & ~closed)
+    parts, closed, worst = _follow(arm, first, T, np.arange(count), 0.0)
+    open_ends = np.flatnonzero(~closed)
     more, _, largest = _follow(arm, back, T, open_ends, float(_MOST))
     worst = np.maximum(np.maximum(worst, largest), np.abs(first.left))
     parts = joined(*parts, *more)
@@ -115,16 +118,16 @@ def _sample(arm: Arm, at: Reduced, T: Array) -> Reduced:
 
 
 def _sampled(arm: Arm, at: Reduced, T: Array) -> tuple[Reduced, Flags]:
-    """`_sample`; and which have a curve near (k,)."""
+    """`_sample`; and which seem to have a curve near (k,)."""
     at, near = Reduced(*(x.copy() for x in at)), np.ones(len(T), dtype=bool)
     going, before = np.arange(len(T)), np.full(len(T), np.inf)
     for _ in range(_CORRECTIONS):
         moved, farthest = correct(arm, some_of(at, going), T[going])
         for whole, part in zip(at, moved):
             whole[going] = part
-        near[going] = farthest < _STRAY * max(1.0, arm.task.size)
+        near[going] &= farthest < _STRAY
         same = (np.abs(moved.left - before) < _SAME) & (farthest < _ALMOST)
-        on = ~((farthest < _NEAR) | same) & near[going]
+        on = ~((farthest < _NEAR) | same)
         going, before = going[on], moved.left[on]
         if not len(going):
             break
@@ -138,20 +141,21 @@ def _follow(
     back to where they began, and the most (k,) that is left."""
     closed, worst = np.zeros(len(T), dtype=bool), np.zeros(len(T))
     parts, moving, owner = [], list(arm.moving), some
-    b = some_of(first, some)
+    b, astray = some_of(first, some), np.zeros(len(some), dtype=np.intp)
     before = b.still
     for step in range(_MOST):
         ahead, course = b.q.copy(), 1.5 * b.still - 0.5 * before
         ahead[:, moving] += arm.policy.try_step * course / np.abs(course).max(axis=1)[:, None]
         c, near = _sampled(arm, b._replace(q=ahead), T[owner])
-        on = (np.abs(c.left) < arm.policy.fold_reach) & near
-        b, c, owner = some_of(b, on), some_of(c, on), owner[on]
+        astray = np.where(near, 0, astray + 1)
+        on = (np.abs(c.left) < arm.policy.fold_reach) & (astray < _ASTRAY)
+        b, c, owner, astray = some_of(b, on), some_of(c, on), owner[on], astray[on]
         worst[owner] = np.maximum(worst[owner], np.abs(c.left))
         parts.append(_Parts(b, c, owner, np.full(len(owner), place + step), np.ones(len(owner))))
         round_about = _back(arm, some_of(first, owner), b) & (step > 1)
         closed[owner[round_about]] = True
         before = b.still[~round_about]
-        b, owner = some_of(c, ~round_about), owner[~round_about]
+        b, owner, astray = (some_of(c, ~round_about), *(x[~round_about] for x in (owner, astray)))
         if not len(owner):
             break
     closed[owner] = True
