@@ -14,6 +14,9 @@ from tests.support.solving import emitted, solver_module
 
 from ikgen.emit.solver_module import CLOSE
 from ikgen.generation.as_written import solve_as_written
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
+from ikgen.kinematics.kept import kept_constants
 from ikgen.kinematics.modified_dh import to_dh
 from ikgen.model.chain import Chain
 from ikgen.model.dh import DHChain
@@ -112,3 +115,23 @@ def test_stretched_arm_with_singular_wrist_is_reached(wrist: float, tmp_path: Pa
         rows = list(module.solve(T, limits=False))
         assert rows
         assert max(np.abs(module.forward(row) - T).max() for row in rows) < 1e-9
+
+
+def test_what_the_tool_is_off_is_no_axis(tmp_path: Path) -> None:
+    """The file's rounding of a fixed link behind the last joint stays there: the rows are exact."""
+    joints = (
+        ("pan", "continuous", "0 0 0.6", "0 0 0", "0 0 1"),
+        ("tilt", "continuous", "0.05 0.03 0.1", "0 0 0", "0 1 0"),
+        ("telescope", "prismatic", "0.1 0 0.04", "0 0 0", "1 0 0"),
+        ("lens_fix", "fixed", "0.05 0 0", "-1.5708 0 -1.5708", "1 0 0"),
+    )
+    text = '<robot name="pantilt"><link name="link0"/>'
+    for i, (name, kind, xyz, rpy, axis) in enumerate(joints):
+        text += f"""<link name="link{i + 1}"/><joint name="{name}" type="{kind}">
+          <parent link="link{i}"/><child link="link{i + 1}"/><origin xyz="{xyz}" rpy="{rpy}"/>
+          <axis xyz="{axis}"/><limit lower="0" upper="0.5"/></joint>"""
+    path = tmp_path / "pantilt.urdf"
+    path.write_text(f"{text}</robot>")
+    dh = derive(Request(path)).reading.dh
+    assert dh.deviation == (0.0, 0.0) and not dh.snaps and not kept_constants(dh)
+    assert [row.d.name for row in dh.rows] == 3 * [None] and dh.rows[2].offset.value == 0.0

@@ -54,10 +54,13 @@ def _labels(graph: SolutionGraph) -> frozenset[str]:
 
 def _written(dh: DHChain) -> Iterator[DHChain]:
     """The rows with as many constants as the file has them as may be, most first."""
-    from ikgen.kinematics.kept import keep_constants, stray_lengths
+    from ikgen.kinematics.kept import keep_constants, keep_ends, stray_lengths
 
     off = max(dh.deviation)
     enough = CLOSE if off > CLOSE else _ROUND_OFF
+    ends = keep_ends(dh)
+    if max(ends.deviation) <= _ROUND_OFF:  # no axis is off: only base and tool were taken as exact
+        yield ends
     strays = stray_lengths(dh)
     if strays:
         whole = keep_constants(dh, strays)

@@ -19,7 +19,7 @@ from ikgen.kinematics.rigid import inverse
 from ikgen.kinematics.snapping import WRITTEN_IN_FULL, exact_angle, tidy, wrap_angle
 from ikgen.model.dh import Angle, DHChain, DHRow, Length, Snap
 
-__all__ = ["keep_constants", "kept_constants", "stray_lengths"]
+__all__ = ["keep_constants", "keep_ends", "kept_constants", "stray_lengths"]
 
 _NOISE = 1e-13
 """Changes (rad or m) up to this leave a constant exact that costs operations: pi/2 in twelve digits."""
@@ -53,6 +53,16 @@ def keep_constants(dh: DHChain, strays: frozenset[Constant] = frozenset()) -> DH
     exact = max(kept.deviation) <= WRITTEN_IN_FULL
     left = () if exact else tuple(s for s in dh.snaps if s.after == 0.0)
     return replace(kept, snaps=left)
+
+
+def keep_ends(dh: DHChain) -> DHChain:
+    """`dh` with the base and the tool as near to the file's chain as can be, and the rows as they are."""
+    fitted = fit_rows(dh, end_motions(dh))
+    ends = fitted.X_base, fitted.X_tip
+    frames = frames_beside(dh, dh.rows, ends)
+    kept = replace(dh, X_base=ends[0], X_tip=ends[1], file_frames=frames)
+    kept = replace(kept, deviation=largest_deviation(kept))
+    return replace(kept, snaps=() if max(kept.deviation) <= WRITTEN_IN_FULL else dh.snaps)
 
 
 def kept_constants(dh: DHChain) -> tuple[Snap, ...]:
