@@ -2037,6 +2037,10 @@ _NEAR = (
     1e-8  # rad or m: how far off the curve what is left, whose error is the square, is the curve's
 )
 _ALMOST, _SAME = 1e-3, 4e-15  # or how close it must be where what is left is the same after a step
+_STRAY, _ASTRAY = (
+    1.0,
+    4,
+)  # rad or m: larger corrections of so many samples show that no curve is near
 _WAY = 1e-10  # rad or m: along it, by which what is left varies by round-off
 _near_continuum_ROUND_OFF, _SMALL, _DOUBT, _near_continuum_BESIDE, _SAME_WAY = 1e-15, 4e-15, 0.03, 0.06, 0.9
 
@@ -2113,18 +2117,24 @@ def _traced(arm: _Arm, q: Array, T: Array) -> _Traced:
 
 def _sample(arm: _Arm, at: _Reduced, T: Array) -> _Reduced:
     """The configurations of the curves beside some (k,)."""
-    at = _Reduced(*(x.copy() for x in at))
+    return _sampled(arm, at, T)[0]
+
+
+def _sampled(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, _Flags]:
+    """`_sample`."""
+    at, near = _Reduced(*(x.copy() for x in at)), np.ones(len(T), dtype=bool)
     going, before = np.arange(len(T)), np.full(len(T), np.inf)
     for _ in range(_CORRECTIONS):
         moved, farthest = _correct(arm, _some_of(at, going), T[going])
         for whole, part in zip(at, moved):
             whole[going] = part
+        near[going] &= farthest < _STRAY
         same = (np.abs(moved.left - before) < _SAME) & (farthest < _ALMOST)
         on = ~((farthest < _NEAR) | same)
         going, before = going[on], moved.left[on]
         if not len(going):
             break
-    return at
+    return at, near
 
 
 def _follow(
@@ -2133,20 +2143,21 @@ def _follow(
     """On from some samples, the fastest joint by `policy.try_step` from one to the next."""
     closed, worst = np.zeros(len(T), dtype=bool), np.zeros(len(T))
     parts, moving, owner = [], list(arm.moving), some
-    b = _some_of(first, some)
+    b, astray = _some_of(first, some), np.zeros(len(some), dtype=np.intp)
     before = b.still
     for step in range(_near_continuum_MOST):
         ahead, course = b.q.copy(), 1.5 * b.still - 0.5 * before
         ahead[:, moving] += arm.policy.try_step * course / np.abs(course).max(axis=1)[:, None]
-        c = _sample(arm, b._replace(q=ahead), T[owner])
-        on = np.abs(c.left) < arm.policy.fold_reach
-        b, c, owner = _some_of(b, on), _some_of(c, on), owner[on]
+        c, near = _sampled(arm, b._replace(q=ahead), T[owner])
+        astray = np.where(near, 0, astray + 1)
+        on = (np.abs(c.left) < arm.policy.fold_reach) & (astray < _ASTRAY)
+        b, c, owner, astray = _some_of(b, on), _some_of(c, on), owner[on], astray[on]
         worst[owner] = np.maximum(worst[owner], np.abs(c.left))
         parts.append(_Parts(b, c, owner, np.full(len(owner), place + step), np.ones(len(owner))))
         round_about = _back(arm, _some_of(first, owner), b) & (step > 1)
         closed[owner[round_about]] = True
         before = b.still[~round_about]
-        b, owner = _some_of(c, ~round_about), owner[~round_about]
+        b, owner, astray = (_some_of(c, ~round_about), *(x[~round_about] for x in (owner, astray)))
         if not len(owner):
             break
     closed[owner] = True
