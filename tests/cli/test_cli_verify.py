@@ -141,7 +141,7 @@ def test_a_table_without_numbers_is_not_passed(
     said = capsys.readouterr()
     assert "arm: right (python 20 poses" in said.out and ": NOT CHECKED" in said.out
     assert "not checked: no numbers for a_2, d_3, a_3, d_4\n" in said.err
-    assert "hint: give them under [parameters] of puma.toml, then ikgen from-dh " in said.err
+    assert "by the table's names, under [parameters] of puma.toml, then ikgen from-dh " in said.err
     with (project / "puma.toml").open("a") as stream:
         stream.write("# a remark\n")
     assert check("table") == 2

@@ -76,7 +76,8 @@ def test_a_robots_name_may_come_from_an_argument_declared_below(file):
 def test_an_argument_that_nothing_takes_is_a_warning(file):
     write(file, '<xacro:arg name="side" default="left"/>')
     tree = load_tree(file, arguments={"sied": "right"})
-    assert tree.source.warnings == ("argument 'sied' is not used by the file; it takes: side",)
+    words = "argument 'sied' is not used by the file; it takes: side"
+    assert tree.source.warnings == (f"{file}: {words}",)
 
 
 def test_expressions_yaml_units_and_environment(file, monkeypatch):

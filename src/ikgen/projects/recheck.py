@@ -127,7 +127,7 @@ def _checked(record: Record, reading: Reading, run: _Run) -> Recheck:
         missing = Finding(
             record.path,
             f"not checked: no numbers for {blanks}",
-            f"give them under [parameters] of {record.request.robot}, then {fix}",
+            f"give them, by the table's names, under [parameters] of {record.request.robot}, then {fix}",
             exit_code=2,
         )
         # what cannot run cannot show that only a remark changed

@@ -87,7 +87,7 @@ def expand(
     warnings = list(session.warnings)
     for name in sorted(set(arguments) - known.used):
         declared = ", ".join(sorted(known.used)) or "none"
-        warnings.append(f"argument '{name}' is not used by the file; it takes: {declared}")
+        warnings.append(f"{path}: argument '{name}' is not used by the file; it takes: {declared}")
     dependencies = dict.fromkeys((top, *(included.resolve() for included in session.includes)))
     urls = {i.resolve(): url for i in session.includes if (url := finder.url(i)) is not None}
     return Expansion(
