@@ -10,7 +10,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tests.support.held_arms import HELD, held_module, held_of, on_limits
+from tests.support.held_arms import HELD, held_module, held_of, lift_scara, on_limits
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
 from tests.support.sampled import sampled
 from tests.support.solving import NO_COMPILER, import_text, solver_module
@@ -32,7 +32,9 @@ Array = NDArray[np.float64]
 
 PROGRAM = r"""
 #include "@_ik.hpp"
+#include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <vector>
 namespace ik = @_ik;
 int main() {
@@ -61,8 +63,10 @@ int main() {
     }
     if (mode == 4) {
       std::vector<ik::Joints, Eigen::aligned_allocator<ik::Joints>> q(n);
-      const ik::Path path = ik::follow(poses.data(), n, seed, q.data());
-      out = {double(path.status), double(path.reached)};
+      const auto singular = std::make_unique<bool[]>(n);
+      const ik::Path path = ik::follow(poses.data(), n, seed, q.data(), true, singular.get());
+      const auto flags = std::count(&singular[0], &singular[0] + n, true);
+      out = {double(path.status), double(path.reached), double(flags)};
       for (int i = 0; i < path.reached; ++i) out.insert(out.end(), q[i].data(), q[i].data() + ik::kDof);
     }
     if (mode == 5) {
@@ -100,6 +104,11 @@ class Both:
         ).stdout
         values = np.array(text.split(), dtype=float)
         return STATUS[int(values[0])], values[2:]
+
+    def follow(self, start: Array, poses: Array) -> tuple[str, int, Array]:
+        """Status, how many rows are singular, and the rows."""
+        status, numbers = self.run(4, start, poses)
+        return status, int(numbers[0]), numbers[1:].reshape(-1, self.arm.DOF)
 
 
 OFTEN = ("torso", "rounded_arm_angle", "ur5e")
@@ -242,10 +251,23 @@ def test_paths(both: Both) -> None:
         axis = rng.normal(size=3)
         turns = rotation_about(axis / np.linalg.norm(axis), 0.03 * np.arange(15))
         poses[:, :3, :3] = turns @ poses[0, :3, :3]
-        status, numbers = both.run(4, q, poses)
+        status, _, rows = both.follow(q, poses)
         path = arm.follow(poses, start=q)
-        rows = numbers.reshape(-1, arm.DOF)
         assert (status, len(rows)) == (path.status.value, path.reached)
         assert np.abs(rows - path.q[: path.reached]).max() < 1e-6
         seen += path.reached
     assert seen > 15
+
+
+def test_paths_past_a_stretched_elbow(tmp_path: Path) -> None:
+    """With a joint held, and more joints than freedoms: singular there and nowhere else."""
+    both = in_both(lift_scara(tmp_path), tmp_path)
+    start, end = (
+        np.array([0.27, 0.91, -0.42, 0.09, 0.98]),
+        np.array([0.48, -0.06, 0.57, 0.07, 0.52]),
+    )
+    for count in (60, 200, 501):
+        poses = both.arm.forward(start + np.linspace(0.0, 1.0, count)[:, None] * (end - start))
+        status, flags, rows = both.follow(start, poses)
+        assert status == "OK" and flags <= 2
+        assert np.abs(rows - both.arm.follow(poses, start=start).q).max() < 1e-6

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tests.support.held_arms import imported
+from tests.support.held_arms import imported, lift_scara
+from tests.support.solving import import_text
+
+from ikgen.emit.python.python_emitter import emit_module
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
@@ -169,3 +173,26 @@ def test_a_start_elsewhere_leads_to_the_nearest_row(redundant: ModuleType) -> No
     path = redundant.follow(pose[None], start=start + 0.4)
     nearest = redundant.search(pose, seed=start + 0.4).q[0]
     assert path.reached == 1 and np.abs(path.q[0] - nearest).max() < 1e-9
+
+
+@pytest.mark.parametrize("count", [60, 200, 501])
+def test_a_stretched_elbow_is_passed_with_joints_held(
+    redundant: ModuleType, tmp_path: Path, count: int
+) -> None:
+    """The rows on both sides meet there; the arm is singular there and nowhere else."""
+    scara = import_text(emit_module(lift_scara(tmp_path)), tmp_path)
+    share = np.linspace(0.0, 1.0, count)[:, None]
+    for arm, start, end in (
+        (scara, [0.27, 0.91, -0.42, 0.09, 0.98], [0.48, -0.06, 0.57, 0.07, 0.52]),
+        (scara, [0.2, 0.9, -0.4, 0.19, 0.2], [0.5, 0.3, 0.4, 0.02, 0.5]),
+        (redundant, [0.2, 0.6, 0.1, -0.3, 0.2, 0.7, 0.1], [0.5, 0.3, 0.4, 0.4, 0.3, 0.9, 0.4]),
+        (redundant, [-0.9, 0.8, 0.7, 0.2, 0.9, -0.7, 0.3], [-0.4, 1.1, 0.3, -0.5, 0.6, -1.0, 0.7]),
+    ):
+        motion = np.array(start) + share * (np.array(end) - np.array(start))
+        poses = along(arm, motion)
+        path = arm.follow(poses, start=start)
+        assert path.status is arm.Status.OK
+        entries = np.s_[:, :3, [0, 3]] if arm is scara else np.s_[:]
+        assert np.abs(arm.forward(path.q)[entries] - poses[entries]).max() < 1e-9
+        stretched = np.abs(path.q[:, arm.JOINT_NAMES.index("elbow")]) < 2.0 / count
+        assert not path.singular[~stretched].any()

@@ -464,6 +464,7 @@ template <class A> struct AllMoving : A {
   static constexpr int kFree = 0;
   static constexpr std::array<int, 0> kFreeJoints = {};
   static constexpr bool kHeld[A::kDof] = {}, kArmAngle = false;
+  static constexpr int kRank = A::kDof - A::kFree;  // freedoms that the task fixes, or all if these are less
 };
 
 // --- held aim ------------------------------------------------------------------------------------
@@ -1639,6 +1640,20 @@ template <class Arm> struct PoseEntries {
       }
     }
   }
+
+  template <class X, class Tip> static void fill(const Tip& T, double weight, X (&S)[kCount][kCount]) noexcept {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j <= i; ++j) {
+        if (!Arm::Columns::has(i) || !Arm::Columns::has(j)) continue;
+        X still[kCount];
+        for (int a = 0; a < kCount; ++a) {
+          const auto [r, c] = Arm::kRead[a];
+          still[a] = c == i ? T.R[r][j] : c == j ? T.R[r][i] : X{};
+        }
+        for (int a = 0; a < kCount; ++a)
+          for (int b = 0; b < kCount; ++b) S[a][b] = S[a][b] + weight * still[a] * still[b];
+      }
+  }
 };
 
 // --- nearest row ---------------------------------------------------------------------------------
@@ -2227,14 +2242,18 @@ template <class A, int N> struct LeastSingularValue {
           S[a][b] = S[a][b] + (kByRows ? slope[a][k] * slope[b][k] : slope[k][a] * slope[k][b]);
         S[b][a] = S[a][b];
       }
+    if constexpr (kDependent) A::Task::fill(T, kFar, S);
     Pack diagonal[kOrder], squares[kOrder];
     reduce(S, diagonal, squares);
     return sqrt(least_root(diagonal, squares));
   }
 
  private:
-  static constexpr int kRows = A::Task::kCount, kOrder = A::kDof < kRows ? A::kDof : kRows, kSteps = 40;
+  static constexpr int kRows = A::Task::kCount, kLess = A::kDof < kRows ? A::kDof : kRows, kSteps = 40;
+  static constexpr bool kDependent = AllMoving<A>::kRank < kLess;  // rows
+  static constexpr int kOrder = kDependent ? kRows : kLess;
   static constexpr bool kByRows = kOrder == kRows;
+  static constexpr double kFar = 1e4;  // above the least
 
   static void reduce(Pack (&S)[kOrder][kOrder], Pack (&diagonal)[kOrder], Pack (&squares)[kOrder]) noexcept {
     squares[0] = spread<N>(0.0);
@@ -2394,9 +2413,14 @@ template <class A, class Solver> struct PathStep {
 
   Status next_row(const Eigen::Isometry3d& pose, [[maybe_unused]] const double* expected, double* row,
                   bool& singular) const noexcept {
+    return closed_form(pose, q, expected, row, singular);
+  }
+
+  static Status closed_form(const Eigen::Isometry3d& pose, const double* near, const double* expected, double* row,
+                            bool& singular) noexcept {
     typename A::Options options;
     typename A::Joints seed;
-    std::copy_n(q, kDof, seed.data());
+    std::copy_n(near, kDof, seed.data());
     options.seed = &seed;
     options.limits = false;
     typename A::Solutions found;

@@ -502,6 +502,11 @@ class _Arm:
     around: _Around | None = None
 
     @property
+    def rank(self) -> int:
+        """How many freedoms the task fixes, or the arm has if these are less."""
+        return len(self.lower) - len(self.free_joints)
+
+    @property
     def rounded(self) -> bool:
         """Whether the closed form is of another geometry than the file's."""
         return self.together is not None
@@ -616,9 +621,10 @@ def _damped(square: Array, damping: Array | float) -> Array:
     return np.asarray(square + enough[:, None, None] * np.eye(square.shape[2]))
 
 
-def _least_singular(slope: Array) -> Array:
-    """Smallest singular value (k,) of derivatives (k, m, n)."""
-    return np.asarray(np.linalg.svd(slope, compute_uv=False)[:, -1])
+def _least_singular(slope: Array, rank: int | None = None) -> Array:
+    """Smallest singular value (k,) of derivatives (k, m, n), or the `rank`-th."""
+    values = np.linalg.svd(slope, compute_uv=False)
+    return np.asarray(values[:, values.shape[1] - 1 if rank is None else rank - 1])
 
 
 # Newton's method on all of what an arm's rows are refined towards.
@@ -2491,7 +2497,7 @@ def _preference_costs(
     flat = q.reshape(-1, q.shape[-1])
     pose, J = _tip_and_jacobian(arm.chain, flat)
     J[:, :3] *= arm.task.size  # rows are over it
-    least = np.linalg.svd(arm.task.rows(pose, J), compute_uv=False)[:, -1]
+    least = np.linalg.svd(arm.task.rows(pose, J), compute_uv=False)[:, arm.rank - 1]
     return q, np.asarray(-least.reshape(q.shape[:2])), inside
 
 

@@ -9,6 +9,7 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 from tests.support.redundant_arms import (
+    LIFT_SCARA,
     OFFSET_ELBOW,
     SHOULDER_ELBOW_WRIST,
     TORSO,
@@ -18,10 +19,11 @@ from tests.support.solving import FIXTURES, import_text, solver_module
 
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.solver_module import SolverModule
+from ikgen.generation.derive import derive
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
 
-__all__ = ["HELD", "held_limits", "held_module", "held_of", "imported", "on_limits"]
+__all__ = ["HELD", "held_limits", "held_module", "held_of", "imported", "lift_scara", "on_limits"]
 
 HELD: dict[str, tuple[str, ...]] = {
     "shoulder_elbow_wrist": ("wrist_roll",),
@@ -79,6 +81,13 @@ def held_module(name: str, folder: Path) -> SolverModule:
     ends = {"base": "fr3_link0", "tip": "fr3_hand_tcp"} if name == "franka_fr3" else {}
     request = Request(path, **ends, free=dict.fromkeys(HELD[name]))
     return replace(solver_module(read(request).dh), name=name)
+
+
+def lift_scara(folder: Path) -> SolverModule:
+    """The solver module of a SCARA arm on a lift."""
+    path = folder / "lift_scara.urdf"
+    path.write_text(serial_urdf("lift_scara", LIFT_SCARA))
+    return replace(derive(Request(path)).module, name="lift_scara")
 
 
 def imported(name: str, folder: Path) -> ModuleType:

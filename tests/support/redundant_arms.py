@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-__all__ = ["OFFSET_ELBOW", "SHOULDER_ELBOW_WRIST", "TORSO", "serial_urdf"]
+__all__ = ["LIFT_SCARA", "OFFSET_ELBOW", "SHOULDER_ELBOW_WRIST", "TORSO", "serial_urdf"]
 
 Joint = tuple[str, str, str, str, tuple[float, float]]
 """Name, type, axis, origin and limits."""
@@ -31,6 +31,15 @@ OFFSET_ELBOW: tuple[Joint, ...] = (
 )
 """The same with the elbow's axis beside the links, as barrett's and yaskawa's arms have it, and the first
 joint's axis downwards."""
+
+LIFT_SCARA: tuple[Joint, ...] = (
+    ("lift", "prismatic", "0 0 1", "0 0 0.3", (0.0, 0.9)),
+    ("shoulder", "revolute", "0 0 1", "0.1 0 0", (-2.4, 2.4)),
+    ("elbow", "revolute", "0 0 1", "0.3 0 0", (-2.6, 2.6)),
+    ("quill", "prismatic", "0 0 -1", "0.25 0 0", (0.0, 0.2)),
+    ("spin", "revolute", "0 0 1", "0 0 0", (-3.0, 3.0)),
+)
+"""Two slides on parallel axes, and a task that reads a heading: two entries that are one freedom."""
 
 TORSO: Joint = ("torso", "prismatic", "0 0 1", "0 0 0.5", (0.0, 0.4))
 

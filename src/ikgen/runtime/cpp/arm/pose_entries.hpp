@@ -35,6 +35,22 @@ template <class Arm> struct PoseEntries {
       }
     }
   }
+
+  // Adds to the slopes' products what no motion changes, `weight` times: the lengths of unit columns, and the products
+  // of two. With more joints than the task fixes freedoms these alone would be lost everywhere.
+  template <class X, class Tip> static void fill(const Tip& T, double weight, X (&S)[kCount][kCount]) noexcept {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j <= i; ++j) {
+        if (!Arm::Columns::has(i) || !Arm::Columns::has(j)) continue;
+        X still[kCount];
+        for (int a = 0; a < kCount; ++a) {
+          const auto [r, c] = Arm::kRead[a];
+          still[a] = c == i ? T.R[r][j] : c == j ? T.R[r][i] : X{};
+        }
+        for (int a = 0; a < kCount; ++a)
+          for (int b = 0; b < kCount; ++b) S[a][b] = S[a][b] + weight * still[a] * still[b];
+      }
+  }
 };
 
 }  // namespace ikgen_runtime

@@ -27,6 +27,7 @@ template <class A, int N> struct LeastSingularValue {
           S[a][b] = S[a][b] + (kByRows ? slope[a][k] * slope[b][k] : slope[k][a] * slope[k][b]);
         S[b][a] = S[a][b];
       }
+    if constexpr (kDependent) A::Task::fill(T, kFar, S);
     Pack diagonal[kOrder], squares[kOrder];
     reduce(S, diagonal, squares);
     return sqrt(least_root(diagonal, squares));
@@ -47,8 +48,11 @@ template <class A, int N> struct LeastSingularValue {
   }
 
  private:
-  static constexpr int kRows = A::Task::kCount, kOrder = A::kDof < kRows ? A::kDof : kRows, kSteps = 40;
+  static constexpr int kRows = A::Task::kCount, kLess = A::kDof < kRows ? A::kDof : kRows, kSteps = 40;
+  static constexpr bool kDependent = AllMoving<A>::kRank < kLess;  // rows
+  static constexpr int kOrder = kDependent ? kRows : kLess;
   static constexpr bool kByRows = kOrder == kRows;
+  static constexpr double kFar = 1e4;  // above the least
 
   // To tridiagonal form (Householder 1958): its diagonal, and the squares of what is beside that, from place 1 on.
   static void reduce(Pack (&S)[kOrder][kOrder], Pack (&diagonal)[kOrder], Pack (&squares)[kOrder]) noexcept {

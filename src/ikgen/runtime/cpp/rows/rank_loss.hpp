@@ -21,6 +21,25 @@ template <class Arm> struct RankLoss {
     return !above(at.slope, bound);
   }
 
+  // The same of all joints, which may be more than the freedoms that the task fixes.
+  static bool redundant_below(const double* q, double bound) noexcept {
+    if constexpr (Arm::kRank >= kRank) {
+      return below(q, bound);
+    } else {
+      double J[6][Arm::kDof], slope[kEquations][Arm::kDof], A[kEquations][kEquations];
+      const Frame T = MotionChain<Arm>::forward(q, J);
+      Arm::Task::slope(T, J, slope);
+      for (int a = 0; a < kEquations; ++a)
+        for (int b = 0; b < kEquations; ++b) {
+          A[a][b] = a == b ? -bound * bound : 0.0;
+          for (int j = 0; j < Arm::kDof; ++j) A[a][b] += slope[a][j] * slope[b][j];
+        }
+      Arm::Task::fill(T, 1.0, A);
+      factor(A);
+      return !definite(A);
+    }
+  }
+
   // Which rows in lanes are real and have no such value. Not for arms that hold the arm angle.
   template <class Rows> static void regular(const Rows& rows, double bound, bool (&out)[Rows::kLanes]) noexcept {
     constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;

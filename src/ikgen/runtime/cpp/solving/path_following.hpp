@@ -75,7 +75,7 @@ template <class A, class Solver> struct PathStep {
     std::copy_n(start.data(), kDof, q);
     if constexpr (A::kFree > 0) {
       double row[kDof];
-      if (unstopped(pose, row, crossed) == Status::Ok && farthest(row, q) < 0.1) return arrive(row);
+      if (unstopped(pose, q, row, crossed) == Status::Ok && farthest(row, q) < 0.1) return arrive(row);
     }
     return Status::Unreachable;
   }
@@ -125,28 +125,35 @@ template <class A, class Solver> struct PathStep {
   Status next_row(const Eigen::Isometry3d& pose, [[maybe_unused]] const double* expected, double* row,
                   bool& singular) const noexcept {
     if constexpr (A::kFree > 0) {
-      return unstopped(pose, row, singular);
+      return unstopped(pose, expected, row, singular);
     } else {
-      typename A::Options options;
-      typename A::Joints seed;
-      std::copy_n(q, kDof, seed.data());
-      options.seed = &seed;
-      options.limits = false;
-      typename A::Solutions found;
-      Solver::solve(pose, options, found);
-      double least = kInfinity;
-      for (int k = 0; k < found.count; ++k) {
-        const double gap = farthest(found.q.data()[k].data(), expected);
-        if (!(gap < least)) continue;
-        least = gap;
-        std::copy_n(found.q.data()[k].data(), kDof, row);
-        singular = found.singular.data()[k];
-      }
-      return found.status;
+      return closed_form(pose, q, expected, row, singular);
     }
   }
 
-  Status unstopped(const Eigen::Isometry3d& pose, double* row, bool& singular) const noexcept {
+  // The closed form's row nearest to the expected one, what is held as `near` has it.
+  static Status closed_form(const Eigen::Isometry3d& pose, const double* near, const double* expected, double* row,
+                            bool& singular) noexcept {
+    typename A::Options options;
+    typename A::Joints seed;
+    std::copy_n(near, kDof, seed.data());
+    options.seed = &seed;
+    options.limits = false;
+    typename A::Solutions found;
+    Solver::solve(pose, options, found);
+    double least = kInfinity;
+    for (int k = 0; k < found.count; ++k) {
+      const double gap = farthest(found.q.data()[k].data(), expected);
+      if (!(gap < least)) continue;
+      least = gap;
+      std::copy_n(found.q.data()[k].data(), kDof, row);
+      singular = found.singular.data()[k];
+    }
+    return found.status;
+  }
+
+  // Where the steps end beside the pose, as at a fold, of the rows with what is held where they ended.
+  Status unstopped(const Eigen::Isometry3d& pose, const double* expected, double* row, bool& singular) const noexcept {
     bool stopped[kDof] = {};
     double at[kDof];
     std::copy_n(q, kDof, at);
@@ -165,7 +172,13 @@ template <class A, class Solver> struct PathStep {
         }
         if ((slow && i > 2) || error < A::Policy::kConverged) break;
       }
-      if (!(error < A::Policy::kArrived)) return stops > 0 ? Status::Limits : Status::Unreachable;
+      if (!(error < A::Policy::kArrived)) {
+        double held[kDof];
+        for (int j = 0; j < kDof; ++j)
+          held[j] = limits ? std::min(std::max(row[j], A::kLower.data()[j]), A::kUpper.data()[j]) : row[j];
+        if (closed_form(pose, held, expected, row, singular) == Status::Ok) break;
+        return stops > 0 ? Status::Limits : Status::Unreachable;
+      }
       double most = A::Policy::kLimitTolerance;
       int worst = -1;
       for (int j = 0; j < kDof && limits; ++j) {
@@ -179,7 +192,7 @@ template <class A, class Solver> struct PathStep {
       stopped[worst] = true;
       at[worst] = row[worst] < A::kLower.data()[worst] ? A::kLower.data()[worst] : A::kUpper.data()[worst];
     }
-    singular = RankLoss<AllMoving<A>>::below(row, A::Policy::kRankLoss);
+    singular = RankLoss<AllMoving<A>>::redundant_below(row, A::Policy::kRankLoss);
     return Status::Ok;
   }
 

@@ -92,6 +92,11 @@ class Arm:
     around: Around | None = None
 
     @property
+    def rank(self) -> int:
+        """How many freedoms the task fixes, or the arm has if these are less."""
+        return len(self.lower) - len(self.free_joints)
+
+    @property
     def rounded(self) -> bool:
         """Whether the closed form is of another geometry than the file's."""
         return self.together is not None

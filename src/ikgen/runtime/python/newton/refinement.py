@@ -120,9 +120,12 @@ def errors_and_slopes(
     return np.concatenate(parts[:2], axis=1), np.concatenate(parts[2:], axis=1)
 
 
-def rank_loss(chain: Chain, task: Task, moving: Sequence[int], q: Array) -> Array:
-    """Smallest singular value (k,) of the task's derivatives by the joints `moving` at q (k, dof)."""
-    return least_singular(task.rows(*tip_and_jacobian(chain, q))[:, :, list(moving)])
+def rank_loss(
+    chain: Chain, task: Task, moving: Sequence[int], q: Array, rank: int | None = None
+) -> Array:
+    """Smallest singular value (k,) of the task's derivatives by the joints `moving` at q (k, dof), of as
+    many as the task fixes freedoms, `rank`, where these joints are more."""
+    return least_singular(task.rows(*tip_and_jacobian(chain, q))[:, :, list(moving)], rank)
 
 
 def steeper(slope: Array, bound: float) -> Flags:
@@ -146,6 +149,8 @@ def damped(square: Array, damping: Array | float) -> Array:
     return np.asarray(square + enough[:, None, None] * np.eye(square.shape[2]))
 
 
-def least_singular(slope: Array) -> Array:
-    """Smallest singular value (k,) of derivatives (k, m, n)."""
-    return np.asarray(np.linalg.svd(slope, compute_uv=False)[:, -1])
+def least_singular(slope: Array, rank: int | None = None) -> Array:
+    """Smallest singular value (k,) of derivatives (k, m, n), or the `rank`-th: entries of unit vectors that
+    a task reads depend on each other, so that with more joints than it fixes freedoms some are always 0."""
+    values = np.linalg.svd(slope, compute_uv=False)
+    return np.asarray(values[:, values.shape[1] - 1 if rank is None else rank - 1])

@@ -58,5 +58,5 @@ def preference_costs(
     flat = q.reshape(-1, q.shape[-1])
     pose, J = tip_and_jacobian(arm.chain, flat)
     J[:, :3] *= arm.task.size  # rows are over it
-    least = np.linalg.svd(arm.task.rows(pose, J), compute_uv=False)[:, -1]
+    least = np.linalg.svd(arm.task.rows(pose, J), compute_uv=False)[:, arm.rank - 1]
     return q, np.asarray(-least.reshape(q.shape[:2])), inside

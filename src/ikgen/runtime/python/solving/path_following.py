@@ -174,7 +174,8 @@ class _Walk:
 
     def _unstopped(self, pose: Array) -> tuple[Array, Flags, Status]:
         """The row next to the expected one that all joints reach together, those that it would take out
-        of their limits stopped there."""
+        of their limits stopped there; where their steps end beside the pose, as at a fold, all rows with
+        what is held where they ended."""
         arm, stopped = self.arm, dict[int, float]()
         while True:
             moving = [j for j in range(len(self.q)) if j not in stopped]
@@ -183,15 +184,22 @@ class _Walk:
                 at[j] = value
             q, error = self._newton(at, pose, moving)
             if not error < arm.policy.arrived:
-                none = np.empty((0, len(at))), np.empty(0, dtype=bool)
-                return *none, Status.LIMITS if stopped else Status.UNREACHABLE
+                held = np.clip(q, arm.lower, arm.upper) if self.limits else q
+                rows = solve_pose(arm, pose, None, held, False).q
+                status = Status.LIMITS if stopped else Status.UNREACHABLE
+                return rows, self._singular(rows), Status.OK if len(rows) else status
             low, high = np.array(arm.lower), np.array(arm.upper)
             excess = np.maximum(low - q, q - high)
             worst = int(excess.argmax())
             if not self.limits or excess[worst] <= arm.policy.limit_tolerance:
-                loss = rank_loss(arm.chain, arm.task, range(len(at)), q[None])
-                return q[None], loss < arm.policy.rank_loss, Status.OK
+                return q[None], self._singular(q[None]), Status.OK
             stopped[worst] = float(low[worst] if q[worst] < low[worst] else high[worst])
+
+    def _singular(self, rows: Array) -> Flags:
+        """Where all joints together lose a freedom (n,)."""
+        arm = self.arm
+        loss = rank_loss(arm.chain, arm.task, range(rows.shape[1]), rows, arm.rank)
+        return np.asarray(loss < arm.policy.rank_loss)
 
     def _newton(self, q: Array, pose: Array, moving: list[int]) -> tuple[Array, float]:
         """The best row of shortest motions from q, and its error."""
