@@ -464,7 +464,7 @@ template <class A> struct AllMoving : A {
   static constexpr int kFree = 0;
   static constexpr std::array<int, 0> kFreeJoints = {};
   static constexpr bool kHeld[A::kDof] = {}, kArmAngle = false;
-  static constexpr int kRank = A::kDof - A::kFree;  // freedoms that the task fixes, or all if these are less
+  static constexpr int kRank = A::kWholePose ? A::kDof : A::kDof - A::kFree;  // at least what the task fixes, or all
 };
 
 // --- held aim ------------------------------------------------------------------------------------

@@ -94,7 +94,9 @@ class Arm:
     @property
     def rank(self) -> int:
         """How many freedoms the task fixes, or the arm has if these are less."""
-        return len(self.lower) - len(self.free_joints)
+        k = len(self.task.unit)
+        fixed = len(self.task.entries) - k * (k + 1) // 2
+        return min(len(self.lower), max(fixed, len(self.lower) - len(self.free_joints)))
 
     @property
     def rounded(self) -> bool:
