@@ -86,8 +86,7 @@ template <class Arm> struct HeldSample {
   // Takes a row to the pose with the held value; whether it comes there.
   static bool refine(const Eigen::Isometry3d& T, double value, double* row) noexcept {
     const bool there = NewtonRefinement<Arm>::refine(row, HeldAim<Arm>(T, {value}));
-    for (int j = 0; j < Arm::kDof; ++j)
-      if (Arm::kRevolute[j] && !Arm::kHeld[j]) row[j] -= kTurn * std::nearbyint(row[j] / kTurn);
+    for (int j = 0; j < Arm::kDof; ++j) row[j] = turned(j, row[j]);
     return there;
   }
 
@@ -179,17 +178,19 @@ template <class Arm> struct HeldSample {
     return bits;
   }
 
-  // Takes the rows of the pose, or of one beside it, refined where that is needed: in lanes first where all are, and not at
-  // all if they may be coarse; whether some may be equal.
+  // A joint's value, no more than half a turn from 0.
+  static double turned(int j, double x) noexcept {
+    return Arm::kRevolute[j] && !Arm::kHeld[j] ? x - kTurn * std::nearbyint(x / kTurn) : x;
+  }
+
+  // Takes the rows of the pose, or of one beside it, refined where that is needed: in lanes where all are, and not at all if
+  // they may be coarse; whether some may be equal.
   bool take(const Eigen::Isometry3d& T, const Eigen::Isometry3d& near, int part, bool coarse) noexcept {
     Rows rows;
     Arm::branches(gather<1>(&near), typename Arm::Seed(), std::array<double, 1>{held}, kAnywhere, rows);
     typename Arm::template Rows<1> fine;
-    if constexpr (Arm::kNewton) {
-      std::memcpy(fine.q, rows.q, sizeof(fine.q));
-      std::memcpy(fine.flags, rows.flags, sizeof(fine.flags));
-      Arm::refine(gather<1>(&T), {held}, kAnywhere, fine);
-    }
+    double error[Arm::kLanes] = {};
+    if constexpr (Arm::kNewton && !Arm::kRefined) refine_lanes(T, rows, fine, error);
     bool again = part > 0;
     for (int r = 0; r < Arm::kLanes; ++r) {
       const int lane = Arm::kLaneOfRow[r], l = part * Arm::kLanes + r, bits = static_cast<int>(rows.flags[lane]);
@@ -200,17 +201,29 @@ template <class Arm> struct HeldSample {
       if (!real[l] || (bits & kRough) == 0 || Arm::kRefined) continue;
       rough[l] = coarse;
       if (coarse) continue;
-      if (Arm::kNewton && (static_cast<int>(fine.flags[lane]) & kRough) == 0) {
-        real[l] = (static_cast<int>(fine.flags[lane]) & kReal) != 0;
-        for (int j = 0; j < Arm::kDof; ++j) q[j][l] = Arm::kHeld[j] ? held : fine.q[j][lane];
-        continue;
-      }
       double refined[Arm::kDof];
-      row(l, refined);
-      real[l] = refine(T, held, refined);
+      if constexpr (Arm::kNewton && !Arm::kRefined) {
+        real[l] = (static_cast<int>(fine.flags[lane]) & kReal) != 0 && error[lane] < Arm::Policy::kArrived;
+        for (int j = 0; j < Arm::kDof; ++j) refined[j] = Arm::kHeld[j] ? held : turned(j, fine.q[j][lane]);
+      } else {
+        row(l, refined);
+        real[l] = refine(T, held, refined);
+      }
       for (int j = 0; j < Arm::kDof; ++j) q[j][l] = refined[j];
     }
     return again;
+  }
+
+  // Where steps lead from all lanes at once, and the error that is left of those that need more than a few.
+  template <class Fine> void refine_lanes(const Eigen::Isometry3d& T, const Rows& rows, Fine& fine, double* error) const noexcept {
+    const Pose<1> pose = gather<1>(&T);
+    std::memcpy(fine.q, rows.q, sizeof(fine.q));
+    std::memcpy(fine.flags, rows.flags, sizeof(fine.flags));
+    Arm::refine(pose, {held}, kAnywhere, fine);
+    int some[Arm::kLanes], count = 0;
+    for (const int lane : Arm::kLaneOfRow)
+      if ((static_cast<int>(fine.flags[lane]) & kRough) != 0) some[count++] = lane;
+    Arm::take_along(pose, {held}, some, count, fine, error);
   }
 
   // Whether there were any.
