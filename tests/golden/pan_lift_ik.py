@@ -504,9 +504,9 @@ class _Arm:
     @property
     def rank(self) -> int:
         """How many freedoms the task fixes, or the arm has if these are less."""
-        k = len(self.task.unit)
-        fixed = len(self.task.entries) - k * (k + 1) // 2
-        return min(len(self.lower), max(fixed, len(self.lower) - len(self.free_joints)))
+        k, dof = len(self.task.unit), len(self.lower)
+        whole = len(self.task.entries) - k * (k + 1) // 2 == 6
+        return min(dof, 6) if whole else dof - len(self.free_joints)
 
     @property
     def rounded(self) -> bool:

@@ -27,7 +27,7 @@ def killed(job: tuple[ArmConfig, str, bool]) -> Outcome:
 def test_a_killed_worker_is_told_for_each_arm(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("ikgen.projects.project_build._build_in_worker", killed)
+    monkeypatch.setattr("ikgen.projects.project_build._build_one", killed)
     assert run(["build", "--jobs", "2"]) == 70
     said = capsys.readouterr().err
     for name in ("first", "second"):
