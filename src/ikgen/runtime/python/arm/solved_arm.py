@@ -93,8 +93,8 @@ class Arm:
 
     @property
     def rank(self) -> int:
-        """How many freedoms the task fixes, or the arm has if these are less. Of the whole pose more joints may
-        be held than it leaves; of a part of it those that are not held count, as a held one may not move it."""
+        """How many freedoms the task fixes, or the arm has if these are less. Of the whole pose more joints
+        may be held than it leaves; of a part of it a held one may not move what is read."""
         k, dof = len(self.task.unit), len(self.lower)
         whole = len(self.task.entries) - k * (k + 1) // 2 == 6
         return min(dof, 6) if whole else dof - len(self.free_joints)
