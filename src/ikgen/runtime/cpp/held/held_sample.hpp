@@ -188,8 +188,8 @@ template <class Arm> struct HeldSample {
   bool take(const Eigen::Isometry3d& T, const Eigen::Isometry3d& near, int part, bool coarse) noexcept {
     Rows rows;
     Arm::branches(gather<1>(&near), typename Arm::Seed(), std::array<double, 1>{held}, kAnywhere, rows);
-    typename Arm::template Rows<1> fine;
-    double error[Arm::kLanes] = {};
+    [[maybe_unused]] typename Arm::template Rows<1> fine;
+    [[maybe_unused]] double error[Arm::kLanes] = {};
     if constexpr (Arm::kNewton && !Arm::kRefined) refine_lanes(T, rows, fine, error);
     bool again = part > 0;
     for (int r = 0; r < Arm::kLanes; ++r) {
