@@ -76,14 +76,14 @@ def test_every_table_has_its_facts() -> None:
 def test_claims_as_many_solutions_as_some_pose_has(name: str, tmp_path: Path) -> None:
     table = HERE / "tables" / f"{name}.toml"
     module = module_of(table, tmp_path, None)
-    bound = derive(Request(table)).module.plan is not None  # of the polynomial's degree
     rng, dh = np.random.default_rng(5), read(Request(table)).dh
     revolute = np.array([j.kind == "revolute" for j in dh.joints])
     q = rng.uniform(-np.pi, np.pi, (1000, module.DOF)) * np.where(revolute, 1.0, arm_size(dh))
     special = np.where(revolute, rng.integers(-1, 3, q.shape) * (np.pi / 2), 0.0)
     q[500:] = np.where(rng.random(q.shape) < rng.random((1000, 1)), special, q)[500:]
     _, count, _ = module.solve_batch(module.forward(q), limits=False)
-    assert count.max() == module.MAX_SOLUTIONS or (bound and count.max() < module.MAX_SOLUTIONS)
+    most = module.MAX_SOLUTIONS
+    assert most // 2 <= count.max() < most if EXPECTED[name].get("bound") else count.max() == most
 
 
 @pytest.mark.parametrize("name", SOLVED, scope="module")
