@@ -2045,10 +2045,8 @@ _NEAR = (
     1e-8  # rad or m: how far off the curve what is left, whose error is the square, is the curve's
 )
 _ALMOST, _SAME = 1e-3, 4e-15  # or how close it must be where what is left is the same after a step
-_STRAY, _ASTRAY = (
-    1.0,
-    4,
-)  # rad or m: larger corrections of so many samples show that no curve is near
+_STRAY = 1.0  # rad or m: larger corrections, of so many samples,
+_ASTRAY = 4  # show that no curve is near
 _WAY = 1e-10  # rad or m: along it, by which what is left varies by round-off
 _near_continuum_ROUND_OFF, _SMALL, _DOUBT, _near_continuum_BESIDE, _SAME_WAY = 1e-15, 4e-15, 0.03, 0.06, 0.9
 

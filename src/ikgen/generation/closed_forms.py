@@ -190,13 +190,12 @@ def _explained(
     refused: tuple[tuple[str, ...], ...],
 ) -> ClosedForm:
     """The form with the joints that it holds, why, and the runners-up."""
-    from ikgen.kinematics.form_class import FORM_WORDS
     from ikgen.lowering.elimination_program import elimination_name
 
     if form.plan is not None:
         why = f"the general {elimination_name(form.reading.dh)} elimination"
     elif form.sound:
-        why = f"closed form by rules ({FORM_WORDS[taken.form]})"
+        why = f"closed form by rules ({taken.class_words})"
     else:
         why = "closed form by rules, with a weak step,"
     others = [choice for choice in choices if choice.held != taken.held][:_OTHERS]

@@ -51,21 +51,24 @@ class HeldChoice:
         return " and ".join(self.held)
 
     @property
-    def ranking(self) -> str:
-        """What the choice is ranked by, in order."""
+    def class_words(self) -> str:
+        """The class of its closed form."""
         from ikgen.kinematics.form_class import FORM_WORDS
 
+        return FORM_WORDS[self.form]
+
+    @property
+    def ranking(self) -> str:
+        """What the choice is ranked by, in order."""
         near = ", of the geometry nearby" if self.near else ""
         measures = f"held range {self.span:.2g}; conditioning {self.condition:.2g}"
-        return f"class: {FORM_WORDS[self.form]}{near}; {measures}"
+        return f"class: {self.class_words}{near}; {measures}"
 
     def behind(self, taken: HeldChoice) -> str:
         """What puts it behind the choice that was taken; "" where it was before that."""
-        from ikgen.kinematics.form_class import FORM_WORDS
-
         if (self.form, self.near) != (taken.form, taken.near):
             later = (self.form, self.near) > (taken.form, taken.near)
-            return FORM_WORDS[self.form] if later else ""
+            return self.class_words if later else ""
         if self.span < taken.span:
             return "a narrower range"
         return "worse conditioned" if self.condition < taken.condition else ""
