@@ -130,6 +130,34 @@ def test_header_tells_its_defaults(tmp_path: Path) -> None:
     assert "defaults of free joints" in report.check("constants").detail
 
 
+CONSTANTS = """
+inline constexpr const char* kBaseLink = "b";
+inline constexpr const char* kTipLink = "tip";
+inline constexpr std::array<const char*, kDof> kJointNames = {"j1", "j2"};
+inline constexpr std::array<double, kDof> kLower = {-1.0 / 0.0, -1.5};
+inline constexpr std::array<double, kDof> kUpper = {1.0 / 0.0, 2.5};
+"""
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "detail"),
+    [
+        ("2.5}", "2.5}", ""),
+        ("-1.5}", "-1.5001}", "lower limits: j2 has -1.5001, not -1.5"),
+        ("2.5}", "2.4999}", "upper limits: j2 has 2.4999, not 2.5"),
+        ('"b"', '"c"', "links"),
+        ('{"j1", "j2"}', '{"j1", "j\u00fc"}', "joint names"),
+    ],
+)
+def test_constants_of_a_header_are_checked(
+    tmp_path: Path, right: str, wrong: str, detail: str
+) -> None:
+    told = CONSTANTS.replace(right, wrong)
+    text = HEADER.replace("using Joints", f"{told}using Joints", 1).replace("1.0 / 0.0", "HUGE_VAL")
+    check = verify(header(tmp_path, text), oracle(), samples=4).check("constants")
+    assert (check.passed, check.detail) == (not detail, detail)
+
+
 def test_wrong_header_is_caught(tmp_path: Path) -> None:
     text = HEADER.replace("for (double sign : {1.0, -1.0})", "for (double sign : {1.0})")
     failed = {check.name for check in verify(header(tmp_path, text), oracle(), samples=60).failed}

@@ -26,10 +26,13 @@ Array = NDArray[np.float64]
 SAME_TOLERANCE = 1e-9  # m, rad: two functions that compute the same
 
 
-def _same_bounds(a: Array, b: Array) -> bool:
-    """Whether two bounds agree to 1e-9 where the file states one (NaN: it does not)."""
-    known = ~np.isnan(b)
-    return bool(np.all(np.isclose(a[known], b[known], rtol=1e-9, atol=1e-9)))
+def _other_bounds(arm: ArmUnderTest, ours: Array, files: Array) -> str:
+    """The joints whose bound differs by more than 1e-9 from what the file states (NaN: it states none), in
+    words; "" where none does."""
+    other = ~(np.isnan(files) | np.isclose(ours, files, rtol=1e-9, atol=1e-9))
+    names = arm.oracle.joint_names
+    words = (f"{names[j]} has {ours[j]:.9g}, not {files[j]:.9g}" for j in np.flatnonzero(other))
+    return f": {', '.join(words)}" if other.any() else ""
 
 
 def _allowed(arm: ArmUnderTest, defaults: tuple[float, ...] | None) -> bool:
@@ -58,13 +61,12 @@ def check_constants(arm: ArmUnderTest, runner: Runner, rows: Rows) -> CheckResul
         "most solutions": int(np.max(rows.count, initial=0)) <= constants.max_solutions,
     }
     if right["shape of limits"]:
-        for name, ours, files in (
-            ("lower limits", constants.lower, oracle.lower),
-            ("upper limits", constants.upper, oracle.upper),
+        for name, ours, files, arms in (
+            ("lower limits", constants.lower, oracle.lower, arm.lower),
+            ("upper limits", constants.upper, oracle.upper, arm.upper),
         ):
-            right[name] = _same_bounds(ours, files) and _same_bounds(
-                ours, arm.lower if name == "lower limits" else arm.upper
-            )
+            others = _other_bounds(arm, ours, files) or _other_bounds(arm, ours, arms)
+            right[f"{name}{others}"] = not others
     wrong = [name for name, fits in right.items() if not fits]
     return result("constants", len(right), len(wrong), detail=", ".join(wrong))
 

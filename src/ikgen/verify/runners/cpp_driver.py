@@ -8,6 +8,7 @@ __all__ = ["driver"]
 _DRIVER = r"""
 #include <algorithm>
 #include <cstdio>
+#include <string>
 #include <vector>
 #include "@header@"
 namespace ik = @namespace@;
@@ -62,6 +63,7 @@ static void solve(const double*& in, bool has_free, bool has_seed, bool limits, 
 }
 
 @batch@
+@constants@
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
   Numbers input, out;
@@ -77,6 +79,7 @@ int main(int argc, char** argv) {
   if (mode == 0) {
     out = {double(ik::kDof), double(ik::kFree), double(ik::kMaxSolutions)};
     put(out, ik::Options().free.data(), ik::kFree);
+    put_constants(out);
   }
   if (mode == 4) solve_batch(in, n, input[4] != 0, out);
   for (int i = 0; mode > 0 && mode < 4 && i < n; ++i) {
@@ -113,8 +116,32 @@ static void solve_batch(const double* in, int n, bool limits, Numbers& out) {
 """
 _NO_BATCH = "static void solve_batch(const double*, int, bool, Numbers&) {}"
 
+_CONSTANTS = r"""
+static void put(Numbers& out, const std::string& text) {
+  out.push_back(double(text.size()));
+  for (const char c : text) out.push_back(static_cast<unsigned char>(c));
+}
 
-def driver(header: str, namespace: str, *, batch: bool) -> str:
-    """Text of the program for a header (file name), with or without its `solve_batch`."""
-    text = _DRIVER.replace("@header@", header).replace("@namespace@", namespace)
-    return text.replace("@batch@", _BATCH.strip() if batch else _NO_BATCH)
+static void put_constants(Numbers& out) {
+  put(out, ik::kLower.data(), ik::kDof);
+  put(out, ik::kUpper.data(), ik::kDof);
+  for (const char* link : {ik::kBaseLink, ik::kTipLink}) put(out, std::string(link));
+  for (const char* name : ik::kJointNames) put(out, std::string(name));
+}
+"""
+_NO_CONSTANTS = "static void put_constants(Numbers&) {}"
+
+
+def driver(header: str, namespace: str, text: str) -> str:
+    """Text of the program for a header: its file name, its namespace and its `text`, which says whether
+    it has `solve_batch` and constants."""
+    parts = {
+        "header": header,
+        "namespace": namespace,
+        "batch": _BATCH.strip() if "solve_batch(" in text else _NO_BATCH,
+        "constants": _CONSTANTS.strip() if "kLower" in text else _NO_CONSTANTS,
+    }
+    program = _DRIVER
+    for name, part in parts.items():
+        program = program.replace(f"@{name}@", part)
+    return program

@@ -17,9 +17,9 @@ __all__ = ["CppHeader"]
 class CppHeader(ProgramRunner):
     """A `Runner` over an emitted `<name>_ik.hpp`, compiled at construction into a temporary folder.
 
-    `constants` are those of the arm (the header has no names or limits); its number of solutions is
-    read from the header. Raises `BadDescriptionError` for a missing file or other joint counts,
-    `MissingToolError` without compiler or Eigen, `VerificationError` if it does not compile.
+    Limits and names are read from the header, `constants` of the arm say the rest. Raises
+    `BadDescriptionError` for a missing file or other joint counts, `MissingToolError` without compiler or
+    Eigen, `VerificationError` if it does not compile.
     """
 
     def __init__(self, path: Path | str, constants: ArmConstants) -> None:
@@ -30,8 +30,7 @@ class CppHeader(ProgramRunner):
         self._folder = ScratchFolder("ikgen-")  # goes with this object
         work = self._folder.path
         source, program = work / "driver.cpp", work / "driver"
-        batch = "solve_batch(" in self.path.read_text(encoding="utf-8")
-        text = driver(self.path.name, self.path.stem, batch=batch)
-        source.write_text(text, encoding="utf-8")
+        text = self.path.read_text(encoding="utf-8")
+        source.write_text(driver(self.path.name, self.path.stem, text), encoding="utf-8")
         compile_program(source, program, [self.path.parent])
-        super().__init__("cpp", program, constants, batch=batch, source=str(path))
+        super().__init__("cpp", program, constants, batch="solve_batch(" in text, source=str(path))

@@ -5,7 +5,7 @@ of five (mode, N, has free values, has seeds, limits), then N items. The answers
 
 | mode | item | answer |
 |---|---|---|
-| 0 | none | joints, free joints, most solutions; then, if it likes, the defaults of the free joints |
+| 0 | none | joints, free joints, most solutions; then, if it likes, the constants below |
 | 1 solve | pose (16, columns first), free values, seed | status, count, then all rows |
 | 2 forward | joints | pose (16, columns first) |
 | 3 jacobian | joints | 6 by joints, columns first |
@@ -13,6 +13,10 @@ of five (mode, N, has free values, has seeds, limits), then N items. The answers
 
 Status: 0 OK, 1 UNREACHABLE, 2 LIMITS, 3 INVALID. There are as many rows as solutions at most, each the
 joints and whether it is singular; those beyond the count are zeros.
+
+Constants are the defaults of the free joints; then, if it likes, the lower limits and the upper ones of all
+joints, and as texts the base link, the tip link and the names of the joints. A text is its length in bytes
+and the bytes of its UTF-8. What is told is checked.
 """
 
 from __future__ import annotations
@@ -61,8 +65,7 @@ class ProgramRunner:
                 file=source,
                 hint="generate it anew: it is another arm's, or held joints have changed",
             )
-        defaults = tuple(told[3:].tolist()) if len(told) > 3 else None
-        self._constants = dataclasses.replace(constants, max_solutions=most, free_defaults=defaults)
+        self._constants = _told(dataclasses.replace(constants, max_solutions=most), told[3:])
 
     @property
     def constants(self) -> ArmConstants:
@@ -140,6 +143,36 @@ class ProgramRunner:
         """Jacobians (N, 6, dof) for q (N, dof)."""
         dof = self._constants.dof
         return np.asarray(self._run(JACOBIAN, len(q), [q]).reshape(-1, dof, 6).transpose(0, 2, 1))
+
+
+def _told(constants: ArmConstants, told: Array) -> ArmConstants:
+    """The constants with what the program tells of them."""
+    dof, free = constants.dof, len(constants.free_joints)
+    if not len(told):
+        return constants
+    constants = dataclasses.replace(constants, free_defaults=tuple(told[:free].tolist()))
+    if len(told) == free:
+        return constants
+    lower, upper, letters = np.split(told[free:], [dof, 2 * dof])
+    base, tip, *joints = _texts(letters)
+    return dataclasses.replace(
+        constants,
+        lower=lower,
+        upper=upper,
+        base_link=base,
+        tip_link=tip,
+        joint_names=tuple(joints),
+    )
+
+
+def _texts(told: Array) -> list[str]:
+    """The texts of a line of numbers, each its length in bytes and the bytes."""
+    texts, at = [], 0
+    while at < len(told):
+        end = at + 1 + int(told[at])
+        texts.append(bytes(told[at + 1 : end].astype(np.uint8)).decode("utf-8", "replace"))
+        at = end
+    return texts
 
 
 def _by_columns(poses: Array) -> Array:
