@@ -95,7 +95,7 @@ def test_a_held_joint_that_makes_axes_parallel_leaves_the_first_elimination_its_
         q = configurations(held, 20)
         poses = np.array([forward(held, row) for row in q])
         alone = Plan(plan.length, plan.eliminations[:1], plan.turning, finder(plan.turning))
-        assert missing(initial_residuals(held, alone, poses)[0], q) == 0
+        assert missing(initial_residuals(held, [alone], poses)[0][0], q) == 0
         said = [candidates(held[:, None], poses, e, plan.turning)[2] for e in plan.eliminations]
         assert np.min(said) >= 0
         assert (candidates(held[:, None], poses, elsewhere, plan.turning)[2] == -1).all()

@@ -76,7 +76,7 @@ def _probe(frames: Matrix, chain: Chain, q: Matrix, plans: list[Plan]) -> tuple[
     loses; the chain is the frames' in lengths over the plans'."""
     poses = forward(chain, q)
     poses[:, :3, 3] *= plans[0].length
-    runs = [initial_residuals(frames, plan, poses) for plan in plans]
+    runs = initial_residuals(frames, plans, poses)
     rough = np.array([digits_lost(errors) for _, errors in runs])
     every = [[*(rows[i] for rows, _ in runs), row[None]] for i, row in enumerate(q)]
     hits = [distinct_of_runs(rows, _ALL_TURN)[:-1] for rows in every]

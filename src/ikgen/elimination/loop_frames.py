@@ -53,26 +53,33 @@ def over(frames: Matrix, length: float) -> Matrix:
 
 
 def forward(frames: Matrix, values: Matrix, turning: Sequence[bool] | None = None) -> Matrix:
-    """Pose (4, 4) at the joint values (n,), rad or m; `turning` (None: all) tells joints that slide."""
+    """Poses (..., 4, 4) at joint values (..., n), rad or m; `turning` (None: all) says which turn."""
     T = frames[0]
-    for frame, turns, value in zip(frames[1:], _kinds(values, turning), values, strict=True):
+    each = np.moveaxis(values, -1, 0)
+    for frame, turns, value in zip(frames[1:], _kinds(each, turning), each, strict=True):
         T = product(T, z_motion(turns, value), frame)
     return np.asarray(T)
 
 
 def jacobian(frames: Matrix, values: Matrix, turning: Sequence[bool] | None = None) -> Matrix:
-    """Geometric Jacobian (6, n) at the values (n,): linear rows over the typical length, then
+    """Geometric Jacobians (..., 6, n) at the values (..., n): linear rows over the typical length, then
     angular; of slides by their value over that length."""
-    axes, T = [], frames[0]
-    for frame, turns, value in zip(frames[1:], _kinds(values, turning), values, strict=True):
-        axes.append((turns, T[:3, 2], T[:3, 3]))
+    axes, T, each = (
+        [],
+        np.broadcast_to(frames[0], (*values.shape[:-1], 4, 4)),
+        np.moveaxis(values, -1, 0),
+    )
+    for frame, turns, value in zip(frames[1:], _kinds(each, turning), each, strict=True):
+        axes.append((turns, T[..., :3, 2], T[..., :3, 3]))
         T = product(T, z_motion(turns, value), frame)
     scale = typical_length(frames, turning)
     columns = [
-        np.r_[np.cross(z, T[:3, 3] - p) / scale, z] if turns else np.r_[z, 0.0, 0.0, 0.0]
+        np.concatenate(
+            [np.cross(z, T[..., :3, 3] - p) / scale, z] if turns else [z, np.zeros_like(z)], axis=-1
+        )
         for turns, z, p in axes
     ]
-    return np.asarray(np.array(columns).T)
+    return np.stack(columns, axis=-1)
 
 
 def _kinds(values: Matrix, turning: Sequence[bool] | None) -> Sequence[bool]:

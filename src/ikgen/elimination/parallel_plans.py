@@ -75,7 +75,7 @@ def choose_parallel(family: Matrix) -> ParallelPlan | None:
     shares = np.zeros(len(every))
     for frames in family:
         q = rng.uniform(-np.pi, np.pi, (_PROBES, 6))
-        poses = np.array([forward(frames, row) for row in q])
+        poses = forward(frames, q)
         shares += [settled_share(frames, length, one, poses) for one in every]
     best = float(shares.max())
     first = next(k for k, share in enumerate(shares) if share > best - _NEARLY * len(family))

@@ -198,12 +198,12 @@ def _joined(parts: Sequence[_Probe]) -> _Probe:
 def _probe(frames: Matrix, turning: Turning, count: int, rng: np.random.Generator) -> _Probe:
     length, plans = typical_length(frames, turning), eliminations(turning)
     q = _configurations(frames, turning, count, rng)
-    poses = np.array([forward(frames, row, turning) for row in q])
-    if not len(poses):  # singular everywhere: two axes on one line, or four that keep parallel
+    if not len(q):  # singular everywhere: two axes on one line, or four that keep parallel
         hits = np.zeros((len(plans), 0), dtype=bool)
         return _Probe(hits, np.zeros(len(plans)), np.ones(len(RESULTANTS)))
-    find = finder(turning)
-    runs = [initial_residuals(frames, Plan(length, (e,), turning, find), poses) for e in plans]
+    poses, find = forward(frames, q, turning), finder(turning)
+    every = [Plan(length, (e,), turning, find) for e in plans]
+    runs = initial_residuals(frames, every, poses)
     rough = np.array([digits_lost(errors) for _, errors in runs])
     unions = [distinct_of_runs([rows[i] for rows, _ in runs], turning) for i in range(len(poses))]
     shifts = np.ones((len(RESULTANTS), 1))
@@ -221,17 +221,15 @@ def digits_lost(errors: Matrix) -> float:
 
 
 def distinct_of_runs(runs: list[Matrix], turning: Turning) -> Matrix:
-    """Which of the runs' rows (k, 6) has which of all distinct rows: (24, n) bool."""
+    """Which of the runs' rows (k, 6) has which of all distinct rows: (24, n) bool. Joint values are
+    compared modulo turns."""
     union = np.concatenate(runs)
-    fresh = [k for k in range(len(union)) if not _among(union[k], union[:k], turning)]
-    return np.array([[_among(union[k], rows, turning) for k in fresh] for rows in runs], dtype=bool)
-
-
-def _among(q: Matrix, rows: Matrix, turning: Turning) -> bool:
-    """Whether the joint values q (6,) are one of rows (k, 6), modulo turns."""
-    gap = rows - q
+    gap = union[:, None] - union
     apart = np.abs(np.where(turning, np.remainder(gap + np.pi, 2.0 * np.pi) - np.pi, gap))
-    return bool((apart.max(axis=1) < _SAME).any()) if len(rows) else False
+    same = apart.max(axis=2, initial=0.0) < _SAME
+    fresh = ~np.tril(same, -1).any(axis=1)
+    ends = np.cumsum([len(rows) for rows in runs])[:-1]
+    return np.array([part.any(axis=1) for part in np.split(same[fresh], ends, axis=1)])
 
 
 def _configurations(
@@ -240,9 +238,8 @@ def _configurations(
     """`half_hard` of many; slides are drawn within the typical length."""
     reach = np.where(turning, np.pi, typical_length(frames, turning))
     drawn = rng.uniform(-reach, reach, (12 * count, 6))
-    slopes = [jacobian(frames, q, turning) for q in drawn]
-    size = np.array([np.linalg.svd(J, compute_uv=False)[-1] for J in slopes])
-    return half_hard(drawn, size, count)
+    size = np.linalg.svd(jacobian(frames, drawn, turning), compute_uv=False)[:, -1]
+    return half_hard(drawn, np.asarray(size), count)
 
 
 def half_hard(drawn: Matrix, size: Matrix, count: int) -> Matrix:

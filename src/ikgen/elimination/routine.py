@@ -87,16 +87,23 @@ def general_6r(frames: Matrix, length: float, plans: Sequence[Elimination], pose
     return general_6r_batch(frames, length, plans, np.asarray(pose, dtype=np.float64)[None])[0]
 
 
-def initial_residuals(frames: Matrix, plan: Plan, poses: Matrix) -> tuple[list[Matrix], Matrix]:
-    """The first elimination's solutions for poses (N, 4, 4), lengths over the plan's, and the pose errors
-    (m,) of those candidates that became solutions, before Newton's method: how well conditioned the
-    elimination is."""
-    policy = runtime_policy(SolvePolicy())
+def initial_residuals(
+    frames: Matrix, plans: Sequence[Plan], poses: Matrix
+) -> list[tuple[list[Matrix], Matrix]]:
+    """Of each plan the first elimination's solutions for poses (N, 4, 4), lengths over the plan's, and the
+    pose errors (m,) of those candidates that became solutions, before Newton's method: how well conditioned
+    the elimination is. The plans are of one arm: all their candidates are refined together."""
+    policy, plan = runtime_policy(SolvePolicy()), plans[0]
     six, T = six_joints(frames, plan.length, plan.axes), over(poses, plan.length)
-    index, q, *_ = plan.find(six.frames, T, plan.eliminations[0], plan.turning)
+    found = [one.find(six.frames, T, one.eliminations[0], one.turning)[:2] for one in plans]
+    ends = np.cumsum([len(index) for index, _ in found])[:-1]
+    index, q = map(np.concatenate, zip(*found, strict=True))
     if not len(q):
-        return [np.zeros((0, 6)) for _ in poses], np.zeros(0)
-    q, error, before = refined_rows(six, plan, index, T[index], q, policy)
-    good = error < policy.arrived
-    rows, pose, _ = distinct_rows(q[good], index[good], plan.turning, policy.coincident)
-    return _by_pose(rows, pose, len(poses)), before[good]
+        return [([np.zeros((0, 6)) for _ in poses], np.zeros(0)) for _ in plans]
+    refined = refined_rows(six, plan, index, T[index], q, policy)
+    out = []
+    for pose, *part in zip(*(np.split(x, ends) for x in (index, *refined)), strict=True):
+        good = part[1] < policy.arrived
+        rows, pose, _ = distinct_rows(part[0][good], pose[good], plan.turning, policy.coincident)
+        out.append((_by_pose(rows, pose, len(poses)), part[2][good]))
+    return out
