@@ -100,21 +100,20 @@ def smallest_singular(
     h = 1e-6
     read = _read(readable)
     end = dh.X_tip if tool else np.eye(4)
-    columns = []
-    for j in range(dh.dof):
-        if dh.joints[j].name in dh.free:
-            continue
-        step = np.zeros(dh.dof)
-        step[j] = h * (1.0 if dh.lead_row(j).revolute else size)
-        dT = product(dh_pose(dh, values + step) - dh_pose(dh, values - step), end) / (2 * h)
-        dT = dT[:, :3, :] * read
-        dT[:, :, 3] /= size
-        parts = [dT.reshape(len(values), 12)]
-        if dh.arm_angle:
-            moved = elbow_position(dh, values + step) - elbow_position(dh, values - step)
-            parts.append(moved / (2 * h * size))
-        columns.append(np.concatenate(parts, axis=1))
-    J = np.stack(columns, axis=-1)
+    moving = [j for j, joint in enumerate(dh.joints) if joint.name not in dh.free]
+    unit = [1.0 if dh.lead_row(j).revolute else size for j in moving]
+    step = h * np.array(unit)[:, None, None] * np.eye(dh.dof)[moving, None]
+    shape = 2, len(moving), len(values), dh.dof
+    shifted = np.stack([values + step, values - step]).reshape(-1, dh.dof)
+    plus, minus = dh_pose(dh, shifted).reshape(*shape[:3], 4, 4)
+    dT = product(plus - minus, end) / (2 * h)
+    dT = dT[..., :3, :] * read
+    dT[..., 3] /= size
+    columns = dT.reshape(*shape[1:3], 12)
+    if dh.arm_angle:
+        ahead, behind = elbow_position(dh, shifted).reshape(*shape[:3], 3)
+        columns = np.concatenate([columns, (ahead - behind) / (2 * h * size)], axis=2)
+    J = columns.transpose(1, 2, 0)
     return np.asarray(np.linalg.svd(J, compute_uv=False)[:, -1])
 
 

@@ -50,7 +50,8 @@ def sines(angles: ArrayLike) -> Array:
 
 def _each(function: Any, angles: ArrayLike) -> Array:
     values = np.asarray(angles, dtype=np.float64)
-    return np.array([function(x) for x in values.ravel().tolist()]).reshape(values.shape)
+    each = map(function, values.ravel().tolist())
+    return np.fromiter(each, np.float64, values.size).reshape(values.shape)
 
 
 def least_squares(A: Array, b: Array) -> Array:
