@@ -354,9 +354,9 @@ template <class Y, class X, int N = kCommon<Y, X>>
   const Lanes<N> y = spread<N>(narrow_y), x = spread<N>(narrow_x);
   const auto ax = abs(x), ay = abs(y);
   const auto steep = ay > ax;
-  const auto small = min(ax, ay), large = max(ax, ay);
-  const auto high = small > 0.41421356237309503 * large;
-  const auto t = select(high, small - large, small) / select(high, small + large, large);
+  const auto lesser = min(ax, ay), large = max(ax, ay);
+  const auto high = lesser > 0.41421356237309503 * large;
+  const auto t = select(high, lesser - large, lesser) / select(high, lesser + large, large);
   const auto z = t * t;
   const auto z2 = z * z;
   const auto z4 = z2 * z2;
@@ -388,15 +388,15 @@ template <int N> inline constexpr Unbounded<N> kUnbounded{};
 
 template <int N> struct Placed {
   Lanes<N> q;
-  Mask<N> inside, near;
+  Mask<N> inside, nearby;
 };
 
 template <class Policy, int N, bool H>
 [[gnu::always_inline]] inline Placed<N> clamp(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
   const auto outside =
       (range.lower[j] - Policy::kLimitTolerance > q) | (q > range.upper[j] + Policy::kLimitTolerance);
-  const auto far = (range.lower[j] - Policy::kLimitDoubt > q) | (q > range.upper[j] + Policy::kLimitDoubt);
-  return {max(min(q, range.upper[j]), range.lower[j]), !outside, !far};
+  const auto remote = (range.lower[j] - Policy::kLimitDoubt > q) | (q > range.upper[j] + Policy::kLimitDoubt);
+  return {max(min(q, range.upper[j]), range.lower[j]), !outside, !remote};
 }
 
 template <class Policy, int N, bool H>
@@ -839,13 +839,13 @@ template <class Arm> struct FoldPair {
       factor(A);
     }
 
-    double sense([[maybe_unused]] const double* out, [[maybe_unused]] const double* still) const noexcept {
+    double sense([[maybe_unused]] const double* error, [[maybe_unused]] const double* along) const noexcept {
       if constexpr (kEquations != kMoving) {
         return 1.0;
       } else {
         double turned[kMoving][kMoving];
         for (int e = 0; e < kEquations; ++e)
-          for (int k = 0; k < kMoving; ++k) turned[e][k] = V[e][k] + out[e] * still[k];
+          for (int k = 0; k < kMoving; ++k) turned[e][k] = V[e][k] + error[e] * along[k];
         return keeps_orientation(turned) ? 1.0 : -1.0;
       }
     }
@@ -953,7 +953,10 @@ template <class Arm> struct SolutionRows {
 
   static bool within(const double* q) noexcept {
     bool in = true;
-    for (int j = 0; j < Arm::kDof; ++j) in = in & (Arm::kLower.data()[j] <= q[j]) & (q[j] <= Arm::kUpper.data()[j]);
+    for (int j = 0; j < Arm::kDof; ++j) {
+      const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j];
+      in = in & (low <= q[j]) & (q[j] <= high);
+    }
     return in;
   }
 
@@ -1432,7 +1435,7 @@ template <class Arm> struct CarefulRows {
     if (starts.count == 0 && left.free && out.count == known) take_all(aim, rows, options, starts, out);
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
-      if (starts.at(k).near && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
+      if (starts.at(k).nearby && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
     for (const int lane : Arm::kLaneOfRow)
       if ((bits(rows, lane) & (kReal | kRough)) == kReal) add_lane(rows, lane, out);
     return left;
@@ -1462,7 +1465,7 @@ template <class Arm> struct CarefulRows {
   };
 
   struct Nearest {
-    bool marked = false, near = false, settled = false, exact = false;  // settled: a solution, whatever else there is
+    bool marked = false, nearby = false, settled = false, exact = false;  // settled: a solution, whatever else there is
     bool alone = false;  // whether steps showed that it is the one solution near its start
     bool around = false;  // whether the solutions of the continuum that it lies on are known
     int lane = 0;
@@ -1478,11 +1481,11 @@ template <class Arm> struct CarefulRows {
     }
 
     void judge() noexcept {
-      near = !marked && !alone && RankLoss<Arm>::below(q, Policy::kFoldReach);
-      settled = error < (near ? Policy::kConverged : Policy::kArrived);
+      nearby = !marked && !alone && RankLoss<Arm>::below(q, Policy::kFoldReach);
+      settled = error < (nearby ? Policy::kConverged : Policy::kArrived);
     }
 
-    bool close() const noexcept { return near && RankLoss<Arm>::below(q, Policy::kBesideReach); }
+    bool close() const noexcept { return nearby && RankLoss<Arm>::below(q, Policy::kBesideReach); }
 
     void take(const Aim& aim, const double* from, Places& out) noexcept {
       double trial[Arm::kDof];
@@ -1554,11 +1557,11 @@ template <class Arm> struct CarefulRows {
       if (beside) start.alone = false;
       Nearest& one = at(count) = start;
       one.judge();
-      for (int k = 0; k < count && beside && one.near && !one.settled; ++k)
-        if (at(k).near && Pair::within(Policy::kAlike, one.q, at(k).q)) return;
+      for (int k = 0; k < count && beside && one.nearby && !one.settled; ++k)
+        if (at(k).nearby && Pair::within(Policy::kAlike, one.q, at(k).q)) return;
       ++count;
       if (!one.settled) return;
-      if (one.near || one.marked)
+      if (one.nearby || one.marked)
         add(aim, out, one.q, one.marked);
       else
         Row::add(out, one.q, false);
@@ -1858,11 +1861,11 @@ template <class Arm> struct CarefulSolve {
     bool kept[Places::kRoom] = {};
     int room = Arm::kMaxSolutions;
     for (int k = 0; k < found.count; ++k) {
-      int near = 0;
+      int nearby = 0;
       const double* q = Row::row(found, k);
       for (int i = 0; i < k && Row::flag(found, k); ++i)
-        if (kept[i] && Row::flag(found, i) && Careful::Pair::within(Policy::kAlike, q, Row::row(found, i))) ++near;
-      kept[k] = near < Policy::kCrowd;
+        if (kept[i] && Row::flag(found, i) && Careful::Pair::within(Policy::kAlike, q, Row::row(found, i))) ++nearby;
+      kept[k] = nearby < Policy::kCrowd;
       room -= Row::flag(found, k) ? 0 : 1;
     }
     out.count = 0;
@@ -1931,21 +1934,21 @@ template <class Arm> struct LanePlacement {
   template <class Rows> static void apply(const typename Arm::Options& options, Rows& rows) noexcept {
     constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;
     for (int at = 0; at < Rows::kLanes; at += N) {
-      Mask<N> inside = spread<N>(1.0) > 0.0, near = inside;
+      Mask<N> inside = spread<N>(1.0) > 0.0, nearby = inside;
       for (int j = 0; j < Arm::kDof; ++j) {
         Lanes<N> q = load<N>(rows.q[j] + at);
         if (Arm::kRevolute[j] && !Arm::kHeld[j]) q = turned(j, q, options);
         if (options.limits) {
           const Placed<N> placed = clamp<Policy>(j, q, {Arm::kLower.data(), Arm::kUpper.data()});
           inside = inside & placed.inside;
-          near = near & placed.near;
+          nearby = nearby & placed.nearby;
           q = placed.q;
         }
         store(q, rows.q[j] + at);
       }
       alignas(64) double kept[std::size_t{N}], close[std::size_t{N}];
       store(inside, kept);
-      store(near, close);
+      store(nearby, close);
       for (int i = 0; i < N; ++i) {
         const int bits = static_cast<int>(rows.flags[at + i]);
         const int doubt = (bits & kReal) != 0 && close[i] > 0.5 ? kRough : 0;
@@ -2149,25 +2152,25 @@ template <class Arm, template <class> class Way> struct PoseSolver {
  private:
   struct Checked {
     Options options;
-    std::remove_const_t<std::remove_pointer_t<decltype(Options::seed)>> near;
+    std::remove_const_t<std::remove_pointer_t<decltype(Options::seed)>> kept;
 
     explicit Checked(const Options& given) noexcept : options(given) {
-      bool far = false;
+      bool remote = false;
       for (int j = 0; j < Arm::kDof && options.seed; ++j) {
         const double value = std::abs(options.seed->data()[j]);
-        far = far || value > kFarthestSeed;
+        remote = remote || value > kFarthestSeed;
         if (!(value < kInfinity)) options.seed = nullptr;
       }
-      if (far && options.seed) without_turns();
+      if (remote && options.seed) without_turns();
     }
     Checked(const Checked&) = delete;
     Checked& operator=(const Checked&) = delete;
 
     void without_turns() noexcept {
-      near = *options.seed;
+      kept = *options.seed;
       for (int j = 0; j < Arm::kDof; ++j)
-        if (Arm::kRevolute[j] && !Arm::kHeld[j] && std::abs(near[j]) > kFarthestSeed) near[j] = std::fmod(near[j], kTurn);
-      options.seed = &near;
+        if (Arm::kRevolute[j] && !Arm::kHeld[j] && std::abs(kept[j]) > kFarthestSeed) kept[j] = std::fmod(kept[j], kTurn);
+      options.seed = &kept;
     }
   };
 
@@ -2416,11 +2419,11 @@ template <class A, class Solver> struct PathStep {
     return closed_form(pose, q, expected, row, singular);
   }
 
-  static Status closed_form(const Eigen::Isometry3d& pose, const double* near, const double* expected, double* row,
+  static Status closed_form(const Eigen::Isometry3d& pose, const double* nearby, const double* expected, double* row,
                             bool& singular) noexcept {
     typename A::Options options;
     typename A::Joints seed;
-    std::copy_n(near, kDof, seed.data());
+    std::copy_n(nearby, kDof, seed.data());
     options.seed = &seed;
     options.limits = false;
     typename A::Solutions found;
@@ -2494,10 +2497,10 @@ template <class A> struct RowPreference {
     if (seed && !SolutionRows<A>::finite(seed)) seed = nullptr;
     for (int j = 0; j < A::kDof; ++j) {
       const double low = A::kLower.data()[j], high = A::kUpper.data()[j];
-      const bool bounded = high - low < kInfinity, near = kind == Prefer::Near && seed;
+      const bool bounded = high - low < kInfinity, nearby = kind == Prefer::Near && seed;
       const double half = std::max(0.5 * (high - low), 1e-6);
-      wanted.data()[j] = bounded && !near ? 0.5 * (low + high) : seed ? seed[j] : 0.0;
-      weight[j] = near ? 1.0 : bounded ? 1.0 / (half * half) : 0.0;
+      wanted.data()[j] = bounded && !nearby ? 0.5 * (low + high) : seed ? seed[j] : 0.0;
+      weight[j] = nearby ? 1.0 : bounded ? 1.0 / (half * half) : 0.0;
     }
     options.limits = limits;
     options.seed = &wanted;
@@ -2530,10 +2533,10 @@ inline void order_rows(const Eigen::Isometry3d& pose, const double* seed, typena
                        typename A::Solutions& out) noexcept {
   const RowPreference<A> preference(seed, prefer, limits);
   typename A::Options options;
-  typename A::Joints near;
+  typename A::Joints nearby;
   if (seed) {
-    std::copy_n(seed, A::kDof, near.data());
-    options.seed = &near;
+    std::copy_n(seed, A::kDof, nearby.data());
+    options.seed = &nearby;
   }
   options.limits = limits;
   Solver::solve(pose, options, out);

@@ -67,6 +67,15 @@ def test_a_header_compiles_alone(header: str, tmp_path: Path) -> None:
     compiled_header(f'#include "{header}"\n#include "{header}"\n', tmp_path, only)
 
 
+def test_no_name_is_a_macro_of_windows() -> None:
+    """What <windows.h> defines as macros, in lower case, is the name of nothing."""
+    templates = Path(__file__).parents[2] / "templates" / "cpp"
+    for file in (*RUNTIME.rglob("*.hpp"), *templates.rglob("*.jinja")):
+        code = re.sub(r'//.*|"[^"\n]*"|\{\{.*?\}\}|\{%.*?%\}', "", file.read_text(encoding="utf-8"))
+        found = re.findall(r"\b(?:far|hyper|interface|near|pascal|small)\b", code)
+        assert not found, f"{file}: {found}"
+
+
 @pytest.mark.parametrize("header", HEADERS)
 def test_a_header_says_what_it_is(header: str) -> None:
     text = (RUNTIME / header).read_text()

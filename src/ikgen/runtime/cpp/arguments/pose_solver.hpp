@@ -34,16 +34,16 @@ template <class Arm, template <class> class Way> struct PoseSolver {
   // with one, free values that are the defaults are the seed's.
   struct Checked {
     Options options;
-    std::remove_const_t<std::remove_pointer_t<decltype(Options::seed)>> near;
+    std::remove_const_t<std::remove_pointer_t<decltype(Options::seed)>> kept;
 
     explicit Checked(const Options& given) noexcept : options(given) {
-      bool far = false;
+      bool remote = false;
       for (int j = 0; j < Arm::kDof && options.seed; ++j) {
         const double value = std::abs(options.seed->data()[j]);
-        far = far || value > kFarthestSeed;
+        remote = remote || value > kFarthestSeed;
         if (!(value < kInfinity)) options.seed = nullptr;
       }
-      if (far && options.seed) without_turns();
+      if (remote && options.seed) without_turns();
       if constexpr (Arm::kFree > 0)
         if (options.seed && options.hold_seed) hold_the_seed();
     }
@@ -59,10 +59,10 @@ template <class Arm, template <class> class Way> struct PoseSolver {
     }
 
     void without_turns() noexcept {
-      near = *options.seed;
+      kept = *options.seed;
       for (int j = 0; j < Arm::kDof; ++j)
-        if (Arm::kRevolute[j] && !Arm::kHeld[j] && std::abs(near[j]) > kFarthestSeed) near[j] = std::fmod(near[j], kTurn);
-      options.seed = &near;
+        if (Arm::kRevolute[j] && !Arm::kHeld[j] && std::abs(kept[j]) > kFarthestSeed) kept[j] = std::fmod(kept[j], kTurn);
+      options.seed = &kept;
     }
   };
 

@@ -25,15 +25,15 @@ template <int N> inline constexpr Unbounded<N> kUnbounded{};
 // near: whether it is no farther outside than what tells nothing of a closed form's row.
 template <int N> struct Placed {
   Lanes<N> q;
-  Mask<N> inside, near;
+  Mask<N> inside, nearby;
 };
 
 template <class Policy, int N, bool H>
 [[gnu::always_inline]] inline Placed<N> clamp(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
   const auto outside =
       (range.lower[j] - Policy::kLimitTolerance > q) | (q > range.upper[j] + Policy::kLimitTolerance);
-  const auto far = (range.lower[j] - Policy::kLimitDoubt > q) | (q > range.upper[j] + Policy::kLimitDoubt);
-  return {max(min(q, range.upper[j]), range.lower[j]), !outside, !far};
+  const auto remote = (range.lower[j] - Policy::kLimitDoubt > q) | (q > range.upper[j] + Policy::kLimitDoubt);
+  return {max(min(q, range.upper[j]), range.lower[j]), !outside, !remote};
 }
 
 // Value of joint j, given in (-pi, pi], on the whole turn that lies in the range.

@@ -12,9 +12,9 @@ template <class Y, class X, int N = kCommon<Y, X>>
   const Lanes<N> y = spread<N>(narrow_y), x = spread<N>(narrow_x);
   const auto ax = abs(x), ay = abs(y);
   const auto steep = ay > ax;
-  const auto small = min(ax, ay), large = max(ax, ay);
-  const auto high = small > 0.41421356237309503 * large;
-  const auto t = select(high, small - large, small) / select(high, small + large, large);
+  const auto lesser = min(ax, ay), large = max(ax, ay);
+  const auto high = lesser > 0.41421356237309503 * large;
+  const auto t = select(high, lesser - large, lesser) / select(high, lesser + large, large);
   const auto z = t * t;
   const auto z2 = z * z;
   const auto z4 = z2 * z2;

@@ -43,13 +43,13 @@ constexpr Turn times(const Turn& a, const Turn& b) noexcept { return {a.c * b.c 
 template <int N> struct Binomials {
   double of[N + 1][N + 1];
 };
-template <int N> constexpr Binomials<N> pascal() noexcept {
+template <int N> constexpr Binomials<N> binomials() noexcept {
   Binomials<N> out{};
   for (int n = 0; n <= N; ++n)
     for (int r = 0; r <= n; ++r) out.of[n][r] = r == 0 || r == n ? 1.0 : out.of[n - 1][r - 1] + out.of[n - 1][r];
   return out;
 }
-template <int N> inline constexpr Binomials<N> kBinomials = pascal<N>();
+template <int N> inline constexpr Binomials<N> kBinomials = binomials<N>();
 
 template <int D> constexpr Bernstein<D> make_bernstein(double width) noexcept {
   Turn half[D * 2 + 1] = {};  // multiples of width/2

@@ -27,15 +27,15 @@ constexpr std::array<double, kTurnParts> cosine_table() noexcept {
   std::array<double, kTurnParts> out{};
   for (int k = 0; k < kTurnParts; ++k) {
     const int folded = k <= kTurnParts / 2 ? k : kTurnParts - k;  // to [0, pi]
-    const bool far = folded > kTurnParts / 4;
+    const bool remote = folded > kTurnParts / 4;
     constexpr long double part = 6.283185307179586476925286766559005768L / kTurnParts;
-    const long double x = part * (far ? kTurnParts / 2 - folded : folded);
+    const long double x = part * (remote ? kTurnParts / 2 - folded : folded);
     long double term = 1.0L, sum = 0.0L;
     for (int n = 1; n < 30; n += 2) {
       sum += term;
       term *= -x * x / (n * (n + 1));
     }
-    out[static_cast<std::size_t>(k)] = static_cast<double>(4 * folded == kTurnParts ? 0.0L : far ? -sum : sum);
+    out[static_cast<std::size_t>(k)] = static_cast<double>(4 * folded == kTurnParts ? 0.0L : remote ? -sum : sum);
   }
   return out;
 }

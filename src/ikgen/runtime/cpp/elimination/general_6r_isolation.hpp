@@ -64,11 +64,11 @@ struct Verdict {
 template <int N> inline Verdict judge(const Wide (&b)[N], const Noise<Wide>& of) noexcept {
   const Wide none = spread<kWide>(0.0);
   Wide changes = none, before = none, over = spread<kWide>(1.0), place = none;
-  Wide small = abs(b[0]), large = small, step = spread<kWide>(1e300);
+  Wide lesser = abs(b[0]), large = lesser, step = spread<kWide>(1e300);
   const Wide rise = select(b[N - 1] > b[0], spread<kWide>(1.0), spread<kWide>(-1.0));
   for (int i = 1; i < N; ++i) {
     const Wide size = abs(b[i]);
-    small = min(small, size);
+    lesser = min(lesser, size);
     large = max(large, size);
     step = min(step, rise * (b[i] - b[i - 1]));
     const auto change = 0.0 > b[i] * b[i - 1];
@@ -77,7 +77,7 @@ template <int N> inline Verdict judge(const Wide (&b)[N], const Noise<Wide>& of)
     over = select(change, b[i - 1] - b[i], over);
     place = select(change, spread<kWide>(i - 1.0), place);
   }
-  return {changes, (place + before / over) * (1.0 / (N - 1)), of.noise > small, of.hopeless * of.noise > large,
+  return {changes, (place + before / over) * (1.0 / (N - 1)), of.noise > lesser, of.hopeless * of.noise > large,
           (step > of.wobble) & (min(abs(b[0]), abs(b[N - 1])) > of.noise)};
 }
 

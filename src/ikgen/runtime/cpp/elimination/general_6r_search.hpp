@@ -97,14 +97,14 @@ inline bool look_closer(const Values& values, const Zone& zone, int look, Roots<
   Polynomial<D> g = interpolate<D>(f, worst);
   if (shifts) add_shift<D>(shift, g);
   const Brackets<D> brackets = isolate(g);
-  Roots<D> near;
-  clear_roots(g, brackets, near);
-  for (int i = 0; i < near.count; ++i) {
-    lens.apply(near.c[i], near.s[i]);
-    const double off = std::atan2(near.s[i] * lens.c - near.c[i] * lens.s, near.c[i] * lens.c + near.s[i] * lens.s);
+  Roots<D> nearby;
+  clear_roots(g, brackets, nearby);
+  for (int i = 0; i < nearby.count; ++i) {
+    lens.apply(nearby.c[i], nearby.s[i]);
+    const double off = std::atan2(nearby.s[i] * lens.c - nearby.c[i] * lens.s, nearby.c[i] * lens.c + nearby.s[i] * lens.s);
     if (std::abs(off) > half) continue;
     if (out.count == 2 * kRoots<D>) return false;
-    add_root(out, near.c[i], near.s[i]);
+    add_root(out, nearby.c[i], nearby.s[i]);
   }
   bool all = !brackets.doubt;
   for (int i = 0; i < brackets.zones && all; ++i) {

@@ -158,11 +158,11 @@ template <class Arm> struct BranchArc {
   }
 
   // The point with this share of the way, from one beside it, by Newton's method; false where that leads away.
-  bool find(double share, const Point& near, Point& out) const noexcept {
-    out = near;
+  bool find(double share, const Point& nearby, Point& out) const noexcept {
+    out = nearby;
     out.share = share;
-    for (int k = 0; k < kMoving; ++k) out.q[kJoints[k]] += (share - near.share) * near.flow[k];
-    out.held += (share - near.share) * near.flow[kMoving];
+    for (int k = 0; k < kMoving; ++k) out.q[kJoints[k]] += (share - nearby.share) * nearby.flow[k];
+    out.held += (share - nearby.share) * nearby.flow[kMoving];
     double moved = 0.0;
     for (int i = 0; i < kSteps; ++i) {
       Vector done, row;

@@ -52,7 +52,7 @@ template <class Arm> struct BranchEnd {
       const Sample s = sweep.at(trial(step), at_fold);
       const int row = row_in(s);
       const bool seen = row >= 0 && s.real[row] && s.distance(row, q) < 1.0, good = seen && s.off[row] <= 0.0;
-      const double far = good ? outer : inner;
+      const double remote = good ? outer : inner;
       (good ? inner : outer) = s.held;
       if (at_fold && seen && !good) {  // a limit comes before the fold
         at_fold = false;
@@ -65,7 +65,7 @@ template <class Arm> struct BranchEnd {
         last.known = false;
         return;
       }
-      narrow(s, seen ? row : at_fold && Sample::kMarginsTell ? lane : -1, far);
+      narrow(s, seen ? row : at_fold && Sample::kMarginsTell ? lane : -1, remote);
       (good ? last.inside : last.outside) = s;
       if (good) {
         take_row(s, row);
@@ -179,17 +179,17 @@ template <class Arm> struct BranchEnd {
     value[count++] = here;
   }
 
-  // Takes what was found; what is known of the other side of the bracket, at `far`, goes last.
-  void narrow(const Sample& s, int row, double far) noexcept {
+  // Takes what was found; what is known of the other side of the bracket, at `remote`, goes last.
+  void narrow(const Sample& s, int row, double remote) noexcept {
     int other = -1;
     const double here = value_of(s, row);
     if (!(std::abs(here) < kInfinity)) return;
     for (int k = 0; k < count; ++k)
-      if (at[k] == far) other = k;
+      if (at[k] == remote) other = k;
     const double kept = other >= 0 ? value[other] : 0.0;
     if (other >= 0) drop(other);
     push(s.held, here);
-    if (other >= 0) push(far, kept);
+    if (other >= 0) push(remote, kept);
   }
   void drop(int k) noexcept {
     --count;

@@ -53,21 +53,21 @@ template <class Arm> struct HeldDescent {
 
   // The branch's row at a value next to a point, as `placed`, if there is one. Where lanes tell branches apart it is that of
   // the point's: near a fold two are as near to it.
-  Point beside(double at, const Point& near) const noexcept {
+  Point beside(double at, const Point& nearby) const noexcept {
     const Sample s = sweep.at(at, true);
-    int best = Sample::kMarginsTell && (s.inside(near.lane) || (s.real[near.lane] && s.rough[near.lane])) ? near.lane : -1;
+    int best = Sample::kMarginsTell && (s.inside(nearby.lane) || (s.real[nearby.lane] && s.rough[nearby.lane])) ? nearby.lane : -1;
     double least = 0.5;
     for (int l = 0; l < s.lanes && !Sample::kMarginsTell; ++l) {
       double gap = s.inside(l) ? 0.0 : kInfinity, q[Arm::kDof];
       s.row(l, q);
       for (int j = 0; j < Arm::kDof && gap < least; ++j)
-        if (!Arm::kHeld[j]) gap = std::max(gap, std::abs(SolutionRows<Arm>::change(j, near.q, q)));
+        if (!Arm::kHeld[j]) gap = std::max(gap, std::abs(SolutionRows<Arm>::change(j, nearby.q, q)));
       if (gap < least) {
         least = gap;
         best = l;
       }
     }
-    Point none = near;
+    Point none = nearby;
     none.at = at;
     none.cost = kInfinity;
     if (best < 0) return none;

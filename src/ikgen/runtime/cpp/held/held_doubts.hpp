@@ -130,10 +130,10 @@ template <class Arm> struct HeldDoubts {
       const Lanes<N> x = bounds.offset(i, load<N>(a.q[j] + at)), y = Sample::within(j, x + moved[j]);
       const double reach = bounds.half[i] + Arm::Policy::kLimitTolerance;  // of rows that are taken as inside
       const Lanes<N> left = reach - abs(x), right = reach - abs(y), slack = off[j] + kRoundOff;
-      const auto far = (0.0 > x * y) & (abs(x) + abs(y) > (Arm::kRevolute[j] ? kPi : kInfinity));
-      const auto opposite = (0.0 > x * y) & (!far);
+      const auto remote = (0.0 > x * y) & (abs(x) + abs(y) > (Arm::kRevolute[j] ? kPi : kInfinity));
+      const auto opposite = (0.0 > x * y) & (!remote);
       dead = dead | (w.go & (-slack > left) & (-slack > right) & (!opposite));
-      const auto clear = (left > slack) & (right > slack) & (!far);
+      const auto clear = (left > slack) & (right > slack) & (!remote);
       const auto once = (!(left * right > 0.0)) & (abs(left - right) > 4.0 * slack);
       crossings = crossings + select(clear, 0.0, select(once, 1.0, 2.0));
     }

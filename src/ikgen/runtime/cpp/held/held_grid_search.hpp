@@ -46,9 +46,9 @@ template <class Arm, class Solver> struct HeldGridSearch {
         high[k] = kPi;
       }
       const SlideRange<Arm> range(pose.translation().data(), j);
-      const double near = std::min(std::max(range.low, low[k]), high[k]), far = std::min(std::max(range.high, low[k]), high[k]);
-      low[k] = near;
-      high[k] = far;
+      const double nearby = std::min(std::max(range.low, low[k]), high[k]), remote = std::min(std::max(range.high, low[k]), high[k]);
+      low[k] = nearby;
+      high[k] = remote;
       if (!(low[k] > -kInfinity)) low[k] = std::min(high[k], middle) - 1.0;
       if (!(high[k] < kInfinity)) high[k] = std::max(low[k], middle) + 1.0;
     }

@@ -185,9 +185,9 @@ template <class Arm> struct HeldSample {
 
   // Takes the rows of the pose, or of one beside it, refined where that is needed: in lanes where all are, and not at all if
   // they may be coarse; whether some may be equal.
-  bool take(const Eigen::Isometry3d& T, const Eigen::Isometry3d& near, int part, bool coarse) noexcept {
+  bool take(const Eigen::Isometry3d& T, const Eigen::Isometry3d& nearby, int part, bool coarse) noexcept {
     Rows rows;
-    Arm::branches(gather<1>(&near), typename Arm::Seed(), std::array<double, 1>{held}, kAnywhere, rows);
+    Arm::branches(gather<1>(&nearby), typename Arm::Seed(), std::array<double, 1>{held}, kAnywhere, rows);
     [[maybe_unused]] typename Arm::template Rows<1> fine;
     [[maybe_unused]] double error[Arm::kLanes] = {};
     if constexpr (Arm::kNewton && !Arm::kRefined) refine_lanes(T, rows, fine, error);

@@ -55,19 +55,19 @@ template <class Arm> struct HeldSweep {
     const double lower = Arm::kLower.data()[j], upper = Arm::kUpper.data()[j];
     const bool bounded = upper - lower < kInfinity;
     if (Arm::kRevolute[j] && !(limits && bounded)) return;
-    const double far = bounded ? kInfinity : reach();
-    low = std::max(lower, -far);
-    high = std::min(upper, far);
+    const double remote = bounded ? kInfinity : reach();
+    low = std::max(lower, -remote);
+    high = std::min(upper, remote);
   }
 
   // How far a slide without limits is looked at: the arm's lengths from the pose.
   double reach() const noexcept {
-    double far = pose.translation().norm();
-    for (const auto& F : Arm::kFrames) far += std::sqrt(F[0][3] * F[0][3] + F[1][3] * F[1][3] + F[2][3] * F[2][3]);
+    double remote = pose.translation().norm();
+    for (const auto& F : Arm::kFrames) remote += std::sqrt(F[0][3] * F[0][3] + F[1][3] * F[1][3] + F[2][3] * F[2][3]);
     for (int j = 0; j < Arm::kDof; ++j)
       if (!Arm::kRevolute[j] && Arm::kUpper.data()[j] - Arm::kLower.data()[j] < kInfinity)
-        far += std::max(std::abs(Arm::kLower.data()[j]), std::abs(Arm::kUpper.data()[j]));
-    return far;
+        remote += std::max(std::abs(Arm::kLower.data()[j]), std::abs(Arm::kUpper.data()[j]));
+    return remote;
   }
 
   template <class Visit>

@@ -92,9 +92,9 @@ template <class Arm> struct ParabolicDescent {
     const Point& best = minimum->best;
     const double x = best.at, middle = 0.5 * (low + high), least = kNear * (1.0 + std::abs(x));
     if (at_end) {  // if it is better than what is next to it
-      const double far = x == low ? high : low;
-      trial = x + std::copysign(least, far - x);
-      return std::abs(far - x) > 2.0 * least;
+      const double remote = x == low ? high : low;
+      trial = x + std::copysign(least, remote - x);
+      return std::abs(remote - x) > 2.0 * least;
     }
     if (steps == kSteps || std::abs(x - middle) <= 2.0 * least - 0.5 * (high - low)) return false;
     const double left = low - x, right = high - x, ways[2] = {x - second, x - third};

@@ -20,10 +20,10 @@ template <class A> struct RowPreference {
     if (seed && !SolutionRows<A>::finite(seed)) seed = nullptr;
     for (int j = 0; j < A::kDof; ++j) {
       const double low = A::kLower.data()[j], high = A::kUpper.data()[j];
-      const bool bounded = high - low < kInfinity, near = kind == Prefer::Near && seed;
+      const bool bounded = high - low < kInfinity, nearby = kind == Prefer::Near && seed;
       const double half = std::max(0.5 * (high - low), 1e-6);
-      wanted.data()[j] = bounded && !near ? 0.5 * (low + high) : seed ? seed[j] : 0.0;
-      weight[j] = near ? 1.0 : bounded ? 1.0 / (half * half) : 0.0;
+      wanted.data()[j] = bounded && !nearby ? 0.5 * (low + high) : seed ? seed[j] : 0.0;
+      weight[j] = nearby ? 1.0 : bounded ? 1.0 / (half * half) : 0.0;
     }
     options.limits = limits;
     options.seed = &wanted;
@@ -59,10 +59,10 @@ inline void order_rows(const Eigen::Isometry3d& pose, const double* seed, typena
                        typename A::Solutions& out) noexcept {
   const RowPreference<A> preference(seed, prefer, limits);
   typename A::Options options;
-  typename A::Joints near;
+  typename A::Joints nearby;
   if (seed) {
-    std::copy_n(seed, A::kDof, near.data());
-    options.seed = &near;
+    std::copy_n(seed, A::kDof, nearby.data());
+    options.seed = &nearby;
   }
   options.limits = limits;
   Solver::solve(pose, options, out);

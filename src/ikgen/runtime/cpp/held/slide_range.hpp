@@ -41,10 +41,10 @@ template <class Arm> struct SlideRange {
       }
       if (i >= first) {
         const auto& F = Arm::kFrames[i + 1];
-        double far = std::sqrt(F[0][3] * F[0][3] + F[1][3] * F[1][3] + F[2][3] * F[2][3]);
-        if (!motion.revolute) far += std::max(std::abs(a), std::abs(b));
-        least -= far;
-        most += far;
+        double remote = std::sqrt(F[0][3] * F[0][3] + F[1][3] * F[1][3] + F[2][3] * F[2][3]);
+        if (!motion.revolute) remote += std::max(std::abs(a), std::abs(b));
+        least -= remote;
+        most += remote;
         continue;
       }
       const double share = dot(along, axes[i]);

@@ -197,10 +197,10 @@ template <class Arm> struct LaneNewton {
       aim.move(step);
       before = size;
     }
-    const Mask<N> ended = good & done, far = rest > Policy::kLeastMiss;
+    const Mask<N> ended = good & done, remote = rest > Policy::kLeastMiss;
     Mask<N> sure = !strained;
     if (!all(!(ended & strained))) sure = sure | stands_alone<P, N>(pose, aim, chain);
-    return {ended & (Policy::kArrived > rest) & sure, ended & far & !strained};
+    return {ended & (Policy::kArrived > rest) & sure, ended & remote & !strained};
   }
 
   // Beside which rows nothing can have come in. Along the direction in which the pose moves least, by s1, what the file

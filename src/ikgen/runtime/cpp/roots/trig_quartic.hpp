@@ -117,7 +117,7 @@ inline Point newton(const Coefficients& f, Point t, int order) noexcept {
 }
 
 // newton() to a root, undone where it leaves `reach`: among three close roots.
-inline Point near(const Coefficients& f, Point t, double reach) noexcept {
+inline Point nearby(const Coefficients& f, Point t, double reach) noexcept {
   const Point n = newton(f, t, 0);
   return std::abs(n.c - t.c) + std::abs(n.s - t.s) < reach ? n : t;
 }
@@ -142,7 +142,7 @@ inline int tangent(const Coefficients& f, Point t, double reach, double tol, Poi
   out[0] = {(e.c - h * e.s) / n, (e.s + h * e.c) / n};
   out[1] = {(e.c + h * e.s) / n, (e.s - h * e.c) / n};
   if (h >= 1e-7)  // below, the value at the extremum is round-off: Newton steps would be too
-    for (Point& end : out) end = near(f, end, 0.5 * h);
+    for (Point& end : out) end = nearby(f, end, 0.5 * h);
   return 2;
 }
 
@@ -174,8 +174,8 @@ inline TrigRoots trig_quartic(double a2, double b2, double a1, double b1, double
     }
     if (n < 0) {
       d = std::min(std::max(d, -1.0), 1.0);
-      found[0] = tq::near(f, {d * x - r * y, d * y + r * x}, 0.25 * r + 1e-5);
-      found[1] = tq::near(f, {d * x + r * y, d * y - r * x}, 0.25 * r + 1e-5);
+      found[0] = tq::nearby(f, {d * x - r * y, d * y + r * x}, 0.25 * r + 1e-5);
+      found[1] = tq::nearby(f, {d * x + r * y, d * y - r * x}, 0.25 * r + 1e-5);
       n = 2;
     }
     for (int j = 0; j < n; ++j) {

@@ -17,21 +17,21 @@ template <class Arm> struct LanePlacement {
   template <class Rows> static void apply(const typename Arm::Options& options, Rows& rows) noexcept {
     constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;
     for (int at = 0; at < Rows::kLanes; at += N) {
-      Mask<N> inside = spread<N>(1.0) > 0.0, near = inside;
+      Mask<N> inside = spread<N>(1.0) > 0.0, nearby = inside;
       for (int j = 0; j < Arm::kDof; ++j) {
         Lanes<N> q = load<N>(rows.q[j] + at);
         if (Arm::kRevolute[j] && !Arm::kHeld[j]) q = turned(j, q, options);
         if (options.limits) {
           const Placed<N> placed = clamp<Policy>(j, q, {Arm::kLower.data(), Arm::kUpper.data()});
           inside = inside & placed.inside;
-          near = near & placed.near;
+          nearby = nearby & placed.nearby;
           q = placed.q;
         }
         store(q, rows.q[j] + at);
       }
       alignas(64) double kept[std::size_t{N}], close[std::size_t{N}];
       store(inside, kept);
-      store(near, close);
+      store(nearby, close);
       for (int i = 0; i < N; ++i) {
         const int bits = static_cast<int>(rows.flags[at + i]);
         const int doubt = (bits & kReal) != 0 && close[i] > 0.5 ? kRough : 0;

@@ -54,9 +54,9 @@ template <class Arm> struct RankLoss {
       Lanes<N> q[Arm::kDof], J[6][Arm::kDof], slope[kEquations][Arm::kDof];
       for (int j = 0; j < Arm::kDof; ++j) q[j] = load<N>(rows.q[j] + at);
       Arm::Task::slope(MotionChain<Arm>::forward(q, J), J, slope);
-      alignas(64) double far[std::size_t{N}];
-      store(above(slope, bound), far);
-      for (int i = 0; i < N; ++i) out[at + i] = out[at + i] && far[i] > 0.5;
+      alignas(64) double remote[std::size_t{N}];
+      store(above(slope, bound), remote);
+      for (int i = 0; i < N; ++i) out[at + i] = out[at + i] && remote[i] > 0.5;
     }
   }
 

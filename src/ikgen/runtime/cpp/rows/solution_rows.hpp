@@ -82,7 +82,10 @@ template <class Arm> struct SolutionRows {
   // Whether all values are.
   static bool within(const double* q) noexcept {
     bool in = true;
-    for (int j = 0; j < Arm::kDof; ++j) in = in & (Arm::kLower.data()[j] <= q[j]) & (q[j] <= Arm::kUpper.data()[j]);
+    for (int j = 0; j < Arm::kDof; ++j) {
+      const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j];
+      in = in & (low <= q[j]) & (q[j] <= high);
+    }
     return in;
   }
 

@@ -117,15 +117,15 @@ template <class Arm> struct FoldPair {
       factor(A);
     }
 
-    // 1 or -1, which takes `out` in the sense that goes with the still direction's: what the others do to the pose, with
-    // `out` for the still one, keeps orientation, however far `out` turns from one sample to the next.
-    double sense([[maybe_unused]] const double* out, [[maybe_unused]] const double* still) const noexcept {
+    // 1 or -1, which takes `error` in the sense that goes with the still direction's, `along`: what the others do to the
+    // pose, with `error` for the still one, keeps orientation, however far that turns from one sample to the next.
+    double sense([[maybe_unused]] const double* error, [[maybe_unused]] const double* along) const noexcept {
       if constexpr (kEquations != kMoving) {
         return 1.0;
       } else {
         double turned[kMoving][kMoving];
         for (int e = 0; e < kEquations; ++e)
-          for (int k = 0; k < kMoving; ++k) turned[e][k] = V[e][k] + out[e] * still[k];
+          for (int k = 0; k < kMoving; ++k) turned[e][k] = V[e][k] + error[e] * along[k];
         return keeps_orientation(turned) ? 1.0 : -1.0;
       }
     }

@@ -96,7 +96,7 @@ template <class Arm> struct CarefulRows {
     if (starts.count == 0 && left.free && out.count == known) take_all(aim, rows, options, starts, out);
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
-      if (starts.at(k).near && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
+      if (starts.at(k).nearby && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
     if constexpr (!Arm::kRefined)
       for (const int lane : Arm::kLaneOfRow)
         if ((bits(rows, lane) & (kReal | kRough)) == kReal) add_lane(rows, lane, out);
@@ -142,7 +142,7 @@ template <class Arm> struct CarefulRows {
 
   // What Newton steps from a lane led to. Rows that are right to round-off are added; of the others the nearest is kept.
   struct Nearest {
-    bool marked = false, near = false, settled = false, exact = false;  // settled: a solution, whatever else there is
+    bool marked = false, nearby = false, settled = false, exact = false;  // settled: a solution, whatever else there is
     bool alone = false;  // whether steps showed that it is the one solution near its start
     bool around = false;  // whether the solutions of the continuum that it lies on are known
     int lane = 0;
@@ -165,12 +165,12 @@ template <class Arm> struct CarefulRows {
     }
 
     void judge() noexcept {
-      near = !marked && !alone && RankLoss<Arm>::below(q, Policy::kFoldReach);
-      settled = error < (near ? Policy::kConverged : Policy::kArrived);
+      nearby = !marked && !alone && RankLoss<Arm>::below(q, Policy::kFoldReach);
+      settled = error < (nearby ? Policy::kConverged : Policy::kArrived);
     }
 
     // Whether other solutions may start from no lane of this pose.
-    bool close() const noexcept { return near && RankLoss<Arm>::below(q, Policy::kBesideReach); }
+    bool close() const noexcept { return nearby && RankLoss<Arm>::below(q, Policy::kBesideReach); }
 
     // Adds what Newton steps lead to.
     void take(const Aim& aim, const double* from, Places& out) noexcept {
@@ -235,7 +235,7 @@ template <class Arm> struct CarefulRows {
     void trace_broken(const Aim& aim, Places& out) noexcept {
       for (int k = 0; k < count; ++k) {
         Nearest& one = at(k);
-        if (one.around || !one.near || !RankLoss<Arm>::below(one.q, Policy::kBrokenReach)) continue;
+        if (one.around || !one.nearby || !RankLoss<Arm>::below(one.q, Policy::kBrokenReach)) continue;
         NearContinuum<Arm> curve(aim);
         one.around = curve.trace(one.q) == NearContinuum<Arm>::Kind::Broken;
         for (int i = 0; i < curve.count; ++i) {
@@ -265,11 +265,11 @@ template <class Arm> struct CarefulRows {
       if (beside) start.alone = false;
       Nearest& one = at(count) = start;
       one.judge();
-      for (int k = 0; k < count && beside && one.near && !one.settled; ++k)
-        if (at(k).near && Pair::within(Policy::kAlike, one.q, at(k).q)) return;
+      for (int k = 0; k < count && beside && one.nearby && !one.settled; ++k)
+        if (at(k).nearby && Pair::within(Policy::kAlike, one.q, at(k).q)) return;
       ++count;
       if (!one.settled) return;
-      if (one.near || one.marked)
+      if (one.nearby || one.marked)
         add(aim, out, one.q, one.marked);
       else
         Row::add(out, one.q, false);

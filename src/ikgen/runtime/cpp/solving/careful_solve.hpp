@@ -57,11 +57,11 @@ template <class Arm> struct CarefulSolve {
     bool kept[Places::kRoom] = {};
     int room = Arm::kMaxSolutions;
     for (int k = 0; k < found.count; ++k) {
-      int near = 0;
+      int nearby = 0;
       const double* q = Row::row(found, k);
       for (int i = 0; i < k && Row::flag(found, k); ++i)
-        if (kept[i] && Row::flag(found, i) && Careful::Pair::within(Policy::kAlike, q, Row::row(found, i))) ++near;
-      kept[k] = near < Policy::kCrowd;
+        if (kept[i] && Row::flag(found, i) && Careful::Pair::within(Policy::kAlike, q, Row::row(found, i))) ++nearby;
+      kept[k] = nearby < Policy::kCrowd;
       room -= Row::flag(found, k) ? 0 : 1;
     }
     out.count = 0;

@@ -131,12 +131,12 @@ template <class A, class Solver> struct PathStep {
     }
   }
 
-  // The closed form's row nearest to the expected one, what is held as `near` has it.
-  static Status closed_form(const Eigen::Isometry3d& pose, const double* near, const double* expected, double* row,
+  // The closed form's row nearest to the expected one, what is held as `nearby` has it.
+  static Status closed_form(const Eigen::Isometry3d& pose, const double* nearby, const double* expected, double* row,
                             bool& singular) noexcept {
     typename A::Options options;
     typename A::Joints seed;
-    std::copy_n(near, kDof, seed.data());
+    std::copy_n(nearby, kDof, seed.data());
     options.seed = &seed;
     options.limits = false;
     typename A::Solutions found;
