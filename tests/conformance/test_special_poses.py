@@ -120,6 +120,17 @@ NO_ROOTS = (
 """Tables; configurations of which the forms leave two unknowns and the pose leaves one, beside regular
 solutions, or where an elimination finds more rows than there is room for, or no roots, as all angles are
 some; joints whose values stay the same along that continuum."""
+MEETING_ROOTS = (
+    [
+        ("revolute", 0, 0.0, 0.0),
+        ("revolute", -1, 0.0, 0.0),
+        ("revolute", 0, 0.24947209278150773, 0.0),
+        ("revolute", -1, 0.0, 0.0),
+        ("revolute", 1, 0.4452450889913748, 0.0),
+    ],
+    [-pi / 2, -pi, -pi, -pi / 2, -pi / 2],
+)
+"""On a continuum of the third joint, where an elimination's roots meet."""
 FOUR_MEET = (
     [
         ("prismatic", 0, 0.0, 0.0),
@@ -131,6 +142,28 @@ FOUR_MEET = (
     [0.0, pi, -1.6045899484602453, pi, 0.0],
 )
 """Four solutions meet where the elimination has no rank; beside the pose they are soon far apart."""
+STALLED = (
+    [
+        ("revolute", 0, 0.0, 0.5784682775154428),
+        ("revolute", -1, 0.7146873169622483, 0.0),
+        ("revolute", 1, 0.6112489915347157, 0.0),
+        ("prismatic", 1, 0.8077914741532342, 0.0),
+        ("revolute", 0, 0.0, 0.4794171345621271),
+        ("revolute", 1, 0.0, 0.0),
+    ],
+    [3.1415926383, 3.1415926359, 5.4373704223e-09, -1.1467717944e-08, -pi, -2.8306464191],
+)
+CROWDED = (
+    [
+        ("revolute", 0, 0.0, 0.0),
+        ("revolute", -1, 0.7288073008375118, 0.0),
+        ("prismatic", -1, 0.0, 0.0),
+        ("revolute", 0, 0.7013271239925323, 0.0),
+        ("revolute", 1, 0.0, 0.81681210731014),
+    ],
+    [-1.5707963264, 3.1415926530, 6.9473251703e-10, -1.6296461676e-09, -1.5707963258],
+)
+"""Solutions beside a continuum: damped steps stall along it, or end at more places than are kept."""
 SPECIAL = {
     "slide at 0": SLIDE,
     "fold behind a fold": FOLDS,
@@ -178,6 +211,31 @@ def test_solutions_that_meet_are_found_without_rank(tmp_path: Path) -> None:
     found = arm.solve(arm.forward(q))
     apart = np.abs((found.q - q + pi) % (2 * pi) - pi).max(axis=1)
     assert len(found) == 3 and found.singular[apart.argmin()] and apart.min() < 1e-3
+
+
+def test_roots_that_meet_leave_no_pose_without_rows(tmp_path: Path) -> None:
+    rows, q = MEETING_ROOTS
+    arm = import_text(emit_module(derive(Request(table(rows, tmp_path))).module), tmp_path)
+    found = arm.solve(arm.forward(q))
+    apart = np.abs((found.q - q + pi) % (2 * pi) - pi)[:, [0, 1, 3, 4]].max(axis=1, initial=0.0)
+    assert len(found) and found.singular[apart.argmin()] and apart.min() < 1e-6
+
+
+@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
+@pytest.mark.parametrize(("rows", "q"), [STALLED, CROWDED], ids=["stalled", "crowded"])
+def test_solutions_beside_a_continuum_are_found(
+    rows: list[tuple[str, int, float, float]], q: list[float], tmp_path: Path
+) -> None:
+    python, cpp = both(rows, tmp_path)
+    space = task_space(find_task(python.constants.task))
+    pose = python.forward(np.array([q]))
+    for runner in (python, cpp):
+        answers = runner.solve_many(pose)
+        found = answers.q[0, : answers.count[0]]
+        off = np.abs((found - q + pi) % (2 * pi) - pi).max(axis=1, initial=0.0)
+        assert len(found) and off.min() < 1e-5
+        aims = np.broadcast_to(pose, (len(found), 4, 4))
+        assert np.abs(space.residual(runner.forward(found), aims)).max() < 1e-9
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)

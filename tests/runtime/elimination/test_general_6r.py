@@ -111,3 +111,13 @@ def test_what_a_direct_way_says_there_is_does_not(monkeypatch: pytest.MonkeyPatc
     q, calls = run(monkeypatch, told, direct=1)
     assert calls == 2
     np.testing.assert_allclose(q, ROWS[:2], atol=1e-12)
+
+
+def test_roots_that_lead_to_nothing_leave_no_pose_without_solutions(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    nothing: tuple[list[int], int, bool] = ([], 0, True)
+    assert run(monkeypatch, [nothing, nothing], direct=1)[1] == 2
+    q, calls = run(monkeypatch, [([], 16, True), nothing, ([0, 1], 2, True), ([0, 1], 2, True)], 1)
+    assert calls == 4
+    np.testing.assert_allclose(q, ROWS[:2], atol=1e-12)

@@ -34,7 +34,8 @@ template <class Frames>
 inline void add_refined(const Frames& F, const Frame& T, const Turning& turning, Vector q, Spectrum& roots,
                         Solutions& out) noexcept {
   double before = 0.0, farthest = 0.0;
-  const double after = refine_one(F, T, turning, q, before);
+  double after = refine_one(F, T, turning, q, before);
+  if (after >= kExactly && after < kStalled) after = refine_along(F, T, turning, q);
   for (Index i = 0; i < 6; ++i) farthest = std::max(farthest, turning[i] ? 0.0 : std::abs(q[i]));
   if (farthest < kFarthest && after < kVerified)
     keep(solution_of(turning, q), out);

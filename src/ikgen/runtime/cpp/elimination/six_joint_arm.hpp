@@ -13,26 +13,15 @@ namespace g6 {
 
 inline constexpr double kNearlySingular = 1e-3;  // smallest singular value of the slope, lengths over the arm's
 
-// The least singular value of the chain's slope, from above: inverse iteration.
+// Which row goes before others where a continuum gives too many: 0 a regular one, 1 one right to round-off, 2 the rest.
 template <class Frames>
-inline double least_singular(const Frames& F, const Turning& turning, const double (&values)[6]) noexcept {
+inline int crowd_class(const Frames& F, const Frame& T, const Turning& turning, const double (&values)[6]) noexcept {
   Vector q;
   for (Index i = 0; i < 6; ++i) q[i] = values[i];
-  const State at = residual(F, F[0], q, turning);
-  Vector x = {1.0, -0.7, 0.4, 0.9, -0.3, 0.6};
-  double size = 0.0;
-  for (int pass = 0; pass < 4; ++pass) {
-    double square = 0.0;
-    for (const double e : x) square += e * e;
-    for (double& e : x) e /= std::sqrt(square) + 1e-300;
-    Vector y{};
-    for (Index k = 0; k < 6; ++k)
-      for (Index i = 0; i < 6; ++i) y[k] += at.J(k, i) * x[i];
-    size = 0.0;
-    for (const double e : y) size += e * e;
-    x = inverse_normal(at, x, 1e-18);
-  }
-  return std::sqrt(size);
+  const State at = residual(F, T, q, turning);
+  double square = 0.0;
+  for (const double e : still_of(at).flow) square += e * e;
+  return square >= kNearlySingular * kNearlySingular ? 0 : at.r < kExactly ? 1 : 2;
 }
 
 // Upper rows of a transform, its lengths over the plan's.
@@ -94,15 +83,15 @@ struct SixJointArm {
     found.count = 0;
     const g6::Turning turns = turning();
     const Frames chain = g6::chain_of<Plan, Frames>(F);
-    Method::template solve<Plan>(chain, g6::scaled_frame<Plan>(T), turns, found);
+    const g6::Frame aim = g6::scaled_frame<Plan>(T);
+    Method::template solve<Plan>(chain, aim, turns, found);
     g6::sort_rows(turns, found);
     const bool crowded = found.count > Arm::kMaxSolutions;  // samples of a continuum go first
     int count = 0;
-    for (int pass = 0; pass < (crowded ? 2 : 1); ++pass)
+    for (int pass = 0; pass < (crowded ? 3 : 1); ++pass)
       for (int k = 0; k < found.count && count < Arm::kMaxSolutions; ++k) {
         const g6::Solution& row = found.rows[static_cast<std::size_t>(k)];
-        if (crowded && (g6::least_singular(chain, turns, row.q) < g6::kNearlySingular) != (pass == 1)) continue;
-        write(row, turns, roots[count++]);
+        if (!crowded || g6::crowd_class(chain, aim, turns, row.q) == pass) write(row, turns, roots[count++]);
       }
     return count;
   }

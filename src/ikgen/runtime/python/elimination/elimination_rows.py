@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ikgen.runtime.python.arm.chain_kinematics import Motion
+from ikgen.runtime.python.arm.chain_kinematics import Motion, forward
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_types import Array, Index
 from ikgen.runtime.python.elimination.general_6r import Plan, six_joint_rows
@@ -43,8 +43,9 @@ def _value(columns: Iterator[Array], turns: bool) -> Array:
     return np.asarray(np.arctan2(next(columns), first)) if turns else first
 
 
-def _regular_first(arm: Arm, angles: Array, held: Array) -> Array:
-    """At most `arm.most` rows of DH variables (k, 6): where a continuum gives more, its samples go."""
+def _regular_first(arm: Arm, angles: Array, held: Array, T: Array) -> Array:
+    """At most `arm.most` rows of DH variables (k, 6) of the pose T (4, 4): where a continuum gives more,
+    its samples go, and of these first such as are off the pose by more than round-off."""
     if len(angles) <= arm.most:
         return angles
     q = np.empty((len(angles), len(arm.lower)))
@@ -55,7 +56,9 @@ def _regular_first(arm: Arm, angles: Array, held: Array) -> Array:
         value = next(columns) if joint not in arm.free else _value(values, lead[1])
         q[:, joint] = (value - lead[3]) / lead[2]
     loss = rank_loss(arm.chain, arm.task, arm.moving, q)
-    order = np.argsort(loss < arm.policy.continuum_rank_loss, kind="stable")
+    off = np.abs(arm.task.error(forward(arm.chain, q), np.broadcast_to(T, (len(q), 4, 4))))
+    exact = off.max(axis=1) < arm.policy.exact
+    order = np.argsort((loss < arm.policy.continuum_rank_loss) * (2 - exact), kind="stable")
     return np.asarray(angles[order][: arm.most])
 
 
@@ -91,7 +94,7 @@ def _rows_of_poses(arm: Arm, plan: Plan, T: Array, held: Array) -> tuple[Index, 
     joints `held` (1 or N, c)."""
     pose, values = six_joint_rows(_six_joints(arm, plan, held), plan, T, arm.policy)
     for i in np.flatnonzero(np.bincount(pose, minlength=1) > arm.most):
-        some = _regular_first(arm, values[pose == i], held[i % len(held)])
+        some = _regular_first(arm, values[pose == i], held[i % len(held)], T[i])
         before, after = pose < i, pose > i
         values = np.concatenate([values[before], some, values[after]])
         pose = np.concatenate([pose[before], np.full(len(some), i), pose[after]])

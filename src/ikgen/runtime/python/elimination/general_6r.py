@@ -20,6 +20,7 @@ from ikgen.runtime.python.elimination.loop_equations import (
     loop_equations,
 )
 from ikgen.runtime.python.elimination.six_joints import SixJoints, one_axis_each
+from ikgen.runtime.python.newton.flat_steps import flat_steps
 from ikgen.runtime.python.newton.refinement import refine
 from ikgen.runtime.python.rows.solution_rows import (
     Turning,
@@ -94,12 +95,18 @@ def refined_rows(
     six: SixJoints, plan: Plan, pose: Index, T: Array, q: Array, policy: Policy
 ) -> tuple[Array, Array, Array]:
     """Newton steps from q (k, 6) to T (k, 4, 4) of the poses with indices `pose` (k,): q, and the errors
-    that they leave and those before (k,)."""
+    that they leave and those before (k,). What stalls beside a continuum goes on along its curve, if that
+    leads to a solution."""
     near = slides_near(q, plan.turning)
     held = np.broadcast_to(rows_of(six.held, pose), (len(q), six.held.shape[1]))
     start = np.concatenate([np.where(near[:, None], q, 0.0), held], axis=1)
     thorough = _thorough(policy, bool(plan.motions))
     q, error, before, _ = refine(six.chain, PoseTask(1.0), _SIX, start, T, thorough)
+    flat = np.flatnonzero((error >= policy.exact) & (error < _STALLED))
+    if len(flat):
+        there, left = flat_steps(six.chain, PoseTask(1.0), _SIX, q[flat], T[flat])
+        arrived = left < policy.exact
+        q[flat[arrived]], error[flat[arrived]] = there[arrived], left[arrived]
     return q[:, :6], np.where(near, error, np.inf), np.where(near, before, np.inf)
 
 
@@ -152,6 +159,7 @@ def six_joint_rows(six: SixJoints, plan: Plan, T: Array, policy: Policy) -> tupl
     inside = np.abs(T[:, :3]).max(axis=(1, 2), initial=0.0) < 1e6  # false for NaN
     todo = np.nonzero(inside)[0]
     least, size = np.full(len(T), -1), len(T)
+    hollow = np.zeros(size, dtype=bool)  # roots of the first run led to nothing
     for number, ((find, one, near), moves) in enumerate(_runs(plan)):
         if not len(todo):
             break
@@ -173,12 +181,14 @@ def six_joint_rows(six: SixJoints, plan: Plan, T: Array, policy: Policy) -> tupl
             direct = np.bincount(pose[before[best[kept]] < near], minlength=size)[todo]
             settled = clear & (direct == real) & (mine == real) & (real > 0)
             found, of, count = q, pose, mine
+            hollow[todo] = (real > 0) & (mine == 0)
         else:
             known = np.bincount(of, minlength=size)[todo]
             found, of = np.concatenate([found, q]), np.concatenate([of, pose])
             found, of, _ = distinct_rows(found, of, plan.turning, policy.coincident)
             count = np.bincount(of, minlength=size)[todo]
             settled = (mine == known) & (known == count) & (least[todo] >= 0) & ~stalled
+            settled &= ~hollow[todo] | (len(moves) > 1)
         todo = todo[~(settled & (count % 2 == 0) & (count >= least[todo]))]
     unit = np.where(plan.turning, 1.0, plan.length)
     return of, sorted_rows(found, of, plan.turning) * unit
