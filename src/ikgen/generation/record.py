@@ -16,6 +16,7 @@ from pathlib import Path
 from ikgen.errors import BadDescriptionError, UsageError
 from ikgen.generation.codec import CodecError, Decoder, coded, encode, inlined, read_free, uncoded
 from ikgen.generation.request import Request
+from ikgen.importers.merge_conflict import conflict_or
 from ikgen.importers.named_robots import is_named
 
 __all__ = [
@@ -172,15 +173,17 @@ def _is_record(path: Path) -> bool:
     """Whether a JSON file is a record; a broken one counts, so that it is told."""
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return True
     return isinstance(data, dict) and data.get("generator") == GENERATOR
 
 
 def read_record(path: Path) -> Record:
     """The record in a file; raises `BadDescriptionError` for a file that is none."""
+    text = ""
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
+        data = json.loads(text)
         decoder = Decoder(lambda text: Path(text) if is_named(text) else seen(path.parent / text))
         record = decoder.table(Record, data, "the record")
         if record.request.name is None:
@@ -189,9 +192,10 @@ def read_record(path: Path) -> Record:
         raise BadDescriptionError(
             error.strerror or str(error), file=str(path), hint="generate it first (ikgen build)"
         ) from None
-    except (ValueError, CodecError) as error:
+    except (ValueError, RecursionError, CodecError) as error:
+        hint = conflict_or(text, "generate the outputs again")
         raise BadDescriptionError(
-            f"not a record of ikgen: {error}", file=str(path), hint="generate the outputs again"
+            f"not a record of ikgen: {error}", file=str(path), hint=hint
         ) from None
     return replace(record, path=path)
 

@@ -96,7 +96,7 @@ def _files(place: Path) -> dict[str, str] | None:
     """File -> SHA-256 of a list; None where it is none."""
     try:
         data = json.loads(place.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return None
     files = data.get("files") if isinstance(data, dict) else None
     if not isinstance(files, dict) or data.get("generator") != GENERATOR:

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ikgen.errors import BadDescriptionError
+from ikgen.importers.merge_conflict import conflict_or
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -119,10 +120,14 @@ def row_offsets(path: Path, rows: int) -> tuple[dict[str, float], ...]:
 
     Raises `BadDescriptionError` for another number of rows, unknown entries, and what is no number.
     """
+    text = _text(path)
     try:
-        data = tomllib.loads(_text(path))
-    except tomllib.TOMLDecodeError as error:
-        hint = "write tables [[joints]]; calibrations in YAML end in .yaml"
+        data = tomllib.loads(text)
+    except (
+        ValueError,
+        RecursionError,
+    ) as error:  # numbers of thousands of digits are no TOML error
+        hint = conflict_or(text, "write tables [[joints]]; calibrations in YAML end in .yaml")
         raise BadDescriptionError(f"not TOML: {error}", file=str(path), hint=hint) from None
     joints = data.get("joints")
     if set(data) != {"joints"} or not isinstance(joints, list) or len(joints) != rows:

@@ -12,6 +12,7 @@ from typing import Any
 from lxml import etree
 
 from ikgen.errors import BadDescriptionError, place_in
+from ikgen.importers.merge_conflict import conflict_or
 from ikgen.model.joint_tree import Source
 
 __all__ = [
@@ -38,7 +39,6 @@ _BYTE_ORDER_MARKS = (
     (b"\xfe\xff", "utf-16"),
 )
 _DECLARED_ENCODING = re.compile(rb"""^\s*<\?xml[^>]*?encoding\s*=\s*["']([\w.\-]+)["']""")
-_MERGE_CONFLICT = re.compile(r"^(<{7}|>{7}) ", re.MULTILINE)
 _SYNTAX_HINTS = (
     ("Extra content", "the file holds two documents: keep one <robot> element"),
     ("prefix xacro", 'add xmlns:xacro="http://www.ros.org/wiki/xacro" to <robot>'),
@@ -190,12 +190,8 @@ def line_at(text: str, position: int) -> int:
 def _syntax_hint(text: str, message: str) -> str:
     if text.startswith("version https://git-lfs"):
         return "this is a Git LFS pointer: run 'git lfs pull'"
-    if _MERGE_CONFLICT.search(text):
-        return "the file holds the markers of an unresolved merge conflict (<<<<<<<, >>>>>>>)"
-    for key, hint in _SYNTAX_HINTS:
-        if key in message:
-            return hint
-    return "correct the XML at this line"
+    hints = (hint for key, hint in _SYNTAX_HINTS if key in message)
+    return conflict_or(text, next(hints, "correct the XML at this line"))
 
 
 def local_name(element: Element) -> str:

@@ -91,7 +91,7 @@ class SolverCache:
         try:
             data = json.loads((self.folder / f"{key}.json").read_text(encoding="utf-8"))
             entry = _entry(data)
-        except (OSError, ValueError, TypeError, LookupError):
+        except (OSError, ValueError, TypeError, LookupError, RecursionError):
             return None
         whole = hashlib.sha256(entry.text.encode()).hexdigest() == entry.sha256
         return entry if whole else None

@@ -13,6 +13,7 @@ from ikgen.errors import BadDescriptionError, UsageError
 from ikgen.generation.codec import CodecError, Decoder, inlined
 from ikgen.generation.record import record_name, records_of
 from ikgen.generation.request import Outputs, Request
+from ikgen.importers.merge_conflict import conflict_or
 from ikgen.importers.named_robots import is_named
 from ikgen.model.module_name import identifier
 from ikgen.projects.config_lines import line_of
@@ -145,10 +146,14 @@ def _tables(path: Path, text: str) -> dict[str, Any]:
     """The `ikgen` part of the file."""
     try:
         data: dict[str, Any] = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (
+        ValueError,
+        RecursionError,
+    ) as error:  # numbers of thousands of digits are no TOML error
         place = re.search(r"line (\d+)", str(error))
         line = int(place.group(1)) if place else text.count("\n") + 1  # at the end
         hint = "name an ikgen.toml, a pyproject.toml, or the folder that holds the outputs"
+        hint = conflict_or(text, hint)
         raise _error(path, f"not TOML: {error}", line=line, hint=hint) from None
     if path.name != PYPROJECT:
         return data

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ikgen.errors import BadDescriptionError
+from ikgen.importers.merge_conflict import conflict_or
 from ikgen.importers.xml_document import read_text
 
 if sys.version_info >= (3, 11):
@@ -89,11 +90,12 @@ def read_document(path: Path) -> TableDocument:
         RecursionError,
     ) as error:  # integers of thousands of digits are no TOML error
         place = _AT_LINE.search(str(error))
+        hint = "a DH table is a TOML file with [[joints]] rows; expressions stand in quotes"
         raise BadDescriptionError(
             f"not valid TOML: {_AT_LINE.sub('', str(error))}",
             file=str(path),
             line=int(place.group(1)) if place else None,
-            hint="a DH table is a TOML file with [[joints]] rows; expressions stand in quotes",
+            hint=conflict_or(text, hint),
         ) from None
     document = TableDocument(path, text, data)
     _check_top(document)
