@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tests.support.coupled_arms import coupled_table, hollow_wrist
+from tests.support.coupled_arms import coupled_table, hollow_wrist, parallelogram_arm
 from tests.support.held_stacks import assert_solved_as_each_alone
 from tests.support.multi_start import apart, searched
 from tests.support.solving import NO_COMPILER, import_text
@@ -33,6 +33,7 @@ TURNS = (True,) * 6
 COUPLED = ["q6=q5*-1", "q7=q2*1", "q3=q1*2", "q4=q3*-2", "q5=q4*3", "q4=q2*-1"]
 """What follows what with which ratio: of a hollow wrist, then of a general table."""
 HOLLOW = COUPLED[0]
+PARALLELOGRAM = {"q4": "q2*-1"}
 
 
 @cache
@@ -97,6 +98,22 @@ def test_a_wrist_held_nearly_straight() -> None:
         assert apart(rows, row).min() < 1e-6
     general, _ = coupled_arm("q3=q1*2")
     assert not general.crowded
+
+
+def test_roots_that_lie_close_together_are_told_apart(tmp_path: Path) -> None:
+    """Beside multiples of 45 degrees up to six solutions have nearly the same coupled angle, at regular
+    configurations too; rounding of the whole circle's polynomial moves its roots there by 1e-2 rad."""
+    plan = elimination_plan(read(Request(parallelogram_arm(tmp_path), couple=PARALLELOGRAM)).dh)
+    assert plan is not None
+    chain = chain_of(plan.frames, plan.motions, 6)
+    rng = np.random.default_rng(2)
+    q = np.pi / 4 * rng.integers(-4, 5, (400, 6))
+    q = q + 10.0 ** rng.uniform(-10, -1, (400, 1)) * rng.normal(size=(400, 6))
+    q = q[np.linalg.svd(jacobian(chain, q), compute_uv=False)[:, -1] > 2e-3]
+    assert len(q) > 250
+    for rows, row in zip(solved(plan, forward(chain, q)), q, strict=True):
+        assert len(rows) % 2 == 0
+        assert apart(rows, row).min() < 1e-5
 
 
 class Doubting(CoupledAngle):
@@ -164,9 +181,13 @@ def test_two_coupled_joints_have_no_plan(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
-def test_a_hollow_wrist_is_verified_in_both_languages(tmp_path: Path) -> None:
-    table = hollow_wrist(tmp_path)
-    request = Request(table, couple={"q6": "q5*-1"})
+@pytest.mark.parametrize(
+    ("table", "couple"), [(hollow_wrist, {"q6": "q5*-1"}), (parallelogram_arm, PARALLELOGRAM)]
+)
+def test_it_is_verified_in_both_languages(
+    table: Callable[[Path], Path], couple: dict[str, str], tmp_path: Path
+) -> None:
+    request = Request(table(tmp_path), couple=couple)
     made = generate(request, Outputs(("python", "cpp"), tmp_path / "out", samples=12))
     assert sorted(made.reports) == ["cpp", "python"]
     assert all(report.passed for report in made.reports.values())

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from tests.support.small_robots import elbow_robot
 
-__all__ = ["coupled_table", "crank_robot", "hollow_wrist"]
+__all__ = ["coupled_table", "crank_robot", "hollow_wrist", "parallelogram_arm"]
 
 _CRANK = (
     '<joint name="crank" type="{kind}"><parent link="base_link"/><child link="wheel"/><axis xyz="0 0 1"/>'
@@ -57,4 +57,14 @@ def hollow_wrist(folder: Path) -> Path:
     alpha = [0.0, math.pi / 2, 0.0, math.pi / 2, tilt, -2.0 * tilt, tilt]
     return coupled_table(
         folder, alpha, [0.0, 0.3, 1.2, 0.2, 0, 0, 0], [0, 0, 0, 1.4, 0.08, 0.08, 0]
+    )
+
+
+def parallelogram_arm(folder: Path) -> Path:
+    """An arm whose forearm a parallelogram keeps from turning with the upper arm: joint 4 is to turn back
+    what joint 2 turns, on the axis of joint 3. Its wrist's axes are offset and at 70 degrees."""
+    tilt = math.radians(70.0)
+    alpha = [0.0, -math.pi / 2, 0.0, 0.0, -math.pi / 2, tilt, -tilt]
+    return coupled_table(
+        folder, alpha, [0.0, 0.0, 1.4, 0.0, 0, 0, 0], [0, 0.378, 0, 0, 1.35, 0.105, 0.1125]
     )

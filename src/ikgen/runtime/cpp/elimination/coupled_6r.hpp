@@ -53,8 +53,9 @@ inline Spectrum run_coupled(const CoupledChain<Plan>& F, const Frame& T, const F
   std::array<double, nodes> values;
   for (Index i = 0; i < nodes; ++i)
     values[i] = determinant(first + 2.0 * kPi * static_cast<double>(i) / static_cast<double>(nodes));
-  std::array<double, 2 * degree + kClose * Plan::kCrowded.size()> angles;
+  std::array<double, 2 * degree + kClose * (kLooks + Plan::kCrowded.size())> angles;
   int count = circle_roots<degree>(values, first, real, angles);
+  count = look_where_close(determinant, real, angles, count);
   for (const Crowded& at : Plan::kCrowded) count = look_closely(determinant, at.angle, real, angles, count);
   Spectrum roots;  // none is known to be all of the pose
   for (int i = 0; i < count; ++i) {

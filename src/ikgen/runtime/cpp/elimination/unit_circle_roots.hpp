@@ -119,5 +119,29 @@ inline int look_closely(const Function& of, double place, double accept, std::ar
   return kept;
 }
 
+// Roots so close together (rad) that rounding of the whole circle's polynomial may move them far; how often it is looked.
+constexpr double kBeside = 0.1;
+constexpr Index kLooks = 4;
+
+// Looks closely where two or more of the first `count` angles lie together; how many there are then.
+template <class Function, std::size_t most>
+inline int look_where_close(const Function& of, double accept, std::array<double, most>& angles, int count) noexcept {
+  const std::array<double, most> roots = angles;
+  std::array<double, kLooks> looked{};
+  Index looks = 0;
+  const auto apart = [](double a, double b) { return std::abs(std::remainder(a - b, 2.0 * kPi)); };
+  const int given = count;
+  for (int i = 0; i < given && looks < kLooks; ++i) {
+    const double place = roots[static_cast<Index>(i)];
+    bool known = false, close = false;
+    for (Index k = 0; k < looks; ++k) known = known || apart(looked[k], place) <= 0.9 * kNear;
+    for (int j = 0; j < given; ++j) close = close || (j != i && apart(roots[static_cast<Index>(j)], place) < kBeside);
+    if (known || !close) continue;
+    count = look_closely(of, place, accept, angles, count);
+    looked[looks++] = place;
+  }
+  return count;
+}
+
 }  // namespace g6
 }  // namespace ikgen_runtime

@@ -75,13 +75,13 @@ class CoupledAngle:
         step = 2.0 * np.pi / (2 * degree + 2)
         nodes: Array = _FIRST_NODE + step * np.arange(2 * degree + 2, dtype=float)
         roots, sure = _roots(coupled_determinants(self.motions, F, T, plan, nodes), degree)
-        clear = np.ones(len(T), dtype=bool)
+        roots, sure, clear = self._looked_closely(F, T, plan, roots, sure)
         for place, order in self.crowded:
             close = coupled_determinants(self.motions, F, T, plan, place + _NEAR * _NODES)
             near, certain = _close_roots(close)
             core = np.abs(near) < _CORE
             alone = core.sum(axis=1) == order
-            way = np.abs(np.remainder(roots.real - place + np.pi, 2.0 * np.pi) - np.pi)
+            way = _way(roots, place)
             clear &= alone & ~_at_seam(way, roots.imag) & ~_at_seam(np.abs(near.real), near.imag)
             roots = np.where(way > 0.9 * _NEAR, roots, _GONE)
             left_out = (np.abs(near.real) > 0.9 * _NEAR) | (core & alone[:, None])
@@ -91,13 +91,44 @@ class CoupledAngle:
         pose, angle, real, apart = real_angles(np.tan(0.5 * roots), np.zeros(len(T)), _REAL)
         return pose, angle, np.where(clear, real, 0), clear & apart
 
+    def _looked_closely(
+        self, F: Sequence[Array], T: Array, plan: Elimination, roots: Complex, sure: Flags
+    ) -> tuple[Complex, Flags, Flags]:
+        """Roots (N, n): in place of those that rounding may move, and that may be real, those of
+        polynomials of their neighbourhoods, which keep more digits; which of them are `_sure`, and of
+        which poses (N,) none can be left out or taken twice."""
+        clear = np.ones(len(T), dtype=bool)
+        doubtful = ~sure & (np.abs(roots.imag) < _OFF)
+        for place, _ in self.crowded:
+            doubtful &= _way(roots, place) > 0.9 * _NEAR
+        while doubtful.any():
+            some = np.flatnonzero(doubtful.any(axis=1))
+            place = roots.real[some, np.argmax(doubtful[some], axis=1)][:, None]
+            frames, nodes = [rows_of(frame, some) for frame in F], place + _NEAR * _NODES
+            near, certain = _close_roots(
+                coupled_determinants(self.motions, frames, T[some], plan, nodes)
+            )
+            way = _way(roots[some], place)
+            clear[some] &= ~_at_seam(way, roots[some].imag)
+            clear[some] &= ~_at_seam(np.abs(near.real), near.imag)
+            more = np.full((len(T), near.shape[1]), _GONE)
+            more[some] = np.where(np.abs(near.real) > 0.9 * _NEAR, _GONE, place + near)
+            roots[some] = np.where(way > 0.9 * _NEAR, roots[some], _GONE)
+            doubtful &= roots[:, : doubtful.shape[1]] != _GONE
+            looked = np.ones(more.shape, dtype=bool)
+            looked[some] = certain
+            roots = np.concatenate([roots, more], axis=1)
+            sure = np.concatenate([sure, looked], axis=1)
+        return roots, sure, clear
+
 
 def coupled_determinants(
     motions: Sequence[Motion], F: Sequence[Array], T: Array, plan: Elimination, nodes: Array
 ) -> Array:
-    """The determinants (N, n) of the twelve equations at the coupled joint's angles `nodes` (n,)."""
+    """The determinants (N, n) of the twelve equations at angles `nodes`, (n,) or (N, n), of the coupled
+    joint."""
     loop = _Loop(motions, F, *plan[:2])
-    links = loop.links(T[:, None], nodes[None])
+    links = loop.links(T[:, None], np.atleast_2d(nodes))
     E, _ = _equations([link[:, 0] for link in links])
     shape = np.broadcast_shapes(*(link.shape[:2] for link in links[1:4]))
     inner = (np.broadcast_to(link, (*shape, 4, 4)).reshape(-1, 4, 4) for link in links[1:4])
@@ -161,6 +192,11 @@ def _singular(E: Array, left: Array) -> Array:
     A = E[..., :14] @ left
     A[..., 0] += E[..., 14]
     return lift(A)
+
+
+def _way(roots: Complex, place: Array | float) -> Array:
+    """How far (rad) roots (N, n) are from angles, (N, 1) or one."""
+    return np.asarray(np.abs(np.remainder(roots.real - place + np.pi, 2.0 * np.pi) - np.pi))
 
 
 def _at_seam(way: Array, off: Array) -> Flags:
