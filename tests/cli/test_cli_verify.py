@@ -63,6 +63,18 @@ def test_the_command_told_puts_it_right(project: Path, capsys: pytest.CaptureFix
     assert check("out") == 0
 
 
+def test_the_command_told_of_a_config_names_it_in_quotes(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    config = project / "my arms" / "ikgen.toml"
+    config.parent.mkdir()
+    config.write_text('[[arm]]\nname = "arm"\nrobot = "../arm.urdf"\n')
+    assert check("my arms/ikgen.toml") == 2
+    shutil.copy("out/arm_ik.json", config.parent)
+    assert check("my arms/ikgen.toml") == 1
+    assert "hint: ikgen build 'my arms/ikgen.toml'\n" in capsys.readouterr().err
+
+
 def test_text_changed_but_not_the_geometry(
     project: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -9,6 +9,7 @@ from ikgen.errors import IkgenError, UsageError
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.publishing import interrupted
 from ikgen.generation.record import SUFFIX, find_records, read_record
+from ikgen.projects.check import mending
 from ikgen.projects.check_findings import HALF_IN_PLACE, Finding, Recheck, unchecked
 from ikgen.projects.config import default_config, load_config
 from ikgen.projects.proofs import proved
@@ -78,7 +79,7 @@ def _records(target: Path | None, robot: Path | None) -> list[tuple[Path, str | 
             f"{target}: no such file or directory",
             hint="name a config (ikgen.toml), a record, or the folder that was given to -o",
         )
-    command = f"ikgen build {target}" if robot is None else None
+    command = mending(target) if robot is None else None
     return [(path, command) for arm in load_config(target) for path in arm.records]
 
 
