@@ -162,6 +162,19 @@ def test_refused_with_place_and_hint(read, case):
     assert caught.value.exit_code == 2
 
 
+@pytest.mark.parametrize("comment", ["<!-- a -- b -->", "<!--- a\n<!-- b --->", "<!-- c--->"])
+def test_two_hyphens_in_a_comment_are_no_fault(read, comment):
+    assert [one.name for one in read(robot(joint(LIMIT), comment)).joints] == ["j"]
+    with pytest.raises(BadDescriptionError, match=r"mismatch") as caught:
+        read(robot(comment, "<open>"))
+    assert caught.value.line == 6 + comment.count("\n")
+
+
+def test_a_comment_without_an_end_is_refused(read):
+    with pytest.raises(BadDescriptionError, match=r"not well-formed"):
+        read(robot(joint(LIMIT), "<!-- a -- b"))
+
+
 BENT = {
     "no name": (robot(joint(LIMIT), attributes=""), "took 'bot' from the file's name"),
     "swapped": (robot(joint('<limit lower="2" upper="-1"/>')), "swapped"),

@@ -58,6 +58,13 @@ def test_prefixes_that_nothing_declares_are_left_alone() -> None:
     assert np.array_equal(*same)
 
 
+def test_comments_may_hold_what_xml_forbids() -> None:
+    odd = MIMIC.replace('<link name="l1"/>', '<link name="l1"/><!-- a -- <link/>\n --->')
+    q = np.array([0.4])
+    same = [PinocchioOracle(tree_of(text), "b", "l3", ["j1"]).forward(q) for text in (MIMIC, odd)]
+    assert np.array_equal(*same)
+
+
 def test_locked_driver_sets_its_mimic_joints() -> None:
     oracle = PinocchioOracle(tree_of(MIMIC), "b", "l2", [], {"j1": 0.4})
     assert oracle.forward(np.zeros((1, 0)))[0, :2, 0] == pytest.approx(

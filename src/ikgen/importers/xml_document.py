@@ -39,6 +39,7 @@ _BYTE_ORDER_MARKS = (
     (b"\xfe\xff", "utf-16"),
 )
 _DECLARED_ENCODING = re.compile(rb"""^\s*<\?xml[^>]*?encoding\s*=\s*["']([\w.\-]+)["']""")
+_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _SYNTAX_HINTS = (
     ("Extra content", "the file holds two documents: keep one <robot> element"),
     ("prefix xacro", 'add xmlns:xacro="http://www.ros.org/wiki/xacro" to <robot>'),
@@ -142,6 +143,9 @@ def parse_xml(text: str, file: str) -> Element:
         root = etree.fromstring(data, parser)
     except etree.XMLSyntaxError as error:
         faults = [fault for fault in parser.error_log if not _is_undeclared_prefix(fault)]
+        bare = _without_comments(text) if any(map(_is_of_comment, faults)) else text
+        if bare != text:
+            return parse_xml(bare, file)
         if faults or not len(parser.error_log):
             message = faults[0].message if faults else error.msg or "not XML"
             raise BadDescriptionError(
@@ -166,6 +170,16 @@ def _is_undeclared_prefix(fault: Any) -> bool:
     for old simulators: other readers take it as part of the name. xacro's says what is to be expanded."""
     undeclared = fault.type == etree.ErrorTypes.NS_ERR_UNDEFINED_NAMESPACE
     return undeclared and "prefix xacro" not in fault.message
+
+
+def _is_of_comment(fault: Any) -> bool:
+    """Whether a parser's complaint is of `--` in a comment, which other readers take."""
+    return bool(fault.type == etree.ErrorTypes.ERR_HYPHEN_IN_COMMENT)
+
+
+def _without_comments(text: str) -> str:
+    """The text with its comments blank, lines as they were."""
+    return _COMMENT.sub(lambda found: "\n" * found[0].count("\n"), text)
 
 
 def _check_document_type(root: Element, text: str, file: str) -> None:

@@ -10,6 +10,7 @@ applied by the oracle, because Pinocchio ignores or reinterprets them.
 from __future__ import annotations
 
 import math
+import re
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass, field
 from xml.parsers import expat
@@ -25,6 +26,8 @@ _KINEMATIC = ("origin", "parent", "child", "axis")
 _LIMITED = ("revolute", "prismatic")
 _UNLIMITED = 1e3
 """Limits (rad) that are farther apart than this stand for none."""
+
+_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 
 _HARMLESS_LIMIT = {"lower": "-1", "upper": "1", "effort": "1", "velocity": "1"}
 
@@ -101,10 +104,11 @@ def _ends(joint: ET.Element) -> list[str]:
 
 
 def _root(text: str) -> ET.Element:
-    """The document's root, prefixes left as parts of names: not all files declare them."""
+    """The document's root, prefixes left as parts of names: not all files declare them. Comments are left
+    out, as those of some files hold `--`."""
     builder, parser = ET.TreeBuilder(), expat.ParserCreate()
     parser.StartElementHandler, parser.EndElementHandler = builder.start, builder.end
-    parser.Parse(text, True)
+    parser.Parse(_COMMENT.sub("", text), True)
     return builder.close()
 
 
