@@ -235,7 +235,7 @@ def test_solutions_beside_a_continuum_are_found(
         off = np.abs((found - q + pi) % (2 * pi) - pi).max(axis=1, initial=0.0)
         assert len(found) and off.min() < 1e-5
         aims = np.broadcast_to(pose, (len(found), 4, 4))
-        assert np.abs(space.residual(runner.forward(found), aims)).max() < 1e-9
+        assert np.abs(space.residual(runner.forward(found), aims)).max() < 5e-9  # m, of 3 m
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)

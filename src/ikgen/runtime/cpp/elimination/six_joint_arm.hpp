@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "elimination/general_6r_candidate.hpp"
@@ -22,6 +24,44 @@ inline int crowd_class(const Frames& F, const Frame& T, const Turning& turning, 
   double square = 0.0;
   for (const double e : still_of(at).flow) square += e * e;
   return square >= kNearlySingular * kNearlySingular ? 0 : at.r < kExactly ? 1 : 2;
+}
+
+// How far apart two rows are, whole turns aside.
+inline double row_gap(const Solution& a, const Solution& b) noexcept {
+  double out = 0.0;
+  for (Index i = 0; i < 6; ++i) {
+    const double gap = std::abs(a.q[i] - b.q[i]);
+    out = std::max(out, std::min(gap, std::abs(2.0 * kPi - gap)));
+  }
+  return out;
+}
+
+// Leaves at most so many rows, in their order: where a continuum gives more, its samples go, but for those that are the
+// farthest from all that are kept, so that none crowds out others.
+template <class Frames>
+inline void leave_most(const Frames& F, const Frame& T, const Turning& turning, int most, Solutions& found) noexcept {
+  int rank[kRoom], kept = 0;
+  double gap[kRoom];
+  bool stays[kRoom] = {};
+  for (int k = 0; k < found.count; ++k) {
+    rank[k] = crowd_class(F, T, turning, found.rows[static_cast<Index>(k)].q);
+    gap[k] = 1e300;
+  }
+  for (int level = 0; level < 3; ++level)
+    while (kept < most) {
+      int best = -1;
+      for (int k = 0; k < found.count; ++k)
+        if (rank[k] == level && !stays[k] && (best < 0 || (level > 0 && gap[k] > gap[best]))) best = k;
+      if (best < 0) break;
+      stays[best] = true;
+      ++kept;
+      for (int k = 0; k < found.count; ++k)
+        gap[k] = std::min(gap[k], row_gap(found.rows[static_cast<Index>(k)], found.rows[static_cast<Index>(best)]));
+    }
+  const int count = found.count;
+  found.count = 0;
+  for (int k = 0; k < count; ++k)
+    if (stays[k]) found.rows[static_cast<Index>(found.count++)] = found.rows[static_cast<Index>(k)];
 }
 
 // Upper rows of a transform, its lengths over the plan's.
@@ -86,13 +126,12 @@ struct SixJointArm {
     const g6::Frame aim = g6::scaled_frame<Plan>(T);
     Method::template solve<Plan>(chain, aim, turns, found);
     g6::sort_rows(turns, found);
-    const bool crowded = found.count > Arm::kMaxSolutions;  // samples of a continuum go first
+    if (found.count > Arm::kMaxSolutions) g6::leave_most(chain, aim, turns, Arm::kMaxSolutions, found);
     int count = 0;
-    for (int pass = 0; pass < (crowded ? 3 : 1); ++pass)
-      for (int k = 0; k < found.count && count < Arm::kMaxSolutions; ++k) {
-        const g6::Solution& row = found.rows[static_cast<std::size_t>(k)];
-        if (!crowded || g6::crowd_class(chain, aim, turns, row.q) == pass) write(row, turns, roots[count++]);
-      }
+    while (count < found.count) {
+      write(found.rows[static_cast<std::size_t>(count)], turns, roots[count]);
+      ++count;
+    }
     return count;
   }
 

@@ -45,7 +45,7 @@ def _value(columns: Iterator[Array], turns: bool) -> Array:
 
 def _regular_first(arm: Arm, angles: Array, held: Array, T: Array) -> Array:
     """At most `arm.most` rows of DH variables (k, 6) of the pose T (4, 4): where a continuum gives more,
-    its samples go, and of these first such as are off the pose by more than round-off."""
+    its samples go, but for those farthest from all that are kept, those right to round-off first."""
     if len(angles) <= arm.most:
         return angles
     q = np.empty((len(angles), len(arm.lower)))
@@ -58,8 +58,17 @@ def _regular_first(arm: Arm, angles: Array, held: Array, T: Array) -> Array:
     loss = rank_loss(arm.chain, arm.task, arm.moving, q)
     off = np.abs(arm.task.error(forward(arm.chain, q), np.broadcast_to(T, (len(q), 4, 4))))
     exact = off.max(axis=1) < arm.policy.exact
-    order = np.argsort((loss < arm.policy.continuum_rank_loss) * (2 - exact), kind="stable")
-    return np.asarray(angles[order][: arm.most])
+    rank = (loss < arm.policy.continuum_rank_loss) * (2 - exact)
+    order = np.flatnonzero(rank == 0).tolist()
+    for level in (1, 2):
+        left = np.flatnonzero(rank == level)
+        while len(left) and len(order) < arm.most:  # the farthest: none crowds out others
+            gap = np.abs(angles[left, None] - angles[order])
+            gap = np.minimum(gap, np.abs(2.0 * np.pi - gap)).max(axis=2)
+            place = gap.min(axis=1, initial=np.inf).argmax()
+            order.append(int(left[place]))
+            left = np.delete(left, place)
+    return np.asarray(angles[np.sort(order[: arm.most])])
 
 
 def elimination_lanes(arm: Arm, plan: Plan, entries: tuple[Array, ...]) -> tuple[Array, ...]:

@@ -95,19 +95,30 @@ def refined_rows(
     six: SixJoints, plan: Plan, pose: Index, T: Array, q: Array, policy: Policy
 ) -> tuple[Array, Array, Array]:
     """Newton steps from q (k, 6) to T (k, 4, 4) of the poses with indices `pose` (k,): q, and the errors
-    that they leave and those before (k,). What stalls beside a continuum goes on along its curve, if that
-    leads to a solution."""
+    that they leave and those before (k,)."""
     near = slides_near(q, plan.turning)
     held = np.broadcast_to(rows_of(six.held, pose), (len(q), six.held.shape[1]))
     start = np.concatenate([np.where(near[:, None], q, 0.0), held], axis=1)
     thorough = _thorough(policy, bool(plan.motions))
     q, error, before, _ = refine(six.chain, PoseTask(1.0), _SIX, start, T, thorough)
-    flat = np.flatnonzero((error >= policy.exact) & (error < _STALLED))
-    if len(flat):
-        there, left = flat_steps(six.chain, PoseTask(1.0), _SIX, q[flat], T[flat])
-        arrived = left < policy.exact
-        q[flat[arrived]], error[flat[arrived]] = there[arrived], left[arrived]
     return q[:, :6], np.where(near, error, np.inf), np.where(near, before, np.inf)
+
+
+def _followed(
+    six: SixJoints, pose: Index, T: Array, q: Array, error: Array, policy: Policy
+) -> tuple[Array, Array, Flags]:
+    """Rows q (k, 6) to T (k, 4, 4) and their errors (k,), of which those that stalled (k,) beside a
+    continuum went on along its curve, if that leads to a solution."""
+    stalled = (error >= policy.arrived) & (error < _STALLED)
+    flat = np.flatnonzero(stalled)
+    if not len(flat):
+        return q, error, stalled
+    held = np.broadcast_to(rows_of(six.held, pose), (len(q), six.held.shape[1]))
+    start = np.concatenate([q, held], axis=1)[flat]
+    there, left = flat_steps(six.chain, PoseTask(1.0), _SIX, start, T[flat])
+    arrived = left < policy.exact
+    q[flat[arrived]], error[flat[arrived]] = there[arrived, :6], left[arrived]
+    return q, error, stalled
 
 
 @cache
@@ -158,8 +169,7 @@ def six_joint_rows(six: SixJoints, plan: Plan, T: Array, policy: Policy) -> tupl
     found, of = np.zeros((0, 6)), np.zeros(0, dtype=np.intp)
     inside = np.abs(T[:, :3]).max(axis=(1, 2), initial=0.0) < 1e6  # false for NaN
     todo = np.nonzero(inside)[0]
-    least, size = np.full(len(T), -1), len(T)
-    hollow = np.zeros(size, dtype=bool)  # roots of the first run led to nothing
+    least, size, hollow = np.full(len(T), -1), len(T), np.zeros(len(T), dtype=bool)
     for number, ((find, one, near), moves) in enumerate(_runs(plan)):
         if not len(todo):
             break
@@ -171,8 +181,9 @@ def six_joint_rows(six: SixJoints, plan: Plan, T: Array, policy: Policy) -> tupl
         if moves[0] is None and number >= len(plan.direct):
             least[todo] = np.maximum(least[todo], real)
         q, error, before = refined_rows(some, plan, run, exact[which], q, policy)
+        q, error, short = _followed(some, run, exact[which], q, error, policy)
+        stalled = np.bincount(which[short], minlength=len(todo)) > 0
         arrived = error < policy.arrived
-        stalled = np.bincount(which[~arrived & (error < _STALLED)], minlength=len(todo)) > 0
         pose, q, before = todo[which[arrived]], q[arrived], before[arrived]
         best = np.lexsort((before >= near, pose))
         q, pose, kept = distinct_rows(q[best], pose[best], plan.turning, policy.coincident)
@@ -181,7 +192,7 @@ def six_joint_rows(six: SixJoints, plan: Plan, T: Array, policy: Policy) -> tupl
             direct = np.bincount(pose[before[best[kept]] < near], minlength=size)[todo]
             settled = clear & (direct == real) & (mine == real) & (real > 0)
             found, of, count = q, pose, mine
-            hollow[todo] = (real > 0) & (mine == 0)
+            hollow[todo] = (real > 0) & (mine == 0)  # roots that led to nothing
         else:
             known = np.bincount(of, minlength=size)[todo]
             found, of = np.concatenate([found, q]), np.concatenate([of, pose])
