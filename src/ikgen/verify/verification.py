@@ -44,6 +44,8 @@ def _plan(
     """The checks by name, in the order of the report."""
     a, random = answers, answers.limited.sample
     rng = generator(seed, "search")
+    # with joints held, those of `limited` are at the configurations' values, not at the defaults
+    single = None if arm.held else a.limited.rows.at(np.arange(len(a.ordered.sample)))
     agreement: dict[str, Callable[[], CheckResult]] = {}
     if peer is not None:
         agreement["agreement"] = lambda: check_agreement(arm, a.unlimited, peer)
@@ -66,7 +68,7 @@ def _plan(
         "unreachable poses": lambda: coverage.check_unreachable(arm, a.unreachable),
         "invalid poses": lambda: interface_checks.check_invalid(arm, runner, random.poses[0]),
         "bad shapes": lambda: interface_checks.check_shapes(arm, runner, random.poses[0]),
-        "solve_batch": lambda: interface_checks.check_batch(arm, runner, a.ordered.sample),
+        "solve_batch": lambda: interface_checks.check_batch(arm, runner, a.ordered.sample, single),
         "determinism": lambda: interface_checks.check_determinism(*a.repeated),
         **_motion_checks(runner, arm, seed),
         **agreement,
