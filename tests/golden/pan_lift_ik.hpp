@@ -529,18 +529,23 @@ template <class X> inline void cross(const X* a, const X* b, X* out) noexcept {
 
 template <class X, int N> inline void factor(X (&A)[N][N]) noexcept {
   using std::max;
-  using std::sqrt;
-  for (int i = 0; i < N; ++i)
-    for (int j = 0; j <= i; ++j) {
-      X sum = A[i][j];
-      for (int k = 0; k < j; ++k) sum = sum - A[i][k] * A[j][k];
-      A[i][j] = i == j ? 1.0 / sqrt(max(sum, 1e-300)) : sum * A[j][j];
+  for (int i = 0; i < N; ++i) {
+    X rest = A[i][i], row[N];
+    for (int j = 0; j < i; ++j) {
+      row[j] = A[i][j];
+      for (int k = 0; k < j; ++k) row[j] = row[j] - A[j][k] * row[k];
     }
+    for (int j = 0; j < i; ++j) {
+      A[i][j] = row[j] * A[j][j];
+      rest = rest - A[i][j] * row[j];
+    }
+    A[i][i] = 1.0 / max(rest, 1e-300);
+  }
 }
 
-template <class X, int N> inline auto definite(const X (&L)[N][N]) noexcept {
-  auto yes = 1e149 > L[0][0];
-  for (int i = 1; i < N; ++i) yes = yes & (1e149 > L[i][i]);
+template <class X, int N> inline auto definite(const X (&A)[N][N]) noexcept {
+  auto yes = 1e299 > A[0][0];
+  for (int i = 1; i < N; ++i) yes = yes & (1e299 > A[i][i]);
   return yes;
 }
 
@@ -558,15 +563,12 @@ template <int N> inline bool keeps_orientation(double (&A)[N][N]) noexcept {
   return keeps;
 }
 
-template <class X, int N> inline void substitute(const X (&L)[N][N], X (&x)[N]) noexcept {
-  for (int i = 0; i < N; ++i) {
-    for (int k = 0; k < i; ++k) x[i] = x[i] - L[i][k] * x[k];
-    x[i] = x[i] * L[i][i];
-  }
-  for (int i = N - 1; i >= 0; --i) {
-    for (int k = i + 1; k < N; ++k) x[i] = x[i] - L[k][i] * x[k];
-    x[i] = x[i] * L[i][i];
-  }
+template <class X, int N> inline void substitute(const X (&A)[N][N], X (&x)[N]) noexcept {
+  for (int i = 1; i < N; ++i)
+    for (int k = 0; k < i; ++k) x[i] = x[i] - A[i][k] * x[k];
+  for (int i = 0; i < N; ++i) x[i] = x[i] * A[i][i];
+  for (int i = N - 2; i >= 0; --i)
+    for (int k = N - 1; k > i; --k) x[i] = x[i] - A[k][i] * x[k];
 }
 
 // --- motion chain --------------------------------------------------------------------------------
@@ -871,17 +873,19 @@ template <class Arm> struct FoldPair {
       }
     factor(N);
     double change = 1.0;
-    for (int i = 0; i < 4 && change > kStands; ++i) {
+    for (int i = 0; i < 2 && change > kStands * kStands; ++i) {
       Vector next;
       std::copy_n(still, kMoving, next);
+      substitute(N, next);
       substitute(N, next);
       double square = 0.0;
       for (const double x : next) square += x * x;
       const double inverse = 1.0 / std::sqrt(square);
       change = 0.0;
       for (int k = 0; k < kMoving; ++k) {
-        change = std::max(change, std::abs(inverse * next[k] - still[k]));
-        still[k] = inverse * next[k];
+        const double turned = inverse * next[k], gap = turned - still[k];
+        change += gap * gap;
+        still[k] = turned;
       }
     }
   }
@@ -1367,6 +1371,33 @@ template <class Arm> struct RowPair {
   }
 };
 
+// --- lane ends -----------------------------------------------------------------------------------
+template <class Arm> struct LaneEnd {
+  const typename Arm::template Rows<1>& rows;
+  bool alone;
+  double error;
+};
+
+template <class Arm, std::size_t K> struct LaneEnds {
+  using Rows = typename Arm::template Rows<1>;
+  static constexpr int kLanes = Rows::kLanes;
+
+  std::array<Rows, K> rows;
+  double error[K * std::size_t{kLanes}] = {};
+
+  LaneEnds(const std::array<Rows, K>& from, [[maybe_unused]] const HeldAim<Arm>& aim,
+           [[maybe_unused]] const typename Arm::Options& options, [[maybe_unused]] Bit flag) noexcept
+      : rows(from) {
+  }
+
+  LaneEnd<Arm> at(std::size_t k, int lane) const noexcept {
+    return {rows[k], (bits(rows[k], lane) & kFound) != 0, error[k * std::size_t{kLanes} + static_cast<std::size_t>(lane)]};
+  }
+
+ private:
+  static int bits(const Rows& of, int lane) noexcept { return static_cast<int>(of.flags[lane]); }
+};
+
 // --- careful rows --------------------------------------------------------------------------------
 template <class Arm> struct CarefulRows {
   using Aim = HeldAim<Arm>;
@@ -1376,6 +1407,8 @@ template <class Arm> struct CarefulRows {
   using Refinement = NewtonRefinement<Arm>;
   using Row = SolutionRows<Arm>;
   using Rows = typename Arm::template Rows<1>;
+  using End = LaneEnd<Arm>;
+  template <std::size_t K> using Ends = LaneEnds<Arm, K>;
 
   struct Places {
     static constexpr std::size_t kRoom = 2 * Arm::kMaxSolutions;
@@ -1415,7 +1448,8 @@ template <class Arm> struct CarefulRows {
 
   [[gnu::always_inline]] static Left find_rows(const Aim& aim, const double* q0, const Options& options,
                                                [[maybe_unused]] int turn, Places& out) noexcept {
-    Rows rows;
+    std::array<Rows, 1> only;
+    Rows& rows = only[0];
     Left left{turns_away(turn), false};
     find_lanes(start_of(aim.pose, turn), q0, options, rows);
     for (const int lane : Arm::kLaneOfRow) {
@@ -1424,15 +1458,15 @@ template <class Arm> struct CarefulRows {
     }
     const int known = out.count;
     if (left.free) add_from(aim, q0, out);
-    const Ends ends(rows, aim, options, kReal);
+    const Ends<1> ends(only, aim, options, kReal);
     Starts starts;
     bool plain[Arm::kLanes] = {};  // right, and far from singularities
     for (const int lane : Arm::kLaneOfRow)
       if (plain[lane] && (bits(rows, lane) & kSingular) == 0)
         add_lane(rows, lane, out);
       else if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
-        starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, false, aim, out);
-    if (starts.count == 0 && left.free && out.count == known) take_all(aim, rows, options, starts, out);
+        starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends.at(0, lane), false, aim, out);
+    if (starts.count == 0 && left.free && out.count == known) take_all(aim, only, options, starts, out);
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
       if (starts.at(k).nearby && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
@@ -1454,16 +1488,6 @@ template <class Arm> struct CarefulRows {
   }
   static int bits(const Rows& rows, int lane) noexcept { return static_cast<int>(rows.flags[lane]); }
 
-  struct Ends {
-    Rows rows;
-    double error[Arm::kLanes];
-
-    Ends(const Rows& from, [[maybe_unused]] const Aim& aim, [[maybe_unused]] const Options& options,
-         [[maybe_unused]] Bit flag) noexcept
-        : rows(from) {
-    }
-  };
-
   struct Nearest {
     bool marked = false, nearby = false, settled = false, exact = false;  // settled: a solution, whatever else there is
     bool alone = false;  // whether steps showed that it is the one solution near its start
@@ -1476,7 +1500,7 @@ template <class Arm> struct CarefulRows {
       for (int j = 0; j < Arm::kDof; ++j) start[j] = q[j] = rows.q[j][lane];
     }
 
-    void refine([[maybe_unused]] const Aim& aim, [[maybe_unused]] const Ends& ends) noexcept {
+    void refine([[maybe_unused]] const Aim& aim, [[maybe_unused]] const End& end) noexcept {
       error = Refinement::error_after(q, aim);
     }
 
@@ -1541,13 +1565,13 @@ template <class Arm> struct CarefulRows {
 
     bool any_traced() const noexcept { return std::find(std::begin(traced), std::end(traced), true) != std::end(traced); }
 
-    void take(Nearest start, const Ends& ends, bool beside, const Aim& aim, Places& out) noexcept {
-      if (!(Arm::kRounded && start.marked)) start.refine(aim, ends);
+    void take(Nearest start, const End& end, bool beside, const Aim& aim, Places& out) noexcept {
+      if (!(Arm::kRounded && start.marked)) start.refine(aim, end);
       if (start.marked && (Arm::kRounded || !(start.error < Policy::kArrived))) {
         if (!traced[start.lane]) traced[start.lane] = start.add_around(aim, out);
         if (traced[start.lane]) return;
         start.marked = false;
-        start.refine(aim, ends);
+        start.refine(aim, end);
       }
       for (int k = 0; k < count; ++k)
         if ((beside || start.alone) && Row::same(start.q, at(k).q)) {
@@ -1568,10 +1592,12 @@ template <class Arm> struct CarefulRows {
     }
   };
 
-  static void take_all(const Aim& aim, const Rows& rows, const Options& options, Starts& starts, Places& out) noexcept {
-    const Ends ends(rows, aim, options, kSingular);
+  static void take_all(const Aim& aim, const std::array<Rows, 1>& only, const Options& options, Starts& starts,
+                       Places& out) noexcept {
+    const Rows& rows = only[0];
+    const Ends<1> ends(only, aim, options, kSingular);
     for (const int lane : Arm::kLaneOfRow)
-      if ((bits(rows, lane) & kSingular) != 0) starts.take({rows, lane, true}, ends, false, aim, out);
+      if ((bits(rows, lane) & kSingular) != 0) starts.take({rows, lane, true}, ends.at(0, lane), false, aim, out);
   }
 };
 
@@ -1992,8 +2018,9 @@ template <class Arm> struct LaneSolve {
     Rows<P> rows;
     Arm::branches(pose, typename Arm::Seed(), options.free, range, rows);
     if (place_later(options)) LanePlacement<Arm>::apply(options, rows);
+    double sums[std::size_t{Rows<P>::kLanes}] = {};
     for (int p = 0; p < P; ++p)
-      if (!collect(rows, p, options, out[p])) fall_back(poses[p], options, out[p]);
+      if (!collect(rows, sums, p, options, out[p])) fall_back(poses[p], options, out[p]);
   }
 
  private:
@@ -2024,8 +2051,11 @@ template <class Arm> struct LaneSolve {
     return some;
   }
 
-  template <int P> static bool collect(const Rows<P>& rows, int p, const Options& options, Solutions& out) noexcept {
+  template <int P>
+  static bool collect(const Rows<P>& rows, [[maybe_unused]] const double* sums, int p, const Options& options,
+                      Solutions& out) noexcept {
     int count = 0, seen = 0;
+    [[maybe_unused]] double sum[Arm::kMaxSolutions + 1] = {};
     for (const int row : Arm::kLaneOfRow) {
       const int lane = row * P + p;
       const int bits = static_cast<int>(rows.flags[lane]);
@@ -2038,7 +2068,8 @@ template <class Arm> struct LaneSolve {
     if ((seen & (kRough | kHit)) != 0 || (CarefulRows<Arm>::kBesideAnywhere && (seen & kReal) == 0)) return false;
     if ((seen & kMeeting) != 0 && leaves_out_meeting(rows, p)) return false;
     out.count = count;
-    if (Arm::kNewton || (seen & kMeeting) != 0) {
+    bool compared = (seen & kMeeting) != 0;
+    if (compared) {
       leave_distinct(out);
       if (Arm::kNewton && out.count < count) return false;  // another may lie there
     }

@@ -80,7 +80,7 @@ int elsewhere(const Eigen::Isometry3d& pose, const Options& options, detail::Arm
     const detail::HeldAim<Arm> aim(pose, options.free);
     left[i] = detail::NewtonRefinement<Arm>::error_after(alone[i], aim);
   }
-  Arm::take_along(detail::gather<1>(&pose), options.free, lanes, kLanes - 1, rows, error);
+  Arm::take_along(detail::gather<1>(&pose), options.free, lanes, kLanes - 1, &rows, error);
   int count = 0;
   for (int i = 0; i < kLanes - 1; ++i) {
     double apart = std::abs(error[i] - left[i]);

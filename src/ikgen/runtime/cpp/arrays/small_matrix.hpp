@@ -14,23 +14,28 @@ template <class X> inline void cross(const X* a, const X* b, X* out) noexcept {
   out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-// Cholesky's factor of A, symmetric and given up to its diagonal, in its place, but for inverses on its diagonal. X is
-// double, or a pack of them.
+// The factors of A = L D L^T, symmetric and given up to its diagonal, in its place: L below the diagonal, the inverse of D
+// on it. X is double, or a pack of them.
 template <class X, int N> inline void factor(X (&A)[N][N]) noexcept {
   using std::max;
-  using std::sqrt;
-  for (int i = 0; i < N; ++i)
-    for (int j = 0; j <= i; ++j) {
-      X sum = A[i][j];
-      for (int k = 0; k < j; ++k) sum = sum - A[i][k] * A[j][k];
-      A[i][j] = i == j ? 1.0 / sqrt(max(sum, 1e-300)) : sum * A[j][j];
+  for (int i = 0; i < N; ++i) {
+    X rest = A[i][i], row[N];
+    for (int j = 0; j < i; ++j) {
+      row[j] = A[i][j];
+      for (int k = 0; k < j; ++k) row[j] = row[j] - A[j][k] * row[k];
     }
+    for (int j = 0; j < i; ++j) {
+      A[i][j] = row[j] * A[j][j];
+      rest = rest - A[i][j] * row[j];
+    }
+    A[i][i] = 1.0 / max(rest, 1e-300);
+  }
 }
 
-// Whether the matrix was positive definite whose factor this is.
-template <class X, int N> inline auto definite(const X (&L)[N][N]) noexcept {
-  auto yes = 1e149 > L[0][0];
-  for (int i = 1; i < N; ++i) yes = yes & (1e149 > L[i][i]);
+// Whether the matrix was positive definite whose factors these are.
+template <class X, int N> inline auto definite(const X (&A)[N][N]) noexcept {
+  auto yes = 1e299 > A[0][0];
+  for (int i = 1; i < N; ++i) yes = yes & (1e299 > A[i][i]);
   return yes;
 }
 
@@ -49,16 +54,13 @@ template <int N> inline bool keeps_orientation(double (&A)[N][N]) noexcept {
   return keeps;
 }
 
-// x = A^-1 x by the factor of A.
-template <class X, int N> inline void substitute(const X (&L)[N][N], X (&x)[N]) noexcept {
-  for (int i = 0; i < N; ++i) {
-    for (int k = 0; k < i; ++k) x[i] = x[i] - L[i][k] * x[k];
-    x[i] = x[i] * L[i][i];
-  }
-  for (int i = N - 1; i >= 0; --i) {
-    for (int k = i + 1; k < N; ++k) x[i] = x[i] - L[k][i] * x[k];
-    x[i] = x[i] * L[i][i];
-  }
+// x = A^-1 x by the factors of A.
+template <class X, int N> inline void substitute(const X (&A)[N][N], X (&x)[N]) noexcept {
+  for (int i = 1; i < N; ++i)
+    for (int k = 0; k < i; ++k) x[i] = x[i] - A[i][k] * x[k];
+  for (int i = 0; i < N; ++i) x[i] = x[i] * A[i][i];
+  for (int i = N - 2; i >= 0; --i)
+    for (int k = N - 1; k > i; --k) x[i] = x[i] - A[k][i] * x[k];
 }
 
 }  // namespace ikgen_runtime

@@ -223,7 +223,7 @@ template <class Arm> struct HeldSample {
     int some[Arm::kLanes], count = 0;
     for (const int lane : Arm::kLaneOfRow)
       if ((static_cast<int>(fine.flags[lane]) & kRough) != 0) some[count++] = lane;
-    Arm::take_along(pose, {held}, some, count, fine, error);
+    Arm::take_along(pose, {held}, some, count, &fine, error);
   }
 
   // Whether there were any.

@@ -171,7 +171,8 @@ template <class Arm> struct LaneNewton {
     for (int k = 0; k < Policy::kLaneSteps; ++k) {
       Lanes<N> error[kEquations], d[kMoving], step[Arm::kDof];
       chain.forward();
-      const bool fresh = k != 2 || !all((!good) | (Policy::kNear > before));
+      // derivatives stay behind a step so short that the next by them is the last, or was meant to be
+      const bool fresh = k == 0 || !all((!good) | ((k == 1 ? 0.1 : 1.0) * Policy::kNear > before));
       compare<P, N>(pose, aim, chain, fresh, error, factors);
       if (fresh) factors.factor();
       const Lanes<N> worst = largest(error);

@@ -15,14 +15,11 @@ template <class Arm> struct LaneRefinement {
   static constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;
   static constexpr int kEquations = Newton::kEquations, kMoving = Newton::kMoving;
 
-  // Takes `count` lanes of rows along; the error that is left of each.
+  // Takes `count` lanes of rows along, numbered through all rows; the error that is left of each. A place in the pack
+  // goes to the next lane as soon as it is done with one.
   static void run(const Pose<1>& pose, const std::array<double, Arm::kFree>& held, const int* lanes, int count,
-                  Rows& rows, double* error) noexcept {
-    for (int at = 0; at < count; at += N) {
-      int taken[N];
-      for (int i = 0; i < N; ++i) taken[i] = lanes[std::min(at + i, count - 1)];
-      Pack(taken, rows).run(pose, held, error);
-    }
+                  Rows* rows, double* error) noexcept {
+    if (count > 0) Pack{lanes, count, rows, error}.run(pose, held);
   }
 
  private:
@@ -32,21 +29,35 @@ template <class Arm> struct LaneRefinement {
   };
 
   struct Pack {
-    const int (&lanes)[N];
-    Rows& rows;
-    RefinementCourse<Policy> course[N];
-    alignas(64) double trial[Arm::kDof][N];
+    const int* lanes;
+    int count;
+    Rows* rows;
+    double* error;
+    int next = 0, taken[N] = {};
+    bool idle[N] = {};
+    RefinementCourse<Policy> course[N] = {};
+    alignas(64) double trial[Arm::kDof][N] = {};
 
-    Pack(const int (&taken)[N], Rows& all) noexcept : lanes(taken), rows(all) {
-      for (int i = 0; i < N; ++i) start(i);
-    }
+    // A joint's value in a lane.
+    double& value(int lane, int j) const noexcept { return rows[lane / Rows::kLanes].q[j][lane % Rows::kLanes]; }
 
+    // Goes on from the best configuration of its lane.
     void start(int i) noexcept {
-      for (int j = 0; j < Arm::kDof; ++j) trial[j][i] = rows.q[j][lanes[i]];
+      for (int j = 0; j < Arm::kDof; ++j) trial[j][i] = value(taken[i], j);
     }
 
-    void run(const Pose<1>& pose, const std::array<double, Arm::kFree>& held, double* error) noexcept {
+    // Goes to the next lane, if there is one.
+    void take_next(int i) noexcept {
+      idle[i] = next == count;
+      if (idle[i]) return;
+      taken[i] = lanes[next++];
+      course[i] = {};
+      start(i);
+    }
+
+    void run(const Pose<1>& pose, const std::array<double, Arm::kFree>& held) noexcept {
       LaneAim<Arm, N> aim(pose, held);
+      for (int i = 0; i < N; ++i) take_next(i);
       while (true) {
         LaneChain<Arm, N> chain;
         Slope slope;
@@ -68,21 +79,24 @@ template <class Arm> struct LaneRefinement {
         for (int i = 0; i < N; ++i)
           if (again[i]) start(i);
       }
-      for (int i = 0; i < N; ++i) error[lanes[i]] = course[i].best;
     }
 
-    // Keeps what is better. Whether some steps go on, and which of them from the best configuration again.
+    // Keeps what is better. Whether some steps go on, and which of them from the best configuration of their lane.
     bool judge(const Lanes<N>& worst, bool (&again)[N]) noexcept {
       alignas(64) double off[N];
       store(worst, off);
       bool any = false;
       for (int i = 0; i < N; ++i) {
-        again[i] = course[i].done;
-        if (course[i].done) continue;
+        again[i] = idle[i];
+        if (idle[i]) continue;
         if (course[i].takes(off[i]))
-          for (int j = 0; j < Arm::kDof; ++j) rows.q[j][lanes[i]] = trial[j][i];
+          for (int j = 0; j < Arm::kDof; ++j) value(taken[i], j) = trial[j][i];
         again[i] = course[i].starts_again();
-        any = any || !course[i].done;
+        if (course[i].done) {
+          error[taken[i]] = course[i].best;
+          take_next(i);
+        }
+        any = any || !idle[i];
       }
       return any;
     }

@@ -10,6 +10,7 @@
 #include "rows/rank_loss.hpp"
 #include "rows/row_pair.hpp"
 #include "rows/solution_rows.hpp"
+#include "solving/lane_ends.hpp"
 
 namespace ikgen_runtime {
 
@@ -25,6 +26,8 @@ template <class Arm> struct CarefulRows {
   using Refinement = NewtonRefinement<Arm>;
   using Row = SolutionRows<Arm>;
   using Rows = typename Arm::template Rows<1>;
+  using End = LaneEnd<Arm>;
+  template <std::size_t K> using Ends = LaneEnds<Arm, K>;
 
   // As Solutions, with room for rows that are outside the limits, or farther from a seed than others.
   struct Places {
@@ -71,7 +74,8 @@ template <class Arm> struct CarefulRows {
   // Adds the distinct solutions of a pose, refined where the closed form lost digits.
   [[gnu::always_inline]] static Left find_rows(const Aim& aim, const double* q0, const Options& options,
                                                [[maybe_unused]] int turn, Places& out) noexcept {
-    Rows rows;
+    std::array<Rows, 1> only;
+    Rows& rows = only[0];
     Left left{turns_away(turn), false};
     find_lanes(start_of(aim.pose, turn), q0, options, rows);
     for (const int lane : Arm::kLaneOfRow) {
@@ -80,7 +84,7 @@ template <class Arm> struct CarefulRows {
     }
     const int known = out.count;
     if (left.free) add_from(aim, q0, out);
-    const Ends ends(rows, aim, options, kReal);
+    const Ends<1> ends(only, aim, options, kReal);
     Starts starts;
     bool plain[Arm::kLanes] = {};  // right, and far from singularities
     if constexpr (Arm::kRefined) RankLoss<Arm>::regular(rows, Policy::kFoldReach, plain);
@@ -88,12 +92,12 @@ template <class Arm> struct CarefulRows {
       if (plain[lane] && (bits(rows, lane) & kSingular) == 0)
         add_lane(rows, lane, out);
       else if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
-        starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, false, aim, out);
+        starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends.at(0, lane), false, aim, out);
     if constexpr (Arm::kRounded)
       if (turn == 0) starts.trace_broken(aim, out);
     if constexpr (Arm::kBesides > 0)
       if (turn == 0 && (kBesideAnywhere || left.free || starts.close())) take_beside(aim, q0, options, starts, out);
-    if (starts.count == 0 && left.free && out.count == known) take_all(aim, rows, options, starts, out);
+    if (starts.count == 0 && left.free && out.count == known) take_all(aim, only, options, starts, out);
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
       if (starts.at(k).nearby && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
@@ -119,27 +123,6 @@ template <class Arm> struct CarefulRows {
   }
   static int bits(const Rows& rows, int lane) noexcept { return static_cast<int>(rows.flags[lane]); }
 
-  // Where steps towards the aim lead from lanes of another geometry that have a flag, all at once, and the error that is
-  // left where they don't show the one solution near their start.
-  struct Ends {
-    Rows rows;
-    double error[Arm::kLanes];
-
-    Ends(const Rows& from, [[maybe_unused]] const Aim& aim, [[maybe_unused]] const Options& options,
-         [[maybe_unused]] Bit flag) noexcept
-        : rows(from) {
-      if constexpr (Arm::kNewton) {
-        constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
-        const Pose<1> pose = gather<1>(&aim.pose);
-        Arm::refine(pose, options.free, anywhere, rows);
-        int lanes[Arm::kLanes], count = 0;
-        for (const int lane : Arm::kLaneOfRow)
-          if ((bits(from, lane) & flag) != 0 && (bits(rows, lane) & kFound) == 0) lanes[count++] = lane;
-        Arm::take_along(pose, options.free, lanes, count, rows, error);
-      }
-    }
-  };
-
   // What Newton steps from a lane led to. Rows that are right to round-off are added; of the others the nearest is kept.
   struct Nearest {
     bool marked = false, nearby = false, settled = false, exact = false;  // settled: a solution, whatever else there is
@@ -154,11 +137,11 @@ template <class Arm> struct CarefulRows {
     }
 
     // From where steps in lanes led to, if they did.
-    void refine([[maybe_unused]] const Aim& aim, [[maybe_unused]] const Ends& ends) noexcept {
+    void refine([[maybe_unused]] const Aim& aim, [[maybe_unused]] const End& end) noexcept {
       if constexpr (Arm::kNewton) {
-        for (int j = 0; j < Arm::kDof; ++j) q[j] = ends.rows.q[j][lane];
-        alone = (bits(ends.rows, lane) & kFound) != 0;
-        if (!alone) error = ends.error[lane];
+        for (int j = 0; j < Arm::kDof; ++j) q[j] = end.rows.q[j][lane];
+        alone = end.alone;
+        if (!alone) error = end.error;
       } else if constexpr (!Arm::kRefined) {
         error = Refinement::error_after(q, aim);
       }
@@ -248,14 +231,14 @@ template <class Arm> struct CarefulRows {
 
     bool any_traced() const noexcept { return std::find(std::begin(traced), std::end(traced), true) != std::end(traced); }
 
-    // ends: what steps in lanes led to.
-    void take(Nearest start, const Ends& ends, bool beside, const Aim& aim, Places& out) noexcept {
-      if (!(Arm::kRounded && start.marked)) start.refine(aim, ends);
+    // end: what steps in lanes led to.
+    void take(Nearest start, const End& end, bool beside, const Aim& aim, Places& out) noexcept {
+      if (!(Arm::kRounded && start.marked)) start.refine(aim, end);
       if (start.marked && (Arm::kRounded || !(start.error < Policy::kArrived))) {
         if (!traced[start.lane]) traced[start.lane] = start.add_around(aim, out);
         if (traced[start.lane]) return;
         start.marked = false;
-        start.refine(aim, ends);
+        start.refine(aim, end);
       }
       for (int k = 0; k < count; ++k)
         if ((beside || start.alone) && Row::same(start.q, at(k).q)) {
@@ -277,23 +260,25 @@ template <class Arm> struct CarefulRows {
   };
 
   // Lanes that are not real where a divisor nearly vanishes: less than the file, or round-off, is off may be missing.
-  static void take_all(const Aim& aim, const Rows& rows, const Options& options, Starts& starts, Places& out) noexcept {
-    const Ends ends(rows, aim, options, kSingular);
+  static void take_all(const Aim& aim, const std::array<Rows, 1>& only, const Options& options, Starts& starts,
+                       Places& out) noexcept {
+    const Rows& rows = only[0];
+    const Ends<1> ends(only, aim, options, kSingular);
     for (const int lane : Arm::kLaneOfRow)
-      if ((bits(rows, lane) & kSingular) != 0) starts.take({rows, lane, true}, ends, false, aim, out);
+      if ((bits(rows, lane) & kSingular) != 0) starts.take({rows, lane, true}, ends.at(0, lane), false, aim, out);
   }
 
   // The rows of poses beside this one.
   static void take_beside(const Aim& aim, const double* q0, const Options& options, Starts& starts,
                           Places& out) noexcept {
-    for (const auto& motion : Arm::kBeside) {
-      Rows rows;
-      find_lanes(displaced(aim.pose, motion), q0, options, rows);
-      const Ends ends(rows, aim, options, kReal);
+    constexpr std::size_t count = Arm::kBesides;
+    std::array<Rows, count> rows;
+    for (std::size_t k = 0; k < count; ++k) find_lanes(displaced(aim.pose, Arm::kBeside[k]), q0, options, rows[k]);
+    const Ends<count> ends(rows, aim, options, kReal);
+    for (std::size_t k = 0; k < count; ++k)
       for (const int lane : Arm::kLaneOfRow)
-        if ((bits(rows, lane) & kReal) != 0)
-          starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends, true, aim, out);
-    }
+        if ((bits(rows[k], lane) & kReal) != 0)
+          starts.take({rows[k], lane, (bits(rows[k], lane) & kSingular) != 0}, ends.at(k, lane), true, aim, out);
   }
 };
 

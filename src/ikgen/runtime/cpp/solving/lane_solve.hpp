@@ -4,6 +4,7 @@
 
 #include "solving/careful_solve.hpp"
 #include "rows/lane_placement.hpp"
+#include "rows/row_sums.hpp"
 
 namespace ikgen_runtime {
 
@@ -28,8 +29,10 @@ template <class Arm> struct LaneSolve {
       Arm::branches(pose, typename Arm::Seed(), options.free, range, rows);
     }
     if (place_later(options)) LanePlacement<Arm>::apply(options, rows);
+    double sums[std::size_t{Rows<P>::kLanes}] = {};
+    if constexpr (Arm::kNewton) RowSums<Arm>::take(rows, sums);
     for (int p = 0; p < P; ++p)
-      if (!collect(rows, p, options, out[p])) fall_back(poses[p], options, out[p]);
+      if (!collect(rows, sums, p, options, out[p])) fall_back(poses[p], options, out[p]);
   }
 
  private:
@@ -63,22 +66,28 @@ template <class Arm> struct LaneSolve {
     return some;
   }
 
-  // Copies the found rows of pose p. Whether that is all there is to it: every row is a regular one.
-  template <int P> static bool collect(const Rows<P>& rows, int p, const Options& options, Solutions& out) noexcept {
+  // Copies the found rows of pose p. Whether that is all there is to it: every row is a regular one. sums: RowSums.
+  template <int P>
+  static bool collect(const Rows<P>& rows, [[maybe_unused]] const double* sums, int p, const Options& options,
+                      Solutions& out) noexcept {
     int count = 0, seen = 0;
+    [[maybe_unused]] double sum[Arm::kMaxSolutions + 1] = {};
     for (const int row : Arm::kLaneOfRow) {
       const int lane = row * P + p;
       const int bits = static_cast<int>(rows.flags[lane]);
       double* q = Row::row(out, count);
       for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
       Row::flag(out, count) = false;
+      if constexpr (Arm::kNewton) sum[count] = sums[lane];
       count += bits & kFound;
       seen |= bits;
     }
     if ((seen & (kRough | kHit)) != 0 || (CarefulRows<Arm>::kBesideAnywhere && (seen & kReal) == 0)) return false;
     if ((seen & kMeeting) != 0 && leaves_out_meeting(rows, p)) return false;
     out.count = count;
-    if (Arm::kNewton || (seen & kMeeting) != 0) {
+    bool compared = (seen & kMeeting) != 0;
+    if constexpr (Arm::kNewton) compared = !RowSums<Arm>::apart(sum, count);
+    if (compared) {
       leave_distinct(out);
       if (Arm::kNewton && out.count < count) return false;  // another may lie there
     }
