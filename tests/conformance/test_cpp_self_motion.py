@@ -218,6 +218,33 @@ def test_searches(both: Both, mode: int) -> None:
         assert cost(arm, mode, rows[0], seed) == pytest.approx(best, abs=near)
 
 
+def test_the_best_row_may_be_at_an_end_on_a_limit_or_just_before_a_fold(tmp_path: Path) -> None:
+    """Where joints are on a limit by a hair, and where slopes have no digits."""
+    path = tmp_path / "rounded_wrist.urdf"
+    text = serial_urdf("rounded_wrist", SHOULDER_ELBOW_WRIST)
+    path.write_text(
+        text.replace('xyz="0 0 0.35" rpy="0 0 0"', 'xyz="0.00002 0 0.35" rpy="0 0.0005 0.0003"')
+    )
+    dh = read(Request(path, free={"wrist_roll": None})).dh
+    both = in_both(replace(solver_module(dh), name="rounded_wrist"), tmp_path)
+    arm, rng = both.arm, np.random.default_rng(11)
+    at_end = 0
+    for _ in range(40):
+        pose, seed = arm.forward(drawn(arm, rng)), drawn(arm, rng)
+        _, numbers = both.run(1, seed, pose[None])
+        row = numbers[: arm.DOF]
+        assert np.abs(arm.forward(row) - pose).max() < 1e-8
+        held = held_of(arm, row)
+        ends = [x for one in arm.self_motion(pose) for x in (one.low, one.high)]
+        at_end += bool(np.abs(np.array(ends) - held).min() < 1e-8)
+        random = rng.uniform(arm.LOWER[-1], arm.UPPER[-1], 300)
+        rows = arm.solve_batch(np.repeat(pose[None], 300, axis=0), free=random[:, None])[0]
+        rows = rows.reshape(-1, arm.DOF)
+        best = np.nanmin(np.linalg.norm(rows - seed, axis=1))
+        assert cost(arm, 1, row, seed) < best + 1e-7
+    assert at_end > 5
+
+
 def test_searches_from_a_row_give_it_back(both: Both) -> None:
     arm, rng = both.arm, np.random.default_rng(5)
     if len(arm.FREE_JOINTS) != 1:

@@ -37,8 +37,8 @@ template <class Arm> struct BranchArc {
     std::copy_n(chord, kVariables, to.flow);
   }
 
-  // Where the held value, which goes up (`sense` 1) or down (-1) at the first of the ends, turns back; false where it
-  // does not on the way to the other.
+  // Just before the held value, which goes up (`sense` 1) or down (-1) at the first of the ends, turns back; false where
+  // it does not on the way to the other.
   bool fold(double sense, Point& out) const noexcept {
     if (length < kTouching) {
       out = from;
@@ -46,10 +46,12 @@ template <class Arm> struct BranchArc {
     }
     Point a, b;
     if (!find(from.share, from, a) || !find(to.share, to, b) || !(sense * a.rise() > 0.0 && sense * b.rise() < 0.0)) return false;
-    const double bend = std::abs(a.rise() - b.rise());
-    const auto close = [&](const Point& p) noexcept { return p.rise() * p.rise() < kEnough * bend; };
-    const auto before = [&](const Point& p) noexcept { return sense * p.rise() > 0.0; };
-    return cross(a, b, a.rise(), b.rise(), [](const Point& p) noexcept { return p.rise(); }, before, close, out);
+    const double room = 0.5 * std::sqrt(kEnough * std::abs(a.rise() - b.rise()));
+    const auto value = [&](const Point& p) noexcept { return sense * p.rise() - room; };
+    const auto before = [&](const Point& p) noexcept { return value(p) > 0.0; };
+    const auto close = [&](const Point& p) noexcept { return std::abs(value(p)) < room; };
+    out = a;
+    return close(a) || cross(a, b, value(a), value(b), value, before, close, out);
   }
 
   // The last point inside the limits on the way from a point that is inside to one that is not: where the joint that is

@@ -15,6 +15,8 @@ template <class Arm> struct HeldDescent {
   using Minimum = HeldMinimum<Arm>;
   // Of distances, what is to be gained, over the distance.
   static constexpr double kGain = 1e-16, kLevel = 1e-14;
+  static constexpr double kInside = 4e-10;  // of an end, where that is outside the limits by a hair, or a fold
+  static constexpr double kSteep = 1e3;     // slopes that tell of a fold, and not which way is down
   static constexpr int kSteps = 40, kHalve = 6;
   static constexpr int kTogether = kNative;  // minima that are refined at once
 
@@ -26,16 +28,38 @@ template <class Arm> struct HeldDescent {
   // Some minima, no more than kTogether. Ends, whose rows may have lost digits, first get them back.
   void refine(Minimum* const (&minima)[kTogether], int count) const noexcept {
     for (int k = 0; k < count; ++k) {
-      Point& best = minima[k]->best;
-      if (best.at != minima[k]->low && best.at != minima[k]->high) continue;
-      Sample::refine(sweep.pose, best.at, best.q);
-      best = point(best.at, best.q, best.lane);
+      const Minimum& m = *minima[k];
+      if (m.best.at == m.low || m.best.at == m.high) refine_end(minima[k]->best, m.best.at == m.low ? m.high : m.low);
     }
     if (preference.prefer == Arm::Prefer::Dexterous) return interpolate(minima, count);
     for (int k = 0; k < count; ++k) descend(*minima[k]);
   }
 
  private:
+  // Digits that come back may take it over the limit that it is on.
+  void refine_end(Point& end, double other) const noexcept {
+    double q[Arm::kDof];
+    std::copy_n(end.q, Arm::kDof, q);
+    Sample::refine(sweep.pose, end.at, q);
+    Point again = point(end.at, q, end.lane);
+    if (!(again.cost < kInfinity)) again = inside(end, other);
+    if (again.cost < kInfinity) end = again;
+  }
+
+  // The branch's row a little inside an end, towards `other`.
+  Point inside(const Point& end, double other) const noexcept {
+    return judged(beside(end.at + std::copysign(kInside, other - end.at), end));
+  }
+
+  // Off a fold that is the best, if it is lower beside; the slope there.
+  double leave_fold(Minimum& m, double g) const noexcept {
+    if (std::abs(g) < kSteep || (m.best.at != m.low && m.best.at != m.high)) return g;
+    const Point inner = inside(m.best, m.best.at == m.low ? m.high : m.low);
+    if (!(inner.cost < m.best.cost)) return g;
+    m.best = inner;
+    return slope(inner);
+  }
+
   // A row on the turns that are preferred; its cost is infinite where it is outside the limits, and not known elsewhere.
   Point placed(double at, const double* q, int lane) const noexcept {
     Point p;
@@ -108,7 +132,8 @@ template <class Arm> struct HeldDescent {
 
   // To where the derivative is 0: by a parabola with the slope of the best point, then secants, guarded by halving.
   void descend(Minimum& m) const noexcept {
-    double ends[2] = {m.low, m.high}, costs_there[2] = {m.low_cost, m.high_cost}, g = slope(m.best), last = 0.0, was = 0.0;
+    double ends[2] = {m.low, m.high}, costs_there[2] = {m.low_cost, m.high_cost}, last = 0.0, was = 0.0;
+    double g = leave_fold(m, slope(m.best));
     bool known = false;  // the slope `was` at `last`
     for (int i = 0; i < kSteps; ++i) {
       const double x = m.best.at, level = 1.0 + m.best.cost;

@@ -72,19 +72,19 @@ class Arcs:
         self.end = Points(share + 1.0, then, there, self._off(there), chord)
 
     def folds(self, sense: Array) -> tuple[Points, Flags]:
-        """Where the held value, which goes up (`sense` 1) or down (-1) at the start, turns back; and
+        """Just before the held value, which goes up (`sense` 1) or down (-1) at the start, turns back; and
         whether it does on the way to the end."""
         with np.errstate(all="ignore"):
             a, found = self._find(self.start.share, self.start)
             b, also = self._find(self.end.share, self.end)
             found &= also & (sense * a.rise > 0.0) & (sense * b.rise < 0.0)
-            bend = np.abs(a.rise - b.rise)
+            room = 0.5 * np.sqrt(_ENOUGH * np.abs(a.rise - b.rise))
             out, close = self._cross(
                 a,
                 b,
-                lambda p: p.rise,
-                lambda p: sense * p.rise > 0.0,
-                lambda p: p.rise**2 < _ENOUGH * bend,
+                lambda p: sense * p.rise - room,
+                lambda p: sense * p.rise > room,
+                lambda p: np.abs(sense * p.rise - room) < room,
             )
         one = self._length < _TOUCHING
         return self.start.where(one, out), one | (found & close)
