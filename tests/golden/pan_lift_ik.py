@@ -2788,6 +2788,49 @@ class _EntriesTask:
         return np.array([1.0 / self.size if c == 3 else 1.0 for c in self.column])
 
 
+# Many poses solved as each is alone, those near singularities in stacks.
+
+
+_STACK = 512  # poses
+_Stage = Callable[[_Arm, _Asked, bool], Sequence[_Answer | None]]
+
+
+def _solve_each(
+    arm: _Arm, poses: Array, free: Array | None, seed: Array | None, limits: bool
+) -> list[Solutions]:
+    """What `solve_pose` gives for each of the poses (N, 4, 4), with `free` (N, held joints) and seeds (N,
+    dof)."""
+    near = None if seed is None else _seed_rows(arm, seed, seed.shape)
+    held = _held_rows(arm, free, near, len(poses))
+    out = [_no_solutions(len(arm.lower), Status.INVALID) for _ in poses]
+    asked: dict[int, _One] = {}
+    for i, pose in enumerate(poses):
+        T = arm.task.read(pose.tolist(), arm.policy)
+        if T is not None:
+            seeds = None if near is None else tuple(near[i].tolist())
+            asked[i] = T, seeds, tuple(held[i].tolist())
+    answers: dict[int, _Answer] = {}
+    stages: tuple[_Stage, ...] = (_sure_answers, _placed_rows)
+    for solve in stages:
+        left = [i for i in asked if i not in answers]
+        for start in range(0, len(left), _STACK):
+            some = left[start : start + _STACK]
+            given = np.array([asked[i][0] for i in some])
+            stack = _Asked(given, None if near is None else near[some], held[some])
+            found = zip(some, solve(arm, stack, limits))
+            answers |= {i: answer for i, answer in found if answer is not None}
+    for i, answer in answers.items():
+        out[i] = _solutions_of(arm, asked[i], limits, answer)
+    return out
+
+
+def _sure_answers(arm: _Arm, asked: _Asked, limits: bool) -> list[_Answer | None]:
+    """`_sure_answer` of each pose."""
+    near: list[Row | None] = [asked.seed(k) for k in range(len(asked.T))]
+    each = zip(asked.T.tolist(), near, map(tuple, asked.held.tolist()))
+    return [_sure_answer(arm, one, limits) for one in each]
+
+
 _CHAIN = _chain_of(_FRAMES, _MOTIONS, DOF)
 _ARM = _Arm(
     chain=_CHAIN,

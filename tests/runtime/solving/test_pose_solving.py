@@ -51,7 +51,7 @@ def test_the_seed_is_among_the_rows_of_a_continuum(arm: ModuleType) -> None:
     assert np.abs(arm.solve(pose, limits=False).q - seed).max(axis=1).min() > 0.1
 
 
-@pytest.mark.parametrize("name", ["doosan_m1013", "fanuc_crx10ia"])
+@pytest.mark.parametrize("name", ["kuka_kr6r900sixx", "doosan_m1013", "fanuc_crx10ia"])
 @pytest.mark.parametrize("seeded", [False, True])
 def test_poses_in_a_stack_are_solved_as_each_is_alone(
     name: str, seeded: bool, tmp_path: Path
