@@ -29,6 +29,7 @@ _ROOM = 32  # solutions of a curve
 _NEAR = (
     1e-8  # rad or m: how far off the curve what is left, whose error is the square, is the curve's
 )
+_SHARE = 3e-2  # or, of what is left: as little as that off the curve changes neither
 _ALMOST, _SAME = 1e-3, 4e-15  # or how close it must be where what is left is the same after a step
 _STRAY = 1.0  # rad or m: larger corrections, of so many samples,
 _ASTRAY = 4  # show that no curve is near
@@ -97,12 +98,7 @@ def _traced(arm: Arm, q: Array, T: Array) -> Traced:
     unknown = 0.1 * generic(count, error.shape[1])  # shorter than what has a sense
     start = Reduced(q, still, unknown, nothing, nothing)
     first = _sample(arm, start, T)
-    back = first._replace(still=-first.still, out=-first.out, left=-first.left)
-    parts, closed, worst = _follow(arm, first, T, np.arange(count), 0.0)
-    open_ends = np.flatnonzero(~closed)
-    more, _, largest = _follow(arm, back, T, open_ends, float(_MOST))
-    worst = np.maximum(np.maximum(worst, largest), np.abs(first.left))
-    parts = joined(*parts, *more)
+    parts, worst = _follow(arm, first, T)
     steps = np.bincount(parts.owner, minlength=count)
     curve = steps >= _LEAST
     broken = curve & (worst >= arm.policy.arrived)
@@ -125,22 +121,23 @@ def _sampled(arm: Arm, at: Reduced, T: Array) -> tuple[Reduced, Flags]:
             whole[going] = part
         near[going] &= farthest < _STRAY
         same = (np.abs(moved.left - before) < _SAME) & (farthest < _ALMOST)
-        on = ~((farthest < _NEAR) | same)
+        on = ~((farthest < np.maximum(_NEAR, _SHARE * np.abs(moved.left))) | same)
         going, before = going[on], moved.left[on]
         if not len(going):
             break
     return at, near
 
 
-def _follow(
-    arm: Arm, first: Reduced, T: Array, some: Index, place: float
-) -> tuple[list[_Parts], Flags, Array]:
-    """On from some samples, the fastest joint by `policy.try_step` from one to the next; which (k,) come
-    back to where they began, and the most (k,) that is left."""
-    closed, worst = np.zeros(len(T), dtype=bool), np.zeros(len(T))
-    parts, moving, owner = [], list(arm.moving), some
-    b, astray = some_of(first, some), np.zeros(len(some), dtype=np.intp)
-    before = b.still
+def _follow(arm: Arm, first: Reduced, T: Array) -> tuple[_Parts, Array]:
+    """On from samples to both sides at once, the fastest joint by `policy.try_step` from one to the next;
+    the parts to one side, and to the other of what does not come back to where it began; the most (k,)
+    that is left."""
+    count, moving = len(T), list(arm.moving)
+    back = first._replace(still=-first.still, out=-first.out, left=-first.left)
+    first, T = joined(first, back), np.concatenate([T, T])
+    closed, worst = np.zeros(2 * count, dtype=bool), np.abs(first.left)
+    parts, owner, b = [], np.arange(2 * count), first
+    astray, before = np.zeros(2 * count, dtype=np.intp), b.still
     for step in range(_MOST):
         ahead, course = b.q.copy(), 1.5 * b.still - 0.5 * before
         ahead[:, moving] += arm.policy.try_step * course / np.abs(course).max(axis=1)[:, None]
@@ -149,15 +146,21 @@ def _follow(
         on = (np.abs(c.left) < arm.policy.fold_reach) & (astray < _ASTRAY)
         b, c, owner, astray = some_of(b, on), some_of(c, on), owner[on], astray[on]
         worst[owner] = np.maximum(worst[owner], np.abs(c.left))
-        parts.append(_Parts(b, c, owner, np.full(len(owner), place + step), np.ones(len(owner))))
-        round_about = _back(arm, some_of(first, owner), b) & (step > 1)
-        closed[owner[round_about]] = True
-        before = b.still[~round_about]
-        b, owner, astray = (some_of(c, ~round_about), *(x[~round_about] for x in (owner, astray)))
+        place = np.where(owner < count, step, _MOST + step).astype(float)
+        parts.append(_Parts(b, c, owner, place, np.ones(len(owner))))
+        closed[owner[_back(arm, some_of(first, owner), b) & (step > 1)]] = True
+        going = ~(closed[owner] | closed[owner % count])
+        before = b.still[going]
+        b, owner, astray = some_of(c, going), owner[going], astray[going]
         if not len(owner):
             break
     closed[owner] = True
-    return parts, closed, worst
+    once = np.arange(2 * count) < count
+    once[count:] = ~closed[:count]
+    worst = np.maximum(worst[:count], np.where(once[count:], worst[count:], 0.0))
+    found: _Parts = joined(*parts)
+    found = some_of(found, once[found.owner])
+    return found._replace(owner=found.owner % count), worst
 
 
 def _back(arm: Arm, a: Reduced, b: Reduced) -> Flags:
