@@ -1897,7 +1897,7 @@ class Status(str, Enum):
     __str__ = str.__str__  # NumPy compares by it
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Solutions:
     """Solutions of one pose: `q` (k, DOF), `status`, and `singular` (k,): rows of a continuum; `reason`
     says why a pose is INVALID, or which values of held joints led to no row. As a sequence: its rows.
@@ -2535,7 +2535,7 @@ _path_following_LEAST_DAMPING = 1e-14  # and where they shall tell how far the n
 _JUMP = 0.05  # rad or m that a row may be from the last one where halving does not help
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Path:
     """Joint values `q` (N, DOF) along N poses, on one branch and without leaps of whole turns; NaN from
     the first that was not reached. `reached`: how many were; `status`: OK for all of them, else why the

@@ -51,6 +51,15 @@ def test_the_seed_is_among_the_rows_of_a_continuum(arm: ModuleType) -> None:
     assert np.abs(arm.solve(pose, limits=False).q - seed).max(axis=1).min() > 0.1
 
 
+def test_answers_are_compared_as_objects(arm: ModuleType) -> None:
+    """Their arrays have no single truth: answers can be looked for in lists and be keys."""
+    pose = arm.forward([0.3, -0.9, 1.1, 0.4, 0.7, -0.2])
+    one, other = arm.solve(pose), arm.solve(pose)
+    assert one == one and one != other and other in [one, other] and len({one, other}) == 2
+    path = arm.follow([pose], start=one.q[0])
+    assert path == path and path != arm.follow([pose], start=one.q[0])
+
+
 @pytest.mark.parametrize("name", ["kuka_kr6r900sixx", "doosan_m1013", "fanuc_crx10ia"])
 @pytest.mark.parametrize("seeded", [False, True])
 def test_poses_in_a_stack_are_solved_as_each_is_alone(

@@ -25,7 +25,7 @@ class Status(str, Enum):
     __str__ = str.__str__  # NumPy compares by it
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Solutions:
     """Solutions of one pose: `q` (k, DOF), `status`, and `singular` (k,): rows of a continuum; `reason`
     says why a pose is INVALID, or which values of held joints led to no row. As a sequence: its rows.

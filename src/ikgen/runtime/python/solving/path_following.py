@@ -35,7 +35,7 @@ _LEAST_DAMPING = 1e-14  # and where they shall tell how far the next row is
 _JUMP = 0.05  # rad or m that a row may be from the last one where halving does not help
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Path:
     """Joint values `q` (N, DOF) along N poses, on one branch and without leaps of whole turns; NaN from
     the first that was not reached. `reached`: how many were; `status`: OK for all of them, else why the
