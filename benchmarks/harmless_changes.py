@@ -152,11 +152,6 @@ HARMLESS = (
         "+", "-", "both sides are looked at, in whatever order",
     ),
     HarmlessChange(
-        "runtime/python/held/branch_arcs.py",
-        "lambda p: sense * p.rise > 0.0,",
-        "*", "/", "they have one sign, and where the held value rises no more the fold is found",
-    ),
-    HarmlessChange(
         "runtime/python/held/branch_ends.py",
         "least = -float(rows.folds[k, row if seen else e.lane].min(initial=inf))",
         "seen", "not (seen)", "an end at a fold stays in its lane where margins tell",

@@ -115,8 +115,12 @@ def _arranged(block: Picture | Pictures | Card | Fold) -> str:
         case Card(picture, facts):
             rows = [f"\\textcolor{{soft}}{{{_words(n)}}} & {_text(t)} \\\\" for n, t in facts]
             inside = "\n".join(rows)
-            width = "\\setlength{\\wide}{0.72\\linewidth}"
-            return f"{_picture(picture)}{{{width}\\begin{{tabular}}{{lL}}\n{inside}\n\\end{{tabular}}}}"
+            width, names = (
+                "\\setlength{\\wide}{0.7\\linewidth}",
+                ">{\\raggedright}p{0.22\\linewidth}",
+            )
+            table = f"\\begin{{tabular}}{{{names}L}}\n{inside}\n\\end{{tabular}}"
+            return f"{_picture(picture)}{{{width}{table}}}"
         case Fold(words, inner):
             lead = f"{{\\small\\color{{soft}} {_words(words)}\\par}}\\nopagebreak"
             return "\n\n".join([lead, *map(_block, inner)])

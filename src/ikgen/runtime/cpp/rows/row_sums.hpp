@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "arrays/constants.hpp"
 #include "arrays/lane_sines.hpp"
 
 namespace ikgen_runtime {
