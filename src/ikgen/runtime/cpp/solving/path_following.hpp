@@ -152,48 +152,81 @@ template <class A, class Solver> struct PathStep {
     return found.status;
   }
 
-  // Where the steps end beside the pose, as at a fold, of the rows with what is held where they ended.
+  // Where the steps end beside the pose, as at a fold, of the rows with what is held where they ended. Before, a joint
+  // is let go once if the error would shrink by its motion off its limit: those stopped first may be the wrong ones.
   Status unstopped(const Eigen::Isometry3d& pose, const double* expected, double* row, bool& singular) const noexcept {
-    bool stopped[kDof] = {};
+    bool stopped[kDof] = {}, released[kDof] = {};
     double at[kDof];
     std::copy_n(q, kDof, at);
-    for (int stops = 0;; ++stops) {
-      std::copy_n(at, kDof, row);
-      double error = kInfinity, tried[kDof];
-      std::copy_n(row, kDof, tried);
-      for (int i = 0; i < 30; ++i) {
-        double before[kDof];
-        std::copy_n(tried, kDof, before);
-        const double here = move(tried, pose, stopped, kDamping);
-        const bool slow = !(here < 0.5 * error);
-        if (here < error) {
-          error = here;
-          std::copy_n(before, kDof, row);
-        }
-        if ((slow && i > 2) || error < A::Policy::kConverged) break;
-      }
-      if (!(error < A::Policy::kArrived)) {
+    for (bool any = false;; any = true) {
+      const bool arrived = newton(at, pose, stopped, row);
+      const int joint = arrived ? farthest_out(row) : pulled_off(row, pose, stopped, released);
+      if (joint < 0 && arrived) break;
+      if (joint < 0) {
         double held[kDof];
-        for (int j = 0; j < kDof; ++j)
-          held[j] = limits ? std::min(std::max(row[j], A::kLower.data()[j]), A::kUpper.data()[j]) : row[j];
+        for (int j = 0; j < kDof; ++j) held[j] = limits ? clipped(row, j) : row[j];
         if (closed_form(pose, held, expected, row, singular) == Status::Ok) break;
-        return stops > 0 ? Status::Limits : Status::Unreachable;
+        return any ? Status::Limits : Status::Unreachable;
       }
-      double most = A::Policy::kLimitTolerance;
-      int worst = -1;
-      for (int j = 0; j < kDof && limits; ++j) {
-        const double excess = std::max(A::kLower.data()[j] - row[j], row[j] - A::kUpper.data()[j]);
-        if (excess > most) {
-          most = excess;
-          worst = j;
-        }
-      }
-      if (worst < 0) break;
-      stopped[worst] = true;
-      at[worst] = row[worst] < A::kLower.data()[worst] ? A::kLower.data()[worst] : A::kUpper.data()[worst];
+      stopped[joint] = arrived;
+      released[joint] = released[joint] || !arrived;
+      at[joint] = arrived ? clipped(row, joint) : q[joint];
     }
     singular = RankLoss<AllMoving<A>>::redundant_below(row, A::Policy::kRankLoss);
     return Status::Ok;
+  }
+
+  static double clipped(const double* row, int j) noexcept {
+    return std::min(std::max(row[j], A::kLower.data()[j]), A::kUpper.data()[j]);
+  }
+
+  // The best row of shortest motions of joints that are not stopped; whether it has the pose.
+  static bool newton(const double* from, const Eigen::Isometry3d& pose, const bool* stopped, double* row) noexcept {
+    double error = kInfinity, tried[kDof];
+    std::copy_n(from, kDof, row);
+    std::copy_n(from, kDof, tried);
+    for (int i = 0; i < 30; ++i) {
+      double before[kDof];
+      std::copy_n(tried, kDof, before);
+      const double here = move(tried, pose, stopped, kDamping);
+      const bool slow = !(here < 0.5 * error);
+      if (here < error) {
+        error = here;
+        std::copy_n(before, kDof, row);
+      }
+      if ((slow && i > 2) || error < A::Policy::kConverged) break;
+    }
+    return error < A::Policy::kArrived;
+  }
+
+  // The joint that is farthest out of its limits, if one is.
+  int farthest_out(const double* row) const noexcept {
+    double most = A::Policy::kLimitTolerance;
+    int worst = -1;
+    for (int j = 0; j < kDof && limits; ++j) {
+      const double excess = std::max(A::kLower.data()[j] - row[j], row[j] - A::kUpper.data()[j]);
+      if (!(excess > most)) continue;
+      most = excess;
+      worst = j;
+    }
+    return worst;
+  }
+
+  // The stopped joint, not released before, by whose motion off its limit the error shrinks most, if one is.
+  static int pulled_off(const double* row, const Eigen::Isometry3d& pose, const bool* stopped, const bool* released) noexcept {
+    const PoseError<AllMoving<A>> here(row, HeldAim<AllMoving<A>>(pose));
+    double most = 0.0;
+    int best = -1;
+    for (int j = 0; j < kDof; ++j) {
+      if (!stopped[j] || released[j]) continue;
+      double pull = 0.0;
+      for (int a = 0; a < PoseError<AllMoving<A>>::kCount; ++a) pull += here.slope[a][j] * here.error[a];
+      if (row[j] > A::kLower.data()[j]) pull = -pull;
+      if (!(pull > most)) continue;
+      most = pull;
+      best = j;
+    }
+    return best;
   }
 
   // The pose halfway: the middle of the positions, half of the turn between.

@@ -175,25 +175,40 @@ class _Walk:
     def _unstopped(self, pose: Array) -> tuple[Array, Flags, Status]:
         """The row next to the expected one that all joints reach together, those that it would take out
         of their limits stopped there; where their steps end beside the pose, as at a fold, all rows with
-        what is held where they ended."""
-        arm, stopped = self.arm, dict[int, float]()
+        what is held where they ended. Before, a joint is let go once if the error would shrink by its
+        motion off its limit: those stopped first may be the wrong ones."""
+        arm, stopped, released = self.arm, dict[int, float](), set[int]()
+        low, high = np.array(arm.lower), np.array(arm.upper)
         while True:
             moving = [j for j in range(len(self.q)) if j not in stopped]
             at = self.q.copy()
             for j, value in stopped.items():
                 at[j] = value
             q, error = self._newton(at, pose, moving)
-            if not error < arm.policy.arrived:
-                held = np.clip(q, arm.lower, arm.upper) if self.limits else q
+            if error < arm.policy.arrived:
+                excess = np.maximum(low - q, q - high)
+                worst = int(excess.argmax())
+                if not self.limits or excess[worst] <= arm.policy.limit_tolerance:
+                    return q[None], self._singular(q[None]), Status.OK
+                stopped[worst] = float(low[worst] if q[worst] < low[worst] else high[worst])
+                continue
+            freed = self._pulled_off(q, pose, [j for j in stopped if j not in released])
+            if freed is None:
+                held = np.clip(q, low, high) if self.limits else q
                 rows = solve_pose(arm, pose, None, held, False).q
-                status = Status.LIMITS if stopped else Status.UNREACHABLE
+                status = Status.LIMITS if stopped or released else Status.UNREACHABLE
                 return rows, self._singular(rows), Status.OK if len(rows) else status
-            low, high = np.array(arm.lower), np.array(arm.upper)
-            excess = np.maximum(low - q, q - high)
-            worst = int(excess.argmax())
-            if not self.limits or excess[worst] <= arm.policy.limit_tolerance:
-                return q[None], self._singular(q[None]), Status.OK
-            stopped[worst] = float(low[worst] if q[worst] < low[worst] else high[worst])
+            released.add(freed)
+            del stopped[freed]
+
+    def _pulled_off(self, q: Array, pose: Array, stopped: list[int]) -> int | None:
+        """Of joints at their limits the one by whose motion off it the error shrinks most, if one is."""
+        arm = self.arm
+        here, J = tip_and_jacobian(arm.chain, q[None])
+        pull = arm.task.error(here, pose[None])[0] @ arm.task.rows(here, J)[0]
+        inwards = {j: float(pull[j] if q[j] <= arm.lower[j] else -pull[j]) for j in stopped}
+        best = max(inwards, key=inwards.__getitem__, default=None)
+        return best if best is not None and inwards[best] > 0.0 else None
 
     def _singular(self, rows: Array) -> Flags:
         """Where all joints together lose a freedom (n,)."""
