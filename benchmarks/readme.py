@@ -144,7 +144,9 @@ def _random(read: Callable[[str], Measured]) -> str:
 
 
 def _beside(found: dict[str, Any]) -> str:
-    return f"{found['beside']}, in {found['beside_tables']} tables" if found["beside"] else "0"
+    count = found["beside_tables"]
+    words = f"{found['beside']}, in {count} table{'s' * (count != 1)}"
+    return words if found["beside"] else "0"
 
 
 _COUNTED = {
