@@ -64,11 +64,8 @@ def forward(frames: Matrix, values: Matrix, turning: Sequence[bool] | None = Non
 def jacobian(frames: Matrix, values: Matrix, turning: Sequence[bool] | None = None) -> Matrix:
     """Geometric Jacobians (..., 6, n) at the values (..., n): linear rows over the typical length, then
     angular; of slides by their value over that length."""
-    axes, T, each = (
-        [],
-        np.broadcast_to(frames[0], (*values.shape[:-1], 4, 4)),
-        np.moveaxis(values, -1, 0),
-    )
+    axes, each = [], np.moveaxis(values, -1, 0)
+    T = np.broadcast_to(frames[0], (*values.shape[:-1], 4, 4))
     for frame, turns, value in zip(frames[1:], _kinds(each, turning), each, strict=True):
         axes.append((turns, T[..., :3, 2], T[..., :3, 3]))
         T = product(T, z_motion(turns, value), frame)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import hashlib
 import math
-import sys
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -17,11 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from ikgen.errors import BadDescriptionError
 from ikgen.importers.merge_conflict import conflict_or
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
+from ikgen.importers.toml_text import parse_toml
 
 if TYPE_CHECKING:
     from ikgen.model.joint_tree import JointTree, Source
@@ -122,11 +117,8 @@ def row_offsets(path: Path, rows: int) -> tuple[dict[str, float], ...]:
     """
     text = _text(path)
     try:
-        data = tomllib.loads(text)
-    except (
-        ValueError,
-        RecursionError,
-    ) as error:  # numbers of thousands of digits are no TOML error
+        data = parse_toml(text)
+    except ValueError as error:
         hint = conflict_or(text, "write tables [[joints]]; calibrations in YAML end in .yaml")
         raise BadDescriptionError(f"not TOML: {error}", file=str(path), hint=hint) from None
     joints = data.get("joints")

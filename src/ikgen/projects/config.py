@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -15,13 +14,9 @@ from ikgen.generation.record import record_name, records_of
 from ikgen.generation.request import Outputs, Request
 from ikgen.importers.merge_conflict import conflict_or
 from ikgen.importers.named_robots import is_named
+from ikgen.importers.toml_text import parse_toml
 from ikgen.model.module_name import identifier
 from ikgen.projects.config_lines import line_of
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
 
 __all__ = ["ArmConfig", "default_config", "load_config", "named_config"]
 
@@ -145,16 +140,12 @@ def _text(path: Path) -> str:
 def _tables(path: Path, text: str) -> dict[str, Any]:
     """The `ikgen` part of the file."""
     try:
-        data: dict[str, Any] = tomllib.loads(text)
-    except (
-        ValueError,
-        RecursionError,
-    ) as error:  # numbers of thousands of digits are no TOML error
+        data = parse_toml(text)
+    except ValueError as error:
         place = re.search(r"line (\d+)", str(error))
         line = int(place.group(1)) if place else text.count("\n") + 1  # at the end
         hint = "name an ikgen.toml, a pyproject.toml, or the folder that holds the outputs"
-        hint = conflict_or(text, hint)
-        raise _error(path, f"not TOML: {error}", line=line, hint=hint) from None
+        raise _error(path, f"not TOML: {error}", line=line, hint=conflict_or(text, hint)) from None
     if path.name != PYPROJECT:
         return data
     tool = data.get("tool", {}).get("ikgen")

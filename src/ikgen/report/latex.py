@@ -115,11 +115,9 @@ def _arranged(block: Picture | Pictures | Card | Fold) -> str:
         case Card(picture, facts):
             rows = [f"\\textcolor{{soft}}{{{_words(n)}}} & {_text(t)} \\\\" for n, t in facts]
             inside = "\n".join(rows)
-            width, names = (
-                "\\setlength{\\wide}{0.7\\linewidth}",
-                ">{\\raggedright}p{0.22\\linewidth}",
-            )
-            table = f"\\begin{{tabular}}{{{names}L}}\n{inside}\n\\end{{tabular}}"
+            width = "\\setlength{\\wide}{0.7\\linewidth}"
+            columns = ">{\\raggedright}p{0.22\\linewidth}L"
+            table = f"\\begin{{tabular}}{{{columns}}}\n{inside}\n\\end{{tabular}}"
             return f"{_picture(picture)}{{{width}{table}}}"
         case Fold(words, inner):
             lead = f"{{\\small\\color{{soft}} {_words(words)}\\par}}\\nopagebreak"

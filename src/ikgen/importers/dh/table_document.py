@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import difflib
 import re
-import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,12 +11,8 @@ from typing import Any
 
 from ikgen.errors import BadDescriptionError
 from ikgen.importers.merge_conflict import conflict_or
+from ikgen.importers.toml_text import parse_toml
 from ikgen.importers.xml_document import read_text
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
 
 __all__ = ["ENTRIES", "TableDocument", "read_document"]
 
@@ -84,11 +79,8 @@ def read_document(path: Path) -> TableDocument:
     """Read and check a DH table; raises `BadDescriptionError`."""
     text = read_text(path, _LARGEST, may_be_empty=True)
     try:
-        data = tomllib.loads(text)
-    except (
-        ValueError,
-        RecursionError,
-    ) as error:  # integers of thousands of digits are no TOML error
+        data = parse_toml(text)
+    except ValueError as error:
         place = _AT_LINE.search(str(error))
         hint = "a DH table is a TOML file with [[joints]] rows; expressions stand in quotes"
         raise BadDescriptionError(

@@ -132,14 +132,13 @@ static void put_constants(Numbers& out) {
 _NO_CONSTANTS = "static void put_constants(Numbers&) {}"
 
 
-def driver(header: str, namespace: str, text: str) -> str:
-    """Text of the program for a header: its file name, its namespace and its `text`, which says whether
-    it has `solve_batch` and constants."""
+def driver(header: str, namespace: str, *, batch: bool, constants: bool) -> str:
+    """Text of the program for a header (file name), with or without its `solve_batch` and constants."""
     parts = {
         "header": header,
         "namespace": namespace,
-        "batch": _BATCH.strip() if "solve_batch(" in text else _NO_BATCH,
-        "constants": _CONSTANTS.strip() if "kLower" in text else _NO_CONSTANTS,
+        "batch": _BATCH.strip() if batch else _NO_BATCH,
+        "constants": _CONSTANTS.strip() if constants else _NO_CONSTANTS,
     }
     program = _DRIVER
     for name, part in parts.items():

@@ -31,6 +31,8 @@ class CppHeader(ProgramRunner):
         work = self._folder.path
         source, program = work / "driver.cpp", work / "driver"
         text = self.path.read_text(encoding="utf-8")
-        source.write_text(driver(self.path.name, self.path.stem, text), encoding="utf-8")
+        batch, known = "solve_batch(" in text, "kLower" in text
+        text = driver(self.path.name, self.path.stem, batch=batch, constants=known)
+        source.write_text(text, encoding="utf-8")
         compile_program(source, program, [self.path.parent])
-        super().__init__("cpp", program, constants, batch="solve_batch(" in text, source=str(path))
+        super().__init__("cpp", program, constants, batch=batch, source=str(path))
