@@ -1645,10 +1645,13 @@ template <class Arm> struct PoseEntries {
 
   template <class X, class Tip>
   static void error(const X (&t)[3][4], const Tip& T, X* error) noexcept {
+    [[maybe_unused]] const X unit = Arm::Columns::template unit<X>(T.R);
     for (int i = 0; i < kCount; ++i) {
       const auto [r, c] = Arm::kRead[i];
       if (c == 3) {
         error[i] = (t[r][3] - T.p[r]) / Arm::kSize;
+      } else if constexpr (Arm::Columns::kFlat) {
+        error[i] = t[r][c] - T.R[r][c] * unit;
       } else {
         error[i] = t[r][c] - T.R[r][c];
       }
@@ -1667,6 +1670,17 @@ template <class Arm> struct PoseEntries {
           slope[i][j] = J[3 + u][j] * T.R[v][c] - J[3 + v][j] * T.R[u][c];
         }
       }
+    }
+    if constexpr (Arm::Columns::kFlat) turn_only(T, slope);
+  }
+
+  template <class X, class Tip> static void turn_only(const Tip& T, X (*slope)[Arm::kDof]) noexcept {
+    for (int j = 0; j < Arm::kDof; ++j) {
+      X along{};
+      for (int i = 0; i < kCount; ++i)
+        if (Arm::kRead[i][1] != 3) along = along + T.R[Arm::kRead[i][0]][Arm::kRead[i][1]] * slope[i][j];
+      for (int i = 0; i < kCount; ++i)
+        if (Arm::kRead[i][1] != 3) slope[i][j] = slope[i][j] - T.R[Arm::kRead[i][0]][Arm::kRead[i][1]] * along;
     }
   }
 
@@ -2083,6 +2097,18 @@ template <class Arm> struct LaneSolve {
 template <int First, int Count, int Height> struct UnitColumns {
   static constexpr double most_defect(double off) noexcept {
     return 4.0 * Count * Height * off * off * (1.0 + 2.0 * Count * Height * off);
+  }
+
+  static constexpr bool kFlat = Count > 0 && Height == 2;
+
+  template <class X, class R> static X unit(const R& rotation) noexcept {
+    if constexpr (kFlat) {
+      const X x = rotation[0][First], y = rotation[1][First];
+      const X less = 1.0 - (x * x + y * y);
+      return 1.0 + less * (0.5 + 0.375 * less);
+    } else {
+      return X{};
+    }
   }
 
   static constexpr bool has(int column) noexcept { return First <= column && column < First + Count; }

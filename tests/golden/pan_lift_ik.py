@@ -420,25 +420,36 @@ class _Policy:
 _Entries = tuple[tuple[int, int], ...]  # row and column of each; column 3 is the position
 
 
-def _entry_errors(entries: _Entries, weight: Array, pose: Array, T: Array) -> Array:
+def _entry_errors(
+    entries: _Entries, weight: Array, pose: Array, T: Array, flat: bool = False
+) -> Array:
     """What poses (k, 4, 4) are off T (k, 4, 4), times the weights: (k, entries)."""
-    errors = _entry_lane_errors(entries, weight, pose.transpose(1, 2, 0), T.transpose(1, 2, 0))
-    return np.asarray(errors.T)
+    lanes, aim = pose.transpose(1, 2, 0), T.transpose(1, 2, 0)
+    return np.asarray(_entry_lane_errors(entries, weight, lanes, aim, flat).T)
 
 
-def _entry_rows(entries: _Entries, weight: Array, pose: Array, J: Array) -> Array:
+def _entry_rows(entries: _Entries, weight: Array, pose: Array, J: Array, flat: bool = False) -> Array:
     """The entries' derivatives (k, entries, dof) at poses (k, 4, 4), by their Jacobians (k, 6, dof)."""
-    rows = _entry_lane_rows(entries, weight, pose.transpose(1, 2, 0), J.transpose(2, 1, 0))
+    rows = _entry_lane_rows(entries, weight, pose.transpose(1, 2, 0), J.transpose(2, 1, 0), flat)
     return np.asarray(rows.transpose(2, 1, 0))
 
 
-def _entry_lane_errors(entries: _Entries, weight: Array, pose: Array, T: Array) -> Array:
+def _entry_lane_errors(
+    entries: _Entries, weight: Array, pose: Array, T: Array, flat: bool = False
+) -> Array:
     """`_entry_errors` (entries, k) of upper rows (3, 4, k)."""
     row, column = zip(*entries)
-    return np.asarray((T[row, column] - pose[row, column]) * weight[:, None])
+    at = pose[row, column]
+    if flat:
+        heading = np.array(column) != 3
+        short = 1.0 - (at[heading] ** 2).sum(axis=0)
+        at[heading] *= 1.0 + short * (0.5 + 0.375 * short)
+    return np.asarray((T[row, column] - at) * weight[:, None])
 
 
-def _entry_lane_rows(entries: _Entries, weight: Array, pose: Array, J: Any) -> Any:
+def _entry_lane_rows(
+    entries: _Entries, weight: Array, pose: Array, J: Any, flat: bool = False
+) -> Any:
     """`_entry_rows` (dof, entries, k) of upper rows (3, 4, k) and Jacobians (dof, 6, k)."""
     out = np.empty((len(J), len(entries), J.shape[2]), dtype=J.dtype)
     for i, (r, c) in enumerate(entries):
@@ -447,6 +458,10 @@ def _entry_lane_rows(entries: _Entries, weight: Array, pose: Array, J: Any) -> A
         else:
             j, k = (r + 1) % 3, (r + 2) % 3
             out[:, i] = J[:, 3 + j] * pose[k, c] - J[:, 3 + k] * pose[j, c]
+    if flat:
+        heading = [i for i, (_, c) in enumerate(entries) if c != 3]
+        along = np.stack([pose[entries[i]] for i in heading]).astype(J.dtype)
+        out[:, heading] -= along * (along * out[:, heading]).sum(axis=1, keepdims=True)
     return out * weight.astype(J.dtype)[:, None]
 
 
@@ -2781,11 +2796,14 @@ class _EntriesTask:
 
     def error(self, pose: Array, T: Array) -> Array:
         """The entries' differences."""
-        return _entry_errors(self.entries, self._weight(), pose, T)
+        return _entry_errors(self.entries, self._weight(), pose, T, self._heading())
 
     def rows(self, pose: Array, J: Array) -> Array:
         """The entries' derivatives."""
-        return _entry_rows(self.entries, self._weight(), pose, J)
+        return _entry_rows(self.entries, self._weight(), pose, J, self._heading())
+
+    def _heading(self) -> bool:
+        return self.flat and bool(self.unit)
 
     def _weight(self) -> Array:
         return np.array([1.0 / self.size if c == 3 else 1.0 for c in self.column])

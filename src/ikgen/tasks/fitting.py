@@ -9,7 +9,7 @@ import numpy as np
 
 from ikgen.kinematics.axis_relations import reach
 from ikgen.kinematics.forward import file_forward
-from ikgen.tasks import AXES, TASKS, Task
+from ikgen.tasks import AXES, LEVEL, TASKS, Task
 
 if TYPE_CHECKING:
     from ikgen.model.dh import DHChain
@@ -29,9 +29,9 @@ __all__ = [
 _INDEPENDENT = 1e-5
 """Least singular value, relative to the largest, of freedoms that are moved independently."""
 
-_LEVEL = 1e-10
-"""Most by which a heading's squared length falls short of 1, or changes, of a tool that stays as it is: the
-tilt of a file that writes its right angles in six digits."""
+_BARELY = 0.02
+"""A task conditioned worse than another by this factor comes behind it: a tilt by rounding moves its
+freedoms."""
 
 _AS_GOOD = 0.5
 """The tool's z axis is taken unless it is conditioned worse than another by this factor."""
@@ -49,8 +49,10 @@ def fitting_tasks(dh: DHChain, axis: str | None = None) -> tuple[Task, ...]:
     if moving >= whole.freedoms:
         return (whole,)
     sized = [task for task in TASKS if task.freedoms == moving]
-    found = (way for task in sized for way in _along(dh, task, (axis,) if axis else AXES))
-    return (*found, whole)
+    found = [way for task in sized for way in _along(dh, task, (axis,) if axis else AXES)]
+    rated = {way: _condition(dh, way) for way in found}
+    least = _BARELY * max(rated.values(), default=0.0)
+    return (*sorted(found, key=lambda way: rated[way] < least), whole)
 
 
 def _along(dh: DHChain, task: Task, axes: Sequence[str]) -> list[Task]:
@@ -67,8 +69,7 @@ def _along(dh: DHChain, task: Task, axes: Sequence[str]) -> list[Task]:
 
 def fits(dh: DHChain, task: Task) -> bool:
     """Whether the joints that are not held move the task's freedoms independently of each other."""
-    q = _configurations(dh)
-    if task.name == "position-yaw" and np.abs(file_forward(dh, q)[:, 2, 0]).max() > 1e-6:
+    if task.name == "position-yaw" and not keeps_heading_level(dh):
         return False  # a heading is well-defined where the tool's x axis stays horizontal
     return freedoms_moved(dh, task) == dh.dof - len(dh.free)
 
@@ -80,12 +81,12 @@ def over_constrained(dh: DHChain, task: Task) -> int:
 
 def freedoms_fixed(dh: DHChain, task: Task) -> int:
     """How many freedoms the task fixes: with a heading whose length the joints change its tilt as well."""
-    return task.freedoms + int(task.orientation == "yaw" and np.ptp(_shortened(dh)) > _LEVEL)
+    return task.freedoms + int(task.orientation == "yaw" and np.ptp(_shortened(dh)) > LEVEL)
 
 
 def keeps_heading_level(dh: DHChain) -> bool:
     """Whether the tool's x axis stays horizontal, so that its heading is a unit vector."""
-    return bool(_shortened(dh).max() < _LEVEL)
+    return bool(_shortened(dh).max() < LEVEL)
 
 
 def _shortened(dh: DHChain) -> Matrix:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.runtime.python.held.arm_angle import ArmAngle
+from ikgen.tasks import LEVEL
 from ikgen.verify.oracle import Oracle
 from ikgen.verify.screws import ScrewChain
 from ikgen.verify.task_space import TaskSpace
@@ -27,7 +28,6 @@ FAR_LIMIT = 1e3
 """Limits (rad or m) beyond this mean "none": files write 999999, where rounding alone moves the
 tip."""
 
-_STAYS = 1e-10  # most change of a heading's squared length where the tilt stays as it is
 
 _UNBOUNDED_SLIDE = 1.0  # m: range sampled of a prismatic joint without limits
 
@@ -201,7 +201,7 @@ def arm_under_test(
     probe = np.random.default_rng(0).uniform(low, high, size=(64, oracle.dof))
     tips = screws.forward(probe)
     length = max(float(np.max(np.linalg.norm(tips[:, :3, 3], axis=1))), 1e-3)
-    tilting = task.orientation == "yaw" and bool(np.ptp(tips[:, 2, 0] ** 2) > _STAYS)
+    tilting = task.orientation == "yaw" and bool(np.ptp(tips[:, 2, 0] ** 2) > LEVEL)
     return ArmUnderTest(
         oracle, task, lower, upper, low, high, free, active, oracle.revolute, period, screws, length,
         held, angle, tilting,

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.tasks import AXES, TASKS, Task
+from ikgen.tasks import AXES, LEVEL, TASKS, Task
 
 __all__ = ["TASK_SPACES", "TaskSpace", "task_space"]
 
@@ -48,8 +48,12 @@ def _pitch(T: Array, target: Array, axis: int) -> Array:
 
 
 def _yaw(T: Array, target: Array, axis: int) -> Array:
-    """Differences of what the pose has of the heading, which a tilt shortens."""
-    return np.asarray(target[:, :2, 0] - T[:, :2, 0])
+    """Differences of what the pose has of the heading, which a tilt shortens, but for the little that a
+    rounded file tilts it."""
+    both = np.stack([target[:, :2, 0], T[:, :2, 0]])
+    square = (both**2).sum(axis=2, keepdims=True)
+    wanted, there = both / np.where((square >= 1.0 - LEVEL).all(axis=0), np.sqrt(square), 1.0)
+    return np.asarray(wanted - there)
 
 
 def _rotation_rows(T: Array, J: Array, axis: int) -> Array:

@@ -13,6 +13,19 @@ template <int First, int Count, int Height> struct UnitColumns {
     return 4.0 * Count * Height * off * off * (1.0 + 2.0 * Count * Height * off);
   }
 
+  static constexpr bool kFlat = Count > 0 && Height == 2;
+
+  // What takes a heading's entries to unit length that is a little shorter.
+  template <class X, class R> static X unit(const R& rotation) noexcept {
+    if constexpr (kFlat) {
+      const X x = rotation[0][First], y = rotation[1][First];
+      const X less = 1.0 - (x * x + y * y);
+      return 1.0 + less * (0.5 + 0.375 * less);
+    } else {
+      return X{};
+    }
+  }
+
   static constexpr bool has(int column) noexcept { return First <= column && column < First + Count; }
 
   // Squared Frobenius norm of V^T V - 1.

@@ -52,12 +52,13 @@ class EntriesLanes:
 
     entries: Entries
     weight: Array
+    flat: bool
 
     def error(self, pose: Array, T: Array) -> Array:
         """Implements `LaneTask`."""
-        return entry_lane_errors(self.entries, self.weight, pose, T)
+        return entry_lane_errors(self.entries, self.weight, pose, T, self.flat)
 
     def rows(self, pose: Array, J: Single) -> Single:
         """Implements `LaneTask`."""
-        rows: Single = entry_lane_rows(self.entries, self.weight, pose, J)
+        rows: Single = entry_lane_rows(self.entries, self.weight, pose, J, self.flat)
         return rows

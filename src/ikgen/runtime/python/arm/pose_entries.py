@@ -122,11 +122,14 @@ class EntriesTask:
 
     def error(self, pose: Array, T: Array) -> Array:
         """The entries' differences."""
-        return entry_errors(self.entries, self._weight(), pose, T)
+        return entry_errors(self.entries, self._weight(), pose, T, self._heading())
 
     def rows(self, pose: Array, J: Array) -> Array:
         """The entries' derivatives."""
-        return entry_rows(self.entries, self._weight(), pose, J)
+        return entry_rows(self.entries, self._weight(), pose, J, self._heading())
+
+    def _heading(self) -> bool:
+        return self.flat and bool(self.unit)
 
     def _weight(self) -> Array:
         return np.array([1.0 / self.size if c == 3 else 1.0 for c in self.column])

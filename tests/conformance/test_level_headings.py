@@ -1,0 +1,87 @@
+"""Tools that a rounded file tilts keep their heading: the task by it, no row lost, level poses answered."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from benchmarks.agreement import arm_of, runner_of
+from tests.support.solving import NO_COMPILER
+
+from ikgen.generation.derive import derive
+from ikgen.generation.read import read
+from ikgen.generation.request import Request
+from ikgen.tasks.fitting import fitting_tasks
+from ikgen.verify.agreement import disagreements
+from ikgen.verify.completeness import survey
+from ikgen.verify.sampling import SampleSet
+from ikgen.verify.trials import run_trial
+
+SCARA = """<robot name="scara">
+  <link name="base"/><link name="inner"/><link name="outer"/><link name="quill"/><link name="tool"/>
+  <joint name="j1" type="revolute"><parent link="base"/><child link="inner"/>
+    <origin xyz="0 0 0.22"/><axis xyz="0 0 1"/><limit lower="-2.4" upper="2.4"/></joint>
+  <joint name="j2" type="revolute"><parent link="inner"/><child link="outer"/>
+    <origin xyz="0.2 0 0"/><axis xyz="0 0 1"/><limit lower="-2.6" upper="2.6"/></joint>
+  <joint name="j3" type="prismatic"><parent link="outer"/><child link="quill"/>
+    <origin xyz="0.25 0 0" rpy="{half} 0 0"/><axis xyz="0 0 1"/><limit lower="0" upper="0.18"/></joint>
+  <joint name="j4" type="revolute"><parent link="quill"/><child link="tool"/>
+    <axis xyz="0 0 1"/><limit lower="-6" upper="6"/></joint>
+</robot>
+"""
+HALVES = ["3.14159", "3.1416", "3.14"]
+
+
+@pytest.fixture(params=HALVES)
+def robot(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+    path = tmp_path / "scara.urdf"
+    path.write_text(SCARA.format(half=request.param))
+    return path
+
+
+def test_half_a_turn_in_few_digits_leaves_the_task_by_the_heading(robot: Path) -> None:
+    assert fitting_tasks(read(Request(robot)).dh)[0].name == "position-yaw"
+
+
+def test_a_tilt_that_is_no_rounding_does_not(tmp_path: Path) -> None:
+    path = tmp_path / "scara.urdf"
+    path.write_text(SCARA.format(half="3.1"))
+    assert "position-yaw" not in {task.name for task in fitting_tasks(read(Request(path)).dh)}
+
+
+@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")
+def test_no_row_is_lost_beside_the_stretched_elbow(robot: Path, tmp_path: Path) -> None:
+    derivation = derive(Request(robot, task="position-yaw"))
+    arm = arm_of(derivation)
+    elbow = [s * 10.0**-k for k in range(2, 10) for s in (1.0, -1.0)]
+    q = np.array([[0.3, x, 0.09, 1.2] for x in elbow] + [[-1.2, x, 0.1, 1.5717] for x in elbow])
+    sample = SampleSet("stretched", q, arm.oracle.forward(q), arm.sigma(q))
+    runners = [runner_of(derivation, language, tmp_path) for language in ("python", "cpp")]
+    for runner in runners:
+        found = survey(arm, runner, [run_trial(runner, arm, sample, limits=True)])
+        lost = np.flatnonzero(found.missed | found.unanswered)
+        assert not len(lost), found.case(int(lost[0]))
+    python, cpp = (runner.solve_many(sample.poses) for runner in runners)
+    wrong, _, _ = disagreements(arm, python, cpp)
+    assert not wrong.any()
+
+
+@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")
+def test_level_poses_are_answered(robot: Path, tmp_path: Path) -> None:
+    derivation = derive(Request(robot, task="position-yaw"))
+    arm = arm_of(derivation)
+    yaw = np.linspace(-3.0, 3.0, 20)
+    poses = np.tile(np.diag([1.0, -1.0, -1.0, 1.0]), (20, 1, 1))
+    poses[:, :2, 0] = np.stack([np.cos(yaw), np.sin(yaw)], axis=1)
+    poses[:, :2, 1] = np.stack([np.sin(yaw), -np.cos(yaw)], axis=1)
+    poses[:, :3, 3] = [0.25, 0.1, 0.15]
+    for language in ("python", "cpp"):
+        rows = runner_of(derivation, language, tmp_path).solve_many(poses)
+        for q, T in zip(rows, poses, strict=True):
+            assert len(q) == 2
+            there = arm.oracle.forward(q)
+            assert np.abs(there[:, :3, 3] - T[:3, 3]).max() < 1e-9
+            heading = np.arctan2(there[:, 1, 0], there[:, 0, 0])
+            turned = np.exp(1j * (heading - np.arctan2(T[1, 0], T[0, 0])))
+            assert np.abs(turned - 1.0).max() < 1e-9
