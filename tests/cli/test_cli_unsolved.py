@@ -110,6 +110,39 @@ def test_seven_joints_that_no_choice_solves(
     assert not out.exists()
 
 
+PARALLELOGRAM = """<robot name="palletizer">
+  <link name="base"/><link name="a"/><link name="b"/><link name="c"/><link name="d"/><link name="e"/>
+  <link name="f"/>
+  <joint name="turn" type="continuous"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/></joint>
+  <joint name="lower" type="continuous"><parent link="a"/><child link="b"/><origin xyz="0.3 0 0.7"/>
+    <axis xyz="0 1 0"/></joint>
+  <joint name="upper" type="continuous"><parent link="b"/><child link="c"/><origin xyz="0 0 1.1"/>
+    <axis xyz="0 1 0"/></joint>
+  <joint name="rod1" type="continuous"><parent link="c"/><child link="d"/><origin xyz="1.2 0 0"/>
+    <axis xyz="0 1 0"/><mimic joint="upper" multiplier="-1"/></joint>
+  <joint name="rod2" type="continuous"><parent link="d"/><child link="e"/><axis xyz="0 1 0"/>
+    <mimic joint="lower" multiplier="-1"/></joint>
+  <joint name="roll" type="continuous"><parent link="e"/><child link="f"/>
+    <origin xyz="0.2 0 -0.3" rpy="3.14159 0 0"/><axis xyz="0 0 1"/></joint>
+</robot>
+"""
+
+
+def test_rods_of_a_parallelogram_on_one_line_are_no_continuum(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Both follow joints elsewhere: what is told is that the tool cannot be raised."""
+    path = tmp_path / "palletizer.urdf"
+    path.write_text(PARALLELOGRAM)
+    assert (
+        run(["from-urdf", str(path), "--task", "position-pitch:y", "-o", str(tmp_path / "out")])
+        == 3
+    )
+    said = capsys.readouterr().err
+    assert "the joints move 3 of the 4 freedoms that the task fixes" in said
+    assert "one line" not in said
+
+
 def test_axes_on_one_line_need_no_option(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

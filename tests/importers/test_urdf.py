@@ -189,6 +189,14 @@ BENT = {
         "-2 to 1e+09 rad: taken as unlimited",
     ),
     "degrees": (robot(joint('<limit lower="-170" upper="170"/>')), "look like degrees"),
+    "millimetres": (
+        robot(
+            joint('<origin xyz="0 0 317"/>' + LIMIT),
+            joint('<origin xyz="0 0 -450"/>' + LIMIT, name="k", parent="b", child="c"),
+            links="abc",
+        ),
+        "joints lie up to 450 m apart: lengths look like mm: kept as they are",
+    ),
     "axis": (robot(joint('<axis xyz="1 0 0.5"/>' + LIMIT)), "axis of length 1.11803 normalised"),
     "axis rpy": (robot(joint('<axis xyz="1 0 0" rpy="0 0 0"/>' + LIMIT)), "has an rpy"),
     "roots": (robot(joint(LIMIT), links="cab"), "several root links: took 'a'"),
@@ -197,6 +205,11 @@ BENT = {
         "<include> and 1 more not read: xacro no longer expands",
     ),
 }
+
+
+def test_one_far_joint_is_no_sign_of_millimetres(read):
+    text = robot(joint('<origin xyz="0 0 317"/>' + LIMIT))
+    assert read(text).source.warnings == ()
 
 
 @pytest.mark.parametrize("case", BENT)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from ikgen.emit.derivation import Unsolved
@@ -88,6 +89,8 @@ def _known_gaps(derivation: Derivation) -> list[str]:
 
 def _counted(dh: DHChain, task: Task) -> tuple[str, str]:
     """What the numbers of joints and of freedoms tell, and what to add to the command."""
+    from ikgen.tasks.fitting import freedoms_moved
+
     moving = dh.dof - len(dh.free)
     move = f"{moving} joint{' moves' if moving == 1 else 's move'}"
     if moving > task.freedoms:
@@ -98,6 +101,10 @@ def _counted(dh: DHChain, task: Task) -> tuple[str, str]:
     if moving < task.freedoms:
         cause = f"{move} and the task fixes {task.freedoms} freedoms: more than the arm can do"
         return cause, "--task TASK, with a smaller task"
+    able = freedoms_moved(dh, task)
+    if able < moving:
+        cause = f"the joints move {able} of the {task.freedoms} freedoms that the task fixes"
+        return cause, "--task TASK: `ikgen inspect` lists those that fit"
     return (
         "the rules and the elimination leave joints open",
         "--free JOINT, or --task TASK; `ikgen report` shows what is left",
@@ -105,13 +112,16 @@ def _counted(dh: DHChain, task: Task) -> tuple[str, str]:
 
 
 def _same_line(dh: DHChain) -> tuple[str, str] | None:
-    """What to do about two moving revolute axes on one line; None where there are none."""
+    """What to do about two moving revolute axes on one line, each of a joint that moves no other axis; None
+    where there are none."""
+    moved = Counter(row.driver for row in dh.rows)
     for one, two in itertools.pairwise(dh.rows):
         names = [dh.joints[row.driver].name for row in (one, two)]
         if (
             one.revolute
             and two.revolute
             and same_line_as_previous(two)
+            and moved[one.driver] == moved[two.driver] == 1
             and not set(names) & set(dh.free)
         ):
             cause = (
