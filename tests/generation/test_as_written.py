@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import pytest
 from tests.support.rounded_arms import EXACT, IN_TEN_DIGITS, spherical_wrist, three_parallel
-from tests.support.solving import emitted, solver_module
+from tests.support.solving import emitted, import_text, module_of, solver_module
 
+from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.solver_module import CLOSE
 from ikgen.generation.as_written import solve_as_written
 from ikgen.generation.derive import derive
@@ -22,6 +24,8 @@ from ikgen.model.chain import Chain
 from ikgen.model.dh import DHChain
 from ikgen.solver.solution_graph import SolutionGraph
 from ikgen.solver.solve import solve_chain
+
+HALF = Fraction(1, 2)
 
 
 def attempt(dh: DHChain, among: Collection[str] | None) -> SolutionGraph:
@@ -34,6 +38,18 @@ def written(chain: Chain) -> tuple[DHChain, SolutionGraph, SolutionGraph]:
     graph = solve_chain(dh)
     chosen, other = solve_as_written(dh, graph, attempt)
     return chosen, other, graph
+
+
+def described(folder: Path, joints: Sequence[tuple[str, ...]]) -> Path:
+    """A URDF of joints: name, type, origin's xyz and rpy, axis."""
+    text = '<robot name="short"><link name="link0"/>'
+    for i, (name, kind, xyz, rpy, axis) in enumerate(joints):
+        text += f"""<link name="link{i + 1}"/><joint name="{name}" type="{kind}">
+          <parent link="link{i}"/><child link="link{i + 1}"/><origin xyz="{xyz}" rpy="{rpy}"/>
+          <axis xyz="{axis}"/><limit lower="0" upper="0.5"/></joint>"""
+    path = folder / "short.urdf"
+    path.write_text(f"{text}</robot>")
+    return path
 
 
 def branches(graph: SolutionGraph) -> int:
@@ -125,13 +141,34 @@ def test_what_the_tool_is_off_is_no_axis(tmp_path: Path) -> None:
         ("telescope", "prismatic", "0.1 0 0.04", "0 0 0", "1 0 0"),
         ("lens_fix", "fixed", "0.05 0 0", "-1.5708 0 -1.5708", "1 0 0"),
     )
-    text = '<robot name="pantilt"><link name="link0"/>'
-    for i, (name, kind, xyz, rpy, axis) in enumerate(joints):
-        text += f"""<link name="link{i + 1}"/><joint name="{name}" type="{kind}">
-          <parent link="link{i}"/><child link="link{i + 1}"/><origin xyz="{xyz}" rpy="{rpy}"/>
-          <axis xyz="{axis}"/><limit lower="0" upper="0.5"/></joint>"""
-    path = tmp_path / "pantilt.urdf"
-    path.write_text(f"{text}</robot>")
+    path = described(tmp_path, joints)
     dh = derive(Request(path)).reading.dh
     assert dh.deviation == (0.0, 0.0) and not dh.snaps and not kept_constants(dh)
     assert [row.d.name for row in dh.rows] == 3 * [None] and dh.rows[2].offset.value == 0.0
+
+
+def test_twists_that_must_be_exact_leave_lengths_and_offsets_the_files(tmp_path: Path) -> None:
+    """3.14 is an offset of the first joint, 0.1 mm a length: only 1.5708 has to become a right angle."""
+    joints = (
+        ("yaw", "revolute", "0.07 0 0.1", "1.5707963267949 0 1.5707963267949", "0 0 1"),
+        ("pitch", "revolute", "0.0001 0 0.2", "3.14 -1.5707963267949 0", "0 0 1"),
+        ("insert", "prismatic", "0 0 0", "-1.5708 0 0", "0 0 1"),
+        ("roll", "revolute", "0 0 0.05", "0 0 0", "0 0 -1"),
+    )
+    derivation = derive(Request(described(tmp_path, joints)))
+    dh = derivation.reading.dh
+    assert derivation.task.name == "position-pitch:x"
+    assert CLOSE < max(dh.deviation) < 5e-6 < 1e-3 < max(to_dh(derivation.reading.chain).deviation)
+    assert [row.alpha.exact for row in dh.rows] == [0, HALF, HALF, 0]
+    assert abs(dh.rows[1].d.value) == pytest.approx(1e-4, rel=0.02)
+    solved = module_of(dh, derivation.graph)
+    module = import_text(emit_module(replace(solved, task=derivation.task.name)), tmp_path)
+    off = []
+    for q in np.random.default_rng(3).uniform(-1.4, 1.4, (40, 4)):
+        T = module.forward(q)
+        rows = np.array(list(module.solve(T, limits=False)))
+        poses = np.array([module.forward(row) for row in rows])
+        assert np.abs(poses[:, :3, 3] - T[:3, 3]).max() < 1e-9
+        assert np.abs(poses[:, 2, 0] - T[2, 0]).max() < 1e-9
+        off.append(np.abs(np.remainder(rows - q + np.pi, 2 * np.pi) - np.pi).max(axis=1).min())
+    assert max(off) < 1e-6

@@ -10,7 +10,7 @@ from tests.support.rounded_arms import EXACT, spherical_wrist, three_parallel
 
 from ikgen.kinematics.classify import classify
 from ikgen.kinematics.forward import chain_forward, dh_forward, file_forward
-from ikgen.kinematics.kept import keep_constants, kept_constants, stray_lengths
+from ikgen.kinematics.kept import keep_constants, keep_lengths, kept_constants, stray_lengths
 from ikgen.kinematics.modified_dh import to_dh
 from ikgen.model.chain import Chain
 
@@ -72,3 +72,12 @@ def test_spherical_triple_is_never_stray() -> None:
     dh = to_dh(spherical_wrist(offset=2e-6))
     assert not {(4, "a"), (5, "a"), (4, "d")} & stray_lengths(dh)
     assert max(keep_constants(dh, stray_lengths(dh)).deviation) > 1e-7
+
+
+@pytest.mark.parametrize("turned_ends", [True, False])
+def test_lengths_and_offsets_come_nearer_with_twists_as_they_are(turned_ends: bool) -> None:
+    dh = to_dh(three_parallel(EXACT, skew=3e-6))
+    kept = keep_lengths(dh, frozenset([(5, "a")]), turned_ends)
+    assert [row.alpha for row in kept.rows] == [row.alpha for row in dh.rows]
+    assert kept.rows[5].a.stray
+    assert max(kept.deviation) < 1e-13 < 1e-6 < max(dh.deviation)

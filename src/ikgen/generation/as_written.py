@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from ikgen.emit.solver_module import CLOSE
 
 if TYPE_CHECKING:
+    from ikgen.kinematics.nearest import Constant
     from ikgen.model.dh import DHChain
     from ikgen.solver.solution_graph import SolutionGraph
 
@@ -29,16 +30,17 @@ _WORTH = 0.5
 
 
 def solve_as_written(
-    dh: DHChain, graph: SolutionGraph, attempt: Attempt
+    dh: DHChain, graph: SolutionGraph, attempt: Attempt, whole_pose: bool = True
 ) -> tuple[DHChain, SolutionGraph]:
     """Rows nearer to the file's chain than `dh` and their solution, if it is as good as `graph`.
 
     `attempt` solves a chain among the equations of some labels, or among all. What solved the exact
-    geometry mostly solves the file's too, and one equation in ten is soon looked through.
+    geometry mostly solves the file's too, and one equation in ten is soon looked through. `whole_pose`:
+    whether all of the pose is read; else base and tool stay turned as they are where others fail.
     """
     if max(dh.deviation) <= _ROUND_OFF:
         return dh, graph
-    for written in _written(dh):
+    for written in _written(dh, whole_pose):
         for among in (_labels(graph), None):
             other = attempt(written, among)
             if not other.open_joints and _as_good(other, graph):
@@ -52,8 +54,9 @@ def _labels(graph: SolutionGraph) -> frozenset[str]:
     return frozenset(e.label for c in candidates for e in c.sources)
 
 
-def _written(dh: DHChain) -> Iterator[DHChain]:
-    """The rows with as many constants as the file has them as may be, most first."""
+def _written(dh: DHChain, whole_pose: bool) -> Iterator[DHChain]:
+    """The rows with as many constants as the file has them as may be, most first; then, where Newton steps
+    follow all the same, those that come nearest."""
     from ikgen.kinematics.kept import keep_constants, keep_ends, stray_lengths
 
     off = max(dh.deviation)
@@ -67,8 +70,28 @@ def _written(dh: DHChain) -> Iterator[DHChain]:
         if max(whole.deviation) <= enough:
             yield whole
     nearest = keep_constants(dh)
-    if max(nearest.deviation) <= max(enough, _WORTH * off if off > CLOSE else 0.0):
+    if max(nearest.deviation) <= enough:
         yield nearest
+    elif off > CLOSE:
+        yield from _nearer(dh, nearest, strays, whole_pose)
+
+
+def _nearer(
+    dh: DHChain, nearest: DHChain, strays: frozenset[Constant], whole_pose: bool
+) -> Iterator[DHChain]:
+    """Rows that come nearer to the file's, nearest first: of all constants, and of those that are no
+    directions, as a closed form may need exact ones."""
+    from ikgen.kinematics.kept import keep_lengths
+
+    lengths = keep_lengths(dh, frozenset(), whole_pose)
+    found = [nearest, lengths]
+    if strays:
+        strayed = keep_lengths(dh, strays, whole_pose)
+        if max(strayed.deviation) <= _WORTH * min(max(one.deviation) for one in found):
+            found.append(strayed)
+    for one in sorted(found, key=lambda one: max(one.deviation)):
+        if max(one.deviation) <= _WORTH * max(dh.deviation):
+            yield one
 
 
 def _as_good(one: SolutionGraph, other: SolutionGraph) -> bool:

@@ -214,6 +214,7 @@ def as_written(form: ClosedForm, demand: Demand) -> ClosedForm:
         form.reading.dh,
         form.graph,
         lambda dh, among: by_rules(dh, form.task, demand.progress, among=among),
+        whole_pose=form.task.whole_pose,
     )
     return replace(form, reading=replace(form.reading, dh=dh), graph=graph)
 

@@ -8,6 +8,7 @@ the file's chain: mostly they are the file's chain then.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
@@ -19,7 +20,7 @@ from ikgen.kinematics.rigid import inverse
 from ikgen.kinematics.snapping import WRITTEN_IN_FULL, exact_angle, tidy, wrap_angle
 from ikgen.model.dh import Angle, DHChain, DHRow, Length, Snap
 
-__all__ = ["keep_constants", "keep_ends", "kept_constants", "stray_lengths"]
+__all__ = ["keep_constants", "keep_ends", "keep_lengths", "kept_constants", "stray_lengths"]
 
 _NOISE = 1e-13
 """Changes (rad or m) up to this leave a constant exact that costs operations: pi/2 in twelve digits."""
@@ -40,7 +41,35 @@ def keep_constants(dh: DHChain, strays: frozenset[Constant] = frozenset()) -> DH
     """
     if len(dh.rows) > dh.dof:
         return dh
-    constants = (*_constants(dh, strays), *end_motions(dh))
+    return _fitted(dh, (*_constants(dh, strays), *end_motions(dh)))
+
+
+def keep_lengths(dh: DHChain, strays: frozenset[Constant], turned_ends: bool) -> DHChain:
+    """`dh` with lengths and offsets as near to the file's chain as can be, and twists as they are.
+
+    `strays` as in `keep_constants`. Base and tool become those of the file with `turned_ends`; else only
+    those of their lengths change that are not zero, as what reads a part of the pose needs.
+    """
+    if len(dh.rows) > dh.dof:
+        return dh
+    inner = tuple(c for c in _constants(dh, strays) if c[1] != "alpha")
+    ends = end_motions(dh) if turned_ends else tuple(filter(_end_length(dh), end_motions(dh)))
+    return _fitted(dh, (*inner, *ends))
+
+
+def _end_length(dh: DHChain) -> Callable[[Constant], bool]:
+    """Whether a motion of base or tool is along an axis, and not zero."""
+    base, tip = inverse(dh.X_base)[:3, 3], dh.X_tip[:3, 3]
+
+    def is_length(constant: Constant) -> bool:
+        end, motion = constant
+        return motion[0] == "T" and bool((base if end < 0 else tip)["xyz".index(motion[1])] != 0.0)
+
+    return is_length
+
+
+def _fitted(dh: DHChain, constants: tuple[Constant, ...]) -> DHChain:
+    """`dh` with changed constants, of which those that change by round-off only stay exact."""
     first = fit_rows(dh, constants)
     rest = tuple(c for c in constants if abs(first.change[c]) > _least(dh, c))
     fitted = fit_rows(dh, rest) if len(rest) < len(constants) else first
@@ -86,8 +115,7 @@ def _least(dh: DHChain, constant: Constant) -> float:
         length = row.a if field == "a" else row.d
         costless = variable or (field != "alpha" and length.name is not None)
     else:
-        X = inverse(dh.X_base) if i < 0 else dh.X_tip
-        costless = field[0] == "T" and X["xyz".index(field[1]), 3] != 0.0
+        costless = _end_length(dh)(constant)
     return _ROUND_OFF if costless else _NOISE
 
 
