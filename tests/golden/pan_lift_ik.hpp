@@ -1054,6 +1054,8 @@ template <class Arm> struct NearContinuum {
   static constexpr double kShare = 3e-2;  // of what is left: as little as that off the curve changes neither
   static constexpr double kRoundOff = 1e-15, kSmall = 4e-15, kDoubt = 0.03, kBeside = 0.06, kSameWay = 0.9;
   static constexpr double kFloor = 0.1, kAhead = 0.5;  // the shortest step, of Policy::kTryStep; how a step turns at most
+  static constexpr int kCubics = 4, kNewton = 4;
+  static constexpr double kWay = 1e-10;  // rad or m: along a curve, by which what is left varies by round-off
   static constexpr double kSlow = 0.1, kSteady = 0.8;  // how fast corrections converge that are not left to themselves
 
   struct Sample {
@@ -1189,13 +1191,8 @@ template <class Arm> struct NearContinuum {
 
   void look(const Sample& a, const Sample& b, int deep) noexcept {
     if (std::max(std::abs(a.left), std::abs(b.left)) >= Policy::kFoldReach) return;  // as far off as the end of a curve
-    double rise = 0.0, fall = 0.0;
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      const double step = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
-      rise += a.slope * a.still[k] * step;
-      fall += b.slope * b.still[k] * step;
-    }
-    const double inner[2] = {a.left + rise / 3.0, b.left - fall / 3.0};
+    double inner[2];
+    take_inner(a, b, inner);
     const double most = std::max({std::abs(a.left), std::abs(inner[0]), std::abs(inner[1]), std::abs(b.left)});
     if (most < kSmall || deep == 0 || samples <= 0) return keep(std::abs(a.left) < std::abs(b.left) ? a : b);
     const bool doubtful = std::min(std::abs(inner[0]), std::abs(inner[1])) < kDoubt * most;
@@ -1210,13 +1207,39 @@ template <class Arm> struct NearContinuum {
     }
   }
 
+  static void take_inner(const Sample& a, const Sample& b, double (&inner)[2]) noexcept {
+    double rise = 0.0, fall = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      const double step = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
+      rise += a.slope * a.still[k] * step;
+      fall += b.slope * b.still[k] * step;
+    }
+    inner[0] = a.left + rise / 3.0;
+    inner[1] = b.left - fall / 3.0;
+  }
+
+  static double root_share(const Sample& a, const Sample& b, double share) noexcept {
+    double inner[2], x = share;
+    take_inner(a, b, inner);
+    const double one = 3.0 * (inner[0] - a.left), two = 3.0 * (inner[1] - 2.0 * inner[0] + a.left);
+    const double three = b.left - a.left + 3.0 * (inner[0] - inner[1]);
+    for (int i = 0; i < kNewton; ++i)
+      x -= (((three * x + two) * x + one) * x + a.left) / ((3.0 * three * x + 2.0 * two) * x + one);
+    return x > 0.0 && x < 1.0 ? x : share;
+  }
+
   void close_in(Sample a, Sample b, double most) noexcept {
-    double x = a.left, y = b.left;
+    double x = a.left, y = b.left, way = kInfinity;
     int kept = 0;
-    for (int i = 0; i < kSteps && std::min(std::abs(a.left), std::abs(b.left)) > kRoundOff; ++i) {
-      const Sample c = part(a, b, x / (x - y));
+    for (int i = 0; i < kSteps && way > kWay && std::min(std::abs(a.left), std::abs(b.left)) > kRoundOff; ++i) {
+      const double share = x / (x - y);
+      const Sample c = part(a, b, i < kCubics ? root_share(a, b, share) : share);
       if (std::abs(c.left) > most) break;
-      if (a.left * c.left < 0.0) {
+      const bool last = a.left * c.left < 0.0;
+      way = 0.0;
+      for (int k = 0; k < Fold::kMoving; ++k)
+        way = std::max(way, std::abs(c.q[Fold::kJoints[k]] - (last ? b : a).q[Fold::kJoints[k]]));
+      if (last) {
         b = c;
         y = c.left;
         if (kept == 1) x *= 0.5;
