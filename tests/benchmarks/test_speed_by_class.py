@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import platform
 from pathlib import Path
 
 import pytest
 from benchmarks.command_line import REPOSITORY, Source
-from benchmarks.speed_by_class import Timed, table, time_arm
+from benchmarks.cpp_speed import FLAGS
+from benchmarks.speed_by_class import Timed, by_class, instructions, table, time_arm
 from tests.support.solving import NO_COMPILER
 
 
@@ -19,6 +21,15 @@ def test_the_table_has_a_line_a_class_and_one_of_all() -> None:
     assert lines[1].split()[-6:] == ["2", "200", "300", "50", "0.50", "0.75"]
     assert lines[2].split()[-6:] == ["1", "200", "200", "50", "0.50", "0.50"]
     assert lines[3].split() == ["all", "3", "200", "300", "50", "0.50", "0.75"]
+    assert [(c.family, c.worst) for c in by_class(timed)] == [
+        ("class 0", "a2"), ("class 1", "a1"), ("all", "a2"),
+    ]  # fmt: skip
+
+
+@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")
+@pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="other instructions")
+def test_instructions_are_those_that_the_flags_allow() -> None:
+    assert [instructions(flags) for flags in ([], FLAGS["avx2"])] == ["SSE2", "AVX2"]
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")
