@@ -122,6 +122,23 @@ def _classes(name: str, read: Callable[[str], Measured]) -> str:
     return _table(head, rows) + words + _source(measured)
 
 
+def _speed(read: Callable[[str], Measured]) -> str:
+    measured = read("speed_by_class")
+    found = measured.found
+    rows = [
+        [_class(c["family"]), str(c["arms"]), f"{c['single']:,.0f}", f"{c['worst_single']:,.0f}",
+         f"{c['batch']:,.0f}", f"{c['ratio']:.2f}", f"{c['worst_ratio']:.2f}"]
+        for c in found["classes"]
+    ]  # fmt: skip
+    head = (
+        "class", "arms", "ns a pose, median", "longest", "in batches, median",
+        "of the baseline's", "longest",
+    )  # fmt: skip
+    words = f"\nThe baseline takes {found['baseline']:.0f} ns, all with {found['instructions']}.\n"
+    left = f"Not timed: {', '.join(found['left'])}.\n" if found["left"] else ""
+    return _table(head, rows) + words + left + _source(measured)
+
+
 def _tables(read: Callable[[str], Measured]) -> str:
     measured = [read(name) for name in ("suite", "suite_chosen")]
     head = ("command", *_COUNTED.values(), "median")
@@ -224,6 +241,7 @@ def _percent(share: float) -> str:
 BLOCKS: dict[str, Callable[[Callable[[str], Measured]], str]] = {
     "public": partial(_classes, "public"),
     "corpus": partial(_classes, "corpus"),
+    "speed": _speed,
     "tables": _tables,
     "random": _random,
     "peers": _peers,
@@ -233,7 +251,7 @@ BLOCKS: dict[str, Callable[[Callable[[str], Measured]], str]] = {
 }
 """Block -> its text."""
 PAGES = {
-    PAGE: ("public", "corpus", "soak", "random", "tables", "peers"),
+    PAGE: ("public", "corpus", "speed", "soak", "random", "tables", "peers"),
     COMPARISON: ("peers", "answers"),
     COMPARISON.parents[1] / "index.md": ("batch",),
 }
