@@ -160,7 +160,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for line in table(timed):
         print(line)
     if options.record:
-        command = f"python -m benchmarks.speed_by_class --flags {options.flags}"
+        chosen_options = f"--flags {options.flags} --jobs {options.jobs}"
+        command = f"python -m benchmarks.speed_by_class {chosen_options}"
         write_result(
             "speed_by_class",
             command,

@@ -8,7 +8,6 @@ the file's chain: mostly they are the file's chain then.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
@@ -53,19 +52,15 @@ def keep_lengths(dh: DHChain, strays: frozenset[Constant], turned_ends: bool) ->
     if len(dh.rows) > dh.dof:
         return dh
     inner = tuple(c for c in _constants(dh, strays) if c[1] != "alpha")
-    ends = end_motions(dh) if turned_ends else tuple(filter(_end_length(dh), end_motions(dh)))
+    ends = (c for c in end_motions(dh) if turned_ends or _is_end_length(dh, c))
     return _fitted(dh, (*inner, *ends))
 
 
-def _end_length(dh: DHChain) -> Callable[[Constant], bool]:
+def _is_end_length(dh: DHChain, constant: Constant) -> bool:
     """Whether a motion of base or tool is along an axis, and not zero."""
-    base, tip = inverse(dh.X_base)[:3, 3], dh.X_tip[:3, 3]
-
-    def is_length(constant: Constant) -> bool:
-        end, motion = constant
-        return motion[0] == "T" and bool((base if end < 0 else tip)["xyz".index(motion[1])] != 0.0)
-
-    return is_length
+    end, motion = constant
+    X = inverse(dh.X_base) if end < 0 else dh.X_tip
+    return motion[0] == "T" and bool(X["xyz".index(motion[1]), 3] != 0.0)
 
 
 def _fitted(dh: DHChain, constants: tuple[Constant, ...]) -> DHChain:
@@ -115,7 +110,7 @@ def _least(dh: DHChain, constant: Constant) -> float:
         length = row.a if field == "a" else row.d
         costless = variable or (field != "alpha" and length.name is not None)
     else:
-        costless = _end_length(dh)(constant)
+        costless = _is_end_length(dh, constant)
     return _ROUND_OFF if costless else _NOISE
 
 

@@ -28,7 +28,6 @@ FAR_LIMIT = 1e3
 """Limits (rad or m) beyond this mean "none": files write 999999, where rounding alone moves the
 tip."""
 
-
 _UNBOUNDED_SLIDE = 1.0  # m: range sampled of a prismatic joint without limits
 
 
