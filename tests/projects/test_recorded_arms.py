@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from tests.support.tools import finished
 
 from ikgen.cli.main import run
 from ikgen.generation.codec import CodecError, Decoder
@@ -59,12 +59,12 @@ def test_all_outputs_of_an_arm_are_made_again(
 
 def test_a_package_regenerates_itself_from_anywhere(workspace: Path) -> None:
     (script,) = workspace.rglob("regenerate.sh")
-    command = ["sh", str(script), "--no-verify"]
+    command = ["sh", script, "--no-verify"]
     before = script.with_name("package.xml").read_text()
     script.with_name("package.xml").write_text("")
-    told = subprocess.run([*command, "--check"], cwd="/", capture_output=True, text=True)
+    told = finished(*command, "--check", cwd=Path("/"))
     assert told.returncode == 1 and "package.xml was edited" in told.stdout
-    assert subprocess.run([*command, "--force"], cwd="/", capture_output=True).returncode == 0
+    assert finished(*command, "--force", cwd=Path("/")).returncode == 0
     assert script.with_name("package.xml").read_text() == before
 
 
