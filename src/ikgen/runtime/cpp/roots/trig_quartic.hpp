@@ -116,15 +116,17 @@ inline Point newton(const Coefficients& f, Point t, int order) noexcept {
   return t;
 }
 
-// newton() to a root, undone where it leaves `reach`: among three close roots.
-inline Point nearby(const Coefficients& f, Point t, double reach) noexcept {
+// newton() to a root, undone where it leaves `reach`: among three close roots. Whether it stays there.
+inline bool approach(const Coefficients& f, double reach, Point& t) noexcept {
   const Point n = newton(f, t, 0);
-  return std::abs(n.c - t.c) + std::abs(n.s - t.s) < reach ? n : t;
+  if (!(std::abs(n.c - t.c) + std::abs(n.s - t.s) < reach)) return false;
+  t = n;
+  return true;
 }
 
 // The two roots beside the extremum near t; the extremum itself where it misses zero by a pair of complex
 // roots with imaginary parts up to tol; -1: no such extremum within reach, the half width of the line's chord, or one
-// of two roots that are much closer.
+// of two roots that are much closer, or not where a parabola has them, as among four.
 inline int tangent(const Coefficients& f, Point t, double reach, double tol, Point (&out)[2]) noexcept {
   const Point e = newton(f, t, 1);
   const double u = f.a2 * (e.c - e.s) * (e.c + e.s) + 2.0 * f.b2 * e.s * e.c, v = f.a1 * e.c + f.b1 * e.s;
@@ -141,8 +143,9 @@ inline int tangent(const Coefficients& f, Point t, double reach, double tol, Poi
   const double n = std::sqrt(1.0 + h * h);
   out[0] = {(e.c - h * e.s) / n, (e.s + h * e.c) / n};
   out[1] = {(e.c + h * e.s) / n, (e.s - h * e.c) / n};
-  if (h >= 1e-7)  // below, the value at the extremum is round-off: Newton steps would be too
-    for (Point& end : out) end = nearby(f, end, 0.5 * h);
+  if (h < 1e-7) return 2;  // the value at the extremum is round-off: Newton steps would be too
+  for (Point& end : out)
+    if (!approach(f, 0.5 * h, end)) return -1;
   return 2;
 }
 
@@ -174,9 +177,10 @@ inline TrigRoots trig_quartic(double a2, double b2, double a1, double b1, double
     }
     if (n < 0) {
       d = std::min(std::max(d, -1.0), 1.0);
-      found[0] = tq::nearby(f, {d * x - r * y, d * y + r * x}, 0.25 * r + 1e-5);
-      found[1] = tq::nearby(f, {d * x + r * y, d * y - r * x}, 0.25 * r + 1e-5);
+      found[0] = {d * x - r * y, d * y + r * x};
+      found[1] = {d * x + r * y, d * y - r * x};
       n = 2;
+      for (tq::Point& end : found) tq::approach(f, 0.25 * r + 1e-5, end);
     }
     for (int j = 0; j < n; ++j) {
       bool fresh = true;

@@ -84,8 +84,13 @@ def _to_zero(k: Coefficients[float], c: float, s: float, order: int) -> _Pair:
 
 def _near(k: Coefficients[float], c: float, s: float, reach: float) -> _Pair:
     """`_to_zero` to a root, undone where it leaves `reach`: among three close roots."""
+    return _within(k, c, s, reach) or (c, s)
+
+
+def _within(k: Coefficients[float], c: float, s: float, reach: float) -> _Pair | None:
+    """`_to_zero` to a root, unless it leaves `reach`."""
     u, v = _to_zero(k, c, s, 0)
-    return (u, v) if abs(u - c) + abs(v - s) < reach else (c, s)
+    return (u, v) if abs(u - c) + abs(v - s) < reach else None
 
 
 def _tangent(
@@ -93,7 +98,8 @@ def _tangent(
 ) -> list[_Pair] | None:
     """The two roots beside the extremum near (c, s); the extremum itself where it misses zero by a
     pair of complex roots with imaginary parts up to tol, else no root; None: no such extremum
-    within reach, the half width of the line's chord, or one of two roots that are much closer."""
+    within reach, the half width of the line's chord, or one of two roots that are much closer, or not
+    where a parabola has them, as among four."""
     x, y = _to_zero(k, c, s, 1)
     value, _, curve = quartic_values(k, x, y)
     if abs(x - c) + abs(y - s) > 0.5 * reach + 1e-3 or abs(curve) < 1e-200:
@@ -110,7 +116,8 @@ def _tangent(
     ends = (((x - h * y) / n, (y + h * x) / n), ((x + h * y) / n, (y - h * x) / n))
     if h < 1e-7:  # the value at the extremum is round-off: Newton steps would be too
         return list(ends)
-    return [_near(k, u, v, 0.5 * h) for u, v in ends]
+    roots = [_within(k, u, v, 0.5 * h) for u, v in ends]
+    return [root for root in roots if root] if all(roots) else None
 
 
 def trig_quartic_batch(
