@@ -10,8 +10,32 @@ from tests.support.tables import table
 
 from ikgen.errors import IkgenError
 from ikgen.generation.closed_forms import rule_tries
+from ikgen.generation.derive import derive
 from ikgen.generation.inspection import inspect_robot
 from ikgen.generation.request import Request
+
+
+@pytest.mark.parametrize(("beside", "quartic"), [(3e-5, False), (3e-4, True)])
+def test_a_quartic_of_lengths_that_it_divides_by_is_none_of_rounding(
+    beside: float, quartic: bool, tmp_path: Path
+) -> None:
+    """Off by round-off over the length's square rows are lost."""
+    turn = (-2.9, 2.9)
+    made: list[Joint] = [
+        ("yaw", "revolute", "0 0 1", "0 0 0.2", turn),
+        ("shoulder", "revolute", "0 1 0", f"0 {beside} 0.1", turn),
+        ("elbow", "revolute", "0 1 0", "0 0 0.35", turn),
+        ("wrist", "revolute", "0 1 0", "0 0 0.3", turn),
+        ("roll", "revolute", "0 0 1", "0 0 0.1", turn),
+    ]
+    path, on_axis = tmp_path / "beside.urdf", '"tool0"/><origin xyz="0 0'
+    text = serial_urdf("beside", made)
+    assert on_axis in text
+    path.write_text(text.replace(on_axis, f'"tool0"/><origin xyz="0 {beside}'))
+    found = derive(Request(path)).module
+    assert found.reads.stem == "position-direction"
+    assert any("quartic" in step for step in found.order) == quartic
+    assert found.refine == ("some" if quartic else "all")
 
 
 def parallel(joints: int, folder: Path) -> Request:

@@ -13,7 +13,7 @@ from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.knowledge import Knowledge
 from ikgen.equations.probes import arm_size, make_probes, smallest_singular
-from ikgen.generation import closed_forms
+from ikgen.generation import task_forms
 from ikgen.generation import derive as derivation
 from ikgen.generation.held_joints import held_choices
 from ikgen.generation.read import read
@@ -99,7 +99,7 @@ def test_divisors_may_vanish_where_the_task_is_singular() -> None:
 
 
 def test_the_elimination_is_taken_where_a_step_is_unsound(monkeypatch: pytest.MonkeyPatch) -> None:
-    by_rules = closed_forms.by_rules
+    by_rules = task_forms.by_rules
 
     def unsound(*arguments: object) -> object:
         graph = by_rules(*arguments)  # type: ignore[arg-type]
@@ -107,7 +107,7 @@ def test_the_elimination_is_taken_where_a_step_is_unsound(monkeypatch: pytest.Mo
         return dataclasses.replace(graph, steps=(first, *graph.steps[1:]))
 
     assert derivation.derive(Request(PUMA)).module.plan is None
-    monkeypatch.setattr(closed_forms, "by_rules", unsound)
+    monkeypatch.setattr(task_forms, "by_rules", unsound)
     found = derivation.derive(Request(PUMA))
     assert not found.graph.sound
     assert found.module.plan is not None

@@ -6,18 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from ikgen.generation.closed_forms import (
-    ClosedForm,
-    Demand,
-    as_written,
-    closed_form,
-    forms_held,
-    preference,
-    taken_form,
-)
+from ikgen.generation.closed_forms import closed_form, forms_held, preference, taken_form
 from ikgen.generation.held_joints import HeldChoice, held_choices
 from ikgen.generation.held_needs import needs_held
 from ikgen.generation.progress import Progress
+from ikgen.generation.task_forms import ClosedForm, Demand, as_written
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Reading

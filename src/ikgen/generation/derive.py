@@ -7,17 +7,18 @@ from typing import TYPE_CHECKING
 
 from ikgen import __version__
 from ikgen.emit.derivation import Derivation, Unsolved
-from ikgen.generation.closed_forms import Demand, closed_form
+from ikgen.generation.closed_forms import closed_form
 from ikgen.generation.held_needs import check_held
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.read import default_name, read
 from ikgen.generation.settled_form import settled_form
+from ikgen.generation.task_forms import Demand
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Reading
     from ikgen.emit.solver_module import SolverModule
-    from ikgen.generation.closed_forms import ClosedForm
     from ikgen.generation.request import Request
+    from ikgen.generation.task_forms import ClosedForm
     from ikgen.program.statements import Program
 
 __all__ = ["derive"]

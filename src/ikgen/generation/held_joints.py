@@ -19,11 +19,15 @@ if TYPE_CHECKING:
     from ikgen.model.joint_tree import Matrix
     from ikgen.tasks import Task
 
-__all__ = ["NEARBY", "HeldChoice", "held_choices", "nearby"]
+__all__ = ["DIVIDING", "NEARBY", "HeldChoice", "held_choices", "nearby"]
 
 NEARBY = 5e-4
 """Lengths (m) that may count as zero where the file's own geometry has no closed form: Newton steps on
 the file's chain follow (offsets of 0.2 mm in a wrist that is meant to be spherical are real)."""
+
+DIVIDING = 1e-4
+"""Lengths over the arm's that may count as zero where a quartic takes them in: its roots lie in pairs as
+close as that, and what follows divides by it, so that rows are off by round-off over its square."""
 
 _POOR = 0.2
 """Choices of a class that are conditioned worse than its best by this factor come last in it."""
@@ -74,13 +78,13 @@ class HeldChoice:
         return "worse conditioned" if self.condition < taken.condition else ""
 
 
-def nearby(reading: Reading) -> DHChain | None:
-    """The chain in DH form with short offsets taken as zero; None for a table."""
+def nearby(reading: Reading, short: float = NEARBY) -> DHChain | None:
+    """The chain in DH form with offsets up to `short` (m) taken as zero; None for a table."""
     from ikgen.kinematics.modified_dh import to_dh
 
     if reading.chain is None:
         return None
-    near = to_dh(reading.chain, free=reading.dh.free, length_tolerance=NEARBY)
+    near = to_dh(reading.chain, free=reading.dh.free, length_tolerance=short)
     return replace(near, transmission=reading.dh.transmission)
 
 

@@ -14,9 +14,9 @@ from ikgen.generation.progress import Progress, silent
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Unsolved
     from ikgen.generation.advice import Attempt
-    from ikgen.generation.closed_forms import ClosedForm
     from ikgen.generation.held_joints import HeldChoice
     from ikgen.generation.request import Request
+    from ikgen.generation.task_forms import ClosedForm
     from ikgen.model.dh import DHChain
     from ikgen.tasks import Task
 
@@ -72,7 +72,7 @@ def _listed(tried: list[Attempt]) -> str:
 def remedies(unsolved: Unsolved, progress: Progress) -> list[Attempt]:
     """Derivations that were tried, up to three closed ones or the most attempts, in their order."""
     from ikgen.generation.advice import attempt
-    from ikgen.generation.closed_forms import Demand, by_elimination, task_form
+    from ikgen.generation.task_forms import Demand, by_elimination, task_form
 
     reading = unsolved.reading
     forms: list[ClosedForm] = []

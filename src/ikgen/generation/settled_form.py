@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from ikgen.generation.closed_forms import by_rules
+from ikgen.generation.task_forms import by_rules
 
 if TYPE_CHECKING:
     from ikgen.equations.knowledge import Variable
-    from ikgen.generation.closed_forms import ClosedForm
     from ikgen.generation.progress import Progress
+    from ikgen.generation.task_forms import ClosedForm
     from ikgen.program.statements import Program
     from ikgen.solver.solution_graph import SolutionGraph
 

@@ -18,7 +18,9 @@ from ikgen.runtime.python.roots.trig_quartic_roots import (
 )
 
 Array = NDArray[np.float64]
-KINDS = ("simple", "double", "two doubles", "shared", "pi", "zero", "two real", "nearly linear")
+KINDS = (
+    "simple", "double", "two doubles", "shared", "pi", "zero", "two real", "nearly linear", "four near"
+)  # fmt: skip
 MAIN = r"""
 #include <cstdio>
 #include "roots/trig_quartic.hpp"
@@ -51,6 +53,8 @@ def planted(kind: str, n: int, seed: int = 1) -> tuple[Array, Array]:
         m[:, 0] = np.pi - h[:, 0]
     elif kind == "zero":
         m[:, 0] = h[:, 0]
+    elif kind == "four near":
+        m[:, 1], h = m[:, 0] + rng.uniform(0.01, 0.1, n), rng.uniform(0.005, 0.05, (n, 2))
     g = np.cos(h)
     if kind == "two real":
         g[:, 0] = rng.uniform(1.01, 3.0, n) * rng.choice([-1.0, 1.0], n)

@@ -16,6 +16,8 @@ struct TrigRoots {
 
 namespace tq {
 
+constexpr double kChord = 1e-3;  // half width from which a line's chord tells its roots well
+
 struct Coefficients {
   double a2, b2, a1, b1, a0;
 };
@@ -145,7 +147,7 @@ inline int tangent(const Coefficients& f, Point t, double reach, double tol, Poi
   out[1] = {(e.c + h * e.s) / n, (e.s - h * e.c) / n};
   if (h < 1e-7) return 2;  // the value at the extremum is round-off: Newton steps would be too
   for (Point& end : out)
-    if (!approach(f, 0.5 * h, end)) return -1;
+    if (!approach(f, 0.5 * h, end) && h > kChord) return -1;
   return 2;
 }
 

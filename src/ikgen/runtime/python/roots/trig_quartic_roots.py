@@ -28,6 +28,7 @@ __all__ = [
 ]
 
 _LEAST = 1e-8  # second harmonic over the rest, below which there is a line instead of a conic
+_CHORD = 1e-3  # half width from which a line's chord tells its roots well
 _Pair = tuple[float, float]
 
 
@@ -117,7 +118,9 @@ def _tangent(
     if h < 1e-7:  # the value at the extremum is round-off: Newton steps would be too
         return list(ends)
     roots = [_within(k, u, v, 0.5 * h) for u, v in ends]
-    return [root for root in roots if root] if all(roots) else None
+    if h > _CHORD and not all(roots):
+        return None
+    return [root or end for root, end in zip(roots, ends, strict=True)]
 
 
 def trig_quartic_batch(
