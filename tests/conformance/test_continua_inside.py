@@ -1,4 +1,4 @@
-"""Continua whose first row is outside the limits, where they go on inside."""
+"""Continua, and what rounding leaves of them, whose rows have to be put inside the limits."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from benchmarks.agreement import arm_of, runner_of
+from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
 from tests.support.solving import FIXTURES, NO_COMPILER
 
 from ikgen.generation.derive import derive
@@ -18,14 +19,16 @@ LOWER, UPPER = 0.5, 0.7
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
-
-@pytest.mark.parametrize(
+BOTH = pytest.mark.parametrize(
     "language",
     [
         "python",
         pytest.param("cpp", marks=pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")),
     ],
 )
+
+
+@BOTH
 def test_a_stretched_wrist_is_answered_inside_the_limits(language: str, tmp_path: Path) -> None:
     derivation = derive(Request(FIXTURES / "kuka_kr6r900sixx.urdf"))
     arm, rng = arm_of(derivation), np.random.default_rng(4)
@@ -43,3 +46,28 @@ def test_a_stretched_wrist_is_answered_inside_the_limits(language: str, tmp_path
     assert (q[:, 3] >= LOWER).all()
     assert (q[:, 3] <= UPPER).all()
     assert np.abs(arm.oracle.forward(q) - poses[index]).max() < 2e-9
+
+
+@BOTH
+def test_a_held_joint_stays_on_its_turn_along_a_broken_continuum(
+    language: str, tmp_path: Path
+) -> None:
+    (name, *rest, _), *others = SHOULDER_ELBOW_WRIST
+    off = "2e-5 1e-5 0"  # a file's rounding, which parts axes that meet
+    joints = [
+        (name, *rest, (-5.0, 5.0)),
+        *((*a[:3], off if a[3] == "0 0 0" else a[3], a[4]) for a in others),
+    ]
+    path = tmp_path / "arm.urdf"
+    path.write_text(serial_urdf("arm", joints))
+    derivation = derive(Request(path, free={name: None}))
+    assert derivation.module.refine == "all"
+    q = np.random.default_rng(1).uniform(0.1, 1.2, (60, 7))
+    q[:, 0] += 3.2
+    q[:, 5] = 10.0 ** np.random.default_rng(2).uniform(-7.0, -2.0, 60)
+    poses = arm_of(derivation).oracle.forward(q)
+    rows = runner_of(derivation, language, tmp_path).solve_many(poses, free=q[:, :1])
+    index, found, _ = rows.flat()
+    assert (found[:, 0] == q[index, 0]).all()
+    off_by = np.abs(found - q[index]).max(axis=1)
+    assert [off_by[index == i].min() < 1e-4 for i in range(60)] == [True] * 60

@@ -21,7 +21,8 @@ from ikgen.runtime.python.singular.near_continuum import _back, _look, _Parts, r
 
 Array = NDArray[np.float64]
 POLICY = SimpleNamespace(arrived=0.5e-9, try_step=np.pi / 8, fold_reach=10.0)
-LINE: Any = SimpleNamespace(moving=(0,), policy=POLICY, chain=SimpleNamespace(revolute=(True,)))
+ANGLE: Any = SimpleNamespace(revolute=(True,))
+LINE: Any = SimpleNamespace(moving=(0,), policy=POLICY, turning=(True,), chain=ANGLE)
 
 
 @pytest.fixture(scope="module")

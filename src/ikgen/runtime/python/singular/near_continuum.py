@@ -283,4 +283,4 @@ def _kept(arm: Arm, parts: _Parts) -> tuple[Index, Array]:
     order = order[np.abs(left[order]) < arm.policy.arrived]
     order = order[places(parts.owner[order]) < _ROOM]
     whole = 2.0 * np.pi * np.round(q / (2.0 * np.pi))
-    return parts.owner[order], np.where(arm.chain.revolute, q - whole, q)[order]
+    return parts.owner[order], np.where(arm.turning, q - whole, q)[order]
