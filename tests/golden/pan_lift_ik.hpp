@@ -1257,7 +1257,8 @@ template <class Arm> struct NearContinuum {
   void keep(const Sample& s) noexcept {
     if (count == kRoom || !(std::abs(s.left) < Policy::kArrived)) return;
     double* q = found[count++];
-    for (int j = 0; j < Arm::kDof; ++j) q[j] = s.q[j] - (Arm::kRevolute[j] ? kTurn * std::nearbyint(s.q[j] / kTurn) : 0.0);
+    for (int j = 0; j < Arm::kDof; ++j)
+      q[j] = s.q[j] - (Arm::kRevolute[j] && !Arm::kHeld[j] ? kTurn * std::nearbyint(s.q[j] / kTurn) : 0.0);
   }
 };
 

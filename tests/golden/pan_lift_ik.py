@@ -2304,7 +2304,7 @@ def _kept(arm: _Arm, parts: _Parts) -> tuple[_Index, Array]:
     order = order[np.abs(left[order]) < arm.policy.arrived]
     order = order[_places(parts.owner[order]) < _ROOM]
     whole = 2.0 * np.pi * np.round(q / (2.0 * np.pi))
-    return parts.owner[order], np.where(arm.chain.revolute, q - whole, q)[order]
+    return parts.owner[order], np.where(arm.turning, q - whole, q)[order]
 
 
 # What distinguishes the rows of a pose: names of their branches, from the geometry of each row alone.

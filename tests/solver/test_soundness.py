@@ -13,8 +13,8 @@ from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.equation_set import EquationSet
 from ikgen.equations.knowledge import Knowledge
 from ikgen.equations.probes import arm_size, make_probes, smallest_singular
-from ikgen.generation import task_forms
 from ikgen.generation import derive as derivation
+from ikgen.generation import task_forms
 from ikgen.generation.held_joints import held_choices
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
