@@ -65,6 +65,35 @@ def meeting_shoulder(right: float = 1.5708, *, offset: float = 1e-6) -> Chain:
     )
 
 
+def of_two_decimals() -> Chain:
+    """Axes 2 to 4 parallel and 5 and 6 meet, but for angles in two decimals: milliradians off."""
+    x, y, z = X, [0.0, 1.0, 0.0], Z
+    return make_chain(
+        "RRRRRR",
+        [
+            translation(0, 0, 0.1005),
+            rotation(z, 3.14) @ rotation(x, 1.57),
+            translation(0.18, 0, 0) @ rotation(z, 2.83) @ rotation(x, 3.14),
+            translation(0.1888, 0, 0) @ rotation(z, -0.31) @ rotation(x, 3.14),
+            translation(0.08, 0, 0) @ rotation(y, 1.57) @ rotation(x, -1.57),
+            translation(0, -0.036, 0) @ rotation(x, 1.57),
+        ],
+        [z] * 6,
+        np.eye(4),
+    )
+
+
+WRIST_BESIDE_THE_FIRST_AXIS = [
+    [1.95893964831448, -1.5439391189238, 2.88112966288778, -0.198565722472938, -1.5138173931993,
+     2.13207437578567],
+    [0.859170610029200, -1.4425981186028, 2.98970662754615, -0.670602520955332, 1.57785549814427,
+     2.38275874176806],
+    [-2.67685711654693, -1.45346058843757, 2.62330731928202, -0.938200826081263, -1.57529709277002,
+     -0.204896597453372],
+]  # fmt: skip
+"""Configurations of `of_two_decimals` where the last axis is nearly parallel to those of the elbow as well:
+no more is left of its direction than the file is off."""
+
 EXACT, IN_TEN_DIGITS = math.pi / 2, 1.570796327
 
 FOLDED = [

@@ -63,7 +63,7 @@ def _bounded(work: Placement, parts: list[Expr], tolerance: float, where_lost: f
         total, most = g.dot(parts, parts), g.const(tolerance**2)
         if rough is not None and where_lost > tolerance:
             most = g.select(rough, g.const(where_lost**2), most)
-        work.require(g.binary("gt", most, total))
+        work.require_solution(g.binary("gt", most, total))
         work.residuals.append(_counted(work, parts, total))
 
 

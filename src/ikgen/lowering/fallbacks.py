@@ -80,7 +80,7 @@ def choose_form(
         else:
             values = form.values
     if isinstance(guard, Expr):
-        work.require(guard, fold=True)
+        work.require_solution(guard, fold=True)
     if isinstance(single, Expr) and sigma is not g.one:
         work.require(g.binary("or", g.unary("not", single), g.binary("gt", sigma, g.zero)))
     if isinstance(free, Expr):

@@ -52,7 +52,8 @@ class Placement:
     """The levels of a Program under construction, and what is known of every expression in them.
 
     `model_error` (m or rad) is how far the file's geometry is off the solved one; `norms` are excesses that
-    vanish on a solution, `residuals` squared errors of a row, `singular` flags of continua.
+    vanish on a solution, `residuals` squared errors of a row, `singular` flags of continua, `lost`
+    conditions under which a direction has nothing of the file's, `hidden` flags of branches that fail then.
     """
 
     def __init__(self, graph: SolutionGraph, model_error: float) -> None:
@@ -76,6 +77,8 @@ class Placement:
         self.placed: set[int] = set()
         self.names: dict[int, str] = {}
         self.singular: list[Expr] = []
+        self.hidden: list[Expr] = []
+        self.lost: list[Expr] = []
         self.inputs: list[Input] = []
         self.prelude: list[Let] = []
 
@@ -109,10 +112,15 @@ class Placement:
             self.double = flag if self.double is None else self.g.binary("or", self.double, flag)
 
     def note_divisors(self, divisors: Sequence[Divisor]) -> None:
-        """An unknown was divided by the first of these that is large."""
+        """An unknown was divided by the first of these that is large: its direction is lost where that is
+        small beside what the unknowns before leave of the file's digits."""
         squares = [one.square(self.g) for one in divisors] if self._tolerances.fold else []
         if squares and None not in squares:
             largest = reduce(partial(self.g.binary, "max"), filter(None, squares))
+            before = self.tolerances.margin
+            if before is not None:
+                least = self.g.const(self._tolerances.norm**2)
+                self.lost.append(self.g.binary("gt", least, self.g.mul(largest, before)))
             self.margins.append(largest)
 
     @property
@@ -196,6 +204,15 @@ class Placement:
         """Schedule a guard."""
         self.place(condition)
         self.levels[self.level(condition)].items.append(Requirement(condition, fold))
+
+    def require_solution(self, condition: Expr, *, fold: bool = False) -> None:
+        """Schedule a guard of what an unknown is; where a direction is lost it tells nothing."""
+        lost = [one for one in self.lost if self.level(one) <= self.level(condition)]
+        if lost:
+            nothing = reduce(partial(self.g.binary, "or"), lost)
+            self.hidden.append(self.g.binary("and", nothing, self.g.unary("not", condition)))
+            self.place(self.hidden[-1])
+        self.require(condition, fold=fold)
 
     def define(self, v: Variable, values: tuple[Expr, ...]) -> None:
         """Give a solved variable its cosine and sine, or its distance."""

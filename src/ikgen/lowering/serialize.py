@@ -54,7 +54,7 @@ class _Serializer:
         last = len(self.work.levels) - 1
         for _, e in values:
             self._need(e, last, keep=True)
-        for e in (*self.work.singular, *self.work.residuals):
+        for e in (*self.work.singular, *self.work.hidden, *self.work.residuals):
             self._need(e, last, keep=True)
 
     def _need(self, node: Expr, level: int, *, keep: bool = False) -> None:
@@ -166,7 +166,7 @@ def serialize(work: Placement, values: list[tuple[int, Expr]]) -> Program:
     s = _Serializer(work, values)
     levels = tuple(s.level(i) for i in range(len(work.levels)))
     outputs = tuple(JointOutput(j, s.operand(e)) for j, e in values)
-    singular = tuple(str(s.operand(e)) for e in work.singular)
+    singular = tuple(str(s.operand(e)) for e in (*work.singular, *work.hidden))
     residuals = tuple(str(s.operand(e)) for e in work.residuals)
     return Program(
         work.dh.robot,

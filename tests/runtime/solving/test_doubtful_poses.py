@@ -11,7 +11,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.cpp_modules import solver_module
-from tests.support.rounded_arms import beside_the_wrist, three_parallel
+from tests.support.rounded_arms import (
+    WRIST_BESIDE_THE_FIRST_AXIS,
+    beside_the_wrist,
+    of_two_decimals,
+    three_parallel,
+)
 from tests.support.solving import emitted, import_text
 
 from ikgen.emit.python.python_emitter import emit_module
@@ -76,6 +81,13 @@ def test_behind_a_direction_that_rounding_turns_rows_are_found(tmp_path: Path) -
     rows, count, _ = module.solve_batch(module.forward(q), limits=False)
     for k, at in enumerate(q):
         assert apart(rows[k, : count[k]], at).min(initial=9.0) < 1e-6
+
+
+def test_a_direction_that_the_one_before_leaves_nothing_of_tells_of_no_row(tmp_path: Path) -> None:
+    module = emitted(to_dh(of_two_decimals()), tmp_path)
+    for q in WRIST_BESIDE_THE_FIRST_AXIS:
+        found = module.solve(module.forward(q), limits=False)
+        assert apart(found.q, np.array(q)).min(initial=9.0) < 1e-6
 
 
 def test_poses_out_of_reach_have_no_rows(arm: ModuleType) -> None:
