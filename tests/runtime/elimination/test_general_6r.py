@@ -79,6 +79,17 @@ def test_others_follow_until_they_find_all_that_is_known(monkeypatch: pytest.Mon
     assert run(monkeypatch, [([0], 1, True), two, two])[1] == 3  # rows come in pairs
 
 
+def test_where_solutions_meet_the_next_elimination_settles_how_many_there_are(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    three = ([0, 1, 2], 2, False)
+    assert run(monkeypatch, [three] * 10)[1] == 10
+    monkeypatch.setattr(general_6r, "rank_loss", lambda chain, task, moving, q: np.zeros(len(q)))
+    q, calls = run(monkeypatch, [three] * 10)
+    assert calls == 3
+    np.testing.assert_allclose(q, ROWS[:3], atol=1e-12)
+
+
 def test_what_a_later_elimination_says_there_is_counts(monkeypatch: pytest.MonkeyPatch) -> None:
     told = [([0, 1], 2, False), ([0], 0, False), ([0, 1], 4, False)] + [
         ([0, 1, 2, 3], 4, False)

@@ -59,11 +59,47 @@ inline Frame displacement(double by) noexcept {
 // them; closer by an elimination that has no rank at the pose leaves no digits.
 inline constexpr double kAside[] = {1e-3, 1e-6, 1e-8};
 
+// How many of the first rows there are, and whether solutions meet in any. There steps end at few digits, and rows that
+// lie close together count as one.
+struct Apart {
+  int count = 0;
+  bool meet = false;
+};
+template <class Frames>
+inline Apart count_apart(const Frames& F, const Frame& T, const Turning& turning, const Solutions& rows, int first) noexcept {
+  constexpr double meets = 1e-6, close = 1e-3;  // of the smallest singular value, and rad or arm lengths
+  std::array<bool, std::size_t{kRoom}> folds{};
+  Apart out;
+  for (int k = 0; k < first; ++k) {
+    const double* row = rows.rows[static_cast<Index>(k)].q;
+    Vector q;
+    std::copy_n(row, 6, q.data());
+    double square = 0.0;
+    for (const double e : still_of(residual(F, T, q, turning)).flow) square += e * e;
+    bool fresh = folds[static_cast<Index>(k)] = square < meets * meets;
+    out.meet = out.meet || fresh;
+    for (int i = 0; i < k && fresh; ++i)
+      fresh = !(folds[static_cast<Index>(i)] && alike(row, rows.rows[static_cast<Index>(i)].q, close));
+    out.count += fresh || !folds[static_cast<Index>(k)] ? 1 : 0;
+  }
+  return out;
+}
+
+// Whether a run found all that was known, the first so many rows, and no more, where solutions meet.
+template <class Frames>
+inline bool same_apart(const Frames& F, const Frame& T, const Turning& turning, const Solutions& mine,
+                       const Solutions& all, int known) noexcept {
+  const Apart now = count_apart(F, T, turning, all, all.count);
+  return now.meet && count_apart(F, T, turning, mine, mine.count).count == now.count &&
+         count_apart(F, T, turning, all, known).count == now.count;
+}
+
 // Adds all solutions of a pose to those that are known: Run(F, T, aim, turning, plan, found) gives those of a plan,
 // with the roots of the pose `aim` beside. One run of the first plan is enough where its roots are real, as many as
 // solutions, and each a solution to many digits. Otherwise more runs follow, with the pose displaced to either side, by
-// the next elimination and with the pose displaced by less, until one finds all that is known and no more, none of it
-// stalls near another, and one of the pose itself tells.
+// the next elimination and with the pose displaced by less, until one finds all that is known and no more, an even number,
+// none of it stalls near another, and one of the pose itself tells; where solutions meet the next elimination has to find
+// as many that lie apart, as one alone may miss the same of a crowd twice.
 template <auto Run, class Frames, std::size_t N>
 inline void solve_in_runs(const Frames& F, const Frame& T, const Turning& turning,
                           const std::array<std::array<int, 3>, N>& plans, Solutions& out) noexcept {
@@ -80,9 +116,12 @@ inline void solve_in_runs(const Frames& F, const Frame& T, const Turning& turnin
         if (!shift) least = std::max(least, roots.real);
         const int known = out.count;
         for (int k = 0; k < mine.count; ++k) keep(mine.rows[static_cast<Index>(k)], out);
+        if (out.count == kRoom) return;  // of a continuum
         const bool alone = number == 0 && given <= mine.count && roots.simple && out.count == roots.real && out.count > 0;
-        const bool repeated = number > 0 && mine.count == known && out.count == known && !roots.stalled;
-        if (out.count % 2 == 0 && least >= 0 && out.count >= least && (alone || repeated)) return;
+        const bool even = out.count % 2 == 0, again = number > 0 && !roots.stalled;
+        const bool repeated = again && even && mine.count == known && out.count == known;
+        if (least >= 0 && out.count >= least && ((alone && even) || repeated)) return;
+        if (least >= 0 && out.count >= least && again && number > 2 && same_apart(F, T, turning, mine, out, known)) return;
         ++number;
       }
   }

@@ -20,16 +20,23 @@ inline Complex product(Complex a, Complex b) noexcept {
 }
 inline Complex reciprocal(Complex z) noexcept { return std::conj(z) / std::norm(z); }
 
-// p(z) / p'(z), by powers of 1 / z outside the unit circle so that nothing overflows.
+// p(z) / p'(z), by powers of 1 / z outside the unit circle so that nothing overflows; 0 where p(z) is round-off of its
+// terms (Adams 1967), as it is all around roots that lie together. size: of the coefficients.
 template <Index N>
-inline Complex newton_ratio(const std::array<Complex, N>& c, Complex z) noexcept {
+inline Complex newton_ratio(const std::array<Complex, N>& c, const std::array<double, N>& size, Complex z) noexcept {
+  constexpr double round_off = 1e-15;
   const bool outside = std::norm(z) > 1.0;
   const Complex w = outside ? reciprocal(z) : z;
+  const double radius = std::sqrt(std::norm(w));
   Complex value = outside ? c[0] : c[N - 1], slope = 0.0;
+  double terms = outside ? size[0] : size[N - 1];
   for (Index k = 1; k < N; ++k) {
+    const Index at = outside ? k : N - 1 - k;
     slope = product(slope, w) + value;
-    value = product(value, w) + (outside ? c[k] : c[N - 1 - k]);
+    value = product(value, w) + c[at];
+    terms = terms * radius + size[at];
   }
+  if (std::norm(value) < round_off * round_off * terms * terms) return 0.0;
   if (!outside) return product(value, reciprocal(slope));
   const Complex rest = static_cast<double>(N - 1) * value - product(w, slope);
   return product(value, reciprocal(product(w, rest)));
@@ -42,12 +49,14 @@ inline std::array<Complex, N - 1> polynomial_roots(const std::array<Complex, N>&
     const double angle = 2.0 * kPi * static_cast<double>(i) / static_cast<double>(N - 1) + 0.4;
     z[i] = std::polar(i % 3 == 0 ? 1.1 : i % 3 == 1 ? 0.95 : 0.8, angle);
   }
+  std::array<double, N> size;
+  for (Index k = 0; k < N; ++k) size[k] = std::sqrt(std::norm(c[k]));
   std::array<bool, N - 1> still{};
   for (int round = 0; round < 60; ++round) {
     bool all = true;
     for (Index i = 0; i + 1 < N; ++i) {
       if (still[i]) continue;
-      const Complex ratio = newton_ratio(c, z[i]);
+      const Complex ratio = newton_ratio(c, size, z[i]);
       if (!(std::norm(ratio) < 1e300)) continue;
       Complex sum = 0.0;
       for (Index j = 0; j + 1 < N; ++j)

@@ -21,10 +21,11 @@ from ikgen.runtime.python.elimination.loop_equations import (
 )
 from ikgen.runtime.python.elimination.six_joints import SixJoints, one_axis_each
 from ikgen.runtime.python.newton.flat_steps import flat_steps
-from ikgen.runtime.python.newton.refinement import refine
+from ikgen.runtime.python.newton.refinement import rank_loss, refine
 from ikgen.runtime.python.rows.solution_rows import (
     Turning,
     distinct_rows,
+    first_of_equals,
     rows_of,
     slides_near,
     sorted_rows,
@@ -50,6 +51,8 @@ _SIX = range(6)
 _DIRECT = 1e-7
 # Error of one that stalls where more than two solutions meet: steps get no closer there in reasonable time.
 _STALLED = 1e-6
+# Smallest singular value where solutions meet: rows keep few digits there, and so close together are one.
+_MEETS, _CLOSE_BY = 1e-6, 1e-3
 # Beside a fold rows of several runs are one only where all have all their digits.
 _THOROUGH = ((3, 1e-12, 0.1), (6, 1e-12, 1e-3), (30, 0.0, 0.0))
 _FINEST = ((3, 1e-13, 0.1), (6, 1e-13, 1e-3), (30, 0.0, 0.0))
@@ -160,8 +163,9 @@ def six_joint_rows(six: SixJoints, plan: Plan, T: Array, policy: Policy) -> tupl
     as many solutions as real roots, each found to many digits. Otherwise more runs follow, with the pose
     displaced to both sides (where right angles make roots coincide they come apart, and Newton's method
     takes them back), by the next elimination and with the pose displaced by less, until they find all that
-    is known and no more, none stalls near another, and one of the pose itself has kept its rank. What a
-    direct way leaves open, these runs confirm or complete.
+    is known and no more, an even number, none stalls near another, and one of the pose itself has kept its
+    rank; where solutions meet the next elimination has to find as many that lie apart. What a direct way
+    leaves open, these runs confirm or complete.
     Returns pose indices (k,) in order and joint values (k, 6), angles in (-pi, pi], sorted.
     """
     T = T.copy()
@@ -170,36 +174,77 @@ def six_joint_rows(six: SixJoints, plan: Plan, T: Array, policy: Policy) -> tupl
     inside = np.abs(T[:, :3]).max(axis=(1, 2), initial=0.0) < 1e6  # false for NaN
     todo = np.nonzero(inside)[0]
     least, size, hollow = np.full(len(T), -1), len(T), np.zeros(len(T), dtype=bool)
-    for number, ((find, one, near), moves) in enumerate(_runs(plan)):
+    for number, (way, moves) in enumerate(_runs(plan)):
         if not len(todo):
             break
-        exact = T[todo]
-        aims = np.concatenate([exact if X is None else exact @ X for X in moves])
-        some = six.of(np.tile(todo, len(moves)))
-        run, q, real, clear = find(some.frames, aims, one, plan.turning)
-        which, real = run % len(todo), real[: len(todo)]
+        (pose, q, before), real, clear, stalled = _run(six, plan, way, moves, T, todo, policy)
+        near = way[2]
         if moves[0] is None and number >= len(plan.direct):
             least[todo] = np.maximum(least[todo], real)
-        q, error, before = refined_rows(some, plan, run, exact[which], q, policy)
-        q, error, short = _followed(some, run, exact[which], q, error, policy)
-        stalled = np.bincount(which[short], minlength=len(todo)) > 0
-        arrived = error < policy.arrived
-        pose, q, before = todo[which[arrived]], q[arrived], before[arrived]
         best = np.lexsort((before >= near, pose))
         q, pose, kept = distinct_rows(q[best], pose[best], plan.turning, policy.coincident)
         mine = np.bincount(pose, minlength=size)[todo]
         if number == 0:
             direct = np.bincount(pose[before[best[kept]] < near], minlength=size)[todo]
-            settled = clear & (direct == real) & (mine == real) & (real > 0)
+            settled = clear & (direct == real) & (mine == real) & (real > 0) & (mine % 2 == 0)
             found, of, count = q, pose, mine
             hollow[todo] = (real > 0) & (mine == 0)  # roots that led to nothing
         else:
-            known = np.bincount(of, minlength=size)[todo]
+            known, old = np.bincount(of, minlength=size)[todo], (found, of)
             found, of = np.concatenate([found, q]), np.concatenate([of, pose])
             found, of, _ = distinct_rows(found, of, plan.turning, policy.coincident)
             count = np.bincount(of, minlength=size)[todo]
-            settled = (mine == known) & (known == count) & (least[todo] >= 0) & ~stalled
-            settled &= ~hollow[todo] | (len(moves) > 1)
-        todo = todo[~(settled & (count % 2 == 0) & (count >= least[todo]))]
+            told = (least[todo] >= 0) & ~stalled & (~hollow[todo] | (len(moves) > 1))
+            settled = told & (mine == known) & (known == count) & (count % 2 == 0)
+            told &= number > len(plan.direct) + 1  # one alone may miss the same of a crowd twice
+            left = np.flatnonzero(told & ~settled)
+            settled[left] = _same_apart(six, plan, todo[left], ((found, of), old, (q, pose)))
+        todo = todo[~(settled & (count >= least[todo]))]
     unit = np.where(plan.turning, 1.0, plan.length)
     return of, sorted_rows(found, of, plan.turning) * unit
+
+
+def _run(
+    six: SixJoints,
+    plan: Plan,
+    way: Way,
+    moves: tuple[Array | None, ...],
+    T: Array,
+    todo: Index,
+    policy: Policy,
+) -> tuple[tuple[Index, Array, Array], Index, Flags, Flags]:
+    """Solutions of the poses `todo` from one way at the poses that motions of the tool lead to: whose they
+    are, rows (k, 6), and the errors (k,) of what steps came from; what the way tells of how many there are,
+    and whether some stalled."""
+    exact = T[todo]
+    aims = np.concatenate([exact if X is None else exact @ X for X in moves])
+    some = six.of(np.tile(todo, len(moves)))
+    run, q, real, clear = way[0](some.frames, aims, way[1], plan.turning)
+    which = run % len(todo)
+    q, error, before = refined_rows(some, plan, run, exact[which], q, policy)
+    q, error, short = _followed(some, run, exact[which], q, error, policy)
+    stalled = np.bincount(which[short], minlength=len(todo)) > 0
+    arrived = error < policy.arrived
+    rows = todo[which[arrived]], q[arrived], before[arrived]
+    return rows, real[: len(todo)], clear, stalled
+
+
+def _same_apart(
+    six: SixJoints, plan: Plan, some: Index, rows: Sequence[tuple[Array, Index]]
+) -> Flags:
+    """For which poses solutions meet in some rows of the first rows (k, 6) of poses (k,), and the others
+    have as many: those close together where solutions meet count as one."""
+    counts = []
+    meet = np.zeros(len(some), dtype=bool)
+    for q, of in rows:
+        these = np.isin(of, some)
+        q, pose = q[these], np.searchsorted(some, of[these])
+        held = np.broadcast_to(rows_of(six.held, of[these]), (len(q), six.held.shape[1]))
+        loss = rank_loss(six.chain, PoseTask(1.0), _SIX, np.concatenate([q, held], axis=1))
+        folds = loss < _MEETS
+        first = ~folds
+        first[folds] = first_of_equals(q[folds], pose[folds], plan.turning, _CLOSE_BY)
+        counts.append(np.bincount(pose[first], minlength=len(some)))
+        if len(counts) == 1:
+            meet = np.bincount(pose[folds], minlength=len(some)) > 0
+    return np.asarray(meet & (counts[0] == counts[1]) & (counts[0] == counts[2]))
