@@ -235,8 +235,8 @@ def test_the_best_row_may_be_at_an_end_on_a_limit_or_just_before_a_fold(tmp_path
         row = numbers[: arm.DOF]
         assert np.abs(arm.forward(row) - pose).max() < 1e-8
         held = held_of(arm, row)
-        ends = [x for one in arm.self_motion(pose) for x in (one.low, one.high)]
-        at_end += bool(np.abs(np.array(ends) - held).min() < 1e-8)
+        ends = both.run(0, seed, pose[None])[1].reshape(-1, 3)[:, :2]
+        at_end += bool(np.abs(ends - held).min() < 1e-8)
         random = rng.uniform(arm.LOWER[-1], arm.UPPER[-1], 300)
         rows = arm.solve_batch(np.repeat(pose[None], 300, axis=0), free=random[:, None])[0]
         rows = rows.reshape(-1, arm.DOF)

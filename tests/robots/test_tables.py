@@ -81,9 +81,12 @@ def test_claims_as_many_solutions_as_some_pose_has(name: str, tmp_path: Path) ->
     q = rng.uniform(-np.pi, np.pi, (1000, module.DOF)) * np.where(revolute, 1.0, arm_size(dh))
     special = np.where(revolute, rng.integers(-1, 3, q.shape) * (np.pi / 2), 0.0)
     q[500:] = np.where(rng.random(q.shape) < rng.random((1000, 1)), special, q)[500:]
-    _, count, _ = module.solve_batch(module.forward(q), limits=False)
-    most = module.MAX_SOLUTIONS
-    assert most // 2 <= count.max() < most if EXPECTED[name].get("bound") else count.max() == most
+    most, found = module.MAX_SOLUTIONS, 0
+    for some in (q[at::10] for at in range(10)):  # there is no room for more than the most
+        found = max(found, module.solve_batch(module.forward(some), limits=False)[1].max())
+        if found == most:
+            break
+    assert most // 2 <= found < most if EXPECTED[name].get("bound") else found == most
 
 
 @pytest.mark.parametrize("name", SOLVED, scope="module")
