@@ -7,14 +7,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 from benchmarks.agreement import arm_of, runner_of
+from tests.support.sampled import sampled
 from tests.support.solving import NO_COMPILER
 
+from ikgen.emit.derivation import Derivation
 from ikgen.generation.derive import derive
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
 from ikgen.tasks.fitting import fitting_tasks
 from ikgen.verify.agreement import disagreements
 from ikgen.verify.completeness import survey
+from ikgen.verify.runners.runner import Runner
 from ikgen.verify.sampling import SampleSet
 from ikgen.verify.trials import run_trial
 
@@ -31,13 +34,24 @@ SCARA = """<robot name="scara">
 </robot>
 """
 HALVES = ["3.14159", "3.1416", "3.14"]
+OFTEN = ["3.1416", "3.14"]
+Solved = tuple[Derivation, list[Runner]]
 
 
-@pytest.fixture(params=HALVES)
-def robot(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
-    path = tmp_path / "scara.urdf"
+@pytest.fixture(scope="module", params=HALVES)
+def robot(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("level") / "scara.urdf"
     path.write_text(SCARA.format(half=request.param))
     return path
+
+
+@pytest.fixture(scope="module")
+def solved(robot: Path) -> Solved:
+    """How it is solved, and its code in both languages."""
+    if NO_COMPILER:
+        pytest.skip(NO_COMPILER)
+    derivation = derive(Request(robot, task="position-yaw"))
+    return derivation, [runner_of(derivation, x, robot.parent) for x in ("python", "cpp")]
 
 
 def test_half_a_turn_in_few_digits_leaves_the_task_by_the_heading(robot: Path) -> None:
@@ -50,14 +64,13 @@ def test_a_tilt_that_is_no_rounding_does_not(tmp_path: Path) -> None:
     assert "position-yaw" not in {task.name for task in fitting_tasks(read(Request(path)).dh)}
 
 
-@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")
-def test_no_row_is_lost_beside_the_stretched_elbow(robot: Path, tmp_path: Path) -> None:
-    derivation = derive(Request(robot, task="position-yaw"))
+@pytest.mark.parametrize("robot", sampled(HALVES, OFTEN), indirect=True)
+def test_no_row_is_lost_beside_the_stretched_elbow(solved: Solved) -> None:
+    derivation, runners = solved
     arm = arm_of(derivation)
     elbow = [s * 10.0**-k for k in range(2, 10) for s in (1.0, -1.0)]
     q = np.array([[0.3, x, 0.09, 1.2] for x in elbow] + [[-1.2, x, 0.1, 1.5717] for x in elbow])
     sample = SampleSet("stretched", q, arm.oracle.forward(q), arm.sigma(q))
-    runners = [runner_of(derivation, language, tmp_path) for language in ("python", "cpp")]
     for runner in runners:
         found = survey(arm, runner, [run_trial(runner, arm, sample, limits=True)])
         lost = np.flatnonzero(found.missed | found.unanswered)
@@ -67,17 +80,17 @@ def test_no_row_is_lost_beside_the_stretched_elbow(robot: Path, tmp_path: Path) 
     assert not wrong.any()
 
 
-@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")
-def test_level_poses_are_answered(robot: Path, tmp_path: Path) -> None:
-    derivation = derive(Request(robot, task="position-yaw"))
+@pytest.mark.parametrize("robot", sampled(HALVES, OFTEN), indirect=True)
+def test_level_poses_are_answered(solved: Solved) -> None:
+    derivation, runners = solved
     arm = arm_of(derivation)
     yaw = np.linspace(-3.0, 3.0, 20)
     poses = np.tile(np.diag([1.0, -1.0, -1.0, 1.0]), (20, 1, 1))
     poses[:, :2, 0] = np.stack([np.cos(yaw), np.sin(yaw)], axis=1)
     poses[:, :2, 1] = np.stack([np.sin(yaw), -np.cos(yaw)], axis=1)
     poses[:, :3, 3] = [0.25, 0.1, 0.15]
-    for language in ("python", "cpp"):
-        rows = runner_of(derivation, language, tmp_path).solve_many(poses)
+    for runner in runners:
+        rows = runner.solve_many(poses)
         for q, T in zip(rows, poses, strict=True):
             assert len(q) == 2
             there = arm.oracle.forward(q)

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from benchmarks.agreement import arm_of, runner_of
+from tests.support.sampled import sampled
 from tests.support.solving import FIXTURES, NO_COMPILER
 
 from ikgen.emit.derivation import Derivation
@@ -65,7 +66,7 @@ def test_configurations_on_a_limit_beside_a_singularity_are_found(
     found_on_limit(derivation, side, (5.0, 7.5), 1e-3, tmp_path)
 
 
-@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("side", sampled([1.0, -1.0], [1.0]))
 def test_configurations_on_a_limit_of_an_arm_that_is_off_by_little_are_found(
     side: float, tmp_path: Path
 ) -> None:

@@ -182,7 +182,11 @@ def test_two_coupled_joints_have_no_plan(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
 @pytest.mark.parametrize(
-    ("table", "couple"), [(hollow_wrist, {"q6": "q5*-1"}), (parallelogram_arm, PARALLELOGRAM)]
+    ("table", "couple"),
+    [
+        (hollow_wrist, {"q6": "q5*-1"}),
+        pytest.param(parallelogram_arm, PARALLELOGRAM, marks=pytest.mark.long),
+    ],
 )
 def test_it_is_verified_in_both_languages(
     table: Callable[[Path], Path], couple: dict[str, str], tmp_path: Path

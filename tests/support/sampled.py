@@ -10,7 +10,7 @@ import pytest
 __all__ = ["sampled"]
 
 
-def sampled(names: Iterable[str], always: Collection[str]) -> list[Any]:
+def sampled(names: Iterable[Any], always: Collection[Any]) -> list[Any]:
     """Parameters of a test: each of the names, those that do not run always marked `long`."""
     names = list(names)
     strange = set(always) - set(names)
