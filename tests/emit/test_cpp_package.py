@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from tests.support.held_arms import held_module
+from tests.support.precompiled import OPTIONS
 from tests.support.sampled import sampled
 from tests.support.tools import needs_cmake, printed
 
@@ -17,7 +18,10 @@ pytestmark = pytest.mark.usefixtures("solved_once")
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
 STRICT = "-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror"
-DEBUG = "-DCMAKE_BUILD_TYPE=Debug"  # compiles in half the time
+DEBUG = (
+    "-DCMAKE_BUILD_TYPE=Debug",
+    f"-DCMAKE_CXX_FLAGS_DEBUG={OPTIONS}",
+)  # compiles in half the time
 USER = """cmake_minimum_required(VERSION 3.15)
 project(user LANGUAGES CXX)
 find_package({name} REQUIRED)
@@ -42,7 +46,7 @@ def test_package_builds_installs_and_is_found(robot: str, tmp_path: Path) -> Non
     made = generate(request, Outputs(emit=("cpp-package",), out=tmp_path, samples=60))
     assert made.reports["cpp-package"].passed
     package, build, prefix = tmp_path / "arm_ik_cpp", tmp_path / "build", tmp_path / "prefix"
-    printed("cmake", "-S", package, "-B", build, f"-DCMAKE_CXX_FLAGS={STRICT}", DEBUG)
+    printed("cmake", "-S", package, "-B", build, f"-DCMAKE_CXX_FLAGS={STRICT}", *DEBUG)
     printed("cmake", "--build", build)
     rows = printed(build / "example").splitlines()
     assert rows and all("off by" in row for row in rows)
@@ -51,7 +55,7 @@ def test_package_builds_installs_and_is_found(robot: str, tmp_path: Path) -> Non
     user.mkdir()
     (user / "CMakeLists.txt").write_text(USER.format(name="arm_ik"))
     (user / "user.cpp").write_text(PROGRAM.format(name="arm_ik"))
-    printed("cmake", "-S", user, "-B", user / "build", f"-DCMAKE_PREFIX_PATH={prefix}", DEBUG)
+    printed("cmake", "-S", user, "-B", user / "build", f"-DCMAKE_PREFIX_PATH={prefix}", *DEBUG)
     printed("cmake", "--build", user / "build")
     printed(user / "build/user")
 

@@ -11,7 +11,10 @@ from pathlib import Path
 from ikgen.errors import MissingToolError
 from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
 
-__all__ = ["compilers"]
+__all__ = ["OPTIONS", "compilers"]
+
+OPTIONS = "-std=c++17 -O1"
+"""For what others compile: Eigen is precompiled for them."""
 
 FOLDER = Path(__file__).parents[2] / "build" / "precompiled"
 HEADERS = "#include <Eigen/Core>\n#include <Eigen/Geometry>\n"

@@ -13,7 +13,7 @@ from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
 
 FLAGS = [
     "-std=c++17",
-    "-O2",
+    "-O1",
     "-Wall",
     "-Wextra",
     "-Wpedantic",

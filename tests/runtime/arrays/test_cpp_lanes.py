@@ -187,7 +187,7 @@ WRIST = spherical_wrist(EXACT, offset=2e-6)
 def test_lanes_find_what_one_by_one_finds(robot: str, tmp_path: Path) -> None:
     module = rounded(WRIST) if robot == "wrist" else published_module(robot)
     q = np.random.default_rng(4).uniform(-3, 3, (300, 6))
-    found = answers(module, q, tmp_path, "-march=native")
+    found = answers(module, q, tmp_path, "-O2", "-march=native")
     for at, ((rows, batch, careful), _) in zip(q, found, strict=True):
         assert apart(rows, at).min() < 1e-9
         assert rows.shape == batch.shape and len(rows) >= len(careful)
