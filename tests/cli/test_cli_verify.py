@@ -217,12 +217,13 @@ def test_module_entry() -> None:
 def test_outputs_of_an_earlier_run_are_not_passed_over(
     project: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (project / "out/arm_ik.json").unlink()  # so that nothing tells that the module is kept
-    again = ["from-urdf", "arm.urdf", "-o", "out", "--name", "arm", "--no-verify", "--emit", "cpp"]
-    assert run(again) == 0
-    assert "arm_ik.py is of an earlier run" in capsys.readouterr().err
-    assert check("out", "--json") == 1
+    again = ["from-urdf", "arm.urdf", "-o", "new", "--name", "arm", "--no-verify", "--emit"]
+    assert run([*again, "cpp"]) == 0
+    (project / "new/arm_ik.json").unlink()  # so that nothing tells that the header is kept
+    assert run([*again, "python"]) == 0
+    assert "arm_ik.hpp is of an earlier run" in capsys.readouterr().err
+    assert check("new", "--json") == 1
     findings = json.loads(capsys.readouterr().out)["outputs"][0]["findings"]
-    assert [Path(f["file"]).name for f in findings] == ["arm_ik.py"]
-    (project / "out/arm_ik.py").write_text("# somebody's own")
-    assert check("out") == 0
+    assert [Path(f["file"]).name for f in findings] == ["arm_ik.hpp"]
+    (project / "new/arm_ik.hpp").write_text("// somebody's own")
+    assert check("new") == 0
