@@ -241,7 +241,7 @@ def test_solutions_beside_a_continuum_are_found(
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
 @pytest.mark.parametrize(
     ("rows", "configurations", "fixed"),
-    [MEETING_AXES, PARALLEL_SLIDES, MANY_ROWS, NO_ROOTS],
+    [MEETING_AXES, pytest.param(*PARALLEL_SLIDES, marks=pytest.mark.long), MANY_ROWS, NO_ROOTS],
     ids=["turns", "slides", "many rows", "no roots"],
 )
 def test_a_continuum_has_a_row(

@@ -125,12 +125,11 @@ assert "<svg" in card and "<table" in card and "at most 8 solutions" in card
 
 @pytest.mark.slow
 @pytest.mark.skipif(not shutil.which("c++"), reason="needs a C++ compiler")
-def test_all_of_the_library_works_from_a_wheel(built: dict[str, Path], tmp_path: Path) -> None:
-    environment = without_ikgen(tmp_path / "env")
-    environment.install(built["wheel"])
+@pytest.mark.parametrize("installed", ["wheel"], indirect=True)
+def test_all_of_the_library_works_from_a_wheel(installed: Environment, tmp_path: Path) -> None:
     shutil.copy(ROOT / "urdf_fixtures/franka_fr3.urdf", tmp_path / "robot.urdf")
     (tmp_path / "use.py").write_text(HELD, encoding="utf-8")
-    printed = environment.call("python", "use.py", cwd=tmp_path).split()
+    printed = installed.call("python", "use.py", cwd=tmp_path).split()
     assert printed[-1] == "arm.html" and (tmp_path / "arm.html").is_file()
     assert {"fr3_ik.py", "fr3_ik.hpp"} <= set(printed)
 

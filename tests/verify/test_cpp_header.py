@@ -25,7 +25,7 @@ URDF = """<robot name="p"><link name="b"/><link name="l1"/><link name="l2"/><lin
 
 HEADER = r"""
 #pragma once
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -109,18 +109,23 @@ def header(folder: Path, text: str = HEADER) -> CppHeader:
         pytest.skip(f"{error.message}; {error.hint}")
 
 
-def test_right_header_passes(tmp_path: Path) -> None:
-    runner = header(tmp_path)
-    assert runner.constants.max_solutions == 2
-    report = verify(runner, oracle(), samples=500)
+@pytest.fixture(scope="module")
+def planar(tmp_path_factory: pytest.TempPathFactory) -> CppHeader:
+    """The header as it is."""
+    return header(tmp_path_factory.mktemp("planar"))
+
+
+def test_right_header_passes(planar: CppHeader) -> None:
+    assert planar.constants.max_solutions == 2
+    report = verify(planar, oracle(), samples=500)
     assert report.passed, report.worst_case
     assert report.label == "cpp"
     assert report.check("unreachable poses").count == 36
     assert report.check("solve_batch").count == 0
 
 
-def test_header_tells_its_defaults(tmp_path: Path) -> None:
-    assert header(tmp_path).constants.free_defaults is None
+def test_header_tells_its_defaults(planar: CppHeader, tmp_path: Path) -> None:
+    assert planar.constants.free_defaults is None
     text = HEADER.replace("kFree = 0", "kFree = 1").replace("free{};", "free = {2.75};")
     (tmp_path / "planar_ik.hpp").write_text(text)
     held = dataclasses.replace(constants(), free_joints=("j2",))
@@ -164,11 +169,10 @@ def test_wrong_header_is_caught(tmp_path: Path) -> None:
     assert {"completeness", "exhaustive search"} <= failed
 
 
-def test_header_that_cannot_be_used(tmp_path: Path) -> None:
-    runner = header(tmp_path)
+def test_header_that_cannot_be_used(planar: CppHeader, tmp_path: Path) -> None:
     others = dataclasses.replace(constants(), joint_names=("j1", "j2", "j3"))
     with pytest.raises(BadDescriptionError, match="2 joints"):
-        CppHeader(runner.path, others)
+        CppHeader(planar.path, others)
     with pytest.raises(BadDescriptionError, match="no such"):
         CppHeader(tmp_path / "absent_ik.hpp", constants())
     with pytest.raises(VerificationError, match="does not compile"):
