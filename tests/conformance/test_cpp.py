@@ -22,6 +22,7 @@ from tests.support.solving import NO_COMPILER
 from ikgen.emit.cpp.cpp_emitter import emit, emit_header
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.solver_module import SolverModule
+from ikgen.generation.emitted_runners import arm_constants
 from ikgen.kinematics.forward import file_forward, file_jacobian
 from ikgen.program.interpret import run
 from ikgen.verify.runners.cpp_header import CppHeader
@@ -267,8 +268,7 @@ def test_odd_names_are_escaped(folder: Path) -> None:
     dh = dataclasses.replace(module.dh, tip_link=odd, robot=odd)
     text = emit_header(dataclasses.replace(module, dh=dh, source_name=odd, name="odd"))
     (folder / "odd_ik.hpp").write_text(text)
-    arm = compiled(ROBOTS[0], folder)
-    CppHeader(folder / "odd_ik.hpp", arm.header.constants)
+    CppHeader(folder / "odd_ik.hpp", arm_constants(module))
     assert r'"tool \0420\042 \134 \012 \303\251 \077\077/"' in text
 
 

@@ -8,6 +8,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from tests.support.precompiled import OPTIONS
 from tests.support.snippets import blocks
 from tests.support.tools import environment, needs_cmake, needs_colcon
 
@@ -57,7 +58,7 @@ def test_the_readme_works(name: str, tmp_path: Path) -> None:
     done = subprocess.run(
         ["bash", "-euc", "\n".join(lines)],
         cwd=tmp_path / "examples" / name,
-        env=environment(ament=name == "ament_description"),
+        env=environment(ament=name == "ament_description") | {"CXXFLAGS": OPTIONS},
         text=True,
         capture_output=True,
     )
