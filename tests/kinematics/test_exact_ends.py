@@ -56,7 +56,7 @@ def test_rounded_tool_has_the_closed_form_of_the_exact_one(tmp_path: Path, half_
 
 
 def test_rounded_tool_is_solved_and_verified(tmp_path: Path) -> None:
-    made = generate(five(tmp_path, "3.14159"), Outputs(out=tmp_path / "out", samples=100))
+    made = generate(five(tmp_path, "3.14159"), Outputs(out=tmp_path / "out", samples=40))
     assert made.reports["python"].passed
 
 

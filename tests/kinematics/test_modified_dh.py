@@ -87,7 +87,7 @@ def test_twists_share_a_name_within_the_tolerance_only() -> None:
 
 
 @given(chains(), st.integers(0, 2**32))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=50, deadline=None)
 def test_other_frames_give_the_same_geometry(chain: Chain, seed: int) -> None:
     other, signs = rewritten(chain, np.random.default_rng(seed))
     q = np.random.default_rng(2).uniform(-3, 3, (4, chain.dof))

@@ -21,20 +21,18 @@ HEADERS = "#include <Eigen/Core>\n#include <Eigen/Geometry>\n"
 SCRIPT = """#!/bin/sh
 # {compiler}, with Eigen precompiled for options of ikgen's own compilations. Where others differ from those
 # it was precompiled for, g++ reads the headers themselves.
-level=
 case " $* " in
-  *" -fsyntax-only "*) ;;
-  *" -std=c++17"*" -O1 "*) level=-O1 ;;
-  *" -std=c++17"*" -O2 "*) level=-O2 ;;
+  *" -fsyntax-only "*) exec {compiler} "$@" ;;
+  *" -std=c++17"*" -O1 "*) ;;
+  *) exec {compiler} "$@" ;;
 esac
-[ -n "$level" ] || exec {compiler} "$@"
 strict= machine=  # other sets of predefined macros
 case " $* " in *" -Wpedantic "*) strict=-Wpedantic ;; esac
 case " $* " in *" -march=native "*) machine=-march=native ;; esac
-made={header}.gch/$level$strict$machine
+made={header}.gch/light$strict$machine
 if [ ! -f "$made" ]; then
   mkdir -p {header}.gch  # each process writes a file of its own
-  {compiler} -std=c++17 $level $strict $machine -pthread -isystem {eigen} \\
+  {compiler} -std=c++17 -O1 $strict $machine -pthread -isystem {eigen} \\
     -x c++-header {header} -o {folder}/$$.gch && mv {folder}/$$.gch "$made"
 fi
 exec {compiler} -pthread -include {header} "$@"
