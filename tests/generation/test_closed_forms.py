@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 from tests.support.redundant_arms import Joint, serial_urdf
+from tests.support.solving import FIXTURES
 from tests.support.tables import table
 
 from ikgen.errors import IkgenError
@@ -36,6 +39,26 @@ def test_a_quartic_of_lengths_that_it_divides_by_is_none_of_rounding(
     assert found.reads.stem == "position-direction"
     assert any("quartic" in step for step in found.order) == quartic
     assert found.refine == ("some" if quartic else "all")
+
+
+def test_a_quartic_of_a_geometry_far_off_gives_way_to_the_elimination(tmp_path: Path) -> None:
+    """As measured arms are: each axis by a millimetre and a milliradian, more than two roots are apart."""
+    noise = np.random.default_rng(3)
+
+    def moved(match: re.Match[str]) -> str:
+        rpy, xyz = (
+            [float(x) + noise.uniform(-1e-3, 1e-3) for x in match[k].split()] for k in (1, 2)
+        )
+        return f'<origin xyz="{xyz[0]} {xyz[1]} {xyz[2]}" rpy="{rpy[0]} {rpy[1]} {rpy[2]}"'
+
+    text = (FIXTURES / "ur5e.urdf").read_text()
+    text, count = re.subn(r'<origin rpy="([^"]*)" xyz="([^"]*)"', moved, text)
+    assert count > 5
+    path = tmp_path / "measured.urdf"
+    path.write_text(text)
+    derived = derive(Request(path, tip="tool0"))
+    assert derived.module.order == ("all joints (6R elimination)",)
+    assert derived.module.refine == "some"
 
 
 def parallel(joints: int, folder: Path) -> Request:

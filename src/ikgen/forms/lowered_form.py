@@ -31,8 +31,9 @@ _HALF_OF_DIGITS = 1e-8
 
 Lost = Callable[[Expr], float]
 
-_MULTIPLIED = 4.0
-"""Times the model error over a square root that what follows from it may be off."""
+_MULTIPLIED = 12.0
+"""Times the model error over a square root that what follows from it may be off: the file's offsets, over
+links that are short beside the arm."""
 
 _BESIDE = 100.0
 """Times as far as at regular configurations that round-off may move what is under a square root, beside

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from ikgen.model.dh import DHChain
 
 __all__ = [
+    "COARSE",
     "RULE_TRIES",
     "closed_form",
     "forms_held",
@@ -43,6 +44,10 @@ the same input gives the same choice on every machine."""
 
 _FULL_TRIES_JOINTS = 8
 """Longer chains get fewer tries, as the work of one grows with the cube of their joints."""
+
+COARSE = 5e-4
+"""Deviation (rad, or m over the arm's length) from which on an elimination of the file's own geometry comes
+before a quartic of one nearby."""
 
 _OTHERS = 3
 
@@ -59,7 +64,17 @@ def closed_form(reading: Reading, demand: Demand) -> ClosedForm:
     if choices:
         return _with_joints_held(reading, choices, demand)
     found = as_written(_by_rules_somewhere(reading, demand), demand)
-    return found if found.sound else by_elimination(found, demand)
+    return by_elimination(found, demand) if not found.sound or _is_coarse(found) else found
+
+
+def _is_coarse(form: ClosedForm) -> bool:
+    """Whether the solved geometry is off the file's by so much that a quartic's roots, which lie in pairs,
+    start in the wrong one."""
+    from ikgen.kinematics.axis_relations import reach
+
+    dh = form.reading.dh
+    length, angle = dh.deviation
+    return form.closed and not form.two_branch and max(length / reach(dh), angle) > COARSE
 
 
 def _with_arm_angle(reading: Reading, demand: Demand) -> ClosedForm:
