@@ -81,9 +81,9 @@ def test_directions_that_the_file_turns_count_as_of_a_continuum() -> None:
 
 
 def test_a_root_may_be_as_far_outside_as_an_earlier_one_moved_it() -> None:
-    """A geometry that is 1e-5 off moves what follows from a root of 1e-4 by 1e-3."""
+    """A geometry that is 1e-5 off moves what follows from a root of 1e-4 by some 1e-3."""
     value, under = (
-        np.array([-2e-3, -2e-3, -2e-4, 2e-3, -2e-1]),
+        np.array([-8e-3, -8e-3, -2e-4, 2e-3, -2e-1]),
         np.array([1e-4, 1.0, 1.0, 1.0, 1e-8]),
     )
     g = ExpressionGraph(len(value))
