@@ -27,13 +27,13 @@ struct Solutions {
   std::array<Solution, std::size_t{kRoom}> rows;
 };
 
-// Whether two configurations are one, to 1e-6 rad or as near as given; slides longer than any angle count relative to
+// Whether two configurations are one, to 1e-6 rad or within `reach`; slides longer than any angle count relative to
 // their length.
-inline bool alike(const double* a, const double* b, double near = 1e-6) noexcept {
+inline bool alike(const double* a, const double* b, double reach = 1e-6) noexcept {
   for (int i = 0; i < 6; ++i) {
     double gap = std::abs(a[i] - b[i]);
     if (gap > 3.0) gap = std::abs(gap - 2.0 * kPi);
-    if (!(gap < near * (std::abs(a[i]) > 4.0 ? std::abs(a[i]) : 1.0))) return false;
+    if (!(gap < reach * (std::abs(a[i]) > 4.0 ? std::abs(a[i]) : 1.0))) return false;
   }
   return true;
 }
