@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -24,6 +25,7 @@ from ikgen.kinematics.forward import (
 from ikgen.kinematics.modified_dh import to_dh
 from ikgen.model.chain import ActuatedJoint, Chain, ChainAxis
 from ikgen.model.dh import DHChain
+from ikgen.model.joint_tree import Limits
 
 TIGHT = {"angle_tolerance": 1e-8, "length_tolerance": 1e-9}
 X, Y, Z = [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]
@@ -266,3 +268,17 @@ def test_refusals() -> None:
     assert to_dh(chain, free=["q0"]).free == ("q0",)
     with pytest.raises(UsageError):
         to_dh(Chain("still", "base", "tip", (), (), np.eye(4)))
+
+
+@pytest.mark.parametrize(
+    ("reach", "off"), [(0.5, 2e-6), (20.0, 8e-5), (math.inf, 4e-6), (1e9, 1.2e-4)]
+)
+def test_deviation_is_that_at_the_ends_of_a_rail(reach: float, off: float) -> None:
+    """Of slides that the file has 4e-6 rad off square the tool is the farther off the farther they go."""
+    turned, links = rotation(Z, 4e-6), [translation(0.1, 0, 0), translation(0.3, 0, 0)]
+    chain = make_chain("PPRR", [np.eye(4), turned, *links], [X, Y, Z, Z])
+    limits = Limits(-reach, reach)
+    slides = [replace(joint, limits=limits) for joint in chain.joints[:2]]
+    dh = to_dh(replace(chain, joints=(*slides, *chain.joints[2:])))
+    assert dh.snaps
+    assert 0.8 * off < dh.deviation[0] < 1.3 * off + 2e-6

@@ -18,6 +18,7 @@ __all__ = [
 ]  # fmt: skip
 
 _SAMPLES = 64
+_RAIL = 30.0  # m
 _SEED = 20180513
 _SAME = 1e-14
 _CLEAN = 1e-15
@@ -108,19 +109,25 @@ def _nearest_frame(T_dh: Matrix, T_axis: Matrix, axis: Matrix, revolute: bool) -
 
 
 def largest_deviation(dh: DHChain) -> tuple[float, float]:
-    """Largest distance (m) and angle (rad) between the exact rows and the file's chain."""
-    q = random_configurations(dh)
+    """Largest distance (m) and angle (rad) between the exact rows and the file's chain, slides as far out as
+    they go: what turns a base by little takes the end of its rail far."""
+    q = random_configurations(dh, travel=_RAIL)
     return pose_difference(dh_forward(dh, q), file_forward(dh, q))
 
 
-def random_configurations(dh: DHChain, count: int = _SAMPLES, seed: int = _SEED) -> Matrix:
-    """Joint values (count, dof): revolute over a full turn, prismatic within limits or ±1 m."""
+def random_configurations(
+    dh: DHChain, count: int = _SAMPLES, seed: int = _SEED, travel: float = 1.0
+) -> Matrix:
+    """Joint values (count, dof): revolute over a full turn, prismatic within limits and `travel` (m) to
+    either side, ±1 m where they have none."""
     rng = np.random.default_rng(seed)
     low = np.full(dh.dof, -np.pi)
     high = np.full(dh.dof, np.pi)
     for k, joint in enumerate(dh.joints):
         if joint.kind != "revolute":
-            low[k], high[k] = max(joint.limits.lower, -1.0), min(joint.limits.upper, 1.0)
+            bounded = np.isfinite([joint.limits.lower, joint.limits.upper]).all()
+            most = travel if bounded else 1.0
+            low[k], high[k] = max(joint.limits.lower, -most), min(joint.limits.upper, most)
             if not low[k] < high[k]:
                 low[k], high[k] = -1.0, 1.0
     return rng.uniform(low, high, (count, dh.dof))
