@@ -109,8 +109,8 @@ def _nearest_frame(T_dh: Matrix, T_axis: Matrix, axis: Matrix, revolute: bool) -
 
 
 def largest_deviation(dh: DHChain) -> tuple[float, float]:
-    """Largest distance (m) and angle (rad) between the exact rows and the file's chain, slides as far out as
-    they go: what turns a base by little takes the end of its rail far."""
+    """Largest distance (m) and angle (rad) between the exact rows and the file's chain, slides as far out
+    as they go: what turns a base by little takes the end of its rail far."""
     q = random_configurations(dh, travel=_RAIL)
     return pose_difference(dh_forward(dh, q), file_forward(dh, q))
 
