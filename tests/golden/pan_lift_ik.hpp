@@ -563,7 +563,7 @@ template <int N> inline bool keeps_orientation(double (&A)[N][N]) noexcept {
   return keeps;
 }
 
-template <class X, int N> inline void substitute(const X (&A)[N][N], X (&x)[N]) noexcept {
+template <class Factor, class X, int N> inline void substitute(const Factor (&A)[N][N], X (&x)[N]) noexcept {
   for (int i = 1; i < N; ++i)
     for (int k = 0; k < i; ++k) x[i] = x[i] - A[i][k] * x[k];
   for (int i = 0; i < N; ++i) x[i] = x[i] * A[i][i];
@@ -752,90 +752,68 @@ template <class Arm> struct FoldPair {
     for (int e = 0; e < kEquations; ++e) out[e] = 0.1 + 0.01 * e;  // shorter than what has a sense
   }
 
-  void approach(double side, double* q) noexcept {
-    for (int i = 0; i < kSteps; ++i)
-      if (!(std::abs(step(side, q)) > kClose)) break;
+  enum class Led { Known, There, Between };
+
+  template <class IsKnown> Led approach(double side, double* q, const IsKnown& known) noexcept {
+    for (int i = 0; i < kSteps; ++i) {
+      const Way way = step(side, q, i == 0);
+      if (way.least > kApart + kCubic * way.length * way.length * way.length) return Led::Between;
+      if (known(q, kShare * std::min(way.apart, kTogether))) return Led::Known;
+      if (way.length <= std::max(kClose, kSure * way.apart)) break;
+    }
+    return Led::There;
   }
 
-  double correct(double* q, double& left, double& slope, Vector& across) noexcept {
+  double correct(double* q, bool anew, double& left, double& slope, Vector& across) noexcept {
     const PoseError<Arm> at(q, aim);
-    find_still(at);
-    const Others others(*this, at);
-    Vector ignored;
-    double rest[kEquations], square = 0.0, farthest = 0.0;
-    others.take_away(at.error, rest, across);
-    others.take_away(out, out, ignored);
-    for (const double x : out) square += x * x;
-    const double inverse = (square < kTurned ? others.sense(out, still) : 1.0) / std::sqrt(square);
+    if (anew) find_still(at);
+    const Others others(still, at);
+    const Taken taken(others, at.error, out, others.flow);
+    double remains = 0.0, farthest = 0.0;
+    for (int e = 0; e < kEquations; ++e) {
+      out[e] = taken.rest[e][1];
+      remains += out[e] * out[e];
+    }
+    const double inverse = (remains >= kTurned ? 1.0 : others.sense(out, still)) / std::sqrt(remains);
     left = slope = 0.0;
     for (int e = 0; e < kEquations; ++e) {
       out[e] *= inverse;
-      left += out[e] * rest[e];
-      slope -= out[e] * others.flow[e];
+      left += out[e] * taken.rest[e][0];
+      slope -= out[e] * taken.rest[e][2];
+    }
+    for (int k = 0; k < kMoving; ++k) {
+      across[k] = taken.going[k][0];
+      farthest = std::max(farthest, std::abs(across[k]));
     }
     move(across, 0.0, q);
-    for (const double x : across) farthest = std::max(farthest, std::abs(x));
+    slope *= turn(taken);
     return farthest;
   }
 
  private:
   static constexpr double kTurned = 0.5;  // squared length of what is left of a unit direction that turned by 45 degrees
-  static constexpr double kAlong = 1e-4, kClose = 1e-9, kFar = 0.3, kStands = 1e-9;
+  static constexpr double kAlong = 1e-4, kClose = 1e-9, kFar = 0.3;
+  static constexpr double kSure = 0.1;  // of the way from one solution to the other: nearer Newton's method goes there
+  static constexpr double kShare = 0.1, kTogether = 1e-2;  // of that way (rad or m): nearer they are one solution
+  static constexpr double kApart = 1e-8, kCubic = 2.0;  // least error of none; with what the second order leaves out
   static constexpr int kSteps = 8;
 
-  double step(double side, double* q) noexcept {
-    const PoseError<Arm> at(q, aim);
-    find_still(at);
-    const Others others(*this, at);
-    double bend[kEquations], bent[kEquations], flow[kEquations], rest[kEquations], there[Arm::kDof];
-    std::copy_n(q, Arm::kDof, there);
-    for (int k = 0; k < kMoving; ++k) there[kJoints[k]] += kAlong * still[k];
-    const PoseError<Arm> beyond(there, aim);
-    for (int e = 0; e < kEquations; ++e) {
-      bend[e] = 0.0;
-      for (int k = 0; k < kMoving; ++k)
-        bend[e] += (beyond.slope[e][kJoints[k]] - at.slope[e][kJoints[k]]) * still[k] / kAlong;
-    }
-    Vector ignored, across;
-    others.take_away(at.error, rest, across);
-    others.take_away(bend, bent, ignored);
-    others.take_away(others.flow, flow, ignored);
-    const double x = root(side, bent, flow, rest);
-    move(across, x, q);
-    return x;
-  }
-
-  void move(const Vector& across, double along, double* q) const noexcept {
-    for (int k = 0; k < kMoving; ++k)
-      q[kJoints[k]] += std::min(std::max(across[k], -kFar), kFar) + along * still[k];
-  }
-
-  static double root(double side, const double (&bend)[kEquations], const double (&flow)[kEquations],
-                     const double (&rest)[kEquations]) noexcept {
-    double k = 0.0, s = 0.0, e = 0.0;
-    for (int i = 0; i < kEquations; ++i) {
-      k += bend[i] * bend[i];
-      s += bend[i] * flow[i];
-      e += bend[i] * rest[i];
-    }
-    if (!(k > 0.0)) return 0.0;
-    const double square = s * s + 2.0 * k * e, p = s + std::copysign(std::sqrt(std::max(square, 0.0)), s);
-    const double x = (s > 0.0) == (side > 0.0) && square > 0.0 ? 2.0 * e / p : -p / k;
-    return std::min(std::max(x, -kFar), kFar);
-  }
+  struct Way {
+    double length, apart, least;
+  };
 
   struct Others {
     double V[kEquations][kMoving], A[kMoving][kMoving], flow[kEquations];
 
-    Others(const FoldPair& fold, const PoseError<Arm>& at) noexcept {
+    Others(const Vector& along, const PoseError<Arm>& at) noexcept {
       for (int e = 0; e < kEquations; ++e) {
         flow[e] = 0.0;
-        for (int k = 0; k < kMoving; ++k) flow[e] += at.slope[e][kJoints[k]] * fold.still[k];
-        for (int k = 0; k < kMoving; ++k) V[e][k] = at.slope[e][kJoints[k]] - flow[e] * fold.still[k];
+        for (int k = 0; k < kMoving; ++k) flow[e] += at.slope[e][kJoints[k]] * along[k];
+        for (int k = 0; k < kMoving; ++k) V[e][k] = at.slope[e][kJoints[k]] - flow[e] * along[k];
       }
       for (int a = 0; a < kMoving; ++a)
         for (int b = 0; b <= a; ++b) {
-          A[a][b] = fold.still[a] * fold.still[b] + (a == b ? Arm::Policy::kLeastDamping : 0.0);
+          A[a][b] = along[a] * along[b] + (a == b ? Arm::Policy::kLeastDamping : 0.0);
           for (int e = 0; e < kEquations; ++e) A[a][b] += V[e][a] * V[e][b];
         }
       factor(A);
@@ -851,18 +829,37 @@ template <class Arm> struct FoldPair {
         return keeps_orientation(turned) ? 1.0 : -1.0;
       }
     }
+  };
 
-    void take_away(const double* z, double* rest, Vector& y) const noexcept {
-      for (int k = 0; k < kMoving; ++k) {
-        y[k] = 0.0;
-        for (int e = 0; e < kEquations; ++e) y[k] += V[e][k] * z[e];
+  struct Taken {
+    double rest[kEquations][4], going[kMoving][4];
+
+    Taken(const Others& others, const double* a, const double* b, const double* c) noexcept {
+      Lanes<4> z[kEquations], y[kMoving];
+      for (int e = 0; e < kEquations; ++e) {
+        const double columns[4] = {a[e], b[e], c[e], 0.0};
+        z[e] = load<4>(columns);
       }
-      substitute(A, y);
-      std::copy_n(z, kEquations, rest);
-      for (int e = 0; e < kEquations; ++e)
-        for (int k = 0; k < kMoving; ++k) rest[e] -= V[e][k] * y[k];
+      for (int k = 0; k < kMoving; ++k) {
+        y[k] = others.V[0][k] * z[0];
+        for (int e = 1; e < kEquations; ++e) y[k] = y[k] + others.V[e][k] * z[e];
+      }
+      substitute(others.A, y);
+      for (int k = 0; k < kMoving; ++k) store(y[k], going[k]);
+      for (int e = 0; e < kEquations; ++e) {
+        for (int k = 0; k < kMoving; ++k) z[e] = z[e] - others.V[e][k] * y[k];
+        store(z[e], rest[e]);
+      }
     }
   };
+
+  static double make_unit(Vector& v) noexcept {
+    double square = 0.0;
+    for (const double x : v) square += x * x;
+    const double inverse = 1.0 / std::sqrt(square);
+    for (double& x : v) x *= inverse;
+    return inverse;
+  }
 
   void find_still(const PoseError<Arm>& at) noexcept {
     double N[kMoving][kMoving];
@@ -872,22 +869,62 @@ template <class Arm> struct FoldPair {
         for (int e = 0; e < kEquations; ++e) N[a][b] += at.slope[e][kJoints[a]] * at.slope[e][kJoints[b]];
       }
     factor(N);
-    double change = 1.0;
-    for (int i = 0; i < 2 && change > kStands * kStands; ++i) {
-      Vector next;
-      std::copy_n(still, kMoving, next);
-      substitute(N, next);
-      substitute(N, next);
-      double square = 0.0;
-      for (const double x : next) square += x * x;
-      const double inverse = 1.0 / std::sqrt(square);
-      change = 0.0;
-      for (int k = 0; k < kMoving; ++k) {
-        const double turned = inverse * next[k], gap = turned - still[k];
-        change += gap * gap;
-        still[k] = turned;
-      }
+    for (int i = 0; i < 2; ++i) {
+      substitute(N, still);
+      substitute(N, still);
+      make_unit(still);
     }
+  }
+
+  double turn(const Taken& taken) noexcept {
+    for (int k = 0; k < kMoving; ++k) still[k] -= taken.going[k][2];
+    return make_unit(still);
+  }
+
+  Way step(double side, double* q, bool anew) noexcept {
+    const PoseError<Arm> at(q, aim);
+    if (anew) find_still(at);
+    const Others others(still, at);
+    double bend[kEquations], there[Arm::kDof];
+    std::copy_n(q, Arm::kDof, there);
+    for (int k = 0; k < kMoving; ++k) there[kJoints[k]] += kAlong * still[k];
+    const PoseError<Arm> beyond(there, aim);
+    for (int e = 0; e < kEquations; ++e) {
+      bend[e] = 0.0;
+      for (int k = 0; k < kMoving; ++k)
+        bend[e] += (beyond.slope[e][kJoints[k]] - at.slope[e][kJoints[k]]) * still[k] / kAlong;
+    }
+    const Taken taken(others, at.error, bend, others.flow);
+    Vector across;
+    for (int k = 0; k < kMoving; ++k) across[k] = taken.going[k][0];
+    Way way;
+    const double x = root(side, taken.rest, way);
+    way.length = std::abs(x);
+    for (const double y : across) way.length = std::max(way.length, std::abs(y));
+    move(across, x, q);
+    turn(taken);
+    return way;
+  }
+
+  void move(const Vector& across, double along, double* q) const noexcept {
+    for (int k = 0; k < kMoving; ++k)
+      q[kJoints[k]] += std::min(std::max(across[k], -kFar), kFar) + along * still[k];
+  }
+
+  static double root(double side, const double (&rest)[kEquations][4], Way& way) noexcept {
+    double k = 0.0, s = 0.0, e = 0.0;
+    for (const auto& row : rest) {
+      e += row[1] * row[0];
+      k += row[1] * row[1];
+      s += row[1] * row[2];
+    }
+    way.apart = way.least = 0.0;
+    if (!(k > 0.0)) return 0.0;
+    const double square = s * s + 2.0 * k * e, size = std::sqrt(std::max(square, 0.0)), p = s + std::copysign(size, s);
+    way.apart = 2.0 * size / k;
+    way.least = -std::min(square, 0.0) / (2.0 * k * std::sqrt(k));
+    const double x = (s > 0.0) == (side > 0.0) && square > 0.0 ? 2.0 * e / p : -p / k;
+    return std::min(std::max(x, -kFar), kFar);
   }
 };
 
@@ -1055,6 +1092,7 @@ template <class Arm> struct NearContinuum {
   static constexpr double kRoundOff = 1e-15, kSmall = 4e-15, kDoubt = 0.03, kBeside = 0.06, kSameWay = 0.9;
   static constexpr double kFloor = 0.1, kAhead = 0.5;  // the shortest step, of Policy::kTryStep; how a step turns at most
   static constexpr int kCubics = 4, kNewton = 4;
+  static constexpr double kBeyond = 4.0;  // how far what is left at the end of a curve's last part may be beyond its bound
   static constexpr double kWay = 1e-10;  // rad or m: along a curve, by which what is left varies by round-off
   static constexpr double kSlow = 0.1, kSteady = 0.8;  // how fast corrections converge that are not left to themselves
 
@@ -1068,14 +1106,14 @@ template <class Arm> struct NearContinuum {
   double steps = 0.0;  // of Policy::kTryStep
   bool lost = false;   // where corrections converge from no step
 
-  Sample at(const double* q) noexcept {
+  Sample at(const double* q, bool anew = true) noexcept {
     Sample s;
     std::copy_n(q, Arm::kDof, s.q);
     s.on = false;
     double before[Fold::kMoving] = {}, last = kInfinity;
     for (int i = 0; i < kCorrections && !s.on; ++i) {
       double across[Fold::kMoving];
-      const double farthest = fold.correct(s.q, s.left, s.slope, across);
+      const double farthest = fold.correct(s.q, anew && i == 0, s.left, s.slope, across);
       s.on = farthest < std::max(kNear, kShare * std::abs(s.left));
       const bool leaps = !s.on && farthest > kSlow * last && leap(before, across, s.q);
       last = leaps ? kInfinity : farthest;
@@ -1131,7 +1169,10 @@ template <class Arm> struct NearContinuum {
         reach *= 0.5;
         continue;
       }
-      if (!(std::abs(c.left) < Policy::kFoldReach)) return false;
+      if (!(std::abs(c.left) < Policy::kFoldReach)) {
+        look(b, c, kDeep);
+        return false;
+      }
       steps += reach / Policy::kTryStep;
       worst = std::max(worst, std::abs(c.left));
       look(b, c, kDeep);
@@ -1190,7 +1231,7 @@ template <class Arm> struct NearContinuum {
   }
 
   void look(const Sample& a, const Sample& b, int deep) noexcept {
-    if (std::max(std::abs(a.left), std::abs(b.left)) >= Policy::kFoldReach) return;  // as far off as the end of a curve
+    if (std::max(std::abs(a.left), std::abs(b.left)) >= kBeyond * Policy::kFoldReach) return;  // far beyond the curve's end
     double inner[2];
     take_inner(a, b, inner);
     const double most = std::max({std::abs(a.left), std::abs(inner[0]), std::abs(inner[1]), std::abs(b.left)});
@@ -1554,11 +1595,18 @@ template <class Arm> struct CarefulRows {
 
     void add_nearby(const Aim& aim, Places& out) noexcept {
       std::copy_n(q, Arm::kDof, start);
+      using Fold = FoldPair<Arm>;
+      const auto known = [&out](const double* row, double reach) noexcept {
+        for (int k = 0; k < out.count; ++k)
+          if (Pair::within(reach, row, Row::row(out, k))) return true;
+        return false;
+      };
       for (const double side : {1.0, -1.0}) {
         double trial[Arm::kDof];
         std::copy_n(start, Arm::kDof, trial);
-        FoldPair<Arm>(aim).approach(side, trial);
-        take(aim, trial, out);
+        const auto led = Fold(aim).approach(side, trial, known);
+        if (led == Fold::Led::Between) break;  // nor on the other side
+        if (led == Fold::Led::There) take(aim, trial, out);
       }
       take_rest(aim, out);
     }

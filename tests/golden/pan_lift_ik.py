@@ -2054,6 +2054,7 @@ def _rows_and_doubts(
 _near_continuum_MOST, _CORRECTIONS, _STEPS, _DEEP, _LEAST = 96, 6, 40, 24, 4
 _CUBICS, _NEWTON, _CLEAR = 2, 4, 1e-6
 _LEAP, _SOON = 16.0, 3
+_BEYOND = 4.0  # how far what is left behind the last part of a curve may be beyond its bound
 _SAMPLES = 600  # of a curve
 _ROOM = 32  # solutions of a curve
 _NEAR = (
@@ -2124,10 +2125,11 @@ def _traced(arm: _Arm, q: Array, T: Array) -> _Traced:
     unknown = 0.1 * _generic(count, error.shape[1])  # shorter than what has a sense
     start = _Reduced(q, still, unknown, nothing, nothing)
     first = _sample(arm, start, T)
-    parts, worst = _follow(arm, first, T)
+    parts, ends, worst = _follow(arm, first, T)
     steps = np.bincount(parts.owner, minlength=count)
     curve = steps >= _LEAST
     broken = curve & (worst >= arm.policy.arrived)
+    parts = _joined(parts, ends)
     found = _look(arm, _some_of(parts, broken[parts.owner]), T, steps)
     return _Traced(curve, broken, *found)
 
@@ -2154,25 +2156,29 @@ def _sampled(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, _Flags]:
     return at, near
 
 
-def _follow(arm: _Arm, first: _Reduced, T: Array) -> tuple[_Parts, Array]:
+def _follow(arm: _Arm, first: _Reduced, T: Array) -> tuple[_Parts, _Parts, Array]:
     """On from samples to both sides at once, the fastest joint by `policy.try_step` from one to the
     next."""
     count, moving = len(T), list(arm.moving)
     back = first._replace(still=-first.still, out=-first.out, left=-first.left)
     first, T = _joined(first, back), np.concatenate([T, T])
     closed, worst = np.zeros(2 * count, dtype=bool), np.abs(first.left)
-    parts, owner, b = [], np.arange(2 * count), first
+    parts, ends, owner, b = [], [], np.arange(2 * count), first
     astray, before = np.zeros(2 * count, dtype=np.intp), b.still
     for step in range(_near_continuum_MOST):
         ahead, course = b.q.copy(), 1.5 * b.still - 0.5 * before
         ahead[:, moving] += arm.policy.try_step * course / np.abs(course).max(axis=1)[:, None]
         c, near = _sampled(arm, b._replace(q=ahead), T[owner])
         astray = np.where(near, 0, astray + 1)
-        on = (np.abs(c.left) < arm.policy.fold_reach) & (astray < _ASTRAY)
+        left = np.abs(c.left)
+        on = left < arm.policy.fold_reach
+        place = np.where(owner < count, step, _near_continuum_MOST + step).astype(float)
+        passed = _Parts(b, c, owner, place, np.ones(len(owner)))
+        ends.append(_some_of(passed, ~on & (left < _BEYOND * arm.policy.fold_reach)))
+        on &= astray < _ASTRAY
+        parts.append(_some_of(passed, on))
         b, c, owner, astray = _some_of(b, on), _some_of(c, on), owner[on], astray[on]
         worst[owner] = np.maximum(worst[owner], np.abs(c.left))
-        place = np.where(owner < count, step, _near_continuum_MOST + step).astype(float)
-        parts.append(_Parts(b, c, owner, place, np.ones(len(owner))))
         closed[owner[_back(arm, _some_of(first, owner), b) & (step > 1)]] = True
         going = ~(closed[owner] | closed[owner % count])
         before = b.still[going]
@@ -2183,9 +2189,12 @@ def _follow(arm: _Arm, first: _Reduced, T: Array) -> tuple[_Parts, Array]:
     once = np.arange(2 * count) < count
     once[count:] = ~closed[:count]
     worst = np.maximum(worst[:count], np.where(once[count:], worst[count:], 0.0))
-    found: _Parts = _joined(*parts)
-    found = _some_of(found, once[found.owner])
-    return found._replace(owner=found.owner % count), worst
+    found, last = (_some_of(some, once[some.owner]) for some in (_joined(*parts), _joined(*ends)))
+    return (
+        found._replace(owner=found.owner % count),
+        last._replace(owner=last.owner % count),
+        worst,
+    )
 
 
 def _back(arm: _Arm, a: _Reduced, b: _Reduced) -> _Flags:
@@ -2217,9 +2226,8 @@ def _look(arm: _Arm, parts: _Parts, T: Array, samples: _Index) -> tuple[_Index, 
     through values and slopes."""
     kept, brackets = [], []
     for deep in range(_DEEP + 1):
-        parts = _some_of(
-            parts, ~(np.maximum(abs(parts.a.left), abs(parts.b.left)) >= arm.policy.fold_reach)
-        )
+        most = np.maximum(np.abs(parts.a.left), np.abs(parts.b.left))
+        parts = _some_of(parts, ~(most >= _BEYOND * arm.policy.fold_reach))
         values = _bernstein(arm, parts)
         most = np.abs(values).max(axis=0)
         spent = samples[parts.owner] >= _SAMPLES

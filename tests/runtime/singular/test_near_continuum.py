@@ -17,7 +17,14 @@ from ikgen.emit.python.python_emitter import emit_module
 from ikgen.kinematics.modified_dh import to_dh
 from ikgen.runtime.python.singular import near_continuum
 from ikgen.runtime.python.singular.fold_pair import Reduced
-from ikgen.runtime.python.singular.near_continuum import _back, _look, _Parts, rows_around, trace
+from ikgen.runtime.python.singular.near_continuum import (
+    _back,
+    _follow,
+    _look,
+    _Parts,
+    rows_around,
+    trace,
+)
 
 Array = NDArray[np.float64]
 POLICY = SimpleNamespace(arrived=0.5e-9, try_step=np.pi / 8, fold_reach=10.0)
@@ -195,6 +202,32 @@ def test_a_change_of_sign_from_one_curve_to_another_is_no_solution(
     parts = _Parts(*ends, np.zeros(1, np.intp), np.zeros(1), np.ones(1))
     _, found = _look(LINE, parts, np.zeros((1, 4, 4)), np.zeros(1, np.intp))
     assert not len(found) and taken == [1]
+
+
+@pytest.mark.parametrize(("reach", "wanted"), [(0.3, [0.45]), (0.1, [])])
+def test_solutions_in_the_last_part_of_a_curve_are_found(
+    reach: float, wanted: list[float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Behind it 0.59 and 0.98 are left, to either side, which may be too much for the curve to go on."""
+
+    def steep(arm: Any, at: Reduced, T: Array) -> Reduced:
+        return at._replace(
+            left=2.0 * at.still[:, 0] * (at.q[:, 0] - 0.45), slope=np.full(len(T), 2.0)
+        )
+
+    def sampled(arm: Any, at: Reduced, T: Array) -> tuple[Reduced, Array]:
+        return steep(arm, at, T), np.ones(len(T), dtype=bool)
+
+    monkeypatch.setattr(near_continuum, "_sample", steep)
+    monkeypatch.setattr(near_continuum, "_sampled", sampled)
+    arm = SimpleNamespace(**vars(LINE) | {"policy": SimpleNamespace(**vars(POLICY))})
+    arm.policy.fold_reach = reach
+    T, first = np.zeros((1, 4, 4)), on_line(np.array([0.35]), np.array([0.45]))
+    parts, ends, worst = _follow(arm, steep(arm, first, T), T)
+    assert not len(parts.owner) and worst == pytest.approx([0.2])
+    owner, found = _look(arm, ends, T, np.zeros(1, np.intp))
+    assert not owner.any()
+    np.testing.assert_allclose(found[:, 0], wanted, atol=1e-12)
 
 
 def at(x: float, sense: float) -> Reduced:

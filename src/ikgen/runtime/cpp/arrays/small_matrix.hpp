@@ -54,8 +54,8 @@ template <int N> inline bool keeps_orientation(double (&A)[N][N]) noexcept {
   return keeps;
 }
 
-// x = A^-1 x by the factors of A.
-template <class X, int N> inline void substitute(const X (&A)[N][N], X (&x)[N]) noexcept {
+// x = A^-1 x by the factors of A. X may be a pack where Factor is double: each lane is a right side then.
+template <class Factor, class X, int N> inline void substitute(const Factor (&A)[N][N], X (&x)[N]) noexcept {
   for (int i = 1; i < N; ++i)
     for (int k = 0; k < i; ++k) x[i] = x[i] - A[i][k] * x[k];
   for (int i = 0; i < N; ++i) x[i] = x[i] * A[i][i];

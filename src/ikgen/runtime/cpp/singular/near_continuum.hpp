@@ -40,6 +40,7 @@ template <class Arm> struct NearContinuum {
   static constexpr double kRoundOff = 1e-15, kSmall = 4e-15, kDoubt = 0.03, kBeside = 0.06, kSameWay = 0.9;
   static constexpr double kFloor = 0.1, kAhead = 0.5;  // the shortest step, of Policy::kTryStep; how a step turns at most
   static constexpr int kCubics = 4, kNewton = 4;
+  static constexpr double kBeyond = 4.0;  // how far what is left at the end of a curve's last part may be beyond its bound
   static constexpr double kWay = 1e-10;  // rad or m: along a curve, by which what is left varies by round-off
   static constexpr double kSlow = 0.1, kSteady = 0.8;  // how fast corrections converge that are not left to themselves
 
@@ -55,14 +56,15 @@ template <class Arm> struct NearContinuum {
   double steps = 0.0;  // of Policy::kTryStep
   bool lost = false;   // where corrections converge from no step
 
-  Sample at(const double* q) noexcept {
+  // anew: whether the still direction may be another than that of the sample before.
+  Sample at(const double* q, bool anew = true) noexcept {
     Sample s;
     std::copy_n(q, Arm::kDof, s.q);
     s.on = false;
     double before[Fold::kMoving] = {}, last = kInfinity;
     for (int i = 0; i < kCorrections && !s.on; ++i) {
       double across[Fold::kMoving];
-      const double farthest = fold.correct(s.q, s.left, s.slope, across);
+      const double farthest = fold.correct(s.q, anew && i == 0, s.left, s.slope, across);
       s.on = farthest < std::max(kNear, kShare * std::abs(s.left));
       const bool leaps = !s.on && farthest > kSlow * last && leap(before, across, s.q);
       last = leaps ? kInfinity : farthest;
@@ -122,7 +124,10 @@ template <class Arm> struct NearContinuum {
         reach *= 0.5;
         continue;
       }
-      if (!(std::abs(c.left) < Policy::kFoldReach)) return false;
+      if (!(std::abs(c.left) < Policy::kFoldReach)) {
+        look(b, c, kDeep);
+        return false;
+      }
       steps += reach / Policy::kTryStep;
       worst = std::max(worst, std::abs(c.left));
       look(b, c, kDeep);
@@ -185,7 +190,7 @@ template <class Arm> struct NearContinuum {
 
   // Between two samples, by the signs of the coefficients, after Bernstein, of the cubic through values and slopes.
   void look(const Sample& a, const Sample& b, int deep) noexcept {
-    if (std::max(std::abs(a.left), std::abs(b.left)) >= Policy::kFoldReach) return;  // as far off as the end of a curve
+    if (std::max(std::abs(a.left), std::abs(b.left)) >= kBeyond * Policy::kFoldReach) return;  // far beyond the curve's end
     double inner[2];
     take_inner(a, b, inner);
     const double most = std::max({std::abs(a.left), std::abs(inner[0]), std::abs(inner[1]), std::abs(b.left)});

@@ -176,11 +176,18 @@ template <class Arm> struct CarefulRows {
     // Adds the solutions that meet near the one that a lane led to.
     void add_nearby(const Aim& aim, Places& out) noexcept {
       std::copy_n(q, Arm::kDof, start);
+      using Fold = FoldPair<Arm>;
+      const auto known = [&out](const double* row, double reach) noexcept {
+        for (int k = 0; k < out.count; ++k)
+          if (Pair::within(reach, row, Row::row(out, k))) return true;
+        return false;
+      };
       for (const double side : {1.0, -1.0}) {
         double trial[Arm::kDof];
         std::copy_n(start, Arm::kDof, trial);
-        FoldPair<Arm>(aim).approach(side, trial);
-        take(aim, trial, out);
+        const auto led = Fold(aim).approach(side, trial, known);
+        if (led == Fold::Led::Between) break;  // nor on the other side
+        if (led == Fold::Led::There) take(aim, trial, out);
       }
       take_rest(aim, out);
     }

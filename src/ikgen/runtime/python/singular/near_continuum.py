@@ -24,6 +24,7 @@ __all__ = ["Traced", "rows_around", "trace"]
 _MOST, _CORRECTIONS, _STEPS, _DEEP, _LEAST = 96, 6, 40, 24, 4
 _CUBICS, _NEWTON, _CLEAR = 2, 4, 1e-6
 _LEAP, _SOON = 16.0, 3
+_BEYOND = 4.0  # how far what is left behind the last part of a curve may be beyond its bound
 _SAMPLES = 600  # of a curve
 _ROOM = 32  # solutions of a curve
 _NEAR = (
@@ -98,10 +99,11 @@ def _traced(arm: Arm, q: Array, T: Array) -> Traced:
     unknown = 0.1 * generic(count, error.shape[1])  # shorter than what has a sense
     start = Reduced(q, still, unknown, nothing, nothing)
     first = _sample(arm, start, T)
-    parts, worst = _follow(arm, first, T)
+    parts, ends, worst = _follow(arm, first, T)
     steps = np.bincount(parts.owner, minlength=count)
     curve = steps >= _LEAST
     broken = curve & (worst >= arm.policy.arrived)
+    parts = joined(parts, ends)
     found = _look(arm, some_of(parts, broken[parts.owner]), T, steps)
     return Traced(curve, broken, *found)
 
@@ -128,26 +130,30 @@ def _sampled(arm: Arm, at: Reduced, T: Array) -> tuple[Reduced, Flags]:
     return at, near
 
 
-def _follow(arm: Arm, first: Reduced, T: Array) -> tuple[_Parts, Array]:
+def _follow(arm: Arm, first: Reduced, T: Array) -> tuple[_Parts, _Parts, Array]:
     """On from samples to both sides at once, the fastest joint by `policy.try_step` from one to the next;
-    the parts to one side, and to the other of what does not come back to where it began; the most (k,)
-    that is left."""
+    the parts to one side, and to the other of what does not come back to where it began; those behind
+    which too much is left; the most (k,) that is left before."""
     count, moving = len(T), list(arm.moving)
     back = first._replace(still=-first.still, out=-first.out, left=-first.left)
     first, T = joined(first, back), np.concatenate([T, T])
     closed, worst = np.zeros(2 * count, dtype=bool), np.abs(first.left)
-    parts, owner, b = [], np.arange(2 * count), first
+    parts, ends, owner, b = [], [], np.arange(2 * count), first
     astray, before = np.zeros(2 * count, dtype=np.intp), b.still
     for step in range(_MOST):
         ahead, course = b.q.copy(), 1.5 * b.still - 0.5 * before
         ahead[:, moving] += arm.policy.try_step * course / np.abs(course).max(axis=1)[:, None]
         c, near = _sampled(arm, b._replace(q=ahead), T[owner])
         astray = np.where(near, 0, astray + 1)
-        on = (np.abs(c.left) < arm.policy.fold_reach) & (astray < _ASTRAY)
+        left = np.abs(c.left)
+        on = left < arm.policy.fold_reach
+        place = np.where(owner < count, step, _MOST + step).astype(float)
+        passed = _Parts(b, c, owner, place, np.ones(len(owner)))
+        ends.append(some_of(passed, ~on & (left < _BEYOND * arm.policy.fold_reach)))
+        on &= astray < _ASTRAY
+        parts.append(some_of(passed, on))
         b, c, owner, astray = some_of(b, on), some_of(c, on), owner[on], astray[on]
         worst[owner] = np.maximum(worst[owner], np.abs(c.left))
-        place = np.where(owner < count, step, _MOST + step).astype(float)
-        parts.append(_Parts(b, c, owner, place, np.ones(len(owner))))
         closed[owner[_back(arm, some_of(first, owner), b) & (step > 1)]] = True
         going = ~(closed[owner] | closed[owner % count])
         before = b.still[going]
@@ -158,9 +164,12 @@ def _follow(arm: Arm, first: Reduced, T: Array) -> tuple[_Parts, Array]:
     once = np.arange(2 * count) < count
     once[count:] = ~closed[:count]
     worst = np.maximum(worst[:count], np.where(once[count:], worst[count:], 0.0))
-    found: _Parts = joined(*parts)
-    found = some_of(found, once[found.owner])
-    return found._replace(owner=found.owner % count), worst
+    found, last = (some_of(some, once[some.owner]) for some in (joined(*parts), joined(*ends)))
+    return (
+        found._replace(owner=found.owner % count),
+        last._replace(owner=last.owner % count),
+        worst,
+    )
 
 
 def _back(arm: Arm, a: Reduced, b: Reduced) -> Flags:
@@ -190,12 +199,11 @@ def _between(arm: Arm, parts: _Parts, share: Array, T: Array) -> Reduced:
 def _look(arm: Arm, parts: _Parts, T: Array, samples: Index) -> tuple[Index, Array]:
     """The solutions (n, dof) inside parts, by the signs of the coefficients, after Bernstein, of cubics
     through values and slopes; whose they are (n,). `samples` (k,): that were taken of each curve. Where a
-    sample is as far off as the end of a curve, there is none."""
+    sample is far beyond what is left at the end of a curve, there is none."""
     kept, brackets = [], []
     for deep in range(_DEEP + 1):
-        parts = some_of(
-            parts, ~(np.maximum(abs(parts.a.left), abs(parts.b.left)) >= arm.policy.fold_reach)
-        )
+        most = np.maximum(np.abs(parts.a.left), np.abs(parts.b.left))
+        parts = some_of(parts, ~(most >= _BEYOND * arm.policy.fold_reach))
         values = _bernstein(arm, parts)
         most = np.abs(values).max(axis=0)
         spent = samples[parts.owner] >= _SAMPLES
