@@ -448,6 +448,140 @@ template <class Policy, int N, class... X> [[gnu::always_inline]] inline auto me
   return Policy::kMeeting > (gap(spread<N>(x)) + ...);
 }
 
+// --- solution rows -------------------------------------------------------------------------------
+template <class Arm> struct SolutionRows {
+  using Options = typename Arm::Options;
+  using Policy = typename Arm::Policy;
+  template <class Out> static constexpr int kRoom = static_cast<int>(std::tuple_size<decltype(Out::q)>::value);
+
+  template <class Out> static double* row(Out& out, int k) noexcept { return out.q.data()[k].data(); }
+  template <class Out> static bool& flag(Out& out, int k) noexcept { return out.singular.data()[k]; }
+  template <class Out> static void move(Out& out, int from, int to) noexcept {
+    std::copy_n(row(out, from), Arm::kDof, row(out, to));
+    flag(out, to) = flag(out, from);
+  }
+
+  static bool finite(const double* q) noexcept {
+    return std::all_of(q, q + Arm::kDof, [](double x) { return std::isfinite(x); });
+  }
+
+  static double change(int j, const double* a, const double* b) noexcept {
+    const double gap = b[j] - a[j];
+    return Arm::kRevolute[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap;
+  }
+
+  static double beyond(int j, double x, double value) noexcept {
+    const double gap = value - x;
+    return std::abs(Arm::kRevolute[j] && !Arm::kHeld[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap);
+  }
+
+  static bool same(const double* a, const double* b) noexcept {
+    for (int j = 0; j < Arm::kDof; ++j) {
+      double gap = std::abs(a[j] - b[j]);
+      if (Arm::kRevolute[j] && gap > Policy::kCoincident) gap = std::abs(gap - kTurn * std::nearbyint(gap / kTurn));
+      const double bound = Policy::kCoincident * (Arm::kRevolute[j] ? 1.0 : std::max(std::abs(a[j]), 1.0));
+      if (!(gap <= bound)) return false;
+    }
+    return true;
+  }
+
+  template <class Out> static void add(Out& out, const double* q, bool singular) noexcept {
+    if (out.count == kRoom<Out> && singular) return;
+    for (int k = 0; k < out.count; ++k)
+      if (same(q, row(out, k))) return;
+    if (out.count == kRoom<Out> && !make_room(out)) return;
+    std::copy_n(q, Arm::kDof, row(out, out.count));
+    flag(out, out.count) = singular;
+    ++out.count;
+  }
+
+  template <class Out> [[gnu::cold, gnu::noinline]] static bool make_room(Out& out) noexcept {
+    for (int k = out.count - 1; k >= 0; --k) {
+      if (!flag(out, k)) continue;
+      for (--out.count; k < out.count; ++k) move(out, k + 1, k);
+      return true;
+    }
+    return false;
+  }
+
+  static constexpr bool one_turn() noexcept {
+    for (int j = 0; j < Arm::kDof; ++j) {
+      const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j], least = Policy::kLimitTolerance;
+      if (Arm::kRevolute[j] && !(low > -kPi && high <= kPi && high - low < kTurn - 2.0 * least)) return false;
+    }
+    return true;
+  }
+
+  static bool within(const double* q) noexcept {
+    bool in = true;
+    for (int j = 0; j < Arm::kDof; ++j) {
+      const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j];
+      in = in & (low <= q[j]) & (q[j] <= high);
+    }
+    return in;
+  }
+
+  enum class Place { Inside, Hardly, Outside };
+
+  static Place placed(double* q, const Options& options) noexcept {
+    if constexpr (one_turn())
+      if (options.limits && within(q)) return Place::Inside;
+    Place where = Place::Inside;
+    const double* seed = options.seed ? options.seed->data() : nullptr;
+    for (int j = 0; j < Arm::kDof; ++j) {
+      const double low = Arm::kLower.data()[j] - Policy::kLimitTolerance, high = Arm::kUpper.data()[j] + Policy::kLimitTolerance;
+      if (Arm::kRevolute[j] && !Arm::kHeld[j]) {
+        q[j] += q[j] <= -kPi ? kTurn : q[j] > kPi ? -kTurn : 0.0;
+        double shift = seed ? kTurn * std::nearbyint((seed[j] - q[j]) / kTurn) : 0.0;
+        if (options.limits && q[j] + shift < low) shift = kTurn * std::ceil((low - q[j]) / kTurn);
+        if (options.limits && q[j] + shift > high) shift = kTurn * std::floor((high - q[j]) / kTurn);
+        q[j] += shift;
+      }
+      if (!options.limits) continue;
+      if (!(low <= q[j] && q[j] <= high)) {
+        const double below = beyond(j, q[j], Arm::kLower.data()[j]), above = beyond(j, q[j], Arm::kUpper.data()[j]);
+        if (!(std::min(below, above) < Policy::kLimitReach)) return Place::Outside;
+        q[j] = below < above ? Arm::kLower.data()[j] : Arm::kUpper.data()[j];
+        where = Place::Hardly;
+      }
+      q[j] = std::min(std::max(q[j], Arm::kLower.data()[j]), Arm::kUpper.data()[j]);
+    }
+    return where;
+  }
+
+  static bool place(double* q, const Options& options) noexcept { return placed(q, options) == Place::Inside; }
+
+  template <class Out> static void sort_by_distance(Out& out, const double* seed) noexcept {
+    sort(out, [seed](const double* q) noexcept {
+      double sum = 0.0;
+      for (int j = 0; j < Arm::kDof; ++j) sum += (q[j] - seed[j]) * (q[j] - seed[j]);
+      return sum;
+    });
+  }
+
+  template <class Out, class Cost> static void sort(Out& out, const Cost& cost) noexcept {
+    const int count = out.count;
+    double costs[std::size_t{kRoom<Out>}], rows[std::size_t{kRoom<Out>}][Arm::kDof];
+    bool flags[std::size_t{kRoom<Out>}] = {};
+    int place[std::size_t{kRoom<Out>}] = {};
+    for (int k = 0; k < count; ++k) {
+      std::copy_n(row(out, k), Arm::kDof, rows[k]);
+      flags[k] = flag(out, k);
+      costs[k] = cost(rows[k]);
+      place[k] = 0;
+      for (int i = 0; i < k; ++i) {
+        const int before = costs[k] < costs[i] ? 1 : 0;
+        place[i] += before;
+        place[k] += 1 - before;
+      }
+    }
+    for (int k = 0; k < count; ++k) {
+      std::copy_n(rows[k], Arm::kDof, row(out, place[k]));
+      flag(out, place[k]) = flags[k];
+    }
+  }
+};
+
 // --- moving joints -------------------------------------------------------------------------------
 template <class Arm> struct MovingJoints {
   static constexpr int kCount = Arm::kDof - static_cast<int>(Arm::kFreeJoints.size());
@@ -928,173 +1062,9 @@ template <class Arm> struct FoldPair {
   }
 };
 
-// --- solution rows -------------------------------------------------------------------------------
-template <class Arm> struct SolutionRows {
-  using Options = typename Arm::Options;
-  using Policy = typename Arm::Policy;
-  template <class Out> static constexpr int kRoom = static_cast<int>(std::tuple_size<decltype(Out::q)>::value);
-
-  template <class Out> static double* row(Out& out, int k) noexcept { return out.q.data()[k].data(); }
-  template <class Out> static bool& flag(Out& out, int k) noexcept { return out.singular.data()[k]; }
-  template <class Out> static void move(Out& out, int from, int to) noexcept {
-    std::copy_n(row(out, from), Arm::kDof, row(out, to));
-    flag(out, to) = flag(out, from);
-  }
-
-  static bool finite(const double* q) noexcept {
-    return std::all_of(q, q + Arm::kDof, [](double x) { return std::isfinite(x); });
-  }
-
-  static double change(int j, const double* a, const double* b) noexcept {
-    const double gap = b[j] - a[j];
-    return Arm::kRevolute[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap;
-  }
-
-  static double beyond(int j, double x, double value) noexcept {
-    const double gap = value - x;
-    return std::abs(Arm::kRevolute[j] && !Arm::kHeld[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap);
-  }
-
-  static bool same(const double* a, const double* b) noexcept {
-    for (int j = 0; j < Arm::kDof; ++j) {
-      double gap = std::abs(a[j] - b[j]);
-      if (Arm::kRevolute[j] && gap > Policy::kCoincident) gap = std::abs(gap - kTurn * std::nearbyint(gap / kTurn));
-      const double bound = Policy::kCoincident * (Arm::kRevolute[j] ? 1.0 : std::max(std::abs(a[j]), 1.0));
-      if (!(gap <= bound)) return false;
-    }
-    return true;
-  }
-
-  template <class Out> static void add(Out& out, const double* q, bool singular) noexcept {
-    if (out.count == kRoom<Out> && singular) return;
-    for (int k = 0; k < out.count; ++k)
-      if (same(q, row(out, k))) return;
-    if (out.count == kRoom<Out> && !make_room(out)) return;
-    std::copy_n(q, Arm::kDof, row(out, out.count));
-    flag(out, out.count) = singular;
-    ++out.count;
-  }
-
-  template <class Out> [[gnu::cold, gnu::noinline]] static bool make_room(Out& out) noexcept {
-    for (int k = out.count - 1; k >= 0; --k) {
-      if (!flag(out, k)) continue;
-      for (--out.count; k < out.count; ++k) move(out, k + 1, k);
-      return true;
-    }
-    return false;
-  }
-
-  static constexpr bool one_turn() noexcept {
-    for (int j = 0; j < Arm::kDof; ++j) {
-      const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j], least = Policy::kLimitTolerance;
-      if (Arm::kRevolute[j] && !(low > -kPi && high <= kPi && high - low < kTurn - 2.0 * least)) return false;
-    }
-    return true;
-  }
-
-  static bool within(const double* q) noexcept {
-    bool in = true;
-    for (int j = 0; j < Arm::kDof; ++j) {
-      const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j];
-      in = in & (low <= q[j]) & (q[j] <= high);
-    }
-    return in;
-  }
-
-  enum class Place { Inside, Hardly, Outside };
-
-  static Place placed(double* q, const Options& options) noexcept {
-    if constexpr (one_turn())
-      if (options.limits && within(q)) return Place::Inside;
-    Place where = Place::Inside;
-    const double* seed = options.seed ? options.seed->data() : nullptr;
-    for (int j = 0; j < Arm::kDof; ++j) {
-      const double low = Arm::kLower.data()[j] - Policy::kLimitTolerance, high = Arm::kUpper.data()[j] + Policy::kLimitTolerance;
-      if (Arm::kRevolute[j] && !Arm::kHeld[j]) {
-        q[j] += q[j] <= -kPi ? kTurn : q[j] > kPi ? -kTurn : 0.0;
-        double shift = seed ? kTurn * std::nearbyint((seed[j] - q[j]) / kTurn) : 0.0;
-        if (options.limits && q[j] + shift < low) shift = kTurn * std::ceil((low - q[j]) / kTurn);
-        if (options.limits && q[j] + shift > high) shift = kTurn * std::floor((high - q[j]) / kTurn);
-        q[j] += shift;
-      }
-      if (!options.limits) continue;
-      if (!(low <= q[j] && q[j] <= high)) {
-        const double below = beyond(j, q[j], Arm::kLower.data()[j]), above = beyond(j, q[j], Arm::kUpper.data()[j]);
-        if (!(std::min(below, above) < Policy::kLimitReach)) return Place::Outside;
-        q[j] = below < above ? Arm::kLower.data()[j] : Arm::kUpper.data()[j];
-        where = Place::Hardly;
-      }
-      q[j] = std::min(std::max(q[j], Arm::kLower.data()[j]), Arm::kUpper.data()[j]);
-    }
-    return where;
-  }
-
-  static bool place(double* q, const Options& options) noexcept { return placed(q, options) == Place::Inside; }
-
-  template <class Out> static void sort_by_distance(Out& out, const double* seed) noexcept {
-    sort(out, [seed](const double* q) noexcept {
-      double sum = 0.0;
-      for (int j = 0; j < Arm::kDof; ++j) sum += (q[j] - seed[j]) * (q[j] - seed[j]);
-      return sum;
-    });
-  }
-
-  template <class Out, class Cost> static void sort(Out& out, const Cost& cost) noexcept {
-    const int count = out.count;
-    double costs[std::size_t{kRoom<Out>}], rows[std::size_t{kRoom<Out>}][Arm::kDof];
-    bool flags[std::size_t{kRoom<Out>}] = {};
-    int place[std::size_t{kRoom<Out>}] = {};
-    for (int k = 0; k < count; ++k) {
-      std::copy_n(row(out, k), Arm::kDof, rows[k]);
-      flags[k] = flag(out, k);
-      costs[k] = cost(rows[k]);
-      place[k] = 0;
-      for (int i = 0; i < k; ++i) {
-        const int before = costs[k] < costs[i] ? 1 : 0;
-        place[i] += before;
-        place[k] += 1 - before;
-      }
-    }
-    for (int k = 0; k < count; ++k) {
-      std::copy_n(rows[k], Arm::kDof, row(out, place[k]));
-      flag(out, place[k]) = flags[k];
-    }
-  }
-};
-
-// --- near continuum ------------------------------------------------------------------------------
-template <class Arm> struct NearContinuum {
+// --- curve samples -------------------------------------------------------------------------------
+template <class Arm> struct CurveSamples {
   using Fold = FoldPair<Arm>;
-  using Policy = typename Arm::Policy;
-  static constexpr int kRoom = 32;
-
-  int count = 0;  // solutions, nearly
-  double found[kRoom][Arm::kDof];
-
-  explicit NearContinuum(const HeldAim<Arm>& goal) noexcept : fold(goal) {}
-
-  enum class Kind { None, Broken, Whole };  // no continuum nearby, one of the solved geometry, one of the file's too
-
-  Kind trace(const double* start) noexcept {
-    const Sample first = at(start);
-    double worst = std::abs(first.left);
-    steps = 0.0;
-    if (!follow(first, 1.0, worst)) follow(first, -1.0, worst);
-    const Kind kind = steps < kLeast ? Kind::None : worst >= Policy::kArrived ? Kind::Broken : Kind::Whole;
-    if (kind == Kind::Whole || (kind == Kind::None && !lost)) count = 0;
-    return kind;
-  }
-
- private:
-  static constexpr int kMost = 96, kCorrections = 6, kSteps = 40, kDeep = 24, kLeast = 4;
-  static constexpr double kNear = 1e-11;  // rad or m: how far off the curve slopes along it are the curve's
-  static constexpr double kShare = 3e-2;  // of what is left: as little as that off the curve changes neither
-  static constexpr double kRoundOff = 1e-15, kSmall = 4e-15, kDoubt = 0.03, kBeside = 0.06, kSameWay = 0.9;
-  static constexpr double kFloor = 0.1, kAhead = 0.5;  // the shortest step, of Policy::kTryStep; how a step turns at most
-  static constexpr int kCubics = 4, kNewton = 4;
-  static constexpr double kBeyond = 4.0;  // how far what is left at the end of a curve's last part may be beyond its bound
-  static constexpr double kWay = 1e-10;  // rad or m: along a curve, by which what is left varies by round-off
-  static constexpr double kSlow = 0.1, kSteady = 0.8;  // how fast corrections converge that are not left to themselves
 
   struct Sample {
     double q[Arm::kDof], still[Fold::kMoving], out[Fold::kEquations], left, slope;
@@ -1103,17 +1073,17 @@ template <class Arm> struct NearContinuum {
 
   Fold fold;
   int samples = 600;  // that are left to be taken
-  double steps = 0.0;  // of Policy::kTryStep
-  bool lost = false;   // where corrections converge from no step
 
-  Sample at(const double* q, bool anew = true) noexcept {
+  explicit CurveSamples(const HeldAim<Arm>& goal) noexcept : fold(goal) {}
+
+  Sample at(const double* q) noexcept {
     Sample s;
     std::copy_n(q, Arm::kDof, s.q);
     s.on = false;
     double before[Fold::kMoving] = {}, last = kInfinity;
     for (int i = 0; i < kCorrections && !s.on; ++i) {
       double across[Fold::kMoving];
-      const double farthest = fold.correct(s.q, anew && i == 0, s.left, s.slope, across);
+      const double farthest = fold.correct(s.q, i == 0, s.left, s.slope, across);
       s.on = farthest < std::max(kNear, kShare * std::abs(s.left));
       const bool leaps = !s.on && farthest > kSlow * last && leap(before, across, s.q);
       last = leaps ? kInfinity : farthest;
@@ -1143,12 +1113,105 @@ template <class Arm> struct NearContinuum {
     return at(q);
   }
 
-  bool follow(const Sample& first, double sense, double& worst) noexcept {
+  Sample part(const Sample& a, const Sample& b, double share) noexcept {
+    double q[Arm::kDof];
+    between(a, b, share, q);
+    return at(q, a);
+  }
+
+  static void between(const Sample& a, const Sample& b, double share, double* q) noexcept {
+    double along = 0.0, beyond = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      const double way = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
+      along += way * a.still[k];
+      beyond += way * b.still[k];
+    }
+    const double rest = 1.0 - share, first = share * rest * rest, last = -share * share * rest;
+    std::copy_n(a.q, Arm::kDof, q);
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      const int j = Fold::kJoints[k];
+      const double way = b.q[j] - a.q[j];
+      q[j] += share * way + first * (along * a.still[k] - way) + last * (beyond * b.still[k] - way);
+    }
+  }
+
+ private:
+  static constexpr int kCorrections = 6;
+  static constexpr double kNear = 1e-11;  // rad or m: how far off the curve slopes along it are the curve's
+  static constexpr double kShare = 3e-2;  // of what is left: as little as that off the curve changes neither
+  static constexpr double kSlow = 0.1, kSteady = 0.8;  // how fast corrections converge that are not left to themselves
+};
+
+// --- near continuum ------------------------------------------------------------------------------
+template <class Arm> struct NearContinuum : CurveSamples<Arm> {
+  using Curve = CurveSamples<Arm>;
+  using Fold = FoldPair<Arm>;
+  using Sample = typename Curve::Sample;
+  using Policy = typename Arm::Policy;
+  static constexpr int kRoom = 32;
+
+  struct Passed {
+    static constexpr int kSamples = 128;
+    int count = 0;
+    Sample sample[kSamples];
+    bool first[kSamples];  // of a way along a curve
+
+    void add(const Sample& s, bool begins) noexcept {
+      if (count < kSamples) {
+        first[count] = begins;
+        sample[count] = s;
+      }
+      ++count;
+    }
+  };
+
+  int count = 0;  // solutions, nearly
+  double found[kRoom][Arm::kDof];
+
+  explicit NearContinuum(const HeldAim<Arm>& goal) noexcept : Curve(goal) {}
+
+  using Curve::at;
+  using Curve::between;
+  using Curve::part;
+  using Curve::samples;
+
+  enum class Kind { None, Broken, Known, Whole };
+
+  Kind trace(const double* start, Passed& passed) noexcept {
+    const Sample first = at(start);
+    if (const int end = passed_part(passed, first); end > 0) {
+      look_beside(passed.sample[end - 1], first, passed.sample[end]);
+      return Kind::Known;
+    }
+    const int known = passed.count;
+    double worst = std::abs(first.left);
+    steps = 0.0;
+    if (!follow(first, 1.0, worst, passed)) follow(first, -1.0, worst, passed);
+    const Kind kind = steps < kLeast ? Kind::None : worst >= Policy::kArrived ? Kind::Broken : Kind::Whole;
+    if (kind == Kind::Whole || (kind == Kind::None && !lost)) count = 0;
+    if (kind != Kind::Broken || lost || !ended || passed.count > Passed::kSamples) passed.count = known;
+    return kind;
+  }
+
+ private:
+  static constexpr int kMost = 96, kSteps = 40, kDeep = 24, kLeast = 4;
+  static constexpr double kRoundOff = 1e-15, kSmall = 4e-15, kDoubt = 0.03, kBeside = 0.06, kSameWay = 0.9;
+  static constexpr double kFloor = 0.1, kAhead = 0.5;  // the shortest step, of Policy::kTryStep; how a step turns at most
+  static constexpr int kCubics = 4, kNewton = 4, kRounds = 3;
+  static constexpr double kOver = 0.05, kOn = 1e-6;  // of a part; rad or m off it
+  static constexpr double kBeyond = 4.0;  // how far what is left at the end of a curve's last part may be beyond its bound
+  static constexpr double kWay = 1e-10;  // rad or m: along a curve, by which what is left varies by round-off
+
+  double steps = 0.0;  // of Policy::kTryStep
+  bool lost = false;   // where corrections converge from no step
+  bool ended = true;   // whether they were followed to their ends
+
+  bool follow(const Sample& first, double sense, double& worst, Passed& passed) noexcept {
     Sample b = first;
-    b.left *= sense;
-    for (double& x : b.still) x *= sense;
-    for (double& x : b.out) x *= sense;
+    if (sense < 0.0) turn_round(b);
     const Sample origin = b;
+    if (is_solution(b)) keep(b);
+    passed.add(b, true);
     double reach = Policy::kTryStep, last = reach, before[Fold::kMoving];
     std::copy_n(b.still, Fold::kMoving, before);
     for (int k = 0; k < kMost && samples > 0; ++k) {
@@ -1174,15 +1237,72 @@ template <class Arm> struct NearContinuum {
         return false;
       }
       steps += reach / Policy::kTryStep;
+      passed.add(c, false);
       worst = std::max(worst, std::abs(c.left));
+      if (is_solution(c)) keep(c);
       look(b, c, kDeep);
       if (k > 1 && back(origin, b)) break;
       std::copy_n(b.still, Fold::kMoving, before);
       b = c;
       last = reach;
       reach = std::min(2.0 * reach, Policy::kTryStep);
+      ended = ended && k + 1 < kMost && samples > 0;
     }
     return true;
+  }
+
+  int passed_part(const Passed& passed, const Sample& s) noexcept {
+    for (int i = 1; i < passed.count && s.on; ++i) {
+      const Sample &a = passed.sample[i - 1], &b = passed.sample[i];
+      if (passed.first[i]) continue;
+      double along = 0.0, square = 0.0, from[Fold::kMoving], aside = 0.0, q[Arm::kDof];
+      for (int k = 0; k < Fold::kMoving; ++k) {
+        const double way = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
+        from[k] = SolutionRows<Arm>::change(Fold::kJoints[k], a.q, s.q);
+        along += way * from[k];
+        square += way * way;
+      }
+      const double share = along / square;
+      if (!(share > -kOver && share < 1.0 + kOver)) continue;
+      for (int k = 0; k < Fold::kMoving; ++k)
+        aside = std::max(aside, std::abs(from[k] - share * (b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]])));
+      if (!(aside < kBeside)) continue;
+      between(a, b, share, q);
+      for (int round = 0; round < kRounds; ++round) {
+        const Sample c = at(q, a);
+        if (!c.on) break;
+        double ahead = 0.0;
+        aside = 0.0;
+        for (int k = 0; k < Fold::kMoving; ++k) {
+          from[k] = SolutionRows<Arm>::change(Fold::kJoints[k], c.q, s.q);
+          ahead += from[k] * c.still[k];
+        }
+        for (int k = 0; k < Fold::kMoving; ++k) aside = std::max(aside, std::abs(from[k] - ahead * c.still[k]));
+        if (aside < kOn) return i;
+        if (!(aside < ahead * ahead)) break;
+        std::copy_n(c.q, Arm::kDof, q);
+        for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += ahead * c.still[k];
+      }
+    }
+    return 0;
+  }
+
+  void look_beside(const Sample& a, Sample s, const Sample& b) noexcept {
+    double same = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      same += a.still[k] * s.still[k];
+      s.q[Fold::kJoints[k]] = a.q[Fold::kJoints[k]] + SolutionRows<Arm>::change(Fold::kJoints[k], a.q, s.q);
+    }
+    if (same < 0.0) turn_round(s);
+    if (is_solution(s)) keep(s);
+    look(a, s, kDeep);
+    look(s, b, kDeep);
+  }
+
+  static void turn_round(Sample& s) noexcept {
+    s.left = -s.left;
+    for (double& x : s.still) x = -x;
+    for (double& x : s.out) x = -x;
   }
 
   static bool ahead(const Sample& a, const Sample& b, double reach) noexcept {
@@ -1208,27 +1328,7 @@ template <class Arm> struct NearContinuum {
     return same > kSameWay;
   }
 
-  Sample part(const Sample& a, const Sample& b, double share) noexcept {
-    double q[Arm::kDof];
-    between(a, b, share, q);
-    return at(q, a);
-  }
-
-  static void between(const Sample& a, const Sample& b, double share, double* q) noexcept {
-    double along = 0.0, beyond = 0.0;
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      const double way = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
-      along += way * a.still[k];
-      beyond += way * b.still[k];
-    }
-    const double rest = 1.0 - share, first = share * rest * rest, last = -share * share * rest;
-    std::copy_n(a.q, Arm::kDof, q);
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      const int j = Fold::kJoints[k];
-      const double way = b.q[j] - a.q[j];
-      q[j] += share * way + first * (along * a.still[k] - way) + last * (beyond * b.still[k] - way);
-    }
-  }
+  static bool is_solution(const Sample& s) noexcept { return std::abs(s.left) < kSmall; }
 
   void look(const Sample& a, const Sample& b, int deep) noexcept {
     if (std::max(std::abs(a.left), std::abs(b.left)) >= kBeyond * Policy::kFoldReach) return;  // far beyond the curve's end
@@ -1237,10 +1337,12 @@ template <class Arm> struct NearContinuum {
     const double most = std::max({std::abs(a.left), std::abs(inner[0]), std::abs(inner[1]), std::abs(b.left)});
     if (most < kSmall || deep == 0 || samples <= 0) return keep(std::abs(a.left) < std::abs(b.left) ? a : b);
     const bool doubtful = std::min(std::abs(inner[0]), std::abs(inner[1])) < kDoubt * most;
-    const bool changes[3] = {a.left * inner[0] <= 0.0, inner[0] * inner[1] <= 0.0, inner[1] * b.left <= 0.0};
+    const bool from = is_solution(a), to = is_solution(b);  // whose sign is round-off's, and that are kept
+    const bool changes[3] = {!from && a.left * inner[0] <= 0.0, inner[0] * inner[1] <= 0.0, !to && inner[1] * b.left <= 0.0};
     const int count_of = changes[0] + changes[1] + changes[2];
-    if (doubtful || count_of > 1) {
+    if (doubtful || count_of > 1 || (count_of == 1 && (from || to))) {
       const Sample middle = part(a, b, 0.5);
+      if (is_solution(middle)) keep(middle);
       look(a, middle, deep - 1);
       look(middle, b, deep - 1);
     } else if (count_of == 1) {
@@ -1611,9 +1713,9 @@ template <class Arm> struct CarefulRows {
       take_rest(aim, out);
     }
 
-    bool add_around(const Aim& aim, Places& out) noexcept {
+    bool add_around(const Aim& aim, typename NearContinuum<Arm>::Passed& passed, Places& out) noexcept {
       NearContinuum<Arm> curve(aim);
-      const bool none = curve.trace(start) == NearContinuum<Arm>::Kind::None;
+      const bool none = curve.trace(start, passed) == NearContinuum<Arm>::Kind::None;
       Nearest aside(*this);
       if (!none) error = kInfinity;
       for (int k = 0; k < curve.count; ++k) (none ? aside : *this).take(aim, curve.found[k], out);
@@ -1627,6 +1729,7 @@ template <class Arm> struct CarefulRows {
   struct Starts {
     int count = 0;
     bool traced[Arm::kLanes] = {};
+    typename NearContinuum<Arm>::Passed passed;
     std::array<Nearest, std::size_t{Arm::kLanes} * (1 + Arm::kBesides)> all;
 
     Nearest& at(int k) noexcept { return all[static_cast<std::size_t>(k)]; }
@@ -1640,7 +1743,7 @@ template <class Arm> struct CarefulRows {
     void take(Nearest start, const End& end, bool beside, const Aim& aim, Places& out) noexcept {
       if (!(Arm::kRounded && start.marked)) start.refine(aim, end);
       if (start.marked && (Arm::kRounded || !(start.error < Policy::kArrived))) {
-        if (!traced[start.lane]) traced[start.lane] = start.add_around(aim, out);
+        if (!traced[start.lane]) traced[start.lane] = start.add_around(aim, passed, out);
         if (traced[start.lane]) return;
         start.marked = false;
         start.refine(aim, end);

@@ -204,6 +204,25 @@ def test_a_change_of_sign_from_one_curve_to_another_is_no_solution(
     assert not len(found) and taken == [1]
 
 
+@pytest.mark.parametrize("off", [0.0, 1e-16, -1e-16])
+@pytest.mark.parametrize("end", [-0.4, 0.4, 0.0])
+def test_a_sample_at_a_solution_hides_no_other(
+    end: float, off: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever sign round-off gives it."""
+    ways = np.array([end, end + 6e-3 * (1.0 if end < 0.0 else -1.0)])
+
+    def sample(arm: Any, at: Reduced, T: Array) -> Reduced:
+        s = on_line(at.q[:, 0], ways)
+        return s._replace(left=np.where(at.q[:, 0] == end, off, s.left))
+
+    monkeypatch.setattr(near_continuum, "_sample", sample)
+    a, b = (sample(LINE, on_line(np.array([x]), ways), np.zeros((1, 4, 4))) for x in (-0.4, 0.4))
+    parts = _Parts(a, b, np.zeros(1, np.intp), np.zeros(1), np.ones(1))
+    _, found = _look(LINE, parts, np.zeros((1, 4, 4)), np.zeros(1, np.intp))
+    np.testing.assert_allclose(np.sort(found[:, 0]), np.sort(ways), atol=1e-9)
+
+
 @pytest.mark.parametrize(("reach", "wanted"), [(0.3, [0.45]), (0.1, [])])
 def test_solutions_in_the_last_part_of_a_curve_are_found(
     reach: float, wanted: list[float], monkeypatch: pytest.MonkeyPatch

@@ -3,107 +3,87 @@
 // solution is where what is left changes its sign, or touches 0.
 #pragma once
 
-#include "singular/fold_pair.hpp"
 #include "rows/solution_rows.hpp"
+#include "singular/curve_samples.hpp"
 
 namespace ikgen_runtime {
 
 // Arm: as for FoldPair and SolutionRows.
-template <class Arm> struct NearContinuum {
+template <class Arm> struct NearContinuum : CurveSamples<Arm> {
+  using Curve = CurveSamples<Arm>;
   using Fold = FoldPair<Arm>;
+  using Sample = typename Curve::Sample;
   using Policy = typename Arm::Policy;
   static constexpr int kRoom = 32;
+
+  // Samples of broken curves that were followed all around or to both their ends, in order.
+  struct Passed {
+    static constexpr int kSamples = 128;
+    int count = 0;
+    Sample sample[kSamples];
+    bool first[kSamples];  // of a way along a curve
+
+    void add(const Sample& s, bool begins) noexcept {
+      if (count < kSamples) {
+        first[count] = begins;
+        sample[count] = s;
+      }
+      ++count;
+    }
+  };
 
   int count = 0;  // solutions, nearly
   double found[kRoom][Arm::kDof];
 
-  explicit NearContinuum(const HeldAim<Arm>& goal) noexcept : fold(goal) {}
+  explicit NearContinuum(const HeldAim<Arm>& goal) noexcept : Curve(goal) {}
 
-  enum class Kind { None, Broken, Whole };  // no continuum nearby, one of the solved geometry, one of the file's too
+  using Curve::at;
+  using Curve::between;
+  using Curve::part;
+  using Curve::samples;
+
+  // No continuum nearby, one of the solved geometry, one that was passed, one of the file's too.
+  enum class Kind { None, Broken, Known, Whole };
 
   // Finds those on the curve through a configuration: once around, or to both its ends; of one that is too short only
   // where it could not be followed.
-  Kind trace(const double* start) noexcept {
+  Kind trace(const double* start, Passed& passed) noexcept {
     const Sample first = at(start);
+    if (const int end = passed_part(passed, first); end > 0) {
+      look_beside(passed.sample[end - 1], first, passed.sample[end]);
+      return Kind::Known;
+    }
+    const int known = passed.count;
     double worst = std::abs(first.left);
     steps = 0.0;
-    if (!follow(first, 1.0, worst)) follow(first, -1.0, worst);
+    if (!follow(first, 1.0, worst, passed)) follow(first, -1.0, worst, passed);
     const Kind kind = steps < kLeast ? Kind::None : worst >= Policy::kArrived ? Kind::Broken : Kind::Whole;
     if (kind == Kind::Whole || (kind == Kind::None && !lost)) count = 0;
+    if (kind != Kind::Broken || lost || !ended || passed.count > Passed::kSamples) passed.count = known;
     return kind;
   }
 
  private:
-  static constexpr int kMost = 96, kCorrections = 6, kSteps = 40, kDeep = 24, kLeast = 4;
-  static constexpr double kNear = 1e-11;  // rad or m: how far off the curve slopes along it are the curve's
-  static constexpr double kShare = 3e-2;  // of what is left: as little as that off the curve changes neither
+  static constexpr int kMost = 96, kSteps = 40, kDeep = 24, kLeast = 4;
   static constexpr double kRoundOff = 1e-15, kSmall = 4e-15, kDoubt = 0.03, kBeside = 0.06, kSameWay = 0.9;
   static constexpr double kFloor = 0.1, kAhead = 0.5;  // the shortest step, of Policy::kTryStep; how a step turns at most
-  static constexpr int kCubics = 4, kNewton = 4;
+  static constexpr int kCubics = 4, kNewton = 4, kRounds = 3;
+  static constexpr double kOver = 0.05, kOn = 1e-6;  // of a part; rad or m off it
   static constexpr double kBeyond = 4.0;  // how far what is left at the end of a curve's last part may be beyond its bound
   static constexpr double kWay = 1e-10;  // rad or m: along a curve, by which what is left varies by round-off
-  static constexpr double kSlow = 0.1, kSteady = 0.8;  // how fast corrections converge that are not left to themselves
 
-  // A configuration of which one direction of the error is left, and how that grows along the still direction; whether
-  // its corrections converged.
-  struct Sample {
-    double q[Arm::kDof], still[Fold::kMoving], out[Fold::kEquations], left, slope;
-    bool on;
-  };
-
-  Fold fold;
-  int samples = 600;  // that are left to be taken
   double steps = 0.0;  // of Policy::kTryStep
   bool lost = false;   // where corrections converge from no step
-
-  // anew: whether the still direction may be another than that of the sample before.
-  Sample at(const double* q, bool anew = true) noexcept {
-    Sample s;
-    std::copy_n(q, Arm::kDof, s.q);
-    s.on = false;
-    double before[Fold::kMoving] = {}, last = kInfinity;
-    for (int i = 0; i < kCorrections && !s.on; ++i) {
-      double across[Fold::kMoving];
-      const double farthest = fold.correct(s.q, anew && i == 0, s.left, s.slope, across);
-      s.on = farthest < std::max(kNear, kShare * std::abs(s.left));
-      const bool leaps = !s.on && farthest > kSlow * last && leap(before, across, s.q);
-      last = leaps ? kInfinity : farthest;
-      std::copy_n(across, Fold::kMoving, before);
-    }
-    std::copy_n(fold.still, Fold::kMoving, s.still);
-    std::copy_n(fold.out, Fold::kEquations, s.out);
-    --samples;
-    return s;
-  }
-
-  // Goes to where two corrections that converge slowly lead in the end (Aitken 1926), if they do.
-  static bool leap(const double* before, const double* across, double* q) noexcept {
-    double along = 0.0, square = 0.0;
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      along += across[k] * before[k];
-      square += before[k] * before[k];
-    }
-    const double ratio = along / square;
-    if (!(std::abs(ratio) < kSteady)) return false;
-    for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += ratio / (1.0 - ratio) * across[k];
-    return true;
-  }
-
-  // Beside a sample.
-  Sample at(const double* q, const Sample& from) noexcept {
-    std::copy_n(from.still, Fold::kMoving, fold.still);
-    std::copy_n(from.out, Fold::kEquations, fold.out);
-    return at(q);
-  }
+  bool ended = true;   // whether they were followed to their ends
 
   // On from a sample, the fastest joint by Policy::kTryStep from one to the next, or by less where corrections converge
   // from there alone; whether it comes back to where it began.
-  bool follow(const Sample& first, double sense, double& worst) noexcept {
+  bool follow(const Sample& first, double sense, double& worst, Passed& passed) noexcept {
     Sample b = first;
-    b.left *= sense;
-    for (double& x : b.still) x *= sense;
-    for (double& x : b.out) x *= sense;
+    if (sense < 0.0) turn_round(b);
     const Sample origin = b;
+    if (is_solution(b)) keep(b);
+    passed.add(b, true);
     double reach = Policy::kTryStep, last = reach, before[Fold::kMoving];
     std::copy_n(b.still, Fold::kMoving, before);
     for (int k = 0; k < kMost && samples > 0; ++k) {
@@ -129,15 +109,76 @@ template <class Arm> struct NearContinuum {
         return false;
       }
       steps += reach / Policy::kTryStep;
+      passed.add(c, false);
       worst = std::max(worst, std::abs(c.left));
+      if (is_solution(c)) keep(c);
       look(b, c, kDeep);
       if (k > 1 && back(origin, b)) break;
       std::copy_n(b.still, Fold::kMoving, before);
       b = c;
       last = reach;
       reach = std::min(2.0 * reach, Policy::kTryStep);
+      ended = ended && k + 1 < kMost && samples > 0;
     }
     return true;
+  }
+
+  // The end of the part of passed curves that goes through a sample, or 0.
+  int passed_part(const Passed& passed, const Sample& s) noexcept {
+    for (int i = 1; i < passed.count && s.on; ++i) {
+      const Sample &a = passed.sample[i - 1], &b = passed.sample[i];
+      if (passed.first[i]) continue;
+      double along = 0.0, square = 0.0, from[Fold::kMoving], aside = 0.0, q[Arm::kDof];
+      for (int k = 0; k < Fold::kMoving; ++k) {
+        const double way = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
+        from[k] = SolutionRows<Arm>::change(Fold::kJoints[k], a.q, s.q);
+        along += way * from[k];
+        square += way * way;
+      }
+      const double share = along / square;
+      if (!(share > -kOver && share < 1.0 + kOver)) continue;
+      for (int k = 0; k < Fold::kMoving; ++k)
+        aside = std::max(aside, std::abs(from[k] - share * (b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]])));
+      if (!(aside < kBeside)) continue;
+      between(a, b, share, q);
+      for (int round = 0; round < kRounds; ++round) {
+        const Sample c = at(q, a);
+        if (!c.on) break;
+        double ahead = 0.0;
+        aside = 0.0;
+        for (int k = 0; k < Fold::kMoving; ++k) {
+          from[k] = SolutionRows<Arm>::change(Fold::kJoints[k], c.q, s.q);
+          ahead += from[k] * c.still[k];
+        }
+        for (int k = 0; k < Fold::kMoving; ++k) aside = std::max(aside, std::abs(from[k] - ahead * c.still[k]));
+        if (aside < kOn) return i;
+        if (!(aside < ahead * ahead)) break;
+        std::copy_n(c.q, Arm::kDof, q);
+        for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += ahead * c.still[k];
+      }
+    }
+    return 0;
+  }
+
+  // In a part that was looked at before, to both sides of another sample of it: solutions there may be more than a cubic
+  // tells, and closed forms start near them.
+  void look_beside(const Sample& a, Sample s, const Sample& b) noexcept {
+    double same = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      same += a.still[k] * s.still[k];
+      s.q[Fold::kJoints[k]] = a.q[Fold::kJoints[k]] + SolutionRows<Arm>::change(Fold::kJoints[k], a.q, s.q);
+    }
+    if (same < 0.0) turn_round(s);
+    if (is_solution(s)) keep(s);
+    look(a, s, kDeep);
+    look(s, b, kDeep);
+  }
+
+  // The same sample of a curve that is followed the other way.
+  static void turn_round(Sample& s) noexcept {
+    s.left = -s.left;
+    for (double& x : s.still) x = -x;
+    for (double& x : s.out) x = -x;
   }
 
   // Whether the curve goes on from a sample to another, and not back.
@@ -165,28 +206,7 @@ template <class Arm> struct NearContinuum {
     return same > kSameWay;
   }
 
-  Sample part(const Sample& a, const Sample& b, double share) noexcept {
-    double q[Arm::kDof];
-    between(a, b, share, q);
-    return at(q, a);
-  }
-
-  // By the cubic through two configurations along their still directions (Hermite).
-  static void between(const Sample& a, const Sample& b, double share, double* q) noexcept {
-    double along = 0.0, beyond = 0.0;
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      const double way = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
-      along += way * a.still[k];
-      beyond += way * b.still[k];
-    }
-    const double rest = 1.0 - share, first = share * rest * rest, last = -share * share * rest;
-    std::copy_n(a.q, Arm::kDof, q);
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      const int j = Fold::kJoints[k];
-      const double way = b.q[j] - a.q[j];
-      q[j] += share * way + first * (along * a.still[k] - way) + last * (beyond * b.still[k] - way);
-    }
-  }
+  static bool is_solution(const Sample& s) noexcept { return std::abs(s.left) < kSmall; }
 
   // Between two samples, by the signs of the coefficients, after Bernstein, of the cubic through values and slopes.
   void look(const Sample& a, const Sample& b, int deep) noexcept {
@@ -196,10 +216,12 @@ template <class Arm> struct NearContinuum {
     const double most = std::max({std::abs(a.left), std::abs(inner[0]), std::abs(inner[1]), std::abs(b.left)});
     if (most < kSmall || deep == 0 || samples <= 0) return keep(std::abs(a.left) < std::abs(b.left) ? a : b);
     const bool doubtful = std::min(std::abs(inner[0]), std::abs(inner[1])) < kDoubt * most;
-    const bool changes[3] = {a.left * inner[0] <= 0.0, inner[0] * inner[1] <= 0.0, inner[1] * b.left <= 0.0};
+    const bool from = is_solution(a), to = is_solution(b);  // whose sign is round-off's, and that are kept
+    const bool changes[3] = {!from && a.left * inner[0] <= 0.0, inner[0] * inner[1] <= 0.0, !to && inner[1] * b.left <= 0.0};
     const int count_of = changes[0] + changes[1] + changes[2];
-    if (doubtful || count_of > 1) {
+    if (doubtful || count_of > 1 || (count_of == 1 && (from || to))) {
       const Sample middle = part(a, b, 0.5);
+      if (is_solution(middle)) keep(middle);
       look(a, middle, deep - 1);
       look(middle, b, deep - 1);
     } else if (count_of == 1) {

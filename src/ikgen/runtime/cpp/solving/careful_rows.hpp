@@ -194,9 +194,9 @@ template <class Arm> struct CarefulRows {
 
     // Adds the solutions all around a continuum of the solved geometry that the file's arm may not have, or one of it if
     // the file's has it; whether there is one.
-    bool add_around(const Aim& aim, Places& out) noexcept {
+    bool add_around(const Aim& aim, typename NearContinuum<Arm>::Passed& passed, Places& out) noexcept {
       NearContinuum<Arm> curve(aim);
-      const bool none = curve.trace(start) == NearContinuum<Arm>::Kind::None;
+      const bool none = curve.trace(start, passed) == NearContinuum<Arm>::Kind::None;
       Nearest aside(*this);
       if (!none) error = kInfinity;
       for (int k = 0; k < curve.count; ++k) (none ? aside : *this).take(aim, curve.found[k], out);
@@ -212,6 +212,7 @@ template <class Arm> struct CarefulRows {
   struct Starts {
     int count = 0;
     bool traced[Arm::kLanes] = {};
+    typename NearContinuum<Arm>::Passed passed;
     std::array<Nearest, std::size_t{Arm::kLanes} * (1 + Arm::kBesides)> all;
 
     Nearest& at(int k) noexcept { return all[static_cast<std::size_t>(k)]; }
@@ -227,7 +228,8 @@ template <class Arm> struct CarefulRows {
         Nearest& one = at(k);
         if (one.around || !one.nearby || !RankLoss<Arm>::below(one.q, Policy::kBrokenReach)) continue;
         NearContinuum<Arm> curve(aim);
-        one.around = curve.trace(one.q) == NearContinuum<Arm>::Kind::Broken;
+        const auto kind = curve.trace(one.q, passed);
+        one.around = kind == NearContinuum<Arm>::Kind::Broken || kind == NearContinuum<Arm>::Kind::Known;
         for (int i = 0; i < curve.count; ++i) {
           Nearest(one).take(aim, curve.found[i], out);
           for (int other = k + 1; other < count && one.around; ++other)
@@ -242,7 +244,7 @@ template <class Arm> struct CarefulRows {
     void take(Nearest start, const End& end, bool beside, const Aim& aim, Places& out) noexcept {
       if (!(Arm::kRounded && start.marked)) start.refine(aim, end);
       if (start.marked && (Arm::kRounded || !(start.error < Policy::kArrived))) {
-        if (!traced[start.lane]) traced[start.lane] = start.add_around(aim, out);
+        if (!traced[start.lane]) traced[start.lane] = start.add_around(aim, passed, out);
         if (traced[start.lane]) return;
         start.marked = false;
         start.refine(aim, end);

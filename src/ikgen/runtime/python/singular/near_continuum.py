@@ -27,9 +27,7 @@ _LEAP, _SOON = 16.0, 3
 _BEYOND = 4.0  # how far what is left behind the last part of a curve may be beyond its bound
 _SAMPLES = 600  # of a curve
 _ROOM = 32  # solutions of a curve
-_NEAR = (
-    1e-8  # rad or m: how far off the curve what is left, whose error is the square, is the curve's
-)
+_NEAR = 1e-8  # rad or m: so far off the curve what is left, whose error is the square, is its
 _SHARE = 3e-2  # or, of what is left: as little as that off the curve changes neither
 _ALMOST, _SAME = 1e-3, 4e-15  # or how close it must be where what is left is the same after a step
 _STRAY = 1.0  # rad or m: larger corrections, of so many samples,
@@ -165,11 +163,8 @@ def _follow(arm: Arm, first: Reduced, T: Array) -> tuple[_Parts, _Parts, Array]:
     once[count:] = ~closed[:count]
     worst = np.maximum(worst[:count], np.where(once[count:], worst[count:], 0.0))
     found, last = (some_of(some, once[some.owner]) for some in (joined(*parts), joined(*ends)))
-    return (
-        found._replace(owner=found.owner % count),
-        last._replace(owner=last.owner % count),
-        worst,
-    )
+    found, last = (some._replace(owner=some.owner % count) for some in (found, last))
+    return found, last, worst
 
 
 def _back(arm: Arm, a: Reduced, b: Reduced) -> Flags:
@@ -200,7 +195,7 @@ def _look(arm: Arm, parts: _Parts, T: Array, samples: Index) -> tuple[Index, Arr
     """The solutions (n, dof) inside parts, by the signs of the coefficients, after Bernstein, of cubics
     through values and slopes; whose they are (n,). `samples` (k,): that were taken of each curve. Where a
     sample is far beyond what is left at the end of a curve, there is none."""
-    kept, brackets = [], []
+    kept, brackets = [_solved(parts, parts.a, 0.0), _solved(parts, parts.b, 1.0)], []
     for deep in range(_DEEP + 1):
         most = np.maximum(np.abs(parts.a.left), np.abs(parts.b.left))
         parts = some_of(parts, ~(most >= _BEYOND * arm.policy.fold_reach))
@@ -209,14 +204,18 @@ def _look(arm: Arm, parts: _Parts, T: Array, samples: Index) -> tuple[Index, Arr
         spent = samples[parts.owner] >= _SAMPLES
         end = (most < _SMALL) | spent | (deep == _DEEP)
         doubtful = np.abs(values[1:3]).min(axis=0) < _DOUBT * most
-        changes = (values[:-1] * values[1:] <= 0.0).sum(axis=0)
-        split = ~end & (doubtful | (changes > 1))
+        found = np.abs(values[[0, 3]]) < _SMALL  # ends whose sign is round-off's
+        change = values[:-1] * values[1:] <= 0.0
+        change[::2] &= ~found
+        changes = change.sum(axis=0)
+        split = ~end & (doubtful | (changes > 1) | ((changes == 1) & found.any(axis=0)))
         kept.append(some_of(parts, end))
         brackets.append(some_of(parts, ~end & ~split & (changes == 1)))
         if not split.any():
             break
         parts = some_of(parts, split)
         middle = _between(arm, parts, np.full(len(parts.owner), 0.5), T)
+        kept.append(_solved(parts, middle, 0.5))
         samples = samples + np.bincount(parts.owner, minlength=len(samples))
         half = 0.5 * parts.width
         parts = joined(
@@ -224,6 +223,13 @@ def _look(arm: Arm, parts: _Parts, T: Array, samples: Index) -> tuple[Index, Arr
             parts._replace(a=middle, place=parts.place + half, width=half),
         )
     return _kept(arm, joined(*kept, _closed_in(arm, joined(*brackets), T)))
+
+
+def _solved(parts: _Parts, at: Reduced, share: float) -> _Parts:
+    """Of samples at a share of the way those at solutions, as parts without length."""
+    place = parts.place + share * parts.width
+    out: _Parts = some_of(_Parts(at, at, parts.owner, place, 0.0 * place), np.abs(at.left) < _SMALL)
+    return out
 
 
 def _bernstein(arm: Arm, parts: _Parts) -> Array:

@@ -1,0 +1,94 @@
+// Samples of a curve along which the other joints take the pose's error away but for one direction.
+#pragma once
+
+#include "singular/fold_pair.hpp"
+
+namespace ikgen_runtime {
+
+// Arm: as for FoldPair.
+template <class Arm> struct CurveSamples {
+  using Fold = FoldPair<Arm>;
+
+  // A configuration of which one direction of the error is left, and how that grows along the still direction; whether
+  // its corrections converged.
+  struct Sample {
+    double q[Arm::kDof], still[Fold::kMoving], out[Fold::kEquations], left, slope;
+    bool on;
+  };
+
+  Fold fold;
+  int samples = 600;  // that are left to be taken
+
+  explicit CurveSamples(const HeldAim<Arm>& goal) noexcept : fold(goal) {}
+
+  // On the curve beside a configuration.
+  Sample at(const double* q) noexcept {
+    Sample s;
+    std::copy_n(q, Arm::kDof, s.q);
+    s.on = false;
+    double before[Fold::kMoving] = {}, last = kInfinity;
+    for (int i = 0; i < kCorrections && !s.on; ++i) {
+      double across[Fold::kMoving];
+      const double farthest = fold.correct(s.q, i == 0, s.left, s.slope, across);
+      s.on = farthest < std::max(kNear, kShare * std::abs(s.left));
+      const bool leaps = !s.on && farthest > kSlow * last && leap(before, across, s.q);
+      last = leaps ? kInfinity : farthest;
+      std::copy_n(across, Fold::kMoving, before);
+    }
+    std::copy_n(fold.still, Fold::kMoving, s.still);
+    std::copy_n(fold.out, Fold::kEquations, s.out);
+    --samples;
+    return s;
+  }
+
+  // Goes to where two corrections that converge slowly lead in the end (Aitken 1926), if they do.
+  static bool leap(const double* before, const double* across, double* q) noexcept {
+    double along = 0.0, square = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      along += across[k] * before[k];
+      square += before[k] * before[k];
+    }
+    const double ratio = along / square;
+    if (!(std::abs(ratio) < kSteady)) return false;
+    for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += ratio / (1.0 - ratio) * across[k];
+    return true;
+  }
+
+  // Beside a sample.
+  Sample at(const double* q, const Sample& from) noexcept {
+    std::copy_n(from.still, Fold::kMoving, fold.still);
+    std::copy_n(from.out, Fold::kEquations, fold.out);
+    return at(q);
+  }
+
+  Sample part(const Sample& a, const Sample& b, double share) noexcept {
+    double q[Arm::kDof];
+    between(a, b, share, q);
+    return at(q, a);
+  }
+
+  // By the cubic through two configurations along their still directions (Hermite).
+  static void between(const Sample& a, const Sample& b, double share, double* q) noexcept {
+    double along = 0.0, beyond = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      const double way = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
+      along += way * a.still[k];
+      beyond += way * b.still[k];
+    }
+    const double rest = 1.0 - share, first = share * rest * rest, last = -share * share * rest;
+    std::copy_n(a.q, Arm::kDof, q);
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      const int j = Fold::kJoints[k];
+      const double way = b.q[j] - a.q[j];
+      q[j] += share * way + first * (along * a.still[k] - way) + last * (beyond * b.still[k] - way);
+    }
+  }
+
+ private:
+  static constexpr int kCorrections = 6;
+  static constexpr double kNear = 1e-11;  // rad or m: how far off the curve slopes along it are the curve's
+  static constexpr double kShare = 3e-2;  // of what is left: as little as that off the curve changes neither
+  static constexpr double kSlow = 0.1, kSteady = 0.8;  // how fast corrections converge that are not left to themselves
+};
+
+}  // namespace ikgen_runtime
