@@ -54,6 +54,22 @@ def test_a_frame_beside_the_fingers_may_be_the_tip():
     assert ends(tree_of(*arm, frame, finger)) == {("base", "grasp_frame"): 5}
 
 
+@pytest.mark.parametrize("printed", ["link_aruco", "apriltag_link", "wrist_fiducial"])
+def test_a_mark_for_cameras_is_no_tip_beside_a_link_of_the_tool(printed):
+    arm = serial_joints("base", *(f"arm_{i}" for i in range(5)))
+    mark = ("mark_joint", "fixed", "arm_4_link", printed)
+    tool = ("tool_joint", "fixed", "arm_4_link", "spindle")
+    assert ends(tree_of(*arm, mark, tool)) == {("base", "spindle"): 5}
+
+
+def test_the_middle_of_a_grasp_is_the_tip_however_deep_other_frames_lie():
+    arm = serial_joints("base", *(f"arm_{i}" for i in range(5)))
+    middle = ("middle_joint", "fixed", "arm_4_link", "link_grasp_center")
+    cover = ("cover_joint", "fixed", "arm_4_link", "cover")
+    plate = ("plate_joint", "fixed", "cover", "plate")
+    assert ends(tree_of(*arm, middle, cover, plate)) == {("base", "link_grasp_center"): 5}
+
+
 @pytest.mark.parametrize("word", ["wheel", "front_caster", "Rotor", "propeller"])
 def test_a_leg_ends_before_its_wheel(word):
     leg = serial_joints("base", *(f"leg_{i}" for i in range(5)))

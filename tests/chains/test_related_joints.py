@@ -36,6 +36,17 @@ def test_a_relation_moves_the_follower_and_takes_its_limits(tmp_path: Path) -> N
     assert related.source.sha256 == tree.source.sha256
 
 
+def test_what_is_odd_is_told_once_and_where_the_file_has_it(tmp_path: Path) -> None:
+    path = telescope_robot(tmp_path)
+    text = path.read_text().replace('lower="-1.5" upper="0.5"', 'lower="0.5"\n  upper="-1.5"')
+    path.write_text(f"<!-- a robot\nof two lines -->\n{text}")
+    tree = load_tree(path)
+    related = related_tree(tree, {"stage_2": Mimic("stage_1", -2.0, 0.1)})
+    assert len(tree.source.warnings) == 1
+    assert related.source.warnings == tree.source.warnings
+    assert [j.line for j in related.joints] == [j.line for j in tree.joints]
+
+
 def test_the_oracle_follows_the_relation(tmp_path: Path) -> None:
     path = telescope_robot(tmp_path)
     reading = read(Request(path, couple={"stage_2": "stage_1*-2+0.1", "yaw": "pitch*2"}))

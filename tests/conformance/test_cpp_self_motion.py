@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-import subprocess
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from tests.support.both_languages import Both, in_both
 from tests.support.held_arms import HELD, held_module, held_of, lift_scara, on_limits
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
 from tests.support.sampled import sampled
-from tests.support.solving import NO_COMPILER, import_text, solver_module
+from tests.support.solving import NO_COMPILER, solver_module
 
-from ikgen.emit.cpp.cpp_emitter import emit_header
-from ikgen.emit.python.python_emitter import emit_module
-from ikgen.emit.solver_module import SolverModule
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
 from ikgen.kinematics.rigid import rotation_about
-from ikgen.verify.runners.cpp_toolchain import compile_program, find_eigen
 
 pytestmark = [
     pytest.mark.usefixtures("solved_once"),
@@ -30,87 +26,6 @@ pytestmark = [
 
 Array = NDArray[np.float64]
 
-PROGRAM = r"""
-#include "@_ik.hpp"
-#include <algorithm>
-#include <cstdio>
-#include <memory>
-#include <vector>
-namespace ik = @_ik;
-int main() {
-  int mode, n;
-  ik::Joints seed;
-  while (std::scanf("%d %d", &mode, &n) == 2) {
-    for (int j = 0; j < ik::kDof; ++j) std::scanf("%lf", &seed[j]);
-    std::vector<Eigen::Isometry3d, Eigen::aligned_allocator<Eigen::Isometry3d>> poses(n);
-    for (auto& T : poses)
-      for (int i = 0; i < 16; ++i) std::scanf("%lf", &T.matrix()(i / 4, i % 4));
-    std::vector<double> out;
-#ifdef ONE_HELD
-    if (mode == 0) {
-      const auto found = ik::self_motion(poses[0]);
-      out = {double(found.status), double(found.count)};
-      for (const auto& one : found) out.insert(out.end(), {one.low, one.high, double(one.branch)});
-    }
-#endif
-    if (mode >= 1 && mode <= 3) {
-      ik::SearchOptions options;
-      options.seed = &seed;
-      options.prefer = static_cast<ik::Prefer>(mode - 1);
-      const ik::Solutions found = ik::search(poses[0], options);
-      out = {double(found.status), double(found.count)};
-      for (const auto& q : found) out.insert(out.end(), q.data(), q.data() + ik::kDof);
-    }
-    if (mode == 4) {
-      std::vector<ik::Joints, Eigen::aligned_allocator<ik::Joints>> q(n);
-      const auto singular = std::make_unique<bool[]>(n);
-      const ik::Path path = ik::follow(poses.data(), n, seed, q.data(), true, singular.get());
-      const auto flags = std::count(&singular[0], &singular[0] + n, true);
-      out = {double(path.status), double(path.reached), double(flags)};
-      for (int i = 0; i < path.reached; ++i) out.insert(out.end(), q[i].data(), q[i].data() + ik::kDof);
-    }
-    if (mode == 5) {
-      ik::Options options;
-      options.seed = &seed;
-      const ik::Solutions found = ik::solve(poses[0], options);
-      out = {double(found.status), double(found.count)};
-      for (const auto& q : found) out.insert(out.end(), q.data(), q.data() + ik::kDof);
-    }
-    for (const double x : out) std::printf("%.17g ", x);
-    std::printf("\n");
-  }
-}
-"""
-
-STATUS = ("OK", "UNREACHABLE", "LIMITS", "INVALID", "SINGULAR")
-
-
-@dataclass(frozen=True)
-class Both:
-    """An arm in both languages."""
-
-    arm: ModuleType
-    program: Path
-
-    def run(self, mode: int, seed: Array, poses: Array) -> tuple[str, Array]:
-        """Status and numbers that the C++ program answers."""
-        numbers = [mode, len(poses), *seed.tolist(), *poses.ravel().tolist()]
-        text = subprocess.run(
-            [self.program],
-            input=" ".join(map(repr, numbers)),
-            capture_output=True,
-            text=True,
-            check=True,
-        ).stdout
-        values = np.array(text.split(), dtype=float)
-        return STATUS[int(values[0])], values[2:]
-
-    def follow(self, start: Array, poses: Array) -> tuple[str, int, Array]:
-        """Status, how many rows are singular, and the rows."""
-        status, numbers = self.run(4, start, poses)
-        return status, int(numbers[0]), numbers[1:].reshape(-1, self.arm.DOF)
-
-
 OFTEN = ("torso", "rounded_arm_angle", "ur5e")
 
 
@@ -118,15 +33,6 @@ OFTEN = ("torso", "rounded_arm_angle", "ur5e")
 def both(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Both:
     folder = tmp_path_factory.mktemp("both")
     return in_both(held_module(request.param, folder), folder)
-
-
-def in_both(module: SolverModule, folder: Path) -> Both:
-    (folder / f"{module.name}_ik.hpp").write_text(emit_header(module))
-    define = "#define ONE_HELD\n" if len(module.held) == 1 else ""
-    source = folder / "main.cpp"
-    source.write_text(define + PROGRAM.replace("@", module.name))
-    compile_program(source, folder / "main", [folder, find_eigen()])
-    return Both(import_text(emit_module(module), folder), folder / "main")
 
 
 def drawn(arm: ModuleType, rng: np.random.Generator) -> Array:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from tests.support.cpp_modules import robot_file
+from tests.support.held_arms import held_module
 from tests.support.solving import NO_COMPILER
 
 from ikgen.emit.cpp.cpp_emitter import emit_header
@@ -20,6 +21,8 @@ pytestmark = pytest.mark.usefixtures("solved_once")
 CLANG = shutil.which("clang++")
 ARMS = ("ur5e", "doosan_m1013", "KawasakiRS05L")
 """Solved by rules, by rules and refinement, by an elimination."""
+HELD = ("franka_fr3", "torso", "arm_angle")
+"""One joint held, two, and the arm angle."""
 
 ALLOWED = (
     "c++98-compat", "c++98-compat-pedantic",  # it is C++17
@@ -32,9 +35,10 @@ ALLOWED = (
 
 
 @pytest.mark.skipif(CLANG is None or bool(NO_COMPILER), reason=NO_COMPILER or "needs clang++")
-@pytest.mark.parametrize("name", ARMS)
+@pytest.mark.parametrize("name", (*ARMS, *HELD))
 def test_no_warning(name: str, tmp_path: Path) -> None:
-    module = derive(Request(robot_file(name))).module
+    held = name in HELD
+    module = held_module(name, tmp_path) if held else derive(Request(robot_file(name))).module
     (tmp_path / "arm_ik.hpp").write_text(emit_header(module), encoding="utf-8")
     call = f"{module.name}_ik::solve(Eigen::Isometry3d::Identity()).count"
     text = f'#include "arm_ik.hpp"\nint main() {{ return {call}; }}\n'

@@ -122,6 +122,19 @@ def test_length_that_two_branches_need_is_made_exact() -> None:
     assert branches(graph) == branches(exact) == 8
 
 
+def test_rows_nearer_by_less_than_a_micrometre_are_not_looked_for() -> None:
+    """What they keep of the file breaks singularities apart at the scale of what they are still off."""
+    near = to_dh(three_parallel(math.pi / 2 + 3e-7, skew=4e-8))
+    assert CLOSE < max(near.deviation) < 1e-6
+
+    def exact_alone(dh: DHChain, among: Collection[str] | None) -> SolutionGraph:
+        assert max(dh.deviation) <= CLOSE
+        return solve_chain(dh, among=among)
+
+    graph = solve_chain(near)
+    assert solve_as_written(near, graph, exact_alone) == (near, graph)
+
+
 @pytest.mark.parametrize("wrist", [0.0, math.pi])
 def test_stretched_arm_with_singular_wrist_is_reached(wrist: float, tmp_path: Path) -> None:
     dh, _, _ = written(three_parallel())

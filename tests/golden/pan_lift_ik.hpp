@@ -598,7 +598,7 @@ template <class A> struct AllMoving : A {
   static constexpr int kFree = 0;
   static constexpr std::array<int, 0> kFreeJoints = {};
   static constexpr bool kHeld[A::kDof] = {}, kArmAngle = false;
-  static constexpr int kRank = A::kWholePose ? A::kDof : A::kDof - A::kFree;  // at least what the task fixes, or all
+  static constexpr int kRank = A::kWholePose ? A::kFreedoms : A::kDof - A::kFree;  // what the task fixes, or less
 };
 
 // --- held aim ------------------------------------------------------------------------------------
@@ -681,6 +681,36 @@ template <class X, int N> inline auto definite(const X (&A)[N][N]) noexcept {
   auto yes = 1e299 > A[0][0];
   for (int i = 1; i < N; ++i) yes = yes & (1e299 > A[i][i]);
   return yes;
+}
+
+template <int K, class X, int N> inline X eigenvalue(X (&A)[N][N]) noexcept {
+  constexpr int kSweeps = 10;
+  constexpr double kNone = 1e-300;
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (int p = 0; p < N; ++p)
+      for (int q = p + 1; q < N; ++q) {
+        const X apart = A[q][q] - A[p][p], beside = 2.0 * A[p][q];
+        const X length = sqrt(apart * apart + beside * beside) + kNone;
+        const X t = beside / (apart + select(apart > 0.0, length, -length));
+        const X c = 1.0 / sqrt(1.0 + t * t), s = t * c;
+        for (int i = 0; i < N; ++i) {
+          const X x = A[i][p], y = A[i][q];
+          A[i][p] = c * x - s * y;
+          A[i][q] = s * x + c * y;
+        }
+        for (int i = 0; i < N; ++i) {
+          const X x = A[p][i], y = A[q][i];
+          A[p][i] = c * x - s * y;
+          A[q][i] = s * x + c * y;
+        }
+      }
+  for (int end = N - 1; end > 0; --end)
+    for (int i = 0; i < end; ++i) {
+      const X x = A[i][i], y = A[i + 1][i + 1];
+      A[i][i] = min(x, y);
+      A[i + 1][i + 1] = max(x, y);
+    }
+  return A[K][K];
 }
 
 template <int N> inline bool keeps_orientation(double (&A)[N][N]) noexcept {
@@ -2478,6 +2508,7 @@ template <class A, int N> struct LeastSingularValue {
         S[b][a] = S[a][b];
       }
     if constexpr (kDependent) A::Task::fill(T, kFar, S);
+    if constexpr (kInPlane) return sqrt(max(eigenvalue<kOrder - AllMoving<A>::kRank>(S), 0.0));
     Pack diagonal[kOrder], squares[kOrder];
     reduce(S, diagonal, squares);
     return sqrt(least_root(diagonal, squares));
@@ -2485,7 +2516,8 @@ template <class A, int N> struct LeastSingularValue {
 
  private:
   static constexpr int kRows = A::Task::kCount, kLess = A::kDof < kRows ? A::kDof : kRows, kSteps = 40;
-  static constexpr bool kDependent = AllMoving<A>::kRank < kLess;  // rows
+  static constexpr bool kInPlane = A::kWholePose && AllMoving<A>::kRank < kLess;  // all joints move fewer freedoms
+  static constexpr bool kDependent = !kInPlane && AllMoving<A>::kRank < kLess;  // rows
   static constexpr int kOrder = kDependent ? kRows : kLess;
   static constexpr bool kByRows = kOrder == kRows;
   static constexpr double kFar = 1e4;  // above the least
@@ -2814,6 +2846,7 @@ struct Arm {
   using Task = PoseEntries<Arm>;
   using Columns = UnitColumns<0, 0, 3>;
   static constexpr bool kWholePose = false;
+  static constexpr int kFreedoms = 2;  // of the whole pose, by all joints
   static constexpr int kRead[][2] = {{0, 3}, {1, 3}, {2, 3}};
 
   // the file's own chain

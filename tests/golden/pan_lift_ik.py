@@ -515,13 +515,14 @@ class _Arm:
     elbow_end: int
     angle: None = None
     around: _Around | None = None
+    freedoms: int = 6
 
     @property
     def rank(self) -> int:
         """How many freedoms the task fixes, or the arm has if these are less."""
         k, dof = len(self.task.unit), len(self.lower)
         whole = len(self.task.entries) - k * (k + 1) // 2 == 6
-        return min(dof, 6) if whole else dof - len(self.free_joints)
+        return min(dof, self.freedoms) if whole else dof - len(self.free_joints)
 
     @property
     def rounded(self) -> bool:

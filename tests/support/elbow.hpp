@@ -56,6 +56,7 @@ struct Arm {
   static constexpr std::array<int, 0> kFreeJoints = {};
   static constexpr bool kRevolute[] = {true, true}, kHeld[] = {false, false};
   static constexpr bool kWholePose = false, kFarLimits = false, kRefined = false;
+  static constexpr int kFreedoms = 2;
   static constexpr bool kRounded = false, kNewton = false, kArmAngle = false;
   static constexpr int kRead[][2] = {{0, 3}, {1, 3}};
   static constexpr double kSize = 1.0;

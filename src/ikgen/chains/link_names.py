@@ -26,7 +26,8 @@ _WHEEL = re.compile(r"wheel|caster|castor", re.IGNORECASE)
 _ROTOR = re.compile(r"rotor|propeller", re.IGNORECASE)
 _HEAD = re.compile(r"head|neck|cervical|(^|[/_])eyes?(_|$)", re.IGNORECASE)
 _SENSOR = re.compile(
-    r"camera|optical|realsense|imu|sensor|touch|marker|contact|collision|inertia|balancing",
+    r"camera|optical|realsense|imu|sensor|touch|marker|aruco|apriltag|fiducial|contact|collision|inertia"
+    r"|balancing",
     re.IGNORECASE,
 )
 
@@ -39,7 +40,7 @@ _BASES = (
 _TIPS = (
     re.compile(r"(^|[/_])tool_?\d$"),
     re.compile(r"(^|[/_])tcp$", re.IGNORECASE),
-    re.compile(r"(^|[/_])(tool_frame|gripper_center|ee_gripper_link)$", re.IGNORECASE),
+    re.compile(r"(^|[/_])(tool_frame|(gripper|grasp)_cent(er|re)|ee_gripper_link)$", re.IGNORECASE),
     re.compile(r"(^|[/_])flange$", re.IGNORECASE),
     re.compile(r"(^|[/_])(ee_link|link_eef?|ee|end_link)$|end_effector", re.IGNORECASE),
     re.compile(r"^(arm_(left_|right_)?)?tool_link$", re.IGNORECASE),

@@ -15,7 +15,7 @@ from ikgen.model.dh import DHChain
 from ikgen.program.policy import SolvePolicy
 from ikgen.program.statements import Program
 from ikgen.tasks import AXES, Task, find_task
-from ikgen.tasks.fitting import keeps_heading_level
+from ikgen.tasks.fitting import freedoms_moved, keeps_heading_level
 
 __all__ = ["CLOSE", "SolverModule", "most_rows", "refines_all"]
 
@@ -145,6 +145,15 @@ class SolverModule:
     def reads(self) -> Task:
         """What of the pose counts."""
         return find_task(self.task)
+
+    @property
+    def freedoms(self) -> int:
+        """How many freedoms of the whole pose all joints move together, those that are held too: fewer than
+        they are and six where joints are held as the others move the same without them, as in a plane."""
+        dof, held = self.dh.dof, self.dh.free
+        if not (self.reads.whole_pose and held and dof - len(held) < 6):
+            return min(dof, 6)
+        return freedoms_moved(replace(self.dh, free=()), self.reads)
 
     @property
     def unit_columns(self) -> tuple[int, ...]:

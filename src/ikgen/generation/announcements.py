@@ -43,6 +43,8 @@ def _over_constrained(derivation: Derivation) -> str:
     smaller = f"--task {other} asks what the arm can do everywhere; " if other else ""
     if derivation.chosen:
         smaller = "No task that so many joints fit has a verified closed form here; "
+        if not other:
+            smaller = "No smaller task asks for just what the joints can move; "
         smaller += "--task position may, with a joint held; " if moving > _POSITION else ""
     elif needs_held(dh, task):
         these = " ".join(f"--free {name}" for name in dh.free)

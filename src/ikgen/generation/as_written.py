@@ -25,6 +25,11 @@ _ROUND_OFF = 1e-13
 """Deviation (rad or m) of rows that are the file's own. Where rows are right to `CLOSE` but no better,
 those next to a fold, which moves by the root of it, are others than the file's."""
 
+_NEAR = 1e-6
+"""Deviation (rad or m) of exact geometry up to which nothing is gained by rows that are nearer, but need
+Newton steps all the same: what they keep of the file breaks its singularities apart, and as much as they
+are still off loses rows between the parts."""
+
 _WORTH = 0.5
 """Where Newton steps follow all the same, the rows must come nearer to the file's by this factor."""
 
@@ -72,7 +77,7 @@ def _written(dh: DHChain, whole_pose: bool) -> Iterator[DHChain]:
     nearest = keep_constants(dh)
     if max(nearest.deviation) <= enough:
         yield nearest
-    elif off > CLOSE:
+    elif off > _NEAR:
         yield from _nearer(dh, nearest, strays, whole_pose)
 
 

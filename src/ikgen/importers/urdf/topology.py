@@ -86,7 +86,8 @@ def check_joints(links: Sequence[str], joints: Sequence[Joint], file: str) -> No
                 f"and joint '{joint.name}'",
                 file=file,
                 line=joint.line,
-                hint="a URDF is a tree: remove one of the two joints",
+                hint="a URDF is a tree: remove one of the two joints; ikgen solves serial chains, not "
+                "mechanisms with closed loops as a delta robot",
             )
         above[joint.child] = joint
     _check_acyclic(joints, above, file)

@@ -71,7 +71,11 @@ def parse_urdf(
         arguments=tuple(sorted((arguments or {}).items())),
     )
     place = Place(shown_file(source), list(warnings))
-    root = parse_xml(text, place.file)
+    return _tree(parse_xml(text, place.file), source, place)
+
+
+def _tree(root: Element, source: Source, place: Place) -> JointTree:
+    """The tree of a document; what is odd in it is added to the warnings of `place`."""
     _check_root(root, place)
     require_expanded(root, place)
     links = _link_names(root, place)
@@ -82,7 +86,7 @@ def parse_urdf(
     if len(roots) > 1:
         others = ", ".join(f"'{link}'" for link, _ in roots[1:])
         place.warn(None, f"several root links: took '{roots[0][0]}', which has most; also {others}")
-    name = _robot_name(root, path, place)
+    name = _robot_name(root, source.path, place)
     return JointTree(
         name, links, joints, roots[0][0], replace(source, warnings=tuple(place.warnings))
     )
@@ -100,17 +104,15 @@ def _note_millimetres(joints: Sequence[Joint], place: Place) -> None:
 
 def changed_tree(source: Source, root: Element) -> JointTree:
     """The tree of a description whose document was changed to `root`: of what else is known of the source
-    only the digest is another one."""
-    made = parse_urdf(
-        etree.tostring(root, encoding="unicode"),
-        path=source.path,
-        kind=source.kind,
-        dependencies=source.dependencies,
-        package_urls=source.package_urls,
-        environment=source.environment,
-        arguments=dict(source.arguments),
-        warnings=source.warnings,
-    )
+    only the digest is another one.
+
+    The elements keep the lines that they have in the file, so that what was odd before is not told again
+    as if it were elsewhere.
+    """
+    text = etree.tostring(root, encoding="unicode")
+    digest = hashlib.sha256(text.encode("utf-8", "replace")).hexdigest()
+    place = Place(shown_file(source), list(source.warnings))
+    made = _tree(root, replace(source, text=text, sha256=digest), place)
     warnings = tuple(dict.fromkeys(made.source.warnings))
     return replace(made, source=replace(made.source, warnings=warnings))
 

@@ -21,7 +21,7 @@ template <class A> struct AllMoving : A {
   static constexpr int kFree = 0;
   static constexpr std::array<int, 0> kFreeJoints = {};
   static constexpr bool kHeld[A::kDof] = {}, kArmAngle = false;
-  static constexpr int kRank = A::kWholePose ? A::kDof : A::kDof - A::kFree;  // at least what the task fixes, or all
+  static constexpr int kRank = A::kWholePose ? A::kFreedoms : A::kDof - A::kFree;  // what the task fixes, or less
 };
 
 }  // namespace ikgen_runtime

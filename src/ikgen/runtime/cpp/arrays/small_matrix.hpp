@@ -39,6 +39,38 @@ template <class X, int N> inline auto definite(const X (&A)[N][N]) noexcept {
   return yes;
 }
 
+// The eigenvalue of a symmetric matrix that has K below it, by rotations that leave its diagonal (Jacobi 1846; Golub & Van
+// Loan 2013, 8.5). In lanes.
+template <int K, class X, int N> inline X eigenvalue(X (&A)[N][N]) noexcept {
+  constexpr int kSweeps = 10;
+  constexpr double kNone = 1e-300;
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (int p = 0; p < N; ++p)
+      for (int q = p + 1; q < N; ++q) {
+        const X apart = A[q][q] - A[p][p], beside = 2.0 * A[p][q];
+        const X length = sqrt(apart * apart + beside * beside) + kNone;
+        const X t = beside / (apart + select(apart > 0.0, length, -length));
+        const X c = 1.0 / sqrt(1.0 + t * t), s = t * c;
+        for (int i = 0; i < N; ++i) {
+          const X x = A[i][p], y = A[i][q];
+          A[i][p] = c * x - s * y;
+          A[i][q] = s * x + c * y;
+        }
+        for (int i = 0; i < N; ++i) {
+          const X x = A[p][i], y = A[q][i];
+          A[p][i] = c * x - s * y;
+          A[q][i] = s * x + c * y;
+        }
+      }
+  for (int end = N - 1; end > 0; --end)
+    for (int i = 0; i < end; ++i) {
+      const X x = A[i][i], y = A[i + 1][i + 1];
+      A[i][i] = min(x, y);
+      A[i + 1][i + 1] = max(x, y);
+    }
+  return A[K][K];
+}
+
 // Whether the determinant of A is not below 0; eliminates in its place, with partial pivoting.
 template <int N> inline bool keeps_orientation(double (&A)[N][N]) noexcept {
   bool keeps = true;

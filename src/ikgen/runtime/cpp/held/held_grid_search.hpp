@@ -37,7 +37,7 @@ template <class Arm, class Solver> struct HeldGridSearch {
   // there are no limits; a slide as far as the pose can be reached from.
   int bound() noexcept {
     for (int k = 0; k < Arm::kFree; ++k) {
-      const int j = Arm::kFreeJoints[k];
+      const int j = Arm::kFreeJoints[static_cast<std::size_t>(k)];
       const double middle = preference.wanted.data()[j];
       low[k] = Arm::kLower.data()[j];
       high[k] = Arm::kUpper.data()[j];
@@ -94,7 +94,7 @@ template <class Arm, class Solver> struct HeldGridSearch {
       bool moved = false;
       for (int k = 0; k < 2 * Arm::kFree; ++k) {
         std::array<double, Arm::kFree> free;
-        for (int i = 0; i < Arm::kFree; ++i) free[static_cast<std::size_t>(i)] = best.q[Arm::kFreeJoints[i]];
+        for (int i = 0; i < Arm::kFree; ++i) free[static_cast<std::size_t>(i)] = best.q[Arm::kFreeJoints[static_cast<std::size_t>(i)]];
         free[static_cast<std::size_t>(k / 2)] += k % 2 == 0 ? step[k / 2] : -step[k / 2];
         const Start from = best;
         look(free, [&](const Start& s) {

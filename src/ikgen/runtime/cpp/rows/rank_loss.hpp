@@ -25,6 +25,16 @@ template <class Arm> struct RankLoss {
   static bool redundant_below(const double* q, double bound) noexcept {
     if constexpr (Arm::kRank >= kRank) {
       return below(q, bound);
+    } else if constexpr (Arm::kWholePose) {
+      static_assert(kMoving <= kEquations);
+      const PoseError<Arm> at(q, HeldAim<Arm>::own(q));
+      Lanes<1> A[kMoving][kMoving];
+      for (int a = 0; a < kMoving; ++a)
+        for (int b = 0; b < kMoving; ++b) {
+          A[a][b] = spread<1>(0.0);
+          for (int e = 0; e < kEquations; ++e) A[a][b] = A[a][b] + at.slope[e][kJoints[a]] * at.slope[e][kJoints[b]];
+        }
+      return eigenvalue<kMoving - Arm::kRank>(A).v < bound * bound;
     } else {
       double J[6][Arm::kDof], slope[kEquations][Arm::kDof], A[kEquations][kEquations];
       const Frame T = MotionChain<Arm>::forward(q, J);

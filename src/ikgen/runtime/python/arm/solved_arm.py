@@ -69,7 +69,7 @@ class Arm:
     `together`: `refine_together` where the closed form is of another geometry than the file's, and all rows
     are rough. `around`: `rows_around` where there is a closed form.
     `branch_kind`, `elbow_end`: as in `branch_names`. `angle`: the arm angle, where that is held after
-    the joints."""
+    the joints. `freedoms`: of the pose, by all joints, held or not."""
 
     chain: Chain
     task: Task
@@ -90,6 +90,7 @@ class Arm:
     elbow_end: int
     angle: HeldAngle | None = None
     around: Around | None = None
+    freedoms: int = 6
 
     @property
     def rank(self) -> int:
@@ -97,7 +98,7 @@ class Arm:
         may be held than it leaves; of a part of it a held one may not move what is read."""
         k, dof = len(self.task.unit), len(self.lower)
         whole = len(self.task.entries) - k * (k + 1) // 2 == 6
-        return min(dof, 6) if whole else dof - len(self.free_joints)
+        return min(dof, self.freedoms) if whole else dof - len(self.free_joints)
 
     @property
     def rounded(self) -> bool:

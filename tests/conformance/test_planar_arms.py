@@ -1,0 +1,75 @@
+"""Arms whose joints all move in one plane, more of them than that has freedoms."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.support.both_languages import in_both
+from tests.support.redundant_arms import Joint, serial_urdf
+from tests.support.solving import NO_COMPILER
+
+from ikgen.generation.derive import derive
+from ikgen.generation.generate import generate
+from ikgen.generation.request import Outputs, Request
+
+pytestmark = [
+    pytest.mark.usefixtures("solved_once"),
+    pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles"),
+]
+
+ARMS: dict[str, tuple[Joint, ...]] = {
+    "four_turn": (
+        ("a", "revolute", "0 1 0", "0 0 0.1", (-3.0, 3.0)),
+        ("b", "revolute", "0 1 0", "0 0 0.4", (-2.5, 2.5)),
+        ("c", "revolute", "0 1 0", "0 0 0.3", (-2.5, 2.5)),
+        ("d", "revolute", "0 1 0", "0 0 0.2", (-2.5, 2.5)),
+    ),
+    "on_a_slide": (
+        ("rail", "prismatic", "1 0 0", "0 0 0.1", (0.0, 0.5)),
+        ("a", "revolute", "0 1 0", "0 0 0.1", (-2.6, 2.6)),
+        ("b", "revolute", "0 1 0", "0 0 0.3", (-2.6, 2.6)),
+        ("c", "revolute", "0 1 0", "0 0 0.2", (-2.6, 2.6)),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_a_path_is_singular_only_where_all_joints_lose_a_freedom(name: str, tmp_path: Path) -> None:
+    path = tmp_path / f"{name}.urdf"
+    path.write_text(serial_urdf(name, ARMS[name]))
+    module = derive(Request(path, name=name)).module
+    assert (module.task, len(module.held), module.freedoms) == ("pose", 1, 3)
+    both = in_both(module, tmp_path)
+    bent = np.array([0.2, 0.5, -0.7, 0.9])
+    poses = both.arm.forward(np.stack([bent, bent + 0.01]))
+    status, flags, rows = both.follow(bent, poses)
+    assert (status, flags) == ("OK", 0)
+    assert not both.arm.follow(poses, start=bent).singular.any()
+    np.testing.assert_allclose(both.arm.forward(rows), poses, atol=1e-9)
+    # those that turn stand in line, and the slide goes along with them
+    straight = np.array([0.2, np.pi / 2, 0.0, 0.0]) if name == "on_a_slide" else np.zeros(4)
+    pose = both.arm.forward(straight[None])
+    assert both.follow(straight, pose)[1] == (name == "four_turn")
+    assert both.arm.follow(pose, start=straight).singular[0] == (name == "four_turn")
+
+
+def test_the_most_dexterous_row_is_the_same_in_both_languages(tmp_path: Path) -> None:
+    path = tmp_path / "four_turn.urdf"
+    path.write_text(serial_urdf("four_turn", ARMS["four_turn"]))
+    both = in_both(derive(Request(path, name="four_turn")).module, tmp_path)
+    for q in np.random.default_rng(1).uniform(-1.5, 1.5, (4, 4)):
+        pose = both.arm.forward(q)
+        row = both.run(3, q, pose[None])[1][:4]
+        own = both.arm.search(pose, seed=q, prefer="dexterous").q[0]
+        least = np.linalg.svd(both.arm.jacobian(np.stack([row, own])), compute_uv=False)[:, 2]
+        assert least[0] == pytest.approx(least[1], abs=1e-5)
+        assert least[1] >= np.linalg.svd(both.arm.jacobian(q), compute_uv=False)[2] - 1e-9
+
+
+def test_such_an_arm_is_verified(tmp_path: Path) -> None:
+    path = tmp_path / "four_turn.urdf"
+    path.write_text(serial_urdf("four_turn", ARMS["four_turn"]))
+    made = generate(Request(path), Outputs(out=tmp_path, samples=60))
+    assert made.reports["python"].passed
