@@ -1,6 +1,7 @@
 // Samples of a curve along which the other joints take the pose's error away but for one direction.
 #pragma once
 
+#include "arrays/constants.hpp"
 #include "singular/fold_pair.hpp"
 
 namespace ikgen_runtime {
