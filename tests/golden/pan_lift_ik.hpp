@@ -933,7 +933,7 @@ template <class Arm> struct FoldPair {
     if (anew) find_still(at);
     const Others others(still, at);
     const Taken taken(others, at.error, out, others.flow);
-    double remains = 0.0, farthest = 0.0;
+    double remains = 0.0;
     for (int e = 0; e < kEquations; ++e) {
       out[e] = taken.rest[e][1];
       remains += out[e] * out[e];
@@ -945,10 +945,7 @@ template <class Arm> struct FoldPair {
       left += out[e] * taken.rest[e][0];
       slope -= out[e] * taken.rest[e][2];
     }
-    for (int k = 0; k < kMoving; ++k) {
-      across[k] = taken.going[k][0];
-      farthest = std::max(farthest, std::abs(across[k]));
-    }
+    const double farthest = taken.first(across);
     move(across, 0.0, q);
     slope *= turn(taken);
     return farthest;
@@ -1015,6 +1012,15 @@ template <class Arm> struct FoldPair {
         store(z[e], rest[e]);
       }
     }
+
+    double first(Vector& across) const noexcept {
+      double farthest = 0.0;
+      for (int k = 0; k < kMoving; ++k) {
+        across[k] = going[k][0];
+        farthest = std::max(farthest, std::abs(across[k]));
+      }
+      return farthest;
+    }
   };
 
   static double make_unit(Vector& v) noexcept {
@@ -1060,11 +1066,9 @@ template <class Arm> struct FoldPair {
     }
     const Taken taken(others, at.error, bend, others.flow);
     Vector across;
-    for (int k = 0; k < kMoving; ++k) across[k] = taken.going[k][0];
     Way way;
-    const double x = root(side, taken.rest, way);
-    way.length = std::abs(x);
-    for (const double y : across) way.length = std::max(way.length, std::abs(y));
+    const double farthest = taken.first(across), x = root(side, taken.rest, way);
+    way.length = std::max(std::abs(x), farthest);
     move(across, x, q);
     turn(taken);
     return way;
@@ -1125,18 +1129,6 @@ template <class Arm> struct CurveSamples {
     return s;
   }
 
-  static bool leap(const double* before, const double* across, double* q) noexcept {
-    double along = 0.0, square = 0.0;
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      along += across[k] * before[k];
-      square += before[k] * before[k];
-    }
-    const double ratio = along / square;
-    if (!(std::abs(ratio) < kSteady)) return false;
-    for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += ratio / (1.0 - ratio) * across[k];
-    return true;
-  }
-
   Sample at(const double* q, const Sample& from) noexcept {
     std::copy_n(from.still, Fold::kMoving, fold.still);
     std::copy_n(from.out, Fold::kEquations, fold.out);
@@ -1170,6 +1162,18 @@ template <class Arm> struct CurveSamples {
   static constexpr double kNear = 1e-11;  // rad or m: how far off the curve slopes along it are the curve's
   static constexpr double kShare = 3e-2;  // of what is left: as little as that off the curve changes neither
   static constexpr double kSlow = 0.1, kSteady = 0.8;  // how fast corrections converge that are not left to themselves
+
+  static bool leap(const double* before, const double* across, double* q) noexcept {
+    double along = 0.0, square = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      along += across[k] * before[k];
+      square += before[k] * before[k];
+    }
+    const double ratio = along / square;
+    if (!(std::abs(ratio) < kSteady)) return false;
+    for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += ratio / (1.0 - ratio) * across[k];
+    return true;
+  }
 };
 
 // --- near continuum ------------------------------------------------------------------------------
@@ -1271,13 +1275,13 @@ template <class Arm> struct NearContinuum : CurveSamples<Arm> {
       worst = std::max(worst, std::abs(c.left));
       if (is_solution(c)) keep(c);
       look(b, c, kDeep);
-      if (k > 1 && back(origin, b)) break;
+      if (k > 1 && back(origin, b)) return true;
       std::copy_n(b.still, Fold::kMoving, before);
       b = c;
       last = reach;
       reach = std::min(2.0 * reach, Policy::kTryStep);
-      ended = ended && k + 1 < kMost && samples > 0;
     }
+    ended = false;
     return true;
   }
 
@@ -1285,31 +1289,22 @@ template <class Arm> struct NearContinuum : CurveSamples<Arm> {
     for (int i = 1; i < passed.count && s.on; ++i) {
       const Sample &a = passed.sample[i - 1], &b = passed.sample[i];
       if (passed.first[i]) continue;
-      double along = 0.0, square = 0.0, from[Fold::kMoving], aside = 0.0, q[Arm::kDof];
+      double along = 0.0, square = 0.0, chord[Fold::kMoving], way[Fold::kMoving], q[Arm::kDof];
+      way_to(a, s.q, way);
       for (int k = 0; k < Fold::kMoving; ++k) {
-        const double way = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
-        from[k] = SolutionRows<Arm>::change(Fold::kJoints[k], a.q, s.q);
-        along += way * from[k];
-        square += way * way;
+        chord[k] = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
+        along += chord[k] * way[k];
+        square += chord[k] * chord[k];
       }
       const double share = along / square;
-      if (!(share > -kOver && share < 1.0 + kOver)) continue;
-      for (int k = 0; k < Fold::kMoving; ++k)
-        aside = std::max(aside, std::abs(from[k] - share * (b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]])));
-      if (!(aside < kBeside)) continue;
+      if (!(share > -kOver && share < 1.0 + kOver && on_line(way, share, chord, kBeside))) continue;
       between(a, b, share, q);
       for (int round = 0; round < kRounds; ++round) {
         const Sample c = at(q, a);
         if (!c.on) break;
-        double ahead = 0.0;
-        aside = 0.0;
-        for (int k = 0; k < Fold::kMoving; ++k) {
-          from[k] = SolutionRows<Arm>::change(Fold::kJoints[k], c.q, s.q);
-          ahead += from[k] * c.still[k];
-        }
-        for (int k = 0; k < Fold::kMoving; ++k) aside = std::max(aside, std::abs(from[k] - ahead * c.still[k]));
-        if (aside < kOn) return i;
-        if (!(aside < ahead * ahead)) break;
+        const double ahead = way_to(c, s.q, way);
+        if (on_line(way, ahead, c.still, kOn)) return i;
+        if (!on_line(way, ahead, c.still, ahead * ahead)) break;
         std::copy_n(c.q, Arm::kDof, q);
         for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += ahead * c.still[k];
       }
@@ -1318,10 +1313,11 @@ template <class Arm> struct NearContinuum : CurveSamples<Arm> {
   }
 
   void look_beside(const Sample& a, Sample s, const Sample& b) noexcept {
-    double same = 0.0;
+    double same = 0.0, way[Fold::kMoving];
+    way_to(a, s.q, way);
     for (int k = 0; k < Fold::kMoving; ++k) {
       same += a.still[k] * s.still[k];
-      s.q[Fold::kJoints[k]] = a.q[Fold::kJoints[k]] + SolutionRows<Arm>::change(Fold::kJoints[k], a.q, s.q);
+      s.q[Fold::kJoints[k]] = a.q[Fold::kJoints[k]] + way[k];
     }
     if (same < 0.0) turn_round(s);
     if (is_solution(s)) keep(s);
@@ -1347,15 +1343,28 @@ template <class Arm> struct NearContinuum : CurveSamples<Arm> {
   }
 
   static bool back(const Sample& a, const Sample& b) noexcept {
-    double way[Fold::kMoving], along = 0.0, same = 0.0;
+    double way[Fold::kMoving], same = 0.0;
+    const double along = way_to(a, b.q, way);
     for (int k = 0; k < Fold::kMoving; ++k) {
-      way[k] = SolutionRows<Arm>::change(Fold::kJoints[k], a.q, b.q);
-      along += way[k] * a.still[k];
+      if (!(std::abs(way[k]) < 0.75 * Policy::kTryStep)) return false;
       same += a.still[k] * b.still[k];
     }
+    return same > kSameWay && on_line(way, along, a.still, kBeside);
+  }
+
+  static double way_to(const Sample& a, const double* q, double (&way)[Fold::kMoving]) noexcept {
+    double along = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      way[k] = SolutionRows<Arm>::change(Fold::kJoints[k], a.q, q);
+      along += way[k] * a.still[k];
+    }
+    return along;
+  }
+
+  static bool on_line(const double* way, double along, const double* direction, double bound) noexcept {
     for (int k = 0; k < Fold::kMoving; ++k)
-      if (!(std::abs(way[k] - along * a.still[k]) < kBeside && std::abs(way[k]) < 0.75 * Policy::kTryStep)) return false;
-    return same > kSameWay;
+      if (!(std::abs(way[k] - along * direction[k]) < bound)) return false;
+    return true;
   }
 
   static bool is_solution(const Sample& s) noexcept { return std::abs(s.left) < kSmall; }

@@ -64,18 +64,18 @@ def parse_urdf(
         path=path,
         kind=kind,
         text=text,
-        sha256=hashlib.sha256(text.encode("utf-8", "replace")).hexdigest(),
+        sha256=_digest(text),
         dependencies=dependencies or (path.resolve(),),
         package_urls=package_urls,
         environment=environment,
         arguments=tuple(sorted((arguments or {}).items())),
     )
+    return _tree(parse_xml(text, shown_file(source)), source, warnings)
+
+
+def _tree(root: Element, source: Source, warnings: Sequence[str]) -> JointTree:
+    """The tree of a document; what is odd in it is added to the warnings."""
     place = Place(shown_file(source), list(warnings))
-    return _tree(parse_xml(text, place.file), source, place)
-
-
-def _tree(root: Element, source: Source, place: Place) -> JointTree:
-    """The tree of a document; what is odd in it is added to the warnings of `place`."""
     _check_root(root, place)
     require_expanded(root, place)
     links = _link_names(root, place)
@@ -102,6 +102,10 @@ def _note_millimetres(joints: Sequence[Joint], place: Place) -> None:
         place.warn(None, text)
 
 
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode("utf-8", "replace")).hexdigest()
+
+
 def changed_tree(source: Source, root: Element) -> JointTree:
     """The tree of a description whose document was changed to `root`: of what else is known of the source
     only the digest is another one.
@@ -110,9 +114,7 @@ def changed_tree(source: Source, root: Element) -> JointTree:
     as if it were elsewhere.
     """
     text = etree.tostring(root, encoding="unicode")
-    digest = hashlib.sha256(text.encode("utf-8", "replace")).hexdigest()
-    place = Place(shown_file(source), list(source.warnings))
-    made = _tree(root, replace(source, text=text, sha256=digest), place)
+    made = _tree(root, replace(source, text=text, sha256=_digest(text)), source.warnings)
     warnings = tuple(dict.fromkeys(made.source.warnings))
     return replace(made, source=replace(made.source, warnings=warnings))
 

@@ -94,7 +94,7 @@ template <class Arm, class Solver> struct HeldGridSearch {
       bool moved = false;
       for (int k = 0; k < 2 * Arm::kFree; ++k) {
         std::array<double, Arm::kFree> free;
-        for (int i = 0; i < Arm::kFree; ++i) free[static_cast<std::size_t>(i)] = best.q[Arm::kFreeJoints[static_cast<std::size_t>(i)]];
+        for (std::size_t i = 0; i < free.size(); ++i) free[i] = best.q[Arm::kFreeJoints[i]];
         free[static_cast<std::size_t>(k / 2)] += k % 2 == 0 ? step[k / 2] : -step[k / 2];
         const Start from = best;
         look(free, [&](const Start& s) {

@@ -42,19 +42,6 @@ template <class Arm> struct CurveSamples {
     return s;
   }
 
-  // Goes to where two corrections that converge slowly lead in the end (Aitken 1926), if they do.
-  static bool leap(const double* before, const double* across, double* q) noexcept {
-    double along = 0.0, square = 0.0;
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      along += across[k] * before[k];
-      square += before[k] * before[k];
-    }
-    const double ratio = along / square;
-    if (!(std::abs(ratio) < kSteady)) return false;
-    for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += ratio / (1.0 - ratio) * across[k];
-    return true;
-  }
-
   // Beside a sample.
   Sample at(const double* q, const Sample& from) noexcept {
     std::copy_n(from.still, Fold::kMoving, fold.still);
@@ -90,6 +77,19 @@ template <class Arm> struct CurveSamples {
   static constexpr double kNear = 1e-11;  // rad or m: how far off the curve slopes along it are the curve's
   static constexpr double kShare = 3e-2;  // of what is left: as little as that off the curve changes neither
   static constexpr double kSlow = 0.1, kSteady = 0.8;  // how fast corrections converge that are not left to themselves
+
+  // Goes to where two corrections that converge slowly lead in the end (Aitken 1926), if they do.
+  static bool leap(const double* before, const double* across, double* q) noexcept {
+    double along = 0.0, square = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      along += across[k] * before[k];
+      square += before[k] * before[k];
+    }
+    const double ratio = along / square;
+    if (!(std::abs(ratio) < kSteady)) return false;
+    for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += ratio / (1.0 - ratio) * across[k];
+    return true;
+  }
 };
 
 }  // namespace ikgen_runtime

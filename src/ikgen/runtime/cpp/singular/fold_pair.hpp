@@ -39,14 +39,14 @@ template <class Arm> struct FoldPair {
     return Led::There;
   }
 
-  // One step across the still direction, found anew or that of the sample before; how far its fastest joint goes, what was left of the error before it, and how
-  // much more of that a step along the still direction does.
+  // One step across the still direction, found anew or that of the sample before; how far its fastest joint goes, what was
+  // left of the error before it, and how much more of that a step along the still direction does.
   double correct(double* q, bool anew, double& left, double& slope, Vector& across) noexcept {
     const PoseError<Arm> at(q, aim);
     if (anew) find_still(at);
     const Others others(still, at);
     const Taken taken(others, at.error, out, others.flow);
-    double remains = 0.0, farthest = 0.0;
+    double remains = 0.0;
     for (int e = 0; e < kEquations; ++e) {
       out[e] = taken.rest[e][1];
       remains += out[e] * out[e];
@@ -58,10 +58,7 @@ template <class Arm> struct FoldPair {
       left += out[e] * taken.rest[e][0];
       slope -= out[e] * taken.rest[e][2];
     }
-    for (int k = 0; k < kMoving; ++k) {
-      across[k] = taken.going[k][0];
-      farthest = std::max(farthest, std::abs(across[k]));
-    }
+    const double farthest = taken.first(across);
     move(across, 0.0, q);
     slope *= turn(taken);
     return farthest;
@@ -134,6 +131,16 @@ template <class Arm> struct FoldPair {
         store(z[e], rest[e]);
       }
     }
+
+    // How they go for the first, and how far the fastest joint does.
+    double first(Vector& across) const noexcept {
+      double farthest = 0.0;
+      for (int k = 0; k < kMoving; ++k) {
+        across[k] = going[k][0];
+        farthest = std::max(farthest, std::abs(across[k]));
+      }
+      return farthest;
+    }
   };
 
   static double make_unit(Vector& v) noexcept {
@@ -182,11 +189,9 @@ template <class Arm> struct FoldPair {
     }
     const Taken taken(others, at.error, bend, others.flow);
     Vector across;
-    for (int k = 0; k < kMoving; ++k) across[k] = taken.going[k][0];
     Way way;
-    const double x = root(side, taken.rest, way);
-    way.length = std::abs(x);
-    for (const double y : across) way.length = std::max(way.length, std::abs(y));
+    const double farthest = taken.first(across), x = root(side, taken.rest, way);
+    way.length = std::max(std::abs(x), farthest);
     move(across, x, q);
     turn(taken);
     return way;

@@ -113,13 +113,13 @@ template <class Arm> struct NearContinuum : CurveSamples<Arm> {
       worst = std::max(worst, std::abs(c.left));
       if (is_solution(c)) keep(c);
       look(b, c, kDeep);
-      if (k > 1 && back(origin, b)) break;
+      if (k > 1 && back(origin, b)) return true;
       std::copy_n(b.still, Fold::kMoving, before);
       b = c;
       last = reach;
       reach = std::min(2.0 * reach, Policy::kTryStep);
-      ended = ended && k + 1 < kMost && samples > 0;
     }
+    ended = false;
     return true;
   }
 
@@ -128,31 +128,22 @@ template <class Arm> struct NearContinuum : CurveSamples<Arm> {
     for (int i = 1; i < passed.count && s.on; ++i) {
       const Sample &a = passed.sample[i - 1], &b = passed.sample[i];
       if (passed.first[i]) continue;
-      double along = 0.0, square = 0.0, from[Fold::kMoving], aside = 0.0, q[Arm::kDof];
+      double along = 0.0, square = 0.0, chord[Fold::kMoving], way[Fold::kMoving], q[Arm::kDof];
+      way_to(a, s.q, way);
       for (int k = 0; k < Fold::kMoving; ++k) {
-        const double way = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
-        from[k] = SolutionRows<Arm>::change(Fold::kJoints[k], a.q, s.q);
-        along += way * from[k];
-        square += way * way;
+        chord[k] = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
+        along += chord[k] * way[k];
+        square += chord[k] * chord[k];
       }
       const double share = along / square;
-      if (!(share > -kOver && share < 1.0 + kOver)) continue;
-      for (int k = 0; k < Fold::kMoving; ++k)
-        aside = std::max(aside, std::abs(from[k] - share * (b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]])));
-      if (!(aside < kBeside)) continue;
+      if (!(share > -kOver && share < 1.0 + kOver && on_line(way, share, chord, kBeside))) continue;
       between(a, b, share, q);
       for (int round = 0; round < kRounds; ++round) {
         const Sample c = at(q, a);
         if (!c.on) break;
-        double ahead = 0.0;
-        aside = 0.0;
-        for (int k = 0; k < Fold::kMoving; ++k) {
-          from[k] = SolutionRows<Arm>::change(Fold::kJoints[k], c.q, s.q);
-          ahead += from[k] * c.still[k];
-        }
-        for (int k = 0; k < Fold::kMoving; ++k) aside = std::max(aside, std::abs(from[k] - ahead * c.still[k]));
-        if (aside < kOn) return i;
-        if (!(aside < ahead * ahead)) break;
+        const double ahead = way_to(c, s.q, way);
+        if (on_line(way, ahead, c.still, kOn)) return i;
+        if (!on_line(way, ahead, c.still, ahead * ahead)) break;
         std::copy_n(c.q, Arm::kDof, q);
         for (int k = 0; k < Fold::kMoving; ++k) q[Fold::kJoints[k]] += ahead * c.still[k];
       }
@@ -163,10 +154,11 @@ template <class Arm> struct NearContinuum : CurveSamples<Arm> {
   // In a part that was looked at before, to both sides of another sample of it: solutions there may be more than a cubic
   // tells, and closed forms start near them.
   void look_beside(const Sample& a, Sample s, const Sample& b) noexcept {
-    double same = 0.0;
+    double same = 0.0, way[Fold::kMoving];
+    way_to(a, s.q, way);
     for (int k = 0; k < Fold::kMoving; ++k) {
       same += a.still[k] * s.still[k];
-      s.q[Fold::kJoints[k]] = a.q[Fold::kJoints[k]] + SolutionRows<Arm>::change(Fold::kJoints[k], a.q, s.q);
+      s.q[Fold::kJoints[k]] = a.q[Fold::kJoints[k]] + way[k];
     }
     if (same < 0.0) turn_round(s);
     if (is_solution(s)) keep(s);
@@ -195,15 +187,30 @@ template <class Arm> struct NearContinuum : CurveSamples<Arm> {
 
   // Whether the curve is at a sample of it again, and not at another part that is near.
   static bool back(const Sample& a, const Sample& b) noexcept {
-    double way[Fold::kMoving], along = 0.0, same = 0.0;
+    double way[Fold::kMoving], same = 0.0;
+    const double along = way_to(a, b.q, way);
     for (int k = 0; k < Fold::kMoving; ++k) {
-      way[k] = SolutionRows<Arm>::change(Fold::kJoints[k], a.q, b.q);
-      along += way[k] * a.still[k];
+      if (!(std::abs(way[k]) < 0.75 * Policy::kTryStep)) return false;
       same += a.still[k] * b.still[k];
     }
+    return same > kSameWay && on_line(way, along, a.still, kBeside);
+  }
+
+  // The way from a sample to a configuration but for whole turns, and how far it goes along the still direction.
+  static double way_to(const Sample& a, const double* q, double (&way)[Fold::kMoving]) noexcept {
+    double along = 0.0;
+    for (int k = 0; k < Fold::kMoving; ++k) {
+      way[k] = SolutionRows<Arm>::change(Fold::kJoints[k], a.q, q);
+      along += way[k] * a.still[k];
+    }
+    return along;
+  }
+
+  // Whether a way goes so far in a direction, and less than a bound beside that.
+  static bool on_line(const double* way, double along, const double* direction, double bound) noexcept {
     for (int k = 0; k < Fold::kMoving; ++k)
-      if (!(std::abs(way[k] - along * a.still[k]) < kBeside && std::abs(way[k]) < 0.75 * Policy::kTryStep)) return false;
-    return same > kSameWay;
+      if (!(std::abs(way[k] - along * direction[k]) < bound)) return false;
+    return true;
   }
 
   static bool is_solution(const Sample& s) noexcept { return std::abs(s.left) < kSmall; }
