@@ -291,6 +291,31 @@ def test_a_pair_with_a_fixed_determinant_has_no_condition() -> None:
     assert gap(tuple(e.probe for e in found.values), form.values(form.probe)[0]).max() < 1e-12
 
 
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_pair_that_is_a_rotation_divides_by_a_length_squared(sign: int) -> None:
+    """The determinant of `[[a, b], [-b, a]]` or `[[a, b], [b, -a]]`: no zero but where both are."""
+    graph = ExpressionGraph(PROBES)
+    rng = np.random.default_rng(4)
+    a, b, second = rng.uniform(-1.0, 1.0, (3, PROBES))
+    u = rng.uniform(-3.0, 3.0, PROBES)
+    c, s = np.cos(u), np.sin(u)
+    e, f = given(graph, a), given(graph, b)
+    below = (graph.neg(f), e) if sign > 0 else (f, graph.neg(e))
+    sides = a * c + b * s, sign * (a * s - b * c)
+    form = LinearPair(e, f, given(graph, sides[0]), *below, given(graph, sides[1]))
+    assert form.rotation == sign and not form.is_determinant
+    found = form.lower(graph, graph.one, Tolerances.for_model_error(1e-6))
+    assert isinstance(found, LoweredForm)
+    assert lowered(form, graph, 1.0).divisor.power == 1
+    assert found.divisor.power == 2 and found.divisor.magnitude is not None
+    np.testing.assert_allclose(found.divisor.magnitude.probe, a**2 + b**2, atol=1e-14)
+    assert gap(tuple(v.probe for v in found.values), (c, s)).max() < 1e-11
+    natural = form.divisor(form.probe, scales(form.coefficients))
+    assert natural.shape == (2, PROBES)
+    other = LinearPair(e, f, form.c1, given(graph, second), given(graph, a), form.c2)
+    assert other.is_determinant and lowered(other, graph, 1.0).divisor.power == 1
+
+
 @settings(deadline=None)
 @property_of(st.floats(-3.1, 3.1))
 def test_the_quartic_instead_has_the_seed_as_a_root(seed: float) -> None:

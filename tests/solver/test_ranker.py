@@ -10,6 +10,7 @@ import pytest
 from tests.support.constructed import Constructed
 
 from ikgen.equations.knowledge import Variable
+from ikgen.forms.pair_form import LinearPair
 from ikgen.forms.sine_cosine_form import SineCosine
 from ikgen.forms.tangent_form import Tangent
 from ikgen.solver.candidate import Candidate, Judgement
@@ -133,6 +134,23 @@ def test_sums_of_squares_are_avoided_where_one_branch_needs_none(arm: Constructe
         replace(arm.candidate(arm.tangent(one), squared=s), judgement=GOOD) for s in (False, True)
     ]
     assert rank_key(both[0]) == rank_key(both[1])
+
+
+def test_a_thin_determinant_comes_behind_a_length_squared(arm: Constructed) -> None:
+    g = arm.graph
+    length = LinearPair(arm.c2, arm.s2, arm.c1, g.neg(arm.s2), arm.c2, arm.s1)
+    plain = replace(length, b2=arm.s1)
+    assert plain.is_determinant and not length.is_determinant
+    for margin, better in ((0.01, length), (0.5, plain)):
+        costs = {length: 20.0, plain: 10.0}
+        candidates = [
+            replace(
+                arm.candidate(form, "simultaneous"),
+                judgement=replace(GOOD, margin=margin, cost=cost),
+            )
+            for form, cost in costs.items()
+        ]
+        assert min(candidates, key=rank_key).form is better
 
 
 def test_the_order_does_not_depend_on_chance(arm: Constructed) -> None:

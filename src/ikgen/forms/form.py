@@ -60,6 +60,12 @@ class Form(ABC):
         return self.coefficients[:1]
 
     @property
+    def is_determinant(self) -> bool:
+        """Whether the divisor is a determinant, which vanishes on whole surfaces, where sums of squares do
+        so only where several things vanish at once."""
+        return False
+
+    @property
     def tangent_without(self) -> Expr | None:
         """The coefficient without which the branches lie half a turn apart; None where there is none."""
         return None

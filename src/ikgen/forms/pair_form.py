@@ -12,11 +12,18 @@ from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.forms.form import Array, Form
 from ikgen.forms.formula import Formula, FormulaWriter, equals, linear_combination
-from ikgen.forms.lowered_form import LoweredForm, Tolerances, divisor_of
+from ikgen.forms.lowered_form import ROUNDED, LoweredForm, Tolerances, divisor_of
 from ikgen.formulas import mathtext as m
 from ikgen.formulas.notation import quotient, show
 
 __all__ = ["LinearPair"]
+
+_ALIKE = 1e-13
+
+
+def _alike(one: Array, other: Array, size: float) -> bool:
+    """Whether two coefficients are the same at all probes but for round-off."""
+    return bool(np.all(np.abs(one - other) <= _ALIKE * size))
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,8 +45,25 @@ class LinearPair(Form):
         """The matrix."""
         return self.a1, self.b1, self.a2, self.b2
 
+    @property
+    def rotation(self) -> int:
+        """1 or -1 where the matrix is a rotation, or a reflection, times a length: the determinant is the
+        square of that then, with this sign; else 0."""
+        for sign in (1, -1):
+            pairs = ((self.a1, sign, self.b2), (self.b1, -sign, self.a2))
+            if all(_alike(x.probe, s * y.probe, x.scale + y.scale) for x, s, y in pairs):
+                return sign
+        return 0
+
+    @property
+    def is_determinant(self) -> bool:
+        """Whether it is no sum of squares."""
+        return self.rotation == 0
+
     def divisor(self, c: Sequence[Array], z: Sequence[float]) -> Array:
-        """The determinant."""
+        """The determinant, or both parts of the length that it is the square of."""
+        if not self.is_determinant:
+            return np.array([c[0], c[3]]) / float(np.hypot(z[0], z[3]))
         size = z[0] * z[4] + z[1] * z[3]
         return (c[0] * c[4] - c[1] * c[3])[None] / size
 
@@ -55,6 +79,9 @@ class LinearPair(Form):
 
     def lower(self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances) -> LoweredForm:
         """Cramer's rule with one division."""
+        sign = self.rotation
+        if sign != 0:
+            return self._turn_back(g, sign, tolerances)
         det = g.sub(g.mul(self.a1, self.b2), g.mul(self.b1, self.a2))
         divisor = divisor_of(g, det, tolerances)
         x = g.sub(g.mul(self.c1, self.b2), g.mul(self.c2, self.b1))
@@ -63,6 +90,22 @@ class LinearPair(Form):
             return LoweredForm((g.div(x, det), g.div(y, det)), divisor, None, 1)
         inverse = g.div(g.one, divisor.value)
         return LoweredForm((g.mul(x, inverse), g.mul(y, inverse)), divisor, None, 1)
+
+    def _turn_back(self, g: ExpressionGraph, sign: int, tolerances: Tolerances) -> LoweredForm:
+        """The constant sides turned back by the matrix, over its length squared. Where no steps follow half
+        of the digits that the length has left have to be those of its square."""
+        matrix, sides = [self.a1, self.a2], [self.c1, self.c2]
+        power = 2 if tolerances.error > ROUNDED else 1
+        divisor = divisor_of(g, g.dot(matrix, matrix), tolerances, power)
+        x = g.dot(matrix, sides)
+        y = g.sub(g.mul(self.a1, self.c2), g.mul(self.a2, self.c1))
+        y = y if sign > 0 else g.neg(y)
+        if divisor.magnitude is None:
+            values = g.div(x, divisor.value), g.div(y, divisor.value)
+        else:
+            inverse = g.div(g.one, divisor.value)
+            values = g.mul(x, inverse), g.mul(y, inverse)
+        return LoweredForm(values, divisor, None, 1)
 
     def formula(self, w: FormulaWriter) -> Formula:
         """One arctangent; the determinant is left out where its sign is known."""

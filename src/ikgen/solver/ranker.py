@@ -32,6 +32,11 @@ MATCH = 1e-5
 FOLD_MARGIN = 1e-9
 """Relative size of a discriminant below which two branches count as one."""
 
+_THIN_MARGIN = 0.1
+"""Relative size of a determinant at a regular configuration below which a sum of squares is the better
+divisor, if there is a choice: that vanishes where the arm is singular alone, a determinant on a surface
+through it."""
+
 WEAK_MARGIN = 1e-6
 """Relative size of a divisor below which a probe counts as one where it vanishes."""
 
@@ -111,6 +116,7 @@ def rank_key(candidate: Candidate) -> tuple[object, ...]:
         candidate.branches,
         _preference("tangent" if j.almost_tangent else candidate.leaf),
         round(j.fragile, 1),
+        j.margin < _THIN_MARGIN and candidate.form.is_determinant,
         candidate.branches == 1 and sum(e.squared for e in candidate.sources),
         j.cost,
         tuple(-k for k in candidate.unknown.combination),
