@@ -268,7 +268,8 @@ def test_odd_names_are_escaped(folder: Path) -> None:
     dh = dataclasses.replace(module.dh, tip_link=odd, robot=odd)
     text = emit_header(dataclasses.replace(module, dh=dh, source_name=odd, name="odd"))
     (folder / "odd_ik.hpp").write_text(text)
-    CppHeader(folder / "odd_ik.hpp", arm_constants(module))
+    header = CppHeader(folder / "odd_ik.hpp", arm_constants(module))
+    assert header.constants.tip_link == odd
     assert r'"tool \0420\042 \134 \012 \303\251 \077\077/"' in text
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from ikgen.errors import MissingToolError, UsageError
-from ikgen.processes.outside_program import run_program
+from ikgen.processes.outside_program import RunningProgram, run_program
 
 
 def python(text: str) -> list[str]:
@@ -57,6 +57,33 @@ def test_one_that_hangs_ends_with_all_that_it_started(
     while runs(state) and time.monotonic() - started < 20.0:
         time.sleep(0.05)  # what was killed ends when its turn comes
     assert not runs(state)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs process groups")
+@pytest.mark.parametrize("how", ["end", "del"])
+def test_one_that_runs_meanwhile_is_ended_where_nobody_waits(how: str, tmp_path: Path) -> None:
+    number, late = tmp_path / "number", tmp_path / "late"
+    running = RunningProgram(["sh", "-c", f"echo $$ > {number}; sleep 1; touch {late}"])
+    while not (number.exists() and number.read_text().strip()):
+        time.sleep(0.01)
+    if how == "end":
+        running.end()
+        assert running.finished().words == "was ended by SIGKILL"
+    else:
+        del running
+    with pytest.raises(ProcessLookupError):  # not even to be waited for
+        os.kill(int(number.read_text()), 0)
+    time.sleep(1.1)
+    assert not late.exists()
+
+
+def test_its_time_counts_from_its_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("IKGEN_TOOL_SECONDS", "1")
+    quick, slow = (RunningProgram(python(text)) for text in ("", "import time; time.sleep(600)"))
+    time.sleep(1.0)
+    started = time.monotonic()
+    assert quick.finished().code == 0 and not quick.finished().late
+    assert slow.finished().late and time.monotonic() - started < 0.9
 
 
 def test_one_that_cannot_be_started(tmp_path: Path) -> None:

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
+import os
+import tempfile
+import time
 from pathlib import Path
 
 import numpy as np
@@ -104,9 +107,11 @@ def header(folder: Path, text: str = HEADER) -> CppHeader:
     path = folder / "planar_ik.hpp"
     path.write_text(text)
     try:
-        return CppHeader(path, constants())
+        made = CppHeader(path, constants())
     except MissingToolError as error:
         pytest.skip(f"{error.message}; {error.hint}")
+    assert made.constants.dof == 2  # waits for the compiler
+    return made
 
 
 @pytest.fixture(scope="module")
@@ -171,12 +176,56 @@ def test_wrong_header_is_caught(tmp_path: Path) -> None:
 
 def test_header_that_cannot_be_used(planar: CppHeader, tmp_path: Path) -> None:
     others = dataclasses.replace(constants(), joint_names=("j1", "j2", "j3"))
+    other = CppHeader(planar.path, others)
     with pytest.raises(BadDescriptionError, match="2 joints"):
-        CppHeader(planar.path, others)
+        _ = other.constants
     with pytest.raises(BadDescriptionError, match="no such"):
         CppHeader(tmp_path / "absent_ik.hpp", constants())
     with pytest.raises(VerificationError, match="does not compile"):
         header(tmp_path, HEADER.replace("int count = 0;", "int count = zero;"))
+
+
+def compiler(folder: Path, script: str) -> str:
+    """A compiler of one's own: its command."""
+    path = folder / "compiler"
+    path.write_text(f"#!/bin/sh\n{script}\n")
+    path.chmod(0o755)
+    return str(path)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs sh")
+@pytest.mark.parametrize("how", ["closed", "dropped"])
+def test_nothing_of_a_header_that_is_still_compiled_is_left(
+    how: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scratch, started, late = (tmp_path / name for name in ("scratch", "started", "late"))
+    scratch.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(scratch))
+    monkeypatch.setenv("CXX", compiler(tmp_path, f"touch {started}; sleep 1; touch {late}"))
+    (tmp_path / "planar_ik.hpp").write_text(HEADER)
+    runner = CppHeader(tmp_path / "planar_ik.hpp", constants())
+    while not started.exists():
+        time.sleep(0.01)
+    assert len(list(scratch.iterdir())) == 1 and not late.exists()
+    if how == "closed":
+        runner.close()
+    else:
+        del runner
+    assert not list(scratch.iterdir())
+    time.sleep(1.2)
+    assert not late.exists()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs sh")
+def test_a_compiler_s_words_are_told_at_each_use(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CXX", compiler(tmp_path, "echo 'x.hpp:1:7: error: no x' >&2; exit 1"))
+    (tmp_path / "planar_ik.hpp").write_text(HEADER)
+    runner = CppHeader(tmp_path / "planar_ik.hpp", constants())
+    for _ in range(2):
+        with pytest.raises(VerificationError, match=r"does not compile: x\.hpp:1:7: error"):
+            runner.forward(np.zeros((1, 2)))
 
 
 def test_missing_tools_say_how_to_get_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -205,10 +254,16 @@ def test_a_driver_is_compiled_beside_the_header(
 ) -> None:
     told: dict[str, object] = {}
 
-    def compile_program(source: Path, program: Path, include: list[Path]) -> None:
-        told.update(text=source.read_text(), source=source, program=program, include=include)
+    class Compilation:
+        def __init__(self, source: Path, program: Path, include: list[Path], flags: object) -> None:
+            told.update(text=source.read_text(), source=source, program=program, include=include)
+            told.update(flags=flags)
 
-    monkeypatch.setattr(cpp_header, "compile_program", compile_program)
+        def finish(self) -> None: ...
+
+        def end(self) -> None: ...
+
+    monkeypatch.setattr(cpp_header, "Compilation", Compilation)
     monkeypatch.setattr(
         cpp_header.ProgramRunner, "__init__", lambda self, *a, **k: told.update(given=a, named=k)
     )
@@ -219,5 +274,7 @@ def test_a_driver_is_compiled_beside_the_header(
         assert told["include"] == [tmp_path.resolve()] and runner.path == path.resolve()
         assert told["source"].name == "driver.cpp" and told["program"].name == "driver"
         assert told["given"] == ("cpp", told["program"], None)
+        assert told["named"].pop("made").__name__ == "finish"
         assert told["named"] == {"batch": batch, "source": str(path)}
+        assert told["flags"] == ("-O1",)
         assert '#include "made_ik.hpp"' in told["text"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,7 @@ from ikgen.errors import BadDescriptionError, VerificationError
 from ikgen.generation.emitted_arm import EmittedArm
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.publish import write_texts
+from ikgen.generation.runners_ahead import RunnersAhead
 from ikgen.processes.scratch_folder import ScratchFolder
 
 if TYPE_CHECKING:
@@ -77,22 +79,25 @@ def _reports(
     outputs: Outputs,
     progress: Progress,
 ) -> dict[str, VerificationReport]:
-    arm, oracle = EmittedArm.of(derivation.module), oracle_for(derivation.reading)
+    arm = EmittedArm.of(derivation.module)
     reports: dict[str, VerificationReport] = {}
     first = None
-    for emitter in emitters:
-        runner = _runner(emitter, arm, folder)
-        if runner is not None:
-            reports[emitter.name] = verify_one(runner, oracle, arm, outputs, progress, peer=first)
-            first = first or runner
+    with RunnersAhead(partial(one.runner, arm, folder) for one in emitters) as runners:
+        oracle = oracle_for(derivation.reading)
+        for emitter in emitters:
+            runner = _taken(runners, emitter)
+            if runner is not None:
+                report = verify_one(runner, oracle, arm, outputs, progress, peer=first)
+                reports[emitter.name] = report
+                first = first or runner
     return reports
 
 
-def _runner(emitter: Emitter, arm: EmittedArm, folder: Path) -> Any | None:
+def _taken(runners: RunnersAhead, emitter: Emitter) -> Any | None:
     """What runs an output that was just emitted: if it cannot be run, ikgen's text is wrong, not the
     user's."""
     try:
-        return emitter.runner(arm, folder)
+        return runners.take()
     except BadDescriptionError as error:
         raise VerificationError(
             f"the emitted {emitter.name} code {error.problem}",

@@ -13,6 +13,8 @@ import signal
 import subprocess
 import sys
 import threading
+import time
+import weakref
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,7 +22,14 @@ from typing import IO
 
 from ikgen.errors import MissingToolError, UsageError
 
-__all__ = ["SECONDS_VARIABLE", "Finished", "end_programs", "run_program", "time_limit"]
+__all__ = [
+    "SECONDS_VARIABLE",
+    "Finished",
+    "RunningProgram",
+    "end_programs",
+    "run_program",
+    "time_limit",
+]
 
 SECONDS_VARIABLE = "IKGEN_TOOL_SECONDS"
 """Environment variable: how long a compiler or a compiled driver may run."""
@@ -75,13 +84,58 @@ def time_limit() -> float:
     return seconds
 
 
+class RunningProgram:
+    """A program that was started, without input, and runs while this process goes on; it ends with this
+    object. Raises `MissingToolError` where it cannot be started."""
+
+    def __init__(
+        self,
+        command: Sequence[str],
+        *,
+        cwd: Path | None = None,
+        environment: Mapping[str, str] | None = None,
+    ) -> None:
+        limit = time_limit()
+        self._process = _started(command, cwd, environment)
+        self._deadline = time.monotonic() + limit
+        _RUNNING.add(self._process.pid)
+        self._end = weakref.finalize(self, _ended, self._process)
+        self._kept = bytearray()
+        self._reader = threading.Thread(
+            target=_keep, args=(self._process.stderr, self._kept), daemon=True
+        )
+        self._reader.start()
+
+    def finished(self) -> Finished:
+        """Wait for its end, or for the time limit since its start; nothing of it is left."""
+        late = False
+        try:
+            self._process.wait(max(0.0, self._deadline - time.monotonic()))
+        except subprocess.TimeoutExpired:
+            late = True
+        finally:  # an interrupt too
+            self.end()
+        printed = bytes(self._kept).decode("utf-8", "replace")
+        return Finished(self._process.returncode, printed, late)
+
+    def end(self) -> None:
+        """End it, with all that it started, if it has not ended yet."""
+        self._end()
+        self._reader.join(1.0)
+
+
 def run_program(
     command: Sequence[str], *, cwd: Path | None = None, environment: Mapping[str, str] | None = None
 ) -> Finished:
     """Run a program to its end, without input; raises `MissingToolError` where it cannot be started."""
-    limit = time_limit()
+    return RunningProgram(command, cwd=cwd, environment=environment).finished()
+
+
+def _started(
+    command: Sequence[str], cwd: Path | None, environment: Mapping[str, str] | None
+) -> subprocess.Popen[bytes]:
     try:
-        process = subprocess.Popen(
+        return subprocess.Popen(
             command,
             cwd=cwd,
             env=None if environment is None else {**environment},
@@ -96,27 +150,13 @@ def run_program(
         raise MissingToolError(
             f"{command[0]} cannot be started: {reason}", hint="check that it is a program"
         ) from error
-    return _awaited(process, limit)
 
 
-def _awaited(process: subprocess.Popen[bytes], limit: float) -> Finished:
-    """What came of a process; nothing of it is left."""
-    _RUNNING.add(process.pid)
-    kept = bytearray()
-    assert process.stderr is not None
-    reader = threading.Thread(target=_keep, args=(process.stderr, kept), daemon=True)
-    reader.start()
-    late = False
-    try:
-        process.wait(limit)
-    except subprocess.TimeoutExpired:
-        late = True
-    finally:  # an interrupt too
-        _end_group(process.pid)
-        process.wait()
-        _RUNNING.discard(process.pid)
-        reader.join(1.0)
-    return Finished(process.returncode, bytes(kept).decode("utf-8", "replace"), late)
+def _ended(process: subprocess.Popen[bytes]) -> None:
+    """End a process's group; none of it is left, nor waited for."""
+    _end_group(process.pid)
+    process.wait()
+    _RUNNING.discard(process.pid)
 
 
 def _keep(stream: IO[bytes], kept: bytearray) -> None:

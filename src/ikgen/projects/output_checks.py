@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from ikgen.generation.progress import Progress
     from ikgen.generation.record import Record
     from ikgen.generation.request import Outputs
+    from ikgen.generation.runners_ahead import RunnersAhead
     from ikgen.verify.oracle import Oracle
     from ikgen.verify.verification_report import VerificationReport
 
@@ -44,28 +46,35 @@ class OutputChecks:
     def run(self) -> Checked:
         """Run every output that can be run; the first is the one that others are compared with."""
         from ikgen.generation.emitted_checks import oracle_for
+        from ikgen.generation.runners_ahead import RunnersAhead
 
-        oracle = oracle_for(self.reading)
         findings: list[Finding] = []
         reports: dict[str, VerificationReport] = {}
         first = None
-        for name in self.record.emit:
-            runner, found = self._runner(name, oracle)
-            if runner is not None:
-                report, found = self._report(name, runner, oracle, first)
-                if report is not None:
-                    reports[name] = report
-                    first = first or runner
-            findings += [found] if found else []
+        with RunnersAhead(partial(self._made, name) for name in self.record.emit) as runners:
+            oracle = oracle_for(self.reading)
+            for name in self.record.emit:
+                runner, found = self._runner(name, runners, oracle)
+                if runner is not None:
+                    report, found = self._report(name, runner, oracle, first)
+                    if report is not None:
+                        reports[name] = report
+                        first = first or runner
+                findings += [found] if found else []
         return Checked(tuple(findings), reports)
 
-    def _runner(self, name: str, oracle: Oracle) -> tuple[Any | None, Finding | None]:
-        """What runs an output of the same geometry; None with what is wrong where there is none."""
+    def _made(self, name: str) -> Any | None:
+        """What runs an output, if it can be run."""
         from ikgen.generation.emitters import find_emitter
 
-        folder = self.record.out or self.record.folder
+        return find_emitter(name).runner(self._arm(), self.record.out or self.record.folder)
+
+    def _runner(
+        self, name: str, runners: RunnersAhead, oracle: Oracle
+    ) -> tuple[Any | None, Finding | None]:
+        """What runs an output of the same geometry; None with what is wrong where there is none."""
         try:
-            runner = find_emitter(name).runner(self._arm(), folder)
+            runner = runners.take()
             difference = None
             if runner is not None:
                 difference = forward_difference(runner, oracle, self.reading.dh)

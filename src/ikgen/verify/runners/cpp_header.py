@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import weakref
 from pathlib import Path
 
 from ikgen.errors import BadDescriptionError
 from ikgen.processes.scratch_folder import ScratchFolder
 from ikgen.verify.runners.cpp_driver import driver
-from ikgen.verify.runners.cpp_toolchain import compile_program
+from ikgen.verify.runners.cpp_toolchain import LIGHT, Compilation
 from ikgen.verify.runners.program_runner import ProgramRunner
 from ikgen.verify.runners.runner import ArmConstants
 
@@ -15,11 +16,12 @@ __all__ = ["CppHeader"]
 
 
 class CppHeader(ProgramRunner):
-    """A `Runner` over an emitted `<name>_ik.hpp`, compiled at construction into a temporary folder.
+    """A `Runner` over an emitted `<name>_ik.hpp`. From construction on it is compiled, into a temporary
+    folder, while this process goes on; what is asked first waits for it.
 
     Limits and names are read from the header, `constants` of the arm say the rest. Raises
-    `BadDescriptionError` for a missing file or other joint counts, `MissingToolError` without compiler or
-    Eigen, `VerificationError` if it does not compile.
+    `BadDescriptionError` for a missing file, `MissingToolError` without compiler or Eigen; when it is used
+    first, `VerificationError` if it does not compile, `BadDescriptionError` for other joint counts.
     """
 
     def __init__(self, path: Path | str, constants: ArmConstants) -> None:
@@ -27,12 +29,22 @@ class CppHeader(ProgramRunner):
         if not self.path.is_file():
             hint = "check the path, or generate it with --emit cpp"
             raise BadDescriptionError("no such C++ header", file=str(path), hint=hint)
-        self._folder = ScratchFolder("ikgen-")  # goes with this object
-        work = self._folder.path
-        source, program = work / "driver.cpp", work / "driver"
+        folder = ScratchFolder("ikgen-")
+        source, program = folder.path / "driver.cpp", folder.path / "driver"
         text = self.path.read_text(encoding="utf-8")
         batch, known = "solve_batch(" in text, "kLower" in text
         text = driver(self.path.name, self.path.stem, batch=batch, constants=known)
         source.write_text(text, encoding="utf-8")
-        compile_program(source, program, [self.path.parent])
-        super().__init__("cpp", program, constants, batch=batch, source=str(path))
+        compilation = Compilation(source, program, [self.path.parent], LIGHT)
+        self._close = weakref.finalize(self, _closed, compilation, folder)
+        made = compilation.finish
+        super().__init__("cpp", program, constants, batch=batch, source=str(path), made=made)
+
+    def close(self) -> None:
+        """End the compiler, if it still runs, and remove the folder; both go with this object anyway."""
+        self._close()
+
+
+def _closed(compilation: Compilation, folder: ScratchFolder) -> None:
+    compilation.end()  # first: it writes into the folder
+    folder.close()

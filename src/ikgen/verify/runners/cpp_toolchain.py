@@ -13,9 +13,24 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ikgen.errors import MissingToolError, VerificationError
-from ikgen.processes.outside_program import SECONDS_VARIABLE, Finished, run_program
+from ikgen.processes.outside_program import (
+    SECONDS_VARIABLE,
+    Finished,
+    RunningProgram,
+    run_program,
+)
 
-__all__ = ["compile_extension", "compile_program", "find_compiler", "find_eigen"]
+__all__ = [
+    "LIGHT",
+    "Compilation",
+    "compile_extension",
+    "compile_program",
+    "find_compiler",
+    "find_eigen",
+]
+
+LIGHT = ("-O1",)
+"""Options of a light optimisation."""
 
 _COMPLAINT = re.compile(r":\d+:\d+: .*\berror: ")
 _COMPILERS = ("c++", "g++", "clang++")
@@ -74,8 +89,31 @@ def find_eigen() -> Path:
     )
 
 
+class Compilation:
+    """One C++17 file that is being compiled while this process goes on. Raises `MissingToolError` without
+    compiler or Eigen."""
+
+    def __init__(
+        self, source: Path, output: Path, include: Sequence[Path], flags: Sequence[str]
+    ) -> None:
+        self._output = output
+        self._command = _command([source], output, include, flags)
+        self._compiler = RunningProgram(self._command, environment=_environment())
+        self._done: Finished | None = None
+
+    def finish(self) -> None:
+        """Wait until the program is there. Raises as `compile_program` does."""
+        if self._done is None:
+            self._done = self._compiler.finished()
+        _check(self._command, self._output, self._done)
+
+    def end(self) -> None:
+        """End the compiler, if it has not ended yet."""
+        self._compiler.end()
+
+
 def compile_program(
-    source: Path, output: Path, include: list[Path], flags: Sequence[str] = ("-O1",)
+    source: Path, output: Path, include: Sequence[Path], flags: Sequence[str] = LIGHT
 ) -> None:
     """Compile one C++17 file, by default with light optimisation.
 
@@ -83,7 +121,7 @@ def compile_program(
     takes too long, finds no room; `VerificationError` with its first messages where the code does not
     compile.
     """
-    _compile([source], output, include, flags)
+    Compilation(source, output, include, flags).finish()
 
 
 def compile_extension(
@@ -95,18 +133,26 @@ def compile_extension(
     options += ["-O3", "-shared", "-fPIC", "-fvisibility=hidden", "-fno-strict-aliasing"]
     if sys.platform == "darwin":
         options += ["-undefined", "dynamic_lookup"]
-    _compile(sources, output, [*include, Path(sysconfig.get_path("include"))], options)
+    places = [*include, Path(sysconfig.get_path("include"))]
+    command = _command(sources, output, places, options)
+    _check(command, output, run_program(command, environment=_environment()))
 
 
-def _compile(
+def _command(
     sources: Sequence[Path], output: Path, include: Sequence[Path], options: Sequence[str]
-) -> None:
+) -> list[str]:
     includes = [f"-I{directory}" for directory in include]
     command = [*find_compiler(), "-std=c++17", *options, *includes, "-isystem", str(find_eigen())]
-    done = run_program(
-        [*command, *map(str, sources), "-o", str(output)],
-        environment={**os.environ, "LC_ALL": "C"},
-    )
+    return [*command, *map(str, sources), "-o", str(output)]
+
+
+def _environment() -> dict[str, str]:
+    """That in which compilers speak English, by which their complaints are known."""
+    return {**os.environ, "LC_ALL": "C"}
+
+
+def _check(command: Sequence[str], output: Path, done: Finished) -> None:
+    """Raise what came of a compiler that made nothing."""
     wrong = _complaints(done.printed)
     if wrong and done.code and not (done.late or done.crashed):
         raise VerificationError(

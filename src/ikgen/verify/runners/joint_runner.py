@@ -30,6 +30,11 @@ class JointRunner:
         """The code's constants."""
         return self._runner.constants
 
+    def close(self) -> None:
+        """That of what it runs, if it has one."""
+        if isinstance(self._runner, CppHeader):
+            self._runner.close()
+
     def _motors(self, joints: Array) -> Array:
         """Those of another length as they are: the code has to refuse them."""
         if joints.shape[-1:] != self._transmission.offset.shape:

@@ -22,6 +22,7 @@ and the bytes of its UTF-8. What is told is checked.
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -42,38 +43,55 @@ _STATUS = ("OK", "UNREACHABLE", "LIMITS", "INVALID")
 
 
 class ProgramRunner:
-    """A `Runner` over a finished program; its folder takes the requests and answers.
+    """A `Runner` over a program; its folder takes the requests and answers.
 
     `constants` are those of the arm; the number of solutions is asked of the program. `batch` says
-    whether it knows mode 4. Raises `BadDescriptionError` where the program has other joints.
+    whether it knows mode 4. Raises `BadDescriptionError` where the program has other joints: with `made`,
+    which waits for a program that is being made, and is called before each use, when it is used first.
     """
 
     dynamic_shapes = False
 
     def __init__(
-        self, label: str, program: Path, constants: ArmConstants, *, batch: bool, source: str
+        self,
+        label: str,
+        program: Path,
+        constants: ArmConstants,
+        *,
+        batch: bool,
+        source: str,
+        made: Callable[[], None] | None = None,
     ) -> None:
         self.label = label
         self._program = program
         self._has_batch = batch
-        told = self._run(INFO, 0, [])
+        self._given, self._source, self._made = constants, source, made
+        self._told = None if made else self._ask()
+
+    @property
+    def constants(self) -> ArmConstants:
+        """The arm's constants, with the program's number of solutions."""
+        if self._told is None:
+            self._told = self._ask()
+        return self._told
+
+    def _ask(self) -> ArmConstants:
+        """The constants with what the program tells."""
+        constants, told = self._given, self._run(INFO, 0, [])
         dof, free, most = (int(x) for x in told[:3])
         if (dof, free) != (constants.dof, len(constants.free_joints)):
             raise BadDescriptionError(
                 f"has {dof} joints, {free} of them free, instead of {constants.dof} and "
                 f"{len(constants.free_joints)}",
-                file=source,
+                file=self._source,
                 hint="generate it anew: it is another arm's, or held joints have changed",
             )
-        self._constants = _told(dataclasses.replace(constants, max_solutions=most), told[3:])
-
-    @property
-    def constants(self) -> ArmConstants:
-        """The arm's constants, with the program's number of solutions."""
-        return self._constants
+        return _told(dataclasses.replace(constants, max_solutions=most), told[3:])
 
     def _run(self, mode: int, n: int, columns: list[Array], flags: tuple[bool, ...] = ()) -> Array:
         """One process: N items made of the columns (N, k), and what it answered."""
+        if self._made is not None:
+            self._made()
         head = np.array([mode, n, *flags, *[0] * (3 - len(flags))], dtype=float)
         body = np.hstack(columns).ravel() if columns else np.empty(0)
         work = self._program.parent
@@ -118,7 +136,7 @@ class ProgramRunner:
         return self._rows(self._run(SOLVE, n, columns, flags), n)
 
     def _rows(self, answer: Array, n: int) -> Rows:
-        dof, most = self._constants.dof, self._constants.max_solutions
+        dof, most = self.constants.dof, self.constants.max_solutions
         out = answer.reshape(n, 2 + most * (dof + 1))
         table = out[:, 2:].reshape(n, most, dof + 1)
         count = np.clip(out[:, 1].astype(np.int64), 0, most)
@@ -141,7 +159,7 @@ class ProgramRunner:
 
     def jacobian(self, q: Array) -> Array:
         """Jacobians (N, 6, dof) for q (N, dof)."""
-        dof = self._constants.dof
+        dof = self.constants.dof
         return np.asarray(self._run(JACOBIAN, len(q), [q]).reshape(-1, dof, 6).transpose(0, 2, 1))
 
 
