@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -36,8 +37,9 @@ def started(
     piece = Piece(low, high, 0, samples)
     joint: Any = SimpleNamespace(arm=None)
     starts = _starts(tracks, piece, 7, ("near", (), ()), joint, True)
-    assert all(group == 7 and row[0] == value for (value,), row, _, group in starts)
-    return [(value, step) for (value,), _, (step,), _ in starts]
+    assert all(group == 7 and row[0] == value for (value,), row, _, group, _ in starts)
+    assert all(reach == piece.reach() for *_, reach in starts)
+    return [(value, step) for (value,), _, (step,), _, _ in starts]
 
 
 def test_the_ends_of_an_interval_count(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -45,6 +47,14 @@ def test_the_ends_of_an_interval_count(monkeypatch: pytest.MonkeyPatch) -> None:
     assert found == [(0.13, pytest.approx(0.035))]
     found = started(monkeypatch, lambda x: -x, end(0.13), end(0.67))
     assert found == [(0.67, pytest.approx(0.035))]
+
+
+def test_a_branch_goes_no_farther_than_its_ends() -> None:
+    """As far as these are known, and beyond the range where that ends before."""
+    assert Piece(end(0.13), end(0.67), 0, ()).reach() == (0.13, 0.67)
+    assert Piece(0.2, 0.6, 0, ()).reach() == (-np.inf, np.inf)
+    sliver = replace(end(0.13), outer=0.12)  # which was not looked for
+    assert Piece(sliver, 0.6, 0, ()).reach() == (0.12, np.inf)
 
 
 def test_ends_of_the_range_are_samples_themselves(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -41,6 +41,7 @@ def cost_of(monkeypatch: pytest.MonkeyPatch, cost: Any, away: float = 0.0) -> li
         "refine_few",
         lambda arm, q, T: (q, *doubt[None, : len(q)].repeat(2, axis=0), ~doubt[: len(q)]),
     )
+    monkeypatch.setattr(solution_search, "_beside_fold", lambda arm, q, T: (q, doubt[: len(q)]))
     monkeypatch.setattr(
         solution_search, "preference_costs",
         lambda arm, preference, q, limits: (q, cost(q), q[..., 0] < 5.0),
@@ -49,6 +50,7 @@ def cost_of(monkeypatch: pytest.MonkeyPatch, cost: Any, away: float = 0.0) -> li
 
 
 WANTED: Any = ("near", (), ())
+ANYWHERE = (-np.inf, np.inf)
 
 
 def improved(trial: list[float], start: float = 1.0, limits: bool = True, **more: Any) -> Any:
@@ -82,6 +84,16 @@ def test_trials_stay_inside_the_limits_where_these_count(monkeypatch: pytest.Mon
         assert asked[0].tolist() == [[wanted]]
 
 
+def test_none_is_asked_beyond_the_end_of_a_branch(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nor where it is already, which rows of a fold do not tell."""
+    asked = cost_of(monkeypatch, lambda q: -q[..., 0])
+    monkeypatch.setattr(solution_search, "_solutions", lambda *given: given[-2])
+    start = ((1.0,), np.array([1.0]), (0.1,), 0, (0.5, 1.15))
+    held: Any = best_rows(arm(), np.eye(4), [start], WANTED, True)
+    assert held[0, 0] == 1.15 and max(trial.max() for trial in asked) == 1.15
+    assert [len(trial) for trial in asked[-5:]] == [1] * 5  # inwards alone
+
+
 @pytest.mark.parametrize("count", [1, 2])
 def test_steps_get_shorter_where_none_is_better(
     monkeypatch: pytest.MonkeyPatch, count: int
@@ -90,7 +102,7 @@ def test_steps_get_shorter_where_none_is_better(
     middle = np.array([0.3, -0.2])[:count]
     asked = cost_of(monkeypatch, lambda q: ((q - middle) ** 2).sum(axis=-1))
     monkeypatch.setattr(solution_search, "_solutions", lambda *given: given[-2:])
-    start = (tuple(middle.tolist()), middle, (0.4,) * count, 0)
+    start = (tuple(middle.tolist()), middle, (0.4,) * count, 0, ANYWHERE)
     held, _ = best_rows(arm(count), np.eye(4), [start], WANTED, True)  # type: ignore[misc]
     np.testing.assert_allclose(held[0], middle, atol=1e-6)  # type: ignore[index]
     steps = [float(np.abs(trial[0] - middle).max()) for trial in asked[::count]]
@@ -102,10 +114,63 @@ def test_the_best_of_each_group_is_found_from_its_starts(monkeypatch: pytest.Mon
     cost_of(monkeypatch, lambda q: (q[..., 0] - np.round(q[..., 0])) ** 2 + 1e-3 * q[..., 0])
     monkeypatch.setattr(solution_search, "_solutions", lambda *given: given[-2])
     starts = [
-        ((x,), np.array([x]), (0.1,), group)
+        ((x,), np.array([x]), (0.1,), group, ANYWHERE)
         for x, group in ((3.2, 0), (1.1, 0), (1.9, 1), (-0.8, 2))
     ]
     held: Any = best_rows(arm(), np.eye(4), starts, WANTED, True)
     np.testing.assert_allclose(held[:, 0], [-1.0, 1.0, 2.0], atol=1e-3)
     held = best_rows(arm(most=2), np.eye(4), starts, WANTED, True)
     np.testing.assert_allclose(held[:, 0], [-1.0, 1.0], atol=1e-3)
+
+
+def fold(monkeypatch: pytest.MonkeyPatch, bend: float) -> list[int]:
+    """Rows of x (first entry) at held value h (second): x * x = 1 - h times a bend, two that meet at h = 1.
+    How many were asked of the closed form."""
+    asked: list[int] = []
+
+    def rows(arm: Any, T: Array, held: Array) -> Any:
+        asked.append(len(held))
+        return np.stack([[0.0 * held[:, 0], held[:, 0]]], axis=0).transpose(2, 0, 1), held < 1.0
+
+    def approach(arm: Any, q: Array, aim: Array, side: Array) -> Array:
+        x = side * np.sqrt(np.maximum(bend * (1.0 - aim[:, 0]), 0.0))
+        return np.stack([x, aim[:, 0]], axis=1)
+
+    def refined(arm: Any, q: Array, aim: Array) -> Any:
+        return q, np.where(aim[:, 0] <= 1.0, 0.0, 1e-9), None, None
+
+    none = np.zeros(9, dtype=bool)
+    monkeypatch.setattr(solution_search, "rows_batch", rows)
+    monkeypatch.setattr(solution_search, "aims", lambda arm, T, held: held)
+    monkeypatch.setattr(
+        solution_search, "refine_few", lambda arm, q, T: (q, none[: len(q)], 0, none[: len(q)])
+    )
+    monkeypatch.setattr(solution_search, "approach", approach)
+    monkeypatch.setattr(solution_search, "refined", refined)
+    return asked
+
+
+def test_rows_beside_a_fold_are_of_the_branch_that_is_nearer(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked = fold(monkeypatch, bend=1.0)
+    policy = SimpleNamespace(exact=1e-12)
+    two = arm(2, policy=policy, free=(1,))
+    rows = np.array([[0.01, 0.9999], [-0.01, 0.9999]])
+    trial = np.full((2, 1), 0.9996)
+    row, near = solution_search._next_rows(two, np.zeros((2, 4, 4)), rows, trial)
+    np.testing.assert_allclose(row, [[0.02, 0.9996], [-0.02, 0.9996]])
+    assert near.all() and not asked
+
+
+@pytest.mark.parametrize(("bend", "at"), [(1.0, 1.0001), (100.0, 0.9999)])
+def test_beyond_a_fold_and_far_from_one_the_closed_form_is_asked(
+    monkeypatch: pytest.MonkeyPatch, bend: float, at: float
+) -> None:
+    asked = fold(monkeypatch, bend)
+    policy = SimpleNamespace(exact=1e-12)
+    two = arm(2, policy=policy, free=(1,))
+    _, near = solution_search._next_rows(
+        two, np.zeros((1, 4, 4)), np.array([[0.0, 1.0]]), np.full((1, 1), at)
+    )
+    assert asked == [1] and near.tolist() == [at < 1.0]

@@ -18,6 +18,7 @@ from ikgen.runtime.python.rows.row_links import differences
 __all__ = ["BranchEnd", "branch_end", "find_ends"]
 
 _ENOUGH = 1e-10  # of an end
+_FOUND = 1.01e-10  # one that was looked for
 _STEPS = 60
 _HALVE = 6  # each such step, whatever is expected
 _KNOWN = 4  # values by which an end is expected
@@ -43,6 +44,11 @@ class BranchEnd:
     stays: bool
     there: Array | None = None
     then: float = 0.0
+
+    @property
+    def surely(self) -> float:
+        """A value beyond which the row is not, the last at which it is where that was looked for."""
+        return self.inner if abs(self.outer - self.inner) <= _FOUND else self.outer
 
 
 def branch_end(

@@ -57,5 +57,5 @@ def _starts(
         beside = [i for i in (k - 1, k + 1) if 0 <= i < len(points)]
         if all(cost[k] <= cost[i] for i in beside):
             step = max((abs(points[i][0] - value) for i in beside), default=1e-3)
-            out.append(((value,), row, (0.5 * step,), group))
+            out.append(((value,), row, (0.5 * step,), group, piece.reach()))
     return out

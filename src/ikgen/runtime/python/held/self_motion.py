@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -45,6 +46,13 @@ class Piece:
         """At most."""
         low, high = (x if isinstance(x, float) else x.outer for x in (self.low, self.high))
         return high - low
+
+    def reach(self) -> tuple[float, float]:
+        """Between which values its branch may go on: as far as its ends are known, and on where it goes as
+        far as the joint was looked at."""
+        low = -inf if isinstance(self.low, float) else self.low.surely
+        high = inf if isinstance(self.high, float) else self.high.surely
+        return low, high
 
     def interval(self) -> Interval:
         """With the ends found."""

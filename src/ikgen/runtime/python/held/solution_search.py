@@ -10,22 +10,26 @@ import numpy as np
 from ikgen.runtime.python.arm.held_parameters import aims, held_of
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_types import Array, Flags
+from ikgen.runtime.python.newton.arm_newton import refined
 from ikgen.runtime.python.newton.joint_refinement import refine_few
 from ikgen.runtime.python.rows.row_branches import branch_names
 from ikgen.runtime.python.rows.row_links import differences
 from ikgen.runtime.python.rows.row_preference import Preference, preference_costs
 from ikgen.runtime.python.rows.solutions import Solutions, Status, no_solutions
+from ikgen.runtime.python.singular.fold_pair import approach
 from ikgen.runtime.python.solving.batch_solving import rows_batch
 from ikgen.runtime.python.solving.pose_solving import solve_pose
 
 __all__ = ["Start", "best_rows"]
 
-Start = tuple[tuple[float, ...], Array, tuple[float, ...], int]
-"""Values of the held joints, a row there, the first steps of each value, and the number of its group."""
+Start = tuple[tuple[float, ...], Array, tuple[float, ...], int, tuple[float, float]]
+"""Values of the held joints, a row there, the first steps of each value, the number of its group, and
+between which values its branch goes on."""
 
 _HALVINGS = 30
 _LEAST_STEP = 1e-10  # rad or m
 _NEAR = 0.5  # rad or m that a row may be from the one that a step began at
+_BESIDE = 0.05  # the same of a row beside a fold
 
 
 def best_rows(
@@ -36,6 +40,7 @@ def best_rows(
     held = np.array([s[0] for s in starts])
     rows = np.array([s[1] for s in starts])
     step = np.array([s[2] for s in starts])
+    ends = np.array([s[4] for s in starts])
     _, cost, _ = preference_costs(arm, preference, rows[:, None], limits)
     best = cost[:, 0]
     for _ in range(_HALVINGS):
@@ -47,6 +52,7 @@ def best_rows(
         for k in range(held.shape[1]):
             trials = np.stack([now[0], now[0]])
             trials[:, :, k] += np.outer((1.0, -1.0), step[going, k])
+            trials = np.clip(trials, ends[going, :1], ends[going, 1:])
             moved |= _improved(arm, T, preference, limits, now, trials)
         held[going], rows[going], best[going] = now
         step[going[~moved]] *= 0.5 if held.shape[1] > 1 else 0.4
@@ -72,9 +78,10 @@ def _improved(
         low, high = np.array(arm.lower)[list(arm.free)], np.array(arm.upper)[list(arm.free)]
         trials = np.clip(trials, low, high)
     count, trial = len(trials), trials.reshape(-1, held.shape[1])
-    row, near = _next_rows(
-        arm, np.broadcast_to(T, (len(trial), 4, 4)), np.tile(rows, (count, 1)), trial
-    )
+    row, near = np.tile(rows, (count, 1)), np.zeros(len(trial), dtype=bool)
+    goes = (trials != held).any(axis=2).reshape(-1)  # not so at the end of a branch, or a limit
+    poses = np.broadcast_to(T, (int(goes.sum()), 4, 4))
+    row[goes], near[goes] = _next_rows(arm, poses, row[goes], trial[goes])
     _, cost, inside = preference_costs(arm, preference, row[:, None], limits)
     good = (near & inside[:, 0]).reshape(count, -1) & (cost.reshape(count, -1) < best)
     better = good.any(axis=0)
@@ -85,13 +92,16 @@ def _improved(
 
 def _next_rows(arm: Arm, T: Array, rows: Array, held: Array) -> tuple[Array, Flags]:
     """The rows (n, dof) at held values (n, held) that are next to `rows` (n, dof), and which are near: by
-    Newton steps where these tell, by the closed form elsewhere."""
-    start = rows.copy()
+    Newton steps where these tell, beside folds by steps to both sides, by the closed form elsewhere."""
+    start, aim = rows.copy(), aims(arm, T, held)
     start[:, list(arm.free)] = held[:, : len(arm.free)]
     with np.errstate(all="ignore"):
-        row, arrived, _, strained = refine_few(arm, start, aims(arm, T, held))
-    near = arrived & ~strained
-    left = np.flatnonzero(~near)
+        row, arrived, _, strained = refine_few(arm, start, aim)
+        near = arrived & ~strained
+        left = np.flatnonzero(~near)
+        if len(left):
+            row[left], near[left] = _beside_fold(arm, start[left], aim[left])
+            left = left[~near[left]]
     if len(left):
         q, real = rows_batch(arm, T[left], held[left])
         gap = np.abs(differences(arm, rows[left, None], q)).max(axis=2)
@@ -99,6 +109,18 @@ def _next_rows(arm: Arm, T: Array, rows: Array, held: Array) -> tuple[Array, Fla
         which, nearest = np.arange(len(left)), gap.argmin(axis=1)
         row[left], near[left] = q[which, nearest], gap[which, nearest] < _NEAR
     return row, near
+
+
+def _beside_fold(arm: Arm, start: Array, aim: Array) -> tuple[Array, Flags]:
+    """The nearer (n, dof) of the two rows that steps from `start` (n, dof) towards `aim` lead to, and which
+    are so near that no other row is next to it."""
+    twice = np.repeat(np.arange(len(start)), 2)
+    first, towards, side = start[twice], aim[twice], np.tile([1.0, -1.0], len(start))
+    q, error, _, _ = refined(arm, approach(arm, first, towards, side), towards)
+    gap = np.abs(differences(arm, first, q)).max(axis=1)
+    gap = np.where(error < arm.policy.exact, gap, inf).reshape(-1, 2)
+    nearest = 2 * np.arange(len(start)) + gap.argmin(axis=1)
+    return q[nearest], gap.min(axis=1) < _BESIDE
 
 
 def _solutions(
