@@ -48,19 +48,26 @@ def first_of_equals(q: Array, pose: Index, turning: Turning, coincident: float) 
     values = np.full((6, width, int(pose[-1] - first) + 1), np.nan)
     values[:, place, pose - first] = q.T
     later, earlier = pairs(width)
-    same: Flags = np.ones((len(later), values.shape[2]), dtype=bool)
-    for value, turns in zip(values[::-1], turning[::-1]):  # the last differ between most rows
-        other = value[earlier]
-        gap = np.abs(value[later] - other)
-        around = np.abs(np.pi - np.abs(np.pi - gap))
-        gap = around if turns else gap / np.maximum(np.abs(other), 1.0)
-        same &= gap < coincident
-        if not same.any():
-            return np.ones(len(q), dtype=bool)
+    value = values[-1]  # the last differ between most rows
+    near = _gaps(value[later], value[earlier], turning[-1]) < coincident
+    k, at = np.nonzero(near)
+    later, earlier = later[k], earlier[k]
+    for value, turns in zip(values[-2::-1], turning[-2::-1]):
+        near = _gaps(value[later, at], value[earlier, at], turns) < coincident
+        later, earlier, at = later[near], earlier[near], at[near]
+    if not len(later):
+        return np.ones(len(q), dtype=bool)
     repeated = np.zeros(values.shape[1:], dtype=bool)
-    repeated[1:] = np.logical_or.reduceat(same, np.flatnonzero(earlier == 0), axis=0)
+    repeated[later, at] = True
     keep: Flags = ~repeated[place, pose - first]
     return keep
+
+
+def _gaps(one: Array, other: Array, turns: bool) -> Array:
+    """How far values of a joint are from others (...), of long slides relative to their length."""
+    gap: Array = np.abs(one - other)
+    around = np.abs(np.pi - np.abs(np.pi - gap))
+    return around if turns else gap / np.maximum(np.abs(other), 1.0)
 
 
 def distinct_rows(
