@@ -226,3 +226,23 @@ def test_a_root_may_be_outside_by_what_a_small_divisor_before_it_moved_it(
         lowered = [other.lowered(form, other.g.one) for form in (first, last)]
         choose_form(other.work, other.length, lowered[:forms], other.g.one)
         assert other.work.tolerances.margin is None
+
+
+def test_a_direction_is_not_lost_by_the_square_root_that_it_goes_with(
+    solved: SolutionGraph,
+) -> None:
+    """Both parts of an amplitude and what is under the root vanish together at a wrist's singularity: the
+    direction is off by the model error over the amplitude there, not over its square."""
+    b = Bench(solved, 1e-6)
+    least = b.work.tolerances.norm
+    form = SineCosine(b.share, b.g.mul(b.share, b.g.const(0.5)), b.g.zero)
+    lowered = form.lower(b.g, b.g.one, b.work.tolerances)
+    assert isinstance(lowered, LoweredForm)
+    choose_form(b.work, b.angle, [lowered], b.g.one)
+    assert b.work.lost == []  # nothing comes before it
+    follows = SineCosine(b.share, b.g.zero, b.g.zero).lower(b.g, b.g.one, b.work.tolerances)
+    assert isinstance(follows, LoweredForm)
+    choose_form(b.work, b.angle, [follows], b.g.one)
+    (lost,) = b.work.lost
+    found = lost.probe[: len(SHARES)] > 0.5
+    assert found.tolist() == [share**2 < least for share in SHARES]
