@@ -59,3 +59,21 @@ def test_what_is_solved_is_off_as_its_definition(g: ExpressionGraph) -> None:
     root = g.sqrt(g.mul(g.const(1e-12), a))
     rounding = Rounding(COUNT, {solved.id: root})
     np.testing.assert_array_equal(rounding.of(solved), rounding.of(root))
+
+
+def test_what_an_angle_moves_is_bounded_by_the_levers(g: ExpressionGraph) -> None:
+    """`x cos(u) + y sin(u) + d`, for a radian of u and a metre of d; nothing is rounded."""
+    u = np.linspace(-3.0, 3.0, COUNT)
+    c, s = (
+        g.atom("input", name, f(u), unknown=False) for name, f in (("c", np.cos), ("s", np.sin))
+    )
+    x, y, d = entry(g, "x"), entry(g, "yy"), entry(g, "ddd")
+    levers = Rounding(COUNT, {}, unit=0.0)
+    value = g.add(g.dot([x, y], [c, s]), d)
+    assert levers.most(g.dot([x, y], [x, y])) == 0.0
+    levers.note_moved((c, s))
+    levers.note_moved((d,))
+    slope = np.abs(-x.probe * np.sin(u) + y.probe * np.cos(u)) + 1.0
+    bound = np.abs(x.probe * np.sin(u)) + np.abs(y.probe * np.cos(u)) + 1.0
+    assert (levers.of(value) >= slope - 1e-15).all()
+    np.testing.assert_allclose(levers.of(value), bound, rtol=1e-14)

@@ -31,9 +31,9 @@ _HALF_OF_DIGITS = 1e-8
 
 Lost = Callable[[Expr], float]
 
-_MULTIPLIED = 12.0
-"""Times the model error over a square root that what follows from it may be off: the file's offsets, over
-links that are short beside the arm."""
+_FURTHER = 3.0
+"""Times as far as at random configurations, to first order, that what unknowns are off may move what
+follows from them."""
 
 _BESIDE = 100.0
 """Times as far as at regular configurations that round-off may move what is under a square root, beside
@@ -54,8 +54,9 @@ class Tolerances:
     condition `rough` holds, what a square root is taken of has lost digits: it may be `wide` outside. An
     `error` of the geometry moves what follows from a square root by as much over that root, and what
     follows from a divisor by as much over it: `margin` is the least, relative to natural sizes, of what
-    square roots were taken of so far and of the squares of divisors. `lost` bounds by how much round-off
-    moves a value; where `double` holds, an unknown solved so far is nearly a double root.
+    square roots were taken of so far and of the squares of divisors, and `moved` bounds how far a value
+    goes for each radian, or metre, that the unknowns before it are off. `lost` bounds by how much round-off
+    moves one; where `double` holds, an unknown solved so far is nearly a double root.
     """
 
     singular: float = 1e-11
@@ -68,10 +69,13 @@ class Tolerances:
     error: float = 0.0
     margin: Expr | None = None
     lost: Lost = nothing_lost
+    moved: Lost = nothing_lost
     double: Expr | None = None
 
     @staticmethod
-    def for_model_error(error: float, lost: Lost = nothing_lost) -> Tolerances:
+    def for_model_error(
+        error: float, lost: Lost = nothing_lost, moved: Lost = nothing_lost
+    ) -> Tolerances:
         """Tolerances where the solved geometry is `error` (m or rad) off the file's.
 
         Where rows are not refined, a divisor that is no larger than what the two differ by is as good as
@@ -82,7 +86,7 @@ class Tolerances:
         fold = 0.05 * error if error > ROUNDED else 0.0
         singular = 1e-11 if error > ROUNDED else max(1e-11, 4.0 * error)
         flag, norm = (min(max(1e-4, share * error), 1e-2) for share in (5.0, 50.0))
-        return Tolerances(singular, flag, norm, clamp, fold, error=error, lost=lost)
+        return Tolerances(singular, flag, norm, clamp, fold, error=error, lost=lost, moved=moved)
 
     def least(self, value: Expr, size: float) -> float:
         """How far outside its domain `value`, of natural size `size`, may be under a square root."""
@@ -96,8 +100,9 @@ class Tolerances:
         real = g.binary("gt", value, least)
         if self.margin is None:
             return real
-        reach = g.const((_MULTIPLIED * self.error * size) ** 2)
-        return g.binary("or", real, g.binary("gt", reach, g.mul(g.square(value), self.margin)))
+        reach = min(self.error * (_FURTHER * self.moved(value) + size), size)
+        far = g.mul(g.square(value), self.margin)
+        return g.binary("or", real, g.binary("gt", g.const(reach**2), far))
 
 
 @dataclass(frozen=True, slots=True)

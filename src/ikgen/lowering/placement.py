@@ -64,7 +64,10 @@ class Placement:
         self.model_error = model_error
         self.definition: dict[int, Expr] = dict(self.knowledge.binding)
         self.rounding = Rounding(graph.probes.generic, self.definition)
-        self._tolerances = Tolerances.for_model_error(model_error, self.rounding.most)
+        self._levers = Rounding(graph.probes.generic, self.definition, unit=0.0)
+        self._tolerances = Tolerances.for_model_error(
+            model_error, self.rounding.most, self._levers.most
+        )
         self.loses_digits = bool(graph.probes.kept) or any(map(self._folds, graph.steps))
         self.residuals: list[Expr] = []
         self.norms: list[Expr] = []
@@ -223,6 +226,7 @@ class Placement:
             self.definition[atom.id] = value
             self.names[atom.id] = identifier(name)
             self.place(atom)
+        self._levers.note_moved(atoms)
 
     def atoms_of(self, v: Variable) -> tuple[Expr, ...]:
         """The atoms of a variable: its cosine and sine, or its distance."""

@@ -21,20 +21,28 @@ _EXACT = frozenset({"const", "param", "gt", "and", "or", "not"})
 
 class Rounding:
     """Bounds on errors of expressions at the first `count` probes; `definition`: what solved atoms stand
-    for."""
+    for. `unit`: what an operation rounds by, relative to its result."""
 
-    def __init__(self, count: int, definition: dict[int, Expr]) -> None:
+    def __init__(self, count: int, definition: dict[int, Expr], unit: float = _UNIT) -> None:
         self._count = count
         self._definition = definition
+        self._unit = unit
         self._known: dict[int, Probe] = {}
 
     def note_root(self, atoms: Sequence[Expr], equation: Expr, slope: Expr) -> None:
         """The atoms are the cosine and sine of a root: off by what the equation is, over its slope."""
-        here = Rounding(self._count, self._definition)
+        here = Rounding(self._count, self._definition, self._unit)
         here._known = self._known | {a.id: np.zeros(self._count) for a in atoms}
         with np.errstate(all="ignore"):
             off = here.of(equation) / np.abs(self._at(slope))
         self._known |= {a.id: off for a in atoms}
+
+    def note_moved(self, atoms: Sequence[Expr]) -> None:
+        """The atoms, a cosine and a sine or a distance, are those of an angle that is off by a radian, to
+        first order, or a distance that is by a metre."""
+        turns = [np.abs(self._at(a)) for a in reversed(atoms)]
+        off = turns if len(atoms) == 2 else [np.ones(self._count)]
+        self._known |= {a.id: x for a, x in zip(atoms, off, strict=True)}
 
     def of(self, e: Expr) -> Probe:
         """What an expression is off (count,)."""
@@ -71,8 +79,8 @@ class Rounding:
         if node.op in _EXACT:
             return np.zeros(self._count)
         if not errors:  # an entry of the pose
-            return np.full(self._count, _UNIT * np.abs(node.probe).max(initial=0.0))
-        return np.asarray(self._moved(node, errors) + 0.5 * _UNIT * np.abs(value))
+            return np.full(self._count, self._unit * np.abs(node.probe).max(initial=0.0))
+        return np.asarray(self._moved(node, errors) + 0.5 * self._unit * np.abs(value))
 
     def _moved(self, node: Expr, errors: list[Probe]) -> Probe:
         """What an operation makes of its arguments' errors."""
