@@ -449,6 +449,13 @@ template <class Policy, int N, class... X> [[gnu::always_inline]] inline auto me
 }
 
 // --- solution rows -------------------------------------------------------------------------------
+template <class Arm> struct RowPlaces {
+  static constexpr std::size_t kRoom = 2 * Arm::kMaxSolutions;
+  int count = 0;
+  std::array<typename Arm::Joints, kRoom> q;
+  std::array<bool, kRoom> singular;
+};
+
 template <class Arm> struct SolutionRows {
   using Options = typename Arm::Options;
   using Policy = typename Arm::Policy;
@@ -911,6 +918,37 @@ template <class Arm> struct FoldPair {
   Vector still;             // unit direction in which the pose moves least
   double out[kEquations];  // unit direction of the error in which no other moves it
 
+  struct Taken {
+    double rest[kEquations][4], going[kMoving][4];
+
+    template <class Across> Taken(const Across& others, const double* a, const double* b, const double* c) noexcept {
+      Lanes<4> z[kEquations], y[kMoving];
+      for (int e = 0; e < kEquations; ++e) {
+        const double columns[4] = {a[e], b[e], c[e], 0.0};
+        z[e] = load<4>(columns);
+      }
+      for (int k = 0; k < kMoving; ++k) {
+        y[k] = others.V[0][k] * z[0];
+        for (int e = 1; e < kEquations; ++e) y[k] = y[k] + others.V[e][k] * z[e];
+      }
+      substitute(others.A, y);
+      for (int k = 0; k < kMoving; ++k) store(y[k], going[k]);
+      for (int e = 0; e < kEquations; ++e) {
+        for (int k = 0; k < kMoving; ++k) z[e] = z[e] - others.V[e][k] * y[k];
+        store(z[e], rest[e]);
+      }
+    }
+
+    double first(Vector& across) const noexcept {
+      double farthest = 0.0;
+      for (int k = 0; k < kMoving; ++k) {
+        across[k] = going[k][0];
+        farthest = std::max(farthest, std::abs(across[k]));
+      }
+      return farthest;
+    }
+  };
+
   explicit FoldPair(const HeldAim<Arm>& goal) noexcept : aim(goal) {
     for (int k = 0; k < kMoving; ++k) still[k] = 1.0 + 0.1 * k;
     for (int e = 0; e < kEquations; ++e) out[e] = 0.1 + 0.01 * e;  // shorter than what has a sense
@@ -989,37 +1027,6 @@ template <class Arm> struct FoldPair {
           for (int k = 0; k < kMoving; ++k) turned[e][k] = V[e][k] + error[e] * along[k];
         return keeps_orientation(turned) ? 1.0 : -1.0;
       }
-    }
-  };
-
-  struct Taken {
-    double rest[kEquations][4], going[kMoving][4];
-
-    Taken(const Others& others, const double* a, const double* b, const double* c) noexcept {
-      Lanes<4> z[kEquations], y[kMoving];
-      for (int e = 0; e < kEquations; ++e) {
-        const double columns[4] = {a[e], b[e], c[e], 0.0};
-        z[e] = load<4>(columns);
-      }
-      for (int k = 0; k < kMoving; ++k) {
-        y[k] = others.V[0][k] * z[0];
-        for (int e = 1; e < kEquations; ++e) y[k] = y[k] + others.V[e][k] * z[e];
-      }
-      substitute(others.A, y);
-      for (int k = 0; k < kMoving; ++k) store(y[k], going[k]);
-      for (int e = 0; e < kEquations; ++e) {
-        for (int k = 0; k < kMoving; ++k) z[e] = z[e] - others.V[e][k] * y[k];
-        store(z[e], rest[e]);
-      }
-    }
-
-    double first(Vector& across) const noexcept {
-      double farthest = 0.0;
-      for (int k = 0; k < kMoving; ++k) {
-        across[k] = going[k][0];
-        farthest = std::max(farthest, std::abs(across[k]));
-      }
-      return farthest;
     }
   };
 
@@ -1444,6 +1451,60 @@ template <class Arm> struct NearContinuum : CurveSamples<Arm> {
   }
 };
 
+// --- rank loss -----------------------------------------------------------------------------------
+template <class Arm> struct RankLoss {
+  static constexpr MovingJoints<Arm> kJoints{};
+  static constexpr int kMoving = MovingJoints<Arm>::kCount, kEquations = PoseError<Arm>::kCount;
+  static constexpr int kRank = kMoving < kEquations ? kMoving : kEquations;
+
+  static bool below(const double* q, double bound) noexcept {
+    const PoseError<Arm> at(q, HeldAim<Arm>::own(q));
+    return !above(at.slope, bound);
+  }
+
+ private:
+  template <class X> static auto above(const X (&slope)[kEquations][Arm::kDof], double bound) noexcept {
+    X A[kRank][kRank];
+    for (int a = 0; a < kRank; ++a)
+      for (int b = 0; b <= a; ++b) {
+        if constexpr (kMoving < kEquations) {
+          A[a][b] = slope[0][kJoints[a]] * slope[0][kJoints[b]];
+          for (int e = 1; e < kEquations; ++e) A[a][b] = A[a][b] + slope[e][kJoints[a]] * slope[e][kJoints[b]];
+        } else {
+          A[a][b] = slope[a][kJoints[0]] * slope[b][kJoints[0]];
+          for (int k = 1; k < kMoving; ++k) A[a][b] = A[a][b] + slope[a][kJoints[k]] * slope[b][kJoints[k]];
+        }
+        if (a == b) A[a][b] = A[a][b] - bound * bound;
+      }
+    factor(A);
+    return definite(A);
+  }
+};
+
+// --- row pair ------------------------------------------------------------------------------------
+template <class Arm> struct RowPair {
+  using Policy = typename Arm::Policy;
+
+  static bool within(double reach, const double* a, const double* b) noexcept {
+    for (int j = 0; j < Arm::kDof; ++j)
+      if (!(std::abs(SolutionRows<Arm>::change(j, a, b)) < reach)) return false;
+    return true;
+  }
+
+  template <class Out> static bool any_within(double reach, const double* q, Out& rows) noexcept {
+    for (int k = 0; k < rows.count; ++k)
+      if (within(reach, q, SolutionRows<Arm>::row(rows, k))) return true;
+    return false;
+  }
+
+  static bool between(const HeldAim<Arm>& aim, const double* a, const double* b) noexcept {
+    if (!within(Policy::kAlike, a, b)) return false;
+    double middle[Arm::kDof];
+    for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * SolutionRows<Arm>::change(j, a, b);
+    return PoseError<Arm>(middle, aim).largest() < Policy::kHalfway;
+  }
+};
+
 // --- damped step ---------------------------------------------------------------------------------
 template <class Policy, class X, int Rows, int Columns>
 inline void damped_step(const X (&V)[Rows][Columns], const X (&e)[Rows], const X& worst, X (&x)[Columns]) noexcept {
@@ -1529,54 +1590,6 @@ template <class Arm> struct NewtonRefinement {
   }
 };
 
-// --- rank loss -----------------------------------------------------------------------------------
-template <class Arm> struct RankLoss {
-  static constexpr MovingJoints<Arm> kJoints{};
-  static constexpr int kMoving = MovingJoints<Arm>::kCount, kEquations = PoseError<Arm>::kCount;
-  static constexpr int kRank = kMoving < kEquations ? kMoving : kEquations;
-
-  static bool below(const double* q, double bound) noexcept {
-    const PoseError<Arm> at(q, HeldAim<Arm>::own(q));
-    return !above(at.slope, bound);
-  }
-
- private:
-  template <class X> static auto above(const X (&slope)[kEquations][Arm::kDof], double bound) noexcept {
-    X A[kRank][kRank];
-    for (int a = 0; a < kRank; ++a)
-      for (int b = 0; b <= a; ++b) {
-        if constexpr (kMoving < kEquations) {
-          A[a][b] = slope[0][kJoints[a]] * slope[0][kJoints[b]];
-          for (int e = 1; e < kEquations; ++e) A[a][b] = A[a][b] + slope[e][kJoints[a]] * slope[e][kJoints[b]];
-        } else {
-          A[a][b] = slope[a][kJoints[0]] * slope[b][kJoints[0]];
-          for (int k = 1; k < kMoving; ++k) A[a][b] = A[a][b] + slope[a][kJoints[k]] * slope[b][kJoints[k]];
-        }
-        if (a == b) A[a][b] = A[a][b] - bound * bound;
-      }
-    factor(A);
-    return definite(A);
-  }
-};
-
-// --- row pair ------------------------------------------------------------------------------------
-template <class Arm> struct RowPair {
-  using Policy = typename Arm::Policy;
-
-  static bool within(double reach, const double* a, const double* b) noexcept {
-    for (int j = 0; j < Arm::kDof; ++j)
-      if (!(std::abs(SolutionRows<Arm>::change(j, a, b)) < reach)) return false;
-    return true;
-  }
-
-  static bool between(const HeldAim<Arm>& aim, const double* a, const double* b) noexcept {
-    if (!within(Policy::kAlike, a, b)) return false;
-    double middle[Arm::kDof];
-    for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * SolutionRows<Arm>::change(j, a, b);
-    return PoseError<Arm>(middle, aim).largest() < Policy::kHalfway;
-  }
-};
-
 // --- lane ends -----------------------------------------------------------------------------------
 template <class Arm> struct LaneEnd {
   const typename Arm::template Rows<1>& rows;
@@ -1609,19 +1622,13 @@ template <class Arm> struct CarefulRows {
   using Aim = HeldAim<Arm>;
   using Options = typename Arm::Options;
   using Pair = RowPair<Arm>;
+  using Places = RowPlaces<Arm>;
   using Policy = typename Arm::Policy;
   using Refinement = NewtonRefinement<Arm>;
   using Row = SolutionRows<Arm>;
   using Rows = typename Arm::template Rows<1>;
   using End = LaneEnd<Arm>;
   template <std::size_t K> using Ends = LaneEnds<Arm, K>;
-
-  struct Places {
-    static constexpr std::size_t kRoom = 2 * Arm::kMaxSolutions;
-    int count = 0;
-    std::array<typename Arm::Joints, kRoom> q;
-    std::array<bool, kRoom> singular;
-  };
 
   struct Left {
     bool free = false, led = false;
@@ -1737,11 +1744,7 @@ template <class Arm> struct CarefulRows {
     void add_nearby(const Aim& aim, Places& out) noexcept {
       std::copy_n(q, Arm::kDof, start);
       using Fold = FoldPair<Arm>;
-      const auto known = [&out](const double* row, double reach) noexcept {
-        for (int k = 0; k < out.count; ++k)
-          if (Pair::within(reach, row, Row::row(out, k))) return true;
-        return false;
-      };
+      const auto known = [&out](const double* row, double reach) noexcept { return Pair::any_within(reach, row, out); };
       for (const double side : {1.0, -1.0}) {
         double trial[Arm::kDof];
         std::copy_n(start, Arm::kDof, trial);

@@ -15,6 +15,13 @@ template <class Arm> struct RowPair {
     return true;
   }
 
+  // Whether some row is.
+  template <class Out> static bool any_within(double reach, const double* q, Out& rows) noexcept {
+    for (int k = 0; k < rows.count; ++k)
+      if (within(reach, q, SolutionRows<Arm>::row(rows, k))) return true;
+    return false;
+  }
+
   // Whether nothing tells two rows near each other apart: the pose is theirs between them too.
   static bool between(const HeldAim<Arm>& aim, const double* a, const double* b) noexcept {
     if (!within(Policy::kAlike, a, b)) return false;

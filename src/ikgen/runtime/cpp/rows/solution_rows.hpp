@@ -1,12 +1,21 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
 #include "arrays/constants.hpp"
 
 namespace ikgen_runtime {
+
+// As Solutions, with room for rows that are outside the limits, or farther from a seed than others.
+template <class Arm> struct RowPlaces {
+  static constexpr std::size_t kRoom = 2 * Arm::kMaxSolutions;
+  int count = 0;
+  std::array<typename Arm::Joints, kRoom> q;
+  std::array<bool, kRoom> singular;
+};
 
 // The rows of one answer. Arm: kDof, kMaxSolutions, kLower, kUpper; kRevolute and kHeld, a flag a joint; Options,
 // Solutions, Policy. Out: Solutions, or what has its members and more room.

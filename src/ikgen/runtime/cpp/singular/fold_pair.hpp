@@ -19,6 +19,40 @@ template <class Arm> struct FoldPair {
   Vector still;             // unit direction in which the pose moves least
   double out[kEquations];  // unit direction of the error in which no other moves it
 
+  // What directions across some leave of three errors, a column each, and how they go.
+  struct Taken {
+    double rest[kEquations][4], going[kMoving][4];
+
+    // others: their V, which moves the pose, and the factors A of its normal equations.
+    template <class Across> Taken(const Across& others, const double* a, const double* b, const double* c) noexcept {
+      Lanes<4> z[kEquations], y[kMoving];
+      for (int e = 0; e < kEquations; ++e) {
+        const double columns[4] = {a[e], b[e], c[e], 0.0};
+        z[e] = load<4>(columns);
+      }
+      for (int k = 0; k < kMoving; ++k) {
+        y[k] = others.V[0][k] * z[0];
+        for (int e = 1; e < kEquations; ++e) y[k] = y[k] + others.V[e][k] * z[e];
+      }
+      substitute(others.A, y);
+      for (int k = 0; k < kMoving; ++k) store(y[k], going[k]);
+      for (int e = 0; e < kEquations; ++e) {
+        for (int k = 0; k < kMoving; ++k) z[e] = z[e] - others.V[e][k] * y[k];
+        store(z[e], rest[e]);
+      }
+    }
+
+    // How they go for the first, and how far the fastest joint does.
+    double first(Vector& across) const noexcept {
+      double farthest = 0.0;
+      for (int k = 0; k < kMoving; ++k) {
+        across[k] = going[k][0];
+        farthest = std::max(farthest, std::abs(across[k]));
+      }
+      return farthest;
+    }
+  };
+
   explicit FoldPair(const HeldAim<Arm>& goal) noexcept : aim(goal) {
     for (int k = 0; k < kMoving; ++k) still[k] = 1.0 + 0.1 * k;
     for (int e = 0; e < kEquations; ++e) out[e] = 0.1 + 0.01 * e;  // shorter than what has a sense
@@ -107,39 +141,6 @@ template <class Arm> struct FoldPair {
           for (int k = 0; k < kMoving; ++k) turned[e][k] = V[e][k] + error[e] * along[k];
         return keeps_orientation(turned) ? 1.0 : -1.0;
       }
-    }
-  };
-
-  // What the others leave of three errors, a column each, and how they go.
-  struct Taken {
-    double rest[kEquations][4], going[kMoving][4];
-
-    Taken(const Others& others, const double* a, const double* b, const double* c) noexcept {
-      Lanes<4> z[kEquations], y[kMoving];
-      for (int e = 0; e < kEquations; ++e) {
-        const double columns[4] = {a[e], b[e], c[e], 0.0};
-        z[e] = load<4>(columns);
-      }
-      for (int k = 0; k < kMoving; ++k) {
-        y[k] = others.V[0][k] * z[0];
-        for (int e = 1; e < kEquations; ++e) y[k] = y[k] + others.V[e][k] * z[e];
-      }
-      substitute(others.A, y);
-      for (int k = 0; k < kMoving; ++k) store(y[k], going[k]);
-      for (int e = 0; e < kEquations; ++e) {
-        for (int k = 0; k < kMoving; ++k) z[e] = z[e] - others.V[e][k] * y[k];
-        store(z[e], rest[e]);
-      }
-    }
-
-    // How they go for the first, and how far the fastest joint does.
-    double first(Vector& across) const noexcept {
-      double farthest = 0.0;
-      for (int k = 0; k < kMoving; ++k) {
-        across[k] = going[k][0];
-        farthest = std::max(farthest, std::abs(across[k]));
-      }
-      return farthest;
     }
   };
 

@@ -6,6 +6,7 @@
 #include "arm/joint_range.hpp"
 #include "rows/lane_rows.hpp"
 #include "singular/near_continuum.hpp"
+#include "singular/near_surface.hpp"
 #include "newton/newton_refinement.hpp"
 #include "rows/rank_loss.hpp"
 #include "rows/row_pair.hpp"
@@ -22,20 +23,13 @@ template <class Arm> struct CarefulRows {
   using Aim = HeldAim<Arm>;
   using Options = typename Arm::Options;
   using Pair = RowPair<Arm>;
+  using Places = RowPlaces<Arm>;
   using Policy = typename Arm::Policy;
   using Refinement = NewtonRefinement<Arm>;
   using Row = SolutionRows<Arm>;
   using Rows = typename Arm::template Rows<1>;
   using End = LaneEnd<Arm>;
   template <std::size_t K> using Ends = LaneEnds<Arm, K>;
-
-  // As Solutions, with room for rows that are outside the limits, or farther from a seed than others.
-  struct Places {
-    static constexpr std::size_t kRoom = 2 * Arm::kMaxSolutions;
-    int count = 0;
-    std::array<typename Arm::Joints, kRoom> q;
-    std::array<bool, kRoom> singular;
-  };
 
   // Whether the closed form left a joint free, and found rows with the given value of it.
   struct Left {
@@ -101,6 +95,8 @@ template <class Arm> struct CarefulRows {
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
       if (starts.at(k).nearby && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
+    if constexpr (Arm::kRounded)
+      if (turn == 0) starts.search_surfaces(aim, out);
     if constexpr (!Arm::kRefined)
       for (const int lane : Arm::kLaneOfRow)
         if ((bits(rows, lane) & (kReal | kRough)) == kReal) add_lane(rows, lane, out);
@@ -177,11 +173,7 @@ template <class Arm> struct CarefulRows {
     void add_nearby(const Aim& aim, Places& out) noexcept {
       std::copy_n(q, Arm::kDof, start);
       using Fold = FoldPair<Arm>;
-      const auto known = [&out](const double* row, double reach) noexcept {
-        for (int k = 0; k < out.count; ++k)
-          if (Pair::within(reach, row, Row::row(out, k))) return true;
-        return false;
-      };
+      const auto known = [&out](const double* row, double reach) noexcept { return Pair::any_within(reach, row, out); };
       for (const double side : {1.0, -1.0}) {
         double trial[Arm::kDof];
         std::copy_n(start, Arm::kDof, trial);
@@ -235,6 +227,20 @@ template <class Arm> struct CarefulRows {
           for (int other = k + 1; other < count && one.around; ++other)
             at(other).around = at(other).around || Pair::within(Policy::kMeeting, at(other).q, curve.found[i]);
         }
+      }
+    }
+
+    // Adds the solutions on surfaces of the solved geometry that they lie on.
+    [[gnu::cold, gnu::noinline]] void search_surfaces(const Aim& aim, Places& out) noexcept {
+      NearSurface<Arm> surface(aim);
+      for (int k = 0; k < count; ++k)
+        if (at(k).nearby) surface.search(at(k).q);
+      for (int k = 0; k < surface.count; ++k) {
+        Nearest end;
+        std::copy_n(surface.found[k], Arm::kDof, end.q);
+        end.error = Refinement::error_after(end.q, aim);
+        if (end.error < Policy::kConverged) add(aim, out, end.q, false);
+        end.add_nearby(aim, out);
       }
     }
 

@@ -21,6 +21,7 @@ from ikgen.runtime.python.singular.meeting_rows import (
     repeats,
     rows_nearby,
 )
+from ikgen.runtime.python.singular.near_surface import on_surfaces
 from ikgen.runtime.python.solving.closed_form_rows import (
     AllRows,
     ClosedForm,
@@ -227,10 +228,19 @@ def _rows(arm: Arm, asked: Asked, start: Array, turn: Index) -> list[_Rows]:
         more = _of_lanes(arm, asked, closed, hidden, hidden)
         leads = both(leads, leads_of(arm, more, known))
     kept = _meeting(arm, asked, leads)
+    if first and arm.rounded:
+        _add_surfaces(arm, asked, leads, kept)
     for i, k in np.argwhere(closed.valid & ~closed.rough).tolist():
         _add(arm, asked.T[i], [(tuple(closed.q[i, k].tolist()), bool(marked[i, k]))], kept[i])
     led: Flags = np.asarray((marked | known).any(axis=1))
     return list(zip(kept, free.tolist(), led.tolist()))
+
+
+def _add_surfaces(arm: Arm, asked: Asked, leads: Leads, kept: list[list[Found]]) -> None:
+    """Adds the solutions on surfaces of the solved geometry that starts lead to."""
+    more = leads_of(arm, on_surfaces(arm, leads), np.zeros((len(kept), 1), dtype=bool))
+    for T, rows, found in zip(asked.T, kept, _meeting(arm, asked, more)):
+        _add(arm, T, found, rows)
 
 
 def _without_rows(arm: Arm, free: Flags, leads: Leads) -> Flags:
