@@ -31,6 +31,10 @@ _HALF_OF_DIGITS = 1e-8
 
 Lost = Callable[[Expr], float]
 
+_MULTIPLIED = 12.0
+"""Times the model error over a square root that what follows from it may be off: the file's offsets, over
+links that are short beside the arm."""
+
 _FURTHER = 3.0
 """Times as far as at random configurations, to first order, that what unknowns are off may move what
 follows from them."""
@@ -100,7 +104,8 @@ class Tolerances:
         real = g.binary("gt", value, least)
         if self.margin is None:
             return real
-        reach = min(self.error * (_FURTHER * self.moved(value) + size), size)
+        reach = self.error * max(_MULTIPLIED * size, _FURTHER * self.moved(value))
+        reach = min(reach, size)
         far = g.mul(g.square(value), self.margin)
         return g.binary("or", real, g.binary("gt", g.const(reach**2), far))
 
