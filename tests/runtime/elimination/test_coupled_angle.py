@@ -11,6 +11,7 @@ from ikgen.runtime.python.elimination.coupled_angle import (
     _NEAR,
     _NODES,
     _REAL,
+    _circle_roots,
     _close_roots,
     _roots,
 )
@@ -47,6 +48,36 @@ def test_all_real_roots_are_found_in_order(degree: int) -> None:
     assert pose.tolist() == np.repeat(np.arange(4), 2 * degree).tolist()
     turned = np.sort(np.remainder(angle.reshape(4, -1) + np.pi, 2.0 * np.pi) - np.pi, axis=1)
     np.testing.assert_allclose(turned, wanted, atol=1e-7)
+
+
+@pytest.mark.parametrize("degree", [1, 3, 16])
+def test_roots_of_the_circle_s_polynomial_are_all_found(degree: int) -> None:
+    """Half of them on the circle, and pairs that the circle mirrors."""
+    rng = np.random.default_rng(degree)
+    on = np.exp(1j * rng.uniform(-np.pi, np.pi, (3, degree - degree % 2)))
+    pairs = rng.uniform(0.3, 0.9, (3, (degree + 1) // 2)) * np.exp(
+        1j * rng.uniform(-np.pi, np.pi, (3, (degree + 1) // 2))
+    )
+    wanted = np.concatenate([on, pairs, 1.0 / pairs.conj()], axis=1)
+    c = np.array([np.poly(row)[::-1] for row in wanted])
+    c *= np.sqrt(
+        c[:, :1].conj() / c[:, -1:]
+    )  # the last is the first's conjugate, as of real values
+    c /= np.sqrt(c[:, :1] * c[:, -1:])
+    found = _circle_roots(c)
+    off = np.abs(found[:, :, None] / wanted[:, None, :] - 1.0).min(axis=1)
+    assert found.shape == wanted.shape
+    assert off.max() < 1e-6
+
+
+def test_roots_at_nodes_and_far_from_the_circle_are_found() -> None:
+    """Of `1 + cos t` and of `sin t`, which vanish at nodes, and of a constant: roots 0 and none."""
+    c = np.array([[0.5, 1.0, 0.5], [0.5j, 0.0, -0.5j], [0.0, 1.0, 0.0]])
+    found = _circle_roots(c)
+    np.testing.assert_allclose(found[0], -1.0, atol=1e-7)
+    np.testing.assert_allclose(np.sort(found[1].real), [-1.0, 1.0], atol=1e-14)
+    size = np.sort(np.abs(found[2]))
+    assert size[0] < 1e-14 and size[1] > 1e14
 
 
 def test_complex_pairs_count_where_they_are_nearly_real() -> None:
