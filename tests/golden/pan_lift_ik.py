@@ -732,6 +732,13 @@ def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
     return True
 
 
+def _same_rows(arm: _Arm, a: Array, b: Array) -> _Flags:
+    """Which rows a (k, dof) are not new beside b (k, dof)."""
+    bound = np.where(arm.chain.revolute, 1.0, np.maximum(np.abs(a), 1.0))
+    gap = np.abs(_differences(arm, a, b))
+    return np.asarray((gap <= arm.policy.coincident * bound).all(axis=1))
+
+
 def _distinct(arm: _Arm, q: Array, valid: _Flags) -> _Flags:
     """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside."""
     near = arm.policy.coincident
@@ -1263,12 +1270,34 @@ def _fresh(arm: _Arm, q: Array, starts: _Starts, near: _Flags, stalled: _Flags) 
 def _repeats(arm: _Arm, T: Array, row: Row, kept: Sequence[_Found]) -> bool:
     """Whether nothing tells a singular row from one kept nearby."""
     others = [other for other, singular in kept if singular]
-    gaps = _differences(arm, np.array(row), np.array(others)) if others else np.zeros((0, len(row)))
-    for gap in gaps[np.abs(gaps).max(axis=1) < arm.policy.alike]:
-        middle = _forward(arm.chain, np.array(row) + 0.5 * gap)
-        if np.abs(arm.task.error(middle[None], T[None])).max() < arm.policy.halfway:
-            return True
-    return False
+    if not others:
+        return False
+    rows = np.broadcast_to(np.array(row), (len(others), len(row)))
+    return bool(_untold(arm, np.broadcast_to(T, (len(others), 4, 4)), rows, np.array(others)).any())
+
+
+def _untold(arm: _Arm, T: Array, a: Array, b: Array) -> _Flags:
+    """Which singular rows a (k, dof) for poses T (k, 4, 4) nothing tells from others nearby, b (k, dof)."""
+    gaps = _differences(arm, a, b)
+    near = np.abs(gaps).max(axis=1) < arm.policy.alike
+    middle = _forward(arm.chain, (a + 0.5 * gaps)[near])
+    near[near] = np.abs(arm.task.error(middle, T[near])).max(axis=1) < arm.policy.halfway
+    return np.asarray(near)
+
+
+def _that_differ(arm: _Arm, T: Array, pose: _Index, q: Array, singular: _Flags) -> _Index:
+    """Which rows q (k, dof) of poses T[pose] (k, 4, 4) differ from all that are taken before them, in
+    order."""
+    left, taken = np.arange(len(q)), [np.zeros(0, dtype=np.intp)]
+    while len(left):
+        _, first, whose = np.unique(pose[left], return_index=True, return_inverse=True)
+        taken.append(left[first])
+        left, first = np.delete(left, first), left[first][np.delete(whose, first)]
+        new = ~_same_rows(arm, q[left], q[first])
+        flat = np.flatnonzero(new & singular[left] & singular[first])
+        new[flat] = ~_untold(arm, T[pose[left[flat]]], q[left[flat]], q[first[flat]])
+        left = left[new]
+    return np.sort(np.concatenate(taken))
 
 
 # The nearest pose that the arm can take, of one that it cannot.
@@ -1609,8 +1638,7 @@ def _rows(arm: _Arm, asked: _Asked, start: Array, turn: _Index) -> list[_Rows]:
     kept = _meeting(arm, asked, leads)
     for i, k in np.argwhere(closed.valid & ~closed.rough).tolist():
         _add(arm, asked.T[i], [(tuple(closed.q[i, k].tolist()), bool(marked[i, k]))], kept[i])
-    led: _Flags = np.asarray((marked | known).any(axis=1))
-    return list(zip(kept, free.tolist(), led.tolist()))
+    return list(zip(kept, free.tolist(), np.logical_or.reduce(marked | known, axis=1).tolist()))
 
 
 def _without_rows(arm: _Arm, free: _Flags, leads: _Leads) -> _Flags:
@@ -1644,9 +1672,10 @@ def _meeting(arm: _Arm, asked: _Asked, leads: _Leads) -> list[list[_Found]]:
     out: list[list[_Found]] = [[] for _ in asked.T]
     owner, q, loss = _rows_nearby(arm, leads)
     flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
-    flags = (leads.starts.marked[owner] & (loss < continuum)) | (loss < flat)
-    for i, row, flag in zip(leads.starts.pose[owner].tolist(), q.tolist(), flags.tolist()):
-        _add(arm, asked.T[i], [(tuple(row), flag)], out[i])
+    pose, marked = leads.starts.pose[owner], leads.starts.marked[owner]
+    flags = (marked & (loss < continuum)) | (loss < flat)
+    for k in _that_differ(arm, asked.T, pose, q, flags).tolist():
+        out[pose[k]].append((tuple(q[k].tolist()), bool(flags[k])))
     return out
 
 

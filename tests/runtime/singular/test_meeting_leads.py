@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from tests.support.plane_task import Plane
 
 from ikgen.runtime.python.arm.chain_kinematics import chain_of, forward
+from ikgen.runtime.python.rows.row_placement import is_new
 from ikgen.runtime.python.singular import meeting_rows
 from ikgen.runtime.python.singular.meeting_rows import (
     Ends,
@@ -21,6 +22,7 @@ from ikgen.runtime.python.singular.meeting_rows import (
     leads_of,
     repeats,
     rows_nearby,
+    that_differ,
 )
 
 Array = NDArray[np.float64]
@@ -107,6 +109,35 @@ def test_singular_rows_are_one_where_the_pose_is_theirs_between_them_too() -> No
         policy=SimpleNamespace(halfway=1.0, alike=1.0), chain=chain, task=Plane
     )
     assert not repeats(arm, T, rows[0], [])
+
+
+def test_rows_of_many_poses_are_told_apart_as_one_after_the_other_is() -> None:
+    """Rows that are the same, alike, or each alike to the one before it, of poses in turn."""
+    frames = np.tile(np.eye(4), (4, 1, 1))
+    frames[1:, 0, 3] = 0.5
+    motions = ((0, True, 1.0, 0.0), (1, True, 1.0, 0.0), (2, False, 1.0, 0.0))
+    policy = SimpleNamespace(coincident=1e-6, alike=0.3, halfway=0.02)
+    chain = chain_of(frames, motions, 3)
+    arm: Any = SimpleNamespace(policy=policy, chain=chain, task=Plane)
+    rng = np.random.default_rng(2)
+    q = np.array([0.1, 0.2, 40.0]) + rng.choice([0.0, 5e-7, 0.05, 0.15, 0.4], (300, 3))
+    q[:, :2] += 2.0 * np.pi * rng.integers(-1, 2, (300, 2))
+    q[:, 2] += rng.choice([0.0, 3e-5], 300)
+    T, pose, singular = forward(chain, q[:4]), rng.integers(0, 4, 300), rng.random(300) < 0.7
+    kept: list[list[Any]] = [[], [], [], []]
+    wanted = []
+    for k, (i, row, flag) in enumerate(
+        zip(pose.tolist(), map(tuple, q.tolist()), singular, strict=True)
+    ):
+        if is_new(arm, row, kept[i]) and not (flag and repeats(arm, T[i], row, kept[i])):
+            kept[i].append((row, bool(flag)))
+            wanted.append(k)
+    assert that_differ(arm, T, pose, q, singular).tolist() == wanted
+    alone = np.ones_like(singular)
+    assert 20 < len(wanted) < 290
+    assert that_differ(arm, T, pose, q, ~alone).tolist() != wanted
+    assert that_differ(arm, T, pose, q, alone).tolist() != wanted
+    assert not len(that_differ(arm, T, pose[:0], q[:0], singular[:0]))
 
 
 def test_marked_rows_that_are_not_the_arms_own_are_followed_once_for_each_branch(

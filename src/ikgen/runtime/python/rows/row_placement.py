@@ -21,6 +21,7 @@ __all__ = [
     "place_rows",
     "place_rows_batch",
     "rows_at_limits",
+    "same_rows",
 ]
 
 _TURN = 2.0 * pi
@@ -42,6 +43,13 @@ def is_new(arm: Arm, row: Row, kept: Sequence[Found]) -> bool:
         else:
             return False
     return True
+
+
+def same_rows(arm: Arm, a: Array, b: Array) -> Flags:
+    """Which rows a (k, dof) are not new beside b (k, dof)."""
+    bound = np.where(arm.chain.revolute, 1.0, np.maximum(np.abs(a), 1.0))
+    gap = np.abs(differences(arm, a, b))
+    return np.asarray((gap <= arm.policy.coincident * bound).all(axis=1))
 
 
 def apart(arm: Arm, q: Array) -> bool:

@@ -15,7 +15,7 @@ from ikgen.runtime.python.arrays.array_types import Array, Flags, Index, Row
 from ikgen.runtime.python.newton.arm_newton import refined
 from ikgen.runtime.python.newton.refinement import least_singular
 from ikgen.runtime.python.rows.row_links import differences
-from ikgen.runtime.python.rows.row_placement import distinct
+from ikgen.runtime.python.rows.row_placement import distinct, same_rows
 from ikgen.runtime.python.rows.solution_rows import places
 from ikgen.runtime.python.singular.fold_pair import approach
 
@@ -29,6 +29,7 @@ __all__ = [
     "leads_of",
     "repeats",
     "rows_nearby",
+    "that_differ",
 ]
 
 
@@ -203,11 +204,34 @@ def _fresh(arm: Arm, q: Array, starts: Starts, near: Flags, stalled: Flags) -> F
 
 
 def repeats(arm: Arm, T: Array, row: Row, kept: Sequence[Found]) -> bool:
-    """Whether nothing tells a singular row from one kept nearby: the pose is theirs between them too."""
+    """Whether nothing tells a singular row from one kept nearby."""
     others = [other for other, singular in kept if singular]
-    gaps = differences(arm, np.array(row), np.array(others)) if others else np.zeros((0, len(row)))
-    for gap in gaps[np.abs(gaps).max(axis=1) < arm.policy.alike]:
-        middle = forward(arm.chain, np.array(row) + 0.5 * gap)
-        if np.abs(arm.task.error(middle[None], T[None])).max() < arm.policy.halfway:
-            return True
-    return False
+    if not others:
+        return False
+    rows = np.broadcast_to(np.array(row), (len(others), len(row)))
+    return bool(_untold(arm, np.broadcast_to(T, (len(others), 4, 4)), rows, np.array(others)).any())
+
+
+def _untold(arm: Arm, T: Array, a: Array, b: Array) -> Flags:
+    """Which singular rows a (k, dof) for poses T (k, 4, 4) nothing tells from others nearby, b (k, dof):
+    the pose is theirs between them too."""
+    gaps = differences(arm, a, b)
+    near = np.abs(gaps).max(axis=1) < arm.policy.alike
+    middle = forward(arm.chain, (a + 0.5 * gaps)[near])
+    near[near] = np.abs(arm.task.error(middle, T[near])).max(axis=1) < arm.policy.halfway
+    return np.asarray(near)
+
+
+def that_differ(arm: Arm, T: Array, pose: Index, q: Array, singular: Flags) -> Index:
+    """Which rows q (k, dof) of poses T[pose] (k, 4, 4) differ from all that are taken before them, in
+    order: those of a pose that the first of them is not, and of these again."""
+    left, taken = np.arange(len(q)), [np.zeros(0, dtype=np.intp)]
+    while len(left):
+        _, first, whose = np.unique(pose[left], return_index=True, return_inverse=True)
+        taken.append(left[first])
+        left, first = np.delete(left, first), left[first][np.delete(whose, first)]
+        new = ~same_rows(arm, q[left], q[first])
+        flat = np.flatnonzero(new & singular[left] & singular[first])
+        new[flat] = ~_untold(arm, T[pose[left[flat]]], q[left[flat]], q[first[flat]])
+        left = left[new]
+    return np.sort(np.concatenate(taken))

@@ -20,6 +20,7 @@ from ikgen.runtime.python.singular.meeting_rows import (
     leads_of,
     repeats,
     rows_nearby,
+    that_differ,
 )
 from ikgen.runtime.python.singular.near_surface import on_surfaces
 from ikgen.runtime.python.solving.closed_form_rows import (
@@ -232,8 +233,7 @@ def _rows(arm: Arm, asked: Asked, start: Array, turn: Index) -> list[_Rows]:
         _add_surfaces(arm, asked, leads, kept)
     for i, k in np.argwhere(closed.valid & ~closed.rough).tolist():
         _add(arm, asked.T[i], [(tuple(closed.q[i, k].tolist()), bool(marked[i, k]))], kept[i])
-    led: Flags = np.asarray((marked | known).any(axis=1))
-    return list(zip(kept, free.tolist(), led.tolist()))
+    return list(zip(kept, free.tolist(), np.logical_or.reduce(marked | known, axis=1).tolist()))
 
 
 def _add_surfaces(arm: Arm, asked: Asked, leads: Leads, kept: list[list[Found]]) -> None:
@@ -259,8 +259,7 @@ def _beside(arm: Arm, asked: Asked, start: Array, some: Index) -> Starts:
         q, valid, marked = rows_beside(arm, asked.T[some], start[some], asked.held[some])
     pose, row = np.nonzero(valid)
     motion, lane = np.divmod(row, valid.shape[1] // len(arm.beside))
-    which = some[pose], marked[pose, row], 1 + motion, lane
-    return _starts(arm, asked, q[pose, row], *which)
+    return _starts(arm, asked, q[pose, row], some[pose], marked[pose, row], 1 + motion, lane)
 
 
 def _of_lanes(arm: Arm, asked: Asked, closed: ClosedForm, lanes: Flags, marked: Flags) -> Starts:
@@ -287,9 +286,10 @@ def _meeting(arm: Arm, asked: Asked, leads: Leads) -> list[list[Found]]:
     out: list[list[Found]] = [[] for _ in asked.T]
     owner, q, loss = rows_nearby(arm, leads)
     flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
-    flags = (leads.starts.marked[owner] & (loss < continuum)) | (loss < flat)
-    for i, row, flag in zip(leads.starts.pose[owner].tolist(), q.tolist(), flags.tolist()):
-        _add(arm, asked.T[i], [(tuple(row), flag)], out[i])
+    pose, marked = leads.starts.pose[owner], leads.starts.marked[owner]
+    flags = (marked & (loss < continuum)) | (loss < flat)
+    for k in that_differ(arm, asked.T, pose, q, flags).tolist():
+        out[pose[k]].append((tuple(q[k].tolist()), bool(flags[k])))
     return out
 
 
