@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ikgen.runtime.python.elimination.hidden_angle import _JITTER, solved
+from ikgen.runtime.python.elimination.hidden_angle import _JITTER, lift, solved
 
 
 def test_a_singular_matrix_changes_nothing_beside_it() -> None:
@@ -40,3 +40,14 @@ def test_those_that_are_put_off_further_are_put_off_as_far_as_alone() -> None:
         found = solved(pivot, N, off)
         for i in range(3):
             np.testing.assert_array_equal(found[i], solved(pivot[i : i + 1], N[i : i + 1], off)[0])
+
+
+def test_rows_times_half_angles_are_rows_in_these() -> None:
+    A, w = np.random.default_rng(6).normal(size=(4, 5, 3, 9)), np.array([1.0, 0.6, -0.8])
+    angle = 1.3
+    whole = np.kron([1.0, np.cos(angle), np.sin(angle)], w)
+    half = [f(k * 0.5 * angle) for k in (1.0, 3.0) for f in (np.cos, np.sin)]
+    found = lift(A) @ np.kron(half, w)
+    assert lift(A).shape == (4, 5, 6, 12)
+    np.testing.assert_allclose(found[..., :3], np.cos(0.5 * angle) * (A @ whole), atol=1e-14)
+    np.testing.assert_allclose(found[..., 3:], np.sin(0.5 * angle) * (A @ whole), atol=1e-14)

@@ -30,15 +30,24 @@ DOUBTFUL = 1e-3  # below it, of one that may be half of a double root
 _NO_RANK = 1e10  # of the eigenproblem's entries: half of a root's digits are rounding
 _FOURFOLD = 0.03  # the same of a fourfold root
 _CROWD = 8.0  # times the imaginary part: how far off the other pair is at most
+_LIFT = np.kron(  # of 1, c and s by half angles, times cos h and times sin h
+    np.array(
+        [
+            [[1.0, 0.0, 0.0, 0.0], [0.5, 0.0, 0.5, 0.0], [0.0, 0.5, 0.0, 0.5]],
+            [[0.0, 1.0, 0.0, 0.0], [0.0, -0.5, 0.0, 0.5], [0.5, 0.0, -0.5, 0.0]],
+        ]
+    ),
+    np.eye(3),
+)
 _JITTER = np.cos(np.outer(np.arange(1, 13), np.arange(1, 13)))
 
 
 def lift(A: Array) -> Array:
     """Rows (..., r, 9) in (1, c, s) x (1, c', s') times cos h and sin h, h half the first angle:
     (..., 2r, 12) in (cos h, sin h, cos 3h, sin 3h) x (1, c', s')."""
-    A0, A1, A2 = A[..., 0:3], 0.5 * A[..., 3:6], 0.5 * A[..., 6:9]
-    top = np.concatenate([A0 + A1, A2, A1, A2], axis=-1)
-    return np.concatenate([top, np.concatenate([A2, A0 - A1, -A2, A1], axis=-1)], axis=-2)
+    out = np.empty((*A.shape[:-2], 2, A.shape[-2], 12))
+    np.matmul(A[..., None, :, :], _LIFT, out=out)
+    return out.reshape(*A.shape[:-2], -1, 12)
 
 
 def loop_resultant(E: Array, left: Array) -> Resultant:
