@@ -61,6 +61,27 @@ def test_a_quartic_of_a_geometry_far_off_gives_way_to_the_elimination(tmp_path: 
     assert derived.module.refine == "some"
 
 
+@pytest.mark.parametrize(("offset", "rules"), [(2e-5, True), (4e-4, False)])
+def test_offsets_that_add_up_give_way_to_the_elimination(
+    offset: float, rules: bool, tmp_path: Path
+) -> None:
+    """Each is short enough to count as zero in a wrist that is meant to be spherical."""
+    turn = (-2.9, 2.9)
+    made: list[Joint] = [
+        ("yaw", "revolute", "0 0 1", "0 0 0.2", turn),
+        ("shoulder", "revolute", "0 1 0", "0.05 0 0.1", turn),
+        ("elbow", "revolute", "0 1 0", "0 0 0.3", turn),
+        ("roll", "revolute", "0 0 1", f"{offset} {offset} 0.05", turn),
+        ("pitch", "revolute", "0 1 0", f"{-offset} {-offset} 0.2", turn),
+        ("turn", "revolute", "0 0 1", f"{-offset} {offset} 0.01", turn),
+    ]
+    path = tmp_path / "wrist.urdf"
+    path.write_text(serial_urdf("wrist", made))
+    module = derive(Request(path)).module
+    assert (module.order == ("all joints (6R elimination)",)) is not rules
+    assert module.refine == ("all" if rules else "some")
+
+
 def parallel(joints: int, folder: Path) -> Request:
     """A chain of parallel joints, each link longer than the one before."""
     made: list[Joint] = [

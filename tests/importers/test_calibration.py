@@ -13,6 +13,7 @@ import pytest
 
 from ikgen.cli.main import run
 from ikgen.errors import BadDescriptionError, UsageError
+from ikgen.generation.derive import derive
 from ikgen.generation.emitted_checks import oracle_for
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
@@ -55,6 +56,12 @@ def test_the_chain_is_the_arms_own_and_the_rows_are_the_models(tmp_path: Path) -
     assert 1e-4 < off < 1e-2 and 1e-4 < max(own.dh.deviation) < 1e-2
     assert own.source.sha256 != model.source.sha256
     assert (tmp_path / "own.yaml").resolve() in own.source.dependencies
+
+
+def test_the_closed_form_is_that_of_the_models_class(tmp_path: Path) -> None:
+    own = derive(calibrated(OWN, tmp_path)).module
+    assert not any("elimination" in step for step in own.order)
+    assert len(own.order) == len(derive(UR5E).module.order) and own.refine == "all"
 
 
 def test_the_origins_are_those_of_the_file(tmp_path: Path) -> None:

@@ -47,7 +47,7 @@ _FULL_TRIES_JOINTS = 8
 
 COARSE = 5e-4
 """Deviation (rad, or m over the arm's length) from which on an elimination of the file's own geometry comes
-before a quartic of one nearby."""
+before rules of one nearby: of several offsets that each are short, say."""
 
 _OTHERS = 3
 
@@ -64,17 +64,25 @@ def closed_form(reading: Reading, demand: Demand) -> ClosedForm:
     if choices:
         return _with_joints_held(reading, choices, demand)
     found = as_written(_by_rules_somewhere(reading, demand), demand)
-    return by_elimination(found, demand) if not found.sound or _is_coarse(found) else found
+    coarse = not found.sound or _is_coarse(found, reading.dh)
+    return by_elimination(found, demand) if coarse else found
 
 
-def _is_coarse(form: ClosedForm) -> bool:
-    """Whether the solved geometry is off the file's by so much that a quartic's roots, which lie in pairs,
-    start in the wrong one."""
+def _is_coarse(form: ClosedForm, read: DHChain) -> bool:
+    """Whether the solved geometry is off the file's by so much that rows start far from its solutions: a
+    quartic's roots, which lie in pairs, in the wrong one; where offsets that were `read` count as zero,
+    many poses are looked at closely. What a calibration moves is no such offset."""
     from ikgen.kinematics.axis_relations import reach
 
     dh = form.reading.dh
     length, angle = dh.deviation
-    return form.closed and not form.two_branch and max(length / reach(dh), angle) > COARSE
+    simpler = not form.two_branch or _zeros(dh) > _zeros(read)
+    return form.closed and simpler and max(length / reach(dh), angle) > COARSE
+
+
+def _zeros(dh: DHChain) -> int:
+    """How many lengths of the rows are zero."""
+    return sum(length.value == 0.0 for row in dh.rows for length in (row.a, row.d))
 
 
 def _with_arm_angle(reading: Reading, demand: Demand) -> ClosedForm:
@@ -139,7 +147,9 @@ def taken_form(
     """Which of the forms, best first, is taken, settled; None where no joint held gives one."""
     choice, form = tried[0]
     if form.sound:
-        return choice, as_written(form, demand)
+        written = as_written(form, demand)
+        coarse = _is_coarse(written, choice.dh)
+        return choice, by_elimination(written, demand) if coarse else written
     for other, open_form in tried:
         solved = by_elimination(open_form, demand)
         if solved.plan is not None:

@@ -98,7 +98,7 @@ class Compilation:
     ) -> None:
         self._output = output
         self._command = _command([source], output, include, flags)
-        self._compiler = RunningProgram(self._command, environment=_environment())
+        self._compiler = RunningProgram(self._command, environment=_environment(output))
         self._done: Finished | None = None
 
     def finish(self) -> None:
@@ -135,7 +135,7 @@ def compile_extension(
         options += ["-undefined", "dynamic_lookup"]
     places = [*include, Path(sysconfig.get_path("include"))]
     command = _command(sources, output, places, options)
-    _check(command, output, run_program(command, environment=_environment()))
+    _check(command, output, run_program(command, environment=_environment(output)))
 
 
 def _command(
@@ -146,9 +146,10 @@ def _command(
     return [*command, *map(str, sources), "-o", str(output)]
 
 
-def _environment() -> dict[str, str]:
-    """That in which compilers speak English, by which their complaints are known."""
-    return {**os.environ, "LC_ALL": "C"}
+def _environment(output: Path) -> dict[str, str]:
+    """That in which compilers speak English, by which their complaints are known, and put files of their
+    own beside the output: what one that is ended leaves goes with that folder."""
+    return {**os.environ, "LC_ALL": "C", "TMPDIR": str(output.parent)}
 
 
 def _check(command: Sequence[str], output: Path, done: Finished) -> None:
