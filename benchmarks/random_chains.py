@@ -51,7 +51,7 @@ class Share:
 CLASSES = {"3-6": Share(300, 0), "6R": Share(34, 20), "5R1P": Share(33, 20), "4R2P": Share(33, 20)}
 """What is taken where no class is named."""
 _OTHER = Share(10, 20)
-_BESIDE = re.compile(r"([1-9]\d*) missed, all of them among \d+ poses put next to singularities")
+_BESIDE = re.compile(r"([1-9]\d*) missed, all of them among \d+ poses near singularities")
 """What verification says of poses beside singularities, where its own count does not fail."""
 
 

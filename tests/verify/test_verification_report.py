@@ -52,7 +52,9 @@ def test_misses_are_said_to_be_near_singularities_where_all_are() -> None:
     )  # fmt: skip
     near = replace(report(GOOD), bands=bands)
     assert near.missed == 3
-    assert near.missed_words == "3 missed, all of them among 70 poses put next to singularities"
+    assert near.missed_words == "3 missed, all of them among 70 poses near singularities"
+    silent = replace(near, bands=(replace(bands[0], unanswered=1), *bands[1:]))
+    assert silent.missed_words == f"{near.missed_words}, 1 without a row"
     searched = CheckResult("exhaustive search", False, 100, 4)
     failed = replace(report(GOOD, searched), bands=bands)
     assert failed.missed == 7 and failed.missed_words == "7 missed"

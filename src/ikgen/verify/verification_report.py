@@ -127,7 +127,9 @@ class VerificationReport:
         if not self.missed or not self.passed:
             return words
         near = sum(band.poses for band in self.bands if math.isfinite(band.high))
-        return f"{words}, all of them among {near} poses put next to singularities"
+        words = f"{words}, all of them among {near} poses near singularities"
+        without = sum(band.unanswered for band in self.bands)
+        return f"{words}, {without} without a row" if without else words
 
     @property
     def solutions(self) -> tuple[int, float, int]:
