@@ -92,8 +92,8 @@ class LinearPair(Form):
         return LoweredForm((g.mul(x, inverse), g.mul(y, inverse)), divisor, None, 1)
 
     def _turn_back(self, g: ExpressionGraph, sign: int, tolerances: Tolerances) -> LoweredForm:
-        """The constant sides turned back by the matrix, over its length squared. Where no steps follow half
-        of the digits that the length has left have to be those of its square."""
+        """The constant sides turned back by the matrix, over its length squared. Where no Newton steps win
+        digits back, the square itself is what must not be small."""
         matrix, sides = [self.a1, self.a2], [self.c1, self.c2]
         power = 2 if tolerances.error > ROUNDED else 1
         divisor = divisor_of(g, g.dot(matrix, matrix), tolerances, power)

@@ -86,9 +86,8 @@ def choose_form(
     if isinstance(free, Expr):
         work.place(free)
         work.singular.append(free)
-    work.note_divisors(
-        divisors
-    )  # first: what they leave of the file is not less by the square root that follows
+    # divisors first: what they leave of the file is not less by the square root that goes with them
+    work.note_divisors(divisors)
     for form in forms:
         if form.under is not None:
             work.note_fold(form.under[0], natural_size(form.under[1]))
