@@ -78,34 +78,23 @@ class LinearPair(Form):
         return tuple(g.sub(g.dot(row, [*unknown]), c) for row, c in rows)
 
     def lower(self, g: ExpressionGraph, sigma: Expr, tolerances: Tolerances) -> LoweredForm:
-        """Cramer's rule with one division."""
-        sign = self.rotation
-        if sign != 0:
-            return self._turn_back(g, sign, tolerances)
-        det = g.sub(g.mul(self.a1, self.b2), g.mul(self.b1, self.a2))
-        divisor = divisor_of(g, det, tolerances)
-        x = g.sub(g.mul(self.c1, self.b2), g.mul(self.c2, self.b1))
+        """Cramer's rule with one division; by a rotation the constant sides are turned back, over its
+        length squared. Where no Newton steps win digits back, that square is what must not be small."""
+        sign, power = self.rotation, 1
         y = g.sub(g.mul(self.a1, self.c2), g.mul(self.a2, self.c1))
+        if sign == 0:
+            det = g.sub(g.mul(self.a1, self.b2), g.mul(self.b1, self.a2))
+            x = g.sub(g.mul(self.c1, self.b2), g.mul(self.c2, self.b1))
+        else:
+            det = g.dot([self.a1, self.a2], [self.a1, self.a2])
+            x = g.dot([self.a1, self.a2], [self.c1, self.c2])
+            y = y if sign > 0 else g.neg(y)
+            power = 2 if tolerances.error > ROUNDED else 1
+        divisor = divisor_of(g, det, tolerances, power)
         if det.is_fixed:
             return LoweredForm((g.div(x, det), g.div(y, det)), divisor, None, 1)
         inverse = g.div(g.one, divisor.value)
         return LoweredForm((g.mul(x, inverse), g.mul(y, inverse)), divisor, None, 1)
-
-    def _turn_back(self, g: ExpressionGraph, sign: int, tolerances: Tolerances) -> LoweredForm:
-        """The constant sides turned back by the matrix, over its length squared. Where no Newton steps win
-        digits back, the square itself is what must not be small."""
-        matrix, sides = [self.a1, self.a2], [self.c1, self.c2]
-        power = 2 if tolerances.error > ROUNDED else 1
-        divisor = divisor_of(g, g.dot(matrix, matrix), tolerances, power)
-        x = g.dot(matrix, sides)
-        y = g.sub(g.mul(self.a1, self.c2), g.mul(self.a2, self.c1))
-        y = y if sign > 0 else g.neg(y)
-        if divisor.magnitude is None:
-            values = g.div(x, divisor.value), g.div(y, divisor.value)
-        else:
-            inverse = g.div(g.one, divisor.value)
-            values = g.mul(x, inverse), g.mul(y, inverse)
-        return LoweredForm(values, divisor, None, 1)
 
     def formula(self, w: FormulaWriter) -> Formula:
         """One arctangent; the determinant is left out where its sign is known."""
