@@ -2078,32 +2078,48 @@ def _rows_and_doubts(
     return _careful_rows(arm, T, held, near)
 
 
-# Solutions on what is a continuum of the geometry that was solved, and none of the file's.
+# Samples of curves along which the other joints take the pose's error away but for one direction.
 
 
-_near_continuum_MOST, _CORRECTIONS, _STEPS, _DEEP, _LEAST = 96, 6, 40, 24, 4
-_CUBICS, _NEWTON, _CLEAR = 2, 4, 1e-6
-_LEAP, _SOON = 16.0, 3
-_BEYOND = 4.0  # how far what is left behind the last part of a curve may be beyond its bound
-_SAMPLES = 600  # of a curve
-_ROOM = 32  # solutions of a curve
+_CORRECTIONS = 6
 _NEAR = 1e-8  # rad or m: so far off the curve what is left, whose error is the square, is its
 _SHARE = 3e-2  # or, of what is left: as little as that off the curve changes neither
 _ALMOST, _SAME = 1e-3, 4e-15  # or how close it must be where what is left is the same after a step
-_STRAY = 1.0  # rad or m: larger corrections, of so many samples,
-_ASTRAY = 4  # show that no curve is near
+_STRAY = 1.0  # rad or m: larger corrections show that no curve is near
+
+
+def _sampled(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, _Flags]:
+    """The configurations of curves beside some (k,), of which one direction of the error is left towards
+    aims T (k, ...)."""
+    at, near = _Reduced(*(x.copy() for x in at)), np.ones(len(T), dtype=bool)
+    going, before = np.arange(len(T)), np.full(len(T), np.inf)
+    for _ in range(_CORRECTIONS):
+        moved, farthest = _correct(arm, _some_of(at, going), T[going])
+        for whole, part in zip(at, moved):
+            whole[going] = part
+        near[going] &= farthest < _STRAY
+        same = (np.abs(moved.left - before) < _SAME) & (farthest < _ALMOST)
+        on = ~((farthest < np.maximum(_NEAR, _SHARE * np.abs(moved.left))) | same)
+        going, before = going[on], moved.left[on]
+        if not len(going):
+            break
+    return at, near
+
+
+# Solutions on parts of curves, between two samples each, by what is left of the error there and how that
+
+
+_BEYOND = 4.0
+
+_STEPS, _DEEP = 40, 24
+_curve_parts_DOUBTS = 3  # how often a part is cut as its cubic bends
+_BENT, _STRAIGHT = 1.5, 0.03  # by so much of what it is in the middle, and at most
+_CUBICS, _NEWTON, _CLEAR = 2, 4, 1e-6
+_LEAP, _SOON = 16.0, 3
+_SAMPLES = 600  # of a curve
+_ROOM = 32  # solutions of a curve
 _WAY = 1e-10  # rad or m: along it, by which what is left varies by round-off
-_near_continuum_ROUND_OFF, _SMALL, _DOUBT, _near_continuum_BESIDE, _SAME_WAY = 1e-15, 4e-15, 0.03, 0.06, 0.9
-
-
-class _Traced(NamedTuple):
-    """Which starts (k,) lie on a `curve` of the solved geometry, and which of these are `broken` (k,), none
-    of the file's arm; the starts `owner` (n,) of solutions, nearly, `q` (n, dof) on broken ones."""
-
-    curve: _Flags
-    broken: _Flags
-    owner: _Index
-    q: Array
+_curve_parts_ROUND_OFF, _SMALL = 1e-15, 4e-15
 
 
 class _Parts(NamedTuple):
@@ -2115,6 +2131,153 @@ class _Parts(NamedTuple):
     owner: _Index
     place: Array
     width: Array
+
+
+def _look(arm: _Arm, parts: _Parts, T: Array, samples: _Index) -> tuple[_Index, Array]:
+    """The solutions (n, dof) inside parts, by the signs of the coefficients, after Bernstein, of cubics
+    through values and slopes."""
+    kept, brackets = [_solved(parts, parts.a, 0.0), _solved(parts, parts.b, 1.0)], []
+    for deep in range(_DEEP + 1):
+        most = np.maximum(np.abs(parts.a.left), np.abs(parts.b.left))
+        parts = _some_of(parts, ~(most >= _BEYOND * arm.policy.fold_reach))
+        values = _bernstein(arm, parts)
+        most = np.abs(values).max(axis=0)
+        spent = samples[parts.owner] >= _SAMPLES
+        end = (most < _SMALL) | spent | (deep == _DEEP)
+        found = np.abs(values[[0, 3]]) < _SMALL  # ends whose sign is round-off's
+        change = values[:-1] * values[1:] <= 0.0
+        change[::2] &= ~found
+        changes = change.sum(axis=0)
+        doubtful = (deep < _curve_parts_DOUBTS) & _bends(values, changes)
+        split = ~end & (doubtful | (changes > 1) | ((changes == 1) & found.any(axis=0)))
+        kept.append(_some_of(parts, end))
+        brackets.append(_some_of(parts, ~end & ~split & (changes == 1)))
+        if not split.any():
+            break
+        parts = _some_of(parts, split)
+        middle = _between(arm, parts, np.full(len(parts.owner), 0.5), T)
+        kept.append(_solved(parts, middle, 0.5))
+        samples = samples + np.bincount(parts.owner, minlength=len(samples))
+        half = 0.5 * parts.width
+        parts = _joined(
+            parts._replace(b=middle, width=half),
+            parts._replace(a=middle, place=parts.place + half, width=half),
+        )
+    return _kept(arm, _joined(*kept, _closed_in(arm, _joined(*brackets), T)))
+
+
+def _between(arm: _Arm, parts: _Parts, share: Array, T: Array) -> _Reduced:
+    """Samples at a `share` (n,) of the way from a to b, near the cubic with the directions at both."""
+    a, b, s, moving = parts.a, parts.b, share[:, None], list(arm.moving)
+    way = (b.q - a.q)[:, moving]
+    length = np.sqrt((way**2).sum(axis=1))[:, None]
+    along = ((a.still * b.still).sum(axis=1) > 0.0)[:, None]
+    rise, fall = (np.where(along, length * end.still - way, 0.0) for end in (a, b))
+    q = a.q + s * (b.q - a.q)
+    q[:, moving] += s * (1.0 - s) * ((1.0 - s) * rise - s * fall)
+    still = np.where(along, (1.0 - s) * a.still + s * b.still, a.still)
+    still /= np.sqrt((still**2).sum(axis=1))[:, None]
+    return _sampled(arm, a._replace(q=q, still=still), T[parts.owner])[0]
+
+
+def _bends(values: Array, changes: _Index) -> _Flags:
+    """Which cubics of coefficients (4, n), with so many changes of sign (n,), bend so much that they tell
+    little of zeros beside these."""
+    rise = np.diff(values, axis=0)
+    steady = (changes == 0) & (rise[:-1] * rise[1:] >= 0.0).all(axis=0)
+    bend = np.abs(np.diff(rise, axis=0)).max(axis=0)
+    bent = (np.abs(values[1] + values[2]) < _BENT * bend) & ~steady
+    return np.asarray(bent & (bend > _STRAIGHT * np.abs(values).max(axis=0)))
+
+
+def _solved(parts: _Parts, at: _Reduced, share: float) -> _Parts:
+    """Of samples at a share of the way those at solutions, as parts without length."""
+    place = parts.place + share * parts.width
+    out: _Parts = _some_of(_Parts(at, at, parts.owner, place, 0.0 * place), np.abs(at.left) < _SMALL)
+    return out
+
+
+def _bernstein(arm: _Arm, parts: _Parts) -> Array:
+    """The coefficients (4, n)."""
+    a, b = parts.a, parts.b
+    step = (b.q - a.q)[:, list(arm.moving)]
+    rise = a.slope * (a.still * step).sum(axis=1)
+    fall = b.slope * (b.still * step).sum(axis=1)
+    return np.array([a.left, a.left + rise / 3.0, b.left - fall / 3.0, b.left])
+
+
+def _closed_in(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
+    """Parts at whose ends what is left has two signs, narrowed until it is round-off at one, or the way to
+    there is."""
+    ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
+    values, last = ends.left.copy(), np.full(len(parts.owner), -1)
+    way = np.full(len(parts.owner), np.inf)
+    most = 2.0 * np.abs(_bernstein(arm, parts)).max(axis=0)
+    for step in range(_STEPS):
+        going = np.flatnonzero((np.abs(ends.left).min(axis=0) > _curve_parts_ROUND_OFF) & (way > _WAY))
+        if not len(going):
+            break
+        x, y = values[:, going]
+        now = _some_of(parts, going)._replace(
+            a=_some_of(ends, (0, going)), b=_some_of(ends, (1, going))
+        )
+        cubic, share = _bernstein(arm, now), x / (x - y)
+        if step < _CUBICS:
+            share = np.where(most[going] > _CLEAR, _root_share(cubic, share), share)
+        c = _between(arm, now, share, T)
+        side = (now.a.left * c.left < 0.0).astype(np.intp)
+        way[going] = np.abs(c.q - ends.q[side, going]).max(axis=1)
+        change = np.abs(np.diff(cubic, axis=0))
+        leaps = change[1] > _LEAP * np.maximum(change[0], change[2])
+        leaps &= (np.abs(ends.left[:, going]).min(axis=0) > arm.policy.arrived) & (step > _SOON)
+        way[going[leaps | (np.abs(c.left) > most[going])]] = 0.0
+        for whole, part in zip(ends, c):
+            whole[side, going] = part
+        values[side, going] = c.left
+        values[1 - side, going] *= np.where(last[going] == side, 0.5, 1.0)
+        last[going] = side
+    return parts._replace(a=_some_of(ends, 0), b=_some_of(ends, 1))
+
+
+def _root_share(values: Array, share: Array) -> Array:
+    """Where cubics of coefficients (4, n), after Bernstein, vanish (n,)."""
+    a, b, c, d = values
+    one, two, three = 3.0 * (b - a), 3.0 * (c - b - b + a), d - a + 3.0 * (b - c)
+    x = share
+    for _ in range(_NEWTON):
+        rise = (3.0 * three * x + 2.0 * two) * x + one
+        x = x - (((three * x + two) * x + one) * x + a) / rise
+    return np.asarray(np.where((x > 0.0) & (x < 1.0), x, share))
+
+
+def _kept(arm: _Arm, parts: _Parts) -> tuple[_Index, Array]:
+    """Of each part the end where less is left, in order."""
+    ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
+    least = np.abs(ends.left).argmin(axis=0)
+    left, q = (x[least, np.arange(len(least))] for x in (ends.left, ends.q))
+    order = np.lexsort((parts.place, parts.owner))
+    order = order[np.abs(left[order]) < arm.policy.arrived]
+    order = order[_places(parts.owner[order]) < _ROOM]
+    whole = 2.0 * np.pi * np.round(q / (2.0 * np.pi))
+    return parts.owner[order], np.where(arm.turning, q - whole, q)[order]
+
+
+# Solutions on what is a continuum of the geometry that was solved, and none of the file's.
+
+
+_near_continuum_MOST, _LEAST = 96, 4  # samples to a side of a curve
+_ASTRAY = 4  # samples in a row that show that no curve is near
+_near_continuum_BESIDE, _SAME_WAY = 0.06, 0.9
+
+
+class _Traced(NamedTuple):
+    """Which starts (k,) lie on a `curve` of the solved geometry, and which of these are `broken` (k,), none
+    of the file's arm; the starts `owner` (n,) of solutions, nearly, `q` (n, dof) on broken ones."""
+
+    curve: _Flags
+    broken: _Flags
+    owner: _Index
+    q: Array
 
 
 def _rows_around(arm: _Arm, q: Array, T: Array, broken: _Flags) -> tuple[_Flags, _Index, Array, Array]:
@@ -2152,7 +2315,7 @@ def _traced(arm: _Arm, q: Array, T: Array) -> _Traced:
     nothing, still = np.zeros(count), _still_directions(arm, slope)
     unknown = 0.1 * _generic(count, error.shape[1])  # shorter than what has a sense
     start = _Reduced(q, still, unknown, nothing, nothing)
-    first = _sample(arm, start, T)
+    first, _ = _sampled(arm, start, T)
     parts, ends, worst = _follow(arm, first, T)
     steps = np.bincount(parts.owner, minlength=count)
     curve = steps >= _LEAST
@@ -2160,28 +2323,6 @@ def _traced(arm: _Arm, q: Array, T: Array) -> _Traced:
     parts = _joined(parts, ends)
     found = _look(arm, _some_of(parts, broken[parts.owner]), T, steps)
     return _Traced(curve, broken, *found)
-
-
-def _sample(arm: _Arm, at: _Reduced, T: Array) -> _Reduced:
-    """The configurations of the curves beside some (k,)."""
-    return _sampled(arm, at, T)[0]
-
-
-def _sampled(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, _Flags]:
-    """`_sample`."""
-    at, near = _Reduced(*(x.copy() for x in at)), np.ones(len(T), dtype=bool)
-    going, before = np.arange(len(T)), np.full(len(T), np.inf)
-    for _ in range(_CORRECTIONS):
-        moved, farthest = _correct(arm, _some_of(at, going), T[going])
-        for whole, part in zip(at, moved):
-            whole[going] = part
-        near[going] &= farthest < _STRAY
-        same = (np.abs(moved.left - before) < _SAME) & (farthest < _ALMOST)
-        on = ~((farthest < np.maximum(_NEAR, _SHARE * np.abs(moved.left))) | same)
-        going, before = going[on], moved.left[on]
-        if not len(going):
-            break
-    return at, near
 
 
 def _follow(arm: _Arm, first: _Reduced, T: Array) -> tuple[_Parts, _Parts, Array]:
@@ -2230,125 +2371,6 @@ def _back(arm: _Arm, a: _Reduced, b: _Reduced) -> _Flags:
     near = np.abs(way).max(axis=1) < 0.75 * arm.policy.try_step
     same = (a.still * b.still).sum(axis=1) > _SAME_WAY
     return np.asarray(beside & near & same)
-
-
-def _between(arm: _Arm, parts: _Parts, share: Array, T: Array) -> _Reduced:
-    """Samples at a `share` (n,) of the way from a to b, near the cubic with the directions at both."""
-    a, b, s, moving = parts.a, parts.b, share[:, None], list(arm.moving)
-    way = (b.q - a.q)[:, moving]
-    length = np.sqrt((way**2).sum(axis=1))[:, None]
-    along = ((a.still * b.still).sum(axis=1) > 0.0)[:, None]
-    rise, fall = (np.where(along, length * end.still - way, 0.0) for end in (a, b))
-    q = a.q + s * (b.q - a.q)
-    q[:, moving] += s * (1.0 - s) * ((1.0 - s) * rise - s * fall)
-    still = np.where(along, (1.0 - s) * a.still + s * b.still, a.still)
-    still /= np.sqrt((still**2).sum(axis=1))[:, None]
-    return _sample(arm, a._replace(q=q, still=still), T[parts.owner])
-
-
-def _look(arm: _Arm, parts: _Parts, T: Array, samples: _Index) -> tuple[_Index, Array]:
-    """The solutions (n, dof) inside parts, by the signs of the coefficients, after Bernstein, of cubics
-    through values and slopes."""
-    kept, brackets = [_solved(parts, parts.a, 0.0), _solved(parts, parts.b, 1.0)], []
-    for deep in range(_DEEP + 1):
-        most = np.maximum(np.abs(parts.a.left), np.abs(parts.b.left))
-        parts = _some_of(parts, ~(most >= _BEYOND * arm.policy.fold_reach))
-        values = _bernstein(arm, parts)
-        most = np.abs(values).max(axis=0)
-        spent = samples[parts.owner] >= _SAMPLES
-        end = (most < _SMALL) | spent | (deep == _DEEP)
-        doubtful = np.abs(values[1:3]).min(axis=0) < _DOUBT * most
-        found = np.abs(values[[0, 3]]) < _SMALL  # ends whose sign is round-off's
-        change = values[:-1] * values[1:] <= 0.0
-        change[::2] &= ~found
-        changes = change.sum(axis=0)
-        split = ~end & (doubtful | (changes > 1) | ((changes == 1) & found.any(axis=0)))
-        kept.append(_some_of(parts, end))
-        brackets.append(_some_of(parts, ~end & ~split & (changes == 1)))
-        if not split.any():
-            break
-        parts = _some_of(parts, split)
-        middle = _between(arm, parts, np.full(len(parts.owner), 0.5), T)
-        kept.append(_solved(parts, middle, 0.5))
-        samples = samples + np.bincount(parts.owner, minlength=len(samples))
-        half = 0.5 * parts.width
-        parts = _joined(
-            parts._replace(b=middle, width=half),
-            parts._replace(a=middle, place=parts.place + half, width=half),
-        )
-    return _kept(arm, _joined(*kept, _closed_in(arm, _joined(*brackets), T)))
-
-
-def _solved(parts: _Parts, at: _Reduced, share: float) -> _Parts:
-    """Of samples at a share of the way those at solutions, as parts without length."""
-    place = parts.place + share * parts.width
-    out: _Parts = _some_of(_Parts(at, at, parts.owner, place, 0.0 * place), np.abs(at.left) < _SMALL)
-    return out
-
-
-def _bernstein(arm: _Arm, parts: _Parts) -> Array:
-    """The coefficients (4, n)."""
-    a, b = parts.a, parts.b
-    step = (b.q - a.q)[:, list(arm.moving)]
-    rise = a.slope * (a.still * step).sum(axis=1)
-    fall = b.slope * (b.still * step).sum(axis=1)
-    return np.array([a.left, a.left + rise / 3.0, b.left - fall / 3.0, b.left])
-
-
-def _closed_in(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
-    """Parts at whose ends what is left has two signs, narrowed until it is round-off at one, or the way to
-    there is."""
-    ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
-    values, last = ends.left.copy(), np.full(len(parts.owner), -1)
-    way = np.full(len(parts.owner), np.inf)
-    most = 2.0 * np.abs(_bernstein(arm, parts)).max(axis=0)
-    for step in range(_STEPS):
-        going = np.flatnonzero((np.abs(ends.left).min(axis=0) > _near_continuum_ROUND_OFF) & (way > _WAY))
-        if not len(going):
-            break
-        x, y = values[:, going]
-        now = _some_of(parts, going)._replace(
-            a=_some_of(ends, (0, going)), b=_some_of(ends, (1, going))
-        )
-        cubic, share = _bernstein(arm, now), x / (x - y)
-        if step < _CUBICS:
-            share = np.where(most[going] > _CLEAR, _root_share(cubic, share), share)
-        c = _between(arm, now, share, T)
-        side = (now.a.left * c.left < 0.0).astype(np.intp)
-        way[going] = np.abs(c.q - ends.q[side, going]).max(axis=1)
-        change = np.abs(np.diff(cubic, axis=0))
-        leaps = change[1] > _LEAP * np.maximum(change[0], change[2])
-        leaps &= (np.abs(ends.left[:, going]).min(axis=0) > arm.policy.arrived) & (step > _SOON)
-        way[going[leaps | (np.abs(c.left) > most[going])]] = 0.0
-        for whole, part in zip(ends, c):
-            whole[side, going] = part
-        values[side, going] = c.left
-        values[1 - side, going] *= np.where(last[going] == side, 0.5, 1.0)
-        last[going] = side
-    return parts._replace(a=_some_of(ends, 0), b=_some_of(ends, 1))
-
-
-def _root_share(values: Array, share: Array) -> Array:
-    """Where cubics of coefficients (4, n), after Bernstein, vanish (n,)."""
-    a, b, c, d = values
-    one, two, three = 3.0 * (b - a), 3.0 * (c - b - b + a), d - a + 3.0 * (b - c)
-    x = share
-    for _ in range(_NEWTON):
-        rise = (3.0 * three * x + 2.0 * two) * x + one
-        x = x - (((three * x + two) * x + one) * x + a) / rise
-    return np.asarray(np.where((x > 0.0) & (x < 1.0), x, share))
-
-
-def _kept(arm: _Arm, parts: _Parts) -> tuple[_Index, Array]:
-    """Of each part the end where less is left, in order."""
-    ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
-    least = np.abs(ends.left).argmin(axis=0)
-    left, q = (x[least, np.arange(len(least))] for x in (ends.left, ends.q))
-    order = np.lexsort((parts.place, parts.owner))
-    order = order[np.abs(left[order]) < arm.policy.arrived]
-    order = order[_places(parts.owner[order]) < _ROOM]
-    whole = 2.0 * np.pi * np.round(q / (2.0 * np.pi))
-    return parts.owner[order], np.where(arm.turning, q - whole, q)[order]
 
 
 # What distinguishes the rows of a pose: names of their branches, from the geometry of each row alone.

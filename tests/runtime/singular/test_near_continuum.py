@@ -15,16 +15,10 @@ from tests.support.solving import emitted, import_text
 
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.kinematics.modified_dh import to_dh
-from ikgen.runtime.python.singular import near_continuum
+from ikgen.runtime.python.singular import curve_parts, curve_samples, fold_pair, near_continuum
+from ikgen.runtime.python.singular.curve_parts import look
 from ikgen.runtime.python.singular.fold_pair import Reduced
-from ikgen.runtime.python.singular.near_continuum import (
-    _back,
-    _follow,
-    _look,
-    _Parts,
-    rows_around,
-    trace,
-)
+from ikgen.runtime.python.singular.near_continuum import _back, _follow, rows_around, trace
 
 Array = NDArray[np.float64]
 POLICY = SimpleNamespace(arrived=0.5e-9, try_step=np.pi / 8, fold_reach=10.0)
@@ -78,13 +72,13 @@ def test_nothing_is_followed_towards_poses_out_of_reach(
 ) -> None:
     rows, poses = marked_rows(folded, np.array(FOLDED))
     poses[:, 2, 3] += 3.0
-    steps, correct = [], near_continuum.correct
+    steps = []
 
     def counted(arm: Any, at: Reduced, T: Array) -> tuple[Reduced, Array]:
         steps.append(len(T))
-        return correct(arm, at, T)
+        return fold_pair.correct(arm, at, T)
 
-    monkeypatch.setattr(near_continuum, "correct", counted)
+    monkeypatch.setattr(curve_samples, "correct", counted)
     traced = trace(folded._ARM, rows, poses)
     assert len(rows) and not len(traced.owner) and len(steps) < 100
 
@@ -108,25 +102,6 @@ def test_equal_starts_are_followed_once(
     count = len(rows)
     assert again.owner.tolist() == [k * count + i for k in range(3) for i in once.owner.tolist()]
     assert again.q == pytest.approx(np.tile(once.q, (3, 1)), abs=1e-12)
-
-
-def test_samples_between_two_begin_near_the_curve(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of a circle: a chord is 0.02 off it."""
-    plane: Any = SimpleNamespace(moving=(0, 1))
-    monkeypatch.setattr(near_continuum, "_sample", lambda arm, at, T: at)
-
-    def on_circle(angle: float) -> Reduced:
-        c, s, zero = np.cos(angle), np.sin(angle), np.zeros(1)
-        return Reduced(np.array([[c, s]]), np.array([[-s, c]]), np.zeros((1, 2)), zero, zero)
-
-    first = np.zeros(1, dtype=np.intp)
-    parts = _Parts(on_circle(0.0), on_circle(0.4), first, np.zeros(1), np.ones(1))
-    middle = near_continuum._between(plane, parts, np.array([0.5]), np.zeros((1, 4, 4)))
-    assert np.abs(middle.q - on_circle(0.2).q).max() < 2e-3
-    assert middle.still == pytest.approx(on_circle(0.2).still, abs=1e-12)
-    turned = parts._replace(b=parts.b._replace(still=-parts.b.still))
-    middle = near_continuum._between(plane, turned, np.array([0.5]), np.zeros((1, 4, 4)))
-    assert middle.q == pytest.approx(0.5 * (parts.a.q + parts.b.q))
 
 
 def test_a_broken_one_has_its_solutions_wherever_the_trace_starts(folded: ModuleType) -> None:
@@ -153,76 +128,6 @@ def test_regular_rows_and_what_is_no_row_lie_on_none(folded: ModuleType) -> None
     assert not traced.curve.any() and not traced.broken.any() and not len(traced.q)
 
 
-def on_line(x: Array, roots: Array) -> Reduced:
-    """Samples of the polynomial with these roots, as if the error left along a joint were that."""
-    left, slope = (np.polyval(p, x) for p in (np.poly(roots), np.polyder(np.poly(roots))))
-    return Reduced(x[:, None], np.ones((len(x), 1)), np.ones((len(x), 1)), left, slope)
-
-
-@pytest.mark.parametrize(
-    "roots",
-    [
-        [0.11],
-        [0.11, 0.16],
-        [0.11, 0.22, 0.31],
-        [-0.35, 0.3501],
-        [0.11, 0.1101],
-        [0.21, 0.21, -0.11],
-        [5.0],
-    ],
-)
-def test_all_roots_between_two_samples_are_found(
-    roots: list[float], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    ways = np.array(roots)
-    monkeypatch.setattr(near_continuum, "_sample", lambda arm, at, T: on_line(at.q[:, 0], ways))
-    a, b = on_line(np.array([-0.4]), ways), on_line(np.array([0.4]), ways)
-    parts = _Parts(a, b, np.zeros(1, np.intp), np.zeros(1), np.ones(1))
-    owner, found = _look(LINE, parts, np.zeros((1, 4, 4)), np.zeros(1, np.intp))
-    wanted = sorted({x for x in roots if abs(x) < 0.4})
-    assert not owner.any() and (np.diff(found[:, 0]) >= -1e-12).all()
-    for x in wanted:
-        assert np.abs(found[:, 0] - x).min() < (1e-4 if roots.count(x) > 1 else 1e-12)
-    assert len(found) == len(wanted) or len(wanted) < len(roots)
-    assert np.abs(np.polyval(np.poly(roots), found[:, 0])).max(initial=0.0) < 1e-8
-
-
-@pytest.mark.parametrize("between", [1e-2, 20.0], ids=["more than at the ends", "off the curve"])
-def test_a_change_of_sign_from_one_curve_to_another_is_no_solution(
-    between: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    taken = []
-
-    def leap(arm: Any, at: Reduced, T: Array) -> Reduced:
-        taken.append(len(T))
-        return at._replace(left=np.full(len(T), between), slope=np.zeros(len(T)))
-
-    monkeypatch.setattr(near_continuum, "_sample", leap)
-    ends = (on_line(np.array([x]), np.array([0.0])) for x in (-1e-3, 1e-3))
-    parts = _Parts(*ends, np.zeros(1, np.intp), np.zeros(1), np.ones(1))
-    _, found = _look(LINE, parts, np.zeros((1, 4, 4)), np.zeros(1, np.intp))
-    assert not len(found) and taken == [1]
-
-
-@pytest.mark.parametrize("off", [0.0, 1e-16, -1e-16])
-@pytest.mark.parametrize("end", [-0.4, 0.4, 0.0])
-def test_a_sample_at_a_solution_hides_no_other(
-    end: float, off: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Whatever sign round-off gives it."""
-    ways = np.array([end, end + 6e-3 * (1.0 if end < 0.0 else -1.0)])
-
-    def sample(arm: Any, at: Reduced, T: Array) -> Reduced:
-        s = on_line(at.q[:, 0], ways)
-        return s._replace(left=np.where(at.q[:, 0] == end, off, s.left))
-
-    monkeypatch.setattr(near_continuum, "_sample", sample)
-    a, b = (sample(LINE, on_line(np.array([x]), ways), np.zeros((1, 4, 4))) for x in (-0.4, 0.4))
-    parts = _Parts(a, b, np.zeros(1, np.intp), np.zeros(1), np.ones(1))
-    _, found = _look(LINE, parts, np.zeros((1, 4, 4)), np.zeros(1, np.intp))
-    np.testing.assert_allclose(np.sort(found[:, 0]), np.sort(ways), atol=1e-9)
-
-
 @pytest.mark.parametrize(("reach", "wanted"), [(0.3, [0.45]), (0.1, [])])
 def test_solutions_in_the_last_part_of_a_curve_are_found(
     reach: float, wanted: list[float], monkeypatch: pytest.MonkeyPatch
@@ -237,14 +142,14 @@ def test_solutions_in_the_last_part_of_a_curve_are_found(
     def sampled(arm: Any, at: Reduced, T: Array) -> tuple[Reduced, Array]:
         return steep(arm, at, T), np.ones(len(T), dtype=bool)
 
-    monkeypatch.setattr(near_continuum, "_sample", steep)
-    monkeypatch.setattr(near_continuum, "_sampled", sampled)
-    arm = SimpleNamespace(**vars(LINE) | {"policy": SimpleNamespace(**vars(POLICY))})
+    for module in (near_continuum, curve_parts):
+        monkeypatch.setattr(module, "sampled", sampled)
+    arm: Any = SimpleNamespace(**vars(LINE) | {"policy": SimpleNamespace(**vars(POLICY))})
     arm.policy.fold_reach = reach
-    T, first = np.zeros((1, 4, 4)), on_line(np.array([0.35]), np.array([0.45]))
+    T, first = np.zeros((1, 4, 4)), at(0.35, 1.0)
     parts, ends, worst = _follow(arm, steep(arm, first, T), T)
     assert not len(parts.owner) and worst == pytest.approx([0.2])
-    owner, found = _look(arm, ends, T, np.zeros(1, np.intp))
+    owner, found = look(arm, ends, T, np.zeros(1, np.intp))
     assert not owner.any()
     np.testing.assert_allclose(found[:, 0], wanted, atol=1e-12)
 
@@ -277,32 +182,3 @@ def test_a_curve_is_back_along_its_own_direction_alone() -> None:
     along = (1.0, 0.0)
     assert _back(pair, sample(0.0, 0.0, along), sample(0.2, 0.05, along)).all()
     assert not _back(pair, sample(0.0, 0.0, along), sample(0.2, 0.07, along)).any()
-
-
-def test_where_values_are_round_off_before_they_are_nothing_the_way_tells(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """What is left jumps across 0 there, and the solution is as near as the way tells."""
-    taken = []
-
-    def steep(x: Array) -> Reduced:
-        left = 3e-9 * np.sign(x - 0.1234567) + (x - 0.1234567) + 20.0 * (x - 0.1234567) ** 3
-        return on_line(x, np.array([0.0]))._replace(
-            left=left, slope=1.0 + 60.0 * (x - 0.1234567) ** 2
-        )
-
-    def sample(arm: Any, at: Reduced, T: Array) -> Reduced:
-        taken.append(len(T))
-        return steep(at.q[:, 0])
-
-    monkeypatch.setattr(near_continuum, "_sample", sample)
-    parts = _Parts(
-        steep(np.array([0.0])),
-        steep(np.array([0.3])),
-        np.zeros(1, np.intp),
-        np.zeros(1),
-        np.ones(1),
-    )
-    found = near_continuum._closed_in(LINE, parts, np.zeros((1, 4, 4)))
-    ends = [float(x.q[0, 0]) for x in (found.a, found.b)]
-    assert min(abs(x - 0.1234567) for x in ends) < 1e-8 and len(taken) < 20

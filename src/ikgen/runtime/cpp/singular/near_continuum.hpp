@@ -3,18 +3,16 @@
 // solution is where what is left changes its sign, or touches 0.
 #pragma once
 
-#include "rows/solution_rows.hpp"
-#include "singular/curve_samples.hpp"
+#include "singular/curve_parts.hpp"
 
 namespace ikgen_runtime {
 
 // Arm: as for FoldPair and SolutionRows.
-template <class Arm> struct NearContinuum : CurveSamples<Arm> {
-  using Curve = CurveSamples<Arm>;
+template <class Arm> struct NearContinuum : CurveParts<Arm> {
+  using Curve = CurveParts<Arm>;
   using Fold = FoldPair<Arm>;
   using Sample = typename Curve::Sample;
   using Policy = typename Arm::Policy;
-  static constexpr int kRoom = 32;
 
   // Samples of broken curves that were followed all around or to both their ends, in order.
   struct Passed {
@@ -32,14 +30,14 @@ template <class Arm> struct NearContinuum : CurveSamples<Arm> {
     }
   };
 
-  int count = 0;  // solutions, nearly
-  double found[kRoom][Arm::kDof];
-
   explicit NearContinuum(const HeldAim<Arm>& goal) noexcept : Curve(goal) {}
 
   using Curve::at;
   using Curve::between;
-  using Curve::part;
+  using Curve::count;
+  using Curve::is_solution;
+  using Curve::keep;
+  using Curve::look;
   using Curve::samples;
 
   // No continuum nearby, one of the solved geometry, one that was passed, one of the file's too.
@@ -64,13 +62,10 @@ template <class Arm> struct NearContinuum : CurveSamples<Arm> {
   }
 
  private:
-  static constexpr int kMost = 96, kSteps = 40, kDeep = 24, kLeast = 4;
-  static constexpr double kRoundOff = 1e-15, kSmall = 4e-15, kDoubt = 0.03, kBeside = 0.06, kSameWay = 0.9;
+  static constexpr int kMost = 96, kLeast = 4, kRounds = 3;
+  static constexpr double kBeside = 0.06, kSameWay = 0.9;
   static constexpr double kFloor = 0.1, kAhead = 0.5;  // the shortest step, of Policy::kTryStep; how a step turns at most
-  static constexpr int kCubics = 4, kNewton = 4, kRounds = 3;
   static constexpr double kOver = 0.05, kOn = 1e-6;  // of a part; rad or m off it
-  static constexpr double kBeyond = 4.0;  // how far what is left at the end of a curve's last part may be beyond its bound
-  static constexpr double kWay = 1e-10;  // rad or m: along a curve, by which what is left varies by round-off
 
   double steps = 0.0;  // of Policy::kTryStep
   bool lost = false;   // where corrections converge from no step
@@ -105,14 +100,14 @@ template <class Arm> struct NearContinuum : CurveSamples<Arm> {
         continue;
       }
       if (!(std::abs(c.left) < Policy::kFoldReach)) {
-        look(b, c, kDeep);
+        look(b, c);
         return false;
       }
       steps += reach / Policy::kTryStep;
       passed.add(c, false);
       worst = std::max(worst, std::abs(c.left));
       if (is_solution(c)) keep(c);
-      look(b, c, kDeep);
+      look(b, c);
       if (k > 1 && back(origin, b)) return true;
       std::copy_n(b.still, Fold::kMoving, before);
       b = c;
@@ -154,16 +149,13 @@ template <class Arm> struct NearContinuum : CurveSamples<Arm> {
   // In a part that was looked at before, to both sides of another sample of it: solutions there may be more than a cubic
   // tells, and closed forms start near them.
   void look_beside(const Sample& a, Sample s, const Sample& b) noexcept {
-    double same = 0.0, way[Fold::kMoving];
+    double way[Fold::kMoving];
     way_to(a, s.q, way);
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      same += a.still[k] * s.still[k];
-      s.q[Fold::kJoints[k]] = a.q[Fold::kJoints[k]] + way[k];
-    }
-    if (same < 0.0) turn_round(s);
+    for (int k = 0; k < Fold::kMoving; ++k) s.q[Fold::kJoints[k]] = a.q[Fold::kJoints[k]] + way[k];
+    s = at(s.q, a);  // in the same sense
     if (is_solution(s)) keep(s);
-    look(a, s, kDeep);
-    look(s, b, kDeep);
+    look(a, s);
+    look(s, b);
   }
 
   // The same sample of a curve that is followed the other way.
@@ -211,88 +203,6 @@ template <class Arm> struct NearContinuum : CurveSamples<Arm> {
     for (int k = 0; k < Fold::kMoving; ++k)
       if (!(std::abs(way[k] - along * direction[k]) < bound)) return false;
     return true;
-  }
-
-  static bool is_solution(const Sample& s) noexcept { return std::abs(s.left) < kSmall; }
-
-  // Between two samples, by the signs of the coefficients, after Bernstein, of the cubic through values and slopes.
-  void look(const Sample& a, const Sample& b, int deep) noexcept {
-    if (std::max(std::abs(a.left), std::abs(b.left)) >= kBeyond * Policy::kFoldReach) return;  // far beyond the curve's end
-    double inner[2];
-    take_inner(a, b, inner);
-    const double most = std::max({std::abs(a.left), std::abs(inner[0]), std::abs(inner[1]), std::abs(b.left)});
-    if (most < kSmall || deep == 0 || samples <= 0) return keep(std::abs(a.left) < std::abs(b.left) ? a : b);
-    const bool doubtful = std::min(std::abs(inner[0]), std::abs(inner[1])) < kDoubt * most;
-    const bool from = is_solution(a), to = is_solution(b);  // whose sign is round-off's, and that are kept
-    const bool changes[3] = {!from && a.left * inner[0] <= 0.0, inner[0] * inner[1] <= 0.0, !to && inner[1] * b.left <= 0.0};
-    const int count_of = changes[0] + changes[1] + changes[2];
-    if (doubtful || count_of > 1 || (count_of == 1 && (from || to))) {
-      const Sample middle = part(a, b, 0.5);
-      if (is_solution(middle)) keep(middle);
-      look(a, middle, deep - 1);
-      look(middle, b, deep - 1);
-    } else if (count_of == 1) {
-      close_in(a, b, 2.0 * most);
-    }
-  }
-
-  // The inner two coefficients, after Bernstein, of the cubic through values and slopes.
-  static void take_inner(const Sample& a, const Sample& b, double (&inner)[2]) noexcept {
-    double rise = 0.0, fall = 0.0;
-    for (int k = 0; k < Fold::kMoving; ++k) {
-      const double step = b.q[Fold::kJoints[k]] - a.q[Fold::kJoints[k]];
-      rise += a.slope * a.still[k] * step;
-      fall += b.slope * b.still[k] * step;
-    }
-    inner[0] = a.left + rise / 3.0;
-    inner[1] = b.left - fall / 3.0;
-  }
-
-  // Where that cubic vanishes, by Newton's method from a share of the way, or there where that leads out.
-  static double root_share(const Sample& a, const Sample& b, double share) noexcept {
-    double inner[2], x = share;
-    take_inner(a, b, inner);
-    const double one = 3.0 * (inner[0] - a.left), two = 3.0 * (inner[1] - 2.0 * inner[0] + a.left);
-    const double three = b.left - a.left + 3.0 * (inner[0] - inner[1]);
-    for (int i = 0; i < kNewton; ++i)
-      x -= (((three * x + two) * x + one) * x + a.left) / ((3.0 * three * x + 2.0 * two) * x + one);
-    return x > 0.0 && x < 1.0 ? x : share;
-  }
-
-  // Where what is left changes its sign: first at roots of cubics, then by false position, halving what an end keeps
-  // (Dowell & Jarratt 1971), until that is round-off, or the way to there is. Where far more is left between the samples
-  // than the cubic's coefficients bound they are of no one curve.
-  void close_in(Sample a, Sample b, double most) noexcept {
-    double x = a.left, y = b.left, way = kInfinity;
-    int kept = 0;
-    for (int i = 0; i < kSteps && way > kWay && std::min(std::abs(a.left), std::abs(b.left)) > kRoundOff; ++i) {
-      const double share = x / (x - y);
-      const Sample c = part(a, b, i < kCubics ? root_share(a, b, share) : share);
-      if (std::abs(c.left) > most) break;
-      const bool last = a.left * c.left < 0.0;
-      way = 0.0;
-      for (int k = 0; k < Fold::kMoving; ++k)
-        way = std::max(way, std::abs(c.q[Fold::kJoints[k]] - (last ? b : a).q[Fold::kJoints[k]]));
-      if (last) {
-        b = c;
-        y = c.left;
-        if (kept == 1) x *= 0.5;
-        kept = 1;
-      } else {
-        a = c;
-        x = c.left;
-        if (kept == -1) y *= 0.5;
-        kept = -1;
-      }
-    }
-    keep(std::abs(a.left) < std::abs(b.left) ? a : b);
-  }
-
-  void keep(const Sample& s) noexcept {
-    if (count == kRoom || !(std::abs(s.left) < Policy::kArrived)) return;
-    double* q = found[count++];
-    for (int j = 0; j < Arm::kDof; ++j)
-      q[j] = s.q[j] - (Arm::kRevolute[j] && !Arm::kHeld[j] ? kTurn * std::nearbyint(s.q[j] / kTurn) : 0.0);
   }
 };
 

@@ -1,0 +1,36 @@
+"""Samples of curves along which the other joints take the pose's error away but for one direction."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ikgen.runtime.python.arm.solved_arm import Arm
+from ikgen.runtime.python.arrays.array_tuples import some_of
+from ikgen.runtime.python.arrays.array_types import Array, Flags
+from ikgen.runtime.python.singular.fold_pair import Reduced, correct
+
+__all__ = ["sampled"]
+
+_CORRECTIONS = 6
+_NEAR = 1e-8  # rad or m: so far off the curve what is left, whose error is the square, is its
+_SHARE = 3e-2  # or, of what is left: as little as that off the curve changes neither
+_ALMOST, _SAME = 1e-3, 4e-15  # or how close it must be where what is left is the same after a step
+_STRAY = 1.0  # rad or m: larger corrections show that no curve is near
+
+
+def sampled(arm: Arm, at: Reduced, T: Array) -> tuple[Reduced, Flags]:
+    """The configurations of curves beside some (k,), of which one direction of the error is left towards
+    aims T (k, ...); which seem to have a curve near (k,)."""
+    at, near = Reduced(*(x.copy() for x in at)), np.ones(len(T), dtype=bool)
+    going, before = np.arange(len(T)), np.full(len(T), np.inf)
+    for _ in range(_CORRECTIONS):
+        moved, farthest = correct(arm, some_of(at, going), T[going])
+        for whole, part in zip(at, moved):
+            whole[going] = part
+        near[going] &= farthest < _STRAY
+        same = (np.abs(moved.left - before) < _SAME) & (farthest < _ALMOST)
+        on = ~((farthest < np.maximum(_NEAR, _SHARE * np.abs(moved.left))) | same)
+        going, before = going[on], moved.left[on]
+        if not len(going):
+            break
+    return at, near

@@ -1,0 +1,159 @@
+"""Solutions on parts of curves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from ikgen.runtime.python.singular import curve_parts
+from ikgen.runtime.python.singular.curve_parts import Parts, look
+from ikgen.runtime.python.singular.fold_pair import Reduced
+
+Array = NDArray[np.float64]
+POLICY = SimpleNamespace(arrived=0.5e-9, fold_reach=10.0)
+LINE: Any = SimpleNamespace(moving=(0,), policy=POLICY, turning=(True,))
+
+
+def give(monkeypatch: pytest.MonkeyPatch, sample: Callable[[Reduced], Reduced]) -> None:
+    """Makes samples of any curve what a function makes of where they begin."""
+
+    def sampled(arm: Any, at: Reduced, T: Array) -> tuple[Reduced, Array]:
+        return sample(at), np.ones(len(T), dtype=bool)
+
+    monkeypatch.setattr(curve_parts, "sampled", sampled)
+
+
+def between(a: Reduced, b: Reduced) -> Parts:
+    return Parts(a, b, np.zeros(1, np.intp), np.zeros(1), np.ones(1))
+
+
+def on_line(x: Array, roots: Array) -> Reduced:
+    """Samples of the polynomial with these roots, as if the error left along a joint were that."""
+    left, slope = (np.polyval(p, x) for p in (np.poly(roots), np.polyder(np.poly(roots))))
+    return Reduced(x[:, None], np.ones((len(x), 1)), np.ones((len(x), 1)), left, slope)
+
+
+def test_samples_between_two_begin_near_the_curve(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a circle: a chord is 0.02 off it."""
+    plane: Any = SimpleNamespace(moving=(0, 1))
+    give(monkeypatch, lambda at: at)
+
+    def on_circle(angle: float) -> Reduced:
+        c, s, zero = np.cos(angle), np.sin(angle), np.zeros(1)
+        return Reduced(np.array([[c, s]]), np.array([[-s, c]]), np.zeros((1, 2)), zero, zero)
+
+    parts = between(on_circle(0.0), on_circle(0.4))
+    middle = curve_parts._between(plane, parts, np.array([0.5]), np.zeros((1, 4, 4)))
+    assert np.abs(middle.q - on_circle(0.2).q).max() < 2e-3
+    assert middle.still == pytest.approx(on_circle(0.2).still, abs=1e-12)
+    turned = parts._replace(b=parts.b._replace(still=-parts.b.still))
+    middle = curve_parts._between(plane, turned, np.array([0.5]), np.zeros((1, 4, 4)))
+    assert middle.q == pytest.approx(0.5 * (parts.a.q + parts.b.q))
+
+
+@pytest.mark.parametrize(
+    "roots",
+    [
+        [0.11],
+        [0.11, 0.16],
+        [0.11, 0.22, 0.31],
+        [-0.35, 0.3501],
+        [0.11, 0.1101],
+        [0.21, 0.21, -0.11],
+        [5.0],
+    ],
+)
+def test_all_roots_between_two_samples_are_found(
+    roots: list[float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ways = np.array(roots)
+    give(monkeypatch, lambda at: on_line(at.q[:, 0], ways))
+    a, b = on_line(np.array([-0.4]), ways), on_line(np.array([0.4]), ways)
+    owner, found = look(LINE, between(a, b), np.zeros((1, 4, 4)), np.zeros(1, np.intp))
+    wanted = sorted({x for x in roots if abs(x) < 0.4})
+    assert not owner.any() and (np.diff(found[:, 0]) >= -1e-12).all()
+    for x in wanted:
+        assert np.abs(found[:, 0] - x).min() < (1e-4 if roots.count(x) > 1 else 1e-12)
+    assert len(found) == len(wanted) or len(wanted) < len(roots)
+    assert np.abs(np.polyval(np.poly(roots), found[:, 0])).max(initial=0.0) < 1e-8
+
+
+@pytest.mark.parametrize("inside", [1e-2, 20.0], ids=["more than at the ends", "off the curve"])
+def test_a_change_of_sign_from_one_curve_to_another_is_no_solution(
+    inside: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    taken = []
+
+    def leap(at: Reduced) -> Reduced:
+        taken.append(len(at.q))
+        return at._replace(left=np.full(len(at.q), inside), slope=np.zeros(len(at.q)))
+
+    give(monkeypatch, leap)
+    a, b = (on_line(np.array([x]), np.array([0.0])) for x in (-1e-3, 1e-3))
+    _, found = look(LINE, between(a, b), np.zeros((1, 4, 4)), np.zeros(1, np.intp))
+    assert not len(found) and taken == [1]
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-16, -1e-16])
+@pytest.mark.parametrize("end", [-0.4, 0.4, 0.0])
+def test_a_sample_at_a_solution_hides_no_other(
+    end: float, off: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever sign round-off gives it."""
+    ways = np.array([end, end + 6e-3 * (1.0 if end < 0.0 else -1.0)])
+
+    def sample(at: Reduced) -> Reduced:
+        s = on_line(at.q[:, 0], ways)
+        return s._replace(left=np.where(at.q[:, 0] == end, off, s.left))
+
+    give(monkeypatch, sample)
+    a, b = (sample(on_line(np.array([x]), ways)) for x in (-0.4, 0.4))
+    _, found = look(LINE, between(a, b), np.zeros((1, 4, 4)), np.zeros(1, np.intp))
+    np.testing.assert_allclose(np.sort(found[:, 0]), np.sort(ways), atol=1e-9)
+
+
+def test_where_values_are_round_off_before_they_are_nothing_the_way_tells(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What is left jumps across 0 there, and the solution is as near as the way tells."""
+    taken = []
+
+    def steep(x: Array) -> Reduced:
+        left = 3e-9 * np.sign(x - 0.1234567) + (x - 0.1234567) + 20.0 * (x - 0.1234567) ** 3
+        return on_line(x, np.array([0.0]))._replace(
+            left=left, slope=1.0 + 60.0 * (x - 0.1234567) ** 2
+        )
+
+    def sample(at: Reduced) -> Reduced:
+        taken.append(len(at.q))
+        return steep(at.q[:, 0])
+
+    give(monkeypatch, sample)
+    parts = between(steep(np.array([0.0])), steep(np.array([0.3])))
+    found = curve_parts._closed_in(LINE, parts, np.zeros((1, 4, 4)))
+    ends = [float(x.q[0, 0]) for x in (found.a, found.b)]
+    assert min(abs(x - 0.1234567) for x in ends) < 1e-8 and len(taken) < 20
+
+
+@pytest.mark.parametrize("least", [-0.01, -0.001, 1e-3])
+def test_two_roots_in_a_dip_that_the_cubic_does_not_show_are_found(
+    least: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """x^2 / (x^2 + 0.04), as steep at both ends as the cubic is high there, which stays above 0.2."""
+
+    def dip(at: Reduced) -> Reduced:
+        x = at.q[:, 0]
+        hollow = x * x + 0.04
+        return at._replace(left=x * x / hollow + least, slope=0.08 * x / hollow**2)
+
+    give(monkeypatch, dip)
+    a, b = (dip(on_line(np.array([x]), np.array([0.0]))) for x in (-0.19, 0.2))
+    _, found = look(LINE, between(a, b), np.zeros((1, 4, 4)), np.zeros(1, np.intp))
+    root = np.sqrt(0.04 * -least / (1.0 + least)) if least < 0.0 else 0.0
+    wanted = [-root, root] if least < 0.0 else []
+    np.testing.assert_allclose(np.sort(found[:, 0]), wanted, atol=1e-9)
