@@ -77,12 +77,12 @@ HARMLESS = (
         ">=", ">", _EQUAL,
     ),
     HarmlessChange(
-        "runtime/python/singular/near_continuum.py",
+        "runtime/python/singular/curve_parts.py",
         "way[going[leaps | (np.abs(c.left) > most[going])]] = 0.0",
         ">", ">=", _EQUAL,
     ),
     HarmlessChange(
-        "runtime/python/singular/near_continuum.py",
+        "runtime/python/singular/curve_parts.py",
         "order = order[np.abs(left[order]) < arm.policy.arrived]",
         "<", "<=", _EQUAL,
     ),
@@ -127,8 +127,8 @@ HARMLESS = (
         "40", "41", _COUNT,
     ),
     HarmlessChange(
-        "runtime/python/singular/near_continuum.py",
-        "_MOST, _CORRECTIONS, _STEPS, _DEEP, _LEAST = 96, 6, 40, 24, 4",
+        "runtime/python/singular/curve_parts.py",
+        "_STEPS, _DEEP = 40, 24",
         "40", "41", _COUNT,
     ),
     HarmlessChange(
@@ -197,12 +197,12 @@ HARMLESS = (
         "or", "and", "where all are singular those that are not are none",
     ),
     HarmlessChange(
-        "runtime/python/singular/near_continuum.py",
+        "runtime/python/singular/curve_parts.py",
         "values, last = ends.left.copy(), np.full(len(parts.owner), -1)",
         "1", "2", "no side is below 0",
     ),
     HarmlessChange(
-        "runtime/python/singular/near_continuum.py",
+        "runtime/python/singular/curve_parts.py",
         "side = (now.a.left * c.left < 0.0).astype(np.intp)",
         "<", "<=", "what is left is 0 then, and the search ends at it",
     ),
