@@ -78,7 +78,7 @@ inline Spectrum run_coupled(const CoupledChain<Plan>& F, const Frame& T, const F
 struct CoupledMethod {
   template <class Plan>
   static void solve(const CoupledChain<Plan>& F, const Frame& T, const Turning& turning, Solutions& out) noexcept {
-    if (!solve_resultant<run_coupled_resultant<Plan>>(F, T, Plan::kEigenproblems, out))
+    if (!solve_resultant<run_coupled_resultant<Plan>>(F, T, Plan::kEigenproblems, false, out))
       solve_in_runs<run_coupled<Plan>>(F, T, turning, Plan::kEigenproblems, out);
   }
 };

@@ -114,11 +114,12 @@ inline void settle_crowd(const Polynomial<D>& f, const Crowded& crowd, Brackets<
 // Adds the solutions for the pose T. True where they are all, as in `run_resultant`.
 template <class Plan>
 inline bool run_coupled_resultant(const CoupledChain<Plan>& F, const Frame& T, const std::array<int, 3>& plan,
-                                  Solutions& out) noexcept {
+                                  double caution, Solutions& out) noexcept {
   constexpr int degree = (static_cast<int>(Plan::kDegree) + 3) / 4 * 4;
   const CoupledEquations<Plan> of = coupled_equations(F, T, plan);
   const auto values = [&](bool close, const auto& c, const auto& s, auto& f, auto& blur, auto&) {
     resultants(of, close, c, s, f, blur);
+    for (double& x : blur) x *= caution;
     return false;
   };
   const auto settle = [](const Polynomial<degree>& f, Brackets<degree>& brackets) {

@@ -14,9 +14,10 @@ namespace ikgen_runtime {
 
 namespace g6 {
 
+// none: whether it was found already that there are no solutions.
 template <class Plan>
-inline void solve_6r(const Chain& F, const Frame& T, Solutions& out) noexcept {
-  if (!solve_resultant<run_resultant>(F, T, Plan::kResultants, out))
+inline void solve_6r(const Chain& F, const Frame& T, bool none, Solutions& out) noexcept {
+  if (!solve_resultant<run_resultant>(F, T, Plan::kResultants, none, out))
     solve_in_runs<run_eigenproblem>(F, T, kAllTurn, Plan::kEigenproblems, out);
 }
 
@@ -29,7 +30,7 @@ inline void solve_6r(const Chain& F, const Frame& T, Solutions& out) noexcept {
 template <class Plan>
 inline void general_6r(const double (&F)[7][12], const double (&T)[12], g6::Solutions& out) noexcept {
   out.count = 0;
-  g6::solve_6r<Plan>(g6::chain_of<Plan>(F), g6::scaled_frame<Plan>(T), out);
+  g6::solve_6r<Plan>(g6::chain_of<Plan>(F), g6::scaled_frame<Plan>(T), false, out);
   g6::sort_rows(g6::kAllTurn, out);
 }
 

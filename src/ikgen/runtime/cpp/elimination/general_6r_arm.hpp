@@ -10,7 +10,7 @@ namespace ikgen_runtime {
 struct General6rMethod {
   template <class Plan>
   static void solve(const g6::Chain& F, const g6::Frame& T, const g6::Turning&, g6::Solutions& out) noexcept {
-    g6::solve_6r<Plan>(F, T, out);
+    g6::solve_6r<Plan>(F, T, false, out);
   }
 };
 

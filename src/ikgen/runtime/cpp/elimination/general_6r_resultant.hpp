@@ -32,10 +32,9 @@ inline RowSizes row_sizes(const Pencil& p) noexcept {
 // Relative error of the pencil's rows. An error of a row moves A's null space by at most the largest ratio of a row
 // to what its reflection leaves of it, and the determinant of half angles by the adjugate's norm times that. The
 // squares of that matrix's entries sum to 6, so its adjugate's norm is at most (6/5)^(5/2) a direction; it is far
-// smaller where two solutions share the angle. At 68,000 known solutions of 34 arms f was off by at most 0.01 times
-// the largest of the nodes' bounds, and 0.3 times the bound at its own angle; of a million poses of one arm beside
-// singularities at four by more than 0.3 times, by less than 0.5 times.
-inline constexpr double kBlur = 2.4e-14, kMostAdjugate = 1.6;
+// smaller where two solutions share the angle. At 68,000 known solutions of 34 arms f was off by at most 0.03 times
+// the largest of the nodes' bounds, and 0.8 times the bound at its own angle.
+inline constexpr double kBlur = 8e-15, kMostAdjugate = 1.6;
 
 struct Spread {
   Wide squares, ratio;  // det(A A^T); largest ratio of a row to what is left of it

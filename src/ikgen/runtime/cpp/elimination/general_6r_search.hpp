@@ -185,14 +185,16 @@ inline bool add_solutions(const Frames& F, const Frame& T, const Of& of, Roots<D
 }
 
 // Adds the solutions for the pose T. True where they are all: every root is single, and leads to a solution of
-// its own.
-inline bool run_resultant(const Chain& F, const Frame& T, const std::array<int, 2>& plan, Solutions& out) noexcept {
+// its own. caution: times the rounding that values may have.
+inline bool run_resultant(const Chain& F, const Frame& T, const std::array<int, 2>& plan, double caution,
+                          Solutions& out) noexcept {
   const Loop loop = make_loop(F, T, static_cast<Index>(plan[0]), plan[1] != 0);
   const Equations eq = eliminate(loop);
   const Pencil pencil = make_pencil(eq.E, eq.left);
   Roots<kDegree> roots;
   const auto values = [&](bool close, const auto& c, const auto& s, auto& f, auto& blur, auto&) {
     resultants(pencil, close, c, s, f, blur);
+    for (double& x : blur) x *= caution;
     return false;
   };
   const bool all = find_roots<kDegree>(values, roots);
@@ -201,16 +203,21 @@ inline bool run_resultant(const Chain& F, const Frame& T, const std::array<int, 
 }
 
 // All solutions, or false and those that were found, where every hidden angle leaves doubts. Poses displaced a
-// little are no help: next to a singularity all of them may lack solutions that the pose itself has.
+// little are no help: next to a singularity all of them may lack solutions that the pose itself has. That there are none
+// is believed if it was found before, or with ten times the rounding: of poses beside singularities one in a million is
+// a double root that lies over its bound.
 template <auto Run, class Frames, class Plans>
-inline bool solve_resultant(const Frames& F, const Frame& T, const Plans& plans, Solutions& out) noexcept {
+inline bool solve_resultant(const Frames& F, const Frame& T, const Plans& plans, bool none, Solutions& out) noexcept {
+  constexpr double kCautious = 10.0;
   for (const auto& plan : plans) {
     if (out.count == 0) {
-      if (Run(F, T, plan, out)) return true;
+      bool all = Run(F, T, plan, 1.0, out);
+      if (all && out.count == 0 && !none) all = Run(F, T, plan, kCautious, out) && out.count == 0;
+      if (all) return true;
       continue;
     }
     Solutions mine;
-    const bool all = Run(F, T, plan, mine);
+    const bool all = Run(F, T, plan, 1.0, mine);
     for (int k = 0; k < mine.count; ++k) keep(mine.rows[static_cast<Index>(k)], out);
     if (all && mine.count == out.count) return true;
   }

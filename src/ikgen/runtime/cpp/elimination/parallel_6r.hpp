@@ -43,7 +43,8 @@ inline bool run_parallel(const Chain& F, const Frame& T, const std::array<int, 2
 
 template <class Plan>
 inline void solve_parallel(const Chain& F, const Frame& T, Solutions& out) noexcept {
-  if (!run_parallel<Plan::kKind>(F, T, Plan::kParallel, out)) solve_6r<Plan>(F, T, out);
+  const bool all = run_parallel<Plan::kKind>(F, T, Plan::kParallel, out);
+  if (!(all && (out.count > 0 || Plan::kResultants.empty()))) solve_6r<Plan>(F, T, all, out);
 }
 
 struct Parallel6rMethod {
