@@ -5,8 +5,8 @@
 
 The corpus is not part of the package (see benchmarks/README.md). Without it, or with --public, the arms are
 those of files that anybody has: `urdf_fixtures/`, and example-robot-data where it is installed. Each is
-solved if both languages pass their verification. Seconds are processor time, the compiler's with it; ikgen's
-modules are compiled to bytecode before, as pip does. --record writes results/corpus.json or
+solved if both languages pass their verification. Seconds are processor time, the compiler's with it;
+ikgen's modules are compiled to bytecode before, as pip does. --record writes results/corpus.json or
 results/public.json.
 """
 
