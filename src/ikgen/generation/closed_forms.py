@@ -63,9 +63,15 @@ def closed_form(reading: Reading, demand: Demand) -> ClosedForm:
     choices = tuple(choice for choice in choices if choice.held not in demand.refused)
     if choices:
         return _with_joints_held(reading, choices, demand)
-    found = as_written(_by_rules_somewhere(reading, demand), demand)
-    coarse = not found.sound or _is_coarse(found, reading.dh)
-    return by_elimination(found, demand) if coarse else found
+    return _settled(_by_rules_somewhere(reading, demand), reading.dh, demand)
+
+
+def _settled(form: ClosedForm, read: DHChain, demand: Demand) -> ClosedForm:
+    """The same of rows nearer to the file's; with an elimination's plan where one applies and it is not
+    sound, or coarse."""
+    written = as_written(form, demand)
+    coarse = not written.sound or _is_coarse(written, read)
+    return by_elimination(written, demand) if coarse else written
 
 
 def _is_coarse(form: ClosedForm, read: DHChain) -> bool:
@@ -147,9 +153,7 @@ def taken_form(
     """Which of the forms, best first, is taken, settled; None where no joint held gives one."""
     choice, form = tried[0]
     if form.sound:
-        written = as_written(form, demand)
-        coarse = _is_coarse(written, choice.dh)
-        return choice, by_elimination(written, demand) if coarse else written
+        return choice, _settled(form, choice.dh, demand)
     for other, open_form in tried:
         solved = by_elimination(open_form, demand)
         if solved.plan is not None:

@@ -1,12 +1,11 @@
 // Solutions on parts of a curve, between two samples of it, by what is left of the error there and how that grows.
 #pragma once
 
-#include "rows/solution_rows.hpp"
 #include "singular/curve_samples.hpp"
 
 namespace ikgen_runtime {
 
-// Arm: as for FoldPair and SolutionRows.
+// Arm: as for FoldPair.
 template <class Arm> struct CurveParts : CurveSamples<Arm> {
   using Curve = CurveSamples<Arm>;
   using Fold = FoldPair<Arm>;

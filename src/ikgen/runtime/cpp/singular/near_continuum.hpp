@@ -3,6 +3,7 @@
 // solution is where what is left changes its sign, or touches 0.
 #pragma once
 
+#include "rows/solution_rows.hpp"
 #include "singular/curve_parts.hpp"
 
 namespace ikgen_runtime {
