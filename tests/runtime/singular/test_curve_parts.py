@@ -157,3 +157,24 @@ def test_two_roots_in_a_dip_that_the_cubic_does_not_show_are_found(
     root = np.sqrt(0.04 * -least / (1.0 + least)) if least < 0.0 else 0.0
     wanted = [-root, root] if least < 0.0 else []
     np.testing.assert_allclose(np.sort(found[:, 0]), wanted, atol=1e-9)
+
+
+def test_two_roots_in_a_dip_far_from_both_ends_show_by_a_cubic_that_turns_twice(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """1 + x / 2 - 1.3 w^2 / (x^2 + w^2), above 0.8 at both ends, and the cubic between them too."""
+    w = 0.03
+
+    def dip(at: Reduced) -> Reduced:
+        x = at.q[:, 0]
+        hollow = x * x + w * w
+        slope = 0.5 + 2.6 * w * w * x / hollow**2
+        return at._replace(left=1.0 + 0.5 * x - 1.3 * w * w / hollow, slope=slope)
+
+    give(monkeypatch, dip)
+    a, b = (dip(on_line(np.array([x]), np.array([0.0]))) for x in (-0.2, 0.12))
+    values = curve_parts._bernstein(LINE, between(a, b))
+    assert values.min() > 0.8
+    _, found = look(LINE, between(a, b), np.zeros((1, 4, 4)), np.zeros(1, np.intp))
+    assert len(found) == 2
+    assert np.abs(dip(on_line(found[:, 0], np.array([0.0]))).left).max() < 1e-9

@@ -59,13 +59,14 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
   static constexpr double kBeyond = 4.0;  // how far what is left at the end of a curve's last part may be beyond its bound
   static constexpr double kWay = 1e-10;   // rad or m: along a curve, by which what is left varies by round-off
 
-  // Whether the cubic bends so much that it tells little of zeros beside its changes of sign. One that only rises or falls
-  // on one side of 0 has none.
+  // Whether the cubic bends so much that it tells little of zeros beside its changes of sign: where it comes near 0, or
+  // turns twice. One that only rises or falls on one side of 0 has none.
   static bool bends(const Sample& a, const Sample& b, const double (&inner)[2], double most, int changes) noexcept {
     const double first = inner[0] - a.left, middle = inner[1] - inner[0], last = b.left - inner[1];
     if (changes == 0 && first * middle >= 0.0 && middle * last >= 0.0) return false;
     const double bend = std::max(std::abs(middle - first), std::abs(last - middle));
-    return std::abs(inner[0] + inner[1]) < kBent * bend && bend > kStraight * most;
+    const bool twice = first * middle < 0.0 && middle * last < 0.0;
+    return (twice || std::abs(inner[0] + inner[1]) < kBent * bend) && bend > kStraight * most;
   }
 
   // The inner two coefficients, after Bernstein, of the cubic through values and slopes.
