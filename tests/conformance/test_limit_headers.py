@@ -18,7 +18,7 @@ from ikgen.generation.request import Request
 
 JOINT = 3
 
-_AXES = (
+_WRIST = (
     ("0 0 0.3", "0 0 0"),
     ("0.05 0 0", "1.570796327 0 0"),
     ("0.4 0 0", "0 0 0"),
@@ -26,18 +26,30 @@ _AXES = (
     ("2e-10 0 0", "-1.570796327 0 0"),
     ("0 0 0", "1.570796327 0 0"),
 )
-WRIST = "\n".join(
-    [
-        '<robot name="nine"><link name="link0"/>',
-        *(
-            f'<link name="link{i}"/><joint name="joint{i}" type="revolute">'
-            f'<parent link="link{i - 1}"/><child link="link{i}"/><origin xyz="{xyz}" rpy="{rpy}"/>'
-            '<axis xyz="0 0 1"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint>'
-            for i, (xyz, rpy) in enumerate(_AXES, 1)
-        ),
-        "</robot>",
-    ]
+_RIGHT = "1.5707963267948966 0 0"
+_SRS = (
+    ("0 0 0.34", "0 0 0"),
+    ("0 0 0", f"-{_RIGHT}"),
+    ("0 -0.4 0", _RIGHT),
+    ("0 0 0", _RIGHT),
+    ("0 0.4 0", f"-{_RIGHT}"),
+    ("0 0 0", f"-{_RIGHT}"),
+    ("0 -0.126 0", _RIGHT),
 )
+
+
+def urdf_of(axes: tuple[tuple[str, str], ...]) -> str:
+    """Of joints about z, each at its origin in the link before."""
+    joints = (
+        f'<link name="link{i}"/><joint name="joint{i}" type="revolute">'
+        f'<parent link="link{i - 1}"/><child link="link{i}"/><origin xyz="{xyz}" rpy="{rpy}"/>'
+        '<axis xyz="0 0 1"/><limit lower="-3" upper="3" effort="1" velocity="1"/></joint>'
+        for i, (xyz, rpy) in enumerate(axes, 1)
+    )
+    return "\n".join(['<robot name="nine"><link name="link0"/>', *joints, "</robot>"])
+
+
+WRIST = urdf_of(_WRIST)
 """Right angles in nine digits, and a wrist whose axes meet to as many."""
 
 LEG = """<robot name="leg"><link name="base"/><link name="hip"/><link name="thigh"/><link name="toe"/>
@@ -76,6 +88,22 @@ def test_configurations_on_a_limit_of_an_arm_that_is_off_by_little_are_found(
     derivation = derive(Request(robot))
     assert 1e-11 < max(derivation.module.dh.deviation) < CLOSE
     found_on_limit(derivation, side, (1.0, 3.0), 1e-6, tmp_path)
+
+
+def test_configurations_on_a_limit_beside_a_straight_elbow_are_found(tmp_path: Path) -> None:
+    # the axes of joints 3 and 5 nearly align: their values are off by round-off over the elbow's square
+    robot = tmp_path / "seven.urdf"
+    robot.write_text(urdf_of(_SRS))
+    derivation = derive(Request(robot, free={"joint7": None}))
+    rng = np.random.default_rng(3)
+    at = rng.uniform(0.3, 0.9, (400, 7))
+    at[:, 3] = 10.0 ** -rng.uniform(3.0, 4.0, 400)
+    at[:, 4] = rng.choice([-3.0, 3.0], 400)
+    arm = arm_of(derivation)
+    poses = arm.oracle.forward(at)
+    rows = runner_of(derivation, "cpp", tmp_path).solve_many(poses, seeds=at, limits=True)
+    gap = np.where(rows.mask, arm.distance(rows.q, at[:, None]), np.inf).min(axis=1)
+    assert (gap < 1e-6).all()
 
 
 def test_configurations_on_the_limits_of_two_joints_where_rows_meet_are_found(

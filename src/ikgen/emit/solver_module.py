@@ -83,18 +83,11 @@ class SolverModule:
         return "all" if refines_all(self.dh, self.plan) else "some"
 
     @property
-    def nearly_exact(self) -> bool:
-        """Whether the file is off what was solved, by so little that its rows are right as they are."""
-        return self.refine == "some" and max(self.dh.deviation) > SolvePolicy().exact
-
-    @property
     def policy(self) -> SolvePolicy:
         """The tolerances of `solve`, four as far as the file is off what was solved.
 
         `limit_tolerance`: a joint that moves several axes, or one several times as far, takes the tool that
         many times as far when it is put on its limit.
-        `limit_doubt`: where the file is off by little, rows are right without Newton steps, but may be off
-        in the joints by that over the smallest singular value, and more than a row is put back.
         `fold_reach`: there two of them may start from one row; with those of poses beside, hardly ever far
         from it.
         `beside_reach`: there, and where a divisor of the closed form vanishes, others may start from none;
@@ -106,7 +99,6 @@ class SolverModule:
         return replace(
             plain,
             limit_tolerance=tolerance,
-            limit_doubt=plain.limit_reach if self.nearly_exact else tolerance,
             fold_reach=max(plain.fold_reach, plain.fold * root),
             beside_reach=plain.anywhere if self.far else plain.fold * root,
             broken_reach=plain.broken_reach * off,

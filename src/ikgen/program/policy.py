@@ -39,8 +39,7 @@ class SolvePolicy:
       `crowd` are kept, as many as solutions meet at a point where two folds do; `meeting`: how close
       branches are where their rows are compared. `limit_tolerance`: a row that far (rad or m) outside a
       limit is put back on it, and one that far, `limit_reach`, where its pose does not tell that it is
-      outside. `limit_doubt`: a closed form's row up to that far outside, in C++, is refined before it
-      is said to be so.
+      outside, which Newton steps find out.
     - `tries`: how many values of a joint that a pose leaves free are tried, `try_step` (rad) apart.
     - `rank_loss`: smallest singular value below which a refined row is singular; `continuum_rank_loss`
       where the Program marked it already.
@@ -74,7 +73,6 @@ class SolvePolicy:
     meeting: float = 2e-5
     limit_tolerance: float = 1e-9
     limit_reach: float = 1e-5
-    limit_doubt: float = 1e-9
     tries: int = 16
     try_step: float = 0.39269908169872414
     rank_loss: float = 1e-7

@@ -141,10 +141,9 @@ def _newton(module: SolverModule) -> bool:
 
 
 def _refinement(module: SolverModule) -> dict[str, object]:
-    """What the templates say of rows that are refined at once: the chain for that, the joints by blocks;
-    and whether rows hardly outside the limits are refined before they are dropped."""
+    """What the templates say of rows that are refined at once: the chain for that, the joints by blocks."""
     twisted = twist_lines(module) if _newton(module) else None
-    return {"twisted": twisted, "blocks": _blocks(module), "doubtful": module.nearly_exact}
+    return {"twisted": twisted, "blocks": _blocks(module)}
 
 
 def _blocks(module: SolverModule) -> tuple[int, ...]:

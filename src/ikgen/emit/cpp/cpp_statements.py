@@ -230,7 +230,7 @@ class ProgramText:
             return ""
         if turning and limits.lower <= -math.pi and limits.upper >= math.pi:
             return ""
-        return "place" if turning else "clamp"
+        return "place<Policy>" if turning else "clamp"
 
 
 def _calls(operand: Operand) -> bool:

@@ -22,26 +22,32 @@ template <int N> struct Unbounded {
 };
 template <int N> inline constexpr Unbounded<N> kUnbounded{};
 
-// near: whether it is no farther outside than what tells nothing of a closed form's row.
+// A joint's value inside the range, and how far outside it was.
 template <int N> struct Placed {
-  Lanes<N> q;
-  Mask<N> inside, nearby;
+  Lanes<N> q, off;
 };
 
-template <class Policy, int N, bool H>
+template <int N, bool H>
 [[gnu::always_inline]] inline Placed<N> clamp(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
-  const auto outside =
-      (range.lower[j] - Policy::kLimitTolerance > q) | (q > range.upper[j] + Policy::kLimitTolerance);
-  const auto remote = (range.lower[j] - Policy::kLimitDoubt > q) | (q > range.upper[j] + Policy::kLimitDoubt);
-  return {max(min(q, range.upper[j]), range.lower[j]), !outside, !remote};
+  const Lanes<N> inside = max(min(q, range.upper[j]), range.lower[j]);
+  return {inside, abs(q - inside)};
 }
 
-// Value of joint j, given in (-pi, pi], on the whole turn that lies in the range.
+// Value of joint j, given in (-pi, pi], on the whole turn that lies in the range, or hardly outside.
 template <class Policy, int N, bool H>
 [[gnu::always_inline]] inline Placed<N> place(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
-  const auto up = select(range.lower[j] - Policy::kLimitDoubt > q, kTurn, 0.0);
-  const auto down = select(q > range.upper[j] + Policy::kLimitDoubt, kTurn, 0.0);
-  return clamp<Policy>(j, q + (up - down), range);
+  const auto up = select(range.lower[j] - Policy::kLimitReach > q, kTurn, 0.0);
+  const auto down = select(q > range.upper[j] + Policy::kLimitReach, kTurn, 0.0);
+  return clamp(j, q + (up - down), range);
+}
+
+// Whether rows whose joints are `off` that far at most are inside; whether hardly outside, which a closed form's row may be
+// by round-off: Newton steps tell.
+template <class Policy, int N, bool H> [[gnu::always_inline]] inline Mask<N> is_inside(const LanesOf<N, H>& off) noexcept {
+  return !(off > Policy::kLimitTolerance);
+}
+template <class Policy, int N, bool H> [[gnu::always_inline]] inline Mask<N> hardly_outside(const LanesOf<N, H>& off) noexcept {
+  return (off > Policy::kLimitTolerance) & (Policy::kLimitReach > off);
 }
 
 }  // namespace ikgen_runtime

@@ -90,16 +90,16 @@ template <class Arm> struct LaneNewton {
     constexpr int N = Rows<P>::kLanes < kNative ? Rows<P>::kLanes : kNative;
     const LaneAim<Arm, N> aim(pose, held);
     for (int at = 0; at < Rows<P>::kLanes; at += N) {
-      alignas(64) double real[std::size_t{N}];
+      alignas(64) double given[std::size_t{N}];
       int any = 0;
       for (int i = 0; i < N; ++i) {
         const int bits = static_cast<int>(rows.flags[at + i]);
-        real[i] = (bits & kReal) != 0 ? 1.0 : 0.0;
+        given[i] = bits & kReal;
         any |= bits & (kReal | kHit);
       }
       if (any == 0) continue;
       const auto flags = bit((any & kHit) != 0 ? spread<N>(1.0) > 0.0 : spread<N>(-1.0) > 0.0, kHit);
-      refine_pack<P, N>(pose, aim, range, at, load<N>(real) > 0.5, flags, rows);
+      refine_pack<P, N>(pose, aim, range, at, load<N>(given), flags, rows);
     }
   }
 
@@ -132,21 +132,23 @@ template <class Arm> struct LaneNewton {
  private:
   template <int P, int N, bool H, bool F>
   static void refine_pack(const Pose<P>& pose, const LaneAim<Arm, N>& aim, const Range& range, int at,
-                          const MaskOf<N, H>& given, const LanesOf<N, F>& flags, Rows<P>& rows) noexcept {
+                          const LanesOf<N, H>& given, const LanesOf<N, F>& flags, Rows<P>& rows) noexcept {
+    const Mask<N> started = given > 0.5;
     LaneChain<Arm, N> chain;
     for (int j = 0; j < Arm::kDof; ++j) chain.q[j] = load<N>(rows.q[j] + at);
-    const Arrival<N> at_end = steps<P, N>(pose, aim, given, chain);
-    const Mask<N> real = given & !at_end.beside, good = at_end.good;
-    Mask<N> inside = real;
+    const Arrival<N> at_end = steps<P, N>(pose, aim, started, chain);
+    const Mask<N> real = started & !at_end.beside, good = at_end.good;
+    Lanes<N> off = spread<N>(0.0);
     for (int j = 0; j < Arm::kDof; ++j) {
       Lanes<N> q = chain.q[j];
       if (Arm::kRevolute[j] && !Arm::kHeld[j]) q = q + select(q > kPi, -kTurn, select(-kPi > q, kTurn, 0.0));
       const Placed<N> placed =
-          Arm::kRevolute[j] && !Arm::kHeld[j] ? place<Policy>(j, q, range) : clamp<Policy>(j, q, range);
-      inside = inside & placed.inside;
+          Arm::kRevolute[j] && !Arm::kHeld[j] ? place<Policy>(j, q, range) : clamp(j, q, range);
+      off = max(off, placed.off);
       store(select(good, placed.q, load<N>(rows.q[j] + at)), rows.q[j] + at);
     }
-    store((bit(real, kReal) + bit(good & inside, kFound)) + (bit(real & !good, kRough) + flags), rows.flags + at);
+    const auto found = bit(real, kReal) + bit(good & is_inside<Policy>(off), kFound);
+    store(found + (bit(real & (!good | hardly_outside<Policy>(off)), kRough) + flags), rows.flags + at);
   }
 
   // Which lanes arrived at the one solution near their start, and which at a least error that is not 0.

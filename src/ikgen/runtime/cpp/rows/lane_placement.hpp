@@ -17,21 +17,20 @@ template <class Arm> struct LanePlacement {
   template <class Rows> static void apply(const typename Arm::Options& options, Rows& rows) noexcept {
     constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;
     for (int at = 0; at < Rows::kLanes; at += N) {
-      Mask<N> inside = spread<N>(1.0) > 0.0, nearby = inside;
+      Lanes<N> off = spread<N>(0.0);
       for (int j = 0; j < Arm::kDof; ++j) {
         Lanes<N> q = load<N>(rows.q[j] + at);
         if (Arm::kRevolute[j] && !Arm::kHeld[j]) q = turned(j, q, options);
         if (options.limits) {
-          const Placed<N> placed = clamp<Policy>(j, q, {Arm::kLower.data(), Arm::kUpper.data()});
-          inside = inside & placed.inside;
-          nearby = nearby & placed.nearby;
+          const Placed<N> placed = clamp(j, q, {Arm::kLower.data(), Arm::kUpper.data()});
+          off = max(off, placed.off);
           q = placed.q;
         }
         store(q, rows.q[j] + at);
       }
       alignas(64) double kept[std::size_t{N}], close[std::size_t{N}];
-      store(inside, kept);
-      store(nearby, close);
+      store(is_inside<Policy>(off), kept);
+      store(hardly_outside<Policy>(off), close);
       for (int i = 0; i < N; ++i) {
         const int bits = static_cast<int>(rows.flags[at + i]);
         const int doubt = (bits & kReal) != 0 && close[i] > 0.5 ? kRough : 0;
@@ -44,7 +43,7 @@ template <class Arm> struct LanePlacement {
   // On the turn nearest to the seed, or if that is outside the limits, on the one inside that is nearest to them.
   template <int N, bool H>
   [[gnu::always_inline]] static Lanes<N> turned(int j, const LanesOf<N, H>& given, const typename Arm::Options& options) noexcept {
-    const double low = Arm::kLower.data()[j] - Policy::kLimitDoubt, high = Arm::kUpper.data()[j] + Policy::kLimitDoubt;
+    const double low = Arm::kLower.data()[j] - Policy::kLimitReach, high = Arm::kUpper.data()[j] + Policy::kLimitReach;
     const Lanes<N> q = given + select(given > -kPi, select(given > kPi, -kTurn, 0.0), kTurn);
     Lanes<N> shift = spread<N>(0.0);
     if (options.seed) shift = kTurn * nearest((options.seed->data()[j] - q) / kTurn);
