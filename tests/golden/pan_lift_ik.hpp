@@ -387,23 +387,27 @@ template <int N> struct Unbounded {
 template <int N> inline constexpr Unbounded<N> kUnbounded{};
 
 template <int N> struct Placed {
-  Lanes<N> q;
-  Mask<N> inside, nearby;
+  Lanes<N> q, off;
 };
 
-template <class Policy, int N, bool H>
+template <int N, bool H>
 [[gnu::always_inline]] inline Placed<N> clamp(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
-  const auto outside =
-      (range.lower[j] - Policy::kLimitTolerance > q) | (q > range.upper[j] + Policy::kLimitTolerance);
-  const auto remote = (range.lower[j] - Policy::kLimitDoubt > q) | (q > range.upper[j] + Policy::kLimitDoubt);
-  return {max(min(q, range.upper[j]), range.lower[j]), !outside, !remote};
+  const Lanes<N> inside = max(min(q, range.upper[j]), range.lower[j]);
+  return {inside, abs(q - inside)};
 }
 
 template <class Policy, int N, bool H>
 [[gnu::always_inline]] inline Placed<N> place(int j, const LanesOf<N, H>& q, const Range& range) noexcept {
-  const auto up = select(range.lower[j] - Policy::kLimitDoubt > q, kTurn, 0.0);
-  const auto down = select(q > range.upper[j] + Policy::kLimitDoubt, kTurn, 0.0);
-  return clamp<Policy>(j, q + (up - down), range);
+  const auto up = select(range.lower[j] - Policy::kLimitReach > q, kTurn, 0.0);
+  const auto down = select(q > range.upper[j] + Policy::kLimitReach, kTurn, 0.0);
+  return clamp(j, q + (up - down), range);
+}
+
+template <class Policy, int N, bool H> [[gnu::always_inline]] inline Mask<N> is_inside(const LanesOf<N, H>& off) noexcept {
+  return !(off > Policy::kLimitTolerance);
+}
+template <class Policy, int N, bool H> [[gnu::always_inline]] inline Mask<N> hardly_outside(const LanesOf<N, H>& off) noexcept {
+  return (off > Policy::kLimitTolerance) & (Policy::kLimitReach > off);
 }
 
 // --- lane rows -----------------------------------------------------------------------------------
@@ -422,7 +426,7 @@ template <int P> [[gnu::always_inline]] inline Pose<P> gather(const Eigen::Isome
   return out;
 }
 
-enum Bit { kFound = 1, kReal = 2, kSingular = 4, kRough = 8, kMeeting = 16, kHit = 32 };
+enum Bit { kFound = 1, kReal = 2, kSingular = 4, kRough = 8, kMeeting = 16, kHit = 32, kDoubt = 64 };
 
 template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> bit(const MaskOf<N, H>& mask, Bit value) noexcept {
   return select(mask, static_cast<double>(value), 0.0);
@@ -432,6 +436,9 @@ template <int Dof, int Most, int P> struct LaneRows {
   static constexpr int kLanes = Most * P;
   alignas(64) double q[Dof][std::size_t{kLanes}];
   alignas(64) double flags[std::size_t{kLanes}];
+
+  int bits(int lane) const noexcept { return static_cast<int>(flags[lane]); }
+  bool has(int lane, int all) const noexcept { return (bits(lane) & all) == all; }
 };
 
 template <int N, bool H> [[gnu::always_inline]] inline Lanes<N / 2> gap(const LanesOf<N, H>& x) noexcept {
@@ -1239,7 +1246,8 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
     const double first = inner[0] - a.left, middle = inner[1] - inner[0], last = b.left - inner[1];
     if (changes == 0 && first * middle >= 0.0 && middle * last >= 0.0) return false;
     const double bend = std::max(std::abs(middle - first), std::abs(last - middle));
-    return std::abs(inner[0] + inner[1]) < kBent * bend && bend > kStraight * most;
+    const bool twice = first * middle < 0.0 && middle * last < 0.0;
+    return (twice || std::abs(inner[0] + inner[1]) < kBent * bend) && bend > kStraight * most;
   }
 
   static void take_inner(const Sample& a, const Sample& b, double (&inner)[2]) noexcept {
@@ -1637,11 +1645,8 @@ template <class Arm, std::size_t K> struct LaneEnds {
   }
 
   LaneEnd<Arm> at(std::size_t k, int lane) const noexcept {
-    return {rows[k], (bits(rows[k], lane) & kFound) != 0, error[k * std::size_t{kLanes} + static_cast<std::size_t>(lane)]};
+    return {rows[k], rows[k].has(lane, kFound), error[k * std::size_t{kLanes} + static_cast<std::size_t>(lane)]};
   }
-
- private:
-  static int bits(const Rows& of, int lane) noexcept { return static_cast<int>(of.flags[lane]); }
 };
 
 // --- careful rows --------------------------------------------------------------------------------
@@ -1654,14 +1659,12 @@ template <class Arm> struct CarefulRows {
   using Refinement = NewtonRefinement<Arm>;
   using Row = SolutionRows<Arm>;
   using Rows = typename Arm::template Rows<1>;
-  using End = LaneEnd<Arm>;
-  template <std::size_t K> using Ends = LaneEnds<Arm, K>;
 
   struct Left {
     bool free = false, led = false;
   };
 
-  static constexpr bool kBesideAnywhere = !(Policy::kBesideReach < Policy::kAnywhere);
+  static constexpr bool kBesideAnywhere = !(Policy::kBesideReach < Policy::kAnywhere);  // or only near singularities
 
   static void find_lanes(const Eigen::Isometry3d& pose, const double* q0, const Options& options, Rows& out) noexcept {
     constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
@@ -1669,8 +1672,7 @@ template <class Arm> struct CarefulRows {
   }
 
   static bool any_singular(const Places& rows) noexcept {
-    const auto end = rows.singular.begin() + rows.count;
-    return std::find(rows.singular.begin(), end, true) != end;
+    return std::any_of(rows.singular.begin(), rows.singular.begin() + rows.count, [](bool flag) { return flag; });
   }
 
   static void add_from(const Aim& aim, const double* q0, Places& out) noexcept {
@@ -1691,27 +1693,28 @@ template <class Arm> struct CarefulRows {
     std::array<Rows, 1> only;
     Rows& rows = only[0];
     Left left{turns_away(turn), false};
+    Starts starts;
     find_lanes(start_of(aim.pose, turn), q0, options, rows);
     for (const int lane : Arm::kLaneOfRow) {
-      left.free = left.free || (bits(rows, lane) & kHit) != 0;
-      left.led = left.led || (bits(rows, lane) & (kSingular | kReal)) == (kSingular | kReal);
+      left.free = left.free || rows.has(lane, kHit);
+      left.led = left.led || rows.has(lane, kSingular | kReal);
+      starts.doubt = starts.doubt || rows.has(lane, kReal | kDoubt);
     }
     const int known = out.count;
     if (left.free) add_from(aim, q0, out);
-    const Ends<1> ends(only, aim, options, kReal);
-    Starts starts;
+    const LaneEnds<Arm, 1> ends(only, aim, options, kReal);
     bool plain[Arm::kLanes] = {};  // right, and far from singularities
     for (const int lane : Arm::kLaneOfRow)
-      if (plain[lane] && (bits(rows, lane) & kSingular) == 0)
+      if (plain[lane] && !rows.has(lane, kSingular))
         add_lane(rows, lane, out);
-      else if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
-        starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends.at(0, lane), false, aim, out);
+      else if (rows.has(lane, kReal) && (Arm::kRefined || rows.has(lane, kRough)))
+        starts.take({rows, lane, starts.marked(rows, lane)}, ends.at(0, lane), false, aim, out);
     if (starts.count == 0 && left.free && out.count == known) take_all(aim, only, options, starts, out);
     left.led = left.led || starts.any_traced();
     for (int k = 0; k < starts.count; ++k)
       if (starts.at(k).nearby && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
     for (const int lane : Arm::kLaneOfRow)
-      if ((bits(rows, lane) & (kReal | kRough)) == kReal) add_lane(rows, lane, out);
+      if ((rows.bits(lane) & (kReal | kRough)) == kReal) add_lane(rows, lane, out);
     return left;
   }
 
@@ -1726,7 +1729,6 @@ template <class Arm> struct CarefulRows {
   static Eigen::Isometry3d start_of(const Eigen::Isometry3d& pose, [[maybe_unused]] int turn) noexcept {
     return pose;
   }
-  static int bits(const Rows& rows, int lane) noexcept { return static_cast<int>(rows.flags[lane]); }
 
   struct Nearest {
     bool marked = false, nearby = false, settled = false, exact = false;  // settled: a solution, whatever else there is
@@ -1740,7 +1742,7 @@ template <class Arm> struct CarefulRows {
       for (int j = 0; j < Arm::kDof; ++j) start[j] = q[j] = rows.q[j][lane];
     }
 
-    void refine([[maybe_unused]] const Aim& aim, [[maybe_unused]] const End& end) noexcept {
+    void refine([[maybe_unused]] const Aim& aim, [[maybe_unused]] const LaneEnd<Arm>& end) noexcept {
       error = Refinement::error_after(q, aim);
     }
 
@@ -1797,11 +1799,15 @@ template <class Arm> struct CarefulRows {
 
   struct Starts {
     int count = 0;
-    bool traced[Arm::kLanes] = {};
+    bool doubt = false, traced[Arm::kLanes] = {};  // doubt: whether rows of the pose itself may have others near them
     typename NearContinuum<Arm>::Passed passed;
     std::array<Nearest, std::size_t{Arm::kLanes} * (1 + Arm::kBesides)> all;
 
     Nearest& at(int k) noexcept { return all[static_cast<std::size_t>(k)]; }
+
+    bool marked(const Rows& rows, int lane) const noexcept {
+      return rows.has(lane, kSingular) || (doubt && rows.has(lane, kReal | kDoubt));
+    }
 
     bool close() const noexcept {
       return std::any_of(all.begin(), all.begin() + count, [](const Nearest& one) { return one.close() && !one.around; });
@@ -1809,7 +1815,7 @@ template <class Arm> struct CarefulRows {
 
     bool any_traced() const noexcept { return std::find(std::begin(traced), std::end(traced), true) != std::end(traced); }
 
-    void take(Nearest start, const End& end, bool beside, const Aim& aim, Places& out) noexcept {
+    void take(Nearest start, const LaneEnd<Arm>& end, bool beside, const Aim& aim, Places& out) noexcept {
       if (!(Arm::kRounded && start.marked)) start.refine(aim, end);
       if (start.marked && (Arm::kRounded || !(start.error < Policy::kArrived))) {
         if (!traced[start.lane]) traced[start.lane] = start.add_around(aim, passed, out);
@@ -1838,10 +1844,9 @@ template <class Arm> struct CarefulRows {
 
   static void take_all(const Aim& aim, const std::array<Rows, 1>& only, const Options& options, Starts& starts,
                        Places& out) noexcept {
-    const Rows& rows = only[0];
-    const Ends<1> ends(only, aim, options, kSingular);
+    const LaneEnds<Arm, 1> ends(only, aim, options, kSingular);
     for (const int lane : Arm::kLaneOfRow)
-      if ((bits(rows, lane) & kSingular) != 0) starts.take({rows, lane, true}, ends.at(0, lane), false, aim, out);
+      if (only[0].has(lane, kSingular)) starts.take({only[0], lane, true}, ends.at(0, lane), false, aim, out);
   }
 };
 
@@ -2218,21 +2223,20 @@ template <class Arm> struct LanePlacement {
   template <class Rows> static void apply(const typename Arm::Options& options, Rows& rows) noexcept {
     constexpr int N = Rows::kLanes < kNative ? Rows::kLanes : kNative;
     for (int at = 0; at < Rows::kLanes; at += N) {
-      Mask<N> inside = spread<N>(1.0) > 0.0, nearby = inside;
+      Lanes<N> off = spread<N>(0.0);
       for (int j = 0; j < Arm::kDof; ++j) {
         Lanes<N> q = load<N>(rows.q[j] + at);
         if (Arm::kRevolute[j] && !Arm::kHeld[j]) q = turned(j, q, options);
         if (options.limits) {
-          const Placed<N> placed = clamp<Policy>(j, q, {Arm::kLower.data(), Arm::kUpper.data()});
-          inside = inside & placed.inside;
-          nearby = nearby & placed.nearby;
+          const Placed<N> placed = clamp(j, q, {Arm::kLower.data(), Arm::kUpper.data()});
+          off = max(off, placed.off);
           q = placed.q;
         }
         store(q, rows.q[j] + at);
       }
       alignas(64) double kept[std::size_t{N}], close[std::size_t{N}];
-      store(inside, kept);
-      store(nearby, close);
+      store(is_inside<Policy>(off), kept);
+      store(hardly_outside<Policy>(off), close);
       for (int i = 0; i < N; ++i) {
         const int bits = static_cast<int>(rows.flags[at + i]);
         const int doubt = (bits & kReal) != 0 && close[i] > 0.5 ? kRough : 0;
@@ -2244,7 +2248,7 @@ template <class Arm> struct LanePlacement {
  private:
   template <int N, bool H>
   [[gnu::always_inline]] static Lanes<N> turned(int j, const LanesOf<N, H>& given, const typename Arm::Options& options) noexcept {
-    const double low = Arm::kLower.data()[j] - Policy::kLimitDoubt, high = Arm::kUpper.data()[j] + Policy::kLimitDoubt;
+    const double low = Arm::kLower.data()[j] - Policy::kLimitReach, high = Arm::kUpper.data()[j] + Policy::kLimitReach;
     const Lanes<N> q = given + select(given > -kPi, select(given > kPi, -kTurn, 0.0), kTurn);
     Lanes<N> shift = spread<N>(0.0);
     if (options.seed) shift = kTurn * nearest((options.seed->data()[j] - q) / kTurn);
@@ -2853,9 +2857,9 @@ struct Policy {
   static constexpr int kCrowd = 4, kTries = 16, kPatience = 5;
   static constexpr double kArrived = 5e-10, kExact = 1e-12, kPoseTolerance = 1e-06, kOrthonormal = 1e-14,
       kCoincident = 1e-06, kAlike = 0.01, kHalfway = 2e-14, kMeeting = 2e-05, kLimitTolerance = 1e-09,
-      kLimitReach = 1e-05, kLimitDoubt = 1e-09, kTryStep = 0.39269908169872414, kRankLoss = 1e-07,
-      kContinuumRankLoss = 0.001, kFoldReach = 0.0001, kBesideReach = 0.0, kAnywhere = 1000.0, kLeastDamping =
-      1e-14, kDamping = 0.001, kLargestStep = 0.3, kConverged = 1e-13, kProgress = 0.8;
+      kLimitReach = 1e-05, kTryStep = 0.39269908169872414, kRankLoss = 1e-07, kContinuumRankLoss = 0.001,
+      kFoldReach = 0.0001, kBesideReach = 0.0, kAnywhere = 1000.0, kLeastDamping = 1e-14, kDamping = 0.001,
+      kLargestStep = 0.3, kConverged = 1e-13, kProgress = 0.8;
   static constexpr RefineStage kRefinement[] = {{3, 1e-12, 0.1}, {6, 1e-12, 0.001}, {30, 0.0, 0.0}};
 };
 
@@ -2944,17 +2948,17 @@ inline void Arm::branches(const Pose<P>& pose, [[maybe_unused]] const Seed& seed
 
   // joint values, each on the turn inside its limits
   const auto placed_1 = place<Policy>(0, angle(s1, c1), range);
-  const auto placed_2 = clamp<Policy>(1, t23, range);
+  const auto placed_2 = clamp(1, t23, range);
 
   constexpr int n = Rows<P>::kLanes;
   store(spread<n>(placed_1.q), rows.q[0]);
   store(spread<n>(placed_2.q), rows.q[1]);
 
-  const auto inside = placed_1.inside & placed_2.inside;
-  const auto found = bit(real_1, kReal) + bit(real_1 & inside, kFound);
+  const auto off = max(placed_1.off, placed_2.off);
+  const auto found = bit(real_1, kReal) + bit(real_1 & is_inside<Policy>(off), kFound);
   constexpr double degenerate = 0.0;
   const auto meets = bit(real_1 & (meeting<Policy, 2 * P>(c1, s1)), kMeeting);
-  constexpr double rough = 0.0;
+  const auto rough = bit(real_1 & (hardly_outside<Policy>(off)), kRough);
   store(spread<n>(found + ((degenerate + meets) + rough)), rows.flags);
 }
 

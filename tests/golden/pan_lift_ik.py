@@ -2182,11 +2182,13 @@ def _between(arm: _Arm, parts: _Parts, share: Array, T: Array) -> _Reduced:
 
 def _bends(values: Array, changes: _Index) -> _Flags:
     """Which cubics of coefficients (4, n), with so many changes of sign (n,), bend so much that they tell
-    little of zeros beside these."""
+    little of zeros beside these, where they come near 0 or turn twice."""
     rise = np.diff(values, axis=0)
-    steady = (changes == 0) & (rise[:-1] * rise[1:] >= 0.0).all(axis=0)
+    turns = rise[:-1] * rise[1:]
+    steady = (changes == 0) & (turns >= 0.0).all(axis=0)
     bend = np.abs(np.diff(rise, axis=0)).max(axis=0)
     bent = (np.abs(values[1] + values[2]) < _BENT * bend) & ~steady
+    bent |= (turns < 0.0).all(axis=0)
     return np.asarray(bent & (bend > _STRAIGHT * np.abs(values).max(axis=0)))
 
 

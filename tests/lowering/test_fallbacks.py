@@ -246,3 +246,23 @@ def test_a_direction_is_not_lost_by_the_square_root_that_it_goes_with(
     (lost,) = b.work.lost
     found = lost.probe[: len(SHARES)] > 0.5
     assert found.tolist() == [share**2 < least for share in SHARES]
+
+
+@pytest.mark.parametrize("error", [1e-2, 1e-6])
+def test_rows_are_in_doubt_where_all_amplitudes_together_are_what_the_file_is_off(
+    solved: SolutionGraph, error: float
+) -> None:
+    """Not by a divisor that vanishes on a surface, as a determinant does: no joint is free there."""
+    b = Bench(solved, error)
+    for _ in range(2):
+        form = SineCosine(b.share, b.g.zero, b.g.zero).lower(b.g, b.g.one, b.work.tolerances)
+        assert isinstance(form, LoweredForm)
+        choose_form(b.work, b.angle, [form], b.g.one)
+    (doubt,) = b.work.doubts
+    found = doubt.probe[: len(SHARES)] > 0.5
+    assert found.tolist() == [
+        max(share**2, b.work.tolerances.fold) * share**2 < error**2 for share in SHARES
+    ]
+    plain = b.lowered(Linear(b.share, b.g.const(-3.0)), b.g.one)
+    choose_form(b.work, b.length, [plain], b.g.one)
+    assert b.work.doubts == [doubt] and len(b.work.lost) == 2

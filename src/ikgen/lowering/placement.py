@@ -27,6 +27,10 @@ __all__ = ["LoweredLevel", "Placement", "Requirement", "identifier"]
 FOLDED = 1e-6
 """Relative size of what is under a square root below which its root has lost too many digits."""
 
+_CONTINUED = 1.0
+"""Times the model error that a divisor is, over what it has been multiplied by on the way to it, where the
+continuum that it vanishes on may go on in the file's geometry."""
+
 
 @dataclass(frozen=True, slots=True)
 class Requirement:
@@ -53,7 +57,8 @@ class Placement:
 
     `model_error` (m or rad) is how far the file's geometry is off the solved one; `norms` are excesses that
     vanish on a solution, `residuals` squared errors of a row, `singular` flags of continua, `lost`
-    conditions under which a direction has nothing of the file's, `hidden` flags of branches that fail then.
+    conditions under which a direction has nothing of the file's, `hidden` flags of branches that fail then,
+    `doubts` conditions under which the file's arm may have solutions that no branch leads to.
     """
 
     def __init__(self, graph: SolutionGraph, model_error: float) -> None:
@@ -82,6 +87,7 @@ class Placement:
         self.singular: list[Expr] = []
         self.hidden: list[Expr] = []
         self.lost: list[Expr] = []
+        self.doubts: list[Expr] = []
         self.inputs: list[Input] = []
         self.prelude: list[Let] = []
 
@@ -123,7 +129,12 @@ class Placement:
             before = self.tolerances.margin
             if before is not None:
                 least = self.g.const(self._tolerances.norm**2)
-                self.lost.append(self.g.binary("gt", least, self.g.mul(largest, before)))
+                left = self.g.mul(largest, before)
+                self.lost.append(self.g.binary("gt", least, left))
+                if any(one.power == 2 for one in divisors):
+                    few = self.g.const((_CONTINUED * self.model_error) ** 2)
+                    self.doubts.append(self.g.binary("gt", few, left))
+                    self.place(self.doubts[-1])
             self.margins.append(largest)
 
     @property

@@ -51,10 +51,10 @@ class _Serializer:
             for item in level.items:
                 if isinstance(item, Requirement):
                     self._need(item.condition, index)
-        last = len(self.work.levels) - 1
+        work, last = self.work, len(self.work.levels) - 1
         for _, e in values:
             self._need(e, last, keep=True)
-        for e in (*self.work.singular, *self.work.hidden, *self.work.residuals):
+        for e in (*work.singular, *work.hidden, *work.doubts, *work.residuals):
             self._need(e, last, keep=True)
 
     def _need(self, node: Expr, level: int, *, keep: bool = False) -> None:
@@ -179,4 +179,5 @@ def serialize(work: Placement, values: list[tuple[int, Expr]]) -> Program:
         singular,
         residuals,
         file_frames(work.dh),
+        doubts=tuple(str(s.operand(e)) for e in work.doubts),
     )

@@ -22,7 +22,7 @@ def live_names(program: Program) -> set[str]:
     """Names that a result, a guard or a flag depends on."""
     lets = [s for level in program.levels for s in level.body if isinstance(s, Let)]
     value = {let.name: let.value for let in (*program.constants, *program.prelude, *lets)}
-    roots: list[Operand] = [*program.singular, *program.residuals]
+    roots: list[Operand] = [*program.singular, *program.doubts, *program.residuals]
     for level in program.levels:
         roots += _reads(level)
     roots += [output.value for output in program.outputs]

@@ -100,6 +100,7 @@ class Program:
     or a branch that fails may have one in the file's geometry;
     `residuals` the squared errors (m^2, rad^2) with which a row reproduces the pose. `frames` are the
     constant transforms of the file's own chain, `T = F_0 M_1 F_1 ... M_n F_n` with M_i the motion of row i.
+    `doubts` are the conditions under which it is not all that the file's geometry has near it.
     `coarse`: round-off alone moves rows at most poses by more than they may be off.
     """
 
@@ -114,6 +115,7 @@ class Program:
     residuals: tuple[str, ...] = ()
     frames: tuple[Entries, ...] = ()
     coarse: bool = False
+    doubts: tuple[str, ...] = ()
 
     @property
     def max_solutions(self) -> int:

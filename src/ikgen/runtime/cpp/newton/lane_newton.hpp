@@ -83,7 +83,7 @@ template <class Arm> struct LaneNewton {
   template <int N> using Factors = std::conditional_t<kBlocks, LaneBlocks<N>, LaneFactors<kEquations, kMoving, N>>;
 
   // Refines the rows that are real, and puts them into the range. What is not shown to be the one solution near its
-  // start stays rough.
+  // start, or may not be, stays rough.
   template <int P>
   static void refine(const Pose<P>& pose, const std::array<double, Arm::kFree>& held, const Range& range,
                      Rows<P>& rows) noexcept {
@@ -94,7 +94,7 @@ template <class Arm> struct LaneNewton {
       int any = 0;
       for (int i = 0; i < N; ++i) {
         const int bits = static_cast<int>(rows.flags[at + i]);
-        given[i] = bits & kReal;
+        given[i] = bits & (kReal | kDoubt);
         any |= bits & (kReal | kHit);
       }
       if (any == 0) continue;
@@ -133,11 +133,11 @@ template <class Arm> struct LaneNewton {
   template <int P, int N, bool H, bool F>
   static void refine_pack(const Pose<P>& pose, const LaneAim<Arm, N>& aim, const Range& range, int at,
                           const LanesOf<N, H>& given, const LanesOf<N, F>& flags, Rows<P>& rows) noexcept {
-    const Mask<N> started = given > 0.5;
+    const Mask<N> doubt = given > 0.5 + kReal, started = given > 0.5;
     LaneChain<Arm, N> chain;
     for (int j = 0; j < Arm::kDof; ++j) chain.q[j] = load<N>(rows.q[j] + at);
     const Arrival<N> at_end = steps<P, N>(pose, aim, started, chain);
-    const Mask<N> real = started & !at_end.beside, good = at_end.good;
+    const Mask<N> real = started & (doubt | !at_end.beside), good = at_end.good & !doubt;
     Lanes<N> off = spread<N>(0.0);
     for (int j = 0; j < Arm::kDof; ++j) {
       Lanes<N> q = chain.q[j];

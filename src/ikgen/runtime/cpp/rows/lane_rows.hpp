@@ -27,8 +27,9 @@ template <int P> [[gnu::always_inline]] inline Pose<P> gather(const Eigen::Isome
 }
 
 // What is known of a row: found inside the range, real, one of a continuum, in want of Newton steps, perhaps
-// equal to another; a joint was left free on the way to it. Kept as sums of these in doubles.
-enum Bit { kFound = 1, kReal = 2, kSingular = 4, kRough = 8, kMeeting = 16, kHit = 32 };
+// equal to another; a joint was left free on the way to it; the file's geometry may have others near it. Kept as sums of
+// these in doubles.
+enum Bit { kFound = 1, kReal = 2, kSingular = 4, kRough = 8, kMeeting = 16, kHit = 32, kDoubt = 64 };
 
 template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> bit(const MaskOf<N, H>& mask, Bit value) noexcept {
   return select(mask, static_cast<double>(value), 0.0);
@@ -38,6 +39,9 @@ template <int Dof, int Most, int P> struct LaneRows {
   static constexpr int kLanes = Most * P;
   alignas(64) double q[Dof][std::size_t{kLanes}];
   alignas(64) double flags[std::size_t{kLanes}];
+
+  int bits(int lane) const noexcept { return static_cast<int>(flags[lane]); }
+  bool has(int lane, int all) const noexcept { return (bits(lane) & all) == all; }
 };
 
 // Distance between the two halves of a level's lanes, which are its branches.

@@ -28,16 +28,13 @@ template <class Arm> struct CarefulRows {
   using Refinement = NewtonRefinement<Arm>;
   using Row = SolutionRows<Arm>;
   using Rows = typename Arm::template Rows<1>;
-  using End = LaneEnd<Arm>;
-  template <std::size_t K> using Ends = LaneEnds<Arm, K>;
 
   // Whether the closed form left a joint free, and found rows with the given value of it.
   struct Left {
     bool free = false, led = false;
   };
 
-  // Whether poses beside are solved near no singularity too.
-  static constexpr bool kBesideAnywhere = !(Policy::kBesideReach < Policy::kAnywhere);
+  static constexpr bool kBesideAnywhere = !(Policy::kBesideReach < Policy::kAnywhere);  // or only near singularities
 
   // The closed form's rows without limits; q0 gives the values of joints that the pose leaves free.
   static void find_lanes(const Eigen::Isometry3d& pose, const double* q0, const Options& options, Rows& out) noexcept {
@@ -46,8 +43,7 @@ template <class Arm> struct CarefulRows {
   }
 
   static bool any_singular(const Places& rows) noexcept {
-    const auto end = rows.singular.begin() + rows.count;
-    return std::find(rows.singular.begin(), end, true) != end;
+    return std::any_of(rows.singular.begin(), rows.singular.begin() + rows.count, [](bool flag) { return flag; });
   }
 
   // Adds what Newton steps from given values lead to.
@@ -71,22 +67,23 @@ template <class Arm> struct CarefulRows {
     std::array<Rows, 1> only;
     Rows& rows = only[0];
     Left left{turns_away(turn), false};
+    Starts starts;
     find_lanes(start_of(aim.pose, turn), q0, options, rows);
     for (const int lane : Arm::kLaneOfRow) {
-      left.free = left.free || (bits(rows, lane) & kHit) != 0;
-      left.led = left.led || (bits(rows, lane) & (kSingular | kReal)) == (kSingular | kReal);
+      left.free = left.free || rows.has(lane, kHit);
+      left.led = left.led || rows.has(lane, kSingular | kReal);
+      starts.doubt = starts.doubt || rows.has(lane, kReal | kDoubt);
     }
     const int known = out.count;
     if (left.free) add_from(aim, q0, out);
-    const Ends<1> ends(only, aim, options, kReal);
-    Starts starts;
+    const LaneEnds<Arm, 1> ends(only, aim, options, kReal);
     bool plain[Arm::kLanes] = {};  // right, and far from singularities
     if constexpr (Arm::kRefined) RankLoss<Arm>::regular(rows, Policy::kFoldReach, plain);
     for (const int lane : Arm::kLaneOfRow)
-      if (plain[lane] && (bits(rows, lane) & kSingular) == 0)
+      if (plain[lane] && !rows.has(lane, kSingular))
         add_lane(rows, lane, out);
-      else if ((bits(rows, lane) & kReal) != 0 && (Arm::kRefined || (bits(rows, lane) & kRough) != 0))
-        starts.take({rows, lane, (bits(rows, lane) & kSingular) != 0}, ends.at(0, lane), false, aim, out);
+      else if (rows.has(lane, kReal) && (Arm::kRefined || rows.has(lane, kRough)))
+        starts.take({rows, lane, starts.marked(rows, lane)}, ends.at(0, lane), false, aim, out);
     if constexpr (Arm::kRounded)
       if (turn == 0) starts.trace_broken(aim, out);
     if constexpr (Arm::kBesides > 0)
@@ -99,7 +96,7 @@ template <class Arm> struct CarefulRows {
       if (turn == 0) starts.search_surfaces(aim, out);
     if constexpr (!Arm::kRefined)
       for (const int lane : Arm::kLaneOfRow)
-        if ((bits(rows, lane) & (kReal | kRough)) == kReal) add_lane(rows, lane, out);
+        if ((rows.bits(lane) & (kReal | kRough)) == kReal) add_lane(rows, lane, out);
     return left;
   }
 
@@ -117,7 +114,6 @@ template <class Arm> struct CarefulRows {
       if (turns_away(turn)) return displaced(pose, Arm::kBeside[turn - 1]);
     return pose;
   }
-  static int bits(const Rows& rows, int lane) noexcept { return static_cast<int>(rows.flags[lane]); }
 
   // What Newton steps from a lane led to. Rows that are right to round-off are added; of the others the nearest is kept.
   struct Nearest {
@@ -133,7 +129,7 @@ template <class Arm> struct CarefulRows {
     }
 
     // From where steps in lanes led to, if they did.
-    void refine([[maybe_unused]] const Aim& aim, [[maybe_unused]] const End& end) noexcept {
+    void refine([[maybe_unused]] const Aim& aim, [[maybe_unused]] const LaneEnd<Arm>& end) noexcept {
       if constexpr (Arm::kNewton) {
         for (int j = 0; j < Arm::kDof; ++j) q[j] = end.rows.q[j][lane];
         alone = end.alone;
@@ -203,11 +199,16 @@ template <class Arm> struct CarefulRows {
   // or stalled where that looks for two solutions, are left out, as are those on a continuum that is known.
   struct Starts {
     int count = 0;
-    bool traced[Arm::kLanes] = {};
+    bool doubt = false, traced[Arm::kLanes] = {};  // doubt: whether rows of the pose itself may have others near them
     typename NearContinuum<Arm>::Passed passed;
     std::array<Nearest, std::size_t{Arm::kLanes} * (1 + Arm::kBesides)> all;
 
     Nearest& at(int k) noexcept { return all[static_cast<std::size_t>(k)]; }
+
+    // Whether a lane is to be taken for one of a continuum.
+    bool marked(const Rows& rows, int lane) const noexcept {
+      return rows.has(lane, kSingular) || (doubt && rows.has(lane, kReal | kDoubt));
+    }
 
     // Whether one is so near a singularity that other solutions may start from none of them.
     bool close() const noexcept {
@@ -247,7 +248,7 @@ template <class Arm> struct CarefulRows {
     bool any_traced() const noexcept { return std::find(std::begin(traced), std::end(traced), true) != std::end(traced); }
 
     // end: what steps in lanes led to.
-    void take(Nearest start, const End& end, bool beside, const Aim& aim, Places& out) noexcept {
+    void take(Nearest start, const LaneEnd<Arm>& end, bool beside, const Aim& aim, Places& out) noexcept {
       if (!(Arm::kRounded && start.marked)) start.refine(aim, end);
       if (start.marked && (Arm::kRounded || !(start.error < Policy::kArrived))) {
         if (!traced[start.lane]) traced[start.lane] = start.add_around(aim, passed, out);
@@ -277,10 +278,9 @@ template <class Arm> struct CarefulRows {
   // Lanes that are not real where a divisor nearly vanishes: less than the file, or round-off, is off may be missing.
   static void take_all(const Aim& aim, const std::array<Rows, 1>& only, const Options& options, Starts& starts,
                        Places& out) noexcept {
-    const Rows& rows = only[0];
-    const Ends<1> ends(only, aim, options, kSingular);
+    const LaneEnds<Arm, 1> ends(only, aim, options, kSingular);
     for (const int lane : Arm::kLaneOfRow)
-      if ((bits(rows, lane) & kSingular) != 0) starts.take({rows, lane, true}, ends.at(0, lane), false, aim, out);
+      if (only[0].has(lane, kSingular)) starts.take({only[0], lane, true}, ends.at(0, lane), false, aim, out);
   }
 
   // The rows of poses beside this one.
@@ -289,11 +289,11 @@ template <class Arm> struct CarefulRows {
     constexpr std::size_t count = Arm::kBesides;
     std::array<Rows, count> rows;
     for (std::size_t k = 0; k < count; ++k) find_lanes(displaced(aim.pose, Arm::kBeside[k]), q0, options, rows[k]);
-    const Ends<count> ends(rows, aim, options, kReal);
+    const LaneEnds<Arm, count> ends(rows, aim, options, kReal);
     for (std::size_t k = 0; k < count; ++k)
       for (const int lane : Arm::kLaneOfRow)
-        if ((bits(rows[k], lane) & kReal) != 0)
-          starts.take({rows[k], lane, (bits(rows[k], lane) & kSingular) != 0}, ends.at(k, lane), true, aim, out);
+        if (rows[k].has(lane, kReal))
+          starts.take({rows[k], lane, starts.marked(rows[k], lane)}, ends.at(k, lane), true, aim, out);
   }
 };
 

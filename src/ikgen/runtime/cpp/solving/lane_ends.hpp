@@ -35,7 +35,7 @@ template <class Arm, std::size_t K> struct LaneEnds {
       for (std::size_t k = 0; k < K; ++k) {
         Arm::refine(pose, options.free, anywhere, rows[k]);
         for (const int lane : Arm::kLaneOfRow)
-          if ((bits(from[k], lane) & flag) != 0 && (bits(rows[k], lane) & kFound) == 0)
+          if (from[k].has(lane, flag) && !rows[k].has(lane, kFound))
             lanes[count++] = static_cast<int>(k) * kLanes + lane;
       }
       Arm::take_along(pose, options.free, lanes, count, rows.data(), error);
@@ -44,11 +44,8 @@ template <class Arm, std::size_t K> struct LaneEnds {
 
   // Of rows k.
   LaneEnd<Arm> at(std::size_t k, int lane) const noexcept {
-    return {rows[k], (bits(rows[k], lane) & kFound) != 0, error[k * std::size_t{kLanes} + static_cast<std::size_t>(lane)]};
+    return {rows[k], rows[k].has(lane, kFound), error[k * std::size_t{kLanes} + static_cast<std::size_t>(lane)]};
   }
-
- private:
-  static int bits(const Rows& of, int lane) noexcept { return static_cast<int>(of.flags[lane]); }
 };
 
 }  // namespace ikgen_runtime
