@@ -200,15 +200,15 @@ def test_cpp_reads_inputs_by_their_places() -> None:
     assert found.constants == [("a_1", "0.5"), ("k1", "a_1 * a_1")]
 
 
-PI = math.pi
+PI, PLACE = math.pi, "place<Policy>"
 
 
 @pytest.mark.parametrize(
     ("limits", "placing"),
     [
-        ((-math.inf, math.inf), ""), ((-PI, PI), ""), ((-4.0, 4.0), ""), ((-PI, 3.0), "place"),
-        ((-3.0, PI), "place"), ((-math.inf, 3.0), "place"), ((-3.0, math.inf), "place"),
-        ((-1.0, 1.0), "place"), ((0.0, 7.0), "place"), ((-7.0, 0.0), "place"),
+        ((-math.inf, math.inf), ""), ((-PI, PI), ""), ((-4.0, 4.0), ""), ((-PI, 3.0), PLACE),
+        ((-3.0, PI), PLACE), ((-math.inf, 3.0), PLACE), ((-3.0, math.inf), PLACE), ((-1.0, 1.0), PLACE),
+        ((0.0, 7.0), PLACE), ((-7.0, 0.0), PLACE),
     ],
 )  # fmt: skip
 def test_only_joints_that_may_be_outside_are_put_inside(

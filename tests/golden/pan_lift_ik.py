@@ -179,9 +179,9 @@ def _branches(T: Sequence[Sequence[float]], q0: Row, held: Row) -> tuple[list[tu
     return rows, hit
 
 
-def _branches_batch(T: Array, q0: Array, held: Array) -> tuple[Array, _Flags, _Flags, _Flags]:
+def _branches_batch(T: Array, q0: Array, held: Array) -> tuple[Array, _Flags, _Flags, _Flags, _Flags]:
     """Closed-form rows of T (N, 4, 4): q (N, MAX_SOLUTIONS, DOF); valid, singular (or led to one that is, where
-    not valid), in need of Newton steps (N, MAX_SOLUTIONS).
+    not valid), in need of Newton steps, and beside which the file's geometry may have others (N, MAX_SOLUTIONS).
 
     q0 (N, DOF) are the values of joints that a pose leaves free, held (N, len(FREE_JOINTS)).
     """
@@ -204,13 +204,15 @@ def _branches_batch(T: Array, q0: Array, held: Array) -> tuple[Array, _Flags, _F
         t23,
     )
     rough: _Flags = singular
+    doubt: _Flags = valid & (np.zeros(1, dtype=bool))
     rows = np.empty((DOF, *full))
     for j, value in enumerate(q):
         rows[j] = value
     valid = np.broadcast_to(valid, full).reshape(-1, count).T
     singular = np.broadcast_to(singular, full).reshape(-1, count).T
     rough = np.broadcast_to(rough, full).reshape(-1, count).T
-    return rows.reshape(DOF, -1, count).transpose(2, 1, 0), valid.copy(), singular.copy(), rough
+    doubt = np.broadcast_to(doubt, full).reshape(-1, count).T
+    return rows.reshape(DOF, -1, count).transpose(2, 1, 0), valid.copy(), singular.copy(), rough, doubt
 
 
 # Names of the types that all of the runtime speaks of.
@@ -470,7 +472,7 @@ def _entry_lane_rows(
 
 _Found = tuple[Row, bool]  # a solution, and whether it is one of a continuum
 _Branches = Callable[[Sequence[Sequence[float]], Row, Row], tuple[list[tuple[Row, bool]], bool]]
-_BranchesBatch = Callable[[Array, Array, Array], tuple[Array, _Flags, _Flags, _Flags]]
+_BranchesBatch = Callable[[Array, Array, Array], tuple[Array, _Flags, _Flags, _Flags, _Flags]]
 
 
 class _Around(Protocol):
@@ -880,12 +882,14 @@ _PART = 2048  # poses whose arrays fit into a processor's cache
 
 class _ClosedForm(NamedTuple):
     """Rows `q` (N, M, dof); which are `valid`, which `singular`, of a continuum, or not valid, but behind
-    a joint that the pose leaves free, and which are `rough` (N, M)."""
+    a joint that the pose leaves free, which are `rough` (N, M), and beside which the file's geometry may
+    have others: a `doubt`."""
 
     q: Array
     valid: _Flags
     singular: _Flags
     rough: _Flags
+    doubt: _Flags
 
     @property
     def free(self) -> _Flags:
@@ -894,12 +898,13 @@ class _ClosedForm(NamedTuple):
 
 
 class _Beside(NamedTuple):
-    """Rows `q` (N, M, dof) of poses beside, one after the other, which are `valid` (N, M), and which
-    `marked`, of a continuum."""
+    """Rows `q` (N, M, dof) of poses beside, one after the other, which are `valid` (N, M), which
+    `marked`, of a continuum, and which leave a `doubt`."""
 
     q: Array
     valid: _Flags
     marked: _Flags
+    doubt: _Flags
 
 
 class _AllRows(NamedTuple):
@@ -921,7 +926,7 @@ def _closed_form(arm: _Arm, T: Array, near: Array | None, held: Array) -> _Close
 def _all_rows(arm: _Arm, T: Array, near: Array | None, held: Array) -> _AllRows:
     """Of poses T (N, 4, 4), as `_closed_form` has them."""
     own, none = _closed_form(arm, T, near, held), np.zeros((len(T), 0), dtype=bool)
-    return _AllRows(own, _Beside(own.q[:, :0], none, none))
+    return _AllRows(own, _Beside(own.q[:, :0], none, none, none))
 
 
 def _careful_rows(arm: _Arm, T: Array, held: Array, near: Array | None) -> tuple[Array, _Flags, _Flags]:
@@ -1622,14 +1627,13 @@ def _rows(arm: _Arm, asked: _Asked, start: Array, turn: _Index) -> list[_Rows]:
     first, away, T = not turn.any(), (turn > 0) & (turn <= len(arm.beside)), asked.T.copy()
     T[away] = T[away] @ arm.beside[turn[away] - 1]
     closed = asked.closed.own if asked.closed and first else _closed_form(arm, T, start, asked.held)
-    free, marked = closed.free | away, closed.singular & closed.valid
-    known = np.zeros(closed.valid.shape, dtype=bool)
-    own = _of_lanes(arm, asked, closed, closed.valid & closed.rough, marked)
+    free, marked = closed.free | away, closed.valid & (closed.singular | closed.doubt)
+    known, rough = np.zeros(closed.valid.shape, dtype=bool), closed.valid & closed.rough
+    own = _of_lanes(arm, asked, closed, rough, marked)
     starts = _joined(_given(arm, asked, start, np.flatnonzero(free)), own)
     leads = _leads_of(arm, starts, known, near=first and arm.rounded)
     close = (starts.source >= 0) & (leads.ends.loss < arm.policy.beside_reach) & ~leads.known
-    near = free.copy()
-    near[starts.pose[close]] = True
+    near = free | (np.bincount(starts.pose[close], minlength=len(free)) > 0)
     if free.any():
         hidden = closed.singular & ~known & _without_rows(arm, free, leads)[:, None]
         hidden &= np.isfinite(closed.q).all(axis=2)
@@ -2389,7 +2393,7 @@ def _branch_numbers(arm: _Arm, q: Array) -> list[int]:
     """For each row the closed form's branch, of those for the row's own pose, that is nearest to it."""
     poses = _forward(arm.chain, q)
     with np.errstate(all="ignore"):
-        rows, valid, _, _ = arm.branches_batch(poses, q, _held_of(arm, q))
+        rows, valid, *_ = arm.branches_batch(poses, q, _held_of(arm, q))
         gap = rows - q[:, None, :]
         turned = np.abs((gap + np.pi) % (2.0 * np.pi) - np.pi)
         gap = np.where(arm.chain.revolute, turned, np.abs(gap))

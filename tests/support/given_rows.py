@@ -28,11 +28,11 @@ NONE: Array = np.zeros((1, 0))
 
 
 def given_rows(
-    rows: Array, valid: str = "", singular: str = "", rough: str = ""
+    rows: Array, valid: str = "", singular: str = "", rough: str = "", doubt: str = ""
 ) -> Callable[[Array, Array, Array], Any]:
     """A closed form that gives these (m, 6) for any pose; "x" in a text for rows of which it says so, and
     all are valid where nothing else is told."""
-    texts = valid or "x" * len(rows), singular, rough
+    texts = valid or "x" * len(rows), singular, rough, doubt
     flags = [np.array([c == "x" for c in text.ljust(len(rows), ".")]) for text in texts]
 
     def branches(T: Array, near: Array, held: Array) -> Any:

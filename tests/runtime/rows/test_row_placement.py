@@ -45,7 +45,7 @@ def arm() -> Arm:
         free_defaults=(0.0,),
         most=8,
         branches=lambda T, q0, held: ([], False),
-        branches_batch=lambda T, q0, held: (T, T > 0.0, T > 0.0, T > 0.0),
+        branches_batch=lambda T, q0, held: (T, T > 0.0, T > 0.0, T > 0.0, T > 0.0),
         beside=np.empty((0, 4, 4)),
         turning=(True, True, True, False, False),
         moving=(0, 1, 2, 3),

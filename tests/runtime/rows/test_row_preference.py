@@ -33,7 +33,7 @@ def arm() -> Arm:
         chain=chain_of(frames, motions, 6), task=PoseTask(SIZE), policy=runtime_policy(SolvePolicy()),
         lower=LOWER, upper=UPPER, free=(5,), free_joints=("held",), free_defaults=(0.0,), most=8,
         branches=lambda T, q0, held: ([], False),
-        branches_batch=lambda T, q0, held: (T, T > 0.0, T > 0.0, T > 0.0),
+        branches_batch=lambda T, q0, held: (T, T > 0.0, T > 0.0, T > 0.0, T > 0.0),
         beside=np.empty((0, 4, 4)), turning=(True, True, True, False, True, False),
         moving=(0, 1, 2, 3, 4), together=None, branch_kind="number", elbow_end=0,
     )  # fmt: skip

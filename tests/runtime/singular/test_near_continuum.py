@@ -49,7 +49,7 @@ def test_rows_on_broken_continua_are_found(folded: ModuleType) -> None:
 def marked_rows(arm: ModuleType, q: Array) -> tuple[Array, Array]:
     """The closed form's rows for the poses of q, where it marks them as of a continuum; and those poses."""
     poses = arm.forward(q)
-    rows, valid, singular, _ = arm._ARM.branches_batch(
+    rows, valid, singular, *_ = arm._ARM.branches_batch(
         poses, np.zeros_like(q), np.empty((len(q), 0))
     )
     pose, lane = np.nonzero(valid & singular)

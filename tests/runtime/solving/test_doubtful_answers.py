@@ -16,6 +16,7 @@ from ikgen.runtime.python.arm.chain_kinematics import forward
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.singular.meeting_rows import Led
 from ikgen.runtime.python.solving import doubtful_poses
+from ikgen.runtime.python.solving.closed_form_rows import all_rows
 from ikgen.runtime.python.solving.doubtful_poses import (
     Answer,
     Asked,
@@ -80,7 +81,7 @@ def test_where_a_free_joint_leads_nowhere_other_values_are_tried() -> None:
             asked.append(near[:, 0].tolist())
             q, valid, *_ = given_rows(OTHER[None])(T, near, held)
             led = np.abs(near[:, :1] - wanted * step) < 1e-9
-            return q, valid & led, valid, ~valid
+            return q, valid & led, valid, ~valid, ~valid
 
         arm = given_arm(branches)
         far = translation(0.0, 0.0, 50.0)[None]  # where no Newton step leads anywhere
@@ -99,7 +100,7 @@ def test_a_divisor_that_nearly_vanishes_is_given_other_directions() -> None:
         asked.append(T)
         at = (np.abs(T - far).max(axis=(1, 2)) < 1e-9)[:, None]
         q, *_ = given_rows(OTHER[None])(T, near, held)
-        return q, np.zeros_like(at), at, ~at
+        return q, np.zeros_like(at), at, ~at, np.zeros_like(at)
 
     arm = given_arm(branches, beside=motion[None])
     (answer,) = placed_rows(arm, Asked(far, None, NONE), True)
@@ -222,3 +223,27 @@ def test_beside_regular_rows_steps_lead_on_from_those_that_miss_behind_a_free_jo
         (answer,) = placed_rows(arm, Asked(pose_of(arm), None, NONE), True)
         there = [np.abs(np.array(row) - ROW).max() < 1e-6 for row, _ in answer.rows]
         assert any(there) == found and (not found or answer.real)
+
+
+def test_rows_of_poses_beside_are_in_doubt_only_where_one_of_the_pose_is() -> None:
+    motion = translation(1e-3, 0.0, 0.0)
+    plain = given_arm(given_rows(ROW[None]))
+    pose = pose_of(plain)
+
+    def marks(own: str, beside: str) -> list[list[bool]]:
+        def branches(T: Array, near: Array, held: Array) -> Any:
+            at_pose = (np.abs(T - pose).max(axis=(1, 2)) < 1e-9)[:, None]
+            q, valid, singular, rough, _ = given_rows(ROW[None], rough="x")(T, near, held)
+            doubt = np.where(at_pose, own == "x", beside == "x")
+            return q, valid, singular, rough, doubt
+
+        policy = replace(plain.policy, beside_reach=plain.policy.anywhere)
+        arm = given_arm(branches, beside=motion[None], policy=policy)
+        asked = Asked(pose, None, NONE)
+        closed = all_rows(arm, pose, None, NONE)
+        starts = doubtful_poses._beside(arm, asked, np.zeros((1, 6)), np.array([0]), closed.own)
+        return [(closed.own.singular | closed.own.doubt)[0].tolist(), starts.marked.tolist()]
+
+    assert marks("x", "x") == [[True], [True]]
+    assert marks("", "x") == [[False], [False]]
+    assert marks("x", "") == [[True], [False]]

@@ -53,9 +53,9 @@ def apart(a: Array, b: Array) -> Array:
 def test_which_leave_a_joint_free_is_told_as_on_floats(arm: ModuleType) -> None:
     q = np.concatenate([beside(arm, 60), np.zeros((1, 6))])
     poses, start = arm.forward(q), np.full((len(q), 6), 0.1)
-    _, _, singular, _ = arm._ARM.branches_batch(poses, start, np.empty((len(q), 0)))
+    _, _, singular, _, doubt = arm._ARM.branches_batch(poses, start, np.empty((len(q), 0)))
     hits = [arm._ARM.branches(T, (0.1,) * 6, ())[1] for T in poses.tolist()]
-    assert (singular.any(axis=1) == hits).all()
+    assert ((singular | doubt).any(axis=1) == hits).all()
     assert any(hits) and not all(hits)
 
 

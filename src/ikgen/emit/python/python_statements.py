@@ -32,7 +32,8 @@ def scalar_lines(module: SolverModule) -> list[str]:
         leave = "continue" if index else "return rows, hit"
         for statement in level.body:
             lines += [pad + line for line in _scalar_statement(program, statement, leave)]
-    return [*lines, "    " * (len(program.levels) - 1) + _scalar_row(module)]
+    pad = "    " * (len(program.levels) - 1)
+    return [*lines, *(pad + line for line in _scalar_row(module))]
 
 
 def _scalar_statement(program: Program, statement: Statement, leave: str) -> list[str]:
@@ -46,15 +47,16 @@ def _scalar_statement(program: Program, statement: Statement, leave: str) -> lis
     return lines
 
 
-def _scalar_row(module: SolverModule) -> str:
-    """The innermost statement: joint values, and what is known of the row."""
+def _scalar_row(module: SolverModule) -> list[str]:
+    """The innermost statements: joint values, and what is known of the row."""
     program = module.program
     values = [expression(SCALAR, one.value) for one in program.outputs]
     row = ", ".join(values) + ("," if len(values) == 1 else "")
     rough = "True"
     if module.refine == "some":
         rough = " or ".join([*program.singular, *(f"{r} > _ROUGH" for r in program.residuals)])
-    return f"rows.append((({row}), {rough or 'False'}))"
+    lines = [f"rows.append((({row}), {rough or 'False'}))"]
+    return [f"hit = hit or {' or '.join(program.doubts)}", *lines] if program.doubts else lines
 
 
 def _loop(level: Level) -> str:
@@ -66,7 +68,8 @@ def _loop(level: Level) -> str:
 
 def batch_lines(module: SolverModule) -> list[str]:
     """Lines of the array program: the axes before the last are the branches of the levels. They read `T`
-    (N, 4, 4), `q0` and `held` (N, k) in lanes of the shape `lane`, and set `q`, `singular` and `rough`."""
+    (N, 4, 4), `q0` and `held` (N, k) in lanes of the shape `lane`, and set `q`, `valid`, `singular`,
+    `rough` and `doubt`."""
     program = module.program
     lines = _batch_inputs(module)
     depth = len(program.levels) - 1
@@ -123,4 +126,5 @@ def _batch_flags(module: SolverModule) -> list[str]:
     rough = "np.ones(1, dtype=bool)"
     if module.refine == "some" and module.plan is None:
         rough = " | ".join(["singular", *(f"({r} > _ROUGH)" for r in program.residuals)])
-    return [f"rough: _Flags = {rough}"]
+    doubt = " | ".join(program.doubts) or "np.zeros(1, dtype=bool)"
+    return [f"rough: _Flags = {rough}", f"doubt: _Flags = valid & ({doubt})"]

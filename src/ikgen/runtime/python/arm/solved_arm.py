@@ -15,7 +15,7 @@ __all__ = ["Arm", "Around", "Branches", "BranchesBatch", "Found", "HeldAngle", "
 
 Found = tuple[Row, bool]  # a solution, and whether it is one of a continuum
 Branches = Callable[[Sequence[Sequence[float]], Row, Row], tuple[list[tuple[Row, bool]], bool]]
-BranchesBatch = Callable[[Array, Array, Array], tuple[Array, Flags, Flags, Flags]]
+BranchesBatch = Callable[[Array, Array, Array], tuple[Array, Flags, Flags, Flags, Flags]]
 
 
 class Together(Protocol):

@@ -16,7 +16,9 @@ from ikgen.runtime.python.solving.closed_form_rows import careful_rows, certain_
 
 __all__ = ["HeldJoint", "Rows", "held_range", "merged_rows", "pose_lines", "rows_at"]
 
-BranchesAndFolds = Callable[[Array, Array, Array, "list[Array]"], tuple[Array, Flags, Flags, Flags]]
+BranchesAndFolds = Callable[
+    [Array, Array, Array, "list[Array]"], tuple[Array, Flags, Flags, Flags, Flags]
+]
 
 
 @dataclass(frozen=True)
@@ -54,7 +56,9 @@ def rows_at(joint: HeldJoint, T: Array, held: Array) -> Rows:
     """The rows of a pose T (4, 4) at values of the held joint, without limits."""
     count, parts = len(held), list[list[Array]]()
 
-    def branches(poses: Array, q0: Array, values: Array) -> tuple[Array, Flags, Flags, Flags]:
+    def branches(
+        poses: Array, q0: Array, values: Array
+    ) -> tuple[Array, Flags, Flags, Flags, Flags]:
         parts.append([])
         return joint.branches_and_folds(poses, q0, values, parts[-1])
 

@@ -66,7 +66,7 @@ def _branch_numbers(arm: Arm, q: Array) -> list[int]:
     """For each row the closed form's branch, of those for the row's own pose, that is nearest to it."""
     poses = forward(arm.chain, q)
     with np.errstate(all="ignore"):
-        rows, valid, _, _ = arm.branches_batch(poses, q, held_of(arm, q))
+        rows, valid, *_ = arm.branches_batch(poses, q, held_of(arm, q))
         gap = rows - q[:, None, :]
         turned = np.abs((gap + np.pi) % (2.0 * np.pi) - np.pi)
         gap = np.where(arm.chain.revolute, turned, np.abs(gap))

@@ -31,12 +31,14 @@ _PART = 2048  # poses whose arrays fit into a processor's cache
 
 class ClosedForm(NamedTuple):
     """Rows `q` (N, M, dof); which are `valid`, which `singular`, of a continuum, or not valid, but behind
-    a joint that the pose leaves free, and which are `rough` (N, M)."""
+    a joint that the pose leaves free, which are `rough` (N, M), and beside which the file's geometry may
+    have others: a `doubt`."""
 
     q: Array
     valid: Flags
     singular: Flags
     rough: Flags
+    doubt: Flags
 
     @property
     def free(self) -> Flags:
@@ -45,12 +47,13 @@ class ClosedForm(NamedTuple):
 
 
 class Beside(NamedTuple):
-    """Rows `q` (N, M, dof) of poses beside, one after the other, which are `valid` (N, M), and which
-    `marked`, of a continuum."""
+    """Rows `q` (N, M, dof) of poses beside, one after the other, which are `valid` (N, M), which
+    `marked`, of a continuum, and which leave a `doubt`."""
 
     q: Array
     valid: Flags
     marked: Flags
+    doubt: Flags
 
 
 class AllRows(NamedTuple):
@@ -74,7 +77,7 @@ def all_rows(arm: Arm, T: Array, near: Array | None, held: Array) -> AllRows:
     own, none = closed_form(arm, T, near, held), np.zeros((len(T), 0), dtype=bool)
     if len(arm.beside) and arm.policy.beside_anywhere:
         return AllRows(own, rows_beside(arm, T, near, held))
-    return AllRows(own, Beside(own.q[:, :0], none, none))
+    return AllRows(own, Beside(own.q[:, :0], none, none, none))
 
 
 def rows_beside(arm: Arm, T: Array, near: Array | None, held: Array) -> Beside:
@@ -85,7 +88,8 @@ def rows_beside(arm: Arm, T: Array, near: Array | None, held: Array) -> Beside:
     closed = closed_form(arm, poses, starts, np.repeat(held, each, axis=0))
     valid = closed.valid.reshape(len(T), -1)
     marked = closed.singular.reshape(len(T), -1) & valid
-    return Beside(closed.q.reshape(len(T), -1, closed.q.shape[2]), valid, marked)
+    doubt = closed.doubt.reshape(len(T), -1)
+    return Beside(closed.q.reshape(len(T), -1, closed.q.shape[2]), valid, marked, doubt)
 
 
 def certain_rows(
@@ -94,7 +98,7 @@ def certain_rows(
     """Rows (N, M, dof) of a rounded arm refined all at once, which of them are solutions, and for which
     poses (N,) that leaves a doubt."""
     closed = closed_form(arm, T, near, held)
-    q, valid, doubt = closed.q, closed.valid, closed.free
+    q, valid, doubt = closed.q, closed.valid, closed.free | closed.doubt.any(axis=1)
     pose, row = np.nonzero(valid)
     q[pose, row], arrived, missed = together(arm, q[pose, row], aims(arm, T, held)[pose])
     found = valid.copy()

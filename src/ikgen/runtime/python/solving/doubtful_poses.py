@@ -204,24 +204,23 @@ def unplaced_rows(arm: Arm, T: Array, held: Array) -> list[list[Found]]:
 
 
 def _rows(arm: Arm, asked: Asked, start: Array, turn: Index) -> list[_Rows]:
-    """For each pose the solutions (radians between -pi and pi) from its start after some turns (n,): of a
-    rounded arm those that poses beside lead to, with those of the pose at the first, where they count, and
-    alone at some others, as the direction that a vanishing divisor has says little of the file's."""
+    """For each pose the solutions (radians between -pi and pi) from its start after some turns (n,): of
+    poses beside a rounded arm's, with those of the pose at the first, where they count, and alone at some
+    others, as the direction that a vanishing divisor has says little of the file's."""
     first, away, T = not turn.any(), (turn > 0) & (turn <= len(arm.beside)), asked.T.copy()
     T[away] = T[away] @ arm.beside[turn[away] - 1]
     closed = asked.closed.own if asked.closed and first else closed_form(arm, T, start, asked.held)
-    free, marked = closed.free | away, closed.singular & closed.valid
-    known = np.zeros(closed.valid.shape, dtype=bool)
-    own = _of_lanes(arm, asked, closed, closed.valid & closed.rough, marked)
+    free, marked = closed.free | away, closed.valid & (closed.singular | closed.doubt)
+    known, rough = np.zeros(closed.valid.shape, dtype=bool), closed.valid & closed.rough
+    own = _of_lanes(arm, asked, closed, rough, marked)
     starts = joined(_given(arm, asked, start, np.flatnonzero(free)), own)
     if first and len(arm.beside) and arm.policy.beside_anywhere:
-        starts = joined(starts, _beside(arm, asked, start, np.arange(len(start))))
+        starts = joined(starts, _beside(arm, asked, start, np.arange(len(start)), closed))
     leads = leads_of(arm, starts, known, near=first and arm.rounded)
     close = (starts.source >= 0) & (leads.ends.loss < arm.policy.beside_reach) & ~leads.known
-    near = free.copy()
-    near[starts.pose[close]] = True
+    near = free | (np.bincount(starts.pose[close], minlength=len(free)) > 0)
     if first and len(arm.beside) and not arm.policy.beside_anywhere and near.any():
-        more = _beside(arm, asked, start, np.flatnonzero(near))
+        more = _beside(arm, asked, start, np.flatnonzero(near), closed)
         leads = both(leads, leads_of(arm, more, known))
     if free.any():
         hidden = closed.singular & ~known & _without_rows(arm, free, leads)[:, None]
@@ -251,12 +250,13 @@ def _without_rows(arm: Arm, free: Flags, leads: Leads) -> Flags:
     return poor
 
 
-def _beside(arm: Arm, asked: Asked, start: Array, some: Index) -> Starts:
-    """From poses beside some."""
+def _beside(arm: Arm, asked: Asked, start: Array, some: Index, own: ClosedForm) -> Starts:
+    """From poses beside some; what leaves a doubt there is marked where one of the pose's `own` does."""
     if asked.closed is not None and arm.policy.beside_anywhere:
-        q, valid, marked = some_of(asked.closed.beside, some)
+        q, valid, marked, doubt = some_of(asked.closed.beside, some)
     else:
-        q, valid, marked = rows_beside(arm, asked.T[some], start[some], asked.held[some])
+        q, valid, marked, doubt = rows_beside(arm, asked.T[some], start[some], asked.held[some])
+    marked = marked | doubt & np.any(own.doubt[some], axis=1, keepdims=True)
     pose, row = np.nonzero(valid)
     motion, lane = np.divmod(row, valid.shape[1] // len(arm.beside))
     return _starts(arm, asked, q[pose, row], some[pose], marked[pose, row], 1 + motion, lane)
