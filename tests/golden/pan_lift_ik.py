@@ -252,6 +252,7 @@ class _Chain:
     frames: Array
     motions: tuple[_Motion, ...]
     parts: Array
+    links: Array
     joint: _Index
     scale: Array
     offset: Array
@@ -272,6 +273,7 @@ def _chain_of(frames: Array, motions: tuple[_Motion, ...], dof: int) -> _Chain:
         else:
             parts[i, 0, 2] = F[3]
             parts[i, 2] = F
+    links = parts.reshape(-1, 3, 16).copy()
     parts[0] = frames[0] @ parts[0]
     joint = np.array([m[0] for m in motions])
     scale, offset = (np.array([m[i] for m in motions]) for i in (2, 3))
@@ -283,6 +285,7 @@ def _chain_of(frames: Array, motions: tuple[_Motion, ...], dof: int) -> _Chain:
         frames,
         motions,
         parts.reshape(-1, 3, 16),
+        links,
         joint,
         scale,
         offset,
@@ -299,15 +302,15 @@ def _turns_freely(motions: Sequence[_Motion]) -> bool:
     return turning and abs(ratio) == 1.0 and all(abs(m[2] - round(m[2])) < 1e-12 for m in motions)
 
 
-def _steps(chain: _Chain, q: Array) -> Array:
-    """The transforms `M(v_i) F_i`, of the first `F_0 M(v_1) F_1`, at q (k, dof): (n, k, 4, 4)."""
+def _link_motions(chain: _Chain, parts: Array, q: Array) -> Array:
+    """The transforms (n, k, 4, 4) that `parts` of the chain stand for, or its `links`, at q (k, dof)."""
     v = (q if chain.drive is None else q[:, chain.joint] * chain.scale) + chain.offset
     trig = np.ones((len(chain.motions), len(q), 3))
     np.cos(v.T, out=trig[:, :, 0])
     np.sin(v.T, out=trig[:, :, 1])
     for i in chain.slides:
         trig[i, :, 0], trig[i, :, 1] = v[:, i], 0.0
-    return np.asarray((trig @ chain.parts).reshape(*trig.shape[:2], 4, 4))
+    return np.asarray((trig @ parts).reshape(*trig.shape[:2], 4, 4))
 
 
 def _in_line(chain: _Chain, q: ArrayLike) -> tuple[tuple[int, ...], Array]:
@@ -321,7 +324,7 @@ def _in_line(chain: _Chain, q: ArrayLike) -> tuple[tuple[int, ...], Array]:
 def _forward(chain: _Chain, q: ArrayLike) -> Array:
     """Tip poses (..., 4, 4) at q (..., dof)."""
     shape, rows = _in_line(chain, q)
-    steps = _steps(chain, rows)
+    steps = _link_motions(chain, chain.parts, rows)
     T: Array = steps[0]
     for step in steps[1:]:
         T = T @ step
@@ -336,7 +339,7 @@ def _jacobian(chain: _Chain, q: ArrayLike) -> Array:
 
 def _joint_axes(chain: _Chain, q: Array) -> Array:
     """Frames (n + 1, k, 4, 4) on the axes, z along them, and the tip's, at q (k, dof)."""
-    steps = _steps(chain, q)
+    steps = _link_motions(chain, chain.parts, q)
     T = np.empty((len(steps) + 1, *steps.shape[1:]))
     T[0], T[1] = chain.frames[0], steps[0]
     for i in range(1, len(steps)):
@@ -530,6 +533,12 @@ class _Arm:
     def rounded(self) -> bool:
         """Whether the closed form is of another geometry than the file's."""
         return self.together is not None
+
+    @property
+    def square(self) -> bool:
+        """Whether the whole pose is asked for of six joints, and no angle held."""
+        whole = len(self.task.entries) == 12
+        return whole and len(self.moving) == 6 and self.angle is None
 
 
 # Newton's method on the chain: damped least squares (Levenberg 1944, Marquardt 1963).
@@ -770,11 +779,7 @@ def _rows_at_limits(
 ) -> tuple[list[_Found], list[tuple[_Found, Row]]]:
     """`_place_rows`, and of the dropped rows those hardly outside."""
     inside, close = [], []
-    low, high = arm.lower, arm.upper
-    if not limits:
-        low, high = (-inf,) * len(low), (inf,) * len(low)
-    least = [max(x, -pi) if turning else x for x, turning in zip(low, arm.turning)]
-    most = [min(x, pi) if turning else x for x, turning in zip(high, arm.turning)]
+    least, most = _one_turn(arm.lower, arm.upper, arm.turning, limits)
     for row, flag in rows:
         if near is None and all(map(lt, least, row)) and all(map(lt, row, most)):
             inside.append((row, flag))
@@ -785,6 +790,15 @@ def _rows_at_limits(
         elif placed is not None:
             inside.append((placed, flag))
     return inside, close
+
+
+@cache
+def _one_turn(low: Row, high: Row, turning: tuple[bool, ...], limits: bool) -> tuple[Row, Row]:
+    """Between which values of the joints rows are on their turns, and inside the limits."""
+    if not limits:
+        low, high = (-inf,) * len(low), (inf,) * len(low)
+    least = tuple(max(x, -pi) if turns else x for x, turns in zip(low, turning))
+    return least, tuple(min(x, pi) if turns else x for x, turns in zip(high, turning))
 
 
 def _place(arm: _Arm, row: Row, near: Row | None, limits: bool) -> tuple[Row | None, bool]:

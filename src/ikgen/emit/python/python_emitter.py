@@ -88,6 +88,12 @@ def known_facts(module: SolverModule) -> Facts:
         ("free_joints", SOME if module.held else ()),
         ("policy.beside_anywhere", runtime_policy(module.policy).beside_anywhere),
         ("rounded", refined),
+        (
+            "square",
+            module.reads.whole_pose
+            and module.dh.dof - len(module.free) == 6
+            and not module.dh.arm_angle,
+        ),
         ("together", SOME if refined else None),
     ]
     absent = [("angle", module.dh.arm_angle), ("around", branches)]

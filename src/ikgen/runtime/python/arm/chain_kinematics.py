@@ -19,6 +19,7 @@ __all__ = [
     "forward",
     "jacobian",
     "joint_axes",
+    "link_motions",
     "tip_and_jacobian",
 ]
 
@@ -33,6 +34,7 @@ class Chain:
     `frames` (n + 1, 4, 4) and `motions` say the same as `parts` (n, 3, 16), `joint`, `scale`, `offset`
     (n,): of `M(v_i) F_i`, the first `F_0 M(v_1) F_1`, the entries in one line are `cos(v_i) parts[i, 0]
     + sin(v_i) parts[i, 1] + parts[i, 2]`, with v_i in place of the cosine where i is one of `slides`.
+    `links` (n, 3, 16): `parts` of `M(v_1) F_1` without F_0.
     `drive` (n, dof): the derivatives of v by q, None where they are 1. `revolute` (dof): whose values are
     the same configuration exactly where they differ by whole turns.
     """
@@ -40,6 +42,7 @@ class Chain:
     frames: Array
     motions: tuple[Motion, ...]
     parts: Array
+    links: Array
     joint: Index
     scale: Array
     offset: Array
@@ -60,6 +63,7 @@ def chain_of(frames: Array, motions: tuple[Motion, ...], dof: int) -> Chain:
         else:
             parts[i, 0, 2] = F[3]
             parts[i, 2] = F
+    links = parts.reshape(-1, 3, 16).copy()
     parts[0] = frames[0] @ parts[0]
     joint = np.array([m[0] for m in motions])
     scale, offset = (np.array([m[i] for m in motions]) for i in (2, 3))
@@ -71,6 +75,7 @@ def chain_of(frames: Array, motions: tuple[Motion, ...], dof: int) -> Chain:
         frames,
         motions,
         parts.reshape(-1, 3, 16),
+        links,
         joint,
         scale,
         offset,
@@ -87,15 +92,15 @@ def _turns_freely(motions: Sequence[Motion]) -> bool:
     return turning and abs(ratio) == 1.0 and all(abs(m[2] - round(m[2])) < 1e-12 for m in motions)
 
 
-def _steps(chain: Chain, q: Array) -> Array:
-    """The transforms `M(v_i) F_i`, of the first `F_0 M(v_1) F_1`, at q (k, dof): (n, k, 4, 4)."""
+def link_motions(chain: Chain, parts: Array, q: Array) -> Array:
+    """The transforms (n, k, 4, 4) that `parts` of the chain stand for, or its `links`, at q (k, dof)."""
     v = (q if chain.drive is None else q[:, chain.joint] * chain.scale) + chain.offset
     trig = np.ones((len(chain.motions), len(q), 3))
     np.cos(v.T, out=trig[:, :, 0])
     np.sin(v.T, out=trig[:, :, 1])
     for i in chain.slides:
         trig[i, :, 0], trig[i, :, 1] = v[:, i], 0.0
-    return np.asarray((trig @ chain.parts).reshape(*trig.shape[:2], 4, 4))
+    return np.asarray((trig @ parts).reshape(*trig.shape[:2], 4, 4))
 
 
 def _in_line(chain: Chain, q: ArrayLike) -> tuple[tuple[int, ...], Array]:
@@ -109,7 +114,7 @@ def _in_line(chain: Chain, q: ArrayLike) -> tuple[tuple[int, ...], Array]:
 def forward(chain: Chain, q: ArrayLike) -> Array:
     """Tip poses (..., 4, 4) at q (..., dof); raises ValueError for another shape."""
     shape, rows = _in_line(chain, q)
-    steps = _steps(chain, rows)
+    steps = link_motions(chain, chain.parts, rows)
     T: Array = steps[0]
     for step in steps[1:]:
         T = T @ step
@@ -134,7 +139,7 @@ def cross(a: Array, b: Array) -> Array:
 
 def joint_axes(chain: Chain, q: Array) -> Array:
     """Frames (n + 1, k, 4, 4) on the axes, z along them, and the tip's, at q (k, dof)."""
-    steps = _steps(chain, q)
+    steps = link_motions(chain, chain.parts, q)
     T = np.empty((len(steps) + 1, *steps.shape[1:]))
     T[0], T[1] = chain.frames[0], steps[0]
     for i in range(1, len(steps)):

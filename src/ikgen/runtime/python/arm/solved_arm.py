@@ -104,3 +104,10 @@ class Arm:
     def rounded(self) -> bool:
         """Whether the closed form is of another geometry than the file's."""
         return self.together is not None
+
+    @property
+    def square(self) -> bool:
+        """Whether the whole pose is asked for of six joints, and no angle held: each solution that is
+        regular is alone near it."""
+        whole = len(self.task.entries) == 12
+        return whole and len(self.moving) == 6 and self.angle is None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from math import ceil, floor, inf, pi, remainder
 from operator import lt
 
@@ -54,9 +55,14 @@ def same_rows(arm: Arm, a: Array, b: Array) -> Flags:
 
 def apart(arm: Arm, q: Array) -> bool:
     """Whether all rows (k, dof) of revolute joints differ, whole turns aside; False also where slides have
-    to tell."""
+    to tell. A number of each, whole turns of which are whole turns of the joints, tells most of them."""
     if not all(arm.chain.revolute):
         return False
+    weight = np.arange(1.0, q.shape[1] + 1.0)
+    turns = sorted((q @ weight % _TURN).tolist())
+    enough = arm.policy.coincident * float(q.shape[1] * (q.shape[1] + 1))
+    if all(b - a > enough for a, b in zip(turns, [*turns[1:], *(x + _TURN for x in turns[:1])])):
+        return True
     later, earlier = pairs(len(q))
     gap = q[later] - q[earlier]
     gap -= _TURN * np.rint(gap / _TURN)
@@ -94,11 +100,7 @@ def rows_at_limits(
 ) -> tuple[list[Found], list[tuple[Found, Row]]]:
     """`place_rows`, and of the dropped rows those hardly outside: as they were, and on the limits."""
     inside, close = [], []
-    low, high = arm.lower, arm.upper
-    if not limits:
-        low, high = (-inf,) * len(low), (inf,) * len(low)
-    least = [max(x, -pi) if turning else x for x, turning in zip(low, arm.turning)]
-    most = [min(x, pi) if turning else x for x, turning in zip(high, arm.turning)]
+    least, most = _one_turn(arm.lower, arm.upper, arm.turning, limits)
     for row, flag in rows:
         if near is None and all(map(lt, least, row)) and all(map(lt, row, most)):
             inside.append((row, flag))
@@ -109,6 +111,15 @@ def rows_at_limits(
         elif placed is not None:
             inside.append((placed, flag))
     return inside, close
+
+
+@cache
+def _one_turn(low: Row, high: Row, turning: tuple[bool, ...], limits: bool) -> tuple[Row, Row]:
+    """Between which values of the joints rows are on their turns, and inside the limits."""
+    if not limits:
+        low, high = (-inf,) * len(low), (inf,) * len(low)
+    least = tuple(max(x, -pi) if turns else x for x, turns in zip(low, turning))
+    return least, tuple(min(x, pi) if turns else x for x, turns in zip(high, turning))
 
 
 def _place(arm: Arm, row: Row, near: Row | None, limits: bool) -> tuple[Row | None, bool]:

@@ -15,9 +15,10 @@ from ikgen.runtime.python.arguments.pose_arguments import one_pose
 from ikgen.runtime.python.arguments.pose_faults import nearest_pose, pose_fault
 from ikgen.runtime.python.arm.chain_kinematics import forward
 from ikgen.runtime.python.arm.held_parameters import aims, held_of
-from ikgen.runtime.python.arm.solved_arm import Arm, Found
-from ikgen.runtime.python.arrays.array_types import Row
+from ikgen.runtime.python.arm.solved_arm import Arm, Found, Together
+from ikgen.runtime.python.arrays.array_types import Array, Row
 from ikgen.runtime.python.newton.arm_newton import refined
+from ikgen.runtime.python.newton.chord_steps import chord_steps
 from ikgen.runtime.python.newton.refinement import steeper
 from ikgen.runtime.python.rows.row_branches import branch_names
 from ikgen.runtime.python.rows.row_placement import (
@@ -172,11 +173,9 @@ def _certain_rows(
         beside = (np.array(T) @ arm.beside).tolist() if arm.policy.beside_anywhere else []
         return None if any(arm.branches(pose, tuple(start), held)[0] for pose in beside) else []
     if arm.together is not None:
-        aim = aims(arm, np.array([T]), np.array([held]))
-        q, arrived, missed = arm.together(arm, np.array(rows), aim)
-        if not (arrived | missed).all():
+        q = _refined_together(arm, arm.together, np.array(rows), (T, near, held))
+        if q is None:
             return None
-        q = q[arrived]
         rows = list(map(tuple, q.tolist()))
         if apart(arm, q):
             return [(row, False) for row in rows]
@@ -187,6 +186,18 @@ def _certain_rows(
         elif arm.rounded:  # another may lie there
             return None
     return kept
+
+
+def _refined_together(arm: Arm, together: Together, q: Array, asked: One) -> Array | None:
+    """Rows (k, dof) refined all at once, without those that miss the pose; None where that leaves a
+    doubt."""
+    T, held = np.array(asked[0]), np.array([asked[2]])
+    if arm.square:
+        ends = chord_steps(arm, q, T)
+        if ends is not None:
+            return ends
+    q, arrived, missed = together(arm, q, aims(arm, T[None], held))
+    return q[arrived] if (arrived | missed).all() else None
 
 
 def _regular_rows(arm: Arm, answers: list[Found], asked: One) -> list[Row] | None:
