@@ -305,7 +305,8 @@ def _turns_freely(motions: Sequence[_Motion]) -> bool:
 def _link_motions(chain: _Chain, parts: Array, q: Array) -> Array:
     """The transforms (n, k, 4, 4) that `parts` of the chain stand for, or its `links`, at q (k, dof)."""
     v = (q if chain.drive is None else q[:, chain.joint] * chain.scale) + chain.offset
-    trig = np.ones((len(chain.motions), len(q), 3))
+    trig = np.empty((len(chain.motions), len(q), 3))
+    trig[:, :, 2] = 1.0
     np.cos(v.T, out=trig[:, :, 0])
     np.sin(v.T, out=trig[:, :, 1])
     for i in chain.slides:
@@ -610,7 +611,7 @@ def _newton(
         damping = np.maximum(policy.least_damping, policy.damping * np.minimum(worst, 1.0) ** 2)
         normal = _damped(Jt @ J, damping)
         change = np.linalg.solve(normal, Jt @ error[on, :, None])[:, :, 0]
-        q[:, moving] += np.clip(change, -policy.largest_step, policy.largest_step)
+        q[:, moving] += _clipped(change, policy.largest_step)
     return result, best, before, slope
 
 
@@ -624,7 +625,9 @@ def _errors_and_slopes(
 ) -> tuple[Array, Array]:
     """Errors (k, m) of rows (k, dof), and their derivatives (k, m, n) by the joints `moving`."""
     pose, J = _tip_and_jacobian(chain, q)
-    error, slope = task.error(pose, T), task.rows(pose, J)[:, :, list(moving)]
+    error, slope = task.error(pose, T), task.rows(pose, J)
+    if list(moving) != list(range(slope.shape[2])):
+        slope = slope[:, :, list(moving)]
     if angle is None:
         return error, slope
     more, line = angle.errors(q, T)
@@ -645,9 +648,18 @@ def _normal_inverse(slope: Array, damping: float = 1e-14) -> Array:
 
 def _damped(square: Array, damping: Array | float) -> Array:
     """Matrices (k, n, n) of normal equations, damped."""
-    size = np.einsum("kii->k", square)
+    count, n, _ = square.shape
+    out: Array = square.copy()
+    diagonal = out.reshape(count, n * n)[:, :: n + 1]
+    size = np.add.reduce(diagonal, axis=1)
     enough = np.maximum(damping, np.where(size > _FAR_OUT, _ROUNDING * size, 0.0))
-    return np.asarray(square + enough[:, None, None] * np.eye(square.shape[2]))
+    diagonal += enough[:, None]
+    return out
+
+
+def _clipped(step: Array, most: float) -> Array:
+    """As np.clip has it, which takes longer for few numbers."""
+    return np.asarray(np.minimum(np.maximum(step, -most), most))
 
 
 def _least_singular(slope: Array, rank: int | None = None) -> Array:
@@ -1025,9 +1037,8 @@ class _Others(NamedTuple):
 
     def moved(self, arm: _Arm, q: Array, across: Array, along: Array | float) -> Array:
         """Rows q (k, dof) after a step."""
-        q = q.copy()
-        q[:, list(arm.moving)] += np.clip(across, -_FAR, _FAR) + along * self.still
-        return q
+        step = _clipped(across, _FAR) + along * self.still
+        return q + step
 
 
 def _generic(count: int, size: int) -> Array:
@@ -1056,13 +1067,15 @@ def _correct(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, Array]:
     """After one step across the still directions, with what was left before it."""
     error, slope = _linearized(arm, at.q, T)
     others = _across(slope, at.still, arm.policy.least_damping)
-    taken, going = others.take_away(np.stack([error, at.out, others.flow], axis=2))
+    sides = np.empty((*error.shape, 3))
+    sides[:, :, 0], sides[:, :, 1], sides[:, :, 2] = error, at.out, others.flow
+    taken, going = others.take_away(sides)
     still, size = _unit(at.still - going[:, :, 2])
     out, remains = _unit(taken[:, :, 1])
     turned = np.flatnonzero(~(remains**2 >= _TURNED))
     if len(turned):
         out[turned] = _oriented(out[turned], _some_of(others, turned))
-    left, grows = np.einsum("ke,kei->ik", out, taken[:, :, ::2])
+    left, _, grows = np.matmul(out[:, None, :], taken)[:, 0].T
     across = going[:, :, 0]
     q = others.moved(arm, at.q, across, 0.0)
     return _Reduced(q, still, out, left, -grows / size), np.abs(across).max(axis=1)
@@ -1083,7 +1096,7 @@ def _others(arm: _Arm, slope: Array, still: Array) -> _Others:
 
 
 def _across(slope: Array, still: Array, damping: float) -> _Others:
-    flow = np.einsum("kej,kj->ke", slope, still)
+    flow = np.matmul(slope, still[:, :, None])[:, :, 0]
     V = slope - flow[:, :, None] * still[:, None, :]
     normal = V.transpose(0, 2, 1) @ V + still[:, :, None] * still[:, None, :]
     return _Others(still, flow, V, _damped(normal, damping))
@@ -1111,7 +1124,7 @@ def _still(slope: Array, still: Array, damping: float) -> Array:
 
 def _unit(v: Array) -> tuple[Array, Array]:
     """v (k, n) at unit length, and its length (k,)."""
-    size = np.sqrt(np.einsum("ki,ki->k", v, v))
+    size = np.sqrt(np.add.reduce(v * v, axis=1))
     return v / size[:, None], size
 
 
@@ -2112,9 +2125,13 @@ def _sampled(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, _Flags]:
     at, near = _Reduced(*(x.copy() for x in at)), np.ones(len(T), dtype=bool)
     going, before = np.arange(len(T)), np.full(len(T), np.inf)
     for _ in range(_CORRECTIONS):
-        moved, farthest = _correct(arm, _some_of(at, going), T[going])
-        for whole, part in zip(at, moved):
-            whole[going] = part
+        if len(going) == len(T):
+            moved, farthest = _correct(arm, at, T)
+            at = moved
+        else:
+            moved, farthest = _correct(arm, _some_of(at, going), T[going])
+            for whole, part in zip(at, moved):
+                whole[going] = part
         near[going] &= farthest < _STRAY
         same = (np.abs(moved.left - before) < _SAME) & (farthest < _ALMOST)
         on = ~((farthest < np.maximum(_NEAR, _SHARE * np.abs(moved.left))) | same)

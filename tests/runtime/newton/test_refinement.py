@@ -11,7 +11,7 @@ from tests.support.given_rows import given_arm
 
 from ikgen.runtime.python.arm.chain_kinematics import forward
 from ikgen.runtime.python.newton import refinement
-from ikgen.runtime.python.newton.refinement import newton, refine
+from ikgen.runtime.python.newton.refinement import errors_and_slopes, newton, refine
 
 Array = NDArray[np.float64]
 ARM = given_arm(None)
@@ -73,3 +73,12 @@ def test_steps_without_progress_are_borne_for_a_while(monkeypatch: pytest.Monkey
             errors[:] = told
             newton(ARM.chain, ARM.task, MOVING, ROWS, T, 40, policy)
             assert len(calls) == first + patience
+
+
+def test_derivatives_are_in_the_order_of_the_joints_that_are_asked_for() -> None:
+    arm = given_arm(None)
+    q, order = np.array([[0.3, -0.7, 0.9, 0.4, 1.1, -0.2]]), [1, 2, 4, 5, 3, 0]
+    T = forward(arm.chain, q)
+    _, plain = errors_and_slopes(arm.chain, arm.task, range(6), q, T, None)
+    _, turned = errors_and_slopes(arm.chain, arm.task, order, q, T, None)
+    np.testing.assert_array_equal(turned, plain[:, :, order])

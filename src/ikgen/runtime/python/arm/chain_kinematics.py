@@ -95,7 +95,8 @@ def _turns_freely(motions: Sequence[Motion]) -> bool:
 def link_motions(chain: Chain, parts: Array, q: Array) -> Array:
     """The transforms (n, k, 4, 4) that `parts` of the chain stand for, or its `links`, at q (k, dof)."""
     v = (q if chain.drive is None else q[:, chain.joint] * chain.scale) + chain.offset
-    trig = np.ones((len(chain.motions), len(q), 3))
+    trig = np.empty((len(chain.motions), len(q), 3))
+    trig[:, :, 2] = 1.0
     np.cos(v.T, out=trig[:, :, 0])
     np.sin(v.T, out=trig[:, :, 1])
     for i in chain.slides:

@@ -15,6 +15,7 @@ from ikgen.runtime.python.arrays.array_types import Array, Flags
 from ikgen.runtime.python.arrays.row_blocks import in_blocks
 
 __all__ = [
+    "clipped",
     "damped",
     "errors_and_slopes",
     "least_singular",
@@ -98,7 +99,7 @@ def newton(
         damping = np.maximum(policy.least_damping, policy.damping * np.minimum(worst, 1.0) ** 2)
         normal = damped(Jt @ J, damping)
         change = np.linalg.solve(normal, Jt @ error[on, :, None])[:, :, 0]
-        q[:, moving] += np.clip(change, -policy.largest_step, policy.largest_step)
+        q[:, moving] += clipped(change, policy.largest_step)
     return result, best, before, slope
 
 
@@ -112,7 +113,9 @@ def errors_and_slopes(
 ) -> tuple[Array, Array]:
     """Errors (k, m) of rows (k, dof), and their derivatives (k, m, n) by the joints `moving`."""
     pose, J = tip_and_jacobian(chain, q)
-    error, slope = task.error(pose, T), task.rows(pose, J)[:, :, list(moving)]
+    error, slope = task.error(pose, T), task.rows(pose, J)
+    if list(moving) != list(range(slope.shape[2])):
+        slope = slope[:, :, list(moving)]
     if angle is None:
         return error, slope
     more, line = angle.errors(q, T)
@@ -144,9 +147,18 @@ def normal_inverse(slope: Array, damping: float = 1e-14) -> Array:
 def damped(square: Array, damping: Array | float) -> Array:
     """Matrices (k, n, n) of normal equations, damped. Beside a slide that is very far out the rounding of
     the others is more than the damping: there as much is added as they may be off."""
-    size = np.einsum("kii->k", square)
+    count, n, _ = square.shape
+    out: Array = square.copy()
+    diagonal = out.reshape(count, n * n)[:, :: n + 1]
+    size = np.add.reduce(diagonal, axis=1)
     enough = np.maximum(damping, np.where(size > _FAR_OUT, _ROUNDING * size, 0.0))
-    return np.asarray(square + enough[:, None, None] * np.eye(square.shape[2]))
+    diagonal += enough[:, None]
+    return out
+
+
+def clipped(step: Array, most: float) -> Array:
+    """As np.clip has it, which takes longer for few numbers."""
+    return np.asarray(np.minimum(np.maximum(step, -most), most))
 
 
 def least_singular(slope: Array, rank: int | None = None) -> Array:

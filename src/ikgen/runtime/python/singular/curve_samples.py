@@ -24,9 +24,13 @@ def sampled(arm: Arm, at: Reduced, T: Array) -> tuple[Reduced, Flags]:
     at, near = Reduced(*(x.copy() for x in at)), np.ones(len(T), dtype=bool)
     going, before = np.arange(len(T)), np.full(len(T), np.inf)
     for _ in range(_CORRECTIONS):
-        moved, farthest = correct(arm, some_of(at, going), T[going])
-        for whole, part in zip(at, moved):
-            whole[going] = part
+        if len(going) == len(T):
+            moved, farthest = correct(arm, at, T)
+            at = moved
+        else:
+            moved, farthest = correct(arm, some_of(at, going), T[going])
+            for whole, part in zip(at, moved):
+                whole[going] = part
         near[going] &= farthest < _STRAY
         same = (np.abs(moved.left - before) < _SAME) & (farthest < _ALMOST)
         on = ~((farthest < np.maximum(_NEAR, _SHARE * np.abs(moved.left))) | same)

@@ -13,7 +13,7 @@ from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_tuples import some_of
 from ikgen.runtime.python.arrays.array_types import Array
 from ikgen.runtime.python.newton.arm_newton import linearized
-from ikgen.runtime.python.newton.refinement import damped, normal_inverse
+from ikgen.runtime.python.newton.refinement import clipped, damped, normal_inverse
 
 __all__ = ["Reduced", "approach", "correct", "generic", "still_directions"]
 
@@ -52,8 +52,11 @@ class _Others(NamedTuple):
 
     def moved(self, arm: Arm, q: Array, across: Array, along: Array | float) -> Array:
         """Rows q (k, dof) after a step."""
+        step = clipped(across, _FAR) + along * self.still
+        if not arm.free:
+            return q + step
         q = q.copy()
-        q[:, list(arm.moving)] += np.clip(across, -_FAR, _FAR) + along * self.still
+        q[:, list(arm.moving)] += step
         return q
 
 
@@ -87,13 +90,15 @@ def correct(arm: Arm, at: Reduced, T: Array) -> tuple[Reduced, Array]:
     step of inverse iteration does."""
     error, slope = linearized(arm, at.q, T)
     others = _across(slope, at.still, arm.policy.least_damping)
-    taken, going = others.take_away(np.stack([error, at.out, others.flow], axis=2))
+    sides = np.empty((*error.shape, 3))
+    sides[:, :, 0], sides[:, :, 1], sides[:, :, 2] = error, at.out, others.flow
+    taken, going = others.take_away(sides)
     still, size = _unit(at.still - going[:, :, 2])
     out, remains = _unit(taken[:, :, 1])
     turned = np.flatnonzero(~(remains**2 >= _TURNED))
     if len(turned):
         out[turned] = _oriented(out[turned], some_of(others, turned))
-    left, grows = np.einsum("ke,kei->ik", out, taken[:, :, ::2])
+    left, _, grows = np.matmul(out[:, None, :], taken)[:, 0].T
     across = going[:, :, 0]
     q = others.moved(arm, at.q, across, 0.0)
     return Reduced(q, still, out, left, -grows / size), np.abs(across).max(axis=1)
@@ -115,7 +120,7 @@ def _others(arm: Arm, slope: Array, still: Array) -> _Others:
 
 
 def _across(slope: Array, still: Array, damping: float) -> _Others:
-    flow = np.einsum("kej,kj->ke", slope, still)
+    flow = np.matmul(slope, still[:, :, None])[:, :, 0]
     V = slope - flow[:, :, None] * still[:, None, :]
     normal = V.transpose(0, 2, 1) @ V + still[:, :, None] * still[:, None, :]
     return _Others(still, flow, V, damped(normal, damping))
@@ -143,7 +148,7 @@ def _still(slope: Array, still: Array, damping: float) -> Array:
 
 def _unit(v: Array) -> tuple[Array, Array]:
     """v (k, n) at unit length, and its length (k,)."""
-    size = np.sqrt(np.einsum("ki,ki->k", v, v))
+    size = np.sqrt(np.add.reduce(v * v, axis=1))
     return v / size[:, None], size
 
 

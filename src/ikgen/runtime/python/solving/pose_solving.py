@@ -176,9 +176,9 @@ def _certain_rows(
         q = _refined_together(arm, arm.together, np.array(rows), (T, near, held))
         if q is None:
             return None
-        rows = list(map(tuple, q.tolist()))
         if apart(arm, q):
-            return [(row, False) for row in rows]
+            return [(tuple(row), False) for row in q.tolist()]
+        rows = list(map(tuple, q.tolist()))
     kept: list[Found] = []
     for row in rows:
         if is_new(arm, row, kept):
@@ -191,12 +191,12 @@ def _certain_rows(
 def _refined_together(arm: Arm, together: Together, q: Array, asked: One) -> Array | None:
     """Rows (k, dof) refined all at once, without those that miss the pose; None where that leaves a
     doubt."""
-    T, held = np.array(asked[0]), np.array([asked[2]])
+    T = np.array(asked[0])
     if arm.square:
         ends = chord_steps(arm, q, T)
         if ends is not None:
             return ends
-    q, arrived, missed = together(arm, q, aims(arm, T[None], held))
+    q, arrived, missed = together(arm, q, aims(arm, T[None], np.array([asked[2]])))
     return q[arrived] if (arrived | missed).all() else None
 
 
