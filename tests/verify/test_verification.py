@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +13,8 @@ from tests.support.fake_arms import DEFECTS, JOINTS, six_axis_module, six_axis_o
 
 from ikgen.errors import BadDescriptionError, UnknownNameError
 from ikgen.verify.runners.python_module import PythonModule
+from ikgen.verify.search import find_solutions
+from ikgen.verify.shared_work import SharedWork
 from ikgen.verify.verification import verify
 
 
@@ -32,6 +35,23 @@ def test_equal_runs_give_equal_reports(tmp_path: Path) -> None:
     first, second = (verify(runner, oracle, samples=60, seed=5).to_dict() for _ in range(2))
     assert first == second
     assert verify(runner, oracle, samples=60, seed=6).to_dict() != first
+
+
+def test_languages_share_what_is_none_of_theirs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    runner, oracle = six_axis_module(tmp_path), six_axis_oracle()
+    searches: list[int] = []
+
+    def counted(*arguments: Any) -> Any:
+        searches.append(1)
+        return find_solutions(*arguments)
+
+    monkeypatch.setattr("ikgen.verify.coverage.find_solutions", counted)
+    alone = verify(runner, oracle, samples=60).to_dict()
+    shared = SharedWork()
+    both = [verify(runner, oracle, samples=60, shared=shared).to_dict() for _ in range(2)]
+    assert both == [alone, alone] and len(searches) == 2
 
 
 @pytest.mark.parametrize("defect", DEFECTS)

@@ -14,6 +14,7 @@ from ikgen.generation.progress import Progress, silent
 from ikgen.generation.publish import write_texts
 from ikgen.generation.runners_ahead import RunnersAhead
 from ikgen.processes.scratch_folder import ScratchFolder
+from ikgen.verify.shared_work import SharedWork
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation, Reading
@@ -83,11 +84,13 @@ def _reports(
     reports: dict[str, VerificationReport] = {}
     first = None
     with RunnersAhead(partial(one.runner, arm, folder) for one in emitters) as runners:
-        oracle = oracle_for(derivation.reading)
+        oracle, shared = oracle_for(derivation.reading), SharedWork()
         for emitter in emitters:
             runner = _taken(runners, emitter)
             if runner is not None:
-                report = verify_one(runner, oracle, arm, outputs, progress, peer=first)
+                report = verify_one(
+                    runner, oracle, arm, outputs, progress, peer=first, shared=shared
+                )
                 reports[emitter.name] = report
                 first = first or runner
     return reports
@@ -126,9 +129,10 @@ def verify_one(
     progress: Progress,
     *,
     peer: Any | None = None,
+    shared: SharedWork | None = None,
 ) -> VerificationReport:
     """The verification of one language: what `runner` runs against the oracle, and against the same
-    solver in another language."""
+    solver in another language, with which it has `shared` work."""
     import numpy as np
 
     from ikgen.lowering.held_angle import held_angle
@@ -150,4 +154,5 @@ def verify_one(
         ),
         peer=peer,
         progress=lambda stage, done, total: progress("verify", stage),
+        shared=shared,
     )

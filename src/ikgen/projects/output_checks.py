@@ -12,6 +12,7 @@ from ikgen.errors import BadDescriptionError, IkgenError, VerificationError
 from ikgen.generation.emitted_arm import EmittedArm
 from ikgen.projects.check_findings import Finding
 from ikgen.projects.forward_difference import forward_difference
+from ikgen.verify.shared_work import SharedWork
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Reading
@@ -52,11 +53,11 @@ class OutputChecks:
         reports: dict[str, VerificationReport] = {}
         first = None
         with RunnersAhead(partial(self._made, name) for name in self.record.emit) as runners:
-            oracle = oracle_for(self.reading)
+            oracle, shared = oracle_for(self.reading), SharedWork()
             for name in self.record.emit:
                 runner, found = self._runner(name, runners, oracle)
                 if runner is not None:
-                    report, found = self._report(name, runner, oracle, first)
+                    report, found = self._report(name, runner, oracle, first, shared)
                     if report is not None:
                         reports[name] = report
                         first = first or runner
@@ -85,12 +86,14 @@ class OutputChecks:
         return runner, None
 
     def _report(
-        self, name: str, runner: Any, oracle: Oracle, peer: Any | None
+        self, name: str, runner: Any, oracle: Oracle, peer: Any | None, shared: SharedWork
     ) -> tuple[VerificationReport | None, Finding | None]:
         from ikgen.generation.emitted_checks import verify_one
 
         try:
-            report = verify_one(runner, oracle, self._arm(), self.outputs, self.progress, peer=peer)
+            report = verify_one(
+                runner, oracle, self._arm(), self.outputs, self.progress, peer=peer, shared=shared
+            )
         except IkgenError as error:
             return None, self._failed(name, error)
         wrong = None if report.passed else self._wrong(name, f"is wrong: {report.worst_case}")

@@ -11,6 +11,7 @@ from ikgen.verify.arm import ArmUnderTest
 from ikgen.verify.reach import unreachable_poses
 from ikgen.verify.runners.runner import Runner
 from ikgen.verify.sampling import SampleSet, generator, sample_sets
+from ikgen.verify.shared_work import SharedWork
 from ikgen.verify.trials import Trial, run_trial, run_trials
 
 __all__ = ["Answers", "collect_answers"]
@@ -105,9 +106,11 @@ def _in_batch(runner: Runner, arm: ArmUnderTest, limited: Trial) -> Trial:
     return Trial(sample, rows, False, False)
 
 
-def collect_answers(runner: Runner, arm: ArmUnderTest, samples: int, seed: int) -> Answers:
+def collect_answers(
+    runner: Runner, arm: ArmUnderTest, samples: int, seed: int, shared: SharedWork | None = None
+) -> Answers:
     """Draw all sets and solve them; whatever the emitted code raises passes through."""
-    sets = sample_sets(arm, samples, seed)
+    sets = (shared or SharedWork()).once("samples", lambda: sample_sets(arm, samples, seed))
     some, few = (_first(sets["random"], n) for n in (_ORDERED, _REPEATED))
     seeds = arm.uniform(generator(seed, "seeds"), len(some))
     asked = [sets[label] for label in ("random", *_INSIDE_SETS, "outside limits")]

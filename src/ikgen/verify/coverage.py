@@ -11,6 +11,7 @@ from ikgen.verify.arm import ArmUnderTest
 from ikgen.verify.checks import LIMIT_TOLERANCE
 from ikgen.verify.completeness import FOUND_TOLERANCE, sensitivity
 from ikgen.verify.search import CONVERGED, find_solutions
+from ikgen.verify.shared_work import SharedWork
 from ikgen.verify.trials import Trial, nearest, result, spell
 from ikgen.verify.verification_report import CheckResult
 
@@ -23,12 +24,18 @@ Array = NDArray[np.float64]
 
 
 def check_exhaustive(
-    arm: ArmUnderTest, trial: Trial, starts: int, rng: np.random.Generator
+    arm: ArmUnderTest,
+    trial: Trial,
+    starts: int,
+    rng: np.random.Generator,
+    shared: SharedWork | None = None,
 ) -> CheckResult:
     """Every regular solution that a numerical search finds is among the rows (`limits=False`), to what the
     residual that the search ends with moves it."""
     sample = trial.sample
-    found = find_solutions(arm, sample.poses, sample.q, starts, rng)
+    found = (shared or SharedWork()).once(
+        "search", lambda: find_solutions(arm, sample.poses, sample.q, starts, rng)
+    )
     count = failures = 0
     case = ""
     regular = arm.regular_above()

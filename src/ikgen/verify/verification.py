@@ -20,6 +20,7 @@ from ikgen.verify.motion_checks import motion_checks, regular_motions
 from ikgen.verify.oracle import Oracle
 from ikgen.verify.runners.runner import MovingRunner, Runner
 from ikgen.verify.sampling import generator
+from ikgen.verify.shared_work import SharedWork
 from ikgen.verify.task_space import TaskSpace, task_space
 from ikgen.verify.verification_report import CheckResult, SigmaBand, VerificationReport
 
@@ -40,6 +41,7 @@ def _plan(
     survey: completeness.Survey,
     seed: int,
     peer: Runner | None,
+    shared: SharedWork,
 ) -> dict[str, Callable[[], CheckResult]]:
     """The checks by name, in the order of the report."""
     a, random = answers, answers.limited.sample
@@ -56,7 +58,9 @@ def _plan(
         "closure": lambda: checks.check_closure(arm, a.reachable),
         "completeness": lambda: completeness.check_completeness(survey),
         "poses answered": lambda: completeness.check_answered(survey),
-        "exhaustive search": lambda: coverage.check_exhaustive(arm, a.searched, _STARTS, rng),
+        "exhaustive search": lambda: coverage.check_exhaustive(
+            arm, a.searched, _STARTS, rng, shared
+        ),
         "distinct rows": lambda: checks.check_distinct(arm, a.reachable),
         "status": lambda: coverage.check_status(arm, [(a.limited, a.unlimited), a.outside]),
         "inside limits": lambda: checks.check_inside_limits(arm, a.reachable),
@@ -113,17 +117,19 @@ def _run_checks(
     seed: int,
     peer: Runner | None,
     progress: Progress | None,
+    shared: SharedWork | None = None,
 ) -> _Findings:
     """All results; one failed result if solving raises."""
+    shared = shared or SharedWork()
     if progress:
         progress("solving", 0, 1)
     try:
-        answers = collect_answers(runner, arm, samples, seed)
+        answers = collect_answers(runner, arm, samples, seed, shared)
         survey = completeness.survey(arm, runner, answers.standing)
     except Exception as error:
         what = f"solve raises {type(error).__name__}: {error}"
         return _Findings((CheckResult("runs", False, 1, 1, detail=what),))
-    plan = _plan(runner, arm, answers, survey, seed, peer)
+    plan = _plan(runner, arm, answers, survey, seed, peer, shared)
     results = []
     for done, (name, check) in enumerate(plan.items(), start=1):
         if progress:
@@ -145,6 +151,7 @@ def verify(
     limits: tuple[Array, Array] | None = None,
     peer: Runner | None = None,
     progress: Progress | None = None,
+    shared: SharedWork | None = None,
 ) -> VerificationReport:
     """Check the emitted code behind `runner` against `oracle`.
 
@@ -152,7 +159,8 @@ def verify(
     `free_joints` and `limits` (lower, upper; rad or m) are what the arm was generated for: by
     default what the module itself says; `angle` is the arm angle where the last of them is that.
     `peer` is the same solver in another language, which must answer alike. `locked` (already in the
-    oracle) is recorded. Raises `UnknownNameError` for an unknown task; whatever the emitted code does
+    oracle) is recorded. `shared` is that of the verifications of the same arm in other languages, with the
+    same samples. Raises `UnknownNameError` for an unknown task; whatever the emitted code does
     wrong is in the report.
     """
     start = time.perf_counter()
@@ -161,7 +169,7 @@ def verify(
     found = _Findings(_mismatch(runner, oracle, angle))
     if not found.results:
         arm = _arm(runner, oracle, space, free_joints, angle, limits)
-        found = _run_checks(runner, arm, samples, seed, peer, progress)
+        found = _run_checks(runner, arm, samples, seed, peer, progress, shared)
     links, held = (oracle.base_link, oracle.tip_link), tuple((locked or {}).items())
     seconds = time.perf_counter() - start
     return VerificationReport(
