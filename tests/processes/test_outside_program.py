@@ -86,6 +86,21 @@ def test_its_time_counts_from_its_start(monkeypatch: pytest.MonkeyPatch) -> None
     assert slow.finished().late and time.monotonic() - started < 0.9
 
 
+@pytest.mark.parametrize("told", [True, False])
+def test_its_end_where_the_system_tells_it_and_elsewhere(
+    told: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if not told:
+        monkeypatch.delattr(os, "pidfd_open", raising=False)
+    monkeypatch.setenv("IKGEN_TOOL_SECONDS", "5")
+    gone = RunningProgram(python("import sys; sys.exit(3)"))
+    time.sleep(0.3)
+    assert gone.finished().code == 3
+    assert run_program(python("import time; time.sleep(0.2)")).code == 0
+    monkeypatch.setenv("IKGEN_TOOL_SECONDS", "0.2")
+    assert run_program(python("import time; time.sleep(600)")).late
+
+
 def test_one_that_cannot_be_started(tmp_path: Path) -> None:
     (tmp_path / "text").write_text("no program")
     with pytest.raises(MissingToolError, match="cannot be started"):
