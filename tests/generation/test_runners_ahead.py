@@ -7,14 +7,17 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from tests.support.solving import FIXTURES
 
-from ikgen.errors import VerificationError
+from ikgen.errors import BadDescriptionError, VerificationError
 from ikgen.generation import emitted_checks
-from ikgen.generation.generate import generate
+from ikgen.generation.emitters import Emitter, find_emitter
+from ikgen.generation.generate import generate, make_texts
+from ikgen.generation.read import read
 from ikgen.generation.request import Outputs, Request
 from ikgen.generation.runners_ahead import RunnersAhead
 
@@ -68,6 +71,67 @@ def test_those_that_were_not_taken_are_closed_too() -> None:
         runners.take()
         raise KeyboardInterrupt
     assert log == ["make a", "make b", "ask a", "close b", "close a"]
+
+
+def test_one_is_made_before_the_others_and_taken_in_its_turn() -> None:
+    log: list[str] = []
+    with RunnersAhead(fakes(log, "abc"), 1) as runners:
+        assert [runners.take().name for _ in "abc"] == ["a", "b", "c"]
+    assert log[:5] == ["make b", "make a", "ask a", "make c", "ask b"]
+
+
+def test_what_was_made_is_closed_where_making_another_is_interrupted() -> None:
+    def interrupted() -> None:
+        raise KeyboardInterrupt
+
+    log: list[str] = []
+    with pytest.raises(KeyboardInterrupt), RunnersAhead([interrupted, *fakes(log, "b")], 1):
+        pass
+    assert log == ["make b", "close b"]
+
+
+def test_the_header_comes_first_and_is_told_second(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    steps: list[str] = []
+
+    def noted(emitter: Emitter, *_: object) -> dict[str, str]:
+        steps.append(emitter.name)
+        return {f"{emitter.name}.txt": ""}
+
+    class Runner:
+        constants = None
+
+        def __init__(self, name: str) -> None:
+            self.name = name
+
+    def verified(runner: Runner, *_: object, peer: Runner | None, **more: object) -> object:
+        steps.append(f"verify {runner.name}" + (f" with {peer.name}" if peer else ""))
+        return SimpleNamespace(passed=True)
+
+    monkeypatch.setattr(Emitter, "emit", noted)
+    monkeypatch.setattr(Emitter, "runner", lambda self, *_: Runner(self.name))
+    monkeypatch.setattr(emitted_checks, "verify_one", verified)
+    request = Request(FIXTURES / "kuka_kr6r900sixx.urdf")
+    emitters = [find_emitter(name) for name in ("python", "sympy", "cpp")]
+    made = make_texts(request, read(request), emitters, Outputs(out=tmp_path))
+    assert steps == ["sympy", "cpp", "python", "verify python", "verify cpp with python"]
+    assert list(made.texts) == ["python", "sympy", "cpp"]
+    assert list(made.reports) == ["python", "cpp"]
+
+
+@pytest.mark.parametrize("where", ["emit", "runner"])
+def test_an_output_that_cannot_be_emitted_is_not_one_that_cannot_be_run(
+    where: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise BadDescriptionError("has none")
+
+    monkeypatch.setattr(Emitter, where, fail)
+    kind = BadDescriptionError if where == "emit" else VerificationError
+    with pytest.raises(kind, match="has none"):
+        generate(Request(FIXTURES / "kuka_kr6r900sixx.urdf"), Outputs(out=tmp_path / "out"))
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.skipif(os.name == "nt", reason="needs sh")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from ikgen.verify.oracle import Oracle
     from ikgen.verify.verification_report import VerificationReport
 
+Emit = Callable[["Emitter"], Mapping[str, str]]
+"""File name -> text of an output."""
+
 __all__ = ["oracle_for", "verify_emitted", "verify_one", "verify_texts", "with_samples"]
 
 
@@ -35,33 +38,33 @@ def with_samples(derivation: Derivation) -> Derivation:
 
 def verify_emitted(
     derivation: Derivation,
-    texts: Mapping[str, str],
     emitters: Sequence[Emitter],
+    emit: Emit,
     outputs: Outputs,
     progress: Progress,
 ) -> dict[str, VerificationReport]:
-    """The verification of what was emitted: of a table without numbers that with samples."""
+    """The verification of what `emit` gives, each language once, of a table without numbers of that with
+    samples: `emitters` are of languages that can run."""
     sampled = with_samples(derivation)
-    if sampled is not derivation:
-        texts = {}
-        for emitter in emitters:
-            if emitter.runner_target is not None:
-                texts |= emitter.emit(sampled)
-    return verify_texts(sampled, texts, emitters, outputs, progress)
+
+    def emit_to_run(emitter: Emitter) -> Mapping[str, str]:
+        texts = emit(emitter)
+        return texts if sampled is derivation else emitter.emit(sampled)
+
+    return verify_texts(sampled, emitters, emit_to_run, outputs, progress)
 
 
 def verify_texts(
     derivation: Derivation,
-    texts: Mapping[str, str],
     emitters: Sequence[Emitter],
+    emit: Emit,
     outputs: Outputs,
     progress: Progress = silent,
 ) -> dict[str, VerificationReport]:
-    """Verify emitted texts (name -> text) before they are written, each language that can run; raises
+    """Emit and verify texts before they are written, each language that can run; raises
     `VerificationError` if one fails."""
     with ScratchFolder("ikgen-") as folder:
-        write_texts(folder, texts)
-        reports = _reports(derivation, folder, emitters, outputs, progress)
+        reports = _reports(derivation, folder, emitters, emit, outputs, progress)
     for name, report in reports.items():
         if not report.passed:
             raise VerificationError(
@@ -77,16 +80,25 @@ def _reports(
     derivation: Derivation,
     folder: Path,
     emitters: Sequence[Emitter],
+    emit: Emit,
     outputs: Outputs,
     progress: Progress,
 ) -> dict[str, VerificationReport]:
     arm = EmittedArm.of(derivation.module)
     reports: dict[str, VerificationReport] = {}
+    emitted: set[str] = set()
+
+    def make(emitter: Emitter) -> Any | None:
+        write_texts(folder, emit(emitter))
+        emitted.add(emitter.name)
+        return emitter.runner(arm, folder)
+
     first = None
-    with RunnersAhead(partial(one.runner, arm, folder) for one in emitters) as runners:
+    before = next((k for k, one in enumerate(emitters) if one.compiled), 0)
+    with RunnersAhead([partial(make, one) for one in emitters], before) as runners:
         oracle, shared = oracle_for(derivation.reading), SharedWork()
         for emitter in emitters:
-            runner = _taken(runners, emitter)
+            runner = _taken(runners, emitter, emitted)
             if runner is not None:
                 report = verify_one(
                     runner, oracle, arm, outputs, progress, peer=first, shared=shared
@@ -96,12 +108,14 @@ def _reports(
     return reports
 
 
-def _taken(runners: RunnersAhead, emitter: Emitter) -> Any | None:
-    """What runs an output that was just emitted: if it cannot be run, ikgen's text is wrong, not the
-    user's."""
+def _taken(runners: RunnersAhead, emitter: Emitter, emitted: Collection[str]) -> Any | None:
+    """What runs an output: if one of those that were `emitted` cannot be run, ikgen's text is wrong, not
+    the user's."""
     try:
         return runners.take()
     except BadDescriptionError as error:
+        if emitter.name not in emitted:
+            raise
         raise VerificationError(
             f"the emitted {emitter.name} code {error.problem}",
             hint="nothing was written; please report it",

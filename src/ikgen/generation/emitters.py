@@ -26,8 +26,9 @@ class Emitter:
     """An output by name. `target` is "module:function", which takes the derivation (and, where it
     `tells_verification`, the reports of the other outputs by name) and gives file name -> text;
     `runner_target` "module:function" takes the `EmittedArm` and the folder of the finished files
-    and gives a verification runner (none: the output is not run). `plug_in` is set for an emitter
-    of another package, which its failures then name."""
+    and gives a verification runner (none: the output is not run), which of one that is `compiled`
+    starts a compiler: such an output comes first, others meanwhile. `plug_in` is set for an emitter of
+    another package, which its failures then name."""
 
     name: str
     words: str
@@ -35,6 +36,7 @@ class Emitter:
     runner_target: str | None = None
     tells_verification: bool = False
     plug_in: PlugIn | None = None
+    compiled: bool = False
 
     def emit(
         self, derivation: Any, reports: Mapping[str, VerificationReport] | None = None
@@ -74,24 +76,28 @@ EMITTERS: tuple[Emitter, ...] = (
         "a C++17 header, Eigen only",
         "ikgen.emit.cpp.cpp_emitter:emit_derivation",
         "ikgen.generation.emitted_runners:cpp_runner",
+        compiled=True,
     ),
     Emitter(
         "cpp-package",
         "the C++ header as a CMake package of its own, with an example program",
         "ikgen.emit.cpp.cpp_package:emit_derivation",
         "ikgen.generation.emitted_runners:cpp_package_runner",
+        compiled=True,
     ),
     Emitter(
         "nanobind",
         "the C++ header as a Python package to compile, with the Python module's interface",
         "ikgen.emit.nanobind:emit_derivation",
         "ikgen.generation.emitted_runners:nanobind_runner",
+        compiled=True,
     ),
     Emitter(
         "moveit",
         "a ROS 2 package with a MoveIt kinematics plugin over the C++ header",
         "ikgen.emit.moveit:emit_derivation",
         "ikgen.generation.emitted_runners:moveit_runner",
+        compiled=True,
     ),
     Emitter(
         "report",

@@ -147,11 +147,18 @@ def _emitted(
 ) -> tuple[dict[str, dict[str, str]], dict[str, VerificationReport]]:
     """The texts of all outputs but those that tell the verification, and the verification."""
     made: dict[str, dict[str, str]] = {}
+
+    def emit(emitter: Emitter) -> dict[str, str]:
+        progress("emit", emitter.name)
+        made[emitter.name] = emitter.emit(derivation)
+        return made[emitter.name]
+
+    run: list[Emitter] = []
+    other: list[Emitter] = []
     for emitter in emitters:
         if not emitter.tells_verification:
-            progress("emit", emitter.name)
-            made[emitter.name] = emitter.emit(derivation)
-    if not outputs.verify:
-        return made, {}
-    texts = {name: text for one in made.values() for name, text in one.items()}
-    return made, verify_emitted(derivation, texts, emitters, outputs, progress)
+            (run if outputs.verify and emitter.runner_target else other).append(emitter)
+    for emitter in other:
+        emit(emitter)
+    reports = verify_emitted(derivation, run, emit, outputs, progress) if run else {}
+    return {one.name: made[one.name] for one in emitters if one.name in made}, reports

@@ -89,7 +89,7 @@ def _verified(
     if not outputs.verify:
         return {}
     sampled, python = with_samples(derivation), find_emitter("python")
-    return verify_texts(sampled, python.emit(sampled), [python], outputs, progress)
+    return verify_texts(sampled, [python], lambda one: one.emit(sampled), outputs, progress)
 
 
 def _pdfs(texts: Mapping[str, str], progress: Progress) -> tuple[dict[str, bytes], list[str]]:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from contextlib import ExitStack
 from types import TracebackType
 from typing import Any
@@ -19,15 +18,20 @@ _AT_ONCE = 2
 
 class RunnersAhead:
     """The runners that `makes` give, to be taken in turn; at the end of the `with` they are closed, those
-    too that were not taken."""
+    too that were not taken. Of the first ones, which are made together, that of place `before` is made
+    before the others: a compiler, say, that works meanwhile."""
 
-    def __init__(self, makes: Iterable[Make]) -> None:
-        self._makes: Iterator[Make] = iter(makes)
-        self._made: deque[Any | Exception | None] = deque()
+    def __init__(self, makes: Iterable[Make], before: int = 0) -> None:
+        self._makes = dict(enumerate(makes))
+        self._made: dict[int, Any | Exception | None] = {}
+        self._taken, self._before = 0, before
         self._close = ExitStack()
 
     def __enter__(self) -> RunnersAhead:
-        self._make()
+        with ExitStack() as started:
+            started.push(self.__exit__)  # of an interrupt
+            self._make()
+            started.pop_all()
         return self
 
     def __exit__(
@@ -42,7 +46,8 @@ class RunnersAhead:
         """The next one, ready to be used. Raises here what making it raised, whenever that was: an output
         before it is told first."""
         self._make()
-        made = self._made.popleft()
+        made = self._made.pop(self._taken)
+        self._taken += 1
         if isinstance(made, Exception):
             raise made
         if made is not None:
@@ -50,11 +55,15 @@ class RunnersAhead:
         return made
 
     def _make(self) -> None:
-        while len(self._made) < _AT_ONCE and (make := next(self._makes, None)) is not None:
+        soon = range(self._taken, self._taken + _AT_ONCE)
+        for place in sorted(soon, key=lambda place: place != self._before):
+            make = self._makes.pop(place, None)
+            if make is None:
+                continue
             try:
                 made = make()
             except Exception as error:
                 made = error
-            self._made.append(made)
+            self._made[place] = made
             if callable(close := getattr(made, "close", None)):
                 self._close.callback(close)
