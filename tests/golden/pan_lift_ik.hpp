@@ -1155,6 +1155,12 @@ template <class Arm> struct CurveSamples {
     return at(q, a);
   }
 
+  static void turn_round(Sample& s) noexcept {
+    s.left = -s.left;
+    for (double& x : s.still) x = -x;
+    for (double& x : s.out) x = -x;
+  }
+
   static void between(const Sample& a, const Sample& b, double share, double* q) noexcept {
     double along = 0.0, beyond = 0.0;
     for (int k = 0; k < Fold::kMoving; ++k) {
@@ -1222,8 +1228,10 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
       if (is_solution(middle)) keep(middle);
       look(a, middle, deep - 1);
       look(middle, b, deep - 1);
-    } else if (changes == 1) {
-      close_in(a, b, 2.0 * most);
+    } else if (changes == 1 && !close_in(a, b, 2.0 * most)) {
+      Sample other = b;  // in the sense that samples on the way to it have
+      Curve::turn_round(other);
+      look(a, other, deep - 1);
     }
   }
 
@@ -1237,7 +1245,7 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
  private:
   static constexpr int kDeep = 24, kDoubts = 3;  // how often a part is cut, and how often as the cubic bends by so much
   static constexpr double kBent = 1.5, kStraight = 0.03;  // of what it is in the middle, and at most
-  static constexpr int kSteps = 40, kCubics = 4, kNewton = 4, kSoon = 4;
+  static constexpr int kSteps = 40, kCubics = 4, kNewton = 8, kSoon = 4;
   static constexpr double kRoundOff = 1e-15, kSmall = 4e-15;
   static constexpr double kBeyond = 4.0;  // how far what is left at the end of a curve's last part may be beyond its bound
   static constexpr double kWay = 1e-10;   // rad or m: along a curve, by which what is left varies by round-off
@@ -1262,25 +1270,33 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
   }
 
   static double root_share(const Sample& a, const Sample& b, double share) noexcept {
-    double inner[2], x = share;
+    double inner[2], x = share, low = 0.0, high = 1.0;
     take_inner(a, b, inner);
     const double one = 3.0 * (inner[0] - a.left), two = 3.0 * (inner[1] - 2.0 * inner[0] + a.left);
     const double three = b.left - a.left + 3.0 * (inner[0] - inner[1]);
-    for (int i = 0; i < kNewton; ++i)
-      x -= (((three * x + two) * x + one) * x + a.left) / ((3.0 * three * x + 2.0 * two) * x + one);
-    return x > 0.0 && x < 1.0 ? x : share;
+    for (int i = 0; i < kNewton; ++i) {
+      const double value = ((three * x + two) * x + one) * x + a.left;
+      (value * a.left > 0.0 ? low : high) = x;
+      x -= value / ((3.0 * three * x + 2.0 * two) * x + one);
+      if (!(x > low && x < high)) x = 0.5 * (low + high);
+    }
+    return x;
   }
 
-  void close_in(Sample a, Sample b, double most) noexcept {
+  bool close_in(Sample a, Sample b, double most) noexcept {
     double x = a.left, y = b.left, way = kInfinity, goal = kInfinity;
+    bool led = true;
     int kept = 0;
     for (int i = 0; i < kSteps && way > kWay; ++i) {
-      const double least = std::min(std::abs(a.left), std::abs(b.left));
-      if (least <= kRoundOff || (i % kSoon == 0 && least > goal)) break;
-      if (i > 0 && i % kSoon == 0) goal = 0.5 * least;
+      const double product = std::abs(a.left * b.left);
+      if (std::min(std::abs(a.left), std::abs(b.left)) <= kRoundOff) break;
+      led = i % kSoon != 0 || product <= goal;
+      if (!led) break;
+      if (i % kSoon == 0) goal = 0.5 * product;
       const double share = x / (x - y);
       const Sample c = part(a, b, i < kCubics ? root_share(a, b, share) : share);
-      if (std::abs(c.left) > most) break;
+      led = std::abs(c.left) <= most;
+      if (!led) break;
       const bool last = a.left * c.left < 0.0;
       way = 0.0;
       for (int k = 0; k < Fold::kMoving; ++k)
@@ -1298,6 +1314,7 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
       }
     }
     keep(std::abs(a.left) < std::abs(b.left) ? a : b);
+    return led;
   }
 };
 
@@ -1363,7 +1380,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
 
   bool follow(const Sample& first, double sense, double& worst, Passed& passed) noexcept {
     Sample b = first;
-    if (sense < 0.0) turn_round(b);
+    if (sense < 0.0) Curve::turn_round(b);
     const Sample origin = b;
     if (is_solution(b)) keep(b);
     passed.add(b, true);
@@ -1441,12 +1458,6 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     if (is_solution(s)) keep(s);
     look(a, s);
     look(s, b);
-  }
-
-  static void turn_round(Sample& s) noexcept {
-    s.left = -s.left;
-    for (double& x : s.still) x = -x;
-    for (double& x : s.out) x = -x;
   }
 
   static bool ahead(const Sample& a, const Sample& b, double reach) noexcept {

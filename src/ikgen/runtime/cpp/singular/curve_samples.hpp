@@ -55,6 +55,13 @@ template <class Arm> struct CurveSamples {
     return at(q, a);
   }
 
+  // The same sample of a curve that is followed the other way.
+  static void turn_round(Sample& s) noexcept {
+    s.left = -s.left;
+    for (double& x : s.still) x = -x;
+    for (double& x : s.out) x = -x;
+  }
+
   // By the cubic through two configurations along their still directions (Hermite).
   static void between(const Sample& a, const Sample& b, double share, double* q) noexcept {
     double along = 0.0, beyond = 0.0;

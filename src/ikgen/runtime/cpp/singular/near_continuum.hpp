@@ -76,7 +76,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
   // from there alone; whether it comes back to where it began.
   bool follow(const Sample& first, double sense, double& worst, Passed& passed) noexcept {
     Sample b = first;
-    if (sense < 0.0) turn_round(b);
+    if (sense < 0.0) Curve::turn_round(b);
     const Sample origin = b;
     if (is_solution(b)) keep(b);
     passed.add(b, true);
@@ -157,13 +157,6 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     if (is_solution(s)) keep(s);
     look(a, s);
     look(s, b);
-  }
-
-  // The same sample of a curve that is followed the other way.
-  static void turn_round(Sample& s) noexcept {
-    s.left = -s.left;
-    for (double& x : s.still) x = -x;
-    for (double& x : s.out) x = -x;
   }
 
   // Whether the curve goes on from a sample to another, and not back.
