@@ -83,7 +83,7 @@ struct Arm {
     constexpr int n = Rows<P>::kLanes;
     store(spread<n>(q1.q), rows.q[0]);
     store(spread<n>(q2.q), rows.q[1]);
-    const auto found = bit(real, kReal) + bit(real & q1.inside & q2.inside, kFound);
+    const auto found = bit(real, kReal) + bit(real & is_inside<Policy>(max(q1.off, q2.off)), kFound);
     const auto flat = 1e-9 > abs(s2);
     store(spread<n>(found + bit(!regular, kSingular) + bit(!regular, kHit) + bit(real & flat, kRough) +
                     bit(meeting<Policy, 2 * P>(c2, s2), kMeeting)),

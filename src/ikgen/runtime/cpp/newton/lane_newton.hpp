@@ -137,7 +137,7 @@ template <class Arm> struct LaneNewton {
     LaneChain<Arm, N> chain;
     for (int j = 0; j < Arm::kDof; ++j) chain.q[j] = load<N>(rows.q[j] + at);
     const Arrival<N> at_end = steps<P, N>(pose, aim, started, chain);
-    const Mask<N> real = started & (doubt | !at_end.beside), good = at_end.good & !doubt;
+    const Mask<N> real = started & (doubt | (!at_end.beside)), good = at_end.good & !doubt;
     Lanes<N> off = spread<N>(0.0);
     for (int j = 0; j < Arm::kDof; ++j) {
       Lanes<N> q = chain.q[j];
@@ -148,7 +148,7 @@ template <class Arm> struct LaneNewton {
       store(select(good, placed.q, load<N>(rows.q[j] + at)), rows.q[j] + at);
     }
     const auto found = bit(real, kReal) + bit(good & is_inside<Policy>(off), kFound);
-    store(found + (bit(real & (!good | hardly_outside<Policy>(off)), kRough) + flags), rows.flags + at);
+    store(found + (bit(real & ((!good) | hardly_outside<Policy>(off)), kRough) + flags), rows.flags + at);
   }
 
   // Which lanes arrived at the one solution near their start, and which at a least error that is not 0.
