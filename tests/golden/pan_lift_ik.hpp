@@ -2192,7 +2192,7 @@ template <class Arm> struct CarefulSolve {
       typename Careful::Rows rows;
       Careful::find_lanes(aim.pose, q, options, rows);
       for (const int lane : Arm::kLaneOfRow) {
-        if ((static_cast<int>(rows.flags[lane]) & (kReal | kSingular)) != kSingular) continue;
+        if ((rows.bits(lane) & (kReal | kSingular)) != kSingular) continue;
         for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
         const double cost = Row::finite(q) ? PoseChords<Arm>(q, t).cost : kInfinity;
         if (!(cost < least[lane])) continue;
@@ -2249,7 +2249,7 @@ template <class Arm> struct LanePlacement {
       store(is_inside<Policy>(off), kept);
       store(hardly_outside<Policy>(off), close);
       for (int i = 0; i < N; ++i) {
-        const int bits = static_cast<int>(rows.flags[at + i]);
+        const int bits = rows.bits(at + i);
         const int doubt = (bits & kReal) != 0 && close[i] > 0.5 ? kRough : 0;
         rows.flags[at + i] = kept[i] > 0.5 ? bits : (bits & ~kFound) | doubt;
       }
@@ -2320,7 +2320,7 @@ template <class Arm> struct LaneSolve {
   template <int P> static bool leaves_out_meeting(const Rows<P>& rows, int p) noexcept {
     bool some = false;
     for (const int row : Arm::kLaneOfRow)
-      some = some || (static_cast<int>(rows.flags[row * P + p]) & (kFound | kMeeting)) == kMeeting;
+      some = some || (rows.bits(row * P + p) & (kFound | kMeeting)) == kMeeting;
     return some;
   }
 
@@ -2331,7 +2331,7 @@ template <class Arm> struct LaneSolve {
     [[maybe_unused]] double sum[Arm::kMaxSolutions + 1] = {};
     for (const int row : Arm::kLaneOfRow) {
       const int lane = row * P + p;
-      const int bits = static_cast<int>(rows.flags[lane]);
+      const int bits = rows.bits(lane);
       double* q = Row::row(out, count);
       for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
       Row::flag(out, count) = false;

@@ -526,9 +526,14 @@ class _Arm:
     @property
     def rank(self) -> int:
         """How many freedoms the task fixes, or the arm has if these are less."""
-        k, dof = len(self.task.unit), len(self.lower)
-        whole = len(self.task.entries) - k * (k + 1) // 2 == 6
-        return min(dof, self.freedoms) if whole else dof - len(self.free_joints)
+        dof = len(self.lower)
+        return min(dof, self.freedoms) if self.whole_pose else dof - len(self.free_joints)
+
+    @property
+    def whole_pose(self) -> bool:
+        """Whether the task reads all freedoms of a pose."""
+        k = len(self.task.unit)
+        return len(self.task.entries) - k * (k + 1) // 2 == 6
 
     @property
     def rounded(self) -> bool:
@@ -538,8 +543,7 @@ class _Arm:
     @property
     def square(self) -> bool:
         """Whether the whole pose is asked for of six joints, and no angle held."""
-        whole = len(self.task.entries) == 12
-        return whole and len(self.moving) == 6 and self.angle is None
+        return self.whole_pose and len(self.moving) == 6 and self.angle is None
 
 
 # Newton's method on the chain: damped least squares (Levenberg 1944, Marquardt 1963).
@@ -679,6 +683,11 @@ def _linearized(arm: _Arm, q: Array, aim: Array) -> tuple[Array, Array]:
 def _refined(arm: _Arm, q: Array, aim: Array) -> tuple[Array, Array, Array, Array]:
     """`_refine` of rows (k, dof) towards `aims`."""
     return _refine(arm.chain, arm.task, arm.moving, q, aim, arm.policy, arm.angle)
+
+
+def _moved_rows(arm: _Arm, q: Array, step: Array) -> Array:
+    """Rows (k, dof) after a step (k, n) of the joints that move."""
+    return q + step
 
 
 # Tuples of arrays, or of such tuples again, whose first axes belong together.
@@ -1037,8 +1046,7 @@ class _Others(NamedTuple):
 
     def moved(self, arm: _Arm, q: Array, across: Array, along: Array | float) -> Array:
         """Rows q (k, dof) after a step."""
-        step = _clipped(across, _FAR) + along * self.still
-        return q + step
+        return _moved_rows(arm, q, _clipped(across, _FAR) + along * self.still)
 
 
 def _generic(count: int, size: int) -> Array:
@@ -2122,12 +2130,11 @@ _STRAY = 1.0  # rad or m: larger corrections show that no curve is near
 def _sampled(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, _Flags]:
     """The configurations of curves beside some (k,), of which one direction of the error is left towards
     aims T (k, ...)."""
-    at, near = _Reduced(*(x.copy() for x in at)), np.ones(len(T), dtype=bool)
-    going, before = np.arange(len(T)), np.full(len(T), np.inf)
+    near, going, before = np.ones(len(T), dtype=bool), np.arange(len(T)), np.full(len(T), np.inf)
     for _ in range(_CORRECTIONS):
         if len(going) == len(T):
-            moved, farthest = _correct(arm, at, T)
-            at = moved
+            at, farthest = _correct(arm, at, T)
+            moved = at
         else:
             moved, farthest = _correct(arm, _some_of(at, going), T[going])
             for whole, part in zip(at, moved):

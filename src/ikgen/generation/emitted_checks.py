@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from ikgen.verify.oracle import Oracle
     from ikgen.verify.verification_report import VerificationReport
 
+__all__ = ["oracle_for", "verify_emitted", "verify_one", "verify_texts", "with_samples"]
+
 Emit = Callable[["Emitter"], Mapping[str, str]]
 """File name -> text of an output."""
-
-__all__ = ["oracle_for", "verify_emitted", "verify_one", "verify_texts", "with_samples"]
 
 
 def with_samples(derivation: Derivation) -> Derivation:

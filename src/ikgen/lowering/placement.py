@@ -27,10 +27,6 @@ __all__ = ["LoweredLevel", "Placement", "Requirement", "identifier"]
 FOLDED = 1e-6
 """Relative size of what is under a square root below which its root has lost too many digits."""
 
-_CONTINUED = 1.0
-"""Times the model error that a divisor is, over what it has been multiplied by on the way to it, where the
-continuum that it vanishes on may go on in the file's geometry."""
-
 
 @dataclass(frozen=True, slots=True)
 class Requirement:
@@ -132,7 +128,8 @@ class Placement:
                 left = self.g.mul(largest, before)
                 self.lost.append(self.g.binary("gt", least, left))
                 if any(one.power == 2 for one in divisors):
-                    few = self.g.const((_CONTINUED * self.model_error) ** 2)
+                    # as little: the continuum that it vanishes on may go on in the file's geometry
+                    few = self.g.const(self.model_error**2)
                     self.doubts.append(self.g.binary("gt", few, left))
                     self.place(self.doubts[-1])
             self.margins.append(largest)

@@ -97,10 +97,10 @@ class Program:
     `parameters` are the arm's constants, `constants` what follows from them alone. `inputs` are what a
     caller hands over and the Program reads; `prelude` is what follows from the inputs of joints
     alone: it runs once a solve. `singular` are the conditions under which a solution is one of a continuum,
-    or a branch that fails may have one in the file's geometry;
+    or a branch that fails may have one in the file's geometry; `doubts` those under which the file's
+    geometry may have more solutions near it;
     `residuals` the squared errors (m^2, rad^2) with which a row reproduces the pose. `frames` are the
     constant transforms of the file's own chain, `T = F_0 M_1 F_1 ... M_n F_n` with M_i the motion of row i.
-    `doubts` are the conditions under which it is not all that the file's geometry has near it.
     `coarse`: round-off alone moves rows at most poses by more than they may be off.
     """
 

@@ -171,7 +171,7 @@ template <class Arm> struct HeldSample {
 
   // Copies a row of the pose itself and its margins; its bits.
   template <class Found> int keep(const Rows& rows, const Found& fine, int r) noexcept {
-    const int lane = Arm::kLaneOfRow[r], bits = static_cast<int>(fine.flags[lane]);
+    const int lane = Arm::kLaneOfRow[r], bits = fine.bits(lane);
     real[r] = (bits & kReal) != 0;
     for (int j = 0; j < Arm::kDof; ++j) q[j][r] = Arm::kHeld[j] ? held : fine.q[j][lane];
     for (int k = 0; k < Arm::kFolds; ++k) fold[k][r] = rows.margin[k][lane];
@@ -193,7 +193,7 @@ template <class Arm> struct HeldSample {
     if constexpr (Arm::kNewton && !Arm::kRefined) refine_lanes(T, rows, fine, error);
     bool again = part > 0;
     for (int r = 0; r < Arm::kLanes; ++r) {
-      const int lane = Arm::kLaneOfRow[r], l = part * Arm::kLanes + r, bits = static_cast<int>(rows.flags[lane]);
+      const int lane = Arm::kLaneOfRow[r], l = part * Arm::kLanes + r, bits = rows.bits(lane);
       if (part == 0) keep(rows, rows, r);
       real[l] = (bits & kReal) != 0;
       for (int j = 0; j < Arm::kDof && part > 0; ++j) q[j][l] = Arm::kHeld[j] ? held : rows.q[j][lane];
@@ -203,7 +203,7 @@ template <class Arm> struct HeldSample {
       if (coarse) continue;
       double refined[Arm::kDof];
       if constexpr (Arm::kNewton && !Arm::kRefined) {
-        real[l] = (static_cast<int>(fine.flags[lane]) & kReal) != 0 && error[lane] < Arm::Policy::kArrived;
+        real[l] = fine.has(lane, kReal) && error[lane] < Arm::Policy::kArrived;
         for (int j = 0; j < Arm::kDof; ++j) refined[j] = Arm::kHeld[j] ? held : turned(j, fine.q[j][lane]);
       } else {
         row(l, refined);
@@ -222,7 +222,7 @@ template <class Arm> struct HeldSample {
     Arm::refine(pose, {held}, kAnywhere, fine);
     int some[Arm::kLanes], count = 0;
     for (const int lane : Arm::kLaneOfRow)
-      if ((static_cast<int>(fine.flags[lane]) & kRough) != 0) some[count++] = lane;
+      if (fine.has(lane, kRough)) some[count++] = lane;
     Arm::take_along(pose, {held}, some, count, &fine, error);
   }
 

@@ -93,7 +93,7 @@ template <class Arm> struct LaneNewton {
       alignas(64) double given[std::size_t{N}];
       int any = 0;
       for (int i = 0; i < N; ++i) {
-        const int bits = static_cast<int>(rows.flags[at + i]);
+        const int bits = rows.bits(at + i);
         given[i] = bits & (kReal | kDoubt);
         any |= bits & (kReal | kHit);
       }

@@ -32,7 +32,7 @@ template <class Arm> struct LanePlacement {
       store(is_inside<Policy>(off), kept);
       store(hardly_outside<Policy>(off), close);
       for (int i = 0; i < N; ++i) {
-        const int bits = static_cast<int>(rows.flags[at + i]);
+        const int bits = rows.bits(at + i);
         const int doubt = (bits & kReal) != 0 && close[i] > 0.5 ? kRough : 0;
         rows.flags[at + i] = kept[i] > 0.5 ? bits : (bits & ~kFound) | doubt;
       }

@@ -57,7 +57,7 @@ template <class Arm> struct RankLoss {
     for (int at = 0; at < Rows::kLanes; at += N) {
       bool any = false;
       for (int i = at; i < at + N; ++i) {
-        out[i] = (static_cast<int>(rows.flags[i]) & kReal) != 0;
+        out[i] = rows.has(i, kReal);
         any = any || out[i];
       }
       if (!any) continue;

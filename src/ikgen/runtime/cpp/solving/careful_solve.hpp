@@ -91,7 +91,7 @@ template <class Arm> struct CarefulSolve {
       typename Careful::Rows rows;
       Careful::find_lanes(aim.pose, q, options, rows);
       for (const int lane : Arm::kLaneOfRow) {
-        if ((static_cast<int>(rows.flags[lane]) & (kReal | kSingular)) != kSingular) continue;
+        if ((rows.bits(lane) & (kReal | kSingular)) != kSingular) continue;
         for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
         const double cost = Row::finite(q) ? PoseChords<Arm>(q, t).cost : kInfinity;
         if (!(cost < least[lane])) continue;

@@ -62,7 +62,7 @@ template <class Arm> struct LaneSolve {
   template <int P> static bool leaves_out_meeting(const Rows<P>& rows, int p) noexcept {
     bool some = false;
     for (const int row : Arm::kLaneOfRow)
-      some = some || (static_cast<int>(rows.flags[row * P + p]) & (kFound | kMeeting)) == kMeeting;
+      some = some || (rows.bits(row * P + p) & (kFound | kMeeting)) == kMeeting;
     return some;
   }
 
@@ -74,7 +74,7 @@ template <class Arm> struct LaneSolve {
     [[maybe_unused]] double sum[Arm::kMaxSolutions + 1] = {};
     for (const int row : Arm::kLaneOfRow) {
       const int lane = row * P + p;
-      const int bits = static_cast<int>(rows.flags[lane]);
+      const int bits = rows.bits(lane);
       double* q = Row::row(out, count);
       for (int j = 0; j < Arm::kDof; ++j) q[j] = rows.q[j][lane];
       Row::flag(out, count) = false;

@@ -96,9 +96,14 @@ class Arm:
     def rank(self) -> int:
         """How many freedoms the task fixes, or the arm has if these are less. Of the whole pose more joints
         may be held than it leaves; of a part of it a held one may not move what is read."""
-        k, dof = len(self.task.unit), len(self.lower)
-        whole = len(self.task.entries) - k * (k + 1) // 2 == 6
-        return min(dof, self.freedoms) if whole else dof - len(self.free_joints)
+        dof = len(self.lower)
+        return min(dof, self.freedoms) if self.whole_pose else dof - len(self.free_joints)
+
+    @property
+    def whole_pose(self) -> bool:
+        """Whether the task reads all freedoms of a pose."""
+        k = len(self.task.unit)
+        return len(self.task.entries) - k * (k + 1) // 2 == 6
 
     @property
     def rounded(self) -> bool:
@@ -109,5 +114,4 @@ class Arm:
     def square(self) -> bool:
         """Whether the whole pose is asked for of six joints, and no angle held: each solution that is
         regular is alone near it."""
-        whole = len(self.task.entries) == 12
-        return whole and len(self.moving) == 6 and self.angle is None
+        return self.whole_pose and len(self.moving) == 6 and self.angle is None

@@ -15,6 +15,7 @@ from ikgen.runtime.python.arm.chain_kinematics import Chain, link_motions
 from ikgen.runtime.python.arm.solve_policy import Policy
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_types import Array
+from ikgen.runtime.python.newton.arm_newton import moved_rows
 
 __all__ = ["chord_steps"]
 
@@ -84,17 +85,17 @@ def chord_steps(arm: Arm, q: Array, T: Array) -> Array | None:
     more = _step(_bend(twists, step if drive is None else step @ drive.T), inverse)
     size, step = _sizes(more), step + more
     if _all_done(policy, first, size, nearest):
-        return _moved(arm, q, step)
+        return moved_rows(arm, q, step)
     before = size
     for _ in range(policy.lane_steps):
-        q = _moved(arm, q, step)
+        q = moved_rows(arm, q, step)
         tip = _tip(to_aim, link_motions(chain, chain.links, q))
         step = _step(tip.reshape(len(q), 16) @ _OFF, inverse)
         size = _sizes(step)
         if not _contracted(policy, before, size):
             return None
         if all(2.0 * s * s <= policy.converged * b for b, s in zip(before, size)):
-            return _moved(arm, q, step)
+            return moved_rows(arm, q, step)
         before = size
     return None
 
@@ -145,14 +146,6 @@ def _nearest(arm: Arm, inverse: Array) -> list[float]:
 
 def _step(error: Array, inverse: Array) -> Array:
     return np.asarray(np.matmul(error[:, None, :6], inverse)[:, 0])
-
-
-def _moved(arm: Arm, q: Array, step: Array) -> Array:
-    if not arm.free:
-        return q + step
-    q = q.copy()
-    q[:, list(arm.moving)] += step
-    return q
 
 
 def _tips(steps: Array) -> Array:

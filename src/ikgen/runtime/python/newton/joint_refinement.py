@@ -10,7 +10,7 @@ from ikgen.runtime.python.arm.lane_chain import LaneChain
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_types import Array, Flags
 from ikgen.runtime.python.arrays.row_blocks import in_blocks
-from ikgen.runtime.python.newton.arm_newton import linearized
+from ikgen.runtime.python.newton.arm_newton import linearized, moved_rows
 from ikgen.runtime.python.newton.lane_newton import Refined, begins, ends, refine_lanes
 from ikgen.runtime.python.newton.refinement import normal_inverse
 from ikgen.runtime.python.rows.solution_rows import rows_of
@@ -68,7 +68,7 @@ def refine_few(arm: Arm, q: Array, T: Array) -> Refined:
         pivot = 1.0 / np.sqrt(_largest(np.add.reduce(inverse * inverse, axis=2)))
         near, far = begins(policy, size, worst, before, pivot, not steps)
         good, strained = good & near, strained | far
-        q = _moved(arm, q, change)
+        q = moved_rows(arm, q, change[:, :, 0])
         rest, slope = _linearized(arm, q, T)
         worst = _largest(rest[:, :, 0])
         change = inverse @ rest
@@ -78,7 +78,7 @@ def refine_few(arm: Arm, q: Array, T: Array) -> Refined:
         before, size = size, _largest(change[:, :, 0])
         near, done = ends(policy, before, size, worst, _largest(more[:, :, 0]), pivot)
         good &= near
-        q, before = _moved(arm, q, change), size
+        q, before = moved_rows(arm, q, change[:, :, 0]), size
         if (done | ~good).all():
             break
     done, off = done & good, _largest(rest[:, :, 0])
@@ -88,14 +88,6 @@ def refine_few(arm: Arm, q: Array, T: Array) -> Refined:
 
 def _largest(x: Array) -> Array:
     return np.asarray(np.maximum.reduce(np.abs(x), axis=1))
-
-
-def _moved(arm: Arm, q: Array, change: Array) -> Array:
-    if not arm.free:
-        return q + change[:, :, 0]
-    q = q.copy()
-    q[:, list(arm.moving)] += change[:, :, 0]
-    return q
 
 
 def _linearized(arm: Arm, q: Array, T: Array) -> tuple[Array, Array]:

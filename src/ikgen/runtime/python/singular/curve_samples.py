@@ -21,12 +21,11 @@ _STRAY = 1.0  # rad or m: larger corrections show that no curve is near
 def sampled(arm: Arm, at: Reduced, T: Array) -> tuple[Reduced, Flags]:
     """The configurations of curves beside some (k,), of which one direction of the error is left towards
     aims T (k, ...); which seem to have a curve near (k,)."""
-    at, near = Reduced(*(x.copy() for x in at)), np.ones(len(T), dtype=bool)
-    going, before = np.arange(len(T)), np.full(len(T), np.inf)
+    near, going, before = np.ones(len(T), dtype=bool), np.arange(len(T)), np.full(len(T), np.inf)
     for _ in range(_CORRECTIONS):
         if len(going) == len(T):
-            moved, farthest = correct(arm, at, T)
-            at = moved
+            at, farthest = correct(arm, at, T)
+            moved = at
         else:
             moved, farthest = correct(arm, some_of(at, going), T[going])
             for whole, part in zip(at, moved):

@@ -12,7 +12,7 @@ import numpy as np
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_tuples import some_of
 from ikgen.runtime.python.arrays.array_types import Array
-from ikgen.runtime.python.newton.arm_newton import linearized
+from ikgen.runtime.python.newton.arm_newton import linearized, moved_rows
 from ikgen.runtime.python.newton.refinement import clipped, damped, normal_inverse
 
 __all__ = ["Reduced", "approach", "correct", "generic", "still_directions"]
@@ -52,12 +52,7 @@ class _Others(NamedTuple):
 
     def moved(self, arm: Arm, q: Array, across: Array, along: Array | float) -> Array:
         """Rows q (k, dof) after a step."""
-        step = clipped(across, _FAR) + along * self.still
-        if not arm.free:
-            return q + step
-        q = q.copy()
-        q[:, list(arm.moving)] += step
-        return q
+        return moved_rows(arm, q, clipped(across, _FAR) + along * self.still)
 
 
 def generic(count: int, size: int) -> Array:
