@@ -65,7 +65,7 @@ def test_each_set_is_asked_as_its_checks_need() -> None:
     assert [(t.limits, t.seeded, len(t.rows)) for t in found.unreachable] == [(True, False, 12)] * 2
     asked = {(seeded, limits) for _, _, seeded, limits in runner.calls}
     assert asked == {(False, True), (False, False), (True, True)}
-    assert runner.calls[-2:] == [(20, False, False, True)] * 2
+    assert runner.calls.count((20, False, False, True)) == 2  # the same, and both are asked
     assert runner.batches == [(40, False)] and not any(free for _, free, *_ in runner.calls)
     assert len(found.reachable) == 11 and len(found.standing) == 9
     standing = [any(t is one for t in found.standing) for one in found.outside]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -17,7 +18,7 @@ from ikgen.verify import completeness
 from ikgen.verify.arm import ArmUnderTest, arm_under_test
 from ikgen.verify.completeness import FAILS_ABOVE, sensitivity, survey
 from ikgen.verify.runners.python_module import PythonModule
-from ikgen.verify.runners.runner import Rows
+from ikgen.verify.runners.runner import Rows, Stack
 from ikgen.verify.sampling import SampleSet
 from ikgen.verify.search import converge
 from ikgen.verify.task_space import task_space
@@ -35,15 +36,10 @@ class Forgetful(PythonModule):
     within = 1e-4
     everything = False
 
-    def solve_many(
-        self,
-        poses: Array,
-        *,
-        free: Array | None = None,
-        seeds: Array | None = None,
-        limits: bool = True,
-    ) -> Rows:
-        rows = super().solve_many(poses, free=free, seeds=seeds, limits=limits)
+    def solve_stacks(self, stacks: Sequence[Stack]) -> list[Rows]:
+        return [self._left(rows) for rows in super().solve_stacks(stacks)]
+
+    def _left(self, rows: Rows) -> Rows:
         straight = (np.abs(np.sin(rows.q[:, :, [2, 4]])) < self.within).any(axis=2)
         drop = straight.any(axis=1)[:, None] if self.everything else straight
         keep = ~(drop | np.isnan(rows.q).any(axis=2))

@@ -20,7 +20,7 @@ from typing import TypeVar
 from ikgen.errors import MissingToolError, UsageError
 from ikgen.processes.termination import end_with_parent, end_workers
 
-__all__ = ["EXECUTORS", "Workers", "run_pieces"]
+__all__ = ["EXECUTORS", "Workers", "run_pieces", "spare_cores"]
 
 EXECUTORS = ("process", "dask")
 
@@ -29,6 +29,16 @@ R = TypeVar("R")
 
 _ATTEMPTS = 4
 """Pools that may lose a worker before the work is given up."""
+
+
+def spare_cores() -> int:
+    """How many cores this process may use beside its own; none where it is one of a pool, which uses
+    them."""
+    if multiprocessing.parent_process() is not None:
+        return 0
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0)) - 1
+    return (os.cpu_count() or 1) - 1
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from ikgen.verify.reach import unreachable_poses
 from ikgen.verify.runners.runner import Runner
 from ikgen.verify.sampling import SampleSet, generator, sample_sets
 from ikgen.verify.shared_work import SharedWork
-from ikgen.verify.trials import Trial, run_trial, run_trials
+from ikgen.verify.trials import Question, Trial, ask_all, run_trial
 
 __all__ = ["Answers", "collect_answers"]
 
@@ -69,20 +69,14 @@ def _slice(trial: Trial, n: int) -> Trial:
     return Trial(_first(trial.sample, n), rows, trial.limits, trial.seeded)
 
 
-def _with_seeds(runner: Runner, arm: ArmUnderTest, sample: SampleSet, seeds: Array) -> Trial:
-    free = arm.held_values(sample.q, sample.poses)
-    rows = runner.solve_many(sample.poses, free=free, seeds=seeds, limits=True)
-    return Trial(sample, rows, True, True)
-
-
-def _unreachable(runner: Runner, arm: ArmUnderTest, seed: int) -> tuple[Trial, ...]:
+def _unreachable(arm: ArmUnderTest, seed: int) -> list[SampleSet]:
+    """Poses of each kind, with values for held joints."""
     rng = generator(seed, "unreachable")
-    trials = []
+    sets = []
     for label, poses in unreachable_poses(arm, _UNREACHABLE, rng).items():
         held = arm.uniform(rng, len(poses))
-        sample = SampleSet(label, held, poses, arm.sigma(held))
-        trials.append(run_trial(runner, arm, sample, limits=True))
-    return tuple(trials)
+        sets.append(SampleSet(label, held, poses, arm.sigma(held)))
+    return sets
 
 
 def _in_batch(runner: Runner, arm: ArmUnderTest, limited: Trial) -> Trial:
@@ -113,22 +107,28 @@ def collect_answers(
     sets = (shared or SharedWork()).once("samples", lambda: sample_sets(arm, samples, seed))
     some, few = (_first(sets["random"], n) for n in (_ORDERED, _REPEATED))
     seeds = arm.uniform(generator(seed, "seeds"), len(some))
-    asked = [sets[label] for label in ("random", *_INSIDE_SETS, "outside limits")]
-    limited, *inside, outside = run_trials(runner, arm, asked, limits=True)
+    plain = [sets[label] for label in ("random", *_INSIDE_SETS, "outside limits")]
+    asked = {
+        "seeded": Question([sets[label] for label in _SINGULAR_SETS], True, seeded=True),
+        "plain": Question(plain, True),
+        "outside": Question(plain[-1:], False),
+        "ordered": Question([some], True, seeded=True, seeds=seeds),
+        "unreachable": Question(_unreachable(arm, seed), True),
+        "once": Question([few], True),
+        "again": Question([few], True),
+    }
+    found = dict(zip(asked, ask_all(runner, arm, list(asked.values())), strict=True))
+    limited, *inside, outside = found["plain"]
     unlimited = _in_batch(runner, arm, limited)
-    singular = [sets[label] for label in _SINGULAR_SETS]
     return Answers(
         limited=limited,
         unlimited=unlimited,
         inside=tuple(inside),
-        outside=(outside, run_trial(runner, arm, outside.sample, limits=False)),
-        seeded=run_trials(runner, arm, singular, limits=True, seeded=True),
-        ordered=_with_seeds(runner, arm, some, seeds),
+        outside=(outside, found["outside"][0]),
+        seeded=found["seeded"],
+        ordered=found["ordered"][0],
         seeds=seeds,
         searched=_slice(unlimited, _SEARCHED),
-        unreachable=_unreachable(runner, arm, seed),
-        repeated=(
-            run_trial(runner, arm, few, limits=True),
-            run_trial(runner, arm, few, limits=True),
-        ),
+        unreachable=found["unreachable"],
+        repeated=(found["once"][0], found["again"][0]),
     )

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.verify.arm import ArmUnderTest
-from ikgen.verify.runners.runner import Rows, Runner
+from ikgen.verify.runners.runner import Rows, Runner, Stack, solve_stacks
 from ikgen.verify.sampling import SampleSet
 from ikgen.verify.verification_report import CheckResult
 
-__all__ = ["Trial", "nearest", "result", "run_trial", "run_trials", "spell"]
+__all__ = ["Question", "Trial", "ask_all", "nearest", "result", "run_trial", "spell"]
 
 Array = NDArray[np.float64]
 
@@ -31,42 +31,56 @@ class Trial:
     seeded: bool
 
 
+@dataclass(frozen=True, slots=True)
+class Question:
+    """Sets to be solved together, with or without limits: poses with free joints held where the generating
+    configuration has them, `seeded` with it, or with `seeds` (N, dof) for all of them."""
+
+    samples: Sequence[SampleSet]
+    limits: bool
+    seeded: bool = False
+    seeds: Array | None = None
+
+    def stack(self, arm: ArmUnderTest) -> tuple[Stack, NDArray[np.int64]]:
+        """What is in several sets once, and where in it each pose of all sets is."""
+        q = np.concatenate([sample.q for sample in self.samples])
+        poses = np.concatenate([sample.poses for sample in self.samples])
+        seeds = q if self.seeds is None else self.seeds
+        known: dict[bytes, int] = {}
+        asked = np.concatenate([q, seeds, poses.reshape(len(q), 16)], axis=1)
+        places = np.array(
+            [known.setdefault(one.tobytes(), len(known)) for one in asked], dtype=np.int64
+        )
+        first = np.unique(places, return_index=True)[1]
+        free, seeded = arm.held_values(q[first], poses[first]), self.seeded
+        return Stack(poses[first], free, seeds[first] if seeded else None, self.limits), places
+
+    def trials(self, rows: Rows, places: NDArray[np.int64]) -> tuple[Trial, ...]:
+        """One a set."""
+        parts = np.split(places, np.cumsum([len(sample) for sample in self.samples])[:-1])
+        return tuple(
+            Trial(sample, rows.at(part), self.limits, self.seeded)
+            for sample, part in zip(self.samples, parts, strict=True)
+        )
+
+
+def ask_all(
+    runner: Runner, arm: ArmUnderTest, questions: Sequence[Question]
+) -> list[tuple[Trial, ...]]:
+    """The trials of each question, all solved in one call."""
+    stacks = [question.stack(arm) for question in questions]
+    answers = solve_stacks(runner, [stack for stack, _ in stacks])
+    return [
+        question.trials(rows, places)
+        for question, rows, (_, places) in zip(questions, answers, stacks, strict=True)
+    ]
+
+
 def run_trial(
     runner: Runner, arm: ArmUnderTest, sample: SampleSet, *, limits: bool, seeded: bool = False
 ) -> Trial:
-    """Solve all poses of the set, free joints held where the generating configuration has them."""
-    return run_trials(runner, arm, [sample], limits=limits, seeded=seeded)[0]
-
-
-def run_trials(
-    runner: Runner,
-    arm: ArmUnderTest,
-    samples: Sequence[SampleSet],
-    *,
-    limits: bool,
-    seeded: bool = False,
-) -> tuple[Trial, ...]:
-    """`run_trial` of several sets in one call: what is in several of them is solved once, and poses that
-    leave doubts come in large stacks."""
-    q = np.concatenate([sample.q for sample in samples])
-    poses = np.concatenate([sample.poses for sample in samples])
-    known: dict[bytes, int] = {}
-    asked = np.concatenate([q, poses.reshape(len(q), 16)], axis=1)
-    places = np.array(
-        [known.setdefault(one.tobytes(), len(known)) for one in asked], dtype=np.int64
-    )
-    first = np.unique(places, return_index=True)[1]
-    rows = runner.solve_many(
-        poses[first],
-        free=arm.held_values(q[first], poses[first]),
-        seeds=q[first] if seeded else None,
-        limits=limits,
-    )
-    parts = np.split(places, np.cumsum([len(sample) for sample in samples])[:-1])
-    return tuple(
-        Trial(sample, rows.at(part), limits, seeded)
-        for sample, part in zip(samples, parts, strict=True)
-    )
+    """That of one set."""
+    return ask_all(runner, arm, [Question([sample], limits, seeded)])[0][0]
 
 
 def nearest(arm: ArmUnderTest, a: Array, b: Array, *, same: bool = False) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from ikgen.model.transmission import Transmission
 from ikgen.verify.runners.cpp_header import CppHeader
 from ikgen.verify.runners.python_module import PythonModule
-from ikgen.verify.runners.runner import ArmConstants, Rows
+from ikgen.verify.runners.runner import ArmConstants, Rows, Stack, solve_stacks
 
 __all__ = ["JointRunner"]
 
@@ -41,9 +42,6 @@ class JointRunner:
             return joints
         return self._transmission.motors(joints)
 
-    def _joints(self, rows: Rows | None) -> Rows | None:
-        return None if rows is None else replace(rows, q=self._transmission.joints(rows.q))
-
     def solve(
         self,
         pose: Array,
@@ -65,16 +63,23 @@ class JointRunner:
         limits: bool = True,
     ) -> Rows:
         """`solve` for each of the poses (N, 4, 4) with free values (N, f) and seeds (N, dof)."""
-        near = None if seeds is None else self._motors(seeds)
-        found = self._joints(self._runner.solve_many(poses, free=free, seeds=near, limits=limits))
-        assert found is not None
-        return found
+        return self.solve_stacks([Stack(poses, free, seeds, limits)])[0]
+
+    def solve_stacks(self, stacks: Sequence[Stack]) -> list[Rows]:
+        """`solve_many` of each."""
+        asked = [
+            one if one.seeds is None else one._replace(seeds=self._motors(one.seeds))
+            for one in stacks
+        ]
+        found = solve_stacks(self._runner, asked)
+        return [replace(rows, q=self._transmission.joints(rows.q)) for rows in found]
 
     def solve_batch(
         self, poses: Array, limits: bool = True, free: Array | None = None
     ) -> Rows | None:
         """The code's own batch function."""
-        return self._joints(self._runner.solve_batch(poses, limits, free))
+        rows = self._runner.solve_batch(poses, limits, free)
+        return None if rows is None else replace(rows, q=self._transmission.joints(rows.q))
 
     def forward(self, q: Array) -> Array:
         """Poses (N, 4, 4) for q (N, dof)."""

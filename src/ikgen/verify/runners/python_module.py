@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import itertools
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -13,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.errors import BadDescriptionError
-from ikgen.verify.runners.runner import ArmConstants, Rows
+from ikgen.verify.runners.module_helpers import Answer, solve_with_helpers
+from ikgen.verify.runners.runner import ArmConstants, Rows, Stack
 
 __all__ = ["PythonModule"]
 
 Array = NDArray[np.float64]
-_Answer = tuple[Array, str, NDArray[np.bool_]]
 
 _ALONE = 32  # one pose of so many is solved by itself
 
@@ -97,7 +98,7 @@ class PythonModule:
         free: Array | None = None,
         seed: Array | None = None,
         limits: bool = True,
-    ) -> _Answer:
+    ) -> Answer:
         """Rows (k, dof), status and singular flags (k,) for one pose (4, 4)."""
         return self._answer(self.module.solve(pose, free=free, seed=seed, limits=limits))
 
@@ -114,38 +115,35 @@ class PythonModule:
         seeds: Array | None = None,
         limits: bool = True,
     ) -> Rows:
-        """`solve` for each of the poses (N, 4, 4) with free values (N, f) and seeds (N, dof): one of 32 by
-        itself, of the others those that leave doubts in stacks."""
-        each = np.arange(len(poses))
+        """`solve` for each of the poses (N, 4, 4) with free values (N, f) and seeds (N, dof)."""
+        return self.solve_stacks([Stack(poses, free, seeds, limits)])[0]
+
+    def solve_stacks(self, stacks: Sequence[Stack]) -> list[Rows]:
+        """`solve` for each pose: of 32 one by itself, of the others those that leave doubts in stacks; with
+        other processes where that takes long."""
+        answers = solve_with_helpers(self.path, stacks, self.answers)
+        return [self._rows(one) for one in answers]
+
+    def answers(self, stack: Stack) -> list[Answer]:
+        """Those to the poses of one stack, in this process."""
+        each = np.arange(len(stack.poses))
         stacks = hasattr(self.module, "_solve_each") and not hasattr(self.module, "_MOTORS")
         alone = each % _ALONE == 0 if stacks else each >= 0
-        frees, near = (None if x is None else x[~alone] for x in (free, seeds))
-        stacked = iter(() if alone.all() else self._stacked(poses[~alone], frees, near, limits))
-        answers = [
-            self.solve(
-                pose,
-                None if free is None else free[i],
-                None if seeds is None else seeds[i],
-                limits,
-            )
-            if alone[i]
-            else next(stacked)
-            for i, pose in enumerate(poses)
+        stacked = iter(() if alone.all() else self._stacked(stack.at(~alone)))
+        return [
+            self.solve(*one) if alone[i] else next(stacked) for i, one in enumerate(stack.each())
         ]
-        return self._rows(answers)
 
-    def _stacked(
-        self, poses: Array, free: Array | None, seeds: Array | None, limits: bool
-    ) -> list[_Answer]:
-        found = self.module._solve_each(self.module._ARM, poses, free, seeds, limits)
+    def _stacked(self, stack: Stack) -> list[Answer]:
+        found = self.module._solve_each(self.module._ARM, *stack)
         return [self._answer(one) for one in found]
 
-    def _answer(self, found: Any) -> _Answer:
+    def _answer(self, found: Any) -> Answer:
         """Of `Solutions`."""
         q = np.asarray(found.q, dtype=float).reshape(-1, self._constants.dof)
         return q, found.status.name, np.asarray(found.singular, dtype=bool).reshape(len(q))
 
-    def _rows(self, answers: list[_Answer]) -> Rows:
+    def _rows(self, answers: list[Answer]) -> Rows:
         width = max([self._constants.max_solutions, *(len(q) for q, _, _ in answers)])
         q = np.full((len(answers), width, self._constants.dof), np.nan)
         singular = np.zeros((len(answers), width), dtype=bool)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["ArmConstants", "MovingRunner", "Rows", "Runner"]
+__all__ = ["ArmConstants", "MovingRunner", "Rows", "Runner", "Stack", "StackRunner", "solve_stacks"]
 
 Array = NDArray[np.float64]
 
@@ -83,6 +83,26 @@ class Rows:
         return Rows(q, count, tuple(status), singular)
 
 
+class Stack(NamedTuple):
+    """`poses` (N, 4, 4) with values `free` (N, f) of held joints and `seeds` (N, dof), if there are any."""
+
+    poses: Array
+    free: Array | None = None
+    seeds: Array | None = None
+    limits: bool = True
+
+    def at(self, which: slice | NDArray[np.bool_] | NDArray[np.int64]) -> Stack:
+        """Some of the poses."""
+        free, seeds = (None if x is None else x[which] for x in (self.free, self.seeds))
+        return Stack(self.poses[which], free, seeds, self.limits)
+
+    def each(self) -> Iterator[tuple[Array, Array | None, Array | None, bool]]:
+        """Pose, held values, seed and limits of one after the other."""
+        for i, pose in enumerate(self.poses):
+            free, seed = (None if x is None else x[i] for x in (self.free, self.seeds))
+            yield pose, free, seed, self.limits
+
+
 class Runner(Protocol):
     """Emitted code that can be run. `label` is its language; `dynamic_shapes` says whether a
     wrongly shaped pose can be handed over at all (and must raise `ValueError`)."""
@@ -124,6 +144,25 @@ class Runner(Protocol):
 
     def jacobian(self, q: Array) -> Array:
         """Jacobians (N, 6, dof) for q (N, dof)."""
+
+
+@runtime_checkable
+class StackRunner(Protocol):
+    """A runner that solves several stacks faster than one after the other."""
+
+    def solve_stacks(self, stacks: Sequence[Stack]) -> list[Rows]:
+        """`Runner.solve_many` of each."""
+        ...
+
+
+def solve_stacks(runner: Runner, stacks: Sequence[Stack]) -> list[Rows]:
+    """`solve_many` of each stack."""
+    if isinstance(runner, StackRunner):
+        return runner.solve_stacks(stacks)
+    return [
+        runner.solve_many(one.poses, free=one.free, seeds=one.seeds, limits=one.limits)
+        for one in stacks
+    ]
 
 
 @runtime_checkable
