@@ -77,23 +77,28 @@ def elimination_lanes(arm: Arm, plan: Plan, entries: tuple[Array, ...]) -> tuple
 
     entries: the pose's first three rows, then cosines, sines and distances of held joints.
     """
-    columns = np.array([e.reshape(-1) for e in np.broadcast_arrays(*entries)])
-    count = columns.shape[1]
+    count = max(entry.size for entry in entries)
+    columns = np.empty((len(entries), count))
+    for column, entry in zip(columns, entries):
+        column[:] = entry.reshape(-1)
     lanes = np.ones((6 + sum(plan.turning), arm.most, count))
     found = np.zeros((arm.most, count), dtype=bool)
-    T = np.tile(np.eye(4), (count, 1, 1))
+    T = np.zeros((count, 4, 4))
     T[:, :3] = columns[:12].T.reshape(-1, 3, 4)
+    T[:, 3, 3] = 1.0
     held = columns[12:].T
     alike = bool((held == held[:1]).all())
     for start in range(0, count, _POSES):
         part = slice(start, start + _POSES)
         pose, values = _rows_of_poses(arm, plan, T[part], held[:1] if alike else held[part])
-        place, member, lane = places(pose), start + pose, 0
-        for value, turns in zip(values.T, plan.turning):
-            lanes[lane, place, member] = np.cos(value) if turns else value
-            if turns:
-                lanes[lane + 1, place, member] = np.sin(value)
-            lane += 2 if turns else 1
+        place, member = places(pose), start + pose
+        cosines, sines = np.cos(values.T), np.sin(values.T)
+        rows = [
+            row
+            for j, turns in enumerate(plan.turning)
+            for row in ((cosines[j], sines[j]) if turns else (values[:, j],))
+        ]
+        lanes[:, place, member] = rows
         found[place, member] = True
     return (*lanes, found)
 

@@ -47,7 +47,7 @@ def loop_constants(
         order = [(start + i) % 6 for i in range(6)]
         return order, [C[i] for i in order]
     order = [(start - i) % 6 for i in range(6)]
-    return order, [inverses(C[(i - 1) % 6]) for i in order]
+    return order, [of_constants(inverses, C[(i - 1) % 6]) for i in order]
 
 
 def joint_values(values: Array, order: list[int], reverse: int = 0) -> Array:
@@ -120,7 +120,8 @@ def loop_equations(C: list[Array]) -> tuple[Array, Array, Array]:
     invariants of `C_3 R_4 C_4 R_5 C_5` (n, 14, 9) in (1, c4, s4) x (1, c5, s5), and those of `R_2
     C_2 R_3 ... C_5 = C_1^-1 R_1^-1 C_6^-1 R_6^-1` (N, 14, 3) in (1, c1, s1)."""
     left = of_constants(left_invariants, *C[2:5])
-    Y = inverses(C[0])[:, None] @ np.swapaxes(ROTATIONS, 1, 2) @ inverses(C[5])[:, None]
+    first, last = (of_constants(inverses, c)[:, None] for c in (C[0], C[5]))
+    Y = first @ np.swapaxes(ROTATIONS, 1, 2) @ last
     right = np.swapaxes(FIT @ invariants(Y), 1, 2)
     G = of_constants(loop_action, C[1])
     null_6 = np.linalg.qr(right[:, ZS, 1:], mode="complete")[0][..., 2:]

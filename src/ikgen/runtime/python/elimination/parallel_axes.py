@@ -75,16 +75,22 @@ def _circle(t: Array) -> Array:
     return np.stack([np.ones_like(t), np.cos(t), np.sin(t)], axis=-1)
 
 
-def _beside(C: list[Array], links: ParallelLinks) -> tuple[Array, Array]:
-    """z_1, O_1 (n, 3, 6) times (1, cos, sin) of theta_6, and z_4, O_4, z_4 x O_4 (n, 3, 9) times those of
-    theta_5."""
+def _one(*C: Array) -> Array:
+    """z_1, O_1 (n, 3, 6) times (1, cos, sin) of theta_6, of links 0, 1, 2, 4 and 5."""
+    *others, back, last = C
+    z, o = last[..., :3, 2], last[..., :3, 3]
+    z, o = np.broadcast_arrays(z, o + links_of(parallel_links(others)).h1 * z)
+    one: Array = back[..., :3, :3] @ np.concatenate([_turning(z, 1.0), _turning(o, 1.0)], axis=-1)
+    one[..., 3] += back[..., :3, 3]
+    return one
+
+
+def _four(*C: Array) -> Array:
+    """z_4, O_4, z_4 x O_4 (n, 3, 9) times (1, cos, sin) of theta_5, of links 0 to 3."""
     four = inverses(C[3])
-    z1, o1 = np.broadcast_arrays(C[5][..., :3, 2], C[5][..., :3, 3] + links.h1 * C[5][..., :3, 2])
-    z4, o4 = np.broadcast_arrays(four[..., :3, 2], four[..., :3, 3] + links.h4 * four[..., :3, 2])
-    one = C[4][..., :3, :3] @ np.concatenate([_turning(z1, 1.0), _turning(o1, 1.0)], axis=-1)
-    one[..., 3] += C[4][..., :3, 3]
-    parts = [_turning(v, -1.0) for v in (z4, o4, cross(z4, o4))]
-    return one, np.concatenate(parts, axis=-1)
+    z, o = four[..., :3, 2], four[..., :3, 3]
+    z, o = np.broadcast_arrays(z, o + links_of(parallel_links(C)).h4 * z)
+    return np.concatenate([_turning(v, -1.0) for v in (z, o, cross(z, o))], axis=-1)
 
 
 def _products(one: Array, four: Array, six: Array) -> Array:
@@ -217,7 +223,7 @@ def parallel_candidates(F: Sequence[Array], T: Array, plan: Elimination, _: Turn
     order, C = loop_constants(F, T, start, reverse)
     measures, curves = parallel_links(C), _curves(kind, C)
     links = links_of(measures)
-    one, four = _beside(C, links)
+    one, four = of_constants(_one, *C[:3], *C[4:]), of_constants(_four, *C[:4])
     f = _resultant(kind, curves, _products(one, four, _circle(_TABLES[kind][0])[None]))
     doubtful = np.maximum(DOUBTFUL, _SPLIT * deviation(kind, links) ** 0.5)
     pose, t6, least, clear = _real_roots(kind, f, doubtful)
