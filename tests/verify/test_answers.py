@@ -82,6 +82,14 @@ def test_poses_with_rows_are_solved_in_a_batch_where_there_is_one() -> None:
         assert set(values[::2]) == {0.25} and (40, False, False, False) in runner.calls
 
 
+@pytest.mark.parametrize("task", ["direction", "rotation"])
+def test_tasks_that_reach_everywhere_have_no_poses_out_of_reach(task: str) -> None:
+    oracle = six_axis_oracle()
+    bounds = oracle.lower, oracle.upper
+    found = collect_answers(Asked(), arm_under_test(oracle, TASK_SPACES[task], bounds, ()), 40, 0)
+    assert not found.unreachable and len(found.limited.rows) == 40
+
+
 def test_what_is_held_is_handed_over() -> None:
     runner = Asked()
     collect_answers(runner, arm(("j3",)), 20, 0)

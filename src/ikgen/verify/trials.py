@@ -67,13 +67,17 @@ class Question:
 def ask_all(
     runner: Runner, arm: ArmUnderTest, questions: Sequence[Question]
 ) -> list[tuple[Trial, ...]]:
-    """The trials of each question, all solved in one call."""
-    stacks = [question.stack(arm) for question in questions]
-    answers = solve_stacks(runner, [stack for stack, _ in stacks])
-    return [
-        question.trials(rows, places)
-        for question, rows, (_, places) in zip(questions, answers, stacks, strict=True)
-    ]
+    """The trials of each question, all solved in one call; none of one without sets."""
+    stacks = [question.stack(arm) for question in questions if question.samples]
+    answers = zip(solve_stacks(runner, [stack for stack, _ in stacks]), stacks, strict=True)
+    trials: list[tuple[Trial, ...]] = []
+    for question in questions:
+        if not question.samples:
+            trials.append(())
+            continue
+        rows, (_, places) = next(answers)
+        trials.append(question.trials(rows, places))
+    return trials
 
 
 def run_trial(
