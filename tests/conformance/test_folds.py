@@ -19,7 +19,7 @@ from ikgen.verify.arm import ArmUnderTest
 from ikgen.verify.completeness import survey
 from ikgen.verify.runners.runner import Runner
 from ikgen.verify.sampling import SampleSet
-from ikgen.verify.trials import run_trial
+from ikgen.verify.trials import nearest, run_trial
 
 Array = NDArray[np.float64]
 
@@ -28,8 +28,16 @@ pytestmark = [
     pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or ""),
 ]
 
-ARMS = ("ur5e", "doosan_m1013", "fanuc_crx10ia")
-"""A continuum at the wrist, one that a file with offsets breaks into isolated solutions, an elimination."""
+ARMS = ("ur5e", "doosan_m1013", "fanuc_crx10ia", "measured")
+"""A continuum at the wrist, one that a file with offsets breaks into isolated solutions, an elimination;
+ur5e with short offsets, whose quartic divides by them."""
+
+MEASURED = {
+    'xyz="-0.425 0 0"': 'xyz="-0.425628 -0.001152 0.000346"',
+    'xyz="-0.3922 0 0.1333"': 'xyz="-0.39274 -0.001065 0.133624"',
+    'xyz="0 -0.0997 -2.044881182297852e-11"': 'xyz="0.000654 -0.101177 0.000203"',
+    'xyz="0 0.0996 -2.042830148012698e-11"': 'xyz="0.000808 0.098437 -0.000222"',
+}
 
 FOLDS = {
     "ur5e": [
@@ -42,6 +50,13 @@ FOLDS = {
         [0.5 * pi, 0.0, 0.0, 0.75 * pi, 0.0, 0.5 * pi],
         [1.6046566726690148, -2.0223269709953118, -2.28257596917011, -2.28909350703481, 1.2395e-4, -1.67],
         [-1.8760487350474973, -0.70900730592372, 1.59490233520665, -2.616762032884825, -2.6469e-5, 1.17],
+    ],
+    "measured": [
+        [-0.75111895356, 2.1392537001188, -0.0346364609224, -0.3406335186724, -3.1415694472653, 1.36992],
+        [1.29432046434, -1.8553812662845, -1.8049986261997, 1.7542030052082, -3.1415926162556, -2.39467],
+        [-1.0654692642, 2.9360229593098, -1.7090559467926, -0.6971556704367, 3.14159265962702, -1.43321],
+        [-1.0654691541, 2.9360228924123, -1.7090559217721, -0.6971558429400, 3.14159298898566, -1.43321],
+        [0.3, -1.2, 1.4, -0.5, 1e-6, 0.7],
     ],
     "fanuc_crx10ia": [
         [-0.8402492929786658, -0.8327335483597, -0.0382845655676, 1.20801285863, 2.0957160413791, 0.64361],
@@ -68,6 +83,18 @@ BROKEN = [
 """Of doosan_m1013: two solutions meet far from all rows that start from the closed form's."""
 
 
+DIGITS = [
+    ("0 0 0.123", "0 0 0"), ("0 0 0", "1.5708 -0.1359 -3.1416"), ("0.28503 0 0", "0 0 -1.7939"),
+    ("-0.021984 -0.25075 0", "1.5708 0 0"), ("0 0 0", "-1.5708 0 0"), ("0 -0.091 0", "1.5708 0 0"),
+]  # fmt: skip
+"""A spherical wrist of five digits: origins of its joints."""
+CROSSING = [
+    0.71254153598584924, 0.36090978463110718, -0.09039248308837429, 0.95217906786908091,
+    0.0080602407803691111, -0.60040183569898875,
+]  # fmt: skip
+"""Of that arm: its shoulder's continuum and its wrist's cross near it; rows start on one of them."""
+
+
 @dataclass(frozen=True)
 class Made:
     """One arm in both languages, and configurations whose rows meet, or nearly do."""
@@ -85,12 +112,43 @@ class Made:
 
 @pytest.fixture(scope="module", params=ARMS)
 def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Made:
-    derivation = derive(Request(FIXTURES / f"{request.param}.urdf"))
     folder: Path = tmp_path_factory.mktemp(request.param)
+    derivation = derive(
+        Request(measured(folder) if request.param == "measured" else robot(request.param))
+    )
     python, cpp = (runner_of(derivation, language, folder) for language in ("python", "cpp"))
     arm = arm_of(derivation)
     q = np.vstack([FOLDS[request.param], np.clip(special(120), arm.lower, arm.upper)])
     return Made(q, arm, python, cpp)
+
+
+def test_continua_that_cross_are_followed_from_what_is_found_between_them(tmp_path: Path) -> None:
+    joints = [
+        f'<joint name="j{k}" type="continuous"><parent link="l{k}"/><child link="l{k + 1}"/>'
+        f'<origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="0 0 1"/></joint><link name="l{k + 1}"/>'
+        for k, (xyz, rpy) in enumerate(DIGITS)
+    ]
+    path = tmp_path / "digits.urdf"
+    path.write_text(f'<robot name="digits"><link name="l0"/>{"".join(joints)}</robot>')
+    derivation = derive(Request(path))
+    runner = runner_of(derivation, "cpp", tmp_path)
+    q = np.array([CROSSING])
+    rows = runner.solve_many(runner.forward(q), limits=False)
+    assert nearest(arm_of(derivation), q[:, None], rows.q).max() < 1e-6
+
+
+def robot(name: str) -> Path:
+    return FIXTURES / f"{name}.urdf"
+
+
+def measured(folder: Path) -> Path:
+    text = robot("ur5e").read_text()
+    for before, after in MEASURED.items():
+        assert before in text
+        text = text.replace(before, after)
+    path = folder / "measured.urdf"
+    path.write_text(text)
+    return path
 
 
 def special(count: int) -> Array:

@@ -410,264 +410,6 @@ template <class Policy, int N, bool H> [[gnu::always_inline]] inline Mask<N> har
   return (off > Policy::kLimitTolerance) & (Policy::kLimitReach > off);
 }
 
-// --- lane rows -----------------------------------------------------------------------------------
-template <int P> struct Pose {
-  Lanes<P> t[3][4];
-};
-
-template <int P> [[gnu::always_inline]] inline Pose<P> gather(const Eigen::Isometry3d* poses) noexcept {
-  Pose<P> out;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 4; ++j) {
-      double entries[std::size_t{P}];
-      for (int p = 0; p < P; ++p) entries[p] = poses[p].matrix().data()[4 * j + i];
-      out.t[i][j] = load<P>(entries);
-    }
-  return out;
-}
-
-enum Bit { kFound = 1, kReal = 2, kSingular = 4, kRough = 8, kMeeting = 16, kHit = 32, kDoubt = 64 };
-
-template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> bit(const MaskOf<N, H>& mask, Bit value) noexcept {
-  return select(mask, static_cast<double>(value), 0.0);
-}
-
-template <int Dof, int Most, int P> struct LaneRows {
-  static constexpr int kLanes = Most * P;
-  alignas(64) double q[Dof][std::size_t{kLanes}];
-  alignas(64) double flags[std::size_t{kLanes}];
-
-  int bits(int lane) const noexcept { return static_cast<int>(flags[lane]); }
-  bool has(int lane, int all) const noexcept { return (bits(lane) & all) == all; }
-};
-
-template <int N, bool H> [[gnu::always_inline]] inline Lanes<N / 2> gap(const LanesOf<N, H>& x) noexcept {
-  if constexpr (H) {
-    return abs(x.lo - x.hi);
-  } else {
-    Lanes<N / 2> lo, hi;
-    std::memcpy(&lo.v, &x.v, sizeof(lo.v));
-    std::memcpy(&hi.v, reinterpret_cast<const char*>(&x.v) + sizeof(lo.v), sizeof(hi.v));
-    return abs(lo - hi);
-  }
-}
-template <class Policy, int N, class... X> [[gnu::always_inline]] inline auto meeting(const X&... x) noexcept {
-  return Policy::kMeeting > (gap(spread<N>(x)) + ...);
-}
-
-// --- solution rows -------------------------------------------------------------------------------
-template <class Arm> struct RowPlaces {
-  static constexpr std::size_t kRoom = 2 * Arm::kMaxSolutions;
-  int count = 0;
-  std::array<typename Arm::Joints, kRoom> q;
-  std::array<bool, kRoom> singular;
-};
-
-template <class Arm> struct SolutionRows {
-  using Options = typename Arm::Options;
-  using Policy = typename Arm::Policy;
-  template <class Out> static constexpr int kRoom = static_cast<int>(std::tuple_size<decltype(Out::q)>::value);
-
-  template <class Out> static double* row(Out& out, int k) noexcept { return out.q.data()[k].data(); }
-  template <class Out> static bool& flag(Out& out, int k) noexcept { return out.singular.data()[k]; }
-  template <class Out> static void move(Out& out, int from, int to) noexcept {
-    std::copy_n(row(out, from), Arm::kDof, row(out, to));
-    flag(out, to) = flag(out, from);
-  }
-
-  static bool finite(const double* q) noexcept {
-    return std::all_of(q, q + Arm::kDof, [](double x) { return std::isfinite(x); });
-  }
-
-  static double change(int j, const double* a, const double* b) noexcept {
-    const double gap = b[j] - a[j];
-    return Arm::kRevolute[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap;
-  }
-
-  static double beyond(int j, double x, double value) noexcept {
-    const double gap = value - x;
-    return std::abs(Arm::kRevolute[j] && !Arm::kHeld[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap);
-  }
-
-  static bool same(const double* a, const double* b) noexcept {
-    for (int j = 0; j < Arm::kDof; ++j) {
-      double gap = std::abs(a[j] - b[j]);
-      if (Arm::kRevolute[j] && gap > Policy::kCoincident) gap = std::abs(gap - kTurn * std::nearbyint(gap / kTurn));
-      const double bound = Policy::kCoincident * (Arm::kRevolute[j] ? 1.0 : std::max(std::abs(a[j]), 1.0));
-      if (!(gap <= bound)) return false;
-    }
-    return true;
-  }
-
-  template <class Out> static void add(Out& out, const double* q, bool singular) noexcept {
-    if (out.count == kRoom<Out> && singular) return;
-    for (int k = 0; k < out.count; ++k)
-      if (same(q, row(out, k))) return;
-    if (out.count == kRoom<Out> && !make_room(out)) return;
-    std::copy_n(q, Arm::kDof, row(out, out.count));
-    flag(out, out.count) = singular;
-    ++out.count;
-  }
-
-  template <class Out> [[gnu::cold, gnu::noinline]] static bool make_room(Out& out) noexcept {
-    for (int k = out.count - 1; k >= 0; --k) {
-      if (!flag(out, k)) continue;
-      for (--out.count; k < out.count; ++k) move(out, k + 1, k);
-      return true;
-    }
-    return false;
-  }
-
-  static constexpr bool one_turn() noexcept {
-    for (int j = 0; j < Arm::kDof; ++j) {
-      const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j], least = Policy::kLimitTolerance;
-      if (Arm::kRevolute[j] && !(low > -kPi && high <= kPi && high - low < kTurn - 2.0 * least)) return false;
-    }
-    return true;
-  }
-
-  static bool within(const double* q) noexcept {
-    bool in = true;
-    for (int j = 0; j < Arm::kDof; ++j) {
-      const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j];
-      in = in & (low <= q[j]) & (q[j] <= high);
-    }
-    return in;
-  }
-
-  enum class Place { Inside, Hardly, Outside };
-
-  static Place placed(double* q, const Options& options) noexcept {
-    if constexpr (one_turn())
-      if (options.limits && within(q)) return Place::Inside;
-    Place where = Place::Inside;
-    const double* seed = options.seed ? options.seed->data() : nullptr;
-    for (int j = 0; j < Arm::kDof; ++j) {
-      const double low = Arm::kLower.data()[j] - Policy::kLimitTolerance, high = Arm::kUpper.data()[j] + Policy::kLimitTolerance;
-      if (Arm::kRevolute[j] && !Arm::kHeld[j]) {
-        q[j] += q[j] <= -kPi ? kTurn : q[j] > kPi ? -kTurn : 0.0;
-        double shift = seed ? kTurn * std::nearbyint((seed[j] - q[j]) / kTurn) : 0.0;
-        if (options.limits && q[j] + shift < low) shift = kTurn * std::ceil((low - q[j]) / kTurn);
-        if (options.limits && q[j] + shift > high) shift = kTurn * std::floor((high - q[j]) / kTurn);
-        q[j] += shift;
-      }
-      if (!options.limits) continue;
-      if (!(low <= q[j] && q[j] <= high)) {
-        const double below = beyond(j, q[j], Arm::kLower.data()[j]), above = beyond(j, q[j], Arm::kUpper.data()[j]);
-        if (!(std::min(below, above) < Policy::kLimitReach)) return Place::Outside;
-        q[j] = below < above ? Arm::kLower.data()[j] : Arm::kUpper.data()[j];
-        where = Place::Hardly;
-      }
-      q[j] = std::min(std::max(q[j], Arm::kLower.data()[j]), Arm::kUpper.data()[j]);
-    }
-    return where;
-  }
-
-  static bool place(double* q, const Options& options) noexcept { return placed(q, options) == Place::Inside; }
-
-  template <class Out> static void sort_by_distance(Out& out, const double* seed) noexcept {
-    sort(out, [seed](const double* q) noexcept {
-      double sum = 0.0;
-      for (int j = 0; j < Arm::kDof; ++j) sum += (q[j] - seed[j]) * (q[j] - seed[j]);
-      return sum;
-    });
-  }
-
-  template <class Out, class Cost> static void sort(Out& out, const Cost& cost) noexcept {
-    const int count = out.count;
-    double costs[std::size_t{kRoom<Out>}], rows[std::size_t{kRoom<Out>}][Arm::kDof];
-    bool flags[std::size_t{kRoom<Out>}] = {};
-    int place[std::size_t{kRoom<Out>}] = {};
-    for (int k = 0; k < count; ++k) {
-      std::copy_n(row(out, k), Arm::kDof, rows[k]);
-      flags[k] = flag(out, k);
-      costs[k] = cost(rows[k]);
-      place[k] = 0;
-      for (int i = 0; i < k; ++i) {
-        const int before = costs[k] < costs[i] ? 1 : 0;
-        place[i] += before;
-        place[k] += 1 - before;
-      }
-    }
-    for (int k = 0; k < count; ++k) {
-      std::copy_n(rows[k], Arm::kDof, row(out, place[k]));
-      flag(out, place[k]) = flags[k];
-    }
-  }
-};
-
-// --- moving joints -------------------------------------------------------------------------------
-template <class Arm> struct MovingJoints {
-  static constexpr int kCount = Arm::kDof - static_cast<int>(Arm::kFreeJoints.size());
-  int joint[kCount] = {};
-
-  constexpr MovingJoints() noexcept {
-    for (int j = 0, k = 0; j < Arm::kDof; ++j)
-      if (!Arm::kHeld[j]) joint[k++] = j;
-  }
-  constexpr int operator[](int k) const noexcept { return joint[k]; }
-};
-
-template <class A> struct AllMoving : A {
-  static constexpr int kFree = 0;
-  static constexpr std::array<int, 0> kFreeJoints = {};
-  static constexpr bool kHeld[A::kDof] = {}, kArmAngle = false;
-  static constexpr int kRank = A::kWholePose ? A::kFreedoms : A::kDof - A::kFree;  // what the task fixes, or less
-};
-
-// --- held aim ------------------------------------------------------------------------------------
-template <class Arm, bool kAngle = Arm::kArmAngle> struct HeldAim {
-  static constexpr int kCount = 0;  // errors beside the pose's
-  Eigen::Isometry3d pose;
-
-  HeldAim(const Eigen::Isometry3d& T, const std::array<double, Arm::kFree>&) noexcept : pose(T) {}
-  explicit HeldAim(const Eigen::Isometry3d& T) noexcept : pose(T) {}
-
-  static HeldAim own(const double*) noexcept { return HeldAim(Eigen::Isometry3d::Identity()); }
-
-  static void values(const double* q, std::array<double, Arm::kFree>& held) noexcept {
-    for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) held.data()[k] = q[Arm::kFreeJoints.data()[k]];
-  }
-};
-
-// --- lane sines ----------------------------------------------------------------------------------
-template <int N> struct Sines {
-  Lanes<N> cosine, sine;
-};
-
-template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> nearest(const LanesOf<N, H>& x) noexcept {
-  constexpr double kShift = 6755399441055744.0;  // 1.5 * 2^52
-  return (x + kShift) - kShift;
-}
-
-template <int N, bool H> [[gnu::always_inline]] inline Sines<N> sines(const LanesOf<N, H>& x) noexcept {
-  const Lanes<N> k = nearest(0.63661977236758134 * x);
-  const Lanes<N> r = ((x - k * 1.570796325802803) - k * 9.920935791635221e-10) - k * 5.170182981794105e-19;
-  const Lanes<N> z = r * r, z2 = z * z, z4 = z2 * z2;
-  const Lanes<N> s = r - r * z * ((1.0 / 6 - z * (1.0 / 120)) + z2 * (1.0 / 5040 - z * (1.0 / 362880)) +
-                                  z4 * ((1.0 / 39916800 - z * (1.0 / 6227020800)) + z2 * (1.0 / 1307674368000)));
-  const Lanes<N> c = (1.0 - 0.5 * z) + z2 * ((1.0 / 24 - z * (1.0 / 720)) + z2 * (1.0 / 40320 - z * (1.0 / 3628800)) +
-                                            z4 * ((1.0 / 479001600 - z * (1.0 / 87178291200)) + z2 * (1.0 / 20922789888000)));
-  const Lanes<N> quarter = k - 4.0 * nearest(0.25 * k);  // -2, -1, 0, 1 or 2
-  const auto odd = (abs(quarter) > 0.5) & (1.5 > abs(quarter));
-  const Lanes<N> a = select(odd, s, c), b = select(odd, c, s);
-  return {select((quarter > 0.5) | (-1.5 > quarter), -a, a), select((-0.5 > quarter) | (quarter > 1.5), -b, b)};
-}
-
-template <int N, bool H>
-[[gnu::always_inline]] inline void turn_to(const LanesOf<N, H>& angle, LanesOf<N, H>& cosine, LanesOf<N, H>& sine) noexcept {
-  const Sines<N> of = sines(angle);
-  cosine = of.cosine;
-  sine = of.sine;
-}
-
-template <int N, bool H> [[gnu::always_inline]] inline Sines<N> turned(const Sines<N>& by, const LanesOf<N, H>& x) noexcept {
-  const Lanes<N> z = x * x;
-  const Lanes<N> s = x - x * z * ((1.0 / 6 - z * (1.0 / 120)) + z * z * (1.0 / 5040 - z * (1.0 / 362880)));
-  const Lanes<N> c = z * ((0.5 - z * (1.0 / 24)) + z * z * (1.0 / 720 - z * (1.0 / 40320)));  // 1 less it
-  return {by.cosine - (by.cosine * c + by.sine * s), by.sine - (by.sine * c - by.cosine * s)};
-}
-
 // --- small matrix --------------------------------------------------------------------------------
 template <class X> inline void cross(const X* a, const X* b, X* out) noexcept {
   out[0] = a[1] * b[2] - a[2] * b[1];
@@ -747,6 +489,80 @@ template <class Factor, class X, int N> inline void substitute(const Factor (&A)
   for (int i = 0; i < N; ++i) x[i] = x[i] * A[i][i];
   for (int i = N - 2; i >= 0; --i)
     for (int k = N - 1; k > i; --k) x[i] = x[i] - A[k][i] * x[k];
+}
+
+// --- damped step ---------------------------------------------------------------------------------
+template <class Policy, class X, int Rows, int Columns>
+inline void damped_step(const X (&V)[Rows][Columns], const X (&e)[Rows], const X& worst, X (&x)[Columns]) noexcept {
+  using std::max;
+  using std::min;
+  const X bounded = min(worst, 1.0);
+  X A[Columns][Columns];
+  for (int i = 0; i < Columns; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      A[i][j] = V[0][i] * V[0][j];
+      for (int r = 1; r < Rows; ++r) A[i][j] = A[i][j] + V[r][i] * V[r][j];
+    }
+    A[i][i] = A[i][i] + max(Policy::kDamping * (bounded * bounded), Policy::kLeastDamping);
+    x[i] = V[0][i] * e[0];
+    for (int r = 1; r < Rows; ++r) x[i] = x[i] + V[r][i] * e[r];
+  }
+  factor(A);
+  substitute(A, x);
+  for (X& one : x) one = min(max(one, -Policy::kLargestStep), Policy::kLargestStep);
+}
+
+// --- held aim ------------------------------------------------------------------------------------
+template <class Arm, bool kAngle = Arm::kArmAngle> struct HeldAim {
+  static constexpr int kCount = 0;  // errors beside the pose's
+  Eigen::Isometry3d pose;
+
+  HeldAim(const Eigen::Isometry3d& T, const std::array<double, Arm::kFree>&) noexcept : pose(T) {}
+  explicit HeldAim(const Eigen::Isometry3d& T) noexcept : pose(T) {}
+
+  static HeldAim own(const double*) noexcept { return HeldAim(Eigen::Isometry3d::Identity()); }
+
+  static void values(const double* q, std::array<double, Arm::kFree>& held) noexcept {
+    for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) held.data()[k] = q[Arm::kFreeJoints.data()[k]];
+  }
+};
+
+// --- lane sines ----------------------------------------------------------------------------------
+template <int N> struct Sines {
+  Lanes<N> cosine, sine;
+};
+
+template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> nearest(const LanesOf<N, H>& x) noexcept {
+  constexpr double kShift = 6755399441055744.0;  // 1.5 * 2^52
+  return (x + kShift) - kShift;
+}
+
+template <int N, bool H> [[gnu::always_inline]] inline Sines<N> sines(const LanesOf<N, H>& x) noexcept {
+  const Lanes<N> k = nearest(0.63661977236758134 * x);
+  const Lanes<N> r = ((x - k * 1.570796325802803) - k * 9.920935791635221e-10) - k * 5.170182981794105e-19;
+  const Lanes<N> z = r * r, z2 = z * z, z4 = z2 * z2;
+  const Lanes<N> s = r - r * z * ((1.0 / 6 - z * (1.0 / 120)) + z2 * (1.0 / 5040 - z * (1.0 / 362880)) +
+                                  z4 * ((1.0 / 39916800 - z * (1.0 / 6227020800)) + z2 * (1.0 / 1307674368000)));
+  const Lanes<N> c = (1.0 - 0.5 * z) + z2 * ((1.0 / 24 - z * (1.0 / 720)) + z2 * (1.0 / 40320 - z * (1.0 / 3628800)) +
+                                            z4 * ((1.0 / 479001600 - z * (1.0 / 87178291200)) + z2 * (1.0 / 20922789888000)));
+  const Lanes<N> quarter = k - 4.0 * nearest(0.25 * k);  // -2, -1, 0, 1 or 2
+  const auto odd = (abs(quarter) > 0.5) & (1.5 > abs(quarter));
+  const Lanes<N> a = select(odd, s, c), b = select(odd, c, s);
+  return {select((quarter > 0.5) | (-1.5 > quarter), -a, a), select((-0.5 > quarter) | (quarter > 1.5), -b, b)};
+}
+
+template <int N, bool H>
+[[gnu::always_inline]] inline void turn_to(const LanesOf<N, H>& angle, LanesOf<N, H>& cosine, LanesOf<N, H>& sine) noexcept {
+  const Sines<N> of = sines(angle);
+  cosine = of.cosine;
+  sine = of.sine;
+}
+
+template <int N, bool H> [[gnu::always_inline]] inline Sines<N> turned(const Sines<N>& by, const LanesOf<N, H>& x) noexcept {
+  const Lanes<N> z = x * x;
+  const Lanes<N> s = x - x * z * ((1.0 / 6 - z * (1.0 / 120)) + z * z * (1.0 / 5040 - z * (1.0 / 362880)));
+  const Lanes<N> c = z * ((0.5 - z * (1.0 / 24)) + z * z * (1.0 / 720 - z * (1.0 / 40320)));  // 1 less it
+  return {by.cosine - (by.cosine * c + by.sine * s), by.sine - (by.sine * c - by.cosine * s)};
 }
 
 // --- motion chain --------------------------------------------------------------------------------
@@ -912,6 +728,342 @@ template <class Arm> struct PoseError {
     double worst = 0.0;
     for (const double x : error) worst = std::abs(x) <= worst ? worst : std::abs(x);
     return worst;
+  }
+};
+
+// --- refinement course ---------------------------------------------------------------------------
+struct RefineStage {
+  int steps;
+  double fine, promising;
+};
+
+template <class Policy> struct RefinementCourse {
+  double best = kInfinity;  // the least error of this stage
+
+  bool takes(double worst) noexcept {
+    stalled = worst < Policy::kProgress * best && worst > Policy::kConverged ? 0 : stalled + 1;
+    if (!(worst < best)) return false;
+    best = worst;
+    return true;
+  }
+
+  bool starts_again() noexcept {
+    if (step++ < stage().steps && stalled < Policy::kPatience && best > Policy::kConverged) return false;
+    done = !(best >= stage().fine && best < stage().promising) || at + 1 == std::size(Policy::kRefinement);
+    if (done) return true;
+    ++at;
+    step = stalled = 0;
+    best = kInfinity;
+    return true;
+  }
+
+  bool done = false;
+
+ private:
+  std::size_t at = 0;
+  int step = 0, stalled = 0;
+
+  const RefineStage& stage() const noexcept { return Policy::kRefinement[at]; }
+};
+
+// --- newton refinement ---------------------------------------------------------------------------
+template <class Arm> struct NewtonRefinement {
+  using Aim = HeldAim<Arm>;
+  using Policy = typename Arm::Policy;
+
+  static double error_after(double* q, const Aim& aim, const bool* still = nullptr) noexcept {
+    double trial[Arm::kDof];
+    std::copy_n(q, Arm::kDof, trial);
+    for (RefinementCourse<Policy> course;;) {
+      PoseError<Arm> at(trial, aim);
+      if (still != nullptr) at.hold(still);
+      const double worst = at.largest();
+      if (course.takes(worst)) std::copy_n(trial, Arm::kDof, q);
+      if (course.starts_again()) {
+        if (course.done) return course.best;
+        std::copy_n(q, Arm::kDof, trial);
+      } else {
+        double step[Arm::kDof];
+        damped_step<Policy>(at.slope, at.error, worst, step);
+        for (int j = 0; j < Arm::kDof; ++j) trial[j] += step[j];
+      }
+    }
+  }
+
+  static bool refine(double* q, const Aim& aim) noexcept {
+    return error_after(q, aim) < Policy::kArrived;
+  }
+};
+
+// --- lane rows -----------------------------------------------------------------------------------
+template <int P> struct Pose {
+  Lanes<P> t[3][4];
+};
+
+template <int P> [[gnu::always_inline]] inline Pose<P> gather(const Eigen::Isometry3d* poses) noexcept {
+  Pose<P> out;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 4; ++j) {
+      double entries[std::size_t{P}];
+      for (int p = 0; p < P; ++p) entries[p] = poses[p].matrix().data()[4 * j + i];
+      out.t[i][j] = load<P>(entries);
+    }
+  return out;
+}
+
+enum Bit { kFound = 1, kReal = 2, kSingular = 4, kRough = 8, kMeeting = 16, kHit = 32, kDoubt = 64 };
+
+template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> bit(const MaskOf<N, H>& mask, Bit value) noexcept {
+  return select(mask, static_cast<double>(value), 0.0);
+}
+
+template <int Dof, int Most, int P> struct LaneRows {
+  static constexpr int kLanes = Most * P;
+  alignas(64) double q[Dof][std::size_t{kLanes}];
+  alignas(64) double flags[std::size_t{kLanes}];
+
+  int bits(int lane) const noexcept { return static_cast<int>(flags[lane]); }
+  bool has(int lane, int all) const noexcept { return (bits(lane) & all) == all; }
+};
+
+template <int N, bool H> [[gnu::always_inline]] inline Lanes<N / 2> gap(const LanesOf<N, H>& x) noexcept {
+  if constexpr (H) {
+    return abs(x.lo - x.hi);
+  } else {
+    Lanes<N / 2> lo, hi;
+    std::memcpy(&lo.v, &x.v, sizeof(lo.v));
+    std::memcpy(&hi.v, reinterpret_cast<const char*>(&x.v) + sizeof(lo.v), sizeof(hi.v));
+    return abs(lo - hi);
+  }
+}
+template <class Policy, int N, class... X> [[gnu::always_inline]] inline auto meeting(const X&... x) noexcept {
+  return Policy::kMeeting > (gap(spread<N>(x)) + ...);
+}
+
+// --- moving joints -------------------------------------------------------------------------------
+template <class Arm> struct MovingJoints {
+  static constexpr int kCount = Arm::kDof - static_cast<int>(Arm::kFreeJoints.size());
+  int joint[kCount] = {};
+
+  constexpr MovingJoints() noexcept {
+    for (int j = 0, k = 0; j < Arm::kDof; ++j)
+      if (!Arm::kHeld[j]) joint[k++] = j;
+  }
+  constexpr int operator[](int k) const noexcept { return joint[k]; }
+};
+
+template <class A> struct AllMoving : A {
+  static constexpr int kFree = 0;
+  static constexpr std::array<int, 0> kFreeJoints = {};
+  static constexpr bool kHeld[A::kDof] = {}, kArmAngle = false;
+  static constexpr int kRank = A::kWholePose ? A::kFreedoms : A::kDof - A::kFree;  // what the task fixes, or less
+};
+
+// --- rank loss -----------------------------------------------------------------------------------
+template <class Arm> struct RankLoss {
+  static constexpr MovingJoints<Arm> kJoints{};
+  static constexpr int kMoving = MovingJoints<Arm>::kCount, kEquations = PoseError<Arm>::kCount;
+  static constexpr int kRank = kMoving < kEquations ? kMoving : kEquations;
+
+  static bool below(const double* q, double bound) noexcept {
+    const PoseError<Arm> at(q, HeldAim<Arm>::own(q));
+    return !above(at.slope, bound);
+  }
+
+ private:
+  template <class X> static auto above(const X (&slope)[kEquations][Arm::kDof], double bound) noexcept {
+    X A[kRank][kRank];
+    for (int a = 0; a < kRank; ++a)
+      for (int b = 0; b <= a; ++b) {
+        if constexpr (kMoving < kEquations) {
+          A[a][b] = slope[0][kJoints[a]] * slope[0][kJoints[b]];
+          for (int e = 1; e < kEquations; ++e) A[a][b] = A[a][b] + slope[e][kJoints[a]] * slope[e][kJoints[b]];
+        } else {
+          A[a][b] = slope[a][kJoints[0]] * slope[b][kJoints[0]];
+          for (int k = 1; k < kMoving; ++k) A[a][b] = A[a][b] + slope[a][kJoints[k]] * slope[b][kJoints[k]];
+        }
+        if (a == b) A[a][b] = A[a][b] - bound * bound;
+      }
+    factor(A);
+    return definite(A);
+  }
+};
+
+// --- solution rows -------------------------------------------------------------------------------
+template <class Arm> struct RowPlaces {
+  static constexpr std::size_t kRoom = 2 * Arm::kMaxSolutions;
+  int count = 0;
+  std::array<typename Arm::Joints, kRoom> q;
+  std::array<bool, kRoom> singular;
+};
+
+template <class Arm> struct SolutionRows {
+  using Options = typename Arm::Options;
+  using Policy = typename Arm::Policy;
+  template <class Out> static constexpr int kRoom = static_cast<int>(std::tuple_size<decltype(Out::q)>::value);
+
+  template <class Out> static double* row(Out& out, int k) noexcept { return out.q.data()[k].data(); }
+  template <class Out> static bool& flag(Out& out, int k) noexcept { return out.singular.data()[k]; }
+  template <class Out> static void move(Out& out, int from, int to) noexcept {
+    std::copy_n(row(out, from), Arm::kDof, row(out, to));
+    flag(out, to) = flag(out, from);
+  }
+
+  static bool finite(const double* q) noexcept {
+    return std::all_of(q, q + Arm::kDof, [](double x) { return std::isfinite(x); });
+  }
+
+  static double change(int j, const double* a, const double* b) noexcept {
+    const double gap = b[j] - a[j];
+    return Arm::kRevolute[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap;
+  }
+
+  static double beyond(int j, double x, double value) noexcept {
+    const double gap = value - x;
+    return std::abs(Arm::kRevolute[j] && !Arm::kHeld[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap);
+  }
+
+  static bool same(const double* a, const double* b) noexcept {
+    for (int j = 0; j < Arm::kDof; ++j) {
+      double gap = std::abs(a[j] - b[j]);
+      if (Arm::kRevolute[j] && gap > Policy::kCoincident) gap = std::abs(gap - kTurn * std::nearbyint(gap / kTurn));
+      const double bound = Policy::kCoincident * (Arm::kRevolute[j] ? 1.0 : std::max(std::abs(a[j]), 1.0));
+      if (!(gap <= bound)) return false;
+    }
+    return true;
+  }
+
+  template <class Out> static void add(Out& out, const double* q, bool singular) noexcept {
+    if (out.count == kRoom<Out> && singular) return;
+    for (int k = 0; k < out.count; ++k)
+      if (same(q, row(out, k))) return;
+    if (out.count == kRoom<Out> && !make_room(out)) return;
+    std::copy_n(q, Arm::kDof, row(out, out.count));
+    flag(out, out.count) = singular;
+    ++out.count;
+  }
+
+  template <class Out> [[gnu::cold, gnu::noinline]] static bool make_room(Out& out) noexcept {
+    for (int k = out.count - 1; k >= 0; --k) {
+      if (!flag(out, k)) continue;
+      for (--out.count; k < out.count; ++k) move(out, k + 1, k);
+      return true;
+    }
+    return false;
+  }
+
+  static constexpr bool one_turn() noexcept {
+    for (int j = 0; j < Arm::kDof; ++j) {
+      const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j], least = Policy::kLimitTolerance;
+      if (Arm::kRevolute[j] && !(low > -kPi && high <= kPi && high - low < kTurn - 2.0 * least)) return false;
+    }
+    return true;
+  }
+
+  static bool within(const double* q) noexcept {
+    bool in = true;
+    for (int j = 0; j < Arm::kDof; ++j) {
+      const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j];
+      in = in & (low <= q[j]) & (q[j] <= high);
+    }
+    return in;
+  }
+
+  enum class Place { Inside, Hardly, Outside };
+
+  static Place placed(double* q, const Options& options) noexcept {
+    if constexpr (one_turn())
+      if (options.limits && within(q)) return Place::Inside;
+    Place where = Place::Inside;
+    const double* seed = options.seed ? options.seed->data() : nullptr;
+    for (int j = 0; j < Arm::kDof; ++j) {
+      const double low = Arm::kLower.data()[j] - Policy::kLimitTolerance, high = Arm::kUpper.data()[j] + Policy::kLimitTolerance;
+      if (Arm::kRevolute[j] && !Arm::kHeld[j]) {
+        q[j] += q[j] <= -kPi ? kTurn : q[j] > kPi ? -kTurn : 0.0;
+        double shift = seed ? kTurn * std::nearbyint((seed[j] - q[j]) / kTurn) : 0.0;
+        if (options.limits && q[j] + shift < low) shift = kTurn * std::ceil((low - q[j]) / kTurn);
+        if (options.limits && q[j] + shift > high) shift = kTurn * std::floor((high - q[j]) / kTurn);
+        q[j] += shift;
+      }
+      if (!options.limits) continue;
+      if (!(low <= q[j] && q[j] <= high)) {
+        const double below = beyond(j, q[j], Arm::kLower.data()[j]), above = beyond(j, q[j], Arm::kUpper.data()[j]);
+        if (!(std::min(below, above) < Policy::kLimitReach)) return Place::Outside;
+        q[j] = below < above ? Arm::kLower.data()[j] : Arm::kUpper.data()[j];
+        where = Place::Hardly;
+      }
+      q[j] = std::min(std::max(q[j], Arm::kLower.data()[j]), Arm::kUpper.data()[j]);
+    }
+    return where;
+  }
+
+  static bool place(double* q, const Options& options) noexcept { return placed(q, options) == Place::Inside; }
+
+  template <class Out> static void sort_by_distance(Out& out, const double* seed) noexcept {
+    sort(out, [seed](const double* q) noexcept {
+      double sum = 0.0;
+      for (int j = 0; j < Arm::kDof; ++j) sum += (q[j] - seed[j]) * (q[j] - seed[j]);
+      return sum;
+    });
+  }
+
+  template <class Out, class Cost> static void sort(Out& out, const Cost& cost) noexcept {
+    const int count = out.count;
+    double costs[std::size_t{kRoom<Out>}], rows[std::size_t{kRoom<Out>}][Arm::kDof];
+    bool flags[std::size_t{kRoom<Out>}] = {};
+    int place[std::size_t{kRoom<Out>}] = {};
+    for (int k = 0; k < count; ++k) {
+      std::copy_n(row(out, k), Arm::kDof, rows[k]);
+      flags[k] = flag(out, k);
+      costs[k] = cost(rows[k]);
+      place[k] = 0;
+      for (int i = 0; i < k; ++i) {
+        const int before = costs[k] < costs[i] ? 1 : 0;
+        place[i] += before;
+        place[k] += 1 - before;
+      }
+    }
+    for (int k = 0; k < count; ++k) {
+      std::copy_n(rows[k], Arm::kDof, row(out, place[k]));
+      flag(out, place[k]) = flags[k];
+    }
+  }
+};
+
+// --- row pair ------------------------------------------------------------------------------------
+template <class Arm> struct RowPair {
+  using Policy = typename Arm::Policy;
+
+  static bool within(double reach, const double* a, const double* b) noexcept {
+    for (int j = 0; j < Arm::kDof; ++j)
+      if (!(std::abs(SolutionRows<Arm>::change(j, a, b)) < reach)) return false;
+    return true;
+  }
+
+  template <class Out> static bool any_within(double reach, const double* q, Out& rows) noexcept {
+    for (int k = 0; k < rows.count; ++k)
+      if (within(reach, q, SolutionRows<Arm>::row(rows, k))) return true;
+    return false;
+  }
+
+  static bool between(const HeldAim<Arm>& aim, const double* a, const double* b) noexcept {
+    if (!within(Policy::kAlike, a, b)) return false;
+    double middle[Arm::kDof];
+    for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * SolutionRows<Arm>::change(j, a, b);
+    return PoseError<Arm>(middle, aim).largest() < Policy::kHalfway;
+  }
+};
+
+// --- right rows ----------------------------------------------------------------------------------
+template <class Arm> struct RightRows {
+  using Policy = typename Arm::Policy;
+  using Row = SolutionRows<Arm>;
+
+  static void add(const HeldAim<Arm>& aim, RowPlaces<Arm>& out, const double* q, bool marked) noexcept {
+    const bool singular = RankLoss<Arm>::below(q, marked ? Policy::kContinuumRankLoss : Policy::kRankLoss);
+    for (int k = 0; k < out.count && singular; ++k)
+      if (Row::flag(out, k) && RowPair<Arm>::between(aim, q, Row::row(out, k))) return;
+    Row::add(out, q, singular);
   }
 };
 
@@ -1497,145 +1649,6 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
   }
 };
 
-// --- rank loss -----------------------------------------------------------------------------------
-template <class Arm> struct RankLoss {
-  static constexpr MovingJoints<Arm> kJoints{};
-  static constexpr int kMoving = MovingJoints<Arm>::kCount, kEquations = PoseError<Arm>::kCount;
-  static constexpr int kRank = kMoving < kEquations ? kMoving : kEquations;
-
-  static bool below(const double* q, double bound) noexcept {
-    const PoseError<Arm> at(q, HeldAim<Arm>::own(q));
-    return !above(at.slope, bound);
-  }
-
- private:
-  template <class X> static auto above(const X (&slope)[kEquations][Arm::kDof], double bound) noexcept {
-    X A[kRank][kRank];
-    for (int a = 0; a < kRank; ++a)
-      for (int b = 0; b <= a; ++b) {
-        if constexpr (kMoving < kEquations) {
-          A[a][b] = slope[0][kJoints[a]] * slope[0][kJoints[b]];
-          for (int e = 1; e < kEquations; ++e) A[a][b] = A[a][b] + slope[e][kJoints[a]] * slope[e][kJoints[b]];
-        } else {
-          A[a][b] = slope[a][kJoints[0]] * slope[b][kJoints[0]];
-          for (int k = 1; k < kMoving; ++k) A[a][b] = A[a][b] + slope[a][kJoints[k]] * slope[b][kJoints[k]];
-        }
-        if (a == b) A[a][b] = A[a][b] - bound * bound;
-      }
-    factor(A);
-    return definite(A);
-  }
-};
-
-// --- row pair ------------------------------------------------------------------------------------
-template <class Arm> struct RowPair {
-  using Policy = typename Arm::Policy;
-
-  static bool within(double reach, const double* a, const double* b) noexcept {
-    for (int j = 0; j < Arm::kDof; ++j)
-      if (!(std::abs(SolutionRows<Arm>::change(j, a, b)) < reach)) return false;
-    return true;
-  }
-
-  template <class Out> static bool any_within(double reach, const double* q, Out& rows) noexcept {
-    for (int k = 0; k < rows.count; ++k)
-      if (within(reach, q, SolutionRows<Arm>::row(rows, k))) return true;
-    return false;
-  }
-
-  static bool between(const HeldAim<Arm>& aim, const double* a, const double* b) noexcept {
-    if (!within(Policy::kAlike, a, b)) return false;
-    double middle[Arm::kDof];
-    for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * SolutionRows<Arm>::change(j, a, b);
-    return PoseError<Arm>(middle, aim).largest() < Policy::kHalfway;
-  }
-};
-
-// --- damped step ---------------------------------------------------------------------------------
-template <class Policy, class X, int Rows, int Columns>
-inline void damped_step(const X (&V)[Rows][Columns], const X (&e)[Rows], const X& worst, X (&x)[Columns]) noexcept {
-  using std::max;
-  using std::min;
-  const X bounded = min(worst, 1.0);
-  X A[Columns][Columns];
-  for (int i = 0; i < Columns; ++i) {
-    for (int j = 0; j <= i; ++j) {
-      A[i][j] = V[0][i] * V[0][j];
-      for (int r = 1; r < Rows; ++r) A[i][j] = A[i][j] + V[r][i] * V[r][j];
-    }
-    A[i][i] = A[i][i] + max(Policy::kDamping * (bounded * bounded), Policy::kLeastDamping);
-    x[i] = V[0][i] * e[0];
-    for (int r = 1; r < Rows; ++r) x[i] = x[i] + V[r][i] * e[r];
-  }
-  factor(A);
-  substitute(A, x);
-  for (X& one : x) one = min(max(one, -Policy::kLargestStep), Policy::kLargestStep);
-}
-
-// --- refinement course ---------------------------------------------------------------------------
-struct RefineStage {
-  int steps;
-  double fine, promising;
-};
-
-template <class Policy> struct RefinementCourse {
-  double best = kInfinity;  // the least error of this stage
-
-  bool takes(double worst) noexcept {
-    stalled = worst < Policy::kProgress * best && worst > Policy::kConverged ? 0 : stalled + 1;
-    if (!(worst < best)) return false;
-    best = worst;
-    return true;
-  }
-
-  bool starts_again() noexcept {
-    if (step++ < stage().steps && stalled < Policy::kPatience && best > Policy::kConverged) return false;
-    done = !(best >= stage().fine && best < stage().promising) || at + 1 == std::size(Policy::kRefinement);
-    if (done) return true;
-    ++at;
-    step = stalled = 0;
-    best = kInfinity;
-    return true;
-  }
-
-  bool done = false;
-
- private:
-  std::size_t at = 0;
-  int step = 0, stalled = 0;
-
-  const RefineStage& stage() const noexcept { return Policy::kRefinement[at]; }
-};
-
-// --- newton refinement ---------------------------------------------------------------------------
-template <class Arm> struct NewtonRefinement {
-  using Aim = HeldAim<Arm>;
-  using Policy = typename Arm::Policy;
-
-  static double error_after(double* q, const Aim& aim, const bool* still = nullptr) noexcept {
-    double trial[Arm::kDof];
-    std::copy_n(q, Arm::kDof, trial);
-    for (RefinementCourse<Policy> course;;) {
-      PoseError<Arm> at(trial, aim);
-      if (still != nullptr) at.hold(still);
-      const double worst = at.largest();
-      if (course.takes(worst)) std::copy_n(trial, Arm::kDof, q);
-      if (course.starts_again()) {
-        if (course.done) return course.best;
-        std::copy_n(q, Arm::kDof, trial);
-      } else {
-        double step[Arm::kDof];
-        damped_step<Policy>(at.slope, at.error, worst, step);
-        for (int j = 0; j < Arm::kDof; ++j) trial[j] += step[j];
-      }
-    }
-  }
-
-  static bool refine(double* q, const Aim& aim) noexcept {
-    return error_after(q, aim) < Policy::kArrived;
-  }
-};
-
 // --- lane ends -----------------------------------------------------------------------------------
 template <class Arm> struct LaneEnd {
   const typename Arm::template Rows<1>& rows;
@@ -1660,16 +1673,145 @@ template <class Arm, std::size_t K> struct LaneEnds {
   }
 };
 
-// --- careful rows --------------------------------------------------------------------------------
-template <class Arm> struct CarefulRows {
+// --- row starts ----------------------------------------------------------------------------------
+template <class Arm> struct RowStart {
   using Aim = HeldAim<Arm>;
-  using Options = typename Arm::Options;
+  using Fold = FoldPair<Arm>;
+  using Pair = RowPair<Arm>;
+  using Places = RowPlaces<Arm>;
+  using Policy = typename Arm::Policy;
+  using Refinement = NewtonRefinement<Arm>;
+  using Rows = typename Arm::template Rows<1>;
+
+  bool marked = false, nearby = false, settled = false, exact = false;  // settled: a solution, whatever else there is
+  bool alone = false;  // whether steps showed that it is the one solution near its start
+  bool around = false;  // whether the solutions of the continuum that it lies on are known
+  int lane = 0;
+  double error = 0.0, start[Arm::kDof], q[Arm::kDof];
+
+  RowStart() = default;
+  RowStart(const Rows& rows, int from, bool singular) noexcept : marked(singular), lane(from) {
+    for (int j = 0; j < Arm::kDof; ++j) start[j] = q[j] = rows.q[j][lane];
+  }
+
+  void refine([[maybe_unused]] const Aim& aim, [[maybe_unused]] const LaneEnd<Arm>& end) noexcept {
+    error = Refinement::error_after(q, aim);
+  }
+
+  void judge() noexcept {
+    nearby = !marked && !alone && RankLoss<Arm>::below(q, Policy::kFoldReach);
+    settled = error < (nearby ? Policy::kConverged : Policy::kArrived);
+  }
+
+  bool close() const noexcept { return nearby && RankLoss<Arm>::below(q, Policy::kBesideReach); }
+
+  void take(const Aim& aim, const double* from, Places& out) noexcept {
+    double trial[Arm::kDof];
+    std::copy_n(from, Arm::kDof, trial);
+    const double left = Refinement::error_after(trial, aim);
+    if (left < Policy::kExact) {
+      exact = true;
+      RightRows<Arm>::add(aim, out, trial, marked);
+    } else if (left < error) {
+      error = left;
+      std::copy_n(trial, Arm::kDof, q);
+    }
+  }
+
+  void take_rest(const Aim& aim, Places& out) noexcept {
+    if (!exact && !settled && error < Policy::kArrived) RightRows<Arm>::add(aim, out, q, marked);
+  }
+
+  void add_nearby(const Aim& aim, Places& out) noexcept {
+    std::copy_n(q, Arm::kDof, start);
+    const auto known = [&out](const double* row, double reach) noexcept { return Pair::any_within(reach, row, out); };
+    for (const double side : {1.0, -1.0}) {
+      double trial[Arm::kDof];
+      std::copy_n(start, Arm::kDof, trial);
+      const auto led = Fold(aim).approach(side, trial, known);
+      if (led == Fold::Led::Between) break;  // nor on the other side
+      if (led == Fold::Led::There) take(aim, trial, out);
+    }
+    take_rest(aim, out);
+  }
+
+  bool add_around(const Aim& aim, typename NearContinuum<Arm>::Passed& passed, Places& out) noexcept {
+    NearContinuum<Arm> curve(aim);
+    const bool none = curve.trace(start, passed) == NearContinuum<Arm>::Kind::None;
+    RowStart aside(*this);
+    if (!none) error = kInfinity;
+    for (int k = 0; k < curve.count; ++k) (none ? aside : *this).take(aim, curve.found[k], out);
+    if (none) return false;
+    take(aim, start, out);
+    take_rest(aim, out);
+    return true;
+  }
+};
+
+template <class Arm> struct RowStarts {
+  using Aim = HeldAim<Arm>;
   using Pair = RowPair<Arm>;
   using Places = RowPlaces<Arm>;
   using Policy = typename Arm::Policy;
   using Refinement = NewtonRefinement<Arm>;
   using Row = SolutionRows<Arm>;
   using Rows = typename Arm::template Rows<1>;
+  using Start = RowStart<Arm>;
+
+  int count = 0;
+  bool doubt = false, traced[Arm::kLanes] = {};  // doubt: whether rows of the pose itself may have others near them
+  typename NearContinuum<Arm>::Passed passed;
+  std::array<Start, std::size_t{Arm::kLanes} * (1 + Arm::kBesides)> all;
+
+  Start& at(int k) noexcept { return all[static_cast<std::size_t>(k)]; }
+
+  bool marked(const Rows& rows, int lane) const noexcept {
+    return rows.has(lane, kSingular) || (doubt && rows.has(lane, kReal | kDoubt));
+  }
+
+  bool close() const noexcept {
+    return std::any_of(all.begin(), all.begin() + count, [](const Start& one) { return one.close() && !one.around; });
+  }
+
+  bool any_traced() const noexcept { return std::find(std::begin(traced), std::end(traced), true) != std::end(traced); }
+
+  void take(Start start, const LaneEnd<Arm>& end, bool beside, const Aim& aim, Places& out) noexcept {
+    if (!(Arm::kRounded && start.marked)) start.refine(aim, end);
+    if (start.marked && (Arm::kRounded || !(start.error < Policy::kArrived))) {
+      if (!traced[start.lane]) traced[start.lane] = start.add_around(aim, passed, out);
+      if (traced[start.lane]) return;
+      start.marked = false;
+      start.refine(aim, end);
+    }
+    for (int k = 0; k < count; ++k)
+      if ((beside || start.alone) && Row::same(start.q, at(k).q)) {
+        if (beside) return;
+        start.alone = false;
+      }
+    if (beside) start.alone = false;
+    Start& one = at(count) = start;
+    one.judge();
+    for (int k = 0; k < count && beside && one.nearby && !one.settled; ++k)
+      if (at(k).nearby && Pair::within(Policy::kAlike, one.q, at(k).q)) return;
+    ++count;
+    if (!one.settled) return;
+    if (one.nearby || one.marked)
+      RightRows<Arm>::add(aim, out, one.q, one.marked);
+    else
+      Row::add(out, one.q, false);
+  }
+};
+
+// --- careful rows --------------------------------------------------------------------------------
+template <class Arm> struct CarefulRows {
+  using Aim = HeldAim<Arm>;
+  using Options = typename Arm::Options;
+  using Places = RowPlaces<Arm>;
+  using Policy = typename Arm::Policy;
+  using Refinement = NewtonRefinement<Arm>;
+  using Row = SolutionRows<Arm>;
+  using Rows = typename Arm::template Rows<1>;
+  using Starts = RowStarts<Arm>;
 
   struct Left {
     bool free = false, led = false;
@@ -1689,14 +1831,7 @@ template <class Arm> struct CarefulRows {
   static void add_from(const Aim& aim, const double* q0, Places& out) noexcept {
     double q[Arm::kDof];
     std::copy_n(q0, Arm::kDof, q);
-    if (Refinement::refine(q, aim)) add(aim, out, q, true);
-  }
-
-  static void add(const Aim& aim, Places& out, const double* q, bool marked) noexcept {
-    const bool singular = RankLoss<Arm>::below(q, marked ? Policy::kContinuumRankLoss : Policy::kRankLoss);
-    for (int k = 0; k < out.count && singular; ++k)
-      if (Row::flag(out, k) && Pair::between(aim, q, Row::row(out, k))) return;
-    Row::add(out, q, singular);
+    if (Refinement::refine(q, aim)) RightRows<Arm>::add(aim, out, q, true);
   }
 
   [[gnu::always_inline]] static Left find_rows(const Aim& aim, const double* q0, const Options& options,
@@ -1722,6 +1857,7 @@ template <class Arm> struct CarefulRows {
         starts.take({rows, lane, starts.marked(rows, lane)}, ends.at(0, lane), false, aim, out);
     if (starts.count == 0 && left.free && out.count == known) take_all(aim, only, options, starts, out);
     left.led = left.led || starts.any_traced();
+    [[maybe_unused]] const int early = out.count;
     for (int k = 0; k < starts.count; ++k)
       if (starts.at(k).nearby && !starts.at(k).around) starts.at(k).add_nearby(aim, out);
     for (const int lane : Arm::kLaneOfRow)
@@ -1740,118 +1876,6 @@ template <class Arm> struct CarefulRows {
   static Eigen::Isometry3d start_of(const Eigen::Isometry3d& pose, [[maybe_unused]] int turn) noexcept {
     return pose;
   }
-
-  struct Nearest {
-    bool marked = false, nearby = false, settled = false, exact = false;  // settled: a solution, whatever else there is
-    bool alone = false;  // whether steps showed that it is the one solution near its start
-    bool around = false;  // whether the solutions of the continuum that it lies on are known
-    int lane = 0;
-    double error = 0.0, start[Arm::kDof], q[Arm::kDof];
-
-    Nearest() = default;
-    Nearest(const Rows& rows, int from, bool singular) noexcept : marked(singular), lane(from) {
-      for (int j = 0; j < Arm::kDof; ++j) start[j] = q[j] = rows.q[j][lane];
-    }
-
-    void refine([[maybe_unused]] const Aim& aim, [[maybe_unused]] const LaneEnd<Arm>& end) noexcept {
-      error = Refinement::error_after(q, aim);
-    }
-
-    void judge() noexcept {
-      nearby = !marked && !alone && RankLoss<Arm>::below(q, Policy::kFoldReach);
-      settled = error < (nearby ? Policy::kConverged : Policy::kArrived);
-    }
-
-    bool close() const noexcept { return nearby && RankLoss<Arm>::below(q, Policy::kBesideReach); }
-
-    void take(const Aim& aim, const double* from, Places& out) noexcept {
-      double trial[Arm::kDof];
-      std::copy_n(from, Arm::kDof, trial);
-      const double left = Refinement::error_after(trial, aim);
-      if (left < Policy::kExact) {
-        exact = true;
-        add(aim, out, trial, marked);
-      } else if (left < error) {
-        error = left;
-        std::copy_n(trial, Arm::kDof, q);
-      }
-    }
-
-    void take_rest(const Aim& aim, Places& out) noexcept {
-      if (!exact && !settled && error < Policy::kArrived) add(aim, out, q, marked);
-    }
-
-    void add_nearby(const Aim& aim, Places& out) noexcept {
-      std::copy_n(q, Arm::kDof, start);
-      using Fold = FoldPair<Arm>;
-      const auto known = [&out](const double* row, double reach) noexcept { return Pair::any_within(reach, row, out); };
-      for (const double side : {1.0, -1.0}) {
-        double trial[Arm::kDof];
-        std::copy_n(start, Arm::kDof, trial);
-        const auto led = Fold(aim).approach(side, trial, known);
-        if (led == Fold::Led::Between) break;  // nor on the other side
-        if (led == Fold::Led::There) take(aim, trial, out);
-      }
-      take_rest(aim, out);
-    }
-
-    bool add_around(const Aim& aim, typename NearContinuum<Arm>::Passed& passed, Places& out) noexcept {
-      NearContinuum<Arm> curve(aim);
-      const bool none = curve.trace(start, passed) == NearContinuum<Arm>::Kind::None;
-      Nearest aside(*this);
-      if (!none) error = kInfinity;
-      for (int k = 0; k < curve.count; ++k) (none ? aside : *this).take(aim, curve.found[k], out);
-      if (none) return false;
-      take(aim, start, out);
-      take_rest(aim, out);
-      return true;
-    }
-  };
-
-  struct Starts {
-    int count = 0;
-    bool doubt = false, traced[Arm::kLanes] = {};  // doubt: whether rows of the pose itself may have others near them
-    typename NearContinuum<Arm>::Passed passed;
-    std::array<Nearest, std::size_t{Arm::kLanes} * (1 + Arm::kBesides)> all;
-
-    Nearest& at(int k) noexcept { return all[static_cast<std::size_t>(k)]; }
-
-    bool marked(const Rows& rows, int lane) const noexcept {
-      return rows.has(lane, kSingular) || (doubt && rows.has(lane, kReal | kDoubt));
-    }
-
-    bool close() const noexcept {
-      return std::any_of(all.begin(), all.begin() + count, [](const Nearest& one) { return one.close() && !one.around; });
-    }
-
-    bool any_traced() const noexcept { return std::find(std::begin(traced), std::end(traced), true) != std::end(traced); }
-
-    void take(Nearest start, const LaneEnd<Arm>& end, bool beside, const Aim& aim, Places& out) noexcept {
-      if (!(Arm::kRounded && start.marked)) start.refine(aim, end);
-      if (start.marked && (Arm::kRounded || !(start.error < Policy::kArrived))) {
-        if (!traced[start.lane]) traced[start.lane] = start.add_around(aim, passed, out);
-        if (traced[start.lane]) return;
-        start.marked = false;
-        start.refine(aim, end);
-      }
-      for (int k = 0; k < count; ++k)
-        if ((beside || start.alone) && Row::same(start.q, at(k).q)) {
-          if (beside) return;
-          start.alone = false;
-        }
-      if (beside) start.alone = false;
-      Nearest& one = at(count) = start;
-      one.judge();
-      for (int k = 0; k < count && beside && one.nearby && !one.settled; ++k)
-        if (at(k).nearby && Pair::within(Policy::kAlike, one.q, at(k).q)) return;
-      ++count;
-      if (!one.settled) return;
-      if (one.nearby || one.marked)
-        add(aim, out, one.q, one.marked);
-      else
-        Row::add(out, one.q, false);
-    }
-  };
 
   static void take_all(const Aim& aim, const std::array<Rows, 1>& only, const Options& options, Starts& starts,
                        Places& out) noexcept {
@@ -2143,7 +2167,7 @@ template <class Arm> struct CarefulSolve {
       continuum = continuum || Careful::any_singular(found);
       LimitRows<Arm>::place_all(aim, options, found);
       if (found.count == 0 && options.seed && Refinement::refine(start, aim)) {
-        Careful::add(aim, found, start, true);
+        RightRows<Arm>::add(aim, found, start, true);
         LimitRows<Arm>::place_all(aim, options, found);
       }
       if (!Arm::kRounded) left.led = Careful::any_singular(found);
@@ -2164,7 +2188,7 @@ template <class Arm> struct CarefulSolve {
       int nearby = 0;
       const double* q = Row::row(found, k);
       for (int i = 0; i < k && Row::flag(found, k); ++i)
-        if (kept[i] && Row::flag(found, i) && Careful::Pair::within(Policy::kAlike, q, Row::row(found, i))) ++nearby;
+        if (kept[i] && Row::flag(found, i) && RowPair<Arm>::within(Policy::kAlike, q, Row::row(found, i))) ++nearby;
       kept[k] = nearby < Policy::kCrowd;
       room -= Row::flag(found, k) ? 0 : 1;
     }
@@ -2201,12 +2225,24 @@ template <class Arm> struct CarefulSolve {
       }
     }
     bool real = false;
+    typename NearContinuum<Arm>::Passed passed;
     for (const int lane : Arm::kLaneOfRow) {
       if (!(least[lane] < kInfinity)) continue;
       NearestRow<Arm>::descend(t, options.limits, NearestRow<Arm>::kStanding, best[lane]);
-      if (!Refinement::refine(best[lane], aim)) continue;
-      real = true;
-      Careful::add(aim, out, best[lane], true);
+      double q[Arm::kDof];
+      std::copy_n(best[lane], Arm::kDof, q);
+      if (Refinement::refine(q, aim)) {
+        real = true;
+        RightRows<Arm>::add(aim, out, q, true);
+        continue;
+      }
+      NearContinuum<Arm> curve(aim);  // that the arm has not, if there is one
+      curve.trace(best[lane], passed);
+      for (int k = 0; k < curve.count; ++k) {
+        if (!(Refinement::error_after(curve.found[k], aim) < Policy::kExact)) continue;
+        real = true;
+        RightRows<Arm>::add(aim, out, curve.found[k], true);
+      }
     }
     LimitRows<Arm>::place_all(aim, options, out);
     return real;
@@ -2219,7 +2255,7 @@ template <class Arm> struct CarefulSolve {
       NearestRow<Arm>::find(aim.pose.matrix().data(), options, inside, NearestRow<Arm>::kStanding, q);
       if (Refinement::refine(q, aim)) {
         real = true;
-        Careful::add(aim, out, q, true);
+        RightRows<Arm>::add(aim, out, q, true);
         LimitRows<Arm>::place_all(aim, options, out);
       }
       if (out.count > 0 || !inside) return real;

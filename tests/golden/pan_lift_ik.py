@@ -984,6 +984,48 @@ def _careful(arm: _Arm, rows: _AllRows, T: Array, held: Array) -> tuple[Array, _
     return q, _distinct(arm, q, valid), doubt
 
 
+# Poses that are asked for, and what is answered.
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """Poses `T` (n, 4, 4), seeds `near` (n, dof) if there are any, and values `held` (n, held); what the
+    closed form has, `closed`, if that is known."""
+
+    T: Array
+    near: Array | None
+    held: Array
+    closed: _AllRows | None = None
+
+    def at(self, index: _Index) -> _Asked:
+        """Some of them."""
+        near = None if self.near is None else self.near[index]
+        closed = None if self.closed is None else _some_of(self.closed, index)
+        return _Asked(self.T[index], near, self.held[index], closed)
+
+    def seed(self, k: int) -> Row | None:
+        """Of one pose."""
+        return None if self.near is None else tuple(self.near[k].tolist())
+
+    def starts(self, arm: _Arm, turn: Array | None = None) -> Array:
+        """Values (n, dof) for joints that the poses leave free, those of revolute ones turned by `turn`
+        (n,)."""
+        q = np.zeros((len(self.T), len(arm.lower))) if self.near is None else self.near.copy()
+        if turn is not None:
+            q[:, arm.chain.revolute] += turn[:, None]
+        q[:, list(arm.free)] = self.held[:, : len(arm.free)]
+        return q
+
+
+@dataclass
+class _Answer:
+    """Solutions on the right turns, and whether there were any before limits, and any of a continuum."""
+
+    rows: list[_Found] = field(default_factory=list)
+    real: bool = False
+    continuum: bool = False
+
+
 # Rows that are hardly outside the limits: near singularities the pose does not tell that.
 
 
@@ -1497,45 +1539,6 @@ def _clipped_step(
 # All solutions of poses near singularities, and of those that leave joints free: of many poses at once, as
 
 
-@dataclass(frozen=True)
-class _Asked:
-    """Poses `T` (n, 4, 4), seeds `near` (n, dof) if there are any, and values `held` (n, held); what the
-    closed form has, `closed`, if that is known."""
-
-    T: Array
-    near: Array | None
-    held: Array
-    closed: _AllRows | None = None
-
-    def at(self, index: _Index) -> _Asked:
-        """Some of them."""
-        near = None if self.near is None else self.near[index]
-        closed = None if self.closed is None else _some_of(self.closed, index)
-        return _Asked(self.T[index], near, self.held[index], closed)
-
-    def seed(self, k: int) -> Row | None:
-        """Of one pose."""
-        return None if self.near is None else tuple(self.near[k].tolist())
-
-    def starts(self, arm: _Arm, turn: Array | None = None) -> Array:
-        """Values (n, dof) for joints that the poses leave free, those of revolute ones turned by `turn`
-        (n,)."""
-        q = np.zeros((len(self.T), len(arm.lower))) if self.near is None else self.near.copy()
-        if turn is not None:
-            q[:, arm.chain.revolute] += turn[:, None]
-        q[:, list(arm.free)] = self.held[:, : len(arm.free)]
-        return q
-
-
-@dataclass
-class _Answer:
-    """Solutions on the right turns, and whether there were any before limits, and any of a continuum."""
-
-    rows: list[_Found] = field(default_factory=list)
-    real: bool = False
-    continuum: bool = False
-
-
 _Rows = tuple[list[_Found], bool, bool]
 
 
@@ -1573,10 +1576,25 @@ def _take_hidden(arm: _Arm, asked: _Asked, some: _Index, limits: bool, out: list
     if not len(which):
         return
     rows = _descended(arm, asked.T[which], q, limits)
-    for i, found in zip(which.tolist(), _led_to(arm, asked.at(which), rows)):
+    led = _led_to(arm, asked.at(which), rows)
+    for k, row in _around(arm, asked.at(which), rows, np.array([not one for one in led])):
+        led[k].append(row)
+    for i, found in zip(which.tolist(), led):
         out[i].real = out[i].real or bool(found)
         aim = _aims(arm, asked.T[i : i + 1], asked.held[i : i + 1])
         _add(arm, asked.T[i], _rows_inside(arm, aim, found, asked.seed(i), limits), out[i].rows)
+
+
+def _around(arm: _Arm, asked: _Asked, rows: Array, some: _Flags) -> list[tuple[int, _Found]]:
+    """Of some of the rows (n, dof) the solutions around continua that they lie on, and that the arm has
+    not, each with the row's number."""
+    of = np.flatnonzero(some)
+    if arm.around is None or not len(of):
+        return []
+    aim, broken = _aims(arm, asked.T, asked.held)[of], np.ones(len(of), dtype=bool)
+    _, owner, q, loss = arm.around(arm, rows[of], aim, broken)
+    flags = (loss < arm.policy.continuum_rank_loss).tolist()
+    return list(zip(of[owner].tolist(), zip(map(tuple, q.tolist()), flags)))
 
 
 def _hidden_rows(arm: _Arm, asked: _Asked, some: _Index) -> tuple[_Index, Array]:

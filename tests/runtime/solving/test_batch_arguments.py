@@ -11,8 +11,8 @@ from tests.support.given_rows import given_arm, given_rows
 
 from ikgen.runtime.python.arm.chain_kinematics import forward
 from ikgen.runtime.python.solving import pose_solving
+from ikgen.runtime.python.solving.asked_poses import Answer
 from ikgen.runtime.python.solving.batch_solving import solve_poses
-from ikgen.runtime.python.solving.doubtful_poses import Answer
 from ikgen.runtime.python.solving.pose_solving import _projected
 
 ROW = np.array([0.3, -0.7, 0.9, 0.4, 1.1, -0.2])

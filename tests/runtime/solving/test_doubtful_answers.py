@@ -16,10 +16,9 @@ from ikgen.runtime.python.arm.chain_kinematics import forward
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.singular.meeting_rows import Led
 from ikgen.runtime.python.solving import doubtful_poses
+from ikgen.runtime.python.solving.asked_poses import Answer, Asked
 from ikgen.runtime.python.solving.closed_form_rows import all_rows
 from ikgen.runtime.python.solving.doubtful_poses import (
-    Answer,
-    Asked,
     _goes_on,
     placed_rows,
     unplaced_rows,

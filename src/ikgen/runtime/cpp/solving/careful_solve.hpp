@@ -38,7 +38,7 @@ template <class Arm> struct CarefulSolve {
       continuum = continuum || Careful::any_singular(found);
       LimitRows<Arm>::place_all(aim, options, found);
       if (found.count == 0 && options.seed && Refinement::refine(start, aim)) {
-        Careful::add(aim, found, start, true);
+        RightRows<Arm>::add(aim, found, start, true);
         LimitRows<Arm>::place_all(aim, options, found);
       }
       if (!Arm::kRounded) left.led = Careful::any_singular(found);
@@ -60,7 +60,7 @@ template <class Arm> struct CarefulSolve {
       int nearby = 0;
       const double* q = Row::row(found, k);
       for (int i = 0; i < k && Row::flag(found, k); ++i)
-        if (kept[i] && Row::flag(found, i) && Careful::Pair::within(Policy::kAlike, q, Row::row(found, i))) ++nearby;
+        if (kept[i] && Row::flag(found, i) && RowPair<Arm>::within(Policy::kAlike, q, Row::row(found, i))) ++nearby;
       kept[k] = nearby < Policy::kCrowd;
       room -= Row::flag(found, k) ? 0 : 1;
     }
@@ -100,12 +100,24 @@ template <class Arm> struct CarefulSolve {
       }
     }
     bool real = false;
+    typename NearContinuum<Arm>::Passed passed;
     for (const int lane : Arm::kLaneOfRow) {
       if (!(least[lane] < kInfinity)) continue;
       NearestRow<Arm>::descend(t, options.limits, NearestRow<Arm>::kStanding, best[lane]);
-      if (!Refinement::refine(best[lane], aim)) continue;
-      real = true;
-      Careful::add(aim, out, best[lane], true);
+      double q[Arm::kDof];
+      std::copy_n(best[lane], Arm::kDof, q);
+      if (Refinement::refine(q, aim)) {
+        real = true;
+        RightRows<Arm>::add(aim, out, q, true);
+        continue;
+      }
+      NearContinuum<Arm> curve(aim);  // that the arm has not, if there is one
+      curve.trace(best[lane], passed);
+      for (int k = 0; k < curve.count; ++k) {
+        if (!(Refinement::error_after(curve.found[k], aim) < Policy::kExact)) continue;
+        real = true;
+        RightRows<Arm>::add(aim, out, curve.found[k], true);
+      }
     }
     LimitRows<Arm>::place_all(aim, options, out);
     return real;
@@ -119,7 +131,7 @@ template <class Arm> struct CarefulSolve {
       NearestRow<Arm>::find(aim.pose.matrix().data(), options, inside, NearestRow<Arm>::kStanding, q);
       if (Refinement::refine(q, aim)) {
         real = true;
-        Careful::add(aim, out, q, true);
+        RightRows<Arm>::add(aim, out, q, true);
         LimitRows<Arm>::place_all(aim, options, out);
       }
       if (out.count > 0 || !inside) return real;

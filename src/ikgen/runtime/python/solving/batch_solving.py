@@ -16,9 +16,9 @@ from ikgen.runtime.python.arm.solved_arm import Arm, Found
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.rows.row_placement import in_order, place_rows, place_rows_batch
 from ikgen.runtime.python.rows.solutions import Status
+from ikgen.runtime.python.solving.asked_poses import Asked
 from ikgen.runtime.python.solving.closed_form_rows import careful_rows, certain_rows
 from ikgen.runtime.python.solving.doubtful_poses import (
-    Asked,
     placed_rows,
     seeded_rows,
     unplaced_rows,

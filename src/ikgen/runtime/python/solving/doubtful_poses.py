@@ -3,14 +3,12 @@ the price of Newton steps is that of the calls."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 import numpy as np
 
 from ikgen.runtime.python.arm.held_parameters import aims
 from ikgen.runtime.python.arm.solved_arm import Arm, Found
 from ikgen.runtime.python.arrays.array_tuples import joined, some_of
-from ikgen.runtime.python.arrays.array_types import Array, Flags, Index, Row
+from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.rows.row_placement import is_new, place_rows
 from ikgen.runtime.python.singular.limit_rows import rows_inside
 from ikgen.runtime.python.singular.meeting_rows import (
@@ -23,54 +21,11 @@ from ikgen.runtime.python.singular.meeting_rows import (
     that_differ,
 )
 from ikgen.runtime.python.singular.near_surface import on_surfaces
-from ikgen.runtime.python.solving.closed_form_rows import (
-    AllRows,
-    ClosedForm,
-    closed_form,
-    rows_beside,
-)
+from ikgen.runtime.python.solving.asked_poses import Answer, Asked
+from ikgen.runtime.python.solving.closed_form_rows import ClosedForm, closed_form, rows_beside
 from ikgen.runtime.python.solving.projection import chord_costs, descended, nearest_rows
 
-__all__ = ["Answer", "Asked", "placed_rows", "seeded_rows", "unplaced_rows"]
-
-
-@dataclass(frozen=True)
-class Asked:
-    """Poses `T` (n, 4, 4), seeds `near` (n, dof) if there are any, and values `held` (n, held); what the
-    closed form has, `closed`, if that is known."""
-
-    T: Array
-    near: Array | None
-    held: Array
-    closed: AllRows | None = None
-
-    def at(self, index: Index) -> Asked:
-        """Some of them."""
-        near = None if self.near is None else self.near[index]
-        closed = None if self.closed is None else some_of(self.closed, index)
-        return Asked(self.T[index], near, self.held[index], closed)
-
-    def seed(self, k: int) -> Row | None:
-        """Of one pose."""
-        return None if self.near is None else tuple(self.near[k].tolist())
-
-    def starts(self, arm: Arm, turn: Array | None = None) -> Array:
-        """Values (n, dof) for joints that the poses leave free, those of revolute ones turned by `turn`
-        (n,); held ones as they are."""
-        q = np.zeros((len(self.T), len(arm.lower))) if self.near is None else self.near.copy()
-        if turn is not None:
-            q[:, arm.chain.revolute] += turn[:, None]
-        q[:, list(arm.free)] = self.held[:, : len(arm.free)]
-        return q
-
-
-@dataclass
-class Answer:
-    """Solutions on the right turns, and whether there were any before limits, and any of a continuum."""
-
-    rows: list[Found] = field(default_factory=list)
-    real: bool = False
-    continuum: bool = False
+__all__ = ["placed_rows", "seeded_rows", "unplaced_rows"]
 
 
 _Rows = tuple[list[Found], bool, bool]
@@ -112,10 +67,25 @@ def _take_hidden(arm: Arm, asked: Asked, some: Index, limits: bool, out: list[An
     if not len(which):
         return
     rows = descended(arm, asked.T[which], q, limits)
-    for i, found in zip(which.tolist(), _led_to(arm, asked.at(which), rows)):
+    led = _led_to(arm, asked.at(which), rows)
+    for k, row in _around(arm, asked.at(which), rows, np.array([not one for one in led])):
+        led[k].append(row)
+    for i, found in zip(which.tolist(), led):
         out[i].real = out[i].real or bool(found)
         aim = aims(arm, asked.T[i : i + 1], asked.held[i : i + 1])
         _add(arm, asked.T[i], rows_inside(arm, aim, found, asked.seed(i), limits), out[i].rows)
+
+
+def _around(arm: Arm, asked: Asked, rows: Array, some: Flags) -> list[tuple[int, Found]]:
+    """Of some of the rows (n, dof) the solutions around continua that they lie on, and that the arm has
+    not, each with the row's number."""
+    of = np.flatnonzero(some)
+    if arm.around is None or not len(of):
+        return []
+    aim, broken = aims(arm, asked.T, asked.held)[of], np.ones(len(of), dtype=bool)
+    _, owner, q, loss = arm.around(arm, rows[of], aim, broken)
+    flags = (loss < arm.policy.continuum_rank_loss).tolist()
+    return list(zip(of[owner].tolist(), zip(map(tuple, q.tolist()), flags)))
 
 
 def _hidden_rows(arm: Arm, asked: Asked, some: Index) -> tuple[Index, Array]:

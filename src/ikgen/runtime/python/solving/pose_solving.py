@@ -29,8 +29,9 @@ from ikgen.runtime.python.rows.row_placement import (
     rows_at_limits,
 )
 from ikgen.runtime.python.rows.solutions import Solutions, Status, no_solutions
+from ikgen.runtime.python.solving.asked_poses import Answer, Asked
 from ikgen.runtime.python.solving.closed_form_rows import all_rows, careful
-from ikgen.runtime.python.solving.doubtful_poses import Answer, Asked, placed_rows, seeded_rows
+from ikgen.runtime.python.solving.doubtful_poses import placed_rows, seeded_rows
 from ikgen.runtime.python.solving.projection import nearest_row, off_by
 
 __all__ = ["One", "eliminated_answers", "solutions_of", "solve_pose", "sure_answer"]

@@ -10,7 +10,8 @@ from ikgen.runtime.python.arguments.joint_arguments import held_rows, seed_rows
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_types import Array, Row
 from ikgen.runtime.python.rows.solutions import Solutions, Status, no_solutions
-from ikgen.runtime.python.solving.doubtful_poses import Answer, Asked, placed_rows
+from ikgen.runtime.python.solving.asked_poses import Answer, Asked
+from ikgen.runtime.python.solving.doubtful_poses import placed_rows
 from ikgen.runtime.python.solving.pose_solving import (
     One,
     eliminated_answers,
