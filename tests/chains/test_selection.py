@@ -183,6 +183,13 @@ def test_bad_mimics_matter_only_in_the_chain():
         select_chain(serial("fixed", "revolute", j2=mimic("j1")), "l0", "l2")
 
 
+@pytest.mark.parametrize("driver", ["gone", "j3"])
+def test_a_bad_mimic_is_not_taken_for_where_a_gripper_begins(driver):
+    tree = serial(*["revolute"] * 6, j3=mimic(driver))
+    with pytest.raises(BadDescriptionError, match="joint 'j3' mimics"):
+        select_chain(tree)
+
+
 @pytest.mark.parametrize("type_", ["revolute", "continuous", "prismatic"])
 def test_a_locked_joint_becomes_a_constant(type_):
     tree = serial("revolute", type_, "revolute")

@@ -366,6 +366,7 @@ def test_pipes_and_devices_are_refused(tmp_path):
 LARGE = {
     "length": (joint('<origin xyz="1e308 0 0"/>'), "is beyond 10000"),
     "many digits": (joint(f'<origin xyz="{"1" * 5_000_000}x 0 0"/>'), "5000005 characters"),
+    "other digits": (joint('<origin xyz="0 0 ٠.٥"/>'), "'٠.٥' in '0 0 ٠.٥' is not a number"),
     "digits in a word": (joint(f'<origin xyz="{"1" * 2000} 0 0"/>'), "is not finite"),
     "multiplier": (joint('<mimic joint="k" multiplier="1e308"/>' + LIMIT), "beyond 1e+06"),
     "offset": (joint('<mimic joint="k" offset="-1e17"/>' + LIMIT), "beyond 1e+06"),

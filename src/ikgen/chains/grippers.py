@@ -138,4 +138,6 @@ def _is_finger_joint(joint: Joint, bodies: RigidBodies) -> bool:
     # A mimic joint of an arm follows a joint of the same arm; a finger's follows the one beside it.
     if joint.mimic is None or bodies.hangs_on(joint.parent, joint.mimic.joint):
         return False
+    if joint.mimic.joint not in bodies.reach or joint.mimic.joint == joint.name:
+        return False  # wrong in the file, which is to be told
     return deep or not bodies.carries(joint.name, joint.mimic.joint)

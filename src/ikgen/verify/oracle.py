@@ -3,7 +3,9 @@ Pinocchio."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
@@ -18,6 +20,9 @@ from ikgen.verify.urdf_text import JOINT_PREFIX, KinematicText, read_kinematic_t
 __all__ = ["Oracle", "PinocchioOracle", "oracle_from_dh"]
 
 Array = NDArray[np.float64]
+
+_SHALLOW = 1000  # joints that any stack holds
+_STACK = 16 * 1024  # bytes a joint: a quarter was enough
 
 
 def _resolve(
@@ -55,7 +60,7 @@ class PinocchioOracle(Oracle):
     ) -> None:
         pin, text = load_pinocchio(), read_kinematic_text(tree.source.text, base_link, tip_link)
         try:
-            model = pin.buildModelFromXML(text.xml)
+            model = _with_stack(lambda: pin.buildModelFromXML(text.xml), text.xml.count("<joint"))
         except (ValueError, RuntimeError) as error:
             raise BadDescriptionError(
                 f"Pinocchio cannot read the description: {error}",
@@ -76,6 +81,19 @@ class PinocchioOracle(Oracle):
             model, (base, tip), (base_link, tip_link), joint_names, wiring,
             (bounds[:, 0], bounds[:, 1]), notes,
         )  # fmt: skip
+
+
+def _with_stack(build: Callable[[], Any], joints: int) -> Any:
+    """What `build` gives, with the stack that reading so many joints in a row takes: Pinocchio's reader
+    calls itself for each."""
+    if joints < _SHALLOW:
+        return build()
+    before = threading.stack_size(joints * _STACK)
+    try:
+        with ThreadPoolExecutor(1) as pool:
+            return pool.submit(build).result()
+    finally:
+        threading.stack_size(before)
 
 
 def _link_frame(pin: Any, model: Any, link: str) -> int:

@@ -9,7 +9,7 @@ __all__ = ["BadValueError", "parse_number", "parse_numbers", "shortened"]
 
 # Stricter than float(), which also takes 1_000 and nan; inf occurs in limits.
 _NUMBER = re.compile(
-    r"[+-]?(?:(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?|inf(?:inity)?)", re.IGNORECASE
+    r"[+-]?(?:(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:e[+-]?[0-9]+)?|inf(?:inity)?)", re.IGNORECASE
 )
 # Three numbers with all 767 digits that a double can have, and room for spaces.
 _LONGEST_TEXT = 4000
