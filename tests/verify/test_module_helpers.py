@@ -58,6 +58,8 @@ def test_helpers_answer_as_the_process_itself(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     module, alone, own = six_axis_module(tmp_path), [], []
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "numpy.py").write_text("raise SystemExit(3)")  # none of Python's business
     small(monkeypatch, cores=0)
     without = solved(module, alone)
     assert alone == [4] * 5 + [4, 3, 0]

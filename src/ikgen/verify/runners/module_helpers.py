@@ -85,8 +85,10 @@ def _shared(
         helpers: dict[str, RunningProgram] = {}
         with suppress(MissingToolError):
             for name in map(str, range(count)):
-                command = [sys.executable, "-m", _PROGRAM, str(module), str(folder), name]
-                helpers[name] = RunningProgram(command)
+                places = str(module.resolve()), str(folder.resolve()), name
+                command = [sys.executable, "-m", _PROGRAM, *places]
+                # Python looks for modules where it is started: not where the user is.
+                helpers[name] = RunningProgram(command, cwd=folder)
                 ends.callback(helpers[name].end)
         found = {k: solve(parts[k]) for k in _taken(folder, len(parts))}
         for name, helper in helpers.items():
