@@ -33,8 +33,8 @@ SCARA = """<robot name="scara">
     <axis xyz="0 0 1"/><limit lower="-6" upper="6"/></joint>
 </robot>
 """
-HALVES = ["3.14159", "3.1416", "3.14"]
-OFTEN = ["3.1416", "3.14"]
+HALVES = ["3.14159", "3.1416", "3.14", "3.1397"]
+OFTEN = ["3.1416", "3.14", "3.1397"]
 Solved = tuple[Derivation, list[Runner]]
 
 

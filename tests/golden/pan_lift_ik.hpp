@@ -2390,11 +2390,12 @@ template <class Arm> struct LaneSolve {
 
 // --- unit columns --------------------------------------------------------------------------------
 template <int First, int Count, int Height> struct UnitColumns {
-  static constexpr double most_defect(double off) noexcept {
-    return 4.0 * Count * Height * off * off * (1.0 + 2.0 * Count * Height * off);
-  }
-
   static constexpr bool kFlat = Count > 0 && Height == 2;
+
+  static constexpr double most_defect(double off) noexcept {
+    const double most = 4.0 * Count * Height * off * off * (1.0 + 2.0 * Count * Height * off);
+    return kFlat && most < 1e-10 ? 1e-10 : most;
+  }
 
   template <class X, class R> static X unit(const R& rotation) noexcept {
     if constexpr (kFlat) {

@@ -2831,6 +2831,9 @@ def _path_following_between(a: Array, b: Array) -> Array:
 # Tasks that read some entries of the pose.
 
 
+_SHORT = 1e-5  # of a heading's squared length: by so much a tool that stays as it is may tilt it
+
+
 @dataclass(frozen=True)
 class _EntriesTask:
     """The entries of `row` and `column`; positions count over `size` (m)."""
@@ -2868,7 +2871,7 @@ class _EntriesTask:
         R = [(*line, 0.0)[:3] for line in zip(*T[:height])]
         columns = tuple((x, y, z) for x, y, z in (R[j] for j in self.unit))
         defect = _columns_defect(columns)
-        near = defect <= _most_defect(height * len(columns), policy.pose_tolerance)
+        near = defect <= self._most_defect(policy)
         if not near or (len(columns) == 3 and not _determinant(columns) > 0.0):
             square = sum(x * x for column in columns for x in column)
             return T if self.flat and 0.0 < square < 1.0 else None
@@ -2879,6 +2882,12 @@ class _EntriesTask:
             for line, x in zip(lines[:height], column):
                 line[j] = x
         return lines
+
+    def _most_defect(self, policy: _Policy) -> float:
+        """Of columns that are taken for unit vectors."""
+        if self.flat:
+            return max(_most_defect(2 * len(self.unit), policy.pose_tolerance), _SHORT**2)
+        return _most_defect(3 * len(self.unit), policy.pose_tolerance)
 
     def read_batch(self, T: Array, policy: _Policy) -> tuple[Array, _Flags]:
         """Implements `Task`."""
@@ -2891,8 +2900,7 @@ class _EntriesTask:
         columns = tuple((v[0], v[1], v[2]) for v in V.swapaxes(0, 1))
         with np.errstate(all="ignore"):
             defect = _columns_defect(columns)
-            most = _most_defect(height * len(self.unit), policy.pose_tolerance)
-            near = good & (defect <= most)
+            near = good & (defect <= self._most_defect(policy))
             if len(columns) == 3:
                 near &= _determinant(columns) > 0.0
             square = (V * V).sum(axis=(0, 1))

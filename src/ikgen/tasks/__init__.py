@@ -12,9 +12,9 @@ __all__ = ["AXES", "LEVEL", "TASKS", "Task", "find_task", "task_names"]
 AXES = ("x", "y", "z")
 """The tool's axes, by which a task with a direction goes."""
 
-LEVEL = 2.6e-6
-"""Most by which a heading's squared length falls short of 1, or changes, of a tool that stays as it is: the
-tilt of a file that writes half a turn as 3.14. Poses are read to as much."""
+LEVEL = 1e-5
+"""Most by which a heading's squared length falls short of 1, or changes, of a tool that stays as it is: by
+the tilt of half a turn that is written as 3.14, and of measured axes. Poses are read to as much."""
 
 _POSITION = ("px", "py", "pz")
 _ROTATION = tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))

@@ -8,12 +8,14 @@ namespace ikgen_runtime {
 // far as they are read, to `Height`. A heading (Height = 2) may be shorter than 1, as that of a tilted tool, which
 // nothing reaches. t: the pose's matrix, columns first.
 template <int First, int Count, int Height> struct UnitColumns {
-  // The defect of columns whose entries are each off by `off`: |V^T V - 1| <= 2 |E| + |E|^2, E what they are off by.
-  static constexpr double most_defect(double off) noexcept {
-    return 4.0 * Count * Height * off * off * (1.0 + 2.0 * Count * Height * off);
-  }
-
   static constexpr bool kFlat = Count > 0 && Height == 2;
+
+  // The defect of columns whose entries are each off by `off`: |V^T V - 1| <= 2 |E| + |E|^2, E what they are off by; of a
+  // heading that of a tool that stays as it is, tilted by so much that its squared length is 1e-5 less.
+  static constexpr double most_defect(double off) noexcept {
+    const double most = 4.0 * Count * Height * off * off * (1.0 + 2.0 * Count * Height * off);
+    return kFlat && most < 1e-10 ? 1e-10 : most;
+  }
 
   // What takes a heading's entries to unit length that is a little shorter.
   template <class X, class R> static X unit(const R& rotation) noexcept {

@@ -24,6 +24,9 @@ from ikgen.runtime.python.arrays.orthonormal_columns import (
 __all__ = ["EntriesTask"]
 
 
+_SHORT = 1e-5  # of a heading's squared length: by so much a tool that stays as it is may tilt it
+
+
 @dataclass(frozen=True)
 class EntriesTask:
     """The entries of `row` and `column`; positions count over `size` (m).
@@ -65,7 +68,7 @@ class EntriesTask:
         R = [(*line, 0.0)[:3] for line in zip(*T[:height])]
         columns = tuple((x, y, z) for x, y, z in (R[j] for j in self.unit))
         defect = columns_defect(columns)
-        near = defect <= most_defect(height * len(columns), policy.pose_tolerance)
+        near = defect <= self._most_defect(policy)
         if not near or (len(columns) == 3 and not determinant(columns) > 0.0):
             square = sum(x * x for column in columns for x in column)
             return T if self.flat and 0.0 < square < 1.0 else None
@@ -76,6 +79,12 @@ class EntriesTask:
             for line, x in zip(lines[:height], column):
                 line[j] = x
         return lines
+
+    def _most_defect(self, policy: Policy) -> float:
+        """Of columns that are taken for unit vectors."""
+        if self.flat:
+            return max(most_defect(2 * len(self.unit), policy.pose_tolerance), _SHORT**2)
+        return most_defect(3 * len(self.unit), policy.pose_tolerance)
 
     def read_batch(self, T: Array, policy: Policy) -> tuple[Array, Flags]:
         """Implements `Task`."""
@@ -88,8 +97,7 @@ class EntriesTask:
         columns = tuple((v[0], v[1], v[2]) for v in V.swapaxes(0, 1))
         with np.errstate(all="ignore"):
             defect = columns_defect(columns)
-            most = most_defect(height * len(self.unit), policy.pose_tolerance)
-            near = good & (defect <= most)
+            near = good & (defect <= self._most_defect(policy))
             if len(columns) == 3:
                 near &= determinant(columns) > 0.0
             square = (V * V).sum(axis=(0, 1))
