@@ -83,9 +83,7 @@ def read_text(path: Path, largest: int = LARGEST_FILE, *, may_be_empty: bool = F
         else:
             raise _not_readable(path, status.st_mode, status.st_size, largest)
     except FileNotFoundError:
-        raise BadDescriptionError(
-            "no such file", file=str(path), hint="check the path of the robot description"
-        ) from None
+        raise BadDescriptionError("no such file", file=str(path), hint="check the path") from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         hint = "check the path and its permissions"
