@@ -2238,11 +2238,10 @@ template <class Arm> struct CarefulSolve {
       }
       NearContinuum<Arm> curve(aim);  // that the arm has not, if there is one
       curve.trace(best[lane], passed);
-      for (int k = 0; k < curve.count; ++k) {
-        if (!(Refinement::error_after(curve.found[k], aim) < Policy::kExact)) continue;
-        real = true;
-        RightRows<Arm>::add(aim, out, curve.found[k], true);
-      }
+      RowStart<Arm> end;
+      end.marked = true;
+      for (int k = 0; k < curve.count; ++k) end.take(aim, curve.found[k], out);
+      real = real || end.exact;
     }
     LimitRows<Arm>::place_all(aim, options, out);
     return real;
@@ -2392,9 +2391,9 @@ template <class Arm> struct LaneSolve {
 template <int First, int Count, int Height> struct UnitColumns {
   static constexpr bool kFlat = Count > 0 && Height == 2;
 
-  static constexpr double most_defect(double off) noexcept {
+  static constexpr double most_defect(double off, double level) noexcept {
     const double most = 4.0 * Count * Height * off * off * (1.0 + 2.0 * Count * Height * off);
-    return kFlat && most < 1e-10 ? 1e-10 : most;
+    return kFlat && most < level * level ? level * level : most;
   }
 
   template <class X, class R> static X unit(const R& rotation) noexcept {
@@ -2461,7 +2460,8 @@ template <class Arm> struct PoseReading {
   static bool clean(Eigen::Isometry3d& pose) noexcept {
     double* t = pose.matrix().data();
     constexpr double most = 1.0 + Policy::kPoseTolerance;
-    if (!good(t, Columns::most_defect(Policy::kPoseTolerance), most)) return Columns::tilted(t) && good(t, 1.0, most);
+    if (!good(t, Columns::most_defect(Policy::kPoseTolerance, Policy::kLevel), most))
+      return Columns::tilted(t) && good(t, 1.0, most);
     if (exact(pose)) return true;
     Columns::clean(t);
     for (const auto [row, column] : Arm::kRead)
@@ -2903,8 +2903,8 @@ inline void order_rows(const Eigen::Isometry3d& pose, const double* seed, typena
 
 struct Policy {
   static constexpr int kCrowd = 4, kTries = 16, kPatience = 5;
-  static constexpr double kArrived = 5e-10, kExact = 1e-12, kPoseTolerance = 1e-06, kOrthonormal = 1e-14,
-      kCoincident = 1e-06, kAlike = 0.01, kHalfway = 2e-14, kMeeting = 2e-05, kLimitTolerance = 1e-09,
+  static constexpr double kArrived = 5e-10, kExact = 1e-12, kPoseTolerance = 1e-06, kOrthonormal = 1e-14, kLevel
+      = 1e-05, kCoincident = 1e-06, kAlike = 0.01, kHalfway = 2e-14, kMeeting = 2e-05, kLimitTolerance = 1e-09,
       kLimitReach = 1e-05, kTryStep = 0.39269908169872414, kRankLoss = 1e-07, kContinuumRankLoss = 0.001,
       kFoldReach = 0.0001, kBesideReach = 0.0, kAnywhere = 1000.0, kLeastDamping = 1e-14, kDamping = 0.001,
       kLargestStep = 0.3, kConverged = 1e-13, kProgress = 0.8;

@@ -385,6 +385,7 @@ class _Policy:
     exact: float  # and does not give way to better ones
     pose_tolerance: float  # how far a rotation's entries may be off
     orthonormal: float  # and what is round-off of them
+    level: float  # by how much a heading's squared length may be short of 1
     coincident: float  # rows closer than that (rad or m) are one
     alike: float  # and singular ones, where the pose is theirs between them too:
     halfway: float  # to this error
@@ -2831,9 +2832,6 @@ def _path_following_between(a: Array, b: Array) -> Array:
 # Tasks that read some entries of the pose.
 
 
-_SHORT = 1e-5  # of a heading's squared length: by so much a tool that stays as it is may tilt it
-
-
 @dataclass(frozen=True)
 class _EntriesTask:
     """The entries of `row` and `column`; positions count over `size` (m)."""
@@ -2885,9 +2883,8 @@ class _EntriesTask:
 
     def _most_defect(self, policy: _Policy) -> float:
         """Of columns that are taken for unit vectors."""
-        if self.flat:
-            return max(_most_defect(2 * len(self.unit), policy.pose_tolerance), _SHORT**2)
-        return _most_defect(3 * len(self.unit), policy.pose_tolerance)
+        most = _most_defect((2 if self.flat else 3) * len(self.unit), policy.pose_tolerance)
+        return max(most, policy.level**2) if self.flat else most
 
     def read_batch(self, T: Array, policy: _Policy) -> tuple[Array, _Flags]:
         """Implements `Task`."""
@@ -3003,6 +3000,7 @@ _ARM = _Arm(
         exact=1e-12,
         pose_tolerance=1e-06,
         orthonormal=1e-14,
+        level=1e-05,
         coincident=1e-06,
         alike=0.01,
         halfway=2e-14,

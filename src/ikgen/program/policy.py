@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["REFINEMENT", "RefineStage", "SolvePolicy"]
+__all__ = ["LEVEL", "REFINEMENT", "RefineStage", "SolvePolicy"]
+
+
+LEVEL = 1e-5
+"""Most by which a heading's squared length falls short of 1, or changes, of a tool that stays as it is: by
+the tilt of half a turn that is written as 3.14, and of measured axes. Poses are read to as much."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +38,8 @@ class SolvePolicy:
       below which they give way to no better ones nearby; `rough_square`: squared error above which a row
       is refined.
     - `pose_tolerance`: how far a rotation's entries may be off; nearer ones are replaced by the nearest
-      rotation; `orthonormal`: what is round-off of them.
+      rotation; `orthonormal`: what is round-off of them; `level`: by how much the squared length of a
+      heading may be short of 1.
     - `coincident`: rows closer than that (rad or m) are one, singular ones closer than `alike` where
       the pose is theirs to `halfway` between them too; of other singular ones that are `alike` at most
       `crowd` are kept, as many as solutions meet at a point where two folds do; `meeting`: how close
@@ -66,6 +72,7 @@ class SolvePolicy:
     rough_square: float = 1e-24
     pose_tolerance: float = 1e-6
     orthonormal: float = 1e-14
+    level: float = LEVEL
     coincident: float = 1e-6
     alike: float = 1e-2
     halfway: float = 2e-14

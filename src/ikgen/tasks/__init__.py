@@ -7,14 +7,10 @@ from dataclasses import dataclass, replace
 from ikgen.errors import UnknownNameError, UsageError
 from ikgen.plugins import find_plug_in, plug_ins
 
-__all__ = ["AXES", "LEVEL", "TASKS", "Task", "find_task", "task_names"]
+__all__ = ["AXES", "TASKS", "Task", "find_task", "task_names"]
 
 AXES = ("x", "y", "z")
 """The tool's axes, by which a task with a direction goes."""
-
-LEVEL = 1e-5
-"""Most by which a heading's squared length falls short of 1, or changes, of a tool that stays as it is: by
-the tilt of half a turn that is written as 3.14, and of measured axes. Poses are read to as much."""
 
 _POSITION = ("px", "py", "pz")
 _ROTATION = tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))

@@ -9,7 +9,8 @@ import numpy as np
 
 from ikgen.kinematics.axis_relations import reach
 from ikgen.kinematics.forward import file_forward
-from ikgen.tasks import AXES, LEVEL, TASKS, Task
+from ikgen.program.policy import LEVEL
+from ikgen.tasks import AXES, TASKS, Task
 
 if TYPE_CHECKING:
     from ikgen.model.dh import DHChain

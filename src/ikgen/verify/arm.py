@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.program.policy import LEVEL
 from ikgen.runtime.python.held.arm_angle import ArmAngle
-from ikgen.tasks import LEVEL
 from ikgen.verify.oracle import Oracle
 from ikgen.verify.screws import ScrewChain
 from ikgen.verify.task_space import TaskSpace

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.tasks import AXES, LEVEL, TASKS, Task
+from ikgen.program.policy import LEVEL
+from ikgen.tasks import AXES, TASKS, Task
 
 __all__ = ["TASK_SPACES", "TaskSpace", "task_space"]
 

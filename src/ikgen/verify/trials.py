@@ -68,16 +68,12 @@ def ask_all(
     runner: Runner, arm: ArmUnderTest, questions: Sequence[Question]
 ) -> list[tuple[Trial, ...]]:
     """The trials of each question, all solved in one call; none of one without sets."""
-    stacks = [question.stack(arm) for question in questions if question.samples]
+    asked = [question for question in questions if question.samples]
+    stacks = [question.stack(arm) for question in asked]
     answers = zip(solve_stacks(runner, [stack for stack, _ in stacks]), stacks, strict=True)
-    trials: list[tuple[Trial, ...]] = []
-    for question in questions:
-        if not question.samples:
-            trials.append(())
-            continue
-        rows, (_, places) = next(answers)
-        trials.append(question.trials(rows, places))
-    return trials
+    told = zip(asked, answers, strict=True)
+    trials = iter([question.trials(rows, places) for question, (rows, (_, places)) in told])
+    return [next(trials) if question.samples else () for question in questions]
 
 
 def run_trial(

@@ -10,11 +10,11 @@ namespace ikgen_runtime {
 template <int First, int Count, int Height> struct UnitColumns {
   static constexpr bool kFlat = Count > 0 && Height == 2;
 
-  // The defect of columns whose entries are each off by `off`: |V^T V - 1| <= 2 |E| + |E|^2, E what they are off by; of a
-  // heading that of a tool that stays as it is, tilted by so much that its squared length is 1e-5 less.
-  static constexpr double most_defect(double off) noexcept {
+  // The defect of columns whose entries are each off by `off`: |V^T V - 1| <= 2 |E| + |E|^2, E what they are off by; or of
+  // a heading whose squared length is `level` short of 1.
+  static constexpr double most_defect(double off, double level) noexcept {
     const double most = 4.0 * Count * Height * off * off * (1.0 + 2.0 * Count * Height * off);
-    return kFlat && most < 1e-10 ? 1e-10 : most;
+    return kFlat && most < level * level ? level * level : most;
   }
 
   // What takes a heading's entries to unit length that is a little shorter.

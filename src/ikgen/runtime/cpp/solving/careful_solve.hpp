@@ -113,11 +113,10 @@ template <class Arm> struct CarefulSolve {
       }
       NearContinuum<Arm> curve(aim);  // that the arm has not, if there is one
       curve.trace(best[lane], passed);
-      for (int k = 0; k < curve.count; ++k) {
-        if (!(Refinement::error_after(curve.found[k], aim) < Policy::kExact)) continue;
-        real = true;
-        RightRows<Arm>::add(aim, out, curve.found[k], true);
-      }
+      RowStart<Arm> end;
+      end.marked = true;
+      for (int k = 0; k < curve.count; ++k) end.take(aim, curve.found[k], out);
+      real = real || end.exact;
     }
     LimitRows<Arm>::place_all(aim, options, out);
     return real;

@@ -24,9 +24,6 @@ from ikgen.runtime.python.arrays.orthonormal_columns import (
 __all__ = ["EntriesTask"]
 
 
-_SHORT = 1e-5  # of a heading's squared length: by so much a tool that stays as it is may tilt it
-
-
 @dataclass(frozen=True)
 class EntriesTask:
     """The entries of `row` and `column`; positions count over `size` (m).
@@ -82,9 +79,8 @@ class EntriesTask:
 
     def _most_defect(self, policy: Policy) -> float:
         """Of columns that are taken for unit vectors."""
-        if self.flat:
-            return max(most_defect(2 * len(self.unit), policy.pose_tolerance), _SHORT**2)
-        return most_defect(3 * len(self.unit), policy.pose_tolerance)
+        most = most_defect((2 if self.flat else 3) * len(self.unit), policy.pose_tolerance)
+        return max(most, policy.level**2) if self.flat else most
 
     def read_batch(self, T: Array, policy: Policy) -> tuple[Array, Flags]:
         """Implements `Task`."""

@@ -15,6 +15,7 @@ class Policy:
     exact: float  # and does not give way to better ones
     pose_tolerance: float  # how far a rotation's entries may be off
     orthonormal: float  # and what is round-off of them
+    level: float  # by how much a heading's squared length may be short of 1
     coincident: float  # rows closer than that (rad or m) are one
     alike: float  # and singular ones, where the pose is theirs between them too:
     halfway: float  # to this error
