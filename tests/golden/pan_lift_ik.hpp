@@ -1862,7 +1862,8 @@ template <class Arm> struct CarefulRows {
         add_lane(rows, lane, out);
       else if (rows.has(lane, kReal) && (Arm::kRefined || rows.has(lane, kRough)))
         starts.take({rows, lane, starts.marked(rows, lane)}, ends.at(0, lane), false, aim, out);
-    if (starts.count == 0 && left.free && out.count == known) take_all(aim, only, options, starts, out);
+    const bool none = starts.count == 0 && out.count == known;
+    if (left.free && (none || (Arm::kRounded && turn == 0))) take_unreal(aim, only, options, starts, out);
     left.led = left.led || starts.any_traced();
     [[maybe_unused]] const int early = out.count;
     for (int k = 0; k < starts.count; ++k)
@@ -1884,11 +1885,13 @@ template <class Arm> struct CarefulRows {
     return pose;
   }
 
-  static void take_all(const Aim& aim, const std::array<Rows, 1>& only, const Options& options, Starts& starts,
+  static void take_unreal(const Aim& aim, const std::array<Rows, 1>& only, const Options& options, Starts& starts,
                        Places& out) noexcept {
+    const auto unreal = [&](int lane) noexcept { return (only[0].bits(lane) & (kReal | kSingular)) == kSingular; };
+    if (!std::any_of(std::begin(Arm::kLaneOfRow), std::end(Arm::kLaneOfRow), unreal)) return;
     const LaneEnds<Arm, 1> ends(only, aim, options, kSingular);
     for (const int lane : Arm::kLaneOfRow)
-      if (only[0].has(lane, kSingular)) starts.take({only[0], lane, true}, ends.at(0, lane), false, aim, out);
+      if (unreal(lane)) starts.take({only[0], lane, true}, ends.at(0, lane), false, aim, out);
   }
 };
 

@@ -1689,7 +1689,8 @@ def _rows(arm: _Arm, asked: _Asked, start: Array, turn: _Index) -> list[_Rows]:
     close = (starts.source >= 0) & (leads.ends.loss < arm.policy.beside_reach) & ~leads.known
     near = free | (np.bincount(starts.pose[close], minlength=len(free)) > 0)
     if free.any():
-        hidden = closed.singular & ~known & _without_rows(arm, free, leads)[:, None]
+        beyond = ~closed.valid & free[:, None] & (first and arm.rounded)
+        hidden = closed.singular & ~known & (beyond | _without_rows(arm, free, leads)[:, None])
         hidden &= np.isfinite(closed.q).all(axis=2)
         more = _of_lanes(arm, asked, closed, hidden, hidden)
         leads = _both(leads, _leads_of(arm, more, known))

@@ -1,7 +1,9 @@
 // Rows one by one, with care: on singularities, near them, of rounded geometry, and those of a seed alone.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <iterator>
 
 #include "arm/joint_range.hpp"
 #include "solving/row_starts.hpp"
@@ -73,7 +75,8 @@ template <class Arm> struct CarefulRows {
       if (turn == 0) starts.trace_broken(aim, out);
     if constexpr (Arm::kBesides > 0)
       if (turn == 0 && (kBesideAnywhere || left.free || starts.close())) take_beside(aim, q0, options, starts, out);
-    if (starts.count == 0 && left.free && out.count == known) take_all(aim, only, options, starts, out);
+    const bool none = starts.count == 0 && out.count == known;
+    if (left.free && (none || (Arm::kRounded && turn == 0))) take_unreal(aim, only, options, starts, out);
     left.led = left.led || starts.any_traced();
     [[maybe_unused]] const int early = out.count;
     for (int k = 0; k < starts.count; ++k)
@@ -104,12 +107,15 @@ template <class Arm> struct CarefulRows {
     return pose;
   }
 
-  // Lanes that are not real where a divisor nearly vanishes: less than the file, or round-off, is off may be missing.
-  static void take_all(const Aim& aim, const std::array<Rows, 1>& only, const Options& options, Starts& starts,
+  // Lanes that are not real where a divisor nearly vanishes: less than the file, or round-off, is off may be missing, or
+  // the value of a joint that hardly matters may lie beyond what other joints reach.
+  static void take_unreal(const Aim& aim, const std::array<Rows, 1>& only, const Options& options, Starts& starts,
                        Places& out) noexcept {
+    const auto unreal = [&](int lane) noexcept { return (only[0].bits(lane) & (kReal | kSingular)) == kSingular; };
+    if (!std::any_of(std::begin(Arm::kLaneOfRow), std::end(Arm::kLaneOfRow), unreal)) return;
     const LaneEnds<Arm, 1> ends(only, aim, options, kSingular);
     for (const int lane : Arm::kLaneOfRow)
-      if (only[0].has(lane, kSingular)) starts.take({only[0], lane, true}, ends.at(0, lane), false, aim, out);
+      if (unreal(lane)) starts.take({only[0], lane, true}, ends.at(0, lane), false, aim, out);
   }
 
   // The rows of poses beside this one.

@@ -193,7 +193,8 @@ def _rows(arm: Arm, asked: Asked, start: Array, turn: Index) -> list[_Rows]:
         more = _beside(arm, asked, start, np.flatnonzero(near), closed)
         leads = both(leads, leads_of(arm, more, known))
     if free.any():
-        hidden = closed.singular & ~known & _without_rows(arm, free, leads)[:, None]
+        beyond = ~closed.valid & free[:, None] & (first and arm.rounded)
+        hidden = closed.singular & ~known & (beyond | _without_rows(arm, free, leads)[:, None])
         hidden &= np.isfinite(closed.q).all(axis=2)
         more = _of_lanes(arm, asked, closed, hidden, hidden)
         leads = both(leads, leads_of(arm, more, known))
@@ -214,7 +215,7 @@ def _add_surfaces(arm: Arm, asked: Asked, leads: Leads, kept: list[list[Found]])
 
 def _without_rows(arm: Arm, free: Flags, leads: Leads) -> Flags:
     """Which poses leave a joint free and led nowhere: less than the file is off may be what is missing to
-    rows that the closed form has not."""
+    rows that the closed form has not, or the joint's value lies beyond what others reach."""
     starts, poor = leads.starts, np.array(free, dtype=bool)
     poor[starts.pose[(starts.source >= 0) | (leads.ends.error < arm.policy.arrived)]] = False
     return poor
