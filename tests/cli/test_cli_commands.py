@@ -150,6 +150,7 @@ def test_a_xacro_file_and_its_arguments(tmp_path: Path, at_once: Called) -> None
         (["from-urdf", KUKA, "--tip", "tol0"], "tool0"),
         (["from-urdf", KUKA, "--task", "pse"], "pose"),
         (["from-urdf", KUKA, "--emit", "pythn"], "python"),
+        (["from-urdf", KUKA, "--emit", ""], "names no output"),
         (["from-urdf", KUKA, "--lock", "joint_a1"], "JOINT=VALUE"),
         (["from-urdf", KUKA, "--lock", "joint_a1=nan"], "finite"),
         (["from-urdf", KUKA, "--free", "joint_a9"], "joint_a1"),
