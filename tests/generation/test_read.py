@@ -21,6 +21,15 @@ def test_locked_joints_keep_inside_their_limits(tmp_path: Path) -> None:
             read(Request(robot, lock={"elbow": value}))
 
 
+def test_something_is_left_to_move(tmp_path: Path) -> None:
+    robot = write_robot(tmp_path / "elbow.urdf")
+    joints = [joint.name for joint in read(Request(robot)).dh.joints]
+    some = read(Request(robot, free=dict.fromkeys(joints[:-1]))).dh
+    assert len(some.free_indices) == some.dof - 1
+    with pytest.raises(UsageError, match="every joint is held"):
+        read(Request(robot, free=dict.fromkeys(joints)))
+
+
 def test_locked_joints_of_a_table(tmp_path: Path) -> None:
     table = tmp_path / "TABLE.TOML"  # whatever the case of the suffix
     text = (FIXTURES / "scara_standard.toml").read_text()

@@ -103,6 +103,28 @@ def test_what_was_never_verified_is_stale(
     assert (package / "generated/small_ik.json").read_text() == made
 
 
+def test_what_ikgen_wrote_is_replaced_and_nothing_else(
+    package: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (package / "ikgen.toml").write_text(CONFIG[CONFIG.rindex("[[arm]]") :])
+    module = package / "generated/small_ik.py"
+    module.parent.mkdir(exist_ok=True)
+    module.write_text("# mine\n")
+    assert run(["build", "--no-verify"]) == 2
+    said = capsys.readouterr().err
+    assert "generated/small_ik.py is in no record of ikgen" in said and "another `out`" in said
+    assert module.read_text() == "# mine\n"
+    module.unlink()
+    assert run(["build", "--no-verify", "-q"]) == 0
+    made = module.read_text()
+    for lost in (None, "{"):
+        module.write_text(made + "#\n")
+        record = package / "generated/small_ik.json"
+        record.unlink() if lost is None else record.write_text(lost)
+        assert run(["build", "--no-verify", "-q"]) == 0
+        assert module.read_text() == made
+
+
 def test_one_bad_arm_leaves_the_others(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (package / "ikgen.toml").write_text(CONFIG.replace('"tool0"', '"tol0"'))
     assert run(["build", "--no-verify"]) == 2
@@ -138,6 +160,8 @@ def test_the_traceback_of_an_internal_error(
         ("[[arm]]\nname = 'a'\nrobot = 'r'\nlock = { j = 'x' }", "not a number"),
         ("[[arm]]\nname = 'a'\nrobot = 'r'\n[[arm]]\nname = 'a'\nrobot = 'r'", "two arms"),
         ("arm = 3", "lists no arm"),
+        ("[[arms]]\nname = 'a'\nrobot = 'r'", "unknown entry 'arms'"),
+        ("[[arm]]\nname = 'a'\nrobot = 'r'\nemit = []", "names no output"),
         ("other = 3\n[[arm]]\nname = 'a'\nrobot = 'r'", "unknown entry 'other'"),
     ],
 )

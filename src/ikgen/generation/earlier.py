@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ikgen.errors import BadDescriptionError, UsageError
+from ikgen.generation.publish import is_generated
 from ikgen.generation.record import Record, digest, read_record, records_of
 from ikgen.generation.written_list import check_written, listed, recorded
 from ikgen.model.module_name import identifier
@@ -53,13 +54,18 @@ class Earlier:
             hint=f"write beside it with {new}, elsewhere with -o DIR, or replace it with --force",
         )
 
-    def check_files(self, out: Path, texts: Mapping[str, str]) -> None:
-        """Raises `UsageError` where a file that would be replaced is not as ikgen wrote it, or another's;
-        `texts`: what is to be written, by name in the folder `out`."""
+    def check_files(self, out: Path, texts: Mapping[str, str], *, edited: bool = False) -> None:
+        """Raises `UsageError` where a file that would be replaced is another's, or not as ikgen wrote it,
+        unless it may be `edited`; `texts`: what is to be written, by name in the folder `out`."""
         wrote: dict[Path, set[str]] = listed(out, f"{self.name}_report")
         for path, digests in recorded(out, self.name).items():
             wrote.setdefault(path, set()).update(digests)
-        check_written(out, texts, wrote, {record.path.resolve() for record in self.records})
+        own = {path.resolve() for path in (*(record.path for record in self.records), *self.broken)}
+        if not edited:
+            check_written(out, texts, wrote, own)
+            return
+        own |= wrote.keys() | {path.resolve() for name in texts if is_generated(path := out / name)}
+        check_written(out, texts, wrote, own, "or give the arm another `out` or `name`")
 
     def outdated(self, files: Collection[Path]) -> list[Path]:
         """Recorded files that are as they were written and not among the new ones (records included)."""

@@ -53,17 +53,18 @@ def generate(request: Request, outputs: Outputs, progress: Progress = silent) ->
     reading = read(request)
     complete_folder(outputs.out)  # first: it tells what is there
     earlier = earlier_outputs(outputs.out, request.name or default_name(reading))
-    if not outputs.force:
+    alike = not (outputs.force or outputs.ours)
+    if alike:
         earlier.check(request, reading, _task_name(request))
     kept = () if outputs.only else tuple(n for n in earlier.emit if n not in outputs.emit)
     emitters = [*_again(kept), *asked]
     made = make_texts(request, reading, emitters, outputs, progress)
     derivation = made.derivation
-    if not outputs.force:
+    if alike:
         earlier.check(request, reading, derivation.task.name)
     texts = made.files | record_texts(request, outputs, derivation, made.texts)
     if not outputs.force:
-        earlier.check_files(outputs.out, texts)
+        earlier.check_files(outputs.out, texts, edited=outputs.ours)
     removed = tuple(earlier.outdated([outputs.out / name for name in texts]))
     files = publish(outputs.out, texts, removed)
     seconds = time.perf_counter() - started

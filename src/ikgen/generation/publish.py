@@ -12,7 +12,15 @@ from ikgen.errors import UsageError
 from ikgen.generation.publishing import PREFIX, Publishing, complete, publishing_alone
 from ikgen.processes.scratch_folder import ScratchFolder
 
-__all__ = ["Content", "check_folder", "content_digest", "left_over", "publish", "write_texts"]
+__all__ = [
+    "Content",
+    "check_folder",
+    "content_digest",
+    "is_generated",
+    "left_over",
+    "publish",
+    "write_texts",
+]
 
 _TRIAL = ".ikgen-trial-"
 
@@ -76,10 +84,11 @@ def _bytes(content: Content) -> bytes:
 def left_over(folder: Path, name: str, files: Collection[Path]) -> tuple[Path, ...]:
     """Solvers of the name `name` in a folder that an earlier run generated and that are not of `files`."""
     paths = [folder / f"{name}_ik{suffix}" for suffix in (".py", ".hpp")]
-    return tuple(path for path in paths if path not in files and _is_generated(path))
+    return tuple(path for path in paths if path not in files and is_generated(path))
 
 
-def _is_generated(path: Path) -> bool:
+def is_generated(path: Path) -> bool:
+    """Whether a file says at its head that ikgen generated it."""
     if not path.is_file():
         return False
     with path.open(encoding="utf-8", errors="replace") as stream:

@@ -29,6 +29,10 @@ def read(request: Request, tree: JointTree | None = None) -> Reading:
     read before."""
     reading = _with_motors(_with_parts(_read(request, tree), request), request)
     _check_units(request, reading.dh.held_inputs)
+    if len(reading.dh.free_indices) == reading.dh.dof:
+        raise UsageError(
+            "every joint is held: nothing is left to solve for", hint="hold fewer by --free"
+        )
     return _with_elbow(reading) if reading.dh.arm_angle else reading
 
 

@@ -61,6 +61,12 @@ def _maintainer(value: Any, where: str) -> Any:
     return value
 
 
+def _some(value: Any, where: str) -> Any:
+    if value == []:
+        raise CodecError(where, "names no output", 'leave it out, or write for example ["python"]')
+    return value
+
+
 def _positive(value: Any, where: str) -> Any:
     if isinstance(value, int) and value < 1:
         raise CodecError(where, f"{value} is less than 1")
@@ -170,14 +176,15 @@ class Outputs:
     """What to write and how to check it.
 
     `emit` names outputs, `out` is the folder that they go to, `samples` random poses are drawn from `seed`.
-    `only`: those made earlier by the same name are not kept; `force`: they may be of another robot, chain
-    or task.
+    `only`: those made earlier by the same name are not kept. What is replaced is as ikgen wrote it for the
+    same robot, chain and task; `ours`: ikgen wrote it; `force`: anything.
     """
 
-    emit: tuple[str, ...] = ("python",)
+    emit: tuple[str, ...] = field(default=("python",), metadata=coded(_some))
     out: Path = Path()
     samples: int = field(default=1000, metadata=coded(_positive))
     seed: int = field(default=0, metadata=uncoded())
     verify: bool = field(default=True, metadata=uncoded())
     only: bool = field(default=False, metadata=uncoded())
     force: bool = field(default=False, metadata=uncoded())
+    ours: bool = field(default=False, metadata=uncoded())

@@ -71,9 +71,10 @@ def check_written(
     files: Mapping[str, Content | None],
     wrote: Wrote,
     own: Collection[Path] = (),
+    way_out: str = "write elsewhere with -o DIR, or replace it with --force",
 ) -> None:
     """Raises `UsageError` where a file of the folder is neither as ikgen wrote it nor as it is to become
-    (None: removed), nor one of ikgen's `own` beside them."""
+    (None: removed), nor one of ikgen's `own` beside them; `way_out` is told then."""
     for name, content in files.items():
         path = (out / name).resolve()
         found, known = digest(path), set(wrote.get(path, ()))
@@ -84,7 +85,7 @@ def check_written(
         what = "was edited after it was generated" if path in wrote else "is in no record of ikgen"
         raise UsageError(
             f"{out / name} {what}",
-            hint="keep it by another name, write elsewhere with -o DIR, or replace it with --force",
+            hint=f"keep it by another name, {way_out}",
         )
 
 

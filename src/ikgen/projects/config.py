@@ -70,13 +70,13 @@ def load_config(path: Path) -> tuple[ArmConfig, ...]:
     """The arms of a config, in its order; raises `BadDescriptionError` naming the entry and its line."""
     text = _text(path)
     data = _tables(path, text)
-    tables = data.get("arm", [])
-    if not isinstance(tables, list) or not tables:
-        raise _error(path, "lists no arm", hint="add a table [[arm]] with name and robot")
     decoder = Decoder(lambda text: Path(text) if is_named(text) else path.parent / text, True)
     try:
         for key in set(data) - {"arm"}:
             raise CodecError(key, f"unknown entry '{key}'", "there is: arm")
+        tables = data.get("arm", [])
+        if not isinstance(tables, list) or not tables:
+            raise _error(path, "lists no arm", hint="add a table [[arm]] with name and robot")
         arms = [arm for i, table in enumerate(tables) for arm in _arms(decoder, table, i)]
         _check_places(arms)
     except CodecError as error:

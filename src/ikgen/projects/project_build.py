@@ -112,7 +112,7 @@ def _build_one(job: tuple[ArmConfig, str, bool]) -> Outcome:
     from ikgen.generation.generate import generate
 
     arm, reason, verify = job
-    outputs = replace(arm.outputs, verify=verify, only=True, force=True)  # the config's alone
+    outputs = replace(arm.outputs, verify=verify, only=True, ours=True)  # the config's alone
     try:
         made = generate(arm.request, outputs)
     except IkgenError as error:
