@@ -23,13 +23,30 @@ template <class Arm> struct CurveSamples {
   explicit CurveSamples(const HeldAim<Arm>& goal) noexcept : fold(goal) {}
 
   // On the curve beside a configuration.
-  Sample at(const double* q) noexcept { return corrected(q, true); }
+  Sample at(const double* q) noexcept {
+    Sample s;
+    std::copy_n(q, Arm::kDof, s.q);
+    s.on = false;
+    double before[Fold::kMoving] = {}, last = kInfinity;
+    for (int i = 0; i < kCorrections && !s.on; ++i) {
+      double across[Fold::kMoving];
+      const double farthest = fold.correct(s.q, i == 0, s.left, s.slope, across);
+      s.on = farthest < std::max(kNear, kShare * std::abs(s.left));
+      const bool leaps = !s.on && farthest > kSlow * last && leap(before, across, s.q);
+      last = leaps ? kInfinity : farthest;
+      std::copy_n(across, Fold::kMoving, before);
+    }
+    std::copy_n(fold.still, Fold::kMoving, s.still);
+    std::copy_n(fold.out, Fold::kEquations, s.out);
+    --samples;
+    return s;
+  }
 
-  // Beside a sample: its still direction, which every correction turns on, is good enough to begin with.
+  // Beside a sample.
   Sample at(const double* q, const Sample& from) noexcept {
     std::copy_n(from.still, Fold::kMoving, fold.still);
     std::copy_n(from.out, Fold::kEquations, fold.out);
-    return corrected(q, false);
+    return at(q);
   }
 
   Sample part(const Sample& a, const Sample& b, double share) noexcept {
@@ -67,31 +84,6 @@ template <class Arm> struct CurveSamples {
   static constexpr double kNear = 1e-11;  // rad or m: how far off the curve slopes along it are the curve's
   static constexpr double kShare = 3e-2;  // of what is left: as little as that off the curve changes neither
   static constexpr double kSlow = 0.1, kSteady = 0.8;  // how fast corrections converge that are not left to themselves
-  static constexpr double kCurved = 10.0;              // 1/rad or 1/m: the next correction, of a small one's square
-
-  Sample corrected(const double* q, bool anew) noexcept {
-    Sample s;
-    std::copy_n(q, Arm::kDof, s.q);
-    s.on = false;
-    double before[Fold::kMoving] = {}, last = kInfinity;
-    for (int i = 0; i < kCorrections && !s.on; ++i) {
-      double across[Fold::kMoving];
-      const double farthest = fold.correct(s.q, anew && i == 0, s.left, s.slope, across);
-      s.on = off_after(farthest, last) < std::max(kNear, kShare * std::abs(s.left));
-      const bool leaps = !s.on && farthest > kSlow * last && leap(before, across, s.q);
-      last = leaps ? kInfinity : farthest;
-      std::copy_n(across, Fold::kMoving, before);
-    }
-    std::copy_n(fold.still, Fold::kMoving, s.still);
-    std::copy_n(fold.out, Fold::kEquations, s.out);
-    --samples;
-    return s;
-  }
-
-  // How far off the curve a correction leads to at most, as the one before it tells; if there was none, as far as it went.
-  static double off_after(double farthest, double last) noexcept {
-    return last < kInfinity ? farthest * std::min(1.0, std::max(kCurved * farthest, farthest / last)) : farthest;
-  }
 
   // Goes to where two corrections that converge slowly lead in the end (Aitken 1926), if they do.
   static bool leap(const double* before, const double* across, double* q) noexcept {
