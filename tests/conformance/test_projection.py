@@ -110,6 +110,21 @@ def test_no_configuration_is_nearer(arm: ModuleType) -> None:
         assert mine.max() <= cost(arm, others, T).min() * (1 + 1e-6) + 1e-13
 
 
+def test_no_other_start_leads_nearer(arm: ModuleType) -> None:
+    """To poses far from all that the arm can take: steps from fifty times as many starts."""
+    rng = np.random.default_rng(5)
+    solver = arm._ARM
+    low, high = np.array(arm.LOWER), np.array(arm.UPPER)
+    bounds = arm._step_bounds(solver, True)
+    for T in displaced(arm, 24)[1][3::4]:
+        T[:3, 3] *= rng.uniform(0.7, 1.5)
+        found = arm.solve(T, project=True)
+        starts = rng.uniform(np.maximum(low, -np.pi), np.minimum(high, np.pi), (1000, arm.DOF))
+        aims = np.broadcast_to(T, (len(starts), 4, 4))
+        ends, _ = arm._descend_to(solver, aims, starts, bounds, 1e-16)
+        assert cost(arm, found.q, T).max() <= cost(arm, ends, T).min() * (1 + 1e-6) + 1e-13
+
+
 def test_a_pose_that_the_arm_can_take_is_answered_as_without(arm: ModuleType) -> None:
     for q in np.random.default_rng(1).uniform(arm.LOWER, arm.UPPER, (20, arm.DOF)):
         T = arm.forward(q)

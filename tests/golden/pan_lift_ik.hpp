@@ -2031,14 +2031,16 @@ template <class Arm> struct PoseChords {
 template <class Arm> struct NearestRow {
   using Options = typename Arm::Options;
   using Chords = PoseChords<Arm>;
-  static constexpr int kStarts = 128, kFollowed = 16, kSteps = 80;
+  static constexpr int kStarts = 256, kFollowed = 16, kSteps = 80;
+  static constexpr int kFirstSteps = 12;  // of each start: where they begin tells little of where they lead
+  static constexpr int kFewSteps = 4;     // the same where a row takes the pose, or none is wanted
   static constexpr double kLeast = 1e-10, kFirst = 1e-3, kMost = 1e10;  // damping of a step
   static constexpr double kLongest = 0.5;     // rad or m: step of a joint
   static constexpr double kRoundOff = 1e-16;  // of what is least: what a step gains where nothing is left to gain
   static constexpr double kStanding = 1e-6;   // the same where what is least is not 0
 
   [[gnu::cold, gnu::noinline]] static void find(const double* t, const Options& options, bool inside, double enough,
-                                                double* best) noexcept {
+                                                int first, double* best) noexcept {
     double rows[kFollowed][Arm::kDof], costs[kFollowed], q[Arm::kDof], root = 2.0;
     for (int k = 0; k < 40; ++k) root = std::pow(1.0 + root, 1.0 / (Arm::kDof + 1));
     int kept = 0;
@@ -2050,7 +2052,7 @@ template <class Arm> struct NearestRow {
         q[j] = std::clamp(options.seed ? options.seed->data()[j] : 0.0, low, high);
       }
       hold(options, q);
-      const double cost = Chords(q, t).cost;
+      const double cost = descend(t, inside, enough, q, first);
       int at = std::min(kept, kFollowed - 1);
       if (kept == kFollowed && !(cost < costs[at])) continue;
       for (; at > 0 && costs[at - 1] > cost; --at) {
@@ -2070,10 +2072,10 @@ template <class Arm> struct NearestRow {
     }
   }
 
-  static double descend(const double* t, bool limits, double enough, double* q) noexcept {
+  static double descend(const double* t, bool limits, double enough, double* q, int steps = kSteps) noexcept {
     double damping = kFirst;
     Chords at(q, t);
-    for (int i = 0; i < kSteps && damping < kMost; ++i) {
+    for (int i = 0; i < steps && damping < kMost; ++i) {
       double trial[Arm::kDof];
       std::copy_n(q, Arm::kDof, trial);
       const double gain = step(at, limits, damping, trial);
@@ -2254,7 +2256,8 @@ template <class Arm> struct CarefulSolve {
     bool real = false;
     for (bool inside = options.limits;; inside = false) {
       double q[Arm::kDof];
-      NearestRow<Arm>::find(aim.pose.matrix().data(), options, inside, NearestRow<Arm>::kStanding, q);
+      NearestRow<Arm>::find(aim.pose.matrix().data(), options, inside, NearestRow<Arm>::kStanding,
+                            NearestRow<Arm>::kFewSteps, q);
       if (Refinement::refine(q, aim)) {
         real = true;
         RightRows<Arm>::add(aim, out, q, true);
@@ -2573,7 +2576,7 @@ template <class Arm, template <class> class Way> struct Projection {
   static void solve_nearest(const double* t, Options options, Solutions& out) noexcept {
     if (options.seed && !SolutionRows<Arm>::finite(options.seed->data())) options.seed = nullptr;
     double q[Arm::kDof];
-    NearestRow<Arm>::find(t, options, options.limits, NearestRow<Arm>::kRoundOff, q);
+    NearestRow<Arm>::find(t, options, options.limits, NearestRow<Arm>::kRoundOff, NearestRow<Arm>::kFirstSteps, q);
     Eigen::Isometry3d pose;
     by_columns(MotionChain<Arm>::forward(q), pose.matrix().data());
     HeldAim<Arm>::values(q, options.free);

@@ -1386,7 +1386,9 @@ def _that_differ(arm: _Arm, T: Array, pose: _Index, q: Array, singular: _Flags) 
 # The nearest pose that the arm can take, of one that it cannot.
 
 
-_START_COUNT = 128  # drawn; the best of them are followed
+_START_COUNT = 256  # drawn
+_FIRST_STEPS = 12  # of each: where they begin tells little of where they lead
+_FEW_STEPS = 4  # the same where a row takes the pose, or none is wanted
 _FOLLOWED = 16
 _STEP_COUNT = 80
 _LEAST_DAMPING, _FIRST_DAMPING, _MOST_DAMPING = 1e-10, 1e-3, 1e10  # damping of a step
@@ -1397,29 +1399,35 @@ _STANDING = 1e-6  # the same where what is least is not 0
 
 def _nearest_row(arm: _Arm, T: Array, start: Row, limits: bool) -> Row:
     """The joint values whose pose is nearest to T (4, 4), held joints as in `start`."""
-    best: Row = tuple(_nearest(arm, T[None], np.array([start]), limits, _ROUND_OFF)[0].tolist())
+    best: Row = tuple(
+        _nearest(arm, T[None], np.array([start]), limits, _ROUND_OFF, _FIRST_STEPS)[0].tolist()
+    )
     return best
 
 
 def _nearest_rows(arm: _Arm, T: Array, start: Array, limits: bool) -> Array:
     """`_nearest_row` of poses T (k, 4, 4), each with its start (k, dof)."""
-    return _nearest(arm, T, start, limits, _STANDING)
+    return _nearest(arm, T, start, limits, _STANDING, _FEW_STEPS)
 
 
-def _nearest(arm: _Arm, T: Array, start: Array, limits: bool, enough: float) -> Array:
-    bounds = _step_bounds(arm, limits)
-    begin = [_best_starts(arm, pose, row, bounds) for pose, row in zip(T, start)]
-    aims = np.repeat(T, _FOLLOWED, axis=0)
-    q, cost = _descend_to(arm, aims, np.concatenate(begin), bounds, enough)
-    best = cost.reshape(len(T), _FOLLOWED).argmin(axis=1)
-    return np.asarray(q.reshape(len(T), _FOLLOWED, -1)[np.arange(len(T)), best])
+def _nearest(arm: _Arm, T: Array, start: Array, limits: bool, enough: float, first: int) -> Array:
+    bounds, dof = _step_bounds(arm, limits), start.shape[1]
+    q = np.concatenate([_projection_starts(arm, row, bounds) for row in start])
+    for steps, kept in ((first, _FOLLOWED), (_STEP_COUNT, 1)):
+        aims = np.repeat(T, len(q) // len(T), axis=0)
+        q, cost = _descend_to(arm, aims, q, bounds, enough, steps)
+        best = np.argsort(cost.reshape(len(T), -1), axis=1, kind="stable")[:, :kept]
+        q = np.take_along_axis(q.reshape(len(T), -1, dof), best[:, :, None], axis=1).reshape(
+            -1, dof
+        )
+    return q
 
 
-def _best_starts(arm: _Arm, T: Array, start: Array, bounds: tuple[Array, Array]) -> Array:
-    """Those (n, dof) that are followed."""
+def _projection_starts(arm: _Arm, start: Array, bounds: tuple[Array, Array]) -> Array:
+    """Configurations (n, dof)."""
     q = np.vstack([np.clip(start, *bounds), _even_starts(arm, *bounds)])
     q[:, list(arm.free)] = start[list(arm.free)]
-    return np.asarray(q[np.argsort(_chord_costs(arm, T, q), kind="stable")[:_FOLLOWED]])
+    return q
 
 
 def _chord_costs(arm: _Arm, T: Array, q: Array) -> Array:
@@ -1485,9 +1493,14 @@ def _even_starts(arm: _Arm, low: Array, high: Array) -> Array:
 
 
 def _descend_to(
-    arm: _Arm, T: Array, q: Array, bounds: tuple[Array, Array], enough: float
+    arm: _Arm,
+    T: Array,
+    q: Array,
+    bounds: tuple[Array, Array],
+    enough: float,
+    steps: int = _STEP_COUNT,
 ) -> tuple[Array, Array]:
-    """The rows (k, dof) at the ends of the steps towards poses T (k, 4, 4), and what is least there
+    """The rows (k, dof) at the ends of so many steps towards poses T (k, 4, 4), and what is least there
     (k,)."""
     moving, weight = list(arm.moving), _chord_weight(arm.task)
     low, high = (bound[moving] for bound in bounds)
@@ -1500,7 +1513,7 @@ def _descend_to(
 
     ends, costs, going = q.copy(), np.full(len(q), inf), np.arange(len(q))
     at, damping = state(q, T), np.full(len(q), _FIRST_DAMPING)
-    for _ in range(_STEP_COUNT):
+    for _ in range(steps):
         q, error, slope, cost = at
         trial = q.copy()
         trial[:, moving], gain = _clipped_step(q[:, moving], slope, error, damping, (low, high))

@@ -112,7 +112,7 @@ def test_that_no_row_takes_a_pose_is_told_of_many_at_once(
 
     monkeypatch.setattr(arm, "_clipped_step", counted)
     rows = arm._nearest_rows(arm._ARM, poses, np.zeros((12, 6)), True)
-    assert len(steps) <= 80 and sum(steps) < 60 * steps[0]
+    assert len(steps) <= 84 and sum(steps) < 10 * steps[0]
     off = np.abs(arm.forward(rows) - poses).max(axis=(1, 2))
     assert (off[:6] > 1.0).all() and (off[6:] < 1e-3).all()
     for k in range(0, 12, 4):

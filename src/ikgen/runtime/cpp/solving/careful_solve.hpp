@@ -127,7 +127,8 @@ template <class Arm> struct CarefulSolve {
     bool real = false;
     for (bool inside = options.limits;; inside = false) {
       double q[Arm::kDof];
-      NearestRow<Arm>::find(aim.pose.matrix().data(), options, inside, NearestRow<Arm>::kStanding, q);
+      NearestRow<Arm>::find(aim.pose.matrix().data(), options, inside, NearestRow<Arm>::kStanding,
+                            NearestRow<Arm>::kFewSteps, q);
       if (Refinement::refine(q, aim)) {
         real = true;
         RightRows<Arm>::add(aim, out, q, true);

@@ -1,6 +1,6 @@
 // The configuration whose pose is nearest to one that is asked for: what is least is |p - p'|^2 / size^2 + chord^2, the
 // chord that of the rotation, direction or heading that the task reads. Damped Gauss-Newton steps inside the limits
-// (Levenberg 1944, Marquardt 1963), from the best of many starts.
+// (Levenberg 1944, Marquardt 1963), from many starts; those that come nearest in a few steps are followed to the end.
 #pragma once
 
 #include <algorithm>
@@ -61,15 +61,17 @@ template <class Arm> struct PoseChords {
 template <class Arm> struct NearestRow {
   using Options = typename Arm::Options;
   using Chords = PoseChords<Arm>;
-  static constexpr int kStarts = 128, kFollowed = 16, kSteps = 80;
+  static constexpr int kStarts = 256, kFollowed = 16, kSteps = 80;
+  static constexpr int kFirstSteps = 12;  // of each start: where they begin tells little of where they lead
+  static constexpr int kFewSteps = 4;     // the same where a row takes the pose, or none is wanted
   static constexpr double kLeast = 1e-10, kFirst = 1e-3, kMost = 1e10;  // damping of a step
   static constexpr double kLongest = 0.5;     // rad or m: step of a joint
   static constexpr double kRoundOff = 1e-16;  // of what is least: what a step gains where nothing is left to gain
   static constexpr double kStanding = 1e-6;   // the same where what is least is not 0
 
-  // t: the pose's matrix, columns first; inside: whether limits hold; enough: as for descend.
+  // t: the pose's matrix, columns first; inside: whether limits hold; enough: as for descend; first: steps of each start.
   [[gnu::cold, gnu::noinline]] static void find(const double* t, const Options& options, bool inside, double enough,
-                                                double* best) noexcept {
+                                                int first, double* best) noexcept {
     double rows[kFollowed][Arm::kDof], costs[kFollowed], q[Arm::kDof], root = 2.0;
     for (int k = 0; k < 40; ++k) root = std::pow(1.0 + root, 1.0 / (Arm::kDof + 1));
     int kept = 0;
@@ -81,7 +83,7 @@ template <class Arm> struct NearestRow {
         q[j] = std::clamp(options.seed ? options.seed->data()[j] : 0.0, low, high);
       }
       hold(options, q);
-      const double cost = Chords(q, t).cost;
+      const double cost = descend(t, inside, enough, q, first);
       int at = std::min(kept, kFollowed - 1);
       if (kept == kFollowed && !(cost < costs[at])) continue;
       for (; at > 0 && costs[at - 1] > cost; --at) {
@@ -103,10 +105,10 @@ template <class Arm> struct NearestRow {
 
   // Steps from q; what is least where they end: where one that is hardly damped gains a share of that which is not
   // enough.
-  static double descend(const double* t, bool limits, double enough, double* q) noexcept {
+  static double descend(const double* t, bool limits, double enough, double* q, int steps = kSteps) noexcept {
     double damping = kFirst;
     Chords at(q, t);
-    for (int i = 0; i < kSteps && damping < kMost; ++i) {
+    for (int i = 0; i < steps && damping < kMost; ++i) {
       double trial[Arm::kDof];
       std::copy_n(q, Arm::kDof, trial);
       const double gain = step(at, limits, damping, trial);
@@ -130,7 +132,7 @@ template <class Arm> struct NearestRow {
     *high = limits ? Arm::kUpper.data()[j] : kInfinity;
   }
 
-  // The start i of 128 that fill the limits evenly: Kronecker's sequence by powers of the root of x^(n + 1) = x + 1
+  // The start i of those that fill the limits evenly: Kronecker's sequence by powers of the root of x^(n + 1) = x + 1
   // (Roberts 2018).
   static void start(int i, double root, const Options& options, bool inside, double* q) noexcept {
     double step = 1.0;

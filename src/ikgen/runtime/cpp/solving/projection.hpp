@@ -30,7 +30,7 @@ template <class Arm, template <class> class Way> struct Projection {
   static void solve_nearest(const double* t, Options options, Solutions& out) noexcept {
     if (options.seed && !SolutionRows<Arm>::finite(options.seed->data())) options.seed = nullptr;
     double q[Arm::kDof];
-    NearestRow<Arm>::find(t, options, options.limits, NearestRow<Arm>::kRoundOff, q);
+    NearestRow<Arm>::find(t, options, options.limits, NearestRow<Arm>::kRoundOff, NearestRow<Arm>::kFirstSteps, q);
     Eigen::Isometry3d pose;
     by_columns(MotionChain<Arm>::forward(q), pose.matrix().data());
     HeldAim<Arm>::values(q, options.free);
