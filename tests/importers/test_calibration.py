@@ -142,6 +142,8 @@ def test_the_page_on_fleets_has_a_row_for_each_of_the_arm() -> None:
     [
         ("kinematics: [1]", "no table 'kinematics'"),
         ("shoulder: 1", "no table 'kinematics'"),
+        ("kinematics: {hash: calib_1}", "names no link"),
+        ("", "the file is empty"),
         (
             "kinematics: {elbow: {x: 0, y: 0, z: 0, roll: 0, pitch: 0, yaw: 0}}",
             "no link 'elbow_link'",

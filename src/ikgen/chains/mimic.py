@@ -67,7 +67,7 @@ def _resolve(tree: JointTree, joints: Mapping[str, Joint], joint: Joint) -> Coup
                 f"joint '{joint.name}' mimics itself through '{current.name}'",
                 file=shown_file(tree.source),
                 line=joint.line,
-                hint="remove one of the <mimic> elements",
+                hint="remove one of the <mimic> elements, or of the relations that were given",
             )
         seen.add(mimic.joint)
         current = joints[mimic.joint]

@@ -14,8 +14,8 @@ _POSITION = 3  # freedoms
 
 def announcements(derivation: Derivation) -> tuple[str, ...]:
     """What was odd in the file, that the task is not the first that fits, and that it asks more than the
-    arm can do."""
-    told = (_passed_over(derivation), _over_constrained(derivation))
+    arm can do, or than its name says."""
+    told = (_passed_over(derivation), _over_constrained(derivation) or _tilting(derivation))
     return (*derivation.reading.source.warnings, *filter(None, told))
 
 
@@ -27,6 +27,19 @@ def _passed_over(derivation: Derivation) -> str:
     return (
         f"code for {names}, which fits the arm better, failed its verification: what was made is for "
         f"the task '{derivation.task.name}'"
+    )
+
+
+def _tilting(derivation: Derivation) -> str:
+    """In words, that a heading has its tilt in it; "" where it has not."""
+    from ikgen.tasks.fitting import freedoms_fixed
+
+    dh, task = derivation.reading.dh, derivation.task
+    if freedoms_fixed(dh, task) == task.freedoms:
+        return ""
+    return (
+        f"the joints tilt the axis whose heading the task '{task.name}' reads: in a pose the heading is as "
+        "long as the tilt leaves it, so the tilt counts too"
     )
 
 

@@ -98,9 +98,13 @@ def _origins(path: Path) -> dict[str, dict[str, float]]:
             hint="a robot's own is written by ur_calibration; offsets of DH rows go in a .toml file",
         )
     found = {}
-    for key, entry in table.items():
-        if key in _NOT_A_LINK:
-            continue
+    links = {key: entry for key, entry in table.items() if key not in _NOT_A_LINK}
+    if not links:
+        hint = "under it are links, each with the six numbers of its joint's origin"
+        raise BadDescriptionError(
+            "no calibration: its table 'kinematics' names no link", file=str(path), hint=hint
+        )
+    for key, entry in links.items():
         if not isinstance(entry, Mapping) or set(entry) != set(_ORIGIN):
             problem = (
                 f"the entry '{key}' of the calibration has not the numbers {', '.join(_ORIGIN)}"

@@ -90,7 +90,7 @@ def read_text(path: Path, largest: int = LARGEST_FILE, *, may_be_empty: bool = F
         raise BadDescriptionError(reason, file=str(path), hint=hint) from None
     text = _decode(data, path).replace("\r\n", "\n").replace("\r", "\n")
     if not text.strip() and not may_be_empty:
-        hint = "give a URDF or xacro file, or a DH table"
+        hint = "check the path, and that the file was saved"
         raise BadDescriptionError("the file is empty", file=str(path), hint=hint)
     return text
 
@@ -98,9 +98,9 @@ def read_text(path: Path, largest: int = LARGEST_FILE, *, may_be_empty: bool = F
 def _not_readable(path: Path, mode: int, size: int, largest: int) -> BadDescriptionError:
     if stat.S_ISDIR(mode):
         return BadDescriptionError(
-            "is a directory, not a robot description",
+            "is a directory, not a file",
             file=str(path),
-            hint="name the .urdf or .xacro file inside it",
+            hint="name the file inside it",
         )
     if not stat.S_ISREG(mode):
         return BadDescriptionError(

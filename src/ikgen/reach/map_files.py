@@ -15,7 +15,7 @@ from ikgen.processes.executors import Workers
 from ikgen.reach.grid import grid_over
 from ikgen.reach.reach_map import ReachMap, engine_of, reach_map
 from ikgen.reach.slices_page import slices_page
-from ikgen.reach.stored_map import FORMATS, map_contents
+from ikgen.reach.stored_map import FORMATS, check_format, map_contents
 
 __all__ = ["MapOrder", "write_map"]
 
@@ -45,6 +45,7 @@ def write_map(
     """The map and its files: the arrays and the page. `out` is a folder, or names the file (`FORMATS`).
     Raises `UsageError` where files that ikgen did not write, or that were edited, would be replaced."""
     check_folder(out.parent if out.suffix in FORMATS else out)
+    check_format(out.suffix)
     derivation = derive(request, progress)
     grid = grid_over(derivation.reading.dh, order.cells, order.directions, order.rolls)
     progress("compile", derivation.module.name)

@@ -14,7 +14,7 @@ from ikgen.generation.publish import Content
 from ikgen.reach.grid import Grid
 from ikgen.reach.reach_map import ReachMap
 
-__all__ = ["FORMATS", "archive", "map_contents", "read_map", "zarr_files"]
+__all__ = ["FORMATS", "archive", "check_format", "map_contents", "read_map", "zarr_files"]
 
 FORMATS = (".npz", ".zarr")
 
@@ -24,6 +24,12 @@ _VALUES = ("count", "sigma", "margin")
 _DIMENSIONS = ("x", "y", "z", "rotation")
 _CHUNK = 64
 """Positions along each axis that a piece of a zarr array has at most; all their rotations go with them."""
+
+
+def check_format(suffix: str) -> None:
+    """Raises `MissingToolError` where maps of a format cannot be written here."""
+    if suffix == ".zarr":
+        _zarr()
 
 
 def map_contents(found: ReachMap, name: str, suffix: str) -> dict[str, Content]:

@@ -133,8 +133,12 @@ def _with_axis() -> list[str]:
 def find_task(name: str, axis: str | None = None) -> Task:
     """The task of a name or alias, ikgen's own or another package's, by the tool's axis (None: the name's,
     as in `position-pitch:x`, or z); raises `UnknownNameError` with what there is, `UsageError` for an axis
-    of a task that has none."""
+    of a task that has none, or for two of them."""
     stem, colon, own = name.partition(":")
+    if colon and axis not in (None, own):
+        raise UsageError(
+            f"the task '{name}' goes by another axis than {axis}", hint="name the tool's axis once"
+        )
     axis = axis or (own if colon else None)
     if axis is not None and axis not in AXES:
         raise UnknownNameError("tool axis", axis, AXES)
