@@ -160,6 +160,7 @@ def test_the_traceback_of_an_internal_error(
         ("[[arm]]\nname = 'a'\nrobot = 'r'\nlock = { j = 'x' }", "not a number"),
         ("[[arm]]\nname = 'a'\nrobot = 'r'\n[[arm]]\nname = 'a'\nrobot = 'r'", "two arms"),
         ("arm = 3", "lists no arm"),
+        ("[[arm]]\nname = 'a'\nrobot = 'r'\npackage_paths = ['no']", "no such directory: .*no"),
         ("[[arms]]\nname = 'a'\nrobot = 'r'", "unknown entry 'arms'"),
         ("[[arm]]\nname = 'a'\nrobot = 'r'\nemit = []", "names no output"),
         ("other = 3\n[[arm]]\nname = 'a'\nrobot = 'r'", "unknown entry 'other'"),

@@ -112,6 +112,10 @@ def _arm(decoder: Decoder, table: Any, index: int) -> ArmConfig:
     arm = decoder.table(ArmConfig, table, where)
     if arm.request.name is None:
         raise CodecError(where, " has no 'name'")
+    for i, folder in enumerate(arm.request.package_paths):
+        if not folder.is_dir():
+            hint = "name the folder that holds the package's folder"
+            raise CodecError(f"{where}.package_paths[{i}]", f"no such directory: {folder}", hint)
     return arm
 
 
