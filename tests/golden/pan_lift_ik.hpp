@@ -1503,6 +1503,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
   using Curve::samples;
 
   enum class Kind { None, Broken, Known, Whole };
+  int passing = 0;  // samples of the last one, behind those that are kept
 
   Kind trace(const double* start, Passed& passed) noexcept {
     const Sample first = at(start);
@@ -1516,6 +1517,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     if (!follow(first, 1.0, worst, passed)) follow(first, -1.0, worst, passed);
     const Kind kind = steps < kLeast ? Kind::None : worst >= Policy::kArrived ? Kind::Broken : Kind::Whole;
     if (kind == Kind::Whole || (kind == Kind::None && !lost)) count = 0;
+    passing = passed.count - known;
     if (kind != Kind::Broken || lost || !ended || passed.count > Passed::kSamples) passed.count = known;
     return kind;
   }
@@ -1888,6 +1890,94 @@ template <class Arm> struct CarefulRows {
   }
 };
 
+// --- limit curve ---------------------------------------------------------------------------------
+template <class Arm> struct LimitCurve {
+  using Aim = HeldAim<Arm>;
+  using Curve = NearContinuum<Arm>;
+  using Options = typename Arm::Options;
+  using Passed = typename Curve::Passed;
+  using Policy = typename Arm::Policy;
+  using Row = SolutionRows<Arm>;
+
+  static void add(const Aim& aim, const Options& options, const double* start, RowPlaces<Arm>& out) noexcept {
+    Passed passed;
+    Curve curve(aim);
+    if (curve.trace(start, passed) != Curve::Kind::Whole) return;
+    double off[Passed::kSamples];
+    const int count = std::min(curve.passing, static_cast<int>(Passed::kSamples));
+    for (int k = 0; k < count; ++k) off[k] = outside(passed.sample[k].q);
+    for (int k = 0; k < count; ++k) {
+      const bool before = !passed.first[k], after = k + 1 < count && !passed.first[k + 1];
+      if ((before && off[k - 1] < off[k]) || (after && off[k + 1] < off[k])) continue;
+      const double beside = std::min(before ? off[k - 1] : kInfinity, after ? off[k + 1] : kInfinity);
+      if (!(off[k] + beside < kWay * Policy::kTryStep)) continue;
+      const Bracket bracket{passed.sample + k, before, after};
+      if (bracket.take(curve, aim, options, out)) return;
+    }
+  }
+
+ private:
+  static constexpr double kGolden = 0.6180339887498949, kPart = 0.5;  // of Policy::kLimitTolerance
+  static constexpr double kWay = 1.2;  // of Policy::kTryStep: by so much joints move from one sample to the next at most
+  static constexpr int kHalvings = 40;
+
+  static double outside(const double* q) noexcept {
+    double most = 0.0;
+    for (int j = 0; j < Arm::kDof; ++j) {
+      const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j];
+      double off = std::max(low - q[j], q[j] - high);
+      if (Arm::kRevolute[j] && !Arm::kHeld[j]) {
+        const double gap = q[j] - 0.5 * (low + high);
+        off = high - low < kTurn ? std::abs(gap - kTurn * std::nearbyint(gap / kTurn)) - 0.5 * (high - low) : 0.0;
+      }
+      most = std::max(most, off);
+    }
+    return most;
+  }
+
+  struct Bracket {
+    const typename Curve::Sample* middle;
+    bool before, after;
+
+    double at(Curve& curve, double share, double* q) const noexcept {
+      typename Curve::Sample s = *middle;
+      if (share > 0.0) s = curve.part(middle[0], middle[1], share);
+      if (share < 0.0) s = curve.part(middle[-1], middle[0], 1.0 + share);
+      std::copy_n(s.q, Arm::kDof, q);
+      return outside(q);
+    }
+
+    bool take(Curve& curve, const Aim& aim, const Options& options, RowPlaces<Arm>& out) const noexcept {
+      double low = before ? -1.0 : 0.0, high = after ? 1.0 : 0.0, q[Arm::kDof], other[Arm::kDof];
+      double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
+      if (settles(at(curve, 0.0, q), q, aim, options, out)) return true;
+      double here = at(curve, left, q), there = at(curve, right, other);
+      for (int i = 0; i < kHalvings && std::min(here, there) > kPart * Policy::kLimitTolerance; ++i) {
+        if (here < there) {
+          high = right;
+          right = left;
+          there = here;
+          std::copy_n(q, Arm::kDof, other);
+          here = at(curve, left = high - kGolden * (high - low), q);
+        } else {
+          low = left;
+          left = right;
+          here = there;
+          std::copy_n(other, Arm::kDof, q);
+          there = at(curve, right = low + kGolden * (high - low), other);
+        }
+      }
+      return settles(std::min(here, there), here < there ? q : other, aim, options, out);
+    }
+
+    static bool settles(double off, double* q, const Aim& aim, const Options& options, RowPlaces<Arm>& out) noexcept {
+      if (!(off < Policy::kLimitTolerance && NewtonRefinement<Arm>::refine(q, aim) && Row::place(q, options))) return false;
+      RightRows<Arm>::add(aim, out, q, true);
+      return true;
+    }
+  };
+};
+
 // --- limit rows ----------------------------------------------------------------------------------
 template <class Arm> struct LimitRows {
   using Aim = HeldAim<Arm>;
@@ -2159,7 +2249,7 @@ template <class Arm> struct CarefulSolve {
                                            Solutions& out) noexcept {
     const Aim aim(pose, options.free);
     bool real = false, free = true, continuum = false;
-    Places found;
+    Places found, loose;  // loose: with rows of a continuum, without limits
     for (int turn = 0; turn < Policy::kTries && free; ++turn) {
       double start[Arm::kDof];
       take_start(options, turn, start);
@@ -2169,7 +2259,10 @@ template <class Arm> struct CarefulSolve {
         Careful::add_from(aim, start, found);
       }
       real = real || found.count > 0;
-      continuum = continuum || Careful::any_singular(found);
+      if (Careful::any_singular(found)) {
+        continuum = true;
+        loose = found;
+      }
       LimitRows<Arm>::place_all(aim, options, found);
       if (found.count == 0 && options.seed && Refinement::refine(start, aim)) {
         RightRows<Arm>::add(aim, found, start, true);
@@ -2180,6 +2273,7 @@ template <class Arm> struct CarefulSolve {
     }
     if (free && !Arm::kRounded && !Arm::kRefined) real = add_hidden(aim, options, found) || real;
     if ((free || continuum) && found.count == 0) real = add_nearest(aim, options, found) || real;
+    if (continuum && found.count == 0) add_along(aim, options, loose, found);
     if (options.seed) Row::sort_by_distance(found, options.seed->data());
     take_in_order(found, out);
     out.status = out.count > 0 ? Arm::Status::Ok : real ? Arm::Status::Limits : Arm::Status::Unreachable;
@@ -2250,6 +2344,11 @@ template <class Arm> struct CarefulSolve {
     }
     LimitRows<Arm>::place_all(aim, options, out);
     return real;
+  }
+
+  [[gnu::cold, gnu::noinline]] static void add_along(const Aim& aim, const Options& options, Places& rows, Places& out) noexcept {
+    for (int k = 0; k < rows.count; ++k)
+      if (Row::flag(rows, k)) LimitCurve<Arm>::add(aim, options, Row::row(rows, k), out);
   }
 
   [[gnu::cold, gnu::noinline]] static bool add_nearest(const Aim& aim, const Options& options, Places& out) noexcept {

@@ -1020,35 +1020,12 @@ class _Asked:
 
 @dataclass
 class _Answer:
-    """Solutions on the right turns, and whether there were any before limits, and any of a continuum."""
+    """Solutions on the right turns, whether there were any before limits, and those of continua that there
+    were then, at the last values that were tried."""
 
     rows: list[_Found] = field(default_factory=list)
     real: bool = False
-    continuum: bool = False
-
-
-# Rows that are hardly outside the limits: near singularities the pose does not tell that.
-
-
-def _rows_inside(
-    arm: _Arm, aim: Array, rows: list[_Found], near: Row | None, limits: bool
-) -> list[_Found]:
-    """`_place_rows` towards an aim (1, ...)."""
-    inside, close = _rows_at_limits(arm, rows, near, limits)
-    for (row, flag), on_limits in close:
-        q, error, _, _ = _refined(arm, np.array([row]), aim)
-        found = [(tuple(q[0].tolist()), flag)] if error[0] < arm.policy.arrived else []
-        inside += _place_rows(arm, found, near, limits) or _held_there(arm, aim, on_limits, flag)
-    return inside
-
-
-def _held_there(arm: _Arm, aim: Array, row: Row, flag: bool) -> list[_Found]:
-    """The row with its joints on limits left there, if the pose is right to round-off."""
-    moving = [j for j in arm.moving if row[j] not in (arm.lower[j], arm.upper[j])]
-    start, policy = np.array([row]), arm.policy
-    q, error, _, _ = _refine(arm.chain, arm.task, moving, start, aim, policy, arm.angle)
-    found = [(tuple(q[0].tolist()), flag)] if error[0] < policy.exact else []
-    return _place_rows(arm, found, row, True)
+    loose: list[_Found] = field(default_factory=list)
 
 
 # Solutions near a singularity, where Newton's method stalls.
@@ -1190,6 +1167,37 @@ def _root(side: Array, rest: Array, bend: Array, flow: Array) -> Array:
     return np.asarray(np.clip(np.nan_to_num(np.where(k > 0.0, x, 0.0)), -_FAR, _FAR))
 
 
+# Samples of curves along which the other joints take the pose's error away but for one direction.
+
+
+_CORRECTIONS = 6
+_NEAR = 1e-8  # rad or m: so far off the curve what is left, whose error is the square, is its
+_SHARE = 3e-2  # or, of what is left: as little as that off the curve changes neither
+_ALMOST, _SAME = 1e-3, 4e-15  # or how close it must be where what is left is the same after a step
+_STRAY = 1.0  # rad or m: larger corrections show that no curve is near
+
+
+def _sampled(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, _Flags]:
+    """The configurations of curves beside some (k,), of which one direction of the error is left towards
+    aims T (k, ...)."""
+    near, going, before = np.ones(len(T), dtype=bool), np.arange(len(T)), np.full(len(T), np.inf)
+    for _ in range(_CORRECTIONS):
+        if len(going) == len(T):
+            at, farthest = _correct(arm, at, T)
+            moved = at
+        else:
+            moved, farthest = _correct(arm, _some_of(at, going), T[going])
+            for whole, part in zip(at, moved):
+                whole[going] = part
+        near[going] &= farthest < _STRAY
+        same = (np.abs(moved.left - before) < _SAME) & (farthest < _ALMOST)
+        on = ~((farthest < np.maximum(_NEAR, _SHARE * np.abs(moved.left))) | same)
+        going, before = going[on], moved.left[on]
+        if not len(going):
+            break
+    return at, near
+
+
 # Rows of several poses in one array: without repetitions, and in order.
 
 
@@ -1197,6 +1205,404 @@ def _places(pose: _Index) -> _Index:
     """The number of each row among those of its pose, pose (k,) in order."""
     first = np.searchsorted(pose, pose)
     return np.asarray(np.arange(len(pose)) - first)
+
+
+# Solutions on parts of curves, between two samples each, by what is left of the error there and how that
+
+
+_BEYOND = 4.0
+
+_STEPS, _DEEP = 40, 24
+_curve_parts_DOUBTS = 3  # how often a part is cut as its cubic bends
+_BENT, _STRAIGHT = 1.5, 0.03  # by so much of what it is in the middle, and at most
+_CUBICS, _NEWTON, _CLEAR = 2, 4, 1e-6
+_LEAP, _SOON = 16.0, 3
+_SAMPLES = 600  # of a curve
+_ROOM = 32  # solutions of a curve
+_WAY = 1e-10  # rad or m: along it, by which what is left varies by round-off
+_curve_parts_ROUND_OFF, _SMALL = 1e-15, 4e-15
+
+
+class _Parts(NamedTuple):
+    """Parts of curves, between samples `a` and `b` of those of the starts `owner` (n,), `place` (n,) and
+    `width` (n,) in the order in which they were passed."""
+
+    a: _Reduced
+    b: _Reduced
+    owner: _Index
+    place: Array
+    width: Array
+
+
+def _look(arm: _Arm, parts: _Parts, T: Array, samples: _Index) -> tuple[_Index, Array]:
+    """The solutions (n, dof) inside parts, by the signs of the coefficients, after Bernstein, of cubics
+    through values and slopes."""
+    kept, brackets = [_solved(parts, parts.a, 0.0), _solved(parts, parts.b, 1.0)], []
+    for deep in range(_DEEP + 1):
+        most = np.maximum(np.abs(parts.a.left), np.abs(parts.b.left))
+        parts = _some_of(parts, ~(most >= _BEYOND * arm.policy.fold_reach))
+        values = _bernstein(arm, parts)
+        most = np.abs(values).max(axis=0)
+        spent = samples[parts.owner] >= _SAMPLES
+        end = (most < _SMALL) | spent | (deep == _DEEP)
+        found = np.abs(values[[0, 3]]) < _SMALL  # ends whose sign is round-off's
+        change = values[:-1] * values[1:] <= 0.0
+        change[::2] &= ~found
+        changes = change.sum(axis=0)
+        doubtful = (deep < _curve_parts_DOUBTS) & _bends(values, changes)
+        split = ~end & (doubtful | (changes > 1) | ((changes == 1) & found.any(axis=0)))
+        kept.append(_some_of(parts, end))
+        brackets.append(_some_of(parts, ~end & ~split & (changes == 1)))
+        if not split.any():
+            break
+        parts = _some_of(parts, split)
+        middle = _between(arm, parts, np.full(len(parts.owner), 0.5), T)
+        kept.append(_solved(parts, middle, 0.5))
+        samples = samples + np.bincount(parts.owner, minlength=len(samples))
+        half = 0.5 * parts.width
+        parts = _joined(
+            parts._replace(b=middle, width=half),
+            parts._replace(a=middle, place=parts.place + half, width=half),
+        )
+    return _kept(arm, _joined(*kept, _closed_in(arm, _joined(*brackets), T)))
+
+
+def _between(arm: _Arm, parts: _Parts, share: Array, T: Array) -> _Reduced:
+    """Samples at a `share` (n,) of the way from a to b, near the cubic with the directions at both."""
+    a, b, s, moving = parts.a, parts.b, share[:, None], list(arm.moving)
+    way = (b.q - a.q)[:, moving]
+    length = np.sqrt((way**2).sum(axis=1))[:, None]
+    along = ((a.still * b.still).sum(axis=1) > 0.0)[:, None]
+    rise, fall = (np.where(along, length * end.still - way, 0.0) for end in (a, b))
+    q = a.q + s * (b.q - a.q)
+    q[:, moving] += s * (1.0 - s) * ((1.0 - s) * rise - s * fall)
+    still = np.where(along, (1.0 - s) * a.still + s * b.still, a.still)
+    still /= np.sqrt((still**2).sum(axis=1))[:, None]
+    return _sampled(arm, a._replace(q=q, still=still), T[parts.owner])[0]
+
+
+def _bends(values: Array, changes: _Index) -> _Flags:
+    """Which cubics of coefficients (4, n), with so many changes of sign (n,), bend so much that they tell
+    little of zeros beside these, where they come near 0 or turn twice."""
+    rise = np.diff(values, axis=0)
+    turns = rise[:-1] * rise[1:]
+    steady = (changes == 0) & (turns >= 0.0).all(axis=0)
+    bend = np.abs(np.diff(rise, axis=0)).max(axis=0)
+    bent = (np.abs(values[1] + values[2]) < _BENT * bend) & ~steady
+    bent |= (turns < 0.0).all(axis=0)
+    return np.asarray(bent & (bend > _STRAIGHT * np.abs(values).max(axis=0)))
+
+
+def _solved(parts: _Parts, at: _Reduced, share: float) -> _Parts:
+    """Of samples at a share of the way those at solutions, as parts without length."""
+    place = parts.place + share * parts.width
+    out: _Parts = _some_of(_Parts(at, at, parts.owner, place, 0.0 * place), np.abs(at.left) < _SMALL)
+    return out
+
+
+def _bernstein(arm: _Arm, parts: _Parts) -> Array:
+    """The coefficients (4, n)."""
+    a, b = parts.a, parts.b
+    step = (b.q - a.q)[:, list(arm.moving)]
+    rise = a.slope * (a.still * step).sum(axis=1)
+    fall = b.slope * (b.still * step).sum(axis=1)
+    return np.array([a.left, a.left + rise / 3.0, b.left - fall / 3.0, b.left])
+
+
+def _closed_in(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
+    """Parts at whose ends what is left has two signs, narrowed until it is round-off at one, or the way to
+    there is."""
+    ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
+    values, last = ends.left.copy(), np.full(len(parts.owner), -1)
+    way = np.full(len(parts.owner), np.inf)
+    most = 2.0 * np.abs(_bernstein(arm, parts)).max(axis=0)
+    for step in range(_STEPS):
+        going = np.flatnonzero((np.abs(ends.left).min(axis=0) > _curve_parts_ROUND_OFF) & (way > _WAY))
+        if not len(going):
+            break
+        x, y = values[:, going]
+        now = _some_of(parts, going)._replace(
+            a=_some_of(ends, (0, going)), b=_some_of(ends, (1, going))
+        )
+        cubic, share = _bernstein(arm, now), x / (x - y)
+        if step < _CUBICS:
+            share = np.where(most[going] > _CLEAR, _root_share(cubic, share), share)
+        c = _between(arm, now, share, T)
+        side = (now.a.left * c.left < 0.0).astype(np.intp)
+        way[going] = np.abs(c.q - ends.q[side, going]).max(axis=1)
+        change = np.abs(np.diff(cubic, axis=0))
+        leaps = change[1] > _LEAP * np.maximum(change[0], change[2])
+        leaps &= (np.abs(ends.left[:, going]).min(axis=0) > arm.policy.arrived) & (step > _SOON)
+        way[going[leaps | (np.abs(c.left) > most[going])]] = 0.0
+        for whole, part in zip(ends, c):
+            whole[side, going] = part
+        values[side, going] = c.left
+        values[1 - side, going] *= np.where(last[going] == side, 0.5, 1.0)
+        last[going] = side
+    return parts._replace(a=_some_of(ends, 0), b=_some_of(ends, 1))
+
+
+def _root_share(values: Array, share: Array) -> Array:
+    """Where cubics of coefficients (4, n), after Bernstein, vanish (n,)."""
+    a, b, c, d = values
+    one, two, three = 3.0 * (b - a), 3.0 * (c - b - b + a), d - a + 3.0 * (b - c)
+    x = share
+    for _ in range(_NEWTON):
+        rise = (3.0 * three * x + 2.0 * two) * x + one
+        x = x - (((three * x + two) * x + one) * x + a) / rise
+    return np.asarray(np.where((x > 0.0) & (x < 1.0), x, share))
+
+
+def _kept(arm: _Arm, parts: _Parts) -> tuple[_Index, Array]:
+    """Of each part the end where less is left, in order."""
+    ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
+    least = np.abs(ends.left).argmin(axis=0)
+    left, q = (x[least, np.arange(len(least))] for x in (ends.left, ends.q))
+    order = np.lexsort((parts.place, parts.owner))
+    order = order[np.abs(left[order]) < arm.policy.arrived]
+    order = order[_places(parts.owner[order]) < _ROOM]
+    whole = 2.0 * np.pi * np.round(q / (2.0 * np.pi))
+    return parts.owner[order], np.where(arm.turning, q - whole, q)[order]
+
+
+# How far rows are from their joint limits, whatever turns they are on.
+
+
+def _bounded_joints(arm: _Arm) -> list[tuple[int, float, float, bool]]:
+    """Moving joints that limits bound."""
+    out = []
+    for j in arm.moving:
+        low, high, turns = arm.lower[j], arm.upper[j], arm.chain.revolute[j]
+        if (turns and high - low < 2.0 * pi) or (not turns and (low > -inf or high < inf)):
+            low, high = max(low, -1e6), min(high, 1e6)
+            out.append((j, 0.5 * (low + high), 0.5 * (high - low), turns))
+    return out
+
+
+def _offsets(q: Array, middle: float, turns: bool) -> Array:
+    """Joint values from the middle of their range, turning ones on the nearest turn."""
+    x = q - middle
+    return np.asarray(x - 2.0 * pi * np.round(x / (2.0 * pi)) if turns else x)
+
+
+def _outside(arm: _Arm, q: Array, limits: bool) -> Array:
+    """How far rows (..., dof) are outside the limits at most: (...,), negative inside."""
+    out = np.full(q.shape[:-1], -inf)
+    for j, middle, half, turns in _bounded_joints(arm) if limits else ():
+        out = np.maximum(out, np.abs(_offsets(q[..., j], middle, turns)) - half)
+    return out
+
+
+# Solutions on what is a continuum of the geometry that was solved, and none of the file's.
+
+
+_near_continuum_MOST = 96  # samples to a side of a curve
+_LEAST = 4
+
+_ASTRAY = 4  # samples in a row that show that no curve is near
+_near_continuum_BESIDE, _SAME_WAY = 0.06, 0.9
+
+
+class _Traced(NamedTuple):
+    """Which starts (k,) lie on a `curve` of the solved geometry, and which of these are `broken` (k,), none
+    of the file's arm; the starts `owner` (n,) of solutions, nearly, `q` (n, dof) on broken ones."""
+
+    curve: _Flags
+    broken: _Flags
+    owner: _Index
+    q: Array
+
+
+def _rows_around(arm: _Arm, q: Array, T: Array, broken: _Flags) -> tuple[_Flags, _Index, Array, Array]:
+    """Which rows q (k, dof) towards aims T (k, ...) stand for a continuum of the solved geometry."""
+    with np.errstate(all="ignore"):
+        traced = _trace(arm, q, T)
+    given = np.flatnonzero(traced.curve & ~broken)
+    owner = np.concatenate([traced.owner, given])
+    rows, error, _, slope = _refined(arm, np.concatenate([traced.q, q[given]]), T[owner])
+    exact = error < arm.policy.exact
+    best = np.lexsort((error, owner))
+    best = best[_places(owner[best]) == 0]
+    best = best[~np.isin(owner[best], owner[exact]) & (error[best] < arm.policy.arrived)]
+    best = best[~broken[owner[best]]]
+    some = np.concatenate([np.flatnonzero(exact), best])
+    some = some[np.argsort(owner[some], kind="stable")]
+    curve = np.where(broken, traced.broken, traced.curve)
+    return curve, owner[some], rows[some], _least_singular(slope[some])
+
+
+def _trace(arm: _Arm, q: Array, T: Array) -> _Traced:
+    """The curves through rows q (k, dof) towards aims T (k, ...), once around, or to both their ends."""
+    asked = np.concatenate([q, T.reshape(len(q), -1)], axis=1)
+    _, first, again = np.unique(asked, axis=0, return_index=True, return_inverse=True)
+    again = again.reshape(-1)
+    curve, broken, owner, rows = _traced(arm, q[first], T[first])
+    begin, end = np.searchsorted(owner, again), np.searchsorted(owner, again, side="right")
+    whose = np.repeat(np.arange(len(q)), end - begin)
+    return _Traced(curve[again], broken[again], whose, rows[begin[whose] + _places(whose)])
+
+
+def _traced(arm: _Arm, q: Array, T: Array) -> _Traced:
+    """`_trace` of rows that differ."""
+    parts, ends, worst = _followed(arm, q, T)
+    steps = np.bincount(parts.owner, minlength=len(q))
+    curve = steps >= _LEAST
+    broken = curve & (worst >= arm.policy.arrived)
+    parts = _joined(parts, ends)
+    found = _look(arm, _some_of(parts, broken[parts.owner]), T, steps)
+    return _Traced(curve, broken, *found)
+
+
+def _followed(arm: _Arm, q: Array, T: Array) -> tuple[_Parts, _Parts, Array]:
+    """The curves beside rows q (k, dof) towards aims T (k, ...), as `_follow` has them."""
+    count, (error, slope) = len(q), _linearized(arm, q, T)
+    nothing, still = np.zeros(count), _still_directions(arm, slope)
+    unknown = 0.1 * _generic(count, error.shape[1])  # shorter than what has a sense
+    first, _ = _sampled(arm, _Reduced(q, still, unknown, nothing, nothing), T)
+    return _follow(arm, first, T)
+
+
+def _follow(arm: _Arm, first: _Reduced, T: Array) -> tuple[_Parts, _Parts, Array]:
+    """On from samples to both sides at once, the fastest joint by `policy.try_step` from one to the
+    next."""
+    count, moving = len(T), list(arm.moving)
+    back = first._replace(still=-first.still, out=-first.out, left=-first.left)
+    first, T = _joined(first, back), np.concatenate([T, T])
+    closed, worst = np.zeros(2 * count, dtype=bool), np.abs(first.left)
+    parts, ends, owner, b = [], [], np.arange(2 * count), first
+    astray, before = np.zeros(2 * count, dtype=np.intp), b.still
+    for step in range(_near_continuum_MOST):
+        ahead, course = b.q.copy(), 1.5 * b.still - 0.5 * before
+        ahead[:, moving] += arm.policy.try_step * course / np.abs(course).max(axis=1)[:, None]
+        c, near = _sampled(arm, b._replace(q=ahead), T[owner])
+        astray = np.where(near, 0, astray + 1)
+        left = np.abs(c.left)
+        on = left < arm.policy.fold_reach
+        place = np.where(owner < count, step, _near_continuum_MOST + step).astype(float)
+        passed = _Parts(b, c, owner, place, np.ones(len(owner)))
+        ends.append(_some_of(passed, ~on & (left < _BEYOND * arm.policy.fold_reach)))
+        on &= astray < _ASTRAY
+        parts.append(_some_of(passed, on))
+        b, c, owner, astray = _some_of(b, on), _some_of(c, on), owner[on], astray[on]
+        worst[owner] = np.maximum(worst[owner], np.abs(c.left))
+        closed[owner[_back(arm, _some_of(first, owner), b) & (step > 1)]] = True
+        going = ~(closed[owner] | closed[owner % count])
+        before = b.still[going]
+        b, owner, astray = _some_of(c, going), owner[going], astray[going]
+        if not len(owner):
+            break
+    closed[owner] = True
+    once = np.arange(2 * count) < count
+    once[count:] = ~closed[:count]
+    worst = np.maximum(worst[:count], np.where(once[count:], worst[count:], 0.0))
+    found, last = (_some_of(some, once[some.owner]) for some in (_joined(*parts), _joined(*ends)))
+    found, last = (some._replace(owner=some.owner % count) for some in (found, last))
+    return found, last, worst
+
+
+def _back(arm: _Arm, a: _Reduced, b: _Reduced) -> _Flags:
+    """Whether curves are at samples of them again, and not at other parts that are near."""
+    way = _differences(arm, a.q, b.q)[:, list(arm.moving)]
+    along = (way * a.still).sum(axis=1)[:, None]
+    beside = np.abs(way - along * a.still).max(axis=1) < _near_continuum_BESIDE
+    near = np.abs(way).max(axis=1) < 0.75 * arm.policy.try_step
+    same = (a.still * b.still).sum(axis=1) > _SAME_WAY
+    return np.asarray(beside & near & same)
+
+
+# Where continua that the arm has go on inside the limits.
+
+
+_GOLDEN = 0.6180339887498949
+_HALVINGS = 40
+_ENOUGH = 0.5  # of `policy.limit_tolerance`
+_limit_curves_WAY = 1.2  # of `policy.try_step`: by so much joints move from one sample to the next at most
+
+
+def _rows_along(arm: _Arm, q: Array, T: Array) -> tuple[_Index, Array]:
+    """Rows (n, dof) inside the limits, whole turns aside, of the continua through solutions q (k, dof) of
+    aims T (k, ...), and whose they are (n,)."""
+    with np.errstate(all="ignore"):
+        parts, _, worst = _followed(arm, q, T)
+        whole = np.bincount(parts.owner, minlength=len(q)) >= _LEAST
+        whole &= worst < arm.policy.arrived
+        parts = _some_of(parts, whole[parts.owner])
+        parts = _some_of(parts, np.lexsort((parts.place, parts.owner)))
+        parts = _some_of(parts, _beside_least(arm, parts))
+        off, rows = _least_outside(arm, parts, T)
+    order = np.lexsort((off, parts.owner))
+    order = order[off[order] < arm.policy.limit_tolerance]
+    owner, first = np.unique(parts.owner[order], return_index=True)
+    return owner, rows[order[first]]
+
+
+def _beside_least(arm: _Arm, parts: _Parts) -> _Flags:
+    """Which parts (n,), in order, have an end that is outside by no more than the samples beside it, and
+    may come inside."""
+    a, b = _outside(arm, parts.a.q, True), _outside(arm, parts.b.q, True)
+    linked = (np.diff(parts.owner) == 0) & (np.diff(parts.place) == 1.0)
+    first, last = a <= b, b <= a
+    first[1:] &= ~linked | (a[1:] <= a[:-1])
+    last[:-1] &= ~linked | (b[:-1] <= b[1:])
+    return np.asarray((first | last) & (a + b < _limit_curves_WAY * arm.policy.try_step))
+
+
+def _least_outside(arm: _Arm, parts: _Parts, T: Array) -> tuple[Array, Array]:
+    """By how much rows of parts are outside at least (n,), by the golden section (Kiefer 1953), and these
+    (n, dof)."""
+    count = len(parts.owner)
+    low, high = np.zeros(count), np.ones(count)
+    ends = np.stack([parts.a.q, parts.b.q])
+    off = _outside(arm, ends, True)
+    best = off.argmin(axis=0)
+    rows, least = ends[best, np.arange(count)], off.min(axis=0, initial=np.inf)
+    shares = np.stack([high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)])
+    values = np.full(shares.shape, np.nan)
+    for _ in range(_HALVINGS):
+        enough = least < _ENOUGH * arm.policy.limit_tolerance
+        going = np.flatnonzero(~np.isin(parts.owner, parts.owner[enough]))
+        if not len(going):
+            break
+        some = _some_of(parts, going)
+        for side in range(2):
+            new = np.isnan(values[side, going])
+            which = going[new]
+            q = _between(arm, _some_of(some, new), shares[side, which], T).q
+            values[side, which] = here = _outside(arm, q, True)
+            better = here < least[which]
+            rows[which[better]], least[which[better]] = q[better], here[better]
+        left = values[0, going] < values[1, going]
+        for side, k in ((0, going[left]), (1, going[~left])):
+            (low if side else high)[k] = shares[1 - side, k]
+            shares[1 - side, k], values[1 - side, k] = shares[side, k], values[side, k]
+            part = _GOLDEN * (high - low)[k]
+            shares[side, k] = low[k] + part if side else high[k] - part
+            values[side, k] = np.nan
+    return least, rows
+
+
+# Rows that are hardly outside the limits: near singularities the pose does not tell that.
+
+
+def _rows_inside(
+    arm: _Arm, aim: Array, rows: list[_Found], near: Row | None, limits: bool
+) -> list[_Found]:
+    """`_place_rows` towards an aim (1, ...)."""
+    inside, close = _rows_at_limits(arm, rows, near, limits)
+    for (row, flag), on_limits in close:
+        q, error, _, _ = _refined(arm, np.array([row]), aim)
+        found = [(tuple(q[0].tolist()), flag)] if error[0] < arm.policy.arrived else []
+        inside += _place_rows(arm, found, near, limits) or _held_there(arm, aim, on_limits, flag)
+    return inside
+
+
+def _held_there(arm: _Arm, aim: Array, row: Row, flag: bool) -> list[_Found]:
+    """The row with its joints on limits left there, if the pose is right to round-off."""
+    moving = [j for j in arm.moving if row[j] not in (arm.lower[j], arm.upper[j])]
+    start, policy = np.array([row]), arm.policy
+    q, error, _, _ = _refine(arm.chain, arm.task, moving, start, aim, policy, arm.angle)
+    found = [(tuple(q[0].tolist()), flag)] if error[0] < policy.exact else []
+    return _place_rows(arm, found, row, True)
 
 
 # What Newton steps from the closed form's rows lead to near singularities, where solutions meet.
@@ -1576,11 +1982,25 @@ def _placed_rows(arm: _Arm, asked: _Asked, limits: bool) -> list[_Answer]:
         left = left[going[left]]
     if len(left):
         _take_hidden(arm, asked, left, limits, out)
-    doubtful = set(left.tolist()) | {i for i, answer in enumerate(out) if answer.continuum}
+    doubtful = set(left.tolist()) | {i for i, answer in enumerate(out) if answer.loose}
     lost = sorted(i for i in doubtful if not out[i].rows)
     if lost:
         _take_nearest(arm, asked, np.array(lost), limits, out)
+    lost = [i for i in lost if out[i].loose and not out[i].rows]
+    if lost and arm.around is not None:
+        _take_along(arm, asked, lost, limits, out)
     return out
+
+
+def _take_along(arm: _Arm, asked: _Asked, some: list[int], limits: bool, out: list[_Answer]) -> None:
+    """Adds rows inside the limits of the continua that some of the poses' rows are of."""
+    pose = np.array([i for i in some for _ in out[i].loose])
+    aim = _aims(arm, asked.T, asked.held)[pose]
+    q = np.array([row for i in some for row, _ in out[i].loose])
+    for k, row in zip(*_rows_along(arm, q, aim)):
+        i, found = pose[k], [(tuple(row.tolist()), True)]
+        rows = _rows_inside(arm, aim[k : k + 1], found, asked.seed(i), limits)
+        _add(arm, asked.T[i], rows, out[i].rows)
 
 
 def _take_hidden(arm: _Arm, asked: _Asked, some: _Index, limits: bool, out: list[_Answer]) -> None:
@@ -1655,7 +2075,7 @@ def _goes_on(
     if not free and any(flag for _, flag in kept):
         _add(arm, T, seeded, kept)
     answer.real = answer.real or bool(kept)
-    answer.continuum = answer.continuum or any(flag for _, flag in kept)
+    answer.loose = [one for one in kept if one[1]] or answer.loose
     aim = _aims(arm, asked.T[k : k + 1], asked.held[k : k + 1])
     _add(arm, T, _rows_inside(arm, aim, kept, near, limits), answer.rows)
     if not answer.rows:
@@ -2148,306 +2568,6 @@ def _rows_and_doubts(
 ) -> tuple[Array, _Flags, _Flags]:
     """Rows (N, M, dof) on no turn in particular."""
     return _careful_rows(arm, T, held, near)
-
-
-# Samples of curves along which the other joints take the pose's error away but for one direction.
-
-
-_CORRECTIONS = 6
-_NEAR = 1e-8  # rad or m: so far off the curve what is left, whose error is the square, is its
-_SHARE = 3e-2  # or, of what is left: as little as that off the curve changes neither
-_ALMOST, _SAME = 1e-3, 4e-15  # or how close it must be where what is left is the same after a step
-_STRAY = 1.0  # rad or m: larger corrections show that no curve is near
-
-
-def _sampled(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, _Flags]:
-    """The configurations of curves beside some (k,), of which one direction of the error is left towards
-    aims T (k, ...)."""
-    near, going, before = np.ones(len(T), dtype=bool), np.arange(len(T)), np.full(len(T), np.inf)
-    for _ in range(_CORRECTIONS):
-        if len(going) == len(T):
-            at, farthest = _correct(arm, at, T)
-            moved = at
-        else:
-            moved, farthest = _correct(arm, _some_of(at, going), T[going])
-            for whole, part in zip(at, moved):
-                whole[going] = part
-        near[going] &= farthest < _STRAY
-        same = (np.abs(moved.left - before) < _SAME) & (farthest < _ALMOST)
-        on = ~((farthest < np.maximum(_NEAR, _SHARE * np.abs(moved.left))) | same)
-        going, before = going[on], moved.left[on]
-        if not len(going):
-            break
-    return at, near
-
-
-# Solutions on parts of curves, between two samples each, by what is left of the error there and how that
-
-
-_BEYOND = 4.0
-
-_STEPS, _DEEP = 40, 24
-_curve_parts_DOUBTS = 3  # how often a part is cut as its cubic bends
-_BENT, _STRAIGHT = 1.5, 0.03  # by so much of what it is in the middle, and at most
-_CUBICS, _NEWTON, _CLEAR = 2, 4, 1e-6
-_LEAP, _SOON = 16.0, 3
-_SAMPLES = 600  # of a curve
-_ROOM = 32  # solutions of a curve
-_WAY = 1e-10  # rad or m: along it, by which what is left varies by round-off
-_curve_parts_ROUND_OFF, _SMALL = 1e-15, 4e-15
-
-
-class _Parts(NamedTuple):
-    """Parts of curves, between samples `a` and `b` of those of the starts `owner` (n,), `place` (n,) and
-    `width` (n,) in the order in which they were passed."""
-
-    a: _Reduced
-    b: _Reduced
-    owner: _Index
-    place: Array
-    width: Array
-
-
-def _look(arm: _Arm, parts: _Parts, T: Array, samples: _Index) -> tuple[_Index, Array]:
-    """The solutions (n, dof) inside parts, by the signs of the coefficients, after Bernstein, of cubics
-    through values and slopes."""
-    kept, brackets = [_solved(parts, parts.a, 0.0), _solved(parts, parts.b, 1.0)], []
-    for deep in range(_DEEP + 1):
-        most = np.maximum(np.abs(parts.a.left), np.abs(parts.b.left))
-        parts = _some_of(parts, ~(most >= _BEYOND * arm.policy.fold_reach))
-        values = _bernstein(arm, parts)
-        most = np.abs(values).max(axis=0)
-        spent = samples[parts.owner] >= _SAMPLES
-        end = (most < _SMALL) | spent | (deep == _DEEP)
-        found = np.abs(values[[0, 3]]) < _SMALL  # ends whose sign is round-off's
-        change = values[:-1] * values[1:] <= 0.0
-        change[::2] &= ~found
-        changes = change.sum(axis=0)
-        doubtful = (deep < _curve_parts_DOUBTS) & _bends(values, changes)
-        split = ~end & (doubtful | (changes > 1) | ((changes == 1) & found.any(axis=0)))
-        kept.append(_some_of(parts, end))
-        brackets.append(_some_of(parts, ~end & ~split & (changes == 1)))
-        if not split.any():
-            break
-        parts = _some_of(parts, split)
-        middle = _between(arm, parts, np.full(len(parts.owner), 0.5), T)
-        kept.append(_solved(parts, middle, 0.5))
-        samples = samples + np.bincount(parts.owner, minlength=len(samples))
-        half = 0.5 * parts.width
-        parts = _joined(
-            parts._replace(b=middle, width=half),
-            parts._replace(a=middle, place=parts.place + half, width=half),
-        )
-    return _kept(arm, _joined(*kept, _closed_in(arm, _joined(*brackets), T)))
-
-
-def _between(arm: _Arm, parts: _Parts, share: Array, T: Array) -> _Reduced:
-    """Samples at a `share` (n,) of the way from a to b, near the cubic with the directions at both."""
-    a, b, s, moving = parts.a, parts.b, share[:, None], list(arm.moving)
-    way = (b.q - a.q)[:, moving]
-    length = np.sqrt((way**2).sum(axis=1))[:, None]
-    along = ((a.still * b.still).sum(axis=1) > 0.0)[:, None]
-    rise, fall = (np.where(along, length * end.still - way, 0.0) for end in (a, b))
-    q = a.q + s * (b.q - a.q)
-    q[:, moving] += s * (1.0 - s) * ((1.0 - s) * rise - s * fall)
-    still = np.where(along, (1.0 - s) * a.still + s * b.still, a.still)
-    still /= np.sqrt((still**2).sum(axis=1))[:, None]
-    return _sampled(arm, a._replace(q=q, still=still), T[parts.owner])[0]
-
-
-def _bends(values: Array, changes: _Index) -> _Flags:
-    """Which cubics of coefficients (4, n), with so many changes of sign (n,), bend so much that they tell
-    little of zeros beside these, where they come near 0 or turn twice."""
-    rise = np.diff(values, axis=0)
-    turns = rise[:-1] * rise[1:]
-    steady = (changes == 0) & (turns >= 0.0).all(axis=0)
-    bend = np.abs(np.diff(rise, axis=0)).max(axis=0)
-    bent = (np.abs(values[1] + values[2]) < _BENT * bend) & ~steady
-    bent |= (turns < 0.0).all(axis=0)
-    return np.asarray(bent & (bend > _STRAIGHT * np.abs(values).max(axis=0)))
-
-
-def _solved(parts: _Parts, at: _Reduced, share: float) -> _Parts:
-    """Of samples at a share of the way those at solutions, as parts without length."""
-    place = parts.place + share * parts.width
-    out: _Parts = _some_of(_Parts(at, at, parts.owner, place, 0.0 * place), np.abs(at.left) < _SMALL)
-    return out
-
-
-def _bernstein(arm: _Arm, parts: _Parts) -> Array:
-    """The coefficients (4, n)."""
-    a, b = parts.a, parts.b
-    step = (b.q - a.q)[:, list(arm.moving)]
-    rise = a.slope * (a.still * step).sum(axis=1)
-    fall = b.slope * (b.still * step).sum(axis=1)
-    return np.array([a.left, a.left + rise / 3.0, b.left - fall / 3.0, b.left])
-
-
-def _closed_in(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
-    """Parts at whose ends what is left has two signs, narrowed until it is round-off at one, or the way to
-    there is."""
-    ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
-    values, last = ends.left.copy(), np.full(len(parts.owner), -1)
-    way = np.full(len(parts.owner), np.inf)
-    most = 2.0 * np.abs(_bernstein(arm, parts)).max(axis=0)
-    for step in range(_STEPS):
-        going = np.flatnonzero((np.abs(ends.left).min(axis=0) > _curve_parts_ROUND_OFF) & (way > _WAY))
-        if not len(going):
-            break
-        x, y = values[:, going]
-        now = _some_of(parts, going)._replace(
-            a=_some_of(ends, (0, going)), b=_some_of(ends, (1, going))
-        )
-        cubic, share = _bernstein(arm, now), x / (x - y)
-        if step < _CUBICS:
-            share = np.where(most[going] > _CLEAR, _root_share(cubic, share), share)
-        c = _between(arm, now, share, T)
-        side = (now.a.left * c.left < 0.0).astype(np.intp)
-        way[going] = np.abs(c.q - ends.q[side, going]).max(axis=1)
-        change = np.abs(np.diff(cubic, axis=0))
-        leaps = change[1] > _LEAP * np.maximum(change[0], change[2])
-        leaps &= (np.abs(ends.left[:, going]).min(axis=0) > arm.policy.arrived) & (step > _SOON)
-        way[going[leaps | (np.abs(c.left) > most[going])]] = 0.0
-        for whole, part in zip(ends, c):
-            whole[side, going] = part
-        values[side, going] = c.left
-        values[1 - side, going] *= np.where(last[going] == side, 0.5, 1.0)
-        last[going] = side
-    return parts._replace(a=_some_of(ends, 0), b=_some_of(ends, 1))
-
-
-def _root_share(values: Array, share: Array) -> Array:
-    """Where cubics of coefficients (4, n), after Bernstein, vanish (n,)."""
-    a, b, c, d = values
-    one, two, three = 3.0 * (b - a), 3.0 * (c - b - b + a), d - a + 3.0 * (b - c)
-    x = share
-    for _ in range(_NEWTON):
-        rise = (3.0 * three * x + 2.0 * two) * x + one
-        x = x - (((three * x + two) * x + one) * x + a) / rise
-    return np.asarray(np.where((x > 0.0) & (x < 1.0), x, share))
-
-
-def _kept(arm: _Arm, parts: _Parts) -> tuple[_Index, Array]:
-    """Of each part the end where less is left, in order."""
-    ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
-    least = np.abs(ends.left).argmin(axis=0)
-    left, q = (x[least, np.arange(len(least))] for x in (ends.left, ends.q))
-    order = np.lexsort((parts.place, parts.owner))
-    order = order[np.abs(left[order]) < arm.policy.arrived]
-    order = order[_places(parts.owner[order]) < _ROOM]
-    whole = 2.0 * np.pi * np.round(q / (2.0 * np.pi))
-    return parts.owner[order], np.where(arm.turning, q - whole, q)[order]
-
-
-# Solutions on what is a continuum of the geometry that was solved, and none of the file's.
-
-
-_near_continuum_MOST, _LEAST = 96, 4  # samples to a side of a curve
-_ASTRAY = 4  # samples in a row that show that no curve is near
-_near_continuum_BESIDE, _SAME_WAY = 0.06, 0.9
-
-
-class _Traced(NamedTuple):
-    """Which starts (k,) lie on a `curve` of the solved geometry, and which of these are `broken` (k,), none
-    of the file's arm; the starts `owner` (n,) of solutions, nearly, `q` (n, dof) on broken ones."""
-
-    curve: _Flags
-    broken: _Flags
-    owner: _Index
-    q: Array
-
-
-def _rows_around(arm: _Arm, q: Array, T: Array, broken: _Flags) -> tuple[_Flags, _Index, Array, Array]:
-    """Which rows q (k, dof) towards aims T (k, ...) stand for a continuum of the solved geometry."""
-    with np.errstate(all="ignore"):
-        traced = _trace(arm, q, T)
-    given = np.flatnonzero(traced.curve & ~broken)
-    owner = np.concatenate([traced.owner, given])
-    rows, error, _, slope = _refined(arm, np.concatenate([traced.q, q[given]]), T[owner])
-    exact = error < arm.policy.exact
-    best = np.lexsort((error, owner))
-    best = best[_places(owner[best]) == 0]
-    best = best[~np.isin(owner[best], owner[exact]) & (error[best] < arm.policy.arrived)]
-    best = best[~broken[owner[best]]]
-    some = np.concatenate([np.flatnonzero(exact), best])
-    some = some[np.argsort(owner[some], kind="stable")]
-    curve = np.where(broken, traced.broken, traced.curve)
-    return curve, owner[some], rows[some], _least_singular(slope[some])
-
-
-def _trace(arm: _Arm, q: Array, T: Array) -> _Traced:
-    """The curves through rows q (k, dof) towards aims T (k, ...), once around, or to both their ends."""
-    asked = np.concatenate([q, T.reshape(len(q), -1)], axis=1)
-    _, first, again = np.unique(asked, axis=0, return_index=True, return_inverse=True)
-    again = again.reshape(-1)
-    curve, broken, owner, rows = _traced(arm, q[first], T[first])
-    begin, end = np.searchsorted(owner, again), np.searchsorted(owner, again, side="right")
-    whose = np.repeat(np.arange(len(q)), end - begin)
-    return _Traced(curve[again], broken[again], whose, rows[begin[whose] + _places(whose)])
-
-
-def _traced(arm: _Arm, q: Array, T: Array) -> _Traced:
-    """`_trace` of rows that differ."""
-    count, (error, slope) = len(q), _linearized(arm, q, T)
-    nothing, still = np.zeros(count), _still_directions(arm, slope)
-    unknown = 0.1 * _generic(count, error.shape[1])  # shorter than what has a sense
-    start = _Reduced(q, still, unknown, nothing, nothing)
-    first, _ = _sampled(arm, start, T)
-    parts, ends, worst = _follow(arm, first, T)
-    steps = np.bincount(parts.owner, minlength=count)
-    curve = steps >= _LEAST
-    broken = curve & (worst >= arm.policy.arrived)
-    parts = _joined(parts, ends)
-    found = _look(arm, _some_of(parts, broken[parts.owner]), T, steps)
-    return _Traced(curve, broken, *found)
-
-
-def _follow(arm: _Arm, first: _Reduced, T: Array) -> tuple[_Parts, _Parts, Array]:
-    """On from samples to both sides at once, the fastest joint by `policy.try_step` from one to the
-    next."""
-    count, moving = len(T), list(arm.moving)
-    back = first._replace(still=-first.still, out=-first.out, left=-first.left)
-    first, T = _joined(first, back), np.concatenate([T, T])
-    closed, worst = np.zeros(2 * count, dtype=bool), np.abs(first.left)
-    parts, ends, owner, b = [], [], np.arange(2 * count), first
-    astray, before = np.zeros(2 * count, dtype=np.intp), b.still
-    for step in range(_near_continuum_MOST):
-        ahead, course = b.q.copy(), 1.5 * b.still - 0.5 * before
-        ahead[:, moving] += arm.policy.try_step * course / np.abs(course).max(axis=1)[:, None]
-        c, near = _sampled(arm, b._replace(q=ahead), T[owner])
-        astray = np.where(near, 0, astray + 1)
-        left = np.abs(c.left)
-        on = left < arm.policy.fold_reach
-        place = np.where(owner < count, step, _near_continuum_MOST + step).astype(float)
-        passed = _Parts(b, c, owner, place, np.ones(len(owner)))
-        ends.append(_some_of(passed, ~on & (left < _BEYOND * arm.policy.fold_reach)))
-        on &= astray < _ASTRAY
-        parts.append(_some_of(passed, on))
-        b, c, owner, astray = _some_of(b, on), _some_of(c, on), owner[on], astray[on]
-        worst[owner] = np.maximum(worst[owner], np.abs(c.left))
-        closed[owner[_back(arm, _some_of(first, owner), b) & (step > 1)]] = True
-        going = ~(closed[owner] | closed[owner % count])
-        before = b.still[going]
-        b, owner, astray = _some_of(c, going), owner[going], astray[going]
-        if not len(owner):
-            break
-    closed[owner] = True
-    once = np.arange(2 * count) < count
-    once[count:] = ~closed[:count]
-    worst = np.maximum(worst[:count], np.where(once[count:], worst[count:], 0.0))
-    found, last = (_some_of(some, once[some.owner]) for some in (_joined(*parts), _joined(*ends)))
-    found, last = (some._replace(owner=some.owner % count) for some in (found, last))
-    return found, last, worst
-
-
-def _back(arm: _Arm, a: _Reduced, b: _Reduced) -> _Flags:
-    """Whether curves are at samples of them again, and not at other parts that are near."""
-    way = _differences(arm, a.q, b.q)[:, list(arm.moving)]
-    along = (way * a.still).sum(axis=1)[:, None]
-    beside = np.abs(way - along * a.still).max(axis=1) < _near_continuum_BESIDE
-    near = np.abs(way).max(axis=1) < 0.75 * arm.policy.try_step
-    same = (a.still * b.still).sum(axis=1) > _SAME_WAY
-    return np.asarray(beside & near & same)
 
 
 # What distinguishes the rows of a pose: names of their branches, from the geometry of each row alone.

@@ -48,11 +48,11 @@ def test_samples_between_two_begin_near_the_curve(monkeypatch: pytest.MonkeyPatc
         return Reduced(np.array([[c, s]]), np.array([[-s, c]]), np.zeros((1, 2)), zero, zero)
 
     parts = between(on_circle(0.0), on_circle(0.4))
-    middle = curve_parts._between(plane, parts, np.array([0.5]), np.zeros((1, 4, 4)))
+    middle = curve_parts.between(plane, parts, np.array([0.5]), np.zeros((1, 4, 4)))
     assert np.abs(middle.q - on_circle(0.2).q).max() < 2e-3
     assert middle.still == pytest.approx(on_circle(0.2).still, abs=1e-12)
     turned = parts._replace(b=parts.b._replace(still=-parts.b.still))
-    middle = curve_parts._between(plane, turned, np.array([0.5]), np.zeros((1, 4, 4)))
+    middle = curve_parts.between(plane, turned, np.array([0.5]), np.zeros((1, 4, 4)))
     assert middle.q == pytest.approx(0.5 * (parts.a.q + parts.b.q))
 
 

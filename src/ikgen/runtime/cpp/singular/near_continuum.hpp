@@ -43,6 +43,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
 
   // No continuum nearby, one of the solved geometry, one that was passed, one of the file's too.
   enum class Kind { None, Broken, Known, Whole };
+  int passing = 0;  // samples of the last one, behind those that are kept
 
   // Finds those on the curve through a configuration: once around, or to both its ends; of one that is too short only
   // where it could not be followed.
@@ -58,6 +59,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     if (!follow(first, 1.0, worst, passed)) follow(first, -1.0, worst, passed);
     const Kind kind = steps < kLeast ? Kind::None : worst >= Policy::kArrived ? Kind::Broken : Kind::Whole;
     if (kind == Kind::Whole || (kind == Kind::None && !lost)) count = 0;
+    passing = passed.count - known;
     if (kind != Kind::Broken || lost || !ended || passed.count > Passed::kSamples) passed.count = known;
     return kind;
   }

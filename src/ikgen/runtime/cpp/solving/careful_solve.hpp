@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solving/careful_rows.hpp"
+#include "singular/limit_curve.hpp"
 #include "singular/limit_rows.hpp"
 #include "solving/nearest_row.hpp"
 
@@ -25,7 +26,7 @@ template <class Arm> struct CarefulSolve {
                                            Solutions& out) noexcept {
     const Aim aim(pose, options.free);
     bool real = false, free = true, continuum = false;
-    Places found;
+    Places found, loose;  // loose: with rows of a continuum, without limits
     for (int turn = 0; turn < Policy::kTries && free; ++turn) {
       double start[Arm::kDof];
       take_start(options, turn, start);
@@ -35,7 +36,10 @@ template <class Arm> struct CarefulSolve {
         Careful::add_from(aim, start, found);
       }
       real = real || found.count > 0;
-      continuum = continuum || Careful::any_singular(found);
+      if (Careful::any_singular(found)) {
+        continuum = true;
+        loose = found;
+      }
       LimitRows<Arm>::place_all(aim, options, found);
       if (found.count == 0 && options.seed && Refinement::refine(start, aim)) {
         RightRows<Arm>::add(aim, found, start, true);
@@ -46,6 +50,7 @@ template <class Arm> struct CarefulSolve {
     }
     if (free && !Arm::kRounded && !Arm::kRefined) real = add_hidden(aim, options, found) || real;
     if ((free || continuum) && found.count == 0) real = add_nearest(aim, options, found) || real;
+    if (continuum && found.count == 0) add_along(aim, options, loose, found);
     if (options.seed) Row::sort_by_distance(found, options.seed->data());
     take_in_order(found, out);
     out.status = out.count > 0 ? Arm::Status::Ok : real ? Arm::Status::Limits : Arm::Status::Unreachable;
@@ -120,6 +125,12 @@ template <class Arm> struct CarefulSolve {
     }
     LimitRows<Arm>::place_all(aim, options, out);
     return real;
+  }
+
+  // Adds rows inside the limits of the continua that some rows are of.
+  [[gnu::cold, gnu::noinline]] static void add_along(const Aim& aim, const Options& options, Places& rows, Places& out) noexcept {
+    for (int k = 0; k < rows.count; ++k)
+      if (Row::flag(rows, k)) LimitCurve<Arm>::add(aim, options, Row::row(rows, k), out);
   }
 
   // Adds a row that takes the pose, inside the limits if one of these was found; whether there is any.

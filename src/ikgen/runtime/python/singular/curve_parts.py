@@ -14,7 +14,7 @@ from ikgen.runtime.python.rows.solution_rows import places
 from ikgen.runtime.python.singular.curve_samples import sampled
 from ikgen.runtime.python.singular.fold_pair import Reduced
 
-__all__ = ["BEYOND", "Parts", "look"]
+__all__ = ["BEYOND", "Parts", "between", "look"]
 
 BEYOND = 4.0
 """How far what is left behind the last part of a curve may be beyond its bound."""
@@ -64,7 +64,7 @@ def look(arm: Arm, parts: Parts, T: Array, samples: Index) -> tuple[Index, Array
         if not split.any():
             break
         parts = some_of(parts, split)
-        middle = _between(arm, parts, np.full(len(parts.owner), 0.5), T)
+        middle = between(arm, parts, np.full(len(parts.owner), 0.5), T)
         kept.append(_solved(parts, middle, 0.5))
         samples = samples + np.bincount(parts.owner, minlength=len(samples))
         half = 0.5 * parts.width
@@ -75,7 +75,7 @@ def look(arm: Arm, parts: Parts, T: Array, samples: Index) -> tuple[Index, Array
     return _kept(arm, joined(*kept, _closed_in(arm, joined(*brackets), T)))
 
 
-def _between(arm: Arm, parts: Parts, share: Array, T: Array) -> Reduced:
+def between(arm: Arm, parts: Parts, share: Array, T: Array) -> Reduced:
     """Samples at a `share` (n,) of the way from a to b, near the cubic with the directions at both."""
     a, b, s, moving = parts.a, parts.b, share[:, None], list(arm.moving)
     way = (b.q - a.q)[:, moving]
@@ -138,7 +138,7 @@ def _closed_in(arm: Arm, parts: Parts, T: Array) -> Parts:
         cubic, share = _bernstein(arm, now), x / (x - y)
         if step < _CUBICS:
             share = np.where(most[going] > _CLEAR, _root_share(cubic, share), share)
-        c = _between(arm, now, share, T)
+        c = between(arm, now, share, T)
         side = (now.a.left * c.left < 0.0).astype(np.intp)
         way[going] = np.abs(c.q - ends.q[side, going]).max(axis=1)
         change = np.abs(np.diff(cubic, axis=0))

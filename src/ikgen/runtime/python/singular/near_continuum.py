@@ -21,9 +21,11 @@ from ikgen.runtime.python.singular.curve_parts import BEYOND, Parts, look
 from ikgen.runtime.python.singular.curve_samples import sampled
 from ikgen.runtime.python.singular.fold_pair import Reduced, generic, still_directions
 
-__all__ = ["Traced", "rows_around", "trace"]
+__all__ = ["LEAST", "Traced", "followed", "rows_around", "trace"]
 
-_MOST, _LEAST = 96, 4  # samples to a side of a curve
+_MOST = 96  # samples to a side of a curve
+LEAST = 4
+"""Samples of what is a curve."""
 _ASTRAY = 4  # samples in a row that show that no curve is near
 _BESIDE, _SAME_WAY = 0.06, 0.9
 
@@ -73,18 +75,22 @@ def trace(arm: Arm, q: Array, T: Array) -> Traced:
 
 def _traced(arm: Arm, q: Array, T: Array) -> Traced:
     """`trace` of rows that differ."""
-    count, (error, slope) = len(q), linearized(arm, q, T)
-    nothing, still = np.zeros(count), still_directions(arm, slope)
-    unknown = 0.1 * generic(count, error.shape[1])  # shorter than what has a sense
-    start = Reduced(q, still, unknown, nothing, nothing)
-    first, _ = sampled(arm, start, T)
-    parts, ends, worst = _follow(arm, first, T)
-    steps = np.bincount(parts.owner, minlength=count)
-    curve = steps >= _LEAST
+    parts, ends, worst = followed(arm, q, T)
+    steps = np.bincount(parts.owner, minlength=len(q))
+    curve = steps >= LEAST
     broken = curve & (worst >= arm.policy.arrived)
     parts = joined(parts, ends)
     found = look(arm, some_of(parts, broken[parts.owner]), T, steps)
     return Traced(curve, broken, *found)
+
+
+def followed(arm: Arm, q: Array, T: Array) -> tuple[Parts, Parts, Array]:
+    """The curves beside rows q (k, dof) towards aims T (k, ...), as `_follow` has them."""
+    count, (error, slope) = len(q), linearized(arm, q, T)
+    nothing, still = np.zeros(count), still_directions(arm, slope)
+    unknown = 0.1 * generic(count, error.shape[1])  # shorter than what has a sense
+    first, _ = sampled(arm, Reduced(q, still, unknown, nothing, nothing), T)
+    return _follow(arm, first, T)
 
 
 def _follow(arm: Arm, first: Reduced, T: Array) -> tuple[Parts, Parts, Array]:

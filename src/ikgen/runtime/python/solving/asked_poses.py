@@ -46,8 +46,9 @@ class Asked:
 
 @dataclass
 class Answer:
-    """Solutions on the right turns, and whether there were any before limits, and any of a continuum."""
+    """Solutions on the right turns, whether there were any before limits, and those of continua that there
+    were then, at the last values that were tried."""
 
     rows: list[Found] = field(default_factory=list)
     real: bool = False
-    continuum: bool = False
+    loose: list[Found] = field(default_factory=list)

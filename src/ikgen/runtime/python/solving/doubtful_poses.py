@@ -10,6 +10,7 @@ from ikgen.runtime.python.arm.solved_arm import Arm, Found
 from ikgen.runtime.python.arrays.array_tuples import joined, some_of
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.rows.row_placement import is_new, place_rows
+from ikgen.runtime.python.singular.limit_curves import rows_along
 from ikgen.runtime.python.singular.limit_rows import rows_inside
 from ikgen.runtime.python.singular.meeting_rows import (
     Leads,
@@ -53,11 +54,25 @@ def placed_rows(arm: Arm, asked: Asked, limits: bool) -> list[Answer]:
         left = left[going[left]]
     if not arm.rounded and len(left):
         _take_hidden(arm, asked, left, limits, out)
-    doubtful = set(left.tolist()) | {i for i, answer in enumerate(out) if answer.continuum}
+    doubtful = set(left.tolist()) | {i for i, answer in enumerate(out) if answer.loose}
     lost = sorted(i for i in doubtful if not out[i].rows)
     if lost:
         _take_nearest(arm, asked, np.array(lost), limits, out)
+    lost = [i for i in lost if out[i].loose and not out[i].rows]
+    if lost and arm.around is not None:
+        _take_along(arm, asked, lost, limits, out)
     return out
+
+
+def _take_along(arm: Arm, asked: Asked, some: list[int], limits: bool, out: list[Answer]) -> None:
+    """Adds rows inside the limits of the continua that some of the poses' rows are of."""
+    pose = np.array([i for i in some for _ in out[i].loose])
+    aim = aims(arm, asked.T, asked.held)[pose]
+    q = np.array([row for i in some for row, _ in out[i].loose])
+    for k, row in zip(*rows_along(arm, q, aim)):
+        i, found = pose[k], [(tuple(row.tolist()), True)]
+        rows = rows_inside(arm, aim[k : k + 1], found, asked.seed(i), limits)
+        _add(arm, asked.T[i], rows, out[i].rows)
 
 
 def _take_hidden(arm: Arm, asked: Asked, some: Index, limits: bool, out: list[Answer]) -> None:
@@ -132,7 +147,7 @@ def _goes_on(
     if not free and any(flag for _, flag in kept):
         _add(arm, T, seeded, kept)
     answer.real = answer.real or bool(kept)
-    answer.continuum = answer.continuum or any(flag for _, flag in kept)
+    answer.loose = [one for one in kept if one[1]] or answer.loose
     aim = aims(arm, asked.T[k : k + 1], asked.held[k : k + 1])
     _add(arm, T, rows_inside(arm, aim, kept, near, limits), answer.rows)
     if not answer.rows:
