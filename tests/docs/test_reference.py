@@ -62,7 +62,7 @@ def test_tasks_and_their_aliases_are_listed() -> None:
 
 
 def test_emitted_names_are_listed() -> None:
-    module = (ROOT / "templates/python/module.py.jinja").read_text(encoding="utf-8")
+    module = (ROOT / "templates/python/public_names.py.jinja").read_text(encoding="utf-8")
     exported = re.search(r"__all__ = (\[.*?\])", module, re.S)
     assert exported is not None
     names = re.sub(r"\{%.*?%\}", "", exported.group(1))

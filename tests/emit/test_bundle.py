@@ -194,6 +194,13 @@ def test_imports_are_merged_and_sorted() -> None:
     assert lines == ["import os", "from math import pi, tau", "", "import numpy as np"]
 
 
+def test_imports_of_the_package_itself_stay_relative() -> None:
+    given = "from . import _native\nfrom ..arms import arm\nimport numpy as np"
+    nodes = [n for n in ast.parse(given).body if isinstance(n, ast.Import | ast.ImportFrom)]
+    lines = import_lines([one for node in nodes for one in External.of(node)])
+    assert lines == ["import numpy as np", "", "from . import _native", "from ..arms import arm"]
+
+
 def test_public_names_of_a_module_are_those_of_the_contract(tmp_path: Path) -> None:
     module = import_text(emit_module(pan_lift()), tmp_path)
     own = [

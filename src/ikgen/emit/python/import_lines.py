@@ -27,7 +27,8 @@ class External:
             if isinstance(node, ast.Import):
                 yield External(part.name, "", part.asname or "")
             else:
-                yield External(node.module or "", part.name, part.asname or "")
+                module = "." * node.level + (node.module or "")
+                yield External(module, part.name, part.asname or "")
 
     @property
     def binds(self) -> str:
@@ -36,11 +37,15 @@ class External:
 
 
 def import_lines(imports: Iterable[External]) -> list[str]:
-    """Lines of all imports, merged and sorted: those of the future, the standard library, others."""
+    """Lines of all imports, merged and sorted: those of the future, the standard library, others,
+    the package's own."""
     unique = sorted(set(imports))
-    groups: list[list[External]] = [[], [], []]
+    groups: list[list[External]] = [[], [], [], []]
     for one in unique:
         top = one.module.partition(".")[0]
+        if not top:
+            groups[3].append(one)
+            continue
         groups[0 if top == "__future__" else 1 if top in sys.stdlib_module_names else 2].append(one)
     lines: list[str] = []
     for group in groups:

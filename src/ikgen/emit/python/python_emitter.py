@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ikgen.elimination.routine import runtime_policy
 from ikgen.emit.blanks import blanks, pairs
@@ -25,7 +25,7 @@ from ikgen.runtime.python.arm.solve_policy import Policy
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
 
-__all__ = ["emit_derivation", "emit_module", "known_facts"]
+__all__ = ["concrete_types", "emit_derivation", "emit_module", "known_facts", "shell_values"]
 
 
 def emit_derivation(derivation: Derivation) -> dict[str, str]:
@@ -36,45 +36,48 @@ def emit_derivation(derivation: Derivation) -> dict[str, str]:
 
 def emit_module(module: SolverModule) -> str:
     """The text of `<name>_ik.py`."""
+    shell = render("python", "module.py.jinja", compiled=False, **shell_values(module))
+    return bundle(shell, known_facts(module), concrete_types(module))
+
+
+def shell_values(module: SolverModule) -> dict[str, Any]:
+    """What the templates say of an arm."""
     program = module.program
-    shell = render(
-        "python",
-        "module.py.jinja",
-        m=module,
-        joints=module.dh.joints,
-        lower=[number(j.limits.lower) for j in module.dh.joints],
-        upper=[number(j.limits.upper) for j in module.dh.joints],
-        parameters=_parameters(module),
-        blanks=blanks(module),
-        constants=[(c.name, expression(SCALAR, c.value)) for c in program.constants],
-        scalar=scalar_lines(module),
-        batch=batch_lines(module),
-        routines=sorted({lv.call.routine for lv in program.levels if lv.call is not None}),
-        seeds=_seed_rows(module),
-        shape=[level.branches for level in program.levels[1:]],
-        frames=[[[expression(SCALAR, x) for x in row] for row in F] for F in program.frames],
-        rows=[(row.driver, row.revolute, row.scale, row.offset.value) for row in module.dh.rows],
-        lanes=lane_text(module) if module.refine == "all" else None,
-        number=number,
-        literal=literal,
-        words=words,
-        held=len(module.held),
-        held_name=words(_held_name(module)),
-        held_turns=module.dh.arm_angle or _held_turns(module),
-        elbow=elbow_text(module, number),
-        geared=gear_text(module, number),
-        guarded=module.guarded,
-        beside=[[[number(float(x)) for x in row] for row in D] for D in module.beside],
-        orientation=module.reads.orientation,
-        entries=module.reads.entries,
-        size=module.size,
-        branch_kind=branch_kind(module),
-        elbow_end=elbow_end(module),
-        unit_columns=module.unit_columns,
-        policy=module.policy,
-        policy_values=_policy_values(runtime_policy(module.policy)),
-    )
-    return bundle(shell, known_facts(module), _types(module))
+    return {
+        "m": module,
+        "joints": module.dh.joints,
+        "lower": [number(j.limits.lower) for j in module.dh.joints],
+        "upper": [number(j.limits.upper) for j in module.dh.joints],
+        "parameters": _parameters(module),
+        "blanks": blanks(module),
+        "constants": [(c.name, expression(SCALAR, c.value)) for c in program.constants],
+        "scalar": scalar_lines(module),
+        "batch": batch_lines(module),
+        "routines": sorted({lv.call.routine for lv in program.levels if lv.call is not None}),
+        "seeds": _seed_rows(module),
+        "shape": [level.branches for level in program.levels[1:]],
+        "frames": [[[expression(SCALAR, x) for x in row] for row in F] for F in program.frames],
+        "rows": [(row.driver, row.revolute, row.scale, row.offset.value) for row in module.dh.rows],
+        "lanes": lane_text(module) if module.refine == "all" else None,
+        "number": number,
+        "literal": literal,
+        "words": words,
+        "held": len(module.held),
+        "held_name": words(_held_name(module)),
+        "held_turns": module.dh.arm_angle or _held_turns(module),
+        "elbow": elbow_text(module, number),
+        "geared": gear_text(module, number),
+        "guarded": module.guarded,
+        "beside": [[[number(float(x)) for x in row] for row in D] for D in module.beside],
+        "orientation": module.reads.orientation,
+        "entries": module.reads.entries,
+        "size": module.size,
+        "branch_kind": branch_kind(module),
+        "elbow_end": elbow_end(module),
+        "unit_columns": module.unit_columns,
+        "policy": module.policy,
+        "policy_values": _policy_values(runtime_policy(module.policy)),
+    }
 
 
 def known_facts(module: SolverModule) -> Facts:
@@ -100,7 +103,7 @@ def known_facts(module: SolverModule) -> Facts:
     return (*known, *((name, None) for name, there in absent if not there))
 
 
-def _types(module: SolverModule) -> dict[Key, Key]:
+def concrete_types(module: SolverModule) -> dict[Key, Key]:
     """The classes that the module has of what the runtime knows by protocols."""
     whole = module.reads.whole_pose
     task = ("arm.whole_pose", "PoseTask") if whole else ("arm.pose_entries", "EntriesTask")

@@ -17,6 +17,7 @@ __all__ = [
     "chain_of",
     "cross",
     "forward",
+    "in_line",
     "jacobian",
     "joint_axes",
     "link_motions",
@@ -104,7 +105,7 @@ def link_motions(chain: Chain, parts: Array, q: Array) -> Array:
     return np.asarray((trig @ parts).reshape(*trig.shape[:2], 4, 4))
 
 
-def _in_line(chain: Chain, q: ArrayLike) -> tuple[tuple[int, ...], Array]:
+def in_line(chain: Chain, q: ArrayLike) -> tuple[tuple[int, ...], Array]:
     """The shape of what q (..., dof) are in front, and q (k, dof)."""
     values, dof = real_array(q, "q"), len(chain.revolute)
     if values.ndim < 1 or values.shape[-1] != dof:
@@ -114,7 +115,7 @@ def _in_line(chain: Chain, q: ArrayLike) -> tuple[tuple[int, ...], Array]:
 
 def forward(chain: Chain, q: ArrayLike) -> Array:
     """Tip poses (..., 4, 4) at q (..., dof); raises ValueError for another shape."""
-    shape, rows = _in_line(chain, q)
+    shape, rows = in_line(chain, q)
     steps = link_motions(chain, chain.parts, rows)
     T: Array = steps[0]
     for step in steps[1:]:
@@ -124,7 +125,7 @@ def forward(chain: Chain, q: ArrayLike) -> Array:
 
 def jacobian(chain: Chain, q: ArrayLike) -> Array:
     """Geometric Jacobians (..., 6, dof) at q (..., dof); raises ValueError for another shape."""
-    shape, rows = _in_line(chain, q)
+    shape, rows = in_line(chain, q)
     return np.asarray(tip_and_jacobian(chain, rows)[1].reshape(*shape, 6, rows.shape[1]))
 
 

@@ -34,7 +34,7 @@ from ikgen.runtime.python.solving.closed_form_rows import all_rows, careful
 from ikgen.runtime.python.solving.doubtful_poses import placed_rows, seeded_rows
 from ikgen.runtime.python.solving.projection import nearest_row, off_by
 
-__all__ = ["One", "eliminated_answers", "solutions_of", "solve_pose", "sure_answer"]
+__all__ = ["One", "eliminated_answers", "held_reason", "solutions_of", "solve_pose", "sure_answer"]
 
 One = tuple[list[list[float]], Row | None, Row]
 """A pose, its seed if there is one, and values of held joints."""
@@ -74,7 +74,7 @@ def solutions_of(
         found = _projected(arm, asked, limits)
     if not found:
         status = Status.LIMITS if answer.real else Status.UNREACHABLE
-        return no_solutions(len(arm.lower), status, _held_reason(arm, held, answer.real))
+        return no_solutions(len(arm.lower), status, held_reason(arm, held, answer.real))
     found = in_order(arm, found, near)
     q = np.array([row for row, _ in found]) + 0.0
     flags = np.array([flag for _, flag in found], dtype=bool)
@@ -83,7 +83,7 @@ def solutions_of(
     return Solutions(q, Status.OK, flags, names=names, projected=off)
 
 
-def _held_reason(arm: Arm, held: Row, real: bool) -> str:
+def held_reason(arm: Arm, held: Row, real: bool) -> str:
     """What holding joints has to do with it; nothing where none is held."""
     if not held:
         return ""
