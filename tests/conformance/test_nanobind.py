@@ -8,7 +8,7 @@ import subprocess
 import sys
 import venv
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
@@ -81,20 +81,18 @@ def test_answers_are_the_python_modules(both: tuple[ModuleType, ModuleType]) -> 
             assert mine.status.value == its.status.value and len(mine) == len(its)
             assert alike(mine.q, its.q)
             assert (mine.singular == its.singular).all() and len(list(mine)) == len(mine)
+            assert mine.branch == its.branch and mine.reason == its.reason
     for options in ({}, {"seed": q}, {"seed": q[0]}, {"limits": False}):
         one, other = (m.solve_batch(poses, **options) for m in both)
         assert alike(one[0], other[0])
         assert (one[1] == other[1]).all() and (one[2] == other[2]).all()
 
 
-PYTHON_ALONE = {"arm_angle", "Interval", "Path", "follow", "search", "self_motion"}
-"""What the compiled package has not."""
-
-
 @pytest.mark.slow
 def test_constants_and_errors_are_the_python_modules(both: tuple[ModuleType, ModuleType]) -> None:
     native, python = both
-    for name in set(python.__all__) - PYTHON_ALONE:
+    assert native.__all__ == python.__all__
+    for name in python.__all__:
         mine, its = getattr(native, name), getattr(python, name)
         assert callable(its) or np.array_equal(mine, its), name
     pose = python.forward(np.zeros(7))
@@ -106,12 +104,18 @@ def test_constants_and_errors_are_the_python_modules(both: tuple[ModuleType, Mod
         lambda m: m.solve(pose, free={"none": 1.0}),
         lambda m: m.solve_batch(pose),
         lambda m: m.forward([1.0, 2.0]),
+        lambda m: m.solve(pose + 0.5j),
+        lambda m: m.search(pose, prefer="far"),
+        lambda m: m.follow([pose], start=[1.0]),
+        lambda m: m.self_motion(np.eye(3)),
     ):
         for m in both:
             with pytest.raises(ValueError):
                 call(m)
     pose[0, 3] = np.nan
-    assert native.solve(pose.tolist()).status is native.Status.INVALID
+    refused = native.solve(pose.tolist())
+    assert refused.status is native.Status.INVALID
+    assert refused.reason == python.solve(pose).reason != ""
 
 
 @pytest.mark.slow
@@ -126,3 +130,52 @@ def test_an_arm_angle_is_held_by_its_name(both: tuple[ModuleType, ModuleType]) -
             assert alike(mine.q, its.q)
     with pytest.raises(ValueError, match="elbow"):
         native.solve(pose, free={"elbow": 1.0})
+
+
+@pytest.mark.slow
+def test_poses_have_the_forms_that_the_python_module_takes(
+    both: tuple[ModuleType, ModuleType],
+) -> None:
+    native, python = both
+    row = np.linspace(-0.5, 0.7, 7)
+    pose = python.forward(row)
+    for form in (
+        pose.tolist(),
+        np.asfortranarray(pose),
+        pose[:3],
+        (pose[:3, :3], pose[:3, 3]),
+        SimpleNamespace(homogeneous=pose),
+        pose[::-1][::-1],
+    ):
+        assert alike(native.solve(form, seed=row).q, native.solve(pose, seed=row).q)
+    batch = [SimpleNamespace(homogeneous=pose)] * 2
+    assert alike(native.solve_batch(batch)[0], native.solve_batch(np.array([pose, pose]))[0])
+    rough = pose.round(4)
+    assert native.solve(rough).reason == python.solve(rough).reason
+    assert len(native.solve(rough, orthonormalize=True)) == len(native.solve(pose)) > 0
+    for limits in ("no", None):
+        assert alike(native.solve(pose, limits=limits).q, python.solve(pose, limits=limits).q)
+    far = pose + 5.0 * np.eye(4, k=3)
+    mine, its = native.solve(far, project=True), python.solve(far, project=True)
+    assert len(mine) == len(its) > 0 and np.allclose(mine.off[0], its.off[0], atol=1e-6)
+
+
+@pytest.mark.slow
+def test_searches_and_paths_are_the_python_modules(both: tuple[ModuleType, ModuleType]) -> None:
+    native, python = both
+    rng = np.random.default_rng(2)
+    for q in rng.uniform(0.6 * python.LOWER, 0.6 * python.UPPER, (5, 7)):
+        pose = python.forward(q)
+        assert alike(native.arm_angle(q), python.arm_angle(q))
+        mine, its = native.self_motion(pose), python.self_motion(pose)
+        assert [one.branch for one in mine] == [one.branch for one in its]
+        ends = [np.array([(one.low, one.high) for one in found]) for found in (mine, its)]
+        assert np.abs(ends[0] - ends[1]).max() < 1e-6 and isinstance(mine[0], native.Interval)
+        best, other = native.search(pose, seed=q), python.search(pose, seed=q)
+        assert best.status.value == other.status.value == "OK"
+        assert np.abs(best[0] - other[0]).max() < 1e-3 and best.branch[0] == other.branch[0]
+        rows = q + np.linspace(0.0, 0.2, 20)[:, None] * rng.normal(size=7)
+        one, two = (m.follow(python.forward(rows), start=q) for m in both)
+        assert one.reached == two.reached and one.status.value == two.status.value
+        assert alike(one.q, two.q) and isinstance(one, native.Path)
+        assert (one.singular == two.singular).all()

@@ -1,14 +1,16 @@
-"""Emitted Python modules hold strict type checking, so that packages that do can use them."""
+"""Emitted Python modules and packages hold strict type checking, so that packages that do can use them."""
 
 from __future__ import annotations
 
 import importlib.util
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from ikgen.emit import nanobind
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
@@ -24,11 +26,16 @@ ARMS = {
 
 
 @pytest.mark.skipif(importlib.util.find_spec("mypy") is None, reason="needs mypy")
-def test_modules_are_typed(tmp_path: Path) -> None:
+def test_modules_and_packages_are_typed(tmp_path: Path) -> None:
     for name, request in ARMS.items():
-        text = emit_module(derive(request).module)
-        (tmp_path / f"{name.replace(' ', '_')}_ik.py").write_text(text, encoding="utf-8")
+        module = replace(derive(request).module, name=name)
+        (tmp_path / f"{name}_ik.py").write_text(emit_module(module), encoding="utf-8")
+        for path, text in nanobind.emit(module).items():
+            if path.endswith((".py", ".pyi")):  # the package lies in a folder of its name
+                file = tmp_path / path.partition("/")[2]
+                file.parent.mkdir(exist_ok=True)
+                file.write_text(text, encoding="utf-8")
     command = [sys.executable, "-m", "mypy", "--strict", "--config-file=", "."]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert f"in {len(ARMS)} source files" in done.stdout
+    assert f"in {3 * len(ARMS)} source files" in done.stdout

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from ikgen.emit.blanks import blanks
 from ikgen.emit.cpp.cpp_emitter import emit_header
 from ikgen.emit.cpp.cpp_language import literal as quoted
-from ikgen.emit.gear_text import gear_text
-from ikgen.emit.python.python_text import literal
+from ikgen.emit.python.compiled_interface import emit_interface
 from ikgen.emit.rendering import render
 from ikgen.emit.solver_module import SolverModule
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["emit", "emit_derivation"]
 
 _FILES = ("pyproject.toml", "CMakeLists.txt", "README.md", "native.cpp")
-_PACKAGE = ("__init__.py", "_status.py", "_native.pyi", "py.typed")
+_PACKAGE = ("_native.pyi", "py.typed")
 
 
 def emit_derivation(derivation: Derivation) -> dict[str, str]:
@@ -35,16 +35,14 @@ def emit(module: SolverModule) -> dict[str, str]:
         "m": module,
         "package": package,
         "namespace": f"{module.name}_ik",
-        "joint_names": tuple(joint.name for joint in module.dh.joints),
         "free_joints": module.held,
-        "literal": literal,
+        "blanks": blanks(module),
         "quoted": quoted,
-        "lower": [_number(joint.limits.lower) for joint in module.dh.joints],
-        "geared": gear_text(module, _number),
+        "elbow": module.dh.arm_angle,
         "version": _version(module.generator_version),
-        "upper": [_number(joint.limits.upper) for joint in module.dh.joints],
     }
     out = {path: render("nanobind", f"{file}.jinja", **values) for path, file in paths.items()}
+    out[f"{package}/{package}/__init__.py"] = emit_interface(module)
     return out | {f"{package}/{module.name}_ik.hpp": emit_header(module)}
 
 
@@ -52,7 +50,3 @@ def _version(generator: str) -> str:
     """The generator's version where packages can have it (PEP 440)."""
     plain = re.fullmatch(r"\d+(\.\d+)*((a|b|rc|\.post|\.dev)\d+)*", generator)
     return generator if plain else "0"
-
-
-def _number(value: float) -> str:
-    return repr(float(value)) if abs(value) < float("inf") else f'float("{value}")'
