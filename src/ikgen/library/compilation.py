@@ -9,7 +9,7 @@ import platform
 import sys
 import sysconfig
 from collections.abc import Mapping, Sequence
-from functools import cache, cached_property, partial
+from functools import cache
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ikgen.errors import MissingToolError, VerificationError
-from ikgen.library.load_arguments import checked_flag, wrong
+from ikgen.library.load_arguments import wrong
 from ikgen.library.loaded_arm import Arm, Array
 from ikgen.library.solver_cache import cache_folder
 from ikgen.processes.scratch_folder import ScratchFolder
@@ -51,18 +51,14 @@ class CompiledArm(Arm):
         project: bool = False,
         orthonormalize: bool = False,
     ) -> Solutions:
-        """As `Arm.solve`, by the compiled solver; by the Python module what only that knows."""
-        checked_flag("project", project)
-        checked_flag("orthonormalize", orthonormalize)
-        plain = isinstance(pose, np.ndarray) and not (project or orthonormalize)
-        T = pose if plain else self._matrices("solve", pose, orthonormalize)
+        """As `Arm.solve`, by the compiled solver."""
         options: dict[str, Any] = {"free": free, "seed": seed, "limits": limits}
-        found = None if project else self._refusing(self.compiled.solve, "solve", T, **options)
-        if found is None or not len(found):  # which tells more of a pose without solutions
-            return super().solve(pose, **options, project=project, orthonormalize=orthonormalize)
+        options |= {"project": project, "orthonormalize": orthonormalize}
+        found = self._refusing(self.compiled.solve, "solve", pose, **options)
         module = self.module
+        told = found.reason, found.names, found.projected
         rows: Solutions = module.Solutions(
-            np.array(found.q), module.Status.OK, np.array(found.singular), names=self._names
+            found.q, module.Status[found.status.name], found.singular, *told
         )
         return rows
 
@@ -76,11 +72,9 @@ class CompiledArm(Arm):
         orthonormalize: bool = False,
     ) -> tuple[Array, NDArray[np.int64], NDArray[np.str_]]:
         """As `Arm.solve_batch`, by the compiled solver."""
-        checked_flag("orthonormalize", orthonormalize)
-        T = self._matrices("solve_batch", poses, orthonormalize)
-        options = {"free": free, "seed": seed, "limits": limits}
+        options = {"free": free, "seed": seed, "limits": limits, "orthonormalize": orthonormalize}
         found: tuple[Array, NDArray[np.int64], NDArray[np.str_]] = self._refusing(
-            self.compiled.solve_batch, "solve_batch", T, **options
+            self.compiled.solve_batch, "solve_batch", poses, **options
         )
         return found
 
@@ -93,23 +87,6 @@ class CompiledArm(Arm):
         """As `Arm.jacobian`, by the compiled solver."""
         J: Array = self._refusing(self.compiled.jacobian, "jacobian", q)
         return J
-
-    @cached_property
-    def _names(self) -> Any:
-        module = self.module
-        names = partial(module._branch_names, module._ARM)
-        motors = getattr(module, "_MOTORS", None)
-        return names if motors is None else lambda rows: names(motors.joints(rows))
-
-    def _matrices(self, function: str, poses: Any, orthonormalize: bool) -> Array:
-        """Poses of any form as matrices."""
-        module = self.module
-        task = module._ARM.task
-        T: Array = self._refusing(module._pose_matrices, function, poses, task.alone)
-        if orthonormalize and T.shape[-2:] == (4, 4):
-            many = T.reshape(-1, 4, 4)
-            T = module._nearest_poses(task, many, module._ARM.policy).reshape(T.shape)
-        return T
 
 
 def compile(arm: Arm) -> CompiledArm:
@@ -174,7 +151,7 @@ def _nanobind() -> Path:
 @cache
 def _loaded(folder: Path, package: str) -> ModuleType:
     """The package in a folder, which leaves its name to one that is installed."""
-    names = (package, f"{package}._native", f"{package}._status")
+    names = (package, f"{package}._native")
     others = {name: sys.modules.pop(name) for name in names if name in sys.modules}
     spec = importlib.util.spec_from_file_location(
         package, folder / "__init__.py", submodule_search_locations=[str(folder)]
