@@ -37,9 +37,9 @@ def started(
     piece = Piece(low, high, 0, samples)
     joint: Any = SimpleNamespace(arm=None)
     starts = _starts(tracks, piece, 7, ("near", (), ()), joint, True)
-    assert all(group == 7 and row[0] == value for (value,), row, _, group, _ in starts)
-    assert all(reach == piece.reach() for *_, reach in starts)
-    return [(value, step) for (value,), _, (step,), _, _ in starts]
+    assert all(group == 7 and row[0] == value for (value,), row, _, group, _, _ in starts)
+    assert all(reach == piece.reach() for *_, reach, _ in starts)
+    return [(value, step) for (value,), _, (step,), _, _, _ in starts]
 
 
 def test_the_ends_of_an_interval_count(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from ikgen.runtime.python.held import solution_search
-from ikgen.runtime.python.held.solution_search import _improved, best_rows
+from ikgen.runtime.python.held.solution_search import Reach, _improved, best_rows
 
 Array = NDArray[np.float64]
 
@@ -88,7 +88,7 @@ def test_none_is_asked_beyond_the_end_of_a_branch(monkeypatch: pytest.MonkeyPatc
     """Nor where it is already, which rows of a fold do not tell."""
     asked = cost_of(monkeypatch, lambda q: -q[..., 0])
     monkeypatch.setattr(solution_search, "_solutions", lambda *given: given[-2])
-    start = ((1.0,), np.array([1.0]), (0.1,), 0, (0.5, 1.15))
+    start = ((1.0,), np.array([1.0]), (0.1,), 0, (0.5, 1.15), None)
     held: Any = best_rows(arm(), np.eye(4), [start], WANTED, True)
     assert held[0, 0] == 1.15 and max(trial.max() for trial in asked) == 1.15
     assert [len(trial) for trial in asked[-5:]] == [1] * 5  # inwards alone
@@ -102,7 +102,7 @@ def test_steps_get_shorter_where_none_is_better(
     middle = np.array([0.3, -0.2])[:count]
     asked = cost_of(monkeypatch, lambda q: ((q - middle) ** 2).sum(axis=-1))
     monkeypatch.setattr(solution_search, "_solutions", lambda *given: given[-2:])
-    start = (tuple(middle.tolist()), middle, (0.4,) * count, 0, ANYWHERE)
+    start = (tuple(middle.tolist()), middle, (0.4,) * count, 0, ANYWHERE, None)
     held, _ = best_rows(arm(count), np.eye(4), [start], WANTED, True)  # type: ignore[misc]
     np.testing.assert_allclose(held[0], middle, atol=1e-6)  # type: ignore[index]
     steps = [float(np.abs(trial[0] - middle).max()) for trial in asked[::count]]
@@ -114,7 +114,7 @@ def test_the_best_of_each_group_is_found_from_its_starts(monkeypatch: pytest.Mon
     cost_of(monkeypatch, lambda q: (q[..., 0] - np.round(q[..., 0])) ** 2 + 1e-3 * q[..., 0])
     monkeypatch.setattr(solution_search, "_solutions", lambda *given: given[-2])
     starts = [
-        ((x,), np.array([x]), (0.1,), group, ANYWHERE)
+        ((x,), np.array([x]), (0.1,), group, ANYWHERE, None)
         for x, group in ((3.2, 0), (1.1, 0), (1.9, 1), (-0.8, 2))
     ]
     held: Any = best_rows(arm(), np.eye(4), starts, WANTED, True)
@@ -174,3 +174,17 @@ def test_beyond_a_fold_and_far_from_one_the_closed_form_is_asked(
         two, np.zeros((1, 4, 4)), np.array([[0.0, 1.0]]), np.full((1, 1), at)
     )
     assert asked == [1] and near.tolist() == [at < 1.0]
+
+
+@pytest.mark.parametrize("fold", [0, 1])
+def test_a_branch_goes_as_the_root_of_the_value_beside_a_fold(fold: int) -> None:
+    ends, folds = np.array([[0.0, 1.0]]), np.array([[fold == 0, fold == 1]])
+
+    def row(x: float) -> list[float]:
+        return [-float(np.sqrt(x if fold == 0 else 1.0 - x)), x]
+
+    reach = Reach(ends, np.array([[row(0.0), row(1.0)]]), folds)
+    two = arm(2)
+    for begin, trial in ((float(fold), 0.3), (0.5, 0.2), (0.5, 0.9), (0.4, 0.4)):
+        found = reach.ahead(two, np.array([begin]), np.array([row(begin)]), np.array([trial]))
+        assert found[0, 0] == pytest.approx(row(trial)[0], abs=1e-12)

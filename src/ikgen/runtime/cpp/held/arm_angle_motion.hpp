@@ -138,8 +138,8 @@ template <class Arm> struct BranchMotion<Arm, true> {
         for (int l = 0; l < Arm::kLanes; ++l) {
           double q[Arm::kDof];
           cut.row(l, q);
-          if (s.inside(l) && !open[l]) record.open(l, ends[k], q, l);
-          if (!s.inside(l) && open[l]) record.close(l, ends[k], q);
+          if (s.inside(l) && !open[l]) record.open(l, ends[k], q, l, false);
+          if (!s.inside(l) && open[l]) record.close(l, ends[k], q, false);
         }
       }
       for (int l = 0; l < Arm::kLanes; ++l) {
@@ -151,7 +151,7 @@ template <class Arm> struct BranchMotion<Arm, true> {
     for (int l = 0; l < Arm::kLanes; ++l) {
       double q[Arm::kDof];
       last.row(l, q);
-      if (open[l]) record.close(l, sweep.high, q);
+      if (open[l]) record.close(l, sweep.high, q, false);
     }
     return any;
   }

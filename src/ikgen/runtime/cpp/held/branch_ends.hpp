@@ -21,6 +21,7 @@ template <class Arm> struct BranchEnd {
 
   double inner, outer, q[Arm::kDof];
   int lane;
+  bool at_fold;
 
   BranchEnd() = default;
   // a: the sample inside, b: the next one, `links`: the row of b that each of a is; ahead and behind: the samples beyond
@@ -75,7 +76,6 @@ template <class Arm> struct BranchEnd {
   }
 
  private:
-  bool at_fold;
   bool stays;         // in its lane, however near others come
   bool goes = false;  // to the row `there` at the value `then`
   double there[Arm::kDof], then;
@@ -115,7 +115,10 @@ template <class Arm> struct BranchEnd {
     typename BranchArc<Arm>::Point end = arc.to;
     const double beyond = Arm::kRounded ? std::abs(outer - inner) : kEnough;
     if (at_fold && !(arc.fold(sense, end) && sense * (outer - end.held) > -beyond)) return false;
-    if (end.off > 0.0 && !arc.limit(arc.from, end, end)) return false;
+    if (end.off > 0.0) {
+      if (!arc.limit(arc.from, end, end)) return false;
+      at_fold = false;
+    }
     inner = end.held;
     outer = inner + sense * kEnough;
     std::copy_n(end.q, Arm::kDof, q);

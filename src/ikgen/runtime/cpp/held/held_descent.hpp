@@ -23,38 +23,58 @@ template <class Arm> struct HeldDescent {
   const HeldSweep<Arm>& sweep;
   const RowPreference<Arm>& preference;
 
-  Point point(double at, const double* q, int lane) const noexcept { return judged(placed(at, q, lane)); }
+  Point end_point(double at, const double* q, int lane, bool fold) const noexcept {
+    Point p = judged(placed(at, q, lane));
+    p.fold = fold;
+    return p;
+  }
 
   // Some minima, no more than kTogether. Ends, whose rows may have lost digits, first get them back.
   void refine(Minimum* const (&minima)[kTogether], int count) const noexcept {
     for (int k = 0; k < count; ++k) {
       const Minimum& m = *minima[k];
-      if (m.best.at == m.low || m.best.at == m.high) refine_end(minima[k]->best, m.best.at == m.low ? m.high : m.low);
+      if (m.best.at == m.low || m.best.at == m.high) refine_end(*minima[k]);
     }
-    if (preference.prefer == Arm::Prefer::Dexterous) return interpolate(minima, count);
+    if (preference.prefer == Arm::Prefer::Dexterous) {
+      for (int k = 0; k < count; ++k) look_beside(*minima[k]);
+      return interpolate(minima, count);
+    }
     for (int k = 0; k < count; ++k) descend(*minima[k]);
   }
 
  private:
   // Digits that come back may take it over the limit that it is on.
-  void refine_end(Point& end, double other) const noexcept {
+  void refine_end(Minimum& m) const noexcept {
     double q[Arm::kDof];
-    std::copy_n(end.q, Arm::kDof, q);
-    Sample::refine(sweep.pose, end.at, q);
-    Point again = point(end.at, q, end.lane);
-    if (!(again.cost < kInfinity)) again = inside(end, other);
-    if (again.cost < kInfinity) end = again;
+    std::copy_n(m.best.q, Arm::kDof, q);
+    Sample::refine(sweep.pose, m.best.at, q);
+    Point again = end_point(m.best.at, q, m.best.lane, m.best.fold);
+    if (!(again.cost < kInfinity)) again = inside(m);
+    if (again.cost < kInfinity) m.best = again;
   }
 
-  // The branch's row a little inside an end, towards `other`.
-  Point inside(const Point& end, double other) const noexcept {
-    return judged(beside(end.at + std::copysign(kInside, other - end.at), end));
+  // The branch's row a little inside the end that is the best.
+  Point inside(const Minimum& m) const noexcept {
+    const double other = m.best.at == m.low ? m.high : m.low;
+    return judged(beside(m.best.at + std::copysign(kInside, other - m.best.at), m));
+  }
+
+  // Off an end that is the best, to the best of a few values beside it: singular values may fall from there, and rise.
+  void look_beside(Minimum& m) const noexcept {
+    if (m.best.at != m.low && m.best.at != m.high) return;
+    const double from = m.best.at, way = (from == m.low ? m.high : m.low) - from;
+    Point least = m.best;
+    for (const double share : {0.25, 0.0625, 0.015625}) {
+      const Point p = judged(beside(from + share * way, m));
+      if (p.cost < least.cost) least = p;
+    }
+    m.best = least;
   }
 
   // Off a fold that is the best, if it is lower beside; the slope there.
   double leave_fold(Minimum& m, double g) const noexcept {
     if (std::abs(g) < kSteep || (m.best.at != m.low && m.best.at != m.high)) return g;
-    const Point inner = inside(m.best, m.best.at == m.low ? m.high : m.low);
+    const Point inner = inside(m);
     if (!(inner.cost < m.best.cost)) return g;
     m.best = inner;
     return slope(inner);
@@ -75,17 +95,19 @@ template <class Arm> struct HeldDescent {
     return p;
   }
 
-  // The branch's row at a value next to a point, as `placed`, if there is one. Where lanes tell branches apart it is that of
-  // the point's: near a fold two are as near to it.
-  Point beside(double at, const Point& nearby) const noexcept {
+  // The branch's row at a value in a minimum's reach, as `placed`, if there is one. Where lanes tell branches apart it is that
+  // of the best's; else the nearest to where the branch goes: near a fold two are as near to the best.
+  Point beside(double at, const Minimum& m) const noexcept {
+    const Point& nearby = m.best;
     const Sample s = sweep.at(at, true);
     int best = Sample::kMarginsTell && (s.inside(nearby.lane) || (s.real[nearby.lane] && s.rough[nearby.lane])) ? nearby.lane : -1;
-    double least = 0.5;
+    double least = 0.5, there[Arm::kDof];
+    if (!Sample::kMarginsTell) m.between(at, there);
     for (int l = 0; l < s.lanes && !Sample::kMarginsTell; ++l) {
       double gap = s.inside(l) ? 0.0 : kInfinity, q[Arm::kDof];
       s.row(l, q);
       for (int j = 0; j < Arm::kDof && gap < least; ++j)
-        if (!Arm::kHeld[j]) gap = std::max(gap, std::abs(SolutionRows<Arm>::change(j, nearby.q, q)));
+        if (!Arm::kHeld[j]) gap = std::max(gap, std::abs(SolutionRows<Arm>::change(j, there, q)));
       if (gap < least) {
         least = gap;
         best = l;
@@ -111,7 +133,7 @@ template <class Arm> struct HeldDescent {
       for (int k = 0; k < count; ++k)
         if (courses[k].next()) course[trying++] = k;
       if (trying == 0) return;
-      for (int i = 0; i < trying; ++i) trials[i] = beside(courses[course[i]].trial, minima[course[i]]->best);
+      for (int i = 0; i < trying; ++i) trials[i] = beside(courses[course[i]].trial, *minima[course[i]]);
       double values[kTogether];
       LeastSingularValue<Arm, kTogether>::of_rows(trying, [&](int i) noexcept { return trials[i].q; }, values);
       for (int i = 0; i < trying; ++i) {
@@ -145,7 +167,7 @@ template <class Arm> struct HeldDescent {
         step = known ? -g * (x - last) / (g - was) : -g * width * width / (2.0 * (rise - g * width));
       if (!(step * width > 0.0 && std::abs(step) < std::abs(width))) step = 0.5 * width;
       if (std::abs(g * step) <= kGain * level) return;
-      const Point trial = judged(beside(x + step, m.best));
+      const Point trial = judged(beside(x + step, m));
       const double there = trial.cost < kInfinity ? slope(trial) : 0.0;
       const bool turns = there * g < 0.0, better = trial.cost <= m.best.cost + kLevel * level;
       known = turns || better;

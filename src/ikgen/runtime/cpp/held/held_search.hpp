@@ -34,9 +34,9 @@ template <class Arm> struct HeldSearch {
       : preference(wanted), out(rows), descent{values, wanted} {}
   Run runs[Sample::kLanes];
 
-  void open(int lane, double at, const double* q, int) noexcept {
+  void open(int lane, double at, const double* q, int, bool fold) noexcept {
     runs[lane].points = runs[lane].count = 0;
-    add(runs[lane], descent.point(at, q, lane));
+    add(runs[lane], descent.end_point(at, q, lane, fold));
   }
   void pass(int lane, const Sample& s) noexcept {
     if (!(s.held > runs[lane].last[0].at)) return;
@@ -56,9 +56,9 @@ template <class Arm> struct HeldSearch {
     for (int l = 0; l < Sample::kLanes; ++l)
       if (next[l] >= 0) runs[next[l]] = old[l];
   }
-  void close(int lane, double at, const double* q) noexcept {
+  void close(int lane, double at, const double* q, bool fold) noexcept {
     Run& run = runs[lane];
-    if (at > run.last[0].at) add(run, descent.point(at, q, lane));
+    if (at > run.last[0].at) add(run, descent.end_point(at, q, lane, fold));
     const Point& end = run.last[0];
     if (run.points < 2 || end.cost <= run.last[1].cost) keep(run, run.points < 2 ? end : run.last[1], end, end);
     for (int k = 0; k < run.count; ++k) wait(run.minima[k]);
@@ -95,7 +95,7 @@ template <class Arm> struct HeldSearch {
         if (run.minima[k].best.cost > run.minima[at].best.cost) at = k;
       if (run.minima[at].best.cost < best.cost) return;
     }
-    run.minima[at] = {low.at, high.at, low.cost, high.cost, best};
+    run.minima[at] = Minimum(low, high, best);
   }
 
   // Whether a minimum cannot be among those that are returned: a parabola's is no deeper below its three points.

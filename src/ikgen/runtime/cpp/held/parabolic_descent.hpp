@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "arrays/constants.hpp"
+#include "rows/solution_rows.hpp"
 
 namespace ikgen_runtime {
 
@@ -12,12 +13,39 @@ namespace ikgen_runtime {
 template <class Arm> struct HeldPoint {
   double at, cost, q[Arm::kDof];
   int lane;
+  bool fold = false;  // whether two branches meet there
 };
 
-// Three values, of which that between, or an end, is the best.
+// Three values, of which that between, or an end, is the best; the rows at the outer ones.
 template <class Arm> struct HeldMinimum {
   double low, high, low_cost, high_cost;
   HeldPoint<Arm> best;
+  bool folds[2];
+  double rows[2][Arm::kDof];
+
+  HeldMinimum() = default;
+  HeldMinimum(const HeldPoint<Arm>& a, const HeldPoint<Arm>& b, const HeldPoint<Arm>& least) noexcept
+      : low(a.at), high(b.at), low_cost(a.cost), high_cost(b.cost), best(least) {
+    folds[0] = a.fold;
+    folds[1] = b.fold;
+    std::copy_n(a.q, Arm::kDof, rows[0]);
+    std::copy_n(b.q, Arm::kDof, rows[1]);
+  }
+
+  // The branch's row at a value between them, nearly: beside folds it goes as the root of the value.
+  void between(double at, double* q) const noexcept {
+    const int side = at < best.at ? 0 : 1;
+    const double from = way(best.at), share = (way(at) - from) / (way(side == 0 ? low : high) - from);
+    for (int j = 0; j < Arm::kDof; ++j) q[j] = best.q[j] + share * SolutionRows<Arm>::change(j, best.q, rows[side]);
+  }
+
+ private:
+  // What rows are even in, nearly.
+  double way(double at) const noexcept {
+    const double below = std::max(at - low, 0.0), above = std::max(high - at, 0.0);
+    if (folds[0] && folds[1]) return std::atan2(std::sqrt(below), std::sqrt(above));
+    return folds[0] ? std::sqrt(below) : folds[1] ? -std::sqrt(above) : at;
+  }
 };
 
 // Parabolic interpolation guarded by the golden section (Brent 1973), one value after the other: begin(minimum), then while

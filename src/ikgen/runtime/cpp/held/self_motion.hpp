@@ -5,8 +5,9 @@
 
 namespace ikgen_runtime {
 
-// Follows the branches of a sweep and tells `Record` of their runs inside the limits: open(lane, at, q, branch),
-// pass(lane, sample), move(next), close(lane, at, q); rows of ends may have lost digits. Arm: as for HeldSweep.
+// Follows the branches of a sweep and tells `Record` of their runs inside the limits: open(lane, at, q, branch, fold),
+// pass(lane, sample), move(next), close(lane, at, q, fold), `fold` where a branch meets another; rows of ends may have lost
+// digits. Arm: as for HeldSweep.
 template <class Arm, class Record> struct BranchFollower {
   using Sample = HeldSample<Arm>;
   using End = BranchEnd<Arm>;
@@ -25,7 +26,7 @@ template <class Arm, class Record> struct BranchFollower {
       if (!s.real[l]) continue;
       any = true;
       branch[l] = branches++;
-      if (s.inside(l)) open(l, s, l, s.held, nullptr);
+      if (s.inside(l)) open(l, s, s.held, nullptr, false);
     }
   }
 
@@ -39,7 +40,7 @@ template <class Arm, class Record> struct BranchFollower {
       const bool rough = late[l].waits && ++slivers > kSlivers;
       if (late[l].waits) begin(l, a, rough);
       if (!rough) end.find(sweep, last);
-      record.close(l, end.inner, end.q);
+      record.close(l, end.inner, end.q, end.at_fold);
     }
     record.move(next);
     move(a, links, b);
@@ -55,7 +56,7 @@ template <class Arm, class Record> struct BranchFollower {
           static_cast<End&>(late[k]) = end;
         } else {
           end.find(sweep, last);
-          open(k, b, k, end.inner, end.q);
+          open(k, b, end.inner, end.q, end.at_fold);
         }
       } else if (b.inside(k)) {
         if (late[k].waits && !narrow(late[k].outer, b.held)) {
@@ -81,7 +82,7 @@ template <class Arm, class Record> struct BranchFollower {
     LastEnd<Arm> none;
     if (!rough) late[lane].find(sweep, none);
     late[lane].waits = false;
-    open(lane, s, lane, late[lane].inner, late[lane].q);
+    open(lane, s, late[lane].inner, late[lane].q, late[lane].at_fold);
   }
 
   bool narrow(double low, double high) const noexcept {
@@ -115,14 +116,14 @@ template <class Arm, class Record> struct BranchFollower {
         double q[Arm::kDof];
         s.row(k, q);
         if (late[k].waits) begin(k, s, false);
-        record.close(k, s.held, q);
+        record.close(k, s.held, q, false);
       }
   }
 
-  void open(int lane, const Sample& s, int row, double at, const double* q) noexcept {
+  void open(int lane, const Sample& s, double at, const double* q, bool fold) noexcept {
     double own[Arm::kDof];
-    s.row(row, own);
-    record.open(lane, at, q ? q : own, Arm::kGuarded ? row % Arm::kLanes : branch[lane]);
+    s.row(lane, own);
+    record.open(lane, at, q ? q : own, Arm::kGuarded ? lane % Arm::kLanes : branch[lane], fold);
     record.pass(lane, s);
   }
 };
@@ -145,7 +146,7 @@ template <class Arm> struct SelfMotionFinder {
   double start[Sample::kLanes];
   int branch[Sample::kLanes];
 
-  void open(int lane, double at, const double*, int number) noexcept {
+  void open(int lane, double at, const double*, int number, bool) noexcept {
     start[lane] = at;
     branch[lane] = number;
   }
@@ -161,7 +162,7 @@ template <class Arm> struct SelfMotionFinder {
         branch[next[l]] = numbers[l];
       }
   }
-  void close(int lane, double at, const double*) noexcept {
+  void close(int lane, double at, const double*, bool) noexcept {
     if (out.count == Arm::kMaxIntervals) {
       out.complete = false;
       return;

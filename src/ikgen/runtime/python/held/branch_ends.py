@@ -159,9 +159,11 @@ def follow_ends(joint: HeldJoint, T: Array, ends: list[BranchEnd], limits: bool)
     leaves = end.off > 0.0
     if leaves.any():
         last, found = arcs.limits(arcs.start, end)
+        at_fold &= ~leaves
         end, good = last.where(leaves, end), good & (~leaves | found)
     for k in np.flatnonzero(good).tolist():
         ends[k].inner, ends[k].q = float(end.held[k]), end.q[k]
+        ends[k].at_fold = bool(at_fold[k])
         ends[k].outer = ends[k].inner + float(sense[k]) * _ENOUGH
 
 

@@ -48,7 +48,7 @@ def search_grid(
         point, row = divmod(flat, costs.shape[1])
         if costs[point, row] < inf:
             held = tuple(values[point].tolist())
-            starts.append((held, found[point, row], steps, len(starts), (-inf, inf)))
+            starts.append((held, found[point, row], steps, len(starts), (-inf, inf), None))
     if not starts:
         return no_held_values(len(arm.lower), arm.free_joints, bool(real.any()))
     return best_rows(arm, T, starts, preference, limits)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from ikgen.runtime.python.held.branch_tracks import Tracks, tracked
 from ikgen.runtime.python.held.held_joint import HeldJoint, held_range, pose_lines
 from ikgen.runtime.python.held.self_motion import Piece, pieces_of
-from ikgen.runtime.python.held.solution_search import Start, best_rows
+from ikgen.runtime.python.held.solution_search import Reach, Start, best_rows
 from ikgen.runtime.python.rows.row_preference import Preference, preference_costs, preference_of
 from ikgen.runtime.python.rows.solutions import Solutions, no_held_values
 from ikgen.runtime.python.solving.pose_solving import solve_pose
@@ -44,18 +44,20 @@ def _starts(
 ) -> list[Start]:
     """The ends of an interval, and the samples in it that are better than those beside them."""
     held, q = tracks.rows.held, tracks.rows.q
-    points = [(float(held[at]), q[at, row]) for at, row in piece.samples]
+    points = [(float(held[at]), q[at, row], False) for at, row in piece.samples]
     interval = piece.interval()
     for value, end in ((interval.low, piece.low), (interval.high, piece.high)):
         if not isinstance(end, float):
-            points.append((value, end.q))
+            points.append((value, end.q, end.at_fold))
     points.sort(key=lambda point: point[0])
-    rows = np.array([row for _, row in points])
+    values, rows, folds = (np.array(x) for x in zip(*points))
     cost = preference_costs(joint.arm, preference, rows[:, None], limits)[1][:, 0]
     out: list[Start] = []
-    for k, (value, row) in enumerate(points):
+    for k, (value, row, _) in enumerate(points):
         beside = [i for i in (k - 1, k + 1) if 0 <= i < len(points)]
         if all(cost[k] <= cost[i] for i in beside):
             step = max((abs(points[i][0] - value) for i in beside), default=1e-3)
-            out.append(((value,), row, (0.5 * step,), group, piece.reach()))
+            ends = [max(k - 1, 0), min(k + 1, len(points) - 1)]
+            reach = Reach(values[ends], rows[ends], folds[ends])
+            out.append(((value,), row, (0.5 * step,), group, piece.reach(), reach))
     return out

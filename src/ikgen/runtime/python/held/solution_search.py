@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from functools import partial
 from math import inf
+from typing import NamedTuple
 
 import numpy as np
 
 from ikgen.runtime.python.arm.held_parameters import aims, held_of
 from ikgen.runtime.python.arm.solved_arm import Arm
+from ikgen.runtime.python.arrays.array_tuples import some_of
 from ikgen.runtime.python.arrays.array_types import Array, Flags
 from ikgen.runtime.python.newton.arm_newton import refined
 from ikgen.runtime.python.newton.joint_refinement import refine_few
@@ -20,13 +22,41 @@ from ikgen.runtime.python.singular.fold_pair import approach
 from ikgen.runtime.python.solving.batch_solving import rows_batch
 from ikgen.runtime.python.solving.pose_solving import solve_pose
 
-__all__ = ["Start", "best_rows"]
+__all__ = ["Reach", "Start", "best_rows"]
 
-Start = tuple[tuple[float, ...], Array, tuple[float, ...], int, tuple[float, float]]
-"""Values of the held joints, a row there, the first steps of each value, the number of its group, and
-between which values its branch goes on."""
 
-_HALVINGS = 30
+class Reach(NamedTuple):
+    """Below and above a row, of each: a value (..., 2) of the one held joint between which a minimum is
+    looked for, the branch's row there (..., 2, dof), and whether it meets another there (..., 2)."""
+
+    ends: Array
+    rows: Array
+    folds: Array
+
+    def ahead(self, arm: Arm, held: Array, rows: Array, trial: Array) -> Array:
+        """The branch's rows at values `trial` (n,), nearly, from `rows` (n, dof) at values `held` (n,):
+        beside folds they go as the root of the value."""
+        which = np.arange(len(held)), (trial > held).astype(np.intp)
+        begin, end = self._way(held), self._way(self.ends[which])
+        with np.errstate(all="ignore"):
+            share = np.where(end != begin, (self._way(trial) - begin) / (end - begin), 0.0)
+        return np.asarray(rows + share[:, None] * differences(arm, rows, self.rows[which]))
+
+    def _way(self, at: Array) -> Array:
+        """What rows are even in, nearly, at values (n,)."""
+        below, above = (
+            np.maximum(x, 0.0) ** 0.5 for x in (at - self.ends[:, 0], self.ends[:, 1] - at)
+        )
+        first, last = self.folds.T
+        one = np.where(first, below, np.where(last, -above, at))
+        return np.where(first & last, np.arctan2(below, above), one)
+
+
+Start = tuple[tuple[float, ...], Array, tuple[float, ...], int, tuple[float, float], Reach | None]
+"""Values of the held joints, a row there, the first steps of each value, the number of its group, between
+which values its branch goes on, and how far it is followed where one joint is held."""
+
+_HALVINGS = 40
 _LEAST_STEP = 1e-10  # rad or m
 _NEAR = 0.5  # rad or m that a row may be from the one that a step began at
 _BESIDE = 0.05  # the same of a row beside a fold
@@ -41,6 +71,12 @@ def best_rows(
     rows = np.array([s[1] for s in starts])
     step = np.array([s[2] for s in starts])
     ends = np.array([s[4] for s in starts])
+    reach = Reach(*map(np.array, zip(*(s[5] for s in starts)))) if starts[0][5] else None
+    if reach is not None:
+        ends = np.stack(
+            [np.maximum(ends[:, 0], reach.ends[:, 0]), np.minimum(ends[:, 1], reach.ends[:, 1])],
+            axis=1,
+        )
     _, cost, _ = preference_costs(arm, preference, rows[:, None], limits)
     best = cost[:, 0]
     for _ in range(_HALVINGS):
@@ -53,7 +89,8 @@ def best_rows(
             trials = np.stack([now[0], now[0]])
             trials[:, :, k] += np.outer((1.0, -1.0), step[going, k])
             trials = np.clip(trials, ends[going, :1], ends[going, 1:])
-            moved |= _improved(arm, T, preference, limits, now, trials)
+            part = None if reach is None else some_of(reach, going)
+            moved |= _improved(arm, T, preference, limits, now, trials, part)
         held[going], rows[going], best[going] = now
         step[going[~moved]] *= 0.5 if held.shape[1] > 1 else 0.4
     groups = np.array([s[3] for s in starts])
@@ -71,8 +108,10 @@ def _improved(
     limits: bool,
     now: tuple[Array, Array, Array],
     trials: Array,
+    reach: Reach | None = None,
 ) -> Flags:
-    """Takes, in place, the first of each row's trials (s, n, held joints) that is better; which were."""
+    """Takes, in place, the first of each row's trials (s, n, held joints) that is better; which were.
+    `reach`: of each row."""
     held, rows, best = now
     if limits and arm.free:
         low, high = np.array(arm.lower)[list(arm.free)], np.array(arm.upper)[list(arm.free)]
@@ -81,7 +120,11 @@ def _improved(
     row, near = np.tile(rows, (count, 1)), np.zeros(len(trial), dtype=bool)
     goes = (trials != held).any(axis=2).reshape(-1)  # not so at the end of a branch, or a limit
     poses = np.broadcast_to(T, (int(goes.sum()), 4, 4))
-    row[goes], near[goes] = _next_rows(arm, poses, row[goes], trial[goes])
+    begin = row[goes]
+    if reach is not None:
+        which = np.tile(np.arange(len(best)), count)[goes]
+        begin = some_of(reach, which).ahead(arm, held[which, 0], begin, trial[goes, 0])
+    row[goes], near[goes] = _next_rows(arm, poses, begin, trial[goes])
     _, cost, inside = preference_costs(arm, preference, row[:, None], limits)
     good = (near & inside[:, 0]).reshape(count, -1) & (cost.reshape(count, -1) < best)
     better = good.any(axis=0)
