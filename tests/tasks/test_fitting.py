@@ -106,18 +106,6 @@ def test_yaw_and_three_parallel_joints_fit_the_elevation() -> None:
     assert not fits(dh, find_task("position-yaw"))
 
 
-def test_where_the_z_axis_does_not_do_x_comes_before_y(tmp_path: Path) -> None:
-    """A gripper whose x axis points forward and whose z axis is that of the last joint."""
-    table = tmp_path / "reach.toml"
-    rows = [(0.0, 0.0, 0.1), ("-pi/2", 0.02, 0.05), (0.0, 0.15, 0.0), (0.0, 0.14, 0.0)]
-    joint = '[[joints]]\ntype = "revolute"\nalpha = {}\na = {}\nd = {}\n'
-    texts = (joint.format(f'"{alpha}"' if alpha else 0, a, d) for alpha, a, d in rows)
-    tool = "[tool]\nxyz = [0.06, 0, 0]\n"
-    table.write_text('name = "reach"\nconvention = "modified"\n' + tool + "".join(texts))
-    names = [task.name for task in fitting_tasks(read(Request(table)).dh)]
-    assert names == ["position-pitch:x", "position-pitch:y", "pose"]
-
-
 def test_a_roll_about_the_tool_axis_asks_for_another_axis(tmp_path: Path) -> None:
     dh = roll(tmp_path)
     assert freedoms_moved(dh, find_task("position-direction")) == 4

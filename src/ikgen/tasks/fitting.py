@@ -35,7 +35,7 @@ _BARELY = 0.02
 freedoms."""
 
 _AS_GOOD = 0.5
-"""The tool's z axis is taken, else x before y, unless another is conditioned better by this factor."""
+"""The tool's z axis is taken unless it is conditioned worse than another by this factor."""
 
 
 def fitting_tasks(dh: DHChain, axis: str | None = None) -> tuple[Task, ...]:
@@ -62,9 +62,8 @@ def _along(dh: DHChain, task: Task, axes: Sequence[str]) -> list[Task]:
     rated = {way: _condition(dh, way) for way in ways if fits(dh, way)}
     best = max(rated.values(), default=0.0)
 
-    def key(way: Task) -> tuple[bool, bool, float]:
-        worse = rated[way] < _AS_GOOD * best
-        return worse or way.name != task.name, worse, -rated[way] if worse else ways.index(way)
+    def key(way: Task) -> tuple[bool, float]:
+        return way.name != task.name or rated[way] < _AS_GOOD * best, -rated[way]
 
     return sorted(rated, key=key)
 
