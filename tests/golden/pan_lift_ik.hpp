@@ -1881,12 +1881,59 @@ template <class Arm> struct CarefulRows {
   }
 
   static void take_unreal(const Aim& aim, const std::array<Rows, 1>& only, const Options& options, Starts& starts,
-                       Places& out) noexcept {
+                          Places& out) noexcept {
     const auto unreal = [&](int lane) noexcept { return (only[0].bits(lane) & (kReal | kSingular)) == kSingular; };
     if (!std::any_of(std::begin(Arm::kLaneOfRow), std::end(Arm::kLaneOfRow), unreal)) return;
     const LaneEnds<Arm, 1> ends(only, aim, options, kSingular);
     for (const int lane : Arm::kLaneOfRow)
       if (unreal(lane)) starts.take({only[0], lane, true}, ends.at(0, lane), false, aim, out);
+  }
+};
+
+// --- joint bounds --------------------------------------------------------------------------------
+inline double shortest(double gap) noexcept {
+  return gap > kPi ? gap - kTurn : gap < -kPi ? gap + kTurn : gap;
+}
+template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> shortest(const LanesOf<N, H>& gap) noexcept {
+  return gap + select(gap > kPi, -kTurn, select(-kPi > gap, kTurn, 0.0));
+}
+
+template <class Arm> struct JointBounds {
+  int count = 0;
+  int joint[Arm::kDof];
+  double middle[Arm::kDof], half[Arm::kDof];
+
+  explicit JointBounds(bool limits) noexcept {
+    for (int j = 0; j < Arm::kDof && limits; ++j) {
+      double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j];
+      const bool bounded = Arm::kRevolute[j] ? high - low < kTurn : low > -kInfinity || high < kInfinity;
+      if (Arm::kHeld[j] || !bounded) continue;
+      low = std::max(low, -1e6);
+      high = std::min(high, 1e6);
+      joint[count] = j;
+      middle[count] = 0.5 * (low + high);
+      if (Arm::kRevolute[j]) middle[count] -= kTurn * std::nearbyint(middle[count] / kTurn);
+      half[count++] = 0.5 * (high - low);
+    }
+  }
+
+  template <class X> [[gnu::always_inline]] X offset(int i, const X& q) const noexcept {
+    return Arm::kRevolute[joint[i]] ? shortest(q - middle[i]) : q - middle[i];
+  }
+
+  double outside(const double* q, int& bound) const noexcept {
+    double most = -kInfinity;
+    for (int i = 0; i < count; ++i) {
+      const double gap = q[joint[i]] - middle[i];
+      const double off = std::abs(Arm::kRevolute[joint[i]] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap) - half[i];
+      if (off > most) bound = i;
+      most = std::max(most, off);
+    }
+    return most;
+  }
+  double outside(const double* q) const noexcept {
+    int bound;
+    return outside(q, bound);
   }
 };
 
@@ -1921,19 +1968,7 @@ template <class Arm> struct LimitCurve {
   static constexpr double kWay = 1.2;  // of Policy::kTryStep: by so much joints move from one sample to the next at most
   static constexpr int kHalvings = 40;
 
-  static double outside(const double* q) noexcept {
-    double most = 0.0;
-    for (int j = 0; j < Arm::kDof; ++j) {
-      const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j];
-      double off = std::max(low - q[j], q[j] - high);
-      if (Arm::kRevolute[j] && !Arm::kHeld[j]) {
-        const double gap = q[j] - 0.5 * (low + high);
-        off = high - low < kTurn ? std::abs(gap - kTurn * std::nearbyint(gap / kTurn)) - 0.5 * (high - low) : 0.0;
-      }
-      most = std::max(most, off);
-    }
-    return most;
-  }
+  static double outside(const double* q) noexcept { return std::max(JointBounds<Arm>(true).outside(q), 0.0); }
 
   struct Bracket {
     const typename Curve::Sample* middle;
@@ -2248,7 +2283,7 @@ template <class Arm> struct CarefulSolve {
   [[gnu::always_inline]] static void solve(const Eigen::Isometry3d& pose, const Options& options,
                                            Solutions& out) noexcept {
     const Aim aim(pose, options.free);
-    bool real = false, free = true, continuum = false;
+    bool real = false, free = true;
     Places found, loose;  // loose: with rows of a continuum, without limits
     for (int turn = 0; turn < Policy::kTries && free; ++turn) {
       double start[Arm::kDof];
@@ -2259,10 +2294,7 @@ template <class Arm> struct CarefulSolve {
         Careful::add_from(aim, start, found);
       }
       real = real || found.count > 0;
-      if (Careful::any_singular(found)) {
-        continuum = true;
-        loose = found;
-      }
+      if (Careful::any_singular(found)) loose = found;
       LimitRows<Arm>::place_all(aim, options, found);
       if (found.count == 0 && options.seed && Refinement::refine(start, aim)) {
         RightRows<Arm>::add(aim, found, start, true);
@@ -2272,8 +2304,8 @@ template <class Arm> struct CarefulSolve {
       free = left.free && !(left.led && found.count > 0);
     }
     if (free && !Arm::kRounded && !Arm::kRefined) real = add_hidden(aim, options, found) || real;
-    if ((free || continuum) && found.count == 0) real = add_nearest(aim, options, found) || real;
-    if (continuum && found.count == 0) add_along(aim, options, loose, found);
+    if ((free || loose.count > 0) && found.count == 0) real = add_nearest(aim, options, found) || real;
+    if (found.count == 0) add_along(aim, options, loose, found);
     if (options.seed) Row::sort_by_distance(found, options.seed->data());
     take_in_order(found, out);
     out.status = out.count > 0 ? Arm::Status::Ok : real ? Arm::Status::Limits : Arm::Status::Unreachable;

@@ -88,24 +88,12 @@ template <class Arm> struct BranchArc {
   }
 
   // How far a row is outside the limits at most.
-  double outside(const double* q) const noexcept {
-    int bound;
-    return outside(q, bound);
-  }
-  double outside(const double* q, int& bound) const noexcept {
-    double most = -kInfinity;
-    for (int i = 0; i < sweep.bounds.count; ++i) {
-      const double off = std::abs(sweep.bounds.offset(i, q[sweep.bounds.joint[i]])) - sweep.bounds.half[i];
-      if (off > most) bound = i;
-      most = std::max(most, off);
-    }
-    return most - Arm::Policy::kLimitTolerance;
-  }
+  double outside(const double* q) const noexcept { return sweep.bounds.outside(q) - Arm::Policy::kLimitTolerance; }
 
   // Where the joint that is farthest outside at `b` is `room` inside its limit; false where that is not near.
   bool stop(const Point& a, const Point& b, double room, Point& out) const noexcept {
     int bound = 0, place = 0;
-    outside(b.q, bound);
+    sweep.bounds.outside(b.q, bound);
     const int joint = sweep.bounds.joint[bound];
     while (kJoints[place] != joint) ++place;
     const double half = sweep.bounds.half[bound] + Arm::Policy::kLimitTolerance - room, at = sweep.bounds.offset(bound, b.q[joint]);

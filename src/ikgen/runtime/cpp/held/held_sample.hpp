@@ -8,45 +8,12 @@
 #include "solving/careful_rows.hpp"
 #include "held/displacement.hpp"
 #include "singular/fold_rows.hpp"
+#include "arm/joint_bounds.hpp"
 #include "arm/joint_range.hpp"
 #include "newton/newton_refinement.hpp"
 #include "rows/solution_rows.hpp"
 
 namespace ikgen_runtime {
-
-// The difference of two angles within a turn of each other, on the shortest way.
-inline double shortest(double gap) noexcept {
-  return gap > kPi ? gap - kTurn : gap < -kPi ? gap + kTurn : gap;
-}
-template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> shortest(const LanesOf<N, H>& gap) noexcept {
-  return gap + select(gap > kPi, -kTurn, select(-kPi > gap, kTurn, 0.0));
-}
-
-// Limits of the joints that move: index, middle and half of the range. Arm: as for SolutionRows.
-template <class Arm> struct JointBounds {
-  int count = 0;
-  int joint[Arm::kDof];
-  double middle[Arm::kDof], half[Arm::kDof];
-
-  explicit JointBounds(bool limits) noexcept {
-    for (int j = 0; j < Arm::kDof && limits; ++j) {
-      double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j];
-      const bool bounded = Arm::kRevolute[j] ? high - low < kTurn : low > -kInfinity || high < kInfinity;
-      if (Arm::kHeld[j] || !bounded) continue;
-      low = std::max(low, -1e6);
-      high = std::min(high, 1e6);
-      joint[count] = j;
-      middle[count] = 0.5 * (low + high);
-      if (Arm::kRevolute[j]) middle[count] -= kTurn * std::nearbyint(middle[count] / kTurn);
-      half[count++] = 0.5 * (high - low);
-    }
-  }
-
-  // A joint's value from the middle of its range.
-  template <class X> [[gnu::always_inline]] X offset(int i, const X& q) const noexcept {
-    return Arm::kRevolute[joint[i]] ? shortest(q - middle[i]) : q - middle[i];
-  }
-};
 
 // Arm: as for CarefulRows; kFolds, how many margins its closed form has.
 template <class Arm> struct HeldSample {

@@ -1,6 +1,7 @@
 // Where a continuum that the arm has goes on inside the limits.
 #pragma once
 
+#include "arm/joint_bounds.hpp"
 #include "newton/newton_refinement.hpp"
 #include "rows/right_rows.hpp"
 #include "singular/near_continuum.hpp"
@@ -39,20 +40,8 @@ template <class Arm> struct LimitCurve {
   static constexpr double kWay = 1.2;  // of Policy::kTryStep: by so much joints move from one sample to the next at most
   static constexpr int kHalvings = 40;
 
-  // The most by which a joint is outside its limits, whole turns aside.
-  static double outside(const double* q) noexcept {
-    double most = 0.0;
-    for (int j = 0; j < Arm::kDof; ++j) {
-      const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j];
-      double off = std::max(low - q[j], q[j] - high);
-      if (Arm::kRevolute[j] && !Arm::kHeld[j]) {
-        const double gap = q[j] - 0.5 * (low + high);
-        off = high - low < kTurn ? std::abs(gap - kTurn * std::nearbyint(gap / kTurn)) - 0.5 * (high - low) : 0.0;
-      }
-      most = std::max(most, off);
-    }
-    return most;
-  }
+  // The most by which a joint is outside its limits, whole turns aside; 0 inside.
+  static double outside(const double* q) noexcept { return std::max(JointBounds<Arm>(true).outside(q), 0.0); }
 
   // A sample, and whether there is one before it and one after it.
   struct Bracket {

@@ -110,7 +110,7 @@ template <class Arm> struct CarefulRows {
   // Lanes that are not real where a divisor nearly vanishes: less than the file, or round-off, is off may be missing, or
   // the value of a joint that hardly matters may lie beyond what other joints reach.
   static void take_unreal(const Aim& aim, const std::array<Rows, 1>& only, const Options& options, Starts& starts,
-                       Places& out) noexcept {
+                          Places& out) noexcept {
     const auto unreal = [&](int lane) noexcept { return (only[0].bits(lane) & (kReal | kSingular)) == kSingular; };
     if (!std::any_of(std::begin(Arm::kLaneOfRow), std::end(Arm::kLaneOfRow), unreal)) return;
     const LaneEnds<Arm, 1> ends(only, aim, options, kSingular);

@@ -25,7 +25,7 @@ template <class Arm> struct CarefulSolve {
   [[gnu::always_inline]] static void solve(const Eigen::Isometry3d& pose, const Options& options,
                                            Solutions& out) noexcept {
     const Aim aim(pose, options.free);
-    bool real = false, free = true, continuum = false;
+    bool real = false, free = true;
     Places found, loose;  // loose: with rows of a continuum, without limits
     for (int turn = 0; turn < Policy::kTries && free; ++turn) {
       double start[Arm::kDof];
@@ -36,10 +36,7 @@ template <class Arm> struct CarefulSolve {
         Careful::add_from(aim, start, found);
       }
       real = real || found.count > 0;
-      if (Careful::any_singular(found)) {
-        continuum = true;
-        loose = found;
-      }
+      if (Careful::any_singular(found)) loose = found;
       LimitRows<Arm>::place_all(aim, options, found);
       if (found.count == 0 && options.seed && Refinement::refine(start, aim)) {
         RightRows<Arm>::add(aim, found, start, true);
@@ -49,8 +46,8 @@ template <class Arm> struct CarefulSolve {
       free = left.free && !(left.led && found.count > 0);
     }
     if (free && !Arm::kRounded && !Arm::kRefined) real = add_hidden(aim, options, found) || real;
-    if ((free || continuum) && found.count == 0) real = add_nearest(aim, options, found) || real;
-    if (continuum && found.count == 0) add_along(aim, options, loose, found);
+    if ((free || loose.count > 0) && found.count == 0) real = add_nearest(aim, options, found) || real;
+    if (found.count == 0) add_along(aim, options, loose, found);
     if (options.seed) Row::sort_by_distance(found, options.seed->data());
     take_in_order(found, out);
     out.status = out.count > 0 ? Arm::Status::Ok : real ? Arm::Status::Limits : Arm::Status::Unreachable;
