@@ -312,6 +312,10 @@ def test_a_pair_that_is_a_rotation_divides_by_a_length_squared(sign: int) -> Non
     assert gap(tuple(v.probe for v in found.values), (c, s)).max() < 1e-11
     natural = form.divisor(form.probe, scales(form.coefficients))
     assert natural.shape == (2, PROBES)
+    exact = lowered(form, graph, 1.0).divisor
+    assert exact.magnitude is not None
+    clear = exact.above(graph, 1e-6)  # a thousandth of the length
+    assert clear is not None and clear is exact.clear
     other = LinearPair(e, f, form.c1, given(graph, second), given(graph, a), form.c2)
     assert other.is_determinant and lowered(other, graph, 1.0).divisor.power == 1
 

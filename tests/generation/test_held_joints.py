@@ -53,6 +53,23 @@ def test_limits_decide_among_choices_of_one_class(tmp_path: Path) -> None:
     assert found[0] != ("shoulder_roll",) and found[-1] == ("shoulder_roll",)
 
 
+@pytest.mark.parametrize(("roll", "taken"), [(2.8, "shoulder_roll"), (2.5, "wrist_roll")])
+def test_conditioning_decides_where_ranges_are_much_the_same(
+    tmp_path: Path, roll: float, taken: str
+) -> None:
+    """Held, the wrist's roll leaves an arm conditioned half as well as the shoulder's does."""
+    widths = {"shoulder_roll": roll, "wrist_roll": 3.05}
+    joints = []
+    for joint in SHOULDER_ELBOW_WRIST:
+        width = widths.get(joint[0], 2.0)
+        joints.append((*joint[:4], (-width, width)))
+    reading = read(arm(tmp_path, *joints))
+    first, *others = held_choices(reading, POSE)
+    assert first.held == (taken,)
+    wider = [one for one in others if one.span > first.span]
+    assert [one.behind(first) for one in wider] == ["worse conditioned"] * (taken != "wrist_roll")
+
+
 def test_every_choice_leaves_the_task_to_do(tmp_path: Path) -> None:
     reading = read(arm(tmp_path, TORSO, *SHOULDER_ELBOW_WRIST))
     choices = held_choices(reading, POSE)

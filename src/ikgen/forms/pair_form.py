@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -19,6 +19,9 @@ from ikgen.formulas.notation import quotient, show
 __all__ = ["LinearPair"]
 
 _ALIKE = 1e-13
+
+_CLEAR = 1e-6
+"""A rotation times this length, squared (of its natural size), gives a direction to 13 digits."""
 
 
 def _alike(one: Array, other: Array, size: float) -> bool:
@@ -93,6 +96,8 @@ class LinearPair(Form):
         divisor = divisor_of(g, det, tolerances, power)
         if det.is_fixed:
             return LoweredForm((g.div(x, det), g.div(y, det)), divisor, None, 1)
+        if sign and power == 1:
+            divisor = replace(divisor, clear=divisor.above(g, _CLEAR))
         inverse = g.div(g.one, divisor.value)
         return LoweredForm((g.mul(x, inverse), g.mul(y, inverse)), divisor, None, 1)
 

@@ -1,7 +1,9 @@
 """Which joints to hold of an arm with more of them than its task fixes, ranked before any derivation.
 
 The ranking is by the closed form that the geometry lets expect (`ikgen.kinematics.form_class`), then by
-the range of the held joints inside their limits, then by how well the joints that move do the task.
+the range of the held joints inside their limits, then by how well the joints that move do the task, which
+decides where ranges are much the same: of an arm with two spherical joints the last joint may turn a little
+farther than the others, and held it leaves an arm that is near a singularity several times as often.
 """
 
 from __future__ import annotations
@@ -28,6 +30,9 @@ the file's chain follow (offsets of 0.2 mm in a wrist that is meant to be spheri
 DIVIDING = 1e-4
 """Lengths over the arm's that may count as zero where a quartic takes them in: its roots lie in pairs as
 close as that, and what follows divides by it, so that rows are off by round-off over its square."""
+
+_WIDE = 0.9
+"""Of the widest range of the held joints: from there on it is much the same."""
 
 _POOR = 0.2
 """Choices of a class that are conditioned worse than its best by this factor come last in it."""
@@ -73,9 +78,10 @@ class HeldChoice:
         if (self.form, self.near) != (taken.form, taken.near):
             later = (self.form, self.near) > (taken.form, taken.near)
             return self.class_words if later else ""
-        if self.span < taken.span:
+        narrower, worse = self.span < taken.span, self.condition < taken.condition
+        if narrower and not (worse and self.span >= _WIDE * taken.span):
             return "a narrower range"
-        return "worse conditioned" if self.condition < taken.condition else ""
+        return "worse conditioned" if worse else ""
 
 
 def nearby(reading: Reading, short: float = NEARBY) -> DHChain | None:
@@ -121,11 +127,19 @@ def _sorted(found: Sequence[HeldChoice]) -> list[HeldChoice]:
     for choice in found:
         best[choice.form] = max(choice.condition, best.get(choice.form, 0.0))
 
+    def group(choice: HeldChoice) -> tuple[int, bool, bool]:
+        return choice.form, choice.near, choice.condition < _POOR * best[choice.form]
+
+    widest: dict[tuple[int, bool, bool], float] = {}
+    for choice in found:
+        widest[group(choice)] = max(choice.span, widest.get(group(choice), 0.0))
+
     def key(choice: HeldChoice) -> tuple[object, ...]:
-        poor = choice.condition < _POOR * best[choice.form]
+        own = group(choice)
+        within = min(choice.span, _WIDE * widest[own])
         names = [joint.name for joint in choice.dh.joints]
         from_tip = [-names.index(name) for name in reversed(choice.held)]
-        return choice.form, choice.near, poor, -choice.span, -choice.condition, from_tip
+        return *own, -within, -choice.condition, -choice.span, from_tip
 
     return sorted(found, key=key)
 
