@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-__all__ = ["LIFT_SCARA", "OFFSET_ELBOW", "SHOULDER_ELBOW_WRIST", "TORSO", "serial_urdf"]
+__all__ = [
+    "LIFT_SCARA",
+    "NON_SPHERICAL_WRIST",
+    "OFFSET_ELBOW",
+    "SHOULDER_ELBOW_WRIST",
+    "TORSO",
+    "serial_urdf",
+]
 
 Joint = tuple[str, str, str, str, tuple[float, float]]
 """Name, type, axis, origin and limits."""
@@ -40,6 +47,17 @@ LIFT_SCARA: tuple[Joint, ...] = (
     ("spin", "revolute", "0 0 1", "0 0 0", (-3.0, 3.0)),
 )
 """Two slides on parallel axes, and a task that reads a heading: two entries that are one freedom."""
+
+NON_SPHERICAL_WRIST: tuple[Joint, ...] = (
+    ("base_yaw", "revolute", "0 0 1", "0 0 0.28", (-3.1, 3.1)),
+    ("shoulder_pitch", "revolute", "0 1 0", "0 0.002 0", (-3.1, 3.1)),
+    ("upper_roll", "revolute", "0 0 1", "0 0 0.41", (-3.1, 3.1)),
+    ("elbow_pitch", "revolute", "0 1 0", "0 0.011 0", (-3.1, 3.1)),
+    ("lower_roll", "revolute", "0 0 1", "0 0 0.25", (-3.1, 3.1)),
+    ("wrist", "revolute", "0 0.8660254037844387 0.5", "0 0.0741 0.0428", (-3.1, 3.1)),
+    ("hand", "revolute", "0 0.8660254037844387 -0.5", "0 0 0", (-3.1, 3.1)),
+)
+"""Neighbouring axes meet, the last three not in one point: curved wrists of 60 degrees."""
 
 TORSO: Joint = ("torso", "prismatic", "0 0 1", "0 0 0.5", (0.0, 0.4))
 

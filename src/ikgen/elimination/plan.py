@@ -64,7 +64,9 @@ class EliminationPlan:
     the chain where a joint turns several; frames is then (n + 1, 4, 4), and the third number of an
     elimination its degree in that joint's angle; near `crowded` angles (rad) that is looked at closely.
     tool: the tool's axis (0: x) that the last joint turns about, where the task leaves that turn open; it
-    is none of the arm's joints.
+    is none of the arm's joints. steady: whether a resultant has separate roots at the held joints' special
+    values too, among which their defaults often are; without one the eigenproblem serves there, at twenty
+    times the cost.
     """
 
     frames: Matrix
@@ -77,6 +79,7 @@ class EliminationPlan:
     motions: tuple[Motion, ...] = ()
     crowded: tuple[tuple[float, int], ...] = ()
     tool: int | None = None
+    steady: bool = True
 
     @property
     def coupled(self) -> int:
@@ -136,7 +139,8 @@ def choose_plan(
     plain = _joined([_probe(member, turning, each, rng) for member in family])
     every = _joined([plain, *(_probe(member, turning, _SPECIAL_PROBES, rng) for member in special)])
     order = ranking(every.hits, every.rough, opposite=2 if turning.count(False) == 2 else 0)
-    separate = dict.fromkeys([*_separate(every.shifts), *_separate(plain.shifts)])
+    everywhere, elsewhere = _separate(every.shifts), _separate(plain.shifts)
+    separate = dict.fromkeys([*everywhere, *elsewhere])
     first = read_only(family[0])
     return EliminationPlan(
         frames=first,
@@ -146,6 +150,7 @@ def choose_plan(
         resultants=tuple(RESULTANTS[k] for k in [*separate][:_KEPT]),
         turning=turning,
         parallel=choose_parallel(family) if all(turning) else None,
+        steady=bool(everywhere) or not elsewhere,
     )
 
 

@@ -150,15 +150,19 @@ def _with_joints_held(
 def taken_form(
     tried: Sequence[tuple[HeldChoice, ClosedForm]], demand: Demand
 ) -> tuple[HeldChoice, ClosedForm] | None:
-    """Which of the forms, best first, is taken, settled; None where no joint held gives one."""
+    """Which of the forms, best first, is taken, settled; None where no joint held gives one. Of
+    eliminations the first that is as quick at special values of the held joints as elsewhere."""
     choice, form = tried[0]
     if form.sound:
         return choice, _settled(form, choice.dh, demand)
+    solved: tuple[HeldChoice, ClosedForm] | None = None
     for other, open_form in tried:
-        solved = by_elimination(open_form, demand)
-        if solved.plan is not None:
-            return other, solved
-    return (choice, as_written(form, demand)) if form.closed else None
+        found = by_elimination(open_form, demand)
+        if found.plan is not None and found.plan.steady:
+            return other, found
+        if found.plan is not None and solved is None:
+            solved = other, found
+    return solved or ((choice, as_written(form, demand)) if form.closed else None)
 
 
 def forms_held(

@@ -34,8 +34,11 @@ close as that, and what follows divides by it, so that rows are off by round-off
 _WIDE = 0.9
 """Of the widest range of the held joints: from there on it is much the same."""
 
-_POOR = 0.2
+_POOR = 0.3
 """Choices of a class that are conditioned worse than its best by this factor come last in it."""
+
+_LOOKED_AT = 128
+"""Configurations at which the conditioning is looked at."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +47,9 @@ class HeldChoice:
 
     `form` indexes `FORM_WORDS`; `near` tells that it is that of the geometry nearby, better than the
     file's own. `span` is what the held joints' limits leave them, in turns and lengths of the arm;
-    `condition` the median of smallest over largest singular value of what moves.
+    `condition` the geometric mean of smallest over largest singular value of what moves, over
+    configurations inside the limits, half of them with the held joints at their defaults: one that is
+    near a singularity more often has less, and far less than the best of its class is `poor`.
     """
 
     held: tuple[str, ...]
@@ -53,6 +58,7 @@ class HeldChoice:
     span: float
     condition: float
     near: bool = False
+    poor: bool = False
 
     @property
     def words(self) -> str:
@@ -78,10 +84,14 @@ class HeldChoice:
         if (self.form, self.near) != (taken.form, taken.near):
             later = (self.form, self.near) > (taken.form, taken.near)
             return self.class_words if later else ""
-        narrower, worse = self.span < taken.span, self.condition < taken.condition
-        if narrower and not (worse and self.span >= _WIDE * taken.span):
-            return "a narrower range"
-        return "worse conditioned" if worse else ""
+        if self.poor != taken.poor:
+            return "worse conditioned" if self.poor else ""
+        narrower = self.span < taken.span
+        if min(self.span, taken.span) < _WIDE * max(self.span, taken.span):
+            return "a narrower range" if narrower else ""
+        if self.condition != taken.condition:
+            return "worse conditioned" if self.condition < taken.condition else ""
+        return "a narrower range" if narrower else ""
 
 
 def nearby(reading: Reading, short: float = NEARBY) -> DHChain | None:
@@ -99,8 +109,7 @@ def held_choices(reading: Reading, task: Task) -> tuple[HeldChoice, ...]:
     none where no joint is spare.
 
     Of one class, the file's own geometry comes before the one nearby, and choices that leave the others
-    an order worse conditioned than the best come last: an elbow that is held leaves the arm a shell to
-    reach.
+    far worse conditioned than the best come last: an elbow that is held leaves the arm a shell to reach.
     """
     from ikgen.tasks.fitting import rank, scaled_motion
 
@@ -112,46 +121,50 @@ def held_choices(reading: Reading, task: Task) -> tuple[HeldChoice, ...]:
         return ()
     subsets = [list(kept) for kept in itertools.combinations(moving, moved)]
     measured = zip(subsets, _singular(motion, subsets), strict=True)
-    full = [(kept, ratios) for kept, ratios in measured if rank(ratios) == moved]
+    able = [kept for kept, ratios in measured if rank(ratios) == moved]
+    everywhere = scaled_motion(dh, task, _inside(dh))
+    full = [(kept, _condition(everywhere[:, :, kept])) for kept in able]
     found = _ranked(dh, full)
     other = nearby(reading)
     if other is not None and other.rows != dh.rows:
         pairs = zip(found, _ranked(other, full), strict=True)
         found = [replace(a, form=b.form, near=True) if b.form < a.form else a for a, b in pairs]
+    first = min((choice.form for choice in found), default=0)
+    found = _by_default([one for one in found if one.form == first], task) + [
+        one for one in found if one.form != first
+    ]
     return tuple(_sorted(found))
 
 
-def _sorted(found: Sequence[HeldChoice]) -> list[HeldChoice]:
+def _sorted(choices: Sequence[HeldChoice]) -> list[HeldChoice]:
     """Best first."""
     best: dict[int, float] = {}
-    for choice in found:
-        best[choice.form] = max(choice.condition, best.get(choice.form, 0.0))
-
-    def group(choice: HeldChoice) -> tuple[int, bool, bool]:
-        return choice.form, choice.near, choice.condition < _POOR * best[choice.form]
-
+    for one in choices:
+        best[one.form] = max(one.condition, best.get(one.form, 0.0))
+    found = [replace(one, poor=one.condition < _POOR * best[one.form]) for one in choices]
     widest: dict[tuple[int, bool, bool], float] = {}
-    for choice in found:
-        widest[group(choice)] = max(choice.span, widest.get(group(choice), 0.0))
+    for one in found:
+        group = one.form, one.near, one.poor
+        widest[group] = max(one.span, widest.get(group, 0.0))
 
-    def key(choice: HeldChoice) -> tuple[object, ...]:
-        own = group(choice)
-        within = min(choice.span, _WIDE * widest[own])
-        names = [joint.name for joint in choice.dh.joints]
-        from_tip = [-names.index(name) for name in reversed(choice.held)]
-        return *own, -within, -choice.condition, -choice.span, from_tip
+    def key(one: HeldChoice) -> tuple[object, ...]:
+        group = one.form, one.near, one.poor
+        within = min(one.span, _WIDE * widest[group])
+        names = [joint.name for joint in one.dh.joints]
+        from_tip = [-names.index(name) for name in reversed(one.held)]
+        return *group, -within, -one.condition, -one.span, from_tip
 
     return sorted(found, key=key)
 
 
-def _ranked(dh: DHChain, kept: Sequence[tuple[Sequence[int], Matrix]]) -> list[HeldChoice]:
-    """A choice for each set of joints that move, by index, with its ratios of singular values."""
+def _ranked(dh: DHChain, kept: Sequence[tuple[Sequence[int], float]]) -> list[HeldChoice]:
+    """A choice for each set of joints that move, by index, with how well it is conditioned."""
     from ikgen.kinematics.axis_relations import axis_relations, reach
     from ikgen.kinematics.form_class import form_class
 
     relations, length = axis_relations(dh), reach(dh)
     found = []
-    for joints, ratios in kept:
+    for joints, condition in kept:
         rows = [i for i, row in enumerate(dh.rows) if row.driver in joints]
         held = [j for j in _moving(dh) if j not in joints]
         names = tuple(dh.joints[j].name for j in held)
@@ -161,7 +174,7 @@ def _ranked(dh: DHChain, kept: Sequence[tuple[Sequence[int], Matrix]]) -> list[H
                 replace(dh, free=(*dh.free, *names)),
                 form_class(dh.rows, rows, relations),
                 round(sum(_span(dh.joints[j], length) for j in held), 6),
-                float(f"{ratios[-1]:.2g}"),
+                float(f"{condition:.2g}"),
             )
         )
     return found
@@ -184,3 +197,49 @@ def _singular(motion: Matrix, subsets: Sequence[Sequence[int]]) -> Matrix:
     parts = np.stack([motion[:, :, list(columns)] for columns in subsets])
     values = np.linalg.svd(parts, compute_uv=False)
     return np.asarray(np.median(values / np.maximum(values[..., :1], 1e-12), axis=1))
+
+
+def _inside(dh: DHChain) -> Matrix:
+    """Configurations (_LOOKED_AT, dof) inside the limits, the same each time; at most half a turn, or the
+    arm's length, from 0."""
+    import numpy as np
+
+    from ikgen.kinematics.axis_relations import reach
+
+    most = [math.pi if joint.kind == "revolute" else reach(dh) for joint in dh.joints]
+    low = np.array([max(j.limits.lower, -far) for j, far in zip(dh.joints, most, strict=True)])
+    high = np.array([min(j.limits.upper, far) for j, far in zip(dh.joints, most, strict=True)])
+    share = np.random.default_rng(0).uniform(size=(_LOOKED_AT, dh.dof))
+    return np.asarray(low + share * (high - low))
+
+
+def _by_default(choices: Sequence[HeldChoice], task: Task) -> list[HeldChoice]:
+    """With a conditioning to which configurations with the held joints at their defaults count as much as
+    all others: that is how the arm is used without a seed."""
+    import numpy as np
+
+    from ikgen.kinematics.free_joints import free_defaults
+    from ikgen.tasks.fitting import scaled_motion
+
+    if not choices:
+        return []
+    every = []
+    for choice in choices:
+        every.append(_inside(choice.dh))
+        every[-1][:, list(choice.dh.free_indices)] = free_defaults(choice.dh, ())
+    motions = np.split(scaled_motion(choices[0].dh, task, np.concatenate(every)), len(choices))
+    out = []
+    for choice, motion in zip(choices, motions, strict=True):
+        default = _condition(motion[:, :, _moving(choice.dh)])
+        both = float(f"{math.sqrt(choice.condition * default):.2g}")
+        out.append(replace(choice, condition=both))
+    return out
+
+
+def _condition(motion: Matrix) -> float:
+    """The geometric mean over the samples of smallest over largest singular value."""
+    import numpy as np
+
+    values = np.linalg.eigvalsh(motion.transpose(0, 2, 1) @ motion)
+    ratios = np.maximum(values[:, 0] / np.maximum(values[:, -1], 1e-24), 1e-24)
+    return float(np.exp(0.5 * np.log(ratios).mean()))

@@ -121,18 +121,18 @@ def _ratios(dh: DHChain, task: Task) -> Matrix:
     return np.asarray(np.median(singular / largest, axis=0))
 
 
-def scaled_motion(dh: DHChain, task: Task) -> Matrix:
-    """How the task's entries change with all joints, held or not, lengths in those of the arm, at a few
-    configurations: (8, entries, dof)."""
+def scaled_motion(dh: DHChain, task: Task, q: Matrix | None = None) -> Matrix:
+    """How the task's entries change with all joints, held or not, lengths in those of the arm, at
+    configurations `q` (N, dof), or at a few: (N, entries, dof)."""
     length = reach(dh)
     rows = np.array([1.0 / length if column == 3 else 1.0 for _, column in task.entries])
     columns = np.array([1.0 if joint.kind == "revolute" else length for joint in dh.joints])
-    return np.asarray(_task_motion(dh, task) * rows[:, None] * columns)
+    q = _configurations(dh) if q is None else q
+    return np.asarray(_task_motion(dh, task, q) * rows[:, None] * columns)
 
 
-def _task_motion(dh: DHChain, task: Task) -> Matrix:
+def _task_motion(dh: DHChain, task: Task, q: Matrix) -> Matrix:
     """The same per rad and m."""
-    q = _configurations(dh)
     rows, columns = zip(*task.entries, strict=True)
     steps = []
     for h in 1e-6 * np.eye(dh.dof):
