@@ -38,7 +38,13 @@ _POOR = 0.3
 """Choices of a class that are conditioned worse than its best by this factor come last in it."""
 
 _LOOKED_AT = 128
-"""Configurations at which the conditioning is looked at."""
+"""Configurations at which the conditioning is looked at; fewer of them where there are many choices."""
+
+_FEWEST, _IN_ALL = 8, 2**15
+"""The fewest of these, and the most of all choices together."""
+
+_LEADING = 16
+"""So many choices, those that come first, are looked at with their held joints at the defaults too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,18 +128,16 @@ def held_choices(reading: Reading, task: Task) -> tuple[HeldChoice, ...]:
     subsets = [list(kept) for kept in itertools.combinations(moving, moved)]
     measured = zip(subsets, _singular(motion, subsets), strict=True)
     able = [kept for kept, ratios in measured if rank(ratios) == moved]
-    everywhere = scaled_motion(dh, task, _inside(dh))
+    looked_at = max(_FEWEST, min(_LOOKED_AT, _IN_ALL // max(len(able), 1)))
+    everywhere = scaled_motion(dh, task, _inside(dh, looked_at))
     full = [(kept, _condition(everywhere[:, :, kept])) for kept in able]
     found = _ranked(dh, full)
     other = nearby(reading)
     if other is not None and other.rows != dh.rows:
         pairs = zip(found, _ranked(other, full), strict=True)
         found = [replace(a, form=b.form, near=True) if b.form < a.form else a for a, b in pairs]
-    first = min((choice.form for choice in found), default=0)
-    found = _by_default([one for one in found if one.form == first], task) + [
-        one for one in found if one.form != first
-    ]
-    return tuple(_sorted(found))
+    ranked = _sorted(found)
+    return tuple(_sorted(_by_default(ranked[:_LEADING], task)) + ranked[_LEADING:])
 
 
 def _sorted(choices: Sequence[HeldChoice]) -> list[HeldChoice]:
@@ -199,9 +203,9 @@ def _singular(motion: Matrix, subsets: Sequence[Sequence[int]]) -> Matrix:
     return np.asarray(np.median(values / np.maximum(values[..., :1], 1e-12), axis=1))
 
 
-def _inside(dh: DHChain) -> Matrix:
-    """Configurations (_LOOKED_AT, dof) inside the limits, the same each time; at most half a turn, or the
-    arm's length, from 0."""
+def _inside(dh: DHChain, count: int) -> Matrix:
+    """So many configurations (count, dof) inside the limits, the same each time; at most half a turn, or
+    the arm's length, from 0."""
     import numpy as np
 
     from ikgen.kinematics.axis_relations import reach
@@ -209,7 +213,7 @@ def _inside(dh: DHChain) -> Matrix:
     most = [math.pi if joint.kind == "revolute" else reach(dh) for joint in dh.joints]
     low = np.array([max(j.limits.lower, -far) for j, far in zip(dh.joints, most, strict=True)])
     high = np.array([min(j.limits.upper, far) for j, far in zip(dh.joints, most, strict=True)])
-    share = np.random.default_rng(0).uniform(size=(_LOOKED_AT, dh.dof))
+    share = np.random.default_rng(0).uniform(size=(count, dh.dof))
     return np.asarray(low + share * (high - low))
 
 
@@ -225,7 +229,7 @@ def _by_default(choices: Sequence[HeldChoice], task: Task) -> list[HeldChoice]:
         return []
     every = []
     for choice in choices:
-        every.append(_inside(choice.dh))
+        every.append(_inside(choice.dh, _LOOKED_AT))
         every[-1][:, list(choice.dh.free_indices)] = free_defaults(choice.dh, ())
     motions = np.split(scaled_motion(choices[0].dh, task, np.concatenate(every)), len(choices))
     out = []
