@@ -128,8 +128,10 @@ def held_choices(reading: Reading, task: Task) -> tuple[HeldChoice, ...]:
     subsets = [list(kept) for kept in itertools.combinations(moving, moved)]
     measured = zip(subsets, _singular(motion, subsets), strict=True)
     able = [kept for kept, ratios in measured if rank(ratios) == moved]
-    looked_at = max(_FEWEST, min(_LOOKED_AT, _IN_ALL // max(len(able), 1)))
-    everywhere = scaled_motion(dh, task, _inside(dh, looked_at))
+    if not able:
+        return ()
+    inside = _inside(dh)
+    everywhere = scaled_motion(dh, task, inside[: max(_FEWEST, _IN_ALL // len(able))])
     full = [(kept, _condition(everywhere[:, :, kept])) for kept in able]
     found = _ranked(dh, full)
     other = nearby(reading)
@@ -137,7 +139,7 @@ def held_choices(reading: Reading, task: Task) -> tuple[HeldChoice, ...]:
         pairs = zip(found, _ranked(other, full), strict=True)
         found = [replace(a, form=b.form, near=True) if b.form < a.form else a for a, b in pairs]
     ranked = _sorted(found)
-    return tuple(_sorted(_by_default(ranked[:_LEADING], task)) + ranked[_LEADING:])
+    return tuple(_sorted(_by_default(ranked[:_LEADING], task, inside)) + ranked[_LEADING:])
 
 
 def _sorted(choices: Sequence[HeldChoice]) -> list[HeldChoice]:
@@ -146,17 +148,19 @@ def _sorted(choices: Sequence[HeldChoice]) -> list[HeldChoice]:
     for one in choices:
         best[one.form] = max(one.condition, best.get(one.form, 0.0))
     found = [replace(one, poor=one.condition < _POOR * best[one.form]) for one in choices]
+
+    def group(one: HeldChoice) -> tuple[int, bool, bool]:
+        return one.form, one.near, one.poor
+
     widest: dict[tuple[int, bool, bool], float] = {}
     for one in found:
-        group = one.form, one.near, one.poor
-        widest[group] = max(one.span, widest.get(group, 0.0))
+        widest[group(one)] = max(one.span, widest.get(group(one), 0.0))
 
     def key(one: HeldChoice) -> tuple[object, ...]:
-        group = one.form, one.near, one.poor
-        within = min(one.span, _WIDE * widest[group])
+        within = min(one.span, _WIDE * widest[group(one)])
         names = [joint.name for joint in one.dh.joints]
         from_tip = [-names.index(name) for name in reversed(one.held)]
-        return *group, -within, -one.condition, -one.span, from_tip
+        return *group(one), -within, -one.condition, -one.span, from_tip
 
     return sorted(found, key=key)
 
@@ -203,21 +207,20 @@ def _singular(motion: Matrix, subsets: Sequence[Sequence[int]]) -> Matrix:
     return np.asarray(np.median(values / np.maximum(values[..., :1], 1e-12), axis=1))
 
 
-def _inside(dh: DHChain, count: int) -> Matrix:
-    """So many configurations (count, dof) inside the limits, the same each time; at most half a turn, or
-    the arm's length, from 0."""
+def _inside(dh: DHChain) -> Matrix:
+    """Configurations (_LOOKED_AT, dof) inside the limits, the same each time; at most half a turn, or the
+    arm's length, from 0."""
     import numpy as np
 
     from ikgen.kinematics.axis_relations import reach
+    from ikgen.kinematics.joint_box import joint_box
 
-    most = [math.pi if joint.kind == "revolute" else reach(dh) for joint in dh.joints]
-    low = np.array([max(j.limits.lower, -far) for j, far in zip(dh.joints, most, strict=True)])
-    high = np.array([min(j.limits.upper, far) for j, far in zip(dh.joints, most, strict=True)])
-    share = np.random.default_rng(0).uniform(size=(count, dh.dof))
+    low, high = joint_box(dh, reach(dh))
+    share = np.random.default_rng(0).uniform(size=(_LOOKED_AT, dh.dof))
     return np.asarray(low + share * (high - low))
 
 
-def _by_default(choices: Sequence[HeldChoice], task: Task) -> list[HeldChoice]:
+def _by_default(choices: Sequence[HeldChoice], task: Task, inside: Matrix) -> list[HeldChoice]:
     """With a conditioning to which configurations with the held joints at their defaults count as much as
     all others: that is how the arm is used without a seed."""
     import numpy as np
@@ -225,12 +228,9 @@ def _by_default(choices: Sequence[HeldChoice], task: Task) -> list[HeldChoice]:
     from ikgen.kinematics.free_joints import free_defaults
     from ikgen.tasks.fitting import scaled_motion
 
-    if not choices:
-        return []
-    every = []
-    for choice in choices:
-        every.append(_inside(choice.dh, _LOOKED_AT))
-        every[-1][:, list(choice.dh.free_indices)] = free_defaults(choice.dh, ())
+    every = np.tile(inside, (len(choices), 1, 1))
+    for q, choice in zip(every, choices, strict=True):
+        q[:, list(choice.dh.free_indices)] = free_defaults(choice.dh, ())
     motions = np.split(scaled_motion(choices[0].dh, task, np.concatenate(every)), len(choices))
     out = []
     for choice, motion in zip(choices, motions, strict=True):

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ikgen.errors import UsageError
 from ikgen.kinematics.forward import file_forward
-from ikgen.model.chain import REVOLUTE
+from ikgen.kinematics.joint_box import joint_box
 from ikgen.model.dh import DHChain
 
 __all__ = ["Grid", "grid_over", "orientations"]
@@ -88,10 +88,7 @@ def grid_over(dh: DHChain, cells: int, directions: int, rolls: int) -> Grid:
 
 def _box(dh: DHChain) -> tuple[Array, Array]:
     """The corners (3,), m, of the tip's positions."""
-    wide = np.array([np.pi if j.kind == REVOLUTE else _WITHOUT_LIMIT for j in dh.joints])
-    low = np.maximum([j.limits.lower for j in dh.joints], -wide)
-    high = np.minimum([j.limits.upper for j in dh.joints], wide)
-    low, high = np.minimum(low, high), np.maximum(low, high)
+    low, high = joint_box(dh, _WITHOUT_LIMIT)
     draws = np.random.default_rng(_SEED).uniform(size=(_SAMPLES, dh.dof))
     tips = file_forward(dh, low + draws * (high - low))[:, :3, 3]
     return tips.min(axis=0), tips.max(axis=0)

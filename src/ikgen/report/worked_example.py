@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ikgen.emit.derivation import Derivation
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.kinematics.forward import dh_forward, file_jacobian
+from ikgen.kinematics.joint_box import joint_box
 from ikgen.lowering.held_angle import held_values
 from ikgen.model.dh import DHChain
 from ikgen.processes.scratch_folder import ScratchFolder
@@ -75,9 +76,7 @@ def _place(row: Array, rows: Array) -> int | None:
 
 def _drawn(dh: DHChain) -> Array:
     """Configurations inside the limits, always the same ones."""
-    low = np.array([max(j.limits.lower, -_WIDEST) for j in dh.joints])
-    high = np.array([min(j.limits.upper, _WIDEST) for j in dh.joints])
-    high, low = np.maximum(high, low), np.minimum(low, high)
+    low, high = joint_box(dh, _WIDEST, _WIDEST)
     draws = np.random.default_rng(_SEED).uniform(0.12, 0.88, (_TRIED, dh.dof))
     return np.asarray(np.round(low + draws * (high - low), 3))
 
