@@ -158,10 +158,11 @@ def taken_form(
     solved: tuple[HeldChoice, ClosedForm] | None = None
     for other, open_form in tried:
         found = by_elimination(open_form, demand)
-        if found.plan is not None and found.plan.steady:
+        if found.plan is None:
+            continue
+        if found.plan.steady:
             return other, found
-        if found.plan is not None and solved is None:
-            solved = other, found
+        solved = solved or (other, found)
     return solved or ((choice, as_written(form, demand)) if form.closed else None)
 
 
