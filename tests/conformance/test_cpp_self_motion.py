@@ -112,7 +112,6 @@ def cost(arm: ModuleType, mode: int, q: Array, seed: Array) -> float:
 @pytest.mark.parametrize("mode", [1, 2, 3])
 def test_searches(both: Both, mode: int) -> None:
     arm, rng = both.arm, np.random.default_rng(2)
-    near = 1e-5 if len(arm.FREE_JOINTS) < 2 else 0.02  # a grid's start may lead elsewhere
     for _ in range(3):
         pose, seed = arm.forward(drawn(arm, rng)), drawn(arm, rng)
         status, numbers = both.run(mode, seed, pose[None])
@@ -120,8 +119,14 @@ def test_searches(both: Both, mode: int) -> None:
         rows = numbers.reshape(-1, arm.DOF)
         assert status == found.status.value == "OK"
         assert np.abs(arm.forward(rows) - pose).max() < 1e-9
-        best = cost(arm, mode, found.q[0], seed)
-        assert cost(arm, mode, rows[0], seed) == pytest.approx(best, abs=near)
+        costs = [[cost(arm, mode, q, seed) for q in each] for each in (rows, found.q)]
+        assert costs[0][0] == pytest.approx(costs[1][0], abs=1e-5)
+        for each in costs:
+            assert (np.diff(each) > -1e-9).all()
+        if len(arm.FREE_JOINTS) > 1:  # of one, branches that meet may have one best row
+            for each in (rows, found.q):
+                gaps = np.abs(np.sin(0.5 * (each[:, None] - each))).max(axis=2)
+                assert (gaps + np.eye(len(each))).min() > 4e-3
 
 
 def test_the_best_row_may_be_at_an_end_on_a_limit_or_just_before_a_fold(tmp_path: Path) -> None:

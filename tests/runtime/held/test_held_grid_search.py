@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from tests.support.chains import rotation, translation
 
 from ikgen.runtime.python.arm.chain_kinematics import chain_of
-from ikgen.runtime.python.held.held_grid_search import _grid
+from ikgen.runtime.python.held.held_grid_search import _distinct, _grid, _lowest
 
 Array = NDArray[np.float64]
 TO_X = rotation([0.0, 1.0, 0.0], pi / 2)
@@ -68,9 +68,67 @@ def test_an_unbounded_slide_is_looked_at_a_metre_to_either_side() -> None:
     for low, high, wanted in (
         (-inf, inf, (2.0, 4.0)),
         (-inf, 3.5, (2.0, 3.5)),
+        (-inf, 1.0, (0.0, 1.0)),
         (2.5, inf, (2.5, 4.0)),
         (7.0, inf, (7.0, 8.0)),
     ):
         one = arm("RP", (0.0, low), (1.0, high))
         (_, second), _ = axes(one, (0.0, 3.0))
         assert (second[0], second[-1]) == wanted
+
+
+def lines(one: Any, costs: Array, rows: Array, away: Array) -> list[tuple[int, int]]:
+    point, row = _lowest(one, rows, costs, away, 0.7)
+    return list(zip(point.tolist(), row.tolist(), strict=True))
+
+
+def grid(count: int) -> tuple[Array, Array]:
+    """Two values from -1 to 1 (n,), all pairs."""
+    axis = np.linspace(-1.0, 1.0, count)
+    first, second = np.meshgrid(axis, axis, indexing="ij")
+    return first.reshape(-1), second.reshape(-1)
+
+
+def test_each_minimum_of_each_branch_is_one_start() -> None:
+    """The cost rises from two places, which one branch has and the other has not."""
+    one, (x, y) = arm("PP", (-1.0, -1.0), (1.0, 1.0)), grid(9)
+    first = (x**2 - 0.25) ** 2 + (y - 0.25) ** 2  # least at (-0.5, 0.25) and (0.5, 0.25)
+    second = 5.0 + (x + 0.75) ** 2 + (y + 0.5) ** 2
+    rows = np.stack([np.stack([x, y], axis=1), np.stack([x + 9.0, y], axis=1)], axis=1)
+    found = lines(one, np.stack([first, second], axis=1), rows, np.zeros((81, 2)))
+    assert [(x[point], y[point], row) for point, row in found] == [
+        (-0.5, 0.25, 0), (0.5, 0.25, 0), (-0.75, -0.5, 1),
+    ]  # fmt: skip
+
+
+def test_branches_are_known_wherever_they_are_in_order() -> None:
+    one, (x, y) = arm("PP", (-1.0, -1.0), (1.0, 1.0)), grid(9)
+    costs = np.stack([x**2 + y**2, 5.0 + (x - 0.5) ** 2 + y**2], axis=1)
+    rows = np.stack([np.stack([x, y], axis=1), np.stack([x + 9.0, y], axis=1)], axis=1)
+    turned = np.arange(81) % 2 == 1
+    costs[turned], rows[turned] = costs[turned, ::-1], rows[turned, ::-1]
+    found = lines(one, costs, rows, np.zeros((81, 2)))
+    assert [(x[point], y[point]) for point, _ in found] == [(0.0, 0.0), (0.5, 0.0)]
+
+
+def test_of_rows_as_good_as_each_other_the_nearest_is_one() -> None:
+    """A joint that the task does not read changes no cost."""
+    one, (x, y) = arm("PP", (-1.0, -1.0), (1.0, 1.0)), grid(9)
+    rows, away = np.stack([x, y], axis=1)[:, None], (x - 0.3) ** 2 + y**2
+    found = lines(one, (y**2)[:, None], rows, away[:, None])
+    assert [(x[point], y[point]) for point, _ in found] == [(0.25, 0.0)]
+
+
+def test_rows_outside_are_no_starts() -> None:
+    one, (x, y) = arm("PP", (-1.0, -1.0), (1.0, 1.0)), grid(5)
+    costs, rows = np.full((25, 1), inf), np.stack([x, y], axis=1)[:, None]
+    assert lines(one, costs, rows, np.zeros((25, 1))) == []
+    costs[7] = 3.0
+    assert lines(one, costs, rows, np.zeros((25, 1))) == [(7, 0)]
+
+
+def test_what_ends_at_the_same_row_is_taken_once() -> None:
+    one = arm("RP", (-1.0, -1.0), (1.0, 1.0))
+    one.policy = SimpleNamespace(alike=1e-2)
+    rows = np.array([[0.1, 0.0], [0.1 + 2.0 * pi, 0.005], [0.1, 2.0 * pi], [0.12, 0.0]])
+    assert _distinct(one, rows, np.array([1, 0, 2, 3])) == [1, 2, 3]

@@ -11,7 +11,7 @@ import pytest
 
 from ikgen.runtime.python.held import held_joint_search
 from ikgen.runtime.python.held.branch_ends import BranchEnd
-from ikgen.runtime.python.held.held_joint_search import _starts
+from ikgen.runtime.python.held.held_joint_search import _best_of_each, _starts
 from ikgen.runtime.python.held.self_motion import Piece
 
 HELD = np.array([0.0, 0.2, 0.4, 0.6, 0.8])
@@ -36,10 +36,10 @@ def started(
     tracks: Any = SimpleNamespace(rows=SimpleNamespace(held=HELD, q=HELD[:, None, None]))
     piece = Piece(low, high, 0, samples)
     joint: Any = SimpleNamespace(arm=None)
-    starts = _starts(tracks, piece, 7, ("near", (), ()), joint, True)
-    assert all(group == 7 and row[0] == value for (value,), row, _, group, _, _ in starts)
+    starts = _starts(tracks, piece, ("near", (), ()), joint, True)
+    assert all(row[0] == value for value, row, *_ in starts)
     assert all(reach == piece.reach() for *_, reach, _ in starts)
-    return [(value, step) for (value,), _, (step,), _, _, _ in starts]
+    return [(value, step) for value, _, step, _, _ in starts]
 
 
 def test_the_ends_of_an_interval_count(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -76,3 +76,9 @@ def test_about_a_lone_sample_the_search_starts_close(monkeypatch: pytest.MonkeyP
     """An interval at whose ends the range ends as well, and one sample in it."""
     lone = started(monkeypatch, lambda x: x, 0.2, 0.2, ((1, 0),))
     assert lone == [(0.2, pytest.approx(5e-4))]
+
+
+def test_of_each_interval_the_best_row_is_taken() -> None:
+    group, cost = np.array([0, 0, 2, 2, 1]), np.array([3.0, 1.0, 0.5, 0.7, 2.0])
+    assert _best_of_each(group, cost).tolist() == [2, 1, 4]
+    assert _best_of_each(group[:0], cost[:0]).tolist() == []

@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from ikgen.runtime.python.held import solution_search
-from ikgen.runtime.python.held.solution_search import Reach, _improved, best_rows
+from ikgen.runtime.python.held.solution_search import Reach, _improved, improved_rows
 
 Array = NDArray[np.float64]
 
@@ -51,6 +51,7 @@ def cost_of(monkeypatch: pytest.MonkeyPatch, cost: Any, away: float = 0.0) -> li
 
 WANTED: Any = ("near", (), ())
 ANYWHERE = (-np.inf, np.inf)
+FAR = Reach(np.array([-50.0, 50.0]), np.array([[-50.0], [50.0]]), np.array([False, False]))
 
 
 def improved(trial: list[float], start: float = 1.0, limits: bool = True, **more: Any) -> Any:
@@ -87,40 +88,28 @@ def test_trials_stay_inside_the_limits_where_these_count(monkeypatch: pytest.Mon
 def test_none_is_asked_beyond_the_end_of_a_branch(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nor where it is already, which rows of a fold do not tell."""
     asked = cost_of(monkeypatch, lambda q: -q[..., 0])
-    monkeypatch.setattr(solution_search, "_solutions", lambda *given: given[-2])
-    start = ((1.0,), np.array([1.0]), (0.1,), 0, (0.5, 1.15), None)
-    held: Any = best_rows(arm(), np.eye(4), [start], WANTED, True)
-    assert held[0, 0] == 1.15 and max(trial.max() for trial in asked) == 1.15
+    start = (1.0, np.array([1.0]), 0.1, (0.5, 1.15), FAR)
+    rows, cost = improved_rows(arm(), np.eye(4), [start], WANTED, True)
+    assert rows[0, 0] == -cost[0] == 1.15 and max(trial.max() for trial in asked) == 1.15
     assert [len(trial) for trial in asked[-5:]] == [1] * 5  # inwards alone
 
 
-@pytest.mark.parametrize("count", [1, 2])
-def test_steps_get_shorter_where_none_is_better(
-    monkeypatch: pytest.MonkeyPatch, count: int
-) -> None:
-    """By the half, of one value alone by somewhat more, so that it comes to other places."""
-    middle = np.array([0.3, -0.2])[:count]
-    asked = cost_of(monkeypatch, lambda q: ((q - middle) ** 2).sum(axis=-1))
-    monkeypatch.setattr(solution_search, "_solutions", lambda *given: given[-2:])
-    start = (tuple(middle.tolist()), middle, (0.4,) * count, 0, ANYWHERE, None)
-    held, _ = best_rows(arm(count), np.eye(4), [start], WANTED, True)  # type: ignore[misc]
-    np.testing.assert_allclose(held[0], middle, atol=1e-6)  # type: ignore[index]
-    steps = [float(np.abs(trial[0] - middle).max()) for trial in asked[::count]]
-    ratio = 0.4 if count == 1 else 0.5
-    np.testing.assert_allclose(steps[:8], 0.4 * ratio ** np.arange(8), rtol=1e-6)
+def test_steps_get_shorter_where_none_is_better(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By somewhat more than the half, so that they come to other places."""
+    asked = cost_of(monkeypatch, lambda q: (q[..., 0] - 0.3) ** 2)
+    start = (0.3, np.array([0.3]), 0.4, ANYWHERE, FAR)
+    rows, _ = improved_rows(arm(), np.eye(4), [start], WANTED, True)
+    np.testing.assert_allclose(rows[0], 0.3, atol=1e-6)
+    steps = [float(np.abs(trial[0] - 0.3).max()) for trial in asked]
+    np.testing.assert_allclose(steps[:8], 0.4 * 0.4 ** np.arange(8), rtol=1e-6)
 
 
-def test_the_best_of_each_group_is_found_from_its_starts(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_start_is_led_to_the_minimum_beside_it(monkeypatch: pytest.MonkeyPatch) -> None:
     cost_of(monkeypatch, lambda q: (q[..., 0] - np.round(q[..., 0])) ** 2 + 1e-3 * q[..., 0])
-    monkeypatch.setattr(solution_search, "_solutions", lambda *given: given[-2])
-    starts = [
-        ((x,), np.array([x]), (0.1,), group, ANYWHERE, None)
-        for x, group in ((3.2, 0), (1.1, 0), (1.9, 1), (-0.8, 2))
-    ]
-    held: Any = best_rows(arm(), np.eye(4), starts, WANTED, True)
-    np.testing.assert_allclose(held[:, 0], [-1.0, 1.0, 2.0], atol=1e-3)
-    held = best_rows(arm(most=2), np.eye(4), starts, WANTED, True)
-    np.testing.assert_allclose(held[:, 0], [-1.0, 1.0], atol=1e-3)
+    starts = [(x, np.array([x]), 0.1, ANYWHERE, FAR) for x in (3.2, 1.1, 1.9, -0.8)]
+    rows, cost = improved_rows(arm(), np.eye(4), starts, WANTED, True)
+    np.testing.assert_allclose(rows[:, 0], [3.0, 1.0, 2.0, -1.0], atol=1e-3)
+    np.testing.assert_allclose(cost, 1e-3 * rows[:, 0], atol=1e-6)
 
 
 def fold(monkeypatch: pytest.MonkeyPatch, bend: float) -> list[int]:

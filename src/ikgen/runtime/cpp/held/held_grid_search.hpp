@@ -1,112 +1,134 @@
-// Good rows over a grid of several held joints' values, each made better by a compass search (Hooke, Jeeves 1961).
+// Rows that are better than those beside them on a grid of several held joints' values, each made better by steps of these.
 #pragma once
 
-#include "held/row_preference.hpp"
 #include "held/slide_range.hpp"
+#include "held/values_descent.hpp"
 
 namespace ikgen_runtime {
 
-// Arm: as for RowPreference; Solver: as for PathStep.
+// Arm, Solver: as for ValuesDescent.
 template <class Arm, class Solver> struct HeldGridSearch {
-  static constexpr int kStarts = 32, kPoints = 4096, kHalvings = 30;
+  static constexpr int kStarts = 32, kPoints = 4096;
+  static constexpr double kEqual = 1e-9;  // costs that differ by less are as good
+  static constexpr double kNear = 0.5;  // rad or m: rows at values beside each other that are so near are of one branch
 
-  struct Start {
-    double cost = kInfinity, q[Arm::kDof];
-  };
+  // Values on an axis of the grid: as many as all axes together have room for.
+  static constexpr int points_of_axis() noexcept {
+    for (int n = 3;; ++n) {
+      int all = 1;
+      for (int k = 0; k < Arm::kFree && all <= kPoints; ++k) all *= n + 1;
+      if (all > kPoints) return n;
+    }
+  }
+  static constexpr int kCount = points_of_axis();
+
+  using Descent = ValuesDescent<Arm, Solver>;
+  using Held = typename Descent::Held;
+  using Point = typename Descent::Point;
+  using Start = typename Descent::Start;
 
   const Eigen::Isometry3d& pose;
   const RowPreference<Arm>& preference;
+  const Descent descent;
   bool real = false;
-  double low[Arm::kFree], high[Arm::kFree];
+  double axis[Arm::kFree][kCount], reach = kNear;
+  Held step;  // half of one
   Start starts[kStarts];
 
   static void solve(const Eigen::Isometry3d& pose, const RowPreference<Arm>& preference, typename Arm::Solutions& out) noexcept {
-    HeldGridSearch search{pose, preference, false, {}, {}, {}};
-    const int count = search.bound();
-    search.scan(count);
+    HeldGridSearch search{pose, preference};
+    for (int k = 0; k < Arm::kFree; ++k) search.spread(k);
+    search.scan();
+    for (Start& s : search.starts) search.descent.improve(s, search.step);
+    std::stable_sort(search.starts, search.starts + kStarts, [](const Start& a, const Start& b) { return a.cost < b.cost; });
     out.count = 0;
-    for (Start& s : search.starts) search.improve(s, count);
-    std::sort(search.starts, search.starts + kStarts, [](const Start& a, const Start& b) { return a.cost < b.cost; });
     for (const Start& s : search.starts)
-      if (s.cost < kInfinity) SolutionRows<Arm>::add(out, s.q, RankLoss<Arm>::below(s.q, Arm::Policy::kRankLoss));
+      if (s.cost < kInfinity && !RowPair<Arm>::any_within(Arm::Policy::kAlike, s.q, out))
+        SolutionRows<Arm>::add(out, s.q, RankLoss<Arm>::below(s.q, Arm::Policy::kRankLoss));
     out.status = out.count > 0 ? Arm::Status::Ok : search.real ? Arm::Status::Limits : Arm::Status::Unreachable;
   }
 
  private:
-  // The ranges of the held joints, and how many values each takes. A turn, or a metre to either side, is looked at where
-  // there are no limits; a slide as far as the pose can be reached from.
-  int bound() noexcept {
-    for (int k = 0; k < Arm::kFree; ++k) {
-      const int j = Arm::kFreeJoints[static_cast<std::size_t>(k)];
-      const double middle = preference.wanted.data()[j];
-      low[k] = Arm::kLower.data()[j];
-      high[k] = Arm::kUpper.data()[j];
-      if (Arm::kRevolute[j] && !(preference.options.limits && high[k] - low[k] < kInfinity)) {
-        low[k] = -kPi;
-        high[k] = kPi;
-      }
-      const SlideRange<Arm> range(pose.translation().data(), j);
-      const double nearby = std::min(std::max(range.low, low[k]), high[k]), remote = std::min(std::max(range.high, low[k]), high[k]);
-      low[k] = nearby;
-      high[k] = remote;
-      if (!(low[k] > -kInfinity)) low[k] = std::min(high[k], middle) - 1.0;
-      if (!(high[k] < kInfinity)) high[k] = std::max(low[k], middle) + 1.0;
+  HeldGridSearch(const Eigen::Isometry3d& goal, const RowPreference<Arm>& wanted) noexcept : pose(goal), preference(wanted), descent{goal, wanted} {}
+
+  // Values of a held joint, evenly over its range, and that nearest to what is wanted. A turn, or a metre to either
+  // side, is looked at where there are no limits; a slide as far as the pose can be reached from.
+  void spread(int k) noexcept {
+    const int j = Arm::kFreeJoints[static_cast<std::size_t>(k)];
+    const double middle = preference.wanted.data()[j];
+    double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j];
+    if (Arm::kRevolute[j] && !(preference.options.limits && high - low < kInfinity)) {
+      low = -kPi;
+      high = kPi;
     }
-    return std::max(3, static_cast<int>(std::pow(kPoints, 1.0 / Arm::kFree) + 1e-9));
+    const SlideRange<Arm> range(pose.translation().data(), j);
+    const double nearby = std::min(std::max(range.low, low), high), remote = std::min(std::max(range.high, low), high);
+    low = nearby > -kInfinity ? nearby : std::min(remote, middle) - 1.0;
+    high = remote < kInfinity ? remote : std::max(low, middle) + 1.0;
+    int nearest = 0;
+    for (int i = 0; i < kCount; ++i) {
+      axis[k][i] = low + (high - low) * i / (kCount - 1);
+      if (std::abs(axis[k][i] - middle) < std::abs(axis[k][nearest] - middle)) nearest = i;
+    }
+    axis[k][nearest] = std::min(std::max(middle, low), high);
+    step[static_cast<std::size_t>(k)] = 0.5 * (high - low) / (kCount - 1);
+    reach = std::max(reach, kNear + 2.0 * step[static_cast<std::size_t>(k)]);
   }
 
-  void scan(int count) noexcept {
+  // Line by line along the first axis.
+  void scan() noexcept {
     int index[Arm::kFree] = {};
     for (int k = 0; k < Arm::kFree;) {
-      std::array<double, Arm::kFree> free;
-      for (int i = 0; i < Arm::kFree; ++i) free[static_cast<std::size_t>(i)] = low[i] + (high[i] - low[i]) * index[i] / (count - 1);
-      look(free, [this](const Start& s) {
-        int worst = 0;
-        for (int i = 1; i < kStarts; ++i)
-          if (starts[i].cost > starts[worst].cost) worst = i;
-        if (s.cost < starts[worst].cost) starts[worst] = s;
-      });
-      for (k = 0; k < Arm::kFree && ++index[k] == count; ++k) index[k] = 0;
-    }
-  }
-
-  // Shows all rows at some values.
-  template <class Take> void look(const std::array<double, Arm::kFree>& free, const Take& take) noexcept {
-    typename Arm::Options options;
-    typename Arm::Solutions found;
-    options.limits = false;
-    options.free = free;
-    Solver::solve(pose, options, found);
-    real = real || found.count > 0;
-    for (int r = 0; r < found.count; ++r) {
-      Start s;
-      std::copy_n(SolutionRows<Arm>::row(found, r), Arm::kDof, s.q);
-      if (!preference.place(s.q)) continue;
-      s.cost = preference.cost(s.q);
-      take(s);
-    }
-  }
-
-  void improve(Start& best, int count) noexcept {
-    double step[Arm::kFree];
-    for (int k = 0; k < Arm::kFree; ++k) step[k] = 0.5 * (high[k] - low[k]) / (count - 1);
-    for (int n = 0; n < kHalvings && best.cost < kInfinity; ++n) {
-      bool moved = false;
-      for (int k = 0; k < 2 * Arm::kFree; ++k) {
-        std::array<double, Arm::kFree> free;
-        for (std::size_t i = 0; i < free.size(); ++i) free[i] = best.q[Arm::kFreeJoints[i]];
-        free[static_cast<std::size_t>(k / 2)] += k % 2 == 0 ? step[k / 2] : -step[k / 2];
-        const Start from = best;
-        look(free, [&](const Start& s) {
-          double gap = 0.0;
-          for (int j = 0; j < Arm::kDof; ++j) gap = std::max(gap, std::abs(s.q[j] - from.q[j]));
-          if (gap > 0.5 || !(s.cost < best.cost)) return;
-          best = s;
-          moved = true;
-        });
+      Point before, here, after;
+      at(index, 0, 0, here);
+      for (index[0] = 0; index[0] < kCount; ++index[0]) {
+        after.count = 0;
+        if (index[0] + 1 < kCount) at(index, 0, 1, after);
+        take(index, before, here, after);
+        before = here;
+        here = after;
       }
-      for (double& x : step) x *= moved ? 1.0 : 0.5;
+      index[0] = 0;
+      for (k = 1; k < Arm::kFree && ++index[k] == kCount; ++k) index[k] = 0;
     }
+  }
+
+  // The rows at a point of the grid, or some steps along an axis from it.
+  void at(const int* index, int along, int steps, Point& out) noexcept {
+    Held held;
+    for (int k = 0; k < Arm::kFree; ++k) held[static_cast<std::size_t>(k)] = axis[k][index[k] + (k == along ? steps : 0)];
+    look(held, out);
+  }
+
+  // Keeps, of a point's rows, those that none near them at the points beside is better than, or as good and nearer to what
+  // is wanted; of too many the best.
+  void take(const int* index, const Point& before, const Point& here, const Point& after) noexcept {
+    for (int r = 0; r < here.count; ++r) {
+      const Start& s = here.row[r];
+      Start* worst = std::max_element(starts, starts + kStarts, [](const Start& a, const Start& b) { return a.cost < b.cost; });
+      if (s.cost < worst->cost && !beaten(s, before) && !beaten(s, after) && !beaten_aside(index, s)) *worst = s;
+    }
+  }
+  bool beaten(const Start& s, const Point& by) const noexcept {
+    return std::any_of(by.row, by.row + by.count, [&](const Start& other) {
+      const double more = other.cost - s.cost;
+      return (more < -kEqual || (more <= kEqual && other.away < s.away)) && RowPair<Arm>::within(reach, s.q, other.q);
+    });
+  }
+  bool beaten_aside(const int* index, const Start& s) noexcept {
+    Point beside;
+    for (int k = 1; k < Arm::kFree; ++k)
+      for (const int steps : {-1, 1}) {
+        if (index[k] + steps < 0 || index[k] + steps == kCount) continue;
+        at(index, k, steps, beside);
+        if (beaten(s, beside)) return true;
+      }
+    return false;
+  }
+
+  void look(const Held& held, Point& out) noexcept {
+    descent.look(held, out);
+    real = real || out.count > 0;
   }
 };
 

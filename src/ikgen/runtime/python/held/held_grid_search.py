@@ -9,11 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ikgen.runtime.python.arm.solved_arm import Arm
-from ikgen.runtime.python.arrays.array_types import Array, Flags
+from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.arrays.row_blocks import in_blocks
 from ikgen.runtime.python.held.held_joint import pose_lines
 from ikgen.runtime.python.held.slide_range import slide_range
-from ikgen.runtime.python.held.solution_search import Start, best_rows
+from ikgen.runtime.python.held.solution_search import solutions_of
+from ikgen.runtime.python.held.values_descent import descended_rows
+from ikgen.runtime.python.rows.row_links import differences
 from ikgen.runtime.python.rows.row_preference import preference_costs, preference_of
 from ikgen.runtime.python.rows.solutions import Solutions, no_held_values
 from ikgen.runtime.python.solving.batch_solving import rows_batch
@@ -22,15 +24,19 @@ from ikgen.runtime.python.solving.pose_solving import solve_pose
 __all__ = ["search_grid"]
 
 _POINTS = 4096  # of the grid
-_BEGINNINGS = 32
-_PART = 1024
+_STARTS = 32
+_PART = 1024  # points that are solved at once
+_EQUAL = 1e-9  # costs that differ by less are as good
+_BESIDE = (
+    0.5  # rad or m, more than a step: rows so near at values beside each other are of one branch
+)
 
 
 def search_grid(
     arm: Arm, pose: Any, seed: ArrayLike | None, prefer: str, limits: bool
 ) -> Solutions:
-    """Good rows over a grid of the held joints' values, each made better by a compass search. Raises
-    ValueError for bad arguments."""
+    """Rows that are better than those beside them on a grid of the held joints' values, each made better
+    by steps of these: best first, and none twice. Raises ValueError for bad arguments."""
     preference = preference_of(arm, prefer, seed)
     T = pose_lines(arm, pose)
     if T is None:
@@ -43,15 +49,50 @@ def search_grid(
         return rows, np.where(real & inside, cost, inf), real
 
     found, costs, real = in_blocks(rows_at, _PART, values)
-    starts: list[Start] = []
-    for flat in np.argsort(costs, axis=None, kind="stable")[:_BEGINNINGS].tolist():
-        point, row = divmod(flat, costs.shape[1])
-        if costs[point, row] < inf:
-            held = tuple(values[point].tolist())
-            starts.append((held, found[point, row], steps, len(starts), (-inf, inf), None))
-    if not starts:
+    away = ((found - np.array(preference[1])) ** 2).sum(axis=2)
+    point, row = _lowest(arm, found, costs, away, _BESIDE + 2.0 * max(steps))
+    if not len(point):
         return no_held_values(len(arm.lower), arm.free_joints, bool(real.any()))
-    return best_rows(arm, T, starts, preference, limits)
+    point, row = point[:_STARTS], row[:_STARTS]
+    start = values[point], found[point, row], np.tile(steps, (len(point), 1))
+    rows, cost = descended_rows(arm, T, *start, preference, limits)
+    best = _distinct(arm, rows, np.argsort(cost, kind="stable"))[: arm.most]
+    return solutions_of(arm, T, rows[best], preference, limits)
+
+
+def _lowest(arm: Arm, rows: Array, costs: Array, away: Array, near: float) -> tuple[Index, Index]:
+    """Point and row of those of rows (n, m, dof) on a grid, of costs (n, m), that no row which is `near`
+    (rad or m) at the points beside along an axis is better than, or as good as and less `away` (n, m) from
+    what is wanted; the lowest first."""
+    axes = len(arm.free)
+    grid = np.arange(len(costs)).reshape((round(len(costs) ** (1.0 / axes)),) * axes)
+    lowest = costs < inf
+    for axis in range(axes):
+        line = np.moveaxis(grid, axis, 0)
+        for here, there in ((line[1:], line[:-1]), (line[:-1], line[1:])):
+            at, beside = here.reshape(-1), there.reshape(-1)
+            k, row = np.nonzero(lowest[at])
+            with np.errstate(invalid="ignore"):  # rows that are none
+                gap = np.abs(differences(arm, rows[at[k], row][:, None], rows[beside[k]])).max(
+                    axis=2
+                )
+                more = costs[beside[k]] - costs[at[k], row][:, None]
+                nearer = away[beside[k]] < away[at[k], row][:, None]
+                better = (gap < near) & ((more < -_EQUAL) | (nearer & (more <= _EQUAL)))
+            lowest[at[k], row] = ~better.any(axis=1)
+    point, row = np.nonzero(lowest)
+    order = np.argsort(costs[point, row], kind="stable")
+    return point[order], row[order]
+
+
+def _distinct(arm: Arm, rows: Array, order: Index) -> list[int]:
+    """Of rows (n, dof) in an order those that are not alike one before them."""
+    out: list[int] = []
+    for i in order.tolist():
+        gaps = np.abs(differences(arm, rows[out], rows[i]))
+        if not (gaps < arm.policy.alike).all(axis=1).any():
+            out.append(i)
+    return out
 
 
 def _grid(
@@ -67,8 +108,8 @@ def _grid(
         if arm.chain.revolute[j] and not (limits and high - low < inf):
             low, high = -pi, pi
         low, high = (min(max(x, low), high) for x in slide_range(arm, T, j))
-        low, high = max(low, middle[j] - 1.0) if low == -inf else low, high
-        high = min(high, max(low, middle[j]) + 1.0) if high == inf else high
+        low = min(high, middle[j]) - 1.0 if low == -inf else low
+        high = max(low, middle[j]) + 1.0 if high == inf else high
         axis = np.linspace(low, high, count)
         axis[np.abs(axis - middle[j]).argmin()] = min(max(middle[j], low), high)
         axes.append(axis)

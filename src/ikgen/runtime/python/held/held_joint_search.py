@@ -7,10 +7,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ikgen.runtime.python.arrays.array_types import Array, Index
 from ikgen.runtime.python.held.branch_tracks import Tracks, tracked
 from ikgen.runtime.python.held.held_joint import HeldJoint, held_range, pose_lines
 from ikgen.runtime.python.held.self_motion import Piece, pieces_of
-from ikgen.runtime.python.held.solution_search import Reach, Start, best_rows
+from ikgen.runtime.python.held.solution_search import (
+    Reach,
+    Start,
+    improved_rows,
+    solutions_of,
+)
 from ikgen.runtime.python.rows.row_preference import Preference, preference_costs, preference_of
 from ikgen.runtime.python.rows.solutions import Solutions, no_held_values
 from ikgen.runtime.python.solving.pose_solving import solve_pose
@@ -29,18 +35,27 @@ def search_interval(
     if T is None:
         return solve_pose(arm, pose, None, None, limits)  # which says why it is none
     tracks = tracked(joint, T, *held_range(arm, T, limits), limits)
-    starts = [
-        start
-        for group, piece in enumerate(pieces_of(joint, T, tracks, limits))
-        for start in _starts(tracks, piece, group, preference, joint, limits)
-    ]
+    starts: list[Start] = []
+    interval: list[int] = []
+    for k, piece in enumerate(pieces_of(joint, T, tracks, limits)):
+        starts += _starts(tracks, piece, preference, joint, limits)
+        interval += [k] * (len(starts) - len(interval))
     if not starts:
         return no_held_values(len(arm.lower), arm.free_joints, bool(tracks.rows.real.any()))
-    return best_rows(arm, T, starts, preference, limits)
+    rows, cost = improved_rows(arm, T, starts, preference, limits)
+    best = _best_of_each(np.array(interval), cost)[: arm.most]
+    return solutions_of(arm, T, rows[best], preference, limits)
+
+
+def _best_of_each(group: Index, cost: Array) -> Index:
+    """The index of the lowest cost of each group, in the order of their costs."""
+    order = np.argsort(cost, kind="stable")
+    first = np.unique(group[order], return_index=True)[1]
+    return order[np.sort(first)]
 
 
 def _starts(
-    tracks: Tracks, piece: Piece, group: int, preference: Preference, joint: HeldJoint, limits: bool
+    tracks: Tracks, piece: Piece, preference: Preference, joint: HeldJoint, limits: bool
 ) -> list[Start]:
     """The ends of an interval, and the samples in it that are better than those beside them."""
     held, q = tracks.rows.held, tracks.rows.q
@@ -59,5 +74,5 @@ def _starts(
             step = max((abs(points[i][0] - value) for i in beside), default=1e-3)
             ends = [max(k - 1, 0), min(k + 1, len(points) - 1)]
             reach = Reach(values[ends], rows[ends], folds[ends])
-            out.append(((value,), row, (0.5 * step,), group, piece.reach(), reach))
+            out.append((value, row, 0.5 * step, piece.reach(), reach))
     return out

@@ -1,4 +1,4 @@
-"""The best rows of a pose over all values of the held joints."""
+"""Better rows of a pose at other values of what is held."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from ikgen.runtime.python.singular.fold_pair import approach
 from ikgen.runtime.python.solving.batch_solving import rows_batch
 from ikgen.runtime.python.solving.pose_solving import solve_pose
 
-__all__ = ["Reach", "Start", "best_rows"]
+__all__ = ["LEAST_STEP", "Reach", "Start", "improved_rows", "solutions_of", "tried_rows"]
 
 
 class Reach(NamedTuple):
@@ -52,53 +52,43 @@ class Reach(NamedTuple):
         return np.where(first & last, np.arctan2(below, above), one)
 
 
-Start = tuple[tuple[float, ...], Array, tuple[float, ...], int, tuple[float, float], Reach | None]
-"""Values of the held joints, a row there, the first steps of each value, the number of its group, between
-which values its branch goes on, and how far it is followed where one joint is held."""
+Start = tuple[float, Array, float, tuple[float, float], Reach]
+"""A value of the held joint, a row there, the first step of the value, between which values its branch goes
+on, and how far it is followed."""
 
-_HALVINGS = 40
-_LEAST_STEP = 1e-10  # rad or m
+_STEPS = 40
+_SHORTER = 0.4
+LEAST_STEP = 1e-10  # rad or m
 _NEAR = 0.5  # rad or m that a row may be from the one that a step began at
 _BESIDE = 0.05  # the same of a row beside a fold
+_ASKED = 1e-3  # rad or m: the shortest way for which the closed form is asked
 
 
-def best_rows(
+def improved_rows(
     arm: Arm, T: Array, starts: list[Start], preference: Preference, limits: bool
-) -> Solutions:
-    """From each start the best row that a compass search (Hooke, Jeeves 1961) of the held values finds
-    on its branch; of each group the best, best first, at most as many as `solve` gives."""
-    held = np.array([s[0] for s in starts])
+) -> tuple[Array, Array]:
+    """From each start the best row (n, dof) that shorter and shorter steps of the one held value find on
+    its branch, and its cost (n,)."""
+    held = np.array([[s[0]] for s in starts])
     rows = np.array([s[1] for s in starts])
     step = np.array([s[2] for s in starts])
-    ends = np.array([s[4] for s in starts])
-    reach = Reach(*map(np.array, zip(*(s[5] for s in starts)))) if starts[0][5] else None
-    if reach is not None:
-        ends = np.stack(
-            [np.maximum(ends[:, 0], reach.ends[:, 0]), np.minimum(ends[:, 1], reach.ends[:, 1])],
-            axis=1,
-        )
+    ends = np.array([s[3] for s in starts])
+    reach = Reach(*map(np.array, zip(*(s[4] for s in starts))))
+    low = np.maximum(ends[:, 0], reach.ends[:, 0])
+    high = np.minimum(ends[:, 1], reach.ends[:, 1])
     _, cost, _ = preference_costs(arm, preference, rows[:, None], limits)
     best = cost[:, 0]
-    for _ in range(_HALVINGS):
-        going = np.flatnonzero(step.max(axis=1) > _LEAST_STEP)
+    for _ in range(_STEPS):
+        going = np.flatnonzero(step > LEAST_STEP)
         if not len(going):
             break
-        moved = np.zeros(len(going), dtype=bool)
         now = held[going], rows[going], best[going]
-        for k in range(held.shape[1]):
-            trials = np.stack([now[0], now[0]])
-            trials[:, :, k] += np.outer((1.0, -1.0), step[going, k])
-            trials = np.clip(trials, ends[going, :1], ends[going, 1:])
-            part = None if reach is None else some_of(reach, going)
-            moved |= _improved(arm, T, preference, limits, now, trials, part)
+        ways = np.stack([step[going], -step[going]])[:, :, None]
+        trials = np.clip(now[0] + ways, low[going, None], high[going, None])
+        moved = _improved(arm, T, preference, limits, now, trials, some_of(reach, going))
         held[going], rows[going], best[going] = now
-        step[going[~moved]] *= 0.5 if held.shape[1] > 1 else 0.4
-    groups = np.array([s[3] for s in starts])
-    out: list[int] = []
-    for i in np.argsort(best, kind="stable").tolist():
-        if groups[i] not in groups[out] and len(out) < arm.most:
-            out.append(i)
-    return _solutions(arm, T, preference, limits, held[out], rows[out])
+        step[going[~moved]] *= _SHORTER
+    return rows, best
 
 
 def _improved(
@@ -110,9 +100,29 @@ def _improved(
     trials: Array,
     reach: Reach | None = None,
 ) -> Flags:
-    """Takes, in place, the first of each row's trials (s, n, held joints) that is better; which were.
+    """Takes, in place, the first of each row's trials (s, n, held values) that is better; which were.
     `reach`: of each row."""
     held, rows, best = now
+    trials, row, cost = tried_rows(arm, T, preference, limits, held, rows, trials, reach)
+    good = cost < best
+    better = good.any(axis=0)
+    which = good.argmax(axis=0)[better], np.flatnonzero(better)
+    held[better], rows[better], best[better] = trials[which], row[which], cost[which]
+    return np.asarray(better)
+
+
+def tried_rows(
+    arm: Arm,
+    T: Array,
+    preference: Preference,
+    limits: bool,
+    held: Array,
+    rows: Array,
+    trials: Array,
+    reach: Reach | None = None,
+) -> tuple[Array, Array, Array]:
+    """For rows (n, dof) at values (n, held) trials (s, n, held) inside the limits, the rows (s, n, dof) of
+    the same branches there, and their costs (s, n), infinite where there is none."""
     if limits and arm.free:
         low, high = np.array(arm.lower)[list(arm.free)], np.array(arm.upper)[list(arm.free)]
         trials = np.clip(trials, low, high)
@@ -122,29 +132,30 @@ def _improved(
     poses = np.broadcast_to(T, (int(goes.sum()), 4, 4))
     begin = row[goes]
     if reach is not None:
-        which = np.tile(np.arange(len(best)), count)[goes]
+        which = np.tile(np.arange(len(rows)), count)[goes]
         begin = some_of(reach, which).ahead(arm, held[which, 0], begin, trial[goes, 0])
     row[goes], near[goes] = _next_rows(arm, poses, begin, trial[goes])
     _, cost, inside = preference_costs(arm, preference, row[:, None], limits)
-    good = (near & inside[:, 0]).reshape(count, -1) & (cost.reshape(count, -1) < best)
-    better = good.any(axis=0)
-    which = (good.argmax(axis=0) * len(best) + np.arange(len(best)))[better]
-    held[better], rows[better], best[better] = trial[which], row[which], cost[which, 0]
-    return np.asarray(better)
+    cost = np.where(near & inside[:, 0], cost[:, 0], inf)
+    return trials, row.reshape(count, *rows.shape), cost.reshape(count, -1)
 
 
 def _next_rows(arm: Arm, T: Array, rows: Array, held: Array) -> tuple[Array, Flags]:
     """The rows (n, dof) at held values (n, held) that are next to `rows` (n, dof), and which are near: by
-    Newton steps where these tell, beside folds by steps to both sides, by the closed form elsewhere."""
+    Newton steps where these tell, beside folds by steps to both sides, elsewhere by the closed form. Of
+    several held joints it has none for the shortest ways where these have not: that leads out of a fold."""
     start, aim = rows.copy(), aims(arm, T, held)
     start[:, list(arm.free)] = held[:, : len(arm.free)]
+    asked = np.full(len(start), True)
+    if held.shape[1] > 1:
+        asked = np.abs(start - rows).max(axis=1) > _ASKED
     with np.errstate(all="ignore"):
         row, arrived, _, strained = refine_few(arm, start, aim)
         near = arrived & ~strained
         left = np.flatnonzero(~near)
         if len(left):
             row[left], near[left] = _beside_fold(arm, start[left], aim[left])
-            left = left[~near[left]]
+            left = left[~near[left] & asked[left]]
     if len(left):
         q, real = rows_batch(arm, T[left], held[left])
         gap = np.abs(differences(arm, rows[left, None], q)).max(axis=2)
@@ -166,10 +177,10 @@ def _beside_fold(arm: Arm, start: Array, aim: Array) -> tuple[Array, Flags]:
     return q[nearest], gap.min(axis=1) < _BESIDE
 
 
-def _solutions(
-    arm: Arm, T: Array, preference: Preference, limits: bool, held: Array, rows: Array
+def solutions_of(
+    arm: Arm, T: Array, rows: Array, preference: Preference, limits: bool
 ) -> Solutions:
-    """The rows as `solve` gives them for these values, in this order."""
+    """Rows (n, dof) as `solve` gives them for their values of what is held, in this order."""
     q, flags = [], []
     placed, _, _ = preference_costs(arm, preference, rows[:, None], limits)
     for values, row in zip(held_of(arm, placed[:, 0]), placed[:, 0]):

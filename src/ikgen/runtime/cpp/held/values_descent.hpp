@@ -1,0 +1,143 @@
+// Descent to better rows of a pose by values of several held joints that go together: a compass search (Hooke, Jeeves 1961)
+// that looks at the minimum of the quadratic through its costs as well (Winfield 1973), which narrow valleys are followed by.
+#pragma once
+
+#include "held/row_preference.hpp"
+#include "rows/row_pair.hpp"
+
+namespace ikgen_runtime {
+
+// Arm: as for RowPreference and RowPair; Solver: as for PathStep.
+template <class Arm, class Solver> struct ValuesDescent {
+  static constexpr int kFree = Arm::kFree, kWays = 2 * kFree + kFree * (kFree - 1) / 2, kSweeps = 60;
+  static constexpr double kLeastStep = 1e-10;  // rad or m
+  static constexpr double kNear = 0.5;         // rad or m that a row may be from the one that a step began at
+  static constexpr double kFarthest = 4.0;     // steps that the quadratic's minimum may be away
+  static constexpr double kShortest = 0.1;     // of a step, that it makes of the next one
+  using Held = std::array<double, Arm::kFree>;
+
+  // A row, of infinite cost outside the limits, and the squared distance from what is wanted.
+  struct Start {
+    double cost = kInfinity, away, q[Arm::kDof];
+  };
+  struct Point {
+    int count = 0;
+    Start row[Arm::kMaxSolutions];
+  };
+
+  const Eigen::Isometry3d& pose;
+  const RowPreference<Arm>& preference;
+
+  // All rows at some values.
+  void look(const Held& held, Point& out) const noexcept {
+    typename Arm::Options options;
+    typename Arm::Solutions found;
+    options.limits = false;
+    options.free = held;
+    Solver::solve(pose, options, found);
+    out.count = found.count;
+    for (int r = 0; r < found.count; ++r) {
+      Start& s = out.row[r];
+      std::copy_n(SolutionRows<Arm>::row(found, r), Arm::kDof, s.q);
+      s.cost = preference.place(s.q) ? preference.cost(s.q) : kInfinity;
+      s.away = 0.0;
+      for (int j = 0; j < Arm::kDof; ++j) s.away += (s.q[j] - preference.wanted.data()[j]) * (s.q[j] - preference.wanted.data()[j]);
+    }
+  }
+
+  // To better rows of the same branch, by steps that get shorter.
+  void improve(Start& best, Held step) const noexcept {
+    for (int n = 0; n < kSweeps && *std::max_element(step.begin(), step.end()) > kLeastStep && best.cost < kInfinity; ++n) {
+      Sweep sweep{best, best, step, {}, {}, true};
+      for (int k = 0; k < kFree; ++k) {
+        sweep.up[k] = sweep.take(*this, way(k, 1.0));
+        sweep.down[k] = sweep.take(*this, way(k, -1.0));
+      }
+      double H[kFree][kFree], lowest[kFree];
+      for (int a = 0; a < kFree; ++a) {
+        for (int b = 0; b < a; ++b) {
+          Held both = way(a, 1.0);
+          both[static_cast<std::size_t>(b)] = 1.0;
+          H[a][b] = sweep.take(*this, both) - sweep.up[a] - sweep.up[b] + best.cost;
+        }
+        H[a][a] = sweep.up[a] + sweep.down[a] - 2.0 * best.cost;
+        lowest[a] = 0.5 * (sweep.down[a] - sweep.up[a]);
+      }
+      double share = sweep.best.cost < best.cost ? 1.0 : 0.5;
+      if (sweep.unbounded && std::isfinite(H_sum(H)) && minimum(H, lowest)) {
+        Held there;
+        double longest = 0.0;
+        for (int k = 0; k < kFree; ++k) {
+          there[static_cast<std::size_t>(k)] = lowest[k];
+          longest = std::max(longest, std::abs(lowest[k]));
+        }
+        const double before = sweep.best.cost;
+        sweep.take(*this, there);
+        if (sweep.best.cost < before) share = std::min(std::max(longest, kShortest), 1.0);
+      }
+      best = sweep.best;
+      for (double& x : step) x *= share;
+    }
+  }
+
+ private:
+  // Costs at steps around a row, and the best row there.
+  struct Sweep {
+    const Start middle;
+    Start best;
+    const Held& step;
+    double up[kFree], down[kFree];
+    bool unbounded;
+
+    // That of the row of the same branch a way from it, in steps; infinite where there is none.
+    double take(const ValuesDescent& of, const Held& way) noexcept {
+      Held held;
+      for (std::size_t k = 0; k < held.size(); ++k) {
+        const auto joint = static_cast<std::size_t>(Arm::kFreeJoints[k]);
+        const double wanted = middle.q[joint] + way[k] * step[k];
+        held[k] = of.preference.options.limits ? std::min(std::max(wanted, Arm::kLower.data()[joint]), Arm::kUpper.data()[joint]) : wanted;
+        unbounded = unbounded && held[k] == wanted;
+      }
+      Point there;
+      of.look(held, there);
+      const Start* nearest = nullptr;
+      double least = kNear;
+      for (int r = 0; r < there.count; ++r) {
+        double gap = 0.0;
+        for (int j = 0; j < Arm::kDof; ++j) gap = std::max(gap, std::abs(SolutionRows<Arm>::change(j, middle.q, there.row[r].q)));
+        if (!(gap < least)) continue;
+        least = gap;
+        nearest = &there.row[r];
+      }
+      if (!nearest) return kInfinity;
+      if (nearest->cost < best.cost) best = *nearest;
+      return nearest->cost;
+    }
+  };
+
+  static Held way(int k, double steps) noexcept {
+    Held out = {};
+    out[static_cast<std::size_t>(k)] = steps;
+    return out;
+  }
+
+  static double H_sum(const double (&H)[kFree][kFree]) noexcept {
+    double sum = 0.0;
+    for (int a = 0; a < kFree; ++a)
+      for (int b = 0; b <= a; ++b) sum += H[a][b];
+    return sum;
+  }
+
+  // Where a quadratic is least, from minus its slope, as far as it may be; false where it is nowhere.
+  static bool minimum(double (&H)[kFree][kFree], double (&lowest)[kFree]) noexcept {
+    factor(H);
+    if (!definite(H)) return false;
+    substitute(H, lowest);
+    double longest = 0.0;
+    for (const double x : lowest) longest = std::max(longest, std::abs(x));
+    for (double& x : lowest) x *= std::min(1.0, kFarthest / std::max(longest, 1e-300));
+    return true;
+  }
+};
+
+}  // namespace ikgen_runtime

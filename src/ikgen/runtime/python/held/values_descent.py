@@ -1,0 +1,73 @@
+"""Descent to better rows of a pose by values of several held joints that go together."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ikgen.runtime.python.arm.solved_arm import Arm
+from ikgen.runtime.python.arrays.array_types import Array
+from ikgen.runtime.python.held.solution_search import LEAST_STEP, tried_rows
+from ikgen.runtime.python.rows.row_preference import Preference, preference_costs
+
+__all__ = ["descended_rows"]
+
+_SWEEPS = 60
+_FARTHEST = 4.0  # steps that the model's minimum may be away
+_SHORTEST = 0.1  # of a step, that it makes of the next one
+
+
+def descended_rows(
+    arm: Arm, T: Array, held: Array, rows: Array, step: Array, preference: Preference, limits: bool
+) -> tuple[Array, Array]:
+    """From rows (n, dof) at values (n, held) the best ones that a compass search (Hooke, Jeeves 1961) with
+    first steps (n, held) finds on their branches, and their costs (n,). Each sweep looks at the minimum of
+    the quadratic through its costs as well (Winfield 1973), which narrow valleys are followed by."""
+    _, cost, _ = preference_costs(arm, preference, rows[:, None], limits)
+    best, ways = cost[:, 0], _ways(held.shape[1])
+    for _ in range(_SWEEPS):
+        going = np.flatnonzero(step.max(axis=1) > LEAST_STEP)
+        if not len(going):
+            break
+        at, row, size = held[going], rows[going], step[going]
+        wanted = at + ways[:, None] * size
+        trials, found, costs = tried_rows(arm, T, preference, limits, at, row, wanted)
+        unbounded = (trials == wanted).all(axis=(0, 2))
+        far = np.where(unbounded[:, None], _model_minimum(best[going], costs), 0.0)
+        last = tried_rows(arm, T, preference, limits, at, row, (at + far * size)[None])
+        trials, found, costs = (np.concatenate(both) for both in zip((trials, found, costs), last))
+        which, each = costs.argmin(axis=0), np.arange(len(going))
+        better = costs[which, each] < best[going]
+        some = which[better], each[better]
+        held[going[better]], rows[going[better]] = trials[some], found[some]
+        best[going[better]] = costs[some]
+        length = np.clip(np.abs(far).max(axis=1), _SHORTEST, 1.0)
+        share = np.where(better, np.where(which == len(ways), length, 1.0), 0.5)
+        step[going] *= share[:, None]
+    return rows, best
+
+
+def _ways(count: int) -> Array:
+    """Of each value there and back, then of each two of them, in steps (s, count)."""
+    one = np.eye(count)
+    first, second = np.triu_indices(count, 1)
+    return np.concatenate([one, -one, one[first] + one[second]])
+
+
+def _model_minimum(middle: Array, costs: Array) -> Array:
+    """Where the quadratic through costs (n,) in the middle and (s, n) at `_ways` is least, in steps
+    (n, count), as far as it may be; zeros where it is nowhere."""
+    count = round((2 * len(costs) + 2.25) ** 0.5 - 1.5)  # as s = 2 count + count (count - 1) / 2
+    up, down, both = costs[:count], costs[count : 2 * count], costs[2 * count :]
+    with np.errstate(invalid="ignore"):
+        slope, H = 0.5 * (up - down).T, np.zeros((len(middle), count, count))
+        first, second = np.triu_indices(count, 1)
+        H[:, range(count), range(count)] = (up + down - 2.0 * middle).T
+        H[:, first, second] = H[:, second, first] = (both - up[first] - up[second] + middle).T
+    told = np.isfinite(costs).all(axis=0)
+    H[~told], slope[~told] = np.eye(count), 0.0
+    told &= np.linalg.eigvalsh(H)[:, 0] > 0.0
+    H[~told] = np.eye(count)
+    far = -np.linalg.solve(H, slope[:, :, None])[:, :, 0]
+    longest = np.abs(far).max(axis=1, keepdims=True)
+    far *= np.minimum(1.0, _FARTHEST / np.maximum(longest, 1e-300))
+    return np.where(told[:, None], far, 0.0)
