@@ -126,6 +126,7 @@ namespace detail {
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kTurn = 2.0 * kPi;
 inline constexpr double kFarthestSeed = 1e6;  // rad: neighbouring doubles are 1e-10 apart
+inline constexpr double kFarthest = 1e15;  // m: where neighbouring doubles are 0.1 m apart; no arm reaches beyond
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // --- machine vectors -----------------------------------------------------------------------------
@@ -2606,17 +2607,24 @@ template <class Arm> struct PoseReading {
     return true;
   }
 
+  static typename Arm::Status refused(Eigen::Isometry3d pose) noexcept {
+    for (double* x = pose.matrix().data() + 12; x < pose.matrix().data() + 15; ++x)
+      if (std::abs(*x) < kInfinity) *x = 0.0;
+    return clean(pose) ? Arm::Status::Unreachable : Arm::Status::Invalid;
+  }
+
  private:
   static constexpr bool single(int column) noexcept { return column < 3 && !Columns::has(column); }
 
   [[gnu::always_inline]] static bool good(const double* t, double most, double largest) noexcept {
-    double defect = Columns::defect(t), others = 0.0;
-    for (const auto [row, column] : Arm::kRead) others += Columns::has(column) ? 0.0 : t[4 * column + row];
+    double others = 0.0;
+    for (const auto [row, column] : Arm::kRead)
+      others += Columns::has(column) ? 0.0 : t[4 * column + row] * t[4 * column + row];
     for (const auto [row, column] : Arm::kRead)
       if (single(column) && !(std::abs(t[4 * column + row]) <= largest)) return false;
-    defect += 0.0 * others;
     if (Arm::kWholePose && !(t[3] == 0.0 && t[7] == 0.0 && t[11] == 0.0 && t[15] == 1.0)) return false;
-    return defect <= most && Columns::proper(t);
+    const bool reached = others <= kFarthest * kFarthest, unit = Columns::defect(t) <= most;
+    return (reached & unit) && Columns::proper(t);  // one branch of both
   }
 };
 
@@ -2681,7 +2689,7 @@ template <class Arm, template <class> class Way> struct PoseSolver {
         Way<Arm>::template solve<1>(&clean, options, out);
       } else {
         out->count = 0;
-        out->status = Arm::Status::Invalid;
+        out->status = PoseReading<Arm>::refused(*poses);
       }
     }
   }
@@ -2695,9 +2703,8 @@ template <class Arm, template <class> class Way> struct Projection {
 
   [[gnu::cold, gnu::noinline]] static void apply(const Eigen::Isometry3d& pose, const Options& given,
                                                  Solutions& out) noexcept {
-    if (out.status == Arm::Status::Invalid) return;
     Eigen::Isometry3d target = pose;
-    PoseReading<Arm>::clean(target);
+    if (!PoseReading<Arm>::clean(target)) return;
     const double* t = target.matrix().data();
     if (out.count == 0) solve_nearest(t, given, out);
     for (int k = 0; k < out.count; ++k) Chords::off_by(out.q.data()[k].data(), t, out.off.data()[k].data());
@@ -2952,7 +2959,7 @@ inline Walk follow_poses(const Eigen::Isometry3d* poses, std::ptrdiff_t count, c
     Eigen::Isometry3d pose = poses[i];
     walk.crossed = false;
     if (!PoseReading<A>::clean(pose)) {
-      out.status = Status::Invalid;
+      out.status = PoseReading<A>::refused(pose);
     } else if (i > 0) {
       out.status = walk.go_on(before, pose);
     } else if (out.status = walk.begin(pose, start); out.status != Status::Ok) {

@@ -472,6 +472,18 @@ def _entry_lane_rows(
     return out * weight.astype(J.dtype)[:, None]
 
 
+# What of a pose counts.
+
+
+_task_interface_FARTHEST = 1e15  # m: where neighbouring doubles are 0.1 m apart; no arm reaches beyond
+
+
+def _near_enough(p: Array) -> _Flags:
+    """Which of positions (N, k), or parts of them, are within `_task_interface_FARTHEST`, all numbers."""
+    with np.errstate(over="ignore"):
+        return np.asarray((p * p).sum(axis=1) <= _task_interface_FARTHEST * _task_interface_FARTHEST)
+
+
 # Everything that the runtime is told about one arm.
 
 
@@ -2383,7 +2395,7 @@ def _nearest_columns(columns: _Columns[_N]) -> _Columns[_N]:
     return columns
 
 
-# What is wrong with a pose that is none, and the rotation that one with few digits stands for.
+# What is wrong with a pose that is not read, and the rotation that one with few digits stands for.
 
 
 _PRINTED = 1e-3  # how far the entries of a rotation that was printed with a few digits may be off
@@ -2391,13 +2403,31 @@ _PRINTED = 1e-3  # how far the entries of a rotation that was printed with a few
 
 def _nearest_pose(task: _EntriesTask, T: list[list[float]], policy: _Policy) -> list[list[float]]:
     """The pose with the nearest rotation."""
-    return task.read(T, replace(policy, pose_tolerance=_PRINTED)) or T
+    lines = task.read(T, replace(policy, pose_tolerance=_PRINTED))
+    if lines is not None:
+        return lines
+    out: list[list[float]] = _nearest_poses(task, np.array([T]), policy)[0].tolist()
+    return out
 
 
 def _nearest_poses(task: _EntriesTask, T: Array, policy: _Policy) -> Array:
     """The same of T (N, 4, 4)."""
-    near, good = task.read_batch(T, replace(policy, pose_tolerance=_PRINTED))
-    return np.where(good[:, None, None], near, T)
+    near, good = task.read_batch(_at_origin(T), replace(policy, pose_tolerance=_PRINTED))
+    out: Array = np.where(good[:, None, None], near, T)
+    out[:, :3, 3] = T[:, :3, 3]
+    return out
+
+
+def _too_far(task: _EntriesTask, T: Array, policy: _Policy) -> _Flags:
+    """Which of T (N, 4, 4) that the task does not read are poses whose position is beyond all reach."""
+    return task.read_batch(_at_origin(T), policy)[1]
+
+
+def _at_origin(T: Array) -> Array:
+    """The same with positions at 0, but for what is no number of them."""
+    out: Array = T.copy()
+    out[:, :3, 3][np.isfinite(T[:, :3, 3])] = 0.0
+    return out
 
 
 def _pose_fault(task: _EntriesTask, T: list[list[float]], policy: _Policy) -> str:
@@ -2511,6 +2541,8 @@ def _solve_poses(
     if orthonormalize:
         T = _nearest_poses(arm.task, T, arm.policy)
     T, good = arm.task.read_batch(T, arm.policy)
+    if not good.all():
+        status[~good & _too_far(arm.task, T, arm.policy)] = Status.UNREACHABLE.value
     usable, size = np.flatnonzero(good), _CHUNK
     for start in range(0, len(usable), size):
         part = usable[start : start + size]
@@ -2619,6 +2651,8 @@ def _solve_pose(
         lines = _nearest_pose(arm.task, lines, arm.policy)
     T = arm.task.read(lines, arm.policy)
     if T is None:
+        if _too_far(arm.task, np.array([lines]), arm.policy)[0]:
+            return _no_solutions(len(arm.lower), Status.UNREACHABLE, _held_reason(arm, held, False))
         reason = _pose_fault(arm.task, lines, arm.policy)
         return _no_solutions(len(arm.lower), Status.INVALID, reason)
     asked = T, near, held
@@ -2843,7 +2877,8 @@ def _follow_poses(
         read = arm.task.read(lines, arm.policy)
         pose = np.array(lines if read is None else read)
         if read is None:
-            status = Status.INVALID
+            far = _too_far(arm.task, T[i : i + 1], arm.policy)[0]
+            status = Status.UNREACHABLE if far else Status.INVALID
         elif i:
             status = walk.go_on(before, pose)
         else:
@@ -2985,16 +3020,20 @@ class _EntriesTask:
 
     def read(self, T: list[list[float]], policy: _Policy) -> list[list[float]] | None:
         """Implements `Task`."""
-        lines = T
+        lines, square = T, 0.0
         for r, c in self.entries:
             x = lines[r][c]
-            if not isfinite(x):
+            if c == 3:
+                square += x * x
+            elif not isfinite(x):
                 return None
-            if c != 3 and c not in self.unit and abs(x) > 1.0:
+            elif c not in self.unit and abs(x) > 1.0:
                 if abs(x) > 1.0 + policy.pose_tolerance:
                     return None
                 lines = [list(line) for line in lines]
                 lines[r][c] = copysign(1.0, x)
+        if not square <= _task_interface_FARTHEST * _task_interface_FARTHEST:
+            return None
         return self._with_unit_columns(lines, policy) if self.unit else lines
 
     def _with_unit_columns(self, T: list[list[float]], policy: _Policy) -> list[list[float]] | None:
@@ -3046,6 +3085,7 @@ class _EntriesTask:
     def _single_entries(self, T: Array, policy: _Policy) -> tuple[Array, _Flags]:
         """Poses whose entries of no unit column, which are cosines, lie between -1 and 1."""
         good: _Flags = np.asarray(np.isfinite(T[:, self.row, self.column]).all(axis=1))
+        good &= _near_enough(T[:, [r for r, c in self.entries if c == 3], 3])
         for r, c in zip(self.row, self.column):
             if c == 3 or c in self.unit:
                 continue
@@ -3097,6 +3137,8 @@ def _solve_each(
         if T is not None:
             seeds = None if near is None else tuple(near[i].tolist())
             asked[i] = T, seeds, tuple(held[i].tolist())
+        elif _too_far(arm.task, pose[None], arm.policy)[0]:
+            out[i] = _no_solutions(len(arm.lower), Status.UNREACHABLE)
     answers: dict[int, _Answer] = {}
     stages: tuple[_Stage, ...] = (_sure_answers, _placed_rows)
     for solve in stages:

@@ -84,7 +84,7 @@ template <class Arm, template <class> class Way> struct PoseSolver {
         Way<Arm>::template solve<1>(&clean, options, out);
       } else {
         out->count = 0;
-        out->status = Arm::Status::Invalid;
+        out->status = PoseReading<Arm>::refused(*poses);
       }
     }
   }

@@ -252,7 +252,7 @@ inline Walk follow_poses(const Eigen::Isometry3d* poses, std::ptrdiff_t count, c
     Eigen::Isometry3d pose = poses[i];
     walk.crossed = false;
     if (!PoseReading<A>::clean(pose)) {
-      out.status = Status::Invalid;
+      out.status = PoseReading<A>::refused(pose);
     } else if (i > 0) {
       out.status = walk.go_on(before, pose);
     } else if (out.status = walk.begin(pose, start); out.status != Status::Ok) {

@@ -18,9 +18,8 @@ template <class Arm, template <class> class Way> struct Projection {
   // Rows of the nearest pose where there is none of the pose, and by how much each row is off.
   [[gnu::cold, gnu::noinline]] static void apply(const Eigen::Isometry3d& pose, const Options& given,
                                                  Solutions& out) noexcept {
-    if (out.status == Arm::Status::Invalid) return;
     Eigen::Isometry3d target = pose;
-    PoseReading<Arm>::clean(target);
+    if (!PoseReading<Arm>::clean(target)) return;
     const double* t = target.matrix().data();
     if (out.count == 0) solve_nearest(t, given, out);
     for (int k = 0; k < out.count; ++k) Chords::off_by(out.q.data()[k].data(), t, out.off.data()[k].data());

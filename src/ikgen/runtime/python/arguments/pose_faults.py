@@ -1,4 +1,4 @@
-"""What is wrong with a pose that is none, and the rotation that one with few digits stands for."""
+"""What is wrong with a pose that is not read, and the rotation that one with few digits stands for."""
 
 from __future__ import annotations
 
@@ -9,23 +9,41 @@ import numpy as np
 
 from ikgen.runtime.python.arm.solve_policy import Policy
 from ikgen.runtime.python.arm.task_interface import Task
-from ikgen.runtime.python.arrays.array_types import Array
+from ikgen.runtime.python.arrays.array_types import Array, Flags
 from ikgen.runtime.python.arrays.orthonormal_columns import columns_defect, determinant
 
-__all__ = ["nearest_pose", "nearest_poses", "pose_fault"]
+__all__ = ["nearest_pose", "nearest_poses", "pose_fault", "too_far"]
 
 _PRINTED = 1e-3  # how far the entries of a rotation that was printed with a few digits may be off
 
 
 def nearest_pose(task: Task, T: list[list[float]], policy: Policy) -> list[list[float]]:
     """The pose with the nearest rotation; as it is where that is too far."""
-    return task.read(T, replace(policy, pose_tolerance=_PRINTED)) or T
+    lines = task.read(T, replace(policy, pose_tolerance=_PRINTED))
+    if lines is not None:
+        return lines
+    out: list[list[float]] = nearest_poses(task, np.array([T]), policy)[0].tolist()
+    return out
 
 
 def nearest_poses(task: Task, T: Array, policy: Policy) -> Array:
     """The same of T (N, 4, 4)."""
-    near, good = task.read_batch(T, replace(policy, pose_tolerance=_PRINTED))
-    return np.where(good[:, None, None], near, T)
+    near, good = task.read_batch(_at_origin(T), replace(policy, pose_tolerance=_PRINTED))
+    out: Array = np.where(good[:, None, None], near, T)
+    out[:, :3, 3] = T[:, :3, 3]
+    return out
+
+
+def too_far(task: Task, T: Array, policy: Policy) -> Flags:
+    """Which of T (N, 4, 4) that the task does not read are poses whose position is beyond all reach."""
+    return task.read_batch(_at_origin(T), policy)[1]
+
+
+def _at_origin(T: Array) -> Array:
+    """The same with positions at 0, but for what is no number of them."""
+    out: Array = T.copy()
+    out[:, :3, 3][np.isfinite(T[:, :3, 3])] = 0.0
+    return out
 
 
 def pose_fault(task: Task, T: list[list[float]], policy: Policy) -> str:

@@ -13,6 +13,7 @@ from ikgen.runtime.python.arm.entry_differences import (
     entry_rows,
 )
 from ikgen.runtime.python.arm.solve_policy import Policy
+from ikgen.runtime.python.arm.task_interface import FARTHEST, near_enough
 from ikgen.runtime.python.arrays.array_types import Array, Flags
 from ikgen.runtime.python.arrays.orthonormal_columns import (
     columns_defect,
@@ -47,16 +48,20 @@ class EntriesTask:
 
     def read(self, T: list[list[float]], policy: Policy) -> list[list[float]] | None:
         """Implements `Task`."""
-        lines = T
+        lines, square = T, 0.0
         for r, c in self.entries:
             x = lines[r][c]
-            if not isfinite(x):
+            if c == 3:
+                square += x * x
+            elif not isfinite(x):
                 return None
-            if c != 3 and c not in self.unit and abs(x) > 1.0:
+            elif c not in self.unit and abs(x) > 1.0:
                 if abs(x) > 1.0 + policy.pose_tolerance:
                     return None
                 lines = [list(line) for line in lines]
                 lines[r][c] = copysign(1.0, x)
+        if not square <= FARTHEST * FARTHEST:
+            return None
         return self._with_unit_columns(lines, policy) if self.unit else lines
 
     def _with_unit_columns(self, T: list[list[float]], policy: Policy) -> list[list[float]] | None:
@@ -107,8 +112,9 @@ class EntriesTask:
 
     def _single_entries(self, T: Array, policy: Policy) -> tuple[Array, Flags]:
         """Poses whose entries of no unit column, which are cosines, lie between -1 and 1; and which are
-        poses."""
+        poses that are not too far."""
         good: Flags = np.asarray(np.isfinite(T[:, self.row, self.column]).all(axis=1))
+        good &= near_enough(T[:, [r for r, c in self.entries if c == 3], 3])
         for r, c in zip(self.row, self.column):
             if c == 3 or c in self.unit:
                 continue

@@ -4,11 +4,21 @@ from __future__ import annotations
 
 from typing import Protocol
 
+import numpy as np
+
 from ikgen.runtime.python.arm.entry_differences import Entries
 from ikgen.runtime.python.arm.solve_policy import Policy
 from ikgen.runtime.python.arrays.array_types import Array, Flags
 
-__all__ = ["Task"]
+__all__ = ["FARTHEST", "Task", "near_enough"]
+
+FARTHEST = 1e15  # m: where neighbouring doubles are 0.1 m apart; no arm reaches beyond
+
+
+def near_enough(p: Array) -> Flags:
+    """Which of positions (N, k), or parts of them, are within `FARTHEST`, all numbers."""
+    with np.errstate(over="ignore"):
+        return np.asarray((p * p).sum(axis=1) <= FARTHEST * FARTHEST)
 
 
 class Task(Protocol):
@@ -29,10 +39,11 @@ class Task(Protocol):
     def size(self) -> float: ...
 
     def read(self, T: list[list[float]], policy: Policy) -> list[list[float]] | None:
-        """The pose that nested lists stand for, its rotation the nearest one; None for no pose."""
+        """The pose that nested lists stand for, its rotation the nearest one; None for no pose, and for one
+        that is beyond `FARTHEST`."""
 
     def read_batch(self, T: Array, policy: Policy) -> tuple[Array, Flags]:
-        """The same for T (N, 4, 4), and which are poses."""
+        """The same for T (N, 4, 4), and which of them `read` takes."""
 
     def error(self, pose: Array, T: Array) -> Array:
         """Differences (k, m) of poses (k, 4, 4) from those asked for, T (k, 4, 4)."""

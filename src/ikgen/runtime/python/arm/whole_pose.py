@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf
 
 import numpy as np
 
 from ikgen.runtime.python.arm.entry_differences import Entries
 from ikgen.runtime.python.arm.solve_policy import Policy
+from ikgen.runtime.python.arm.task_interface import FARTHEST, near_enough
 from ikgen.runtime.python.arrays.array_types import Array, Flags
 from ikgen.runtime.python.arrays.orthonormal_columns import (
     columns_defect,
@@ -50,7 +50,9 @@ class PoseTask:
     def read(self, T: list[list[float]], policy: Policy) -> list[list[float]] | None:
         """Implements `Task`."""
         *R, p = zip(*T[:3])
-        if T[3] != [0.0, 0.0, 0.0, 1.0] or not -inf < sum(p) < inf:
+        x, y, z = p
+        near = x * x + y * y + z * z <= FARTHEST * FARTHEST
+        if T[3] != [0.0, 0.0, 0.0, 1.0] or not near:
             return None
         columns = tuple((x, y, z) for x, y, z in R)
         defect = columns_defect(columns)
@@ -63,6 +65,7 @@ class PoseTask:
     def read_batch(self, T: Array, policy: Policy) -> tuple[Array, Flags]:
         """Implements `Task`."""
         good = np.isfinite(T).all(axis=(1, 2)) & (T[:, 3] == (0.0, 0.0, 0.0, 1.0)).all(axis=1)
+        good &= near_enough(T[:, :3, 3])
         columns = tuple((T[:, 0, j], T[:, 1, j], T[:, 2, j]) for j in range(3))
         with np.errstate(all="ignore"):
             defect = columns_defect(columns)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ikgen.runtime.python.arguments.joint_arguments import held_rows, seed_rows
 from ikgen.runtime.python.arguments.pose_arguments import poses_in_line
-from ikgen.runtime.python.arguments.pose_faults import nearest_poses
+from ikgen.runtime.python.arguments.pose_faults import nearest_poses, too_far
 from ikgen.runtime.python.arm.solved_arm import Arm, Found
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.rows.row_placement import in_order, place_rows, place_rows_batch
@@ -62,6 +62,8 @@ def solve_poses(
     if orthonormalize:
         T = nearest_poses(arm.task, T, arm.policy)
     T, good = arm.task.read_batch(T, arm.policy)
+    if not good.all():
+        status[~good & too_far(arm.task, T, arm.policy)] = Status.UNREACHABLE.value
     usable, size = np.flatnonzero(good), _CHUNK
     for start in range(0, len(usable), size):
         part = usable[start : start + size]

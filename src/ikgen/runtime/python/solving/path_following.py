@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from ikgen.runtime.python.arguments.joint_arguments import seed_rows
 from ikgen.runtime.python.arguments.pose_arguments import poses_in_line
+from ikgen.runtime.python.arguments.pose_faults import too_far
 from ikgen.runtime.python.arm.chain_kinematics import tip_and_jacobian
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_types import Array, Flags
@@ -66,7 +67,8 @@ def follow_poses(
         read = arm.task.read(lines, arm.policy)
         pose = np.array(lines if read is None else read)
         if read is None:
-            status = Status.INVALID
+            far = too_far(arm.task, T[i : i + 1], arm.policy)[0]
+            status = Status.UNREACHABLE if far else Status.INVALID
         elif i:
             status = walk.go_on(before, pose)
         else:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from ikgen.runtime.python.arguments.joint_arguments import held_values, seed_values
 from ikgen.runtime.python.arguments.pose_arguments import one_pose
-from ikgen.runtime.python.arguments.pose_faults import nearest_pose, pose_fault
+from ikgen.runtime.python.arguments.pose_faults import nearest_pose, pose_fault, too_far
 from ikgen.runtime.python.arm.chain_kinematics import forward
 from ikgen.runtime.python.arm.held_parameters import aims, held_of
 from ikgen.runtime.python.arm.solved_arm import Arm, Found, Together
@@ -58,6 +58,8 @@ def solve_pose(
         lines = nearest_pose(arm.task, lines, arm.policy)
     T = arm.task.read(lines, arm.policy)
     if T is None:
+        if too_far(arm.task, np.array([lines]), arm.policy)[0]:
+            return no_solutions(len(arm.lower), Status.UNREACHABLE, held_reason(arm, held, False))
         reason = pose_fault(arm.task, lines, arm.policy)
         return no_solutions(len(arm.lower), Status.INVALID, reason)
     asked = T, near, held

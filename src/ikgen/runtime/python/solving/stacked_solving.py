@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ikgen.runtime.python.arguments.joint_arguments import held_rows, seed_rows
+from ikgen.runtime.python.arguments.pose_faults import too_far
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_types import Array, Row
 from ikgen.runtime.python.rows.solutions import Solutions, Status, no_solutions
@@ -39,6 +40,8 @@ def solve_each(
         if T is not None:
             seeds = None if near is None else tuple(near[i].tolist())
             asked[i] = T, seeds, tuple(held[i].tolist())
+        elif too_far(arm.task, pose[None], arm.policy)[0]:
+            out[i] = no_solutions(len(arm.lower), Status.UNREACHABLE)
     answers: dict[int, Answer] = {}
     stages: tuple[_Stage, ...] = (_sure_answers, placed_rows)
     for solve in stages if arm.branches is not None else (eliminated_answers,):
