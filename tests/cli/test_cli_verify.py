@@ -143,6 +143,29 @@ def test_one_bad_record_leaves_the_others(
     assert junitparser.JUnitXml.fromfile("j.xml").failures == 2
 
 
+@pytest.mark.parametrize(
+    "text", ["[]", "[1]", "null", "7", '"text"', "{}", '{"generator": "other"}']
+)
+def test_what_is_named_as_a_record_and_is_none_is_told(
+    project: Path, text: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (project / "out/other_ik.json").write_text(text)
+    assert check("out", "--json") == 2
+    said = capsys.readouterr()
+    assert "error: out/other_ik.json: not a record of ikgen: the record " in said.err
+    assert "for records alone" in said.err
+    right, none = json.loads(said.out)["outputs"]
+    assert right["passed"] and not none["passed"]
+
+
+def test_a_record_of_another_generator_is_none(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    edit(project / "out/arm_ik.json", '"generator": "ikgen"', '"generator": "other"')
+    assert check("out") == 2
+    assert "the record.generator: 'other' is not 'ikgen'" in capsys.readouterr().err
+
+
 def test_a_table_without_numbers_is_not_passed(
     project: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -137,12 +137,12 @@ def environment_digest(value: str | None) -> str:
 
 
 def find_records(folder: Path) -> list[Path]:
-    """All records below a folder, hidden folders left out; raises `UsageError` where none is."""
+    """All files below a folder that are named as records, hidden folders left out; what is none is told as
+    it is read. Raises `UsageError` where none is."""
     found = [
         path
         for path in sorted(folder.rglob(f"*{SUFFIX}"))
         if not any(part.startswith(".") for part in path.relative_to(folder).parts[:-1])
-        and _is_record(path)
     ]
     if not found:
         raise UsageError(
@@ -169,15 +169,6 @@ def _is_of(path: Path, out: Path) -> bool:
     return record.out is not None and record.out.resolve() == out.resolve()
 
 
-def _is_record(path: Path) -> bool:
-    """Whether a JSON file is a record; a broken one counts, so that it is told."""
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
-        return True
-    return isinstance(data, dict) and data.get("generator") == GENERATOR
-
-
 def read_record(path: Path) -> Record:
     """The record in a file; raises `BadDescriptionError` for a file that is none."""
     text = ""
@@ -188,12 +179,14 @@ def read_record(path: Path) -> Record:
         record = decoder.table(Record, data, "the record")
         if record.request.name is None:
             raise CodecError("the record", " has no 'name'")
+        if record.generator != GENERATOR:
+            raise CodecError("the record.generator", f"'{record.generator}' is not '{GENERATOR}'")
     except OSError as error:
         raise BadDescriptionError(
             error.strerror or str(error), file=str(path), hint="generate it first (ikgen build)"
         ) from None
     except (ValueError, RecursionError, CodecError) as error:
-        hint = conflict_or(text, "generate the outputs again")
+        hint = conflict_or(text, f"generate the outputs again; *{SUFFIX} is for records alone")
         raise BadDescriptionError(
             f"not a record of ikgen: {error}", file=str(path), hint=hint
         ) from None
