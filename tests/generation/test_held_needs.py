@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
+import time
 from pathlib import Path
 
 import pytest
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
 from tests.support.small_robots import write_robot
+from tests.support.solving import FIXTURES
 
 from ikgen.cli.main import run
 from ikgen.generation.held_needs import needs_held
@@ -14,6 +17,7 @@ from ikgen.generation.inspection import inspect_robot
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
 from ikgen.tasks import find_task
+from ikgen.tasks.fitting import freedoms_barely_moved
 
 
 def test_pose_that_nobody_asked_for_is_refused_where_a_held_joint_is_needed(
@@ -52,3 +56,45 @@ def test_spare_joint_is_not_needed(tmp_path: Path) -> None:
     assert not needs_held(read(Request(path, free={"shoulder_roll": None})).dh, pose)
     two = {"shoulder_roll": None, "wrist_roll": None}
     assert needs_held(read(Request(path, free=two)).dh, pose)
+
+
+def rounded_scara(path: Path, turn: str) -> Path:
+    """A SCARA whose last two axes point down by half a turn that is written with few digits."""
+    text = (FIXTURES.parent / "examples/hatch_robot/urdf/scara.urdf").read_text()
+    for joint in ("lift", "spin"):
+        start = text.index(f'<joint name="{joint}"')
+        head, tail = text[:start], text[start:]
+        tail = re.sub(
+            r'<origin xyz="([^"]*)"[^>]*>', rf'<origin xyz="\1" rpy="{turn} 0 0"/>', tail, count=1
+        )
+        text = head + tail
+    path.write_text(text)
+    return path
+
+
+@pytest.mark.parametrize("turn", ["3.14159", "3.1415926"])
+def test_a_task_that_rounding_alone_moves_is_refused_at_once(
+    turn: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    robot = rounded_scara(tmp_path / "scara.urdf", turn)
+    command = ["from-urdf", str(robot), "-o", str(tmp_path / "out"), "--task"]
+    started = time.process_time()
+    assert run([*command, "rotation"]) == 3
+    assert time.process_time() - started < 2.0
+    said = capsys.readouterr().err
+    assert "the joints move 1 of the 3 freedoms that the task fixes, and the others by no" in said
+    assert f"hint: ikgen from-urdf {robot} --task position-yaw\n" in said
+    hindrance = inspect_robot(Request(robot, task="rotation")).hindrance
+    assert hindrance is not None and "the joints move 1 of the 3" in hindrance.message
+    for able in ("position-yaw", "position-direction", "pose"):
+        assert run([*command, able, "--no-verify", "--force"]) == 0
+
+
+def test_exact_axes_leave_nothing_barely_moved(tmp_path: Path) -> None:
+    robot = rounded_scara(tmp_path / "scara.urdf", "3.141592653589793")
+    dh = read(Request(robot)).dh
+    assert freedoms_barely_moved(dh, find_task("rotation")) == 0
+    assert (
+        run(["from-urdf", str(robot), "--task", "rotation", "-o", str(tmp_path), "--no-verify"])
+        == 0
+    )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from ikgen import __version__
 from ikgen.emit.derivation import Derivation, Unsolved
 from ikgen.generation.closed_forms import closed_form
-from ikgen.generation.held_needs import check_held
+from ikgen.generation.held_needs import check_held, check_task
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.read import default_name, read
 from ikgen.generation.settled_form import settled_form
@@ -47,6 +47,7 @@ def derive(
     check_couplings(reading.dh)
     free_defaults(reading.dh, request.free.items())  # first: some values are refused
     progress("derive", classify(reading.dh).name)
+    check_task(request, reading.dh)
     demand = Demand(request.named_task, passed_over, progress, tuple(refused), request.tool_axis)
     found = closed_form(reading, demand)
     if request.tool_axis is not None:

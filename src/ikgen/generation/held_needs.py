@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ikgen.model.dh import DHChain
     from ikgen.tasks import Task
 
-__all__ = ["check_held", "needs_held"]
+__all__ = ["check_held", "check_task", "needs_held"]
 
 
 def needs_held(dh: DHChain, task: Task) -> bool:
@@ -23,6 +23,33 @@ def needs_held(dh: DHChain, task: Task) -> bool:
     if not dh.free:
         return False
     return freedoms_moved(replace(dh, free=()), task) > freedoms_moved(dh, task)
+
+
+def check_task(request: Request, dh: DHChain) -> None:
+    """Raises `UnsolvedChainError` for a task of which the arm moves some freedoms only barely, and the
+    others by more joints than they need: joints that were held would decide the former, and no path that
+    moves them could be followed."""
+    from ikgen.tasks import find_task
+    from ikgen.tasks.fitting import (
+        fitting_tasks,
+        freedoms_barely_moved,
+        freedoms_fixed,
+        freedoms_moved,
+    )
+
+    if request.named_task is None:
+        return
+    task, whole = find_task(request.named_task, request.tool_axis), replace(dh, free=())
+    moved, fixed = freedoms_moved(whole, task), freedoms_fixed(whole, task)
+    if moved >= min(fixed, whole.dof) or not freedoms_barely_moved(dh, task):
+        return
+    able = next((t for t in fitting_tasks(whole, request.tool_axis) if not t.whole_pose), None)
+    other = replace(request, task=able.name if able else "TASK", free={}).command()
+    raise UnsolvedChainError(
+        f"no closed form found for the task '{task.name}': the joints move {moved} of the {fixed} "
+        "freedoms that the task fixes, and the others by no more than rounding tilts their axes",
+        hint=other if able else f"{other}: `ikgen inspect` lists those that fit",
+    )
 
 
 def check_held(request: Request, dh: DHChain, task: Task, passed_over: Collection[str]) -> None:

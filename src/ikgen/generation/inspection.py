@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ikgen.errors import UnsolvedChainError
 from ikgen.generation.advice import attempts
+from ikgen.generation.held_needs import check_task
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.read import has_arm_angle, read, read_tree
 
@@ -99,6 +100,7 @@ def inspect_robot(
     if advice and reading:
         try:
             check_couplings(reading.dh)
+            check_task(request, reading.dh)
             tried = attempts(reading, request.named_task, progress, request.tool_axis)
         except UnsolvedChainError as error:
             hindrance = error

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 __all__ = [
     "fits",
     "fitting_tasks",
+    "freedoms_barely_moved",
     "freedoms_fixed",
     "freedoms_moved",
     "keeps_heading_level",
@@ -29,6 +31,10 @@ __all__ = [
 
 _INDEPENDENT = 1e-5
 """Least singular value, relative to the largest, of freedoms that are moved independently."""
+
+_ROUND_OFF = 2e-9
+"""The same of freedoms that are moved at all: more than the differences that tell it are off by, and than
+rows may miss a pose by."""
 
 _BARELY = 0.02
 """A task conditioned worse than another by this factor comes behind it: a tilt by rounding moves its
@@ -99,6 +105,13 @@ def freedoms_moved(dh: DHChain, task: Task) -> int:
     """How many freedoms of the task the joints that are not held move, nearly everywhere: the rank of
     the task's entries by the joints."""
     return rank(_ratios(dh, task))
+
+
+def freedoms_barely_moved(dh: DHChain, task: Task) -> int:
+    """How many more freedoms of the task all joints move, held or not, by so little that they do not count:
+    turns written with few digits tilt axes that are meant to be parallel."""
+    ratios = _ratios(replace(dh, free=()), task)
+    return int((ratios > _ROUND_OFF).sum()) - rank(ratios)
 
 
 def rank(ratios: Matrix) -> int:
