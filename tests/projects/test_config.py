@@ -220,3 +220,34 @@ def test_what_an_entry_should_be_is_hinted_at(tmp_path: Path, text: str) -> None
     with pytest.raises(BadDescriptionError) as told:
         load_config(tmp_path / "ikgen.toml")
     assert told.value.line and told.value.hint
+
+
+def test_what_a_renamed_arm_left_is_told(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    config = package / "ikgen.toml"
+    assert run(["build", "--no-verify"]) == 0
+    assert "warning" not in capsys.readouterr().err
+    config.write_text(config.read_text().replace('name = "small"', 'name = "tiny"'))
+    for _ in range(2):  # the second time all is fresh
+        assert run(["build", "--no-verify"]) == 0
+        said = capsys.readouterr().err
+        files = "generated/small_ik.py", "generated/small_ik.json"
+        assert f"no arm of ikgen.toml makes the outputs of 'small': {', '.join(files)}\n" in said
+        assert f"hint: unless something else makes them: rm {' '.join(files)}\n" in said
+    assert run(["build", "--no-verify", "--json", "-q"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["left"] == [{"name": "small", "files": list(files)}]
+    for file in files:
+        (package / file).unlink()
+    assert run(["build", "--no-verify"]) == 0
+    assert "warning" not in capsys.readouterr().err
+
+
+def test_what_others_have_in_a_folder_is_not_left(
+    package: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Outputs that lie deeper, and files that are no records."""
+    assert run(["build", "--no-verify", "-q"]) == 0
+    shutil.copytree(package / "generated", package / "generated/deeper/still")
+    (package / "generated/notes_ik.json").write_text("[]")
+    assert run(["build", "--no-verify"]) == 0
+    assert "no arm of" not in capsys.readouterr().err

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -17,6 +18,7 @@ from ikgen.projects.config import ArmConfig, named_config
 from ikgen.projects.recorded_arms import listed_arms
 
 if TYPE_CHECKING:
+    from ikgen.projects.left_outputs import LeftOutputs
     from ikgen.projects.project_build import Outcome
 
 __all__ = ["build"]
@@ -74,6 +76,7 @@ def build(
     if check:
         return _check(path, arms, verify=not no_verify, as_json=as_json, quiet=quiet)
     from ikgen.processes.executors import Workers
+    from ikgen.projects.left_outputs import left_outputs
     from ikgen.projects.project_build import build_arms
 
     arms = tuple(replace(arm, request=replace(arm.request, trust=trust)) for arm in arms)
@@ -88,7 +91,10 @@ def build(
             )
         )
     code = max(outcome.exit_code for outcome in outcomes)
-    _print(outcomes, code, as_json=as_json, quiet=quiet, verbose=verbose)
+    left = left_outputs(arms)
+    _print(outcomes, left, code, as_json=as_json, quiet=quiet, verbose=verbose)
+    if not quiet:
+        _tell_left(path, left)
     if depfile is not None:
         _write_depfile(depfile, arms)
     return code
@@ -123,14 +129,32 @@ def _check(
     return code
 
 
+def _tell_left(config: Path, left: Sequence[LeftOutputs]) -> None:
+    """What lies beside the outputs and no arm makes, and how to be rid of it."""
+    for one in left:
+        files = [path.as_posix() for path in one.files]
+        text = (
+            f"no arm of {config.as_posix()} makes the outputs of '{one.name}': {', '.join(files)}"
+        )
+        click.echo(f"warning: {text}", err=True)
+        click.echo(f"hint: unless something else makes them: rm {shlex.join(files)}", err=True)
+
+
 def _print(
-    outcomes: Sequence[Outcome], code: int, *, as_json: bool, quiet: bool, verbose: bool
+    outcomes: Sequence[Outcome],
+    left: Sequence[LeftOutputs],
+    code: int,
+    *,
+    as_json: bool,
+    quiet: bool,
+    verbose: bool,
 ) -> None:
     if as_json:
         bad = [o for o in outcomes if o.exit_code]
         message = "; ".join(f"{o.name}: {o.message}" for o in bad)
         hint = "\n".join(dict.fromkeys(o.hint for o in bad if o.hint))
-        _echo({"arms": [_row(o) for o in outcomes]}, code, message, hint)
+        rest = [{"name": o.name, "files": [path.as_posix() for path in o.files]} for o in left]
+        _echo({"arms": [_row(o) for o in outcomes], "left": rest}, code, message, hint)
     for o in outcomes:
         for text in o.warnings if not quiet else ():
             click.echo(f"warning: {o.name}: {text}", err=True)

@@ -1,0 +1,53 @@
+"""Outputs in the folders of a config that none of its arms makes: of one that was renamed or left out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ikgen.errors import BadDescriptionError
+from ikgen.generation.record import SUFFIX, read_record, seen
+from ikgen.projects.config import ArmConfig
+
+__all__ = ["LeftOutputs", "left_outputs"]
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOutputs:
+    """What the records of the arm `name` have that is still there, and these records."""
+
+    name: str
+    files: tuple[Path, ...]
+
+
+def left_outputs(arms: Sequence[ArmConfig]) -> list[LeftOutputs]:
+    """By the records beside the arms' outputs and in their packages; those that cannot be read tell
+    nothing."""
+    made = {(arm.outputs.out.resolve(), arm.name) for arm in arms}
+    own = {path.resolve() for arm in arms for path in _written(arm.records)}
+    left: dict[tuple[Path, str], list[Path]] = {}
+    for out in sorted({place for place, _ in made}):
+        for path in sorted([*out.glob(f"*{SUFFIX}"), *out.glob(f"*/*{SUFFIX}")]):
+            try:
+                record = read_record(path)
+            except BadDescriptionError:
+                continue
+            place = (record.out or record.folder).resolve(), record.name
+            if place[0] == out and place not in made:
+                files = [one for one in _written([path]) if one.resolve() not in own]
+                left.setdefault(place, []).extend(files)
+    return [LeftOutputs(name, tuple(map(seen, files))) for (_, name), files in left.items()]
+
+
+def _written(records: Sequence[Path]) -> list[Path]:
+    """The files of records that are there, and these."""
+    found = []
+    for path in records:
+        try:
+            record = read_record(path)
+        except BadDescriptionError:
+            continue
+        found += [file for name in record.files if (file := record.folder / name).is_file()]
+        found.append(path)
+    return found
