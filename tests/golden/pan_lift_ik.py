@@ -859,7 +859,7 @@ def _place(arm: _Arm, row: Row, near: Row | None, limits: bool) -> tuple[Row | N
                     to_low, to_high = remainder(to_low, _TURN), remainder(to_high, _TURN)
                 if min(abs(to_low), abs(to_high)) > arm.policy.limit_reach:
                     return None, True
-                shift, beyond = (low if abs(to_low) < abs(to_high) else high) - q, True
+                q, shift, beyond = low if abs(to_low) < abs(to_high) else high, 0.0, True
             out.append(min(max(q + shift, low), high))
         else:
             out.append(q + shift)
