@@ -16,6 +16,7 @@ from ikgen.cli.options import (
     emit_option,
     package_options,
     sampling_options,
+    table_options,
 )
 from ikgen.cli.request_options import make_request, parse_emit
 from ikgen.errors import UsageError
@@ -56,14 +57,6 @@ _force = click.option(
     help="Replace outputs of another robot, chain or task, and files that were edited.",
 )
 
-_NOT_OF_TABLES = {
-    "base": "--base",
-    "tip": "--tip",
-    "args": "--arg",
-    "package_paths": "--package-path",
-}
-"""Parameters of `from_dh` that a table has no use for, and the options that set them."""
-
 
 @click.command("from-urdf")
 @click.argument("robot", type=RobotFile())
@@ -87,7 +80,7 @@ def from_urdf(robot: Path, **options: Any) -> int:
 
 @click.command("from-dh")
 @click.argument("table", type=click.Path(path_type=Path))
-@chain_options
+@table_options
 @emit_option
 @package_options
 @_only
@@ -102,10 +95,6 @@ def from_dh(table: Path, **options: Any) -> int:
     """Generate inverse kinematics from the DH table TABLE (TOML), and verify it."""
     if not is_table(table):
         raise UsageError(f"{table} is not a TOML file", hint=f"a robot? ikgen from-urdf {table}")
-    for parameter, option in _NOT_OF_TABLES.items():
-        if options[parameter]:
-            what = f"{option} is for robot files: a DH table is one chain without arguments"
-            raise UsageError(what, hint=f"leave {option} out")
     return _run(table, **options)
 
 
@@ -130,6 +119,8 @@ def _run(
     from ikgen.generation.generate import generate
     from ikgen.generation.remedies import advised
 
+    if depfile_target and depfile is None:
+        raise UsageError("--depfile-target is of a --depfile", hint="give --depfile FILE as well")
     request = make_request(robot, **chain)
     outputs = Outputs(parse_emit(emit), out, samples, seed, not no_verify, only, force)
     with Console(quiet=quiet, verbose=verbose) as console, advised(request, console):

@@ -11,7 +11,7 @@ import click
 
 from ikgen.cli.completion import Emits, Joints, Links, Tasks
 from ikgen.generation.emitters import EMITTERS
-from ikgen.tasks import AXES
+from ikgen.tasks import AXES, TASKS
 
 __all__ = [
     "chain_options",
@@ -23,6 +23,7 @@ __all__ = [
     "package_options",
     "reading_options",
     "sampling_options",
+    "table_options",
     "trust_option",
 ]
 
@@ -30,7 +31,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 _FOLDER = click.Path(path_type=Path)
 
 
-_READING_OPTIONS = (
+_XACRO_OPTIONS = (
     click.option("--arg", "args", multiple=True, metavar="NAME:=VALUE", help="A xacro argument."),
     click.option(
         "--package-path",
@@ -42,15 +43,18 @@ _READING_OPTIONS = (
     ),
 )
 
-_CHAIN_OPTIONS = (
+_LINK_OPTIONS = (
     click.option("--base", metavar="LINK", type=Links(), help="Link that poses are given in."),
     click.option("--tip", metavar="LINK", type=Links(), help="Link to be placed."),
+)
+
+_SOLVING_OPTIONS = (
     click.option(
         "--task",
         metavar="TASK",
         type=Tasks(),
-        help="pose (default), position-direction, position-pitch, position-yaw, position, rotation, "
-        "direction.",
+        help=f"{', '.join(task.name for task in TASKS)} (default: the most that all the arm's joints can "
+        "do).",
     ),
     click.option(
         "--tool-axis",
@@ -79,7 +83,6 @@ _CHAIN_OPTIONS = (
         help="Make a joint follow another: its value is k times the other's plus c (rad, m). Of several "
         "sources, JOINT=A*k1+B*k2+c: what motors move it by, whose values the solver then has.",
     ),
-    *_READING_OPTIONS,
     click.option(
         "--calibration",
         metavar="FILE",
@@ -133,7 +136,12 @@ def _apply(options: Sequence[Callable[[Any], Any]], function: F) -> F:
 
 def chain_options(function: F) -> F:
     """Which chain of the robot, which task, and how to read the file."""
-    return _apply([*_CHAIN_OPTIONS, trust_option], function)
+    return _apply([*_LINK_OPTIONS, *_SOLVING_OPTIONS, *_XACRO_OPTIONS, trust_option], function)
+
+
+def table_options(function: F) -> F:
+    """Which task, and how to read a DH table, which has one chain."""
+    return _apply(_SOLVING_OPTIONS, function)
 
 
 def package_options(function: F) -> F:
@@ -143,7 +151,7 @@ def package_options(function: F) -> F:
 
 def reading_options(function: F) -> F:
     """How to read the file."""
-    return _apply([*_READING_OPTIONS, trust_option], function)
+    return _apply([*_XACRO_OPTIONS, trust_option], function)
 
 
 class _Count(click.IntRange):

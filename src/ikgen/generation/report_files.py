@@ -94,16 +94,16 @@ def _verified(
 
 def _pdfs(texts: Mapping[str, str], progress: Progress) -> tuple[dict[str, bytes], list[str]]:
     """File name -> PDF of the LaTeX texts, where LaTeX is installed; warnings where it fails."""
-    from ikgen.report.pdf import typeset
+    from ikgen.report.pdf import has_latex, typeset
 
     made, warnings = {}, []
-    for name, text in texts.items():
+    for name, text in texts.items() if has_latex() else ():
         if name.endswith(".tex"):
             progress("typeset", name)
             result = typeset(name, text)
             if result.pdf is not None:
                 made[str(Path(name).with_suffix(".pdf"))] = result.pdf
-            elif result.failure:
+            else:
                 warnings.append(f"no PDF of {name}: {result.failure}")
     return made, warnings
 

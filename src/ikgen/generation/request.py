@@ -147,6 +147,11 @@ class Request:
         return shlex.join([*words, *self.options, *more])
 
     @property
+    def of_robots(self) -> list[str]:
+        """Fields that say something which a DH table, one chain without arguments, has no use for."""
+        return [one for one in ("base", "tip", "args", "package_paths") if getattr(self, one)]
+
+    @property
     def options(self) -> list[str]:
         """What a command line says behind the robot."""
         words: list[str] = []

@@ -80,11 +80,10 @@ def _robot(robot: object) -> Path:
 
 def _refuse_for_tables(request: Request) -> None:
     """A DH table is one chain without arguments."""
-    for given in ("base", "tip", "args", "package_paths"):
-        if request.table and getattr(request, given):
-            raise ArgumentError(
-                f"{given}: a DH table is one chain without arguments", hint=f"leave {given} out"
-            )
+    for given in request.of_robots if request.table else ():
+        raise ArgumentError(
+            f"{given}: a DH table is one chain without arguments", hint=f"leave {given} out"
+        )
 
 
 def _text(argument: str, value: object, what: str) -> str | None:

@@ -11,17 +11,23 @@ from pathlib import Path
 from ikgen.processes.outside_program import run_program
 from ikgen.processes.scratch_folder import ScratchFolder
 
-__all__ = ["Typeset", "typeset"]
+__all__ = ["Typeset", "has_latex", "typeset"]
 
+_LATEX = "pdflatex"
 _RUNS = 2  # the second resolves references
 
 
 @dataclass(frozen=True, slots=True)
 class Typeset:
-    """The PDF's bytes, or in words why there is none; neither where no LaTeX is installed."""
+    """The PDF's bytes, or in words why there is none."""
 
     pdf: bytes | None = None
     failure: str = ""
+
+
+def has_latex() -> bool:
+    """Whether LaTeX is installed."""
+    return shutil.which(_LATEX) is not None
 
 
 def typeset(name: str, text: str) -> Typeset:
@@ -29,9 +35,9 @@ def typeset(name: str, text: str) -> Typeset:
 
     The same text gives the same bytes: LaTeX is told a fixed date, and shell escapes are off.
     """
-    latex = shutil.which("pdflatex")
+    latex = shutil.which(_LATEX)
     if latex is None:
-        return Typeset()
+        return Typeset(failure=f"{_LATEX} is not installed")
     environment = {**os.environ, "SOURCE_DATE_EPOCH": "0", "FORCE_SOURCE_DATE": "1"}
     with ScratchFolder("ikgen-") as folder:
         source = folder / Path(name).name
