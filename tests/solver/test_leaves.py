@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
+import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +15,9 @@ from tests.support.tables import Row, table
 
 from ikgen.equations.probes import dh_pose
 from ikgen.importers.dh.dh_table import read_dh_table
-from ikgen.solver.leaves import LEAVES
-from ikgen.solver.ranker import PREFERENCE
+from ikgen.report.document import Paragraph
+from ikgen.report.leaf_words import leaf_sentence
+from ikgen.solver.leaves import LEAVES, Find, Leaf
 from ikgen.solver.solve import solve_chain
 
 TABLES = Path(__file__).resolve().parents[1] / "robots/tables"
@@ -77,8 +82,39 @@ def test_a_divisor_that_vanishes_at_right_angles_is_never_taken_alone() -> None:
             assert not step.candidate.is_weak or step.fallbacks
 
 
-def test_every_leaf_is_ranked() -> None:
-    assert {leaf.name for leaf in LEAVES} <= set(PREFERENCE)
+def given_names(find: Find) -> set[str]:
+    """The names that a leaf's module gives candidates: literals, or variables that hold one of some."""
+    tree = ast.parse(inspect.getsource(sys.modules[find.__module__]))
+    values: dict[str, list[ast.expr]] = {}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+            values.setdefault(node.targets[0].id, []).append(node.value)
+
+    def texts(node: ast.expr) -> Iterator[str]:
+        if isinstance(node, ast.IfExp):
+            yield from [*texts(node.body), *texts(node.orelse)]
+        elif isinstance(node, ast.Name):
+            for value in values[node.id]:
+                yield from texts(value)
+        else:
+            assert isinstance(node, ast.Constant) and isinstance(node.value, str), ast.unparse(node)
+            yield node.value
+
+    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
+    made = [c for c in calls if isinstance(c.func, ast.Name) and c.func.id == "Candidate"]
+    return {name for call in made for name in texts(call.args[1])}
+
+
+@pytest.mark.parametrize("leaf", LEAVES, ids=lambda leaf: leaf.name)
+def test_what_a_leaf_finds_has_a_rank_and_a_sentence(leaf: Leaf) -> None:
+    assert given_names(leaf.find) == set(leaf.finds)
+    for name, sentence in leaf.finds.items():
+        assert sentence.endswith(".") and leaf_sentence(name) == [Paragraph((sentence,))]
+
+
+def test_no_two_leaves_give_one_name() -> None:
+    names = [name for leaf in LEAVES for name in leaf.finds]
+    assert len(set(names)) == len(names)
 
 
 def test_every_tick_is_recorded() -> None:

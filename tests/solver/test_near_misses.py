@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from ikgen.equations.knowledge import Variable
+from ikgen.solver.leaves import LEAVES
 from ikgen.solver.remainder import _degree, _leaf
 
 ANGLE, LENGTH = Variable("angle", (1, 0)), Variable("prismatic", (0, 1))
@@ -23,7 +24,7 @@ OTHER = (0, 1)
     ],
 )
 def test_the_form_follows_from_the_degree(v: Variable, degree: int, leaf: str) -> None:
-    assert _leaf(v, degree) == leaf
+    assert _leaf(v, degree) == leaf and leaf in {one.name for one in LEAVES}
     trigs = (((1, 0), "c"),) * (degree if v is ANGLE else 1) + ((OTHER, "s"),)
     slides = ((1, degree if v is LENGTH else 1), (0, 5))
     equation = SimpleNamespace(polynomial={(trigs, ()): 1.0, ((), slides): 1.0, ((), ()): 1.0})

@@ -14,7 +14,8 @@ from ikgen.forms.pair_form import LinearPair
 from ikgen.forms.sine_cosine_form import SineCosine
 from ikgen.forms.tangent_form import Tangent
 from ikgen.solver.candidate import Candidate, Judgement
-from ikgen.solver.ranker import PREFERENCE, judge, rank_key
+from ikgen.solver.leaves import LEAVES
+from ikgen.solver.ranker import judge, rank_key
 
 GOOD = Judgement(weak=False, folds=False, margin=1.0, fragile=0.0, cost=10.0)
 
@@ -113,7 +114,9 @@ def test_soundness_comes_before_branches_these_before_leaf_this_before_cost(
 
 def test_leaves_come_in_the_order_of_preference_strangers_last(arm: Constructed) -> None:
     base = ranked(arm)
-    names = (*PREFERENCE, "of another package")
+    names = [name for leaf in LEAVES for name in leaf.finds]
+    assert names.index("tangent") < names.index("sine or cosine") < names.index("x2y2")
+    names.append("of another package")
     combinations = [rank_key(replace(base, leaf=name)) for name in names]
     assert all(a < b for a, b in pairwise(combinations))
 

@@ -15,19 +15,15 @@ from numpy.typing import NDArray
 from ikgen.algebra.expression import Expr
 from ikgen.equations.probes import Probes
 from ikgen.solver.candidate import Candidate, Judgement
+from ikgen.solver.leaves import LEAVES
 
-__all__ = ["PREFERENCE", "WEAK_MARGIN", "judge", "rank_key"]
+__all__ = ["WEAK_MARGIN", "judge", "rank_key"]
 
-PREFERENCE = (
-    "algebraic",
-    "simultaneous",
-    "tangent",
-    "sine or cosine",
-    "sine and cosine",
-    "x2y2",
-    "quadratic",
-    "quartic",
-)
+_NAMES = [name for leaf in LEAVES for name in leaf.finds]
+_RANKS = {name: rank for rank, name in enumerate(_NAMES)}
+_TANGENT = _RANKS["tangent"]
+_STRANGER = len(_RANKS)
+
 MATCH = 1e-5
 FOLD_MARGIN = 1e-9
 """Relative size of a discriminant below which two branches count as one."""
@@ -103,10 +99,6 @@ def _cost(roots: tuple[Expr, ...], used: set[int], weight: Mapping[int, float]) 
     return total
 
 
-def _preference(leaf: str) -> int:
-    return PREFERENCE.index(leaf) if leaf in PREFERENCE else len(PREFERENCE)
-
-
 def rank_key(candidate: Candidate) -> tuple[object, ...]:
     """Sort key: smaller is better."""
     j = candidate.judgement
@@ -114,7 +106,7 @@ def rank_key(candidate: Candidate) -> tuple[object, ...]:
     return (
         not candidate.is_sound,
         candidate.branches,
-        _preference("tangent" if j.almost_tangent else candidate.leaf),
+        _TANGENT if j.almost_tangent else _RANKS.get(candidate.leaf, _STRANGER),
         round(j.fragile, 1),
         j.margin < _THIN_MARGIN and candidate.form.is_determinant,
         candidate.branches == 1 and sum(e.squared for e in candidate.sources),
