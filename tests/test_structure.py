@@ -78,6 +78,18 @@ def test_headers_include_what_the_layers_of_their_folders_allow() -> None:
     assert up == [] and {path.name for path in RUNTIME.iterdir()} == set(layers)
 
 
+def test_what_one_folder_imports_all_others_are_forbidden() -> None:
+    contracts = ConfigParser()
+    contracts.read(ROOT / ".importlinter", encoding="utf-8")
+    forbidden = [c for c in contracts.values() if c.get("type") == "forbidden"]
+    folders = {f"ikgen.{path.parent.name}" for path in SOURCE.glob("*/__init__.py")}
+    assert len(forbidden) == 5 and len(folders) > 20
+    for contract in forbidden:
+        owner = contract["name"].rpartition(" only in ")[2]
+        listed = contract["source_modules"].split()
+        assert sorted(listed) == sorted(folders - {f"ikgen.{owner}"}), contract["name"]
+
+
 def test_no_module_has_the_name_of_another() -> None:
     names = Counter(path.name for path in [*MODULES, *RUNTIME.rglob("*.hpp")])
     names += Counter(
