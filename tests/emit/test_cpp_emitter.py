@@ -10,7 +10,7 @@ from tests.support.cpp_modules import solver_module
 
 from ikgen.emit.cpp.cpp_emitter import _headers
 from ikgen.emit.solver_module import SolverModule
-from ikgen.model.dh import ARM_ANGLE
+from ikgen.model.dh import ARM_ANGLE_OPTION
 
 
 @cache
@@ -39,7 +39,7 @@ def test_a_header_has_what_its_arm_takes_and_no_more(rounded: bool, task: str, h
     assert "solving/projection.hpp" in found and "solving/single_solve.hpp" not in found
     assert not {"held/lane_elbow.hpp", "held/arm_angle_motion.hpp"} & set(found)
     if held:
-        free = (*dh.free[1:], ARM_ANGLE)
+        free = (*dh.free[1:], ARM_ANGLE_OPTION)
         angle = replace(module, dh=replace(dh, free=free))
         assert ("held/lane_elbow.hpp" if rounded else "held/arm_angle_motion.hpp") in _headers(
             angle

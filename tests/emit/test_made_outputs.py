@@ -19,7 +19,7 @@ from ikgen.emit.python.python_emitter import _held_name, _held_turns
 from ikgen.emit.solver_module import SolverModule, most_rows
 from ikgen.errors import UsageError
 from ikgen.kinematics.twist_links import twist_chain
-from ikgen.model.dh import ARM_ANGLE, Angle
+from ikgen.model.dh import ARM_ANGLE_OPTION, Angle
 from ikgen.program.policy import SolvePolicy
 
 PI, INF = math.pi, math.inf
@@ -37,7 +37,7 @@ def holding(*free: str) -> SolverModule:
     ("free", "name", "turns"),
     [
         ((), "", False), (("q0",), "q0", True), (("q2",), "q2", False), (("q1", "q2"), "q1", True),
-        ((ARM_ANGLE,), "the arm angle", False), (("q2", ARM_ANGLE), "q2", False),
+        ((ARM_ANGLE_OPTION,), "the arm angle", False), (("q2", ARM_ANGLE_OPTION), "q2", False),
     ],
 )  # fmt: skip
 def test_what_is_held_first_has_a_name(free: tuple[str, ...], name: str, turns: bool) -> None:

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from tests.support.fake_arms import JOINTS, six_axis_oracle
 
-from ikgen.model.dh import HELD_ANGLE
+from ikgen.model.dh import ARM_ANGLE_IDENTIFIER
 from ikgen.verify import verification
 from ikgen.verify.answers import collect_answers
 from ikgen.verify.arm import ArmUnderTest, arm_under_test
@@ -100,8 +100,8 @@ def test_what_is_held_is_handed_over() -> None:
     ("free", "angle", "fits"),
     [
         ((), None, True), (("j1",), None, True), (JOINTS, None, True), (("other",), None, False),
-        ((HELD_ANGLE,), None, False), ((HELD_ANGLE,), object(), True),
-        ((*JOINTS, HELD_ANGLE), object(), True),
+        ((ARM_ANGLE_IDENTIFIER,), None, False), ((ARM_ANGLE_IDENTIFIER,), object(), True),
+        ((*JOINTS, ARM_ANGLE_IDENTIFIER), object(), True),
     ],
 )  # fmt: skip
 def test_a_module_fits_the_chain_if_it_holds_what_there_is(

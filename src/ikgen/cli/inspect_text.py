@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from ikgen.cli.braille import skeleton_text
 from ikgen.cli.tables import table
 from ikgen.cli.tree_text import dh_table, joint_tree, transform_text
-from ikgen.model.dh import ARM_ANGLE
+from ikgen.model.dh import ARM_ANGLE_OPTION
 
 if TYPE_CHECKING:
     from ikgen.generation.advice import Attempt
@@ -96,7 +96,7 @@ def _advice(found: Inspection) -> str:
             lines += _proposal(attempt)
     if found.arm_angle:
         lines.append(
-            f"  --free {ARM_ANGLE}: closed form, the angle of the elbow held in a joint's place"
+            f"  --free {ARM_ANGLE_OPTION}: closed form, the angle of the elbow held in a joint's place"
         )
     if found.hindrance is not None:
         lines += [f"  {found.hindrance.message}", f"      {found.hindrance.hint}"]

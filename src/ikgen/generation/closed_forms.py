@@ -23,7 +23,7 @@ from ikgen.generation.task_forms import (
     by_elimination,
     chain_of_task,
 )
-from ikgen.model.dh import ARM_ANGLE
+from ikgen.model.dh import ARM_ANGLE_OPTION
 
 if TYPE_CHECKING:
     from ikgen.model.dh import DHChain
@@ -96,7 +96,7 @@ def _with_arm_angle(reading: Reading, demand: Demand) -> ClosedForm:
     pose. The rows stay as they were read: the arm angle is theirs."""
     if demand.task not in (None, "pose"):
         raise UsageError(
-            f"--free {ARM_ANGLE}: the task '{demand.task}' does not fix the whole pose",
+            f"--free {ARM_ANGLE_OPTION}: the task '{demand.task}' does not fix the whole pose",
             hint="leave out --task, or --free",
         )
     return best_task(reading, demand)

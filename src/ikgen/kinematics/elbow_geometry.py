@@ -20,7 +20,7 @@ from ikgen.kinematics.fixed_order import length, product
 from ikgen.kinematics.forward import row_constant
 from ikgen.kinematics.rigid import dh_link, inverse, z_motion
 from ikgen.model.chain import REVOLUTE
-from ikgen.model.dh import ARM_ANGLE, DHChain, DHRow, Length
+from ikgen.model.dh import ARM_ANGLE_OPTION, DHChain, DHRow, Length
 from ikgen.model.joint_tree import Matrix
 
 __all__ = ["ElbowGeometry", "elbow_geometry", "without_arm_angle"]
@@ -66,7 +66,7 @@ def elbow_geometry(dh: DHChain) -> ElbowGeometry:
     lack = without_arm_angle(dh)
     if lack:
         raise UsageError(
-            f"--free {ARM_ANGLE}: the arm lacks {lack}",
+            f"--free {ARM_ANGLE_OPTION}: the arm lacks {lack}",
             hint="leave it out, and ikgen chooses joints to hold; of more than seven joints --lock "
             "JOINT=VALUE makes constants",
         )

@@ -14,7 +14,7 @@ from ikgen.kinematics.row_ends import base_points_down, end_transforms
 from ikgen.kinematics.rows import build_rows, drive_row
 from ikgen.kinematics.snapping import ROUND_OFF, WRITTEN_IN_FULL, SnapLog
 from ikgen.model.chain import PRISMATIC, Chain
-from ikgen.model.dh import ARM_ANGLE, DHChain
+from ikgen.model.dh import ARM_ANGLE_OPTION, DHChain
 
 __all__ = ["to_dh"]
 
@@ -42,7 +42,7 @@ def to_dh(
         raise UsageError(what, hint="choose links further apart; ikgen inspect shows the tree")
     names = [joint.name for joint in chain.joints]
     for name in free:
-        if name not in (*names, ARM_ANGLE):
+        if name not in (*names, ARM_ANGLE_OPTION):
             raise UnknownNameError("joint in the chain", name, names)
     angle, length = max(angle_tolerance, WRITTEN_IN_FULL), max(length_tolerance, ROUND_OFF)
     rounded = _derive(chain, Tolerance(angle, length, angle), free)

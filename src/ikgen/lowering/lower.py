@@ -15,7 +15,7 @@ from ikgen.lowering.closure import require_closure
 from ikgen.lowering.elbow_position import bind_elbow
 from ikgen.lowering.fallbacks import choose_form
 from ikgen.lowering.joint_values import joint_value
-from ikgen.lowering.placement import LoweredLevel, Placement, identifier
+from ikgen.lowering.placement import LoweredLevel, Placement, local_name
 from ikgen.lowering.program_inputs import bind_joints, bind_pose, seed_values
 from ikgen.lowering.serialize import serialize
 from ikgen.program.inputs import HeldValue
@@ -108,7 +108,7 @@ def _routine(work: Placement, v: Variable, form: Form, lowered: LoweredRoutine, 
     work.levels.append(LoweredLevel(form.branches, None, (lowered.routine, arguments, atoms)))
     work.place(Comment(text))
     for atom, x in zip(atoms, "cs", strict=True):
-        work.names[atom.id] = identifier(f"{x}{v.index}")
+        work.names[atom.id] = local_name(f"{x}{v.index}")
         work.level_of[atom.id] = len(work.levels) - 1
         work.placed.add(atom.id)
     slope = work.slope(v, form)

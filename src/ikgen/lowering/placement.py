@@ -21,7 +21,7 @@ from ikgen.program.statements import Comment, Let
 from ikgen.solver.choice import Step
 from ikgen.solver.solution_graph import SolutionGraph
 
-__all__ = ["LoweredLevel", "Placement", "Requirement", "identifier"]
+__all__ = ["LoweredLevel", "Placement", "Requirement", "local_name"]
 
 
 FOLDED = 1e-6
@@ -232,7 +232,7 @@ class Placement:
         names = [f"{x}{v.index}" for x in letters]
         for atom, name, value in zip(atoms, names, values, strict=True):
             self.definition[atom.id] = value
-            self.names[atom.id] = identifier(name)
+            self.names[atom.id] = local_name(name)
             self.place(atom)
         self._levers.note_moved(atoms)
 
@@ -264,6 +264,6 @@ class Placement:
         return total
 
 
-def identifier(name: str) -> str:
-    """The name with what no language takes replaced by underscores."""
+def local_name(name: str) -> str:
+    """The name of a value in a Program: what no language takes is an underscore."""
     return "".join(ch if ch.isalnum() else "_" for ch in name)

@@ -15,15 +15,24 @@ from ikgen.model.chain import REVOLUTE, ActuatedJoint
 from ikgen.model.joint_tree import Limits, Matrix
 from ikgen.model.transmission import Transmission
 
-__all__ = ["ARM_ANGLE", "HELD_ANGLE", "Angle", "DHChain", "DHRow", "Length", "Snap"]
+__all__ = [
+    "ARM_ANGLE_IDENTIFIER",
+    "ARM_ANGLE_OPTION",
+    "Angle",
+    "DHChain",
+    "DHRow",
+    "Length",
+    "Snap",
+]
 
-ARM_ANGLE = "arm-angle"
-"""What is held in place of a joint of an arm with a spherical shoulder and a spherical wrist."""
+ARM_ANGLE_OPTION = "arm-angle"
+"""What is held in place of a joint of an arm with a spherical shoulder and a spherical wrist, as options
+and configs spell it."""
 
-HELD_ANGLE = "arm_angle"
-"""What emitted code calls it among the names of held joints."""
+ARM_ANGLE_IDENTIFIER = "arm_angle"
+"""The same as emitted code spells it among the names of held joints."""
 
-_ANGLE = ActuatedJoint(ARM_ANGLE, REVOLUTE, Limits(-math.pi, math.pi))
+_ANGLE = ActuatedJoint(ARM_ANGLE_OPTION, REVOLUTE, Limits(-math.pi, math.pi))
 """It as something that turns."""
 
 
@@ -149,7 +158,9 @@ class DHChain:
     @property
     def arm_angle(self) -> bool:
         """Whether the arm angle is held, in place of a joint."""
-        return ARM_ANGLE in self.free and all(j.name != ARM_ANGLE for j in self.joints)
+        return ARM_ANGLE_OPTION in self.free and all(
+            j.name != ARM_ANGLE_OPTION for j in self.joints
+        )
 
     @property
     def free_indices(self) -> tuple[int, ...]:
@@ -166,7 +177,7 @@ class DHChain:
     @property
     def held(self) -> tuple[str, ...]:
         """Names of `held_inputs` in emitted code."""
-        return tuple(HELD_ANGLE if x is _ANGLE else x.name for x in self.held_inputs)
+        return tuple(ARM_ANGLE_IDENTIFIER if x is _ANGLE else x.name for x in self.held_inputs)
 
     @property
     def symbols(self) -> tuple[str, ...]:

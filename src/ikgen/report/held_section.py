@@ -10,14 +10,14 @@ import numpy as np
 from ikgen.emit.derivation import Derivation
 from ikgen.lowering.held_angle import held_values
 from ikgen.model.chain import REVOLUTE
-from ikgen.model.dh import ARM_ANGLE, DHChain
+from ikgen.model.dh import ARM_ANGLE_OPTION, DHChain
 from ikgen.report.document import Block, Heading, Paragraph, Picture
 from ikgen.report.worked_example import Array, WorkedExample
 from ikgen.verify.runners.python_module import PythonModule
 
 __all__ = ["held_section"]
 
-_IN_WORDS = {ARM_ANGLE: "the arm angle"}
+_IN_WORDS = {ARM_ANGLE_OPTION: "the arm angle"}
 _VALUES = 145
 _WIDTH, _HEIGHT, _LEFT, _TOP, _BOTTOM = 560.0, 190.0, 46.0, 16.0, 44.0
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ikgen.model.dh import HELD_ANGLE
+from ikgen.model.dh import ARM_ANGLE_IDENTIFIER
 from ikgen.runtime.python.held.arm_angle import ArmAngle
 from ikgen.tasks import find_task
 from ikgen.verify import checks, completeness, coverage, interface_checks
@@ -198,7 +198,8 @@ def _mismatch(runner: Runner, oracle: Oracle, angle: ArmAngle | None) -> tuple[C
     run."""
     ours, theirs = runner.constants.joint_names, oracle.joint_names
     bounds = runner.constants.lower.shape == runner.constants.upper.shape == (len(ours),)
-    known = set(runner.constants.free_joints) <= {*ours, *(() if angle is None else (HELD_ANGLE,))}
+    held = () if angle is None else (ARM_ANGLE_IDENTIFIER,)
+    known = set(runner.constants.free_joints) <= {*ours, *held}
     if len(ours) == len(theirs) and bounds and known:
         return ()
     detail = f"joints {', '.join(ours)} instead of {', '.join(theirs)}"

@@ -13,7 +13,7 @@ from ikgen.importers.dh.constant_names import symbol_of
 from ikgen.importers.dh.entry_expression import BadEntryError, Quantity, evaluate, finite, number
 from ikgen.importers.dh.entry_limits import read_limits
 from ikgen.importers.dh.table_document import ENTRIES, TableDocument
-from ikgen.model.dh import ARM_ANGLE
+from ikgen.model.dh import ARM_ANGLE_OPTION
 from ikgen.model.joint_tree import Limits
 
 __all__ = ["Entry", "locked_entries", "read_entries", "read_parameters"]
@@ -179,7 +179,7 @@ def locked_entries(
     """The rows with locked joints as constants; `free` names are checked too."""
     names = [entry.name for entry in entries if entry.kind != "fixed"]
     for name in (*locked, *free):
-        if name not in names and (name in locked or name != ARM_ANGLE):
+        if name not in names and (name in locked or name != ARM_ANGLE_OPTION):
             raise UnknownNameError("joint in the table", name, names)
     both = sorted(set(locked) & set(free))
     if both:
