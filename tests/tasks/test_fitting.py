@@ -14,7 +14,7 @@ from ikgen.errors import UnknownNameError, UsageError
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
 from ikgen.model.dh import DHChain
-from ikgen.tasks import TASKS, find_task
+from ikgen.tasks import TASKS, WHOLE_POSE, find_task
 from ikgen.tasks.fitting import (
     fits,
     fitting_tasks,
@@ -132,7 +132,7 @@ def test_entries_are_known_in_dh_frames_where_all_their_parts_are_read(tmp_path:
     dh = roll(tmp_path)
     pitch = find_task("position-pitch").readable
     assert readable_in_dh(dh, pitch) == pitch
-    assert readable_in_dh(dh, frozenset(ENTRY_NAMES)) == frozenset(ENTRY_NAMES)
+    assert readable_in_dh(dh, WHOLE_POSE) == WHOLE_POSE == frozenset(ENTRY_NAMES)
     axes = np.array([[0.0, 0, 1], [1, 0, 0], [0, 1, 0]])  # the base's z is the chain's y
     assert readable_in_dh(turned(dh, axes), pitch) == {"px", "py", "pz", "r23"}
     c, s = np.cos(0.3), np.sin(0.3)

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import Variable
-from ikgen.equations.products import ENTRY_NAMES
 from ikgen.forms.form import Form
 from ikgen.forms.lowered_form import Divisor, Tolerances, at_least, natural_size
 from ikgen.lowering.rounding import Rounding
@@ -20,6 +19,7 @@ from ikgen.program.inputs import Input
 from ikgen.program.statements import Comment, Let
 from ikgen.solver.choice import Step
 from ikgen.solver.solution_graph import SolutionGraph
+from ikgen.tasks import WHOLE_POSE
 
 __all__ = ["LoweredLevel", "Placement", "Requirement", "local_name"]
 
@@ -148,7 +148,7 @@ class Placement:
     @property
     def whole_pose(self) -> bool:
         """Whether every entry of the pose is read; then any split compares it."""
-        return self.system.readable == frozenset(ENTRY_NAMES)
+        return self.system.readable == WHOLE_POSE
 
     def atom(self, name: str, probe: NDArray[np.float64] | None = None) -> Expr:
         """An atom of a name that is given; `probe` are its values at the probes."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from ikgen.errors import UnknownNameError, UsageError
 from ikgen.plugins import find_plug_in, plug_ins
 
-__all__ = ["AXES", "TASKS", "Task", "find_task", "task_names"]
+__all__ = ["AXES", "TASKS", "WHOLE_POSE", "Task", "find_task", "task_names"]
 
 AXES = ("x", "y", "z")
 """The tool's axes, by which a task with a direction goes."""
@@ -17,6 +17,9 @@ _ROTATION = tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
 _DIRECTION = ("r13", "r23", "r33")
 _ELEVATION = ("r33",)
 _HEADING = ("r11", "r21")
+WHOLE_POSE = frozenset(_ROTATION + _POSITION)
+"""Names of all entries of a pose."""
+
 _ORIENTATIONS = {
     frozenset(): "",
     frozenset(_ROTATION): "rotation",
@@ -65,7 +68,7 @@ class Task:
     @property
     def whole_pose(self) -> bool:
         """Whether every entry is read, so that the tool transform can be taken off the pose."""
-        return self.name == "pose"
+        return self.readable == WHOLE_POSE
 
     @property
     def entries(self) -> tuple[tuple[int, int], ...]:
@@ -89,7 +92,7 @@ class Task:
 
 
 TASKS: tuple[Task, ...] = (
-    Task("pose", frozenset(_ROTATION + _POSITION), 6, "position and rotation", ("Transform6D",)),
+    Task("pose", WHOLE_POSE, 6, "position and rotation", ("Transform6D",)),
     Task(
         "position-direction",
         frozenset(_POSITION + _DIRECTION),

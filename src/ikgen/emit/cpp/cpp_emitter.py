@@ -148,7 +148,7 @@ def _refinement(module: SolverModule) -> dict[str, object]:
 
 def _blocks(module: SolverModule) -> tuple[int, ...]:
     """The joints by blocks of their derivatives, where those of all rows are eliminated so."""
-    if not _newton(module) or module.task != "pose" or module.dh.arm_angle:
+    if not _newton(module) or not module.reads.whole_pose or module.dh.arm_angle:
         return ()
     moving = [j for j in range(module.dh.dof) if j not in module.free]
     return column_blocks(module.dh, moving, module.size)
@@ -169,7 +169,7 @@ def _headers(module: SolverModule) -> list[str]:
     if module.dh.arm_angle:
         needed += ["held/lane_elbow.hpp" if _newton(module) else "held/arm_angle_motion.hpp"]
     needed += ["held/displacement.hpp"] * bool(module.beside)
-    task = "arm/whole_pose.hpp" if module.task == "pose" else "arm/pose_entries.hpp"
+    task = "arm/whole_pose.hpp" if module.reads.whole_pose else "arm/pose_entries.hpp"
     needed += [task, "arguments/pose_solver.hpp", "solving/projection.hpp"]
     searches = ("held/row_preference.hpp", "held/held_search.hpp", "held/held_grid_search.hpp")
     return [*needed, searches[min(len(module.held), 2)]]
