@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ikgen.errors import BadDescriptionError, VerificationError
 from ikgen.generation.emitted_arm import EmittedArm
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from ikgen.generation.emitters import Emitter
     from ikgen.generation.request import Outputs
     from ikgen.verify.oracle import Oracle
+    from ikgen.verify.runners.runner import Runner
     from ikgen.verify.verification_report import VerificationReport
 
 __all__ = ["oracle_for", "verify_emitted", "verify_one", "verify_texts", "with_samples"]
@@ -88,7 +89,7 @@ def _reports(
     reports: dict[str, VerificationReport] = {}
     emitted: set[str] = set()
 
-    def make(emitter: Emitter) -> Any | None:
+    def make(emitter: Emitter) -> Runner | None:
         write_texts(folder, emit(emitter))
         emitted.add(emitter.name)
         return emitter.runner(arm, folder)
@@ -108,7 +109,7 @@ def _reports(
     return reports
 
 
-def _taken(runners: RunnersAhead, emitter: Emitter, emitted: Collection[str]) -> Any | None:
+def _taken(runners: RunnersAhead, emitter: Emitter, emitted: Collection[str]) -> Runner | None:
     """What runs an output: if one of those that were `emitted` cannot be run, ikgen's text is wrong, not
     the user's."""
     try:
@@ -136,13 +137,13 @@ def oracle_for(reading: Reading) -> Oracle:
 
 
 def verify_one(
-    runner: Any,
+    runner: Runner,
     oracle: Oracle,
     arm: EmittedArm,
     outputs: Outputs,
     progress: Progress,
     *,
-    peer: Any | None = None,
+    peer: Runner | None = None,
     shared: SharedWork | None = None,
 ) -> VerificationReport:
     """The verification of one language: what `runner` runs against the oracle, and against the same

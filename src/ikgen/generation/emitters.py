@@ -13,7 +13,9 @@ from ikgen.errors import UnknownNameError
 from ikgen.plugins import PlugIn, find_plug_in, plug_ins
 
 if TYPE_CHECKING:
+    from ikgen.emit.derivation import Derivation
     from ikgen.generation.emitted_arm import EmittedArm
+    from ikgen.verify.runners.runner import Runner
     from ikgen.verify.verification_report import VerificationReport
 
 __all__ = ["EMITTERS", "Emitter", "find_emitter"]
@@ -39,7 +41,7 @@ class Emitter:
     compiled: bool = False
 
     def emit(
-        self, derivation: Any, reports: Mapping[str, VerificationReport] | None = None
+        self, derivation: Derivation, reports: Mapping[str, VerificationReport] | None = None
     ) -> dict[str, str]:
         """File name (relative) -> text."""
         more = (reports or {},) if self.tells_verification else ()
@@ -47,12 +49,13 @@ class Emitter:
             texts: dict[str, str] = _load(self.target)(derivation, *more)
         return texts
 
-    def runner(self, arm: EmittedArm, folder: Path) -> Any | None:
+    def runner(self, arm: EmittedArm, folder: Path) -> Runner | None:
         """What verification calls, or None."""
         if self.runner_target is None:
             return None
         with self._blamed():
-            return _load(self.runner_target)(arm, folder)
+            runner: Runner = _load(self.runner_target)(arm, folder)
+        return runner
 
     def _blamed(self) -> AbstractContextManager[None]:
         return nullcontext() if self.plug_in is None else self.plug_in.blamed()

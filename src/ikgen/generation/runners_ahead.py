@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from contextlib import ExitStack
 from types import TracebackType
-from typing import Any
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ikgen.verify.runners.runner import Runner
 
 __all__ = ["Make", "RunnersAhead"]
 
-Make = Callable[[], Any | None]
+Make = Callable[[], "Runner | None"]
 """Makes the runner of an output; None where it cannot be run."""
 
 _AT_ONCE = 2
@@ -23,7 +26,7 @@ class RunnersAhead:
 
     def __init__(self, makes: Iterable[Make], before: int = 0) -> None:
         self._makes = dict(enumerate(makes))
-        self._made: dict[int, Any | Exception | None] = {}
+        self._made: dict[int, Runner | Exception | None] = {}
         self._taken, self._before = 0, before
         self._close = ExitStack()
 
@@ -42,7 +45,7 @@ class RunnersAhead:
     ) -> None:
         self._close.close()
 
-    def take(self) -> Any | None:
+    def take(self) -> Runner | None:
         """The next one, ready to be used. Raises here what making it raised, whenever that was: an output
         before it is told first."""
         self._make()
@@ -60,6 +63,7 @@ class RunnersAhead:
             make = self._makes.pop(place, None)
             if make is None:
                 continue
+            made: Runner | Exception | None
             try:
                 made = make()
             except Exception as error:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ikgen.errors import BadDescriptionError, IkgenError, VerificationError
 from ikgen.generation.emitted_arm import EmittedArm
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from ikgen.generation.request import Outputs
     from ikgen.generation.runners_ahead import RunnersAhead
     from ikgen.verify.oracle import Oracle
+    from ikgen.verify.runners.runner import Runner
     from ikgen.verify.verification_report import VerificationReport
 
 __all__ = ["Checked", "OutputChecks"]
@@ -64,7 +65,7 @@ class OutputChecks:
                 findings += [found] if found else []
         return Checked(tuple(findings), reports)
 
-    def _made(self, name: str) -> Any | None:
+    def _made(self, name: str) -> Runner | None:
         """What runs an output, if it can be run."""
         from ikgen.generation.emitters import find_emitter
 
@@ -72,7 +73,7 @@ class OutputChecks:
 
     def _runner(
         self, name: str, runners: RunnersAhead, oracle: Oracle
-    ) -> tuple[Any | None, Finding | None]:
+    ) -> tuple[Runner | None, Finding | None]:
         """What runs an output of the same geometry; None with what is wrong where there is none."""
         try:
             runner = runners.take()
@@ -86,7 +87,7 @@ class OutputChecks:
         return runner, None
 
     def _report(
-        self, name: str, runner: Any, oracle: Oracle, peer: Any | None, shared: SharedWork
+        self, name: str, runner: Runner, oracle: Oracle, peer: Runner | None, shared: SharedWork
     ) -> tuple[VerificationReport | None, Finding | None]:
         from ikgen.generation.emitted_checks import verify_one
 
