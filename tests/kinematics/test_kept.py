@@ -6,10 +6,11 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from tests.support.chains import chain_forward
 from tests.support.rounded_arms import EXACT, spherical_wrist, three_parallel
 
 from ikgen.kinematics.classify import classify
-from ikgen.kinematics.forward import chain_forward, dh_forward, file_forward
+from ikgen.kinematics.forward import dh_forward, file_forward
 from ikgen.kinematics.kept import keep_constants, keep_lengths, kept_constants, stray_lengths
 from ikgen.kinematics.modified_dh import to_dh
 from ikgen.model.chain import Chain

@@ -11,14 +11,19 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.support.chains import make_chain, random_chain, rewritten, rotation, translation
+from tests.support.chains import (
+    chain_forward,
+    make_chain,
+    random_chain,
+    rewritten,
+    rotation,
+    translation,
+)
 
 from ikgen.errors import UnknownNameError, UsageError
 from ikgen.kinematics.classify import parallel_to_previous
 from ikgen.kinematics.forward import (
-    chain_forward,
     dh_forward,
-    dh_numeric,
     file_forward,
     file_jacobian,
 )
@@ -253,12 +258,6 @@ def test_jacobian_is_the_derivative(chain: Chain, seed: int) -> None:
         W = slope[:3, :3] @ R.T
         np.testing.assert_allclose(J[3:, k], [W[2, 1], W[0, 2], W[1, 0]], atol=1e-7)
     np.testing.assert_array_equal(file_jacobian(dh, np.stack([q, q]))[1], J)
-
-
-def test_numbers_as_arrays() -> None:
-    numbers = dh_numeric(to_dh(make_chain("RP", [np.eye(4), translation(0.2, 0, 0)], [Z, Y])))
-    assert numbers.revolute == (True, False)
-    assert numbers.alpha.shape == numbers.a.shape == numbers.d.shape == numbers.theta.shape == (2,)
 
 
 def test_refusals() -> None:

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from benchmarks.collection import ABSENT, load_arms
 from tests.support.arms import arm_chain
+from tests.support.chains import chain_forward
 
 from ikgen.kinematics.classify import classify
-from ikgen.kinematics.forward import chain_forward, dh_forward, file_forward, pose_difference
+from ikgen.kinematics.forward import dh_forward, file_forward, pose_difference
 from ikgen.kinematics.modified_dh import to_dh
 
 ARMS = load_arms()

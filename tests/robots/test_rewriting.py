@@ -7,12 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tests.support.chains import rewritten
+from tests.support.chains import chain_forward, rewritten
 from tests.support.solving import FIXTURES, emitted
 
 from ikgen.chains.selection import select_chain
 from ikgen.importers import load_tree
-from ikgen.kinematics.forward import chain_forward
 from ikgen.kinematics.modified_dh import to_dh
 from ikgen.model.chain import Chain
 

@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from ikgen.kinematics.fixed_order import product
+from ikgen.kinematics.rigid import axis_motion
 from ikgen.model.chain import PRISMATIC, REVOLUTE, ActuatedJoint, Chain, ChainAxis
 from ikgen.model.joint_tree import Limits, Matrix
 
@@ -26,6 +29,16 @@ def translation(x: float, y: float, z: float) -> Matrix:
     T = np.eye(4)
     T[:3, 3] = x, y, z
     return T
+
+
+def chain_forward(chain: Chain, q: ArrayLike) -> Matrix:
+    """`T_base_tip` of the file's chain as `Chain` defines it."""
+    values = np.asarray(q, dtype=np.float64)
+    T = np.eye(4)
+    for axis in chain.axes:
+        value = axis.multiplier * values[..., axis.driver] + axis.offset
+        T = product(T, axis.T_prev_axis, axis_motion(axis.kind == REVOLUTE, axis.axis, value))
+    return np.asarray(product(T, chain.T_last_tip))
 
 
 def make_chain(

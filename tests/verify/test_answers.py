@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.fake_arms import JOINTS, six_axis_oracle
+from tests.support.task_spaces import TASK_SPACES
 
 from ikgen.model.dh import ARM_ANGLE_IDENTIFIER
 from ikgen.verify import verification
 from ikgen.verify.answers import collect_answers
 from ikgen.verify.arm import ArmUnderTest, arm_under_test
 from ikgen.verify.runners.runner import Rows
-from ikgen.verify.task_space import TASK_SPACES
 from ikgen.verify.verification import _mismatch, _run_checks
 from ikgen.verify.verification_report import CheckResult
 

@@ -250,7 +250,7 @@ def test_rows_come_in_the_order_of_some_distance_to_the_seed(arm: ArmUnderTest) 
     near, far = row(0.2, 0.2, 0.2), row(0.5)  # farther by the sum alone: 0.6 + 0.3 and 0.5 + 0.5
 
     def told(*answers: list[list[float]]) -> tuple[int, int]:
-        found = check_seed_order(arm, trial_of(arm, rows_of(*answers)), seeds)
+        found = check_seed_order(trial_of(arm, rows_of(*answers)), seeds)
         assert found.name == "seed order" and bool(found.worst_case) == (found.failures > 0)
         return found.count, found.failures
 
@@ -304,7 +304,7 @@ def test_the_status_says_what_limits_leave(arm: ArmUnderTest) -> None:
 
     def told(limited: Rows, unlimited: Rows) -> int:
         pair = trial_of(arm, limited), trial_of(arm, unlimited, limits=False)
-        found = check_status(arm, [pair])
+        found = check_status([pair])
         assert found.count == 3 and bool(found.worst_case) == (found.failures > 0)
         return found.failures
 
@@ -313,7 +313,7 @@ def test_the_status_says_what_limits_leave(arm: ArmUnderTest) -> None:
     pairs = [
         (trial_of(arm, one), trial_of(arm, without, limits=False)) for one in (with_, late, late)
     ]
-    found = check_status(arm, pairs)
+    found = check_status(pairs)
     assert (found.count, found.failures) == (9, 4) and "made, OK #1" in found.worst_case
     assert told(replace(with_, status=("OK", "UNREACHABLE", "UNREACHABLE")), without) == 1
     assert told(replace(with_, status=("LIMITS", "LIMITS", "LIMITS")), without) == 2

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.fake_arms import six_axis_oracle, six_axis_urdf, tree_of
+from tests.support.task_spaces import TASK_SPACES
 
 from ikgen.verify.arm import ArmUnderTest, arm_under_test
 from ikgen.verify.oracle import PinocchioOracle
 from ikgen.verify.reach import farthest_configuration, invalid_poses, unreachable_poses
-from ikgen.verify.task_space import TASK_SPACES, TaskSpace
+from ikgen.verify.task_space import TaskSpace
 
 Array = NDArray[np.float64]
 SLIDE = six_axis_urdf().replace('name="j3" type="revolute"', 'name="j3" type="prismatic"')

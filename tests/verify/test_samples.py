@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.fake_arms import six_axis_oracle
+from tests.support.task_spaces import TASK_SPACES
 
 from ikgen.verify.arm import ArmUnderTest, _sampled_range, arm_under_test
 from ikgen.verify.reach import _improve, farthest_configuration
@@ -28,7 +29,6 @@ from ikgen.verify.singularities import (
     on_continuum,
     singular_configurations,
 )
-from ikgen.verify.task_space import TASK_SPACES
 
 Array = NDArray[np.float64]
 WRIST = np.array([0.3, 0.4, 1.0, 0.5, 0.0, 0.7])  # axes 4 and 6 in line

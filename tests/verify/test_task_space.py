@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from tests.support.fake_arms import six_axis_oracle, six_axis_urdf, tree_of
+from tests.support.task_spaces import TASK_SPACES
 
 from ikgen.verify.arm import REGULAR_SIGMA, ArmUnderTest, arm_under_test
 from ikgen.verify.oracle import PinocchioOracle
@@ -12,7 +13,7 @@ from ikgen.verify.reach import invalid_poses, unreachable_poses
 from ikgen.verify.sampling import sample_sets
 from ikgen.verify.search import find_solutions
 from ikgen.verify.singularities import on_continuum
-from ikgen.verify.task_space import TASK_SPACES, TaskSpace, _turn
+from ikgen.verify.task_space import TaskSpace, _turn
 
 
 def arm(task: str = "pose", free: tuple[str, ...] = ()) -> ArmUnderTest:

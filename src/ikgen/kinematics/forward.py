@@ -1,4 +1,4 @@
-"""Forward kinematics of the chain in each of its forms, for one configuration or many.
+"""Forward kinematics of the chain in DH form and of the file's own, for one configuration or many.
 
 `q` is (dof,) or (..., dof), in rad and m, in the order of `joints`; poses are (4, 4) or
 (..., 4, 4).
@@ -7,38 +7,23 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ikgen.kinematics.fixed_order import product
-from ikgen.kinematics.rigid import axis_motion, dh_link, z_motion
-from ikgen.model.chain import REVOLUTE, Chain
+from ikgen.kinematics.rigid import dh_link, z_motion
 from ikgen.model.dh import DHChain, DHRow
 from ikgen.model.joint_tree import Matrix
 
 __all__ = [
-    "DHNumbers",
-    "chain_forward",
     "dh_forward",
-    "dh_numeric",
     "file_forward",
     "file_jacobian",
     "pose_difference",
     "row_constant",
     "row_values",
 ]
-
-
-def chain_forward(chain: Chain, q: ArrayLike) -> Matrix:
-    """`T_base_tip` of the file's chain as `Chain` defines it."""
-    values = np.asarray(q, dtype=np.float64)
-    T = np.eye(4)
-    for axis in chain.axes:
-        value = axis.multiplier * values[..., axis.driver] + axis.offset
-        T = product(T, axis.T_prev_axis, axis_motion(axis.kind == REVOLUTE, axis.axis, value))
-    return np.asarray(product(T, chain.T_last_tip))
 
 
 def dh_forward(dh: DHChain, q: ArrayLike) -> Matrix:
@@ -91,35 +76,6 @@ def row_values(dh: DHChain, q: ArrayLike) -> Matrix:
 def row_constant(row: DHRow) -> Matrix:
     """`Rx(alpha) Tx(a) Rz(theta) Tz(d)` (4, 4) with the row's variable at 0."""
     return dh_link(row.alpha.value, row.a.value, row.theta.value, row.d.value)
-
-
-@dataclass(frozen=True, slots=True)
-class DHNumbers:
-    """The rows as arrays (n,): constants in rad and m, variable = scale * q[driver] + offset."""
-
-    alpha: Matrix
-    a: Matrix
-    d: Matrix
-    theta: Matrix
-    scale: Matrix
-    offset: Matrix
-    revolute: tuple[bool, ...]
-    driver: tuple[int, ...]
-
-
-def dh_numeric(dh: DHChain) -> DHNumbers:
-    """The numbers of `dh` as arrays, the variable's own column (theta or d) zero."""
-    rows = dh.rows
-    return DHNumbers(
-        alpha=np.array([row.alpha.value for row in rows]),
-        a=np.array([row.a.value for row in rows]),
-        d=np.array([row.d.value for row in rows]),
-        theta=np.array([row.theta.value for row in rows]),
-        scale=np.array([row.scale for row in rows]),
-        offset=np.array([row.offset.value for row in rows]),
-        revolute=tuple(row.revolute for row in rows),
-        driver=tuple(row.driver for row in rows),
-    )
 
 
 def pose_difference(T_one: Matrix, T_other: Matrix) -> tuple[float, float]:

@@ -16,27 +16,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-__all__ = ["ARITY", "BOOLEAN", "Op", "Operand", "operand_names", "renamed"]
+__all__ = ["BOOLEAN", "Op", "Operand", "operand_names", "renamed"]
 
-ARITY = {
-    "add": 2,
-    "sub": 2,
-    "mul": 2,
-    "div": 2,
-    "max": 2,
-    "min": 2,
-    "gt": 2,
-    "atan2": 2,
-    "and": 2,
-    "or": 2,
-    "neg": 1,
-    "abs": 1,
-    "sqrt": 1,
-    "cos": 1,
-    "sin": 1,
-    "not": 1,
-    "select": 3,
-}
 BOOLEAN = frozenset({"gt", "and", "or", "not"})
 
 

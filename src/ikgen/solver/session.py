@@ -61,7 +61,6 @@ class Session:
     ticks: list[Tick] = field(default_factory=list)
     _chooser: Chooser = field(init=False)
     _used: set[int] = field(default_factory=set)
-    _weight: dict[int, float] = field(default_factory=dict)
     _forks: list[tuple[int, float]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -110,7 +109,6 @@ class Session:
         """The scalar equations with one or two unknowns (IKBT sorts its equations so)."""
         self.round += 1
         self.candidates = []
-        self._weight = {}
         k = self.knowledge
         out: list[PolynomialEquation] = []
         for e in self.system.equations:

@@ -112,9 +112,7 @@ def check_singular_flags(arm: ArmUnderTest, trials: Sequence[Trial]) -> CheckRes
     return result("singular flags", len(q), int(wrong.sum()), detail=detail, worst_case=case)
 
 
-def check_seed_order(
-    arm: ArmUnderTest, trial: Trial, seeds: Array, *, name: str = "seed order"
-) -> CheckResult:
+def check_seed_order(trial: Trial, seeds: Array, *, name: str = "seed order") -> CheckResult:
     """Rows come in order of their distance to the seed: one norm (2, largest or 1) fits all
     answers.
 

@@ -110,7 +110,7 @@ def check_limit_choice(arm: ArmUnderTest, limited: Trial, unlimited: Trial) -> C
     return result("choice by limits", count, int(extra.sum() + dropped.sum()), worst_case=case)
 
 
-def check_status(arm: ArmUnderTest, pairs: Sequence[tuple[Trial, Trial]]) -> CheckResult:
+def check_status(pairs: Sequence[tuple[Trial, Trial]]) -> CheckResult:
     """OK goes with rows, LIMITS with rows that only `limits=False` returns; pairs are (with,
     without).
 

@@ -86,7 +86,7 @@ def _compare(
     return result(name, len(true), int(np.sum(error > SAME_TOLERANCE)), worst, worst_case=case)
 
 
-def check_forward(arm: ArmUnderTest, runner: Runner, sample: SampleSet) -> CheckResult:
+def check_forward(runner: Runner, sample: SampleSet) -> CheckResult:
     """`forward` equals the oracle, entry by entry (m and 1)."""
     return _compare("forward", runner.forward(sample.q), sample.poses, sample)
 

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.program.policy import LEVEL
-from ikgen.tasks import AXES, TASKS, Task
+from ikgen.tasks import AXES, Task
 
-__all__ = ["TASK_SPACES", "TaskSpace", "task_space"]
+__all__ = ["TaskSpace", "task_space"]
 
 Array = NDArray[np.float64]
 
@@ -159,6 +159,3 @@ def task_space(task: Task) -> TaskSpace:
         return TaskSpace(task.name, task.freedoms, False, "", task.entries)
     axis = AXES.index(task.axis) if task.axis else 2
     return TaskSpace(task.name, task.freedoms, task.position, task.orientation, axis=axis)
-
-
-TASK_SPACES = {task.name: task_space(task) for task in TASKS}

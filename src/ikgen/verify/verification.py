@@ -53,7 +53,7 @@ def _plan(
         agreement["agreement"] = lambda: check_agreement(arm, a.unlimited, peer)
     return {
         "constants": lambda: interface_checks.check_constants(arm, runner, a.unlimited.rows),
-        "forward": lambda: interface_checks.check_forward(arm, runner, random),
+        "forward": lambda: interface_checks.check_forward(runner, random),
         "jacobian": lambda: interface_checks.check_jacobian(arm, runner, a.ordered.sample),
         "closure": lambda: checks.check_closure(arm, a.reachable),
         "completeness": lambda: completeness.check_completeness(survey),
@@ -62,12 +62,12 @@ def _plan(
             arm, a.searched, _STARTS, rng, shared
         ),
         "distinct rows": lambda: checks.check_distinct(arm, a.reachable),
-        "status": lambda: coverage.check_status(arm, [(a.limited, a.unlimited), a.outside]),
+        "status": lambda: coverage.check_status([(a.limited, a.unlimited), a.outside]),
         "inside limits": lambda: checks.check_inside_limits(arm, a.reachable),
         "choice by limits": lambda: coverage.check_limit_choice(arm, a.limited, a.unlimited),
         "singular poses": lambda: coverage.check_singular_answers(arm, a.seeded),
         "singular flags": lambda: checks.check_singular_flags(arm, [a.limited, *a.seeded]),
-        "seed order": lambda: checks.check_seed_order(arm, a.ordered, a.seeds),
+        "seed order": lambda: checks.check_seed_order(a.ordered, a.seeds),
         "free joints": lambda: checks.check_free_joints(arm, a.reachable),
         "unreachable poses": lambda: coverage.check_unreachable(arm, a.unreachable),
         "invalid poses": lambda: interface_checks.check_invalid(arm, runner, random.poses[0]),
