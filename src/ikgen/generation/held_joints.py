@@ -199,12 +199,12 @@ def _moving(dh: DHChain) -> list[int]:
 
 
 def _singular(motion: Matrix, subsets: Sequence[Sequence[int]]) -> Matrix:
-    """The singular values over the largest, their median over the samples: (subsets, joints)."""
+    """`motion_ratios` of each subset of the joints: (subsets, joints)."""
     import numpy as np
 
-    parts = np.stack([motion[:, :, list(columns)] for columns in subsets])
-    values = np.linalg.svd(parts, compute_uv=False)
-    return np.asarray(np.median(values / np.maximum(values[..., :1], 1e-12), axis=1))
+    from ikgen.tasks.fitting import motion_ratios
+
+    return motion_ratios(np.stack([motion[:, :, list(columns)] for columns in subsets]))
 
 
 def _inside(dh: DHChain) -> Matrix:

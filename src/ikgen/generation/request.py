@@ -18,7 +18,7 @@ from ikgen.model.maintainer import is_maintainer
 from ikgen.model.module_name import is_module_name
 from ikgen.tasks import AXES
 
-__all__ = ["Outputs", "Request", "is_table"]
+__all__ = ["Outputs", "Request", "is_table", "xacro_texts"]
 
 
 def is_table(robot: Path) -> bool:
@@ -32,11 +32,13 @@ def _name(value: Any, where: str) -> Any:
     return value
 
 
-def _arguments(value: Any, where: str) -> Any:
+def xacro_texts(args: Mapping[str, Any]) -> dict[str, str]:
     """Arguments of xacro as texts; booleans as xacro writes them."""
-    if not isinstance(value, Mapping):
-        return value
-    return {n: str(x).lower() if isinstance(x, bool) else str(x) for n, x in value.items()}
+    return {n: str(x).lower() if isinstance(x, bool) else str(x) for n, x in args.items()}
+
+
+def _arguments(value: Any, where: str) -> Any:
+    return xacro_texts(value) if isinstance(value, Mapping) else value
 
 
 def _axis(value: Any, where: str) -> Any:

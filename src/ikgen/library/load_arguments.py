@@ -12,7 +12,7 @@ import numpy as np
 
 from ikgen.errors import ArgumentError, IkgenError, shown
 from ikgen.generation.joint_value import joint_value
-from ikgen.generation.request import Request
+from ikgen.generation.request import Request, xacro_texts
 from ikgen.importers.named_robots import is_named
 from ikgen.model.joint_relation import read_relation
 from ikgen.model.module_name import identifier, is_module_name
@@ -166,7 +166,7 @@ def _xacro_arguments(args: object) -> dict[str, str]:
         return {}
     if not isinstance(args, Mapping) or not all(isinstance(n, str) and n for n in args):
         raise wrong("args", args, "a mapping of the xacro file's arguments to their values")
-    return {n: str(x).lower() if isinstance(x, bool) else str(x) for n, x in args.items()}
+    return xacro_texts(args)
 
 
 def _calibration(file: object) -> Path | None:

@@ -24,6 +24,7 @@ __all__ = [
     "freedoms_fixed",
     "freedoms_moved",
     "keeps_heading_level",
+    "motion_ratios",
     "over_constrained",
     "rank",
     "scaled_motion",
@@ -127,11 +128,14 @@ def _condition(dh: DHChain, task: Task) -> float:
 def _ratios(dh: DHChain, task: Task) -> Matrix:
     """Singular values of the task's motion over the largest, their median over the samples."""
     moving = [j for j, joint in enumerate(dh.joints) if joint.name not in dh.free]
-    if not moving:
-        return np.empty(0)
-    singular = np.linalg.svd(scaled_motion(dh, task)[..., moving], compute_uv=False)
-    largest = np.maximum(singular[:, :1], 1e-12)
-    return np.asarray(np.median(singular / largest, axis=0))
+    return motion_ratios(scaled_motion(dh, task)[..., moving]) if moving else np.empty(0)
+
+
+def motion_ratios(motions: Matrix) -> Matrix:
+    """Singular values of motions (..., N, entries, joints) over the largest, their median over the N
+    samples: (..., k)."""
+    singular = np.linalg.svd(motions, compute_uv=False)
+    return np.asarray(np.median(singular / np.maximum(singular[..., :1], 1e-12), axis=-2))
 
 
 def scaled_motion(dh: DHChain, task: Task, q: Matrix | None = None) -> Matrix:
