@@ -26,6 +26,7 @@ from ikgen.kinematics.forward import (
     dh_forward,
     file_forward,
     file_jacobian,
+    file_slopes,
 )
 from ikgen.kinematics.modified_dh import to_dh
 from ikgen.model.chain import ActuatedJoint, Chain, ChainAxis
@@ -254,6 +255,7 @@ def test_jacobian_is_the_derivative(chain: Chain, seed: int) -> None:
     for k in range(chain.dof):
         step = np.eye(chain.dof)[k] * h
         slope = (file_forward(dh, q + step) - file_forward(dh, q - step)) / (2 * h)
+        np.testing.assert_allclose(file_slopes(dh, q)[..., k], slope[:3], atol=1e-7)
         np.testing.assert_allclose(J[:3, k], slope[:3, 3], atol=1e-7)
         W = slope[:3, :3] @ R.T
         np.testing.assert_allclose(J[3:, k], [W[2, 1], W[0, 2], W[1, 0]], atol=1e-7)

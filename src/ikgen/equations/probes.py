@@ -8,15 +8,16 @@ that was meant, so that a divisor which only rounding keeps from zero is seen to
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.kinematics.fixed_order import product
+from ikgen.kinematics.forward import file_slopes
 from ikgen.kinematics.rigid import dh_link
-from ikgen.model.dh import Angle, DHChain, Length
+from ikgen.model.dh import Angle, DHChain, DHRow, Length
 
 __all__ = [
     "Probes", "arm_size", "dh_pose", "elbow_position", "least_regular", "make_probes", "smallest_singular",
@@ -97,24 +98,33 @@ def smallest_singular(
     `readable` names the entries of the pose that the task reads, by default all; with `tool` the pose
     is that of the tip.
     """
-    h = 1e-6
-    read = _read(readable)
-    end = dh.X_tip if tool else np.eye(4)
-    moving = [j for j, joint in enumerate(dh.joints) if joint.name not in dh.free]
-    unit = [1.0 if dh.lead_row(j).revolute else size for j in moving]
-    step = h * np.array(unit)[:, None, None] * np.eye(dh.dof)[moving, None]
-    shape = 2, len(moving), len(values), dh.dof
-    shifted = np.stack([values + step, values - step]).reshape(-1, dh.dof)
-    plus, minus = dh_pose(dh, shifted).reshape(*shape[:3], 4, 4)
-    dT = product(plus - minus, end) / (2 * h)
-    dT = dT[..., :3, :] * read
-    dT[..., 3] /= size
-    columns = dT.reshape(*shape[1:3], 12)
+    leads = [dh.lead_row(j) for j in range(dh.dof)]
+    scale, offset = (
+        np.array(x) for x in zip(*((r.scale, r.offset.value) for r in leads), strict=True)
+    )
+    q = (values - offset) / scale
+    slopes = file_slopes(_meant(dh, dh.rows, dh.X_tip if tool else np.eye(4)), q)
+    slopes *= _read(readable)[..., None]
+    slopes[:, :, 3] /= size
+    entries = slopes.reshape(len(q), 12, dh.dof)
     if dh.arm_angle:
-        ahead, behind = elbow_position(dh, shifted).reshape(*shape[:3], 3)
-        columns = np.concatenate([columns, (ahead - behind) / (2 * h * size)], axis=2)
-    J = columns.transpose(1, 2, 0)
-    return np.asarray(np.linalg.svd(J, compute_uv=False)[:, -1])
+        link = dh_link(dh.rows[3].alpha.nominal, dh.rows[3].a.nominal, 0.0, 0.0)
+        elbow = file_slopes(_meant(dh, dh.rows[:3], link), q)[:, :, 3] / size
+        entries = np.concatenate([entries, elbow], axis=1)
+    unit = np.array([1.0 if lead.revolute else size for lead in leads]) / scale
+    moving = [j for j, joint in enumerate(dh.joints) if joint.name not in dh.free]
+    return np.asarray(np.linalg.svd((entries * unit)[..., moving], compute_uv=False)[:, -1])
+
+
+def _meant(dh: DHChain, rows: tuple[DHRow, ...], end: NDArray[np.float64]) -> DHChain:
+    """The chain of some rows, from frame 0, with the constants that were meant in place of the file's."""
+    links = [
+        dh_link(row.alpha.nominal, row.a.nominal, 0.0, row.d.nominal)
+        if row.revolute
+        else dh_link(row.alpha.nominal, row.a.nominal, row.theta.value, 0.0)
+        for row in rows
+    ]
+    return replace(dh, rows=rows, file_frames=(*links, end))
 
 
 def _read(readable: Collection[str] | None) -> NDArray[np.float64]:

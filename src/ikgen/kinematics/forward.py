@@ -20,6 +20,7 @@ __all__ = [
     "dh_forward",
     "file_forward",
     "file_jacobian",
+    "file_slopes",
     "pose_difference",
     "row_constant",
     "row_values",
@@ -63,6 +64,15 @@ def file_jacobian(dh: DHChain, q: ArrayLike) -> Matrix:
         else:
             J[..., :3, row.driver] += row.scale * z
     return J
+
+
+def file_slopes(dh: DHChain, q: ArrayLike) -> Matrix:
+    """How the entries of the file's pose change with the joints: (..., 3, 4, dof), per rad and m."""
+    T, J = file_forward(dh, q), file_jacobian(dh, q)
+    slopes = np.empty((*T.shape[:-2], 3, 4, dh.dof))
+    slopes[..., :3, :] = np.cross(J[..., 3:, None, :], T[..., :3, :3, None], axis=-3)
+    slopes[..., 3, :] = J[..., :3, :]
+    return slopes
 
 
 def row_values(dh: DHChain, q: ArrayLike) -> Matrix:

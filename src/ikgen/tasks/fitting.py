@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ikgen.kinematics.axis_relations import reach
-from ikgen.kinematics.forward import file_forward
+from ikgen.kinematics.forward import file_forward, file_slopes
 from ikgen.program.policy import LEVEL
 from ikgen.tasks import AXES, TASKS, Task
 
@@ -34,8 +34,7 @@ _INDEPENDENT = 1e-5
 """Least singular value, relative to the largest, of freedoms that are moved independently."""
 
 _ROUND_OFF = 2e-9
-"""The same of freedoms that are moved at all: more than the differences that tell it are off by, and than
-rows may miss a pose by."""
+"""The same of freedoms that are moved at all: more than rows may miss a pose by."""
 
 _BARELY = 0.02
 """A task conditioned worse than another by this factor comes behind it: a tilt by rounding moves its
@@ -145,17 +144,8 @@ def scaled_motion(dh: DHChain, task: Task, q: Matrix | None = None) -> Matrix:
     rows = np.array([1.0 / length if column == 3 else 1.0 for _, column in task.entries])
     columns = np.array([1.0 if joint.kind == "revolute" else length for joint in dh.joints])
     q = _configurations(dh) if q is None else q
-    return np.asarray(_task_motion(dh, task, q) * rows[:, None] * columns)
-
-
-def _task_motion(dh: DHChain, task: Task, q: Matrix) -> Matrix:
-    """The same per rad and m."""
-    rows, columns = zip(*task.entries, strict=True)
-    steps = []
-    for h in 1e-6 * np.eye(dh.dof):
-        change = (file_forward(dh, q + h) - file_forward(dh, q - h)) / 2e-6
-        steps.append(change[:, rows, columns])
-    return np.stack(steps, axis=-1)
+    read = tuple(zip(*task.entries, strict=True))
+    return np.asarray(file_slopes(dh, q)[:, read[0], read[1]] * rows[:, None] * columns)
 
 
 def _configurations(dh: DHChain) -> Matrix:
