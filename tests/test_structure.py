@@ -90,6 +90,14 @@ def test_what_one_folder_imports_all_others_are_forbidden() -> None:
         assert sorted(listed) == sorted(folders - {f"ikgen.{owner}"}), contract["name"]
 
 
+def test_comments_of_constants_stand_alone() -> None:
+    """Emitted code has those constants alone that it needs: what is said of the one before may be gone."""
+    goes_on = re.compile(r"\S.* (?:#|//) (?:and|or|the same)\b")
+    files = [p for p in (SOURCE / "runtime").rglob("*.*") if p.suffix in (".py", ".hpp")]
+    found = [line for p in files for line in p.read_text(encoding="utf-8").splitlines()]
+    assert len(found) > 10000 and [line for line in found if goes_on.match(line)] == []
+
+
 def test_no_module_has_the_name_of_another() -> None:
     names = Counter(path.name for path in [*MODULES, *RUNTIME.rglob("*.hpp")])
     names += Counter(

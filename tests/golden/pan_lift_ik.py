@@ -382,37 +382,39 @@ class _Policy:
     """Errors are in rad, or m over the arm's size."""
 
     arrived: float  # error below which a refined row is a solution
-    exact: float  # and does not give way to better ones
+    exact: float  # error below which a solution gives way to no better one
     pose_tolerance: float  # how far a rotation's entries may be off
-    orthonormal: float  # and what is round-off of them
+    orthonormal: float  # how far a rotation's entries may be off by round-off
     level: float  # by how much a heading's squared length may be short of 1
-    coincident: float  # rows closer than that (rad or m) are one
-    alike: float  # and singular ones, where the pose is theirs between them too:
-    halfway: float  # to this error
+    coincident: float  # rad or m: rows closer than that are one
+    alike: float  # rad or m: singular rows closer than that are one, if the pose is theirs between them
+    halfway: float  # error up to which the pose is that of what is between two rows
     crowd: int  # rows of a continuum that are alike, at most
-    limit_tolerance: float  # how far outside a limit a row is put back on it
-    limit_reach: float  # and how far outside that is tried
+    limit_tolerance: float  # rad or m: a row no farther outside a limit is put back on it
+    limit_reach: float  # rad or m: a row no farther outside a limit is tried on it
     tries: int  # values tried for a joint that a pose leaves free
-    try_step: float  # rad from one to the next
+    try_step: float  # rad from one value that is tried to the next
     rank_loss: float  # smallest singular value below which a refined row is singular
-    continuum_rank_loss: float  # the same where the closed form says that it is
+    continuum_rank_loss: (
+        float  # smallest singular value below which one is that the closed form marks
+    )
     fold_reach: float  # smallest singular value below which another row may be near
-    beside_reach: float  # and below which poses beside are solved as well
-    anywhere: float  # the same where they always are
-    broken_reach: float  # below which a row may lie on a continuum that rounding broke
-    farthest_start: float  # first step (rad, m) of rows that are refined together
-    contraction: float  # of each further one
-    pivot_share: float  # of the pivot: the first step at most, unless
-    fold_product: float  # the two smallest singular values have a larger product
-    least_pivot: float  # how far the derivatives by each joint must be from the others' span
+    beside_reach: float  # smallest singular value below which poses beside are solved as well
+    anywhere: float  # `beside_reach` from which on they always are
+    broken_reach: float  # smallest singular value below which rounding may have broken a continuum
+    farthest_start: float  # rad or m: first step, at most, of rows that are refined together
+    contraction: float  # most that a further step of theirs may be of the one before
+    pivot_share: float  # most that their first step may be of the pivot, up to `fold_product`
+    fold_product: float  # product of the two smallest singular values above which it may be more
+    least_pivot: float  # least distance of a joint's derivatives from the span of others'
     least_miss: float  # error that shows that a row ends beside the pose
-    lane_steps: int  # at most
-    least_damping: float
-    damping: float  # of a Newton step, times the squared error
-    largest_step: float  # of a joint
+    lane_steps: int  # steps of rows that are refined together, at most
+    least_damping: float  # damping of a Newton step, at least
+    damping: float  # damping of a Newton step, over the squared error
+    largest_step: float  # rad or m: a joint's Newton step, at most
     converged: float  # error at which steps end
     patience: int  # steps without progress after which they end
-    progress: float  # of a step: the factor by which the error falls
+    progress: float  # factor by which the error falls in a step that is progress
     refinement: tuple[tuple[int, float, float], ...]  # steps; errors between which more follow
 
     @property
@@ -1183,9 +1185,10 @@ def _root(side: Array, rest: Array, bend: Array, flow: Array) -> Array:
 
 
 _CORRECTIONS = 6
-_NEAR = 1e-8  # rad or m: so far off the curve what is left, whose error is the square, is its
-_SHARE = 3e-2  # or, of what is left: as little as that off the curve changes neither
-_ALMOST, _SAME = 1e-3, 4e-15  # or how close it must be where what is left is the same after a step
+_NEAR = 1e-8  # rad or m off the curve at which what is left is that of the curve: it is off by the square
+_SHARE = 3e-2  # over what is left: as little as that off the curve changes neither
+_ALMOST = 1e-3  # rad or m off the curve at which corrections may end if they change nothing of what is left
+_SAME = 4e-15  # rad or m: corrections that change what is left by less change nothing of it
 _STRAY = 1.0  # rad or m: larger corrections show that no curve is near
 
 
@@ -1226,7 +1229,8 @@ _BEYOND = 4.0
 
 _STEPS, _DEEP = 40, 24
 _curve_parts_DOUBTS = 3  # how often a part is cut as its cubic bends
-_BENT, _STRAIGHT = 1.5, 0.03  # by so much of what it is in the middle, and at most
+_BENT = 1.5  # over its bend: a cubic that is lower in the middle of a part may have two roots there
+_STRAIGHT = 0.03  # over its largest value: a cubic that bends by less is straight
 _CUBICS, _NEWTON, _CLEAR = 2, 4, 1e-6
 _LEAP, _SOON = 16.0, 3
 _SAMPLES = 600  # of a curve
@@ -1804,15 +1808,15 @@ def _that_differ(arm: _Arm, T: Array, pose: _Index, q: Array, singular: _Flags) 
 # The nearest pose that the arm can take, of one that it cannot.
 
 
-_START_COUNT = 256  # drawn
-_FIRST_STEPS = 12  # of each: where they begin tells little of where they lead
-_FEW_STEPS = 4  # the same where a row takes the pose, or none is wanted
+_START_COUNT = 256  # starts that are drawn
+_FIRST_STEPS = 12  # steps of each start: where they begin tells little of where they lead
+_FEW_STEPS = 4  # steps of each start where a row takes the pose, or none is wanted
 _FOLLOWED = 16
 _STEP_COUNT = 80
 _LEAST_DAMPING, _FIRST_DAMPING, _MOST_DAMPING = 1e-10, 1e-3, 1e10  # damping of a step
 _LONGEST_STEP = 0.5  # rad or m: step of a joint
-_ROUND_OFF = 1e-16  # of what is least: what a step gains at most where nothing is left to gain
-_STANDING = 1e-6  # the same where what is least is not 0
+_ROUND_OFF = 1e-16  # over what is least: a step that gains less ends the descent
+_STANDING = 1e-6  # over what is least and not 0: a step that gains less ends the descent
 
 
 def _nearest_row(arm: _Arm, T: Array, start: Row, limits: bool) -> Row:
@@ -2508,8 +2512,8 @@ def _no_solutions(dof: int, status: Status, reason: str = "") -> Solutions:
 # All solutions of many poses at once, in arrays.
 
 
-_CHUNK = 16384  # poses solved at a time,
-_DOUBTS = 512  # and those that leave doubts
+_CHUNK = 16384  # poses solved at a time
+_DOUBTS = 512  # poses that leave doubts solved at a time
 _Batch = tuple[Array, NDArray[np.int64], NDArray[np.str_]]
 
 
@@ -2835,15 +2839,15 @@ def _search_held(
 # Joint values along a path of poses, on one branch.
 
 
-_DEEPEST = 24  # of the way from one pose to the next
-_SHALLOW = 9  # the same where there are no rows
+_DEEPEST = 24  # how often the way from one pose to the next is halved
+_SHALLOW = 9  # how often the way to a pose without rows is halved
 _MOST = 1000  # steps from one pose to the next, where rows follow at no length
 _path_following_FARTHEST = 0.3  # rad or m that a joint may move at once
-_AWAY = 1.0  # rad or m by which it turns around a singularity, where another row is next to the last one
-_OFF = 0.2  # of the motion, and
-_LEAST_OFF = 1e-4  # rad or m: how far a row may be from where the Jacobian leads
+_AWAY = 1.0  # rad or m by which a joint turns around a singularity, where another row is next to the last one
+_OFF = 0.2  # share of the motion that a row may be from where the Jacobian leads
+_LEAST_OFF = 1e-4  # rad or m that a row may be from where the Jacobian leads in any case
 
-_path_following_LEAST_DAMPING = 1e-14  # and where they shall tell how far the next row is
+_path_following_LEAST_DAMPING = 1e-14  # damping of steps that shall tell how far the next row is
 _JUMP = 0.05  # rad or m that a row may be from the last one where halving does not help
 
 

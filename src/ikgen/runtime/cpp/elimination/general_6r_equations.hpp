@@ -113,7 +113,7 @@ struct Equations {
   Mat<14, 3> right;  // invariants of C1^-1 R1^-1 C6^-1 in (1, c1, s1)
   Mat<14, 16> G;     // action of C2
   std::array<std::array<double, 6>, 2> reflector;  // Householder vectors of right(8..13, 1..2)
-  double r00, r01, r11;                            // and the triangle left over
+  double r00, r01, r11;                            // the triangle left over of those columns
 };
 
 inline void reflect(const std::array<double, 6>& h, double* x) noexcept {

@@ -63,11 +63,11 @@ template <class Arm> struct NearestRow {
   using Chords = PoseChords<Arm>;
   static constexpr int kStarts = 256, kFollowed = 16, kSteps = 80;
   static constexpr int kFirstSteps = 12;  // of each start: where they begin tells little of where they lead
-  static constexpr int kFewSteps = 4;     // the same where a row takes the pose, or none is wanted
+  static constexpr int kFewSteps = 4;     // of each start where a row takes the pose, or none is wanted
   static constexpr double kLeast = 1e-10, kFirst = 1e-3, kMost = 1e10;  // damping of a step
   static constexpr double kLongest = 0.5;     // rad or m: step of a joint
-  static constexpr double kRoundOff = 1e-16;  // of what is least: what a step gains where nothing is left to gain
-  static constexpr double kStanding = 1e-6;   // the same where what is least is not 0
+  static constexpr double kRoundOff = 1e-16;  // over what is least: a step that gains less ends the descent
+  static constexpr double kStanding = 1e-6;   // over what is least and not 0: a step that gains less ends it
 
   // t: the pose's matrix, columns first; inside: whether limits hold; enough: as for descend; first: steps of each start.
   [[gnu::cold, gnu::noinline]] static void find(const double* t, const Options& options, bool inside, double enough,

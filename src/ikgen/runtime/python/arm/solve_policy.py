@@ -12,37 +12,39 @@ class Policy:
     """Errors are in rad, or m over the arm's size."""
 
     arrived: float  # error below which a refined row is a solution
-    exact: float  # and does not give way to better ones
+    exact: float  # error below which a solution gives way to no better one
     pose_tolerance: float  # how far a rotation's entries may be off
-    orthonormal: float  # and what is round-off of them
+    orthonormal: float  # how far a rotation's entries may be off by round-off
     level: float  # by how much a heading's squared length may be short of 1
-    coincident: float  # rows closer than that (rad or m) are one
-    alike: float  # and singular ones, where the pose is theirs between them too:
-    halfway: float  # to this error
+    coincident: float  # rad or m: rows closer than that are one
+    alike: float  # rad or m: singular rows closer than that are one, if the pose is theirs between them
+    halfway: float  # error up to which the pose is that of what is between two rows
     crowd: int  # rows of a continuum that are alike, at most
-    limit_tolerance: float  # how far outside a limit a row is put back on it
-    limit_reach: float  # and how far outside that is tried
+    limit_tolerance: float  # rad or m: a row no farther outside a limit is put back on it
+    limit_reach: float  # rad or m: a row no farther outside a limit is tried on it
     tries: int  # values tried for a joint that a pose leaves free
-    try_step: float  # rad from one to the next
+    try_step: float  # rad from one value that is tried to the next
     rank_loss: float  # smallest singular value below which a refined row is singular
-    continuum_rank_loss: float  # the same where the closed form says that it is
+    continuum_rank_loss: (
+        float  # smallest singular value below which one is that the closed form marks
+    )
     fold_reach: float  # smallest singular value below which another row may be near
-    beside_reach: float  # and below which poses beside are solved as well
-    anywhere: float  # the same where they always are
-    broken_reach: float  # below which a row may lie on a continuum that rounding broke
-    farthest_start: float  # first step (rad, m) of rows that are refined together
-    contraction: float  # of each further one
-    pivot_share: float  # of the pivot: the first step at most, unless
-    fold_product: float  # the two smallest singular values have a larger product
-    least_pivot: float  # how far the derivatives by each joint must be from the others' span
+    beside_reach: float  # smallest singular value below which poses beside are solved as well
+    anywhere: float  # `beside_reach` from which on they always are
+    broken_reach: float  # smallest singular value below which rounding may have broken a continuum
+    farthest_start: float  # rad or m: first step, at most, of rows that are refined together
+    contraction: float  # most that a further step of theirs may be of the one before
+    pivot_share: float  # most that their first step may be of the pivot, up to `fold_product`
+    fold_product: float  # product of the two smallest singular values above which it may be more
+    least_pivot: float  # least distance of a joint's derivatives from the span of others'
     least_miss: float  # error that shows that a row ends beside the pose
-    lane_steps: int  # at most
-    least_damping: float
-    damping: float  # of a Newton step, times the squared error
-    largest_step: float  # of a joint
+    lane_steps: int  # steps of rows that are refined together, at most
+    least_damping: float  # damping of a Newton step, at least
+    damping: float  # damping of a Newton step, over the squared error
+    largest_step: float  # rad or m: a joint's Newton step, at most
     converged: float  # error at which steps end
     patience: int  # steps without progress after which they end
-    progress: float  # of a step: the factor by which the error falls
+    progress: float  # factor by which the error falls in a step that is progress
     refinement: tuple[tuple[int, float, float], ...]  # steps; errors between which more follow
 
     @property

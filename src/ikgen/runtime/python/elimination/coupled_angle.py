@@ -32,11 +32,9 @@ _ONE = np.eye(4)[None]
 _FIRST_NODE = 0.05  # rad, an angle that no right angle shares
 _REAL = 0.03  # rad, the imaginary part of an angle that may be real
 _NOISE = 1e-13  # of a determinant's harmonics, of the largest
-_OFF, _SURE, _SHARE = (
-    0.3,
-    1e-6,
-    0.25,
-)  # rad: roots so far off cannot be real; rounding that leaves no doubt
+_OFF = 0.3  # rad: imaginary part from which on a root cannot be real
+_SURE = 1e-6  # rad by which rounding may move a root that leaves no doubt
+_SHARE = 0.25  # share of its imaginary part by which rounding may move a root that leaves no doubt
 _GONE = 10j  # a root that is none
 
 # Near a crowded angle (rad): how far, and the degree of polynomials of sines and cosines there.

@@ -45,7 +45,7 @@ __all__ = [
 Elimination = tuple[int, int, int]  # joint that the loop begins at, whether reversed or swapped
 Candidates = tuple[Index, Array, Index, Flags]
 Finder = Callable[[Sequence[Array], Array, Elimination, Turning], Candidates]
-Way = tuple[Finder, Elimination, float]  # and how far off the pose exact candidates may be
+Way = tuple[Finder, Elimination, float]  # the last: how far off the pose exact candidates may be
 _SIX = range(6)
 # Error of a candidate from a root that is exact: a double one is off by the square root.
 _DIRECT = 1e-7

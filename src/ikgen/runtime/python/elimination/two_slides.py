@@ -37,7 +37,7 @@ _QUARTIC_OFFSETS = np.array(
 )  # rad, of the nodes: one where no divisor is small
 _WELL_APART = 1e-3  # divisors above it need no other nodes
 _VANISHING = 1e-15  # value of a polynomial, lengths in the arm's, that is round-off
-_LARGE = 100.0  # another, in which roots are lost
+_LARGE = 100.0  # value of a polynomial, lengths in the arm's, in whose rounding roots are lost
 _QUARTIC_DEGREE = 4
 _QUARTIC_HARMONICS = np.arange(-_QUARTIC_DEGREE, _QUARTIC_DEGREE + 1)
 

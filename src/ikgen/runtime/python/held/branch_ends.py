@@ -17,10 +17,10 @@ from ikgen.runtime.python.rows.row_links import differences
 
 __all__ = ["BranchEnd", "branch_end", "find_ends"]
 
-_ENOUGH = 1e-10  # of an end
-_FOUND = 1.01e-10  # one that was looked for
+_ENOUGH = 1e-10  # rad or m that an end is known to
+_FOUND = 1.01e-10  # rad or m from inside to outside of an end that was looked for
 _STEPS = 60
-_HALVE = 6  # each such step, whatever is expected
+_HALVE = 6  # one step in so many halves, whatever is expected
 _KNOWN = 4  # values by which an end is expected
 _REACH = 1.0  # rad or m that a row may be from where its branch was last seen
 _Known = tuple[float, float]

@@ -20,12 +20,12 @@ from ikgen.runtime.python.rows.row_links import differences, linked_rows, origin
 __all__ = ["LEAST", "Tracks", "tracked"]
 
 _CELLS = 64  # cells to begin with
-_UNGUARDED_CELLS = 512  # the same where nothing tells of folds between samples
+_UNGUARDED_CELLS = 512  # cells to begin with where nothing tells of folds between samples
 _SAFETY = 4.0  # bounds of what second differences tell are taken that many times
 _SMOOTH = 0.05  # rad or m by which a row may bend between samples
 _ROUND_OFF = 1e-12  # rad or m, of joint values
-LEAST = 1e-5  # of the range: cells that narrow are not halved
-_NARROW = 1e-3  # the same where rows begin or end
+LEAST = 1e-5  # share of the range: cells that narrow are not halved
+_NARROW = 1e-3  # share of the range: cells that narrow are not halved where rows begin or end
 
 
 @dataclass(frozen=True)

@@ -60,7 +60,7 @@ _STEPS = 40
 _SHORTER = 0.4
 LEAST_STEP = 1e-10  # rad or m
 _NEAR = 0.5  # rad or m that a row may be from the one that a step began at
-_BESIDE = 0.05  # the same of a row beside a fold
+_BESIDE = 0.05  # rad or m that a row beside a fold may be from the one before
 _ASKED = 1e-3  # rad or m: the shortest way for which the closed form is asked
 
 

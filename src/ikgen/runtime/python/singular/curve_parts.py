@@ -21,7 +21,8 @@ BEYOND = 4.0
 
 _STEPS, _DEEP = 40, 24
 _DOUBTS = 3  # how often a part is cut as its cubic bends
-_BENT, _STRAIGHT = 1.5, 0.03  # by so much of what it is in the middle, and at most
+_BENT = 1.5  # over its bend: a cubic that is lower in the middle of a part may have two roots there
+_STRAIGHT = 0.03  # over its largest value: a cubic that bends by less is straight
 _CUBICS, _NEWTON, _CLEAR = 2, 4, 1e-6
 _LEAP, _SOON = 16.0, 3
 _SAMPLES = 600  # of a curve

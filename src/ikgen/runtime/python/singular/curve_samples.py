@@ -12,9 +12,10 @@ from ikgen.runtime.python.singular.fold_pair import Reduced, correct
 __all__ = ["sampled"]
 
 _CORRECTIONS = 6
-_NEAR = 1e-8  # rad or m: so far off the curve what is left, whose error is the square, is its
-_SHARE = 3e-2  # or, of what is left: as little as that off the curve changes neither
-_ALMOST, _SAME = 1e-3, 4e-15  # or how close it must be where what is left is the same after a step
+_NEAR = 1e-8  # rad or m off the curve at which what is left is that of the curve: it is off by the square
+_SHARE = 3e-2  # over what is left: as little as that off the curve changes neither
+_ALMOST = 1e-3  # rad or m off the curve at which corrections may end if they change nothing of what is left
+_SAME = 4e-15  # rad or m: corrections that change what is left by less change nothing of it
 _STRAY = 1.0  # rad or m: larger corrections show that no curve is near
 
 

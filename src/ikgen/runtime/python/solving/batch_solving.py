@@ -26,8 +26,8 @@ from ikgen.runtime.python.solving.doubtful_poses import (
 
 __all__ = ["branch_axis", "rows_batch", "solve_poses"]
 
-_CHUNK = 16384  # poses solved at a time,
-_DOUBTS = 512  # and those that leave doubts
+_CHUNK = 16384  # poses solved at a time
+_DOUBTS = 512  # poses that leave doubts solved at a time
 _Batch = tuple[Array, NDArray[np.int64], NDArray[np.str_]]
 
 

@@ -22,17 +22,17 @@ from ikgen.runtime.python.solving.pose_solving import solve_pose
 
 __all__ = ["Path", "follow_poses"]
 
-_DEEPEST = 24  # of the way from one pose to the next
-_SHALLOW = 9  # the same where there are no rows
+_DEEPEST = 24  # how often the way from one pose to the next is halved
+_SHALLOW = 9  # how often the way to a pose without rows is halved
 _MOST = 1000  # steps from one pose to the next, where rows follow at no length
 _FARTHEST = 0.3  # rad or m that a joint may move at once
-_AWAY = 1.0  # rad or m by which it turns around a singularity, where another row is next to the last one
-_OFF = 0.2  # of the motion, and
-_LEAST_OFF = 1e-4  # rad or m: how far a row may be from where the Jacobian leads
+_AWAY = 1.0  # rad or m by which a joint turns around a singularity, where another row is next to the last one
+_OFF = 0.2  # share of the motion that a row may be from where the Jacobian leads
+_LEAST_OFF = 1e-4  # rad or m that a row may be from where the Jacobian leads in any case
 _NEWTON_STEPS = 30
-_BESIDE_START = 0.1  # rad or m
-_DAMPING = 1e-8  # of directions that are all but lost, squared, where steps shall arrive,
-_LEAST_DAMPING = 1e-14  # and where they shall tell how far the next row is
+_BESIDE_START = 0.1  # rad or m that the first row may be from the start
+_DAMPING = 1e-8  # damping of steps that shall arrive, also along directions that are all but lost
+_LEAST_DAMPING = 1e-14  # damping of steps that shall tell how far the next row is
 _JUMP = 0.05  # rad or m that a row may be from the last one where halving does not help
 
 

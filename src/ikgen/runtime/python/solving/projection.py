@@ -19,15 +19,15 @@ from ikgen.runtime.python.arrays.array_types import Array, Flags, Row
 
 __all__ = ["chord_costs", "descended", "nearest_row", "nearest_rows", "off_by"]
 
-_START_COUNT = 256  # drawn
-_FIRST_STEPS = 12  # of each: where they begin tells little of where they lead
-_FEW_STEPS = 4  # the same where a row takes the pose, or none is wanted
+_START_COUNT = 256  # starts that are drawn
+_FIRST_STEPS = 12  # steps of each start: where they begin tells little of where they lead
+_FEW_STEPS = 4  # steps of each start where a row takes the pose, or none is wanted
 _FOLLOWED = 16
 _STEP_COUNT = 80
 _LEAST_DAMPING, _FIRST_DAMPING, _MOST_DAMPING = 1e-10, 1e-3, 1e10  # damping of a step
 _LONGEST_STEP = 0.5  # rad or m: step of a joint
-_ROUND_OFF = 1e-16  # of what is least: what a step gains at most where nothing is left to gain
-_STANDING = 1e-6  # the same where what is least is not 0
+_ROUND_OFF = 1e-16  # over what is least: a step that gains less ends the descent
+_STANDING = 1e-6  # over what is least and not 0: a step that gains less ends the descent
 
 
 def nearest_row(arm: Arm, T: Array, start: Row, limits: bool) -> Row:
