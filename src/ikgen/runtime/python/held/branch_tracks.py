@@ -61,14 +61,14 @@ def _doubtful(joint: HeldJoint, rows: Rows, following: Index, limits: bool) -> F
     width = np.diff(rows.held)
     span = rows.held[-1] - rows.held[0]
     wide, narrow = width > _NARROW * span, width > LEAST * span
-    q, slope, bend = _row_bends(arm, rows, following)
+    q, change, bend = _row_bends(arm, rows, following)
     linked = following >= 0
     out = (linked & (bend.max(axis=2) > _SMOOTH)).any(axis=1) & narrow
     if joint.guarded:  # rows that seem to go on as another branch's turn past it quickly
         out |= (linked & (following != np.arange(following.shape[1]))).any(axis=1) & narrow
-    dead, crossings = _limit_crossings(arm, q, slope, bend, linked, limits)
+    dead, crossings = _limit_crossings(arm, q, change, bend, linked, limits)
     out |= (linked & ~dead & (crossings > 1)).any(axis=1) & narrow
-    out |= _ending(arm, rows, following, slope, limits, wide, narrow)
+    out |= _ending(arm, rows, following, change, limits, wide, narrow)
     anyhow = wide & arm.rounded
     return np.asarray(out | (_hidden_folds(rows, linked & dead, anyhow).any(axis=1) & narrow))
 
