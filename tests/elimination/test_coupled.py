@@ -120,9 +120,9 @@ class Doubting(CoupledAngle):
     """Finds the same, and leaves it open whether that is all."""
 
     def __call__(
-        self, F: Sequence[Array], T: Array, plan: Elimination, turning: Turning
+        self, F: Sequence[Array], T: Array, elimination: Elimination, turning: Turning
     ) -> Candidates:
-        pose, q, least, clear = super().__call__(F, T, plan, turning)
+        pose, q, least, clear = super().__call__(F, T, elimination, turning)
         return pose, q, np.zeros_like(least), np.zeros_like(clear)
 
 

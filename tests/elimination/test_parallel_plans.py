@@ -73,7 +73,7 @@ def test_two_solutions_in_a_fourfold_root_are_found(off: float) -> None:
     h = 0.5 * np.pi
     alpha, a = [0.0, -h, -h, 0.0, -h, h], [0.0, 0.85, 0.82, 0.53, 0.62, 0.63]
     frames = dh_frames(alpha, a, [0.0, 0.78, 0.0, 0.0, 0.35, 0.9])
-    hidden = replace(choose_plan(frames), parallel=ParallelPlan((1, 0, UPRIGHT), 0.0))
+    hidden = replace(choose_plan(frames), parallel=ParallelPlan((1, 0), UPRIGHT, 0.0))
     q = np.random.default_rng(7).uniform(-np.pi, np.pi, (300, 6))
     q[:, [0, 4]] = off
     poses = np.array([forward(frames, row) for row in q])
@@ -142,7 +142,7 @@ def test_held_joint_of_an_arm_with_seven() -> None:
     frames = np.concatenate([parallel_frames(UPRIGHT)[:6], arm_frames("random 2")[5:]])
     family = np.array([hold_joint(frames, 5, v) for v in (0.4, -1.1, 2.2)])
     plan = choose_plan(family, probes=12)
-    assert plan.parallel is not None and plan.parallel.elimination[2] == UPRIGHT
+    assert plan.parallel is not None and plan.parallel.kind == UPRIGHT
     held = hold_joint(frames, 5, 1.7)
     q = configurations(held, 40)
     poses = np.array([forward(held, row) for row in q])

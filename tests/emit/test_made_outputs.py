@@ -66,9 +66,7 @@ def test_braced_lists_hold_the_chain() -> None:
 
 def planned(*, bounded: bool | None, kind: int = 1, turning: bool = True) -> SimpleNamespace:
     """A plan with an elimination about parallel axes, whose polynomial is `bounded` or not, or without."""
-    parallel = (
-        None if bounded is None else SimpleNamespace(elimination=(0, 0, kind), bounded=bounded)
-    )
+    parallel = None if bounded is None else SimpleNamespace(loop=(0, 0), kind=kind, bounded=bounded)
     return SimpleNamespace(parallel=parallel, turning=(True, turning), tool=None)
 
 

@@ -2843,7 +2843,7 @@ _DEEPEST = 24  # how often the way from one pose to the next is halved
 _SHALLOW = 9  # how often the way to a pose without rows is halved
 _MOST = 1000  # steps from one pose to the next, where rows follow at no length
 _path_following_FARTHEST = 0.3  # rad or m that a joint may move at once
-_AWAY = 1.0  # rad or m by which a joint turns around a singularity, where another row is next to the last one
+_AWAY = 1.0  # rad or m by which joints turn around a singularity, where another row is next to the last one
 _OFF = 0.2  # share of the motion that a row may be from where the Jacobian leads
 _LEAST_OFF = 1e-4  # rad or m that a row may be from where the Jacobian leads in any case
 

@@ -48,11 +48,17 @@ _WORTH = 0.3  # of the poses: with fewer solved at once the attempt costs more t
 
 @dataclass(frozen=True, slots=True)
 class ParallelPlan:
-    """elimination: (start, reverse, kind), of a loop whose second and third axes are parallel. deviation:
-    how far the chain's links are from those of the kind (rad, lengths over the arm's)."""
+    """loop: (start, reverse), of which the second and third axes are parallel. kind: of the links beside
+    these. deviation: how far the chain's links are from those of the kind (rad, lengths over the arm's)."""
 
-    elimination: Elimination
+    loop: tuple[int, int]
+    kind: int
     deviation: float
+
+    @property
+    def elimination(self) -> Elimination:
+        """What `parallel_candidates` goes by."""
+        return *self.loop, self.kind
 
     @property
     def error(self) -> float:
@@ -62,7 +68,7 @@ class ParallelPlan:
     @property
     def bounded(self) -> bool:
         """Whether bounds of what the deviation does to the polynomial leave few poses in doubt."""
-        return self.elimination[2] == PLAIN or self.deviation < _EXACT
+        return self.kind == PLAIN or self.deviation < _EXACT
 
 
 def choose_parallel(family: Matrix) -> ParallelPlan | None:
@@ -87,7 +93,7 @@ def parallel_plans(family: Matrix) -> tuple[ParallelPlan, ...]:
     parts = [_deviations(member) for member in family]
     every = {e: max(part[e] for part in parts) for e in parts[0] if all(e in p for p in parts)}
     found = [min((e for e in every if e[:2] == loop), default=None) for loop in _LOOPS]
-    return tuple(ParallelPlan(e, every[e]) for e in found if e is not None)
+    return tuple(ParallelPlan(e[:2], e[2], every[e]) for e in found if e is not None)
 
 
 def _deviations(frames: Matrix) -> dict[Elimination, float]:

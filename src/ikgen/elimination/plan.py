@@ -56,17 +56,16 @@ class EliminationPlan:
     """What is embedded for one arm.
 
     frames: (7, 4, 4) read-only, `T = F_0 M(v_1) F_1 ... M(v_6) F_6`. length: the arm's scale (m).
-    eliminations: (start, reverse, swap) in order of preference. recall: fraction of all solutions
-    met in probing that the first of them finds alone. resultants: (start, reverse) of hidden angles
-    whose polynomial has separate roots, in order of preference; may be none. turning: which of the six
-    joints turn, the others slide. parallel: the elimination about two parallel axes, which is tried first;
-    None where they are not, or where it settles few poses. motions: those of the axes in their order along
-    the chain where a joint turns several; frames is then (n + 1, 4, 4), and the third number of an
-    elimination its degree in that joint's angle; near `crowded` angles (rad) that is looked at closely.
-    tool: the tool's axis (0: x) that the last joint turns about, where the task leaves that turn open; it
-    is none of the arm's joints. steady: whether a resultant has separate roots at the held joints' special
-    values too, among which their defaults often are; without one the eigenproblem serves there, at twenty
-    times the cost.
+    eliminations: in order of preference. recall: fraction of all solutions met in probing that the first
+    of them finds alone. resultants: (start, reverse) of hidden angles whose polynomial has separate roots,
+    in order of preference; may be none. turning: which of the six joints turn, the others slide. parallel:
+    the elimination about two parallel axes, which is tried first; None where they are not, or where it
+    settles few poses. motions: those of the axes in their order along the chain where a joint turns
+    several; frames is then (n + 1, 4, 4); near `crowded` angles (rad) of that joint determinants are
+    looked at closely. tool: the tool's axis (0: x) that the last joint turns about, where the task leaves
+    that turn open; it is none of the arm's joints. steady: whether a resultant has separate roots at the
+    held joints' special values too, among which their defaults often are; without one the eigenproblem
+    serves there, at twenty times the cost.
     """
 
     frames: Matrix
@@ -89,7 +88,8 @@ class EliminationPlan:
     @property
     def degree(self) -> int:
         """In the angle of a joint that turns several axes; 0 where none does."""
-        return self.eliminations[0][2] if self.motions else 0
+        _, _, degree = self.eliminations[0]
+        return degree if self.motions else 0
 
     @property
     def most(self) -> int:

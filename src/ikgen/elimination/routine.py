@@ -75,16 +75,21 @@ def _by_pose(rows: Matrix, pose: NDArray[np.intp], count: int) -> list[Matrix]:
 
 
 def general_6r_batch(
-    frames: Matrix, length: float, plans: Sequence[Elimination], poses: Matrix
+    frames: Matrix, length: float, eliminations: Sequence[Elimination], poses: Matrix
 ) -> list[Matrix]:
-    """`six_joints_batch` of revolute joints; length (m): the chain's scale; plans in order of
-    preference."""
-    return six_joints_batch(frames, Plan(length, tuple(plans), (True,) * 6, candidates), poses)
+    """`six_joints_batch` of revolute joints; length (m): the chain's scale; eliminations in order
+    of preference."""
+    return six_joints_batch(
+        frames, Plan(length, tuple(eliminations), (True,) * 6, candidates), poses
+    )
 
 
-def general_6r(frames: Matrix, length: float, plans: Sequence[Elimination], pose: Matrix) -> Matrix:
+def general_6r(
+    frames: Matrix, length: float, eliminations: Sequence[Elimination], pose: Matrix
+) -> Matrix:
     """`general_6r_batch` for one pose (4, 4)."""
-    return general_6r_batch(frames, length, plans, np.asarray(pose, dtype=np.float64)[None])[0]
+    poses = np.asarray(pose, dtype=np.float64)[None]
+    return general_6r_batch(frames, length, eliminations, poses)[0]
 
 
 def initial_residuals(

@@ -212,7 +212,7 @@ def _parallel_kind(module: SolverModule) -> str:
     """The kind of the elimination about two parallel axes that comes before the general one; empty where
     there is none, or where its polynomial would leave most poses to that."""
     plan = module.plan.parallel if module.plan is not None else None
-    return _PARALLEL_KINDS[plan.elimination[2]] if plan is not None and plan.bounded else ""
+    return _PARALLEL_KINDS[plan.kind] if plan is not None and plan.bounded else ""
 
 
 def _size_text(module: SolverModule) -> str:

@@ -46,36 +46,36 @@ _CHEBYSHEV = np.linalg.inv(np.polynomial.chebyshev.chebvander(_NODES, _CLOSE))
 @dataclass(frozen=True)
 class CoupledAngle:
     """Finds candidates of a chain in which one joint, and no other, turns several axes: `motions` in their
-    order along the chain. The plan's third number is the degree in that joint's angle. At `crowded`
+    order along the chain. An elimination's third number is the degree in that joint's angle. At `crowded`
     angles (rad) the determinant has roots at every pose, so many each; it is looked at there by itself."""
 
     motions: tuple[Motion, ...]
     crowded: tuple[tuple[float, int], ...] = ()
 
     def __call__(
-        self, F: Sequence[Array], T: Array, plan: Elimination, _: tuple[bool, ...]
+        self, F: Sequence[Array], T: Array, elimination: Elimination, _: tuple[bool, ...]
     ) -> Candidates:
         """As `candidates`, of as many frames F as rows and 1."""
-        pose, angle, least, clear = self._angles(F, T, plan)
+        pose, angle, least, clear = self._angles(F, T, elimination)
         if not len(pose):
             return pose, np.zeros((0, 6)), least, clear
         frames = [rows_of(frame, pose) for frame in F]
-        k, q = _completed(self.motions, frames, T[pose], plan, pose, angle)
+        k, q = _completed(self.motions, frames, T[pose], elimination, pose, angle)
         return pose[k], q, least, clear
 
     def _angles(
-        self, F: Sequence[Array], T: Array, plan: Elimination
+        self, F: Sequence[Array], T: Array, elimination: Elimination
     ) -> tuple[Index, Array, Index, Flags]:
         """Poses (k,) in order and the roots (k,) that may be real; of each pose how many clearly are, and
         whether the others clearly are not. Roots that every pose has near a crowded angle are left out
         where no other is among them."""
-        degree = plan[2]
+        _, _, degree = elimination
         step = 2.0 * np.pi / (2 * degree + 2)
         nodes: Array = _FIRST_NODE + step * np.arange(2 * degree + 2, dtype=float)
-        roots, sure = _roots(coupled_determinants(self.motions, F, T, plan, nodes), degree)
-        roots, sure, clear = self._looked_closely(F, T, plan, roots, sure)
+        roots, sure = _roots(coupled_determinants(self.motions, F, T, elimination, nodes), degree)
+        roots, sure, clear = self._looked_closely(F, T, elimination, roots, sure)
         for place, order in self.crowded:
-            close = coupled_determinants(self.motions, F, T, plan, place + _NEAR * _NODES)
+            close = coupled_determinants(self.motions, F, T, elimination, place + _NEAR * _NODES)
             near, certain = _close_roots(close)
             core = np.abs(near) < _CORE
             alone = core.sum(axis=1) == order
@@ -90,7 +90,7 @@ class CoupledAngle:
         return pose, angle, np.where(clear, real, 0), clear & apart
 
     def _looked_closely(
-        self, F: Sequence[Array], T: Array, plan: Elimination, roots: Complex, sure: Flags
+        self, F: Sequence[Array], T: Array, elimination: Elimination, roots: Complex, sure: Flags
     ) -> tuple[Complex, Flags, Flags]:
         """Roots (N, n): in place of those that rounding may move, and that may be real, those of
         polynomials of their neighbourhoods, which keep more digits; which of them are `_sure`, and of
@@ -104,7 +104,7 @@ class CoupledAngle:
             place = roots.real[some, np.argmax(doubtful[some], axis=1)][:, None]
             frames, nodes = [rows_of(frame, some) for frame in F], place + _NEAR * _NODES
             near, certain = _close_roots(
-                coupled_determinants(self.motions, frames, T[some], plan, nodes)
+                coupled_determinants(self.motions, frames, T[some], elimination, nodes)
             )
             way = _way(roots[some], place)
             clear[some] &= ~_at_seam(way, roots[some].imag)
@@ -121,11 +121,11 @@ class CoupledAngle:
 
 
 def coupled_determinants(
-    motions: Sequence[Motion], F: Sequence[Array], T: Array, plan: Elimination, nodes: Array
+    motions: Sequence[Motion], F: Sequence[Array], T: Array, elimination: Elimination, nodes: Array
 ) -> Array:
     """The determinants (N, n) of the twelve equations at angles `nodes`, (n,) or (N, n), of the coupled
     joint."""
-    loop = _Loop(motions, F, *plan[:2])
+    loop = _Loop(motions, F, elimination)
     links = loop.links(T[:, None], np.atleast_2d(nodes))
     E, _ = _equations([link[:, 0] for link in links])
     shape = np.broadcast_shapes(*(link.shape[:2] for link in links[1:4]))
@@ -135,11 +135,11 @@ def coupled_determinants(
 
 
 def neighbours(
-    motions: Sequence[Motion], F: Sequence[Array], plan: Elimination, nodes: Array
+    motions: Sequence[Motion], F: Sequence[Array], elimination: Elimination, nodes: Array
 ) -> Array:
     """Cosines (3, n) between the axes beside the links in which the coupled joint may lie, at its angles
     `nodes` (n,)."""
-    links = _Loop(motions, F, *plan[:2]).links(np.eye(4)[None, None], nodes[None])
+    links = _Loop(motions, F, elimination).links(np.eye(4)[None, None], nodes[None])
     return np.array([np.broadcast_to(link[0, :, 2, 2], nodes.shape) for link in links[1:4]])
 
 
@@ -151,11 +151,12 @@ def coupled_and_others(motions: Sequence[Motion]) -> tuple[int, list[int]]:
 
 
 class _Loop:
-    """The loop of the five joints that turn one axis each, begun at `start`, `reverse`d or not."""
+    """The loop of the five joints that turn one axis each, as an elimination begins and runs it."""
 
     def __init__(
-        self, motions: Sequence[Motion], F: Sequence[Array], start: int, reverse: int
+        self, motions: Sequence[Motion], F: Sequence[Array], elimination: Elimination
     ) -> None:
+        start, reverse, _ = elimination
         self.coupled, singles = coupled_and_others(motions)
         step = -1 if reverse else 1
         self.places = [(start + step * i) % 5 for i in range(5)]
@@ -276,12 +277,12 @@ def _completed(
     motions: Sequence[Motion],
     F: Sequence[Array],
     T: Array,
-    plan: Elimination,
+    elimination: Elimination,
     pose: Index,
     angle: Array,
 ) -> tuple[Index, Array]:
     """Indices (m,) into the roots, `angle` (k,) of poses T (k, 4, 4), and values (m, 6) of all joints."""
-    loop, count = _Loop(motions, F, *plan[:2]), len(angle)
+    loop, count = _Loop(motions, F, elimination), len(angle)
     links = [link[:, 0] for link in loop.links(T[:, None], angle[:, None])]
     E, right = _equations(links)
     left = left_invariants(*(np.broadcast_to(link, (count, 4, 4)) for link in links[1:4]))
@@ -291,6 +292,6 @@ def _completed(
     each = np.arange(len(k))
     found = complete_angles([C[0], _ONE, *C[1:]], left[k], rows_of(right, k), each, t)
     q = np.empty((len(k), 6))
-    q[:, loop.joints] = (-1.0 if plan[1] else 1.0) * found[:, [0, 1, 3, 4, 5]]
+    q[:, loop.joints] = (-1.0 if loop.reverse else 1.0) * found[:, [0, 1, 3, 4, 5]]
     q[:, loop.coupled] = angle[k]
     return k, q

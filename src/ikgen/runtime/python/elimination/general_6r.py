@@ -42,7 +42,9 @@ __all__ = [
     "six_joint_rows",
 ]
 
-Elimination = tuple[int, int, int]  # joint that the loop begins at, whether reversed or swapped
+Elimination = tuple[int, int, int]
+"""The joint that the loop begins at, whether it is reversed, and what its finder goes by besides: whether
+the angles beside the hidden one are swapped, or a kind of `parallel_links`, or a coupled joint's degree."""
 Candidates = tuple[Index, Array, Index, Flags]
 Finder = Callable[[Sequence[Array], Array, Elimination, Turning], Candidates]
 Way = tuple[Finder, Elimination, float]  # the last: how far off the pose exact candidates may be
@@ -80,11 +82,11 @@ class Plan:
         return self.motions or one_axis_each(self.turning)
 
 
-def candidates(F: Sequence[Array], T: Array, plan: Elimination, _: Turning) -> Candidates:
-    """Approximate solutions for the poses T (N, 4, 4) by one plan: pose index (k,), joint angles
-    (k, 6); how many solutions each pose has at least, -1 where the plan does not tell, and whether those
+def candidates(F: Sequence[Array], T: Array, elimination: Elimination, _: Turning) -> Candidates:
+    """Approximate solutions for the poses T (N, 4, 4) by one elimination: pose index (k,), joint
+    angles (k, 6); how many solutions each pose has at least, -1 where it does not tell, and whether those
     are all (N,)."""
-    start, reverse, swap = plan
+    start, reverse, swap = elimination
     order, C = loop_constants(F, T, start, reverse)
     E, left, right = loop_equations(C)
     pose, t, least, clear = middle_angles(E, left, swap)

@@ -37,10 +37,10 @@ _PARABOLA = np.array(
 
 
 def one_slide_candidates(
-    F: Sequence[Array], T: Array, plan: Elimination, turning: tuple[bool, ...]
+    F: Sequence[Array], T: Array, elimination: Elimination, turning: tuple[bool, ...]
 ) -> tuple[Index, Array, Index, Flags]:
-    """As `candidates`, of a chain whose joint that is not `turning` the plan puts first or second."""
-    start, reverse, swap = plan
+    """As `candidates`, of a chain whose joint that is not `turning` comes first or second."""
+    start, reverse, swap = elimination
     order, C = loop_constants(F, T, start, reverse)
     first = not turning[order[0]]
     left = of_constants(left_invariants, *C[2:5])

@@ -216,10 +216,12 @@ def _real_roots(kind: int, f: Array, doubtful: Array) -> tuple[Index, Array, Ind
     return real_angles(np.linalg.eigvals(companion), nodes[k] - np.pi, _ACCEPT, doubtful)
 
 
-def parallel_candidates(F: Sequence[Array], T: Array, plan: Elimination, _: Turning) -> Candidates:
+def parallel_candidates(
+    F: Sequence[Array], T: Array, elimination: Elimination, _: Turning
+) -> Candidates:
     """As `candidates`, of a loop whose second and third axes are parallel and whose links beside them are
-    of a kind in `parallel_links`: the plan is (start, reverse, kind)."""
-    start, reverse, kind = plan
+    of a kind in `parallel_links`: which is the third number."""
+    start, reverse, kind = elimination
     order, C = loop_constants(F, T, start, reverse)
     measures, curves = parallel_links(C), _curves(kind, C)
     links = links_of(measures)

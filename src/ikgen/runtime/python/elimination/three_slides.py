@@ -27,11 +27,12 @@ _SLIDES_APART = 1e-6
 
 
 def three_slide_candidates(
-    F: Sequence[Array], T: Array, plan: Elimination, turning: Turning
+    F: Sequence[Array], T: Array, elimination: Elimination, turning: Turning
 ) -> Candidates:
-    """As `candidates`, of a chain with three joints that are not `turning`; the plan begins at a revolute
+    """As `candidates`, of a chain with three joints that are not `turning`; the loop begins at a revolute
     joint."""
-    order, C = loop_constants(F, T, *plan[:2])
+    start, reverse, _ = elimination
+    order, C = loop_constants(F, T, start, reverse)
     turns = [turning[j] for j in order]
     loop = revolute_loop(C, turns, len(T))
     h, c, s = spherical_triple(loop.K[:2], np.swapaxes(loop.K[2], -1, -2))

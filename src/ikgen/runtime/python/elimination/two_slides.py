@@ -109,11 +109,12 @@ def _quartic_roots(value: Array, offset: Array) -> tuple[Complex, Array]:
 
 
 def two_slide_candidates(
-    F: Sequence[Array], T: Array, plan: Elimination, turning: Turning
+    F: Sequence[Array], T: Array, elimination: Elimination, turning: Turning
 ) -> Candidates:
-    """As `candidates`, of a chain with two joints that are not `turning`; the plan begins at the angle that
+    """As `candidates`, of a chain with two joints that are not `turning`; the loop begins at the angle that
     is hidden."""
-    order, C = loop_constants(F, T, *plan[:2])
+    start, reverse, _ = elimination
+    order, C = loop_constants(F, T, start, reverse)
     turns = [turning[j] for j in order]
     loop = revolute_loop(C, turns, len(T))
     values, offset = _quartic_values(loop, len(T))
