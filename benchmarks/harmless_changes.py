@@ -88,7 +88,7 @@ HARMLESS = (
     ),
     HarmlessChange(
         "runtime/python/solving/path_following.py",
-        "return q[None], loss < arm.policy.rank_loss, Status.OK",
+        "return q[None], sigma < arm.policy.singular_below, Status.OK",
         "<", "<=", _EQUAL,
     ),
     HarmlessChange(

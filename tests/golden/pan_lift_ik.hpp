@@ -860,8 +860,8 @@ template <class A> struct AllMoving : A {
   static constexpr int kRank = A::kWholePose ? A::kFreedoms : A::kDof - A::kFree;  // what the task fixes, or less
 };
 
-// --- rank loss -----------------------------------------------------------------------------------
-template <class Arm> struct RankLoss {
+// --- singular value ------------------------------------------------------------------------------
+template <class Arm> struct SingularValue {
   static constexpr MovingJoints<Arm> kJoints{};
   static constexpr int kMoving = MovingJoints<Arm>::kCount, kEquations = PoseError<Arm>::kCount;
   static constexpr int kRank = kMoving < kEquations ? kMoving : kEquations;
@@ -1061,7 +1061,7 @@ template <class Arm> struct RightRows {
   using Row = SolutionRows<Arm>;
 
   static void add(const HeldAim<Arm>& aim, RowPlaces<Arm>& out, const double* q, bool marked) noexcept {
-    const bool singular = RankLoss<Arm>::below(q, marked ? Policy::kContinuumRankLoss : Policy::kRankLoss);
+    const bool singular = SingularValue<Arm>::below(q, marked ? Policy::kContinuumBelow : Policy::kSingularBelow);
     for (int k = 0; k < out.count && singular; ++k)
       if (Row::flag(out, k) && RowPair<Arm>::between(aim, q, Row::row(out, k))) return;
     Row::add(out, q, singular);
@@ -1702,11 +1702,11 @@ template <class Arm> struct RowStart {
   }
 
   void judge() noexcept {
-    nearby = !marked && !alone && RankLoss<Arm>::below(q, Policy::kFoldReach);
+    nearby = !marked && !alone && SingularValue<Arm>::below(q, Policy::kFoldReach);
     settled = error < (nearby ? Policy::kConverged : Policy::kArrived);
   }
 
-  bool close() const noexcept { return nearby && RankLoss<Arm>::below(q, Policy::kBesideReach); }
+  bool close() const noexcept { return nearby && SingularValue<Arm>::below(q, Policy::kBesideReach); }
 
   void take(const Aim& aim, const double* from, Places& out) noexcept {
     double trial[Arm::kDof];
@@ -3049,7 +3049,7 @@ struct Policy {
   static constexpr int kCrowd = 4, kTries = 16, kPatience = 5;
   static constexpr double kArrived = 5e-10, kExact = 1e-12, kPoseTolerance = 1e-06, kOrthonormal = 1e-14, kLevel
       = 1e-05, kCoincident = 1e-06, kAlike = 0.01, kHalfway = 2e-14, kMeeting = 2e-05, kLimitTolerance = 1e-09,
-      kLimitReach = 1e-05, kTryStep = 0.39269908169872414, kRankLoss = 1e-07, kContinuumRankLoss = 0.001,
+      kLimitReach = 1e-05, kTryStep = 0.39269908169872414, kSingularBelow = 1e-07, kContinuumBelow = 0.001,
       kFoldReach = 0.0001, kBesideReach = 0.0, kAnywhere = 1000.0, kLeastDamping = 1e-14, kDamping = 0.001,
       kLargestStep = 0.3, kConverged = 1e-13, kProgress = 0.8;
   static constexpr RefineStage kRefinement[] = {{3, 1e-12, 0.1}, {6, 1e-12, 0.001}, {30, 0.0, 0.0}};

@@ -394,10 +394,8 @@ class _Policy:
     limit_reach: float  # rad or m: a row no farther outside a limit is tried on it
     tries: int  # values tried for a joint that a pose leaves free
     try_step: float  # rad from one value that is tried to the next
-    rank_loss: float  # smallest singular value below which a refined row is singular
-    continuum_rank_loss: (
-        float  # smallest singular value below which one is that the closed form marks
-    )
+    singular_below: float  # smallest singular value below which a refined row is singular
+    continuum_below: float  # smallest singular value below which one is that the closed form marks
     fold_reach: float  # smallest singular value below which another row may be near
     beside_reach: float  # smallest singular value below which poses beside are solved as well
     anywhere: float  # `beside_reach` from which on they always are
@@ -1638,21 +1636,21 @@ class _Starts(NamedTuple):
 
 
 class _Ends(NamedTuple):
-    """Where Newton steps end: rows `q` (k, dof), their `error` and the smallest singular value `loss` of
+    """Where Newton steps end: rows `q` (k, dof), their `error` and the smallest singular value `sigma` of
     the derivatives (k,)."""
 
     q: Array
     error: Array
-    loss: Array
+    sigma: Array
 
 
 class _Led(NamedTuple):
     """Solutions `q` (n, dof), the starts `owner` (n,) that led to them, and the smallest singular values
-    `loss` (n,) there."""
+    `sigma` (n,) there."""
 
     owner: _Index
     q: Array
-    loss: Array
+    sigma: Array
 
 
 class _Leads(NamedTuple):
@@ -1689,7 +1687,7 @@ def _leads_of(arm: _Arm, starts: _Starts, known: _Flags, near: bool = False) -> 
     _run(arm, starts, ends, ~broken)
     own, at = starts.source == 0, (starts.pose, starts.lane)
     lie = own & ~starts.marked & near
-    lie &= ends.loss < min(arm.policy.broken_reach, arm.policy.fold_reach)
+    lie &= ends.sigma < min(arm.policy.broken_reach, arm.policy.fold_reach)
     one, on = _found_around(arm, starts, ends, (broken & own & ~known[at]) | lie, lie)
     known[starts.pose[on & ~lie], starts.lane[on & ~lie]] = True
     other, also = _found_around(arm, starts, ends, broken & ~own & ~known[at], lie)
@@ -1712,16 +1710,16 @@ def _found_around(
     """The solutions around continua that some starts (k,) stand for, or that rows `lie` (k,) on which they
     lead to, once for each branch of a pose."""
     left, on = np.flatnonzero(some), np.zeros(len(some), dtype=bool)
-    found = _Led(left[:0], starts.q[:0], ends.loss[:0])
+    found = _Led(left[:0], starts.q[:0], ends.sigma[:0])
     branch = starts.pose * (1 + starts.lane.max(initial=0)) + starts.lane
     for others in (False, True):
         if arm.around is None or not len(left):
             break
         index = left if others else _first_of(branch, left)
         q = np.where(lie[index, None], ends.q[index], starts.q[index])
-        curve, owner, rows, loss = arm.around(arm, q, starts.T[index], lie[index])
+        curve, owner, rows, sigma = arm.around(arm, q, starts.T[index], lie[index])
         on[_first_of(branch, index[curve])] = True
-        more = _Led(index[owner], rows, loss)
+        more = _Led(index[owner], rows, sigma)
         found = _joined(found, _some_of(more, on[more.owner]))
         left = np.setdiff1d(left[~np.isin(branch[left], branch[on])], index)
     return found, on
@@ -1734,14 +1732,14 @@ def _first_of(branch: _Index, some: _Index) -> _Index:
 
 def _rows_nearby(arm: _Arm, leads: _Leads) -> _Led:
     """The solutions that starts lead to, those that are sure first."""
-    starts, T, (q, error, loss) = leads.starts, leads.starts.T, (x.copy() for x in leads.ends)
-    near = (starts.source >= 0) & ~starts.marked & (loss < arm.policy.fold_reach)
+    starts, T, (q, error, sigma) = leads.starts, leads.starts.T, (x.copy() for x in leads.ends)
+    near = (starts.source >= 0) & ~starts.marked & (sigma < arm.policy.fold_reach)
     settled = error < np.where(near, arm.policy.converged, arm.policy.arrived)
     fresh = _fresh(arm, q, starts, near, near & ~settled)
     settled &= fresh
     near &= fresh & ~leads.known
     sure = np.flatnonzero(settled)
-    first = _meeting_rows_in_order(_Led(sure, q[sure], loss[sure]), leads.around)
+    first = _meeting_rows_in_order(_Led(sure, q[sure], sigma[sure]), leads.around)
     if not near.any():
         return first
     owner = np.repeat(np.flatnonzero(near), 2)
@@ -1750,11 +1748,11 @@ def _rows_nearby(arm: _Arm, leads: _Leads) -> _Led:
     exact = left < arm.policy.exact
     for k, i in zip(np.flatnonzero(~exact).tolist(), owner[~exact].tolist()):
         if left[k] < error[i]:
-            q[i], error[i], loss[i] = pairs[k], left[k], there[k]
+            q[i], error[i], sigma[i] = pairs[k], left[k], there[k]
     alone = np.flatnonzero(near & (error < arm.policy.arrived))
     alone = np.setdiff1d(alone, [*owner[exact], *sure])
     more = _meeting_rows_in_order(
-        _Led(owner[exact], pairs[exact], there[exact]), _Led(alone, q[alone], loss[alone])
+        _Led(owner[exact], pairs[exact], there[exact]), _Led(alone, q[alone], sigma[alone])
     )
     found: _Led = _joined(first, more)
     return found
@@ -2042,8 +2040,8 @@ def _around(arm: _Arm, asked: _Asked, rows: Array, some: _Flags) -> list[tuple[i
     if arm.around is None or not len(of):
         return []
     aim, broken = _aims(arm, asked.T, asked.held)[of], np.ones(len(of), dtype=bool)
-    _, owner, q, loss = arm.around(arm, rows[of], aim, broken)
-    flags = (loss < arm.policy.continuum_rank_loss).tolist()
+    _, owner, q, sigma = arm.around(arm, rows[of], aim, broken)
+    flags = (sigma < arm.policy.continuum_below).tolist()
     return list(zip(of[owner].tolist(), zip(map(tuple, q.tolist()), flags)))
 
 
@@ -2135,7 +2133,7 @@ def _rows(arm: _Arm, asked: _Asked, start: Array, turn: _Index) -> list[_Rows]:
     own = _of_lanes(arm, asked, closed, rough, marked)
     starts = _joined(_given(arm, asked, start, np.flatnonzero(free)), own)
     leads = _leads_of(arm, starts, known, near=first and arm.rounded)
-    close = (starts.source >= 0) & (leads.ends.loss < arm.policy.beside_reach) & ~leads.known
+    close = (starts.source >= 0) & (leads.ends.sigma < arm.policy.beside_reach) & ~leads.known
     near = free | (np.bincount(starts.pose[close], minlength=len(free)) > 0)
     if free.any():
         beyond = ~closed.valid & free[:, None] & (first and arm.rounded)
@@ -2178,10 +2176,10 @@ def _starts(
 def _meeting(arm: _Arm, asked: _Asked, leads: _Leads) -> list[list[_Found]]:
     """For each pose the distinct rows that Newton steps lead to."""
     out: list[list[_Found]] = [[] for _ in asked.T]
-    owner, q, loss = _rows_nearby(arm, leads)
-    flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
+    owner, q, sigma = _rows_nearby(arm, leads)
+    flat, continuum = arm.policy.singular_below, arm.policy.continuum_below
     pose, marked = leads.starts.pose[owner], leads.starts.marked[owner]
-    flags = (marked & (loss < continuum)) | (loss < flat)
+    flags = (marked & (sigma < continuum)) | (sigma < flat)
     for k in _that_differ(arm, asked.T, pose, q, flags).tolist():
         out[pose[k]].append((tuple(q[k].tolist()), bool(flags[k])))
     return out
@@ -3189,8 +3187,8 @@ _ARM = _Arm(
         limit_reach=1e-05,
         tries=16,
         try_step=0.39269908169872414,
-        rank_loss=1e-07,
-        continuum_rank_loss=0.001,
+        singular_below=1e-07,
+        continuum_below=0.001,
         fold_reach=0.0001,
         beside_reach=0.0,
         anywhere=1000.0,

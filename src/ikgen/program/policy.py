@@ -47,7 +47,7 @@ class SolvePolicy:
       limit is put back on it, and one that far, `limit_reach`, where its pose does not tell that it is
       outside, which Newton steps find out.
     - `tries`: how many values of a joint that a pose leaves free are tried, `try_step` (rad) apart.
-    - `rank_loss`: smallest singular value below which a refined row is singular; `continuum_rank_loss`
+    - `singular_below`: smallest singular value below which a refined row is singular; `continuum_below`
       where the Program marked it already.
     - `fold_reach`: smallest singular value below which another solution may be so near that the closed form
       does not find it for itself.
@@ -82,8 +82,8 @@ class SolvePolicy:
     limit_reach: float = 1e-5
     tries: int = 16
     try_step: float = 0.39269908169872414
-    rank_loss: float = 1e-7
-    continuum_rank_loss: float = 1e-3
+    singular_below: float = 1e-7
+    continuum_below: float = 1e-3
     fold_reach: float = 1e-4
     beside_reach: float = 0.0
     fold: float = 0.3

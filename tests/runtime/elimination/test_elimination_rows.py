@@ -104,16 +104,16 @@ def test_samples_of_a_continuum_go_first_where_there_are_too_many_rows(
         task=SimpleNamespace(error=lambda pose, T: (pose - T).reshape(-1, 16)),
         moving=(1, 3),
         most=2,
-        policy=SimpleNamespace(continuum_rank_loss=1e-3, exact=1e-12),
+        policy=SimpleNamespace(continuum_below=1e-3, exact=1e-12),
     )
     seen = []
-    losses, off = np.array([1e-5, 0.3, 0.2]), np.zeros(3)
+    sigmas, off = np.array([1e-5, 0.3, 0.2]), np.zeros(3)
 
-    def loss(chain: object, task: object, moving: object, q: NDArray[np.float64]) -> object:
+    def sigma(chain: object, task: object, moving: object, q: NDArray[np.float64]) -> object:
         seen.append(q)
-        return losses
+        return sigmas
 
-    monkeypatch.setattr(elimination_rows, "rank_loss", loss)
+    monkeypatch.setattr(elimination_rows, "smallest_singular_values", sigma)
     monkeypatch.setattr(elimination_rows, "forward", lambda chain, q: T + off[:, None, None])
     T = np.eye(4)
     angles = np.array([[0.9, 1.0], [0.7, 2.0], [0.5, 3.0]])
@@ -122,6 +122,6 @@ def test_samples_of_a_continuum_go_first_where_there_are_too_many_rows(
     np.testing.assert_array_equal(kept, angles[1:])
     np.testing.assert_allclose(seen[0][0], [0.4, 0.2, 0.7, 1.0])
     assert elimination_rows._regular_first(arm, angles[:2], held, T) is not None and len(seen) == 1
-    losses[:], off[:] = 1e-5, [1e-11, 0.0, 0.0]  # what is off the pose goes before what is not
+    sigmas[:], off[:] = 1e-5, [1e-11, 0.0, 0.0]  # what is off the pose goes before what is not
     kept = elimination_rows._regular_first(arm, angles, held, T)
     np.testing.assert_array_equal(kept, angles[1:])

@@ -84,7 +84,9 @@ def test_where_solutions_meet_the_next_elimination_settles_how_many_there_are(
 ) -> None:
     three = ([0, 1, 2], 2, False)
     assert run(monkeypatch, [three] * 10)[1] == 10
-    monkeypatch.setattr(general_6r, "rank_loss", lambda chain, task, moving, q: np.zeros(len(q)))
+    monkeypatch.setattr(
+        general_6r, "smallest_singular_values", lambda chain, task, moving, q: np.zeros(len(q))
+    )
     q, calls = run(monkeypatch, [three] * 10)
     assert calls == 3
     np.testing.assert_allclose(q, ROWS[:3], atol=1e-12)

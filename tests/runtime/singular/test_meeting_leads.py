@@ -32,13 +32,13 @@ POLICY = SimpleNamespace(
 )  # fmt: skip
 
 
-def leads_of_rows(q: list[float], source: list[int], loss: list[float], marked: str = "") -> Leads:
+def leads_of_rows(q: list[float], source: list[int], sigma: list[float], marked: str = "") -> Leads:
     n = len(q)
     rows, flags = np.array(q)[:, None], np.array([c == "x" for c in marked.ljust(n, ".")])
     T = np.arange(n)[:, None, None] * np.ones((n, 4, 4))
     starts = Starts(rows, T, np.zeros(n, np.intp), flags, np.array(source), np.zeros(n, np.intp))
     none = Led(np.zeros(0, np.intp), rows[:0], np.zeros(0))
-    return Leads(starts, Ends(rows, np.zeros(n), np.array(loss)), none, np.zeros(n, dtype=bool))
+    return Leads(starts, Ends(rows, np.zeros(n), np.array(sigma)), none, np.zeros(n, dtype=bool))
 
 
 def test_continua_are_followed_from_where_own_rows_near_singularities_end(
@@ -46,10 +46,10 @@ def test_continua_are_followed_from_where_own_rows_near_singularities_end(
 ) -> None:
     """Not from where what is given does, what poses beside have, or what is regular."""
     seen: list[Any] = []
-    losses = np.array([0.0, 0.0, 0.0, 0.02, 0.0, 0.0])
+    sigmas = np.array([0.0, 0.0, 0.0, 0.02, 0.0, 0.0])
 
     def ends(arm: Any, q: Array, T: Array) -> Ends:
-        return Ends(q + 100.0, np.zeros(len(q)), losses[q[:, 0].astype(int)])
+        return Ends(q + 100.0, np.zeros(len(q)), sigmas[q[:, 0].astype(int)])
 
     def around(arm: Any, q: Array, T: Array, lie: Any) -> Any:
         seen.append((q[:, 0].tolist(), T[:, 0, 0].tolist(), lie.tolist()))
@@ -74,7 +74,7 @@ def test_continua_are_followed_from_where_own_rows_near_singularities_end(
     assert known.tolist() == [[False] * 4 + [True, False]]
     assert found.around.owner.tolist() == [4, 5, 5]
     assert found.around.q[:, 0].tolist() == [7.0, 8.0, 9.0]
-    assert found.around.loss.tolist() == [0.5, 0.6, 0.7]
+    assert found.around.sigma.tolist() == [0.5, 0.6, 0.7]
     assert found.starts.marked.tolist() == [False] * 4 + [True, False]
     plain = leads_of(arm, starts._replace(marked=starts.marked & False), known & False)
     assert len(seen) == 1 and not plain.known.any() and not len(plain.around.owner)
@@ -84,7 +84,7 @@ def test_a_row_that_a_pose_beside_led_to_once_more_is_left_out() -> None:
     arm: Any = SimpleNamespace(policy=POLICY, chain=SimpleNamespace(revolute=(True,)), beside=(0,))
     given = leads_of_rows([0.5, 1.5, 0.5 + 2.0 * pi, 2.5], [0, 0, 1, 2], [1.0, 2.0, 3.0, 4.0])
     found = rows_nearby(arm, given)
-    assert found.owner.tolist() == [0, 1, 3] and found.loss.tolist() == [1.0, 2.0, 4.0]
+    assert found.owner.tolist() == [0, 1, 3] and found.sigma.tolist() == [1.0, 2.0, 4.0]
     assert found.q[:, 0].tolist() == [0.5, 1.5, 2.5]
 
 

@@ -62,9 +62,9 @@ def test_of_a_continuum_of_the_arm_itself_one_row_is_taken(tmp_path: Path) -> No
     assert len(rows)
     traced = trace(exact._ARM, rows, poses)
     assert traced.curve.all() and not traced.broken.any() and not len(traced.owner)
-    curve, owner, found, loss = rows_around(exact._ARM, rows, poses, np.zeros(len(rows), bool))
+    curve, owner, found, sigma = rows_around(exact._ARM, rows, poses, np.zeros(len(rows), bool))
     assert curve.all() and owner.tolist() == list(range(len(rows)))
-    assert np.abs(exact.forward(found) - poses).max() < 1e-9 and loss.max() < 1e-9
+    assert np.abs(exact.forward(found) - poses).max() < 1e-9 and sigma.max() < 1e-9
 
 
 def test_nothing_is_followed_towards_poses_out_of_reach(

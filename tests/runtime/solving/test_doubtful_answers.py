@@ -193,12 +193,12 @@ def test_beside_a_singular_row_the_seeds_own_counts_where_no_joint_is_free(free:
 def test_rows_are_singular_by_what_is_lost_there(monkeypatch: pytest.MonkeyPatch) -> None:
     """By more where the closed form says that they are of a continuum."""
     arm = given_arm(not_there)
-    flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
+    flat, continuum = arm.policy.singular_below, arm.policy.continuum_below
     assert 0.0 < flat < continuum
-    loss = np.array([0.5 * flat, 2.0 * flat, 2.0 * continuum] * 2)
+    sigma = np.array([0.5 * flat, 2.0 * flat, 2.0 * continuum] * 2)
     q = ROW + 0.2 * np.arange(6.0)[:, None]
     owner = np.array([0, 0, 0, 1, 1, 1])
-    monkeypatch.setattr(doubtful_poses, "rows_nearby", lambda *_: Led(owner, q, loss))
+    monkeypatch.setattr(doubtful_poses, "rows_nearby", lambda *_: Led(owner, q, sigma))
     starts: Any = SimpleNamespace(pose=np.array([1, 0]), marked=np.array([False, True]))
     leads: Any = SimpleNamespace(starts=starts)
     asked = Asked(np.tile(np.eye(4), (2, 1, 1)), None, np.zeros((2, 0)))

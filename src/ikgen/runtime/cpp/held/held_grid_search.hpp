@@ -44,7 +44,7 @@ template <class Arm, class Solver> struct HeldGridSearch {
     out.count = 0;
     for (const Start& s : search.starts)
       if (s.cost < kInfinity && !RowPair<Arm>::any_within(Arm::Policy::kAlike, s.q, out))
-        SolutionRows<Arm>::add(out, s.q, RankLoss<Arm>::below(s.q, Arm::Policy::kRankLoss));
+        SolutionRows<Arm>::add(out, s.q, SingularValue<Arm>::below(s.q, Arm::Policy::kSingularBelow));
     out.status = out.count > 0 ? Arm::Status::Ok : search.real ? Arm::Status::Limits : Arm::Status::Unreachable;
   }
 

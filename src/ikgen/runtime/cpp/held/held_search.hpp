@@ -74,7 +74,7 @@ template <class Arm> struct HeldSearch {
     search.finish();
     out.status = out.count > 0 ? Arm::Status::Ok : any ? Arm::Status::Limits : Arm::Status::Unreachable;
     for (int k = 0; k < out.count; ++k)
-      out.singular.data()[k] = RankLoss<Arm>::below(SolutionRows<Arm>::row(out, k), Arm::Policy::kRankLoss);
+      out.singular.data()[k] = SingularValue<Arm>::below(SolutionRows<Arm>::row(out, k), Arm::Policy::kSingularBelow);
   }
 
  private:

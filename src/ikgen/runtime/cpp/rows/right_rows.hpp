@@ -1,19 +1,19 @@
 // Right rows among those that are known.
 #pragma once
 
-#include "rows/rank_loss.hpp"
+#include "rows/singular_value.hpp"
 #include "rows/row_pair.hpp"
 
 namespace ikgen_runtime {
 
-// Arm: as for RankLoss, RowPair and SolutionRows.
+// Arm: as for SingularValue, RowPair and SolutionRows.
 template <class Arm> struct RightRows {
   using Policy = typename Arm::Policy;
   using Row = SolutionRows<Arm>;
 
   // Adds a row, as singular where it is one of a continuum or next to it.
   static void add(const HeldAim<Arm>& aim, RowPlaces<Arm>& out, const double* q, bool marked) noexcept {
-    const bool singular = RankLoss<Arm>::below(q, marked ? Policy::kContinuumRankLoss : Policy::kRankLoss);
+    const bool singular = SingularValue<Arm>::below(q, marked ? Policy::kContinuumBelow : Policy::kSingularBelow);
     for (int k = 0; k < out.count && singular; ++k)
       if (Row::flag(out, k) && RowPair<Arm>::between(aim, q, Row::row(out, k))) return;
     Row::add(out, q, singular);

@@ -3,13 +3,13 @@
 // directions (as in near_continuum.hpp); Newton steps of what is left, along the surface, lead to where that vanishes.
 #pragma once
 
-#include "rows/rank_loss.hpp"
+#include "rows/singular_value.hpp"
 #include "rows/row_pair.hpp"
 #include "singular/fold_pair.hpp"
 
 namespace ikgen_runtime {
 
-// Arm: as for FoldPair, RankLoss and RowPair.
+// Arm: as for FoldPair, SingularValue and RowPair.
 template <class Arm> struct NearSurface {
   using Fold = FoldPair<Arm>;
   using Policy = typename Arm::Policy;
@@ -23,7 +23,7 @@ template <class Arm> struct NearSurface {
   // Adds those that steps lead to from a configuration that lies on one, of the first few from places all around as well.
   void search(const double* q) noexcept {
     if constexpr (kMoving > 2) {
-      if (!RankLoss<Arm>::below(q, kFlat * Policy::kBrokenReach)) return;
+      if (!SingularValue<Arm>::below(q, kFlat * Policy::kBrokenReach)) return;
       Sample first;
       std::copy_n(q, Arm::kDof, first.q);
       find_plane(PoseError<Arm>(q, aim), first);

@@ -10,7 +10,7 @@
 
 namespace ikgen_runtime {
 
-// Arm: as for NewtonRefinement, RankLoss and SolutionRows; Seed, Rows<P> and branches<P>, the closed form, of kLanes
+// Arm: as for NewtonRefinement, SingularValue and SolutionRows; Seed, Rows<P> and branches<P>, the closed form, of kLanes
 // rows; kLaneOfRow; kRefined, whether its rows are right already; kRounded, whether it is of another geometry than the
 // file, and kBesides, kBeside, the motions of the tool to poses that are solved as well then: near folds those have
 // rows that the pose has not. Where kNewton is set refine<P> and take_along, steps in lanes.
@@ -65,7 +65,7 @@ template <class Arm> struct CarefulRows {
     if (left.free) add_from(aim, q0, out);
     const LaneEnds<Arm, 1> ends(only, aim, options, kReal);
     bool plain[Arm::kLanes] = {};  // right, and far from singularities
-    if constexpr (Arm::kRefined) RankLoss<Arm>::regular(rows, Policy::kFoldReach, plain);
+    if constexpr (Arm::kRefined) SingularValue<Arm>::regular(rows, Policy::kFoldReach, plain);
     for (const int lane : Arm::kLaneOfRow)
       if (plain[lane] && !rows.has(lane, kSingular))
         add_lane(rows, lane, out);

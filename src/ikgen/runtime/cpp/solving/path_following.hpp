@@ -8,11 +8,11 @@
 
 #include "newton/newton_refinement.hpp"
 #include "arguments/pose_reading.hpp"
-#include "rows/rank_loss.hpp"
+#include "rows/singular_value.hpp"
 
 namespace ikgen_runtime {
 
-// A: as for PoseError and RankLoss; Solver: solve(pose, options, out), search(pose, seed, limits, out).
+// A: as for PoseError and SingularValue; Solver: solve(pose, options, out), search(pose, seed, limits, out).
 template <class A, class Solver> struct PathStep {
   static constexpr int kDof = A::kDof, kDeepest = 24, kShallow = 9;
   static constexpr int kMost = 1000;  // steps to a pose, where rows follow at no length
@@ -172,7 +172,7 @@ template <class A, class Solver> struct PathStep {
       released[joint] = released[joint] || !arrived;
       at[joint] = arrived ? clipped(row, joint) : q[joint];
     }
-    singular = RankLoss<AllMoving<A>>::redundant_below(row, A::Policy::kRankLoss);
+    singular = SingularValue<AllMoving<A>>::redundant_below(row, A::Policy::kSingularBelow);
     return Status::Ok;
   }
 

@@ -46,12 +46,12 @@ template <class Arm> struct RowStart {
   }
 
   void judge() noexcept {
-    nearby = !marked && !alone && RankLoss<Arm>::below(q, Policy::kFoldReach);
+    nearby = !marked && !alone && SingularValue<Arm>::below(q, Policy::kFoldReach);
     settled = error < (nearby ? Policy::kConverged : Policy::kArrived);
   }
 
   // Whether other solutions may start from no lane of this pose.
-  bool close() const noexcept { return nearby && RankLoss<Arm>::below(q, Policy::kBesideReach); }
+  bool close() const noexcept { return nearby && SingularValue<Arm>::below(q, Policy::kBesideReach); }
 
   // Adds what Newton steps lead to.
   void take(const Aim& aim, const double* from, Places& out) noexcept {
@@ -133,7 +133,7 @@ template <class Arm> struct RowStarts {
   void trace_broken(const Aim& aim, Places& out) noexcept {
     for (int k = 0; k < count; ++k) {
       Start& one = at(k);
-      if (one.around || !one.nearby || !RankLoss<Arm>::below(one.q, Policy::kBrokenReach)) continue;
+      if (one.around || !one.nearby || !SingularValue<Arm>::below(one.q, Policy::kBrokenReach)) continue;
       NearContinuum<Arm> curve(aim);
       const auto kind = curve.trace(one.q, passed);
       one.around = kind == NearContinuum<Arm>::Kind::Broken || kind == NearContinuum<Arm>::Kind::Known;
@@ -150,7 +150,7 @@ template <class Arm> struct RowStarts {
     for (int k = first, last = out.count; k < last; ++k) {
       Start end;
       std::copy_n(Row::row(out, k), Arm::kDof, end.q);
-      if (!RankLoss<Arm>::below(end.q, Policy::kBrokenReach)) continue;
+      if (!SingularValue<Arm>::below(end.q, Policy::kBrokenReach)) continue;
       NearContinuum<Arm> curve(aim);
       curve.trace(end.q, passed);
       for (int i = 0; i < curve.count; ++i) end.take(aim, curve.found[i], out);

@@ -24,10 +24,8 @@ class Policy:
     limit_reach: float  # rad or m: a row no farther outside a limit is tried on it
     tries: int  # values tried for a joint that a pose leaves free
     try_step: float  # rad from one value that is tried to the next
-    rank_loss: float  # smallest singular value below which a refined row is singular
-    continuum_rank_loss: (
-        float  # smallest singular value below which one is that the closed form marks
-    )
+    singular_below: float  # smallest singular value below which a refined row is singular
+    continuum_below: float  # smallest singular value below which one is that the closed form marks
     fold_reach: float  # smallest singular value below which another row may be near
     beside_reach: float  # smallest singular value below which poses beside are solved as well
     anywhere: float  # `beside_reach` from which on they always are

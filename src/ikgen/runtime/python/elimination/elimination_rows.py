@@ -11,7 +11,7 @@ from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_types import Array, Index
 from ikgen.runtime.python.elimination.general_6r import Plan, six_joint_rows
 from ikgen.runtime.python.elimination.six_joints import SixJoints, six_joints, with_tool_joint
-from ikgen.runtime.python.newton.refinement import rank_loss
+from ikgen.runtime.python.newton.refinement import smallest_singular_values
 from ikgen.runtime.python.rows.solution_rows import places
 
 __all__ = ["elimination_lanes"]
@@ -55,10 +55,10 @@ def _regular_first(arm: Arm, angles: Array, held: Array, T: Array) -> Array:
         lead = min((m for m in motions if m[0] == joint), key=lambda m: abs(m[2]))
         value = next(columns) if joint not in arm.free else _value(values, lead[1])
         q[:, joint] = (value - lead[3]) / lead[2]
-    loss = rank_loss(arm.chain, arm.task, arm.moving, q)
+    sigma = smallest_singular_values(arm.chain, arm.task, arm.moving, q)
     off = np.abs(arm.task.error(forward(arm.chain, q), np.broadcast_to(T, (len(q), 4, 4))))
     exact = off.max(axis=1) < arm.policy.exact
-    rank = (loss < arm.policy.continuum_rank_loss) * (2 - exact)
+    rank = (sigma < arm.policy.continuum_below) * (2 - exact)
     order = np.flatnonzero(rank == 0).tolist()
     for level in (1, 2):
         left = np.flatnonzero(rank == level)

@@ -21,7 +21,7 @@ from ikgen.runtime.python.elimination.loop_equations import (
 )
 from ikgen.runtime.python.elimination.six_joints import SixJoints, one_axis_each
 from ikgen.runtime.python.newton.flat_steps import flat_steps
-from ikgen.runtime.python.newton.refinement import rank_loss, refine
+from ikgen.runtime.python.newton.refinement import refine, smallest_singular_values
 from ikgen.runtime.python.rows.solution_rows import (
     Turning,
     distinct_rows,
@@ -242,8 +242,10 @@ def _same_apart(
         these = np.isin(of, some)
         q, pose = q[these], np.searchsorted(some, of[these])
         held = np.broadcast_to(rows_of(six.held, of[these]), (len(q), six.held.shape[1]))
-        loss = rank_loss(six.chain, PoseTask(1.0), _SIX, np.concatenate([q, held], axis=1))
-        folds = loss < _MEETS
+        sigma = smallest_singular_values(
+            six.chain, PoseTask(1.0), _SIX, np.concatenate([q, held], axis=1)
+        )
+        folds = sigma < _MEETS
         first = ~folds
         first[folds] = first_of_equals(q[folds], pose[folds], plan.turning, _CLOSE_BY)
         counts.append(np.bincount(pose[first], minlength=len(some)))

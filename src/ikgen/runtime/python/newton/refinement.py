@@ -21,8 +21,8 @@ __all__ = [
     "least_singular",
     "newton",
     "normal_inverse",
-    "rank_loss",
     "refine",
+    "smallest_singular_values",
     "steeper",
 ]
 
@@ -123,7 +123,7 @@ def errors_and_slopes(
     return np.concatenate(parts[:2], axis=1), np.concatenate(parts[2:], axis=1)
 
 
-def rank_loss(
+def smallest_singular_values(
     chain: Chain, task: Task, moving: Sequence[int], q: Array, rank: int | None = None
 ) -> Array:
     """Smallest singular value (k,) of the task's derivatives by the joints `moving` at q (k, dof), of as

@@ -47,21 +47,21 @@ class Starts(NamedTuple):
 
 
 class Ends(NamedTuple):
-    """Where Newton steps end: rows `q` (k, dof), their `error` and the smallest singular value `loss` of
+    """Where Newton steps end: rows `q` (k, dof), their `error` and the smallest singular value `sigma` of
     the derivatives (k,)."""
 
     q: Array
     error: Array
-    loss: Array
+    sigma: Array
 
 
 class Led(NamedTuple):
     """Solutions `q` (n, dof), the starts `owner` (n,) that led to them, and the smallest singular values
-    `loss` (n,) there."""
+    `sigma` (n,) there."""
 
     owner: Index
     q: Array
-    loss: Array
+    sigma: Array
 
 
 class Leads(NamedTuple):
@@ -101,7 +101,7 @@ def leads_of(arm: Arm, starts: Starts, known: Flags, near: bool = False) -> Lead
     _run(arm, starts, ends, ~broken)
     own, at = starts.source == 0, (starts.pose, starts.lane)
     lie = own & ~starts.marked & near
-    lie &= ends.loss < min(arm.policy.broken_reach, arm.policy.fold_reach)
+    lie &= ends.sigma < min(arm.policy.broken_reach, arm.policy.fold_reach)
     one, on = _found_around(arm, starts, ends, (broken & own & ~known[at]) | lie, lie)
     known[starts.pose[on & ~lie], starts.lane[on & ~lie]] = True
     other, also = _found_around(arm, starts, ends, broken & ~own & ~known[at], lie)
@@ -125,16 +125,16 @@ def _found_around(
     lead to, once for each branch of a pose; which starts these are from. Where a branch's first start is on
     none, its others are tried."""
     left, on = np.flatnonzero(some), np.zeros(len(some), dtype=bool)
-    found = Led(left[:0], starts.q[:0], ends.loss[:0])
+    found = Led(left[:0], starts.q[:0], ends.sigma[:0])
     branch = starts.pose * (1 + starts.lane.max(initial=0)) + starts.lane
     for others in (False, True):
         if arm.around is None or not len(left):
             break
         index = left if others else _first_of(branch, left)
         q = np.where(lie[index, None], ends.q[index], starts.q[index])
-        curve, owner, rows, loss = arm.around(arm, q, starts.T[index], lie[index])
+        curve, owner, rows, sigma = arm.around(arm, q, starts.T[index], lie[index])
         on[_first_of(branch, index[curve])] = True
-        more = Led(index[owner], rows, loss)
+        more = Led(index[owner], rows, sigma)
         found = joined(found, some_of(more, on[more.owner]))
         left = np.setdiff1d(left[~np.isin(branch[left], branch[on])], index)
     return found, on
@@ -148,14 +148,14 @@ def _first_of(branch: Index, some: Index) -> Index:
 def rows_nearby(arm: Arm, leads: Leads) -> Led:
     """The solutions that starts lead to, those that are sure first. Where two may meet near a singularity
     both are found. What is given leads only to its own."""
-    starts, T, (q, error, loss) = leads.starts, leads.starts.T, (x.copy() for x in leads.ends)
-    near = (starts.source >= 0) & ~starts.marked & (loss < arm.policy.fold_reach)
+    starts, T, (q, error, sigma) = leads.starts, leads.starts.T, (x.copy() for x in leads.ends)
+    near = (starts.source >= 0) & ~starts.marked & (sigma < arm.policy.fold_reach)
     settled = error < np.where(near, arm.policy.converged, arm.policy.arrived)
     fresh = _fresh(arm, q, starts, near, near & ~settled)
     settled &= fresh
     near &= fresh & ~leads.known
     sure = np.flatnonzero(settled)
-    first = _in_order(Led(sure, q[sure], loss[sure]), leads.around)
+    first = _in_order(Led(sure, q[sure], sigma[sure]), leads.around)
     if not near.any():
         return first
     owner = np.repeat(np.flatnonzero(near), 2)
@@ -164,11 +164,11 @@ def rows_nearby(arm: Arm, leads: Leads) -> Led:
     exact = left < arm.policy.exact
     for k, i in zip(np.flatnonzero(~exact).tolist(), owner[~exact].tolist()):
         if left[k] < error[i]:
-            q[i], error[i], loss[i] = pairs[k], left[k], there[k]
+            q[i], error[i], sigma[i] = pairs[k], left[k], there[k]
     alone = np.flatnonzero(near & (error < arm.policy.arrived))
     alone = np.setdiff1d(alone, [*owner[exact], *sure])
     more = _in_order(
-        Led(owner[exact], pairs[exact], there[exact]), Led(alone, q[alone], loss[alone])
+        Led(owner[exact], pairs[exact], there[exact]), Led(alone, q[alone], sigma[alone])
     )
     found: Led = joined(first, more)
     return found

@@ -47,7 +47,7 @@ def on_surfaces(arm: Arm, leads: Leads) -> Starts:
     stand for a continuum, of one direction, may lie on one as well."""
     (starts, ends), policy = leads[:2], arm.policy
     reach = _FLAT * policy.broken_reach
-    near = starts.marked | (ends.loss < min(reach, policy.fold_reach))
+    near = starts.marked | (ends.sigma < min(reach, policy.fold_reach))
     some = np.flatnonzero(near & (starts.source >= 0))
     if len(arm.moving) > 2 and len(some):
         some = some[np.argsort(starts.pose[some], kind="stable")]

@@ -98,8 +98,8 @@ def _around(arm: Arm, asked: Asked, rows: Array, some: Flags) -> list[tuple[int,
     if arm.around is None or not len(of):
         return []
     aim, broken = aims(arm, asked.T, asked.held)[of], np.ones(len(of), dtype=bool)
-    _, owner, q, loss = arm.around(arm, rows[of], aim, broken)
-    flags = (loss < arm.policy.continuum_rank_loss).tolist()
+    _, owner, q, sigma = arm.around(arm, rows[of], aim, broken)
+    flags = (sigma < arm.policy.continuum_below).tolist()
     return list(zip(of[owner].tolist(), zip(map(tuple, q.tolist()), flags)))
 
 
@@ -202,7 +202,7 @@ def _rows(arm: Arm, asked: Asked, start: Array, turn: Index) -> list[_Rows]:
     if first and len(arm.beside) and arm.policy.beside_anywhere:
         starts = joined(starts, _beside(arm, asked, start, np.arange(len(start)), closed))
     leads = leads_of(arm, starts, known, near=first and arm.rounded)
-    close = (starts.source >= 0) & (leads.ends.loss < arm.policy.beside_reach) & ~leads.known
+    close = (starts.source >= 0) & (leads.ends.sigma < arm.policy.beside_reach) & ~leads.known
     near = free | (np.bincount(starts.pose[close], minlength=len(free)) > 0)
     if first and len(arm.beside) and not arm.policy.beside_anywhere and near.any():
         more = _beside(arm, asked, start, np.flatnonzero(near), closed)
@@ -270,10 +270,10 @@ def _starts(
 def _meeting(arm: Arm, asked: Asked, leads: Leads) -> list[list[Found]]:
     """For each pose the distinct rows that Newton steps lead to."""
     out: list[list[Found]] = [[] for _ in asked.T]
-    owner, q, loss = rows_nearby(arm, leads)
-    flat, continuum = arm.policy.rank_loss, arm.policy.continuum_rank_loss
+    owner, q, sigma = rows_nearby(arm, leads)
+    flat, continuum = arm.policy.singular_below, arm.policy.continuum_below
     pose, marked = leads.starts.pose[owner], leads.starts.marked[owner]
-    flags = (marked & (loss < continuum)) | (loss < flat)
+    flags = (marked & (sigma < continuum)) | (sigma < flat)
     for k in that_differ(arm, asked.T, pose, q, flags).tolist():
         out[pose[k]].append((tuple(q[k].tolist()), bool(flags[k])))
     return out

@@ -16,7 +16,7 @@ from ikgen.runtime.python.arguments.pose_faults import too_far
 from ikgen.runtime.python.arm.chain_kinematics import tip_and_jacobian
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_types import Array, Flags
-from ikgen.runtime.python.newton.refinement import rank_loss
+from ikgen.runtime.python.newton.refinement import smallest_singular_values
 from ikgen.runtime.python.rows.solutions import Solutions, Status
 from ikgen.runtime.python.solving.pose_solving import solve_pose
 
@@ -215,8 +215,8 @@ class _Walk:
     def _singular(self, rows: Array) -> Flags:
         """Where all joints together lose a freedom (n,)."""
         arm = self.arm
-        loss = rank_loss(arm.chain, arm.task, range(rows.shape[1]), rows, arm.rank)
-        return np.asarray(loss < arm.policy.rank_loss)
+        sigma = smallest_singular_values(arm.chain, arm.task, range(rows.shape[1]), rows, arm.rank)
+        return np.asarray(sigma < arm.policy.singular_below)
 
     def _newton(self, q: Array, pose: Array, moving: list[int]) -> tuple[Array, float]:
         """The best row of shortest motions from q, and its error."""

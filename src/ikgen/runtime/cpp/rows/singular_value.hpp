@@ -9,7 +9,7 @@
 namespace ikgen_runtime {
 
 // Arm: as for PoseError; kHeld, a flag a joint.
-template <class Arm> struct RankLoss {
+template <class Arm> struct SingularValue {
   static constexpr MovingJoints<Arm> kJoints{};
   static constexpr int kMoving = MovingJoints<Arm>::kCount, kEquations = PoseError<Arm>::kCount;
   static constexpr int kRank = kMoving < kEquations ? kMoving : kEquations;

@@ -10,7 +10,7 @@ from tests.support.routines import compiled_header, feed
 CODE = r"""
 #include <cstdio>
 #include "elbow.hpp"
-#include "rows/rank_loss.hpp"
+#include "rows/singular_value.hpp"
 int main() {
   double first = 0.0, second = 0.0, flags = 0.0;
   while (std::scanf("%lf %lf %lf", &first, &second, &flags) == 3) {
@@ -22,8 +22,8 @@ int main() {
     }
     const double q[2] = {first, second};
     bool out[2];
-    elbow::RankLoss<elbow::Arm>::regular(rows, 1e-4, out);
-    std::printf("%d %d %d\n", out[0], out[1], elbow::RankLoss<elbow::Arm>::below(q, 1e-4));
+    elbow::SingularValue<elbow::Arm>::regular(rows, 1e-4, out);
+    std::printf("%d %d %d\n", out[0], out[1], elbow::SingularValue<elbow::Arm>::below(q, 1e-4));
   }
 }
 """
