@@ -127,9 +127,8 @@ def test_batch_agrees(arm: Any) -> None:
         assert np.abs(rows[order] - found.q).max() < 1e-9
 
 
+@pytest.mark.parametrize("module", [name for name in ARMS if name != "pitch"], indirect=True)
 def test_rotations_that_are_far_off_are_none(arm: Any) -> None:
-    if arm.TASK == "position-pitch":
-        return  # reads one entry, which cannot tell: see the next test
     pose = arm.forward(configurations(arm, 1)[0])
     pose[:3, :3] *= 1.0 + 1e-5
     bad = [pose]
@@ -140,11 +139,12 @@ def test_rotations_that_are_far_off_are_none(arm: Any) -> None:
         assert arm.solve_batch([T])[2].tolist() == ["INVALID"]
 
 
+@pytest.mark.parametrize("module", ["pitch"], indirect=True)
 def test_a_height_beyond_one_is_none(arm: Any) -> None:
-    if arm.TASK == "position-pitch":
-        pose = arm.forward(configurations(arm, 1)[0])
-        pose[2, :3] = 1.0 + 1e-5
-        assert arm.solve(pose).status == "INVALID"
+    """Of a rotation this task reads one entry, which cannot tell otherwise."""
+    pose = arm.forward(configurations(arm, 1)[0])
+    pose[2, :3] = 1.0 + 1e-5
+    assert arm.solve(pose).status == "INVALID"
 
 
 @pytest.mark.parametrize("module", sampled(ARMS, COMPILED), indirect=True)
