@@ -92,8 +92,13 @@ def test_the_crate_compiles_without_warnings_and_is_verified(
     assert done.returncode == 0, done.stderr
 
 
-def test_an_arm_that_needs_a_routine_is_refused(installed: Path, tmp_path: Path) -> None:
-    request = Request(ROOT / "tests/robots/tables/ArmRobo.toml")
-    with pytest.raises(UsageError, match="no routine 'trig_quartic'"):
+@pytest.mark.parametrize(
+    ("table", "routine"), [("ArmRobo", "trig_quartic"), ("KawasakiRS05L", "general_6r")]
+)
+def test_an_arm_that_needs_a_routine_is_refused(
+    table: str, routine: str, installed: Path, tmp_path: Path
+) -> None:
+    request = Request(ROOT / f"tests/robots/tables/{table}.toml")
+    with pytest.raises(UsageError, match=f"no routine '{routine}'"):
         generate(request, Outputs(("rust",), tmp_path))
     assert not list(tmp_path.iterdir())

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from functools import cache
 
 import pytest
 from tests.support.cpp_modules import solver_module
 
-from ikgen.emit.cpp.cpp_emitter import _headers
+from ikgen.emit.cpp.cpp_emitter import _ELIMINATIONS, _ROUTINES, _headers
 from ikgen.emit.solver_module import SolverModule
 from ikgen.model.dh import ARM_ANGLE_OPTION
+from ikgen.program.statements import Call
 
 
 @cache
@@ -45,3 +47,8 @@ def test_a_header_has_what_its_arm_takes_and_no_more(rounded: bool, task: str, h
             angle
         )
         assert ("newton/lane_refinement.hpp" in _headers(angle)) == rounded
+
+
+def test_all_routines_are_told_to_those_who_write_emitters() -> None:
+    told = re.findall(r"^ *\| `(\w+)` \|", Call.__doc__ or "", re.MULTILINE)
+    assert set(told) == set(_ROUTINES) | set(_ELIMINATIONS) and len(told) == 7

@@ -51,7 +51,23 @@ Statement = Let | Require | Comment
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A bigger routine that gives the branches of a level: `names` are set for each of its roots."""
+    """A bigger routine that gives the branches of a level: `names` are set for each of its roots.
+
+    | routine | arguments | names |
+    |---|---|---|
+    | `trig_quartic` | a2, b2, a1, b1, a0 | c, s: cosine and sine of a root |
+    | `trig_quartic_wide` | these, and the largest imaginary part (rad) of roots that count | the same |
+    | `general_6r` | pose, held joints | six revolute joints |
+    | `one_slide` | pose, held joints | five revolute joints and a slide |
+    | `two_slides` | pose, held joints | four revolute joints and two slides |
+    | `three_slides` | pose, held joints | three revolute joints and three slides |
+    | `coupled_6r` | pose, held joints | six revolute joints, of which one moves several axes |
+
+    Roots are those of a2 cos 2u + b2 sin 2u + a1 cos u + b1 sin u + a0. Pose: the entries r11, r12, r13,
+    px, r21, ... of its upper three rows. Joints, base to tip: cosine and sine of the DH variable of each
+    that turns, the variable of each slide; last the turn about the tool's axis where the task leaves that
+    open. What eliminations have to know of the arm besides is `SolverModule.plan`.
+    """
 
     routine: str
     arguments: tuple[Operand, ...]
