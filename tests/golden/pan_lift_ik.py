@@ -745,6 +745,11 @@ def _differences(arm: _Arm, a: Array, b: Array) -> Array:
     return np.where(turning, gap - _WHOLE_TURN * np.round(gap / _WHOLE_TURN), gap)
 
 
+def _slide_scale(values: Array) -> Array:
+    """What gaps between values (...) of slides count relative to."""
+    return np.asarray(np.maximum(np.abs(values), 1.0))
+
+
 # Rows to be compared.
 
 
@@ -757,9 +762,6 @@ def _pairs(count: int) -> tuple[_Index, _Index]:
 # Rows on the whole turns that limits and seed ask for, and without repetitions: for floats and arrays.
 
 
-_TURN = 2.0 * pi
-
-
 def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
     """Whether the row differs from all kept ones, whole turns aside."""
     near, revolute = arm.policy.coincident, arm.chain.revolute[::-1]
@@ -770,7 +772,7 @@ def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
             gap = abs(a - b)
             if gap <= near:
                 continue
-            if abs((gap + pi) % _TURN - pi) > near if turns else gap > near * abs(a):
+            if abs((gap + pi) % _WHOLE_TURN - pi) > near if turns else gap > near * abs(a):
                 break
         else:
             return False
@@ -778,23 +780,24 @@ def _is_new(arm: _Arm, row: Row, kept: Sequence[_Found]) -> bool:
 
 
 def _same_rows(arm: _Arm, a: Array, b: Array) -> _Flags:
-    """Which rows a (k, dof) are not new beside b (k, dof)."""
-    bound = np.where(arm.chain.revolute, 1.0, np.maximum(np.abs(a), 1.0))
+    """Which rows a (k, dof) are the rows b (k, dof), by what `_is_new` goes by."""
+    bound = np.where(arm.chain.revolute, 1.0, _slide_scale(a))
     gap = np.abs(_differences(arm, a, b))
     return np.asarray((gap <= arm.policy.coincident * bound).all(axis=1))
 
 
 def _distinct(arm: _Arm, q: Array, valid: _Flags) -> _Flags:
-    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside."""
+    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, by what `_is_new` goes by."""
     near = arm.policy.coincident
     later, earlier = _pairs(q.shape[1])
     same = valid.T[later] & valid.T[earlier]
     for j in reversed(range(q.shape[2])):  # the last joints differ between most rows
         value = q[:, :, j].T
         gap = np.abs(value[later] - value[earlier])
-        bound = near if arm.chain.revolute[j] else near * np.abs(value[later])
-        far = np.abs(gap - _TURN) if arm.chain.revolute[j] else gap
-        same &= (gap <= near) | (far <= bound)
+        if arm.chain.revolute[j]:
+            same &= (gap <= near) | (np.abs(gap - _WHOLE_TURN) <= near)
+        else:
+            same &= gap <= near * _slide_scale(value[later])
         if not same.any():
             return valid
     valid, some = valid.copy(), same.any(axis=1)
@@ -842,21 +845,21 @@ def _place(arm: _Arm, row: Row, near: Row | None, limits: bool) -> tuple[Row | N
         shift = 0.0
         if turning:
             if q <= -pi:
-                q += _TURN
+                q += _WHOLE_TURN
             elif q > pi:
-                q -= _TURN
+                q -= _WHOLE_TURN
             if near is not None:
-                shift = _TURN * round((near[j] - q) / _TURN)
+                shift = _WHOLE_TURN * round((near[j] - q) / _WHOLE_TURN)
         if limits and not low <= q + shift <= high:
             least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
             if turning and q + shift < least:
-                shift = _TURN * ceil((least - q) / _TURN)
+                shift = _WHOLE_TURN * ceil((least - q) / _WHOLE_TURN)
             if turning and q + shift > most:
-                shift = _TURN * floor((most - q) / _TURN)
+                shift = _WHOLE_TURN * floor((most - q) / _WHOLE_TURN)
             if not least <= q + shift <= most:
                 to_low, to_high = low - q, high - q
                 if turning:
-                    to_low, to_high = remainder(to_low, _TURN), remainder(to_high, _TURN)
+                    to_low, to_high = remainder(to_low, _WHOLE_TURN), remainder(to_high, _WHOLE_TURN)
                 if min(abs(to_low), abs(to_high)) > arm.policy.limit_reach:
                     return None, True
                 q, shift, beyond = low if abs(to_low) < abs(to_high) else high, 0.0, True
@@ -899,23 +902,23 @@ def _place_rows_batch(
         value = q[..., j]
         least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
         if turning:
-            value = np.where(value <= -pi, value + _TURN, value)
-            value = np.where(value > pi, value - _TURN, value)
+            value = np.where(value <= -pi, value + _WHOLE_TURN, value)
+            value = np.where(value > pi, value - _WHOLE_TURN, value)
             turns: Array = np.zeros(1)
             if near is not None:
-                turns = np.round((near[:, None, j] - value) / _TURN)
+                turns = np.round((near[:, None, j] - value) / _WHOLE_TURN)
             if limits and least > -inf:
-                turns = np.maximum(turns, np.ceil((least - value) / _TURN))
+                turns = np.maximum(turns, np.ceil((least - value) / _WHOLE_TURN))
             if limits and most < inf:
-                turns = np.minimum(turns, np.floor((most - value) / _TURN))
-            value = value + _TURN * turns
+                turns = np.minimum(turns, np.floor((most - value) / _WHOLE_TURN))
+            value = value + _WHOLE_TURN * turns
         if limits:
             fits = (value >= least) & (value <= most)
             inside &= fits
             if close.any():
                 beyond = (value > low - reach) & (value < high + reach)
                 if turning:
-                    beyond |= value + _TURN < high + reach
+                    beyond |= value + _WHOLE_TURN < high + reach
                 close &= beyond
             value = np.minimum(np.maximum(value, low), high)
         q[..., j] = value

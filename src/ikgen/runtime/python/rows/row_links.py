@@ -9,16 +9,21 @@ import numpy as np
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 
-__all__ = ["differences", "linked_rows", "origins"]
+__all__ = ["WHOLE_TURN", "differences", "linked_rows", "origins", "slide_scale"]
 
-_WHOLE_TURN = 2.0 * pi
+WHOLE_TURN = 2.0 * pi
 
 
 def differences(arm: Arm, a: Array, b: Array) -> Array:
     """b - a (..., dof), of turning joints on the shortest way."""
     gap = b - a
     turning = np.array(arm.chain.revolute)
-    return np.where(turning, gap - _WHOLE_TURN * np.round(gap / _WHOLE_TURN), gap)
+    return np.where(turning, gap - WHOLE_TURN * np.round(gap / WHOLE_TURN), gap)
+
+
+def slide_scale(values: Array) -> Array:
+    """What gaps between values (...) of slides count relative to: the longer ones' lengths."""
+    return np.asarray(np.maximum(np.abs(values), 1.0))
 
 
 def linked_rows(arm: Arm, q: Array, real: Flags) -> Index:

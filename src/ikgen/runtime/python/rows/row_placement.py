@@ -11,7 +11,7 @@ import numpy as np
 
 from ikgen.runtime.python.arm.solved_arm import Arm, Found
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Row
-from ikgen.runtime.python.rows.row_links import differences
+from ikgen.runtime.python.rows.row_links import WHOLE_TURN, differences, slide_scale
 from ikgen.runtime.python.rows.row_pairs import pairs
 
 __all__ = [
@@ -25,8 +25,6 @@ __all__ = [
     "same_rows",
 ]
 
-_TURN = 2.0 * pi
-
 
 def is_new(arm: Arm, row: Row, kept: Sequence[Found]) -> bool:
     """Whether the row differs from all kept ones, whole turns aside; long slides count relative to their
@@ -39,7 +37,7 @@ def is_new(arm: Arm, row: Row, kept: Sequence[Found]) -> bool:
             gap = abs(a - b)
             if gap <= near:
                 continue
-            if abs((gap + pi) % _TURN - pi) > near if turns else gap > near * abs(a):
+            if abs((gap + pi) % WHOLE_TURN - pi) > near if turns else gap > near * abs(a):
                 break
         else:
             return False
@@ -47,8 +45,8 @@ def is_new(arm: Arm, row: Row, kept: Sequence[Found]) -> bool:
 
 
 def same_rows(arm: Arm, a: Array, b: Array) -> Flags:
-    """Which rows a (k, dof) are not new beside b (k, dof)."""
-    bound = np.where(arm.chain.revolute, 1.0, np.maximum(np.abs(a), 1.0))
+    """Which rows a (k, dof) are the rows b (k, dof), by what `is_new` goes by."""
+    bound = np.where(arm.chain.revolute, 1.0, slide_scale(a))
     gap = np.abs(differences(arm, a, b))
     return np.asarray((gap <= arm.policy.coincident * bound).all(axis=1))
 
@@ -59,29 +57,31 @@ def apart(arm: Arm, q: Array) -> bool:
     if not all(arm.chain.revolute):
         return False
     weight = np.arange(1.0, q.shape[1] + 1.0)
-    turns = sorted((q @ weight % _TURN).tolist())
+    turns = sorted((q @ weight % WHOLE_TURN).tolist())
     enough = arm.policy.coincident * float(q.shape[1] * (q.shape[1] + 1))
-    if all(b - a > enough for a, b in zip(turns, [*turns[1:], *(x + _TURN for x in turns[:1])])):
+    if all(
+        b - a > enough for a, b in zip(turns, [*turns[1:], *(x + WHOLE_TURN for x in turns[:1])])
+    ):
         return True
     later, earlier = pairs(len(q))
     gap = q[later] - q[earlier]
-    gap -= _TURN * np.rint(gap / _TURN)
+    gap -= WHOLE_TURN * np.rint(gap / WHOLE_TURN)
     most = np.maximum.reduce(np.abs(gap), axis=1, initial=0.0)
     return bool((most > arm.policy.coincident).all())
 
 
 def distinct(arm: Arm, q: Array, valid: Flags) -> Flags:
-    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, whole turns aside; long
-    slides count relative to their length."""
+    """Which rows (N, M, dof) are valid and differ from all earlier valid ones, by what `is_new` goes by."""
     near = arm.policy.coincident
     later, earlier = pairs(q.shape[1])
     same = valid.T[later] & valid.T[earlier]
     for j in reversed(range(q.shape[2])):  # the last joints differ between most rows
         value = q[:, :, j].T
         gap = np.abs(value[later] - value[earlier])
-        bound = near if arm.chain.revolute[j] else near * np.abs(value[later])
-        far = np.abs(gap - _TURN) if arm.chain.revolute[j] else gap
-        same &= (gap <= near) | (far <= bound)
+        if arm.chain.revolute[j]:
+            same &= (gap <= near) | (np.abs(gap - WHOLE_TURN) <= near)
+        else:
+            same &= gap <= near * slide_scale(value[later])
         if not same.any():
             return valid
     valid, some = valid.copy(), same.any(axis=1)
@@ -130,21 +130,21 @@ def _place(arm: Arm, row: Row, near: Row | None, limits: bool) -> tuple[Row | No
         shift = 0.0
         if turning:
             if q <= -pi:
-                q += _TURN
+                q += WHOLE_TURN
             elif q > pi:
-                q -= _TURN
+                q -= WHOLE_TURN
             if near is not None:
-                shift = _TURN * round((near[j] - q) / _TURN)
+                shift = WHOLE_TURN * round((near[j] - q) / WHOLE_TURN)
         if limits and not low <= q + shift <= high:
             least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
             if turning and q + shift < least:
-                shift = _TURN * ceil((least - q) / _TURN)
+                shift = WHOLE_TURN * ceil((least - q) / WHOLE_TURN)
             if turning and q + shift > most:
-                shift = _TURN * floor((most - q) / _TURN)
+                shift = WHOLE_TURN * floor((most - q) / WHOLE_TURN)
             if not least <= q + shift <= most:
                 to_low, to_high = low - q, high - q
                 if turning:
-                    to_low, to_high = remainder(to_low, _TURN), remainder(to_high, _TURN)
+                    to_low, to_high = remainder(to_low, WHOLE_TURN), remainder(to_high, WHOLE_TURN)
                 if min(abs(to_low), abs(to_high)) > arm.policy.limit_reach:
                     return None, True
                 q, shift, beyond = low if abs(to_low) < abs(to_high) else high, 0.0, True
@@ -188,23 +188,23 @@ def place_rows_batch(
         value = q[..., j]
         least, most = low - arm.policy.limit_tolerance, high + arm.policy.limit_tolerance
         if turning:
-            value = np.where(value <= -pi, value + _TURN, value)
-            value = np.where(value > pi, value - _TURN, value)
+            value = np.where(value <= -pi, value + WHOLE_TURN, value)
+            value = np.where(value > pi, value - WHOLE_TURN, value)
             turns: Array = np.zeros(1)
             if near is not None:
-                turns = np.round((near[:, None, j] - value) / _TURN)
+                turns = np.round((near[:, None, j] - value) / WHOLE_TURN)
             if limits and least > -inf:
-                turns = np.maximum(turns, np.ceil((least - value) / _TURN))
+                turns = np.maximum(turns, np.ceil((least - value) / WHOLE_TURN))
             if limits and most < inf:
-                turns = np.minimum(turns, np.floor((most - value) / _TURN))
-            value = value + _TURN * turns
+                turns = np.minimum(turns, np.floor((most - value) / WHOLE_TURN))
+            value = value + WHOLE_TURN * turns
         if limits:
             fits = (value >= least) & (value <= most)
             inside &= fits
             if close.any():
                 beyond = (value > low - reach) & (value < high + reach)
                 if turning:
-                    beyond |= value + _TURN < high + reach
+                    beyond |= value + WHOLE_TURN < high + reach
                 close &= beyond
             value = np.minimum(np.maximum(value, low), high)
         q[..., j] = value

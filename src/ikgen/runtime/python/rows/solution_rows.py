@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
+from ikgen.runtime.python.rows.row_links import slide_scale
 from ikgen.runtime.python.rows.row_pairs import pairs
 
 __all__ = [
@@ -39,8 +40,7 @@ def places(pose: Index) -> Index:
 
 
 def first_of_equals(q: Array, pose: Index, turning: Turning, coincident: float) -> Flags:
-    """Which rows of q (k, 6) equal no earlier one of their pose, pose (k,) in order; long slides count
-    relative to their length."""
+    """Which rows of q (k, 6) equal no earlier one of their pose, pose (k,) in order, as `is_new` has it."""
     if not len(q):
         return np.zeros(0, dtype=bool)
     place, first = places(pose), pose[0]
@@ -49,11 +49,11 @@ def first_of_equals(q: Array, pose: Index, turning: Turning, coincident: float) 
     values[:, place, pose - first] = q.T
     later, earlier = pairs(width)
     value = values[-1]  # the last differ between most rows
-    near = _gaps(value[later], value[earlier], turning[-1]) < coincident
+    near = _gaps(value[later], value[earlier], turning[-1]) <= coincident
     k, at = np.nonzero(near)
     later, earlier = later[k], earlier[k]
     for value, turns in zip(values[-2::-1], turning[-2::-1]):
-        near = _gaps(value[later, at], value[earlier, at], turns) < coincident
+        near = _gaps(value[later, at], value[earlier, at], turns) <= coincident
         later, earlier, at = later[near], earlier[near], at[near]
     if not len(later):
         return np.ones(len(q), dtype=bool)
@@ -67,7 +67,7 @@ def _gaps(one: Array, other: Array, turns: bool) -> Array:
     """How far values of a joint are from others (...), of long slides relative to their length."""
     gap: Array = np.abs(one - other)
     around = np.abs(np.pi - np.abs(np.pi - gap))
-    return around if turns else gap / np.maximum(np.abs(other), 1.0)
+    return around if turns else gap / slide_scale(other)
 
 
 def distinct_rows(
