@@ -8,13 +8,14 @@ rigidly attached there.
 
 from __future__ import annotations
 
+import shlex
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import takewhile
 
 from ikgen.chains.grippers import ARM_JOINTS, ArmLinks, arm_links
-from ikgen.chains.link_names import NO_RANK, base_rank, is_head, is_sensor, tip_rank
+from ikgen.chains.link_names import NO_RANK, base_rank, is_finger_part, is_head, is_sensor, tip_rank
 from ikgen.chains.rigid_bodies import RigidBodies
 from ikgen.importers.urdf.topology import TreeIndex
 from ikgen.model.joint_tree import Joint, JointTree, JointType
@@ -26,7 +27,8 @@ __all__ = ["ChainCandidate", "candidate_chains", "conventional_base"]
 class ChainCandidate:
     """One chain of a tree: its ends, its moving joints from base to tip, and why it was chosen.
 
-    `dof` counts independent joints: a mimic joint follows its driver.
+    `dof` counts independent joints: a mimic joint follows its driver. `left_out` says which joint behind
+    the tip is taken for a gripper's where it may be the arm's ("": none).
     """
 
     base: str
@@ -34,6 +36,7 @@ class ChainCandidate:
     joints: tuple[str, ...]
     dof: int
     why: str
+    left_out: str = ""
 
 
 def candidate_chains(tree: JointTree, base: str | None = None) -> tuple[ChainCandidate, ...]:
@@ -78,12 +81,26 @@ def _branches(index: TreeIndex, root: str, base: str | None) -> Iterator[ChainCa
         start = conventional_base(index, root, tip) if base is None else base
         joints = _moving(index.path(start, tip) or ())
         if joints:
-            yield ChainCandidate(start, tip, _names(joints), _dof(joints), why)
+            left_out = _left_out(arms.doubtful.get(hub, ()))
+            yield ChainCandidate(start, tip, _names(joints), _dof(joints), why, left_out)
+
+
+def _left_out(joints: Sequence[Joint]) -> str:
+    if not joints:
+        return ""
+    names = ", ".join(f"'{joint.name}'" for joint in joints)
+    first = joints[0]
+    if len(joints) == 1:
+        return (
+            f"{names} is left out as a gripper's joint: --tip {shlex.quote(first.child)} keeps it"
+        )
+    tip = shlex.quote(first.child)
+    return f"{names} are left out as a gripper's joints: --tip {tip} keeps '{first.name}'"
 
 
 def _best_tip(bodies: RigidBodies, body: Sequence[str], arms: ArmLinks) -> tuple[str, str]:
     def preference(link: str) -> tuple[int, bool, int]:
-        aside = is_sensor(link) or link in arms.held_fingers
+        aside = is_sensor(link) or link in arms.held_fingers or is_finger_part(link)
         return tip_rank(link), aside, -bodies.depth[link]
 
     tip = min(body, key=preference)

@@ -51,7 +51,8 @@ def _no_arm(tree: JointTree, index: TreeIndex, base: str | None) -> UsageError:
 
 def _options(chain: ChainCandidate) -> str:
     ends = f"--base {shlex.quote(chain.base)} --tip {shlex.quote(chain.tip)}"
-    return f"{ends}   ({chain.dof} joints: {', '.join(chain.joints)})"
+    left_out = f"; {chain.left_out}" if chain.left_out else ""
+    return f"{ends}   ({chain.dof} joints: {', '.join(chain.joints)}{left_out})"
 
 
 def not_below(tree: JointTree, index: TreeIndex, base: str, tip: str) -> UsageError:

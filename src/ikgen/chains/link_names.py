@@ -9,6 +9,7 @@ __all__ = [
     "base_rank",
     "is_finger",
     "is_finger_link",
+    "is_finger_part",
     "is_head",
     "is_rotor",
     "is_sensor",
@@ -22,6 +23,7 @@ _FINGER_JOINT = re.compile(
     re.IGNORECASE,
 )
 _FINGER_LINK = re.compile(r"finger|knuckle|moving[-_](part|jaw)", re.IGNORECASE)
+_FINGER_PART = re.compile(rf"{_FINGER_LINK.pattern}|jaw|thumb", re.IGNORECASE)
 _WHEEL = re.compile(r"wheel|caster|castor", re.IGNORECASE)
 _ROTOR = re.compile(r"rotor|propeller", re.IGNORECASE)
 _HEAD = re.compile(r"head|neck|cervical|(^|[/_])eyes?(_|$)", re.IGNORECASE)
@@ -57,6 +59,11 @@ def is_finger(joint: str, child: str) -> bool:
 def is_finger_link(link: str) -> bool:
     """Whether a link's name tells of a part of a finger."""
     return _FINGER_LINK.search(link) is not None
+
+
+def is_finger_part(name: str) -> bool:
+    """Whether the name of a joint or link tells of one finger, not of all of a gripper."""
+    return _FINGER_PART.search(name) is not None
 
 
 def is_wheel(joint: str, child: str) -> bool:

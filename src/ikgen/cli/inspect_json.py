@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from ikgen.library.dh_text import angle_text, constants, length_text
@@ -22,10 +23,7 @@ def as_dict(found: Inspection) -> dict[str, Any]:
     record: dict[str, Any] = {"warnings": list(found.warnings)}
     if found.tree is not None:
         record |= _tree(found.tree)
-        record["candidates"] = [
-            {"base": c.base, "tip": c.tip, "dof": c.dof, "joints": list(c.joints), "why": c.why}
-            for c in found.candidates
-        ]
+        record["candidates"] = [asdict(candidate) for candidate in found.candidates]
     if found.dh is not None and found.geometry is not None:
         record["arm_angle"] = found.arm_angle
         record["chain"] = _chain(found.dh, found.geometry)

@@ -41,6 +41,8 @@ def _chains(found: Inspection) -> str:
     for c in found.candidates:
         lines.append(f"  --base {c.base} --tip {c.tip}   {c.dof} joints; {c.why}")
         lines.append(f"      {', '.join(c.joints)}")
+        if c.left_out and found.reading is None:
+            lines.append(f"      {c.left_out}")
     if found.reading is None:
         lines.append("several chains: choose one by --base and --tip to see more")
     return "\n".join(lines)

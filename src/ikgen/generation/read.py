@@ -90,7 +90,7 @@ def _read(request: Request, tree: JointTree | None) -> Reading:
     from ikgen.kinematics.calibrated import calibrated_dh
     from ikgen.kinematics.modified_dh import to_dh
 
-    tree = tree or read_tree(request)
+    tree = _with_left_out(tree or read_tree(request), request)
     _check_units(request, tree.joints)
     _check_locks(request, tree.joints)
     tree, chain, coupled = _coupled_chain(request, tree)
@@ -102,6 +102,16 @@ def _read(request: Request, tree: JointTree | None) -> Reading:
     dh = calibrated_dh(reading.dh, calibrated)
     found = Reading(own.source, own, calibrated, dh, coupled)
     return _told(found, request.calibration, reading.dh)
+
+
+def _with_left_out(tree: JointTree, request: Request) -> JointTree:
+    """With a word on the joint that the chosen chain leaves out where it may be the arm's."""
+    from ikgen.chains.arms import candidate_chains
+
+    if request.tip is not None:
+        return tree
+    words = tuple(filter(None, (arm.left_out for arm in candidate_chains(tree, request.base))))
+    return replace(tree, source=replace(tree.source, warnings=(*tree.source.warnings, *words)))
 
 
 def _told(reading: Reading, path: Path, model: DHChain) -> Reading:
