@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ikgen.errors import IkgenError
-from ikgen.importers.packages import PackageFinder
+from ikgen.importers.packages import PACKAGE_URL, PackageFinder
 from ikgen.importers.urdf.urdf_tree import parse_urdf
 from ikgen.importers.xacro.expansion_errors import explain
 from ikgen.importers.xacro.expansion_session import Arguments, Session
@@ -122,4 +122,4 @@ def _without_paths(text: str, finder: PackageFinder, top: Path) -> str:
         if place != ".":
             text = text.replace(f"file://{directory}/", f"{place}/")
         text = re.sub(rf"{re.escape(directory)}(?![\w.+-])", place, text)
-    return text
+    return text.replace(f"file://{PACKAGE_URL}", PACKAGE_URL)  # of packages that were not found

@@ -97,7 +97,9 @@ def _explain_one(
 ) -> BadDescriptionError | None:
     if isinstance(cause, PackageNotFoundError):
         line = line_of(file, rf"(find\W+|package://){re.escape(cause.name)}\b")
-        hint = f"give --package-path DIR; looked in: {'; '.join(cause.searched)}"
+        own = f"the package's folder (named '{cause.name}', or with a package.xml that says so)"
+        searched = "; ".join(cause.searched)
+        hint = f"give --package-path DIR, {own} or one that holds it; looked in: {searched}"
         return BadDescriptionError(str(cause), file=name, line=line, hint=hint)
     if type(cause).__name__ == "ArgException":
         return _missing_argument(str(cause), file, name, arguments)

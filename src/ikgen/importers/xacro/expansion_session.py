@@ -6,13 +6,14 @@ import io
 import os
 import sys
 from collections.abc import Callable
-from contextlib import redirect_stderr, redirect_stdout
+from contextlib import redirect_stderr, redirect_stdout, suppress
+from functools import cache
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 from ikgen.errors import MissingToolError
-from ikgen.importers.packages import PACKAGE_URL, PackageFinder
+from ikgen.importers.packages import PACKAGE_URL, PackageFinder, PackageNotFoundError
 from ikgen.importers.xacro.guarded_xacro import GuardedXacro
 
 __all__ = ["Arguments", "Session"]
@@ -68,8 +69,11 @@ class Session:
         return self
 
     def _replace(self, xacro: Any, substitution_args: Any) -> None:
+        @cache
         def find(package: str) -> str:
-            return str(self._finder.find(package))
+            with suppress(PackageNotFoundError):
+                return str(self._finder.find(package))
+            return f"{PACKAGE_URL}{package}"  # an error where a file of it is read, and only there
 
         resolve = xacro.abs_filename_spec
 
