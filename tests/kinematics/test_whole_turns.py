@@ -95,9 +95,10 @@ def test_ratios_that_are_not_whole_are_refused(tmp_path: Path) -> None:
     )
     robot.write_text(text)
     with pytest.raises(
-        UnsolvedChainError, match=r"turn in the ratio 1 : 142\.857, and closed forms need"
-    ):
+        UnsolvedChainError, match=r"'elbow' and 'waist' turn in the ratio 0\.007 : 1, and closed"
+    ) as caught:
         derive(request(robot))
+    assert caught.value.hint.startswith("give --lock waist=VALUE")
     robot.write_text(text.replace('"elbow" type="revolute"', '"elbow" type="prismatic"'))
     slides = read(request(robot)).dh
     with pytest.raises(UnsolvedChainError, match="one turns and the other slides"):

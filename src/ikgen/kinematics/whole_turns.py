@@ -46,24 +46,33 @@ def check_couplings(dh: DHChain) -> None:
             name = dh.joints[joint].name
             raise UnsolvedChainError(
                 f"no closed form for the mimic joints of '{name}': {cause[0]}",
-                hint=f"--lock {name}=VALUE makes it a constant{cause[1]}",
+                hint=_hint(dh, name, cause[1]),
             )
+
+
+def _hint(dh: DHChain, name: str, other: str) -> str:
+    """What would help; a joint that is locked leaves others to solve for only where others move."""
+    if len(dh.free_indices) + 1 < dh.dof:
+        return f"give --lock {name}=VALUE, which makes it a constant, or {other}"
+    return f"give {other}"
 
 
 def _cause(dh: DHChain, joint: int, rows: tuple[DHRow, ...]) -> tuple[str, str] | None:
     """Why the joint has no closed form, and what else than locking it would help."""
+    ends = "--base and --tip with one of the two between them"
     lead = dh.lead_row(joint)
     for row in rows:
         names = f"'{lead.name}' and '{row.name}'"
         if row.revolute != lead.revolute:
             text = f"of {names} one turns and the other slides, so the equations are not algebraic"
-            return text, ""
+            return text, ends
         ratio = row.scale / lead.scale
         if row.revolute and abs(ratio - round(ratio)) > _WHOLE:
             text = (
-                f"{names} turn in the ratio 1 : {abs(ratio):g}, and closed forms need whole numbers"
+                f"{names} turn in the ratio {abs(lead.scale):g} : {abs(row.scale):g}, and closed forms "
+                "need one to be a whole multiple of the other"
             )
-            return text, "; so do --base and --tip with one of the two between them"
+            return text, ends
     limits, held = dh.joints[joint].limits, dh.joints[joint].name in dh.free
     if not lead.revolute or held or turns_freely(dh, joint):
         return None
@@ -75,7 +84,7 @@ def _cause(dh: DHChain, joint: int, rows: tuple[DHRow, ...]) -> tuple[str, str] 
         f"{period:.6g} of '{dh.joints[joint].name}', and the limits span "
         f"{limits.upper - limits.lower:.6g}"
     )
-    return text, f"; so do limits that span {period:.6g} at most"
+    return text, f"limits that span {period:.6g} at most"
 
 
 def _rows(dh: DHChain, joint: int) -> tuple[DHRow, ...]:
