@@ -96,6 +96,7 @@ def _advice(found: Inspection) -> str:
     for k, attempt in enumerate(found.closed):
         if k < _PROPOSED or attempt.default:
             lines += _proposal(attempt)
+    lines += _tip(found)
     if found.arm_angle:
         lines.append(
             f"  --free {ARM_ANGLE_OPTION}: closed form, the angle of the elbow held in a joint's place"
@@ -108,6 +109,18 @@ def _advice(found: Inspection) -> str:
             f"  no closed form found for the task '{best.task}': left are {', '.join(best.left)}"
         )
     return "\n".join(lines) if len(lines) > 1 else ""
+
+
+def _tip(found: Inspection) -> list[str]:
+    """What the tip's place makes of the task that is taken without options."""
+    from ikgen.generation.tip_on_axis import tip_on_axis
+    from ikgen.tasks import find_task
+
+    taken = found.taken
+    if taken is None or taken.dh is None or not taken.default:
+        return []
+    words = tip_on_axis(taken.dh, find_task(taken.task))
+    return [f"  {words}"] if words else []
 
 
 def _proposal(attempt: Attempt) -> list[str]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ikgen.generation.tip_on_axis import tip_on_axis
+
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
 
@@ -13,9 +15,13 @@ _POSITION = 3  # freedoms
 
 
 def announcements(derivation: Derivation) -> tuple[str, ...]:
-    """What was odd in the file, that the task is not the first that fits, and that it asks more than the
-    arm can do, or than its name says."""
-    told = (_passed_over(derivation), _over_constrained(derivation) or _tilting(derivation))
+    """What was odd in the file, that the task is not the first that fits, that it asks more than the
+    arm can do, or than its name says, and that the tip lies on the last axis where the task tells of it."""
+    told = (
+        _passed_over(derivation),
+        _over_constrained(derivation) or _tilting(derivation),
+        tip_on_axis(derivation.reading.dh, derivation.task) if derivation.chosen else "",
+    )
     return (*derivation.reading.source.warnings, *filter(None, told))
 
 
