@@ -119,9 +119,27 @@ def test_a_roll_about_the_tool_axis_asks_for_another_axis(tmp_path: Path) -> Non
 def test_a_tilt_that_changes_counts_with_the_heading() -> None:
     yaw, pitch = find_task("position-yaw"), find_task("position-pitch")
     level, tilting = chain("scara_standard.toml"), chain("open_manipulator_x.urdf")
-    assert keeps_heading_level(level) and freedoms_fixed(level, yaw) == 4
-    assert not keeps_heading_level(tilting) and freedoms_fixed(tilting, yaw) == 5
+    assert keeps_heading_level(level, "x") and freedoms_fixed(level, yaw) == 4
+    assert not keeps_heading_level(tilting, "x") and freedoms_fixed(tilting, yaw) == 5
     assert over_constrained(tilting, yaw) == 1 and freedoms_fixed(tilting, pitch) == 4
+
+
+def test_a_heading_is_of_an_axis_that_stays_level() -> None:
+    dh = chain("scara_standard.toml")
+    turned = np.eye(4)[[2, 1, 0, 3]] * [[-1.0], [1.0], [1.0], [1.0]]  # x of the tool points down
+    frames = (*dh.file_frames[:-1], dh.file_frames[-1] @ turned)
+    upright = replace(dh, file_frames=frames)
+    first = [task.name for task in fitting_tasks(dh)]
+    assert first == ["position-yaw", "position-yaw:y", "pose"]
+    assert [task.name for task in fitting_tasks(upright)] == [
+        "position-yaw:y",
+        "position-yaw:z",
+        "pose",
+    ]
+    assert not keeps_heading_level(upright, "x") and keeps_heading_level(upright, "z")
+    assert fitting_tasks(upright, "z")[0].name == "position-yaw:z"
+    assert find_task("position-yaw", "x") == find_task("position-yaw")
+    assert "heading of the tool's z axis" in find_task("position-yaw:z").words
 
 
 def test_six_joints_take_the_whole_pose() -> None:

@@ -59,7 +59,7 @@ _SOLVING_OPTIONS = (
     click.option(
         "--tool-axis",
         type=click.Choice(AXES),
-        help="The tool's axis whose direction or elevation counts (default: z, or the one that suits).",
+        help="The tool's axis whose direction, elevation or heading counts (default: the one that suits).",
     ),
     click.option(
         "--free",

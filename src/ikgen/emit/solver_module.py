@@ -151,10 +151,9 @@ class SolverModule:
     def unit_columns(self) -> tuple[int, ...]:
         """Columns of the rotation that the entries of the task make up, and that are unit vectors."""
         task = self.reads
-        if task.orientation == "direction":
+        level = task.orientation == "yaw" and keeps_heading_level(self.dh, task.axis)
+        if task.orientation == "direction" or level:
             return (AXES.index(task.axis),)
-        if task.orientation == "yaw":
-            return (0,) if keeps_heading_level(self.dh) else ()
         return (0, 1, 2) if task.orientation == "rotation" else ()
 
     @property

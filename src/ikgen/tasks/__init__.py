@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from ikgen.errors import UnknownNameError, UsageError
 from ikgen.plugins import find_plug_in, plug_ins
 
-__all__ = ["AXES", "TASKS", "WHOLE_POSE", "Task", "find_task", "task_names"]
+__all__ = ["AXES", "TASKS", "WHOLE_POSE", "Task", "find_task", "first_axis", "task_names"]
 
 AXES = ("x", "y", "z")
 """The tool's axes, by which a task with a direction goes."""
@@ -16,15 +16,14 @@ _POSITION = ("px", "py", "pz")
 _ROTATION = tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
 _DIRECTION = ("r13", "r23", "r33")
 _ELEVATION = ("r33",)
-_HEADING = ("r11", "r21")
 WHOLE_POSE = frozenset(_ROTATION + _POSITION)
 """Names of all entries of a pose."""
 
 _ORIENTATIONS = {
     frozenset(): "",
     frozenset(_ROTATION): "rotation",
-    frozenset(_HEADING): "yaw",
     **{frozenset((f"r1{j}", f"r2{j}", f"r3{j}")): "direction" for j in (1, 2, 3)},
+    **{frozenset((f"r1{j}", f"r2{j}")): "yaw" for j in (1, 2, 3)},
     **{frozenset((f"r3{j}",)): "pitch" for j in (1, 2, 3)},
 }
 
@@ -33,7 +32,7 @@ _ORIENTATIONS = {
 class Task:
     """A task reads the pose entries `readable` (rows and columns from 1) and fixes `freedoms` of the
     tip's six; `aliases` are IKFast's names, which MoveIt users know. `axis` is the tool's axis that a task
-    with a direction reads ("": the task has none)."""
+    with a direction, an elevation or a heading reads ("": the task has none)."""
 
     name: str
     readable: frozenset[str]
@@ -48,7 +47,7 @@ class Task:
         return self.name.partition(":")[0]
 
     def along(self, axis: str) -> Task:
-        """The task by another axis of the tool: `position-direction:x`, without an axis where it is z.
+        """The task by another axis of the tool: `position-direction:x`, none named where it is the first.
 
         Raises `UsageError` for a task that has no direction.
         """
@@ -62,7 +61,7 @@ class Task:
             n[:-1] + new if n[0] == "r" and n[-1] == old else n for n in self.readable
         )
         words = self.words.replace(f"tool's {self.axis} axis", f"tool's {axis} axis")
-        name = self.stem if axis == "z" else f"{self.stem}:{axis}"
+        name = self.stem if axis == first_axis(self.stem) else f"{self.stem}:{axis}"
         return replace(self, name=name, readable=readable, words=words, axis=axis)
 
     @property
@@ -111,10 +110,11 @@ TASKS: tuple[Task, ...] = (
     ),
     Task(
         "position-yaw",
-        frozenset(_POSITION + _HEADING),
+        frozenset((*_POSITION, "r11", "r21")),
         4,
         "position and heading of the tool's x axis about the base's z",
         ("TranslationXAxisAngleZNorm4D", "TranslationXAxisAngle4D"),
+        "x",
     ),
     Task("position", frozenset(_POSITION), 3, "position", ("Translation3D",)),
     Task("rotation", frozenset(_ROTATION), 3, "rotation", ("Rotation3D",)),
@@ -129,14 +129,19 @@ TASKS: tuple[Task, ...] = (
 )
 
 
+def first_axis(stem: str) -> str:
+    """The tool's axis by which a task goes whose name says none."""
+    return next((task.axis for task in TASKS if task.name == stem), "") or "z"
+
+
 def _with_axis() -> list[str]:
     return [task.name for task in TASKS if task.axis]
 
 
 def find_task(name: str, axis: str | None = None) -> Task:
     """The task of a name or alias, ikgen's own or another package's, by the tool's axis (None: the name's,
-    as in `position-pitch:x`, or z); raises `UnknownNameError` with what there is, `UsageError` for an axis
-    of a task that has none, or for two of them."""
+    as in `position-pitch:x`, or the task's first); raises `UnknownNameError` with what there is,
+    `UsageError` for an axis of a task that has none, or for two of them."""
     stem, colon, own = name.partition(":")
     if colon and axis not in (None, own):
         raise UsageError(

@@ -41,7 +41,7 @@ _BARELY = 0.02
 freedoms."""
 
 _AS_GOOD = 0.5
-"""The tool's z axis is taken unless it is conditioned worse than another by this factor."""
+"""The task's first axis is taken unless it is conditioned worse than another by this factor."""
 
 
 def fitting_tasks(dh: DHChain, axis: str | None = None) -> tuple[Task, ...]:
@@ -76,8 +76,8 @@ def _along(dh: DHChain, task: Task, axes: Sequence[str]) -> list[Task]:
 
 def fits(dh: DHChain, task: Task) -> bool:
     """Whether the joints that are not held move the task's freedoms independently of each other."""
-    if task.name == "position-yaw" and not keeps_heading_level(dh):
-        return False  # a heading is well-defined where the tool's x axis stays horizontal
+    if task.orientation == "yaw" and not keeps_heading_level(dh, task.axis):
+        return False  # a heading is well-defined where the tool's axis stays horizontal
     return freedoms_moved(dh, task) == dh.dof - len(dh.free)
 
 
@@ -88,17 +88,19 @@ def over_constrained(dh: DHChain, task: Task) -> int:
 
 def freedoms_fixed(dh: DHChain, task: Task) -> int:
     """How many freedoms the task fixes: with a heading whose length the joints change its tilt as well."""
-    return task.freedoms + int(task.orientation == "yaw" and np.ptp(_shortened(dh)) > LEVEL)
+    return task.freedoms + int(
+        task.orientation == "yaw" and np.ptp(_shortened(dh, task.axis)) > LEVEL
+    )
 
 
-def keeps_heading_level(dh: DHChain) -> bool:
-    """Whether the tool's x axis stays horizontal, so that its heading is a unit vector."""
-    return bool(_shortened(dh).max() < LEVEL)
+def keeps_heading_level(dh: DHChain, axis: str) -> bool:
+    """Whether the tool's axis stays horizontal, so that its heading is a unit vector."""
+    return bool(_shortened(dh, axis).max() < LEVEL)
 
 
-def _shortened(dh: DHChain) -> Matrix:
+def _shortened(dh: DHChain, axis: str) -> Matrix:
     """By how much the square of the heading's length falls short of 1, at a few configurations (8,)."""
-    return np.asarray(file_forward(dh, _configurations(dh))[:, 2, 0] ** 2)
+    return np.asarray(file_forward(dh, _configurations(dh))[:, 2, AXES.index(axis)] ** 2)
 
 
 def freedoms_moved(dh: DHChain, task: Task) -> int:

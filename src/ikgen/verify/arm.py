@@ -200,7 +200,7 @@ def arm_under_test(
     probe = np.random.default_rng(0).uniform(low, high, size=(64, oracle.dof))
     tips = screws.forward(probe)
     length = max(float(np.max(np.linalg.norm(tips[:, :3, 3], axis=1))), 1e-3)
-    tilting = task.orientation == "yaw" and bool(np.ptp(tips[:, 2, 0] ** 2) > LEVEL)
+    tilting = task.orientation == "yaw" and bool(np.ptp(tips[:, 2, task.axis] ** 2) > LEVEL)
     return ArmUnderTest(
         oracle, task, lower, upper, low, high, free, active, oracle.revolute, period, screws, length,
         held, angle, tilting,

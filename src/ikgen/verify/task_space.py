@@ -51,7 +51,7 @@ def _pitch(T: Array, target: Array, axis: int) -> Array:
 def _yaw(T: Array, target: Array, axis: int) -> Array:
     """Differences of what the pose has of the heading, which a tilt shortens, but for the little that a
     rounded file tilts it."""
-    both = np.stack([target[:, :2, 0], T[:, :2, 0]])
+    both = np.stack([target[:, :2, axis], T[:, :2, axis]])
     square = (both**2).sum(axis=2, keepdims=True)
     wanted, there = both / np.where((square >= 1.0 - LEVEL).all(axis=0), np.sqrt(square), 1.0)
     return np.asarray(wanted - there)
@@ -73,7 +73,7 @@ def _pitch_rows(T: Array, J: Array, axis: int) -> Array:
 
 
 def _yaw_rows(T: Array, J: Array, axis: int) -> Array:
-    return _entry_rows(T, J, ((0, 0), (1, 0)))
+    return _entry_rows(T, J, ((0, axis), (1, axis)))
 
 
 def _entry_rows(T: Array, J: Array, entries: tuple[tuple[int, int], ...]) -> Array:
@@ -92,7 +92,7 @@ _Residual = Callable[[Array, Array, int], Array]
 class TaskSpace:
     """One task. `rank` is its number of independent equations; `position` says whether it reads the
     tip's position; `orientation` names what it reads of the rotation ("", rotation, direction,
-    yaw, pitch), of direction and pitch by the tool's `axis` (0 to 2); or else `entries` of the pose
+    yaw, pitch), all but rotation by the tool's `axis` (0 to 2); or else `entries` of the pose
     (row, column) count each for itself."""
 
     name: str
