@@ -92,6 +92,9 @@ def test_arms_on_a_torso_are_listed_with_and_without_it():
         ("torso", "r6", 6),
     ]
     assert [c.tip for c in candidate_chains(tree, "torso")] == ["l6", "r6"]
+    assert candidate_chains(tree)[2].why.endswith(
+        ", behind 'waist', the last joint that arms share"
+    )
 
 
 def test_fingers_and_short_side_branches_are_no_arms():
@@ -105,6 +108,12 @@ def test_fingers_and_short_side_branches_are_no_arms():
     )
     (only,) = candidate_chains(tree)
     assert (only.base, only.tip, only.dof) == ("base", "palm", 5)
+
+
+def test_joints_that_follow_others_are_marked():
+    tree = serial("revolute", "revolute", "revolute", j2=mimic("j1", -2, 0.5))
+    (only,) = candidate_chains(tree)
+    assert (only.dof, only.words) == (2, "j1, j2 (follows j1), j3")
 
 
 def test_default_base_lies_below_a_floating_joint():

@@ -68,3 +68,12 @@ def test_arguments_are_listed_where_a_file_cannot_be_expanded(tmp_path: Path) ->
     assert listed == (
         "arguments that the file takes (--arg): model:=ur5, hand:=none, prefix (no default)"
     )
+
+
+def test_what_is_odd_about_joints_that_do_not_move_the_chain_is_left_out(tmp_path: Path) -> None:
+    robot = write_robot(tmp_path / "pair.urdf", sides=("a_", "b_"))
+    odd = robot.read_text().replace('<axis xyz="0 0 1"/>', '<axis xyz="0 0 2"/>')
+    robot.write_text(odd)
+    assert len(read_tree(Request(robot)).source.warnings) == 2
+    (only,) = read(Request(robot, tip="b_tool0")).source.warnings
+    assert "joint 'b_waist': axis of length 2 normalised" in only

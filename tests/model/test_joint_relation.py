@@ -50,3 +50,14 @@ def test_one_other_joint_is_followed_and_all_else_is_of_motors() -> None:
     assert read_relation("a*2+1").mimic("a") is None
     assert read_relation("a*2+b*1").mimic("b") is None
     assert read_relation("a*2+b*1").mimic("c") is None
+
+
+@pytest.mark.parametrize(
+    ("multiplier", "offset", "words"),
+    [(1.0, 0.0, "a"), (1.0, 0.5, "a*1.0+0.5"), (-1.0, 0.0, "a*-1.0"), (0.1, -0.0, "a*0.1")],
+)
+def test_what_a_joint_follows_is_written_as_it_is_read(
+    multiplier: float, offset: float, words: str
+) -> None:
+    mimic = Mimic("a", multiplier, offset)
+    assert mimic.words == words and read_relation(words).mimic("b") == mimic

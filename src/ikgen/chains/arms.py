@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import shlex
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import takewhile
 
 from ikgen.chains.grippers import ARM_JOINTS, ArmLinks, arm_links
@@ -28,7 +28,8 @@ class ChainCandidate:
     """One chain of a tree: its ends, its moving joints from base to tip, and why it was chosen.
 
     `dof` counts independent joints: a mimic joint follows its driver. `left_out` says which joint behind
-    the tip is taken for a gripper's where it may be the arm's ("": none).
+    the tip is taken for a gripper's where it may be the arm's ("": none). `followers`: what those of the
+    joints follow that follow another one.
     """
 
     base: str
@@ -37,6 +38,13 @@ class ChainCandidate:
     dof: int
     why: str
     left_out: str = ""
+    followers: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def words(self) -> str:
+        """The joints, those marked that follow another one."""
+        follows = {name: f" (follows {driver})" for name, driver in self.followers.items()}
+        return ", ".join(f"{name}{follows.get(name, '')}" for name in self.joints)
 
 
 def candidate_chains(tree: JointTree, base: str | None = None) -> tuple[ChainCandidate, ...]:
@@ -82,7 +90,8 @@ def _branches(index: TreeIndex, root: str, base: str | None) -> Iterator[ChainCa
         joints = _moving(index.path(start, tip) or ())
         if joints:
             left_out = _left_out(arms.doubtful.get(hub, ()))
-            yield ChainCandidate(start, tip, _names(joints), _dof(joints), why, left_out)
+            follow = _followers(joints)
+            yield ChainCandidate(start, tip, _names(joints), _dof(joints), why, left_out, follow)
 
 
 def _left_out(joints: Sequence[Joint]) -> str:
@@ -123,6 +132,10 @@ def _names(joints: Sequence[Joint]) -> tuple[str, ...]:
     return tuple(joint.name for joint in joints)
 
 
+def _followers(joints: Sequence[Joint]) -> dict[str, str]:
+    return {joint.name: joint.mimic.joint for joint in joints if joint.mimic is not None}
+
+
 def _dof(joints: Sequence[Joint]) -> int:
     return len({joint.name if joint.mimic is None else joint.mimic.joint for joint in joints})
 
@@ -153,5 +166,8 @@ def _without_trunk(
         return None
     joints = _moving(index.path(arm.base, arm.tip) or ())
     own = joints[shared:]
-    why = f"{arm.why}, from where the arms part"
-    return replace(arm, base=joints[shared - 1].child, joints=_names(own), dof=_dof(own), why=why)
+    why = f"{arm.why}, behind '{joints[shared - 1].name}', the last joint that arms share"
+    start = joints[shared - 1].child
+    return replace(
+        arm, base=start, joints=_names(own), dof=_dof(own), why=why, followers=_followers(own)
+    )

@@ -7,6 +7,7 @@ import shlex
 from ikgen.chains.arms import ChainCandidate, candidate_chains, conventional_base
 from ikgen.errors import UsageError
 from ikgen.importers.urdf.topology import TreeIndex
+from ikgen.model.counted import counted
 from ikgen.model.joint_tree import JointTree
 
 __all__ = ["choose_ends", "not_below"]
@@ -52,7 +53,7 @@ def _no_arm(tree: JointTree, index: TreeIndex, base: str | None) -> UsageError:
 def _options(chain: ChainCandidate) -> str:
     ends = f"--base {shlex.quote(chain.base)} --tip {shlex.quote(chain.tip)}"
     left_out = f"; {chain.left_out}" if chain.left_out else ""
-    return f"{ends}   ({chain.dof} joints: {', '.join(chain.joints)}{left_out})"
+    return f"{ends}   ({counted(chain.dof, 'joint')}: {chain.words}{left_out})"
 
 
 def not_below(tree: JointTree, index: TreeIndex, base: str, tip: str) -> UsageError:

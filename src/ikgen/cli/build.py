@@ -14,6 +14,7 @@ import click
 from ikgen.cli.console import Console
 from ikgen.cli.error_output import as_object, say
 from ikgen.cli.options import console_options, executor_option, trust_option
+from ikgen.model.counted import counted
 from ikgen.projects.config import ArmConfig, named_config
 from ikgen.projects.recorded_arms import listed_arms
 
@@ -163,7 +164,7 @@ def _print(
                 click.echo(o.trace, err=True)
             say(f"{o.name}: {o.message}", o.hint)
         elif not quiet and not as_json:
-            many = f", at most {o.solutions} solutions a pose"
+            many = f", at most {counted(o.solutions, 'solution')} a pose"
             missed = f"; {o.missed}" if o.missed else ""
             made = f"generated in {o.seconds:.1f} s{many} ({o.reason}){missed}"
             state = made if o.reason else "up to date"

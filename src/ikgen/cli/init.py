@@ -17,6 +17,7 @@ from ikgen.cli.options import (
     reading_options,
 )
 from ikgen.cli.request_options import make_request, parse_emit
+from ikgen.model.counted import counted
 
 __all__ = ["init"]
 
@@ -70,7 +71,7 @@ def init(
     elif not quiet:
         for arm in arms:
             ends = "" if arm.base is None else f"{arm.base} -> {arm.tip}, "
-            click.echo(f"{arm.name}: {ends}{arm.dof} joints{_task(arm.dof)}")
+            click.echo(f"{arm.name}: {ends}{counted(arm.dof, 'joint')}{_task(arm.dof)}")
         click.echo(f"wrote: {path}\nnext: {shlex.join(command)}")
 
 

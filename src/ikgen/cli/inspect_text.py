@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from ikgen.cli.braille import skeleton_text
 from ikgen.cli.tables import table
 from ikgen.cli.tree_text import dh_table, joint_tree, transform_text
+from ikgen.model.counted import counted
 from ikgen.model.dh import ARM_ANGLE_OPTION
 
 if TYPE_CHECKING:
@@ -39,8 +40,8 @@ def _chains(found: Inspection) -> str:
         return "chains: none found; choose the ends by --base and --tip"
     lines = ["chains:"]
     for c in found.candidates:
-        lines.append(f"  --base {c.base} --tip {c.tip}   {c.dof} joints; {c.why}")
-        lines.append(f"      {', '.join(c.joints)}")
+        lines.append(f"  --base {c.base} --tip {c.tip}   {counted(c.dof, 'joint')}; {c.why}")
+        lines.append(f"      {c.words}")
         if c.left_out and found.reading is None:
             lines.append(f"      {c.left_out}")
     if found.reading is None:
@@ -51,7 +52,7 @@ def _chains(found: Inspection) -> str:
 def _chain(dh: DHChain, geometry: GeometryClass) -> list[str]:
     """The DH table with the transforms around it, the geometry and what was snapped."""
     held = f", locked: {', '.join(n for n, _ in dh.locked)}" if dh.locked else ""
-    head = f"chain {dh.base_link} -> {dh.tip_link}, {dh.dof} joints{held}"
+    head = f"chain {dh.base_link} -> {dh.tip_link}, {counted(dh.dof, 'joint')}{held}"
     ends = table(
         [("base:", *transform_text(dh.X_base)), ("tool:", *transform_text(dh.X_tip))],
     )
@@ -64,7 +65,7 @@ def _chain(dh: DHChain, geometry: GeometryClass) -> list[str]:
     ]
     metres, radians = dh.deviation
     if dh.snaps:
-        rows = [(s.what, f"{s.before:.12g}", "->", f"{s.after:.12g}") for s in dh.snaps]
+        rows = [(s.what, s.texts[0], "->", s.texts[1]) for s in dh.snaps]
         cost = f"moves the tip by at most {1e3 * metres:.2g} mm and {radians:.2g} rad"
         parts.append(f"taken as exact ({cost}):\n{table(rows)}")
     else:
@@ -84,7 +85,7 @@ def _kept(dh: DHChain) -> list[str]:
     """Constants that the closed form takes as they are."""
     from ikgen.kinematics.kept import kept_constants
 
-    rows = [(s.what, f"{s.before:.12g}", "for", f"{s.after:.12g}") for s in kept_constants(dh)]
+    rows = [(s.what, s.texts[0], "for", s.texts[1]) for s in kept_constants(dh)]
     return [f"kept as in the file:\n{table(rows)}"] if rows else []
 
 
@@ -92,7 +93,9 @@ def _advice(found: Inspection) -> str:
     """What to do next."""
     lines = ["advice:"]
     if found.moving < 6:
-        lines.append(f"  {found.moving} joints move, so a pose cannot be chosen freely: see --task")
+        lines.append(
+            f"  {counted(found.moving, 'joint move')}, so a pose cannot be chosen freely: see --task"
+        )
     for k, attempt in enumerate(found.closed):
         if k < _PROPOSED or attempt.default:
             lines += _proposal(attempt)
@@ -129,7 +132,7 @@ def _proposal(attempt: Attempt) -> list[str]:
     if attempt.default:
         options = f"without options, which is {options}"
     closed = "closed form" if not attempt.weak else "closed form with a weak step"
-    lines = [f"  {options}: {closed}, at most {attempt.max_solutions} solutions"]
+    lines = [f"  {options}: {closed}, at most {counted(attempt.max_solutions, 'solution')}"]
     lines.append(f"      {'; '.join(attempt.order)}")
     lines += [f"      ranked by {attempt.ranking}"] if attempt.ranking else []
     if attempt.weak:

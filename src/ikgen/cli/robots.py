@@ -10,6 +10,7 @@ import click
 from ikgen.cli.tables import table
 from ikgen.errors import MissingToolError, UnknownNameError
 from ikgen.importers.named_robots import SOURCES
+from ikgen.model.counted import counted
 
 if TYPE_CHECKING:
     from ikgen.projects.robot_list import ListedRobot
@@ -52,6 +53,6 @@ def _record(robot: ListedRobot) -> dict[str, Any]:
 
 def _rows(robot: ListedRobot) -> list[tuple[str, str]]:
     """A line for each arm; the robot's name stands in the first."""
-    words = [f"{arm.base} -> {arm.tip}, {arm.dof} joints" for arm in robot.arms]
+    words = [f"{arm.base} -> {arm.tip}, {counted(arm.dof, 'joint')}" for arm in robot.arms]
     heads = [robot.robot, *[""] * (len(words) - 1)]
     return list(zip(heads, words or [robot.problem], strict=True))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from ikgen.cli.tables import table
 from ikgen.generation.result import rounding
+from ikgen.model.counted import counted
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -21,7 +22,7 @@ def summary(generation: Generation) -> str:
     derivation = generation.derivation
     module, dh = derivation.module, derivation.reading.dh
     lines = [
-        ("robot", f"{dh.robot}, {dh.base_link} -> {dh.tip_link}, {dh.dof} joints"),
+        ("robot", f"{dh.robot}, {dh.base_link} -> {dh.tip_link}, {counted(dh.dof, 'joint')}"),
         ("task", _task(derivation) + _held(derivation)),
         ("geometry", derivation.geometry.words + _rounding(derivation)),
         ("solved", "; ".join(module.order)),
@@ -61,7 +62,7 @@ def _task(derivation: Derivation) -> str:
     if not derivation.chosen or task.whole_pose:
         return task.words + (f" ({failed})" if failed else "")
     dh = derivation.reading.dh
-    why = f"what fits {dh.dof - len(dh.free)} joints" + (f"; {failed}" if failed else "")
+    why = f"what fits {counted(dh.dof - len(dh.free), 'joint')}" + (f"; {failed}" if failed else "")
     return f"{task.words} (--task {task.name}: {why})"
 
 

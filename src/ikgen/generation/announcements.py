@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ikgen.generation.tip_on_axis import tip_on_axis
+from ikgen.model.counted import counted
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -69,7 +70,8 @@ def _over_constrained(derivation: Derivation) -> str:
         these = " ".join(f"--free {name}" for name in dh.free)
         smaller += f"without {these} the arm can do it; "
     return (
-        f"OVER-CONSTRAINED: the task '{task.name}' fixes {fixed} freedoms and {moving} joints "
-        f"move: solve() answers only poses that the arm can take to rounding, and no others. {smaller}"
+        f"OVER-CONSTRAINED: the task '{task.name}' fixes {fixed} freedoms and "
+        f"{counted(moving, 'joint move')}: solve() answers only poses that the arm can take to rounding, "
+        f"and no others. {smaller}"
         "solve(pose, project=True) answers with the nearest pose that the arm can take"
     )

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ikgen.errors import UnsolvedChainError
+from ikgen.model.counted import counted
 
 if TYPE_CHECKING:
     from ikgen.generation.request import Request
@@ -67,7 +68,7 @@ def check_held(request: Request, dh: DHChain, task: Task, passed_over: Collectio
     without = replace(request, free={}).command()
     asked = replace(request, task=task.name).command()
     raise UnsolvedChainError(
-        f"no closed form found for a task that {moving} joints can do, with {held} held: "
+        f"no closed form found for a task that {counted(moving, 'joint')} can do, with {held} held: "
         f"{'; '.join(causes)}",
         hint=f"hold none of them: {without}\nor take the poses that the arm can take with them held, and "
         f"the nearest of these by solve(pose, project=True): {asked}",

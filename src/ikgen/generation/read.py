@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -22,6 +23,10 @@ if TYPE_CHECKING:
     from ikgen.model.joint_tree import JointTree
 
 __all__ = ["arm_name", "default_name", "has_arm_angle", "read", "read_tree"]
+
+
+_ABOUT_JOINT = re.compile(r": joint '(.*?)': ")
+"""What a warning about one joint has behind its place."""
 
 
 def read(request: Request, tree: JointTree | None = None) -> Reading:
@@ -94,6 +99,7 @@ def _read(request: Request, tree: JointTree | None) -> Reading:
     _check_units(request, tree.joints)
     _check_locks(request, tree.joints)
     tree, chain, coupled = _coupled_chain(request, tree)
+    tree = _of_chain(tree, chain)
     reading = Reading(tree.source, tree, chain, to_dh(chain, free=free), coupled)
     if request.calibration is None or is_offsets(request.calibration):
         return _with_offsets(reading, request)
@@ -102,6 +108,18 @@ def _read(request: Request, tree: JointTree | None) -> Reading:
     dh = calibrated_dh(reading.dh, calibrated)
     found = Reading(own.source, own, calibrated, dh, coupled)
     return _told(found, request.calibration, reading.dh)
+
+
+def _of_chain(tree: JointTree, chain: Chain) -> JointTree:
+    """Without what was odd about joints that do not move the chain."""
+    from ikgen.importers.urdf.topology import TreeIndex
+
+    between = TreeIndex.of(tree).path(chain.base_link, chain.tip_link) or ()
+    near = {joint.name for joint in between} | {joint.name for joint in chain.joints}
+    others = {joint.name for joint in tree.joints} - near
+    about = ((text, _ABOUT_JOINT.search(text)) for text in tree.source.warnings)
+    kept = tuple(text for text, found in about if found is None or found[1] not in others)
+    return replace(tree, source=replace(tree.source, warnings=kept))
 
 
 def _with_left_out(tree: JointTree, request: Request) -> JointTree:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from ikgen.errors import UnsolvedChainError
 from ikgen.generation.progress import Progress, silent
+from ikgen.model.counted import counted
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Unsolved
@@ -47,7 +48,9 @@ def helped(error: UnsolvedChainError, request: Request, progress: Progress) -> U
     tried = remedies(error.unsolved, progress)
     found = [a for a in tried if a.closed]
     if found:
-        words = "; ".join(f"{a.options} (at most {a.max_solutions} solutions)" for a in found)
+        words = "; ".join(
+            f"{a.options} (at most {counted(a.max_solutions, 'solution')})" for a in found
+        )
         hint = f"{found[0].asked(request).command()}\nclosed forms were found with: {words}"
         if any(a.free for a in found):
             hint += "; --lock JOINT=VALUE instead of --free makes the joint a constant"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from ikgen.emit.derivation import Unsolved
 from ikgen.errors import IkgenError, UnsolvedChainError, VerificationError
 from ikgen.kinematics.classify import same_line_as_previous
+from ikgen.model.counted import counted
 from ikgen.report.leftover import leftover_text
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ def _known_gaps(derivation: Derivation) -> list[str]:
     if over_constrained(dh, derivation.task):
         moving = dh.dof - len(dh.free)
         fixed = freedoms_fixed(dh, derivation.task)
-        found.append(f"{moving} joints move and the task fixes {fixed} freedoms")
+        found.append(f"{counted(moving, 'joint move')} and the task fixes {fixed} freedoms")
     return found
 
 

@@ -6,6 +6,7 @@ from html import escape
 from typing import TYPE_CHECKING
 
 from ikgen.library.dh_text import constants, row_texts
+from ikgen.model.counted import counted
 from ikgen.report.skeleton import Style, skeleton_svg
 from ikgen.report.worked_example import shown_configuration
 
@@ -26,7 +27,7 @@ def card(derivation: Derivation, report: VerificationReport | None) -> str:
     lines = [
         f"{derivation.geometry.words}",
         f"task: {derivation.task.words}" + _held(dh),
-        f"at most {module.max_solutions} solutions; {_checked(report)}",
+        f"at most {counted(module.max_solutions, 'solution')}; {_checked(report)}",
     ]
     picture = skeleton_svg(dh, shown_configuration(dh), style=Style(300.0, 260.0, named=False))
     facts = "".join(f"<div>{escape(line)}</div>" for line in lines)

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from ikgen.errors import ArgumentError, UsageError
 from ikgen.library.load_arguments import checked_flag, checked_path, wrong
 from ikgen.library.memory_module import module_of
+from ikgen.model.counted import counted
 
 if TYPE_CHECKING:
     from ikgen.emit.derivation import Derivation
@@ -257,8 +258,9 @@ class Arm:
     def __repr__(self) -> str:
         held = f", holding {', '.join(self.free_joints)}" if self.free_joints else ""
         return (
-            f"<ikgen.Arm {self.name}: {self.base_link} -> {self.tip_link}, {self.dof} joints{held}, "
-            f"task {self.task}, at most {self.max_solutions} solutions>"
+            f"<ikgen.Arm {self.name}: {self.base_link} -> {self.tip_link}, "
+            f"{counted(self.dof, 'joint')}{held}, task {self.task}, "
+            f"at most {counted(self.max_solutions, 'solution')}>"
         )
 
     def _repr_html_(self) -> str:

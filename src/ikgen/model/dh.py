@@ -116,6 +116,15 @@ class Snap:
     before: float
     after: float
 
+    @property
+    def texts(self) -> tuple[str, str]:
+        """The two numbers in as many digits as tell them apart, 12 at least."""
+        for digits in (12, 15, 17):
+            before, after = f"{self.before:.{digits}g}", f"{self.after:.{digits}g}"
+            if before != after:
+                break
+        return before, after
+
 
 @dataclass(frozen=True, slots=True)
 class DHChain:

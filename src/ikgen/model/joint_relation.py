@@ -27,8 +27,9 @@ class Mimic:
 
     @property
     def words(self) -> str:
-        """As `read_relation` reads it."""
-        return f"{self.joint}*{self.multiplier!r}{self.offset:+}"
+        """As `read_relation` reads it, no more than that needs."""
+        factor = "" if self.multiplier == 1.0 and not self.offset else f"*{self.multiplier!r}"
+        return f"{self.joint}{factor}" + (f"{self.offset:+}" if self.offset else "")
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ from ikgen.emit.derivation import Reading
 from ikgen.importers.named_robots import is_named
 from ikgen.kinematics.classify import GeometryClass
 from ikgen.model.chain import REVOLUTE, ActuatedJoint
+from ikgen.model.counted import counted
 from ikgen.report.document import Block, Card, Heading, Picture, Text
 from ikgen.report.skeleton import Style, skeleton_svg
 from ikgen.report.svg_latex import svg_latex
@@ -37,7 +38,7 @@ def card_section(
     facts: list[tuple[str, Text]] = [
         ("family", (family,)),
         ("because", (why,)),
-        ("chain", (f"{dh.base_link} to {dh.tip_link}, {dh.dof} joints",)),
+        ("chain", (f"{dh.base_link} to {dh.tip_link}, {counted(dh.dof, 'joint')}",)),
         ("task", (f"{task.name}: {task.words}",)),
         ("solutions", (most,)),
     ]

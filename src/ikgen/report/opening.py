@@ -214,8 +214,7 @@ def _kept(dh: DHChain) -> list[Block]:
     if not kept:
         return []
     rows: tuple[tuple[Text, ...], ...] = tuple(
-        ((symbol(Symbol("param", s.what)),), (f"{s.before:.12g}",), (f"{s.after:.12g}",))
-        for s in kept
+        ((symbol(Symbol("param", s.what)),), (s.texts[0],), (s.texts[1],)) for s in kept
     )
     text = (
         "The closed form does not need the exact value of these: cosine and sine of such an angle are "
@@ -229,7 +228,7 @@ def _snaps(dh: DHChain) -> list[Block]:
     if not dh.snaps:
         return []
     rows: tuple[tuple[Text, ...], ...] = tuple(
-        ((s.what,), (f"{s.before:.9g}",), (f"{s.after:.9g}",)) for s in dh.snaps
+        ((s.what,), (s.texts[0],), (s.texts[1],)) for s in dh.snaps
     )
     text = (
         f"The file's numbers were taken for exact ones: its forward kinematics differs from "
