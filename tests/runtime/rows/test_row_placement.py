@@ -149,12 +149,12 @@ def test_rows_hardly_outside_are_told_apart(joint: int) -> None:
 
 def test_a_row_put_on_a_limit_is_on_it_to_the_last_digit() -> None:
     """By that it is told that the joint is to stay there."""
+    one = replace(arm(), lower=(0.0, -4.0, -inf, 0.0, -inf))
     for beyond in np.random.default_rng(3).uniform(2e-9, 1e-6, 200):
         for turned in (0.0, -2.0 * pi):
-            _, close = rows_at_limits(
-                arm(), [((0.0, 7.0 + beyond + turned, 0.0, 0.5, 0.0), False)], None, True
-            )
-            assert close[0][1][1] == 7.0
+            row = (pi + beyond + turned, 0.0, 0.0, 0.5, 0.0)
+            _, close = rows_at_limits(one, [(row, False)], None, True)
+            assert close[0][1][0] == pi
 
 
 def test_a_row_far_outside_of_another_limit_is_not_close() -> None:
