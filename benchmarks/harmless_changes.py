@@ -98,7 +98,7 @@ HARMLESS = (
     ),
     HarmlessChange(
         "runtime/python/rows/row_placement.py",
-        "beyond |= value + _TURN < high + reach",
+        "beyond |= value + WHOLE_TURN < high + reach",
         "<", "<=", _EQUAL,
     ),
     HarmlessChange(
