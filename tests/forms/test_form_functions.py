@@ -103,3 +103,7 @@ def test_a_quartic_s_slope_is_its_derivative() -> None:
     assert slope is not None
     (up,), (down,) = (one.pattern(graph, at(u + step)) for step in (h, -h))
     np.testing.assert_allclose(slope.probe, (up.probe - down.probe) / (2 * h), rtol=1e-8)
+    steep = one.steepness((np.cos(u), np.sin(u)))
+    assert steep is not None
+    largest = np.abs(one.probe).max(axis=0)
+    np.testing.assert_allclose(steep * largest, np.abs(slope.probe), rtol=1e-12)

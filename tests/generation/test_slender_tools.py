@@ -32,6 +32,19 @@ _BENT = (
 )
 
 
+_POINTING = (
+    ("0 0 0.115", "0 0 0"),
+    ("0.033 0 0", "1.5707963267948966 0 0"),
+    ("0.155 0 0", "0 0 0"),
+    ("0.135 0 0", "0 0 0"),
+    ("0 0 0", "1.5707963267948966 0 0"),
+    ("-0.0027 0 0.13", "0 -1.5707963267948966 3.141592653589793"),
+)
+"""The tool's z axis is along its own offset: axis 1's angle is a root of a square then."""
+
+_ROUNDINGS = ("0 -1.570795 3.14159", "0 -1.5708 3.1416", "0 -1.57 3.14")
+
+
 def _robot(frames: tuple[tuple[str, str], ...]) -> str:
     """An arm of revolute joints about z of the frames, the last of which is the tool's."""
     parts = ['<robot name="slender"><link name="link0"/>']
@@ -45,10 +58,10 @@ def _robot(frames: tuple[tuple[str, str], ...]) -> str:
     return "\n".join([*parts, "</robot>"])
 
 
-def _solver(frames: tuple[tuple[str, str], ...], folder: Path) -> Any:
+def _solver(frames: tuple[tuple[str, str], ...], folder: Path, task: str | None = None) -> Any:
     robot = folder / "slender.urdf"
     robot.write_text(_robot(frames))
-    module = derive(Request(robot)).module
+    module = derive(Request(robot, task=task)).module
     assert module.reads.name.startswith("position-direction")
     return import_text(emit_module(module), folder)
 
@@ -69,6 +82,29 @@ def test_poses_whose_continua_no_branch_comes_near_have_rows(tmp_path: Path) -> 
     q = rng.uniform(-3.0, 3.0, (40, 5))
     q[:, 4] = -0.5 * np.pi + 10.0 ** rng.uniform(-9.0, -6.0, 40)
     assert (arm.solve_batch(arm.forward(q), limits=False)[1] > 0).all()
+
+
+@pytest.mark.parametrize("rpy", _ROUNDINGS)
+def test_a_quartic_that_rounding_alone_parts_from_a_square_is_not_taken(
+    rpy: str, tmp_path: Path
+) -> None:
+    arm = _solver((*_POINTING[:-1], (_POINTING[-1][0], rpy)), tmp_path, "position-direction")
+    q = np.random.default_rng(4).uniform(-3.0, 3.0, (60, 5))
+    rows, count, _ = arm.solve_batch(arm.forward(q), limits=False)
+    gaps = np.abs(np.remainder(rows - q[:, None] + np.pi, 2 * np.pi) - np.pi).max(axis=2)
+    assert (count > 0).all() and np.nanmax(np.nanmin(gaps, axis=1)) < 1e-8
+
+
+def test_rounded_tools_are_solved_as_exact_ones(tmp_path: Path) -> None:
+    robot = tmp_path / "pointing.urdf"
+    solved = []
+    for rpy in (_POINTING[-1][1], *_ROUNDINGS):
+        robot.write_text(_robot((*_POINTING[:-1], (_POINTING[-1][0], rpy))))
+        derivation = derive(Request(robot, task="position-direction"))
+        assert derivation.module.refine == "some" and derivation.graph.sound
+        steps = derivation.graph.steps
+        solved.append([(step.candidate.unknown, step.branches) for step in steps])
+    assert solved[1:] == solved[:1] * len(_ROUNDINGS)
 
 
 def test_its_rows_take_newton_steps_all_at_once(tmp_path: Path) -> None:

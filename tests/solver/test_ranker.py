@@ -55,6 +55,17 @@ def test_a_divisor_that_vanishes_everywhere_is_none(arm: Constructed) -> None:
     assert arm.judged(arm.candidate(arm.tangent(nothing))) is None
 
 
+@pytest.mark.parametrize(
+    ("apart", "weak"), [(0.3, False), (1e-2, False), (1e-5, True), (0.0, True)]
+)
+def test_a_quartic_whose_roots_lie_in_pairs_is_weak(
+    arm: Constructed, apart: float, weak: bool
+) -> None:
+    judged = arm.found(arm.paired(apart), leaf="quartic")
+    assert judged.is_weak == weak and judged.judgement is not None
+    assert judged.judgement.margin > 0.1
+
+
 def test_a_divisor_that_vanishes_at_right_angles_is_weak(arm: Constructed) -> None:
     strong, weak = arm.found(arm.tangent(arm.graph.one)), arm.found(arm.tangent(arm.c2))
     assert strong.judgement is not None and weak.judgement is not None

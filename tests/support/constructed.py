@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from tests.support.tables import table
 
@@ -66,6 +68,15 @@ class Constructed:
         """`cos(q1 - q2)` given: the branches meet where the two angles are equal or opposite."""
         g = self.graph
         return SineCosine(self.c2, self.s2, g.dot([self.c2, self.s2], [self.c1, self.s1]))
+
+    def paired(self, apart: float) -> TrigQuartic:
+        """`sin(u - q1) sin(u - q1 - apart) = 0`, doubled: two pairs of roots."""
+        g, c, s = self.graph, math.cos(apart), math.sin(apart)
+        twice_c = g.sub(g.square(self.c1), g.square(self.s1))
+        twice_s = g.mul(g.const(2.0), g.mul(self.c1, self.s1))
+        a2 = g.dot([g.const(-c), g.const(s)], [twice_c, twice_s])
+        b2 = g.dot([g.const(-s), g.const(-c)], [twice_c, twice_s])
+        return TrigQuartic(a2, b2, g.zero, g.zero, g.const(c))
 
     def quartic(self) -> TrigQuartic:
         """`sin(u - q1) = 0` as a form with four branches."""

@@ -89,6 +89,11 @@ class Form(ABC):
         """What vanishes at a root (cosine, sine) that is a double one, of forms that a routine solves."""
         return None
 
+    def steepness(self, unknown: tuple[Array, ...]) -> Array | None:
+        """How steep the equation is at a root (cosine, sine) at the probes, relative to its coefficients:
+        little where two roots are close. None for forms that no routine solves."""
+        return None
+
     @abstractmethod
     def values(self, c: Sequence[Array]) -> list[tuple[Array, ...]]:
         """Per branch the unknown for coefficients c, (cosine, sine) or (length,), each (N,); NaN where

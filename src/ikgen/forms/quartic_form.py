@@ -51,6 +51,14 @@ class TrigQuartic(Form):
         """All coefficients but the constant."""
         return np.stack(c[:4]) / max(z[:4])
 
+    def steepness(self, unknown: tuple[Array, ...]) -> Array | None:
+        """The polynomial's derivative at the root, over the largest coefficient."""
+        a2, b2, a1, b1, _ = self.probe
+        c, s = unknown
+        slope = 2.0 * (b2 * (c * c - s * s) - 2.0 * a2 * c * s) + b1 * c - a1 * s
+        with np.errstate(all="ignore"):
+            return np.asarray(np.abs(slope) / np.abs(np.stack(self.probe)).max(axis=0))
+
     def values(self, c: Sequence[Array]) -> list[tuple[Array, ...]]:
         """Roots from the companion matrix of the self-inversive polynomial in exp(i u)."""
         a2, b2, a1, b1, a0 = c

@@ -37,6 +37,11 @@ WEAK_MARGIN = 1e-6
 """Relative size of a divisor below which a probe counts as one where it vanishes."""
 
 
+_PAIRED = 1e-3
+"""Steepness of an equation at its roots, at half of the probes, below which these lie in pairs: it is the
+square of another but for rounding, and a root of it keeps half of the digits everywhere."""
+
+
 def judge(
     candidate: Candidate,
     truth: tuple[NDArray[np.float64], ...],
@@ -60,13 +65,20 @@ def judge(
     if not matches[:generic].all():
         return None
     margin = float(relative[:regular].min())
-    weak = bool((~matches[:regular]).any() or margin < WEAK_MARGIN)
+    paired = _is_paired(candidate, truth, regular)
+    weak = bool((~matches[:regular]).any() or margin < WEAK_MARGIN or paired)
     singular = relative[regular:]
     fragile = float((singular < WEAK_MARGIN).mean()) if singular.size else 0.0
     cost = _cost(candidate.coefficients, used, weight)
     almost = bool(probes.kept) and _almost_tangent(candidate, generic)
     judgement = Judgement(weak, _folds(candidate, regular), margin, fragile, cost, almost)
     return replace(candidate, judgement=judgement)
+
+
+def _is_paired(candidate: Candidate, truth: tuple[NDArray[np.float64], ...], regular: int) -> bool:
+    """Whether the form's roots lie in pairs nearly everywhere."""
+    steep = candidate.form.steepness(truth)
+    return steep is not None and bool(np.median(steep[:regular]) < _PAIRED)
 
 
 def _almost_tangent(candidate: Candidate, generic: int) -> bool:
