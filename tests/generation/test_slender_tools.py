@@ -38,9 +38,9 @@ _POINTING = (
     ("0.155 0 0", "0 0 0"),
     ("0.135 0 0", "0 0 0"),
     ("0 0 0", "1.5707963267948966 0 0"),
-    ("-0.0027 0 0.13", "0 -1.5707963267948966 3.141592653589793"),
 )
-"""The tool's z axis is along its own offset: axis 1's angle is a root of a square then."""
+_ALONG = "0 -1.5707963267948966 3.141592653589793"
+"""Turn of a tool whose z axis is along its own offset: axis 1's angle is a root of a square then."""
 
 _ROUNDINGS = ("0 -1.570795 3.14159", "0 -1.5708 3.1416", "0 -1.57 3.14")
 
@@ -84,22 +84,29 @@ def test_poses_whose_continua_no_branch_comes_near_have_rows(tmp_path: Path) -> 
     assert (arm.solve_batch(arm.forward(q), limits=False)[1] > 0).all()
 
 
-@pytest.mark.parametrize("rpy", _ROUNDINGS)
-def test_a_quartic_that_rounding_alone_parts_from_a_square_is_not_taken(
-    rpy: str, tmp_path: Path
+def _pointing(rpy: str, offset: float = 0.0027) -> tuple[tuple[str, str], ...]:
+    return (*_POINTING, (f"{-offset} 0 0.13", rpy))
+
+
+@pytest.mark.parametrize(
+    ("rpy", "offset"), [*((rpy, 0.0027) for rpy in _ROUNDINGS), ("0 -1.57 3.14", 0.08)]
+)
+def test_roots_that_rounding_alone_parts_lose_no_pose(
+    rpy: str, offset: float, tmp_path: Path
 ) -> None:
-    arm = _solver((*_POINTING[:-1], (_POINTING[-1][0], rpy)), tmp_path, "position-direction")
-    q = np.random.default_rng(4).uniform(-3.0, 3.0, (60, 5))
+    """Those of axis 1, which are nearly double ones: not taken, or known to have few digits in places."""
+    arm = _solver(_pointing(rpy, offset), tmp_path, "position-direction")
+    q = np.random.default_rng(4).uniform(-3.0, 3.0, (1500 if offset > 0.01 else 60, 5))
     rows, count, _ = arm.solve_batch(arm.forward(q), limits=False)
     gaps = np.abs(np.remainder(rows - q[:, None] + np.pi, 2 * np.pi) - np.pi).max(axis=2)
-    assert (count > 0).all() and np.nanmax(np.nanmin(gaps, axis=1)) < 1e-8
+    assert (count > 0).all() and np.nanmax(np.nanmin(gaps, axis=1)) < 1e-5
 
 
 def test_rounded_tools_are_solved_as_exact_ones(tmp_path: Path) -> None:
     robot = tmp_path / "pointing.urdf"
     solved = []
-    for rpy in (_POINTING[-1][1], *_ROUNDINGS):
-        robot.write_text(_robot((*_POINTING[:-1], (_POINTING[-1][0], rpy))))
+    for rpy in (_ALONG, *_ROUNDINGS):
+        robot.write_text(_robot(_pointing(rpy)))
         derivation = derive(Request(robot, task="position-direction"))
         assert derivation.module.refine == "some" and derivation.graph.sound
         steps = derivation.graph.steps

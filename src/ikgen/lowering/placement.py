@@ -28,6 +28,10 @@ FOLDED = 1e-6
 """Relative size of what is under a square root below which its root has lost too many digits."""
 
 
+_CROWDED = 0.1
+"""Steepness of an equation at its roots below which two of them may meet next to regular configurations."""
+
+
 @dataclass(frozen=True, slots=True)
 class Requirement:
     """A condition without which the branch has no solution; `fold`: it bounds where the solution is
@@ -201,9 +205,10 @@ class Placement:
         return form.slope(self.g, self.atoms_of(v)) if v.kind == "angle" else None
 
     def _folds(self, step: Step) -> bool:
-        """Whether branches of a step meet at a regular configuration."""
+        """Whether branches of a step meet at a regular configuration, or next to one."""
         forms = (step.candidate, *step.fallbacks)
-        if any(c.judgement is not None and c.judgement.folds for c in forms):
+        judged = [c.judgement for c in forms if c.judgement is not None]
+        if any(one.folds or one.steepness < _CROWDED for one in judged):
             return True
         slopes = [self.slope(c.unknown, c.form) for c in forms]
         seen = slice(self.probes.regular)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -20,7 +21,8 @@ class Judgement:
     `folds` if its branches meet at one, `margin` the smallest relative divisor there, `fragile` the share
     of singular configurations where it vanishes, `cost` of what has to be computed newly.
     `almost_tangent`: the constant side is there for rounded constants alone, so the branches lie half a
-    turn apart but for rounding."""
+    turn apart but for rounding. `steepness`: how steep an equation that a routine solves usually is at its
+    roots, little where they lie in pairs."""
 
     weak: bool
     folds: bool
@@ -28,6 +30,7 @@ class Judgement:
     fragile: float
     cost: float
     almost_tangent: bool = False
+    steepness: float = math.inf
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ vanishes at a regular configuration comes last; then fewer branches, the better 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -65,20 +66,22 @@ def judge(
     if not matches[:generic].all():
         return None
     margin = float(relative[:regular].min())
-    paired = _is_paired(candidate, truth, regular)
-    weak = bool((~matches[:regular]).any() or margin < WEAK_MARGIN or paired)
+    steepness = _steepness(candidate, truth, regular)
+    weak = bool((~matches[:regular]).any() or margin < WEAK_MARGIN or steepness < _PAIRED)
     singular = relative[regular:]
     fragile = float((singular < WEAK_MARGIN).mean()) if singular.size else 0.0
     cost = _cost(candidate.coefficients, used, weight)
     almost = bool(probes.kept) and _almost_tangent(candidate, generic)
-    judgement = Judgement(weak, _folds(candidate, regular), margin, fragile, cost, almost)
+    folds = _folds(candidate, regular)
+    judgement = Judgement(weak, folds, margin, fragile, cost, almost, steepness)
     return replace(candidate, judgement=judgement)
 
 
-def _is_paired(candidate: Candidate, truth: tuple[NDArray[np.float64], ...], regular: int) -> bool:
-    """Whether the form's roots lie in pairs nearly everywhere."""
+def _steepness(candidate: Candidate, truth: tuple[NDArray[np.float64], ...], regular: int) -> float:
+    """How steep the form's equation is at its roots, at half of the probes; infinite where no routine
+    solves it."""
     steep = candidate.form.steepness(truth)
-    return steep is not None and bool(np.median(steep[:regular]) < _PAIRED)
+    return math.inf if steep is None else float(np.median(steep[:regular]))
 
 
 def _almost_tangent(candidate: Candidate, generic: int) -> bool:
