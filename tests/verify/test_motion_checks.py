@@ -54,6 +54,8 @@ class Moving:
     def search(self, pose: Array, seed: Array) -> Array:
         if self.wrong == "finds nothing":
             return np.empty((0, 6))
+        if self.wrong == "finds it twice":
+            return np.stack([seed, seed])
         return seed[None] + (2e-6 if self.wrong == "finds it nearly" else 0.0)
 
     def self_motion(self, pose: Array) -> Array:
@@ -98,6 +100,11 @@ def test_limits_that_are_close_leave_room_for_motions() -> None:
         assert ((q[:, 5] >= 0.31) & (q[:, 5] <= 0.39)).all()
 
 
+def test_intervals_that_meet_may_have_one_best_row() -> None:
+    a = arm((six_axis_oracle().joint_names[0],))
+    assert failures(a, "finds it twice")["search"] == (0, 3)
+
+
 def test_what_is_right_passes() -> None:
     a = arm((six_axis_oracle().joint_names[0],))
     assert failures(a, "") == {"paths": (0, 15), "search": (0, 3), "self motion": (0, 3)}
@@ -113,6 +120,7 @@ def test_what_is_right_passes() -> None:
         ("other branch", "paths", 15),
         ("finds nothing", "search", 3),
         ("finds it nearly", "search", 3),
+        ("finds it twice", "search", 3),
         ("too narrow", "self motion", 3),
     ],
 )

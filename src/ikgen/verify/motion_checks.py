@@ -94,13 +94,15 @@ def check_follow(arm: ArmUnderTest, runner: MovingRunner, motions: Motions) -> C
 
 
 def check_search(arm: ArmUnderTest, runner: MovingRunner, motions: Motions) -> CheckResult:
-    """The best row near a configuration at its pose is that configuration."""
+    """The best row near a configuration at its pose is that configuration, and no row comes twice, but of
+    one held joint's intervals, which may have one best row where they meet."""
     failures, worst, case = 0, 0.0, ""
     some = list(zip(motions.start, motions.poses[:, 0], strict=True))[:_SEARCHES]
     for i, (q, pose) in enumerate(some):
         rows = runner.search(pose, q)
         off = float(arm.distance(rows[0], q)) if len(rows) else np.inf
-        if not off <= FOUND or not _closes(arm, rows, np.repeat(pose[None], len(rows), axis=0)):
+        right = off <= FOUND and _closes(arm, rows, np.repeat(pose[None], len(rows), axis=0))
+        if not right or (len(arm.held) != 1 and _repeated(arm, rows)):
             failures += 1
             case = case or spell("motion", i, q=q, pose=pose, rows=rows)
         worst = max(worst, off)
@@ -119,6 +121,12 @@ def check_self_motion(arm: ArmUnderTest, runner: MovingRunner, motions: Motions)
             failures += 1
             case = case or spell("motion", i, q=q[i], pose=pose, intervals=ends)
     return result("self motion", len(q), failures, (), "", case)
+
+
+def _repeated(arm: ArmUnderTest, rows: Array) -> bool:
+    """Whether some of rows (N, dof) are the same."""
+    first, second = np.triu_indices(len(rows), 1)
+    return bool((arm.distance(rows[first], rows[second]) <= FOUND).any())
 
 
 def _closes(arm: ArmUnderTest, q: Array, poses: Array) -> bool:
