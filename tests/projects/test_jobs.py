@@ -53,6 +53,6 @@ def test_a_setup_file_without_a_main_guard(project: Path) -> None:
 
 def test_what_a_verification_missed_is_said(capsys: pytest.CaptureFixture[str]) -> None:
     outcome = Outcome("arm", "asked for", solutions=8, missed="python 4 missed, all of them")
-    _print([outcome], 0, as_json=False, quiet=False, verbose=False)
+    _print([outcome], [], 0, as_json=False, quiet=False, verbose=False)
     said = capsys.readouterr().out
     assert "at most 8 solutions a pose (asked for); python 4 missed, all of them" in said

@@ -37,7 +37,9 @@ def robot_entry(path: Path) -> str:
 
 
 def test_texts_are_quoted(tmp_path: Path) -> None:
-    request = Request(FIXTURES / "scara_standard.toml", args={'odd "name"': 'a \\ "b"\t\x7f'})
+    robot = tmp_path / "robot.xacro"
+    robot.write_text((FIXTURES / "ur5e.urdf").read_text())
+    request = Request(robot, args={'odd "name"': 'a \\ "b"\t\x7f'})
     arms = robot_arms(request)
     write_config(tmp_path / "ikgen.toml", request, arms, ["python"], force=False)
     assert load_config(tmp_path / "ikgen.toml")[0].request.args == request.args

@@ -95,6 +95,7 @@ def test_no_model_without_a_minimum() -> None:
     """Saddles and ridges have none, and far ones are gone to by a few steps."""
     ways = _ways(2)
     saddle = ways[:, 0] ** 2 - ways[:, 1] ** 2
+    level = 1e-320 * ways[:, 0] ** 2 + ways[:, 1] ** 2
     flat = 1e-3 * ((ways[:, 0] - 99.0) ** 2 - 99.0**2) + ways[:, 1] ** 2
-    found = _model_minimum(np.zeros(2), np.stack([saddle, flat], axis=1))
-    np.testing.assert_allclose(found, [[0.0, 0.0], [4.0, 0.0]], atol=1e-9)
+    found = _model_minimum(np.zeros(4), np.stack([saddle, level, 0.0 * saddle, flat], axis=1))
+    np.testing.assert_allclose(found, [*[[0.0, 0.0]] * 3, [4.0, 0.0]], atol=1e-9)

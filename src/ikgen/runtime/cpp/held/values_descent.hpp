@@ -13,6 +13,7 @@ template <class Arm, class Solver> struct ValuesDescent {
   static constexpr double kLeastStep = 1e-10;  // rad or m
   static constexpr double kNear = 0.5;         // rad or m that a row may be from the one that a step began at
   static constexpr double kFarthest = 4.0;     // steps that the quadratic's minimum may be away
+  static constexpr double kRoundOff = 1e-12;   // of how much it bends: less than that is not at all
   static constexpr double kShortest = 0.1;     // of a step, that it makes of the next one
   using Held = std::array<double, Arm::kFree>;
 
@@ -130,8 +131,12 @@ template <class Arm, class Solver> struct ValuesDescent {
 
   // Where a quadratic is least, from minus its slope, as far as it may be; false where it is nowhere.
   static bool minimum(double (&H)[kFree][kFree], double (&lowest)[kFree]) noexcept {
+    double most = 0.0;
+    for (int k = 0; k < kFree; ++k) most = std::max(most, H[k][k]);
     factor(H);
     if (!definite(H)) return false;
+    for (int k = 0; k < kFree; ++k)
+      if (!(kRoundOff * most * H[k][k] < 1.0)) return false;
     substitute(H, lowest);
     double longest = 0.0;
     for (const double x : lowest) longest = std::max(longest, std::abs(x));

@@ -13,6 +13,7 @@ __all__ = ["descended_rows"]
 
 _SWEEPS = 60
 _FARTHEST = 4.0  # steps that the model's minimum may be away
+_ROUND_OFF = 1e-12  # of how much the model bends: less than that is none
 _SHORTEST = 0.1  # of a step, that it makes of the next one
 
 
@@ -65,7 +66,8 @@ def _model_minimum(middle: Array, costs: Array) -> Array:
         H[:, first, second] = H[:, second, first] = (both - up[first] - up[second] + middle).T
     told = np.isfinite(costs).all(axis=0)
     H[~told], slope[~told] = np.eye(count), 0.0
-    told &= np.linalg.eigvalsh(H)[:, 0] > 0.0
+    curved = np.linalg.eigvalsh(H)
+    told &= curved[:, 0] > _ROUND_OFF * curved[:, -1]
     H[~told] = np.eye(count)
     far = -np.linalg.solve(H, slope[:, :, None])[:, :, 0]
     longest = np.abs(far).max(axis=1, keepdims=True)
