@@ -149,9 +149,11 @@ class Request:
         return shlex.join([*words, *self.options, *more])
 
     @property
-    def of_robots(self) -> list[str]:
-        """Fields that say something which a DH table, one chain without arguments, has no use for."""
-        return [one for one in ("base", "tip", "args", "package_paths") if getattr(self, one)]
+    def of_robots(self) -> str:
+        """A field that says something which a DH table, one chain without arguments, has no use for; "" for
+        none."""
+        fields = ("base", "tip", "args", "package_paths")
+        return next((one for one in fields if getattr(self, one)), "")
 
     @property
     def options(self) -> list[str]:

@@ -80,7 +80,7 @@ def _robot(robot: object) -> Path:
 
 def _refuse_for_tables(request: Request) -> None:
     """A DH table is one chain without arguments."""
-    for given in request.of_robots if request.table else ():
+    if request.table and (given := request.of_robots):
         raise ArgumentError(
             f"{given}: a DH table is one chain without arguments", hint=f"leave {given} out"
         )

@@ -87,7 +87,7 @@ def test_a_quadratic_is_least_where_its_model_says() -> None:
     H, at = np.array([[2.0, 0.6], [0.6, 1.0]]), np.array([0.7, -0.4])
     cost = lambda w: 0.5 * (w - at) @ H @ (w - at)  # noqa: E731
     costs = np.array([[cost(w), np.inf if k == 1 else cost(-w)] for k, w in enumerate(ways)])
-    found = _model_minimum(np.array([cost(middle), cost(middle)]), costs)
+    found = _model_minimum(np.array([cost(middle), cost(middle)]), costs, 2)
     np.testing.assert_allclose(found, [at, [0.0, 0.0]], atol=1e-12)
 
 
@@ -97,5 +97,5 @@ def test_no_model_without_a_minimum() -> None:
     saddle = ways[:, 0] ** 2 - ways[:, 1] ** 2
     level = 1e-320 * ways[:, 0] ** 2 + ways[:, 1] ** 2
     flat = 1e-3 * ((ways[:, 0] - 99.0) ** 2 - 99.0**2) + ways[:, 1] ** 2
-    found = _model_minimum(np.zeros(4), np.stack([saddle, level, 0.0 * saddle, flat], axis=1))
+    found = _model_minimum(np.zeros(4), np.stack([saddle, level, 0.0 * saddle, flat], axis=1), 2)
     np.testing.assert_allclose(found, [*[[0.0, 0.0]] * 3, [4.0, 0.0]], atol=1e-9)

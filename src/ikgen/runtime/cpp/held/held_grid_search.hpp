@@ -10,7 +10,6 @@ namespace ikgen_runtime {
 template <class Arm, class Solver> struct HeldGridSearch {
   static constexpr int kStarts = 32, kPoints = 4096;
   static constexpr double kEqual = 1e-9;  // costs that differ by less are as good
-  static constexpr double kNear = 0.5;  // rad or m: rows at values beside each other that are so near are of one branch
 
   // Values on an axis of the grid: as many as all axes together have room for.
   static constexpr int points_of_axis() noexcept {
@@ -27,11 +26,9 @@ template <class Arm, class Solver> struct HeldGridSearch {
   using Point = typename Descent::Point;
   using Start = typename Descent::Start;
 
-  const Eigen::Isometry3d& pose;
-  const RowPreference<Arm>& preference;
   const Descent descent;
   bool real = false;
-  double axis[Arm::kFree][kCount], reach = kNear;
+  double axis[Arm::kFree][kCount], reach = Descent::kNear;  // rad or m: rows at values beside each other so near are of one branch
   Held step;  // half of one
   Start starts[kStarts];
 
@@ -49,19 +46,19 @@ template <class Arm, class Solver> struct HeldGridSearch {
   }
 
  private:
-  HeldGridSearch(const Eigen::Isometry3d& goal, const RowPreference<Arm>& wanted) noexcept : pose(goal), preference(wanted), descent{goal, wanted} {}
+  HeldGridSearch(const Eigen::Isometry3d& goal, const RowPreference<Arm>& wanted) noexcept : descent{goal, wanted} {}
 
   // Values of a held joint, evenly over its range, and that nearest to what is wanted. A turn, or a metre to either
   // side, is looked at where there are no limits; a slide as far as the pose can be reached from.
   void spread(int k) noexcept {
     const int j = Arm::kFreeJoints[static_cast<std::size_t>(k)];
-    const double middle = preference.wanted.data()[j];
+    const double middle = descent.preference.wanted.data()[j];
     double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j];
-    if (Arm::kRevolute[j] && !(preference.options.limits && high - low < kInfinity)) {
+    if (Arm::kRevolute[j] && !(descent.preference.options.limits && high - low < kInfinity)) {
       low = -kPi;
       high = kPi;
     }
-    const SlideRange<Arm> range(pose.translation().data(), j);
+    const SlideRange<Arm> range(descent.pose.translation().data(), j);
     const double nearby = std::min(std::max(range.low, low), high), remote = std::min(std::max(range.high, low), high);
     low = nearby > -kInfinity ? nearby : std::min(remote, middle) - 1.0;
     high = remote < kInfinity ? remote : std::max(low, middle) + 1.0;
@@ -72,7 +69,7 @@ template <class Arm, class Solver> struct HeldGridSearch {
     }
     axis[k][nearest] = std::min(std::max(middle, low), high);
     step[static_cast<std::size_t>(k)] = 0.5 * (high - low) / (kCount - 1);
-    reach = std::max(reach, kNear + 2.0 * step[static_cast<std::size_t>(k)]);
+    reach = std::max(reach, Descent::kNear + 2.0 * step[static_cast<std::size_t>(k)]);
   }
 
   // Line by line along the first axis.

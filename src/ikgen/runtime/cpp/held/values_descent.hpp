@@ -9,7 +9,7 @@ namespace ikgen_runtime {
 
 // Arm: as for RowPreference and RowPair; Solver: as for PathStep.
 template <class Arm, class Solver> struct ValuesDescent {
-  static constexpr int kFree = Arm::kFree, kWays = 2 * kFree + kFree * (kFree - 1) / 2, kSweeps = 60;
+  static constexpr int kFree = Arm::kFree, kSweeps = 60;
   static constexpr double kLeastStep = 1e-10;  // rad or m
   static constexpr double kNear = 0.5;         // rad or m that a row may be from the one that a step began at
   static constexpr double kFarthest = 4.0;     // steps that the quadratic's minimum may be away
@@ -65,7 +65,7 @@ template <class Arm, class Solver> struct ValuesDescent {
         lowest[a] = 0.5 * (sweep.down[a] - sweep.up[a]);
       }
       double share = sweep.best.cost < best.cost ? 1.0 : 0.5;
-      if (sweep.unbounded && std::isfinite(H_sum(H)) && minimum(H, lowest)) {
+      if (sweep.whole && minimum(H, lowest)) {
         Held there;
         double longest = 0.0;
         for (int k = 0; k < kFree; ++k) {
@@ -82,13 +82,13 @@ template <class Arm, class Solver> struct ValuesDescent {
   }
 
  private:
-  // Costs at steps around a row, and the best row there.
+  // Costs at steps around a row, and the best row there; `whole`: whether there was one inside the limits at each.
   struct Sweep {
     const Start middle;
     Start best;
     const Held& step;
     double up[kFree], down[kFree];
-    bool unbounded;
+    bool whole;
 
     // That of the row of the same branch a way from it, in steps; infinite where there is none.
     double take(const ValuesDescent& of, const Held& way) noexcept {
@@ -97,7 +97,7 @@ template <class Arm, class Solver> struct ValuesDescent {
         const auto joint = static_cast<std::size_t>(Arm::kFreeJoints[k]);
         const double wanted = middle.q[joint] + way[k] * step[k];
         held[k] = of.preference.options.limits ? std::min(std::max(wanted, Arm::kLower.data()[joint]), Arm::kUpper.data()[joint]) : wanted;
-        unbounded = unbounded && held[k] == wanted;
+        whole = whole && held[k] == wanted;
       }
       Point there;
       of.look(held, there);
@@ -110,6 +110,7 @@ template <class Arm, class Solver> struct ValuesDescent {
         least = gap;
         nearest = &there.row[r];
       }
+      whole = whole && nearest && nearest->cost < kInfinity;
       if (!nearest) return kInfinity;
       if (nearest->cost < best.cost) best = *nearest;
       return nearest->cost;
@@ -120,13 +121,6 @@ template <class Arm, class Solver> struct ValuesDescent {
     Held out = {};
     out[static_cast<std::size_t>(k)] = steps;
     return out;
-  }
-
-  static double H_sum(const double (&H)[kFree][kFree]) noexcept {
-    double sum = 0.0;
-    for (int a = 0; a < kFree; ++a)
-      for (int b = 0; b <= a; ++b) sum += H[a][b];
-    return sum;
   }
 
   // Where a quadratic is least, from minus its slope, as far as it may be; false where it is nowhere.

@@ -13,7 +13,7 @@ from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.arrays.row_blocks import in_blocks
 from ikgen.runtime.python.held.held_joint import pose_lines
 from ikgen.runtime.python.held.slide_range import slide_range
-from ikgen.runtime.python.held.solution_search import solutions_of
+from ikgen.runtime.python.held.solution_search import NEAR, solutions_of
 from ikgen.runtime.python.held.values_descent import descended_rows
 from ikgen.runtime.python.rows.row_links import differences
 from ikgen.runtime.python.rows.row_preference import preference_costs, preference_of
@@ -27,9 +27,6 @@ _POINTS = 4096  # of the grid
 _STARTS = 32
 _PART = 1024  # points that are solved at once
 _EQUAL = 1e-9  # costs that differ by less are as good
-_BESIDE = (
-    0.5  # rad or m, more than a step: rows so near at values beside each other are of one branch
-)
 
 
 def search_grid(
@@ -50,7 +47,7 @@ def search_grid(
 
     found, costs, real = in_blocks(rows_at, _PART, values)
     away = ((found - np.array(preference[1])) ** 2).sum(axis=2)
-    point, row = _lowest(arm, found, costs, away, _BESIDE + 2.0 * max(steps))
+    point, row = _lowest(arm, found, costs, away, NEAR + 2.0 * max(steps))
     if not len(point):
         return no_held_values(len(arm.lower), arm.free_joints, bool(real.any()))
     point, row = point[:_STARTS], row[:_STARTS]

@@ -22,7 +22,7 @@ from ikgen.runtime.python.singular.fold_pair import approach
 from ikgen.runtime.python.solving.batch_solving import rows_batch
 from ikgen.runtime.python.solving.pose_solving import solve_pose
 
-__all__ = ["LEAST_STEP", "Reach", "Start", "improved_rows", "solutions_of", "tried_rows"]
+__all__ = ["LEAST_STEP", "NEAR", "Reach", "Start", "improved_rows", "solutions_of", "tried_rows"]
 
 
 class Reach(NamedTuple):
@@ -59,7 +59,7 @@ on, and how far it is followed."""
 _STEPS = 40
 _SHORTER = 0.4
 LEAST_STEP = 1e-10  # rad or m
-_NEAR = 0.5  # rad or m that a row may be from the one that a step began at
+NEAR = 0.5  # rad or m that a row may be from the one that a step began at
 _BESIDE = 0.05  # rad or m that a row beside a fold may be from the one before
 _ASKED = 1e-3  # rad or m: the shortest way for which the closed form is asked
 
@@ -161,7 +161,7 @@ def _next_rows(arm: Arm, T: Array, rows: Array, held: Array) -> tuple[Array, Fla
         gap = np.abs(differences(arm, rows[left, None], q)).max(axis=2)
         gap = np.where(real, gap, inf)
         which, nearest = np.arange(len(left)), gap.argmin(axis=1)
-        row[left], near[left] = q[which, nearest], gap[which, nearest] < _NEAR
+        row[left], near[left] = q[which, nearest], gap[which, nearest] < NEAR
     return row, near
 
 

@@ -21,8 +21,9 @@ def descended_rows(
     arm: Arm, T: Array, held: Array, rows: Array, step: Array, preference: Preference, limits: bool
 ) -> tuple[Array, Array]:
     """From rows (n, dof) at values (n, held) the best ones that a compass search (Hooke, Jeeves 1961) with
-    first steps (n, held) finds on their branches, and their costs (n,). Each sweep looks at the minimum of
-    the quadratic through its costs as well (Winfield 1973), which narrow valleys are followed by."""
+    first steps (n, held) finds on their branches, all three in place, and their costs (n,). Each sweep
+    looks at the minimum of the quadratic through its costs as well (Winfield 1973), which narrow valleys
+    are followed by."""
     _, cost, _ = preference_costs(arm, preference, rows[:, None], limits)
     best, ways = cost[:, 0], _ways(held.shape[1])
     for _ in range(_SWEEPS):
@@ -33,7 +34,7 @@ def descended_rows(
         wanted = at + ways[:, None] * size
         trials, found, costs = tried_rows(arm, T, preference, limits, at, row, wanted)
         unbounded = (trials == wanted).all(axis=(0, 2))
-        far = np.where(unbounded[:, None], _model_minimum(best[going], costs), 0.0)
+        far = np.where(unbounded[:, None], _model_minimum(best[going], costs, held.shape[1]), 0.0)
         last = tried_rows(arm, T, preference, limits, at, row, (at + far * size)[None])
         trials, found, costs = (np.concatenate(both) for both in zip((trials, found, costs), last))
         which, each = costs.argmin(axis=0), np.arange(len(going))
@@ -54,10 +55,9 @@ def _ways(count: int) -> Array:
     return np.concatenate([one, -one, one[first] + one[second]])
 
 
-def _model_minimum(middle: Array, costs: Array) -> Array:
+def _model_minimum(middle: Array, costs: Array, count: int) -> Array:
     """Where the quadratic through costs (n,) in the middle and (s, n) at `_ways` is least, in steps
     (n, count), as far as it may be; zeros where it is nowhere."""
-    count = round((2 * len(costs) + 2.25) ** 0.5 - 1.5)  # as s = 2 count + count (count - 1) / 2
     up, down, both = costs[:count], costs[count : 2 * count], costs[2 * count :]
     with np.errstate(invalid="ignore"):
         slope, H = 0.5 * (up - down).T, np.zeros((len(middle), count, count))
