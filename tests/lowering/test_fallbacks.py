@@ -61,6 +61,18 @@ class Bench:
         assert (np.abs(both - other).max(axis=0)[~here] < 1e-12).all()
         return [bool(x) for x in here[: len(SHARES)]]
 
+    def solve(self, v: Variable, *forms: Form) -> Expr:
+        """Solve for the variable; the share times a 1 that follows from it."""
+        lowered = [form.lower(self.g, self.g.one, self.work.tolerances) for form in forms]
+        found = [one for one in lowered if isinstance(one, LoweredForm)]
+        self.work.define(v, choose_form(self.work, v, found, self.g.one))
+        atom = self.work.atoms_of(v)[0]
+        return self.g.mul(self.share, self.g.add(self.g.one, self.g.sub(atom, self.again(atom))))
+
+    def again(self, atom: Expr) -> Expr:
+        """An input of the same values."""
+        return given(self.g, atom.probe)
+
     @property
     def requirements(self) -> list[np.ndarray]:
         """The conditions that were required, at the first probes."""
@@ -213,19 +225,18 @@ def test_a_root_may_be_outside_by_what_a_small_divisor_before_it_moved_it(
     constant to fall back on nothing is divided by what is small, and exact rows are moved by nothing."""
     b = Bench(solved, 1e-5)
     tolerances = b.work.tolerances
-    assert tolerances.margin is None and tolerances.fold
-    choose_form(b.work, b.length, [b.lowered(Linear(b.share, b.g.const(-3.0)), b.g.one)], b.g.one)
-    margin = b.work.tolerances.margin
-    assert margin is not None
+    assert tolerances.margin(b.share) is None and tolerances.fold
+    follows = b.solve(b.length, Linear(b.share, b.g.const(-3.0)))
+    margin = b.work.tolerances.margin(follows)
+    assert margin is not None and b.work.tolerances.margin(b.share) is None
     squares = np.maximum(np.square(SHARES), tolerances.fold)
     np.testing.assert_allclose(margin.probe[: len(SHARES)], squares)
     for error, forms in ((1e-5, 2), (0.0, 1)):
         other = Bench(solved, error)
         first = Linear(other.share, other.g.const(-3.0))
         last = Linear(other.g.one, other.g.const(-3.0))
-        lowered = [other.lowered(form, other.g.one) for form in (first, last)]
-        choose_form(other.work, other.length, lowered[:forms], other.g.one)
-        assert other.work.tolerances.margin is None
+        follows = other.solve(other.length, *(first, last)[:forms])
+        assert other.work.tolerances.margin(follows) is None
 
 
 def test_a_direction_is_not_lost_by_the_square_root_that_it_goes_with(
@@ -235,14 +246,9 @@ def test_a_direction_is_not_lost_by_the_square_root_that_it_goes_with(
     direction is off by the model error over the amplitude there, not over its square."""
     b = Bench(solved, 1e-6)
     least = b.work.tolerances.norm
-    form = SineCosine(b.share, b.g.mul(b.share, b.g.const(0.5)), b.g.zero)
-    lowered = form.lower(b.g, b.g.one, b.work.tolerances)
-    assert isinstance(lowered, LoweredForm)
-    choose_form(b.work, b.angle, [lowered], b.g.one)
+    follows = b.solve(b.angle, SineCosine(b.share, b.g.mul(b.share, b.g.const(0.5)), b.g.zero))
     assert b.work.lost == []  # nothing comes before it
-    follows = SineCosine(b.share, b.g.zero, b.g.zero).lower(b.g, b.g.one, b.work.tolerances)
-    assert isinstance(follows, LoweredForm)
-    choose_form(b.work, b.angle, [follows], b.g.one)
+    b.solve(b.length, Linear(follows, b.g.const(-3.0)))
     (lost,) = b.work.lost
     found = lost.probe[: len(SHARES)] > 0.5
     assert found.tolist() == [share**2 < least for share in SHARES]
@@ -254,15 +260,15 @@ def test_rows_are_in_doubt_where_all_amplitudes_together_are_what_the_file_is_of
 ) -> None:
     """Not by a divisor that vanishes on a surface, as a determinant does: no joint is free there."""
     b = Bench(solved, error)
-    for _ in range(2):
-        form = SineCosine(b.share, b.g.zero, b.g.zero).lower(b.g, b.g.one, b.work.tolerances)
-        assert isinstance(form, LoweredForm)
-        choose_form(b.work, b.angle, [form], b.g.one)
+    follows = b.solve(b.angle, SineCosine(b.share, b.g.zero, b.g.zero))
+    second = SineCosine(follows, b.g.zero, b.g.zero).lower(b.g, b.g.one, b.work.tolerances)
+    assert isinstance(second, LoweredForm)
+    choose_form(b.work, b.angle, [second], b.g.one)
     (doubt,) = b.work.doubts
     found = doubt.probe[: len(SHARES)] > 0.5
     assert found.tolist() == [
         max(share**2, b.work.tolerances.fold) * share**2 < error**2 for share in SHARES
     ]
-    plain = b.lowered(Linear(b.share, b.g.const(-3.0)), b.g.one)
+    plain = b.lowered(Linear(follows, b.g.const(-3.0)), b.g.one)
     choose_form(b.work, b.length, [plain], b.g.one)
     assert b.work.doubts == [doubt] and len(b.work.lost) == 2

@@ -30,6 +30,7 @@ _HALF_OF_DIGITS = 1e-8
 """What a double root has: its error leaves no direction of a smaller divisor."""
 
 Lost = Callable[[Expr], float]
+Margin = Callable[[Expr], Expr | None]
 
 _MULTIPLIED = 12.0
 """Times the model error over a square root that what follows from it may be off: the file's offsets, over
@@ -38,6 +39,10 @@ links that are short beside the arm."""
 _FURTHER = 3.0
 """Times as far as at random configurations, to first order, that what unknowns are off may move what
 follows from them."""
+
+_OUTSIDE = 0.5
+"""Of its natural size, how far outside its domain what is under a square root may be at most: the branches
+of one that is farther outside are near no solution."""
 
 _BESIDE = 100.0
 """Times as far as at regular configurations that round-off may move what is under a square root, beside
@@ -49,6 +54,10 @@ def nothing_lost(value: Expr) -> float:
     return 0.0 * value.scale
 
 
+def no_margin(value: Expr) -> None:
+    """That of a value which follows from the pose, and what loses nothing of it."""
+
+
 @dataclass(frozen=True, slots=True)
 class Tolerances:
     """Relative to natural sizes: a divisor below `singular` makes its joint free, one below `flag`, or
@@ -57,10 +66,10 @@ class Tolerances:
     and where rows are refined it is kept above `fold`, so that two branches start apart. Where the
     condition `rough` holds, what a square root is taken of has lost digits: it may be `wide` outside. An
     `error` of the geometry moves what follows from a square root by as much over that root, and what
-    follows from a divisor by as much over it: `margin` is the least, relative to natural sizes, of what
-    square roots were taken of so far and of the squares of divisors, and `moved` bounds how far a value
-    goes for each radian, or metre, that the unknowns before it are off. `lost` bounds by how much round-off
-    moves one; where `double` holds, an unknown solved so far is nearly a double root.
+    follows from a divisor by as much over it: `margin` gives what the unknowns that a value follows from
+    leave of the file's digits, as a square relative to natural sizes (see `FileDigits`), and `moved` bounds
+    how far a value goes for each radian, or metre, that the unknowns before it are off. `lost` bounds by
+    how much round-off moves one; where `double` holds, an unknown solved so far is nearly a double root.
     """
 
     singular: float = 1e-11
@@ -71,7 +80,7 @@ class Tolerances:
     rough: Expr | None = None
     wide: float = 1e-3
     error: float = 0.0
-    margin: Expr | None = None
+    margin: Margin = no_margin
     lost: Lost = nothing_lost
     moved: Lost = nothing_lost
     double: Expr | None = None
@@ -102,11 +111,13 @@ class Tolerances:
         if self.rough is not None:
             least = g.select(self.rough, g.const(-self.wide * size), least)
         real = g.binary("gt", value, least)
-        if self.margin is None:
+        margin = self.margin(value)
+        if margin is None:
             return real
         reach = self.error * max(_MULTIPLIED * size, _FURTHER * self.moved(value))
         reach = min(reach, size)
-        far = g.mul(g.square(value), self.margin)
+        least = g.const((reach / (_OUTSIDE * size)) ** 2)
+        far = g.mul(g.square(value), at_least(g, margin, least))
         return g.binary("or", real, g.binary("gt", g.const(reach**2), far))
 
 

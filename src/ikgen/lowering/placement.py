@@ -13,7 +13,8 @@ from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import Variable
 from ikgen.forms.form import Form
-from ikgen.forms.lowered_form import Divisor, Tolerances, at_least, natural_size
+from ikgen.forms.lowered_form import Divisor, Tolerances, natural_size
+from ikgen.lowering.file_digits import FileDigits
 from ikgen.lowering.rounding import Rounding
 from ikgen.program.inputs import Input
 from ikgen.program.statements import Comment, Let
@@ -73,12 +74,12 @@ class Placement:
         self._tolerances = Tolerances.for_model_error(
             model_error, self.rounding.most, self._levers.most
         )
+        self.digits = FileDigits(self.g, self.definition, self._tolerances.fold)
         self.loses_digits = bool(graph.probes.kept) or any(map(self._folds, graph.steps))
         self.residuals: list[Expr] = []
         self.norms: list[Expr] = []
         self.close: list[Expr] = []
         self.folds: list[Expr] = []
-        self.margins: list[Expr] = []
         self.double: Expr | None = None
         self.levels = [LoweredLevel(1)]
         self.level_of: dict[int, int] = {}
@@ -110,7 +111,7 @@ class Placement:
         if self.loses_digits:
             self.folds.append(self.close[-1])
         if self._tolerances.fold:
-            self.margins.append(self.g.mul(self.g.const(1.0 / size), under))
+            self.digits.note(self.g.mul(self.g.const(1.0 / size), under))
 
     def note_root(self, atoms: Sequence[Expr], equation: Expr, slope: Expr) -> None:
         """The atoms are the cosine and sine of a root, a double one where the slope vanishes."""
@@ -119,6 +120,7 @@ class Placement:
         self.note_fold(self.g.square(slope), natural_size(slope) ** 2)
         for flag in self.folds[folds:]:
             self.double = flag if self.double is None else self.g.binary("or", self.double, flag)
+        self.digits.settle(atoms, (equation,))
 
     def note_divisors(self, divisors: Sequence[Divisor]) -> None:
         """An unknown was divided by the first of these that is large: its direction is lost where that is
@@ -126,27 +128,23 @@ class Placement:
         squares = [one.square(self.g) for one in divisors] if self._tolerances.fold else []
         if squares and None not in squares:
             largest = reduce(partial(self.g.binary, "max"), filter(None, squares))
-            before = self.tolerances.margin
+            before = self.digits.behind(*(one.value for one in divisors))
             if before is not None:
                 least = self.g.const(self._tolerances.norm**2)
-                left = self.g.mul(largest, before)
+                left = self.g.mul(largest, self.digits.no_less(before))
                 self.lost.append(self.g.binary("gt", least, left))
                 if any(one.power == 2 for one in divisors):
                     # as little: the continuum that it vanishes on may go on in the file's geometry
                     few = self.g.const(self.model_error**2)
                     self.doubts.append(self.g.binary("gt", few, left))
                     self.place(self.doubts[-1])
-            self.margins.append(largest)
+            self.digits.note(largest)
 
     @property
     def tolerances(self) -> Tolerances:
         """Those of the next unknown."""
-        margin: Expr | None = None
-        for one in self.margins:
-            margin = one if margin is None else self.g.binary("min", margin, one)
-        if margin is not None:
-            margin = at_least(self.g, margin, self.g.const(self._tolerances.fold))
         double = None if self._tolerances.fold else self.double
+        margin = self.digits.behind
         return replace(self._tolerances, rough=self.rough, margin=margin, double=double)
 
     @property
@@ -240,6 +238,7 @@ class Placement:
             self.names[atom.id] = local_name(name)
             self.place(atom)
         self._levers.note_moved(atoms)
+        self.digits.settle(atoms, values)
 
     def atoms_of(self, v: Variable) -> tuple[Expr, ...]:
         """The atoms of a variable: its cosine and sine, or its distance."""
