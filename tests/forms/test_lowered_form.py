@@ -100,3 +100,14 @@ def test_a_root_may_be_as_far_outside_as_an_earlier_one_moved_it() -> None:
         g, given(g, 2.0 * value), 2.0
     )
     assert list(twice.probe > 0.5) == list(after.probe > 0.5)
+
+
+def test_a_root_may_be_as_far_outside_as_round_off_of_what_came_before_moved_it() -> None:
+    """Of an exact geometry: what loses 1e-13 at random configurations loses 1e-9 behind a root of 1e-8."""
+    value, under = np.array([-9e-10, -9e-10, -2e-9]), np.array([1e-8, 1.0, 1e-8])
+    g = ExpressionGraph(len(value))
+    tolerances = replace(Tolerances.for_model_error(0.0), lost=lambda e: 1e-13)
+    plain = tolerances.guard(g, given(g, value), 1.0)
+    assert list(plain.probe > 0.5) == [False, False, False]
+    after = replace(tolerances, margin=lambda e: given(g, under)).guard(g, given(g, value), 1.0)
+    assert list(after.probe > 0.5) == [True, False, False]

@@ -115,7 +115,7 @@ class Tolerances:
         if margin is None:
             return real
         reach = self.error * max(_MULTIPLIED * size, _FURTHER * self.moved(value))
-        reach = min(reach, size)
+        reach = min(max(reach, self.lost(value)), size)
         least = g.const((reach / (_OUTSIDE * size)) ** 2)
         far = g.mul(g.square(value), at_least(g, margin, least))
         return g.binary("or", real, g.binary("gt", g.const(reach**2), far))

@@ -110,7 +110,7 @@ class Placement:
         self.close.append(self.g.binary("gt", self.g.const(FOLDED * size), under))
         if self.loses_digits:
             self.folds.append(self.close[-1])
-        if self._tolerances.fold:
+        if self._counts_digits:
             self.digits.note(self.g.mul(self.g.const(1.0 / size), under))
 
     def note_root(self, atoms: Sequence[Expr], equation: Expr, slope: Expr) -> None:
@@ -125,11 +125,11 @@ class Placement:
     def note_divisors(self, divisors: Sequence[Divisor]) -> None:
         """An unknown was divided by the first of these that is large: its direction is lost where that is
         small beside what the unknowns before leave of the file's digits."""
-        squares = [one.square(self.g) for one in divisors] if self._tolerances.fold else []
+        squares = [one.square(self.g) for one in divisors] if self._counts_digits else []
         if squares and None not in squares:
             largest = reduce(partial(self.g.binary, "max"), filter(None, squares))
             before = self.digits.behind(*(one.value for one in divisors))
-            if before is not None:
+            if before is not None and self._tolerances.fold:
                 least = self.g.const(self._tolerances.norm**2)
                 left = self.g.mul(largest, self.digits.no_less(before))
                 self.lost.append(self.g.binary("gt", least, left))
@@ -139,6 +139,12 @@ class Placement:
                     self.doubts.append(self.g.binary("gt", few, left))
                     self.place(self.doubts[-1])
             self.digits.note(largest)
+
+    @property
+    def _counts_digits(self) -> bool:
+        """Whether it matters by how much one unknown after the other is off: by the geometry, or by what it
+        loses of round-off."""
+        return bool(self._tolerances.fold) or self.loses_digits
 
     @property
     def tolerances(self) -> Tolerances:
