@@ -11,6 +11,7 @@ import numpy as np
 from ikgen.elimination.coupled_plans import choose_coupled
 from ikgen.elimination.loop_frames import held_frames
 from ikgen.elimination.plan import EliminationPlan, choose_plan
+from ikgen.kinematics.position_unit import position_unit
 from ikgen.model.dh import DHChain, DHRow
 from ikgen.runtime.python.arm.chain_kinematics import Motion
 from ikgen.runtime.python.elimination.six_joints import with_tool_joint
@@ -22,6 +23,10 @@ _HELD_VALUES = (0.4, -1.1, 2.2)
 
 _RIGHT_ANGLES = (0.0, 0.5 * np.pi, np.pi, -0.5 * np.pi)
 """The same where axes become parallel or meet, at which some eliminations lose rank."""
+
+_LONGEST = 2.0
+"""Times what errors of the position count over, the scale of lengths at most: rows are right to half of
+1e-9 of that."""
 
 _MOST_SLIDES = 3
 """With more of them the rest cannot turn the tip to every rotation."""
@@ -51,7 +56,9 @@ def elimination_plan(dh: DHChain, tool: int | None = None) -> EliminationPlan | 
         family, motions = with_tool_joint(family, tool), (*motions, (5, True, 1.0, 0.0))
     family, beside = np.split(family, [len(values)])
     plan = choose_coupled(family, motions) if several else choose_plan(family, turning, [*beside])
-    return replace(plan, tool=tool) if plan is not None and plan.usable else None
+    if plan is None or not plan.usable:
+        return None
+    return replace(plan, tool=tool, length=min(plan.length, _LONGEST * position_unit(dh)))
 
 
 def axis_motions(dh: DHChain, moving: Sequence[DHRow]) -> tuple[Motion, ...]:

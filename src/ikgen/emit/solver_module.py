@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ikgen.elimination.plan import EliminationPlan
 from ikgen.kinematics.displacement import displacements
+from ikgen.kinematics.position_unit import position_unit
 from ikgen.kinematics.whole_turns import turns_freely
 from ikgen.model.dh import DHChain
 from ikgen.program.policy import SolvePolicy
@@ -158,8 +159,8 @@ class SolverModule:
 
     @property
     def size(self) -> float:
-        """Length (m) that errors of position are taken relative to: the arm's largest, at least 1."""
-        return max(1.0, *(float(np.abs(F[:3, 3]).max()) for F in self.dh.file_frames))
+        """Length (m) that errors of position are taken relative to, at least 1."""
+        return position_unit(self.dh)
 
     def turns(self, joint: int) -> bool:
         """Whether values of the joint that differ by whole turns are the same configuration, and no

@@ -1,0 +1,28 @@
+"""What errors of a tip's position are relative to."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ikgen.kinematics.forward import file_forward
+from ikgen.kinematics.joint_box import joint_box
+from ikgen.model.dh import DHChain
+
+__all__ = ["position_unit"]
+
+_CONFIGURATIONS = 64
+_DIGITS = 2
+"""To which a reach is rounded: round-off, which differs between machines, is not in it."""
+
+
+def position_unit(dh: DHChain) -> float:
+    """A length (m), at least 1: the largest entry of a link's translation, or as far as the tip comes from
+    the base where that is less. DH parameters put the frame of an axis that is nearly parallel to the next
+    many times as far away as the arm reaches."""
+    largest = max(float(np.abs(F[:3, 3]).max()) for F in dh.file_frames)
+    if dh.symbols or largest <= 1.0:
+        return max(1.0, largest)
+    low, high = joint_box(dh, 1.0)
+    q = np.random.default_rng(0).uniform(low, high, (_CONFIGURATIONS, dh.dof))
+    farthest = float(np.linalg.norm(file_forward(dh, q)[:, :3, 3], axis=1).max())
+    return max(1.0, min(largest, float(f"{farthest:.{_DIGITS}g}")))
