@@ -1505,11 +1505,13 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
 
   enum class Kind { None, Broken, Known, Whole };
   int passing = 0;  // samples of the last one, behind those that are kept
+  int met = 0;      // solutions on the last one, be it too short for one or the file's
 
   Kind trace(const double* start, Passed& passed) noexcept {
     const Sample first = at(start);
     if (const int end = passed_part(passed, first); end > 0) {
       look_beside(passed.sample[end - 1], first, passed.sample[end]);
+      met = count;
       return Kind::Known;
     }
     const int known = passed.count;
@@ -1517,6 +1519,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     steps = 0.0;
     if (!follow(first, 1.0, worst, passed)) follow(first, -1.0, worst, passed);
     const Kind kind = steps < kLeast ? Kind::None : worst >= Policy::kArrived ? Kind::Broken : Kind::Whole;
+    met = count;
     if (kind == Kind::Whole || (kind == Kind::None && !lost)) count = 0;
     passing = passed.count - known;
     if (kind != Kind::Broken || lost || !ended || passed.count > Passed::kSamples) passed.count = known;
@@ -2372,7 +2375,7 @@ template <class Arm> struct CarefulSolve {
       curve.trace(best[lane], passed);
       RowStart<Arm> end;
       end.marked = true;
-      for (int k = 0; k < curve.count; ++k) end.take(aim, curve.found[k], out);
+      for (int k = 0; k < curve.met; ++k) end.take(aim, curve.found[k], out);
       real = real || end.exact;
     }
     LimitRows<Arm>::place_all(aim, options, out);

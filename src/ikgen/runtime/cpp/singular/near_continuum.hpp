@@ -44,6 +44,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
   // No continuum nearby, one of the solved geometry, one that was passed, one of the file's too.
   enum class Kind { None, Broken, Known, Whole };
   int passing = 0;  // samples of the last one, behind those that are kept
+  int met = 0;      // solutions on the last one, be it too short for one or the file's
 
   // Finds those on the curve through a configuration: once around, or to both its ends; of one that is too short only
   // where it could not be followed.
@@ -51,6 +52,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     const Sample first = at(start);
     if (const int end = passed_part(passed, first); end > 0) {
       look_beside(passed.sample[end - 1], first, passed.sample[end]);
+      met = count;
       return Kind::Known;
     }
     const int known = passed.count;
@@ -58,6 +60,7 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     steps = 0.0;
     if (!follow(first, 1.0, worst, passed)) follow(first, -1.0, worst, passed);
     const Kind kind = steps < kLeast ? Kind::None : worst >= Policy::kArrived ? Kind::Broken : Kind::Whole;
+    met = count;
     if (kind == Kind::Whole || (kind == Kind::None && !lost)) count = 0;
     passing = passed.count - known;
     if (kind != Kind::Broken || lost || !ended || passed.count > Passed::kSamples) passed.count = known;

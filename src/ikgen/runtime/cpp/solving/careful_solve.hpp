@@ -117,7 +117,7 @@ template <class Arm> struct CarefulSolve {
       curve.trace(best[lane], passed);
       RowStart<Arm> end;
       end.marked = true;
-      for (int k = 0; k < curve.count; ++k) end.take(aim, curve.found[k], out);
+      for (int k = 0; k < curve.met; ++k) end.take(aim, curve.found[k], out);
       real = real || end.exact;
     }
     LimitRows<Arm>::place_all(aim, options, out);
