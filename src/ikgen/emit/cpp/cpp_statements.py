@@ -102,6 +102,8 @@ class ProgramText:
                 self._let(name, f"{roots}.value[{k}]")
         self._require(index, f"{roots}.found")
         self.flags["alike"].append(f"{roots}.found")
+        if self.module.plan is not None:
+            self.flags["hit"].append(f"{roots}.open")
 
     def _body(self, index: int, level: Level) -> None:
         for s in level.body:

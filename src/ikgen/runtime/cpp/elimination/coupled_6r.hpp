@@ -77,9 +77,9 @@ inline Spectrum run_coupled(const CoupledChain<Plan>& F, const Frame& T, const F
 // All that a run by lanes is sure of, else what runs one angle at a time agree on.
 struct CoupledMethod {
   template <class Plan>
-  static void solve(const CoupledChain<Plan>& F, const Frame& T, const Turning& turning, Solutions& out) noexcept {
-    if (!solve_resultant<run_coupled_resultant<Plan>>(F, T, Plan::kEigenproblems, false, out))
-      solve_in_runs<run_coupled<Plan>>(F, T, turning, Plan::kEigenproblems, out);
+  static bool solve(const CoupledChain<Plan>& F, const Frame& T, const Turning& turning, Solutions& out) noexcept {
+    return solve_resultant<run_coupled_resultant<Plan>>(F, T, Plan::kEigenproblems, false, out) ||
+           solve_in_runs<run_coupled<Plan>>(F, T, turning, Plan::kEigenproblems, out);
   }
 };
 

@@ -14,11 +14,11 @@ namespace ikgen_runtime {
 
 namespace g6 {
 
-// none: whether it was found already that there are no solutions.
+// none: whether it was found already that there are no solutions. As solve_in_runs.
 template <class Plan>
-inline void solve_6r(const Chain& F, const Frame& T, bool none, Solutions& out) noexcept {
-  if (!solve_resultant<run_resultant>(F, T, Plan::kResultants, none, out))
-    solve_in_runs<run_eigenproblem>(F, T, kAllTurn, Plan::kEigenproblems, out);
+inline bool solve_6r(const Chain& F, const Frame& T, bool none, Solutions& out) noexcept {
+  return solve_resultant<run_resultant>(F, T, Plan::kResultants, none, out) ||
+         solve_in_runs<run_eigenproblem>(F, T, kAllTurn, Plan::kEigenproblems, out);
 }
 
 }  // namespace g6

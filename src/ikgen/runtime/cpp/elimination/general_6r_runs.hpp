@@ -100,8 +100,9 @@ inline bool same_apart(const Frames& F, const Frame& T, const Turning& turning, 
 // the next elimination and with the pose displaced by less, until one finds all that is known and no more, an even number,
 // none of it stalls near another, and one of the pose itself tells; where solutions meet the next elimination has to find
 // as many that lie apart, as one alone may miss the same of a crowd twice.
+// False where none was found by all of them, though eliminations have roots or no rank.
 template <auto Run, class Frames, std::size_t N>
-inline void solve_in_runs(const Frames& F, const Frame& T, const Turning& turning,
+inline bool solve_in_runs(const Frames& F, const Frame& T, const Turning& turning,
                           const std::array<std::array<int, 3>, N>& plans, Solutions& out) noexcept {
   const int given = out.count;
   int least = -1, number = 0;
@@ -116,15 +117,16 @@ inline void solve_in_runs(const Frames& F, const Frame& T, const Turning& turnin
         if (!shift) least = std::max(least, roots.real);
         const int known = out.count;
         for (int k = 0; k < mine.count; ++k) keep(mine.rows[static_cast<Index>(k)], out);
-        if (out.count == kRoom) return;  // of a continuum
+        if (out.count == kRoom) return true;  // of a continuum
         const bool alone = number == 0 && given <= mine.count && roots.simple && out.count == roots.real && out.count > 0;
         const bool even = out.count % 2 == 0, again = number > 0 && !roots.stalled;
         const bool repeated = again && even && mine.count == known && out.count == known;
-        if (least >= 0 && out.count >= least && ((alone && even) || repeated)) return;
-        if (least >= 0 && out.count >= least && again && number > 2 && same_apart(F, T, turning, mine, out, known)) return;
+        if (least >= 0 && out.count >= least && ((alone && even) || repeated)) return true;
+        if (least >= 0 && out.count >= least && again && number > 2 && same_apart(F, T, turning, mine, out, known)) return true;
         ++number;
       }
   }
+  return out.count > 0 || least == 0;
 }
 
 }  // namespace g6

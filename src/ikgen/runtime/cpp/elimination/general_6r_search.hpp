@@ -73,6 +73,9 @@ inline Zone seen_through(const Lens& lens, const Zone& phi, const Zone& zone) no
 
 inline constexpr double kScales[] = {0.03, 5e-4};  // of the first look and of the second
 
+// Where a function vanishes everywhere, on some continua without any round-off, nothing is sure.
+inline constexpr double kLeastBlur = 1e-300;
+
 // The roots inside a zone, from nodes crowded there, as pairs of theta. False where that leaves it open. values(close,
 // c, s, f, blur, shift): of f at the nodes, and how far they may be off, tight where asked; false where roots of f
 // alone are wanted, otherwise those of all functions that differ from f by at most shift.
@@ -82,7 +85,7 @@ inline bool look_closer(const Values& values, const Zone& zone, int look, Roots<
   const Lens lens = {std::cos(middle), std::sin(middle), std::max(kScales[look], std::tan(0.5 * half))};
   constexpr int count = kNodes<D>;
   alignas(64) double c[count], s[count], f[count], blur[count], shift[count];
-  double weight[count], worst = 0.0;
+  double weight[count], worst = kLeastBlur;
   for (int n = 0; n < count; ++n) {
     c[n] = kNode<D>.c[n];
     s[n] = kNode<D>.s[n];
@@ -119,7 +122,7 @@ template <int D, class Values, class Settle>
 inline bool find_roots(const Values& values, const Settle& settle, Roots<D>& out) noexcept {
   alignas(64) double f[kNodes<D>], blur[kNodes<D>], shift[kNodes<D>];
   const bool shifts = values(false, kRotated<D>.c, kRotated<D>.s, f, blur, shift);
-  Polynomial<D> polynomial = interpolate<D>(f, *std::max_element(blur, blur + kNodes<D>));
+  Polynomial<D> polynomial = interpolate<D>(f, std::max(*std::max_element(blur, blur + kNodes<D>), kLeastBlur));
   if (shifts) add_shift<D>(shift, polynomial);
   Brackets<D> brackets = isolate(polynomial);
   if (brackets.doubt) return false;

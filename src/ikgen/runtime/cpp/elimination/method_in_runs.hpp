@@ -9,8 +9,8 @@ namespace g6 {
 // The method of a SixJointArm whose Plan has kEigenproblems (start, reverse, swap), in order of preference.
 template <auto Run> struct InRuns {
   template <class Plan, class Frames>
-  static void solve(const Frames& F, const Frame& T, const Turning& turning, Solutions& out) noexcept {
-    solve_in_runs<Run>(F, T, turning, Plan::kEigenproblems, out);
+  static bool solve(const Frames& F, const Frame& T, const Turning& turning, Solutions& out) noexcept {
+    return solve_in_runs<Run>(F, T, turning, Plan::kEigenproblems, out);
   }
 };
 

@@ -42,15 +42,15 @@ inline bool run_parallel(const Chain& F, const Frame& T, const std::array<int, 2
 }
 
 template <class Plan>
-inline void solve_parallel(const Chain& F, const Frame& T, Solutions& out) noexcept {
+inline bool solve_parallel(const Chain& F, const Frame& T, Solutions& out) noexcept {
   const bool all = run_parallel<Plan::kKind>(F, T, Plan::kParallel, out);
-  if (!(all && (out.count > 0 || Plan::kResultants.empty()))) solve_6r<Plan>(F, T, all, out);
+  return (all && (out.count > 0 || Plan::kResultants.empty())) || solve_6r<Plan>(F, T, all, out);
 }
 
 struct Parallel6rMethod {
   template <class Plan>
-  static void solve(const Chain& F, const Frame& T, const Turning&, Solutions& out) noexcept {
-    solve_parallel<Plan>(F, T, out);
+  static bool solve(const Chain& F, const Frame& T, const Turning&, Solutions& out) noexcept {
+    return solve_parallel<Plan>(F, T, out);
   }
 };
 

@@ -87,7 +87,7 @@ inline Frames chain_of(const double (&F)[N][12]) noexcept {
 // Arm: kMotions, in order along the chain, each with `joint` and `revolute`; kFrames, the upper rows of the
 // constants around them; kHeld by joint; kMaxSolutions; Plan, with kLength (m), a typical size of the arm. Six
 // joints are not held. Method::solve<Plan>(chain, pose, turning, found): the elimination, for the chain of their axes,
-// which are six unless Frames has room for more.
+// which are six unless Frames has room for more; false where it can't tell whether there are solutions.
 template <class Arm, class Method, class Frames = g6::Chain>
 struct SixJointArm {
   static constexpr std::size_t kCount = sizeof(Arm::kMotions) / sizeof(Arm::kMotions[0]);
@@ -112,7 +112,7 @@ struct SixJointArm {
     write(frame, F[n]);
   }
 
-  // Per solution the cosine and sine of every moving joint's angle, or its length; how many. x: the pose by rows, then
+  // Per solution the cosine and sine of every moving joint's angle, or its length; how many, or -1 as in Roots. x: the pose by rows, then
   // the held values.
   template <std::size_t N>
   static int branches(const double* x, double (&roots)[Arm::kMaxSolutions][N]) noexcept {
@@ -124,7 +124,8 @@ struct SixJointArm {
     const g6::Turning turns = turning();
     const Frames chain = g6::chain_of<Plan, Frames>(F);
     const g6::Frame aim = g6::scaled_frame<Plan>(T);
-    Method::template solve<Plan>(chain, aim, turns, found);
+    const bool sure = Method::template solve<Plan>(chain, aim, turns, found);
+    if (!sure && found.count == 0) return -1;
     g6::sort_rows(turns, found);
     if (found.count > Arm::kMaxSolutions) g6::leave_most(chain, aim, turns, Arm::kMaxSolutions, found);
     int count = 0;

@@ -27,7 +27,7 @@ template <class Arm> struct CarefulSolve {
     const Aim aim(pose, options.free);
     bool real = false, free = true;
     Places found, loose;  // loose: with rows of a continuum, without limits
-    for (int turn = 0; turn < Policy::kTries && free; ++turn) {
+    for (int turn = 0; turn < kTurns && free; ++turn) {
       double start[Arm::kDof];
       take_start(options, turn, start);
       auto left = Careful::find_rows(aim, start, options, turn, found);
@@ -54,6 +54,8 @@ template <class Arm> struct CarefulSolve {
   }
 
  private:
+  static constexpr int kTurns = Arm::kRefined ? 1 : Policy::kTries;  // an elimination leaves no joint a value of its own
+
   // Of a continuum at most kCrowd rows that are alike, and where there are more than places those of none.
   static void take_in_order(Places& found, Solutions& out) noexcept {
     bool kept[Places::kRoom] = {};
@@ -81,6 +83,23 @@ template <class Arm> struct CarefulSolve {
     for (std::size_t k = 0; k < Arm::kFreeJoints.size(); ++k) q[Arm::kFreeJoints[k]] = options.free[k];
   }
 
+  // Adds what Newton steps from a row lead to, or else the solutions on a curve through it that is a continuum of the arm's
+  // but for a little that is left; whether there are any.
+  static bool add_led_to(const Aim& aim, const double* start, typename NearContinuum<Arm>::Passed& passed,
+                         Places& out) noexcept {
+    RowStart<Arm> end;
+    end.marked = true;
+    std::copy_n(start, Arm::kDof, end.q);
+    if (Refinement::refine(end.q, aim)) {
+      RightRows<Arm>::add(aim, out, end.q, true);
+      return true;
+    }
+    NearContinuum<Arm> curve(aim);
+    curve.trace(start, passed);
+    for (int k = 0; k < curve.met; ++k) end.take(aim, curve.found[k], out);
+    return end.exact;
+  }
+
   // Adds rows that take the pose, next to rows of the closed form that do not behind a joint that it left free: where it
   // left two and the pose leaves one, their values have to go together. Whether there are any.
   [[gnu::cold, gnu::noinline]] static bool add_hidden(const Aim& aim, const Options& options, Places& out) noexcept {
@@ -106,19 +125,7 @@ template <class Arm> struct CarefulSolve {
     for (const int lane : Arm::kLaneOfRow) {
       if (!(least[lane] < kInfinity)) continue;
       NearestRow<Arm>::descend(t, options.limits, NearestRow<Arm>::kStanding, best[lane]);
-      double q[Arm::kDof];
-      std::copy_n(best[lane], Arm::kDof, q);
-      if (Refinement::refine(q, aim)) {
-        real = true;
-        RightRows<Arm>::add(aim, out, q, true);
-        continue;
-      }
-      NearContinuum<Arm> curve(aim);  // that the arm has not, if there is one
-      curve.trace(best[lane], passed);
-      RowStart<Arm> end;
-      end.marked = true;
-      for (int k = 0; k < curve.met; ++k) end.take(aim, curve.found[k], out);
-      real = real || end.exact;
+      real = add_led_to(aim, best[lane], passed, out) || real;
     }
     LimitRows<Arm>::place_all(aim, options, out);
     return real;
@@ -133,15 +140,13 @@ template <class Arm> struct CarefulSolve {
   // Adds a row that takes the pose, inside the limits if one of these was found; whether there is any.
   [[gnu::cold, gnu::noinline]] static bool add_nearest(const Aim& aim, const Options& options, Places& out) noexcept {
     bool real = false;
+    typename NearContinuum<Arm>::Passed passed;
     for (bool inside = options.limits;; inside = false) {
       double q[Arm::kDof];
       NearestRow<Arm>::find(aim.pose.matrix().data(), options, inside, NearestRow<Arm>::kStanding,
                             NearestRow<Arm>::kFewSteps, q);
-      if (Refinement::refine(q, aim)) {
-        real = true;
-        RightRows<Arm>::add(aim, out, q, true);
-        LimitRows<Arm>::place_all(aim, options, out);
-      }
+      real = add_led_to(aim, q, passed, out) || real;
+      LimitRows<Arm>::place_all(aim, options, out);
       if (out.count > 0 || !inside) return real;
     }
   }
