@@ -227,6 +227,17 @@ def _soak(read: Callable[[str], Measured]) -> str:
     return _table(head, rows) + _source(measured)
 
 
+def _collection_soak(read: Callable[[str], Measured]) -> str:
+    measured = read("collection_soak")
+    rows = []
+    for c in measured.found["classes"]:
+        counts = (c["arms"], c["rows"], c["wrong"], *c["poses"])
+        rows.append([_class(c["family"]), *(f"{count:,}" for count in counts)])
+    counted = ("missed", "without a row")
+    poses = ("random poses", *counted, "beside singularities", *counted)
+    return _table(("class", "arms", "rows", "wrong", *poses), rows) + _source(measured)
+
+
 def _batch(read: Callable[[str], Measured]) -> str:
     """The shortest time that the home page tells."""
     rows = read("peers").found["times"]
@@ -247,11 +258,12 @@ BLOCKS: dict[str, Callable[[Callable[[str], Measured]], str]] = {
     "peers": _peers,
     "answers": _answers,
     "soak": _soak,
+    "collection": _collection_soak,
     "batch": _batch,
 }
 """Block -> its text."""
 PAGES = {
-    PAGE: ("public", "corpus", "speed", "soak", "random", "tables", "peers"),
+    PAGE: ("public", "corpus", "speed", "soak", "collection", "random", "tables", "peers"),
     COMPARISON: ("peers", "answers"),
     COMPARISON.parents[1] / "index.md": ("batch",),
 }
