@@ -933,8 +933,8 @@ _PART = 2048  # poses whose arrays fit into a processor's cache
 
 class _ClosedForm(NamedTuple):
     """Rows `q` (N, M, dof); which are `valid`, which `singular`, of a continuum, or not valid, but behind
-    a joint that the pose leaves free, which are `rough` (N, M), and beside which the file's geometry may
-    have others: a `doubt`."""
+    a joint that the pose leaves free, or one an elimination can't tell of, which are `rough` (N, M), and
+    beside which the file's geometry may have others: a `doubt`."""
 
     q: Array
     valid: _Flags
@@ -1983,8 +1983,9 @@ def _placed_rows(arm: _Arm, asked: _Asked, limits: bool) -> list[_Answer]:
     """Of each pose."""
     out = [_Answer() for _ in asked.T]
     left = np.arange(len(out))
+    eliminated = arm.branches is None  # no joint has a value of its own then
     for tries in (range(1), range(1, arm.policy.tries)):
-        if not len(left):
+        if not len(left) or (eliminated and 0 not in tries):
             break
         which = np.repeat(left, len(tries))
         some = asked.at(which)
@@ -1997,7 +1998,7 @@ def _placed_rows(arm: _Arm, asked: _Asked, limits: bool) -> list[_Answer]:
             if going[i]:
                 going[i] = _goes_on(arm, some, k, rows[k], seeded.get(k, []), limits, out[i])
         left = left[going[left]]
-    if len(left):
+    if not (arm.rounded or eliminated) and len(left):
         _take_hidden(arm, asked, left, limits, out)
     doubtful = set(left.tolist()) | {i for i, answer in enumerate(out) if answer.loose}
     lost = sorted(i for i in doubtful if not out[i].rows)

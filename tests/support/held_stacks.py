@@ -33,9 +33,9 @@ def assert_solved_as_each_alone(
     T = forward(six.chain, q)
     T[:, :3, 3] *= plan.length
     policy = runtime_policy(SolvePolicy())
-    pose, rows = six_joint_rows(six, plan, T, policy)
+    pose, rows, _ = six_joint_rows(six, plan, T, policy)
     for k in range(len(held)):
         one = six_joints(chain, plan.length, moved, held[k : k + 1])
-        _, alone = six_joint_rows(one, plan, T[k : k + 1], policy)
+        _, alone, _ = six_joint_rows(one, plan, T[k : k + 1], policy)
         assert len(alone) >= 1
         np.testing.assert_allclose(rows[pose == k], alone, atol=atol)

@@ -65,7 +65,7 @@ def six_joints_batch(frames: Matrix, plan: Plan, poses: Matrix) -> list[Matrix]:
     frames (7, 4, 4): the chain as in `loop_frames.py`.
     """
     six = six_joints(frames, plan.length, plan.axes)
-    pose, rows = six_joint_rows(six, plan, poses, runtime_policy(SolvePolicy()))
+    pose, rows, _ = six_joint_rows(six, plan, poses, runtime_policy(SolvePolicy()))
     return _by_pose(rows, pose, len(poses))
 
 

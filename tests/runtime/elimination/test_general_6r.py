@@ -56,7 +56,9 @@ def run(
     ahead = tuple((find, (9, k, 0), 1e-7) for k in range(direct))
     plan = Plan(1.0, plans, (True,) * 6, find, ahead)
     motions = tuple((k, True, 1.0, 0.0) for k in range(6))
-    pose, q = six_joint_rows(six_joints(FRAMES, 1.0, motions, None), plan, np.eye(4)[None], POLICY)
+    pose, q, _ = six_joint_rows(
+        six_joints(FRAMES, 1.0, motions, None), plan, np.eye(4)[None], POLICY
+    )
     assert not pose.any()
     return q, len(calls)
 

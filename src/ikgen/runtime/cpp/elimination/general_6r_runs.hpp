@@ -106,6 +106,7 @@ inline bool solve_in_runs(const Frames& F, const Frame& T, const Turning& turnin
                           const std::array<std::array<int, 3>, N>& plans, Solutions& out) noexcept {
   const int given = out.count;
   int least = -1, number = 0;
+  bool ranked = true;  // whether no elimination of the pose itself lost its rank
   for (const double by : kAside) {
     const Frame there = displacement(by), back = inverse(there);
     for (const std::array<int, 3>& plan : plans)
@@ -114,19 +115,22 @@ inline bool solve_in_runs(const Frames& F, const Frame& T, const Turning& turnin
         Solutions mine;
         const Frame aim = shift ? compose(T, *shift) : T;
         const Spectrum roots = Run(F, T, aim, turning, plan, mine);
-        if (!shift) least = std::max(least, roots.real);
+        if (!shift) {
+          least = std::max(least, roots.real);
+          ranked = ranked && roots.real >= 0;
+        }
         const int known = out.count;
         for (int k = 0; k < mine.count; ++k) keep(mine.rows[static_cast<Index>(k)], out);
         if (out.count == kRoom) return true;  // of a continuum
         const bool alone = number == 0 && given <= mine.count && roots.simple && out.count == roots.real && out.count > 0;
         const bool even = out.count % 2 == 0, again = number > 0 && !roots.stalled;
         const bool repeated = again && even && mine.count == known && out.count == known;
-        if (least >= 0 && out.count >= least && ((alone && even) || repeated)) return true;
+        if (least >= 0 && out.count >= least && ((alone && even) || repeated)) return out.count > 0 || ranked;
         if (least >= 0 && out.count >= least && again && number > 2 && same_apart(F, T, turning, mine, out, known)) return true;
         ++number;
       }
   }
-  return out.count > 0 || least == 0;
+  return out.count > 0 || (ranked && least == 0);
 }
 
 }  // namespace g6

@@ -94,7 +94,7 @@ inline void add_product(double factor, const Mat<AR, AC>& A, Index ra, Index ca,
     }
 }
 
-inline constexpr double kNoRank = 1e10;  // of the eigenproblem's entries: half of a root's digits are rounding
+inline constexpr double kNoRank = 1e9;  // of the eigenproblem's entries: half of a root's digits are rounding
 
 struct Spectrum {
   int count = 0;  // roots theta_3 with imaginary parts below `accept`

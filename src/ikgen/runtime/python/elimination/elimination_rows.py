@@ -8,7 +8,7 @@ import numpy as np
 
 from ikgen.runtime.python.arm.chain_kinematics import Motion, forward
 from ikgen.runtime.python.arm.solved_arm import Arm
-from ikgen.runtime.python.arrays.array_types import Array, Index
+from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.elimination.general_6r import Plan, six_joint_rows
 from ikgen.runtime.python.elimination.six_joints import SixJoints, six_joints, with_tool_joint
 from ikgen.runtime.python.newton.refinement import smallest_singular_values
@@ -73,7 +73,7 @@ def _regular_first(arm: Arm, angles: Array, held: Array, T: Array) -> Array:
 
 def elimination_lanes(arm: Arm, plan: Plan, entries: tuple[Array, ...]) -> tuple[Array, ...]:
     """Of many poses the cosine and sine of every moving joint's angle, and the lengths of slides (most, N),
-    and which there are.
+    and which there are; the first are NaN where it can't tell whether there are any.
 
     entries: the pose's first three rows, then cosines, sines and distances of held joints.
     """
@@ -90,7 +90,8 @@ def elimination_lanes(arm: Arm, plan: Plan, entries: tuple[Array, ...]) -> tuple
     alike = bool((held == held[:1]).all())
     for start in range(0, count, _POSES):
         part = slice(start, start + _POSES)
-        pose, values = _rows_of_poses(arm, plan, T[part], held[:1] if alike else held[part])
+        pose, values, unsure = _rows_of_poses(arm, plan, T[part], held[:1] if alike else held[part])
+        lanes[:, 0, start + np.flatnonzero(unsure)] = np.nan
         place, member = places(pose), start + pose
         cosines, sines = np.cos(values.T), np.sin(values.T)
         rows = [
@@ -103,13 +104,13 @@ def elimination_lanes(arm: Arm, plan: Plan, entries: tuple[Array, ...]) -> tuple
     return (*lanes, found)
 
 
-def _rows_of_poses(arm: Arm, plan: Plan, T: Array, held: Array) -> tuple[Index, Array]:
+def _rows_of_poses(arm: Arm, plan: Plan, T: Array, held: Array) -> tuple[Index, Array, Flags]:
     """Pose indices (k,) in order, and at most `arm.most` rows (k, 6) for each of the poses T (N, 4, 4) with
-    joints `held` (1 or N, c)."""
-    pose, values = six_joint_rows(_six_joints(arm, plan, held), plan, T, arm.policy)
+    joints `held` (1 or N, c); for which (N,) there may be some though none was found."""
+    pose, values, unsure = six_joint_rows(_six_joints(arm, plan, held), plan, T, arm.policy)
     for i in np.flatnonzero(np.bincount(pose, minlength=1) > arm.most):
         some = _regular_first(arm, values[pose == i], held[i % len(held)], T[i])
         before, after = pose < i, pose > i
         values = np.concatenate([values[before], some, values[after]])
         pose = np.concatenate([pose[before], np.full(len(some), i), pose[after]])
-    return pose, values
+    return pose, values, unsure

@@ -158,7 +158,9 @@ def _runs(plan: Plan) -> list[tuple[Way, tuple[Array | None, ...]]]:
     return runs + [(way, moves) for moves in _CLOSE for way in ways]
 
 
-def six_joint_rows(six: SixJoints, plan: Plan, T: Array, policy: Policy) -> tuple[Index, Array]:
+def six_joint_rows(
+    six: SixJoints, plan: Plan, T: Array, policy: Policy
+) -> tuple[Index, Array, Flags]:
     """All real solutions of the six joints for poses T (N, 4, 4).
 
     One run of the first is enough where each of its roots is clearly real, or clearly not, and there are
@@ -168,7 +170,8 @@ def six_joint_rows(six: SixJoints, plan: Plan, T: Array, policy: Policy) -> tupl
     is known and no more, an even number, none stalls near another, and one of the pose itself has kept its
     rank; where solutions meet the next elimination has to find as many that lie apart. What a direct way
     leaves open, these runs confirm or complete.
-    Returns pose indices (k,) in order and joint values (k, 6), angles in (-pi, pi], sorted.
+    Returns pose indices (k,) in order, joint values (k, 6), angles in (-pi, pi], sorted, and which poses
+    (N,) have none though no run is sure of it, as next to a continuum.
     """
     T = T.copy()
     T[:, :3, 3] /= plan.length
@@ -176,6 +179,7 @@ def six_joint_rows(six: SixJoints, plan: Plan, T: Array, policy: Policy) -> tupl
     inside = np.abs(T[:, :3]).max(axis=(1, 2), initial=0.0) < 1e6  # false for NaN
     todo = np.nonzero(inside)[0]
     least, size, hollow = np.full(len(T), -1), len(T), np.zeros(len(T), dtype=bool)
+    ranked = np.ones(len(T), dtype=bool)
     for number, (way, moves) in enumerate(_runs(plan)):
         if not len(todo):
             break
@@ -183,6 +187,7 @@ def six_joint_rows(six: SixJoints, plan: Plan, T: Array, policy: Policy) -> tupl
         near = way[2]
         if moves[0] is None and number >= len(plan.direct):
             least[todo] = np.maximum(least[todo], real)
+            ranked[todo] &= real >= 0
         best = np.lexsort((before >= near, pose))
         q, pose, kept = distinct_rows(q[best], pose[best], plan.turning, policy.coincident)
         mine = np.bincount(pose, minlength=size)[todo]
@@ -203,7 +208,10 @@ def six_joint_rows(six: SixJoints, plan: Plan, T: Array, policy: Policy) -> tupl
             settled[left] = _same_apart(six, plan, todo[left], ((found, of), old, (q, pose)))
         todo = todo[~(settled & (count >= least[todo]))]
     unit = np.where(plan.turning, 1.0, plan.length)
-    return of, sorted_rows(found, of, plan.turning) * unit
+    unsure = inside & ~ranked
+    unsure[todo] |= least[todo] != 0
+    unsure[of] = False
+    return of, sorted_rows(found, of, plan.turning) * unit, unsure
 
 
 def _run(

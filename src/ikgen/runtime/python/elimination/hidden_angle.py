@@ -29,7 +29,7 @@ _REAL = 1e-8  # rad: imaginary part below which a root is real
 DOUBTFUL = 1e-3  # rad: imaginary part below which a root may be half of a double one
 _FOURFOLD = 0.03  # rad: imaginary part below which a root may be a quarter of a fourfold one
 _CROWD = 8.0  # how far off the other pair of a fourfold root is at most, over the imaginary part
-_NO_RANK = 1e10  # entry of the eigenproblem above which half of a root's digits are rounding
+_NO_RANK = 1e9  # entry of the eigenproblem above which half of a root's digits are rounding
 _LIFT = np.kron(  # of 1, c and s by half angles, times cos h and times sin h
     np.array(
         [

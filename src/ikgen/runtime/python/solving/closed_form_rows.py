@@ -31,8 +31,8 @@ _PART = 2048  # poses whose arrays fit into a processor's cache
 
 class ClosedForm(NamedTuple):
     """Rows `q` (N, M, dof); which are `valid`, which `singular`, of a continuum, or not valid, but behind
-    a joint that the pose leaves free, which are `rough` (N, M), and beside which the file's geometry may
-    have others: a `doubt`."""
+    a joint that the pose leaves free, or one an elimination can't tell of, which are `rough` (N, M), and
+    beside which the file's geometry may have others: a `doubt`."""
 
     q: Array
     valid: Flags
@@ -68,6 +68,10 @@ def closed_form(arm: Arm, T: Array, near: Array | None, held: Array) -> ClosedFo
     start = np.zeros((len(T), len(arm.lower))) if near is None else near
     with np.errstate(all="ignore"):
         found = ClosedForm(*in_blocks(arm.branches_batch, _PART, T, start, held))
+    if arm.branches is None:
+        unsure = np.flatnonzero(np.isnan(found.q[:, 0]).any(axis=1))
+        found.q[unsure, 0] = start[unsure]
+        found.singular[unsure, 0] = True
     found.q[:, :, list(arm.free)] = held[:, None, : len(arm.free)]
     return found
 

@@ -38,8 +38,9 @@ def placed_rows(arm: Arm, asked: Asked, limits: bool) -> list[Answer]:
     in the end the nearest pose's row; so too where limits leave none, but a continuum may go on inside."""
     out = [Answer() for _ in asked.T]
     left = np.arange(len(out))
+    eliminated = arm.branches is None  # no joint has a value of its own then
     for tries in (range(1), range(1, arm.policy.tries)):
-        if not len(left):
+        if not len(left) or (eliminated and 0 not in tries):
             break
         which = np.repeat(left, len(tries))
         some = asked.at(which)
@@ -52,7 +53,7 @@ def placed_rows(arm: Arm, asked: Asked, limits: bool) -> list[Answer]:
             if going[i]:
                 going[i] = _goes_on(arm, some, k, rows[k], seeded.get(k, []), limits, out[i])
         left = left[going[left]]
-    if not arm.rounded and len(left):
+    if not (arm.rounded or eliminated) and len(left):
         _take_hidden(arm, asked, left, limits, out)
     doubtful = set(left.tolist()) | {i for i, answer in enumerate(out) if answer.loose}
     lost = sorted(i for i in doubtful if not out[i].rows)

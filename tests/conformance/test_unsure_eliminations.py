@@ -1,0 +1,45 @@
+"""Poses at which an elimination loses its rank altogether: all links of a chain in one plane."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from benchmarks.agreement import arm_of, runner_of
+from tests.support.solving import NO_COMPILER
+
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
+from ikgen.verify.completeness import survey
+from ikgen.verify.sampling import SampleSet
+from ikgen.verify.trials import run_trial
+
+POSES = 40
+
+
+@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")
+def test_none_is_without_a_row_where_all_links_lie_in_one_plane(tmp_path: Path) -> None:
+    """Four parallel axes behind two that are not: with the second joint at exactly 0 the first axis lies
+    in their plane, and two joints more than the pose reads move it there."""
+    rows = ["0, 0", "pi/2, 1.1", "pi/2, 1.1", "0, 1.1", "0, 1.1", "0, 1.1"]
+    joints = [
+        f'[[joints]]\ntype = "revolute"\nalpha = "{alpha}"\na = {a}\nd = 0\ntheta = 0\n'
+        "limits = [-2.8, 2.8]\n"
+        for alpha, a in (row.split(", ") for row in rows)
+    ]
+    table = tmp_path / "plane.toml"
+    turned = "[base]\nrpy = [3.141592653589793, -1.5707963267948966, 0]\n"
+    tool = "[tool]\nxyz = [1.2, 0, 0]\nrpy = [0, 1.5707963267948966, 0]\n"
+    table.write_text(f'name = "plane"\nconvention = "modified"\n{"".join(joints)}{turned}{tool}')
+    derivation = derive(Request(table))
+    arm = arm_of(derivation)
+    q = arm.uniform(np.random.default_rng(1), POSES)
+    q[:, 1] = 0.0
+    sample = SampleSet("plane", q, arm.oracle.forward(q), arm.sigma(q))
+    assert sample.sigma.max() < 1e-15
+    for language in ("python", "cpp"):
+        runner = runner_of(derivation, language, tmp_path)
+        trial = run_trial(runner, arm, sample, limits=True)
+        assert not survey(arm, runner, [trial]).unanswered.any(), language
+        assert (trial.rows.count > 0).all()
