@@ -93,6 +93,37 @@ CROSSING = [
     0.0080602407803691111, -0.60040183569898875,
 ]  # fmt: skip
 """Of that arm: its shoulder's continuum and its wrist's cross near it; rows start on one of them."""
+OFFSET_WRIST = [
+    ("0 0 0", "0 0 0"), ("0 0 0", "1.5708 0 0"), ("0 0.350 0", "0 3.14159 0"),
+    ("0 0 0", "-1.5708 3.14159 0"), ("0 0.005263 0.305", "1.5708 0 3.14159"), ("0 0 0", "-1.5708 0 0"),
+]  # fmt: skip
+"""Axes 2 and 3 parallel but for rounding, which makes real roots of the elimination complex."""
+SPLIT = [
+    [
+        2.2895252034364,
+        1.2609804270047742,
+        -1.239369193829827,
+        -1.035813521442566,
+        -0.004894098,
+        0.524155,
+    ],
+    [
+        -1.8607306980890808,
+        2.0629663470185085,
+        -2.59897556665991,
+        2.499138387816748,
+        -0.593451262,
+        -0.548892,
+    ],
+    [
+        0.696744942030947,
+        -1.3786355823003311,
+        2.3713593645100803,
+        0.711279624879338,
+        0.0171215263,
+        2.727583,
+    ],
+]
 
 
 @dataclass(frozen=True)
@@ -122,15 +153,29 @@ def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     return Made(q, arm, python, cpp)
 
 
-def test_continua_that_cross_are_followed_from_what_is_found_between_them(tmp_path: Path) -> None:
+def of_origins(origins: list[tuple[str, str]], folder: Path) -> Path:
     joints = [
         f'<joint name="j{k}" type="continuous"><parent link="l{k}"/><child link="l{k + 1}"/>'
         f'<origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="0 0 1"/></joint><link name="l{k + 1}"/>'
-        for k, (xyz, rpy) in enumerate(DIGITS)
+        for k, (xyz, rpy) in enumerate(origins)
     ]
-    path = tmp_path / "digits.urdf"
+    path = folder / "digits.urdf"
     path.write_text(f'<robot name="digits"><link name="l0"/>{"".join(joints)}</robot>')
-    derivation = derive(Request(path))
+    return path
+
+
+def test_roots_that_rounding_made_complex_are_found(tmp_path: Path) -> None:
+    derivation = derive(Request(of_origins(OFFSET_WRIST, tmp_path)))
+    arm, q = arm_of(derivation), np.array(SPLIT)
+    sample = SampleSet("split", q, arm.oracle.forward(q), arm.sigma(q))
+    for language in ("python", "cpp"):
+        runner = runner_of(derivation, language, tmp_path)
+        found = survey(arm, runner, [run_trial(runner, arm, sample, limits=False)])
+        assert not found.missed.any(), language
+
+
+def test_continua_that_cross_are_followed_from_what_is_found_between_them(tmp_path: Path) -> None:
+    derivation = derive(Request(of_origins(DIGITS, tmp_path)))
     runner = runner_of(derivation, "cpp", tmp_path)
     q = np.array([CROSSING])
     rows = runner.solve_many(runner.forward(q), limits=False)
