@@ -38,13 +38,15 @@ class Reading:
 @dataclass(frozen=True, slots=True)
 class Held:
     """Joints that were chosen to be held, base to tip, why, the choices that came next, those before that
-    the verification refused, and what put each of the `others` behind ("" where that is not known)."""
+    the verification refused, and what put each of the `others` behind ("" where that is not known);
+    `shared` are joints that move and carry other arms too."""
 
     joints: tuple[str, ...]
     why: str
     others: tuple[tuple[str, ...], ...] = ()
     refused: tuple[tuple[str, ...], ...] = ()
     behind: tuple[str, ...] = ()
+    shared: tuple[str, ...] = ()
 
     @property
     def words(self) -> str:
@@ -56,6 +58,10 @@ class Held:
             words = zip_longest(map(" and ".join, names), reasons, fillvalue="")
             listed = [f"{name} ({reason})" if reason else name for name, reason in words]
             line += f"; {kind}: {', '.join(listed)}" if listed else ""
+        if self.shared:
+            move, them = ("moves", "it") if len(self.shared) == 1 else ("move", "them")
+            line += f"; {' and '.join(self.shared)} {move}, and other arms with {them}"
+            line += ": --free NAME holds one"
         return line
 
 

@@ -213,5 +213,18 @@ def _explained(
         why = "closed form by rules, with a weak step,"
     others = [choice for choice in choices if choice.held != taken.held][:_OTHERS]
     behind = tuple(choice.behind(taken) for choice in others)
-    held = Held(taken.held, why, tuple(choice.held for choice in others), refused, behind)
+    names = tuple(choice.held for choice in others)
+    held = Held(taken.held, why, names, refused, behind, _shared(form.reading, taken))
     return replace(form, held=held)
+
+
+def _shared(reading: Reading, taken: HeldChoice) -> tuple[str, ...]:
+    """The joints that move with this choice and carry other arms of the robot too, base to tip."""
+    from ikgen.chains.arms import candidate_chains
+
+    if reading.tree is None or reading.chain is None:
+        return ()
+    names = [joint.name for joint in reading.dh.joints]
+    others = [arm.joints for arm in candidate_chains(reading.tree) if names[-1] not in arm.joints]
+    carried = {name for joints in others for name in joints}
+    return tuple(name for name in names if name in carried and name not in taken.held)

@@ -73,6 +73,7 @@ def _chosen(derivation: Derivation) -> dict[str, Any]:
         chosen |= {"held": list(held.joints), "why": held.why}
         chosen["others"] = [list(names) for names in held.others]
         chosen["refused"] = [list(names) for names in held.refused]
+        chosen["shared"] = list(held.shared)
     return chosen
 
 
