@@ -169,17 +169,14 @@ def six_joint_rows(
     takes them back), by the next elimination and with the pose displaced by less, until they find all that
     is known and no more, an even number, none stalls near another, and one of the pose itself has kept its
     rank; where solutions meet the next elimination has to find as many that lie apart. What a direct way
-    leaves open, these runs confirm or complete.
-    Returns pose indices (k,) in order, joint values (k, 6), angles in (-pi, pi], sorted, and which poses
-    (N,) have none though no run is sure of it, as next to a continuum.
+    leaves open, these runs confirm or complete. Returns pose indices (k,) in order, joint values (k, 6),
+    angles in (-pi, pi], sorted, and which poses (N,) have none though that is not sure, as on a continuum.
     """
     T = T.copy()
     T[:, :3, 3] /= plan.length
     found, of = np.zeros((0, 6)), np.zeros(0, dtype=np.intp)
-    inside = np.abs(T[:, :3]).max(axis=(1, 2), initial=0.0) < 1e6  # false for NaN
-    todo = np.nonzero(inside)[0]
-    least, size, hollow = np.full(len(T), -1), len(T), np.zeros(len(T), dtype=bool)
-    ranked = np.ones(len(T), dtype=bool)
+    todo = np.flatnonzero(np.abs(T[:, :3]).max(axis=(1, 2), initial=0.0) < 1e6)  # false for NaN
+    least, size, (hollow, unsure) = np.full(len(T), -1), len(T), np.zeros((2, len(T)), dtype=bool)
     for number, (way, moves) in enumerate(_runs(plan)):
         if not len(todo):
             break
@@ -187,7 +184,7 @@ def six_joint_rows(
         near = way[2]
         if moves[0] is None and number >= len(plan.direct):
             least[todo] = np.maximum(least[todo], real)
-            ranked[todo] &= real >= 0
+            unsure[todo] |= real < 0
         best = np.lexsort((before >= near, pose))
         q, pose, kept = distinct_rows(q[best], pose[best], plan.turning, policy.coincident)
         mine = np.bincount(pose, minlength=size)[todo]
@@ -208,7 +205,6 @@ def six_joint_rows(
             settled[left] = _same_apart(six, plan, todo[left], ((found, of), old, (q, pose)))
         todo = todo[~(settled & (count >= least[todo]))]
     unit = np.where(plan.turning, 1.0, plan.length)
-    unsure = inside & ~ranked
     unsure[todo] |= least[todo] != 0
     unsure[of] = False
     return of, sorted_rows(found, of, plan.turning) * unit, unsure
