@@ -23,7 +23,7 @@ from benchmarks.command_line import Source, emit, sources
 from benchmarks.module_soak import soak_module
 from benchmarks.results import write_result
 from benchmarks.soak import ABOVE, soak
-from benchmarks.soak_counts import Soak
+from benchmarks.soak_counts import Soak, added
 
 __all__ = ["by_class", "main"]
 
@@ -37,11 +37,9 @@ def by_class(found: Sequence[tuple[str, Soak]]) -> list[dict[str, object]]:
     out: list[dict[str, object]] = []
     for family in sorted({family for family, _ in found}):
         some = [one for name, one in found if name == family]
-        rows, wrong = (sum(getattr(one, name) for one in some) for name in ("rows", "wrong"))
-        totals = [sum(decade[i] for one in some for decade in one.decades) for i in range(6)]
-        out.append(
-            {"family": family, "arms": len(some), "rows": rows, "wrong": wrong, "poses": totals}
-        )
+        whole = added(some)
+        counts = {"rows": whole.rows, "wrong": whole.wrong, "poses": list(whole.totals)}
+        out.append({"family": family, "arms": len(some), **counts})
     return out
 
 
@@ -70,6 +68,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     if options.record and options.language != "cpp":
         parser.error("--record keeps what was found of headers: leave out --language python")
+    if options.record and options.only:
+        parser.error("--record is for the whole collection")
     poses, near = POSES[options.language]
     counts = options.poses or poses, options.near or near
     arms = [source for source in sources(("corpus",)) if options.only in source.key]
@@ -84,7 +84,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 print(f"{source.key}: {one}", file=sys.stderr)
                 continue
             found.append((source.family, one))
-            _, missed, empty, _, beside, none = map(sum, zip(*one.decades, strict=True))
+            _, missed, empty, _, beside, none = one.totals
             print(
                 f"{source.key}: {one.wrong} of {one.rows} rows wrong; {missed} missed, {empty} without a "
                 f"row; beside singularities {beside}, {none}", *one.cases, sep="\n  ", flush=True,

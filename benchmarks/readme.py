@@ -69,6 +69,12 @@ ARMS = {
 }
 """The arms of the comparison that the README shows, with its names for them."""
 
+SOAKED = (
+    "rows", "wrong", "random poses", "missed", "without a row",
+    "beside singularities", "missed", "without a row",
+)  # fmt: skip
+"""What is counted of poses that were put through code."""
+
 
 class MarkError(Exception):
     """A block without an end, an end without a block, a block twice, missing or not known."""
@@ -222,9 +228,7 @@ def _soak(read: Callable[[str], Measured]) -> str:
         poses, missed, empty, *beside = map(sum, zip(*found["decades"], strict=True))
         counts = (found["rows"], found["wrong"], poses, missed, empty, *beside)
         rows.append([name.replace("_", " "), *(f"{count:,}" for count in counts)])
-    counted = ("missed", "without a row")
-    head = ("arm", "rows", "wrong", "random poses", *counted, "beside singularities", *counted)
-    return _table(head, rows) + _source(measured)
+    return _table(("arm", *SOAKED), rows) + _source(measured)
 
 
 def _collection_soak(read: Callable[[str], Measured]) -> str:
@@ -233,9 +237,7 @@ def _collection_soak(read: Callable[[str], Measured]) -> str:
     for c in measured.found["classes"]:
         counts = (c["arms"], c["rows"], c["wrong"], *c["poses"])
         rows.append([_class(c["family"]), *(f"{count:,}" for count in counts)])
-    counted = ("missed", "without a row")
-    poses = ("random poses", *counted, "beside singularities", *counted)
-    return _table(("class", "arms", "rows", "wrong", *poses), rows) + _source(measured)
+    return _table(("class", "arms", *SOAKED), rows) + _source(measured)
 
 
 def _batch(read: Callable[[str], Measured]) -> str:

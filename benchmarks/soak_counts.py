@@ -22,6 +22,11 @@ class Soak:
     decades: tuple[tuple[int, ...], ...]
     cases: tuple[str, ...]
 
+    @property
+    def totals(self) -> tuple[int, ...]:
+        """The sums over all decades."""
+        return tuple(map(sum, zip(*self.decades, strict=True)))
+
     def failures(self, above: float) -> int:
         """Wrong rows, and misses and unanswered poses at singular values from `above` on."""
         kept = [d for k, d in enumerate(self.decades) if 10.0 ** -(k + 1) >= above * (1 - 1e-9)]

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from benchmarks.agreement import arm_of, runner_of
+from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import NO_COMPILER
 
 from ikgen.generation.derive import derive
@@ -50,21 +51,8 @@ LOST = {
 def robot(kind: str, folder: Path) -> Path:
     """The arm's file."""
     *moving, tip = ORIGINS[kind]
-    n = len(moving)
-    slides = {k: axis for k, axis in enumerate(("1 0 0", "0 1 0")) if n > 5}
-    joints = [
-        f'<joint name="j{k}" type="{"prismatic" if k in slides else "revolute"}"><parent link="l{k}"/>'
-        f'<child link="l{k + 1}"/><origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="{slides.get(k, "0 0 1")}"/>'
-        f'<limit lower="-2.8" upper="2.8" effort="1" velocity="1"/></joint><link name="l{k + 1}"/>'
-        for k, (xyz, rpy) in enumerate(moving)
-    ]
-    joints.append(
-        f'<joint name="tool" type="fixed"><parent link="l{n}"/><child link="tip"/>'
-        f'<origin xyz="{tip[0]}" rpy="{tip[1]}"/></joint><link name="tip"/>'
-    )
-    path = folder / "small.urdf"
-    path.write_text(f'<robot name="small"><link name="l0"/>{"".join(joints)}</robot>')
-    return path
+    slides = dict(enumerate(("1 0 0", "0 1 0"))) if len(moving) > 5 else {}
+    return serial_urdf(folder / "small.urdf", moving, tip=tip, slides=slides, limit=2.8)
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from benchmarks.agreement import arm_of, runner_of
 from numpy.typing import NDArray
+from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import FIXTURES, NO_COMPILER
 
 from ikgen.generation.derive import derive
@@ -153,19 +154,8 @@ def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     return Made(q, arm, python, cpp)
 
 
-def of_origins(origins: list[tuple[str, str]], folder: Path) -> Path:
-    joints = [
-        f'<joint name="j{k}" type="continuous"><parent link="l{k}"/><child link="l{k + 1}"/>'
-        f'<origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="0 0 1"/></joint><link name="l{k + 1}"/>'
-        for k, (xyz, rpy) in enumerate(origins)
-    ]
-    path = folder / "digits.urdf"
-    path.write_text(f'<robot name="digits"><link name="l0"/>{"".join(joints)}</robot>')
-    return path
-
-
 def test_roots_that_rounding_made_complex_are_found(tmp_path: Path) -> None:
-    derivation = derive(Request(of_origins(OFFSET_WRIST, tmp_path)))
+    derivation = derive(Request(serial_urdf(tmp_path / "wrist.urdf", OFFSET_WRIST)))
     arm, q = arm_of(derivation), np.array(SPLIT)
     sample = SampleSet("split", q, arm.oracle.forward(q), arm.sigma(q))
     for language in ("python", "cpp"):
@@ -175,7 +165,7 @@ def test_roots_that_rounding_made_complex_are_found(tmp_path: Path) -> None:
 
 
 def test_continua_that_cross_are_followed_from_what_is_found_between_them(tmp_path: Path) -> None:
-    derivation = derive(Request(of_origins(DIGITS, tmp_path)))
+    derivation = derive(Request(serial_urdf(tmp_path / "digits.urdf", DIGITS)))
     runner = runner_of(derivation, "cpp", tmp_path)
     q = np.array([CROSSING])
     rows = runner.solve_many(runner.forward(q), limits=False)

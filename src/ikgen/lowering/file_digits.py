@@ -57,9 +57,9 @@ class FileDigits:
 
     def no_less(self, square: Expr) -> Expr:
         """At least as much as a single square is taken for."""
-        return (
-            at_least(self._graph, square, self._graph.const(self._least)) if self._least else square
-        )
+        if not self._least:
+            return square
+        return at_least(self._graph, square, self._graph.const(self._least))
 
     def _args(self, node: Expr) -> tuple[Expr, ...]:
         if node.id in self._of:

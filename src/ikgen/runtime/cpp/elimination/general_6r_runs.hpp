@@ -99,8 +99,8 @@ inline bool same_apart(const Frames& F, const Frame& T, const Turning& turning, 
 // solutions, and each a solution to many digits. Otherwise more runs follow, with the pose displaced to either side, by
 // the next elimination and with the pose displaced by less, until one finds all that is known and no more, an even number,
 // none of it stalls near another, and one of the pose itself tells; where solutions meet the next elimination has to find
-// as many that lie apart, as one alone may miss the same of a crowd twice.
-// False where none was found by all of them, though eliminations have roots or no rank.
+// as many that lie apart, as one alone may miss the same of a crowd twice. False where there may be some though none was
+// found: an elimination of the pose itself lost its rank, or has roots.
 template <auto Run, class Frames, std::size_t N>
 inline bool solve_in_runs(const Frames& F, const Frame& T, const Turning& turning,
                           const std::array<std::array<int, 3>, N>& plans, Solutions& out) noexcept {
@@ -125,8 +125,9 @@ inline bool solve_in_runs(const Frames& F, const Frame& T, const Turning& turnin
         const bool alone = number == 0 && given <= mine.count && roots.simple && out.count == roots.real && out.count > 0;
         const bool even = out.count % 2 == 0, again = number > 0 && !roots.stalled;
         const bool repeated = again && even && mine.count == known && out.count == known;
-        if (least >= 0 && out.count >= least && ((alone && even) || repeated)) return out.count > 0 || ranked;
-        if (least >= 0 && out.count >= least && again && number > 2 && same_apart(F, T, turning, mine, out, known)) return true;
+        const bool enough = least >= 0 && out.count >= least;
+        if (enough && ((alone && even) || repeated)) return out.count > 0 || ranked;
+        if (enough && again && number > 2 && same_apart(F, T, turning, mine, out, known)) return true;
         ++number;
       }
   }

@@ -112,8 +112,8 @@ struct SixJointArm {
     write(frame, F[n]);
   }
 
-  // Per solution the cosine and sine of every moving joint's angle, or its length; how many, or -1 as in Roots. x: the pose by rows, then
-  // the held values.
+  // Per solution the cosine and sine of every moving joint's angle, or its length; how many, or -1 as in Roots. x: the
+  // pose by rows, then the held values.
   template <std::size_t N>
   static int branches(const double* x, double (&roots)[Arm::kMaxSolutions][N]) noexcept {
     double F[kFrames][12], T[12];

@@ -39,8 +39,9 @@ def placed_rows(arm: Arm, asked: Asked, limits: bool) -> list[Answer]:
     out = [Answer() for _ in asked.T]
     left = np.arange(len(out))
     eliminated = arm.branches is None  # no joint has a value of its own then
-    for tries in (range(1), range(1, arm.policy.tries)):
-        if not len(left) or (eliminated and 0 not in tries):
+    more = [] if eliminated else [range(1, arm.policy.tries)]
+    for tries in (range(1), *more):
+        if not len(left):
             break
         which = np.repeat(left, len(tries))
         some = asked.at(which)

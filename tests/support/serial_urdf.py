@@ -1,0 +1,45 @@
+"""Serial arms as URDF files, from where each joint lies in the one before."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+__all__ = ["Origin", "serial_urdf"]
+
+Origin = tuple[str, str]
+"""xyz (m) and rpy (rad), as files have them."""
+
+
+def serial_urdf(
+    path: Path,
+    origins: Sequence[Origin],
+    *,
+    tip: Origin | None = None,
+    slides: Mapping[int, str] | None = None,
+    limit: float | None = None,
+) -> Path:
+    """Joints j0, j1, ... between links l0, l1, ..., which turn about z, without limits or to `limit`
+    (rad, m) to either side; those of `slides` slide along their axes. With `tip` a fixed link of that
+    name."""
+    along = slides or {}
+    bound = (
+        ""
+        if limit is None
+        else f'<limit lower="{-limit}" upper="{limit}" effort="1" velocity="1"/>'
+    )
+    text = '<link name="l0"/>'
+    for k, (xyz, rpy) in enumerate(origins):
+        kind = "prismatic" if k in along else "continuous" if limit is None else "revolute"
+        text += (
+            f'<joint name="j{k}" type="{kind}"><parent link="l{k}"/><child link="l{k + 1}"/>'
+            f'<origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="{along.get(k, "0 0 1")}"/>{bound}</joint>'
+            f'<link name="l{k + 1}"/>'
+        )
+    if tip is not None:
+        text += (
+            f'<joint name="tool" type="fixed"><parent link="l{len(origins)}"/><child link="tip"/>'
+            f'<origin xyz="{tip[0]}" rpy="{tip[1]}"/></joint><link name="tip"/>'
+        )
+    path.write_text(f'<robot name="{path.stem}">{text}</robot>')
+    return path
