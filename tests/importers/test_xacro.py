@@ -240,6 +240,11 @@ class TestPackages:
         environment = {"AMENT_PREFIX_PATH": f"/nowhere:{tmp_path}"}
         assert self.find(file, "wanted", environment=environment) == tmp_path / "share/wanted"
 
+    def test_a_sourced_workspace_of_ros_1(self, file, tmp_path):
+        there = package(tmp_path / "ws/src/repository/wanted")
+        environment = {"ROS_PACKAGE_PATH": f":/nowhere:{tmp_path / 'ws/src'}"}
+        assert self.find(file, "wanted", environment=environment) == there
+
     @pytest.mark.parametrize("name", ["../../marker", "/etc/hostname", "..", "", "a/b", ".hidden"])
     def test_a_path_is_no_name(self, file, tmp_path, name):
         (tmp_path / "share/ament_index/resource_index/packages").mkdir(parents=True)

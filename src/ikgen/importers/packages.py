@@ -1,7 +1,8 @@
 """Where a ROS package lies, found without ROS: `$(find pkg)` and `package://pkg`.
 
 Looked for in this order: the package that holds the file, the directories that the user gave, the
-directories above the file and the siblings of its package, the ament index of a sourced workspace.
+directories above the file and the siblings of its package, the ament index of a sourced workspace,
+the folders of a sourced ROS 1 workspace.
 """
 
 from __future__ import annotations
@@ -66,7 +67,7 @@ class PackageFinder:
             return directory.resolve()
         searched = [str(path) for path in self.package_paths]
         searched.append(f"the directories above {self.start} and beside its package")
-        searched.append("AMENT_PREFIX_PATH")
+        searched += ["AMENT_PREFIX_PATH", "ROS_PACKAGE_PATH"]
         raise PackageNotFoundError(name, searched)
 
     def _candidates(self, name: str) -> Iterator[Path]:
@@ -80,10 +81,14 @@ class PackageFinder:
         nearby = [*above[:_SEARCH_DEPTH], *beside]
         yield from (directory for directory in nearby if _is_package(directory, name))
         yield from (directory for directory in above if manifest_name(directory) == name)
-        for prefix in self.environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
-            index = Path(prefix, "share/ament_index/resource_index/packages", name)
-            if prefix and index.is_file():
-                yield Path(prefix, "share", name)
+        for prefix in self._sourced("AMENT_PREFIX_PATH"):
+            if (prefix / "share/ament_index/resource_index/packages" / name).is_file():
+                yield prefix / "share" / name
+        for folder in self._sourced("ROS_PACKAGE_PATH"):
+            yield from _inside(folder, name, _SEARCH_DEPTH)
+
+    def _sourced(self, variable: str) -> list[Path]:
+        return [Path(one) for one in self.environment.get(variable, "").split(os.pathsep) if one]
 
 
 def _inside(directory: Path, name: str, depth: int) -> Iterator[Path]:
