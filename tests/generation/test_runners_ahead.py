@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import tempfile
-import time
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -12,6 +11,7 @@ from typing import Any
 
 import pytest
 from tests.support.solving import FIXTURES
+from tests.support.waiting_program import assert_ended, script_of, wait_until_started
 
 from ikgen.errors import BadDescriptionError, VerificationError
 from ikgen.generation import emitted_checks
@@ -139,17 +139,16 @@ def test_an_output_that_cannot_be_emitted_is_not_one_that_cannot_be_run(
 def test_a_compiler_ends_with_a_verification_that_does(
     kind: type[BaseException], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    scratch, started, late = (tmp_path / name for name in ("scratch", "started", "late"))
+    scratch, number = tmp_path / "scratch", tmp_path / "number"
     scratch.mkdir()
     compiler = tmp_path / "compiler"
-    compiler.write_text(f"#!/bin/sh\ntouch {started}; sleep 1; touch {late}\n")
+    compiler.write_text(f"#!/bin/sh\n{script_of(number)}\n")
     compiler.chmod(0o755)
     monkeypatch.setenv("CXX", str(compiler))
     monkeypatch.setattr(tempfile, "tempdir", str(scratch))
 
     def fail(*_: object, **__: object) -> None:
-        while not started.exists():
-            time.sleep(0.01)
+        wait_until_started(number)
         raise kind("wrong")
 
     monkeypatch.setattr(emitted_checks, "verify_one", fail)
@@ -157,5 +156,4 @@ def test_a_compiler_ends_with_a_verification_that_does(
     with pytest.raises(kind):
         generate(request, Outputs(out=tmp_path / "out", emit=("python", "cpp")))
     assert not list(scratch.iterdir()) and not (tmp_path / "out").exists()
-    time.sleep(1.2)
-    assert not late.exists()
+    assert_ended(number)

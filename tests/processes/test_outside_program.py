@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 
 import pytest
+from tests.support.waiting_program import assert_ended, script_of, wait_until_started
 
 from ikgen.errors import MissingToolError, UsageError
 from ikgen.processes.outside_program import RunningProgram, run_program
@@ -62,19 +63,15 @@ def test_one_that_hangs_ends_with_all_that_it_started(
 @pytest.mark.skipif(os.name == "nt", reason="needs process groups")
 @pytest.mark.parametrize("how", ["end", "del"])
 def test_one_that_runs_meanwhile_is_ended_where_nobody_waits(how: str, tmp_path: Path) -> None:
-    number, late = tmp_path / "number", tmp_path / "late"
-    running = RunningProgram(["sh", "-c", f"echo $$ > {number}; sleep 1; touch {late}"])
-    while not (number.exists() and number.read_text().strip()):
-        time.sleep(0.01)
+    number = tmp_path / "number"
+    running = RunningProgram(["sh", "-c", script_of(number)])
+    wait_until_started(number)
     if how == "end":
         running.end()
         assert running.finished().words == "was ended by SIGKILL"
     else:
         del running
-    with pytest.raises(ProcessLookupError):  # not even to be waited for
-        os.kill(int(number.read_text()), 0)
-    time.sleep(1.1)
-    assert not late.exists()
+    assert_ended(number)
 
 
 def test_its_time_counts_from_its_start(monkeypatch: pytest.MonkeyPatch) -> None:

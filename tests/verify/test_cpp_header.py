@@ -5,12 +5,12 @@ from __future__ import annotations
 import dataclasses
 import os
 import tempfile
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 from tests.support.fake_arms import tree_of
+from tests.support.waiting_program import assert_ended, script_of, wait_until_started
 
 from ikgen.errors import BadDescriptionError, MissingToolError, VerificationError
 from ikgen.verify.oracle import PinocchioOracle
@@ -198,22 +198,20 @@ def compiler(folder: Path, script: str) -> str:
 def test_nothing_of_a_header_that_is_still_compiled_is_left(
     how: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    scratch, started, late = (tmp_path / name for name in ("scratch", "started", "late"))
+    scratch, number = tmp_path / "scratch", tmp_path / "number"
     scratch.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(scratch))
-    monkeypatch.setenv("CXX", compiler(tmp_path, f"touch {started}; sleep 1; touch {late}"))
+    monkeypatch.setenv("CXX", compiler(tmp_path, script_of(number)))
     (tmp_path / "planar_ik.hpp").write_text(HEADER)
     runner = CppHeader(tmp_path / "planar_ik.hpp", constants())
-    while not started.exists():
-        time.sleep(0.01)
-    assert len(list(scratch.iterdir())) == 1 and not late.exists()
+    wait_until_started(number)
+    assert len(list(scratch.iterdir())) == 1
     if how == "closed":
         runner.close()
     else:
         del runner
     assert not list(scratch.iterdir())
-    time.sleep(1.2)
-    assert not late.exists()
+    assert_ended(number)
 
 
 @pytest.mark.skipif(os.name == "nt", reason="needs sh")
