@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
@@ -18,6 +19,8 @@ from ikgen.formulas.mathtext import Math
 from ikgen.formulas.notation import angle, show
 
 __all__ = ["TrigQuartic"]
+
+ComplexArray = NDArray[np.complex128]
 
 _WIDEST = 0.1
 """Imaginary part (rad) of a root that counts as real at most."""
@@ -63,12 +66,8 @@ class TrigQuartic(Form):
         """Roots from the companion matrix of the self-inversive polynomial in exp(i u)."""
         a2, b2, a1, b1, a0 = c
         low = np.stack([a2 - 1j * b2, a1 - 1j * b1, 2 * a0 + 0j, a1 + 1j * b1, a2 + 1j * b2])
-        out = np.full((4, 2, len(a2)), np.nan)
-        for n, p in enumerate(low.T):
-            for k, root in enumerate(_unit_roots(p)):
-                if root is not None:
-                    out[k, :, n] = root.real, root.imag
-        return [(out[k, 0], out[k, 1]) for k in range(4)]
+        roots = _unit_roots(low.T)
+        return [(roots[:, k].real, roots[:, k].imag) for k in range(4)]
 
     def pattern(self, g: ExpressionGraph, unknown: tuple[Expr, ...]) -> tuple[Expr, ...]:
         """The polynomial, `cos(2u)` and `sin(2u)` by the cosine and sine of u."""
@@ -113,13 +112,29 @@ class TrigQuartic(Form):
         return Formula((equation, *values, _self_inversive(letters)), roots)
 
 
-def _unit_roots(p: Array) -> list[complex | None]:
-    """The roots of a polynomial (5,), highest power first; None for those off the unit circle."""
-    if not np.all(np.isfinite(p)) or np.abs(p[0]) < 1e-13 * np.abs(p).max():
-        p = p[1:4]
-        if abs(p[0]) == 0:
-            return []
-    return [z / abs(z) if abs(abs(z) - 1) < 1e-4 else None for z in np.roots(p)]
+def _unit_roots(polynomials: ComplexArray) -> ComplexArray:
+    """The roots (n, 4) of self-inversive polynomials (n, 5), highest power first; NaN for those that are
+    off the unit circle, or infinite."""
+    roots = np.full((len(polynomials), 4), np.nan + 1j * np.nan)
+    size = np.abs(polynomials).max(axis=1)
+    finite = np.isfinite(size)
+    whole = finite & (np.abs(polynomials[:, 0]) >= 1e-13 * size) & (size > 0.0)
+    roots[whole] = _roots(polynomials[whole])
+    short = finite & ~whole & (polynomials[:, 1] != 0.0)
+    roots[short, :2] = _roots(polynomials[short, 1:4])
+    with np.errstate(invalid="ignore"):
+        length = np.abs(roots)
+        return np.where(np.abs(length - 1) < 1e-4, roots / length, np.nan + 1j * np.nan)
+
+
+def _roots(polynomials: ComplexArray) -> ComplexArray:
+    """The roots (n, d) of polynomials (n, d + 1), the first coefficient not 0: the eigenvalues of their
+    companions."""
+    degree = polynomials.shape[1] - 1
+    companions = np.zeros((len(polynomials), degree, degree), complex)
+    companions[:, 1:, :-1] = np.eye(degree - 1)
+    companions[:, 0] = -polynomials[:, 1:] / polynomials[:, :1]
+    return np.linalg.eigvals(companions)
 
 
 def _self_inversive(letters: list[Math]) -> Math:
