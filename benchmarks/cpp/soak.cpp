@@ -3,8 +3,9 @@
 // Compile with -DIKGEN_HEADER='"x_ik.hpp"' -DIKGEN_NAMESPACE=x_ik -DIKGEN_FREE=0 or 1 (held joints)
 // -DSOAK_POSITION=0 or 1 and -DSOAK_TURN=0 (nothing), 1 (direction), 2 (yaw), 3 (rotation) or 4 (pitch): what the task reads, of
 // the tool's axis -DSOAK_AXIS=0, 1 or 2.
-// Arguments: random poses, poses beside singularities, seed. Those are drawn by descending on the smallest singular
-// value, and lie 10^-1 to 10^-12 (rad, m) off in a random direction. Prints the rows that were returned and those
+// Arguments: random poses, poses beside singularities, seed. Of those half are drawn by descending on the smallest
+// singular value, and half have joints at multiples of 45 degrees; all but the first of the latter lie 10^-1 to 10^-12
+// (rad, m) off in a random direction, or in one joint. Prints the rows that were returned and those
 // that are wrong; then for each decade of the smallest singular value: random poses, missed, unanswered, and the same
 // three of the poses beside singularities; then configurations that failed, one a line: kind, singular value, joints.
 
@@ -248,11 +249,25 @@ void put(const Arm& arm, Tally& tally, bool near, const ik::Joints& q) {
   show(tally, 2, "missed", sigma, q);
 }
 
-ik::Joints beside(const Arm& arm, const ik::Joints& singular, std::mt19937_64& random) {
+// All joints or some of them at multiples of 45 degrees, where their limits have any.
+ik::Joints even_turns(const Arm& arm, std::mt19937_64& random) {
+  const double eighth = 0.7853981633974483, share = std::uniform_real_distribution<double>(0.3, 1.3)(random);
+  ik::Joints q = draw(arm, random);
+  for (int j = 0; j < ik::kDof; ++j) {
+    const int low = static_cast<int>(std::ceil(arm.low[j] / eighth)), high = static_cast<int>(std::floor(arm.high[j] / eighth));
+    if (!arm.turns[j] || high < low || std::uniform_real_distribution<double>()(random) > share) continue;
+    q[j] = eighth * std::uniform_int_distribution<int>(low, high)(random);
+  }
+  return q;
+}
+
+ik::Joints beside(const Arm& arm, const ik::Joints& singular, bool one, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   const double distance = std::pow(10.0, -std::uniform_real_distribution<double>(1.0, 12.0)(random));
+  const int only = std::uniform_int_distribution<int>(0, ik::kDof - 1)(random);
   ik::Joints q = singular;
-  for (int j = 0; j < ik::kDof; ++j) q[j] = std::clamp(q[j] + distance * normal(random), arm.low[j], arm.high[j]);
+  for (int j = 0; j < ik::kDof; ++j)
+    if (!one || j == only) q[j] = std::clamp(q[j] + distance * normal(random), arm.low[j], arm.high[j]);
   return q;
 }
 
@@ -268,14 +283,16 @@ int main(int argc, char** argv) {
   ik::Joints singular;
   bool known = false;
   for (long n = 0, tries = 0; n < near; ++n) {
-    for (; n % kBeside == 0 && tries < 50 * (n / kBeside + 20); ++tries) {
+    const bool even = n / kBeside % 2 == 1, first = n % kBeside == 0;
+    if (even && first) singular = even_turns(arm, random);
+    for (; !even && first && tries < 50 * (n / kBeside + 20); ++tries) {
       ik::Joints start = draw(arm, random);
       if (!find_singular(arm, start)) continue;
       singular = start, known = true;
       break;
     }
     if (!known) break;
-    put(arm, tally, true, beside(arm, singular, random));
+    put(arm, tally, true, even && first ? singular : beside(arm, singular, even && n % 2 == 0, random));
   }
   std::printf("rows %ld %ld\n", tally.rows, tally.wrong);
   for (int k = 0; k < kDecades; ++k) {

@@ -30,7 +30,7 @@ def test_times_above_the_goals_are_marked() -> None:
 
 
 def test_a_module_is_timed_beside_an_exact_one(arm: ModuleType) -> None:
-    found = timed_module("arm", arm, arm, 400)
+    found = timed_module("arm", arm, arm, 100)
     assert found.kind == kind_of(arm) == ("exact" if arm._ARM.together is None else "rounded")
     assert 0.5 < found.scalar / found.exact[0] < 2.0 and found.batch < found.scalar
 

@@ -2164,12 +2164,13 @@ template <class Arm> struct NearestRow {
   static constexpr int kFirstSteps = 12;  // of each start: where they begin tells little of where they lead
   static constexpr int kFewSteps = 4;     // of each start where a row takes the pose, or none is wanted
   static constexpr double kLeast = 1e-10, kFirst = 1e-3, kMost = 1e10;  // damping of a step
+  static constexpr double kFinest = 1e-15;  // of one along directions in which the pose hardly moves
   static constexpr double kLongest = 0.5;     // rad or m: step of a joint
   static constexpr double kRoundOff = 1e-16;  // over what is least: a step that gains less ends the descent
   static constexpr double kStanding = 1e-6;   // over what is least and not 0: a step that gains less ends it
 
   [[gnu::cold, gnu::noinline]] static void find(const double* t, const Options& options, bool inside, double enough,
-                                                int first, double* best) noexcept {
+                                                int first, double* best, bool flat = false) noexcept {
     double rows[kFollowed][Arm::kDof], costs[kFollowed], q[Arm::kDof], root = 2.0;
     for (int k = 0; k < 40; ++k) root = std::pow(1.0 + root, 1.0 / (Arm::kDof + 1));
     int kept = 0;
@@ -2194,14 +2195,15 @@ template <class Arm> struct NearestRow {
     }
     double least = kInfinity;
     for (int k = 0; k < kept; ++k) {
+      std::copy_n(rows[k], Arm::kDof, q);
       const double cost = descend(t, inside, enough, rows[k]);
-      if (!(cost < least)) continue;
-      least = cost;
-      std::copy_n(rows[k], Arm::kDof, best);
+      take_better(rows[k], flat ? descend(t, inside, enough, rows[k], kSteps, kFinest) : cost, best, least);
+      if (flat) take_better(q, descend(t, inside, enough, q, kSteps, kFinest), best, least);
     }
   }
 
-  static double descend(const double* t, bool limits, double enough, double* q, int steps = kSteps) noexcept {
+  static double descend(const double* t, bool limits, double enough, double* q, int steps = kSteps,
+                        double floor = kLeast) noexcept {
     double damping = kFirst;
     Chords at(q, t);
     for (int i = 0; i < steps && damping < kMost; ++i) {
@@ -2211,7 +2213,7 @@ template <class Arm> struct NearestRow {
       const bool last = !(gain > enough * at.cost || damping > kFirst);
       const Chords there(trial, t);
       const bool better = there.cost < at.cost;
-      damping = std::clamp(damping * (better ? 0.2 : 8.0), kLeast, kMost);
+      damping = std::clamp(damping * (better ? 0.2 : 8.0), floor, kMost);
       if (better) {
         at = there;
         std::copy_n(trial, Arm::kDof, q);
@@ -2222,6 +2224,12 @@ template <class Arm> struct NearestRow {
   }
 
  private:
+  static void take_better(const double* q, double cost, double* best, double& least) noexcept {
+    if (!(cost < least)) return;
+    least = cost;
+    std::copy_n(q, Arm::kDof, best);
+  }
+
   static void bounds(int j, bool limits, double* low, double* high) noexcept {
     *low = limits ? Arm::kLower.data()[j] : -kInfinity;
     *high = limits ? Arm::kUpper.data()[j] : kInfinity;
@@ -2287,7 +2295,7 @@ template <class Arm> struct CarefulSolve {
   [[gnu::always_inline]] static void solve(const Eigen::Isometry3d& pose, const Options& options,
                                            Solutions& out) noexcept {
     const Aim aim(pose, options.free);
-    bool real = false, free = true;
+    bool real = false, free = true, led = false;
     Places found, loose;  // loose: with rows of a continuum, without limits
     for (int turn = 0; turn < kTurns && free; ++turn) {
       double start[Arm::kDof];
@@ -2298,6 +2306,7 @@ template <class Arm> struct CarefulSolve {
         Careful::add_from(aim, start, found);
       }
       real = real || found.count > 0;
+      led = led || left.led;
       if (Careful::any_singular(found)) loose = found;
       LimitRows<Arm>::place_all(aim, options, found);
       if (found.count == 0 && options.seed && Refinement::refine(start, aim)) {
@@ -2308,7 +2317,7 @@ template <class Arm> struct CarefulSolve {
       free = left.free && !(left.led && found.count > 0);
     }
     if (free && !Arm::kRounded && !Arm::kRefined) real = add_hidden(aim, options, found) || real;
-    if ((free || loose.count > 0) && found.count == 0) real = add_nearest(aim, options, found) || real;
+    if ((free || loose.count > 0 || (led && !real)) && found.count == 0) real = add_nearest(aim, options, found) || real;
     if (found.count == 0) add_along(aim, options, loose, found);
     if (options.seed) Row::sort_by_distance(found, options.seed->data());
     take_in_order(found, out);
@@ -2393,13 +2402,17 @@ template <class Arm> struct CarefulSolve {
   }
 
   [[gnu::cold, gnu::noinline]] static bool add_nearest(const Aim& aim, const Options& options, Places& out) noexcept {
+    using Nearest = NearestRow<Arm>;
     bool real = false;
     typename NearContinuum<Arm>::Passed passed;
     for (bool inside = options.limits;; inside = false) {
-      double q[Arm::kDof];
-      NearestRow<Arm>::find(aim.pose.matrix().data(), options, inside, NearestRow<Arm>::kStanding,
-                            NearestRow<Arm>::kFewSteps, q);
-      real = add_led_to(aim, q, passed, out) || real;
+      for (const bool flat : {false, true}) {
+        double q[Arm::kDof];
+        Nearest::find(aim.pose.matrix().data(), options, inside, Nearest::kStanding, Nearest::kFewSteps, q, flat);
+        if (!add_led_to(aim, q, passed, out)) continue;
+        real = true;
+        break;
+      }
       LimitRows<Arm>::place_all(aim, options, out);
       if (out.count > 0 || !inside) return real;
     }

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cache, partial
+from itertools import product
 from math import asin, atan2, ceil, copysign, floor, inf, isfinite, pi, remainder, sqrt
 from operator import lt
 from typing import Any, NamedTuple, Protocol, TypeVar
@@ -1036,11 +1037,43 @@ class _Asked:
 @dataclass
 class _Answer:
     """Solutions on the right turns, whether there were any before limits, and those of continua that there
-    were then, at the last values that were tried."""
+    were then, at the last values that were tried; whether the closed form had rows of continua."""
 
     rows: list[_Found] = field(default_factory=list)
     real: bool = False
     loose: list[_Found] = field(default_factory=list)
+    led: bool = False
+
+
+# Newton's method on curves along which a pose hardly moves.
+
+
+_FLAT_STEPS = 30
+_FLAT_LONGEST = 0.3  # rad or arm lengths: a step along a singular direction
+_FLAT_ENOUGH = 1e-14  # error
+
+
+def _flat_steps(
+    chain: _Chain, task: _EntriesTask, moving: Sequence[int], q: Array, T: Array
+) -> tuple[Array, Array]:
+    """The best rows of undamped steps of the joints `moving` from q (k, dof) towards T (k, 4, 4), and their
+    errors (k,)."""
+    moving = list(moving)
+    best, result, going = np.full(len(q), inf), q.copy(), np.arange(len(q))
+    for _ in range(_FLAT_STEPS):
+        error, slope = _errors_and_slopes(chain, task, moving, q, T, None)
+        worst = np.abs(error).max(axis=1)
+        better = worst < best[going]
+        result[going[better]], best[going[better]] = q[better], worst[better]
+        on = worst > _FLAT_ENOUGH
+        if not on.any():
+            break
+        going, q, T, error, slope = (x[on] for x in (going, q, T, error, slope))
+        U, s, Vt = np.linalg.svd(slope, full_matrices=False)
+        along = np.einsum("kmi,km->ki", U, error) / np.maximum(s, 1e-300)
+        along = np.clip(along, -_FLAT_LONGEST, _FLAT_LONGEST)
+        q[:, moving] += np.einsum("kij,ki->kj", Vt, along)
+    return result, best
 
 
 # Solutions near a singularity, where Newton's method stalls.
@@ -1815,6 +1848,7 @@ _FEW_STEPS = 4  # steps of each start where a row takes the pose, or none is wan
 _FOLLOWED = 16
 _STEP_COUNT = 80
 _LEAST_DAMPING, _FIRST_DAMPING, _MOST_DAMPING = 1e-10, 1e-3, 1e10  # damping of a step
+_FINEST = 1e-15  # damping of a step along directions in which the pose hardly moves
 _LONGEST_STEP = 0.5  # rad or m: step of a joint
 _ROUND_OFF = 1e-16  # over what is least: a step that gains less ends the descent
 _STANDING = 1e-6  # over what is least and not 0: a step that gains less ends the descent
@@ -1822,28 +1856,38 @@ _STANDING = 1e-6  # over what is least and not 0: a step that gains less ends th
 
 def _nearest_row(arm: _Arm, T: Array, start: Row, limits: bool) -> Row:
     """The joint values whose pose is nearest to T (4, 4), held joints as in `start`."""
-    best: Row = tuple(
-        _nearest(arm, T[None], np.array([start]), limits, _ROUND_OFF, _FIRST_STEPS)[0].tolist()
-    )
+    q = _nearest(arm, T[None], np.array([start]), limits, _ROUND_OFF, _FIRST_STEPS)
+    best: Row = tuple(q[0].tolist())
     return best
 
 
-def _nearest_rows(arm: _Arm, T: Array, start: Array, limits: bool) -> Array:
-    """`_nearest_row` of poses T (k, 4, 4), each with its start (k, dof)."""
-    return _nearest(arm, T, start, limits, _STANDING, _FEW_STEPS)
+def _nearest_rows(arm: _Arm, T: Array, start: Array, limits: bool, flat: bool) -> Array:
+    """`_nearest_row` of poses T (k, 4, 4), each with its start (k, dof), if `flat` along directions too in
+    which the pose hardly moves."""
+    return _nearest(arm, T, start, limits, _STANDING, _FEW_STEPS, flat)
 
 
-def _nearest(arm: _Arm, T: Array, start: Array, limits: bool, enough: float, first: int) -> Array:
-    bounds, dof = _step_bounds(arm, limits), start.shape[1]
+def _nearest(
+    arm: _Arm, T: Array, start: Array, limits: bool, enough: float, first: int, flat: bool = False
+) -> Array:
+    bounds = _step_bounds(arm, limits)
     q = np.concatenate([_projection_starts(arm, row, bounds) for row in start])
-    for steps, kept in ((first, _FOLLOWED), (_STEP_COUNT, 1)):
-        aims = np.repeat(T, len(q) // len(T), axis=0)
-        q, cost = _descend_to(arm, aims, q, bounds, enough, steps)
-        best = np.argsort(cost.reshape(len(T), -1), axis=1, kind="stable")[:, :kept]
-        q = np.take_along_axis(q.reshape(len(T), -1, dof), best[:, :, None], axis=1).reshape(
-            -1, dof
-        )
-    return q
+    ends = _descend_to(arm, np.repeat(T, len(q) // len(T), axis=0), q, bounds, enough, first)
+    begun = _least_of(len(T), *ends, _FOLLOWED)
+    aims = np.repeat(T, _FOLLOWED, axis=0)
+    q, cost = _descend_to(arm, aims, begun, bounds, enough)
+    if flat:
+        rows = np.concatenate([q, begun])
+        q, cost = _descend_to(arm, np.tile(aims, (2, 1, 1)), rows, bounds, enough, floor=_FINEST)
+        q, cost = (x.reshape(2, len(T), _FOLLOWED, -1).swapaxes(0, 1) for x in (q, cost))
+    return _least_of(len(T), q.reshape(-1, start.shape[1]), cost.reshape(-1), 1)
+
+
+def _least_of(poses: int, q: Array, cost: Array, count: int) -> Array:
+    """Of as many rows q (n, dof) of each of some poses the ones with the least cost (n,), in that order."""
+    best = np.argsort(cost.reshape(poses, -1), axis=1, kind="stable")[:, :count]
+    rows = np.take_along_axis(q.reshape(poses, -1, q.shape[1]), best[:, :, None], axis=1)
+    return rows.reshape(-1, q.shape[1])
 
 
 def _projection_starts(arm: _Arm, start: Array, bounds: tuple[Array, Array]) -> Array:
@@ -1922,6 +1966,7 @@ def _descend_to(
     bounds: tuple[Array, Array],
     enough: float,
     steps: int = _STEP_COUNT,
+    floor: float = _LEAST_DAMPING,
 ) -> tuple[Array, Array]:
     """The rows (k, dof) at the ends of so many steps towards poses T (k, 4, 4), and what is least there
     (k,)."""
@@ -1945,7 +1990,7 @@ def _descend_to(
         at = tuple(np.where(_beside(better, new), new, old) for new, old in zip(there, at))
         ends[going], costs[going] = at[0], at[-1]
         on = (gain > enough * cost) | (damping > _FIRST_DAMPING)
-        damping = np.clip(damping * np.where(better, 0.2, 8.0), _LEAST_DAMPING, _MOST_DAMPING)
+        damping = np.clip(damping * np.where(better, 0.2, 8.0), floor, _MOST_DAMPING)
         on &= damping < _MOST_DAMPING
         if not on.any():
             break
@@ -2001,7 +2046,8 @@ def _placed_rows(arm: _Arm, asked: _Asked, limits: bool) -> list[_Answer]:
         left = left[going[left]]
     if not (arm.rounded or eliminated) and len(left):
         _take_hidden(arm, asked, left, limits, out)
-    doubtful = set(left.tolist()) | {i for i, answer in enumerate(out) if answer.loose}
+    doubtful = set(left.tolist())
+    doubtful |= {i for i, x in enumerate(out) if x.loose or (x.led and not x.real)}
     lost = sorted(i for i in doubtful if not out[i].rows)
     if lost:
         _take_nearest(arm, asked, np.array(lost), limits, out)
@@ -2029,25 +2075,31 @@ def _take_hidden(arm: _Arm, asked: _Asked, some: _Index, limits: bool, out: list
     if not len(which):
         return
     rows = _descended(arm, asked.T[which], q, limits)
-    led = _led_to(arm, asked.at(which), rows)
-    for k, row in _around(arm, asked.at(which), rows, np.array([not one for one in led])):
-        led[k].append(row)
-    for i, found in zip(which.tolist(), led):
+    for i, found in zip(which.tolist(), _led_to_or_along(arm, asked.at(which), rows)):
         out[i].real = out[i].real or bool(found)
         aim = _aims(arm, asked.T[i : i + 1], asked.held[i : i + 1])
         _add(arm, asked.T[i], _rows_inside(arm, aim, found, asked.seed(i), limits), out[i].rows)
 
 
-def _around(arm: _Arm, asked: _Asked, rows: Array, some: _Flags) -> list[tuple[int, _Found]]:
-    """Of some of the rows (n, dof) the solutions around continua that they lie on, and that the arm has
-    not, each with the row's number."""
-    of = np.flatnonzero(some)
-    if arm.around is None or not len(of):
-        return []
-    aim, broken = _aims(arm, asked.T, asked.held)[of], np.ones(len(of), dtype=bool)
-    _, owner, q, sigma = arm.around(arm, rows[of], aim, broken)
+def _led_to_or_along(arm: _Arm, asked: _Asked, rows: Array) -> list[list[_Found]]:
+    """Of each pose what Newton steps from its row lead to, or else the solutions on a curve through it that
+    is a continuum of the arm's but for a little that is left."""
+    led = _led_to(arm, asked, rows)
+    some = np.flatnonzero([not one for one in led])
+    if not len(some):
+        return led
+    if arm.around is None:
+        there, error = _flat_steps(arm.chain, arm.task, arm.moving, rows[some], asked.T[some])
+        some, there = some[error < arm.policy.arrived], there[error < arm.policy.arrived]
+        for k, found in zip(some.tolist(), _led_to(arm, asked.at(some), there)):
+            led[k] = found
+        return led
+    aim, broken = _aims(arm, asked.T, asked.held)[some], np.ones(len(some), dtype=bool)
+    _, owner, q, sigma = arm.around(arm, rows[some], aim, broken)
     flags = (sigma < arm.policy.continuum_below).tolist()
-    return list(zip(of[owner].tolist(), zip(map(tuple, q.tolist()), flags)))
+    for k, row in zip(some[owner].tolist(), zip(map(tuple, q.tolist()), flags)):
+        led[k].append(row)
+    return led
 
 
 def _hidden_rows(arm: _Arm, asked: _Asked, some: _Index) -> tuple[_Index, Array]:
@@ -2068,10 +2120,10 @@ def _hidden_rows(arm: _Arm, asked: _Asked, some: _Index) -> tuple[_Index, Array]
 
 def _take_nearest(arm: _Arm, asked: _Asked, some: _Index, limits: bool, out: list[_Answer]) -> None:
     """Adds rows that take some of the poses, inside the limits if one of these was found."""
-    for inside in dict.fromkeys((limits, False)):
+    for inside, flat in product(dict.fromkeys((limits, False)), (False, True)):
         left = asked.at(some)
-        rows = _nearest_rows(arm, left.T, left.starts(arm), inside)
-        for i, found in zip(some.tolist(), _led_to(arm, left, rows)):
+        rows = _nearest_rows(arm, left.T, left.starts(arm), inside, flat)
+        for i, found in zip(some.tolist(), _led_to_or_along(arm, left, rows)):
             aim = _aims(arm, asked.T[i : i + 1], asked.held[i : i + 1])
             out[i].real = out[i].real or bool(found)
             out[i].rows = _rows_inside(arm, aim, found, asked.seed(i), limits)
@@ -2093,7 +2145,7 @@ def _goes_on(
     (kept, free, led), T, near = rows, asked.T[k], asked.seed(k)
     if not free and any(flag for _, flag in kept):
         _add(arm, T, seeded, kept)
-    answer.real = answer.real or bool(kept)
+    answer.real, answer.led = answer.real or bool(kept), answer.led or led
     answer.loose = [one for one in kept if one[1]] or answer.loose
     aim = _aims(arm, asked.T[k : k + 1], asked.held[k : k + 1])
     _add(arm, T, _rows_inside(arm, aim, kept, near, limits), answer.rows)

@@ -134,7 +134,7 @@ def _roots(polynomials: ComplexArray) -> ComplexArray:
     companions = np.zeros((len(polynomials), degree, degree), complex)
     companions[:, 1:, :-1] = np.eye(degree - 1)
     companions[:, 0] = -polynomials[:, 1:] / polynomials[:, :1]
-    return np.linalg.eigvals(companions)
+    return np.asarray(np.linalg.eigvals(companions), dtype=complex)
 
 
 def _self_inversive(letters: list[Math]) -> Math:

@@ -111,10 +111,10 @@ def test_that_no_row_takes_a_pose_is_told_of_many_at_once(
         return step(q, *given)
 
     monkeypatch.setattr(arm, "_clipped_step", counted)
-    rows = arm._nearest_rows(arm._ARM, poses, np.zeros((12, 6)), True)
+    rows = arm._nearest_rows(arm._ARM, poses, np.zeros((12, 6)), True, False)
     assert len(steps) <= 84 and sum(steps) < 10 * steps[0]
     off = np.abs(arm.forward(rows) - poses).max(axis=(1, 2))
     assert (off[:6] > 1.0).all() and (off[6:] < 1e-3).all()
     for k in range(0, 12, 4):
-        alone = arm._nearest_rows(arm._ARM, poses[k : k + 1], np.zeros((1, 6)), True)
+        alone = arm._nearest_rows(arm._ARM, poses[k : k + 1], np.zeros((1, 6)), True, False)
         np.testing.assert_allclose(rows[k], alone[0], atol=1e-9)

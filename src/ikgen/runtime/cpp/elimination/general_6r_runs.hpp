@@ -99,14 +99,16 @@ inline bool same_apart(const Frames& F, const Frame& T, const Turning& turning, 
 // solutions, and each a solution to many digits. Otherwise more runs follow, with the pose displaced to either side, by
 // the next elimination and with the pose displaced by less, until one finds all that is known and no more, an even number,
 // none of it stalls near another, and one of the pose itself tells; where solutions meet the next elimination has to find
-// as many that lie apart, as one alone may miss the same of a crowd twice. False where there may be some though none was
-// found: an elimination of the pose itself lost its rank, or has roots.
+// as many that lie apart, as one alone may miss the same of a crowd twice. False where there may be more than was found: no
+// run settles it; or where there may be some though none was found: an elimination of the pose itself lost its rank, or has
+// roots, real ones or some that may be.
+inline constexpr int kSure = 3;  // runs that are to find none where there is none: to both sides, and by the next elimination
 template <auto Run, class Frames, std::size_t N>
 inline bool solve_in_runs(const Frames& F, const Frame& T, const Turning& turning,
                           const std::array<std::array<int, 3>, N>& plans, Solutions& out) noexcept {
   const int given = out.count;
   int least = -1, number = 0;
-  bool ranked = true;  // whether no elimination of the pose itself lost its rank
+  bool ranked = true, doubtful = false;  // no elimination of the pose itself lost its rank; one has roots in doubt
   for (const double by : kAside) {
     const Frame there = displacement(by), back = inverse(there);
     for (const std::array<int, 3>& plan : plans)
@@ -119,6 +121,7 @@ inline bool solve_in_runs(const Frames& F, const Frame& T, const Turning& turnin
           least = std::max(least, roots.real);
           ranked = ranked && roots.real >= 0;
         }
+        doubtful = doubtful || (shift ? roots.real > 0 : roots.doubtful);
         const int known = out.count;
         for (int k = 0; k < mine.count; ++k) keep(mine.rows[static_cast<Index>(k)], out);
         if (out.count == kRoom) return true;  // of a continuum
@@ -126,12 +129,13 @@ inline bool solve_in_runs(const Frames& F, const Frame& T, const Turning& turnin
         const bool even = out.count % 2 == 0, again = number > 0 && !roots.stalled;
         const bool repeated = again && even && mine.count == known && out.count == known;
         const bool enough = least >= 0 && out.count >= least;
-        if (enough && ((alone && even) || repeated)) return out.count > 0 || ranked;
+        const bool none = out.count == 0, fewer = none && (doubtful || number < kSure);
+        if (enough && ((alone && even) || repeated) && !fewer) return !none || ranked;
         if (enough && again && number > 2 && same_apart(F, T, turning, mine, out, known)) return true;
         ++number;
       }
   }
-  return out.count > 0 || (ranked && least == 0);
+  return out.count == 0 && ranked && least == 0 && !doubtful;
 }
 
 }  // namespace g6

@@ -94,12 +94,18 @@ inline void add_product(double factor, const Mat<AR, AC>& A, Index ra, Index ca,
     }
 }
 
-inline constexpr double kNoRank = 1e9;  // of the eigenproblem's entries: half of a root's digits are rounding
+// Of the eigenproblem's entries, or of the largest pivot of M_pi over its least: of a root's digits half are rounding, or
+// nearly all.
+inline constexpr double kNoRank = 1e9, kNoPivot = 1e11;
+
+// rad: imaginary part below which a root may be half of a double one, and one of four a quarter of a fourfold one.
+inline constexpr double kHalf = 1e-3, kQuarter = 4e-3;
 
 struct Spectrum {
   int count = 0;  // roots theta_3 with imaginary parts below `accept`
   int real = 0;   // those that are clearly real; -1 where the elimination does not tell
   bool simple = false;  // all of them are
+  bool doubtful = false;  // there are others that may be, of which rounding has made complex ones
   bool stalled = false;  // steps from one of them come near a solution, and no closer
   std::array<double, 16> theta;
 };
@@ -108,6 +114,15 @@ struct Node {  // where M_pi, M at the opposite angle, is far from singular
   double angle = 0.0, c = 1.0, s = 0.0, determinant = 0.0;
   Square lu;
   std::array<Index, 12> pivot;
+
+  bool has_rank() const noexcept {
+    double least = kInfinity, most = 0.0;
+    for (Index i = 0; i < 12; ++i) {
+      least = std::min(least, std::abs(lu(i, i)));
+      most = std::max(most, std::abs(lu(i, i)));
+    }
+    return most < kNoPivot * least;
+  }
 };
 
 inline void best_node(const Resultant& M, Node& out) noexcept {
@@ -124,6 +139,7 @@ inline void best_node(const Resultant& M, Node& out) noexcept {
 // The roots theta_3 of eigenvalues t: modulus and angle of (1 + i t) / (1 - i t).
 template <Index N>
 inline void add_angles(const std::array<Complex, N>& t, double node, double accept, Spectrum& out) noexcept {
+  int halves = 0, quarters = 0;
   for (const Complex& e : t) {
     const double a = e.real(), b = e.imag();
     const double off = std::abs(0.5 * std::log(((1.0 - b) * (1.0 - b) + a * a + 1e-300) /
@@ -131,13 +147,16 @@ inline void add_angles(const std::array<Complex, N>& t, double node, double acce
     if (!(off < accept)) continue;
     out.theta[static_cast<Index>(out.count++)] = node + std::atan2(a, 1.0 - b) + std::atan2(a, 1.0 + b);
     out.real += off < 1e-8 ? 1 : 0;
+    halves += off < kHalf ? 1 : 0;
+    quarters += off < kQuarter ? 1 : 0;
   }
   out.simple = out.count == out.real;
+  out.doubtful = halves > out.real || quarters >= out.real + 4;
 }
 
 // With M(theta) = M0 + N Rot(theta) W, Rot = c + s J on R^16, about a node where M_pi = M0 - N W is far from
-// singular: tan(theta/2) are the eigenvalues of -J (1 + 2 W M_pi^-1 N). Where M is singular at every angle these are
-// large, and their eigenvalues mean nothing.
+// singular: tan(theta/2) are the eigenvalues of -J (1 + 2 W M_pi^-1 N). Where M is singular at every angle these mean
+// nothing.
 inline Spectrum find_roots(const Mat<6, 16>& E, const Mat<14, 12>& left, const Resultant& M, double accept) noexcept {
   Node node;
   Spectrum out;
@@ -172,7 +191,7 @@ inline Spectrum find_roots(const Mat<6, 16>& E, const Mat<14, 12>& left, const R
   if (!eigenvalues(A, t)) return out;
   out.real = 0;
   add_angles(t, node.angle, accept, out);
-  if (!(largest < kNoRank)) out.real = -1;
+  if (!(largest < kNoRank && node.has_rank())) out.real = -1;
   return out;
 }
 

@@ -112,8 +112,8 @@ struct SixJointArm {
     write(frame, F[n]);
   }
 
-  // Per solution the cosine and sine of every moving joint's angle, or its length; how many, or -1 as in Roots. x: the
-  // pose by rows, then the held values.
+  // Per solution the cosine and sine of every moving joint's angle, or its length; how many, as in Roots. x: the pose by
+  // rows, then the held values.
   template <std::size_t N>
   static int branches(const double* x, double (&roots)[Arm::kMaxSolutions][N]) noexcept {
     double F[kFrames][12], T[12];
@@ -125,7 +125,6 @@ struct SixJointArm {
     const Frames chain = g6::chain_of<Plan, Frames>(F);
     const g6::Frame aim = g6::scaled_frame<Plan>(T);
     const bool sure = Method::template solve<Plan>(chain, aim, turns, found);
-    if (!sure && found.count == 0) return -1;
     g6::sort_rows(turns, found);
     if (found.count > Arm::kMaxSolutions) g6::leave_most(chain, aim, turns, Arm::kMaxSolutions, found);
     int count = 0;
@@ -133,7 +132,7 @@ struct SixJointArm {
       write(found.rows[static_cast<std::size_t>(count)], turns, roots[count]);
       ++count;
     }
-    return count;
+    return sure ? count : -1 - count;
   }
 
  private:

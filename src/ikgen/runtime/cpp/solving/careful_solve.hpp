@@ -20,12 +20,13 @@ template <class Arm> struct CarefulSolve {
   using Solutions = typename Arm::Solutions;
 
   // All solutions. Where the pose leaves a joint free and the seed's value of it leads nowhere, others are tried, and in
-  // the end what is nearest to the pose; so too where limits leave none, but a continuum may go on inside. Where no row
-  // fits, or one is of a continuum, the seed is taken as a Newton start.
+  // the end what is nearest to the pose; so too where limits leave none, but a continuum may go on inside, and where all
+  // that the closed form has is singular and leads to none. Where no row fits, or one is of a continuum, the seed is taken
+  // as a Newton start.
   [[gnu::always_inline]] static void solve(const Eigen::Isometry3d& pose, const Options& options,
                                            Solutions& out) noexcept {
     const Aim aim(pose, options.free);
-    bool real = false, free = true;
+    bool real = false, free = true, led = false;
     Places found, loose;  // loose: with rows of a continuum, without limits
     for (int turn = 0; turn < kTurns && free; ++turn) {
       double start[Arm::kDof];
@@ -36,6 +37,7 @@ template <class Arm> struct CarefulSolve {
         Careful::add_from(aim, start, found);
       }
       real = real || found.count > 0;
+      led = led || left.led;
       if (Careful::any_singular(found)) loose = found;
       LimitRows<Arm>::place_all(aim, options, found);
       if (found.count == 0 && options.seed && Refinement::refine(start, aim)) {
@@ -46,7 +48,7 @@ template <class Arm> struct CarefulSolve {
       free = left.free && !(left.led && found.count > 0);
     }
     if (free && !Arm::kRounded && !Arm::kRefined) real = add_hidden(aim, options, found) || real;
-    if ((free || loose.count > 0) && found.count == 0) real = add_nearest(aim, options, found) || real;
+    if ((free || loose.count > 0 || (led && !real)) && found.count == 0) real = add_nearest(aim, options, found) || real;
     if (found.count == 0) add_along(aim, options, loose, found);
     if (options.seed) Row::sort_by_distance(found, options.seed->data());
     take_in_order(found, out);
@@ -139,13 +141,17 @@ template <class Arm> struct CarefulSolve {
 
   // Adds a row that takes the pose, inside the limits if one of these was found; whether there is any.
   [[gnu::cold, gnu::noinline]] static bool add_nearest(const Aim& aim, const Options& options, Places& out) noexcept {
+    using Nearest = NearestRow<Arm>;
     bool real = false;
     typename NearContinuum<Arm>::Passed passed;
     for (bool inside = options.limits;; inside = false) {
-      double q[Arm::kDof];
-      NearestRow<Arm>::find(aim.pose.matrix().data(), options, inside, NearestRow<Arm>::kStanding,
-                            NearestRow<Arm>::kFewSteps, q);
-      real = add_led_to(aim, q, passed, out) || real;
+      for (const bool flat : {false, true}) {
+        double q[Arm::kDof];
+        Nearest::find(aim.pose.matrix().data(), options, inside, Nearest::kStanding, Nearest::kFewSteps, q, flat);
+        if (!add_led_to(aim, q, passed, out)) continue;
+        real = true;
+        break;
+      }
       LimitRows<Arm>::place_all(aim, options, out);
       if (out.count > 0 || !inside) return real;
     }

@@ -65,13 +65,15 @@ template <class Arm> struct NearestRow {
   static constexpr int kFirstSteps = 12;  // of each start: where they begin tells little of where they lead
   static constexpr int kFewSteps = 4;     // of each start where a row takes the pose, or none is wanted
   static constexpr double kLeast = 1e-10, kFirst = 1e-3, kMost = 1e10;  // damping of a step
+  static constexpr double kFinest = 1e-15;  // of one along directions in which the pose hardly moves
   static constexpr double kLongest = 0.5;     // rad or m: step of a joint
   static constexpr double kRoundOff = 1e-16;  // over what is least: a step that gains less ends the descent
   static constexpr double kStanding = 1e-6;   // over what is least and not 0: a step that gains less ends it
 
-  // t: the pose's matrix, columns first; inside: whether limits hold; enough: as for descend; first: steps of each start.
+  // t: the pose's matrix, columns first; inside: whether limits hold; enough: as for descend; first: steps of each start;
+  // flat: whether they go on along directions in which the pose hardly moves.
   [[gnu::cold, gnu::noinline]] static void find(const double* t, const Options& options, bool inside, double enough,
-                                                int first, double* best) noexcept {
+                                                int first, double* best, bool flat = false) noexcept {
     double rows[kFollowed][Arm::kDof], costs[kFollowed], q[Arm::kDof], root = 2.0;
     for (int k = 0; k < 40; ++k) root = std::pow(1.0 + root, 1.0 / (Arm::kDof + 1));
     int kept = 0;
@@ -96,16 +98,17 @@ template <class Arm> struct NearestRow {
     }
     double least = kInfinity;
     for (int k = 0; k < kept; ++k) {
+      std::copy_n(rows[k], Arm::kDof, q);
       const double cost = descend(t, inside, enough, rows[k]);
-      if (!(cost < least)) continue;
-      least = cost;
-      std::copy_n(rows[k], Arm::kDof, best);
+      take_better(rows[k], flat ? descend(t, inside, enough, rows[k], kSteps, kFinest) : cost, best, least);
+      if (flat) take_better(q, descend(t, inside, enough, q, kSteps, kFinest), best, least);
     }
   }
 
   // Steps from q; what is least where they end: where one that is hardly damped gains a share of that which is not
-  // enough.
-  static double descend(const double* t, bool limits, double enough, double* q, int steps = kSteps) noexcept {
+  // enough. floor: least damping of a step.
+  static double descend(const double* t, bool limits, double enough, double* q, int steps = kSteps,
+                        double floor = kLeast) noexcept {
     double damping = kFirst;
     Chords at(q, t);
     for (int i = 0; i < steps && damping < kMost; ++i) {
@@ -115,7 +118,7 @@ template <class Arm> struct NearestRow {
       const bool last = !(gain > enough * at.cost || damping > kFirst);
       const Chords there(trial, t);
       const bool better = there.cost < at.cost;
-      damping = std::clamp(damping * (better ? 0.2 : 8.0), kLeast, kMost);
+      damping = std::clamp(damping * (better ? 0.2 : 8.0), floor, kMost);
       if (better) {
         at = there;
         std::copy_n(trial, Arm::kDof, q);
@@ -126,6 +129,12 @@ template <class Arm> struct NearestRow {
   }
 
  private:
+  static void take_better(const double* q, double cost, double* best, double& least) noexcept {
+    if (!(cost < least)) return;
+    least = cost;
+    std::copy_n(q, Arm::kDof, best);
+  }
+
   // The range of a joint that steps are clipped to, or of `half` to each side of 0 and beyond.
   static void bounds(int j, bool limits, double* low, double* high) noexcept {
     *low = limits ? Arm::kLower.data()[j] : -kInfinity;

@@ -73,7 +73,7 @@ def _regular_first(arm: Arm, angles: Array, held: Array, T: Array) -> Array:
 
 def elimination_lanes(arm: Arm, plan: Plan, entries: tuple[Array, ...]) -> tuple[Array, ...]:
     """Of many poses the cosine and sine of every moving joint's angle, and the lengths of slides (most, N),
-    and which there are; the first are NaN where it can't tell whether there are any.
+    and which there are; those behind the last are NaN where it can't tell whether there are more.
 
     entries: the pose's first three rows, then cosines, sines and distances of held joints.
     """
@@ -91,7 +91,9 @@ def elimination_lanes(arm: Arm, plan: Plan, entries: tuple[Array, ...]) -> tuple
     for start in range(0, count, _POSES):
         part = slice(start, start + _POSES)
         pose, values, unsure = _rows_of_poses(arm, plan, T[part], held[:1] if alike else held[part])
-        lanes[:, 0, start + np.flatnonzero(unsure)] = np.nan
+        last = np.bincount(pose, minlength=len(unsure))
+        open_ = np.flatnonzero(unsure & (last < arm.most))
+        lanes[:, last[open_], start + open_] = np.nan
         place, member = places(pose), start + pose
         cosines, sines = np.cos(values.T), np.sin(values.T)
         rows = [
@@ -106,7 +108,7 @@ def elimination_lanes(arm: Arm, plan: Plan, entries: tuple[Array, ...]) -> tuple
 
 def _rows_of_poses(arm: Arm, plan: Plan, T: Array, held: Array) -> tuple[Index, Array, Flags]:
     """Pose indices (k,) in order, and at most `arm.most` rows (k, 6) for each of the poses T (N, 4, 4) with
-    joints `held` (1 or N, c); for which (N,) there may be some though none was found."""
+    joints `held` (1 or N, c); for which (N,) there may be more."""
     pose, values, unsure = six_joint_rows(_six_joints(arm, plan, held), plan, T, arm.policy)
     for i in np.flatnonzero(np.bincount(pose, minlength=1) > arm.most):
         some = _regular_first(arm, values[pose == i], held[i % len(held)], T[i])

@@ -170,7 +170,8 @@ def six_joint_rows(
     is known and no more, an even number, none stalls near another, and one of the pose itself has kept its
     rank; where solutions meet the next elimination has to find as many that lie apart. What a direct way
     leaves open, these runs confirm or complete. Returns pose indices (k,) in order, joint values (k, 6),
-    angles in (-pi, pi], sorted, and which poses (N,) have none though that is not sure, as on a continuum.
+    angles in (-pi, pi], sorted, and which poses (N,) may have more, or some though none was found, as on a
+    continuum.
     """
     T = T.copy()
     T[:, :3, 3] /= plan.length
@@ -181,33 +182,40 @@ def six_joint_rows(
         if not len(todo):
             break
         (pose, q, before), real, clear, stalled = _run(six, plan, way, moves, T, todo, policy)
-        near = way[2]
         if moves[0] is None and number >= len(plan.direct):
             least[todo] = np.maximum(least[todo], real)
-            unsure[todo] |= real < 0
-        best = np.lexsort((before >= near, pose))
+            unsure[todo] |= (real < 0) | ~clear
+        best = np.lexsort((before >= way[2], pose))
         q, pose, kept = distinct_rows(q[best], pose[best], plan.turning, policy.coincident)
         mine = np.bincount(pose, minlength=size)[todo]
         if number == 0:
-            direct = np.bincount(pose[before[best[kept]] < near], minlength=size)[todo]
+            direct = np.bincount(pose[before[best[kept]] < way[2]], minlength=size)[todo]
             settled = clear & (direct == real) & (mine == real) & (real > 0) & (mine % 2 == 0)
             found, of, count = q, pose, mine
             hollow[todo] = (real > 0) & (mine == 0)  # roots that led to nothing
         else:
             known, old = np.bincount(of, minlength=size)[todo], (found, of)
-            found, of = np.concatenate([found, q]), np.concatenate([of, pose])
-            found, of, _ = distinct_rows(found, of, plan.turning, policy.coincident)
+            both = np.concatenate([found, q]), np.concatenate([of, pose])
+            found, of, _ = distinct_rows(*both, plan.turning, policy.coincident)
             count = np.bincount(of, minlength=size)[todo]
             told = (least[todo] >= 0) & ~stalled & (~hollow[todo] | (len(moves) > 1))
             settled = told & (mine == known) & (known == count) & (count % 2 == 0)
             told &= number > len(plan.direct) + 1  # one alone may miss the same of a crowd twice
             left = np.flatnonzero(told & ~settled)
             settled[left] = _same_apart(six, plan, todo[left], ((found, of), old, (q, pose)))
-        todo = todo[~(settled & (count >= least[todo]))]
+        settled &= (count >= least[todo]) & ((count > 0) | ~unsure[todo])
+        todo = todo[~settled]
     unit = np.where(plan.turning, 1.0, plan.length)
-    unsure[todo] |= least[todo] != 0
-    unsure[of] = False
-    return of, sorted_rows(found, of, plan.turning) * unit, unsure
+    more = _may_have_more(np.bincount(of, minlength=size) > 0, unsure, todo, least)
+    return of, sorted_rows(found, of, plan.turning) * unit, more
+
+
+def _may_have_more(some: Flags, unsure: Flags, todo: Index, least: Index) -> Flags:
+    """Which poses (N,), those with `some` solutions, may have more: of which no runs agreed, or where none
+    was found though one left a doubt."""
+    more = unsure & ~some
+    more[todo] |= some[todo] | (least[todo] != 0)
+    return np.asarray(more)
 
 
 def _run(
@@ -232,7 +240,7 @@ def _run(
     stalled = np.bincount(which[short], minlength=len(todo)) > 0
     arrived = error < policy.arrived
     rows = todo[which[arrived]], q[arrived], before[arrived]
-    return rows, real[: len(todo)], clear, stalled
+    return rows, real[: len(todo)], clear[: len(todo)], stalled
 
 
 def _same_apart(

@@ -30,6 +30,7 @@ DOUBTFUL = 1e-3  # rad: imaginary part below which a root may be half of a doubl
 _FOURFOLD = 0.03  # rad: imaginary part below which a root may be a quarter of a fourfold one
 _CROWD = 8.0  # how far off the other pair of a fourfold root is at most, over the imaginary part
 _NO_RANK = 1e9  # entry of the eigenproblem above which half of a root's digits are rounding
+_NO_PIVOT = 1e11  # condition of M at the node above which nearly all are
 _LIFT = np.kron(  # of 1, c and s by half angles, times cos h and times sin h
     np.array(
         [
@@ -79,10 +80,13 @@ def hidden_angles(
     N[:, :6, 0:4] = N[:, 6:, 4:8] = c * x + s * y
     N[:, :6, 8:12] = N[:, 6:, 12:16] = c * y - s * x
     W = np.concatenate([lift(left[:, XS]), lift(left[:, YS])], axis=1)
-    K = np.eye(16) + 2.0 * W @ solved(at_node[row, k], N)
+    pivot, unit = at_node[row, k], np.broadcast_to(np.eye(12), (len(row), 12, 12))
+    found = solved(pivot, np.concatenate([N, unit], axis=2))
+    K = np.eye(16) + 2.0 * W @ found[:, :, :16]
     t = np.linalg.eigvals(np.concatenate([K[:, 8:], -K[:, :8]], axis=1))
     pose, angle, real, clear = real_angles(t, _NODES[k], accept)
-    real[np.abs(K).max(axis=(1, 2)) > _NO_RANK] = -1
+    condition = np.abs(pivot).max(axis=(1, 2)) * np.abs(found[:, :, 16:]).max(axis=(1, 2))
+    real[(np.abs(K).max(axis=(1, 2)) > _NO_RANK) | (condition > _NO_PIVOT)] = -1
     return pose, angle, real, clear
 
 
@@ -130,8 +134,8 @@ def solved(pivot: Array, N: Array, off: float = 0.0) -> Array:
     except np.linalg.LinAlgError:
         flat = np.linalg.slogdet(moved)[0] == 0.0
         if flat.all() or not flat.any():
-            return solved(pivot, N, 2.0 * off or 1e-10)
+            return solved(pivot, N, 2.0 * off or 1e-12)
         out: Array = np.empty(N.shape)
-        out[flat] = solved(pivot[flat], N[flat], 2.0 * off or 1e-10)
+        out[flat] = solved(pivot[flat], N[flat], 2.0 * off or 1e-12)
         out[~flat] = solved(pivot[~flat], N[~flat], off)
         return out

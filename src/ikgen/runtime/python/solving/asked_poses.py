@@ -47,8 +47,9 @@ class Asked:
 @dataclass
 class Answer:
     """Solutions on the right turns, whether there were any before limits, and those of continua that there
-    were then, at the last values that were tried."""
+    were then, at the last values that were tried; whether the closed form had rows of continua."""
 
     rows: list[Found] = field(default_factory=list)
     real: bool = False
     loose: list[Found] = field(default_factory=list)
+    led: bool = False

@@ -69,9 +69,9 @@ def closed_form(arm: Arm, T: Array, near: Array | None, held: Array) -> ClosedFo
     with np.errstate(all="ignore"):
         found = ClosedForm(*in_blocks(arm.branches_batch, _PART, T, start, held))
     if arm.branches is None:
-        unsure = np.flatnonzero(np.isnan(found.q[:, 0]).any(axis=1))
-        found.q[unsure, 0] = start[unsure]
-        found.singular[unsure, 0] = True
+        pose, lane = np.nonzero(np.isnan(found.q).any(axis=2))
+        found.q[pose, lane] = start[pose]
+        found.singular[pose, lane] = True
     found.q[:, :, list(arm.free)] = held[:, None, : len(arm.free)]
     return found
 

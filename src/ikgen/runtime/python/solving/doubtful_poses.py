@@ -3,12 +3,15 @@ the price of Newton steps is that of the calls."""
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 
 from ikgen.runtime.python.arm.held_parameters import aims
 from ikgen.runtime.python.arm.solved_arm import Arm, Found
 from ikgen.runtime.python.arrays.array_tuples import joined, some_of
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
+from ikgen.runtime.python.newton.flat_steps import flat_steps
 from ikgen.runtime.python.rows.row_placement import is_new, place_rows
 from ikgen.runtime.python.singular.limit_curves import rows_along
 from ikgen.runtime.python.singular.limit_rows import rows_inside
@@ -35,7 +38,8 @@ _Rows = tuple[list[Found], bool, bool]
 
 def placed_rows(arm: Arm, asked: Asked, limits: bool) -> list[Answer]:
     """Of each pose. Where it leaves a joint free and the given value leads nowhere, others are tried, and
-    in the end the nearest pose's row; so too where limits leave none, but a continuum may go on inside."""
+    in the end the nearest pose's row; so too where limits leave none, but a continuum may go on inside, and
+    where all that the closed form has is singular and leads to none."""
     out = [Answer() for _ in asked.T]
     left = np.arange(len(out))
     eliminated = arm.branches is None  # no joint has a value of its own then
@@ -56,7 +60,8 @@ def placed_rows(arm: Arm, asked: Asked, limits: bool) -> list[Answer]:
         left = left[going[left]]
     if not (arm.rounded or eliminated) and len(left):
         _take_hidden(arm, asked, left, limits, out)
-    doubtful = set(left.tolist()) | {i for i, answer in enumerate(out) if answer.loose}
+    doubtful = set(left.tolist())
+    doubtful |= {i for i, x in enumerate(out) if x.loose or (x.led and not x.real)}
     lost = sorted(i for i in doubtful if not out[i].rows)
     if lost:
         _take_nearest(arm, asked, np.array(lost), limits, out)
@@ -84,25 +89,31 @@ def _take_hidden(arm: Arm, asked: Asked, some: Index, limits: bool, out: list[An
     if not len(which):
         return
     rows = descended(arm, asked.T[which], q, limits)
-    led = _led_to(arm, asked.at(which), rows)
-    for k, row in _around(arm, asked.at(which), rows, np.array([not one for one in led])):
-        led[k].append(row)
-    for i, found in zip(which.tolist(), led):
+    for i, found in zip(which.tolist(), _led_to_or_along(arm, asked.at(which), rows)):
         out[i].real = out[i].real or bool(found)
         aim = aims(arm, asked.T[i : i + 1], asked.held[i : i + 1])
         _add(arm, asked.T[i], rows_inside(arm, aim, found, asked.seed(i), limits), out[i].rows)
 
 
-def _around(arm: Arm, asked: Asked, rows: Array, some: Flags) -> list[tuple[int, Found]]:
-    """Of some of the rows (n, dof) the solutions around continua that they lie on, and that the arm has
-    not, each with the row's number."""
-    of = np.flatnonzero(some)
-    if arm.around is None or not len(of):
-        return []
-    aim, broken = aims(arm, asked.T, asked.held)[of], np.ones(len(of), dtype=bool)
-    _, owner, q, sigma = arm.around(arm, rows[of], aim, broken)
+def _led_to_or_along(arm: Arm, asked: Asked, rows: Array) -> list[list[Found]]:
+    """Of each pose what Newton steps from its row lead to, or else the solutions on a curve through it that
+    is a continuum of the arm's but for a little that is left."""
+    led = _led_to(arm, asked, rows)
+    some = np.flatnonzero([not one for one in led])
+    if not len(some):
+        return led
+    if arm.around is None:
+        there, error = flat_steps(arm.chain, arm.task, arm.moving, rows[some], asked.T[some])
+        some, there = some[error < arm.policy.arrived], there[error < arm.policy.arrived]
+        for k, found in zip(some.tolist(), _led_to(arm, asked.at(some), there)):
+            led[k] = found
+        return led
+    aim, broken = aims(arm, asked.T, asked.held)[some], np.ones(len(some), dtype=bool)
+    _, owner, q, sigma = arm.around(arm, rows[some], aim, broken)
     flags = (sigma < arm.policy.continuum_below).tolist()
-    return list(zip(of[owner].tolist(), zip(map(tuple, q.tolist()), flags)))
+    for k, row in zip(some[owner].tolist(), zip(map(tuple, q.tolist()), flags)):
+        led[k].append(row)
+    return led
 
 
 def _hidden_rows(arm: Arm, asked: Asked, some: Index) -> tuple[Index, Array]:
@@ -123,10 +134,10 @@ def _hidden_rows(arm: Arm, asked: Asked, some: Index) -> tuple[Index, Array]:
 
 def _take_nearest(arm: Arm, asked: Asked, some: Index, limits: bool, out: list[Answer]) -> None:
     """Adds rows that take some of the poses, inside the limits if one of these was found."""
-    for inside in dict.fromkeys((limits, False)):
+    for inside, flat in product(dict.fromkeys((limits, False)), (False, True)):
         left = asked.at(some)
-        rows = nearest_rows(arm, left.T, left.starts(arm), inside)
-        for i, found in zip(some.tolist(), _led_to(arm, left, rows)):
+        rows = nearest_rows(arm, left.T, left.starts(arm), inside, flat)
+        for i, found in zip(some.tolist(), _led_to_or_along(arm, left, rows)):
             aim = aims(arm, asked.T[i : i + 1], asked.held[i : i + 1])
             out[i].real = out[i].real or bool(found)
             out[i].rows = rows_inside(arm, aim, found, asked.seed(i), limits)
@@ -148,7 +159,7 @@ def _goes_on(
     (kept, free, led), T, near = rows, asked.T[k], asked.seed(k)
     if not free and any(flag for _, flag in kept):
         _add(arm, T, seeded, kept)
-    answer.real = answer.real or bool(kept)
+    answer.real, answer.led = answer.real or bool(kept), answer.led or led
     answer.loose = [one for one in kept if one[1]] or answer.loose
     aim = aims(arm, asked.T[k : k + 1], asked.held[k : k + 1])
     _add(arm, T, rows_inside(arm, aim, kept, near, limits), answer.rows)

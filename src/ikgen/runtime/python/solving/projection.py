@@ -25,6 +25,7 @@ _FEW_STEPS = 4  # steps of each start where a row takes the pose, or none is wan
 _FOLLOWED = 16
 _STEP_COUNT = 80
 _LEAST_DAMPING, _FIRST_DAMPING, _MOST_DAMPING = 1e-10, 1e-3, 1e10  # damping of a step
+_FINEST = 1e-15  # damping of a step along directions in which the pose hardly moves
 _LONGEST_STEP = 0.5  # rad or m: step of a joint
 _ROUND_OFF = 1e-16  # over what is least: a step that gains less ends the descent
 _STANDING = 1e-6  # over what is least and not 0: a step that gains less ends the descent
@@ -32,28 +33,38 @@ _STANDING = 1e-6  # over what is least and not 0: a step that gains less ends th
 
 def nearest_row(arm: Arm, T: Array, start: Row, limits: bool) -> Row:
     """The joint values whose pose is nearest to T (4, 4), held joints as in `start`."""
-    best: Row = tuple(
-        _nearest(arm, T[None], np.array([start]), limits, _ROUND_OFF, _FIRST_STEPS)[0].tolist()
-    )
+    q = _nearest(arm, T[None], np.array([start]), limits, _ROUND_OFF, _FIRST_STEPS)
+    best: Row = tuple(q[0].tolist())
     return best
 
 
-def nearest_rows(arm: Arm, T: Array, start: Array, limits: bool) -> Array:
-    """`nearest_row` of poses T (k, 4, 4), each with its start (k, dof); hardly of such as no row takes."""
-    return _nearest(arm, T, start, limits, _STANDING, _FEW_STEPS)
+def nearest_rows(arm: Arm, T: Array, start: Array, limits: bool, flat: bool) -> Array:
+    """`nearest_row` of poses T (k, 4, 4), each with its start (k, dof), if `flat` along directions too in
+    which the pose hardly moves; hardly of such as no row takes."""
+    return _nearest(arm, T, start, limits, _STANDING, _FEW_STEPS, flat)
 
 
-def _nearest(arm: Arm, T: Array, start: Array, limits: bool, enough: float, first: int) -> Array:
-    bounds, dof = _step_bounds(arm, limits), start.shape[1]
+def _nearest(
+    arm: Arm, T: Array, start: Array, limits: bool, enough: float, first: int, flat: bool = False
+) -> Array:
+    bounds = _step_bounds(arm, limits)
     q = np.concatenate([_starts(arm, row, bounds) for row in start])
-    for steps, kept in ((first, _FOLLOWED), (_STEP_COUNT, 1)):
-        aims = np.repeat(T, len(q) // len(T), axis=0)
-        q, cost = _descend_to(arm, aims, q, bounds, enough, steps)
-        best = np.argsort(cost.reshape(len(T), -1), axis=1, kind="stable")[:, :kept]
-        q = np.take_along_axis(q.reshape(len(T), -1, dof), best[:, :, None], axis=1).reshape(
-            -1, dof
-        )
-    return q
+    ends = _descend_to(arm, np.repeat(T, len(q) // len(T), axis=0), q, bounds, enough, first)
+    begun = _least_of(len(T), *ends, _FOLLOWED)
+    aims = np.repeat(T, _FOLLOWED, axis=0)
+    q, cost = _descend_to(arm, aims, begun, bounds, enough)
+    if flat:
+        rows = np.concatenate([q, begun])
+        q, cost = _descend_to(arm, np.tile(aims, (2, 1, 1)), rows, bounds, enough, floor=_FINEST)
+        q, cost = (x.reshape(2, len(T), _FOLLOWED, -1).swapaxes(0, 1) for x in (q, cost))
+    return _least_of(len(T), q.reshape(-1, start.shape[1]), cost.reshape(-1), 1)
+
+
+def _least_of(poses: int, q: Array, cost: Array, count: int) -> Array:
+    """Of as many rows q (n, dof) of each of some poses the ones with the least cost (n,), in that order."""
+    best = np.argsort(cost.reshape(poses, -1), axis=1, kind="stable")[:, :count]
+    rows = np.take_along_axis(q.reshape(poses, -1, q.shape[1]), best[:, :, None], axis=1)
+    return rows.reshape(-1, q.shape[1])
 
 
 def _starts(arm: Arm, start: Array, bounds: tuple[Array, Array]) -> Array:
@@ -133,6 +144,7 @@ def _descend_to(
     bounds: tuple[Array, Array],
     enough: float,
     steps: int = _STEP_COUNT,
+    floor: float = _LEAST_DAMPING,
 ) -> tuple[Array, Array]:
     """The rows (k, dof) at the ends of so many steps towards poses T (k, 4, 4), and what is least there
     (k,). They end where one that is hardly damped gains a share of that which is not `enough`."""
@@ -156,7 +168,7 @@ def _descend_to(
         at = tuple(np.where(_beside(better, new), new, old) for new, old in zip(there, at))
         ends[going], costs[going] = at[0], at[-1]
         on = (gain > enough * cost) | (damping > _FIRST_DAMPING)
-        damping = np.clip(damping * np.where(better, 0.2, 8.0), _LEAST_DAMPING, _MOST_DAMPING)
+        damping = np.clip(damping * np.where(better, 0.2, 8.0), floor, _MOST_DAMPING)
         on &= damping < _MOST_DAMPING
         if not on.any():
             break

@@ -1,0 +1,97 @@
+"""Poses with all joints at multiples of 45 degrees, or one of them next to that: solutions meet there, or
+are of continua, and where a closed form has none of them they have to be searched."""
+
+from __future__ import annotations
+
+from math import pi
+from pathlib import Path
+
+import numpy as np
+import pytest
+from benchmarks.agreement import arm_of, runner_of
+from numpy.typing import NDArray
+from tests.support.serial_urdf import serial_urdf
+from tests.support.solving import NO_COMPILER
+
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
+from ikgen.verify.completeness import survey
+from ikgen.verify.sampling import SampleSet
+from ikgen.verify.trials import run_trial
+
+ELBOWS = [  # alpha, a, d, theta
+    ("pi/2", 0, 0, "0"), ("pi/2", 0.02, 0, "0"), ("pi/2", 0.02, -0.33, "0"), ("pi/2", 0.02, 0, "0"),
+    ("pi/2", 0.02, -0.34, "0"), ("pi/2", 0, 0, "0"), ("pi/2", 0.07, 0, "0"),
+]  # fmt: skip
+ON_A_SLIDE = [
+    ("0", 0, 0, "0"), ("pi/2", 0.16, 0.2, "0"), ("pi/2", 0, 0, "pi/2"), ("0", 0.28, 0.01, "pi/2"),
+    ("pi/2", 0, 0.245, "-pi/2"), ("pi/2", 0, 0.057, "pi"), ("pi/2", 0, 0, "pi/2"),
+]  # fmt: skip
+ROUNDED = [
+    ("0 0 0.187", "0 0 0"), ("0 -0.006 0", "1.5708 -1.5708 0"), ("0.21 0 0", "0 0 -1.5708"),
+    ("0 0.2105 0", "-1.5708 0 0"), ("0 0 0", "1.5708 0 0"), ("0 0.1593 0", "-1.5708 0 0"),
+]  # fmt: skip
+BESIDE = 1e-7
+"""Rad."""
+
+
+def elbows() -> NDArray[np.float64]:
+    """With the second joint and the elbow straight, where the others turn one about another."""
+    q = np.random.default_rng(3).integers(-4, 5, (30, 7)) * (pi / 4)
+    q[:, (1, 3)] = pi
+    return q
+
+
+def on_a_slide() -> NDArray[np.float64]:
+    """Where up to three singular values vanish."""
+    turns = [
+        [-1, 0, -1, 2, -1, 1], [1, -4, 0, 2, 0, 2], [2, -4, 0, -2, -4, -1], [0, 3, 4, -2, 2, -3],
+        [-2, 0, 0, -2, 4, -4], [-2, -4, 4, -2, 1, 2],
+    ]  # fmt: skip
+    q = np.array(turns) * (pi / 4)
+    q[[0, 1, 3, 4, 5], [1, 2, 0, 2, 0]] += [1e-4, -1e-4, BESIDE, BESIDE, BESIDE]
+    return np.concatenate([[[0.42], [-0.24], [-0.24], [0.22], [0.03], [-0.16]], q], axis=1)
+
+
+def stretched() -> NDArray[np.float64]:
+    """Upright, the wrist straight: above the first axis."""
+    q = np.random.default_rng(5).integers(-4, 5, (40, 6)) * (pi / 4)
+    q[:, (1, 2, 4)] = 0.0
+    q[20:, 2] = BESIDE
+    return q
+
+
+def table(name: str, rows: list[tuple[str, float, float, str]], slides: int, folder: Path) -> Path:
+    """The DH table, of which the first few joints slide."""
+    joints = [
+        f'[[joints]]\ntype = "{"prismatic" if i < slides else "revolute"}"\nalpha = "{alpha}"\na = {a}\n'
+        f'd = {d}\ntheta = "{theta}"\nlimits = [-3.2, 3.2]\n'
+        for i, (alpha, a, d, theta) in enumerate(rows)
+    ]
+    file = folder / f"{name}.toml"
+    file.write_text(f'name = "{name}"\nconvention = "modified"\n{"".join(joints)}')
+    return file
+
+
+def arm(name: str, folder: Path) -> tuple[Request, NDArray[np.float64]]:
+    """An arm, and configurations at whose poses there was no row."""
+    if name == "elbows":
+        return Request(table(name, ELBOWS, 0, folder), free={"theta_3": None}), elbows()
+    if name == "slide":
+        return Request(table(name, ON_A_SLIDE, 1, folder), free={"theta_5": None}), on_a_slide()
+    return Request(serial_urdf(folder / "rounded.urdf", ROUNDED, limit=3.2)), stretched()
+
+
+@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")
+@pytest.mark.parametrize("name", ["elbows", "slide", "rounded"])
+def test_none_is_without_a_row(name: str, tmp_path: Path) -> None:
+    request, q = arm(name, tmp_path)
+    derivation = derive(request)
+    under = arm_of(derivation)
+    sample = SampleSet("even turns", q, under.oracle.forward(q), under.sigma(q))
+    assert np.median(sample.sigma) < 1e-4
+    for language in ("python", "cpp"):
+        runner = runner_of(derivation, language, tmp_path)
+        trial = run_trial(runner, under, sample, limits=True)
+        lost = np.flatnonzero(survey(under, runner, [trial]).unanswered)
+        assert not len(lost), (language, len(lost), q[lost[0]].tolist())
