@@ -386,10 +386,6 @@ HARMLESS = (
         ">", ">=", _EQUAL,
     ),
     HarmlessChange(
-        "forms/quartic_form.py", "out = np.full((4, 2, len(a2)), np.nan)", "4", "5",
-        "a place behind the last root is not read",
-    ),
-    HarmlessChange(
         "runtime/python/roots/trig_quartic_roots.py",
         "return (u, v) if abs(u - c) + abs(v - s) < reach else (c, s)",
         "<", "<=", _EQUAL,

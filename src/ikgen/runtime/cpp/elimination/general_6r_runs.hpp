@@ -94,6 +94,8 @@ inline bool same_apart(const Frames& F, const Frame& T, const Turning& turning, 
          count_apart(F, T, turning, all, known).count == now.count;
 }
 
+inline constexpr int kSure = 3;  // runs that have to find none where there is none: to both sides, by the next elimination
+
 // Adds all solutions of a pose to those that are known: Run(F, T, aim, turning, plan, found) gives those of a plan,
 // with the roots of the pose `aim` beside. One run of the first plan is enough where its roots are real, as many as
 // solutions, and each a solution to many digits. Otherwise more runs follow, with the pose displaced to either side, by
@@ -102,7 +104,6 @@ inline bool same_apart(const Frames& F, const Frame& T, const Turning& turning, 
 // as many that lie apart, as one alone may miss the same of a crowd twice. False where there may be more than was found: no
 // run settles it; or where there may be some though none was found: an elimination of the pose itself lost its rank, or has
 // roots, real ones or some that may be.
-inline constexpr int kSure = 3;  // runs that are to find none where there is none: to both sides, and by the next elimination
 template <auto Run, class Frames, std::size_t N>
 inline bool solve_in_runs(const Frames& F, const Frame& T, const Turning& turning,
                           const std::array<std::array<int, 3>, N>& plans, Solutions& out) noexcept {
