@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from benchmarks.agreement import arm_of, runner_of
 from numpy.typing import NDArray
+from tests.support.dh_files import dh_file
 from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import NO_COMPILER
 
@@ -19,18 +20,21 @@ from ikgen.verify.completeness import survey
 from ikgen.verify.sampling import SampleSet
 from ikgen.verify.trials import run_trial
 
-ELBOWS = [  # alpha, a, d, theta
-    ("pi/2", 0, 0, "0"), ("pi/2", 0.02, 0, "0"), ("pi/2", 0.02, -0.33, "0"), ("pi/2", 0.02, 0, "0"),
-    ("pi/2", 0.02, -0.34, "0"), ("pi/2", 0, 0, "0"), ("pi/2", 0.07, 0, "0"),
+R, P = "revolute", "prismatic"
+ELBOWS = [
+    (R, "pi/2", 0, 0, 0), (R, "pi/2", 0.02, 0, 0), (R, "pi/2", 0.02, -0.33, 0), (R, "pi/2", 0.02, 0, 0),
+    (R, "pi/2", 0.02, -0.34, 0), (R, "pi/2", 0, 0, 0), (R, "pi/2", 0.07, 0, 0),
 ]  # fmt: skip
 ON_A_SLIDE = [
-    ("0", 0, 0, "0"), ("pi/2", 0.16, 0.2, "0"), ("pi/2", 0, 0, "pi/2"), ("0", 0.28, 0.01, "pi/2"),
-    ("pi/2", 0, 0.245, "-pi/2"), ("pi/2", 0, 0.057, "pi"), ("pi/2", 0, 0, "pi/2"),
+    (P, 0, 0, 0, 0), (R, "pi/2", 0.16, 0.2, 0), (R, "pi/2", 0, 0, "pi/2"), (R, 0, 0.28, 0.01, "pi/2"),
+    (R, "pi/2", 0, 0.245, "-pi/2"), (R, "pi/2", 0, 0.057, "pi"), (R, "pi/2", 0, 0, "pi/2"),
 ]  # fmt: skip
 ROUNDED = [
     ("0 0 0.187", "0 0 0"), ("0 -0.006 0", "1.5708 -1.5708 0"), ("0.21 0 0", "0 0 -1.5708"),
     ("0 0.2105 0", "-1.5708 0 0"), ("0 0 0", "1.5708 0 0"), ("0 0.1593 0", "-1.5708 0 0"),
 ]  # fmt: skip
+LIMIT = 3.2
+"""Rad or m, to either side."""
 BESIDE = 1e-7
 """Rad."""
 
@@ -61,25 +65,15 @@ def stretched() -> NDArray[np.float64]:
     return q
 
 
-def table(name: str, rows: list[tuple[str, float, float, str]], slides: int, folder: Path) -> Path:
-    """The DH table, of which the first few joints slide."""
-    joints = [
-        f'[[joints]]\ntype = "{"prismatic" if i < slides else "revolute"}"\nalpha = "{alpha}"\na = {a}\n'
-        f'd = {d}\ntheta = "{theta}"\nlimits = [-3.2, 3.2]\n'
-        for i, (alpha, a, d, theta) in enumerate(rows)
-    ]
-    file = folder / f"{name}.toml"
-    file.write_text(f'name = "{name}"\nconvention = "modified"\n{"".join(joints)}')
-    return file
-
-
 def arm(name: str, folder: Path) -> tuple[Request, NDArray[np.float64]]:
     """An arm, and configurations at whose poses there was no row."""
     if name == "elbows":
-        return Request(table(name, ELBOWS, 0, folder), free={"theta_3": None}), elbows()
+        file = dh_file(folder / "elbows.toml", ELBOWS, limit=LIMIT)
+        return Request(file, free={"theta_3": None}), elbows()
     if name == "slide":
-        return Request(table(name, ON_A_SLIDE, 1, folder), free={"theta_5": None}), on_a_slide()
-    return Request(serial_urdf(folder / "rounded.urdf", ROUNDED, limit=3.2)), stretched()
+        file = dh_file(folder / "slide.toml", ON_A_SLIDE, limit=LIMIT)
+        return Request(file, free={"theta_5": None}), on_a_slide()
+    return Request(serial_urdf(folder / "rounded.urdf", ROUNDED, limit=LIMIT)), stretched()
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")

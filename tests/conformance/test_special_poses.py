@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.support.dh_files import dh_file
 from tests.support.solving import NO_COMPILER, import_text
 
 from ikgen.emit.cpp.cpp_emitter import emit_header
@@ -173,14 +174,8 @@ SPECIAL = {
 
 
 def table(rows: list[tuple[str, int, float, float]], folder: Path) -> Path:
-    text = 'name = "special"\nconvention = "modified"\n'
-    for kind, quarters, a, d in rows:
-        text += (
-            f'[[joints]]\ntype = "{kind}"\nalpha = "{quarters}*pi/2"\na = {a}\nd = {d}\ntheta = 0\n'
-        )
-    path = folder / "special.toml"
-    path.write_text(text)
-    return path
+    whole = [(kind, f"{quarters}*pi/2", a, d, 0) for kind, quarters, a, d in rows]
+    return dh_file(folder / "special.toml", whole)
 
 
 def both(rows: list[tuple[str, int, float, float]], folder: Path) -> tuple[Runner, Runner]:

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from benchmarks.agreement import arm_of, runner_of
+from tests.support.dh_files import dh_file
 from tests.support.solving import NO_COMPILER
 
 from ikgen.generation.derive import derive
@@ -22,17 +23,13 @@ POSES = 40
 def test_none_is_without_a_row_where_all_links_lie_in_one_plane(tmp_path: Path) -> None:
     """Four parallel axes behind two that are not: with the second joint at exactly 0 the first axis lies
     in their plane, and two joints more than the pose reads move it there."""
-    rows = ["0, 0", "pi/2, 1.1", "pi/2, 1.1", "0, 1.1", "0, 1.1", "0, 1.1"]
-    joints = [
-        f'[[joints]]\ntype = "revolute"\nalpha = "{alpha}"\na = {a}\nd = 0\ntheta = 0\n'
-        "limits = [-2.8, 2.8]\n"
-        for alpha, a in (row.split(", ") for row in rows)
-    ]
-    table = tmp_path / "plane.toml"
+    links = [("0", 0), ("pi/2", 1.1), ("pi/2", 1.1), ("0", 1.1), ("0", 1.1), ("0", 1.1)]
     turned = "[base]\nrpy = [3.141592653589793, -1.5707963267948966, 0]\n"
     tool = "[tool]\nxyz = [1.2, 0, 0]\nrpy = [0, 1.5707963267948966, 0]\n"
-    table.write_text(f'name = "plane"\nconvention = "modified"\n{"".join(joints)}{turned}{tool}')
-    derivation = derive(Request(table))
+    rows = [("revolute", alpha, a, 0, 0) for alpha, a in links]
+    derivation = derive(
+        Request(dh_file(tmp_path / "plane.toml", rows, limit=2.8, ends=turned + tool))
+    )
     arm = arm_of(derivation)
     q = arm.uniform(np.random.default_rng(1), POSES)
     q[:, 1] = 0.0

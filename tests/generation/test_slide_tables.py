@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.support.dh_files import dh_file
 from tests.support.solving import import_text
 
 from ikgen.emit.cpp.cpp_emitter import emit_header
@@ -13,24 +14,16 @@ from ikgen.emit.python.python_emitter import emit_module
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 
-ANGLES = ("0.3", "1.2", "-0.7", "0.9", "-1.1", "0.6")
+ANGLES = (0.3, 1.2, -0.7, 0.9, -1.1, 0.6)
 
 
 def table(kinds: str, folder: Path) -> Path:
     """A table of up to six joints without special geometry."""
-    rows = [f'name = "{kinds.lower()}"', 'convention = "modified"']
-    for i, (kind, twist) in enumerate(zip(kinds, ANGLES, strict=False)):
-        rows += [
-            "[[joints]]",
-            f'type = "{"revolute" if kind == "R" else "prismatic"}"',
-            f"alpha = {twist}",
-            f"a = {0.1 * (i % 3) + 0.07}",
-            f"d = {0.2 - 0.06 * i}",
-            "theta = 0",
-        ]
-    path = folder / f"{kinds.lower()}.toml"
-    path.write_text("\n".join(rows) + "\n")
-    return path
+    rows = [
+        ("revolute" if kind == "R" else "prismatic", twist, 0.1 * (i % 3) + 0.07, 0.2 - 0.06 * i, 0)
+        for i, (kind, twist) in enumerate(zip(kinds, ANGLES, strict=False))
+    ]
+    return dh_file(folder / f"{kinds.lower()}.toml", rows)
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shlex
 import shutil
 from collections.abc import Callable
@@ -11,6 +10,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from ikgen.errors import IkgenError, MissingToolError
+from ikgen.importers.packages import AMENT, sourced
 from ikgen.plugins import GROUPS, PlugIn, plug_ins
 
 __all__ = ["Offer", "Thing", "offers", "packages", "tools"]
@@ -107,10 +107,7 @@ def _program(name: str, purpose: str, remedy: str) -> Thing:
 
 def _ament() -> str | None:
     """Where CMake's `find_package(ament_cmake)` would find it: the sourced prefixes, then /usr."""
-    sourced = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
-    places = [
-        Path(prefix) / "share/ament_cmake/cmake" for prefix in (*filter(None, sourced), "/usr")
-    ]
+    places = [prefix / "share/ament_cmake/cmake" for prefix in (*sourced(AMENT), Path("/usr"))]
     found = next((p for p in places if (p / "ament_cmakeConfig.cmake").is_file()), None)
     return None if found is None else str(found)
 

@@ -18,6 +18,7 @@ from pathlib import Path
 from types import ModuleType
 
 from ikgen.errors import BadDescriptionError, MissingToolError, UnknownNameError
+from ikgen.importers.packages import AMENT, sourced
 from ikgen.importers.robot_table import RENAMED
 
 __all__ = ["SOURCES", "NamedRobot", "find_robot", "is_named", "robot_names"]
@@ -81,9 +82,7 @@ def _robots_folder() -> Path:
     places = [Path(sys.prefix, share)]
     with suppress(PackageNotFoundError):
         places.insert(0, Path(str(distribution(DATA).locate_file(f"cmeel.prefix/{share}"))))
-    places += [
-        Path(p, share) for p in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p
-    ]
+    places += [prefix / share for prefix in sourced(AMENT)]
     for place in places:
         if place.is_dir():
             return place

@@ -13,9 +13,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-__all__ = ["PACKAGE_URL", "PackageFinder", "PackageNotFoundError", "holds_home", "manifest_name"]
+__all__ = [
+    "AMENT", "PACKAGE_URL", "PackageFinder", "PackageNotFoundError", "holds_home", "manifest_name",
+    "sourced",
+]  # fmt: skip
 
 PACKAGE_URL = "package://"
+AMENT, ROS_1 = "AMENT_PREFIX_PATH", "ROS_PACKAGE_PATH"
+"""What a sourced workspace sets: the prefixes of ROS 2, the folders of packages of ROS 1."""
 
 # workspace / src / repository / group / package
 _SEARCH_DEPTH = 4
@@ -67,7 +72,7 @@ class PackageFinder:
             return directory.resolve()
         searched = [str(path) for path in self.package_paths]
         searched.append(f"the directories above {self.start} and beside its package")
-        searched += ["AMENT_PREFIX_PATH", "ROS_PACKAGE_PATH"]
+        searched += [AMENT, ROS_1]
         raise PackageNotFoundError(name, searched)
 
     def _candidates(self, name: str) -> Iterator[Path]:
@@ -81,14 +86,16 @@ class PackageFinder:
         nearby = [*above[:_SEARCH_DEPTH], *beside]
         yield from (directory for directory in nearby if _is_package(directory, name))
         yield from (directory for directory in above if manifest_name(directory) == name)
-        for prefix in self._sourced("AMENT_PREFIX_PATH"):
+        for prefix in sourced(AMENT, self.environment):
             if (prefix / "share/ament_index/resource_index/packages" / name).is_file():
                 yield prefix / "share" / name
-        for folder in self._sourced("ROS_PACKAGE_PATH"):
+        for folder in sourced(ROS_1, self.environment):
             yield from _inside(folder, name, _SEARCH_DEPTH)
 
-    def _sourced(self, variable: str) -> list[Path]:
-        return [Path(one) for one in self.environment.get(variable, "").split(os.pathsep) if one]
+
+def sourced(variable: str, environment: Mapping[str, str] = os.environ) -> list[Path]:
+    """The folders that a sourced workspace names."""
+    return [Path(one) for one in environment.get(variable, "").split(os.pathsep) if one]
 
 
 def _inside(directory: Path, name: str, depth: int) -> Iterator[Path]:
