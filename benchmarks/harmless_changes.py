@@ -172,7 +172,7 @@ HARMLESS = (
         "1", "2", _WHATEVER,
     ),
     HarmlessChange(
-        "runtime/python/solving/doubtful_poses.py",
+        "runtime/python/solving/rows_elsewhere.py",
         "break",
         "break", "continue", "nothing is left to be tried then",
     ),

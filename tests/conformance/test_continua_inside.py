@@ -8,11 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from benchmarks.agreement import arm_of, runner_of
+from numpy.typing import NDArray
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
+from tests.support.serial_urdf import serial_urdf as origins_urdf
 from tests.support.solving import FIXTURES, NO_COMPILER
 
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
+from ikgen.verify.completeness import survey
+from ikgen.verify.sampling import SampleSet
+from ikgen.verify.trials import run_trial
 
 LOWER, UPPER = 0.5, 0.7
 """Of joint 4: neither 0 nor a multiple of the step between the values that are tried lies inside."""
@@ -71,3 +76,50 @@ def test_a_held_joint_stays_on_its_turn_along_a_broken_continuum(
     assert (found[:, 0] == q[index, 0]).all()
     off_by = np.abs(found - q[index]).max(axis=1)
     assert [off_by[index == i].min() < 1e-4 for i in range(60)] == [True] * 60
+
+
+H, PI = "1.5707963267948966", "3.141592653589793"
+TURNED_ELBOW = [
+    ("0 0 0", "0 0 0"), ("0.125 0 0", f"{H} 0 0"), ("0.09 0 0", f"-{H} {PI} -{H}"),
+    ("-0.02 0 0.222", f"{H} -{H} 0"), ("0.162 -0.02 0", f"{H} -{H} -{H}"), ("0 0 -0.15", f"0 -{H} -{H}"),
+    ("0 0 0", f"{H} 0 {H}"),
+]  # fmt: skip
+"""At 0 the elbow puts joints 3 and 5 on one axis, and the arm is not stretched."""
+
+RANGES = [
+    (-1.178, 1.571), (-1.178, 1.571), (-0.786, 3.927), (-0.393, 2.357), (-2.095, 2.095), (-1.414, 1.414),
+    (-2.095, 2.095),
+]  # fmt: skip
+"""Rad, a joint each: the elbow bends to both sides."""
+
+
+def straight_wrists() -> NDArray[np.float64]:
+    """But for round-off to 1e-10 at multiples of 45 degrees: joint 7 goes round with joint 5, and in the
+    second half, the elbow at 0, with joint 3 too. At many values of one the others are outside."""
+    (low, high), random = np.array(RANGES).T, np.random.default_rng(6)
+    least, most = np.ceil(low / (np.pi / 4)), np.floor(high / (np.pi / 4))
+    q = random.integers(least.astype(int), most.astype(int) + 1, (400, 7)) * (np.pi / 4)
+    q[:, 5], q[200:, 3] = 0.0, 0.0
+    off = 10.0 ** random.uniform(-12.0, -10.0, (400, 1))
+    return np.clip(q + random.normal(scale=off, size=q.shape), low, high)
+
+
+@BOTH
+def test_a_continuum_has_a_row_inside_beside_those_of_other_branches(
+    language: str, tmp_path: Path
+) -> None:
+    path = origins_urdf(tmp_path / "arm.urdf", TURNED_ELBOW, limit=3.0)
+    text = path.read_text()
+    for low, high in RANGES:
+        text = text.replace('lower="-3.0" upper="3.0"', f'lower="{low}" upper="{high}"', 1)
+    path.write_text(text)
+    derivation = derive(Request(path, free={"j0": None}))
+    under, q = arm_of(derivation), straight_wrists()
+    sample = SampleSet("straight wrists", q, under.oracle.forward(q), under.sigma(q))
+    runner = runner_of(derivation, language, tmp_path)
+    trial = run_trial(runner, under, sample, limits=True)
+    plain = (trial.rows.mask & ~trial.rows.singular).any(axis=1)
+    assert plain[:200].sum() > 50
+    assert plain[200:].sum() > 50
+    assert trial.rows.singular.any(axis=1).all()
+    assert not survey(under, runner, [trial]).missed.any()

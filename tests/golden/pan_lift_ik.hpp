@@ -1526,6 +1526,8 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     return kind;
   }
 
+  bool passes(const Passed& passed, const double* q) noexcept { return passed_part(passed, at(q)) > 0; }
+
  private:
   static constexpr int kMost = 96, kLeast = 4, kRounds = 3;
   static constexpr double kBeside = 0.06, kSameWay = 0.9;
@@ -1955,7 +1957,9 @@ template <class Arm> struct LimitCurve {
     Curve curve(aim);
     if (curve.trace(start, passed) != Curve::Kind::Whole) return;
     double off[Passed::kSamples];
-    const int count = std::min(curve.passing, static_cast<int>(Passed::kSamples));
+    const int count = passed.count = std::min(curve.passing, static_cast<int>(Passed::kSamples));
+    for (int k = 0; k < out.count; ++k)
+      if (Row::flag(out, k) && curve.passes(passed, Row::row(out, k))) return;
     for (int k = 0; k < count; ++k) off[k] = outside(passed.sample[k].q);
     for (int k = 0; k < count; ++k) {
       const bool before = !passed.first[k], after = k + 1 < count && !passed.first[k + 1];
@@ -2202,6 +2206,15 @@ template <class Arm> struct NearestRow {
     }
   }
 
+  static void put_inside(double* q) noexcept {
+    for (int j = 0; j < Arm::kDof; ++j) {
+      const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j], middle = 0.5 * (low + high);
+      if (Arm::kHeld[j]) continue;
+      if (Arm::kRevolute[j] && std::isfinite(middle)) q[j] -= kTurn * std::nearbyint((q[j] - middle) / kTurn);
+      q[j] = std::clamp(q[j], low, high);
+    }
+  }
+
   static double descend(const double* t, bool limits, double enough, double* q, int steps = kSteps,
                         double floor = kLeast) noexcept {
     double damping = kFirst;
@@ -2318,7 +2331,7 @@ template <class Arm> struct CarefulSolve {
     }
     if (free && !Arm::kRounded && !Arm::kRefined) real = add_hidden(aim, options, found) || real;
     if ((free || loose.count > 0 || (led && !real)) && found.count == 0) real = add_nearest(aim, options, found) || real;
-    if (found.count == 0) add_along(aim, options, loose, found);
+    add_along(aim, options, loose, found);
     if (options.seed) Row::sort_by_distance(found, options.seed->data());
     take_in_order(found, out);
     out.status = out.count > 0 ? Arm::Status::Ok : real ? Arm::Status::Limits : Arm::Status::Unreachable;
@@ -2397,8 +2410,21 @@ template <class Arm> struct CarefulSolve {
   }
 
   [[gnu::cold, gnu::noinline]] static void add_along(const Aim& aim, const Options& options, Places& rows, Places& out) noexcept {
+    double q[Arm::kDof];
+    const auto outside = [&](int k) noexcept {
+      std::copy_n(Row::row(rows, k), Arm::kDof, q);
+      return Row::flag(rows, k) && !Row::place(q, options);
+    };
     for (int k = 0; k < rows.count; ++k)
-      if (Row::flag(rows, k)) LimitCurve<Arm>::add(aim, options, Row::row(rows, k), out);
+      if (outside(k)) LimitCurve<Arm>::add(aim, options, Row::row(rows, k), out);
+    typename NearContinuum<Arm>::Passed passed;
+    for (int k = 0; k < rows.count && !Careful::any_singular(out); ++k) {
+      if (!outside(k)) continue;
+      std::copy_n(Row::row(rows, k), Arm::kDof, q);
+      NearestRow<Arm>::put_inside(q);
+      NearestRow<Arm>::descend(aim.pose.matrix().data(), true, NearestRow<Arm>::kStanding, q);
+      if (add_led_to(aim, q, passed, out)) LimitRows<Arm>::place_all(aim, options, out);
+    }
   }
 
   [[gnu::cold, gnu::noinline]] static bool add_nearest(const Aim& aim, const Options& options, Places& out) noexcept {

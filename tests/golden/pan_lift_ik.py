@@ -533,8 +533,8 @@ class _Arm:
     together: None
     branch_kind: str
     elbow_end: int
+    around: _Around
     angle: None = None
-    around: _Around | None = None
     freedoms: int = 6
 
     @property
@@ -1045,37 +1045,6 @@ class _Answer:
     led: bool = False
 
 
-# Newton's method on curves along which a pose hardly moves.
-
-
-_FLAT_STEPS = 30
-_FLAT_LONGEST = 0.3  # rad or arm lengths: a step along a singular direction
-_FLAT_ENOUGH = 1e-14  # error
-
-
-def _flat_steps(
-    chain: _Chain, task: _EntriesTask, moving: Sequence[int], q: Array, T: Array
-) -> tuple[Array, Array]:
-    """The best rows of undamped steps of the joints `moving` from q (k, dof) towards T (k, 4, 4), and their
-    errors (k,)."""
-    moving = list(moving)
-    best, result, going = np.full(len(q), inf), q.copy(), np.arange(len(q))
-    for _ in range(_FLAT_STEPS):
-        error, slope = _errors_and_slopes(chain, task, moving, q, T, None)
-        worst = np.abs(error).max(axis=1)
-        better = worst < best[going]
-        result[going[better]], best[going[better]] = q[better], worst[better]
-        on = worst > _FLAT_ENOUGH
-        if not on.any():
-            break
-        going, q, T, error, slope = (x[on] for x in (going, q, T, error, slope))
-        U, s, Vt = np.linalg.svd(slope, full_matrices=False)
-        along = np.einsum("kmi,km->ki", U, error) / np.maximum(s, 1e-300)
-        along = np.clip(along, -_FLAT_LONGEST, _FLAT_LONGEST)
-        q[:, moving] += np.einsum("kij,ki->kj", Vt, along)
-    return result, best
-
-
 # Solutions near a singularity, where Newton's method stalls.
 
 
@@ -1215,6 +1184,310 @@ def _root(side: Array, rest: Array, bend: Array, flow: Array) -> Array:
     return np.asarray(np.clip(np.nan_to_num(np.where(k > 0.0, x, 0.0)), -_FAR, _FAR))
 
 
+# Rows of several poses in one array: without repetitions, and in order.
+
+
+def _places(pose: _Index) -> _Index:
+    """The number of each row among those of its pose, pose (k,) in order."""
+    first = np.searchsorted(pose, pose)
+    return np.asarray(np.arange(len(pose)) - first)
+
+
+# What Newton steps from the closed form's rows lead to near singularities, where solutions meet.
+
+
+class _Starts(NamedTuple):
+    """Where Newton steps start: rows `q` (k, dof) for poses `T` (k, 4, 4), which rows are of the same pose,
+    `pose` (k,), which the closed form `marked` (k,) as of a continuum, and the `source` (k,) of each:
+    given (-1), the closed form for the pose (0), or for one beside (1, 2, ...), on branch `lane` (k,)."""
+
+    q: Array
+    T: Array
+    pose: _Index
+    marked: _Flags
+    source: NDArray[np.int64]
+    lane: _Index
+
+
+class _Ends(NamedTuple):
+    """Where Newton steps end: rows `q` (k, dof), their `error` and the smallest singular value `sigma` of
+    the derivatives (k,)."""
+
+    q: Array
+    error: Array
+    sigma: Array
+
+
+class _Led(NamedTuple):
+    """Solutions `q` (n, dof), the starts `owner` (n,) that led to them, and the smallest singular values
+    `sigma` (n,) there."""
+
+    owner: _Index
+    q: Array
+    sigma: Array
+
+
+class _Leads(NamedTuple):
+    """Starts and their ends, with an infinite error where a start stands for a continuum of the solved
+    geometry, what is found `around` that, and of which starts (k,) that is `known`."""
+
+    starts: _Starts
+    ends: _Ends
+    around: _Led
+    known: _Flags
+
+
+def _both(one: _Leads, other: _Leads) -> _Leads:
+    """Those of two."""
+    owner = other.around.owner + len(one.starts.q)
+    out: _Leads = _joined(one, other._replace(around=other.around._replace(owner=owner)))
+    return out
+
+
+def _ends_of(arm: _Arm, q: Array, T: Array) -> _Ends:
+    """Where steps from rows q (k, dof) towards aims T end."""
+    q, error, _, slope = _refined(arm, q, T)
+    return _Ends(q, error, _least_singular(slope))
+
+
+def _leads_of(arm: _Arm, starts: _Starts, known: _Flags, near: bool = False) -> _Leads:
+    """What starts lead to."""
+    broken = starts.marked & (starts.source >= 0)
+    if broken.any():
+        error = _ends_of(arm, starts.q[broken], starts.T[broken]).error
+        broken[broken] = error >= arm.policy.arrived
+    nowhere = np.full(len(starts.q), np.inf)
+    ends = _Ends(starts.q.copy(), nowhere, nowhere.copy())
+    _run(arm, starts, ends, ~broken)
+    own, at = starts.source == 0, (starts.pose, starts.lane)
+    lie = own & ~starts.marked & near
+    lie &= ends.sigma < min(arm.policy.broken_reach, arm.policy.fold_reach)
+    one, on = _found_around(arm, starts, ends, (broken & own & ~known[at]) | lie, lie)
+    known[starts.pose[on & ~lie], starts.lane[on & ~lie]] = True
+    other, also = _found_around(arm, starts, ends, broken & ~own & ~known[at], lie)
+    known[starts.pose[also], starts.lane[also]] = True
+    around = broken & known[at]
+    _run(arm, starts, ends, broken & ~around)
+    starts = starts._replace(marked=starts.marked & (around | ~broken))
+    return _Leads(starts, ends, _joined(one, other), around | (on & lie))
+
+
+def _run(arm: _Arm, starts: _Starts, ends: _Ends, some: _Flags) -> None:
+    """Enters where steps from some of the starts end."""
+    for whole, part in zip(ends, _ends_of(arm, starts.q[some], starts.T[some])):
+        whole[some] = part
+
+
+def _found_around(
+    arm: _Arm, starts: _Starts, ends: _Ends, some: _Flags, lie: _Flags
+) -> tuple[_Led, _Flags]:
+    """The solutions around continua that some starts (k,) stand for, or that rows `lie` (k,) on which they
+    lead to, once for each branch of a pose."""
+    left, on = np.flatnonzero(some), np.zeros(len(some), dtype=bool)
+    found = _Led(left[:0], starts.q[:0], ends.sigma[:0])
+    branch = starts.pose * (1 + starts.lane.max(initial=0)) + starts.lane
+    for others in (False, True):
+        if not len(left):
+            break
+        index = left if others else _first_of(branch, left)
+        q = np.where(lie[index, None], ends.q[index], starts.q[index])
+        curve, owner, rows, sigma = arm.around(arm, q, starts.T[index], lie[index])
+        on[_first_of(branch, index[curve])] = True
+        more = _Led(index[owner], rows, sigma)
+        found = _joined(found, _some_of(more, on[more.owner]))
+        left = np.setdiff1d(left[~np.isin(branch[left], branch[on])], index)
+    return found, on
+
+
+def _first_of(branch: _Index, some: _Index) -> _Index:
+    """Of some starts, in order, the first of each `branch` (k,)."""
+    return np.sort(some[np.unique(branch[some], return_index=True)[1]])
+
+
+def _rows_nearby(arm: _Arm, leads: _Leads) -> _Led:
+    """The solutions that starts lead to, those that are sure first."""
+    starts, T, (q, error, sigma) = leads.starts, leads.starts.T, (x.copy() for x in leads.ends)
+    near = (starts.source >= 0) & ~starts.marked & (sigma < arm.policy.fold_reach)
+    settled = error < np.where(near, arm.policy.converged, arm.policy.arrived)
+    fresh = _fresh(arm, q, starts, near, near & ~settled)
+    settled &= fresh
+    near &= fresh & ~leads.known
+    sure = np.flatnonzero(settled)
+    first = _meeting_rows_in_order(_Led(sure, q[sure], sigma[sure]), leads.around)
+    if not near.any():
+        return first
+    owner = np.repeat(np.flatnonzero(near), 2)
+    pairs = _approach(arm, q[owner], T[owner], np.tile([1.0, -1.0], len(owner) // 2))
+    pairs, left, there = _ends_of(arm, pairs, T[owner])
+    exact = left < arm.policy.exact
+    for k, i in zip(np.flatnonzero(~exact).tolist(), owner[~exact].tolist()):
+        if left[k] < error[i]:
+            q[i], error[i], sigma[i] = pairs[k], left[k], there[k]
+    alone = np.flatnonzero(near & (error < arm.policy.arrived))
+    alone = np.setdiff1d(alone, [*owner[exact], *sure])
+    more = _meeting_rows_in_order(
+        _Led(owner[exact], pairs[exact], there[exact]), _Led(alone, q[alone], sigma[alone])
+    )
+    found: _Led = _joined(first, more)
+    return found
+
+
+def _meeting_rows_in_order(one: _Led, other: _Led) -> _Led:
+    found = _joined(one, other)
+    order = np.argsort(found.owner, kind="stable")
+    return _Led(*(x[order] for x in found))
+
+
+def _fresh(arm: _Arm, q: Array, starts: _Starts, near: _Flags, stalled: _Flags) -> _Flags:
+    """Which rows (k, dof) are not of a pose beside, and led to the same as an earlier one of their pose or
+    stalled by one that is near another solution."""
+    return np.ones(len(q), dtype=bool)
+
+
+def _repeats(arm: _Arm, T: Array, row: Row, kept: Sequence[_Found]) -> bool:
+    """Whether nothing tells a singular row from one kept nearby."""
+    others = [other for other, singular in kept if singular]
+    if not others:
+        return False
+    rows = np.broadcast_to(np.array(row), (len(others), len(row)))
+    return bool(_untold(arm, np.broadcast_to(T, (len(others), 4, 4)), rows, np.array(others)).any())
+
+
+def _untold(arm: _Arm, T: Array, a: Array, b: Array) -> _Flags:
+    """Which singular rows a (k, dof) for poses T (k, 4, 4) nothing tells from others nearby, b (k, dof)."""
+    gaps = _differences(arm, a, b)
+    near = np.abs(gaps).max(axis=1) < arm.policy.alike
+    middle = _forward(arm.chain, (a + 0.5 * gaps)[near])
+    near[near] = np.abs(arm.task.error(middle, T[near])).max(axis=1) < arm.policy.halfway
+    return np.asarray(near)
+
+
+def _that_differ(arm: _Arm, T: Array, pose: _Index, q: Array, singular: _Flags) -> _Index:
+    """Which rows q (k, dof) of poses T[pose] (k, 4, 4) differ from all that are taken before them, in
+    order."""
+    left, taken = np.arange(len(q)), [np.zeros(0, dtype=np.intp)]
+    while len(left):
+        _, first, whose = np.unique(pose[left], return_index=True, return_inverse=True)
+        taken.append(left[first])
+        left, first = np.delete(left, first), left[first][np.delete(whose, first)]
+        new = ~_same_rows(arm, q[left], q[first])
+        flat = np.flatnonzero(new & singular[left] & singular[first])
+        new[flat] = ~_untold(arm, T[pose[left[flat]]], q[left[flat]], q[first[flat]])
+        left = left[new]
+    return np.sort(np.concatenate(taken))
+
+
+# Solutions of poses near singularities, and of those that leave joints free, by the closed form's rows and
+
+
+_FoundRows = tuple[list[_Found], bool, bool]
+
+
+def _rows_from(arm: _Arm, asked: _Asked, start: Array, turn: _Index) -> list[_FoundRows]:
+    """For each pose the solutions (radians between -pi and pi) from its start after some turns (n,)."""
+    first, away, T = not turn.any(), (turn > 0) & (turn <= len(arm.beside)), asked.T.copy()
+    T[away] = T[away] @ arm.beside[turn[away] - 1]
+    closed = asked.closed.own if asked.closed and first else _closed_form(arm, T, start, asked.held)
+    free, marked = closed.free | away, closed.valid & (closed.singular | closed.doubt)
+    known, rough = np.zeros(closed.valid.shape, dtype=bool), closed.valid & closed.rough
+    own = _of_lanes(arm, asked, closed, rough, marked)
+    starts = _joined(_given(arm, asked, start, np.flatnonzero(free)), own)
+    leads = _leads_of(arm, starts, known, near=first and arm.rounded)
+    close = (starts.source >= 0) & (leads.ends.sigma < arm.policy.beside_reach) & ~leads.known
+    near = free | (np.bincount(starts.pose[close], minlength=len(free)) > 0)
+    if free.any():
+        beyond = ~closed.valid & free[:, None] & (first and arm.rounded)
+        hidden = closed.singular & ~known & (beyond | _without_rows(arm, free, leads)[:, None])
+        hidden &= np.isfinite(closed.q).all(axis=2)
+        more = _of_lanes(arm, asked, closed, hidden, hidden)
+        leads = _both(leads, _leads_of(arm, more, known))
+    kept = _meeting(arm, asked, leads)
+    for i, k in np.argwhere(closed.valid & ~closed.rough).tolist():
+        _add_new(arm, asked.T[i], [(tuple(closed.q[i, k].tolist()), bool(marked[i, k]))], kept[i])
+    return list(zip(kept, free.tolist(), np.logical_or.reduce(marked | known, axis=1).tolist()))
+
+
+def _seeded_rows(arm: _Arm, asked: _Asked) -> list[list[_Found]]:
+    """What Newton steps from the seeds lead to."""
+    return _led_to(arm, asked, asked.starts(arm))
+
+
+def _led_to(arm: _Arm, asked: _Asked, start: Array) -> list[list[_Found]]:
+    if not len(start):
+        return []
+    starts = _given(arm, asked, start, np.arange(len(start)))
+    return _meeting(arm, asked, _leads_of(arm, starts, np.zeros((len(start), 1), dtype=bool)))
+
+
+def _without_rows(arm: _Arm, free: _Flags, leads: _Leads) -> _Flags:
+    """Which poses leave a joint free and led nowhere."""
+    starts, poor = leads.starts, np.array(free, dtype=bool)
+    poor[starts.pose[(starts.source >= 0) | (leads.ends.error < arm.policy.arrived)]] = False
+    return poor
+
+
+def _of_lanes(arm: _Arm, asked: _Asked, closed: _ClosedForm, lanes: _Flags, marked: _Flags) -> _Starts:
+    """From some of the closed form's rows (N, M), `marked` (N, M)."""
+    pose, lane = np.nonzero(lanes)
+    source = np.zeros(len(pose), dtype=np.int64)
+    return _starts(arm, asked, closed.q[pose, lane], pose, marked[pose, lane], source, lane)
+
+
+def _given(arm: _Arm, asked: _Asked, start: Array, pose: _Index) -> _Starts:
+    marked, place = np.ones(len(pose), dtype=bool), np.zeros(len(pose), dtype=np.int64)
+    return _starts(arm, asked, start[pose], pose, marked, place - 1, place)
+
+
+def _starts(
+    arm: _Arm, asked: _Asked, q: Array, pose: _Index, marked: _Flags, source: _Index, lane: _Index
+) -> _Starts:
+    aim = _aims(arm, asked.T, asked.held)[pose]
+    return _Starts(q, aim, pose, marked, source, lane)
+
+
+def _meeting(arm: _Arm, asked: _Asked, leads: _Leads) -> list[list[_Found]]:
+    """For each pose the distinct rows that Newton steps lead to."""
+    out: list[list[_Found]] = [[] for _ in asked.T]
+    owner, q, sigma = _rows_nearby(arm, leads)
+    flat, continuum = arm.policy.singular_below, arm.policy.continuum_below
+    pose, marked = leads.starts.pose[owner], leads.starts.marked[owner]
+    flags = (marked & (sigma < continuum)) | (sigma < flat)
+    for k in _that_differ(arm, asked.T, pose, q, flags).tolist():
+        out[pose[k]].append((tuple(q[k].tolist()), bool(flags[k])))
+    return out
+
+
+def _add_new(arm: _Arm, T: Array, rows: list[_Found], kept: list[_Found]) -> None:
+    """Adds those of the rows that differ from all that are there."""
+    for row, singular in rows:
+        if _is_new(arm, row, kept) and not (singular and _repeats(arm, T, row, kept)):
+            kept.append((row, singular))
+
+
+# Rows that are hardly outside the limits: near singularities the pose does not tell that.
+
+
+def _rows_inside(
+    arm: _Arm, aim: Array, rows: list[_Found], near: Row | None, limits: bool
+) -> list[_Found]:
+    """`_place_rows` towards an aim (1, ...)."""
+    inside, close = _rows_at_limits(arm, rows, near, limits)
+    for (row, flag), on_limits in close:
+        q, error, _, _ = _refined(arm, np.array([row]), aim)
+        found = [(tuple(q[0].tolist()), flag)] if error[0] < arm.policy.arrived else []
+        inside += _place_rows(arm, found, near, limits) or _held_there(arm, aim, on_limits, flag)
+    return inside
+
+
+def _held_there(arm: _Arm, aim: Array, row: Row, flag: bool) -> list[_Found]:
+    """The row with its joints on limits left there, if the pose is right to round-off."""
+    moving = [j for j in arm.moving if row[j] not in (arm.lower[j], arm.upper[j])]
+    start, policy = np.array([row]), arm.policy
+    q, error, _, _ = _refine(arm.chain, arm.task, moving, start, aim, policy, arm.angle)
+    found = [(tuple(q[0].tolist()), flag)] if error[0] < policy.exact else []
+    return _place_rows(arm, found, row, True)
+
+
 # Samples of curves along which the other joints take the pose's error away but for one direction.
 
 
@@ -1245,15 +1518,6 @@ def _sampled(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, _Flags]:
         if not len(going):
             break
     return at, near
-
-
-# Rows of several poses in one array: without repetitions, and in order.
-
-
-def _places(pose: _Index) -> _Index:
-    """The number of each row among those of its pose, pose (k,) in order."""
-    first = np.searchsorted(pose, pose)
-    return np.asarray(np.arange(len(pose)) - first)
 
 
 # Solutions on parts of curves, between two samples each, by what is left of the error there and how that
@@ -1443,6 +1707,14 @@ def _outside(arm: _Arm, q: Array, limits: bool) -> Array:
     return out
 
 
+def _turned_inside(arm: _Arm, q: Array) -> Array:
+    """Rows (k, dof) with turning joints on the turn that is nearest to the middle of their range."""
+    out = np.array(q)
+    for j, middle, _, turns in _bounded_joints(arm):
+        out[:, j] = middle + _offsets(q[:, j], middle, turns)
+    return out
+
+
 # Solutions on what is a continuum of the geometry that was solved, and none of the file's.
 
 
@@ -1451,6 +1723,7 @@ _LEAST = 4
 
 _ASTRAY = 4  # samples in a row that show that no curve is near
 _near_continuum_BESIDE, _SAME_WAY = 0.06, 0.9
+_OVER, _ON, _ROUNDS = 0.05, 1e-6, 3  # of a part; rad or m off it
 
 
 class _Traced(NamedTuple):
@@ -1512,6 +1785,32 @@ def _followed(arm: _Arm, q: Array, T: Array) -> tuple[_Parts, _Parts, Array]:
     return _follow(arm, first, T)
 
 
+def _on_curves(arm: _Arm, parts: _Parts, owner: _Index, q: Array, T: Array) -> _Flags:
+    """Which rows q (n, dof) lie on the curves of their starts `owner` (n,), towards aims T (k, ...)."""
+    out, moving = np.zeros(len(q), dtype=bool), list(arm.moving)
+    row, part = np.nonzero(owner[:, None] == parts.owner)
+    parts = _some_of(parts, part)
+    chord = (parts.b.q - parts.a.q)[:, moving]
+    way = _differences(arm, parts.a.q, q[row])[:, moving]
+    share = (way * chord).sum(axis=1) / (chord**2).sum(axis=1)
+    near = np.abs(way - share[:, None] * chord).max(axis=1) < _near_continuum_BESIDE
+    near &= (share > -_OVER) & (share < 1.0 + _OVER)
+    row, parts = row[near], _some_of(parts, near)
+    at = _between(arm, parts, share[near], T)
+    for _ in range(_ROUNDS):
+        way = _differences(arm, at.q, q[row])[:, moving]
+        ahead = (way * at.still).sum(axis=1)
+        beside = np.abs(way - ahead[:, None] * at.still).max(axis=1)
+        out[row[beside < _ON]] = True
+        going = (beside >= _ON) & (beside < ahead**2)
+        if not going.any():
+            break
+        at, row, parts = _some_of(at, going), row[going], _some_of(parts, going)
+        at.q[:, moving] += ahead[going, None] * at.still
+        at, _ = _sampled(arm, at, T[parts.owner])
+    return out
+
+
 def _follow(arm: _Arm, first: _Reduced, T: Array) -> tuple[_Parts, _Parts, Array]:
     """On from samples to both sides at once, the fastest joint by `policy.try_step` from one to the
     next."""
@@ -1569,13 +1868,18 @@ _ENOUGH = 0.5  # of `policy.limit_tolerance`
 _limit_curves_WAY = 1.2  # of `policy.try_step`: by so much joints move from one sample to the next at most
 
 
-def _rows_along(arm: _Arm, q: Array, T: Array) -> tuple[_Index, Array]:
+def _rows_along(
+    arm: _Arm, q: Array, T: Array, stands: Sequence[tuple[int, Row]]
+) -> tuple[_Index, Array]:
     """Rows (n, dof) inside the limits, whole turns aside, of the continua through solutions q (k, dof) of
     aims T (k, ...), and whose they are (n,)."""
     with np.errstate(all="ignore"):
         parts, _, worst = _followed(arm, q, T)
         whole = np.bincount(parts.owner, minlength=len(q)) >= _LEAST
         whole &= worst < arm.policy.arrived
+        if stands:
+            owner, rows = np.array([k for k, _ in stands]), np.array([row for _, row in stands])
+            whole[owner[_on_curves(arm, parts, owner, rows, T)]] = False
         parts = _some_of(parts, whole[parts.owner])
         parts = _some_of(parts, np.lexsort((parts.place, parts.owner)))
         parts = _some_of(parts, _beside_least(arm, parts))
@@ -1629,214 +1933,6 @@ def _least_outside(arm: _Arm, parts: _Parts, T: Array) -> tuple[Array, Array]:
             shares[side, k] = low[k] + part if side else high[k] - part
             values[side, k] = np.nan
     return least, rows
-
-
-# Rows that are hardly outside the limits: near singularities the pose does not tell that.
-
-
-def _rows_inside(
-    arm: _Arm, aim: Array, rows: list[_Found], near: Row | None, limits: bool
-) -> list[_Found]:
-    """`_place_rows` towards an aim (1, ...)."""
-    inside, close = _rows_at_limits(arm, rows, near, limits)
-    for (row, flag), on_limits in close:
-        q, error, _, _ = _refined(arm, np.array([row]), aim)
-        found = [(tuple(q[0].tolist()), flag)] if error[0] < arm.policy.arrived else []
-        inside += _place_rows(arm, found, near, limits) or _held_there(arm, aim, on_limits, flag)
-    return inside
-
-
-def _held_there(arm: _Arm, aim: Array, row: Row, flag: bool) -> list[_Found]:
-    """The row with its joints on limits left there, if the pose is right to round-off."""
-    moving = [j for j in arm.moving if row[j] not in (arm.lower[j], arm.upper[j])]
-    start, policy = np.array([row]), arm.policy
-    q, error, _, _ = _refine(arm.chain, arm.task, moving, start, aim, policy, arm.angle)
-    found = [(tuple(q[0].tolist()), flag)] if error[0] < policy.exact else []
-    return _place_rows(arm, found, row, True)
-
-
-# What Newton steps from the closed form's rows lead to near singularities, where solutions meet.
-
-
-class _Starts(NamedTuple):
-    """Where Newton steps start: rows `q` (k, dof) for poses `T` (k, 4, 4), which rows are of the same pose,
-    `pose` (k,), which the closed form `marked` (k,) as of a continuum, and the `source` (k,) of each:
-    given (-1), the closed form for the pose (0), or for one beside (1, 2, ...), on branch `lane` (k,)."""
-
-    q: Array
-    T: Array
-    pose: _Index
-    marked: _Flags
-    source: NDArray[np.int64]
-    lane: _Index
-
-
-class _Ends(NamedTuple):
-    """Where Newton steps end: rows `q` (k, dof), their `error` and the smallest singular value `sigma` of
-    the derivatives (k,)."""
-
-    q: Array
-    error: Array
-    sigma: Array
-
-
-class _Led(NamedTuple):
-    """Solutions `q` (n, dof), the starts `owner` (n,) that led to them, and the smallest singular values
-    `sigma` (n,) there."""
-
-    owner: _Index
-    q: Array
-    sigma: Array
-
-
-class _Leads(NamedTuple):
-    """Starts and their ends, with an infinite error where a start stands for a continuum of the solved
-    geometry, what is found `around` that, and of which starts (k,) that is `known`."""
-
-    starts: _Starts
-    ends: _Ends
-    around: _Led
-    known: _Flags
-
-
-def _both(one: _Leads, other: _Leads) -> _Leads:
-    """Those of two."""
-    owner = other.around.owner + len(one.starts.q)
-    out: _Leads = _joined(one, other._replace(around=other.around._replace(owner=owner)))
-    return out
-
-
-def _ends_of(arm: _Arm, q: Array, T: Array) -> _Ends:
-    """Where steps from rows q (k, dof) towards aims T end."""
-    q, error, _, slope = _refined(arm, q, T)
-    return _Ends(q, error, _least_singular(slope))
-
-
-def _leads_of(arm: _Arm, starts: _Starts, known: _Flags, near: bool = False) -> _Leads:
-    """What starts lead to."""
-    broken = starts.marked & (starts.source >= 0)
-    if broken.any():
-        error = _ends_of(arm, starts.q[broken], starts.T[broken]).error
-        broken[broken] = error >= arm.policy.arrived
-    nowhere = np.full(len(starts.q), np.inf)
-    ends = _Ends(starts.q.copy(), nowhere, nowhere.copy())
-    _run(arm, starts, ends, ~broken)
-    own, at = starts.source == 0, (starts.pose, starts.lane)
-    lie = own & ~starts.marked & near
-    lie &= ends.sigma < min(arm.policy.broken_reach, arm.policy.fold_reach)
-    one, on = _found_around(arm, starts, ends, (broken & own & ~known[at]) | lie, lie)
-    known[starts.pose[on & ~lie], starts.lane[on & ~lie]] = True
-    other, also = _found_around(arm, starts, ends, broken & ~own & ~known[at], lie)
-    known[starts.pose[also], starts.lane[also]] = True
-    around = broken & known[at]
-    _run(arm, starts, ends, broken & ~around)
-    starts = starts._replace(marked=starts.marked & (around | ~broken))
-    return _Leads(starts, ends, _joined(one, other), around | (on & lie))
-
-
-def _run(arm: _Arm, starts: _Starts, ends: _Ends, some: _Flags) -> None:
-    """Enters where steps from some of the starts end."""
-    for whole, part in zip(ends, _ends_of(arm, starts.q[some], starts.T[some])):
-        whole[some] = part
-
-
-def _found_around(
-    arm: _Arm, starts: _Starts, ends: _Ends, some: _Flags, lie: _Flags
-) -> tuple[_Led, _Flags]:
-    """The solutions around continua that some starts (k,) stand for, or that rows `lie` (k,) on which they
-    lead to, once for each branch of a pose."""
-    left, on = np.flatnonzero(some), np.zeros(len(some), dtype=bool)
-    found = _Led(left[:0], starts.q[:0], ends.sigma[:0])
-    branch = starts.pose * (1 + starts.lane.max(initial=0)) + starts.lane
-    for others in (False, True):
-        if arm.around is None or not len(left):
-            break
-        index = left if others else _first_of(branch, left)
-        q = np.where(lie[index, None], ends.q[index], starts.q[index])
-        curve, owner, rows, sigma = arm.around(arm, q, starts.T[index], lie[index])
-        on[_first_of(branch, index[curve])] = True
-        more = _Led(index[owner], rows, sigma)
-        found = _joined(found, _some_of(more, on[more.owner]))
-        left = np.setdiff1d(left[~np.isin(branch[left], branch[on])], index)
-    return found, on
-
-
-def _first_of(branch: _Index, some: _Index) -> _Index:
-    """Of some starts, in order, the first of each `branch` (k,)."""
-    return np.sort(some[np.unique(branch[some], return_index=True)[1]])
-
-
-def _rows_nearby(arm: _Arm, leads: _Leads) -> _Led:
-    """The solutions that starts lead to, those that are sure first."""
-    starts, T, (q, error, sigma) = leads.starts, leads.starts.T, (x.copy() for x in leads.ends)
-    near = (starts.source >= 0) & ~starts.marked & (sigma < arm.policy.fold_reach)
-    settled = error < np.where(near, arm.policy.converged, arm.policy.arrived)
-    fresh = _fresh(arm, q, starts, near, near & ~settled)
-    settled &= fresh
-    near &= fresh & ~leads.known
-    sure = np.flatnonzero(settled)
-    first = _meeting_rows_in_order(_Led(sure, q[sure], sigma[sure]), leads.around)
-    if not near.any():
-        return first
-    owner = np.repeat(np.flatnonzero(near), 2)
-    pairs = _approach(arm, q[owner], T[owner], np.tile([1.0, -1.0], len(owner) // 2))
-    pairs, left, there = _ends_of(arm, pairs, T[owner])
-    exact = left < arm.policy.exact
-    for k, i in zip(np.flatnonzero(~exact).tolist(), owner[~exact].tolist()):
-        if left[k] < error[i]:
-            q[i], error[i], sigma[i] = pairs[k], left[k], there[k]
-    alone = np.flatnonzero(near & (error < arm.policy.arrived))
-    alone = np.setdiff1d(alone, [*owner[exact], *sure])
-    more = _meeting_rows_in_order(
-        _Led(owner[exact], pairs[exact], there[exact]), _Led(alone, q[alone], sigma[alone])
-    )
-    found: _Led = _joined(first, more)
-    return found
-
-
-def _meeting_rows_in_order(one: _Led, other: _Led) -> _Led:
-    found = _joined(one, other)
-    order = np.argsort(found.owner, kind="stable")
-    return _Led(*(x[order] for x in found))
-
-
-def _fresh(arm: _Arm, q: Array, starts: _Starts, near: _Flags, stalled: _Flags) -> _Flags:
-    """Which rows (k, dof) are not of a pose beside, and led to the same as an earlier one of their pose or
-    stalled by one that is near another solution."""
-    return np.ones(len(q), dtype=bool)
-
-
-def _repeats(arm: _Arm, T: Array, row: Row, kept: Sequence[_Found]) -> bool:
-    """Whether nothing tells a singular row from one kept nearby."""
-    others = [other for other, singular in kept if singular]
-    if not others:
-        return False
-    rows = np.broadcast_to(np.array(row), (len(others), len(row)))
-    return bool(_untold(arm, np.broadcast_to(T, (len(others), 4, 4)), rows, np.array(others)).any())
-
-
-def _untold(arm: _Arm, T: Array, a: Array, b: Array) -> _Flags:
-    """Which singular rows a (k, dof) for poses T (k, 4, 4) nothing tells from others nearby, b (k, dof)."""
-    gaps = _differences(arm, a, b)
-    near = np.abs(gaps).max(axis=1) < arm.policy.alike
-    middle = _forward(arm.chain, (a + 0.5 * gaps)[near])
-    near[near] = np.abs(arm.task.error(middle, T[near])).max(axis=1) < arm.policy.halfway
-    return np.asarray(near)
-
-
-def _that_differ(arm: _Arm, T: Array, pose: _Index, q: Array, singular: _Flags) -> _Index:
-    """Which rows q (k, dof) of poses T[pose] (k, 4, 4) differ from all that are taken before them, in
-    order."""
-    left, taken = np.arange(len(q)), [np.zeros(0, dtype=np.intp)]
-    while len(left):
-        _, first, whose = np.unique(pose[left], return_index=True, return_inverse=True)
-        taken.append(left[first])
-        left, first = np.delete(left, first), left[first][np.delete(whose, first)]
-        new = ~_same_rows(arm, q[left], q[first])
-        flat = np.flatnonzero(new & singular[left] & singular[first])
-        new[flat] = ~_untold(arm, T[pose[left[flat]]], q[left[flat]], q[first[flat]])
-        left = left[new]
-    return np.sort(np.concatenate(taken))
 
 
 # The nearest pose that the arm can take, of one that it cannot.
@@ -2018,54 +2114,7 @@ def _clipped_step(
     return np.clip(q + np.clip(step, -_LONGEST_STEP, _LONGEST_STEP), *bounds), gain
 
 
-# All solutions of poses near singularities, and of those that leave joints free: of many poses at once, as
-
-
-_Rows = tuple[list[_Found], bool, bool]
-
-
-def _placed_rows(arm: _Arm, asked: _Asked, limits: bool) -> list[_Answer]:
-    """Of each pose."""
-    out = [_Answer() for _ in asked.T]
-    left = np.arange(len(out))
-    eliminated = arm.branches is None  # no joint has a value of its own then
-    more = [] if eliminated else [range(1, arm.policy.tries)]
-    for tries in (range(1), *more):
-        if not len(left):
-            break
-        which = np.repeat(left, len(tries))
-        some = asked.at(which)
-        turn = np.tile(tries, len(left))
-        start = some.starts(arm, turn * arm.policy.try_step)
-        rows = _rows(arm, some, start, turn)
-        seeded = _seeded(arm, some, start, rows, limits) if asked.near is not None else {}
-        going = np.ones(len(out), dtype=bool)
-        for k, i in enumerate(which.tolist()):
-            if going[i]:
-                going[i] = _goes_on(arm, some, k, rows[k], seeded.get(k, []), limits, out[i])
-        left = left[going[left]]
-    if not (arm.rounded or eliminated) and len(left):
-        _take_hidden(arm, asked, left, limits, out)
-    doubtful = set(left.tolist())
-    doubtful |= {i for i, x in enumerate(out) if x.loose or (x.led and not x.real)}
-    lost = sorted(i for i in doubtful if not out[i].rows)
-    if lost:
-        _take_nearest(arm, asked, np.array(lost), limits, out)
-    lost = [i for i in lost if out[i].loose and not out[i].rows]
-    if lost and arm.around is not None:
-        _take_along(arm, asked, lost, limits, out)
-    return out
-
-
-def _take_along(arm: _Arm, asked: _Asked, some: list[int], limits: bool, out: list[_Answer]) -> None:
-    """Adds rows inside the limits of the continua that some of the poses' rows are of."""
-    pose = np.array([i for i in some for _ in out[i].loose])
-    aim = _aims(arm, asked.T, asked.held)[pose]
-    q = np.array([row for i in some for row, _ in out[i].loose])
-    for k, row in zip(*_rows_along(arm, q, aim)):
-        i, found = pose[k], [(tuple(row.tolist()), True)]
-        rows = _rows_inside(arm, aim[k : k + 1], found, asked.seed(i), limits)
-        _add(arm, asked.T[i], rows, out[i].rows)
+# Rows for poses that the closed form leaves without, or without one of a continuum: behind joints that it
 
 
 def _take_hidden(arm: _Arm, asked: _Asked, some: _Index, limits: bool, out: list[_Answer]) -> None:
@@ -2077,29 +2126,7 @@ def _take_hidden(arm: _Arm, asked: _Asked, some: _Index, limits: bool, out: list
     rows = _descended(arm, asked.T[which], q, limits)
     for i, found in zip(which.tolist(), _led_to_or_along(arm, asked.at(which), rows)):
         out[i].real = out[i].real or bool(found)
-        aim = _aims(arm, asked.T[i : i + 1], asked.held[i : i + 1])
-        _add(arm, asked.T[i], _rows_inside(arm, aim, found, asked.seed(i), limits), out[i].rows)
-
-
-def _led_to_or_along(arm: _Arm, asked: _Asked, rows: Array) -> list[list[_Found]]:
-    """Of each pose what Newton steps from its row lead to, or else the solutions on a curve through it that
-    is a continuum of the arm's but for a little that is left."""
-    led = _led_to(arm, asked, rows)
-    some = np.flatnonzero([not one for one in led])
-    if not len(some):
-        return led
-    if arm.around is None:
-        there, error = _flat_steps(arm.chain, arm.task, arm.moving, rows[some], asked.T[some])
-        some, there = some[error < arm.policy.arrived], there[error < arm.policy.arrived]
-        for k, found in zip(some.tolist(), _led_to(arm, asked.at(some), there)):
-            led[k] = found
-        return led
-    aim, broken = _aims(arm, asked.T, asked.held)[some], np.ones(len(some), dtype=bool)
-    _, owner, q, sigma = arm.around(arm, rows[some], aim, broken)
-    flags = (sigma < arm.policy.continuum_below).tolist()
-    for k, row in zip(some[owner].tolist(), zip(map(tuple, q.tolist()), flags)):
-        led[k].append(row)
-    return led
+        _add_inside(arm, asked, i, found, limits, out)
 
 
 def _hidden_rows(arm: _Arm, asked: _Asked, some: _Index) -> tuple[_Index, Array]:
@@ -2132,11 +2159,92 @@ def _take_nearest(arm: _Arm, asked: _Asked, some: _Index, limits: bool, out: lis
             break
 
 
+def _take_along(arm: _Arm, asked: _Asked, limits: bool, out: list[_Answer]) -> None:
+    """Adds to answers rows inside the limits of the continua that rows outside are of, if none stands for
+    them."""
+    beyond = [
+        [row for row, _ in one.loose if not _place_rows(arm, [(row, True)], asked.seed(i), limits)]
+        for i, one in enumerate(out)
+    ]
+    for step in range(max(map(len, beyond), default=0)):
+        some = [i for i, rows in enumerate(beyond) if step < len(rows)]
+        q = np.array([beyond[i][step] for i in some])
+        aim = _aims(arm, asked.T, asked.held)[some]
+        stands = [(k, row) for k, i in enumerate(some) for row, flag in out[i].rows if flag]
+        for k, row in zip(*_rows_along(arm, q, aim, stands)):
+            _add_inside(arm, asked, some[k], [(tuple(row.tolist()), True)], limits, out)
+    lost = [i for i, rows in enumerate(beyond) if rows and not any(flag for _, flag in out[i].rows)]
+    which = np.array([i for i in lost for _ in beyond[i]], dtype=np.intp)
+    if lost:
+        q = _turned_inside(arm, np.array([row for i in lost for row in beyond[i]]))
+        rows = _descended(arm, asked.T[which], q, limits)
+        for i, found in zip(which.tolist(), _led_to_or_along(arm, asked.at(which), rows)):
+            if not any(flag for _, flag in out[i].rows):
+                _add_inside(arm, asked, i, found, limits, out)
+
+
+def _add_inside(
+    arm: _Arm, asked: _Asked, i: int, found: list[_Found], limits: bool, out: list[_Answer]
+) -> None:
+    """Adds to the answer of a pose what of its rows is inside the limits."""
+    aim = _aims(arm, asked.T[i : i + 1], asked.held[i : i + 1])
+    _add_new(arm, asked.T[i], _rows_inside(arm, aim, found, asked.seed(i), limits), out[i].rows)
+
+
+def _led_to_or_along(arm: _Arm, asked: _Asked, rows: Array) -> list[list[_Found]]:
+    """Of each pose what Newton steps from its row lead to, or else the solutions on a curve through it that
+    is a continuum of the arm's but for a little that is left."""
+    led = _led_to(arm, asked, rows)
+    some = np.flatnonzero([not one for one in led])
+    if not len(some):
+        return led
+    aim, broken = _aims(arm, asked.T, asked.held)[some], np.ones(len(some), dtype=bool)
+    _, owner, q, sigma = arm.around(arm, rows[some], aim, broken)
+    flags = (sigma < arm.policy.continuum_below).tolist()
+    for k, row in zip(some[owner].tolist(), zip(map(tuple, q.tolist()), flags)):
+        led[k].append(row)
+    return led
+
+
+# All solutions of poses near singularities, and of those that leave joints free.
+
+
+def _placed_rows(arm: _Arm, asked: _Asked, limits: bool) -> list[_Answer]:
+    """Of each pose."""
+    out = [_Answer() for _ in asked.T]
+    left = np.arange(len(out))
+    eliminated = arm.branches is None  # no joint has a value of its own then
+    more = [] if eliminated else [range(1, arm.policy.tries)]
+    for tries in (range(1), *more):
+        if not len(left):
+            break
+        which = np.repeat(left, len(tries))
+        some = asked.at(which)
+        turn = np.tile(tries, len(left))
+        start = some.starts(arm, turn * arm.policy.try_step)
+        rows = _rows_from(arm, some, start, turn)
+        seeded = _seeded(arm, some, start, rows, limits) if asked.near is not None else {}
+        going = np.ones(len(out), dtype=bool)
+        for k, i in enumerate(which.tolist()):
+            if going[i]:
+                going[i] = _goes_on(arm, some, k, rows[k], seeded.get(k, []), limits, out[i])
+        left = left[going[left]]
+    if not (arm.rounded or eliminated) and len(left):
+        _take_hidden(arm, asked, left, limits, out)
+    doubtful = set(left.tolist())
+    doubtful |= {i for i, x in enumerate(out) if x.loose or (x.led and not x.real)}
+    lost = sorted(i for i in doubtful if not out[i].rows)
+    if lost:
+        _take_nearest(arm, asked, np.array(lost), limits, out)
+    _take_along(arm, asked, limits, out)
+    return out
+
+
 def _goes_on(
     arm: _Arm,
     asked: _Asked,
     k: int,
-    rows: _Rows,
+    rows: _FoundRows,
     seeded: list[_Found],
     limits: bool,
     answer: _Answer,
@@ -2144,11 +2252,11 @@ def _goes_on(
     """Adds rows to an answer, and says whether other values have to be tried."""
     (kept, free, led), T, near = rows, asked.T[k], asked.seed(k)
     if not free and any(flag for _, flag in kept):
-        _add(arm, T, seeded, kept)
+        _add_new(arm, T, seeded, kept)
     answer.real, answer.led = answer.real or bool(kept), answer.led or led
     answer.loose = [one for one in kept if one[1]] or answer.loose
     aim = _aims(arm, asked.T[k : k + 1], asked.held[k : k + 1])
-    _add(arm, T, _rows_inside(arm, aim, kept, near, limits), answer.rows)
+    _add_new(arm, T, _rows_inside(arm, aim, kept, near, limits), answer.rows)
     if not answer.rows:
         answer.rows = _rows_inside(arm, aim, seeded, near, limits)
     led = any(flag for _, flag in answer.rows)
@@ -2156,7 +2264,7 @@ def _goes_on(
 
 
 def _seeded(
-    arm: _Arm, asked: _Asked, start: Array, rows: list[_Rows], limits: bool
+    arm: _Arm, asked: _Asked, start: Array, rows: list[_FoundRows], limits: bool
 ) -> dict[int, list[_Found]]:
     """What Newton steps from the seeds lead to, where no row is inside the limits, or one is singular."""
     some = [
@@ -2166,87 +2274,6 @@ def _seeded(
         or not _place_rows(arm, kept, asked.seed(k), limits)
     ]
     return dict(zip(some, _led_to(arm, asked.at(np.array(some, dtype=np.intp)), start[some])))
-
-
-def _seeded_rows(arm: _Arm, asked: _Asked) -> list[list[_Found]]:
-    """What Newton steps from the seeds lead to."""
-    return _led_to(arm, asked, asked.starts(arm))
-
-
-def _led_to(arm: _Arm, asked: _Asked, start: Array) -> list[list[_Found]]:
-    if not len(start):
-        return []
-    starts = _given(arm, asked, start, np.arange(len(start)))
-    return _meeting(arm, asked, _leads_of(arm, starts, np.zeros((len(start), 1), dtype=bool)))
-
-
-def _rows(arm: _Arm, asked: _Asked, start: Array, turn: _Index) -> list[_Rows]:
-    """For each pose the solutions (radians between -pi and pi) from its start after some turns (n,)."""
-    first, away, T = not turn.any(), (turn > 0) & (turn <= len(arm.beside)), asked.T.copy()
-    T[away] = T[away] @ arm.beside[turn[away] - 1]
-    closed = asked.closed.own if asked.closed and first else _closed_form(arm, T, start, asked.held)
-    free, marked = closed.free | away, closed.valid & (closed.singular | closed.doubt)
-    known, rough = np.zeros(closed.valid.shape, dtype=bool), closed.valid & closed.rough
-    own = _of_lanes(arm, asked, closed, rough, marked)
-    starts = _joined(_given(arm, asked, start, np.flatnonzero(free)), own)
-    leads = _leads_of(arm, starts, known, near=first and arm.rounded)
-    close = (starts.source >= 0) & (leads.ends.sigma < arm.policy.beside_reach) & ~leads.known
-    near = free | (np.bincount(starts.pose[close], minlength=len(free)) > 0)
-    if free.any():
-        beyond = ~closed.valid & free[:, None] & (first and arm.rounded)
-        hidden = closed.singular & ~known & (beyond | _without_rows(arm, free, leads)[:, None])
-        hidden &= np.isfinite(closed.q).all(axis=2)
-        more = _of_lanes(arm, asked, closed, hidden, hidden)
-        leads = _both(leads, _leads_of(arm, more, known))
-    kept = _meeting(arm, asked, leads)
-    for i, k in np.argwhere(closed.valid & ~closed.rough).tolist():
-        _add(arm, asked.T[i], [(tuple(closed.q[i, k].tolist()), bool(marked[i, k]))], kept[i])
-    return list(zip(kept, free.tolist(), np.logical_or.reduce(marked | known, axis=1).tolist()))
-
-
-def _without_rows(arm: _Arm, free: _Flags, leads: _Leads) -> _Flags:
-    """Which poses leave a joint free and led nowhere."""
-    starts, poor = leads.starts, np.array(free, dtype=bool)
-    poor[starts.pose[(starts.source >= 0) | (leads.ends.error < arm.policy.arrived)]] = False
-    return poor
-
-
-def _of_lanes(arm: _Arm, asked: _Asked, closed: _ClosedForm, lanes: _Flags, marked: _Flags) -> _Starts:
-    """From some of the closed form's rows (N, M), `marked` (N, M)."""
-    pose, lane = np.nonzero(lanes)
-    source = np.zeros(len(pose), dtype=np.int64)
-    return _starts(arm, asked, closed.q[pose, lane], pose, marked[pose, lane], source, lane)
-
-
-def _given(arm: _Arm, asked: _Asked, start: Array, pose: _Index) -> _Starts:
-    marked, place = np.ones(len(pose), dtype=bool), np.zeros(len(pose), dtype=np.int64)
-    return _starts(arm, asked, start[pose], pose, marked, place - 1, place)
-
-
-def _starts(
-    arm: _Arm, asked: _Asked, q: Array, pose: _Index, marked: _Flags, source: _Index, lane: _Index
-) -> _Starts:
-    aim = _aims(arm, asked.T, asked.held)[pose]
-    return _Starts(q, aim, pose, marked, source, lane)
-
-
-def _meeting(arm: _Arm, asked: _Asked, leads: _Leads) -> list[list[_Found]]:
-    """For each pose the distinct rows that Newton steps lead to."""
-    out: list[list[_Found]] = [[] for _ in asked.T]
-    owner, q, sigma = _rows_nearby(arm, leads)
-    flat, continuum = arm.policy.singular_below, arm.policy.continuum_below
-    pose, marked = leads.starts.pose[owner], leads.starts.marked[owner]
-    flags = (marked & (sigma < continuum)) | (sigma < flat)
-    for k in _that_differ(arm, asked.T, pose, q, flags).tolist():
-        out[pose[k]].append((tuple(q[k].tolist()), bool(flags[k])))
-    return out
-
-
-def _add(arm: _Arm, T: Array, rows: list[_Found], kept: list[_Found]) -> None:
-    """Adds those of the rows that differ from all that are there."""
-    for row, singular in rows:
-        if _is_new(arm, row, kept) and not (singular and _repeats(arm, T, row, kept)):
-            kept.append((row, singular))
 
 
 # The arguments `free` and `seed` as joint values.

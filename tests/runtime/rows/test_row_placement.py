@@ -52,6 +52,7 @@ def arm() -> Arm:
         together=None,
         branch_kind="number",
         elbow_end=0,
+        around=None,
     )
 
 

@@ -35,7 +35,7 @@ def arm() -> Arm:
         branches=lambda T, q0, held: ([], False),
         branches_batch=lambda T, q0, held: (T, T > 0.0, T > 0.0, T > 0.0, T > 0.0),
         beside=np.empty((0, 4, 4)), turning=(True, True, True, False, True, False),
-        moving=(0, 1, 2, 3, 4), together=None, branch_kind="number", elbow_end=0,
+        moving=(0, 1, 2, 3, 4), together=None, branch_kind="number", elbow_end=0, around=None,
     )  # fmt: skip
 
 

@@ -15,10 +15,18 @@ from tests.support.solving import emitted, import_text
 
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.kinematics.modified_dh import to_dh
+from ikgen.runtime.python.arm.chain_kinematics import forward
 from ikgen.runtime.python.singular import curve_parts, curve_samples, fold_pair, near_continuum
 from ikgen.runtime.python.singular.curve_parts import look
 from ikgen.runtime.python.singular.fold_pair import Reduced
-from ikgen.runtime.python.singular.near_continuum import _back, _follow, rows_around, trace
+from ikgen.runtime.python.singular.near_continuum import (
+    _back,
+    _follow,
+    followed,
+    on_curves,
+    rows_around,
+    trace,
+)
 
 Array = NDArray[np.float64]
 POLICY = SimpleNamespace(arrived=0.5e-9, try_step=np.pi / 8, fold_reach=10.0)
@@ -65,6 +73,21 @@ def test_of_a_continuum_of_the_arm_itself_one_row_is_taken(tmp_path: Path) -> No
     curve, owner, found, sigma = rows_around(exact._ARM, rows, poses, np.zeros(len(rows), bool))
     assert curve.all() and owner.tolist() == list(range(len(rows)))
     assert np.abs(exact.forward(found) - poses).max() < 1e-9 and sigma.max() < 1e-9
+
+
+def test_rows_are_told_that_lie_on_a_curve(tmp_path: Path) -> None:
+    arm = import_text(emit_module(published_module("kuka_kr6r900sixx")), tmp_path)._ARM
+    at = np.array([0.2, -0.9, 1.1, 0.3, 0.0, -0.4])
+    poses = forward(arm.chain, at)[None]
+    parts, _, _ = followed(arm, at[None], poses)
+    turn = np.eye(6)[3] - np.eye(6)[5]  # joint 6 goes back as joint 4 goes on
+    q = at + np.array([0.0 * turn, 1.7 * turn, -2.0 * turn + 2.0 * np.pi * np.eye(6)[3]])
+    beside = q + 1e-5 * np.eye(6)[4]
+    other = at + turn + 0.5 * np.eye(6)[0]
+    owner = np.array([0, 0, 0, 1, 0, 0, 0, 0])
+    rows = np.vstack([q, at, beside, other])
+    told = on_curves(arm, parts, owner, rows, np.repeat(poses, 2, axis=0))
+    assert told.tolist() == [True] * 3 + [False] * 5
 
 
 def test_nothing_is_followed_towards_poses_out_of_reach(

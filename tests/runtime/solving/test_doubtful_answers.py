@@ -15,14 +15,11 @@ from tests.support.given_rows import NONE, given_arm, given_rows
 from ikgen.runtime.python.arm.chain_kinematics import forward
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.singular.meeting_rows import Led
-from ikgen.runtime.python.solving import doubtful_poses
+from ikgen.runtime.python.solving import doubtful_rows
 from ikgen.runtime.python.solving.asked_poses import Answer, Asked
 from ikgen.runtime.python.solving.closed_form_rows import all_rows
-from ikgen.runtime.python.solving.doubtful_poses import (
-    _goes_on,
-    placed_rows,
-    unplaced_rows,
-)
+from ikgen.runtime.python.solving.doubtful_poses import _goes_on, placed_rows
+from ikgen.runtime.python.solving.doubtful_rows import unplaced_rows
 
 Array = NDArray[np.float64]
 ROW = np.array([0.3, -0.7, 0.9, 0.4, 1.1, -0.2])
@@ -198,11 +195,11 @@ def test_rows_are_singular_by_what_is_lost_there(monkeypatch: pytest.MonkeyPatch
     sigma = np.array([0.5 * flat, 2.0 * flat, 2.0 * continuum] * 2)
     q = ROW + 0.2 * np.arange(6.0)[:, None]
     owner = np.array([0, 0, 0, 1, 1, 1])
-    monkeypatch.setattr(doubtful_poses, "rows_nearby", lambda *_: Led(owner, q, sigma))
+    monkeypatch.setattr(doubtful_rows, "rows_nearby", lambda *_: Led(owner, q, sigma))
     starts: Any = SimpleNamespace(pose=np.array([1, 0]), marked=np.array([False, True]))
     leads: Any = SimpleNamespace(starts=starts)
     asked = Asked(np.tile(np.eye(4), (2, 1, 1)), None, np.zeros((2, 0)))
-    marked, plain = doubtful_poses._meeting(arm, asked, leads)
+    marked, plain = doubtful_rows._meeting(arm, asked, leads)
     assert [flag for _, flag in plain] == [True, False, False]
     assert [flag for _, flag in marked] == [True, True, False]
     assert [row for row, _ in plain] == [tuple(row) for row in q[:3].tolist()]
@@ -240,7 +237,7 @@ def test_rows_of_poses_beside_are_in_doubt_only_where_one_of_the_pose_is() -> No
         arm = given_arm(branches, beside=motion[None], policy=policy)
         asked = Asked(pose, None, NONE)
         closed = all_rows(arm, pose, None, NONE)
-        starts = doubtful_poses._beside(arm, asked, np.zeros((1, 6)), np.array([0]), closed.own)
+        starts = doubtful_rows._beside(arm, asked, np.zeros((1, 6)), np.array([0]), closed.own)
         return [(closed.own.singular | closed.own.doubt)[0].tolist(), starts.marked.tolist()]
 
     assert marks("x", "x") == [[True], [True]]

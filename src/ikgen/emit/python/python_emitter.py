@@ -84,6 +84,7 @@ def known_facts(module: SolverModule) -> Facts:
     """What is known of the runtime's `Arm` that the templates make."""
     refined, branches = module.refine == "all", None if module.plan is not None else SOME
     known = [
+        ("around", branches),
         ("beside", SOME if module.beside else ()),
         ("branch_kind", branch_kind(module)),
         ("branches", branches),
@@ -99,8 +100,7 @@ def known_facts(module: SolverModule) -> Facts:
         ),
         ("together", SOME if refined else None),
     ]
-    absent = [("angle", module.dh.arm_angle), ("around", branches)]
-    return (*known, *((name, None) for name, there in absent if not there))
+    return tuple(known if module.dh.arm_angle else [*known, ("angle", None)])
 
 
 def concrete_types(module: SolverModule) -> dict[Key, Key]:

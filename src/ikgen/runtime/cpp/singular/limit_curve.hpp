@@ -17,13 +17,16 @@ template <class Arm> struct LimitCurve {
   using Policy = typename Arm::Policy;
   using Row = SolutionRows<Arm>;
 
-  // Adds a row inside of the continuum through a solution, if samples of it, or what lies beside the least outside, are.
+  // Adds a row inside of the continuum through a solution, if samples of it, or what lies beside the least outside, are,
+  // and no row stands for it.
   static void add(const Aim& aim, const Options& options, const double* start, RowPlaces<Arm>& out) noexcept {
     Passed passed;
     Curve curve(aim);
     if (curve.trace(start, passed) != Curve::Kind::Whole) return;
     double off[Passed::kSamples];
-    const int count = std::min(curve.passing, static_cast<int>(Passed::kSamples));
+    const int count = passed.count = std::min(curve.passing, static_cast<int>(Passed::kSamples));
+    for (int k = 0; k < out.count; ++k)
+      if (Row::flag(out, k) && curve.passes(passed, Row::row(out, k))) return;
     for (int k = 0; k < count; ++k) off[k] = outside(passed.sample[k].q);
     for (int k = 0; k < count; ++k) {
       const bool before = !passed.first[k], after = k + 1 < count && !passed.first[k + 1];

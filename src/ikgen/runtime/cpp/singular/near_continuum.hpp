@@ -67,6 +67,9 @@ template <class Arm> struct NearContinuum : CurveParts<Arm> {
     return kind;
   }
 
+  // Whether a configuration is on curves that were passed.
+  bool passes(const Passed& passed, const double* q) noexcept { return passed_part(passed, at(q)) > 0; }
+
  private:
   static constexpr int kMost = 96, kLeast = 4, kRounds = 3;
   static constexpr double kBeside = 0.06, kSameWay = 0.9;

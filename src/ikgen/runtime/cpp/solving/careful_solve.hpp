@@ -49,7 +49,7 @@ template <class Arm> struct CarefulSolve {
     }
     if (free && !Arm::kRounded && !Arm::kRefined) real = add_hidden(aim, options, found) || real;
     if ((free || loose.count > 0 || (led && !real)) && found.count == 0) real = add_nearest(aim, options, found) || real;
-    if (found.count == 0) add_along(aim, options, loose, found);
+    add_along(aim, options, loose, found);
     if (options.seed) Row::sort_by_distance(found, options.seed->data());
     take_in_order(found, out);
     out.status = out.count > 0 ? Arm::Status::Ok : real ? Arm::Status::Limits : Arm::Status::Unreachable;
@@ -133,10 +133,24 @@ template <class Arm> struct CarefulSolve {
     return real;
   }
 
-  // Adds rows inside the limits of the continua that some rows are of.
+  // Adds rows inside the limits of the continua that rows outside are of: on a curve through these, or else, as a surface has
+  // many, where steps from them lead.
   [[gnu::cold, gnu::noinline]] static void add_along(const Aim& aim, const Options& options, Places& rows, Places& out) noexcept {
+    double q[Arm::kDof];
+    const auto outside = [&](int k) noexcept {
+      std::copy_n(Row::row(rows, k), Arm::kDof, q);
+      return Row::flag(rows, k) && !Row::place(q, options);
+    };
     for (int k = 0; k < rows.count; ++k)
-      if (Row::flag(rows, k)) LimitCurve<Arm>::add(aim, options, Row::row(rows, k), out);
+      if (outside(k)) LimitCurve<Arm>::add(aim, options, Row::row(rows, k), out);
+    typename NearContinuum<Arm>::Passed passed;
+    for (int k = 0; k < rows.count && !Careful::any_singular(out); ++k) {
+      if (!outside(k)) continue;
+      std::copy_n(Row::row(rows, k), Arm::kDof, q);
+      NearestRow<Arm>::put_inside(q);
+      NearestRow<Arm>::descend(aim.pose.matrix().data(), true, NearestRow<Arm>::kStanding, q);
+      if (add_led_to(aim, q, passed, out)) LimitRows<Arm>::place_all(aim, options, out);
+    }
   }
 
   // Adds a row that takes the pose, inside the limits if one of these was found; whether there is any.

@@ -105,6 +105,16 @@ template <class Arm> struct NearestRow {
     }
   }
 
+  // Puts joints between their limits, on the turn that is nearest to the middle, where steps may begin.
+  static void put_inside(double* q) noexcept {
+    for (int j = 0; j < Arm::kDof; ++j) {
+      const double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j], middle = 0.5 * (low + high);
+      if (Arm::kHeld[j]) continue;
+      if (Arm::kRevolute[j] && std::isfinite(middle)) q[j] -= kTurn * std::nearbyint((q[j] - middle) / kTurn);
+      q[j] = std::clamp(q[j], low, high);
+    }
+  }
+
   // Steps from q; what is least where they end: where one that is hardly damped gains a share of that which is not
   // enough. floor: least damping of a step.
   static double descend(const double* t, bool limits, double enough, double* q, int steps = kSteps,

@@ -9,7 +9,7 @@ import numpy as np
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_types import Array
 
-__all__ = ["bounded_joints", "offsets", "outside"]
+__all__ = ["bounded_joints", "offsets", "outside", "turned_inside"]
 
 
 def bounded_joints(arm: Arm) -> list[tuple[int, float, float, bool]]:
@@ -34,4 +34,12 @@ def outside(arm: Arm, q: Array, limits: bool) -> Array:
     out = np.full(q.shape[:-1], -inf)
     for j, middle, half, turns in bounded_joints(arm) if limits else ():
         out = np.maximum(out, np.abs(offsets(q[..., j], middle, turns)) - half)
+    return out
+
+
+def turned_inside(arm: Arm, q: Array) -> Array:
+    """Rows (k, dof) with turning joints on the turn that is nearest to the middle of their range."""
+    out = np.array(q)
+    for j, middle, _, turns in bounded_joints(arm):
+        out[:, j] = middle + offsets(q[:, j], middle, turns)
     return out

@@ -88,8 +88,8 @@ class Arm:
     together: Together | None
     branch_kind: str
     elbow_end: int
+    around: Around | None
     angle: HeldAngle | None = None
-    around: Around | None = None
     freedoms: int = 6
 
     @property

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ikgen.runtime.python.arm.limit_margins import outside
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_tuples import some_of
-from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
+from ikgen.runtime.python.arrays.array_types import Array, Flags, Index, Row
 from ikgen.runtime.python.singular.curve_parts import Parts, between
-from ikgen.runtime.python.singular.near_continuum import LEAST, followed
+from ikgen.runtime.python.singular.near_continuum import LEAST, followed, on_curves
 
 __all__ = ["rows_along"]
 
@@ -19,13 +21,19 @@ _ENOUGH = 0.5  # of `policy.limit_tolerance`
 _WAY = 1.2  # of `policy.try_step`: by so much joints move from one sample to the next at most
 
 
-def rows_along(arm: Arm, q: Array, T: Array) -> tuple[Index, Array]:
+def rows_along(
+    arm: Arm, q: Array, T: Array, stands: Sequence[tuple[int, Row]]
+) -> tuple[Index, Array]:
     """Rows (n, dof) inside the limits, whole turns aside, of the continua through solutions q (k, dof) of
-    aims T (k, ...), and whose they are (n,): no more than one of each."""
+    aims T (k, ...), and whose they are (n,): one of each at most, none where a row on it stands for it.
+    `stands`: such rows of the aims."""
     with np.errstate(all="ignore"):
         parts, _, worst = followed(arm, q, T)
         whole = np.bincount(parts.owner, minlength=len(q)) >= LEAST
         whole &= worst < arm.policy.arrived
+        if stands:
+            owner, rows = np.array([k for k, _ in stands]), np.array([row for _, row in stands])
+            whole[owner[on_curves(arm, parts, owner, rows, T)]] = False
         parts = some_of(parts, whole[parts.owner])
         parts = some_of(parts, np.lexsort((parts.place, parts.owner)))
         parts = some_of(parts, _beside_least(arm, parts))

@@ -17,17 +17,18 @@ from ikgen.runtime.python.newton.arm_newton import linearized, refined
 from ikgen.runtime.python.newton.refinement import least_singular
 from ikgen.runtime.python.rows.row_links import differences
 from ikgen.runtime.python.rows.solution_rows import places
-from ikgen.runtime.python.singular.curve_parts import BEYOND, Parts, look
+from ikgen.runtime.python.singular.curve_parts import BEYOND, Parts, between, look
 from ikgen.runtime.python.singular.curve_samples import sampled
 from ikgen.runtime.python.singular.fold_pair import Reduced, generic, still_directions
 
-__all__ = ["LEAST", "Traced", "followed", "rows_around", "trace"]
+__all__ = ["LEAST", "Traced", "followed", "on_curves", "rows_around", "trace"]
 
 _MOST = 96  # samples to a side of a curve
 LEAST = 4
 """Samples of what is a curve."""
 _ASTRAY = 4  # samples in a row that show that no curve is near
 _BESIDE, _SAME_WAY = 0.06, 0.9
+_OVER, _ON, _ROUNDS = 0.05, 1e-6, 3  # of a part; rad or m off it
 
 
 class Traced(NamedTuple):
@@ -91,6 +92,32 @@ def followed(arm: Arm, q: Array, T: Array) -> tuple[Parts, Parts, Array]:
     unknown = 0.1 * generic(count, error.shape[1])  # shorter than what has a sense
     first, _ = sampled(arm, Reduced(q, still, unknown, nothing, nothing), T)
     return _follow(arm, first, T)
+
+
+def on_curves(arm: Arm, parts: Parts, owner: Index, q: Array, T: Array) -> Flags:
+    """Which rows q (n, dof) lie on the curves of their starts `owner` (n,), towards aims T (k, ...)."""
+    out, moving = np.zeros(len(q), dtype=bool), list(arm.moving)
+    row, part = np.nonzero(owner[:, None] == parts.owner)
+    parts = some_of(parts, part)
+    chord = (parts.b.q - parts.a.q)[:, moving]
+    way = differences(arm, parts.a.q, q[row])[:, moving]
+    share = (way * chord).sum(axis=1) / (chord**2).sum(axis=1)
+    near = np.abs(way - share[:, None] * chord).max(axis=1) < _BESIDE
+    near &= (share > -_OVER) & (share < 1.0 + _OVER)
+    row, parts = row[near], some_of(parts, near)
+    at = between(arm, parts, share[near], T)
+    for _ in range(_ROUNDS):
+        way = differences(arm, at.q, q[row])[:, moving]
+        ahead = (way * at.still).sum(axis=1)
+        beside = np.abs(way - ahead[:, None] * at.still).max(axis=1)
+        out[row[beside < _ON]] = True
+        going = (beside >= _ON) & (beside < ahead**2)
+        if not going.any():
+            break
+        at, row, parts = some_of(at, going), row[going], some_of(parts, going)
+        at.q[:, moving] += ahead[going, None] * at.still
+        at, _ = sampled(arm, at, T[parts.owner])
+    return out
 
 
 def _follow(arm: Arm, first: Reduced, T: Array) -> tuple[Parts, Parts, Array]:

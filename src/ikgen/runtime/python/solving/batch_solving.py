@@ -18,11 +18,8 @@ from ikgen.runtime.python.rows.row_placement import in_order, place_rows, place_
 from ikgen.runtime.python.rows.solutions import Status
 from ikgen.runtime.python.solving.asked_poses import Asked
 from ikgen.runtime.python.solving.closed_form_rows import careful_rows, certain_rows
-from ikgen.runtime.python.solving.doubtful_poses import (
-    placed_rows,
-    seeded_rows,
-    unplaced_rows,
-)
+from ikgen.runtime.python.solving.doubtful_poses import placed_rows
+from ikgen.runtime.python.solving.doubtful_rows import seeded_rows, unplaced_rows
 
 __all__ = ["branch_axis", "rows_batch", "solve_poses"]
 

@@ -31,7 +31,8 @@ from ikgen.runtime.python.rows.row_placement import (
 from ikgen.runtime.python.rows.solutions import Solutions, Status, no_solutions
 from ikgen.runtime.python.solving.asked_poses import Answer, Asked
 from ikgen.runtime.python.solving.closed_form_rows import all_rows, careful
-from ikgen.runtime.python.solving.doubtful_poses import placed_rows, seeded_rows
+from ikgen.runtime.python.solving.doubtful_poses import placed_rows
+from ikgen.runtime.python.solving.doubtful_rows import seeded_rows
 from ikgen.runtime.python.solving.projection import nearest_row, off_by
 
 __all__ = ["One", "eliminated_answers", "held_reason", "solutions_of", "solve_pose", "sure_answer"]

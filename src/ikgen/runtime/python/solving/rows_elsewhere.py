@@ -1,0 +1,118 @@
+"""Rows for poses that the closed form leaves without, or without one of a continuum: behind joints that it
+left free, nearest to the pose, along continua."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+
+from ikgen.runtime.python.arm.held_parameters import aims
+from ikgen.runtime.python.arm.limit_margins import turned_inside
+from ikgen.runtime.python.arm.solved_arm import Arm, Found
+from ikgen.runtime.python.arrays.array_types import Array, Index
+from ikgen.runtime.python.newton.flat_steps import flat_steps
+from ikgen.runtime.python.rows.row_placement import place_rows
+from ikgen.runtime.python.singular.limit_curves import rows_along
+from ikgen.runtime.python.singular.limit_rows import rows_inside
+from ikgen.runtime.python.solving.asked_poses import Answer, Asked
+from ikgen.runtime.python.solving.closed_form_rows import closed_form
+from ikgen.runtime.python.solving.doubtful_rows import add_new, led_to
+from ikgen.runtime.python.solving.projection import chord_costs, descended, nearest_rows
+
+__all__ = ["take_along", "take_hidden", "take_nearest"]
+
+
+def take_hidden(arm: Arm, asked: Asked, some: Index, limits: bool, out: list[Answer]) -> None:
+    """Adds rows that take some of the poses, next to rows of the closed form that take none behind a joint
+    that it left free: where it left two and the pose leaves one, their values have to go together."""
+    which, q = _hidden_rows(arm, asked, some)
+    if not len(which):
+        return
+    rows = descended(arm, asked.T[which], q, limits)
+    for i, found in zip(which.tolist(), _led_to_or_along(arm, asked.at(which), rows)):
+        out[i].real = out[i].real or bool(found)
+        _add_inside(arm, asked, i, found, limits, out)
+
+
+def _hidden_rows(arm: Arm, asked: Asked, some: Index) -> tuple[Index, Array]:
+    """Whose they are (k,), and the rows (k, dof): of each branch with the value whose pose is nearest."""
+    each = arm.policy.tries
+    poses = asked.at(np.repeat(some, each))
+    start = poses.starts(arm, np.tile(range(each), len(some)) * arm.policy.try_step)
+    closed = closed_form(arm, poses.T, start, poses.held)
+    hidden = closed.singular & ~closed.valid & np.isfinite(closed.q).all(axis=2)
+    k, lane = np.nonzero(hidden)
+    costs = np.full(hidden.shape, np.inf)
+    costs[k, lane] = chord_costs(arm, poses.T[k], closed.q[k, lane])
+    q = closed.q.reshape(len(some), each, *closed.q.shape[1:])
+    cost = costs.reshape(len(some), each, -1)
+    pose, lane = np.nonzero(np.isfinite(cost).any(axis=1))
+    return some[pose], q[pose, cost.argmin(axis=1)[pose, lane], lane]
+
+
+def take_nearest(arm: Arm, asked: Asked, some: Index, limits: bool, out: list[Answer]) -> None:
+    """Adds rows that take some of the poses, inside the limits if one of these was found."""
+    for inside, flat in product(dict.fromkeys((limits, False)), (False, True)):
+        left = asked.at(some)
+        rows = nearest_rows(arm, left.T, left.starts(arm), inside, flat)
+        for i, found in zip(some.tolist(), _led_to_or_along(arm, left, rows)):
+            aim = aims(arm, asked.T[i : i + 1], asked.held[i : i + 1])
+            out[i].real = out[i].real or bool(found)
+            out[i].rows = rows_inside(arm, aim, found, asked.seed(i), limits)
+        some = some[[not out[i].rows for i in some.tolist()]]
+        if not len(some):
+            break
+
+
+def take_along(arm: Arm, asked: Asked, limits: bool, out: list[Answer]) -> None:
+    """Adds to answers rows inside the limits of the continua that rows outside are of, if none stands for
+    them: on a curve through these, or else, as a surface has many, where steps from them lead."""
+    beyond = [
+        [row for row, _ in one.loose if not place_rows(arm, [(row, True)], asked.seed(i), limits)]
+        for i, one in enumerate(out)
+    ]
+    for step in range(max(map(len, beyond), default=0)):
+        some = [i for i, rows in enumerate(beyond) if step < len(rows)]
+        q = np.array([beyond[i][step] for i in some])
+        aim = aims(arm, asked.T, asked.held)[some]
+        stands = [(k, row) for k, i in enumerate(some) for row, flag in out[i].rows if flag]
+        for k, row in zip(*rows_along(arm, q, aim, stands)):
+            _add_inside(arm, asked, some[k], [(tuple(row.tolist()), True)], limits, out)
+    lost = [i for i, rows in enumerate(beyond) if rows and not any(flag for _, flag in out[i].rows)]
+    which = np.array([i for i in lost for _ in beyond[i]], dtype=np.intp)
+    if lost:
+        q = turned_inside(arm, np.array([row for i in lost for row in beyond[i]]))
+        rows = descended(arm, asked.T[which], q, limits)
+        for i, found in zip(which.tolist(), _led_to_or_along(arm, asked.at(which), rows)):
+            if not any(flag for _, flag in out[i].rows):
+                _add_inside(arm, asked, i, found, limits, out)
+
+
+def _add_inside(
+    arm: Arm, asked: Asked, i: int, found: list[Found], limits: bool, out: list[Answer]
+) -> None:
+    """Adds to the answer of a pose what of its rows is inside the limits."""
+    aim = aims(arm, asked.T[i : i + 1], asked.held[i : i + 1])
+    add_new(arm, asked.T[i], rows_inside(arm, aim, found, asked.seed(i), limits), out[i].rows)
+
+
+def _led_to_or_along(arm: Arm, asked: Asked, rows: Array) -> list[list[Found]]:
+    """Of each pose what Newton steps from its row lead to, or else the solutions on a curve through it that
+    is a continuum of the arm's but for a little that is left."""
+    led = led_to(arm, asked, rows)
+    some = np.flatnonzero([not one for one in led])
+    if not len(some):
+        return led
+    if arm.around is None:
+        there, error = flat_steps(arm.chain, arm.task, arm.moving, rows[some], asked.T[some])
+        some, there = some[error < arm.policy.arrived], there[error < arm.policy.arrived]
+        for k, found in zip(some.tolist(), led_to(arm, asked.at(some), there)):
+            led[k] = found
+        return led
+    aim, broken = aims(arm, asked.T, asked.held)[some], np.ones(len(some), dtype=bool)
+    _, owner, q, sigma = arm.around(arm, rows[some], aim, broken)
+    flags = (sigma < arm.policy.continuum_below).tolist()
+    for k, row in zip(some[owner].tolist(), zip(map(tuple, q.tolist()), flags)):
+        led[k].append(row)
+    return led
