@@ -1066,6 +1066,14 @@ template <class Arm> struct RightRows {
       if (Row::flag(out, k) && RowPair<Arm>::between(aim, q, Row::row(out, k))) return;
     Row::add(out, q, singular);
   }
+
+  static void add_instead(const HeldAim<Arm>& aim, RowPlaces<Arm>& out, const double* q) noexcept {
+    int kept = 0;
+    for (int k = 0; k < out.count; ++k)
+      if (!(Row::flag(out, k) && RowPair<Arm>::between(aim, q, Row::row(out, k)))) Row::move(out, k, kept++);
+    out.count = kept;
+    add(aim, out, q, true);
+  }
 };
 
 // --- fold pair -----------------------------------------------------------------------------------
@@ -1836,10 +1844,12 @@ template <class Arm> struct CarefulRows {
     return std::any_of(rows.singular.begin(), rows.singular.begin() + rows.count, [](bool flag) { return flag; });
   }
 
-  static void add_from(const Aim& aim, const double* q0, Places& out) noexcept {
+  static void add_from(const Aim& aim, const double* q0, Places& out, bool instead = false) noexcept {
     double q[Arm::kDof];
     std::copy_n(q0, Arm::kDof, q);
-    if (Refinement::refine(q, aim)) RightRows<Arm>::add(aim, out, q, true);
+    if (!Refinement::refine(q, aim)) return;
+    if (instead) return RightRows<Arm>::add_instead(aim, out, q);
+    RightRows<Arm>::add(aim, out, q, true);
   }
 
   [[gnu::always_inline]] static Left find_rows(const Aim& aim, const double* q0, const Options& options,
@@ -2316,7 +2326,7 @@ template <class Arm> struct CarefulSolve {
       auto left = Careful::find_rows(aim, start, options, turn, found);
       if (options.seed && !left.free && Careful::any_singular(found)) {
         found.count = std::min(found.count, static_cast<int>(Places::kRoom) - 1);  // of a continuum there may be any number
-        Careful::add_from(aim, start, found);
+        Careful::add_from(aim, start, found, true);
       }
       real = real || found.count > 0;
       led = led || left.led;

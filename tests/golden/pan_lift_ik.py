@@ -2252,6 +2252,7 @@ def _goes_on(
     """Adds rows to an answer, and says whether other values have to be tried."""
     (kept, free, led), T, near = rows, asked.T[k], asked.seed(k)
     if not free and any(flag for _, flag in kept):
+        kept[:] = [one for one in kept if not (one[1] and _repeats(arm, T, one[0], seeded))]
         _add_new(arm, T, seeded, kept)
     answer.real, answer.led = answer.real or bool(kept), answer.led or led
     answer.loose = [one for one in kept if one[1]] or answer.loose

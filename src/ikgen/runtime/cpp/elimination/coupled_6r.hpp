@@ -78,8 +78,11 @@ inline Spectrum run_coupled(const CoupledChain<Plan>& F, const Frame& T, const F
 struct CoupledMethod {
   template <class Plan>
   static bool solve(const CoupledChain<Plan>& F, const Frame& T, const Turning& turning, Solutions& out) noexcept {
-    return solve_resultant<run_coupled_resultant<Plan>>(F, T, Plan::kEigenproblems, false, out) ||
-           solve_in_runs<run_coupled<Plan>>(F, T, turning, Plan::kEigenproblems, out);
+    Solutions hidden;
+    const bool sure = solve_resultant<run_coupled_resultant<Plan>>(F, T, Plan::kEigenproblems, false, hidden, out) ||
+                      solve_in_runs<run_coupled<Plan>>(F, T, turning, Plan::kEigenproblems, out);
+    take_hidden(hidden, out);
+    return sure;
   }
 };
 

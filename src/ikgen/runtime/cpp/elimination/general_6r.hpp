@@ -14,11 +14,18 @@ namespace ikgen_runtime {
 
 namespace g6 {
 
-// none: whether it was found already that there are no solutions. As solve_in_runs.
+// none: whether it was found already that there are no solutions; hidden: those that rounding hides, if any are known. As
+// solve_in_runs.
 template <class Plan>
-inline bool solve_6r(const Chain& F, const Frame& T, bool none, Solutions& out) noexcept {
-  return solve_resultant<run_resultant>(F, T, Plan::kResultants, none, out) ||
-         solve_in_runs<run_eigenproblem>(F, T, kAllTurn, Plan::kEigenproblems, out);
+inline bool solve_6r(const Chain& F, const Frame& T, bool none, Solutions& hidden, Solutions& out) noexcept {
+  const bool sure = solve_resultant<run_resultant>(F, T, Plan::kResultants, none, hidden, out) ||
+                    solve_in_runs<run_eigenproblem>(F, T, kAllTurn, Plan::kEigenproblems, out);
+  take_hidden(hidden, out);
+  return sure;
+}
+template <class Plan> inline bool solve_6r(const Chain& F, const Frame& T, Solutions& out) noexcept {
+  Solutions hidden;
+  return solve_6r<Plan>(F, T, false, hidden, out);
 }
 
 }  // namespace g6
@@ -30,7 +37,7 @@ inline bool solve_6r(const Chain& F, const Frame& T, bool none, Solutions& out) 
 template <class Plan>
 inline void general_6r(const double (&F)[7][12], const double (&T)[12], g6::Solutions& out) noexcept {
   out.count = 0;
-  g6::solve_6r<Plan>(g6::chain_of<Plan>(F), g6::scaled_frame<Plan>(T), false, out);
+  g6::solve_6r<Plan>(g6::chain_of<Plan>(F), g6::scaled_frame<Plan>(T), out);
   g6::sort_rows(g6::kAllTurn, out);
 }
 

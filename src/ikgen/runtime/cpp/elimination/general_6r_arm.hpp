@@ -10,7 +10,7 @@ namespace ikgen_runtime {
 struct General6rMethod {
   template <class Plan>
   static bool solve(const g6::Chain& F, const g6::Frame& T, const g6::Turning&, g6::Solutions& out) noexcept {
-    return g6::solve_6r<Plan>(F, T, false, out);
+    return g6::solve_6r<Plan>(F, T, out);
   }
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "elimination/general_6r_equations.hpp"
+#include "elimination/general_6r_solutions.hpp"
 
 namespace ikgen_runtime {
 
@@ -178,6 +179,16 @@ inline double refine_one(const Frames& F, const Frame& T, const Turning& turning
     }
   }
   return now.r;
+}
+
+inline Solution solution_of(const Turning& turning, const Vector& q) noexcept {
+  Solution out;
+  for (Index i = 0; i < 6; ++i) {
+    out.q[i] = turning[i] ? wrap(q[i]) : q[i];
+    out.c[i] = std::cos(q[i]);
+    out.s[i] = std::sin(q[i]);
+  }
+  return out;
 }
 
 inline constexpr double kExactly = 1e-12;  // error of a row that is right to round-off

@@ -40,8 +40,9 @@ inline void evaluate(const Polynomial<D>& f, const Pair& z, Wide& value, Wide& s
 }
 
 template <int D> struct Roots {
-  int count = 0;
+  int count = 0, open = 0;
   alignas(64) double c[2 * kRoots<D> + kWide], s[2 * kRoots<D> + kWide];
+  double middle[kMostZones];  // of zones that stay open, as angles
 };
 
 template <int D> inline void add_root(Roots<D>& out, double c, double s) noexcept {

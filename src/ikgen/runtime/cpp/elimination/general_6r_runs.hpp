@@ -6,7 +6,6 @@
 #include <cstddef>
 
 #include "elimination/general_6r_candidate.hpp"
-#include "elimination/general_6r_solutions.hpp"
 #include "elimination/general_6r_spectrum.hpp"
 
 namespace ikgen_runtime {
@@ -16,16 +15,6 @@ namespace ikgen_runtime {
 namespace g6 {
 
 inline constexpr double kFarthest = 1e4;  // of a slide, in arm lengths: beyond are those that become parallel
-
-inline Solution solution_of(const Turning& turning, const Vector& q) noexcept {
-  Solution out;
-  for (Index i = 0; i < 6; ++i) {
-    out.q[i] = turning[i] ? wrap(q[i]) : q[i];
-    out.c[i] = std::cos(q[i]);
-    out.s[i] = std::sin(q[i]);
-  }
-  return out;
-}
 
 inline constexpr double kStalled = 1e-6;  // error where more than two solutions meet: steps get no closer soon
 

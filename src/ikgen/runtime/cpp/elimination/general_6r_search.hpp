@@ -1,5 +1,6 @@
 #pragma once
 
+#include "elimination/general_6r_candidate.hpp"
 #include "elimination/general_6r_newton.hpp"
 #include "elimination/general_6r_solutions.hpp"
 #include "arrays/lane_angle.hpp"
@@ -110,9 +111,11 @@ inline bool look_closer(const Values& values, const Zone& zone, int look, Roots<
     add_root(out, nearby.c[i], nearby.s[i]);
   }
   bool all = !brackets.doubt;
-  for (int i = 0; i < brackets.zones && all; ++i) {
+  for (int i = 0; i < brackets.zones; ++i) {
     const Zone open = seen_through(lens, brackets.zone[i], zone);
-    if (open.high >= open.low) all = look == 0 && look_closer<D>(values, open, 1, out);
+    if (open.high < open.low) continue;
+    if (look > 0 && out.open < kMostZones) out.middle[out.open++] = 0.5 * (open.low + open.high);
+    all = look == 0 && look_closer<D>(values, open, 1, out) && all;
   }
   return all;
 }
@@ -134,9 +137,9 @@ inline bool find_roots(const Values& values, const Settle& settle, Roots<D>& out
     out.s[i] = s * kStart[0] + c * kStart[1];
   }
   bool all = true;
-  for (int z = 0; z < brackets.zones && all; ++z) {
+  for (int z = 0; z < brackets.zones; ++z) {
     const Zone zone = {brackets.zone[z].low + kStartAngle, brackets.zone[z].high + kStartAngle};
-    all = look_closer<D>(values, zone, 0, out);
+    all = look_closer<D>(values, zone, 0, out) && all;
   }
   return all && out.count <= kRoots<D> && out.count % 2 == 0;
 }
@@ -187,10 +190,36 @@ inline bool add_solutions(const Frames& F, const Frame& T, const Of& of, Roots<D
   return all;
 }
 
+// Adds to those that rounding hides the solutions to which steps lead from what of(angles) gives for the middles of zones
+// that stay open: there may be a double root.
+template <int D, class Frames, class Of>
+[[gnu::cold, gnu::noinline]] inline void add_hidden(const Frames& F, const Frame& T, const Of& of, const Roots<D>& roots,
+                                                    Solutions& hidden) noexcept {
+  for (int k = 0; k < roots.open; ++k) {
+    const Six start = of({spread<kWide>(std::cos(roots.middle[k])), spread<kWide>(std::sin(roots.middle[k]))});
+    Vector q;
+    double before = 0.0, sum = 0.0;
+    for (Index i = 0; i < 6; ++i) sum += q[i] = std::atan2(lane(start.s[i], 0), lane(start.c[i], 0));
+    if (std::isfinite(sum) && refine_one(F, T, kAllTurn, q, before) < kVerified) keep(solution_of(kAllTurn, q), hidden);
+  }
+}
+
+// Adds those that rounding hides, where nothing else was found nearby.
+inline void take_hidden(const Solutions& hidden, Solutions& out) noexcept {
+  constexpr double nearby = 1e-3;  // rad
+  const int count = out.count;
+  for (int k = 0; k < hidden.count; ++k) {
+    const Solution& row = hidden.rows[static_cast<Index>(k)];
+    bool fresh = true;
+    for (int i = 0; i < count; ++i) fresh = fresh && !alike(row.q, out.rows[static_cast<Index>(i)].q, nearby);
+    if (fresh) keep(row, out);
+  }
+}
+
 // Adds the solutions for the pose T. True where they are all: every root is single, and leads to a solution of
 // its own. caution: times the rounding that values may have.
 inline bool run_resultant(const Chain& F, const Frame& T, const std::array<int, 2>& plan, double caution,
-                          Solutions& out) noexcept {
+                          Solutions& hidden, Solutions& out) noexcept {
   const Loop loop = make_loop(F, T, static_cast<Index>(plan[0]), plan[1] != 0);
   const Equations eq = eliminate(loop);
   const Pencil pencil = make_pencil(eq.E, eq.left);
@@ -202,7 +231,9 @@ inline bool run_resultant(const Chain& F, const Frame& T, const std::array<int, 
   };
   const bool all = find_roots<kDegree>(values, roots);
   const auto completed = [&](const Pair& three) { return complete(loop, eq, pencil, three); };
-  return add_solutions<kDegree>(F, T, completed, roots, out) && all;
+  const bool each = add_solutions<kDegree>(F, T, completed, roots, out);
+  add_hidden(F, T, completed, roots, hidden);
+  return each && all;
 }
 
 // All solutions, or false and those that were found, where every hidden angle leaves doubts. Poses displaced a
@@ -210,17 +241,18 @@ inline bool run_resultant(const Chain& F, const Frame& T, const std::array<int, 
 // is believed if it was found before, or with ten times the rounding: of a million poses beside singularities a few have
 // a double root that lies over its bound, and nothing else.
 template <auto Run, class Frames, class Plans>
-inline bool solve_resultant(const Frames& F, const Frame& T, const Plans& plans, bool none, Solutions& out) noexcept {
+inline bool solve_resultant(const Frames& F, const Frame& T, const Plans& plans, bool none, Solutions& hidden,
+                            Solutions& out) noexcept {
   constexpr double kCautious = 10.0;
   for (const auto& plan : plans) {
     if (out.count == 0) {
-      bool all = Run(F, T, plan, 1.0, out);
-      if (all && out.count == 0 && !none) all = Run(F, T, plan, kCautious, out) && out.count == 0;
+      bool all = Run(F, T, plan, 1.0, hidden, out);
+      if (all && out.count == 0 && !none) all = Run(F, T, plan, kCautious, hidden, out) && out.count == 0;
       if (all) return true;
       continue;
     }
     Solutions mine;
-    const bool all = Run(F, T, plan, 1.0, mine);
+    const bool all = Run(F, T, plan, 1.0, hidden, mine);
     for (int k = 0; k < mine.count; ++k) keep(mine.rows[static_cast<Index>(k)], out);
     if (all && mine.count == out.count) return true;
   }

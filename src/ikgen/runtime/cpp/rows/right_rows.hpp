@@ -18,6 +18,15 @@ template <class Arm> struct RightRows {
       if (Row::flag(out, k) && RowPair<Arm>::between(aim, q, Row::row(out, k))) return;
     Row::add(out, q, singular);
   }
+
+  // The same of one that is marked, in place of those of its continuum that nothing tells from it.
+  static void add_instead(const HeldAim<Arm>& aim, RowPlaces<Arm>& out, const double* q) noexcept {
+    int kept = 0;
+    for (int k = 0; k < out.count; ++k)
+      if (!(Row::flag(out, k) && RowPair<Arm>::between(aim, q, Row::row(out, k)))) Row::move(out, k, kept++);
+    out.count = kept;
+    add(aim, out, q, true);
+  }
 };
 
 }  // namespace ikgen_runtime

@@ -41,11 +41,13 @@ template <class Arm> struct CarefulRows {
     return std::any_of(rows.singular.begin(), rows.singular.begin() + rows.count, [](bool flag) { return flag; });
   }
 
-  // Adds what Newton steps from given values lead to.
-  static void add_from(const Aim& aim, const double* q0, Places& out) noexcept {
+  // Adds what Newton steps from given values lead to, in place of other rows of a continuum next to it if so asked.
+  static void add_from(const Aim& aim, const double* q0, Places& out, bool instead = false) noexcept {
     double q[Arm::kDof];
     std::copy_n(q0, Arm::kDof, q);
-    if (Refinement::refine(q, aim)) RightRows<Arm>::add(aim, out, q, true);
+    if (!Refinement::refine(q, aim)) return;
+    if (instead) return RightRows<Arm>::add_instead(aim, out, q);
+    RightRows<Arm>::add(aim, out, q, true);
   }
 
   // Adds the distinct solutions of a pose, refined where the closed form lost digits.

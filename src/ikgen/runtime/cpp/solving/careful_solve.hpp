@@ -34,7 +34,7 @@ template <class Arm> struct CarefulSolve {
       auto left = Careful::find_rows(aim, start, options, turn, found);
       if (options.seed && !left.free && Careful::any_singular(found)) {
         found.count = std::min(found.count, static_cast<int>(Places::kRoom) - 1);  // of a continuum there may be any number
-        Careful::add_from(aim, start, found);
+        Careful::add_from(aim, start, found, true);
       }
       real = real || found.count > 0;
       led = led || left.led;

@@ -9,6 +9,7 @@ from ikgen.runtime.python.arm.solved_arm import Arm, Found
 from ikgen.runtime.python.arrays.array_types import Array
 from ikgen.runtime.python.rows.row_placement import place_rows
 from ikgen.runtime.python.singular.limit_rows import rows_inside
+from ikgen.runtime.python.singular.meeting_rows import repeats
 from ikgen.runtime.python.solving.asked_poses import Answer, Asked
 from ikgen.runtime.python.solving.doubtful_rows import FoundRows, add_new, led_to, rows_from
 from ikgen.runtime.python.solving.rows_elsewhere import take_along, take_hidden, take_nearest
@@ -62,6 +63,7 @@ def _goes_on(
     """Adds rows to an answer, and says whether other values have to be tried."""
     (kept, free, led), T, near = rows, asked.T[k], asked.seed(k)
     if not free and any(flag for _, flag in kept):
+        kept[:] = [one for one in kept if not (one[1] and repeats(arm, T, one[0], seeded))]
         add_new(arm, T, seeded, kept)
     answer.real, answer.led = answer.real or bool(kept), answer.led or led
     answer.loose = [one for one in kept if one[1]] or answer.loose
