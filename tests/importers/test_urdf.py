@@ -189,6 +189,10 @@ BENT = {
         "-2 to 1e+09 rad: taken as unlimited",
     ),
     "degrees": (robot(joint('<limit lower="-170" upper="170"/>')), "look like degrees"),
+    "turned by degrees": (
+        robot(joint('<origin rpy="0 -90 0"/>' + LIMIT)),
+        "rpy 0 -90 0 looks like degrees: taken as rad",
+    ),
     "millimetres": (
         robot(
             joint('<origin xyz="0 0 317"/>' + LIMIT),

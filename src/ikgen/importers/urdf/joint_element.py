@@ -14,7 +14,7 @@ from ikgen.importers.urdf.attribute_values import (
     parse_numbers,
     shortened,
 )
-from ikgen.importers.urdf.joint_limits import UNLIMITED, joint_limits
+from ikgen.importers.urdf.joint_limits import DEGREES_ABOVE, UNLIMITED, joint_limits
 from ikgen.importers.xml_document import Element, Place, children
 from ikgen.kinematics.fixed_order import length
 from ikgen.kinematics.rigid import read_only, rotation_rpy
@@ -130,7 +130,11 @@ def _origin(joint: Element, name: str, place: Place) -> Matrix:
     origin = _only_child(joint, "origin", name, place)
     if origin is not None:
         T[:3, 3] = _vector(origin, "xyz", (0.0, 0.0, 0.0), name, place, _LONGEST)
-        T[:3, :3] = rotation_rpy(*_vector(origin, "rpy", (0.0, 0.0, 0.0), name, place))
+        rpy = _vector(origin, "rpy", (0.0, 0.0, 0.0), name, place)
+        if max(map(abs, rpy)) > DEGREES_ABOVE:
+            angles = " ".join(f"{angle:g}" for angle in rpy)
+            place.warn(origin, f"joint '{name}': rpy {angles} looks like degrees: taken as rad")
+        T[:3, :3] = rotation_rpy(*rpy)
     return T
 
 

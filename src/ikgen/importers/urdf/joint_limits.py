@@ -7,12 +7,12 @@ import math
 from ikgen.importers.urdf.attribute_values import BadValueError
 from ikgen.model.joint_tree import JointType, Limits
 
-__all__ = ["FARTHEST", "UNLIMITED", "joint_limits", "turning_limits"]
+__all__ = ["DEGREES_ABOVE", "FARTHEST", "UNLIMITED", "joint_limits", "turning_limits"]
 
 UNLIMITED = Limits(-math.inf, math.inf)
 
-_DEGREES_ABOVE = 4.0 * math.pi + 1e-6
-"""Two turns either way (rad): robots that state more than that mean degrees, or no limit at all."""
+DEGREES_ABOVE = 4.0 * math.pi + 1e-6
+"""Two turns either way (rad): files that state more than that mean degrees, or no limit at all."""
 
 _NO_LIMIT_FROM = 1e3
 """A range (rad) that stands for none: files write 999999, and 159 turns reach every angle."""
@@ -65,7 +65,7 @@ def turning_limits(low: float, high: float) -> tuple[Limits, tuple[str, ...]]:
         known = min(-low, high) >= _NO_LIMIT_FROM
         note = f"limits {low:g} to {high:g} rad: taken as unlimited"
         return UNLIMITED, () if known else (note,)
-    if max(abs(low), abs(high)) > _DEGREES_ABOVE:
+    if max(abs(low), abs(high)) > DEGREES_ABOVE:
         note = f"limits {low:g} to {high:g} rad look like degrees: kept as they are"
         return Limits(low, high), (note,)
     return Limits(low, high), ()
