@@ -7,6 +7,7 @@ Control, 1968), three that are parallel, and the offset wrists that have neither
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -143,7 +144,7 @@ def _words(name: str, facts: GeometryClass) -> str:
     """The facts as one sentence, most telling first."""
     parts = [
         *(_triple_words(k, facts) for k in facts.spherical_triples),
-        *(f"axes {k}-{k + 2} parallel" for k in facts.parallel_triples),
+        *(f"axes {first}-{last} parallel" for first, last in _runs(facts.parallel_triples)),
     ]
     told = {k + step for k in facts.parallel_triples for step in (0, 1)}
     parallel = [k for k in facts.parallel_pairs if k not in told and k not in facts.same_line_pairs]
@@ -156,6 +157,15 @@ def _words(name: str, facts: GeometryClass) -> str:
     if 1 in facts.perpendicular_pairs and 2 in facts.parallel_pairs:
         parts.append("1 perpendicular to 2: ortho-parallel base")
     return f"{name}: {', '.join(parts)}" if parts else f"{name}: no special axes"
+
+
+def _runs(triples: Sequence[int]) -> list[tuple[int, int]]:
+    """The first and last axes of runs that triples, in order and named by their first, make up."""
+    out: list[tuple[int, int]] = []
+    for k in triples:
+        first = out.pop()[0] if out and out[-1][1] == k + 1 else k
+        out.append((first, k + 2))
+    return out
 
 
 def _triple_words(k: int, facts: GeometryClass) -> str:
