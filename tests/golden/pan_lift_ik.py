@@ -653,6 +653,14 @@ def _errors_and_slopes(
     return np.concatenate(parts[:2], axis=1), np.concatenate(parts[2:], axis=1)
 
 
+def _smallest_singular_values(
+    chain: _Chain, task: _EntriesTask, moving: Sequence[int], q: Array, rank: int | None = None
+) -> Array:
+    """Smallest singular value (k,) of the task's derivatives by the joints `moving` at q (k, dof), of as
+    many as the task fixes freedoms, `rank`, where these joints are more."""
+    return _least_singular(task.rows(*_tip_and_jacobian(chain, q))[:, :, list(moving)], rank)
+
+
 def _steeper(slope: Array, bound: float) -> _Flags:
     """Which derivatives (k, m, n) have no singular value below `bound`."""
     nearest = 1.0 / np.sqrt(np.einsum("kii->ki", _normal_inverse(slope)).max(axis=1))
@@ -1699,7 +1707,7 @@ def _offsets(q: Array, middle: float, turns: bool) -> Array:
     return np.asarray(x - 2.0 * pi * np.round(x / (2.0 * pi)) if turns else x)
 
 
-def _outside(arm: _Arm, q: Array, limits: bool) -> Array:
+def _limit_margins_outside(arm: _Arm, q: Array, limits: bool) -> Array:
     """How far rows (..., dof) are outside the limits at most: (...,), negative inside."""
     out = np.full(q.shape[:-1], -inf)
     for j, middle, half, turns in _bounded_joints(arm) if limits else ():
@@ -1893,7 +1901,7 @@ def _rows_along(
 def _beside_least(arm: _Arm, parts: _Parts) -> _Flags:
     """Which parts (n,), in order, have an end that is outside by no more than the samples beside it, and
     may come inside."""
-    a, b = _outside(arm, parts.a.q, True), _outside(arm, parts.b.q, True)
+    a, b = _limit_margins_outside(arm, parts.a.q, True), _limit_margins_outside(arm, parts.b.q, True)
     linked = (np.diff(parts.owner) == 0) & (np.diff(parts.place) == 1.0)
     first, last = a <= b, b <= a
     first[1:] &= ~linked | (a[1:] <= a[:-1])
@@ -1907,7 +1915,7 @@ def _least_outside(arm: _Arm, parts: _Parts, T: Array) -> tuple[Array, Array]:
     count = len(parts.owner)
     low, high = np.zeros(count), np.ones(count)
     ends = np.stack([parts.a.q, parts.b.q])
-    off = _outside(arm, ends, True)
+    off = _limit_margins_outside(arm, ends, True)
     best = off.argmin(axis=0)
     rows, least = ends[best, np.arange(count)], off.min(axis=0, initial=np.inf)
     shares = np.stack([high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)])
@@ -1922,7 +1930,7 @@ def _least_outside(arm: _Arm, parts: _Parts, T: Array) -> tuple[Array, Array]:
             new = np.isnan(values[side, going])
             which = going[new]
             q = _between(arm, _some_of(some, new), shares[side, which], T).q
-            values[side, which] = here = _outside(arm, q, True)
+            values[side, which] = here = _limit_margins_outside(arm, q, True)
             better = here < least[which]
             rows[which[better]], least[which[better]] = q[better], here[better]
         left = values[0, going] < values[1, going]
@@ -2162,10 +2170,7 @@ def _take_nearest(arm: _Arm, asked: _Asked, some: _Index, limits: bool, out: lis
 def _take_along(arm: _Arm, asked: _Asked, limits: bool, out: list[_Answer]) -> None:
     """Adds to answers rows inside the limits of the continua that rows outside are of, if none stands for
     them."""
-    beyond = [
-        [row for row, _ in one.loose if not _place_rows(arm, [(row, True)], asked.seed(i), limits)]
-        for i, one in enumerate(out)
-    ]
+    beyond = [_outside(arm, one, asked.seed(i), limits) for i, one in enumerate(out)]
     for step in range(max(map(len, beyond), default=0)):
         some = [i for i, rows in enumerate(beyond) if step < len(rows)]
         q = np.array([beyond[i][step] for i in some])
@@ -2181,6 +2186,15 @@ def _take_along(arm: _Arm, asked: _Asked, limits: bool, out: list[_Answer]) -> N
         for i, found in zip(which.tolist(), _led_to_or_along(arm, asked.at(which), rows)):
             if not any(flag for _, flag in out[i].rows):
                 _add_inside(arm, asked, i, found, limits, out)
+
+
+def _outside(arm: _Arm, answer: _Answer, near: Row | None, limits: bool) -> list[Row]:
+    """Its rows of continua outside the limits."""
+    rows = [row for row, _ in answer.loose if not _place_rows(arm, [(row, True)], near, limits)]
+    if not (rows and answer.rows):
+        return rows
+    sigma = _smallest_singular_values(arm.chain, arm.task, arm.moving, np.array(rows))
+    return [row for row, x in zip(rows, sigma.tolist()) if x < arm.policy.singular_below]
 
 
 def _add_inside(

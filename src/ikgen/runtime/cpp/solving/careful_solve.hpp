@@ -137,9 +137,10 @@ template <class Arm> struct CarefulSolve {
   // many, where steps from them lead.
   [[gnu::cold, gnu::noinline]] static void add_along(const Aim& aim, const Options& options, Places& rows, Places& out) noexcept {
     double q[Arm::kDof];
+    const double bound = out.count > 0 ? Policy::kSingularBelow : kInfinity;  // others may lead inside, but seldom do
     const auto outside = [&](int k) noexcept {
       std::copy_n(Row::row(rows, k), Arm::kDof, q);
-      return Row::flag(rows, k) && !Row::place(q, options);
+      return Row::flag(rows, k) && !Row::place(q, options) && SingularValue<Arm>::below(Row::row(rows, k), bound);
     };
     for (int k = 0; k < rows.count; ++k)
       if (outside(k)) LimitCurve<Arm>::add(aim, options, Row::row(rows, k), out);

@@ -10,8 +10,9 @@ import numpy as np
 from ikgen.runtime.python.arm.held_parameters import aims
 from ikgen.runtime.python.arm.limit_margins import turned_inside
 from ikgen.runtime.python.arm.solved_arm import Arm, Found
-from ikgen.runtime.python.arrays.array_types import Array, Index
+from ikgen.runtime.python.arrays.array_types import Array, Index, Row
 from ikgen.runtime.python.newton.flat_steps import flat_steps
+from ikgen.runtime.python.newton.refinement import smallest_singular_values
 from ikgen.runtime.python.rows.row_placement import place_rows
 from ikgen.runtime.python.singular.limit_curves import rows_along
 from ikgen.runtime.python.singular.limit_rows import rows_inside
@@ -68,10 +69,7 @@ def take_nearest(arm: Arm, asked: Asked, some: Index, limits: bool, out: list[An
 def take_along(arm: Arm, asked: Asked, limits: bool, out: list[Answer]) -> None:
     """Adds to answers rows inside the limits of the continua that rows outside are of, if none stands for
     them: on a curve through these, or else, as a surface has many, where steps from them lead."""
-    beyond = [
-        [row for row, _ in one.loose if not place_rows(arm, [(row, True)], asked.seed(i), limits)]
-        for i, one in enumerate(out)
-    ]
+    beyond = [_outside(arm, one, asked.seed(i), limits) for i, one in enumerate(out)]
     for step in range(max(map(len, beyond), default=0)):
         some = [i for i, rows in enumerate(beyond) if step < len(rows)]
         q = np.array([beyond[i][step] for i in some])
@@ -87,6 +85,15 @@ def take_along(arm: Arm, asked: Asked, limits: bool, out: list[Answer]) -> None:
         for i, found in zip(which.tolist(), _led_to_or_along(arm, asked.at(which), rows)):
             if not any(flag for _, flag in out[i].rows):
                 _add_inside(arm, asked, i, found, limits, out)
+
+
+def _outside(arm: Arm, answer: Answer, near: Row | None, limits: bool) -> list[Row]:
+    """Its rows of continua outside the limits; where it has others, such as are singular to round-off."""
+    rows = [row for row, _ in answer.loose if not place_rows(arm, [(row, True)], near, limits)]
+    if not (rows and answer.rows):
+        return rows
+    sigma = smallest_singular_values(arm.chain, arm.task, arm.moving, np.array(rows))
+    return [row for row, x in zip(rows, sigma.tolist()) if x < arm.policy.singular_below]
 
 
 def _add_inside(
