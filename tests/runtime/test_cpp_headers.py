@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.routines import compiled_header, feed
-from tests.support.runtime_files import HEADERS
+from tests.support.runtime_files import HEADERS, chains, included
 
 from ikgen.emit.cpp.header_bundle import RUNTIME, bundle
 
@@ -58,13 +58,31 @@ int main() {
 OK, UNREACHABLE, LIMITS, INVALID = range(4)
 
 
-@pytest.mark.parametrize("header", HEADERS)
-def test_a_header_compiles_alone(header: str, tmp_path: Path) -> None:
+def eigens(header: str) -> list[str]:
+    """Headers of Eigen that one of the runtime includes."""
+    return re.findall(r"<(Eigen/\w+)>", bundle([header]).includes)
+
+
+EIGEN = [header for header in HEADERS if eigens(header)]
+CHAINS = [*chains(EIGEN), *chains(set(HEADERS) - set(EIGEN))]
+
+
+def test_every_header_is_compiled_behind_what_it_includes_alone() -> None:
+    assert sorted(header for chain in CHAINS for header in chain) == HEADERS
+    for chain in CHAINS:
+        for i, header in enumerate(chain):
+            seen = {other for one in chain[:i] for other in (one, *included(one))}
+            assert seen <= included(header)
+
+
+@pytest.mark.parametrize("chain", CHAINS, ids=lambda chain: chain[-1])
+def test_headers_compile_alone(chain: list[str], tmp_path: Path) -> None:
     # Eigen may be precompiled where a header includes just that: with -fsyntax-only it is not
-    eigen = re.findall(r"<(Eigen/\w+)>", bundle([header]).includes)
-    assert eigen in ([], ["Eigen/Geometry"])
+    eigen = eigens(chain[0])
+    assert all(eigens(header) == eigen for header in chain) and eigen in ([], ["Eigen/Geometry"])
     only = "-c" if eigen else "-fsyntax-only"
-    compiled_header(f'#include "{header}"\n#include "{header}"\n', tmp_path, only)
+    lines = [f'#include "{header}"\n' for header in chain]
+    compiled_header("".join([*lines, *lines]), tmp_path, only)
 
 
 def test_no_name_is_a_macro_of_windows() -> None:
