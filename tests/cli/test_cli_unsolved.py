@@ -18,9 +18,11 @@ from ikgen.generation.remedies import remedies
 from ikgen.generation.request import Request
 from ikgen.kinematics.classify import classify
 from ikgen.report import emit_unsolved
+from ikgen.solver import solve
 from ikgen.solver.remainder import near_misses, open_equations
-from ikgen.solver.solve import solve_chain
 from ikgen.tasks import find_task
+
+pytestmark = pytest.mark.usefixtures("solved_once")
 
 ROOT = Path(__file__).resolve().parents[2]
 TWO_ON_A_LINE = ROOT / "tests" / "robots" / "tables" / "Chair6DOF.toml"
@@ -158,7 +160,12 @@ def two_on_a_line() -> Unsolved:
     reading = read(Request(TWO_ON_A_LINE))
     dh = reading.dh
     return Unsolved(
-        reading, classify(dh), find_task("pose"), solve_chain(dh), "chair6dof", "Chair6DOF.toml"
+        reading,
+        classify(dh),
+        find_task("pose"),
+        solve.solve_chain(dh),
+        "chair6dof",
+        "Chair6DOF.toml",
     )
 
 

@@ -22,20 +22,22 @@ from ikgen.kinematics.kept import kept_constants
 from ikgen.kinematics.modified_dh import to_dh
 from ikgen.model.chain import Chain
 from ikgen.model.dh import DHChain
+from ikgen.solver import solve
 from ikgen.solver.solution_graph import SolutionGraph
-from ikgen.solver.solve import solve_chain
+
+pytestmark = pytest.mark.usefixtures("solved_once")
 
 HALF = Fraction(1, 2)
 
 
 def attempt(dh: DHChain, among: Collection[str] | None) -> SolutionGraph:
-    return solve_chain(dh, among=among)
+    return solve.solve_chain(dh, among=among)
 
 
 def written(chain: Chain) -> tuple[DHChain, SolutionGraph, SolutionGraph]:
     """The rows chosen, their solution, and that of the exact geometry."""
     dh = to_dh(chain)
-    graph = solve_chain(dh)
+    graph = solve.solve_chain(dh)
     chosen, other = solve_as_written(dh, graph, attempt)
     return chosen, other, graph
 
@@ -92,13 +94,13 @@ def test_branches_lie_half_a_turn_apart_but_for_rounding() -> None:
 
 def test_exact_geometry_is_solved_once() -> None:
     dh = to_dh(three_parallel(EXACT))
-    graph = solve_chain(dh)
+    graph = solve.solve_chain(dh)
     assert solve_as_written(dh, graph, lambda *_: pytest.fail("solved again")) == (dh, graph)
 
 
 def test_equations_of_the_exact_solution_are_looked_at_first() -> None:
     dh = to_dh(three_parallel())
-    graph = solve_chain(dh)
+    graph = solve.solve_chain(dh)
     tried: list[Collection[str] | None] = []
 
     def first_fails(dh: DHChain, among: Collection[str] | None) -> SolutionGraph:
@@ -129,9 +131,9 @@ def test_rows_nearer_by_less_than_a_micrometre_are_not_looked_for() -> None:
 
     def exact_alone(dh: DHChain, among: Collection[str] | None) -> SolutionGraph:
         assert max(dh.deviation) <= CLOSE
-        return solve_chain(dh, among=among)
+        return solve.solve_chain(dh, among=among)
 
-    graph = solve_chain(near)
+    graph = solve.solve_chain(near)
     assert solve_as_written(near, graph, exact_alone) == (near, graph)
 
 

@@ -13,6 +13,8 @@ from ikgen.lowering.lower import lower
 from ikgen.solver.session import first_fork
 from ikgen.solver.solve import solve_chain
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 TABLES = Path(__file__).resolve().parents[1] / "robots" / "tables"
 
 

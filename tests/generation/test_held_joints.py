@@ -28,6 +28,8 @@ from ikgen.generation.request import Outputs, Request
 from ikgen.tasks import find_task
 from ikgen.tasks.fitting import freedoms_moved
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 ROOT = Path(__file__).resolve().parents[2]
 FR3 = ROOT / "urdf_fixtures/franka_fr3.urdf"
 TWO_ON_A_LINE = ROOT / "tests/robots/tables/Chair6DOF.toml"

@@ -12,6 +12,8 @@ from ikgen.cli.main import run
 from ikgen.projects.config import load_config
 from ikgen.projects.stale import why_stale
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples/cmake_only/urdf"
 CONFIG = """
 [[arm]]
