@@ -54,9 +54,16 @@ def test_languages_share_what_is_none_of_theirs(
     assert both == [alone, alone] and len(searches) == 2
 
 
+@pytest.fixture(scope="module")
+def of_the_arm() -> SharedWork:
+    """What verifications of the arm with 60 samples have in common, whatever is wrong with the module."""
+    return SharedWork()
+
+
 @pytest.mark.parametrize("defect", DEFECTS)
-def test_defect_is_caught_by_its_check(tmp_path: Path, defect: str) -> None:
-    report = verify(six_axis_module(tmp_path, defect), six_axis_oracle(), samples=60)
+def test_defect_is_caught_by_its_check(tmp_path: Path, defect: str, of_the_arm: SharedWork) -> None:
+    runner = six_axis_module(tmp_path, defect)
+    report = verify(runner, six_axis_oracle(), samples=60, shared=of_the_arm)
     assert not report.passed
     assert not report.check(DEFECTS[defect][0]).passed, [c.name for c in report.failed]
     assert report.worst_case
