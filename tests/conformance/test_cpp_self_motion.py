@@ -64,7 +64,7 @@ def test_branches_that_come_near_each_other_end_where_each_does(tmp_path: Path) 
         serial_urdf("narrow", [(*j[:4], narrow.get(j[0], j[4])) for j in SHOULDER_ELBOW_WRIST])
     )
     dh = read(Request(path, free={"shoulder_roll": None})).dh
-    both = in_both(replace(solver_module(dh), name="narrow"), tmp_path)
+    both = in_both(replace(solver_module(dh), name="narrow"), tmp_path, "0")
     for row in (
         (1.02924, 1.7831, -2.13867, 0.02822, -1.58641, -0.1504, -0.28535),
         (0.16952, 0.75965, 1.25799, -0.00999, 2.13671, -0.45608, -0.3702),
@@ -137,7 +137,7 @@ def test_the_best_row_may_be_at_an_end_on_a_limit_or_just_before_a_fold(tmp_path
         text.replace('xyz="0 0 0.35" rpy="0 0 0"', 'xyz="0.00002 0 0.35" rpy="0 0.0005 0.0003"')
     )
     dh = read(Request(path, free={"wrist_roll": None})).dh
-    both = in_both(replace(solver_module(dh), name="rounded_wrist"), tmp_path)
+    both = in_both(replace(solver_module(dh), name="rounded_wrist"), tmp_path, "01")
     arm, rng = both.arm, np.random.default_rng(11)
     at_end = 0
     for _ in range(40):
@@ -199,7 +199,7 @@ def test_paths(both: Both) -> None:
 
 def test_paths_past_a_stretched_elbow(tmp_path: Path) -> None:
     """With a joint held, and more joints than freedoms: singular there and nowhere else."""
-    both = in_both(lift_scara(tmp_path), tmp_path)
+    both = in_both(lift_scara(tmp_path), tmp_path, "4")
     start, end = (
         np.array([0.27, 0.91, -0.42, 0.09, 0.98]),
         np.array([0.48, -0.06, 0.57, 0.07, 0.52]),

@@ -89,7 +89,7 @@ def test_what_else_is_wrong_with_a_far_pose_counts(tmp_path: Path) -> None:
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
 @pytest.mark.parametrize("name", ["open_manipulator_x.urdf", "olson13.toml", "franka_fr3.urdf"])
 def test_headers_say_the_same(name: str, tmp_path: Path) -> None:
-    both = in_both(derive(Request(FIXTURES / name)).module, tmp_path)
+    both = in_both(derive(Request(FIXTURES / name)).module, tmp_path, "145")
     start = np.full(both.arm.DOF, 0.4)
     for T in far_poses(both.arm)[::3]:
         assert answers(both, start, T) == ["UNREACHABLE"] * 3

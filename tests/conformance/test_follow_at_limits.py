@@ -38,7 +38,7 @@ STEPS = (
 def test_joints_stopped_first_are_let_go_where_others_have_to_stop(tmp_path: Path) -> None:
     """The shortest motion leaves the limits of several joints, by most that of one that has to move off
     its limit when another stays on its own; a row inside all limits is less than 0.01 rad away."""
-    both = in_both(held_module("shoulder_elbow_wrist", tmp_path), tmp_path)
+    both = in_both(held_module("shoulder_elbow_wrist", tmp_path), tmp_path, "4")
     arm = both.arm
     for step in STEPS:
         ends = np.array(step)

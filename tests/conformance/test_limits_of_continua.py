@@ -54,7 +54,7 @@ def gantry() -> str:
 def test_a_continuum_is_followed_to_where_it_is_inside_the_limits(tmp_path: Path) -> None:
     path = tmp_path / "gantry.urdf"
     path.write_text(gantry())
-    both = in_both(derive(Request(path, name="gantry")).module, tmp_path)
+    both = in_both(derive(Request(path, name="gantry")).module, tmp_path, "5")
     poses = both.arm.forward(np.array(POSES))
     rows, count, _ = both.arm.solve_batch(poses)
     for k, pose in enumerate(poses):

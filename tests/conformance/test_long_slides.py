@@ -27,7 +27,8 @@ def both(tmp_path_factory: pytest.TempPathFactory) -> Both:
     path = folder / "long.urdf"
     path.write_text(serial_urdf("long", (LIFT, RAIL, *SHOULDER_ELBOW_WRIST)))
     free = dict.fromkeys(("lift", "rail", "wrist_roll"))
-    return in_both(replace(solver_module(read(Request(path, free=free)).dh), name="long"), folder)
+    module = replace(solver_module(read(Request(path, free=free)).dh), name="long")
+    return in_both(module, folder, "123")
 
 
 def drawn(both: Both) -> np.ndarray:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.support.both_languages import in_both
+from tests.support.both_languages import Both, in_both
 from tests.support.redundant_arms import Joint, serial_urdf
 from tests.support.solving import NO_COMPILER
 
@@ -35,13 +35,20 @@ ARMS: dict[str, tuple[Joint, ...]] = {
 }
 
 
-@pytest.mark.parametrize("name", ARMS)
-def test_a_path_is_singular_only_where_all_joints_lose_a_freedom(name: str, tmp_path: Path) -> None:
-    path = tmp_path / f"{name}.urdf"
+@pytest.fixture(scope="module")
+def both(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Both:
+    name = request.param
+    folder = tmp_path_factory.mktemp(name)
+    path = folder / f"{name}.urdf"
     path.write_text(serial_urdf(name, ARMS[name]))
     module = derive(Request(path, name=name)).module
     assert (module.task, len(module.held), module.freedoms) == ("pose", 1, 3)
-    both = in_both(module, tmp_path)
+    return in_both(module, folder, "34")
+
+
+@pytest.mark.parametrize("both", ARMS, indirect=True)
+def test_a_path_is_singular_only_where_all_joints_lose_a_freedom(both: Both) -> None:
+    four_turn = both.arm.JOINT_NAMES[0] == "a"
     bent = np.array([0.2, 0.5, -0.7, 0.9])
     poses = both.arm.forward(np.stack([bent, bent + 0.01]))
     status, flags, rows = both.follow(bent, poses)
@@ -49,16 +56,14 @@ def test_a_path_is_singular_only_where_all_joints_lose_a_freedom(name: str, tmp_
     assert not both.arm.follow(poses, start=bent).singular.any()
     np.testing.assert_allclose(both.arm.forward(rows), poses, atol=1e-9)
     # those that turn stand in line, and the slide goes along with them
-    straight = np.array([0.2, np.pi / 2, 0.0, 0.0]) if name == "on_a_slide" else np.zeros(4)
+    straight = np.zeros(4) if four_turn else np.array([0.2, np.pi / 2, 0.0, 0.0])
     pose = both.arm.forward(straight[None])
-    assert both.follow(straight, pose)[1] == (name == "four_turn")
-    assert both.arm.follow(pose, start=straight).singular[0] == (name == "four_turn")
+    assert both.follow(straight, pose)[1] == four_turn
+    assert both.arm.follow(pose, start=straight).singular[0] == four_turn
 
 
-def test_the_most_dexterous_row_is_the_same_in_both_languages(tmp_path: Path) -> None:
-    path = tmp_path / "four_turn.urdf"
-    path.write_text(serial_urdf("four_turn", ARMS["four_turn"]))
-    both = in_both(derive(Request(path, name="four_turn")).module, tmp_path)
+@pytest.mark.parametrize("both", ["four_turn"], indirect=True)
+def test_the_most_dexterous_row_is_the_same_in_both_languages(both: Both) -> None:
     for q in np.random.default_rng(1).uniform(-1.5, 1.5, (4, 4)):
         pose = both.arm.forward(q)
         row = both.run(3, q, pose[None])[1][:4]

@@ -65,7 +65,7 @@ def torso_arm() -> str:
 def test_rows_are_of_the_intervals_that_they_are_the_best_of(tmp_path: Path) -> None:
     path = tmp_path / "torso_arm.urdf"
     path.write_text(torso_arm())
-    both = in_both(derive(Request(path, name="torso_arm")).module, tmp_path)
+    both = in_both(derive(Request(path, name="torso_arm")).module, tmp_path, "1")
     for q, seed in ((np.array(a), np.array(b)) for a, b in CASES):
         pose = both.arm.forward(q)
         own = both.arm.search(pose, seed=seed)

@@ -36,13 +36,14 @@ int main() {
     for (auto& T : poses)
       for (int i = 0; i < 16; ++i) std::scanf("%lf", &T.matrix()(i / 4, i % 4));
     std::vector<double> out;
-#ifdef ONE_HELD
+#if INTERVALS
     if (mode == 0) {
       const auto found = ik::self_motion(poses[0]);
       out = {double(found.status), double(found.count)};
       for (const auto& one : found) out.insert(out.end(), {one.low, one.high, double(one.branch)});
     }
 #endif
+#if SEARCHES
     if (mode >= 1 && mode <= 3) {
       ik::SearchOptions options;
       options.seed = &seed;
@@ -51,6 +52,8 @@ int main() {
       out = {double(found.status), double(found.count)};
       for (const auto& q : found) out.insert(out.end(), q.data(), q.data() + ik::kDof);
     }
+#endif
+#if PATHS
     if (mode == 4) {
       std::vector<ik::Joints, Eigen::aligned_allocator<ik::Joints>> q(n);
       const auto singular = std::make_unique<bool[]>(n);
@@ -59,6 +62,8 @@ int main() {
       out = {double(path.status), double(path.reached), double(flags)};
       for (int i = 0; i < path.reached; ++i) out.insert(out.end(), q[i].data(), q[i].data() + ik::kDof);
     }
+#endif
+#if SOLUTIONS
     if (mode == 5) {
       ik::Options options;
       options.seed = &seed;
@@ -66,12 +71,15 @@ int main() {
       out = {double(found.status), double(found.count)};
       for (const auto& q : found) out.insert(out.end(), q.data(), q.data() + ik::kDof);
     }
+#endif
     for (const double x : out) std::printf("%.17g ", x);
     std::printf("\n");
   }
 }
 """
 
+MODES = {"INTERVALS": "0", "SEARCHES": "123", "PATHS": "4", "SOLUTIONS": "5"}
+"""What the program does in which mode."""
 STATUS = ("OK", "UNREACHABLE", "LIMITS", "INVALID", "SINGULAR")
 
 
@@ -101,11 +109,15 @@ class Both:
         return status, int(numbers[0]), numbers[1:].reshape(-1, self.arm.DOF)
 
 
-def in_both(module: SolverModule, folder: Path) -> Both:
-    """The arm, its files and a program of its header in a folder."""
+def in_both(module: SolverModule, folder: Path, modes: str = "012345") -> Both:
+    """The arm, its files and a program of its header in a folder, which knows what is asked in these modes:
+    each takes a second to compile."""
     (folder / f"{module.name}_ik.hpp").write_text(emit_header(module))
-    define = "#define ONE_HELD\n" if len(module.held) == 1 else ""
+    if len(module.held) != 1:
+        modes = modes.replace("0", "")
+    known = {name: int(bool(set(own) & set(modes))) for name, own in MODES.items()}
     source = folder / "main.cpp"
-    source.write_text(define + PROGRAM.replace("@", module.name))
+    defines = "".join(f"#define {name} {there}\n" for name, there in known.items())
+    source.write_text(defines + PROGRAM.replace("@", module.name))
     compile_program(source, folder / "main", [folder, find_eigen()])
     return Both(import_text(emit_module(module), folder), folder / "main")

@@ -33,9 +33,16 @@ def _command(compiler: str, package: Path, style: str) -> list[str]:
     return [found, *_STRICT, *(f"-I{path}" for path in includes), "-isystem", str(find_eigen())]
 
 
+def _together(sources: Sequence[str], whole: Path) -> Path:
+    """One source of several."""
+    whole.write_text("".join(f'#include "{source}"\n' for source in sources))
+    return whole
+
+
 def warnings_of(compiler: str, package: Path, style: str) -> str:
-    """What a compiler has to say about the package's sources, checked but not built."""
-    command = [*_command(compiler, package, style), "-fsyntax-only", *_sources(package)]
+    """What a compiler has to say about the package's sources, checked as one but not built."""
+    whole = str(_together(_sources(package), package.parent / f"{style}.cpp"))
+    command = [*_command(compiler, package, style), "-fsyntax-only", whole]
     return subprocess.run(command, capture_output=True, text=True, check=False).stderr
 
 
@@ -44,9 +51,7 @@ def compile_driver(package: Path, style: str, program: Path, *, apart: bool = Fa
     the solver once, or each by itself."""
     sources = [*_sources(package), str(STUBS / "driver.cpp")]
     if not apart:
-        whole = program.with_suffix(".cpp")
-        whole.write_text("".join(f'#include "{source}"\n' for source in sources))
-        sources = [str(whole)]
+        sources = [str(_together(sources, program.with_suffix(".cpp")))]
     command = [*_command("g++", package, style), "-O1", *sources, "-o", str(program)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[:4000]
