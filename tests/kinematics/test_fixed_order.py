@@ -30,6 +30,19 @@ def test_terms_are_added_from_left_to_right() -> None:
             assert product(A, B)[i, j] == total
 
 
+def test_many_products_have_the_bits_of_each() -> None:
+    signs = np.array([0.0, -0.0, 1.0, -1.0])
+    A = np.where(
+        RNG.random((60, 4, 4)) < 0.5, RNG.choice(signs, (60, 4, 4)), RNG.normal(size=(60, 4, 4))
+    )
+    B = np.where(
+        RNG.random((60, 4, 7)) < 0.5, RNG.choice(signs, (60, 4, 7)), RNG.normal(size=(60, 4, 7))
+    )
+    many, each = product(A, B), np.array([product(a, b) for a, b in zip(A, B, strict=True)])
+    assert many.tobytes() == each.tobytes()
+    assert product(A, B[0]).tobytes() == np.array([product(a, B[0]) for a in A]).tobytes()
+
+
 def test_vectors() -> None:
     u, v = RNG.normal(size=(2, 7))
     assert dot(u, v) == pytest.approx(float(u @ v), abs=1e-14)
