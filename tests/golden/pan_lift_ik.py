@@ -1894,8 +1894,10 @@ def _rows_along(
         off, rows = _least_outside(arm, parts, T)
     order = np.lexsort((off, parts.owner))
     order = order[off[order] < arm.policy.limit_tolerance]
-    owner, first = np.unique(parts.owner[order], return_index=True)
-    return owner, rows[order[first]]
+    ends, error, _, _ = _refined(arm, rows[order], T[parts.owner[order]])
+    right = error < arm.policy.arrived
+    owner, first = np.unique(parts.owner[order[right]], return_index=True)
+    return owner, ends[right][first]
 
 
 def _beside_least(arm: _Arm, parts: _Parts) -> _Flags:

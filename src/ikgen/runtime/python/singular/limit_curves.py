@@ -10,6 +10,7 @@ from ikgen.runtime.python.arm.limit_margins import outside
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_tuples import some_of
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index, Row
+from ikgen.runtime.python.newton.arm_newton import refined
 from ikgen.runtime.python.singular.curve_parts import Parts, between
 from ikgen.runtime.python.singular.near_continuum import LEAST, followed, on_curves
 
@@ -40,8 +41,10 @@ def rows_along(
         off, rows = _least_outside(arm, parts, T)
     order = np.lexsort((off, parts.owner))
     order = order[off[order] < arm.policy.limit_tolerance]
-    owner, first = np.unique(parts.owner[order], return_index=True)
-    return owner, rows[order[first]]
+    ends, error, _, _ = refined(arm, rows[order], T[parts.owner[order]])
+    right = error < arm.policy.arrived
+    owner, first = np.unique(parts.owner[order[right]], return_index=True)
+    return owner, ends[right][first]
 
 
 def _beside_least(arm: Arm, parts: Parts) -> Flags:
