@@ -1,4 +1,5 @@
-"""Poses at which an elimination loses its rank altogether: all links of a chain in one plane."""
+"""Poses at which an elimination loses its rank altogether, all links of a chain in one plane, and such at which
+it is far from its solutions, as a file rounds what it takes for parallel."""
 
 from __future__ import annotations
 
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 from benchmarks.agreement import arm_of, runner_of
 from tests.support.dh_files import dh_file
+from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import NO_COMPILER
 
 from ikgen.generation.derive import derive
@@ -40,3 +42,23 @@ def test_none_is_without_a_row_where_all_links_lie_in_one_plane(tmp_path: Path) 
         trial = run_trial(runner, arm, sample, limits=True)
         assert not survey(arm, runner, [trial]).unanswered.any(), language
         assert (trial.rows.count > 0).all()
+
+
+OFFSET_WRIST = [
+    ("0 0 0.1", "0 0 0"), ("0 0 0", "1.5708 0 0"), ("0 0.35 0", "0 3.14159 0"),
+    ("0 0 0", "-1.5708 3.14159 0"), ("0 0.005263 0.305", "1.5708 0 3.14159"), ("0 0 0", "-1.5708 0 0"),
+]  # fmt: skip
+"""Axes 2 and 3 are 3e-6 rad from parallel."""
+
+
+def test_rounding_takes_double_roots_far_apart(tmp_path: Path) -> None:
+    """Two solutions that nearly meet are roots of an imaginary part of 0.064 rad for the parallel axes."""
+    derivation = derive(Request(serial_urdf(tmp_path / "wrist.urdf", OFFSET_WRIST, limit=2.9)))
+    arm = arm_of(derivation)
+    q = np.array(
+        [[-0.195815245, 2.182835712, -2.188854052, 2.819053734, 0.976226554, -1.255587152]]
+    )
+    sample = SampleSet("fold", q, arm.oracle.forward(q), arm.sigma(q))
+    assert 1e-6 < sample.sigma[0] < 1e-5
+    runner = runner_of(derivation, "python", tmp_path)
+    assert not survey(arm, runner, [run_trial(runner, arm, sample, limits=True)]).missed.any()

@@ -38,7 +38,7 @@ from ikgen.runtime.python.rows.solution_rows import Turning, rows_of
 __all__ = ["parallel_candidates"]
 
 _ACCEPT = 0.03  # imaginary part of a root (rad) up to which it is tried
-_SPLIT = 20.0  # times the root of the links' deviation: how far that may take halves of double roots apart
+_SPLIT = 40.0  # times the root of the links' deviation: how far that may take halves of double roots apart
 _CONE = np.array([-1.0, 1.0, 1.0])  # of (1, cos, sin)
 
 
