@@ -1,5 +1,5 @@
-"""Poses at which an elimination loses its rank altogether, all links of a chain in one plane, and such at which
-it is far from its solutions, as a file rounds what it takes for parallel."""
+"""Poses at which an elimination loses its rank altogether, all links of a chain in one plane; and at which
+its roots are far from the solutions, as a file rounds what it takes for parallel."""
 
 from __future__ import annotations
 
