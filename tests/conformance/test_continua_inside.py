@@ -108,11 +108,7 @@ def straight_wrists() -> NDArray[np.float64]:
 def test_a_continuum_has_a_row_inside_beside_those_of_other_branches(
     language: str, tmp_path: Path
 ) -> None:
-    path = origins_urdf(tmp_path / "arm.urdf", TURNED_ELBOW, limit=3.0)
-    text = path.read_text()
-    for low, high in RANGES:
-        text = text.replace('lower="-3.0" upper="3.0"', f'lower="{low}" upper="{high}"', 1)
-    path.write_text(text)
+    path = origins_urdf(tmp_path / "arm.urdf", TURNED_ELBOW, limit=RANGES)
     derivation = derive(Request(path, free={"j0": None}))
     under, q = arm_of(derivation), straight_wrists()
     sample = SampleSet("straight wrists", q, under.oracle.forward(q), under.sigma(q))

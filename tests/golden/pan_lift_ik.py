@@ -1052,6 +1052,11 @@ class _Answer:
     loose: list[_Found] = field(default_factory=list)
     led: bool = False
 
+    @property
+    def stands(self) -> bool:
+        """Whether a row stands for a continuum."""
+        return any(singular for _, singular in self.rows)
+
 
 # Solutions near a singularity, where Newton's method stalls.
 
@@ -1421,6 +1426,7 @@ def _seeded_rows(arm: _Arm, asked: _Asked) -> list[list[_Found]]:
 
 
 def _led_to(arm: _Arm, asked: _Asked, start: Array) -> list[list[_Found]]:
+    """Of each pose what Newton steps from its start (n, dof) lead to."""
     if not len(start):
         return []
     starts = _given(arm, asked, start, np.arange(len(start)))
@@ -1806,9 +1812,7 @@ def _on_curves(arm: _Arm, parts: _Parts, owner: _Index, q: Array, T: Array) -> _
     row, parts = row[near], _some_of(parts, near)
     at = _between(arm, parts, share[near], T)
     for _ in range(_ROUNDS):
-        way = _differences(arm, at.q, q[row])[:, moving]
-        ahead = (way * at.still).sum(axis=1)
-        beside = np.abs(way - ahead[:, None] * at.still).max(axis=1)
+        _, ahead, beside = _way(arm, at, q[row])
         out[row[beside < _ON]] = True
         going = (beside >= _ON) & (beside < ahead**2)
         if not going.any():
@@ -1859,12 +1863,18 @@ def _follow(arm: _Arm, first: _Reduced, T: Array) -> tuple[_Parts, _Parts, Array
 
 def _back(arm: _Arm, a: _Reduced, b: _Reduced) -> _Flags:
     """Whether curves are at samples of them again, and not at other parts that are near."""
-    way = _differences(arm, a.q, b.q)[:, list(arm.moving)]
-    along = (way * a.still).sum(axis=1)[:, None]
-    beside = np.abs(way - along * a.still).max(axis=1) < _near_continuum_BESIDE
+    way, _, beside = _way(arm, a, b.q)
     near = np.abs(way).max(axis=1) < 0.75 * arm.policy.try_step
     same = (a.still * b.still).sum(axis=1) > _SAME_WAY
-    return np.asarray(beside & near & same)
+    return np.asarray((beside < _near_continuum_BESIDE) & near & same)
+
+
+def _way(arm: _Arm, at: _Reduced, q: Array) -> tuple[Array, Array, Array]:
+    """The ways (k, n) from samples to rows q (k, dof), how far they go along the still direction (k,), and
+    how far beside that at most (k,)."""
+    way = _differences(arm, at.q, q)[:, list(arm.moving)]
+    along = (way * at.still).sum(axis=1)
+    return way, along, np.abs(way - along[:, None] * at.still).max(axis=1)
 
 
 # Where continua that the arm has go on inside the limits.
@@ -2161,9 +2171,8 @@ def _take_nearest(arm: _Arm, asked: _Asked, some: _Index, limits: bool, out: lis
         left = asked.at(some)
         rows = _nearest_rows(arm, left.T, left.starts(arm), inside, flat)
         for i, found in zip(some.tolist(), _led_to_or_along(arm, left, rows)):
-            aim = _aims(arm, asked.T[i : i + 1], asked.held[i : i + 1])
             out[i].real = out[i].real or bool(found)
-            out[i].rows = _rows_inside(arm, aim, found, asked.seed(i), limits)
+            out[i].rows = _inside(arm, asked, i, found, limits)
         some = some[[not out[i].rows for i in some.tolist()]]
         if not len(some):
             break
@@ -2176,17 +2185,15 @@ def _take_along(arm: _Arm, asked: _Asked, limits: bool, out: list[_Answer]) -> N
     for step in range(max(map(len, beyond), default=0)):
         some = [i for i, rows in enumerate(beyond) if step < len(rows)]
         q = np.array([beyond[i][step] for i in some])
-        aim = _aims(arm, asked.T, asked.held)[some]
         stands = [(k, row) for k, i in enumerate(some) for row, flag in out[i].rows if flag]
-        for k, row in zip(*_rows_along(arm, q, aim, stands)):
+        for k, row in zip(*_rows_along(arm, q, _aims(arm, asked.T[some], asked.held[some]), stands)):
             _add_inside(arm, asked, some[k], [(tuple(row.tolist()), True)], limits, out)
-    lost = [i for i, rows in enumerate(beyond) if rows and not any(flag for _, flag in out[i].rows)]
-    which = np.array([i for i in lost for _ in beyond[i]], dtype=np.intp)
-    if lost:
-        q = _turned_inside(arm, np.array([row for i in lost for row in beyond[i]]))
-        rows = _descended(arm, asked.T[which], q, limits)
-        for i, found in zip(which.tolist(), _led_to_or_along(arm, asked.at(which), rows)):
-            if not any(flag for _, flag in out[i].rows):
+    which = [i for i, rows in enumerate(beyond) for _ in rows if not out[i].stands]
+    if which:
+        q = _turned_inside(arm, np.array([row for i in dict.fromkeys(which) for row in beyond[i]]))
+        lost = asked.at(np.array(which))
+        for i, found in zip(which, _led_to_or_along(arm, lost, _descended(arm, lost.T, q, limits))):
+            if not out[i].stands:
                 _add_inside(arm, asked, i, found, limits, out)
 
 
@@ -2202,9 +2209,13 @@ def _outside(arm: _Arm, answer: _Answer, near: Row | None, limits: bool) -> list
 def _add_inside(
     arm: _Arm, asked: _Asked, i: int, found: list[_Found], limits: bool, out: list[_Answer]
 ) -> None:
-    """Adds to the answer of a pose what of its rows is inside the limits."""
+    _add_new(arm, asked.T[i], _inside(arm, asked, i, found, limits), out[i].rows)
+
+
+def _inside(arm: _Arm, asked: _Asked, i: int, found: list[_Found], limits: bool) -> list[_Found]:
+    """What of the rows of a pose is inside the limits."""
     aim = _aims(arm, asked.T[i : i + 1], asked.held[i : i + 1])
-    _add_new(arm, asked.T[i], _rows_inside(arm, aim, found, asked.seed(i), limits), out[i].rows)
+    return _rows_inside(arm, aim, found, asked.seed(i), limits)
 
 
 def _led_to_or_along(arm: _Arm, asked: _Asked, rows: Array) -> list[list[_Found]]:
@@ -2276,7 +2287,7 @@ def _goes_on(
     _add_new(arm, T, _rows_inside(arm, aim, kept, near, limits), answer.rows)
     if not answer.rows:
         answer.rows = _rows_inside(arm, aim, seeded, near, limits)
-    led = any(flag for _, flag in answer.rows)
+    led = answer.stands
     return free and not (answer.rows and led)
 
 

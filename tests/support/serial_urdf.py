@@ -17,20 +17,19 @@ def serial_urdf(
     *,
     tip: Origin | None = None,
     slides: Mapping[int, str] | None = None,
-    limit: float | None = None,
+    limit: float | Sequence[tuple[float, float]] | None = None,
 ) -> Path:
-    """Joints j0, j1, ... between links l0, l1, ..., which turn about z, without limits or to `limit`
-    (rad, m) to either side; those of `slides` slide along their axes. With `tip` a fixed link of that
-    name."""
+    """Joints j0, j1, ... between links l0, l1, ..., which turn about z, without limits, to `limit`
+    (rad, m) to either side or each in its range; those of `slides` slide along their axes. With `tip` a
+    fixed link of that name."""
     along = slides or {}
-    bound = (
-        ""
-        if limit is None
-        else f'<limit lower="{-limit}" upper="{limit}" effort="1" velocity="1"/>'
-    )
-    text = '<link name="l0"/>'
+    ranges = [(-limit, limit)] * len(origins) if isinstance(limit, float) else limit
+    bound, text = "", '<link name="l0"/>'
     for k, (xyz, rpy) in enumerate(origins):
         kind = "prismatic" if k in along else "continuous" if limit is None else "revolute"
+        if ranges is not None:
+            low, high = ranges[k]
+            bound = f'<limit lower="{low}" upper="{high}" effort="1" velocity="1"/>'
         text += (
             f'<joint name="j{k}" type="{kind}"><parent link="l{k}"/><child link="l{k + 1}"/>'
             f'<origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="{along.get(k, "0 0 1")}"/>{bound}</joint>'

@@ -43,7 +43,7 @@ template <int Kind> struct Plan {
 };
 template <class Plan> int run() {
   static double F[7][12], T[12];
-  static g6::Solutions all, hidden;
+  static g6::Solutions all, blurred;
   int n = 0;
   read(Plan::kParallel.data(), 2, "%d");
   for (auto& plan : Plan::kResultants) read(plan.data(), 2, "%d");
@@ -53,8 +53,8 @@ template <class Plan> int run() {
   for (read(&n, 1, "%d"); n > 0; --n) {
     read(T, 12, "%lf");
     const g6::Frame pose = g6::scaled_frame<Plan>(T);
-    all.count = hidden.count = 0;
-    const bool alone = g6::run_parallel<Plan::kKind>(chain, pose, Plan::kParallel, hidden, all);
+    all.count = blurred.count = 0;
+    const bool alone = g6::run_parallel<Plan::kKind>(chain, pose, Plan::kParallel, blurred, all);
     all.count = 0;
     g6::solve_parallel<Plan>(chain, pose, all);
     std::printf("%d ", alone ? 1 : 0);

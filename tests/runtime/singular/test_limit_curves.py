@@ -18,7 +18,7 @@ from ikgen.runtime.python.singular.limit_curves import rows_along
 
 Array = NDArray[np.float64]
 AT = np.array([0.2, -0.9, 1.1, 3.3, 0.0, -0.4])
-"""Joint 4 goes on as joint 6 goes back; it is outside the limits that it gets here."""
+"""Joint 4, outside its limits, goes on as joint 6 goes back."""
 
 
 @pytest.fixture(scope="module")

@@ -78,10 +78,10 @@ inline Spectrum run_coupled(const CoupledChain<Plan>& F, const Frame& T, const F
 struct CoupledMethod {
   template <class Plan>
   static bool solve(const CoupledChain<Plan>& F, const Frame& T, const Turning& turning, Solutions& out) noexcept {
-    Solutions hidden;
-    const bool sure = solve_resultant<run_coupled_resultant<Plan>>(F, T, Plan::kEigenproblems, false, hidden, out) ||
+    Solutions blurred;
+    const bool sure = solve_resultant<run_coupled_resultant<Plan>>(F, T, Plan::kEigenproblems, false, blurred, out) ||
                       solve_in_runs<run_coupled<Plan>>(F, T, turning, Plan::kEigenproblems, out);
-    take_hidden(hidden, out);
+    take_blurred(blurred, out);
     return sure;
   }
 };

@@ -114,7 +114,7 @@ inline void settle_crowd(const Polynomial<D>& f, const Crowded& crowd, Brackets<
 // Adds the solutions for the pose T. True where they are all, as in `run_resultant`.
 template <class Plan>
 inline bool run_coupled_resultant(const CoupledChain<Plan>& F, const Frame& T, const std::array<int, 3>& plan,
-                                  double caution, Solutions& hidden, Solutions& out) noexcept {
+                                  double caution, Solutions& blurred, Solutions& out) noexcept {
   constexpr int degree = (static_cast<int>(Plan::kDegree) + 3) / 4 * 4;
   const CoupledEquations<Plan> of = coupled_equations(F, T, plan);
   const auto values = [&](bool close, const auto& c, const auto& s, auto& f, auto& blur, auto&) {
@@ -143,7 +143,7 @@ inline bool run_coupled_resultant(const CoupledChain<Plan>& F, const Frame& T, c
     return q;
   };
   const bool each = add_solutions<degree>(F, T, completed, roots, out);
-  add_hidden(F, T, completed, roots, hidden);
+  add_blurred(F, T, completed, roots, blurred);
   return each && all;
 }
 

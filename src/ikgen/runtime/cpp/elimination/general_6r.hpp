@@ -14,18 +14,18 @@ namespace ikgen_runtime {
 
 namespace g6 {
 
-// none: whether it was found already that there are no solutions; hidden: those that rounding hides, if any are known. As
+// none: whether it was found already that there are no solutions; blurred: those that rounding hides, if any are known. As
 // solve_in_runs.
 template <class Plan>
-inline bool solve_6r(const Chain& F, const Frame& T, bool none, Solutions& hidden, Solutions& out) noexcept {
-  const bool sure = solve_resultant<run_resultant>(F, T, Plan::kResultants, none, hidden, out) ||
+inline bool solve_6r(const Chain& F, const Frame& T, bool none, Solutions& blurred, Solutions& out) noexcept {
+  const bool sure = solve_resultant<run_resultant>(F, T, Plan::kResultants, none, blurred, out) ||
                     solve_in_runs<run_eigenproblem>(F, T, kAllTurn, Plan::kEigenproblems, out);
-  take_hidden(hidden, out);
+  take_blurred(blurred, out);
   return sure;
 }
 template <class Plan> inline bool solve_6r(const Chain& F, const Frame& T, Solutions& out) noexcept {
-  Solutions hidden;
-  return solve_6r<Plan>(F, T, false, hidden, out);
+  Solutions blurred;
+  return solve_6r<Plan>(F, T, false, blurred, out);
 }
 
 }  // namespace g6

@@ -193,23 +193,26 @@ inline bool add_solutions(const Frames& F, const Frame& T, const Of& of, Roots<D
 // Adds to those that rounding hides the solutions to which steps lead from what of(angles) gives for the middles of zones
 // that stay open: there may be a double root.
 template <int D, class Frames, class Of>
-[[gnu::cold, gnu::noinline]] inline void add_hidden(const Frames& F, const Frame& T, const Of& of, const Roots<D>& roots,
-                                                    Solutions& hidden) noexcept {
+[[gnu::cold, gnu::noinline]] inline void add_blurred(const Frames& F, const Frame& T, const Of& of, const Roots<D>& roots,
+                                                     Solutions& blurred) noexcept {
   for (int k = 0; k < roots.open; ++k) {
     const Six start = of({spread<kWide>(std::cos(roots.middle[k])), spread<kWide>(std::sin(roots.middle[k]))});
     Vector q;
     double before = 0.0, sum = 0.0;
-    for (Index i = 0; i < 6; ++i) sum += q[i] = std::atan2(lane(start.s[i], 0), lane(start.c[i], 0));
-    if (std::isfinite(sum) && refine_one(F, T, kAllTurn, q, before) < kVerified) keep(solution_of(kAllTurn, q), hidden);
+    for (Index i = 0; i < 6; ++i) {
+      q[i] = std::atan2(lane(start.s[i], 0), lane(start.c[i], 0));
+      sum += q[i];
+    }
+    if (std::isfinite(sum) && refine_one(F, T, kAllTurn, q, before) < kVerified) keep(solution_of(kAllTurn, q), blurred);
   }
 }
 
 // Adds those that rounding hides, where nothing else was found nearby.
-inline void take_hidden(const Solutions& hidden, Solutions& out) noexcept {
+inline void take_blurred(const Solutions& blurred, Solutions& out) noexcept {
   constexpr double nearby = 1e-3;  // rad
   const int count = out.count;
-  for (int k = 0; k < hidden.count; ++k) {
-    const Solution& row = hidden.rows[static_cast<Index>(k)];
+  for (int k = 0; k < blurred.count; ++k) {
+    const Solution& row = blurred.rows[static_cast<Index>(k)];
     bool fresh = true;
     for (int i = 0; i < count; ++i) fresh = fresh && !alike(row.q, out.rows[static_cast<Index>(i)].q, nearby);
     if (fresh) keep(row, out);
@@ -219,7 +222,7 @@ inline void take_hidden(const Solutions& hidden, Solutions& out) noexcept {
 // Adds the solutions for the pose T. True where they are all: every root is single, and leads to a solution of
 // its own. caution: times the rounding that values may have.
 inline bool run_resultant(const Chain& F, const Frame& T, const std::array<int, 2>& plan, double caution,
-                          Solutions& hidden, Solutions& out) noexcept {
+                          Solutions& blurred, Solutions& out) noexcept {
   const Loop loop = make_loop(F, T, static_cast<Index>(plan[0]), plan[1] != 0);
   const Equations eq = eliminate(loop);
   const Pencil pencil = make_pencil(eq.E, eq.left);
@@ -232,7 +235,7 @@ inline bool run_resultant(const Chain& F, const Frame& T, const std::array<int, 
   const bool all = find_roots<kDegree>(values, roots);
   const auto completed = [&](const Pair& three) { return complete(loop, eq, pencil, three); };
   const bool each = add_solutions<kDegree>(F, T, completed, roots, out);
-  add_hidden(F, T, completed, roots, hidden);
+  add_blurred(F, T, completed, roots, blurred);
   return each && all;
 }
 
@@ -241,18 +244,18 @@ inline bool run_resultant(const Chain& F, const Frame& T, const std::array<int, 
 // is believed if it was found before, or with ten times the rounding: of a million poses beside singularities a few have
 // a double root that lies over its bound, and nothing else.
 template <auto Run, class Frames, class Plans>
-inline bool solve_resultant(const Frames& F, const Frame& T, const Plans& plans, bool none, Solutions& hidden,
+inline bool solve_resultant(const Frames& F, const Frame& T, const Plans& plans, bool none, Solutions& blurred,
                             Solutions& out) noexcept {
   constexpr double kCautious = 10.0;
   for (const auto& plan : plans) {
     if (out.count == 0) {
-      bool all = Run(F, T, plan, 1.0, hidden, out);
-      if (all && out.count == 0 && !none) all = Run(F, T, plan, kCautious, hidden, out) && out.count == 0;
+      bool all = Run(F, T, plan, 1.0, blurred, out);
+      if (all && out.count == 0 && !none) all = Run(F, T, plan, kCautious, blurred, out) && out.count == 0;
       if (all) return true;
       continue;
     }
     Solutions mine;
-    const bool all = Run(F, T, plan, 1.0, hidden, mine);
+    const bool all = Run(F, T, plan, 1.0, blurred, mine);
     for (int k = 0; k < mine.count; ++k) keep(mine.rows[static_cast<Index>(k)], out);
     if (all && mine.count == out.count) return true;
   }

@@ -13,7 +13,7 @@ namespace g6 {
 
 // Adds the solutions for the pose T. True where they are all, as in `run_resultant`.
 template <Parallel Kind>
-inline bool run_parallel(const Chain& F, const Frame& T, const std::array<int, 2>& plan, Solutions& hidden,
+inline bool run_parallel(const Chain& F, const Frame& T, const std::array<int, 2>& plan, Solutions& blurred,
                          Solutions& out) noexcept {
   constexpr int degree = kParallelDegree<Kind>, each = Kind == Parallel::kPlain ? 2 : 1;  // solutions of a root
   const Loop loop = make_loop(F, T, static_cast<Index>(plan[0]), plan[1] != 0);
@@ -39,17 +39,18 @@ inline bool run_parallel(const Chain& F, const Frame& T, const std::array<int, 2
     const Pair six = {load<kWide>(c + i), load<kWide>(s + i)};
     all = add_rows(F, T, complete<Kind>(loop, p, six, load<kWide>(sign + i)), some, out) && all;
   }
-  for (const double side : {1.0, -1.0})
-    if (side > 0.0 || each == 2)
-      add_hidden(F, T, [&](const Pair& six) { return complete<Kind>(loop, p, six, spread<kWide>(side)); }, roots, hidden);
+  for (int i = 0; i < each; ++i) {
+    const Wide side = spread<kWide>(i == 0 ? 1.0 : -1.0);
+    add_blurred(F, T, [&](const Pair& six) { return complete<Kind>(loop, p, six, side); }, roots, blurred);
+  }
   return all;
 }
 
 template <class Plan>
 inline bool solve_parallel(const Chain& F, const Frame& T, Solutions& out) noexcept {
-  Solutions hidden;
-  const bool all = run_parallel<Plan::kKind>(F, T, Plan::kParallel, hidden, out);
-  return (all && (out.count > 0 || Plan::kResultants.empty())) || solve_6r<Plan>(F, T, all, hidden, out);
+  Solutions blurred;
+  const bool all = run_parallel<Plan::kKind>(F, T, Plan::kParallel, blurred, out);
+  return (all && (out.count > 0 || Plan::kResultants.empty())) || solve_6r<Plan>(F, T, all, blurred, out);
 }
 
 struct Parallel6rMethod {

@@ -136,9 +136,9 @@ template <class Arm> struct CarefulSolve {
   // Adds rows inside the limits of the continua that rows outside are of: on a curve through these, or else, as a surface has
   // many, where steps from them lead.
   [[gnu::cold, gnu::noinline]] static void add_along(const Aim& aim, const Options& options, Places& rows, Places& out) noexcept {
-    double q[Arm::kDof];
     const double bound = out.count > 0 ? Policy::kSingularBelow : kInfinity;  // others may lead inside, but seldom do
     const auto outside = [&](int k) noexcept {
+      double q[Arm::kDof];
       std::copy_n(Row::row(rows, k), Arm::kDof, q);
       return Row::flag(rows, k) && !Row::place(q, options) && SingularValue<Arm>::below(Row::row(rows, k), bound);
     };
@@ -147,6 +147,7 @@ template <class Arm> struct CarefulSolve {
     typename NearContinuum<Arm>::Passed passed;
     for (int k = 0; k < rows.count && !Careful::any_singular(out); ++k) {
       if (!outside(k)) continue;
+      double q[Arm::kDof];
       std::copy_n(Row::row(rows, k), Arm::kDof, q);
       NearestRow<Arm>::put_inside(q);
       NearestRow<Arm>::descend(aim.pose.matrix().data(), true, NearestRow<Arm>::kStanding, q);

@@ -107,9 +107,7 @@ def on_curves(arm: Arm, parts: Parts, owner: Index, q: Array, T: Array) -> Flags
     row, parts = row[near], some_of(parts, near)
     at = between(arm, parts, share[near], T)
     for _ in range(_ROUNDS):
-        way = differences(arm, at.q, q[row])[:, moving]
-        ahead = (way * at.still).sum(axis=1)
-        beside = np.abs(way - ahead[:, None] * at.still).max(axis=1)
+        _, ahead, beside = _way(arm, at, q[row])
         out[row[beside < _ON]] = True
         going = (beside >= _ON) & (beside < ahead**2)
         if not going.any():
@@ -161,9 +159,15 @@ def _follow(arm: Arm, first: Reduced, T: Array) -> tuple[Parts, Parts, Array]:
 
 def _back(arm: Arm, a: Reduced, b: Reduced) -> Flags:
     """Whether curves are at samples of them again, and not at other parts that are near."""
-    way = differences(arm, a.q, b.q)[:, list(arm.moving)]
-    along = (way * a.still).sum(axis=1)[:, None]
-    beside = np.abs(way - along * a.still).max(axis=1) < _BESIDE
+    way, _, beside = _way(arm, a, b.q)
     near = np.abs(way).max(axis=1) < 0.75 * arm.policy.try_step
     same = (a.still * b.still).sum(axis=1) > _SAME_WAY
-    return np.asarray(beside & near & same)
+    return np.asarray((beside < _BESIDE) & near & same)
+
+
+def _way(arm: Arm, at: Reduced, q: Array) -> tuple[Array, Array, Array]:
+    """The ways (k, n) from samples to rows q (k, dof), how far they go along the still direction (k,), and
+    how far beside that at most (k,)."""
+    way = differences(arm, at.q, q)[:, list(arm.moving)]
+    along = (way * at.still).sum(axis=1)
+    return way, along, np.abs(way - along[:, None] * at.still).max(axis=1)

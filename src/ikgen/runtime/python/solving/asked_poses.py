@@ -53,3 +53,8 @@ class Answer:
     real: bool = False
     loose: list[Found] = field(default_factory=list)
     led: bool = False
+
+    @property
+    def stands(self) -> bool:
+        """Whether a row stands for a continuum."""
+        return any(singular for _, singular in self.rows)

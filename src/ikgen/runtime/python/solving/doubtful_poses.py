@@ -71,7 +71,7 @@ def _goes_on(
     add_new(arm, T, rows_inside(arm, aim, kept, near, limits), answer.rows)
     if not answer.rows:
         answer.rows = rows_inside(arm, aim, seeded, near, limits)
-    led = led if arm.rounded else any(flag for _, flag in answer.rows)
+    led = led if arm.rounded else answer.stands
     return free and not (answer.rows and led)
 
 

@@ -58,9 +58,8 @@ def take_nearest(arm: Arm, asked: Asked, some: Index, limits: bool, out: list[An
         left = asked.at(some)
         rows = nearest_rows(arm, left.T, left.starts(arm), inside, flat)
         for i, found in zip(some.tolist(), _led_to_or_along(arm, left, rows)):
-            aim = aims(arm, asked.T[i : i + 1], asked.held[i : i + 1])
             out[i].real = out[i].real or bool(found)
-            out[i].rows = rows_inside(arm, aim, found, asked.seed(i), limits)
+            out[i].rows = _inside(arm, asked, i, found, limits)
         some = some[[not out[i].rows for i in some.tolist()]]
         if not len(some):
             break
@@ -73,17 +72,15 @@ def take_along(arm: Arm, asked: Asked, limits: bool, out: list[Answer]) -> None:
     for step in range(max(map(len, beyond), default=0)):
         some = [i for i, rows in enumerate(beyond) if step < len(rows)]
         q = np.array([beyond[i][step] for i in some])
-        aim = aims(arm, asked.T, asked.held)[some]
         stands = [(k, row) for k, i in enumerate(some) for row, flag in out[i].rows if flag]
-        for k, row in zip(*rows_along(arm, q, aim, stands)):
+        for k, row in zip(*rows_along(arm, q, aims(arm, asked.T[some], asked.held[some]), stands)):
             _add_inside(arm, asked, some[k], [(tuple(row.tolist()), True)], limits, out)
-    lost = [i for i, rows in enumerate(beyond) if rows and not any(flag for _, flag in out[i].rows)]
-    which = np.array([i for i in lost for _ in beyond[i]], dtype=np.intp)
-    if lost:
-        q = turned_inside(arm, np.array([row for i in lost for row in beyond[i]]))
-        rows = descended(arm, asked.T[which], q, limits)
-        for i, found in zip(which.tolist(), _led_to_or_along(arm, asked.at(which), rows)):
-            if not any(flag for _, flag in out[i].rows):
+    which = [i for i, rows in enumerate(beyond) for _ in rows if not out[i].stands]
+    if which:
+        q = turned_inside(arm, np.array([row for i in dict.fromkeys(which) for row in beyond[i]]))
+        lost = asked.at(np.array(which))
+        for i, found in zip(which, _led_to_or_along(arm, lost, descended(arm, lost.T, q, limits))):
+            if not out[i].stands:
                 _add_inside(arm, asked, i, found, limits, out)
 
 
@@ -99,9 +96,13 @@ def _outside(arm: Arm, answer: Answer, near: Row | None, limits: bool) -> list[R
 def _add_inside(
     arm: Arm, asked: Asked, i: int, found: list[Found], limits: bool, out: list[Answer]
 ) -> None:
-    """Adds to the answer of a pose what of its rows is inside the limits."""
+    add_new(arm, asked.T[i], _inside(arm, asked, i, found, limits), out[i].rows)
+
+
+def _inside(arm: Arm, asked: Asked, i: int, found: list[Found], limits: bool) -> list[Found]:
+    """What of the rows of a pose is inside the limits."""
     aim = aims(arm, asked.T[i : i + 1], asked.held[i : i + 1])
-    add_new(arm, asked.T[i], rows_inside(arm, aim, found, asked.seed(i), limits), out[i].rows)
+    return rows_inside(arm, aim, found, asked.seed(i), limits)
 
 
 def _led_to_or_along(arm: Arm, asked: Asked, rows: Array) -> list[list[Found]]:
