@@ -20,13 +20,19 @@ def cubic(a: float, pp: float, qq: float) -> Array:
     return np.sort_complex(np.roots([-1.0, a, 1.0 - pp - qq, -a + pp - qq]))
 
 
+def root(a: float, pp: float, qq: float) -> float:
+    above, below = _resolvent(a, pp, qq, FLOATS)
+    assert above + below == pytest.approx(2.0, abs=1e-15)
+    return float(0.5 * (above - below))
+
+
 def test_the_root_of_the_resolvent_is_the_one_farthest_from_others() -> None:
     rng = np.random.default_rng(1)
     seen = set()
     for _ in range(300):
         a, pp, qq = rng.uniform(-1.5, 1.5), *rng.uniform(0.0, 0.25, 2) ** 2
         roots = cubic(a, pp, qq)
-        found = float(_resolvent(a, pp, qq, FLOATS))
+        found = root(a, pp, qq)
         assert np.abs(roots - found).min() < 1e-7 and -1.0 <= found <= 1.0
         real = roots[np.abs(roots.imag) < 1e-9].real
         if len(real) == 3 and np.abs(real).max() <= 1.0:
@@ -108,7 +114,7 @@ def test_roots_of_other_resolvents_beyond_the_ends_are_left_alone() -> None:
     rng = np.random.default_rng(6)
     for _ in range(2000):
         a, pp, qq = rng.uniform(-6.0, 6.0), *rng.uniform(0.0, 2.5, 2) ** 2
-        found = float(_resolvent(a, pp, qq, FLOATS))
+        found = root(a, pp, qq)
         value = (a - found) * (found * found - 1.0) - pp * (found - 1.0) - qq * (found + 1.0)
         assert -1.0 <= found <= 1.0 and abs(value) < 1e-13 * (1.0 + abs(a) + pp + qq)
 
@@ -137,10 +143,22 @@ def test_the_root_of_the_resolvent_takes_few_steps() -> None:
         return done
 
     counted = replace(FLOATS, every=every)
-    for _ in range(300):
-        steps.append(0)
-        _resolvent(rng.uniform(-3.0, 3.0), *(rng.uniform(0.0, 1.0, 2) ** 2).tolist(), counted)
-    assert max(steps) < 40 and np.mean(steps[1:]) < 9.0
+    for small in (1.0, 1e-8, 1e-30, 0.0):
+        for _ in range(100):
+            pp, qq = rng.permutation([small, 1.0]) * rng.uniform(0.0, 1.0, 2) ** 2
+            steps.append(0)
+            _resolvent(rng.uniform(-3.0, 3.0), float(pp), float(qq), counted)
+    assert max(steps) < 13 and np.mean(steps[1:]) < 6.0
+
+
+@pytest.mark.parametrize("small", [1e-6, 1e-12, 1e-24])
+def test_a_root_beside_an_end_has_all_its_digits(small: float) -> None:
+    """Which way the lines go depends on the square root of its distance."""
+    for a, qq in ((0.3, 0.2), (1.5, 0.7), (-0.4, 0.6)):
+        slope = 2.0 * (a + 1.0) + qq
+        wanted = 2.0 * small / slope * (1.0 + small * (2.0 * (a + 3.0) / slope - 1.0) / slope)
+        assert _resolvent(a, small, qq, FLOATS)[0] == pytest.approx(wanted, rel=1e-9, abs=0.0)
+        assert _resolvent(-a, qq, small, FLOATS)[1] == pytest.approx(wanted, rel=1e-9, abs=0.0)
 
 
 def test_a_root_is_not_taken_where_steps_lead_away_from_the_line() -> None:

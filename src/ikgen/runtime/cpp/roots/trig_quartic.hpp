@@ -31,34 +31,31 @@ struct Lines {
   double x[2], y[2], d[2];  // (x, y) . (cos t, sin t) = d
 };
 
-// The best separated root in [-1, 1] of (a - m) (m^2 - 1) - pp (m - 1) - qq (m + 1), pp, qq >= 0: it is >= 0
-// at -1 and <= 0 at 1. A root that is double stands for a double root of the quartic.
-inline double resolvent(double a, double pp, double qq) noexcept {
-  const double c1 = 1.0 - pp - qq, c0 = -a + pp - qq;
-  double lo = -1.0, hi = 1.0;
-  const double disc = a * a + 3.0 * c1;
+// How far a value lies from the ends of [-1, 1].
+struct Span {
+  double above, below;  // -1, 1
+};
+
+// The best separated root m in [-1, 1] of g(m) = (a - m) (m^2 - 1) - pp (m - 1) - qq (m + 1), pp, qq >= 0: it is >= 0 at
+// -1 and <= 0 at 1. A root that is double stands for a double root of the quartic. Newton's method from the end where g
+// is convex (or that of -g(-m), where g is concave) all the way to the root never goes beyond it.
+inline Span resolvent(double a, double pp, double qq) noexcept {
+  const auto g = [&](double m) noexcept { return ((a - m) * m + 1.0 - pp - qq) * m - a + pp - qq; };
+  const double disc = a * a + 3.0 * (1.0 - pp - qq);
+  bool turned = g(std::min(std::max(a / 3.0, -1.0), 1.0)) > 0.0;
   if (disc > 0.0) {
-    const double root = std::sqrt(disc);
-    const double m1 = (a - root) / 3.0, m2 = (a + root) / 3.0;
-    const double g1 = ((a - m1) * m1 + c1) * m1 + c0, g2 = ((a - m2) * m2 + c1) * m2 + c0;
-    const bool in1 = std::abs(m1) <= 1.0, in2 = std::abs(m2) <= 1.0;
-    const bool right = in2 && g2 >= 0.0;
-    if (in1 && g1 <= 0.0 && !(right && g2 > -g1))
-      hi = m1;
-    else if (right || (in1 && in2))
-      lo = m2;
+    const double root = std::sqrt(disc), m1 = (a - root) / 3.0, m2 = (a + root) / 3.0, g1 = g(m1), g2 = g(m2);
+    const bool left = std::abs(m1) <= 1.0 && g1 <= 0.0, right = std::abs(m2) <= 1.0 && g2 >= 0.0;
+    if (left || right) turned = right && !(left && g2 <= -g1);
   }
-  double m = 0.5 * (lo + hi);
+  const double c0 = 2.0 * (turned ? qq : pp), c2 = (turned ? -a : a) + 3.0, c1 = 2.0 * (c2 - 2.0) + pp + qq;
+  double u = 0.0;  // from that end
   for (int i = 0; i < 60; ++i) {
-    const double g = ((a - m) * m + c1) * m + c0;
-    (g > 0.0 ? lo : hi) = m;
-    const double slope = (2.0 * a - 3.0 * m) * m + c1;
-    double next = slope != 0.0 ? m - g / slope : lo;
-    if (std::abs(next - m) <= 4e-16) break;
-    if (!(lo < next && next < hi)) next = 0.5 * (lo + hi);
-    m = next;
+    const double slope = c1 - (2.0 * c2 - 3.0 * u) * u, step = (((c2 - u) * u - c1) * u + c0) / slope;
+    if (!(slope > 0.0 && step > 4e-16 * u)) break;
+    u = std::min(u + step, 2.0);
   }
-  return std::min(std::max(m, -1.0), 1.0);
+  return turned ? Span{2.0 - u, u} : Span{u, 2.0 - u};
 }
 
 inline Lines lines(const Coefficients& f) noexcept {
@@ -77,8 +74,9 @@ inline Lines lines(const Coefficients& f) noexcept {
   const double ch = f.a2 >= 0.0 ? first : second;
   const double sh = std::copysign(f.a2 >= 0.0 ? second : first, f.b2);
   const double p = (f.a1 * ch + f.b1 * sh) / rho, q = (f.b1 * ch - f.a1 * sh) / rho, a = f.a0 / rho;
-  const double m = resolvent(a, 0.25 * p * p, 0.25 * q * q);
-  const double h = 0.70710678118654752440, A = std::sqrt(1.0 + m), B = std::sqrt(1.0 - m);
+  const Span span = resolvent(a, 0.25 * p * p, 0.25 * q * q);
+  const double h = 0.70710678118654752440, m = 0.5 * (span.above - span.below);
+  const double A = std::sqrt(span.above), B = std::sqrt(span.below);
   double v, w, square;
   if (m <= 0.0) {
     v = 0.5 * q / B;

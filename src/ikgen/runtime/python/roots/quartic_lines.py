@@ -65,14 +65,13 @@ def quartic_lines(
     ch = on.pick(a2 >= 0.0, first, second)
     sh = on.copysign(on.pick(a2 >= 0.0, second, first), b2)
     p, q, a = (a1 * ch + b1 * sh) / rho, (b1 * ch - a1 * sh) / rho, a0 / rho
-    m = _resolvent(a, 0.25 * p * p, 0.25 * q * q, on)
-    low = m <= 0.0
-    big, small = on.sqrt(1.0 + abs(m)), on.sqrt(1.0 - abs(m))
+    above, below = _resolvent(a, 0.25 * p * p, 0.25 * q * q, on)
+    m, low = 0.5 * (above - below), above <= below
+    A, B = on.sqrt(above), on.sqrt(below)
     given, other = on.pick(low, q, p), on.pick(low, p, q)
-    u = 0.5 * given / big
+    u = 0.5 * given / on.pick(low, B, A)
     square = u * u + on.pick(low, a - m, m - a)
     v = on.copysign(on.sqrt(on.clip(square, 0.0, math.inf)), other)
-    A, B = on.pick(low, small, big), on.pick(low, big, small)
     w, v = on.pick(low, v, u), on.pick(low, u, v)
     h = math.sqrt(0.5)
     A, B, w, v = h * A, h * B, h * w, h * v
@@ -84,32 +83,34 @@ def quartic_lines(
     )
 
 
-def _resolvent(a: _Value, pp: _Value, qq: _Value, on: Arithmetic[_Value]) -> _Value:
-    """The best separated root in [-1, 1] of `(a - m) (m^2 - 1) - pp (m - 1) - qq (m + 1)`, pp, qq
-    >= 0: it is >= 0 at -1 and <= 0 at 1. A root that is double stands for a double root of the
-    quartic."""
+def _resolvent(a: _Value, pp: _Value, qq: _Value, on: Arithmetic[_Value]) -> tuple[_Value, _Value]:
+    """1 + m and 1 - m of the best separated root m in [-1, 1] of
+    `g(m) = (a - m) (m^2 - 1) - pp (m - 1) - qq (m + 1)`, pp, qq >= 0: it is >= 0 at -1 and <= 0 at 1. A
+    root that is double stands for a double root of the quartic. Newton's method from the end where g is
+    convex (or that of -g(-m), where g is concave) all the way to the root never goes beyond it."""
     pick = on.pick
-    c1, c0 = 1.0 - pp - qq, -a + pp - qq
-    square = a * a + 3.0 * c1
+
+    def g(m: _Value) -> _Value:
+        return ((a - m) * m + 1.0 - pp - qq) * m - a + pp - qq
+
+    square = a * a + 3.0 * (1.0 - pp - qq)
     root = on.sqrt(on.clip(square, 0.0, math.inf))
     m1, m2 = (a - root) / 3.0, (a + root) / 3.0
-    g1, g2 = ((a - m1) * m1 + c1) * m1 + c0, ((a - m2) * m2 + c1) * m2 + c0
-    in1, in2 = (square > 0.0) & (abs(m1) <= 1.0), (square > 0.0) & (abs(m2) <= 1.0)
-    left, right = in1 & (g1 <= 0.0), in2 & (g2 >= 0.0)
-    either = right & (g2 > -g1)  # where both would do: the right one is apart farther
-    hi = pick(either, 1.0, pick(left, m1, 1.0))
-    lo = pick(either, m2, pick(left, -1.0, pick(right | (in1 & in2), m2, -1.0)))
-    m = 0.5 * (lo + hi)
+    g1, g2 = g(m1), g(m2)
+    left = (square > 0.0) & (abs(m1) <= 1.0) & (g1 <= 0.0)
+    right = (square > 0.0) & (abs(m2) <= 1.0) & (g2 >= 0.0)
+    turned = pick(left, right & (g2 > -g1), right | (g(on.clip(a / 3.0, -1.0, 1.0)) > 0.0))
+    c0, c2 = 2.0 * pick(turned, qq, pp), pick(turned, -a, a) + 3.0
+    c1 = 2.0 * (c2 - 2.0) + pp + qq
+    u = 0.0 * a  # from that end
     for _ in range(60):
-        g = ((a - m) * m + c1) * m + c0
-        lo, hi = pick(g > 0.0, m, lo), pick(g > 0.0, hi, m)
-        slope = (2.0 * a - 3.0 * m) * m + c1
-        new = m - g / pick(slope != 0.0, slope, 1e-300)
-        done = abs(new - m) <= 4e-16
-        m = pick(done, m, pick((lo < new) & (new < hi), new, 0.5 * (lo + hi)))
+        slope = c1 - (2.0 * c2 - 3.0 * u) * u
+        step = (((c2 - u) * u - c1) * u + c0) / pick(slope > 0.0, slope, math.inf)
+        done = step <= 4e-16 * u
+        u = pick(done, u, on.clip(u + step, 0.0, 2.0))
         if on.every(done):
             break
-    return on.clip(m, -1.0, 1.0)
+    return pick(turned, 2.0 - u, u), pick(turned, u, 2.0 - u)
 
 
 def quartic_values(k: Coefficients[_Value], c: _Value, s: _Value) -> tuple[_Value, _Value, _Value]:
