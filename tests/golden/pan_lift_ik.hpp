@@ -1157,6 +1157,17 @@ template <class Arm> struct FoldPair {
     return farthest;
   }
 
+  void measure(const double* q, double& left, double& slope) const noexcept {
+    const PoseError<Arm> at(q, aim);
+    left = slope = 0.0;
+    for (int e = 0; e < kEquations; ++e) {
+      double flow = 0.0;
+      for (int k = 0; k < kMoving; ++k) flow += at.slope[e][kJoints[k]] * still[k];
+      left += out[e] * at.error[e];
+      slope -= out[e] * flow;
+    }
+  }
+
  private:
   static constexpr double kTurned = 0.5;  // squared length of what is left of a unit direction that turned by 45 degrees
   static constexpr double kAlong = 1e-4, kClose = 1e-9, kFar = 0.3;
@@ -1293,7 +1304,9 @@ template <class Arm> struct CurveSamples {
     for (int i = 0; i < kCorrections && !s.on; ++i) {
       double across[Fold::kMoving];
       const double farthest = fold.correct(s.q, i == 0, s.left, s.slope, across);
-      s.on = farthest < std::max(kNear, kShare * std::abs(s.left));
+      const double bound = std::max(kNear, kShare * std::abs(s.left));
+      s.on = kCurved * farthest * farthest < bound;
+      if (s.on && !(farthest < bound)) fold.measure(s.q, s.left, s.slope);
       const bool leaps = !s.on && farthest > kSlow * last && leap(before, across, s.q);
       last = leaps ? kInfinity : farthest;
       std::copy_n(across, Fold::kMoving, before);
@@ -1342,6 +1355,7 @@ template <class Arm> struct CurveSamples {
   static constexpr int kCorrections = 6;
   static constexpr double kNear = 1e-11;  // rad or m: how far off the curve slopes along it are the curve's
   static constexpr double kShare = 3e-2;  // of what is left: as little as that off the curve changes neither
+  static constexpr double kCurved = 10.0;  // how far off it corrections leave it, over their squares (1 / rad or 1 / m)
   static constexpr double kSlow = 0.1, kSteady = 0.8;  // how fast corrections converge that are not left to themselves
 
   static bool leap(const double* before, const double* across, double* q) noexcept {

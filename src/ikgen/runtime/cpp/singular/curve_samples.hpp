@@ -31,7 +31,9 @@ template <class Arm> struct CurveSamples {
     for (int i = 0; i < kCorrections && !s.on; ++i) {
       double across[Fold::kMoving];
       const double farthest = fold.correct(s.q, i == 0, s.left, s.slope, across);
-      s.on = farthest < std::max(kNear, kShare * std::abs(s.left));
+      const double bound = std::max(kNear, kShare * std::abs(s.left));
+      s.on = kCurved * farthest * farthest < bound;
+      if (s.on && !(farthest < bound)) fold.measure(s.q, s.left, s.slope);
       const bool leaps = !s.on && farthest > kSlow * last && leap(before, across, s.q);
       last = leaps ? kInfinity : farthest;
       std::copy_n(across, Fold::kMoving, before);
@@ -83,6 +85,7 @@ template <class Arm> struct CurveSamples {
   static constexpr int kCorrections = 6;
   static constexpr double kNear = 1e-11;  // rad or m: how far off the curve slopes along it are the curve's
   static constexpr double kShare = 3e-2;  // of what is left: as little as that off the curve changes neither
+  static constexpr double kCurved = 10.0;  // how far off it corrections leave it, over their squares (1 / rad or 1 / m)
   static constexpr double kSlow = 0.1, kSteady = 0.8;  // how fast corrections converge that are not left to themselves
 
   // Goes to where two corrections that converge slowly lead in the end (Aitken 1926), if they do.

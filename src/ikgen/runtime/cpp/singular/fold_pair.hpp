@@ -98,6 +98,19 @@ template <class Arm> struct FoldPair {
     return farthest;
   }
 
+  // What is left of the error at q, and how much more of that a step along the still direction does: by directions that are
+  // nearly right there, whose errors come in squared.
+  void measure(const double* q, double& left, double& slope) const noexcept {
+    const PoseError<Arm> at(q, aim);
+    left = slope = 0.0;
+    for (int e = 0; e < kEquations; ++e) {
+      double flow = 0.0;
+      for (int k = 0; k < kMoving; ++k) flow += at.slope[e][kJoints[k]] * still[k];
+      left += out[e] * at.error[e];
+      slope -= out[e] * flow;
+    }
+  }
+
  private:
   static constexpr double kTurned = 0.5;  // squared length of what is left of a unit direction that turned by 45 degrees
   static constexpr double kAlong = 1e-4, kClose = 1e-9, kFar = 0.3;
