@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import gc
 import os
 import sys
 import warnings
@@ -72,6 +73,7 @@ def ikgen() -> None:
 def main() -> NoReturn:
     """Run the command line and exit."""
     warnings.simplefilter("ignore")  # NumPy's, of divisions whose results are then discarded
+    gc.set_threshold(50_000, 50, 50)  # most of what a run makes it needs to its end
     unwind_on_signals()
     _open_closed_streams()
     code = run(sys.argv[1:])
