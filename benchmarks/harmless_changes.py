@@ -233,18 +233,8 @@ HARMLESS = (
     ),
     HarmlessChange(
         "runtime/python/roots/quartic_lines.py",
-        "low = m <= 0.0",
+        "m, low = 0.5 * (above - below), above <= below",
         "<=", "<", "at 0 both ways lead to the same lines",
-    ),
-    HarmlessChange(
-        "runtime/python/roots/quartic_lines.py",
-        "lo = pick(either, m2, pick(left, -1.0, pick(right | (in1 & in2), m2, -1.0)))",
-        "1.0", "2.0", "beyond the first extremum there is one root",
-    ),
-    HarmlessChange(
-        "runtime/python/roots/quartic_lines.py",
-        "return on.clip(m, -1.0, 1.0)",
-        "1.0", "2.0", "the root is between bounds that are no more than 1",
     ),
     HarmlessChange(
         "runtime/python/newton/refinement.py",

@@ -188,6 +188,53 @@ def test_an_elimination_without_rank_is_followed_by_the_next(solver: Path) -> No
     assert [len(rows) for rows in found] == [len(rows) for rows in reference]
 
 
+@pytest.mark.parametrize("seed", [37, 58, 74])
+def test_none_is_missing_where_the_resultant_is_round_off_at_all_angles(
+    solver: Path, seed: int
+) -> None:
+    """Of a torso and an arm whose axes nearly meet, at multiples of 45 degrees: of none of the hidden
+    angles it is known from afar whether it is one, and the zone to be looked at closer went round more
+    than a turn."""
+    rng = np.random.default_rng(seed)
+    q = 0.25 * np.pi * rng.integers(-3, 4, (60, 6))
+    held = 0.5 * np.pi * rng.integers(-1, 2, 4)
+    frames = torso_and_arm(1e-3 * rng.uniform(-1.0, 1.0, (11, 3)), held)
+    plan = replace(choose_plan(frames, probes=6), resultants=((4, 0), (2, 1)))
+    poses = np.array([forward(frames, row) for row in q])
+    found = solutions(solver, plan, frames, poses)
+    assert missing([rows[:, :6] for rows in found], q) == 0
+
+
+def torso_and_arm(moved: Array, held: Array) -> Array:
+    """Frames (7, 4, 4) of axes y, x, z of a waist, y and x of a shoulder and x of a wrist, whose origins
+    are moved (11, 3), the four joints before that at given values (4,)."""
+    origins = np.zeros((11, 3))
+    origins[3], origins[6], origins[7] = (0.0, 0.21, 0.26), (0.0, 0.0, -0.26), (0.0, 0.0, -0.25)
+    frames, frame = [], np.eye(4)
+    for i, name in enumerate("yxzyxzyzyx"):
+        frame[:3, 3] += frame[:3, :3] @ (origins[i] + moved[i])
+        if 5 <= i < 9:
+            frame[:3, :3] = frame[:3, :3] @ about(name, held[i - 5])
+            continue
+        to = {"x": about("y", 0.5 * np.pi), "y": about("x", -0.5 * np.pi), "z": np.eye(3)}[name]
+        frame[:3, :3] = frame[:3, :3] @ to
+        frames.append(frame)
+        frame = np.eye(4)
+        frame[:3, :3] = to.T
+    frame[:3, 3] += frame[:3, :3] @ moved[10]
+    return np.array([*frames, frame])
+
+
+def about(axis: str, angle: float) -> Array:
+    i = "xyz".index(axis)
+    j, k = (i + 1) % 3, (i + 2) % 3
+    out = np.eye(3)
+    out[j, j] = out[k, k] = round(np.cos(angle), 15)
+    out[k, j] = round(np.sin(angle), 15)
+    out[j, k] = -out[k, j]
+    return out
+
+
 def test_unreachable_poses_and_nonsense_have_no_solution(solver: Path) -> None:
     frames = arm_frames("random 1")
     plan = choose_plan(frames)

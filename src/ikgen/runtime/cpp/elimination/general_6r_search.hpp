@@ -61,10 +61,24 @@ inline void clear_roots(const Polynomial<D>& f, const Brackets<D>& brackets, Roo
   if (brackets.zones > 0) out.count = kept;
 }
 
+inline bool is_whole(const Zone& zone) noexcept { return zone.high - zone.low >= 2.0 * kPi; }
+
+// One zone of all angles, none of which is known, in place of one of half of them or more: none is to overlap itself, nor
+// to be seen from so near that little is seen of the rest.
+template <int D> inline void round_up(Brackets<D>& brackets) noexcept {
+  for (int z = 0; z < brackets.zones; ++z) {
+    if (!(brackets.zone[z].high - brackets.zone[z].low > kPi)) continue;
+    brackets.count = 0;
+    brackets.zones = 1;
+    brackets.zone[0] = {-kPi, kPi};
+  }
+}
+
 // Where zones of phi lie in theta, cut off at the zone's ends; empty (high < low) where they do not meet it.
 inline Zone seen_through(const Lens& lens, const Zone& phi, const Zone& zone) noexcept {
   const double middle = wrap(0.5 * (phi.low + phi.high)), reach = 0.5 * (phi.high - phi.low);
   const double centre = 0.5 * (zone.low + zone.high);
+  if (is_whole(zone)) return {centre + middle - reach, centre + middle + reach};
   const auto angle = [&](double x) {
     const double inner = std::min(std::max(x, -3.1415), 3.1415);  // the other end is far outside
     return centre + 2.0 * std::atan(lens.scale * std::tan(0.5 * inner));
@@ -83,7 +97,8 @@ inline constexpr double kLeastBlur = 1e-300;
 template <int D, class Values>
 inline bool look_closer(const Values& values, const Zone& zone, int look, Roots<D>& out) noexcept {
   const double middle = 0.5 * (zone.low + zone.high), half = 0.5 * (zone.high - zone.low);
-  const Lens lens = {std::cos(middle), std::sin(middle), std::max(kScales[look], std::tan(0.5 * half))};
+  const double scale = is_whole(zone) ? 1.0 : std::tan(0.5 * half);
+  const Lens lens = {std::cos(middle), std::sin(middle), std::max(kScales[look], scale)};
   constexpr int count = kNodes<D>;
   alignas(64) double c[count], s[count], f[count], blur[count], shift[count];
   double weight[count], worst = kLeastBlur;
@@ -130,6 +145,7 @@ inline bool find_roots(const Values& values, const Settle& settle, Roots<D>& out
   Brackets<D> brackets = isolate(polynomial);
   if (brackets.doubt) return false;
   settle(polynomial, brackets);
+  round_up(brackets);
   clear_roots(polynomial, brackets, out);
   for (int i = 0; i < out.count; ++i) {
     const double c = out.c[i], s = out.s[i];
