@@ -28,9 +28,11 @@ if _COMPILERS := compilers():
 
 
 def pytest_collection_finish() -> None:
-    """Modules and thousands of collected tests stay to the end: no garbage is to be looked for there."""
+    """Modules and thousands of collected tests stay to the end: no garbage is to be looked for there, and
+    seldom elsewhere."""
     gc.collect()
     gc.freeze()
+    gc.set_threshold(100_000, 30, 30)
 
 
 if hasattr(providers, "is_local_module_file"):
