@@ -15,7 +15,9 @@ from ikgen.cli.main import run
 from ikgen.projects.cmake import cmake_directory
 from ikgen.verify.runners.python_module import PythonModule
 
-QUICK = ["--samples", "40", "-q"]
+pytestmark = pytest.mark.usefixtures("solved_once")
+
+QUICK = ["--samples", "20", "-q"]
 _PROJECT = """
 cmake_minimum_required(VERSION 3.16)
 project(redundant NONE)

@@ -20,7 +20,7 @@ JOINTS = (
     + '<link name="t"/><joint name="dt" type="fixed"><parent link="d"/><child link="t"/>'
     '<origin xyz="0.3 0 0"/></joint>'
 )
-CONFIG = '[[arm]]\nname = "bot"\nrobot = "bot.urdf.xacro"\ntask = "position"\nout = "gen"\n'
+CONFIG = '[[arm]]\nname = "bot"\nrobot = "bot.urdf.xacro"\ntask = "position"\nout = "gen"\nsamples = 50\n'
 
 
 @pytest.fixture

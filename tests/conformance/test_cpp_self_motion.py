@@ -112,7 +112,7 @@ def cost(arm: ModuleType, mode: int, q: Array, seed: Array) -> float:
 @pytest.mark.parametrize("mode", [1, 2, 3])
 def test_searches(both: Both, mode: int) -> None:
     arm, rng = both.arm, np.random.default_rng(2)
-    for _ in range(3):
+    for _ in range(3 if len(arm.FREE_JOINTS) < 2 else 1):  # a grid takes a second
         pose, seed = arm.forward(drawn(arm, rng)), drawn(arm, rng)
         status, numbers = both.run(mode, seed, pose[None])
         found = arm.search(pose, seed=seed, prefer=("near", "centre", "dexterous")[mode - 1])
@@ -140,7 +140,7 @@ def test_the_best_row_may_be_at_an_end_on_a_limit_or_just_before_a_fold(tmp_path
     both = in_both(replace(solver_module(dh), name="rounded_wrist"), tmp_path, "01")
     arm, rng = both.arm, np.random.default_rng(11)
     at_end = 0
-    for _ in range(40):
+    for _ in range(20):
         pose, seed = arm.forward(drawn(arm, rng)), drawn(arm, rng)
         _, numbers = both.run(1, seed, pose[None])
         row = numbers[: arm.DOF]
@@ -153,7 +153,7 @@ def test_the_best_row_may_be_at_an_end_on_a_limit_or_just_before_a_fold(tmp_path
         rows = rows.reshape(-1, arm.DOF)
         best = np.nanmin(np.linalg.norm(rows - seed, axis=1))
         assert cost(arm, 1, row, seed) < best + 1e-7
-    assert at_end > 5
+    assert at_end > 3
 
 
 def test_searches_from_a_row_give_it_back(both: Both) -> None:
@@ -182,7 +182,7 @@ def test_seeds_hold_their_own_values(both: Both) -> None:
 def test_paths(both: Both) -> None:
     arm, rng = both.arm, np.random.default_rng(4)
     seen = 0
-    for _ in range(3):
+    for _ in range(2):
         q = regular(arm, rng)
         poses = np.repeat(arm.forward(q)[None], 15, axis=0)
         poses[:, :3, 3] += np.linspace(0.0, 0.15, 15)[:, None] * rng.normal(size=3) / 1.7

@@ -7,14 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from benchmarks.agreement import arm_of, runner_of
+from tests.support.sampled import in_languages
 from tests.support.serial_urdf import serial_urdf
-from tests.support.solving import NO_COMPILER
 
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
 from ikgen.verify.completeness import survey
 from ikgen.verify.sampling import SampleSet
 from ikgen.verify.trials import run_trial
+
+pytestmark = pytest.mark.usefixtures("solved_once")
 
 BASE = ("-0.1011647 -0.15 0.8349", "-3.14159 0 3.14159")
 SHOULDER = ("0.0388353 0 0.0624", "3.14159 0 -3.14159")
@@ -55,9 +57,8 @@ def robot(kind: str, folder: Path) -> Path:
     return serial_urdf(folder / "small.urdf", moving, tip=tip, slides=slides, limit=2.8)
 
 
-@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")
-@pytest.mark.parametrize("kind", ORIGINS)
-def test_none_is_without_a_row(kind: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("kind", "language"), in_languages(ORIGINS, ["alone"]))
+def test_none_is_without_a_row(kind: str, language: str, tmp_path: Path) -> None:
     held = {"j0": None, "j1": None} if "mobile" in kind else {}
     derivation = derive(Request(robot(kind, tmp_path), free=held))
     arm, random = arm_of(derivation), np.random.default_rng(2)
@@ -66,8 +67,7 @@ def test_none_is_without_a_row(kind: str, tmp_path: Path) -> None:
     q[len(LOST[kind]) :] += 1e-8 * random.normal(size=q[len(LOST[kind]) :].shape)
     sample = SampleSet("lost", q, arm.oracle.forward(q), arm.sigma(q))
     assert 1e-8 < np.median(sample.sigma) < 1e-3
-    for language in ("python", "cpp"):
-        runner = runner_of(derivation, language, tmp_path)
-        found = survey(arm, runner, [run_trial(runner, arm, sample, limits=True)])
-        lost = np.flatnonzero(found.missed | found.unanswered)
-        assert not len(lost), (language, len(lost), found.case(int(lost[0])))
+    runner = runner_of(derivation, language, tmp_path)
+    found = survey(arm, runner, [run_trial(runner, arm, sample, limits=True)])
+    lost = np.flatnonzero(found.missed | found.unanswered)
+    assert not len(lost), (len(lost), found.case(int(lost[0])))

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from tests.support.both_languages import Both, in_both
+from tests.support.sampled import sampled
 from tests.support.solving import FIXTURES, NO_COMPILER, import_text
 
 from ikgen.emit.python.python_emitter import emit_module
@@ -87,7 +88,7 @@ def test_what_else_is_wrong_with_a_far_pose_counts(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
-@pytest.mark.parametrize("name", ["open_manipulator_x.urdf", "olson13.toml", "franka_fr3.urdf"])
+@pytest.mark.parametrize("name", sampled(ARMS[2:], ["franka_fr3.urdf"]))
 def test_headers_say_the_same(name: str, tmp_path: Path) -> None:
     both = in_both(derive(Request(FIXTURES / name)).module, tmp_path, "145")
     start = np.full(both.arm.DOF, 0.4)

@@ -34,7 +34,7 @@ SCARA = """<robot name="scara">
 </robot>
 """
 HALVES = ["3.14159", "3.1416", "3.14", "3.1397"]
-OFTEN = ["3.1416", "3.1397"]
+OFTEN = ["3.1397"]
 Solved = tuple[Derivation, list[Runner]]
 
 

@@ -70,7 +70,10 @@ pytestmark = [
 ]
 
 
-@pytest.mark.parametrize(("name", "side"), [("kuka_kr6r900sixx", 1.0), ("doosan_m1013", -1.0)])
+@pytest.mark.parametrize(
+    ("name", "side"),
+    [("kuka_kr6r900sixx", 1.0), pytest.param("doosan_m1013", -1.0, marks=pytest.mark.long)],
+)
 def test_configurations_on_a_limit_beside_a_singularity_are_found(
     name: str, side: float, tmp_path: Path
 ) -> None:

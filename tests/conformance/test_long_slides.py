@@ -50,7 +50,7 @@ def test_a_pose_lies_in_the_range_that_it_is_reached_from(both: Both) -> None:
 def test_rows_are_found_wherever_on_the_rail(both: Both, mode: int) -> None:
     arm = both.arm
     seed = np.zeros(arm.DOF)
-    for q in drawn(both)[:2]:
+    for q in drawn(both)[:1]:
         pose = arm.forward(q)
         status, numbers = both.run(mode, seed, pose[None])
         found = arm.search(pose, seed=seed, prefer=("near", "centre", "dexterous")[mode - 1])

@@ -43,7 +43,7 @@ def both(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     path.write_text(serial_urdf(name, ARMS[name]))
     module = derive(Request(path, name=name)).module
     assert (module.task, len(module.held), module.freedoms) == ("pose", 1, 3)
-    return in_both(module, folder, "34")
+    return in_both(module, folder, "34" if name == "four_turn" else "4")
 
 
 @pytest.mark.parametrize("both", ARMS, indirect=True)

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.support.dh_files import dh_file
+from tests.support.sampled import in_languages
 from tests.support.solving import NO_COMPILER, import_text
 
 from ikgen.emit.cpp.cpp_emitter import emit_header
@@ -19,6 +20,8 @@ from ikgen.verify.runners.cpp_header import CppHeader
 from ikgen.verify.runners.python_module import PythonModule
 from ikgen.verify.runners.runner import Runner
 from ikgen.verify.task_space import task_space
+
+pytestmark = pytest.mark.usefixtures("solved_once")
 
 # kind, alpha (quarters), a, d of each row; joint values
 SLIDE = (
@@ -164,7 +167,14 @@ CROWDED = (
     ],
     [-1.5707963264, 3.1415926530, 6.9473251703e-10, -1.6296461676e-09, -1.5707963258],
 )
+BESIDE = {"stalled": STALLED, "crowded": CROWDED}
 """Solutions beside a continuum: damped steps stall along it, or end at more places than are kept."""
+CONTINUA = {
+    "turns": MEETING_AXES,
+    "slides": PARALLEL_SLIDES,
+    "many rows": MANY_ROWS,
+    "no roots": NO_ROOTS,
+}
 SPECIAL = {
     "slide at 0": SLIDE,
     "fold behind a fold": FOLDS,
@@ -178,13 +188,17 @@ def table(rows: list[tuple[str, int, float, float]], folder: Path) -> Path:
     return dh_file(folder / "special.toml", whole)
 
 
-def both(rows: list[tuple[str, int, float, float]], folder: Path) -> tuple[Runner, Runner]:
-    """The table's solver in Python and in C++."""
+def solvers(
+    rows: list[tuple[str, int, float, float]], folder: Path, language: str
+) -> tuple[Runner, Runner]:
+    """The table's solver in Python, and in a language."""
     module = derive(Request(table(rows, folder))).module
     path, header = folder / "special_ik.py", folder / "special_ik.hpp"
     path.write_text(emit_module(module))
-    header.write_text(emit_header(module))
     python = PythonModule(path)
+    if language == "python":
+        return python, python
+    header.write_text(emit_header(module))
     return python, CppHeader(header, python.constants)
 
 
@@ -217,59 +231,46 @@ def test_roots_that_meet_leave_no_pose_without_rows(tmp_path: Path) -> None:
     assert len(found) and found.singular[apart.argmin()] and apart.min() < 1e-6
 
 
-@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
-@pytest.mark.parametrize(("rows", "q"), [STALLED, CROWDED], ids=["stalled", "crowded"])
-def test_solutions_beside_a_continuum_are_found(
-    rows: list[tuple[str, int, float, float]], q: list[float], tmp_path: Path
-) -> None:
-    python, cpp = both(rows, tmp_path)
+@pytest.mark.parametrize(("kind", "language"), in_languages(BESIDE, ["crowded"]))
+def test_solutions_beside_a_continuum_are_found(kind: str, language: str, tmp_path: Path) -> None:
+    rows, q = BESIDE[kind]
+    python, runner = solvers(rows, tmp_path, language)
     space = task_space(find_task(python.constants.task))
     pose = python.forward(np.array([q]))
-    for runner in (python, cpp):
-        answers = runner.solve_many(pose)
-        found = answers.q[0, : answers.count[0]]
-        off = np.abs((found - q + pi) % (2 * pi) - pi).max(axis=1, initial=0.0)
-        assert len(found) and off.min() < 1e-5
-        aims = np.broadcast_to(pose, (len(found), 4, 4))
-        assert np.abs(space.residual(runner.forward(found), aims)).max() < 5e-9  # m, of 3 m
+    answers = runner.solve_many(pose)
+    found = answers.q[0, : answers.count[0]]
+    off = np.abs((found - q + pi) % (2 * pi) - pi).max(axis=1, initial=0.0)
+    assert len(found) and off.min() < 1e-5
+    aims = np.broadcast_to(pose, (len(found), 4, 4))
+    assert np.abs(space.residual(runner.forward(found), aims)).max() < 5e-9  # m, of 3 m
 
 
-@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
-@pytest.mark.parametrize(
-    ("rows", "configurations", "fixed"),
-    [MEETING_AXES, pytest.param(*PARALLEL_SLIDES, marks=pytest.mark.long), MANY_ROWS, NO_ROOTS],
-    ids=["turns", "slides", "many rows", "no roots"],
-)
-def test_a_continuum_has_a_row(
-    rows: list[tuple[str, int, float, float]],
-    configurations: list[list[float]],
-    fixed: list[int],
-    tmp_path: Path,
-) -> None:
+@pytest.mark.parametrize(("kind", "language"), in_languages(CONTINUA, ["turns"]))
+def test_a_continuum_has_a_row(kind: str, language: str, tmp_path: Path) -> None:
     """From whatever seed; with that of one of its configurations, this one."""
-    python, cpp = both(rows, tmp_path)
+    rows, configurations, fixed = CONTINUA[kind]
+    python, runner = solvers(rows, tmp_path, language)
     space = task_space(find_task(python.constants.task))
     q = np.array(configurations)
     poses = python.forward(q)
     seeds = np.random.default_rng(5).uniform(-3.0, 3.0, q.shape)
-    for runner in (python, cpp):
-        for seed in (None, seeds, q):
-            answers = runner.solve_many(poses, seeds=seed)
-            for k, n in enumerate(answers.count.tolist()):
-                found = answers.q[k, :n]
-                aims = np.broadcast_to(poses[k], (n, 4, 4))
-                assert np.abs(space.residual(runner.forward(found), aims)).max() < 1e-9
-                off = np.abs((found - q[k] + pi) % (2 * pi) - pi)
-                of_it = (off[:, fixed].max(axis=1) < 1e-6) & answers.singular[k, :n]
-                assert of_it.any()
-                assert seed is not q or off.max(axis=1).min() < 1e-6
+    for seed in (None, seeds, q):
+        answers = runner.solve_many(poses, seeds=seed)
+        for k, n in enumerate(answers.count.tolist()):
+            found = answers.q[k, :n]
+            aims = np.broadcast_to(poses[k], (n, 4, 4))
+            assert np.abs(space.residual(runner.forward(found), aims)).max() < 1e-9
+            off = np.abs((found - q[k] + pi) % (2 * pi) - pi)
+            of_it = (off[:, fixed].max(axis=1) < 1e-6) & answers.singular[k, :n]
+            assert of_it.any()
+            assert seed is not q or off.max(axis=1).min() < 1e-6
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
 def test_where_every_divisor_vanishes_the_pose_is_answered(tmp_path: Path) -> None:
     """From whatever seed, and inside the limits where it can be."""
     rows, configuration = UPRIGHT
-    python, cpp = both(rows, tmp_path)
+    python, cpp = solvers(rows, tmp_path, "cpp")
     assert python.constants.task == "position-direction"
     rng = np.random.default_rng(5)
     q = rng.uniform(-1.5, 1.5, (30, 5))

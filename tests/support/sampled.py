@@ -6,8 +6,9 @@ from collections.abc import Collection, Iterable
 from typing import Any
 
 import pytest
+from tests.support.solving import NO_COMPILER
 
-__all__ = ["sampled"]
+__all__ = ["in_languages", "sampled"]
 
 
 def sampled(names: Iterable[Any], always: Collection[Any]) -> list[Any]:
@@ -16,3 +17,15 @@ def sampled(names: Iterable[Any], always: Collection[Any]) -> list[Any]:
     strange = set(always) - set(names)
     assert not strange, f"no such cases: {strange}"
     return [pytest.param(n, marks=() if n in always else pytest.mark.long) for n in names]
+
+
+def in_languages(names: Iterable[str], compiled: Collection[str]) -> list[Any]:
+    """Parameters of a test, a name and a language: all in Python, and in C++, which takes seconds to compile,
+    those that are `compiled` always; the others are marked `long` there."""
+    skip = pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")
+    cases = []
+    for kind in sampled(names, compiled):
+        (name,) = kind.values
+        cases.append(pytest.param(name, "python"))
+        cases.append(pytest.param(name, "cpp", marks=(*kind.marks, skip)))
+    return cases
