@@ -19,6 +19,8 @@ from ikgen.generation.request import Request
 from ikgen.kinematics.forward import file_forward
 from ikgen.solver.solution_graph import SolutionGraph
 
+pytestmark = pytest.mark.usefixtures("solved_once")
+
 ELBOW = FIXTURES.parent / "examples/setuptools_robot/urdf/elbow.urdf"
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 from math import pi
 from pathlib import Path
 
@@ -10,6 +12,7 @@ import numpy as np
 import pytest
 from benchmarks.agreement import arm_of, runner_of
 from numpy.typing import NDArray
+from tests.support.sampled import in_languages, sampled
 from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import FIXTURES, NO_COMPILER
 
@@ -32,6 +35,8 @@ pytestmark = [
 ARMS = ("ur5e", "doosan_m1013", "fanuc_crx10ia", "measured")
 """A continuum at the wrist, one that a file with offsets breaks into isolated solutions, an elimination;
 ur5e with short offsets, whose quartic divides by them."""
+COMPILED = ("doosan_m1013", "fanuc_crx10ia")
+"""Those whose header is compiled in every run; that of ur5e is in test_cpp.py too."""
 
 MEASURED = {
     'xyz="-0.425 0 0"': 'xyz="-0.425628 -0.001152 0.000346"',
@@ -134,23 +139,35 @@ class Made:
     q: Array
     arm: ArmUnderTest
     python: Runner
-    cpp: Runner
+    header: Callable[[], Runner]
 
     @property
     def sample(self) -> SampleSet:
         poses = self.arm.oracle.forward(self.q)
         return SampleSet("folds", self.q, poses, self.arm.sigma(self.q))
 
+    @property
+    def cpp(self) -> Runner:
+        """Compiled where it is asked for first."""
+        return self.header()
 
-@pytest.fixture(scope="module", params=ARMS)
-def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Made:
-    folder: Path = tmp_path_factory.mktemp(request.param)
-    derivation = derive(
-        Request(measured(folder) if request.param == "measured" else robot(request.param))
-    )
-    python, cpp = (runner_of(derivation, language, folder) for language in ("python", "cpp"))
+
+@pytest.fixture(scope="module")
+def made_once(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Made]:
+    return cache(lambda name: make(name, tmp_path_factory.mktemp(name)))
+
+
+@pytest.fixture
+def made(request: pytest.FixtureRequest, made_once: Callable[[str], Made]) -> Made:
+    return made_once(request.param)
+
+
+def make(name: str, folder: Path) -> Made:
+    derivation = derive(Request(measured(folder) if name == "measured" else robot(name)))
+    python = runner_of(derivation, "python", folder)
+    cpp = cache(lambda: runner_of(derivation, "cpp", folder))
     arm = arm_of(derivation)
-    q = np.vstack([FOLDS[request.param], np.clip(special(120), arm.lower, arm.upper)])
+    q = np.vstack([FOLDS[name], np.clip(special(120), arm.lower, arm.upper)])
     return Made(q, arm, python, cpp)
 
 
@@ -195,7 +212,7 @@ def special(count: int) -> Array:
     return np.asarray(q)
 
 
-@pytest.mark.parametrize("language", ["python", "cpp"])
+@pytest.mark.parametrize(("made", "language"), in_languages(ARMS, COMPILED), indirect=["made"])
 @pytest.mark.parametrize("seeded", [False, True])
 def test_nothing_is_lost(made: Made, language: str, seeded: bool) -> None:
     runner: Runner = getattr(made, language)
@@ -214,6 +231,7 @@ def test_none_is_lost_where_two_meet_along_a_broken_continuum(made: Made, langua
     assert not (found.missed | found.unanswered).any(), found.case(0)
 
 
+@pytest.mark.parametrize("made", sampled(ARMS, COMPILED), indirect=True)
 def test_rows_are_the_same_in_both_languages_and_in_batches(made: Made) -> None:
     poses = made.sample.poses
     python, cpp = (runner.solve_many(poses, limits=False) for runner in (made.python, made.cpp))

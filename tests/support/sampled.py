@@ -20,8 +20,8 @@ def sampled(names: Iterable[Any], always: Collection[Any]) -> list[Any]:
 
 
 def in_languages(names: Iterable[str], compiled: Collection[str]) -> list[Any]:
-    """Parameters of a test, a name and a language: all in Python, and in C++, which takes seconds to compile,
-    those that are `compiled` always; the others are marked `long` there."""
+    """Parameters of a test, a name and a language: all in Python; in C++, which takes seconds to compile,
+    the others than those `compiled` are marked `long`."""
     skip = pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")
     cases = []
     for kind in sampled(names, compiled):

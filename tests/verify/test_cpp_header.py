@@ -6,6 +6,7 @@ import dataclasses
 import os
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -149,13 +150,18 @@ inline constexpr std::array<double, kDof> kUpper = {1.0 / 0.0, 2.5};
 """
 
 
+def long(right: str, wrong: str, detail: str) -> Any:
+    """A case that takes two seconds of compiling for one more constant."""
+    return pytest.param(right, wrong, detail, marks=pytest.mark.long)
+
+
 @pytest.mark.parametrize(
     ("right", "wrong", "detail"),
     [
         ("2.5}", "2.5}", ""),
         ("-1.5}", "-1.5001}", "lower limits: j2 has -1.5001, not -1.5"),
-        ("2.5}", "2.4999}", "upper limits: j2 has 2.4999, not 2.5"),
-        ('"b"', '"c"', "links"),
+        long("2.5}", "2.4999}", "upper limits: j2 has 2.4999, not 2.5"),
+        long('"b"', '"c"', "links"),
         ('{"j1", "j2"}', '{"j1", "j\u00fc"}', "joint names"),
     ],
 )

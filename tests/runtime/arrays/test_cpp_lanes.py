@@ -186,8 +186,11 @@ WRIST = spherical_wrist(EXACT, offset=2e-6)
 @pytest.mark.parametrize("robot", sampled(["wrist", "doosan_m1013"], ["doosan_m1013"]))
 def test_lanes_find_what_one_by_one_finds(robot: str, tmp_path: Path) -> None:
     module = rounded(WRIST) if robot == "wrist" else published_module(robot)
-    q = np.random.default_rng(4).uniform(-3, 3, (300, 6))
+    q = np.random.default_rng(4).uniform(-3, 3, (340, 6))
+    q[300:, 4] = 1e-7  # beside the wrist's singularity all are handed on
     found = answers(module, q, tmp_path, "-O2", "-march=native")
+    assert all(rough > 0 for _, rough in found[300:])
+    q, found = q[:300], found[:300]
     for at, ((rows, batch, careful), _) in zip(q, found, strict=True):
         assert apart(rows, at).min() < 1e-9
         assert rows.shape == batch.shape and len(rows) >= len(careful)
@@ -195,13 +198,6 @@ def test_lanes_find_what_one_by_one_finds(robot: str, tmp_path: Path) -> None:
         for row in careful:
             assert apart(rows, row).min() < 1e-6
     assert sum(rough > 0 for _, rough in found) < 0.2 * len(q)
-
-
-def test_rows_beside_the_wrists_singularity_are_handed_on(tmp_path: Path) -> None:
-    q = np.random.default_rng(4).uniform(-3, 3, (40, 6))
-    q[:, 4] = 1e-7
-    found = answers(rounded(WRIST), q, tmp_path)
-    assert all(rough > 0 for _, rough in found)
 
 
 def test_a_slide_and_fewer_joints_than_equations(tmp_path: Path) -> None:
