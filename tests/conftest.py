@@ -10,9 +10,10 @@ from collections.abc import Iterator
 import pytest
 from hypothesis.internal.conjecture import providers
 from tests.support.precompiled import compilers
-from tests.support.solved import solved
+from tests.support.solved import left_over, solved
 
 from ikgen.errors import MissingToolError
+from ikgen.generation import unsolved
 from ikgen.solver import solve
 from ikgen.verify.runners.cpp_toolchain import find_eigen
 
@@ -48,4 +49,5 @@ def solved_once() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         if sys.gettrace() is None:
             patch.setattr(solve, "solve_chain", solved)
+            patch.setattr(unsolved, "leftover_text", left_over)
         yield

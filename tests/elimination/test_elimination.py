@@ -80,7 +80,7 @@ def missing(found: list[Array], wanted: Array) -> int:
 def arm(request: pytest.FixtureRequest) -> tuple[EliminationPlan, Array, Array]:
     """A plan, regular configurations, and their poses."""
     frames = arm_frames(request.param)
-    q = configurations(frames, 150)
+    q = configurations(frames, 60)
     return choose_plan(frames), q, np.array([forward(frames, row) for row in q])
 
 

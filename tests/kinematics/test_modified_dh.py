@@ -77,7 +77,7 @@ def chains(draw: st.DrawFn, kinds: str = "RRRP") -> Chain:
 
 
 @given(chains())
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 def test_rows_reproduce_any_chain(chain: Chain) -> None:
     dh = to_dh(chain, **TIGHT)
     assert_form(dh)
@@ -117,7 +117,7 @@ def test_other_frames_give_the_same_geometry(chain: Chain, seed: int) -> None:
 
 
 @given(chains(kinds="RP"), st.integers(0, 2**32))
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_rounded_files_keep_their_structure(chain: Chain, seed: int) -> None:
     rng = np.random.default_rng(seed)
     noisy = Chain(
