@@ -94,7 +94,7 @@ def test_none_is_without_a_row(name: str, language: str, tmp_path: Path) -> None
     assert not len(lost), (len(lost), q[lost[0]].tolist())
 
 
-@pytest.mark.parametrize(("name", "language"), in_languages(["fanuc_crx10ia"], []))
+@pytest.mark.parametrize(("name", "language"), in_languages(["fanuc_crx10ia"], ["fanuc_crx10ia"]))
 def test_a_double_root_is_found_where_no_elimination_tells_it(
     name: str, language: str, tmp_path: Path
 ) -> None:

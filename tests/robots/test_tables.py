@@ -9,7 +9,6 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from tests.support.sampled import sampled
 from tests.support.solving import NO_COMPILER
 
 from ikgen.emit.python.python_emitter import emit_module
@@ -34,9 +33,6 @@ EXPECTED = tomllib.loads((HERE / "expected.toml").read_text(encoding="utf-8"))
 BY_RULES = [n for n, x in EXPECTED.items() if not (x["redundant"] or x.get("elimination"))]
 SOLVED = [*BY_RULES, *(name for name, facts in EXPECTED.items() if facts.get("elimination"))]
 REDUNDANT = [name for name, facts in EXPECTED.items() if facts["redundant"]]
-SLOW = ("Frei13", "ICP5p5_A21", "Mackler13", "Parkman13")
-OFTEN = [name for name in SOLVED if name not in SLOW]
-"""Those solved in every run: the others take longest, and are of no other kind."""
 POSES = 40
 
 PAPER_Q = (30.0, 50.0, 40.0, 45.0, 120.0, 60.0)
@@ -76,8 +72,7 @@ def test_every_table_has_its_facts() -> None:
     assert sum(facts["paper"] for facts in EXPECTED.values()) >= 19
 
 
-# both tests of a table are neighbours
-@pytest.mark.parametrize("name", sampled(BY_RULES, set(OFTEN) & set(BY_RULES)), scope="module")
+@pytest.mark.parametrize("name", BY_RULES, scope="module")  # both tests of a table are neighbours
 def test_claims_as_many_solutions_as_some_pose_has(name: str, tmp_path: Path) -> None:
     table = HERE / "tables" / f"{name}.toml"
     module = module_of(table, tmp_path, None)
@@ -94,7 +89,7 @@ def test_claims_as_many_solutions_as_some_pose_has(name: str, tmp_path: Path) ->
     assert most // 2 <= found < most if EXPECTED[name].get("bound") else found == most
 
 
-@pytest.mark.parametrize("name", sampled(SOLVED, OFTEN), scope="module")
+@pytest.mark.parametrize("name", SOLVED, scope="module")
 def test_robot_is_solved(name: str, tmp_path: Path) -> None:
     table = HERE / "tables" / f"{name}.toml"
     module = module_of(table, tmp_path)
