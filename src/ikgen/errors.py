@@ -43,9 +43,11 @@ def place_in(file: str, line: int | None) -> str:
 
 
 class IkgenError(Exception):
-    """Base of all errors meant for the user: message, hint, exit code."""
+    """Base of all errors meant for the user: message, hint, exit code, and `warnings` of what was noticed
+    in the robot's file before."""
 
     exit_code = 2
+    warnings: tuple[str, ...] = ()
 
     def __init__(self, message: str, *, hint: str = "") -> None:
         super().__init__(message)

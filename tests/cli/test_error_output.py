@@ -117,6 +117,17 @@ def test_a_failed_verification(called: Called, monkeypatch: pytest.MonkeyPatch) 
     assert not Path("out").exists()
 
 
+def test_what_a_file_looks_like_is_said_before_what_failed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    far = tmp_path / "far.urdf"
+    near = KUKA.read_text(encoding="utf-8")
+    far.write_text(near.replace('"0.420 0 0"', '"420 0 0"').replace('"0.455 0 0"', '"455 0 0"'))
+    assert run(["from-urdf", str(far), "--task", "position-yaw", "--no-verify"]) == 3
+    told = capsys.readouterr().err
+    assert -1 < told.find("look like mm") < told.find("error: ")
+
+
 def test_success_has_no_error(called: Called) -> None:
     code, found = called("from-urdf", "elbow.urdf", "--task", "position", "--no-verify")
     assert code == 0 and "error" not in found

@@ -19,7 +19,7 @@ from ikgen.cli.options import (
     table_options,
 )
 from ikgen.cli.request_options import make_request, parse_emit
-from ikgen.errors import UsageError
+from ikgen.errors import IkgenError, UsageError
 from ikgen.generation.request import Outputs, is_table
 
 if TYPE_CHECKING:
@@ -123,8 +123,13 @@ def _run(
         raise UsageError("--depfile-target is of a --depfile", hint="give --depfile FILE as well")
     request = make_request(robot, **chain)
     outputs = Outputs(parse_emit(emit), out, samples, seed, not no_verify, only, force)
-    with Console(quiet=quiet, verbose=verbose) as console, advised(request, console):
-        generation = generate(request, outputs, console)
+    try:
+        with Console(quiet=quiet, verbose=verbose) as console, advised(request, console):
+            generation = generate(request, outputs, console)
+    except IkgenError as error:
+        for text in error.warnings:
+            console.warn(text)
+        raise
     held = generation.derivation.held
     if held is not None:
         console.note(held.words)

@@ -58,7 +58,11 @@ def generate(request: Request, outputs: Outputs, progress: Progress = silent) ->
         earlier.check(request, reading, _task_name(request))
     kept = () if outputs.only else tuple(n for n in earlier.emit if n not in outputs.emit)
     emitters = [*_again(kept), *asked]
-    made = make_texts(request, reading, emitters, outputs, progress)
+    try:
+        made = make_texts(request, reading, emitters, outputs, progress)
+    except IkgenError as error:
+        error.warnings = reading.source.warnings
+        raise
     derivation = made.derivation
     if alike:
         earlier.check(request, reading, derivation.task.name)

@@ -58,9 +58,11 @@ def helped(error: UnsolvedChainError, request: Request, progress: Progress) -> U
         hint = f"{error.hint}\ntried without success: {_listed(tried)}"
     else:
         return error
-    return UnsolvedChainError(
+    better = UnsolvedChainError(
         error.message, unsolved=error.unsolved, details=error.details, hint=hint
     )
+    better.warnings = error.warnings
+    return better
 
 
 def _listed(tried: list[Attempt]) -> str:
