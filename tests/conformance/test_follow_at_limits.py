@@ -52,3 +52,24 @@ def test_joints_stopped_first_are_let_go_where_others_have_to_stop(tmp_path: Pat
             assert ((q >= arm.LOWER) & (q <= arm.UPPER)).all()
             assert np.abs(q - ends[0]).max() < 0.1
         assert np.abs(rows - path.q).max() < 1e-6
+
+
+def test_a_joint_on_its_limit_is_no_singularity(tmp_path: Path) -> None:
+    """Along lines by which joints come to their limits and stay there: the others make good of it, at a
+    right angle to where all joints would go, and where they cannot the limits are the reason."""
+    both = in_both(held_module("shoulder_elbow_wrist", tmp_path), tmp_path, "4")
+    arm, rng, stopped = both.arm, np.random.default_rng(6), 0
+    for _ in range(12):
+        start = rng.uniform(arm.LOWER, arm.UPPER)
+        poses = np.repeat(arm.forward(start)[None], 30, axis=0)
+        poses[:, :3, 3] += np.linspace(0.0, 1.0, 30)[:, None] * rng.normal(0.0, 0.06, 3)
+        path = arm.follow(poses, start=start)
+        status, singular, rows = both.follow(start, poses)
+        assert path.status.name == status and len(rows) == path.reached
+        q = path.q[: path.reached]
+        sigma = np.linalg.svd(arm.jacobian(q), compute_uv=False)[:, -1]
+        assert status in ("OK", "LIMITS") or sigma.min() < 0.05, (status, sigma.min())
+        assert not path.singular[: path.reached][sigma > 0.01].any()
+        assert singular == path.singular.sum()
+        stopped += int(np.count_nonzero((q == arm.LOWER) | (q == arm.UPPER)) > 5)
+    assert stopped > 2

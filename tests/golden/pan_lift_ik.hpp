@@ -2899,15 +2899,16 @@ template <class A, class Solver> struct PathStep {
   int left = kMost;
 
   Status go_on(const Eigen::Isometry3d& before, const Eigen::Isometry3d& pose) noexcept {
-    double here[kDof], there[kDof], row[kDof];
+    double here[kDof], there[kDof], nearby[kDof], row[kDof];
     std::copy_n(q, kDof, here);
+    std::copy_n(q, kDof, nearby);
     left = kMost;
     const Status status = step(before, pose, 0);
     if (status == Status::Ok && farthest(q, here) < kAway) return status;
     std::copy_n(q, kDof, there);
     std::copy_n(here, kDof, q);
     bool singular = false;
-    const Status why = next_row(pose, here, row, singular);
+    const Status why = next_row(pose, nearby, row, singular);
     if (why == Status::Ok && farthest(row, here) < kFarthest && arrive(row) == Status::Ok) {
       crossed = true;
       return Status::Ok;
@@ -2984,8 +2985,7 @@ template <class A, class Solver> struct PathStep {
     return worst;
   }
 
-  Status next_row(const Eigen::Isometry3d& pose, [[maybe_unused]] const double* expected, double* row,
-                  bool& singular) const noexcept {
+  Status next_row(const Eigen::Isometry3d& pose, double* expected, double* row, bool& singular) const noexcept {
     return closed_form(pose, q, expected, row, singular);
   }
 

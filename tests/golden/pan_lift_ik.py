@@ -3029,7 +3029,7 @@ class _Walk:
         if status is Status.OK and np.abs(self.q - here).max() < _AWAY:
             return status
         there, self.q = self.q, here
-        rows, _, why = self._rows(pose)
+        rows, _, why, _ = self._rows(pose)
         moved = np.abs(rows - here).max(axis=1)
         near = len(rows) and moved.min() < _path_following_FARTHEST
         if near and self._arrive(rows[int(moved.argmin())]) is Status.OK:
@@ -3041,8 +3041,7 @@ class _Walk:
     def step(self, before: Array, pose: Array, depth: int) -> Status:
         """From a pose to the next, with halved steps where the rows do not follow the Jacobian."""
         self.left -= 1
-        expected = self._expected(pose)
-        rows, flags, status = self._rows(pose)
+        rows, flags, status, expected = self._rows(pose)
         if len(rows):
             gap = np.abs(rows - expected).max(axis=1)
             k = int(gap.argmin())
@@ -3068,9 +3067,9 @@ class _Walk:
         self.q = row
         return Status.OK
 
-    def _expected(self, pose: Array) -> Array:
-        """Where the shortest motion by the Jacobian leads from here."""
-        return self.q + self._motion(self.q, pose, list(range(len(self.q))), _path_following_LEAST_DAMPING)[0]
+    def _expected(self, at: Array, pose: Array, moving: list[int]) -> Array:
+        """Where the shortest motion by the Jacobian of some joints leads, the others as given."""
+        return at + self._motion(at, pose, moving, _path_following_LEAST_DAMPING)[0]
 
     def _motion(
         self, q: Array, pose: Array, moving: list[int], damping: float
@@ -3085,10 +3084,11 @@ class _Walk:
         step[moving] = np.clip(rows.T @ np.linalg.solve(normal, error), -1.0, 1.0)
         return step, float(np.abs(error).max())
 
-    def _rows(self, pose: Array) -> tuple[Array, _Flags, Status]:
+    def _rows(self, pose: Array) -> tuple[Array, _Flags, Status, Array]:
         """All rows without limits."""
         found = _solve_pose(self.arm, pose, None, self.q, False)
-        return found.q, found.singular, found.status
+        expected = self._expected(self.q, pose, list(range(len(self.q))))
+        return found.q, found.singular, found.status, expected
 
 
 def _path_following_between(a: Array, b: Array) -> Array:

@@ -27,15 +27,16 @@ template <class A, class Solver> struct PathStep {
   // From a pose to the next; where halved steps lead far away or nowhere, as beside a singularity, to a row next to the
   // last one if there is one.
   Status go_on(const Eigen::Isometry3d& before, const Eigen::Isometry3d& pose) noexcept {
-    double here[kDof], there[kDof], row[kDof];
+    double here[kDof], there[kDof], nearby[kDof], row[kDof];
     std::copy_n(q, kDof, here);
+    std::copy_n(q, kDof, nearby);
     left = kMost;
     const Status status = step(before, pose, 0);
     if (status == Status::Ok && farthest(q, here) < kAway) return status;
     std::copy_n(q, kDof, there);
     std::copy_n(here, kDof, q);
     bool singular = false;
-    const Status why = next_row(pose, here, row, singular);
+    const Status why = next_row(pose, nearby, row, singular);
     if (why == Status::Ok && farthest(row, here) < kFarthest && arrive(row) == Status::Ok) {
       crossed = true;
       return Status::Ok;
@@ -74,8 +75,9 @@ template <class A, class Solver> struct PathStep {
   Status begin([[maybe_unused]] const Eigen::Isometry3d& pose, const typename A::Joints& start) noexcept {
     std::copy_n(start.data(), kDof, q);
     if constexpr (A::kFree > 0) {
-      double row[kDof];
-      if (unstopped(pose, q, row, crossed) == Status::Ok && farthest(row, q) < 0.1) return arrive(row);
+      double row[kDof], nearby[kDof];
+      std::copy_n(q, kDof, nearby);
+      if (unstopped(pose, nearby, row, crossed) == Status::Ok && farthest(row, q) < 0.1) return arrive(row);
     }
     return Status::Unreachable;
   }
@@ -121,9 +123,9 @@ template <class A, class Solver> struct PathStep {
   }
 
   // The row that goes on from here: of an arm without held joints the closed form's nearest to the expected one, of
-  // others the one that all joints reach together, those that it would take out of their limits stopped there.
-  Status next_row(const Eigen::Isometry3d& pose, [[maybe_unused]] const double* expected, double* row,
-                  bool& singular) const noexcept {
+  // others the one that all joints reach together, those that it would take out of their limits stopped there, and
+  // expected is then where the Jacobian leads the others.
+  Status next_row(const Eigen::Isometry3d& pose, double* expected, double* row, bool& singular) const noexcept {
     if constexpr (A::kFree > 0) {
       return unstopped(pose, expected, row, singular);
     } else {
@@ -154,14 +156,19 @@ template <class A, class Solver> struct PathStep {
 
   // Where the steps end beside the pose, as at a fold, of the rows with what is held where they ended. Before, a joint
   // is let go once if the error would shrink by its motion off its limit: those stopped first may be the wrong ones.
-  Status unstopped(const Eigen::Isometry3d& pose, const double* expected, double* row, bool& singular) const noexcept {
+  Status unstopped(const Eigen::Isometry3d& pose, double* expected, double* row, bool& singular) const noexcept {
     bool stopped[kDof] = {}, released[kDof] = {};
     double at[kDof];
     std::copy_n(q, kDof, at);
     for (bool any = false;; any = true) {
       const bool arrived = newton(at, pose, stopped, row);
       const int joint = arrived ? farthest_out(row) : pulled_off(row, pose, stopped, released);
-      if (joint < 0 && arrived) break;
+      if (joint < 0 && arrived) {
+        if (!any) break;
+        std::copy_n(at, kDof, expected);
+        move(expected, pose, stopped, kLeastDamping);
+        break;
+      }
       if (joint < 0) {
         double held[kDof];
         for (int j = 0; j < kDof; ++j) held[j] = limits ? clipped(row, j) : row[j];

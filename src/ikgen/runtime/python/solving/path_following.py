@@ -94,7 +94,7 @@ class _Walk:
         """To the row next to the start, or the best that a search finds."""
         self.q = start
         if self.arm.free_joints:
-            rows, flags, _ = self._unstopped(pose)
+            rows, flags, *_ = self._unstopped(pose)
             if len(rows) and np.abs(rows[0] - start).max() < _BESIDE_START:
                 self.crossed = bool(flags[0])
                 return self._arrive(rows[0])
@@ -111,7 +111,7 @@ class _Walk:
         if status is Status.OK and np.abs(self.q - here).max() < _AWAY:
             return status
         there, self.q = self.q, here
-        rows, _, why = self._rows(pose)
+        rows, _, why, _ = self._rows(pose)
         moved = np.abs(rows - here).max(axis=1)
         near = len(rows) and moved.min() < _FARTHEST
         if near and self._arrive(rows[int(moved.argmin())]) is Status.OK:
@@ -123,8 +123,7 @@ class _Walk:
     def step(self, before: Array, pose: Array, depth: int) -> Status:
         """From a pose to the next, with halved steps where the rows do not follow the Jacobian."""
         self.left -= 1
-        expected = self._expected(pose)
-        rows, flags, status = self._rows(pose)
+        rows, flags, status, expected = self._rows(pose)
         if len(rows):
             gap = np.abs(rows - expected).max(axis=1)
             k = int(gap.argmin())
@@ -150,9 +149,9 @@ class _Walk:
         self.q = row
         return Status.OK
 
-    def _expected(self, pose: Array) -> Array:
-        """Where the shortest motion by the Jacobian leads from here."""
-        return self.q + self._motion(self.q, pose, list(range(len(self.q))), _LEAST_DAMPING)[0]
+    def _expected(self, at: Array, pose: Array, moving: list[int]) -> Array:
+        """Where the shortest motion by the Jacobian of some joints leads, the others as given."""
+        return at + self._motion(at, pose, moving, _LEAST_DAMPING)[0]
 
     def _motion(
         self, q: Array, pose: Array, moving: list[int], damping: float
@@ -167,14 +166,16 @@ class _Walk:
         step[moving] = np.clip(rows.T @ np.linalg.solve(normal, error), -1.0, 1.0)
         return step, float(np.abs(error).max())
 
-    def _rows(self, pose: Array) -> tuple[Array, Flags, Status]:
-        """All rows without limits; with held joints the one that those lead to which no limit stops."""
+    def _rows(self, pose: Array) -> tuple[Array, Flags, Status, Array]:
+        """All rows without limits; with held joints the one that those lead to which no limit stops. Last
+        what is to be expected of the joints that move."""
         if self.arm.free_joints:
             return self._unstopped(pose)
         found = solve_pose(self.arm, pose, None, self.q, False)
-        return found.q, found.singular, found.status
+        expected = self._expected(self.q, pose, list(range(len(self.q))))
+        return found.q, found.singular, found.status, expected
 
-    def _unstopped(self, pose: Array) -> tuple[Array, Flags, Status]:
+    def _unstopped(self, pose: Array) -> tuple[Array, Flags, Status, Array]:
         """The row next to the expected one that all joints reach together, those that it would take out
         of their limits stopped there; where their steps end beside the pose, as at a fold, all rows with
         what is held where they ended. Before, a joint is let go once if the error would shrink by its
@@ -191,7 +192,8 @@ class _Walk:
                 excess = np.maximum(low - q, q - high)
                 worst = int(excess.argmax())
                 if not self.limits or excess[worst] <= arm.policy.limit_tolerance:
-                    return q[None], self._singular(q[None]), Status.OK
+                    expected = self._expected(at, pose, moving)
+                    return q[None], self._singular(q[None]), Status.OK, expected
                 stopped[worst] = float(low[worst] if q[worst] < low[worst] else high[worst])
                 continue
             freed = self._pulled_off(q, pose, [j for j in stopped if j not in released])
@@ -199,7 +201,9 @@ class _Walk:
                 held = np.clip(q, low, high) if self.limits else q
                 rows = solve_pose(arm, pose, None, held, False).q
                 status = Status.LIMITS if stopped or released else Status.UNREACHABLE
-                return rows, self._singular(rows), Status.OK if len(rows) else status
+                status = Status.OK if len(rows) else status
+                expected = self._expected(self.q, pose, list(range(len(self.q))))
+                return rows, self._singular(rows), status, expected
             released.add(freed)
             del stopped[freed]
 
