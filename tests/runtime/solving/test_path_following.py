@@ -111,7 +111,7 @@ def test_long_ways_are_gone_in_steps_of_less_than_a_third_of_a_radian() -> None:
         walk, at = _Walk(arm, False), [0.0]
 
         def rows(pose: Array) -> Any:
-            return pose[:1, 3][None], np.zeros(1, dtype=bool), Status.OK
+            return pose[:1, 3][None], np.zeros(1, dtype=bool), Status.OK, pose[:1, 3]
 
         def arrive(row: Array, walk: _Walk = walk, at: list[float] = at) -> Status:
             at.append(float(row[0]))
@@ -119,7 +119,6 @@ def test_long_ways_are_gone_in_steps_of_less_than_a_third_of_a_radian() -> None:
             return Status.OK
 
         walk._rows, walk._arrive = rows, arrive  # type: ignore[assignment, method-assign]
-        walk._expected = lambda pose: pose[:1, 3]  # type: ignore[method-assign]
         there = turn(np.array([0.0, 0.0, 1.0]), 0.0, (way, 0.0, 0.0))
         assert walk.step(np.eye(4), there, 0) is Status.OK and walk.q[0] == way
         assert max(np.diff(at)) < 0.3 and not walk.crossed
@@ -131,9 +130,9 @@ def test_rows_that_follow_at_no_length_end_the_way_soon() -> None:
 
     def rows(pose: Array) -> Any:
         asked[0] += 1
-        return (walk.q + 0.01)[None], np.zeros(1, dtype=bool), Status.OK
+        return (walk.q + 0.01)[None], np.zeros(1, dtype=bool), Status.OK, walk.q
 
-    walk._rows, walk._expected = rows, lambda pose: walk.q  # type: ignore[assignment, method-assign]
+    walk._rows = rows  # type: ignore[method-assign]
     here = walk.q
     there = turn(np.array([0.0, 0.0, 1.0]), 0.0, (0.4, 0.0, 0.0))
     assert walk.go_on(np.eye(4), there) is Status.OK and walk.crossed  # to the row next to it
