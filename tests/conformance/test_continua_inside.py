@@ -10,9 +10,9 @@ import pytest
 from benchmarks.agreement import arm_of, runner_of
 from numpy.typing import NDArray
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
-from tests.support.sampled import in_languages
+from tests.support.sampled import BOTH
 from tests.support.serial_urdf import serial_urdf as origins_urdf
-from tests.support.solving import FIXTURES, NO_COMPILER
+from tests.support.solving import FIXTURES
 
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
@@ -24,14 +24,6 @@ LOWER, UPPER = 0.5, 0.7
 """Of joint 4: neither 0 nor a multiple of the step between the values that are tried lies inside."""
 
 pytestmark = pytest.mark.usefixtures("solved_once")
-
-BOTH = pytest.mark.parametrize(
-    "language",
-    [
-        "python",
-        pytest.param("cpp", marks=pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")),
-    ],
-)
 
 
 @BOTH
@@ -54,9 +46,9 @@ def test_a_stretched_wrist_is_answered_inside_the_limits(language: str, tmp_path
     assert np.abs(arm.oracle.forward(q) - poses[index]).max() < 2e-9
 
 
-@pytest.mark.parametrize(("name", "language"), in_languages(["shoulder"], []))
+@BOTH
 def test_a_held_joint_stays_on_its_turn_along_a_broken_continuum(
-    name: str, language: str, tmp_path: Path
+    language: str, tmp_path: Path
 ) -> None:
     (name, *rest, _), *others = SHOULDER_ELBOW_WRIST
     off = "2e-5 1e-5 0"  # a file's rounding, which parts axes that meet

@@ -11,7 +11,7 @@ import pytest
 from benchmarks.agreement import arm_of, runner_of
 from numpy.typing import NDArray
 from tests.support.dh_files import dh_file
-from tests.support.sampled import in_languages
+from tests.support.sampled import BOTH, in_languages
 from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import FIXTURES
 
@@ -94,12 +94,12 @@ def test_none_is_without_a_row(name: str, language: str, tmp_path: Path) -> None
     assert not len(lost), (len(lost), q[lost[0]].tolist())
 
 
-@pytest.mark.parametrize(("name", "language"), in_languages(["fanuc_crx10ia"], ["fanuc_crx10ia"]))
+@BOTH
 def test_a_double_root_is_found_where_no_elimination_tells_it(
-    name: str, language: str, tmp_path: Path
+    language: str, tmp_path: Path
 ) -> None:
     """Two solutions of an offset wrist meet where joint 4 is at 90 degrees and joint 5 is straight."""
-    derivation = derive(Request(FIXTURES / f"{name}.urdf"))
+    derivation = derive(Request(FIXTURES / "fanuc_crx10ia.urdf"))
     under, random = arm_of(derivation), np.random.default_rng(10)
     q = random.uniform(-3.0, 3.0, (400, 6))
     off = 10.0 ** random.uniform(-9.0, -7.0, (400, 1))

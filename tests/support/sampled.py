@@ -8,7 +8,11 @@ from typing import Any
 import pytest
 from tests.support.solving import NO_COMPILER
 
-__all__ = ["in_languages", "sampled"]
+__all__ = ["BOTH", "in_languages", "sampled"]
+
+COMPILES = pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")
+BOTH = pytest.mark.parametrize("language", ["python", pytest.param("cpp", marks=COMPILES)])
+"""A test in either language."""
 
 
 def sampled(names: Iterable[Any], always: Collection[Any]) -> list[Any]:
@@ -22,10 +26,9 @@ def sampled(names: Iterable[Any], always: Collection[Any]) -> list[Any]:
 def in_languages(names: Iterable[str], compiled: Collection[str]) -> list[Any]:
     """Parameters of a test, a name and a language: all in Python; in C++, which takes seconds to compile,
     the others than those `compiled` are marked `long`."""
-    skip = pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "")
     cases = []
     for kind in sampled(names, compiled):
         (name,) = kind.values
         cases.append(pytest.param(name, "python"))
-        cases.append(pytest.param(name, "cpp", marks=(*kind.marks, skip)))
+        cases.append(pytest.param(name, "cpp", marks=(*kind.marks, COMPILES)))
     return cases

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pickle
+from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -14,6 +14,8 @@ from ikgen.solver.solution_graph import SolutionGraph
 from ikgen.solver.solve import solve_chain
 
 __all__ = ["left_over", "solved"]
+
+_TEXTS: deque[tuple[SolutionGraph, list[str]]] = deque(maxlen=20)
 
 
 def solved(
@@ -37,22 +39,8 @@ def _first(pickled: bytes) -> tuple[SolutionGraph, list[str]]:
 
 def left_over(graph: SolutionGraph) -> list[str]:
     """In the place of `leftover_text`, which takes a second: the text on a graph asked of before."""
-    return _text(_Same(graph))
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class _Same:
-    """A graph that equals itself alone: to compare two takes long."""
-
-    graph: SolutionGraph
-
-    def __hash__(self) -> int:
-        return id(self.graph)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and self.graph is other.graph
-
-
-@lru_cache(maxsize=20)
-def _text(same: _Same) -> list[str]:
-    return leftover_text(same.graph)
+    for known, text in _TEXTS:
+        if known is graph:
+            return text
+    _TEXTS.append((graph, leftover_text(graph)))
+    return _TEXTS[-1][1]
