@@ -1161,11 +1161,15 @@ template <class Arm> struct FoldPair {
     const PoseError<Arm> at(q, aim);
     left = slope = 0.0;
     for (int e = 0; e < kEquations; ++e) {
-      double flow = 0.0;
-      for (int k = 0; k < kMoving; ++k) flow += at.slope[e][kJoints[k]] * still[k];
       left += out[e] * at.error[e];
-      slope -= out[e] * flow;
+      slope -= out[e] * flow_of(at, e, still);
     }
+  }
+
+  static double flow_of(const PoseError<Arm>& at, int e, const Vector& along) noexcept {
+    double flow = 0.0;
+    for (int k = 0; k < kMoving; ++k) flow += at.slope[e][kJoints[k]] * along[k];
+    return flow;
   }
 
  private:
@@ -1185,8 +1189,7 @@ template <class Arm> struct FoldPair {
 
     Others(const Vector& along, const PoseError<Arm>& at) noexcept {
       for (int e = 0; e < kEquations; ++e) {
-        flow[e] = 0.0;
-        for (int k = 0; k < kMoving; ++k) flow[e] += at.slope[e][kJoints[k]] * along[k];
+        flow[e] = flow_of(at, e, along);
         for (int k = 0; k < kMoving; ++k) V[e][k] = at.slope[e][kJoints[k]] - flow[e] * along[k];
       }
       for (int a = 0; a < kMoving; ++a)
@@ -2899,16 +2902,16 @@ template <class A, class Solver> struct PathStep {
   int left = kMost;
 
   Status go_on(const Eigen::Isometry3d& before, const Eigen::Isometry3d& pose) noexcept {
-    double here[kDof], there[kDof], nearby[kDof], row[kDof];
+    double here[kDof], there[kDof], expected[kDof], row[kDof];
     std::copy_n(q, kDof, here);
-    std::copy_n(q, kDof, nearby);
     left = kMost;
     const Status status = step(before, pose, 0);
     if (status == Status::Ok && farthest(q, here) < kAway) return status;
     std::copy_n(q, kDof, there);
     std::copy_n(here, kDof, q);
+    std::copy_n(here, kDof, expected);
     bool singular = false;
-    const Status why = next_row(pose, nearby, row, singular);
+    const Status why = next_row(pose, expected, row, singular);
     if (why == Status::Ok && farthest(row, here) < kFarthest && arrive(row) == Status::Ok) {
       crossed = true;
       return Status::Ok;

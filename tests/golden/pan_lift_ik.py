@@ -3067,9 +3067,17 @@ class _Walk:
         self.q = row
         return Status.OK
 
-    def _expected(self, at: Array, pose: Array, moving: list[int]) -> Array:
-        """Where the shortest motion by the Jacobian of some joints leads, the others as given."""
+    def _expected(self, pose: Array, stopped: Mapping[int, float]) -> Array:
+        """Where the shortest motion by the Jacobian of joints that are not stopped leads."""
+        at, moving = self._but_for(stopped)
         return at + self._motion(at, pose, moving, _path_following_LEAST_DAMPING)[0]
+
+    def _but_for(self, stopped: Mapping[int, float]) -> tuple[Array, list[int]]:
+        """Where the arm is but for joints that are stopped at values."""
+        at = self.q.copy()
+        for j, value in stopped.items():
+            at[j] = value
+        return at, [j for j in range(len(at)) if j not in stopped]
 
     def _motion(
         self, q: Array, pose: Array, moving: list[int], damping: float
@@ -3087,8 +3095,7 @@ class _Walk:
     def _rows(self, pose: Array) -> tuple[Array, _Flags, Status, Array]:
         """All rows without limits."""
         found = _solve_pose(self.arm, pose, None, self.q, False)
-        expected = self._expected(self.q, pose, list(range(len(self.q))))
-        return found.q, found.singular, found.status, expected
+        return found.q, found.singular, found.status, self._expected(pose, {})
 
 
 def _path_following_between(a: Array, b: Array) -> Array:

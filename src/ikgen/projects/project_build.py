@@ -28,8 +28,8 @@ INTERNAL_ERROR = 70
 class Outcome:
     """What happened to one arm: `reason` it was stale (empty: fresh, left alone), its files, and
     the error if it failed (`exit_code` then is not 0); `trace` is that of an internal error, `warnings`
-    are what has to be told of what was generated, `solutions` how many a pose has at most, `missed` in
-    words what the verification of each output missed, empty where that is nothing."""
+    are what has to be told of the file and of what was generated, `solutions` how many a pose has at
+    most, `missed` in words what the verification of each output missed, empty where that is nothing."""
 
     name: str
     reason: str
@@ -116,8 +116,8 @@ def _build_one(job: tuple[ArmConfig, str, bool]) -> Outcome:
     try:
         made = generate(arm.request, outputs)
     except IkgenError as error:
-        code = error.exit_code
-        return Outcome(arm.name, reason, (), 0.0, error.message, error.hint, code)
+        code, told = error.exit_code, error.warnings
+        return Outcome(arm.name, reason, (), 0.0, error.message, error.hint, code, warnings=told)
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
         return Outcome(arm.name, reason, message=f"{where}{error.strerror or error}", exit_code=2)

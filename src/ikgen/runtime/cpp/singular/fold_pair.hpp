@@ -104,11 +104,16 @@ template <class Arm> struct FoldPair {
     const PoseError<Arm> at(q, aim);
     left = slope = 0.0;
     for (int e = 0; e < kEquations; ++e) {
-      double flow = 0.0;
-      for (int k = 0; k < kMoving; ++k) flow += at.slope[e][kJoints[k]] * still[k];
       left += out[e] * at.error[e];
-      slope -= out[e] * flow;
+      slope -= out[e] * flow_of(at, e, still);
     }
+  }
+
+  // How a direction moves an entry of the pose's error.
+  static double flow_of(const PoseError<Arm>& at, int e, const Vector& along) noexcept {
+    double flow = 0.0;
+    for (int k = 0; k < kMoving; ++k) flow += at.slope[e][kJoints[k]] * along[k];
+    return flow;
   }
 
  private:
@@ -131,8 +136,7 @@ template <class Arm> struct FoldPair {
 
     Others(const Vector& along, const PoseError<Arm>& at) noexcept {
       for (int e = 0; e < kEquations; ++e) {
-        flow[e] = 0.0;
-        for (int k = 0; k < kMoving; ++k) flow[e] += at.slope[e][kJoints[k]] * along[k];
+        flow[e] = flow_of(at, e, along);
         for (int k = 0; k < kMoving; ++k) V[e][k] = at.slope[e][kJoints[k]] - flow[e] * along[k];
       }
       for (int a = 0; a < kMoving; ++a)

@@ -71,9 +71,7 @@ template <class Arm> struct NearSurface {
 
     Others(const Vector (&still)[2], const PoseError<Arm>& at) noexcept {
       for (int e = 0; e < kEquations; ++e) {
-        flow[0][e] = flow[1][e] = 0.0;
-        for (int i = 0; i < 2; ++i)
-          for (int k = 0; k < kMoving; ++k) flow[i][e] += at.slope[e][kJoints[k]] * still[i][k];
+        for (int i = 0; i < 2; ++i) flow[i][e] = Fold::flow_of(at, e, still[i]);
         for (int k = 0; k < kMoving; ++k)
           V[e][k] = at.slope[e][kJoints[k]] - flow[0][e] * still[0][k] - flow[1][e] * still[1][k];
       }
@@ -123,8 +121,7 @@ template <class Arm> struct NearSurface {
     for (const Vector& v : s.still) {
       double square = 0.0;
       for (int e = 0; e < kEquations; ++e) {
-        double x = 0.0;
-        for (int k = 0; k < kMoving; ++k) x += at.slope[e][kJoints[k]] * v[k];
+        const double x = Fold::flow_of(at, e, v);
         square += x * x;
       }
       s.flow = std::max(s.flow, std::sqrt(square));

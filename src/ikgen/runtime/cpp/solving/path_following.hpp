@@ -27,16 +27,16 @@ template <class A, class Solver> struct PathStep {
   // From a pose to the next; where halved steps lead far away or nowhere, as beside a singularity, to a row next to the
   // last one if there is one.
   Status go_on(const Eigen::Isometry3d& before, const Eigen::Isometry3d& pose) noexcept {
-    double here[kDof], there[kDof], nearby[kDof], row[kDof];
+    double here[kDof], there[kDof], expected[kDof], row[kDof];
     std::copy_n(q, kDof, here);
-    std::copy_n(q, kDof, nearby);
     left = kMost;
     const Status status = step(before, pose, 0);
     if (status == Status::Ok && farthest(q, here) < kAway) return status;
     std::copy_n(q, kDof, there);
     std::copy_n(here, kDof, q);
+    std::copy_n(here, kDof, expected);
     bool singular = false;
-    const Status why = next_row(pose, nearby, row, singular);
+    const Status why = next_row(pose, expected, row, singular);
     if (why == Status::Ok && farthest(row, here) < kFarthest && arrive(row) == Status::Ok) {
       crossed = true;
       return Status::Ok;
@@ -75,9 +75,9 @@ template <class A, class Solver> struct PathStep {
   Status begin([[maybe_unused]] const Eigen::Isometry3d& pose, const typename A::Joints& start) noexcept {
     std::copy_n(start.data(), kDof, q);
     if constexpr (A::kFree > 0) {
-      double row[kDof], nearby[kDof];
-      std::copy_n(q, kDof, nearby);
-      if (unstopped(pose, nearby, row, crossed) == Status::Ok && farthest(row, q) < 0.1) return arrive(row);
+      double row[kDof], expected[kDof];
+      std::copy_n(q, kDof, expected);
+      if (unstopped(pose, expected, row, crossed) == Status::Ok && farthest(row, q) < 0.1) return arrive(row);
     }
     return Status::Unreachable;
   }
@@ -164,9 +164,10 @@ template <class A, class Solver> struct PathStep {
       const bool arrived = newton(at, pose, stopped, row);
       const int joint = arrived ? farthest_out(row) : pulled_off(row, pose, stopped, released);
       if (joint < 0 && arrived) {
-        if (!any) break;
-        std::copy_n(at, kDof, expected);
-        move(expected, pose, stopped, kLeastDamping);
+        if (any) {
+          std::copy_n(at, kDof, expected);
+          move(expected, pose, stopped, kLeastDamping);
+        }
         break;
       }
       if (joint < 0) {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import inf
 from typing import Any
@@ -149,9 +149,17 @@ class _Walk:
         self.q = row
         return Status.OK
 
-    def _expected(self, at: Array, pose: Array, moving: list[int]) -> Array:
-        """Where the shortest motion by the Jacobian of some joints leads, the others as given."""
+    def _expected(self, pose: Array, stopped: Mapping[int, float]) -> Array:
+        """Where the shortest motion by the Jacobian of joints that are not stopped leads."""
+        at, moving = self._but_for(stopped)
         return at + self._motion(at, pose, moving, _LEAST_DAMPING)[0]
+
+    def _but_for(self, stopped: Mapping[int, float]) -> tuple[Array, list[int]]:
+        """Where the arm is but for joints that are stopped at values; the other joints."""
+        at = self.q.copy()
+        for j, value in stopped.items():
+            at[j] = value
+        return at, [j for j in range(len(at)) if j not in stopped]
 
     def _motion(
         self, q: Array, pose: Array, moving: list[int], damping: float
@@ -172,8 +180,7 @@ class _Walk:
         if self.arm.free_joints:
             return self._unstopped(pose)
         found = solve_pose(self.arm, pose, None, self.q, False)
-        expected = self._expected(self.q, pose, list(range(len(self.q))))
-        return found.q, found.singular, found.status, expected
+        return found.q, found.singular, found.status, self._expected(pose, {})
 
     def _unstopped(self, pose: Array) -> tuple[Array, Flags, Status, Array]:
         """The row next to the expected one that all joints reach together, those that it would take out
@@ -183,16 +190,13 @@ class _Walk:
         arm, stopped, released = self.arm, dict[int, float](), set[int]()
         low, high = np.array(arm.lower), np.array(arm.upper)
         while True:
-            moving = [j for j in range(len(self.q)) if j not in stopped]
-            at = self.q.copy()
-            for j, value in stopped.items():
-                at[j] = value
+            at, moving = self._but_for(stopped)
             q, error = self._newton(at, pose, moving)
             if error < arm.policy.arrived:
                 excess = np.maximum(low - q, q - high)
                 worst = int(excess.argmax())
                 if not self.limits or excess[worst] <= arm.policy.limit_tolerance:
-                    expected = self._expected(at, pose, moving)
+                    expected = self._expected(pose, stopped)
                     return q[None], self._singular(q[None]), Status.OK, expected
                 stopped[worst] = float(low[worst] if q[worst] < low[worst] else high[worst])
                 continue
@@ -200,10 +204,9 @@ class _Walk:
             if freed is None:
                 held = np.clip(q, low, high) if self.limits else q
                 rows = solve_pose(arm, pose, None, held, False).q
-                status = Status.LIMITS if stopped or released else Status.UNREACHABLE
-                status = Status.OK if len(rows) else status
-                expected = self._expected(self.q, pose, list(range(len(self.q))))
-                return rows, self._singular(rows), status, expected
+                why = Status.LIMITS if stopped or released else Status.UNREACHABLE
+                status = Status.OK if len(rows) else why
+                return rows, self._singular(rows), status, self._expected(pose, {})
             released.add(freed)
             del stopped[freed]
 
