@@ -17,7 +17,7 @@ from ikgen.generation.request import Outputs, Request
 pytestmark = pytest.mark.usefixtures("solved_once")
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
-STRICT = "-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror"
+STRICT = "-Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Werror"
 DEBUG = (
     "-DCMAKE_BUILD_TYPE=Debug",
     f"-DCMAKE_CXX_FLAGS_DEBUG={OPTIONS}",

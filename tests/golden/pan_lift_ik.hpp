@@ -37,6 +37,11 @@
 #include <emmintrin.h>
 #endif
 
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion"  // sizes and indices of arrays are int here, never negative
+#endif
+
 namespace pan_lift_ik {
 
 inline constexpr int kDof = 2;
@@ -3293,3 +3298,7 @@ inline Path follow(const Eigen::Isometry3d* poses, std::ptrdiff_t count, const J
 }
 
 }  // namespace pan_lift_ik
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif

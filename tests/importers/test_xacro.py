@@ -170,6 +170,26 @@ def test_errors_in_an_included_macro_name_the_line_of_its_expression(file):
         load_tree(file)
 
 
+MISTAKES = {
+    "a parameter left out": '<xacro:m len="1" side="2"/>',
+    "a parameter too many": '<xacro:m len="1" width="2" side="2" high="3"/>',
+    "no such macro": "<xacro:mm/>",
+    "no such block": '<xacro:insert_block name="origin"/>',
+    "no condition": '<xacro:if value="maybe"/>',
+    "no such variable": '<link name="$(env IKGEN_HAS_NO_SUCH)"/>',
+    "no such instruction": '<link name="$(first second)"/>',
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_a_mistake_is_named_with_its_line(file, mistake):
+    macro = '<xacro:macro name="m" params="len width side"/>'
+    right = '<xacro:m len="1" width="2" side="3"/>'
+    with pytest.raises(BadDescriptionError, match="xacro cannot expand the file") as caught:
+        load_tree(write(file, macro, right, MISTAKES[mistake], right))
+    assert caught.value.line == 4
+
+
 def test_bad_yaml_names_its_line(file):
     write(file, "<link name=\"${xacro.load_yaml('bad.yaml')}\"/>")
     (file.parent / "bad.yaml").write_text("a: 1\nb: [1,\n")

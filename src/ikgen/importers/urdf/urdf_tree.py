@@ -85,7 +85,10 @@ def _tree(root: Element, source: Source, warnings: Sequence[str]) -> JointTree:
     roots = find_roots(links, joints)
     if len(roots) > 1:
         others = ", ".join(f"'{link}'" for link, _ in roots[1:])
-        place.warn(None, f"several root links: took '{roots[0][0]}', which has most; also {others}")
+        place.warn(
+            None,
+            f"several root links: took '{roots[0][0]}', the one with most joints below it; also {others}",
+        )
     name = _robot_name(root, source.path, place)
     return JointTree(
         name, links, joints, roots[0][0], replace(source, warnings=tuple(place.warnings))

@@ -19,7 +19,20 @@ __all__ = ["explain"]
 
 _LONGEST_MESSAGE = 400
 
-_EXPRESSION = re.compile(r"when evaluating expression '(.*)'")
+_CALL = r"<xacro:{macro}(?=[\s/>])"
+_PLACES = (
+    (r"when evaluating expression '(.*)'", r"\$\{{\s*{text}"),
+    (r"unknown macro name: (\S+)", r"<{text}(?=[\s/>])"),
+    (r"Undefined parameters \[([^],]+)", _CALL + r"(?![^>]*\s{text}\s*=)"),
+    (r'Invalid parameter "([^"]+)"', _CALL + r"[^>]*\s{text}\s*="),
+    (r'Undefined block "([^"]+)"', r"insert_block\s[^>]*[\"']{text}[\"']"),
+    (r'conditional "(.*?)" evaluated', r"value\s*=\s*[\"']{text}[\"']"),
+    (r"environment variable '([^']+)'", r"\$\(env\s+{text}"),
+    (r"Unknown substitution command \[(.*?)\]", r"\$\({text}"),
+)
+"""What xacro says, with the text that it names, and what stands at the place that it is about: patterns,
+the second one to be filled in. `macro` is the innermost that is being expanded."""
+
 _ARGUMENT_TAG = re.compile(r"<xacro:arg\b[^>]*>")
 _NAME = re.compile(r"""\bname\s*=\s*["']([^"']*)""")
 
@@ -53,12 +66,9 @@ def _unexplained(error: Exception, files: Sequence[Path], name: str) -> BadDescr
     message = str(inner) if inner is not None and outer.startswith("<class") else outer
     macros = [macro.body.getAttribute("name") for macro in getattr(error, "macros", ())]
     within = f" (in macro '{macros[0]}')" if macros else ""
-    line = None
-    expression = _EXPRESSION.search(message)
-    if expression is not None:
-        # The stack names the file that calls a macro, not the one with the macro's text.
-        pattern = r"\$\{\s*" + re.escape(expression.group(1).strip())
-        name, line = place_of(pattern, files, name)
+    pattern = _pattern(message, macros[0] if macros else "")
+    # The stack names the file that calls a macro, not the one with the macro's text.
+    name, line = place_of(pattern, files, name) if pattern else (name, None)
     message = shortened(" ".join(message.split()), _LONGEST_MESSAGE)
     return BadDescriptionError(
         f"xacro cannot expand the file: {message or type(error).__name__}{within}",
@@ -66,6 +76,16 @@ def _unexplained(error: Exception, files: Sequence[Path], name: str) -> BadDescr
         line=line,
         hint=_old_spelling(files) or "check the expression or macro that the message names",
     )
+
+
+def _pattern(message: str, macro: str) -> str:
+    """What stands where an expansion failed, as a pattern, "" where that is not known."""
+    for said, place in _PLACES:
+        found = re.search(said, message)
+        if found is not None:
+            name = re.escape(macro.removeprefix("xacro:"))
+            return place.format(text=re.escape(found[1].strip()), macro=name)
+    return ""
 
 
 def _old_spelling(files: Sequence[Path]) -> str:
