@@ -18,7 +18,7 @@ class Reached:
     along whose names stand behind a dot somewhere."""
 
     def __init__(self, shell: RuntimeSource, facts: Facts, instead: Mapping[Key, Key]) -> None:
-        own = {n for d in shell.definitions for n in d.defines}
+        own = set(shell.defining)
         if own & set(shell.internal):
             twice = ", ".join(sorted(own & set(shell.internal)))
             raise ValueError(f"names imported and defined: {twice}")
@@ -57,7 +57,7 @@ class Reached:
 
     def local_names(self, module: RuntimeSource) -> dict[str, str]:
         """What the names that a module defines or imports are in the bundle."""
-        own = {name: (module.name, name) for one in module.definitions for name in one.defines}
+        own = {name: (module.name, name) for name in module.defining}
         keys = {**own, **module.internal}
         return {n: self.names.get(self._instead.get(k, k), n) for n, k in keys.items()}
 
@@ -108,14 +108,13 @@ def _private(name: str) -> str:
 
 
 def _definition(module: RuntimeSource, name: str) -> Definition:
-    for one in module.definitions:
-        if name in one.defines:
-            return one
-    raise ValueError(f"the runtime's module {module.name} does not define {name}")
+    if name not in module.defining:
+        raise ValueError(f"the runtime's module {module.name} does not define {name}")
+    return module.defining[name]
 
 
 def _owner(module: RuntimeSource, name: str) -> Key | None:
     """Where a name of a module is defined; None where not in the runtime."""
-    if any(name in one.defines for one in module.definitions):
+    if name in module.defining:
         return (module.name, name)
     return module.internal.get(name)

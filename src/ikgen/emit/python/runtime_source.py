@@ -11,7 +11,7 @@ from importlib.resources import files
 
 from ikgen.emit.python.docstrings import Docstring, docstrings
 from ikgen.emit.python.import_lines import External
-from ikgen.emit.python.settled_branches import Facts, settled
+from ikgen.emit.python.settled_branches import Facts, facts_in, settled
 
 __all__ = ["PACKAGE", "Definition", "Member", "RuntimeSource", "read_source", "taken_apart"]
 
@@ -83,13 +83,14 @@ class Definition:
 
 @dataclass(frozen=True, slots=True)
 class RuntimeSource:
-    """`name`: `folder.module`; `internal`: name -> (module, name there) of what it imports of the runtime;
-    `external`: what it imports else; `imports`: the lines (first, last, from 1) from its first import to
-    its last."""
+    """`name`: `folder.module`; `defining`: name -> its definition; `internal`: name -> (module, name there)
+    of what it imports of the runtime; `external`: what it imports else; `imports`: the lines (first, last,
+    from 1) from its first import to its last."""
 
     name: str
     docstring: str
     definitions: tuple[Definition, ...]
+    defining: Mapping[str, Definition]
     internal: Mapping[str, tuple[str, str]]
     external: tuple[External, ...]
     imports: tuple[int, int]
@@ -98,9 +99,18 @@ class RuntimeSource:
 @cache
 def read_source(name: str, facts: Facts = ()) -> RuntimeSource:
     """The runtime's `folder.module`, without what an arm of which `facts` are known never reaches."""
-    text = (files(PACKAGE) / f"{name.replace('.', '/')}.py").read_text(encoding="utf-8")
-    left = settled(text, facts)
-    return read_source(name) if facts and left == text else taken_apart(name, left)
+    return _source(name, facts_in(_text(name), facts))
+
+
+@cache
+def _text(name: str) -> str:
+    return (files(PACKAGE) / f"{name.replace('.', '/')}.py").read_text(encoding="utf-8")
+
+
+@cache
+def _source(name: str, facts: Facts) -> RuntimeSource:
+    left = settled(_text(name), facts)
+    return _source(name, ()) if facts and left == _text(name) else taken_apart(name, left)
 
 
 def taken_apart(name: str, text: str, *, moved: bool = True) -> RuntimeSource:
@@ -130,14 +140,16 @@ def taken_apart(name: str, text: str, *, moved: bool = True) -> RuntimeSource:
             if moved and not definitions[-1].defines:
                 raise ValueError(f"{name}, line {node.lineno}: only definitions can be bundled")
         above = node.end_lineno or node.lineno
-    own = {n for d in definitions for n in d.defines} | set(internal)
+    defining = {n: d for d in definitions for n in d.defines}
+    own = {*defining, *internal}
     for node in parts if moved else ():
         shadows = sorted(set(_locals(node, parts[node])) & own)
         if shadows:
             raise ValueError(f"{name}, line {node.lineno}: local names of the module: {shadows}")
     span = (min(imports), max(imports)) if imports else (0, 0)
     docstring = ast.get_docstring(tree) or ""
-    return RuntimeSource(name, docstring, tuple(definitions), internal, tuple(external), span)
+    made = tuple(definitions)
+    return RuntimeSource(name, docstring, made, defining, internal, tuple(external), span)
 
 
 def _is_about_the_module(node: ast.stmt) -> bool:

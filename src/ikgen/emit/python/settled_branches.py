@@ -6,7 +6,7 @@ import ast
 from collections.abc import Callable, Iterator, Mapping
 from itertools import pairwise
 
-__all__ = ["SOME", "Facts", "settled"]
+__all__ = ["SOME", "Facts", "facts_in", "settled"]
 
 Facts = tuple[tuple[str, object], ...]
 """What is known of an `Arm` when its module is written: names of attributes (`rounded`,
@@ -34,21 +34,23 @@ def settled(text: str, facts: Facts) -> str:
     """A module's text without what conditions on attributes of `arm`, or of a member `arm`, leave out of
     its definitions, and without statements behind the end of a block there; `Arm` itself with the types
     that the attributes have."""
-    known = dict(facts)
-    if not _says(text, known):
+    if not facts_in(text, facts):
         return text
     lines = text.split("\n")
     for node in reversed(ast.parse(text).body):
         span = slice(node.lineno - 1, node.end_lineno)
         part = "\n".join(lines[span])
-        if _says(part, known):
-            lines[span] = _settled(part, known).split("\n")
+        known = facts_in(part, facts)
+        if known:
+            lines[span] = _settled(part, dict(known)).split("\n")
     return "\n".join(lines)
 
 
-def _says(text: str, known: _Known) -> bool:
-    """Whether anything of a text hangs on what is known."""
-    return "class Arm:" in text or any(f"arm.{name}" in text for name in known)
+def facts_in(text: str, facts: Facts) -> Facts:
+    """Those that a text hangs on."""
+    if "class Arm:" in text:
+        return facts
+    return tuple(one for one in facts if f"arm.{one[0]}" in text)
 
 
 def _settled(text: str, known: _Known) -> str:
