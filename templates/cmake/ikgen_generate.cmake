@@ -104,7 +104,7 @@ function(ikgen_generate target)
     ${depfile}
     COMMENT "Generating inverse kinematics ${arg_NAME}_ik from ${arg_ROBOT}"
     VERBATIM)
-  add_custom_target(${target}_generate DEPENDS "${stamp}")
+  add_custom_target(${target}_generate ALL DEPENDS "${stamp}")
 
   _ikgen_add_library(${target} "${arg_NAME}" "${folder}" ${has_header})
   add_dependencies(${target} ${target}_generate)

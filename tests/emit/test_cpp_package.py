@@ -8,11 +8,13 @@ import pytest
 from tests.support.held_arms import held_module
 from tests.support.precompiled import OPTIONS
 from tests.support.sampled import sampled
+from tests.support.solving import NO_COMPILER
 from tests.support.tools import needs_cmake, printed
 
 from ikgen.emit.cpp.cpp_package import emit
 from ikgen.generation.generate import generate
 from ikgen.generation.request import Outputs, Request
+from ikgen.verify.runners.cpp_toolchain import find_compiler, find_eigen
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
@@ -64,3 +66,16 @@ def test_the_page_says_what_is_held(tmp_path: Path) -> None:
     for name, held in {"arm_angle": "arm_angle", "franka_fr3": "fr3_joint7"}.items():
         page = emit(held_module(name, tmp_path))[f"{name}_ik_cpp/README.md"]
         assert f"`Options::free`: `{held}`." in page
+
+
+@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER)
+def test_release_builds_of_later_standards_have_no_warnings(tmp_path: Path) -> None:
+    """At -O3 compilers look for values that were never set, and C++20 deprecates much that C++17 takes."""
+    request = Request(FIXTURES / "doosan_m1013.urdf", name="arm")
+    made = generate(request, Outputs(emit=("cpp",), out=tmp_path, verify=False))
+    assert made.derivation.module.refine == "all"
+    (tmp_path / "user.cpp").write_text(PROGRAM.format(name="arm_ik"))
+    printed(
+        *find_compiler(), "-std=c++20", "-O3", *STRICT.split(), "-isystem", find_eigen(),
+        "-c", tmp_path / "user.cpp", "-I", tmp_path, "-o", tmp_path / "user.o",
+    )  # fmt: skip

@@ -251,3 +251,12 @@ def test_what_others_have_in_a_folder_is_not_left(
     (package / "generated/notes_ik.json").write_text("[]")
     assert run(["build", "--no-verify"]) == 0
     assert "no arm of" not in capsys.readouterr().err
+
+
+def test_which_joints_are_held_is_said(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    robot = FIXTURES / "franka_fr3.urdf"
+    (package / "ikgen.toml").write_text(
+        f'[[arm]]\nname = "fr3"\nrobot = "{robot.as_posix()}"\ntip = "fr3_link8"\n'
+    )
+    assert run(["build", str(package / "ikgen.toml"), "--no-verify"]) == 0
+    assert "fr3: holding fr3_joint7: " in capsys.readouterr().err

@@ -54,7 +54,10 @@ class IkgenBuildHook(BuildHookInterface):  # type: ignore[type-arg]
                 raise IkgenError(f"{outcome.name}: {outcome.message}", hint=outcome.hint)
             for path in outcome.files:
                 inside = os.path.relpath(path.resolve(), root.resolve())
-                build_data["force_include"][str(path.resolve())] = _in_wheel(Path(inside))
+                place = Path(inside).as_posix()  # where it is: a source distribution is the project
+                if self.target_name != "sdist":
+                    place = _in_wheel(Path(inside))
+                build_data["force_include"][str(path.resolve())] = place
 
     def _say(self, stage: str, detail: str) -> None:
         self.app.display_info(f"ikgen: {detail}")

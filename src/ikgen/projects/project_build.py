@@ -29,7 +29,8 @@ class Outcome:
     """What happened to one arm: `reason` it was stale (empty: fresh, left alone), its files, and
     the error if it failed (`exit_code` then is not 0); `trace` is that of an internal error, `warnings`
     are what has to be told of the file and of what was generated, `solutions` how many a pose has at
-    most, `missed` in words what the verification of each output missed, empty where that is nothing."""
+    most, `missed` in words what the verification of each output missed, empty where that is nothing;
+    `held` says which joints were chosen to be held, and why."""
 
     name: str
     reason: str
@@ -42,6 +43,7 @@ class Outcome:
     warnings: tuple[str, ...] = ()
     solutions: int = 0
     missed: str = ""
+    held: str = ""
 
 
 def build_arms(
@@ -126,6 +128,7 @@ def _build_one(job: tuple[ArmConfig, str, bool]) -> Outcome:
     told = announcements(made.derivation)
     most = made.derivation.module.max_solutions
     missed = "; ".join(f"{n} {r.missed_words}" for n, r in made.reports.items() if r.missed)
+    held = made.derivation.held
     return Outcome(
         arm.name,
         reason,
@@ -134,6 +137,7 @@ def _build_one(job: tuple[ArmConfig, str, bool]) -> Outcome:
         warnings=told,
         solutions=most,
         missed=missed,
+        held=held.words if held is not None else "",
     )
 
 

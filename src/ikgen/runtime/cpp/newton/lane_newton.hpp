@@ -133,7 +133,7 @@ template <class Arm> struct LaneNewton {
   template <int P, int N, bool H, bool F>
   static void refine_pack(const Pose<P>& pose, const LaneAim<Arm, N>& aim, const Range& range, int at,
                           const LanesOf<N, H>& given, const LanesOf<N, F>& flags, Rows<P>& rows) noexcept {
-    const Mask<N> doubt = given > 0.5 + kReal, started = given > 0.5;
+    const Mask<N> doubt = given > 0.5 + double{kReal}, started = given > 0.5;
     LaneChain<Arm, N> chain;
     for (int j = 0; j < Arm::kDof; ++j) chain.q[j] = load<N>(rows.q[j] + at);
     const Arrival<N> at_end = steps<P, N>(pose, aim, started, chain);
@@ -165,7 +165,7 @@ template <class Arm> struct LaneNewton {
   // Steps until all lanes are done, or as many as there may be.
   template <int P, int N>
   static Arrival<N> steps(const Pose<P>& pose, LaneAim<Arm, N> aim, const Mask<N>& real, LaneChain<Arm, N>& chain) noexcept {
-    Factors<N> factors;
+    Factors<N> factors{};
     Lanes<N> before = spread<N>(Policy::kFarthestStart), rest = before;
     Mask<N> good = real, done = !real, strained = done;
     chain.start();
