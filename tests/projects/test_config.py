@@ -260,3 +260,18 @@ def test_which_joints_are_held_is_said(package: Path, capsys: pytest.CaptureFixt
     )
     assert run(["build", str(package / "ikgen.toml"), "--no-verify"]) == 0
     assert "fr3: holding fr3_joint7: " in capsys.readouterr().err
+
+
+def test_a_record_that_a_config_lists_is_mended_by_the_config(
+    package: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["build", "--no-verify", "-q"]) == 0
+    (package / "generated/small_ik.py").unlink()
+    for target in ("generated/small_ik.json", "generated"):
+        capsys.readouterr()
+        assert run(["verify", target, "--samples", "20"]) == 1
+        text = "".join(capsys.readouterr())
+        assert "ikgen build ikgen.toml" in text and "from-urdf" not in text
+    (package / "ikgen.toml").write_text("[[arm]]\nwhat = 1\n")
+    assert run(["verify", "generated/small_ik.json", "--samples", "20"]) == 1
+    assert "ikgen from-urdf" in "".join(capsys.readouterr())

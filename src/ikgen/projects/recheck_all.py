@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -71,9 +72,9 @@ def _records(target: Path | None, robot: Path | None) -> list[tuple[Path, str | 
     if target.is_dir():
         half = [target / name for name in interrupted(target) if name.endswith(SUFFIX)]
         whole = [] if half and not any(target.rglob(f"*{SUFFIX}")) else find_records(target)
-        return [(path, None) for path in dict.fromkeys([*half, *whole])]
+        return [(path, _listed(path, robot)) for path in dict.fromkeys([*half, *whole])]
     if target.suffix.lower() == ".json":
-        return [(target, None)]
+        return [(target, _listed(target, robot))]
     if not target.is_file():
         raise UsageError(
             f"{target}: no such file or directory",
@@ -81,6 +82,20 @@ def _records(target: Path | None, robot: Path | None) -> list[tuple[Path, str | 
         )
     command = mending(target) if robot is None else None
     return [(path, command) for arm in load_config(target) for path in arm.records]
+
+
+def _listed(path: Path, robot: Path | None) -> str | None:
+    """The command that makes a record's outputs again where the nearest config above lists them."""
+    configs = (default_config(folder) for folder in path.resolve().parents)
+    config = next((one for one in configs if one is not None), None)
+    if config is None or robot is not None:
+        return None
+    try:
+        listed = [one.resolve() for arm in load_config(config) for one in arm.records]
+    except IkgenError:  # that of whoever checks the config
+        return None
+    near = Path(os.path.relpath(config))
+    return mending(near) if path.resolve() in listed else None
 
 
 def write_junit(path: Path, results: Sequence[Recheck]) -> None:
