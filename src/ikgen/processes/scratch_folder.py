@@ -83,7 +83,8 @@ class ScratchFolder:
 def _unwritable(place: Path | None, error: OSError) -> UsageError:
     """What to say where nothing more can be written to a place: the system's words name none."""
     where = place or os.environ.get("TMPDIR") or "/tmp"
-    hint = "make room there, or name another folder" if place else "make room there, or set TMPDIR"
+    first = "make room there" if error.errno in _NO_ROOM else "make it writable"
+    hint = f"{first}, or {'name another folder' if place else 'set TMPDIR'}"
     return UsageError(f"cannot write to '{where}': {error.strerror or error}", hint=hint)
 
 
