@@ -203,3 +203,12 @@ def test_slides_and_the_tool_measure_an_arm_without_links(tmp_path: Path) -> Non
     reading = read(Request(telescope_robot(tmp_path), task="position"))
     choices = held_choices(reading, find_task("position"))
     assert choices[0].held == ("pitch",) and all(len(choice.held) == 1 for choice in choices)
+
+
+@pytest.mark.parametrize("robot", ["ur5e", "kuka_kr6r900sixx"])
+def test_a_position_is_reached_by_what_carries_the_tool_far(robot: str) -> None:
+    """A wrist alone moves the tool by some centimetres, however wide the ranges of what it leaves held."""
+    derivation = derive(Request(ROOT / f"urdf_fixtures/{robot}.urdf", task="position"))
+    dh = derivation.reading.dh
+    names = [joint.name for joint in dh.joints]
+    assert sorted(names.index(name) for name in dh.free) == [3, 4, 5]

@@ -37,6 +37,9 @@ _WIDE = 0.9
 _POOR = 0.3
 """Choices of a class that are conditioned worse than its best by this factor come last in it."""
 
+_SMALL = 0.3
+"""So do those whose joints reach by this factor less, as a wrist does that moves the tool alone."""
+
 _LOOKED_AT = 128
 """Configurations at which the conditioning is looked at; fewer of them where there are many choices."""
 
@@ -55,7 +58,9 @@ class HeldChoice:
     file's own. `span` is what the held joints' limits leave them, in turns and lengths of the arm;
     `condition` the geometric mean of smallest over largest singular value of what moves, over
     configurations inside the limits, half of them with the held joints at their defaults: one that is
-    near a singularity more often has less, and far less than the best of its class is `poor`.
+    near a singularity more often has less. `volume` is that of the product of these values, by which
+    small motions of all that moves fill the task's space. Far less of one than the best of its class is
+    `poor`.
     """
 
     held: tuple[str, ...]
@@ -63,6 +68,7 @@ class HeldChoice:
     form: int
     span: float
     condition: float
+    volume: float
     near: bool = False
     poor: bool = False
 
@@ -132,7 +138,7 @@ def held_choices(reading: Reading, task: Task) -> tuple[HeldChoice, ...]:
         return ()
     inside = _inside(dh)
     everywhere = scaled_motion(dh, task, inside[: max(_FEWEST, _IN_ALL // len(able))])
-    full = [(kept, _condition(everywhere[:, :, kept])) for kept in able]
+    full = [(kept, *_measures(everywhere[:, :, kept])) for kept in able]
     found = _ranked(dh, full)
     other = nearby(reading)
     if other is not None and other.rows != dh.rows:
@@ -144,10 +150,16 @@ def held_choices(reading: Reading, task: Task) -> tuple[HeldChoice, ...]:
 
 def _sorted(choices: Sequence[HeldChoice]) -> list[HeldChoice]:
     """Best first."""
-    best: dict[int, float] = {}
+    best: dict[int, tuple[float, float]] = {}
     for one in choices:
-        best[one.form] = max(one.condition, best.get(one.form, 0.0))
-    found = [replace(one, poor=one.condition < _POOR * best[one.form]) for one in choices]
+        condition, volume = best.get(one.form, (0.0, 0.0))
+        best[one.form] = max(one.condition, condition), max(one.volume, volume)
+
+    def is_poor(one: HeldChoice) -> bool:
+        condition, volume = best[one.form]
+        return one.condition < _POOR * condition or one.volume < _SMALL * volume
+
+    found = [replace(one, poor=is_poor(one)) for one in choices]
 
     def group(one: HeldChoice) -> tuple[int, bool, bool]:
         return one.form, one.near, one.poor
@@ -165,14 +177,14 @@ def _sorted(choices: Sequence[HeldChoice]) -> list[HeldChoice]:
     return sorted(found, key=key)
 
 
-def _ranked(dh: DHChain, kept: Sequence[tuple[Sequence[int], float]]) -> list[HeldChoice]:
-    """A choice for each set of joints that move, by index, with how well it is conditioned."""
+def _ranked(dh: DHChain, kept: Sequence[tuple[Sequence[int], float, float]]) -> list[HeldChoice]:
+    """A choice for each set of joints that move, by index, with its condition and volume."""
     from ikgen.kinematics.axis_relations import axis_relations, reach
     from ikgen.kinematics.form_class import form_class
 
     relations, length = axis_relations(dh), reach(dh)
     found = []
-    for joints, condition in kept:
+    for joints, condition, volume in kept:
         rows = [i for i, row in enumerate(dh.rows) if row.driver in joints]
         held = [j for j in _moving(dh) if j not in joints]
         names = tuple(dh.joints[j].name for j in held)
@@ -183,6 +195,7 @@ def _ranked(dh: DHChain, kept: Sequence[tuple[Sequence[int], float]]) -> list[He
                 form_class(dh.rows, rows, relations),
                 round(sum(_span(dh.joints[j], length) for j in held), 6),
                 float(f"{condition:.2g}"),
+                float(f"{volume:.2g}"),
             )
         )
     return found
@@ -234,16 +247,18 @@ def _by_default(choices: Sequence[HeldChoice], task: Task, inside: Matrix) -> li
     motions = np.split(scaled_motion(choices[0].dh, task, np.concatenate(every)), len(choices))
     out = []
     for choice, motion in zip(choices, motions, strict=True):
-        default = _condition(motion[:, :, _moving(choice.dh)])
+        default, _ = _measures(motion[:, :, _moving(choice.dh)])
         both = float(f"{math.sqrt(choice.condition * default):.2g}")
         out.append(replace(choice, condition=both))
     return out
 
 
-def _condition(motion: Matrix) -> float:
-    """The geometric mean over the samples of smallest over largest singular value."""
+def _measures(motion: Matrix) -> tuple[float, float]:
+    """The geometric means over the samples of smallest over largest singular value, and of the product of
+    all (Yoshikawa 1985, manipulability)."""
     import numpy as np
 
     values = np.linalg.eigvalsh(motion.transpose(0, 2, 1) @ motion)
     ratios = np.maximum(values[:, 0] / np.maximum(values[:, -1], 1e-24), 1e-24)
-    return float(np.exp(0.5 * np.log(ratios).mean()))
+    volumes = np.log(np.maximum(values, 1e-24)).sum(axis=1)
+    return float(np.exp(0.5 * np.log(ratios).mean())), float(np.exp(0.5 * volumes.mean()))
