@@ -87,7 +87,7 @@ def test_stale_and_wrong_outputs(called: Called) -> None:
     write_robot(Path("elbow.urdf"), reach=0.4)
     code, found = called("verify", "elbow_ik.json", "--samples", "20")
     assert code == found["error"]["exit_code"] == 1 and not found["passed"]
-    assert "ikgen from-urdf elbow.urdf" in found["error"]["hint"]
+    assert found["error"]["hint"] == "ikgen build ikgen.toml"
 
 
 def test_an_internal_error(called: Called, monkeypatch: pytest.MonkeyPatch) -> None:
