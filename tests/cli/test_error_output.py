@@ -90,6 +90,15 @@ def test_stale_and_wrong_outputs(called: Called) -> None:
     assert found["error"]["hint"] == "ikgen build ikgen.toml"
 
 
+def test_a_report_that_cannot_be_written(called: Called) -> None:
+    code, _ = called("from-urdf", "elbow.urdf", "--task", "position", "--no-verify")
+    assert code == 0
+    code, found = called(
+        "verify", "elbow_ik.json", "--samples", "20", "--junit-xml", "elbow.urdf/ik.xml"
+    )
+    assert code == found["error"]["exit_code"] == 2 and "elbow.urdf" in found["error"]["message"]
+
+
 def test_an_internal_error(called: Called, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_: object, **__: object) -> None:
         raise RuntimeError("broken\nin two")

@@ -108,6 +108,8 @@ def test_what_puts_a_choice_behind_is_its_class_first() -> None:
     assert choices[0].behind(choices[1]) == ""
     alike = dataclasses.replace(choices[0], condition=choices[0].condition / 2)
     assert alike.behind(choices[0]) == "worse conditioned"
+    short = dataclasses.replace(choices[0], poor=True)  # of a volume that is small
+    assert short.behind(choices[0]) == "less reach" and choices[0].behind(short) == ""
     assert choices[0].ranking.startswith(
         "class: position apart from rotation, two branches a step; "
     )

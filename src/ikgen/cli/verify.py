@@ -86,12 +86,14 @@ def verify(
         except IkgenError as error:
             annotate_error(error)
             raise
+    _print(results, as_json=as_json, quiet=quiet, verbose=verbose)
+    if (
+        junit_xml is not None
+    ):  # what was found is told where it cannot be written; of JSON there is one object
+        write_junit(junit_xml, results)
     code = max((result.exit_code for result in results), default=0)
     if as_json:
         click.echo(json.dumps(as_dict(results, code), indent=2, allow_nan=False))
-    _print(results, as_json=as_json, quiet=quiet, verbose=verbose)
-    if junit_xml is not None:  # last: what was found is told where it cannot be written
-        write_junit(junit_xml, results)
     return code
 
 

@@ -35,10 +35,8 @@ _WIDE = 0.9
 """Of the widest range of the held joints: from there on it is much the same."""
 
 _POOR = 0.3
-"""Choices of a class that are conditioned worse than its best by this factor come last in it."""
-
-_SMALL = 0.3
-"""So do those whose joints reach by this factor less, as a wrist does that moves the tool alone."""
+"""Choices of a class that are conditioned worse than its best by this factor, or whose joints reach as much
+less, as a wrist does that moves the tool alone, come last in it."""
 
 _LOOKED_AT = 128
 """Configurations at which the conditioning is looked at; fewer of them where there are many choices."""
@@ -58,9 +56,9 @@ class HeldChoice:
     file's own. `span` is what the held joints' limits leave them, in turns and lengths of the arm;
     `condition` the geometric mean of smallest over largest singular value of what moves, over
     configurations inside the limits, half of them with the held joints at their defaults: one that is
-    near a singularity more often has less. `volume` is that of the product of these values, by which
-    small motions of all that moves fill the task's space. Far less of one than the best of its class is
-    `poor`.
+    near a singularity more often has less. `volume` is the mean of the product of all singular values,
+    of how much of the task's space small motions fill. `poor`: whether it has far less of either than the
+    best of its class.
     """
 
     held: tuple[str, ...]
@@ -97,7 +95,8 @@ class HeldChoice:
             later = (self.form, self.near) > (taken.form, taken.near)
             return self.class_words if later else ""
         if self.poor != taken.poor:
-            return "worse conditioned" if self.poor else ""
+            words = "worse conditioned" if self.condition < taken.condition else "less reach"
+            return words if self.poor else ""
         narrower = self.span < taken.span
         if min(self.span, taken.span) < _WIDE * max(self.span, taken.span):
             return "a narrower range" if narrower else ""
@@ -155,11 +154,11 @@ def _sorted(choices: Sequence[HeldChoice]) -> list[HeldChoice]:
         condition, volume = best.get(one.form, (0.0, 0.0))
         best[one.form] = max(one.condition, condition), max(one.volume, volume)
 
-    def is_poor(one: HeldChoice) -> bool:
+    def poor(one: HeldChoice) -> bool:
         condition, volume = best[one.form]
-        return one.condition < _POOR * condition or one.volume < _SMALL * volume
+        return one.condition < _POOR * condition or one.volume < _POOR * volume
 
-    found = [replace(one, poor=is_poor(one)) for one in choices]
+    found = [replace(one, poor=poor(one)) for one in choices]
 
     def group(one: HeldChoice) -> tuple[int, bool, bool]:
         return one.form, one.near, one.poor

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -72,9 +73,9 @@ def _records(target: Path | None, robot: Path | None) -> list[tuple[Path, str | 
     if target.is_dir():
         half = [target / name for name in interrupted(target) if name.endswith(SUFFIX)]
         whole = [] if half and not any(target.rglob(f"*{SUFFIX}")) else find_records(target)
-        return [(path, _listed(path, robot)) for path in dict.fromkeys([*half, *whole])]
+        return _with_configs(list(dict.fromkeys([*half, *whole])), robot)
     if target.suffix.lower() == ".json":
-        return [(target, _listed(target, robot))]
+        return _with_configs([target], robot)
     if not target.is_file():
         raise UsageError(
             f"{target}: no such file or directory",
@@ -84,18 +85,24 @@ def _records(target: Path | None, robot: Path | None) -> list[tuple[Path, str | 
     return [(path, command) for arm in load_config(target) for path in arm.records]
 
 
-def _listed(path: Path, robot: Path | None) -> str | None:
-    """The command that makes a record's outputs again where the nearest config above lists them."""
-    configs = (default_config(folder) for folder in path.resolve().parents)
-    config = next((one for one in configs if one is not None), None)
-    if config is None or robot is not None:
-        return None
-    try:
-        listed = [one.resolve() for arm in load_config(config) for one in arm.records]
-    except IkgenError:  # that of whoever checks the config
-        return None
-    near = Path(os.path.relpath(config))
-    return mending(near) if path.resolve() in listed else None
+def _with_configs(records: Sequence[Path], robot: Path | None) -> list[tuple[Path, str | None]]:
+    """Records, each with the command that makes it again where the nearest config above lists it."""
+
+    @cache
+    def listed(config: Path) -> frozenset[Path]:
+        try:
+            return frozenset(one.resolve() for arm in load_config(config) for one in arm.records)
+        except IkgenError:  # told by whoever checks the config
+            return frozenset()
+
+    def command(record: Path) -> str | None:
+        configs = (default_config(folder) for folder in record.parents)
+        config = next((one for one in configs if one is not None), None)
+        if config is None or record not in listed(config):
+            return None
+        return mending(Path(os.path.relpath(config)))
+
+    return [(path, command(path.resolve()) if robot is None else None) for path in records]
 
 
 def write_junit(path: Path, results: Sequence[Recheck]) -> None:
