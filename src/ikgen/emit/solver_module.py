@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ikgen.elimination.plan import EliminationPlan
 from ikgen.kinematics.displacement import displacements
+from ikgen.kinematics.forward import dh_frames
 from ikgen.kinematics.position_unit import position_unit
 from ikgen.kinematics.whole_turns import turns_freely
 from ikgen.model.dh import DHChain
@@ -82,6 +83,12 @@ class SolverModule:
         """Which rows take Newton steps on the file's own chain: "some" (those of a continuum or on the
         boundary, where the closed form lost digits) or "all" (the file rounds its geometry)."""
         return "all" if refines_all(self.dh, self.plan) else "some"
+
+    @property
+    def solved_frames(self) -> tuple[NDArray[np.float64], ...]:
+        """The constants (4, 4) of the chain that was solved, as the file's are in `program.frames`; empty
+        where the closed form is the file's."""
+        return dh_frames(self.dh) if self.refine == "all" else ()
 
     @property
     def policy(self) -> SolvePolicy:

@@ -18,6 +18,7 @@ from ikgen.model.joint_tree import Matrix
 
 __all__ = [
     "dh_forward",
+    "dh_frames",
     "file_forward",
     "file_jacobian",
     "file_slopes",
@@ -34,6 +35,11 @@ def dh_forward(dh: DHChain, q: ArrayLike) -> Matrix:
     for i, row in enumerate(dh.rows):
         T = product(T, row_constant(row), z_motion(row.revolute, values[..., i]))
     return np.asarray(product(T, dh.X_tip))
+
+
+def dh_frames(dh: DHChain) -> tuple[Matrix, ...]:
+    """The n + 1 constants (4, 4) of the exact DH rows, as `file_frames` has those of the file's chain."""
+    return (dh.X_base, *(row_constant(row) for row in dh.rows[1:]), dh.X_tip)
 
 
 def file_forward(dh: DHChain, q: ArrayLike) -> Matrix:

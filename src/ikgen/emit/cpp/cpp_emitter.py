@@ -92,6 +92,7 @@ def _shell(module: SolverModule, branches: list[int]) -> str:
         rough=_rough(module, module.policy),
         order=_depth_first(branches),
         frames=[[[expression(CONSTANT, x) for x in row] for row in F] for F in program.frames],
+        solved=[[[number(x) for x in row] for row in F[:3].tolist()] for F in module.solved_frames],
         held=len(module.held),
         elbow=elbow_text(module, number),
         folds=fold_margins(program),

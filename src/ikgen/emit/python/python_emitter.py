@@ -57,6 +57,9 @@ def shell_values(module: SolverModule) -> dict[str, Any]:
         "seeds": _seed_rows(module),
         "shape": [level.branches for level in program.levels[1:]],
         "frames": [[[expression(SCALAR, x) for x in row] for row in F] for F in program.frames],
+        "solved": [
+            [[number(x) for x in row] for row in F[:3].tolist()] for F in module.solved_frames
+        ],
         "rows": [(row.driver, row.revolute, row.scale, row.offset.value) for row in module.dh.rows],
         "lanes": lane_text(module) if module.refine == "all" else None,
         "number": number,

@@ -127,4 +127,4 @@ def _batch_flags(module: SolverModule) -> list[str]:
     if module.refine == "some" and module.plan is None:
         rough = " | ".join(["singular", *(f"({r} > _ROUGH)" for r in program.residuals)])
     doubt = " | ".join(program.doubts) or "np.zeros(1, dtype=bool)"
-    return [f"rough: _Flags = {rough}", f"doubt: _Flags = valid & ({doubt})"]
+    return [f"rough: _Flags = {rough}", f"doubt: _Flags = {doubt}"]

@@ -83,10 +83,11 @@ template <class Arm> struct LaneNewton {
   template <int N> using Factors = std::conditional_t<kBlocks, LaneBlocks<N>, LaneFactors<kEquations, kMoving, N>>;
 
   // Refines the rows that are real, and puts them into the range. What is not shown to be the one solution near its
-  // start, or may not be, stays rough.
+  // start, or may not be, stays rough. Rows that take a long first step show it by the product of their two smallest singular
+  // values; with a share all do, by so much of that.
   template <int P>
   static void refine(const Pose<P>& pose, const std::array<double, Arm::kFree>& held, const Range& range,
-                     Rows<P>& rows) noexcept {
+                     Rows<P>& rows, double share = 0.0) noexcept {
     constexpr int N = Rows<P>::kLanes < kNative ? Rows<P>::kLanes : kNative;
     const LaneAim<Arm, N> aim(pose, held);
     for (int at = 0; at < Rows<P>::kLanes; at += N) {
@@ -94,12 +95,12 @@ template <class Arm> struct LaneNewton {
       int any = 0;
       for (int i = 0; i < N; ++i) {
         const int bits = rows.bits(at + i);
-        given[i] = bits & (kReal | kDoubt);
+        given[i] = (bits & kReal) != 0 ? bits & (kReal | kDoubt) : 0;
         any |= bits & (kReal | kHit);
       }
       if (any == 0) continue;
       const auto flags = bit((any & kHit) != 0 ? spread<N>(1.0) > 0.0 : spread<N>(-1.0) > 0.0, kHit);
-      refine_pack<P, N>(pose, aim, range, at, load<N>(given), flags, rows);
+      refine_pack<P, N>(pose, aim, range, at, load<N>(given), flags, rows, share);
     }
   }
 
@@ -132,11 +133,11 @@ template <class Arm> struct LaneNewton {
  private:
   template <int P, int N, bool H, bool F>
   static void refine_pack(const Pose<P>& pose, const LaneAim<Arm, N>& aim, const Range& range, int at,
-                          const LanesOf<N, H>& given, const LanesOf<N, F>& flags, Rows<P>& rows) noexcept {
+                          const LanesOf<N, H>& given, const LanesOf<N, F>& flags, Rows<P>& rows, double share) noexcept {
     const Mask<N> doubt = given > 0.5 + double{kReal}, started = given > 0.5;
     LaneChain<Arm, N> chain;
     for (int j = 0; j < Arm::kDof; ++j) chain.q[j] = load<N>(rows.q[j] + at);
-    const Arrival<N> at_end = steps<P, N>(pose, aim, started, chain);
+    const Arrival<N> at_end = steps<P, N>(pose, aim, started, share, chain);
     const Mask<N> real = started & (doubt | (!at_end.beside)), good = at_end.good & !doubt;
     Lanes<N> off = spread<N>(0.0);
     for (int j = 0; j < Arm::kDof; ++j) {
@@ -164,7 +165,8 @@ template <class Arm> struct LaneNewton {
 
   // Steps until all lanes are done, or as many as there may be.
   template <int P, int N>
-  static Arrival<N> steps(const Pose<P>& pose, LaneAim<Arm, N> aim, const Mask<N>& real, LaneChain<Arm, N>& chain) noexcept {
+  static Arrival<N> steps(const Pose<P>& pose, LaneAim<Arm, N> aim, const Mask<N>& real, double share,
+                          LaneChain<Arm, N>& chain) noexcept {
     Factors<N> factors{};
     Lanes<N> before = spread<N>(Policy::kFarthestStart), rest = before;
     Mask<N> good = real, done = !real, strained = done;
@@ -201,8 +203,8 @@ template <class Arm> struct LaneNewton {
       before = size;
     }
     const Mask<N> ended = good & done, remote = rest > Policy::kLeastMiss;
-    Mask<N> sure = !strained;
-    if (!all(!(ended & strained))) sure = sure | stands_alone<P, N>(pose, aim, chain);
+    Mask<N> sure = !(share > 0.0 ? real : strained);
+    if (!all((!ended) | sure)) sure = sure | stands_alone<P, N>(pose, aim, chain, share > 0.0 ? share : 1.0);
     return {ended & (Policy::kArrived > rest) & sure, ended & remote & !strained};
   }
 
@@ -210,12 +212,13 @@ template <class Arm> struct LaneNewton {
   // is off by turns the others by that over s2 at most, the next singular value; only where this is as much as s1 may the
   // pose come to rest once more.
   template <int P, int N>
-  static Mask<N> stands_alone(const Pose<P>& pose, const LaneAim<Arm, N>& aim, const LaneChain<Arm, N>& chain) noexcept {
+  static Mask<N> stands_alone(const Pose<P>& pose, const LaneAim<Arm, N>& aim, const LaneChain<Arm, N>& chain,
+                              double share) noexcept {
     LaneFactors<kEquations, kMoving, N> factors;
     Lanes<N> error[kEquations];
     compare<P, N>(pose, aim, chain, true, error, factors);
     factors.factor();
-    return factors.least_product() > Policy::kFoldProduct;
+    return factors.least_product() > share * Policy::kFoldProduct;
   }
 };
 

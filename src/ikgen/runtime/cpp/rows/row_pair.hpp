@@ -15,6 +15,13 @@ template <class Arm> struct RowPair {
     return true;
   }
 
+  // How far the joint is that is farthest.
+  static double farthest(const double* a, const double* b) noexcept {
+    double out = 0.0;
+    for (int j = 0; j < Arm::kDof; ++j) out = std::max(out, std::abs(SolutionRows<Arm>::change(j, a, b)));
+    return out;
+  }
+
   // Whether some row is.
   template <class Out> static bool any_within(double reach, const double* q, Out& rows) noexcept {
     for (int k = 0; k < rows.count; ++k)

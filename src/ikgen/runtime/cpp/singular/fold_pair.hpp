@@ -109,6 +109,11 @@ template <class Arm> struct FoldPair {
     }
   }
 
+  // Whether all other directions move the pose by more than a bound (below 1) at q, where an approach ended.
+  bool others_above(double bound, const double* q) const noexcept {
+    return definite(Others(still, PoseError<Arm>(q, aim), -bound * bound).A);
+  }
+
   // How a direction moves an entry of the pose's error.
   static double flow_of(const PoseError<Arm>& at, int e, const Vector& along) noexcept {
     double flow = 0.0;
@@ -134,14 +139,14 @@ template <class Arm> struct FoldPair {
   struct Others {
     double V[kEquations][kMoving], A[kMoving][kMoving], flow[kEquations];
 
-    Others(const Vector& along, const PoseError<Arm>& at) noexcept {
+    Others(const Vector& along, const PoseError<Arm>& at, double shift = Arm::Policy::kLeastDamping) noexcept {
       for (int e = 0; e < kEquations; ++e) {
         flow[e] = flow_of(at, e, along);
         for (int k = 0; k < kMoving; ++k) V[e][k] = at.slope[e][kJoints[k]] - flow[e] * along[k];
       }
       for (int a = 0; a < kMoving; ++a)
         for (int b = 0; b <= a; ++b) {
-          A[a][b] = along[a] * along[b] + (a == b ? Arm::Policy::kLeastDamping : 0.0);
+          A[a][b] = along[a] * along[b] + (a == b ? shift : 0.0);
           for (int e = 0; e < kEquations; ++e) A[a][b] += V[e][a] * V[e][b];
         }
       factor(A);

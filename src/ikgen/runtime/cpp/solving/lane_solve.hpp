@@ -3,6 +3,7 @@
 #pragma once
 
 #include "solving/careful_solve.hpp"
+#include "solving/compensated_rows.hpp"
 #include "rows/lane_placement.hpp"
 #include "rows/row_sums.hpp"
 
@@ -42,7 +43,26 @@ template <class Arm> struct LaneSolve {
   // Few poses need it: small code, quickly compiled.
   [[gnu::cold, gnu::noinline]] static void fall_back(const Eigen::Isometry3d& pose, const Options& options,
                                                      Solutions& out) noexcept {
+    if constexpr (Arm::kRounded)
+      if (compensate(pose, options, out)) return;
     CarefulSolve<Arm>::solve(pose, options, out);
+  }
+
+  // Whether compensated rows are all that there are, and some of them are left.
+  static bool compensate(const Eigen::Isometry3d& pose, const Options& options, Solutions& out) noexcept {
+    const HeldAim<Arm> aim(pose, options.free);
+    RowPlaces<Arm> found;
+    if (!CompensatedRows<Arm>(aim, options).find(found)) return false;
+    LimitRows<Arm>::place_all(aim, options, found);
+    if (found.count == 0 && options.seed) return false;
+    if (options.seed) Row::sort_by_distance(found, options.seed->data());
+    out.status = found.count > 0 ? Arm::Status::Ok : Arm::Status::Limits;
+    out.count = found.count;
+    for (int k = 0; k < found.count; ++k) {
+      std::copy_n(Row::row(found, k), Arm::kDof, Row::row(out, k));
+      Row::flag(out, k) = Row::flag(found, k);
+    }
+    return true;
   }
 
   // Whether rows are placed once they are all found.

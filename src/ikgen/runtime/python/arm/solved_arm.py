@@ -21,7 +21,9 @@ BranchesBatch = Callable[[Array, Array, Array], tuple[Array, Flags, Flags, Flags
 class Together(Protocol):
     """`refine_together` with the arm's chain in lanes."""
 
-    def __call__(self, arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]: ...
+    def __call__(
+        self, arm: Arm, q: Array, T: Array, share: float = 0.0
+    ) -> tuple[Array, Flags, Flags]: ...
 
 
 class Around(Protocol):
@@ -67,7 +69,8 @@ class Arm:
     (n, 4, 4): motions of the tool to poses that are solved as well. `turning`: which joints are
     revolute and not held; `moving`: indices of those not held.
     `together`: `refine_together` where the closed form is of another geometry than the file's, and all rows
-    are rough. `around`: `rows_around` where there is a closed form.
+    are rough; `solved`: the chain of that geometry then. `around`: `rows_around` where there is a closed
+    form.
     `branch_kind`, `elbow_end`: as in `branch_names`. `angle`: the arm angle, where that is held after
     the joints. `freedoms`: of the pose, by all joints, held or not."""
 
@@ -89,6 +92,7 @@ class Arm:
     branch_kind: str
     elbow_end: int
     around: Around | None
+    solved: Chain | None = None
     angle: HeldAngle | None = None
     freedoms: int = 6
 

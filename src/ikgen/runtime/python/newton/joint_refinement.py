@@ -21,14 +21,17 @@ _BLOCK = 1024
 _FEW = 64  # rows for which whole matrices are faster than long rows of each of their entries
 
 
-def refine_together(chain: LaneChain, arm: Arm, q: Array, T: Array) -> tuple[Array, Flags, Flags]:
+def refine_together(
+    chain: LaneChain, arm: Arm, q: Array, T: Array, share: float = 0.0
+) -> tuple[Array, Flags, Flags]:
     """Rows (k, dof) after steps towards aims T (k, ...) or (1, ...); which arrived at the one solution near
     their start, and which at a least error that is not 0.
 
     Newton's method contracts by `policy.contraction` only near the one solution there (Deuflhard 2004,
     theorem 2.1). Where the solution set folds, the other solution is twice the pivot over the curvature
     away: rows whose first step is more than `policy.pivot_share` of the pivot are left to others, unless
-    the two smallest singular values tell that there are none.
+    the product of the two smallest singular values tells that there are none; with a `share` all have to
+    show that, by so much of it.
     """
     with np.errstate(all="ignore"):
         if len(q) <= _FEW:
@@ -38,20 +41,21 @@ def refine_together(chain: LaneChain, arm: Arm, q: Array, T: Array) -> tuple[Arr
         else:
             T = np.broadcast_to(T, (len(q), *T.shape[1:]))
             end = Refined(*in_blocks(partial(refine_few, arm), _BLOCK, q, T))
-        if end.strained.any():
-            _judge_strained(arm, end, T)
+        end.missed[end.strained] = False
+        judged = end.arrived & (end.strained | (share > 0.0))
+        if judged.any():
+            _judge(arm, end, T, judged, share or 1.0)
     return end.q, end.arrived, end.missed
 
 
-def _judge_strained(arm: Arm, end: Refined, T: Array) -> None:
-    """Leaves of the strained ones those arrived beside which nothing can have come in. Along the direction
+def _judge(arm: Arm, end: Refined, T: Array, those: Flags, share: float) -> None:
+    """Leaves of those that arrived the ones beside which nothing can have come in. Along the direction
     in which the pose moves least, by s1, what the file is off by turns the others by that over s2 at most,
     the next singular value; only where this is as much as s1 may the pose come to rest once more."""
-    end.missed[end.strained] = False
-    some = np.flatnonzero(end.arrived & end.strained)
+    some = np.flatnonzero(those)
     _, slope = linearized(arm, end.q[some], rows_of(T, some))
     least = np.linalg.svd(slope, compute_uv=False)[:, -2:]
-    end.arrived[some] = np.multiply.reduce(least, axis=1) > arm.policy.fold_product
+    end.arrived[some] = np.multiply.reduce(least, axis=1) > share * arm.policy.fold_product
 
 
 def refine_few(arm: Arm, q: Array, T: Array) -> Refined:

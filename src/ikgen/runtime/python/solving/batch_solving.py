@@ -18,6 +18,7 @@ from ikgen.runtime.python.rows.row_placement import in_order, place_rows, place_
 from ikgen.runtime.python.rows.solutions import Status
 from ikgen.runtime.python.solving.asked_poses import Asked
 from ikgen.runtime.python.solving.closed_form_rows import careful_rows, certain_rows
+from ikgen.runtime.python.solving.compensated_rows import compensated_rows
 from ikgen.runtime.python.solving.doubtful_poses import placed_rows
 from ikgen.runtime.python.solving.doubtful_rows import seeded_rows, unplaced_rows
 
@@ -121,7 +122,11 @@ def _rows_and_doubts(
     near a singularity, or leave a joint free."""
     if arm.together is None:
         return careful_rows(arm, T, held, near)
-    return certain_rows(arm, arm.together, T, held, near)
+    q, valid, doubt = certain_rows(arm, arm.together, T, held, near)
+    for some in _parts(doubt):
+        more, found, sure = compensated_rows(arm, T[some], held[some])
+        q[some[sure]], valid[some[sure]], doubt[some[sure]] = more[sure], found[sure], False
+    return q, valid, doubt
 
 
 def rows_batch(arm: Arm, T: Array, held: Array) -> tuple[Array, Flags]:

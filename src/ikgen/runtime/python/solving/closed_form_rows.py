@@ -92,7 +92,7 @@ def rows_beside(arm: Arm, T: Array, near: Array | None, held: Array) -> Beside:
     closed = closed_form(arm, poses, starts, np.repeat(held, each, axis=0))
     valid = closed.valid.reshape(len(T), -1)
     marked = closed.singular.reshape(len(T), -1) & valid
-    doubt = closed.doubt.reshape(len(T), -1)
+    doubt = closed.doubt.reshape(len(T), -1) & valid
     return Beside(closed.q.reshape(len(T), -1, closed.q.shape[2]), valid, marked, doubt)
 
 
@@ -102,7 +102,11 @@ def certain_rows(
     """Rows (N, M, dof) of a rounded arm refined all at once, which of them are solutions, and for which
     poses (N,) that leaves a doubt."""
     closed = closed_form(arm, T, near, held)
-    q, valid, doubt = closed.q, closed.valid, closed.free | closed.doubt.any(axis=1)
+    q, valid, doubt = (
+        closed.q,
+        closed.valid,
+        closed.free | (closed.valid & closed.doubt).any(axis=1),
+    )
     pose, row = np.nonzero(valid)
     q[pose, row], arrived, missed = together(arm, q[pose, row], aims(arm, T, held)[pose])
     found = valid.copy()

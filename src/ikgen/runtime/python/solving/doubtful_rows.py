@@ -103,7 +103,8 @@ def _beside(arm: Arm, asked: Asked, start: Array, some: Index, own: ClosedForm) 
         q, valid, marked, doubt = some_of(asked.closed.beside, some)
     else:
         q, valid, marked, doubt = rows_beside(arm, asked.T[some], start[some], asked.held[some])
-    marked = marked | doubt & np.any(own.doubt[some], axis=1, keepdims=True)
+    own_doubt = own.valid[some] & own.doubt[some]
+    marked = marked | doubt & own_doubt.any(axis=1, keepdims=True)
     pose, row = np.nonzero(valid)
     motion, lane = np.divmod(row, valid.shape[1] // len(arm.beside))
     return _starts(arm, asked, q[pose, row], some[pose], marked[pose, row], 1 + motion, lane)

@@ -31,6 +31,7 @@ from ikgen.runtime.python.rows.row_placement import (
 from ikgen.runtime.python.rows.solutions import Solutions, Status, no_solutions
 from ikgen.runtime.python.solving.asked_poses import Answer, Asked
 from ikgen.runtime.python.solving.closed_form_rows import all_rows, careful
+from ikgen.runtime.python.solving.compensated_rows import compensated_rows
 from ikgen.runtime.python.solving.doubtful_poses import placed_rows
 from ikgen.runtime.python.solving.doubtful_rows import seeded_rows
 from ikgen.runtime.python.solving.projection import nearest_row, off_by
@@ -119,7 +120,7 @@ def _asked(asked: One) -> Asked:
 def _fitting(arm: Arm, asked: One, limits: bool) -> Answer:
     if arm.branches is None:
         return eliminated_answers(arm, _asked(asked), limits)[0]
-    sure = sure_answer(arm, asked, limits)
+    sure = sure_answer(arm, asked, limits) or _compensated_answer(arm, asked, limits)
     return placed_rows(arm, _asked(asked), limits)[0] if sure is None else sure
 
 
@@ -142,6 +143,16 @@ def sure_answer(arm: Arm, asked: One, limits: bool) -> Answer | None:
     """From the closed form on floats, where that leaves no doubt."""
     kept = _certain_rows(arm, *asked)
     return None if kept is None else _placed_answer(arm, asked, kept, limits)
+
+
+def _compensated_answer(arm: Arm, asked: One, limits: bool) -> Answer | None:
+    """From compensated poses of a rounded arm, where that leaves no doubt."""
+    if not arm.rounded:
+        return None
+    one = _asked(asked)
+    q, found, sure = compensated_rows(arm, one.T, one.held)
+    kept = [(tuple(row), False) for row in q[0, found[0]].tolist()]
+    return _placed_answer(arm, asked, kept, limits) if sure[0] else None
 
 
 def _placed_answer(arm: Arm, asked: One, kept: list[Found], limits: bool) -> Answer | None:

@@ -1,0 +1,192 @@
+// Rows that what the file is off moves far, by the closed form itself: it solves a pose displaced by as much as the file is
+// off at the row ("compensation": Veitschegger and Wu 1988).
+#pragma once
+
+#include "arm/joint_range.hpp"
+#include "arm/motion_chain.hpp"
+#include "newton/newton_refinement.hpp"
+#include "rows/lane_rows.hpp"
+#include "rows/row_pair.hpp"
+#include "rows/singular_value.hpp"
+#include "singular/fold_pair.hpp"
+
+namespace ikgen_runtime {
+
+// Arm: as for CarefulRows; Solved: kDof, kMotions and kFrames of the chain that the closed form is of.
+template <class Arm> class CompensatedRows {
+  using Aim = HeldAim<Arm>;
+  using Fold = FoldPair<Arm>;
+  using Options = typename Arm::Options;
+  using Pair = RowPair<Arm>;
+  using Places = RowPlaces<Arm>;
+  using Row = SolutionRows<Arm>;
+  using Rows = typename Arm::template Rows<1>;
+
+ public:
+  CompensatedRows(const Aim& to, const Options& given) noexcept : aim(to), options(given) {}
+
+  // Adds all rows, without limits; false where others may be near them.
+  bool find(Places& out) noexcept {
+    if (!start()) return false;
+    for (int round = 0; round < kRounds && (round == 0 || any_rough()); ++round)
+      if (!compensate(round == 0)) return false;
+    if (any_rough() && (beside || !add_pairs(out))) return false;
+    for (const int lane : Arm::kLaneOfRow) {
+      if (!real[lane] || rough[lane]) continue;
+      double q[Arm::kDof];
+      take(rows, lane, q);
+      const int known = out.count;
+      Row::add(out, q, false);
+      if (out.count == known) return false;  // another may lie there
+    }
+    return out.count > 0;
+  }
+
+ private:
+  static constexpr int kRounds = 2;
+  static constexpr double kShare = 0.1;  // of the least product of two singular values, as `refine` takes it
+  static constexpr double kAside = 0.1;  // rad or m: what moves them farther there may lead to others as well
+  static constexpr double kRemote = 2.0;  // singular value over the way to a fold: a second singularity is farther
+  static constexpr double kTogether = 0.3;  // rad or m: nearer rows may be of one fold
+
+  const Aim& aim;
+  const Options& options;
+  Rows rows, closed;  // as they are, and at first
+  bool beside = false;  // whether a divisor nearly vanishes
+  bool real[Arm::kLanes] = {}, rough[Arm::kLanes] = {};
+
+  static void take(const Rows& from, int lane, double* q) noexcept {
+    for (int j = 0; j < Arm::kDof; ++j) q[j] = from.q[j][lane];
+  }
+
+  bool any_rough() const noexcept {
+    return std::any_of(rough, rough + Arm::kLanes, [](bool flag) { return flag; });
+  }
+
+  void solve_closed_form(const Eigen::Isometry3d& pose, Rows& to) const noexcept {
+    constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
+    Arm::branches(gather<1>(&pose), typename Arm::Seed(), options.free, anywhere, to);
+  }
+
+  void refine(Rows& from, double share = 0.0) const noexcept {
+    constexpr Range anywhere = {kUnbounded<Arm::kDof>.lower, kUnbounded<Arm::kDof>.upper};
+    Arm::refine(gather<1>(&aim.pose), options.free, anywhere, from, share);
+  }
+
+  // The pose at which the closed form has q, if it nearly has it at the aim.
+  Eigen::Isometry3d compensated(const double* q) const noexcept {
+    Eigen::Isometry3d file, solved;
+    by_columns(MotionChain<Arm>::forward(q), file.matrix().data());
+    by_columns(MotionChain<typename Arm::Solved>::forward(q), solved.matrix().data());
+    const Eigen::Matrix3d turn = solved.linear() * file.linear().transpose();
+    Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+    out.linear() = turn * aim.pose.linear();
+    out.translation() = solved.translation() + turn * (aim.pose.translation() - file.translation());
+    return out;
+  }
+
+  // The closed form's rows, refined: those are rough that do not stand alone, or that it does not have behind a direction
+  // that has lost digits. Whether it leaves none where others may be anywhere.
+  bool start() noexcept {
+    solve_closed_form(aim.pose, closed);
+    rows = closed;
+    refine(rows);
+    bool any = false;
+    for (const int lane : Arm::kLaneOfRow) {
+      const bool hidden = has_hidden(closed, lane);
+      real[lane] = rows.has(lane, kReal) || hidden;
+      rough[lane] = rows.has(lane, kReal | kRough) || hidden;
+      beside = beside || closed.has(lane, kReal | kHit);
+      any = any || real[lane];
+      if ((closed.has(lane, kReal) || hidden) && closed.has(lane, kDoubt)) return false;
+    }
+    return any;
+  }
+
+  static bool has_hidden(const Rows& from, int lane) noexcept { return (from.bits(lane) & (kReal | kHit)) == kHit; }
+
+  // Takes rough rows from compensated poses; those that stand alone then are rough no more. Beside a divisor that nearly
+  // vanishes the others have to, at first. False where that leads too far.
+  bool compensate(bool first) noexcept {
+    bool asked[Arm::kLanes] = {};
+    for (const int lane : Arm::kLaneOfRow) {
+      if (rough[lane] && !displace(lane)) return false;
+      asked[lane] = real[lane] && (rough[lane] || (beside && first));
+      rows.flags[lane] = asked[lane] ? double{kReal} : 0.0;
+    }
+    refine(rows, kShare);
+    for (const int lane : Arm::kLaneOfRow) {
+      if (!asked[lane]) continue;
+      if (rows.has(lane, kReal | kRough)) {
+        if (!rough[lane]) return false;
+        continue;
+      }
+      if (!rows.has(lane, kReal)) {
+        if (beside) return false;  // its direction may be lost
+        real[lane] = false;
+      }
+      rough[lane] = false;
+    }
+    return true;
+  }
+
+  // Takes a row from its compensated pose; where that has none it is real no more. False where that leads too far.
+  bool displace(int lane) noexcept {
+    double q[Arm::kDof], to[Arm::kDof];
+    Rows there;
+    take(rows, lane, q);
+    solve_closed_form(compensated(q), there);
+    take(there, lane, to);
+    if (!(Pair::farthest(q, to) < kAside)) return false;
+    for (int j = 0; j < Arm::kDof; ++j) rows.q[j][lane] = to[j];
+    if (there.has(lane, kReal) || has_hidden(there, lane)) return true;
+    real[lane] = rough[lane] = false;
+    return !beside;
+  }
+
+  // Adds the solutions that meet where two rough rows do, far from others: two of them, or none.
+  bool add_pairs(Places& out) noexcept {
+    bool done[Arm::kLanes] = {};
+    for (const int lane : Arm::kLaneOfRow) {
+      if (!rough[lane] || done[lane]) continue;
+      double q[Arm::kDof], start[Arm::kDof];
+      take(rows, lane, q);
+      take(closed, lane, start);
+      int other = lane, nearby = 0;
+      for (const int k : Arm::kLaneOfRow) {
+        double row[Arm::kDof];
+        take(rows, k, row);
+        if (k == lane || !real[k] || !Pair::within(kTogether, q, row)) continue;
+        other = k;
+        ++nearby;
+      }
+      if (nearby != 1 || !rough[other] || !add_pair(q, start, out)) return false;
+      done[other] = true;
+    }
+    return true;
+  }
+
+  // From a rough row, where the closed form had it at first.
+  bool add_pair(const double* start, const double* first, Places& out) const noexcept {
+    double ends[2][Arm::kDof];
+    for (const int side : {0, 1}) {
+      double* q = ends[side];
+      std::copy_n(start, Arm::kDof, q);
+      const auto known = [](const double*, double) noexcept { return false; };
+      Fold fold(aim);
+      const auto led = fold.approach(side == 0 ? 1.0 : -1.0, q, known);
+      const double moved = Pair::farthest(first, q);
+      if (!(moved < kTogether) || !fold.others_above(kRemote * moved, q)) return false;
+      if (led == Fold::Led::Between) return side == 0;
+      if (!NewtonRefinement<Arm>::refine(q, aim) || !Pair::within(kTogether, start, q)) return false;
+    }
+    if (Row::same(ends[0], ends[1])) return false;
+    for (const double* q : ends) {
+      if (SingularValue<Arm>::below(q, Arm::Policy::kSingularBelow)) return false;
+      Row::add(out, q, false);
+    }
+    return true;
+  }
+};
+
+}  // namespace ikgen_runtime
