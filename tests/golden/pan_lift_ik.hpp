@@ -1188,7 +1188,7 @@ template <class Arm> struct FoldPair {
   static constexpr double kAlong = 1e-4, kClose = 1e-9, kFar = 0.3;
   static constexpr double kSure = 1e-3;  // of the way from one solution to the other: nearer Newton's method goes there
   static constexpr double kShare = 0.1, kTogether = 1e-2;  // of that way (rad or m): nearer they are one solution
-  static constexpr double kApart = 1e-8, kCubic = 2.0;  // least error of none; with what the second order leaves out
+  static constexpr double kApart = 1e-8, kCubic = 20.0;  // least error of none; with what the second order leaves out
   static constexpr int kSteps = 8;
 
   struct Way {
@@ -2343,11 +2343,11 @@ template <class Arm> struct CarefulSolve {
   using Row = SolutionRows<Arm>;
   using Solutions = typename Arm::Solutions;
 
-  [[gnu::always_inline]] static void solve(const Eigen::Isometry3d& pose, const Options& options,
+  [[gnu::always_inline]] static void solve(const Eigen::Isometry3d& pose, const Options& options, Places& found,
                                            Solutions& out) noexcept {
     const Aim aim(pose, options.free);
     bool real = false, free = true, led = false;
-    Places found, loose;  // loose: with rows of a continuum, without limits
+    Places loose;  // with rows of a continuum, without limits
     for (int turn = 0; turn < kTurns && free; ++turn) {
       double start[Arm::kDof];
       take_start(options, turn, start);
@@ -2560,7 +2560,8 @@ template <class Arm> struct LaneSolve {
 
   [[gnu::cold, gnu::noinline]] static void fall_back(const Eigen::Isometry3d& pose, const Options& options,
                                                      Solutions& out) noexcept {
-    CarefulSolve<Arm>::solve(pose, options, out);
+    RowPlaces<Arm> found;
+    CarefulSolve<Arm>::solve(pose, options, found, out);
   }
 
   static bool place_later(const Options& options) noexcept { return Arm::kFarLimits || options.seed != nullptr; }

@@ -126,7 +126,7 @@ template <class Arm> struct FoldPair {
   static constexpr double kAlong = 1e-4, kClose = 1e-9, kFar = 0.3;
   static constexpr double kSure = 1e-3;  // of the way from one solution to the other: nearer Newton's method goes there
   static constexpr double kShare = 0.1, kTogether = 1e-2;  // of that way (rad or m): nearer they are one solution
-  static constexpr double kApart = 1e-8, kCubic = 2.0;  // least error of none; with what the second order leaves out
+  static constexpr double kApart = 1e-8, kCubic = 20.0;  // least error of none; with what the second order leaves out
   static constexpr int kSteps = 8;
 
   // How far the fastest joint goes in a step, how far the two solutions are apart and, where there are none, the least

@@ -22,12 +22,12 @@ template <class Arm> struct CarefulSolve {
   // All solutions. Where the pose leaves a joint free and the seed's value of it leads nowhere, others are tried, and in
   // the end what is nearest to the pose; so too where limits leave none, but a continuum may go on inside, and where all
   // that the closed form has is singular and leads to none. Where no row fits, or one is of a continuum, the seed is taken
-  // as a Newton start.
-  [[gnu::always_inline]] static void solve(const Eigen::Isometry3d& pose, const Options& options,
+  // as a Newton start. found: some of them, without limits.
+  [[gnu::always_inline]] static void solve(const Eigen::Isometry3d& pose, const Options& options, Places& found,
                                            Solutions& out) noexcept {
     const Aim aim(pose, options.free);
     bool real = false, free = true, led = false;
-    Places found, loose;  // loose: with rows of a continuum, without limits
+    Places loose;  // with rows of a continuum, without limits
     for (int turn = 0; turn < kTurns && free; ++turn) {
       double start[Arm::kDof];
       take_start(options, turn, start);

@@ -6,6 +6,7 @@
 #include "arm/motion_chain.hpp"
 #include "newton/newton_refinement.hpp"
 #include "rows/lane_rows.hpp"
+#include "rows/right_rows.hpp"
 #include "rows/row_pair.hpp"
 #include "rows/singular_value.hpp"
 #include "singular/fold_pair.hpp"
@@ -25,21 +26,21 @@ template <class Arm> class CompensatedRows {
  public:
   CompensatedRows(const Aim& to, const Options& given) noexcept : aim(to), options(given) {}
 
-  // Adds all rows, without limits; false where others may be near them.
+  // Adds rows, without limits; whether they are all, far from others.
   bool find(Places& out) noexcept {
-    if (!start()) return false;
-    for (int round = 0; round < kRounds && (round == 0 || any_rough()); ++round)
-      if (!compensate(round == 0)) return false;
-    if (any_rough() && (beside || !add_pairs(out))) return false;
+    start();
+    for (int round = 0; round < kRounds && (round == 0 || any_rough()); ++round) compensate(round == 0);
+    all = all && (!any_rough() || (!beside && add_pairs(out)));
     for (const int lane : Arm::kLaneOfRow) {
       if (!real[lane] || rough[lane]) continue;
       double q[Arm::kDof];
       take(rows, lane, q);
       const int known = out.count;
       Row::add(out, q, false);
-      if (out.count == known) return false;  // another may lie there
+      all = all && out.count > known;  // else another may lie there
     }
-    return out.count > 0;
+    if (!all) add_rough(out);
+    return all && out.count > 0;
   }
 
  private:
@@ -52,7 +53,7 @@ template <class Arm> class CompensatedRows {
   const Aim& aim;
   const Options& options;
   Rows rows, closed;  // as they are, and at first
-  bool beside = false;  // whether a divisor nearly vanishes
+  bool all = true, beside = false;  // whether there are no others that are not found, and a divisor nearly vanishes
   bool real[Arm::kLanes] = {}, rough[Arm::kLanes] = {};
 
   static void take(const Rows& from, int lane, double* q) noexcept {
@@ -86,8 +87,8 @@ template <class Arm> class CompensatedRows {
   }
 
   // The closed form's rows, refined: those are rough that do not stand alone, or that it does not have behind a direction
-  // that has lost digits. Whether it leaves none where others may be anywhere.
-  bool start() noexcept {
+  // that has lost digits. Others may be anywhere where it has lost them all, or nothing is left.
+  void start() noexcept {
     solve_closed_form(aim.pose, closed);
     rows = closed;
     refine(rows);
@@ -98,50 +99,64 @@ template <class Arm> class CompensatedRows {
       rough[lane] = rows.has(lane, kReal | kRough) || hidden;
       beside = beside || closed.has(lane, kReal | kHit);
       any = any || real[lane];
-      if ((closed.has(lane, kReal) || hidden) && closed.has(lane, kDoubt)) return false;
+      all = all && !((closed.has(lane, kReal) || hidden) && closed.has(lane, kDoubt));
     }
-    return any;
+    all = all && any;
   }
 
   static bool has_hidden(const Rows& from, int lane) noexcept { return (from.bits(lane) & (kReal | kHit)) == kHit; }
 
   // Takes rough rows from compensated poses; those that stand alone then are rough no more. Beside a divisor that nearly
-  // vanishes the others have to, at first. False where that leads too far.
-  bool compensate(bool first) noexcept {
+  // vanishes the others have to, at first, and none may be lost.
+  void compensate(bool first) noexcept {
     bool asked[Arm::kLanes] = {};
     for (const int lane : Arm::kLaneOfRow) {
-      if (rough[lane] && !displace(lane)) return false;
+      if (rough[lane]) displace(lane);
       asked[lane] = real[lane] && (rough[lane] || (beside && first));
       rows.flags[lane] = asked[lane] ? double{kReal} : 0.0;
     }
     refine(rows, kShare);
     for (const int lane : Arm::kLaneOfRow) {
       if (!asked[lane]) continue;
-      if (rows.has(lane, kReal | kRough)) {
-        if (!rough[lane]) return false;
-        continue;
-      }
       if (!rows.has(lane, kReal)) {
-        if (beside) return false;  // its direction may be lost
-        real[lane] = false;
+        lose(lane);
+      } else if (!rough[lane]) {
+        all = all && !rows.has(lane, kRough);
+      } else {
+        rough[lane] = rows.has(lane, kRough);
       }
-      rough[lane] = false;
     }
-    return true;
   }
 
-  // Takes a row from its compensated pose; where that has none it is real no more. False where that leads too far.
-  bool displace(int lane) noexcept {
+  // Takes a row from its compensated pose, unless that leads too far.
+  void displace(int lane) noexcept {
     double q[Arm::kDof], to[Arm::kDof];
     Rows there;
     take(rows, lane, q);
     solve_closed_form(compensated(q), there);
     take(there, lane, to);
-    if (!(Pair::farthest(q, to) < kAside)) return false;
+    if (!(Pair::farthest(q, to) < kAside)) {
+      all = false;
+      return;
+    }
     for (int j = 0; j < Arm::kDof; ++j) rows.q[j][lane] = to[j];
-    if (there.has(lane, kReal) || has_hidden(there, lane)) return true;
+    if (!there.has(lane, kReal) && !has_hidden(there, lane)) lose(lane);
+  }
+
+  // Beside a divisor that nearly vanishes its direction may be what is lost.
+  void lose(int lane) noexcept {
     real[lane] = rough[lane] = false;
-    return !beside;
+    all = all && !beside;
+  }
+
+  // Adds what Newton steps from rough rows lead to.
+  void add_rough(Places& out) const noexcept {
+    for (const int lane : Arm::kLaneOfRow) {
+      if (!rough[lane]) continue;
+      double q[Arm::kDof];
+      take(rows, lane, q);
+      if (NewtonRefinement<Arm>::refine(q, aim)) RightRows<Arm>::add(aim, out, q, true);
+    }
   }
 
   // Adds the solutions that meet where two rough rows do, far from others: two of them, or none.

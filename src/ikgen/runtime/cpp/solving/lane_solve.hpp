@@ -43,15 +43,17 @@ template <class Arm> struct LaneSolve {
   // Few poses need it: small code, quickly compiled.
   [[gnu::cold, gnu::noinline]] static void fall_back(const Eigen::Isometry3d& pose, const Options& options,
                                                      Solutions& out) noexcept {
+    RowPlaces<Arm> found;
     if constexpr (Arm::kRounded)
-      if (compensate(pose, options, out)) return;
-    CarefulSolve<Arm>::solve(pose, options, out);
+      if (compensate(pose, options, found, out)) return;
+    CarefulSolve<Arm>::solve(pose, options, found, out);
   }
 
-  // Whether compensated rows are all that there are, and some of them are left.
-  static bool compensate(const Eigen::Isometry3d& pose, const Options& options, Solutions& out) noexcept {
+  // Whether compensated rows are all that there are, and the limits leave some where a seed may lead to others; else those that
+  // are found.
+  static bool compensate(const Eigen::Isometry3d& pose, const Options& options, RowPlaces<Arm>& found,
+                         Solutions& out) noexcept {
     const HeldAim<Arm> aim(pose, options.free);
-    RowPlaces<Arm> found;
     if (!CompensatedRows<Arm>(aim, options).find(found)) return false;
     LimitRows<Arm>::place_all(aim, options, found);
     if (found.count == 0 && options.seed) return false;

@@ -11,7 +11,8 @@ template <class Arm> struct SingleSolve {
   template <int P>
   static void solve(const Eigen::Isometry3d* pose, const typename Arm::Options& options,
                     typename Arm::Solutions* out) noexcept {
-    CarefulSolve<Arm>::solve(*pose, options, *out);
+    RowPlaces<Arm> found;
+    CarefulSolve<Arm>::solve(*pose, options, found, *out);
   }
 };
 
