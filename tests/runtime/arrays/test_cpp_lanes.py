@@ -105,7 +105,8 @@ int main() {
     print(solve(poses[i], options));
     print(batch[i]);
     Solutions careful;
-    detail::CarefulSolve<detail::Arm>::solve(poses[i], options, careful);
+    detail::RowPlaces<detail::Arm> none;
+    detail::CarefulSolve<detail::Arm>::solve(poses[i], options, none, careful);
     print(careful);
     detail::Arm::Rows<1> rows;
     const auto pose = detail::gather<1>(&poses[i]);

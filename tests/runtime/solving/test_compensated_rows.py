@@ -87,3 +87,35 @@ def test_both_languages_answer_alike_there(doosan: Both) -> None:
         assert status == "OK" and len(here) == len(there)
         assert all(gap(there, one).min() < 1e-6 for one in here)
         assert gap(there, row).min() < 1e-6
+
+
+def next_to_folds(arm: ModuleType, off: float) -> Array:
+    """Configurations with the elbow as far (rad) from where two solutions meet."""
+
+    def sense(q: Array) -> float:
+        return float(np.linalg.det(arm.jacobian(q)))
+
+    out = []
+    for q in configurations(40):
+        low, high = q.copy(), q.copy()
+        low[2], high[2] = -0.1, 0.1
+        if sense(low) * sense(high) > 0:
+            continue
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if sense(low) * sense(middle) > 0 else (low, middle)
+        low[2] += off
+        out.append(low)
+    assert len(out) > 20
+    return np.array(out)
+
+
+@pytest.mark.parametrize("off", [1e-3, 1e-4, 2e-5])
+def test_both_solutions_next_to_a_fold_are_found(doosan: Both, off: float) -> None:
+    """In both languages: one is where the pose is from, the other as far behind the fold."""
+    q = next_to_folds(doosan.arm, off)
+    for row, pose in zip(q, doosan.arm.forward(q), strict=True):
+        _, numbers = doosan.run(5, row, pose[None])
+        for rows in (numbers.reshape(-1, 6), doosan.arm.solve(pose, seed=row).q):
+            near = np.sort(gap(rows, row))
+            assert near[0] < 1e-5 and near[1] < 50.0 * off
