@@ -6,7 +6,6 @@
 #include "arm/motion_chain.hpp"
 #include "newton/newton_refinement.hpp"
 #include "rows/lane_rows.hpp"
-#include "rows/right_rows.hpp"
 #include "rows/row_pair.hpp"
 #include "rows/singular_value.hpp"
 #include "singular/fold_pair.hpp"
@@ -39,7 +38,6 @@ template <class Arm> class CompensatedRows {
       Row::add(out, q, false);
       all = all && out.count > known;  // else another may lie there
     }
-    if (!all) add_rough(out);
     return all && out.count > 0;
   }
 
@@ -147,16 +145,6 @@ template <class Arm> class CompensatedRows {
   void lose(int lane) noexcept {
     real[lane] = rough[lane] = false;
     all = all && !beside;
-  }
-
-  // Adds what Newton steps from rough rows lead to.
-  void add_rough(Places& out) const noexcept {
-    for (const int lane : Arm::kLaneOfRow) {
-      if (!rough[lane]) continue;
-      double q[Arm::kDof];
-      take(rows, lane, q);
-      if (NewtonRefinement<Arm>::refine(q, aim)) RightRows<Arm>::add(aim, out, q, true);
-    }
   }
 
   // Adds the solutions that meet where two rough rows do, far from others: two of them, or none.
