@@ -87,9 +87,8 @@ def verify(
             annotate_error(error)
             raise
     _print(results, as_json=as_json, quiet=quiet, verbose=verbose)
-    if (
-        junit_xml is not None
-    ):  # what was found is told where it cannot be written; of JSON there is one object
+    # what was found is told where it cannot be written; of JSON there is one object
+    if junit_xml is not None:
         write_junit(junit_xml, results)
     code = max((result.exit_code for result in results), default=0)
     if as_json:

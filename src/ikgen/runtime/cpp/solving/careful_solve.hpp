@@ -50,6 +50,11 @@ template <class Arm> struct CarefulSolve {
     if (free && !Arm::kRounded && !Arm::kRefined) real = add_hidden(aim, options, found) || real;
     if ((free || loose.count > 0 || (led && !real)) && found.count == 0) real = add_nearest(aim, options, found) || real;
     add_along(aim, options, loose, found);
+    answer(options, real, found, out);
+  }
+
+  // The rows found inside the limits, in order; real: whether there are any without these.
+  static void answer(const Options& options, bool real, Places& found, Solutions& out) noexcept {
     if (options.seed) Row::sort_by_distance(found, options.seed->data());
     take_in_order(found, out);
     out.status = out.count > 0 ? Arm::Status::Ok : real ? Arm::Status::Limits : Arm::Status::Unreachable;

@@ -133,7 +133,7 @@ template <class Arm> class CompensatedRows {
     take(rows, lane, q);
     solve_closed_form(compensated(q), there);
     take(there, lane, to);
-    if (!(Pair::farthest(q, to) < kAside)) {
+    if (!Pair::within(kAside, q, to)) {
       all = false;
       return;
     }

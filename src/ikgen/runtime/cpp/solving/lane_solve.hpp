@@ -57,13 +57,7 @@ template <class Arm> struct LaneSolve {
     if (!CompensatedRows<Arm>(aim, options).find(found)) return false;
     LimitRows<Arm>::place_all(aim, options, found);
     if (found.count == 0 && options.seed) return false;
-    if (options.seed) Row::sort_by_distance(found, options.seed->data());
-    out.status = found.count > 0 ? Arm::Status::Ok : Arm::Status::Limits;
-    out.count = found.count;
-    for (int k = 0; k < found.count; ++k) {
-      std::copy_n(Row::row(found, k), Arm::kDof, Row::row(out, k));
-      Row::flag(out, k) = Row::flag(found, k);
-    }
+    CarefulSolve<Arm>::answer(options, true, found, out);
     return true;
   }
 
