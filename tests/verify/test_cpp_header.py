@@ -91,6 +91,49 @@ inline Solutions solve(const Eigen::Isometry3d& pose, const Options& options = {
 }
 """
 
+MOTIONS = r"""
+namespace planar_ik {
+struct Path { Status status = Status::Ok; std::ptrdiff_t reached = 0; };
+struct SearchOptions { const Joints* seed = nullptr; };
+inline Solutions search(const Eigen::Isometry3d& pose, const SearchOptions& options) noexcept {
+  Options near;
+  near.seed = options.seed;
+  return solve(pose, near);
+}
+inline Path follow(const Eigen::Isometry3d* poses, std::ptrdiff_t count, const Joints& start,
+                   Joints* q, bool, bool* singular) noexcept {
+  Path path;
+  Joints last = start;
+  for (; path.reached < count; ++path.reached) {
+    Solutions all = solve(poses[path.reached]);
+    const auto way = [&](const Joints& one) {
+      const double turn = std::remainder(one[0] - last[0], 2 * 3.14159265358979323846);
+      return std::abs(turn) + std::abs(one[1] - last[1]);
+    };
+    if (all.count == 2 && way(all.q[1]) < way(all.q[0])) std::swap(all.q[0], all.q[1]);
+    q[path.reached] = last = all.q[0];
+    singular[path.reached] = false;
+  }
+  return path;
+}
+}
+"""
+
+INTERVALS = r"""
+namespace planar_ik {
+struct Interval { double low, high; int branch; };
+struct SelfMotion {
+  int count = 2;
+  std::array<Interval, 3> intervals;
+  const Interval* begin() const noexcept { return intervals.data(); }
+  const Interval* end() const noexcept { return intervals.data() + count; }
+};
+inline SelfMotion self_motion(const Eigen::Isometry3d& pose) noexcept {
+  return {2, {{{-1.0, pose.translation().x(), 0}, {2.0, 2.5, 1}, {}}}};
+}
+}
+"""
+
 
 def oracle() -> PinocchioOracle:
     """The planar arm's oracle."""
@@ -128,6 +171,31 @@ def test_right_header_passes(planar: CppHeader) -> None:
     assert report.label == "cpp"
     assert report.check("unreachable poses").count == 36
     assert report.check("solve_batch").count == 0
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "check"),
+    [
+        ("", "", ""),
+        ("path.reached < count", "path.reached + 1 < count", "paths"),
+        ("= false;", "= true;", "paths"),
+        ("return solve(pose, near);", "return {};", "search"),
+    ],
+)
+def test_paths_and_searches_of_headers_are_checked(
+    tmp_path: Path, right: str, wrong: str, check: str
+) -> None:
+    report = verify(header(tmp_path, HEADER + MOTIONS.replace(right, wrong)), oracle(), samples=50)
+    assert report.check("paths").count == 15 and report.check("search").count == 3
+    assert {one.name for one in report.checks if one.failures} == ({check} if check else set())
+
+
+def test_intervals_of_headers_are_told(tmp_path: Path) -> None:
+    runner = header(tmp_path, HEADER + INTERVALS)
+    assert runner.has_self_motion and not runner.moves
+    pose = np.eye(4)
+    pose[0, 3] = 0.25
+    assert runner.self_motion(pose).tolist() == [[-1.0, 0.25], [2.0, 2.5]]
 
 
 def test_header_tells_its_defaults(planar: CppHeader, tmp_path: Path) -> None:
@@ -272,13 +340,15 @@ def test_a_driver_is_compiled_beside_the_header(
         cpp_header.ProgramRunner, "__init__", lambda self, *a, **k: told.update(given=a, named=k)
     )
     path = tmp_path / "made_ik.hpp"
-    for body, batch in (("nothing", False), ("void solve_batch(", True)):
+    all_of_it = "void solve_batch( Path follow( SelfMotion self_motion("
+    for body, known in (("nothing", False), (all_of_it, True)):
         path.write_text(body)
         runner = cpp_header.CppHeader(path, None)  # type: ignore[arg-type]
         assert told["include"] == [tmp_path.resolve()] and runner.path == path.resolve()
         assert told["source"].name == "driver.cpp" and told["program"].name == "driver"
         assert told["given"] == ("cpp", told["program"], None)
         assert told["named"].pop("made").__name__ == "finish"
-        assert told["named"] == {"batch": batch, "source": str(path)}
+        knows = dict.fromkeys(("batch", "motions", "intervals"), known)
+        assert told["named"] == {**knows, "source": str(path)}
         assert told["flags"] == ("-O1",)
         assert '#include "made_ik.hpp"' in told["text"]

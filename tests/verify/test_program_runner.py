@@ -20,12 +20,17 @@ size = len(items) // int(n) if n else 0
 answer = [2.0, 1.0, 3.0, 0.25] if mode == 0 else []
 for i in range(int(n)):
     item = items[i * size : (i + 1) * size]
-    if mode in (1, 4):
+    if mode in (1, 4, 6):
         status, count = item[15], item[3]
         rows = [item[12], size, 1.0, free, seed, 0.0, limits, mode, 0.0]
         answer += [status, count, *rows]
     elif mode == 2:
         answer += [item[0], 1.0, 2.0, 3.0, *[0.0] * 11, item[1]]
+    elif mode == 5:
+        answer += [2.0, n - 1.0] if i == 0 else []
+        answer += [item[12], item[17], 1.0]
+    elif mode == 7:
+        answer += [2.0, item[12], 1.0, 2.0, size]
     else:
         answer += [float(k) for k in range(12)]
 if mode == 1 and items[0] == 99.0:
@@ -92,6 +97,23 @@ def test_poses_and_jacobians_come_by_columns(script: Path) -> None:
     assert T[1, 3, 3] == 8.0
     J = runner.jacobian(np.zeros((1, 2)))
     assert J.shape == (1, 6, 2) and J[0, :, 1].tolist() == [6.0, 7.0, 8.0, 9.0, 10.0, 11.0]
+
+
+def test_paths_and_what_is_held(script: Path) -> None:
+    runner = ProgramRunner("x", script, CONSTANTS, batch=True, source="a.hpp")
+    assert not runner.moves and not runner.has_self_motion
+    runner = ProgramRunner(
+        "x", script, CONSTANTS, batch=True, source="a.hpp", motions=True, intervals=True
+    )
+    assert runner.moves and runner.has_self_motion
+    poses = np.array([asked(0.0, 3.0, 0.1), asked(0.0, 3.0, 0.2), asked(0.0, 3.0, 0.3)])
+    q, status, singular = runner.follow(poses, np.array([5.0, 6.0]))
+    assert status == "LIMITS" and singular.tolist() == [True, True, True]
+    np.testing.assert_array_equal(q, [[0.1, 6.0], [0.2, 6.0], [np.nan, np.nan]])
+    rows = runner.search(asked(0.0, 2.0, 0.1), np.array([5.0, 6.0]))
+    np.testing.assert_array_equal(rows, [[0.1, 18.0], [0.0, 0.0]])
+    ends = runner.self_motion(asked(0.0, 2.0, 0.1))
+    np.testing.assert_array_equal(ends, [[0.1, 1.0], [2.0, 16.0]])
 
 
 def test_another_arm_s_program_and_one_that_fails_are_told(script: Path) -> None:

@@ -8,6 +8,7 @@ __all__ = ["driver"]
 _DRIVER = r"""
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <string>
 #include <vector>
 #include "@header@"
@@ -25,15 +26,24 @@ static Eigen::Isometry3d take_pose(const double*& in) {
   return pose;
 }
 
-static void put(Numbers& out, const ik::Solutions& found) {
-  double status = -1;
-  switch (found.status) {
-    case ik::Status::Ok: status = 0; break;
-    case ik::Status::Unreachable: status = 1; break;
-    case ik::Status::Limits: status = 2; break;
-    case ik::Status::Invalid: status = 3; break;
+static ik::Joints take_joints(const double*& in) {
+  const ik::Joints q = Eigen::Map<const ik::Joints>(in);
+  in += ik::kDof;
+  return q;
+}
+
+static double number(ik::Status status) {
+  switch (status) {
+    case ik::Status::Ok: return 0;
+    case ik::Status::Unreachable: return 1;
+    case ik::Status::Limits: return 2;
+    case ik::Status::Invalid: return 3;
   }
-  out.push_back(status);
+  return -1;
+}
+
+static void put(Numbers& out, const ik::Solutions& found) {
+  out.push_back(number(found.status));
   out.push_back(found.count);
   for (int k = 0; k < ik::kMaxSolutions; ++k) {
     const bool row = k < found.count;
@@ -55,14 +65,15 @@ static void solve(const double*& in, bool has_free, bool has_seed, bool limits, 
   hold(options, !has_free, 0);
   ik::Joints seed;
   if (has_seed) {
-    seed = Eigen::Map<const ik::Joints>(in);
-    in += ik::kDof;
+    seed = take_joints(in);
     options.seed = &seed;
   }
   put(out, ik::solve(pose, options));
 }
 
 @batch@
+@motions@
+@intervals@
 @constants@
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
@@ -82,13 +93,15 @@ int main(int argc, char** argv) {
     put_constants(out);
   }
   if (mode == 4) solve_batch(in, n, input[4] != 0, out);
+  if (mode == 5) follow(in, n, out);
+  for (int i = 0; mode == 6 && i < n; ++i) search(in, out);
+  for (int i = 0; mode == 7 && i < n; ++i) self_motion(in, out);
   for (int i = 0; mode > 0 && mode < 4 && i < n; ++i) {
     if (mode == 1) {
       solve(in, input[2] != 0, input[3] != 0, input[4] != 0, out);
       continue;
     }
-    const ik::Joints q = Eigen::Map<const ik::Joints>(in);
-    in += ik::kDof;
+    const ik::Joints q = take_joints(in);
     if (mode == 2) {
       const Eigen::Matrix4d T = ik::forward(q).matrix();
       put(out, T.data(), 16);
@@ -116,6 +129,51 @@ static void solve_batch(const double* in, int n, bool limits, Numbers& out) {
 """
 _NO_BATCH = "static void solve_batch(const double*, int, bool, Numbers&) {}"
 
+_MOTIONS = r"""
+static void follow(const double* in, int n, Numbers& out) {
+  std::vector<Eigen::Isometry3d, Eigen::aligned_allocator<Eigen::Isometry3d>> poses;
+  ik::Joints start;
+  for (int i = 0; i < n; ++i) {
+    poses.push_back(take_pose(in));
+    start = take_joints(in);
+  }
+  std::vector<ik::Joints, Eigen::aligned_allocator<ik::Joints>> q(poses.size());
+  const auto singular = std::make_unique<bool[]>(poses.size());
+  const ik::Path path = ik::follow(poses.data(), n, start, q.data(), true, singular.get());
+  out.push_back(number(path.status));
+  out.push_back(static_cast<double>(path.reached));
+  for (int i = 0; i < n; ++i) {
+    const bool row = i < path.reached;
+    for (int j = 0; j < ik::kDof; ++j) out.push_back(row ? q[i][j] : 0.0);
+    out.push_back(row && singular[i] ? 1.0 : 0.0);
+  }
+}
+
+static void search(const double*& in, Numbers& out) {
+  const Eigen::Isometry3d pose = take_pose(in);
+  const ik::Joints seed = take_joints(in);
+  ik::SearchOptions options;
+  options.seed = &seed;
+  put(out, ik::search(pose, options));
+}
+"""
+_NO_MOTIONS = """
+static void follow(const double*, int, Numbers&) {}
+static void search(const double*&, Numbers&) {}
+"""
+
+_INTERVALS = r"""
+static void self_motion(const double*& in, Numbers& out) {
+  const ik::SelfMotion found = ik::self_motion(take_pose(in));
+  out.push_back(found.count);
+  for (const ik::Interval& one : found) {
+    out.push_back(one.low);
+    out.push_back(one.high);
+  }
+}
+"""
+_NO_INTERVALS = "static void self_motion(const double*&, Numbers&) {}"
+
 _CONSTANTS = r"""
 static void put(Numbers& out, const std::string& text) {
   out.push_back(double(text.size()));
@@ -132,15 +190,20 @@ static void put_constants(Numbers& out) {
 _NO_CONSTANTS = "static void put_constants(Numbers&) {}"
 
 
-def driver(header: str, namespace: str, *, batch: bool, constants: bool) -> str:
-    """Text of the program for a header (file name), with or without its `solve_batch` and constants."""
+def driver(
+    header: str, namespace: str, *, batch: bool, constants: bool, motions: bool, intervals: bool
+) -> str:
+    """Text of the program for a header (file name), with or without its `solve_batch`, its constants, its
+    `follow` and `search`, and its `self_motion`."""
     parts = {
         "header": header,
         "namespace": namespace,
-        "batch": _BATCH.strip() if batch else _NO_BATCH,
-        "constants": _CONSTANTS.strip() if constants else _NO_CONSTANTS,
+        "batch": _BATCH if batch else _NO_BATCH,
+        "motions": _MOTIONS if motions else _NO_MOTIONS,
+        "intervals": _INTERVALS if intervals else _NO_INTERVALS,
+        "constants": _CONSTANTS if constants else _NO_CONSTANTS,
     }
     program = _DRIVER
     for name, part in parts.items():
-        program = program.replace(f"@{name}@", part)
+        program = program.replace(f"@{name}@", part.strip())
     return program

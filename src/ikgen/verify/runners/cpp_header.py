@@ -33,12 +33,15 @@ class CppHeader(ProgramRunner):
         source, program = folder.path / "driver.cpp", folder.path / "driver"
         text = self.path.read_text(encoding="utf-8")
         batch, known = "solve_batch(" in text, "kLower" in text
-        text = driver(self.path.name, self.path.stem, batch=batch, constants=known)
+        moves = {"motions": "Path follow(" in text, "intervals": "SelfMotion self_motion(" in text}
+        text = driver(self.path.name, self.path.stem, batch=batch, constants=known, **moves)
         source.write_text(text, encoding="utf-8")
         compilation = Compilation(source, program, [self.path.parent], LIGHT)
         self._close = weakref.finalize(self, _closed, compilation, folder)
         made = compilation.finish
-        super().__init__("cpp", program, constants, batch=batch, source=str(path), made=made)
+        super().__init__(
+            "cpp", program, constants, batch=batch, source=str(path), made=made, **moves
+        )
 
     def close(self) -> None:
         """End the compiler, if it still runs, and remove the folder; both go with this object anyway."""

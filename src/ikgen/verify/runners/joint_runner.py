@@ -91,29 +91,24 @@ class JointRunner:
 
     @property
     def moves(self) -> bool:
-        """Whether the code follows paths and searches, and can be run so."""
-        return isinstance(self._runner, PythonModule) and self._runner.moves
-
-    @property
-    def _moving(self) -> PythonModule:
-        assert isinstance(self._runner, PythonModule)
-        return self._runner
+        """Whether the code follows paths and searches."""
+        return self._runner.moves
 
     @property
     def has_self_motion(self) -> bool:
         """Whether it tells the intervals of what is held."""
-        return self.moves and self._moving.has_self_motion
+        return self._runner.has_self_motion
 
     def follow(self, poses: Array, start: Array) -> tuple[Array, str, NDArray[np.bool_]]:
         """Rows (N, dof) along poses (N, 4, 4), NaN from the first that was not reached, the status, and
         which are singular (N,)."""
-        q, status, singular = self._moving.follow(poses, self._motors(start))
+        q, status, singular = self._runner.follow(poses, self._motors(start))
         return self._transmission.joints(q), status, singular
 
     def search(self, pose: Array, seed: Array) -> Array:
         """The best rows (k, dof) near a seed."""
-        return self._transmission.joints(self._moving.search(pose, self._motors(seed)))
+        return self._transmission.joints(self._runner.search(pose, self._motors(seed)))
 
     def self_motion(self, pose: Array) -> Array:
         """Ends (k, 2) of the intervals of what is held."""
-        return self._moving.self_motion(pose)
+        return self._runner.self_motion(pose)

@@ -10,9 +10,12 @@ of five (mode, N, has free values, has seeds, limits), then N items. The answers
 | 2 forward | joints | pose (16, columns first) |
 | 3 jacobian | joints | 6 by joints, columns first |
 | 4 solve_batch | pose | as for solve |
+| 5 follow | pose of the path, where it starts (joints) | status, how many were reached, then all rows |
+| 6 search | pose, seed | as for solve |
+| 7 self_motion | pose | count, then the ends of as many intervals |
 
 Status: 0 OK, 1 UNREACHABLE, 2 LIMITS, 3 INVALID. There are as many rows as solutions at most, each the
-joints and whether it is singular; those beyond the count are zeros.
+joints and whether it is singular, and of a path one for each pose; those beyond the count are zeros.
 
 Constants are the defaults of the free joints; then, if it likes, the lower limits and the upper ones of all
 joints, and as texts the base link, the tip link and the names of the joints. A text is its length in bytes
@@ -32,9 +35,19 @@ from ikgen.errors import BadDescriptionError, VerificationError
 from ikgen.processes.outside_program import run_program
 from ikgen.verify.runners.runner import ArmConstants, Rows
 
-__all__ = ["BATCH", "FORWARD", "INFO", "JACOBIAN", "SOLVE", "ProgramRunner"]
+__all__ = [
+    "BATCH",
+    "FOLLOW",
+    "FORWARD",
+    "INFO",
+    "JACOBIAN",
+    "SEARCH",
+    "SELF_MOTION",
+    "SOLVE",
+    "ProgramRunner",
+]
 
-INFO, SOLVE, FORWARD, JACOBIAN, BATCH = range(5)
+INFO, SOLVE, FORWARD, JACOBIAN, BATCH, FOLLOW, SEARCH, SELF_MOTION = range(8)
 """What the first number of a request asks for."""
 
 Array = NDArray[np.float64]
@@ -43,11 +56,12 @@ _STATUS = ("OK", "UNREACHABLE", "LIMITS", "INVALID")
 
 
 class ProgramRunner:
-    """A `Runner` over a program; its folder takes the requests and answers.
+    """A `Runner` (and `MovingRunner`) over a program; its folder takes the requests and answers.
 
     `constants` are those of the arm; the number of solutions is asked of the program. `batch` says
-    whether it knows mode 4. Raises `BadDescriptionError` where the program has other joints: with `made`,
-    which waits for a program that is being made, and is called before each use, when it is used first.
+    whether it knows mode 4, `motions` whether 5 and 6, `intervals` whether 7. Raises
+    `BadDescriptionError` where the program has other joints: with `made`, which waits for a program that
+    is being made, and is called before each use, when it is used first.
     """
 
     dynamic_shapes = False
@@ -61,8 +75,11 @@ class ProgramRunner:
         batch: bool,
         source: str,
         made: Callable[[], None] | None = None,
+        motions: bool = False,
+        intervals: bool = False,
     ) -> None:
         self.label = label
+        self.moves, self.has_self_motion = motions, intervals
         self._program = program
         self._has_batch = batch
         self._given, self._source, self._made = constants, source, made
@@ -141,7 +158,7 @@ class ProgramRunner:
         table = out[:, 2:].reshape(n, most, dof + 1)
         count = np.clip(out[:, 1].astype(np.int64), 0, most)
         q = np.where((np.arange(most) < count[:, None])[:, :, None], table[:, :, :dof], np.nan)
-        status = tuple(_STATUS[int(s)] if s >= 0 else "UNKNOWN" for s in out[:, 0])
+        status = tuple(_name(s) for s in out[:, 0].tolist())
         return Rows(q, count, status, table[:, :, dof] != 0)
 
     def solve_batch(
@@ -161,6 +178,30 @@ class ProgramRunner:
         """Jacobians (N, 6, dof) for q (N, dof)."""
         dof = self.constants.dof
         return np.asarray(self._run(JACOBIAN, len(q), [q]).reshape(-1, dof, 6).transpose(0, 2, 1))
+
+    def follow(self, poses: Array, start: Array) -> tuple[Array, str, NDArray[np.bool_]]:
+        """Rows (N, dof) along poses (N, 4, 4), NaN from the first that was not reached, the status, and
+        which are singular (N,)."""
+        n, dof = len(poses), self.constants.dof
+        starts = np.broadcast_to(np.asarray(start, dtype=float), (n, dof))
+        status, reached, *rows = self._run(FOLLOW, n, [_by_columns(poses), starts]).tolist()
+        table = np.array(rows).reshape(n, dof + 1)
+        q = np.where(np.arange(n)[:, None] < reached, table[:, :dof], np.nan)
+        return q, _name(status), table[:, dof] != 0
+
+    def search(self, pose: Array, seed: Array) -> Array:
+        """The best rows (k, dof) near a seed (dof,)."""
+        columns = [_by_columns(np.asarray(pose)[None]), np.asarray(seed, dtype=float)[None]]
+        return next(iter(self._rows(self._run(SEARCH, 1, columns), 1)))
+
+    def self_motion(self, pose: Array) -> Array:
+        """Ends (k, 2) of the intervals of what is held."""
+        told = self._run(SELF_MOTION, 1, [_by_columns(np.asarray(pose)[None])])
+        return told[1:].reshape(-1, 2)
+
+
+def _name(status: float) -> str:
+    return _STATUS[int(status)] if status >= 0 else "UNKNOWN"
 
 
 def _told(constants: ArmConstants, told: Array) -> ArmConstants:
