@@ -12,11 +12,10 @@ import pytest
 
 from ikgen.cli.build import _print
 from ikgen.cli.main import run
-from ikgen.projects.config import ArmConfig
 from ikgen.projects.project_build import Outcome
 
 
-def killed(job: tuple[ArmConfig, str, bool]) -> Outcome:
+def killed(job: object) -> Outcome:
     """Stands for a generation that the system kills; workers import it from here."""
     os.kill(os.getpid(), signal.SIGKILL)
     raise AssertionError
@@ -33,6 +32,23 @@ def test_a_killed_worker_is_told_for_each_arm(
     for name in ("first", "second"):
         assert f"error: {name}: not generated: a worker process was killed" in said
     assert "--jobs 1" in said and "Traceback" not in said
+
+
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_steps_of_every_arm_are_told(
+    jobs: str, project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bad = '[[arm]]\nname = "bad"\nrobot = "elbow.urdf"\ntip = "none"\n'
+    with (project / "ikgen.toml").open("a") as config:
+        config.write(bad)
+    assert run(["build", "-v", "--jobs", jobs]) != 0
+    said = capsys.readouterr().err
+    for name in ("first", "second"):
+        for line in ("deriving theta_1", "verifying closure", "behaviour tree:", "  closure "):
+            assert f"\n{name}: {line}" in said
+    assert "\nbad: reading elbow.urdf" in said and "\nbad: verifying" not in said
+    assert run(["build", "--force", "--jobs", jobs]) != 0
+    assert "behaviour tree" not in capsys.readouterr().err
 
 
 def test_a_setup_file_without_a_main_guard(project: Path) -> None:

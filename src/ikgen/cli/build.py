@@ -14,6 +14,7 @@ import click
 from ikgen.cli.console import Console
 from ikgen.cli.error_output import as_object, say
 from ikgen.cli.options import console_options, executor_option, trust_option
+from ikgen.cli.work_text import work_text
 from ikgen.model.counted import counted
 from ikgen.projects.config import ArmConfig, named_config
 from ikgen.projects.recorded_arms import listed_arms
@@ -81,16 +82,18 @@ def build(
     from ikgen.projects.project_build import build_arms
 
     arms = tuple(replace(arm, request=replace(arm.request, trust=trust)) for arm in arms)
+    outcomes = []
     with Console(quiet=quiet, verbose=verbose) as console:
-        outcomes = list(
-            build_arms(
-                arms,
-                force=force,
-                verify=not no_verify,
-                workers=Workers(executor, jobs, scheduler),
-                progress=console,
-            )
-        )
+        for outcome in build_arms(
+            arms,
+            force=force,
+            verify=not no_verify,
+            workers=Workers(executor, jobs, scheduler),
+            progress=console,
+            words=work_text if console.verbose else None,
+        ):
+            console.tell(outcome.name, outcome.steps, outcome.work)
+            outcomes.append(outcome)
     code = max(outcome.exit_code for outcome in outcomes)
     left = left_outputs(arms)
     _print(outcomes, left, code, as_json=as_json, quiet=quiet, verbose=verbose)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import time
+from collections.abc import Iterable
 from types import TracebackType
 from typing import TYPE_CHECKING
 
@@ -63,7 +64,7 @@ class Console:
         """Say what happens now."""
         if self.quiet:
             return
-        text = f"{_WORDS.get(stage, stage)} {detail}".rstrip()
+        text = _words(stage, detail)
         if self._status is not None:
             from rich.markup import escape
 
@@ -71,6 +72,14 @@ class Console:
         elif self.verbose or stage != self._stage:
             click.echo(text if stage != "verify" or self.verbose else _WORDS["verify"], err=True)
         self._stage = stage
+
+    def tell(self, name: str, steps: Iterable[tuple[str, str]], work: str) -> None:
+        """With `verbose`: the steps of a job elsewhere and how it went, after its name."""
+        if not self.verbose:
+            return
+        lines = [_words(stage, detail) for stage, detail in steps] + work.splitlines()
+        for line in lines:
+            click.echo(f"{name}: {line}".rstrip(), err=True)
 
     def share(self, stage: str, ready: int, total: int) -> None:
         """How much of a long stage is done: on a terminal as a bar with the time left, elsewhere not."""
@@ -95,3 +104,8 @@ class Console:
         """A warning, shown unless quiet."""
         if not self.quiet:
             click.echo(f"warning: {text}", err=True)
+
+
+def _words(stage: str, detail: str) -> str:
+    """What happens, in words."""
+    return f"{_WORDS.get(stage, stage)} {detail}".rstrip()

@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from ikgen.cli.work_text import work_text
 from ikgen.errors import BadDescriptionError, IkgenError, UnsolvedChainError, VerificationError
 
 __all__ = ["ResultError", "as_object", "say", "say_error", "say_object"]
@@ -32,23 +33,10 @@ def say(message: str, hint: str = "") -> None:
 
 def say_error(error: IkgenError, *, verbose: bool) -> None:
     """An error of ikgen on stderr; with `verbose` how far the work came before."""
-    if verbose:
-        _say_work(error)
+    work = work_text(error) if verbose else ""
+    if work:
+        click.echo(work, err=True)
     say(error.message, error.hint)
-
-
-def _say_work(error: IkgenError) -> None:
-    from ikgen.cli.tables import verification_tables
-    from ikgen.cli.trace_text import derivation_trace
-
-    if isinstance(error, UnsolvedChainError):
-        if error.unsolved is not None:
-            click.echo(derivation_trace(error.unsolved.graph), err=True)
-        click.echo("\n".join(error.details), err=True)
-    if isinstance(error, VerificationError):
-        if error.derivation is not None:
-            click.echo(derivation_trace(error.derivation.graph), err=True)
-        click.echo(verification_tables(error.reports), err=True)
 
 
 def say_object(error: Mapping[str, Any], result: Mapping[str, Any] | None = None) -> None:

@@ -162,13 +162,11 @@ def _warnings(generation: Generation) -> list[str]:
 def _report(generation: Generation, *, as_json: bool, quiet: bool, verbose: bool) -> None:
     """The end of the job, in words or as JSON."""
     from ikgen.cli.summary_text import summary
-    from ikgen.cli.tables import verification_tables
-    from ikgen.cli.trace_text import derivation_trace
+    from ikgen.cli.work_text import work_text
     from ikgen.generation.result import as_dict
 
     if verbose and not quiet:
-        click.echo(derivation_trace(generation.derivation.graph), err=True)
-        click.echo(verification_tables(generation.reports), err=True)
+        click.echo(work_text(generation), err=True)
     if as_json:
         click.echo(json.dumps(as_dict(generation), indent=2, allow_nan=False))
     elif not quiet:

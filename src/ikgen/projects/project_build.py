@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ikgen.errors import IkgenError
-from ikgen.generation.progress import Progress, silent
+from ikgen.generation.progress import Progress, Steps, silent
 from ikgen.generation.publishing import complete_folder
 from ikgen.generation.record import read_record
 from ikgen.processes.executors import Workers
@@ -18,6 +18,10 @@ from ikgen.projects.stale import stale_reasons
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor, Future
+
+    from ikgen.generation.generate import Generation
+
+    WorkWords = Callable[[Generation | IkgenError], str]
 
 __all__ = ["Outcome", "build_arms"]
 
@@ -30,7 +34,8 @@ class Outcome:
     the error if it failed (`exit_code` then is not 0); `trace` is that of an internal error, `warnings`
     are what has to be told of the file and of what was generated, `solutions` how many a pose has at
     most, `missed` in words what the verification of each output missed, empty where that is nothing;
-    `held` says which joints were chosen to be held, and why."""
+    `held` says which joints were chosen to be held, and why; `steps` are what the work told while it ran
+    and `work` how it went, where that was asked for."""
 
     name: str
     reason: str
@@ -44,6 +49,18 @@ class Outcome:
     solutions: int = 0
     missed: str = ""
     held: str = ""
+    steps: tuple[tuple[str, str], ...] = ()
+    work: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class _Job:
+    """One arm to generate: why, whether to verify it, and what puts its work in words, if anything."""
+
+    arm: ArmConfig
+    reason: str
+    verify: bool
+    words: WorkWords | None
 
 
 def build_arms(
@@ -53,15 +70,20 @@ def build_arms(
     verify: bool = True,
     workers: Workers | None = None,
     progress: Progress = silent,
+    words: WorkWords | None = None,
 ) -> Iterator[Outcome]:
     """Bring every arm up to date by `workers` (None: a process a core); outcomes in the order of the
-    config."""
+    config, with their steps and their work in `words` (a function that workers can import) if given."""
     for out in {arm.outputs.out for arm in arms}:
         complete_folder(out)
     reasons = [
         reason or ("asked for" if force else "") for reason in stale_reasons(arms, verify=verify)
     ]
-    work = [(arm, reason, verify) for arm, reason in zip(arms, reasons, strict=True) if reason]
+    work = [
+        _Job(arm, reason, verify, words)
+        for arm, reason in zip(arms, reasons, strict=True)
+        if reason
+    ]
     for arm, reason in zip(arms, reasons, strict=True):
         progress("build", f"{arm.name}: {reason or 'up to date'}")
     made = _run(work, workers or Workers())
@@ -70,7 +92,7 @@ def build_arms(
     yield from made  # none is left: the workers are let go
 
 
-def _run(work: Sequence[tuple[ArmConfig, str, bool]], workers: Workers) -> Iterator[Outcome]:
+def _run(work: Sequence[_Job], workers: Workers) -> Iterator[Outcome]:
     """The outcomes in the order of the work."""
     count = min(len(work), workers.processes)
     if count <= 1 and workers.executor == "process":
@@ -78,14 +100,14 @@ def _run(work: Sequence[tuple[ArmConfig, str, bool]], workers: Workers) -> Itera
         return
     with replace(workers, count=max(count, 1)).open() as pool:
         waiting = [(job, _submit(pool, job)) for job in work]
-        for (arm, reason, _), answer in waiting:
+        for job, answer in waiting:
             try:
                 yield answer.result()
             except Exception:  # what goes wrong in the work is in its outcome: the worker was lost
-                yield _killed(arm.name, reason)
+                yield _killed(job.arm.name, job.reason)
 
 
-def _submit(pool: Executor, job: tuple[ArmConfig, str, bool]) -> Future[Outcome]:
+def _submit(pool: Executor, job: _Job) -> Future[Outcome]:
     """The answer to come; a pool whose worker was killed refuses further jobs."""
     from concurrent.futures import BrokenExecutor, Future
 
@@ -108,34 +130,52 @@ def _killed(name: str, reason: str) -> Outcome:
     )
 
 
-def _build_one(job: tuple[ArmConfig, str, bool]) -> Outcome:
+def _build_one(job: _Job) -> Outcome:
     """Generate one arm; errors become part of the outcome, since they must cross processes."""
-    from ikgen.generation.announcements import announcements
     from ikgen.generation.generate import generate
 
-    arm, reason, verify = job
-    outputs = replace(arm.outputs, verify=verify, only=True, ours=True)  # the config's alone
+    outputs = replace(
+        job.arm.outputs, verify=job.verify, only=True, ours=True
+    )  # the config's alone
+    steps = Steps()
+    work = ""
     try:
-        made = generate(arm.request, outputs)
+        made = generate(job.arm.request, outputs, steps)
+        outcome = _made(job, made)
+        work = job.words(made) if job.words else ""
     except IkgenError as error:
-        code, told = error.exit_code, error.warnings
-        return Outcome(arm.name, reason, (), 0.0, error.message, error.hint, code, warnings=told)
+        outcome = _failed(job, error.message, error.hint, error.exit_code, error.warnings)
+        work = job.words(error) if job.words else ""
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
-        return Outcome(arm.name, reason, message=f"{where}{error.strerror or error}", exit_code=2)
+        outcome = _failed(job, f"{where}{error.strerror or error}")
     except Exception as error:
-        return _internal(arm.name, reason, error)
-    told = announcements(made.derivation)
-    most = made.derivation.module.max_solutions
+        outcome = _internal(job.arm.name, job.reason, error)
+    return replace(outcome, steps=tuple(steps.told), work=work) if job.words else outcome
+
+
+def _failed(
+    job: _Job, message: str, hint: str = "", code: int = 2, warnings: tuple[str, ...] = ()
+) -> Outcome:
+    """The outcome of an arm that cannot be generated."""
+    return Outcome(
+        job.arm.name, job.reason, message=message, hint=hint, exit_code=code, warnings=warnings
+    )
+
+
+def _made(job: _Job, made: Generation) -> Outcome:
+    """The outcome of an arm that was generated."""
+    from ikgen.generation.announcements import announcements
+
     missed = "; ".join(f"{n} {r.missed_words}" for n, r in made.reports.items() if r.missed)
     held = made.derivation.held
     return Outcome(
-        arm.name,
-        reason,
+        job.arm.name,
+        job.reason,
         made.files,
         made.seconds,
-        warnings=told,
-        solutions=most,
+        warnings=announcements(made.derivation),
+        solutions=made.derivation.module.max_solutions,
         missed=missed,
         held=held.words if held is not None else "",
     )
