@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
@@ -35,9 +35,7 @@ class Solutions:
     status: Status
     singular: Flags
     reason: str = ""
-    names: Callable[[Array], tuple[str, ...]] | None = field(
-        default=None, repr=False, compare=False
-    )
+    names: Callable[[Array], tuple[str, ...]] | None = None
     projected: Array | None = None
 
     @property
@@ -49,6 +47,12 @@ class Solutions:
     def off(self) -> Array:
         """How far each row's pose is from the one asked for, (k, 2): m, rad; zeros without `project`."""
         return np.zeros((len(self.q), 2)) if self.projected is None else self.projected
+
+    def __repr__(self) -> str:
+        reason = f", reason={self.reason!r}" if self.reason else ""
+        missed = "" if self.projected is None else f", projected={self.projected!r}"
+        rows = f"q={self.q!r}, status={self.status!r}, singular={self.singular!r}"
+        return f"Solutions({rows}{reason}{missed})"
 
     def __len__(self) -> int:
         return len(self.q)
