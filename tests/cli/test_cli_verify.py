@@ -250,3 +250,18 @@ def test_outputs_of_an_earlier_run_are_not_passed_over(
     assert [Path(f["file"]).name for f in findings] == ["arm_ik.hpp"]
     (project / "new/arm_ik.hpp").write_text("// somebody's own")
     assert check("new") == 0
+
+
+@pytest.mark.parametrize(
+    ("emit", "gone"), [("python", "arm_ik.py"), ("cpp-package", "arm_ik_cpp/include/arm_ik.hpp")]
+)
+def test_a_file_that_is_gone_is_told_once(
+    emit: str, gone: str, project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    options = ("--name", "arm", "--emit", emit, "--only", "--no-verify", "-q")
+    assert run(["from-urdf", "arm.urdf", "-o", "out", *options]) == 0
+    (project / "out" / gone).unlink()
+    assert check("out") == 1
+    told = [line for line in capsys.readouterr().err.splitlines() if ": " in line]
+    assert told[0] == f"error: out/{gone}: is recorded but not there"
+    assert [line.partition(": ")[0] for line in told] == ["error", "hint"]

@@ -105,11 +105,18 @@ class OutputChecks:
         task, most = request.task or "pose", self.record.max_solutions
         return EmittedArm(self.record.name, dh, task, dh.free_indices, most)
 
-    def _failed(self, name: str, error: IkgenError) -> Finding:
+    def _failed(self, name: str, error: IkgenError) -> Finding | None:
+        if isinstance(error, BadDescriptionError) and self._gone(error.file):
+            return None  # the comparison with the record tells it
         if isinstance(error, BadDescriptionError | VerificationError):
             return self._wrong(name, error.message)
         # no compiler, a plug-in that fails: not the output's fault
         return Finding(self._file(name), error.message, error.hint, None, error.exit_code)
+
+    def _gone(self, file: str) -> bool:
+        """Whether a file is one that the record has and its folder has not."""
+        paths = (self.record.folder / name for name in self.record.files)
+        return any(path == Path(file) and not path.exists() for path in paths)
 
     def _wrong(
         self, name: str, message: str, deviation: tuple[float, float] | None = None
