@@ -12,6 +12,8 @@ from ikgen.errors import UnknownNameError
 def test_the_closest_names_come_first_and_long_lists_are_cut():
     error = UnknownNameError("link", "tol0", ["base", "flange", "tool0"])
     assert error.hint == "there is: tool0, base, flange"
+    joints = UnknownNameError("joint", "a9", ["a3", "a1", "wrist", "a2", "a4"])
+    assert joints.hint == "there is: a3, a1, a2, wrist, a4", "those alike in the order given"
     many = UnknownNameError("link", "tol0", [*(f"l{i}" for i in range(10_000)), "tool0"])
     assert many.hint.startswith("there is: tool0, ") and many.hint.endswith(", and 9901 more")
     assert len(many.known) == 10_001

@@ -28,6 +28,9 @@ __all__ = [
 ]
 
 _MOST_LISTED = 100
+_ALIKE = 0.5
+"""From which ratio of `difflib` on names look alike."""
+
 _SHORT = reprlib.Repr()
 _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 60
 
@@ -81,11 +84,12 @@ class BadDescriptionError(IkgenError):
 
 
 class UnknownNameError(IkgenError):
-    """A link, joint, task or emitter that does not exist; lists what does, the closest match first."""
+    """A link, joint, task or emitter that does not exist; lists what does, the closest
+    matches first and else in the order of `known`."""
 
     def __init__(self, kind: str, name: str, known: Iterable[str], *, hint: str = "") -> None:
         names = list(known)
-        close = difflib.get_close_matches(name, names, n=3, cutoff=0.5)
+        close = _closest(name, names)
         rest = [n for n in names if n not in close]
         if len(names) > _MOST_LISTED:
             rest = [*rest[: _MOST_LISTED - len(close)], f"and {len(names) - _MOST_LISTED} more"]
@@ -93,6 +97,19 @@ class UnknownNameError(IkgenError):
         super().__init__(f"no {kind} named '{name}'", hint=hint or f"there is: {listing}")
         self.name = name
         self.known = tuple(names)
+
+
+def _closest(name: str, names: Iterable[str]) -> list[str]:
+    """Up to three names that look like one, the most alike first; those alike keep their order, which
+    `difflib.get_close_matches` turns round."""
+    matcher = difflib.SequenceMatcher(b=name)
+    scores: dict[str, float] = {}
+    for one in names:
+        matcher.set_seq1(one)
+        if min(matcher.real_quick_ratio(), matcher.quick_ratio()) >= _ALIKE:
+            scores[one] = matcher.ratio()
+    alike = [one for one, score in scores.items() if score >= _ALIKE]
+    return sorted(alike, key=lambda one: -scores[one])[:3]
 
 
 class UnsupportedJointError(BadDescriptionError):

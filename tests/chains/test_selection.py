@@ -235,6 +235,16 @@ def test_joints_that_cannot_be_locked():
         select_chain(tree, "l0", "l4", {"j1": 0.0, "j4": 0.0})
 
 
+def test_joints_are_listed_from_base_to_tip() -> None:
+    tree = serial(*["revolute"] * 6)
+    with pytest.raises(UnknownNameError) as unknown:
+        select_chain(tree, "l0", "l6", {"j9": 0.0})
+    assert unknown.value.hint == "there is: j1, j2, j3, j4, j5, j6"
+    with pytest.raises(UsageError, match="not between") as outside:
+        select_chain(tree, "l1", "l6", {"j1": 0.0})
+    assert outside.value.hint == "joints of the chain: j2, j3, j4, j5, j6"
+
+
 def test_links_that_are_not_there_list_the_closest_first():
     tree = load_tree(FIXTURES / "ur5e.urdf")
     with pytest.raises(UnknownNameError, match="no link named 'tool_0'") as caught:

@@ -85,7 +85,7 @@ def _check_locked(
     couplings: Mapping[str, Coupling],
     locked: Mapping[str, float],
 ) -> None:
-    drivers = {coupling.driver.name for coupling in couplings.values()}
+    drivers = list(dict.fromkeys(coupling.driver.name for coupling in couplings.values()))
     types = {joint.name: joint.type for joint in tree.joints}
     between = {joint.name for joint in path}
     for name, value in locked.items():
@@ -102,5 +102,5 @@ def _check_locked(
             message, hint = "is fixed already", "leave the --lock out"
         else:
             message = "is not between base and tip"
-            hint = f"joints of the chain: {', '.join(sorted(drivers))}"
+            hint = f"joints of the chain: {', '.join(drivers)}"
         raise UsageError(f"locked joint '{name}' {message}", hint=hint)
