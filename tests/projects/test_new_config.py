@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -118,6 +119,25 @@ def test_arms_are_added_to_a_config(tmp_path: Path) -> None:
         add_to_config(path, table, robot_arms(table), ["python"])
     with pytest.raises(UsageError, match="not of ikgen alone"):
         add_to_config(tmp_path / "pyproject.toml", table, robot_arms(table), ["python"])
+
+
+def test_arms_between_links_that_are_named() -> None:
+    yumi = Request(FIXTURES / "abb_yumi.urdf")
+    every = robot_arms(yumi)
+    assert len(every) == 2
+    for arm in every:
+        assert arm.base is not None and arm.tip is not None
+        assert robot_arms(replace(yumi, tip=arm.tip)) == (arm,)
+    elbow = replace(yumi, base="yumi_body", tip="yumi_link_4_l")
+    (part,) = robot_arms(elbow)
+    assert (part.base, part.tip, part.dof) == ("yumi_body", "yumi_link_4_l", 4)
+    assert part.name.endswith("yumi_link_4_l")
+    (left,) = robot_arms(replace(yumi, base="yumi_link_1_l"))
+    assert left.base == "yumi_link_1_l" and left.tip in {arm.tip for arm in every}
+    with pytest.raises(UsageError, match="a DH table is one chain"):
+        robot_arms(Request(FIXTURES / "scara_standard.toml", base="a"))
+    with pytest.raises(UsageError, match="no arm found in 'yumi' below 'gripper_l_finger_r'"):
+        robot_arms(replace(yumi, base="gripper_l_finger_r"))
 
 
 def test_robot_without_an_arm_is_refused(tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ from ikgen.cli.console import Console
 from ikgen.cli.options import (
     console_options,
     emit_option,
+    link_options,
     reading_options,
 )
 from ikgen.cli.request_options import make_request, parse_emit
@@ -24,6 +25,7 @@ __all__ = ["init"]
 
 @click.command()
 @click.argument("robot", type=RobotFile(), metavar="ROBOT|TABLE")
+@link_options
 @reading_options
 @emit_option
 @click.option(
@@ -48,12 +50,15 @@ def init(
     as_json: bool,
     quiet: bool,
     verbose: bool,
-    **reading: Any,
+    **chain: Any,
 ) -> None:
-    """Write a config that lists every arm of ROBOT, for ikgen build."""
+    """Write a config that lists every arm of ROBOT, for ikgen build.
+
+    With --base alone those that begin there, with --tip the one chain to that link.
+    """
     from ikgen.projects.new_config import add_to_config, config_path, robot_arms, write_config
 
-    request = make_request(robot, **reading)
+    request = make_request(robot, **chain)
     path, outputs = config_path(out), parse_emit(emit)
     with Console(quiet=quiet, verbose=verbose) as console:
         console("read", robot.name)

@@ -20,6 +20,7 @@ __all__ = [
     "executor_option",
     "executor_options",
     "force_option",
+    "link_options",
     "package_options",
     "reading_options",
     "sampling_options",
@@ -137,6 +138,11 @@ def _apply(options: Sequence[Callable[[Any], Any]], function: F) -> F:
 def chain_options(function: F) -> F:
     """Which chain of the robot, which task, and how to read the file."""
     return _apply([*_LINK_OPTIONS, *_SOLVING_OPTIONS, *_XACRO_OPTIONS, trust_option], function)
+
+
+def link_options(function: F) -> F:
+    """Which chain of the robot."""
+    return _apply(_LINK_OPTIONS, function)
 
 
 def table_options(function: F) -> F:

@@ -19,6 +19,7 @@ from ikgen.projects.config import CONFIG, PYPROJECT, load_config
 
 if TYPE_CHECKING:
     from ikgen.chains.arms import ChainCandidate
+    from ikgen.model.joint_tree import JointTree
 
 __all__ = ["ArmTable", "add_to_config", "config_path", "robot_arms", "write_config"]
 
@@ -45,7 +46,8 @@ def config_path(out: Path) -> Path:
 
 
 def robot_arms(request: Request) -> tuple[ArmTable, ...]:
-    """Every arm of the request's robot; raises `UsageError` where none is found."""
+    """Every arm of the request's robot, of those from its base if it names one, or the chain to its tip;
+    raises `UsageError` where none is found."""
     if request.table:
         dh = read(request).dh
         return (ArmTable(arm_name(dh.robot), None, None, dh.dof),)
@@ -53,15 +55,29 @@ def robot_arms(request: Request) -> tuple[ArmTable, ...]:
 
     tree = read_tree(request)
     chains: dict[str, list[ChainCandidate]] = {}
-    for chain in candidate_chains(tree):
+    every = candidate_chains(tree)
+    several = len({chain.tip for chain in every}) > 1
+    if request.tip is not None:
+        return (_chain(tree, request.base, request.tip, several),)
+    for chain in every if request.base is None else candidate_chains(tree, request.base):
         chains.setdefault(chain.tip, []).append(chain)
     if not chains:
+        below = "" if request.base is None else f" below '{request.base}'"
         raise UsageError(
-            f"no arm found in '{tree.name}'",
+            f"no arm found in '{tree.name}'{below}",
             hint="write [[arm]] tables with base and tip by hand; ikgen inspect shows the links",
         )
-    arms = [_arm(tree.name, tip, ways, len(chains) > 1) for tip, ways in chains.items()]
+    arms = [_arm(tree.name, tip, ways, several) for tip, ways in chains.items()]
     return tuple(_told_apart(arms))
+
+
+def _chain(tree: JointTree, base: str | None, tip: str, several: bool) -> ArmTable:
+    """The chain to a tip, from where it begins by convention where no base is given."""
+    from ikgen.chains.selection import select_chain
+
+    chain = select_chain(tree, base, tip)
+    name = arm_name(tree.name, tip if several else "")
+    return ArmTable(name, chain.base_link, tip, chain.dof)
 
 
 def _arm(robot: str, tip: str, ways: Sequence[ChainCandidate], several: bool) -> ArmTable:
