@@ -6,6 +6,8 @@ import click
 import pytest
 from click.testing import CliRunner
 
+from ikgen.cli.from_robot import from_urdf
+from ikgen.cli.init import init
 from ikgen.cli.options import sampling_options
 
 
@@ -28,3 +30,12 @@ def test_counts_may_have_an_exponent(text: str, number: int) -> None:
 def test_what_is_no_count_is_refused(text: str) -> None:
     done = CliRunner().invoke(shown, ["--samples", text])
     assert done.exit_code == 2 and "--samples" in done.output
+
+
+def test_outputs_of_a_config_are_not_said_to_be_made_again() -> None:
+    """What a config lists is made by another command: nothing was made before."""
+    listed, made = (
+        " ".join(CliRunner().invoke(one, ["--help"]).output.split()) for one in (init, from_urdf)
+    )
+    assert "made again" in made and "made again" not in listed
+    assert "What the config lists as outputs of each arm, for ikgen build to generate" in listed

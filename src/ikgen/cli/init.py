@@ -13,8 +13,8 @@ from ikgen.cli.completion import RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.options import (
     console_options,
-    emit_option,
     link_options,
+    listed_emit_option,
     reading_options,
 )
 from ikgen.cli.request_options import make_request, parse_emit
@@ -27,7 +27,7 @@ __all__ = ["init"]
 @click.argument("robot", type=RobotFile(), metavar="ROBOT|TABLE")
 @link_options
 @reading_options
-@emit_option
+@listed_emit_option
 @click.option(
     "-o",
     "--output",

@@ -21,6 +21,7 @@ __all__ = [
     "executor_options",
     "force_option",
     "link_options",
+    "listed_emit_option",
     "package_options",
     "reading_options",
     "sampling_options",
@@ -113,13 +114,20 @@ trust_option = click.option(
 )
 
 
-emit_option = click.option(
-    "--emit",
-    multiple=True,
-    metavar="NAME,...",
-    type=Emits(),
-    help=f"Outputs (default: python): {', '.join(row.name for row in EMITTERS)}, and those of other "
-    "packages (ikgen doctor). Those that were made here before are made again.",
+_OUTPUTS = f"{', '.join(row.name for row in EMITTERS)}, and those of other packages (ikgen doctor)"
+
+
+def _emit_option(words: str) -> Callable[[F], F]:
+    return click.option("--emit", multiple=True, metavar="NAME,...", type=Emits(), help=words)
+
+
+emit_option = _emit_option(
+    f"Outputs (default: python): {_OUTPUTS}. Those that were made here before are made again."
+)
+
+listed_emit_option = _emit_option(
+    "What the config lists as outputs of each arm, for ikgen build to generate: one or more of "
+    f"{_OUTPUTS}, separated by commas. Default: python."
 )
 
 
