@@ -78,13 +78,15 @@ def _held(derivation: Derivation) -> str:
 
 
 def _rounding(derivation: Derivation) -> str:
-    """How far the file is off what was solved, where Newton steps take the rows to it."""
+    """How far the file is off what was solved, where Newton steps take the rows to it; its class where that
+    is another."""
+    named = derivation.file_class
+    other = f", {named}," if named and named != derivation.geometry.name else ""
     off = rounding(derivation)
     if off is None:
-        return ""
-    return (
-        f"; the file's is up to {1e3 * off[0]:.2g} mm and {off[1]:.1g} rad off, its rows are exact"
-    )
+        return other and f"; the file's is {named}"
+    far = f"{1e3 * off[0]:.2g} mm and {off[1]:.1g} rad off"
+    return f"; the file's{other} is up to {far}, its rows are exact"
 
 
 def _solutions(generation: Generation) -> str:

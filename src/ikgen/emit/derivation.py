@@ -80,6 +80,8 @@ class Derivation:
     """The joints that were chosen to be held; None where none was."""
     passed_over: tuple[str, ...] = ()
     """Tasks that came before the chosen one, and whose code failed its verification."""
+    file_class: str = ""
+    """The name of the geometry class of the file's own chain, which that of what was solved may not be."""
 
 
 @dataclass(frozen=True, slots=True)

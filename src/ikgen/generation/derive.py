@@ -46,7 +46,8 @@ def derive(
         reading = read(request)
     check_couplings(reading.dh)
     free_defaults(reading.dh, request.free.items())  # first: some values are refused
-    progress("derive", classify(reading.dh).name)
+    file_class = classify(reading.dh).name
+    progress("derive", file_class)
     check_task(request, reading.dh)
     demand = Demand(request.named_task, passed_over, progress, tuple(refused), request.tool_axis)
     found = closed_form(reading, demand)
@@ -64,9 +65,8 @@ def derive(
     module = _module(name, request, found, program)
     unasked = request.task is None
     passed = tuple(passed_over) if unasked else ()
-    return Derivation(
-        found.reading, geometry, found.task, found.graph, module, unasked, found.held, passed
-    )
+    how = (found.task, found.graph, module, unasked, found.held, passed, file_class)
+    return Derivation(found.reading, geometry, *how)
 
 
 def _module(name: str, request: Request, found: ClosedForm, program: Program) -> SolverModule:

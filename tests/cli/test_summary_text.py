@@ -1,0 +1,49 @@
+"""What a finished generation says of the geometry that was solved."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
+
+from ikgen.cli.main import run
+
+pytestmark = pytest.mark.usefixtures("solved_once")
+
+
+def said(folder: Path, shift: str, capsys: pytest.CaptureFixture[str]) -> tuple[str, str]:
+    """The class that was announced and the summary's line on the geometry, of an arm whose shoulder and
+    wrist are `shift` (m) off."""
+    joints = list(SHOULDER_ELBOW_WRIST)
+    for i in (1, 5):
+        name, kind, axis, _, limits = joints[i]
+        joints[i] = (name, kind, axis, f"{shift} {shift} 0", limits)
+    (folder / "arm.urdf").write_text(serial_urdf("arm", joints))
+    assert run(["from-urdf", str(folder / "arm.urdf"), "-o", str(folder), "--no-verify"]) == 0
+    told = capsys.readouterr()
+    (announced,) = (line for line in told.err.splitlines() if line.startswith("deriving "))
+    (geometry,) = (line for line in told.out.splitlines() if line.startswith("geometry:"))
+    return announced.removeprefix("deriving "), geometry.removeprefix("geometry:").strip()
+
+
+@pytest.mark.parametrize(
+    ("shift", "words"),
+    [
+        ("0.0001", "; the file's, 7R one spherical triple, is up to 0."),
+        ("0.0002", "; the file's is 7R one spherical triple"),  # by elimination, of the file's rows
+    ],
+)
+def test_the_class_of_the_file_is_named_beside_that_which_was_solved(
+    shift: str, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    announced, geometry = said(tmp_path, shift, capsys)
+    assert announced == "7R one spherical triple"
+    assert geometry.startswith("7R S-R-S: ") and words in geometry
+
+
+def test_a_class_that_is_the_file_s_is_named_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    announced, geometry = said(tmp_path, "0", capsys)
+    assert announced == "7R S-R-S" and geometry.count("7R") == 1
