@@ -216,6 +216,42 @@ def test_one_far_joint_is_no_sign_of_millimetres(read):
     assert read(text).source.warnings == ()
 
 
+def metres(*lengths, behind=""):
+    """A robot of revolute joints so far from one another, the last two links fixed together."""
+    links = "abcdefgh"[: len(lengths) + 1]
+    parts = [
+        joint(f'<origin xyz="0 {x} 0"/>{LIMIT}', name=f"j{i}", parent=links[i], child=links[i + 1])
+        for i, x in enumerate(lengths)
+    ]
+    tool = joint(
+        f'<origin xyz="{behind} 0 0"/>', name="t", type_="fixed", parent=links[-1], child="z"
+    )
+    return robot(*parts, *([tool] if behind else []), links=links + ("z" if behind else ""))
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        (metres(0.4, 455, 0.1, -25, 0.3, 0.2), ["j1", "j3"]),
+        (metres(0, 455, 0, 0.1, 0.2), ["j1"]),
+        (metres(0.4, 0.3, 0.2, behind="80"), ["t"]),
+        (metres(25, 3, 4, 1), []),  # a mast
+        (metres(455, 0.1), []),
+    ],
+)
+def test_joints_that_alone_look_like_millimetres_are_named(read, text, names):
+    warnings = read(text).source.warnings
+    assert [warning.partition("'")[2].partition("'")[0] for warning in warnings] == names
+    assert all(warning.partition("bot.urdf:")[2][0].isdigit() for warning in warnings)
+    assert all("looks like mm, others' like m: kept as it is" in warning for warning in warnings)
+
+
+def test_where_a_robot_stands_is_no_length_of_it(read):
+    fixed = joint('<origin xyz="4000 0 0"/>', name="w", type_="fixed", parent="z", child="a")
+    text = metres(0.4, 0.3, 0.2).replace("</robot>", f'<link name="z"/>{fixed}</robot>')
+    assert read(text).source.warnings == ()
+
+
 @pytest.mark.parametrize("case", BENT)
 def test_tolerated_with_a_warning(read, case):
     text, warning = BENT[case]

@@ -64,7 +64,10 @@ class Place:
 
     def warn(self, element: Element, message: str) -> None:
         """Record an oddity that could be read anyway."""
-        line = None if element is None else element.sourceline
+        self.warn_at(None if element is None else element.sourceline, message)
+
+    def warn_at(self, line: int | None, message: str) -> None:
+        """Record an oddity of a line."""
         self.warnings.append(f"{place_in(self.file, line)}{message}")
 
 

@@ -12,6 +12,7 @@ from lxml import etree
 from ikgen.errors import UsageError
 from ikgen.importers.unprefixed import require_expanded
 from ikgen.importers.urdf.joint_list import read_joints, unique_names
+from ikgen.importers.urdf.millimetres import note_millimetres
 from ikgen.importers.urdf.topology import check_joints, find_roots
 from ikgen.importers.xml_document import (
     Element,
@@ -22,12 +23,9 @@ from ikgen.importers.xml_document import (
     read_text,
     shown_file,
 )
-from ikgen.model.joint_tree import Joint, JointTree, Source
+from ikgen.model.joint_tree import JointTree, Source
 
 __all__ = ["changed_tree", "parse_urdf", "read"]
-
-_FARTHEST_JOINT = 20.0
-"""Most (m) from a moving joint to the one before, along an axis: longer than the booms of robots."""
 
 _XACRO_HINT = "this is a xacro file: rename it to .urdf.xacro, or expand it with xacro first"
 _OTHER_FORMATS = {"sdf": "SDF", "mujoco": "MuJoCo MJCF", "COLLADA": "COLLADA", "launch": "launch"}
@@ -81,7 +79,7 @@ def _tree(root: Element, source: Source, warnings: Sequence[str]) -> JointTree:
     links = _link_names(root, place)
     joints = read_joints(root, place)
     check_joints(links, joints, place.file)
-    _note_millimetres(joints, place)
+    note_millimetres(joints, place)
     roots = find_roots(links, joints)
     if len(roots) > 1:
         others = ", ".join(f"'{link}'" for link, _ in roots[1:])
@@ -93,16 +91,6 @@ def _tree(root: Element, source: Source, warnings: Sequence[str]) -> JointTree:
     return JointTree(
         name, links, joints, roots[0][0], replace(source, warnings=tuple(place.warnings))
     )
-
-
-def _note_millimetres(joints: Sequence[Joint], place: Place) -> None:
-    """Warns of several moving joints that are farther from the one before than those of any robot."""
-    moving = [joint for joint in joints if joint.type.moves_on_one_axis]
-    far = [abs(float(x)) for joint in moving for x in joint.T_parent_child[:3, 3]]
-    far = [x for x in far if x > _FARTHEST_JOINT]
-    if len(far) > 1:
-        text = f"joints lie up to {max(far):g} m apart: lengths look like mm: kept as they are"
-        place.warn(None, text)
 
 
 def _digest(text: str) -> str:
