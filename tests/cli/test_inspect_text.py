@@ -117,3 +117,28 @@ def test_arm_angle_is_offered_to_arms_that_have_one(tmp_path: Path) -> None:
     assert with_one.arm_angle and "--free arm-angle: closed form" in as_text(with_one)
     without = inspect_robot(Request(FIXTURES / "franka_fr3.urdf"))
     assert not without.arm_angle and "arm-angle" not in as_text(without)
+
+
+def test_links_that_are_fixed_to_the_tip_are_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tips = [f"frame{i}" for i in range(15)]
+    fixed = "".join(
+        f'<link name="{tip}"/><joint name="{tip}" type="fixed"><parent link="tool0"/>'
+        f'<child link="{tip}"/></joint>'
+        for tip in tips
+    )
+    robot = tmp_path / "arm.urdf"
+    robot.write_text(
+        serial_urdf("arm", SHOULDER_ELBOW_WRIST).replace("</robot>", f"{fixed}</robot>")
+    )
+    assert run(["inspect", str(robot), "--no-advice"]) == 0
+    shown = capsys.readouterr().out
+    (line,) = (line.strip() for line in shown.splitlines() if "other tips" in line)
+    assert line.startswith("other tips, fixed to it: wrist_roll_link, frame0, ")
+    assert line.endswith("frame8 and 6 more")
+    assert run(["inspect", str(robot), "--no-advice", "--json"]) == 0
+    (chain,) = json.loads(capsys.readouterr().out)["candidates"]
+    assert chain["tip"] == "tool0" and chain["other_tips"] == ["wrist_roll_link", *tips]
+    assert run(["inspect", str(FIXTURES / "doosan_m1013.urdf"), "--no-advice"]) == 0
+    assert "other tips" not in capsys.readouterr().out

@@ -29,7 +29,8 @@ class ChainCandidate:
 
     `dof` counts independent joints: a mimic joint follows its driver. `left_out` says which joint behind
     the tip is taken for a gripper's where it may be the arm's ("": none). `followers`: what those of the
-    joints follow that follow another one.
+    joints follow that follow another one. `other_tips` are the links fixed to the tip, nearest to the joint
+    first: the same joints place them.
     """
 
     base: str
@@ -39,6 +40,7 @@ class ChainCandidate:
     why: str
     left_out: str = ""
     followers: Mapping[str, str] = field(default_factory=dict)
+    other_tips: tuple[str, ...] = ()
 
     @property
     def words(self) -> str:
@@ -91,7 +93,8 @@ def _branches(index: TreeIndex, root: str, base: str | None) -> Iterator[ChainCa
         if joints:
             left_out = _left_out(arms.doubtful.get(hub, ()))
             follow = _followers(joints)
-            yield ChainCandidate(start, tip, _names(joints), _dof(joints), why, left_out, follow)
+            how = (_names(joints), _dof(joints), why, left_out, follow)
+            yield ChainCandidate(start, tip, *how, tuple(link for link in body if link != tip))
 
 
 def _left_out(joints: Sequence[Joint]) -> str:
