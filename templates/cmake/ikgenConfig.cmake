@@ -10,7 +10,7 @@
 # makes the INTERFACE library <target> (alias ikgen::<target>) with the emitted header
 # <name>_ik.hpp on its include path. Outputs lie in ${CMAKE_CURRENT_BINARY_DIR}/ikgen/<target>, which
 # the target property INTERFACE_IKGEN_OUTPUT_DIR holds. They are made again when the description changes, or a
-# file that xacro includes, or a file of DEPENDS. VERIFY adds the test <target>_verify.
+# file that xacro includes, or a file of DEPENDS, and when ikgen is updated. VERIFY adds the test <target>_verify.
 #
 #   ikgen_committed(<target> DIRECTORY <dir> [NAME <name>] [CONFIG <ikgen.toml>] [SAMPLES <n>] [VERIFY])
 #

@@ -79,7 +79,7 @@ function(ikgen_generate target)
     list(APPEND options --package-path "${value}")
   endforeach()
 
-  # A depfile tells the files that xacro included; its target must be spelled as the build tool
+  # A depfile tells the files that xacro included, and ikgen's own; its target must be spelled as the build tool
   # spells it, which policy CMP0116 changes for Ninja.
   set(depfile)
   if(CMAKE_GENERATOR MATCHES "Ninja" OR CMAKE_VERSION VERSION_GREATER_EQUAL 3.20)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shutil
+import sys
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from tests.support.precompiled import OPTIONS
 from tests.support.sampled import sampled
 from tests.support.tools import finished, needs_cmake, printed
 
+import ikgen
 from ikgen import __version__
 from ikgen.errors import MissingToolError
 from ikgen.generation.emitters import EMITTERS
@@ -125,6 +127,32 @@ def test_only_the_affected_arm_is_generated_again(two_arms: Path, generator: str
     assert right in again and left not in again
     nothing = printed("cmake", "--build", "b", cwd=two_arms)
     assert left not in nothing and right not in nothing
+
+
+@needs_cmake
+@pytest.mark.skipif(shutil.which("ninja") is None, reason="needs ninja")
+def test_an_update_generates_again(two_arms: Path) -> None:
+    """Stands for an installation: a copy of the package, whose version changes."""
+    package = Path(ikgen.__file__).parent
+    copy = two_arms / "installed/src/ikgen"
+    shutil.copytree(package, copy)
+    shutil.copytree(ROOT / "templates", two_arms / "installed/templates")
+    command = two_arms / "installed/ikgen"
+    command.write_text(
+        f'#!/bin/sh\nPYTHONPATH="{copy.parent}" exec "{sys.executable}" -m ikgen "$@"\n'
+    )
+    command.chmod(0o755)
+    found = (f"-Dikgen_DIR={cmake_directory()}", f"-DIKGEN_EXECUTABLE={command}")
+    printed("cmake", "-S", ".", "-B", "b", "-G", "Ninja", *found, cwd=two_arms)
+    build = ("cmake", "--build", "b", "--target", "right_generate")
+    made = "inverse kinematics right_ik"
+    assert made in printed(*build, cwd=two_arms)
+    assert made not in printed(*build, cwd=two_arms)
+    stated = copy / "__init__.py"
+    stated.write_text(stated.read_text().replace(f'"{__version__}"', '"99.0"'))
+    assert made in printed(*build, cwd=two_arms)
+    assert '"99.0"' in (two_arms / "b/ikgen/right/right_ik.py").read_text()
+    assert made not in printed(*build, cwd=two_arms)
 
 
 @needs_cmake

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+import ikgen
 from ikgen.cli.main import run
 from ikgen.errors import BadDescriptionError
 from ikgen.projects.config import default_config, load_config
@@ -58,7 +59,8 @@ def test_builds_only_what_is_stale(package: Path, capsys: pytest.CaptureFixture[
     assert {p.name for p in (package / "generated").iterdir()} == {
         "kuka_ik.py", "kuka_ik.json", "small_ik.py", "small_ik.json"
     }  # fmt: skip
-    assert "wrist.xacro" in (package / "d").read_text()
+    rule = (package / "d").read_text()
+    assert "wrist.xacro" in rule and Path(ikgen.__file__).as_posix() in rule
     assert run(["build", "--check", "--no-verify"]) == 0
     before = (package / "generated/kuka_ik.py").stat().st_mtime_ns
     wrist = package / "wrist.xacro"

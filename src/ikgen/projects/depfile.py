@@ -5,7 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import ikgen
+
 __all__ = ["depfile_text", "write_depfile"]
+
+_VERSION = Path(ikgen.__file__)
+"""An update writes it anew."""
 
 
 def depfile_text(targets: str | Sequence[Path], inputs: Sequence[Path]) -> str:
@@ -15,8 +20,8 @@ def depfile_text(targets: str | Sequence[Path], inputs: Sequence[Path]) -> str:
 
 
 def write_depfile(path: Path, targets: str | Sequence[Path], inputs: Sequence[Path]) -> None:
-    """Write the rule to a file."""
-    text = depfile_text(targets, inputs)
+    """Write the rule to a file. The outputs depend on ikgen's version too: on the file that states it."""
+    text = depfile_text(targets, [*inputs, _VERSION])
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text, encoding="utf-8", newline="\n")
 
