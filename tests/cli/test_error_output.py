@@ -124,6 +124,11 @@ def test_a_failed_verification(called: Called, monkeypatch: pytest.MonkeyPatch) 
     assert code == found["error"]["exit_code"] == 1
     assert not found["error"]["verification"]["python"]["passed"]
     assert not Path("out").exists()
+    assert found["error"]["hint"].startswith("nothing was written; run with -v")
+    robot = Path("elbow.urdf")
+    robot.write_text(robot.read_text().replace('effort="1"', 'effort="-1"'))
+    code, found = called("from-urdf", "elbow.urdf", "--task", "position", "--samples", "20")
+    assert code == 1 and "see first to what is odd in the file" in found["error"]["hint"]
 
 
 def test_what_a_file_looks_like_is_said_before_what_failed(

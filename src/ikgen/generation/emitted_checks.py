@@ -72,9 +72,17 @@ def verify_texts(
                 f"the emitted {name} code failed its verification: {report.worst_case}",
                 reports=reports,
                 derivation=derivation,
-                hint="nothing was written; run with -v for the whole table, and please report it",
+                hint=f"nothing was written; {_first(derivation.reading)}",
             )
     return reports
+
+
+def _first(reading: Reading) -> str:
+    """What to do about code that failed: lengths in mm or angles in degrees are no fault of ikgen's."""
+    told = "run with -v for the whole table, and please report it"
+    if not reading.source.warnings:
+        return told
+    return f"see first to what is odd in the file, as the warnings say; if it is meant so, {told}"
 
 
 def _reports(
