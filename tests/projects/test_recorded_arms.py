@@ -68,6 +68,41 @@ def test_a_package_regenerates_itself_from_anywhere(workspace: Path) -> None:
     assert script.with_name("package.xml").read_text() == before
 
 
+def test_a_package_that_was_moved_is_told_where_its_description_is(
+    workspace: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (script,) = workspace.rglob("regenerate.sh")
+    other = workspace / "far/away" / script.parent.name
+    shutil.move(script.parent, other)
+    command = ["build", str(other), "--no-verify"]
+    for words, code in (([], 2), (["--check"], 1)):
+        assert run([*command, *words]) == code
+        hint = (
+            f"hint: ikgen build {other.as_posix()} --robot FILE (the description, where it is now)"
+        )
+        assert hint in capsys.readouterr().err
+    assert run([*command, "--robot", "scara_standard.toml"]) == 0
+    assert '"robot": "../../../scara_standard.toml"' in (other / "scara_ik.json").read_text()
+    assert run([*command, "--check"]) == 0
+    assert "sh regenerate.sh --robot FILE" in " ".join((other / "README.md").read_text().split())
+    assert 'ikgen build "$(dirname "$0")" "$@"' in (other / script.name).read_text()
+
+
+def test_one_description_is_named_for_the_outputs_of_one(
+    workspace: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    config = workspace / "ikgen.toml"
+    config.write_text('[[arm]]\nname = "scara"\nrobot = "scara_standard.toml"\n')
+    robot = ("--robot", "scara_standard.toml")
+    assert run(["build", str(config), "--check", *robot]) == 2
+    assert "hint: change it in" in capsys.readouterr().err
+    shutil.copy("scara_standard.toml", "other.toml")
+    command = ["from-dh", "other.toml", "--name", "other", "-o", "src", "-q", "--no-verify"]
+    assert run(command) == 0
+    assert run(["build", "src", "--check", *robot]) == 2
+    assert "are of several descriptions" in capsys.readouterr().err
+
+
 def test_a_folder_without_outputs_is_told(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ikgen.cli.completion import RobotFile
 from ikgen.cli.console import Console
 from ikgen.cli.error_output import as_object, say
 from ikgen.cli.options import console_options, executor_option, trust_option
 from ikgen.cli.work_text import work_text
 from ikgen.model.counted import counted
 from ikgen.projects.config import ArmConfig, named_config
-from ikgen.projects.recorded_arms import listed_arms
+from ikgen.projects.recorded_arms import has_lost_robot, listed_arms
 
 if TYPE_CHECKING:
     from ikgen.projects.left_outputs import LeftOutputs
@@ -32,6 +33,12 @@ __all__ = ["build"]
     "--check", is_flag=True, help="Only say what is stale and why; exit code 1 if anything is."
 )
 @click.option("--force", is_flag=True, help="Generate fresh arms too.")
+@click.option(
+    "--robot",
+    metavar="FILE",
+    type=RobotFile(),
+    help="The description of the outputs in DIR, where it is not any more where their record names it.",
+)
 @click.option(
     "--depfile",
     metavar="FILE",
@@ -58,6 +65,7 @@ def build(
     *,
     check: bool,
     force: bool,
+    robot: Path | None,
     depfile: Path | None,
     jobs: int | None,
     no_verify: bool,
@@ -74,7 +82,7 @@ def build(
     without one those that were generated into it are made again.
     """
     path = named_config(config)
-    arms = listed_arms(path)
+    arms = listed_arms(path, robot)
     if check:
         return _check(path, arms, verify=not no_verify, as_json=as_json, quiet=quiet)
     from ikgen.processes.executors import Workers
@@ -84,24 +92,32 @@ def build(
     arms = tuple(replace(arm, request=replace(arm.request, trust=trust)) for arm in arms)
     outcomes = []
     with Console(quiet=quiet, verbose=verbose) as console:
-        for outcome in build_arms(
+        made = build_arms(
             arms,
             force=force,
             verify=not no_verify,
             workers=Workers(executor, jobs, scheduler),
             progress=console,
             words=work_text if console.verbose else None,
-        ):
+        )
+        for arm, outcome in zip(arms, made, strict=True):
             console.tell(outcome.name, outcome.steps, outcome.work)
-            outcomes.append(outcome)
+            outcomes.append(_with_way(path, arm, outcome))
     code = max(outcome.exit_code for outcome in outcomes)
     left = left_outputs(arms)
     _print(outcomes, left, code, as_json=as_json, quiet=quiet, verbose=verbose)
-    if not quiet:
-        _tell_left(path, left)
+    _tell_left(path, () if quiet else left)
     if depfile is not None:
         _write_depfile(depfile, arms)
     return code
+
+
+def _with_way(path: Path, arm: ArmConfig, outcome: Outcome) -> Outcome:
+    """The outcome, with what to type where the description is gone of outputs in a folder."""
+    from ikgen.projects.check import mending
+
+    lost = outcome.exit_code and has_lost_robot(path, arm)
+    return replace(outcome, hint=mending(path, [arm])) if lost else outcome
 
 
 def _check(
@@ -124,12 +140,12 @@ def _check(
             for arm, reason in zip(arms, reasons, strict=True)
         ]
         result: dict[str, Any] = {"stale": bool(code), "arms": rows}
-        _echo(result, code, f"{sum(map(bool, reasons))} arms are stale", mending(path))
+        _echo(result, code, f"{sum(map(bool, reasons))} arms are stale", mending(path, arms))
     elif not quiet:
         names = [arm.name for arm in arms]
         click.echo("\n".join(stale_lines(list(zip(names, reasons, strict=True)))))
     if code and not quiet:
-        click.echo(f"hint: {mending(path)}", err=True)
+        click.echo(f"hint: {mending(path, arms)}", err=True)
     return code
 
 

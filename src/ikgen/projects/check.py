@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ikgen.errors import IkgenError
-from ikgen.projects.config import named_config
-from ikgen.projects.recorded_arms import listed_arms
+from ikgen.projects.config import ArmConfig, named_config
+from ikgen.projects.recorded_arms import has_lost_robot, listed_arms
 from ikgen.projects.stale import stale_reasons
 
 __all__ = ["main", "mending", "stale_lines"]
@@ -20,9 +20,11 @@ def stale_lines(reasons: Sequence[tuple[str, str]]) -> list[str]:
     return [f"{name}: {'stale: ' + reason if reason else 'up to date'}" for name, reason in reasons]
 
 
-def mending(config: Path) -> str:
-    """The command that brings the arms of a config up to date."""
-    return f"ikgen build {shlex.quote(config.as_posix())}"
+def mending(config: Path, arms: Sequence[ArmConfig] = ()) -> str:
+    """The command that brings arms of a config, or of a folder's records, up to date."""
+    lost = any(has_lost_robot(config, arm) for arm in arms)
+    more = " --robot FILE (the description, where it is now)" if lost else ""
+    return f"ikgen build {shlex.quote(config.as_posix())}{more}"
 
 
 def main(configs: Sequence[str]) -> int:
@@ -42,6 +44,6 @@ def main(configs: Sequence[str]) -> int:
             return error.exit_code
         print(*stale_lines(reasons), sep="\n")
         if any(reason for _, reason in reasons):
-            print(f"hint: {mending(path)}", file=sys.stderr)
+            print(f"hint: {mending(path, arms)}", file=sys.stderr)
             code = 1
     return code

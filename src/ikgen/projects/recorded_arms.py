@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
+from ikgen.errors import UsageError
 from ikgen.generation.record import find_records, read_record, records_of
 from ikgen.generation.request import Outputs
+from ikgen.importers.named_robots import is_named
 from ikgen.projects.config import ArmConfig, load_config
 
-__all__ = ["arms_below", "listed_arms"]
+__all__ = ["arms_below", "has_lost_robot", "listed_arms"]
 
 
 def arms_below(folder: Path) -> tuple[ArmConfig, ...]:
@@ -25,6 +28,26 @@ def arms_below(folder: Path) -> tuple[ArmConfig, ...]:
     return tuple(arms.values())
 
 
-def listed_arms(path: Path) -> tuple[ArmConfig, ...]:
-    """The arms of a config, or of the records below a folder, as `named_config` gives them."""
-    return arms_below(path) if path.is_dir() else load_config(path)
+def listed_arms(path: Path, robot: Path | None = None) -> tuple[ArmConfig, ...]:
+    """The arms of a config, or of the records below a folder, as `named_config` gives them; the latter of
+    another description, `robot`, where that is not any more where they name it.
+
+    Raises `UsageError` for a `robot` beside a config, or where the records name several.
+    """
+    if robot is None:
+        return arms_below(path) if path.is_dir() else load_config(path)
+    if not path.is_dir():
+        hint = f"change it in {path.as_posix()}"
+        raise UsageError("--robot is of outputs without a config, which names its own", hint=hint)
+    arms = arms_below(path)
+    if len({arm.request.robot.resolve() for arm in arms}) > 1:
+        what = f"--robot: the outputs below '{path}' are of several descriptions"
+        raise UsageError(what, hint="name the folder of one of them")
+    return tuple(replace(arm, request=replace(arm.request, robot=robot)) for arm in arms)
+
+
+def has_lost_robot(path: Path, arm: ArmConfig) -> bool:
+    """Whether an arm of a folder's records has no description where they name it, as of outputs that were
+    moved alone."""
+    robot = arm.request.robot
+    return path.is_dir() and not is_named(robot) and not robot.exists()
