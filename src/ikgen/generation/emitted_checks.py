@@ -72,17 +72,19 @@ def verify_texts(
                 f"the emitted {name} code failed its verification: {report.worst_case}",
                 reports=reports,
                 derivation=derivation,
-                hint=f"nothing was written; {_first(derivation.reading)}",
+                hint=_hint(derivation.reading),
             )
     return reports
 
 
-def _first(reading: Reading) -> str:
+def _hint(reading: Reading) -> str:
     """What to do about code that failed: lengths in mm or angles in degrees are no fault of ikgen's."""
-    told = "run with -v for the whole table, and please report it"
     if not reading.source.warnings:
-        return told
-    return f"see first to what is odd in the file, as the warnings say; if it is meant so, {told}"
+        return "nothing was written; run with -v for the whole table, and please report it"
+    return (
+        "nothing was written; see first to what is odd in the file, as the warnings say; if it is meant "
+        "so, run with -v for the whole table, and please report it"
+    )
 
 
 def _reports(
