@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 from pathlib import Path
 
 import pytest
@@ -47,3 +49,19 @@ def test_a_class_that_is_the_file_s_is_named_once(
 ) -> None:
     announced, geometry = said(tmp_path, "0", capsys)
     assert announced == "7R S-R-S" and geometry.count("7R") == 1
+
+
+def test_what_default_values_answer_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "arm.urdf").write_text(serial_urdf("arm", SHOULDER_ELBOW_WRIST))
+    command = ["from-urdf", str(tmp_path / "arm.urdf"), "-o", str(tmp_path), "--samples", "40"]
+    assert run([*command, "--json"]) == 0
+    record = json.loads(capsys.readouterr().out)
+    by_default = record["verification"]["python"]["by_default"]
+    assert by_default["poses"] == 40 and 0 < by_default["answered"] <= 40
+    assert run([*command, "--free", f"{record['free'][0]}=0.3"]) == 0
+    (line,) = (x for x in capsys.readouterr().out.splitlines() if x.startswith("solutions:"))
+    assert re.search(
+        rf"; by default \({record['free'][0]} = 0\.3\) \d+ of 40 of these have any$", line
+    )

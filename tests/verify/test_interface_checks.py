@@ -171,7 +171,7 @@ def test_kinematics_are_compared_entry_by_entry(check: Callable[..., CheckResult
 def batch(change: Callable[[Rows], Rows | None]) -> tuple[bool, int, str]:
     code = Code()
     code.batch = change(code.batch)  # type: ignore[assignment]
-    found = check_batch(arm(), code, sample())  # type: ignore[arg-type]
+    found = check_batch(arm(), code, sample(), code.solve_many(sample().poses))  # type: ignore[arg-type]
     return found.passed, found.failures, found.detail
 
 
@@ -214,7 +214,7 @@ def test_a_batch_has_no_fewer_and_no_other_rows() -> None:
     twice[3, 1] = twice[3, 0]
     for single, many in ((both, twice), (twice, both)):
         code.many, code.batch = replace(two, q=single), replace(two, q=many)
-        found = check_batch(arm(), code, sample())  # type: ignore[arg-type]
+        found = check_batch(arm(), code, sample(), code.solve_many(sample().poses))  # type: ignore[arg-type]
         assert (found.passed, found.failures, found.count) == (False, 1, 4)
         assert "batch" in found.worst_case and "single" in found.worst_case
 

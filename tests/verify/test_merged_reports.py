@@ -14,6 +14,7 @@ def test_merged_reports_add_up() -> None:
     one = VerificationReport(
         "python", "a", "b", "pose", 10, 0, (good,), ((2, 4), (8, 6)), seconds=1.0,
         bands=(SigmaBand(0.0, 0.1, 3, 1, 4, 5, "near"), SigmaBand(0.1, 1.0, 7, 0, 1, 2)),
+        by_default=(3, 10),
     )  # fmt: skip
     two = replace(
         one,
@@ -21,6 +22,7 @@ def test_merged_reports_add_up() -> None:
         checks=(bad,),
         histogram=((8, 5),),
         bands=(SigmaBand(0.1, 1.0, 5, 2, 6, 7, "far"),),
+        by_default=(2, 5),
     )
     both = merged_reports([one, two])
     assert both.samples == 15 and both.histogram == ((2, 4), (8, 11)) and both.seconds == 2.0
@@ -30,4 +32,5 @@ def test_merged_reports_add_up() -> None:
     assert both.bands == (
         SigmaBand(0.0, 0.1, 3, 1, 4, 5, "near"), SigmaBand(0.1, 1.0, 12, 2, 7, 9, "far"),
     )  # fmt: skip
+    assert both.by_default == (5, 15)
     assert merged_reports([one]) == one

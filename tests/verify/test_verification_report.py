@@ -43,6 +43,9 @@ def test_numbers_and_text() -> None:
     data = both.to_dict()
     assert data["checks"][1]["worst"] == {"off rad or m": None}
     assert data["passed"] is False and "seconds" not in data
+    assert data["by_default"] is None
+    held = replace(both, by_default=(43, 100)).to_dict()
+    assert held["by_default"] == {"answered": 43, "poses": 100}
 
 
 def test_misses_are_said_to_be_near_singularities_where_all_are() -> None:

@@ -94,8 +94,20 @@ def _solutions(generation: Generation) -> str:
     most = f"at most {generation.derivation.module.max_solutions}"
     for report in generation.reports.values():
         least, mean, greatest = report.solutions
-        return f"{most}; {least} / {mean:.1f} / {greatest} (min / mean / max of random poses)"
+        found = f"{least} / {mean:.1f} / {greatest} (min / mean / max of random poses)"
+        return f"{most}; {found}{_by_default(generation, report)}"
     return most
+
+
+def _by_default(generation: Generation, report: VerificationReport) -> str:
+    """How many random poses have any with what is held at its default."""
+    answered, poses = report.by_default
+    if not poses:
+        return ""
+    values = generation.derivation.module.free_defaults
+    held = zip(generation.derivation.reading.dh.held, values, strict=True)
+    named = ", ".join(f"{name} = {value:.3g}" for name, value in held)
+    return f"; by default ({named}) {answered} of {poses} of these have any"
 
 
 def _verified(name: str, report: VerificationReport) -> str:

@@ -133,7 +133,7 @@ def _report(data: dict[str, Any]) -> VerificationReport:
     checks = (CheckResult(**{**c, "worst": tuple(map(tuple, c["worst"]))}) for c in data["checks"])
     bands = (SigmaBand(**band) for band in data["bands"])
     more = {"checks": tuple(checks), "bands": tuple(bands), "notes": tuple(data["notes"])}
-    return VerificationReport(**{**data, **pairs, **more})
+    return VerificationReport(**{**data, **pairs, **more, "by_default": tuple(data["by_default"])})
 
 
 def cache_folder() -> Path:

@@ -99,16 +99,12 @@ def check_jacobian(arm: ArmUnderTest, runner: Runner, sample: SampleSet) -> Chec
     return _compare("jacobian", runner.jacobian(sample.q), true, sample, unit)
 
 
-def check_batch(
-    arm: ArmUnderTest, runner: Runner, sample: SampleSet, single: Rows | None = None
-) -> CheckResult:
-    """`solve_batch` returns the same rows and status as `solve`, free joints at their defaults: `single`
-    where they are known. Where the arm is all but singular, the two may differ by what rounding moves a
-    row."""
+def check_batch(arm: ArmUnderTest, runner: Runner, sample: SampleSet, single: Rows) -> CheckResult:
+    """`solve_batch` returns the same rows and status as `solve`, free joints at their defaults, `single`.
+    Where the arm is all but singular, the two may differ by what rounding moves a row."""
     name, batch = "solve_batch", runner.solve_batch(sample.poses)
     if batch is None:
         return result(name, 0, 0, detail=f"{runner.label} has none")
-    single = runner.solve_many(sample.poses) if single is None else single
     if batch.q.ndim != 3 or batch.q.shape[::2] != single.q.shape[::2]:
         return result(name, len(single), len(single), detail=f"shape of q {batch.q.shape}")
     beyond = np.isnan(batch.q).any(axis=2) != ~batch.mask

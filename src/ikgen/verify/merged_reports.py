@@ -28,6 +28,10 @@ def merged_reports(parts: Sequence[VerificationReport]) -> VerificationReport:
         histogram=tuple(sorted(histogram.items())),
         seconds=sum(part.seconds for part in parts),
         bands=_bands([band for part in parts for band in part.bands]),
+        by_default=(
+            sum(part.by_default[0] for part in parts),
+            sum(part.by_default[1] for part in parts),
+        ),
     )
 
 

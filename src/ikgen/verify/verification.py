@@ -18,7 +18,7 @@ from ikgen.verify.answers import Answers, collect_answers
 from ikgen.verify.arm import ArmUnderTest, arm_under_test
 from ikgen.verify.motion_checks import motion_checks, regular_motions
 from ikgen.verify.oracle import Oracle
-from ikgen.verify.runners.runner import MovingRunner, Runner
+from ikgen.verify.runners.runner import MovingRunner, Rows, Runner
 from ikgen.verify.sampling import generator
 from ikgen.verify.shared_work import SharedWork
 from ikgen.verify.task_space import TaskSpace, task_space
@@ -38,16 +38,16 @@ def _plan(
     runner: Runner,
     arm: ArmUnderTest,
     answers: Answers,
+    single: Rows,
     survey: completeness.Survey,
     seed: int,
     peer: Runner | None,
     shared: SharedWork,
 ) -> dict[str, Callable[[], CheckResult]]:
-    """The checks by name, in the order of the report."""
+    """The checks by name, in the order of the report; `single` are the rows of the ordered poses, free
+    joints at their defaults."""
     a, random = answers, answers.limited.sample
     rng = generator(seed, "search")
-    # with joints held, those of `limited` are at the configurations' values, not at the defaults
-    single = None if arm.held else a.limited.rows.at(np.arange(len(a.ordered.sample)))
     agreement: dict[str, Callable[[], CheckResult]] = {}
     if peer is not None:
         agreement["agreement"] = lambda: check_agreement(arm, a.unlimited, peer)
@@ -108,6 +108,16 @@ class _Findings:
     results: tuple[CheckResult, ...]
     histogram: tuple[tuple[int, int], ...] = ()
     bands: tuple[SigmaBand, ...] = ()
+    by_default: tuple[int, int] = (0, 0)
+
+
+def _by_default(runner: Runner, arm: ArmUnderTest, answers: Answers) -> Rows:
+    """The rows of the ordered poses, free joints at their defaults: those of `limited` are at the values
+    of the configurations."""
+    sample = answers.ordered.sample
+    if arm.held:
+        return runner.solve_many(sample.poses)
+    return answers.limited.rows.at(np.arange(len(sample)))
 
 
 def _run_checks(
@@ -126,16 +136,18 @@ def _run_checks(
     try:
         answers = collect_answers(runner, arm, samples, seed, shared)
         survey = completeness.survey(arm, runner, answers.standing)
+        single = _by_default(runner, arm, answers)
     except Exception as error:
         what = f"solve raises {type(error).__name__}: {error}"
         return _Findings((CheckResult("runs", False, 1, 1, detail=what),))
-    plan = _plan(runner, arm, answers, survey, seed, peer, shared)
+    plan = _plan(runner, arm, answers, single, survey, seed, peer, shared)
     results = []
     for done, (name, check) in enumerate(plan.items(), start=1):
         if progress:
             progress(name, done, len(plan) + 1)
         results.append(_guarded(name, check))
-    return _Findings(tuple(results), _histogram(answers), survey.bands)
+    answered = (int((single.count > 0).sum()), len(single)) if arm.held else (0, 0)
+    return _Findings(tuple(results), _histogram(answers), survey.bands, answered)
 
 
 def verify(
@@ -174,7 +186,7 @@ def verify(
     seconds = time.perf_counter() - start
     return VerificationReport(
         runner.label, *links, name, samples, seed, found.results, found.histogram, oracle.notes, held,
-        seconds, found.bands,
+        seconds, found.bands, found.by_default,
     )  # fmt: skip
 
 

@@ -74,8 +74,9 @@ class SigmaBand:
 class VerificationReport:
     """All checks of one emitted module. `label` is its language; `histogram` pairs a number of
     solutions with how many of the random poses have it (limits disregarded); `bands` counts what was
-    found by how singular the configurations are; `seconds` is the time taken, which stays out of
-    `to_dict` so that equal runs give equal text."""
+    found by how singular the configurations are; `by_default` says at how many of how many random poses
+    the default values of held joints have a row, none of none where no joint is held; `seconds` is the
+    time taken, which stays out of `to_dict` so that equal runs give equal text."""
 
     label: str
     base_link: str
@@ -89,6 +90,7 @@ class VerificationReport:
     locked: tuple[tuple[str, float], ...] = ()
     seconds: float = 0.0
     bands: tuple[SigmaBand, ...] = ()
+    by_default: tuple[int, int] = (0, 0)
 
     @property
     def passed(self) -> bool:
@@ -141,6 +143,10 @@ class VerificationReport:
         mean = sum(count * poses for count, poses in self.histogram) / total
         return min(counts), mean, max(counts)
 
+    def _by_default(self) -> dict[str, int] | None:
+        answered, poses = self.by_default
+        return {"answered": answered, "poses": poses} if poses else None
+
     @property
     def worst_case(self) -> str:
         """The first failed check in words, with its numbers and its case; "" when all passed."""
@@ -171,6 +177,7 @@ class VerificationReport:
             "passed": self.passed,
             "solutions": {"min": least, "mean": mean, "max": greatest},
             "histogram": {str(count): poses for count, poses in self.histogram},
+            "by_default": self._by_default(),
             "by_sigma": [band.to_dict() for band in self.bands],
             "missed": self.missed,
             "notes": list(self.notes),
