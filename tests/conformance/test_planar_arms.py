@@ -1,4 +1,4 @@
-"""Arms whose joints all move in one plane, more of them than that has freedoms."""
+"""Arms whose joints move fewer freedoms than the task fixes: in one plane, or one of them not the tip."""
 
 from __future__ import annotations
 
@@ -78,3 +78,25 @@ def test_such_an_arm_is_verified(tmp_path: Path) -> None:
     path.write_text(serial_urdf("four_turn", ARMS["four_turn"]))
     made = generate(Request(path), Outputs(out=tmp_path, samples=60))
     assert made.reports["python"].passed
+
+
+IDLE: tuple[Joint, ...] = (
+    ("a", "revolute", "0 0 1", "0 0 0.1", (-3.0, 3.0)),
+    ("b", "revolute", "0 1 0", "0.2 0 0.1", (-2.5, 2.5)),
+    ("c", "revolute", "1 0 0", "0.3 0 0", (-2.5, 2.5)),
+)
+"""The last axis goes through its own frame, whose position it does not move."""
+
+
+def test_a_joint_that_leaves_the_position_makes_no_row_singular(tmp_path: Path) -> None:
+    path = tmp_path / "idle.urdf"
+    path.write_text(serial_urdf("idle", IDLE))
+    request = Request(path, tip="c_link", name="idle", task="position", free={"c": None})
+    both = in_both(derive(request).module, tmp_path, "34")
+    bent = np.array([0.2, 0.5, -0.7])
+    poses = both.arm.forward(np.stack([bent, bent + [0.01, 0.02, 0.0]]))
+    status, flags, rows = both.follow(bent, poses)
+    assert (status, flags) == ("OK", 0)
+    assert not both.arm.follow(poses, start=bent).singular.any()
+    np.testing.assert_allclose(both.arm.forward(rows)[:, :3, 3], poses[:, :3, 3], atol=1e-9)
+    assert both.run(3, bent, poses[:1])[0] == "OK"

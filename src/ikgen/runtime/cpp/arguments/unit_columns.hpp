@@ -9,6 +9,7 @@ namespace ikgen_runtime {
 // nothing reaches. t: the pose's matrix, columns first.
 template <int First, int Count, int Height> struct UnitColumns {
   static constexpr bool kFlat = Count > 0 && Height == 2;
+  static constexpr int kRelations = Count * (Count + 1) / 2;  // between their entries
 
   // The defect of columns whose entries are each off by `off`: |V^T V - 1| <= 2 |E| + |E|^2, E what they are off by; or of
   // a heading whose squared length is `level` short of 1.

@@ -28,7 +28,7 @@ template <class A, int N> struct LeastSingularValue {
         S[b][a] = S[a][b];
       }
     if constexpr (kDependent) A::Task::fill(T, kFar, S);
-    if constexpr (kInPlane) return sqrt(max(eigenvalue<kOrder - AllMoving<A>::kRank>(S), 0.0));
+    if constexpr (kInPlane) return sqrt(max(eigenvalue<kOrder - kRank>(S), 0.0));
     Pack diagonal[kOrder], squares[kOrder];
     reduce(S, diagonal, squares);
     return sqrt(least_root(diagonal, squares));
@@ -50,8 +50,10 @@ template <class A, int N> struct LeastSingularValue {
 
  private:
   static constexpr int kRows = A::Task::kCount, kLess = A::kDof < kRows ? A::kDof : kRows, kSteps = 40;
-  static constexpr bool kInPlane = A::kWholePose && AllMoving<A>::kRank < kLess;  // all joints move fewer freedoms
-  static constexpr bool kDependent = !kInPlane && AllMoving<A>::kRank < kLess;  // rows
+  static constexpr int kRank = AllMoving<A>::kRank;
+  static constexpr bool kInPlane =  // all joints move fewer freedoms
+      kRank < kLess && (A::kWholePose || kRank < kRows - A::Columns::kRelations);
+  static constexpr bool kDependent = !kInPlane && kRank < kLess;  // rows
   static constexpr int kOrder = kDependent ? kRows : kLess;
   static constexpr bool kByRows = kOrder == kRows;
   static constexpr double kFar = 1e4;  // above the least

@@ -21,20 +21,22 @@ template <class Arm> struct SingularValue {
     return !above(at.slope, bound);
   }
 
-  // The same of all joints, which may be more than the freedoms that the task fixes.
+  // The same of all joints, which may be more than the freedoms that the task fixes, or move fewer of them.
   static bool redundant_below(const double* q, double bound) noexcept {
     if constexpr (Arm::kRank >= kRank) {
       return below(q, bound);
-    } else if constexpr (Arm::kWholePose) {
-      static_assert(kMoving <= kEquations);
+    } else if constexpr (Arm::kWholePose || Arm::kRank < kEquations - Arm::Columns::kRelations) {
+      constexpr bool by_rows = kEquations == kRank;
       const PoseError<Arm> at(q, HeldAim<Arm>::own(q));
-      Lanes<1> A[kMoving][kMoving];
-      for (int a = 0; a < kMoving; ++a)
-        for (int b = 0; b < kMoving; ++b) {
+      Lanes<1> A[kRank][kRank];
+      for (int a = 0; a < kRank; ++a)
+        for (int b = 0; b < kRank; ++b) {
           A[a][b] = spread<1>(0.0);
-          for (int e = 0; e < kEquations; ++e) A[a][b] = A[a][b] + at.slope[e][kJoints[a]] * at.slope[e][kJoints[b]];
+          for (int k = 0; k < (by_rows ? kMoving : kEquations); ++k)
+            A[a][b] = A[a][b] + (by_rows ? at.slope[a][kJoints[k]] * at.slope[b][kJoints[k]]
+                                         : at.slope[k][kJoints[a]] * at.slope[k][kJoints[b]]);
         }
-      return eigenvalue<kMoving - Arm::kRank>(A).v < bound * bound;
+      return eigenvalue<kRank - Arm::kRank>(A).v < bound * bound;
     } else {
       double J[6][Arm::kDof], slope[kEquations][Arm::kDof], A[kEquations][kEquations];
       const Frame T = MotionChain<Arm>::forward(q, J);
