@@ -90,14 +90,15 @@ inline constexpr int kSure = 3;  // runs that have to find none where there is n
 // solutions, and each a solution to many digits. Otherwise more runs follow, with the pose displaced to either side, by
 // the next elimination and with the pose displaced by less, until one finds all that is known and no more, an even number,
 // none of it stalls near another, and one of the pose itself tells; where solutions meet the next elimination has to find
-// as many that lie apart, as one alone may miss the same of a crowd twice. False where there may be more than was found: no
+// as many that lie apart, as one alone may miss the same of a crowd twice, and so where there are fewer than the first had
+// roots that may be real: what solutions have in common may be what it hides. False where there may be more than was found: no
 // run settles it; or where there may be some though none was found: an elimination of the pose itself lost its rank, or has
 // roots, real ones or some that may be.
 template <auto Run, class Frames, std::size_t N>
 inline bool solve_in_runs(const Frames& F, const Frame& T, const Turning& turning,
                           const std::array<std::array<int, 3>, N>& plans, Solutions& out) noexcept {
   const int given = out.count;
-  int least = -1, number = 0;
+  int least = -1, perhaps = 0, number = 0, own = 0;  // runs, and those of the pose itself
   bool ranked = true, doubtful = false;  // no elimination of the pose itself lost its rank; one has roots in doubt
   for (const double by : kAside) {
     const Frame there = displacement(by), back = inverse(there);
@@ -109,6 +110,8 @@ inline bool solve_in_runs(const Frames& F, const Frame& T, const Turning& turnin
         const Spectrum roots = Run(F, T, aim, turning, plan, mine);
         if (!shift) {
           least = std::max(least, roots.real);
+          perhaps = std::max(perhaps, roots.perhaps);
+          ++own;
           ranked = ranked && roots.real >= 0;
         }
         doubtful = doubtful || (shift ? roots.real > 0 : roots.doubtful);
@@ -117,7 +120,8 @@ inline bool solve_in_runs(const Frames& F, const Frame& T, const Turning& turnin
         if (out.count == kRoom) return true;  // of a continuum
         const bool alone = number == 0 && given <= mine.count && roots.simple && out.count == roots.real && out.count > 0;
         const bool even = out.count % 2 == 0, again = number > 0 && !roots.stalled;
-        const bool repeated = again && even && mine.count == known && out.count == known;
+        const bool told = out.count >= perhaps || own > 1 || N == 1;
+        const bool repeated = again && told && even && mine.count == known && out.count == known;
         const bool enough = least >= 0 && out.count >= least;
         const bool none = out.count == 0, fewer = none && (doubtful || number < kSure);
         if (enough && ((alone && even) || repeated) && !fewer) return !none || ranked;

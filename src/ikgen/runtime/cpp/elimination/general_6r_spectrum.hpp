@@ -104,6 +104,7 @@ inline constexpr double kHalf = 1e-3, kQuarter = 4e-3;
 struct Spectrum {
   int count = 0;  // roots theta_3 with imaginary parts below `accept`
   int real = 0;   // those that are clearly real; -1 where the elimination does not tell
+  int perhaps = 0;  // those that are, or may be halves of double ones
   bool simple = false;  // all of them are
   bool doubtful = false;  // there are others that may be, of which rounding has made complex ones
   bool stalled = false;  // steps from one of them come near a solution, and no closer
@@ -139,7 +140,7 @@ inline void best_node(const Resultant& M, Node& out) noexcept {
 // The roots theta_3 of eigenvalues t: modulus and angle of (1 + i t) / (1 - i t).
 template <Index N>
 inline void add_angles(const std::array<Complex, N>& t, double node, double accept, Spectrum& out) noexcept {
-  int halves = 0, quarters = 0;
+  int quarters = 0;
   for (const Complex& e : t) {
     const double a = e.real(), b = e.imag();
     const double off = std::abs(0.5 * std::log(((1.0 - b) * (1.0 - b) + a * a + 1e-300) /
@@ -147,11 +148,11 @@ inline void add_angles(const std::array<Complex, N>& t, double node, double acce
     if (!(off < accept)) continue;
     out.theta[static_cast<Index>(out.count++)] = node + std::atan2(a, 1.0 - b) + std::atan2(a, 1.0 + b);
     out.real += off < 1e-8 ? 1 : 0;
-    halves += off < kHalf ? 1 : 0;
+    out.perhaps += off < kHalf ? 1 : 0;
     quarters += off < kQuarter ? 1 : 0;
   }
   out.simple = out.count == out.real;
-  out.doubtful = halves > out.real || quarters >= out.real + 4;
+  out.doubtful = out.perhaps > out.real || quarters >= out.real + 4;
 }
 
 // With M(theta) = M0 + N Rot(theta) W, Rot = c + s J on R^16, about a node where M_pi = M0 - N W is far from

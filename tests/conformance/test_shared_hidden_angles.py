@@ -1,0 +1,50 @@
+"""Solutions that share the angle which an elimination hides: one alone may find half of them, twice."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.support.redundant_arms import Joint, serial_urdf
+from tests.support.solving import NO_COMPILER, import_text
+
+from ikgen.emit.cpp.cpp_emitter import emit
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.generation.derive import derive
+from ikgen.generation.emitted_runners import arm_constants
+from ikgen.generation.request import Request
+from ikgen.verify.runners.cpp_header import CppHeader
+
+pytestmark = pytest.mark.usefixtures("solved_once")
+
+LIFT: tuple[Joint, ...] = (
+    ("lift", "prismatic", "0 0 1", "0 0 0.2", (0.0, 1.1)),
+    ("arm", "prismatic", "0 -1 0", "0 -0.2 0", (0.0, 0.52)),
+    ("yaw", "revolute", "0 0 -1", "0.08 -0.03 0", (-1.75, 4.0)),
+    ("pitch", "revolute", "0 1 0", "0 -0.02 -0.02", (-1.57, 0.56)),
+    ("roll", "revolute", "1 0 0", "0.02 -0.024 0.02", (-3.14, 3.14)),
+)
+"""The y axis of the tool lies along that of the pitch where the wrist is not rolled: all but the lift, the
+arm and the pitch are the same then in two solutions."""
+
+
+@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
+def test_all_are_found_where_the_wrist_is_not_rolled(tmp_path: Path) -> None:
+    path = tmp_path / "stretch.urdf"
+    path.write_text(serial_urdf("stretch", LIFT))
+    module = derive(Request(path, name="stretch", task="position-direction", tool_axis="y")).module
+    arm = import_text(emit_module(module), tmp_path)
+    for file, text in emit(module).items():
+        (tmp_path / file).write_text(text)
+    header = CppHeader(tmp_path / "stretch_ik.hpp", arm_constants(module))
+    random = np.random.default_rng(4)
+    low, high = np.array(arm.LOWER), np.array(arm.UPPER)
+    q = random.uniform(low, high, (3000, 5))
+    q[:, 2] = random.choice([-np.pi / 2, np.pi / 2], 3000) + random.uniform(-0.01, 0.01, 3000)
+    q[:, 4] = random.choice([0.0, 1e-6], 3000)
+    poses = arm.forward(q)
+    rows, (batch, _, _) = header.solve_many(poses), arm.solve_batch(poses[:600])
+    for found in (rows.q, batch):
+        gap = np.abs(found - q[: len(found), None]).max(axis=2)
+        assert np.nanmin(np.where(np.isnan(gap), np.inf, gap), axis=1).max() < 1e-4
