@@ -90,6 +90,12 @@ REFUSED = {
     "axis without a direction": (robot(joint("<axis />")), "without xyz", 'xyz="..."', 4),
     "zero axis": (robot(joint('<axis xyz="0 0 0"/>')), "zero axis", "direction", 4),
     "endless axis": (robot(joint('<axis xyz="1e300 1e300 0"/>')), "axis of length", "unit", 4),
+    "two axes": (
+        robot(joint('<axis xyz="1 0 0"/><axis xyz="0 1 0"/>')),
+        "'j' has two <axis> elements that differ",
+        "ROS reads the first",
+        4,
+    ),
     "spherical": (robot(joint(type_="spherical")), "unknown type 'spherical'", "three", 4),
     "no type": (robot(joint(type_="")), "without type", "type=", 4),
     "no parent": (
@@ -202,6 +208,10 @@ BENT = {
         "joints lie up to 450 m apart: lengths look like mm: kept as they are",
     ),
     "axis": (robot(joint('<axis xyz="1 0 0.5"/>' + LIMIT)), "axis of length 1.11803 normalised"),
+    "twice": (
+        robot(joint('<axis xyz="0 1 0"/><axis xyz="0 1 0"/>' + LIMIT)),
+        "two <axis> elements that say the same",
+    ),
     "axis rpy": (robot(joint('<axis xyz="1 0 0" rpy="0 0 0"/>' + LIMIT)), "has an rpy"),
     "roots": (robot(joint(LIMIT), links="cab"), "several root links: took 'a'"),
     "include": (

@@ -89,9 +89,13 @@ def _joint_type(joint: Element, name: str, place: Place) -> JointType:
 
 
 def _only_child(joint: Element, tag: str, name: str, place: Place) -> Element | None:
+    """The child, of several that say the same the first; ROS's parser reads it whatever the others say."""
     found = list(children(joint, tag))
-    if len(found) > 1:
-        raise place.error(found[1], f"joint '{name}' has two <{tag}> elements", "keep one of them")
+    for other in found[1:]:
+        if dict(other.attrib) != dict(found[0].attrib):
+            hint = "keep one of them: ROS reads the first"
+            raise place.error(other, f"joint '{name}' has two <{tag}> elements that differ", hint)
+        place.warn(other, f"joint '{name}' has two <{tag}> elements that say the same")
     return found[0] if found else None
 
 

@@ -77,7 +77,8 @@ def check_joints(links: Sequence[str], joints: Sequence[Joint], file: str) -> No
                     f"joint '{joint.name}' names the {role} link '{link}', which is not defined",
                     file=file,
                     line=joint.line,
-                    hint=UnknownNameError("link", link, links).hint,
+                    hint=f"define it, or remove the joint, as ROS refuses such a file too; "
+                    f"{UnknownNameError('link', link, links).hint}",
                 )
         if joint.child in above:
             first = above[joint.child]
