@@ -73,8 +73,7 @@ def test_one_run_does_where_it_is_clear_and_finds_what_it_says(
 
 def test_others_follow_until_they_find_all_that_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
     two, four = ([0, 1], 2, False), ([0, 1, 2, 3], 4, False)
-    assert run(monkeypatch, [two, two], ways=1)[1] == 2
-    assert run(monkeypatch, [two, two, two])[1] == 3  # the first may hide what solutions share
+    assert run(monkeypatch, [two, two])[1] == 2
     assert run(monkeypatch, [([0, 1], 2, True)][:1], ways=1)[1] == 1
     q, calls = run(monkeypatch, [two, four, four])
     assert calls == 3
@@ -116,7 +115,7 @@ def test_an_elimination_without_rank_confirms_nothing(monkeypatch: pytest.Monkey
 
 def test_what_stalls_near_a_solution_asks_for_all_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     two = ([0, 1, 2], 2, False)
-    assert run(monkeypatch, [two] * 9, error=1e-3)[1] == 3
+    assert run(monkeypatch, [two] * 9, error=1e-3)[1] == 2
     q, calls = run(monkeypatch, [two] * 10, error=1e-8)
     assert calls == 2 + 2 + 2 * 3
     np.testing.assert_allclose(q, ROWS[:2], atol=1e-12)

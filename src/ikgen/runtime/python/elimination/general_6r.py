@@ -158,12 +158,6 @@ def _runs(plan: Plan) -> list[tuple[Way, tuple[Array | None, ...]]]:
     return runs + [(way, moves) for moves in _CLOSE for way in ways]
 
 
-def _may_hide(plan: Plan, number: int) -> bool:
-    """Whether all runs to this one are of one elimination, and others follow: what it hides may be what
-    solutions have in common."""
-    return number == 1 and not plan.direct and len(plan.eliminations) > 1
-
-
 def six_joint_rows(
     six: SixJoints, plan: Plan, T: Array, policy: Policy
 ) -> tuple[Index, Array, Flags]:
@@ -174,9 +168,10 @@ def six_joint_rows(
     displaced to both sides (where right angles make roots coincide they come apart, and Newton's method
     takes them back), by the next elimination and with the pose displaced by less, until they find all that
     is known and no more, an even number, none stalls near another, and one of the pose itself has kept its
-    rank; where solutions meet, or the first leaves a doubt, the next elimination has to find as many. What
-    a direct way leaves open, these runs confirm or complete. Returns pose indices (k,) in order, joint
-    values (k, 6), angles in (-pi, pi], sorted, and which poses (N,) may have more, as on a continuum.
+    rank; where solutions meet the next elimination has to find as many that lie apart. What a direct way
+    leaves open, these runs confirm or complete. Returns pose indices (k,) in order, joint values (k, 6),
+    angles in (-pi, pi], sorted, and which poses (N,) may have more, or some though none was found, as on a
+    continuum.
     """
     T = T.copy()
     T[:, :3, 3] /= plan.length
@@ -204,7 +199,6 @@ def six_joint_rows(
             found, of, _ = distinct_rows(*both, plan.turning, policy.coincident)
             count = np.bincount(of, minlength=size)[todo]
             told = (least[todo] >= 0) & ~stalled & (~hollow[todo] | (len(moves) > 1))
-            told &= ~(unsure[todo] & _may_hide(plan, number))
             settled = told & (mine == known) & (known == count) & (count % 2 == 0)
             told &= number > len(plan.direct) + 1  # one alone may miss the same of a crowd twice
             left = np.flatnonzero(told & ~settled)
