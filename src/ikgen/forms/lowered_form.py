@@ -93,9 +93,11 @@ class Tolerances:
 
         Where rows are not refined, a divisor that is no larger than what the two differ by is as good as
         zero: the file's direction of it is lost. Of length `x` it turns by `error / x`: where rows are
-        refined, a fiftieth of a radian is too far to start from.
+        refined, a fiftieth of a radian is too far to start from. Where they are not, the least divisor that
+        is no singularity moves what a square root is taken of by as much: what is no solution beyond the
+        workspace's boundary then shows by what it leaves of the pose.
         """
-        clamp = max(1e-11, 25.0 * error)
+        clamp = max(1e-11, 25.0 * error if error > ROUNDED else min(25.0 * error / 1e-4, 1e-6))
         fold = 0.05 * error if error > ROUNDED else 0.0
         singular = 1e-11 if error > ROUNDED else max(1e-11, 4.0 * error)
         flag, norm = (min(max(1e-4, share * error), 1e-2) for share in (5.0, 50.0))

@@ -1,0 +1,53 @@
+"""Elbows that are straight where the wrist loses digits: what a file is off is more there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.support.solving import NO_COMPILER, import_text
+
+from ikgen.emit.cpp.cpp_emitter import emit
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.generation.derive import derive
+from ikgen.generation.emitted_runners import arm_constants
+from ikgen.generation.request import Request
+from ikgen.verify.runners.cpp_header import CppHeader
+
+pytestmark = pytest.mark.usefixtures("solved_once")
+
+HALF, RIGHT = "3.14159265359", "1.570796326795"
+JOINTS = (
+    ("0 0 0.05", "0 0 0", "0 0 1"),
+    ("0.03 0 0.04", f"{HALF} -{RIGHT} 0", "0 0 1"),
+    ("0.3 0 -0.05", f"{HALF} 0 0", "0 0 1"),
+    ("0.25 0 -0.04", f"{HALF} 0 -{RIGHT}", "0 0 1"),
+    ("0.05 0 0.03", f"{RIGHT} 0 -{RIGHT}", "0 0 -1"),
+    ("0.08 0 -0.02", f"{RIGHT} 0 {RIGHT}", "0 0 1"),
+)
+"""Origins and axes: right angles that are rounded to 1e-13 rad."""
+
+
+@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
+def test_a_straight_elbow_is_reached_next_to_a_straight_wrist(tmp_path: Path) -> None:
+    text = '<link name="l0"/>'
+    for k, (xyz, rpy, axis) in enumerate(JOINTS):
+        text += (
+            f'<joint name="j{k}" type="continuous"><parent link="l{k}"/><child link="l{k + 1}"/>'
+            f'<origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="{axis}"/></joint><link name="l{k + 1}"/>'
+        )
+    path = tmp_path / "straight.urdf"
+    path.write_text(f'<robot name="straight">{text}</robot>')
+    module = derive(Request(path, base="l0", tip="l6", name="straight")).module
+    arm = import_text(emit_module(module), tmp_path)
+    for file, body in emit(module).items():
+        (tmp_path / file).write_text(body)
+    header = CppHeader(tmp_path / "straight_ik.hpp", arm_constants(module))
+    random = np.random.default_rng(7)
+    q = random.uniform(-3.0, 3.0, (400, 6))
+    q[:, 2] = 0.0
+    q[:, 4] = np.pi / 2 + random.uniform(-0.1, 0.1, 400)
+    poses = arm.forward(q)
+    assert set(header.solve_many(poses).status) == {"OK"}
+    assert all(arm.solve(pose).status == "OK" for pose in poses)
