@@ -54,7 +54,7 @@ class Task:
         if not self.axis:
             raise UsageError(
                 f"the task '{self.name}' reads no single axis of the tool",
-                hint=f"leave the tool axis out; tasks with one: {', '.join(_with_axis())}",
+                hint=f"leave the tool axis out, or give a --task with one: {', '.join(_with_axis())}",
             )
         old, new = (str(AXES.index(a) + 1) for a in (self.axis, axis))
         readable = frozenset(
