@@ -131,6 +131,8 @@ def test_progress_is_told_before_each_check(monkeypatch: pytest.MonkeyPatch) -> 
     told: list[tuple[str, int, int]] = []
     trial = SimpleNamespace(rows=SimpleNamespace(count=np.array([4, 8, 8, 2])))
     answers = SimpleNamespace(unlimited=trial, standing=())
+    arm = SimpleNamespace(held=("one",))
+    default = SimpleNamespace(count=np.array([0, 1, 2, 0, 4]))
 
     def fails() -> CheckResult:
         raise ArithmeticError("no")
@@ -141,13 +143,15 @@ def test_progress_is_told_before_each_check(monkeypatch: pytest.MonkeyPatch) -> 
         verification.completeness, "survey", lambda *_: SimpleNamespace(bands=("band",))
     )
     monkeypatch.setattr(verification, "_plan", lambda *_: plan)
-    found = _run_checks(None, None, 4, 0, None, lambda *step: told.append(step))
+    monkeypatch.setattr(verification, "_by_default", lambda *_: default)
+    found = _run_checks(None, arm, 4, 0, None, lambda *step: told.append(step))
     assert told == [("solving", 0, 1), ("one", 1, 3), ("two", 2, 3)]
     assert [(r.name, r.passed, r.count, r.detail) for r in found.results] == [
         ("one", True, 3, ""), ("two", False, 1, "ArithmeticError: no")
     ]  # fmt: skip
     assert found.histogram == ((2, 1), (4, 1), (8, 2)) and found.bands == ("band",)
+    assert found.by_default == (3, 5)
     monkeypatch.setattr(verification, "collect_answers", lambda *_: fails())
-    (only,) = _run_checks(None, None, 4, 0, None, None).results
+    (only,) = _run_checks(None, arm, 4, 0, None, None).results
     assert (only.name, only.passed) == ("runs", False)
     assert only.detail == "solve raises ArithmeticError: no"

@@ -146,7 +146,7 @@ def _run_checks(
         if progress:
             progress(name, done, len(plan) + 1)
         results.append(_guarded(name, check))
-    answered = (int((single.count > 0).sum()), len(single)) if arm.held else (0, 0)
+    answered = (int((single.count > 0).sum()), len(single.count)) if arm.held else (0, 0)
     return _Findings(tuple(results), _histogram(answers), survey.bands, answered)
 
 
