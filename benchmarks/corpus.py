@@ -5,9 +5,9 @@
 
 The corpus is not part of the package (see benchmarks/README.md). Without it, or with --public, the arms are
 those of files that anybody has: `urdf_fixtures/`, and example-robot-data where it is installed. Each is
-solved if both languages pass their verification. Seconds are processor time, the compiler's with it;
-ikgen's modules are compiled to bytecode before, as pip does. --record writes results/corpus.json or
-results/public.json.
+solved if both languages pass their verification. Seconds are those that a user waits, one arm at a time
+unless --jobs asks for more, and those of processor time, the compiler's with it; ikgen's modules are
+compiled to bytecode before, as pip does. --record writes results/corpus.json or results/public.json.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from __future__ import annotations
 import argparse
 import compileall
 import json
-import math
 import os
 import statistics
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -33,18 +33,19 @@ from benchmarks.results import write_result
 from ikgen.importers.named_robots import is_named
 from ikgen.processes.executors import EXECUTORS, Workers
 
-WIDTHS = (4, 6, 8, 6, 8, 6)
+WIDTHS = (4, 6, 8, 6, 8, 6, 11, 6)
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What came of one arm."""
+    """What came of one arm; `waited` and `processor` in seconds."""
 
     name: str
     family: str
     task: str
     state: str
-    seconds: float
+    waited: float
+    processor: float
     solutions: str
     closure: str
     message: str
@@ -59,19 +60,22 @@ def run_arm(arm: dict[str, Any], samples: int, languages: str) -> Outcome:
             "--base", arm["base_link"], "--tip", arm["tip_link"], "-o", folder,
             "--samples", str(samples), "--emit", languages,
         ]  # fmt: skip
-        code, out, err, seconds = _run(command, Path(folder))
-        return _outcome(arm, {**_parse(out, err), "code": code}, seconds)
+        code, out, err, *seconds = _run(command, Path(folder))
+        return _outcome(arm, {**_parse(out, err), "code": code}, *seconds)
 
 
-def _run(command: Sequence[str], folder: Path) -> tuple[int, str, str, float]:
-    """Exit code, stdout, stderr and seconds of processor time, which a busy machine changes little."""
+def _run(command: Sequence[str], folder: Path) -> tuple[int, str, str, float, float]:
+    """Exit code, stdout, stderr, seconds waited, and those of processor time: a busy machine changes these
+    little."""
     places = folder / "stdout.txt", folder / "stderr.txt"
+    begin = time.perf_counter()
     with places[0].open("w") as out, places[1].open("w") as err:
         process = subprocess.Popen(command, stdout=out, stderr=err)
         _, status, usage = os.wait4(process.pid, 0)
+    waited = time.perf_counter() - begin
     process.returncode = os.waitstatus_to_exitcode(status)
     texts = [place.read_text(encoding="utf-8") for place in places]
-    return process.returncode, texts[0], texts[1], usage.ru_utime + usage.ru_stime
+    return process.returncode, texts[0], texts[1], waited, usage.ru_utime + usage.ru_stime
 
 
 def _robot(arm: dict[str, Any], folder: Path) -> str:
@@ -95,7 +99,9 @@ def _parse(out: str, err: str) -> dict[str, Any]:
     return parsed
 
 
-def _outcome(arm: dict[str, Any], result: dict[str, Any], seconds: float) -> Outcome:
+def _outcome(
+    arm: dict[str, Any], result: dict[str, Any], waited: float, processor: float
+) -> Outcome:
     state = {0: "solved", 1: "WRONG", 2: "ERROR", 3: "unsolved"}.get(result["code"], "CRASH")
     report = next(iter((result.get("verification") or {}).values()), {})
     counts = report.get("solutions") or {}
@@ -106,35 +112,39 @@ def _outcome(arm: dict[str, Any], result: dict[str, Any], seconds: float) -> Out
     held = (result.get("chosen") or {}).get("held") or ()
     message = str(result.get("error") or " ".join(["holding", *held] if held else []))
     task = str(result.get("task") or "")
-    return Outcome(arm["name"], arm["family"], task, state, seconds, text, numbers, message[:300])
+    seconds = waited, processor
+    return Outcome(arm["name"], arm["family"], task, state, *seconds, text, numbers, message[:300])
 
 
-def _table(outcomes: Sequence[Outcome]) -> Iterator[str]:
-    head = ("arms", "solved", "unsolved", "failed", "median s", "max s")
+def _table(classes: Sequence[dict[str, Any]]) -> Iterator[str]:
+    head = ("arms", "solved", "unsolved", "failed", "median s", "max s", "processor s", "max s")
     yield f"{'class':58} " + " ".join(f"{h:>{w}}" for h, w in zip(head, WIDTHS, strict=True))
-    for family in sorted({o.family for o in outcomes}):
-        rows = [o for o in outcomes if o.family == family]
-        solved = [o for o in rows if o.state == "solved"]
-        unsolved = sum(o.state == "unsolved" for o in rows)
-        times = [o.seconds for o in solved] or [math.nan]
-        yield (
-            f"{family:58} {len(rows):4} {len(solved):6} {unsolved:8} "
-            f"{len(rows) - len(solved) - unsolved:6} {statistics.median(times):8.1f} {max(times):6.1f}"
-        )
+    for c in classes:
+        counts = c["arms"], c["solved"], c["unsolved"], c["failed"]
+        times = (f"{x:.1f}" for x in (*c["waited"], *c["processor"]))
+        cells = (f"{x:>{w}}" for x, w in zip((*counts, *times), WIDTHS, strict=True))
+        yield f"{c['family']:58} " + " ".join(cells)
 
 
-def _recorded(outcomes: Sequence[Outcome], samples: int) -> dict[str, Any]:
-    """What the README shows: counts and times by class, and the arms without a closed form."""
-    classes = []
-    for family in sorted({o.family for o in outcomes}):
-        rows = [o for o in outcomes if o.family == family]
-        times = [round(o.seconds, 2) for o in rows if o.state == "solved"] or [0.0]
-        counts = {name: sum(o.state == name for o in rows) for name in ("solved", "unsolved")}
-        failed = len(rows) - sum(counts.values())
-        longest = {"median": round(statistics.median(times), 2), "longest": max(times)}
-        classes.append({"family": family, "arms": len(rows), **counts, "failed": failed, **longest})
-    left = [o.name for o in outcomes if o.state != "solved"]
-    return {"samples": samples, "classes": classes, "left": left}
+def _by_class(outcomes: Sequence[Outcome]) -> list[dict[str, Any]]:
+    """Counts of each class and of all, and [median, longest] of the seconds of those that were solved."""
+    families = sorted({o.family for o in outcomes})
+    return [_counted(f, [o for o in outcomes if o.family == f]) for f in families] + [
+        _counted("all", outcomes)
+    ]
+
+
+def _counted(family: str, outcomes: Sequence[Outcome]) -> dict[str, Any]:
+    solved = [o for o in outcomes if o.state == "solved"]
+    unsolved = sum(o.state == "unsolved" for o in outcomes)
+    failed = len(outcomes) - len(solved) - unsolved
+    counts = {"arms": len(outcomes), "solved": len(solved), "unsolved": unsolved, "failed": failed}
+    seconds = {"waited": [o.waited for o in solved], "processor": [o.processor for o in solved]}
+    times = {
+        kind: [round(of(some or [0.0]), 2) for of in (statistics.median, max)]
+        for kind, some in seconds.items()
+    }
+    return {"family": family, **counts, **times}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -144,15 +154,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--arm", action="append", default=[], help="only this arm (repeatable)")
     parser.add_argument("--emit", default="python,cpp", help="languages")
     parser.add_argument("--samples", type=int, default=1000)
-    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--jobs", type=int, default=1, help="arms at a time")
     parser.add_argument("--executor", choices=EXECUTORS, default="process")
     parser.add_argument("--scheduler", help="the Dask scheduler that runs already")
     parser.add_argument("--json", type=Path, help="write the outcomes here")
     parser.add_argument("--public", action="store_true", help="arms that anybody has")
     parser.add_argument("--record", action="store_true", help="write results/")
     options = parser.parse_args(arguments)
-    if options.record and (options.family or options.arm):
-        parser.error("--record is for the whole collection")
+    if options.record and (options.family or options.arm or options.jobs > 1):
+        parser.error("--record is for the whole collection, one arm at a time")
     compileall.compile_dir(Path(ikgen.__file__).parent, quiet=1)
     collection = [] if options.public else load_arms()
     arms = collection or public_arms()
@@ -165,18 +175,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
         for o in pool.map(run_arm, arms, *asked):
             outcomes.append(o)
             print(
-                f"{o.name:30} {o.state:9} {o.seconds:6.1f} s  {o.task:18} {o.solutions:6} "
+                f"{o.name:30} {o.state:9} {o.waited:6.1f} s  {o.task:18} {o.solutions:6} "
                 f"{o.closure:12} {o.message}",
                 flush=True,
             )
     print()
-    for line in _table(outcomes):
+    classes = _by_class(outcomes)
+    for line in _table(classes):
         print(line)
     if options.json:
         options.json.write_text(json.dumps([asdict(o) for o in outcomes], indent=1))
     if options.record:
         name, extra = ("corpus", "") if collection else ("public", " --public")
-        found = _recorded(outcomes, options.samples)
+        left = [o.name for o in outcomes if o.state != "solved"]
+        found = {"samples": options.samples, "classes": classes, "left": left}
         write_result(name, f"python -m benchmarks.corpus{extra}", found)
     return int(any(o.state in ("WRONG", "CRASH", "ERROR") for o in outcomes))
 

@@ -118,11 +118,13 @@ def _class(family: str) -> str:
 def _classes(name: str, read: Callable[[str], Measured]) -> str:
     measured = read(name)
     rows = [
-        [_class(c["family"]), str(c["arms"]), str(c["solved"]), f"{c['median']:.1f} s",
-         f"{c['longest']:.1f} s"]
+        [_class(c["family"]), str(c["arms"]), str(c["solved"]),
+         *(f"{x:.1f} s" for x in (*c["waited"], *c["processor"]))]
         for c in measured.found["classes"]
     ]  # fmt: skip
-    head = ("class", "arms", "solved and verified", "median", "longest")
+    head = (
+        "class", "arms", "solved and verified", "median", "longest", "of the processor", "longest",
+    )  # fmt: skip
     left = measured.found["left"]
     words = f"\nWithout a closed form: {', '.join(left)}.\n" if left else ""
     return _table(head, rows) + words + _source(measured)

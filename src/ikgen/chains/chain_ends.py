@@ -59,7 +59,9 @@ def _options(chain: ChainCandidate) -> str:
 def not_below(tree: JointTree, index: TreeIndex, base: str, tip: str) -> UsageError:
     """The error for a tip that does not hang on the base, with the links that would do."""
     if index.path(tip, base) is not None:
-        hint = f"'{base}' hangs on '{tip}': exchange --base and --tip; poses are the inverse ones then"
+        hint = (
+            f"'{base}' hangs on '{tip}': exchange --base and --tip; poses are the inverse ones then"
+        )
     else:
         link = base
         while index.path(link, tip) is None and link in index.above:
