@@ -98,7 +98,7 @@ template <auto Run, class Frames, std::size_t N>
 inline bool solve_in_runs(const Frames& F, const Frame& T, const Turning& turning,
                           const std::array<std::array<int, 3>, N>& plans, Solutions& out) noexcept {
   const int given = out.count;
-  int least = -1, perhaps = 0, number = 0, own = 0;  // runs, and those of the pose itself
+  int least = -1, perhaps = 0, number = 0;
   bool ranked = true, doubtful = false;  // no elimination of the pose itself lost its rank; one has roots in doubt
   for (const double by : kAside) {
     const Frame there = displacement(by), back = inverse(there);
@@ -111,7 +111,6 @@ inline bool solve_in_runs(const Frames& F, const Frame& T, const Turning& turnin
         if (!shift) {
           least = std::max(least, roots.real);
           perhaps = std::max(perhaps, roots.perhaps);
-          ++own;
           ranked = ranked && roots.real >= 0;
         }
         doubtful = doubtful || (shift ? roots.real > 0 : roots.doubtful);
@@ -120,12 +119,13 @@ inline bool solve_in_runs(const Frames& F, const Frame& T, const Turning& turnin
         if (out.count == kRoom) return true;  // of a continuum
         const bool alone = number == 0 && given <= mine.count && roots.simple && out.count == roots.real && out.count > 0;
         const bool even = out.count % 2 == 0, again = number > 0 && !roots.stalled;
-        const bool told = out.count >= perhaps || own > 1 || N == 1;
+        const bool others = number > 2;  // the next elimination's runs have begun
+        const bool told = out.count >= perhaps || others || N == 1;
         const bool repeated = again && told && even && mine.count == known && out.count == known;
         const bool enough = least >= 0 && out.count >= least;
         const bool none = out.count == 0, fewer = none && (doubtful || number < kSure);
         if (enough && ((alone && even) || repeated) && !fewer) return !none || ranked;
-        if (enough && again && number > 2 && same_apart(F, T, turning, mine, out, known)) return true;
+        if (enough && again && others && same_apart(F, T, turning, mine, out, known)) return true;
         ++number;
       }
   }
