@@ -8,14 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from tests.support.both_languages import header_of
 from tests.support.sampled import sampled
 from tests.support.solving import NO_COMPILER, import_text
 
-from ikgen.emit.cpp.cpp_emitter import emit
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.solver_module import SolverModule
 from ikgen.generation.derive import derive
-from ikgen.generation.emitted_runners import arm_constants
 from ikgen.generation.request import Request
 from ikgen.verify.runners.cpp_header import CppHeader
 
@@ -57,10 +56,7 @@ def header(module: SolverModule, tmp_path_factory: pytest.TempPathFactory) -> Cp
     """The emitted header of an arm, compiled."""
     if NO_COMPILER:
         pytest.skip(NO_COMPILER)
-    folder = tmp_path_factory.mktemp("header")
-    for name, text in emit(module).items():
-        (folder / name).write_text(text)
-    return CppHeader(folder / f"{module.name}_ik.hpp", arm_constants(module))
+    return header_of(module, tmp_path_factory.mktemp("header"))
 
 
 def configurations(arm: Any, n: int) -> Array:

@@ -6,15 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.support.both_languages import header_of
 from tests.support.redundant_arms import Joint, serial_urdf
 from tests.support.solving import NO_COMPILER, import_text
 
-from ikgen.emit.cpp.cpp_emitter import emit
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.generation.derive import derive
-from ikgen.generation.emitted_runners import arm_constants
 from ikgen.generation.request import Request
-from ikgen.verify.runners.cpp_header import CppHeader
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
@@ -35,9 +33,7 @@ def test_all_are_found_where_the_wrist_is_not_rolled(tmp_path: Path) -> None:
     path.write_text(serial_urdf("stretch", LIFT))
     module = derive(Request(path, name="stretch", task="position-direction", tool_axis="y")).module
     arm = import_text(emit_module(module), tmp_path)
-    for file, text in emit(module).items():
-        (tmp_path / file).write_text(text)
-    header = CppHeader(tmp_path / "stretch_ik.hpp", arm_constants(module))
+    header = header_of(module, tmp_path)
     random = np.random.default_rng(4)
     low, high = np.array(arm.LOWER), np.array(arm.UPPER)
     q = random.uniform(low, high, (3000, 5))

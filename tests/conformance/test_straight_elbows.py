@@ -6,14 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.support.both_languages import header_of
 from tests.support.solving import NO_COMPILER, import_text
 
-from ikgen.emit.cpp.cpp_emitter import emit
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.generation.derive import derive
-from ikgen.generation.emitted_runners import arm_constants
 from ikgen.generation.request import Request
-from ikgen.verify.runners.cpp_header import CppHeader
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
@@ -41,9 +39,7 @@ def test_a_straight_elbow_is_reached_next_to_a_straight_wrist(tmp_path: Path) ->
     path.write_text(f'<robot name="straight">{text}</robot>')
     module = derive(Request(path, base="l0", tip="l6", name="straight")).module
     arm = import_text(emit_module(module), tmp_path)
-    for file, body in emit(module).items():
-        (tmp_path / file).write_text(body)
-    header = CppHeader(tmp_path / "straight_ik.hpp", arm_constants(module))
+    header = header_of(module, tmp_path)
     random = np.random.default_rng(7)
     q = random.uniform(-3.0, 3.0, (400, 6))
     q[:, 2] = 0.0

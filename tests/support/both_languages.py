@@ -11,12 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 from tests.support.solving import import_text
 
-from ikgen.emit.cpp.cpp_emitter import emit_header
+from ikgen.emit.cpp.cpp_emitter import emit, emit_header
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.emit.solver_module import SolverModule
+from ikgen.generation.emitted_runners import arm_constants
+from ikgen.verify.runners.cpp_header import CppHeader
 from ikgen.verify.runners.cpp_toolchain import compile_program, find_eigen
 
-__all__ = ["Both", "in_both"]
+__all__ = ["Both", "header_of", "in_both"]
 
 Array = NDArray[np.float64]
 
@@ -107,6 +109,13 @@ class Both:
         """Status, how many rows are singular, and the rows."""
         status, numbers = self.run(4, start, poses)
         return status, int(numbers[0]), numbers[1:].reshape(-1, self.arm.DOF)
+
+
+def header_of(module: SolverModule, folder: Path) -> CppHeader:
+    """The emitted header of an arm in a folder, compiled."""
+    for name, text in emit(module).items():
+        (folder / name).write_text(text)
+    return CppHeader(folder / f"{module.name}_ik.hpp", arm_constants(module))
 
 
 def in_both(module: SolverModule, folder: Path, modes: str = "012345") -> Both:
