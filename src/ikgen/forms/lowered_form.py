@@ -97,10 +97,10 @@ class Tolerances:
         is no singularity moves what a square root is taken of by as much: what is no solution beyond the
         workspace's boundary then shows by what it leaves of the pose.
         """
-        clamp = max(1e-11, 25.0 * error if error > ROUNDED else min(25.0 * error / 1e-4, 1e-6))
         fold = 0.05 * error if error > ROUNDED else 0.0
         singular = 1e-11 if error > ROUNDED else max(1e-11, 4.0 * error)
         flag, norm = (min(max(1e-4, share * error), 1e-2) for share in (5.0, 50.0))
+        clamp = max(1e-11, 25.0 * error if error > ROUNDED else min(25.0 * error / flag, 1e-6))
         return Tolerances(singular, flag, norm, clamp, fold, error=error, lost=lost, moved=moved)
 
     def least(self, value: Expr, size: float) -> float:
