@@ -4,8 +4,9 @@
 // -DSOAK_POSITION=0 or 1 and -DSOAK_TURN=0 (nothing), 1 (direction), 2 (yaw), 3 (rotation) or 4 (pitch): what the task reads, of
 // the tool's axis -DSOAK_AXIS=0, 1 or 2.
 // Arguments: random poses, poses beside singularities, seed. Of those half are drawn by descending on the smallest
-// singular value, and half have joints at multiples of 45 degrees; all but the first of the latter lie 10^-1 to 10^-12
-// (rad, m) off in a random direction, or in one joint. Prints the rows that were returned and those
+// singular value, a quarter have joints at multiples of 45 degrees, all but the first of ten 10^-1 to 10^-12 (rad, m)
+// off in a random direction, or in one joint; and a quarter have one joint there, or as far off, and the others drawn
+// anew for every pose. Prints the rows that were returned and those
 // that are wrong; then for each decade of the smallest singular value: random poses, missed, unanswered, and the same
 // three of the poses beside singularities; then configurations that failed, one a line: kind, singular value, joints.
 
@@ -249,21 +250,38 @@ void put(const Arm& arm, Tally& tally, bool near, const ik::Joints& q) {
   show(tally, 2, "missed", sigma, q);
 }
 
-// All joints or some of them at multiples of 45 degrees, where their limits have any.
+// The joint at a multiple of 45 degrees, a slide at a multiple of the arm's length over eight, where its limits have any.
+void turn_even(const Arm& arm, ik::Joints& q, int j, std::mt19937_64& random) {
+  const double eighth = arm.turns[j] ? 0.7853981633974483 : 0.125 * arm.length;
+  const int low = static_cast<int>(std::ceil(arm.low[j] / eighth)), high = static_cast<int>(std::floor(arm.high[j] / eighth));
+  if (high >= low) q[j] = eighth * std::uniform_int_distribution<int>(low, high)(random);
+}
+
+// All joints or some of them at multiples of 45 degrees.
 ik::Joints even_turns(const Arm& arm, std::mt19937_64& random) {
-  const double eighth = 0.7853981633974483, share = std::uniform_real_distribution<double>(0.3, 1.3)(random);
+  const double share = std::uniform_real_distribution<double>(0.3, 1.3)(random);
   ik::Joints q = draw(arm, random);
-  for (int j = 0; j < ik::kDof; ++j) {
-    const int low = static_cast<int>(std::ceil(arm.low[j] / eighth)), high = static_cast<int>(std::floor(arm.high[j] / eighth));
-    if (!arm.turns[j] || high < low || std::uniform_real_distribution<double>()(random) > share) continue;
-    q[j] = eighth * std::uniform_int_distribution<int>(low, high)(random);
-  }
+  for (int j = 0; j < ik::kDof; ++j)
+    if (arm.turns[j] && std::uniform_real_distribution<double>()(random) <= share) turn_even(arm, q, j, random);
+  return q;
+}
+
+double distance_off(std::mt19937_64& random) {
+  return std::pow(10.0, -std::uniform_real_distribution<double>(1.0, 12.0)(random));
+}
+
+// One joint at a multiple of 45 degrees, or beside it.
+ik::Joints even_turn(const Arm& arm, bool at, std::mt19937_64& random) {
+  ik::Joints q = draw(arm, random);
+  const int j = std::uniform_int_distribution<int>(0, ik::kDof - 1)(random);
+  turn_even(arm, q, j, random);
+  if (!at) q[j] = std::clamp(q[j] + distance_off(random), arm.low[j], arm.high[j]);
   return q;
 }
 
 ik::Joints beside(const Arm& arm, const ik::Joints& singular, bool one, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
-  const double distance = std::pow(10.0, -std::uniform_real_distribution<double>(1.0, 12.0)(random));
+  const double distance = distance_off(random);
   const int only = std::uniform_int_distribution<int>(0, ik::kDof - 1)(random);
   ik::Joints q = singular;
   for (int j = 0; j < ik::kDof; ++j)
@@ -292,7 +310,8 @@ int main(int argc, char** argv) {
       break;
     }
     if (!known) break;
-    put(arm, tally, true, even && first ? singular : beside(arm, singular, even && n % 2 == 0, random));
+    const bool one = n / kBeside % 4 == 3;
+    put(arm, tally, true, one ? even_turn(arm, n % 2 == 0, random) : even && first ? singular : beside(arm, singular, even && n % 2 == 0, random));
   }
   std::printf("rows %ld %ld\n", tally.rows, tally.wrong);
   for (int k = 0; k < kDecades; ++k) {
