@@ -846,55 +846,6 @@ template <class Policy, int N, class... X> [[gnu::always_inline]] inline auto me
   return Policy::kMeeting > (gap(spread<N>(x)) + ...);
 }
 
-// --- moving joints -------------------------------------------------------------------------------
-template <class Arm> struct MovingJoints {
-  static constexpr int kCount = Arm::kDof - static_cast<int>(Arm::kFreeJoints.size());
-  int joint[kCount] = {};
-
-  constexpr MovingJoints() noexcept {
-    for (int j = 0, k = 0; j < Arm::kDof; ++j)
-      if (!Arm::kHeld[j]) joint[k++] = j;
-  }
-  constexpr int operator[](int k) const noexcept { return joint[k]; }
-};
-
-template <class A> struct AllMoving : A {
-  static constexpr int kFree = 0;
-  static constexpr std::array<int, 0> kFreeJoints = {};
-  static constexpr bool kHeld[A::kDof] = {}, kArmAngle = false;
-  static constexpr int kRank = A::kWholePose ? A::kFreedoms : A::kDof - A::kFree;  // what the task fixes, or less
-};
-
-// --- singular value ------------------------------------------------------------------------------
-template <class Arm> struct SingularValue {
-  static constexpr MovingJoints<Arm> kJoints{};
-  static constexpr int kMoving = MovingJoints<Arm>::kCount, kEquations = PoseError<Arm>::kCount;
-  static constexpr int kRank = kMoving < kEquations ? kMoving : kEquations;
-
-  static bool below(const double* q, double bound) noexcept {
-    const PoseError<Arm> at(q, HeldAim<Arm>::own(q));
-    return !above(at.slope, bound);
-  }
-
- private:
-  template <class X> static auto above(const X (&slope)[kEquations][Arm::kDof], double bound) noexcept {
-    X A[kRank][kRank];
-    for (int a = 0; a < kRank; ++a)
-      for (int b = 0; b <= a; ++b) {
-        if constexpr (kMoving < kEquations) {
-          A[a][b] = slope[0][kJoints[a]] * slope[0][kJoints[b]];
-          for (int e = 1; e < kEquations; ++e) A[a][b] = A[a][b] + slope[e][kJoints[a]] * slope[e][kJoints[b]];
-        } else {
-          A[a][b] = slope[a][kJoints[0]] * slope[b][kJoints[0]];
-          for (int k = 1; k < kMoving; ++k) A[a][b] = A[a][b] + slope[a][kJoints[k]] * slope[b][kJoints[k]];
-        }
-        if (a == b) A[a][b] = A[a][b] - bound * bound;
-      }
-    factor(A);
-    return definite(A);
-  }
-};
-
 // --- solution rows -------------------------------------------------------------------------------
 template <class Arm> struct RowPlaces {
   static constexpr std::size_t kRoom = 2 * Arm::kMaxSolutions;
@@ -1038,8 +989,6 @@ template <class Arm> struct SolutionRows {
 
 // --- row pair ------------------------------------------------------------------------------------
 template <class Arm> struct RowPair {
-  using Policy = typename Arm::Policy;
-
   static bool within(double reach, const double* a, const double* b) noexcept {
     for (int j = 0; j < Arm::kDof; ++j)
       if (!(std::abs(SolutionRows<Arm>::change(j, a, b)) < reach)) return false;
@@ -1057,33 +1006,54 @@ template <class Arm> struct RowPair {
       if (within(reach, q, SolutionRows<Arm>::row(rows, k))) return true;
     return false;
   }
-
-  static bool between(const HeldAim<Arm>& aim, const double* a, const double* b) noexcept {
-    if (!within(Policy::kAlike, a, b)) return false;
-    double middle[Arm::kDof];
-    for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * SolutionRows<Arm>::change(j, a, b);
-    return PoseError<Arm>(middle, aim).largest() < Policy::kHalfway;
-  }
 };
 
-// --- right rows ----------------------------------------------------------------------------------
-template <class Arm> struct RightRows {
-  using Policy = typename Arm::Policy;
-  using Row = SolutionRows<Arm>;
+// --- moving joints -------------------------------------------------------------------------------
+template <class Arm> struct MovingJoints {
+  static constexpr int kCount = Arm::kDof - static_cast<int>(Arm::kFreeJoints.size());
+  int joint[kCount] = {};
 
-  static void add(const HeldAim<Arm>& aim, RowPlaces<Arm>& out, const double* q, bool marked) noexcept {
-    const bool singular = SingularValue<Arm>::below(q, marked ? Policy::kContinuumBelow : Policy::kSingularBelow);
-    for (int k = 0; k < out.count && singular; ++k)
-      if (Row::flag(out, k) && RowPair<Arm>::between(aim, q, Row::row(out, k))) return;
-    Row::add(out, q, singular);
+  constexpr MovingJoints() noexcept {
+    for (int j = 0, k = 0; j < Arm::kDof; ++j)
+      if (!Arm::kHeld[j]) joint[k++] = j;
+  }
+  constexpr int operator[](int k) const noexcept { return joint[k]; }
+};
+
+template <class A> struct AllMoving : A {
+  static constexpr int kFree = 0;
+  static constexpr std::array<int, 0> kFreeJoints = {};
+  static constexpr bool kHeld[A::kDof] = {}, kArmAngle = false;
+  static constexpr int kRank = A::kWholePose ? A::kFreedoms : A::kDof - A::kFree;  // what the task fixes, or less
+};
+
+// --- singular value ------------------------------------------------------------------------------
+template <class Arm> struct SingularValue {
+  static constexpr MovingJoints<Arm> kJoints{};
+  static constexpr int kMoving = MovingJoints<Arm>::kCount, kEquations = PoseError<Arm>::kCount;
+  static constexpr int kRank = kMoving < kEquations ? kMoving : kEquations;
+
+  static bool below(const double* q, double bound) noexcept {
+    const PoseError<Arm> at(q, HeldAim<Arm>::own(q));
+    return !above(at.slope, bound);
   }
 
-  static void add_instead(const HeldAim<Arm>& aim, RowPlaces<Arm>& out, const double* q) noexcept {
-    int kept = 0;
-    for (int k = 0; k < out.count; ++k)
-      if (!(Row::flag(out, k) && RowPair<Arm>::between(aim, q, Row::row(out, k)))) Row::move(out, k, kept++);
-    out.count = kept;
-    add(aim, out, q, true);
+ private:
+  template <class X> static auto above(const X (&slope)[kEquations][Arm::kDof], double bound) noexcept {
+    X A[kRank][kRank];
+    for (int a = 0; a < kRank; ++a)
+      for (int b = 0; b <= a; ++b) {
+        if constexpr (kMoving < kEquations) {
+          A[a][b] = slope[0][kJoints[a]] * slope[0][kJoints[b]];
+          for (int e = 1; e < kEquations; ++e) A[a][b] = A[a][b] + slope[e][kJoints[a]] * slope[e][kJoints[b]];
+        } else {
+          A[a][b] = slope[a][kJoints[0]] * slope[b][kJoints[0]];
+          for (int k = 1; k < kMoving; ++k) A[a][b] = A[a][b] + slope[a][kJoints[k]] * slope[b][kJoints[k]];
+        }
+        if (a == b) A[a][b] = A[a][b] - bound * bound;
+      }
+    factor(A);
+    return definite(A);
   }
 };
 
@@ -1135,9 +1105,26 @@ template <class Arm> struct FoldPair {
 
   enum class Led { Known, There, Between };
 
-  template <class IsKnown> Led approach(double side, double* q, const IsKnown& known) noexcept {
+  struct Begin {
+    Taken taken;
+    Vector still;
+
+    double lead(double side) const noexcept {
+      Way way;
+      return std::abs(root(side, taken.rest, way));
+    }
+  };
+
+  Begin begin(const double* q) noexcept {
+    Begin at{reduced(q, true), {}};
+    std::copy_n(still, kMoving, at.still);
+    return at;
+  }
+
+  template <class IsKnown> Led approach(const Begin& from, double side, double* q, const IsKnown& known) noexcept {
+    std::copy_n(from.still, kMoving, still);
     for (int i = 0; i < kSteps; ++i) {
-      const Way way = step(side, q, i == 0);
+      const Way way = step(i == 0 ? from.taken : reduced(q, false), side, q);
       if (way.least > kApart + kCubic * way.length * way.length * way.length) return Led::Between;
       if (known(q, kShare * std::min(way.apart, kTogether))) return Led::Known;
       if (way.length <= std::max(kClose, kSure * way.apart)) break;
@@ -1251,7 +1238,7 @@ template <class Arm> struct FoldPair {
     return make_unit(still);
   }
 
-  Way step(double side, double* q, bool anew) noexcept {
+  Taken reduced(const double* q, bool anew) noexcept {
     const PoseError<Arm> at(q, aim);
     if (anew) find_still(at);
     const Others others(still, at);
@@ -1264,7 +1251,10 @@ template <class Arm> struct FoldPair {
       for (int k = 0; k < kMoving; ++k)
         bend[e] += (beyond.slope[e][kJoints[k]] - at.slope[e][kJoints[k]]) * still[k] / kAlong;
     }
-    const Taken taken(others, at.error, bend, others.flow);
+    return Taken(others, at.error, bend, others.flow);
+  }
+
+  Way step(const Taken& taken, double side, double* q) noexcept {
     Vector across;
     Way way;
     const double farthest = taken.first(across), x = root(side, taken.rest, way);
@@ -1308,16 +1298,20 @@ template <class Arm> struct CurveSamples {
   Fold fold;
   int samples = 600;  // that are left to be taken
 
+  static constexpr double kSmall = 4e-15;  // what is left at a solution, at most, by round-off
+
   explicit CurveSamples(const HeldAim<Arm>& goal) noexcept : fold(goal) {}
 
-  Sample at(const double* q) noexcept {
+  static bool is_solution(const Sample& s) noexcept { return std::abs(s.left) < kSmall; }
+
+  Sample at(const double* q, bool anew = true) noexcept {
     Sample s;
     std::copy_n(q, Arm::kDof, s.q);
     s.on = false;
     double before[Fold::kMoving] = {}, last = kInfinity;
     for (int i = 0; i < kCorrections && !s.on; ++i) {
       double across[Fold::kMoving];
-      const double farthest = fold.correct(s.q, i == 0, s.left, s.slope, across);
+      const double farthest = fold.correct(s.q, anew && i == 0, s.left, s.slope, across);
       const double bound = std::max(kNear, kShare * std::abs(s.left));
       s.on = kCurved * farthest * farthest < bound;
       if (s.on && !(farthest < bound)) fold.measure(s.q, s.left, s.slope);
@@ -1331,16 +1325,16 @@ template <class Arm> struct CurveSamples {
     return s;
   }
 
-  Sample at(const double* q, const Sample& from) noexcept {
+  Sample at(const double* q, const Sample& from, bool anew = true) noexcept {
     std::copy_n(from.still, Fold::kMoving, fold.still);
     std::copy_n(from.out, Fold::kEquations, fold.out);
-    return at(q);
+    return at(q, anew);
   }
 
   Sample part(const Sample& a, const Sample& b, double share) noexcept {
     double q[Arm::kDof];
     between(a, b, share, q);
-    return at(q, a);
+    return at(q, a, false);
   }
 
   static void turn_round(Sample& s) noexcept {
@@ -1385,6 +1379,37 @@ template <class Arm> struct CurveSamples {
   }
 };
 
+// --- right rows ----------------------------------------------------------------------------------
+template <class Arm> struct RightRows {
+  using Policy = typename Arm::Policy;
+  using Row = SolutionRows<Arm>;
+
+  static void add(const HeldAim<Arm>& aim, RowPlaces<Arm>& out, const double* q, bool marked) noexcept {
+    const bool singular = SingularValue<Arm>::below(q, marked ? Policy::kContinuumBelow : Policy::kSingularBelow);
+    for (int k = 0; k < out.count && singular; ++k)
+      if (Row::flag(out, k) && between(aim, q, Row::row(out, k))) return;
+    Row::add(out, q, singular);
+  }
+
+  static void add_instead(const HeldAim<Arm>& aim, RowPlaces<Arm>& out, const double* q) noexcept {
+    int kept = 0;
+    for (int k = 0; k < out.count; ++k)
+      if (!(Row::flag(out, k) && between(aim, q, Row::row(out, k)))) Row::move(out, k, kept++);
+    out.count = kept;
+    add(aim, out, q, true);
+  }
+
+ private:
+  static bool between(const HeldAim<Arm>& aim, const double* a, const double* b) noexcept {
+    using Curve = CurveSamples<Arm>;
+    if (!RowPair<Arm>::within(Policy::kAlike, a, b)) return false;
+    double middle[Arm::kDof];
+    for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * Row::change(j, a, b);
+    const double off = PoseError<Arm>(middle, aim).largest();
+    return off < Policy::kHalfway || (off < Policy::kArrived && Curve::is_solution(Curve(aim).at(middle)));
+  }
+};
+
 // --- curve parts ---------------------------------------------------------------------------------
 template <class Arm> struct CurveParts : CurveSamples<Arm> {
   using Curve = CurveSamples<Arm>;
@@ -1398,10 +1423,10 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
 
   explicit CurveParts(const HeldAim<Arm>& goal) noexcept : Curve(goal) {}
 
+  using Curve::is_solution;
+  using Curve::kSmall;
   using Curve::part;
   using Curve::samples;
-
-  static bool is_solution(const Sample& s) noexcept { return std::abs(s.left) < kSmall; }
 
   void look(const Sample& a, const Sample& b, int deep = kDeep) noexcept {
     if (std::max(std::abs(a.left), std::abs(b.left)) >= kBeyond * Policy::kFoldReach) return;  // far beyond the curve's end
@@ -1424,6 +1449,18 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
     }
   }
 
+  void look_between(const double* from, const double* to) noexcept {
+    Sample a = Curve::at(from);
+    for (int i = 1; i <= kParts; ++i) {
+      double q[Arm::kDof];
+      for (int j = 0; j < Arm::kDof; ++j) q[j] = from[j] + i * (SolutionRows<Arm>::change(j, from, to) / kParts);
+      const Sample b = Curve::at(q, a);
+      if (is_solution(b)) keep(b);
+      look(a, b);
+      a = b;
+    }
+  }
+
   void keep(const Sample& s) noexcept {
     if (count == kRoom || !(std::abs(s.left) < Policy::kArrived)) return;
     double* q = found[count++];
@@ -1434,8 +1471,9 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
  private:
   static constexpr int kDeep = 24, kDoubts = 3;  // how often a part is cut, and how often as the cubic bends by so much
   static constexpr double kBent = 1.5, kStraight = 0.03;  // of what it is in the middle, and at most
+  static constexpr int kParts = 4;
   static constexpr int kSteps = 40, kCubics = 4, kNewton = 8, kSoon = 4;
-  static constexpr double kRoundOff = 1e-15, kSmall = 4e-15;
+  static constexpr double kRoundOff = 1e-15;
   static constexpr double kBeyond = 4.0;  // how far what is left at the end of a curve's last part may be beyond its bound
   static constexpr double kWay = 1e-10;   // rad or m: along a curve, by which what is left varies by round-off
 
@@ -1733,6 +1771,9 @@ template <class Arm> struct RowStart {
   int lane = 0;
   double error = 0.0, start[Arm::kDof], q[Arm::kDof];
 
+  static constexpr double kSkew = 2.0;    // of the way to the other solution: farther there may be more than two
+  static constexpr double kBeside = 0.1;  // rad or m: farther apart closed forms have them all
+
   RowStart() = default;
   RowStart(const Rows& rows, int from, bool singular) noexcept : marked(singular), lane(from) {
     for (int j = 0; j < Arm::kDof; ++j) start[j] = q[j] = rows.q[j][lane];
@@ -1768,13 +1809,21 @@ template <class Arm> struct RowStart {
 
   void add_nearby(const Aim& aim, Places& out) noexcept {
     std::copy_n(q, Arm::kDof, start);
+    const bool right = error < Policy::kArrived;
     const auto known = [&out](const double* row, double reach) noexcept { return Pair::any_within(reach, row, out); };
+    Fold fold(aim);
+    const auto begin = fold.begin(start);
     for (const double side : {1.0, -1.0}) {
       double trial[Arm::kDof];
       std::copy_n(start, Arm::kDof, trial);
-      const auto led = Fold(aim).approach(side, trial, known);
+      const auto led = fold.approach(begin, side, trial, known);
       if (led == Fold::Led::Between) break;  // nor on the other side
       if (led == Fold::Led::There) take(aim, trial, out);
+      const double way = Pair::farthest(start, trial);
+      if (!right || !(way < kBeside) || way < kSkew * begin.lead(side) + Policy::kCoincident) continue;
+      CurveParts<Arm> curve(aim);
+      curve.look_between(start, trial);
+      for (int k = 0; k < curve.count; ++k) take(aim, curve.found[k], out);
     }
     take_rest(aim, out);
   }

@@ -1110,16 +1110,19 @@ def _still_directions(arm: _Arm, slope: Array) -> Array:
     return _still(slope, _generic(len(slope), slope.shape[2]), arm.policy.least_damping)
 
 
-def _approach(arm: _Arm, q: Array, T: Array, side: Array) -> Array:
+def _approach(arm: _Arm, q: Array, T: Array, side: Array) -> tuple[Array, Array]:
     """From q (k, dof) towards the solution on one `side` (k,), 1 or -1, of the place where two may meet, or
     to where they nearly do."""
     q, still, going = q.copy(), _generic(len(q), len(arm.moving)), np.arange(len(q))
-    for _ in range(_fold_pair_STEPS):
+    lead = np.zeros(len(q))
+    for step in range(_fold_pair_STEPS):
         q[going], still[going], x = _step(arm, q[going], T[going], side[going], still[going])
+        if step == 0:
+            lead = np.abs(x)
         going = going[np.abs(x) > _CLOSE]
         if not len(going):
             break
-    return q
+    return q, lead
 
 
 def _correct(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, Array]:
@@ -1198,6 +1201,48 @@ def _root(side: Array, rest: Array, bend: Array, flow: Array) -> Array:
     return np.asarray(np.clip(np.nan_to_num(np.where(k > 0.0, x, 0.0)), -_FAR, _FAR))
 
 
+# Samples of curves along which the other joints take the pose's error away but for one direction.
+
+
+_SOLVED = 4e-15
+
+_CORRECTIONS = 6
+_NEAR = 1e-8  # rad or m off the curve at which what is left is that of the curve: it is off by the square
+_SHARE = 3e-2  # over what is left: as little as that off the curve changes neither
+_ALMOST = 1e-3  # rad or m off the curve at which corrections may end if they change nothing of what is left
+_SAME = 4e-15  # rad or m: corrections that change what is left by less change nothing of it
+_STRAY = 1.0  # rad or m: larger corrections show that no curve is near
+
+
+def _samples_beside(arm: _Arm, q: Array, T: Array) -> _Reduced:
+    """The configurations of curves beside rows q (k, dof), towards aims T (k, ...)."""
+    error, slope = _linearized(arm, q, T)
+    nothing, still = np.zeros(len(q)), _still_directions(arm, slope)
+    unknown = 0.1 * _generic(len(q), error.shape[1])  # shorter than what has a sense
+    return _sampled(arm, _Reduced(q, still, unknown, nothing, nothing), T)[0]
+
+
+def _sampled(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, _Flags]:
+    """The configurations of curves beside some (k,), of which one direction of the error is left towards
+    aims T (k, ...)."""
+    near, going, before = np.ones(len(T), dtype=bool), np.arange(len(T)), np.full(len(T), np.inf)
+    for _ in range(_CORRECTIONS):
+        if len(going) == len(T):
+            at, farthest = _correct(arm, at, T)
+            moved = at
+        else:
+            moved, farthest = _correct(arm, _some_of(at, going), T[going])
+            for whole, part in zip(at, moved):
+                whole[going] = part
+        near[going] &= farthest < _STRAY
+        same = (np.abs(moved.left - before) < _SAME) & (farthest < _ALMOST)
+        on = ~((farthest < np.maximum(_NEAR, _SHARE * np.abs(moved.left))) | same)
+        going, before = going[on], moved.left[on]
+        if not len(going):
+            break
+    return at, near
+
+
 # Rows of several poses in one array: without repetitions, and in order.
 
 
@@ -1207,7 +1252,184 @@ def _places(pose: _Index) -> _Index:
     return np.asarray(np.arange(len(pose)) - first)
 
 
+# Solutions on parts of curves, between two samples each, by what is left of the error there and how that
+
+
+_BEYOND = 4.0
+
+_STEPS, _DEEP = 40, 24
+_curve_parts_DOUBTS = 3  # how often a part is cut as its cubic bends
+_BENT = 1.5  # over its bend: a cubic that is lower in the middle of a part may have two roots there
+_STRAIGHT = 0.03  # over its largest value: a cubic that bends by less is straight
+_CUBICS, _NEWTON, _CLEAR = 2, 4, 1e-6
+_LEAP, _SOON = 16.0, 3
+_PARTS = 4  # in which one is looked at whose ends alone tell little
+_SAMPLES = 600  # of a curve
+_ROOM = 32  # solutions of a curve
+_WAY = 1e-10  # rad or m: along it, by which what is left varies by round-off
+_curve_parts_ROUND_OFF = 1e-15
+
+
+class _Parts(NamedTuple):
+    """Parts of curves, between samples `a` and `b` of those of the starts `owner` (n,), `place` (n,) and
+    `width` (n,) in the order in which they were passed."""
+
+    a: _Reduced
+    b: _Reduced
+    owner: _Index
+    place: Array
+    width: Array
+
+
+def _look(arm: _Arm, parts: _Parts, T: Array, samples: _Index) -> tuple[_Index, Array]:
+    """The solutions (n, dof) inside parts, by the signs of the coefficients, after Bernstein, of cubics
+    through values and slopes."""
+    kept, brackets = [_solved(parts, parts.a, 0.0), _solved(parts, parts.b, 1.0)], []
+    for deep in range(_DEEP + 1):
+        most = np.maximum(np.abs(parts.a.left), np.abs(parts.b.left))
+        parts = _some_of(parts, ~(most >= _BEYOND * arm.policy.fold_reach))
+        values = _bernstein(arm, parts)
+        most = np.abs(values).max(axis=0)
+        spent = samples[parts.owner] >= _SAMPLES
+        end = (most < _SOLVED) | spent | (deep == _DEEP)
+        found = np.abs(values[[0, 3]]) < _SOLVED  # ends whose sign is round-off's
+        change = values[:-1] * values[1:] <= 0.0
+        change[::2] &= ~found
+        changes = change.sum(axis=0)
+        doubtful = (deep < _curve_parts_DOUBTS) & _bends(values, changes)
+        split = ~end & (doubtful | (changes > 1) | ((changes == 1) & found.any(axis=0)))
+        kept.append(_some_of(parts, end))
+        brackets.append(_some_of(parts, ~end & ~split & (changes == 1)))
+        if not split.any():
+            break
+        parts = _some_of(parts, split)
+        middle = _between(arm, parts, np.full(len(parts.owner), 0.5), T)
+        kept.append(_solved(parts, middle, 0.5))
+        samples = samples + np.bincount(parts.owner, minlength=len(samples))
+        half = 0.5 * parts.width
+        parts = _joined(
+            parts._replace(b=middle, width=half),
+            parts._replace(a=middle, place=parts.place + half, width=half),
+        )
+    return _kept(arm, _joined(*kept, _closed_in(arm, _joined(*brackets), T)))
+
+
+def _look_between(arm: _Arm, q: Array, to: Array, T: Array) -> tuple[_Index, Array]:
+    """The solutions (n, dof) on curves from rows q (k, dof) to others (k, dof), towards aims T (k, ...),
+    whatever cubics through both tell."""
+    with np.errstate(all="ignore"):
+        way, a, parts = _differences(arm, q, to), _samples_beside(arm, q, T), []
+        for part in range(_PARTS):
+            b, _ = _sampled(arm, a._replace(q=q + (part + 1) / _PARTS * way), T)
+            width = np.ones(len(q))
+            parts.append(_Parts(a, b, np.arange(len(q)), part * width, width))
+            a = b
+        return _look(arm, _joined(*parts), T, np.full(len(q), _PARTS))
+
+
+def _between(arm: _Arm, parts: _Parts, share: Array, T: Array) -> _Reduced:
+    """Samples at a `share` (n,) of the way from a to b, near the cubic with the directions at both."""
+    a, b, s, moving = parts.a, parts.b, share[:, None], list(arm.moving)
+    way = (b.q - a.q)[:, moving]
+    length = np.sqrt((way**2).sum(axis=1))[:, None]
+    along = ((a.still * b.still).sum(axis=1) > 0.0)[:, None]
+    rise, fall = (np.where(along, length * end.still - way, 0.0) for end in (a, b))
+    q = a.q + s * (b.q - a.q)
+    q[:, moving] += s * (1.0 - s) * ((1.0 - s) * rise - s * fall)
+    still = np.where(along, (1.0 - s) * a.still + s * b.still, a.still)
+    still /= np.sqrt((still**2).sum(axis=1))[:, None]
+    return _sampled(arm, a._replace(q=q, still=still), T[parts.owner])[0]
+
+
+def _bends(values: Array, changes: _Index) -> _Flags:
+    """Which cubics of coefficients (4, n), with so many changes of sign (n,), bend so much that they tell
+    little of zeros beside these, where they come near 0 or turn twice."""
+    rise = np.diff(values, axis=0)
+    turns = rise[:-1] * rise[1:]
+    steady = (changes == 0) & (turns >= 0.0).all(axis=0)
+    bend = np.abs(np.diff(rise, axis=0)).max(axis=0)
+    bent = (np.abs(values[1] + values[2]) < _BENT * bend) & ~steady
+    bent |= (turns < 0.0).all(axis=0)
+    return np.asarray(bent & (bend > _STRAIGHT * np.abs(values).max(axis=0)))
+
+
+def _solved(parts: _Parts, at: _Reduced, share: float) -> _Parts:
+    """Of samples at a share of the way those at solutions, as parts without length."""
+    place = parts.place + share * parts.width
+    out: _Parts = _some_of(_Parts(at, at, parts.owner, place, 0.0 * place), np.abs(at.left) < _SOLVED)
+    return out
+
+
+def _bernstein(arm: _Arm, parts: _Parts) -> Array:
+    """The coefficients (4, n)."""
+    a, b = parts.a, parts.b
+    step = (b.q - a.q)[:, list(arm.moving)]
+    rise = a.slope * (a.still * step).sum(axis=1)
+    fall = b.slope * (b.still * step).sum(axis=1)
+    return np.array([a.left, a.left + rise / 3.0, b.left - fall / 3.0, b.left])
+
+
+def _closed_in(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
+    """Parts at whose ends what is left has two signs, narrowed until it is round-off at one, or the way to
+    there is."""
+    ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
+    values, last = ends.left.copy(), np.full(len(parts.owner), -1)
+    way = np.full(len(parts.owner), np.inf)
+    most = 2.0 * np.abs(_bernstein(arm, parts)).max(axis=0)
+    for step in range(_STEPS):
+        going = np.flatnonzero((np.abs(ends.left).min(axis=0) > _curve_parts_ROUND_OFF) & (way > _WAY))
+        if not len(going):
+            break
+        x, y = values[:, going]
+        now = _some_of(parts, going)._replace(
+            a=_some_of(ends, (0, going)), b=_some_of(ends, (1, going))
+        )
+        cubic, share = _bernstein(arm, now), x / (x - y)
+        if step < _CUBICS:
+            share = np.where(most[going] > _CLEAR, _root_share(cubic, share), share)
+        c = _between(arm, now, share, T)
+        side = (now.a.left * c.left < 0.0).astype(np.intp)
+        way[going] = np.abs(c.q - ends.q[side, going]).max(axis=1)
+        change = np.abs(np.diff(cubic, axis=0))
+        leaps = change[1] > _LEAP * np.maximum(change[0], change[2])
+        leaps &= (np.abs(ends.left[:, going]).min(axis=0) > arm.policy.arrived) & (step > _SOON)
+        way[going[leaps | (np.abs(c.left) > most[going])]] = 0.0
+        for whole, part in zip(ends, c):
+            whole[side, going] = part
+        values[side, going] = c.left
+        values[1 - side, going] *= np.where(last[going] == side, 0.5, 1.0)
+        last[going] = side
+    return parts._replace(a=_some_of(ends, 0), b=_some_of(ends, 1))
+
+
+def _root_share(values: Array, share: Array) -> Array:
+    """Where cubics of coefficients (4, n), after Bernstein, vanish (n,)."""
+    a, b, c, d = values
+    one, two, three = 3.0 * (b - a), 3.0 * (c - b - b + a), d - a + 3.0 * (b - c)
+    x = share
+    for _ in range(_NEWTON):
+        rise = (3.0 * three * x + 2.0 * two) * x + one
+        x = x - (((three * x + two) * x + one) * x + a) / rise
+    return np.asarray(np.where((x > 0.0) & (x < 1.0), x, share))
+
+
+def _kept(arm: _Arm, parts: _Parts) -> tuple[_Index, Array]:
+    """Of each part the end where less is left, in order."""
+    ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
+    least = np.abs(ends.left).argmin(axis=0)
+    left, q = (x[least, np.arange(len(least))] for x in (ends.left, ends.q))
+    order = np.lexsort((parts.place, parts.owner))
+    order = order[np.abs(left[order]) < arm.policy.arrived]
+    order = order[_places(parts.owner[order]) < _ROOM]
+    whole = 2.0 * np.pi * np.round(q / (2.0 * np.pi))
+    return parts.owner[order], np.where(arm.turning, q - whole, q)[order]
+
+
 # What Newton steps from the closed form's rows lead to near singularities, where solutions meet.
+
+
+_SKEW = 2.0  # of the way to the other solution of two: farther there may be more
+_meeting_rows_BESIDE = 0.1  # rad or m: farther apart closed forms have them all
 
 
 class _Starts(NamedTuple):
@@ -1330,8 +1552,7 @@ def _rows_nearby(arm: _Arm, leads: _Leads) -> _Led:
     first = _meeting_rows_in_order(_Led(sure, q[sure], sigma[sure]), leads.around)
     if not near.any():
         return first
-    owner = np.repeat(np.flatnonzero(near), 2)
-    pairs = _approach(arm, q[owner], T[owner], np.tile([1.0, -1.0], len(owner) // 2))
+    owner, pairs = _approached(arm, q, T, np.flatnonzero(near), error < arm.policy.arrived)
     pairs, left, there = _ends_of(arm, pairs, T[owner])
     exact = left < arm.policy.exact
     for k, i in zip(np.flatnonzero(~exact).tolist(), owner[~exact].tolist()):
@@ -1344,6 +1565,19 @@ def _rows_nearby(arm: _Arm, leads: _Leads) -> _Led:
     )
     found: _Led = _joined(first, more)
     return found
+
+
+def _approached(arm: _Arm, q: Array, T: Array, near: _Index, right: _Flags) -> tuple[_Index, Array]:
+    """Where approaches to both sides of some rows of q (k, dof) end (n, dof), and whose these are (n,)."""
+    owner = np.repeat(near, 2)
+    start = q[owner]
+    ends, lead = _approach(arm, start, T[owner], np.tile([1.0, -1.0], len(near)))
+    way = np.abs(_differences(arm, start, ends)).max(axis=1)
+    far = right[owner] & (way < _meeting_rows_BESIDE) & (way > _SKEW * lead + arm.policy.coincident)
+    if not far.any():
+        return owner, ends
+    whose, passed = _look_between(arm, start[far], ends[far], T[owner[far]])
+    return np.append(owner, owner[far][whose]), np.concatenate([ends, passed])
 
 
 def _meeting_rows_in_order(one: _Led, other: _Led) -> _Led:
@@ -1370,10 +1604,16 @@ def _repeats(arm: _Arm, T: Array, row: Row, kept: Sequence[_Found]) -> bool:
 def _untold(arm: _Arm, T: Array, a: Array, b: Array) -> _Flags:
     """Which singular rows a (k, dof) for poses T (k, 4, 4) nothing tells from others nearby, b (k, dof)."""
     gaps = _differences(arm, a, b)
-    near = np.abs(gaps).max(axis=1) < arm.policy.alike
-    middle = _forward(arm.chain, (a + 0.5 * gaps)[near])
-    near[near] = np.abs(arm.task.error(middle, T[near])).max(axis=1) < arm.policy.halfway
-    return np.asarray(near)
+    near = np.flatnonzero(np.abs(gaps).max(axis=1) < arm.policy.alike)
+    middle, T = (a + 0.5 * gaps)[near], T[near]
+    off = np.abs(arm.task.error(_forward(arm.chain, middle), T)).max(axis=1)
+    untold: _Flags = off < arm.policy.halfway
+    some = np.flatnonzero(~untold & (off < arm.policy.arrived))
+    if len(some):
+        untold[some] = np.abs(_samples_beside(arm, middle[some], T[some]).left) < _SOLVED
+    out = np.zeros(len(a), dtype=bool)
+    out[near] = untold
+    return out
 
 
 def _that_differ(arm: _Arm, T: Array, pose: _Index, q: Array, singular: _Flags) -> _Index:
@@ -1503,197 +1743,6 @@ def _held_there(arm: _Arm, aim: Array, row: Row, flag: bool) -> list[_Found]:
     return _place_rows(arm, found, row, True)
 
 
-# Samples of curves along which the other joints take the pose's error away but for one direction.
-
-
-_CORRECTIONS = 6
-_NEAR = 1e-8  # rad or m off the curve at which what is left is that of the curve: it is off by the square
-_SHARE = 3e-2  # over what is left: as little as that off the curve changes neither
-_ALMOST = 1e-3  # rad or m off the curve at which corrections may end if they change nothing of what is left
-_SAME = 4e-15  # rad or m: corrections that change what is left by less change nothing of it
-_STRAY = 1.0  # rad or m: larger corrections show that no curve is near
-
-
-def _sampled(arm: _Arm, at: _Reduced, T: Array) -> tuple[_Reduced, _Flags]:
-    """The configurations of curves beside some (k,), of which one direction of the error is left towards
-    aims T (k, ...)."""
-    near, going, before = np.ones(len(T), dtype=bool), np.arange(len(T)), np.full(len(T), np.inf)
-    for _ in range(_CORRECTIONS):
-        if len(going) == len(T):
-            at, farthest = _correct(arm, at, T)
-            moved = at
-        else:
-            moved, farthest = _correct(arm, _some_of(at, going), T[going])
-            for whole, part in zip(at, moved):
-                whole[going] = part
-        near[going] &= farthest < _STRAY
-        same = (np.abs(moved.left - before) < _SAME) & (farthest < _ALMOST)
-        on = ~((farthest < np.maximum(_NEAR, _SHARE * np.abs(moved.left))) | same)
-        going, before = going[on], moved.left[on]
-        if not len(going):
-            break
-    return at, near
-
-
-# Solutions on parts of curves, between two samples each, by what is left of the error there and how that
-
-
-_BEYOND = 4.0
-
-_STEPS, _DEEP = 40, 24
-_curve_parts_DOUBTS = 3  # how often a part is cut as its cubic bends
-_BENT = 1.5  # over its bend: a cubic that is lower in the middle of a part may have two roots there
-_STRAIGHT = 0.03  # over its largest value: a cubic that bends by less is straight
-_CUBICS, _NEWTON, _CLEAR = 2, 4, 1e-6
-_LEAP, _SOON = 16.0, 3
-_SAMPLES = 600  # of a curve
-_ROOM = 32  # solutions of a curve
-_WAY = 1e-10  # rad or m: along it, by which what is left varies by round-off
-_curve_parts_ROUND_OFF, _SMALL = 1e-15, 4e-15
-
-
-class _Parts(NamedTuple):
-    """Parts of curves, between samples `a` and `b` of those of the starts `owner` (n,), `place` (n,) and
-    `width` (n,) in the order in which they were passed."""
-
-    a: _Reduced
-    b: _Reduced
-    owner: _Index
-    place: Array
-    width: Array
-
-
-def _look(arm: _Arm, parts: _Parts, T: Array, samples: _Index) -> tuple[_Index, Array]:
-    """The solutions (n, dof) inside parts, by the signs of the coefficients, after Bernstein, of cubics
-    through values and slopes."""
-    kept, brackets = [_solved(parts, parts.a, 0.0), _solved(parts, parts.b, 1.0)], []
-    for deep in range(_DEEP + 1):
-        most = np.maximum(np.abs(parts.a.left), np.abs(parts.b.left))
-        parts = _some_of(parts, ~(most >= _BEYOND * arm.policy.fold_reach))
-        values = _bernstein(arm, parts)
-        most = np.abs(values).max(axis=0)
-        spent = samples[parts.owner] >= _SAMPLES
-        end = (most < _SMALL) | spent | (deep == _DEEP)
-        found = np.abs(values[[0, 3]]) < _SMALL  # ends whose sign is round-off's
-        change = values[:-1] * values[1:] <= 0.0
-        change[::2] &= ~found
-        changes = change.sum(axis=0)
-        doubtful = (deep < _curve_parts_DOUBTS) & _bends(values, changes)
-        split = ~end & (doubtful | (changes > 1) | ((changes == 1) & found.any(axis=0)))
-        kept.append(_some_of(parts, end))
-        brackets.append(_some_of(parts, ~end & ~split & (changes == 1)))
-        if not split.any():
-            break
-        parts = _some_of(parts, split)
-        middle = _between(arm, parts, np.full(len(parts.owner), 0.5), T)
-        kept.append(_solved(parts, middle, 0.5))
-        samples = samples + np.bincount(parts.owner, minlength=len(samples))
-        half = 0.5 * parts.width
-        parts = _joined(
-            parts._replace(b=middle, width=half),
-            parts._replace(a=middle, place=parts.place + half, width=half),
-        )
-    return _kept(arm, _joined(*kept, _closed_in(arm, _joined(*brackets), T)))
-
-
-def _between(arm: _Arm, parts: _Parts, share: Array, T: Array) -> _Reduced:
-    """Samples at a `share` (n,) of the way from a to b, near the cubic with the directions at both."""
-    a, b, s, moving = parts.a, parts.b, share[:, None], list(arm.moving)
-    way = (b.q - a.q)[:, moving]
-    length = np.sqrt((way**2).sum(axis=1))[:, None]
-    along = ((a.still * b.still).sum(axis=1) > 0.0)[:, None]
-    rise, fall = (np.where(along, length * end.still - way, 0.0) for end in (a, b))
-    q = a.q + s * (b.q - a.q)
-    q[:, moving] += s * (1.0 - s) * ((1.0 - s) * rise - s * fall)
-    still = np.where(along, (1.0 - s) * a.still + s * b.still, a.still)
-    still /= np.sqrt((still**2).sum(axis=1))[:, None]
-    return _sampled(arm, a._replace(q=q, still=still), T[parts.owner])[0]
-
-
-def _bends(values: Array, changes: _Index) -> _Flags:
-    """Which cubics of coefficients (4, n), with so many changes of sign (n,), bend so much that they tell
-    little of zeros beside these, where they come near 0 or turn twice."""
-    rise = np.diff(values, axis=0)
-    turns = rise[:-1] * rise[1:]
-    steady = (changes == 0) & (turns >= 0.0).all(axis=0)
-    bend = np.abs(np.diff(rise, axis=0)).max(axis=0)
-    bent = (np.abs(values[1] + values[2]) < _BENT * bend) & ~steady
-    bent |= (turns < 0.0).all(axis=0)
-    return np.asarray(bent & (bend > _STRAIGHT * np.abs(values).max(axis=0)))
-
-
-def _solved(parts: _Parts, at: _Reduced, share: float) -> _Parts:
-    """Of samples at a share of the way those at solutions, as parts without length."""
-    place = parts.place + share * parts.width
-    out: _Parts = _some_of(_Parts(at, at, parts.owner, place, 0.0 * place), np.abs(at.left) < _SMALL)
-    return out
-
-
-def _bernstein(arm: _Arm, parts: _Parts) -> Array:
-    """The coefficients (4, n)."""
-    a, b = parts.a, parts.b
-    step = (b.q - a.q)[:, list(arm.moving)]
-    rise = a.slope * (a.still * step).sum(axis=1)
-    fall = b.slope * (b.still * step).sum(axis=1)
-    return np.array([a.left, a.left + rise / 3.0, b.left - fall / 3.0, b.left])
-
-
-def _closed_in(arm: _Arm, parts: _Parts, T: Array) -> _Parts:
-    """Parts at whose ends what is left has two signs, narrowed until it is round-off at one, or the way to
-    there is."""
-    ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
-    values, last = ends.left.copy(), np.full(len(parts.owner), -1)
-    way = np.full(len(parts.owner), np.inf)
-    most = 2.0 * np.abs(_bernstein(arm, parts)).max(axis=0)
-    for step in range(_STEPS):
-        going = np.flatnonzero((np.abs(ends.left).min(axis=0) > _curve_parts_ROUND_OFF) & (way > _WAY))
-        if not len(going):
-            break
-        x, y = values[:, going]
-        now = _some_of(parts, going)._replace(
-            a=_some_of(ends, (0, going)), b=_some_of(ends, (1, going))
-        )
-        cubic, share = _bernstein(arm, now), x / (x - y)
-        if step < _CUBICS:
-            share = np.where(most[going] > _CLEAR, _root_share(cubic, share), share)
-        c = _between(arm, now, share, T)
-        side = (now.a.left * c.left < 0.0).astype(np.intp)
-        way[going] = np.abs(c.q - ends.q[side, going]).max(axis=1)
-        change = np.abs(np.diff(cubic, axis=0))
-        leaps = change[1] > _LEAP * np.maximum(change[0], change[2])
-        leaps &= (np.abs(ends.left[:, going]).min(axis=0) > arm.policy.arrived) & (step > _SOON)
-        way[going[leaps | (np.abs(c.left) > most[going])]] = 0.0
-        for whole, part in zip(ends, c):
-            whole[side, going] = part
-        values[side, going] = c.left
-        values[1 - side, going] *= np.where(last[going] == side, 0.5, 1.0)
-        last[going] = side
-    return parts._replace(a=_some_of(ends, 0), b=_some_of(ends, 1))
-
-
-def _root_share(values: Array, share: Array) -> Array:
-    """Where cubics of coefficients (4, n), after Bernstein, vanish (n,)."""
-    a, b, c, d = values
-    one, two, three = 3.0 * (b - a), 3.0 * (c - b - b + a), d - a + 3.0 * (b - c)
-    x = share
-    for _ in range(_NEWTON):
-        rise = (3.0 * three * x + 2.0 * two) * x + one
-        x = x - (((three * x + two) * x + one) * x + a) / rise
-    return np.asarray(np.where((x > 0.0) & (x < 1.0), x, share))
-
-
-def _kept(arm: _Arm, parts: _Parts) -> tuple[_Index, Array]:
-    """Of each part the end where less is left, in order."""
-    ends = _Reduced(*map(np.stack, zip(parts.a, parts.b)))
-    least = np.abs(ends.left).argmin(axis=0)
-    left, q = (x[least, np.arange(len(least))] for x in (ends.left, ends.q))
-    order = np.lexsort((parts.place, parts.owner))
-    order = order[np.abs(left[order]) < arm.policy.arrived]
-    order = order[_places(parts.owner[order]) < _ROOM]
-    whole = 2.0 * np.pi * np.round(q / (2.0 * np.pi))
-    return parts.owner[order], np.where(arm.turning, q - whole, q)[order]
-
-
 # How far rows are from their joint limits, whatever turns they are on.
 
 
@@ -1793,11 +1842,7 @@ def _traced(arm: _Arm, q: Array, T: Array) -> _Traced:
 
 def _followed(arm: _Arm, q: Array, T: Array) -> tuple[_Parts, _Parts, Array]:
     """The curves beside rows q (k, dof) towards aims T (k, ...), as `_follow` has them."""
-    count, (error, slope) = len(q), _linearized(arm, q, T)
-    nothing, still = np.zeros(count), _still_directions(arm, slope)
-    unknown = 0.1 * _generic(count, error.shape[1])  # shorter than what has a sense
-    first, _ = _sampled(arm, _Reduced(q, still, unknown, nothing, nothing), T)
-    return _follow(arm, first, T)
+    return _follow(arm, _samples_beside(arm, q, T), T)
 
 
 def _on_curves(arm: _Arm, parts: _Parts, owner: _Index, q: Array, T: Array) -> _Flags:

@@ -121,9 +121,9 @@ def fold(monkeypatch: pytest.MonkeyPatch, bend: float) -> list[int]:
         asked.append(len(held))
         return np.stack([[0.0 * held[:, 0], held[:, 0]]], axis=0).transpose(2, 0, 1), held < 1.0
 
-    def approach(arm: Any, q: Array, aim: Array, side: Array) -> Array:
+    def approach(arm: Any, q: Array, aim: Array, side: Array) -> tuple[Array, Array]:
         x = side * np.sqrt(np.maximum(bend * (1.0 - aim[:, 0]), 0.0))
-        return np.stack([x, aim[:, 0]], axis=1)
+        return np.stack([x, aim[:, 0]], axis=1), np.abs(x)
 
     def refined(arm: Any, q: Array, aim: Array) -> Any:
         return q, np.where(aim[:, 0] <= 1.0, 0.0, 1e-9), None, None

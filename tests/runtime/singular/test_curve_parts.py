@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from ikgen.runtime.python.singular import curve_parts
-from ikgen.runtime.python.singular.curve_parts import Parts, look
+from ikgen.runtime.python.singular.curve_parts import Parts, look, look_between
 from ikgen.runtime.python.singular.fold_pair import Reduced
 
 Array = NDArray[np.float64]
@@ -178,3 +178,23 @@ def test_two_roots_in_a_dip_far_from_both_ends_show_by_a_cubic_that_turns_twice(
     _, found = look(LINE, between(a, b), np.zeros((1, 4, 4)), np.zeros(1, np.intp))
     assert len(found) == 2
     assert np.abs(dip(on_line(found[:, 0], np.array([0.0]))).left).max() < 1e-9
+
+
+def test_two_solutions_are_found_that_the_cubic_between_others_hides(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of four in a row the cubic through the outer ones has none inside."""
+    roots = np.array([-1.0, -0.05, 0.05, 1.0])
+    give(monkeypatch, lambda at: on_line(at.q[:, 0], roots))
+    monkeypatch.setattr(curve_parts, "samples_beside", lambda arm, q, T: on_line(q[:, 0], roots))
+    q, to = np.array([[-1.0]]), np.array([[1.0]])
+    line: Any = SimpleNamespace(
+        moving=(0,), policy=POLICY, turning=(True,), chain=SimpleNamespace(revolute=(True,))
+    )
+    whose, found = look_between(line, q, to, np.zeros((1, 4, 4)))
+    assert not whose.any()
+    gaps = np.abs(found[:, :1] - roots).min(axis=0)
+    assert gaps.max() < 1e-9
+    ends = between(on_line(q[:, 0], roots), on_line(to[:, 0], roots))
+    _, few = look(line, ends, np.zeros((1, 4, 4)), np.zeros(1, np.intp))
+    assert np.abs(few[:, 0]).min() > 0.9

@@ -154,6 +154,7 @@ def test_one_step_from_a_stretched_arm_goes_nearly_to_each_of_the_two_rows(off: 
     assert moved[0, 1] * moved[1, 1] < 0.0 and x[0] * x[1] < 0.0
     np.testing.assert_allclose(np.abs(x), np.hypot(elbow, 0.5 * elbow), rtol=2e-2)
     assert np.abs(np.linalg.norm(still, axis=1) - 1.0).max() < 1e-12
-    rows = approach(arm, q, T, side)
+    rows, lead = approach(arm, q, T, side)
+    np.testing.assert_allclose(lead, np.abs(x), rtol=1e-12)
     np.testing.assert_allclose(np.abs(rows[:, 1]), elbow, rtol=1e-9)
     np.testing.assert_allclose(rows[:, 0], -0.5 * rows[:, 1], atol=1e-9)

@@ -99,16 +99,39 @@ def test_singular_rows_are_one_where_the_pose_is_theirs_between_them_too() -> No
     off = float(forward(chain, np.zeros(2))[0, 3] - T[0, 3])
 
     def told(halfway: float, singular: bool = True, alike: float = 0.3) -> bool:
-        policy = SimpleNamespace(halfway=halfway, alike=alike)
+        policy = SimpleNamespace(halfway=halfway, alike=alike, arrived=0.0)
         arm: Any = SimpleNamespace(policy=policy, chain=chain, task=Plane)
         return repeats(arm, T, rows[0], [(rows[1], singular)])
 
     assert told(1.01 * off) and not told(0.99 * off)
     assert not told(1.0, singular=False) and not told(1.0, alike=0.1)
     arm: Any = SimpleNamespace(
-        policy=SimpleNamespace(halfway=1.0, alike=1.0), chain=chain, task=Plane
+        policy=SimpleNamespace(halfway=1.0, alike=1.0, arrived=0.0), chain=chain, task=Plane
     )
     assert not repeats(arm, T, rows[0], [])
+
+
+@pytest.mark.parametrize(("left", "told"), [(1e-15, True), (1e-14, False), (-1e-14, False)])
+def test_singular_rows_are_one_where_the_curve_between_them_has_the_pose(
+    left: float, told: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The straight way between them leads past it."""
+    frames = np.tile(np.eye(4), (3, 1, 1))
+    frames[1:, 0, 3] = 0.5
+    chain = chain_of(frames, ((0, True, 1.0, 0.0), (1, True, 1.0, 0.0)), 2)
+    rows = [(-0.05, 0.1), (0.05, -0.1)]
+    given = []
+
+    def samples_beside(arm: Any, q: Array, T: Array) -> Any:
+        given.append(q)
+        return SimpleNamespace(left=np.full(len(q), left))
+
+    monkeypatch.setattr(meeting_rows, "samples_beside", samples_beside)
+    policy = SimpleNamespace(halfway=2e-14, alike=0.3, arrived=1.0)
+    arm: Any = SimpleNamespace(policy=policy, chain=chain, task=Plane)
+    T = forward(chain, np.array(rows[0]))
+    assert repeats(arm, T, rows[0], [(rows[1], True)]) == told
+    assert np.abs(given[0]).max() < 1e-15
 
 
 def test_rows_of_many_poses_are_told_apart_as_one_after_the_other_is() -> None:
@@ -116,7 +139,7 @@ def test_rows_of_many_poses_are_told_apart_as_one_after_the_other_is() -> None:
     frames = np.tile(np.eye(4), (4, 1, 1))
     frames[1:, 0, 3] = 0.5
     motions = ((0, True, 1.0, 0.0), (1, True, 1.0, 0.0), (2, False, 1.0, 0.0))
-    policy = SimpleNamespace(coincident=1e-6, alike=0.3, halfway=0.02)
+    policy = SimpleNamespace(coincident=1e-6, alike=0.3, halfway=0.02, arrived=0.0)
     chain = chain_of(frames, motions, 3)
     arm: Any = SimpleNamespace(policy=policy, chain=chain, task=Plane)
     rng = np.random.default_rng(2)

@@ -1,14 +1,11 @@
 #pragma once
 
-#include "arm/pose_error.hpp"
 #include "rows/solution_rows.hpp"
 
 namespace ikgen_runtime {
 
-// Two rows that are near each other. Arm: as for PoseError and SolutionRows.
+// Two rows that are near each other. Arm: as for SolutionRows.
 template <class Arm> struct RowPair {
-  using Policy = typename Arm::Policy;
-
   static bool within(double reach, const double* a, const double* b) noexcept {
     for (int j = 0; j < Arm::kDof; ++j)
       if (!(std::abs(SolutionRows<Arm>::change(j, a, b)) < reach)) return false;
@@ -27,14 +24,6 @@ template <class Arm> struct RowPair {
     for (int k = 0; k < rows.count; ++k)
       if (within(reach, q, SolutionRows<Arm>::row(rows, k))) return true;
     return false;
-  }
-
-  // Whether nothing tells two rows near each other apart: the pose is theirs between them too.
-  static bool between(const HeldAim<Arm>& aim, const double* a, const double* b) noexcept {
-    if (!within(Policy::kAlike, a, b)) return false;
-    double middle[Arm::kDof];
-    for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * SolutionRows<Arm>::change(j, a, b);
-    return PoseError<Arm>(middle, aim).largest() < Policy::kHalfway;
   }
 };
 

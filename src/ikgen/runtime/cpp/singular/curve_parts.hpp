@@ -1,11 +1,12 @@
 // Solutions on parts of a curve, between two samples of it, by what is left of the error there and how that grows.
 #pragma once
 
+#include "rows/solution_rows.hpp"
 #include "singular/curve_samples.hpp"
 
 namespace ikgen_runtime {
 
-// Arm: as for FoldPair.
+// Arm: as for FoldPair and SolutionRows.
 template <class Arm> struct CurveParts : CurveSamples<Arm> {
   using Curve = CurveSamples<Arm>;
   using Fold = FoldPair<Arm>;
@@ -18,10 +19,10 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
 
   explicit CurveParts(const HeldAim<Arm>& goal) noexcept : Curve(goal) {}
 
+  using Curve::is_solution;
+  using Curve::kSmall;
   using Curve::part;
   using Curve::samples;
-
-  static bool is_solution(const Sample& s) noexcept { return std::abs(s.left) < kSmall; }
 
   // Finds those between two samples, by the signs of the coefficients, after Bernstein, of the cubic through values and
   // slopes; where they leave doubts, on halves of the part.
@@ -46,6 +47,19 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
     }
   }
 
+  // Finds those between two configurations, whatever the cubic through both tells.
+  void look_between(const double* from, const double* to) noexcept {
+    Sample a = Curve::at(from);
+    for (int i = 1; i <= kParts; ++i) {
+      double q[Arm::kDof];
+      for (int j = 0; j < Arm::kDof; ++j) q[j] = from[j] + i * (SolutionRows<Arm>::change(j, from, to) / kParts);
+      const Sample b = Curve::at(q, a);
+      if (is_solution(b)) keep(b);
+      look(a, b);
+      a = b;
+    }
+  }
+
   void keep(const Sample& s) noexcept {
     if (count == kRoom || !(std::abs(s.left) < Policy::kArrived)) return;
     double* q = found[count++];
@@ -56,8 +70,9 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
  private:
   static constexpr int kDeep = 24, kDoubts = 3;  // how often a part is cut, and how often as the cubic bends by so much
   static constexpr double kBent = 1.5, kStraight = 0.03;  // of what it is in the middle, and at most
+  static constexpr int kParts = 4;
   static constexpr int kSteps = 40, kCubics = 4, kNewton = 8, kSoon = 4;
-  static constexpr double kRoundOff = 1e-15, kSmall = 4e-15;
+  static constexpr double kRoundOff = 1e-15;
   static constexpr double kBeyond = 4.0;  // how far what is left at the end of a curve's last part may be beyond its bound
   static constexpr double kWay = 1e-10;   // rad or m: along a curve, by which what is left varies by round-off
 

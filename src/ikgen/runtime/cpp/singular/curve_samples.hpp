@@ -20,17 +20,21 @@ template <class Arm> struct CurveSamples {
   Fold fold;
   int samples = 600;  // that are left to be taken
 
+  static constexpr double kSmall = 4e-15;  // what is left at a solution, at most, by round-off
+
   explicit CurveSamples(const HeldAim<Arm>& goal) noexcept : fold(goal) {}
 
-  // On the curve beside a configuration.
-  Sample at(const double* q) noexcept {
+  static bool is_solution(const Sample& s) noexcept { return std::abs(s.left) < kSmall; }
+
+  // On the curve beside a configuration; its still direction is found anew, or near the one that was found last.
+  Sample at(const double* q, bool anew = true) noexcept {
     Sample s;
     std::copy_n(q, Arm::kDof, s.q);
     s.on = false;
     double before[Fold::kMoving] = {}, last = kInfinity;
     for (int i = 0; i < kCorrections && !s.on; ++i) {
       double across[Fold::kMoving];
-      const double farthest = fold.correct(s.q, i == 0, s.left, s.slope, across);
+      const double farthest = fold.correct(s.q, anew && i == 0, s.left, s.slope, across);
       const double bound = std::max(kNear, kShare * std::abs(s.left));
       s.on = kCurved * farthest * farthest < bound;
       if (s.on && !(farthest < bound)) fold.measure(s.q, s.left, s.slope);
@@ -45,16 +49,16 @@ template <class Arm> struct CurveSamples {
   }
 
   // Beside a sample.
-  Sample at(const double* q, const Sample& from) noexcept {
+  Sample at(const double* q, const Sample& from, bool anew = true) noexcept {
     std::copy_n(from.still, Fold::kMoving, fold.still);
     std::copy_n(from.out, Fold::kEquations, fold.out);
-    return at(q);
+    return at(q, anew);
   }
 
   Sample part(const Sample& a, const Sample& b, double share) noexcept {
     double q[Arm::kDof];
     between(a, b, share, q);
-    return at(q, a);
+    return at(q, a, false);
   }
 
   // The same sample of a curve that is followed the other way.

@@ -61,11 +61,31 @@ template <class Arm> struct FoldPair {
   // Where an approach ends: at a solution that is known, next to one, or between two that there are not.
   enum class Led { Known, There, Between };
 
-  // From q towards one of the two solutions that may meet nearby, until Newton's method goes there, or to the place where
-  // they nearly do. known(q, reach): whether a solution is known that is nearer than that (rad or m) to q.
-  template <class IsKnown> Led approach(double side, double* q, const IsKnown& known) noexcept {
+  // Where approaches to both sides begin.
+  struct Begin {
+    Taken taken;
+    Vector still;
+
+    // How far one leads along the still direction if the second order tells all.
+    double lead(double side) const noexcept {
+      Way way;
+      return std::abs(root(side, taken.rest, way));
+    }
+  };
+
+  Begin begin(const double* q) noexcept {
+    Begin at{reduced(q, true), {}};
+    std::copy_n(still, kMoving, at.still);
+    return at;
+  }
+
+  // From q, where it begins, towards one of the two solutions that may meet nearby, until Newton's method goes there, or
+  // to the place where they nearly do. known(q, reach): whether a solution is known that is nearer than that (rad or m)
+  // to q.
+  template <class IsKnown> Led approach(const Begin& from, double side, double* q, const IsKnown& known) noexcept {
+    std::copy_n(from.still, kMoving, still);
     for (int i = 0; i < kSteps; ++i) {
-      const Way way = step(side, q, i == 0);
+      const Way way = step(i == 0 ? from.taken : reduced(q, false), side, q);
       if (way.least > kApart + kCubic * way.length * way.length * way.length) return Led::Between;
       if (known(q, kShare * std::min(way.apart, kTogether))) return Led::Known;
       if (way.length <= std::max(kClose, kSure * way.apart)) break;
@@ -197,7 +217,8 @@ template <class Arm> struct FoldPair {
     return make_unit(still);
   }
 
-  Way step(double side, double* q, bool anew) noexcept {
+  // The error at q, how the still direction bends the pose and how it moves it.
+  Taken reduced(const double* q, bool anew) noexcept {
     const PoseError<Arm> at(q, aim);
     if (anew) find_still(at);
     const Others others(still, at);
@@ -210,7 +231,10 @@ template <class Arm> struct FoldPair {
       for (int k = 0; k < kMoving; ++k)
         bend[e] += (beyond.slope[e][kJoints[k]] - at.slope[e][kJoints[k]]) * still[k] / kAlong;
     }
-    const Taken taken(others, at.error, bend, others.flow);
+    return Taken(others, at.error, bend, others.flow);
+  }
+
+  Way step(const Taken& taken, double side, double* q) noexcept {
     Vector across;
     Way way;
     const double farthest = taken.first(across), x = root(side, taken.rest, way);

@@ -3,7 +3,7 @@
 
 #include "arm/joint_bounds.hpp"
 #include "newton/newton_refinement.hpp"
-#include "rows/right_rows.hpp"
+#include "singular/right_rows.hpp"
 #include "singular/near_continuum.hpp"
 
 namespace ikgen_runtime {

@@ -172,12 +172,13 @@ template <class Arm> class CompensatedRows {
   // From a rough row, where the closed form had it at first.
   bool add_pair(const double* start, const double* first, Places& out) const noexcept {
     double ends[2][Arm::kDof];
+    Fold fold(aim);
+    const auto begin = fold.begin(start);
     for (const int side : {0, 1}) {
       double* q = ends[side];
       std::copy_n(start, Arm::kDof, q);
       const auto known = [](const double*, double) noexcept { return false; };
-      Fold fold(aim);
-      const auto led = fold.approach(side == 0 ? 1.0 : -1.0, q, known);
+      const auto led = fold.approach(begin, side == 0 ? 1.0 : -1.0, q, known);
       const double moved = Pair::farthest(first, q);
       if (!(moved < kTogether) || !fold.others_above(kRemote * moved, q)) return false;
       if (led == Fold::Led::Between) return side == 0;

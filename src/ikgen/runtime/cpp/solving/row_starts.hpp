@@ -6,7 +6,7 @@
 
 #include "newton/newton_refinement.hpp"
 #include "rows/lane_rows.hpp"
-#include "rows/right_rows.hpp"
+#include "singular/right_rows.hpp"
 #include "singular/near_continuum.hpp"
 #include "singular/near_surface.hpp"
 #include "solving/lane_ends.hpp"
@@ -28,6 +28,9 @@ template <class Arm> struct RowStart {
   bool around = false;  // whether the solutions of the continuum that it lies on are known
   int lane = 0;
   double error = 0.0, start[Arm::kDof], q[Arm::kDof];
+
+  static constexpr double kSkew = 2.0;    // of the way to the other solution: farther there may be more than two
+  static constexpr double kBeside = 0.1;  // rad or m: farther apart closed forms have them all
 
   RowStart() = default;
   RowStart(const Rows& rows, int from, bool singular) noexcept : marked(singular), lane(from) {
@@ -71,16 +74,25 @@ template <class Arm> struct RowStart {
     if (!exact && !settled && error < Policy::kArrived) RightRows<Arm>::add(aim, out, q, marked);
   }
 
-  // Adds the solutions that meet near the one that a lane led to.
+  // Adds the solutions that meet near the one that a lane led to; where an approach goes much farther than the second order
+  // says, others that it may have passed.
   void add_nearby(const Aim& aim, Places& out) noexcept {
     std::copy_n(q, Arm::kDof, start);
+    const bool right = error < Policy::kArrived;
     const auto known = [&out](const double* row, double reach) noexcept { return Pair::any_within(reach, row, out); };
+    Fold fold(aim);
+    const auto begin = fold.begin(start);
     for (const double side : {1.0, -1.0}) {
       double trial[Arm::kDof];
       std::copy_n(start, Arm::kDof, trial);
-      const auto led = Fold(aim).approach(side, trial, known);
+      const auto led = fold.approach(begin, side, trial, known);
       if (led == Fold::Led::Between) break;  // nor on the other side
       if (led == Fold::Led::There) take(aim, trial, out);
+      const double way = Pair::farthest(start, trial);
+      if (!right || !(way < kBeside) || way < kSkew * begin.lead(side) + Policy::kCoincident) continue;
+      CurveParts<Arm> curve(aim);
+      curve.look_between(start, trial);
+      for (int k = 0; k < curve.count; ++k) take(aim, curve.found[k], out);
     }
     take_rest(aim, out);
   }

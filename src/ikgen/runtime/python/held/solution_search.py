@@ -170,7 +170,7 @@ def _beside_fold(arm: Arm, start: Array, aim: Array) -> tuple[Array, Flags]:
     are so near that no other row is next to it."""
     twice = np.repeat(np.arange(len(start)), 2)
     first, towards, side = start[twice], aim[twice], np.tile([1.0, -1.0], len(start))
-    q, error, _, _ = refined(arm, approach(arm, first, towards, side), towards)
+    q, error, _, _ = refined(arm, approach(arm, first, towards, side)[0], towards)
     gap = np.abs(differences(arm, first, q)).max(axis=1)
     gap = np.where(error < arm.policy.exact, gap, inf).reshape(-1, 2)
     nearest = 2 * np.arange(len(start)) + gap.argmin(axis=1)

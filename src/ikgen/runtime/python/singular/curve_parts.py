@@ -10,11 +10,12 @@ import numpy as np
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_tuples import joined, some_of
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
+from ikgen.runtime.python.rows.row_links import differences
 from ikgen.runtime.python.rows.solution_rows import places
-from ikgen.runtime.python.singular.curve_samples import sampled
+from ikgen.runtime.python.singular.curve_samples import SOLVED, sampled, samples_beside
 from ikgen.runtime.python.singular.fold_pair import Reduced
 
-__all__ = ["BEYOND", "Parts", "between", "look"]
+__all__ = ["BEYOND", "Parts", "between", "look", "look_between"]
 
 BEYOND = 4.0
 """How far what is left behind the last part of a curve may be beyond its bound."""
@@ -25,10 +26,11 @@ _BENT = 1.5  # over its bend: a cubic that is lower in the middle of a part may 
 _STRAIGHT = 0.03  # over its largest value: a cubic that bends by less is straight
 _CUBICS, _NEWTON, _CLEAR = 2, 4, 1e-6
 _LEAP, _SOON = 16.0, 3
+_PARTS = 4  # in which one is looked at whose ends alone tell little
 _SAMPLES = 600  # of a curve
 _ROOM = 32  # solutions of a curve
 _WAY = 1e-10  # rad or m: along it, by which what is left varies by round-off
-_ROUND_OFF, _SMALL = 1e-15, 4e-15
+_ROUND_OFF = 1e-15
 
 
 class Parts(NamedTuple):
@@ -53,8 +55,8 @@ def look(arm: Arm, parts: Parts, T: Array, samples: Index) -> tuple[Index, Array
         values = _bernstein(arm, parts)
         most = np.abs(values).max(axis=0)
         spent = samples[parts.owner] >= _SAMPLES
-        end = (most < _SMALL) | spent | (deep == _DEEP)
-        found = np.abs(values[[0, 3]]) < _SMALL  # ends whose sign is round-off's
+        end = (most < SOLVED) | spent | (deep == _DEEP)
+        found = np.abs(values[[0, 3]]) < SOLVED  # ends whose sign is round-off's
         change = values[:-1] * values[1:] <= 0.0
         change[::2] &= ~found
         changes = change.sum(axis=0)
@@ -74,6 +76,19 @@ def look(arm: Arm, parts: Parts, T: Array, samples: Index) -> tuple[Index, Array
             parts._replace(a=middle, place=parts.place + half, width=half),
         )
     return _kept(arm, joined(*kept, _closed_in(arm, joined(*brackets), T)))
+
+
+def look_between(arm: Arm, q: Array, to: Array, T: Array) -> tuple[Index, Array]:
+    """The solutions (n, dof) on curves from rows q (k, dof) to others (k, dof), towards aims T (k, ...),
+    whatever cubics through both tell; whose they are (n,)."""
+    with np.errstate(all="ignore"):
+        way, a, parts = differences(arm, q, to), samples_beside(arm, q, T), []
+        for part in range(_PARTS):
+            b, _ = sampled(arm, a._replace(q=q + (part + 1) / _PARTS * way), T)
+            width = np.ones(len(q))
+            parts.append(Parts(a, b, np.arange(len(q)), part * width, width))
+            a = b
+        return look(arm, joined(*parts), T, np.full(len(q), _PARTS))
 
 
 def between(arm: Arm, parts: Parts, share: Array, T: Array) -> Reduced:
@@ -106,7 +121,7 @@ def _bends(values: Array, changes: Index) -> Flags:
 def _solved(parts: Parts, at: Reduced, share: float) -> Parts:
     """Of samples at a share of the way those at solutions, as parts without length."""
     place = parts.place + share * parts.width
-    out: Parts = some_of(Parts(at, at, parts.owner, place, 0.0 * place), np.abs(at.left) < _SMALL)
+    out: Parts = some_of(Parts(at, at, parts.owner, place, 0.0 * place), np.abs(at.left) < SOLVED)
     return out
 
 

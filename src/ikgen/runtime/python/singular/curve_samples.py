@@ -7,9 +7,13 @@ import numpy as np
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_tuples import some_of
 from ikgen.runtime.python.arrays.array_types import Array, Flags
-from ikgen.runtime.python.singular.fold_pair import Reduced, correct
+from ikgen.runtime.python.newton.arm_newton import linearized
+from ikgen.runtime.python.singular.fold_pair import Reduced, correct, generic, still_directions
 
-__all__ = ["sampled"]
+__all__ = ["SOLVED", "sampled", "samples_beside"]
+
+SOLVED = 4e-15
+"""What is left (rad, or m over the arm's size) at a solution, at most, by round-off."""
 
 _CORRECTIONS = 6
 _NEAR = 1e-8  # rad or m off the curve at which what is left is that of the curve: it is off by the square
@@ -17,6 +21,14 @@ _SHARE = 3e-2  # over what is left: as little as that off the curve changes neit
 _ALMOST = 1e-3  # rad or m off the curve at which corrections may end if they change nothing of what is left
 _SAME = 4e-15  # rad or m: corrections that change what is left by less change nothing of it
 _STRAY = 1.0  # rad or m: larger corrections show that no curve is near
+
+
+def samples_beside(arm: Arm, q: Array, T: Array) -> Reduced:
+    """The configurations of curves beside rows q (k, dof), towards aims T (k, ...)."""
+    error, slope = linearized(arm, q, T)
+    nothing, still = np.zeros(len(q)), still_directions(arm, slope)
+    unknown = 0.1 * generic(len(q), error.shape[1])  # shorter than what has a sense
+    return sampled(arm, Reduced(q, still, unknown, nothing, nothing), T)[0]
 
 
 def sampled(arm: Arm, at: Reduced, T: Array) -> tuple[Reduced, Flags]:

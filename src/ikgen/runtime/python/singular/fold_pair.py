@@ -65,16 +65,20 @@ def still_directions(arm: Arm, slope: Array) -> Array:
     return _still(slope, generic(len(slope), slope.shape[2]), arm.policy.least_damping)
 
 
-def approach(arm: Arm, q: Array, T: Array, side: Array) -> Array:
+def approach(arm: Arm, q: Array, T: Array, side: Array) -> tuple[Array, Array]:
     """From q (k, dof) towards the solution on one `side` (k,), 1 or -1, of the place where two may meet, or
-    to where they nearly do; T (k, 4, 4)."""
+    to where they nearly do; T (k, 4, 4). With it how far (k,) the first step led along the still direction:
+    there it ends if the second order tells all."""
     q, still, going = q.copy(), generic(len(q), len(arm.moving)), np.arange(len(q))
-    for _ in range(_STEPS):
+    lead = np.zeros(len(q))
+    for step in range(_STEPS):
         q[going], still[going], x = _step(arm, q[going], T[going], side[going], still[going])
+        if step == 0:
+            lead = np.abs(x)
         going = going[np.abs(x) > _CLOSE]
         if not len(going):
             break
-    return q
+    return q, lead
 
 
 def correct(arm: Arm, at: Reduced, T: Array) -> tuple[Reduced, Array]:

@@ -17,6 +17,8 @@ from ikgen.runtime.python.newton.refinement import least_singular
 from ikgen.runtime.python.rows.row_links import differences
 from ikgen.runtime.python.rows.row_placement import distinct, same_rows
 from ikgen.runtime.python.rows.solution_rows import places
+from ikgen.runtime.python.singular.curve_parts import look_between
+from ikgen.runtime.python.singular.curve_samples import SOLVED, samples_beside
 from ikgen.runtime.python.singular.fold_pair import approach
 
 __all__ = [
@@ -31,6 +33,9 @@ __all__ = [
     "rows_nearby",
     "that_differ",
 ]
+
+_SKEW = 2.0  # of the way to the other solution of two: farther there may be more
+_BESIDE = 0.1  # rad or m: farther apart closed forms have them all
 
 
 class Starts(NamedTuple):
@@ -158,8 +163,7 @@ def rows_nearby(arm: Arm, leads: Leads) -> Led:
     first = _in_order(Led(sure, q[sure], sigma[sure]), leads.around)
     if not near.any():
         return first
-    owner = np.repeat(np.flatnonzero(near), 2)
-    pairs = approach(arm, q[owner], T[owner], np.tile([1.0, -1.0], len(owner) // 2))
+    owner, pairs = _approached(arm, q, T, np.flatnonzero(near), error < arm.policy.arrived)
     pairs, left, there = ends_of(arm, pairs, T[owner])
     exact = left < arm.policy.exact
     for k, i in zip(np.flatnonzero(~exact).tolist(), owner[~exact].tolist()):
@@ -172,6 +176,21 @@ def rows_nearby(arm: Arm, leads: Leads) -> Led:
     )
     found: Led = joined(first, more)
     return found
+
+
+def _approached(arm: Arm, q: Array, T: Array, near: Index, right: Flags) -> tuple[Index, Array]:
+    """Where approaches to both sides of some rows of q (k, dof) end (n, dof), and whose these are (n,).
+    Where one from a solution, `right` (k,), goes much farther than the second order says, also what it may
+    have passed."""
+    owner = np.repeat(near, 2)
+    start = q[owner]
+    ends, lead = approach(arm, start, T[owner], np.tile([1.0, -1.0], len(near)))
+    way = np.abs(differences(arm, start, ends)).max(axis=1)
+    far = right[owner] & (way < _BESIDE) & (way > _SKEW * lead + arm.policy.coincident)
+    if not far.any():
+        return owner, ends
+    whose, passed = look_between(arm, start[far], ends[far], T[owner[far]])
+    return np.append(owner, owner[far][whose]), np.concatenate([ends, passed])
 
 
 def _in_order(one: Led, other: Led) -> Led:
@@ -214,12 +233,18 @@ def repeats(arm: Arm, T: Array, row: Row, kept: Sequence[Found]) -> bool:
 
 def _untold(arm: Arm, T: Array, a: Array, b: Array) -> Flags:
     """Which singular rows a (k, dof) for poses T (k, 4, 4) nothing tells from others nearby, b (k, dof):
-    the pose is theirs between them too."""
+    the pose is theirs between them too, on the straight way or on a curve beside that."""
     gaps = differences(arm, a, b)
-    near = np.abs(gaps).max(axis=1) < arm.policy.alike
-    middle = forward(arm.chain, (a + 0.5 * gaps)[near])
-    near[near] = np.abs(arm.task.error(middle, T[near])).max(axis=1) < arm.policy.halfway
-    return np.asarray(near)
+    near = np.flatnonzero(np.abs(gaps).max(axis=1) < arm.policy.alike)
+    middle, T = (a + 0.5 * gaps)[near], T[near]
+    off = np.abs(arm.task.error(forward(arm.chain, middle), T)).max(axis=1)
+    untold: Flags = off < arm.policy.halfway
+    some = np.flatnonzero(~untold & (off < arm.policy.arrived))
+    if len(some):
+        untold[some] = np.abs(samples_beside(arm, middle[some], T[some]).left) < SOLVED
+    out = np.zeros(len(a), dtype=bool)
+    out[near] = untold
+    return out
 
 
 def that_differ(arm: Arm, T: Array, pose: Index, q: Array, singular: Flags) -> Index:

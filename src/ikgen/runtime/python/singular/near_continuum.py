@@ -13,13 +13,13 @@ import numpy as np
 from ikgen.runtime.python.arm.solved_arm import Arm
 from ikgen.runtime.python.arrays.array_tuples import joined, some_of
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
-from ikgen.runtime.python.newton.arm_newton import linearized, refined
+from ikgen.runtime.python.newton.arm_newton import refined
 from ikgen.runtime.python.newton.refinement import least_singular
 from ikgen.runtime.python.rows.row_links import differences
 from ikgen.runtime.python.rows.solution_rows import places
 from ikgen.runtime.python.singular.curve_parts import BEYOND, Parts, between, look
-from ikgen.runtime.python.singular.curve_samples import sampled
-from ikgen.runtime.python.singular.fold_pair import Reduced, generic, still_directions
+from ikgen.runtime.python.singular.curve_samples import sampled, samples_beside
+from ikgen.runtime.python.singular.fold_pair import Reduced
 
 __all__ = ["LEAST", "Traced", "followed", "on_curves", "rows_around", "trace"]
 
@@ -87,11 +87,7 @@ def _traced(arm: Arm, q: Array, T: Array) -> Traced:
 
 def followed(arm: Arm, q: Array, T: Array) -> tuple[Parts, Parts, Array]:
     """The curves beside rows q (k, dof) towards aims T (k, ...), as `_follow` has them."""
-    count, (error, slope) = len(q), linearized(arm, q, T)
-    nothing, still = np.zeros(count), still_directions(arm, slope)
-    unknown = 0.1 * generic(count, error.shape[1])  # shorter than what has a sense
-    first, _ = sampled(arm, Reduced(q, still, unknown, nothing, nothing), T)
-    return _follow(arm, first, T)
+    return _follow(arm, samples_beside(arm, q, T), T)
 
 
 def on_curves(arm: Arm, parts: Parts, owner: Index, q: Array, T: Array) -> Flags:

@@ -139,7 +139,7 @@ def _take_ends(arm: Arm, rows: _Rows, pose: Index, one: Index, other: Index) -> 
     owner, side = np.repeat(pose, 2), np.tile([1.0, -1.0], len(pose))
     lane, aim = np.repeat(one, 2), aims(arm, rows.T, rows.held)[owner]
     start = rows.q[owner, lane]
-    fold = approach(arm, start, aim, side)
+    fold, _ = approach(arm, start, aim, side)
     moved = np.abs(differences(arm, rows.first[owner, lane], fold)).max(axis=1)
     _, slope = linearized(arm, fold, aim)
     remote = np.linalg.svd(slope, compute_uv=False)[:, -2] > _REMOTE * moved

@@ -1,12 +1,13 @@
 // Right rows among those that are known.
 #pragma once
 
-#include "rows/singular_value.hpp"
 #include "rows/row_pair.hpp"
+#include "rows/singular_value.hpp"
+#include "singular/curve_samples.hpp"
 
 namespace ikgen_runtime {
 
-// Arm: as for SingularValue, RowPair and SolutionRows.
+// Arm: as for CurveSamples, SingularValue and RowPair.
 template <class Arm> struct RightRows {
   using Policy = typename Arm::Policy;
   using Row = SolutionRows<Arm>;
@@ -15,7 +16,7 @@ template <class Arm> struct RightRows {
   static void add(const HeldAim<Arm>& aim, RowPlaces<Arm>& out, const double* q, bool marked) noexcept {
     const bool singular = SingularValue<Arm>::below(q, marked ? Policy::kContinuumBelow : Policy::kSingularBelow);
     for (int k = 0; k < out.count && singular; ++k)
-      if (Row::flag(out, k) && RowPair<Arm>::between(aim, q, Row::row(out, k))) return;
+      if (Row::flag(out, k) && between(aim, q, Row::row(out, k))) return;
     Row::add(out, q, singular);
   }
 
@@ -23,9 +24,21 @@ template <class Arm> struct RightRows {
   static void add_instead(const HeldAim<Arm>& aim, RowPlaces<Arm>& out, const double* q) noexcept {
     int kept = 0;
     for (int k = 0; k < out.count; ++k)
-      if (!(Row::flag(out, k) && RowPair<Arm>::between(aim, q, Row::row(out, k)))) Row::move(out, k, kept++);
+      if (!(Row::flag(out, k) && between(aim, q, Row::row(out, k)))) Row::move(out, k, kept++);
     out.count = kept;
     add(aim, out, q, true);
+  }
+
+ private:
+  // Whether nothing tells two rows near each other apart: the pose is theirs between them too, on the straight way or on a
+  // curve beside that.
+  static bool between(const HeldAim<Arm>& aim, const double* a, const double* b) noexcept {
+    using Curve = CurveSamples<Arm>;
+    if (!RowPair<Arm>::within(Policy::kAlike, a, b)) return false;
+    double middle[Arm::kDof];
+    for (int j = 0; j < Arm::kDof; ++j) middle[j] = a[j] + 0.5 * Row::change(j, a, b);
+    const double off = PoseError<Arm>(middle, aim).largest();
+    return off < Policy::kHalfway || (off < Policy::kArrived && Curve::is_solution(Curve(aim).at(middle)));
   }
 };
 

@@ -1,0 +1,64 @@
+"""Where an elbow is stretched and a tool points straight down at once, four solutions meet, not two."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.support.both_languages import header_of
+from tests.support.solving import NO_COMPILER, import_text
+
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
+
+pytestmark = pytest.mark.usefixtures("solved_once")
+
+HALF, RIGHT = "3.14159", "1.570795"
+JOINTS = (
+    ("0.1 0.03 0.435", "0 0 0", "", 0.0),
+    ("0 0 0", f"{RIGHT} 0 {RIGHT}", "", 0.0),
+    ("0 0.019 0", f"-{RIGHT} {RIGHT} {HALF}", "0 0 -1", 2.617),
+    ("0 0 -0.0415", f"0 {HALF} 0", "0 1 0", 2.617),
+    ("0 0 0.0645", f"0 {HALF} 0", "", 0.0),
+    ("0 0 -0.0415", f"0 {HALF} 0", "0 1 0", 2.617),
+    ("0 0 0.0645", f"0 {HALF} 0", "", 0.0),
+    ("0 0 -0.0415", f"0 {HALF} 0", "0 1 0", 1.745),
+    ("0 0 0.0265", f"0 {HALF} -{HALF}", "", 0.0),
+    ("0 0 -0.019", f"{RIGHT} {HALF} {RIGHT}", "", 0.0),
+)
+"""Origins, and axes and limits of the four that move: right angles that are rounded to five digits."""
+
+
+def urdf() -> str:
+    text = '<link name="l0"/>'
+    for k, (xyz, rpy, axis, most) in enumerate(JOINTS):
+        moves = (
+            f'<axis xyz="{axis}"/><limit lower="-{most}" upper="{most}" effort="1" velocity="1"/>'
+        )
+        text += (
+            f'<joint name="j{k}" type="{"revolute" if axis else "fixed"}"><parent link="l{k}"/>'
+            f'<child link="l{k + 1}"/><origin xyz="{xyz}" rpy="{rpy}"/>{moves if axis else ""}</joint>'
+            f'<link name="l{k + 1}"/>'
+        )
+    return f'<robot name="turret">{text}</robot>'
+
+
+@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
+def test_all_are_found_where_two_folds_meet(tmp_path: Path) -> None:
+    path = tmp_path / "turret.urdf"
+    path.write_text(urdf())
+    module = derive(Request(path, name="turret")).module
+    arm = import_text(emit_module(module), tmp_path)
+    header = header_of(module, tmp_path)
+    random = np.random.default_rng(7)
+    q = np.zeros((200, 4))
+    q[:, 0] = random.uniform(-2.5, 2.5, 200)
+    q[:, 3] = -np.pi / 2
+    q[100:] += 10.0 ** random.uniform(-12.0, -5.0, (100, 1)) * random.normal(size=(100, 4))
+    poses = arm.forward(q)
+    rows, (batch, _, _) = header.solve_many(poses), arm.solve_batch(poses)
+    for found in (rows.q, batch):
+        gap = np.abs(found - q[:, None]).max(axis=2)
+        assert np.nanmin(gap, axis=1).max() < 1e-4
