@@ -32,6 +32,10 @@ __all__ = [
 LIGHT = ("-O1",)
 """Options of a light optimisation."""
 
+_ROOM = ("--param", "ggc-min-heapsize=600000")
+"""kB that GCC fills before it collects what it needs no more, which takes a tenth of its time (420 MB in
+place of 370 for a header of seven joints); Clang knows the option, and does nothing with it."""
+
 _COMPLAINT = re.compile(r":\d+:\d+: .*\berror: ")
 _COMPILERS = ("c++", "g++", "clang++")
 
@@ -142,8 +146,8 @@ def _command(
     sources: Sequence[Path], output: Path, include: Sequence[Path], options: Sequence[str]
 ) -> list[str]:
     includes = [f"-I{directory}" for directory in include]
-    command = [*find_compiler(), "-std=c++17", *options, *includes, "-isystem", str(find_eigen())]
-    return [*command, *map(str, sources), "-o", str(output)]
+    command = [*find_compiler(), "-std=c++17", *_ROOM, *options, *includes]
+    return [*command, "-isystem", str(find_eigen()), *map(str, sources), "-o", str(output)]
 
 
 def _environment(output: Path) -> dict[str, str]:
