@@ -309,7 +309,7 @@ int main(int argc, char** argv) {
       singular = start, known = true;
       break;
     }
-    if (!known) break;
+    if (!even && !known) singular = even_turns(arm, random);  // an arm without singularities
     const bool one = n / kBeside % 4 == 3;
     put(arm, tally, true, one ? even_turn(arm, n % 2 == 0, random) : even && first ? singular : beside(arm, singular, even && n % 2 == 0, random));
   }
