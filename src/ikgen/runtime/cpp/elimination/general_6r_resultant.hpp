@@ -11,21 +11,26 @@ namespace ikgen_runtime {
 
 namespace g6 {
 
-// One over the largest that the rows of A can be, squared.
+// One over what the rows of A are off in proportion to, squared: the largest that they can be, or a share of the largest of
+// all, from which a smaller one is what is left. Where an elimination has no rank a row is nothing but round-off.
 struct RowSizes {
   double over[6];
 };
 
+inline constexpr double kOfLargest = 1.0 / 1600.0;  // squared
+
 inline RowSizes row_sizes(const Pencil& p) noexcept {
-  RowSizes out;
+  double square[6], largest = 0.0;
   for (Index i = 0; i < 6; ++i) {
-    double square = 1e-300;
+    square[i] = 1e-300;
     for (Index j = 0; j < 9; ++j) {
       const double size = std::abs(p.f(i, j)) + std::abs(p.c(i, j)) + std::abs(p.s(i, j));
-      square += size * size;
+      square[i] += size * size;
     }
-    out.over[i] = 1.0 / square;
+    largest = std::max(largest, square[i]);
   }
+  RowSizes out;
+  for (Index i = 0; i < 6; ++i) out.over[i] = 1.0 / std::max(square[i], kOfLargest * largest);
   return out;
 }
 

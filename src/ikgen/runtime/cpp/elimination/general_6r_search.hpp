@@ -257,17 +257,19 @@ inline bool run_resultant(const Chain& F, const Frame& T, const std::array<int, 
 
 // All solutions, or false and those that were found, where every hidden angle leaves doubts. Poses displaced a
 // little are no help: next to a singularity all of them may lack solutions that the pose itself has. That there are none
-// is believed if it was found before, or with ten times the rounding: of a million poses beside singularities a few have
-// a double root that lies over its bound, and nothing else.
+// is believed if it was found before, or with ten times the rounding, and no hidden angle left doubts: of a million poses
+// beside singularities a few have a double root that lies over its bound, and nothing else.
 template <auto Run, class Frames, class Plans>
 inline bool solve_resultant(const Frames& F, const Frame& T, const Plans& plans, bool none, Solutions& blurred,
                             Solutions& out) noexcept {
   constexpr double kCautious = 10.0;
+  bool doubtful = false;
   for (const auto& plan : plans) {
     if (out.count == 0) {
       bool all = Run(F, T, plan, 1.0, blurred, out);
-      if (all && out.count == 0 && !none) all = Run(F, T, plan, kCautious, blurred, out) && out.count == 0;
+      if (all && out.count == 0 && !none) all = !doubtful && Run(F, T, plan, kCautious, blurred, out) && out.count == 0;
       if (all) return true;
+      doubtful = true;
       continue;
     }
     Solutions mine;
