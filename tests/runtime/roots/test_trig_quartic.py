@@ -98,6 +98,39 @@ def test_complete(kind: str) -> None:
     assert np.nanmax(np.abs(np.hypot(c, s) - 1.0)) < 1e-14
 
 
+def of_pairs(one: Array, other: Array) -> Array:
+    """Coefficients (n, 5) of the quartics with these roots (n, 2), other (n, 2)."""
+    (m, h), (p, g) = (
+        (pair.mean(axis=1), np.cos(0.5 * (pair[:, 0] - pair[:, 1]))) for pair in (one, other)
+    )
+    a1, b1 = (-g * f(m) - h * f(p) for f in (np.cos, np.sin))
+    a0 = 0.5 * np.cos(m - p) + g * h
+    return np.stack([0.5 * np.cos(m + p), 0.5 * np.sin(m + p), a1, b1, a0], axis=1)
+
+
+@pytest.mark.parametrize("even", [False, True])
+def test_four_in_one_place_are_told_apart(even: bool, tmp_path: Path) -> None:
+    """As far as the digits of the coefficients do."""
+    rng = np.random.default_rng(5)
+    wide = 10.0 ** rng.uniform(-3.5, -1.0, (4000, 1))
+    offset = wide * rng.uniform(-1.0, 1.0, (4000, 4))
+    if even:
+        offset[:, 1], offset[:, 3] = -offset[:, 0], -offset[:, 2]
+    roots = rng.choice([0.0, np.pi, 0.7], (4000, 1)) + offset
+    k = of_pairs(roots[:, :2], roots[:, 2:])
+    apart = np.abs(roots[:, :, None] - roots[:, None]) + 9.0 * np.eye(4)
+    steep = np.prod(np.sin(0.5 * (apart - 9.0 * np.eye(4))) + np.eye(4), axis=2).min(axis=1)
+    gap = apart.min(axis=(1, 2))
+    told = (1e-14 / steep < gap) & (gap > 0.05 * wide[:, 0])
+    k, roots, gap = k[told], roots[told], gap[told]
+    assert len(k) > 1000
+    _, c, s = trig_quartic_batch(*k.T)
+    assert (nearest(roots, c, s) < 0.1 * gap[:, None]).all()
+    for i, line in enumerate(feed(compiled_header(MAIN, tmp_path), k.ravel().tolist())):
+        pairs = np.array(line[1:]).reshape(1, -1, 2)
+        assert (nearest(roots[i : i + 1], pairs[:, :, 0], pairs[:, :, 1]) < 0.1 * gap[i]).all()
+
+
 def test_degenerate() -> None:
     assert trig_quartic(0.0, 0.0, 0.0, 0.0, 0.0) == (-1, [])
     assert trig_quartic(1e-15, 0.0, 1e-16, 0.0, 0.0)[0] == -1

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "roots/crowded_roots.hpp"
+
 namespace ikgen_runtime {
 
 struct TrigRoots {
@@ -99,6 +101,21 @@ inline Lines lines(const Coefficients& f) noexcept {
   return out;
 }
 
+// A direction near which two lines have all their roots, if there is one.
+inline bool is_crowded(const Lines& l, Point& at) noexcept {
+  Point way[2];
+  for (int i = 0; i < 2; ++i) {
+    if (l.count < 2 || !(std::abs(l.d[i]) > kTogether && std::abs(l.d[i]) < 1.01)) return false;
+    const double sign = std::copysign(1.0, l.d[i]);
+    way[i] = {sign * l.x[i], sign * l.y[i]};
+  }
+  if (!(way[0].c * way[1].c + way[0].s * way[1].s > kSameWay)) return false;
+  const Point sum = {way[0].c + way[1].c, way[0].s + way[1].s};
+  const double size = std::sqrt(sum.c * sum.c + sum.s * sum.s);
+  at = {sum.c / size, sum.s / size};
+  return true;
+}
+
 // Up to five Newton steps to a zero of the function (order 0) or of its derivative (order 1).
 inline Point newton(const Coefficients& f, Point t, int order) noexcept {
   for (int i = 0; i < 5; ++i) {
@@ -164,6 +181,11 @@ inline TrigRoots trig_quartic(double a2, double b2, double a1, double b1, double
   }
   const tq::Coefficients f{a2 / size, b2 / size, a1 / size, b1 / size, a0 / size};
   const tq::Lines l = tq::lines(f);
+  tq::Point at;
+  if (tq::is_crowded(l, at)) {
+    out.count = tq::roots_around(f.a2, f.b2, f.a1, f.b1, f.a0, at.c, at.s, tol, out.c, out.s);
+    return out;
+  }
   for (int i = 0; i < l.count; ++i) {
     const double x = l.x[i], y = l.y[i];
     double d = l.d[i];

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.runtime.python.arrays.array_types import Array, Flags
+from ikgen.runtime.python.roots.crowded_roots import crowded_place, roots_around
 from ikgen.runtime.python.roots.quartic_lines import (
     ARRAYS,
     FLOATS,
@@ -44,8 +45,13 @@ def trig_quartic(
     if not size > zero:
         return -1, []
     k = (a2 / size, b2 / size, a1 / size, b1 / size, a0 / size)
+    lines = _lines(k)
+    place = crowded_place(lines)
+    if place is not None:
+        pairs = roots_around(k, *place, tol)
+        return len(pairs), pairs
     out: list[_Pair] = []
-    for x, y, d in _lines(k):
+    for x, y, d in lines:
         if not abs(d) < 1.01:
             continue
         r = math.sqrt(max((1.0 - d) * (1.0 + d), 0.0))
