@@ -25,7 +25,7 @@ inline void add_refined(const Frames& F, const Frame& T, const Turning& turning,
   double before = 0.0, farthest = 0.0;
   double after = refine_one(F, T, turning, q, before);
   const bool stalls = after >= kVerified && after < kStalled;
-  if (stalls) after = refine_along(F, T, turning, q);
+  if (after >= kExactly && after < kStalled) after = refine_along(F, T, turning, q);
   for (Index i = 0; i < 6; ++i) farthest = std::max(farthest, turning[i] ? 0.0 : std::abs(q[i]));
   if (farthest < kFarthest && after < kVerified) keep(solution_of(turning, q), out);
   if (farthest < kFarthest && stalls) roots.stalled = true;

@@ -164,6 +164,14 @@ template <int D, class Values> inline bool find_roots(const Values& values, Root
   return find_roots<D>(values, [](const Polynomial<D>&, const Brackets<D>&) {}, out);
 }
 
+// Takes a row to round-off that steps left short of it, if that can be.
+template <class Frames>
+[[gnu::cold, gnu::noinline]] inline void sharpen(const Frames& F, const Frame& T, Solution& row) noexcept {
+  Vector q;
+  std::copy_n(row.q, 6, q.data());
+  if (refine_along(F, T, kAllTurn, q) < kExactly) row = solution_of(kAllTurn, q);
+}
+
 // Adds the solutions of the roots from `first` on; whether each became one of its own.
 template <class Frames>
 inline bool add_rows(const Frames& F, const Frame& T, const Six& start, const double (&live)[kWide],
@@ -185,6 +193,7 @@ inline bool add_rows(const Frames& F, const Frame& T, const Six& start, const do
       row.c[i] = c[i][l];
       row.s[i] = s[i][l];
     }
+    if (error[l] >= kExactly && error[l] < kVerified) sharpen(F, T, row);
     all = error[l] < kVerified && keep(row, out) && all;
   }
   return all;
