@@ -62,20 +62,22 @@ def no_margin(value: Expr) -> None:
 class Tolerances:
     """Relative to natural sizes: a divisor below `singular` makes its joint free, one below `flag`, or
     `norm` where it is a sum of squares, marks the solution as one of a continuum; a square root's
-    argument may be `clamp` outside its domain, as poses on the boundary of the workspace are reachable,
-    and where rows are refined it is kept above `fold`, so that two branches start apart. Where the
-    condition `rough` holds, what a square root is taken of has lost digits: it may be `wide` outside. An
-    `error` of the geometry moves what follows from a square root by as much over that root, and what
-    follows from a divisor by as much over it: `margin` gives what the unknowns that a value follows from
-    leave of the file's digits, as a square relative to natural sizes (see `FileDigits`), and `moved` bounds
-    how far a value goes for each radian, or metre, that the unknowns before it are off. `lost` bounds by
-    how much round-off moves one; where `double` holds, an unknown solved so far is nearly a double root.
+    argument may be `clamp` outside its domain, as poses on the boundary of the workspace are reachable, or
+    `further` where it follows from unknowns; where rows are refined it is kept above `fold`, so that two
+    branches start apart. Where the condition `rough` holds, what a square root is taken of has lost digits:
+    it may be `wide` outside. An `error` of the geometry moves what follows from a square root by as much
+    over that root, and what follows from a divisor by as much over it: `margin` gives what the unknowns
+    that a value follows from leave of the file's digits, as a square relative to natural sizes (see
+    `FileDigits`), and `moved` bounds how far a value goes for each radian, or metre, that the unknowns
+    before it are off. `lost` bounds by how much round-off moves one; where `double` holds, an unknown
+    solved so far is nearly a double root.
     """
 
     singular: float = 1e-11
     flag: float = 1e-4
     norm: float = 1e-4
     clamp: float = 1e-11
+    further: float = 1e-11
     fold: float = 0.0
     rough: Expr | None = None
     wide: float = 1e-3
@@ -100,12 +102,15 @@ class Tolerances:
         fold = 0.05 * error if error > ROUNDED else 0.0
         singular = 1e-11 if error > ROUNDED else max(1e-11, 4.0 * error)
         flag, norm = (min(max(1e-4, share * error), 1e-2) for share in (5.0, 50.0))
-        clamp = max(1e-11, 25.0 * error if error > ROUNDED else min(25.0 * error / flag, 1e-6))
-        return Tolerances(singular, flag, norm, clamp, fold, error=error, lost=lost, moved=moved)
+        clamp = max(1e-11, 25.0 * error)
+        further = clamp if error > ROUNDED else max(clamp, min(25.0 * error / flag, 1e-6))
+        sizes = singular, flag, norm, clamp, further, fold
+        return Tolerances(*sizes, error=error, lost=lost, moved=moved)
 
     def least(self, value: Expr, size: float) -> float:
         """How far outside its domain `value`, of natural size `size`, may be under a square root."""
-        return max(self.clamp * size, min(_BESIDE * self.lost(value), self.wide * size))
+        clamp = self.further if self.moved(value) > 0.0 else self.clamp
+        return max(clamp * size, min(_BESIDE * self.lost(value), self.wide * size))
 
     def guard(self, g: ExpressionGraph, value: Expr, size: float) -> Expr:
         """Condition that a square root of `value`, of natural size `size`, may be taken."""
