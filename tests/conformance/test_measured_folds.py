@@ -1,0 +1,53 @@
+"""Folds of an arm as measured, its axes off by a milliradian: two solutions far from the closed form's."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.support.both_languages import header_of
+from tests.support.solving import NO_COMPILER, import_text
+
+from ikgen.emit.python.python_emitter import emit_module
+from ikgen.generation.derive import derive
+from ikgen.generation.request import Request
+
+pytestmark = pytest.mark.usefixtures("solved_once")
+
+JOINTS = (
+    ("0 0 0.05085", "-6.841e-4 5.74e-5 -2.149e-4", "0 0 1"),
+    ("0 0 0.04225", "-1.062e-4 -6.882e-4 -6.549e-4", "0 1 0"),
+    ("0.035 0 0.1", "-4.428e-4 2.039e-4 7.163e-4", "0 1 0"),
+    ("0.1 0 0", "-7.255e-4 5.735e-4 -3.366e-4", "0 1 0"),
+    ("0.113575 0 0", "0 0 0", ""),
+)
+
+NEXT_TO_ONE = np.array([0.49256, -0.6860448, -0.2458157, 0.93135])
+
+
+@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
+def test_pairs_near_vertical_tools_are_found(tmp_path: Path) -> None:
+    text = '<link name="l0"/>'
+    for k, (xyz, rpy, axis) in enumerate(JOINTS):
+        moves = f'<axis xyz="{axis}"/><limit lower="-3" upper="3" effort="1" velocity="1"/>'
+        text += (
+            f'<joint name="j{k}" type="{"revolute" if axis else "fixed"}"><parent link="l{k}"/>'
+            f'<child link="l{k + 1}"/><origin xyz="{xyz}" rpy="{rpy}"/>{moves if axis else ""}</joint>'
+            f'<link name="l{k + 1}"/>'
+        )
+    path = tmp_path / "measured.urdf"
+    path.write_text(f'<robot name="measured">{text}</robot>')
+    request = Request(path, name="measured", task="position-pitch", tool_axis="z")
+    module = derive(request).module
+    arm = import_text(emit_module(module), tmp_path)
+    header = header_of(module, tmp_path)
+    random = np.random.default_rng(3)
+    q = random.uniform(-1.5, 1.5, (4000, 4))
+    q[:, 3] = random.normal(size=4000) * 3e-3 - q[:, 1] - q[:, 2]  # the tool's z is nearly upright
+    q[::2] = NEXT_TO_ONE + random.normal(size=(2000, 4)) * 10.0 ** random.uniform(-7, -4, (2000, 1))
+    poses = arm.forward(q)
+    rows, (batch, _, _) = header.solve_many(poses), arm.solve_batch(poses)
+    for found in (rows.q, batch):
+        gap = np.abs(found - q[:, None]).max(axis=2)
+        assert np.nanmin(np.where(np.isnan(gap), np.inf, gap), axis=1).max() < 1e-5
