@@ -38,7 +38,7 @@ def joint_limits(
         return UNLIMITED, ("no lower and upper limit: taken as unlimited",)
     low, high = lower or 0.0, upper or 0.0
     if low == high == 0.0:
-        return UNLIMITED, ("lower = upper = 0: taken as unlimited",)
+        return UNLIMITED, ("lower = upper = 0: taken as unlimited; --lock it if it cannot move",)
     notes = []
     if lower is None or upper is None:
         missing = "lower" if lower is None else "upper"
