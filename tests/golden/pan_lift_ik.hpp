@@ -1125,7 +1125,7 @@ template <class Arm> struct FoldPair {
     std::copy_n(from.still, kMoving, still);
     for (int i = 0; i < kSteps; ++i) {
       const Way way = step(i == 0 ? from.taken : reduced(q, false), side, q);
-      if (way.least > kApart + kCubic * way.length * way.length * way.length + way.across * way.across) return Led::Between;
+      if (way.least > kApart + way.length * (kCubic * way.length * way.length + kMixed * way.across)) return Led::Between;
       if (known(q, kShare * std::min(way.apart, kTogether))) return Led::Known;
       if (way.length <= std::max(kClose, kSure * way.apart)) break;
     }
@@ -1175,7 +1175,7 @@ template <class Arm> struct FoldPair {
   static constexpr double kAlong = 1e-4, kClose = 1e-9, kFar = 0.3;
   static constexpr double kSure = 1e-3;  // of the way from one solution to the other: nearer Newton's method goes there
   static constexpr double kShare = 0.1, kTogether = 1e-2;  // of that way (rad or m): nearer they are one solution
-  static constexpr double kApart = 1e-8, kCubic = 20.0;  // least error of none; with what the second order leaves out, and
+  static constexpr double kApart = 1e-8, kCubic = 20.0, kMixed = 3.0;  // least error of none; with what the second order
   static constexpr int kSteps = 8;
 
   struct Way {
