@@ -60,7 +60,7 @@ def soak_module(made: Emitted, poses: int, near: int, *, seed: int = 1) -> Soak:
 
 
 def _arm_of(made: Emitted, runner: PythonModule) -> ArmUnderTest:
-    """The arm that the file says, held joints as in the module."""
+    """The arm that the file says, held and locked joints as in the module."""
     constants, source = runner.constants, made.source
     assert made.module is not None
     file = source.file or made.module.parent / f"{source.row['name']}.urdf"
@@ -69,7 +69,8 @@ def _arm_of(made: Emitted, runner: PythonModule) -> ArmUnderTest:
     ends = (
         {} if file.suffix == ".toml" else {"base": constants.base_link, "tip": constants.tip_link}
     )
-    oracle = oracle_for(read(Request(Path(file), name="arm", **ends)))
+    locked = dict(made.answer.get("locked") or {})
+    oracle = oracle_for(read(Request(Path(file), name="arm", lock=locked, **ends)))
     limits = constants.lower, constants.upper
     space = task_space(find_task(constants.task))
     return arm_under_test(oracle, space, limits, constants.free_joints)
