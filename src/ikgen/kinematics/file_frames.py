@@ -18,6 +18,7 @@ __all__ = [
 ]  # fmt: skip
 
 _SAMPLES = 64
+_FAR = 10.0  # over the arm's length
 _RAIL = 30.0  # m
 _SEED = 20180513
 _SAME = 1e-14
@@ -34,9 +35,10 @@ def file_frames(
     """The n + 1 constants F_i (4, 4) of `T = F_0 M_1(v_1) F_1 ... M_n(v_n) F_n`, as in the file.
 
     With every axis at 0, B_i is the frame on the file's axis i nearest to DH frame i (`offsets`
-    (n,) are the DH variables there, `signs` the directions). `T = prod(B_i M_i(v_i - offset_i)
-    B_i^-1) T(0)`, the product of exponentials (Lynch and Park, Modern Robotics, section 4.1), is
-    then regrouped.
+    (n,) are the DH variables there, `signs` the directions), or where that is far along an axis that turns,
+    as nearly parallel axes have their common normal far away, at the file's own origin. `T = prod(B_i
+    M_i(v_i - offset_i) B_i^-1) T(0)`, the product of exponentials (Lynch and Park, Modern Robotics, section
+    4.1), is then regrouped.
     """
     axes, T = [], np.eye(4)
     for axis, sign in zip(chain.axes, signs, strict=True):
@@ -81,20 +83,25 @@ def _frames(
     nominal = [X_base, *(row_constant(row) for row in rows[1:]), X_tip]
     F: list[Matrix] = []
     pending, T_dh = np.eye(4), X_base
+    places = np.array([*(frame[:3, 3] for frame, _ in axes), T_home[:3, 3]])
+    far = _FAR * float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum())
     for i, ((T_axis, axis), row) in enumerate(zip(axes, rows, strict=True)):
         if i:
             T_dh = product(T_dh, row_constant(row))
         home = z_motion(row.revolute, offsets[i])
         T_dh = product(T_dh, home)
-        B = _nearest_frame(T_dh, T_axis, axis, row.revolute)
+        B = _nearest_frame(T_dh, T_axis, axis, row.revolute, far)
         F.append(product(pending, B, inverse(home)))
         pending = inverse(B)
     F.append(product(pending, T_home))
     return tuple(read_only(_clean(f, exact)) for f, exact in zip(F, nominal, strict=True))
 
 
-def _nearest_frame(T_dh: Matrix, T_axis: Matrix, axis: Matrix, revolute: bool) -> Matrix:
-    """The frame with z exactly along the file's axis, otherwise as near to `T_dh` as it can be."""
+def _nearest_frame(
+    T_dh: Matrix, T_axis: Matrix, axis: Matrix, revolute: bool, far: float
+) -> Matrix:
+    """The frame with z exactly along the file's axis, otherwise as near to `T_dh` as it can be, unless that
+    is farther than `far` (m) along the axis."""
     z = product(T_axis[:3, :3], axis)
     z = z / length(z)
     x = T_dh[:3, 0] - z * dot(z, T_dh[:3, 0])
@@ -103,7 +110,8 @@ def _nearest_frame(T_dh: Matrix, T_axis: Matrix, axis: Matrix, revolute: bool) -
     B[:3, 0], B[:3, 1], B[:3, 2] = x, np.cross(z, x), z
     origin = T_dh[:3, 3]
     if revolute:
-        origin = T_axis[:3, 3] + z * dot(z, origin - T_axis[:3, 3])
+        along = dot(z, origin - T_axis[:3, 3])
+        origin = T_axis[:3, 3] + z * (along if abs(along) <= far else 0.0)
     B[:3, 3] = origin
     return B
 
