@@ -37,10 +37,10 @@ def roots_around(k: Coefficients[float], c: float, s: float, tol: float) -> list
     a1, b1 = a1 * c + b1 * s, b1 * c - a1 * s
     p = (a2 - a1 + a0, 2.0 * b1 - 4.0 * b2, 2.0 * a0 - 6.0 * a2, 2.0 * b1 + 4.0 * b2, a2 + a1 + a0)
     slope = _derivative(p)
-    turns = _zeros(slope)
+    bends, turns = _derivative(slope), _zeros(slope)
     found = _between(p, turns)
     for x in turns:
-        value, bend = _value(p, x), _value(_derivative(slope), x)
+        value, bend = _value(p, x), _value(bends, x)
         if value * bend >= 0.0 and 2.0 * abs(value) <= 0.25 * tol * tol * abs(bend) + _ROUND_OFF:
             found.append(x)
     pairs = (((1.0 - x * x) / (1.0 + x * x), 2.0 * x / (1.0 + x * x)) for x in sorted(found)[:4])
