@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.support.both_languages import header_of
+from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import NO_COMPILER, import_text
 
 from ikgen.emit.python.python_emitter import emit_module
@@ -15,29 +16,22 @@ from ikgen.generation.request import Request
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
-JOINTS = (
-    ("0 0 0.05085", "-6.841e-4 5.74e-5 -2.149e-4", "0 0 1"),
-    ("0 0 0.04225", "-1.062e-4 -6.882e-4 -6.549e-4", "0 1 0"),
-    ("0.035 0 0.1", "-4.428e-4 2.039e-4 7.163e-4", "0 1 0"),
-    ("0.1 0 0", "-7.255e-4 5.735e-4 -3.366e-4", "0 1 0"),
-    ("0.113575 0 0", "0 0 0", ""),
+ORIGINS = (
+    ("0 0 0.05085", "-6.841e-4 5.74e-5 -2.149e-4"),
+    ("0 0 0.04225", "-1.062e-4 -6.882e-4 -6.549e-4"),
+    ("0.035 0 0.1", "-4.428e-4 2.039e-4 7.163e-4"),
+    ("0.1 0 0", "-7.255e-4 5.735e-4 -3.366e-4"),
 )
+AXES = ("0 0 1", "0 1 0", "0 1 0", "0 1 0")
+TIP = ("0.113575 0 0", "0 0 0")
 
 NEXT_TO_ONE = np.array([0.49256, -0.6860448, -0.2458157, 0.93135])
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
 def test_pairs_near_vertical_tools_are_found(tmp_path: Path) -> None:
-    text = '<link name="l0"/>'
-    for k, (xyz, rpy, axis) in enumerate(JOINTS):
-        moves = f'<axis xyz="{axis}"/><limit lower="-3" upper="3" effort="1" velocity="1"/>'
-        text += (
-            f'<joint name="j{k}" type="{"revolute" if axis else "fixed"}"><parent link="l{k}"/>'
-            f'<child link="l{k + 1}"/><origin xyz="{xyz}" rpy="{rpy}"/>{moves if axis else ""}</joint>'
-            f'<link name="l{k + 1}"/>'
-        )
-    path = tmp_path / "measured.urdf"
-    path.write_text(f'<robot name="measured">{text}</robot>')
+    place = tmp_path / "measured.urdf"
+    path = serial_urdf(place, ORIGINS, axes=AXES, tip=TIP, limit=3.0)
     request = Request(path, name="measured", task="position-pitch", tool_axis="z")
     module = derive(request).module
     arm = import_text(emit_module(module), tmp_path)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.support.both_languages import header_of
+from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import NO_COMPILER, import_text
 
 from ikgen.emit.python.python_emitter import emit_module
@@ -31,24 +32,11 @@ JOINTS = (
 """Origins, and axes and limits of the four that move: right angles that are rounded to five digits."""
 
 
-def urdf() -> str:
-    text = '<link name="l0"/>'
-    for k, (xyz, rpy, axis, most) in enumerate(JOINTS):
-        moves = (
-            f'<axis xyz="{axis}"/><limit lower="-{most}" upper="{most}" effort="1" velocity="1"/>'
-        )
-        text += (
-            f'<joint name="j{k}" type="{"revolute" if axis else "fixed"}"><parent link="l{k}"/>'
-            f'<child link="l{k + 1}"/><origin xyz="{xyz}" rpy="{rpy}"/>{moves if axis else ""}</joint>'
-            f'<link name="l{k + 1}"/>'
-        )
-    return f'<robot name="turret">{text}</robot>'
-
-
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
 def test_all_are_found_where_two_folds_meet(tmp_path: Path) -> None:
-    path = tmp_path / "turret.urdf"
-    path.write_text(urdf())
+    origins, axes, most = zip(*((joint[:2], *joint[2:]) for joint in JOINTS), strict=True)
+    limits = [(-x, x) for x in most]
+    path = serial_urdf(tmp_path / "turret.urdf", origins, axes=axes, limit=limits)
     module = derive(Request(path, name="turret")).module
     arm = import_text(emit_module(module), tmp_path)
     header = header_of(module, tmp_path)

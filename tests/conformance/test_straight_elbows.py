@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.support.both_languages import header_of
+from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import NO_COMPILER, import_text
 
 from ikgen.emit.python.python_emitter import emit_module
@@ -16,27 +17,21 @@ from ikgen.generation.request import Request
 pytestmark = pytest.mark.usefixtures("solved_once")
 
 HALF, RIGHT = "3.14159265359", "1.570796326795"
-JOINTS = (
-    ("0 0 0.05", "0 0 0", "0 0 1"),
-    ("0.03 0 0.04", f"{HALF} -{RIGHT} 0", "0 0 1"),
-    ("0.3 0 -0.05", f"{HALF} 0 0", "0 0 1"),
-    ("0.25 0 -0.04", f"{HALF} 0 -{RIGHT}", "0 0 1"),
-    ("0.05 0 0.03", f"{RIGHT} 0 -{RIGHT}", "0 0 -1"),
-    ("0.08 0 -0.02", f"{RIGHT} 0 {RIGHT}", "0 0 1"),
+ORIGINS = (
+    ("0 0 0.05", "0 0 0"),
+    ("0.03 0 0.04", f"{HALF} -{RIGHT} 0"),
+    ("0.3 0 -0.05", f"{HALF} 0 0"),
+    ("0.25 0 -0.04", f"{HALF} 0 -{RIGHT}"),
+    ("0.05 0 0.03", f"{RIGHT} 0 -{RIGHT}"),
+    ("0.08 0 -0.02", f"{RIGHT} 0 {RIGHT}"),
 )
-"""Origins and axes: right angles that are rounded to 1e-13 rad."""
+"""Right angles that are rounded to 1e-13 rad."""
+AXES = ("0 0 1", "0 0 1", "0 0 1", "0 0 1", "0 0 -1", "0 0 1")
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
 def test_a_straight_elbow_is_reached_next_to_a_straight_wrist(tmp_path: Path) -> None:
-    text = '<link name="l0"/>'
-    for k, (xyz, rpy, axis) in enumerate(JOINTS):
-        text += (
-            f'<joint name="j{k}" type="continuous"><parent link="l{k}"/><child link="l{k + 1}"/>'
-            f'<origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="{axis}"/></joint><link name="l{k + 1}"/>'
-        )
-    path = tmp_path / "straight.urdf"
-    path.write_text(f'<robot name="straight">{text}</robot>')
+    path = serial_urdf(tmp_path / "straight.urdf", ORIGINS, axes=AXES)
     module = derive(Request(path, base="l0", tip="l6", name="straight")).module
     arm = import_text(emit_module(module), tmp_path)
     header = header_of(module, tmp_path)

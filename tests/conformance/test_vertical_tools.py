@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.support.both_languages import header_of
+from tests.support.serial_urdf import serial_urdf
 from tests.support.solving import NO_COMPILER, import_text
 
 from ikgen.emit.python.python_emitter import emit_module
@@ -16,27 +17,19 @@ from ikgen.generation.request import Request
 pytestmark = pytest.mark.usefixtures("solved_once")
 
 HALF, RIGHT = "3.14159265359", "1.57079632679"
-JOINTS = (
-    ("continuous", "0 0 0.15", f"0 {HALF} 0"),
-    ("continuous", "0 0.0016 -0.12", f"-{RIGHT} 0 {HALF}"),
-    ("continuous", "0 -0.29 0", f"0 {HALF} 0"),
-    ("continuous", "0 0.12 -0.0086", f"-{RIGHT} 0 {HALF}"),
-    ("fixed", "0 0 -0.16", f"{HALF} 0 {RIGHT}"),
+ORIGINS = (
+    ("0 0 0.15", f"0 {HALF} 0"),
+    ("0 0.0016 -0.12", f"-{RIGHT} 0 {HALF}"),
+    ("0 -0.29 0", f"0 {HALF} 0"),
+    ("0 0.12 -0.0086", f"-{RIGHT} 0 {HALF}"),
 )
-"""Kinds and origins of joints about z: right angles that are rounded to 1e-13 rad."""
+TIP = ("0 0 -0.16", f"{HALF} 0 {RIGHT}")
+"""Right angles that are rounded to 1e-13 rad."""
 
 
 @pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
 def test_rows_keep_the_elevation(tmp_path: Path) -> None:
-    text = '<link name="l0"/>'
-    for k, (kind, xyz, rpy) in enumerate(JOINTS):
-        axis = '<axis xyz="0 0 1"/>' if kind != "fixed" else ""
-        text += (
-            f'<joint name="j{k}" type="{kind}"><parent link="l{k}"/><child link="l{k + 1}"/>'
-            f'<origin xyz="{xyz}" rpy="{rpy}"/>{axis}</joint><link name="l{k + 1}"/>'
-        )
-    path = tmp_path / "upright.urdf"
-    path.write_text(f'<robot name="upright">{text}</robot>')
+    path = serial_urdf(tmp_path / "upright.urdf", ORIGINS, tip=TIP)
     request = Request(path, name="upright", task="position-pitch", tool_axis="y")
     module = derive(request).module
     arm = import_text(emit_module(module), tmp_path)
