@@ -6,17 +6,14 @@
 Draws arms of the collection (or of the fixtures without it), of all classes alike, and changes the
 numbers of their joints' origins: turns rounded to 2 to 5 digits, all origins moved by up to 1e-6 to
 1e-3 m, and turned by as many rad, one alone, or axes turned round. Each is emitted and put through
-`soak`, without the verification that would refuse it. A line for each arm; 1 at the end where a row is
-wrong, or anything is missed or unanswered at smallest singular values from 1e-5 on. `--keep` leaves the
-files of those in a folder.
+`soak`, without the verification that would refuse it. A line for each arm, and the counts of those that
+failed, as `benchmarks.table_soak` prints them.
 """
 
 from __future__ import annotations
 
 import argparse
-import shutil
 import sys
-import tempfile
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -25,13 +22,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.command_line import Source, emit, sources
-from benchmarks.cpp_speed import FLAGS
-from benchmarks.soak import soak
-from benchmarks.soak_counts import Soak, table
-
-ABOVE = 1e-5
-"""Smallest singular value from which on nothing may be missed."""
+from benchmarks.command_line import Source, sources
+from benchmarks.drawn_soaks import add_options, soak_drawn
 
 Vector = NDArray[np.float64]
 
@@ -118,19 +110,15 @@ def drawn(seed: int, number: int, family: str = "") -> tuple[Source, str, np.ran
     return arm, str(random.choice(list(CHANGES))), random
 
 
-def try_one(
-    arm: Source, name: str, random: np.random.Generator, folder: Path, poses: int, near: int
-) -> Soak | str:
-    """What the soak of a changed arm found, or why there is none."""
+def changed_arm(number: int, folder: Path, seed: int, family: str) -> tuple[Source, str]:
+    """An arm with a file in the folder whose numbers are changed, and the change's name."""
+    arm, name, random = drawn(seed, number, family)
     assert arm.file is not None
     tip = arm.links[arm.links.index("--tip") + 1] if "--tip" in arm.links else _last(arm.file)
     path = folder / f"{arm.file.stem}.urdf"
     text = arm.file.read_text(encoding="utf-8")
     path.write_text(perturbed(text, tip, CHANGES[name], random), encoding="utf-8")
-    made = emit(replace(arm, file=path), folder, "python,cpp")
-    if made.header is None:
-        return f"exit code {made.code}: {made.answer.get('error', '')}"
-    return soak(made, poses, near, flags=FLAGS["native"])
+    return replace(arm, file=path), name
 
 
 def _last(path: Path) -> str:
@@ -144,27 +132,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Print a line an arm, and the table of those that failed."""
     layout = argparse.RawTextHelpFormatter
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=layout)
-    parser.add_argument("--count", type=int, default=100)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--poses", type=int, default=20_000)
-    parser.add_argument("--near", type=int, default=20_000, help="poses beside singularities")
     parser.add_argument("--family", default="", help="classes with this in their name alone")
-    parser.add_argument("--keep", type=Path, help="folder for the files of arms that failed")
+    add_options(parser, count=100, poses=20_000, near=20_000)
     options = parser.parse_args(arguments)
-    failed = 0
-    for number in range(options.count):
-        arm, name, random = drawn(options.seed, number, options.family)
-        with tempfile.TemporaryDirectory(prefix="ikgen-perturbed-") as folder:
-            found = try_one(arm, name, random, Path(folder), options.poses, options.near)
-            wrong = found.failures(ABOVE) if isinstance(found, Soak) else 0
-            said = f"{wrong} failures of {found.rows} rows" if isinstance(found, Soak) else found
-            print(f"{number:4} {arm.key:40} {name:22} {said}", flush=True)
-            if isinstance(found, Soak) and wrong:
-                print("\n".join(table(found)), flush=True)
-                failed += 1
-                if options.keep:
-                    shutil.copytree(folder, options.keep / f"{options.seed}-{number}")
-    return int(failed > 0)
+    return soak_drawn(
+        options, lambda number, folder: changed_arm(number, folder, options.seed, options.family)
+    )
 
 
 if __name__ == "__main__":

@@ -66,9 +66,9 @@ def drawn_class(name: str) -> Drawn:
     raise ValueError(f"a class of tables is 3-6 or 5R1P, say, and not {name!r}")
 
 
-def tables(name: str, seed: int, first: int, count: int) -> Iterator[tuple[int, DHChain]]:
+def tables(drawn: Drawn, seed: int, first: int, count: int) -> Iterator[tuple[int, DHChain]]:
     """So many of a class behind the first ones, with their numbers."""
-    rng, drawn = np.random.default_rng(seed), drawn_class(name)
+    rng = np.random.default_rng(seed)
     for number in range(first + count):
         dh = random_table(rng, drawn)
         if number >= first:
@@ -105,7 +105,7 @@ def run(options: argparse.Namespace, log: Log, folder: Path) -> dict[str, list[O
         search = share.search if options.search is None else options.search
         extent = Extent(not options.derive_only, options.emit, options.poses, search)
         found[name] = []
-        for number, dh in tables(name, options.seed, options.first, count):
+        for number, dh in tables(drawn_class(name), options.seed, options.first, count):
             key = (name, options.seed, number)
             done = log.found.get(key)
             if done is None and options.done:

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import numpy as np
-import pytest
-from benchmarks.perturbed_arms import CHANGES, Change, drawn, perturbed
-from benchmarks.soak_counts import DECADES, Soak
+from benchmarks.perturbed_arms import CHANGES, Change, changed_arm, drawn, perturbed
 from tests.support.solving import FIXTURES
-
-from benchmarks import perturbed_arms
 
 TEXT = (FIXTURES / "ur5e.urdf").read_text()
 
@@ -51,13 +48,7 @@ def test_the_same_seed_draws_the_same() -> None:
     assert len({drawn(3, n)[1] for n in range(30)}) > 5
 
 
-@pytest.mark.parametrize(("missed", "code"), [(0, 0), (1, 1)])
-def test_a_missed_row_is_told(
-    missed: int, code: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    decades = [(0,) * 6] * DECADES
-    decades[2] = (10, missed, 0, 0, 0, 0)
-    found = Soak(20, 0, tuple(decades), ())
-    monkeypatch.setattr(perturbed_arms, "try_one", lambda *a: found)
-    assert perturbed_arms.main(["--count", "2"]) == code
-    assert f"{missed} failures of 20 rows" in capsys.readouterr().out
+def test_a_changed_arm_is_a_file_of_its_own(tmp_path: Path) -> None:
+    arm, name = changed_arm(4, tmp_path, 3, "")
+    assert (name, arm.links) == (drawn(3, 4)[1], drawn(3, 4)[0].links)
+    assert arm.file is not None and arm.file.parent == tmp_path and arm.file.is_file()

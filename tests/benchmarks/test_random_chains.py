@@ -26,8 +26,10 @@ def test_a_class_is_told_by_its_name() -> None:
 
 
 def test_later_tables_are_those_of_one_drawing() -> None:
-    every = [(number, pattern(dh)) for number, dh in tables("3-6", 0, 0, 6)]
-    assert [(number, pattern(dh)) for number, dh in tables("3-6", 0, 4, 2)] == every[4:]
+    every = [(number, pattern(dh)) for number, dh in tables(drawn_class("3-6"), 0, 0, 6)]
+    assert [(number, pattern(dh)) for number, dh in tables(drawn_class("3-6"), 0, 4, 2)] == every[
+        4:
+    ]
 
 
 def test_a_log_has_the_last_outcome_of_each_table(tmp_path: Path) -> None:
