@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import re
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
+from benchmarks.command_line import load_module
 from tests.support.redundant_arms import SHOULDER_ELBOW_WRIST, serial_urdf
 from tests.support.small_robots import write_robot
 from tests.support.solving import FIXTURES
@@ -17,7 +20,7 @@ from ikgen.generation.inspection import inspect_robot
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
 from ikgen.tasks import find_task
-from ikgen.tasks.fitting import freedoms_barely_moved
+from ikgen.tasks.fitting import freedoms_barely_moved, freedoms_fixed
 
 
 def test_pose_that_nobody_asked_for_is_refused_where_a_held_joint_is_needed(
@@ -88,6 +91,20 @@ def test_a_task_that_rounding_alone_moves_is_refused_at_once(
     assert hindrance is not None and "the joints move 1 of the 3" in hindrance.message
     for able in ("position-yaw", "position-direction", "pose"):
         assert run([*command, able, "--no-verify", "--force"]) == 0
+
+
+def test_half_turns_of_two_digits_leave_the_tool_its_heading(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    robot = rounded_scara(tmp_path / "scara.urdf", "3.14")
+    assert freedoms_fixed(read(Request(robot)).dh, find_task("position-yaw")) == 4
+    assert run(["from-urdf", str(robot), "-o", str(tmp_path), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["task"] == "position-yaw"
+    (path,) = tmp_path.glob("*_ik.py")
+    module = load_module(path)
+    q = np.array([0.4, -0.7, 0.1, 0.3])
+    found = module.solve(module.forward(q), limits=False).q
+    assert len(found) == 2 and np.abs(found - q).max(axis=1).min() < 1e-9
 
 
 def test_exact_axes_leave_nothing_barely_moved(tmp_path: Path) -> None:

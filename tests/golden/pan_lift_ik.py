@@ -451,7 +451,7 @@ def _entry_lane_errors(
     if flat:
         heading = np.array(column) != 3
         short = 1.0 - (at[heading] ** 2).sum(axis=0)
-        at[heading] *= 1.0 + short * (0.5 + 0.375 * short)
+        at[heading] *= 1.0 + short * (0.5 + short * (0.375 + 0.3125 * short))
     return np.asarray((T[row, column] - at) * weight[:, None])
 
 
@@ -3352,7 +3352,7 @@ _ARM = _Arm(
         exact=1e-12,
         pose_tolerance=1e-06,
         orthonormal=1e-14,
-        level=1e-05,
+        level=0.0001,
         coincident=1e-06,
         alike=0.01,
         halfway=2e-14,

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 __all__ = ["LEVEL", "REFINEMENT", "RefineStage", "SolvePolicy"]
 
 
-LEVEL = 1e-5
+LEVEL = 1e-4
 """Most by which a heading's squared length falls short of 1, or changes, of a tool that stays as it is: by
-the tilt of half a turn that is written as 3.14, and of measured axes. Poses are read to as much."""
+tilts of some half turns that are written as 3.14, and of measured axes. Poses are read to as much."""
 
 
 @dataclass(frozen=True, slots=True)

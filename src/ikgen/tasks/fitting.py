@@ -30,6 +30,9 @@ __all__ = [
     "scaled_motion",
 ]
 
+_LEVEL = 0.5 * LEVEL
+"""What a heading's squared length may be short of 1 at some configurations, as it is more at others."""
+
 _INDEPENDENT = 1e-5
 """Least singular value, relative to the largest, of freedoms that are moved independently."""
 
@@ -89,18 +92,19 @@ def over_constrained(dh: DHChain, task: Task) -> int:
 def freedoms_fixed(dh: DHChain, task: Task) -> int:
     """How many freedoms the task fixes: with a heading whose length the joints change its tilt as well."""
     return task.freedoms + int(
-        task.orientation == "yaw" and np.ptp(_shortened(dh, task.axis)) > LEVEL
+        task.orientation == "yaw" and np.ptp(_shortened(dh, task.axis)) > _LEVEL
     )
 
 
 def keeps_heading_level(dh: DHChain, axis: str) -> bool:
     """Whether the tool's axis stays horizontal, so that its heading is a unit vector."""
-    return bool(_shortened(dh, axis).max() < LEVEL)
+    return bool(_shortened(dh, axis).max() < _LEVEL)
 
 
 def _shortened(dh: DHChain, axis: str) -> Matrix:
-    """By how much the square of the heading's length falls short of 1, at a few configurations (8,)."""
-    return np.asarray(file_forward(dh, _configurations(dh))[:, 2, AXES.index(axis)] ** 2)
+    """By how much the square of the heading's length falls short of 1, at some configurations (64,)."""
+    q = np.random.default_rng(0).uniform(-np.pi, np.pi, (64, dh.dof))
+    return np.asarray(file_forward(dh, q)[:, 2, AXES.index(axis)] ** 2)
 
 
 def freedoms_moved(dh: DHChain, task: Task) -> int:

@@ -23,7 +23,7 @@ template <int First, int Count, int Height> struct UnitColumns {
     if constexpr (kFlat) {
       const X x = rotation[0][First], y = rotation[1][First];
       const X less = 1.0 - (x * x + y * y);
-      return 1.0 + less * (0.5 + 0.375 * less);
+      return 1.0 + less * (0.5 + less * (0.375 + 0.3125 * less));
     } else {
       return X{};
     }

@@ -37,7 +37,7 @@ def entry_lane_errors(
     if flat:
         heading = np.array(column) != 3
         short = 1.0 - (at[heading] ** 2).sum(axis=0)
-        at[heading] *= 1.0 + short * (0.5 + 0.375 * short)
+        at[heading] *= 1.0 + short * (0.5 + short * (0.375 + 0.3125 * short))
     return np.asarray((T[row, column] - at) * weight[:, None])
 
 
