@@ -8,13 +8,13 @@
 // This file is yours: generated code carries no licence of ikgen's.
 //
 // C++17, Eigen only. All functions are noexcept, thread-safe and free of heap allocation. Angles in rad,
-// lengths in m. The sines and cosines have the same bits as the Python module's with -ffp-contract=off, and
-// are within 1e-15 without it.
+// lengths in m. Rows give the pose to 1e-9; their last digits differ by compiler and processor.
 
 #pragma once
 
-#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
-#error "pan_lift_ik.hpp needs IEEE arithmetic: compile it without -ffast-math and -ffinite-math-only"
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || \
+    defined(__ASSOCIATIVE_MATH__) || defined(_M_FP_FAST)
+#error "pan_lift_ik.hpp needs IEEE arithmetic: compile it without -ffast-math, or what is a part of it"
 #endif
 
 #include <algorithm>
@@ -2665,6 +2665,36 @@ template <class Arm> struct LaneSolve {
   }
 };
 
+// --- given options -------------------------------------------------------------------------------
+template <class Arm> struct GivenSeed {
+  typename Arm::Joints values;
+  bool there;  // and all numbers
+
+  explicit GivenSeed(const typename Arm::Joints* seed) noexcept : there(seed != nullptr) {
+    for (int j = 0; j < Arm::kDof && there; ++j) {
+      const double value = seed->data()[j];
+      const bool remote = Arm::kRevolute[j] && !Arm::kHeld[j] && std::abs(value) > kFarthestSeed;
+      values.data()[j] = remote ? std::fmod(value, kTurn) : value;
+      there = std::abs(value) < kInfinity;
+    }
+  }
+  GivenSeed(const GivenSeed&) = delete;
+  GivenSeed& operator=(const GivenSeed&) = delete;
+
+  const typename Arm::Joints* seed() const noexcept { return there ? &values : nullptr; }
+};
+
+template <class Arm> struct GivenOptions {
+  using Options = typename Arm::Options;
+  GivenSeed<Arm> given;
+  Options options;
+  bool valid = true;  // the free values are numbers
+
+  explicit GivenOptions(const Options& from) noexcept : given(from.seed), options(from) {
+    options.seed = given.seed();
+  }
+};
+
 // --- unit columns --------------------------------------------------------------------------------
 template <int First, int Count, int Height> struct UnitColumns {
   static constexpr bool kFlat = Count > 0 && Height == 2;
@@ -2774,44 +2804,28 @@ template <class Arm, template <class> class Way> struct PoseSolver {
   using Options = typename Arm::Options;
   using Solutions = typename Arm::Solutions;
 
-  static void solve(const Eigen::Isometry3d* poses, std::ptrdiff_t count, const Options& given,
+  static void solve(const Eigen::Isometry3d* poses, std::ptrdiff_t count, const GivenOptions<Arm>& given,
                     Solutions* out) noexcept {
     constexpr int P = Way<Arm>::kBatch;
-    const Checked checked(given);
-    const Options& options = checked.options;
+    const Options& options = given.options;
+    if (!given.valid) return refuse(count, out);
     if constexpr (P > 1)
       for (; count >= P; count -= P, poses += P, out += P) some<P>(poses, options, out);
     for (; count > 0; --count, ++poses, ++out) some<1>(poses, options, out);
   }
 
-  static void solve(const Eigen::Isometry3d& pose, const Options& given, Solutions& out) noexcept {
-    some<1>(&pose, Checked(given).options, &out);
+  static void solve(const Eigen::Isometry3d& pose, const GivenOptions<Arm>& given, Solutions& out) noexcept {
+    if (!given.valid) return refuse(1, &out);
+    some<1>(&pose, given.options, &out);
   }
 
  private:
-  struct Checked {
-    Options options;
-    std::remove_const_t<std::remove_pointer_t<decltype(Options::seed)>> kept;
-
-    explicit Checked(const Options& given) noexcept : options(given) {
-      bool remote = false;
-      for (int j = 0; j < Arm::kDof && options.seed; ++j) {
-        const double value = std::abs(options.seed->data()[j]);
-        remote = remote || value > kFarthestSeed;
-        if (!(value < kInfinity)) options.seed = nullptr;
-      }
-      if (remote && options.seed) without_turns();
+  [[gnu::cold, gnu::noinline]] static void refuse(std::ptrdiff_t count, Solutions* out) noexcept {
+    for (; count > 0; --count, ++out) {
+      out->count = 0;
+      out->status = Arm::Status::Invalid;
     }
-    Checked(const Checked&) = delete;
-    Checked& operator=(const Checked&) = delete;
-
-    void without_turns() noexcept {
-      kept = *options.seed;
-      for (int j = 0; j < Arm::kDof; ++j)
-        if (Arm::kRevolute[j] && !Arm::kHeld[j] && std::abs(kept[j]) > kFarthestSeed) kept[j] = std::fmod(kept[j], kTurn);
-      options.seed = &kept;
-    }
-  };
+  }
 
   template <int P>
   [[gnu::always_inline]] static void some(const Eigen::Isometry3d* poses, const Options& options,
@@ -2842,18 +2856,17 @@ template <class Arm, template <class> class Way> struct Projection {
   using Solutions = typename Arm::Solutions;
   using Chords = PoseChords<Arm>;
 
-  [[gnu::cold, gnu::noinline]] static void apply(const Eigen::Isometry3d& pose, const Options& given,
+  [[gnu::cold, gnu::noinline]] static void apply(const Eigen::Isometry3d& pose, const GivenOptions<Arm>& given,
                                                  Solutions& out) noexcept {
     Eigen::Isometry3d target = pose;
-    if (!PoseReading<Arm>::clean(target)) return;
+    if (!given.valid || !PoseReading<Arm>::clean(target)) return;
     const double* t = target.matrix().data();
-    if (out.count == 0) solve_nearest(t, given, out);
+    if (out.count == 0) solve_nearest(t, given.options, out);
     for (int k = 0; k < out.count; ++k) Chords::off_by(out.q.data()[k].data(), t, out.off.data()[k].data());
   }
 
  private:
   static void solve_nearest(const double* t, Options options, Solutions& out) noexcept {
-    if (options.seed && !SolutionRows<Arm>::finite(options.seed->data())) options.seed = nullptr;
     double q[Arm::kDof];
     NearestRow<Arm>::find(t, options, options.limits, NearestRow<Arm>::kRoundOff, NearestRow<Arm>::kFirstSteps, q);
     Eigen::Isometry3d pose;
@@ -3135,13 +3148,12 @@ template <class A> struct RowPreference {
   typename A::Options options;
   Prefer prefer;
 
-  RowPreference(const double* seed, Prefer kind, bool limits) noexcept : prefer(kind) {
-    if (seed && !SolutionRows<A>::finite(seed)) seed = nullptr;
+  RowPreference(const typename A::Joints* seed, Prefer kind, bool limits) noexcept : prefer(kind) {
     for (int j = 0; j < A::kDof; ++j) {
       const double low = A::kLower.data()[j], high = A::kUpper.data()[j];
       const bool bounded = high - low < kInfinity, nearby = kind == Prefer::Near && seed;
       const double half = std::max(0.5 * (high - low), 1e-6);
-      wanted.data()[j] = bounded && !nearby ? 0.5 * (low + high) : seed ? seed[j] : 0.0;
+      wanted.data()[j] = bounded && !nearby ? 0.5 * (low + high) : seed ? seed->data()[j] : 0.0;
       weight[j] = nearby ? 1.0 : bounded ? 1.0 / (half * half) : 0.0;
     }
     options.limits = limits;
@@ -3171,15 +3183,11 @@ template <class A> struct RowPreference {
 };
 
 template <class A, class Solver>
-inline void order_rows(const Eigen::Isometry3d& pose, const double* seed, typename A::Prefer prefer, bool limits,
+inline void order_rows(const Eigen::Isometry3d& pose, const typename A::Joints* seed, typename A::Prefer prefer, bool limits,
                        typename A::Solutions& out) noexcept {
   const RowPreference<A> preference(seed, prefer, limits);
   typename A::Options options;
-  typename A::Joints nearby;
-  if (seed) {
-    std::copy_n(seed, A::kDof, nearby.data());
-    options.seed = &nearby;
-  }
+  options.seed = seed;
   options.limits = limits;
   Solver::solve(pose, options, out);
   for (int k = 0; k < out.count; ++k) preference.place(SolutionRows<A>::row(out, k));
@@ -3319,29 +3327,31 @@ inline Eigen::Matrix<double, 6, kDof> jacobian(const Joints& q) noexcept {
 // All joint values that bring kTipLink to the pose in kBaseLink.
 inline Solutions solve(const Eigen::Isometry3d& pose, const Options& options) noexcept {
   Solutions out;
-  detail::PoseSolver<detail::Arm, detail::LaneSolve>::solve(pose, options, out);
-  if (options.project) detail::Projection<detail::Arm, detail::LaneSolve>::apply(pose, options, out);
+  const detail::GivenOptions<detail::Arm> given(options);
+  detail::PoseSolver<detail::Arm, detail::LaneSolve>::solve(pose, given, out);
+  if (options.project) detail::Projection<detail::Arm, detail::LaneSolve>::apply(pose, given, out);
   return out;
 }
 
 // solve for each of `count` poses, several at a time.
 inline void solve_batch(const Eigen::Isometry3d* poses, std::ptrdiff_t count, Solutions* solutions,
                         const Options& options) noexcept {
-  detail::PoseSolver<detail::Arm, detail::LaneSolve>::solve(poses, count, options, solutions);
+  const detail::GivenOptions<detail::Arm> given(options);
+  detail::PoseSolver<detail::Arm, detail::LaneSolve>::solve(poses, count, given, solutions);
   for (std::ptrdiff_t i = 0; i < count && options.project; ++i)
-    detail::Projection<detail::Arm, detail::LaneSolve>::apply(poses[i], options, solutions[i]);
+    detail::Projection<detail::Arm, detail::LaneSolve>::apply(poses[i], given, solutions[i]);
 }
 
 namespace detail {
 
 struct Solver {
   static void solve(const Eigen::Isometry3d& pose, const Options& options, Solutions& out) noexcept {
-    PoseSolver<Arm, LaneSolve>::solve(pose, options, out);
+    PoseSolver<Arm, LaneSolve>::solve(pose, GivenOptions<Arm>(options), out);
   }
 
   static void search(const Eigen::Isometry3d& pose, const SearchOptions& options, Solutions& out) noexcept {
-    const double* seed = options.seed ? options.seed->data() : nullptr;
-    order_rows<Arm, Solver>(pose, seed, options.prefer, options.limits, out);
+    const GivenSeed<Arm> given(options.seed);
+    order_rows<Arm, Solver>(pose, given.seed(), options.prefer, options.limits, out);
   }
 };
 
@@ -3358,7 +3368,9 @@ inline Solutions search(const Eigen::Isometry3d& pose, const SearchOptions& opti
 // are unwound. singular: which rows are at a singularity or were reached across one.
 inline Path follow(const Eigen::Isometry3d* poses, std::ptrdiff_t count, const Joints& start, Joints* q, bool limits,
                    bool* singular) noexcept {
-  return detail::follow_poses<detail::Arm, detail::Solver, Path>(poses, count, start, limits, q, singular);
+  const detail::GivenSeed<detail::Arm> from(&start);
+  if (!from.there) return {Status::Invalid, 0};
+  return detail::follow_poses<detail::Arm, detail::Solver, Path>(poses, count, from.values, limits, q, singular);
 }
 
 }  // namespace pan_lift_ik

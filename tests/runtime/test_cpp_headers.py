@@ -23,10 +23,11 @@ SOLVE = r"""
 template <class Way>
 void answer(const std::vector<Eigen::Isometry3d>& poses, const elbow::Arm::Options& options, bool batch) {
   std::vector<elbow::Solutions> out(poses.size());
+  const elbow::Given given(options);
   if (batch) {
-    Way::solve(poses.data(), static_cast<std::ptrdiff_t>(poses.size()), options, out.data());
+    Way::solve(poses.data(), static_cast<std::ptrdiff_t>(poses.size()), given, out.data());
   } else {
-    for (std::size_t i = 0; i < poses.size(); ++i) Way::solve(poses[i], options, out[i]);
+    for (std::size_t i = 0; i < poses.size(); ++i) Way::solve(poses[i], given, out[i]);
   }
   for (const auto& one : out) {
     std::printf("%d %d", static_cast<int>(one.status), one.count);

@@ -93,6 +93,7 @@ struct Arm {
 };
 
 using Solutions = Arm::Solutions;
+using Given = GivenOptions<Arm>;
 using Quick = PoseSolver<Arm, LaneSolve>;
 using Careful = PoseSolver<Arm, SingleSolve>;
 

@@ -16,13 +16,12 @@ template <class A> struct RowPreference {
   Prefer prefer;
 
   // Near to the seed, or the middle of the limits, without a seed too. The object must not be moved.
-  RowPreference(const double* seed, Prefer kind, bool limits) noexcept : prefer(kind) {
-    if (seed && !SolutionRows<A>::finite(seed)) seed = nullptr;
+  RowPreference(const typename A::Joints* seed, Prefer kind, bool limits) noexcept : prefer(kind) {
     for (int j = 0; j < A::kDof; ++j) {
       const double low = A::kLower.data()[j], high = A::kUpper.data()[j];
       const bool bounded = high - low < kInfinity, nearby = kind == Prefer::Near && seed;
       const double half = std::max(0.5 * (high - low), 1e-6);
-      wanted.data()[j] = bounded && !nearby ? 0.5 * (low + high) : seed ? seed[j] : 0.0;
+      wanted.data()[j] = bounded && !nearby ? 0.5 * (low + high) : seed ? seed->data()[j] : 0.0;
       weight[j] = nearby ? 1.0 : bounded ? 1.0 / (half * half) : 0.0;
     }
     options.limits = limits;
@@ -55,15 +54,11 @@ template <class A> struct RowPreference {
 
 // Rows of `solve`, best first. Solver: as for PathStep.
 template <class A, class Solver>
-inline void order_rows(const Eigen::Isometry3d& pose, const double* seed, typename A::Prefer prefer, bool limits,
+inline void order_rows(const Eigen::Isometry3d& pose, const typename A::Joints* seed, typename A::Prefer prefer, bool limits,
                        typename A::Solutions& out) noexcept {
   const RowPreference<A> preference(seed, prefer, limits);
   typename A::Options options;
-  typename A::Joints nearby;
-  if (seed) {
-    std::copy_n(seed, A::kDof, nearby.data());
-    options.seed = &nearby;
-  }
+  options.seed = seed;
   options.limits = limits;
   Solver::solve(pose, options, out);
   for (int k = 0; k < out.count; ++k) preference.place(SolutionRows<A>::row(out, k));

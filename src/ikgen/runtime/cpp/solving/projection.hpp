@@ -4,6 +4,7 @@
 #include "arm/held_aim.hpp"
 #include "arm/motion_chain.hpp"
 #include "solving/nearest_row.hpp"
+#include "arguments/given_options.hpp"
 #include "arguments/pose_reading.hpp"
 #include "rows/solution_rows.hpp"
 
@@ -16,18 +17,17 @@ template <class Arm, template <class> class Way> struct Projection {
   using Chords = PoseChords<Arm>;
 
   // Rows of the nearest pose where there is none of the pose, and by how much each row is off.
-  [[gnu::cold, gnu::noinline]] static void apply(const Eigen::Isometry3d& pose, const Options& given,
+  [[gnu::cold, gnu::noinline]] static void apply(const Eigen::Isometry3d& pose, const GivenOptions<Arm>& given,
                                                  Solutions& out) noexcept {
     Eigen::Isometry3d target = pose;
-    if (!PoseReading<Arm>::clean(target)) return;
+    if (!given.valid || !PoseReading<Arm>::clean(target)) return;
     const double* t = target.matrix().data();
-    if (out.count == 0) solve_nearest(t, given, out);
+    if (out.count == 0) solve_nearest(t, given.options, out);
     for (int k = 0; k < out.count; ++k) Chords::off_by(out.q.data()[k].data(), t, out.off.data()[k].data());
   }
 
  private:
   static void solve_nearest(const double* t, Options options, Solutions& out) noexcept {
-    if (options.seed && !SolutionRows<Arm>::finite(options.seed->data())) options.seed = nullptr;
     double q[Arm::kDof];
     NearestRow<Arm>::find(t, options, options.limits, NearestRow<Arm>::kRoundOff, NearestRow<Arm>::kFirstSteps, q);
     Eigen::Isometry3d pose;
