@@ -1,6 +1,7 @@
 // Rows in lanes on the whole turns that the seed or the limits ask for: SolutionRows::place of all at once.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 
 #include "arm/joint_range.hpp"
@@ -40,24 +41,20 @@ template <class Arm> struct LanePlacement {
   }
 
  private:
-  // On the turn nearest to the seed, or if that is outside the limits, on the one inside that is nearest to them.
+  // On the turn nearest to the seed, or if that is outside the limits, on the one inside that is nearest to them: it is
+  // the one nearest to what of the limits is nearest to the seed, or next to it.
   template <int N, bool H>
   [[gnu::always_inline]] static Lanes<N> turned(int j, const LanesOf<N, H>& given, const typename Arm::Options& options) noexcept {
     const double low = Arm::kLower.data()[j] - Policy::kLimitReach, high = Arm::kUpper.data()[j] + Policy::kLimitReach;
     const Lanes<N> q = given + select(given > -kPi, select(given > kPi, -kTurn, 0.0), kTurn);
-    Lanes<N> shift = spread<N>(0.0);
-    if (options.seed) shift = kTurn * nearest((options.seed->data()[j] - q) / kTurn);
-    if (options.limits) {
-      shift = select(low > q + shift, kTurn * -below((q - low) / kTurn), shift);
-      shift = select(q + shift > high, kTurn * below((high - q) / kTurn), shift);
-    }
-    return q + shift;
-  }
-
-  // The largest whole number that is not above x, for |x| < 2^51.
-  template <int N, bool H> [[gnu::always_inline]] static Lanes<N> below(const LanesOf<N, H>& x) noexcept {
-    const Lanes<N> n = nearest(x);
-    return n - select(n > x, 1.0, 0.0);
+    const bool one = low > -kPi && high < kPi;  // the turn inside the limits
+    if (options.limits && one) return q;
+    const double seed = options.seed ? options.seed->data()[j] : 0.0;
+    const double aim = options.limits ? std::min(std::max(seed, low), high) : seed;
+    const Lanes<N> nearby = q + kTurn * nearest((aim - q) / kTurn);
+    if (!options.limits) return nearby;
+    const Lanes<N> above = select(low > nearby, nearby + kTurn, nearby);
+    return select(above > high, above - kTurn, above);
   }
 };
 
