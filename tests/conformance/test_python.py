@@ -113,10 +113,10 @@ def test_a_seed_many_turns_away(arm: Any) -> None:
 def test_a_seed_that_is_no_number(arm: Any, bad: float) -> None:
     pose, seed = np.asarray(arm.forward(np.full(6, 0.5))), np.zeros(6)
     seed[3] = bad
-    with pytest.raises(ValueError, match=r"seed .* not finite"):
+    with pytest.raises(ValueError, match=r"seed\[.*3\] is .*not finite"):
         arm.solve(pose, seed=seed)
     for seeds in (seed, np.stack([np.zeros(6), seed])):
-        with pytest.raises(ValueError, match=r"seed .* not finite"):
+        with pytest.raises(ValueError, match=r"seed\[.*3\] is .*not finite"):
             arm.solve_batch([pose, pose], seed=seeds)
 
 

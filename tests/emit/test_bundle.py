@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import ast
 import importlib
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from tests.support.pan_lift import pan_lift
 from tests.support.runtime_files import MODULES
-from tests.support.solving import import_text
+from tests.support.solving import FIXTURES, import_text
 
 from ikgen.emit.python.bundle import MARK, bundle
 from ikgen.emit.python.docstrings import summary
@@ -83,6 +84,19 @@ def test_what_a_docstring_says_first(text: str, first: str) -> None:
 
 def test_a_class_tells_what_its_members_are() -> None:
     assert summary("Ends: rows `q`; errors. More.", short=False) == "Ends: rows `q`; errors."
+
+
+@pytest.mark.parametrize("robot", ["kuka_kr6r900sixx", "doosan_m1013", "franka_fr3", "fanuc_crx10ia"])
+def test_comments_of_a_module_name_what_it_has(robot: str) -> None:
+    text = emit_module(derive(Request(FIXTURES / f"{robot}.urdf")).module)
+    words = {
+        getattr(node, field, None)
+        for node in ast.walk(ast.parse(text))
+        for field in ("id", "attr", "arg", "name")
+    }
+    assert set(re.findall(r"`(\w+)`", text)) <= words
+    headings = re.findall(r"\n\n\n((?:# .*\n)+)\n\n", text)
+    assert len(headings) > 20 and all(one.rstrip()[-1] in ".:" for one in headings)
 
 
 CLASSES = '''"""A module."""

@@ -232,11 +232,15 @@ def _real_array(values: ArrayLike, name: str) -> Array:
     """The values as doubles."""
     try:
         array = np.asarray(values)
-        if array.dtype.kind != "c":
+        if array.dtype.kind in "biuf":
+            return np.asarray(array, dtype=float)
+        if array.dtype.kind == "O" and all(hasattr(x, "__float__") for x in array.flat):
             return np.asarray(array, dtype=float)
     except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"{name} is no array of numbers: {type(values).__name__}") from None
-    raise ValueError(f"{name} has complex values")
+        array = np.empty(0, dtype=object)
+    if array.dtype.kind == "c":
+        raise ValueError(f"{name} has complex values")
+    raise ValueError(f"{name} is no array of numbers: {type(values).__name__}")
 
 
 # Forward kinematics and Jacobian of a serial chain, for any number of configurations at once.
@@ -494,7 +498,7 @@ _BranchesBatch = Callable[[Array, Array, Array], tuple[Array, _Flags, _Flags, _F
 
 
 class _Around(Protocol):
-    """`rows_around`."""
+    """What rows of a broken continuum lead to."""
 
     def __call__(
         self, arm: _Arm, q: Array, T: Array, broken: _Flags
@@ -1253,6 +1257,7 @@ def _places(pose: _Index) -> _Index:
 
 
 # Solutions on parts of curves, between two samples each, by what is left of the error there and how that
+# grows.
 
 
 _BEYOND = 4.0
@@ -1632,6 +1637,7 @@ def _that_differ(arm: _Arm, T: Array, pose: _Index, q: Array, singular: _Flags) 
 
 
 # Solutions of poses near singularities, and of those that leave joints free, by the closed form's rows and
+# next to these: of many poses at once, as the price of Newton steps is that of the calls.
 
 
 _FoundRows = tuple[list[_Found], bool, bool]
@@ -2181,6 +2187,7 @@ def _clipped_step(
 
 
 # Rows for poses that the closed form leaves without, or without one of a continuum: behind joints that it
+# left free, nearest to the pose, along continua.
 
 
 def _take_hidden(arm: _Arm, asked: _Asked, some: _Index, limits: bool, out: list[_Answer]) -> None:
@@ -2420,7 +2427,8 @@ def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...], name: str =
         expected = " or ".join(map(str, shapes))
         raise ValueError(f"{name} has shape {values.shape}, expected {expected}")
     if not np.isfinite(values).all():
-        raise ValueError(f"{name} {values.tolist()} has values that are not finite")
+        place = np.argwhere(~np.isfinite(values))[0].tolist()
+        raise ValueError(f"{name}{place} is {values[tuple(place)]}, which is not finite")
     far = np.array(arm.turning) & (np.abs(values) > _FARTHEST)
     return np.where(far, np.fmod(values, 2.0 * pi), values) if far.any() else values
 
@@ -2430,6 +2438,7 @@ def _seed_rows(arm: _Arm, seed: ArrayLike, *shapes: tuple[int, ...], name: str =
 
 # of pin.SE3, RigidTransform of SciPy, SE3 of spatialmath
 _TRANSFORMS = ("homogeneous", "as_matrix", "A")
+_FORMS = "(4, 4), (3, 4), (rotation (3, 3), position), (position, quaternion x y z w)"
 
 
 def _one_pose(pose: Any, alone: str) -> Array:
@@ -2454,18 +2463,28 @@ def _pose_matrices(pose: Any, alone: str) -> Array:
     """(4, 4), or (N, 4, 4) of many."""
     if isinstance(pose, np.ndarray) and pose.shape[-2:] == (4, 4):
         return _real_array(pose, "pose")
-    if isinstance(pose, (list, tuple)) and len(pose):
-        if any(hasattr(pose[0], name) for name in _TRANSFORMS):
-            return np.stack([_pose_matrices(one, alone) for one in pose])
-        pair = _of_pair(*(_real_array(part, "pose") for part in pose)) if len(pose) == 2 else None
-        if pair is not None:
-            return pair
+    if not isinstance(pose, (list, tuple)) or not len(pose):
+        return _completed(_real_array(_matrix_of(pose), "pose"), alone)
+    parts = [_matrix_of(part) for part in pose]
+    pair = None
+    try:
+        if len(parts) == 2:
+            pair = _of_pair(*(_real_array(part, "pose") for part in parts))
+        return _completed(_real_array(parts, "pose"), alone) if pair is None else pair
+    except ValueError:  # of several shapes
+        each = [_pose_matrices(part, alone) for part in parts]
+        if any(one.shape != (4, 4) for one in each):
+            raise ValueError(f"pose is none of {_FORMS}, nor a sequence of them") from None
+        return np.stack(each)
+
+
+def _matrix_of(pose: Any) -> Any:
+    """What an object with one of `_TRANSFORMS` has there."""
     for name in _TRANSFORMS:
         value = getattr(pose, name, None)
         if value is not None:
-            pose = value() if callable(value) else value
-            break
-    return _completed(_real_array(pose, "pose"), alone)
+            return value() if callable(value) else value
+    return pose
 
 
 def _of_pair(a: Array, b: Array) -> Array | None:
@@ -2607,7 +2626,7 @@ def _pose_fault(task: _EntriesTask, T: list[list[float]], policy: _Policy) -> st
     text = f"the pose's rotation is off by {off:.1e}, more than {policy.pose_tolerance:.0e}"
     if task.read(T, replace(policy, pose_tolerance=_PRINTED)) is None:
         return f"{text} (a quaternion is to have norm 1)"
-    return f"{text}: orthonormalize=True takes the nearest one"
+    return f"{text}: solve(pose, orthonormalize=True) takes the nearest one"
 
 
 # What a solve gives back.
@@ -2949,7 +2968,7 @@ _Preference = tuple[str, Row, Row]  # its name; what rows are wanted near to, an
 
 
 def _preference_of(arm: _Arm, prefer: str, seed: ArrayLike | None) -> _Preference:
-    """"near"."""
+    """What rows are judged by."""
     if prefer not in ("near", "centre", "dexterous"):
         raise ValueError(f"prefer is {prefer!r}, expected 'near', 'centre' or 'dexterous'")
     near = _seed_values(arm, seed)
@@ -3189,13 +3208,11 @@ class _EntriesTask:
 
     @property
     def alone(self) -> str:
-        """Implements `Task`."""
         if 3 not in self.column:
             return "rotation"
         return "position" if set(self.column) == {3} else ""
 
     def read(self, T: list[list[float]], policy: _Policy) -> list[list[float]] | None:
-        """Implements `Task`."""
         lines, square = T, 0.0
         for r, c in self.entries:
             x = lines[r][c]
@@ -3236,7 +3253,6 @@ class _EntriesTask:
         return max(most, policy.level**2) if self.flat else most
 
     def read_batch(self, T: Array, policy: _Policy) -> tuple[Array, _Flags]:
-        """Implements `Task`."""
         T, good = self._single_entries(T, policy)
         if not self.unit:
             return T, good
@@ -3274,7 +3290,6 @@ class _EntriesTask:
 
     @property
     def entries(self) -> _Entries:
-        """Implements `Task`."""
         return tuple(zip(self.row, self.column))
 
     def error(self, pose: Array, T: Array) -> Array:
@@ -3302,7 +3317,7 @@ _Stage = Callable[[_Arm, _Asked, bool], Sequence[_Answer | None]]
 def _solve_each(
     arm: _Arm, poses: Array, free: Array | None, seed: Array | None, limits: bool
 ) -> list[Solutions]:
-    """What `solve_pose` gives for each of the poses (N, 4, 4), with `free` (N, held joints) and seeds (N,
+    """What each of the poses (N, 4, 4) alone is answered with, with `free` (N, held joints) and seeds (N,
     dof)."""
     near = None if seed is None else _seed_rows(arm, seed, seed.shape)
     held = _held_rows(arm, free, near, len(poses))

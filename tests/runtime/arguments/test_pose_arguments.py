@@ -41,6 +41,7 @@ SINGLE = {
     "rotation and position as lists": [R.tolist(), P.tolist()],
     "position and quaternion": (P, QUATERNION),
     "position and the other quaternion": (P.tolist(), (-QUATERNION).tolist()),
+    "rotation of another library and position": (SimpleNamespace(as_matrix=lambda: R), P),
     "homogeneous": pinocchio.SE3(T),
     "as_matrix": SimpleNamespace(as_matrix=lambda: T),
     "A": Spatial(T),
@@ -64,6 +65,11 @@ BATCH = {
         MANY[:, :3, 3],
         np.array([pinocchio.Quaternion(M[:3, :3]).coeffs() for M in MANY]),
     ),
+    "pairs": [(M[:3, :3], M[:3, 3]) for M in MANY],
+    "positions with quaternions": [
+        (M[:3, 3].tolist(), pinocchio.Quaternion(M[:3, :3]).coeffs()) for M in MANY
+    ],
+    "mixed": [MANY[0], MANY[1][:3], SimpleNamespace(as_matrix=lambda: MANY[2])],
     "objects": [SimpleNamespace(homogeneous=one) for one in MANY],
     "one object of several": Spatial(list(MANY)),
     "as_matrix": SimpleNamespace(as_matrix=lambda: MANY),
@@ -77,6 +83,8 @@ def test_many_poses_of_any_kind_are_their_matrices(kind: str) -> None:
 
 
 def test_two_poses_are_no_pair() -> None:
+    pairs = [(R, P), (R.tolist(), P.tolist())]
+    assert np.allclose(pose_matrices(pairs, ""), [T, T], atol=1e-14)
     assert np.array_equal(pose_matrices([T.tolist(), T.tolist()], ""), [T, T])
     assert np.array_equal(pose_matrices([T[:3], T[:3]], ""), [T, T])
 
@@ -89,6 +97,11 @@ def test_parts_alone_do_where_the_task_reads_no_other() -> None:
     assert pose_matrices(np.zeros((5, 3, 3)), "rotation").shape == (5, 4, 4)
     assert pose_matrices(R, "").shape == (3, 3)  # which the caller refuses
     assert pose_matrices(P, "rotation").shape == (3,)
+
+
+def test_forms_are_told_where_it_is_none_of_them() -> None:
+    with pytest.raises(ValueError, match=r"none of \(4, 4\), .* nor a sequence of them"):
+        pose_matrices([(R, P), (R, P[:2])], "")
 
 
 @pytest.mark.parametrize("wrong", ["here", {}, {"p": 1}, [[1.0], [1.0, 2.0]], (R, P[:2]), object()])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from ikgen.emit.python.docstrings import comment_lines, summary
 from ikgen.emit.python.import_lines import External, import_lines
 from ikgen.emit.python.reached_definitions import Key, Reached
 from ikgen.emit.python.runtime_source import Definition, RuntimeSource, taken_apart
@@ -37,8 +38,8 @@ def bundle(shell: str, facts: Facts = (), instead: Mapping[Key, Key] | None = No
 
 
 def _section(module: RuntimeSource, kept: list[Definition], names: Mapping[str, str]) -> str:
-    """A module's used definitions under its docstring's first line as a comment."""
-    text = f"# {next(iter(module.docstring.splitlines()), module.name)}"
+    """A module's used definitions under its docstring's first sentence as a comment."""
+    text = "\n".join(comment_lines(summary(module.docstring, short=False) or module.name))
     before: Definition | None = None
     for one in kept:
         if one.block or before is None or before.block:

@@ -85,6 +85,7 @@ def seed_rows(arm: Arm, seed: ArrayLike, *shapes: tuple[int, ...], name: str = "
         expected = " or ".join(map(str, shapes))
         raise ValueError(f"{name} has shape {values.shape}, expected {expected}")
     if not np.isfinite(values).all():
-        raise ValueError(f"{name} {values.tolist()} has values that are not finite")
+        place = np.argwhere(~np.isfinite(values))[0].tolist()
+        raise ValueError(f"{name}{place} is {values[tuple(place)]}, which is not finite")
     far = np.array(arm.turning) & (np.abs(values) > _FARTHEST)
     return np.where(far, np.fmod(values, 2.0 * pi), values) if far.any() else values

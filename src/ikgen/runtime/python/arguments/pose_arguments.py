@@ -13,6 +13,7 @@ __all__ = ["one_pose", "pose_matrices", "poses_in_line"]
 
 # of pin.SE3, RigidTransform of SciPy, SE3 of spatialmath
 _TRANSFORMS = ("homogeneous", "as_matrix", "A")
+_FORMS = "(4, 4), (3, 4), (rotation (3, 3), position), (position, quaternion x y z w)"
 
 
 def one_pose(pose: Any, alone: str) -> Array:
@@ -42,18 +43,28 @@ def pose_matrices(pose: Any, alone: str) -> Array:
     """
     if isinstance(pose, np.ndarray) and pose.shape[-2:] == (4, 4):
         return real_array(pose, "pose")
-    if isinstance(pose, (list, tuple)) and len(pose):
-        if any(hasattr(pose[0], name) for name in _TRANSFORMS):
-            return np.stack([pose_matrices(one, alone) for one in pose])
-        pair = _of_pair(*(real_array(part, "pose") for part in pose)) if len(pose) == 2 else None
-        if pair is not None:
-            return pair
+    if not isinstance(pose, (list, tuple)) or not len(pose):
+        return _completed(real_array(_matrix_of(pose), "pose"), alone)
+    parts = [_matrix_of(part) for part in pose]
+    pair = None
+    try:
+        if len(parts) == 2:
+            pair = _of_pair(*(real_array(part, "pose") for part in parts))
+        return _completed(real_array(parts, "pose"), alone) if pair is None else pair
+    except ValueError:  # of several shapes
+        each = [pose_matrices(part, alone) for part in parts]
+        if any(one.shape != (4, 4) for one in each):
+            raise ValueError(f"pose is none of {_FORMS}, nor a sequence of them") from None
+        return np.stack(each)
+
+
+def _matrix_of(pose: Any) -> Any:
+    """What an object with one of `_TRANSFORMS` has there; others as they are."""
     for name in _TRANSFORMS:
         value = getattr(pose, name, None)
         if value is not None:
-            pose = value() if callable(value) else value
-            break
-    return _completed(real_array(pose, "pose"), alone)
+            return value() if callable(value) else value
+    return pose
 
 
 def _of_pair(a: Array, b: Array) -> Array | None:

@@ -63,4 +63,4 @@ def pose_fault(task: Task, T: list[list[float]], policy: Policy) -> str:
     text = f"the pose's rotation is off by {off:.1e}, more than {policy.pose_tolerance:.0e}"
     if task.read(T, replace(policy, pose_tolerance=_PRINTED)) is None:
         return f"{text} (a quaternion is to have norm 1)"
-    return f"{text}: orthonormalize=True takes the nearest one"
+    return f"{text}: solve(pose, orthonormalize=True) takes the nearest one"

@@ -14,7 +14,7 @@ __all__ = ["EntriesLanes", "LaneTask", "PoseLanes"]
 
 
 class LaneTask(Protocol):
-    """`error` and `rows` of a `Task`, (m, k) and (dof, m, k), of upper rows (3, 4, k) and Jacobians
+    """Differences of poses (m, k) and their derivatives (dof, m, k), of upper rows (3, 4, k) and Jacobians
     (dof, 6, k), which may change."""
 
     def error(self, pose: Array, T: Array) -> Array: ...
@@ -24,7 +24,7 @@ class LaneTask(Protocol):
 
 @dataclass(frozen=True)
 class PoseLanes:
-    """Of `PoseTask`."""
+    """Those of the whole pose."""
 
     size: float
 

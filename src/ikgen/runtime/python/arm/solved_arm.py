@@ -19,7 +19,7 @@ BranchesBatch = Callable[[Array, Array, Array], tuple[Array, Flags, Flags, Flags
 
 
 class Together(Protocol):
-    """`refine_together` with the arm's chain in lanes."""
+    """Newton steps of all rows at once, with the arm's chain in lanes. See `refine_together`."""
 
     def __call__(
         self, arm: Arm, q: Array, T: Array, share: float = 0.0
@@ -27,7 +27,7 @@ class Together(Protocol):
 
 
 class Around(Protocol):
-    """`rows_around`."""
+    """What rows of a broken continuum lead to. See `rows_around`."""
 
     def __call__(
         self, arm: Arm, q: Array, T: Array, broken: Flags

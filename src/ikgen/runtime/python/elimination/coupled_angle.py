@@ -55,7 +55,7 @@ class CoupledAngle:
     def __call__(
         self, F: Sequence[Array], T: Array, elimination: Elimination, _: tuple[bool, ...]
     ) -> Candidates:
-        """As `candidates`, of as many frames F as rows and 1."""
+        """Approximate solutions, as those of other eliminations; of as many frames F as rows and 1."""
         pose, angle, least, clear = self._angles(F, T, elimination)
         if not len(pose):
             return pose, np.zeros((0, 6)), least, clear

@@ -39,7 +39,8 @@ _PARABOLA = np.array(
 def one_slide_candidates(
     F: Sequence[Array], T: Array, elimination: Elimination, turning: tuple[bool, ...]
 ) -> tuple[Index, Array, Index, Flags]:
-    """As `candidates`, of a chain whose joint that is not `turning` comes first or second."""
+    """Approximate solutions of a chain whose joint that is not `turning` comes first or second. The result
+    is that of `candidates`."""
     start, reverse, swap = elimination
     order, C = loop_constants(F, T, start, reverse)
     first = not turning[order[0]]

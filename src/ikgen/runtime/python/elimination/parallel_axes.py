@@ -219,8 +219,8 @@ def _real_roots(kind: int, f: Array, doubtful: Array) -> tuple[Index, Array, Ind
 def parallel_candidates(
     F: Sequence[Array], T: Array, elimination: Elimination, _: Turning
 ) -> Candidates:
-    """As `candidates`, of a loop whose second and third axes are parallel and whose links beside them are
-    of a kind in `parallel_links`: which is the third number."""
+    """Approximate solutions of a loop whose second and third axes are parallel and whose links beside them
+    are of a kind in `parallel_links`: which is the third number. The result is that of `candidates`."""
     start, reverse, kind = elimination
     order, C = loop_constants(F, T, start, reverse)
     measures, curves = parallel_links(C), _curves(kind, C)

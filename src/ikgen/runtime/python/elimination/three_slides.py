@@ -29,8 +29,8 @@ _SLIDES_APART = 1e-6
 def three_slide_candidates(
     F: Sequence[Array], T: Array, elimination: Elimination, turning: Turning
 ) -> Candidates:
-    """As `candidates`, of a chain with three joints that are not `turning`; the loop begins at a revolute
-    joint."""
+    """Approximate solutions of a chain with three joints that are not `turning`; the loop begins at a
+    revolute joint. The result is that of `candidates`."""
     start, reverse, _ = elimination
     order, C = loop_constants(F, T, start, reverse)
     turns = [turning[j] for j in order]

@@ -111,8 +111,8 @@ def _quartic_roots(value: Array, offset: Array) -> tuple[Complex, Array]:
 def two_slide_candidates(
     F: Sequence[Array], T: Array, elimination: Elimination, turning: Turning
 ) -> Candidates:
-    """As `candidates`, of a chain with two joints that are not `turning`; the loop begins at the angle that
-    is hidden."""
+    """Approximate solutions of a chain with two joints that are not `turning`; the loop begins at the angle
+    that is hidden. The result is that of `candidates`."""
     start, reverse, _ = elimination
     order, C = loop_constants(F, T, start, reverse)
     turns = [turning[j] for j in order]

@@ -66,7 +66,7 @@ _QUARTER = 0.5  # (1 - cosine) / 2 of a quarter turn: half turns have small sine
 
 def chord_steps(arm: Arm, q: Array, T: Array) -> Array | None:
     """Rows (k, dof) after steps towards the pose T (4, 4), where all arrive at the one solution near their
-    start, as `refine_together` has it; else None."""
+    start; else None. Near is what `refine_together` takes for it."""
     chain, policy, drive = arm.chain, arm.policy, _drive(arm)
     to_aim = chain.frames[0].copy()
     to_aim[:3, 3] -= T[:3, 3]
@@ -110,7 +110,7 @@ def _drive(arm: Arm) -> Array | None:
 
 def _begin(policy: Policy, size: list[float], nearest: list[float]) -> bool:
     """Whether first steps of this size (k,), with pivots as in `_nearest`, lead to the solutions near their
-    starts, as `begins` has it; of longer ones others have to judge."""
+    starts; of longer ones others have to judge: see `begins`."""
     far, share, least = policy.farthest_start, policy.pivot_share**2, policy.least_pivot**-2
     return all(s < far and s * s * n < share and n < least for s, n in zip(size, nearest))
 

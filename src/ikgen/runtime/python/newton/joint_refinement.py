@@ -59,8 +59,8 @@ def _judge(arm: Arm, end: Refined, T: Array, those: Flags, share: float) -> None
 
 
 def refine_few(arm: Arm, q: Array, T: Array) -> Refined:
-    """`refine_lanes` of few rows. Every second step is solved with the inverse of the one before, and
-    what that leaves of it once more, as in `refine_lanes`."""
+    """Newton steps of few rows, of which calls cost more than sums. Every second step is solved with the
+    inverse of the one before, and what that leaves of it once more, as in `refine_lanes`."""
     policy, start = arm.policy, q
     good, strained = np.ones(len(q), dtype=bool), np.zeros(len(q), dtype=bool)
     before = np.full(len(q), policy.farthest_start)

@@ -19,7 +19,8 @@ Preference = tuple[str, Row, Row]  # its name; what rows are wanted near to, and
 
 
 def preference_of(arm: Arm, prefer: str, seed: ArrayLike | None) -> Preference:
-    """ "near": to the seed, "centre": of the limits, as near without a seed, or "dexterous".
+    """What rows are judged by: "near", to the seed; "centre", of the limits, as near without a seed; or
+    "dexterous".
 
     Raises ValueError for another word, and for a bad seed.
     """

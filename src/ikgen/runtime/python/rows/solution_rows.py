@@ -40,7 +40,7 @@ def places(pose: Index) -> Index:
 
 
 def first_of_equals(q: Array, pose: Index, turning: Turning, coincident: float) -> Flags:
-    """Which rows of q (k, 6) equal no earlier one of their pose, pose (k,) in order, as `is_new` has it."""
+    """Which rows of q (k, 6) equal no earlier one of their pose, pose (k,) in order; see `is_new`."""
     if not len(q):
         return np.zeros(0, dtype=bool)
     place, first = places(pose), pose[0]

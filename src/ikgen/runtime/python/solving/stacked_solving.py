@@ -29,8 +29,8 @@ _Stage = Callable[[Arm, Asked, bool], Sequence[Answer | None]]
 def solve_each(
     arm: Arm, poses: Array, free: Array | None, seed: Array | None, limits: bool
 ) -> list[Solutions]:
-    """What `solve_pose` gives for each of the poses (N, 4, 4), with `free` (N, held joints) and seeds
-    (N, dof): poses that leave doubts are stacks of more than one."""
+    """What each of the poses (N, 4, 4) alone is answered with, with `free` (N, held joints) and seeds (N,
+    dof): poses that leave doubts are stacks of more than one. Verification asks so."""
     near = None if seed is None else seed_rows(arm, seed, seed.shape)
     held = held_rows(arm, free, near, len(poses))
     out = [no_solutions(len(arm.lower), Status.INVALID) for _ in poses]
