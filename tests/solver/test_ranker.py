@@ -15,7 +15,7 @@ from ikgen.forms.sine_cosine_form import SineCosine
 from ikgen.forms.tangent_form import Tangent
 from ikgen.solver.candidate import Candidate, Judgement
 from ikgen.solver.leaves import LEAVES
-from ikgen.solver.ranker import judge, rank_key
+from ikgen.solver.ranker import judge, rank_key, why_not
 
 GOOD = Judgement(weak=False, folds=False, margin=1.0, fragile=0.0, cost=10.0)
 
@@ -174,3 +174,33 @@ def test_the_order_does_not_depend_on_chance(arm: Constructed) -> None:
     other = replace(base, form=arm.tangent(arm.s2))
     assert rank_key(base) != rank_key(other)
     assert np.all([isinstance(x, int) for x in rank_key(base)[-1]])
+
+
+def test_what_is_wrong_with_a_candidate_is_where_it_ranks_behind(arm: Constructed) -> None:
+    g, one = arm.graph, arm.graph.one
+    base = ranked(arm)
+    pair = replace(arm.candidate(arm.pair(one)), judgement=GOOD)
+    determinant = replace(
+        LinearPair(arm.c2, arm.s2, arm.c1, g.neg(arm.s2), arm.c2, arm.s1), b2=g.one
+    )
+    thin = replace(GOOD, margin=0.01, cost=1.0)
+    for other, best, words in (
+        (replace(base, judgement=replace(GOOD, weak=True)), base, "fails or folds"),
+        (ranked(arm, cost=1.0), pair, "more branches"),
+        (replace(base, leaf="quadratic", judgement=replace(GOOD, cost=1.0)), base, "less direct"),
+        (ranked(arm, fragile=0.4, cost=1.0), base, "at more singular"),
+        (replace(pair, form=determinant, judgement=thin), pair, "nearly zero"),
+        (replace(arm.candidate(arm.pair(one), squared=True), judgement=thin), pair, "squared"),
+        (ranked(arm, cost=11.0), base, "more to compute"),
+        (replace(base, unknown=Variable("angle", (0, 1, 0))), base, "equal"),
+        (base, base, "equal"),
+    ):
+        assert words in why_not(other, best)
+
+
+def test_what_ranks_before_the_one_taken_was_passed_over(arm: Constructed) -> None:
+    base, folding = ranked(arm), ranked(arm, folds=True)
+    assert "not found to hold" in why_not(base, folding)
+    quartic = replace(arm.candidate(arm.quartic(), "quartic"), judgement=GOOD)
+    assert rank_key(quartic) < rank_key(folding)
+    assert why_not(quartic, folding) == "more branches"

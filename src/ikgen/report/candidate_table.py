@@ -6,19 +6,9 @@ from ikgen.report.document import Block, Fold, Inline, Link, Rows, Text
 from ikgen.report.splits import equation_anchor
 from ikgen.solver.candidate import Candidate
 from ikgen.solver.choice import Step
-from ikgen.solver.ranker import rank_key
+from ikgen.solver.ranker import why_not
 
 __all__ = ["candidates_table"]
-
-_REASONS = (
-    "fails or folds at some regular configurations",
-    "more branches",
-    "a less direct form",
-    "degenerate at more singular configurations",
-    "squared equations, which add spurious solutions",
-    "more to compute",
-)
-"""What each place of the ranker's key means."""
 
 _HEADER: tuple[Text, ...] = (
     ("leaf",),
@@ -36,17 +26,9 @@ def candidates_table(step: Step) -> list[Block]:
     if not others or step.candidate.judgement is None:
         return []
     rows = [_row(step.candidate, "chosen")]
-    rows += [_row(c, _reason(step.candidate, c)) for c in others]
+    rows += [_row(c, why_not(c, step.candidate)) for c in others]
     words = f"{len(rows)} candidates, and why this one was taken"
     return [Fold(words, (Rows(_HEADER, tuple(rows), "Candidates", small=True),))]
-
-
-def _reason(best: Candidate, other: Candidate) -> str:
-    """The first place where the ranker's keys differ, in words."""
-    for words, mine, its in zip(_REASONS, rank_key(best), rank_key(other), strict=False):
-        if mine != its:
-            return words
-    return "equal, later in order"
 
 
 def _row(c: Candidate, verdict: str) -> tuple[Text, ...]:

@@ -7,8 +7,9 @@ vanishes at a regular configuration comes last; then fewer branches, the better 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,7 @@ from ikgen.equations.probes import Probes
 from ikgen.solver.candidate import Candidate, Judgement
 from ikgen.solver.leaves import LEAVES
 
-__all__ = ["WEAK_MARGIN", "judge", "rank_key"]
+__all__ = ["WEAK_MARGIN", "judge", "rank_key", "why_not"]
 
 _NAMES = [name for leaf in LEAVES for name in leaf.finds]
 _RANKS = {name: rank for rank, name in enumerate(_NAMES)}
@@ -114,18 +115,48 @@ def _cost(roots: tuple[Expr, ...], used: set[int], weight: Mapping[int, float]) 
     return total
 
 
-def rank_key(candidate: Candidate) -> tuple[object, ...]:
+def _form_rank(candidate: Candidate, judged: Judgement) -> int:
+    return _TANGENT if judged.almost_tangent else _RANKS.get(candidate.leaf, _STRANGER)
+
+
+_EQUAL = "equal, later in order"
+_MORE_BRANCHES = "more branches"
+_PASSED_OVER = "not found to hold at all regular configurations"
+
+_CRITERIA: tuple[tuple[Callable[[Candidate, Judgement], Any], str], ...] = (
+    (lambda c, j: not c.is_sound, "fails or folds at some regular configurations"),
+    (lambda c, j: c.branches, _MORE_BRANCHES),
+    (_form_rank, "a less direct form"),
+    (lambda c, j: round(j.fragile, 1), "degenerate at more singular configurations"),
+    (
+        lambda c, j: j.margin < _THIN_MARGIN and c.form.is_determinant,
+        "divides by a determinant that is nearly zero at some regular configurations",
+    ),
+    (
+        lambda c, j: c.branches == 1 and sum(e.squared for e in c.sources),
+        "squared equations, which add spurious solutions",
+    ),
+    (lambda c, j: j.cost, "more to compute"),
+    (lambda c, j: tuple(-k for k in c.unknown.combination), _EQUAL),
+    (lambda c, j: tuple(e.id for e in c.coefficients), _EQUAL),
+)
+"""What is compared, in order, less being better; and what is wrong with a candidate that has more."""
+
+
+def rank_key(candidate: Candidate) -> tuple[Any, ...]:
     """Sort key: smaller is better."""
-    j = candidate.judgement
-    assert j is not None
-    return (
-        not candidate.is_sound,
-        candidate.branches,
-        _TANGENT if j.almost_tangent else _RANKS.get(candidate.leaf, _STRANGER),
-        round(j.fragile, 1),
-        j.margin < _THIN_MARGIN and candidate.form.is_determinant,
-        candidate.branches == 1 and sum(e.squared for e in candidate.sources),
-        j.cost,
-        tuple(-k for k in candidate.unknown.combination),
-        tuple(e.id for e in candidate.coefficients),
-    )
+    judged = candidate.judgement
+    assert judged is not None
+    return tuple(of(candidate, judged) for of, _ in _CRITERIA)
+
+
+def why_not(other: Candidate, best: Candidate) -> str:
+    """Why a candidate was not taken where `best` was, in words: it ranks behind that, or the chooser passed
+    over it."""
+    words = (more for _, more in _CRITERIA)
+    for more, its, mine in zip(words, rank_key(other), rank_key(best), strict=True):
+        if its > mine:
+            return more
+        if its < mine:
+            return _MORE_BRANCHES if other.branches > best.branches else _PASSED_OVER
+    return _EQUAL
