@@ -166,6 +166,7 @@ def two_on_a_line() -> Unsolved:
         solve.solve_chain(dh),
         "chair6dof",
         "Chair6DOF.toml",
+        "ikgen report Chair6DOF.toml",
     )
 
 

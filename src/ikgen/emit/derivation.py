@@ -74,6 +74,8 @@ class Derivation:
     task: Task
     graph: SolutionGraph
     module: SolverModule
+    again: str
+    """The command that makes its report again, where the description lies."""
     chosen: bool = False
     """Whether the task was chosen to fit the arm, not asked for."""
     held: Held | None = None
@@ -86,7 +88,8 @@ class Derivation:
 
 @dataclass(frozen=True, slots=True)
 class Unsolved:
-    """How far a derivation came that found no closed form; `name` is its module's."""
+    """How far a derivation came that found no closed form; `name` is its module's, `again` the command that
+    makes its report again, where the description lies."""
 
     reading: Reading
     geometry: GeometryClass
@@ -94,3 +97,4 @@ class Unsolved:
     graph: SolutionGraph
     name: str
     source_name: str
+    again: str

@@ -11,6 +11,7 @@ from ikgen.generation.closed_forms import closed_form
 from ikgen.generation.held_needs import check_held, check_task
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.read import default_name, read
+from ikgen.generation.report_command import report_command
 from ikgen.generation.settled_form import settled_form
 from ikgen.generation.task_forms import Demand
 
@@ -55,17 +56,19 @@ def derive(
         found.task.along(request.tool_axis)  # refuses what has no axis
     name = request.name or default_name(found.reading)
     geometry = classify(found.reading.dh)
+    again = report_command(request, found.reading, found.task)
     if not found.closed and found.plan is None:
         from ikgen.generation.unsolved import unsolved_error
 
-        stuck = Unsolved(found.reading, geometry, found.task, found.graph, name, request.robot.name)
+        how_far = (found.task, found.graph, name, request.robot.name, again)
+        stuck = Unsolved(found.reading, geometry, *how_far)
         raise unsolved_error(stuck, request)
     check_held(request, found.reading.dh, found.task, passed_over)
     found, program = settled_form(found, progress)
     module = _module(name, request, found, program)
     unasked = request.task is None
     passed = tuple(passed_over) if unasked else ()
-    how = (found.task, found.graph, module, unasked, found.held, passed, file_class)
+    how = (found.task, found.graph, module, again, unasked, found.held, passed, file_class)
     return Derivation(found.reading, geometry, *how)
 
 

@@ -60,6 +60,7 @@ def incomplete_error(error: VerificationError, request: Request) -> IkgenError:
         derivation.graph,
         derivation.module.name,
         request.robot.name,
+        derivation.again,
     )
     return UnsolvedChainError(
         f"no closed form found for the task '{derivation.task.name}' that has all solutions: {causes[0]}",

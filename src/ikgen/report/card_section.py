@@ -17,7 +17,7 @@ from ikgen.report.worked_example import Array
 from ikgen.tasks import Task
 from ikgen.verify.verification_report import VerificationReport
 
-__all__ = ["card_section", "command_again"]
+__all__ = ["card_section"]
 
 _ON_PAPER = 0.55
 """Points a pixel."""
@@ -30,8 +30,10 @@ def card_section(
     q: Array,
     most: str,
     reports: Mapping[str, VerificationReport],
+    command: str,
 ) -> list[Block]:
-    """`most` says how many solutions there are; the arm is drawn at `q` (dof,), rad and m."""
+    """`most` says how many solutions there are, `command` makes the report again; the arm is drawn at `q`
+    (dof,), rad and m."""
     dh = reading.dh
     drawing = skeleton_svg(dh, q, style=Style(480, 400), title=f"{dh.robot} as a skeleton")
     family, _, why = geometry.words.partition(": ")
@@ -45,7 +47,7 @@ def card_section(
     facts += [("held", (", ".join(dh.free),))] if dh.free else []
     facts += [(f"verified, {name}", (_verdict(report),)) for name, report in reports.items()]
     again = "make it again" + ("" if is_named(reading.source.path) else ", where the file lies")
-    facts += [("limits", (_limits(dh.joints),)), (again, (command_again(reading, task),))]
+    facts += [("limits", (_limits(dh.joints),)), (again, (command,))]
     caption = "Joint axes dashed, lengths as in the formulas; x axes red, z axes blue"
     kept = tuple((name, text) for name, text in facts if text != ("",))
     return [
@@ -78,16 +80,3 @@ def _limits(joints: tuple[ActuatedJoint, ...]) -> str:
         else:
             out.append(f"{low:.4g} to {high:.4g}{unit}")
     return "none" if set(out) == {"none"} else "; ".join(out)
-
-
-def command_again(reading: Reading, task: Task) -> str:
-    """The command that makes this report."""
-    dh, source = reading.dh, reading.source
-    words = ["ikgen report", source.path.name]
-    if reading.tree is not None:
-        words += [f"--base {dh.base_link}", f"--tip {dh.tip_link}"]
-    words += [f"--task {task.name}"] if not task.whole_pose else []
-    words += [f"--free {name}" for name in dh.free]
-    words += [f"--lock {name}={value:g}" for name, value in dh.locked]
-    words += [f"--arg {name}:={value}" for name, value in source.arguments]
-    return " ".join(words)

@@ -28,7 +28,8 @@ __all__ = ["Page", "SolvedPage", "UnsolvedPage"]
 @dataclass(frozen=True, slots=True)
 class Page:
     """What reports of solved and unsolved arms share; `shown` (dof,), rad and m, is the configuration
-    that the arm is drawn at; `picture` is that of the graph, None where no unknown was solved alone."""
+    that the arm is drawn at; `picture` is that of the graph, None where no unknown was solved alone;
+    `again` is the command that makes the report."""
 
     reading: Reading
     geometry: GeometryClass
@@ -38,6 +39,7 @@ class Page:
     versions: Versions
     picture: Drawing | None
     shown: Array
+    again: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +53,7 @@ class UnsolvedPage(Page):
         title = f"Solution graph of {found.name}"
         picture = draw(found.graph, versions, title) if found.graph.steps else None
         reading, shown = found.reading, shown_configuration(found.reading.dh)
-        parts = (Normalizer(), versions, picture, shown)
+        parts = (Normalizer(), versions, picture, shown, found.again)
         return cls(reading, found.geometry, found.task, found.graph, *parts)
 
 
@@ -78,5 +80,6 @@ class SolvedPage(Page):
         solver = solver_of(found)
         example = worked_example(found, solver) if solver is not None else None
         shown = shown_configuration(found.reading.dh) if example is None else example.q
-        parts = (Normalizer(), versions, picture, shown, found, reports, solver, example)
-        return cls(found.reading, found.geometry, found.task, found.graph, *parts)
+        parts = (Normalizer(), versions, picture, shown, found.again)
+        own = (found, reports, solver, example)
+        return cls(found.reading, found.geometry, found.task, found.graph, *parts, *own)

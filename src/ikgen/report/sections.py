@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from ikgen.report.behavior import behavior_section
 from ikgen.report.card_section import card_section
@@ -18,18 +18,23 @@ from ikgen.report.results import graph_section, poses_section, verification_sect
 from ikgen.report.roots_picture import loop_order, roots_blocks
 from ikgen.report.splits import splits_section
 from ikgen.report.steps import Writer, abbreviations, derived_section, step_section
+from ikgen.verify.verification_report import VerificationReport
 
 __all__ = ["SOLVED", "UNSOLVED"]
 
 
 def _card(page: SolvedPage) -> list[Block]:
     most = f"at most {page.derivation.module.max_solutions} a pose"
-    return card_section(page.reading, page.geometry, page.task, page.shown, most, page.reports)
+    return _arm(page, most, page.reports)
 
 
 def _unsolved_card(page: UnsolvedPage) -> list[Block]:
-    most = "no closed form was found"
-    return card_section(page.reading, page.geometry, page.task, page.shown, most, {})
+    return _arm(page, "no closed form was found", {})
+
+
+def _arm(page: Page, most: str, reports: Mapping[str, VerificationReport]) -> list[Block]:
+    arm = (page.reading, page.geometry, page.task, page.shown)
+    return card_section(*arm, most, reports, page.again)
 
 
 def _held(page: SolvedPage) -> list[Block]:
