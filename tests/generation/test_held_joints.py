@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
+from typing import Any
 
 import pytest
 from tests.support.redundant_arms import (
@@ -17,7 +18,7 @@ from tests.support.telescopes import telescope_robot
 
 from ikgen.elimination import elimination_plan
 from ikgen.emit.derivation import Derivation
-from ikgen.errors import VerificationError
+from ikgen.errors import UnsolvedChainError, VerificationError
 from ikgen.generation.advice import attempts
 from ikgen.generation.derive import derive
 from ikgen.generation.generate import generate
@@ -184,6 +185,37 @@ def test_choice_that_fails_the_verification_is_passed_over(
     monkeypatch.setattr("ikgen.generation.generate._emitted", refuse)
     with pytest.raises(VerificationError):
         generate(named, Outputs(out=tmp_path / "out"))
+
+
+def test_where_every_choice_fails_the_verification_that_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two joints on one line leave two choices; with none of the two held no chain is derived."""
+    seen: list[tuple[str, ...]] = []
+
+    def emitted(derivation: Derivation, *_: object) -> None:
+        assert derivation.held is not None
+        seen.append(derivation.held.joints)
+        raise VerificationError("wrong")
+
+    monkeypatch.setattr("ikgen.generation.generate._emitted", emitted)
+    with pytest.raises(VerificationError, match="wrong"):
+        generate(Request(TWO_ON_A_LINE, task="pose"), Outputs(out=tmp_path))
+    assert sorted(seen) == [("theta_5",), ("theta_6",)]
+
+
+def test_a_choice_that_fails_is_told_where_no_other_is_solved(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def derived(*arguments: Any) -> Derivation:
+        if arguments[-1]:
+            raise UnsolvedChainError("no closed form")
+        return derive(*arguments)
+
+    monkeypatch.setattr("ikgen.generation.generate.derive", derived)
+    monkeypatch.setattr("ikgen.generation.generate._emitted", refuse)
+    with pytest.raises(VerificationError, match="wrong"):
+        generate(Request(TWO_ON_A_LINE), Outputs(out=tmp_path))
 
 
 def refuse(*_: object) -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ikgen.errors import IkgenError, VerificationError
+from ikgen.errors import IkgenError, UnsolvedChainError, VerificationError
 from ikgen.generation.derive import derive
 from ikgen.generation.earlier import earlier_outputs
 from ikgen.generation.emitted_checks import verify_emitted
@@ -122,24 +122,31 @@ def make_texts(
     `UnsolvedChainError` where rows are missing of a form that was known not to have all.
 
     Where what was chosen for the arm fails, the next choice is taken: of joints to hold, of the tool's
-    axis, and in the end the whole pose.
+    axis, and in the end the whole pose. Where no other is left or solved, the last failure is told.
     """
+    from ikgen.generation.unsolved import incomplete_error
+
     tasks: list[str] = []
     held: list[tuple[str, ...]] = []
+    failed: VerificationError | None = None
     while True:
-        derivation = derive(request, progress, tasks, reading, held)
+        try:
+            derivation = derive(request, progress, tasks, reading, held)
+        except UnsolvedChainError:
+            if failed is None:
+                raise
+            raise incomplete_error(failed, request) from None
         try:
             made, reports = _emitted(derivation, emitters, outputs, progress)
             break
         except VerificationError as error:
-            if derivation.held is not None and len(held) < _REFUSED:
-                held.append(derivation.held.joints)
-            elif derivation.chosen and not derivation.task.whole_pose:
-                tasks.append(derivation.task.name)
-            else:
-                from ikgen.generation.unsolved import incomplete_error
-
-                raise incomplete_error(error, request) from None
+            failed = error
+        if derivation.held is not None and derivation.held.others and len(held) < _REFUSED:
+            held.append(derivation.held.joints)
+        elif derivation.chosen and not derivation.task.whole_pose:
+            tasks.append(derivation.task.name)
+        else:
+            raise incomplete_error(failed, request) from None
     for emitter in emitters:
         if emitter.tells_verification:
             progress("emit", emitter.name)
