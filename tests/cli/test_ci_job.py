@@ -9,11 +9,14 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import junitparser
 import pytest
 
 from ikgen.cli.main import run
+from ikgen.projects.proofs import _wrong
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
@@ -113,6 +116,26 @@ def test_the_action_points_at_what_cannot_be_read(package: Path) -> None:
     assert done.returncode == 2
     assert re.search(r"^::error file=elbow\.urdf,line=\d+::", done.stderr, re.M), done.stderr
     assert "could not check" in (package / "summary.md").read_text()
+
+
+def test_what_no_command_puts_right_is_told_in_words(package: Path) -> None:
+    module = package / "generated/arm_ik.py"
+    module.with_suffix(".hpp").write_text(module.read_text())
+    done = action(package, samples="20")
+    assert done.returncode == 1
+    (annotation,) = (x for x in done.stderr.splitlines() if x.startswith("::error"))
+    assert (
+        "nothing keeps it right. remove it, or generate" in annotation and "Run" not in annotation
+    )
+    assert "WRONG: is of an earlier run" in (package / "summary.md").read_text()
+    assert "Run `" not in (package / "summary.md").read_text()
+
+
+def test_a_derivation_that_does_not_hold_has_no_command_to_run() -> None:
+    wrong = SimpleNamespace(label="equation 1", reason="0 = 1", wrong=True)
+    proof = SimpleNamespace(equations=(wrong,), patterns=())
+    (finding,) = _wrong(cast(Any, proof), Path("arm.ikgen.json"))
+    assert (finding.command, finding.remedy) == ("", "please report it")
 
 
 def test_annotations_are_relative_to_the_checkout(

@@ -43,9 +43,9 @@ def _annotate(text: str, file: Path | None = None, line: int = 1) -> None:
 
 def _told(finding: Finding) -> str:
     """A finding and the way out in one line."""
-    if finding.exit_code == 1:
+    if finding.command:
         return f"{finding.message}. Run: {finding.command}"
-    return f"{finding.message}. {finding.command}".strip()
+    return f"{finding.message}. {finding.hint}".strip()
 
 
 def _in_workspace(file: Path) -> str:
@@ -77,7 +77,7 @@ def _table(results: Sequence[Recheck]) -> str:
             closure = f"{metres:.1e} m, {radians:.1e} rad"
             lines.append(f"| {name} | {label} | {report.samples} | {closure} | {verdict} |")
     findings = [finding for result in results for finding in result.findings]
-    commands = dict.fromkeys(f.command for f in findings if f.exit_code == 1)
+    commands = dict.fromkeys(f.command for f in findings if f.command)
     fixes = "".join(f"\nRun `{command}` and commit what it writes.\n" for command in commands)
     return "\n".join(lines) + f"\n{fixes}\n"
 

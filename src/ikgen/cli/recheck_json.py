@@ -21,7 +21,7 @@ def as_dict(results: Sequence[Recheck], code: int) -> dict[str, Any]:
     }
     if code:
         count = sum(not result.passed for result in results)
-        hints = [f.command for result in results for f in result.findings if f.command]
+        hints = [f.remedy for result in results for f in result.findings if f.remedy]
         message = f"{count} of {len(results)} outputs are wrong or could not be checked"
         found["error"] = as_object(message, "\n".join(dict.fromkeys(hints)), code)
     return found
@@ -45,6 +45,6 @@ def _finding(finding: Finding) -> dict[str, Any]:
     return {
         "file": finding.file.as_posix(),
         "message": finding.message,
-        "command": finding.command,
+        "command": finding.remedy,
         "deviation": None if metres is None else {"m": metres, "rad": radians},
     }

@@ -105,8 +105,8 @@ def _print(results: Sequence[Recheck], *, as_json: bool, quiet: bool, verbose: b
             click.echo(verification_tables(result.reports), err=True)
         for finding in result.findings:
             click.echo(f"error: {_placed(finding)}", err=True)
-        for command in dict.fromkeys(f.command for f in result.findings if f.command):
-            click.echo(f"hint: {command}", err=True)
+        for remedy in dict.fromkeys(f.remedy for f in result.findings if f.remedy):
+            click.echo(f"hint: {remedy}", err=True)
         if not quiet and not as_json:
             click.echo(_line(result))
             for remark in result.proof.remarks if result.proof else ():

@@ -21,16 +21,23 @@ HALF_IN_PLACE = "a killed run left its files half in place"
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One thing that is wrong: about which file, what, and what puts it right (a command, or words);
-    `deviation` (m, rad) of the forward kinematics where those are another geometry's. `exit_code` is 1
-    for wrong outputs, else that of the error that kept them from being checked."""
+    """One thing that is wrong: about which file, what, and what puts it right: a `command` to type, or
+    where there is none ("") a `hint` in words; `deviation` (m, rad) of the forward kinematics where those
+    are another geometry's. `exit_code` is 1 for wrong outputs, else that of the error that kept them from
+    being checked."""
 
     file: Path
     message: str
-    command: str
+    command: str = ""
     deviation: tuple[float, float] | None = None
     exit_code: int = 1
     line: int = 1
+    hint: str = ""
+
+    @property
+    def remedy(self) -> str:
+        """What puts it right, whichever there is."""
+        return self.command or self.hint
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,5 +73,5 @@ def unchecked(path: Path, record: Record | None, error: IkgenError) -> Recheck:
     named = error.file if isinstance(error, BadDescriptionError) else ""
     line = (error.line if isinstance(error, BadDescriptionError) else None) or 1
     file = Path(named) if named else path
-    finding = Finding(file, error.message, error.hint, None, error.exit_code, line)
+    finding = Finding(file, error.message, exit_code=error.exit_code, line=line, hint=error.hint)
     return Recheck(path, record, (finding,))

@@ -111,7 +111,7 @@ class OutputChecks:
         if isinstance(error, BadDescriptionError | VerificationError):
             return self._wrong(name, error.message)
         # no compiler, a plug-in that fails: not the output's fault
-        return Finding(self._file(name), error.message, error.hint, None, error.exit_code)
+        return Finding(self._file(name), error.message, exit_code=error.exit_code, hint=error.hint)
 
     def _gone(self, file: str) -> bool:
         """Whether a file is one that the record has and its folder has not."""

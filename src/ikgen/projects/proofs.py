@@ -36,7 +36,9 @@ def proved(result: Recheck, robot: Path | None, progress: Progress) -> Recheck:
 def _wrong(proof: Proof, path: Path) -> tuple[Finding, ...]:
     return tuple(
         Finding(
-            path, f"its derivation does not hold: {one.label}: {one.reason}", "please report it"
+            path,
+            f"its derivation does not hold: {one.label}: {one.reason}",
+            hint="please report it",
         )
         for one in (*proof.equations, *proof.patterns)
         if one.wrong

@@ -81,9 +81,9 @@ def _edited(record: Record, fix: str) -> list[Finding]:
 def _left_over(record: Record) -> list[Finding]:
     """Outputs of an earlier run beside those of the record, which nobody keeps up to date."""
     message = "is of an earlier run and not in the record, so that nothing keeps it right"
-    fix = f"remove it, or generate again with --emit {','.join(record.emit)},..."
+    hint = f"remove it, or generate again with --emit {','.join(record.emit)},..."
     found = left_over(record.folder, record.name, [record.folder / name for name in record.files])
-    return [Finding(path, message, fix) for path in found]
+    return [Finding(path, message, hint=hint) for path in found]
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,8 +127,9 @@ def _checked(record: Record, reading: Reading, run: _Run) -> Recheck:
         missing = Finding(
             record.path,
             f"not checked: no numbers for {blanks}",
-            f"give them, by the table's names, under [parameters] of {record.request.robot}, then {fix}",
             exit_code=2,
+            hint="give them, by the table's names, under [parameters] of "
+            f"{record.request.robot}, then {fix}",
         )
         # what cannot run cannot show that only a remark changed
         old = Finding(record.path, "made from an earlier description", fix)

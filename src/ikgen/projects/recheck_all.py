@@ -43,8 +43,8 @@ def recheck_all(
     results = []
     for path, command in _records(target, robot):
         if not path.is_file() and interrupted(path.parent):
-            command = command or f"ikgen build, or the command that wrote to '{path.parent}', again"
-            half = Finding(path, HALF_IN_PLACE, command)
+            hint = f"ikgen build, or the command that wrote to '{path.parent}', again"
+            half = Finding(path, HALF_IN_PLACE, command or "", hint=hint)
             results.append(Recheck(path, None, (half,)))
             continue
         record = None
@@ -114,7 +114,7 @@ def write_junit(path: Path, results: Sequence[Recheck]) -> None:
     for result in results:
         record = result.record
         checks = tuple(
-            CheckResult("up to date", False, 1, 1, detail=f.message, worst_case=f.command)
+            CheckResult("up to date", False, 1, 1, detail=f.message, worst_case=f.remedy)
             for f in result.findings
         ) or (CheckResult("up to date", True, len(record.files) if record else 0),)
         request = record.request if record else None
