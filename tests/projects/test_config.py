@@ -185,6 +185,17 @@ def test_pyproject(tmp_path: Path) -> None:
     assert arm.request.robot == tmp_path / "r.urdf" and arm.request.free == {"j": None}
 
 
+def test_a_pyproject_in_another_encoding_is_a_config_that_is_told(tmp_path: Path) -> None:
+    path = tmp_path / "pyproject.toml"
+    path.write_bytes("[project]\nauthors = ['Müller']\n".encode("latin-1"))
+    assert default_config(tmp_path) is None
+    path.write_bytes(path.read_bytes() + b"[[tool.ikgen.arm]]\nname = 'a'\n")
+    assert default_config(tmp_path) == path
+    with pytest.raises(BadDescriptionError, match="utf-8") as caught:
+        load_config(path)
+    assert "save it as UTF-8" in caught.value.hint
+
+
 def test_depfile_escapes() -> None:
     text = depfile_text("build/a.stamp", [Path("/a b/c#d$.urdf"), Path("/x")])
     assert text == "build/a.stamp: /a\\ b/c\\#d$$.urdf /x\n"

@@ -50,9 +50,12 @@ def default_config(folder: Path) -> Path | None:
     if (folder / CONFIG).is_file():
         return folder / CONFIG
     project = folder / PYPROJECT
-    if project.is_file() and re.search(r"^\[+\s*tool\.ikgen", project.read_text("utf-8"), re.M):
-        return project
-    return None
+    if not project.is_file():
+        return None
+    text = project.read_text(
+        "utf-8", errors="replace"
+    )  # what is not UTF-8 is told where it is loaded
+    return project if re.search(r"^\[+\s*tool\.ikgen", text, re.M) else None
 
 
 def named_config(path: Path | None) -> Path:
