@@ -185,6 +185,14 @@ def test_pyproject(tmp_path: Path) -> None:
     assert arm.request.robot == tmp_path / "r.urdf" and arm.request.free == {"j": None}
 
 
+@pytest.mark.parametrize("text", ["", "tool = 1", "[tool]\nikgen = 1", "[tool.other]"])
+def test_a_pyproject_without_a_table_of_ikgen_is_told(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "pyproject.toml"
+    path.write_text(text)
+    with pytest.raises(BadDescriptionError, match=r"has no \[tool.ikgen\]"):
+        load_config(path)
+
+
 def test_a_pyproject_in_another_encoding_is_a_config_that_is_told(tmp_path: Path) -> None:
     path = tmp_path / "pyproject.toml"
     path.write_bytes("[project]\nauthors = ['Müller']\n".encode("latin-1"))

@@ -155,10 +155,11 @@ def _tables(path: Path, text: str) -> dict[str, Any]:
         raise _error(path, f"not TOML: {error}", line=line, hint=conflict_or(text, hint)) from None
     if path.name != PYPROJECT:
         return data
-    tool = data.get("tool", {}).get("ikgen")
-    if not isinstance(tool, dict):
+    tools = data.get("tool")
+    found = tools.get("ikgen") if isinstance(tools, dict) else None
+    if not isinstance(found, dict):
         raise _error(path, "has no [tool.ikgen]", hint="add [[tool.ikgen.arm]] tables")
-    return tool
+    return found
 
 
 def _error(path: Path, message: str, *, line: int | None = None, hint: str) -> BadDescriptionError:
