@@ -34,3 +34,11 @@ def test_what_is_no_list_of_files_is_refused(files: str, tmp_path: Path) -> None
     config.write_text(TABLE.format(files=files))
     with pytest.raises(BadDescriptionError, match=r"ikgen.toml:4: arm\[0\].calibration"):
         load_config(config)
+
+
+def test_a_name_that_is_taken_behind_a_fleet_is_told_with_its_line(tmp_path: Path) -> None:
+    config = tmp_path / "ikgen.toml"
+    fleet = TABLE.format(files='["left.yaml", "right.yaml"]')
+    config.write_text(f'{fleet}[[arm]]\nname = "cell_left"\nrobot = "ur5e.urdf"\n')
+    with pytest.raises(BadDescriptionError, match=r"ikgen.toml:6: arm\[1\].name: two arms named"):
+        load_config(config)

@@ -80,7 +80,7 @@ def load_config(path: Path) -> tuple[ArmConfig, ...]:
         tables = data.get("arm", [])
         if not isinstance(tables, list) or not tables:
             raise _error(path, "lists no arm", hint="add a table [[arm]] with name and robot")
-        arms = [arm for i, table in enumerate(tables) for arm in _arms(decoder, table, i)]
+        arms = [(i, arm) for i, table in enumerate(tables) for arm in _arms(decoder, table, i)]
         _check_places(arms)
     except CodecError as error:
         line = line_of(text, error.where)
@@ -89,7 +89,7 @@ def load_config(path: Path) -> tuple[ArmConfig, ...]:
             or "the reference of ikgen.toml says what each entry is; ikgen init writes one"
         )
         raise _error(path, str(error), line=line, hint=hint) from None
-    return tuple(arms)
+    return tuple(arm for _, arm in arms)
 
 
 def _arms(decoder: Decoder, table: Any, index: int) -> Iterator[ArmConfig]:
@@ -122,16 +122,16 @@ def _arm(decoder: Decoder, table: Any, index: int) -> ArmConfig:
     return arm
 
 
-def _check_places(arms: Sequence[ArmConfig]) -> None:
-    """No two arms may have the same outputs."""
-    places = [(arm.outputs.out, arm.name) for arm in arms]
-    for i, place in enumerate(places):
-        if place in places[:i]:
+def _check_places(arms: Sequence[tuple[int, ArmConfig]]) -> None:
+    """No two arms, each with the index of its table, may have the same outputs."""
+    seen: set[tuple[Path, str]] = set()
+    for index, arm in arms:
+        folder, name = place = arm.outputs.out, arm.name
+        if place in seen:
             raise CodecError(
-                f"arm[{i}].name",
-                f"two arms named '{place[1]}' in '{place[0]}'",
-                "rename one of them",
+                f"arm[{index}].name", f"two arms named '{name}' in '{folder}'", "rename one of them"
             )
+        seen.add(place)
 
 
 def _text(path: Path) -> str:
