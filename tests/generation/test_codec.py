@@ -12,6 +12,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from ikgen.errors import shown
 from ikgen.generation.codec import CodecError, Decoder, encode, inlined, read_free, uncoded
 from ikgen.generation.request import Outputs, Request
 
@@ -63,6 +64,7 @@ def test_there_and_back() -> None:
         ({"sure": 1}, "outer.sure: 1 is not a boolean"),
         ({"low": "x"}, "outer.low: 'x' is not a number"),
         ({"low": float("nan")}, "outer.low: nan is not a finite number"),
+        ({"low": 10**400}, f"outer.low: {shown(10**400)} is not a finite number"),
         ({"inner": []}, "outer.inner is no table"),
         ({"inner": {}}, "outer.inner has no 'low'"),
         ({"inner": {"low": 0, "names": ["x", 1]}}, "outer.inner.names[1]: 1 is not a string"),

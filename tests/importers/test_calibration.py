@@ -150,6 +150,7 @@ def test_the_page_on_fleets_has_a_row_for_each_of_the_arm() -> None:
         ),
         ("kinematics: {shoulder: {x: 0}}", "has not the numbers"),
         (OWN.replace("0.16236", "high"), "shoulder.z .* not a finite number"),
+        (OWN.replace("0.16236", "9" * 400), "shoulder.z .* not a finite number"),
         ("kinematics: {", "not YAML"),
     ],
 )
@@ -165,6 +166,7 @@ def test_what_is_no_calibration_is_refused(text: str, said: str, tmp_path: Path)
         ("[[joints]]\na = 1\n", "no calibration of 2 rows"),
         ("[[joints]]\nb = 1\n[[joints]]\n", "unknown entry 'b'"),
         ("[[joints]]\na = 'x'\n[[joints]]\n", "not a finite number"),
+        (f"[[joints]]\na = {10**400}\n[[joints]]\n", "row 1, a .* not a finite number"),
         ("[[joints]\n", "not TOML"),
     ],
 )

@@ -19,6 +19,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
+from ikgen.errors import shown
+
 __all__ = [
     "CodecError",
     "Decoder",
@@ -152,9 +154,12 @@ def _plain(kind: type, value: Any, where: str) -> Any:
     allowed = (int, float) if kind is float else kind
     if not isinstance(value, allowed) or (isinstance(value, bool) and kind is not bool):
         raise CodecError(where, f"{value!r} is not a {_WORDS[kind]}")
-    plain = kind(value)
+    try:
+        plain = kind(value)
+    except OverflowError:  # an integer that is larger than any float
+        plain = math.inf
     if isinstance(plain, float) and not math.isfinite(plain):
-        raise CodecError(where, f"{value!r} is not a finite number")
+        raise CodecError(where, f"{shown(value)} is not a finite number")
     return plain
 
 

@@ -14,7 +14,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ikgen.errors import BadDescriptionError
+from ikgen.errors import BadDescriptionError, shown
 from ikgen.importers.merge_conflict import conflict_or
 from ikgen.importers.toml_text import parse_toml
 
@@ -148,12 +148,13 @@ def _row(joint: Any, number: int, path: Path) -> Iterator[tuple[str, float]]:
 
 
 def _number(value: Any, where: str, path: Path) -> float:
-    if isinstance(value, str):  # YAML 1.1 takes 2e-05 for a text
-        with suppress(ValueError):
-            value = float(value)
-    if isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
-        return float(value)
-    problem = f"{where} of the calibration is {value!r}, not a finite number"
+    number = math.nan
+    if isinstance(value, str | int | float) and not isinstance(value, bool):
+        with suppress(ValueError, OverflowError):
+            number = float(value)  # YAML 1.1 takes 2e-05 for a text
+    if math.isfinite(number):
+        return number
+    problem = f"{where} of the calibration is {shown(value)}, not a finite number"
     raise BadDescriptionError(problem, file=str(path), hint="write it as a number, in m or rad")
 
 
