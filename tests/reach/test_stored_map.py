@@ -72,6 +72,9 @@ def test_what_is_no_map_is_told(text: bytes, tmp_path: Path) -> None:
     np.savez(tmp_path / "other.npz", a=np.zeros(3))
     with pytest.raises(BadDescriptionError, match="not a map"):
         read_map(tmp_path / "other.npz")
+    np.save(tmp_path / "array.npy", np.zeros(3))
+    with pytest.raises(BadDescriptionError, match=r"array\.npy: not a map: an array alone"):
+        read_map(tmp_path / "array.npy")
     pytest.importorskip("zarr")
     with pytest.raises(BadDescriptionError, match="not a map"):
         read_map(tmp_path)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.lib.npyio import NpzFile
 
 from ikgen.errors import BadDescriptionError, MissingToolError
 from ikgen.generation.publish import Content
@@ -83,7 +84,10 @@ def read_map(path: Path) -> ReachMap:
 
 
 def _by_numpy(path: Path) -> ReachMap:
-    with np.load(path) as data:
+    data = np.load(path)
+    if not isinstance(data, NpzFile):
+        raise ValueError("an array alone")
+    with data:
         return _map(data, data)
 
 
