@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +16,7 @@ from ikgen.errors import UnknownNameError, UsageError
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
 from ikgen.model.dh import DHChain
-from ikgen.tasks import TASKS, WHOLE_POSE, find_task
+from ikgen.tasks import AXES, TASKS, WHOLE_POSE, Task, find_task
 from ikgen.tasks.fitting import (
     fits,
     fitting_tasks,
@@ -23,8 +25,12 @@ from ikgen.tasks.fitting import (
     keeps_heading_level,
     over_constrained,
 )
+from ikgen.verify.runners.python_module import _task_name
 
 FIXTURES = Path(__file__).resolve().parents[2] / "urdf_fixtures"
+
+APPROACH = Task("approach", frozenset({"r31"}), 1, "elevation of the tool's x axis", axis="x")
+"""As another package has it."""
 
 # Yaw, two parallel joints and a roll about the tool's z axis: its direction does not see the roll.
 ROLL = """
@@ -156,3 +162,18 @@ def test_entries_are_known_in_dh_frames_where_all_their_parts_are_read(tmp_path:
     c, s = np.cos(0.3), np.sin(0.3)
     tilt = np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
     assert readable_in_dh(turned(dh, tilt), pitch) == {"px", "py", "pz"}
+
+
+def test_the_bare_name_of_a_task_is_by_its_first_axis(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of tasks of other packages too: what is named alone is found by that name again."""
+    plug_in = SimpleNamespace(load=lambda kind: APPROACH)
+    monkeypatch.setattr("ikgen.tasks.find_plug_in", lambda *_: plug_in)
+    for task in (APPROACH, *(task for task in TASKS if task.axis)):
+        for axis in AXES:
+            other = find_task(task.name, axis)
+            assert find_task(other.name) == other and other.axis == axis
+            assert (other.name == task.name) == (axis == task.axis)
+            assert other.along(task.axis) == task
+    assert find_task("approach", "z").readable == {"r33"}
+    module: Any = SimpleNamespace(TASK="approach", TOOL_AXIS="z")
+    assert _task_name(module) == "approach:z"

@@ -102,9 +102,9 @@ def test_constants_are_read(tmp_path: Path) -> None:
         3,
         None,
     )
-    more = "TOOL_AXIS, _FREE_DEFAULTS = 'x', (0.5,)\n"
+    more = "TASK, TOOL_AXIS, _FREE_DEFAULTS = 'position-pitch', 'x', (0.5,)\n"
     constants = runner(tmp_path, more).constants
-    assert (constants.task, constants.free_defaults) == ("position:x", (0.5,))
+    assert (constants.task, constants.free_defaults) == ("position-pitch:x", (0.5,))
     with pytest.raises(BadDescriptionError, match="lacks TIP_LINK"):
         runner(tmp_path, "del TIP_LINK")
 

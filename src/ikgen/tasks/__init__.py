@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from ikgen.errors import UnknownNameError, UsageError
 from ikgen.plugins import find_plug_in, plug_ins
 
-__all__ = ["AXES", "TASKS", "WHOLE_POSE", "Task", "find_task", "first_axis", "task_names"]
+__all__ = ["AXES", "TASKS", "WHOLE_POSE", "Task", "find_task", "task_names"]
 
 AXES = ("x", "y", "z")
 """The tool's axes, by which a task with a direction goes."""
@@ -32,7 +32,8 @@ _ORIENTATIONS = {
 class Task:
     """A task reads the pose entries `readable` (rows and columns from 1) and fixes `freedoms` of the
     tip's six; `aliases` are IKFast's names, which MoveIt users know. `axis` is the tool's axis that a task
-    with a direction, an elevation or a heading reads ("": the task has none)."""
+    with a direction, an elevation or a heading reads ("": the task has none), `first` that of its name
+    alone where `axis` is another."""
 
     name: str
     readable: frozenset[str]
@@ -40,6 +41,7 @@ class Task:
     words: str
     aliases: tuple[str, ...] = ()
     axis: str = ""
+    first: str = ""
 
     @property
     def stem(self) -> str:
@@ -61,8 +63,9 @@ class Task:
             n[:-1] + new if n[0] == "r" and n[-1] == old else n for n in self.readable
         )
         words = self.words.replace(f"tool's {self.axis} axis", f"tool's {axis} axis")
-        name = self.stem if axis == first_axis(self.stem) else f"{self.stem}:{axis}"
-        return replace(self, name=name, readable=readable, words=words, axis=axis)
+        first = self.first or self.axis
+        name, first = (self.stem, "") if axis == first else (f"{self.stem}:{axis}", first)
+        return replace(self, name=name, readable=readable, words=words, axis=axis, first=first)
 
     @property
     def whole_pose(self) -> bool:
@@ -127,11 +130,6 @@ TASKS: tuple[Task, ...] = (
         "z",
     ),
 )
-
-
-def first_axis(stem: str) -> str:
-    """The tool's axis by which a task goes whose name says none."""
-    return next((task.axis for task in TASKS if task.name == stem), "") or "z"
 
 
 def _with_axis() -> list[str]:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ikgen.errors import BadDescriptionError
-from ikgen.tasks import first_axis
+from ikgen.tasks import find_task
 from ikgen.verify.runners.module_helpers import Answer, solve_with_helpers
 from ikgen.verify.runners.runner import ArmConstants, Rows, Stack
 
@@ -58,9 +58,8 @@ def _load(path: Path) -> ModuleType:
 
 def _task_name(module: ModuleType) -> str:
     """The task with the tool's axis, where that is not the task's first."""
-    task, first = str(module.TASK), first_axis(str(module.TASK))
-    axis = getattr(module, "TOOL_AXIS", first)
-    return task if axis == first else f"{task}:{axis}"
+    task, axis = str(module.TASK), getattr(module, "TOOL_AXIS", None)
+    return task if axis is None else find_task(task, axis).name
 
 
 class PythonModule:
