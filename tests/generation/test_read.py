@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from tests.support.solving import FIXTURES
 from ikgen.errors import BadDescriptionError, UsageError
 from ikgen.generation.read import default_name, read, read_tree
 from ikgen.generation.request import Request
+from ikgen.projects.config import load_config
 
 
 def test_locked_joints_keep_inside_their_limits(tmp_path: Path) -> None:
@@ -28,6 +30,21 @@ def test_something_is_left_to_move(tmp_path: Path) -> None:
     assert len(some.free_indices) == some.dof - 1
     with pytest.raises(UsageError, match="every joint is held"):
         read(Request(robot, free=dict.fromkeys(joints)))
+
+
+def test_a_joint_is_held_or_locked(tmp_path: Path) -> None:
+    """However it is asked for: a config knows no options."""
+    robot = write_robot(tmp_path / "elbow.urdf")
+    config = tmp_path / "ikgen.toml"
+    both = 'free = ["elbow"]\nlock = { elbow = 0.1 }\n'
+    config.write_text(f'[[arm]]\nname = "arm"\nrobot = "{robot.name}"\n{both}')
+    (arm,) = load_config(config)
+    table = Request(FIXTURES / "scara_standard.toml")
+    first = read(table).dh.joints[0].name
+    for request in (arm.request, replace(table, free={first: None}, lock={first: 0.1})):
+        with pytest.raises(UsageError, match=r"is both held \(free\) and locked") as caught:
+            read(request)
+        assert "leave one out" in caught.value.hint
 
 
 def test_locked_joints_of_a_table(tmp_path: Path) -> None:

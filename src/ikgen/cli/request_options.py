@@ -41,19 +41,14 @@ def make_request(
         if not folder.is_dir():
             hint = "name the folder that holds the package's folder"
             raise UsageError(f"--package-path {folder}: no such directory", hint=hint)
-    held, locked = parse_free(free), parse_locked(lock)
-    for joint in held:
-        if joint in locked:
-            hint = "--free keeps it an argument of solve, --lock fixes it: leave one out"
-            raise UsageError(f"joint '{joint}' is given to both --free and --lock", hint=hint)
     return Request(
         robot=robot,
         base=base,
         tip=tip,
         task=task,
         tool_axis=tool_axis,
-        free=held,
-        lock=locked,
+        free=parse_free(free),
+        lock=parse_locked(lock),
         couple=parse_coupled(couple),
         args=_arguments(args),
         package_paths=tuple(package_paths),

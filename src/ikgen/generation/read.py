@@ -32,6 +32,7 @@ _ABOUT_JOINT = re.compile(r": joint '(.*?)': ")
 def read(request: Request, tree: JointTree | None = None) -> Reading:
     """Read the file, choose the chain and convert it to modified DH form. `tree` is the file's where it was
     read before."""
+    _check_held_once(request)
     reading = _with_motors(_with_parts(_read(request, tree), request), request)
     _check_units(request, reading.dh.held_inputs)
     if len(reading.dh.free_indices) == reading.dh.dof:
@@ -39,6 +40,16 @@ def read(request: Request, tree: JointTree | None = None) -> Reading:
             "every joint is held: nothing is left to solve for", hint="hold fewer by --free"
         )
     return _with_elbow(reading) if reading.dh.arm_angle else reading
+
+
+def _check_held_once(request: Request) -> None:
+    """Raises `UsageError` for a joint that is to be held and locked."""
+    for joint in request.free:
+        if joint in request.lock:
+            raise UsageError(
+                f"joint '{joint}' is both held (free) and locked (lock)",
+                hint="free keeps it an argument of solve, lock fixes it for good: leave one out",
+            )
 
 
 def _with_parts(reading: Reading, request: Request) -> Reading:

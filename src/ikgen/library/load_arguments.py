@@ -40,19 +40,15 @@ def checked_request(
 ) -> Request:
     """The request that the arguments make; raises `ArgumentError` that names the wrong one."""
     file = _robot(robot)
-    held, locked = _held(free), _locked(lock)
     axis = _text("tool_axis", tool_axis, '"x", "y" or "z"')
-    for joint in held:
-        if joint in locked:
-            raise ArgumentError(f"joint '{joint}' is in both free and lock", hint="leave one out")
     request = Request(
         robot=file,
         base=_text("base", base, "the name of a link, as in the file"),
         tip=_text("tip", tip, "the name of a link, as in the file"),
         task=_task(task, axis),
         tool_axis=axis,
-        free=held,
-        lock=locked,
+        free=_held(free),
+        lock=_locked(lock),
         couple=_coupled(couple),
         args=_xacro_arguments(args),
         calibration=_calibration(calibration),

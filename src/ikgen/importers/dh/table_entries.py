@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ikgen.errors import UnknownNameError, UsageError
+from ikgen.errors import UnknownNameError
 from ikgen.importers.dh.constant_names import symbol_of
 from ikgen.importers.dh.entry_expression import BadEntryError, Quantity, evaluate, finite, number
 from ikgen.importers.dh.entry_limits import read_limits
@@ -181,9 +181,6 @@ def locked_entries(
     for name in (*locked, *free):
         if name not in names and (name in locked or name != ARM_ANGLE_OPTION):
             raise UnknownNameError("joint in the table", name, names)
-    both = sorted(set(locked) & set(free))
-    if both:
-        raise UsageError(f"joint '{both[0]}' is both locked and free", hint="choose one of the two")
     out: list[Entry] = []
     for entry in entries:
         if entry.kind == "fixed" or entry.name not in locked:
