@@ -5,12 +5,15 @@ from __future__ import annotations
 import importlib.util
 import shutil
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 import pytest
+from tests.support.small_robots import elbow_robot
 
 import ikgen
 from ikgen.errors import ArgumentError, MissingToolError
+from ikgen.library.compilation import CompiledArm, _compare
 
 ELBOW = Path(__file__).resolve().parents[2] / "examples/setuptools_robot/urdf/elbow.urdf"
 UR5E = Path(__file__).resolve().parents[2] / "urdf_fixtures/ur5e.urdf"
@@ -37,6 +40,18 @@ def test_what_is_missing_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(MissingToolError, match="nanobind") as caught:
         ikgen.compile(arm)
     assert "ikgen[compile]" in caught.value.hint
+
+
+@pytest.mark.parametrize(("lower", "upper"), [(3.5, 4.5), (-9.0, -8.0)])
+def test_limits_beyond_half_a_turn_are_compared_too(
+    tmp_path: Path, lower: float, upper: float
+) -> None:
+    robot = tmp_path / "arm.urdf"
+    text = elbow_robot().replace('lower="-2.5" upper="2.5"', f'lower="{lower}" upper="{upper}"', 1)
+    robot.write_text(text)
+    arm = ikgen.load(robot, verify=False)
+    assert arm.lower[0] == lower
+    _compare(arm, cast(CompiledArm, arm))
 
 
 @pytest.mark.slow

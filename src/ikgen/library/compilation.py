@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ikgen.errors import MissingToolError, VerificationError
+from ikgen.kinematics.joint_box import joint_box
 from ikgen.library.load_arguments import wrong
 from ikgen.library.loaded_arm import Arm, Array
 from ikgen.library.solver_cache import cache_folder
@@ -170,7 +171,7 @@ def _loaded(folder: Path, package: str) -> ModuleType:
 def _compare(arm: Arm, compiled: CompiledArm) -> None:
     """The rows of some poses; both are the same program, of which the Python module was verified."""
     rng = np.random.default_rng(0)
-    low, high = np.maximum(arm.lower, -np.pi), np.minimum(arm.upper, np.pi)
+    low, high = joint_box(arm.derivation.dh, np.pi, 2.0 * np.pi)
     poses = arm.forward(rng.uniform(low, high, (_POSES, arm.dof)))
     mine, theirs = compiled.solve_batch(poses), arm.solve_batch(poses)
     if not np.array_equal(mine[1], theirs[1]) or not np.allclose(
