@@ -15,12 +15,16 @@ from tests.support.small_robots import write_robot
 from tests.support.solving import FIXTURES
 
 from ikgen.cli.main import run
+from ikgen.errors import UsageError
+from ikgen.generation.derive import derive
 from ikgen.generation.held_needs import needs_held
 from ikgen.generation.inspection import inspect_robot
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
 from ikgen.tasks import find_task
 from ikgen.tasks.fitting import freedoms_barely_moved, freedoms_fixed
+
+TABLES = Path(__file__).resolve().parents[1] / "robots/tables"
 
 
 def test_pose_that_nobody_asked_for_is_refused_where_a_held_joint_is_needed(
@@ -115,3 +119,19 @@ def test_exact_axes_leave_nothing_barely_moved(tmp_path: Path) -> None:
         run(["from-urdf", str(robot), "--task", "rotation", "-o", str(tmp_path), "--no-verify"])
         == 0
     )
+
+
+def test_a_tool_axis_is_refused_at_once_where_the_whole_pose_is_left(tmp_path: Path) -> None:
+    redundant = tmp_path / "arm.urdf"
+    redundant.write_text(serial_urdf("arm", SHOULDER_ELBOW_WRIST))
+    told: list[str] = []
+    for robot in (FIXTURES / "doosan_m1013.urdf", redundant):
+        with pytest.raises(UsageError, match="no single axis of the tool") as caught:
+            derive(Request(robot, tool_axis="x"), lambda stage, _: told.append(stage))
+        assert "--task" in caught.value.hint
+    assert told == 2 * ["read", "derive"]
+
+
+def test_a_tool_axis_is_taken_where_a_joint_is_spare_and_five_are_left() -> None:
+    table = TABLES / "Chair6DOF.toml"
+    assert derive(Request(table, tool_axis="y")).task.name == "position-direction:y"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from ikgen import __version__
 from ikgen.emit.derivation import Derivation, Unsolved
 from ikgen.generation.closed_forms import closed_form
-from ikgen.generation.held_needs import check_held, check_task
+from ikgen.generation.held_needs import check_held, check_task, check_tool_axis
 from ikgen.generation.progress import Progress, silent
 from ikgen.generation.read import default_name, read
 from ikgen.generation.report_command import report_command
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ikgen.emit.solver_module import SolverModule
     from ikgen.generation.request import Request
     from ikgen.generation.task_forms import ClosedForm
+    from ikgen.kinematics.classify import GeometryClass
     from ikgen.program.statements import Program
 
 __all__ = ["derive"]
@@ -50,6 +51,7 @@ def derive(
     file_class = classify(reading.dh).name
     progress("derive", file_class)
     check_task(request, reading.dh)
+    check_tool_axis(request, reading.dh)
     demand = Demand(request.named_task, passed_over, progress, tuple(refused), request.tool_axis)
     found = closed_form(reading, demand)
     if request.tool_axis is not None:
@@ -65,16 +67,17 @@ def derive(
         raise unsolved_error(stuck, request)
     check_held(request, found.reading.dh, found.task, passed_over)
     found, program = settled_form(found, progress)
-    module = _module(name, request, found, program)
+    module = _module(name, request, found, program, geometry)
     unasked = request.task is None
     passed = tuple(passed_over) if unasked else ()
     how = (found.task, found.graph, module, again, unasked, found.held, passed, file_class)
     return Derivation(found.reading, geometry, *how)
 
 
-def _module(name: str, request: Request, found: ClosedForm, program: Program) -> SolverModule:
+def _module(
+    name: str, request: Request, found: ClosedForm, program: Program, geometry: GeometryClass
+) -> SolverModule:
     from ikgen.emit.solver_module import SolverModule
-    from ikgen.kinematics.classify import classify
     from ikgen.kinematics.free_joints import free_defaults
     from ikgen.lowering.elimination_program import elimination_name
 
@@ -90,7 +93,7 @@ def _module(name: str, request: Request, found: ClosedForm, program: Program) ->
         source_name=request.robot.name,
         source_sha256=reading.source.sha256,
         generator_version=__version__,
-        geometry=classify(dh).words,
+        geometry=geometry.words,
         order=(f"all joints ({elimination_name(dh)} elimination)",) if plan else graph.order,
         plan=plan,
         maintainer=request.maintainer,

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ikgen.model.dh import DHChain
     from ikgen.tasks import Task
 
-__all__ = ["check_held", "check_task", "needs_held"]
+__all__ = ["check_held", "check_task", "check_tool_axis", "needs_held"]
 
 
 def needs_held(dh: DHChain, task: Task) -> bool:
@@ -51,6 +51,16 @@ def check_task(request: Request, dh: DHChain) -> None:
         "freedoms that the task fixes, and the others by no more than rounding tilts their axes",
         hint=other if able else f"{other}: `ikgen inspect` lists those that fit",
     )
+
+
+def check_tool_axis(request: Request, dh: DHChain) -> None:
+    """Raises `UsageError` for an axis without a task where the arm moves all of a pose: no other fits."""
+    from ikgen.tasks import find_task
+    from ikgen.tasks.fitting import freedoms_moved
+
+    pose, axis = find_task("pose"), request.tool_axis
+    if axis is not None and request.task is None and freedoms_moved(dh, pose) == pose.freedoms:
+        pose.along(axis)
 
 
 def check_held(request: Request, dh: DHChain, task: Task, passed_over: Collection[str]) -> None:
