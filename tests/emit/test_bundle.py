@@ -86,7 +86,9 @@ def test_a_class_tells_what_its_members_are() -> None:
     assert summary("Ends: rows `q`; errors. More.", short=False) == "Ends: rows `q`; errors."
 
 
-@pytest.mark.parametrize("robot", ["kuka_kr6r900sixx", "doosan_m1013", "franka_fr3", "fanuc_crx10ia"])
+@pytest.mark.parametrize(
+    "robot", ["kuka_kr6r900sixx", "doosan_m1013", "franka_fr3", "fanuc_crx10ia"]
+)
 def test_comments_of_a_module_name_what_it_has(robot: str) -> None:
     text = emit_module(derive(Request(FIXTURES / f"{robot}.urdf")).module)
     words = {

@@ -52,9 +52,8 @@ def default_config(folder: Path) -> Path | None:
     project = folder / PYPROJECT
     if not project.is_file():
         return None
-    text = project.read_text(
-        "utf-8", errors="replace"
-    )  # what is not UTF-8 is told where it is loaded
+    # what is not UTF-8 is told where it is loaded
+    text = project.read_text("utf-8", errors="replace")
     return project if re.search(r"^\[+\s*tool\.ikgen", text, re.M) else None
 
 
