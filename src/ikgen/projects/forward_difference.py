@@ -27,11 +27,10 @@ def forward_difference(runner: Any, oracle: Oracle, dh: DHChain) -> ForwardDiffe
     """The largest difference over random configurations; None if they agree."""
     import numpy as np
 
-    rng = np.random.default_rng(0)
-    limits = [joint.limits for joint in dh.joints]
-    low = np.array([max(x.lower, -np.pi) for x in limits])
-    high = np.array([min(x.upper, np.pi) for x in limits])
-    q = rng.uniform(np.minimum(low, high), np.maximum(low, high), size=(_SAMPLES, len(limits)))
+    from ikgen.kinematics.forward import pose_difference
+    from ikgen.kinematics.joint_box import joint_box
+
+    q = np.random.default_rng(0).uniform(*joint_box(dh, np.pi), size=(_SAMPLES, dh.dof))
     try:
         ours = runner.forward(q)
     except Exception as error:
@@ -39,10 +38,7 @@ def forward_difference(runner: Any, oracle: Oracle, dh: DHChain) -> ForwardDiffe
     theirs = oracle.forward(q)
     if ours.shape != theirs.shape or not np.isfinite(ours).all():
         return ForwardDifference("forward gives no poses")
-    metres = float(np.linalg.norm(ours[:, :3, 3] - theirs[:, :3, 3], axis=1).max())
-    turn = np.linalg.norm(ours[:, :3, :3] - theirs[:, :3, :3], axis=(1, 2)).max()
-    radians = float(2.0 * np.arcsin(min(1.0, turn / np.sqrt(8.0))))
-    return _worded(metres, radians)
+    return _worded(*pose_difference(ours, theirs))
 
 
 def _worded(metres: float, radians: float) -> ForwardDifference | None:
