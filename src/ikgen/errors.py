@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import Any
 
 __all__ = [
+    "INTERNAL_ERROR",
     "ArgumentError",
     "BadDescriptionError",
     "IkgenError",
@@ -25,7 +26,11 @@ __all__ = [
     "VerificationError",
     "place_in",
     "shown",
+    "told",
 ]
+
+INTERNAL_ERROR = 70
+"""Exit code of a failure that is ikgen's own (EX_SOFTWARE of sysexits.h)."""
 
 _MOST_LISTED = 100
 _ALIKE = 0.5
@@ -161,3 +166,17 @@ class VerificationError(IkgenError):
         super().__init__(message, hint=hint)
         self.reports = reports
         self.derivation = derivation
+
+
+def told(error: BaseException, *, traced: bool) -> tuple[str, str, int]:
+    """Message, hint and exit code of what ended the work: an error for the user, one of the system about a
+    file, or else a failure of ikgen's own; `traced`: its traceback is shown beside."""
+    if isinstance(error, IkgenError):
+        return error.message, error.hint, error.exit_code
+    if isinstance(error, OSError):
+        where = f"{error.filename}: " if error.filename else ""
+        return f"{where}{error.strerror or error}", "check the path and its permissions", 2
+    text = " ".join(str(error).split()) or "no message"
+    hint = "please report it with the robot description, the command line and the config if any"
+    hint += "" if traced else "; -v shows the traceback"
+    return f"internal error: {type(error).__name__}: {text}", hint, INTERNAL_ERROR

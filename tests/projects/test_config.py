@@ -146,7 +146,21 @@ def test_the_traceback_of_an_internal_error(
     assert "error: kuka: internal error: RuntimeError: broken in two" in said
     assert "-v shows the traceback" in said and "Traceback" not in said
     assert run(["build", "--jobs", "1", "-v"]) == 70
-    assert 'raise RuntimeError("broken\\nin two")' in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert 'raise RuntimeError("broken\\nin two")' in said and "-v shows" not in said
+
+
+def test_an_error_of_the_system_is_told_as_by_every_command(
+    package: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fail(*_: object) -> None:
+        raise PermissionError(13, "Permission denied", "generated/kuka_ik.py")
+
+    monkeypatch.setattr("ikgen.generation.generate.generate", fail)
+    assert run(["build", "--jobs", "1"]) == 2
+    said = capsys.readouterr().err
+    assert "error: kuka: generated/kuka_ik.py: Permission denied" in said
+    assert "hint: check the path and its permissions" in said
 
 
 @pytest.mark.parametrize(

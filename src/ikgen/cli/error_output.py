@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import json
+import traceback
 from collections.abc import Mapping
 from typing import Any
 
 import click
 
 from ikgen.cli.work_text import work_text
-from ikgen.errors import BadDescriptionError, IkgenError, UnsolvedChainError, VerificationError
+from ikgen.errors import (
+    INTERNAL_ERROR,
+    BadDescriptionError,
+    IkgenError,
+    UnsolvedChainError,
+    VerificationError,
+)
 
-__all__ = ["ResultError", "as_object", "say", "say_error", "say_object"]
+__all__ = ["ResultError", "as_object", "say", "say_object", "say_work"]
 
 
 class ResultError(Exception):
@@ -31,12 +38,13 @@ def say(message: str, hint: str = "") -> None:
         click.echo("hint: " + hint.replace("\n", "\n      "), err=True)
 
 
-def say_error(error: IkgenError, *, verbose: bool) -> None:
-    """An error of ikgen on stderr; with `verbose` how far the work came before."""
-    work = work_text(error) if verbose else ""
-    if work:
-        click.echo(work, err=True)
-    say(error.message, error.hint)
+def say_work(error: BaseException, exit_code: int) -> None:
+    """On stderr how far the work came before an error, or where in ikgen it broke."""
+    text = work_text(error) if isinstance(error, IkgenError) else ""
+    if exit_code == INTERNAL_ERROR:
+        text = "".join(traceback.format_exception(error))
+    if text:
+        click.echo(text, err=True)
 
 
 def say_object(error: Mapping[str, Any], result: Mapping[str, Any] | None = None) -> None:

@@ -16,14 +16,11 @@ from typing import NoReturn
 import click
 
 from ikgen import __version__
-from ikgen.cli.error_output import ResultError, as_object, say, say_error, say_object
-from ikgen.errors import IkgenError
+from ikgen.cli.error_output import ResultError, as_object, say, say_object, say_work
+from ikgen.errors import told
 from ikgen.processes.termination import TERMINATED, Terminated, unwind_on_signals
 
 __all__ = ["COMMANDS", "ikgen", "main", "run"]
-
-INTERNAL_ERROR = 70
-"""Exit code of a failure that is ikgen's own (EX_SOFTWARE of sysexits.h)."""
 
 COMMANDS: dict[str, tuple[str, str]] = {
     "from-urdf": ("ikgen.cli.from_robot:from_urdf", "Generate from a URDF or xacro file."),
@@ -124,14 +121,13 @@ def _failed(error: BaseException, wanted: _Wanted) -> int:
     """Say what ended the command: on stderr, and as an object where JSON is wanted; the exit code."""
     result = error.result if isinstance(error, ResultError) else None
     error = error.error if isinstance(error, ResultError) else error
-    if isinstance(error, IkgenError):
-        say_error(error, verbose=wanted.verbose)
-        message, hint, code = error.message, error.hint, error.exit_code
-    elif isinstance(error, click.exceptions.NoArgsIsHelpError):
+    if isinstance(error, click.exceptions.NoArgsIsHelpError):
         message, hint, code = error.format_message(), "", 2
         click.echo(message, err=True)
     else:
         message, hint, code = _explained(error, wanted.verbose)
+        if wanted.verbose:
+            say_work(error, code)
         say(message, hint)
     if wanted.as_json:
         with contextlib.suppress(OSError):  # stdout may be what the error is about
@@ -140,7 +136,7 @@ def _failed(error: BaseException, wanted: _Wanted) -> int:
 
 
 def _explained(error: BaseException, verbose: bool) -> tuple[str, str, int]:
-    """Message, hint and exit code of an error that is not ikgen's."""
+    """Message, hint and exit code, also of what the command line itself ends with."""
     if isinstance(error, click.ClickException):
         context = error.ctx if isinstance(error, click.UsageError) else None
         command = context.command_path if context is not None else "ikgen"
@@ -149,19 +145,4 @@ def _explained(error: BaseException, verbose: bool) -> tuple[str, str, int]:
         return "interrupted", "", 130
     if isinstance(error, Terminated):
         return "ended by a signal", "", TERMINATED
-    if isinstance(error, OSError):
-        where = f"{error.filename}: " if error.filename else ""
-        return f"{where}{error.strerror or error}", "check the path and its permissions", 2
-    return _internal(error, verbose)
-
-
-def _internal(error: BaseException, verbose: bool) -> tuple[str, str, int]:
-    """A failure that is ikgen's own."""
-    if verbose:
-        import traceback
-
-        click.echo("".join(traceback.format_exception(error)), err=True)
-    text = " ".join(str(error).split()) or "no message"
-    hint = "please report it with the robot description and the command line"
-    hint += "" if verbose else "; -v shows the traceback"
-    return f"internal error: {type(error).__name__}: {text}", hint, INTERNAL_ERROR
+    return told(error, traced=verbose)

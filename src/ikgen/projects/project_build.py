@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ikgen.errors import IkgenError
+from ikgen.errors import INTERNAL_ERROR, IkgenError, told
 from ikgen.generation.progress import Progress, Steps, silent
 from ikgen.generation.publishing import complete_folder
 from ikgen.generation.record import read_record
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     WorkWords = Callable[[Generation | IkgenError], str]
 
 __all__ = ["Outcome", "build_arms"]
-
-INTERNAL_ERROR = 70
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,23 +141,23 @@ def _build_one(job: _Job) -> Outcome:
         made = generate(job.arm.request, outputs, steps)
         outcome = _made(job, made)
         work = job.words(made) if job.words else ""
-    except IkgenError as error:
-        outcome = _failed(job, error.message, error.hint, error.exit_code, error.warnings)
-        work = job.words(error) if job.words else ""
-    except OSError as error:
-        where = f"{error.filename}: " if error.filename else ""
-        outcome = _failed(job, f"{where}{error.strerror or error}")
     except Exception as error:
-        outcome = _internal(job.arm.name, job.reason, error)
+        outcome = _failed(job, error)
+        work = job.words(error) if job.words and isinstance(error, IkgenError) else ""
     return replace(outcome, steps=tuple(steps.told), work=work) if job.words else outcome
 
 
-def _failed(
-    job: _Job, message: str, hint: str = "", code: int = 2, warnings: tuple[str, ...] = ()
-) -> Outcome:
+def _failed(job: _Job, error: Exception) -> Outcome:
     """The outcome of an arm that cannot be generated."""
+    message, hint, code = told(error, traced=job.words is not None)
     return Outcome(
-        job.arm.name, job.reason, message=message, hint=hint, exit_code=code, warnings=warnings
+        job.arm.name,
+        job.reason,
+        message=message,
+        hint=hint,
+        exit_code=code,
+        trace="".join(traceback.format_exception(error)) if code == INTERNAL_ERROR else "",
+        warnings=error.warnings if isinstance(error, IkgenError) else (),
     )
 
 
@@ -178,19 +176,6 @@ def _made(job: _Job, made: Generation) -> Outcome:
         solutions=made.derivation.module.max_solutions,
         missed=missed,
         held=held.words if held is not None else "",
-    )
-
-
-def _internal(name: str, reason: str, error: Exception) -> Outcome:
-    """The outcome of a failure that is ikgen's own."""
-    text = " ".join(str(error).split()) or "no message"
-    return Outcome(
-        name,
-        reason,
-        message=f"internal error: {type(error).__name__}: {text}",
-        hint="please report it with the robot description and the config; -v shows the traceback",
-        exit_code=INTERNAL_ERROR,
-        trace="".join(traceback.format_exception(error)),
     )
 
 
