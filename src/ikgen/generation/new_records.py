@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -17,6 +16,7 @@ from ikgen.generation.record import (
     environment_digest,
     record_name,
     record_text,
+    seen_from,
 )
 
 if TYPE_CHECKING:
@@ -98,11 +98,7 @@ def _inputs(source: Source, folder: Path) -> dict[str, str]:
     urls = dict(source.package_urls)
     files = source.dependencies or (source.path,)
     found = {
-        urls.get(p) or _relative(p, folder): hashlib.sha256(p.read_bytes()).hexdigest()
+        urls.get(p) or seen_from(p, folder): hashlib.sha256(p.read_bytes()).hexdigest()
         for p in files
     }
     return dict(sorted(found.items()))
-
-
-def _relative(path: Path, folder: Path) -> str:
-    return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()

@@ -32,6 +32,7 @@ __all__ = [
     "record_text",
     "records_of",
     "seen",
+    "seen_from",
 ]
 
 GENERATOR = "ikgen"
@@ -113,14 +114,7 @@ def record_name(name: str) -> str:
 
 def record_text(record: Record) -> str:
     """The text of a record; paths relative to its folder, with slashes on every system."""
-    folder = record.folder.resolve()
-
-    def place(path: Path) -> str:
-        if is_named(path):
-            return str(path)
-        return Path(os.path.relpath(path.resolve(), folder)).as_posix()
-
-    return json.dumps(encode(record, place), indent=2) + "\n"
+    return json.dumps(encode(record, lambda path: seen_from(path, record.folder)), indent=2) + "\n"
 
 
 def digest(path: Path) -> str | None:
@@ -198,3 +192,10 @@ def seen(path: Path) -> Path:
     whole = path.resolve()
     here = Path.cwd()
     return whole.relative_to(here) if whole.is_relative_to(here) else whole
+
+
+def seen_from(path: Path, folder: Path) -> str:
+    """A path as a file in a folder has it, with slashes on every system; a robot's name as it is."""
+    if is_named(path):
+        return str(path)
+    return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()

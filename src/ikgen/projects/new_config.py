@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,6 +12,7 @@ from ikgen.emit.rendering import TURNING_MARKS
 from ikgen.errors import UsageError
 from ikgen.generation.publish import publish
 from ikgen.generation.read import arm_name, read, read_tree
+from ikgen.generation.record import seen_from
 from ikgen.generation.request import Request
 from ikgen.importers.named_robots import is_named
 from ikgen.projects.config import CONFIG, PYPROJECT, load_config
@@ -147,17 +147,11 @@ def _place(robot: Path) -> Path:
 
 def _table(arm: ArmTable, request: Request, emit: Sequence[str], folder: Path) -> str:
     """One `[[arm]]`; paths as seen from the config."""
-
-    def seen(path: Path) -> str:
-        if is_named(path):
-            return str(path)
-        return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
-
-    entries: dict[str, object] = {"name": arm.name, "robot": seen(request.robot)}
+    entries: dict[str, object] = {"name": arm.name, "robot": seen_from(request.robot, folder)}
     if request.args:
         entries["args"] = request.args
     if request.package_paths:
-        entries["package_paths"] = [seen(place) for place in request.package_paths]
+        entries["package_paths"] = [seen_from(place, folder) for place in request.package_paths]
     if arm.base is not None:
         entries |= {"base": arm.base, "tip": arm.tip}
     entries |= {"emit": list(emit), "out": _FOLDER}
