@@ -6,7 +6,7 @@ import math
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from ikgen.library.dh_text import angle_text, constants, length_text
+from ikgen.library.dh_text import angle_text, length_text
 
 if TYPE_CHECKING:
     from ikgen.generation.advice import Attempt
@@ -76,7 +76,7 @@ def _chain(dh: DHChain, geometry: GeometryClass) -> dict[str, Any]:
         "base_transform": dh.X_base.tolist(),
         "tool_transform": dh.X_tip.tolist(),
         "dh": [_row(row) for row in dh.rows],
-        "constants": constants(dh),
+        "constants": dh.named_constants(),
         "snaps": [{"what": s.what, "before": s.before, "after": s.after} for s in dh.snaps],
         "kept": [{"what": s.what, "value": s.before, "meant": s.after} for s in kept_constants(dh)],
         "motors": [] if dh.transmission is None else list(dh.transmission.words(names)),

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from ikgen.cli.tables import table
-from ikgen.library.dh_text import constants, row_texts
+from ikgen.library.dh_text import row_texts
 
 if TYPE_CHECKING:
     from ikgen.model.dh import Angle, DHChain, Length
@@ -65,7 +65,7 @@ def dh_table(dh: DHChain) -> str:
     angles = {x.name for row in dh.rows for x in (row.alpha, row.theta, row.offset) if _turns(x)}
     values = ", ".join(
         f"{name} = {value:.10g} {'rad' if name in angles else 'm'}"
-        for name, value in constants(dh).items()
+        for name, value in dh.named_constants().items()
     )
     return table(rows) + (f"\n  {values}" if values else "")
 

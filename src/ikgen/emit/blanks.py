@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from ikgen.emit.solver_module import SolverModule
 from ikgen.errors import UsageError
-from ikgen.model.dh import DHChain, Length
 
 __all__ = ["Blank", "blanks", "pairs"]
 
@@ -36,17 +35,8 @@ def blanks(module: SolverModule) -> tuple[Blank, ...]:
             "works with numbers",
             hint="give them under [parameters]; without numbers only a report can be written",
         )
-    samples = _samples(module.dh)
+    samples = module.dh.named_constants()
     return tuple(Blank(n, samples[n] if module.sample else math.nan, samples[n]) for n in names)
-
-
-def _samples(dh: DHChain) -> dict[str, float]:
-    parts = [x for row in dh.rows for x in (row.alpha, row.a, row.d, row.theta)]
-    return {
-        x.name: x.sign * x.value if isinstance(x, Length) else x.value
-        for x in parts
-        if x.symbolic and x.name is not None
-    }
 
 
 def pairs(module: SolverModule) -> tuple[str, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING
 
-from ikgen.library.dh_text import constants, row_texts
+from ikgen.library.dh_text import row_texts
 from ikgen.model.counted import counted
 from ikgen.report.skeleton import Style, skeleton_svg
 from ikgen.report.worked_example import shown_configuration
@@ -61,7 +61,7 @@ def _table(dh: DHChain) -> str:
         "<tr>" + "".join(f"<td {cell}>{escape(text)}</td>" for text in row) + "</tr>"
         for row in row_texts(dh)
     )
-    values = ", ".join(f"{name} = {value:.6g}" for name, value in constants(dh).items())
+    values = ", ".join(f"{name} = {value:.6g}" for name, value in dh.named_constants().items())
     return (
         f'<table style="margin:.5em 0"><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>'
         f"<small>{escape(values)}</small>"

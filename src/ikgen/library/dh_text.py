@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from ikgen.model.dh import Angle, DHChain, DHRow, Length
 
-__all__ = ["angle_text", "constants", "length_text", "row_texts"]
+__all__ = ["angle_text", "length_text", "row_texts"]
 
 
 def row_texts(dh: DHChain) -> list[tuple[str, str, str, str, str, str]]:
@@ -20,17 +20,6 @@ def row_texts(dh: DHChain) -> list[tuple[str, str, str, str, str, str]]:
             theta, d = angle_text(row.theta), theta
         rows.append((str(i), row.name, angle_text(row.alpha), length_text(row.a), theta, d))
     return rows
-
-
-def constants(dh: DHChain) -> dict[str, float]:
-    """Named constants (rad or m) in the order of the rows; None of them is exact."""
-    found: dict[str, float] = {}
-    for row in dh.rows:
-        for constant in (row.alpha, row.a, row.d, row.theta, row.offset):
-            if constant.name is not None:
-                sign = getattr(constant, "sign", 1)
-                found.setdefault(constant.name, sign * constant.value)
-    return found
 
 
 def _variable(row: DHRow, dh: DHChain) -> str:

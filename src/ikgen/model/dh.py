@@ -199,6 +199,17 @@ class DHChain:
         for row in self.rows:
             yield from (row.alpha, row.a, row.d, row.theta, row.offset)
 
+    def named_constants(self, *, offsets: bool = True) -> dict[str, float]:
+        """Name -> value (rad or m, of a length without its sign) in the order of the rows, where these have
+        no exact one; a number to probe with for those of `symbols`. `offsets`: also those of variables."""
+        found: dict[str, float] = {}
+        for row in self.rows:
+            for x in (row.alpha, row.a, row.d, row.theta, *([row.offset] if offsets else [])):
+                if x.name is not None:
+                    value = x.sign * x.value if isinstance(x, Length) else x.value
+                    found.setdefault(x.name, value)
+        return found
+
     def lead_row(self, joint: int) -> DHRow:
         """The row whose variable stands for a joint: the first of those that it moves least, so that the
         others turn a whole number of times as far where closed forms are to be had."""

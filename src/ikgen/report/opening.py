@@ -113,16 +113,11 @@ def _theta(row: DHRow) -> Math:
 
 def _parameters(dh: DHChain) -> Rows | None:
     """The numbers of the named constants, and how joint values become variables of the table."""
-    values: dict[str, float | None] = {}
-    for row in dh.rows:
-        for x in (row.alpha, row.a, row.d, row.theta):
-            if x.name is not None:
-                value = x.sign * x.value if isinstance(x, Length) else x.value
-                values.setdefault(x.name, None if x.symbolic else value)
+    values = dh.named_constants(offsets=False)  # offsets are written as numbers
     if not values:
         return None
     cells = tuple(
-        ((symbol(Symbol("param", n)),), ("symbolic" if v is None else f"{v:.6g}",))
+        ((symbol(Symbol("param", n)),), ("symbolic" if n in dh.symbols else f"{v:.6g}",))
         for n, v in values.items()
     )
     return Rows((("constant",), ("value (m, rad)",)), cells, "Constants of the arm")

@@ -18,8 +18,7 @@ class SymbolNames:
 
     def __init__(self, dh: DHChain) -> None:
         self.dh = dh
-        names = (x.name for x in dh.constants() if x.name is not None)
-        self._constants = {name: _real(name) for name in names}
+        self._constants = {name: _real(name) for name in dh.named_constants()}
 
     def constant(self, name: str) -> sympy.Symbol:
         """A length or angle of the arm."""

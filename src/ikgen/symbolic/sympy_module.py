@@ -91,12 +91,11 @@ def _symbols(names: SymbolNames, found: Any, dh: DHChain) -> list[sympy.Symbol]:
 
 def _constants(names: SymbolNames, dh: DHChain) -> list[tuple[sympy.Symbol, str]]:
     """Lengths and angles with their numbers; none for those that the table leaves open."""
-    values: dict[str, str] = {}
-    for x in dh.constants():
-        if x.name is not None and not x.symbolic:
-            sign = x.sign if isinstance(x, Length) else 1
-            values.setdefault(x.name, _print(exact_number(sign * x.value).sympy))
-    return [(names.constant(name), value) for name, value in values.items()]
+    return [
+        (names.constant(name), _print(exact_number(value).sympy))
+        for name, value in dh.named_constants().items()
+        if name not in dh.symbols
+    ]
 
 
 def _held(derivation: Derivation, names: SymbolNames) -> list[tuple[sympy.Symbol, str]]:
