@@ -9,17 +9,14 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ikgen.errors import BadDescriptionError, UnknownNameError
-from ikgen.model.dh import DHChain, Length
+from ikgen.model.dh import DHChain
 from ikgen.model.joint_tree import JointTree
 from ikgen.verify.pinocchio_model import Oracle, load_pinocchio
 from ikgen.verify.urdf_text import JOINT_PREFIX, KinematicText, read_kinematic_text
 
 __all__ = ["Oracle", "PinocchioOracle", "oracle_from_dh"]
-
-Array = NDArray[np.float64]
 
 _SHALLOW = 1000  # joints that any stack holds
 _STACK = 16 * 1024  # bytes a joint: a quarter was enough
@@ -130,44 +127,20 @@ def _reduce(
 
 
 def oracle_from_dh(dh: DHChain) -> Oracle:
-    """The oracle of a DH table: `dh.file_frames` (the table's own numbers) where present, else its
-    rows.
-
-    Raises `BadDescriptionError` where a length of the table is a symbol without a number.
-    """
+    """The oracle of a DH table: of `dh.file_frames`, the table's own numbers."""
     pin = load_pinocchio()
     model, parent = pin.Model(), 0
-    frames = dh.file_frames or (*_row_frames(dh), dh.X_tip)
     base = model.addFrame(pin.Frame("base", 0, 0, pin.SE3.Identity(), pin.FrameType.BODY))
     wiring = {}
     for i, row in enumerate(dh.rows):
         joint = pin.JointModelRZ() if row.revolute else pin.JointModelPZ()
         name = f"axis_{i + 1}"
-        parent = model.addJoint(parent, joint, pin.SE3(np.array(frames[i])), name)
+        parent = model.addJoint(parent, joint, pin.SE3(np.array(dh.file_frames[i])), name)
         wiring[name] = (row.driver, row.scale, row.offset.value)
-    end = pin.Frame("tip", parent, base, pin.SE3(np.array(frames[-1])), pin.FrameType.BODY)
+    end = pin.Frame("tip", parent, base, pin.SE3(np.array(dh.file_frames[-1])), pin.FrameType.BODY)
     tip = model.addFrame(end)
     names = [joint.name for joint in dh.joints]
     lower = np.array([joint.limits.lower for joint in dh.joints])
     upper = np.array([joint.limits.upper for joint in dh.joints])
     links = dh.base_link, dh.tip_link
     return Oracle(model, (base, tip), links, names, wiring, (lower, upper))
-
-
-def _row_frames(dh: DHChain) -> list[Array]:
-    """The constant transform before each row's motion: `Rx(alpha) Tx(a)` with the row's
-    constants."""
-    frames = []
-    for i, row in enumerate(dh.rows):
-        lengths = [x for x in (row.a, row.d, row.offset) if isinstance(x, Length)]
-        if any(x.symbolic for x in lengths):
-            raise BadDescriptionError(
-                f"row {i + 1} has lengths without numbers", hint="give them under [parameters]"
-            )
-        ca, sa = np.cos(row.alpha.value), np.sin(row.alpha.value)
-        ct, st = np.cos(row.theta.value), np.sin(row.theta.value)
-        d = row.d.value if row.revolute else 0.0
-        twist = np.array([[1, 0, 0, row.a.value], [0, ca, -sa, 0], [0, sa, ca, 0], [0, 0, 0, 1]])
-        turn = np.array([[ct, -st, 0, 0], [st, ct, 0, 0], [0, 0, 1, d], [0, 0, 0, 1]])
-        frames.append((dh.X_base if i == 0 else np.eye(4)) @ twist @ turn)
-    return frames
