@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from tests.support.trees import tree_of
 
-from ikgen.chains.selection import candidate_chains, select_chain
+from ikgen.chains.arms import candidate_chains
+from ikgen.chains.selection import select_chain
 from ikgen.errors import (
     BadDescriptionError,
     UnknownNameError,

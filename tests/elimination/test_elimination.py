@@ -10,12 +10,11 @@ from benchmarks.collection import load_arms
 from numpy.typing import NDArray
 from tests.support.arms import arm_chain
 from tests.support.multi_start import apart, searched
+from tests.support.six_turns import general_6r, general_6r_batch
 
 from ikgen.elimination import (
     EliminationPlan,
     choose_plan,
-    general_6r,
-    general_6r_batch,
     held_frames,
     hold_joint,
 )

@@ -21,8 +21,9 @@ from tests.support.parallel_arms import (
     parallel_frames,
     rounded_frames,
 )
+from tests.support.six_turns import general_6r_batch
 
-from ikgen.elimination import EliminationPlan, choose_plan, general_6r_batch, hold_joint
+from ikgen.elimination import EliminationPlan, choose_plan, hold_joint
 from ikgen.elimination.loop_frames import forward
 from ikgen.elimination.parallel_plans import (
     ParallelPlan,

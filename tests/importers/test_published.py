@@ -14,7 +14,8 @@ import pytest
 from benchmarks.collection import ABSENT, ARMS_FILE, CORPUS, load_arms
 from tests.chains.test_selection import forward
 
-from ikgen.chains.selection import candidate_chains, select_chain
+from ikgen.chains.arms import candidate_chains
+from ikgen.chains.selection import select_chain
 from ikgen.errors import BadDescriptionError, IkgenError, UsageError
 from ikgen.importers import load_tree
 

@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
-from ikgen.chains.arms import ChainCandidate, candidate_chains
 from ikgen.chains.assembly import assemble
 from ikgen.chains.chain_ends import choose_ends, not_below
 from ikgen.chains.mimic import Coupling, couple
@@ -16,7 +15,7 @@ from ikgen.importers.xml_document import shown_file
 from ikgen.model.chain import MOST_AXES, Chain
 from ikgen.model.joint_tree import Joint, JointTree, JointType
 
-__all__ = ["ChainCandidate", "candidate_chains", "select_chain"]
+__all__ = ["select_chain"]
 
 _NONE: Mapping[str, float] = MappingProxyType({})
 

@@ -116,15 +116,16 @@ def parse_coupled(texts: Sequence[str]) -> dict[str, str]:
     return found
 
 
-def parse_emit(texts: Sequence[str], default: tuple[str, ...] = ("python",)) -> tuple[str, ...]:
-    """Names of outputs from --emit a,b (repeatable), each once; raises for an unknown one, or none."""
+def parse_emit(texts: Sequence[str]) -> tuple[str, ...]:
+    """Names of outputs from --emit a,b (repeatable), each once, by default Python; raises for an unknown
+    one, or none."""
     from ikgen.generation.emitters import find_emitter
 
     names = [name.strip() for text in texts for name in text.split(",")]
     chosen = tuple(dict.fromkeys(name for name in names if name))
     if texts and not chosen:
         raise UsageError("--emit names no output", hint="for example --emit python,cpp")
-    chosen = chosen or default
+    chosen = chosen or ("python",)
     for name in chosen:
         find_emitter(name)
     return chosen

@@ -31,8 +31,6 @@ __all__ = [
     "Plan",
     "Turning",
     "finder",
-    "general_6r",
-    "general_6r_batch",
     "initial_residuals",
     "runtime_policy",
     "six_joints_batch",
@@ -72,24 +70,6 @@ def six_joints_batch(frames: Matrix, plan: Plan, poses: Matrix) -> list[Matrix]:
 def _by_pose(rows: Matrix, pose: NDArray[np.intp], count: int) -> list[Matrix]:
     """Rows (k, 6) of poses (k,) in order, those of each."""
     return np.split(rows, np.searchsorted(pose, np.arange(1, count))) if count else []
-
-
-def general_6r_batch(
-    frames: Matrix, length: float, eliminations: Sequence[Elimination], poses: Matrix
-) -> list[Matrix]:
-    """`six_joints_batch` of revolute joints; length (m): the chain's scale; eliminations in order
-    of preference."""
-    return six_joints_batch(
-        frames, Plan(length, tuple(eliminations), (True,) * 6, candidates), poses
-    )
-
-
-def general_6r(
-    frames: Matrix, length: float, eliminations: Sequence[Elimination], pose: Matrix
-) -> Matrix:
-    """`general_6r_batch` for one pose (4, 4)."""
-    poses = np.asarray(pose, dtype=np.float64)[None]
-    return general_6r_batch(frames, length, eliminations, poses)[0]
 
 
 def initial_residuals(

@@ -144,7 +144,6 @@ def arm_size(dh: DHChain) -> float:
 def make_probes(
     dh: DHChain,
     *,
-    seed: int = 0,
     tool: bool = False,
     readable: Collection[str] | None = None,
 ) -> Probes:
@@ -153,7 +152,7 @@ def make_probes(
     With `tool` the poses include the tool transform. What is regular is so for a task that reads the
     entries `readable` of the pose, by default all.
     """
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     size = arm_size(dh)
     revolute = np.array([dh.lead_row(j).revolute for j in range(dh.dof)])
 

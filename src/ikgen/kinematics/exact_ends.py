@@ -20,18 +20,17 @@ from ikgen.model.joint_tree import Matrix
 
 __all__ = ["with_exact_ends"]
 
+_ANGLE = 2e-3
+"""rad."""
 _SAME = 2e-15
 
 
-def with_exact_ends(
-    dh: DHChain, *, angle_tolerance: float = 2e-3, length_tolerance: float = 1e-5
-) -> DHChain:
-    """`dh` with angles of `X_base` and `X_tip` within `angle_tolerance` (rad) of multiples of pi/12, and
-    lengths within `length_tolerance` (m) of zero, as these; told in its snaps and its deviation."""
+def with_exact_ends(dh: DHChain, *, length_tolerance: float = 1e-5) -> DHChain:
+    """`dh` with angles of `X_base` and `X_tip` within 2 mrad of multiples of pi/12, and lengths within
+    `length_tolerance` (m) of zero, as these; told in its snaps and its deviation."""
     log = SnapLog()
-    tolerances = angle_tolerance, length_tolerance
-    X_base = _exact(dh.X_base, "base", tolerances, log)
-    X_tip = _exact(dh.X_tip, "tool", tolerances, log)
+    X_base = _exact(dh.X_base, "base", length_tolerance, log)
+    X_tip = _exact(dh.X_tip, "tool", length_tolerance, log)
     if X_base is dh.X_base and X_tip is dh.X_tip:
         return dh
     frames = frames_beside(dh, dh.rows, (X_base, X_tip))
@@ -39,11 +38,10 @@ def with_exact_ends(
     return replace(exact, deviation=largest_deviation(exact))
 
 
-def _exact(X: Matrix, name: str, tolerances: tuple[float, float], log: SnapLog) -> Matrix:
+def _exact(X: Matrix, name: str, near: float, log: SnapLog) -> Matrix:
     """One end's transform (4, 4)."""
-    angle, near = tolerances
     out = np.array(X)
-    out[:3, :3] = snap_rotation(X[:3, :3], angle, angle)
+    out[:3, :3] = snap_rotation(X[:3, :3], _ANGLE, _ANGLE)
     log.add(f"turn of the {name}", pose_difference(out, X)[1], 0.0)
     for i, axis in enumerate("xyz"):
         if abs(X[i, 3]) <= near:

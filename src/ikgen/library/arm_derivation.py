@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from ikgen.errors import MissingToolError
-
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -77,12 +75,8 @@ class ArmDerivation:
 
 def _symbolic() -> Any:
     """The package that speaks SymPy, imported where it is asked for."""
-    try:
-        from ikgen import symbolic
-    except ImportError as error:
-        raise MissingToolError(
-            f"formulas in SymPy cannot be made: {error}", hint="pip install sympy"
-        ) from error
+    from ikgen import symbolic
+
     return symbolic
 
 

@@ -112,7 +112,7 @@ def check_singular_flags(arm: ArmUnderTest, trials: Sequence[Trial]) -> CheckRes
     return result("singular flags", len(q), int(wrong.sum()), detail=detail, worst_case=case)
 
 
-def check_seed_order(trial: Trial, seeds: Array, *, name: str = "seed order") -> CheckResult:
+def check_seed_order(trial: Trial, seeds: Array) -> CheckResult:
     """Rows come in order of their distance to the seed: one norm (2, largest or 1) fits all
     answers.
 
@@ -131,7 +131,7 @@ def check_seed_order(trial: Trial, seeds: Array, *, name: str = "seed order") ->
         i = int(np.argmax(best))
         rows = trial.rows.q[i, : trial.rows.count[i]]
         case = spell(trial.sample.label, i, seed=seeds[i], rows=rows)
-    return result(name, int(several.sum()), int(best.sum()), worst_case=case)
+    return result("seed order", int(several.sum()), int(best.sum()), worst_case=case)
 
 
 def check_free_joints(arm: ArmUnderTest, trials: Sequence[Trial]) -> CheckResult:

@@ -12,8 +12,9 @@ from tests.elimination.test_choice_of_plans import seven_axes
 from tests.elimination.test_elimination import apart, arm_frames, configurations, missing
 from tests.support.routines import MACHINES, compiled_header, feed
 from tests.support.sampled import sampled
+from tests.support.six_turns import general_6r_batch
 
-from ikgen.elimination import EliminationPlan, choose_plan, general_6r_batch, hold_joint
+from ikgen.elimination import EliminationPlan, choose_plan, hold_joint
 from ikgen.elimination.loop_frames import forward
 from ikgen.elimination.resultant import RESULTANTS, root_shifts
 

@@ -17,8 +17,9 @@ from tests.support.parallel_arms import (
 )
 from tests.support.routines import MACHINES, compiled_header, feed
 from tests.support.sampled import sampled
+from tests.support.six_turns import general_6r_batch
 
-from ikgen.elimination import EliminationPlan, choose_plan, general_6r_batch
+from ikgen.elimination import EliminationPlan, choose_plan
 from ikgen.elimination.loop_frames import forward
 from ikgen.runtime.python.elimination.parallel_links import MEETING, PLAIN, UPRIGHT
 
