@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from tests.support.solving import FIXTURES
 
+from ikgen.generation.advice import Attempt
 from ikgen.generation.derive import derive
 from ikgen.generation.inspection import inspect_robot
 from ikgen.generation.request import Request
@@ -32,3 +33,10 @@ def test_before_any_derivation_the_rows_are_exact() -> None:
     assert found.taken is None and found.reading is not None
     assert found.dh is found.reading.dh
     assert max(found.dh.deviation) > 1e-5
+
+
+def test_steps_of_more_than_two_branches_come_later_whatever_their_leaf_is_called() -> None:
+    step = ("theta_1 (four points)",)
+    several = Attempt("pose", (), True, 4, step, (), two_branch=False)
+    few = Attempt("pose", (), True, 8, ("theta_1 (no quartic)",), ())
+    assert few.rank < several.rank

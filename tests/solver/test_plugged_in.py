@@ -16,9 +16,12 @@ from ikgen import plugins
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.errors import PlugInError
 from ikgen.importers.dh.dh_table import read_dh_table
+from ikgen.report.behavior import behavior_section
+from ikgen.report.document import Picture
 from ikgen.solver import leaves
 from ikgen.solver.behavior_tree import Action, Tree, the_tree
 from ikgen.solver.leaves import LEAVES, Leaf
+from ikgen.solver.session import Session
 from ikgen.solver.solve import solve_chain
 
 TABLES = Path(__file__).resolve().parents[1] / "robots/tables"
@@ -92,6 +95,22 @@ def test_another_tree_solves_and_is_told(case: str) -> None:
     assert not graph.open_joints
     assert any("ways" in path for path in graph.outline)
     assert {tick.node for tick in graph.ticks} > {"collect equations", "ways"}
+
+
+def test_the_report_tells_what_a_tree_solved_that_words_it_otherwise() -> None:
+    def take(session: Session) -> tuple[bool, str]:
+        session.collect()
+        for leaf in LEAVES:
+            session.try_leaf(leaf)
+        return session.choose(anything=True) is not None, "another one"
+
+    tree = Tree("at once", lambda session, _: Action("at once", session, take))
+    graph = solve_chain(table(*CASES["two sliding joints"][1]), tree=tree)
+    assert not graph.open_joints
+    assert [step.round for step in graph.steps] == [t.round for t in graph.ticks]
+    (picture,) = (block for block in behavior_section(graph) if isinstance(block, Picture))
+    for step in graph.steps:
+        assert f"</math> by {step.candidate.leaf} from " in picture.svg
 
 
 def test_the_tree_of_another_package_takes_the_place_of_the_own(

@@ -32,7 +32,8 @@ class Attempt:
     which it is: such a closed form is verified before it is written, and may be refused then. `implied`
     says whether the task goes without saying, `default` whether this is what is made without options. `dh`
     are the rows that it solves: the file's, or those of geometry nearby that a closed form needs; `ranking`
-    is what the joints to hold were ranked by, in order."""
+    is what the joints to hold were ranked by, in order. `two_branch` says whether no step of the rules has
+    more than two branches."""
 
     task: str
     free: tuple[str, ...]
@@ -46,13 +47,14 @@ class Attempt:
     default: bool = False
     dh: DHChain | None = field(default=None, compare=False, repr=False)
     ranking: str = ""
+    two_branch: bool = True
 
     @property
     def rank(self) -> tuple[bool, bool, int, bool, int]:
-        """Closed forms first, those without a weak step, with fewer joints held, without a quartic, with
-        fewer solutions."""
-        quartic = any("quartic" in step for step in self.order)
-        return not self.closed, bool(self.weak), len(self.free), quartic, self.max_solutions
+        """Closed forms first, those without a weak step, with fewer joints held, of two branches a step,
+        with fewer solutions."""
+        several = not self.two_branch
+        return not self.closed, bool(self.weak), len(self.free), several, self.max_solutions
 
     @property
     def options(self) -> str:
@@ -167,6 +169,7 @@ def attempt(form: ClosedForm, progress: Progress) -> Attempt:
         weak=_weak_steps(graph) if form.closed and form.plan is None else (),
         implied=task.whole_pose and dh.dof - len(dh.free) >= _POSE_FREEDOMS,
         dh=dh,
+        two_branch=form.plan is not None or form.two_branch,
     )
 
 

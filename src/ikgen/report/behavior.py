@@ -8,7 +8,6 @@ from ikgen.formulas.notation import variable
 from ikgen.report.document import Block, Heading, Inline, Paragraph, Picture, Rows, Text
 from ikgen.report.latex import rows_latex
 from ikgen.report.tree_picture import mark, tree_picture
-from ikgen.solver.choice import Step
 from ikgen.solver.solution_graph import SolutionGraph
 
 __all__ = ["behavior_section"]
@@ -65,33 +64,28 @@ def _label(path: tuple[str, ...], kind: str) -> str:
     return _INDENT * (len(path) - 1) + words
 
 
-def _by_round(graph: SolutionGraph) -> list[tuple[int, Step]]:
-    done = [t.round for t in graph.ticks if t.outcome == "success" and " by " in t.detail]
-    return list(zip(done, graph.steps, strict=False))
-
-
 def _told(graph: SolutionGraph) -> dict[int, str]:
     """HTML per round: what it solved, and how."""
     out = {}
-    for number, step in _by_round(graph):
+    for step in graph.steps:
         c = step.candidate
         labels = " and ".join(dict.fromkeys(e.label for e in c.sources))
         name = f"<math><mrow>{variable(c.unknown).mathml}</mrow></math>"
-        out[number] = f"{name} by {escape(c.leaf)}" + (f" from {escape(labels)}" * bool(labels))
+        out[step.round] = f"{name} by {escape(c.leaf)}" + (f" from {escape(labels)}" * bool(labels))
     return out
 
 
 def _solved(graph: SolutionGraph) -> list[Rows]:
     """Which unknown each round solved."""
     rows = []
-    for number, step in _by_round(graph):
+    for step in graph.steps:
         c = step.candidate
         labels = " and ".join(dict.fromkeys(e.label for e in c.sources))
         what: list[Inline] = [
             variable(c.unknown),
             f" by {c.leaf}" + (f" from {labels}" * bool(labels)),
         ]
-        rows.append(((str(number),), tuple(what)))
+        rows.append(((str(step.round),), tuple(what)))
     if not rows:
         return []
     return [Rows((("round",), ("solved",)), tuple(rows), small=True, left=2)]

@@ -27,12 +27,13 @@ SAFE_MARGIN = 1e-3
 class Step:
     """One solved unknown: the chosen candidate, fallbacks where its divisor vanishes at regular
     configurations, and the candidates that the ranker rejected. `sound`: no regular configuration was
-    found at which all of them fail."""
+    found at which all of them fail. `round`: the session's in which it was chosen."""
 
     candidate: Candidate
     fallbacks: tuple[Candidate, ...]
     rejected: tuple[Candidate, ...]
     sound: bool = True
+    round: int = 0
 
     @property
     def branches(self) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -148,6 +148,7 @@ class Session:
         ranked = sorted(filter(self._wanted, self.candidates), key=rank_key)
         step = self._chooser.choose(ranked, anything=anything)
         if step is not None:
+            step = replace(step, round=self.round)
             self._accept(step)
         return step
 
