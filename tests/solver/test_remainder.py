@@ -6,11 +6,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from ikgen.equations.knowledge import PolynomialEquation, Variable
+from ikgen.equations.knowledge import UNREADABLE, PolynomialEquation, Variable
 from ikgen.solver.remainder import OpenEquation, _degree, count_open, near_misses, open_equations
 
 X, Y, Z = (Variable("angle", one) for one in ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
-UNREADABLE = 99
 
 
 class Equations:

@@ -19,7 +19,10 @@ from ikgen.equations.angle_lattice import AngleLattice
 from ikgen.equations.equation import Equation
 from ikgen.equations.equation_set import EquationSet
 
-__all__ = ["Knowledge", "PolynomialEquation", "Variable"]
+__all__ = ["UNREADABLE", "Knowledge", "PolynomialEquation", "Variable"]
+
+UNREADABLE = 99
+"""In place of a number of unknowns: more than any equation is looked at with."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -239,7 +242,8 @@ class Knowledge:
     # -- equations ------------------------------------------------------------------------------
 
     def unknown_rank(self, support: int) -> int:
-        """Number of independent unknowns among the atoms of a support mask (99: unreadable pose)."""
+        """Number of independent unknowns among the atoms of a support mask; `UNREADABLE` where an entry
+        of the pose is among them that the task does not read."""
         mask = support & ~self.known_mask
         if mask not in self._ranks:
             self._ranks[mask] = self._rank_of(mask)
@@ -251,7 +255,7 @@ class Knowledge:
         for node in self.graph.atoms_in(mask):
             assert node.atom is not None
             if node.atom.kind == "pose":
-                return 99
+                return UNREADABLE
             assert not isinstance(node.atom.key, str)
             if node.atom.kind == "prismatic":
                 distances.add(node.atom.key)

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 
 from ikgen.algebra.expression import Expr
 from ikgen.equations.equation import Equation
-from ikgen.equations.knowledge import PolynomialEquation, Variable
+from ikgen.equations.knowledge import UNREADABLE, PolynomialEquation, Variable
 from ikgen.solver.solution_graph import SolutionGraph
 
 __all__ = ["NearMiss", "OpenEquation", "count_open", "near_misses", "open_equations"]
-
-_UNREADABLE = 99
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +50,7 @@ def _open(graph: SolutionGraph) -> Iterator[tuple[int, Equation]]:
     for e in k.equations.equations:
         sides = (e.left.id, e.right.id)
         rank = k.unknown_rank(e.left.support | e.right.support)
-        if sides not in told and rank not in (0, _UNREADABLE):
+        if sides not in told and rank not in (0, UNREADABLE):
             told.add(sides)
             yield rank, e
 
