@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import sys
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ import pytest
 from ikgen.cli.braille import drawn, skeleton_text
 from ikgen.cli.console import Console
 from ikgen.cli.main import run
+from ikgen.generation.progress import Stage
 from ikgen.generation.read import read
 from ikgen.generation.request import Request
 
@@ -58,3 +60,13 @@ def test_no_bar_without_a_terminal(capsys: pytest.CaptureFixture[str]) -> None:
     with Console() as console:
         console.share("map", 1, 4)
     assert capsys.readouterr() == ("", "")
+
+
+def test_every_stage_is_told_in_words(capsys: pytest.CaptureFixture[str]) -> None:
+    stages = get_args(Stage)
+    with Console(verbose=True) as console:
+        for stage in stages:
+            console(stage, "this")
+    said = capsys.readouterr().err.splitlines()
+    assert len(set(said)) == len(stages)
+    assert all(line.endswith("ing this") for line in said)

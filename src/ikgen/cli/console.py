@@ -11,14 +11,25 @@ from typing import TYPE_CHECKING
 
 import click
 
+from ikgen.generation.progress import Stage
+
 if TYPE_CHECKING:
     from rich.status import Status
 
 __all__ = ["Console"]
 
-_WORDS = {"read": "reading", "derive": "deriving", "emit": "writing", "verify": "verifying",
-    "compile": "compiling", "map": "mapping",
-}  # fmt: skip
+_WORDS: dict[Stage, str] = {
+    "build": "checking",
+    "read": "reading",
+    "derive": "deriving",
+    "try": "trying",
+    "emit": "writing",
+    "typeset": "typesetting",
+    "verify": "verifying",
+    "prove": "proving",
+    "compile": "compiling",
+    "map": "mapping",
+}
 
 _BAR = 30
 """Characters of a bar."""
@@ -60,7 +71,7 @@ class Console:
             self._status.stop()
             self._status = None
 
-    def __call__(self, stage: str, detail: str) -> None:
+    def __call__(self, stage: Stage, detail: str) -> None:
         """Say what happens now."""
         if self.quiet:
             return
@@ -73,7 +84,7 @@ class Console:
             click.echo(text if stage != "verify" or self.verbose else _WORDS["verify"], err=True)
         self._stage = stage
 
-    def tell(self, name: str, steps: Iterable[tuple[str, str]], work: str) -> None:
+    def tell(self, name: str, steps: Iterable[tuple[Stage, str]], work: str) -> None:
         """With `verbose`: the steps of a job elsewhere and how it went, after its name."""
         if not self.verbose:
             return
@@ -81,7 +92,7 @@ class Console:
         for line in lines:
             click.echo(f"{name}: {line}".rstrip(), err=True)
 
-    def share(self, stage: str, ready: int, total: int) -> None:
+    def share(self, stage: Stage, ready: int, total: int) -> None:
         """How much of a long stage is done: on a terminal as a bar with the time left, elsewhere not."""
         if self._status is None:
             return
@@ -92,8 +103,7 @@ class Console:
         left = (now - self._shared[1]) * (1 - part) / part if part > 0 else 0.0
         whole = round(part * _BAR)
         bar = f"[green]{'━' * whole}[/green]{'─' * (_BAR - whole)}"
-        words = _WORDS.get(stage, stage)
-        self._status.update(f"{words} {bar} {100 * part:.0f} %, {left:.0f} s left")
+        self._status.update(f"{_WORDS[stage]} {bar} {100 * part:.0f} %, {left:.0f} s left")
 
     def note(self, text: str) -> None:
         """Something to know, shown unless quiet."""
@@ -106,6 +116,6 @@ class Console:
             click.echo(f"warning: {text}", err=True)
 
 
-def _words(stage: str, detail: str) -> str:
+def _words(stage: Stage, detail: str) -> str:
     """What happens, in words."""
-    return f"{_WORDS.get(stage, stage)} {detail}".rstrip()
+    return f"{_WORDS[stage]} {detail}".rstrip()

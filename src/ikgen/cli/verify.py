@@ -87,7 +87,8 @@ def verify(
             annotate_error(error)
             raise
     _print(results, as_json=as_json, quiet=quiet, verbose=verbose)
-    # what was found is told where it cannot be written; of JSON there is one object
+    # after the findings, which are told even if this file cannot be written; before the object of --json,
+    # in place of which the error's is printed then
     if junit_xml is not None:
         write_junit(junit_xml, results)
     code = max((result.exit_code for result in results), default=0)

@@ -32,7 +32,7 @@ _EXTRAS = {
     "nanobind": ("ikgen.compile", "compile"),
     "example-robot-data": ("robots by name", "robots"),
     "viser": ("ikgen view", "view"),
-    "distributed": ("reachability maps on a dask cluster", "dask"),
+    "distributed": ("arms, poses and maps on a dask cluster (build, verify, reach)", "dask"),
     "zarr": ("reachability maps as .zarr, from Python 3.11 on", "zarr"),
 }
 """Packages that ikgen does without: what they are for, and the extra that brings them."""

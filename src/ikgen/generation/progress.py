@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Literal
 
-__all__ = ["Progress", "Steps", "silent"]
+__all__ = ["Progress", "Stage", "Steps", "silent"]
 
-Progress = Callable[[str, str], None]
-"""Called with a stage (read, derive, emit, verify) and a detail."""
+Stage = Literal[
+    "build", "read", "derive", "try", "emit", "typeset", "verify", "prove", "compile", "map"
+]
+"""What a job does: `build` looks at an arm of a config, `try` at other options for one that is unsolved."""
+
+Progress = Callable[[Stage, str], None]
+"""Called with a stage and a detail."""
 
 
-def silent(stage: str, detail: str) -> None:
+def silent(stage: Stage, detail: str) -> None:
     """No progress."""
 
 
@@ -18,7 +24,7 @@ class Steps:
     """Keeps what a job tells, for one whose steps are told elsewhere: `told` are stages and details."""
 
     def __init__(self) -> None:
-        self.told: list[tuple[str, str]] = []
+        self.told: list[tuple[Stage, str]] = []
 
-    def __call__(self, stage: str, detail: str) -> None:
+    def __call__(self, stage: Stage, detail: str) -> None:
         self.told.append((stage, detail))

@@ -226,7 +226,7 @@ def _read_table(request: Request, free: tuple[str, ...]) -> Reading:
     from ikgen.chains.several_sources import parted_dh, parts
     from ikgen.importers.dh.dh_table import read_dh_table
 
-    if given := request.of_robots:
+    if given := request.field_without_use:
         what = f"{given}: a DH table is one chain without arguments"
         raise UsageError(f"{request.robot}: {what}", hint=f"leave {given} out")
     source, dh = read_dh_table(request.robot, free=free, locked=request.lock)

@@ -149,9 +149,9 @@ class Request:
         return shlex.join([*words, *self.options, *more])
 
     @property
-    def of_robots(self) -> str:
-        """A field that says something which a DH table, one chain without arguments, has no use for; "" for
-        none."""
+    def field_without_use(self) -> str:
+        """Of a DH table, one chain without arguments, the first field that it has no use for and that says
+        something; "" for none."""
         fields = ("base", "tip", "args", "package_paths")
         return next((one for one in fields if getattr(self, one)), "")
 

@@ -76,7 +76,7 @@ def _robot(robot: object) -> Path:
 
 def _refuse_for_tables(request: Request) -> None:
     """A DH table is one chain without arguments."""
-    if request.table and (given := request.of_robots):
+    if request.table and (given := request.field_without_use):
         raise ArgumentError(
             f"{given}: a DH table is one chain without arguments", hint=f"leave {given} out"
         )

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ikgen.errors import INTERNAL_ERROR, IkgenError, told
-from ikgen.generation.progress import Progress, Steps, silent
+from ikgen.generation.progress import Progress, Stage, Steps, silent
 from ikgen.generation.publishing import complete_folder
 from ikgen.generation.record import read_record
 from ikgen.processes.executors import Workers
@@ -47,7 +47,7 @@ class Outcome:
     solutions: int = 0
     missed: str = ""
     held: str = ""
-    steps: tuple[tuple[str, str], ...] = ()
+    steps: tuple[tuple[Stage, str], ...] = ()
     work: str = ""
 
 

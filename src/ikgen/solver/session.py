@@ -46,7 +46,7 @@ class Tick:
 class Session:
     """State of a session. `equations` are those of the current round with few unknowns; unknowns that are
     `passed_over` are not to be the first that is solved with branches; `among` are the labels of the only
-    equations to look at, if not at all."""
+    equations to look at (None: all)."""
 
     system: EquationSet
     probes: Probes

@@ -52,7 +52,7 @@ def solve_chain(
         kept=probes.kept,
     )
     knowledge = Knowledge(system)
-    _ = system.equations
+    _ = system.equations  # made here: held joints are marked as known in the atoms that there are
     session = Session(system, probes, knowledge, dh.free_indices, passed_over, among)
     session.start()
     root = (tree or the_tree()).build(session, all_leaves() if leaves is None else leaves)
