@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.lowering.frames import operand_of
-from ikgen.lowering.joint_values import joint_value, variable_lets
+from ikgen.lowering.joint_values import joint_expression, variable_lets
 from ikgen.model.chain import PRISMATIC, REVOLUTE
 from ikgen.model.dh import Angle, DHRow, Length
 from ikgen.program.interpret import evaluate
@@ -45,7 +45,7 @@ def value(r: DHRow, v: tuple[float, ...]) -> float:
     atoms = [
         g.atom("input", n, np.array([x]), unknown=False) for n, x in zip(names, v, strict=True)
     ]
-    node = joint_value(g, r, tuple(atoms))
+    node = joint_expression(g, r, tuple(atoms))
     by_operand = evaluate(operand_of(node), dict(zip(names, v, strict=True)))
     assert abs(by_operand - node.probe[0]) < 1e-12
     return by_operand

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ikgen.errors import UsageError
-from ikgen.generation.joint_value import joint_value
+from ikgen.generation.joint_value import parse_joint_value
 from ikgen.generation.request import Request
 from ikgen.model.maintainer import is_maintainer
 from ikgen.model.module_name import identifier, is_module_name
@@ -133,7 +133,7 @@ def parse_emit(texts: Sequence[str]) -> tuple[str, ...]:
 
 def _number(option: str, text: str, value: str) -> float:
     try:
-        return joint_value(value)
+        return parse_joint_value(value)
     except ValueError:
         raise UsageError(
             f"{option} {text}: '{value}' is not a finite number",

@@ -8,7 +8,7 @@ import re
 
 from ikgen.errors import shown
 
-__all__ = ["UNITS", "JointValue", "joint_value"]
+__all__ = ["UNITS", "JointValue", "parse_joint_value"]
 
 UNITS = {
     "rad": 1.0,
@@ -34,7 +34,7 @@ class JointValue(float):
         return not self.unit or revolute == (self.unit in _OF_ANGLES)
 
 
-def joint_value(value: object) -> JointValue:
+def parse_joint_value(value: object) -> JointValue:
     """The value in rad or m of a number, or of a text of a number and perhaps a unit ("45deg").
 
     Raises ValueError for anything else, and for what is not finite.

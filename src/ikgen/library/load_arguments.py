@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ikgen.errors import ArgumentError, IkgenError, shown
-from ikgen.generation.joint_value import joint_value
+from ikgen.generation.joint_value import parse_joint_value
 from ikgen.generation.request import Request, xacro_texts
 from ikgen.importers.named_robots import is_named
 from ikgen.model.joint_relation import read_relation
@@ -149,7 +149,7 @@ def _coupled(couple: object) -> dict[str, str]:
 
 def _value(argument: str, joint: str, value: object) -> float:
     try:
-        return joint_value(value)
+        return parse_joint_value(value)
     except ValueError as error:
         raise ArgumentError(
             f"{argument}: {joint}: {error}",

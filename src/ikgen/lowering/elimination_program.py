@@ -8,7 +8,7 @@ from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.kinematics.whole_turns import middle_of
 from ikgen.lowering.frames import file_frames, operand_of
-from ikgen.lowering.joint_values import joint_value, variable_lets
+from ikgen.lowering.joint_values import joint_expression, variable_lets
 from ikgen.model.dh import DHChain
 from ikgen.program.inputs import HeldValue, PoseEntry
 from ikgen.program.liveness import trimmed
@@ -108,4 +108,4 @@ def _value(dh: DHChain, joint: int) -> Expr:
     g = ExpressionGraph(1)
     names = _names(dh, joint)
     parts = tuple(g.atom("input", name, np.zeros(1), unknown=False) for name in names)
-    return joint_value(g, dh.lead_row(joint), parts, middle_of(dh, joint))
+    return joint_expression(g, dh.lead_row(joint), parts, middle_of(dh, joint))

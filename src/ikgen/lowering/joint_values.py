@@ -14,10 +14,10 @@ from ikgen.model.dh import DHRow
 from ikgen.program.ops import Op, Operand
 from ikgen.program.statements import Let
 
-__all__ = ["joint_value", "variable_lets"]
+__all__ = ["joint_expression", "variable_lets"]
 
 
-def joint_value(
+def joint_expression(
     g: ExpressionGraph, row: DHRow, variable: tuple[Expr, ...], middle: float = 0.0
 ) -> Expr:
     """The joint's value `(v - offset) / scale` (rad or m) from (cosine, sine) or (length,) of v; of an

@@ -14,7 +14,7 @@ from ikgen.kinematics.whole_turns import middle_of
 from ikgen.lowering.closure import require_closure
 from ikgen.lowering.elbow_position import bind_elbow
 from ikgen.lowering.fallbacks import choose_form
-from ikgen.lowering.joint_values import joint_value
+from ikgen.lowering.joint_values import joint_expression
 from ikgen.lowering.placement import LoweredLevel, Placement, local_name
 from ikgen.lowering.program_inputs import bind_joints, bind_pose, seed_values
 from ikgen.lowering.serialize import serialize
@@ -166,4 +166,4 @@ def _labels(step: Step) -> str:
 def _value(work: Placement, joint: int, variable: tuple[Expr, ...]) -> Expr:
     """A joint's value from its DH variable."""
     middle = middle_of(work.dh, joint)
-    return joint_value(work.g, work.dh.lead_row(joint), variable, middle)
+    return joint_expression(work.g, work.dh.lead_row(joint), variable, middle)

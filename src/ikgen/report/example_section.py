@@ -23,7 +23,7 @@ from ikgen.report.skeleton import Style, skeleton_camera, skeleton_svg
 from ikgen.report.svg_latex import svg_latex
 from ikgen.report.worked_example import Array, WorkedExample
 
-__all__ = ["example_section", "joint_value"]
+__all__ = ["example_section", "joint_text"]
 
 _SMALL = Style(210, 180, named=False)
 _MOST_DRAWN = 16
@@ -33,7 +33,7 @@ _ON_PAPER = 0.52
 
 def example_section(dh: DHChain, example: WorkedExample, module: str) -> list[Block]:
     """`module` is what the emitted code is called."""
-    values = ", ".join(joint_value(dh, j, x) for j, x in enumerate(example.q))
+    values = ", ".join(joint_text(dh, j, x) for j, x in enumerate(example.q))
     given = _held(dh, example)
     values_given = f", free=[{', '.join(given)}]" if given else ""
     call = f"{module}.solve(T{values_given})"
@@ -56,7 +56,7 @@ def _held(dh: DHChain, example: WorkedExample) -> list[str]:
     return [f"{x:.6g}" for x in given]
 
 
-def joint_value(dh: DHChain, joint: int, value: float) -> str:
+def joint_text(dh: DHChain, joint: int, value: float) -> str:
     """A value of a joint in degrees or m, without signs of zero and with 180 for -180 degrees."""
     if dh.joints[joint].kind != REVOLUTE:
         return f"{value + 0.0:.4f} m".replace("-0.0000", "0.0000")
@@ -92,7 +92,7 @@ def _table(dh: DHChain, example: WorkedExample) -> Rows:
     rows = []
     for i, (q, inside) in enumerate(zip(example.rows, example.inside, strict=True)):
         cells: list[Text] = [(str(i + 1),)]
-        cells += [(joint_value(dh, j, x),) for j, x in enumerate(q)]
+        cells += [(joint_text(dh, j, x),) for j, x in enumerate(q)]
         name = example.names[i]
         cells.append((name if inside else f"{name}; outside the limits",))
         rows.append(tuple(cells))

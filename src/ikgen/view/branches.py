@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ikgen.emit.derivation import Derivation
 from ikgen.kinematics.forward import file_jacobian
-from ikgen.report.example_section import joint_value
+from ikgen.report.example_section import joint_text
 from ikgen.verify.runners.python_module import PythonModule
 
 __all__ = ["Branch", "Solved", "solved"]
@@ -44,7 +44,7 @@ class Solved:
             "",
         ]
         for number, branch in enumerate(self.branches, start=1):
-            joints = ", ".join(joint_value(dh, j, x) for j, x in enumerate(branch.q))
+            joints = ", ".join(joint_text(dh, j, x) for j, x in enumerate(branch.q))
             outside = "" if branch.inside else "; outside the limits"
             lines.append(f"{number}. {branch.name}{outside}; σ {branch.sigma:.3f}: {joints}")
         return "\n".join(lines)
