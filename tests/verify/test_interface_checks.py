@@ -163,7 +163,7 @@ def test_kinematics_are_compared_entry_by_entry(check: Callable[..., CheckResult
     wrong = check(code, sample())
     assert not wrong.passed and wrong.worst == (("largest entry", pytest.approx(3e-5)),)
     assert wrong.failures == (1 if check is check_forward else 4)
-    assert check is not check_forward or "made 2" in wrong.worst_case or "2" in wrong.worst_case
+    assert wrong.worst_case.startswith("made #2: q" if check is check_forward else "made #")
     code.off[0, 0] = math.nan
     assert check(code, sample()).worst[0][1] == math.inf
 
