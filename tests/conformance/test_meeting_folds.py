@@ -1,4 +1,4 @@
-"""Where an elbow is stretched and a tool points straight down at once, four solutions meet, not two."""
+"""Where two folds meet, as of a stretched elbow and a tool that points straight down, four solutions do."""
 
 from __future__ import annotations
 
@@ -50,3 +50,35 @@ def test_all_are_found_where_two_folds_meet(tmp_path: Path) -> None:
     for found in (rows.q, batch):
         gap = np.abs(found - q[:, None]).max(axis=2)
         assert np.nanmin(gap, axis=1).max() < 1e-4
+
+
+TABLE = """
+convention = "modified"
+joints = [
+    {alpha = 0, a = 0, d = 0.7, theta = 0, type = "revolute"},
+    {alpha = 0, a = 0.5, d = 0, theta = 0, type = "revolute"},
+    {alpha = "pi/2", a = 0.45, d = 0, theta = 0, type = "revolute"},
+    {alpha = "pi/2", a = 0, d = 0, theta = 0, type = "revolute"},
+    {alpha = "-pi/2", a = 0, d = 0, theta = 0, type = "revolute"},
+    {alpha = "pi/2", a = 0.55, d = 0, theta = 0, type = "revolute"},
+]
+"""
+
+
+@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
+def test_a_root_of_what_a_double_root_leaves_is_taken(tmp_path: Path) -> None:
+    """Of exact geometry: where one root is a double one, what the next is taken of has half the digits."""
+    path = tmp_path / "folding.toml"
+    path.write_text(TABLE)
+    module = derive(Request(path, name="folding")).module
+    arm = import_text(emit_module(module), tmp_path)
+    header = header_of(module, tmp_path)
+    random = np.random.default_rng(7)
+    q = random.uniform(-np.pi, np.pi, (300, 6))
+    q[:, 1:3] = random.choice([0.0, np.pi], (300, 2))
+    q[150:] += 10.0 ** random.uniform(-12.0, -6.0, (150, 1)) * random.normal(size=(150, 6))
+    poses = arm.forward(q)
+    rows, (batch, _, _) = header.solve_many(poses), arm.solve_batch(poses)
+    for found in (rows.q, batch):
+        gap = np.abs(np.remainder(found - q[:, None] + np.pi, 2.0 * np.pi) - np.pi).max(axis=2)
+        assert np.nanmin(gap, axis=1).max() < 2e-3  # solutions lie as close together

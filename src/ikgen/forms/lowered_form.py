@@ -65,7 +65,8 @@ class Tolerances:
     argument may be `clamp` outside its domain, as poses on the boundary of the workspace are reachable, or
     `further` where it follows from unknowns; where rows are refined it is kept above `fold`, so that two
     branches start apart. Where the condition `rough` holds, what a square root is taken of has lost digits:
-    it may be `wide` outside. An `error` of the geometry moves what follows from a square root by as much
+    it may be `wide` outside; so it may where `folded` gives a condition for what it is taken of, and that
+    holds. An `error` of the geometry moves what follows from a square root by as much
     over that root, and what follows from a divisor by as much over it: `margin` gives what the unknowns
     that a value follows from leave of the file's digits, as a square relative to natural sizes (see
     `FileDigits`), and `moved` bounds how far a value goes for each radian, or metre, that the unknowns
@@ -82,6 +83,7 @@ class Tolerances:
     rough: Expr | None = None
     wide: float = 1e-3
     error: float = 0.0
+    folded: Margin = no_margin
     margin: Margin = no_margin
     lost: Lost = nothing_lost
     moved: Lost = nothing_lost
@@ -115,8 +117,9 @@ class Tolerances:
     def guard(self, g: ExpressionGraph, value: Expr, size: float) -> Expr:
         """Condition that a square root of `value`, of natural size `size`, may be taken."""
         least = g.const(-self.least(value, size))
-        if self.rough is not None:
-            least = g.select(self.rough, g.const(-self.wide * size), least)
+        rough = self.folded(value) if self.rough is None else self.rough
+        if rough is not None:
+            least = g.select(rough, g.const(-self.wide * size), least)
         real = g.binary("gt", value, least)
         margin = self.margin(value)
         if margin is None:

@@ -87,7 +87,9 @@ def _given_way(work: Placement, forms: list[LoweredForm]) -> bool:
     reads too few entries, no equation but the one that was solved tells."""
     tol = work.tolerances
     sizes = [(f.under[0], natural_size(f.under[1])) for f in forms if f.under]
-    far = tol.rough is not None or any(tol.least(e, x) > tol.clamp * x for e, x in sizes)
+    far = tol.rough is not None or any(
+        tol.folded(e) is not None or tol.least(e, x) > tol.clamp * x for e, x in sizes
+    )
     return far and bool(sizes) and not work.whole_pose
 
 

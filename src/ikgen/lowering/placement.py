@@ -14,6 +14,7 @@ from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import Variable
 from ikgen.forms.form import Form
 from ikgen.forms.lowered_form import Divisor, Tolerances, natural_size
+from ikgen.lowering.double_roots import DoubleRoots, either
 from ikgen.lowering.file_digits import FileDigits
 from ikgen.lowering.rounding import Rounding
 from ikgen.program.inputs import Input
@@ -80,6 +81,7 @@ class Placement:
         self.norms: list[Expr] = []
         self.close: list[Expr] = []
         self.folds: list[Expr] = []
+        self.double_roots = DoubleRoots(self.g, self.definition)
         self.double: Expr | None = None
         self.levels = [LoweredLevel(1)]
         self.level_of: dict[int, int] = {}
@@ -97,17 +99,15 @@ class Placement:
         """Condition that an unknown solved so far has lost digits. With constants as the file rounds them
         a continuum's place is taken by solutions that few digits tell apart, and two of them meet where
         it would be; where branches of a step meet at a regular configuration, the next root is taken of
-        what has half the digits. None for exact constants without such a step."""
-        if not self.loses_digits:
-            return None
-        total: Expr | None = None
-        for flag in (*self.singular, *self.folds):
-            total = flag if total is None else self.g.binary("or", total, flag)
-        return total
+        what has half the digits; of exact constants only where a square root was seen to follow from such
+        an unknown. None where nothing of this can be."""
+        own = (*self.singular, *self.folds)
+        return either(self.g, own if self.loses_digits else self.double_roots.asked)
 
     def note_fold(self, under: Expr, size: float) -> None:
         """A square root was taken of `under`: of few digits where that is small beside `size`."""
         self.close.append(self.g.binary("gt", self.g.const(FOLDED * size), under))
+        self.double_roots.note(self.close[-1])
         if self.loses_digits:
             self.folds.append(self.close[-1])
         if self._counts_digits:
@@ -120,7 +120,7 @@ class Placement:
         self.note_fold(self.g.square(slope), natural_size(slope) ** 2)
         for flag in self.folds[folds:]:
             self.double = flag if self.double is None else self.g.binary("or", self.double, flag)
-        self.digits.settle(atoms, (equation,))
+        self._settle(atoms, (equation,))
 
     def note_divisors(self, divisors: Sequence[Divisor]) -> None:
         """An unknown was divided by the first of these that is large: its direction is lost where that is
@@ -151,7 +151,10 @@ class Placement:
         """Those of the next unknown."""
         double = None if self._tolerances.fold else self.double
         margin = self.digits.behind
-        return replace(self._tolerances, rough=self.rough, margin=margin, double=double)
+        tolerances = replace(self._tolerances, margin=margin, double=double)
+        if self.loses_digits:
+            return replace(tolerances, rough=self.rough)
+        return replace(tolerances, folded=self.double_roots.behind)
 
     @property
     def whole_pose(self) -> bool:
@@ -244,6 +247,11 @@ class Placement:
             self.names[atom.id] = local_name(name)
             self.place(atom)
         self._levers.note_moved(atoms)
+        self._settle(atoms, values)
+
+    def _settle(self, atoms: Sequence[Expr], values: Sequence[Expr]) -> None:
+        """The unknown of these atoms is solved, from these values."""
+        self.double_roots.settle(atoms)
         self.digits.settle(atoms, values)
 
     def atoms_of(self, v: Variable) -> tuple[Expr, ...]:

@@ -131,6 +131,20 @@ def test_four_in_one_place_are_told_apart(even: bool, tmp_path: Path) -> None:
         assert (nearest(roots[i : i + 1], pairs[:, :, 0], pairs[:, :, 1]) < 0.1 * gap[i]).all()
 
 
+def test_four_in_the_same_place_leave_one_whatever_rounding_makes_of_them(tmp_path: Path) -> None:
+    rng = np.random.default_rng(7)
+    t = rng.uniform(-np.pi, np.pi, 300)
+    # (1 - cos(t - t0))^2 = 1.5 - 2 cos(t - t0) + 0.5 cos 2(t - t0)
+    parts = [0.5 * np.cos(2 * t), 0.5 * np.sin(2 * t), -2 * np.cos(t), -2 * np.sin(t), 1.5 + 0 * t]
+    K = np.stack(parts, axis=1) + rng.uniform(-3e-14, 3e-14, (300, 5))
+    program = compiled_header(MAIN, tmp_path)
+    for k, at, line in zip(K, t, feed(program, K.ravel()), strict=True):
+        count, pairs = trig_quartic(*k)
+        assert count == len(pairs) > 0 and line[0] > 0
+        for c, s in (*pairs, *np.reshape(line[1:], (-1, 2))):
+            assert np.hypot(c - np.cos(at), s - np.sin(at)) < 5e-3
+
+
 def test_degenerate() -> None:
     assert trig_quartic(0.0, 0.0, 0.0, 0.0, 0.0) == (-1, [])
     assert trig_quartic(1e-15, 0.0, 1e-16, 0.0, 0.0)[0] == -1

@@ -12,7 +12,7 @@ namespace tq {
 constexpr double kTogether = 0.995;  // distance of lines whose roots are within 0.1 rad
 constexpr double kSameWay = 0.98;    // cosine of the angle between two that have theirs in one place
 constexpr double kAround = 0.25;     // tangents of half angles
-constexpr double kValueRoundOff = 1e-14;  // of a value, twice
+constexpr double kValueRoundOff = 1e-13;  // of a value, twice: what coefficients are off by what they were made of
 
 // Zeros of a polynomial of M coefficients, fewer than M, in order.
 template <int M> struct Zeros {
@@ -87,7 +87,8 @@ inline int roots_around(double a2, double b2, double a1, double b1, double a0, d
   std::copy_n(found.x, count, x);
   for (int i = 0; i < turns.count; ++i) {
     const double y = value(p, turns.x[i]), bend = value(bends, turns.x[i]);
-    if (y * bend >= 0.0 && 2.0 * std::abs(y) <= 0.25 * tol * tol * std::abs(bend) + kValueRoundOff) x[count++] = turns.x[i];
+    const double most = 0.25 * tol * tol * std::abs(bend) + 0.125 * tol * tol * tol * tol * std::abs(p[0]) + kValueRoundOff;
+    if (y * bend >= 0.0 && 2.0 * std::abs(y) <= most) x[count++] = turns.x[i];
   }
   std::sort(x, x + count);
   count = std::min(count, 4);

@@ -12,7 +12,7 @@ __all__ = ["crowded_place", "roots_around"]
 _TOGETHER = 0.995  # distance of lines whose roots are within 0.1 rad
 _SAME_WAY = 0.98  # cosine of the angle between two that have theirs in one place
 _AROUND = 0.25  # tangents of half angles
-_ROUND_OFF = 1e-14  # of a value, twice
+_ROUND_OFF = 1e-13  # of a value, twice: what coefficients are off by what they were made of
 _STEPS = 64
 _Pair = tuple[float, float]
 
@@ -41,7 +41,8 @@ def roots_around(k: Coefficients[float], c: float, s: float, tol: float) -> list
     found = _between(p, turns)
     for x in turns:
         value, bend = _value(p, x), _value(bends, x)
-        if value * bend >= 0.0 and 2.0 * abs(value) <= 0.25 * tol * tol * abs(bend) + _ROUND_OFF:
+        most = 0.25 * tol**2 * abs(bend) + 0.125 * tol**4 * abs(p[0]) + _ROUND_OFF
+        if value * bend >= 0.0 and 2.0 * abs(value) <= most:
             found.append(x)
     pairs = (((1.0 - x * x) / (1.0 + x * x), 2.0 * x / (1.0 + x * x)) for x in sorted(found)[:4])
     return [(c * u - s * v, s * u + c * v) for u, v in pairs]

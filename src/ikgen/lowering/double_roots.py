@@ -1,0 +1,56 @@
+"""Where solved unknowns are nearly double roots, so that what follows from them has half the digits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import partial, reduce
+
+from ikgen.algebra.expression import Expr
+from ikgen.algebra.expression_graph import ExpressionGraph
+
+__all__ = ["DoubleRoots", "either"]
+
+
+def either(graph: ExpressionGraph, flags: Iterable[Expr]) -> Expr | None:
+    """Condition that one of these holds; None where there is none."""
+    some = tuple(flags)
+    return reduce(partial(graph.binary, "or"), some) if some else None
+
+
+class DoubleRoots:
+    """Conditions under which unknowns are nearly double roots; `definition`: what solved atoms stand for.
+    `asked`: those that square roots of exact geometry have to do with (ordered, without values)."""
+
+    def __init__(self, graph: ExpressionGraph, definition: dict[int, Expr]) -> None:
+        self.asked: dict[Expr, None] = {}
+        self._graph, self._definition = graph, definition
+        self._own: list[Expr] = []
+        self._of: dict[int, Expr] = {}
+
+    def note(self, flag: Expr) -> None:
+        """The unknown that is being solved is nearly a double root where this holds."""
+        self._own.append(flag)
+
+    def settle(self, atoms: Sequence[Expr]) -> None:
+        """The unknown of these atoms is solved."""
+        own = either(self._graph, self._own)
+        if own is not None:
+            self._of |= dict.fromkeys((a.id for a in atoms), own)
+        self._own.clear()
+
+    def behind(self, value: Expr) -> Expr | None:
+        """Condition that an unknown which a value follows from is; None where there is no such unknown."""
+        seen: set[int] = set()
+        flags: dict[Expr, None] = {}
+        stack = [value]
+        while stack:
+            node = stack.pop()
+            if node.id in seen:
+                continue
+            seen.add(node.id)
+            if node.id in self._of:
+                flags[self._of[node.id]] = None
+            solved = node.id in self._definition
+            stack += (self._definition[node.id],) if solved else node.args
+        self.asked |= flags
+        return either(self._graph, flags)
