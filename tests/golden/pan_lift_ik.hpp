@@ -134,6 +134,8 @@ inline constexpr double kFarthestSeed = 1e6;  // rad: neighbouring doubles are 1
 inline constexpr double kFarthest = 1e15;  // m: where neighbouring doubles are 0.1 m apart; no arm reaches beyond
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+inline double without_turns(double x) noexcept { return x - kTurn * std::nearbyint(x / kTurn); }
+
 // --- machine vectors -----------------------------------------------------------------------------
 #if defined(__AVX512F__)
 inline constexpr int kNative = 8;
@@ -649,7 +651,7 @@ template <class Arm> struct MotionChain {
   template <class X> struct Turns {
     static constexpr bool kPack = !std::is_same_v<X, double>;
     static constexpr int kWide = kPack ? kCount : (kCount + 3) / 4 * 4;
-    static constexpr double kReduced = 1e5;  // rad: so far lane_sines.hpp reduces an angle to all digits
+    static constexpr double kReduced = 1e5;  // rad: so far `sines` reduces an angle to all digits
     X value[kWide] = {}, cosine[kWide], sine[kWide];
 
     explicit Turns(const X* q) noexcept {
@@ -872,18 +874,18 @@ template <class Arm> struct SolutionRows {
 
   static double change(int j, const double* a, const double* b) noexcept {
     const double gap = b[j] - a[j];
-    return Arm::kRevolute[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap;
+    return Arm::kRevolute[j] ? without_turns(gap) : gap;
   }
 
   static double beyond(int j, double x, double value) noexcept {
     const double gap = value - x;
-    return std::abs(Arm::kRevolute[j] && !Arm::kHeld[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap);
+    return std::abs(Arm::kRevolute[j] && !Arm::kHeld[j] ? without_turns(gap) : gap);
   }
 
   static bool same(const double* a, const double* b) noexcept {
     for (int j = 0; j < Arm::kDof; ++j) {
       double gap = std::abs(a[j] - b[j]);
-      if (Arm::kRevolute[j] && gap > Policy::kCoincident) gap = std::abs(gap - kTurn * std::nearbyint(gap / kTurn));
+      if (Arm::kRevolute[j] && gap > Policy::kCoincident) gap = std::abs(without_turns(gap));
       const double bound = Policy::kCoincident * (Arm::kRevolute[j] ? 1.0 : std::max(std::abs(a[j]), 1.0));
       if (!(gap <= bound)) return false;
     }
@@ -1466,7 +1468,7 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
     if (count == kRoom || !(std::abs(s.left) < Policy::kArrived)) return;
     double* q = found[count++];
     for (int j = 0; j < Arm::kDof; ++j)
-      q[j] = s.q[j] - (Arm::kRevolute[j] && !Arm::kHeld[j] ? kTurn * std::nearbyint(s.q[j] / kTurn) : 0.0);
+      q[j] = Arm::kRevolute[j] && !Arm::kHeld[j] ? without_turns(s.q[j]) : s.q[j];
   }
 
  private:
@@ -1993,6 +1995,7 @@ template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> shortest(const L
 }
 
 template <class Arm> struct JointBounds {
+  static constexpr double kOpen = 1e6;  // m: a slide's limit that is none; distances from the other keep 1e-10
   int count = 0;
   int joint[Arm::kDof];
   double middle[Arm::kDof], half[Arm::kDof];
@@ -2002,11 +2005,11 @@ template <class Arm> struct JointBounds {
       double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j];
       const bool bounded = Arm::kRevolute[j] ? high - low < kTurn : low > -kInfinity || high < kInfinity;
       if (Arm::kHeld[j] || !bounded) continue;
-      low = std::max(low, -1e6);
-      high = std::min(high, 1e6);
+      low = std::max(low, -kOpen);
+      high = std::min(high, kOpen);
       joint[count] = j;
       middle[count] = 0.5 * (low + high);
-      if (Arm::kRevolute[j]) middle[count] -= kTurn * std::nearbyint(middle[count] / kTurn);
+      if (Arm::kRevolute[j]) middle[count] = without_turns(middle[count]);
       half[count++] = 0.5 * (high - low);
     }
   }
@@ -2019,7 +2022,7 @@ template <class Arm> struct JointBounds {
     double most = -kInfinity;
     for (int i = 0; i < count; ++i) {
       const double gap = q[joint[i]] - middle[i];
-      const double off = std::abs(Arm::kRevolute[joint[i]] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap) - half[i];
+      const double off = std::abs(Arm::kRevolute[joint[i]] ? without_turns(gap) : gap) - half[i];
       if (off > most) bound = i;
       most = std::max(most, off);
     }

@@ -59,6 +59,7 @@ DOF: int = 2
 MAX_SOLUTIONS: int = 2
 LOWER: Array = np.array([-3.0, 0.0])
 UPPER: Array = np.array([3.0, 0.5])
+LOWER.flags.writeable = UPPER.flags.writeable = False  # solve goes by what stands here
 
 # Lengths (m) and constants of the arm.
 a_2 = 0.3
@@ -223,6 +224,17 @@ Array = NDArray[np.float64]
 _Flags = NDArray[np.bool_]
 _Index = NDArray[np.intp]
 Row = tuple[float, ...]
+
+
+# Angles without their whole turns.
+
+
+_WHOLE_TURN = 2.0 * pi
+
+
+def _without_turns(angles: Array) -> Array:
+    """Angles, or gaps between two on the shortest way."""
+    return np.asarray(angles - _WHOLE_TURN * np.round(angles / _WHOLE_TURN))
 
 
 # Arguments as arrays of real numbers.
@@ -749,14 +761,11 @@ def _aims(arm: _Arm, T: Array, held: Array) -> Array:
 # Which rows at one value of a held joint go on as which at the next.
 
 
-_WHOLE_TURN = 2.0 * pi
-
-
 def _differences(arm: _Arm, a: Array, b: Array) -> Array:
     """b - a (..., dof), of turning joints on the shortest way."""
     gap = b - a
     turning = np.array(arm.chain.revolute)
-    return np.where(turning, gap - _WHOLE_TURN * np.round(gap / _WHOLE_TURN), gap)
+    return np.where(turning, _without_turns(gap), gap)
 
 
 def _slide_scale(values: Array) -> Array:
@@ -1426,8 +1435,7 @@ def _kept(arm: _Arm, parts: _Parts) -> tuple[_Index, Array]:
     order = np.lexsort((parts.place, parts.owner))
     order = order[np.abs(left[order]) < arm.policy.arrived]
     order = order[_places(parts.owner[order]) < _ROOM]
-    whole = 2.0 * np.pi * np.round(q / (2.0 * np.pi))
-    return parts.owner[order], np.where(arm.turning, q - whole, q)[order]
+    return parts.owner[order], np.where(arm.turning, _without_turns(q), q)[order]
 
 
 # What Newton steps from the closed form's rows lead to near singularities, where solutions meet.
@@ -1752,13 +1760,16 @@ def _held_there(arm: _Arm, aim: Array, row: Row, flag: bool) -> list[_Found]:
 # How far rows are from their joint limits, whatever turns they are on.
 
 
+_OPEN = 1e6  # m: a slide's limit that is none; distances from the other keep 1e-10
+
+
 def _bounded_joints(arm: _Arm) -> list[tuple[int, float, float, bool]]:
     """Moving joints that limits bound."""
     out = []
     for j in arm.moving:
         low, high, turns = arm.lower[j], arm.upper[j], arm.chain.revolute[j]
         if (turns and high - low < 2.0 * pi) or (not turns and (low > -inf or high < inf)):
-            low, high = max(low, -1e6), min(high, 1e6)
+            low, high = max(low, -_OPEN), min(high, _OPEN)
             out.append((j, 0.5 * (low + high), 0.5 * (high - low), turns))
     return out
 
@@ -1766,7 +1777,7 @@ def _bounded_joints(arm: _Arm) -> list[tuple[int, float, float, bool]]:
 def _offsets(q: Array, middle: float, turns: bool) -> Array:
     """Joint values from the middle of their range, turning ones on the nearest turn."""
     x = q - middle
-    return np.asarray(x - 2.0 * pi * np.round(x / (2.0 * pi)) if turns else x)
+    return _without_turns(x) if turns else np.asarray(x)
 
 
 def _limit_margins_outside(arm: _Arm, q: Array, limits: bool) -> Array:

@@ -19,6 +19,7 @@ template <int N, bool H> [[gnu::always_inline]] inline Lanes<N> shortest(const L
 
 // Limits of the joints that move: index, middle and half of the range. Arm: as for SolutionRows.
 template <class Arm> struct JointBounds {
+  static constexpr double kOpen = 1e6;  // m: a slide's limit that is none; distances from the other keep 1e-10
   int count = 0;
   int joint[Arm::kDof];
   double middle[Arm::kDof], half[Arm::kDof];
@@ -28,11 +29,11 @@ template <class Arm> struct JointBounds {
       double low = Arm::kLower.data()[j], high = Arm::kUpper.data()[j];
       const bool bounded = Arm::kRevolute[j] ? high - low < kTurn : low > -kInfinity || high < kInfinity;
       if (Arm::kHeld[j] || !bounded) continue;
-      low = std::max(low, -1e6);
-      high = std::min(high, 1e6);
+      low = std::max(low, -kOpen);
+      high = std::min(high, kOpen);
       joint[count] = j;
       middle[count] = 0.5 * (low + high);
-      if (Arm::kRevolute[j]) middle[count] -= kTurn * std::nearbyint(middle[count] / kTurn);
+      if (Arm::kRevolute[j]) middle[count] = without_turns(middle[count]);
       half[count++] = 0.5 * (high - low);
     }
   }
@@ -47,7 +48,7 @@ template <class Arm> struct JointBounds {
     double most = -kInfinity;
     for (int i = 0; i < count; ++i) {
       const double gap = q[joint[i]] - middle[i];
-      const double off = std::abs(Arm::kRevolute[joint[i]] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap) - half[i];
+      const double off = std::abs(Arm::kRevolute[joint[i]] ? without_turns(gap) : gap) - half[i];
       if (off > most) bound = i;
       most = std::max(most, off);
     }

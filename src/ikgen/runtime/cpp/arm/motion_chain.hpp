@@ -95,7 +95,7 @@ template <class Arm> struct MotionChain {
   template <class X> struct Turns {
     static constexpr bool kPack = !std::is_same_v<X, double>;
     static constexpr int kWide = kPack ? kCount : (kCount + 3) / 4 * 4;
-    static constexpr double kReduced = 1e5;  // rad: so far lane_sines.hpp reduces an angle to all digits
+    static constexpr double kReduced = 1e5;  // rad: so far `sines` reduces an angle to all digits
     X value[kWide] = {}, cosine[kWide], sine[kWide];
 
     explicit Turns(const X* q) noexcept {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 namespace ikgen_runtime {
@@ -9,5 +10,8 @@ inline constexpr double kTurn = 2.0 * kPi;
 inline constexpr double kFarthestSeed = 1e6;  // rad: neighbouring doubles are 1e-10 apart
 inline constexpr double kFarthest = 1e15;  // m: where neighbouring doubles are 0.1 m apart; no arm reaches beyond
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// An angle without its whole turns, or a gap between two on the shortest way: from -pi to pi.
+inline double without_turns(double x) noexcept { return x - kTurn * std::nearbyint(x / kTurn); }
 
 }  // namespace ikgen_runtime

@@ -147,7 +147,7 @@ template <class Arm> struct HeldSample {
 
   // A joint's value, no more than half a turn from 0.
   static double turned(int j, double x) noexcept {
-    return Arm::kRevolute[j] && !Arm::kHeld[j] ? x - kTurn * std::nearbyint(x / kTurn) : x;
+    return Arm::kRevolute[j] && !Arm::kHeld[j] ? without_turns(x) : x;
   }
 
   // Takes the rows of the pose, or of one beside it, refined where that is needed: in lanes where all are, and not at all if

@@ -38,20 +38,20 @@ template <class Arm> struct SolutionRows {
   // The change of a joint from one row to another, the shortest way.
   static double change(int j, const double* a, const double* b) noexcept {
     const double gap = b[j] - a[j];
-    return Arm::kRevolute[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap;
+    return Arm::kRevolute[j] ? without_turns(gap) : gap;
   }
 
   // How far a joint is from a value, the shortest way.
   static double beyond(int j, double x, double value) noexcept {
     const double gap = value - x;
-    return std::abs(Arm::kRevolute[j] && !Arm::kHeld[j] ? gap - kTurn * std::nearbyint(gap / kTurn) : gap);
+    return std::abs(Arm::kRevolute[j] && !Arm::kHeld[j] ? without_turns(gap) : gap);
   }
 
   // Whether two rows are the same, whole turns aside; long slides count relative to their length.
   static bool same(const double* a, const double* b) noexcept {
     for (int j = 0; j < Arm::kDof; ++j) {
       double gap = std::abs(a[j] - b[j]);
-      if (Arm::kRevolute[j] && gap > Policy::kCoincident) gap = std::abs(gap - kTurn * std::nearbyint(gap / kTurn));
+      if (Arm::kRevolute[j] && gap > Policy::kCoincident) gap = std::abs(without_turns(gap));
       const double bound = Policy::kCoincident * (Arm::kRevolute[j] ? 1.0 : std::max(std::abs(a[j]), 1.0));
       if (!(gap <= bound)) return false;
     }

@@ -64,7 +64,7 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
     if (count == kRoom || !(std::abs(s.left) < Policy::kArrived)) return;
     double* q = found[count++];
     for (int j = 0; j < Arm::kDof; ++j)
-      q[j] = s.q[j] - (Arm::kRevolute[j] && !Arm::kHeld[j] ? kTurn * std::nearbyint(s.q[j] / kTurn) : 0.0);
+      q[j] = Arm::kRevolute[j] && !Arm::kHeld[j] ? without_turns(s.q[j]) : s.q[j];
   }
 
  private:

@@ -7,9 +7,12 @@ from math import inf, pi
 import numpy as np
 
 from ikgen.runtime.python.arm.solved_arm import Arm
+from ikgen.runtime.python.arrays.angles import without_turns
 from ikgen.runtime.python.arrays.array_types import Array
 
 __all__ = ["bounded_joints", "offsets", "outside", "turned_inside"]
+
+_OPEN = 1e6  # m: a slide's limit that is none; distances from the other keep 1e-10
 
 
 def bounded_joints(arm: Arm) -> list[tuple[int, float, float, bool]]:
@@ -18,7 +21,7 @@ def bounded_joints(arm: Arm) -> list[tuple[int, float, float, bool]]:
     for j in arm.moving:
         low, high, turns = arm.lower[j], arm.upper[j], arm.chain.revolute[j]
         if (turns and high - low < 2.0 * pi) or (not turns and (low > -inf or high < inf)):
-            low, high = max(low, -1e6), min(high, 1e6)
+            low, high = max(low, -_OPEN), min(high, _OPEN)
             out.append((j, 0.5 * (low + high), 0.5 * (high - low), turns))
     return out
 
@@ -26,7 +29,7 @@ def bounded_joints(arm: Arm) -> list[tuple[int, float, float, bool]]:
 def offsets(q: Array, middle: float, turns: bool) -> Array:
     """Joint values from the middle of their range, turning ones on the nearest turn."""
     x = q - middle
-    return np.asarray(x - 2.0 * pi * np.round(x / (2.0 * pi)) if turns else x)
+    return without_turns(x) if turns else np.asarray(x)
 
 
 def outside(arm: Arm, q: Array, limits: bool) -> Array:

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from math import inf, pi
+from math import inf
 
 import numpy as np
 
 from ikgen.runtime.python.arm.solved_arm import Arm
+from ikgen.runtime.python.arrays.angles import without_turns
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 
-__all__ = ["WHOLE_TURN", "differences", "linked_rows", "origins", "slide_scale"]
-
-WHOLE_TURN = 2.0 * pi
+__all__ = ["differences", "linked_rows", "origins", "slide_scale"]
 
 
 def differences(arm: Arm, a: Array, b: Array) -> Array:
     """b - a (..., dof), of turning joints on the shortest way."""
     gap = b - a
     turning = np.array(arm.chain.revolute)
-    return np.where(turning, gap - WHOLE_TURN * np.round(gap / WHOLE_TURN), gap)
+    return np.where(turning, without_turns(gap), gap)
 
 
 def slide_scale(values: Array) -> Array:

@@ -10,8 +10,9 @@ from operator import lt
 import numpy as np
 
 from ikgen.runtime.python.arm.solved_arm import Arm, Found
+from ikgen.runtime.python.arrays.angles import WHOLE_TURN
 from ikgen.runtime.python.arrays.array_types import Array, Flags, Row
-from ikgen.runtime.python.rows.row_links import WHOLE_TURN, differences, slide_scale
+from ikgen.runtime.python.rows.row_links import differences, slide_scale
 from ikgen.runtime.python.rows.row_pairs import pairs
 
 __all__ = [
