@@ -2699,9 +2699,12 @@ template <int First, int Count, int Height> struct UnitColumns {
   static constexpr bool kFlat = Count > 0 && Height == 2;
   static constexpr int kRelations = Count * (Count + 1) / 2;  // between their entries
 
-  static constexpr double most_defect(double off, double level) noexcept {
-    const double most = 4.0 * Count * Height * off * off * (1.0 + 2.0 * Count * Height * off);
-    return kFlat && most < level * level ? level * level : most;
+  static constexpr double most_defect(double off) noexcept {
+    return 4.0 * Count * Height * off * off * (1.0 + 2.0 * Count * Height * off);
+  }
+
+  static bool level(const double* t, double most) noexcept {
+    return kFlat && dot(t + 4 * First, t + 4 * First) <= 1.0 && dot(t + 4 * First, t + 4 * First) >= 1.0 - most;
   }
 
   template <class X, class R> static X unit(const R& rotation) noexcept {
@@ -2768,7 +2771,7 @@ template <class Arm> struct PoseReading {
   static bool clean(Eigen::Isometry3d& pose) noexcept {
     double* t = pose.matrix().data();
     constexpr double most = 1.0 + Policy::kPoseTolerance;
-    if (!good(t, Columns::most_defect(Policy::kPoseTolerance, Policy::kLevel), most))
+    if (!good(t, Columns::level(t, Policy::kLevel) ? 1.0 : Columns::most_defect(Policy::kPoseTolerance), most))
       return Columns::tilted(t) && good(t, 1.0, most);
     if (exact(pose)) return true;
     Columns::clean(t);

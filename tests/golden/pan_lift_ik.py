@@ -3246,9 +3246,10 @@ class _EntriesTask:
         R = [(*line, 0.0)[:3] for line in zip(*T[:height])]
         columns = tuple((x, y, z) for x, y, z in (R[j] for j in self.unit))
         defect = _columns_defect(columns)
-        near = defect <= self._most_defect(policy)
+        square = sum(x * x for column in columns for x in column)
+        level = self.flat and 1.0 - policy.level <= square <= 1.0
+        near = level or defect <= self._most_defect(policy)
         if not near or (len(columns) == 3 and not _determinant(columns) > 0.0):
-            square = sum(x * x for column in columns for x in column)
             return T if self.flat and 0.0 < square < 1.0 else None
         if defect <= policy.orthonormal**2:
             return T
@@ -3260,8 +3261,7 @@ class _EntriesTask:
 
     def _most_defect(self, policy: _Policy) -> float:
         """Of columns that are taken for unit vectors."""
-        most = _most_defect((2 if self.flat else 3) * len(self.unit), policy.pose_tolerance)
-        return max(most, policy.level**2) if self.flat else most
+        return _most_defect((2 if self.flat else 3) * len(self.unit), policy.pose_tolerance)
 
     def read_batch(self, T: Array, policy: _Policy) -> tuple[Array, _Flags]:
         T, good = self._single_entries(T, policy)
@@ -3273,10 +3273,12 @@ class _EntriesTask:
         columns = tuple((v[0], v[1], v[2]) for v in V.swapaxes(0, 1))
         with np.errstate(all="ignore"):
             defect = _columns_defect(columns)
+            square = (V * V).sum(axis=(0, 1))
             near = good & (defect <= self._most_defect(policy))
+            if self.flat:
+                near |= good & (square >= 1.0 - policy.level) & (square <= 1.0)
             if len(columns) == 3:
                 near &= _determinant(columns) > 0.0
-            square = (V * V).sum(axis=(0, 1))
             good &= near | ((square > 0.0) & (square < 1.0)) if self.flat else near
             near &= defect > policy.orthonormal**2
             if near.any():

@@ -25,7 +25,7 @@ template <class Arm> struct PoseReading {
   static bool clean(Eigen::Isometry3d& pose) noexcept {
     double* t = pose.matrix().data();
     constexpr double most = 1.0 + Policy::kPoseTolerance;
-    if (!good(t, Columns::most_defect(Policy::kPoseTolerance, Policy::kLevel), most))
+    if (!good(t, Columns::level(t, Policy::kLevel) ? 1.0 : Columns::most_defect(Policy::kPoseTolerance), most))
       return Columns::tilted(t) && good(t, 1.0, most);
     if (exact(pose)) return true;
     Columns::clean(t);

@@ -11,11 +11,14 @@ template <int First, int Count, int Height> struct UnitColumns {
   static constexpr bool kFlat = Count > 0 && Height == 2;
   static constexpr int kRelations = Count * (Count + 1) / 2;  // between their entries
 
-  // The defect of columns whose entries are each off by `off`: |V^T V - 1| <= 2 |E| + |E|^2, E what they are off by; or of
-  // a heading whose squared length is `level` short of 1.
-  static constexpr double most_defect(double off, double level) noexcept {
-    const double most = 4.0 * Count * Height * off * off * (1.0 + 2.0 * Count * Height * off);
-    return kFlat && most < level * level ? level * level : most;
+  // The defect of columns whose entries are each off by `off`: |V^T V - 1| <= 2 |E| + |E|^2, E what they are off by.
+  static constexpr double most_defect(double off) noexcept {
+    return 4.0 * Count * Height * off * off * (1.0 + 2.0 * Count * Height * off);
+  }
+
+  // Whether it is a heading whose squared length is at most so much short of 1.
+  static bool level(const double* t, double most) noexcept {
+    return kFlat && dot(t + 4 * First, t + 4 * First) <= 1.0 && dot(t + 4 * First, t + 4 * First) >= 1.0 - most;
   }
 
   // What takes a heading's entries to unit length that is a little shorter.
