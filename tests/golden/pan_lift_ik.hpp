@@ -1174,7 +1174,8 @@ template <class Arm> struct FoldPair {
 
  private:
   static constexpr double kTurned = 0.5;  // squared length of what is left of a unit direction that turned by 45 degrees
-  static constexpr double kAlong = 1e-4, kClose = 1e-9, kFar = 0.3;
+  static constexpr double kAlong = 1e-4;  // rad or m: the way over which slopes are compared for the second derivative
+  static constexpr double kClose = 1e-9, kFar = 0.3;  // rad or m: a step that is shorter is the last; a step, at most
   static constexpr double kSure = 1e-3;  // of the way from one solution to the other: nearer Newton's method goes there
   static constexpr double kShare = 0.1, kTogether = 1e-2;  // of that way (rad or m): nearer they are one solution
   static constexpr double kApart = 1e-8, kCubic = 20.0, kMixed = 3.0;  // least error of none; with what the second order
@@ -1475,7 +1476,8 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
   static constexpr int kDeep = 24, kDoubts = 3;  // how often a part is cut, and how often as the cubic bends by so much
   static constexpr double kBent = 1.5, kStraight = 0.03;  // of what it is in the middle, and at most
   static constexpr int kParts = 4;
-  static constexpr int kSteps = 40, kCubics = 4, kNewton = 8, kSoon = 4;
+  static constexpr int kSteps = 40;  // of false position; the product of what is left at both ends has to halve in kSoon
+  static constexpr int kCubics = 4, kNewton = 8, kSoon = 4;  // first steps that go to roots of cubics, by Newton's method
   static constexpr double kRoundOff = 1e-15;
   static constexpr double kBeyond = 4.0;  // how far what is left at the end of a curve's last part may be beyond its bound
   static constexpr double kWay = 1e-10;   // rad or m: along a curve, by which what is left varies by round-off

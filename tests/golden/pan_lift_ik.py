@@ -1075,9 +1075,9 @@ class _Answer:
 # Solutions near a singularity, where Newton's method stalls.
 
 
-_ALONG = 1e-4  # rad or m
-_CLOSE = 1e-9
-_FAR = 0.3
+_ALONG = 1e-4  # rad or m: the way over which slopes are compared for the second derivative
+_CLOSE = 1e-9  # rad or m: a step that is shorter is the last
+_FAR = 0.3  # rad or m: a step, at most
 _fold_pair_STEPS = 8
 _TURNED = 0.5  # squared length of what is left of a unit direction that turned by 45 degrees
 
@@ -1271,12 +1271,13 @@ def _places(pose: _Index) -> _Index:
 
 _BEYOND = 4.0
 
-_STEPS, _DEEP = 40, 24
+_STEPS, _DEEP = 40, 24  # of false position, and how often a part is halved
 _curve_parts_DOUBTS = 3  # how often a part is cut as its cubic bends
 _BENT = 1.5  # over its bend: a cubic that is lower in the middle of a part may have two roots there
 _STRAIGHT = 0.03  # over its largest value: a cubic that bends by less is straight
-_CUBICS, _NEWTON, _CLEAR = 2, 4, 1e-6
-_LEAP, _SOON = 16.0, 3
+_CUBICS, _NEWTON = 2, 4  # first steps that go to roots of cubics, and Newton's steps to these
+_CLEAR = 1e-6  # rad, or m over the arm's size, that is left in a part: with less, cubics are of round-off
+_LEAP, _SOON = 16.0, 3  # times what it changes beside: a leap, if it does so after so many steps
 _PARTS = 4  # in which one is looked at whose ends alone tell little
 _SAMPLES = 600  # of a curve
 _ROOM = 32  # solutions of a curve

@@ -71,7 +71,8 @@ template <class Arm> struct CurveParts : CurveSamples<Arm> {
   static constexpr int kDeep = 24, kDoubts = 3;  // how often a part is cut, and how often as the cubic bends by so much
   static constexpr double kBent = 1.5, kStraight = 0.03;  // of what it is in the middle, and at most
   static constexpr int kParts = 4;
-  static constexpr int kSteps = 40, kCubics = 4, kNewton = 8, kSoon = 4;
+  static constexpr int kSteps = 40;  // of false position; the product of what is left at both ends has to halve in kSoon
+  static constexpr int kCubics = 4, kNewton = 8, kSoon = 4;  // first steps that go to roots of cubics, by Newton's method
   static constexpr double kRoundOff = 1e-15;
   static constexpr double kBeyond = 4.0;  // how far what is left at the end of a curve's last part may be beyond its bound
   static constexpr double kWay = 1e-10;   // rad or m: along a curve, by which what is left varies by round-off

@@ -143,7 +143,8 @@ template <class Arm> struct FoldPair {
 
  private:
   static constexpr double kTurned = 0.5;  // squared length of what is left of a unit direction that turned by 45 degrees
-  static constexpr double kAlong = 1e-4, kClose = 1e-9, kFar = 0.3;
+  static constexpr double kAlong = 1e-4;  // rad or m: the way over which slopes are compared for the second derivative
+  static constexpr double kClose = 1e-9, kFar = 0.3;  // rad or m: a step that is shorter is the last; a step, at most
   static constexpr double kSure = 1e-3;  // of the way from one solution to the other: nearer Newton's method goes there
   static constexpr double kShare = 0.1, kTogether = 1e-2;  // of that way (rad or m): nearer they are one solution
   static constexpr double kApart = 1e-8, kCubic = 20.0, kMixed = 3.0;  // least error of none; with what the second order

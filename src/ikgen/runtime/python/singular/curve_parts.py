@@ -21,12 +21,13 @@ __all__ = ["BEYOND", "Parts", "between", "look", "look_between"]
 BEYOND = 4.0
 """How far what is left behind the last part of a curve may be beyond its bound."""
 
-_STEPS, _DEEP = 40, 24
+_STEPS, _DEEP = 40, 24  # of false position, and how often a part is halved
 _DOUBTS = 3  # how often a part is cut as its cubic bends
 _BENT = 1.5  # over its bend: a cubic that is lower in the middle of a part may have two roots there
 _STRAIGHT = 0.03  # over its largest value: a cubic that bends by less is straight
-_CUBICS, _NEWTON, _CLEAR = 2, 4, 1e-6
-_LEAP, _SOON = 16.0, 3
+_CUBICS, _NEWTON = 2, 4  # first steps that go to roots of cubics, and Newton's steps to these
+_CLEAR = 1e-6  # rad, or m over the arm's size, that is left in a part: with less, cubics are of round-off
+_LEAP, _SOON = 16.0, 3  # times what it changes beside: a leap, if it does so after so many steps
 _PARTS = 4  # in which one is looked at whose ends alone tell little
 _SAMPLES = 600  # of a curve
 _ROOM = 32  # solutions of a curve

@@ -17,9 +17,9 @@ from ikgen.runtime.python.newton.refinement import clipped, damped, normal_inver
 
 __all__ = ["Reduced", "approach", "correct", "generic", "still_directions"]
 
-_ALONG = 1e-4  # rad or m
-_CLOSE = 1e-9
-_FAR = 0.3
+_ALONG = 1e-4  # rad or m: the way over which slopes are compared for the second derivative
+_CLOSE = 1e-9  # rad or m: a step that is shorter is the last
+_FAR = 0.3  # rad or m: a step, at most
 _STEPS = 8
 _TURNED = 0.5  # squared length of what is left of a unit direction that turned by 45 degrees
 
