@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 from tests.support.both_languages import header_of
 from tests.support.redundant_arms import Joint, serial_urdf
-from tests.support.solving import NO_COMPILER, import_text
+from tests.support.solving import FIXTURES, NO_COMPILER, import_text
 
 from ikgen.emit.python.python_emitter import emit_module
 from ikgen.generation.derive import derive
 from ikgen.generation.request import Request
+from ikgen.kinematics.forward import file_forward
 
 pytestmark = pytest.mark.usefixtures("solved_once")
 
@@ -44,3 +45,20 @@ def test_all_are_found_where_the_wrist_is_not_rolled(tmp_path: Path) -> None:
     for found in (rows.q, batch):
         gap = np.abs(found - q[: len(found), None]).max(axis=2)
         assert np.nanmin(np.where(np.isnan(gap), np.inf, gap), axis=1).max() < 1e-4
+
+
+@pytest.mark.skipif(bool(NO_COMPILER), reason=NO_COMPILER or "compiles")
+def test_a_root_that_is_one_of_a_fold_too_is_not_taken_for_one(tmp_path: Path) -> None:
+    """Where the arm lies in a plane so, two solutions that meet have the angle of two regular ones."""
+    module = derive(Request(FIXTURES / "fanuc_crx10ia.urdf", name="crx")).module
+    header = header_of(module, tmp_path)
+    q = np.random.default_rng(1).uniform(-3.0, 3.0, (2000, 6))
+    q[:, 1:5] = (
+        -0.78539816362406467,
+        -0.78539816372125193,
+        -8.0763351867773405e-11,
+        -0.78539816327510548,
+    )
+    found = header.solve_many(file_forward(module.dh, q)).q
+    gap = np.abs(np.remainder(found - q[:, None] + np.pi, 2.0 * np.pi) - np.pi).max(axis=2)
+    assert np.nanmin(gap, axis=1).max() < 1e-6

@@ -193,8 +193,9 @@ inline bool add_rows(const Frames& F, const Frame& T, const Six& start, const do
       row.c[i] = c[i][l];
       row.s[i] = s[i][l];
     }
-    if (error[l] >= kExactly && error[l] < kVerified) sharpen(F, T, row);
-    all = error[l] < kVerified && keep(row, out) && all;
+    const bool stalls = error[l] >= kExactly;  // beside two that meet: its root may be that of others as well
+    if (stalls && error[l] < kVerified) sharpen(F, T, row);
+    all = error[l] < kVerified && keep(row, out) && !stalls && all;
   }
   return all;
 }
