@@ -56,6 +56,13 @@ def test_bad_input(called: Called, arguments: list[str], said: str) -> None:
     assert said in found["error"]["message"] and found["error"]["hint"]
 
 
+def test_a_xacro_argument_in_its_own_way_is_told_how_to_be_given(called: Called) -> None:
+    _, found = called("from-urdf", "arm.xacro", "use_gripper:=false")
+    assert found["error"]["hint"] == "an argument of xacro: --arg use_gripper:=false"
+    _, found = called("from-urdf", "arm.urdf", "more.urdf")
+    assert found["error"]["hint"] == "see ikgen from-urdf --help"
+
+
 def test_the_place_of_an_error(called: Called) -> None:
     Path("broken.urdf").write_text("<robot name='x'>\n<link>\n</robot>")
     code, found = called("from-urdf", "broken.urdf")

@@ -2680,7 +2680,7 @@ class Solutions:
 
     def __repr__(self) -> str:
         reason = f", reason={self.reason!r}" if self.reason else ""
-        missed = "" if self.projected is None else f", projected={self.projected!r}"
+        missed = "" if self.projected is None else f", off={self.projected!r}"
         rows = f"q={self.q!r}, status={self.status!r}, singular={self.singular!r}"
         return f"Solutions({rows}{reason}{missed})"
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import gc
 import os
+import re
 import sys
 import warnings
 from collections.abc import Sequence
@@ -21,6 +22,9 @@ from ikgen.errors import told
 from ikgen.processes.termination import TERMINATED, Terminated, unwind_on_signals
 
 __all__ = ["COMMANDS", "ikgen", "main", "run"]
+
+_XACRO_ARGUMENT = re.compile(r"unexpected extra argument \(([\w.-]+:=\S*)\)")
+"""What is written as xacro's own command line has it."""
 
 COMMANDS: dict[str, tuple[str, str]] = {
     "from-urdf": ("ikgen.cli.from_robot:from_urdf", "Generate from a URDF or xacro file."),
@@ -140,7 +144,10 @@ def _explained(error: BaseException, verbose: bool) -> tuple[str, str, int]:
     if isinstance(error, click.ClickException):
         context = error.ctx if isinstance(error, click.UsageError) else None
         command = context.command_path if context is not None else "ikgen"
-        return error.format_message(), f"see {command} --help", 2
+        message = error.format_message()
+        xacro = _XACRO_ARGUMENT.search(message)
+        hint = f"an argument of xacro: --arg {xacro[1]}" if xacro else f"see {command} --help"
+        return message, hint, 2
     if isinstance(error, click.Abort | KeyboardInterrupt):
         return "interrupted", "", 130
     if isinstance(error, Terminated):

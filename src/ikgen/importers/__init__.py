@@ -119,7 +119,8 @@ def importer_of(path: Path) -> Importer:
     known = ", ".join(suffix for row in (*IMPORTERS, *others) for suffix in row.suffixes)
     raise UsageError(
         f"{path}: cannot tell the format of a robot description by the suffix '{path.suffix}'",
-        hint=f"name the file with one of: {known}" + (f"; {broken.message}" if broken else ""),
+        hint=f"what is read has one of {known}; convert others, as SDF, to URDF"
+        + (f"; {broken.message}" if broken else ""),
     )
 
 

@@ -18,7 +18,7 @@ ONE = "Solutions(q=array([[0., 0.]]), status=<Status.OK: 'OK'>, singular=array([
         (Solutions(ROWS, Status.OK, FLAGS, names=lambda q: ()), ONE + ")"),
         (
             Solutions(ROWS, Status.OK, FLAGS, projected=ROWS),
-            ONE + ", projected=array([[0., 0.]]))",
+            ONE + ", off=array([[0., 0.]]))",
         ),
     ],
 )

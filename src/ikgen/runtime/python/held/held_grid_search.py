@@ -13,10 +13,10 @@ from ikgen.runtime.python.arrays.array_types import Array, Flags, Index
 from ikgen.runtime.python.arrays.row_blocks import in_blocks
 from ikgen.runtime.python.held.held_joint import pose_lines
 from ikgen.runtime.python.held.slide_range import slide_range
-from ikgen.runtime.python.held.solution_search import NEAR, solutions_of
+from ikgen.runtime.python.held.solution_search import NEAR, solutions_of, with_seeds_row
 from ikgen.runtime.python.held.values_descent import descended_rows
 from ikgen.runtime.python.rows.row_links import differences
-from ikgen.runtime.python.rows.row_preference import preference_costs, preference_of
+from ikgen.runtime.python.rows.row_preference import Preference, preference_costs, preference_of
 from ikgen.runtime.python.rows.solutions import Solutions, no_held_values
 from ikgen.runtime.python.solving.batch_solving import rows_batch
 from ikgen.runtime.python.solving.pose_solving import solve_pose
@@ -33,11 +33,18 @@ def search_grid(
     arm: Arm, pose: Any, seed: ArrayLike | None, prefer: str, limits: bool
 ) -> Solutions:
     """Rows that are better than those beside them on a grid of the held joints' values, each made better
-    by steps of these: best first, and none twice. Raises ValueError for bad arguments."""
+    by steps of these: best first, and none twice, or the one at the seed's values before them. Raises
+    ValueError for bad arguments."""
     preference = preference_of(arm, prefer, seed)
     T = pose_lines(arm, pose)
     if T is None:
         return solve_pose(arm, pose, None, None, limits)  # which says why it is none
+    found = _best_rows(arm, T, preference, limits)
+    return with_seeds_row(arm, T, seed, preference, limits, found)
+
+
+def _best_rows(arm: Arm, T: Array, preference: Preference, limits: bool) -> Solutions:
+    """Those of the grid, made better, best first."""
     values, steps = _grid(arm, T, preference[1], limits)
 
     def rows_at(part: Array) -> tuple[Array, Array, Flags]:

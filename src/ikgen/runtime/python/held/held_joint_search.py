@@ -16,6 +16,7 @@ from ikgen.runtime.python.held.solution_search import (
     Start,
     improved_rows,
     solutions_of,
+    with_seeds_row,
 )
 from ikgen.runtime.python.rows.row_preference import Preference, preference_costs, preference_of
 from ikgen.runtime.python.rows.solutions import Solutions, no_held_values
@@ -27,13 +28,20 @@ __all__ = ["search_interval"]
 def search_interval(
     joint: HeldJoint, pose: Any, seed: ArrayLike | None, prefer: str, limits: bool
 ) -> Solutions:
-    """The best row of each interval of the held joint's values, best first. Raises ValueError for bad
-    arguments."""
+    """The best row of each interval of the held joint's values, best first, or the one at the seed's value
+    before them. Raises ValueError for bad arguments."""
     arm = joint.arm
     preference = preference_of(arm, prefer, seed)
     T = pose_lines(arm, pose)
     if T is None:
         return solve_pose(arm, pose, None, None, limits)  # which says why it is none
+    found = _best_rows(joint, T, preference, limits)
+    return with_seeds_row(arm, T, seed, preference, limits, found)
+
+
+def _best_rows(joint: HeldJoint, T: Array, preference: Preference, limits: bool) -> Solutions:
+    """Those of the intervals, best first."""
+    arm = joint.arm
     tracks = tracked(joint, T, *held_range(arm, T, limits), limits)
     starts: list[Start] = []
     interval: list[int] = []

@@ -7,6 +7,7 @@ from math import inf
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ikgen.runtime.python.arm.held_parameters import aims, held_of
 from ikgen.runtime.python.arm.solved_arm import Arm
@@ -22,7 +23,16 @@ from ikgen.runtime.python.singular.fold_pair import approach
 from ikgen.runtime.python.solving.batch_solving import rows_batch
 from ikgen.runtime.python.solving.pose_solving import solve_pose
 
-__all__ = ["LEAST_STEP", "NEAR", "Reach", "Start", "improved_rows", "solutions_of", "tried_rows"]
+__all__ = [
+    "LEAST_STEP",
+    "NEAR",
+    "Reach",
+    "Start",
+    "improved_rows",
+    "solutions_of",
+    "tried_rows",
+    "with_seeds_row",
+]
 
 
 class Reach(NamedTuple):
@@ -58,6 +68,7 @@ on, and how far it is followed."""
 
 _STEPS = 40
 _SHORTER = 0.4
+_EQUAL = 1e-12  # costs that differ by less are as good
 LEAST_STEP = 1e-10  # rad or m
 NEAR = 0.5  # rad or m that a row may be from the one that a step began at
 _BESIDE = 0.05  # rad or m that a row beside a fold may be from the one before
@@ -192,3 +203,30 @@ def solutions_of(
         return no_solutions(len(arm.lower), Status.LIMITS)
     names = partial(branch_names, arm)
     return Solutions(np.array(q), Status.OK, np.array(flags), names=names)
+
+
+def with_seeds_row(
+    arm: Arm,
+    T: Array,
+    seed: ArrayLike | None,
+    preference: Preference,
+    limits: bool,
+    found: Solutions,
+) -> Solutions:
+    """What was found, behind the best row at the seed's own values of what is held, where that is better:
+    between samples lie values that alone reach a pose, as where an arm on a rail points along it."""
+    own = None if seed is None else solve_pose(arm, T, None, seed, limits)
+    if own is None or not len(own):
+        return found
+    q, cost, inside = preference_costs(arm, preference, own.q[:, None], limits)
+    cost = np.where(inside, cost, inf)[:, 0]
+    best = cost.argmin()
+    if len(found):
+        least = preference_costs(arm, preference, found.q[:1, None], limits)[1][0, 0]
+        if not cost[best] < least - _EQUAL * (1.0 + abs(least)):
+            return found
+    elif not cost[best] < inf:
+        return found
+    rows = np.concatenate([q[best], found.q])[: arm.most]
+    flags = np.concatenate([own.singular[best : best + 1], found.singular])[: arm.most]
+    return Solutions(rows, Status.OK, flags, names=own.names)

@@ -50,7 +50,7 @@ class Solutions:
 
     def __repr__(self) -> str:
         reason = f", reason={self.reason!r}" if self.reason else ""
-        missed = "" if self.projected is None else f", projected={self.projected!r}"
+        missed = "" if self.projected is None else f", off={self.projected!r}"
         rows = f"q={self.q!r}, status={self.status!r}, singular={self.singular!r}"
         return f"Solutions({rows}{reason}{missed})"
 
@@ -69,7 +69,9 @@ def no_held_values(dof: int, names: tuple[str, ...], real: bool) -> Solutions:
     """What a search over all values of held joints is answered with that found none inside the limits."""
     joints = " and ".join(names)
     if real:
-        return no_solutions(dof, Status.LIMITS, f"outside the limits at all values of {joints}")
+        return no_solutions(
+            dof, Status.LIMITS, f"outside the limits at all values looked at of {joints}"
+        )
     return no_solutions(dof, Status.UNREACHABLE, f"no value looked at of {joints} reaches the pose")
 
 
