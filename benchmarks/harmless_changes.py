@@ -128,7 +128,7 @@ HARMLESS = (
     ),
     HarmlessChange(
         "runtime/python/singular/curve_parts.py",
-        "_STEPS, _DEEP = 40, 24",
+        "_STEPS, _DEEP = 40, 24  # of false position, and how often a part is halved",
         "40", "41", _COUNT,
     ),
     HarmlessChange(
