@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from functools import partial, reduce
-
 import numpy as np
 
 from ikgen.algebra.expression import Expr
 from ikgen.equations.probes import arm_size
 from ikgen.forms.lowered_form import ROUNDED
+from ikgen.lowering.double_roots import either
 from ikgen.lowering.placement import Placement
 from ikgen.program.statements import Comment
 
@@ -72,9 +71,11 @@ def _counted(work: Placement, parts: list[Expr], total: Expr) -> Expr:
     leaves much."""
     g = work.g
     off = max(float(np.median(work.rounding.of(e))) for e in parts)
-    if off < _UNSEEN or work.model_error > ROUNDED or not work.close:
+    if off < _UNSEEN or work.model_error > ROUNDED:
         return total
-    close = reduce(partial(g.binary, "or"), work.close)
+    close = either(g, work.close)
+    if close is None:
+        return total
     counted = g.mul(total, g.select(close, g.one, g.const(_SHARE)))
     work.place(counted)
     return counted

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from functools import partial, reduce
 
+from ikgen.algebra.dependencies import dependencies
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 
@@ -40,17 +41,7 @@ class DoubleRoots:
 
     def behind(self, value: Expr) -> Expr | None:
         """Condition that an unknown which a value follows from is; None where there is no such unknown."""
-        seen: set[int] = set()
-        flags: dict[Expr, None] = {}
-        stack = [value]
-        while stack:
-            node = stack.pop()
-            if node.id in seen:
-                continue
-            seen.add(node.id)
-            if node.id in self._of:
-                flags[self._of[node.id]] = None
-            solved = node.id in self._definition
-            stack += (self._definition[node.id],) if solved else node.args
+        before = dependencies([value], self._definition)
+        flags = dict.fromkeys(self._of[node.id] for node in before if node.id in self._of)
         self.asked |= flags
         return either(self._graph, flags)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial, reduce
 
+from ikgen.algebra.dependencies import dependencies
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.forms.lowered_form import at_least
@@ -45,13 +46,7 @@ class FileDigits:
 
     def behind(self, *values: Expr) -> Expr | None:
         """The least `m` of the unknowns that values follow from; None where these lose nothing."""
-        seen: set[int] = set()
-        stack = list(values)
-        while stack:
-            node = stack.pop()
-            if node.id not in seen:
-                seen.add(node.id)
-                stack += self._args(node)
+        seen = {node.id for node in dependencies(values, self._definition, self._of)}
         left = dict.fromkeys(m for atom, m in self._of.items() if atom in seen)
         return reduce(partial(self._graph.binary, "min"), left) if left else None
 
@@ -60,8 +55,3 @@ class FileDigits:
         if not self._least:
             return square
         return at_least(self._graph, square, self._graph.const(self._least))
-
-    def _args(self, node: Expr) -> tuple[Expr, ...]:
-        if node.id in self._of:
-            return ()
-        return (self._definition[node.id],) if node.id in self._definition else node.args

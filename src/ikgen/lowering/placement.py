@@ -9,6 +9,7 @@ from functools import partial, reduce
 import numpy as np
 from numpy.typing import NDArray
 
+from ikgen.algebra.dependencies import dependencies
 from ikgen.algebra.expression import Expr
 from ikgen.algebra.expression_graph import ExpressionGraph
 from ikgen.equations.knowledge import Variable
@@ -118,8 +119,8 @@ class Placement:
         self.rounding.note_root(atoms, equation, slope)
         folds = len(self.folds)
         self.note_fold(self.g.square(slope), natural_size(slope) ** 2)
-        for flag in self.folds[folds:]:
-            self.double = flag if self.double is None else self.g.binary("or", self.double, flag)
+        before = () if self.double is None else (self.double,)
+        self.double = either(self.g, (*before, *self.folds[folds:]))
         self._settle(atoms, (equation,))
 
     def note_divisors(self, divisors: Sequence[Divisor]) -> None:
@@ -230,9 +231,9 @@ class Placement:
 
     def require_solution(self, condition: Expr, *, fold: bool = False) -> None:
         """Schedule a guard of what an unknown is; where a direction is lost it tells nothing."""
-        lost = [one for one in self.lost if self.level(one) <= self.level(condition)]
-        if lost:
-            nothing = reduce(partial(self.g.binary, "or"), lost)
+        known = self.level(condition)
+        nothing = either(self.g, (one for one in self.lost if self.level(one) <= known))
+        if nothing is not None:
             self.hidden.append(self.g.binary("and", nothing, self.g.unary("not", condition)))
             self.place(self.hidden[-1])
         self.require(condition, fold=fold)
@@ -266,19 +267,10 @@ class Placement:
         counts = [1.0]
         for level in self.levels[1:]:
             counts.append(counts[-1] * level.branches)
-        seen: set[int] = set()
         total = 0.0
-        stack = list(roots)
-        while stack:
-            node = stack.pop()
-            if node.id in seen or node.id in self.placed:
-                continue
-            seen.add(node.id)
-            if node.id in self.definition:
-                stack.append(self.definition[node.id])
-            elif node.args and not node.is_fixed:
+        for node in dependencies(roots, self.definition, self.placed):
+            if node.args and not node.is_fixed and node.id not in self.placed:
                 total += counts[self.level(node)]
-            stack.extend(node.args)
         return total
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from ikgen.algebra.dependencies import dependencies
 from ikgen.algebra.expression import Expr
 from ikgen.equations.knowledge import Knowledge, Variable
 from ikgen.equations.probes import Probes
@@ -54,22 +55,15 @@ class SolutionGraph:
 def _variables_in(roots: tuple[Expr, ...], knowledge: Knowledge) -> set[Variable]:
     """Solved variables that expressions depend on, derived angles replaced by what they come from."""
     found: set[Variable] = set()
-    seen: set[int] = set()
-    stack = list(roots)
-    while stack:
-        node = stack.pop()
-        if node.id in seen:
+    for node in dependencies(roots, knowledge.binding):
+        if node.id in knowledge.binding or node.atom is None:
             continue
-        seen.add(node.id)
-        if node.id in knowledge.binding:
-            stack.append(knowledge.binding[node.id])
-        elif node.atom is not None and node.atom.kind in ("cos", "sin"):
+        if node.atom.kind in ("cos", "sin"):
             assert not isinstance(node.atom.key, str)
             found.add(Variable("angle", node.atom.key))
-        elif node.atom is not None and node.atom.kind == "prismatic":
+        elif node.atom.kind == "prismatic":
             assert not isinstance(node.atom.key, str)
             found.add(Variable("prismatic", node.atom.key))
-        stack.extend(node.args)
     return found
 
 
