@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ikgen.generation.progress import Stage
-
 if TYPE_CHECKING:
     from rich.status import Status
+
+    from ikgen.generation.progress import Stage
 
 __all__ = ["Console"]
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import traceback
 from collections.abc import Mapping
 from typing import Any
 
@@ -40,9 +39,12 @@ def say(message: str, hint: str = "") -> None:
 
 def say_work(error: BaseException, exit_code: int) -> None:
     """On stderr how far the work came before an error, or where in ikgen it broke."""
-    text = work_text(error) if isinstance(error, IkgenError) else ""
     if exit_code == INTERNAL_ERROR:
+        import traceback
+
         text = "".join(traceback.format_exception(error))
+    else:
+        text = work_text(error) if isinstance(error, IkgenError) else ""
     if text:
         click.echo(text, err=True)
 

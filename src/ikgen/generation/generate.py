@@ -124,8 +124,6 @@ def make_texts(
     Where what was chosen for the arm fails, the next choice is taken: of joints to hold, of the tool's
     axis, and in the end the whole pose. Where no other is left or solved, the last failure is told.
     """
-    from ikgen.generation.unsolved import incomplete_error
-
     tasks: list[str] = []
     held: list[tuple[str, ...]] = []
     failed: VerificationError | None = None
@@ -135,7 +133,7 @@ def make_texts(
         except UnsolvedChainError:
             if failed is None:
                 raise
-            raise incomplete_error(failed, request) from None
+            raise _incomplete(failed, request) from None
         try:
             made, reports = _emitted(derivation, emitters, outputs, progress)
             break
@@ -146,12 +144,19 @@ def make_texts(
         elif derivation.chosen and not derivation.task.whole_pose:
             tasks.append(derivation.task.name)
         else:
-            raise incomplete_error(failed, request) from None
+            raise _incomplete(failed, request) from None
     for emitter in emitters:
         if emitter.tells_verification:
             progress("emit", emitter.name)
             made[emitter.name] = emitter.emit(derivation, reports)
     return Made(made, derivation, reports, tuple(tasks))
+
+
+def _incomplete(failed: VerificationError, request: Request) -> IkgenError:
+    """What a failed verification tells in the end."""
+    from ikgen.generation.unsolved import incomplete_error  # it brings the report along
+
+    return incomplete_error(failed, request)
 
 
 def _emitted(
