@@ -242,15 +242,15 @@ def _without_turns(angles: Array) -> Array:
 
 def _real_array(values: ArrayLike, name: str) -> Array:
     """The values as doubles."""
+    kind = ""
     try:
         array = np.asarray(values)
-        if array.dtype.kind in "biuf":
-            return np.asarray(array, dtype=float)
-        if array.dtype.kind == "O" and all(hasattr(x, "__float__") for x in array.flat):
+        kind = array.dtype.kind
+        if kind in "biuf" or (kind == "O" and all(hasattr(x, "__float__") for x in array.flat)):
             return np.asarray(array, dtype=float)
     except (TypeError, ValueError, OverflowError):
-        array = np.empty(0, dtype=object)
-    if array.dtype.kind == "c":
+        pass  # ragged rows, or a number beyond what a double holds
+    if kind == "c":
         raise ValueError(f"{name} has complex values")
     raise ValueError(f"{name} is no array of numbers: {type(values).__name__}")
 

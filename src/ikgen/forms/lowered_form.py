@@ -66,12 +66,12 @@ class Tolerances:
     `further` where it follows from unknowns; where rows are refined it is kept above `fold`, so that two
     branches start apart. Where the condition `rough` holds, what a square root is taken of has lost digits:
     it may be `wide` outside; so it may where `folded` gives a condition for what it is taken of, and that
-    holds. An `error` of the geometry moves what follows from a square root by as much
-    over that root, and what follows from a divisor by as much over it: `margin` gives what the unknowns
-    that a value follows from leave of the file's digits, as a square relative to natural sizes (see
-    `FileDigits`), and `moved` bounds how far a value goes for each radian, or metre, that the unknowns
-    before it are off. `lost` bounds by how much round-off moves one; where `double` holds, an unknown
-    solved so far is nearly a double root.
+    holds. An `error` of the geometry moves what follows from a square root by as much over that root, and
+    what follows from a divisor by as much over it: `margin` gives what the unknowns that a value follows
+    from leave of the file's digits, as a square relative to natural sizes (see `FileDigits`), and `moved`
+    bounds how far a value goes for each radian, or metre, that the unknowns before it are off. `lost`
+    bounds by how much round-off moves one; where `double` holds, an unknown solved so far is nearly a
+    double root.
     """
 
     singular: float = 1e-11
